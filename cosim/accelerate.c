@@ -7,7 +7,7 @@
 // Newton's method does the same to u + (I − J)⁻¹ r, so that the differences correct the Jacobian.
 #include "cosim/accelerate.h"
 
-#include "core/base.h"
+#include "core/base/base.h"
 
 #include <assert.h>
 #include <math.h>

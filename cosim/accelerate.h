@@ -4,7 +4,7 @@
 #ifndef BOUGH_COSIM_ACCELERATE_H
 #define BOUGH_COSIM_ACCELERATE_H
 
-#include "core/arena.h"
+#include "core/base/arena.h"
 
 #include <stdbool.h>
 

@@ -1,6 +1,6 @@
 #include "cosim/assembly.h"
 
-#include "core/base.h"
+#include "core/base/base.h"
 
 #include <assert.h>
 #include <string.h>

@@ -4,8 +4,8 @@
 #ifndef BOUGH_COSIM_ASSEMBLY_H
 #define BOUGH_COSIM_ASSEMBLY_H
 
-#include "core/arena.h"
-#include "core/status.h"
+#include "core/base/arena.h"
+#include "core/base/status.h"
 #include "cosim/member.h"
 
 // A member and its stage. Members of one stage advance in parallel; sequential schemes advance the stages

@@ -1,6 +1,6 @@
 #include "cosim/condense.h"
 
-#include "core/linalg.h"
+#include "core/base/linalg.h"
 
 #include <math.h>
 #include <string.h>

@@ -1,6 +1,6 @@
 #include "cosim/coupled.h"
 
-#include "core/linalg.h"
+#include "core/base/linalg.h"
 
 #include <assert.h>
 #include <string.h>

@@ -5,7 +5,7 @@
 #ifndef BOUGH_COSIM_COUPLED_H
 #define BOUGH_COSIM_COUPLED_H
 
-#include "core/pool.h"
+#include "core/base/pool.h"
 #include "cosim/condense.h"
 
 typedef struct bough_coupled {

@@ -1,4 +1,4 @@
-// The coupled members behind the contract of core/system.h. It has no ports.
+// The coupled members behind the contract of core/solve/system.h. It has no ports.
 #include "cosim/coupled.h"
 
 #include <math.h>

@@ -3,10 +3,10 @@
 #ifndef BOUGH_COSIM_MASTER_H
 #define BOUGH_COSIM_MASTER_H
 
-#include "cosim/breakdown.h"
-#include "cosim/monitor.h"
+#include "cosim/watch/breakdown.h"
+#include "cosim/watch/monitor.h"
 #include "cosim/scheme.h"
-#include "cosim/stability.h"
+#include "cosim/analysis/stability.h"
 #include "cosim/step_control.h"
 
 // Loads with a sampling rate of their own: sample() is called at multiples of the period, between steps,

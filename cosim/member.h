@@ -1,12 +1,12 @@
 // A member of an assembly: a system, its current time and state, and the integrator that advances it over
-// a macro step by its own steps. The integrator need not be in the table of core/integrator.h: a foreign
+// a macro step by its own steps. The integrator need not be in the table of core/solve/integrator.h: a foreign
 // simulator is a member with an integrator of its own.
 #ifndef BOUGH_COSIM_MEMBER_H
 #define BOUGH_COSIM_MEMBER_H
 
-#include "core/integrator.h"
-#include "core/signal.h"
-#include "core/system.h"
+#include "core/solve/integrator.h"
+#include "core/solve/signal.h"
+#include "core/solve/system.h"
 
 typedef struct bough_member {
     bough_system system;

@@ -1,6 +1,6 @@
 #include "cosim/port.h"
 
-#include "core/base.h"
+#include "core/base/base.h"
 
 bough_signal bough_port_signal(bough_arena *arena, int n) {
     return (bough_signal){.n = n, .t0 = 0, .t1 = 1, .coefficient = bough_arena_doubles(arena, 4 * (size_t)n)};

@@ -4,8 +4,8 @@
 #ifndef BOUGH_COSIM_PORT_H
 #define BOUGH_COSIM_PORT_H
 
-#include "core/arena.h"
-#include "core/signal.h"
+#include "core/base/arena.h"
+#include "core/solve/signal.h"
 
 // A zero signal of n components on [0, 1], in the arena.
 bough_signal bough_port_signal(bough_arena *arena, int n);

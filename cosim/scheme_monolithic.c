@@ -2,7 +2,7 @@
 // coupling error. By the Rosenbrock method the members are coupled at its stages, each of which costs
 // a member what its own sub-solver would; an implicit multistep method at a tight tolerance is the
 // reference of every error figure.
-#include "core/rosenbrock.h"
+#include "core/solve/rosenbrock.h"
 #include "cosim/coupled.h"
 #include "cosim/scheme.h"
 

@@ -20,7 +20,7 @@
 #include "cosim/iteration.h"
 #include "cosim/port.h"
 #include "cosim/scheme.h"
-#include "cosim/stability.h"
+#include "cosim/analysis/stability.h"
 
 #include <math.h>
 #include <string.h>

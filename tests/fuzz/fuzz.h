@@ -2,7 +2,7 @@
 #ifndef BOUGH_TESTS_FUZZ_FUZZ_H
 #define BOUGH_TESTS_FUZZ_FUZZ_H
 
-#include "tests/scratch_name.h"
+#include "tests/unit/scratch_name.h"
 
 #include <stddef.h>
 #include <stdint.h>

@@ -1,7 +1,7 @@
-#include "apps/bough/open.h"
-#include "apps/bough/checkpoint.h"
-#include "apps/bough/run.h"
-#include "apps/bough/verb.h"
+#include "apps/bough/cli/open.h"
+#include "apps/bough/cli/checkpoint.h"
+#include "apps/bough/cli/run.h"
+#include "apps/bough/cli/verb.h"
 #include "tests/fuzz/fuzz.h"
 
 #include <signal.h>

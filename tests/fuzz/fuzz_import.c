@@ -1,5 +1,5 @@
-#include "apps/import/import.h"
-#include "apps/scene/scene.h"
+#include "apps/bough/import/import.h"
+#include "apps/bough/scene/scene.h"
 #include "tests/fuzz/fuzz.h"
 
 #include <string.h>
@@ -23,7 +23,7 @@ static deck original[DECKS];
 
 static void load(int i) {
     char path[512];
-    snprintf(path, sizeof path, "%s/tests/decks/%s", BOUGH_SOURCE_DIR, decks[i]);
+    snprintf(path, sizeof path, "%s/tests/data/decks/%s", BOUGH_SOURCE_DIR, decks[i]);
     FILE *file = fopen(path, "rb");
     fuzz_demand(file != NULL, path);
     original[i].size = fread(original[i].text, 1, ROOM, file);

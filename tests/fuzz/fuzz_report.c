@@ -1,4 +1,4 @@
-#include "apps/report/report.h"
+#include "apps/bough/results/report.h"
 #include "tests/fuzz/fuzz.h"
 
 // Any bytes as each file of a results folder.

@@ -1,4 +1,4 @@
-#include "apps/scene/scene.h"
+#include "apps/bough/scene/scene.h"
 #include "tests/fuzz/fuzz.h"
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {

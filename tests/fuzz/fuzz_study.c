@@ -1,4 +1,4 @@
-#include "apps/study/study.h"
+#include "apps/bough/cases/study.h"
 #include "tests/fuzz/fuzz.h"
 #include "tests/verification/verification.h"
 

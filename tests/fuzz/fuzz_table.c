@@ -1,4 +1,4 @@
-#include "apps/scene/scene.h"
+#include "apps/bough/scene/scene.h"
 #include "tests/fuzz/fuzz.h"
 
 #include <string.h>

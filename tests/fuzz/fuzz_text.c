@@ -1,4 +1,4 @@
-#include "apps/config/text.h"
+#include "apps/bough/config/text.h"
 #include "tests/fuzz/fuzz.h"
 
 // The tree of any text: memory in proportion to its size.

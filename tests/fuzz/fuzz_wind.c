@@ -1,5 +1,5 @@
-#include "aero/wind_box.h"
-#include "aero/wind_hub.h"
+#include "aero/wind/wind_box.h"
+#include "aero/wind/wind_hub.h"
 #include "tests/fuzz/fuzz.h"
 
 // Any bytes as either wind file; what is accepted can be asked anywhere.

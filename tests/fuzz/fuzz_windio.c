@@ -1,5 +1,5 @@
-#include "apps/import/import.h"
-#include "apps/scene/scene.h"
+#include "apps/bough/import/import.h"
+#include "apps/bough/scene/scene.h"
 #include "tests/fuzz/fuzz.h"
 
 // What becomes a scene can be read as one.

@@ -1,6 +1,6 @@
 #include "tests/reference/body_frame.h"
 
-#include "core/linalg.h"
+#include "core/base/linalg.h"
 
 #include <string.h>
 

@@ -11,7 +11,7 @@
 #ifndef BOUGH_TESTS_REFERENCE_BODY_FRAME_H
 #define BOUGH_TESTS_REFERENCE_BODY_FRAME_H
 
-#include "core/arena.h"
+#include "core/base/arena.h"
 #include "tests/reference/structure.h"
 
 // A vertex relative to the BRF, in BRF axes.

@@ -1,7 +1,7 @@
 // Builds the chain and sums its links' forces over the vertices; one link: chain_link.h.
 #include "tests/reference/chain.h"
 
-#include "core/linalg.h"
+#include "core/base/linalg.h"
 #include "tests/reference/chain_link.h"
 #include "tests/reference/lumped.h"
 

@@ -8,8 +8,8 @@
 #ifndef BOUGH_TESTS_REFERENCE_CHAIN_H
 #define BOUGH_TESTS_REFERENCE_CHAIN_H
 
-#include "core/arena.h"
-#include "core/status.h"
+#include "core/base/arena.h"
+#include "core/base/status.h"
 #include "tests/reference/structure.h"
 
 typedef struct bough_chain_link {

@@ -1,7 +1,7 @@
 #include "tests/reference/rod_structure.h"
 
 #include "tests/reference/lumped.h"
-#include "flexbody/rod_elastic.h"
+#include "flexbody/rod/rod_elastic.h"
 
 #include <string.h>
 

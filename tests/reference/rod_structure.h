@@ -2,7 +2,7 @@
 #ifndef BOUGH_TESTS_REFERENCE_ROD_STRUCTURE_H
 #define BOUGH_TESTS_REFERENCE_ROD_STRUCTURE_H
 
-#include "flexbody/rod.h"
+#include "flexbody/rod/rod.h"
 #include "tests/reference/structure.h"
 
 // The structure borrows the model, which must live as long.

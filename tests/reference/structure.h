@@ -10,8 +10,8 @@
 #ifndef BOUGH_TESTS_REFERENCE_STRUCTURE_H
 #define BOUGH_TESTS_REFERENCE_STRUCTURE_H
 
-#include "core/rotation.h"
-#include "core/spatial.h"
+#include "core/base/rotation.h"
+#include "core/base/spatial.h"
 
 #include <stdbool.h>
 

@@ -4,9 +4,9 @@
 #ifndef BOUGH_TESTS_REFERENCE_STRUCTURE_CONTRACT_H
 #define BOUGH_TESTS_REFERENCE_STRUCTURE_CONTRACT_H
 
-#include "core/linalg.h"
+#include "core/base/linalg.h"
 #include "tests/reference/body_frame.h"
-#include "tests/check.h"
+#include "tests/unit/check.h"
 
 #include <string.h>
 

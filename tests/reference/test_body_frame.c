@@ -3,7 +3,7 @@
 #include "tests/reference/body_frame_contract.h"
 
 #include "tests/reference/rod_structure.h"
-#include "tests/sample_rod.h"
+#include "tests/unit/sample_rod.h"
 
 #include <stdlib.h>
 

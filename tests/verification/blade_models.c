@@ -1,11 +1,11 @@
 #include "tests/verification/blade_models.h"
 
-#include "apps/config/schema.h"
-#include "apps/output/folder.h"
-#include "apps/scene/scene.h"
-#include "apps/study/study.h"
+#include "apps/bough/config/schema.h"
+#include "apps/bough/results/folder.h"
+#include "apps/bough/scene/scene.h"
+#include "apps/bough/cases/study.h"
 #include "tests/verification/blade_models_internal.h"
-#include "apps/study/study_table.h"
+#include "apps/bough/cases/study_table.h"
 
 #include <math.h>
 #include <string.h>

@@ -1,8 +1,8 @@
 // The clamped blade of a study of blade models: equilibrium and frequencies of whatever models it.
-#include "apps/analysis/steady.h"
+#include "apps/bough/analysis/steady.h"
 #include "tests/verification/blade_models_internal.h"
 #include "tests/verification/modal_static.h"
-#include "flexbody/rod_modes.h"
+#include "flexbody/rod/rod_modes.h"
 
 #include <string.h>
 

@@ -1,6 +1,6 @@
 // bough-verify STUDY: one study of the verification, with the exit codes of bough.
-#include "apps/bough/open.h"
-#include "apps/bough/stop.h"
+#include "apps/bough/cli/open.h"
+#include "apps/bough/cli/stop.h"
 #include "tests/verification/verification.h"
 
 static const bough_syntax syntax = {BOUGH_OPERAND_REQUIRED, "STUDY",

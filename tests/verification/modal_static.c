@@ -1,6 +1,6 @@
 #include "tests/verification/modal_static.h"
 
-#include "core/linalg.h"
+#include "core/base/linalg.h"
 
 #include <stdlib.h>
 #include <string.h>

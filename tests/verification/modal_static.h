@@ -3,7 +3,7 @@
 #ifndef BOUGH_TESTS_VERIFICATION_MODAL_STATIC_H
 #define BOUGH_TESTS_VERIFICATION_MODAL_STATIC_H
 
-#include "flexbody/modal_chain.h"
+#include "flexbody/modal/modal_chain.h"
 
 // Brings `state` (n_state), from where it is, to rest in a frame of constant twist and gravity,
 // `input` (9), under the loads at time t, by Newton's method with steps shortened so that no shape

@@ -2,7 +2,7 @@
 #ifndef BOUGH_TESTS_ONE_ELEMENT_H
 #define BOUGH_TESTS_ONE_ELEMENT_H
 
-#include "aero/induction.h"
+#include "aero/rotor/induction.h"
 
 typedef struct bough_element { // as in bough_elements
     const bough_polar *polar;

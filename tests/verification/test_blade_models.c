@@ -1,6 +1,6 @@
 // The study that compares a blade's models: what it finds of a small clamped blade and a short run.
 #include "tests/verification/blade_models_internal.h"
-#include "tests/scratch.h"
+#include "tests/unit/scratch.h"
 
 static const char head[] = "title: Two models\nkind: blade-models\n"
                            "blade: " BOUGH_SOURCE_DIR "/apps/beams/blade.yaml\n"

@@ -1,6 +1,6 @@
 // The shipped studies of coupling schemes on masses and springs: every figure is the expected one.
-#include "tests/check.h"
-#include "tests/scratch.h"
+#include "tests/unit/check.h"
+#include "tests/unit/scratch.h"
 #include "tests/verification/verification.h"
 
 static void perform(const char *folder, const char *name, const char *csv, int rows) {

@@ -1,6 +1,6 @@
 // Studies of kind verify: what is read, judged and told.
 #include "tests/verification/verify.h"
-#include "tests/scratch.h"
+#include "tests/unit/scratch.h"
 
 #define BEAMS BOUGH_SOURCE_DIR "/apps/beams/"
 #define HEAD "title: Two beams\nkind: verify\ncases:\n"

@@ -1,6 +1,6 @@
 #include "tests/verification/two_mass.h"
 
-#include "core/linalg.h"
+#include "core/base/linalg.h"
 
 #include <math.h>
 #include <string.h>

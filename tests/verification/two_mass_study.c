@@ -1,9 +1,9 @@
 #include "tests/verification/two_mass_study.h"
 
-#include "apps/config/schema.h"
-#include "apps/output/folder.h"
-#include "apps/study/study_map.h"
-#include "apps/study/study_table.h"
+#include "apps/bough/config/schema.h"
+#include "apps/bough/results/folder.h"
+#include "apps/bough/cases/study_map.h"
+#include "apps/bough/cases/study_table.h"
 #include "tests/verification/two_mass.h"
 
 #include <math.h>

@@ -1,6 +1,6 @@
 #include "tests/verification/verification.h"
 
-#include "apps/config/schema.h"
+#include "apps/bough/config/schema.h"
 #include "tests/verification/added_mass.h"
 #include "tests/verification/blade_models.h"
 #include "tests/verification/two_mass_study.h"

@@ -3,9 +3,9 @@
 #ifndef BOUGH_TESTS_VERIFICATION_VERIFICATION_H
 #define BOUGH_TESTS_VERIFICATION_VERIFICATION_H
 
-#include "apps/config/text.h"
-#include "core/arena.h"
-#include "core/status.h"
+#include "apps/bough/config/text.h"
+#include "core/base/arena.h"
+#include "core/base/status.h"
 
 #include <stdio.h>
 

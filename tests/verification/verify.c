@@ -1,9 +1,9 @@
 // The keys of a study of kind verify and their reading.
 #include "tests/verification/verify.h"
 
-#include "apps/config/schema.h"
-#include "apps/simulation/build.h"
-#include "apps/study/study.h"
+#include "apps/bough/config/schema.h"
+#include "apps/bough/model/build.h"
+#include "apps/bough/cases/study.h"
 
 #include <math.h>
 #include <string.h>

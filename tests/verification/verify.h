@@ -3,7 +3,7 @@
 #ifndef BOUGH_TESTS_VERIFICATION_VERIFY_H
 #define BOUGH_TESTS_VERIFICATION_VERIFY_H
 
-#include "apps/scene/scene.h"
+#include "apps/bough/scene/scene.h"
 #include "tests/verification/verification.h"
 
 enum { BOUGH_VERIFY_MESHES = 5 };

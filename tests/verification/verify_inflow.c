@@ -1,7 +1,7 @@
 // A case of kind inflow: the induction answers in any state, and the same from any start.
 #include "tests/verification/verify.h"
 
-#include "core/base.h"
+#include "core/base/base.h"
 #include "tests/verification/one_element.h"
 
 #include <math.h>

@@ -1,12 +1,12 @@
 // One case of a study of kind verify on one mesh: its quantities.
 #include "tests/verification/verify.h"
-#include "tests/tree_measure.h"
+#include "tests/unit/tree_measure.h"
 
-#include "apps/analysis/steady.h"
-#include "apps/analysis/vibration.h"
-#include "apps/simulation/run.h"
-#include "apps/simulation/equilibrium.h"
-#include "flexbody/rod_modes.h"
+#include "apps/bough/analysis/steady.h"
+#include "apps/bough/analysis/vibration.h"
+#include "apps/bough/model/run.h"
+#include "apps/bough/model/equilibrium.h"
+#include "flexbody/rod/rod_modes.h"
 
 #include <assert.h>
 #include <math.h>

@@ -1,9 +1,9 @@
 // The cases of a study of kind verify one after the other: what holds and what does not.
 #include "tests/verification/verify.h"
 
-#include "apps/output/folder.h"
-#include "apps/output/progress.h"
-#include "apps/study/study_table.h"
+#include "apps/bough/results/folder.h"
+#include "apps/bough/results/progress.h"
+#include "apps/bough/cases/study_table.h"
 
 #include <math.h>
 #include <string.h>

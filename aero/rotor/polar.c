@@ -1,0 +1,170 @@
+#include "aero/rotor/polar.h"
+
+#include "core/base/base.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+enum { ROW = BOUGH_POLAR_ROW };
+
+static const double turn = 2 * BOUGH_PI;
+
+// Copies the knots, closes the turn, and prepares the slopes.
+static void fill_rows(const bough_polar_def *def, int n, double *row) {
+    for (int i = 0; i < n; i++) {
+        const double *from = def->row + 4 * (i % def->n);
+        double *to = row + ROW * i;
+        to[0] = from[0] * (BOUGH_PI / 180) + (i < def->n ? 0 : turn);
+        for (int c = 1; c < 4; c++) to[c] = from[c];
+    }
+    for (int i = 0; i + 1 < n; i++) {
+        double *here = row + ROW * i, *next = here + ROW;
+        for (int c = 1; c < 4; c++) here[3 + c] = (next[c] - here[c]) / (next[0] - here[0]);
+    }
+}
+
+// bin[j]: the last knot at or below the start of bin j. A lookup begins there.
+static void fill_bins(bough_polar *polar, int *bin) {
+    int knot = 0;
+    for (int j = 0; j < polar->n_bin; j++) {
+        double start = polar->row[0] + j / polar->bin_per_rad;
+        while (knot + 2 < polar->n && polar->row[ROW * (knot + 1)] <= start) knot++;
+        bin[j] = knot;
+        if (j > 0 && knot - bin[j - 1] > polar->most) polar->most = knot - bin[j - 1];
+    }
+    if (polar->n - 1 - knot > polar->most) polar->most = polar->n - 1 - knot;
+}
+
+// A table that leaves out a few of its own steps at the ends tells the whole turn.
+static void find_range(const bough_polar_def *def, bough_polar *polar) {
+    const double degree = BOUGH_PI / 180, gap = 360 - (def->row[4 * (def->n - 1)] - def->row[0]);
+    double widest = 0;
+    for (int i = 1; i < def->n; i++) {
+        widest = fmax(widest, def->row[4 * i] - def->row[4 * (i - 1)]);
+    }
+    polar->low = def->row[0] * degree;
+    polar->high = gap <= 2 * widest ? polar->low + turn : def->row[4 * (def->n - 1)] * degree;
+}
+
+// -- attached flow --------------------------------------------------------------------------------
+
+static double lift_at(const bough_polar *polar, double alpha) { return bough_polar_at(polar, alpha).lift; }
+
+// Where the lift grows through zero, nearest to no angle within 20°; false if nowhere.
+static bool find_zero_lift(const bough_polar *polar, double *zero) {
+    const double step = 0.25 * BOUGH_PI / 180;
+    bool found = false;
+    for (int k = -80; k < 80; k++) {
+        double a = k * step, b = a + step, fa = lift_at(polar, a), fb = lift_at(polar, b);
+        if (!(fa <= 0 && fb > 0)) continue;
+        for (int i = 0; i < 50; i++) {
+            double middle = (a + b) / 2;
+            if (lift_at(polar, middle) > 0) {
+                b = middle;
+            } else {
+                a = middle;
+            }
+        }
+        if (!found || fabs(a) < fabs(*zero)) *zero = a;
+        found = true;
+    }
+    return found;
+}
+
+// The steepest line through zero lift that touches the polar: so f never exceeds one, and the
+// static polar is met exactly. Between knots the ratio has no maximum if they are joined linearly.
+static double steepest(const bough_polar *polar, double zero) {
+    const double near_zero = 1e-4; // closer to it the ratio is that of small numbers [rad]
+    enum { FINE = 1200 };
+    const double reach = 30 * BOUGH_PI / 180;
+    double slope = 0;
+    for (int k = 0; k < polar->n + 2 * FINE; k++) {
+        int j = k - polar->n - FINE;
+        double d = k < polar->n ? remainder(polar->row[ROW * k] - zero, turn) : j * reach / FINE;
+        if (fabs(d) < near_zero || fabs(d) > reach) continue;
+        slope = fmax(slope, lift_at(polar, zero + d) / d);
+    }
+    return slope;
+}
+
+static void fit_attached(bough_polar *polar) {
+    if (find_zero_lift(polar, &polar->zero_lift)) polar->slope = steepest(polar, polar->zero_lift);
+}
+
+void bough_polar_build(bough_arena *arena, const bough_polar_def *def, bough_polar *polar) {
+    bool closed = def->row[4 * (def->n - 1)] - def->row[0] >= 360 * (1 - 1e-12);
+    int n = closed ? def->n : def->n + 1;
+    // Bins of half a degree: at most two knots to pass in the tables of the field.
+    enum { N_BIN = 720 };
+    double *row = bough_arena_doubles(arena, (size_t)(ROW * (n + 1)));
+    int *bin = bough_arena_take(arena, N_BIN * sizeof *bin);
+    fill_rows(def, n, row);
+    row[ROW * n] = INFINITY;
+    *polar = (bough_polar){.n = n, .row = row, .n_bin = N_BIN, .bin_per_rad = N_BIN / turn, .bin = bin};
+    fill_bins(polar, bin);
+    find_range(def, polar);
+    fit_attached(polar);
+}
+
+// -- blending and smoothing -----------------------------------------------------------------------
+
+static int ascending(const void *a, const void *b) {
+    double x = *(const double *)a, y = *(const double *)b;
+    return (x > y) - (x < y);
+}
+
+void bough_polar_blend(bough_arena *arena, const bough_polar *a, const bough_polar *b, double share,
+                       bough_polar *polar) {
+    int most = a->n + b->n, n = 0;
+    double *angle = bough_arena_doubles(arena, (size_t)most);
+    double *row = bough_arena_doubles(arena, 4 * (size_t)most);
+    for (int k = 0; k < most; k++)
+        angle[k] = k < a->n ? a->row[ROW * k] : remainder(b->row[ROW * (k - a->n)], turn);
+    qsort(angle, (size_t)most, sizeof *angle, ascending);
+    for (int k = 0; k < most && angle[k] < angle[0] + turn - 1e-9; k++) {
+        if (n > 0 && angle[k] * (180 / BOUGH_PI) - row[4 * (n - 1)] < 1e-9) continue;
+        bough_coefficients x = bough_polar_at(a, angle[k]), y = bough_polar_at(b, angle[k]);
+        double *to = row + 4 * n++;
+        to[0] = angle[k] * (180 / BOUGH_PI);
+        to[1] = (1 - share) * x.lift + share * y.lift;
+        to[2] = (1 - share) * x.drag + share * y.drag;
+        to[3] = (1 - share) * x.moment + share * y.moment;
+    }
+    bough_polar_def def = {.name = "blend", .n = n, .row = row};
+    bough_polar_build(arena, &def, polar);
+    bool a_whole = a->high - a->low >= turn, b_whole = b->high - b->low >= turn;
+    polar->low = a_whole ? b->low : b_whole ? a->low : fmax(a->low, b->low);
+    polar->high = a_whole ? b->high : b_whole ? a->high : fmin(a->high, b->high);
+}
+
+// The slope at a knot between chords of slopes s0, s1 over h0, h1: none at an extremum, else the
+// harmonic mean weighted towards the shorter side.
+static double monotone_slope(double h0, double s0, double h1, double s1) {
+    if (!(s0 * s1 > 0)) return 0;
+    double w0 = 2 * h1 + h0, w1 = h1 + 2 * h0;
+    return (w0 + w1) / (w0 / s0 + w1 / s1);
+}
+
+void bough_polar_smoothen(bough_arena *arena, bough_polar *polar) {
+    int last = polar->n - 1;
+    double *curve = bough_arena_doubles(arena, 6 * (size_t)polar->n);
+    double *slope = bough_arena_doubles(arena, 3 * (size_t)polar->n);
+    for (int k = 0; k <= last; k++) {
+        const double *here = polar->row + ROW * (k % last); // the turn is closed: last is first
+        const double *before = polar->row + ROW * (k % last == 0 ? last - 1 : k % last - 1);
+        for (int c = 0; c < 3; c++)
+            slope[3 * k + c] =
+                monotone_slope(before[ROW] - before[0], before[4 + c], here[ROW] - here[0], here[4 + c]);
+    }
+    for (int k = 0; k < last; k++) {
+        double *row = polar->row + ROW * k, h = row[ROW] - row[0];
+        for (int c = 0; c < 3; c++) {
+            double chord = row[4 + c], s0 = slope[3 * k + c], s1 = slope[3 * (k + 1) + c];
+            curve[6 * k + 2 * c] = (3 * chord - 2 * s0 - s1) / h;
+            curve[6 * k + 2 * c + 1] = (s0 + s1 - 2 * chord) / (h * h);
+            row[4 + c] = s0;
+        }
+    }
+    polar->curve = curve;
+    fit_attached(polar);
+}

@@ -1,0 +1,98 @@
+// Airfoil coefficients: tables over the angle of attack, periodic over a full turn, interpolated
+// linearly as the field's reference codes do, or by monotone cubics.
+#ifndef BOUGH_AERO_POLAR_H
+#define BOUGH_AERO_POLAR_H
+
+#include "core/base/arena.h"
+#include "core/base/base.h"
+
+#include <math.h>
+
+// Rows of (α [deg], Cl, Cd, Cm) with α strictly increasing over at most 360°. Between the last
+// row and the first, one turn later, the interpolation goes on.
+typedef struct bough_polar_def {
+    const char *name; // for messages
+    int n;
+    const double *row; // (n × 4)
+} bough_polar_def;
+
+typedef struct bough_coefficients {
+    double lift, drag, moment; // Cl, Cd, Cm about the aerodynamic centre, positive nose up [-]
+} bough_coefficients;
+
+enum { BOUGH_POLAR_ROW = 8 }; // doubles per knot: one cache line
+
+typedef struct bough_polar {
+    int n;       // knots, both ends of the turn included
+    double *row; // (n + 1 × 8): α [rad], Cl, Cd, Cm, their slopes to the next knot, unused; ∞ ends
+    const double *curve; // (n × 6) of each: quadratic and cubic coefficient; NULL: linear
+    int n_bin;
+    double bin_per_rad;
+    const int *bin;   // (n_bin): last knot at or below the bin's start
+    int most;         // knots within a bin
+    double low, high; // range of its rows, high at most a turn above low [rad]
+    // Of attached flow; slope 0: no lift to speak of.
+    double slope;     // the steepest line through zero lift that touches the polar [1/rad]
+    double zero_lift; // where the lift grows through zero, nearest to no angle [rad]
+} bough_polar;
+
+// From rows of finite numbers whose angles increase over 360 degrees at most.
+void bough_polar_build(bough_arena *arena, const bough_polar_def *def, bough_polar *polar);
+
+// The mixture (1 − share)·a + share·b of two linear polars, exactly: with the knots of both.
+void bough_polar_blend(bough_arena *arena, const bough_polar *a, const bough_polar *b, double share,
+                       bough_polar *polar);
+
+// Makes a linear polar smooth: continuous slopes, between knots as monotone as the knots are.
+// F. N. Fritsch, J. Butland, SIAM J. Sci. Stat. Comput. 5 (1984).
+void bough_polar_smoothen(bough_arena *arena, bough_polar *polar);
+
+// The last knot at or below an angle; `alpha` is moved into the table's turn. Besides that move there is no
+// branch, because the processor could not predict it. A NaN remains and takes the first knot.
+static inline int bough_polar_knot(const bough_polar *polar, double *alpha) {
+    const double turn = 2 * BOUGH_PI;
+    double x = *alpha - polar->row[0];
+    if (x < 0 || x >= turn) {
+        x = fmod(x, turn); // exact at any size
+        x += x < 0 ? turn : 0;
+    }
+    int j = (int)((x > 0 ? x : 0) * polar->bin_per_rad);
+    int knot = polar->bin[j < polar->n_bin ? j : polar->n_bin - 1];
+    *alpha = x + polar->row[0];
+    for (int k = 0; k < polar->most; k++) knot += polar->row[BOUGH_POLAR_ROW * (knot + 1)] <= *alpha;
+    return knot;
+}
+
+// The coefficients at any finite angle of attack [rad].
+static inline bough_coefficients bough_polar_at(const bough_polar *polar, double alpha) {
+    int knot = bough_polar_knot(polar, &alpha);
+    const double *r = polar->row + BOUGH_POLAR_ROW * knot;
+    double d = alpha - r[0];
+    bough_coefficients k = {r[1] + d * r[4], r[2] + d * r[5], r[3] + d * r[6]};
+    if (!polar->curve) return k;
+    const double *c = polar->curve + 6 * knot;
+    return (bough_coefficients){k.lift + d * d * (c[0] + d * c[1]), k.drag + d * d * (c[2] + d * c[3]),
+                                k.moment + d * d * (c[4] + d * c[5])};
+}
+
+// Their derivatives by the angle there [1/rad]; at a knot those of the side above.
+static inline bough_coefficients bough_polar_slope(const bough_polar *polar, double alpha) {
+    int knot = bough_polar_knot(polar, &alpha);
+    const double *r = polar->row + BOUGH_POLAR_ROW * knot;
+    bough_coefficients k = {r[4], r[5], r[6]};
+    if (!polar->curve) return k;
+    const double *c = polar->curve + 6 * knot;
+    double d = alpha - r[0];
+    return (bough_coefficients){k.lift + d * (2 * c[0] + 3 * d * c[1]),
+                                k.drag + d * (2 * c[2] + 3 * d * c[3]),
+                                k.moment + d * (2 * c[4] + 3 * d * c[5])};
+}
+
+// Whether an angle of attack lies in the gap that the rows leave to the full turn.
+static inline bool bough_polar_outside_table(const bough_polar *polar, double alpha) {
+    if (alpha >= polar->low && alpha <= polar->high) return false;
+    double above = remainder(alpha - polar->low, 2 * BOUGH_PI);
+    return (above < 0 ? above + 2 * BOUGH_PI : above) > polar->high - polar->low;
+}
+
+#endif

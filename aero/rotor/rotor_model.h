@@ -1,0 +1,104 @@
+// What a rotor is built into, and where a sample keeps what it finds; for rotor*.c only.
+#ifndef BOUGH_AERO_ROTOR_MODEL_H
+#define BOUGH_AERO_ROTOR_MODEL_H
+
+#include "aero/rotor/lanes.h"
+#include "aero/rotor/rotor.h"
+#include "core/base/rotation.h"
+
+// Stations of one blade, padded to `stride` by copies of the last; a 3×3 matrix by its columns.
+typedef struct station_rows {
+    const bough_polar **polar; // (stride)
+    int *vertex;               // (stride) the station lies between this vertex and the next
+    double *weight;            // (stride) of the next
+    double *section;           // (9 × stride) aero section axes in the interpolated structural section
+    double *centre;            // (3 × stride) aerodynamic centre there, from the reference axis [m]
+    double *ends; // (3 × stride) change of the undeformed tangent between the two vertices, there
+    double *bow;  // (stride) of an arc beside its chord by that change [m]
+    double *chord, *tip_factor, *hub_factor; // (stride)
+    double *free; // (stride) 0: at the very tip or root, where the loss factor sets the induction
+} station_rows;
+
+// Row i of the mapping: vertex i takes Σ_k weight[k] · line load of station first + k.
+typedef struct vertex_row {
+    int first, count;
+    const double *weight; // (count) [m]
+} vertex_row;
+
+struct bough_rotor {
+    int n_blade, n_station, n_vertex, stride;
+    double density;
+    bool pitching_moment, skew, slopes, stalls; // stalls: dynamically
+    bough_induction_options induction;
+    bough_inflow_def inflow;
+    bough_wind wind;
+    bough_tower tower;
+    station_rows station;
+    const bough_quaternion *undeformed; // section axes of the vertices (n_vertex)
+    vertex_row *row;                    // (n_vertex)
+    vertex_row *mean, *slope;           // (n_vertex − 1) over a segment, weights [-], [1/m]
+};
+
+enum { LOAD = 8 };   // force, moment per length and two zeros: one vector
+enum { SLOPE = 16 }; // BOUGH_SLOPES and four zeros: whole vectors
+
+// Of one blade, in its frame's axes; y is tangential, x normal, z along the blade.
+typedef struct blade_rows {
+    double *arm;                      // (3 × stride) from the reference axis to the centre [m]
+    double *x, *y, *z;                // (3 × stride) axes of the blade element
+    double *velocity, *wind;          // (3 × stride) of the aerodynamic centre and there [m/s]
+    double *place;                    // (3 × stride) the centre, in ground axes [m]
+    double *radius, *twist, *turning; // (stride) [m], [rad], rotation nose up [rad/s]
+    double *normal, *chord;           // (3 × stride) axes of the section, leading to trailing edge
+    double *solidity, *cone, *skew_normal, *skew_chord; // (stride) of the momentum balance
+    double *inflow_x, *inflow_y;                        // (stride) without induction [m/s]
+    double *axial, *tangential, *loss;                  // (stride)
+    double *phi, *alpha, *speed;                        // (stride) [rad], [rad], [m/s]
+    double *lift, *drag, *moment;                       // (stride) coefficients
+    double *lift_slope, *drag_slope, *moment_slope;     // (stride) by the angle [1/rad]
+    double *lift_rate, *drag_rate, *moment_rate;        // (stride) by the rotation nose up [s/rad]
+    double *static_slope;                               // (stride) of the static lift [1/rad]
+    double *force_x, *force_y;                          // (stride) [N/m]
+    double *load;                                       // (stride × LOAD) [N/m], [N]
+    double *slope; // (stride × SLOPE) bough_rotor_data.slope, per length
+    double *turn;  // (3 × n_vertex) rotation by deformation, of vertices
+    double *bend;  // (3 × n_vertex) its second difference
+} blade_rows;
+
+struct bough_rotor_scratch {
+    blade_rows *blade;       // (n_blade)
+    bough_vec3 *wind;        // (n_blade) sum over the stations, in ground axes [m/s]
+    bough_vec3 *velocity;    // (n_blade) the same of the stations' own motion
+    double *thrust, *torque; // (n_blade)
+    // what the whole rotor tells each station
+    double skew;         // acute angle of the wind and the shaft [rad]
+    bough_vec3 downwind; // unit vector of the wind's part in the rotor plane, 0 if none
+    double wake;         // 0: too slow for momentum theory, 1: full induction
+};
+
+static inline bough_mat3 load_matrix(const double *restrict a, int stride, int i) {
+    return (bough_mat3){lane_load(a, stride, i), lane_load(a + 3 * stride, stride, i),
+                        lane_load(a + 6 * stride, stride, i)};
+}
+
+static inline void store_matrix(double *restrict a, int stride, int i, bough_mat3 m) {
+    lane_store(a, stride, i, m.c1);
+    lane_store(a + 3 * stride, stride, i, m.c2);
+    lane_store(a + 6 * stride, stride, i, m.c3);
+}
+
+static inline bough_quaternion unit_quaternion(double w, double x, double y, double z) {
+    double scale = 1 / sqrt(w * w + x * x + y * y + z * z);
+    return (bough_quaternion){scale * w, scale * x, scale * y, scale * z};
+}
+
+// The rotation part way from p to q. Within the few degrees between neighbouring vertices the
+// normalised chord is as good as the arc, and like it independent of the frame.
+static inline bough_mat3 rotation_between(bough_quaternion p, bough_quaternion q, double weight) {
+    double side = p.w * q.w + p.x * q.x + p.y * q.y + p.z * q.z;
+    double wp = 1 - weight, wq = side < 0 ? -weight : weight;
+    return bough_rotation_matrix(
+        unit_quaternion(wp * p.w + wq * q.w, wp * p.x + wq * q.x, wp * p.y + wq * q.y, wp * p.z + wq * q.z));
+}
+
+#endif

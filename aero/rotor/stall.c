@@ -1,0 +1,202 @@
+#include "aero/rotor/stall.h"
+
+#include "core/base/base.h"
+
+#include <math.h>
+
+// Jones' approximation of the indicial lift of a flat plate: 1 − Σ A exp(−b s), s in semi-chords.
+static const double wake_share[2] = {0.165, 0.335}, wake_rate[2] = {0.0455, 0.3};
+// Lags of pressure and separation, in semi-chords.
+static const double pressure_time = 1.7, separation_time = 3.0;
+// The static polar alone from the second angle on, none of it up to the first [rad].
+static const double fading = 40 * BOUGH_PI / 180, faded = 50 * BOUGH_PI / 180;
+// Slower than this there is no wake to speak of [m/s].
+static const double slow = 1e-3;
+
+static const double turn = 2 * BOUGH_PI;
+
+// -- the polar's parts ----------------------------------------------------------------------------
+
+// Closer to zero lift than this the ratio of lifts is taken here [rad].
+static const double near_zero = 1e-4;
+
+static double lift_at(const bough_polar *polar, double alpha) { return bough_polar_at(polar, alpha).lift; }
+
+// With r = Cl/(slope·(α − α₀)) Kirchhoff's f = (2√r − 1)² leaves the separated lift
+// slope·(α − α₀)(3√r − 1)/(4√r), which is all of it at f = 0 and half of it at f = 1.
+void bough_stall_split(const bough_polar *polar, double alpha, double *f, double *separated) {
+    double lift = lift_at(polar, alpha), d = remainder(alpha - polar->zero_lift, turn);
+    *f = 0;
+    *separated = lift;
+    if (fabs(d) > BOUGH_PI / 2) return;
+    double linear = polar->slope * d, at = lift;
+    if (fabs(d) < near_zero) {
+        d = copysign(near_zero, d);
+        at = lift_at(polar, polar->zero_lift + d);
+    }
+    double q = sqrt(fmin(fmax(at / (polar->slope * d), 0), 1));
+    if (q <= 0.5) return;
+    *f = (2 * q - 1) * (2 * q - 1);
+    *separated = linear * (3 * q - 1) / (4 * q);
+}
+
+// -- states ---------------------------------------------------------------------------------------
+
+// x' = (u − x)/T over a step of h = Δt/T, in which u goes linearly from u0 to u1.
+static double lagged(double x, double u0, double u1, double h) {
+    if (!(h > 0)) return x;
+    double mean = -expm1(-h) / h; // of exp(−t) over the step
+    return u1 + (x - u0) * exp(-h) - (u1 - u0) * mean;
+}
+
+// Moves all angles by a number of turns, so that that of attack stays in [−π, π].
+static void unwind(bough_stall_state *s) {
+    double shift = turn * round(s->alpha / turn);
+    s->alpha -= shift;
+    s->pressure_sought -= shift;
+    s->pressure -= shift;
+    for (int i = 0; i < 2; i++) s->wake[i] -= wake_share[i] * shift * s->speed;
+}
+
+static double separation_at(const bough_polar *polar, double alpha) {
+    double f, separated;
+    bough_stall_split(polar, alpha, &f, &separated);
+    return f;
+}
+
+static void start(const bough_polar *polar, double alpha, double speed, bough_stall_state *s) {
+    double f = separation_at(polar, alpha);
+    *s = (bough_stall_state){.started = 1,
+                             .speed = speed,
+                             .alpha = alpha,
+                             .wake = {wake_share[0] * speed * alpha, wake_share[1] * speed * alpha},
+                             .pressure_sought = alpha,
+                             .pressure = alpha,
+                             .separation_sought = f,
+                             .separation = f};
+}
+
+// The angle of attack that the wake leaves.
+static double effective(const bough_stall_state *s) {
+    double own = 1 - wake_share[0] - wake_share[1];
+    return own * s->alpha + (s->wake[0] + s->wake[1]) / s->speed;
+}
+
+static void advance(const bough_polar *polar, double semi_chords, double alpha, double speed,
+                    double mass_angle, bough_stall_state *s) {
+    double next = s->alpha + remainder(alpha - s->alpha, turn);
+    double before = s->speed * s->alpha, after = speed * next;
+    for (int i = 0; i < 2; i++) {
+        s->wake[i] =
+            lagged(s->wake[i], wake_share[i] * before, wake_share[i] * after, wake_rate[i] * semi_chords);
+    }
+    s->speed = speed;
+    s->alpha = next;
+    double sought = effective(s) + mass_angle;
+    s->pressure = lagged(s->pressure, s->pressure_sought, sought, semi_chords / pressure_time);
+    s->pressure_sought = sought;
+    double f = separation_at(polar, s->pressure);
+    s->separation = lagged(s->separation, s->separation_sought, f, semi_chords / separation_time);
+    s->separation_sought = f;
+    unwind(s);
+}
+
+// -- coefficients ---------------------------------------------------------------------------------
+
+// `x`: the lagging f, `angle`: the effective one, `late`: that at three quarters of the chord, `turning`
+// the rotation's part of it. The circulation's lift leans back by what the wake withholds and by the
+// rotation once more.
+static bough_coefficients dynamic(const bough_polar *polar, double x, double angle, double late,
+                                  double turning) {
+    double f, separated;
+    bough_stall_split(polar, angle, &f, &separated);
+    bough_coefficients k = bough_polar_at(polar, angle);
+    double linear = polar->slope * remainder(angle - polar->zero_lift, turn);
+    double lift = x * linear + (1 - x) * separated, mass_lift = BOUGH_PI * turning;
+    double least = bough_polar_at(polar, polar->zero_lift).drag;
+    double separating = (sqrt(f) - sqrt(fmax(x, 0))) / 2 - (f - x) / 4;
+    double leaning = remainder(late - angle, turn) + turning;
+    double drag = k.drag + leaning * lift + (k.drag - least) * separating;
+    return (bough_coefficients){lift + mass_lift, drag, k.moment - mass_lift / 2};
+}
+
+static double mixed(double a, double b, double w) { return a + w * (b - a); }
+
+static bough_coefficients mixture(bough_coefficients a, bough_coefficients b, double w) {
+    return (bough_coefficients){mixed(a.lift, b.lift, w), mixed(a.drag, b.drag, w),
+                                mixed(a.moment, b.moment, w)};
+}
+
+// How much of the coefficients is dynamic.
+static double dynamic_share(double alpha) {
+    return bough_clamp((faded - fabs(alpha)) / (faded - fading), 0, 1);
+}
+
+// The rotation as the downwash at three quarters of the chord.
+static double downwash(double chord, bough_stall_inflow inflow) {
+    return bough_clamp(chord * inflow.rate / (2 * inflow.speed), -0.5, 0.5);
+}
+
+bough_coefficients bough_stall_advance(const bough_polar *polar, double chord, bough_stall_inflow inflow,
+                                       double step, bough_stall_state *state) {
+    double alpha = remainder(inflow.alpha, turn), speed = inflow.speed;
+    bough_coefficients fixed = bough_polar_at(polar, alpha);
+    if (polar->slope == 0 || !(speed > slow)) {
+        state->started = 0;
+        return fixed;
+    }
+    double turning = downwash(chord, inflow), late = alpha + turning;
+    if (state->started == 0) {
+        start(polar, late, speed, state);
+    } else if (step > 0) {
+        double semi_chords = step * (state->speed + speed) / chord;
+        advance(polar, semi_chords, late, speed, BOUGH_PI * turning / polar->slope, state);
+    }
+    double share = dynamic_share(alpha);
+    if (share == 0) return fixed;
+    bough_coefficients k = dynamic(polar, state->separation, effective(state), late, turning);
+    return mixture(fixed, k, share);
+}
+
+// -- slopes ---------------------------------------------------------------------------------------
+
+// How the effective angle follows that of attack within an advance.
+static double prompt_share(double semi_chords) {
+    double share = 1;
+    for (int i = 0; i < 2; i++) {
+        double h = wake_rate[i] * semi_chords;
+        share -= wake_share[i] * (h > 1e-6 ? -expm1(-h) / h : 1);
+    }
+    return share;
+}
+
+static bough_coefficients quotient(bough_coefficients a, bough_coefficients b, double step) {
+    return (bough_coefficients){(a.lift - b.lift) / step, (a.drag - b.drag) / step,
+                                (a.moment - b.moment) / step};
+}
+
+bough_stall_slopes bough_stall_slopes_of(const bough_polar *polar, double chord, bough_stall_inflow inflow,
+                                         double step, const bough_stall_state *state) {
+    const double d = 1e-4; // [rad]
+    double alpha = remainder(inflow.alpha, turn), share = dynamic_share(alpha);
+    bough_stall_slopes slopes = {.angle = bough_polar_slope(polar, alpha)};
+    if (state->started == 0 || share == 0) return slopes;
+    double turning = downwash(chord, inflow), late = alpha + turning, x = state->separation;
+    double angle = effective(state), prompt = prompt_share(2 * step * inflow.speed / chord);
+    bough_coefficients k = dynamic(polar, x, angle, late, turning);
+    bough_coefficients more = dynamic(polar, x, angle + prompt * d, late + d, turning);
+    bough_coefficients turned = dynamic(polar, x, angle + prompt * d, late + d, turning + d);
+    slopes.angle = mixture(slopes.angle, quotient(more, k, d), share);
+    if (share < 1) { // the share changes, too
+        bough_coefficients fixed = bough_polar_at(polar, alpha);
+        double fading_rate = -copysign(1 / (faded - fading), alpha);
+        bough_coefficients by_share = quotient(k, fixed, 1 / fading_rate);
+        slopes.angle.lift += by_share.lift;
+        slopes.angle.drag += by_share.drag;
+        slopes.angle.moment += by_share.moment;
+    }
+    bool limited = fabs(turning) >= 0.5;
+    double quarter = limited ? 0 : share * chord / (2 * inflow.speed);
+    slopes.rate = mixture((bough_coefficients){0}, quotient(turned, k, d), quarter);
+    return slopes;
+}

@@ -1,0 +1,135 @@
+#include "aero/wind/wind.h"
+
+#include "aero/wind/wind_turbulence.h"
+#include "core/base/base.h"
+#include "core/tree/force.h"
+
+#include <assert.h>
+#include <string.h>
+
+bough_wind_def bough_wind_def_default(void) {
+    return (bough_wind_def){.exponent = 0.2, .roughness = 0.03, .reference_height = 90};
+}
+
+static const double *copied(bough_arena *arena, const double *from, int n) {
+    double *to = bough_arena_doubles(arena, (size_t)n);
+    if (to) memcpy(to, from, (size_t)n * sizeof *to);
+    return to;
+}
+
+static bough_status read_hub(bough_arena *arena, bough_wind *wind) {
+    bough_wind_hub *hub = bough_arena_take(arena, sizeof *hub);
+    hub->reference_height = wind->def.reference_height;
+    hub->reference_length = wind->def.reference_length;
+    wind->hub = hub;
+    return bough_wind_hub_read(arena, wind->def.file, hub);
+}
+
+static bough_status read_box(bough_arena *arena, bough_wind *wind) {
+    bough_wind_box *box = bough_arena_take(arena, sizeof *box);
+    wind->box = box;
+    bough_status status = bough_wind_box_read(arena, wind->def.file, box);
+    if (!bough_is_ok(&status) || bough_wind_box_lasts(box, wind->def.until)) return status;
+    return bough_fail(BOUGH_INVALID,
+                      "%s is not periodic and too short: it has %g s, of which %g s pass before "
+                      "the box covers the rotor; %g s are needed.",
+                      wind->def.file, box->duration, box->half_width / box->mean, wind->def.until);
+}
+
+static bough_status make_standard(bough_arena *arena, bough_wind *wind) {
+    const bough_wind_iec_def *def = &wind->def.iec;
+    bough_status status = bough_wind_iec_check(def);
+    if (!bough_is_ok(&status)) return status;
+    if (bough_wind_iec_is_turbulent(def->condition)) {
+        bough_wind_box *box = bough_arena_take(arena, sizeof *box);
+        wind->box = box;
+        return bough_turbulence_make(arena, def, box);
+    }
+    bough_wind_iec *iec = bough_arena_take(arena, sizeof *iec);
+    *iec = bough_wind_iec_start(def);
+    wind->iec = iec;
+    return status;
+}
+
+static bough_status build(bough_arena *arena, const bough_wind_def *def, bough_wind *wind) {
+    if (def->source == BOUGH_WIND_STANDARD) return make_standard(arena, wind);
+    if (def->source == BOUGH_WIND_HUB_FILE) return read_hub(arena, wind);
+    if (def->source == BOUGH_WIND_BOX_FILE) return read_box(arena, wind);
+    if (def->shear == BOUGH_WIND_LOG) {
+        assert(def->roughness > 0 && def->roughness < def->reference_height);
+        wind->shear_scale = 1 / log(def->reference_height / def->roughness);
+    }
+    if (def->n_time == 0) return bough_ok();
+    wind->def.time = copied(arena, def->time, def->n_time);
+    wind->def.speed_at_time = copied(arena, def->speed_at_time, def->n_time);
+    return bough_ok();
+}
+
+bough_status bough_wind_build(bough_arena *arena, const bough_wind_def *def, bough_wind *wind) {
+    *wind = (bough_wind){.def = *def,
+                         .along_x = cos(def->direction),
+                         .along_y = sin(def->direction),
+                         .up_x = cos(def->upflow),
+                         .up_z = sin(def->upflow)};
+    bough_status status = build(arena, def, wind);
+    wind->level = wind->box ? wind->box->hub : wind->iec ? def->iec.height : def->reference_height;
+    return status;
+}
+
+static double share_at(const bough_wind *wind, double height) {
+    const bough_wind_def *def = &wind->def;
+    switch (def->shear) {
+    case BOUGH_WIND_UNIFORM: break;
+    case BOUGH_WIND_POWER: return height <= 0 ? 0 : pow(height / def->reference_height, def->exponent);
+    case BOUGH_WIND_LOG:
+        return height <= def->roughness ? 0 : log(height / def->roughness) * wind->shear_scale;
+    }
+    return 1;
+}
+
+// From ground axes to those in which a file's wind blows along x.
+static bough_vec3 to_file(const bough_wind *wind, bough_vec3 v) {
+    return bough_v3(wind->along_x * v.x + wind->along_y * v.y, wind->along_x * v.y - wind->along_y * v.x,
+                    v.z);
+}
+
+static bough_vec3 from_file(const bough_wind *wind, bough_vec3 v) {
+    return bough_v3(wind->along_x * v.x - wind->along_y * v.y, wind->along_x * v.y + wind->along_y * v.x,
+                    v.z);
+}
+
+bool bough_wind_covers(const bough_wind *wind, bough_vec3 centre, double radius) {
+    const bough_wind_box *box = wind->box;
+    if (!box) return true;
+    bough_vec3 p = to_file(wind, centre);
+    double top = box->bottom + box->dz * (box->n_z - 1);
+    return fabs(p.y) + radius <= box->half_width && p.z + radius <= top && p.z - radius >= box->bottom;
+}
+
+// In the axes of a file, along whose x the wind blows.
+static bough_vec3 along_at(const bough_wind *wind, bough_vec3 position, double t) {
+    if (wind->hub) return bough_wind_hub_at(wind->hub, to_file(wind, position), t);
+    if (wind->box) return bough_wind_box_at(wind->box, to_file(wind, position), t);
+    if (wind->iec) return bough_wind_iec_at(wind->iec, to_file(wind, position), t);
+    const bough_wind_def *def = &wind->def;
+    double speed = def->speed;
+    if (def->n_time > 0) speed = bough_table_value(def->n_time, def->time, def->speed_at_time, t);
+    speed *= share_at(wind, position.z);
+    return bough_v3(speed, 0, def->vertical);
+}
+
+static bough_vec3 inclined(const bough_wind *wind, bough_vec3 v) {
+    return bough_v3(wind->up_x * v.x - wind->up_z * v.z, v.y, wind->up_z * v.x + wind->up_x * v.z);
+}
+
+static bough_vec3 veered(const bough_wind *wind, bough_vec3 v, double height) {
+    double angle = wind->def.veer * (height - wind->level), c = cos(angle), s = sin(angle);
+    return bough_v3(c * v.x + s * v.y, c * v.y - s * v.x, v.z);
+}
+
+bough_vec3 bough_wind_at(const bough_wind *wind, bough_vec3 position, double t) {
+    bough_vec3 v = along_at(wind, position, t);
+    if (wind->def.upflow != 0) v = inclined(wind, v);
+    if (wind->def.veer != 0) v = veered(wind, v, position.z);
+    return from_file(wind, v);
+}

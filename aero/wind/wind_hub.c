@@ -1,0 +1,139 @@
+#include "aero/wind/wind_hub.h"
+
+#include "core/base/base.h"
+#include "core/base/input_file.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { LINE = 1024, LEAST = 8, MOST = 9, MOST_ROWS = 1000000 };
+
+// The numbers of a line, at most MOST of them; −1 if it has another word.
+static int parse(const char *line, double *value) {
+    int n = 0;
+    for (const char *at = line;; n++) {
+        at += strspn(at, " \t,\r\n");
+        if (*at == '\0' || *at == '!' || n == MOST) return n;
+        char *end;
+        value[n] = strtod(at, &end);
+        if (end == at || !isfinite(value[n])) return -1;
+        at = end;
+    }
+}
+
+static bool is_comment(const char *line) {
+    line += strspn(line, " \t\r\n");
+    return *line == '!' || *line == '\0';
+}
+
+static bough_wind_hub_row row_of(const double *v) {
+    const double degree = BOUGH_PI / 180;
+    return (bough_wind_hub_row){v[0], v[1], v[2] * degree, v[3], v[4], v[5], v[6], v[7], v[8] * degree};
+}
+
+static bough_status read_row(const char *path, const char *line, int number, const bough_wind_hub_row *before,
+                             bough_wind_hub_row *row) {
+    double value[MOST] = {0};
+    if (parse(line, value) < LEAST) {
+        return bough_fail(BOUGH_INVALID,
+                          "%s:%d: expected 8 or 9 numbers: time, speed, direction, vertical speed, "
+                          "three shears, gust, upflow.",
+                          path, number);
+    }
+    *row = row_of(value);
+    if (before && !(row->time > before->time)) {
+        return bough_fail(BOUGH_INVALID, "%s:%d: the time must be more than the %g s before it, got %g s.",
+                          path, number, before->time, row->time);
+    }
+    return bough_ok();
+}
+
+// Counts the rows, and with `row` fills at most `room` of them.
+static bough_status scan(FILE *stream, const char *path, int room, int *n, bough_wind_hub_row *row) {
+    char line[LINE];
+    *n = 0;
+    rewind(stream);
+    for (int number = 1; fgets(line, LINE, stream); number++) {
+        if (!strchr(line, '\n') && !feof(stream)) {
+            return bough_fail(BOUGH_INVALID, "%s:%d: the line is too long.", path, number);
+        }
+        if (is_comment(line)) continue;
+        if (*n == room) {
+            return bough_fail(BOUGH_INVALID, "%s:%d: more than %d rows.", path, number, room);
+        }
+        if (row) {
+            bough_status status = read_row(path, line, number, *n > 0 ? row + *n - 1 : NULL, row + *n);
+            if (!bough_is_ok(&status)) return status;
+        }
+        ++*n;
+    }
+    if (*n == 0) return bough_fail(BOUGH_INVALID, "%s: has no rows.", path);
+    return bough_ok();
+}
+
+bough_status bough_wind_hub_read(bough_arena *arena, const char *path, bough_wind_hub *hub) {
+    char why[BOUGH_INPUT_REASON];
+    FILE *stream = bough_input_open(path, BOUGH_INPUT_DATA, why);
+    if (!stream) {
+        return bough_fail(BOUGH_INVALID, "cannot open the wind file %.220s: %s", path, why);
+    }
+    bough_wind_hub_row *row = NULL;
+    bough_status status = scan(stream, path, MOST_ROWS, &hub->n, NULL);
+    if (bough_is_ok(&status)) {
+        row = bough_arena_take(arena, (size_t)hub->n * sizeof *row);
+        status = scan(stream, path, hub->n, &hub->n, row);
+    }
+    fclose(stream);
+    hub->row = row;
+    return status;
+}
+
+// All columns between two rows.
+static bough_wind_hub_row between(const bough_wind_hub_row *a, const bough_wind_hub_row *b, double w) {
+    const double v = 1 - w;
+    return (bough_wind_hub_row){
+        .speed = v * a->speed + w * b->speed,
+        .direction = v * a->direction + w * b->direction,
+        .vertical = v * a->vertical + w * b->vertical,
+        .horizontal_shear = v * a->horizontal_shear + w * b->horizontal_shear,
+        .exponent = v * a->exponent + w * b->exponent,
+        .vertical_shear = v * a->vertical_shear + w * b->vertical_shear,
+        .gust = v * a->gust + w * b->gust,
+        .upflow = v * a->upflow + w * b->upflow,
+    };
+}
+
+static bough_wind_hub_row row_at(const bough_wind_hub *hub, double t) {
+    int low = 0, high = hub->n - 1;
+    if (!(t > hub->row[0].time)) return hub->row[0];
+    if (t >= hub->row[high].time) return hub->row[high];
+    while (high - low > 1) { // time[low] ≤ t < time[high]
+        int middle = (low + high) / 2;
+        if (t < hub->row[middle].time) {
+            high = middle;
+        } else {
+            low = middle;
+        }
+    }
+    const bough_wind_hub_row *a = hub->row + low, *b = hub->row + high;
+    return between(a, b, (t - a->time) / (b->time - a->time));
+}
+
+// Below ground a power law has no wind.
+static double power_share(double height, double exponent) {
+    if (exponent == 0) return 1;
+    return height <= 0 ? 0 : pow(height, exponent);
+}
+
+bough_vec3 bough_wind_hub_at(const bough_wind_hub *hub, bough_vec3 position, double t) {
+    bough_wind_hub_row r = row_at(hub, t);
+    double c = cos(r.direction), s = sin(r.direction);
+    double across = position.y * c + position.x * s;
+    double above = position.z - hub->reference_height;
+    double share = power_share(position.z / hub->reference_height, r.exponent);
+    double sheared = r.horizontal_shear * across + r.vertical_shear * above;
+    double speed = r.speed * (share + sheared / hub->reference_length) + r.gust;
+    double cu = cos(r.upflow), su = sin(r.upflow), along = speed * cu - r.vertical * su;
+    return bough_v3(along * c, -along * s, speed * su + r.vertical * cu);
+}

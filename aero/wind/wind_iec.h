@@ -1,0 +1,89 @@
+// Wind conditions of IEC 61400-1:2019, clause 6: normal and extreme turbulence, normal profile,
+// gusts and extreme winds, by name.
+//
+// Axes: x downwind, y to the left, z up from the ground. A positive change of direction is one where
+// the wind comes from further clockwise, seen from above.
+#ifndef BOUGH_AERO_WIND_IEC_H
+#define BOUGH_AERO_WIND_IEC_H
+
+#include "core/base/status.h"
+#include "core/base/vec3.h"
+
+typedef enum bough_wind_condition {
+    BOUGH_WIND_NTM,        // normal turbulence
+    BOUGH_WIND_ETM,        // extreme turbulence
+    BOUGH_WIND_EWM,        // extreme wind, turbulent
+    BOUGH_WIND_EWM_STEADY, // extreme wind with the gust in its speed
+    BOUGH_WIND_NWP,        // normal profile
+    BOUGH_WIND_EOG,        // extreme operating gust
+    BOUGH_WIND_EDC,        // extreme change of direction
+    BOUGH_WIND_ECD,        // extreme coherent gust with change of direction
+    BOUGH_WIND_EWS,        // extreme shear
+} bough_wind_condition;
+
+typedef enum bough_wind_class {
+    BOUGH_WIND_IA_PLUS,
+    BOUGH_WIND_IA,
+    BOUGH_WIND_IB,
+    BOUGH_WIND_IC,
+    BOUGH_WIND_IIA_PLUS,
+    BOUGH_WIND_IIA,
+    BOUGH_WIND_IIB,
+    BOUGH_WIND_IIC,
+    BOUGH_WIND_IIIA_PLUS,
+    BOUGH_WIND_IIIA,
+    BOUGH_WIND_IIIB,
+    BOUGH_WIND_IIIC,
+} bough_wind_class;
+
+typedef struct bough_wind_iec_def {
+    int condition;    // bough_wind_condition
+    int wind_class;   // bough_wind_class: of reference speed and turbulence
+    double speed;     // mean at hub height; not of EWM [m/s]
+    double intensity; // longitudinal, in place of the class's; 0: the class's [-]
+    double height;    // of the hub [m]
+    double diameter;  // of the rotor [m]
+    double exponent;  // of the power law [-]
+    double start;     // of a gust [s]
+    int negative;     // 1: the change of direction or shear is negative
+    int horizontal;   // 1: EWS across the wind, 0: over the height
+    int yearly;       // 1: EWM once a year, 0: once in 50 years
+    // of turbulence
+    int seed;
+    int points;       // of the grid, over height and breadth
+    double width;     // of the grid [m]
+    double time_step; // [s]
+    double period;    // after which it repeats [s]
+} bough_wind_iec_def;
+
+bool bough_wind_iec_is_turbulent(int condition);
+bool bough_wind_iec_is_extreme_speed(int condition); // the class gives the speed
+
+// Mean wind at hub height [m/s].
+double bough_wind_iec_speed(const bough_wind_iec_def *def);
+
+// Longitudinal standard deviation σ₁ at hub height, of gusts that of normal turbulence [m/s].
+double bough_wind_iec_deviation(const bough_wind_iec_def *def);
+
+// Longitudinal turbulence scale Λ₁ at a height [m].
+double bough_wind_iec_scale(double height);
+
+// A condition without turbulence, ready to be asked.
+typedef struct bough_wind_iec {
+    bough_wind_iec_def def;
+    double speed;  // at hub height [m/s]
+    double gust;   // amplitude: EOG and ECD [m/s], EWS per height or breadth [1/s]
+    double turn;   // change of direction [rad]
+    double length; // of the event [s]
+} bough_wind_iec;
+
+// BOUGH_INVALID says which value makes no sense.
+bough_status bough_wind_iec_check(const bough_wind_iec_def *def);
+
+bough_wind_iec bough_wind_iec_start(const bough_wind_iec_def *def);
+bough_vec3 bough_wind_iec_at(const bough_wind_iec *wind, bough_vec3 position, double t);
+
+// Its mean speed at a height [m/s]; nothing below ground.
+double bough_wind_iec_profile(const bough_wind_iec_def *def, double height);
+
+#endif

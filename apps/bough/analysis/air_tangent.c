@@ -1,0 +1,235 @@
+#include "apps/bough/analysis/air_tangent.h"
+
+#include "apps/bough/model/aero_link.h"
+#include "apps/bough/model/drag_link.h"
+#include "apps/bough/model/equilibrium.h"
+
+#include <math.h>
+#include <string.h>
+
+// Differences, in units of the states' scales; of the air's states, absolute; over so long a time a rate of
+// the air's states is taken [s], and so long they come to rest.
+static const double difference = 1e-5, air_difference = 1e-6, moment = 1e-5, long_while = 1e4;
+
+enum { SETTLINGS = 4 };
+
+typedef struct work {
+    bough_simulation *simulation;
+    bough_coupled *coupled;
+    double time;
+    bool dynamic;
+    int n_memory, n_air;
+    int *row;                        // (n_air) of the memory
+    double *memory, *before, *after; // (n_memory): at rest, around a moment
+    double *state;                   // (n)
+    double *rate[2], *air_rate[2];   // (n), (n_air) on either side
+} work;
+
+static void take(bough_arena *arena, work *w) {
+    size_t n = (size_t)w->coupled->assembly->n_state, m = (size_t)w->n_memory + 1;
+    w->row = bough_arena_take(arena, m * sizeof *w->row);
+    w->memory = bough_arena_doubles(arena, m);
+    w->before = bough_arena_doubles(arena, m);
+    w->after = bough_arena_doubles(arena, m);
+    w->state = bough_arena_doubles(arena, n);
+    for (int side = 0; side < 2; side++) {
+        w->rate[side] = bough_arena_doubles(arena, n);
+        w->air_rate[side] = bough_arena_doubles(arena, m);
+    }
+}
+
+// Lets the air go on for `step` from the memory in `from`, which is changed, to `to`.
+static void go_on(work *w, double step, double *from, double *to) {
+    from[0] = w->time - step;
+    bough_aero_link_memory(w->simulation->aero, BOUGH_SNAPSHOT_RESTORE, from);
+    bough_aero_link_go_on(w->simulation->aero, w->time);
+    bough_aero_link_memory(w->simulation->aero, BOUGH_SNAPSHOT_SAVE, to);
+}
+
+// Rates of all states at `state` under the loads that the air has for w->state and the memory in
+// w->before. The first moment makes the air's inputs those of this state.
+static bough_status find_rates(work *w, const double *state, double *rate, double *air_rate) {
+    bough_simulation *s = w->simulation;
+    bough_equilibrium_set_state(s, w->coupled->assembly, w->state);
+    if (w->dynamic) {
+        go_on(w, moment, w->before, w->after);
+        memcpy(w->before, w->after, (size_t)w->n_memory * sizeof *w->before);
+        go_on(w, moment, w->before, w->after);
+        for (int k = 0; k < w->n_air; k++) {
+            air_rate[k] = (w->after[w->row[k]] - w->before[w->row[k]]) / moment;
+        }
+    } else {
+        bough_aero_link_hold(s->aero, w->time);
+    }
+    if (s->drag != NULL) bough_drag_link_hold(s->drag, w->time);
+    return bough_coupled_rate(w->coupled, w->time, state, rate);
+}
+
+// Brings the air to rest about `state`; what it remembers then, to w->memory.
+static void settle(work *w, const double *state) {
+    bough_simulation *s = w->simulation;
+    bough_equilibrium_set_state(s, w->coupled->assembly, state);
+    bough_aero_link_hold(s->aero, w->time);
+    if (s->drag != NULL) bough_drag_link_hold(s->drag, w->time);
+    if (!w->dynamic) return;
+    bough_aero_link_go_on(s->aero, w->time);
+    bough_aero_link_memory(s->aero, BOUGH_SNAPSHOT_SAVE, w->before);
+    for (int k = 0; k < SETTLINGS; k++) {
+        go_on(w, long_while, w->before, w->memory);
+        memcpy(w->before, w->memory, (size_t)w->n_memory * sizeof *w->before);
+    }
+}
+
+// Both sides of a difference are in the work: their slopes, of the bodies' rates and of the air's.
+static void set_column(const work *w, double size, double *column, double *air_column) {
+    int n = w->coupled->assembly->n_state;
+    for (int k = 0; k < n; k++) column[k] = (w->rate[1][k] - w->rate[0][k]) / (2 * size);
+    for (int k = 0; k < w->n_air; k++) {
+        air_column[k] = (w->air_rate[1][k] - w->air_rate[0][k]) / (2 * size);
+    }
+}
+
+static bool meets_air(const bough_simulation *s, int member) {
+    if (member == 0 || s->drag != NULL) return true;
+    for (int b = 0; b < s->scene->turbine.n_blade; b++) {
+        if (bough_simulation_beam(s, s->scene->turbine.blade[b])->port + 1 == member) return true;
+    }
+    return false;
+}
+
+static bough_status follow_motion(work *w, const double *state, bough_air_tangent *t) {
+    const bough_assembly *a = w->coupled->assembly;
+    for (int i = 0; i < a->n_member; i++) {
+        if (!meets_air(w->simulation, i)) continue;
+        for (int k = 0; k < a->member[i]->system.n_state; k++) {
+            int at = a->state_offset[i] + k;
+            double size = difference * a->member[i]->system.scale[k];
+            for (int side = 0; side < 2; side++) {
+                memcpy(w->state, state, (size_t)a->n_state * sizeof *state);
+                memcpy(w->before, w->memory, (size_t)w->n_memory * sizeof *w->before);
+                w->state[at] += (2 * side - 1) * size;
+                bough_status status = find_rates(w, state, w->rate[side], w->air_rate[side]);
+                if (!bough_is_ok(&status)) return status;
+            }
+            set_column(w, size, t->motion + (size_t)at * a->n_state, t->drive + (size_t)at * t->n_air);
+        }
+    }
+    return bough_ok();
+}
+
+static bough_status follow_memory(work *w, const double *state, bough_air_tangent *t) {
+    const bough_assembly *a = w->coupled->assembly;
+    for (int k = 0; k < w->n_air; k++) {
+        for (int side = 0; side < 2; side++) {
+            memcpy(w->state, state, (size_t)a->n_state * sizeof *state);
+            memcpy(w->before, w->memory, (size_t)w->n_memory * sizeof *w->before);
+            w->before[w->row[k]] += (2 * side - 1) * air_difference;
+            bough_status status = find_rates(w, state, w->rate[side], w->air_rate[side]);
+            if (!bough_is_ok(&status)) return status;
+        }
+        set_column(w, air_difference, t->lift + (size_t)k * a->n_state, t->lag + (size_t)k * t->n_air);
+    }
+    return bough_ok();
+}
+
+static bough_status follow_inputs(work *w, const double *state, const bough_air_inputs *inputs,
+                                  bough_air_tangent *t) {
+    size_t n = (size_t)w->coupled->assembly->n_state;
+    for (int k = 0; k < inputs->n; k++) {
+        for (int side = 0; side < 2; side++) {
+            memcpy(w->state, state, n * sizeof *state);
+            memcpy(w->before, w->memory, (size_t)w->n_memory * sizeof *w->before);
+            inputs->set(inputs->self, k, (2 * side - 1) * inputs->size[k], w->state);
+            bough_status status = find_rates(w, w->state, w->rate[side], w->air_rate[side]);
+            inputs->set(inputs->self, k, 0, w->state);
+            if (!bough_is_ok(&status)) return status;
+        }
+        set_column(w, inputs->size[k], t->input + (size_t)k * n, t->input_drive + (size_t)k * t->n_air);
+    }
+    return bough_ok();
+}
+
+bough_status bough_air_tangent_find(bough_arena *arena, bough_simulation *s, bough_coupled *coupled,
+                                    double time, const double *state, bool dynamic,
+                                    const bough_air_inputs *inputs, bough_air_tangent *t) {
+    const bough_rotor *rotor = bough_aero_link_rotor(s->aero);
+    int n_memory = dynamic ? bough_rotor_memory_size(rotor) : 0;
+    work w = {
+        .simulation = s, .coupled = coupled, .time = time, .n_memory = n_memory, .dynamic = n_memory > 0};
+    take(arena, &w);
+    if (w.dynamic) w.n_air = bough_rotor_memory_states(rotor, w.row);
+    size_t n = (size_t)coupled->assembly->n_state, m = (size_t)w.n_air;
+    size_t n_input = inputs ? (size_t)inputs->n : 0;
+    *t = (bough_air_tangent){.n = (int)n,
+                             .n_air = w.n_air,
+                             .n_per_blade = w.n_air / s->scene->turbine.n_blade,
+                             .motion = bough_arena_doubles(arena, n * n),
+                             .lift = bough_arena_doubles(arena, n * m + 1),
+                             .drive = bough_arena_doubles(arena, n * m + 1),
+                             .lag = bough_arena_doubles(arena, m * m + 1),
+                             .input = bough_arena_doubles(arena, n * n_input + 1),
+                             .input_drive = bough_arena_doubles(arena, m * n_input + 1)};
+    settle(&w, state);
+    bough_status status = follow_motion(&w, state, t);
+    if (bough_is_ok(&status)) status = follow_memory(&w, state, t);
+    if (bough_is_ok(&status) && inputs) status = follow_inputs(&w, state, inputs, t);
+    settle(&w, state);
+    return status;
+}
+
+// -- mean over azimuths ---------------------------------------------------------------------------
+
+// a (rows × ·): its block of parts (k, l) becomes the mean over all (k + i, l + i).
+typedef struct blocks {
+    int n_part, rows;
+    int n_to, n_from;     // entries of a part
+    const int *to, *from; // (n_part × n_to), (n_part × n_from)
+} blocks;
+
+static void average(const blocks *b, double *a) {
+    for (int apart = 0; apart < b->n_part; apart++) {
+        for (int j = 0; j < b->n_from; j++) {
+            for (int i = 0; i < b->n_to; i++) {
+                double sum = 0;
+                for (int pass = 0; pass < 2; pass++) {
+                    for (int k = 0; k < b->n_part; k++) {
+                        int l = (k + apart) % b->n_part;
+                        size_t column = (size_t)b->from[l * b->n_from + j] * (size_t)b->rows;
+                        double *entry = a + column + (size_t)b->to[k * b->n_to + i];
+                        if (pass == 0) sum += *entry / b->n_part;
+                        if (pass == 1) *entry = sum;
+                    }
+                }
+            }
+        }
+    }
+}
+
+void bough_air_tangent_rows(const bough_simulation *s, const bough_blade_group *group, int n_per_blade,
+                            int *row) {
+    const bough_scene_turbine *turbine = &s->scene->turbine;
+    for (int k = 0; k < group->n; k++) {
+        for (int b = 0; b < turbine->n_blade; b++) {
+            if (bough_simulation_beam(s, turbine->blade[b]) != group->blade[k]) continue;
+            for (int j = 0; j < n_per_blade; j++) row[k * n_per_blade + j] = b * n_per_blade + j;
+        }
+    }
+}
+
+void bough_air_tangent_average(bough_arena *arena, const bough_simulation *s, const bough_blade_group *group,
+                               bough_air_tangent *t) {
+    if (group->n == 0) return;
+    int *air = bough_arena_take(arena, ((size_t)t->n_air + 1) * sizeof *air);
+    bough_air_tangent_rows(s, group, t->n_per_blade, air);
+    int n = group->n, m = t->n_per_blade;
+    average(&(blocks){n, t->n, group->n_row, group->n_row, group->row, group->row}, t->motion);
+    average(&(blocks){n, t->n, group->n_row, m, group->row, air}, t->lift);
+    average(&(blocks){n, t->n_air, m, group->n_row, air, group->row}, t->drive);
+    average(&(blocks){n, t->n_air, m, m, air, air}, t->lag);
+    if (fabs(group->speed) > 0) { // over a revolution the mean of a slope in azimuth is none
+        int azimuth, speed;
+        bough_tree_joint_rows(s->tree, s->scene->turbine.rotor, &azimuth, &speed);
+        memset(t->motion + (size_t)azimuth * (size_t)t->n, 0, (size_t)t->n * sizeof(double));
+        memset(t->drive + (size_t)azimuth * (size_t)t->n_air, 0, (size_t)t->n_air * sizeof(double));
+    }
+}

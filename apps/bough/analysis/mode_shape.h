@@ -1,0 +1,51 @@
+// An eigenvector of the whole scene as motion of its bodies.
+#ifndef BOUGH_APPS_ANALYSIS_MODE_SHAPE_H
+#define BOUGH_APPS_ANALYSIS_MODE_SHAPE_H
+
+#include "apps/bough/model/blade_group.h"
+#include "core/base/eigen.h"
+
+// A flexible beam's vertices and their tangents along the shape, as rod.h lays them out.
+typedef struct bough_beam_shape {
+    const double *state;      // (13 n)
+    const double *tangent[2]; // (13 n) real and imaginary part
+    double *memory;           // (3 × 13 n) of both unless a rod, whose own they are
+} bough_beam_shape;
+
+typedef struct bough_mode_shape {
+    const bough_simulation *simulation;
+    const bough_assembly *assembly;
+    const bough_blade_group *group;
+    const double *state; // (n_state) that the modes are about
+    const bough_eigen_pair *pair;
+    double *moved;          // (n_state) work
+    bough_beam_shape *beam; // (n_beam)
+} bough_mode_shape;
+
+// The real or imaginary part of the eigenvector (n_state).
+static inline const double *bough_mode_shape_part(const bough_mode_shape *x, int part) {
+    return part == 0 ? x->pair->shape_real : x->pair->shape_imag;
+}
+
+// Takes the memory; simulation and assembly are set.
+void bough_mode_shape_take(bough_arena *arena, bough_mode_shape *x);
+
+// Finds the beams' vertices for x->pair.
+void bough_mode_shape_set(const bough_mode_shape *x);
+
+const bough_beam_shape *bough_mode_shape_beam(const bough_mode_shape *x, const bough_beam *beam);
+
+// The motion of the whole, displacement [m] and rotation [rad] in ground axes: a row for each body
+// of the scene at its frame, of a flexible one for each vertex.
+typedef struct bough_shape_row {
+    int body;
+    double span;         // [m]; 0 of a rigid body
+    double motion[2][6]; // real and imaginary part
+} bough_shape_row;
+
+int bough_mode_shape_rows(const bough_simulation *s); // their number
+
+// Scaled so that the largest displacement, or else rotation, is real and 1.
+void bough_mode_shape_move(const bough_mode_shape *x, bough_shape_row *row);
+
+#endif

@@ -1,0 +1,322 @@
+#include "apps/bough/analysis/state_space.h"
+
+#include "apps/bough/analysis/air_tangent.h"
+#include "apps/bough/config/schema.h"
+#include "apps/bough/model/aero_link.h"
+#include "apps/bough/model/control_link.h"
+#include "apps/bough/model/equilibrium.h"
+#include "apps/bough/model/input_link.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+// Differences: of a state in units of its scale; of an input in units of what it is about, or of 1.
+static const double difference = 1e-5;
+
+typedef enum input_kind { SCENE_LOAD, GENERATOR_TORQUE, COLLECTIVE_PITCH, WIND_SPEED } input_kind;
+
+typedef struct input {
+    input_kind kind;
+    int index; // of a scene's input
+    double base;
+} input;
+
+typedef struct work {
+    bough_simulation *s;
+    bough_coupled *coupled;
+    bough_channels channels;
+    double time;
+    const double *about;        // (n) states of the members
+    double *state;              // (n)
+    double *rate[2], *value[2]; // (n), (n_output) on either side
+    int n_input;
+    input *input; // (n_input)
+    double *size; // (n_input)
+} work;
+
+// -- inputs ---------------------------------------------------------------------------------------
+
+static bool in_air(const bough_simulation *s) {
+    return s->aero != NULL && s->scene->modes.air != BOUGH_SCENE_AIR_FROZEN;
+}
+
+// A change of pitch is a given motion: the leader's state is brought onto it.
+static void set_input(void *self, int k, double change, double *state) {
+    const work *w = self;
+    bough_simulation *s = w->s;
+    double value = w->input[k].base + change, speed, torque, power;
+    switch (w->input[k].kind) {
+    case SCENE_LOAD: bough_input_link_put(s->inputs, w->input[k].index, value); break;
+    case WIND_SPEED: bough_aero_link_set_wind(s->aero, value); break;
+    case GENERATOR_TORQUE:
+    case COLLECTIVE_PITCH:
+        bough_control_link_generator(s->control, &speed, &torque, &power);
+        double pitch = bough_simulation_pitch(s, bough_simulation_beam(s, s->scene->turbine.blade[0]));
+        if (w->input[k].kind == GENERATOR_TORQUE) torque = value;
+        if (w->input[k].kind == COLLECTIVE_PITCH) pitch = value;
+        bough_control_link_put(s->control, torque, pitch);
+        if (s->leader.system.ops->constrain)
+            s->leader.system.ops->constrain(s->leader.system.self, w->time, state);
+        break;
+    }
+}
+
+static void add_input(work *w, input_kind kind, int index, double base, const char *name, const char *unit,
+                      bough_state_space *to) {
+    int k = w->n_input++;
+    w->input[k] = (input){kind, index, base};
+    w->size[k] = difference * fmax(1, fabs(base));
+    snprintf(to->input[k].name, sizeof to->input[k].name, "%s", name);
+    to->input[k].unit = unit;
+    to->input[k].value = base;
+}
+
+static void find_inputs(work *w, bough_state_space *to) {
+    const bough_simulation *s = w->s;
+    const bough_scene_wind *wind = &s->scene->aero.wind;
+    for (int k = 0; k < s->scene->n_input; k++) {
+        const bough_scene_input *x = &s->scene->input[k];
+        double value = bough_input_link_values(s->inputs)[k];
+        if (x->kind == BOUGH_INPUT_LOAD)
+            add_input(w, SCENE_LOAD, k, value, x->name, bough_dimension_unit((bough_dimension)x->dimension),
+                      to);
+    }
+    if (s->control != NULL) {
+        double speed, torque, power;
+        bough_control_link_generator(s->control, &speed, &torque, &power);
+        add_input(w, GENERATOR_TORQUE, 0, torque, "generator torque, fast shaft", "N m", to);
+        double pitch = bough_simulation_pitch(s, bough_simulation_beam(s, s->scene->turbine.blade[0]));
+        if (bough_control_link_pitches(s->control))
+            add_input(w, COLLECTIVE_PITCH, 0, pitch, "collective pitch", "rad", to);
+    }
+    if (in_air(s) && wind->kind <= BOUGH_SCENE_WIND_LOG && wind->table.node == NULL)
+        add_input(w, WIND_SPEED, 0, bough_rotor_wind(bough_aero_link_rotor(s->aero))->def.speed, "wind speed",
+                  "m/s", to);
+}
+
+// -- names ----------------------------------------------------------------------------------------
+
+static void name_state(bough_signal_name *to, const char *body, const char *what, int number,
+                       const char *unit) {
+    if (number > 0)
+        snprintf(to->name, sizeof to->name, "%s %s %d", body, what, number);
+    else
+        snprintf(to->name, sizeof to->name, "%s %s", body, what);
+    to->unit = unit;
+}
+
+// Coordinate or speed k of a joint, by the table of joint.h.
+static void name_joint(const bough_tree *tree, const bough_link *link, bough_signal_name *state) {
+    static const struct {
+        const char *coordinate[BOUGH_JOINT_COORDINATES], *speed[BOUGH_JOINT_SPEEDS];
+    } units[BOUGH_JOINT_PLANAR + 1] = {
+        [BOUGH_JOINT_REVOLUTE] = {{"rad"}, {"rad/s"}},
+        [BOUGH_JOINT_PRISMATIC] = {{"m"}, {"m/s"}},
+        [BOUGH_JOINT_SPHERICAL] = {{"-", "-", "-", "-"}, {"rad/s", "rad/s", "rad/s"}},
+        [BOUGH_JOINT_FREE] = {{"m", "m", "m", "-", "-", "-", "-"},
+                              {"m/s", "m/s", "m/s", "rad/s", "rad/s", "rad/s"}},
+        [BOUGH_JOINT_CYLINDRICAL] = {{"m", "rad"}, {"m/s", "rad/s"}},
+        [BOUGH_JOINT_UNIVERSAL] = {{"rad", "rad"}, {"rad/s", "rad/s"}},
+        [BOUGH_JOINT_PLANAR] = {{"m", "m", "rad"}, {"m/s", "m/s", "rad/s"}},
+    };
+    const char *body = tree->bodies[link->body].name;
+    for (int k = 0; k < link->n_coordinates; k++)
+        name_state(&state[link->first_coordinate + k], body, "coordinate", k + 1 + link->part,
+                   units[link->joint.kind].coordinate[k]);
+    for (int k = 0; k < link->n_speeds; k++)
+        name_state(&state[tree->n_q + link->first_speed + k], body, "speed", k + 1 + link->part,
+                   units[link->joint.kind].speed[k]);
+}
+
+// Rows of rod.h: component-major over the moving vertices.
+static void name_rod(const bough_system *rod, bough_signal_name *state) {
+    static const struct {
+        const char *name, *unit;
+    } row[BOUGH_BLADE_ROWS] = {{"x", "m"},      {"y", "m"},      {"z", "m"},     {"p0", "-"},   {"p1", "-"},
+                               {"p2", "-"},     {"p3", "-"},     {"ux", "m/s"},  {"uy", "m/s"}, {"uz", "m/s"},
+                               {"wx", "rad/s"}, {"wy", "rad/s"}, {"wz", "rad/s"}};
+    int n = rod->n_state / BOUGH_BLADE_ROWS;
+    for (int k = 0; k < rod->n_state; k++) {
+        name_state(&state[k], rod->name, row[k / n].name, 0, row[k / n].unit);
+        size_t length = strlen(state[k].name);
+        snprintf(state[k].name + length, sizeof state[k].name - length, " of vertex %d", k % n + 1);
+    }
+}
+
+static void name_air(const bough_simulation *s, int n_air, bough_signal_name *state) {
+    int n_blade = s->scene->turbine.n_blade;
+    for (int k = 0; k < n_air; k++) {
+        const char *blade = s->scene->body[s->scene->turbine.blade[k / (n_air / n_blade)]].name;
+        name_state(&state[k], blade, "air", k % (n_air / n_blade) + 1, "-");
+    }
+}
+
+static void name_states(const work *w, bough_state_space *to) {
+    const bough_assembly *a = w->coupled->assembly;
+    const bough_tree *tree = w->s->tree;
+    for (int i = 0; i < tree->n_links; i++) name_joint(tree, &tree->links[i], to->state);
+    for (int i = 1; i < a->n_member; i++) {
+        const bough_system *member = &a->member[i]->system;
+        bough_signal_name *state = to->state + a->state_offset[i];
+        if (strcmp(member->kind, "rod") == 0) {
+            name_rod(member, state);
+        } else {
+            for (int k = 0; k < member->n_state; k++)
+                name_state(&state[k], member->name, "state", k + 1, "-");
+        }
+    }
+    for (int k = 0; k < a->n_state; k++) to->state[k].value = w->about[k];
+    name_air(w->s, to->n - a->n_state, to->state + a->n_state);
+}
+
+static void name_outputs(const work *w, bough_state_space *to) {
+    for (int k = 0; k < to->n_output; k++) {
+        snprintf(to->output[k].name, sizeof to->output[k].name, "%s", w->channels.channel[k].name);
+        to->output[k].unit = w->channels.channel[k].unit;
+        to->output[k].value = w->value[0][k];
+    }
+}
+
+// -- matrices -------------------------------------------------------------------------------------
+
+// Rates and channels at a state, under the air's forces that the bodies have.
+static bough_status evaluate(work *w, const double *state, int side) {
+    bough_simulation *s = w->s;
+    bough_equilibrium_set_state(s, w->coupled->assembly, state);
+    bough_status status = bough_coupled_rate(w->coupled, w->time, state, w->rate[side]);
+    if (!bough_is_ok(&status)) return status;
+    memcpy(s->master->coupling->input, w->coupled->input,
+           (size_t)w->coupled->assembly->n_input * sizeof(double));
+    bough_channels_sample(&w->channels, w->time, w->value[side]);
+    return status;
+}
+
+static void put_rates(const work *w, double size, double *column) {
+    for (int k = 0; k < w->coupled->assembly->n_state; k++)
+        column[k] = (w->rate[1][k] - w->rate[0][k]) / (2 * size);
+}
+
+// An angle that begins anew after a turn has no jump here.
+static void put_outputs(const work *w, int n_output, double size, double *column) {
+    for (int k = 0; k < n_output; k++) {
+        double change = w->value[1][k] - w->value[0][k];
+        if (strcmp(w->channels.channel[k].unit, "deg") == 0) change = remainder(change, 360);
+        column[k] = change / (2 * size);
+    }
+}
+
+static bough_status by_states(work *w, bough_state_space *to) {
+    const bough_assembly *a = w->coupled->assembly;
+    for (int i = 0; i < a->n_member; i++) {
+        for (int j = a->state_offset[i]; j < a->state_offset[i + 1]; j++) {
+            double size = difference * a->member[i]->system.scale[j - a->state_offset[i]];
+            for (int side = 0; side < 2; side++) {
+                memcpy(w->state, w->about, (size_t)a->n_state * sizeof *w->state);
+                w->state[j] += (2 * side - 1) * size;
+                bough_status status = evaluate(w, w->state, side);
+                if (!bough_is_ok(&status)) return status;
+            }
+            put_rates(w, size, to->a + (size_t)j * (size_t)to->n);
+            put_outputs(w, to->n_output, size, to->c + (size_t)j * (size_t)to->n_output);
+        }
+    }
+    return bough_ok();
+}
+
+static bough_status by_inputs(work *w, bough_state_space *to) {
+    size_t n_state = (size_t)w->coupled->assembly->n_state;
+    for (int k = 0; k < w->n_input; k++) {
+        for (int side = 0; side < 2; side++) {
+            memcpy(w->state, w->about, n_state * sizeof *w->state);
+            set_input(w, k, (2 * side - 1) * w->size[k], w->state);
+            bough_status status = evaluate(w, w->state, side);
+            bough_equilibrium_set_state(w->s, w->coupled->assembly, w->about);
+            set_input(w, k, 0, w->state);
+            if (!bough_is_ok(&status)) return status;
+        }
+        put_rates(w, w->size[k], to->b + (size_t)k * (size_t)to->n);
+        put_outputs(w, to->n_output, w->size[k], to->d + (size_t)k * (size_t)to->n_output);
+    }
+    return bough_ok();
+}
+
+static void add_block(const double *from, size_t rows, size_t columns, double *to, size_t stride) {
+    for (size_t j = 0; j < columns; j++) {
+        for (size_t i = 0; i < rows; i++) to[j * stride + i] += from[j * rows + i];
+    }
+}
+
+// What the air adds: to the rates of the bodies, and rates of its own.
+static void add_air(const work *w, const bough_air_tangent *t, bough_state_space *to) {
+    size_t n = (size_t)t->n, m = (size_t)t->n_air, all = n + m, u = (size_t)w->n_input;
+    add_block(t->motion, n, n, to->a, all);
+    add_block(t->drive, m, n, to->a + n, all);
+    add_block(t->lift, n, m, to->a + n * all, all);
+    add_block(t->lag, m, m, to->a + n * all + n, all);
+    memset(to->b, 0, all * u * sizeof *to->b);
+    add_block(t->input, n, u, to->b, all);
+    add_block(t->input_drive, m, u, to->b + n, all);
+}
+
+// -- the whole ------------------------------------------------------------------------------------
+
+static bough_status prepare(bough_arena *arena, work *w) {
+    bough_simulation *s = w->s;
+    const bough_assembly *a = s->master->assembly;
+    size_t n = (size_t)a->n_state, most = (size_t)s->scene->n_input + 3;
+    w->channels = bough_channels_start(arena);
+    bough_status status = bough_simulation_channels(s, &w->channels);
+    if (bough_is_ok(&status)) w->coupled = bough_coupled_create_evaluation(arena, a, NULL);
+    if (!bough_is_ok(&status)) return status;
+    double *about = bough_arena_doubles(arena, n + 1);
+    w->state = bough_arena_doubles(arena, n + 1);
+    w->input = bough_arena_take(arena, most * sizeof *w->input);
+    w->size = bough_arena_doubles(arena, most);
+    for (int side = 0; side < 2; side++) {
+        w->rate[side] = bough_arena_doubles(arena, n + 1);
+        w->value[side] = bough_arena_doubles(arena, (size_t)w->channels.count + 1);
+    }
+    bough_assembly_states(a, about);
+    w->about = about;
+    return bough_ok();
+}
+
+static void take(bough_arena *arena, int n_air, const work *w, bough_state_space *to) {
+    to->n = w->coupled->assembly->n_state + n_air;
+    to->n_input = w->n_input;
+    to->n_output = w->s->n_motion_channel;
+    size_t n = (size_t)to->n, u = (size_t)to->n_input, o = (size_t)to->n_output;
+    to->a = bough_arena_doubles(arena, n * n + 1);
+    to->b = bough_arena_doubles(arena, n * u + 1);
+    to->c = bough_arena_doubles(arena, n * o + 1);
+    to->d = bough_arena_doubles(arena, o * u + 1);
+    to->state = bough_arena_take(arena, (n + 1) * sizeof *to->state);
+    to->output = bough_arena_take(arena, (o + 1) * sizeof *to->output);
+}
+
+bough_status bough_state_space_find(bough_arena *arena, bough_simulation *s, double time,
+                                    bough_state_space *space) {
+    work w = {.s = s, .time = time};
+    bough_air_tangent air = {0};
+    bough_status status = prepare(arena, &w);
+    if (!bough_is_ok(&status)) return status;
+    *space = (bough_state_space){
+        .input = bough_arena_take(arena, ((size_t)s->scene->n_input + 3) * sizeof *space->input)};
+    find_inputs(&w, space);
+    if (in_air(s)) {
+        bough_air_inputs inputs = {w.n_input, w.size, &w, set_input};
+        bool dynamic = s->scene->modes.air == BOUGH_SCENE_AIR_DYNAMIC;
+        status = bough_air_tangent_find(arena, s, w.coupled, time, w.about, dynamic, &inputs, &air);
+        if (!bough_is_ok(&status)) return status;
+    }
+    take(arena, air.n_air, &w, space);
+    status = by_states(&w, space);
+    if (bough_is_ok(&status)) status = by_inputs(&w, space);
+    if (bough_is_ok(&status)) status = evaluate(&w, w.about, 0);
+    if (!bough_is_ok(&status)) return status;
+    if (in_air(s)) add_air(&w, &air, space);
+    name_states(&w, space);
+    name_outputs(&w, space);
+    return bough_ok();
+}

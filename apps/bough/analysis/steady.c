@@ -1,0 +1,131 @@
+#include "apps/bough/analysis/steady.h"
+
+#include <string.h>
+
+int bough_steady_rods(const bough_simulation *s) {
+    int n = 0;
+    for (int k = 0; k < s->n_beam; k++) n += s->beam[k].rod != NULL;
+    return n;
+}
+
+static bool carries(const bough_scene *scene, int ancestor, const bough_scene_body *body) {
+    for (; body != &scene->body[ancestor]; body = &scene->body[body->joint.parent]) {
+        if (body->joint.parent == BOUGH_GROUND) return false;
+    }
+    return true;
+}
+
+// The named body, or the nearest on a revolute joint below the rod; NULL when there is none.
+static const bough_scene_body *pivot_of(const bough_scene *scene, const bough_beam *beam) {
+    const bough_scene_body *body = beam->body;
+    if (scene->modes.about_name != NULL) {
+        bool good = carries(scene, scene->modes.about, body);
+        return good ? &scene->body[scene->modes.about] : NULL;
+    }
+    while (body->joint.kind != BOUGH_JOINT_REVOLUTE) {
+        if (body->joint.parent == BOUGH_GROUND) return NULL;
+        body = &scene->body[body->joint.parent];
+    }
+    return body;
+}
+
+bough_status bough_steady_turning(const bough_simulation *s, const bough_beam *beam, bough_turning *turning) {
+    const bough_scene_modes *modes = &s->scene->modes;
+    bough_vec3 axis = {modes->axis[0], modes->axis[1], modes->axis[2]};
+    *turning = (bough_turning){.speed = modes->speed};
+    if (modes->speed == 0) return bough_ok();
+    if (bough_norm(axis) > 0) {
+        turning->axis = bough_scale(1 / bough_norm(axis), axis);
+        turning->centre = bough_v3(modes->centre[0], modes->centre[1], modes->centre[2]);
+        return bough_ok();
+    }
+    const bough_scene_body *pivot = pivot_of(s->scene, beam);
+    if (pivot == NULL) {
+        return bough_fail(BOUGH_INVALID,
+                          "rod %s: no revolute joint%s%s carries it; name an 'axis'"
+                          " for the speed of 'modes'",
+                          beam->body->name, modes->about_name == NULL ? "" : " of ",
+                          modes->about_name == NULL ? "" : modes->about_name);
+    }
+    const bough_frame *frame = &s->tree->bodies[pivot - s->scene->body];
+    bough_transform pose = bough_tree_frame_pose(s->view, frame);
+    const bough_vec3 axes[3] = {pose.rotation.c1, pose.rotation.c2, pose.rotation.c3};
+    turning->axis = axes[pivot->joint.axis];
+    turning->centre = pose.position;
+    return bough_ok();
+}
+
+// What hangs on a rod would pull at it; that is not known here.
+static bough_status check_carries_none(const bough_simulation *s, const bough_beam *beam) {
+    for (int i = 0; i < s->scene->n_body; i++) {
+        const bough_scene_body *body = &s->scene->body[i];
+        int parent = body->joint.parent;
+        if (parent < 0 || &s->scene->body[parent] != beam->body) continue;
+        return bough_fail(BOUGH_INVALID,
+                          "rod %s carries the body %s; there is no equilibrium in "
+                          "steady rotation for rods that carry bodies",
+                          beam->body->name, body->name);
+    }
+    return bough_ok();
+}
+
+// Twist and gravity of the body's frame.
+static void set_input(const bough_simulation *s, const bough_turning *turning, bough_steady *x) {
+    const bough_frame *frame = &s->tree->markers[x->beam->marker];
+    bough_transform pose = bough_tree_frame_pose(s->view, frame);
+    bough_vec3 gravity = s->tree->gravity;
+    bough_vec3 omega = bough_scale(turning->speed, turning->axis);
+    bough_vec3 arm = bough_sub(pose.position, turning->centre);
+    if (turning->speed != 0) {
+        gravity = bough_scale(bough_dot(gravity, turning->axis), turning->axis);
+    }
+    bough_v3_store(bough_mat3_tmul(pose.rotation, bough_cross(omega, arm)), x->input);
+    bough_v3_store(bough_mat3_tmul(pose.rotation, omega), x->input + 3);
+    bough_v3_store(bough_mat3_tmul(pose.rotation, gravity), x->input + 6);
+}
+
+bough_status bough_steady_find(bough_arena *arena, const bough_simulation *s, const bough_beam *beam,
+                               const bough_turning *turning, bough_steady *steady) {
+    bough_status status = check_carries_none(s, beam);
+    if (!bough_is_ok(&status)) return status;
+    steady->beam = beam;
+    steady->model = bough_rod_body_model(beam->rod);
+    steady->state = bough_arena_doubles(arena, (size_t)BOUGH_ROD_STATES * steady->model->n);
+    bough_rod_static_init(&steady->work, arena, steady->model);
+    set_input(s, turning, steady);
+    bough_rod_rest_state(steady->model, steady->input, steady->state);
+    bough_rod_static_options options = bough_rod_static_options_default();
+    return bough_rod_steady(steady->model, bough_rod_body_loads(beam->rod), steady->input, &options,
+                            &steady->work, steady->state);
+}
+
+bough_status bough_steady_equilibrium(bough_arena *arena, const bough_simulation *s, const bough_beam *beam,
+                                      double time, bough_steady *steady) {
+    const bough_assembly *a = s->master->assembly;
+    const bough_coupling *c = s->master->coupling;
+    const double *input = c->input + a->input_offset[beam->port + 1];
+    const bough_rod_model *m = bough_rod_body_model(beam->rod);
+    *steady = (bough_steady){.beam = beam, .model = m, .time = time};
+    steady->state = bough_arena_doubles(arena, (size_t)BOUGH_ROD_STATES * m->n);
+    bough_rod_static_init(&steady->work, arena, m);
+    bough_assembly_outputs(a, time, c->output, c->input);
+    memcpy(steady->input, input, (size_t)bough_rod_n_inputs(m) * sizeof *input);
+    memcpy(steady->state, s->rod[beam->port].state, (size_t)BOUGH_ROD_STATES * m->n * sizeof *input);
+    steady->work.scaled = *bough_rod_body_loads(beam->rod);
+    bough_rod_gather(m, steady->state, steady->input, &steady->work.scratch);
+    bough_rod_load(m, &steady->work.scaled, time, &steady->work.scratch);
+    return bough_ok();
+}
+
+void bough_steady_displacement(const bough_steady *steady, int i, bough_vec3 *shift, bough_vec3 *turn) {
+    const bough_rod_model *m = steady->model;
+    bool end = i > m->n; // belongs to what the rod carries: its x and p after u and W
+    const double *y = end ? steady->input + BOUGH_ROD_INPUTS + 6 : steady->state + i - 1;
+    int n = end ? 1 : m->n;
+    *shift = *turn = bough_v3(0, 0, 0);
+    if (i == 0) return;
+    bough_quaternion p = {y[3 * n], y[4 * n], y[5 * n], y[6 * n]};
+    bough_quaternion undeformed = bough_quaternion_conjugate(m->rotation0[i]);
+    *shift = bough_sub(bough_v3(y[0], y[n], y[2 * n]), m->position0[i]);
+    *turn = bough_quaternion_logarithm(bough_quaternion_product(p, undeformed));
+}

@@ -1,0 +1,46 @@
+// Loads of all cases of a load set over the turbine's lifetime. The cases are summed in their order, so
+// that the result is the same to the bit, whichever process has run which case.
+#ifndef BOUGH_APPS_STUDY_LIFETIME_H
+#define BOUGH_APPS_STUDY_LIFETIME_H
+
+#include "apps/bough/cases/case_run.h"
+
+// The extreme of a channel whose design value, `factor` times the characteristic one, is the most extreme of
+// all cases. Forces and moments alone have a factor; it is the load case's `favourable` where it would else
+// take the value away from zero although nothing goes beyond: for a smallest above zero and a largest below.
+typedef struct bough_extreme {
+    bool found;
+    double value;  // characteristic: as the run has it, in the channel's unit
+    double factor; // [-]
+    double at;     // [s]
+    int number;    // of its case
+    double *row;   // (n_channel) all channels at that moment, characteristic
+} bough_extreme;
+
+typedef struct bough_lifetime_channel {
+    double damage[BOUGH_MOST_SLOPES]; // Σ n Sᵐ over the life
+    double cycles;
+    bough_levels ranges; // cycles by their range
+    bough_levels levels; // hours at each level, upward crossings
+    bough_extreme least, most;
+} bough_lifetime_channel;
+
+typedef struct bough_lifetime {
+    const bough_load_set *set;
+    bough_lifetime_channel *channel; // (n_channel)
+    int n_failed, n_missing;         // cases
+    double hours;                    // of the life that are in the sums
+    double total;                    // hours and events of all cases
+    double lacking;                  // share of the cases' weight that failed or is missing
+    double simulated, cpu;           // of all runs [s]
+} bough_lifetime;
+
+bough_lifetime bough_lifetime_take(bough_arena *arena, const bough_load_set *set);
+
+// Adds the next case. A result that is not done counts as missing.
+void bough_lifetime_add(bough_lifetime *l, int number, const bough_case_result *result);
+
+// Damage-equivalent load of a channel over the life, for the k-th slope.
+double bough_lifetime_equivalent(const bough_lifetime *l, int channel, int slope);
+
+#endif

@@ -1,0 +1,244 @@
+#include "apps/bough/cases/study_table.h"
+
+#include "apps/bough/results/folder.h"
+#include <math.h>
+#include <stdarg.h>
+#include <string.h>
+
+enum { COLUMNS = BOUGH_STUDY_AXES + 2 * BOUGH_STUDY_MEASURES + 8, WIDTH = 48, SHORT = 100 };
+
+void bough_study_status(const bough_study_result *result, char text[40]) {
+    if (!result->done) {
+        snprintf(text, 40, "not run");
+    } else if (bough_is_ok(&result->outcome)) {
+        snprintf(text, 40, "ok");
+    } else {
+        snprintf(text, 40, "failed at t=%.4g s", result->time);
+    }
+}
+
+static double real_time_factor(const bough_study_result *r) { return r->time / r->wall; }
+
+// Row −1 is the reference.
+static const bough_study_cell *cell_of(const bough_study *s, int row) {
+    return row < 0 ? s->reference_cell : &s->cell[row];
+}
+
+static const bough_study_result *result_of(const bough_study_results *results, int row) {
+    return row < 0 ? results->reference : &results->result[row];
+}
+
+// -- text -----------------------------------------------------------------------------------------
+
+typedef struct line {
+    int n;
+    char field[COLUMNS][WIDTH];
+} line;
+
+static void put(line *l, const char *format, ...) __attribute__((format(printf, 2, 3)));
+
+static void put(line *l, const char *format, ...) {
+    va_list arguments;
+    va_start(arguments, format);
+    vsnprintf(l->field[l->n++], WIDTH, format, arguments);
+    va_end(arguments);
+}
+
+static void put_number(line *l, bool known, double value) {
+    if (known) {
+        put(l, "%.3g", value);
+    } else {
+        put(l, "-");
+    }
+}
+
+static void put_head(line *l, const bough_study *s) {
+    l->n = 0;
+    put(l, "run");
+    for (int i = 0; i < s->grid.n; i++) put(l, "%.40s", s->grid.axis[i].label);
+    put(l, "status");
+    put(l, "wall [s]");
+    put(l, "cpu [s]");
+    put(l, "x real time");
+    for (int i = 0; i < s->n_measure; i++) {
+        put(l, "%.30s [%.12s]", s->measure[i].name, s->measure[i].unit);
+        put(l, "estimated");
+    }
+    put(l, "defect rms [1]");
+    put(l, "energy defect [1]");
+}
+
+static void put_row(line *l, const bough_study_results *results, int row) {
+    const bough_study *s = results->study;
+    const bough_study_result *r = result_of(results, row);
+    char status[40];
+    bool good = r->done && bough_is_ok(&r->outcome);
+    bough_study_status(r, status);
+    l->n = 0;
+    if (row < 0) {
+        put(l, "reference");
+    } else {
+        put(l, "%d", row + 1);
+    }
+    for (int i = 0; i < s->grid.n; i++) {
+        const char *value = bough_study_value(s, cell_of(s, row), i);
+        put(l, "%.40s", value[0] ? value : "as the scene");
+    }
+    put(l, "%s", status);
+    put_number(l, r->done, r->wall);
+    put_number(l, r->done, r->cpu);
+    put_number(l, r->done && r->wall > 0, real_time_factor(r));
+    for (int i = 0; i < s->n_measure; i++) {
+        put_number(l, good, r->error[i]);
+        put_number(l, good && isfinite(r->estimate[i]), r->estimate[i]);
+    }
+    put_number(l, r->done, r->coupling.defect_rms);
+    double exchanged = r->coupling.energy_exchanged;
+    put_number(l, r->done && exchanged > 0, r->coupling.energy_residual / exchanged);
+}
+
+// Characters, not bytes.
+static int shown_width(const char *text) {
+    int n = 0;
+    for (; *text; text++) n += ((unsigned char)*text & 0xC0) != 0x80;
+    return n;
+}
+
+static void widen(const line *l, int width[COLUMNS]) {
+    for (int i = 0; i < l->n; i++) {
+        int w = shown_width(l->field[i]);
+        if (w > width[i]) width[i] = w;
+    }
+}
+
+// The settings and the status stand left, numbers right.
+static void print_line(const line *l, const int width[COLUMNS], int n_left, FILE *stream) {
+    for (int i = 0; i < l->n; i++) {
+        int pad = width[i] - shown_width(l->field[i]);
+        bool left = i < n_left;
+        fprintf(stream, "%s%*s%s", i ? "  " : "", left ? 0 : pad, "", l->field[i]);
+        if (left && i + 1 < l->n) fprintf(stream, "%*s", pad, "");
+    }
+    fputc('\n', stream);
+}
+
+static void print_diagnosis(const char *settings, const bough_study_result *r, FILE *stream) {
+    if (!r->done || bough_is_ok(&r->outcome)) return;
+    const char *text = r->outcome.message;
+    size_t length = strlen(text);
+    bool cut = length > SHORT;
+    if (cut) {
+        for (length = SHORT; length > 0 && ((unsigned char)text[length] & 0xC0) == 0x80;) length--;
+    }
+    fprintf(stream, "failed: %s: %.*s%s\n", settings, (int)length, text, cut ? "..." : "");
+}
+
+void bough_study_print(const bough_study_results *results, FILE *stream) {
+    const bough_study *s = results->study;
+    line l;
+    int width[COLUMNS] = {0};
+    put_head(&l, s);
+    widen(&l, width);
+    for (int row = -1; row < s->n_cell; row++) {
+        put_row(&l, results, row);
+        widen(&l, width);
+    }
+    if (s->title) fprintf(stream, "%s\n", s->title);
+    put_head(&l, s);
+    print_line(&l, width, s->grid.n + 2, stream);
+    for (int row = -1; row < s->n_cell; row++) {
+        put_row(&l, results, row);
+        print_line(&l, width, s->grid.n + 2, stream);
+    }
+    for (int row = -1; row < s->n_cell; row++)
+        print_diagnosis(cell_of(s, row)->settings, result_of(results, row), stream);
+}
+
+// -- CSV ------------------------------------------------------------------------------------------
+
+void bough_csv_text(FILE *file, const char *text) {
+    bool quoted = strpbrk(text, ",\"\r\n") != NULL;
+    if (quoted) fputc('"', file);
+    for (const char *c = text; *c; c++) {
+        if (*c == '"') fputc('"', file);
+        fputc(*c == '\n' || *c == '\r' ? ' ' : *c, file);
+    }
+    if (quoted) fputc('"', file);
+}
+
+static void write_csv_head(const bough_study *s, FILE *f) {
+    fputs("run", f);
+    for (int i = 0; i < s->grid.n; i++) {
+        fputc(',', f);
+        bough_csv_text(f, s->grid.axis[i].key);
+    }
+    fputs(",status,time [s],wall [s],cpu [s],real_time_factor [1]", f);
+    for (int i = 0; i < s->n_measure; i++) {
+        char name[200];
+        snprintf(name, sizeof name, "%.120s [%.60s]", s->measure[i].name, s->measure[i].unit);
+        fputc(',', f);
+        bough_csv_text(f, name);
+        snprintf(name, sizeof name, "%.120s estimated [%.50s]", s->measure[i].name, s->measure[i].unit);
+        fputc(',', f);
+        bough_csv_text(f, name);
+    }
+    fputs(",defect_max [1],defect_rms [1],energy_residual [J],energy_exchanged [J],diagnosis\n", f);
+}
+
+static void write_csv_number(FILE *f, double value) {
+    if (isfinite(value)) {
+        fprintf(f, ",%.9g", value);
+    } else {
+        fputc(',', f);
+    }
+}
+
+static void write_csv_numbers(const bough_study *s, const bough_study_result *r, FILE *f) {
+    write_csv_number(f, r->time);
+    write_csv_number(f, r->wall);
+    write_csv_number(f, r->cpu);
+    write_csv_number(f, real_time_factor(r));
+    for (int i = 0; i < s->n_measure; i++) {
+        write_csv_number(f, r->error[i]);
+        write_csv_number(f, r->estimate[i]);
+    }
+    write_csv_number(f, r->coupling.defect_max);
+    write_csv_number(f, r->coupling.defect_rms);
+    write_csv_number(f, r->coupling.energy_residual);
+    write_csv_number(f, r->coupling.energy_exchanged);
+}
+
+static void write_csv_row(const bough_study_results *results, int row, FILE *f) {
+    const bough_study *s = results->study;
+    const bough_study_result *r = result_of(results, row);
+    bool good = bough_is_ok(&r->outcome);
+    if (row < 0) {
+        fputs("reference", f);
+    } else {
+        fprintf(f, "%d", row + 1);
+    }
+    for (int i = 0; i < s->grid.n; i++) {
+        fputc(',', f);
+        bough_csv_text(f, bough_study_value(s, cell_of(s, row), i));
+    }
+    fprintf(f, ",%s", good ? "ok" : "failed");
+    write_csv_numbers(s, r, f);
+    fputc(',', f);
+    bough_csv_text(f, good ? "" : r->outcome.message);
+    fputc('\n', f);
+}
+
+static void write_csv(const void *self, FILE *f) {
+    const bough_study_results *results = self;
+    write_csv_head(results->study, f);
+    for (int row = -1; row < results->study->n_cell; row++) write_csv_row(results, row, f);
+}
+
+// -- files ----------------------------------------------------------------------------------------
+
+static void write_text(const void *self, FILE *f) { bough_study_print(self, f); }
+
+bough_status bough_study_write_tables(const bough_study_results *results, const char *folder) {
+    bough_status status = bough_folder_write(folder, "table.txt", write_text, results);
+    return bough_is_ok(&status) ? bough_folder_write(folder, "table.csv", write_csv, results) : status;
+}

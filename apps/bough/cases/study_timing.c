@@ -1,0 +1,121 @@
+#include "apps/bough/cases/study_timing.h"
+
+#include "apps/bough/results/folder.h"
+#include "apps/bough/cases/study_run.h"
+#include "apps/bough/cases/study_table.h"
+
+#include <string.h>
+
+typedef struct cell_times {
+    double wall[BOUGH_STUDY_REPEATS], cpu[BOUGH_STUDY_REPEATS], ratio[BOUGH_STUDY_REPEATS]; // per turn
+    double error[BOUGH_STUDY_MEASURES]; // against the reference
+} cell_times;
+
+typedef struct timing {
+    const bough_study *study;
+    const bough_study_options *options;
+    cell_times *cell; // (n_cell)
+    bough_study_series reference, series;
+    bough_study_drive drive;
+} timing;
+
+// The cell with the first value of the last axis and this cell's values of all others: what the
+// ratios are against.
+static int partner(const bough_study *s, int cell) {
+    int last = s->grid.n - 1;
+    return cell - s->cell[cell].index[last];
+}
+
+// -- runs -----------------------------------------------------------------------------------------
+
+static bough_status run(timing *t, const bough_study_cell *cell, bough_study_drive *drive,
+                        bough_study_series *series, bough_study_result *result) {
+    bough_status status = bough_study_run(t->study, cell, 1, drive, series, result);
+    return bough_is_ok(&status) ? result->outcome : status;
+}
+
+// Every run writes all channels, as `bough run` does. Errors do not depend on the turn: the bits of all turns
+// are the same.
+static bough_status take_turn(timing *t, int turn) {
+    bough_study_drive drive = {.stop = t->options->stop, .folder = t->options->folder};
+    for (int i = 0; i < t->study->n_cell; i++) {
+        bough_study_result result;
+        bough_status status = run(t, &t->study->cell[i], &drive, &t->series, &result);
+        if (!bough_is_ok(&status)) return status;
+        t->cell[i].wall[turn] = result.wall;
+        t->cell[i].cpu[turn] = result.cpu;
+        if (turn == 0) bough_study_compare(t->study, &t->series, &t->reference, t->cell[i].error);
+    }
+    for (int i = 0; i < t->study->n_cell; i++) {
+        t->cell[i].ratio[turn] = t->cell[partner(t->study, i)].wall[turn] / t->cell[i].wall[turn];
+    }
+    return bough_ok();
+}
+
+static bough_status run_all(timing *t) {
+    bough_study_result reference;
+    t->drive.progress.label = "reference";
+    bough_status status = run(t, t->study->reference_cell, &t->drive, &t->reference, &reference);
+    bough_progress_clear(&t->drive.progress);
+    for (int turn = 0; turn < t->study->repeat && bough_is_ok(&status); turn++) status = take_turn(t, turn);
+    return status;
+}
+
+// -- tables ---------------------------------------------------------------------------------------
+
+static void print_times(const void *self, FILE *f) {
+    const timing *t = self;
+    const bough_study *s = t->study;
+    fprintf(f,
+            "%s\n%d turns: medians, quartiles in brackets; ratio: wall time of the first %s to the "
+            "cell's\n\n",
+            s->title ? s->title : s->file, s->repeat, s->grid.axis[s->grid.n - 1].label);
+    fprintf(f, "%-52s %9s %9s %17s %21s", "", "cpu [s]", "wall [s]", "x real time", "ratio");
+    for (int m = 0; m < s->n_measure; m++) {
+        fprintf(f, "  %s [%s]", s->measure[m].name, s->measure[m].unit);
+    }
+    fprintf(f, "\n");
+    for (int i = 0; i < s->n_cell; i++) {
+        const cell_times *c = &t->cell[i];
+        bough_spread wall = bough_spread_of(c->wall, s->repeat), cpu = bough_spread_of(c->cpu, s->repeat);
+        bough_spread ratio = bough_spread_of(c->ratio, s->repeat);
+        double x = s->duration;
+        fprintf(f, "%-52s %9.3f %9.3f %5.1f [%4.1f, %4.1f] %6.3f [%.3f, %.3f]", s->cell[i].settings,
+                cpu.median, wall.median, x / wall.median, x / wall.high, x / wall.low, ratio.median,
+                ratio.low, ratio.high);
+        for (int m = 0; m < s->n_measure; m++) {
+            int width = (int)(strlen(s->measure[m].name) + strlen(s->measure[m].unit)) + 3;
+            fprintf(f, "  %*.1e", width, c->error[m]);
+        }
+        fprintf(f, "\n");
+    }
+}
+
+static void write_csv(const void *self, FILE *f) {
+    const timing *t = self;
+    const bough_study *s = t->study;
+    fprintf(f, "settings,turn,cpu (s),wall (s),ratio\n");
+    for (int i = 0; i < s->n_cell; i++) {
+        for (int k = 0; k < s->repeat; k++) {
+            bough_csv_text(f, s->cell[i].settings);
+            fprintf(f, ",%d,%.6g,%.6g,%.6g\n", k + 1, t->cell[i].cpu[k], t->cell[i].wall[k],
+                    t->cell[i].ratio[k]);
+        }
+    }
+}
+
+bough_status bough_timing_perform(bough_arena *arena, const bough_study *study,
+                                  const bough_study_options *options) {
+    timing t = {.study = study, .options = options};
+    t.cell = bough_arena_take(arena, (size_t)study->n_cell * sizeof *t.cell);
+    t.reference = bough_study_series_take(arena, study);
+    t.series = bough_study_series_take(arena, study);
+    t.drive.stop = options->stop;
+    t.drive.progress = bough_progress_start(0, study->duration, options->quiet);
+    bough_status status = bough_folder_make(options->folder);
+    if (bough_is_ok(&status)) status = run_all(&t);
+    if (bough_is_ok(&status)) status = bough_folder_write(options->folder, "timing.csv", write_csv, &t);
+    if (bough_is_ok(&status)) status = bough_folder_write(options->folder, "table.txt", print_times, &t);
+    if (bough_is_ok(&status)) print_times(&t, options->stream);
+    return status;
+}

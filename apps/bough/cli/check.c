@@ -1,0 +1,264 @@
+// bough check: what a scene builds, and why. Nothing is run or written.
+#include "apps/bough/cli/check_turbine.h"
+#include "apps/bough/cli/forecast.h"
+#include "apps/bough/cli/open.h"
+#include "apps/bough/cli/verb.h"
+#include "apps/bough/results/progress.h"
+#include "apps/bough/model/validity.h"
+
+#include <math.h>
+#include <string.h>
+
+static const char *body_name(const bough_scene *scene, int body) {
+    return body == BOUGH_GROUND ? "ground" : scene->body[body].name;
+}
+
+static const char *plural(int n) { return n == 1 ? "" : "s"; }
+
+// -- bodies ---------------------------------------------------------------------------------------
+
+static bool is_rod(const bough_scene *scene, int body) {
+    return body != BOUGH_GROUND && scene->body[body].fidelity == BOUGH_SCENE_ROD;
+}
+
+// What a fixed body moves with: the first body below it whose joint moves, a rod, or the ground.
+static int carrier(const bough_scene *scene, int body) {
+    do {
+        body = scene->body[body].joint.parent;
+    } while (body != BOUGH_GROUND && !is_rod(scene, body) &&
+             scene->body[body].joint.kind == BOUGH_JOINT_FIXED);
+    return body;
+}
+
+static void print_spring(const bough_scene_joint *joint) {
+    const char *of = joint->kind == BOUGH_JOINT_REVOLUTE ? "N m/rad" : "N/m";
+    const char *rate = joint->kind == BOUGH_JOINT_REVOLUTE ? "N m s/rad" : "N s/m";
+    if (joint->spring.stiffness > 0) printf(", spring %.6g %s", joint->spring.stiffness, of);
+    if (joint->spring.damping > 0) printf(", damper %.6g %s", joint->spring.damping, rate);
+    if (joint->spring.stop_stiffness > 0) printf(", stops %.6g %s", joint->spring.stop_stiffness, of);
+}
+
+static void print_joint(const bough_scene *scene, int body) {
+    static const char *const words[] = {[BOUGH_JOINT_REVOLUTE] = "about", // before the axis
+                                        [BOUGH_JOINT_PRISMATIC] = "along",
+                                        [BOUGH_JOINT_CYLINDRICAL] = "along and about",
+                                        [BOUGH_JOINT_UNIVERSAL] = "about",
+                                        [BOUGH_JOINT_PLANAR] = "normal to"};
+    const bough_scene_joint *joint = &scene->body[body].joint;
+    if (joint->kind == BOUGH_JOINT_FIXED) {
+        int on = carrier(scene, body);
+        printf("; fixed to %s, welded to %s%s: no states in the tree", body_name(scene, joint->parent),
+               is_rod(scene, on) ? "the end of " : "", body_name(scene, on));
+        return;
+    }
+    bough_joint_kind kind = (bough_joint_kind)joint->kind;
+    int n = bough_joint_n_speeds(kind);
+    const char *word = words[kind];
+    printf("; %s", bough_joint_name(kind));
+    if (word != NULL) printf(" %s %c", word, "xyz"[joint->axis]);
+    if (joint->kind == BOUGH_JOINT_UNIVERSAL) printf(" and %c", "xyz"[joint->second_axis]);
+    printf(" on %s: %d degree%s of freedom", body_name(scene, joint->parent), n, plural(n));
+    int driven = (joint->motion.node != NULL) + (joint->second_motion.node != NULL);
+    if (driven > 0) printf(", %d of them prescribed", driven);
+    print_spring(joint);
+}
+
+static double beam_mass(const bough_beam *beam) {
+    double mass = 0;
+    for (int i = 0; i <= beam->def.n_segment; i++) mass += beam->def.inertia[i].mass;
+    return mass;
+}
+
+static void print_rod(const bough_simulation *s, const bough_beam *beam) {
+    const bough_member *rod = &s->rod[beam->port];
+    printf("; %d segments, %d states", beam->def.n_segment, rod->system.n_state);
+    if (s->master->coupling->whole) return;
+    printf(", %s, rtol %.6g", rod->solver, bough_scene_micro(s->scene, beam->body)->rtol);
+}
+
+static void print_body(const bough_simulation *s, int body) {
+    const bough_beam *beam = bough_simulation_beam(s, body);
+    bool flexible = beam && beam->port >= 0;
+    printf("body %s: %s", s->scene->body[body].name,
+           flexible ? s->rod[beam->port].system.kind
+           : beam   ? "rigid: no states of its own, integrated from its rod"
+           : s->scene->body[body].fidelity == BOUGH_SCENE_FMU ? "FMU"
+                                                              : "rigid");
+    print_joint(s->scene, body);
+    if (flexible) print_rod(s, beam);
+    printf("; mass %.6g kg", beam ? beam_mass(beam) : s->scene->body[body].mass);
+    if (beam) printf(", length %.6g m", beam->def.span[beam->def.n_segment]);
+    putchar('\n');
+}
+
+static void print_closures(const bough_tree *tree) {
+    int redundant = tree->n_rows - tree->closure_rank;
+    printf("closures: %d, %d equation%s, %d independent", tree->n_closures, tree->n_rows,
+           plural(tree->n_rows), tree->closure_rank);
+    if (redundant > 0) {
+        printf("; %d depend%s on the others: the smallest of the possible constraint forces are "
+               "computed",
+               redundant, redundant == 1 ? "s" : "");
+    }
+    int freedoms = tree->n_v - tree->closure_rank;
+    for (int i = 0; i < tree->n_links; i++) freedoms -= tree->links[i].motion != NULL;
+    printf("\ndegrees of freedom: %d\n", freedoms);
+    if (tree->closure_moved > 1e-9) {
+        printf("closures: assembled, moving joints by up to %.3g (rad or m)\n", tree->closure_moved);
+    }
+}
+
+static void print_bodies(const bough_simulation *s) {
+    const bough_tree *tree = s->tree;
+    int n = s->scene->n_body;
+    printf("bodies: %d\n", n);
+    for (int i = 0; i < n; i++) print_body(s, i);
+    int moving = bough_simulation_n_joints(s);
+    printf("joints: %d moving, %d fixed\n", moving, n - moving);
+    const bough_member *whole = s->master->coupling->whole;
+    double rtol = s->scene->simulation.master.rtol;
+    printf("tree: %d state%s (%d of position, %d of speed)", tree->n_q + tree->n_v,
+           plural(tree->n_q + tree->n_v), tree->n_q, tree->n_v);
+    if (!whole) printf(", %s, rtol %.6g", s->leader.solver, rtol);
+    printf("\nstates: %d", s->master->assembly->n_state);
+    putchar('\n');
+    if (whole) printf("integrated as a whole: %s, rtol %.6g\n", whole->solver, rtol);
+    if (s->scene->n_spring > 0) printf("springs: %d\n", s->scene->n_spring);
+    if (s->scene->n_bushing > 0) printf("bushings: %d\n", s->scene->n_bushing);
+    if (tree->n_closures > 0) print_closures(tree);
+}
+
+// -- coupling -------------------------------------------------------------------------------------
+
+// Steps of the run: the grid's, and one more for each corner of a load between its points.
+static long count_steps(const bough_master *m) {
+    double eps = 1e-9;
+    long steps = (long)ceil(m->duration / m->macro_step - eps);
+    double last = 0;
+    for (int i = 0; i < m->n_event; i++) {
+        double grid = m->event[i] / m->macro_step;
+        bool inside = m->event[i] > last && m->event[i] < m->duration;
+        if (inside && fabs(grid - round(grid)) > eps) steps++;
+        if (inside) last = m->event[i];
+    }
+    return steps;
+}
+
+static void print_coupling(const bough_simulation *s) {
+    const bough_master *m = s->master;
+    const bough_scheme *scheme = m->coupling->scheme;
+    char text[BOUGH_SCHEME_TEXT];
+    bough_scheme_describe(scheme, &m->coupling->options, text);
+    printf("coupling: %s (%s)\n", text, scheme->summary);
+    printf("ports: %d, each %d motions and gravities to the rod, %d forces and moments back\n",
+           s->tree->n_ports, BOUGH_PORT_OUTPUTS, BOUGH_PORT_INPUTS);
+    if (s->n_end > 0) {
+        printf("ends of rods that carry: %d, each %d motions to the rod, %d forces and moments back\n",
+               s->n_end, BOUGH_END_OUTPUTS, BOUGH_END_INPUTS);
+    }
+    printf("duration: %.9g s\n", m->duration);
+    printf("macro_step: %.9g s\n", m->macro_step);
+    printf("macro_steps: %ld\n", count_steps(m));
+    printf("threads: %d\n", bough_pool_threads(m->coupling->pool));
+}
+
+// -- what acts, what is recorded ------------------------------------------------------------------
+
+static void print_vector(const double v[3], const char *unit) {
+    if (v[0] != 0 || v[1] != 0 || v[2] != 0) printf(", [%.6g, %.6g, %.6g] %s", v[0], v[1], v[2], unit);
+}
+
+static void print_load(const bough_scene *scene, const bough_scene_load *load) {
+    static const char *const frames[] = {"ground", "body", "section"};
+    const char *input = load->input;
+    if (load->joint_name != NULL) {
+        bool turns = scene->body[load->joint].joint.kind == BOUGH_JOINT_REVOLUTE;
+        printf("load on joint %s: ", load->joint_name);
+        if (load->n_time > 0 && input == NULL) {
+            printf("table from %.6g to %.6g s", load->times[0], load->times[load->n_time - 1]);
+        } else {
+            printf("%.6g %s", load->amount, turns ? "N m" : "N");
+        }
+    } else {
+        bool along = load->place == BOUGH_SCENE_ALONG;
+        printf("load on %s: %s axes", load->body_name, frames[load->frame]);
+        print_vector(load->force, along ? "N/m" : "N");
+        print_vector(load->moment, along ? "N m/m" : "N m");
+        if (load->n_time > 0 && input == NULL) printf(", by a table over time");
+    }
+    if (load->ramp[1] > 0) printf(", ramp from %.6g to %.6g s", load->ramp[0], load->ramp[1]);
+    if (input != NULL) printf(", set by the input %s", input);
+    putchar('\n');
+}
+
+static void print_loads(const bough_simulation *s) {
+    enum { SHOWN = 12 };
+    int n = s->scene->n_load;
+    const double *g = s->scene->gravity;
+    printf("gravity: [%.6g, %.6g, %.6g] m/s^2\n", g[0], g[1], g[2]);
+    printf("loads: %d\n", n);
+    for (int i = 0; i < n && i < SHOWN; i++) print_load(s->scene, &s->scene->load[i]);
+    if (n > SHOWN) printf("and %d more loads\n", n - SHOWN);
+}
+
+static bough_status print_results(bough_arena *arena, bough_simulation *s, const bough_channels *channels) {
+    bough_shape shape;
+    bough_status status = bough_shape_create(arena, s, &shape);
+    if (!bough_is_ok(&status)) return status;
+    bough_forecast_print(bough_run_results(s, channels, bough_forecast_points(&shape)), channels, stdout);
+    return status;
+}
+
+// -- cost -----------------------------------------------------------------------------------------
+
+// Wall time of one evaluation of a member's derivative, the shortest of many [s].
+static double derivative_time(const bough_coupling *c, int member, double *rate) {
+    const bough_assembly *a = c->assembly;
+    const bough_member *m = a->member[member];
+    const bough_system *s = &m->system;
+    const double *input = c->input + a->input_offset[member];
+    double shortest = HUGE_VAL;
+    for (int i = 0; i < 200; i++) {
+        double began = bough_wall_clock();
+        s->ops->derivative(s->self, m->time, m->state, input, rate);
+        shortest = fmin(shortest, bough_wall_clock() - began);
+    }
+    return shortest;
+}
+
+static bough_status print_cost(const bough_simulation *s, bough_arena *arena) {
+    const bough_assembly *a = s->master->assembly;
+    printf("model_bytes: %zu\n", bough_arena_bytes(arena));
+    double *rate = bough_arena_doubles(arena, (size_t)a->n_state + 1);
+    for (int i = 0; i < a->n_member; i++) {
+        if (a->member[i]->opaque) continue;
+        double time = derivative_time(s->master->coupling, i, rate);
+        printf("derivative_us %s: %.3g\n", a->member[i]->system.name, 1e6 * time);
+    }
+    return bough_ok();
+}
+
+// -- the command ----------------------------------------------------------------------------------
+
+bough_status bough_verb_check(bough_arena *arena, const bough_options *options) {
+    bough_simulation *s;
+    bough_status status = bough_open(arena, options, &s);
+    if (!bough_is_ok(&status)) return status;
+    bough_channels channels = bough_channels_start(arena);
+    const bough_scene_output *output = &s->scene->simulation.output;
+    bough_channels recorded;
+    status = bough_simulation_channels(s, &channels);
+    if (bough_is_ok(&status)) status = bough_open_channels(s->scene, &channels, &recorded);
+    if (!bough_is_ok(&status)) return status;
+    printf("scene: %s\n", s->scene->file);
+    printf("title: %s\n", s->scene->title ? s->scene->title : "");
+    print_bodies(s);
+    print_coupling(s);
+    bough_check_turbine(s, stdout);
+    print_loads(s);
+    bough_validity_print(s, stdout);
+    printf("channels: %d every %.9g s\n", recorded.count, output->interval);
+    status = print_results(arena, s, &recorded);
+    if (!bough_is_ok(&status)) return status;
+    return print_cost(s, arena);
+}

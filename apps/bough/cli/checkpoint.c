@@ -1,0 +1,227 @@
+#include "apps/bough/cli/checkpoint.h"
+
+#include "apps/bough/config/schema.h"
+#include "apps/bough/results/folder.h"
+#include "apps/bough/scene/fingerprint.h"
+#include "core/base/input_file.h"
+
+#include <errno.h>
+#include <math.h>
+#include <string.h>
+#include <unistd.h>
+
+static const char name[] = "checkpoint.bin";
+
+// What the file begins with; the copy follows.
+typedef struct head {
+    char magic[16];
+    uint64_t program, input; // fingerprints
+    double interval;         // [s]
+    uint64_t size;           // of the copy [bytes]
+    uint64_t sum;            // of the copy and of what is above
+} head;
+
+static const char magic[sizeof((head *)0)->magic] = "bough state 2";
+
+static uint64_t sum_of(const head *h, const char *copy) {
+    uint64_t sum = BOUGH_FINGERPRINT_START;
+    bough_mix(&sum, h, offsetof(head, sum));
+    bough_mix(&sum, copy, h->size);
+    return sum;
+}
+
+// -- what is in it --------------------------------------------------------------------------------
+
+static void take_job(bough_job *job, bough_snapshot *s) {
+    bough_run *run = &job->run;
+    bough_run_snapshot(run, s);
+    bough_snapshot_take(s, &job->rows, sizeof job->rows);
+    bough_snapshot_take(s, &job->frames_kept, sizeof job->frames_kept);
+    bough_snapshot_take(s, job->statistics, (size_t)job->recorded.count * sizeof *job->statistics);
+    bough_snapshot_take(s, &run->wall_s, sizeof run->wall_s);
+    bough_snapshot_take(s, &run->cpu_s, sizeof run->cpu_s);
+}
+
+static void move(bough_job *job, bough_snapshot_move direction) {
+    take_job(job, &(bough_snapshot){direction, job->checkpoint.copy, 0});
+}
+
+// -- options --------------------------------------------------------------------------------------
+
+static bough_status read_interval(const char *text, double *interval) {
+    char why[160];
+    if (bough_quantity(text, BOUGH_TIME, interval, why) && *interval > 0) return bough_ok();
+    return bough_fail(BOUGH_INVALID, "--checkpoint expects a time such as 5s, got '%.80s'", text);
+}
+
+static bough_status check_samples(const bough_master *m, const char *of, double interval) {
+    for (int i = 0; i < m->n_load; i++) {
+        double period = m->load[i].period;
+        if (!m->load[i].sample || bough_master_multiple(interval, period) > 0) continue;
+        return bough_fail(BOUGH_INVALID,
+                          "--checkpoint %.9g s is not a multiple of the %.9g s between the samples "
+                          "of the air or the control%s",
+                          interval, period, of);
+    }
+    return bough_ok();
+}
+
+// Between samples a load has a past that is not in the copy.
+static bough_status check_interval(const bough_job *job, double interval) {
+    const bough_master *m = job->run.simulation->master;
+    bough_status status = bough_simulation_storable(job->run.simulation);
+    if (!bough_is_ok(&status)) return status;
+    if (job->run.simulation->scene->simulation.output.vertices > 0) {
+        return bough_fail(BOUGH_INVALID, "--checkpoint: vertices.h5 cannot be continued; leave out "
+                                         "simulation.output.vertices, or store frames");
+    }
+    if (interval > m->duration) {
+        return bough_fail(BOUGH_INVALID,
+                          "--checkpoint %.9g s is longer than the run, %.9g s: "
+                          "there would be no checkpoint",
+                          interval, m->duration);
+    }
+    if (bough_master_multiple(interval, m->macro_step) == 0) {
+        return bough_fail(BOUGH_INVALID, "--checkpoint %.9g s is not a multiple of the macro step %.9g s",
+                          interval, m->macro_step);
+    }
+    status = check_samples(m, "", interval);
+    const bough_simulation *companion = job->run.companion->coarser;
+    return bough_is_ok(&status) && companion ? check_samples(companion->master, " of the companion", interval)
+                                             : status;
+}
+
+// Threads and the folder change no result.
+static void find_fingerprints(bough_job *job) {
+    bough_checkpoint *c = &job->checkpoint;
+    c->program = c->input = BOUGH_FINGERPRINT_START;
+    bough_mix_program(&c->program);
+    bough_mix_scene(&c->input, &(bough_file_sums){.arena = job->arena}, job->run.simulation->scene);
+    for (int i = 0; i < job->options->n_set; i++) bough_mix_text(&c->input, job->options->set[i]);
+}
+
+static void take_memory(bough_job *job) {
+    bough_snapshot measure = {.move = BOUGH_SNAPSHOT_MEASURE};
+    take_job(job, &measure);
+    job->checkpoint.size = measure.used;
+    job->checkpoint.copy = bough_arena_take(job->arena, measure.used);
+}
+
+// -- reading --------------------------------------------------------------------------------------
+
+static bough_status damaged(const char *path) {
+    return bough_fail(BOUGH_INVALID,
+                      "the checkpoint '%.200s' is damaged; without --resume the run "
+                      "starts anew",
+                      path);
+}
+
+static bough_status other(const char *path, const char *what) {
+    return bough_fail(BOUGH_INVALID,
+                      "the checkpoint '%.200s' is of %s; without --resume the run "
+                      "starts anew",
+                      path, what);
+}
+
+// The sum is looked at first: only then the rest means what it says.
+static bough_status read_copy(bough_job *job, const char *path, FILE *file) {
+    bough_checkpoint *c = &job->checkpoint;
+    head h;
+    if (fread(&h, sizeof h, 1, file) != 1) return damaged(path);
+    if (memcmp(h.magic, magic, sizeof magic) != 0) {
+        return bough_fail(BOUGH_INVALID, "'%.200s' is not a checkpoint of this version", path);
+    }
+    bool fits = h.size == c->size;
+    if (fits &&
+        (fread(c->copy, 1, c->size, file) != c->size || fgetc(file) != EOF || sum_of(&h, c->copy) != h.sum)) {
+        return damaged(path);
+    }
+    if (h.program != c->program) return other(path, "another version of the program");
+    if (h.input != c->input) return other(path, "another scene or other settings");
+    if (!fits) return damaged(path);
+    if (c->interval > 0 && c->interval != h.interval) {
+        return bough_fail(BOUGH_INVALID, "the run to resume has --checkpoint %.9g s, not %.9g s", h.interval,
+                          c->interval);
+    }
+    c->interval = h.interval;
+    return bough_ok();
+}
+
+static bough_status resume(bough_job *job) {
+    char path[BOUGH_PATH_MAX];
+    bough_status status = bough_folder_path(job->folder, name, path);
+    if (!bough_is_ok(&status)) return status;
+    char why[BOUGH_INPUT_REASON];
+    FILE *file = bough_input_open(path, BOUGH_INPUT_DATA, why);
+    if (!file && errno == ENOENT) {
+        return bough_fail(BOUGH_INVALID,
+                          "nothing to resume: there is no '%.200s'; a run with "
+                          "--checkpoint writes it and removes it at its end",
+                          path);
+    }
+    if (!file) {
+        return bough_fail(BOUGH_IO, "cannot read '%.200s': %s", path, why);
+    }
+    status = read_copy(job, path, file);
+    fclose(file);
+    if (bough_is_ok(&status)) status = check_interval(job, job->checkpoint.interval);
+    if (bough_is_ok(&status)) move(job, BOUGH_SNAPSHOT_RESTORE);
+    return status;
+}
+
+bough_status bough_checkpoint_open(bough_job *job) {
+    const bough_options *o = job->options;
+    bough_checkpoint *c = &job->checkpoint;
+    if (!o->checkpoint && !o->resume) return bough_ok();
+    bough_status status = o->checkpoint ? read_interval(o->checkpoint, &c->interval) : bough_ok();
+    if (bough_is_ok(&status) && o->checkpoint) status = check_interval(job, c->interval);
+    if (!bough_is_ok(&status)) return status;
+    take_memory(job);
+    find_fingerprints(job);
+    return o->resume ? resume(job) : status;
+}
+
+// -- writing --------------------------------------------------------------------------------------
+
+static bough_status write_copy(const bough_job *job) {
+    const bough_checkpoint *c = &job->checkpoint;
+    char path[BOUGH_PATH_MAX];
+    FILE *file;
+    head h = {.program = c->program, .input = c->input, .interval = c->interval, .size = c->size};
+    memcpy(h.magic, magic, sizeof magic);
+    h.sum = sum_of(&h, c->copy);
+    bough_status status = bough_folder_open(job->folder, name, path, &file);
+    if (!bough_is_ok(&status)) return status;
+    errno = 0;
+    bool good = fwrite(&h, sizeof h, 1, file) == 1 && fwrite(c->copy, 1, c->size, file) == c->size &&
+                fflush(file) == 0 && fsync(fileno(file)) == 0;
+    if (good) return bough_folder_commit(path, file);
+    status = bough_fail(BOUGH_IO, "cannot write '%.200s': %s", path, strerror(errno));
+    bough_folder_discard(path, file);
+    return status;
+}
+
+static bool is_due(const bough_job *job) {
+    const bough_master *m = job->run.simulation->master;
+    double turns = m->time / job->checkpoint.interval;
+    double off = fabs(turns - round(turns)) * job->checkpoint.interval;
+    return off <= 1e-6 * m->macro_step && !bough_master_done(m);
+}
+
+// The rows that it counts on are on the disk before it is.
+bough_status bough_checkpoint_update(void *self) {
+    bough_job *job = self;
+    if (!(job->checkpoint.interval > 0) || !is_due(job)) return bough_ok();
+    bough_run_update_clock(&job->run);
+    bough_status status = bough_recorder_keep(job->recorder, &job->rows);
+    if (bough_is_ok(&status) && job->frames) {
+        status = bough_frames_keep(job->frames, &job->frames_kept);
+    }
+    if (!bough_is_ok(&status)) return status;
+    move(job, BOUGH_SNAPSHOT_SAVE);
+    status = write_copy(job);
+    move(job, BOUGH_SNAPSHOT_RESTORE);
+    return status;
+}
+
+bough_status bough_checkpoint_remove(const char *folder) { return bough_folder_remove(folder, name); }

@@ -1,0 +1,365 @@
+// bough export: a scene as an FMU (FMI 3.0, co-simulation): its description from the tables of inputs
+// and channels, the library that runs it, the scene's files.
+#include "apps/bough/cli/open.h"
+#include "apps/bough/cli/verb.h"
+#include "apps/bough/cli/version.h"
+#include "apps/bough/config/schema.h"
+#include "apps/bough/results/archive.h"
+#include "apps/bough/results/folder.h"
+#include "apps/bough/results/picture.h"
+#include "apps/bough/scene/fingerprint.h"
+#include "apps/bough/scene/scene_files.h"
+#include "apps/bough/model/body_alone.h"
+
+#include <inttypes.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+typedef struct variable {
+    const char *name, *unit;
+    double start; // of an input, SI
+} variable;
+
+typedef struct export {
+    bough_arena *arena;
+    const bough_options *options;
+    bough_simulation *simulation;
+    int n_input, n_output;
+    variable *input, *output; // (n_input), (n_output)
+    char token[40];
+    const char *scene; // in resources/
+    bough_scene_files files;
+    const char **name; // (files.n) of a file in the archive
+}
+export;
+
+// -- files ----------------------------------------------------------------------------------------
+
+static const char *print(bough_arena *arena, const char *a, const char *b, const char *c) {
+    size_t size = strlen(a) + strlen(b) + strlen(c) + 1;
+    char *text = bough_arena_take(arena, size);
+    if (text) snprintf(text, size, "%s%s%s", a, b, c);
+    return text ? text : "";
+}
+
+// "ctrl/./../../air/polars.yaml" as "../air/polars.yaml": so many folders up, then none.
+static const char *tidy(bough_arena *arena, const char *path) {
+    char *text = bough_arena_take(arena, strlen(path) + 1);
+    size_t used = 0, least = 0; // what is before `least` leads up
+    for (size_t length; *path; path += length + (path[length] == '/')) {
+        length = strcspn(path, "/");
+        bool up = length == 2 && strncmp(path, "..", 2) == 0;
+        if (length == 0 || (length == 1 && path[0] == '.')) continue;
+        if (up && used > least) {
+            used--; // its slash
+            while (used > least && text[used - 1] != '/') used--;
+            continue;
+        }
+        memcpy(text + used, path, length);
+        used += length;
+        if (path[length] == '/') text[used++] = '/';
+        if (up) least = used;
+    }
+    text[used] = '\0';
+    return text;
+}
+
+// Files that lie above the scene need as many folders below resources/.
+static bough_status place_files(export *x) {
+    const char *scene = x->files.item[0].path, *slash = strrchr(scene, '/');
+    size_t length = slash ? (size_t)(slash + 1 - scene) : 0;
+    int depth = 0;
+    x->name = bough_arena_take(x->arena, (size_t)x->files.n * sizeof *x->name);
+    for (int k = 0; k < x->files.n; k++) {
+        const bough_scene_file *file = &x->files.item[k];
+        if (file->absolute) {
+            return bough_fail(BOUGH_INVALID,
+                              "%.80s: '%.200s' is not given relative to the scene; an FMU must contain it",
+                              file->key, file->path);
+        }
+        x->name[k] = tidy(x->arena, file->path + length);
+        int up = 0;
+        for (const char *c = x->name[k]; strncmp(c, "../", 3) == 0; c += 3) up++;
+        if (up > depth) depth = up;
+    }
+    for (int k = 0; k < x->files.n; k++) {
+        const char *name = x->name[k], *folder = "";
+        int down = depth;
+        for (; strncmp(name, "../", 3) == 0; name += 3) down--;
+        for (; down > 0; down--) folder = print(x->arena, folder, "scene/", "");
+        x->name[k] = print(x->arena, "resources/", folder, name);
+    }
+    x->scene = x->name[0] + strlen("resources/");
+    return bough_ok();
+}
+
+// -- description ----------------------------------------------------------------------------------
+
+#define DEGREE 0.017453292519943295
+#define RPM 0.10471975511965977
+
+// Exponents of the SI's base units, and the factor to them.
+static const struct {
+    const char *name;
+    int kg, m, s, rad;
+    double factor;
+} units[] = {
+    {"s", 0, 0, 1, 0, 1},           {"Hz", 0, 0, -1, 0, 1},      {"kg", 1, 0, 0, 0, 1},
+    {"m", 0, 1, 0, 0, 1},           {"m/s", 0, 1, -1, 0, 1},     {"m/s^2", 0, 1, -2, 0, 1},
+    {"rad", 0, 0, 0, 1, 1},         {"rad/s", 0, 0, -1, 1, 1},   {"deg", 0, 0, 0, 1, DEGREE},
+    {"deg/s", 0, 0, -1, 1, DEGREE}, {"rpm", 0, 0, -1, 1, RPM},   {"N", 1, 1, -2, 0, 1},
+    {"kN", 1, 1, -2, 0, 1000},      {"N/m", 1, 0, -2, 0, 1},     {"N m", 1, 2, -2, 0, 1},
+    {"N-m", 1, 2, -2, 0, 1},        {"kN-m", 1, 2, -2, 0, 1000}, {"N m/m", 1, 1, -2, 0, 1},
+    {"W", 1, 2, -3, 0, 1},          {"kW", 1, 2, -3, 0, 1000},   {"-", 0, 0, 0, 0, 1},
+};
+
+static void put_exponent(const char *name, int exponent, FILE *out) {
+    if (exponent != 0) fprintf(out, " %s=\"%d\"", name, exponent);
+}
+
+static void put_unit(const char *unit, FILE *out) {
+    fputs("    <Unit name=\"", out);
+    bough_picture_text(out, unit);
+    fputs("\">", out);
+    for (size_t k = 0; k < sizeof units / sizeof *units; k++) {
+        if (strcmp(units[k].name, unit) != 0) continue;
+        fputs("<BaseUnit", out);
+        put_exponent("kg", units[k].kg, out);
+        put_exponent("m", units[k].m, out);
+        put_exponent("s", units[k].s, out);
+        put_exponent("rad", units[k].rad, out);
+        if (units[k].factor != 1) fprintf(out, " factor=\"%.17g\"", units[k].factor);
+        fputs("/>", out);
+    }
+    fputs("</Unit>\n", out);
+}
+
+// Every unit once.
+static void put_units(const export *x, FILE *out) {
+    fputs("  <UnitDefinitions>\n", out);
+    put_unit("s", out);
+    for (int i = 0; i < x->n_input + x->n_output; i++) {
+        const char *unit = i < x->n_input ? x->input[i].unit : x->output[i - x->n_input].unit;
+        bool known = unit[0] == '\0' || strcmp(unit, "s") == 0;
+        for (int k = 0; k < i && !known; k++) {
+            const variable *other = k < x->n_input ? &x->input[k] : &x->output[k - x->n_input];
+            known = strcmp(unit, other->unit) == 0;
+        }
+        if (!known) put_unit(unit, out);
+    }
+    fputs("  </UnitDefinitions>\n", out);
+}
+
+static void put_variable(const variable *v, int reference, bool input, FILE *out) {
+    fputs("    <Float64 name=\"", out);
+    bough_picture_text(out, v->name);
+    fprintf(out, "\" valueReference=\"%d\" causality=\"%s\" variability=\"continuous\"", reference,
+            input ? "input" : "output");
+    if (input) fprintf(out, " start=\"%.17g\"", v->start);
+    if (v->unit[0]) {
+        fputs(" unit=\"", out);
+        bough_picture_text(out, v->unit);
+        fputc('"', out);
+    }
+    fputs("/>\n", out);
+}
+
+static void put_variables(const export *x, FILE *out) {
+    int first = x->n_input + 1;
+    fputs("  <ModelVariables>\n    <Float64 name=\"time\" valueReference=\"0\" "
+          "causality=\"independent\" variability=\"continuous\" unit=\"s\"/>\n",
+          out);
+    for (int k = 0; k < x->n_input; k++) put_variable(&x->input[k], k + 1, true, out);
+    for (int k = 0; k < x->n_output; k++) put_variable(&x->output[k], first + k, false, out);
+    fputs("  </ModelVariables>\n  <ModelStructure>\n", out);
+    for (int k = 0; k < x->n_output; k++)
+        fprintf(out, "    <Output valueReference=\"%d\" dependencies=\"\"/>\n", first + k);
+    for (int k = 0; k < x->n_output; k++)
+        fprintf(out, "    <InitialUnknown valueReference=\"%d\"/>\n", first + k);
+    fputs("  </ModelStructure>\n", out);
+}
+
+static void put_description(const export *x, FILE *out) {
+    const bough_scene *scene = x->simulation->scene;
+    const bough_scene_control *control = &scene->control;
+    bool copies = !control->node || control->kind != BOUGH_SCENE_BLADED;
+    fputs("<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<fmiModelDescription fmiVersion=\"3.0\" "
+          "modelName=\"",
+          out);
+    bough_picture_text(out, scene->title ? scene->title : scene->file);
+    fprintf(out,
+            "\" instantiationToken=\"%s\" generationTool=\"bough " BOUGH_VERSION "\" "
+            "variableNamingConvention=\"flat\">\n",
+            x->token);
+    fprintf(out,
+            "  <CoSimulation modelIdentifier=\"bough\" canHandleVariableCommunicationStepSize="
+            "\"true\" fixedInternalStepSize=\"%.17g\" canGetAndSetFMUState=\"%s\" "
+            "providesDirectionalDerivatives=\"false\" maxOutputDerivativeOrder=\"0\"/>\n",
+            scene->simulation.macro_step, copies ? "true" : "false");
+    put_units(x, out);
+    fputs("  <LogCategories>\n    <Category name=\"logStatusError\"/>\n    <Category "
+          "name=\"logStatusWarning\"/>\n    <Category name=\"logAll\"/>\n  </LogCategories>\n",
+          out);
+    fprintf(out, "  <DefaultExperiment startTime=\"0\" stopTime=\"%.17g\" stepSize=\"%.17g\"/>\n",
+            scene->simulation.duration, scene->simulation.macro_step);
+    put_variables(x, out);
+    fputs("</fmiModelDescription>\n", out);
+}
+
+// -- the command ----------------------------------------------------------------------------------
+
+static bough_status list_body(export *x) {
+    bough_body *body;
+    bough_status status = bough_body_create(x->arena, x->simulation, x->options->body, &body);
+    if (!bough_is_ok(&status)) return status;
+    x->n_input = BOUGH_BODY_INPUTS;
+    x->n_output = BOUGH_BODY_OUTPUTS;
+    for (int k = 0; k < x->n_input; k++) {
+        const bough_body_variable *from = &bough_body_inputs[k];
+        x->input[k] =
+            (variable){from->name, bough_dimension_unit(from->dimension), bough_body_motion(body)[k]};
+    }
+    for (int k = 0; k < x->n_output; k++)
+        x->output[k] = (variable){bough_body_outputs[k].name, bough_body_outputs[k].unit, 0};
+    return status;
+}
+
+static bough_status list_scene(export *x, const bough_channels *channels) {
+    const bough_scene *scene = x->simulation->scene;
+    x->n_input = scene->n_input;
+    x->n_output = channels->count;
+    for (int k = 0; k < x->n_output; k++)
+        x->output[k] = (variable){channels->channel[k].name, channels->channel[k].unit, 0};
+    for (int k = 0; k < x->n_input; k++) {
+        const bough_scene_input *from = &scene->input[k];
+        x->input[k] =
+            (variable){from->name, bough_dimension_unit((bough_dimension)from->dimension), from->initial};
+        if (strcmp(from->name, "time") != 0 && bough_channels_find(channels, from->name) < 0) continue;
+        return bough_fail(BOUGH_INVALID, "the input '%.80s' has the name of an output: rename it",
+                          from->name);
+    }
+    return bough_ok();
+}
+
+static bough_status list_variables(export *x) {
+    bough_channels channels = bough_channels_start(x->arena);
+    bough_status status = bough_simulation_channels(x->simulation, &channels);
+    if (!bough_is_ok(&status)) return status;
+    size_t inputs = (size_t)x->simulation->scene->n_input + BOUGH_BODY_INPUTS;
+    size_t outputs = (size_t)channels.count + BOUGH_BODY_OUTPUTS;
+    x->input = bough_arena_take(x->arena, inputs * sizeof *x->input);
+    x->output = bough_arena_take(x->arena, outputs * sizeof *x->output);
+    return x->options->body ? list_body(x) : list_scene(x, &channels);
+}
+
+// What a session opens: the token, the scene, the body, the settings, a line each.
+static void put_settings(const export *x, FILE *out) {
+    const char *body = x->options->body;
+    fprintf(out, "%s\n%s\n%s\nsimulation.threads=1\n", x->token, x->scene, body ? body : "");
+    for (int k = 0; k < x->options->n_set; k++) fprintf(out, "%s\n", x->options->set[k]);
+}
+
+static bough_status add_text(const export *x, const char *name, void (*put)(const export *x, FILE *out),
+                             bough_archive *archive) {
+    char *text = NULL;
+    size_t size = 0;
+    FILE *out = open_memstream(&text, &size);
+    if (!out) return bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory");
+    put(x, out);
+    fclose(out);
+    bough_status status = bough_archive_add(archive, name, text, size);
+    free(text);
+    return status;
+}
+
+// The FMU's library lies beside the program where it was built, below ../LIBDIR where installed.
+static bough_status add_library(bough_archive *archive) {
+    static const char *const places[] = {"bough-fmu.so", "../" BOUGH_LIBDIR "/bough/bough-fmu.so"};
+    char program[BOUGH_PATH_MAX], path[2 * BOUGH_PATH_MAX];
+    ssize_t length = readlink("/proc/self/exe", program, sizeof program - 1);
+    program[length > 0 ? length : 0] = '\0';
+    char *slash = strrchr(program, '/');
+    if (slash) *slash = '\0';
+    for (size_t k = 0; k < sizeof places / sizeof *places; k++) {
+        snprintf(path, sizeof path, "%s/%s", program, places[k]);
+        if (access(path, R_OK) != 0) continue;
+        return bough_archive_copy(archive, "binaries/x86_64-linux/bough.so", path);
+    }
+    return bough_fail(BOUGH_INVALID, "this program was built without the FMU's library, "
+                                     "bough-fmu.so, which needs the static libraries of SUNDIALS, "
+                                     "OpenBLAS, FFTW and libyaml");
+}
+
+static bough_status write_archive(export *x, const char *path) {
+    FILE *file;
+    bough_status status = bough_folder_open_partial(path, &file);
+    if (!bough_is_ok(&status)) return status;
+    bough_archive archive = {.arena = x->arena, .file = file};
+    status = add_text(x, "modelDescription.xml", put_description, &archive);
+    if (bough_is_ok(&status)) status = add_library(&archive);
+    if (bough_is_ok(&status)) status = add_text(x, "resources/scene.txt", put_settings, &archive);
+    for (int k = 0; k < x->files.n && bough_is_ok(&status); k++) {
+        bool there = false; // by another spelling of its path
+        for (int i = 0; i < k && !there; i++) there = strcmp(x->name[i], x->name[k]) == 0;
+        if (!there) status = bough_archive_copy(&archive, x->name[k], x->files.item[k].path);
+    }
+    if (!bough_is_ok(&status)) {
+        bough_folder_discard(path, file);
+        return status;
+    }
+    bough_archive_end(&archive);
+    return bough_folder_commit(path, file);
+}
+
+static void make_token(export *x) {
+    uint64_t hash = BOUGH_FINGERPRINT_START;
+    bough_mix_scene(&hash, &(bough_file_sums){.arena = x->arena}, x->simulation->scene);
+    for (int k = 0; k < x->options->n_set; k++) bough_mix_text(&hash, x->options->set[k]);
+    if (x->options->body) bough_mix_text(&hash, x->options->body);
+    snprintf(x->token, sizeof x->token, "{bough-" BOUGH_VERSION "-%016" PRIx64 "}", hash);
+}
+
+// How another scene takes the body: its root vertex' inertia belongs to the carrier.
+static void print_body(const bough_simulation *s, const char *name) {
+    const bough_beam *beam = s->beam;
+    while (strcmp(beam->body->name, name) != 0) beam++;
+    bough_inertia root = bough_beam_root(&beam->def);
+    bough_vec3 centre = bough_scale(root.mass > 0 ? 1 / root.mass : 0, root.first);
+    bough_mat3 steiner = bough_steiner(bough_scale(-0.5, root.first), centre);
+    bough_mat3 i = bough_mat3_add(root.rotational, steiner);
+    printf("In a scene, unpacked to %s, in place of the rod:\n"
+           "    fidelity: fmu\n    fmu: {folder: %s, inputs: reached}\n    mass: %.17g\n"
+           "    centre_of_mass: [%.17g, %.17g, %.17g]\n"
+           "    inertia: [%.17g, %.17g, %.17g, %.17g, %.17g, %.17g]\n",
+           name, name, root.mass, centre.x, centre.y, centre.z, i.c1.x, i.c2.y, i.c3.z, i.c2.x, i.c3.x,
+           i.c3.y);
+}
+
+bough_status bough_verb_export(bough_arena *arena, const bough_options *options) {
+    if (strcmp(options->operand, "fmu") != 0) {
+        return bough_fail(BOUGH_INVALID, "export: unknown kind '%.80s'; known: fmu", options->operand);
+    }
+    bough_options named = *options;
+    named.operand = options->second;
+    export x = {.arena = arena, .options = &named};
+    bough_simulation *simulation;
+    bough_status status = bough_open(arena, &named, &simulation);
+    if (!bough_is_ok(&status)) return status;
+    x.simulation = simulation;
+    status = bough_simulation_known(simulation, "it has files of its own, which are not exported");
+    if (bough_is_ok(&status)) status = list_variables(&x);
+    if (!bough_is_ok(&status)) return status;
+    x.files = bough_scene_list_files(arena, simulation->scene);
+    status = place_files(&x);
+    make_token(&x);
+    const char *folder = bough_out_folder(arena, &named);
+    char path[BOUGH_PATH_MAX];
+    if (bough_is_ok(&status)) status = bough_folder_make(folder);
+    if (bough_is_ok(&status)) status = bough_folder_path(folder, "bough.fmu", path);
+    if (bough_is_ok(&status)) status = write_archive(&x, path);
+    if (!bough_is_ok(&status)) return status;
+    printf("inputs: %d\noutputs: %d\nfmu: %s\n", x.n_input, x.n_output, path);
+    if (options->body) print_body(simulation, options->body);
+    return status;
+}

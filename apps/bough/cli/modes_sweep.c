@@ -1,0 +1,239 @@
+#include "apps/bough/cli/modes_sweep.h"
+
+#include "apps/bough/analysis/vibration.h"
+#include "apps/bough/cli/modes_whole.h"
+#include "apps/bough/cli/open.h"
+#include "apps/bough/results/folder.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { MOST_POINTS = 500 };
+
+// Shapes less alike than this (0 to 1) are not the same mode.
+static const double least_alike = 0.3;
+
+// The modes of the point before, for finding them again.
+typedef struct tracks {
+    int n, n_state;
+    int *line;     // (n)
+    bool *taken;   // (n)
+    double *shape; // (n × 2 × n_state)
+} tracks;
+
+// -- operating points -----------------------------------------------------------------------------
+
+// The next part of a list, up to a comma outside brackets; NULL at its end.
+static const char *next_value(bough_arena *arena, const char **rest) {
+    const char *from = *rest + strspn(*rest, " ");
+    int depth = 0;
+    size_t n = 0;
+    if (*from == '\0') return NULL;
+    for (; from[n] != '\0' && (depth > 0 || from[n] != ','); n++) {
+        depth += (from[n] == '[' || from[n] == '{') - (from[n] == ']' || from[n] == '}');
+    }
+    *rest = from + n + (from[n] == ',');
+    char *value = bough_arena_take(arena, n + 1);
+    if (value) snprintf(value, n + 1, "%.*s", (int)n, from);
+    return value;
+}
+
+static int count_values(bough_arena *arena, const char *list) {
+    int n = 0;
+    while (next_value(arena, &list) != NULL) n++;
+    return n;
+}
+
+// 'KEY=V1, V2, ...', as many values of every key.
+static bough_status read_points(bough_arena *arena, const bough_options *options, bough_sweep *s) {
+    s->n_key = options->n_sweep;
+    s->key = bough_arena_take(arena, (size_t)s->n_key * sizeof *s->key);
+    for (int k = 0; k < s->n_key; k++) {
+        const char *text = options->sweep[k], *list = strchr(text, '=');
+        int n = list ? count_values(arena, list + 1) : 0;
+        if (n == 0 || n > MOST_POINTS) {
+            return bough_fail(BOUGH_INVALID,
+                              "--sweep expects KEY=V1, V2, ... of at most %d values, got "
+                              "'%.80s'",
+                              MOST_POINTS, text);
+        }
+        if (k > 0 && n != s->n_point) {
+            return bough_fail(BOUGH_INVALID, "--sweep: '%.80s' has %d values, the first %d", text, n,
+                              s->n_point);
+        }
+        s->n_point = n;
+        if (k == 0) s->value = bough_arena_take(arena, (size_t)s->n_key * (size_t)n * sizeof *s->value);
+        char *key = bough_arena_take(arena, (size_t)(list - text) + 1);
+        snprintf(key, (size_t)(list - text) + 1, "%s", text);
+        s->key[k] = key;
+        list++;
+        for (int i = 0; i < n; i++) s->value[k * n + i] = next_value(arena, &list);
+    }
+    s->x = bough_arena_doubles(arena, (size_t)s->n_point);
+    s->speed = bough_arena_doubles(arena, (size_t)s->n_point);
+    return bough_ok();
+}
+
+static bough_status set_point(bough_arena *arena, const bough_options *options, const bough_sweep *s,
+                              int point, bough_options *at) {
+    *at = *options;
+    at->set = bough_arena_take(arena, (size_t)(options->n_set + s->n_key) * sizeof *at->set);
+    for (int k = 0; k < options->n_set; k++) at->set[k] = options->set[k];
+    for (int k = 0; k < s->n_key; k++) {
+        const char *value = s->value[k * s->n_point + point];
+        size_t size = strlen(s->key[k]) + strlen(value) + 2;
+        char *text = bough_arena_take(arena, size);
+        snprintf(text, size, "%s=%s", s->key[k], value);
+        at->set[at->n_set++] = text;
+    }
+    return bough_ok();
+}
+
+// -- lines ----------------------------------------------------------------------------------------
+
+// |aᴴ b|²/(|a|² |b|²) of complex vectors, real before imaginary part (2 × n).
+static double alikeness(int n, const double *a, const double *b) {
+    double re = 0, im = 0, aa = 0, bb = 0;
+    for (int i = 0; i < n; i++) {
+        double ar = a[i], ai = a[n + i], br = b[i], bi = b[n + i];
+        re += ar * br + ai * bi;
+        im += ar * bi - ai * br;
+        aa += ar * ar + ai * ai;
+        bb += br * br + bi * bi;
+    }
+    return (re * re + im * im) / (aa * bb);
+}
+
+// The line of the mode most like this one and not far in frequency, or a new one.
+static int find_line(tracks *t, const double *shape, bough_sweep *s) {
+    int best = -1;
+    double most = least_alike;
+    for (int k = 0; k < t->n; k++) {
+        if (t->taken[k]) continue;
+        double alike = alikeness(t->n_state, t->shape + (size_t)k * 2 * (size_t)t->n_state, shape);
+        if (alike > most) most = alike, best = k;
+    }
+    if (best < 0) return s->n_line++;
+    t->taken[best] = true;
+    return t->line[best];
+}
+
+static tracks take_tracks(bough_arena *arena, int count, int n_state) {
+    size_t n = (size_t)count;
+    return (tracks){.n_state = n_state,
+                    .line = bough_arena_take(arena, n * sizeof(int)),
+                    .taken = bough_arena_take(arena, n * sizeof(bool)),
+                    .shape = bough_arena_doubles(arena, 2 * n * (size_t)n_state)};
+}
+
+// The point's modes into the sweep, and its shapes to `now`.
+static void add_modes(const bough_simulation *sim, const bough_vibration *v, int point, tracks *before,
+                      tracks *now, bough_sweep *s) {
+    size_t n = (size_t)now->n_state;
+    now->n = v->found;
+    for (int k = 0; k < before->n; k++) before->taken[k] = false;
+    for (int k = 0; k < v->found; k++) {
+        const bough_scene_mode *m = &v->mode[k];
+        double *shape = now->shape + (size_t)k * 2 * n;
+        memcpy(shape, v->pair[k].shape_real, n * sizeof *shape);
+        memcpy(shape + n, v->pair[k].shape_imag, n * sizeof *shape);
+        now->line[k] = find_line(before, shape, s);
+        bough_sweep_mode *to = &s->mode[s->n_mode++];
+        *to = (bough_sweep_mode){.point = point,
+                                 .line = now->line[k],
+                                 .frequency = m->frequency,
+                                 .damped = m->damped_frequency,
+                                 .damping = m->damping,
+                                 .growth = m->growth};
+        snprintf(to->body, sizeof to->body, "%s", bough_modes_body(sim, m));
+        snprintf(to->shape, sizeof to->shape, "%s", bough_modes_shape(sim, m));
+        snprintf(to->pattern, sizeof to->pattern, "%s", bough_pattern_names[m->pattern]);
+    }
+}
+
+// -- points ---------------------------------------------------------------------------------------
+
+static bough_status solve_point(bough_arena *keep, const bough_options *options, int point, tracks *track,
+                                bough_sweep *s) {
+    bough_arena *arena = bough_arena_child(keep);
+    bough_options at;
+    bough_simulation *sim = NULL;
+    bough_vibration v = {0};
+    bough_status status = set_point(arena, options, s, point, &at);
+    if (bough_is_ok(&status)) status = bough_open(arena, &at, &sim);
+    if (bough_is_ok(&status)) status = bough_simulation_known(sim, "it has no modes");
+    int count = sim ? sim->scene->modes.count : 0;
+    if (bough_is_ok(&status)) status = bough_vibration_find(arena, sim, count, &v);
+    if (bough_is_ok(&status)) {
+        int n_state = sim->master->assembly->n_state;
+        tracks *before = &track[point % 2], *now = &track[(point + 1) % 2];
+        if (point == 0) {
+            s->mode = bough_arena_take(keep, (size_t)(count * s->n_point) * sizeof *s->mode);
+            *before = take_tracks(keep, count, n_state);
+            *now = take_tracks(keep, count, n_state);
+        } else if (n_state != before->n_state || v.found > s->n_point * count - s->n_mode) {
+            status = bough_fail(BOUGH_INVALID, "--sweep cannot change the bodies, their mesh or the "
+                                               "count of modes");
+        }
+        if (bough_is_ok(&status)) add_modes(sim, &v, point, before, now, s);
+        s->speed[point] = fabs(v.spin) * 30 / BOUGH_PI;
+        char *end;
+        s->x[point] = strtod(s->value[point], &end);
+        if (end == s->value[point]) s->x[point] = point + 1;
+    } else if (status.message[0]) {
+        status = bough_fail(status.code, "%s=%s: %s", s->key[0], s->value[point], status.message);
+    }
+    bough_arena_destroy(arena);
+    return status;
+}
+
+static void print_point(const bough_sweep *s, int point, int first) {
+    for (int k = 0; k < s->n_key; k++) {
+        printf("%s%s=%s", k > 0 ? ", " : "", s->key[k], s->value[k * s->n_point + point]);
+    }
+    putchar('\n');
+    for (int k = first; k < s->n_mode; k++) {
+        const bough_sweep_mode *m = &s->mode[k];
+        printf("%4d %12.6g %12.6g %11.5f  %-12s %-8s %s%s\n", m->line + 1, m->frequency, m->damped,
+               100 * m->damping, m->body, m->shape, m->pattern, m->damping < -1e-6 ? "  unstable" : "");
+    }
+}
+
+static void write_table(const void *self, FILE *file) {
+    const bough_sweep *s = self;
+    fputs("point", file);
+    for (int k = 0; k < s->n_key; k++) fprintf(file, ",%s", s->key[k]);
+    fputs(",rotor speed (rpm),line,frequency (Hz),damped frequency (Hz),damping ratio (-),body,shape,"
+          "pattern\n",
+          file);
+    for (int i = 0; i < s->n_mode; i++) {
+        const bough_sweep_mode *m = &s->mode[i];
+        fprintf(file, "%d", m->point + 1);
+        for (int k = 0; k < s->n_key; k++) {
+            fprintf(file, ",\"%s\"", s->value[k * s->n_point + m->point]);
+        }
+        fprintf(file, ",%.10g,%d,%.10g,%.10g,%.10g,%s,%s,%s\n", s->speed[m->point], m->line + 1, m->frequency,
+                m->damped, m->damping, m->body, m->shape, m->pattern);
+    }
+}
+
+bough_status bough_modes_sweep(bough_arena *arena, const bough_options *options) {
+    bough_sweep s = {0};
+    tracks track[2] = {{0}};
+    const char *folder = bough_out_folder(arena, options);
+    bough_status status = read_points(arena, options, &s);
+    if (!bough_is_ok(&status)) return status;
+    printf("%4s %12s %12s %11s  %-12s %-8s pattern\n", "line", "frequency", "damped", "damping", "body",
+           "shape");
+    for (int i = 0; i < s.n_point && bough_is_ok(&status); i++) {
+        int first = s.n_mode;
+        status = solve_point(arena, options, i, track, &s);
+        if (bough_is_ok(&status)) print_point(&s, i, first);
+    }
+    if (bough_is_ok(&status)) status = bough_folder_make(folder);
+    if (bough_is_ok(&status)) status = bough_folder_write(folder, "campbell.csv", write_table, &s);
+    if (bough_is_ok(&status)) status = bough_folder_write(folder, "campbell.svg", bough_modes_plot, &s);
+    if (bough_is_ok(&status)) printf("out: %s\n", folder);
+    return status;
+}

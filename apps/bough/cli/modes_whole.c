@@ -1,0 +1,151 @@
+#include "apps/bough/cli/modes_whole.h"
+
+#include "apps/bough/analysis/vibration.h"
+#include "apps/bough/cli/modes_linear.h"
+#include "apps/bough/cli/open.h"
+#include "apps/bough/results/folder.h"
+
+static const double unstable = 1e-6; // growth relative to |λ| above it is no rounding
+
+// -- words ----------------------------------------------------------------------------------------
+
+// Rods that are no blades bend along their axes, rigid bodies move along the ground's.
+const char *bough_modes_shape(const bough_simulation *s, const bough_scene_mode *mode) {
+    static const char *const blade[] = {"flap", "edge", "axial", "torsion"};
+    static const char *const rod[] = {"x", "y", "z", "torsion"};
+    static const char *const rigid[] = {"x", "y", "z", "turn"};
+    const bough_beam *beam = bough_simulation_beam(s, mode->body);
+    if (beam == NULL || beam->port < 0) return rigid[mode->direction];
+    bool is_blade = mode->blades;
+    for (int k = 0; s->scene->turbine.node && k < s->scene->turbine.n_blade; k++) {
+        is_blade = is_blade || s->scene->turbine.blade[k] == mode->body;
+    }
+    return (is_blade ? blade : rod)[mode->direction];
+}
+
+const char *bough_modes_body(const bough_simulation *s, const bough_scene_mode *mode) {
+    return mode->blades ? "blades" : s->scene->body[mode->body].name;
+}
+
+// Whether nothing but inertia holds the rotor's joint.
+static bool rotor_is_free(const bough_simulation *s) {
+    if (s->scene->turbine.node == NULL) return false;
+    const bough_scene_joint *joint = &s->scene->body[s->scene->turbine.rotor].joint;
+    return joint->spring.stiffness == 0 && joint->motion.node == NULL;
+}
+
+// All blades swing alike in their plane, or what they hang on turns: against each other where the
+// rotor is free, else against what holds it.
+static bool turns_rotor(const bough_scene_mode *mode) {
+    enum { TURN = 3 };
+    if (mode->pattern != BOUGH_PATTERN_COLLECTIVE) return false;
+    return mode->direction == (mode->blades ? BOUGH_ROD_EDGE : TURN);
+}
+
+// -- table ----------------------------------------------------------------------------------------
+
+static void print_head(const bough_simulation *s, const bough_vibration *v) {
+    printf("whole scene: %d states, about %s", s->master->assembly->n_state,
+           s->scene->modes.at == BOUGH_SCENE_IN_EQUILIBRIUM ? "equilibrium" : "its initial state");
+    if (v->spin != 0) printf(", rotor at %.6g rpm", v->spin * 30 / BOUGH_PI);
+    if (v->frozen) printf(", azimuth frozen: blades as seen from the rotating frame");
+    if (v->spin != 0 && v->n_blade > 0) printf(", seen by an observer at rest");
+    if (rotor_is_free(s)) printf(", rotor free to turn");
+    static const char *const air[] = {"do not follow", "follow at once", "follow in time"};
+    if (s->aero) printf("; the air's forces %s", air[s->scene->modes.air]);
+    printf("\n%4s %12s %12s %11s  %-12s %-8s %-12s %8s %8s %8s\n", "mode", "frequency", "damped", "damping",
+           "body", "shape", "pattern", "collect.", "forward", "backward");
+    printf("%4s %12s %12s %11s\n", "", "(Hz)", "(Hz)", "(%)");
+}
+
+static void print_modes(const bough_simulation *s, const bough_vibration *v) {
+    print_head(s, v);
+    for (int k = 0; k < v->found; k++) {
+        const bough_scene_mode *m = &v->mode[k];
+        printf("%4d %12.6g %12.6g %11.5f  %-12s %-8s %-12s", k + 1, m->frequency, m->damped_frequency,
+               100 * m->damping, bough_modes_body(s, m), bough_modes_shape(s, m),
+               bough_pattern_names[m->pattern]);
+        for (int c = 0; v->n_blade > 0 && c < 3; c++) printf(" %8.4f", m->whirl[c]);
+        if (rotor_is_free(s) && turns_rotor(m)) printf("  free rotor");
+        putchar('\n');
+    }
+    if (v->found < s->scene->modes.count) printf("no more modes found\n");
+    for (int k = 0; k < v->found; k++) {
+        const bough_scene_mode *m = &v->mode[k];
+        if (m->growth <= unstable * 2 * BOUGH_PI * m->frequency) continue;
+        printf(
+            "unstable: mode %d grows at %.6g /s%s\n", k + 1, m->growth,
+            m->damped_frequency == 0 && s->aero && rotor_is_free(s)
+                ? " without swinging: the speed of the rotor, if the air's torque grows with it or, at a frozen "
+                  "azimuth, by its weight; the generator's torque and the pitch are held"
+                : "");
+    }
+}
+
+// -- files ----------------------------------------------------------------------------------------
+
+typedef struct solution {
+    const bough_simulation *simulation;
+    const bough_vibration *found;
+} solution;
+
+static void write_modes(const void *self, FILE *file) {
+    const solution *x = self;
+    const bough_simulation *s = x->simulation;
+    const bough_vibration *v = x->found;
+    int n_body = s->scene->n_body;
+    fputs("mode,frequency (Hz),damped frequency (Hz),damping ratio (-),body,shape,pattern,"
+          "collective (-),forward (-),backward (-)",
+          file);
+    for (int i = 0; i < n_body; i++) fprintf(file, ",%s (-)", s->scene->body[i].name);
+    fputc('\n', file);
+    for (int k = 0; k < v->found; k++) {
+        const bough_scene_mode *m = &v->mode[k];
+        fprintf(file, "%d,%.10g,%.10g,%.10g,%s,%s,%s", k + 1, m->frequency, m->damped_frequency, m->damping,
+                bough_modes_body(s, m), bough_modes_shape(s, m), bough_pattern_names[m->pattern]);
+        for (int c = 0; c < 3; c++) fprintf(file, ",%.6g", m->whirl[c]);
+        for (int i = 0; i < n_body; i++) fprintf(file, ",%.6g", m->share[i]);
+        fputc('\n', file);
+    }
+}
+
+static void write_shapes(const void *self, FILE *file) {
+    const solution *x = self;
+    const bough_simulation *s = x->simulation;
+    const bough_vibration *v = x->found;
+    fputs("body,mode,span (m),ux (m),uy (m),uz (m),rx (rad),ry (rad),rz (rad),imaginary ux (m),"
+          "imaginary uy (m),imaginary uz (m),imaginary rx (rad),imaginary ry (rad),"
+          "imaginary rz (rad)\n",
+          file);
+    for (int k = 0; k < v->found; k++) {
+        for (int i = 0; i < v->n_row; i++) {
+            const bough_shape_row *row = &v->mode[k].shape[i];
+            fprintf(file, "%s,%d,%.10g", s->scene->body[row->body].name, k + 1, row->span);
+            for (int c = 0; c < 12; c++) fprintf(file, ",%.10g", row->motion[c / 6][c % 6]);
+            fputc('\n', file);
+        }
+    }
+}
+
+bough_status bough_modes_whole(bough_arena *arena, const bough_options *options, bough_simulation *s) {
+    bough_vibration v;
+    const char *folder = bough_out_folder(arena, options);
+    if (s->master->assembly->n_state == 0) {
+        return bough_fail(BOUGH_INVALID, "%.200s: no body of the scene can move or bend", s->scene->file);
+    }
+    bough_status status = bough_vibration_find(arena, s, s->scene->modes.count, &v);
+    if (!bough_is_ok(&status)) return status;
+    const solution x = {s, &v};
+    print_modes(s, &v);
+    status = bough_folder_make(folder);
+    if (bough_is_ok(&status)) status = bough_folder_write(folder, "modes.csv", write_modes, &x);
+    if (bough_is_ok(&status) && s->scene->modes.shapes) {
+        status = bough_folder_write(folder, "shapes.csv", write_shapes, &x);
+    }
+    bool balanced = s->scene->modes.at == BOUGH_SCENE_IN_EQUILIBRIUM;
+    if (bough_is_ok(&status) && s->scene->modes.linear) {
+        status = bough_modes_linear(arena, s, balanced ? bough_equilibrium_time(s) : 0, folder);
+    }
+    if (bough_is_ok(&status)) printf("out: %s\n", folder);
+    return status;
+}

@@ -1,0 +1,284 @@
+// What is said about a run: summary.json and the closing lines.
+#include "apps/bough/cli/memory.h"
+#include "apps/bough/cli/run.h"
+#include "apps/bough/cli/version.h"
+#include "apps/bough/results/summary.h"
+#include "apps/bough/model/validity.h"
+
+#include <math.h>
+#include <string.h>
+
+enum { LINE = 400 };
+
+// -- figures --------------------------------------------------------------------------------------
+
+static const char *outcome_name(const bough_run *run) {
+    if (bough_is_ok(&run->outcome)) return "complete";
+    return run->outcome.code == BOUGH_INTERRUPTED ? "interrupted" : "failed";
+}
+
+static double real_time_factor(const bough_run *run) { return run->simulation->master->time / run->wall_s; }
+
+// -- summary.json ---------------------------------------------------------------------------------
+
+static void write_input(bough_summary *s, const bough_job *job) {
+    const bough_scene *scene = job->run.simulation->scene;
+    bough_summary_text(s, "bough_version", BOUGH_VERSION);
+    bough_summary_text(s, "scene", scene->file);
+    bough_summary_text(s, "title", scene->title);
+    bough_summary_array(s, "set");
+    for (int i = 0; i < job->options->n_set; i++) {
+        bough_summary_text(s, NULL, job->options->set[i]);
+    }
+    bough_summary_end(s);
+    bough_summary_text(s, "status", outcome_name(&job->run));
+    const char *verdict = job->run.simulation->master->verdict;
+    bough_summary_text(s, "verdict", verdict[0] ? verdict : NULL);
+    const bough_status *end = bough_is_ok(&job->run.outcome) ? &job->verdict : &job->run.outcome;
+    bough_summary_text(s, "diagnosis", bough_is_ok(end) ? NULL : end->message);
+}
+
+// Limits of the models that the run has passed: each with body and time of the first passing.
+static void write_warnings(bough_summary *s, const bough_run *run) {
+    bough_summary_array(s, "warnings");
+    for (int k = 0; k < BOUGH_LIMITS; k++) {
+        const bough_passing *p = &run->simulation->validity->limit[k];
+        char text[LINE];
+        if (!p->passed) continue;
+        bough_validity_describe(run->simulation, k, text, sizeof text);
+        bough_summary_object(s, NULL);
+        bough_summary_text(s, "limit", bough_limit_name(k));
+        bough_summary_text(s, "body", run->simulation->scene->body[p->body].name);
+        bough_summary_number(s, "time", p->time);
+        bough_summary_text(s, "text", text);
+        bough_summary_end(s);
+    }
+    bough_summary_end(s);
+}
+
+// Order and theta are null where the scheme has none: also a ramp that repeats its steps. Sweeps are
+// those of a macro step that is repeated, else 0.
+static void write_method(bough_summary *s, const bough_run *run) {
+    const bough_master *m = run->simulation->master;
+    const bough_scene_simulation *sim = &run->simulation->scene->simulation;
+    const bough_coupling *c = m->coupling;
+    bool ordered = (c->scheme->reads & BOUGH_READS_ORDER) != 0;
+    double steps = m->steps > 0 ? (double)m->steps : 1;
+    bough_summary_text(s, "scheme", c->scheme->name);
+    const double none = (double)NAN;
+    bough_summary_number(s, "order", ordered ? (double)c->options.order : none);
+    bough_summary_number(s, "theta", c->theta > 0 ? c->theta : none);
+    bough_summary_number(s, "interface_ratio", c->interface_ratio);
+    bough_summary_number(s, "sweeps_per_step", (double)c->sweeps / steps);
+    bough_summary_integer(s, "unfinished_steps", c->unfinished);
+    bough_summary_number(s, "macro_step", m->macro_step);
+    bough_summary_number(s, "master_rtol", sim->master.rtol);
+    bough_summary_number(s, "micro_rtol", sim->micro.rtol);
+    bough_summary_integer(s, "threads", bough_pool_threads(run->pool));
+}
+
+static void write_cost(bough_summary *s, const bough_job *job) {
+    const bough_run *run = &job->run;
+    const bough_master *m = run->simulation->master;
+    bough_summary_number(s, "duration", m->duration);
+    bough_summary_number(s, "time", m->time);
+    bough_summary_number(s, "wall_s", run->wall_s);
+    bough_summary_number(s, "cpu_s", run->cpu_s);
+    bough_summary_number(s, "build_s", job->build_s);
+    bough_summary_number(s, "real_time_factor", real_time_factor(run));
+    bough_summary_integer(s, "peak_memory_bytes", bough_peak_memory());
+    bough_summary_integer(s, "model_bytes", (long long)bough_arena_bytes(job->arena));
+}
+
+static void write_size(bough_summary *s, const bough_job *job) {
+    const bough_run *run = &job->run;
+    const bough_simulation *sim = run->simulation;
+    bough_summary_integer(s, "bodies", sim->scene->n_body);
+    bough_summary_integer(s, "joints", bough_simulation_n_joints(sim));
+    bough_summary_integer(s, "states", sim->master->assembly->n_state);
+    bough_summary_integer(s, "macro_steps", sim->master->steps);
+    bough_summary_integer(s, "rows", bough_recorder_rows(job->recorder));
+    bough_summary_integer(s, "channels", job->recorded.count);
+}
+
+static void write_control(bough_summary *s, const bough_run *run) {
+    const bough_step_control *control = run->simulation->master->control;
+    if (!control) return;
+    bough_summary_object(s, "step_control");
+    bough_summary_number(s, "tolerance", control->tolerance);
+    bough_summary_integer(s, "accepted", control->accepted);
+    bough_summary_integer(s, "rejected", control->rejected);
+    bough_summary_integer(s, "forced", control->forced);
+    bough_summary_number(s, "shortest", control->shortest);
+    bough_summary_end(s);
+}
+
+static void write_accuracy(bough_summary *s, const bough_run *run) {
+    const bough_master *m = run->simulation->master;
+    bough_coupling_report report = bough_monitor_report(m->monitor, m->coupling);
+    bough_summary_number(s, "defect_max", report.defect_max);
+    bough_summary_number(s, "defect_rms", report.defect_rms);
+    bough_summary_number(s, "energy_residual", report.energy_residual);
+    bough_summary_number(s, "energy_exchanged", report.energy_exchanged);
+}
+
+// A body whose end carries others has two interfaces, that of its root first.
+static bool is_far_end(const bough_assembly *a, int interface) {
+    bool again = false;
+    for (int i = 0; i < interface; i++) again = again || a->interface[i].body == a->interface[interface].body;
+    return again;
+}
+
+// Per interface: energy.
+static void write_interfaces(bough_summary *s, const bough_run *run) {
+    const bough_master *m = run->simulation->master;
+    const bough_assembly *a = m->assembly;
+    bough_summary_array(s, "interfaces");
+    for (int k = 0; k < a->n_interface; k++) {
+        bough_interface_energy energy = bough_monitor_energy(m->monitor, k);
+        bough_summary_object(s, NULL);
+        bough_summary_text(s, "body", a->member[a->interface[k].body]->system.name);
+        bough_summary_text(s, "place", is_far_end(a, k) ? "end" : "root");
+        bough_summary_number(s, "energy_residual", energy.residual);
+        bough_summary_number(s, "energy_exchanged", energy.exchanged);
+        bough_summary_end(s);
+    }
+    bough_summary_end(s);
+}
+
+// Of the channels' rows from simulation.output.from on.
+static void write_statistics(bough_summary *s, const bough_job *job) {
+    bough_summary_number(s, "statistics_from", job->run.simulation->scene->simulation.output.from);
+    bough_summary_object(s, "statistics");
+    for (int k = 0; k < job->recorded.count; k++) {
+        const bough_sample_statistics *x = &job->statistics[k];
+        if (!(x->n > 0)) continue;
+        bough_summary_object(s, job->recorded.channel[k].name);
+        bough_summary_text(s, "unit", job->recorded.channel[k].unit);
+        bough_summary_number(s, "min", x->least);
+        bough_summary_number(s, "max", x->most);
+        bough_summary_number(s, "mean", x->mean);
+        bough_summary_number(s, "std", bough_sample_statistics_deviation(x));
+        bough_summary_end(s);
+    }
+    bough_summary_end(s);
+}
+
+static void write_work(bough_summary *s, const bough_statistics *done) {
+    bough_summary_integer(s, "steps", done->steps);
+    bough_summary_integer(s, "failed_steps", done->failed_steps);
+    bough_summary_integer(s, "derivatives", done->derivatives);
+    bough_summary_integer(s, "jacobians", done->jacobians);
+    bough_summary_integer(s, "factorisations", done->factorisations);
+    bough_summary_integer(s, "iterations", done->iterations);
+    bough_summary_integer(s, "starts", done->starts);
+}
+
+// The integrator of all bodies together, where the scheme has one.
+static void write_whole(bough_summary *s, const bough_run *run) {
+    const bough_member *whole = run->simulation->master->coupling->whole;
+    if (whole == NULL) return;
+    bough_statistics done = bough_run_statistics(run, run->simulation->master->assembly->n_member);
+    bough_summary_object(s, "whole");
+    bough_summary_text(s, "solver", whole->solver);
+    write_work(s, &done);
+    bough_summary_end(s);
+}
+
+static void write_member(bough_summary *s, const bough_run *run, int member) {
+    const bough_member *m = run->simulation->master->assembly->member[member];
+    const bough_member *whole = run->simulation->master->coupling->whole;
+    bough_statistics done = bough_run_statistics(run, member);
+    bough_summary_object(s, NULL);
+    bough_summary_text(s, "name", m->system.name);
+    bough_summary_text(s, "kind", m->system.kind);
+    bough_summary_text(s, "solver", whole ? whole->solver : m->solver);
+    bough_summary_integer(s, "states", m->system.n_state);
+    write_work(s, &done);
+    bough_summary_end(s);
+}
+
+bough_status bough_run_summarise(const bough_job *job) {
+    const bough_run *run = &job->run;
+    bough_summary s;
+    bough_status status = bough_summary_open(&s, job->folder, "summary.json");
+    if (!bough_is_ok(&status)) return status;
+    write_input(&s, job);
+    write_warnings(&s, run);
+    write_method(&s, run);
+    write_cost(&s, job);
+    write_size(&s, job);
+    write_control(&s, run);
+    write_accuracy(&s, run);
+    write_interfaces(&s, run);
+    bough_run_write_error(&s, job);
+    write_statistics(&s, job);
+    write_whole(&s, run);
+    const bough_assembly *assembly = run->simulation->master->assembly;
+    bough_summary_array(&s, "subsystems");
+    for (int i = 0; i < assembly->n_member; i++) write_member(&s, run, i);
+    bough_summary_end(&s);
+    return bough_summary_close(&s);
+}
+
+// -- closing lines --------------------------------------------------------------------------------
+
+// Channels worth a line: the turbine's main ones, or else the first few.
+static void tell_channels(bough_job *job, FILE *stream) {
+    static const char *const main_channels[] = {"RotSpeed",  "RtAeroFxh", "RtAeroMxh",
+                                                "RtAeroPwr", "OoPDefl1",  "IPDefl1"};
+    enum { MAIN = sizeof main_channels / sizeof *main_channels, FIRST_FEW = 4 };
+    bough_run *run = &job->run;
+    const bough_channels *c = &run->channels;
+    const double *value = bough_run_values(run);
+    if (!value) return; // after a failure the state means nothing
+    bool turbine = run->simulation->scene->turbine.node != NULL;
+    for (int i = 0; i < (turbine ? MAIN : FIRST_FEW); i++) {
+        int k = turbine ? bough_channels_find(c, main_channels[i]) : i;
+        if (k < 0 || k >= c->count) continue;
+        fprintf(stream, "%s: %.6g %s\n", c->channel[k].name, value[k], c->channel[k].unit);
+        if (!bough_companion_knows(run->companion, k)) continue;
+        fprintf(stream, "%s_error: %.2g %s\n", c->channel[k].name, run->companion->error[k],
+                c->channel[k].unit);
+    }
+}
+
+static void tell_energy(const bough_run *run, FILE *stream) {
+    const bough_master *m = run->simulation->master;
+    const bough_assembly *a = m->assembly;
+    for (int k = 0; k < a->n_interface; k++) {
+        bough_interface_energy energy = bough_monitor_energy(m->monitor, k);
+        if (!(energy.exchanged > 0)) continue;
+        fprintf(stream, "%s%s_energy_residual: %.2g of what the interface exchanged\n",
+                a->member[a->interface[k].body]->system.name, is_far_end(a, k) ? "_end" : "",
+                energy.residual / energy.exchanged);
+    }
+}
+
+static void tell_warnings(const bough_run *run, FILE *stream) {
+    const bough_master *m = run->simulation->master;
+    if (m->coupling->unfinished > 0) {
+        fprintf(
+            stream,
+            "warning: %ld of %ld macro steps went on before they had converged; the error contains what this "
+            "changes\n",
+            m->coupling->unfinished, m->steps);
+    }
+    bough_validity_print(run->simulation, stream);
+}
+
+void bough_run_report(bough_job *job, FILE *stream) {
+    bough_run *run = &job->run;
+    fprintf(stream, "status: %s\n", outcome_name(run));
+    fprintf(stream, "time: %.9g s\n", run->simulation->master->time);
+    if (!bough_is_ok(&run->outcome))
+        fprintf(stream, "recorded: %ld rows\n", bough_recorder_rows(job->recorder));
+    fprintf(stream, "real_time_factor: %.3g\n", real_time_factor(run));
+    fprintf(stream, "wall_s: %.3g\n", run->wall_s);
+    fprintf(stream, "peak_memory_mb: %.1f\n", (double)bough_peak_memory() / 1e6);
+    tell_channels(job, stream);
+    bough_run_tell_error(job, stream);
+    tell_energy(run, stream);
+    tell_warnings(run, stream);
+    fprintf(stream, "out: %s\n", job->folder);
+}

@@ -1,0 +1,39 @@
+// bough wind: the turbulence of a scene as a TurbSim full-field file, for other programs.
+#include "apps/bough/cli/open.h"
+#include "apps/bough/cli/verb.h"
+#include "apps/bough/results/folder.h"
+#include "apps/bough/model/aero_link.h"
+
+static bough_status write_box(const bough_wind_box *box, const char *title, const char *folder) {
+    char path[BOUGH_PATH_MAX];
+    FILE *file;
+    bough_status status = bough_folder_make(folder);
+    if (bough_is_ok(&status)) status = bough_folder_open(folder, "wind.bts", path, &file);
+    if (!bough_is_ok(&status)) return status;
+    if (!bough_wind_box_write(box, title, file)) {
+        bough_folder_discard(path, file);
+        return bough_fail(BOUGH_IO, "cannot write '%.200s'", path);
+    }
+    status = bough_folder_commit(path, file);
+    if (bough_is_ok(&status)) printf("wind: %s\n", path);
+    return status;
+}
+
+bough_status bough_verb_wind(bough_arena *arena, const bough_options *options) {
+    bough_simulation *s;
+    bough_status status = bough_open(arena, options, &s);
+    if (!bough_is_ok(&status)) return status;
+    const bough_wind *wind = s->aero ? bough_rotor_wind(bough_aero_link_rotor(s->aero)) : NULL;
+    if (!wind || !wind->box) {
+        return bough_fail(BOUGH_INVALID,
+                          "%.150s has no turbulent wind: aero.wind of 'kind: iec' with 'condition: "
+                          "ntm', etm or ewm makes it",
+                          s->scene->file);
+    }
+    const char *folder = bough_out_folder(arena, options);
+    const bough_wind_box *box = wind->box;
+    printf("points: %d x %d, %.6g m apart, lowest at %.6g m\n", box->n_z, box->n_y, box->dz, box->bottom);
+    printf("times: %d, every %.6g s, period %.6g s\n", box->n_time, box->dt, box->duration);
+    printf("mean_speed: %.6g m/s at %.6g m\n", box->mean, box->hub);
+    return write_box(box, s->scene->title ? s->scene->title : s->scene->file, folder);
+}

@@ -1,0 +1,360 @@
+// Reading by table. Errors do not stop the reading: a wrong value leaves NaN, −1 or NULL behind and
+// the rest is read, so that one run shows every error of a file.
+#include "apps/bough/config/schema.h"
+
+#include "apps/bough/config/schema_internal.h"
+#include "core/base/input_file.h"
+
+#include <errno.h>
+#include <string.h>
+
+static void read_value(bough_schema_reader *r, const bough_key *key, const bough_node *node, void *item);
+
+static int errors_so_far(const bough_schema_reader *r) { return r->errors->n + r->errors->dropped; }
+
+// -- lists of mappings ----------------------------------------------------------------------------
+
+static void read_rows(bough_schema_reader *r, const bough_key *key, const bough_node *node, void *item) {
+    char *items = bough_schema_items(r, key, node, key->of->size);
+    if (items == NULL) return;
+    for (int i = 0; i < node->n; i++) {
+        size_t length = bough_schema_push(r, "[%d]", i);
+        bough_schema_read(r, key->of, node->value[i], items + (size_t)i * key->of->size);
+        bough_schema_pop(r, length);
+    }
+    *(void **)bough_field_at(item, key->offset) = items;
+    *(int *)bough_field_at(item, key->count_offset) = node->n;
+}
+
+static const bough_key *find_key(const bough_schema *schema, const char *name) {
+    for (int i = 0; i < schema->n_key; i++) {
+        if (strcmp(schema->key[i].name, name) == 0) return &schema->key[i];
+    }
+    return NULL;
+}
+
+static void unknown_key(bough_schema_reader *r, const bough_schema *schema, const bough_node *at,
+                        const char *name) {
+    const char *names[64];
+    char shown[64];
+    bough_node word = {.kind = BOUGH_SCALAR, .text = name};
+    int n = 0;
+    for (; n < schema->n_key && n < 64; n++) names[n] = schema->key[n].name;
+    if (r->errors->dropped > 0) n = 0; // a hostile file: spelling costs time
+    bough_schema_error(r, at, "", "unknown key %s%s", bough_node_shown(&word, shown),
+                       bough_suggest(name, names, n).text);
+}
+
+// The heads of a compact table: key names with the unit of their plain numbers, "twist deg".
+typedef struct columns {
+    int n;
+    bough_node **key;  // (n)
+    const char **unit; // (n), NULL: SI
+} columns;
+
+// A column head: its name into a node, its unit or NULL.
+static bool read_column(bough_schema_reader *r, const bough_schema *row, const bough_node *head,
+                        bough_node *name, const char **unit) {
+    if (head->kind != BOUGH_SCALAR || head->text[0] == '\0') {
+        bough_schema_expected(r, head, "a column's name");
+        return false;
+    }
+    char *text = bough_arena_string(r->arena, head->text), why[160];
+    char *space = strchr(text, ' ');
+    if (space != NULL) *space = '\0';
+    *name = *head;
+    name->text = text;
+    *unit = space == NULL ? NULL : space + 1 + strspn(space + 1, " ");
+    const bough_key *key = find_key(row, text);
+    if (key == NULL) {
+        unknown_key(r, row, head, text);
+        return false;
+    }
+    if (*unit == NULL) return true;
+    bool one_number = key->kind == BOUGH_KEY_NUMBER;
+    if (one_number && bough_unit_fits(*unit, key->dimension, why)) return true;
+    bough_schema_error(r, head, "", one_number ? "column '%s': %s" : "column '%s' takes no unit", text, why);
+    return false;
+}
+
+static bool read_columns(bough_schema_reader *r, const bough_schema *row, const bough_node *heads,
+                         columns *c) {
+    if (heads->kind != BOUGH_SEQUENCE || heads->n == 0) {
+        bough_schema_expected(r, heads, "a list of column names");
+        return false;
+    }
+    bough_node *names = bough_arena_take(r->arena, (size_t)heads->n * sizeof *names);
+    c->n = heads->n;
+    c->key = bough_arena_take(r->arena, (size_t)c->n * sizeof *c->key);
+    c->unit = bough_arena_take(r->arena, (size_t)c->n * sizeof *c->unit);
+    bool good = true;
+    for (int i = 0; i < c->n; i++) {
+        c->key[i] = &names[i];
+        bool read = read_column(r, row, heads->value[i], &names[i], &c->unit[i]);
+        for (int k = 0; read && good && k < i; k++) {
+            if (strcmp(names[k].text, names[i].text) != 0) continue;
+            bough_schema_error(r, heads->value[i], "", "column '%s' is given twice", names[i].text);
+            read = false;
+        }
+        good = good && read;
+    }
+    return good;
+}
+
+static void read_mapping(bough_schema_reader *r, const bough_schema *schema, const bough_node *node,
+                         const char *const *units, void *item);
+
+// A row of a compact table as the mapping it stands for; false after an error.
+static bool row_mapping(bough_schema_reader *r, const bough_node *row, const columns *c,
+                        bough_node *mapping) {
+    char what[60];
+    snprintf(what, sizeof what, "a list of %d values, one a column", c->n);
+    if (row->kind != BOUGH_SEQUENCE) {
+        bough_schema_expected(r, row, what);
+        return false;
+    }
+    if (row->n != c->n) {
+        bough_schema_error(r, row, "", "expected %s, got %d", what, row->n);
+        return false;
+    }
+    *mapping = *row;
+    mapping->kind = BOUGH_MAPPING;
+    mapping->key = c->key;
+    return true;
+}
+
+static void read_compact_rows(bough_schema_reader *r, const bough_key *key, const bough_node *rows,
+                              const columns *c, void *item) {
+    char *items = bough_schema_items(r, key, rows, key->of->size);
+    bough_node *mapping = bough_arena_take(r->arena, (size_t)rows->n * sizeof *mapping);
+    if (items == NULL) return;
+    for (int i = 0; i < rows->n; i++) {
+        size_t length = bough_schema_push(r, "[%d]", i);
+        if (row_mapping(r, rows->value[i], c, &mapping[i])) {
+            read_mapping(r, key->of, &mapping[i], c->unit, items + (size_t)i * key->of->size);
+        }
+        bough_schema_pop(r, length);
+    }
+    *(void **)bough_field_at(item, key->offset) = items;
+    *(int *)bough_field_at(item, key->count_offset) = rows->n;
+}
+
+// {columns: […], rows: [[…], …]}
+static void read_table(bough_schema_reader *r, const bough_key *key, const bough_node *node, void *item) {
+    const bough_node *heads = bough_node_find(node, "columns");
+    const bough_node *rows = bough_node_find(node, "rows");
+    for (int i = 0; i < node->n; i++) {
+        if (node->value[i] == heads || node->value[i] == rows) continue;
+        char shown[64];
+        bough_schema_error(r, node->key[i], "", "unknown key %s: a table has 'columns' and 'rows'",
+                           bough_node_shown(node->key[i], shown));
+    }
+    if (heads == NULL || rows == NULL) {
+        bough_schema_error(r, node, "", "expected a list of mappings, or 'columns' and 'rows'");
+        return;
+    }
+    columns c;
+    size_t length = bough_schema_push_key(r, "columns");
+    bool good = read_columns(r, key->of, heads, &c);
+    bough_schema_pop(r, length);
+    if (!good) return;
+    length = bough_schema_push_key(r, "rows");
+    read_compact_rows(r, key, rows, &c, item);
+    bough_schema_pop(r, length);
+}
+
+// -- files ----------------------------------------------------------------------------------------
+
+// What a schema has read of the file, or without a schema its name alone; NULL: not so far.
+static const bough_schema_file *find_file(const bough_schema_reader *r, const char *path,
+                                          const bough_schema *schema) {
+    const bough_schema_file *f = r->files;
+    while (f != NULL && (f->schema != schema || strcmp(f->path, path) != 0)) f = f->next;
+    return f;
+}
+
+static void add_file(bough_schema_reader *r, bough_schema_file added) {
+    bough_schema_file *file = bough_arena_take(r->arena, sizeof *file);
+    *file = added;
+    file->next = r->files;
+    r->files = file;
+}
+
+const char *bough_schema_path(bough_schema_reader *r, const char *key, const char *name) {
+    size_t size = strlen(r->directory) + strlen(name) + 1;
+    char *path = bough_arena_take(r->arena, size);
+    snprintf(path, size, "%s%s", name[0] == '/' ? "" : r->directory, name);
+    const bough_schema_file *known = find_file(r, path, NULL);
+    if (known != NULL) return known->path;
+    size_t length = key[0] == '\0' ? strlen(r->path) : bough_schema_push_key(r, key);
+    add_file(r, (bough_schema_file){
+                    .key = bough_arena_string(r->arena, r->path), .path = path, .absolute = name[0] == '/'});
+    bough_schema_pop(r, length);
+    return path;
+}
+
+// Reads the file's struct; errors inside it have paths that start at the file's top.
+static void *load(bough_schema_reader *r, const bough_schema *schema, const char *path) {
+    void *item = bough_arena_take(r->arena, schema->size);
+    add_file(r, (bough_schema_file){.path = path, .schema = schema, .item = item});
+    bough_node *root = bough_text_read(r->arena, path, r->errors);
+    if (root == NULL) return item;
+    char outer[sizeof r->path];
+    memcpy(outer, r->path, sizeof outer);
+    r->path[0] = '\0';
+    bough_schema_read(r, schema, root, item);
+    memcpy(r->path, outer, sizeof outer);
+    return item;
+}
+
+static void read_file(bough_schema_reader *r, const bough_schema *schema, const bough_node *node,
+                      void *field) {
+    if (node->kind != BOUGH_SCALAR || node->text[0] == '\0') {
+        bough_schema_expected(r, node, "the name of a file");
+        return;
+    }
+    const char *path = bough_schema_path(r, "", node->text);
+    const bough_schema_file *known = find_file(r, path, schema); // bodies that name it share its tables
+    if (known != NULL) {
+        memcpy(field, known->item, schema->size);
+        return;
+    }
+    char why[BOUGH_INPUT_REASON];
+    FILE *stream = bough_input_open(path, BOUGH_INPUT_TEXT, why);
+    if (stream == NULL) {
+        bough_schema_error(r, node, "", "file '%s' cannot be read: %s", path, why);
+        return;
+    }
+    fclose(stream);
+    memcpy(field, load(r, schema, path), schema->size);
+}
+
+// -- mappings -------------------------------------------------------------------------------------
+
+static void read_value(bough_schema_reader *r, const bough_key *key, const bough_node *node, void *item) {
+    void *field = bough_field_at(item, key->offset);
+    switch (key->kind) {
+    case BOUGH_KEY_MAPPING: bough_schema_read(r, key->of, node, field); break;
+    case BOUGH_KEY_LIST:
+        if (node->kind == BOUGH_MAPPING) {
+            read_table(r, key, node, item);
+        } else {
+            read_rows(r, key, node, item);
+        }
+        break;
+    case BOUGH_KEY_FILE: read_file(r, key->of, node, field); break;
+    case BOUGH_KEY_CUSTOM:
+        r->key = key;
+        key->read(r, node, field);
+        break;
+    default: bough_schema_value(r, key, node, item);
+    }
+}
+
+static void read_fallback(bough_schema_reader *r, const bough_key *key, void *item) {
+    if (key->kind == BOUGH_KEY_MAPPING) {
+        bough_schema_read(r, key->of, NULL, bough_field_at(item, key->offset));
+        return;
+    }
+    if (key->fallback == NULL) return;
+    bough_node scalar = {.kind = BOUGH_SCALAR, .text = key->fallback, .file = "default"};
+    const bough_node *node = &scalar;
+    if (key->fallback[0] == '[') {
+        node = bough_text_parse(r->arena, "default", key->fallback, strlen(key->fallback), r->errors);
+    }
+    if (node != NULL) read_value(r, key, node, item);
+}
+
+// Whether `word` is one of "a|b|c".
+static bool is_among(const char *word, const char *list) {
+    size_t length = strlen(word);
+    for (const char *c = list; c != NULL; c = strchr(c, '|')) {
+        if (*c == '|') c++;
+        if (strncmp(c, word, length) == 0 && (c[length] == '|' || c[length] == '\0')) return true;
+    }
+    return false;
+}
+
+typedef enum relevance { APPLIES, APPLIES_NOT, UNKNOWN } relevance;
+
+// Whether the key applies under the choices read before it.
+static relevance applies(const bough_schema *schema, const bough_key *key, void *item) {
+    if (key->when == NULL) return APPLIES;
+    const bough_key *by = find_key(schema, key->when_key);
+    int choice = *(int *)bough_field_at(item, by->offset);
+    if (choice < 0) return UNKNOWN;
+    return is_among(bough_key_choice(by, choice), key->when) ? APPLIES : APPLIES_NOT;
+}
+
+// Says where a key that is given would apply, unless a twin of the same name applies here.
+static void refuse_key(bough_schema_reader *r, const bough_schema *schema, const bough_key *key,
+                       const bough_node *at, void *item) {
+    char where[120] = "";
+    for (int i = 0; i < schema->n_key; i++) {
+        const bough_key *twin = &schema->key[i];
+        if (strcmp(twin->name, key->name) != 0) continue;
+        if (twin < key || applies(schema, twin, item) != APPLIES_NOT) return;
+        size_t used = strlen(where);
+        snprintf(where + used, sizeof where - used, "%s%s", used == 0 ? "" : "|", twin->when);
+    }
+    for (char *c = strchr(where, '|'); c != NULL; c = strchr(c, '|')) *c = '/';
+    bough_schema_error(r, at, key->name, "only used with '%s: %s'", key->when_key, where);
+}
+
+static bough_node *key_node(const bough_node *mapping, const char *name, int *index) {
+    for (int i = 0; mapping != NULL && i < mapping->n; i++) {
+        *index = i;
+        if (strcmp(mapping->key[i]->text, name) == 0) return mapping->key[i];
+    }
+    return NULL;
+}
+
+static void read_one_key(bough_schema_reader *r, const bough_schema *schema, const bough_key *key,
+                         const bough_node *node, const char *const *units, void *item) {
+    int index = 0;
+    bough_node *at = key_node(node, key->name, &index);
+    relevance use = applies(schema, key, item);
+    if (at != NULL && use == APPLIES) {
+        size_t length = bough_schema_push_key(r, key->name);
+        r->unit = units == NULL ? NULL : units[index];
+        read_value(r, key, node->value[index], item);
+        r->unit = NULL;
+        bough_schema_pop(r, length);
+    } else if (at != NULL && use == APPLIES_NOT) {
+        refuse_key(r, schema, key, at, item);
+    } else if (at == NULL && use == APPLIES) {
+        if (key->required && node != NULL) {
+            bough_schema_error(r, node, "", "required key '%s' is missing", key->name);
+        }
+        read_fallback(r, key, item);
+    }
+}
+
+static void read_mapping(bough_schema_reader *r, const bough_schema *schema, const bough_node *node,
+                         const char *const *units, void *item) {
+    int before = errors_so_far(r);
+    *(const bough_node **)item = node;
+    for (int i = 0; i < schema->n_key; i++) {
+        read_one_key(r, schema, &schema->key[i], node, units, item);
+    }
+    for (int i = 0; node != NULL && i < node->n; i++) {
+        if (find_key(schema, node->key[i]->text) == NULL) {
+            unknown_key(r, schema, node->key[i], node->key[i]->text);
+        }
+    }
+    bool good = errors_so_far(r) == before;
+    if (schema->check != NULL && node != NULL && good) {
+        schema->check(r, item);
+    }
+}
+
+void bough_schema_read(bough_schema_reader *reader, const bough_schema *schema, const bough_node *node,
+                       void *item) {
+    if (node != NULL && node->kind != BOUGH_MAPPING) {
+        char what[80];
+        snprintf(what, sizeof what, "%s (a mapping of keys)", schema->name);
+        bough_schema_expected(reader, node, what);
+        node = NULL;
+    }
+    read_mapping(reader, schema, node, NULL, item);
+}

@@ -1,0 +1,160 @@
+// Tables that say what a file may hold. One table of keys gives the reading into plain structs, the
+// defaults, the errors and the help text.
+//
+// A struct that a schema fills begins with `const bough_node *node`, its place in the text.
+#ifndef BOUGH_APPS_CONFIG_SCHEMA_H
+#define BOUGH_APPS_CONFIG_SCHEMA_H
+
+#include "apps/bough/config/text.h"
+
+typedef enum bough_dimension {
+    BOUGH_PURE_NUMBER,
+    BOUGH_TIME,
+    BOUGH_LENGTH,
+    BOUGH_ANGLE,
+    BOUGH_ANGULAR_SPEED,
+    BOUGH_SPEED,
+    BOUGH_ACCELERATION,
+    BOUGH_FREQUENCY,
+    BOUGH_MASS,
+    BOUGH_INERTIA,
+    BOUGH_DENSITY,
+    BOUGH_FORCE,
+    BOUGH_MOMENT,
+    BOUGH_STIFFNESS,
+    BOUGH_LINE_FORCE,
+    BOUGH_LINE_MOMENT,
+} bough_dimension;
+
+// How a value is written, and what its field in the struct is.
+typedef enum bough_key_kind {
+    BOUGH_KEY_NUMBER,  // double, SI
+    BOUGH_KEY_INTEGER, // int
+    BOUGH_KEY_TEXT,    // const char *
+    BOUGH_KEY_CHOICE,  // int: index in choices; −1 after an error
+    BOUGH_KEY_BOOLEAN, // bool
+    BOUGH_KEY_VECTOR,  // double[count]
+    BOUGH_KEY_NUMBERS, // double *, and an int at count_offset
+    BOUGH_KEY_TEXTS,   // const char **, and an int at count_offset
+    BOUGH_KEY_MAPPING, // the struct of schema `of`
+    BOUGH_KEY_LIST,    // pointer to structs of schema `of`, and an int at count_offset. Written as a
+                       // list of mappings, or {columns: [span, twist deg, …], rows: [[…], …]}
+    BOUGH_KEY_FILE,    // the struct of schema `of`, read from the file of that name
+    BOUGH_KEY_CUSTOM,  // what `read` makes of it
+} bough_key_kind;
+
+typedef struct bough_schema bough_schema;
+typedef struct bough_schema_reader bough_schema_reader;
+
+typedef struct bough_key {
+    const char *name;
+    bough_key_kind kind;
+    bough_dimension dimension;
+    const char *range;                // of numbers, SI: "> 0", ">= 0", "[0, 2]"; NULL: any
+    const char *word;                 // a word in place of a number, stored as 0
+    const char *const *choices;       // ends with NULL
+    const char *(*choice)(int index); // in place of it; NULL beyond the end
+    const char *when_key;             // the key applies only where this earlier choice …
+    const char *when;                 // … is one of these, "revolute|prismatic"; NULL: always
+    const char *fallback;             // default as it would be written
+    bool required;
+    int count; // of a vector; least number of items of a list
+    const bough_schema *of;
+    void (*read)(bough_schema_reader *reader, const bough_node *node, void *field);
+    size_t offset, count_offset; // of the field in the struct
+    const char *form;            // of a custom key, for the help
+    const char *example;         // as it would be written; not of choices: bough_key_example
+    const char *help;
+} bough_key;
+
+struct bough_schema {
+    const char *name; // "a body"
+    size_t size;      // of the struct
+    int n_key;
+    const bough_key *key;
+    // What one key cannot see alone; called when all keys were read without an error.
+    void (*check)(bough_schema_reader *reader, void *item);
+};
+
+// A file that a key names.
+typedef struct bough_schema_file {
+    struct bough_schema_file *next;
+    const char *key, *path;     // "bodies[0].rod.structure"; as it is opened
+    bool absolute;              // as it is written
+    const bough_schema *schema; // by which its struct `item` was read; NULL: only the name is known
+    void *item;
+} bough_schema_file;
+
+// Reads a file named `path` relative to the directory of the scene; see BOUGH_KEY_FILE.
+struct bough_schema_reader {
+    bough_arena *arena;
+    bough_errors *errors;
+    const char *directory;    // with its last slash, "" for the current one
+    const char *unit;         // of plain numbers, from the head of a column; NULL: SI
+    char path[256];           // of the value being read
+    const bough_key *key;     // whose value `read` of the key is called for
+    bough_schema_file *files; // named so far, once each without a schema, once with each that read it
+};
+
+// Fills `item` (zeroed, of the schema's size) from a mapping; NULL fills the defaults.
+void bough_schema_read(bough_schema_reader *reader, const bough_schema *schema, const bough_node *node,
+                       void *item);
+
+// Adds an error at `node` with the path of the value being read, then `.key` unless key is "".
+void bough_schema_error(bough_schema_reader *reader, const bough_node *node, const char *key,
+                        const char *format, ...) __attribute__((format(printf, 4, 5)));
+
+// The path of a file that the scene names by the value being read or, unless key is "", by its `.key`:
+// relative to the scene's directory. Every name of a file comes by here and is then in reader->files.
+const char *bough_schema_path(bough_schema_reader *reader, const char *key, const char *name);
+
+// Reads a number with or without a unit; NaN after adding an error.
+double bough_schema_number(bough_schema_reader *reader, const bough_node *node, bough_dimension dimension);
+
+// Reads a list of between 1 and `most` plain numbers; its length, or −1 after adding an error.
+// `expected` says what the list should be.
+int bough_schema_numbers(bough_schema_reader *reader, const bough_node *node, int most, double *values,
+                         const char *expected);
+
+// The value in SI of a number followed by a unit of that dimension, or by none. False when it is
+// not one; `why` then receives the reason.
+bool bough_quantity(const char *text, bough_dimension dimension, double *value, char why[160]);
+
+// Whether the value is in a range "> 0", ">= 0", "[0, 2]"; NULL: any is.
+bool bough_in_range(double value, const char *range);
+
+// A whole number of at most nine digits.
+bool bough_whole_number(const char *text, int *value);
+
+// The candidate nearest to a misspelt word, NULL when none is near. Candidates may be NULL.
+const char *bough_nearest(const char *word, const char *const *candidates, int n);
+
+// The same for the end of a message: " (did you mean 'hub'?)", or "" when none is near.
+typedef struct bough_suggestion {
+    char text[64];
+} bough_suggestion;
+bough_suggestion bough_suggest(const char *word, const char *const *candidates, int n);
+
+// What a node holds, for messages: "'12 x'", "a list", "nothing".
+const char *bough_node_shown(const bough_node *node, char buffer[64]);
+
+// The choice of that index; NULL beyond the end and of other kinds.
+const char *bough_key_choice(const bough_key *key, int index);
+
+// How the key's value may be written, other than its default; "" of a mapping or a list of
+// mappings, whose keys have their own.
+const char *bough_key_example(const bough_key *key);
+
+// Writes every key below the schema as a list in Markdown, indented by `indent`.
+void bough_schema_help(const bough_schema *schema, int indent, FILE *stream);
+
+// Writes a JSON Schema that a file which one of the n schemas describes meets.
+void bough_schema_json(const char *title, const bough_schema *const *schema, int n, FILE *stream);
+
+// "rad/s"; "" for a pure number.
+const char *bough_dimension_unit(bough_dimension dimension);
+
+// Writes the SI unit of every dimension and an example with another, as a list in Markdown.
+void bough_schema_help_units(FILE *stream);
+
+#endif

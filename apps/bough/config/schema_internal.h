@@ -1,0 +1,33 @@
+// What the files of the schema share among themselves: units and ranges.
+#ifndef BOUGH_APPS_CONFIG_SCHEMA_INTERNAL_H
+#define BOUGH_APPS_CONFIG_SCHEMA_INTERNAL_H
+
+#include "apps/bough/config/schema.h"
+
+// "a length (in m, or with a unit, as '61.5 m')"
+void bough_dimension_expected(bough_dimension dimension, char text[96]);
+
+// Whether the text is a unit of the dimension; `why` then says why not.
+bool bough_unit_fits(const char *text, bough_dimension dimension, char why[160]);
+
+// Appends to the path of errors, a key or what is printed; the length before, for pop.
+size_t bough_schema_push(bough_schema_reader *r, const char *format, ...)
+    __attribute__((format(printf, 2, 3)));
+size_t bough_schema_push_key(bough_schema_reader *r, const char *name);
+void bough_schema_pop(bough_schema_reader *r, size_t length);
+
+// An error at the node: it is not `what`.
+void bough_schema_expected(bough_schema_reader *r, const bough_node *node, const char *what);
+
+// Memory for the items of a list; NULL (and an error) when the node is not one long enough.
+void *bough_schema_items(bough_schema_reader *r, const bough_key *key, const bough_node *node, size_t size);
+
+// Reads a value that is no mapping, table, file or custom one into its field of the struct.
+void bough_schema_value(bough_schema_reader *r, const bough_key *key, const bough_node *node, void *item);
+
+// Writes a mapping of the schema as an object of JSON Schema.
+void bough_schema_json_object(const bough_schema *schema, FILE *stream);
+
+static inline void *bough_field_at(void *item, size_t offset) { return (char *)item + offset; }
+
+#endif

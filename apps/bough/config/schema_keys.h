@@ -1,0 +1,24 @@
+// Words for tables of keys. A table defines FILLS before its rows, the struct whose members they fill.
+#ifndef BOUGH_APPS_CONFIG_SCHEMA_KEYS_H
+#define BOUGH_APPS_CONFIG_SCHEMA_KEYS_H
+
+#include "apps/bough/config/schema.h"
+
+#include <stddef.h>
+
+#define AT(member) .offset = offsetof(FILLS, member)
+#define COUNT_AT(member) .count_offset = offsetof(FILLS, member)
+
+// A key of the kind BOUGH_KEY_`of`: named as the member that it fills, or otherwise.
+#define KEY(of, member) .name = #member, .kind = BOUGH_KEY_##of, AT(member)
+#define NAMED(text, of) .name = text, .kind = BOUGH_KEY_##of
+
+#define UNIT(quantity) .dimension = BOUGH_##quantity
+#define CHOICES(...)                                                                                         \
+    .choices = (const char *const[]) { __VA_ARGS__, NULL }
+#define WHEN(key, values) .when_key = key, .when = values
+
+#define COUNT(table) (int)(sizeof(table) / sizeof(table)[0])
+#define SCHEMA(what, type, keys) .name = what, .size = sizeof(type), .n_key = COUNT(keys), .key = keys
+
+#endif

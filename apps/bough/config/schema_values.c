@@ -1,0 +1,261 @@
+// Reading one value by its key: numbers, texts, choices, lists of them. Errors name the path.
+#include "apps/bough/config/schema_internal.h"
+
+#include <assert.h>
+#include <math.h>
+#include <stdarg.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { MAX_ITEMS = 10000 }; // of a list: names are looked up one by one
+enum { MAX_CHOICES = 32 };  // of a key
+
+// -- errors ---------------------------------------------------------------------------------------
+
+size_t bough_schema_push(bough_schema_reader *r, const char *format, ...) {
+    size_t length = strlen(r->path);
+    va_list arguments;
+    va_start(arguments, format);
+    vsnprintf(r->path + length, sizeof r->path - length, format, arguments);
+    va_end(arguments);
+    return length;
+}
+
+size_t bough_schema_push_key(bough_schema_reader *r, const char *name) {
+    return bough_schema_push(r, r->path[0] == '\0' ? "%s" : ".%s", name);
+}
+
+void bough_schema_pop(bough_schema_reader *r, size_t length) { r->path[length] = '\0'; }
+
+void bough_schema_error(bough_schema_reader *reader, const bough_node *node, const char *key,
+                        const char *format, ...) {
+    char text[400];
+    va_list arguments;
+    va_start(arguments, format);
+    vsnprintf(text, sizeof text, format, arguments);
+    va_end(arguments);
+    size_t length = key[0] == '\0' ? strlen(reader->path) : bough_schema_push_key(reader, key);
+    bough_errors_add(reader->errors, node, reader->path, "%s", text);
+    bough_schema_pop(reader, length);
+}
+
+void bough_schema_expected(bough_schema_reader *r, const bough_node *node, const char *what) {
+    char shown[64];
+    bough_schema_error(r, node, "", "expected %s, got %s", what, bough_node_shown(node, shown));
+}
+
+// -- numbers --------------------------------------------------------------------------------------
+
+static bool is_word(const bough_node *node, const char *word) {
+    return node->kind == BOUGH_SCALAR && strcmp(node->text, word) == 0;
+}
+
+// The column's unit holds for a plain number; a number with its own unit fails with it appended.
+static bool quantity(const bough_schema_reader *r, const char *text, bough_dimension dimension, double *value,
+                     char why[160]) {
+    double plain;
+    char ignored[160], joined[96];
+    if (r->unit == NULL || !bough_quantity(text, BOUGH_PURE_NUMBER, &plain, ignored)) {
+        return bough_quantity(text, dimension, value, why);
+    }
+    snprintf(joined, sizeof joined, "%s %s", text, r->unit);
+    return bough_quantity(joined, dimension, value, why);
+}
+
+double bough_schema_number(bough_schema_reader *reader, const bough_node *node, bough_dimension dimension) {
+    double value;
+    char why[160] = "", what[96], shown[64];
+    if (node->kind == BOUGH_SCALAR && quantity(reader, node->text, dimension, &value, why)) {
+        return value;
+    }
+    bough_dimension_expected(dimension, what);
+    bough_schema_error(reader, node, "", "expected %s, got %s%s%s", what, bough_node_shown(node, shown),
+                       why[0] == '\0' ? "" : ": ", why);
+    return NAN;
+}
+
+int bough_schema_numbers(bough_schema_reader *reader, const bough_node *node, int most, double *values,
+                         const char *what) {
+    char shown[64];
+    if (node->kind != BOUGH_SEQUENCE) {
+        bough_schema_expected(reader, node, what);
+        return -1;
+    }
+    if (node->n < 1 || node->n > most) {
+        bough_schema_error(reader, node, "", "expected %s, got %d items", what, node->n);
+        return -1;
+    }
+    char why[160];
+    int n = node->n;
+    for (int i = 0; i < node->n; i++) {
+        const bough_node *item = node->value[i];
+        if (item->kind == BOUGH_SCALAR && bough_quantity(item->text, BOUGH_PURE_NUMBER, &values[i], why)) {
+            continue;
+        }
+        size_t length = bough_schema_push(reader, "[%d]", i);
+        bough_schema_error(reader, item, "", "expected a plain number in SI units, got %s",
+                           bough_node_shown(item, shown));
+        bough_schema_pop(reader, length);
+        n = -1;
+    }
+    return n;
+}
+
+// Ranges come from our own tables.
+bool bough_in_range(double value, const char *range) {
+    if (range == NULL) return true;
+    if (range[0] == '[') {
+        char *end;
+        double low = strtod(range + 1, &end);
+        return value >= low && value <= strtod(end + 1, NULL);
+    }
+    if (range[1] == '=') return value >= strtod(range + 2, NULL);
+    return value > strtod(range + 1, NULL);
+}
+
+static bool check_range(bough_schema_reader *r, const bough_key *key, const bough_node *node, double value) {
+    if (isnan(value) || bough_in_range(value, key->range)) return true;
+    char shown[64];
+    const char *unit = bough_dimension_unit(key->dimension);
+    bough_schema_error(r, node, "", "must be %s%s%s%s, got %s", key->range[0] == '[' ? "in " : "", key->range,
+                       unit[0] == '\0' ? "" : " ", unit, bough_node_shown(node, shown));
+    return false;
+}
+
+static void read_number(bough_schema_reader *r, const bough_key *key, const bough_node *node, double *field) {
+    if (key->word != NULL && is_word(node, key->word)) {
+        *field = 0;
+        return;
+    }
+    double value = bough_schema_number(r, node, key->dimension);
+    *field = check_range(r, key, node, value) ? value : (double)NAN;
+}
+
+static void read_integer(bough_schema_reader *r, const bough_key *key, const bough_node *node, int *field) {
+    if (node->kind != BOUGH_SCALAR || !bough_whole_number(node->text, field)) {
+        bough_schema_expected(r, node, "a whole number");
+    } else {
+        check_range(r, key, node, *field);
+    }
+}
+
+// -- texts ----------------------------------------------------------------------------------------
+
+static void read_text(bough_schema_reader *r, const bough_node *node, const char **field) {
+    if (node->kind != BOUGH_SCALAR || node->text[0] == '\0') {
+        bough_schema_expected(r, node, "text");
+        *field = NULL;
+    } else {
+        *field = node->text;
+    }
+}
+
+const char *bough_key_choice(const bough_key *key, int index) {
+    if (key->kind != BOUGH_KEY_CHOICE) return NULL;
+    return key->choice != NULL ? key->choice(index) : key->choices[index];
+}
+
+static void read_choice(bough_schema_reader *r, const bough_key *key, const bough_node *node, int *field) {
+    char list[200] = "", shown[64];
+    const char *choices[MAX_CHOICES];
+    int n = 0;
+    for (; n < MAX_CHOICES && (choices[n] = bough_key_choice(key, n)) != NULL; n++) {
+        if (is_word(node, choices[n])) {
+            *field = n;
+            return;
+        }
+        size_t used = strlen(list);
+        snprintf(list + used, sizeof list - used, "%s%s", n == 0 ? "" : ", ", choices[n]);
+    }
+    *field = -1;
+    const char *word = node->kind == BOUGH_SCALAR ? node->text : "";
+    bough_schema_error(r, node, "", "expected %s%s, got %s%s", n > 1 ? "one of " : "", list,
+                       bough_node_shown(node, shown), bough_suggest(word, choices, n).text);
+}
+
+static void read_boolean(bough_schema_reader *r, const bough_node *node, bool *field) {
+    *field = !node->quoted && is_word(node, "true");
+    if (*field || (!node->quoted && is_word(node, "false"))) return;
+    bough_schema_expected(r, node, "true or false");
+}
+
+void *bough_schema_items(bough_schema_reader *r, const bough_key *key, const bough_node *node, size_t size) {
+    if (node->kind != BOUGH_SEQUENCE) {
+        bool mappings = key->kind == BOUGH_KEY_LIST;
+        bough_schema_expected(r, node, mappings ? "a list of mappings" : "a list");
+        return NULL;
+    }
+    if (node->n < key->count) {
+        bough_schema_error(r, node, "", "expected at least %d item%s, got %d", key->count,
+                           key->count == 1 ? "" : "s", node->n);
+        return NULL;
+    }
+    if (node->n > MAX_ITEMS) {
+        bough_schema_error(r, node, "", "expected at most %d items, got %d", MAX_ITEMS, node->n);
+        return NULL;
+    }
+    return bough_arena_take(r->arena, (size_t)node->n * size);
+}
+
+static void read_texts(bough_schema_reader *r, const bough_key *key, const bough_node *node, void *item) {
+    const char **texts = bough_schema_items(r, key, node, sizeof *texts);
+    if (texts == NULL) return;
+    for (int i = 0; i < node->n; i++) {
+        size_t length = bough_schema_push(r, "[%d]", i);
+        read_text(r, node->value[i], &texts[i]);
+        bough_schema_pop(r, length);
+    }
+    *(const char ***)bough_field_at(item, key->offset) = texts;
+    *(int *)bough_field_at(item, key->count_offset) = node->n;
+}
+
+// -- lists of numbers -----------------------------------------------------------------------------
+
+static void read_components(bough_schema_reader *r, const bough_key *key, const bough_node *node,
+                            double *values) {
+    for (int i = 0; i < node->n; i++) {
+        size_t length = bough_schema_push(r, "[%d]", i);
+        read_number(r, key, node->value[i], &values[i]);
+        bough_schema_pop(r, length);
+    }
+}
+
+static void read_vector(bough_schema_reader *r, const bough_key *key, const bough_node *node,
+                        double *values) {
+    char what[40];
+    snprintf(what, sizeof what, "a list of %d numbers", key->count);
+    if (node->kind != BOUGH_SEQUENCE) {
+        bough_schema_expected(r, node, what);
+    } else if (node->n != key->count) {
+        bough_schema_error(r, node, "", "expected %s, got %d", what, node->n);
+    } else {
+        read_components(r, key, node, values);
+        return;
+    }
+    for (int i = 0; i < key->count; i++) values[i] = NAN;
+}
+
+static void read_numbers(bough_schema_reader *r, const bough_key *key, const bough_node *node, void *item) {
+    double *values = bough_schema_items(r, key, node, sizeof *values);
+    if (values == NULL) return;
+    read_components(r, key, node, values);
+    *(double **)bough_field_at(item, key->offset) = values;
+    *(int *)bough_field_at(item, key->count_offset) = node->n;
+}
+
+// -- any of them ----------------------------------------------------------------------------------
+
+void bough_schema_value(bough_schema_reader *r, const bough_key *key, const bough_node *node, void *item) {
+    void *field = bough_field_at(item, key->offset);
+    switch (key->kind) {
+    case BOUGH_KEY_NUMBER: read_number(r, key, node, field); break;
+    case BOUGH_KEY_INTEGER: read_integer(r, key, node, field); break;
+    case BOUGH_KEY_TEXT: read_text(r, node, field); break;
+    case BOUGH_KEY_CHOICE: read_choice(r, key, node, field); break;
+    case BOUGH_KEY_BOOLEAN: read_boolean(r, node, field); break;
+    case BOUGH_KEY_VECTOR: read_vector(r, key, node, field); break;
+    case BOUGH_KEY_NUMBERS: read_numbers(r, key, node, item); break;
+    case BOUGH_KEY_TEXTS: read_texts(r, key, node, item); break;
+    default: assert(false);
+    }
+}

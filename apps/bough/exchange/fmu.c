@@ -1,0 +1,298 @@
+// A scene or a body as an FMU for co-simulation: a session behind the standard's functions. Value
+// references: 0 the time, then the inputs, then the channels.
+//
+// resources/ holds scene.txt: the token, the path of the scene in resources/, the body ("" for the whole
+// scene), its settings, a line each; and the scene with its files. Steps are whole numbers of macro steps.
+#include "apps/bough/exchange/session_body.h"
+#include "apps/bough/model/fmi3.h"
+
+#include <math.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { MOST_SETTINGS = 64, LINE = 4096 };
+
+typedef enum mode { INSTANTIATED, INITIALIZATION, STEP, TERMINATED } mode;
+
+typedef struct instance {
+    bough_session *session;
+    mode mode;
+    char *scene, *body;           // body NULL: the whole scene
+    char *set[MOST_SETTINGS + 1]; // with room for another duration
+    int n_set;
+    bool logging;
+    fmi3_log *log;
+    fmi3_environment environment;
+} instance;
+
+typedef struct state {
+    size_t size;
+    double time;
+    char *copy;
+} state;
+
+// -- messages -------------------------------------------------------------------------------------
+
+__attribute__((format(printf, 3, 4))) static fmi3_status tell(const instance *x, fmi3_status status,
+                                                              const char *format, ...) {
+    char text[2400];
+    va_list arguments;
+    va_start(arguments, format);
+    vsnprintf(text, sizeof text, format, arguments);
+    va_end(arguments);
+    const char *category = status == FMI3_OK        ? "logAll"
+                           : status == FMI3_WARNING ? "logStatusWarning"
+                                                    : "logStatusError";
+    if (x->log && x->logging) x->log(x->environment, status, category, text);
+    return status;
+}
+
+static fmi3_status answer(const instance *x, int code) {
+    if (code == BOUGH_SESSION_OK) return FMI3_OK;
+    return tell(x, FMI3_ERROR, "%s", bough_session_error(x->session));
+}
+
+static fmi3_status misplaced(const instance *x, const char *function) {
+    return tell(x, FMI3_ERROR, "%s: not allowed at this point", function);
+}
+
+const char *fmi3GetVersion(void) { return "3.0"; }
+
+fmi3_status fmi3SetDebugLogging(fmi3_instance self, bool on, size_t n, const fmi3_string *category) {
+    (void)n;
+    (void)category;
+    ((instance *)self)->logging = on;
+    return FMI3_OK;
+}
+
+// -- life -----------------------------------------------------------------------------------------
+
+static char *join(const char *a, const char *b) {
+    char text[2 * LINE];
+    snprintf(text, sizeof text, "%s/%s", a, b);
+    return strdup(text);
+}
+
+// Reads resources/scene.txt; false when it is not there or of another FMU.
+static bool read_resources(instance *x, const char *resources, const char *token) {
+    char line[LINE];
+    int number = 0;
+    char *path = join(resources, "scene.txt");
+    FILE *file = path ? fopen(path, "r") : NULL;
+    free(path);
+    if (!file) return false;
+    bool good = true;
+    while (good && fgets(line, sizeof line, file)) {
+        line[strcspn(line, "\r\n")] = '\0';
+        if (number == 0) good = strcmp(line, token) == 0;
+        if (number == 1) x->scene = join(resources, line);
+        if (number == 2 && line[0]) x->body = strdup(line);
+        if (number > 2 && x->n_set < MOST_SETTINGS) x->set[x->n_set++] = strdup(line);
+        number++;
+    }
+    fclose(file);
+    return good && x->scene != NULL;
+}
+
+static bool open_session(instance *x) {
+    bough_session_close(x->session);
+    x->session = bough_session_open_body(x->scene, (const char *const *)x->set, x->n_set, x->body);
+    return x->session && bough_session_code(x->session) == BOUGH_SESSION_OK;
+}
+
+fmi3_instance fmi3InstantiateCoSimulation(fmi3_string name, fmi3_string token, fmi3_string resources,
+                                          bool visible, bool logging, bool event_mode, bool early_return,
+                                          const fmi3_reference *intermediate, size_t n_intermediate,
+                                          fmi3_environment environment, fmi3_log *log,
+                                          fmi3_intermediate *update) {
+    (void)visible, (void)early_return, (void)intermediate, (void)n_intermediate, (void)update;
+    instance *x = calloc(1, sizeof *x);
+    if (!x) return NULL;
+    *x = (instance){.logging = logging, .log = log, .environment = environment};
+    bool good = false;
+    if (!resources || !token || !read_resources(x, resources, token)) {
+        x->logging = true;
+        tell(x, FMI3_ERROR, "%s: the resources are not those of this FMU", name ? name : "");
+    } else if (event_mode) {
+        tell(x, FMI3_ERROR, "the FMU has no event mode");
+    } else {
+        good = open_session(x);
+        x->logging = x->logging || !good;
+        if (!good && x->session) tell(x, FMI3_ERROR, "%s", bough_session_error(x->session));
+    }
+    if (good) return x;
+    fmi3FreeInstance(x);
+    return NULL;
+}
+
+void fmi3FreeInstance(fmi3_instance self) {
+    instance *x = self;
+    if (!x) return;
+    bough_session_close(x->session);
+    for (int k = 0; k < x->n_set; k++) free(x->set[k]);
+    free(x->scene);
+    free(x->body);
+    free(x);
+}
+
+// Opens the session once more with a longer duration; what was set before is kept.
+static fmi3_status prolong(instance *x, double stop) {
+    char text[64];
+    int n = bough_session_inputs(x->session), n_set = x->n_set;
+    double *value = malloc(((size_t)n + 1) * sizeof *value);
+    snprintf(text, sizeof text, "simulation.duration=%.17g", stop);
+    if (!value) return FMI3_ERROR;
+    for (int k = 0; k < n; k++) value[k] = bough_session_input_value(x->session, k);
+    x->set[n_set] = strdup(text);
+    x->n_set = n_set + 1;
+    bool good = x->set[n_set] && open_session(x);
+    for (int k = 0; good && k < n; k++) bough_session_set(x->session, k, value[k]);
+    free(value);
+    free(x->set[n_set]);
+    x->n_set = n_set;
+    return good ? FMI3_OK : answer(x, BOUGH_SESSION_OTHER);
+}
+
+fmi3_status fmi3EnterInitializationMode(fmi3_instance self, bool has_tolerance, double tolerance,
+                                        double start, bool has_stop, double stop) {
+    instance *x = self;
+    (void)has_tolerance;
+    (void)tolerance; // the scene's solvers have theirs
+    if (x->mode != INSTANTIATED) return misplaced(x, "fmi3EnterInitializationMode");
+    if (start != 0) return tell(x, FMI3_ERROR, "a run starts at 0 s, not at %g s", start);
+    if (has_stop && !(stop > 0 && isfinite(stop)))
+        return tell(x, FMI3_ERROR, "a run cannot stop at %g s", stop);
+    x->mode = INITIALIZATION;
+    bool longer = has_stop && stop > bough_session_duration(x->session) * (1 + 1e-12);
+    return longer ? prolong(x, stop) : FMI3_OK;
+}
+
+fmi3_status fmi3ExitInitializationMode(fmi3_instance self) {
+    instance *x = self;
+    if (x->mode != INITIALIZATION) return misplaced(x, "fmi3ExitInitializationMode");
+    x->mode = STEP;
+    bough_session_begin_body(x->session);
+    return FMI3_OK;
+}
+
+fmi3_status fmi3Terminate(fmi3_instance self) {
+    instance *x = self;
+    if (x->mode != STEP) return misplaced(x, "fmi3Terminate");
+    x->mode = TERMINATED;
+    return FMI3_OK;
+}
+
+fmi3_status fmi3Reset(fmi3_instance self) {
+    instance *x = self;
+    x->mode = INSTANTIATED;
+    return open_session(x) ? FMI3_OK : answer(x, BOUGH_SESSION_OTHER);
+}
+
+// -- values ---------------------------------------------------------------------------------------
+
+fmi3_status fmi3GetFloat64(fmi3_instance self, const fmi3_reference *reference, size_t n, double *value,
+                           size_t n_value) {
+    const instance *x = self;
+    size_t inputs = (size_t)bough_session_inputs(x->session);
+    const double *channel = bough_session_values(x->session);
+    size_t count = (size_t)bough_session_count(x->session);
+    if (n != n_value) return tell(x, FMI3_ERROR, "fmi3GetFloat64: %zu values of %zu", n_value, n);
+    for (size_t k = 0; k < n; k++) {
+        size_t at = reference[k];
+        if (at > inputs + count || (at > inputs && !channel)) {
+            return tell(x, FMI3_ERROR, "fmi3GetFloat64: no value of reference %zu", at);
+        }
+        value[k] = at == 0        ? bough_session_time(x->session)
+                   : at <= inputs ? bough_session_input_value(x->session, (int)at - 1)
+                                  : channel[at - inputs - 1];
+    }
+    return FMI3_OK;
+}
+
+fmi3_status fmi3SetFloat64(fmi3_instance self, const fmi3_reference *reference, size_t n, const double *value,
+                           size_t n_value) {
+    const instance *x = self;
+    if (x->mode == TERMINATED) return misplaced(x, "fmi3SetFloat64");
+    if (n != n_value) return tell(x, FMI3_ERROR, "fmi3SetFloat64: %zu values of %zu", n_value, n);
+    for (size_t k = 0; k < n; k++) {
+        if (reference[k] == 0 || reference[k] > (size_t)bough_session_inputs(x->session)) {
+            return tell(x, FMI3_ERROR, "fmi3SetFloat64: no input of reference %zu", (size_t)reference[k]);
+        }
+        int code = bough_session_set(x->session, (int)reference[k] - 1, value[k]);
+        if (code != BOUGH_SESSION_OK) return answer(x, code);
+    }
+    return FMI3_OK;
+}
+
+// An output may depend on all inputs and states: its dependencies are not listed.
+fmi3_status fmi3GetNumberOfVariableDependencies(fmi3_instance self, fmi3_reference reference, size_t *n) {
+    (void)self;
+    (void)reference;
+    *n = 0;
+    return FMI3_OK;
+}
+
+// -- states ---------------------------------------------------------------------------------------
+
+fmi3_status fmi3GetFMUState(fmi3_instance self, fmi3_state *to) {
+    const instance *x = self;
+    state *s = *to ? *to : calloc(1, sizeof *s);
+    if (!s) return tell(x, FMI3_ERROR, "out of memory");
+    *to = s;
+    if (!s->copy) s->copy = malloc(bough_session_size(x->session));
+    if (!s->copy) return tell(x, FMI3_ERROR, "out of memory");
+    s->size = bough_session_size(x->session);
+    return answer(x, bough_session_save(x->session, s->copy));
+}
+
+fmi3_status fmi3SetFMUState(fmi3_instance self, fmi3_state from) {
+    instance *x = self;
+    const state *s = from;
+    if (!s || s->size != bough_session_size(x->session)) {
+        return tell(x, FMI3_ERROR, "fmi3SetFMUState: no state of this FMU");
+    }
+    fmi3_status status = answer(x, bough_session_restore(x->session, s->copy));
+    if (status == FMI3_OK && x->mode == TERMINATED) x->mode = STEP;
+    return status;
+}
+
+fmi3_status fmi3FreeFMUState(fmi3_instance self, fmi3_state *from) {
+    (void)self;
+    if (!from || !*from) return FMI3_OK;
+    free(((state *)*from)->copy);
+    free(*from);
+    *from = NULL;
+    return FMI3_OK;
+}
+
+// -- stepping -------------------------------------------------------------------------------------
+
+static bool near(double a, double b) { return fabs(a - b) <= 1e-9 * fmax(1, fabs(b)); }
+
+// Macro steps up to a communication point, which one of them must meet.
+fmi3_status fmi3DoStep(fmi3_instance self, double time, double step, bool no_return, bool *event,
+                       bool *terminate, bool *early, double *reached) {
+    instance *x = self;
+    (void)no_return;
+    *event = *terminate = *early = false;
+    *reached = bough_session_time(x->session);
+    if (x->mode != STEP) return misplaced(x, "fmi3DoStep");
+    double end = time + step;
+    if (!near(time, *reached) || !(step > 0)) {
+        return tell(x, FMI3_ERROR, "fmi3DoStep: a step of %g s from %g s, the FMU is at %g s", step, time,
+                    *reached);
+    }
+    while (*reached < end && !near(*reached, end)) {
+        int code = bough_session_step(x->session);
+        *reached = bough_session_time(x->session);
+        if (code == BOUGH_SESSION_DONE) {
+            *terminate = true;
+            return tell(x, FMI3_ERROR, "fmi3DoStep: the run ends at %g s", *reached);
+        }
+        if (code != BOUGH_SESSION_OK) return answer(x, code);
+    }
+    if (near(*reached, end)) return FMI3_OK;
+    return tell(x, FMI3_ERROR, "fmi3DoStep: %g s is no whole number of macro steps", step);
+}

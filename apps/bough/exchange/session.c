@@ -1,0 +1,383 @@
+#include "apps/bough/exchange/session_body.h"
+
+#include "apps/bough/config/schema.h"
+#include "apps/bough/scene/fingerprint.h"
+#include "apps/bough/model/body_alone.h"
+#include "apps/bough/model/input_link.h"
+#include "apps/bough/model/run.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { ERROR_TEXT = 2000 };
+
+struct bough_session {
+    bough_arena *arena;
+    bool open; // the run is there
+    bough_run run;
+    bough_body *body; // stepped by itself; NULL: the scene is
+    uint64_t kind;    // fingerprint of what its copies hold
+    size_t size;      // of a copy [bytes]
+    int opening;      // code of the opening
+    int code;         // of the last call that has one
+    char error[ERROR_TEXT];
+};
+
+static int conclude(bough_session *s, bough_status status) {
+    bool good = bough_is_ok(&status);
+    s->code = good ? BOUGH_SESSION_OK : bough_exit_code(status.code);
+    if (good || status.message[0]) snprintf(s->error, sizeof s->error, "%s", status.message);
+    return s->code;
+}
+
+// A step has; the state means nothing.
+static bool failed(const bough_session *s) { return !bough_is_ok(&s->run.outcome); }
+
+static bool is_open(const bough_session *s) { return s && s->open; }
+
+// What a call says that needs a scene, where there is none.
+static int conclude_closed(bough_session *s, const char *call) {
+    if (!s) return BOUGH_SESSION_OTHER;
+    snprintf(s->error, sizeof s->error, "%s: the scene could not be opened", call);
+    return s->code = s->opening;
+}
+
+static int conclude_failed(bough_session *s, const char *call) {
+    return conclude(s, bough_fail(BOUGH_FAILED,
+                                  "%s: a step has failed, and the session can only be restored or closed: "
+                                  "%.300s",
+                                  call, s->run.outcome.message));
+}
+
+// All errors of the scene, a line each; as many as there is room for.
+static void keep_errors(bough_session *s, const bough_errors *errors) {
+    FILE *text = fmemopen(s->error, sizeof s->error, "w");
+    if (!text) return;
+    bough_errors_print(errors, text);
+    fclose(text);
+    s->error[sizeof s->error - 1] = '\0';
+}
+
+// -- copies ---------------------------------------------------------------------------------------
+
+// What every copy begins with.
+typedef struct head {
+    char magic[16];
+    uint64_t kind;
+} head;
+
+static const char magic[sizeof((head *)0)->magic] = "bough session 1";
+
+static void take(bough_session *s, bough_snapshot *snapshot) {
+    head h = {.kind = s->kind};
+    memcpy(h.magic, magic, sizeof magic);
+    bough_snapshot_take(snapshot, &h, sizeof h);
+    if (s->body) {
+        bough_body_snapshot(s->body, snapshot);
+        return;
+    }
+    bough_snapshot_doubles(snapshot, s->run.value, s->run.channels.count);
+    bough_run_snapshot(&s->run, snapshot);
+}
+
+// Two sessions understand each other's copies when the same numbers stand at the same places.
+static void describe_copy(bough_session *s) {
+    const bough_master *m = s->run.simulation->master;
+    const bough_assembly *a = m->assembly;
+    bough_snapshot measure = {.move = BOUGH_SNAPSHOT_MEASURE};
+    take(s, &measure);
+    s->size = measure.used;
+    s->kind = BOUGH_FINGERPRINT_START;
+    bough_mix(&s->kind, &s->size, sizeof s->size);
+    bough_mix_text(&s->kind, m->coupling->scheme->name);
+    bough_mix(&s->kind, &m->macro_step, sizeof m->macro_step);
+    for (int i = 0; i < a->n_member; i++) {
+        bough_snapshot own = {.move = BOUGH_SNAPSHOT_MEASURE};
+        bough_member_snapshot(a->member[i], &own);
+        bough_mix_text(&s->kind, a->member[i]->system.name);
+        bough_mix(&s->kind, &own.used, sizeof own.used);
+    }
+    for (int i = 0; i < s->run.channels.count; i++) {
+        bough_mix_text(&s->kind, s->run.channels.channel[i].name);
+    }
+}
+
+static bough_status check_copy(const bough_session *s, const void *copy) {
+    head h;
+    if (!copy) return bough_fail(BOUGH_INVALID, "restore: no copy is given (NULL)");
+    memcpy(&h, copy, sizeof h);
+    if (memcmp(h.magic, magic, sizeof magic) != 0) {
+        return bough_fail(BOUGH_INVALID, "this is no copy of a session");
+    }
+    if (h.kind == s->kind) return bough_ok();
+    return bough_fail(BOUGH_INVALID, "the copy is of a scene with other parts, coupling or steps");
+}
+
+size_t bough_session_size(const bough_session *s) { return s ? s->size : 0; }
+
+int bough_session_save(bough_session *s, void *copy) {
+    if (!is_open(s)) return conclude_closed(s, "save");
+    if (failed(s)) return conclude_failed(s, "save");
+    if (!copy) return conclude(s, bough_fail(BOUGH_INVALID, "save: no memory is given for the copy (NULL)"));
+    bough_status status = s->body ? bough_ok() : bough_run_storable(&s->run);
+    if (!bough_is_ok(&status)) return conclude(s, status);
+    bough_session_values(s);
+    take(s, &(bough_snapshot){BOUGH_SNAPSHOT_SAVE, copy, 0});
+    return bough_session_restore(s, copy);
+}
+
+int bough_session_restore(bough_session *s, const void *copy) {
+    if (!is_open(s)) return conclude_closed(s, "restore");
+    bough_status status = check_copy(s, copy);
+    if (!bough_is_ok(&status)) return conclude(s, status);
+    take(s, &(bough_snapshot){BOUGH_SNAPSHOT_RESTORE, (char *)(uintptr_t)copy, 0});
+    s->run.sampled = true; // the values are in the copy
+    return conclude(s, bough_ok());
+}
+
+// -- opening and stepping -------------------------------------------------------------------------
+
+// The first region of a thread starts its team; later ones find it.
+static void start_threads(void *unused) { (void)unused; }
+
+typedef struct opening {
+    bough_session *session;
+    const char *path, *const *set;
+    int n_set;
+    const char *body; // NULL: the whole scene
+} opening;
+
+static bough_status check_opening(const opening *o) {
+    if (!o->path) return bough_fail(BOUGH_INVALID, "no scene is given (NULL)");
+    if (o->n_set < 0) return bough_fail(BOUGH_INVALID, "the number of settings is %d", o->n_set);
+    if (o->n_set > 0 && !o->set) return bough_fail(BOUGH_INVALID, "no list of settings is given (NULL)");
+    for (int k = 0; k < o->n_set; k++) {
+        if (!o->set[k]) return bough_fail(BOUGH_INVALID, "setting %d of %d is NULL", k + 1, o->n_set);
+    }
+    return bough_ok();
+}
+
+static bough_status build(bough_arena *arena, void *self) {
+    const opening *o = self;
+    bough_session *s = o->session;
+    bough_status given = check_opening(o);
+    if (!bough_is_ok(&given)) return given;
+    bough_errors errors = {.arena = arena};
+    bough_scene *scene = NULL;
+    bough_status status = bough_scene_read(arena, o->path, o->set, o->n_set, &errors, &scene);
+    if (!bough_is_ok(&status)) {
+        bool listed = errors.n > 0 && status.code == BOUGH_INVALID;
+        if (listed) keep_errors(s, &errors);
+        if (listed) status.message[0] = '\0';
+        return status;
+    }
+    // nobody sees the errors unless the scene asks for them
+    if (o->body || !bough_node_find(scene->simulation.node, "error_estimate"))
+        scene->simulation.error_estimate = BOUGH_SCENE_NO_ESTIMATE;
+    status = bough_run_create(arena, scene, &s->run);
+    if (bough_is_ok(&status) && o->body) {
+        status = bough_body_create(arena, s->run.simulation, o->body, &s->body);
+    }
+    if (!bough_is_ok(&status)) return status;
+    bough_pool_region(s->run.pool, start_threads, NULL);
+    describe_copy(s);
+    s->open = true;
+    return status;
+}
+
+bough_session *bough_session_open(const char *scene, const char *const *set, int count) {
+    return bough_session_open_body(scene, set, count, NULL);
+}
+
+bough_session *bough_session_open_body(const char *scene, const char *const *set, int count,
+                                       const char *body) {
+    bough_session *s = calloc(1, sizeof *s);
+    if (!s) return NULL;
+    s->arena = bough_arena_create();
+    if (!s->arena) {
+        free(s);
+        return NULL;
+    }
+    opening o = {s, scene, set, count, body};
+    s->opening = conclude(s, bough_arena_guard(s->arena, build, &o));
+    return s;
+}
+
+int bough_session_code(const bough_session *s) { return s ? s->code : BOUGH_SESSION_OTHER; }
+
+const char *bough_session_error(const bough_session *s) {
+    return s ? s->error : "there is no session (NULL): its opening ran out of memory";
+}
+
+const char *bough_session_warning(const bough_session *s) {
+    return is_open(s) ? s->run.simulation->master->verdict : "";
+}
+
+int bough_session_step(bough_session *s) {
+    if (!is_open(s)) return conclude_closed(s, "step");
+    if (failed(s)) return conclude(s, s->run.outcome);
+    if (s->body) return conclude(s, s->run.outcome = bough_body_step(s->body));
+    if (bough_run_done(&s->run)) return BOUGH_SESSION_DONE;
+    return conclude(s, bough_run_step(&s->run));
+}
+
+double bough_session_time(const bough_session *s) {
+    if (s && s->body) return bough_body_time(s->body);
+    return is_open(s) ? s->run.simulation->master->time : (double)NAN;
+}
+
+double bough_session_duration(const bough_session *s) {
+    if (s && s->body) return HUGE_VAL;
+    return is_open(s) ? s->run.simulation->master->duration : (double)NAN;
+}
+
+int bough_session_count(const bough_session *s) {
+    if (!is_open(s)) return 0;
+    return s->body ? BOUGH_BODY_OUTPUTS : s->run.channels.count;
+}
+
+static bool known(const bough_session *s, int channel) {
+    return channel >= 0 && channel < bough_session_count(s);
+}
+
+const char *bough_session_name(const bough_session *s, int channel) {
+    if (!known(s, channel)) return "";
+    return s->body ? bough_body_outputs[channel].name : s->run.channels.channel[channel].name;
+}
+
+const char *bough_session_unit(const bough_session *s, int channel) {
+    if (!known(s, channel)) return "";
+    return s->body ? bough_body_outputs[channel].unit : s->run.channels.channel[channel].unit;
+}
+
+// The index of a name among n; -1 with a message that names the nearest of them.
+static int find_name(bough_session *s, const char *what, const char *name, int n,
+                     const char *(*name_of)(const bough_session *session, int k)) {
+    const char *shown = name ? name : "";
+    for (int k = 0; k < n; k++) {
+        if (strcmp(name_of(s, k), shown) == 0) return k;
+    }
+    if (!is_open(s)) {
+        conclude_closed(s, what);
+        return -1;
+    }
+    const char **names = malloc((size_t)(n + 1) * sizeof *names);
+    for (int k = 0; k < n && names; k++) names[k] = name_of(s, k);
+    conclude(s, bough_fail(BOUGH_INVALID, "the scene has no %s '%.80s'%s", what, shown,
+                           bough_suggest(shown, names, names ? n : 0).text));
+    free(names);
+    return -1;
+}
+
+int bough_session_find(bough_session *s, const char *name) {
+    return find_name(s, "channel", name, bough_session_count(s), bough_session_name);
+}
+
+const double *bough_session_values(bough_session *s) {
+    if (!is_open(s)) return NULL;
+    if (s->body) return failed(s) ? NULL : bough_body_wrench(s->body);
+    return s->run.channels.count > 0 ? bough_run_values(&s->run) : NULL;
+}
+
+double bough_session_read(bough_session *s, int channel) {
+    const double *value = known(s, channel) ? bough_session_values(s) : NULL;
+    return value ? value[channel] : (double)NAN;
+}
+
+double bough_session_estimate(const bough_session *s, int channel) {
+    bool there = s->open && !s->body && known(s, channel) && bough_companion_knows(s->run.companion, channel);
+    return there ? s->run.companion->error[channel] : (double)NAN;
+}
+
+// -- inputs ---------------------------------------------------------------------------------------
+
+static const bough_scene_input *input_at(const bough_session *s, int input) {
+    return &s->run.simulation->scene->input[input];
+}
+
+static bool is_input(const bough_session *s, int input) {
+    return input >= 0 && input < bough_session_inputs(s);
+}
+
+static double *input_value(const bough_session *s, int input) {
+    if (!is_input(s, input)) return NULL;
+    return (s->body ? bough_body_motion(s->body) : bough_input_link_values(s->run.simulation->inputs)) +
+           input;
+}
+
+static bough_dimension input_dimension(const bough_session *s, int input) {
+    return s->body ? bough_body_inputs[input].dimension : (bough_dimension)input_at(s, input)->dimension;
+}
+
+int bough_session_inputs(const bough_session *s) {
+    if (s && s->body) return BOUGH_BODY_INPUTS;
+    return is_open(s) ? s->run.simulation->scene->n_input : 0;
+}
+
+const char *bough_session_input_name(const bough_session *s, int input) {
+    if (!is_input(s, input)) return "";
+    return s->body ? bough_body_inputs[input].name : input_at(s, input)->name;
+}
+
+const char *bough_session_input_unit(const bough_session *s, int input) {
+    return is_input(s, input) ? bough_dimension_unit(input_dimension(s, input)) : "";
+}
+
+int bough_session_input(bough_session *s, const char *name) {
+    return find_name(s, "input", name, bough_session_inputs(s), bough_session_input_name);
+}
+
+double bough_session_input_value(const bough_session *s, int input) {
+    const double *value = input_value(s, input);
+    return value ? *value : (double)NAN;
+}
+
+// What the scene's keys allow of the same quantity.
+static const char *input_range(const bough_session *s, int input) {
+    return s->body ? NULL : input_at(s, input)->range;
+}
+
+int bough_session_set(bough_session *s, int input, double value) {
+    if (!is_open(s)) return conclude_closed(s, "set");
+    if (failed(s)) return conclude_failed(s, "set");
+    double *to = input_value(s, input);
+    if (!to) {
+        return conclude(s, bough_fail(BOUGH_INVALID, "the scene has no input of index %d: it has %d", input,
+                                      bough_session_inputs(s)));
+    }
+    const char *range = input_range(s, input);
+    if (!isfinite(value)) {
+        return conclude(s, bough_fail(BOUGH_INVALID, "input %s: expected a finite number, got %g",
+                                      bough_session_input_name(s, input), value));
+    }
+    if (!bough_in_range(value, range)) {
+        return conclude(s, bough_fail(BOUGH_INVALID, "input %s: must be %s%s %s, got %g",
+                                      bough_session_input_name(s, input), range[0] == '[' ? "in " : "", range,
+                                      bough_session_input_unit(s, input), value));
+    }
+    *to = value;
+    return conclude(s, bough_ok());
+}
+
+int bough_session_set_text(bough_session *s, int input, const char *text) {
+    double value = (double)NAN;
+    char why[160] = "";
+    if (!text) text = "";
+    if (is_input(s, input) && !bough_quantity(text, input_dimension(s, input), &value, why)) {
+        return conclude(s, bough_fail(BOUGH_INVALID, "input %s: expected a value in %s, got '%.80s'%s%s",
+                                      bough_session_input_name(s, input), bough_session_input_unit(s, input),
+                                      text, why[0] ? ": " : "", why));
+    }
+    return bough_session_set(s, input, value);
+}
+
+void bough_session_begin_body(bough_session *s) {
+    if (s && s->body) bough_body_begin(s->body);
+}
+
+void bough_session_close(bough_session *s) {
+    if (!s) return;
+    bough_arena_destroy(s->arena);
+    free(s);
+}

@@ -1,0 +1,310 @@
+#include "apps/bough/import/draft.h"
+
+#include "apps/bough/config/text.h"
+#include "apps/bough/import/trial.h"
+#include "apps/bough/results/folder.h"
+#include "apps/bough/scene/scene.h"
+
+#include <ctype.h>
+#include <errno.h>
+#include <math.h>
+#include <stdarg.h>
+#include <stdbool.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+// Macro steps [s], and by how much the rotor may turn in one [rad].
+static const double longest_step = 0.02, shortest_step = 0.02 / 32, most_turn = 0.07;
+
+// Tolerances of the integrator, tried from the first on, all of one length.
+static const char *const tolerance[] = {"4.5e-4", "1.5e-4", "5.0e-5", "1.5e-5"};
+enum { N_TOLERANCE = sizeof tolerance / sizeof *tolerance, TRIAL_STEPS = 2 };
+
+const char *const bough_import_name[BOUGH_N_IMPORT_FILE] = {"scene.yaml",           "blade-structure.yaml",
+                                                            "tower-structure.yaml", "blade-aero.yaml",
+                                                            "airfoils.yaml",        "import.txt"};
+
+// -- text -----------------------------------------------------------------------------------------
+
+void bough_draft_note(bough_draft *d, bough_import_note kind, const char *format, ...) {
+    va_list list;
+    va_start(list, format);
+    fputs("  ", d->note[kind]);
+    vfprintf(d->note[kind], format, list);
+    fputc('\n', d->note[kind]);
+    va_end(list);
+}
+
+void bough_draft_turbine(bough_draft *d, const char *rotor, int n_blade) {
+    FILE *file = d->file[BOUGH_IMPORT_SCENE];
+    fprintf(file, "turbine:\n  rotor: %s\n  blades: [blade1", rotor);
+    for (int k = 2; k <= n_blade; k++) fprintf(file, ", blade%d", k);
+    fputs("]\n", file);
+}
+
+void bough_draft_tower(bough_draft *d, double foot) {
+    FILE *file = d->file[BOUGH_IMPORT_SCENE];
+    fputs("  - name: tower\n    fidelity: rod\n    joint: {kind: fixed, parent: ground", file);
+    if (foot != 0) fprintf(file, ", placement: [move z %.10g m]", foot);
+    fprintf(file, "}\n    rod: {table: %s, segments: 20}\n", bough_import_name[BOUGH_IMPORT_TOWER]);
+}
+
+void bough_draft_library(bough_draft *d, const char *library, const char *input, double gear_ratio,
+                         double efficiency) {
+    FILE *file = d->file[BOUGH_IMPORT_SCENE];
+    fprintf(
+        file,
+        "control:\n  kind: bladed\n  rate: %.10g Hz\n  gear_ratio: %.10g\n  efficiency: %.10g\n  library: ",
+        1 / d->macro_step, gear_ratio, efficiency);
+    bough_import_path(file, library);
+    if (input) {
+        fputs("\n  input: ", file);
+        bough_import_path(file, input);
+    }
+    fputc('\n', file);
+}
+
+void bough_draft_airfoil_name(const char *text, size_t length, int number, char name[BOUGH_AIRFOIL_NAME]) {
+    int n = snprintf(name, BOUGH_AIRFOIL_NAME, "%d-", number);
+    for (size_t i = 0; i < length && n < BOUGH_AIRFOIL_NAME - 1; i++)
+        name[n++] = bough_import_letter(text[i]);
+    name[n] = '\0';
+}
+
+static void put_row(FILE *file, double angle, const double *rest) {
+    const double value[BOUGH_POLAR_COLUMNS] = {angle, rest[0], rest[1], rest[2]};
+    fputs("        - ", file);
+    bough_import_list(file, value, BOUGH_POLAR_COLUMNS);
+    fputc('\n', file);
+}
+
+void bough_draft_polar(bough_draft *d, const char *name, const double *row, int n) {
+    const double close = 1e-3; // [deg]
+    FILE *file = d->file[BOUGH_IMPORT_POLARS];
+    const double *last = row + BOUGH_POLAR_COLUMNS * (n - 1);
+    double end[3], gap = 0;
+    for (int c = 0; c < 3; c++) {
+        end[c] = (row[1 + c] + last[1 + c]) / 2;
+        gap = fmax(gap, fabs(row[1 + c] - last[1 + c]));
+    }
+    bool whole = n > 1 && row[0] <= close - 180 && last[0] >= 180 - close;
+    fprintf(file, "  - name: %s\n    table:\n      columns: [alpha deg, cl, cd, cm]\n      rows:\n", name);
+    put_row(file, -180, end);
+    for (int i = 0; i < n; i++) {
+        const double *r = row + BOUGH_POLAR_COLUMNS * i;
+        if (fabs(r[0]) < 180 - close) put_row(file, r[0], r + 1);
+    }
+    put_row(file, 180, end);
+    if (whole && gap <= 1e-6) return;
+    bough_draft_note(d, BOUGH_APPROXIMATED,
+                     "%s: from %g to %g deg; the value at 180 deg is the mean of its ends", name, row[0],
+                     last[0]);
+}
+
+void bough_import_list(FILE *file, const double *value, int n) {
+    for (int i = 0; i < n; i++) fprintf(file, "%s%.10g", i == 0 ? "[" : ", ", value[i] + 0.0);
+    fputc(']', file);
+}
+
+void bough_import_path(FILE *file, const char *path) {
+    char here[BOUGH_PATH_MAX], whole[2 * BOUGH_PATH_MAX];
+    bool relative = path[0] != '/' && getcwd(here, sizeof here);
+    snprintf(whole, sizeof whole, "%s%s%s", relative ? here : "", relative ? "/" : "", path);
+    bough_text_quoted(file, whole);
+}
+
+char bough_import_letter(char letter) {
+    return isalnum((unsigned char)letter) || letter == '-' ? letter : '_';
+}
+
+void bough_draft_head(bough_draft *d, const char *title, const char *origin, double gravity, double duration,
+                      double rotor_speed) {
+    FILE *file = d->file[BOUGH_IMPORT_SCENE];
+    double step = longest_step;
+    while (step * rotor_speed > most_turn && step > shortest_step * 1.5) step /= 2;
+    double steps = fmax(ceil(duration / step - 1e-6), 1);
+    d->macro_step = step;
+    fprintf(file,
+            "# Imported from %s: import.txt tells what was taken.\n"
+            "# Ground axes: x downwind, z up. The rotor turns positive about the shaft's x.\n"
+            "title: ",
+            origin);
+    bough_text_quoted(file, title);
+    fprintf(file,
+            "\ngravity: [0, 0, %.10g]\nsimulation:\n  duration: %.10g s\n"
+            "  macro_step: %g s\n"
+            "  coupling: {scheme: monolithic} # all bodies coupled at the stages of the steps\n"
+            "  master: {solver: rosenbrock, step: %g ms, rtol: ",
+            -gravity, steps * step, step, 500 * step);
+    d->tolerance_at = ftell(file);
+    fprintf(
+        file,
+        "%s}\n"
+        "  threads: 2\n",
+        tolerance[0]);
+}
+
+// -- files ----------------------------------------------------------------------------------------
+
+static bough_status open_texts(bough_draft *d) {
+    bool good = true;
+    for (int i = 0; i < BOUGH_N_NOTE; i++)
+        good = (d->note[i] = open_memstream(&d->note_text[i], &d->note_size[i])) && good;
+    for (int i = 0; i < BOUGH_N_IMPORT_FILE; i++)
+        good = (d->file[i] = open_memstream(&d->file_text[i], &d->file_size[i])) && good;
+    return good ? bough_ok() : bough_fail(BOUGH_OUT_OF_MEMORY, "memory is exhausted");
+}
+
+static void put_text(const void *text, FILE *file) { fputs(text, file); }
+
+static bough_status write_box(const char *folder, const bough_wind_box *box) {
+    char path[BOUGH_PATH_MAX];
+    FILE *file;
+    bough_status status = bough_folder_open(folder, BOUGH_IMPORT_BOX, path, &file);
+    if (!bough_is_ok(&status)) return status;
+    if (bough_wind_box_write(box, "imported", file)) return bough_folder_commit(path, file);
+    bough_folder_discard(path, file);
+    return bough_fail(BOUGH_IO, "cannot write '%.200s'", path);
+}
+
+static bough_status write_file(const char *folder, const bough_draft *d, int i) {
+    const char *text = d->file_text[i];
+    return text[0] ? bough_folder_write(folder, bough_import_name[i], put_text, text) : bough_ok();
+}
+
+static bough_status write_files(const char *folder, const bough_draft *d) {
+    bough_status status = bough_folder_make(folder);
+    for (int i = 0; i < BOUGH_IMPORT_LIST && bough_is_ok(&status); i++) status = write_file(folder, d, i);
+    if (d->box && bough_is_ok(&status)) status = write_box(folder, d->box);
+    return status;
+}
+
+// -- trials ---------------------------------------------------------------------------------------
+
+static void note_trial(bough_draft *d, const bough_scene *scene, int steps) {
+    const bough_scene_simulation *s = &scene->simulation;
+    bough_draft_note(d, BOUGH_TRIED, "%g s in macro steps of %g s with rtol %g",
+                     fmin(steps * s->macro_step, s->duration), s->macro_step, s->master.rtol);
+}
+
+// With one tolerance after the other, until the errors are small enough: well below the scene's bound, since
+// a whole run may err by more than its first steps, unless there is no smaller tolerance. The scene's text
+// gets that tolerance.
+static bough_status try_scene(bough_draft *d, const char *folder, bough_scene *scene) {
+    const double usual = 0.5; // of the bound
+    int steps = d->trial_steps > 0 ? d->trial_steps : TRIAL_STEPS;
+    bough_status status = bough_ok();
+    for (int i = 0; i < N_TOLERANCE; i++) {
+        double part = d->trial_steps == 0 ? 0 : i + 1 < N_TOLERANCE ? usual : 1;
+        scene->simulation.master.rtol = strtod(tolerance[i], NULL);
+        memcpy(d->file_text[BOUGH_IMPORT_SCENE] + d->tolerance_at, tolerance[i], strlen(tolerance[i]));
+        status = bough_import_trial(d->arena, scene, steps, part * scene->simulation.error_bound);
+        if (status.code != BOUGH_FAILED) break;
+        bough_draft_note(d, BOUGH_TRIED, "rtol %s: %s", tolerance[i], status.message);
+    }
+    if (bough_is_ok(&status)) {
+        note_trial(d, scene, steps);
+        return write_file(folder, d, BOUGH_IMPORT_SCENE);
+    }
+    const char *last = status.code == BOUGH_FAILED ? tolerance[N_TOLERANCE - 1] : NULL;
+    return bough_fail(status.code, "the model gives a scene that cannot run%s%s: %.500s",
+                      last ? ", not even with rtol " : "", last ? last : "", status.message);
+}
+
+// What the deck's own checks have let through.
+static bough_status check_scene(bough_draft *d, const char *folder) {
+    char path[BOUGH_PATH_MAX];
+    bough_errors errors = {.arena = d->arena};
+    bough_scene *scene;
+    bough_status status = bough_folder_path(folder, bough_import_name[BOUGH_IMPORT_SCENE], path);
+    if (bough_is_ok(&status)) status = bough_scene_read(d->arena, path, NULL, 0, &errors, &scene);
+    if (errors.n == 0) return bough_is_ok(&status) ? try_scene(d, folder, scene) : status;
+    const bough_error *e = errors.item;
+    const char *slash = strrchr(e->file, '/');
+    return bough_fail(BOUGH_INVALID, "the model gives no scene: %.40s:%d: %.80s: %.200s",
+                      slash ? slash + 1 : e->file, e->line, e->path, e->text);
+}
+
+// Moves the files to their place, the scene last: with it the model is whole; or removes them.
+static bough_status finish_files(const char *from, const char *folder, bool good) {
+    char old[BOUGH_PATH_MAX], path[BOUGH_PATH_MAX];
+    bough_status status = bough_ok();
+    for (int i = BOUGH_N_IMPORT_FILE; i >= 0; i--) {
+        const char *name = i < BOUGH_N_IMPORT_FILE ? bough_import_name[i] : BOUGH_IMPORT_BOX;
+        bough_status named = bough_folder_path(from, name, old);
+        if (bough_is_ok(&named)) named = bough_folder_path(folder, name, path);
+        if (!bough_is_ok(&named) || !good) {
+            unlink(old);
+        } else if (rename(old, path) != 0 && errno != ENOENT && bough_is_ok(&status)) {
+            status = bough_fail(BOUGH_IO, "cannot write '%.200s': %s", path, strerror(errno));
+        }
+    }
+    rmdir(from);
+    return status;
+}
+
+// Closes texts; whether all were written whole.
+static bool close_all(FILE **file, int n) {
+    bool good = true;
+    for (int i = 0; i < n; i++) {
+        if (file[i] && (ferror(file[i]) | fclose(file[i])) != 0) good = false;
+        file[i] = NULL;
+    }
+    return good;
+}
+
+// The list, with the lines of the trials.
+static bough_status write_list(bough_draft *d, const char *folder) {
+    static const char *const head[BOUGH_N_NOTE] = {"NOT THE MODEL'S LOAD CASE, which also has", "taken",
+                                                   "approximated", "left out", "tried"};
+    FILE **list = &d->file[BOUGH_IMPORT_LIST];
+    bool good = close_all(d->note, BOUGH_N_NOTE);
+    for (int i = 0; i < BOUGH_N_NOTE && good; i++) {
+        const char *note = d->note_text[i];
+        if (i == BOUGH_OTHER_CASE && !note[0]) continue;
+        fprintf(*list, "%s:\n%s", head[i], note[0] ? note : "  nothing\n");
+    }
+    if (!close_all(list, 1) || !good) return bough_fail(BOUGH_OUT_OF_MEMORY, "memory is exhausted");
+    return write_file(folder, d, BOUGH_IMPORT_LIST);
+}
+
+// The files are read and tried as a scene before they take their place.
+static bough_status publish(bough_draft *d, const char *folder) {
+    char draft[BOUGH_PATH_MAX];
+    bool present = access(folder, F_OK) == 0;
+    bough_status status = bough_folder_path(folder, "import.partial", draft);
+    if (!bough_is_ok(&status)) return status;
+    status = write_files(draft, d);
+    if (bough_is_ok(&status)) status = check_scene(d, draft);
+    if (bough_is_ok(&status)) status = write_list(d, draft);
+    bough_status finished = finish_files(draft, folder, bough_is_ok(&status));
+    if (bough_is_ok(&status)) status = finished;
+    if (!bough_is_ok(&status) && !present) rmdir(folder);
+    return status;
+}
+
+static bough_status import(bough_arena *arena, void *self) {
+    const bough_draft_def *def = self;
+    bough_draft *d = def->draft;
+    d->arena = arena;
+    def->convert(def->self, def->path);
+    if (!close_all(d->file, BOUGH_IMPORT_LIST)) return bough_fail(BOUGH_OUT_OF_MEMORY, "memory is exhausted");
+    if (bough_is_ok(d->status)) *d->status = publish(d, def->folder);
+    if (bough_is_ok(d->status) && def->echo) fputs(d->file_text[BOUGH_IMPORT_LIST], def->echo);
+    return *d->status;
+}
+
+bough_status bough_draft_import(const bough_draft_def *def) {
+    bough_draft *d = def->draft;
+    bough_draft_def own = *def;
+    bough_status kept = bough_ok();
+    *d = (bough_draft){.status = &kept, .trial_steps = def->trial_steps};
+    bough_status status = open_texts(d);
+    if (bough_is_ok(&status)) status = bough_arena_use(import, &own);
+    close_all(d->note, BOUGH_N_NOTE);
+    close_all(d->file, BOUGH_N_IMPORT_FILE);
+    for (int i = 0; i < BOUGH_N_NOTE; i++) free(d->note_text[i]);
+    for (int i = 0; i < BOUGH_N_IMPORT_FILE; i++) free(d->file_text[i]);
+    return status;
+}

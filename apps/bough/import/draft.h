@@ -1,0 +1,99 @@
+// The texts of an imported scene's files and of its list. They become files only when the whole model could
+// be read.
+#ifndef BOUGH_IMPORT_DRAFT_H
+#define BOUGH_IMPORT_DRAFT_H
+
+#include "aero/wind/wind_box.h"
+#include "core/base/arena.h"
+#include "core/base/status.h"
+
+#include <stddef.h>
+#include <stdio.h>
+
+typedef enum bough_import_note {
+    BOUGH_OTHER_CASE, // left out although the run becomes another than the model's; the first lines
+    BOUGH_TAKEN,
+    BOUGH_APPROXIMATED,
+    BOUGH_LEFT_OUT,
+    BOUGH_TRIED,
+    BOUGH_N_NOTE
+} bough_import_note;
+
+typedef enum bough_import_file {
+    BOUGH_IMPORT_SCENE,
+    BOUGH_IMPORT_BLADE,
+    BOUGH_IMPORT_TOWER,
+    BOUGH_IMPORT_AERO,
+    BOUGH_IMPORT_POLARS,
+    BOUGH_IMPORT_LIST,
+    BOUGH_N_IMPORT_FILE,
+} bough_import_file;
+
+extern const char *const bough_import_name[BOUGH_N_IMPORT_FILE];
+
+typedef struct bough_draft {
+    bough_arena *arena;
+    bough_status *status;            // the first failure is kept
+    FILE *note[BOUGH_N_NOTE];        // lines of the list
+    FILE *file[BOUGH_N_IMPORT_FILE]; // texts of the files; one left empty is not written
+    char *note_text[BOUGH_N_NOTE], *file_text[BOUGH_N_IMPORT_FILE];
+    size_t note_size[BOUGH_N_NOTE], file_size[BOUGH_N_IMPORT_FILE];
+    double macro_step;         // [s]; air and control are sampled as often
+    long tolerance_at;         // where the scene's text has the integrator's tolerance
+    int trial_steps;           // of the definition
+    const bough_wind_box *box; // to be written as wind.bts; NULL: none
+} bough_draft;
+
+#define BOUGH_IMPORT_BOX "wind.bts"
+
+// An import: convert(self, path) fills the draft, then the files are written unless there was a failure or
+// they make no scene that runs; the list also to `echo` (NULL: nobody).
+typedef struct bough_draft_def {
+    bough_draft *draft;
+    void (*convert)(void *self, const char *path);
+    void *self;
+    const char *path, *folder;
+    int trial_steps; // as in the options
+    FILE *echo;
+} bough_draft_def;
+
+bough_status bough_draft_import(const bough_draft_def *def);
+
+// A line of the list.
+void bough_draft_note(bough_draft *d, bough_import_note kind, const char *format, ...)
+    __attribute__((format(printf, 3, 4)));
+
+// Writes the scene's first lines: comment, title, time, solvers. The macro step follows from the rotor's
+// speed [rad/s]; the duration [s] is rounded up to whole macro steps. `origin`: "an OpenFAST model".
+void bough_draft_head(bough_draft *d, const char *title, const char *origin, double gravity, double duration,
+                      double rotor_speed);
+
+enum { BOUGH_IMPORT_BLADES = 16 }; // at most
+
+// The scene's 'turbine': blades are named blade1, blade2 ...
+void bough_draft_turbine(bough_draft *d, const char *rotor, int n_blade);
+
+// The scene's flexible tower, its foot at this height [m], and its 'control' by a library with its input file
+// (NULL: none) and the constants of the generator; further keys may follow.
+void bough_draft_tower(bough_draft *d, double foot);
+void bough_draft_library(bough_draft *d, const char *library, const char *input, double gear_ratio,
+                         double efficiency);
+
+// The name of an airfoil's polar: its number and what is known of it, in letters that a scene's names have.
+enum { BOUGH_AIRFOIL_NAME = 64, BOUGH_POLAR_COLUMNS = 4 };
+void bough_draft_airfoil_name(const char *text, size_t length, int number, char name[BOUGH_AIRFOIL_NAME]);
+
+// A polar with rows (n × BOUGH_POLAR_COLUMNS) of rising angle [deg], lift, drag and moment, written from -180
+// to 180 deg, where the values are one: the mean of those at the table's ends.
+void bough_draft_polar(bough_draft *d, const char *name, const double *row, int n);
+
+// "[1, 2, 3]" in the scene's spelling.
+void bough_import_list(FILE *file, const double *value, int n);
+
+// Writes a path as an absolute path in double quotes, for files that stay where they are.
+void bough_import_path(FILE *file, const char *path);
+
+// Whether the letter may stand in a scene's name.
+char bough_import_letter(char letter);
+
+#endif

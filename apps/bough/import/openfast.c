@@ -1,0 +1,190 @@
+// The main file of an OpenFAST model, and the order in which the scene is written.
+#include "apps/bough/import/import.h"
+
+#include "apps/bough/import/openfast.h"
+
+#include <string.h>
+
+bough_deck *bough_openfast_open(bough_openfast *o, const bough_deck *from, const char *names) {
+    const char *path = bough_deck_file(from, names);
+    bough_deck *deck = bough_deck_open(o->draft.arena, path, BOUGH_DECK_HEADING, o->draft.status);
+    if (deck) bough_draft_note(&o->draft, BOUGH_TAKEN, "%.*s: %s", (int)strcspn(names, "|"), names, path);
+    return deck;
+}
+
+void bough_openfast_leave(bough_openfast *o, const bough_deck *deck, const bough_openfast_rest *rest,
+                          size_t n) {
+    for (size_t i = 0; i < n; i++) {
+        double value = bough_deck_switch_or(deck, rest[i].name, rest[i].neutral);
+        if (value == rest[i].neutral) continue;
+        bough_draft_note(&o->draft, BOUGH_LEFT_OUT, "%s%s%s", rest[i].name, rest[i].text ? ": " : "",
+                         rest[i].text ? rest[i].text : "");
+    }
+}
+
+// -- reading --------------------------------------------------------------------------------------
+
+// What is below the tower is left out where its base is to be clamped.
+static void leave_water(bough_openfast *o) {
+    static const char *const part[] = {"CompHydro",   "CompSeaSt", "CompSub",
+                                       "CompMooring", "CompIce",   "CompSoil"};
+    for (size_t i = 0; i < sizeof part / sizeof *part; i++) {
+        if (bough_deck_whole_or(o->main, part[i], 0) == 0) continue;
+        if (o->options->clamp_base) {
+            bough_draft_note(&o->draft, BOUGH_LEFT_OUT, "%s: the tower's base is clamped", part[i]);
+            continue;
+        }
+        bough_deck_fail(o->main, bough_deck_line(o->main, part[i]),
+                        "%s: expected 0, a turbine on land; --clamp-base imports it clamped at "
+                        "the tower's base",
+                        part[i]);
+    }
+    if (bough_deck_whole_or(o->main, "MHK", 0) != 0) {
+        bough_deck_fail(o->main, bough_deck_line(o->main, "MHK"), "MHK: expected 0, a turbine in air");
+    }
+}
+
+// Since version 5.
+static void refuse_other_rotors(const bough_openfast *o) {
+    if (bough_deck_whole_or(o->main, "NRotors", 1) != 1) {
+        bough_deck_fail(o->main, bough_deck_line(o->main, "NRotors"), "NRotors: expected 1");
+    } else if (bough_deck_flag_or(o->main, "MirrorRotor", false)) {
+        bough_deck_fail(o->main, bough_deck_line(o->main, "MirrorRotor"),
+                        "MirrorRotor: expected False, a rotor that turns clockwise");
+    }
+}
+
+// Main files of other programs of the family.
+static void refuse_other_files(const bough_openfast *o) {
+    static const char *const key[] = {"ADFile|ADAMSPrep", "Mod_AmbWind", "AnalysisType"};
+    static const char *const what[] = {"a model of FAST 8.07 or older: convert it to OpenFAST's files",
+                                       "a wind farm: give the main file of one of its turbines",
+                                       "the file of a driver: give the main file of a turbine"};
+    if (bough_deck_line(o->main, "CompElast") >= 0) return;
+    for (int i = 0; i < 3; i++) {
+        int line = bough_deck_line(o->main, key[i]);
+        if (line >= 0)
+            bough_deck_fail(o->main, line, "expected a turbine's main file of OpenFAST, got %s", what[i]);
+    }
+}
+
+static void open_modules(bough_openfast *o) {
+    refuse_other_files(o);
+    int elastic = bough_deck_whole(o->main, "CompElast", 1, 3);
+    int air = bough_deck_whole(o->main, "CompAero", 0, 3);
+    if (elastic == 3) {
+        bough_deck_fail(o->main, bough_deck_line(o->main, "CompElast"),
+                        "CompElast: expected 1 (ElastoDyn) or 2 (with BeamDyn), got 3 (Simplified "
+                        "ElastoDyn), which describes no blades");
+    }
+    leave_water(o);
+    refuse_other_rotors(o);
+    o->beamdyn = elastic == 2;
+    o->elasto = bough_openfast_open(o, o->main, "EDFile");
+    if (bough_deck_whole(o->main, "CompInflow", 0, 2) == 1) {
+        o->inflow = bough_openfast_open(o, o->main, "InflowFile");
+    }
+    if (air == 1 || air == 3) {
+        bough_deck_fail(o->main, bough_deck_line(o->main, "CompAero"),
+                        "CompAero: expected 0 or 2 (AeroDyn 15 and later), got %d: AeroDyn 14, AeroDisk and "
+                        "external loads are not supported",
+                        air);
+    }
+    if (air == 2) o->aero = bough_openfast_open(o, o->main, "AeroFile");
+    if (bough_deck_whole_or(o->main, "CompServo", 0) == 1) {
+        o->servo = bough_openfast_open(o, o->main, "ServoFile");
+    }
+}
+
+// A blade or tower bends if one of its motions is wanted.
+static bool any(const bough_deck *deck, const char *const *name) {
+    for (; *name; name++) {
+        if (bough_deck_flag_or(deck, *name, false)) return true;
+    }
+    return false;
+}
+
+static void read_shape(bough_openfast *o) {
+    static const char *const blade[] = {"FlapDOF1", "FlapDOF2", "EdgeDOF", NULL};
+    static const char *const tower[] = {"TwFADOF1", "TwFADOF2", "TwSSDOF1", "TwSSDOF2", NULL};
+    const bough_deck *e = o->elasto;
+    o->n_blade = bough_deck_whole(e, "NumBl", 1, BOUGH_IMPORT_BLADES);
+    o->hub_radius = bough_deck_number(e, "HubRad");
+    o->tower_top = bough_deck_number(e, "TowerHt");
+    o->tower_base = bough_deck_number_or(e, "TowerBsHt", 0);
+    if (!bough_is_ok(o->draft.status)) return;
+    if (bough_deck_flag_or(e, "Furling", false)) {
+        bough_deck_fail(e, bough_deck_line(e, "Furling"),
+                        "Furling: expected False: tails and rotors that furl are not supported");
+    }
+    if (!(o->tower_top > o->tower_base)) {
+        bough_deck_fail(e, bough_deck_line(e, "TowerHt"), "TowerHt: expected more than TowerBsHt");
+    }
+    o->rigid_blade = !o->beamdyn && !any(e, blade);
+    o->rigid_tower = !any(e, tower);
+}
+
+// -- writing --------------------------------------------------------------------------------------
+
+static void put_head(bough_openfast *o, const char *path) {
+    double g = bough_deck_number_or(o->main, "Gravity", bough_deck_number_or(o->elasto, "Gravity", 9.80665));
+    double most = bough_deck_number(o->main, "TMax"), turn = bough_openfast_rotor_speed(o);
+    if (!(most >= 0 && most <= 1e6)) {
+        bough_deck_fail(o->main, bough_deck_line(o->main, "TMax"), "TMax: expected a time from 0 to 1e6 s");
+    }
+    const char *slash = strrchr(path, '/');
+    bough_draft_head(&o->draft, slash ? slash + 1 : path, "an OpenFAST model", g, most, turn);
+    bough_draft_note(&o->draft, BOUGH_LEFT_OUT,
+                     "solver settings, output channels, visualisation, "
+                     "linearisation: the scene has its own");
+}
+
+static void note_other_blades(bough_openfast *o, const bough_deck *deck, const char *stem) {
+    char name[64], first[64];
+    snprintf(first, sizeof first, "%s(1)|%s1", stem, stem);
+    for (int k = 2; k <= o->n_blade && bough_is_ok(o->draft.status); k++) {
+        snprintf(name, sizeof name, "%s(%d)|%s%d", stem, k, stem, k);
+        if (bough_deck_line(deck, name) < 0) continue;
+        if (strcmp(bough_deck_text(deck, name), bough_deck_text(deck, first)) == 0) continue;
+        bough_draft_note(&o->draft, BOUGH_APPROXIMATED, "%s(%d): blade %d is as the first", stem, k, k);
+    }
+}
+
+static void write_scene(bough_openfast *o, const char *path) {
+    if (!bough_is_ok(o->draft.status)) return;
+    put_head(o, path);
+    if (o->beamdyn)
+        bough_openfast_beamdyn(o);
+    else
+        bough_openfast_blade(o);
+    bough_openfast_generator(o);
+    bough_openfast_bodies(o);
+    bough_openfast_aero_tables(o);
+    bough_openfast_aero(o);
+    bough_openfast_control(o);
+    note_other_blades(o, o->beamdyn ? o->main : o->elasto, o->beamdyn ? "BDBldFile" : "BldFile");
+    if (o->aero) note_other_blades(o, o->aero, "ADBlFile");
+}
+
+static void convert(void *self, const char *path) {
+    bough_openfast *o = self;
+    o->main = bough_deck_open(o->draft.arena, path, BOUGH_DECK_HEADING, o->draft.status);
+    if (o->main) open_modules(o);
+    bough_openfast_check(o->elasto, BOUGH_LIMITS_ELASTO);
+    bough_openfast_check(o->servo, BOUGH_LIMITS_SERVO);
+    bough_openfast_check(o->inflow, BOUGH_LIMITS_INFLOW);
+    if (bough_is_ok(o->draft.status)) read_shape(o);
+    write_scene(o, path);
+}
+
+bough_status bough_import_openfast(const char *path, const char *folder, const bough_import_options *options,
+                                   FILE *echo) {
+    bough_openfast o = {.options = options};
+    return bough_draft_import(&(bough_draft_def){.draft = &o.draft,
+                                                 .convert = convert,
+                                                 .self = &o,
+                                                 .path = path,
+                                                 .folder = folder,
+                                                 .trial_steps = options->trial_steps,
+                                                 .echo = echo});
+}

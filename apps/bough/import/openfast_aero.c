@@ -1,0 +1,315 @@
+// AeroDyn 15: airfoils, blade elements, what the theory counts.
+#include "apps/bough/import/openfast.h"
+
+#include <math.h>
+#include <string.h>
+
+enum { MOST_AIRFOILS = 200, MOST_ROWS = 2000, MOST_COLUMNS = 20, NAME = BOUGH_AIRFOIL_NAME };
+
+// -- airfoils -------------------------------------------------------------------------------------
+
+enum { POLAR = BOUGH_POLAR_COLUMNS };
+
+// The rows (n × POLAR) of a file's first table.
+static double *read_polar(bough_openfast *o, const bough_deck *deck, int *n) {
+    int column[POLAR] = {
+        bough_deck_whole_or(o->aero, "InCol_Alfa", 1), bough_deck_whole_or(o->aero, "InCol_Cl", 2),
+        bough_deck_whole_or(o->aero, "InCol_Cd", 3), bough_deck_whole_or(o->aero, "InCol_Cm", 0)};
+    int width = 0, line = bough_deck_line(deck, "NumAlf") + 1;
+    *n = bough_deck_whole(deck, "NumAlf", 1, MOST_ROWS);
+    for (int k = 0; k < POLAR; k++) {
+        width = column[k] > width ? column[k] : width;
+        if (column[k] >= (k < 3) && column[k] <= MOST_COLUMNS) continue;
+        bough_deck_fail(o->aero, bough_deck_line(o->aero, "InCol_Alfa"),
+                        "InCol_Alfa, InCol_Cl, InCol_Cd, InCol_Cm: expected columns from 1 to %d",
+                        (int)MOST_COLUMNS);
+    }
+    if (!bough_is_ok(o->draft.status)) return NULL;
+    double *table = bough_arena_doubles(o->draft.arena, (size_t)POLAR * (size_t)*n), row[MOST_COLUMNS];
+    for (int i = 0; i < *n && bough_is_ok(o->draft.status); i++) {
+        bough_deck_row(deck, &line, "a row of the polar", width, row);
+        for (int k = 0; k < POLAR; k++) table[POLAR * i + k] = column[k] > 0 ? row[column[k] - 1] : 0;
+        double angle = table[POLAR * i];
+        if (fabs(angle) <= 180 + 1e-3 && (i == 0 || angle > table[POLAR * (i - 1)])) continue;
+        bough_deck_fail(deck, line - 1, "alpha: expected increasing angles from -180 to 180 deg, got %g",
+                        angle);
+    }
+    return bough_is_ok(o->draft.status) ? table : NULL;
+}
+
+static void put_polar(bough_openfast *o, const bough_deck *deck, const char *name) {
+    int n;
+    const double *table = read_polar(o, deck, &n);
+    if (!table) return;
+    bough_draft_polar(&o->draft, name, table, n);
+    if (bough_deck_whole_or(deck, "NumTabs", 1) > 1) {
+        bough_draft_note(&o->draft, BOUGH_APPROXIMATED,
+                         "%s: the first of its tables is used for all Reynolds numbers", name);
+    }
+}
+
+// Opens the airfoil file named at or, behind comments, below *line, which moves behind it; the name that the
+// scene gives to its polar. NULL: not opened, the draft's status says why.
+static bough_deck *open_airfoil(bough_openfast *o, int *line, int number, char name[NAME]) {
+    while (bough_deck_is_comment(o->aero, *line)) ++*line;
+    const char *path = bough_deck_file_at(o->aero, (*line)++);
+    bough_deck *deck = bough_deck_open(o->draft.arena, path, 0, o->draft.status);
+    const char *slash = strrchr(path, '/'), *own = slash ? slash + 1 : path;
+    if (deck) bough_draft_airfoil_name(own, strcspn(own, "."), number, name);
+    return deck;
+}
+
+static int put_polars(bough_openfast *o, char (*name)[NAME]) {
+    int n = bough_deck_whole(o->aero, "NumAFfiles", 1, MOST_AIRFOILS);
+    int line = bough_deck_line(o->aero, "AFNames");
+    if (line < 0) line = bough_deck_line(o->aero, "NumAFfiles") + 1; // the label may be missing
+    fputs("polars:\n", o->draft.file[BOUGH_IMPORT_POLARS]);
+    for (int i = 0; i < n && bough_is_ok(o->draft.status); i++) {
+        bough_deck *deck = open_airfoil(o, &line, i + 1, name[i]);
+        if (!deck) return 0;
+        put_polar(o, deck, name[i]);
+    }
+    bough_draft_note(&o->draft, BOUGH_TAKEN, "%d airfoils: lift, drag, moment", n);
+    return n;
+}
+
+// -- blade elements -------------------------------------------------------------------------------
+
+// Columns of a table: span [m], curve, sweep [m], angle of the curve [deg], twist [deg], chord [m], airfoil
+// from 1.
+enum { SPAN, CURVE, SWEEP, CURVE_ANGLE, TWIST, CHORD, AIRFOIL, N_COLUMN };
+
+static void put_element(FILE *file, const double *row, double span, const char *name) {
+    fprintf(file, "    - [%.10g, %.10g, %.10g, %.10g, %.10g, %s]\n", span, row[CURVE], row[SWEEP], row[TWIST],
+            row[CHORD], name);
+}
+
+// From the root to the tip: what stands beyond the tip is cut, and what ends before it goes on as it
+// is there. A station within a millimetre of either is at it.
+static void put_span(bough_openfast *o, const double *row, int n, char (*name)[NAME]) {
+    FILE *file = o->draft.file[BOUGH_IMPORT_AERO];
+    const double close = 1e-3, length = o->blade_length; // [m]
+    double first = row[SPAN], last = row[(n - 1) * N_COLUMN + SPAN];
+    if (first > close) put_element(file, row, 0, name[(int)row[AIRFOIL] - 1]);
+    for (int i = 0; i < n; i++, row += N_COLUMN) {
+        double before = i > 0 ? row[SPAN - N_COLUMN] : row[SPAN], at = row[SPAN];
+        if (before >= length - close && i > 0) break;
+        if (at < close && i == 0) at = 0;
+        if (at < length - close) {
+            put_element(file, row, at, name[(int)row[AIRFOIL] - 1]);
+            continue;
+        }
+        double cut[N_COLUMN], share = at > before ? fmin((length - before) / (at - before), 1) : 1;
+        for (int c = 0; c < N_COLUMN; c++)
+            cut[c] = i > 0 ? row[c - N_COLUMN] + share * (row[c] - row[c - N_COLUMN]) : row[c];
+        put_element(file, cut, length, name[(int)row[AIRFOIL] - 1]);
+    }
+    if (last < length - close) {
+        row -= N_COLUMN;
+        put_element(file, row, length, name[(int)row[AIRFOIL] - 1]);
+    }
+    if (first > close || fabs(last - length) > close) {
+        bough_draft_note(&o->draft, BOUGH_APPROXIMATED,
+                         "blade elements from %g to %g m on a blade of %g m: cut at its tip, or "
+                         "extended with the last element",
+                         first, last, length);
+    }
+}
+
+static void put_elements(bough_openfast *o, const bough_deck *deck, char (*name)[NAME], int n_name) {
+    const char *const column[] = {"BlSpn", "BlCrvAC", "BlSwpAC", "?BlCrvAng", "BlTwist", "BlChord", "BlAFID"};
+    int n = bough_deck_whole(deck, "NumBlNds", 1, MOST_ROWS);
+    const double *row = bough_deck_table(deck, column, N_COLUMN, n);
+    fputs("stations:\n  columns: [span, ac_x, ac_y, twist deg, chord, polar]\n  rows:\n",
+          o->draft.file[BOUGH_IMPORT_AERO]);
+    double angle = 0, last = -1;
+    for (int i = 0; row && i < n; i++) {
+        const double *r = row + N_COLUMN * i;
+        int id = r[AIRFOIL] >= 1 && r[AIRFOIL] <= n_name ? (int)r[AIRFOIL] : 0, line = -1;
+        if (id != r[AIRFOIL] || !(r[SPAN] > last) || !(r[CHORD] > 0)) {
+            line = bough_deck_line(deck, "NumBlNds");
+        }
+        if (id != r[AIRFOIL]) {
+            bough_deck_fail(deck, line, "BlAFID: row %d: expected an airfoil from 1 to %d, got %g", i + 1,
+                            n_name, r[AIRFOIL]);
+        } else if (!(r[SPAN] > last)) {
+            bough_deck_fail(deck, line,
+                            "BlSpn: row %d: expected increasing spans from 0, got %g "
+                            "m",
+                            i + 1, r[SPAN]);
+        } else if (!(r[CHORD] > 0)) {
+            bough_deck_fail(deck, line, "BlChord: row %d: expected a positive chord, got %g m", i + 1,
+                            r[CHORD]);
+        }
+        last = r[SPAN];
+        angle = fmax(angle, isnan(r[CURVE_ANGLE]) ? 0 : fabs(r[CURVE_ANGLE]));
+    }
+    if (!row || !bough_is_ok(o->draft.status)) return;
+    put_span(o, row, n, name);
+    bough_draft_note(&o->draft, BOUGH_TAKEN, "%d blade elements", n);
+    if (angle > 0) {
+        bough_draft_note(&o->draft, BOUGH_LEFT_OUT,
+                         "BlCrvAng, up to %g deg: elements are normal to the structure's axis", angle);
+    }
+}
+
+void bough_openfast_aero_tables(bough_openfast *o) {
+    if (!o->aero || !bough_is_ok(o->draft.status)) return;
+    char(*name)[NAME] = bough_arena_take(o->draft.arena, MOST_AIRFOILS * sizeof *name);
+    int n = put_polars(o, name);
+    bough_deck *deck = bough_openfast_open(o, o->aero, "ADBlFile(1)|ADBlFile1");
+    if (bough_is_ok(o->draft.status)) put_elements(o, deck, name, n);
+}
+
+// -- theory ---------------------------------------------------------------------------------------
+
+static const char *truth(bool flag) { return flag ? "true" : "false"; }
+
+static void put_induction(bough_openfast *o) {
+    const bough_deck *a = o->aero;
+    int wake = bough_deck_whole_or(a, "WakeMod|Wake_Mod", 1);
+    int dynamic = bough_deck_whole_or(a, "DBEMT_Mod", 2);
+    int skew = bough_deck_whole_or(a, "SkewMod|Skew_Mod", 1);
+    bool new_skew = bough_deck_line(a, "Skew_Mod") >= 0;
+    bool oye = wake == 2 || (wake == 1 && bough_deck_line(a, "Wake_Mod") >= 0 && dynamic > 0);
+    bool pitt = new_skew ? skew == 1 && bough_deck_whole_or(a, "SkewRedistr_Mod", 1) != 0 : skew == 2;
+    int balance = bough_deck_whole_or(a, "BEM_Mod", 0);
+    FILE *file = o->draft.file[BOUGH_IMPORT_SCENE];
+    fprintf(file,
+            "  induction: {tip_loss: %s, hub_loss: %s, tangential: %s, drag: %s, skew: %s, "
+            "high_thrust: %s",
+            truth(bough_deck_flag_or(a, "TipLoss", true)), truth(bough_deck_flag_or(a, "HubLoss", true)),
+            truth(bough_deck_flag_or(a, "TanInd", true)), truth(bough_deck_flag_or(a, "AIDrag", true)),
+            pitt ? "pitt-peters" : "none", balance == 1 ? "buhl" : "smooth");
+    bool momentum = bough_deck_flag_or(a, "SkewMomCorr", false);
+    if (momentum && balance != 1) fputs(", skewed_momentum: true", file);
+    if (oye) fputs(", inflow: oye", file);
+    double time = oye && dynamic != 2 ? bough_deck_number_or(a, "tau1_const", 0) : 0;
+    if (time > 0) fprintf(file, ", inflow_time: %.10g s", time);
+    fputs("}\n", file);
+    if (momentum && balance == 1) {
+        bough_draft_note(&o->draft, BOUGH_LEFT_OUT, "SkewMomCorr is only used with BEM_Mod 2");
+    }
+    if (bough_deck_flag_or(a, "AIDrag", true) != bough_deck_flag_or(a, "TIDrag", true)) {
+        bough_draft_note(&o->draft, BOUGH_APPROXIMATED,
+                         "TIDrag: drag in the tangential induction follows AIDrag");
+    }
+    if (balance == 1) {
+        bough_draft_note(&o->draft, BOUGH_APPROXIMATED,
+                         "BEM_Mod 1: Buhl's high-thrust correction, and otherwise the momentum "
+                         "balance of BEM_Mod 2");
+    } else if (balance == 0) {
+        bough_draft_note(&o->draft, BOUGH_APPROXIMATED,
+                         "no BEM_Mod: smooth high-thrust correction, in place of Buhl's in "
+                         "AeroDyn before version 4");
+    }
+    if (wake == 0) bough_draft_note(&o->draft, BOUGH_APPROXIMATED, "WakeMod 0: induction is computed");
+    if (wake == 3) {
+        bough_draft_note(&o->draft, BOUGH_APPROXIMATED, "OLAF: replaced by blade element momentum theory");
+    }
+    if (oye) {
+        bough_draft_note(&o->draft, BOUGH_APPROXIMATED,
+                         "DBEMT_Mod %d: Oye's dynamic inflow, for each element separately", dynamic);
+    }
+}
+
+static void put_stall(bough_openfast *o) {
+    const bough_deck *a = o->aero;
+    bool newer = bough_deck_line(a, "UA_Mod") >= 0;
+    int model = bough_deck_whole_or(a, "UAMod|UA_Mod", 0);
+    bool on = newer ? model > 0 : bough_deck_whole_or(a, "AFAeroMod", 1) == 2;
+    FILE *file = o->draft.file[BOUGH_IMPORT_SCENE];
+    if (on) fputs("  dynamic_stall: hgm\n", file);
+    if (on && model != 4) {
+        bough_draft_note(&o->draft, BOUGH_APPROXIMATED,
+                         "UAMod %d: dynamic stall by Hansen, Gaunaa and "
+                         "Madsen's model (4), its constants from the polars",
+                         model);
+    }
+    if (on && bough_deck_number_or(a, "UAStartRad", 0) > 0) {
+        bough_draft_note(&o->draft, BOUGH_LEFT_OUT, "UAStartRad: dynamic stall acts on all elements");
+    }
+    if (!bough_deck_flag_or(a, "UseBlCm", true)) fputs("  pitching_moment: false\n", file);
+}
+
+static void put_column(FILE *file, const char *key, const double *row, int column, int n) {
+    fprintf(file, "    %s: [", key);
+    for (int i = 0; i < n; i++) fprintf(file, "%s%.10g", i > 0 ? ", " : "", row[3 * i + column]);
+    fputs("]\n", file);
+}
+
+// The rows above the ground; from the first below it on the ground's.
+static const double *above_ground(bough_openfast *o, const double *row, int *n) {
+    double *kept = bough_arena_doubles(o->draft.arena, 3 * ((size_t)*n + 1));
+    int m = 0;
+    for (int i = 0; i < *n; i++) {
+        const double *r = row + 3 * i;
+        if (i + 1 < *n && r[3] <= 0) continue;
+        double height = fmax(r[0], 0);
+        if (!(r[1] > 0) || r[2] < 0 || (m > 0 && !(height > kept[3 * (m - 1)]))) {
+            bough_deck_fail(o->aero, bough_deck_line(o->aero, "NumTwrNds"),
+                            "TwrElev, TwrDiam, TwrCd: row %d: expected increasing heights, "
+                            "positive diameters, drag not negative",
+                            i + 1);
+        }
+        const double own[] = {height, r[1], r[2]};
+        memcpy(kept + 3 * m++, own, sizeof own);
+    }
+    if (m == 1) { // one for the whole height
+        const double own[] = {fmax(o->tower_top, kept[0] + 1), kept[1], kept[2]};
+        memcpy(kept + 3 * m++, own, sizeof own);
+    }
+    *n = m;
+    return kept;
+}
+
+static void put_tower(bough_openfast *o) {
+    const bough_deck *a = o->aero;
+    const char *const column[] = {"TwrElev", "TwrDiam", "TwrCd"};
+    int potential = bough_deck_whole_or(a, "TwrPotent", 0);
+    int shadow = (int)bough_deck_switch_or(a, "TwrShadow", 0); // a flag before AeroDyn 15.04
+    bool drag = bough_deck_flag_or(a, "TwrAero", false) && !o->rigid_tower;
+    if (potential == 0 && shadow == 0 && !drag) return;
+    int n = bough_deck_whole(a, "NumTwrNds", 1, MOST_ROWS);
+    const double *row = bough_deck_table(a, column, 3, n);
+    if (row) row = above_ground(o, row, &n);
+    if (!row) return;
+    FILE *file = o->draft.file[BOUGH_IMPORT_SCENE];
+    fprintf(file, "  tower:\n    influence: %s\n", potential == 2 ? "bak" : "potential");
+    if (shadow > 0) fputs("    shadow: powles\n", file);
+    if (drag) fputs("    body: tower\n", file);
+    put_column(file, "height", row, 0, n);
+    put_column(file, "diameter", row, 1, n);
+    put_column(file, "drag", row, 2, n);
+    bough_draft_note(&o->draft, BOUGH_TAKEN, "the tower's influence on the wind%s",
+                     drag ? " and its drag" : "");
+    if (potential == 0) {
+        bough_draft_note(&o->draft, BOUGH_APPROXIMATED,
+                         "TwrPotent 0: potential flow about the tower is included with its shadow "
+                         "or drag");
+    }
+    if (shadow == 2) {
+        bough_draft_note(&o->draft, BOUGH_APPROXIMATED,
+                         "TwrShadow 2: Powles' model replaces "
+                         "Eames'");
+    }
+}
+
+void bough_openfast_aero(bough_openfast *o) {
+    const bough_deck *a = o->aero;
+    if (!a || !bough_is_ok(o->draft.status)) return;
+    double density = bough_deck_number_or(o->main, "AirDens", 1.225);
+    FILE *file = o->draft.file[BOUGH_IMPORT_SCENE];
+    fprintf(file, "aero:\n  rate: %.10g Hz\n  air_density: %.10g\n", 1 / o->draft.macro_step,
+            bough_deck_number_or(a, "AirDens", density));
+    bough_openfast_wind(o);
+    fprintf(file, "  blade: %s\n  polars: %s\n  hub_radius: %.10g m\n", bough_import_name[BOUGH_IMPORT_AERO],
+            bough_import_name[BOUGH_IMPORT_POLARS], o->hub_radius);
+    put_induction(o);
+    put_stall(o);
+    put_tower(o);
+    static const bough_openfast_rest rest[] = {{"CavitCheck", NULL, 0},  {"Buoyancy", NULL, 0},
+                                               {"CompAA", NULL, 0},      {"TFinAero", NULL, 0},
+                                               {"NacelleDrag", NULL, 0}, {"SectAvg", NULL, 0}};
+    bough_openfast_leave(o, a, rest, sizeof rest / sizeof *rest);
+}

@@ -1,0 +1,172 @@
+// InflowWind: the wind of the scene, or what stands for a file that is not there.
+#include "apps/bough/import/openfast.h"
+#include "apps/bough/import/wind_convert.h"
+#include "apps/bough/import/wind_given.h"
+
+#include <math.h>
+#include <string.h>
+
+enum { STEADY = 1, UNIFORM, TURBSIM, BLADED, HAWC, NATIVE_BLADED = 7 };
+
+// -- which file -----------------------------------------------------------------------------------
+
+// The section of a type: before version 3.1 sections share the names of their lines.
+static bough_deck section_of(const bough_deck *w, int type) {
+    static const char *const title[] = {[UNIFORM] = "Parameters for Uniform",
+                                        [TURBSIM] = "Parameters for Binary Turb",
+                                        [BLADED] = "Parameters for Binary Bladed",
+                                        [HAWC] = "Parameters for HAWC"};
+    return bough_deck_part(w, title[type]);
+}
+
+// The line that names the file of a type; -1: none.
+static int file_line(const bough_deck *w, int type) {
+    static const char *const name[] = {[UNIFORM] = "FileName_Uni|Filename",
+                                       [TURBSIM] = "FileName_BTS|Filename",
+                                       [BLADED] = "FileNameRoot|FilenameRoot",
+                                       [HAWC] = "FileName_u"};
+    bough_deck section = section_of(w, type);
+    return bough_deck_line(&section, name[type]);
+}
+
+// -- what is written ------------------------------------------------------------------------------
+
+static double rotor_diameter(const bough_openfast *o) { return 2 * (o->hub_radius + o->blade_length); }
+
+static double hub_height(const bough_openfast *o) {
+    return o->tower_top + bough_deck_number_or(o->elasto, "Twr2Shft", 0);
+}
+
+// The number of a name above zero, else the fallback.
+static double positive(const bough_deck *w, const char *names, double fallback) {
+    double value = w ? bough_deck_number_or(w, names, fallback) : fallback;
+    return value > 0 ? value : fallback;
+}
+
+static void put_steady(bough_openfast *o, double speed) {
+    FILE *file = o->draft.file[BOUGH_IMPORT_SCENE];
+    double power = o->inflow ? bough_deck_number_or(o->inflow, "PLExp|PLexp", 0) : 0;
+    fprintf(file, "  wind: {kind: %s, speed: %.10g m/s", power > 0 ? "power" : "uniform", speed);
+    if (power > 0) {
+        fprintf(file, ", exponent: %.10g, reference_height: %.10g m", fmin(power, 1),
+                positive(o->inflow, "RefHt", hub_height(o)));
+    }
+}
+
+// A steady wind in place of what cannot be had; the scene and the list say so.
+static void put_stand_in(bough_openfast *o, const char *why) {
+    const double usual = 8; // [m/s]
+    double speed = positive(o->inflow, "HWindSpeed", positive(o->inflow, "URef", usual));
+    fprintf(o->draft.file[BOUGH_IMPORT_SCENE],
+            "  # This scene lacks its wind, which --wind FILE of the import gives:\n  # %s\n", why);
+    put_steady(o, speed);
+    bough_draft_note(&o->draft, BOUGH_LEFT_OUT,
+                     "the wind file is missing (give it by --wind "
+                     "FILE): %s; steady wind of %g m/s instead",
+                     why, speed);
+}
+
+// -- files ----------------------------------------------------------------------------------------
+
+static bough_status read_hawc(bough_openfast *o, bough_wind_box *box) {
+    static const char *const names[] = {"FileName_u", "FileName_v", "FileName_w"};
+    static const char *const factor[] = {"SFx", "SFy", "SFz"};
+    static const char *const sigma[] = {"SigmaFx", "SigmaFy", "SigmaFz"};
+    bough_deck section = section_of(o->inflow, HAWC), *w = &section;
+    bough_hawc_def d = {.nx = bough_deck_whole(w, "nx", 2, 1 << 24),
+                        .ny = bough_deck_whole(w, "ny", 2, 4096),
+                        .nz = bough_deck_whole(w, "nz", 2, 4096),
+                        .dx = bough_deck_number(w, "dx"),
+                        .dy = bough_deck_number(w, "dy"),
+                        .dz = bough_deck_number(w, "dz"),
+                        .height = bough_deck_number(w, "RefHt_Hawc|RefHt"),
+                        .mean = bough_deck_number(w, "URef"),
+                        .profile = bough_deck_whole_or(w, "WindProfile", 0),
+                        .exponent = bough_deck_number_or(w, "PLExp_Hawc|PLExp", 0),
+                        .roughness = bough_deck_number_or(w, "Z0", 0),
+                        .scaling = bough_deck_whole_or(w, "ScaleMethod", 0)};
+    for (int c = 0; c < 3; c++) {
+        d.file[c] = bough_deck_path(w, names[c]);
+        d.factor[c] = bough_deck_number_or(w, factor[c], 1);
+        d.sigma[c] = bough_deck_number_or(w, sigma[c], 1);
+    }
+    if (!bough_is_ok(o->draft.status)) return bough_ok();
+    return bough_wind_hawc_read(o->draft.arena, &d, box);
+}
+
+// What cannot be read is stood in for, unless the user gave it.
+static void take_status(bough_openfast *o, bough_status status) {
+    if (bough_is_ok(&status) || !bough_is_ok(o->draft.status)) return;
+    if (status.code == BOUGH_INVALID && !o->options->wind) {
+        put_stand_in(o, status.message);
+    } else {
+        *o->draft.status = status;
+    }
+}
+
+static void put_file(bough_openfast *o, bough_wind_form form, const char *path) {
+    bough_deck uniform = {0};
+    if (o->inflow) uniform = section_of(o->inflow, UNIFORM);
+    const bough_deck *w = o->inflow ? &uniform : NULL;
+    take_status(o, bough_wind_given(&o->draft, form, path, positive(w, "RefHt_Uni|RefHt", hub_height(o)),
+                                    positive(w, "RefLength", rotor_diameter(o))));
+}
+
+static void put_hawc(bough_openfast *o, const char *path) {
+    bough_wind_box *box = bough_arena_take(o->draft.arena, sizeof *box);
+    bough_status status = read_hawc(o, box);
+    if (bough_is_ok(&status) && bough_is_ok(o->draft.status)) bough_wind_made(&o->draft, box, path);
+    take_status(o, status);
+}
+
+static void put_type(bough_openfast *o, int type) {
+    if (!bough_is_ok(o->draft.status)) return; // no such type
+    if (type == STEADY) {
+        double speed = bough_deck_number(o->inflow, "HWindSpeed");
+        put_steady(o, speed);
+        bough_draft_note(&o->draft, BOUGH_TAKEN, "steady wind of %g m/s", speed);
+        return;
+    }
+    if (type == NATIVE_BLADED || type == 6) {
+        put_stand_in(o,
+                     type == 6 ? "WindType 6, the user's own routine" : "WindType 7, Bladed's native files");
+        return;
+    }
+    int line = file_line(o->inflow, type);
+    if (line < 0) {
+        bough_deck_fail(o->inflow, bough_deck_line(o->inflow, "WindType"),
+                        "WindType %d: expected a line with the name of its file", type);
+        return;
+    }
+    static const bough_wind_form form[] = {
+        [UNIFORM] = BOUGH_WIND_UNIFORM_FILE, [TURBSIM] = BOUGH_WIND_TURBSIM, [BLADED] = BOUGH_WIND_BLADED};
+    const char *path = bough_deck_path_at(o->inflow, line);
+    if (!bough_is_ok(o->draft.status)) return;
+    if (type == HAWC)
+        put_hawc(o, path);
+    else
+        put_file(o, form[type], path);
+}
+
+void bough_openfast_wind(bough_openfast *o) {
+    FILE *file = o->draft.file[BOUGH_IMPORT_SCENE];
+    const char *given = o->options->wind;
+    double to = 0, up = 0;
+    if (o->inflow) {
+        to = bough_deck_number_or(o->inflow, "PropagationDir|PropogationDir", 0);
+        up = bough_deck_number_or(o->inflow, "VFlowAng", 0);
+    }
+    if (given) {
+        put_file(o, bough_wind_form_of(given), given);
+    } else if (o->inflow) {
+        put_type(o, bough_deck_whole(o->inflow, "WindType", 1, 7));
+    } else if (bough_deck_whole_or(o->main, "CompInflow", 0) == 0) {
+        fputs("  wind: {kind: uniform, speed: 0 m/s", file);
+        bough_draft_note(&o->draft, BOUGH_APPROXIMATED, "without InflowWind the air is still");
+    } else {
+        put_stand_in(o, "CompInflow 2, the wind of another program");
+    }
+    if (to != 0) fprintf(file, ", direction: %.10g deg", -to);
+    if (up != 0) fprintf(file, ", upflow: %.10g deg", up);
+    fputs("}\n", file);
+}

@@ -1,0 +1,48 @@
+// Writes sections of slender bodies as rows of a scene's table of structure.
+#ifndef BOUGH_IMPORT_SECTION_H
+#define BOUGH_IMPORT_SECTION_H
+
+#include "apps/bough/import/draft.h"
+
+#include <stdbool.h>
+#include <stdio.h>
+
+enum { BOUGH_IMPORT_MATRIX = 36 };
+
+// Whether a scene takes them: stiffness and inertia about the centre of mass positive definite.
+bool bough_section_possible(const double k[BOUGH_IMPORT_MATRIX], const double m[BOUGH_IMPORT_MATRIX]);
+
+// How far m is from the matrix of a mass with centre and inertias: the largest wrong entry, relative to the
+// entries beside it.
+double bough_section_strangeness(const double m[BOUGH_IMPORT_MATRIX]);
+
+// The first bending frequency [rad/s] of a clamped beam without twist and shear, given at n
+// stations from the root: span [m], bending stiffness [N m2] and mass [kg/m], linear between.
+double bough_section_frequency(int n, const double *span, const double *stiffness, const double *mass);
+
+// The head of a table of sections with matrices, and a row of it: span [m], twist [deg], place of the axis
+// [m], 6 × 6 stiffness and mass, row by row, in the scene's order (shear x, shear y, axial, bend x, bend y,
+// twist). Written are the six diagonal entries of a stiffness that has no others, else the 21 of its upper
+// triangle, and mass, centre and inertias.
+typedef struct bough_section_place {
+    double x, y, z, twist;
+} bough_section_place;
+void bough_section_matrix_head(FILE *file);
+void bough_section_matrix_put(FILE *file, const bough_section_place *at, const double k[BOUGH_IMPORT_MATRIX],
+                              const double m[BOUGH_IMPORT_MATRIX]);
+
+// The list's line on the strangest of the mass matrices.
+void bough_section_note(bough_draft *d, double strangeness);
+
+// A section of one material without offsets.
+typedef struct bough_section {
+    double span, twist;                           // [m, deg]
+    double mass;                                  // [kg/m]
+    double axial, shear, bend_x, bend_y, torsion; // [N, N m2]
+} bough_section;
+
+// The table's head, with damping times (6) [s], and a row.
+void bough_section_head(FILE *file, double length, const double *time);
+void bough_section_put(FILE *file, const bough_section *s);
+
+#endif

@@ -1,0 +1,171 @@
+// A turbine of the WindIO ontology: what is where in its two layouts, and the order of the scene.
+#include "apps/bough/import/windio.h"
+
+#include "apps/bough/import/import.h"
+#include "core/base/base.h"
+
+#include <math.h>
+#include <string.h>
+
+static const double duration = 20; // [s]: the file has none
+
+// -- reading --------------------------------------------------------------------------------------
+
+static void find_parts(bough_windio *w) {
+    bough_draft *d = &w->draft;
+    w->parts = bough_entry_need(d, w->root, "components");
+    w->blade = bough_entry_need(d, w->parts, "blade");
+    w->shape = bough_entry_need(d, w->blade, "outer_shape_bem|outer_shape");
+    w->hub = bough_entry_need(d, w->parts, "hub");
+    w->second = bough_entry(w->blade, "outer_shape") != NULL;
+    w->train = bough_entry_need(d, w->parts, w->second ? "drivetrain" : "nacelle.drivetrain");
+    w->tower = bough_entry(w->parts, "tower");
+    w->degree = w->second ? 1 : 180 / BOUGH_PI;
+}
+
+static void read_axis(bough_windio *w) {
+    static const char *const key[] = {"reference_axis.x", "reference_axis.y", "reference_axis.z"};
+    const bough_node *from = w->second ? w->blade : w->shape;
+    for (int i = 0; i < 3; i++) w->axis[i] = bough_entry_curve(&w->draft, from, key[i]);
+    const bough_curve *z = &w->axis[2];
+    if (!bough_is_ok(w->draft.status)) return;
+    for (int i = 1; i < z->n; i++) {
+        if (z->y[i] > z->y[i - 1] && z->x[i] > z->x[i - 1]) continue;
+        bough_entry_fail(&w->draft, z->node,
+                         "reference_axis.z: expected increasing values, but number %d is not "
+                         "larger than the one before",
+                         i + 1);
+    }
+    if (z->n < 2 || fabs(z->y[0]) > 1e-6 || z->x[0] != 0 || z->x[z->n - 1] != 1) {
+        bough_entry_fail(&w->draft, z->node,
+                         "reference_axis.z: expected a line from 0 m at the grid's 0 to its 1");
+    }
+    w->blade_length = z->y[z->n - 1];
+}
+
+static void read_assembly(bough_windio *w) {
+    bough_draft *d = &w->draft;
+    const bough_node *assembly = bough_entry_need(d, w->root, "assembly");
+    double blades = bough_entry_number_or(d, assembly, "number_of_blades", 3);
+    if (!(blades >= 1 && blades <= BOUGH_IMPORT_BLADES && blades == floor(blades))) {
+        bough_entry_fail(d, assembly, "number_of_blades: expected a whole number from 1 to %d, got %g",
+                         (int)BOUGH_IMPORT_BLADES, blades);
+    }
+    const bough_node *side = bough_entry(assembly, "rotor_orientation");
+    bool downwind = side && side->kind == BOUGH_SCALAR && strchr("dD", side->text[0]) != NULL;
+    w->forward = downwind && side->text[0] ? -1 : 1;
+    w->n_blade = bough_is_ok(d->status) ? (int)blades : 1;
+    w->rated_power = bough_entry_number_or(d, assembly, "rated_power", 0);
+    w->density = bough_entry_number_or(d, w->root, "environment.air_density", 1.225);
+    w->hub_radius = bough_entry_number(d, w->hub, "diameter") / 2;
+    if (bough_is_ok(d->status) && !(w->hub_radius > 0)) {
+        bough_entry_fail(d, w->hub, "diameter: expected a positive value");
+    }
+    double cone = bough_entry_number_or(d, w->hub, "cone_angle", 0) * w->degree * BOUGH_PI / 180;
+    w->radius = (w->hub_radius + w->blade_length) * cos(cone);
+}
+
+double bough_windio_control(bough_windio *w, const char *first, const char *second, double second_unit,
+                            double fallback) {
+    const bough_node *control = bough_entry(w->root, "control");
+    const char *name = bough_entry(control, first) ? first : second;
+    double unit = w->second || name == second ? second_unit : 1;
+    return bough_entry_number_or(&w->draft, control, name, fallback / unit) * unit;
+}
+
+const bough_node *bough_windio_material(bough_windio *w, const bough_node *layer) {
+    const bough_node *materials = bough_entry_need(&w->draft, w->root, "materials");
+    const char *name = bough_entry_text(&w->draft, layer, "material");
+    const bough_node *material = bough_entry_named(materials, name);
+    if (materials && !material)
+        bough_entry_fail(&w->draft, layer, "material: no material is named '%.60s'", name);
+    return material;
+}
+
+double bough_windio_property(bough_windio *w, const bough_node *material, const char *key, int k) {
+    const bough_node *node = bough_entry_need(&w->draft, material, key);
+    if (node && node->kind == BOUGH_SEQUENCE && node->n > 0)
+        node = node->value[k < node->n ? k : node->n - 1];
+    double value = node ? bough_entry_number(&w->draft, node, "") : 0;
+    if (node && !(value > 0)) bough_entry_fail(&w->draft, node, "%s: expected a positive value", key);
+    return value;
+}
+
+// Where the optimal tip speed ratio meets three quarters of the rated speed, the rotor turns in the
+// middle of its range, and no pitch is needed.
+static void choose_start(bough_windio *w) {
+    double rpm = BOUGH_PI / 30,
+           tip = bough_windio_control(w, "supervisory.maxTS", "max_allowable_blade_tip_speed", 1, 0);
+    double ratio = bough_windio_control(w, "torque.tsr", "optimal_tsr", 1, 0);
+    double limit = tip > 0 ? tip / w->radius : HUGE_VAL;
+    double given = bough_windio_control(w, "torque.VS_maxspd", "rated_rotor_speed|max_rotor_speed", rpm, 0);
+    // of both limits the lower one counts; a speed at the limit of the tip is taken, by whatever radius it is
+    w->rated_speed = given > 0 && given <= 1.02 * limit ? given : limit;
+    if (!isfinite(w->rated_speed)) {
+        bough_entry_fail(
+            &w->draft, w->root,
+            "control: expected the rotor's rated speed, 'torque.VS_maxspd' or 'rated_rotor_speed', "
+            "or its largest tip speed, 'supervisory.maxTS' or 'max_allowable_blade_tip_speed'");
+        return;
+    }
+    w->speed = 0.75 * w->rated_speed;
+    w->wind = ratio > 0 ? w->speed * w->radius / ratio : 8;
+    if (!(ratio > 0)) {
+        bough_draft_note(&w->draft, BOUGH_APPROXIMATED, "no optimal tip-speed ratio: wind of 8 m/s assumed");
+    }
+    bough_draft_note(&w->draft, BOUGH_APPROXIMATED,
+                     "the file has no load case: wind of %.3g m/s and %.3g rpm, at the optimal "
+                     "tip-speed ratio",
+                     w->wind, w->speed / rpm);
+}
+
+// -- writing --------------------------------------------------------------------------------------
+
+static void put_head(bough_windio *w, const char *path) {
+    const char *slash = strrchr(path, '/');
+    const bough_node *name = bough_entry(w->root, "name");
+    const char *title = name && name->kind == BOUGH_SCALAR ? name->text : slash ? slash + 1 : path;
+    bough_draft_head(&w->draft, title, "a WindIO turbine", 9.80665, duration, w->rated_speed);
+}
+
+static void note_left(bough_windio *w) {
+    static const char *const part[] = {"monopile", "floating_platform", "mooring", "jacket"};
+    for (size_t i = 0; i < sizeof part / sizeof *part; i++) {
+        if (!bough_entry(w->parts, part[i])) continue;
+        bough_draft_note(&w->draft, BOUGH_LEFT_OUT, "%s: the tower's foot is held", part[i]);
+    }
+    bough_draft_note(&w->draft, BOUGH_LEFT_OUT, "strength, costs, site");
+}
+
+static void convert(void *self, const char *path) {
+    bough_windio *w = self;
+    w->root = bough_entry_read(&w->draft, path);
+    find_parts(w);
+    read_axis(w);
+    if (bough_is_ok(w->draft.status)) bough_windio_shape_read(w);
+    read_assembly(w);
+    if (!bough_is_ok(w->draft.status)) return;
+    bough_draft_note(&w->draft, BOUGH_TAKEN, "%s, in the layout of version %d", path, w->second ? 2 : 1);
+    choose_start(w);
+    if (!bough_is_ok(w->draft.status)) return;
+    put_head(w, path);
+    bough_windio_blade(w);
+    bough_windio_tower(w);
+    bough_windio_bodies(w);
+    bough_windio_air_tables(w);
+    bough_windio_air(w);
+    bough_windio_law(w);
+    note_left(w);
+}
+
+bough_status bough_import_windio(const char *path, const char *folder, const bough_import_options *options,
+                                 FILE *echo) {
+    bough_windio w = {.options = options};
+    return bough_draft_import(&(bough_draft_def){.draft = &w.draft,
+                                                 .convert = convert,
+                                                 .self = &w,
+                                                 .path = path,
+                                                 .folder = folder,
+                                                 .trial_steps = options->trial_steps,
+                                                 .echo = echo});
+}

@@ -1,0 +1,376 @@
+#include "apps/bough/import/windio_layup.h"
+
+#include "apps/bough/import/wall_section.h"
+#include "apps/bough/import/windio_outline.h"
+#include "core/base/base.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum {
+    ROUND = BOUGH_OUTLINE,
+    MOST_LAYERS = 100,
+    MOST_WEBS = 10,
+    WEB = 10, // walls of a web
+    MOST_NODES = ROUND + MOST_WEBS * (WEB - 1),
+    MOST_WALLS = ROUND + MOST_WEBS * WEB,
+    DEEPEST = 20 // parts that refer to parts
+};
+
+typedef enum handle { START, END } handle;
+static const char *const arc_name[] = {"start_nd_arc", "end_nd_arc"};
+
+typedef struct layer {
+    const bough_node *node;
+    int web;                      // −1: on the outline
+    bough_ply ply;                // thickness and angle by the curves
+    bough_curve thickness, angle; // [m], [rad or deg]; of none nothing
+} layer;
+
+typedef struct parts {
+    bough_windio *w;
+    const bough_node *layers, *webs, *anchors; // lists; NULL: none
+    int n_layer;
+    layer layer[MOST_LAYERS];
+    const double *airfoils;
+    bough_outline outline; // at the present share
+    double share, twist;   // twist [rad]
+} parts;
+
+// -- where on the arc -----------------------------------------------------------------------------
+
+static double arc_of(parts *p, const bough_node *part, handle end, int depth);
+
+static const bough_node *find_part(const parts *p, const char *name) {
+    const bough_node *list[] = {p->anchors, p->webs, p->layers};
+    for (int i = 0; i < 3; i++) {
+        const bough_node *part = bough_entry_named(list[i], name);
+        if (part) return part;
+    }
+    return NULL;
+}
+
+static double curve_at(parts *p, const bough_node *from, const char *key) {
+    bough_curve c = bough_entry_curve(&p->w->draft, from, key);
+    return bough_curve_at(&c, p->share);
+}
+
+static handle handle_of(const bough_node *node) {
+    return node && node->kind == BOUGH_SCALAR && strncmp(node->text, "start", 5) == 0 ? START : END;
+}
+
+// {anchor: {name: ..., handle: ...}}; NAN: there is none.
+static double anchor_of(parts *p, const bough_node *node, int depth) {
+    const bough_node *name = bough_entry(node, "anchor.name");
+    const bough_node *part = name && name->kind == BOUGH_SCALAR ? find_part(p, name->text) : NULL;
+    const bough_node *which = bough_entry(node, "anchor.handle");
+    if (!part) return NAN;
+    bool middle = which && which->kind == BOUGH_SCALAR && strncmp(which->text, "mid", 3) == 0;
+    if (!middle) return arc_of(p, part, handle_of(which), depth + 1);
+    return (arc_of(p, part, START, depth + 1) + arc_of(p, part, END, depth + 1)) / 2;
+}
+
+// A place that is said in itself: by values, an anchor, or the name of what it begins or ends at.
+static double said(parts *p, const bough_node *node, handle end, int depth) {
+    if (!node || node->kind != BOUGH_MAPPING) return NAN;
+    const bough_node *fixed = bough_entry(node, "fixed");
+    if (fixed && fixed->kind == BOUGH_SCALAR) {
+        if (strcmp(fixed->text, "TE") == 0) return end == START ? 0 : 1;
+        if (strcmp(fixed->text, "LE") == 0) return p->outline.arc[BOUGH_OUTLINE_SIDE];
+    }
+    if (bough_entry(node, "values")) return curve_at(p, node, "");
+    const bough_node *part = fixed && fixed->kind == BOUGH_SCALAR ? find_part(p, fixed->text) : NULL;
+    if (part) return arc_of(p, part, end == START ? END : START, depth + 1);
+    return anchor_of(p, node, depth);
+}
+
+// The turn from the chord to the blade's y axis, by which offsets of planes are counted [rad].
+static double turn_of(parts *p, const bough_node *part) {
+    double degree = p->w->degree * BOUGH_PI / 180;
+    const bough_node *rotation = bough_entry(part, "rotation");
+    if (bough_entry(rotation, "values")) return curve_at(p, part, "rotation") * degree;
+    return -p->twist;
+}
+
+// Where a plane crosses: version 1 by offset_y_pa, version 2 by plane_intersection; NAN: none.
+static double crossing(parts *p, const bough_node *part, int side) {
+    if (bough_entry(part, "offset_y_pa")) {
+        return bough_outline_crossing(&p->outline, side, turn_of(p, part), curve_at(p, part, "offset_y_pa"));
+    }
+    const bough_node *plane = bough_entry(part, "plane_intersection");
+    if (!plane || !bough_entry(plane, "offset")) return NAN;
+    double turn = bough_entry_number_or(&p->w->draft, plane, "plane_type1|plane_type2.rotation", 0);
+    return bough_outline_crossing(&p->outline, side, -p->twist + turn * BOUGH_PI / 180,
+                                  curve_at(p, plane, "offset"));
+}
+
+static int side_of(const bough_node *part, handle end) {
+    const bough_node *side = bough_entry(part, "side");
+    if (!side) side = bough_entry(part, "plane_intersection.side");
+    if (!side || side->kind != BOUGH_SCALAR || strcmp(side->text, "both") == 0) return end == END;
+    return side->text[0] == 'p' || side->text[0] == 'P';
+}
+
+// From another anchor by a way along the arc, of metres or of the whole; NAN: none.
+static double offset_from(parts *p, const bough_node *part, handle end, int depth) {
+    static const char *const keys[] = {"offset_arc", "offset_nd_arc"};
+    for (int k = 0; k < 2; k++) {
+        const bough_node *node = bough_entry(part, keys[k]), *what = bough_entry(node, "defines");
+        if (!node || (what && handle_of(what) != end)) continue;
+        double way = curve_at(p, node, "");
+        return anchor_of(p, node, depth) + (k == 0 ? way / p->outline.length : way);
+    }
+    return NAN;
+}
+
+// By the width of the part and its middle or its other end; NAN: none.
+static double by_width(parts *p, const bough_node *part, handle end, int depth) {
+    if (!bough_entry(part, "width")) return NAN;
+    double half = curve_at(p, part, "width") / p->outline.length / 2, sign = end == START ? -1 : 1;
+    double middle = said(p, bough_entry(part, "midpoint_nd_arc"), end, depth);
+    if (isnan(middle)) middle = crossing(p, part, side_of(part, end));
+    if (!isnan(middle)) return middle + sign * half;
+    handle other = end == START ? END : START;
+    return said(p, bough_entry(part, arc_name[other]), other, depth) + sign * 2 * half;
+}
+
+// Whether the part's entry, a width or a plane, says that it defines this end: values beside it are then
+// those of another program's last run.
+static bool defines(const bough_node *part, const char *key, handle end) {
+    const bough_node *what = bough_entry(bough_entry(part, key), "defines");
+    bool list = what && what->kind == BOUGH_SEQUENCE;
+    for (int i = 0; what && i < (list ? what->n : 1); i++) {
+        const bough_node *one = list ? what->value[i] : what;
+        if (one->kind == BOUGH_SCALAR && strcmp(one->text, arc_name[end]) == 0) return true;
+    }
+    return false;
+}
+
+static double arc_of(parts *p, const bough_node *part, handle end, int depth) {
+    if (depth > DEEPEST) {
+        bough_entry_fail(&p->w->draft, part, "%s: it refers to itself", arc_name[end]);
+        return 0;
+    }
+    double arc = NAN;
+    if (defines(part, "plane_intersection", end)) arc = crossing(p, part, side_of(part, end));
+    if (isnan(arc) && defines(part, "width", end)) arc = by_width(p, part, end, depth);
+    if (isnan(arc)) arc = said(p, bough_entry(part, arc_name[end]), end, depth);
+    if (isnan(arc)) arc = offset_from(p, part, end, depth);
+    if (isnan(arc)) arc = by_width(p, part, end, depth);
+    if (isnan(arc)) arc = crossing(p, part, side_of(part, end));
+    if (isnan(arc)) arc = end == START ? 0 : 1;
+    return bough_clamp(arc, 0, 1);
+}
+
+// -- layers ---------------------------------------------------------------------------------------
+
+// Its stiffness must be that of a material: ν² below E1/E2.
+static bough_ply read_material(parts *p, const bough_node *material) {
+    bough_draft *d = &p->w->draft;
+    bough_ply ply = {.density = bough_windio_property(p->w, material, "rho", 0)};
+    const bough_node *ratio = bough_entry(material, "nu");
+    if (ratio && ratio->kind == BOUGH_SEQUENCE && ratio->n > 0) ratio = ratio->value[0];
+    ply.poisson = ratio ? bough_entry_number(d, ratio, "") : 0.3;
+    for (int k = 0; k < 2; k++) ply.young[k] = bough_windio_property(p->w, material, "E", k);
+    ply.shear = bough_entry(material, "G") ? bough_windio_property(p->w, material, "G", 0)
+                                           : ply.young[0] / (2 * (1 + ply.poisson));
+    if (bough_is_ok(d->status) && !(ply.poisson * ply.poisson * ply.young[1] < 0.99 * ply.young[0])) {
+        bough_entry_fail(d, material, "nu: %g is too large for these moduli", ply.poisson);
+    }
+    return ply;
+}
+
+// Plies of a thickness that the material has, in place of the layer's thickness.
+static bough_curve read_plies(parts *p, const bough_node *node, const bough_node *material) {
+    bough_draft *d = &p->w->draft;
+    bough_curve c = bough_entry_curve(d, node, "n_plies");
+    double *thick = bough_arena_doubles(d->arena, (size_t)c.n + 1);
+    double each = bough_entry_number(d, material, "ply_t");
+    for (int i = 0; i < c.n; i++) thick[i] = each * c.y[i];
+    return thick ? (bough_curve){c.node, c.n, c.x, thick} : (bough_curve){0};
+}
+
+static void read_layer(parts *p, const bough_node *node, layer *l) {
+    bough_draft *d = &p->w->draft;
+    const bough_node *material = bough_windio_material(p->w, node);
+    *l = (layer){.node = node, .web = -1};
+    if (!material) return;
+    l->ply = read_material(p, material);
+    bool plies = !bough_entry(node, "thickness") && bough_entry(node, "n_plies");
+    l->thickness = plies ? read_plies(p, node, material) : bough_entry_curve(d, node, "thickness");
+    if (bough_entry(node, "fiber_orientation.values"))
+        l->angle = bough_entry_curve(d, node, "fiber_orientation");
+    const bough_node *web = bough_entry(node, "web");
+    if (!web || web->kind != BOUGH_SCALAR) return;
+    for (int i = 0; p->webs && i < p->webs->n; i++) {
+        const bough_node *own = bough_entry(p->webs->value[i], "name");
+        if (own && own->kind == BOUGH_SCALAR && strcmp(own->text, web->text) == 0) l->web = i;
+    }
+    if (l->web < 0) bough_entry_fail(d, web, "web: no web is named '%.60s'", web->text);
+}
+
+static const bough_node *structure_of(const bough_windio *w) {
+    return bough_entry(w->blade, "internal_structure_2d_fem|structure");
+}
+
+bool bough_windio_has_layers(const bough_windio *w) {
+    const bough_node *layers = bough_entry(structure_of(w), "layers");
+    return layers && layers->kind == BOUGH_SEQUENCE && layers->n > 0;
+}
+
+static void read_parts(parts *p) {
+    bough_draft *d = &p->w->draft;
+    const bough_node *from = structure_of(p->w);
+    p->layers = bough_entry(from, "layers");
+    p->webs = bough_entry(from, "webs");
+    p->anchors = bough_entry(from, "anchors");
+    if (p->webs && (p->webs->kind != BOUGH_SEQUENCE || p->webs->n > MOST_WEBS)) {
+        bough_entry_fail(d, p->webs, "webs: expected a list of at most %d", (int)MOST_WEBS);
+    }
+    if (p->layers->n > MOST_LAYERS) {
+        bough_entry_fail(d, p->layers, "layers: expected at most %d", (int)MOST_LAYERS);
+    }
+    for (; p->n_layer < p->layers->n && bough_is_ok(d->status); p->n_layer++)
+        read_layer(p, p->layers->value[p->n_layer], &p->layer[p->n_layer]);
+    p->airfoils = bough_is_ok(d->status) ? bough_windio_airfoils(p->w) : NULL;
+}
+
+// Nothing outside of the curve's own stretch.
+static double thickness_at(const layer *l, double share) {
+    const bough_curve *c = &l->thickness;
+    if (c->n == 0 || share < c->x[0] - 1e-9 || share > c->x[c->n - 1] + 1e-9) return 0;
+    return bough_curve_at(c, share);
+}
+
+// -- walls ----------------------------------------------------------------------------------------
+
+typedef struct section {
+    int n_node, n_wall;
+    double x[MOST_NODES], y[MOST_NODES];
+    bough_wall wall[MOST_WALLS];
+    bough_ply ply[MOST_WALLS * 4 + ROUND * MOST_LAYERS];
+    int n_ply;
+} section;
+
+static bough_ply ply_of(const parts *p, const layer *l, double thickness) {
+    bough_ply ply = l->ply;
+    double degree = p->w->degree * BOUGH_PI / 180;
+    ply.thickness = thickness;
+    ply.angle = l->angle.n > 0 ? bough_curve_at(&l->angle, p->share) * degree : 0;
+    return ply;
+}
+
+// What stands where no layer does, so that the outline is whole: a film without weight.
+static const bough_ply film = {{1e7, 1e7}, 4e6, 0.25, 0, 0, 1e-4};
+
+// Node k is the outline's point k; walls go against its way, so that their plies lie inside.
+static void put_skin(parts *p, section *s) {
+    double from[MOST_LAYERS], to[MOST_LAYERS], thick[MOST_LAYERS];
+    const bough_outline *o = &p->outline;
+    for (int i = 0; i < p->n_layer; i++) {
+        thick[i] = p->layer[i].web < 0 ? thickness_at(&p->layer[i], p->share) : 0;
+        if (!(thick[i] > 0)) continue;
+        from[i] = arc_of(p, p->layer[i].node, START, 0);
+        to[i] = arc_of(p, p->layer[i].node, END, 0);
+    }
+    memcpy(s->x, o->x, ROUND * sizeof(double));
+    memcpy(s->y, o->y, ROUND * sizeof(double));
+    s->n_node = ROUND;
+    for (int k = 0; k < ROUND; k++) {
+        bough_wall *wall = &s->wall[s->n_wall++];
+        *wall = (bough_wall){(k + 1) % ROUND, k, 0, s->ply + s->n_ply, 0};
+        double width = o->arc[k + 1] - o->arc[k];
+        for (int i = 0; i < p->n_layer; i++) {
+            if (!(thick[i] > 0)) continue;
+            double covered = fmin(to[i], o->arc[k + 1]) - fmax(from[i], o->arc[k]);
+            if (!(covered > 1e-6 * width)) continue;
+            s->ply[s->n_ply++] = ply_of(p, &p->layer[i], thick[i] * covered / width);
+            wall->n_ply++;
+        }
+        if (wall->n_ply > 0) continue;
+        s->ply[s->n_ply++] = film;
+        wall->n_ply = 1;
+    }
+}
+
+// The outline's point at an arc.
+static int node_at(const bough_outline *o, double arc) {
+    int k = 0;
+    while (k < ROUND - 1 && o->arc[k + 1] < arc) k++;
+    if (arc - o->arc[k] > o->arc[k + 1] - arc) k++;
+    return k % ROUND;
+}
+
+static void put_web(parts *p, section *s, int web) {
+    const bough_ply *ply = s->ply + s->n_ply;
+    int n_ply = 0;
+    for (int i = 0; i < p->n_layer; i++) {
+        double thick = p->layer[i].web == web ? thickness_at(&p->layer[i], p->share) : 0;
+        if (thick > 0) s->ply[s->n_ply + n_ply++] = ply_of(p, &p->layer[i], thick);
+    }
+    int from = node_at(&p->outline, arc_of(p, p->webs->value[web], START, 0));
+    int to = node_at(&p->outline, arc_of(p, p->webs->value[web], END, 0));
+    double length = hypot(s->x[to] - s->x[from], s->y[to] - s->y[from]);
+    if (n_ply == 0 || abs(to - from) < 3 || length < 1e-3) return;
+    s->n_ply += n_ply;
+    for (int k = 1, last = from; k <= WEB; k++) {
+        int next = k < WEB ? s->n_node++ : to;
+        if (k < WEB) {
+            s->x[next] = s->x[from] + (s->x[to] - s->x[from]) * k / WEB;
+            s->y[next] = s->y[from] + (s->y[to] - s->y[from]) * k / WEB;
+        }
+        s->wall[s->n_wall++] = (bough_wall){last, next, n_ply, ply, 1};
+        last = next;
+    }
+}
+
+// -- stations -------------------------------------------------------------------------------------
+
+static void solve_station(parts *p, section *s, double stiffness[36], double mass[36]) {
+    bough_draft *d = &p->w->draft;
+    bough_arena *scratch = bough_arena_child(d->arena);
+    bough_windio_outline_at(p->w, p->airfoils, p->share, &p->outline);
+    p->twist = bough_curve_at(&p->w->outline.twist, p->share) * p->w->degree * BOUGH_PI / 180;
+    s->n_wall = s->n_ply = 0;
+    put_skin(p, s);
+    for (int i = 0; p->webs && i < p->webs->n; i++) put_web(p, s, i);
+    bough_status status = bough_is_ok(d->status) ? bough_wall_section(scratch, s->n_node, s->x, s->y,
+                                                                      s->n_wall, s->wall, stiffness, mass)
+                                                 : bough_ok();
+    if (!bough_is_ok(&status)) {
+        bough_entry_fail(d, p->layers, "layers at %.4g of the span: %s", p->share, status.message);
+    }
+    bough_arena_destroy(scratch);
+}
+
+// Where chord and layers have points, but not closer than a hundredth of the blade, nor farther than
+// a thirtieth.
+static int choose_shares(parts *p, double **share) {
+    enum { MOST = 30 };
+    double even[MOST];
+    const bough_curve *curve[MOST_LAYERS + 2], between = {.n = MOST, .x = even};
+    for (int i = 0; i < MOST; i++) even[i] = (double)i / MOST;
+    for (int l = 0; l < p->n_layer; l++) curve[l] = &p->layer[l].thickness;
+    curve[p->n_layer] = &p->w->outline.chord;
+    curve[p->n_layer + 1] = &between;
+    return bough_curve_shares(&p->w->draft, curve, p->n_layer + 2, 0.01, share);
+}
+
+void bough_windio_layup(bough_windio *w, bough_layup *to) {
+    bough_draft *d = &w->draft;
+    parts *p = bough_arena_take(d->arena, sizeof *p);
+    section *s = bough_arena_take(d->arena, sizeof *s);
+    *to = (bough_layup){0};
+    if (!bough_is_ok(d->status)) return;
+    p->w = w;
+    read_parts(p);
+    if (!bough_is_ok(d->status)) return;
+    to->n = choose_shares(p, &to->share);
+    to->stiffness = bough_arena_doubles(d->arena, 36 * (size_t)to->n);
+    to->mass = bough_arena_doubles(d->arena, 36 * (size_t)to->n);
+    for (int i = 0; i < to->n && bough_is_ok(d->status); i++) {
+        p->share = to->share[i];
+        solve_station(p, s, to->stiffness + 36 * i, to->mass + 36 * i);
+    }
+}

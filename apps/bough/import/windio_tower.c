@@ -1,0 +1,155 @@
+// The tower: a tube of layers, from which its stiffness and mass follow; without layers it is
+// rigid.
+#include "apps/bough/import/section.h"
+#include "apps/bough/import/windio.h"
+#include "core/base/base.h"
+
+#include <math.h>
+
+enum { MOST_LAYERS = 20 };
+
+static const double usual_damping = 5e-3; // [s]
+
+typedef struct layer {
+    double young, shear, density; // [Pa, Pa, kg/m3]
+    bough_curve thickness;        // [m]
+} layer;
+
+typedef struct tube {
+    bough_curve height, diameter; // over the share of its length [m]
+    int n;
+    layer layer[MOST_LAYERS]; // from outside
+    double mass_factor;
+} tube;
+
+// -- reading --------------------------------------------------------------------------------------
+
+static layer read_layer(bough_windio *w, const bough_node *from) {
+    const bough_node *material = bough_windio_material(w, from);
+    layer l = {.thickness = bough_entry_curve(&w->draft, from, "thickness")};
+    if (!material) return l;
+    l.young = bough_windio_property(w, material, "E", 0);
+    l.density = bough_windio_property(w, material, "rho", 0);
+    double ratio = bough_entry(material, "G") ? 0 : bough_windio_property(w, material, "nu", 0);
+    l.shear = ratio > 0 ? l.young / (2 * (1 + ratio)) : bough_windio_property(w, material, "G", 0);
+    return l;
+}
+
+static bough_curve read_height(bough_windio *w) {
+    const char *path = w->second ? "reference_axis.z" : "outer_shape_bem.reference_axis.z";
+    bough_curve z = bough_entry_curve(&w->draft, w->tower, path);
+    for (int i = 1; i < z.n; i++) {
+        if (z.y[i] > z.y[i - 1] && z.x[i] > z.x[i - 1]) continue;
+        bough_entry_fail(&w->draft, z.node, "reference_axis.z: expected increasing heights");
+    }
+    if (z.n < 2 || z.y[0] < 0) {
+        bough_entry_fail(&w->draft, w->tower,
+                         "reference_axis.z: expected a tower above the "
+                         "ground");
+    }
+    return z;
+}
+
+static void read_tube(bough_windio *w, tube *t) {
+    const bough_node *from = bough_entry(w->tower, "internal_structure_2d_fem|structure");
+    const bough_node *layers = bough_entry(from, "layers");
+    t->mass_factor = bough_entry_number_or(&w->draft, from, "outfitting_factor", 1);
+    if (layers && (layers->kind != BOUGH_SEQUENCE || layers->n > MOST_LAYERS)) {
+        bough_entry_fail(&w->draft, layers, "layers: expected at most %d", (int)MOST_LAYERS);
+        return;
+    }
+    for (; layers && t->n < layers->n && bough_is_ok(w->draft.status); t->n++)
+        t->layer[t->n] = read_layer(w, layers->value[t->n]);
+    if (t->n == 0) {
+        bough_draft_note(&w->draft, BOUGH_APPROXIMATED, "tower: no layers, so it is rigid");
+    }
+}
+
+// -- writing --------------------------------------------------------------------------------------
+
+// Sums the layers' rings, from outside inwards.
+static bough_section section_at(bough_windio *w, const tube *t, double share) {
+    double outer = bough_curve_at(&t->diameter, share);
+    bough_section s = {.span = bough_curve_at(&t->height, share) - w->tower_base};
+    for (int i = 0; i < t->n; i++) {
+        const layer *l = &t->layer[i];
+        double thickness = bough_curve_at(&l->thickness, share), inner = outer - 2 * thickness;
+        if (!(thickness >= 0) || !(inner >= 0)) {
+            bough_entry_fail(&w->draft, l->thickness.node,
+                             "thickness: expected a value from 0 to the tower's radius, got %g m", thickness);
+        }
+        double area = BOUGH_PI / 4 * (outer * outer - inner * inner);
+        double second = BOUGH_PI / 64 * (pow(outer, 4) - pow(inner, 4));
+        s.mass += l->density * area * t->mass_factor;
+        s.axial += l->young * area;
+        s.shear += l->shear * area / 2;
+        s.bend_x += l->young * second;
+        s.torsion += 2 * l->shear * second;
+        outer = inner;
+    }
+    s.bend_y = s.bend_x;
+    if (!(s.axial > 0) || !(s.mass > 0)) {
+        bough_entry_fail(&w->draft, t->diameter.node, "the tower has no wall at %g m", s.span);
+    }
+    return s;
+}
+
+static void put_tube(bough_windio *w, const tube *t) {
+    const double time[] = {usual_damping, usual_damping, usual_damping,
+                           usual_damping, usual_damping, usual_damping};
+    FILE *file = w->draft.file[BOUGH_IMPORT_TOWER];
+    double mass = 0;
+    bough_section last = {0};
+    bough_section_head(file, w->tower_top - w->tower_base, time);
+    for (int i = 0; i < t->height.n && bough_is_ok(w->draft.status); i++) {
+        bough_section s = section_at(w, t, t->height.x[i]);
+        bough_section_put(file, &s);
+        if (i > 0) mass += (s.span - last.span) * (s.mass + last.mass) / 2;
+        last = s;
+    }
+    bough_draft_note(&w->draft, BOUGH_TAKEN,
+                     "%d stations of the tower, a tube of %d layers with outfitting_factor %g; it "
+                     "weighs %.7g kg",
+                     t->height.n, t->n, t->mass_factor, mass);
+    bough_draft_note(&w->draft, BOUGH_APPROXIMATED,
+                     "tower: wall thickness linear between stations; shear stiffness of a thin "
+                     "tube; damping coefficient of %g s for all strains",
+                     usual_damping);
+}
+
+void bough_windio_tower(bough_windio *w) {
+    if (!bough_is_ok(w->draft.status)) return;
+    if (!w->tower) {
+        w->tower_base = 0;
+        w->tower_top = bough_entry_number(&w->draft, w->root, "assembly.hub_height");
+        bough_draft_note(&w->draft, BOUGH_LEFT_OUT, "no tower: the hub is fixed at its height");
+        return;
+    }
+    tube t = {.height = read_height(w)};
+    t.diameter = bough_entry_curve(&w->draft, w->tower, "outer_shape_bem|outer_shape.outer_diameter");
+    read_tube(w, &t);
+    if (!bough_is_ok(w->draft.status)) return;
+    w->tower_base = t.height.y[0];
+    w->tower_top = t.height.y[t.height.n - 1];
+    if (t.n > 0) put_tube(w, &t);
+}
+
+static void put_list(bough_windio *w, const char *key, const bough_curve *over, const bough_curve *of) {
+    FILE *file = w->draft.file[BOUGH_IMPORT_SCENE];
+    fprintf(file, "    %s: [", key);
+    for (int i = 0; i < over->n; i++)
+        fprintf(file, "%s%.10g", i > 0 ? ", " : "", bough_curve_at(of, over->x[i]));
+    fputs("]\n", file);
+}
+
+void bough_windio_tower_air(bough_windio *w) {
+    if (!w->tower || !bough_is_ok(w->draft.status)) return;
+    bough_curve height = read_height(w);
+    bough_curve diameter =
+        bough_entry_curve(&w->draft, w->tower, "outer_shape_bem|outer_shape.outer_diameter");
+    if (!bough_is_ok(w->draft.status)) return;
+    fprintf(w->draft.file[BOUGH_IMPORT_SCENE], "  tower:\n    influence: potential\n");
+    put_list(w, "height", &height, &height);
+    put_list(w, "diameter", &height, &diameter);
+    bough_draft_note(&w->draft, BOUGH_TAKEN, "the tower's influence on the wind, without its drag");
+}

@@ -1,0 +1,375 @@
+#include "apps/bough/model/aero_link.h"
+
+#include "apps/bough/model/aero_motion.h"
+#include "apps/bough/model/aero_signal.h"
+#include "core/base/base.h"
+#include "core/tree/force.h"
+
+#include <math.h>
+#include <string.h>
+
+struct bough_aero_link {
+    bough_simulation *simulation;
+    const bough_rotor *rotor;
+    int n_blade, n_vertex;
+    const bough_beam **beam;    // (n_blade)
+    bough_aero_signal **signal; // (n_blade)
+    bough_aero_motion *motion;
+    // Two evaluations: of the last sample, and of the one ahead. Both have the first one's memory.
+    bough_rotor_data data[2];
+    double time[2];   // what they are of [s]; NAN: of nothing
+    double factor[2]; // of the ramp there
+    int shown;        // which is of the last sample
+    int found;        // which is in hand
+    bough_vec3 hub;   // at the start, ground axes [m]
+    bool started;
+};
+
+// -- build ----------------------------------------------------------------------------------------
+
+static bough_status same_mesh(const bough_aero_link *l, const bough_beam *beam) {
+    const bough_beam *first = l->beam[0];
+    if (beam->def.n_segment == first->def.n_segment) return bough_ok();
+    bough_status status =
+        bough_fail(BOUGH_INVALID,
+                   "blades %s and %s have %d and %d segments; the aerodynamics wants the same mesh on all blades",
+                   first->body->name, beam->body->name, first->def.n_segment, beam->def.n_segment);
+    const bough_node *segments = bough_node_find(beam->body->rod.node, "segments");
+    return bough_scene_blame(segments ? segments : beam->body->rod.node, "rod.segments", status);
+}
+
+static bough_status take_blades(bough_arena *arena, bough_aero_link *l) {
+    const bough_scene_turbine *turbine = &l->simulation->scene->turbine;
+    l->n_blade = turbine->n_blade;
+    l->beam = bough_arena_take(arena, (size_t)l->n_blade * sizeof *l->beam);
+    l->signal = bough_arena_take(arena, (size_t)l->n_blade * sizeof *l->signal);
+    for (int b = 0; b < l->n_blade; b++) {
+        l->beam[b] = bough_simulation_beam(l->simulation, turbine->blade[b]);
+        bough_status status = same_mesh(l, l->beam[b]);
+        if (bough_is_ok(&status)) {
+            status = bough_aero_signal_build(arena, l->simulation, l->beam[b], &l->signal[b]);
+        }
+        if (!bough_is_ok(&status)) return status;
+    }
+    l->n_vertex = l->beam[0]->def.n_segment + 1;
+    l->motion = bough_aero_motion_build(arena, l->simulation, l->beam);
+    return bough_ok();
+}
+
+// Tables of the scene in the rotor's form.
+typedef struct tables {
+    bough_polar_def *polar;
+    bough_station_def *station;
+    bough_mat3 *rotation;
+} tables;
+
+static void take_tables(bough_arena *arena, const bough_aero_link *l, tables *t) {
+    const bough_scene_aero *aero = &l->simulation->scene->aero;
+    t->polar = bough_arena_take(arena, (size_t)aero->polars.n_polar * sizeof *t->polar);
+    t->station = bough_arena_take(arena, (size_t)aero->blade.n_station * sizeof *t->station);
+    t->rotation = bough_arena_take(arena, (size_t)l->n_vertex * sizeof *t->rotation);
+    for (int k = 0; k < aero->polars.n_polar; k++) {
+        const bough_scene_polar *from = &aero->polars.polar[k];
+        double *row = bough_arena_doubles(arena, 4 * (size_t)from->n_row);
+        for (int i = 0; i < from->n_row; i++) {
+            const bough_scene_polar_row *r = &from->row[i];
+            const double values[4] = {r->alpha * (180 / BOUGH_PI), r->cl, r->cd, r->cm};
+            memcpy(row + 4 * i, values, sizeof values);
+        }
+        t->polar[k] = (bough_polar_def){from->name, from->n_row, row};
+    }
+    for (int k = 0; k < aero->blade.n_station; k++) t->station[k] = aero->blade.station[k].def;
+    for (int i = 0; i < l->n_vertex; i++) {
+        t->rotation[i] = bough_rotation_matrix(l->beam[0]->def.rotation[i]);
+    }
+}
+
+static double rotor_radius(const bough_scene_aero *aero) {
+    return aero->hub_radius + aero->blade.station[aero->blade.n_station - 1].def.span;
+}
+
+// What the scene leaves to choose.
+static bough_wind_iec_def standard_wind(const bough_scene *scene) {
+    const bough_wind_def *wind = &scene->aero.wind.def;
+    bough_wind_iec_def def = wind->iec;
+    def.speed = wind->speed;
+    def.exponent = wind->exponent;
+    def.height = wind->reference_height;
+    if (!(def.diameter > 0)) def.diameter = 2 * rotor_radius(&scene->aero);
+    if (!(def.width > 0)) def.width = 1.15 * def.diameter;
+    if (!(def.period > 0)) def.period = fmax(scene->simulation.duration, 600);
+    return def;
+}
+
+static bough_wind_def wind_def(const bough_scene *scene) {
+    const bough_scene_wind *wind = &scene->aero.wind;
+    static const bough_wind_shear shears[BOUGH_SCENE_WIND_IEC + 1] = {
+        [BOUGH_SCENE_WIND_POWER] = BOUGH_WIND_POWER,
+        [BOUGH_SCENE_WIND_LOG] = BOUGH_WIND_LOG,
+    };
+    static const bough_wind_source sources[] = {
+        [BOUGH_SCENE_WIND_WND] = BOUGH_WIND_HUB_FILE,
+        [BOUGH_SCENE_WIND_BTS] = BOUGH_WIND_BOX_FILE,
+        [BOUGH_SCENE_WIND_IEC] = BOUGH_WIND_STANDARD,
+    };
+    bough_wind_def def = wind->def;
+    def.shear = shears[wind->kind];
+    def.source = sources[wind->kind];
+    def.n_time = wind->table.n_time;
+    def.time = wind->table.time;
+    def.speed_at_time = wind->table.speed;
+    def.until = scene->simulation.duration;
+    def.veer /= 100;
+    if (!(def.reference_height > 0)) def.reference_height = 90;
+    if (wind->kind == BOUGH_SCENE_WIND_IEC) def.iec = standard_wind(scene);
+    return def;
+}
+
+static bough_rotor_def rotor_def(const bough_aero_link *l, const tables *t) {
+    const bough_scene_aero *aero = &l->simulation->scene->aero;
+    const bough_rod_def *mesh = &l->beam[0]->def;
+    bough_rotor_def def = bough_rotor_def_default();
+    def.n_blade = l->n_blade;
+    def.density = aero->air_density;
+    def.hub_radius = aero->hub_radius;
+    def.skew = aero->induction.skew != 0;
+    def.slopes = aero->hold != BOUGH_SCENE_CONSTANT;
+    def.induction = aero->induction.options;
+    def.induction.axial_drag = def.induction.tangential_drag = aero->induction.drag;
+    def.inflow = aero->induction.inflow;
+    def.smooth_polars = aero->interpolation == BOUGH_SCENE_POLARS_SMOOTH;
+    def.pitching_moment = aero->pitching_moment;
+    def.stall = (bough_stall_kind)aero->dynamic_stall;
+    def.wind = wind_def(l->simulation->scene);
+    if (aero->tower.node != NULL) def.tower = aero->tower.def;
+    def.n_polar = aero->polars.n_polar;
+    def.polar = t->polar;
+    def.n_station = aero->blade.n_station;
+    def.station = t->station;
+    def.n_vertex = l->n_vertex;
+    def.vertex_span = mesh->span;
+    def.vertex_position = mesh->position;
+    def.vertex_rotation = t->rotation;
+    return def;
+}
+
+// A box must reach over the undeformed rotor.
+static bough_status check_reach(bough_aero_link *l) {
+    const bough_scene *scene = l->simulation->scene;
+    const bough_frame *rotor = &l->simulation->tree->bodies[scene->turbine.rotor];
+    bough_vec3 hub = l->hub = bough_tree_frame_pose(l->simulation->view, rotor).position;
+    double radius = rotor_radius(&scene->aero);
+    if (bough_rotor_in_wind(l->rotor, hub, radius)) return bough_ok();
+    return bough_fail(BOUGH_INVALID,
+                      "the box of %s is too small for a rotor of %g m radius at %g m",
+                      scene->aero.wind.def.file ? scene->aero.wind.def.file : "turbulence", radius, hub.z);
+}
+
+bough_status bough_aero_link_build(bough_arena *arena, bough_simulation *simulation,
+                                   bough_aero_link **link) {
+    bough_aero_link *l = bough_arena_take(arena, sizeof *l);
+    tables t;
+    l->simulation = simulation;
+    bough_status status = take_blades(arena, l);
+    if (!bough_is_ok(&status)) return status;
+    take_tables(arena, l, &t);
+    bough_rotor_def def = rotor_def(l, &t);
+    status = bough_rotor_build(arena, &def, &l->rotor);
+    if (bough_is_ok(&status)) status = check_reach(l);
+    const bough_scene_aero *aero = &simulation->scene->aero;
+    const bough_node *file = bough_node_find(aero->wind.node, "file");
+    if (!bough_is_ok(&status)) {
+        return bough_scene_blame(file ? file : aero->node, file ? "aero.wind.file" : "aero", status);
+    }
+    for (int i = 0; i < 2; i++) bough_rotor_data_build(arena, l->rotor, &l->data[i]);
+    l->data[1].memory = l->data[0].memory;
+    bough_aero_link_renew(l);
+    *link = l;
+    return status;
+}
+
+// -- sample ---------------------------------------------------------------------------------------
+
+// Of the ramp at t; a jump is followed by a sample at its time, up to rounding.
+static double ramp_factor(const double ramp[2], double t) {
+    bool jump = ramp[1] <= ramp[0];
+    return bough_ramp_factor(ramp[0], ramp[1], jump ? t * (1 + 1e-12) : t);
+}
+
+static bough_aero_fresh fresh_loads(const bough_aero_link *l, int b) {
+    const bough_rotor_data *data = &l->data[l->found];
+    size_t n = (size_t)l->n_vertex, blade = (size_t)b;
+    bool slopes = l->simulation->scene->aero.hold != BOUGH_SCENE_CONSTANT;
+    return (bough_aero_fresh){.load = data->load + 6 * n * blade,
+                              .line = data->line + 12 * (n - 1) * blade,
+                              .slope = slopes ? data->slope + BOUGH_SLOPES * n * blade : NULL,
+                              .factor = l->factor[l->found]};
+}
+
+static bough_aero_course course_of(const bough_aero_link *l, int b) {
+    return (bough_aero_course){.before = bough_aero_motion_before(l->motion, b),
+                               .now = bough_aero_motion_now(l->motion, b),
+                               .next = bough_aero_motion_found(l->motion)->blade[b].vertex};
+}
+
+// The time that a signal is found for.
+typedef struct interval {
+    double start, span; // [s]
+} interval;
+
+// An evaluation in stages, whose tasks are a blade each.
+typedef struct evaluation {
+    bough_aero_link *link;
+    const bough_rotor_motion *motion;
+    bough_rotor_data *data;
+    void (*move)(bough_aero_motion *m, int blade);
+    const interval *next; // for which the blades' signals follow; NULL: they do not
+} evaluation;
+
+static void approach_blade(void *self, int b, bough_part part) {
+    const evaluation *e = self;
+    if (part != BOUGH_SECOND_HALF) {
+        e->move(e->link->motion, b);
+        bough_rotor_approach(e->link->rotor, e->motion, b, e->data);
+    }
+    if (part != BOUGH_FIRST_HALF) bough_rotor_induce(e->link->rotor, e->motion, b, e->data);
+}
+
+static void load_blade(void *self, int b, bough_part part) {
+    const evaluation *e = self;
+    const bough_aero_link *l = e->link;
+    if (part != BOUGH_SECOND_HALF) bough_rotor_load(l->rotor, e->motion, b, e->data);
+    if (part == BOUGH_FIRST_HALF || e->next == NULL) return;
+    bough_aero_signal_follow(l->signal[b], fresh_loads(l, b), course_of(l, b), e->next->start,
+                             e->next->span);
+}
+
+// Of the motion that was found for the rotor; `move` finds it for a blade.
+static void evaluate_rotor(bough_aero_link *l, int to, void (*move)(bough_aero_motion *, int),
+                           const interval *next) {
+    bough_pool *pool = l->simulation->pool;
+    evaluation e = {l, bough_aero_motion_found(l->motion), &l->data[to], move, next};
+    l->time[to] = e.motion->time;
+    l->factor[to] = ramp_factor(l->simulation->scene->aero.ramp, e.motion->time);
+    l->found = to;
+    bough_pool_run_turns(pool, l->n_blade, approach_blade, &e);
+    bough_rotor_survey(l->rotor, e.motion, e.data);
+    bough_pool_run_turns(pool, l->n_blade, load_blade, &e);
+    bough_rotor_conclude(l->rotor, e.motion, e.data);
+}
+
+static void evaluate_present(bough_aero_link *l, double t) {
+    bough_aero_motion_rotor(l->motion, t);
+    evaluate_rotor(l, l->shown, bough_aero_motion_blade, NULL);
+}
+
+// The sample before has looked ahead to this one; times are equal but for rounding.
+static bool looked_ahead(const bough_aero_link *l, double t) {
+    return fabs(l->time[1 - l->shown] - t) <= 1e-9 * (fabs(t) + 1e-3);
+}
+
+static void evaluate(void *self, double t) {
+    bough_aero_link *l = self;
+    if (l->time[l->shown] == t) return;
+    if (looked_ahead(l, t)) {
+        l->shown = 1 - l->shown;
+        l->time[l->shown] = t;
+        l->time[1 - l->shown] = (double)NAN;
+    } else {
+        evaluate_present(l, t);
+    }
+}
+
+// The present loads stay from t on.
+static void hold(bough_aero_link *l, double t) {
+    if (l->time[l->shown] != t || l->found != l->shown) evaluate_present(l, t);
+    for (int b = 0; b < l->n_blade; b++)
+        bough_aero_signal_hold(l->signal[b], fresh_loads(l, b), course_of(l, b), t);
+}
+
+static bough_status sample(void *self, double t, double t_next, bool *jumped) {
+    bough_aero_link *l = self;
+    bool constant = l->simulation->scene->aero.hold == BOUGH_SCENE_CONSTANT;
+    *jumped = !l->started || constant;
+    if (*jumped) {
+        hold(l, t);
+    } else if (looked_ahead(l, t)) {
+        evaluate(l, t);
+    }
+    l->started = true;
+    if (constant) return bough_ok();
+    interval next = {t, t_next - t};
+    bough_aero_motion_expect_rotor(l->motion, t, next.span);
+    evaluate_rotor(l, 1 - l->shown, bough_aero_motion_expect_blade, &next);
+    return bough_ok();
+}
+
+double bough_aero_link_evaluated(const bough_aero_link *link) { return link->time[link->shown]; }
+
+void bough_aero_link_renew(bough_aero_link *link) {
+    link->time[0] = link->time[1] = (double)NAN;
+}
+
+void bough_aero_link_set_wind(bough_aero_link *link, double speed) {
+    bough_rotor_set_speed(link->rotor, speed);
+    bough_aero_link_renew(link);
+}
+
+static void begin_anew(bough_aero_link *link) {
+    link->started = false;
+    bough_aero_motion_forget(link->motion);
+    bough_aero_link_renew(link);
+}
+
+void bough_aero_link_go_on(bough_aero_link *link, double t) {
+    begin_anew(link);
+    hold(link, t);
+    begin_anew(link);
+}
+
+void bough_aero_link_hold(bough_aero_link *link, double t) {
+    bough_rotor_forget(link->rotor, &link->data[0]);
+    bough_aero_link_go_on(link, t);
+    bough_rotor_forget(link->rotor, &link->data[0]);
+}
+
+void bough_aero_link_memory(bough_aero_link *link, bough_snapshot_move move, double *memory) {
+    bough_rotor_memory_snapshot(link->rotor, &link->data[0], &(bough_snapshot){move, (char *)memory, 0});
+}
+
+bough_sampled_load bough_aero_link_load(bough_aero_link *link) {
+    return (bough_sampled_load){1 / link->simulation->scene->aero.rate, link, sample, evaluate, NULL};
+}
+
+const bough_rotor *bough_aero_link_rotor(const bough_aero_link *link) { return link->rotor; }
+
+double bough_aero_link_missed(const bough_aero_link *link, int blade) {
+    return bough_aero_signal_missed(link->signal[blade]);
+}
+
+const bough_rotor_data *bough_aero_link_data(const bough_aero_link *link, double *factor) {
+    *factor = link->factor[link->shown];
+    return &link->data[link->shown];
+}
+
+bough_vec3 bough_aero_link_hub_wind(const bough_aero_link *link, double t) {
+    return bough_wind_at(bough_rotor_wind(link->rotor), link->hub, t);
+}
+
+// -- saving ---------------------------------------------------------------------------------------
+
+// Of the evaluations only what they tell is stored: the shown one and the one at the sample ahead; of the
+// loads nothing.
+void bough_aero_link_snapshot(bough_aero_link *link, bough_snapshot *s) {
+    if (s->move == BOUGH_SNAPSHOT_RESTORE) link->shown = 0, link->found = -1;
+    bough_snapshot_take(s, &link->started, sizeof link->started);
+    for (int i = 0; i < 2; i++) {
+        int k = i == 0 ? link->shown : 1 - link->shown;
+        bough_snapshot_take(s, &link->factor[k], sizeof link->factor[k]);
+        bough_snapshot_take(s, &link->time[k], sizeof link->time[k]);
+        bough_rotor_told_snapshot(link->rotor, &link->data[k], s);
+    }
+    for (int b = 0; b < link->n_blade; b++) bough_aero_signal_snapshot(link->signal[b], s);
+    bough_aero_motion_snapshot(link->motion, s);
+    bough_rotor_memory_snapshot(link->rotor, &link->data[0], s);
+}

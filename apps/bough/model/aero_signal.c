@@ -1,0 +1,304 @@
+#include "apps/bough/model/aero_signal.h"
+
+#include "aero/rotor/rotor.h"
+#include "flexbody/rod/rod_load.h"
+
+#include <math.h>
+#include <string.h>
+
+// How a signal goes on. Its loads F at the next sample are those on the motion expected there, and
+// with them come their slopes by the vertices' motion, S. Between the samples F − S·motion runs along
+// the parabola through its last three values and the rod adds S·motion as it moves. So damping and
+// stiffness of the air act at once, and what the motion was expected wrongly by is in the loads of the
+// same sample.
+//
+// Modal and rigid bodies have no such loads: theirs run to F, with 3 Δ τ(1 − τ) more for what the sample
+// before has left out, Δ = S·(motion − expected motion), which is Adams' formula of third order.
+
+struct bough_aero_signal {
+    bough_simulation *simulation;
+    const bough_beam *beam;
+    int n, n_vertex;
+    double start, span;      // [s]
+    double damped;           // 1: the body adds S·motion
+    double missed;           // mean square of what the loads have missed, of that of the loads
+    double *sampled;         // (n) whole loads at the sample before
+    double *reached;         // (n) whole loads that the signal goes to, on the expected motion
+    double *value, *rate, *curve; // (n) of the signal since `start`
+    double *slope;           // S (BOUGH_SLOPES × n_vertex)
+    double *angle;           // rotation of a section about its normal by its quaternion (4 × n_vertex)
+    double *expected;        // S·expected motion (3 × n_vertex)
+    double *row;             // start of the block of all that is saved, from `start` on
+    // scratch
+    double *fresh;           // (n)
+    double *now, *before;    // S·motion (3 × n_vertex)
+    double *whole, *last;    // (n) at the present sample and the one before
+    double *along;           // per length (12 × segments): its rate, of a modal body itself
+    double *strain, *lumped; // of a modal body, D q and the loads of it (6 × the mesh's stride)
+};
+
+// -- build ----------------------------------------------------------------------------------------
+
+static int stored(const bough_aero_signal *s) { return 5 * s->n + (BOUGH_SLOPES + 7) * s->n_vertex; }
+
+static void take(bough_arena *arena, bough_aero_signal *s) {
+    size_t n = (size_t)s->n, vertices = (size_t)s->n_vertex, segments = vertices - 1;
+    double *row = s->row = bough_arena_doubles(arena, (size_t)stored(s));
+    double **const part[] = {&s->sampled, &s->reached, &s->value, &s->rate, &s->curve};
+    for (int i = 0; i < 5 && row; i++, row += n) *part[i] = row;
+    s->slope = row;
+    s->angle = row + BOUGH_SLOPES * vertices;
+    s->expected = s->angle + 4 * vertices;
+    s->fresh = bough_arena_doubles(arena, n);
+    s->whole = bough_arena_doubles(arena, n);
+    s->last = bough_arena_doubles(arena, n);
+    s->now = bough_arena_doubles(arena, 3 * vertices);
+    s->before = bough_arena_doubles(arena, 3 * vertices);
+    if (s->beam->port >= 0) s->along = bough_arena_doubles(arena, 12 * segments);
+    if (s->beam->modal == NULL) return;
+    size_t stride = (size_t)bough_beam_mesh(s->beam)->stride;
+    s->strain = bough_arena_doubles(arena, 6 * stride);
+    s->lumped = bough_arena_doubles(arena, 6 * stride);
+}
+
+bough_status bough_aero_signal_build(bough_arena *arena, bough_simulation *simulation,
+                                     const bough_beam *beam, bough_aero_signal **signal) {
+    bough_aero_signal *s = bough_arena_take(arena, sizeof *s);
+    s->simulation = simulation;
+    s->beam = beam;
+    s->n_vertex = beam->def.n_segment + 1;
+    s->n = beam->port < 0 ? 6 : 6 * s->n_vertex;
+    if (beam->rod != NULL) s->n += 12 * (s->n_vertex - 1);
+    take(arena, s);
+    *signal = s;
+    return bough_ok();
+}
+
+// -- fresh loads ----------------------------------------------------------------------------------
+
+// The resultant of loads on a rigid blade's vertices, c of them with rows of `row`.
+static void sum_loads(const bough_aero_signal *s, const double *const row[6], double sum[6]) {
+    bough_wrench total = {{0, 0, 0}, {0, 0, 0}};
+    for (int i = 0; i < s->n_vertex; i++) {
+        double here[6];
+        for (int c = 0; c < 6; c++) here[c] = row[c] == NULL ? 0 : row[c][i];
+        bough_transform at = {s->beam->def.position[i], bough_mat3_identity()};
+        total = bough_wrench_add(total, bough_wrench_to_parent(&at, bough_wrench_load(here)));
+    }
+    bough_wrench_store(total, sum);
+}
+
+// A modal body knows loads on vertices only.
+static void lump_line(bough_aero_signal *s) {
+    const bough_rod_model *m = bough_beam_mesh(s->beam);
+    int n = s->n_vertex, stride = m->stride;
+    memset(s->lumped, 0, 6 * (size_t)stride * sizeof(double));
+    bough_rod_line_strain(m, s->along, s->strain);
+    bough_rod_lump_strain(m, s->strain, s->lumped);
+    for (int c = 0; c < 6; c++) {
+        for (int i = 0; i < n; i++) s->fresh[c * n + i] += s->lumped[c * stride + i];
+    }
+}
+
+static void take_fresh(bough_aero_signal *s, bough_aero_fresh fresh, const double *rows) {
+    int n = s->n_vertex;
+    if (s->beam->port < 0) {
+        const double *const row[6] = {fresh.load,         fresh.load + n,     fresh.load + 2 * n,
+                                      fresh.load + 3 * n, fresh.load + 4 * n, fresh.load + 5 * n};
+        sum_loads(s, row, s->fresh);
+    } else {
+        memcpy(s->fresh, fresh.load, 6 * (size_t)n * sizeof(double));
+        bough_rod_take_line(bough_beam_mesh(s->beam), rows + BOUGH_BLADE_ROTATION * n, fresh.line,
+                            s->beam->rod != NULL ? s->fresh + 6 * n : s->along, s->fresh);
+        if (s->beam->modal != NULL) lump_line(s);
+    }
+    double *restrict loads = s->fresh;
+#pragma omp simd
+    for (int k = 0; k < s->n; k++) loads[k] *= fresh.factor;
+}
+
+// -- slopes ---------------------------------------------------------------------------------------
+
+// 2 p₀*∘p, the part along the section's normal, as a row times p.
+static void set_angle(int n, const double *rows, double *restrict angle) {
+    const double *restrict p = rows + BOUGH_BLADE_ROTATION * n;
+#pragma omp simd
+    for (int i = 0; i < n; i++) {
+        double w = p[i], x = p[n + i], y = p[2 * n + i], z = p[3 * n + i];
+        double scale = 2 / sqrt(w * w + x * x + y * y + z * z);
+        angle[i] = -scale * z;
+        angle[n + i] = scale * y;
+        angle[2 * n + i] = -scale * x;
+        angle[3 * n + i] = scale * w;
+    }
+}
+
+// S·motion: force along x and y, moment about z.
+static void apply_slope(const bough_aero_signal *s, const double *rows, double *restrict load) {
+    int n = s->n_vertex;
+    const double *restrict p = rows + BOUGH_BLADE_ROTATION * n, *restrict angle = s->angle;
+    const double *restrict u = rows + BOUGH_BLADE_VELOCITY * n, *restrict slope = s->slope;
+    const double *restrict spin = rows + (BOUGH_BLADE_SPIN + 2) * n;
+#pragma omp simd
+    for (int i = 0; i < n; i++) {
+        double w = p[i], x = p[n + i], y = p[2 * n + i], z = p[3 * n + i];
+        double phi = angle[i] * w + angle[n + i] * x + angle[2 * n + i] * y + angle[3 * n + i] * z;
+        phi /= sqrt(w * w + x * x + y * y + z * z);
+        for (int c = 0; c < 3; c++) {
+            const double *restrict row = slope + 4 * c * n + i;
+            load[c * n + i] =
+                row[0] * u[i] + row[n] * u[n + i] + row[2 * n] * phi + row[3 * n] * spin[i];
+        }
+    }
+}
+
+// Adds factor × such loads to the body's.
+static void add_slope(const bough_aero_signal *s, double factor, const double *from, double *to) {
+    int n = s->n_vertex;
+    if (s->beam->port < 0) {
+        const double *const row[6] = {from, from + n, NULL, NULL, NULL, from + 2 * n};
+        double sum[6];
+        sum_loads(s, row, sum);
+        for (int c = 0; c < 6; c++) to[c] += factor * sum[c];
+        return;
+    }
+    static const int place[3] = {0, 1, 5};
+    for (int c = 0; c < 3; c++) {
+        double *restrict row = to + place[c] * n;
+#pragma omp simd
+        for (int i = 0; i < n; i++) row[i] += factor * from[c * n + i];
+    }
+}
+
+static void take_slope(bough_aero_signal *s, bough_aero_fresh fresh, bough_aero_course course) {
+    int n = s->n_vertex;
+    double *restrict slope = s->slope;
+#pragma omp simd
+    for (int k = 0; k < BOUGH_SLOPES * n; k++) slope[k] = fresh.factor * fresh.slope[k];
+    for (int c = 0; c < BOUGH_SLOPES; c++) { // what moves as the input says is no state of the rod
+        slope[c * n] = 0;
+        if (s->beam->rod && bough_rod_carries(bough_beam_mesh(s->beam))) slope[c * n + n - 1] = 0;
+    }
+    set_angle(n, course.now, s->angle);
+    apply_slope(s, course.next, s->expected);
+}
+
+// -- the signal -----------------------------------------------------------------------------------
+
+// Hands it to the body.
+static void put(bough_aero_signal *s) {
+    const bough_beam *beam = s->beam;
+    if (beam->port < 0) {
+        bough_tree_set_wrench(s->simulation->tree, beam->marker, s->start, s->value, s->rate,
+                              s->curve);
+        return;
+    }
+    bough_rod_loads *rod = bough_beam_loads(beam);
+    size_t stride = (size_t)bough_beam_mesh(beam)->stride, n = (size_t)s->n_vertex;
+    for (size_t c = 0; c < 6; c++) {
+        memcpy(rod->value + c * stride, s->value + c * n, n * sizeof(double));
+        memcpy(rod->rate + c * stride, s->rate + c * n, n * sizeof(double));
+        memcpy(rod->curve + c * stride, s->curve + c * n, n * sizeof(double));
+    }
+    rod->start = s->start;
+    if (beam->rod == NULL) return;
+    rod->damped = s->damped > 0;
+    for (size_t c = 0; c < BOUGH_SLOPES && rod->damped; c++)
+        memcpy(rod->slope + c * stride, s->slope + c * n, n * sizeof(double));
+    for (size_t c = 0; c < 4 && rod->damped; c++)
+        memcpy(rod->angle + c * stride, s->angle + c * n, n * sizeof(double));
+    int first = 6 * s->n_vertex, count = s->n - first; // along the segments: on the straight line
+    const double *restrict from = s->value + first, *restrict to = s->reached + first;
+    double *restrict along = s->along, inverse = 1 / s->span;
+#pragma omp simd
+    for (int k = 0; k < count; k++) along[k] = (to[k] - from[k]) * inverse;
+    bough_rod_loads_along(bough_beam_mesh(beam), from, along, rod);
+}
+
+void bough_aero_signal_hold(bough_aero_signal *s, bough_aero_fresh fresh, bough_aero_course course,
+                            double start) {
+    size_t bytes = (size_t)s->n * sizeof(double), n = (size_t)s->n_vertex;
+    take_fresh(s, fresh, course.next);
+    memcpy(s->sampled, s->fresh, bytes);
+    memcpy(s->reached, s->fresh, bytes);
+    memcpy(s->value, s->fresh, bytes);
+    memset(s->rate, 0, bytes);
+    memset(s->curve, 0, bytes);
+    memset(s->slope, 0, BOUGH_SLOPES * n * sizeof(double));
+    memset(s->expected, 0, 3 * n * sizeof(double));
+    s->damped = 0;
+    s->missed = 0;
+    s->start = start;
+    s->span = 1;
+    put(s);
+}
+
+// Along the parabola through last, now and next, which begins at `from` and ends at `next`, and is higher
+// by bump·τ(1 − τ).
+static void bend(bough_aero_signal *s, const double *from, const double *next, const double *now,
+                 const double *last) {
+    double *restrict value = s->value, *restrict rate = s->rate, *restrict curve = s->curve;
+    double inverse = 1 / s->span, square = inverse * inverse;
+#pragma omp simd
+    for (int k = 0; k < s->n; k++) {
+        double bump = -0.5 * (next[k] - 2 * now[k] + last[k]) + 3 * (now[k] - from[k]);
+        value[k] = from[k];
+        rate[k] = (next[k] - from[k] + bump) * inverse;
+        curve[k] = -bump * square;
+    }
+}
+
+// Of some ten samples, forces across the blade of a modal body alone: now against expected motion.
+static void note_missed(bough_aero_signal *s) {
+    double missed = 0, size = 0;
+    for (int k = 0; k < 2 * s->n_vertex; k++) {
+        missed += pow(s->now[k] - s->expected[k], 2);
+        size += pow(s->whole[k], 2);
+    }
+    if (size > 0) s->missed += 0.1 * (fmin(missed / size, 1) - s->missed);
+}
+
+void bough_aero_signal_follow(bough_aero_signal *s, bough_aero_fresh fresh,
+                              bough_aero_course course, double start, double span) {
+    size_t bytes = (size_t)s->n * sizeof(double);
+    double *whole = s->whole, *last = s->last;
+    bool rod = s->beam->rod != NULL;
+    s->start = start;
+    s->span = span;
+    s->damped = rod;
+    take_fresh(s, fresh, course.next);
+    apply_slope(s, course.now, s->now); // by the slopes of the sample before
+    memcpy(whole, s->reached, bytes);
+    add_slope(s, 1, s->now, whole);
+    add_slope(s, -1, s->expected, whole);
+    if (s->beam->modal) note_missed(s);
+    memcpy(last, s->sampled, bytes);
+    memcpy(s->sampled, whole, bytes);
+    take_slope(s, fresh, course);
+    if (rod) {
+        apply_slope(s, course.now, s->now);
+        apply_slope(s, course.before, s->before);
+        add_slope(s, -1, s->now, whole);
+        add_slope(s, -1, s->before, last);
+        add_slope(s, -1, s->expected, s->fresh);
+        bend(s, whole, s->fresh, whole, last);
+        add_slope(s, 1, s->expected, s->fresh);
+    } else {
+        bend(s, s->reached, s->fresh, whole, last);
+    }
+    memcpy(s->reached, s->fresh, bytes);
+    put(s);
+}
+
+double bough_aero_signal_missed(const bough_aero_signal *s) { return sqrt(s->missed); }
+
+// -- saving ---------------------------------------------------------------------------------------
+
+void bough_aero_signal_snapshot(bough_aero_signal *s, bough_snapshot *snapshot) {
+    bough_snapshot_take(snapshot, &s->start, sizeof s->start);
+    bough_snapshot_take(snapshot, &s->span, sizeof s->span);
+    bough_snapshot_take(snapshot, &s->damped, sizeof s->damped);
+    bough_snapshot_take(snapshot, &s->missed, sizeof s->missed);
+    bough_snapshot_doubles(snapshot, s->row, stored(s));
+    if (snapshot->move == BOUGH_SNAPSHOT_RESTORE && s->span > 0) put(s);
+}

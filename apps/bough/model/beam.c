@@ -1,0 +1,66 @@
+// The flexible body of a beam: its rod or the rod reduced to modes, and what both have in common.
+#include "apps/bough/model/simulation.h"
+#include "flexbody/rod/rod_linear.h"
+
+static bough_status build_rod(bough_arena *arena, bough_beam *beam, const double *input,
+                              bough_system *system) {
+    bough_rod_model *model = NULL;
+    bough_status status = bough_rod_create(arena, &beam->def, &model);
+    if (!bough_is_ok(&status)) return status;
+    beam->rod = bough_rod_body_create(arena, model, input);
+    *system = bough_rod_body_system(beam->rod);
+    return status;
+}
+
+static bough_status build_modal(bough_arena *arena, bough_beam *beam, const double *input,
+                                bough_system *system) {
+    const bough_scene_modal *modal = &beam->body->modal;
+    int pieces = beam->body->fidelity == BOUGH_SCENE_MODAL ? 1 : modal->pieces;
+    bough_modal_options options = {modal->modes, modal->statics, modal->stiffening};
+    bough_modal_model *model = NULL;
+    bough_status status = bough_modal_create(arena, &beam->def, pieces, options, &model);
+    if (!bough_is_ok(&status)) return status;
+    beam->modal = bough_modal_body_create(arena, model, input);
+    *system = bough_modal_body_system(beam->modal);
+    return status;
+}
+
+bough_status bough_beam_build(bough_arena *arena, bough_beam *beam, bough_integrator_options micro,
+                              const double *input, bough_member *member) {
+    bool rod = beam->body->fidelity == BOUGH_SCENE_ROD;
+    bough_system system = {0};
+    bough_status status =
+        rod ? build_rod(arena, beam, input, &system) : build_modal(arena, beam, input, &system);
+    if (!bough_is_ok(&status)) return status;
+    if (beam->in_ground) {
+        beam->ground = bough_ground_body_create(arena, &system, bough_beam_mesh(beam),
+                                                bough_beam_loads(beam));
+        system = bough_ground_body_system(beam->ground);
+    }
+    return bough_member_create(arena, &system, 0, &micro, member);
+}
+
+const bough_rod_model *bough_beam_mesh(const bough_beam *beam) {
+    return beam->rod != NULL ? bough_rod_body_model(beam->rod) : bough_modal_body_model(beam->modal)->rod;
+}
+
+bough_rod_loads *bough_beam_loads(const bough_beam *beam) {
+    return beam->rod != NULL ? bough_rod_body_loads(beam->rod)
+                             : bough_modal_body_loads(beam->modal);
+}
+
+const double *bough_beam_state(const bough_simulation *s, const bough_beam *beam, int first) {
+    const double *state = s->rod[beam->port].state;
+    if (beam->rod != NULL) return state;
+    double input[BOUGH_ROD_INPUTS] = {0}; // gravity does not matter
+    bough_twist_store(bough_tree_frame_twist(s->view, &s->tree->markers[beam->marker]), input);
+    return bough_modal_body_vertices(beam->modal, state, input, first);
+}
+
+void bough_beam_ride(const bough_beam *beam, const double *input, double *state) {
+    if (beam->rod != NULL) {
+        bough_rod_ride(bough_rod_body_model(beam->rod), input, state);
+    } else {
+        bough_modal_body_ride(beam->modal, input, state);
+    }
+}

@@ -1,0 +1,173 @@
+#include "apps/bough/model/blade_group.h"
+
+#include <string.h>
+
+static const double even = 1e-6; // [rad]
+
+static bool same_structure(const bough_rod_def *a, const bough_rod_def *b) {
+    size_t n = (size_t)a->n_segment;
+    return a->n_segment == b->n_segment &&
+           memcmp(a->stiffness, b->stiffness, 21 * n * sizeof *a->stiffness) == 0 &&
+           memcmp(a->damping, b->damping, 21 * n * sizeof *a->damping) == 0 &&
+           memcmp(a->position, b->position, (n + 1) * sizeof *a->position) == 0 &&
+           memcmp(a->rotation, b->rotation, (n + 1) * sizeof *a->rotation) == 0 &&
+           memcmp(a->inertia, b->inertia, (n + 1) * sizeof *a->inertia) == 0;
+}
+
+// Angle of a blade's span about the shaft from the upright, or from the ground's x where the shaft
+// is upright, in [0, 2π).
+static double azimuth_of(const bough_simulation *s, const bough_beam *blade) {
+    int rotor = s->scene->turbine.rotor;
+    bough_mat3 r = bough_tree_frame_pose(s->view, &s->tree->bodies[rotor]).rotation;
+    const bough_vec3 axes[3] = {r.c1, r.c2, r.c3};
+    bough_vec3 shaft = axes[s->scene->body[rotor].joint.axis], zero = bough_v3(0, 0, 1);
+    if (fabs(shaft.z) > 0.9) zero = bough_v3(1, 0, 0);
+    zero = bough_axpy(-bough_dot(zero, shaft), shaft, zero);
+    bough_vec3 span = bough_tree_frame_pose(s->view, &s->tree->markers[blade->marker]).rotation.c3;
+    double angle = atan2(bough_dot(span, bough_cross(shaft, zero)), bough_dot(span, zero));
+    return angle < -even ? angle + 2 * BOUGH_PI : angle;
+}
+
+// The rotor's angular velocity along its shaft: of all joints that turn it.
+static double spin_of(const bough_simulation *s) {
+    int rotor = s->scene->turbine.rotor;
+    bough_vec3 w = bough_tree_frame_twist(s->view, &s->tree->bodies[rotor]).angular;
+    const double along[3] = {w.x, w.y, w.z};
+    return along[s->scene->body[rotor].joint.axis];
+}
+
+// Inserts a blade by azimuth.
+static void insert(const bough_simulation *s, const bough_beam *blade, bough_blade_group *group) {
+    int k = group->n++;
+    for (; k > 0 && azimuth_of(s, group->blade[k - 1]) > azimuth_of(s, blade); k--) {
+        group->blade[k] = group->blade[k - 1];
+    }
+    group->blade[k] = blade;
+}
+
+// Whether nothing but joints of given motion is between a blade and the rotor.
+static bool hangs_on(const bough_tree *tree, int link, int rotor) {
+    while (link != rotor && link >= 0 && tree->links[link].motion != NULL) link = tree->links[link].parent;
+    return link == rotor;
+}
+
+// How far the blade's pitch is from the first one's: of x and y of its frame about the span.
+static double pitch_between(const bough_simulation *s, const bough_beam *first, const bough_beam *blade,
+                            double angle) {
+    int rotor = s->scene->turbine.rotor;
+    bough_mat3 r = bough_tree_frame_pose(s->view, &s->tree->bodies[rotor]).rotation;
+    const bough_vec3 axes[3] = {r.c1, r.c2, r.c3};
+    bough_vec3 turn = bough_scale(angle, axes[s->scene->body[rotor].joint.axis]);
+    bough_mat3 p = bough_tree_frame_pose(s->view, &s->tree->markers[first->marker]).rotation;
+    bough_mat3 q = bough_tree_frame_pose(s->view, &s->tree->markers[blade->marker]).rotation;
+    bough_mat3 moved = bough_rotation_matrix(bough_quaternion_exponential(turn));
+    return bough_norm(bough_sub(q.c1, bough_mat3_mul(moved, p.c1)));
+}
+
+static bool is_alike(const bough_simulation *s, const bough_blade_group *group, int k) {
+    const bough_beam *first = group->blade[0], *blade = group->blade[k];
+    int rotor = s->tree->bodies[s->scene->turbine.rotor].link;
+    double angle = azimuth_of(s, blade) - azimuth_of(s, first) - 2 * BOUGH_PI * k / group->n;
+    return blade->port >= 0 && blade->body->fidelity == first->body->fidelity &&
+           s->rod[blade->port].system.n_state == s->rod[first->port].system.n_state &&
+           hangs_on(s->tree, s->tree->markers[blade->marker].link, rotor) &&
+           same_structure(&first->def, &blade->def) && fabs(angle) < even &&
+           pitch_between(s, first, blade, 2 * BOUGH_PI * k / group->n) < even;
+}
+
+bough_status bough_blade_group_find(bough_arena *arena, const bough_simulation *s,
+                                    const bough_assembly *assembly, bough_blade_group *group) {
+    const bough_scene_turbine *turbine = &s->scene->turbine;
+    int n = turbine->node == NULL ? 0 : turbine->n_blade;
+    *group = (bough_blade_group){0};
+    if (n == 0) return bough_ok();
+    group->speed = spin_of(s);
+    group->blade = bough_arena_take(arena, (size_t)n * sizeof *group->blade);
+    group->first = bough_arena_take(arena, (size_t)n * sizeof *group->first);
+    group->first_input = bough_arena_take(arena, (size_t)n * sizeof *group->first_input);
+    for (int k = 0; k < n; k++) insert(s, bough_simulation_beam(s, turbine->blade[k]), group);
+    bool alike = n >= 3;
+    for (int k = 0; k < n; k++) alike = alike && is_alike(s, group, k);
+    if (!alike) {
+        group->n = 0;
+        return bough_ok();
+    }
+    group->azimuth = azimuth_of(s, group->blade[0]);
+    group->n_row = s->rod[group->blade[0]->port].system.n_state;
+    group->row = bough_arena_take(arena, (size_t)n * (size_t)group->n_row * sizeof(int));
+    for (int k = 0; k < n; k++) {
+        int member = group->blade[k]->port + 1, *row = group->row;
+        group->first[k] = assembly->state_offset[member];
+        group->first_input[k] = assembly->input_offset[member];
+        for (int j = 0; j < group->n_row; j++) row[k * group->n_row + j] = group->first[k] + j;
+    }
+    return bough_ok();
+}
+
+// Position and rotation of a rod's vertex in its body's frame; the root is held.
+static void vertex_of(const bough_rod_model *m, const double *y, int i, bough_vec3 *x,
+                      bough_quaternion *p) {
+    int n = m->n, at = i - 1;
+    *x = m->position0[0];
+    *p = m->rotation0[0];
+    if (i == 0) return;
+    *x = bough_v3(y[at], y[n + at], y[2 * n + at]);
+    *p = bough_quaternion_normalised((bough_quaternion){
+        y[3 * n + at], y[4 * n + at], y[5 * n + at], y[6 * n + at]});
+}
+
+// The rotation halfway between two.
+static bough_mat3 middle(bough_quaternion p, bough_quaternion q) {
+    bough_quaternion step = bough_quaternion_product(bough_quaternion_conjugate(p), q);
+    bough_quaternion half =
+        bough_quaternion_exponential(bough_scale(0.5, bough_quaternion_logarithm(step)));
+    return bough_rotation_matrix(bough_quaternion_product(p, half));
+}
+
+// The chord from vertex i − 1 to i in the frame halfway, mean over the blades.
+static bough_vec3 mean_chord(const bough_blade_group *group, const bough_rod_model *m, int i,
+                             const double *state) {
+    bough_vec3 sum = {0, 0, 0}, x[2];
+    bough_quaternion p[2];
+    for (int k = 0; k < group->n; k++) {
+        for (int end = 0; end < 2; end++) {
+            vertex_of(m, state + group->first[k], i - 1 + end, &x[end], &p[end]);
+        }
+        bough_vec3 chord = bough_mat3_tmul(middle(p[0], p[1]), bough_sub(x[1], x[0]));
+        sum = bough_axpy(1.0 / group->n, chord, sum);
+    }
+    return sum;
+}
+
+// Mean rotations, and positions by the mean strains: mean positions of blades bent to either side
+// would be shorter than the rod and press it.
+static void average_rods(const bough_blade_group *group, const double *state, double *mean) {
+    const bough_rod_model *m = bough_beam_mesh(group->blade[0]);
+    int n = m->n;
+    for (int i = 1; i <= n; i++) {
+        bough_vec3 x;
+        bough_quaternion before, p;
+        double sum[4] = {0, 0, 0, 0};
+        for (int k = 0; k < group->n; k++) {
+            for (int c = 0; c < 4; c++) sum[c] += state[group->first[k] + (3 + c) * n + i - 1];
+        }
+        p = bough_quaternion_normalised((bough_quaternion){sum[0], sum[1], sum[2], sum[3]});
+        vertex_of(m, mean, i - 1, &x, &before);
+        x = bough_add(x, bough_mat3_mul(middle(before, p), mean_chord(group, m, i, state)));
+        const double values[7] = {x.x, x.y, x.z, p.w, p.x, p.y, p.z};
+        for (int c = 0; c < 7; c++) mean[c * n + i - 1] = values[c];
+    }
+}
+
+void bough_blade_group_average(const bough_blade_group *group, const double *input, double *mean,
+                               double *state) {
+    for (int j = 0; j < group->n_row; j++) {
+        mean[j] = 0;
+        for (int k = 0; k < group->n; k++) mean[j] += state[group->first[k] + j] / group->n;
+    }
+    if (group->blade[0]->rod != NULL) average_rods(group, state, mean);
+    for (int k = 0; k < group->n; k++) {
+        memcpy(state + group->first[k], mean, (size_t)group->n_row * sizeof *state);
+        bough_beam_ride(group->blade[k], input + group->first_input[k], state + group->first[k]);
+    }
+}

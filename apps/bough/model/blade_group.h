@@ -1,0 +1,26 @@
+// A turbine's blades as equal parts of its rotor, for the multi-blade transform.
+#ifndef BOUGH_APPS_SIMULATION_BLADE_GROUP_H
+#define BOUGH_APPS_SIMULATION_BLADE_GROUP_H
+
+#include "apps/bough/model/simulation.h"
+
+typedef struct bough_blade_group {
+    int n;                    // blades; 0: unequal, not evenly spaced, fewer than three, rigid
+    const bough_beam **blade; // (n) by azimuth
+    int *first;               // (n) row of each one's first state
+    int *first_input;         // (n) and of its first input
+    double azimuth;           // of the first, about the shaft from the upright [rad]
+    double speed;             // of the rotor [rad/s]
+    int n_row, *row;          // (n × n_row) all rows of their states
+} bough_blade_group;
+
+// The blades in the simulation's present pose and motion.
+bough_status bough_blade_group_find(bough_arena *arena, const bough_simulation *s,
+                                    const bough_assembly *assembly, bough_blade_group *group);
+
+// Gives every blade the mean of the blades' shapes, at rest in its frame: state (n_state), whose
+// inputs are `input` (n_input); mean (n_row) is work.
+void bough_blade_group_average(const bough_blade_group *group, const double *input, double *mean,
+                               double *state);
+
+#endif

@@ -1,0 +1,322 @@
+// The whole of a simulation, part by part: tree, rods, ports, loads, master.
+#include "apps/bough/model/build.h"
+
+#include "apps/bough/model/aero_link.h"
+#include "apps/bough/model/build_internal.h"
+#include "apps/bough/model/control_link.h"
+#include "apps/bough/model/drag_link.h"
+#include "apps/bough/model/equilibrium.h"
+#include "apps/bough/model/fmu_member.h"
+#include "apps/bough/model/input_link.h"
+#include "apps/bough/model/jump_link.h"
+#include "apps/bough/model/load_link.h"
+#include "apps/bough/model/trim.h"
+#include "apps/bough/model/validity.h"
+#include "core/tree/dynamics.h"
+#include "core/base/linalg.h"
+#include "core/tree/tree_build.h"
+#include "core/tree/tree_system.h"
+
+#include <string.h>
+
+// -- loads and times ------------------------------------------------------------------------------
+
+static void add_ramp(bough_builder *b, const double ramp[2]) {
+    if (ramp[1] > 0) b->event[b->n_event++] = ramp[0];
+    if (ramp[1] > ramp[0]) b->event[b->n_event++] = ramp[1];
+}
+
+static void add_motion(bough_builder *b, const bough_scene_motion *motion) {
+    const bough_motion_def *def = &motion->def;
+    add_ramp(b, (const double[]){def->start, def->end});
+    for (int i = 0; i < def->n; i++) b->event[b->n_event++] = def->times[i];
+}
+
+// The last of the loads; its two rows are set sample by sample.
+static void add_generator(bough_builder *b) {
+    static const double times[2] = {0, 1}, values[2] = {0, 0};
+    b->load[b->n_load++] =
+        (bough_joint_load_def){.body = b->scene->turbine.rotor, .n = 2, .times = times, .values = values};
+}
+
+static void set_loads(bough_builder *b) {
+    for (int k = 0; k < b->scene->n_body; k++) {
+        add_motion(b, &b->scene->body[k].joint.motion);
+        add_motion(b, &b->scene->body[k].joint.second_motion);
+    }
+    for (int k = 0; k < b->scene->n_load; k++) {
+        const bough_scene_load *load = &b->scene->load[k];
+        add_ramp(b, load->ramp);
+        int corners = load->input == NULL ? load->n_time : 0;
+        for (int i = 0; i < corners; i++) b->event[b->n_event++] = load->times[i];
+        if (load->body_name != NULL) continue;
+        b->load[b->n_load++] = (bough_joint_load_def){
+            load->joint, load->amount, load->ramp[0], load->ramp[1], load->n_time, load->times, load->values};
+    }
+    if (b->scene->aero.node != NULL) add_ramp(b, b->scene->aero.ramp);
+    if (b->scene->control.node != NULL) add_generator(b);
+}
+
+static size_t count_corners(const bough_scene *scene) {
+    size_t n = 2 * (size_t)scene->n_load + 2; // two per ramp, of loads and of the aerodynamics
+    for (int k = 0; k < scene->n_load; k++) n += (size_t)scene->load[k].n_time;
+    for (int k = 0; k < scene->n_body; k++) {
+        const bough_scene_joint *joint = &scene->body[k].joint;
+        n += 4 + (size_t)joint->motion.def.n + (size_t)joint->second_motion.def.n;
+    }
+    return n;
+}
+
+// -- parts ----------------------------------------------------------------------------------------
+
+static bough_integrator_options solver_options(const bough_scene_solver *solver) {
+    return (bough_integrator_options){.kind = (bough_integrator_kind)solver->solver,
+                                      .rtol = solver->rtol,
+                                      .step = solver->step,
+                                      .rho = solver->rho};
+}
+
+static bough_scheme_options scheme_options(const bough_scene *scene) {
+    bough_scheme_options options = scene->simulation.coupling.options;
+    options.name = bough_scheme_name(scene->simulation.coupling.scheme);
+    // A body answers with the noise of its own tolerance, below which nothing converges: measured
+    // on the turbine, residuals stall at 0.2 to 0.6 of the micro rtol.
+    double noise = 0;
+    for (int i = 0; i < scene->n_body; i++) {
+        noise = fmax(noise, bough_scene_micro(scene, &scene->body[i])->rtol);
+    }
+    if (!(options.tolerance > 0)) options.tolerance = 3 * noise;
+    options.integrator = solver_options(&scene->simulation.master);
+    return options;
+}
+
+static bough_status build_tree(bough_builder *b) {
+    b->force.n_marker = b->s->n_beam + b->s->n_fmu;
+    bough_force_link_fill(b->scene, &b->force);
+    b->s->first_marker = b->force.first_own;
+    const bough_scene *scene = b->scene;
+    bough_simulation *s = b->s;
+    bough_tree_def def = {.gravity = bough_v3(scene->gravity[0], scene->gravity[1], scene->gravity[2]),
+                          .n_bodies = scene->n_body + s->n_end,
+                          .n_markers = b->force.n_marker,
+                          .n_ports = s->n_rod + s->n_fmu,
+                          .n_loads = b->n_load,
+                          .bodies = b->body,
+                          .markers = b->force.marker,
+                          .ports = b->port,
+                          .loads = b->load,
+                          .n_springs = scene->n_spring,
+                          .springs = b->force.spring,
+                          .n_bushings = scene->n_bushing,
+                          .bushings = b->force.bushing,
+                          .n_applied = b->force.n_applied,
+                          .applied = b->force.applied,
+                          .n_ends = s->n_end,
+                          .ends = b->end,
+                          .n_closures = scene->n_closure,
+                          .closures = b->force.closure,
+                          .closure_time = scene->simulation.macro_step};
+    bough_status status = bough_tree_create(b->arena, &def, &s->tree);
+    if (!bough_is_ok(&status)) return status;
+    s->view = bough_tree_data_create(b->arena, s->tree);
+    s->acceleration = bough_arena_doubles(b->arena, s->tree->n_v);
+    if (scene->n_bushing > 0) {
+        bough_tree_kinematics(s->tree, s->tree->initial, s->view);
+        bough_force_link_rest(scene, s->view, s->tree);
+    }
+    bough_integrator_options master = solver_options(&scene->simulation.master);
+    // the tree's own method is never asked, and the scheme's may not suit it
+    if (bough_scheme_find(scheme_options(scene).name)->one_system) master.kind = BOUGH_ROSENBROCK;
+    bough_system tree = bough_tree_system_create(b->arena, s->tree, "tree");
+    return bough_member_create(b->arena, &tree, 0, &master, &s->leader);
+}
+
+static bough_status build_rods(bough_builder *b) {
+    bough_simulation *s = b->s;
+    double *motion = bough_arena_doubles(b->arena, (size_t)bough_tree_n_outputs(s->tree) + 1);
+    const bough_system *tree = &s->leader.system;
+    tree->ops->output(tree->self, 0, s->leader.state, NULL, motion);
+    for (int k = 0; k < s->n_beam; k++) {
+        bough_beam *beam = &s->beam[k];
+        if (beam->port < 0) continue;
+        bough_status status =
+            bough_beam_build(b->arena, beam, solver_options(bough_scene_micro(b->scene, beam->body)),
+                             motion + BOUGH_PORT_OUTPUTS * beam->port, &s->rod[beam->port]);
+        if (!bough_is_ok(&status)) return status;
+    }
+    for (int k = s->n_rod, i = 0; k < s->n_rod + s->n_fmu; i++) {
+        if (b->scene->body[i].fidelity != BOUGH_SCENE_FMU) continue;
+        bough_status status =
+            bough_fmu_member_create(b->arena, &b->scene->body[i], motion + BOUGH_PORT_OUTPUTS * k,
+                                    b->scene->simulation.duration, &s->rod[k]);
+        if (!bough_is_ok(&status)) return status;
+        k++;
+    }
+    return bough_ok();
+}
+
+// A motion to a rod and the wrench that answers it.
+static void add_port(bough_builder *b, int rod, const bough_connection *motion,
+                     const bough_connection *wrench) {
+    bough_connection *to = &b->connection[b->n_connection], *back = to + 1;
+    b->n_connection += 2;
+    *to = *motion;
+    *back = *wrench;
+    to->to = back->from = rod + 1;
+    to->kinematic = true;
+}
+
+static void connect_end(bough_builder *b, const bough_beam *beam) {
+    const bough_tree *tree = b->s->tree;
+    int outputs = BOUGH_PORT_OUTPUTS * tree->n_ports, inputs = BOUGH_PORT_INPUTS * tree->n_ports;
+    bough_connection motion = {.from_offset = outputs + BOUGH_END_OUTPUTS * beam->end,
+                               .to_offset = BOUGH_ROD_INPUTS,
+                               .count = BOUGH_ROD_END_INPUTS};
+    bough_connection wrench = {.from_offset = BOUGH_ROD_OUTPUTS,
+                               .to_offset = inputs + BOUGH_END_INPUTS * beam->end,
+                               .count = BOUGH_ROD_END_OUTPUTS};
+    add_port(b, beam->port, &motion, &wrench);
+}
+
+// The n-th port with axes.
+static void connect_axes(bough_builder *b, const bough_beam *beam, int n) {
+    const bough_tree *tree = b->s->tree;
+    b->connection[b->n_connection++] =
+        (bough_connection){.from_offset = BOUGH_PORT_OUTPUTS * tree->n_ports +
+                                          BOUGH_END_OUTPUTS * tree->n_ends + BOUGH_GROUND_AXES * n,
+                           .to = beam->port + 1,
+                           .to_offset = b->s->rod[beam->port].system.n_input - BOUGH_GROUND_AXES,
+                           .count = BOUGH_GROUND_AXES,
+                           .kinematic = true};
+}
+
+// Port k, of a rod or an FMU.
+static void connect_root(bough_builder *b, int k) {
+    b->member[k + 1] = (bough_assembly_member){&b->s->rod[k], 1};
+    bough_connection motion = {.from_offset = BOUGH_PORT_OUTPUTS * k, .count = BOUGH_PORT_OUTPUTS};
+    bough_connection wrench = {.to_offset = BOUGH_PORT_INPUTS * k, .count = BOUGH_PORT_INPUTS};
+    add_port(b, k, &motion, &wrench);
+}
+
+static void connect(bough_builder *b) {
+    bough_simulation *s = b->s;
+    b->member[0] = (bough_assembly_member){&s->leader, 0};
+    for (int i = 0, axes = 0; i < s->n_beam; i++) {
+        const bough_beam *beam = &s->beam[i];
+        if (beam->port >= 0) connect_root(b, beam->port);
+        if (beam->end >= 0) connect_end(b, beam);
+        if (beam->in_ground) connect_axes(b, beam, axes++);
+    }
+    for (int k = s->n_rod; k < s->n_rod + s->n_fmu; k++) connect_root(b, k);
+}
+
+// The run starts from equilibrium: the members move there before their master is built.
+static bough_status find_equilibrium(bough_arena *parent, const bough_assembly_def *def,
+                                     bough_simulation *s) {
+    bough_arena *arena = bough_arena_child(parent);
+    bough_assembly *assembly;
+    bough_equilibrium_work work;
+    bough_trim trim;
+    bough_status status = bough_assembly_build(arena, def, &assembly);
+    if (bough_is_ok(&status) && s->scene->simulation.initial == BOUGH_SCENE_IN_OPERATION) {
+        status = bough_simulation_trim(arena, s, assembly, &trim);
+    } else if (bough_is_ok(&status)) {
+        status = bough_simulation_equilibrium(s, assembly, 0, &work);
+    }
+    bough_arena_destroy(arena);
+    return status;
+}
+
+static bough_status build_master(bough_builder *b) {
+    bough_simulation *s = b->s;
+    const bough_scene_simulation *sim = &b->scene->simulation;
+    bough_master_def def = bough_master_def_default();
+    bough_sampled_load load[5];
+    def.assembly = (bough_assembly_def){s->n_rod + s->n_fmu + 1, b->member, b->n_connection, b->connection};
+    def.scheme = scheme_options(b->scene);
+    def.macro_step = sim->macro_step;
+    def.control = (bough_step_control_def){sim->step_control.tolerance, sim->step_control.min};
+    def.duration = sim->duration;
+    def.event = b->event;
+    def.n_event = b->n_event;
+    def.pool = s->pool;
+    if (s->inputs != NULL) {
+        load[def.n_load++] = bough_input_link_load(s->inputs, sim->macro_step);
+    }
+    if (s->aero != NULL) {
+        load[def.n_load++] = bough_aero_link_load(s->aero);
+    }
+    if (s->drag != NULL) load[def.n_load++] = bough_drag_link_load(s->drag);
+    if (s->control != NULL) load[def.n_load++] = bough_control_link_load(s->control);
+    if (s->jump != NULL) load[def.n_load++] = bough_jump_link_load(s->jump, sim->macro_step);
+    def.load = load;
+    if (sim->initial != BOUGH_SCENE_UNDEFORMED) {
+        bough_status status = find_equilibrium(b->arena, &def.assembly, s);
+        if (!bough_is_ok(&status)) return status;
+    }
+    return bough_master_build(b->arena, &def, &s->master);
+}
+
+// -- whole ----------------------------------------------------------------------------------------
+
+static void take_arrays(bough_builder *b) {
+    size_t bodies = (size_t)b->scene->n_body, loads = (size_t)b->scene->n_load;
+    b->s = bough_arena_take(b->arena, sizeof *b->s);
+    b->body = bough_arena_take(b->arena, 2 * bodies * sizeof *b->body);
+    b->end = bough_arena_take(b->arena, bodies * sizeof *b->end);
+    bough_force_link_take(b->arena, b->scene, b->scene->n_body, &b->force);
+    b->port = bough_arena_take(b->arena, bodies * sizeof *b->port);
+    b->load = bough_arena_take(b->arena, (loads + 2) * sizeof *b->load);
+    b->member = bough_arena_take(b->arena, (bodies + 1) * sizeof *b->member);
+    b->connection = bough_arena_take(b->arena, 5 * bodies * sizeof *b->connection);
+    b->event = bough_arena_doubles(b->arena, count_corners(b->scene));
+    b->s->validity = bough_arena_take(b->arena, sizeof *b->s->validity);
+    b->s->scene = b->scene;
+    b->s->beam = bough_arena_take(b->arena, bodies * sizeof *b->s->beam);
+    b->s->rod = bough_arena_take(b->arena, bodies * sizeof *b->s->rod);
+}
+
+int bough_simulation_threads(const bough_scene *scene) {
+    return scene->simulation.threads > 0 ? scene->simulation.threads : bough_pool_default(1);
+}
+
+bough_status bough_simulation_build(bough_arena *arena, const bough_scene *scene,
+                                    bough_simulation **simulation) {
+    int threads = bough_simulation_threads(scene);
+    bough_linalg_room(arena, threads);
+    return bough_simulation_build_on(arena, scene, bough_pool_create(arena, threads), simulation);
+}
+
+bough_status bough_simulation_build_on(bough_arena *arena, const bough_scene *scene, bough_pool *pool,
+                                       bough_simulation **simulation) {
+    bough_builder b = {.arena = arena, .scene = scene};
+    take_arrays(&b);
+    b.s->pool = pool;
+    bough_status status = bough_build_bodies(&b);
+    if (bough_is_ok(&status)) set_loads(&b);
+    if (bough_is_ok(&status)) status = build_tree(&b);
+    if (bough_is_ok(&status)) status = build_rods(&b);
+    if (bough_is_ok(&status)) connect(&b);
+    if (bough_is_ok(&status)) bough_simulation_update(b.s);
+    if (bough_is_ok(&status)) status = bough_load_link_build(arena, b.s);
+    if (bough_is_ok(&status)) status = bough_jump_link_build(arena, b.s);
+    if (bough_is_ok(&status) && scene->aero.node != NULL) {
+        status = bough_aero_link_build(arena, b.s, &b.s->aero);
+    }
+    if (bough_is_ok(&status) && bough_drag_link_wanted(scene)) {
+        status = bough_drag_link_build(arena, b.s, b.force.hub, &b.s->drag);
+    }
+    if (bough_is_ok(&status) && scene->control.node != NULL) {
+        status = bough_control_link_build(arena, b.s, b.n_load - 1, &b.s->control);
+    }
+    if (bough_is_ok(&status)) status = bough_input_link_build(arena, b.s);
+    if (bough_is_ok(&status)) status = build_master(&b);
+    if (bough_is_ok(&status) && b.s->control != NULL) {
+        status = bough_control_link_watch(arena, b.s->control);
+    }
+    if (!bough_is_ok(&status)) return status;
+    bough_simulation_update(b.s);
+    bough_validity_start(b.s);
+    *simulation = b.s;
+    return status;
+}

@@ -1,0 +1,221 @@
+// The bodies of a scene as bodies of the tree, and the undeformed beams that they are or carry.
+#include "apps/bough/model/build_internal.h"
+
+#include "apps/bough/model/placement.h"
+#include "flexbody/section/section.h"
+
+#include <stdio.h>
+#include <string.h>
+
+// The joint frame in the frame of the tree's body it hangs on: from where bodies hang on the parent
+// the steps in order, then the pitch.
+static bough_transform placement(const bough_scene_body *body, bough_transform x) {
+    x = bough_transform_compose(
+        x, bough_placement(body->joint.n_placement, body->joint.placement));
+    if (body->pitch != 0) {
+        bough_transform pitch = bough_transform_identity();
+        pitch.rotation = bough_placement_turn(BOUGH_SCENE_Z, -body->pitch);
+        x = bough_transform_compose(x, pitch);
+    }
+    return x;
+}
+
+// Columns from the entries Ixx Iyy Izz Ixy Ixz Iyz.
+static bough_mat3 tensor(const double j[6]) {
+    return (bough_mat3){{j[0], j[3], j[4]}, {j[3], j[1], j[5]}, {j[4], j[5], j[2]}};
+}
+
+static void set_coordinates(const bough_scene_joint *joint, bough_body_def *to) {
+    double *q = to->coordinates, *v = to->speeds;
+    to->motion = joint->motion.def;
+    to->second_motion = joint->second_motion.def;
+    double c = cos(joint->angle), s = sin(joint->angle);
+    switch (to->kind) {
+    case BOUGH_JOINT_CYLINDRICAL:
+        q[1] = joint->angle, v[1] = joint->angular_speed;
+        q[0] = joint->position, v[0] = joint->speed;
+        break;
+    case BOUGH_JOINT_UNIVERSAL:
+        memcpy(q, joint->angles, sizeof joint->angles);
+        memcpy(v, joint->angular_speeds, sizeof joint->angular_speeds);
+        break;
+    case BOUGH_JOINT_PLANAR: // the tree's linear speeds are in body axes
+        q[0] = joint->positions[0], v[0] = c * joint->speeds[0] + s * joint->speeds[1];
+        q[1] = joint->positions[1], v[1] = c * joint->speeds[1] - s * joint->speeds[0];
+        q[2] = joint->angle, v[2] = joint->angular_speed;
+        break;
+    default:
+        q[0] = joint->position, v[0] = joint->speed;
+        to->spring = joint->spring;
+        break;
+    }
+}
+
+// Where bodies hang on a beam: at its end, in the axes of the beam's body, which turn with the last
+// section. So a placement means the same whether the beam bends or not.
+static bough_transform beam_end(const bough_beam *beam) {
+    int n = beam->def.n_segment;
+    bough_mat3 section = bough_rotation_matrix(beam->def.rotation[n]);
+    if (beam->end < 0) {
+        return (bough_transform){beam->def.position[n], bough_transform_identity().rotation};
+    }
+    return (bough_transform){{0, 0, 0}, bough_mat3_transpose(section)};
+}
+
+static void set_parent(const bough_builder *b, const bough_scene_body *from, bough_body_def *to) {
+    int parent = from->joint.parent;
+    bough_transform start = bough_transform_identity();
+    to->parent = parent;
+    const bough_beam *beam = parent < 0 ? NULL : bough_simulation_beam(b->s, parent);
+    if (beam != NULL) {
+        start = beam_end(beam);
+        if (beam->end >= 0) to->parent = b->end[beam->end].body;
+    }
+    to->joint = placement(from, start);
+}
+
+static void set_joint(const bough_builder *b, const bough_scene_body *from, bough_body_def *to) {
+    const bough_scene_joint *joint = &from->joint;
+    to->kind = (bough_joint_kind)joint->kind;
+    set_parent(b, from, to);
+    bool universal = to->kind == BOUGH_JOINT_UNIVERSAL;
+    to->axis = bough_placement_axis(joint->axis);
+    to->second_axis = bough_placement_axis(universal ? joint->second_axis : (joint->axis + 1) % 3);
+    if (bough_joint_n_axes(to->kind) > 0) {
+        set_coordinates(joint, to);
+        return;
+    }
+    int angular = to->kind == BOUGH_JOINT_FREE ? 3 : 0; // a free joint's linear speeds come first
+    for (int k = 0; k < 3; k++) {
+        if (angular == 3) to->speeds[k] = joint->velocity[k];
+        to->speeds[angular + k] = joint->angular_velocity[k];
+    }
+}
+
+// The mass of a rigid body, given or integrated from its rod's table.
+static void set_mass(const bough_scene_body *from, const bough_beam *beam, bough_body_def *to) {
+    if (beam == NULL) {
+        to->mass = from->mass;
+        to->mass_centre = bough_v3(from->centre_of_mass[0], from->centre_of_mass[1],
+                                   from->centre_of_mass[2]);
+        to->inertia = tensor(from->inertia);
+        return;
+    }
+    bough_vertex_inertia whole = bough_section_rigid(&beam->def);
+    bough_vec3 centre = bough_scale(1 / whole.mass, whole.moment);
+    bough_mat3 steiner = bough_steiner(bough_scale(-0.5 * whole.mass, centre), centre);
+    to->mass = whole.mass;
+    to->mass_centre = centre;
+    to->inertia = bough_mat3_add(tensor(whole.inertia), steiner);
+}
+
+// -- beams ----------------------------------------------------------------------------------------
+
+static bough_status discretise(bough_builder *b, bough_beam *beam) {
+    const bough_scene_structure *rod = &beam->body->rod.structure;
+    size_t count = (size_t)rod->n_station;
+    bough_section_station *station = bough_arena_take(b->arena, count * sizeof *station);
+    for (int k = 0; k < rod->n_station; k++) station[k] = rod->station[k].def;
+    bough_section_table table = {.name = beam->body->name,
+                                 .n_station = rod->n_station,
+                                 .station = station,
+                                 .length = rod->length};
+    memcpy(table.damping, rod->damping, sizeof table.damping);
+    return bough_section_discretise(b->arena, &table, beam->body->rod.n_segment,
+                                    &beam->def);
+}
+
+static bough_inertia vertex_inertia(const bough_vertex_inertia *v) {
+    return (bough_inertia){v->mass, v->moment, tensor(v->inertia)};
+}
+
+bough_inertia bough_beam_root(const bough_rod_def *def) {
+    bough_transform x = {{0, 0, 0}, bough_rotation_matrix(def->rotation[0])};
+    return bough_inertia_to_parent(&x, vertex_inertia(&def->inertia[0]));
+}
+
+static bool carries_bodies(const bough_scene *scene, int body) {
+    for (int i = 0; i < scene->n_body; i++) {
+        if (scene->body[i].joint.parent == body) return true;
+    }
+    return false;
+}
+
+// The last vertex becomes a body of the tree, free against the rod's frame; what the rod carries
+// hangs on it.
+static bough_status add_end(bough_builder *b, bough_beam *beam, int index) {
+    const bough_rod_def *def = &beam->def;
+    int n = def->n_segment, body = b->scene->n_body + b->s->n_end;
+    size_t length = strlen(beam->body->name) + sizeof " end";
+    char *name = bough_arena_take(b->arena, length);
+    snprintf(name, length, "%s end", beam->body->name);
+    bough_quaternion p = def->rotation[n];
+    bough_vec3 x = def->position[n];
+    const double q[BOUGH_JOINT_COORDINATES] = {x.x, x.y, x.z, p.w, p.x, p.y, p.z};
+    bough_body_def *to = &b->body[body];
+    *to = bough_body_def_default();
+    to->name = name;
+    to->parent = index;
+    to->kind = BOUGH_JOINT_FREE;
+    memcpy(to->coordinates, q, sizeof q);
+    beam->end = b->s->n_end++;
+    beam->def.carries = true;
+    b->end[beam->end] = (bough_end_def){name, body, vertex_inertia(&def->inertia[n])};
+    return bough_ok();
+}
+
+static bool moves_under_ground_loads(const bough_scene *scene, int body) {
+    for (int k = 0; k < scene->n_load; k++) {
+        const bough_scene_load *load = &scene->load[k];
+        if (load->body_name == NULL || load->body != body) continue;
+        if (load->frame == BOUGH_SCENE_LOAD_GROUND) return bough_scene_moves(scene, body);
+    }
+    return false;
+}
+
+static bough_status add_beam(bough_builder *b, int index) {
+    bough_simulation *s = b->s;
+    bough_beam *beam = &s->beam[s->n_beam];
+    beam->body = &b->scene->body[index];
+    beam->marker = s->n_beam;
+    beam->port = beam->end = -1;
+    bough_status status = discretise(b, beam);
+    if (!bough_is_ok(&status)) return status;
+    b->force.marker[s->n_beam++] =
+        (bough_marker_def){beam->body->name, index, bough_transform_identity()};
+    if (beam->body->fidelity == BOUGH_SCENE_RIGID) return bough_ok();
+    beam->port = s->n_rod;
+    beam->in_ground = moves_under_ground_loads(b->scene, index);
+    b->port[s->n_rod++] = (bough_port_def){beam->body->name, beam->marker,
+                                           bough_beam_root(&beam->def), beam->in_ground};
+    return carries_bodies(b->scene, index) ? add_end(b, beam, index) : bough_ok();
+}
+
+// Its marker and port come after those of all beams.
+static void add_fmu(bough_builder *b, int index) {
+    const char *name = b->scene->body[index].name;
+    int marker = b->s->n_beam + b->s->n_fmu, port = b->s->n_rod + b->s->n_fmu++;
+    b->force.marker[marker] = (bough_marker_def){name, index, bough_transform_identity()};
+    b->port[port] = (bough_port_def){.name = name, .marker = marker};
+}
+
+bough_status bough_build_bodies(bough_builder *b) {
+    for (int i = 0; i < b->scene->n_body; i++) { // bodies hang on beams that stand already
+        if (b->scene->body[i].rod.node == NULL) continue;
+        bough_status status = add_beam(b, i);
+        if (!bough_is_ok(&status)) return status;
+    }
+    for (int i = 0; i < b->scene->n_body; i++) {
+        if (b->scene->body[i].fidelity == BOUGH_SCENE_FMU) add_fmu(b, i);
+    }
+    for (int i = 0; i < b->scene->n_body; i++) {
+        const bough_scene_body *from = &b->scene->body[i];
+        bough_body_def *to = &b->body[i];
+        *to = bough_body_def_default();
+        to->name = from->name;
+        set_joint(b, from, to);
+        if (from->fidelity != BOUGH_SCENE_RIGID && from->fidelity != BOUGH_SCENE_FMU) continue;
+        set_mass(from, bough_simulation_beam(b->s, i), to);
+    }
+    return bough_ok();
+}

@@ -1,0 +1,72 @@
+// The one list of all channels: name, unit, meaning, OpenFAST's name beside it. What a run records
+// is registered from it, and the documentation printed.
+#ifndef BOUGH_APPS_SIMULATION_CHANNEL_TABLE_H
+#define BOUGH_APPS_SIMULATION_CHANNEL_TABLE_H
+
+#include "apps/bough/results/channels.h"
+
+#include <stdbool.h>
+#include <stdio.h>
+
+typedef struct bough_channel_row {
+    const char *name;     // with "{a}" and "{b}" where the first and the second part are put in
+    const char *unit;
+    const char *meaning;  // axes and sign
+    const char *openfast; // its name there, NULL: it has none
+    int component;        // 1, 2, 3 of a vector whose components follow each other; 0: none
+} bough_channel_row;
+
+// What one part of a scene gives.
+typedef struct bough_channel_family {
+    const char *title; // of which part
+    const char *parts; // what {a} and {b} are; NULL: none
+    int n;
+    const bough_channel_row *row; // (n), in the order of the values
+    bool sampled; // the values belong to the last sample of the air or the control
+} bough_channel_family;
+
+typedef enum bough_channel_part {
+    BOUGH_CHANNELS_ROTOR,
+    BOUGH_CHANNELS_REVOLUTE,
+    BOUGH_CHANNELS_PRISMATIC,
+    BOUGH_CHANNELS_CYLINDRICAL,
+    BOUGH_CHANNELS_UNIVERSAL,
+    BOUGH_CHANNELS_PLANAR,
+    BOUGH_CHANNELS_FREE,
+    BOUGH_CHANNELS_TURNING,
+    BOUGH_CHANNELS_DRIVE_TORQUE,
+    BOUGH_CHANNELS_DRIVE_FORCE,
+    BOUGH_CHANNELS_DRIVE_UNIVERSAL,
+    BOUGH_CHANNELS_SPRING,
+    BOUGH_CHANNELS_BUSHING,
+    BOUGH_CHANNELS_CLOSURE,
+    BOUGH_CHANNELS_MARKER,
+    BOUGH_CHANNELS_BLADE,
+    BOUGH_CHANNELS_TOWER,
+    BOUGH_CHANNELS_TIP,
+    BOUGH_CHANNELS_FMU,
+    BOUGH_CHANNELS_BLADE_SECTION,
+    BOUGH_CHANNELS_TOWER_SECTION,
+    BOUGH_CHANNELS_SECTION,
+    BOUGH_CHANNELS_SHAFT,
+    BOUGH_CHANNELS_YAW_BEARING,
+    BOUGH_CHANNELS_AIR,
+    BOUGH_CHANNELS_WIND,
+    BOUGH_CHANNELS_ELEMENT,
+    BOUGH_CHANNELS_CONTROL,
+    BOUGH_CHANNELS_PITCH,
+    BOUGH_CHANNELS_LAW,
+    BOUGH_CHANNELS_LAW_PITCH,
+    BOUGH_CHANNEL_PARTS,
+} bough_channel_part;
+
+extern const bough_channel_family bough_channel_families[BOUGH_CHANNEL_PARTS];
+
+// Adds the channels of a part to the list's last group.
+void bough_channel_family_add(bough_channels *list, bough_channel_part part, const char *a,
+                              const char *b);
+
+// Writes all of them as Markdown.
+void bough_channel_table_help(FILE *stream);
+
+#endif

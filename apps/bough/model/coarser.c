@@ -1,0 +1,155 @@
+#include "apps/bough/model/coarser.h"
+
+#include "cosim/master.h"
+
+#include <math.h>
+#include <string.h>
+
+// -- mesh -----------------------------------------------------------------------------------------
+
+// A rod that carries bodies has an inner vertex.
+static bool carries(const bough_scene *scene, int body) {
+    for (int i = 0; i < scene->n_body; i++) {
+        if (scene->body[i].joint.parent == body) return true;
+    }
+    return false;
+}
+
+static int least_segments(const bough_scene *scene, int body) {
+    const bough_scene_body *b = &scene->body[body];
+    if (b->fidelity == BOUGH_SCENE_SEGMENTED_MODAL) return b->modal.pieces;
+    return carries(scene, body) ? 2 : 1;
+}
+
+// Loads on vertices stay where they are. Values of tables, which inputs change, are the copy's own.
+static void copy_loads(bough_arena *arena, const bough_scene *scene, bough_scene *to) {
+    to->load = bough_arena_take(arena, (size_t)scene->n_load * sizeof *to->load);
+    for (int k = 0; k < scene->n_load; k++) {
+        bough_scene_load *load = &to->load[k];
+        *load = scene->load[k];
+        if (load->n_time > 0) {
+            load->values = bough_arena_doubles(arena, (size_t)load->n_time);
+            memcpy(load->values, scene->load[k].values, (size_t)load->n_time * sizeof *load->values);
+        }
+        if (load->body_name == NULL || load->place != BOUGH_SCENE_AT_VERTEX) continue;
+        const bough_scene_rod *rod = &scene->body[load->body].rod;
+        if (!rod->node) continue;
+        load->place = BOUGH_SCENE_AT_SPAN;
+        load->span[0] = bough_scene_arc_length(&rod->structure) * load->vertex / rod->n_segment;
+    }
+}
+
+static bool has_mesh(const bough_scene_body *b) { return b->rod.node && b->fidelity != BOUGH_SCENE_RIGID; }
+
+// About half of n segments. A rod that cannot have much fewer gets twice as many: what lies between tells the
+// error, too.
+static int other_number(int n, int least) {
+    int half = (n + 1) / 2, fewer = half > least ? half : least;
+    return 4 * fewer <= 3 * n ? fewer : 2 * n;
+}
+
+static bool is_blade(const bough_scene *scene, int body) {
+    for (int k = 0; scene->turbine.node && k < scene->turbine.n_blade; k++) {
+        if (scene->turbine.blade[k] == body) return true;
+    }
+    return false;
+}
+
+// All blades keep one number of segments, which the air needs.
+static int least_of_blades(const bough_scene *scene) {
+    int most = 1;
+    for (int k = 0; scene->turbine.node && k < scene->turbine.n_blade; k++) {
+        int least = least_segments(scene, scene->turbine.blade[k]);
+        most = least > most ? least : most;
+    }
+    return most;
+}
+
+static void change_segments(bough_arena *arena, const bough_scene *scene, bough_scene *to) {
+    size_t size = (size_t)scene->n_body * sizeof *to->body;
+    int blades = least_of_blades(scene);
+    to->body = bough_arena_take(arena, size);
+    memcpy(to->body, scene->body, size);
+    for (int i = 0; i < scene->n_body; i++) {
+        if (!scene->body[i].rod.node) continue;
+        int least = is_blade(scene, i) ? blades : least_segments(scene, i);
+        to->body[i].rod.n_segment = other_number(scene->body[i].rod.n_segment, least);
+    }
+}
+
+// At order 2 the error of n segments is 1/|r² − 1| of the difference to n/r segments.
+double bough_coarser_share(const bough_scene *scene, const bough_scene *other) {
+    double least = 3;
+    for (int i = 0; i < scene->n_body; i++) {
+        if (!has_mesh(&scene->body[i])) continue;
+        double r = (double)scene->body[i].rod.n_segment / other->body[i].rod.n_segment;
+        least = r != 1 ? fmin(least, fabs(r * r - 1)) : least;
+    }
+    return 0.75 / least;
+}
+
+// -- time -----------------------------------------------------------------------------------------
+
+static const double looser = 10, loosest = 0.02; // tolerance over the run's, and at most
+
+static double loosened(double rtol) { return fmax(rtol, fmin(looser * rtol, loosest)); }
+
+static bool samples_fit(double rate, double macro_step) {
+    return bough_master_multiple(1 / rate, macro_step) > 0;
+}
+
+// Inputs are set for one macro step of the run.
+static void lengthen_macro_step(bough_scene *to) {
+    double step = 2 * to->simulation.macro_step;
+    if (to->n_input > 0 || (to->aero.node && !samples_fit(to->aero.rate, step))) return;
+    if (to->control.node && !samples_fit(to->control.rate, step)) to->control.rate /= 2;
+    to->simulation.macro_step = step;
+}
+
+// The loosest tolerance and the longest step of the bodies' sub-solvers.
+static bough_scene_solver all_sub_solvers(const bough_scene *scene) {
+    bough_scene_solver all = {.solver = BOUGH_ROSENBROCK};
+    bool limited = true;
+    for (int i = 0; i < scene->n_body; i++) {
+        if (!has_mesh(&scene->body[i])) continue;
+        const bough_scene_solver *micro = bough_scene_micro(scene, &scene->body[i]);
+        limited = limited && micro->step > 0;
+        all.rtol = fmax(all.rtol, micro->rtol);
+        all.step = fmax(all.step, micro->step);
+    }
+    if (!(all.rtol > 0)) return scene->simulation.master;
+    if (!limited) all.step = 0;
+    return all;
+}
+
+static void lengthen_steps(bough_scene *to) {
+    bough_scene_simulation *x = &to->simulation;
+    int monolithic = bough_scheme_index("monolithic");
+    if (x->coupling.scheme != monolithic) {
+        bough_scene_solver sub_solvers = all_sub_solvers(to);
+        x->master.solver = BOUGH_ROSENBROCK;
+        x->master.rtol = sub_solvers.rtol;
+        x->master.step = sub_solvers.step;
+        x->coupling.scheme = monolithic;
+    }
+    x->master.rtol = loosened(x->master.rtol);
+    x->master.step *= 2;
+    x->step_control.tolerance = 0;
+    lengthen_macro_step(to);
+}
+
+// -- all ------------------------------------------------------------------------------------------
+
+bough_scene *bough_coarser_scene(bough_arena *arena, const bough_scene *scene, int parts) {
+    bough_scene *to = bough_arena_take(arena, sizeof *to);
+    *to = *scene;
+    copy_loads(arena, scene, to);
+    if (parts & BOUGH_COARSER_MESH) change_segments(arena, scene, to);
+    if (parts & BOUGH_COARSER_AIR) to->aero.rate /= 2;
+    if (parts & BOUGH_COARSER_TIME) lengthen_steps(to);
+    to->simulation.error_estimate = BOUGH_SCENE_NO_ESTIMATE;
+    to->simulation.error_bound = 0;
+    to->simulation.error_shares = false;
+    to->control.copied = true;
+    return to;
+}

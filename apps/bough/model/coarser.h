@@ -1,0 +1,24 @@
+// A copy of a scene that is coarser by about a factor of two: for the companion of a run (companion.h).
+#ifndef BOUGH_APPS_SIMULATION_COARSER_H
+#define BOUGH_APPS_SIMULATION_COARSER_H
+
+#include "apps/bough/scene/scene.h"
+
+// What the copy is coarser in. A set of these.
+enum {
+    BOUGH_COARSER_MESH = 1, // half the segments of each rod, or twice as many where it has too few
+    BOUGH_COARSER_AIR = 2,  // half the aerodynamic sampling rate
+    // Twice the macro step and the longest step, ten times the tolerance; all bodies as one system, whose
+    // steps know no error of a coupling.
+    BOUGH_COARSER_TIME = 4,
+    BOUGH_COARSER_ALL = 7,
+};
+
+// In the arena; it shares what no run changes with the scene. It estimates no error itself.
+bough_scene *bough_coarser_scene(bough_arena *arena, const bough_scene *scene, int parts);
+
+// The part of the difference between solutions of the scene and of such a copy that the scene's solution errs
+// by: a quarter, between an order of 2 and of 3, and more where meshes differ by less than a factor of two.
+double bough_coarser_share(const bough_scene *scene, const bough_scene *other);
+
+#endif

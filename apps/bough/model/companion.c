@@ -1,0 +1,197 @@
+#include "apps/bough/model/companion.h"
+
+#include "apps/bough/model/build.h"
+#include "apps/bough/model/coarser.h"
+#include "apps/bough/model/error_verdict.h"
+#include "apps/bough/model/input_link.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+// -- building -------------------------------------------------------------------------------------
+
+static void take(bough_companion *c, bough_arena *arena) {
+    size_t n = (size_t)c->channels->count + 1;
+    bough_arena_each(arena, n, &c->value, &c->other, &c->error, &c->low, &c->high, &c->other_low,
+                     &c->other_high, &c->noticed);
+    for (size_t i = 0; i < n; i++) {
+        c->low[i] = c->other_low[i] = HUGE_VAL;
+        c->high[i] = c->other_high[i] = -HUGE_VAL;
+        c->noticed[i] = -1;
+    }
+}
+
+static void give_up(bough_companion *c, const char *reason) {
+    snprintf(c->reason, sizeof c->reason, "%.300s", reason);
+    c->from = c->run->master->time;
+}
+
+static bough_status build(bough_arena *arena, bough_companion *c) {
+    const bough_scene *scene = bough_coarser_scene(arena, c->run->scene, BOUGH_COARSER_ALL);
+    bough_status status = bough_simulation_build_on(arena, scene, c->run->pool, &c->coarser);
+    c->share = bough_coarser_share(c->run->scene, scene);
+    if (bough_is_ok(&status)) {
+        c->own = bough_channels_start(arena);
+        status = bough_simulation_channels(c->coarser, &c->own);
+    }
+    if (!bough_is_ok(&status)) c->coarser = NULL;
+    return status;
+}
+
+// Takes the channels of both into their ranges.
+static void widen(int n, const double *value, double *low, double *high) {
+    for (int i = 0; i < n; i++) {
+        low[i] = fmin(low[i], value[i]);
+        high[i] = fmax(high[i], value[i]);
+    }
+}
+
+static void sample(bough_companion *c) {
+    bough_simulation *const of[] = {c->run, c->coarser};
+    const bough_channels *const list[] = {c->channels, &c->own};
+    double *const value[] = {c->value, c->other};
+    for (int k = 0; k < 2; k++) {
+        bough_simulation_update(of[k]);
+        bough_channels_sample(list[k], of[k]->master->time, value[k]);
+    }
+    widen(c->channels->count, c->value, c->low, c->high);
+    widen(c->channels->count, c->other, c->other_low, c->other_high);
+}
+
+// What is before simulation.output.from counts no more than in the statistics.
+static bool counts_now(const bough_companion *c) {
+    const bough_master *m = c->run->master;
+    return m->time >= c->run->scene->simulation.output.from - 1e-6 * m->macro_step;
+}
+
+bough_status bough_companion_create(bough_arena *arena, bough_simulation *run, const bough_channels *channels,
+                                    bough_companion *c) {
+    *c = (bough_companion){.run = run, .channels = channels, .status = bough_ok()};
+    take(c, arena);
+    if (run->scene->simulation.error_estimate != BOUGH_SCENE_COMPANION) {
+        give_up(c, "simulation.error_estimate is none");
+    } else if (run->n_fmu > 0) {
+        give_up(c, "an FMU keeps a memory of its own, and there is no second one for the companion");
+    } else {
+        bough_status status = build(arena, c);
+        if (status.code == BOUGH_IO) return status;
+        if (!bough_is_ok(&status)) give_up(c, status.message);
+    }
+    if (!c->coarser) return bough_ok();
+    run->master->compared = true;
+    if (counts_now(c)) sample(c);
+    return bough_ok();
+}
+
+// -- stepping -------------------------------------------------------------------------------------
+
+static bool alive(const bough_companion *c) { return c->coarser && !c->reason[0]; }
+
+bool bough_companion_due(const bough_companion *c) {
+    return alive(c) && c->coarser->master->time <= c->run->master->time &&
+           !bough_master_done(c->coarser->master);
+}
+
+void bough_companion_step(bough_companion *c) {
+    if (c->run->inputs) {
+        size_t size = (size_t)c->run->scene->n_input * sizeof(double);
+        memcpy(bough_input_link_values(c->coarser->inputs), bough_input_link_values(c->run->inputs), size);
+    }
+    c->status = bough_step(c->coarser->master);
+}
+
+// -- comparing ------------------------------------------------------------------------------------
+
+// An angle near its jump differs by a whole turn.
+static double difference(const bough_channel *channel, double a, double b) {
+    return channel->turn > 0 ? remainder(a - b, channel->turn) : a - b;
+}
+
+// What belongs to samples is compared where both have one.
+static void compare(bough_companion *c) {
+    bool sampled = bough_master_sampled(c->coarser->master);
+    sample(c);
+    c->compared++;
+    for (int i = 0; i < c->channels->count; i++) {
+        const bough_channel *channel = &c->channels->channel[i];
+        if (channel->sampled && !sampled) continue;
+        double error = c->share * fabs(difference(channel, c->value[i], c->other[i]));
+        if (!(error <= c->error[i])) c->error[i] = error; // a NaN wins
+    }
+    bough_error_notice(c, c->run->master->time);
+}
+
+// -- which of the two has left --------------------------------------------------------------------
+
+static const double several = 10; // ranges
+enum { PARTED_FOR = 16 };
+
+// Of the vector that the channel is a component of: the largest range of one of the two simulations.
+static double range_of(const bough_companion *c, int channel, const double *low, const double *high) {
+    const bough_channel *list = c->channels->channel;
+    double range = 0;
+    for (int i = list[channel].vector; i < c->channels->count && list[i].vector == list[channel].vector; i++)
+        range = fmax(range, high[i] - low[i]);
+    return range;
+}
+
+// The one with the much larger range has left the other behind.
+static void watch(bough_companion *c) {
+    bool run = false, companion = false;
+    for (int i = 0; i < c->channels->count; i++) {
+        if (!bough_error_is_motion(&c->channels->channel[i])) continue;
+        double own = range_of(c, i, c->low, c->high), other = range_of(c, i, c->other_low, c->other_high);
+        double apart = fabs(difference(&c->channels->channel[i], c->value[i], c->other[i]));
+        if (!(apart > several * fmin(own, other)) || !bough_error_counts(c, i)) continue;
+        run = run || own > several * other;
+        companion = companion || other > several * own;
+    }
+    c->parted_for = run ? c->parted_for + 1 : 0;
+    c->astray_for = companion && !run ? c->astray_for + 1 : 0;
+    if (c->astray_for < PARTED_FOR) return;
+    give_up(c, "the coarser solution by which errors are measured runs away");
+    c->run->master->compared = false;
+}
+
+bool bough_companion_parted(const bough_companion *c) { return c->parted_for >= PARTED_FOR; }
+
+void bough_companion_compare(bough_companion *c) {
+    if (!alive(c)) return;
+    if (!bough_is_ok(&c->status)) {
+        give_up(c, c->status.message);
+        c->run->master->compared = false;
+    } else if (c->coarser->master->time == c->run->master->time && counts_now(c)) {
+        compare(c);
+        watch(c);
+    }
+}
+
+bool bough_companion_knows(const bough_companion *c, int channel) {
+    return c->compared > 0 && isfinite(c->error[channel]);
+}
+
+void bough_companion_stop_by(bough_companion *c, bool (*stop)(void)) {
+    if (c->coarser) bough_master_stop_by(c->coarser->master, stop);
+}
+
+// -- copies ---------------------------------------------------------------------------------------
+
+bool bough_companion_storable(const bough_companion *c) {
+    return !alive(c) || bough_master_sampled(c->coarser->master);
+}
+
+void bough_companion_snapshot(bough_companion *c, bough_snapshot *s) {
+    if (!c->coarser) return;
+    int n = c->channels->count;
+    bough_simulation_snapshot(c->coarser, s);
+    double *const rows[] = {c->error, c->low, c->high, c->other_low, c->other_high, c->noticed};
+    for (size_t k = 0; k < sizeof rows / sizeof *rows; k++) bough_snapshot_doubles(s, rows[k], n);
+    bough_snapshot_take(s, &c->compared, sizeof c->compared);
+    bough_snapshot_take(s, &c->parted_for, sizeof c->parted_for);
+    bough_snapshot_take(s, &c->astray_for, sizeof c->astray_for);
+    bough_snapshot_take(s, c->reason, sizeof c->reason);
+    bough_snapshot_take(s, &c->from, sizeof c->from);
+    bough_snapshot_take(s, &c->run->master->compared, sizeof c->run->master->compared);
+    if (s->move == BOUGH_SNAPSHOT_RESTORE) c->status = bough_ok();
+}

@@ -1,0 +1,64 @@
+// The companion of a run: a second simulation of the same scene that is coarser in everything. What lies
+// between the two at equal times tells what the run errs by: mesh, air, time and coupling at once, for every
+// channel.
+//
+// If the error falls with order p, a solution with twice the step errs by 2ᵖ times as much, and the run by
+// 1/(2ᵖ − 1) of the difference: a third for order 2 (docs/theory.md).
+#ifndef BOUGH_APPS_SIMULATION_COMPANION_H
+#define BOUGH_APPS_SIMULATION_COMPANION_H
+
+#include "apps/bough/model/simulation.h"
+
+enum { BOUGH_COMPANION_REASON = 320 };
+
+typedef struct bough_companion {
+    bough_simulation *run;
+    bough_simulation *coarser;           // NULL: there is none
+    const bough_channels *channels;      // of the run
+    bough_channels own;                  // of the companion: the same ones
+    double share;                        // of the difference, that the run errs by
+    char reason[BOUGH_COMPANION_REASON]; // why errors are not known, or not any more; "": they are
+    double from;                         // when they ceased to be [s]
+    long compared;                       // times
+    double *value, *other;          // (channels->count) at the last of them, of the run and of the companion
+    double *error;                  // (channels->count) largest so far, in the channels' units
+    double *low, *high;             // (channels->count) range of the run
+    double *other_low, *other_high; // (channels->count) of the companion
+    double *noticed; // (channels->count) when the error first passed a hundredth of the range [s]
+    int parted_for,
+        astray_for;      // comparisons in a row in which the run, the companion has left the other behind
+    bough_status status; // of its last step
+} bough_companion;
+
+// Builds the companion that the scene of the run asks for, with the run's pool, at time 0. Where it cannot be
+// built, the reason says why.
+bough_status bough_companion_create(bough_arena *arena, bough_simulation *run, const bough_channels *channels,
+                                    bough_companion *companion);
+
+// Whether it is at the time of the run and can go on, so that its next step is due.
+bool bough_companion_due(const bough_companion *c);
+
+// A macro step of its own, of two of the run's. It touches nothing of the run.
+void bough_companion_step(bough_companion *c);
+
+// After a step of the run: compares the two if they are at one time. Changes no result.
+void bough_companion_compare(bough_companion *c);
+
+// Whether the channel's error is known.
+bool bough_companion_knows(const bough_companion *c, int channel);
+
+// Whether run and companion have been several ranges apart for so long, the run being the one that has left,
+// that it should end.
+bool bough_companion_parted(const bough_companion *c);
+
+// Whether the companion can be stored now, when it may be ahead of the run: its loads are sampled, as a copy
+// needs.
+bool bough_companion_storable(const bough_companion *c);
+
+// Its steps end, as those of the run, once stop() is true; see bough_master_stop_by.
+void bough_companion_stop_by(bough_companion *c, bool (*stop)(void));
+
+// What the companion remembers, when it can be stored.
+void bough_companion_snapshot(bough_companion *c, bough_snapshot *snapshot);
+
+#endif

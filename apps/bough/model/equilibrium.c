@@ -1,0 +1,304 @@
+#include "apps/bough/model/equilibrium.h"
+
+#include "apps/bough/model/aero_link.h"
+#include "apps/bough/model/drag_link.h"
+#include "apps/bough/model/jump_link.h"
+#include "cosim/analysis/equilibrium.h"
+#include "flexbody/rod/rod_move.h"
+
+#include <math.h>
+#include <string.h>
+
+enum { SAMPLES = 60 }; // of the air, most
+
+// Changes between samples of the air below it are none, in units of the states' scales.
+static const double still = 1e-8;
+
+bool bough_equilibrium_apart(const bough_simulation *s) { return s->tree->n_v == 0 && s->aero == NULL; }
+
+double bough_equilibrium_time(const bough_simulation *s) {
+    double last = 0;
+    for (int i = 0; i < s->master->n_event; i++) last = fmax(last, s->master->event[i]);
+    return last;
+}
+
+void bough_equilibrium_set_state(bough_simulation *s, const bough_assembly *assembly, const double *state) {
+    for (int i = 0; i < assembly->n_member; i++) {
+        bough_member_set(assembly->member[i], 0, state + assembly->state_offset[i]);
+    }
+    bough_simulation_update(s);
+}
+
+// The tree's states are the first of all.
+int bough_equilibrium_held(const bough_tree *tree, bool turning, int *row) {
+    int n = 0;
+    for (int i = 0; i < tree->n_links; i++) {
+        const bough_link *link = &tree->links[i];
+        const double *speed = tree->initial + tree->n_q + link->first_speed;
+        bool held = link->motion != NULL;
+        for (int k = 0; k < link->n_speeds; k++) held = held || (turning && speed[k] != 0);
+        if (!held) continue;
+        for (int k = 0; k < link->n_coordinates; k++) row[n++] = link->first_coordinate + k;
+        for (int k = 0; k < link->n_speeds; k++) row[n++] = tree->n_q + link->first_speed + k;
+    }
+    return n;
+}
+
+static bough_status explain(const bough_simulation *s, const bough_assembly *assembly,
+                            const bough_equilibrium_report *report) {
+    return bough_fail(BOUGH_FAILED,
+                      "%s: no equilibrium found in %d steps; it still moves by %.3g of its scale "
+                      "in a step, at a rate of %.3g; a free joint needs a spring, a speed or "
+                      "a motion; or the load is too large (try a part of it, or 'bough static --path'), "
+                      "or the mesh too coarse",
+                      bough_simulation_body_of(s, assembly, report->row), report->steps, report->change,
+                      report->rate);
+}
+
+static double change_of(const bough_assembly *assembly, const double *a, const double *b) {
+    double change = 0;
+    for (int i = 0; i < assembly->n_member; i++) {
+        int first = assembly->state_offset[i];
+        for (int k = 0; k < assembly->member[i]->system.n_state; k++) {
+            double size = fabs(a[first + k] - b[first + k]) / assembly->member[i]->system.scale[k];
+            change = fmax(change, size);
+        }
+    }
+    return change;
+}
+
+// The states in equilibrium under the air's forces as sampled last.
+static bough_status balance(bough_arena *arena, bough_simulation *s, bough_coupled *coupled,
+                            bough_equilibrium_def *def, double *state, bough_equilibrium_work *work) {
+    bough_equilibrium_report report;
+    bough_status status = bough_equilibrium_find(arena, coupled, def, state, &report);
+    work->steps += report.steps;
+    if (status.code == BOUGH_FAILED) return explain(s, coupled->assembly, &report);
+    if (bough_is_ok(&status)) bough_equilibrium_set_state(s, coupled->assembly, state);
+    def->step = BOUGH_EQUILIBRIUM_LONGEST; // near it now
+    return status;
+}
+
+static bough_status balance_in_air(bough_arena *arena, bough_simulation *s, bough_coupled *coupled,
+                                   bough_equilibrium_def *def, double *state, bough_equilibrium_work *work) {
+    double *before = bough_arena_doubles(arena, (size_t)coupled->assembly->n_state), change = 0;
+    while (work->samples < SAMPLES) {
+        memcpy(before, state, (size_t)coupled->assembly->n_state * sizeof *state);
+        bough_aero_link_hold(s->aero, def->time);
+        if (s->drag != NULL) bough_drag_link_hold(s->drag, def->time);
+        work->samples++;
+        bough_status status = balance(arena, s, coupled, def, state, work);
+        if (!bough_is_ok(&status)) return status;
+        change = change_of(coupled->assembly, state, before);
+        if (change < still) return status;
+    }
+    return bough_fail(BOUGH_FAILED,
+                      "no equilibrium in the air: the bodies still move by %.3g of their scales"
+                      " after %d samples of its forces; they may flutter or stall: try another wind"
+                      " speed or pitch",
+                      change, work->samples);
+}
+
+// What is brought to equilibrium.
+typedef struct search {
+    bough_simulation *simulation;
+    bough_coupled *coupled;
+    double time;
+    double *change; // of one rod's vertices, see rod_move.h
+} search;
+
+// Rods turn without stretching, and what hangs on their ends goes with them.
+static double move(void *self, const double *state, const double *change, double *moved) {
+    const search *x = self;
+    const bough_simulation *s = x->simulation;
+    const bough_assembly *a = x->coupled->assembly;
+    double turn = 0;
+    for (int k = 0; k < a->n_state; k++) moved[k] = state[k] + change[k];
+    for (int k = 0; k < s->n_beam; k++) {
+        const bough_beam *beam = &s->beam[k];
+        if (!beam->rod) continue;
+        const bough_rod_model *m = bough_rod_body_model(beam->rod);
+        size_t own = (size_t)a->state_offset[beam->port + 1], size = BOUGH_ROD_U * (size_t)m->n;
+        size_t end = 0; // of a rod that carries nothing: not read
+        if (beam->end >= 0) {
+            int link = s->tree->ends[beam->end].link;
+            end = (size_t)s->tree->links[link].first_coordinate;
+        }
+        bough_rod_change(m, state + own, state + end, change + own, change + end, x->change);
+        memcpy(moved + own, state + own, size * sizeof *moved);
+        if (beam->end >= 0) memcpy(moved + end, state + end, BOUGH_ROD_U * sizeof *moved);
+        bough_rod_move(m, x->change, 1, moved + own, moved + end);
+        turn = fmax(turn, bough_rod_turn(m, x->change));
+    }
+    return turn;
+}
+
+// All joints but the held ones are at rest, and the rods move with them. Each step then starts at rest: it
+// goes downhill and makes no vibration. A closed loop is not brought to rest unless something turns: it may
+// have to close, which takes velocities.
+static void bring_to_rest(void *self, double *state) {
+    const search *x = self;
+    const bough_simulation *s = x->simulation;
+    const bough_assembly *a = x->coupled->assembly;
+    const bough_tree *tree = s->tree;
+    for (int k = tree->n_q; k < tree->n_q + tree->n_v; k++) {
+        bool held = false;
+        for (int i = 0; i < x->coupled->n_held; i++) held = held || x->coupled->held[i] == k;
+        if (!held) state[k] = 0;
+    }
+    bough_coupled_inputs(x->coupled, x->time, state);
+    for (int k = 0; k < s->n_beam; k++) {
+        const bough_beam *beam = &s->beam[k];
+        int member = beam->port + 1;
+        if (beam->port < 0) continue;
+        bough_beam_ride(beam, x->coupled->input + a->input_offset[member], state + a->state_offset[member]);
+    }
+}
+
+static bool turns(const bough_coupled *coupled, const bough_tree *tree, const double *state) {
+    for (int i = 0; i < coupled->n_held; i++) {
+        if (coupled->held[i] >= tree->n_q && state[coupled->held[i]] != 0) return true;
+    }
+    return false;
+}
+
+// Room for the change of any rod.
+static double *rod_changes(bough_arena *arena, const bough_simulation *s) {
+    int most = 1;
+    for (int k = 0; k < s->n_beam; k++) {
+        int n = s->beam[k].def.n_segment;
+        if (n > most) most = n;
+    }
+    return bough_arena_doubles(arena, BOUGH_ROD_CHANGE * (size_t)most);
+}
+
+// The system, the states at rest at `time`, and what moves them.
+typedef struct balance_setup {
+    bough_coupled *coupled;
+    double *state; // (n_state)
+    search self;
+    bool rests; // whether states are brought to rest in between
+} balance_setup;
+
+static void set_up(bough_arena *arena, bough_simulation *s, const bough_assembly *assembly, double time,
+                   balance_setup *b) {
+    b->state = bough_arena_doubles(arena, (size_t)assembly->n_state + 1);
+    int *row = bough_arena_take(arena, ((size_t)s->leader.system.n_state + 1) * sizeof *row);
+    b->coupled = bough_coupled_create(arena, assembly, NULL);
+    if (s->jump != NULL) bough_jump_link_begin(s->jump, time);
+    bough_coupled_hold(arena, b->coupled, bough_equilibrium_held(s->tree, true, row), row);
+    bough_assembly_states(assembly, b->state);
+    bough_tree_prescribe(s->tree, time, b->state);
+    b->self = (search){s, b->coupled, time, rod_changes(arena, s)};
+    bring_to_rest(&b->self, b->state);
+    b->rests = turns(b->coupled, s->tree, b->state) || s->tree->n_closures == 0;
+}
+
+static bough_equilibrium_def equilibrium_def(balance_setup *b) {
+    bough_equilibrium_def def = bough_equilibrium_def_default();
+    def.time = b->self.time;
+    def.self = &b->self;
+    def.move = move;
+    if (b->rests) def.rest = bring_to_rest;
+    return def;
+}
+
+// What bough_arena_use passes on.
+typedef struct task {
+    bough_simulation *simulation;
+    const bough_assembly *assembly;
+    double time;
+    bough_equilibrium_work *work; // of an equilibrium
+    bough_path_listener listener; // of a path
+    bough_path_report *report;
+} task;
+
+static bough_status balance_members(bough_arena *arena, void *data) {
+    const task *x = data;
+    bough_simulation *s = x->simulation;
+    balance_setup b;
+    set_up(arena, s, x->assembly, x->time, &b);
+    bough_equilibrium_def def = equilibrium_def(&b);
+    return s->aero ? balance_in_air(arena, s, b.coupled, &def, b.state, x->work)
+                   : balance(arena, s, b.coupled, &def, b.state, x->work);
+}
+
+bough_status bough_simulation_equilibrium(bough_simulation *s, const bough_assembly *assembly, double time,
+                                          bough_equilibrium_work *work) {
+    task x = {.simulation = s, .assembly = assembly, .time = time, .work = work};
+    *work = (bough_equilibrium_work){0};
+    return bough_arena_use(balance_members, &x);
+}
+
+// -- paths ----------------------------------------------------------------------------------------
+
+typedef struct walk {
+    search search; // the first, for move
+    const bough_assembly *assembly;
+    bough_simulation *simulation;
+    bough_path_listener listener;
+} walk;
+
+static void rest(void *self, double *state) {
+    walk *w = self;
+    bring_to_rest(&w->search, state);
+}
+
+static bough_status tell_point(void *self, double share, const double *state, bool limit) {
+    const walk *w = self;
+    double time = fmin(fmax(share, 0), 1) * bough_equilibrium_time(w->simulation);
+    for (int i = 0; i < w->assembly->n_member; i++)
+        bough_member_set(w->assembly->member[i], time, state + w->assembly->state_offset[i]);
+    bough_simulation_update(w->simulation);
+    bough_coupled_inputs(w->search.coupled, time, state);
+    size_t size = (size_t)w->assembly->n_input * sizeof(double);
+    memcpy(w->simulation->master->coupling->input, w->search.coupled->input, size);
+    return w->listener.point(w->listener.self, time, share, limit);
+}
+
+static bough_status refuse_path(const bough_simulation *s) {
+    const char *file = s->scene->file;
+    for (int i = 0; i < s->tree->n_links; i++) {
+        const bough_link *link = &s->tree->links[i];
+        if (link->motion == NULL) continue;
+        return bough_fail(BOUGH_INVALID,
+                          "%.200s: body '%s': a path of equilibria knows no prescribed motions: give its "
+                          "joint a load",
+                          file, s->tree->bodies[link->body].name);
+    }
+    if (s->aero != NULL) return bough_fail(BOUGH_INVALID, "%.200s: a path of equilibria knows no air", file);
+    if (s->jump != NULL)
+        return bough_fail(BOUGH_INVALID, "%.200s: loads: a path of equilibria knows no jumps", file);
+    if (bough_equilibrium_time(s) > 0) return bough_ok();
+    return bough_fail(BOUGH_INVALID,
+                      "%.200s: loads: expected one that grows, as 'ramp: [0 s, 1 s]': its path is "
+                      "followed over the ramp",
+                      file);
+}
+
+static bough_status walk_path(bough_arena *arena, void *data) {
+    const task *x = data;
+    bough_simulation *s = x->simulation;
+    balance_setup b;
+    bough_path_def def = bough_path_def_default();
+    bough_equilibrium_work work = {0};
+    set_up(arena, s, x->assembly, 0, &b);
+    bough_equilibrium_def start = equilibrium_def(&b);
+    bough_status status = balance(arena, s, b.coupled, &start, b.state, &work);
+    if (!bough_is_ok(&status)) return status;
+    walk w = {b.self, x->assembly, s, x->listener};
+    def.end = bough_equilibrium_time(s);
+    def.self = &w;
+    def.move = move;
+    def.rest = rest;
+    def.point = tell_point;
+    return bough_path_follow(arena, b.coupled, &def, b.state, x->report);
+}
+
+bough_status bough_simulation_path(bough_simulation *s, const bough_assembly *assembly,
+                                   bough_path_listener listener, bough_path_report *report) {
+    task x = {.simulation = s, .assembly = assembly, .listener = listener, .report = report};
+    *report = (bough_path_report){0};
+    bough_status status = refuse_path(s);
+    return bough_is_ok(&status) ? bough_arena_use(walk_path, &x) : status;
+}

@@ -1,0 +1,51 @@
+// Static equilibrium of the whole scene: tree, rods and springs together, under gravity, the loads
+// at one time and the air's forces, which are sampled anew where the bodies come to rest.
+//
+// A joint of prescribed motion is where it is then; one with an initial speed keeps coordinate and
+// speed. The bodies on them turn steadily at their present azimuth, and gravity keeps its direction in
+// the rotating frame (frozen azimuth). All other joints come to rest.
+#ifndef BOUGH_APPS_SIMULATION_EQUILIBRIUM_H
+#define BOUGH_APPS_SIMULATION_EQUILIBRIUM_H
+
+#include "apps/bough/model/simulation.h"
+#include "cosim/analysis/path.h"
+
+typedef struct bough_equilibrium_work {
+    int steps;   // of the solution, all samples of the air together
+    int samples; // of the air; 0 without aerodynamics
+} bough_equilibrium_work;
+
+// Rows of the tree's states that are held (n_q + n_v at most): of joints of prescribed motion and,
+// with `turning`, of those with an initial speed. Returns their number.
+int bough_equilibrium_held(const bough_tree *tree, bool turning, int *row);
+
+// Whether the rods are independent: each is held by the ground, without air. Then each has its own
+// equilibrium and modes.
+bool bough_equilibrium_apart(const bough_simulation *s);
+
+// The time after which no load grows any more [s].
+double bough_equilibrium_time(const bough_simulation *s);
+
+// Brings the members of the assembly, the simulation's, to equilibrium under the loads at `time`;
+// their clocks stay at 0. BOUGH_FAILED names the body that finds none.
+bough_status bough_simulation_equilibrium(bough_simulation *s, const bough_assembly *assembly, double time,
+                                          bough_equilibrium_work *work);
+
+// Called at each point of a path, where the members, their inputs and the simulation's view then are; `time`:
+// when the loads are those of the point [s]. `limit`: they have a local maximum or minimum there. A failure
+// ends the path.
+typedef struct bough_path_listener {
+    void *self;
+    bough_status (*point)(void *self, double time, double share, bool limit);
+} bough_path_listener;
+
+// Follows the equilibria of the assembly as the loads grow from those at time 0 to those at
+// bough_equilibrium_time, in proportion, through limit points (cosim/analysis/path.h). BOUGH_INVALID for scenes with
+// air, prescribed motions, jumps of loads, or loads that do not grow. BOUGH_FAILED when the path ends before.
+bough_status bough_simulation_path(bough_simulation *s, const bough_assembly *assembly,
+                                   bough_path_listener listener, bough_path_report *report);
+
+// Sets the states of all members (n_state); their clocks are set to 0, and `view` follows.
+void bough_equilibrium_set_state(bough_simulation *s, const bough_assembly *assembly, const double *state);
+
+#endif

@@ -1,0 +1,283 @@
+#include "apps/bough/model/error_shares.h"
+
+#include "apps/bough/model/build.h"
+#include "apps/bough/model/coarser.h"
+
+#include <math.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <string.h>
+#include <time.h>
+
+static const double usual_share = 0.25; // of the difference, as of the whole error (coarser.h)
+
+const char *bough_error_share_name(bough_error_share_kind kind) {
+    static const char *const names[BOUGH_SHARES] = {"mesh", "air", "time"};
+    return names[kind];
+}
+
+static void unknown(bough_error_share *share, const char *format, ...) {
+    va_list arguments;
+    va_start(arguments, format);
+    vsnprintf(share->unknown, sizeof share->unknown, format, arguments);
+    va_end(arguments);
+}
+
+// -- further runs ---------------------------------------------------------------------------------
+
+typedef struct other_run {
+    bough_simulation *simulation; // NULL: there is none
+    bough_channels channels;
+    double *value; // (channels.count)
+} other_run;
+
+static bough_status build(bough_arena *arena, const bough_simulation *run, int parts, other_run *r) {
+    const bough_scene *scene = bough_coarser_scene(arena, run->scene, parts);
+    bough_status status = bough_simulation_build_on(arena, scene, run->pool, &r->simulation);
+    r->channels = bough_channels_start(arena);
+    if (bough_is_ok(&status)) status = bough_simulation_channels(r->simulation, &r->channels);
+    r->value = bough_arena_doubles(arena, (size_t)r->channels.count + 1);
+    if (!bough_is_ok(&status)) r->simulation = NULL;
+    return status;
+}
+
+static void sample(other_run *r) {
+    bough_simulation_update(r->simulation);
+    bough_channels_sample(&r->channels, r->simulation->master->time, r->value);
+}
+
+static bough_status advance(other_run *r, double t) {
+    bough_status status = bough_ok();
+    while (bough_is_ok(&status) && r->simulation->master->time < t)
+        status = bough_step(r->simulation->master);
+    return status;
+}
+
+static void compare(const other_run *base, other_run *finer, double part, bough_error_share *share) {
+    const bough_master *m = finer->simulation->master;
+    if (m->time != base->simulation->master->time) return;
+    sample(finer);
+    for (int i = 0; i < base->channels.count; i++) {
+        const bough_channel *channel = &base->channels.channel[i];
+        if (channel->sampled && !bough_master_sampled(base->simulation->master)) continue;
+        double apart = base->value[i] - finer->value[i];
+        if (channel->turn > 0) apart = remainder(apart, channel->turn);
+        share->largest[i] = fmax(share->largest[i], part * fabs(apart));
+    }
+}
+
+typedef struct finding {
+    const bough_companion *companion;
+    bool (*stop)(void);
+    bough_error_shares *shares;
+} finding;
+
+static bool has_part(const bough_scene *scene, int kind) {
+    if (kind == BOUGH_SHARE_TIME) return true;
+    if (kind == BOUGH_SHARE_AIR) return scene->aero.node != NULL;
+    for (int i = 0; i < scene->n_body; i++) {
+        if (scene->body[i].rod.node && scene->body[i].fidelity != BOUGH_SCENE_RIGID) return true;
+    }
+    return false;
+}
+
+static void build_finer(bough_arena *arena, const finding *x, other_run finer[BOUGH_SHARES]) {
+    static const int coarser[BOUGH_SHARES] = {BOUGH_COARSER_MESH, BOUGH_COARSER_AIR, BOUGH_COARSER_TIME};
+    const bough_simulation *run = x->companion->run;
+    for (int k = 0; k < BOUGH_SHARES; k++) {
+        bough_error_share *share = &x->shares->share[k];
+        if (!has_part(run->scene, k)) {
+            unknown(share, "the scene has no %s", bough_error_share_name((bough_error_share_kind)k));
+            continue;
+        }
+        bough_status status = build(arena, run, BOUGH_COARSER_ALL & ~coarser[k], &finer[k]);
+        if (!bough_is_ok(&status)) unknown(share, "%.150s", status.message);
+    }
+}
+
+// From start to end; a run that fails leaves its share unknown.
+static bough_status find(bough_arena *arena, void *self) {
+    const finding *x = self;
+    other_run base, finer[BOUGH_SHARES] = {{0}};
+    bough_status status = build(arena, x->companion->run, BOUGH_COARSER_ALL, &base);
+    if (bough_is_ok(&status)) build_finer(arena, x, finer);
+    while (bough_is_ok(&status) && !bough_master_done(base.simulation->master)) {
+        if (x->stop && x->stop())
+            return bough_fail(BOUGH_INTERRUPTED, "interrupted while the error's cause was looked for");
+        status = bough_step(base.simulation->master);
+        if (!bough_is_ok(&status)) break;
+        sample(&base);
+        for (int k = 0; k < BOUGH_SHARES; k++) {
+            bough_error_share *share = &x->shares->share[k];
+            if (!finer[k].simulation || share->unknown[0]) continue;
+            bough_status own = advance(&finer[k], base.simulation->master->time);
+            if (bough_is_ok(&own))
+                compare(&base, &finer[k], k == BOUGH_SHARE_MESH ? x->companion->share : usual_share, share);
+            else
+                unknown(share, "%.150s", own.message);
+        }
+    }
+    return status;
+}
+
+static double cpu_clock(void) {
+    struct timespec now;
+    clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
+    return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
+}
+
+bough_status bough_error_shares_find(bough_arena *arena, const bough_companion *c, bool (*stop)(void),
+                                     bough_error_shares *shares) {
+    finding x = {c, stop, shares};
+    double cpu = cpu_clock();
+    *shares = (bough_error_shares){.found = true, .n_channel = c->channels->count};
+    for (int k = 0; k < BOUGH_SHARES; k++)
+        shares->share[k].largest = bough_arena_doubles(arena, (size_t)c->channels->count + 1);
+    bough_status status = bough_ok();
+    if (!c->coarser) {
+        status = bough_fail(BOUGH_FAILED, "%s", c->reason);
+    } else if (c->run->inputs) {
+        status = bough_fail(BOUGH_FAILED, "the run has inputs, which are not known any more");
+    } else {
+        status = bough_arena_use(find, &x);
+    }
+    shares->cpu_s = cpu_clock() - cpu;
+    if (status.code == BOUGH_INTERRUPTED) return status;
+    for (int k = 0; k < BOUGH_SHARES && !bough_is_ok(&status); k++)
+        unknown(&shares->share[k], "%.150s", status.message);
+    return bough_ok();
+}
+
+// -- cause and remedy -----------------------------------------------------------------------------
+
+enum { ADVICE = 160 };
+static const double mesh_order = 2, air_order = 2, time_order = 2; // at least
+static const double margin = 1.1;                                  // of the settings that are proposed
+
+// The segments that divide the mesh's error by a factor: their number where all rods have the same.
+static void advise_mesh(const bough_scene *scene, double factor, char text[ADVICE]) {
+    double times = margin * pow(factor, 1 / mesh_order);
+    int n = 0;
+    bool equal = true;
+    for (int i = 0; i < scene->n_body; i++) {
+        if (!scene->body[i].rod.node || scene->body[i].fidelity == BOUGH_SCENE_RIGID) continue;
+        equal = equal && (n == 0 || n == scene->body[i].rod.n_segment);
+        n = scene->body[i].rod.n_segment;
+    }
+    if (equal) {
+        snprintf(text, ADVICE, "rod.segments: %.0f", ceil(times * n));
+    } else {
+        snprintf(text, ADVICE, "%.2g times as many rod.segments", times);
+    }
+}
+
+// Doubled until it suffices; a sample of the air needs a macro step of its own.
+static void advise_air(const bough_scene *scene, double factor, char text[ADVICE]) {
+    double times = exp2(ceil(log2(pow(factor, 1 / air_order)))), rate = times * scene->aero.rate;
+    int n = snprintf(text, ADVICE, "aero.rate: %.4g Hz", rate);
+    if (rate * scene->simulation.macro_step > 1 + 1e-9)
+        snprintf(text + n, (size_t)(ADVICE - n), " with macro_step: %.4g s", 1 / rate);
+}
+
+static void advise_time(const bough_scene *scene, double factor, char text[ADVICE]) {
+    const bough_scene_simulation *x = &scene->simulation;
+    bool one_system = bough_scheme_find(bough_scheme_name(x->coupling.scheme))->one_system;
+    double shorter = pow(factor, -1 / time_order) / margin;
+    if (!one_system) {
+        snprintf(text, ADVICE, "scheme: monolithic or macro_step: %.2g s", shorter * x->macro_step);
+    } else if (x->master.solver == BOUGH_GENERALIZED_ALPHA) {
+        double step = x->master.step > 0 ? fmin(x->master.step, x->macro_step) : x->macro_step;
+        snprintf(text, ADVICE, "master.step: %.2g s or master.solver: rosenbrock", shorter * step);
+    } else {
+        int n = snprintf(text, ADVICE, "master.rtol: %.1g", 0.5 * x->master.rtol / fmin(factor, 1e3));
+        if (x->master.step > 0)
+            snprintf(text + n, (size_t)(ADVICE - n), " and master.step: %.2g s", shorter * x->master.step);
+    }
+}
+
+static void advise(const bough_scene *scene, int kind, double factor, char text[ADVICE]) {
+    if (kind == BOUGH_SHARE_MESH) advise_mesh(scene, factor, text);
+    if (kind == BOUGH_SHARE_AIR) advise_air(scene, factor, text);
+    if (kind == BOUGH_SHARE_TIME) advise_time(scene, factor, text);
+}
+
+static const char *cause_name(const bough_scene *scene, int kind) {
+    if (kind == BOUGH_SHARE_MESH) return "the mesh";
+    if (kind == BOUGH_SHARE_AIR) return "the sampling of the air";
+    bool one_system = bough_scheme_find(bough_scheme_name(scene->simulation.coupling.scheme))->one_system;
+    return one_system ? "the integrator's steps" : "the coupling or the sub-solvers' steps";
+}
+
+static int describe(const bough_companion *c, const bough_error_verdict *v, char *text, size_t size) {
+    const bough_channel *channel = &c->channels->channel[v->channel];
+    return snprintf(text, size, "%s errs by %.2g %s, %.2g of its range, noticeably from %.6g s on",
+                    channel->name, c->error[v->channel], channel->unit, v->relative, v->time);
+}
+
+bool bough_error_exceeds(const bough_companion *c, double bound) {
+    bough_error_verdict v = bough_error_verdict_of(c, true, c->error);
+    return bound > 0 && v.channel >= 0 && v.relative > bound;
+}
+
+// The largest share; the mesh only if time and air alone stay below the bound.
+static int cause_of(const bough_companion *c, const bough_error_shares *shares, double bound,
+                    double *relative) {
+    int cause = -1;
+    *relative = 0;
+    for (int k = 0; k < BOUGH_SHARES; k++) {
+        const bough_error_share *share = &shares->share[k];
+        if (share->unknown[0]) continue;
+        bough_error_verdict v = bough_error_verdict_of(c, true, share->largest);
+        double own = v.channel < 0 ? 0 : v.relative;
+        bool before = cause == BOUGH_SHARE_MESH && own > bound;
+        if (!before && own <= *relative) continue;
+        cause = k;
+        *relative = own;
+    }
+    return cause;
+}
+
+static bough_status judge_excess(const bough_companion *c, const bough_error_shares *shares, double bound,
+                                 const bough_error_verdict *v, char warning[BOUGH_ERROR_WARNING]) {
+    const bough_scene *scene = c->run->scene;
+    char what[240], remedy[ADVICE];
+    double relative;
+    int cause = cause_of(c, shares, bound, &relative);
+    describe(c, v, what, sizeof what);
+    if (cause < 0) {
+        return bough_fail(BOUGH_FAILED, "the error bound %.3g is exceeded: %s; the cause was not found: %s",
+                          bound, what, shares->share[BOUGH_SHARE_TIME].unknown);
+    }
+    advise(scene, cause, fmax(fmax(relative, v->relative) / bound, 1), remedy);
+    snprintf(warning, BOUGH_ERROR_WARNING, "%s; cause: %s; try %s", what, cause_name(scene, cause), remedy);
+    if (cause == BOUGH_SHARE_MESH) return bough_ok();
+    bough_status failed = bough_fail(BOUGH_FAILED, "the error bound %.3g is exceeded: %s", bound, warning);
+    warning[0] = '\0';
+    return failed;
+}
+
+static void warn_of_loss(const bough_companion *c, char warning[BOUGH_ERROR_WARNING]) {
+    snprintf(warning, BOUGH_ERROR_WARNING, "errors are not known from %.6g s on: %s", c->from, c->reason);
+}
+
+bough_status bough_error_judge(const bough_companion *c, const bough_error_shares *shares, double bound,
+                               char warning[BOUGH_ERROR_WARNING]) {
+    warning[0] = '\0';
+    bough_error_verdict v = bough_error_verdict_of(c, true, c->error);
+    if (c->compared > 0 && c->reason[0]) warn_of_loss(c, warning);
+    if (v.channel < 0) return bough_ok();
+    if (bound > 0 && v.relative > bound) return judge_excess(c, shares, bound, &v, warning);
+    if (v.relative > BOUGH_ERROR_NOTICEABLE && !warning[0]) describe(c, &v, warning, BOUGH_ERROR_WARNING);
+    return bough_ok();
+}
+
+bough_status bough_error_parted(const bough_companion *c) {
+    char what[240], remedy[ADVICE];
+    bough_error_verdict v = bough_error_verdict_of(c, true, c->error);
+    if (v.channel < 0) return bough_ok();
+    describe(c, &v, what, sizeof what);
+    advise_time(c->run->scene, 16, remedy);
+    return bough_fail(BOUGH_FAILED,
+                      "the run has lost the solution at %.6g s: %s, by a coarser solution beside it; try %s",
+                      c->run->master->time, what, remedy);
+}

@@ -1,0 +1,121 @@
+#include "apps/bough/model/error_verdict.h"
+
+#include <math.h>
+
+static const double rounding = 1e-6;    // of the largest range of all motion or value up to 1, in SI units
+static const double least_share = 1e-3; // of the largest range of that kind; of a velocity: its least range
+
+bool bough_error_is_motion(const bough_channel *channel) {
+    return channel->kind >= BOUGH_KIND_LENGTH && channel->kind <= BOUGH_KIND_ANGULAR_VELOCITY &&
+           !channel->sampled;
+}
+
+static bool is_force(const bough_channel *channel) {
+    return channel->kind == BOUGH_KIND_FORCE || channel->kind == BOUGH_KIND_MOMENT;
+}
+
+static bool is_velocity(const bough_channel *channel) {
+    return channel->kind == BOUGH_KIND_VELOCITY || channel->kind == BOUGH_KIND_ANGULAR_VELOCITY;
+}
+
+// -- ranges ---------------------------------------------------------------------------------------
+
+static double own_range(const bough_companion *c, int i) {
+    return fmax(fmin(c->high[i] - c->low[i], c->other_high[i] - c->other_low[i]), 0);
+}
+
+static double largest_value(const bough_companion *c, int i) {
+    double run = fmax(fabs(c->high[i]), fabs(c->low[i]));
+    return fmin(run, fmax(fabs(c->other_high[i]), fabs(c->other_low[i])));
+}
+
+double bough_error_range(const bough_companion *c, int channel) {
+    const bough_channel *list = c->channels->channel;
+    double range = 0, value = 0;
+    for (int i = list[channel].vector; i < c->channels->count && list[i].vector == list[channel].vector;
+         i++) {
+        range = fmax(range, own_range(c, i));
+        value = fmax(value, largest_value(c, i));
+    }
+    return is_velocity(&list[channel]) ? fmax(range, least_share * value) : range;
+}
+
+double bough_error_relative(const bough_companion *c, int channel, double error) {
+    double range = bough_error_range(c, channel);
+    return range > 0 ? error / range : (double)NAN;
+}
+
+// -- what counts ----------------------------------------------------------------------------------
+
+// The largest range of the channels of that kind, in SI units.
+static double kind_range(const bough_companion *c, bough_quantity_kind kind) {
+    double largest = 0;
+    for (int i = 0; i < c->channels->count; i++) {
+        const bough_channel *channel = &c->channels->channel[i];
+        if (channel->kind == kind && !channel->sampled)
+            largest = fmax(largest, channel->si * own_range(c, i));
+    }
+    return largest;
+}
+
+// Of all motion, whatever its kind: where nothing moves, the ranges are those of rounding.
+static double largest_motion(const bough_companion *c) {
+    double largest = 0;
+    for (int i = 0; i < c->channels->count; i++) {
+        const bough_channel *channel = &c->channels->channel[i];
+        if (!bough_error_is_motion(channel)) continue;
+        double value = fmin(channel->si * largest_value(c, i), 1);
+        largest = fmax(largest, fmax(value, channel->si * own_range(c, i)));
+    }
+    return largest;
+}
+
+bool bough_error_counts(const bough_companion *c, int i) {
+    const bough_channel *channel = &c->channels->channel[i];
+    double moves = channel->si * fmax(bough_error_range(c, i), c->error[i]);
+    bool moving = bough_error_is_motion(channel) ? moves > rounding * largest_motion(c)
+                                                 : moves > least_share * channel->si * largest_value(c, i);
+    return moving && moves >= least_share * kind_range(c, channel->kind);
+}
+
+// -- the verdict ----------------------------------------------------------------------------------
+
+static double relative_of(const bough_companion *c, int i, double error) {
+    double relative = bough_error_relative(c, i, error);
+    return isnan(relative) && error > 0 ? HUGE_VAL : relative;
+}
+
+bough_error_verdict bough_error_verdict_of(const bough_companion *c, bool motion, const double *error) {
+    bough_error_verdict v = {.channel = -1};
+    for (int i = 0; i < c->channels->count; i++) {
+        const bough_channel *channel = &c->channels->channel[i];
+        bool wanted = motion ? bough_error_is_motion(channel) : is_force(channel) && !channel->sampled;
+        if (!wanted || !bough_companion_knows(c, i) || !bough_error_counts(c, i)) continue;
+        double relative = relative_of(c, i, error[i]);
+        if (v.channel >= 0 && relative <= v.relative) continue;
+        v = (bough_error_verdict){i, relative, c->noticed[i]};
+    }
+    return v;
+}
+
+int bough_error_worst(const bough_companion *c, int most, int *channel) {
+    int n = 0;
+    for (int i = 0; i < c->channels->count; i++) {
+        bool judged = bough_error_is_motion(&c->channels->channel[i]) || is_force(&c->channels->channel[i]);
+        if (!judged || !bough_companion_knows(c, i) || !bough_error_counts(c, i)) continue;
+        double relative = relative_of(c, i, c->error[i]);
+        int k = n < most ? n++ : most;
+        for (; k > 0 && !(relative_of(c, channel[k - 1], c->error[channel[k - 1]]) >= relative); k--) {
+            if (k < most) channel[k] = channel[k - 1];
+        }
+        if (k < most) channel[k] = i;
+    }
+    return n;
+}
+
+void bough_error_notice(bough_companion *c, double t) {
+    for (int i = 0; i < c->channels->count; i++) {
+        if (c->noticed[i] < 0 && !(c->error[i] <= BOUGH_ERROR_NOTICEABLE * bough_error_range(c, i)))
+            c->noticed[i] = t;
+    }
+}

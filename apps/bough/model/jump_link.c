@@ -1,0 +1,60 @@
+#include "apps/bough/model/jump_link.h"
+
+#include <math.h>
+
+// A ramp of the model whose two times are 0 once the load acts, and beyond all times before.
+typedef struct jump {
+    double at; // [s]
+    double *start, *end;
+} jump;
+
+struct bough_jump_link {
+    int n;
+    jump *jump; // (n)
+};
+
+static void add(bough_jump_link *link, double *start, double *end) {
+    if (!(*start > 0) || *end > *start) return;
+    link->jump[link->n++] = (jump){*start, start, end};
+}
+
+static size_t count_loads(const bough_simulation *s) {
+    size_t n = (size_t)s->tree->n_loads + (size_t)s->tree->n_applied;
+    for (int k = 0; k < s->n_beam; k++) {
+        if (s->beam[k].port < 0) continue;
+        const bough_rod_ramped_load *l = bough_beam_loads(&s->beam[k])->ramped;
+        for (; l != NULL; l = l->next) n++;
+    }
+    return n;
+}
+
+bough_status bough_jump_link_build(bough_arena *arena, bough_simulation *s) {
+    bough_jump_link *link = bough_arena_take(arena, sizeof *link);
+    *link = (bough_jump_link){0, bough_arena_take(arena, (count_loads(s) + 1) * sizeof(jump))};
+    for (int k = 0; k < s->tree->n_loads; k++) {
+        add(link, &s->tree->loads[k].start, &s->tree->loads[k].end);
+    }
+    for (int k = 0; k < s->tree->n_applied; k++) {
+        add(link, &s->tree->applied[k].start, &s->tree->applied[k].end);
+    }
+    for (int k = 0; k < s->n_beam; k++) {
+        if (s->beam[k].port < 0) continue;
+        bough_rod_ramped_load *l = bough_beam_loads(&s->beam[k])->ramped;
+        for (; l != NULL; l = l->next) add(link, &l->start, &l->end);
+    }
+    if (link->n > 0) s->jump = link;
+    return bough_ok();
+}
+
+void bough_jump_link_begin(bough_jump_link *link, double t) {
+    for (int k = 0; k < link->n; k++) {
+        jump *j = &link->jump[k];
+        *j->start = *j->end = t >= j->at ? 0 : HUGE_VAL;
+    }
+}
+
+static void begin(void *self, double t) { bough_jump_link_begin(self, t); }
+
+bough_sampled_load bough_jump_link_load(bough_jump_link *link, double macro_step) {
+    return (bough_sampled_load){.period = macro_step, .self = link, .begin = begin};
+}

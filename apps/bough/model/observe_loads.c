@@ -1,0 +1,145 @@
+// Loads inside the structure: in sections of rods, on the tower's top.
+#include "apps/bough/model/channel_table.h"
+#include "apps/bough/model/observe.h"
+#include "apps/bough/model/section_load.h"
+#include "core/tree/force.h"
+
+#include <stdio.h>
+
+static const double degree = BOUGH_PI / 180;
+
+// -- sections -------------------------------------------------------------------------------------
+
+// A place on a rod: within a segment, at a share of its length.
+typedef struct place {
+    int segment;
+    double share;
+} place;
+
+typedef struct sensor {
+    const bough_simulation *simulation;
+    const bough_beam *beam;
+    int n;
+    place *place; // (n)
+    bough_rod_scratch scratch;
+} sensor;
+
+enum { PLACE_CHANNELS = 12 };
+
+static bough_vec3 blend(bough_vec3 a, bough_vec3 b, double share) {
+    return bough_add(a, bough_scale(share, bough_sub(b, a)));
+}
+
+// A vertex as gathered in scratch->vertex: place and rotation in the body's frame.
+static bough_vec3 vertex_position(const sensor *x, int i) {
+    const double *v = x->scratch.vertex + i;
+    int n = bough_beam_mesh(x->beam)->stride;
+    return bough_v3(v[0], v[n], v[2 * n]);
+}
+
+static bough_quaternion vertex_rotation(const sensor *x, int i) {
+    const double *p = x->scratch.vertex + i;
+    int n = bough_beam_mesh(x->beam)->stride;
+    return (bough_quaternion){p[3 * n], p[4 * n], p[5 * n], p[6 * n]};
+}
+
+// Rotation vector of a section against the undeformed one, in the body's axes.
+static bough_vec3 vertex_turn(const sensor *x, int i) {
+    bough_quaternion back = bough_quaternion_conjugate(x->beam->def.rotation[i]);
+    return bough_quaternion_logarithm(bough_quaternion_product(vertex_rotation(x, i), back));
+}
+
+// Between two sections' axes.
+static bough_mat3 axes_between(bough_quaternion p, bough_quaternion q, double share) {
+    bough_quaternion back = bough_quaternion_conjugate(p);
+    bough_vec3 whole = bough_quaternion_logarithm(bough_quaternion_product(back, q));
+    bough_quaternion part = bough_quaternion_exponential(bough_scale(share, whole));
+    return bough_rotation_matrix(bough_quaternion_product(p, part));
+}
+
+static void sample_place(const sensor *x, place at, double *value) {
+    int left = at.segment, right = left + 1;
+    const bough_rod_def *def = &x->beam->def;
+    bough_vec3 shift = blend(bough_sub(vertex_position(x, left), def->position[left]),
+                             bough_sub(vertex_position(x, right), def->position[right]), at.share);
+    bough_vec3 turn = blend(vertex_turn(x, left), vertex_turn(x, right), at.share);
+    bough_section_load load = bough_section_in_segment(x->beam, &x->scratch, left, at.share);
+    bough_mat3 axes = axes_between(vertex_rotation(x, left), vertex_rotation(x, right), at.share);
+    bough_vec3 force = bough_mat3_tmul(axes, load.force);
+    bough_vec3 moment = bough_mat3_tmul(axes, load.moment);
+    value = bough_observe_vector(turn, degree, bough_observe_vector(shift, 1, value));
+    bough_observe_vector(moment, 1e3, bough_observe_vector(force, 1e3, value));
+}
+
+static void sample_sections(void *self, double t, double *value) {
+    sensor *x = self;
+    bool good = bough_section_evaluate(x->simulation, x->beam, t, &x->scratch);
+    for (int k = 0; k < x->n; k++, value += PLACE_CHANNELS) {
+        sample_place(x, x->place[k], value);
+        for (int c = 6; c < PLACE_CHANNELS && !good; c++) value[c] = (double)NAN;
+    }
+}
+
+static place find_place(const bough_rod_def *def, double span) {
+    int i = 0;
+    while (i < def->n_segment - 1 && def->span[i + 1] <= span) i++;
+    return (place){i, (span - def->span[i]) / (def->span[i + 1] - def->span[i])};
+}
+
+// Blades and a tower of one rod have OpenFAST's names.
+static void add_place(const bough_simulation *s, const bough_beam *beam, int number, bough_channels *list) {
+    const bough_scene_turbine *turbine = &s->scene->turbine;
+    int body = (int)(beam->body - s->scene->body);
+    char b[12], a[12];
+    snprintf(b, sizeof b, "%d", number);
+    for (int k = 0; turbine->node != NULL && k < turbine->n_blade; k++) {
+        if (turbine->blade[k] != body) continue;
+        snprintf(a, sizeof a, "%d", k + 1);
+        bough_channel_family_add(list, BOUGH_CHANNELS_BLADE_SECTION, a, b);
+        return;
+    }
+    bool tower = beam == s->tower_top && beam == s->tower_foot;
+    bough_channel_family_add(list, tower ? BOUGH_CHANNELS_TOWER_SECTION : BOUGH_CHANNELS_SECTION,
+                             tower ? "" : beam->body->name, b);
+}
+
+static void add_sensor(bough_simulation *s, const bough_scene_sensor *from, bough_channels *list) {
+    bough_arena *arena = list->arena;
+    sensor *x = bough_arena_take(arena, sizeof *x);
+    *x = (sensor){s, bough_simulation_beam(s, from->body), from->n_at, NULL, {0}};
+    x->place = bough_arena_take(arena, (size_t)x->n * sizeof *x->place);
+    bough_rod_scratch_init(&x->scratch, arena, bough_beam_mesh(x->beam));
+    bough_channels_group(list, sample_sections, x);
+    for (int k = 0; k < x->n; k++) {
+        x->place[k] = find_place(&x->beam->def, from->at[k]);
+        add_place(s, x->beam, k + 1, list);
+    }
+}
+
+void bough_observe_sections(bough_simulation *s, bough_channels *list) {
+    for (int k = 0; k < s->scene->n_sensor; k++) add_sensor(s, &s->scene->sensor[k], list);
+}
+
+// -- yaw bearing ----------------------------------------------------------------------------------
+
+// The opposite of what the tower's last segment and the loads there do to what it carries, from the
+// body's and the section's axes into those of the body that turn with the section.
+static void sample_yaw_bearing(void *self, double t, double *value) {
+    const bough_simulation *s = self;
+    const bough_beam *top = s->tower_top;
+    double w[BOUGH_ROD_MOST_OUTPUTS];
+    bough_quaternion p;
+    bough_simulation_root(s, top, t, w);
+    bough_simulation_beam_tip(s, top, &p);
+    bough_vec3 force = bough_v3(-w[6], -w[7], -w[8]);
+    bough_vec3 moment = bough_mat3_mul(bough_rotation_matrix(p), bough_v3(-w[9], -w[10], -w[11]));
+    bough_quaternion back = bough_quaternion_conjugate(top->def.rotation[top->def.n_segment]);
+    bough_mat3 axes = bough_rotation_matrix(bough_quaternion_product(p, back));
+    value = bough_observe_vector(bough_mat3_tmul(axes, force), 1e3, value);
+    bough_observe_vector(bough_mat3_tmul(axes, moment), 1e3, value);
+}
+
+void bough_observe_yaw_bearing(bough_simulation *s, bough_channels *list) {
+    bough_channels_group(list, sample_yaw_bearing, s);
+    bough_channel_family_add(list, BOUGH_CHANNELS_YAW_BEARING, "", "");
+}

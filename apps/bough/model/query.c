@@ -1,0 +1,180 @@
+// What is asked of a simulation between steps: poses, motions of beams, wrenches at their roots.
+#include "apps/bough/model/simulation.h"
+
+#include "aero/rotor/rotor.h"
+#include "core/tree/dynamics.h"
+
+#include <string.h>
+
+void bough_simulation_update(bough_simulation *s) {
+    bough_tree_kinematics(s->tree, s->leader.state, s->view);
+    for (int k = 0; k < s->n_beam; k++) {
+        if (s->beam[k].ground == NULL) continue;
+        const bough_frame *frame = &s->tree->markers[s->beam[k].marker];
+        bough_mat3 e = bough_mat3_transpose(bough_tree_frame_pose(s->view, frame).rotation);
+        const double axes[BOUGH_GROUND_AXES] = {e.c1.x, e.c1.y, e.c1.z, e.c2.x, e.c2.y,
+                                                e.c2.z, e.c3.x, e.c3.y, e.c3.z};
+        bough_ground_body_turn(s->beam[k].ground, axes);
+    }
+}
+
+int bough_simulation_n_joints(const bough_simulation *s) {
+    int n = 0;
+    for (int i = 0; i < s->scene->n_body; i++) n += s->scene->body[i].joint.kind != BOUGH_JOINT_FIXED;
+    return n;
+}
+
+bough_beam *bough_simulation_beam(const bough_simulation *s, int body) {
+    for (int k = 0; k < s->n_beam; k++) {
+        if (s->beam[k].body == &s->scene->body[body]) return &s->beam[k];
+    }
+    return NULL;
+}
+
+double bough_simulation_pitch(const bough_simulation *s, const bough_beam *beam) {
+    const bough_scene_joint *joint = &beam->body->joint;
+    if (joint->kind != BOUGH_JOINT_REVOLUTE || joint->axis != 2) return beam->body->pitch;
+    int coordinate, speed;
+    bough_tree_joint_rows(s->tree, (int)(beam->body - s->scene->body), &coordinate, &speed);
+    return beam->body->pitch - s->leader.state[coordinate];
+}
+
+bough_rotor_place bough_simulation_rotor(const bough_simulation *s) {
+    const bough_scene *scene = s->scene;
+    int body = scene->turbine.rotor;
+    bough_transform hub = bough_tree_frame_pose(s->view, &s->tree->bodies[body]);
+    double along[3] = {0};
+    along[scene->body[body].joint.axis] = 1; // unchanged by the joint's own turn
+    bough_rotor_place r = {hub.position, bough_mat3_mul(hub.rotation, bough_v3(along[0], along[1], along[2])),
+                           0};
+    for (int k = 0; k < scene->turbine.n_blade; k++) {
+        const bough_beam *blade = bough_simulation_beam(s, scene->turbine.blade[k]);
+        bough_transform root = bough_tree_frame_pose(s->view, &s->tree->markers[blade->marker]);
+        bough_vec3 tip = blade->def.position[blade->def.n_segment];
+        tip = bough_sub(bough_add(root.position, bough_mat3_mul(root.rotation, tip)), r.hub);
+        tip = bough_sub(tip, bough_scale(bough_dot(tip, r.axis), r.axis));
+        r.radius = fmax(r.radius, sqrt(bough_dot(tip, tip)));
+    }
+    return r;
+}
+
+void bough_simulation_root(const bough_simulation *s, const bough_beam *beam, double t,
+                           double root[BOUGH_ROD_MOST_OUTPUTS]) {
+    memset(root, 0, BOUGH_ROD_MOST_OUTPUTS * sizeof *root);
+    if (beam->port < 0) return;
+    const bough_member *rod = &s->rod[beam->port];
+    rod->system.ops->output(rod->system.self, t, rod->state, bough_simulation_rod_input(s, beam), root);
+}
+
+// A vertex in the body's frame: of a rod from its state, else undeformed and carried along.
+typedef struct vertex {
+    bough_vec3 position, velocity, angular; // angular velocity in body axes
+    bough_mat3 rotation;
+} vertex;
+
+static vertex rigid_vertex(const bough_beam *beam, int i, bough_twist twist) {
+    bough_vec3 x = beam->def.position[i];
+    return (vertex){x, bough_add(twist.linear, bough_cross(twist.angular, x)), twist.angular,
+                    bough_rotation_matrix(beam->def.rotation[i])};
+}
+
+static vertex rod_vertex(const bough_beam *beam, const double *state, int i) {
+    const double *y = state + i - 1;
+    int n = bough_beam_mesh(beam)->n;
+    bough_quaternion p = {y[3 * n], y[4 * n], y[5 * n], y[6 * n]};
+    bough_mat3 r = bough_rotation_matrix(bough_quaternion_normalised(p));
+    bough_vec3 w = {y[10 * n], y[11 * n], y[12 * n]};
+    return (vertex){{y[0], y[n], y[2 * n]}, {y[7 * n], y[8 * n], y[9 * n]}, bough_mat3_mul(r, w), r};
+}
+
+// The last vertex of a rod that carries bodies; its velocity is resolved in its own axes.
+static vertex end_vertex(const bough_simulation *s, const bough_beam *beam) {
+    bough_quaternion p;
+    bough_vec3 x = bough_simulation_beam_tip(s, beam, &p);
+    bough_mat3 r = bough_rotation_matrix(p);
+    bough_twist twist = s->view->twist[s->tree->ends[beam->end].link];
+    return (vertex){x, bough_mat3_mul(r, twist.linear), bough_mat3_mul(r, twist.angular), r};
+}
+
+// state: of the vertices, NULL of a rigid body.
+static vertex vertex_of(const bough_simulation *s, const bough_beam *beam, const double *state, int i,
+                        bough_twist twist) {
+    if (i == 0 || state == NULL) return rigid_vertex(beam, i, twist);
+    if (i > bough_beam_mesh(beam)->n) return end_vertex(s, beam);
+    return rod_vertex(beam, state, i);
+}
+
+bough_vec3 bough_simulation_beam_tip(const bough_simulation *s, const bough_beam *beam,
+                                     bough_quaternion *rotation) {
+    int last = beam->def.n_segment, stride = 1;
+    const double *x = NULL;
+    *rotation = beam->def.rotation[last];
+    if (beam->port < 0) return beam->def.position[last];
+    if (beam->end < 0) {
+        stride = last;
+        x = bough_beam_state(s, beam, last) + last - 1;
+    } else {
+        x = s->leader.state + s->tree->links[s->tree->ends[beam->end].link].first_coordinate;
+    }
+    const double *p = x + 3 * stride;
+    *rotation =
+        bough_quaternion_normalised((bough_quaternion){p[0], p[stride], p[2 * stride], p[3 * stride]});
+    return bough_v3(x[0], x[stride], x[2 * stride]);
+}
+
+const double *bough_simulation_rod_input(const bough_simulation *s, const bough_beam *beam) {
+    const bough_coupling *c = s->master->coupling;
+    return c->input + c->assembly->input_offset[beam->port + 1];
+}
+
+void bough_simulation_beam_motion(const bough_simulation *s, const bough_beam *beam,
+                                  bough_beam_motion motion) {
+    const bough_frame *frame = &s->tree->markers[beam->marker];
+    bough_transform pose = bough_tree_frame_pose(s->view, frame);
+    bough_twist twist = bough_tree_frame_twist(s->view, frame);
+    const double *state = beam->port < 0 ? NULL : bough_beam_state(s, beam, 1);
+    for (int i = 0; i <= beam->def.n_segment; i++) {
+        vertex v = vertex_of(s, beam, state, i, twist);
+        motion.position[i] = bough_add(pose.position, bough_mat3_mul(pose.rotation, v.position));
+        motion.rotation[i] = bough_mat3_product(pose.rotation, v.rotation);
+        motion.velocity[i] = bough_mat3_mul(pose.rotation, v.velocity);
+        motion.angular_velocity[i] = bough_mat3_mul(pose.rotation, v.angular);
+    }
+}
+
+static void put_vertex(vertex v, bough_quaternion p, int i, int n, double *rows) {
+    bough_vec3 w = bough_mat3_tmul(v.rotation, v.angular);
+    const double values[BOUGH_BLADE_ROWS] = {v.position.x, v.position.y, v.position.z, p.w, p.x, p.y, p.z,
+                                             v.velocity.x, v.velocity.y, v.velocity.z, w.x, w.y, w.z};
+    for (int c = 0; c < BOUGH_BLADE_ROWS; c++) rows[c * n + i] = values[c];
+}
+
+// The inner vertices of a flexible beam are in its state as they are; the root, the end of a rod
+// that carries bodies and a rigid beam's vertices one by one.
+void bough_simulation_beam_rows(const bough_simulation *s, const bough_beam *beam, double *rows) {
+    bough_twist twist = bough_tree_frame_twist(s->view, &s->tree->markers[beam->marker]);
+    const double *state = beam->port < 0 ? NULL : bough_beam_state(s, beam, 1);
+    int n = beam->def.n_segment + 1, inner = state ? bough_beam_mesh(beam)->n : 0;
+    for (int c = 0; state && c < BOUGH_BLADE_ROWS; c++)
+        memcpy(rows + c * n + 1, state + c * inner, (size_t)inner * sizeof *rows);
+    put_vertex(rigid_vertex(beam, 0, twist), beam->def.rotation[0], 0, n, rows);
+    for (int i = inner + 1; i < n; i++) {
+        vertex v = vertex_of(s, beam, state, i, twist);
+        put_vertex(v, state ? bough_quaternion_of_matrix(v.rotation) : beam->def.rotation[i], i, n, rows);
+    }
+}
+
+const char *bough_simulation_body_of(const bough_simulation *s, const bough_assembly *assembly, int row) {
+    const bough_tree *tree = s->tree;
+    int member = 0;
+    while (row >= assembly->state_offset[member + 1]) member++;
+    if (member > 0) return assembly->member[member]->system.name;
+    for (int i = 0; i < tree->n_links; i++) {
+        const bough_link *link = &tree->links[i];
+        int q = row - link->first_coordinate, v = row - tree->n_q - link->first_speed;
+        if ((q >= 0 && q < link->n_coordinates) || (v >= 0 && v < link->n_speeds)) {
+            return tree->bodies[link->body].name;
+        }
+    }
+    return assembly->member[0]->system.name;
+}

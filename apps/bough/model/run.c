@@ -1,0 +1,228 @@
+#include "apps/bough/model/run.h"
+
+#include "apps/bough/model/build.h"
+#include "apps/bough/model/validity.h"
+#include "core/base/linalg.h"
+
+#include <assert.h>
+#include <math.h>
+#include <time.h>
+
+// -- building -------------------------------------------------------------------------------------
+
+// Two flexible bodies and more share threads better among themselves.
+static bool fits_side_by_side(const bough_scene *scene) {
+    int n = 0;
+    for (int i = 0; i < scene->n_body; i++)
+        n += scene->body[i].rod.node && scene->body[i].fidelity != BOUGH_SCENE_RIGID;
+    return scene->simulation.error_estimate == BOUGH_SCENE_COMPANION && n < 2;
+}
+
+bough_status bough_run_create(bough_arena *arena, const bough_scene *scene, bough_run *run) {
+    *run = (bough_run){.outcome = bough_ok()};
+    int threads = bough_simulation_threads(scene);
+    bough_linalg_room(arena, threads);
+    run->pool = bough_pool_create(arena, threads);
+    run->side_by_side = run->pool && fits_side_by_side(scene);
+    bough_pool *own = run->side_by_side ? NULL : run->pool;
+    bough_status status = bough_simulation_build_on(arena, scene, own, &run->simulation);
+    if (!bough_is_ok(&status)) return status;
+    run->channels = bough_channels_start(arena);
+    status = bough_simulation_channels(run->simulation, &run->channels);
+    if (!bough_is_ok(&status)) return status;
+    size_t n = (size_t)run->simulation->master->assembly->n_member;
+    run->value = bough_arena_doubles(arena, (size_t)run->channels.count + 1);
+    run->earlier = bough_arena_take(arena, (n + 1) * sizeof *run->earlier);
+    // the run may be copied by its caller: the companion keeps a list of its own
+    bough_channels *channels = bough_arena_take(arena, sizeof *channels);
+    *channels = run->channels;
+    run->companion = bough_arena_take(arena, sizeof *run->companion);
+    return bough_companion_create(arena, run->simulation, channels, run->companion);
+}
+
+// -- recording ------------------------------------------------------------------------------------
+
+// Times closer than this are one [s].
+static double resolution(const bough_run *run) { return 1e-6 * run->simulation->master->macro_step; }
+
+void bough_run_record_at(bough_run *run, bough_run_record record) {
+    assert(run->n_record < BOUGH_RUN_RECORDS && record.interval > 0);
+    double now = run->simulation->master->time;
+    record.next = (long)ceil((now - resolution(run)) / record.interval);
+    record.last = -HUGE_VAL;
+    run->record[run->n_record++] = record;
+}
+
+static bough_status take_record(bough_run *run, bough_run_record *r) {
+    double now = run->simulation->master->time;
+    while ((double)r->next * r->interval <= now + resolution(run)) r->next++;
+    r->last = now;
+    bough_simulation_update(run->simulation);
+    return r->sample(r->self, now);
+}
+
+static bough_status record_due(bough_run *run) {
+    double now = run->simulation->master->time;
+    bough_status status = bough_ok();
+    for (int i = 0; i < run->n_record && bough_is_ok(&status); i++) {
+        bough_run_record *r = &run->record[i];
+        if (now < (double)r->next * r->interval - resolution(run)) continue;
+        status = take_record(run, r);
+    }
+    return status;
+}
+
+bough_status bough_run_start(bough_run *run) { return record_due(run); }
+
+// After a numerical failure the state means nothing: only a run that could go on gets a last record.
+static bough_status record_end(bough_run *run, bough_status status) {
+    if (!bough_is_ok(&status) && status.code != BOUGH_INTERRUPTED) return status;
+    for (int i = 0; i < run->n_record; i++) {
+        bough_run_record *r = &run->record[i];
+        if (!r->at_end || r->last >= run->simulation->master->time) continue;
+        bough_status end = take_record(run, r);
+        if (!bough_is_ok(&end)) return end;
+    }
+    return status;
+}
+
+const double *bough_run_values(bough_run *run) {
+    bool failed = !bough_is_ok(&run->outcome) && run->outcome.code != BOUGH_INTERRUPTED;
+    if (failed) return NULL;
+    if (!run->sampled) {
+        bough_simulation_update(run->simulation);
+        bough_channels_sample(&run->channels, run->simulation->master->time, run->value);
+    }
+    run->sampled = true;
+    return run->value;
+}
+
+// -- stepping -------------------------------------------------------------------------------------
+
+// Of all solvers, with those that failed
+static double steps_of(const bough_simulation *s) {
+    const bough_master *m = s->master;
+    bough_statistics sum = {0};
+    for (int i = 0; i <= m->assembly->n_member; i++) {
+        const bough_member *member = i < m->assembly->n_member ? m->assembly->member[i] : m->coupling->whole;
+        if (member == NULL) continue;
+        bough_statistics own = bough_member_statistics(member);
+        bough_statistics_add(&sum, &own);
+    }
+    return (double)sum.steps + (double)sum.failed_steps;
+}
+
+// 0: of the run, 1: of the companion; neither touches the other.
+static void step_one(void *self, int which) {
+    bough_run *run = self;
+    if (which == 0) run->outcome = bough_step(run->simulation->master);
+    if (which == 1) bough_companion_step(run->companion);
+}
+
+bough_status bough_run_step(bough_run *run) {
+    run->sampled = false;
+    bool due = bough_companion_due(run->companion);
+    if (due && run->side_by_side) {
+        bough_pool_run(run->pool, 2, step_one, run);
+    } else {
+        for (int k = 0; k <= due; k++) step_one(run, k);
+    }
+    if (bough_is_ok(&run->outcome)) bough_companion_compare(run->companion);
+    bough_validity_check(run->simulation);
+    if (bough_is_ok(&run->outcome)) bough_validity_check_work(run->simulation, steps_of(run->simulation));
+    if (bough_is_ok(&run->outcome)) run->outcome = record_due(run);
+    return run->outcome;
+}
+
+bool bough_run_done(const bough_run *run) { return bough_master_done(run->simulation->master); }
+
+static double cpu_clock(const bough_run *run) {
+    struct timespec now;
+    clock_gettime(run->beside ? CLOCK_THREAD_CPUTIME_ID : CLOCK_PROCESS_CPUTIME_ID, &now);
+    return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
+}
+
+void bough_run_update_clock(bough_run *run) {
+    double wall = bough_wall_clock(), cpu = cpu_clock(run);
+    run->wall_s += wall - run->wall_from;
+    run->cpu_s += cpu - run->cpu_from;
+    run->wall_from = wall;
+    run->cpu_from = cpu;
+}
+
+static bough_status step(bough_run *run) {
+    const bough_master *m = run->simulation->master;
+    if (run->stop && run->stop()) {
+        return bough_fail(BOUGH_INTERRUPTED, "interrupted at %.9g s of %.9g s", m->time, m->duration);
+    }
+    bough_status status = bough_run_step(run);
+    return bough_is_ok(&status) && run->after ? run->after(run->self) : status;
+}
+
+static void step_all(void *self) {
+    bough_run *run = self;
+    run->wall_from = bough_wall_clock();
+    run->cpu_from = cpu_clock(run);
+    bough_master_stop_by(run->simulation->master, run->stop);
+    bough_companion_stop_by(run->companion, run->stop);
+    bough_status status = bough_run_start(run);
+    while (bough_is_ok(&status) && !bough_run_done(run)) {
+        status = step(run);
+        if (run->progress) bough_progress_show(run->progress, run->simulation->master->time);
+    }
+    run->outcome = record_end(run, status);
+    bough_run_update_clock(run);
+}
+
+void bough_run_all(bough_run *run) { bough_pool_region(run->pool, step_all, run); }
+
+// -- copies ---------------------------------------------------------------------------------------
+
+bough_statistics bough_run_statistics(const bough_run *run, int member) {
+    const bough_master *m = run->simulation->master;
+    const bough_member *whole = m->coupling->whole;
+    bough_statistics done = {0};
+    if (member < m->assembly->n_member) {
+        done = bough_member_statistics(m->assembly->member[member]);
+    } else if (whole) {
+        done = bough_member_statistics(whole);
+    }
+    bough_statistics_add(&done, &run->earlier[member]);
+    return done;
+}
+
+// Work is counted by the solvers of this process; `earlier` adds that of the ones before it.
+static void take_statistics(bough_run *run, bough_snapshot *s) {
+    const bough_assembly *a = run->simulation->master->assembly;
+    for (int i = 0; i <= a->n_member; i++) {
+        bough_statistics *earlier = &run->earlier[i];
+        bough_statistics total = bough_run_statistics(run, i), now = total;
+        bough_statistics_subtract(&now, earlier);
+        bough_snapshot_take(s, &total, sizeof total);
+        bough_statistics_subtract(&total, &now);
+        *earlier = total;
+    }
+}
+
+void bough_run_snapshot(bough_run *run, bough_snapshot *s) {
+    bough_simulation_snapshot(run->simulation, s);
+    bough_companion_snapshot(run->companion, s);
+    take_statistics(run, s);
+    for (int i = 0; i < run->n_record; i++) {
+        bough_snapshot_take(s, &run->record[i].next, sizeof run->record[i].next);
+        bough_snapshot_take(s, &run->record[i].last, sizeof run->record[i].last);
+    }
+    if (s->move != BOUGH_SNAPSHOT_RESTORE) return;
+    run->outcome = bough_ok();
+    run->sampled = false;
+}
+
+bough_status bough_run_storable(const bough_run *run) {
+    const bough_master *m = run->simulation->master;
+    if (bough_master_sampled(m) && bough_companion_storable(run->companion))
+        return bough_simulation_storable(run->simulation);
+    return bough_fail(BOUGH_INVALID,
+                      "at %.9g s the air or the control is between two samples; a copy can be "
+                      "made at their next sample",
+                      m->time);
+}

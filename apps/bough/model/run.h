@@ -1,0 +1,82 @@
+// One run of a scene: its model, its channels, its steps, the recording of results, and the copy from which
+// it can continue. The command line, the library and the studies use this run.
+#ifndef BOUGH_APPS_SIMULATION_RUN_H
+#define BOUGH_APPS_SIMULATION_RUN_H
+
+#include "apps/bough/results/progress.h"
+#include "apps/bough/model/companion.h"
+
+enum { BOUGH_RUN_RECORDS = 4 };
+
+// What is taken of the run at the multiples of an interval: at the first synchronisation point at or
+// after each.
+typedef struct bough_run_record {
+    double interval;                              // [s]
+    bool at_end;                                  // also where the run ends
+    bough_status (*sample)(void *self, double t); // the simulation's `view` is at t
+    void *self;
+    long next;   // multiple of the interval that is due next
+    double last; // time of the last sample [s]
+} bough_run_record;
+
+typedef struct bough_run {
+    bough_simulation *simulation;
+    bough_pool *pool;  // NULL: one thread
+    bool side_by_side; // the companion's steps are a second task beside the run's, which then have one thread
+    bough_channels channels;
+    double *value;              // (channels.count) see bough_run_values
+    bool sampled;               // `value` belongs to the present time
+    bough_companion *companion; // what the channels err by
+    int n_record;
+    bough_run_record record[BOUGH_RUN_RECORDS];
+    bough_statistics *earlier;  // (n_member + 1) work of the processes that this one continues, last
+                                // that of the integrator of all members together
+    double wall_from, cpu_from; // of the clocks, counted below so far [s]
+    double wall_s, cpu_s;       // of the stepping: wall time, CPU time of all threads [s]
+    bough_status outcome;       // how the last step ended
+
+    // by the caller, before the first step
+    bool beside;                       // others run at the same time: CPU time of the calling thread
+    bool (*stop)(void);                // asked before each step; NULL: nobody stops the run
+    bough_status (*after)(void *self); // called after each step; NULL: nobody is
+    void *self;                        // for `after`
+    bough_progress *progress;          // the terminal's line; NULL: none
+} bough_run;
+
+// Builds the scene's model and its channels in the arena; the run is then at time 0.
+bough_status bough_run_create(bough_arena *arena, const bough_scene *scene, bough_run *run);
+
+// From now on `sample` is called at the multiples of the interval that are not past.
+void bough_run_record_at(bough_run *run, bough_run_record record);
+
+// Records the results of the present time, the start.
+bough_status bough_run_start(bough_run *run);
+
+// One macro step, of the companion beside it where one is due, then the comparison and results. After a
+// failure the state is not valid, and the run can continue only from a copy.
+bough_status bough_run_step(bough_run *run);
+
+// Whether the duration is reached.
+bool bough_run_done(const bough_run *run);
+
+// Start, all steps, the last record, in one parallel region: sets `outcome`. BOUGH_INTERRUPTED when
+// stopped: then the run may go on.
+void bough_run_all(bough_run *run);
+
+// The channels at the present time (channels.count), computed once; NULL after a failure.
+const double *bough_run_values(bough_run *run);
+
+// Brings wall_s and cpu_s to the present, within bough_run_all.
+void bough_run_update_clock(bough_run *run);
+
+// Work of a member over the whole run; of member n_member, that of the integrator of all together.
+bough_statistics bough_run_statistics(const bough_run *run, int member);
+
+// The memory of the run at a time when its loads are sampled: simulation, error estimates, times of the next
+// results, work so far. After a restore, a failed run continues, too.
+void bough_run_snapshot(bough_run *run, bough_snapshot *snapshot);
+
+// Whether the scene can be stored at all, and whether it can be stored now: BOUGH_INVALID gives the reason.
+bough_status bough_run_storable(const bough_run *run);
+
+#endif

@@ -1,0 +1,148 @@
+#include "apps/bough/model/shape.h"
+
+#include "apps/bough/model/section_load.h"
+
+#include <string.h>
+
+enum { RIGID_POINTS = 3 };
+
+static int beam_points(const bough_simulation *s, int body) {
+    const bough_beam *beam = bough_simulation_beam(s, body);
+    return beam ? beam->def.n_segment + 1 : RIGID_POINTS;
+}
+
+static bool has_rod(const bough_simulation *s, int body) {
+    const bough_beam *beam = bough_simulation_beam(s, body);
+    return beam && beam->rod;
+}
+
+static void take_scratch(bough_arena *arena, bough_shape *shape) {
+    const bough_simulation *s = shape->simulation;
+    shape->scratch = bough_arena_take(arena, (size_t)shape->n_line * sizeof *shape->scratch);
+    for (int i = 0; i < shape->n_line; i++) {
+        if (has_rod(s, i)) {
+            bough_rod_scratch_init(&shape->scratch[i], arena,
+                                   bough_beam_mesh(bough_simulation_beam(s, i)));
+        }
+    }
+}
+
+bough_status bough_shape_create(bough_arena *arena, bough_simulation *s, bough_shape *shape) {
+    size_t n = (size_t)s->scene->n_body, longest = RIGID_POINTS;
+    *shape = (bough_shape){.simulation = s, .n_line = s->scene->n_body};
+    shape->line = bough_arena_take(arena, n * sizeof *shape->line);
+    for (int i = 0; i < s->scene->n_body; i++) {
+        size_t count = (size_t)beam_points(s, i);
+        shape->line[i] = (bough_polyline){s->scene->body[i].name, (int)count};
+        if (count > longest) longest = count;
+    }
+    bough_beam_motion *m = &shape->motion;
+    m->position = bough_arena_take(arena, longest * sizeof *m->position);
+    m->velocity = bough_arena_take(arena, longest * sizeof *m->velocity);
+    m->angular_velocity = bough_arena_take(arena, longest * sizeof *m->angular_velocity);
+    m->rotation = bough_arena_take(arena, longest * sizeof *m->rotation);
+    take_scratch(arena, shape);
+    return bough_ok();
+}
+
+static void rigid_line(const bough_simulation *s, int body, bough_vec3 *x) {
+    const bough_scene_body *from = &s->scene->body[body];
+    const double *c = from->centre_of_mass;
+    int parent = from->joint.parent;
+    bough_transform own = bough_tree_frame_pose(s->view, &s->tree->bodies[body]);
+    x[0] = x[1] = own.position;
+    if (parent >= 0) x[0] = bough_tree_frame_pose(s->view, &s->tree->bodies[parent]).position;
+    x[2] = bough_add(own.position, bough_mat3_mul(own.rotation, bough_v3(c[0], c[1], c[2])));
+}
+
+void bough_shape_points(void *self, double *point) {
+    bough_shape *shape = self;
+    const bough_simulation *s = shape->simulation;
+    bough_vec3 *x = shape->motion.position;
+    for (int i = 0; i < shape->n_line; i++) {
+        const bough_beam *beam = bough_simulation_beam(s, i);
+        if (beam) {
+            bough_simulation_beam_motion(s, beam, shape->motion);
+        } else {
+            rigid_line(s, i, x);
+        }
+        for (int k = 0; k < shape->line[i].n_point; k++, point += 3) {
+            point[0] = x[k].x, point[1] = x[k].y, point[2] = x[k].z;
+        }
+    }
+}
+
+static void store(bough_vec3 x, double *to) { to[0] = x.x, to[1] = x.y, to[2] = x.z; }
+
+static void rod_loads(const bough_shape *shape, int body, double t, double *force, double *moment) {
+    const bough_simulation *s = shape->simulation;
+    const bough_beam *beam = bough_simulation_beam(s, body);
+    bough_rod_scratch *scratch = &shape->scratch[body];
+    bough_mat3 axes = bough_tree_frame_pose(s->view, &s->tree->markers[beam->marker]).rotation;
+    if (!bough_section_evaluate(s, beam, t, scratch)) return;
+    for (int k = 0; k < shape->line[body].n_point; k++) {
+        bough_section_load load = bough_section_at_vertex(beam, scratch, k);
+        store(bough_mat3_mul(axes, load.force), force + 3 * k);
+        store(bough_mat3_mul(axes, load.moment), moment + 3 * k);
+    }
+}
+
+// `rigid`: the number of points of a body without a beam.
+static void all_loads(const bough_shape *shape, int rigid, double t, double *force,
+                      double *moment) {
+    for (int i = 0; i < shape->n_line; i++) {
+        bool beam = bough_simulation_beam(shape->simulation, i) != NULL;
+        int n = 3 * (beam ? shape->line[i].n_point : rigid);
+        memset(force, 0, (size_t)n * sizeof *force);
+        memset(moment, 0, (size_t)n * sizeof *moment);
+        if (has_rod(shape->simulation, i)) rod_loads(shape, i, t, force, moment);
+        force += n;
+        moment += n;
+    }
+}
+
+void bough_shape_loads(void *self, double t, double *force, double *moment) {
+    all_loads(self, RIGID_POINTS, t, force, moment);
+}
+
+void bough_shape_vertex_loads(void *self, double t, double *force, double *moment) {
+    all_loads(self, 1, t, force, moment);
+}
+
+bough_polyline *bough_shape_bodies(bough_arena *arena, const bough_shape *shape) {
+    bough_polyline *body = bough_arena_take(arena, (size_t)shape->n_line * sizeof *body);
+    for (int i = 0; i < shape->n_line; i++) {
+        body[i] = shape->line[i];
+        if (!bough_simulation_beam(shape->simulation, i)) body[i].n_point = 1;
+    }
+    return body;
+}
+
+// Returns the number of vertices.
+static int move_body(bough_shape *shape, int body) {
+    const bough_simulation *s = shape->simulation;
+    const bough_beam *beam = bough_simulation_beam(s, body);
+    if (beam) {
+        bough_simulation_beam_motion(s, beam, shape->motion);
+        return shape->line[body].n_point;
+    }
+    bough_transform own = bough_tree_frame_pose(s->view, &s->tree->bodies[body]);
+    shape->motion.position[0] = own.position;
+    shape->motion.rotation[0] = own.rotation;
+    return 1;
+}
+
+void bough_shape_motion(void *self, double *position, double *rotation) {
+    bough_shape *shape = self;
+    for (int i = 0; i < shape->n_line; i++) {
+        int n = move_body(shape, i);
+        for (int k = 0; k < n; k++, position += 3, rotation += 9) {
+            bough_vec3 x = shape->motion.position[k];
+            bough_mat3 m = shape->motion.rotation[k];
+            const double row[] = {m.c1.x, m.c2.x, m.c3.x, m.c1.y, m.c2.y,
+                                  m.c3.y, m.c1.z, m.c2.z, m.c3.z};
+            position[0] = x.x, position[1] = x.y, position[2] = x.z;
+            memcpy(rotation, row, sizeof row);
+        }
+    }
+}

@@ -1,0 +1,142 @@
+// A running simulation of a scene, and queries to it: the tree, the rods, the aerodynamics and the
+// coupling together.
+#ifndef BOUGH_APPS_SIMULATION_SIMULATION_H
+#define BOUGH_APPS_SIMULATION_SIMULATION_H
+
+#include "apps/bough/results/channels.h"
+#include "apps/bough/scene/scene.h"
+#include "core/tree/tree.h"
+#include "cosim/master.h"
+#include "flexbody/rod/ground_load.h"
+#include "flexbody/modal/modal_system.h"
+#include "flexbody/rod/rod_system.h"
+
+struct bough_aero_link;
+struct bough_control_link;
+struct bough_input_link;
+struct bough_drag_link;
+struct bough_validity;
+
+// A flexible blade, cable or tower, or the same body as a rigid one: its place and, if it is flexible, its
+// sub-solver.
+typedef struct bough_beam {
+    const bough_scene_body *body;
+    bough_rod_def def;    // the undeformed mesh in the body's frame
+    int marker;           // of the tree, the body's frame
+    int port;             // of the tree; −1 when rigid
+    bool in_ground;       // it moves under loads in ground axes
+    int end;              // of the tree, where bodies hang on the rod; −1 when it carries none
+    bough_rod_body *rod;     // NULL unless a rod
+    bough_modal_body *modal; // NULL unless modal
+    bough_ground_body *ground; // around either, NULL unless in_ground
+} bough_beam;
+
+typedef struct bough_simulation {
+    const bough_scene *scene;
+    bough_tree *tree;
+    bough_tree_data *view; // for queries between steps
+    double *acceleration;  // of the tree (n_v), scratch of queries
+    bough_member leader;
+    int first_marker;      // of the tree, the first of those that the scene names
+    int n_beam;
+    bough_beam *beam;      // (n_beam) bodies that have a rod, in the scene's order
+    bough_member *rod;     // (n_rod + n_fmu) in port order, the FMUs last
+    int n_rod, n_end, n_fmu;
+    struct bough_aero_link *aero; // NULL without an aero block
+    struct bough_input_link *inputs; // NULL without inputs
+    struct bough_drag_link *drag; // NULL without drag of tower and hub
+    struct bough_control_link *control; // NULL without a control block
+    struct bough_jump_link *jump;       // NULL without loads that jump
+    struct bough_validity *validity;    // limits of the models that the run has passed
+    bough_master *master;
+    bough_pool *pool; // NULL: one thread
+    // the rods in a row that carry the rotor, NULL without; undeformed top in the frame of the foot
+    const bough_beam *tower_foot, *tower_top;
+    bough_transform tower_rest;
+    int n_motion_channel; // the first channels: they follow from the states
+    // of them those that also follow from the rods' wrenches: forces of driven joints, of closures, of the
+    // nacelle
+    int first_drive, n_drive, first_closure, n_closure, first_bearing, n_bearing;
+} bough_simulation;
+
+// Registers the channels that the scene's parts give.
+bough_status bough_simulation_channels(bough_simulation *s, bough_channels *channels);
+
+// Brings `view` to the current synchronisation point; queries and channels read it.
+void bough_simulation_update(bough_simulation *s);
+
+// The memory that later steps depend on, at a time when all loads are sampled: see bough_master_snapshot.
+void bough_simulation_snapshot(bough_simulation *s, bough_snapshot *snapshot);
+
+// BOUGH_INVALID where the scene has a part that cannot be stored.
+bough_status bough_simulation_storable(const bough_simulation *s);
+
+// BOUGH_INVALID where the equations of a part are not known: an FMU's. `what` cannot be done then.
+bough_status bough_simulation_known(const bough_simulation *s, const char *what);
+
+// Number of bodies on joints that move.
+int bough_simulation_n_joints(const bough_simulation *s);
+
+// The beam of a scene body; NULL when it has no rod.
+bough_beam *bough_simulation_beam(const bough_simulation *s, int body);
+
+// The input of a rod at the current synchronisation point: see rod.h.
+const double *bough_simulation_rod_input(const bough_simulation *s, const bough_beam *beam);
+
+// Position of a beam's last vertex in the body's frame, in which `rotation` is its section's.
+bough_vec3 bough_simulation_beam_tip(const bough_simulation *s, const bough_beam *beam,
+                                     bough_quaternion *rotation);
+
+// Inertia of the root vertex, which belongs to the carrier, in the body's frame about its origin.
+bough_inertia bough_beam_root(const bough_rod_def *def);
+
+// Builds the flexible body of a beam, a rod or a modal body, in a frame that moves with `input` (9)
+// at the start.
+bough_status bough_beam_build(bough_arena *arena, bough_beam *beam, bough_integrator_options micro,
+                              const double *input, bough_member *member);
+
+// Of a flexible beam: its mesh, its loads, and the state of its vertices from `first` on at `view` as
+// rod.h lays it out, the latter valid until the next call for the same beam.
+const bough_rod_model *bough_beam_mesh(const bough_beam *beam);
+bough_rod_loads *bough_beam_loads(const bough_beam *beam);
+const double *bough_beam_state(const bough_simulation *s, const bough_beam *beam, int first);
+
+// Sets the velocities of a flexible beam's own state to rest relative to its frame, whose twist is
+// in `input`.
+void bough_beam_ride(const bough_beam *beam, const double *input, double *state);
+
+// The turbine's rotor in `view`: hub and axis of its joint in ground axes, and the largest distance of the
+// blades' undeformed tips from that axis.
+typedef struct bough_rotor_place {
+    bough_vec3 hub, axis;
+    double radius; // [m]
+} bough_rotor_place;
+bough_rotor_place bough_simulation_rotor(const bough_simulation *s);
+
+// How the hub has turned about the shaft, and its speed: the sum of the joints about the rotor's axis between the
+// body that carries the rotor and the blades [rad], [rad/s].
+void bough_simulation_hub_turn(const bough_simulation *s, double *angle, double *speed);
+
+// The name of the body, or of the group of bodies, with that state of the assembly.
+const char *bough_simulation_body_of(const bough_simulation *s, const bough_assembly *assembly, int row);
+
+// The pitch of a blade: its body's, and what its pitch joint adds, positive by −z [rad].
+double bough_simulation_pitch(const bough_simulation *s, const bough_beam *beam);
+
+// The wrench of a rod on its carrier, in the body's axes [N, N m]; zero for a rigid body.
+void bough_simulation_root(const bough_simulation *s, const bough_beam *beam, double t,
+                           double root[BOUGH_ROD_MOST_OUTPUTS]);
+
+// Motion of all vertices of a beam in ground axes, from `view` and the rod's state: position,
+// section axes, velocity and angular velocity, each (n_segment + 1).
+typedef struct bough_beam_motion {
+    bough_vec3 *position, *velocity, *angular_velocity;
+    bough_mat3 *rotation;
+} bough_beam_motion;
+void bough_simulation_beam_motion(const bough_simulation *s, const bough_beam *beam,
+                                  bough_beam_motion motion);
+
+// The same in the body's axes, as rows of n_segment + 1 numbers that a blade's motion has: see rotor.h.
+void bough_simulation_beam_rows(const bough_simulation *s, const bough_beam *beam, double *rows);
+
+#endif

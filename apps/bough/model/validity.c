@@ -1,0 +1,297 @@
+#include "apps/bough/model/validity.h"
+
+#include "apps/bough/model/aero_link.h"
+#include "core/tree/loop.h"
+#include "cosim/coupled.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+// Incompressible polars err by a seventh in the slope of lift there.
+static const double most_mach = 0.5, speed_of_sound = 340;
+static const double most_over_rated = 2;
+// Of the loads: up to a tenth where samples serve, towards 1 where vibrations grow by their delay.
+static const double most_missed = 0.3;
+// A segment has one strain: what turns by more is a coarse picture of it, and there is none beyond 120°.
+static const double most_turn = 0.25 * BOUGH_PI;
+// Of bough_loops_margin, also relative to the largest so far: on random linkages it stays above 0.02 or above
+// 0.03 of the largest, and falls to 1e-5 to 3e-3 where the links come to lie on one line.
+static const double least_margin = 0.01, least_share = 0.1;
+static const double most_uneven = BOUGH_PI / 180; // of the gap between two blades
+// Cosine of the angle between axis and wind, 60°: beyond every yaw error of operation.
+static const double least_along = 0.5;
+// Steps of solvers in a macro step, and the work in such macro steps, steps times states, of which a hundred
+// count at least: some seconds.
+static const double many_steps = 100, most_work = 3e6;
+static const int least_states = 100;
+static const double small_turn = 0.98; // cosine of a quarter of most_turn
+
+// Each sentence ends with the value in its unit.
+static const struct {
+    const char *name, *text;
+} limits[BOUGH_LIMITS] = {
+    [BOUGH_LIMIT_ATTACK] = {"angle_of_attack", "the polar's table has no rows at an angle of attack"
+                                               " of %.4g deg; they are joined across the gap"},
+    [BOUGH_LIMIT_MACH] = {"mach", "a section meets the air at %.4g m/s, more than half the speed of"
+                                  " sound: the polars hold for incompressible flow"},
+    [BOUGH_LIMIT_ROTOR_SPEED] = {"rotor_speed", "the rotor turns at %.4g rpm, more than twice the"
+                                                " rated speed"},
+    [BOUGH_LIMIT_TOWER] = {"tower_strike", "the blade is inside the tower, %.3g of its radius"
+                                           " from the axis: nothing stops it there"},
+    [BOUGH_LIMIT_SAMPLES] = {"air_samples", "the loads of the air miss its vibrations by %.2g of their size"
+                                            " between two samples: take a higher aero.rate, or fidelity rod"},
+    [BOUGH_LIMIT_TURN] = {"segment_turn", "a segment turns its ends against each other by %.3g deg, more"
+                                          " than 45 deg: take more segments"},
+    [BOUGH_LIMIT_SPACING] = {"blade_spacing",
+                             "the blades are not evenly spaced about its axis: between two of them are"
+                             " %.4g deg"},
+    [BOUGH_LIMIT_ACROSS] = {"wind_across",
+                            "its axis is across the wind, or faces away from it: the angle between"
+                            " them is %.4g deg"},
+    [BOUGH_LIMIT_MESH] =
+        {"one_segment",
+         "a rod of one segment bends by a third too little under a load along it, and its first"
+         " frequency is a tenth too high: take more segments than %g"},
+    [BOUGH_LIMIT_SINGULAR] = {"singular_position",
+                              "its closed loop is near a position from which its bodies can go on in two"
+                              " ways, and takes one of them by the smallest difference; margin %.2g"},
+    [BOUGH_LIMIT_STEPS] =
+        {"solver_steps", "motions so fast that a solver takes %.3g steps in a macro step make most of the"
+                         " cost: damping, a larger rtol or another solver (radau5, cvode-bdf) may end that"},
+};
+
+const char *bough_limit_name(bough_limit limit) { return limits[limit].name; }
+
+void bough_validity_pass(bough_validity *v, bough_limit limit, int body, double time, double value) {
+    if (v->limit[limit].passed) return;
+    v->limit[limit] = (bough_passing){true, body, time, value};
+}
+
+static void check_air(bough_simulation *s) {
+    const bough_rotor *rotor = bough_aero_link_rotor(s->aero);
+    double factor, time = bough_aero_link_evaluated(s->aero);
+    const bough_rotor_data *data = bough_aero_link_data(s->aero, &factor);
+    if (!(time > s->validity->looked)) return;
+    s->validity->looked = time;
+    for (int b = 0; b < s->scene->turbine.n_blade; b++) {
+        bough_rotor_extremes x = bough_rotor_look(rotor, data, b);
+        int body = s->scene->turbine.blade[b];
+        if (x.outside_table) {
+            bough_validity_pass(s->validity, BOUGH_LIMIT_ATTACK, body, time, x.alpha * (180 / BOUGH_PI));
+        }
+        if (x.speed > most_mach * speed_of_sound) {
+            bough_validity_pass(s->validity, BOUGH_LIMIT_MACH, body, time, x.speed);
+        }
+        double missed = bough_aero_link_missed(s->aero, b);
+        if (missed > most_missed) bough_validity_pass(s->validity, BOUGH_LIMIT_SAMPLES, body, time, missed);
+        if (x.distance < 1) {
+            bough_validity_pass(s->validity, BOUGH_LIMIT_TOWER, body, time, x.distance);
+        }
+    }
+}
+
+static void check_speed(bough_simulation *s) {
+    const bough_scene_control *control = &s->scene->control;
+    if (!control->node || control->kind != BOUGH_SCENE_VARIABLE_SPEED) return;
+    int rotor = s->scene->turbine.rotor, q, v;
+    bough_tree_joint_rows(s->tree, rotor, &q, &v);
+    double speed = s->leader.state[v], rated = control->law.rated_speed / control->gear_ratio;
+    if (fabs(speed) <= most_over_rated * fabs(rated)) return;
+    bough_validity_pass(s->validity, BOUGH_LIMIT_ROTOR_SPEED, rotor, s->master->time,
+                        speed * (30 / BOUGH_PI));
+}
+
+static double dot(bough_quaternion p, bough_quaternion q) {
+    return p.w * q.w + p.x * q.x + p.y * q.y + p.z * q.z;
+}
+
+// Section k of a rod, the root's being 0; p are the rows of the others.
+static bough_quaternion section(const bough_rod_model *m, const double *p, int k) {
+    if (k-- == 0) return m->rotation0[0];
+    return (bough_quaternion){p[k], p[m->n + k], p[2 * m->n + k], p[3 * m->n + k]};
+}
+
+// Whether no segment turns its ends by more than a quarter of most_turn, now or at rest.
+static bool turn_little(const bough_rod_model *m, const double *restrict p) {
+    const bough_quaternion *restrict rest = m->rotation0;
+    double least = fmin(fabs(dot(rest[0], section(m, p, 1))), fabs(dot(rest[0], rest[1])));
+#pragma omp simd reduction(min : least)
+    for (int k = 1; k < m->n; k++) {
+        double now = 0;
+        for (int c = 0; c < 4; c++) now += p[c * m->n + k - 1] * p[c * m->n + k];
+        double at_rest = fabs(dot(rest[k], rest[k + 1]));
+        now = fabs(now) < at_rest ? fabs(now) : at_rest;
+        least = now < least ? now : least;
+    }
+    return least > small_turn;
+}
+
+// How far the ends of segment k turn against each other beyond what they did at rest [rad].
+static double turn_of(const bough_rod_model *m, const double *p, int k) {
+    bough_quaternion left = bough_quaternion_conjugate(section(m, p, k));
+    bough_quaternion left0 = bough_quaternion_conjugate(m->rotation0[k]);
+    bough_quaternion now = bough_quaternion_product(left, section(m, p, k + 1));
+    bough_quaternion rest = bough_quaternion_product(left0, m->rotation0[k + 1]);
+    return 2 * acos(fmin(fabs(dot(now, rest)), 1));
+}
+
+static void check_turns(bough_simulation *s) {
+    for (int i = 0; i < s->n_beam; i++) {
+        const bough_beam *beam = &s->beam[i];
+        if (!beam->rod || s->validity->limit[BOUGH_LIMIT_TURN].passed) continue;
+        const bough_rod_model *m = bough_rod_body_model(beam->rod);
+        const double *p = bough_beam_state(s, beam, 0) + (size_t)BOUGH_ROD_P * (size_t)m->n;
+        if (turn_little(m, p)) continue;
+        for (int k = 0; k < m->n; k++) {
+            double turn = turn_of(m, p, k);
+            if (turn <= most_turn) continue;
+            bough_validity_pass(s->validity, BOUGH_LIMIT_TURN, (int)(beam->body - s->scene->body),
+                                s->master->time, turn * (180 / BOUGH_PI));
+            break;
+        }
+    }
+}
+
+static void check_closures(bough_simulation *s) {
+    double t = s->master->time;
+    int closure = 0;
+    bough_validity *v = s->validity;
+    if (v->limit[BOUGH_LIMIT_SINGULAR].passed) return;
+    bough_simulation_update(s);
+    if (!bough_tree_forward_dynamics(s->tree, s->view, t, s->master->coupling->input, s->acceleration))
+        return;
+    double margin = bough_loops_margin(s->tree, s->view, &closure);
+    v->margin = fmax(v->margin, margin);
+    if (!(margin <= least_margin && margin <= least_share * v->margin)) return;
+    const int *body = s->scene->closure[closure].body;
+    bough_validity_pass(v, BOUGH_LIMIT_SINGULAR, body[body[0] == BOUGH_GROUND], t, margin);
+}
+
+// -- at the start ---------------------------------------------------------------------------------
+
+// The angle of a blade's root about the rotor's axis, from a direction across it [rad].
+static double azimuth(const bough_simulation *s, const bough_rotor_place *r, int blade) {
+    const bough_beam *beam = bough_simulation_beam(s, s->scene->turbine.blade[blade]);
+    bough_transform root = bough_tree_frame_pose(s->view, &s->tree->markers[beam->marker]);
+    bough_vec3 along = bough_mat3_mul(root.rotation, bough_v3(0, 0, 1));
+    bool level = fabs(r->axis.z) < 0.9;
+    bough_vec3 side = bough_cross(level ? bough_v3(0, 0, 1) : bough_v3(1, 0, 0), r->axis);
+    bough_vec3 up = bough_cross(r->axis, side);
+    return atan2(bough_dot(along, side), bough_dot(along, up));
+}
+
+// The narrowest gap between two blades [rad].
+static double narrowest_gap(const bough_simulation *s, const bough_rotor_place *r) {
+    double narrowest = 2 * BOUGH_PI;
+    for (int k = 0; k < s->scene->turbine.n_blade; k++) {
+        for (int j = 0; j < k; j++) {
+            double gap = remainder(azimuth(s, r, j) - azimuth(s, r, k), 2 * BOUGH_PI);
+            narrowest = fmin(narrowest, fabs(gap));
+        }
+    }
+    return narrowest;
+}
+
+static void check_rotor(bough_simulation *s) {
+    int n = s->scene->turbine.n_blade, body = s->scene->turbine.rotor;
+    bough_rotor_place r = bough_simulation_rotor(s);
+    double gap = narrowest_gap(s, &r);
+    if (gap < 2 * BOUGH_PI / n - most_uneven) {
+        bough_validity_pass(s->validity, BOUGH_LIMIT_SPACING, body, 0, gap * (180 / BOUGH_PI));
+    }
+    if (!s->aero) return;
+    bough_vec3 wind = bough_aero_link_hub_wind(s->aero, 0);
+    double speed = sqrt(bough_dot(wind, wind)), along = bough_dot(wind, r.axis);
+    if (along >= least_along * speed) return;
+    double angle = acos(fmax(-1, along / speed));
+    bough_validity_pass(s->validity, BOUGH_LIMIT_ACROSS, body, 0, angle * (180 / BOUGH_PI));
+}
+
+// Rods in a row are one rod: only a single one is coarse.
+static void check_mesh(bough_simulation *s) {
+    for (int i = 0; i < s->n_beam; i++) {
+        const bough_beam *beam = &s->beam[i];
+        int parent = beam->body->joint.parent;
+        bool in_row = beam->end >= 0 || (parent >= 0 && s->scene->body[parent].fidelity == BOUGH_SCENE_ROD);
+        if (beam->port < 0 || in_row || beam->def.n_segment > 1) continue;
+        bough_validity_pass(s->validity, BOUGH_LIMIT_MESH, (int)(beam->body - s->scene->body), 0, 1);
+    }
+}
+
+void bough_validity_start(bough_simulation *s) {
+    if (s->scene->turbine.node) check_rotor(s);
+    check_mesh(s);
+}
+
+// -- after each step ------------------------------------------------------------------------------
+
+void bough_validity_check(bough_simulation *s) {
+    if (s->tree->n_closures > 0) check_closures(s);
+    if (s->aero) check_air(s);
+    check_turns(s);
+    check_speed(s);
+}
+
+// -- work -----------------------------------------------------------------------------------------
+
+typedef struct fastest {
+    const bough_simulation *simulation;
+    int body; // of the scene
+} fastest;
+
+// The body of the name, or the first of the group of that name.
+static int find_body(const bough_scene *scene, const char *name) {
+    for (int i = 0; i < scene->n_body; i++)
+        if (strncmp(scene->body[i].name, name, strlen(scene->body[i].name)) == 0) return i;
+    return 0;
+}
+
+// The body whose state changes fastest, measured by the tolerance.
+static bough_status find_fastest(bough_arena *arena, void *self) {
+    fastest *f = self;
+    const bough_master *m = f->simulation->master;
+    size_t n = (size_t)m->assembly->n_state;
+    double *state, *rate, *scale, largest = 0;
+    bough_arena_each(arena, n, &state, &rate, &scale);
+    bough_assembly_states(m->assembly, state);
+    bough_assembly_scales(m->assembly, scale);
+    bough_coupled *coupled = bough_coupled_create_evaluation(arena, m->assembly, NULL);
+    bough_status status = bough_coupled_rate(coupled, m->time, state, rate);
+    for (int k = 0; bough_is_ok(&status) && k < (int)n; k++) {
+        if (!(fabs(rate[k]) / scale[k] > largest)) continue;
+        largest = fabs(rate[k]) / scale[k];
+        f->body = find_body(f->simulation->scene, bough_simulation_body_of(f->simulation, m->assembly, k));
+    }
+    return status;
+}
+
+void bough_validity_check_work(bough_simulation *s, double steps) {
+    bough_validity *v = s->validity;
+    double taken = steps < v->steps ? steps : steps - v->steps; // a resumed run counts anew
+    v->steps = steps;
+    if (taken < many_steps || v->limit[BOUGH_LIMIT_STEPS].passed) return;
+    int states = s->master->assembly->n_state;
+    v->work += taken * (states > least_states ? states : least_states);
+    if (v->work < most_work) return;
+    fastest f = {s, 0};
+    bough_status status = bough_arena_use(find_fastest, &f);
+    (void)status; // no rate: the first body stands for the scene
+    bough_validity_pass(v, BOUGH_LIMIT_STEPS, f.body, s->master->time, taken);
+}
+
+void bough_validity_describe(const bough_simulation *s, bough_limit limit, char *text, size_t size) {
+    const bough_passing *p = &s->validity->limit[limit];
+    int n = snprintf(text, size, "%s at %.6g s: ", s->scene->body[p->body].name, p->time);
+    if (n < 0 || (size_t)n >= size) return;
+    snprintf(text + n, size - (size_t)n, limits[limit].text, p->value);
+}
+
+void bough_validity_print(const bough_simulation *s, FILE *stream) {
+    char text[400];
+    for (int k = 0; k < BOUGH_LIMITS; k++) {
+        if (!s->validity->limit[k].passed) continue;
+        bough_validity_describe(s, (bough_limit)k, text, sizeof text);
+        fprintf(stream, "warning: %s\n", text);
+    }
+}

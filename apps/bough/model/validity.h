@@ -1,0 +1,57 @@
+// Limits of the models' validity: a run reports each limit once, when it first exceeds it.
+#ifndef BOUGH_APPS_SIMULATION_VALIDITY_H
+#define BOUGH_APPS_SIMULATION_VALIDITY_H
+
+#include "apps/bough/model/simulation.h"
+
+typedef enum bough_limit {
+    BOUGH_LIMIT_ATTACK,      // the angle of attack lies where the polar's table has no rows
+    BOUGH_LIMIT_MACH,        // a section meets the air at half the speed of sound
+    BOUGH_LIMIT_ROTOR_SPEED, // the rotor turns twice as fast as the control law's rated speed
+    BOUGH_LIMIT_TOWER,       // a blade is inside the tower
+    BOUGH_LIMIT_SAMPLES,     // the samples of the air are too seldom for the vibrations of a modal blade
+    BOUGH_LIMIT_TURN,        // a rod's segment turns its ends against each other by more than 45°
+    BOUGH_LIMIT_SPACING,     // the blades are not evenly spaced about the rotor's axis
+    BOUGH_LIMIT_ACROSS,      // the rotor's axis is across the wind, or faces away from it
+    BOUGH_LIMIT_MESH,        // a rod has one segment
+    BOUGH_LIMIT_SINGULAR,    // a closed loop is near a position in which its bodies can go on in two ways
+    BOUGH_LIMIT_STEPS,       // macro steps of very many steps of a solver have become costly
+    BOUGH_LIMITS,
+} bough_limit;
+
+// Plain data: a part of the simulation's snapshot.
+typedef struct bough_passing {
+    bool passed;
+    int body;     // of the scene
+    double time;  // [s]
+    double value; // in the limit's unit
+} bough_passing;
+
+typedef struct bough_validity {
+    bough_passing limit[BOUGH_LIMITS];
+    double looked; // time of the last sample of the air seen [s]
+    double margin; // largest of the closed loops so far, see bough_loops_margin
+    double steps;  // of all solvers up to the last look
+    double work;   // steps in macro steps of very many steps, times states
+} bough_validity;
+
+// Notes that a limit is passed, if it is the first time.
+void bough_validity_pass(bough_validity *v, bough_limit limit, int body, double time, double value);
+
+// Checks the model at the start, with `view` up to date.
+void bough_validity_start(bough_simulation *s);
+
+// Checks the state after a step, without changing a result.
+void bough_validity_check(bough_simulation *s);
+
+// Notes macro steps of very many steps; `steps` of all solvers since the process began.
+void bough_validity_check_work(bough_simulation *s, double steps);
+
+// The name of a limit in summary.json, and the sentence about its passing, at most `size` bytes.
+const char *bough_limit_name(bough_limit limit);
+void bough_validity_describe(const bough_simulation *s, bough_limit limit, char *text, size_t size);
+
+// Writes a line for each limit that is passed.
+void bough_validity_print(const bough_simulation *s, FILE *stream);
+
+#endif

@@ -1,0 +1,184 @@
+#include "apps/bough/results/channels.h"
+
+#include <assert.h>
+#include <fnmatch.h>
+#include <stdarg.h>
+#include <stdbool.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <string.h>
+
+bough_channels bough_channels_start(bough_arena *arena) {
+    return (bough_channels){.arena = arena, .status = bough_ok()};
+}
+
+// Room for one item more. The arena keeps the outgrown blocks: at most as much again.
+static void *grown(bough_arena *arena, void *items, int count, int *capacity, size_t size) {
+    if (count < *capacity) return items;
+    int wanted = *capacity ? 2 * *capacity : 16;
+    void *larger = bough_arena_take(arena, (size_t)wanted * size);
+    if (count) memcpy(larger, items, (size_t)count * size);
+    *capacity = wanted;
+    return larger;
+}
+
+void bough_channels_group(bough_channels *list, bough_channel_sample *sample, void *self) {
+    bough_channel_group *group =
+        grown(list->arena, list->group, list->group_count, &list->group_capacity, sizeof *group);
+    list->group = group;
+    list->group[list->group_count++] =
+        (bough_channel_group){.sample = sample, .self = self, .first = list->count};
+}
+
+// Where the channel of that name stands, or would.
+static int *slot_of(const bough_channels *list, const char *name) {
+    uint32_t hash = 2166136261u, mask = 2 * (uint32_t)list->capacity - 1;
+    for (const char *c = name; *c; c++) hash = (hash ^ (unsigned char)*c) * 16777619u;
+    int *slot = &list->slot[hash & mask];
+    while (*slot && strcmp(list->channel[*slot - 1].name, name) != 0) {
+        slot = &list->slot[++hash & mask];
+    }
+    return slot;
+}
+
+static void make_room(bough_channels *list) {
+    int capacity = list->capacity;
+    bough_channel *channel = grown(list->arena, list->channel, list->count, &capacity, sizeof *channel);
+    if (capacity == list->capacity) return;
+    int *slot = bough_arena_take(list->arena, 2 * (size_t)capacity * sizeof *slot);
+    list->channel = channel;
+    list->slot = slot;
+    list->capacity = capacity;
+    for (int i = 0; i < list->count; i++) *slot_of(list, channel[i].name) = i + 1;
+}
+
+// Units of channels that are compared: other ones have no kind.
+static const struct {
+    const char *unit;
+    bough_quantity_kind kind;
+    double si, turn;
+} units[] = {
+    {"m", BOUGH_KIND_LENGTH, 1, 0},
+    {"deg", BOUGH_KIND_ANGLE, 0.017453292519943295, 360},
+    {"rad", BOUGH_KIND_ANGLE, 1, 6.283185307179586},
+    {"-", BOUGH_KIND_ANGLE, 1, 0},
+    {"m/s", BOUGH_KIND_VELOCITY, 1, 0},
+    {"deg/s", BOUGH_KIND_ANGULAR_VELOCITY, 0.017453292519943295, 0},
+    {"rad/s", BOUGH_KIND_ANGULAR_VELOCITY, 1, 0},
+    {"rpm", BOUGH_KIND_ANGULAR_VELOCITY, 0.10471975511965977, 0},
+    {"N", BOUGH_KIND_FORCE, 1, 0},
+    {"kN", BOUGH_KIND_FORCE, 1e3, 0},
+    {"N-m", BOUGH_KIND_MOMENT, 1, 0},
+    {"kN-m", BOUGH_KIND_MOMENT, 1e3, 0},
+};
+
+static void set_unit(bough_channel *channel, const char *unit) {
+    memcpy(channel->unit, unit, strlen(unit) + 1);
+    channel->kind = BOUGH_KIND_OTHER;
+    channel->si = 1;
+    for (size_t k = 0; k < sizeof units / sizeof *units; k++) {
+        if (strcmp(units[k].unit, unit) != 0) continue;
+        channel->kind = units[k].kind;
+        channel->si = units[k].si;
+        channel->turn = units[k].turn;
+    }
+}
+
+static bool is_word(const char *text, size_t size) {
+    size_t length = strlen(text);
+    return length > 0 && length < size && !strpbrk(text, " \t\r\n");
+}
+
+void bough_channels_add(bough_channels *list, const char *unit, const char *format, ...) {
+    assert(list->group_count > 0);
+    if (!bough_is_ok(&list->status)) return;
+    char name[2 * BOUGH_CHANNEL_NAME];
+    va_list arguments;
+    va_start(arguments, format);
+    vsnprintf(name, sizeof name, format, arguments);
+    va_end(arguments);
+    if (!is_word(name, BOUGH_CHANNEL_NAME) || strcmp(name, "Time") == 0) {
+        list->status = bough_fail(BOUGH_INVALID,
+                                  "'%s' cannot name an output channel: use 1 to %d "
+                                  "characters without blanks, other than 'Time'",
+                                  name, BOUGH_CHANNEL_NAME - 1);
+        return;
+    }
+    assert(is_word(unit, BOUGH_CHANNEL_UNIT));
+    if (bough_channels_find(list, name) >= 0) {
+        list->status = bough_fail(BOUGH_INVALID, "two output channels are named '%s': rename a body", name);
+        return;
+    }
+    make_room(list);
+    bough_channel *channel = &list->channel[list->count++];
+    memcpy(channel->name, name, BOUGH_CHANNEL_NAME);
+    set_unit(channel, unit);
+    channel->vector = list->count - 1;
+    *slot_of(list, name) = list->count;
+    list->group[list->group_count - 1].count++;
+}
+
+void bough_channels_describe(bough_channels *list, int component, bool sampled) {
+    if (!bough_is_ok(&list->status)) return;
+    bough_channel *channel = &list->channel[list->count - 1];
+    if (component > 1) channel->vector = list->count - component;
+    channel->sampled = sampled;
+}
+
+int bough_channels_find(const bough_channels *list, const char *name) {
+    return list->capacity > 0 ? *slot_of(list, name) - 1 : -1;
+}
+
+// -- choice ---------------------------------------------------------------------------------------
+
+typedef struct choice {
+    const bough_channels *all;
+    int n;
+    int *from;     // (n) index in `all`
+    double *value; // (all->count) scratch
+} choice;
+
+static void sample_choice(void *self, double t, double *value) {
+    const choice *x = self;
+    bough_channels_sample(x->all, t, x->value);
+    for (int k = 0; k < x->n; k++) value[k] = x->value[x->from[k]];
+}
+
+static bool matches(const char *name, int n, const char *const *pattern) {
+    for (int k = 0; k < n; k++) {
+        if (fnmatch(pattern[k], name, 0) == 0) return true;
+    }
+    return false;
+}
+
+bool bough_channels_match(const bough_channels *list, const char *pattern) {
+    for (int i = 0; i < list->count; i++) {
+        if (fnmatch(pattern, list->channel[i].name, 0) == 0) return true;
+    }
+    return false;
+}
+
+void bough_channels_choose(const bough_channels *all, int n, const char *const *pattern,
+                           bough_channels *chosen) {
+    *chosen = *all;
+    if (n == 0) return;
+    bough_arena *arena = all->arena;
+    choice *x = bough_arena_take(arena, sizeof *x);
+    x->all = all;
+    x->from = bough_arena_take(arena, ((size_t)all->count + 1) * sizeof *x->from);
+    x->value = bough_arena_doubles(arena, (size_t)all->count + 1);
+    *chosen = bough_channels_start(arena);
+    bough_channels_group(chosen, sample_choice, x);
+    for (int i = 0; i < all->count; i++) {
+        if (!matches(all->channel[i].name, n, pattern)) continue;
+        x->from[x->n++] = i;
+        bough_channels_add(chosen, all->channel[i].unit, "%s", all->channel[i].name);
+    }
+}
+
+void bough_channels_sample(const bough_channels *list, double t, double *value) {
+    for (int i = 0; i < list->group_count; i++) {
+        const bough_channel_group *group = &list->group[i];
+        if (group->count) group->sample(group->self, t, value + group->first);
+    }
+}

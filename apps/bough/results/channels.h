@@ -1,0 +1,83 @@
+// Names and units of what a run records, in groups: whoever computes values registers one group
+// and its channels, and is asked for all of them at once. Building allocates, sampling does not.
+#ifndef BOUGH_OUTPUT_CHANNELS_H
+#define BOUGH_OUTPUT_CHANNELS_H
+
+#include "core/base/arena.h"
+#include "core/base/status.h"
+
+#include <stdbool.h>
+
+enum { BOUGH_CHANNEL_NAME = 48, BOUGH_CHANNEL_UNIT = 16 };
+
+// Kind of a channel's quantity: what is compared with what, and how.
+typedef enum bough_quantity_kind {
+    BOUGH_KIND_OTHER, // coefficients, power, force per length
+    BOUGH_KIND_LENGTH,
+    BOUGH_KIND_ANGLE, // also the component of a direction, which is an angle where it is small
+    BOUGH_KIND_VELOCITY,
+    BOUGH_KIND_ANGULAR_VELOCITY,
+    BOUGH_KIND_FORCE,
+    BOUGH_KIND_MOMENT,
+} bough_quantity_kind;
+
+typedef struct bough_channel {
+    char name[BOUGH_CHANNEL_NAME]; // OpenFAST's name where the quantity is the same
+    char unit[BOUGH_CHANNEL_UNIT]; // without parentheses: "m", "kN-m", "rpm", "-"
+    bough_quantity_kind kind;
+    double si;    // what one unit is in SI units
+    double turn;  // of an angle: a whole turn in its unit; else 0
+    int vector;   // the first channel of the vector that it is a component of; its own index: a scalar
+    bool sampled; // known at the samples of the air or the control only
+} bough_channel;
+
+// Writes the group's values at time t [s], each in its channel's unit.
+typedef void bough_channel_sample(void *self, double t, double *value);
+
+typedef struct bough_channel_group {
+    bough_channel_sample *sample;
+    void *self;
+    int first, count; // its channels
+} bough_channel_group;
+
+typedef struct bough_channels {
+    bough_arena *arena;
+    bough_channel *channel;     // (count); time is not among them
+    bough_channel_group *group; // (group_count)
+    int count, capacity;
+    int *slot; // (2 capacity) channels by the hash of their names: index + 1, 0 where there is none
+    int group_count, group_capacity;
+    bough_status status; // BOUGH_INVALID where a name is not possible
+} bough_channels;
+
+// An empty list whose memory is the arena's.
+bough_channels bough_channels_start(bough_arena *arena);
+
+// Begins a group: the channels added next are written by `sample`.
+void bough_channels_group(bough_channels *list, bough_channel_sample *sample, void *self);
+
+// Adds a channel with a printf-style name. Names are unique, neither empty nor "Time" nor with
+// blanks, since readers split the name row there; the first that is not is in the list's status, and no
+// channel is added after it.
+void bough_channels_add(bough_channels *list, const char *unit, const char *format, ...)
+    __attribute__((format(printf, 3, 4)));
+
+// Of the channel added last: the component of a vector that it is (1, 2, 3; 0: a scalar), and whether its
+// values belong to the last sample of the air or the control; such a channel of motion is one of the air.
+void bough_channels_describe(bough_channels *list, int component, bool sampled);
+
+// The index of the channel with this name, −1 if there is none.
+int bough_channels_find(const bough_channels *list, const char *name);
+
+// Whether the name of a channel matches the shell pattern ("Root*").
+bool bough_channels_match(const bough_channels *list, const char *pattern);
+
+// A list of those channels of `all`, which outlives it, whose names match one of n patterns, in their order
+// there; all of them for n = 0.
+void bough_channels_choose(const bough_channels *all, int n, const char *const *pattern,
+                           bough_channels *chosen);
+
+// Asks every group: value (count).
+void bough_channels_sample(const bough_channels *list, double t, double *value);
+
+#endif

@@ -1,0 +1,155 @@
+#include "apps/bough/results/folder.h"
+
+#include <dirent.h>
+#include <errno.h>
+#include <fcntl.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+static bough_status make_one(const char *path) {
+    if (mkdir(path, 0777) == 0) return bough_ok();
+    int error = errno;
+    struct stat info;
+    if (stat(path, &info) == 0) {
+        if (S_ISDIR(info.st_mode)) return bough_ok();
+        return bough_fail(BOUGH_IO,
+                          "'%.200s' is a file; results need a folder: name another "
+                          "with --out",
+                          path);
+    }
+    return bough_fail(BOUGH_IO, "cannot create the folder '%.200s': %s", path, strerror(error));
+}
+
+bough_status bough_folder_make(const char *path) {
+    char part[BOUGH_PATH_MAX];
+    size_t length = strlen(path);
+    if (length == 0) return bough_fail(BOUGH_INVALID, "the results folder has an empty name");
+    if (length >= sizeof part) return bough_fail(BOUGH_INVALID, "the results folder's name is too long");
+    memcpy(part, path, length + 1);
+    for (size_t i = 1; i < length; i++) {
+        if (part[i] != '/') continue;
+        part[i] = '\0';
+        bough_status status = make_one(part);
+        if (!bough_is_ok(&status)) return status;
+        part[i] = '/';
+    }
+    bough_status status = make_one(part);
+    if (!bough_is_ok(&status)) return status;
+    if (access(path, W_OK | X_OK) == 0) return bough_ok();
+    return bough_fail(BOUGH_IO, "cannot write into the folder '%.200s': %s", path, strerror(errno));
+}
+
+bough_status bough_folder_path(const char *folder, const char *name, char *path) {
+    int length = snprintf(path, BOUGH_PATH_MAX, "%s/%s", folder, name);
+    if (length < BOUGH_PATH_MAX) return bough_ok();
+    return bough_fail(BOUGH_INVALID, "the path of '%s' in the results folder is too long", name);
+}
+
+static bough_status partial_path(const char *path, char *partial) {
+    int length = snprintf(partial, BOUGH_PATH_MAX, "%s.partial", path);
+    if (length < BOUGH_PATH_MAX) return bough_ok();
+    return bough_fail(BOUGH_INVALID, "the path '%.200s' is too long", path);
+}
+
+bough_status bough_folder_open_partial(const char *path, FILE **file) {
+    char partial[BOUGH_PATH_MAX];
+    bough_status status = partial_path(path, partial);
+    if (!bough_is_ok(&status)) return status;
+    // A pipe that nobody reads would hold the call up.
+    int descriptor = open(partial, O_WRONLY | O_CREAT | O_TRUNC | O_NONBLOCK | O_CLOEXEC, 0666);
+    *file = descriptor < 0 ? NULL : fdopen(descriptor, "w");
+    if (*file) return status;
+    status = bough_fail(BOUGH_IO, "cannot write '%.200s': %s", partial, strerror(errno));
+    if (descriptor >= 0) close(descriptor);
+    return status;
+}
+
+bough_status bough_folder_open(const char *folder, const char *name, char *path, FILE **file) {
+    bough_status status = bough_folder_path(folder, name, path);
+    return bough_is_ok(&status) ? bough_folder_open_partial(path, file) : status;
+}
+
+bough_status bough_folder_write(const char *folder, const char *name,
+                                void (*write)(const void *self, FILE *file), const void *self) {
+    char path[BOUGH_PATH_MAX];
+    FILE *file = NULL;
+    bough_status status = bough_folder_open(folder, name, path, &file);
+    if (!bough_is_ok(&status)) return status;
+    write(self, file);
+    return bough_folder_commit(path, file);
+}
+
+bough_status bough_folder_keep(const char *path, FILE *file, long *bytes) {
+    errno = 0;
+    bool good = !ferror(file) && fflush(file) == 0 && fsync(fileno(file)) == 0;
+    *bytes = good ? ftell(file) : -1;
+    if (*bytes >= 0) return bough_ok();
+    return bough_fail(BOUGH_IO, "cannot write '%.200s.partial': %s", path,
+                      errno ? strerror(errno) : "an earlier write failed");
+}
+
+bough_status bough_folder_reopen_partial(const char *path, long bytes, FILE **file) {
+    char partial[BOUGH_PATH_MAX];
+    bough_status status = partial_path(path, partial);
+    if (!bough_is_ok(&status)) return status;
+    struct stat info;
+    if (stat(partial, &info) != 0 && errno == ENOENT) rename(path, partial);
+    if (stat(partial, &info) != 0 || info.st_size < bytes) {
+        return bough_fail(BOUGH_INVALID,
+                          "'%.200s' lacks rows that the checkpoint needs; without --resume the "
+                          "run starts anew",
+                          partial);
+    }
+    *file = fopen(partial, "r+");
+    if (*file && ftruncate(fileno(*file), bytes) == 0 && fseek(*file, bytes, SEEK_SET) == 0) {
+        return status;
+    }
+    status = bough_fail(BOUGH_IO, "cannot write '%.200s': %s", partial, strerror(errno));
+    if (*file) fclose(*file);
+    return status;
+}
+
+// A symbolic link was put there by somebody.
+void bough_folder_clean(const char *folder) {
+    DIR *directory = opendir(folder);
+    if (!directory) return;
+    for (const struct dirent *entry; (entry = readdir(directory)) != NULL;) {
+        char path[BOUGH_PATH_MAX];
+        struct stat info;
+        const char *end = strrchr(entry->d_name, '.');
+        if (!end || strcmp(end, ".partial") != 0) continue;
+        bough_status status = bough_folder_path(folder, entry->d_name, path);
+        if (bough_is_ok(&status) && lstat(path, &info) == 0 && S_ISREG(info.st_mode)) unlink(path);
+    }
+    closedir(directory);
+}
+
+bough_status bough_folder_remove(const char *folder, const char *name) {
+    char path[BOUGH_PATH_MAX];
+    bough_status status = bough_folder_path(folder, name, path);
+    if (!bough_is_ok(&status) || unlink(path) == 0 || errno == ENOENT) return status;
+    return bough_fail(BOUGH_IO, "cannot replace '%.200s': %s", path, strerror(errno));
+}
+
+bough_status bough_folder_commit(const char *path, FILE *file) {
+    char partial[BOUGH_PATH_MAX];
+    bough_status status = partial_path(path, partial);
+    if (!bough_is_ok(&status)) return status;
+    if (file) {
+        bool broken = ferror(file) != 0;
+        if (fclose(file) != 0 || broken) {
+            return bough_fail(BOUGH_IO, "cannot finish '%.200s': %s", partial,
+                              errno ? strerror(errno) : "an earlier write failed");
+        }
+    }
+    if (rename(partial, path) == 0) return status;
+    return bough_fail(BOUGH_IO, "cannot rename '%.200s': %s", partial, strerror(errno));
+}
+
+void bough_folder_discard(const char *path, FILE *file) {
+    char partial[BOUGH_PATH_MAX];
+    bough_status status = partial_path(path, partial);
+    fclose(file);
+    if (bough_is_ok(&status)) unlink(partial);
+}

@@ -1,0 +1,55 @@
+// The folder that receives a run's results, and files in it that are complete or absent: they are
+// written under another name and renamed at the end.
+#ifndef BOUGH_OUTPUT_FOLDER_H
+#define BOUGH_OUTPUT_FOLDER_H
+
+#include "core/base/status.h"
+
+#include <stdio.h>
+
+enum { BOUGH_PATH_MAX = 4096 };
+
+// Makes the folder and its missing parents. Refuses a path that is taken by a file, or a folder
+// that cannot be written.
+bough_status bough_folder_make(const char *path);
+
+// path = folder/name; refuses what does not fit into BOUGH_PATH_MAX.
+bough_status bough_folder_path(const char *folder, const char *name, char *path);
+
+// Opens path.partial for writing.
+bough_status bough_folder_open_partial(const char *path, FILE **file);
+
+// The same for a file of the folder; its path goes to `path` (BOUGH_PATH_MAX).
+bough_status bough_folder_open(const char *folder, const char *name, char *path, FILE **file);
+
+// Writes a whole file of the folder: what `write` prints of `self`.
+bough_status bough_folder_write(const char *folder, const char *name,
+                                void (*write)(const void *self, FILE *file), const void *self);
+
+// What of a file is on the disk for good.
+typedef struct bough_kept {
+    long count; // rows or frames
+    long bytes;
+} bough_kept;
+
+// Brings path.partial to the disk: bytes = its length.
+bough_status bough_folder_keep(const char *path, FILE *file, long *bytes);
+
+// Opens path.partial again to go on behind its first `bytes`; the rest of it is cut off. A file
+// that has its final name becomes partial again. BOUGH_INVALID when there is less than that.
+bough_status bough_folder_reopen_partial(const char *path, long bytes, FILE **file);
+
+// Removes the partial files that a process which died has left in an existing folder.
+void bough_folder_clean(const char *folder);
+
+// Removes folder/name if there is one.
+bough_status bough_folder_remove(const char *folder, const char *name);
+
+// Closes the file (NULL is allowed) and gives path.partial its final name. A write error noticed
+// only now is reported, and the partial file is then left as it is.
+bough_status bough_folder_commit(const char *path, FILE *file);
+
+// Closes the file and removes path.partial.
+void bough_folder_discard(const char *path, FILE *file);
+
+#endif

@@ -1,0 +1,155 @@
+#include "apps/bough/results/frames.h"
+
+#include <dirent.h>
+#include <errno.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+struct bough_frames {
+    bough_frames_def def;
+    FILE *list;                     // frames.pvd.partial; NULL once finished
+    double *point, *force, *moment; // (n_point × 3)
+    int n_point, n_frame;
+    char list_path[BOUGH_PATH_MAX];
+};
+
+static void release(void *self) {
+    bough_frames *f = self;
+    if (f->list) fclose(f->list);
+    f->list = NULL;
+}
+
+static bough_status reopen(bough_frames *f) {
+    f->n_frame = (int)f->def.kept.count;
+    return bough_folder_reopen_partial(f->list_path, f->def.kept.bytes, &f->list);
+}
+
+static bough_status create(bough_frames *f) {
+    if (unlink(f->list_path) != 0 && errno != ENOENT) {
+        return bough_fail(BOUGH_IO, "cannot replace '%.200s': %s", f->list_path, strerror(errno));
+    }
+    bough_status status = bough_folder_open_partial(f->list_path, &f->list);
+    if (!bough_is_ok(&status)) return status;
+    fprintf(f->list, "<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"0.1\">\n"
+                     "<Collection>\n");
+    return status;
+}
+
+bough_status bough_frames_open(bough_arena *arena, const bough_frames_def *def, bough_frames **frames) {
+    bough_frames *f = bough_arena_take(arena, sizeof *f);
+    f->def = *def;
+    for (int k = 0; k < def->n_line; k++) f->n_point += def->line[k].n_point;
+    f->point = bough_arena_doubles(arena, 9 * (size_t)f->n_point);
+    f->force = f->point + 3 * f->n_point;
+    f->moment = f->force + 3 * f->n_point;
+    char folder[BOUGH_PATH_MAX];
+    bough_status status = bough_folder_path(def->folder, "frames", folder);
+    if (bough_is_ok(&status)) status = bough_folder_make(folder);
+    if (bough_is_ok(&status)) status = bough_folder_path(def->folder, "frames.pvd", f->list_path);
+    if (!bough_is_ok(&status)) return status;
+    bough_arena_on_destroy(arena, release, f);
+    status = def->kept.count > 0 ? reopen(f) : create(f);
+    *frames = f;
+    return status;
+}
+
+static void write_vectors(const bough_frames *f, const char *name, const double *x, FILE *file) {
+    fprintf(file,
+            "<DataArray type=\"Float32\" Name=\"%s\" NumberOfComponents=\"3\" "
+            "format=\"ascii\">\n",
+            name);
+    for (int i = 0; i < f->n_point; i++, x += 3) fprintf(file, "%.6g %.6g %.6g\n", x[0], x[1], x[2]);
+    fprintf(file, "</DataArray>\n");
+}
+
+static void write_points(const bough_frames *f, FILE *file) {
+    fprintf(file, "<Points>\n");
+    write_vectors(f, "position", f->point, file);
+    fprintf(file, "</Points>\n");
+}
+
+// The report reads the points, which stand first.
+static void write_loads(const bough_frames *f, FILE *file) {
+    fprintf(file, "<PointData>\n");
+    write_vectors(f, "section force (N)", f->force, file);
+    write_vectors(f, "section moment (N m)", f->moment, file);
+    fprintf(file, "</PointData>\n");
+}
+
+static void write_lines(const bough_frames *f, FILE *file) {
+    fprintf(file, "<Lines>\n<DataArray type=\"Int32\" Name=\"connectivity\" format=\"ascii\">\n");
+    for (int i = 0; i < f->n_point; i++) fprintf(file, "%d\n", i);
+    fprintf(file, "</DataArray>\n<DataArray type=\"Int32\" Name=\"offsets\" format=\"ascii\">\n");
+    int end = 0;
+    for (int k = 0; k < f->def.n_line; k++) fprintf(file, "%d\n", end += f->def.line[k].n_point);
+    fprintf(file, "</DataArray>\n</Lines>\n");
+}
+
+// Which body a line belongs to, by number, with the names beside it.
+static void write_bodies(const bough_frames *f, FILE *file) {
+    fprintf(file, "<CellData>\n<DataArray type=\"Int32\" Name=\"body\" format=\"ascii\">\n");
+    for (int k = 0; k < f->def.n_line; k++) fprintf(file, "%d\n", k);
+    fprintf(file, "</DataArray>\n</CellData>\n<!--");
+    for (int k = 0; k < f->def.n_line; k++) fprintf(file, " %s", f->def.line[k].name);
+    fprintf(file, " -->\n");
+}
+
+bough_status bough_frames_sample(bough_frames *f, double t) {
+    char path[BOUGH_PATH_MAX], name[32];
+    FILE *file;
+    snprintf(name, sizeof name, "frames/%06d.vtp", f->n_frame);
+    bough_status status = bough_folder_open(f->def.folder, name, path, &file);
+    if (!bough_is_ok(&status)) return status;
+    f->def.points(f->def.self, f->point);
+    f->def.loads(f->def.self, t, f->force, f->moment);
+    fprintf(file,
+            "<?xml version=\"1.0\"?>\n<VTKFile type=\"PolyData\" version=\"0.1\">\n"
+            "<PolyData>\n<Piece NumberOfPoints=\"%d\" NumberOfLines=\"%d\">\n",
+            f->n_point, f->def.n_line);
+    write_points(f, file);
+    write_lines(f, file);
+    write_loads(f, file);
+    write_bodies(f, file);
+    fprintf(file, "</Piece>\n</PolyData>\n</VTKFile>\n");
+    status = bough_folder_commit(path, file);
+    if (!bough_is_ok(&status)) return status;
+    fprintf(f->list, "<DataSet timestep=\"%.9g\" file=\"%s\"/>\n", t, name);
+    f->n_frame++;
+    return status;
+}
+
+bough_status bough_frames_keep(bough_frames *f, bough_kept *kept) {
+    kept->count = f->n_frame;
+    return bough_folder_keep(f->list_path, f->list, &kept->bytes);
+}
+
+// Removes the frames from number n on: files of exactly the names that are given above.
+static bough_status remove_from(const char *folder, int n) {
+    char path[BOUGH_PATH_MAX], name[32];
+    bough_status status = bough_folder_path(folder, "frames", path);
+    DIR *directory = bough_is_ok(&status) ? opendir(path) : NULL;
+    if (!directory) return status;
+    for (const struct dirent *entry; bough_is_ok(&status) && (entry = readdir(directory)) != NULL;) {
+        int number = atoi(entry->d_name);
+        snprintf(name, sizeof name, "%06d.vtp", number);
+        if (number >= n && strcmp(name, entry->d_name) == 0) status = bough_folder_remove(path, name);
+    }
+    closedir(directory);
+    if (n == 0) rmdir(path); // where nothing else is in it
+    return status;
+}
+
+bough_status bough_frames_remove(const char *folder) {
+    bough_status status = bough_folder_remove(folder, "frames.pvd");
+    return bough_is_ok(&status) ? remove_from(folder, 0) : status;
+}
+
+bough_status bough_frames_finish(bough_frames *f) {
+    bough_status status = remove_from(f->def.folder, f->n_frame);
+    if (!bough_is_ok(&status)) return status;
+    fprintf(f->list, "</Collection>\n</VTKFile>\n");
+    FILE *list = f->list;
+    f->list = NULL;
+    return bough_folder_commit(f->list_path, list);
+}

@@ -1,0 +1,186 @@
+#include "apps/bough/results/recorder.h"
+
+#include "apps/bough/results/number.h"
+
+#include <assert.h>
+#include <errno.h>
+#include <stdbool.h>
+#include <stdio.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+// Characters of a column: a tab and the longest number; OUTCOME is the third line's fixed length.
+enum { COLUMN = 18, OUTCOME = 160, BUFFER = 1 << 16 };
+
+struct bough_recorder {
+    const bough_channels *channels;
+    FILE *file; // NULL once finished
+    char *path;
+    char *buffer;    // of the file (BUFFER)
+    char *line;      // one row and its terminator (row_length + 1)
+    double *value;   // (count)
+    long outcome_at; // offset of the line that tells how the run ended
+    long rows_at;    // offset of the first row
+    long row_length; // of every row [bytes]
+    long rows;
+};
+
+static void release(void *self) {
+    bough_recorder *recorder = self;
+    if (recorder->file) fclose(recorder->file);
+    recorder->file = NULL;
+}
+
+static bough_status write_error(const bough_recorder *r) {
+    return bough_fail(BOUGH_IO, "cannot write '%.200s.partial' (%ld rows so far): %s", r->path, r->rows,
+                      errno ? strerror(errno) : "the device refused");
+}
+
+// Whether the byte is inside a UTF-8 character, after its first.
+static bool is_continuation(char byte) { return ((unsigned char)byte & 0xC0) == 0x80; }
+
+// The outcome has a fixed length, so that it can be replaced once the end is known.
+static bool write_outcome(bough_recorder *r, const char *text) {
+    char line[OUTCOME];
+    size_t length = strlen(text);
+    if (length > OUTCOME - 1) {
+        length = OUTCOME - 1;
+        while (length && is_continuation(text[length])) length--;
+    }
+    memset(line, ' ', OUTCOME);
+    for (size_t i = 0; i < length; i++) {
+        if (text[i] != '\n' && text[i] != '\r') line[i] = text[i];
+    }
+    line[OUTCOME - 1] = '\n';
+    return fwrite(line, 1, OUTCOME, r->file) == OUTCOME;
+}
+
+static bough_status write_head(bough_recorder *r, const char *title) {
+    FILE *f = r->file;
+    const bough_channels *c = r->channels;
+    errno = 0;
+    fprintf(f, "\nbough: %.*s\n", (int)strcspn(title, "\r\n"), title);
+    r->outcome_at = ftell(f);
+    write_outcome(r, "INCOMPLETE: the run has not ended");
+    fprintf(f, "\n%d channels besides the time\n\n", c->count);
+    fprintf(f, "%*s", COLUMN, "Time");
+    for (int i = 0; i < c->count; i++) fprintf(f, "\t%*s", COLUMN - 1, c->channel[i].name);
+    fprintf(f, "\n%*s", COLUMN, "(s)");
+    for (int i = 0; i < c->count; i++) {
+        char unit[BOUGH_CHANNEL_UNIT + 2];
+        snprintf(unit, sizeof unit, "(%s)", c->channel[i].unit);
+        fprintf(f, "\t%*s", COLUMN - 1, unit);
+    }
+    fprintf(f, "\n");
+    if (fflush(f) != 0) return write_error(r);
+    r->rows_at = ftell(f);
+    return bough_ok();
+}
+
+// The head is written again, for its outcome; the rows stay.
+static bough_status reopen(bough_recorder *r, const bough_recorder_def *def) {
+    bough_status status = bough_folder_reopen_partial(r->path, def->kept.bytes, &r->file);
+    if (!bough_is_ok(&status)) return status;
+    rewind(r->file);
+    status = write_head(r, def->title);
+    r->rows = def->kept.count;
+    if (!bough_is_ok(&status)) return status;
+    bool same = r->rows_at + r->rows * r->row_length == def->kept.bytes;
+    if (same && fseek(r->file, def->kept.bytes, SEEK_SET) == 0) return status;
+    return bough_fail(BOUGH_INVALID, "'%.200s.partial' has other channels", r->path);
+}
+
+static bough_status create(bough_recorder *r, const bough_recorder_def *def) {
+    bough_status status = bough_folder_open_partial(r->path, &r->file);
+    if (!bough_is_ok(&status)) return status;
+    setvbuf(r->file, r->buffer, _IOFBF, BUFFER);
+    return write_head(r, def->title);
+}
+
+static void take_memory(bough_recorder *r, bough_arena *arena) {
+    size_t count = (size_t)r->channels->count;
+    r->buffer = bough_arena_take(arena, BUFFER);
+    r->row_length = (long)(count + 1) * COLUMN + 1;
+    r->line = bough_arena_take(arena, (size_t)r->row_length + 1);
+    r->value = bough_arena_doubles(arena, count + 1);
+}
+
+bough_status bough_recorder_open(bough_arena *arena, const bough_recorder_def *def,
+                                 bough_recorder **recorder) {
+    char path[BOUGH_PATH_MAX];
+    bough_status status = bough_folder_path(def->folder, "channels.out", path);
+    if (!bough_is_ok(&status)) return status;
+    bough_recorder *r = bough_arena_take(arena, sizeof *r);
+    r->channels = def->channels;
+    r->path = bough_arena_string(arena, path);
+    take_memory(r, arena);
+    bough_arena_on_destroy(arena, release, r);
+    *recorder = r;
+    return def->kept.count > 0 ? reopen(r, def) : create(r, def);
+}
+
+static void format_row(bough_recorder *r, double t) {
+    char *end = r->line;
+    bough_number_write(end, COLUMN, t);
+    end += COLUMN;
+    for (int i = 0; i < r->channels->count; i++) {
+        *end++ = '\t';
+        bough_number_write(end, COLUMN - 1, r->value[i]);
+        end += COLUMN - 1;
+    }
+    *end++ = '\n';
+    assert(end - r->line == r->row_length);
+}
+
+bough_status bough_recorder_sample(bough_recorder *r, double t) {
+    bough_channels_sample(r->channels, t, r->value);
+    format_row(r, t);
+    size_t length = (size_t)r->row_length;
+    errno = 0;
+    if (fwrite(r->line, 1, length, r->file) != length) return write_error(r);
+    r->rows++;
+    return bough_ok();
+}
+
+bough_status bough_recorder_keep(bough_recorder *r, bough_kept *kept) {
+    kept->count = r->rows;
+    return bough_folder_keep(r->path, r->file, &kept->bytes);
+}
+
+// Where the device was full, readers would stumble over half a row.
+static void cut_to_whole_rows(const bough_recorder *r) {
+    char partial[BOUGH_PATH_MAX + 16];
+    snprintf(partial, sizeof partial, "%s.partial", r->path);
+    struct stat info;
+    if (stat(partial, &info) != 0 || info.st_size <= r->rows_at) return;
+    off_t rows = (info.st_size - r->rows_at) / r->row_length;
+    // Nothing more can be done if this fails too: the file is marked incomplete as it is.
+    if (truncate(partial, r->rows_at + rows * r->row_length) != 0) return;
+}
+
+bough_status bough_recorder_finish(bough_recorder *r, const bough_status *outcome) {
+    char text[2 * OUTCOME];
+    if (bough_is_ok(outcome)) {
+        snprintf(text, sizeof text, "Complete: %ld rows", r->rows);
+    } else {
+        snprintf(text, sizeof text, "INCOMPLETE: %ld rows, then %.280s", r->rows, outcome->message);
+    }
+    errno = 0;
+    // An earlier error counts too: the library may have dropped its buffer with it.
+    bool written = !ferror(r->file) && fflush(r->file) == 0 && fseek(r->file, r->outcome_at, SEEK_SET) == 0 &&
+                   write_outcome(r, text) && fflush(r->file) == 0;
+    if (!written) {
+        bough_status status = write_error(r);
+        release(r);
+        cut_to_whole_rows(r);
+        return status;
+    }
+    FILE *file = r->file;
+    r->file = NULL;
+    return bough_folder_commit(r->path, file);
+}
+
+const double *bough_recorder_values(const bough_recorder *recorder) { return recorder->value; }
+
+long bough_recorder_rows(const bough_recorder *recorder) { return recorder->rows; }

@@ -1,0 +1,45 @@
+// Streams the channels over time to `channels.out`, a text file in OpenFAST's layout: six free
+// lines, names, units, rows. Some of the field's readers look for the word Time, others count
+// these lines; both find their columns.
+//
+// The file is complete or says so: it grows as channels.out.partial with the word INCOMPLETE in its
+// third line, and receives its name when the run ends. A process that is killed leaves the partial.
+#ifndef BOUGH_OUTPUT_RECORDER_H
+#define BOUGH_OUTPUT_RECORDER_H
+
+#include "apps/bough/results/channels.h"
+#include "apps/bough/results/folder.h"
+#include "core/base/arena.h"
+#include "core/base/status.h"
+
+typedef struct bough_recorder bough_recorder;
+
+typedef struct bough_recorder_def {
+    const char *folder;             // an existing folder
+    const char *title;              // one line: what was run
+    const bough_channels *channels; // outlive the recorder
+    bough_kept kept;                // of an earlier process: the rows to go on behind; else 0
+} bough_recorder_def;
+
+// Opens the file, writes its head and removes an older result of this name. All memory is taken
+// here; the arena closes what is not finished.
+bough_status bough_recorder_open(bough_arena *arena, const bough_recorder_def *def,
+                                 bough_recorder **recorder);
+
+// Asks the channels for their values at t [s] and appends a row.
+bough_status bough_recorder_sample(bough_recorder *recorder, double t);
+
+// Brings the rows so far to the disk and tells how many they are.
+bough_status bough_recorder_keep(bough_recorder *recorder, bough_kept *kept);
+
+// Ends the file with the run's outcome; the rows of a failed run are kept and marked INCOMPLETE.
+// Returns BOUGH_IO when the file could not be written to its end, and then leaves the partial.
+bough_status bough_recorder_finish(bough_recorder *recorder, const bough_status *outcome);
+
+// The values of the last row (channels->count).
+const double *bough_recorder_values(const bough_recorder *recorder);
+
+// Rows written so far.
+long bough_recorder_rows(const bough_recorder *recorder);
+
+#endif

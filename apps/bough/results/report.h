@@ -1,0 +1,33 @@
+// One page of a results folder: figures, curves, spectra, the moving shape, or a study's table and
+// picture. It carries its data and its program, and needs no network.
+#ifndef BOUGH_APPS_REPORT_REPORT_H
+#define BOUGH_APPS_REPORT_REPORT_H
+
+#include "core/base/status.h"
+
+#include <stdbool.h>
+#include <stdio.h>
+
+// The page with a line "@DATA@" where the data go; ends with a zero.
+extern const unsigned char bough_report_page[];
+
+// Writes report.html into the first of n folders, complete or not at all: of its results, with the
+// channels of the other folders, which hold runs, beside its own. BOUGH_INVALID when a folder holds no
+// results, or when they are damaged: the message names the file.
+bough_status bough_report_write(int n, const char *const *folder);
+
+// -- parts of the data, each a JavaScript expression; none when *found is false ------------------
+
+// {names, units, rows} of channels.out; of very many rows every n-th.
+bough_status bough_report_channels(const char *folder, FILE *out, bool *found);
+
+// {lines, frames: [[t, x, y, z, …], …]} of frames.pvd and what it lists.
+bough_status bough_report_frames(const char *folder, FILE *out, bool *found);
+
+// Opens folder/name; NULL when it does not exist.
+bough_status bough_report_open(const char *folder, const char *name, FILE **file);
+
+// Copies text as a string of the page's script, in quotes.
+void bough_report_quote(FILE *in, FILE *out);
+
+#endif

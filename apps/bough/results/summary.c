@@ -1,0 +1,128 @@
+#include "apps/bough/results/summary.h"
+
+#include "apps/bough/results/folder.h"
+
+#include <assert.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+static_assert(sizeof((bough_summary){0}.path) == BOUGH_PATH_MAX, "paths have one length");
+
+// Bytes of the UTF-8 character at `text`, 0 if there is none: names of files may be anything.
+static int character_length(const unsigned char *text) {
+    int length = text[0] < 0x80   ? 1
+                 : text[0] < 0xC2 ? 0
+                 : text[0] < 0xE0 ? 2
+                 : text[0] < 0xF0 ? 3
+                 : text[0] < 0xF5 ? 4
+                                  : 0;
+    for (int i = 1; i < length; i++) {
+        if ((text[i] & 0xC0) != 0x80) return 0;
+    }
+    return length;
+}
+
+static void write_string(FILE *file, const char *text) {
+    const unsigned char *c = (const unsigned char *)text;
+    fputc('"', file);
+    while (*c) {
+        int length = character_length(c);
+        if (length == 0) {
+            fputs("\\ufffd", file);
+            length = 1;
+        } else if (*c == '"' || *c == '\\') {
+            fprintf(file, "\\%c", *c);
+        } else if (*c == '\n') {
+            fputs("\\n", file);
+        } else if (*c < 0x20) {
+            fprintf(file, "\\u%04x", (unsigned)*c);
+        } else {
+            fwrite(c, 1, (size_t)length, file);
+        }
+        c += length;
+    }
+    fputc('"', file);
+}
+
+static void indent(bough_summary *s) { fprintf(s->file, "\n%*s", 2 * s->depth, ""); }
+
+// The comma, the line and the key before a value.
+static void begin(bough_summary *s, const char *key) {
+    assert((key == NULL) == (s->closing[s->depth - 1] == ']'));
+    if (!s->first) fputc(',', s->file);
+    s->first = false;
+    indent(s);
+    if (!key) return;
+    write_string(s->file, key);
+    fputs(": ", s->file);
+}
+
+static void open_bracket(bough_summary *s, char opening, char closing) {
+    assert(s->depth < (int)sizeof s->closing);
+    fputc(opening, s->file);
+    s->closing[s->depth++] = closing;
+    s->first = true;
+}
+
+bough_status bough_summary_open(bough_summary *s, const char *folder, const char *name) {
+    *s = (bough_summary){.file = NULL};
+    bough_status status = bough_folder_open(folder, name, s->path, &s->file);
+    if (!bough_is_ok(&status)) return status;
+    open_bracket(s, '{', '}');
+    return status;
+}
+
+void bough_summary_number(bough_summary *s, const char *key, double value) {
+    begin(s, key);
+    if (!isfinite(value)) {
+        fputs("null", s->file);
+        return;
+    }
+    char text[32];
+    snprintf(text, sizeof text, "%.15g", value); // 0.1 rather than 0.10000000000000001
+    if (strtod(text, NULL) < value || strtod(text, NULL) > value) {
+        snprintf(text, sizeof text, "%.17g", value);
+    }
+    fputs(text, s->file);
+}
+
+void bough_summary_integer(bough_summary *s, const char *key, long long value) {
+    begin(s, key);
+    fprintf(s->file, "%lld", value);
+}
+
+void bough_summary_text(bough_summary *s, const char *key, const char *text) {
+    begin(s, key);
+    if (text) {
+        write_string(s->file, text);
+    } else {
+        fputs("null", s->file);
+    }
+}
+
+void bough_summary_object(bough_summary *s, const char *key) {
+    begin(s, key);
+    open_bracket(s, '{', '}');
+}
+
+void bough_summary_array(bough_summary *s, const char *key) {
+    begin(s, key);
+    open_bracket(s, '[', ']');
+}
+
+void bough_summary_end(bough_summary *s) {
+    assert(s->depth > 0);
+    s->depth--;
+    if (!s->first) indent(s);
+    fputc(s->closing[s->depth], s->file);
+    s->first = false;
+}
+
+bough_status bough_summary_close(bough_summary *s) {
+    while (s->depth > 0) bough_summary_end(s);
+    fputc('\n', s->file);
+    FILE *file = s->file;
+    s->file = NULL;
+    return bough_folder_commit(s->path, file);
+}

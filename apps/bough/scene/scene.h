@@ -1,0 +1,569 @@
+// A scene as the user wrote it: plain structs in SI units and radians, with names resolved to indices and
+// all values checked. The tables of scene_schema*.c read it from a YAML file; apps/bough/model builds the
+// model. Examples of every form: tests/data/scenes/example-*.yaml.
+//
+// All memory belongs to the arena given to bough_scene_read. Every struct begins with its place in the
+// text. An optional part that is absent has `node == NULL`, and its other fields have the defaults.
+//
+// Axes: ground z up. A placement is a list of steps, each in the frame reached so far. Section
+// quantities are in the section's axes, whose z is the tangent of the reference axis, and about the
+// reference axis; strains in the order shear x, shear y, axial, bend about x, bend about y, twist.
+#ifndef BOUGH_APPS_SCENE_SCENE_H
+#define BOUGH_APPS_SCENE_SCENE_H
+
+#include "aero/control/controller.h"
+#include "aero/rotor/rotor.h"
+#include "aero/wind/wind_iec.h"
+#include "apps/bough/config/text.h"
+#include "apps/bough/scene/fmu_description.h"
+#include "core/base/arena.h"
+#include "core/base/status.h"
+#include "core/tree/tree.h"
+#include "cosim/scheme.h"
+#include "flexbody/section/section.h"
+
+#include <stdbool.h>
+#include <stdio.h>
+
+typedef struct bough_scene_coupling {
+    const bough_node *node;
+    int scheme;                   // place in the table of schemes: bough_scheme_name
+    bough_scheme_options options; // name and rtol left out; tolerance 0: three times micro.rtol
+} bough_scene_coupling;
+
+typedef struct bough_scene_solver {
+    const bough_node *node;
+    int solver;  // bough_integrator_kind
+    double rtol; // [-]
+    double step; // generalised-α and Rosenbrock: longest step [s]; 0: none
+    double rho;  // its spectral radius at infinite frequency [-]
+} bough_scene_solver;
+
+typedef struct bough_scene_output {
+    const bough_node *node;
+    double interval;       // [s], a multiple of the macro step
+    double from;           // of the statistics: what is before does not count [s]
+    double frames;         // between stored shapes [s]; 0: none
+    double vertices;       // between stored vertices [s]; 0: none
+    bool binary;           // channels.outb beside channels.out
+    int n_channel;         // 0: all
+    const char **channels; // (n_channel) patterns of those that are recorded
+} bough_scene_output;
+
+typedef struct bough_scene_step_control {
+    const bough_node *node;
+    double tolerance; // 0: fixed steps
+    double min;       // [s]
+} bough_scene_step_control;
+
+typedef enum bough_scene_initial {
+    BOUGH_SCENE_UNDEFORMED,
+    BOUGH_SCENE_IN_EQUILIBRIUM, // under the loads at time 0
+    BOUGH_SCENE_IN_OPERATION,   // in equilibrium at the control law's speed and pitch
+} bough_scene_initial;
+
+typedef enum bough_scene_estimate {
+    BOUGH_SCENE_COMPANION, // by a coarser solution beside the run
+    BOUGH_SCENE_NO_ESTIMATE,
+} bough_scene_estimate;
+
+typedef struct bough_scene_simulation {
+    const bough_node *node;
+    double duration;   // [s], a multiple of the macro step
+    double macro_step; // [s]
+    double accuracy;   // aimed at, of each channel relative to its range
+    bough_scene_step_control step_control;
+    int initial; // bough_scene_initial: how the rods and joints start
+    bough_scene_coupling coupling;
+    bough_scene_solver master, micro;
+    double error_bound; // of a channel's error relative to its range; 0: none
+    int error_estimate; // bough_scene_estimate
+    bool error_shares;  // of mesh, air and time
+    int threads;
+    bough_scene_output output;
+} bough_scene_simulation;
+
+typedef enum bough_scene_axis { BOUGH_SCENE_X, BOUGH_SCENE_Y, BOUGH_SCENE_Z } bough_scene_axis;
+
+typedef struct bough_scene_step {
+    bool rotate;   // a rotation about the axis, else a translation along it
+    int axis;      // bough_scene_axis
+    double amount; // [rad] or [m]
+} bough_scene_step;
+
+// Of a revolute [rad, rad/s] or prismatic [m, m/s] joint.
+typedef struct bough_scene_motion {
+    const bough_node *node; // NULL: moved by forces
+    const char *input;      // in place of the constant of `def`; NULL: none
+    bough_motion_def def;
+} bough_scene_motion;
+
+// The joint that carries a body: placement from the parent's frame to the joint's frame, which is
+// the body's frame at zero joint displacement. On a body with a rod it begins at the rod's end, in
+// the axes of the rod's body, which turn with the last section.
+typedef struct bough_scene_joint {
+    const bough_node *node;
+    int kind;                // bough_joint_kind
+    const char *parent_name; // as written
+    int parent;              // index of a body, or BOUGH_GROUND
+    int n_placement;
+    bough_scene_step *placement;         // (n_placement)
+    int axis;                            // bough_scene_axis of all but fixed, spherical and free
+    int second_axis;                     // bough_scene_axis of universal, not the first
+    double position;                     // initial angle [rad] of revolute, displacement [m] of prismatic
+                                         // and cylindrical
+    double speed;                        // initial, [rad/s] of revolute, [m/s] of prismatic, cylindrical
+    double angle, angular_speed;         // initial, of cylindrical and planar [rad, rad/s]
+    double angles[2], angular_speeds[2]; // initial, of universal [rad, rad/s]
+    double positions[2], speeds[2];      // initial, of planar, along the two axes after the normal
+                                         // in the order x, y, z, x, in the joint's frame [m, m/s]
+    double velocity[3];                  // initial [m/s] of free, in the joint's frame
+    double angular_velocity[3];          // initial [rad/s] of spherical and free, in the joint's frame
+    bough_joint_spring spring;           // of revolute and prismatic
+    bough_scene_motion motion;           // of the first coordinate
+    bough_scene_motion second_motion;    // of the second of cylindrical (the angle) and universal
+} bough_scene_joint;
+
+// A section of a rod. Between stations everything is linear in span.
+typedef struct bough_scene_station {
+    const bough_node *node;
+    bough_section_station def; // z of its position is the span
+} bough_scene_station;
+
+// The structure of a rod; a file holds one.
+typedef struct bough_scene_structure {
+    const bough_node *node;
+    const char *source;           // where the data come from; NULL: not said
+    double length;                // extent along z [m]
+    double damping[6];            // stress = stiffness (strain + damping · strain rate) [s]
+    int n_station;                // 1: uniform, that station holds for all of [0, length]
+    bough_scene_station *station; // (n_station), spans strictly increasing from 0 to length; the
+                                  // same pointer for bodies that name the same file
+} bough_scene_structure;
+
+typedef struct bough_scene_rod {
+    const bough_node *node; // NULL: the body has no rod
+    int n_segment;
+    bough_scene_structure structure; // of the table, or of the one section given in the scene
+    // As written in the scene; contained in `structure`:
+    double part[2]; // stretch of the table [m]
+    bough_scene_station uniform;
+    double length, damping[6];
+} bough_scene_rod;
+
+// Linear reductions of a body's rod.
+typedef struct bough_scene_modal {
+    const bough_node *node; // NULL: all defaults
+    int modes;              // of each piece
+    bool statics;           // static answers to accelerations among the shapes
+    bool stiffening;        // by axial forces
+    int pieces;             // of a segmented-modal body
+} bough_scene_modal;
+
+typedef enum bough_scene_fidelity {
+    BOUGH_SCENE_RIGID,
+    BOUGH_SCENE_ROD,
+    BOUGH_SCENE_MODAL,
+    BOUGH_SCENE_SEGMENTED_MODAL,
+    BOUGH_SCENE_FMU,
+} bough_scene_fidelity;
+
+enum { BOUGH_SCENE_MOTION = 9, BOUGH_SCENE_WRENCH = 6 };
+
+// A model of another program behind a body's frame: a co-simulation FMU of FMI 3.0, unpacked. Its inputs are
+// velocity, angular velocity and gravity of the frame in body axes, its outputs force and moment on the
+// frame's carrier about the frame's origin in body axes; SI.
+typedef struct bough_scene_fmu {
+    const bough_node *node;
+    const char *folder; // its path once it is checked
+    int n_motion, n_wrench;
+    const char **motion, **wrench; // names of its variables, "none" where it has none; 0: the usual ones
+    int hold;                      // bough_scene_fmu_hold
+    int steps;                     // communication steps per macro step
+    bough_fmu_description description;
+    const bough_fmu_variable *input[BOUGH_SCENE_MOTION], *output[BOUGH_SCENE_WRENCH]; // NULL: none
+} bough_scene_fmu;
+
+// What an FMU does with its inputs over a communication step.
+typedef enum bough_scene_fmu_hold {
+    BOUGH_SCENE_FMU_HELD,    // it keeps them
+    BOUGH_SCENE_FMU_REACHED, // it reaches them at the end of the step
+} bough_scene_fmu_hold;
+
+typedef struct bough_scene_body {
+    const bough_node *node;
+    const char *name;
+    int repeat;   // so many in a row; each stands alone in the scene once it is read
+    int fidelity; // bough_scene_fidelity
+    bough_scene_joint joint;
+    double pitch;             // [rad]: last rotation of the placement, about z by −pitch
+    double mass;              // [kg]; rigid bodies without a rod, and what a frame of an FMU carries
+    double centre_of_mass[3]; // [m] body axes
+    double inertia[6];        // Ixx Iyy Izz Ixy Ixz Iyz about the centre of mass [kg m²]: entries
+                              // of the inertia matrix, Ixy = −∫xy
+    bough_scene_solver micro; // of this body in place of the simulation's; node NULL: none
+    bough_scene_rod rod;      // any fidelity but rigid, or rigid: integrated to a rigid body
+    bough_scene_modal modal;  // fidelity modal and segmented-modal
+    bough_scene_fmu fmu;      // fidelity fmu
+} bough_scene_body;
+
+typedef enum bough_scene_load_frame {
+    BOUGH_SCENE_LOAD_GROUND,   // ground axes
+    BOUGH_SCENE_LOAD_BODY,     // axes of the body's frame
+    BOUGH_SCENE_LOAD_FOLLOWER, // section axes, with which the load turns
+} bough_scene_load_frame;
+
+// Where a load acts on a rod, in arc length.
+typedef enum bough_scene_load_place {
+    BOUGH_SCENE_AT_TIP,
+    BOUGH_SCENE_AT_VERTEX,
+    BOUGH_SCENE_AT_SPAN,
+    BOUGH_SCENE_ALONG, // distributed
+} bough_scene_load_place;
+
+// On a joint, a rod or a rigid body. Factor in time: 0 before ramp[0], 1 after ramp[1], linear
+// between, a jump where they are equal; {0, 0}: always 1.
+typedef struct bough_scene_load {
+    const bough_node *node;
+    const char *joint_name;             // NULL: the load acts on a body
+    int joint;                          // index of the body that the joint carries
+    double amount;                      // torque [N m] of a revolute joint, force [N] of a prismatic one
+    int n_time;                         // rows of a table in place of the amount, 0: none
+    double *times, *values;             // (n_time) [s], [N m] or [N], on a body factors; linear between, held
+                                        // before and after
+    const char *body_name;              // NULL: the load acts on a joint
+    int body;                           // index of a body
+    int place;                          // bough_scene_load_place
+    int vertex;                         // AT_VERTEX: 0 is the root
+    double span[2];                     // AT_SPAN: the first; ALONG: from, to [m]
+    double force[3];                    // [N]; ALONG: [N/m]
+    double moment[3];                   // [N m]; ALONG: [N m/m]
+    double end_force[3], end_moment[3]; // ALONG: at span[1], linear between; those above when not given
+    int frame;                          // bough_scene_load_frame
+    double ramp[2];                     // [s]
+    const char *input;                  // NULL: none
+    double point[3];                    // on a rigid body: in its frame [m]
+} bough_scene_load;
+
+// Springs and dampers along and about the axes of one body or the ground at a point of it, against
+// another as it stands at the start.
+typedef struct bough_scene_bushing {
+    const bough_node *node;
+    const char *name;
+    const char *body_name[2];
+    int body[2];           // indices, or BOUGH_GROUND
+    double point[3];       // in the first one's frame [m]
+    bough_bushing_def def; // but for the markers
+} bough_scene_bushing;
+
+// A point of a rigid body or the ground that is recorded.
+typedef struct bough_scene_marker {
+    const bough_node *node;
+    const char *name, *body_name;
+    int body;        // index, or BOUGH_GROUND
+    double point[3]; // in the body's frame [m]
+} bough_scene_marker;
+
+// Places on a rod whose motion and section loads are recorded.
+typedef struct bough_scene_sensor {
+    const bough_node *node;
+    const char *body_name;
+    int body; // index of a body of fidelity rod
+    int n_at;
+    double *at; // (n_at) arc lengths from the root [m]
+} bough_scene_sensor;
+
+// A linear spring and damper between points of two rigid bodies or the ground.
+typedef struct bough_scene_spring {
+    const bough_node *node;
+    const char *name;
+    const char *body_name[2];
+    int body[2];          // indices, or BOUGH_GROUND
+    double point[2][3];   // in the body's frame [m]
+    bough_spring_def def; // but for the markers
+} bough_scene_spring;
+
+typedef struct bough_scene_placement {
+    int n;
+    bough_scene_step *step; // (n)
+} bough_scene_placement;
+
+// A joint that closes a loop between two rigid bodies or the ground.
+typedef struct bough_scene_closure {
+    const bough_node *node;
+    const char *name;
+    int kind; // bough_joint_kind but free
+    const char *body_name[2];
+    int body[2];                        // indices, or BOUGH_GROUND
+    bough_scene_placement placement[2]; // of the joint's frame in either body's
+    int axis, second_axis;              // bough_scene_axis as of a joint, universal: of `to`
+} bough_scene_closure;
+
+typedef struct bough_scene_turbine {
+    const bough_node *node; // NULL: no turbine
+    const char *rotor_name;
+    int rotor; // index of the body on the rotor's revolute joint
+    int n_blade;
+    const char **blade_name; // (n_blade)
+    int *blade;              // (n_blade) indices of bodies with a rod
+} bough_scene_turbine;
+
+typedef struct bough_scene_aero_station {
+    const bough_node *node;
+    bough_station_def def;
+    const char *polar_name, *second_name; // NULL second: the polar alone
+} bough_scene_aero_station;
+
+typedef struct bough_scene_aero_blade {
+    const bough_node *node;
+    const char *source;
+    int n_station;
+    bough_scene_aero_station *station; // (n_station), spans strictly increasing from 0
+} bough_scene_aero_blade;
+
+typedef struct bough_scene_polar_row {
+    const bough_node *node;
+    double alpha; // [rad]
+    double cl, cd, cm;
+} bough_scene_polar_row;
+
+typedef struct bough_scene_polar {
+    const bough_node *node;
+    const char *name;
+    int n_row;
+    bough_scene_polar_row *row; // (n_row), alpha strictly increasing from −π to π
+} bough_scene_polar;
+
+typedef struct bough_scene_polars {
+    const bough_node *node;
+    const char *source;
+    int n_polar;
+    bough_scene_polar *polar; // (n_polar), at least two rows each
+} bough_scene_polars;
+
+typedef enum bough_scene_hold { BOUGH_SCENE_LINEAR, BOUGH_SCENE_CONSTANT } bough_scene_hold;
+typedef enum bough_scene_interpolation {
+    BOUGH_SCENE_POLARS_LINEAR,
+    BOUGH_SCENE_POLARS_SMOOTH,
+} bough_scene_interpolation;
+typedef enum bough_scene_wind_kind {
+    BOUGH_SCENE_WIND_UNIFORM,
+    BOUGH_SCENE_WIND_POWER,
+    BOUGH_SCENE_WIND_LOG,
+    BOUGH_SCENE_WIND_WND,
+    BOUGH_SCENE_WIND_BTS,
+    BOUGH_SCENE_WIND_IEC,
+} bough_scene_wind_kind;
+// Linear between, constant before and after.
+typedef struct bough_scene_wind_table {
+    const bough_node *node; // NULL: the speed is constant
+    int n_time, n_speed;    // equal
+    double *time;           // (n_time) strictly increasing [s]
+    double *speed;          // (n_time) [m/s]
+} bough_scene_wind_table;
+
+typedef struct bough_scene_wind {
+    const bough_node *node;
+    int kind;                     // bough_scene_wind_kind
+    bough_scene_wind_table table; // in place of the speed
+    const char *input;            // in place of the speed; NULL: none
+    // But for the kind and the table. The veer is over 100 m of height [rad]; once checked `file` is its
+    // path; of kind iec 0 is chosen ("auto"), and speed, exponent and reference height are those of the def.
+    bough_wind_def def;
+} bough_scene_wind;
+
+typedef struct bough_scene_induction {
+    const bough_node *node;
+    bough_induction_options options; // but for drag
+    bool drag;                       // in the axial and the tangential induction
+    int skew;                        // 1: corrected by Pitt and Peters
+    bough_inflow_def inflow;         // time 0: from induction and wind ("auto")
+} bough_scene_induction;
+
+// Vertical along ground z from the origin.
+typedef struct bough_scene_tower {
+    const bough_node *node; // NULL: no tower influence
+    bough_tower_def def;    // its drag (def.n) once checked
+    int n_diameter, n_drag; // def.n, 1 or def.n
+    const char *body_name;  // NULL: no drag on the tower
+    int body;               // index of a body with a rod
+} bough_scene_tower;
+
+typedef struct bough_scene_aero {
+    const bough_node *node; // NULL: no aerodynamics
+    double rate;            // samples per second [Hz]; the period is a multiple of the macro step
+    double air_density;     // [kg/m³]
+    bough_scene_wind wind;
+    double ramp[2]; // [s] as in bough_scene_load
+    int hold;       // bough_scene_hold: how loads go between samples
+    bough_scene_aero_blade blade;
+    bough_scene_polars polars;
+    bough_scene_induction induction;
+    bough_scene_tower tower;
+    double hub_radius;    // [m]
+    double hub_drag_area; // drag coefficient times area [m²]
+    int dynamic_stall;    // bough_stall_kind
+    int interpolation;    // bough_scene_interpolation
+    int n_node;           // blade elements whose channels are recorded, of every blade
+    double *nodes;        // (n_node) numbers from 1
+    bool pitching_moment;
+} bough_scene_aero;
+
+typedef enum bough_scene_controller {
+    BOUGH_SCENE_VARIABLE_SPEED,
+    BOUGH_SCENE_BLADED,
+    BOUGH_SCENE_EXTERNAL, // whoever steps the scene
+} bough_scene_controller;
+
+typedef enum bough_scene_event_kind {
+    BOUGH_SCENE_START,
+    BOUGH_SCENE_STOP,
+    BOUGH_SCENE_EMERGENCY_STOP,
+    BOUGH_SCENE_GRID_LOSS,
+    BOUGH_SCENE_PITCH_STUCK,
+    BOUGH_SCENE_PITCH_RUNAWAY,
+    BOUGH_SCENE_PITCH_TO,
+    BOUGH_SCENE_YAW_RUNAWAY,
+} bough_scene_event_kind;
+
+// An event of the turbine at a time, or later when a channel passes a threshold.
+typedef struct bough_scene_event {
+    const bough_node *node;
+    int kind;            // bough_scene_event_kind
+    double at;           // not before [s]
+    const char *channel; // NULL: at that time
+    double above, below; // threshold in the channel's unit, one of the two
+    bool falls;          // `threshold` is that of `below`
+    double threshold;
+    int blade;             // from 1, of the faults of one blade; else 0
+    const char *body_name; // YAW_RUNAWAY: on the yaw joint
+    int body;              // its index
+    double angle;          // final, of pitch or yaw [rad]; stops: 0: 90 degrees ("auto")
+    double rate;           // with which it is gone to [rad/s]; 0: that of the kind ("auto")
+} bough_scene_event;
+
+// Of generator torque, and of pitch where the blades hang on joints with a motion.
+typedef struct bough_scene_control {
+    const bough_node *node;      // NULL: no controller
+    int kind;                    // bough_scene_controller
+    double rate;                 // samples per second [Hz]
+    double gear_ratio;           // generator speed over rotor speed
+    double efficiency;           // electrical over mechanical power
+    bool pitch;                  // of the blades too
+    bool individual;             // BLADED: each blade follows its own demand
+    const char *library, *input; // BLADED: paths; no input: ""
+    bool copied;                 // BLADED: the library is loaded as a copy, for a second model; not in a file
+    int n_event;
+    bough_scene_event *event; // (n_event)
+    bough_controller_def law; // BLADED: only the pitch rate is used
+} bough_scene_control;
+
+typedef enum bough_scene_modes_of {
+    BOUGH_SCENE_MODES_AUTO, // of the rods where they are apart or `speed` or `axis` is given
+    BOUGH_SCENE_MODES_RODS,
+    BOUGH_SCENE_MODES_SCENE,
+} bough_scene_modes_of;
+
+// Settings of `bough modes`, which a run ignores.
+typedef enum bough_scene_modes_air {
+    BOUGH_SCENE_AIR_FROZEN,
+    BOUGH_SCENE_AIR_QUASI_STEADY,
+    BOUGH_SCENE_AIR_DYNAMIC,
+} bough_scene_modes_air;
+
+typedef struct bough_scene_modes {
+    const bough_node *node;
+    int of;                 // bough_scene_modes_of
+    int at;                 // bough_scene_initial: of the whole scene, the state they are about
+    int count;              // modes of each rod, or of the scene
+    double speed;           // of a steady rotation [rad/s]; 0: at rest
+    const char *about_name; // NULL: the nearest revolute joint that carries the rod
+    int about;              // index of the body on the revolute joint, when named
+    double axis[3];         // in place of it, ground axes; {0, 0, 0}: not given
+    double centre[3];       // a point of that axis, in the ground [m]
+    int air;                // bough_scene_modes_air; of the whole scene
+    bool shapes;            // written too
+    bool linear;            // of the whole scene: its linear state space is written too
+} bough_scene_modes;
+
+// An input: a value with a name, which another program sets between steps.
+typedef enum bough_scene_input_kind {
+    BOUGH_INPUT_LOAD,   // multiplies a load, or is one along a joint
+    BOUGH_INPUT_MOTION, // where a joint is
+    BOUGH_INPUT_WIND,   // the wind's speed
+    BOUGH_INPUT_TORQUE, // demanded of the generator, on the fast shaft
+    BOUGH_INPUT_PITCH,  // demanded of a blade
+} bough_scene_input_kind;
+
+typedef struct bough_scene_input {
+    const bough_node *node; // where it is named
+    const char *name;
+    bough_scene_input_kind kind;
+    int dimension;     // bough_dimension
+    const char *range; // of its values, SI: that of the key for which it stands; NULL: any
+    double initial;    // until it is set, SI
+    int index;      // of the load, the body on the joint, or the blade
+} bough_scene_input;
+
+typedef struct bough_scene {
+    const bough_node *node;
+    const char *file;                      // path of the scene
+    const struct bough_schema_file *named; // the files that its keys name, last first: see scene_files.h
+    const char *title;
+    double gravity[3]; // [m/s²] ground axes
+    bough_scene_simulation simulation;
+    int n_body;
+    bough_scene_body *body;           // (n_body) in the file's order; a parent may come after its child
+    int *order;                       // (n_body) indices of bodies, parents before children
+    const bough_scene_body **by_name; // (n_body) by name, then by place
+    int n_load;
+    bough_scene_load *load; // (n_load)
+    int n_spring;
+    bough_scene_spring *spring; // (n_spring)
+    int n_bushing;
+    bough_scene_bushing *bushing; // (n_bushing)
+    int n_closure;
+    bough_scene_closure *closure; // (n_closure)
+    int n_marker;
+    bough_scene_marker *marker; // (n_marker)
+    int n_sensor;
+    bough_scene_sensor *sensor; // (n_sensor)
+    bough_scene_turbine turbine;
+    bough_scene_aero aero;       // needs the turbine
+    bough_scene_control control; // likewise
+    bough_scene_modes modes;
+    int n_input;
+    bough_scene_input *input; // (n_input) of all parts above
+} bough_scene;
+
+// Reads and checks the scene with the replacements `sets` ("bodies[2].pitch=5 deg"). Every error
+// found is added to `errors`; then the status is BOUGH_INVALID and *scene is NULL.
+bough_status bough_scene_read(bough_arena *arena, const char *path, const char *const *sets, int n_set,
+                              bough_errors *errors, bough_scene **scene);
+
+// The place of a value before a message, "file:line:column: " or "--set: ", written into `text`; "" of NULL.
+const char *bough_scene_place(const bough_node *value, char *text, size_t size);
+
+// A failure of that value, found while the scene is built: BOUGH_INVALID gets its place and key in front.
+bough_status bough_scene_blame(const bough_node *value, const char *key, bough_status status);
+
+// Writes a warning for each value that is valid but probably an error: an inertia that no mass distribution
+// has, a setting that the scheme or the solver does not use.
+void bough_scene_warn(const bough_scene *scene, FILE *stream);
+
+// The sub-solver of a flexible body: its own or the simulation's.
+const bough_scene_solver *bough_scene_micro(const bough_scene *scene, const bough_scene_body *body);
+
+// Length of a rod's axis, straight between its stations [m].
+double bough_scene_arc_length(const bough_scene_structure *structure);
+
+// Whether a body's frame moves: on its joint, or with a body or a rod that carries it.
+bool bough_scene_moves(const bough_scene *scene, int body);
+
+// Writes every key of a scene and of its data files with unit, range, default and meaning.
+void bough_scene_help(FILE *stream);
+
+// Writes the same as JSON Schema.
+void bough_scene_json_schema(FILE *stream);
+
+#endif

@@ -1,0 +1,150 @@
+// What follows from `simulation.accuracy` where a scene does not name it: methods, tolerances, steps, the
+// rate of the air and segments. Each law has the order of the error that it limits; the factors are measured
+// on the turbines of apps/turbine and on random scenes (docs/theory.md).
+#include "apps/bough/scene/scene_internal.h"
+
+#include <math.h>
+
+static const double usual = 0.005; // accuracy at which the following hold
+
+// -- tolerances -----------------------------------------------------------------------------------
+
+// Accuracy over rtol: the largest error of any channel is at most this many rtol in nine of ten random
+// scenes.
+static const double whole_error = 100; // all bodies as one system
+static const double rod_error = 50;    // each rod under its own method
+static const double tree_error =
+    5000; // the tree beside them, which is cheap and starts again every macro step
+static const double fine_rtol = 1e-6;  // below it BDF's high orders serve better
+static const double usual_step = 5e-3; // longest one of a rod's own method [s]; order 2
+
+static bool is_named(const bough_node *map, const char *key) { return map && bough_node_find(map, key); }
+
+static void choose_micro(double accuracy, bough_scene_solver *micro) {
+    if (!is_named(micro->node, "rtol")) micro->rtol = accuracy / rod_error;
+    if (!is_named(micro->node, "step")) micro->step = usual_step * sqrt(accuracy / usual);
+}
+
+// A mechanism of rigid bodies in closed loops, small enough for Radau IIA: of its long steps hardly any ends
+// near a position from which the bodies can go on in two ways, where BDF's errors send them the other way.
+static bool is_linkage(const bough_scene *s) {
+    int states = 0;
+    for (int i = 0; i < s->n_body; i++) {
+        const bough_scene_body *b = &s->body[i];
+        if (b->fidelity != BOUGH_SCENE_RIGID || b->joint.kind < 0)
+            return false; // a word that is no kind is reported
+        states += bough_joint_n_coordinates(b->joint.kind) + bough_joint_n_speeds(b->joint.kind);
+    }
+    return s->n_closure > 0 && states <= bough_integrator_find(BOUGH_RADAU5)->most_states;
+}
+
+static void choose_master(bough_scene *scene) {
+    bough_scene_simulation *s = &scene->simulation;
+    bough_scene_solver *master = &s->master;
+    const char *scheme = bough_scheme_name(s->coupling.scheme);
+    bool whole = scheme && bough_scheme_find(scheme)->one_system;
+    if (!is_named(master->node, "rtol")) master->rtol = s->accuracy / (whole ? whole_error : tree_error);
+    if (whole && !is_named(master->node, "solver")) {
+        master->solver = is_linkage(scene)          ? BOUGH_RADAU5
+                         : master->rtol < fine_rtol ? BOUGH_IDA
+                                                    : BOUGH_AUTOMATIC;
+    }
+}
+
+// -- mesh -----------------------------------------------------------------------------------------
+
+// Lanes of eight are full at multiples of eight. The force at a rod's root has order 2.
+static const double usual_lanes = 4;
+
+static void choose_segments(bough_scene *s) {
+    int lanes = (int)ceil(usual_lanes * sqrt(usual / s->simulation.accuracy) - 1e-9);
+    for (int i = 0; i < s->n_body; i++) {
+        bough_scene_rod *rod = &s->body[i].rod;
+        if (rod->node && !is_named(rod->node, "segments")) rod->n_segment = 8 * lanes;
+    }
+}
+
+// -- times ----------------------------------------------------------------------------------------
+
+static const double usual_macro_step = 20e-3; // [s]
+static const double fewest_steps = 100;       // of a run
+static const double tip_speed = 80;           // of any turbine at rated power [m/s]
+static const double usual_arc = 0.027; // of a blade between two samples of the air, at that speed [rad]
+
+// The error of a step or of a sample has order 3.
+static double scale_of_time(const bough_scene *s) { return cbrt(s->simulation.accuracy / usual); }
+
+// Longest period between samples of the air [s]; 0 without blades.
+static double air_period(const bough_scene *s) {
+    const bough_scene_aero_blade *blade = &s->aero.blade;
+    if (s->aero.node == NULL || blade->n_station == 0) return 0;
+    double radius = s->aero.hub_radius + blade->station[blade->n_station - 1].def.span;
+    return usual_arc * radius / tip_speed * scale_of_time(s);
+}
+
+enum { DURATION, INTERVAL, AIR, CONTROL, PERIODS };
+
+// Of a scene that names them [s]; others are 0.
+static void take_periods(const bough_scene *s, double period[PERIODS]) {
+    const bough_scene_simulation *simulation = &s->simulation;
+    period[DURATION] = simulation->duration;
+    period[INTERVAL] = simulation->output.interval;
+    period[AIR] = s->aero.node && s->aero.rate > 0 ? 1 / s->aero.rate : 0;
+    period[CONTROL] = s->control.node && s->control.rate > 0 ? 1 / s->control.rate : 0;
+}
+
+static bool divides(double step, const double period[PERIODS]) {
+    for (int i = 0; i < PERIODS; i++) {
+        if (!bough_scene_is_multiple(period[i], step)) return false;
+    }
+    return true;
+}
+
+// 1, 2 or 5 times a power of ten, at most `limit`.
+static double round_step(double limit) {
+    double unit = pow(10, floor(log10(limit) + 1e-9)), share = limit / unit * (1 + 1e-9);
+    return (share >= 5 ? 5 : share >= 2 ? 2 : 1) * unit;
+}
+
+// The longest step up to `limit` of which all periods are multiples: a round one, else a part of the
+// shortest.
+static double common_step(double limit, const double period[PERIODS]) {
+    for (double step = round_step(limit); step > 1e-3 * limit; step = round_step(0.9 * step)) {
+        if (divides(step, period)) return step;
+    }
+    double shortest = (double)INFINITY;
+    for (int i = 0; i < PERIODS; i++) {
+        if (period[i] > 0) shortest = fmin(shortest, period[i]);
+    }
+    double parts = ceil(shortest / limit);
+    for (int i = 0; i < 1000; i++) {
+        if (divides(shortest / (parts + i), period)) return shortest / (parts + i);
+    }
+    return round_step(limit);
+}
+
+static void choose_times(bough_scene *s) {
+    bough_scene_simulation *simulation = &s->simulation;
+    double air = air_period(s), period[PERIODS];
+    if (!is_named(simulation->node, "macro_step")) {
+        double limit = usual_macro_step * scale_of_time(s);
+        take_periods(s, period);
+        if (simulation->duration > 0) limit = fmin(limit, simulation->duration / fewest_steps);
+        if (air > 0 && !is_named(s->aero.node, "rate")) limit = fmin(limit, air);
+        simulation->macro_step = common_step(limit, period);
+    }
+    if (air > 0 && !is_named(s->aero.node, "rate") && simulation->macro_step > 0) {
+        s->aero.rate = 1 / (simulation->macro_step * fmax(1, floor(air / simulation->macro_step + 1e-9)));
+    }
+}
+
+void bough_scene_apply_accuracy(bough_scene *s) {
+    if (!(s->simulation.accuracy > 0)) s->simulation.accuracy = usual; // after an error
+    choose_master(s);
+    choose_micro(s->simulation.accuracy, &s->simulation.micro);
+    for (int i = 0; i < s->n_body; i++) {
+        if (s->body[i].micro.node) choose_micro(s->simulation.accuracy, &s->body[i].micro);
+    }
+    choose_segments(s);
+    choose_times(s);
+}

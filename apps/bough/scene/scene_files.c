@@ -1,0 +1,106 @@
+#include "apps/bough/scene/scene_files.h"
+
+#include "apps/bough/config/schema.h"
+#include "core/base/input_file.h"
+
+#include <dirent.h>
+#include <limits.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+
+enum { MOST_DEPTH = 16 }; // of folders: a link may lead to a folder above it
+
+typedef struct list {
+    bough_arena *arena;
+    bough_scene_files files;
+    int room;
+} list;
+
+static bool is_file(const char *path) {
+    struct stat about;
+    return stat(path, &about) == 0 && S_ISREG(about.st_mode);
+}
+
+static bool is_folder(const char *path) {
+    struct stat about;
+    return stat(path, &about) == 0 && S_ISDIR(about.st_mode);
+}
+
+static const char *join(bough_arena *arena, const char *folder, const char *name) {
+    size_t size = strlen(folder) + strlen(name) + 2;
+    char *path = bough_arena_take(arena, size);
+    snprintf(path, size, "%s/%s", folder, name);
+    return path;
+}
+
+static void add(list *l, bough_scene_file file) {
+    bough_scene_files *f = &l->files;
+    for (int k = 0; k < f->n; k++) {
+        if (strcmp(f->item[k].path, file.path) == 0) return;
+    }
+    if (f->n == l->room) {
+        bough_scene_file *old = f->item;
+        l->room = 2 * l->room + 16;
+        f->item = bough_arena_take(l->arena, (size_t)l->room * sizeof *f->item);
+        if (f->n > 0) memcpy(f->item, old, (size_t)f->n * sizeof *old);
+    }
+    f->item[f->n++] = file;
+}
+
+// In the order of names, which is the same wherever the folder is copied to.
+static void add_folder(list *l, const bough_scene_file *folder, int depth) {
+    struct dirent **entry;
+    int n = depth < MOST_DEPTH ? scandir(folder->path, &entry, NULL, alphasort) : -1;
+    for (int k = 0; k < n; k++) {
+        const char *name = entry[k]->d_name;
+        bool dots = strcmp(name, ".") == 0 || strcmp(name, "..") == 0;
+        bough_scene_file inner = {folder->key, join(l->arena, folder->path, name), folder->absolute};
+        if (is_file(inner.path)) add(l, inner);
+        if (!dots && is_folder(inner.path)) add_folder(l, &inner, depth + 1);
+        free(entry[k]);
+    }
+    if (n >= 0) free(entry);
+}
+
+// The controller looks for what its input names in the input's own folder.
+static void add_words(list *l, const char *input) {
+    static const char between[] = " \t\r\n\"',;=()";
+    char why[BOUGH_INPUT_REASON];
+    size_t size;
+    bough_arena *own = bough_arena_child(l->arena);
+    char *text = bough_input_read(own, input, BOUGH_INPUT_TEXT, &size, why), *rest = text;
+    const char *slash = strrchr(input, '/');
+    int folder = slash ? (int)(slash + 1 - input) : 0;
+    for (char *word; text && (word = strtok_r(rest, between, &rest));) {
+        char path[PATH_MAX];
+        bool absolute = word[0] == '/';
+        int length = snprintf(path, sizeof path, "%.*s%s", absolute ? 0 : folder, input, word);
+        if (length >= (int)sizeof path || !is_file(path)) continue;
+        add(l, (bough_scene_file){"control.input", bough_arena_string(l->arena, path), absolute});
+    }
+    bough_arena_destroy(own);
+}
+
+// Recorded last first.
+static void add_named(list *l, const bough_schema_file *file) {
+    if (!file) return;
+    add_named(l, file->next);
+    if (file->schema) return;
+    bough_scene_file named = {file->key, file->path, file->absolute};
+    if (is_folder(file->path)) {
+        add_folder(l, &named, 0);
+    } else {
+        add(l, named);
+    }
+}
+
+bough_scene_files bough_scene_list_files(bough_arena *arena, const bough_scene *scene) {
+    list l = {.arena = arena};
+    add(&l, (bough_scene_file){"", scene->file, false});
+    add_named(&l, scene->named);
+    const bough_scene_control *control = &scene->control;
+    if (control->node && control->kind == BOUGH_SCENE_BLADED && control->input[0])
+        add_words(&l, control->input);
+    return l.files;
+}

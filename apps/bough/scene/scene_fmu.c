@@ -1,0 +1,163 @@
+// Bodies that are FMUs: their variables are found, and what such a body cannot take part in is refused.
+#include "apps/bough/scene/scene_internal.h"
+#include "cosim/master.h"
+
+#include <string.h>
+
+// -- one FMU --------------------------------------------------------------------------------------
+
+static const char *const usual_motion[BOUGH_SCENE_MOTION] = {"vx", "vy", "vz", "wx", "wy",
+                                                             "wz", "gx", "gy", "gz"};
+static const char *const usual_wrench[BOUGH_SCENE_WRENCH] = {"Fx", "Fy", "Fz", "Mx", "My", "Mz"};
+
+static void unknown(bough_schema_reader *r, const bough_fmu_description *d, const bough_node *node,
+                    const char *key, const char *name) {
+    const char **names = bough_arena_take(r->arena, (size_t)d->n_variable * sizeof *names);
+    for (int k = 0; k < d->n_variable; k++) names[k] = d->variable[k].name;
+    bough_schema_error(r, node, key, "the FMU has no variable '%.60s' of type Float64%s", name,
+                       bough_suggest(name, names, d->n_variable).text);
+}
+
+// The variable of that name; NULL for "none" and after an error.
+static const bough_fmu_variable *find(bough_schema_reader *r, const bough_scene_fmu *fmu, const char *key,
+                                      const char *name, bough_fmu_causality causality) {
+    const bough_fmu_description *d = &fmu->description;
+    const bough_node *node = bough_link_value(fmu->node, key);
+    if (!name || strcmp(name, "none") == 0) return NULL;
+    const bough_fmu_variable *v = bough_fmu_find(d, name);
+    const char *kind = causality == BOUGH_FMU_INPUT ? "input" : "output";
+    if (!v) {
+        unknown(r, d, node, key, name);
+    } else if (v->causality != causality) {
+        bough_schema_error(r, node, key, "the variable '%.60s' is no %s", name, kind);
+    } else if (v->array) {
+        bough_schema_error(r, node, key, "the variable '%.60s' is an array", name);
+    } else if (bough_fmu_scaled(d, v)) {
+        bough_schema_error(r, node, key, "the variable '%.60s' is in %.20s; expected SI units", name,
+                           v->unit);
+    } else {
+        return v;
+    }
+    return NULL;
+}
+
+static bool is_count(bough_schema_reader *r, const bough_scene_fmu *fmu, const char *key, int n,
+                     int expected) {
+    if (n == 0 || n == expected) return true;
+    bough_schema_error(r, bough_link_value(fmu->node, key), key,
+                       "expected %d names, 'none' for those that the FMU does not have, got %d", expected, n);
+    return false;
+}
+
+static bool is_archive(const char *name) {
+    size_t length = strlen(name);
+    return length > 4 && strcmp(name + length - 4, ".fmu") == 0;
+}
+
+void bough_scene_check_fmu(bough_schema_reader *r, void *item) {
+    bough_scene_fmu *fmu = item;
+    const bough_node *folder = bough_link_value(fmu->node, "folder");
+    if (!fmu->node || !fmu->folder) return;
+    if (is_archive(fmu->folder)) {
+        bough_schema_error(r, folder, "folder",
+                           "expected the folder of the unpacked FMU: 'unzip %.80s "
+                           "-d FOLDER'",
+                           fmu->folder);
+        return;
+    }
+    fmu->folder = bough_schema_path(r, "folder", fmu->folder);
+    bough_status status = bough_fmu_describe(r->arena, fmu->folder, &fmu->description);
+    if (!bough_is_ok(&status)) {
+        bough_schema_error(r, folder, "folder", "%s", status.message);
+        return;
+    }
+    bool counts = is_count(r, fmu, "motion", fmu->n_motion, BOUGH_SCENE_MOTION);
+    if (!is_count(r, fmu, "wrench", fmu->n_wrench, BOUGH_SCENE_WRENCH) || !counts) return;
+    for (int k = 0; k < BOUGH_SCENE_MOTION; k++) {
+        const char *name = fmu->n_motion > 0 ? fmu->motion[k] : usual_motion[k];
+        fmu->input[k] = find(r, fmu, "motion", name, BOUGH_FMU_INPUT);
+    }
+    for (int k = 0; k < BOUGH_SCENE_WRENCH; k++) {
+        const char *name = fmu->n_wrench > 0 ? fmu->wrench[k] : usual_wrench[k];
+        fmu->output[k] = find(r, fmu, "wrench", name, BOUGH_FMU_OUTPUT);
+    }
+}
+
+// -- what it takes part in ------------------------------------------------------------------------
+
+// A scheme that only steps its members; one that repeats steps where the FMU restores its state.
+static void check_scheme(bough_schema_reader *r, const bough_scene *s, const bough_scene_body *b) {
+    const bough_scene_coupling *coupling = &s->simulation.coupling;
+    const bough_node *place =
+        coupling->node ? bough_link_value(coupling->node, "scheme") : s->simulation.node;
+    const char *scheme = coupling->scheme < 0 ? "" : bough_scheme_name(coupling->scheme);
+    bool steps = strcmp(scheme, "gauss-seidel") == 0 || strcmp(scheme, "extrapolated") == 0;
+    bool repeats = strcmp(scheme, "iterated") == 0;
+    if (coupling->scheme < 0 || steps) return;
+    if (!repeats) {
+        bough_schema_error(r, place, "coupling.scheme",
+                           "'%s' is an FMU, whose equations are not known: expected gauss-seidel, "
+                           "extrapolated%s, got %s",
+                           b->name, b->fmu.description.restores ? " or iterated" : "", scheme);
+    } else if (!b->fmu.description.restores) {
+        bough_schema_error(r, place, "coupling.scheme",
+                           "iterated repeats steps, and the FMU '%s' cannot restore its state: expected "
+                           "gauss-seidel or extrapolated",
+                           b->name);
+    } else if (coupling->options.accelerator == BOUGH_ACCELERATE_NEWTON) {
+        bough_schema_error(r, bough_link_value(coupling->node, "accelerator"), "coupling.accelerator",
+                           "interface-newton needs tangents, which the FMU '%s' does not give", b->name);
+    } else if (coupling->options.exchange != BOUGH_EXCHANGE_END_VALUES) {
+        bough_schema_error(r, bough_link_value(coupling->node, "exchange"), "coupling.exchange",
+                           "the FMU '%s' stops at communication points only: expected end-values", b->name);
+    }
+}
+
+static void check_simulation(bough_schema_reader *r, const bough_scene *s, const bough_scene_body *b) {
+    const bough_scene_simulation *x = &s->simulation;
+    bough_link_at(r, "simulation");
+    check_scheme(r, s, b);
+    if (x->step_control.tolerance > 0) {
+        bough_schema_error(r, bough_link_value(x->step_control.node, "tolerance"), "step_control.tolerance",
+                           "not with an FMU ('%s'): expected fixed steps", b->name);
+    }
+    if (x->initial > BOUGH_SCENE_UNDEFORMED) {
+        bough_schema_error(r, bough_node_find(x->node, "initial"), "initial",
+                           "the equilibrium of the FMU '%s' is not known: expected undeformed", b->name);
+    }
+}
+
+static bool same_library(const bough_scene_fmu *a, const bough_scene_fmu *b) {
+    return a->folder && b->folder && strcmp(a->folder, b->folder) == 0;
+}
+
+// The first FMU, but one that cannot restore its state where there is one; NULL: no FMU.
+static const bough_scene_body *hardest(const bough_scene *s) {
+    const bough_scene_body *found = NULL;
+    for (int i = 0; i < s->n_body; i++) {
+        const bough_scene_body *b = &s->body[i];
+        if (b->fidelity != BOUGH_SCENE_FMU || !b->name) continue;
+        if (!found || (found->fmu.description.restores && !b->fmu.description.restores)) found = b;
+    }
+    return found;
+}
+
+static void check_once(bough_schema_reader *r, const bough_scene *s, int i) {
+    const bough_scene_fmu *fmu = &s->body[i].fmu;
+    for (int k = 0; k < i; k++) {
+        if (s->body[k].fidelity != BOUGH_SCENE_FMU || !same_library(&s->body[k].fmu, fmu)) continue;
+        bough_link_at(r, "bodies[%d].fmu", i);
+        bough_schema_error(r, bough_link_value(fmu->node, "folder"), "folder",
+                           "only one body can use this FMU, and '%s' does", s->body[k].name);
+        return;
+    }
+}
+
+void bough_link_fmus(bough_schema_reader *r, bough_scene *s) {
+    const bough_scene_body *b = hardest(s);
+    if (!b) return;
+    check_simulation(r, s, b);
+    for (int i = 0; i < s->n_body; i++) {
+        if (s->body[i].fidelity == BOUGH_SCENE_FMU && s->body[i].fmu.description.once) check_once(r, s, i);
+    }
+}

@@ -1,0 +1,114 @@
+// What the files that read a scene share among themselves.
+#ifndef BOUGH_APPS_SCENE_SCENE_INTERNAL_H
+#define BOUGH_APPS_SCENE_SCENE_INTERNAL_H
+
+#include "apps/bough/config/schema.h"
+#include "apps/bough/scene/scene.h"
+
+// The table of a whole scene; fills a bough_scene.
+extern const bough_schema bough_scene_schema;
+
+// Those of its parts.
+extern const bough_schema bough_scene_micro_schema, bough_scene_body_schema, bough_scene_load_schema,
+    bough_scene_spring_schema, bough_scene_bushing_schema, bough_scene_closure_schema,
+    bough_scene_marker_schema, bough_scene_sensor_schema, bough_scene_turbine_schema, bough_scene_aero_schema,
+    bough_scene_control_schema;
+
+// Readers of values that are lists of their own kind. `field` is named in the body.
+void bough_scene_read_placement(bough_schema_reader *r, const bough_node *node, void *field);
+void bough_scene_read_steps(bough_schema_reader *r, const bough_node *node, void *field);
+void bough_scene_read_axis_offset(bough_schema_reader *r, const bough_node *node, void *field);
+void bough_scene_read_stiffness(bough_schema_reader *r, const bough_node *node, void *field);
+void bough_scene_read_section_mass(bough_schema_reader *r, const bough_node *node, void *field);
+void bough_scene_read_motion(bough_schema_reader *r, const bough_node *node, void *field);
+void bough_scene_read_inertia(bough_schema_reader *r, const bough_node *node, void *field);
+void bough_scene_read_load_place(bough_schema_reader *r, const bough_node *node, void *field);
+void bough_scene_read_load_torque(bough_schema_reader *r, const bough_node *node, void *field);
+void bough_scene_read_load_force(bough_schema_reader *r, const bough_node *node, void *field);
+void bough_scene_read_load_factor(bough_schema_reader *r, const bough_node *node, void *field);
+void bough_scene_read_load_moment(bough_schema_reader *r, const bough_node *node, void *field);
+
+// Adds an error at each of the keys "a|b" that the mapping has.
+void bough_scene_refuse(bough_schema_reader *r, const bough_node *mapping, const char *keys,
+                        const char *format, ...) __attribute__((format(printf, 4, 5)));
+
+// Values over time.
+typedef struct bough_scene_table {
+    const bough_node *node;
+    int n_time, n_value;    // equal
+    double *times, *values; // (n_time) strictly increasing [s]; SI
+} bough_scene_table;
+
+// Reads {times: [...], values: [...]} with values of that dimension; false after an error.
+bool bough_scene_read_table(bough_schema_reader *r, const bough_node *node, bough_dimension unit,
+                            bough_scene_table *table);
+
+// Whether the values of the list `key` of a mapping increase; adds an error at each that does not. `unit` is
+// for the message.
+bool bough_scene_check_increasing(bough_schema_reader *r, const bough_node *node, const char *key,
+                                  const double *value, const char *unit);
+
+// Whether the symmetric matrix xx yy zz xy xz yz is not below zero about any axis.
+bool bough_scene_semidefinite(const double v[6]);
+
+// Checks within one mapping or file; `item` is the struct that was read.
+void bough_scene_check_structure(bough_schema_reader *r, void *item);
+void bough_scene_check_rod(bough_schema_reader *r, void *item);
+void bough_scene_check_body(bough_schema_reader *r, void *item);
+
+// Makes the stretch `part` of a structure of it; `given` is where it is written.
+void bough_scene_take_part(bough_schema_reader *r, const bough_node *given, const double part[2],
+                           bough_scene_structure *structure);
+
+void bough_scene_check_aero_blade(bough_schema_reader *r, void *item);
+void bough_scene_check_polar(bough_schema_reader *r, void *item);
+void bough_scene_check_polars(bough_schema_reader *r, void *item);
+void bough_scene_check_wind_table(bough_schema_reader *r, void *item);
+void bough_scene_check_wind(bough_schema_reader *r, void *item);
+void bough_scene_check_tower(bough_schema_reader *r, void *item);
+void bough_scene_check_joint(bough_schema_reader *r, void *item);
+void bough_scene_check_fmu(bough_schema_reader *r, void *item);
+void bough_scene_check_motion(bough_schema_reader *r, const bough_scene_joint *joint);
+void bough_scene_check_load(bough_schema_reader *r, void *item);
+void bough_scene_check_ramp(bough_schema_reader *r, const bough_node *node, const double ramp[2]);
+
+// Checks a load against the body, load->body, that it acts on.
+void bough_scene_check_body_load(bough_schema_reader *r, const bough_scene *scene,
+                                 const bough_scene_load *load);
+
+// Makes single bodies of those in a row.
+void bough_scene_repeat(bough_schema_reader *reader, bough_scene *scene);
+
+// Gives settings that are not named what follows from simulation.accuracy; scene_accuracy.c has the laws.
+void bough_scene_apply_accuracy(bough_scene *scene);
+
+// Whether time/step is a whole number, at least one; true where either is wrong already.
+bool bough_scene_is_multiple(double time, double step);
+
+// Resolves names and checks what spans several parts of the scene.
+void bough_scene_link(bough_schema_reader *r, bough_scene *scene);
+
+enum { BOUGH_UNRESOLVED = -2 }; // the index of a name that no body has
+
+// Sets the path of the next errors.
+void bough_link_at(bough_schema_reader *r, const char *format, ...) __attribute__((format(printf, 2, 3)));
+
+// The index of a named body; BOUGH_UNRESOLVED after an error at the key of `node`.
+int bough_link_body(bough_schema_reader *r, const bough_scene *s, const bough_node *node, const char *key,
+                    const char *name);
+
+// The value of a key, where an error about it stands; the mapping where it is left out.
+const bough_node *bough_link_value(const bough_node *node, const char *key);
+
+// Parts of bough_scene_link, in this order.
+void bough_link_fmus(bough_schema_reader *r, bough_scene *s);
+void bough_link_turbine(bough_schema_reader *r, bough_scene *s);
+void bough_link_aero(bough_schema_reader *r, bough_scene *s);
+void bough_link_control(bough_schema_reader *r, bough_scene *s);
+void bough_link_inputs(bough_schema_reader *r, bough_scene *s);
+
+// Replaces or adds the value that "path.to[2].key=value" names; the new root, or NULL after an
+// error. Nodes that an alias shares are copied before they change.
+bough_node *bough_scene_set(bough_arena *arena, bough_node *root, const char *set, bough_errors *errors);
+
+#endif

@@ -1,0 +1,443 @@
+// Names become indices, and what spans several parts of the scene is checked. Runs also after other
+// errors, so that all are shown at once: wrong values are NaN, −1 or NULL here and raise no second
+// error.
+#include "apps/bough/scene/scene_internal.h"
+
+#include <math.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdlib.h>
+#include <string.h>
+
+void bough_link_at(bough_schema_reader *r, const char *format, ...) {
+    va_list arguments;
+    va_start(arguments, format);
+    vsnprintf(r->path, sizeof r->path, format, arguments);
+    va_end(arguments);
+}
+
+void bough_scene_refuse(bough_schema_reader *r, const bough_node *mapping, const char *keys,
+                        const char *format, ...) {
+    char key[32], text[300];
+    va_list arguments;
+    va_start(arguments, format);
+    vsnprintf(text, sizeof text, format, arguments);
+    va_end(arguments);
+    for (size_t n; *keys != '\0'; keys += n + (keys[n] == '|')) {
+        n = strcspn(keys, "|");
+        snprintf(key, sizeof key, "%.*s", (int)n, keys);
+        const bough_node *given = bough_node_find(mapping, key);
+        if (given != NULL) bough_schema_error(r, given, key, "%s", text);
+    }
+}
+
+static const char *name_of(const bough_scene_body *b) { return b->name == NULL ? "" : b->name; }
+
+static int compare_names(const void *a, const void *b) {
+    const bough_scene_body *x = *(bough_scene_body *const *)a, *y = *(bough_scene_body *const *)b;
+    int names = strcmp(name_of(x), name_of(y));
+    return names != 0 ? names : (x > y) - (x < y);
+}
+
+static void sort_names(bough_schema_reader *r, bough_scene *s) {
+    s->by_name = bough_arena_take(r->arena, (size_t)s->n_body * sizeof *s->by_name);
+    for (int i = 0; i < s->n_body; i++) s->by_name[i] = &s->body[i];
+    qsort(s->by_name, (size_t)s->n_body, sizeof *s->by_name, compare_names);
+}
+
+// The first of that name.
+static int find_body(const bough_scene *s, const char *name) {
+    int low = 0, high = s->n_body;
+    while (low < high) {
+        int middle = (low + high) / 2;
+        if (strcmp(name_of(s->by_name[middle]), name) < 0)
+            low = middle + 1;
+        else
+            high = middle;
+    }
+    bool found = low < s->n_body && s->by_name[low]->name != NULL && strcmp(s->by_name[low]->name, name) == 0;
+    return found ? (int)(s->by_name[low] - s->body) : BOUGH_UNRESOLVED;
+}
+
+// Among the bodies, and the ground where a parent is named.
+static bough_suggestion suggest_body(bough_schema_reader *r, const bough_scene *s, const char *key,
+                                     const char *name) {
+    if (r->errors->dropped > 0) return (bough_suggestion){""}; // a hostile file: spelling costs time
+    const char **names = bough_arena_take(r->arena, ((size_t)s->n_body + 1) * sizeof *names);
+    for (int i = 0; i < s->n_body; i++) names[i] = s->body[i].name;
+    names[s->n_body] = "ground";
+    return bough_suggest(name, names, s->n_body + (strcmp(key, "parent") == 0));
+}
+
+int bough_link_body(bough_schema_reader *r, const bough_scene *s, const bough_node *node, const char *key,
+                    const char *name) {
+    if (name == NULL) return BOUGH_UNRESOLVED;
+    int index = find_body(s, name);
+    if (index != BOUGH_UNRESOLVED) return index;
+    bough_schema_error(r, node, key, "there is no body '%.48s'%s", name, suggest_body(r, s, key, name).text);
+    return BOUGH_UNRESOLVED;
+}
+
+const bough_node *bough_link_value(const bough_node *node, const char *key) {
+    const bough_node *value = bough_node_find(node, key);
+    return value == NULL ? node : value;
+}
+
+// -- bodies ---------------------------------------------------------------------------------------
+
+// Names go into channels and file names.
+static void check_name(bough_schema_reader *r, const bough_scene *s, int i) {
+    static const char allowed[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789_-";
+    const bough_scene_body *b = &s->body[i];
+    if (b->name == NULL) return;
+    const bough_node *node = bough_link_value(b->node, "name");
+    char shown[64];
+    if (strspn(b->name, allowed) != strlen(b->name)) {
+        bough_schema_error(r, node, "name", "a name has letters, digits, '_' and '-', got %s",
+                           bough_node_shown(node, shown));
+    } else if (strcmp(b->name, "ground") == 0) {
+        bough_schema_error(r, node, "name", "'ground' is no name for a body");
+    } else if (find_body(s, b->name) != i) {
+        bough_schema_error(r, node, "name", "body '%s' is given twice", b->name);
+    }
+}
+
+static void link_parent(bough_schema_reader *r, bough_scene *s, int i) {
+    bough_scene_joint *joint = &s->body[i].joint;
+    joint->parent = BOUGH_UNRESOLVED;
+    if (joint->parent_name == NULL) return;
+    bough_link_at(r, "bodies[%d].joint", i);
+    if (strcmp(joint->parent_name, "ground") == 0) {
+        joint->parent = BOUGH_GROUND;
+        return;
+    }
+    const bough_node *node = bough_link_value(joint->node, "parent");
+    joint->parent = bough_link_body(r, s, node, "parent", joint->parent_name);
+    if (joint->parent >= 0 && s->body[joint->parent].fidelity > BOUGH_SCENE_ROD) {
+        bool fmu = s->body[joint->parent].fidelity == BOUGH_SCENE_FMU;
+        bough_schema_error(r, node, "parent", "'%s' is %s, which cannot carry bodies; %s", joint->parent_name,
+                           fmu ? "an FMU" : "a modal body",
+                           fmu ? "let the body that carries it carry them" : "make it a rod");
+    }
+}
+
+// The body at which a walk towards the ground comes back to itself, from any body above a loop.
+static int body_in_loop(const bough_scene *s, int i) {
+    for (int k = 0; k < s->n_body; k++) i = s->body[i].joint.parent;
+    int lowest = i;
+    for (int k = s->body[i].joint.parent; k != i; k = s->body[k].joint.parent) {
+        if (k < lowest) lowest = k;
+    }
+    return lowest;
+}
+
+static void report_loop(bough_schema_reader *r, const bough_scene *s, int start) {
+    char loop[200];
+    int first = body_in_loop(s, start), length = 0;
+    for (int k = first, more = 1; more; k = s->body[k].joint.parent) {
+        length += snprintf(loop + length, sizeof loop - (size_t)length, "%s -> ", s->body[k].name);
+        if (length >= (int)sizeof loop) length = (int)sizeof loop - 1;
+        more = s->body[k].joint.parent != first;
+    }
+    bough_link_at(r, "bodies[%d].joint", first);
+    bough_schema_error(r, bough_link_value(s->body[first].joint.node, "parent"), "parent",
+                       "parents form a loop: %s%s", loop, s->body[first].name);
+}
+
+// Parents before children. Bodies that no pass can place hang on a loop or on an unknown parent.
+static bool order_bodies(bough_schema_reader *r, bough_scene *s) {
+    s->order = bough_arena_take(r->arena, (size_t)s->n_body * sizeof *s->order);
+    bool *placed = bough_arena_take(r->arena, (size_t)s->n_body * sizeof *placed);
+    int n = 0;
+    for (int before = -1; n > before;) {
+        before = n;
+        for (int i = 0; i < s->n_body; i++) {
+            int parent = s->body[i].joint.parent;
+            if (placed[i] || parent == BOUGH_UNRESOLVED) continue;
+            if (parent >= 0 && !placed[parent]) continue;
+            placed[i] = true;
+            s->order[n++] = i;
+        }
+    }
+    for (int i = 0; i < s->n_body; i++) {
+        int k = i;
+        for (int steps = 0; k >= 0 && !placed[k] && steps < s->n_body; steps++) {
+            k = s->body[k].joint.parent;
+        }
+        bool loop = k >= 0 && !placed[k];
+        if (loop) report_loop(r, s, i);
+        if (loop) break;
+        for (k = i; k >= 0 && !placed[k]; k = s->body[k].joint.parent) placed[k] = true; // looked at
+    }
+    return n == s->n_body;
+}
+
+static bool has_mass(const bough_scene_body *b) {
+    bool flexible = b->fidelity != BOUGH_SCENE_RIGID && b->fidelity != BOUGH_SCENE_FMU;
+    return bough_node_find(b->node, "rod") != NULL || flexible ||
+           !(b->mass == 0 && b->inertia[0] == 0 && b->inertia[1] == 0 && b->inertia[2] == 0);
+}
+
+// Every joint that moves must carry something with mass, or no motion is defined. Needs the order.
+static void check_moving_mass(bough_schema_reader *r, const bough_scene *s) {
+    bool *carries = bough_arena_take(r->arena, (size_t)s->n_body * sizeof *carries);
+    for (int k = s->n_body - 1; k >= 0; k--) {
+        int i = s->order[k];
+        const bough_scene_body *b = &s->body[i];
+        carries[i] = carries[i] || has_mass(b);
+        if (carries[i] && b->joint.parent >= 0) carries[b->joint.parent] = true;
+        bool driven = b->joint.motion.node != NULL;
+        if (carries[i] || driven || b->joint.kind <= BOUGH_JOINT_FIXED) continue;
+        bough_link_at(r, "bodies[%d]", i);
+        bough_schema_error(r, b->node, "",
+                           "a joint that moves must carry mass: give 'mass' here or "
+                           "to a body that hangs on this one");
+    }
+}
+
+static void link_bodies(bough_schema_reader *r, bough_scene *s) {
+    for (int i = 0; i < s->n_body; i++) {
+        bough_link_at(r, "bodies[%d]", i);
+        check_name(r, s, i);
+        link_parent(r, s, i);
+    }
+    if (order_bodies(r, s)) check_moving_mass(r, s);
+}
+
+// -- loads and turbine ----------------------------------------------------------------------------
+
+static void link_joint_load(bough_schema_reader *r, const bough_scene *s, bough_scene_load *load) {
+    const bough_node *joint = bough_link_value(load->node, "joint");
+    load->joint = bough_link_body(r, s, joint, "joint", load->joint_name);
+    if (load->joint < 0) return;
+    int kind = s->body[load->joint].joint.kind;
+    if (kind < 0) return;
+    bool revolute = kind == BOUGH_JOINT_REVOLUTE;
+    if (!revolute && kind != BOUGH_JOINT_PRISMATIC) {
+        bough_schema_error(r, joint, "joint",
+                           "the joint of '%s' must be revolute or prismatic to take a load",
+                           load->joint_name);
+        return;
+    }
+    bough_scene_refuse(r, load->node, revolute ? "force" : "torque", "the joint of '%s' is %s: give a %s",
+                       load->joint_name, revolute ? "revolute" : "prismatic", revolute ? "torque" : "force");
+}
+
+static void link_load(bough_schema_reader *r, const bough_scene *s, void *item) {
+    bough_scene_load *load = item;
+    load->joint = load->body = BOUGH_UNRESOLVED;
+    if (load->body_name != NULL) {
+        const bough_node *node = bough_link_value(load->node, "body");
+        load->body = bough_link_body(r, s, node, "body", load->body_name);
+        if (load->body >= 0) bough_scene_check_body_load(r, s, load);
+    } else {
+        link_joint_load(r, s, load);
+    }
+}
+
+// The two ends of a spring, a bushing or a closure, named by `from` and `to`.
+static void link_ends(bough_schema_reader *r, const bough_scene *s, const bough_node *item,
+                      const char *const name[2], int body[2]) {
+    static const char *const keys[] = {"from", "to"};
+    for (int end = 0; end < 2; end++) {
+        body[end] = BOUGH_GROUND;
+        if (name[end] == NULL || strcmp(name[end], "ground") == 0) continue;
+        const bough_node *node = bough_link_value(item, keys[end]);
+        body[end] = bough_link_body(r, s, node, keys[end], name[end]);
+        if (body[end] < 0 || s->body[body[end]].fidelity <= BOUGH_SCENE_RIGID) continue;
+        bough_schema_error(r, node, keys[end],
+                           "'%s' is no rigid body; it must be one, which may hang on a rod and "
+                           "needs no mass",
+                           name[end]);
+    }
+    if (name[0] != NULL && name[1] != NULL && strcmp(name[0], name[1]) == 0) {
+        bough_schema_error(r, bough_link_value(item, "to"), "to", "must be another body");
+    }
+}
+
+// The kinds are a joint's but free.
+static void link_closure(bough_schema_reader *r, const bough_scene *s, void *item) {
+    bough_scene_closure *c = item;
+    link_ends(r, s, c->node, c->body_name, c->body);
+    if (c->kind >= BOUGH_JOINT_FREE) c->kind++;
+}
+
+static void link_spring(bough_schema_reader *r, const bough_scene *s, void *item) {
+    bough_scene_spring *spring = item;
+    link_ends(r, s, spring->node, spring->body_name, spring->body);
+}
+
+static void link_bushing(bough_schema_reader *r, const bough_scene *s, void *item) {
+    bough_scene_bushing *bushing = item;
+    link_ends(r, s, bushing->node, bushing->body_name, bushing->body);
+}
+
+static void link_marker(bough_schema_reader *r, const bough_scene *s, void *item) {
+    bough_scene_marker *marker = item;
+    marker->body = BOUGH_GROUND;
+    if (marker->body_name == NULL || strcmp(marker->body_name, "ground") == 0) return;
+    const bough_node *node = bough_link_value(marker->node, "body");
+    marker->body = bough_link_body(r, s, node, "body", marker->body_name);
+    if (marker->body < 0 || s->body[marker->body].fidelity <= BOUGH_SCENE_RIGID) return;
+    bough_schema_error(r, node, "body",
+                       s->body[marker->body].fidelity == BOUGH_SCENE_FMU
+                           ? "'%s' is an FMU: name the body that carries it"
+                           : "'%s' is a rod, whose tip is recorded",
+                       marker->body_name);
+}
+
+static bool is_sensed_before(const bough_scene *s, const bough_scene_sensor *sensor) {
+    for (const bough_scene_sensor *x = s->sensor; x < sensor; x++) {
+        if (x->node != NULL && x->body == sensor->body) return true;
+    }
+    return false;
+}
+
+static void link_sensor(bough_schema_reader *r, const bough_scene *s, void *item) {
+    bough_scene_sensor *sensor = item;
+    const bough_node *node = bough_link_value(sensor->node, "body");
+    sensor->body = bough_link_body(r, s, node, "body", sensor->body_name);
+    if (sensor->body < 0) return;
+    const bough_scene_body *body = &s->body[sensor->body];
+    if (body->fidelity != BOUGH_SCENE_ROD) {
+        bough_schema_error(r, node, "body", "'%s' is not of fidelity rod", body->name);
+    } else if (is_sensed_before(s, sensor)) {
+        bough_schema_error(r, node, "body",
+                           "'%s' already has a sensor: give all places in that "
+                           "sensor",
+                           body->name);
+    }
+    double length = body->rod.structure.length;
+    for (int k = 0; k < sensor->n_at && length > 0; k++) {
+        if (sensor->at[k] <= length * (1 + 1e-9)) continue;
+        bough_schema_error(r, bough_node_find(sensor->node, "at"), "at",
+                           "%g m is beyond the end of '%s', at %g m", sensor->at[k], body->name, length);
+    }
+}
+
+// -- modes ----------------------------------------------------------------------------------------
+
+static void link_modes(bough_schema_reader *r, bough_scene *s) {
+    bough_scene_modes *m = &s->modes;
+    m->about = BOUGH_UNRESOLVED;
+    if (m->node == NULL) return;
+    bough_link_at(r, "modes");
+    const bough_node *axis = bough_node_find(m->node, "axis");
+    const bough_node *centre = bough_node_find(m->node, "centre");
+    const bough_node *speed = bough_node_find(m->node, "speed");
+    if (speed != NULL && m->of == BOUGH_SCENE_MODES_SCENE) {
+        bough_schema_error(r, speed, "speed", "only used with 'of: rods'");
+    }
+    if (m->about_name != NULL) {
+        const bough_node *about = bough_link_value(m->node, "about");
+        m->about = bough_link_body(r, s, about, "about", m->about_name);
+        if (m->about >= 0 && s->body[m->about].joint.kind >= 0 &&
+            s->body[m->about].joint.kind != BOUGH_JOINT_REVOLUTE) {
+            bough_schema_error(r, about, "about", "the joint of '%s' must be revolute", m->about_name);
+        }
+        if (axis != NULL) bough_schema_error(r, axis, "axis", "only used without 'about'");
+    }
+    if (axis != NULL && m->axis[0] == 0 && m->axis[1] == 0 && m->axis[2] == 0) {
+        bough_schema_error(r, axis, "axis", "must not be zero");
+    }
+    if (centre != NULL && axis == NULL) {
+        bough_schema_error(r, centre, "centre", "only used with 'axis'");
+    }
+}
+
+// -- times ----------------------------------------------------------------------------------------
+
+static const double most_steps = 1e9; // macro steps of a run: hours at the least
+
+bool bough_scene_is_multiple(double time, double step) {
+    if (!(time > 0) || !(step > 0)) return true;
+    double count = time / step;
+    return count > 0.5 && fabs(count - round(count)) <= 1e-9 * count;
+}
+
+// Shapes are stored at ends of macro steps.
+static void check_shapes(bough_schema_reader *r, const bough_scene_output *output, double step) {
+    const char *const key[] = {"frames", "vertices"}, *const path[] = {"output.frames", "output.vertices"};
+    const double interval[] = {output->frames, output->vertices};
+    for (int k = 0; k < 2; k++) {
+        if (!(interval[k] > 0) || interval[k] >= (1 - 1e-9) * step) continue;
+        bough_schema_error(r, bough_link_value(output->node, key[k]), path[k],
+                           "%g s is less than the macro step, %g s", interval[k], step);
+    }
+}
+
+static void check_times(bough_schema_reader *r, bough_scene *s) {
+    bough_scene_simulation *simulation = &s->simulation;
+    double step = simulation->macro_step;
+    const bough_node *interval = bough_node_find(simulation->output.node, "interval");
+    if (simulation->output.node == NULL || interval == NULL) simulation->output.interval = step;
+    bough_link_at(r, "simulation");
+    if (!bough_scene_is_multiple(simulation->duration, step)) {
+        bough_schema_error(r, bough_link_value(simulation->node, "duration"), "duration",
+                           "%g s is not a multiple of the macro step, %g s", simulation->duration, step);
+    }
+    if (simulation->duration > most_steps * step) {
+        bough_schema_error(r, bough_link_value(simulation->node, "duration"), "duration",
+                           "%g s are %.3g macro steps of %g s; at most %.3g are taken", simulation->duration,
+                           simulation->duration / step, step, most_steps);
+    }
+    check_shapes(r, &simulation->output, step);
+    if (interval != NULL && !bough_scene_is_multiple(simulation->output.interval, step)) {
+        bough_schema_error(r, interval, "output.interval", "%g s is not a multiple of the macro step, %g s",
+                           simulation->output.interval, step);
+    }
+    if (s->control.node != NULL && s->control.rate > 0 &&
+        !bough_scene_is_multiple(1 / s->control.rate, step)) {
+        bough_link_at(r, "control");
+        bough_schema_error(r, bough_link_value(s->control.node, "rate"), "rate",
+                           "its period %g s is not a multiple of the macro step, %g s", 1 / s->control.rate,
+                           step);
+    }
+    if (s->aero.node != NULL && s->aero.rate > 0 && !bough_scene_is_multiple(1 / s->aero.rate, step)) {
+        bough_link_at(r, "aero");
+        bough_schema_error(r, bough_link_value(s->aero.node, "rate"), "rate",
+                           "its period %g s is not a multiple of the macro step, %g s", 1 / s->aero.rate,
+                           step);
+    }
+}
+
+#define LIST(what, items, count, link)                                                                       \
+    {                                                                                                        \
+        what, offsetof(bough_scene, items), offsetof(bough_scene, count), sizeof *((bough_scene *)0)->items, \
+            link                                                                                             \
+    }
+static const struct {
+    const char *name;
+    size_t items, count, size; // place of the pointer and of the number of items, size of one
+    void (*link)(bough_schema_reader *r, const bough_scene *s, void *item);
+} lists[] = {
+    LIST("loads", load, n_load, link_load),         LIST("markers", marker, n_marker, link_marker),
+    LIST("sensors", sensor, n_sensor, link_sensor), LIST("bushings", bushing, n_bushing, link_bushing),
+    LIST("springs", spring, n_spring, link_spring), LIST("closures", closure, n_closure, link_closure),
+};
+
+static void link_lists(bough_schema_reader *r, bough_scene *s) {
+    for (size_t k = 0; k < sizeof lists / sizeof *lists; k++) {
+        char *items = *(char **)(void *)((char *)s + lists[k].items);
+        int count = *(int *)(void *)((char *)s + lists[k].count);
+        for (int i = 0; i < count; i++) {
+            void *item = items + (size_t)i * lists[k].size;
+            bough_link_at(r, "%s[%d]", lists[k].name, i);
+            if (*(const bough_node **)item != NULL) lists[k].link(r, s, item);
+        }
+    }
+}
+
+void bough_scene_link(bough_schema_reader *r, bough_scene *scene) {
+    sort_names(r, scene);
+    check_times(r, scene);
+    link_bodies(r, scene);
+    link_lists(r, scene);
+    bough_link_fmus(r, scene);
+    bough_link_turbine(r, scene);
+    bough_link_aero(r, scene);
+    bough_link_control(r, scene);
+    if (r->errors->n == 0) bough_link_inputs(r, scene);
+    link_modes(r, scene);
+    bough_link_at(r, "%s", "");
+}

@@ -1,0 +1,203 @@
+// The prescribed motion of a joint: its speed or itself, constant, by a ramp or by a table.
+#include "apps/bough/scene/scene_tables.h"
+
+#include <math.h>
+#include <string.h>
+
+// A cylindrical joint's, whose schema begins with the node of the first
+typedef struct motion_pair {
+    bough_scene_motion first, second;
+} motion_pair;
+
+typedef struct universal_pair {
+    const bough_node *node;
+    bough_scene_motion first, second;
+} universal_pair;
+
+// -- a table or a ramp ----------------------------------------------------------------------------
+
+// Reads a mapping of such keys; false after an error.
+static bool read_form(bough_schema_reader *r, const bough_node *node, const bough_schema *schema,
+                      void *item) {
+    int before = r->errors->n + r->errors->dropped;
+    bough_schema_read(r, schema, node, item);
+    return r->errors->n + r->errors->dropped == before;
+}
+
+// clang-format off
+bool bough_scene_read_table(bough_schema_reader *r, const bough_node *node, bough_dimension unit,
+                            bough_scene_table *table) {
+#define FILLS bough_scene_table
+    const bough_key keys[] = {
+        {KEY(NUMBERS, times), UNIT(TIME), .range = ">= 0", .count = 2, .required = true, COUNT_AT(n_time)},
+        {KEY(NUMBERS, values), .dimension = unit, .count = 2, .required = true, COUNT_AT(n_value)},
+    };
+#undef FILLS
+    const bough_schema schema = {SCHEMA("a table", bough_scene_table, keys)};
+    *table = (bough_scene_table){0};
+    if (!read_form(r, node, &schema, table)) return false;
+    if (table->n_time != table->n_value) {
+        bough_schema_error(r, node, "", "%d times, but %d values", table->n_time, table->n_value);
+        return false;
+    }
+    return bough_scene_check_increasing(r, node, "times", table->times, "s");
+}
+
+typedef struct ramp {
+    const bough_node *node;
+    double from, to, ramp[2];
+} ramp;
+
+static void read_ramp(bough_schema_reader *r, const bough_node *node, bough_dimension unit,
+                      bough_motion_def *def) {
+#define FILLS ramp
+    const bough_key keys[] = {
+        {KEY(NUMBER, from), .dimension = unit, .fallback = "0"},
+        {KEY(NUMBER, to), .dimension = unit, .required = true},
+        {KEY(VECTOR, ramp), UNIT(TIME), .count = 2, .range = ">= 0", .required = true},
+    };
+#undef FILLS
+    const bough_schema schema = {SCHEMA("a ramp", ramp, keys)};
+    ramp x = {0};
+    if (!read_form(r, node, &schema, &x)) return;
+    if (!(x.ramp[1] > x.ramp[0])) {
+        bough_schema_error(r, bough_node_find(node, "ramp"), "ramp",
+                           "must end after it starts, got [%g s, %g s]", x.ramp[0], x.ramp[1]);
+    }
+    def->from = x.from;
+    def->to = x.to;
+    def->start = x.ramp[0];
+    def->end = x.ramp[1];
+}
+// clang-format on
+
+// A number, a ramp or a table, in the key's dimension.
+static void read_values(bough_schema_reader *r, const bough_node *node, void *field) {
+    bough_scene_motion *motion = field;
+    bough_dimension unit = r->key->dimension;
+    if (node->kind != BOUGH_MAPPING) {
+        motion->def.from = motion->def.to = bough_schema_number(r, node, unit);
+    } else if (bough_node_find(node, "times") != NULL || bough_node_find(node, "values") != NULL) {
+        bough_scene_table table;
+        if (!bough_scene_read_table(r, node, unit, &table)) return;
+        motion->def.n = table.n_time;
+        motion->def.times = table.times;
+        motion->def.values = table.values;
+    } else {
+        read_ramp(r, node, unit, &motion->def);
+    }
+}
+
+// -- the motion -----------------------------------------------------------------------------------
+
+// clang-format off
+#define FORM .form = "a number, {from: 0, to: ..., ramp: [...]} or {times: [...], values: [...]}"
+#define FILLS bough_scene_motion
+#define INPUT                                                                                      \
+    {KEY(TEXT, input), .example = "yaw",                                                           \
+     .help = "with a constant place: name by which it is set between steps"}
+static const bough_key revolute_keys[] = {
+    {NAMED("speed", CUSTOM), .read = read_values, UNIT(ANGULAR_SPEED), FORM},
+    {NAMED("angle", CUSTOM), .read = read_values, UNIT(ANGLE), FORM},
+    INPUT,
+};
+static const bough_key prismatic_keys[] = {
+    {NAMED("speed", CUSTOM), .read = read_values, UNIT(SPEED), FORM},
+    {NAMED("position", CUSTOM), .read = read_values, UNIT(LENGTH), FORM},
+    INPUT,
+};
+#undef FILLS
+#define FILLS motion_pair
+static const bough_key cylindrical_keys[] = {
+    {NAMED("speed", CUSTOM), .read = read_values, UNIT(SPEED)},
+    {NAMED("position", CUSTOM), .read = read_values, UNIT(LENGTH)},
+    {NAMED("angular_speed", CUSTOM), AT(second), .read = read_values, UNIT(ANGULAR_SPEED)},
+    {NAMED("angle", CUSTOM), AT(second), .read = read_values, UNIT(ANGLE)},
+};
+#undef FILLS
+// clang-format on
+
+// One of a pair of keys at most, the speed first.
+static void check_one(bough_schema_reader *r, const bough_node *node, const char *speed, const char *place,
+                      bough_scene_motion *motion) {
+    bool of_speed = bough_node_find(node, speed) != NULL;
+    bool of_place = bough_node_find(node, place) != NULL;
+    motion->def.speed = of_speed;
+    motion->def.given = of_speed || of_place;
+    motion->node = motion->def.given ? node : NULL;
+    if (of_speed && of_place) {
+        bough_schema_error(r, node, "", "expected either '%s' or '%s', got both", speed, place);
+    }
+}
+
+static void check_motion(bough_schema_reader *r, void *item) {
+    bough_scene_motion *motion = item;
+    if (motion->node == NULL) return;
+    motion->def.given = true;
+    motion->def.speed = bough_node_find(motion->node, "speed") != NULL;
+    bool constant = motion->def.n == 0 && !(motion->def.end > motion->def.start);
+    if (motion->input != NULL && (motion->def.speed || !constant)) {
+        bough_schema_error(r, bough_node_find(motion->node, "input"), "input",
+                           "only with a constant initial position");
+    }
+    if (motion->node->n == (motion->input != NULL ? 2 : 1)) return;
+    bough_schema_error(r, motion->node, "",
+                       "expected either the speed or the position of the "
+                       "joint");
+}
+
+static void check_pair(bough_schema_reader *r, void *item) {
+    motion_pair *pair = item;
+    const bough_node *node = pair->first.node;
+    check_one(r, node, "speed", "position", &pair->first);
+    check_one(r, node, "angular_speed", "angle", &pair->second);
+    if (node->n == 0) bough_schema_error(r, node, "", "expected what is prescribed");
+}
+
+// clang-format off
+static const bough_schema revolute_motion = {
+    SCHEMA("the motion of a revolute joint", bough_scene_motion, revolute_keys), .check = check_motion};
+static const bough_schema prismatic_motion = {
+    SCHEMA("the motion of a prismatic joint", bough_scene_motion, prismatic_keys), .check = check_motion};
+static const bough_schema cylindrical_motion = {
+    SCHEMA("the motion of a cylindrical joint", motion_pair, cylindrical_keys), .check = check_pair};
+#define FILLS universal_pair
+static const bough_key universal_keys[] = {
+    {KEY(MAPPING, first), .of = &revolute_motion},
+    {KEY(MAPPING, second), .of = &revolute_motion},
+};
+#undef FILLS
+static const bough_schema universal_motion = {
+    SCHEMA("the motion of a universal joint", universal_pair, universal_keys)};
+// clang-format on
+
+// field: the joint, whose kind is read before
+void bough_scene_read_motion(bough_schema_reader *r, const bough_node *node, void *field) {
+    bough_scene_joint *joint = field;
+    motion_pair pair = {0};
+    universal_pair two = {0};
+    switch (joint->kind) {
+    case BOUGH_JOINT_REVOLUTE: bough_schema_read(r, &revolute_motion, node, &joint->motion); break;
+    case BOUGH_JOINT_PRISMATIC: bough_schema_read(r, &prismatic_motion, node, &joint->motion); break;
+    case BOUGH_JOINT_CYLINDRICAL:
+        bough_schema_read(r, &cylindrical_motion, node, &pair);
+        joint->motion = pair.first, joint->second_motion = pair.second;
+        break;
+    default:
+        bough_schema_read(r, &universal_motion, node, &two);
+        joint->motion = two.first, joint->second_motion = two.second;
+        break;
+    }
+}
+
+// The joint starts where and as fast as its motion says.
+void bough_scene_check_motion(bough_schema_reader *r, const bough_scene_joint *joint) {
+    static const char why[] = "follows from the joint's motion";
+    const bough_scene_motion *first = &joint->motion, *second = &joint->second_motion;
+    bool placed = first->node != NULL && !first->def.speed;
+    bool apart = joint->kind == BOUGH_JOINT_CYLINDRICAL; // its angle is the second motion's
+    if (first->node != NULL) bough_scene_refuse(r, joint->node, "speed", why);
+    if (placed) bough_scene_refuse(r, joint->node, apart ? "position" : "position|angle", why);
+    if (!apart || second->node == NULL) return;
+    bough_scene_refuse(r, joint->node, second->def.speed ? "angular_speed" : "angular_speed|angle", why);
+}

@@ -1,0 +1,526 @@
+// Values of a scene that are lists of their own kind, and checks within one table.
+#include "apps/bough/scene/scene_internal.h"
+
+#include "core/base/base.h"
+#include "core/base/linalg.h"
+
+#include <math.h>
+#include <string.h>
+
+// -- placement ------------------------------------------------------------------------------------
+
+// "move z 1.96 m" or "rotate y 5 deg".
+static bool parse_step(bough_schema_reader *r, const bough_node *node, bough_scene_step *step) {
+    static const char *const verbs[] = {"move", "rotate"};
+    char verb[8], axis[4], shown[64], why[160] = "";
+    int used = 0;
+    const char *text = node->kind == BOUGH_SCALAR ? node->text : "";
+    if (sscanf(text, "%7s %3s %n", verb, axis, &used) == 2 && used > 0) {
+        int k = strcmp(verb, verbs[0]) == 0 ? 0 : strcmp(verb, verbs[1]) == 0 ? 1 : -1;
+        bool named = axis[1] == '\0' && axis[0] >= 'x' && axis[0] <= 'z';
+        bough_dimension dimension = k == 1 ? BOUGH_ANGLE : BOUGH_LENGTH;
+        step->rotate = k == 1;
+        step->axis = axis[0] - 'x';
+        if (k >= 0 && named && bough_quantity(text + used, dimension, &step->amount, why)) {
+            return true;
+        }
+    }
+    bough_schema_error(r, node, "", "expected 'move x|y|z LENGTH' or 'rotate x|y|z ANGLE', got %s%s%s",
+                       bough_node_shown(node, shown), why[0] == '\0' ? "" : ": ", why);
+    return false;
+}
+
+// Puts `[index]` behind the path for one error.
+static size_t push_index(bough_schema_reader *r, int index) {
+    size_t length = strlen(r->path);
+    snprintf(r->path + length, sizeof r->path - length, "[%d]", index);
+    return length;
+}
+
+// field: bough_scene_placement
+void bough_scene_read_steps(bough_schema_reader *r, const bough_node *node, void *field) {
+    bough_scene_placement *placement = field;
+    char shown[64];
+    if (node->kind != BOUGH_SEQUENCE) {
+        bough_schema_error(r, node, "", "expected a list of steps, got %s", bough_node_shown(node, shown));
+        return;
+    }
+    placement->step = bough_arena_take(r->arena, (size_t)node->n * sizeof *placement->step);
+    placement->n = node->n;
+    for (int i = 0; i < node->n; i++) {
+        size_t length = push_index(r, i);
+        parse_step(r, node->value[i], &placement->step[i]);
+        r->path[length] = '\0';
+    }
+}
+
+// field: the joint
+void bough_scene_read_placement(bough_schema_reader *r, const bough_node *node, void *field) {
+    bough_scene_joint *joint = field;
+    bough_scene_placement placement = {0};
+    bough_scene_read_steps(r, node, &placement);
+    joint->n_placement = placement.n;
+    joint->placement = placement.step;
+}
+
+void bough_scene_check_joint(bough_schema_reader *r, void *item) {
+    const bough_scene_joint *joint = item;
+    bough_scene_check_motion(r, joint);
+    const bough_node *stop = bough_node_find(joint->node, "stop");
+    const bough_node *stiffness = bough_node_find(joint->node, "stop_stiffness");
+    if ((stop == NULL) != (stiffness == NULL)) {
+        bough_schema_error(r, stop == NULL ? stiffness : stop, stop == NULL ? "stop_stiffness" : "stop",
+                           "'stop' and 'stop_stiffness' go together");
+    } else if (stop != NULL && !(joint->spring.low < joint->spring.high)) {
+        bough_schema_error(r, stop, "stop", "the second must be greater than the first");
+    }
+    if (joint->kind != BOUGH_JOINT_UNIVERSAL || joint->second_axis != joint->axis) return;
+    bough_schema_error(r, bough_node_find(joint->node, "second_axis"), "second_axis",
+                       "must not be the first axis");
+}
+
+// -- matrices -------------------------------------------------------------------------------------
+
+// The first row of the symmetric n×n matrix, scaled to a diagonal of 1, where Cholesky's factorisation has no
+// pivot above 1e-12; n: there is none, and the matrix is positive definite.
+static int row_without_pivot(const double *matrix, int n) {
+    for (int i = 0; i < n; i++) {
+        if (!(matrix[i * (n + 1)] > 0)) return i;
+    }
+    double leading[36];
+    for (int size = 1; size <= n; size++) {
+        for (int i = 0; i < size * size; i++) {
+            int row = i / size, column = i % size;
+            double scale = sqrt(matrix[row * (n + 1)] * matrix[column * (n + 1)]);
+            leading[i] = matrix[row * n + column] / scale - (row == column ? 1e-12 : 0);
+        }
+        if (!bough_cholesky_factor(size, leading)) return size - 1;
+    }
+    return n;
+}
+
+// Says what is wrong in a row of a matrix that is not positive definite: its diagonal, or the rest.
+static void refuse_row(bough_schema_reader *r, const bough_node *at, const char *what, const char *row,
+                       double diagonal) {
+    if (diagonal > 0) {
+        bough_schema_error(r, at, "",
+                           "%s must be positive definite: in the row of %s the entries off the diagonal "
+                           "are too large",
+                           what, row);
+    } else {
+        bough_schema_error(r, at, "", "%s must be positive definite: the diagonal has %g for %s", what,
+                           diagonal, row);
+    }
+}
+
+// field: the upper triangle (21)
+void bough_scene_read_stiffness(bough_schema_reader *r, const bough_node *node, void *field) {
+    double values[21], matrix[36] = {0}, *triangle = field;
+    const char *what = "a list of 6 (diagonal) or 21 (upper triangle) numbers";
+    int n = bough_schema_numbers(r, node, 21, values, what);
+    if (n < 0) return;
+    if (n != 6 && n != 21) {
+        bough_schema_error(r, node, "", "expected %s, got %d items", what, n);
+        return;
+    }
+    for (int i = 0, at = 0; i < 6; i++) {
+        for (int j = i; j < 6; j++, at++) {
+            triangle[at] = n == 21 ? values[at] : i == j ? values[i] : 0;
+            matrix[6 * i + j] = matrix[6 * j + i] = triangle[at];
+        }
+    }
+    static const char *const strains[] = {"shear x",      "shear y",      "the axial strain",
+                                          "bend about x", "bend about y", "twist"};
+    int row = row_without_pivot(matrix, 6);
+    if (row == 6) return;
+    int entry = n == 6 ? row : 6 * row - row * (row - 1) / 2;
+    size_t length = push_index(r, entry);
+    refuse_row(r, node->value[entry], "the stiffness matrix", strains[row], matrix[7 * row]);
+    r->path[length] = '\0';
+}
+
+// The inertia about the mass centre, parallel axes removed, must be positive definite.
+static void check_section_inertia(bough_schema_reader *r, const bough_node *node,
+                                  const bough_section_station *s) {
+    static const char *const moments[] = {"Ixx - m cy^2", "Iyy - m cx^2", "Izz - m (cx^2 + cy^2)"};
+    double cx = s->centre[0], cy = s->centre[1], m = s->mass;
+    double central[9] = {s->inertia[0] - m * cy * cy,
+                         s->inertia[2] + m * cx * cy,
+                         0,
+                         s->inertia[2] + m * cx * cy,
+                         s->inertia[1] - m * cx * cx,
+                         0,
+                         0,
+                         0,
+                         s->inertia[3] - m * (cx * cx + cy * cy)};
+    int row = row_without_pivot(central, 3);
+    if (row < 3) refuse_row(r, node, "the inertia about the mass centre", moments[row], central[4 * row]);
+}
+
+// field: the station
+void bough_scene_read_section_mass(bough_schema_reader *r, const bough_node *node, void *field) {
+    bough_section_station *s = field;
+    double v[7];
+    const char *what = "a list [m, cx, cy, Ixx, Iyy, Ixy] or with Izz";
+    int n = bough_schema_numbers(r, node, 7, v, what);
+    if (n < 0) return;
+    if (n < 6) {
+        bough_schema_error(r, node, "", "expected %s, got %d items", what, n);
+        return;
+    }
+    s->mass = v[0];
+    memcpy(s->centre, v + 1, sizeof s->centre);
+    memcpy(s->inertia, v + 3, 3 * sizeof *v);
+    s->inertia[3] = n == 7 ? v[6] : v[3] + v[4];
+    if (!(s->mass > 0)) {
+        bough_schema_error(r, node->value[0], "", "the mass per length must be > 0 kg/m");
+    } else {
+        check_section_inertia(r, node, s);
+    }
+}
+
+// What is negative of the symmetric matrix xx yy zz xy xz yz: an entry of its diagonal, or its determinant
+// in a plane or in space; NULL: nothing.
+static const char *negative_part(const double v[6]) {
+    static const char *const parts[] = {
+        "Ixx", "Iyy", "Izz", "Ixx Iyy - Ixy^2", "Ixx Izz - Ixz^2", "Iyy Izz - Iyz^2", "the determinant"};
+    double a = v[0], b = v[1], c = v[2], d = v[3], e = v[4], f = v[5];
+    double t = 1e-12 * (fabs(a) + fabs(b) + fabs(c));
+    double determinant = a * (b * c - f * f) - d * (d * c - f * e) + e * (d * f - b * e);
+    const double value[] = {a, b, c, a * b - d * d, a * c - e * e, b * c - f * f, determinant};
+    const double least[] = {0, 0, 0, -t * t, -t * t, -t * t, -t * t * t};
+    for (int i = 0; i < 7; i++) {
+        if (!(value[i] >= least[i])) return parts[i];
+    }
+    return NULL;
+}
+
+bool bough_scene_semidefinite(const double v[6]) { return negative_part(v) == NULL; }
+
+static const double most_inertia = 1e18; // [kg m²]
+
+// field: the six entries; all zero is a point mass
+void bough_scene_read_inertia(bough_schema_reader *r, const bough_node *node, void *field) {
+    double v[6] = {0}, *inertia = field;
+    const char *what = "a list [Ixx, Iyy, Izz] or with Ixy, Ixz, Iyz";
+    int n = bough_schema_numbers(r, node, 6, v, what);
+    if (n < 0) return;
+    memcpy(inertia, v, sizeof v);
+    if (n != 3 && n != 6) {
+        bough_schema_error(r, node, "", "expected %s, got %d items", what, n);
+    } else if (fmax(fmax(v[0], v[1]), v[2]) > most_inertia) {
+        bough_schema_error(r, node, "", "must be at most %g kg m^2", most_inertia);
+    } else if (!bough_scene_semidefinite(v)) {
+        bough_schema_error(r, node, "", "the inertia matrix must not be negative about any axis, but %s is",
+                           negative_part(v));
+    }
+}
+
+// field: position (3)
+void bough_scene_read_axis_offset(bough_schema_reader *r, const bough_node *node, void *field) {
+    double v[2], *position = field;
+    int n = bough_schema_numbers(r, node, 2, v, "a list [x, y] of lengths in m");
+    if (n == 2) {
+        memcpy(position, v, sizeof v);
+    } else if (n == 1) {
+        bough_schema_error(r, node, "", "expected a list [x, y] of lengths in m, got 1 items");
+    }
+}
+
+// -- tables ---------------------------------------------------------------------------------------
+
+// Puts "list[i]" or "list.rows[i]" at the end of the path.
+static size_t push_row(bough_schema_reader *r, const bough_node *owner, const char *list, int i) {
+    const bough_node *node = bough_node_find(owner, list);
+    bool compact = node != NULL && node->kind == BOUGH_MAPPING;
+    size_t length = strlen(r->path);
+    snprintf(r->path + length, sizeof r->path - length, "%s%s%s[%d]", length == 0 ? "" : ".", list,
+             compact ? ".rows" : "", i);
+    return length;
+}
+
+// What a row's value must satisfy after its predecessor (NAN: it is the first and must be `first`).
+typedef struct sequence {
+    const char *list, *key; // "stations", "span"
+    double first;
+    double unit; // of the message
+    const char *unit_name;
+} sequence;
+
+// False after an error at the value that does not go on from the one before.
+static bool check_next(bough_schema_reader *r, const sequence *s, const bough_node *owner,
+                       const bough_node *row, int i, double before, double value) {
+    double unit = s->unit;
+    bool first = isnan(before);
+    if (first ? fabs(value - s->first) <= 1e-6 * unit : value > before) return true;
+    size_t length = push_row(r, owner, s->list, i);
+    const bough_node *at = bough_node_find(row, s->key);
+    if (first) {
+        bough_schema_error(r, at, s->key, "the first must be %g %s, got %g %s", s->first / unit, s->unit_name,
+                           value / unit, s->unit_name);
+    } else {
+        bough_schema_error(r, at, s->key, "must be more than the %g %s before it, got %g %s", before / unit,
+                           s->unit_name, value / unit, s->unit_name);
+    }
+    r->path[length] = '\0';
+    return false;
+}
+
+static const sequence spans = {"stations", "span", 0, 1, "m"};
+
+// The last span against the length; one station holds for the whole length.
+static void check_length(bough_schema_reader *r, bough_scene_structure *s) {
+    double last = s->station[s->n_station - 1].def.position.z;
+    const bough_node *given = bough_node_find(s->node, "length");
+    if (given == NULL && s->n_station == 1) {
+        bough_schema_error(r, s->node, "", "required key 'length' is missing (with one station)");
+    } else if (given == NULL) {
+        s->length = last;
+    } else if (s->n_station > 1 && fabs(last - s->length) > 1e-6 * s->length) {
+        bough_schema_error(r, given, "length", "is %g m, but the last station stands at %g m", s->length,
+                           last);
+    }
+}
+
+void bough_scene_check_structure(bough_schema_reader *r, void *item) {
+    bough_scene_structure *s = item;
+    double before = NAN;
+    bool good = true;
+    for (int i = 0; i < s->n_station; i++) {
+        double span = s->station[i].def.position.z;
+        good = check_next(r, &spans, s->node, s->station[i].node, i, before, span) && good;
+        before = span;
+    }
+    if (good) check_length(r, s);
+}
+
+void bough_scene_check_aero_blade(bough_schema_reader *r, void *item) {
+    const bough_scene_aero_blade *b = item;
+    double before = NAN;
+    for (int i = 0; i < b->n_station; i++) {
+        double span = b->station[i].def.span;
+        check_next(r, &spans, b->node, b->station[i].node, i, before, span);
+        before = span;
+    }
+}
+
+// A turn later the coefficients are the same.
+static void check_turn(bough_schema_reader *r, const bough_scene_polar *p) {
+    const bough_scene_polar_row *a = &p->row[0], *b = &p->row[p->n_row - 1];
+    const double first[3] = {a->cl, a->cd, a->cm}, last[3] = {b->cl, b->cd, b->cm};
+    static const char *const names[3] = {"cl", "cd", "cm"};
+    for (int c = 0; c < 3; c++) {
+        if (!(fabs(first[c] - last[c]) > 1e-6)) continue;
+        size_t length = push_row(r, p->node, "table", p->n_row - 1);
+        bough_schema_error(r, b->node, names[c], "at 180 deg must be as at -180 deg, %g, got %g", first[c],
+                           last[c]);
+        r->path[length] = '\0';
+    }
+}
+
+void bough_scene_check_polar(bough_schema_reader *r, void *item) {
+    static const sequence angles = {"table", "alpha", -BOUGH_PI, BOUGH_PI / 180, "deg"};
+    const bough_scene_polar *p = item;
+    double before = NAN;
+    bool good = true;
+    for (int i = 0; i < p->n_row; i++) {
+        good = check_next(r, &angles, p->node, p->row[i].node, i, before, p->row[i].alpha) && good;
+        before = p->row[i].alpha;
+    }
+    if (good && fabs(before - BOUGH_PI) <= 1e-6) check_turn(r, p);
+    if (!good || fabs(before - BOUGH_PI) <= 1e-6) return;
+    size_t length = push_row(r, p->node, "table", p->n_row - 1);
+    bough_schema_error(r, bough_node_find(p->row[p->n_row - 1].node, "alpha"), "alpha",
+                       "the last must be 180 deg, got %g deg", before * 180 / BOUGH_PI);
+    r->path[length] = '\0';
+}
+
+void bough_scene_check_polars(bough_schema_reader *r, void *item) {
+    const bough_scene_polars *p = item;
+    for (int i = 0; i < p->n_polar; i++) {
+        for (int k = 0; k < i; k++) {
+            if (strcmp(p->polar[i].name, p->polar[k].name) != 0) continue;
+            size_t length = push_row(r, p->node, "polars", i);
+            bough_schema_error(r, bough_node_find(p->polar[i].node, "name"), "name",
+                               "polar '%s' is given twice", p->polar[i].name);
+            r->path[length] = '\0';
+            break;
+        }
+    }
+}
+
+bool bough_scene_check_increasing(bough_schema_reader *r, const bough_node *node, const char *key,
+                                  const double *value, const char *unit) {
+    const bough_node *list = bough_node_find(node, key);
+    bool good = true;
+    for (int i = 1; i < list->n; i++) {
+        if (value[i] > value[i - 1]) continue;
+        char path[32];
+        snprintf(path, sizeof path, "%s[%d]", key, i);
+        bough_schema_error(r, list->value[i], path, "must be more than the %g %s before it, got %g %s",
+                           value[i - 1], unit, value[i], unit);
+        good = false;
+    }
+    return good;
+}
+
+void bough_scene_check_wind_table(bough_schema_reader *r, void *item) {
+    const bough_scene_wind_table *t = item;
+    if (t->n_time != t->n_speed) {
+        bough_schema_error(r, bough_node_find(t->node, "speeds"), "speeds", "has %d values, but times has %d",
+                           t->n_speed, t->n_time);
+    }
+    bough_scene_check_increasing(r, t->node, "times", t->time, "s");
+}
+
+// The wind of a file is all in it; its path becomes relative to where the program runs.
+static void check_wind_file(bough_schema_reader *r, bough_scene_wind *w) {
+    bough_scene_refuse(r, w->node, "speed|table|vertical", "only used without a file");
+    if (w->def.file != NULL) w->def.file = bough_schema_path(r, "file", w->def.file);
+}
+
+// A condition of the standard gives the speed over time, the extreme wind its mean too.
+static void check_wind_condition(bough_schema_reader *r, bough_scene_wind *w) {
+    bool extreme = bough_wind_iec_is_extreme_speed(w->def.iec.condition);
+    if (extreme) {
+        bough_scene_refuse(r, w->node, "table|vertical|speed", "not used with 'condition: ewm'");
+    } else {
+        bough_scene_refuse(r, w->node, "table|vertical", "not used with 'kind: iec'");
+    }
+    if (!extreme && !(w->def.speed > 0)) {
+        const bough_node *node = bough_node_find(w->node, "speed");
+        bough_schema_error(r, node ? node : w->node, "speed",
+                           "a speed above 0 is required with this condition");
+    }
+    if (extreme && !bough_node_find(w->node, "exponent")) w->def.exponent = 0.11;
+}
+
+void bough_scene_check_wind(bough_schema_reader *r, void *item) {
+    bough_scene_wind *w = item;
+    if (w->kind == BOUGH_SCENE_WIND_IEC) {
+        check_wind_condition(r, w);
+        return;
+    }
+    if (w->kind >= BOUGH_SCENE_WIND_WND) {
+        check_wind_file(r, w);
+        return;
+    }
+    const bough_node *speed = bough_node_find(w->node, "speed");
+    if (speed != NULL && w->table.node != NULL) {
+        bough_schema_error(r, speed, "speed", "only used without a table");
+    }
+    if (speed == NULL && w->table.node == NULL) {
+        bough_schema_error(r, w->node, "", "required key 'speed' is missing (without a table)");
+    }
+    if (w->kind == BOUGH_SCENE_WIND_LOG && w->def.roughness >= w->def.reference_height) {
+        bough_schema_error(r, bough_node_find(w->node, "reference_height"), "reference_height",
+                           "must be more than the roughness, %g m, got %g m", w->def.roughness,
+                           w->def.reference_height);
+    }
+}
+
+void bough_scene_check_tower(bough_schema_reader *r, void *item) {
+    bough_scene_tower *t = item;
+    int n = t->def.n;
+    if (n != t->n_diameter) {
+        bough_schema_error(r, bough_node_find(t->node, "diameter"), "diameter",
+                           "has %d values, but height has %d", t->n_diameter, n);
+    }
+    if (t->n_drag != 1 && t->n_drag != n) {
+        bough_schema_error(r, bough_node_find(t->node, "drag"), "drag",
+                           "has %d values, but height has %d; give one or as many", t->n_drag, n);
+    }
+    bough_scene_check_increasing(r, t->node, "height", t->def.height, "m");
+    double *drag = bough_arena_doubles(r->arena, (size_t)n);
+    for (int i = 0; i < n; i++) drag[i] = t->def.drag[t->n_drag == n ? i : 0];
+    t->def.drag = drag;
+}
+
+// -- rods and ramps -------------------------------------------------------------------------------
+
+// A table, or a uniform section given here, never parts of both.
+static void check_table(bough_schema_reader *r, const bough_scene_rod *rod, bool table) {
+    if (table) bough_scene_refuse(r, rod->node, "length|stiffness|mass|twist", "only used without a table");
+    if (!table) bough_scene_refuse(r, rod->node, "part", "only used with a table");
+}
+
+void bough_scene_check_rod(bough_schema_reader *r, void *item) {
+    bough_scene_rod *rod = item;
+    bool table = bough_node_find(rod->node, "table") != NULL;
+    check_table(r, rod, table);
+    if (!table) {
+        rod->structure.node = rod->node;
+        rod->structure.length = rod->length;
+        rod->structure.n_station = 1;
+        rod->structure.station = bough_arena_take(r->arena, sizeof rod->uniform);
+        rod->uniform.node = rod->node;
+        *rod->structure.station = rod->uniform;
+    }
+    if (bough_node_find(rod->node, "damping") != NULL) {
+        memcpy(rod->structure.damping, rod->damping, sizeof rod->damping);
+    }
+    const bough_node *part = bough_node_find(rod->node, "part");
+    if (table && part != NULL) bough_scene_take_part(r, part, rod->part, &rod->structure);
+}
+
+// The uniform section of a rod without a table.
+static void check_section_given(bough_schema_reader *r, const bough_node *rod) {
+    static const char *const needed[] = {"length", "stiffness", "mass"};
+    char missing[48] = "";
+    int n = 0;
+    if (bough_node_find(rod, "table") != NULL) return;
+    for (int i = 0; i < 3; i++) {
+        if (bough_node_find(rod, needed[i]) != NULL) continue;
+        size_t used = strlen(missing);
+        snprintf(missing + used, sizeof missing - used, "%s'%s'", n++ == 0 ? "" : ", ", needed[i]);
+    }
+    if (n == 0) return;
+    bough_schema_error(r, rod, "rod", "required key%s %s %s missing (without a table)", n == 1 ? "" : "s",
+                       missing, n == 1 ? "is" : "are");
+}
+
+static void check_modal(bough_schema_reader *r, const bough_scene_body *b, bool has_rod) {
+    const bough_node *pieces = bough_node_find(b->modal.node, "pieces");
+    if (b->fidelity == BOUGH_SCENE_MODAL && pieces != NULL) {
+        bough_schema_error(r, pieces, "modal.pieces", "only used with 'fidelity: segmented-modal'");
+    }
+    if (b->fidelity == BOUGH_SCENE_SEGMENTED_MODAL && has_rod && b->modal.pieces > b->rod.n_segment) {
+        bough_schema_error(r, b->node, "modal.pieces", "%d pieces of %d segments: give the rod more segments",
+                           b->modal.pieces, b->rod.n_segment);
+    }
+}
+
+// A rigid body gets its mass from keys of its own or from a rod.
+static bool has_two_masses(const bough_scene_body *b) {
+    return b->fidelity == BOUGH_SCENE_RIGID &&
+           (bough_node_find(b->node, "mass") != NULL || bough_node_find(b->node, "centre_of_mass") != NULL ||
+            bough_node_find(b->node, "inertia") != NULL);
+}
+
+void bough_scene_check_body(bough_schema_reader *r, void *item) {
+    static const char *const flexible[] = {"", "rod", "modal", "segmented-modal"};
+    const bough_scene_body *b = item;
+    const bough_node *rod = bough_node_find(b->node, "rod");
+    if (rod == NULL) bough_scene_refuse(r, b->node, "pitch", "only used with a rod");
+    if (b->fidelity == BOUGH_SCENE_FMU) {
+        bough_scene_refuse(r, b->node, "rod", "not used with 'fidelity: fmu'");
+    } else if (rod != NULL && has_two_masses(b)) {
+        bough_schema_error(r, rod, "rod",
+                           "a rigid body gets its mass from a rod or from 'mass', 'centre_of_mass' and "
+                           "'inertia', not from both");
+    } else if (rod != NULL) {
+        check_section_given(r, rod);
+        check_modal(r, b, true);
+    } else if (b->fidelity != BOUGH_SCENE_RIGID) {
+        bough_schema_error(r, b->node, "", "required key 'rod' is missing (with 'fidelity: %s')",
+                           flexible[b->fidelity]);
+        check_modal(r, b, false);
+    }
+}
+
+void bough_scene_check_ramp(bough_schema_reader *r, const bough_node *node, const double ramp[2]) {
+    const bough_node *given = bough_node_find(node, "ramp");
+    if (given != NULL && ramp[1] < ramp[0]) {
+        bough_schema_error(r, given, "ramp", "must end after it starts, got [%g s, %g s]", ramp[0], ramp[1]);
+    }
+}

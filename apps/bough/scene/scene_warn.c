@@ -1,0 +1,142 @@
+// What a scene may say but seldom means.
+#include "apps/bough/scene/scene_internal.h"
+
+#include "core/solve/integrator.h"
+#include "cosim/scheme.h"
+
+#include <math.h>
+#include <stdarg.h>
+#include <string.h>
+
+static void warn(const bough_node *at, FILE *stream, const char *format, ...)
+    __attribute__((format(printf, 3, 4)));
+static void warn(const bough_node *at, FILE *stream, const char *format, ...) {
+    char place[300];
+    va_list arguments;
+    va_start(arguments, format);
+    fprintf(stream, "%swarning: ", bough_scene_place(at, place, sizeof place));
+    vfprintf(stream, format, arguments);
+    va_end(arguments);
+    fputc('\n', stream);
+}
+
+// -- bodies ---------------------------------------------------------------------------------------
+
+// An inertia matrix is ∫(|r|² 1 − r rᵀ)dm, so that half its trace less itself is ∫r rᵀdm: not below
+// zero about any axis, where no principal moment exceeds the sum of the other two. Thin bodies come
+// close to that, in published data by a part in a thousand beyond it.
+static bool has_distribution(const double v[6]) {
+    double half = 0.505 * (v[0] + v[1] + v[2]);
+    double spread[6] = {half - v[0], half - v[1], half - v[2], -v[3], -v[4], -v[5]};
+    return bough_scene_semidefinite(spread);
+}
+
+// Known about one axis only, as of mechanisms in a plane and of shafts.
+static bool is_about_one_axis(const double v[6]) { return (v[0] != 0) + (v[1] != 0) + (v[2] != 0) == 1; }
+
+static void warn_inertia(const bough_scene_body *b, FILE *stream) {
+    if (b->fidelity == BOUGH_SCENE_FMU) return; // what is left to the carrier is no body by itself
+    const double *v = b->inertia;
+    if (has_distribution(v) || is_about_one_axis(v)) return;
+    warn(
+        bough_link_value(b->node, "inertia"), stream,
+        "body '%s': no mass distribution has the inertia [%g, %g, %g] about principal or other axes: none may "
+        "exceed the sum of the other two. Right if it holds gears or a generator referred to this shaft",
+        b->name, v[0], v[1], v[2]);
+}
+
+// -- settings that are not used -------------------------------------------------------------------
+
+// The value at "coupling.order"; NULL: there is none.
+static const bough_node *find_path(const bough_node *node, const char *path) {
+    char key[32];
+    for (size_t n; node != NULL && *path != '\0'; path += n + (path[n] == '.')) {
+        n = strcspn(path, ".");
+        snprintf(key, sizeof key, "%.*s", (int)n, path);
+        node = bough_node_find(node, key);
+    }
+    return node;
+}
+
+// Whether a setting is given that does not suit the choice of scheme, solver or duration. Where the command
+// line replaces the choice alone, what the scene gives for its own choice is not meant.
+static bool is_unused(const bough_node *given, const bough_node *choice) {
+    bool replaced = choice != NULL && choice->line == 0;
+    return given != NULL && !(given->line > 0 && replaced);
+}
+
+static void warn_output(const bough_scene_simulation *s, FILE *stream) {
+    static const char *const keys[] = {"interval", "from", "frames", "vertices"};
+    const bough_scene_output *output = &s->output;
+    const double time[] = {output->interval, output->from, output->frames, output->vertices};
+    for (int i = 0; i < 4; i++) {
+        const bough_node *given = bough_node_find(output->node, keys[i]);
+        if (!(time[i] > s->duration) || !is_unused(given, bough_node_find(s->node, "duration"))) continue;
+        warn(given, stream, "simulation.output.%s: %g s is longer than the run, %g s", keys[i], time[i],
+             s->duration);
+    }
+}
+
+static void warn_scheme(const bough_scene_simulation *s, FILE *stream) {
+    const char *name = bough_scheme_name(s->coupling.scheme);
+    const bough_scheme *scheme = bough_scheme_find(name);
+    const bough_scheme_key *key;
+    for (int i = 0; (key = bough_scheme_key_at(i)) != NULL; i++) {
+        const bough_node *given = find_path(s->node, key->path);
+        if (bough_scheme_reads(scheme, key->option)) continue;
+        if (!is_unused(given, find_path(s->node, "coupling.scheme"))) continue;
+        char readers[160] = "";
+        for (int k = 0; (name = bough_scheme_name(k)) != NULL; k++) {
+            if (!bough_scheme_reads(bough_scheme_find(name), key->option)) continue;
+            size_t used = strlen(readers);
+            snprintf(readers + used, sizeof readers - used, "%s%s", used == 0 ? "" : ", ", name);
+        }
+        warn(given, stream, "simulation.%s: not used with 'scheme: %s', only with %s", key->path,
+             scheme->name, readers);
+    }
+}
+
+static void warn_solver(const bough_scene_solver *s, const char *path, FILE *stream) {
+    static const struct {
+        const char *key;
+        unsigned option;
+    } keys[] = {{"step", BOUGH_METHOD_READS_STEP}, {"rho", BOUGH_METHOD_READS_RHO}};
+    const bough_integrator_ops *method = bough_integrator_find((bough_integrator_kind)s->solver);
+    for (int i = 0; i < 2; i++) {
+        const bough_node *given = bough_node_find(s->node, keys[i].key);
+        if (method->reads & keys[i].option || !is_unused(given, bough_node_find(s->node, "solver"))) continue;
+        warn(given, stream, "%s.%s: not used with 'solver: %s'", path, keys[i].key, method->name);
+    }
+}
+
+static void warn_micro(const bough_scene *scene, const bough_scene_body *b, FILE *stream) {
+    const bough_scene_simulation *s = &scene->simulation;
+    const char *scheme = bough_scheme_name(s->coupling.scheme);
+    char path[64];
+    snprintf(path, sizeof path, "body '%.40s': micro", b->name);
+    if (bough_scheme_reads(bough_scheme_find(scheme), BOUGH_READS_MEMBERS)) {
+        warn_solver(&b->micro, path, stream);
+    } else if (is_unused(b->micro.node, find_path(s->node, "coupling.scheme"))) {
+        warn(b->micro.node, stream, "%s: not used with 'scheme: %s'", path, scheme);
+    }
+}
+
+// -- the whole ------------------------------------------------------------------------------------
+
+void bough_scene_warn(const bough_scene *scene, FILE *stream) {
+    const bough_node *last = NULL;
+    for (int i = 0; i < scene->n_body; i++) {
+        const bough_scene_body *b = &scene->body[i];
+        if (b->node == last) continue; // repeated
+        last = b->node;
+        if (bough_node_find(b->node, "inertia")) warn_inertia(b, stream);
+        if (b->micro.node) warn_micro(scene, b, stream);
+    }
+    const bough_scene_simulation *s = &scene->simulation;
+    warn_output(s, stream);
+    warn_scheme(s, stream);
+    warn_solver(&s->master, "simulation.master", stream);
+    bool members =
+        bough_scheme_reads(bough_scheme_find(bough_scheme_name(s->coupling.scheme)), BOUGH_READS_MEMBERS);
+    if (members) warn_solver(&s->micro, "simulation.micro", stream);
+}

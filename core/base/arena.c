@@ -1,0 +1,132 @@
+#include "core/base/arena.h"
+
+#include <setjmp.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { ALIGNMENT = 64 };
+
+typedef struct block {
+    struct block *next;
+    void (*release)(void *); // NULL for plain memory
+    void *object;
+} block;
+
+typedef struct guard {
+    jmp_buf here;
+    struct guard *outer;
+} guard;
+
+struct bough_arena {
+    block *newest;
+    size_t bytes;
+    guard *guard;                       // the innermost; NULL: none, or a child
+    bough_arena *parent, *child, *next; // first child; next child of the same parent
+};
+
+// -- life -----------------------------------------------------------------------------------------
+
+bough_arena *bough_arena_create(void) { return calloc(1, sizeof(bough_arena)); }
+
+_Noreturn void bough_arena_leave(bough_arena *arena) {
+    while (arena->parent) arena = arena->parent;
+    if (arena->guard) longjmp(arena->guard->here, 1);
+    fputs("bough: error: memory is exhausted\n", stderr);
+    exit(bough_exit_code(BOUGH_OUT_OF_MEMORY));
+}
+
+bough_arena *bough_arena_child(bough_arena *parent) {
+    bough_arena *child = bough_arena_create();
+    if (!child) bough_arena_leave(parent);
+    child->parent = parent;
+    child->next = parent->child;
+    parent->child = child;
+    return child;
+}
+
+static void leave_parent(bough_arena *arena) {
+    bough_arena **at = &arena->parent->child;
+    while (*at != arena) at = &(*at)->next;
+    *at = arena->next;
+}
+
+void bough_arena_destroy(bough_arena *arena) {
+    if (!arena) return;
+    while (arena->child) bough_arena_destroy(arena->child);
+    if (arena->parent) leave_parent(arena);
+    for (block *b = arena->newest, *next; b; b = next) {
+        next = b->next;
+        if (b->release) b->release(b->object);
+        free(b);
+    }
+    free(arena);
+}
+
+// -- guard ----------------------------------------------------------------------------------------
+
+static bough_status out_of_memory(void) { return bough_fail(BOUGH_OUT_OF_MEMORY, "memory is exhausted"); }
+
+bough_status bough_arena_guard(bough_arena *arena, bough_status (*work)(bough_arena *arena, void *self),
+                               void *self) {
+    guard inner = {.outer = arena->guard};
+    arena->guard = &inner;
+    bough_status status = setjmp(inner.here) == 0 ? work(arena, self) : out_of_memory();
+    arena->guard = inner.outer;
+    return status;
+}
+
+bough_status bough_arena_use(bough_status (*work)(bough_arena *arena, void *self), void *self) {
+    bough_arena *arena = bough_arena_create();
+    bough_status status = arena ? bough_arena_guard(arena, work, self) : out_of_memory();
+    bough_arena_destroy(arena);
+    return status;
+}
+
+// -- blocks ---------------------------------------------------------------------------------------
+
+// A block of `size` payload bytes behind an aligned header; NULL when there is none.
+static block *push(bough_arena *arena, size_t size) {
+    if (size > (size_t)-1 - 3 * ALIGNMENT) return NULL;
+    size_t whole = ALIGNMENT + (size + ALIGNMENT - 1) / ALIGNMENT * ALIGNMENT;
+    block *b = aligned_alloc(ALIGNMENT, whole);
+    if (!b) return NULL;
+    memset(b, 0, whole);
+    b->next = arena->newest;
+    arena->newest = b;
+    arena->bytes += whole;
+    return b;
+}
+
+void *bough_arena_take(bough_arena *arena, size_t size) {
+    block *b = push(arena, size);
+    if (!b) bough_arena_leave(arena);
+    return (char *)b + ALIGNMENT;
+}
+
+double *bough_arena_doubles(bough_arena *arena, size_t count) {
+    if (count > (size_t)-1 / sizeof(double)) bough_arena_leave(arena);
+    return bough_arena_take(arena, count * sizeof(double));
+}
+
+void bough_arena_arrays(bough_arena *arena, size_t count, double **const *array) {
+    for (; *array; array++) **array = bough_arena_doubles(arena, count);
+}
+
+char *bough_arena_string(bough_arena *arena, const char *text) {
+    if (!text) return NULL;
+    size_t size = strlen(text) + 1;
+    return memcpy(bough_arena_take(arena, size), text, size);
+}
+
+void bough_arena_on_destroy(bough_arena *arena, void (*release)(void *), void *object) {
+    block *b = push(arena, 0);
+    if (!b) {
+        release(object);
+        bough_arena_leave(arena);
+    }
+    b->release = release;
+    b->object = object;
+}
+
+size_t bough_arena_bytes(const bough_arena *arena) { return arena->bytes; }

@@ -1,0 +1,58 @@
+// Memory of a built model: blocks are taken while building, all released at once, and nothing is
+// taken while stepping. Every block is zeroed and aligned to 64 bytes.
+//
+// Where memory ends, work is left at once: the program goes on behind bough_arena_guard, which returns
+// BOUGH_OUT_OF_MEMORY. So code that takes memory always gets it, and neither tests nor reports that. A file
+// or an object of a library that is open meanwhile must belong to the arena (bough_arena_on_destroy).
+#ifndef BOUGH_CORE_ARENA_H
+#define BOUGH_CORE_ARENA_H
+
+#include "core/base/status.h"
+
+#include <stddef.h>
+
+typedef struct bough_arena bough_arena;
+
+// A new, empty arena; NULL when memory is exhausted.
+bough_arena *bough_arena_create(void);
+
+// A new, empty arena for the scratch memory of one task. It is destroyed with its parent at the latest.
+// Where its memory ends, the parent's work is left.
+bough_arena *bough_arena_child(bough_arena *parent);
+
+// Releases the arena and every block taken from it; NULL is allowed.
+void bough_arena_destroy(bough_arena *arena);
+
+// Returns work(arena, self); BOUGH_OUT_OF_MEMORY as soon as memory of the arena or of its children
+// ends in it. Without any guard the process ends with exit code 1.
+bough_status bough_arena_guard(bough_arena *arena, bough_status (*work)(bough_arena *arena, void *self),
+                               void *self);
+
+// The same with a new arena, which is destroyed at the end.
+bough_status bough_arena_use(bough_status (*work)(bough_arena *arena, void *self), void *self);
+
+// A zeroed block of `size` bytes; never NULL.
+void *bough_arena_take(bough_arena *arena, size_t size);
+
+// A zeroed array of `count` doubles.
+double *bough_arena_doubles(bough_arena *arena, size_t count);
+
+// Several of that length, into the pointers at the addresses that follow.
+#define bough_arena_each(arena, count, ...)                                                                  \
+    bough_arena_arrays(arena, count, (double **const[]){__VA_ARGS__, NULL})
+void bough_arena_arrays(bough_arena *arena, size_t count, double **const *array);
+
+// A copy of the string, NULL for NULL.
+char *bough_arena_string(bough_arena *arena, const char *text);
+
+// Calls `release(object)` when the arena is destroyed, newest first: for handles of libraries.
+// Exhausted memory releases the object at once.
+void bough_arena_on_destroy(bough_arena *arena, void (*release)(void *), void *object);
+
+// Leaves the work as where the arena's memory ends: for memory of a library that has ended.
+_Noreturn void bough_arena_leave(bough_arena *arena);
+
+// Bytes taken so far.
+size_t bough_arena_bytes(const bough_arena *arena);
+
+#endif

@@ -1,0 +1,92 @@
+#include "core/base/arnoldi.h"
+
+#include "core/base/linalg.h"
+
+#include <math.h>
+#include <string.h>
+
+static const double dependent = 1e-13; // share of a vector that counts as none
+
+void bough_arnoldi_create(bough_arena *arena, int length, int capacity, bough_arnoldi *a) {
+    size_t n = (size_t)length, m = (size_t)capacity;
+    a->length = length;
+    a->capacity = capacity;
+    a->basis = bough_arena_doubles(arena, m * n);
+    bough_arena_each(arena, m * m, &a->h, &a->vector, &a->matrix);
+    a->weight = bough_arena_doubles(arena, n);
+    a->image = bough_arena_doubles(arena, n);
+    a->value = bough_arena_doubles(arena, 2 * m);
+    a->work = bough_arena_doubles(arena, 8 * m);
+    for (int i = 0; i < length; i++) a->weight[i] = 1;
+}
+
+static double *vector_at(const bough_arnoldi *a, int k) { return a->basis + (size_t)k * (size_t)a->length; }
+
+double bough_arnoldi_product(const bough_arnoldi *a, const double *x, const double *y) {
+    double sum = 0;
+    for (int i = 0; i < a->length; i++) sum += a->weight[i] * x[i] * y[i];
+    return sum;
+}
+
+void bough_arnoldi_append(bough_arnoldi *a, double *x, double *column) {
+    double before = sqrt(bough_arnoldi_product(a, x, x));
+    for (int pass = 0; pass < 2; pass++) {
+        for (int k = 0; k < a->count; k++) {
+            double *v = vector_at(a, k), share = bough_arnoldi_product(a, v, x);
+            for (int i = 0; i < a->length; i++) x[i] -= share * v[i];
+            if (column != NULL) column[k] += share;
+        }
+    }
+    double norm = sqrt(bough_arnoldi_product(a, x, x));
+    bool full = a->count == a->capacity || a->count == a->length;
+    if (!(norm > dependent * before) || full) return;
+    if (column != NULL) column[a->count] = norm;
+    double *v = vector_at(a, a->count++);
+    for (int i = 0; i < a->length; i++) v[i] = x[i] / norm;
+}
+
+bough_status bough_arnoldi_extend(bough_arnoldi *a, int target) {
+    while (a->done < a->count && a->done < target) {
+        bough_status status = a->apply(a->self, vector_at(a, a->done), a->image);
+        if (!bough_is_ok(&status)) return status;
+        bough_arnoldi_append(a, a->image, a->h + (size_t)a->done * (size_t)a->capacity);
+        a->done++;
+    }
+    return bough_ok();
+}
+
+bool bough_arnoldi_project(bough_arnoldi *a) {
+    size_t m = (size_t)a->done;
+    for (size_t j = 0; j < m; j++) {
+        memcpy(a->matrix + j * m, a->h + j * (size_t)a->capacity, m * sizeof *a->matrix);
+    }
+    return bough_dense_eigen(a->done, a->matrix, a->value, a->vector, a->work);
+}
+
+double bough_arnoldi_modulus(const bough_arnoldi *a, int k) {
+    return hypot(a->value[k], a->value[a->done + k]);
+}
+
+double bough_arnoldi_residual(const bough_arnoldi *a, int k) {
+    int m = a->done, parts = a->value[m + k] == 0 ? 1 : 2;
+    const double *y = a->vector + (size_t)k * (size_t)m;
+    double sum = 0;
+    for (int row = m; row < a->count; row++) {
+        for (int part = 0; part < parts; part++) {
+            double entry = 0;
+            for (int j = 0; j < m; j++) {
+                entry += a->h[(size_t)j * (size_t)a->capacity + (size_t)row] * y[part * m + j];
+            }
+            sum += entry * entry;
+        }
+    }
+    return sqrt(sum);
+}
+
+void bough_arnoldi_combine(const bough_arnoldi *a, int column, int n, double *x) {
+    const double *y = a->vector + (size_t)column * (size_t)a->done;
+    for (int k = 0; k < a->done; k++) {
+        const double *v = vector_at(a, k);
+        for (int i = 0; i < n; i++) x[i] += y[k] * v[i];
+    }
+}

@@ -1,0 +1,54 @@
+// Arnoldi's method: an orthonormal basis of the space that a linear operator spans from its starting
+// vectors, by modified Gram–Schmidt done twice, and the eigenvalues of the operator projected on it.
+#ifndef BOUGH_CORE_ARNOLDI_H
+#define BOUGH_CORE_ARNOLDI_H
+
+#include "core/base/arena.h"
+#include "core/base/status.h"
+
+#include <stdbool.h>
+
+typedef struct bough_arnoldi {
+    int length;      // of a vector
+    int capacity;    // most vectors
+    int count, done; // vectors in the basis; those to which the operator was applied. Equal: the
+                     // basis holds all there is
+    double *basis;   // (capacity × length)
+    double *h;       // operator in the basis (capacity × capacity), column j of vector j
+    double *weight;  // of the inner product (length)
+    double *image;   // (length) scratch
+    // by bough_arnoldi_project: eigenvalues of the first `done` rows and columns of h
+    double *value;         // real parts (done), then imaginary parts
+    double *vector;        // (done × done) column by column; of a complex pair real, then imaginary part
+    double *matrix, *work; // scratch
+    // The operator: image = A z.
+    bough_status (*apply)(void *self, const double *z, double *image);
+    void *self;
+} bough_arnoldi;
+
+// Takes the memory for vectors of that length, the weights all 1.
+void bough_arnoldi_create(bough_arena *arena, int length, int capacity, bough_arnoldi *a);
+
+double bough_arnoldi_product(const bough_arnoldi *a, const double *x, const double *y);
+
+// Makes x orthogonal to the basis, coefficients added to `column` unless NULL, and appends it at
+// length 1; a vector that depends on the basis is dropped.
+void bough_arnoldi_append(bough_arnoldi *a, double *x, double *column);
+
+// Applies the operator to vectors of the basis until `target` are done or there are no more.
+bough_status bough_arnoldi_extend(bough_arnoldi *a, int target);
+
+// Eigenvalues and vectors of the projected operator. False when they are not found.
+bool bough_arnoldi_project(bough_arnoldi *a);
+
+// Modulus of eigenvalue k.
+double bough_arnoldi_modulus(const bough_arnoldi *a, int k);
+
+// Length of the part of the operator's image of an eigenvector that lies outside the basis: of the
+// real vector k, or of the pair k, k + 1.
+double bough_arnoldi_residual(const bough_arnoldi *a, int k);
+
+// x (n, the first entries of a vector) += Σ y_k q_k over the vectors done; y is a column of `vector`.
+void bough_arnoldi_combine(const bough_arnoldi *a, int column, int n, double *x);
+
+#endif

@@ -1,0 +1,207 @@
+#include "core/base/eigen.h"
+
+#include "core/base/arnoldi.h"
+
+#include <math.h>
+#include <string.h>
+
+enum {
+    W8 = 8,
+    BLOCK_SIZE = 4, // starting vectors: multiplicities up to this are found
+    SPARE = 60,     // vectors beyond those wanted before the first look
+    LOOKS = 4,      // after the first, each with half as many vectors more
+};
+
+static const double accuracy = 1e-9;
+
+// What is sought, and the basis in which.
+typedef struct search {
+    const bough_eigen_operator *op;
+    bough_arnoldi basis;
+    int *order; // of the projected eigenvalues, by falling modulus
+} search;
+
+static bough_status apply(void *self, const double *z, double *image) {
+    const bough_eigen_operator *op = ((const search *)self)->op;
+    op->apply(op->self, z, image);
+    return bough_ok();
+}
+
+// Displacements count like velocities at the frequency that a smoothed vector shows.
+static void balance(bough_arnoldi *a, const double *smooth) {
+    int half = a->length / 2;
+    double speed = 0, displacement = 0;
+    for (int i = 0; i < half; i++) {
+        displacement += a->weight[i] * smooth[i] * smooth[i];
+        speed += a->weight[i] * smooth[half + i] * smooth[half + i];
+    }
+    for (int i = 0; i < half; i++) a->weight[i] *= speed / displacement;
+}
+
+// Random vectors smoothed by the operator.
+static void start(search *s) {
+    bough_arnoldi *a = &s->basis;
+    unsigned seed = 1;
+    for (int k = 0; k < BLOCK_SIZE; k++) {
+        double *random = a->basis + (size_t)(a->capacity - 1) * (size_t)a->length;
+        for (int i = 0; i < a->length; i++) {
+            seed = seed * 1664525u + 1013904223u;
+            random[i] = a->weight[i] > 0 ? (double)(seed >> 8) / 8388608.0 - 1 : 0;
+        }
+        for (int twice = 0; twice < 2; twice++) {
+            apply(s, random, a->image);
+            memcpy(random, a->image, (size_t)a->length * sizeof *random);
+        }
+        if (k == 0 && s->op->balance) balance(a, random);
+        bough_arnoldi_append(a, a->image, NULL);
+    }
+}
+
+// -- the projected problem ------------------------------------------------------------------------
+
+// Insertion: there are some hundred, and LAPACK's order is nearly sorted.
+static void sort(search *s) {
+    const bough_arnoldi *a = &s->basis;
+    for (int k = 0; k < a->done; k++) {
+        int at = k;
+        double own = bough_arnoldi_modulus(a, k);
+        for (; at > 0 && bough_arnoldi_modulus(a, s->order[at - 1]) < own; at--) {
+            s->order[at] = s->order[at - 1];
+        }
+        s->order[at] = k;
+    }
+}
+
+// λ of an eigenvalue μ of the inverse: 1/μ, or (1 − 1/μ)/γ.
+static void eigenvalue(const search *s, int k, double *real, double *imaginary) {
+    const bough_arnoldi *a = &s->basis;
+    double x = a->value[k], y = a->value[a->done + k], square = x * x + y * y;
+    double gamma = s->op->gamma;
+    *real = gamma > 0 ? (1 - x / square) / gamma : x / square;
+    *imaginary = y / square / (gamma > 0 ? gamma : 1); // of μ or of its partner
+}
+
+// Whether it belongs to what is listed: the first of a pair, or growing.
+static bool is_listed(const search *s, int k) {
+    double real, imaginary;
+    eigenvalue(s, k, &real, &imaginary);
+    return imaginary > 0 || (imaginary == 0 && real > 0);
+}
+
+// The first listed ones that are accurate; *sum of their moduli. The rest wander from look to look:
+// the operator is far from normal in the product that is at hand.
+static int select(const search *s, int wanted, int *chosen, double *sum) {
+    const bough_arnoldi *a = &s->basis;
+    int found = 0;
+    *sum = 0;
+    for (int i = 0; i < a->done && found < wanted; i++) {
+        int k = s->order[i];
+        double modulus = bough_arnoldi_modulus(a, k);
+        if (!is_listed(s, k) || bough_arnoldi_residual(a, k) > accuracy * modulus) continue;
+        *sum += modulus;
+        chosen[found++] = k;
+    }
+    return found;
+}
+
+// Looks until all that are wanted are accurate and the next look, in half as many dimensions more,
+// has found no other among them.
+static bool iterate(search *s, int wanted, int *chosen, int *found) {
+    bough_arnoldi *a = &s->basis;
+    int first = 4 * wanted + SPARE;
+    double before = -1, sum;
+    for (int look = 0; look <= LOOKS; look++) {
+        bough_arnoldi_extend(a, first + first * look / 2);
+        if (!bough_arnoldi_project(a)) return false;
+        sort(s);
+        *found = select(s, wanted, chosen, &sum);
+        if (a->done == a->count) return true;
+        if (*found == wanted && fabs(sum - before) <= 10 * accuracy * sum) return true;
+        before = *found == wanted ? sum : -1;
+    }
+    return false;
+}
+
+// Of 1/μ it is μ's conjugate partner that has the positive imaginary part.
+static void fill_pair(const search *s, int k, bough_eigen_pair *pair) {
+    int n = s->op->n_shape;
+    eigenvalue(s, k, &pair->real, &pair->imaginary);
+    bough_arnoldi_combine(&s->basis, k, n, pair->shape_real);
+    if (s->basis.value[s->basis.done + k] == 0) return;
+    bough_arnoldi_combine(&s->basis, k + 1, n, pair->shape_imag);
+    for (int i = 0; i < n && s->op->gamma == 0; i++) pair->shape_imag[i] *= -1;
+}
+
+// -- whole ----------------------------------------------------------------------------------------
+
+static void take_shapes(bough_arena *arena, int n, bough_eigen_pair *pair, int count) {
+    for (int i = 0; i < count; i++) {
+        pair[i].shape_real = bough_arena_doubles(arena, (size_t)n);
+        pair[i].shape_imag = bough_arena_doubles(arena, (size_t)n);
+    }
+}
+
+bough_status bough_eigen_nearest(bough_arena *arena, const bough_eigen_operator *op, int wanted,
+                                 bough_eigen_pair *pair, int *found) {
+    int first = 4 * wanted + SPARE, capacity = first + first * LOOKS / 2 + BLOCK_SIZE;
+    search s = {.op = op, .basis = {.apply = apply, .self = &s}};
+    s.order = bough_arena_take(arena, (size_t)(capacity + wanted) * sizeof *s.order);
+    bough_arnoldi_create(arena, op->length, capacity, &s.basis);
+    memcpy(s.basis.weight, op->weight, (size_t)op->length * sizeof(double));
+    int *chosen = s.order + capacity;
+    start(&s);
+    if (!iterate(&s, wanted, chosen, found)) {
+        return bough_fail(BOUGH_FAILED,
+                          "%s: the %d lowest eigenvalues were not found to %g; ask"
+                          " for fewer",
+                          op->name, wanted, accuracy);
+    }
+    take_shapes(arena, op->n_shape, pair, *found);
+    for (int i = 0; i < *found; i++) fill_pair(&s, chosen[i], &pair[i]);
+    return bough_ok();
+}
+
+// -- second order ---------------------------------------------------------------------------------
+
+// y −= M x
+static void subtract_mass(const bough_eigen_problem *problem, const double *x, double *y) {
+    for (int i = 0; i < problem->stiffness->n; i++) {
+        bough_block_subtract(problem->mass + (size_t)i * BOUGH_BLOCK, x + (size_t)W8 * i, y + (size_t)W8 * i);
+    }
+}
+
+// Vectors are (q, λq), 16 n long: (q, v) → (−K⁻¹(C q + M v), q), its eigenvalues are 1/λ.
+static void apply_inverse(void *self, const double *z, double *image) {
+    const bough_eigen_problem *problem = self;
+    size_t half = (size_t)W8 * (size_t)problem->stiffness->n;
+    memset(image, 0, half * sizeof *image);
+    bough_block_tridiagonal_subtract(problem->damping, z, image);
+    subtract_mass(problem, z + half, image);
+    bough_block_tridiagonal_solve(problem->stiffness, image);
+    memcpy(image + half, z, half * sizeof *image);
+}
+
+bough_status bough_eigen_smallest(bough_arena *arena, const bough_eigen_problem *problem, int wanted,
+                                  bough_eigen_pair *pair, int *found) {
+    int half = W8 * problem->stiffness->n;
+    bough_eigen_problem self = *problem;
+    bough_eigen_operator op = {.name = problem->name,
+                               .length = 2 * half,
+                               .n_shape = half,
+                               .weight = bough_arena_doubles(arena, 2 * (size_t)half),
+                               .balance = true,
+                               .self = &self,
+                               .apply = apply_inverse};
+    if (!bough_block_tridiagonal_factor(problem->stiffness)) {
+        return bough_fail(BOUGH_FAILED,
+                          "%s: the stiffness about the equilibrium is singular: it"
+                          " stands at a buckling load; change the load",
+                          problem->name);
+    }
+    for (int i = 0; i < half; i++) {
+        int c = i % W8;
+        const double *mass = problem->mass + (size_t)(i / W8) * BOUGH_BLOCK;
+        op.weight[i] = op.weight[half + i] = c < 6 ? fabs(mass[W8 * c + c]) : 0;
+    }
+    return bough_eigen_nearest(arena, &op, wanted, pair, found);
+}

@@ -1,0 +1,51 @@
+// Eigenvalues nearest to a point, and their vectors, by block Arnoldi on an inverse: the projected
+// matrix is solved densely, and starting with several vectors finds multiple eigenvalues.
+#ifndef BOUGH_CORE_EIGEN_H
+#define BOUGH_CORE_EIGEN_H
+
+#include "core/base/block_tridiagonal.h"
+#include "core/base/status.h"
+
+// λ are the eigenvalues of a real matrix A, given by the action of its inverse about a point: z ←
+// A⁻¹z, or, with γ > 0, (I − γA)⁻¹z, whose point is 1/γ.
+typedef struct bough_eigen_operator {
+    const char *name; // for messages
+    int length;       // of a vector
+    int n_shape;      // entries of a vector that are its shape, the first
+    double gamma;     // γ; 0: A⁻¹
+    double *weight;   // of the entries in the inner product (length); 0: unused entry
+    bool balance;     // the second half is the rate of the first: scales the weights of the first
+                      // so that both count alike
+    void *self;
+    void (*apply)(void *self, const double *z, double *image);
+} bough_eigen_operator;
+
+// One of each conjugate pair (λ with positive imaginary part), and growing real solutions; decaying
+// real ones, which do not oscillate, are left out. In the order of their distance from the point.
+typedef struct bough_eigen_pair {
+    double real, imaginary;          // λ [rad/s]
+    double *shape_real, *shape_imag; // (n_shape), of any length and phase
+} bough_eigen_pair;
+
+// Finds `wanted` pairs, or all if there are fewer (*found), each with a residual below 1e-9 of the
+// inverse's eigenvalue. BOUGH_FAILED when the iteration does not converge.
+bough_status bough_eigen_nearest(bough_arena *arena, const bough_eigen_operator *op, int wanted,
+                                 bough_eigen_pair *pair, int *found);
+
+// A damped, possibly gyroscopic or unsymmetric system
+//     (λ² M + λ C + K) q = 0
+// with 6×6 blocks, M block diagonal, C and K block tridiagonal, so that the inverse costs one O(n)
+// solution with K's factors.
+typedef struct bough_eigen_problem {
+    const char *name;                       // for messages
+    const double *mass;                     // M (n × block)
+    const bough_block_tridiagonal *damping; // C
+    bough_block_tridiagonal *stiffness;     // K, factored in place
+} bough_eigen_problem;
+
+// The pairs of smallest modulus, shapes q (n × 8). BOUGH_FAILED when K is singular or the iteration
+// does not converge.
+bough_status bough_eigen_smallest(bough_arena *arena, const bough_eigen_problem *problem, int wanted,
+                                  bough_eigen_pair *pair, int *found);
+
+#endif

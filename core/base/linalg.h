@@ -1,0 +1,72 @@
+// Dense linear algebra for small systems; the only user of LAPACK, kept to one thread because the
+// callers run in parallel themselves.
+#ifndef BOUGH_CORE_LINALG_H
+#define BOUGH_CORE_LINALG_H
+
+#include "core/base/arena.h"
+
+#include <stdbool.h>
+
+// Takes the room that the library works in, on so many threads beside those of all arenas that live:
+// when a model is built, so that no step does. OpenBLAS wants 128 MB of
+// addresses a thread and, where it does not get them, tries for ever.
+void bough_linalg_room(bough_arena *arena, int threads);
+
+// LU factors of a (n × n, column-major) in place, with row interchanges in pivot (n). False when a
+// is singular or not finite.
+bool bough_dense_factor(int n, double *a, int *pivot);
+
+// Solves A x = b with pivoting, in place in b, for a matrix with `width` entries on either side of the
+// diagonal. a is destroyed: (3 width + 1) × n by columns, entry (i, j) at [(3 width + 1) j + 2 width + i −
+// j], the first `width` of a column free; pivot (n). False when A is singular or not finite.
+bool bough_band_solve(int n, int width, double *a, int *pivot, double *b);
+
+// Solves a x = b in place with those factors: b (n × n_right, column-major).
+void bough_dense_solve(int n, int n_right, const double *factor, const int *pivot, double *b);
+
+// Solves aᵀ x = b in place with them.
+void bough_dense_solve_transposed(int n, int n_right, const double *factor, const int *pivot, double *b);
+
+// c ← share a b + keep c, all column-major: a (m × k), or its transpose where a is given (k × m), b (k × n),
+// c (m × n).
+typedef struct bough_product {
+    int m, n, k;
+    bool transposed; // a
+    double share, keep;
+} bough_product;
+void bough_dense_product(bough_product p, const double *a, const double *b, double *c);
+
+// The same for complex matrices and one right side, real and imaginary parts next to each other:
+// a (n × n × 2, column-major), b (n × 2).
+bool bough_complex_factor(int n, double *a, int *pivot);
+void bough_complex_solve(int n, const double *factor, const int *pivot, double *b);
+
+// Eigenvalues of a (n × n, column-major; overwritten): value (2 × n), real parts before imaginary
+// ones, conjugate pairs in sequence. vector (n × n, column-major): the right eigenvectors of length
+// 1, of a pair its real and imaginary part in two columns. work (8 n). False when a is not finite
+// or the iteration does not converge.
+bool bough_dense_eigen(int n, double *a, double *value, double *vector, double *work);
+
+// Eigenvalues of a symmetric matrix (n × n; its lower triangle), rising, into value (n), and its
+// orthonormal eigenvectors in place, the k-th in a[n k] and on. work (8 n). False when a is not
+// finite or the iteration does not converge.
+bool bough_symmetric_eigen(int n, double *a, double *value, double *work);
+
+// The `count` smallest eigenvalues of a symmetric matrix (n × n, its lower triangle by columns;
+// overwritten), ascending, in value (n, the rest is scratch), and their orthonormal eigenvectors in
+// vector (n × count, column-major). work (26 n), index (12 n). False as above.
+bool bough_symmetric_smallest(int n, double *a, int count, double *value, double *vector, double *work,
+                              int *index);
+
+// The Cholesky factor L of a symmetric matrix (n × n, row-major; its lower triangle) in place,
+// a = L Lᵀ. False unless it is positive definite, with every pivot above 1e-12 of its diagonal.
+bool bough_cholesky_factor(int n, double *a);
+
+// The same of a large matrix by LAPACK, column-major, its lower triangle; the upper one is left as it
+// is.
+bool bough_cholesky_lower(int n, double *a);
+
+// Solves L Lᵀ x = b in place.
+void bough_cholesky_solve(int n, const double *factor, double *b);
+
+#endif

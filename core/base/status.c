@@ -1,0 +1,43 @@
+#include "core/base/status.h"
+
+#include <stdarg.h>
+#include <stdio.h>
+#include <string.h>
+
+bough_status bough_ok(void) {
+    bough_status status;
+    status.code = BOUGH_OK;
+    status.message[0] = '\0';
+    return status;
+}
+
+// Of a full message.
+static void end_after_word(char *message) {
+    static const char more[] = " ...";
+    char *end = message + BOUGH_MESSAGE - sizeof more;
+    while (end > message + BOUGH_MESSAGE / 2 && *end != ' ') end--;
+    memcpy(end, more, sizeof more);
+}
+
+bough_status bough_fail(bough_code code, const char *format, ...) {
+    bough_status status = {.code = code};
+    va_list arguments;
+    va_start(arguments, format);
+    int length = vsnprintf(status.message, sizeof status.message, format, arguments);
+    va_end(arguments);
+    if (length >= (int)sizeof status.message) end_after_word(status.message);
+    return status;
+}
+
+int bough_exit_code(bough_code code) {
+    switch (code) {
+    case BOUGH_OK: return 0;
+    case BOUGH_INVALID: return 2;
+    case BOUGH_RETRY:
+    case BOUGH_FAILED: return 3;
+    case BOUGH_INTERRUPTED: return 130;
+    case BOUGH_IO:
+    case BOUGH_OUT_OF_MEMORY: break;
+    }
+    return 1;
+}

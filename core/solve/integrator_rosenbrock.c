@@ -1,0 +1,356 @@
+// A linearly implicit Runge–Kutta method, ROS34PW2 (Rang and Angermann 2005): four
+// stages of one evaluation and one solution each, no iteration, order 3 with error control, L-stable,
+// stiffly accurate. It is a W-method: its order needs no exact tangents, so that one linearisation
+// serves many steps.
+//
+//     (I − γhJ) u_i = γh [ f(t + α_i h, y + Σ_j a_ij u_j) + γ_i h ∂f/∂t ] + Σ_j c_ij u_j,   j < i,
+//     y₁ = y + Σ_i m_i u_i,   error ≈ Σ_i e_i u_i
+#include "core/solve/rosenbrock.h"
+
+#include <math.h>
+#include <string.h>
+
+enum { STAGES = BOUGH_ROSENBROCK_STAGES, MOST_STEPS = 100000 };
+enum { YOUNG = 8 };        // age of tangents [steps] up to which a failed step keeps them
+enum { MOST_DRIFTED = 4 }; // the same of ∂f/∂t, and anew in every macro step
+enum { MOST_AGE = 24 };    // steps with the same tangents; on a blade, up to 64 cost no accuracy
+enum { UNDAMPED_AGE = 2 }; // the same at the start, without damping
+
+// The published coefficients α, Γ, b, b̂ in the form that needs no product with J: a = A Γ⁻¹,
+// c = E − γ Γ⁻¹, m = bᵀ Γ⁻¹, e = (b − b̂)ᵀ Γ⁻¹. The last row of a is m without its last entry, 1.
+static const double gamma_h = 0.4358665215084590;
+static const double alpha[STAGES] = {0, 0.8717330430169180, 0.7315799577888524, 1};
+static const double slope[STAGES] = {0.4358665215084590, -0.4358665215084590, -0.4133333762338865, 0};
+static const double a[STAGES][3] = {{0, 0, 0},
+                                    {2, 0, 0},
+                                    {1.4192173174557647, -0.2592322116729697, 0},
+                                    {4.1847604823191600, -0.2851920173554959, 2.2942803602790420}};
+static const double c[STAGES][3] = {{0, 0, 0},
+                                    {-2, 0, 0},
+                                    {-1.8239969947745136, 0.1243056525667201, 0},
+                                    {-2.7756761163024684, -2.9619836625547890, 1.2509798950560604}};
+static const double e[STAGES] = {0.2777499476479672, -1.4032398951759988, 1.7726301276675507, 0.5};
+
+static const double own_share = 0.05; // of the embedded error that the
+// method makes: measured on blades, whose stiffness takes both orders down, the run errs by 0.04 to
+// 0.1 of it at steps of 2.5 to 20 ms
+
+// Old tangents let vibrations of stiff bodies grow, by damping ratios down to −9e-4. A viscosity, as a time,
+// of more than `least_viscosity` steps covers that. With less, the age of the tangents is chosen so that
+// renewed ones change a step by `most_change` of it: −2e-5 for a rod whose tip moves by 1/1000 of its length,
+// −2e-4 for three times as much, which tangents of every step have too.
+static const double least_viscosity = 0.03; // [-]
+static const double most_change = 0.002;    // [-]
+
+typedef struct rosenbrock {
+    bough_ode ode;
+    bough_rosenbrock_find find; // of the stages
+    void *finder;               // its self
+    double *weight;             // 1/tolerance of each state (n)
+    double step;                // longest [s]
+    int most_steps;             // in a macro step, and after a fifth of them their number is foreseen
+    double longest;             // step allowed next [s]
+    double factored;            // γh of the factors; 0: none
+    int age, most_age;          // steps since the tangents were found, and after which they are renewed
+    bool started;
+    int drifted;               // steps since ∂f/∂t was found
+    double end;                // of the macro step in progress [s]
+    bough_rosenbrock_step now; // the step in progress
+    double *error;             // (n)
+    double *old, *fresh;       // (n) the last increment under old and under renewed tangents
+    double *own_error;         // (n)
+    bough_statistics sum;
+} rosenbrock;
+
+// -- the formulas of a step -----------------------------------------------------------------------
+
+double bough_rosenbrock_time(const bough_rosenbrock_step *s, int i) { return s->t + alpha[i] * s->h; }
+
+// Σ_j weight_j u_j over the stages before stage i; loops take what does not change out of them.
+static inline double stages_before(const bough_rosenbrock_step *s, int i, const double weight[3], int k) {
+    double sum = weight[0] * s->u[0][k];
+    if (i > 1) sum += weight[1] * s->u[1][k];
+    if (i > 2) sum += weight[2] * s->u[2][k];
+    return sum;
+}
+
+// at = y + Σ_j a_ij u_j
+static inline void set_argument(bough_rosenbrock_step *s, int i, int first, int last) {
+    double *restrict at = s->at;
+    const double *restrict y = s->y;
+#pragma omp simd
+    for (int k = first; k < last; k++) at[k] = y[k] + stages_before(s, i, a[i], k);
+}
+
+// Inlined with the stage known, each has a loop of its own.
+void bough_rosenbrock_argument(bough_rosenbrock_step *s, int i, int first, int last) {
+    switch (i) {
+    case 1: set_argument(s, 1, first, last); break;
+    case 2: set_argument(s, 2, first, last); break;
+    default: set_argument(s, 3, first, last);
+    }
+}
+
+// u_0 = γh [f + γ₁h ∂f/∂t], f standing in u_0
+static void set_first_right_side(bough_rosenbrock_step *s, int first, int last) {
+    double *restrict u = s->u[0], *restrict drift = s->drift;
+    double h = s->h, f = gamma_h * h, d = slope[0] * h;
+    if (s->drifts) { // f at the step's end stands in it
+#pragma omp simd
+        for (int k = first; k < last; k++) drift[k] = (drift[k] - u[k]) / h;
+    }
+#pragma omp simd
+    for (int k = first; k < last; k++) u[k] = f * (u[k] + d * drift[k]);
+}
+
+// u_i = γh [f + γ_i h ∂f/∂t] + Σ_j c_ij u_j, f standing in u_i
+static inline void set_right_side(bough_rosenbrock_step *s, int i, int first, int last) {
+    double *restrict u = s->u[i], h = s->h;
+    const double *restrict drift = s->drift;
+    double f = gamma_h * h, d = gamma_h * h * slope[i] * h;
+#pragma omp simd
+    for (int k = first; k < last; k++) u[k] = f * u[k] + d * drift[k] + stages_before(s, i, c[i], k);
+}
+
+void bough_rosenbrock_right_side(bough_rosenbrock_step *s, int i, int first, int last) {
+    switch (i) {
+    case 0: set_first_right_side(s, first, last); break;
+    case 1: set_right_side(s, 1, first, last); break;
+    case 2: set_right_side(s, 2, first, last); break;
+    default: set_right_side(s, 3, first, last);
+    }
+}
+
+// y₁ into `at`, whose last argument lacks the last stage only.
+double bough_rosenbrock_end(bough_rosenbrock_step *s, int first, int last) {
+    double *restrict at = s->at;
+    const double *restrict u0 = s->u[0], *restrict u1 = s->u[1], *restrict u2 = s->u[2];
+    const double *restrict u3 = s->u[3], *restrict weight = s->weight;
+    double sum = 0;
+#pragma omp simd reduction(+ : sum)
+    for (int k = first; k < last; k++) {
+        at[k] += u3[k];
+        double error = e[0] * u0[k] + e[1] * u1[k] + e[2] * u2[k] + e[3] * u3[k];
+        sum += (weight[k] * error) * (weight[k] * error);
+    }
+    return sum;
+}
+
+// -- one step of one system -----------------------------------------------------------------------
+
+// f into u_i, and for the first stage at the step's end too where ∂f/∂t is to be found.
+static bool evaluate(rosenbrock *m, int i) {
+    const bough_ode *ode = &m->ode;
+    bough_rosenbrock_step *s = &m->now;
+    const double *state = i == 0 ? s->y : s->at, end = s->t + s->h, at = bough_rosenbrock_time(s, i);
+    if (i > 0 || !s->drifts) return ode->derivative(ode->self, at, state, s->u[i]);
+    if (ode->derivative_twice) {
+        return ode->derivative_twice(ode->self, (double[]){end, at}, state, (double *[]){s->drift, s->u[i]});
+    }
+    return ode->derivative(ode->self, end, state, s->drift) && ode->derivative(ode->self, at, state, s->u[i]);
+}
+
+static double find_alone(void *self, bough_rosenbrock_step *s) {
+    rosenbrock *m = self;
+    int n = m->ode.n;
+    for (int i = 0; i < STAGES; i++) {
+        if (i > 0) bough_rosenbrock_argument(s, i, 0, n);
+        if (!evaluate(m, i)) return (double)NAN;
+        bough_rosenbrock_right_side(s, i, 0, n);
+        m->ode.solve(m->ode.self, s->u[i]);
+    }
+    return bough_rosenbrock_end(s, 0, n);
+}
+
+void bough_rosenbrock_find_by(bough_integrator *integrator, bough_rosenbrock_find work, void *self) {
+    rosenbrock *m = integrator->self;
+    m->find = work;
+    m->finder = self;
+}
+
+static void *create(bough_arena *arena, const bough_ode *ode, const bough_integrator_options *options) {
+    rosenbrock *m = bough_arena_take(arena, sizeof *m);
+    size_t n = (size_t)ode->n;
+    m->ode = *ode;
+    m->find = find_alone;
+    m->finder = m;
+    m->step = options->step > 0 ? options->step : (double)INFINITY;
+    m->most_steps = options->most_steps > 0 ? options->most_steps : MOST_STEPS;
+    bough_arena_each(arena, n, &m->weight, &m->now.drift, &m->error, &m->now.at, &m->own_error);
+    bough_arena_each(arena, n, &m->old, &m->fresh);
+    for (int i = 0; i < STAGES; i++) m->now.u[i] = bough_arena_doubles(arena, n);
+    for (size_t k = 0; k < n; k++) m->weight[k] = 1 / (options->rtol * ode->scale[k]);
+    m->now.weight = m->weight;
+    return m;
+}
+
+// -- the error of a step --------------------------------------------------------------------------
+
+static bool undamped(const rosenbrock *m, double h) { return m->ode.elastic_rate * h * least_viscosity > 1; }
+
+// (I − γhJ)⁻¹ (y₁ − y₀) of the last step
+static void filter_increment(rosenbrock *m, double *restrict x) {
+#pragma omp simd
+    for (int k = 0; k < m->ode.n; k++) x[k] = stages_before(&m->now, 3, a[3], k) + m->now.u[3][k];
+    m->ode.solve(m->ode.self, x);
+}
+
+// The age from the change of the last step by renewed tangents, which goes with it.
+static void choose_age(rosenbrock *m) {
+    double change = 0, whole = 0;
+    for (int k = 0; k < m->ode.n; k++) {
+        double difference = m->weight[k] * (m->fresh[k] - m->old[k]), fresh = m->weight[k] * m->fresh[k];
+        change += difference * difference;
+        whole += fresh * fresh;
+    }
+    double wanted = m->age * most_change * sqrt(whole / fmax(change, 1e-300));
+    m->most_age = (int)fmax(1, fmin(fmin(MOST_AGE, m->age + 1), wanted));
+}
+
+static bool renew_tangents(rosenbrock *m, double t, const double *y, double gamma) {
+    bool compare = undamped(m, gamma / gamma_h) && m->age == m->most_age && m->factored > 0;
+    if (compare) filter_increment(m, m->old);
+    m->sum.jacobians++;
+    m->sum.factorisations++;
+    if (!m->ode.linearise(m->ode.self, t, y) || !m->ode.factor(m->ode.self, gamma)) return false;
+    if (!undamped(m, gamma / gamma_h)) m->most_age = MOST_AGE;
+    if (compare && fabs(m->factored - gamma) <= 1e-9 * gamma) {
+        filter_increment(m, m->fresh);
+        choose_age(m);
+    }
+    m->age = 0;
+    m->factored = gamma;
+    return true;
+}
+
+static bool renew_factors(rosenbrock *m, double t, const double *y, double h) {
+    double gamma = gamma_h * h;
+    if (m->age >= m->most_age) return renew_tangents(m, t, y, gamma);
+    // equal steps differ by rounding of the time
+    if (fabs(m->factored - gamma) <= 1e-9 * gamma) return true;
+    m->sum.factorisations++;
+    m->factored = gamma;
+    return m->ode.factor(m->ode.self, gamma);
+}
+
+// The root mean square of (I − γhJ)⁻¹ error: without the stiff part, which the method damps and the estimate
+// overestimates where an input jumps (Hairer and Wanner, section IV.8).
+static double filter(rosenbrock *m) {
+    double *restrict error = m->error;
+    const bough_rosenbrock_step *s = &m->now;
+    const double *restrict u0 = s->u[0], *restrict u1 = s->u[1], *restrict u2 = s->u[2];
+    const double *restrict u3 = s->u[3], *restrict weight = m->weight;
+    double sum = 0;
+#pragma omp simd
+    for (int k = 0; k < m->ode.n; k++) error[k] = e[0] * u0[k] + e[1] * u1[k] + e[2] * u2[k] + e[3] * u3[k];
+    m->ode.solve(m->ode.self, error);
+#pragma omp simd reduction(+ : sum)
+    for (int k = 0; k < m->ode.n; k++) sum += (weight[k] * error[k]) * (weight[k] * error[k]);
+    return sqrt(sum / m->ode.n);
+}
+
+// The root mean square of a step's error against the tolerance; infinite where f has no value. ∂f/∂t is taken
+// as its mean over the step, because the inputs move, and used for several steps, as the tangents are.
+static double try_step(rosenbrock *m, double t, double h, const double *y) {
+    bough_rosenbrock_step *s = &m->now;
+    if (!renew_factors(m, t, y, h)) return (double)INFINITY;
+    s->t = t, s->h = h, s->y = y;
+    s->drifts = m->drifted >= MOST_DRIFTED;
+    m->sum.derivatives += STAGES + s->drifts;
+    double error = sqrt(m->find(m->finder, s) / m->ode.n);
+    if (!isfinite(error)) return (double)INFINITY;
+    if (s->drifts) m->drifted = 0;
+    if (error > 1) error = filter(m);
+    return isfinite(error) ? error : (double)INFINITY;
+}
+
+// -- steps ----------------------------------------------------------------------------------------
+
+// y ← y₁
+static void accept(rosenbrock *m, double *restrict y) {
+    const bough_rosenbrock_step *s = &m->now;
+    const double *restrict at = s->at;
+    const double *restrict u0 = s->u[0], *restrict u1 = s->u[1], *restrict u2 = s->u[2];
+    const double *restrict u3 = s->u[3];
+    double *restrict sum = m->own_error;
+    double e0 = own_share * e[0], e1 = own_share * e[1], e2 = own_share * e[2];
+    double e3 = own_share * e[3];
+#pragma omp simd
+    for (int k = 0; k < m->ode.n; k++) {
+        y[k] = at[k];
+        sum[k] += e0 * u0[k] + e1 * u1[k] + e2 * u2[k] + e3 * u3[k];
+    }
+}
+
+// Equal steps over the remaining time, none longer than allowed. A step that fails with old tangents is
+// first repeated with new ones. Returns NULL, or the reason of a failure.
+static const char *cross(rosenbrock *m, double *t, double pause, double t1, double *y) {
+    double begun = *t;
+    for (int n = 0; *t < pause; n++) {
+        double parts = ceil((t1 - *t) / m->longest * (1 - 1e-12));
+        double h = (t1 - *t) / fmax(parts, 1);
+        bool known = n >= m->most_steps / 5;
+        if (known && n * (t1 - begun) >= m->most_steps * (*t - begun)) {
+            return "too many steps to the end of the macro step: it follows vibrations that fast, which"
+                   " damping of rods or a larger rtol would end";
+        }
+        double error = try_step(m, *t, h, y);
+        if (error > 1 && h < 1e-12 * (fabs(*t) + 1e-3)) {
+            return "the error test fails down to the smallest step (a segment that turns by more than"
+                   " 120°, or a value that overflows)";
+        }
+        if (error > 1) {
+            m->sum.failed_steps++;
+            m->longest = h * fmax(0.1, 0.9 * cbrt(1 / error));
+            if (m->age > YOUNG || !isfinite(error)) m->age = MOST_AGE;
+            continue;
+        }
+        accept(m, y);
+        m->sum.steps++;
+        m->age++;
+        m->drifted++;
+        double grown = 0.9 * h * fmin(5, cbrt(1 / fmax(error, 1e-6)));
+        m->longest = fmin(m->step, fmax(h, grown));
+        *t = parts <= 1 ? t1 : *t + h;
+    }
+    return NULL;
+}
+
+static bough_status advance(void *self, double *t, double pause, double t1, bool restart, double *y) {
+    rosenbrock *m = self;
+    if (restart || !m->started) {
+        m->sum.starts++;
+        m->started = true;
+        m->age = MOST_AGE;
+        m->most_age = UNDAMPED_AGE;
+        m->drifted = MOST_DRIFTED;
+        m->longest = m->step;
+    }
+    if (t1 != m->end) m->drifted = MOST_DRIFTED; // not paused on the way
+    m->end = t1;
+    const char *reason = cross(m, t, pause, t1, y);
+    if (reason == NULL) return bough_ok();
+    m->started = false;
+    return bough_fail(BOUGH_FAILED, "%s at t = %.6g s: the Rosenbrock method cannot go on: %s", m->ode.name,
+                      *t, reason);
+}
+
+static double *own_error(void *self) {
+    rosenbrock *m = self;
+    return m->own_error;
+}
+
+static void statistics(const void *self, bough_statistics *sum) {
+    const rosenbrock *m = self;
+    bough_statistics_add(sum, &m->sum);
+}
+
+const bough_integrator_ops bough_integrator_rosenbrock = {
+    .name = "rosenbrock",
+    .title = "Rosenbrock",
+    .reads = BOUGH_METHOD_READS_STEP,
+    .create = create,
+    .advance = advance,
+    .statistics = statistics,
+    .own_error = own_error,
+};

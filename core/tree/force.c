@@ -1,0 +1,251 @@
+#include "core/tree/force.h"
+
+#include "core/base/base.h"
+#include "core/base/rotation.h"
+
+typedef bough_vec3 v3;
+
+static v3 scaled(const double k[3], v3 x) { return bough_v3(k[0] * x.x, k[1] * x.y, k[2] * x.z); }
+
+// -- spring: T = k (l − l₀) + c n·ẋ along n ------------------------------------------------------
+
+typedef struct stretch {
+    bough_mat3 r[2];  // the markers' axes in the ground
+    bough_twist v[2]; // their twists in their own axes
+    v3 n, rate;       // unit vector from the first to the second, its ends' relative velocity
+    double length, tension;
+} stretch;
+
+static v3 velocity(const stretch *x, int end) { return bough_mat3_mul(x->r[end], x->v[end].linear); }
+
+static stretch stretch_of(const bough_tree *tree, const bough_tree_data *d, int spring) {
+    const bough_spring_def *s = &tree->springs[spring];
+    stretch x;
+    v3 at[2];
+    for (int end = 0; end < 2; end++) {
+        const bough_frame *marker = &tree->markers[s->marker[end]];
+        bough_transform pose = bough_tree_frame_pose(d, marker);
+        at[end] = pose.position;
+        x.r[end] = pose.rotation;
+        x.v[end] = bough_tree_frame_twist(d, marker);
+    }
+    v3 way = bough_sub(at[1], at[0]);
+    x.length = bough_norm(way);
+    x.n = x.length > 0 ? bough_scale(1 / x.length, way) : way;
+    x.rate = bough_sub(velocity(&x, 1), velocity(&x, 0));
+    x.tension = s->stiffness * (x.length - s->length) + s->damping * bough_dot(x.n, x.rate);
+    return x;
+}
+
+double bough_tree_spring(const bough_tree *tree, const bough_tree_data *data, int spring, double *tension,
+                         bough_vec3 *direction) {
+    stretch x = stretch_of(tree, data, spring);
+    *tension = x.tension;
+    *direction = x.n;
+    return x.length;
+}
+
+// The force on an end in its own axes: f on the first, −f on the second.
+static bough_wrench pull(const stretch *x, int end, v3 f) {
+    v3 own = bough_mat3_tmul(x->r[end], f);
+    return (bough_wrench){end == 0 ? own : bough_scale(-1, own), {0, 0, 0}};
+}
+
+static bough_force_pair spring_force(const bough_tree *tree, const bough_tree_data *d, int spring,
+                                     double *energy) {
+    const bough_spring_def *s = &tree->springs[spring];
+    stretch x = stretch_of(tree, d, spring);
+    v3 f = bough_scale(x.tension, x.n);
+    *energy = 0.5 * s->stiffness * (x.length - s->length) * (x.length - s->length);
+    return (bough_force_pair){{pull(&x, 0, f), pull(&x, 1, f)}};
+}
+
+static bough_force_pair spring_change(const bough_tree *tree, const bough_tree_data *d, int spring,
+                                      const bough_twist shift[2], const bough_twist rate[2]) {
+    const bough_spring_def *s = &tree->springs[spring];
+    stretch x = stretch_of(tree, d, spring);
+    v3 moved[2], sped[2]; // of each end, in the ground
+    for (int end = 0; end < 2; end++) {
+        moved[end] = bough_mat3_mul(x.r[end], shift[end].linear);
+        v3 turned = bough_cross(shift[end].angular, x.v[end].linear);
+        sped[end] = bough_mat3_mul(x.r[end], bough_add(rate[end].linear, turned));
+    }
+    v3 dx = bough_sub(moved[1], moved[0]), dv = bough_sub(sped[1], sped[0]);
+    double dl = bough_dot(x.n, dx), inverse = x.length > 0 ? 1 / x.length : 0;
+    v3 dn = bough_scale(inverse, bough_axpy(-dl, x.n, dx));
+    double dt = s->stiffness * dl + s->damping * (bough_dot(dn, x.rate) + bough_dot(x.n, dv));
+    v3 f = bough_scale(x.tension, x.n);
+    v3 df = bough_add(bough_scale(dt, x.n), bough_scale(x.tension, dn));
+    bough_force_pair change;
+    for (int end = 0; end < 2; end++) { // δ(Rᵀf) = Rᵀδf + Rᵀf × δ
+        bough_wrench own = pull(&x, end, f);
+        change.on[end] = pull(&x, end, df);
+        change.on[end].force = bough_add(change.on[end].force, bough_cross(own.force, shift[end].angular));
+    }
+    return change;
+}
+
+// -- bushing, all in the axes of the first marker ------------------------------------------------
+
+// How the second marker stands and moves as the first sees it.
+typedef struct relative {
+    bough_mat3 r;                 // its axes
+    v3 d, d_rate;                 // its origin
+    v3 theta, omega;              // rotation vector, angular velocity
+    v3 v_second, w_second, w_own; // velocities of the second, angular velocity of the first
+} relative;
+
+static relative relative_of(const bough_tree *tree, const bough_tree_data *d, const bough_bushing_def *b) {
+    const bough_frame *first = &tree->markers[b->marker[0]], *second = &tree->markers[b->marker[1]];
+    bough_transform back = bough_transform_inverse(bough_tree_frame_pose(d, first));
+    bough_transform pose = bough_transform_compose(back, bough_tree_frame_pose(d, second));
+    bough_twist own = bough_tree_frame_twist(d, first), other = bough_tree_frame_twist(d, second);
+    relative x = {.r = pose.rotation, .d = pose.position, .w_own = own.angular};
+    x.theta = bough_quaternion_logarithm(bough_quaternion_of_matrix(pose.rotation));
+    x.v_second = bough_mat3_mul(x.r, other.linear);
+    x.w_second = bough_mat3_mul(x.r, other.angular);
+    x.omega = bough_sub(x.w_second, own.angular);
+    x.d_rate = bough_sub(x.v_second, bough_add(own.linear, bough_cross(own.angular, x.d)));
+    return x;
+}
+
+// θ̇ = (E − ½ξ(θ) + β ξ(θ)²) ω with β = (1 − θ/2 cot θ/2)/θ², and β'/θ
+static void rate_factors(double angle, double *beta, double *slope) {
+    double a2 = angle * angle;
+    if (angle < 0.1) {
+        *beta = 1.0 / 12 + a2 * (1.0 / 720 + a2 * (1.0 / 30240 + a2 / 1209600));
+        *slope = 1.0 / 360 + a2 * (1.0 / 7560 + a2 / 201600);
+        return;
+    }
+    double half = 0.5 * angle, sine = sin(half), cotangent = cos(half) / sine;
+    *beta = (1 - half * cotangent) / a2;
+    *slope = (0.25 / (sine * sine) - 2 / a2 + 0.5 * cotangent / angle) / a2;
+}
+
+// What the rotation's spring energy ½ θᵀKθ gives as a moment: κ + ½ θ×κ + β θ×(θ×κ), κ = Kθ.
+static v3 elastic_moment(v3 theta, v3 kappa, double beta) {
+    v3 once = bough_cross(theta, kappa);
+    return bough_add(kappa, bough_axpy(0.5, once, bough_scale(beta, bough_cross(theta, once))));
+}
+
+// Force and moment on the second marker.
+static bough_wrench on_second(const bough_bushing_def *b, const relative *x) {
+    double beta, slope;
+    rate_factors(bough_norm(x->theta), &beta, &slope);
+    v3 force = bough_add(scaled(b->stiffness, x->d), scaled(b->damping, x->d_rate));
+    v3 moment = elastic_moment(x->theta, scaled(b->stiffness + 3, x->theta), beta);
+    moment = bough_add(moment, scaled(b->damping + 3, x->omega));
+    return (bough_wrench){bough_scale(-1, force), bough_scale(-1, moment)};
+}
+
+static bough_force_pair bushing_force(const bough_tree *tree, const bough_tree_data *d,
+                                      const bough_bushing_def *b, double *energy) {
+    relative x = relative_of(tree, d, b);
+    bough_wrench w = on_second(b, &x);
+    *energy = 0.5 * (bough_dot(x.d, scaled(b->stiffness, x.d)) +
+                     bough_dot(x.theta, scaled(b->stiffness + 3, x.theta)));
+    v3 moment = bough_add(w.moment, bough_cross(x.d, w.force));
+    return (bough_force_pair){{{bough_scale(-1, w.force), bough_scale(-1, moment)},
+                               {bough_mat3_tmul(x.r, w.force), bough_mat3_tmul(x.r, w.moment)}}};
+}
+
+// δ of the elastic moment along δθ
+static v3 moment_change(const bough_bushing_def *b, v3 theta, v3 change) {
+    double beta, slope;
+    rate_factors(bough_norm(theta), &beta, &slope);
+    v3 kappa = scaled(b->stiffness + 3, theta), once = bough_cross(theta, kappa);
+    v3 sum = elastic_moment(theta, scaled(b->stiffness + 3, change), beta);
+    v3 turned = bough_cross(change, kappa);
+    sum = bough_add(sum, bough_scale(0.5, turned));
+    sum = bough_axpy(beta, bough_add(bough_cross(change, once), bough_cross(theta, turned)), sum);
+    return bough_axpy(slope * bough_dot(theta, change), bough_cross(theta, once), sum);
+}
+
+static bough_force_pair bushing_change(const bough_tree *tree, const bough_tree_data *d,
+                                       const bough_bushing_def *b, const bough_twist shift[2],
+                                       const bough_twist rate[2]) {
+    relative x = relative_of(tree, d, b);
+    bough_wrench w = on_second(b, &x);
+    double beta, slope;
+    rate_factors(bough_norm(x.theta), &beta, &slope);
+    // how the second marker turns, moves and speeds up as the first sees it
+    v3 turn = bough_sub(bough_mat3_mul(x.r, shift[1].angular), shift[0].angular);
+    v3 once = bough_cross(x.theta, turn);
+    v3 dtheta = bough_axpy(-0.5, once, bough_axpy(beta, bough_cross(x.theta, once), turn));
+    v3 dd = bough_sub(bough_mat3_mul(x.r, shift[1].linear),
+                      bough_add(shift[0].linear, bough_cross(shift[0].angular, x.d)));
+    v3 domega = bough_add(bough_cross(turn, x.w_second),
+                          bough_sub(bough_mat3_mul(x.r, rate[1].angular), rate[0].angular));
+    v3 dv = bough_add(bough_cross(turn, x.v_second), bough_mat3_mul(x.r, rate[1].linear));
+    dv = bough_sub(dv, bough_add(rate[0].linear, bough_cross(rate[0].angular, x.d)));
+    dv = bough_sub(dv, bough_cross(x.w_own, dd));
+    v3 df = bough_scale(-1, bough_add(scaled(b->stiffness, dd), scaled(b->damping, dv)));
+    v3 dm = bough_scale(-1, bough_add(moment_change(b, x.theta, dtheta), scaled(b->damping + 3, domega)));
+    v3 arm = bough_add(bough_cross(dd, w.force), bough_cross(x.d, df));
+    return (bough_force_pair){{{bough_scale(-1, df), bough_scale(-1, bough_add(dm, arm))},
+                               {bough_mat3_tmul(x.r, bough_sub(df, bough_cross(turn, w.force))),
+                                bough_mat3_tmul(x.r, bough_sub(dm, bough_cross(turn, w.moment)))}}};
+}
+
+// -- elements ------------------------------------------------------------------------------------
+
+static const bough_bushing_def *bushing(const bough_tree *tree, int element) {
+    return &tree->bushings[element - tree->n_springs];
+}
+
+const bough_frame *bough_element_frame(const bough_tree *tree, int element, int end) {
+    bool spring = element < tree->n_springs;
+    return &tree->markers[spring ? tree->springs[element].marker[end] : bushing(tree, element)->marker[end]];
+}
+
+bough_force_pair bough_element_force(const bough_tree *tree, const bough_tree_data *data, int element,
+                                     double *energy) {
+    if (element < tree->n_springs) return spring_force(tree, data, element, energy);
+    return bushing_force(tree, data, bushing(tree, element), energy);
+}
+
+bough_force_pair bough_element_change(const bough_tree *tree, const bough_tree_data *data, int element,
+                                      const bough_twist shift[2], const bough_twist rate[2]) {
+    if (element < tree->n_springs) return spring_change(tree, data, element, shift, rate);
+    return bushing_change(tree, data, bushing(tree, element), shift, rate);
+}
+
+// -- applied wrenches ----------------------------------------------------------------------------
+
+double bough_ramp_factor(double start, double end, double t) {
+    if (end <= start) return t >= start || start == 0;
+    return bough_clamp((t - start) / (end - start), 0, 1);
+}
+
+double bough_table_value(int n, const double *times, const double *values, double t) {
+    int low = 0, high = n - 1; // times[low] ≤ t < times[high]
+    if (t <= times[0]) return values[0];
+    if (t >= times[high]) return values[high];
+    while (high - low > 1) {
+        int middle = (low + high) / 2;
+        if (t < times[middle]) {
+            high = middle;
+        } else {
+            low = middle;
+        }
+    }
+    double f = (t - times[low]) / (times[high] - times[low]);
+    return (1 - f) * values[low] + f * values[high];
+}
+
+bough_wrench bough_applied_force(const bough_tree *tree, const bough_tree_data *data, int k, double t) {
+    const bough_applied_def *a = &tree->applied[k];
+    double factor =
+        a->n > 0 ? bough_table_value(a->n, a->times, a->values, t) : bough_ramp_factor(a->start, a->end, t);
+    bough_wrench w = {bough_scale(factor, a->wrench.force), bough_scale(factor, a->wrench.moment)};
+    if (!a->ground) return w;
+    bough_mat3 r = bough_tree_frame_pose(data, &tree->markers[a->marker]).rotation;
+    return (bough_wrench){bough_mat3_tmul(r, w.force), bough_mat3_tmul(r, w.moment)};
+}
+
+bough_wrench bough_applied_change(const bough_tree *tree, const bough_tree_data *data, int k, double t,
+                                  bough_twist shift) {
+    bough_wrench w = bough_applied_force(tree, data, k, t);
+    if (!tree->applied[k].ground) return (bough_wrench){{0, 0, 0}, {0, 0, 0}};
+    return (bough_wrench){bough_cross(w.force, shift.angular), bough_cross(w.moment, shift.angular)};
+}

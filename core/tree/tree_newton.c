@@ -1,0 +1,365 @@
+#include "core/tree/tree_newton_internal.h"
+
+#include "core/tree/dynamics.h"
+#include "core/tree/force.h"
+#include "core/base/linalg.h"
+
+#include <string.h>
+
+enum { N = BOUGH_TWIST, Z = BOUGH_CHANGE };
+
+typedef bough_twist twist;
+typedef bough_wrench wrench;
+typedef bough_newton_change change;
+typedef bough_newton_node node;
+
+static const twist no_twist;
+static const wrench no_wrench;
+
+// -- small algebra ---------------------------------------------------------------------------
+
+static void store(change z, double *out) {
+    bough_twist_store(z.pose, out);
+    bough_twist_store(z.speed, out + N);
+    bough_twist_store(z.acceleration, out + 2 * N);
+}
+
+static change load(const double *in) {
+    return (change){bough_twist_load(in), bough_twist_load(in + N), bough_twist_load(in + 2 * N)};
+}
+
+static change add(change a, change b) {
+    return (change){bough_twist_add(a.pose, b.pose), bough_twist_add(a.speed, b.speed),
+                    bough_twist_add(a.acceleration, b.acceleration)};
+}
+
+static wrench times(const double *matrix, change z) {
+    double x[Z], y[N] = {0};
+    store(z, x);
+    for (int r = 0; r < N; r++) {
+        for (int k = 0; k < Z; k++) y[r] += matrix[Z * r + k] * x[k];
+    }
+    return bough_wrench_load(y);
+}
+
+// -- the linearised kinematics -----------------------------------------------------------------
+
+// 𝒳 ζ_λ: δA_i has X δA_λ and, from V_i × S v, (X δV_λ) × S v
+static change carry(const node *n, change z) {
+    change own = {bough_twist_to_child(&n->relative, z.pose), bough_twist_to_child(&n->relative, z.speed),
+                  bough_twist_to_child(&n->relative, z.acceleration)};
+    own.acceleration = bough_twist_add(own.acceleration, bough_twist_cross(own.speed, n->joint));
+    return own;
+}
+
+// ζ by δη of the joint, δv and the change of S v̇ (all in twists): the parent's motion as the link
+// sees it turns with δη.
+static change move(const node *n, twist eta, twist speed, twist acceleration) {
+    change z = {.pose = eta};
+    z.speed = bough_twist_add(bough_twist_cross(n->carried, eta), speed);
+    z.acceleration = bough_twist_add(bough_twist_cross(n->pulled, eta), bough_twist_cross(z.speed, n->joint));
+    z.acceleration = bough_twist_add(z.acceleration, bough_twist_cross(n->speed, speed));
+    z.acceleration = bough_twist_add(z.acceleration, acceleration);
+    return z;
+}
+
+static twist scaled(double f, twist t) {
+    return (twist){bough_scale(f, t.linear), bough_scale(f, t.angular)};
+}
+
+// δη along each speed, and Σ
+static void find_columns(const bough_tree_newton *w, const bough_link *link, node *n) {
+    const double *q = w->state + link->first_coordinate;
+    const double *v = w->state + w->tree->n_q + link->first_speed;
+    for (int k = 0; k < link->n_speeds; k++) {
+        double unit[N] = {0}, dq[BOUGH_JOINT_COORDINATES], *eta = n->coordinate + N * k;
+        unit[k] = 1;
+        bough_joint_change(&link->joint, q, v, w->c, w->zero, unit, dq);
+        bough_joint_speed(&link->joint, q, dq, eta);
+        twist own = bough_joint_column(&link->joint, k);
+        store(move(n, bough_joint_twist(&link->joint, eta), own, scaled(w->c, own)), n->column + Z * k);
+    }
+}
+
+// -- setup -----------------------------------------------------------------------------------
+
+// What is left of the evaluation at this point.
+static void remember(const bough_tree_newton *w, const bough_tree_data *d, int i) {
+    const bough_link *link = &w->tree->links[i];
+    node *n = &w->node[i];
+    twist ground = {bough_scale(-1, w->tree->gravity), {0, 0, 0}};
+    twist pull = ground;
+    if (link->parent >= 0) {
+        pull = d->acceleration[link->parent];
+        pull.linear = bough_sub(pull.linear, d->gravity[link->parent]);
+    }
+    n->relative = d->relative[i];
+    n->speed = d->twist[i];
+    n->joint = d->joint_twist[i];
+    n->carried = link->parent < 0 ? no_twist : bough_twist_to_child(&n->relative, d->twist[link->parent]);
+    n->pulled = bough_twist_to_child(&n->relative, pull);
+    n->force = d->wrench[i];
+    n->end_force = no_wrench;
+    n->tau_q = n->tau_v = 0;
+    if (link->n_speeds == 1) {
+        n->tau_q = bough_joint_spring_stiffness(&link->spring, w->state[link->first_coordinate]);
+        n->tau_v = link->spring.damping;
+    }
+}
+
+// 𝒜 of the link alone: δf = I δA + δV ×* I V + V ×* I δV
+static void own_matrix(const bough_inertia *inertia, node *n) {
+    wrench momentum = bough_inertia_mul(inertia, n->speed);
+    memset(n->matrix, 0, sizeof n->matrix);
+    for (int k = 0; k < N; k++) {
+        double column[N];
+        wrench inertial = bough_inertia_mul(inertia, bough_twist_unit(k));
+        wrench turning = bough_wrench_add(bough_wrench_cross(bough_twist_unit(k), momentum),
+                                          bough_wrench_cross(n->speed, inertial));
+        bough_wrench_store(turning, column);
+        for (int r = 0; r < N; r++) n->matrix[Z * r + N + k] = column[r];
+        bough_wrench_store(inertial, column);
+        for (int r = 0; r < N; r++) n->matrix[Z * r + 2 * N + k] = column[r];
+    }
+}
+
+// Wrenches that keep their direction in the ground change with the link's pose.
+static void add_applied(const bough_tree_newton *w, const bough_tree_data *d, double t) {
+    for (int a = 0; a < w->tree->n_applied; a++) {
+        const bough_frame *frame = &w->tree->markers[w->tree->applied[a].marker];
+        if (frame->link < 0) continue;
+        for (int k = 0; k < N; k++) {
+            double column[N];
+            twist shift = bough_twist_to_child(&frame->placement, bough_twist_unit(k));
+            wrench by = bough_applied_change(w->tree, d, a, t, shift);
+            bough_wrench_store(bough_wrench_to_parent(&frame->placement, by), column);
+            for (int r = 0; r < N; r++) w->node[frame->link].matrix[Z * r + k] -= column[r];
+        }
+    }
+}
+
+static void add_ends(const bough_tree_newton *w, const bough_tree_data *d, const double *input) {
+    const bough_tree *tree = w->tree;
+    for (int e = 0; input != NULL && e < tree->n_ends; e++) {
+        const double *own = input + BOUGH_PORT_INPUTS * tree->n_ports + BOUGH_END_INPUTS * e;
+        wrench by = bough_tree_end_wrench(tree, d, e, own);
+        w->node[tree->ends[e].link].end_force.force = by.force;
+    }
+}
+
+// What an end's force gives where the link turns by its own joint: −δ(Rᵀ f) = −f × δη
+static wrench turned_end(const node *n, twist eta) {
+    return (wrench){bough_cross(eta.angular, n->end_force.force), {0, 0, 0}};
+}
+
+// D = Sᵀ(𝒜Σ + ends) − ∂τ, and what x gives the parent
+static bool factor_joint(const bough_link *link, node *n) {
+    int m = link->n_speeds;
+    for (int k = 0; k < m; k++) {
+        twist eta = bough_joint_twist(&link->joint, n->coordinate + N * k);
+        wrench by = bough_wrench_add(times(n->matrix, load(n->column + Z * k)), turned_end(n, eta));
+        bough_joint_force(&link->joint, by, n->factor + m * k); // column k
+        // the wrench turns with the joint on its way to the parent
+        bough_wrench_store(bough_wrench_add(by, bough_wrench_cross(eta, n->force)), n->gain + N * k);
+    }
+    if (m == 1) n->factor[0] += n->tau_q * n->coordinate[0] + n->tau_v;
+    return bough_dense_factor(m, n->factor, n->pivot);
+}
+
+// D⁻¹ Sᵀ𝒜
+static void find_back(const bough_link *link, node *n) {
+    for (int k = 0; k < Z; k++) {
+        double column[N], own[N];
+        for (int r = 0; r < N; r++) column[r] = n->matrix[Z * r + k];
+        bough_joint_force(&link->joint, bough_wrench_load(column), own);
+        bough_dense_solve(link->n_speeds, 1, n->factor, n->pivot, own);
+        for (int j = 0; j < link->n_speeds; j++) n->back[Z * j + k] = own[j];
+    }
+}
+
+// up += Xᵀ (𝒜 − gain back) 𝒳; rows are wrenches by columns of twists, so that both sides go to the
+// parent alike.
+static void pass_matrix(const bough_link *link, const node *n, double *up) {
+    double passed[N * Z];
+    for (int r = 0; r < N; r++) {
+        double row[Z];
+        memcpy(row, n->matrix + Z * r, sizeof row);
+        for (int j = 0; link->motion == NULL && j < link->n_speeds; j++) {
+            for (int k = 0; k < Z; k++) row[k] -= n->gain[N * j + r] * n->back[Z * j + k];
+        }
+        wrench pose = bough_wrench_load(row), speed = bough_wrench_load(row + N);
+        wrench acceleration = bough_wrench_load(row + 2 * N);
+        speed = bough_wrench_add(speed, bough_wrench_cross(n->joint, acceleration));
+        bough_wrench_store(bough_wrench_to_parent(&n->relative, pose), passed + Z * r);
+        bough_wrench_store(bough_wrench_to_parent(&n->relative, speed), passed + Z * r + N);
+        bough_wrench_store(bough_wrench_to_parent(&n->relative, acceleration), passed + Z * r + 2 * N);
+    }
+    for (int k = 0; k < Z; k++) {
+        double column[N];
+        for (int r = 0; r < N; r++) column[r] = passed[Z * r + k];
+        bough_wrench_store(bough_wrench_to_parent(&n->relative, bough_wrench_load(column)), column);
+        for (int r = 0; r < N; r++) up[Z * r + k] += column[r];
+    }
+}
+
+static bool factor_tree(const bough_tree_newton *w) {
+    for (int i = w->tree->n_links - 1; i >= 0; i--) {
+        const bough_link *link = &w->tree->links[i];
+        node *n = &w->node[i];
+        if (link->motion == NULL) {
+            find_columns(w, link, n);
+            if (!factor_joint(link, n)) return false;
+            find_back(link, n);
+        }
+        if (link->parent >= 0) pass_matrix(link, n, w->node[link->parent].matrix);
+    }
+    return true;
+}
+
+// -- solution --------------------------------------------------------------------------------
+
+// ζ⁰ and what it asks of the joint: from r_q, the known v̇ and, of a prescribed joint, r_v
+static void find_known(const bough_tree_newton *w, const double *a, const double *x, int i, double eta[N]) {
+    const bough_link *link = &w->tree->links[i];
+    node *n = &w->node[i];
+    const double *q = w->state + link->first_coordinate;
+    const double *v = w->state + w->tree->n_q + link->first_speed;
+    const double *rq = x + link->first_coordinate, *rv = x + w->tree->n_q + link->first_speed;
+    twist speed = no_twist, acceleration = no_twist;
+    if (link->motion != NULL) {
+        eta[0] = rq[0];
+        n->speeds[0] = rv[0];
+        speed = bough_joint_twist(&link->joint, rv);
+    } else {
+        double dq[BOUGH_JOINT_COORDINATES];
+        bough_joint_change(&link->joint, q, v, w->c, rq, w->zero, dq);
+        bough_joint_speed(&link->joint, q, dq, eta);
+        if (a != NULL) acceleration = bough_joint_twist(&link->joint, a + link->first_speed);
+    }
+    n->known = move(n, bough_joint_twist(&link->joint, eta), speed, acceleration);
+}
+
+// From the leaves to the root: p of the parents, x without the parent's motion
+static void eliminate(const bough_tree_newton *w, const double *a, const double *x) {
+    for (int i = w->tree->n_links - 1; i >= 0; i--) {
+        const bough_link *link = &w->tree->links[i];
+        node *n = &w->node[i];
+        double eta[N];
+        find_known(w, a, x, i, eta);
+        twist turn = bough_joint_twist(&link->joint, eta);
+        wrench by = bough_wrench_add(times(n->matrix, n->known), n->load);
+        by = bough_wrench_add(by, turned_end(n, turn));
+        wrench up = bough_wrench_add(by, bough_wrench_cross(turn, n->force));
+        if (link->motion == NULL) {
+            double required[N];
+            bough_joint_force(&link->joint, by, required);
+            for (int k = 0; k < link->n_speeds; k++)
+                n->speeds[k] = x[w->tree->n_q + link->first_speed + k] - required[k];
+            if (link->n_speeds == 1) n->speeds[0] -= n->tau_q * eta[0];
+            bough_dense_solve(link->n_speeds, 1, n->factor, n->pivot, n->speeds);
+            for (int k = 0; k < link->n_speeds; k++) {
+                wrench gain = bough_wrench_load(n->gain + N * k);
+                up.force = bough_axpy(n->speeds[k], gain.force, up.force);
+                up.moment = bough_axpy(n->speeds[k], gain.moment, up.moment);
+            }
+        }
+        if (link->parent < 0) continue;
+        wrench *sum = &w->node[link->parent].load;
+        *sum = bough_wrench_add(*sum, bough_wrench_to_parent(&n->relative, up));
+    }
+}
+
+// From the root to the leaves: x and ζ
+static void substitute(const bough_tree_newton *w) {
+    for (int i = 0; i < w->tree->n_links; i++) {
+        const bough_link *link = &w->tree->links[i];
+        node *n = &w->node[i];
+        n->total = n->known;
+        change carried = {no_twist, no_twist, no_twist};
+        if (link->parent >= 0) carried = carry(n, w->node[link->parent].total);
+        n->total = add(n->total, carried);
+        if (link->motion != NULL) continue;
+        double from[Z], sum[Z];
+        store(carried, from);
+        store(n->total, sum);
+        for (int k = 0; k < link->n_speeds; k++) {
+            for (int j = 0; j < Z; j++) n->speeds[k] -= n->back[Z * k + j] * from[j];
+            for (int j = 0; j < Z; j++) sum[j] += n->column[Z * k + j] * n->speeds[k];
+        }
+        n->total = load(sum);
+    }
+}
+
+void bough_newton_sweep(const bough_tree_newton *w, const double *coupling, const double *a,
+                        const double *x) {
+    for (int i = 0; i < w->tree->n_links; i++) w->node[i].load = no_wrench;
+    for (int e = 0; coupling != NULL && e < w->n_ends; e++) {
+        wrench by = bough_wrench_load(coupling + N * e);
+        wrench *sum = &w->node[w->ends[e].link].load;
+        *sum = bough_wrench_sub(*sum, bough_wrench_to_parent(&w->ends[e].frame->placement, by));
+    }
+    eliminate(w, a, x);
+    substitute(w);
+}
+
+// -- the whole -------------------------------------------------------------------------------
+
+// NOLINTNEXTLINE(readability-function-size): a point of the motion has that many parts
+bool bough_tree_newton_setup(bough_tree_newton *w, bough_tree_data *data, double t, const double *input,
+                             const double *state, const double *acceleration, double c) {
+    const bough_tree *tree = w->tree;
+    size_t n = (size_t)(tree->n_q + tree->n_v);
+    w->c = c;
+    memcpy(w->state, state, n * sizeof(double));
+    bough_tree_kinematics(tree, state, data);
+    bough_tree_inverse_dynamics(tree, data, t, input, acceleration, w->keep);
+    for (int i = 0; i < tree->n_links; i++) {
+        remember(w, data, i);
+        own_matrix(&tree->links[i].inertia, &w->node[i]);
+    }
+    add_applied(w, data, t);
+    add_ends(w, data, input);
+    bough_newton_blocks(w, data);
+    return factor_tree(w) && (w->n_rows == 0 || bough_newton_factor_coupling(w));
+}
+
+static void store_solution(const bough_tree_newton *w, double *x) {
+    for (int i = 0; i < w->tree->n_links; i++) {
+        const bough_link *link = &w->tree->links[i];
+        if (link->motion != NULL) continue; // δq = r_q, δv = r_v
+        const double *q = w->state + link->first_coordinate;
+        const double *v = w->state + w->tree->n_q + link->first_speed;
+        double dq[BOUGH_JOINT_COORDINATES], *own = x + link->first_coordinate;
+        bough_joint_change(&link->joint, q, v, w->c, own, w->node[i].speeds, dq);
+        memcpy(own, dq, (size_t)link->n_coordinates * sizeof(double));
+        memcpy(x + w->tree->n_q + link->first_speed, w->node[i].speeds,
+               (size_t)link->n_speeds * sizeof(double));
+    }
+}
+
+void bough_tree_newton_solve(bough_tree_newton *w, const double *a, double *x) {
+    bough_newton_sweep(w, NULL, a, x);
+    if (w->n_rows > 0) {
+        bough_newton_solve_coupling(w);
+        bough_newton_sweep(w, w->coupling, a, x);
+    }
+    store_solution(w, x);
+}
+
+bough_tree_newton *bough_tree_newton_create(bough_arena *arena, const bough_tree *tree) {
+    size_t n = (size_t)(tree->n_q + tree->n_v), elements = (size_t)bough_tree_n_elements(tree);
+    bough_tree_newton *w = bough_arena_take(arena, sizeof *w);
+    w->tree = tree;
+    w->node = bough_arena_take(arena, (size_t)tree->n_links * sizeof *w->node);
+    w->state = bough_arena_doubles(arena, n);
+    w->zero = bough_arena_doubles(arena, n + BOUGH_JOINT_COORDINATES);
+    w->keep = bough_arena_doubles(arena, n);
+    w->ends = bough_arena_take(arena, 2 * elements * sizeof *w->ends);
+    w->block = bough_arena_doubles(arena, BOUGH_NEWTON_BLOCK * elements);
+    bough_newton_list_ends(w);
+    size_t m = (size_t)w->n_rows;
+    w->matrix = bough_arena_doubles(arena, m * m);
+    w->pivot = bough_arena_take(arena, m * sizeof(int));
+    w->coupling = bough_arena_doubles(arena, m);
+    return w;
+}

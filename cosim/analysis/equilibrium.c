@@ -1,0 +1,102 @@
+#include "cosim/analysis/equilibrium.h"
+
+#include <float.h>
+#include <math.h>
+#include <string.h>
+
+// What the second correction of a step, with tangents of its own, may be of the first, and what it
+// should be: it goes with the square of γ, or worse. With the tangents of the first a slender body
+// that has turned would answer with its axial stiffness. γ grows and shrinks by these factors at most, after
+// a refusal by `cautious`.
+static const double contracting = 0.5, aim = 0.2, growth = 8, shrink = 0.1, cautious = 1.5;
+
+static const double shortest = 1e-9; // γ below which there is no hope [s]
+static const double rounding = 1e-6; // changes that only rounding keeps from contracting
+static const double most_turn = 1;   // of a vertex or body in a correction [rad]
+
+bough_equilibrium_def bough_equilibrium_def_default(void) {
+    return (bough_equilibrium_def){.step = 0.1, .tolerance = 1e-10, .steps = 1000};
+}
+
+typedef struct search {
+    bough_coupled *coupled;
+    const bough_equilibrium_def *def;
+    int n;                                         // states
+    double *scale, *rate, *first, *second, *trial; // (n)
+    double gamma;
+} search;
+
+static void take(search *s, bough_arena *arena) {
+    size_t n = (size_t)s->n;
+    bough_arena_each(arena, n, &s->scale, &s->rate, &s->first, &s->second, &s->trial);
+}
+
+static bool find_rate(search *s, const double *state) {
+    bough_status status = bough_coupled_rate(s->coupled, s->def->time, state, s->rate);
+    return bough_is_ok(&status);
+}
+
+static double size_of(const search *s, const double *x, int *row) {
+    double largest = 0;
+    for (int k = 0; k < s->n; k++) {
+        double size = fabs(x[k]) / s->scale[k];
+        if (size > largest) *row = k;
+        largest = fmax(largest, size);
+    }
+    return largest;
+}
+
+// moved ← state after the change, by the caller's rule; the largest turn in it [rad].
+static double move(const search *s, const double *state, const double *change, double *moved) {
+    if (s->def->move) return s->def->move(s->def->self, state, change, moved);
+    for (int k = 0; k < s->n; k++) moved[k] = state[k] + change[k];
+    return 0;
+}
+
+// Two corrections of one implicit Euler step from `state`, into first and second; what the second
+// is of the first, infinite when the step leads nowhere. s->rate belongs to `state`.
+static double step(search *s, const double *state, bough_equilibrium_report *report) {
+    int row = 0;
+    bough_status status = bough_coupled_setup(s->coupled, s->def->time, state, s->coupled->input, s->gamma);
+    if (!bough_is_ok(&status)) return INFINITY;
+    for (int k = 0; k < s->n; k++) s->first[k] = s->gamma * s->rate[k];
+    bough_coupled_solve(s->coupled, s->first);
+    report->change = size_of(s, s->first, &report->row);
+    report->rate = s->rate[report->row];
+    if (!isfinite(report->change)) return INFINITY;
+    if (!(move(s, state, s->first, s->trial) < most_turn)) return INFINITY;
+    if (!find_rate(s, s->trial)) return INFINITY;
+    for (int k = 0; k < s->n; k++) s->second[k] = s->gamma * s->rate[k] - s->first[k];
+    status = bough_coupled_setup(s->coupled, s->def->time, s->trial, s->coupled->input, s->gamma);
+    if (!bough_is_ok(&status)) return INFINITY;
+    bough_coupled_solve(s->coupled, s->second);
+    return size_of(s, s->second, &row) / (report->change + DBL_MIN);
+}
+
+bough_status bough_equilibrium_find(bough_arena *arena, bough_coupled *coupled,
+                                    const bough_equilibrium_def *def, double *state,
+                                    bough_equilibrium_report *report) {
+    const bough_assembly *a = coupled->assembly;
+    search s = {.coupled = coupled, .def = def, .n = a->n_state, .gamma = def->step};
+    *report = (bough_equilibrium_report){0};
+    take(&s, arena);
+    bough_assembly_scales(a, s.scale);
+    double most = growth, before = INFINITY;
+    while (report->steps < def->steps && s.gamma > shortest && find_rate(&s, state)) {
+        double contraction = step(&s, state, report);
+        bool last = s.gamma >= BOUGH_EQUILIBRIUM_LONGEST, near = report->change < rounding;
+        report->steps++;
+        if (last && report->change < def->tolerance) return bough_ok();
+        if (last && near && !(report->change < contracting * before)) return bough_ok();
+        before = last && near ? report->change : (double)INFINITY;
+        if (near) contraction = 0; // but for rounding
+        bool refused = !(contraction < contracting);
+        most = refused ? cautious : fmin(growth, most * cautious);
+        s.gamma *= fmin(most, fmax(shrink, sqrt(aim / (contraction + DBL_MIN))));
+        s.gamma = fmin(s.gamma, BOUGH_EQUILIBRIUM_LONGEST);
+        if (refused) continue;
+        move(&s, s.trial, s.second, state);
+        if (def->rest) def->rest(def->self, state);
+    }
+    return bough_fail(BOUGH_FAILED, "no equilibrium found in %d steps", report->steps);
+}

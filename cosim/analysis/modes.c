@@ -1,0 +1,114 @@
+#include "cosim/analysis/modes.h"
+
+#include "core/base/base.h"
+
+#include <math.h>
+#include <string.h>
+
+enum { TERMS = 400 }; // of the series for the spin
+
+static const double series = 1e-13; // share of a solution below which its terms count for nothing
+
+typedef struct modes {
+    bough_coupled *coupled;
+    const bough_modes_def *def;
+    double *term, *turned; // (n_state)
+    double *rate;          // S (n_part × n_part)
+    bool diverged;
+} modes;
+
+void bough_modes_harmonic(int n, int h, const double *real, const double *imaginary, double share[2]) {
+    share[0] = share[1] = 0;
+    for (int k = 0; k < n; k++) {
+        double angle = -2 * BOUGH_PI * h * k / n, c = cos(angle), s = sin(angle);
+        share[0] += (c * real[k] - s * imaginary[k]) / n;
+        share[1] += (c * imaginary[k] + s * real[k]) / n;
+    }
+}
+
+// The sum over ±h of i h exp(i 2πh (k − l)/n) is −2 h sin(2πh (k − l)/n).
+void bough_modes_rate(const bough_modes_def *def, double *rate) {
+    int n = def->n_part;
+    for (int k = 0; k < n; k++) {
+        for (int l = 0; l < n; l++) {
+            double sum = 0;
+            for (int h = 1; h <= (n - 1) / 2; h++) {
+                sum -= 2 * h * sin(2 * BOUGH_PI * h * (k - l) / n);
+            }
+            rate[k * n + l] = def->spin / n * sum;
+        }
+    }
+}
+
+// turned = −γ S x
+static void turn(const modes *m, const double *x, double *turned) {
+    const bough_modes_def *def = m->def;
+    int n = def->n_part;
+    memset(turned, 0, (size_t)m->coupled->assembly->n_state * sizeof *turned);
+    for (int k = 0; k < n; k++) {
+        for (int l = 0; l < n; l++) {
+            double factor = -m->rate[k * n + l] / def->point;
+            const int *to = def->row + k * def->n_row, *from = def->row + l * def->n_row;
+            for (int j = 0; j < def->n_row; j++) turned[to[j]] += factor * x[from[j]];
+        }
+    }
+}
+
+static double largest(const double *x, int n) {
+    double most = 0;
+    for (int i = 0; i < n; i++) most = fmax(most, fabs(x[i]));
+    return most;
+}
+
+// (I − γ(J − S))⁻¹ z = Σ (−(I − γJ)⁻¹ γS)ᵏ (I − γJ)⁻¹ z
+static void apply(void *self, const double *z, double *image) {
+    modes *m = self;
+    int n = m->coupled->assembly->n_state;
+    memcpy(image, z, (size_t)n * sizeof *image);
+    bough_coupled_solve(m->coupled, image);
+    bough_coupled_project(m->coupled, m->def->state, image);
+    if (m->def->spin == 0) return;
+    double size = largest(image, n);
+    memcpy(m->term, image, (size_t)n * sizeof *image);
+    for (int k = 0; k < TERMS; k++) {
+        turn(m, m->term, m->turned);
+        memcpy(m->term, m->turned, (size_t)n * sizeof *m->term);
+        bough_coupled_solve(m->coupled, m->term);
+        bough_coupled_project(m->coupled, m->def->state, m->term);
+        for (int i = 0; i < n; i++) image[i] += m->term[i];
+        if (largest(m->term, n) <= series * size) return;
+    }
+    m->diverged = true;
+}
+
+static void take(bough_arena *arena, modes *m, bough_eigen_operator *op) {
+    const bough_assembly *a = m->coupled->assembly;
+    size_t n = (size_t)a->n_state, parts = (size_t)m->def->n_part;
+    bough_arena_each(arena, n, &m->term, &m->turned, &op->weight);
+    m->rate = bough_arena_doubles(arena, parts * parts + 1);
+    bough_assembly_scales(a, op->weight);
+    for (size_t k = 0; k < n; k++) op->weight[k] = 1 / (op->weight[k] * op->weight[k]);
+}
+
+bough_status bough_modes_find(bough_arena *arena, bough_coupled *coupled, const bough_modes_def *def,
+                              int wanted, bough_eigen_pair *pair, int *found) {
+    modes m = {.coupled = coupled, .def = def};
+    bough_eigen_operator op = {.name = "whole scene",
+                               .length = coupled->assembly->n_state,
+                               .n_shape = coupled->assembly->n_state,
+                               .gamma = 1 / def->point,
+                               .self = &m,
+                               .apply = apply};
+    take(arena, &m, &op);
+    if (def->spin != 0) bough_modes_rate(def, m.rate);
+    bough_status status = bough_coupled_setup(coupled, def->time, def->state, def->input, op.gamma);
+    if (!bough_is_ok(&status)) return bough_fail(BOUGH_FAILED, "%s", status.message);
+    status = bough_eigen_nearest(arena, &op, wanted, pair, found);
+    if (m.diverged) {
+        return bough_fail(BOUGH_FAILED,
+                          "the rotation is too fast for the transform's"
+                          " series about %g /s",
+                          def->point);
+    }
+    return status;
+}

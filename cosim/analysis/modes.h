@@ -1,0 +1,39 @@
+// Eigenvalues of the coupled system's Jacobian, λ x = J x, nearest to a point 1/γ of the real axis,
+// in tangents of the motion: no changes of a quaternion's length. Or, where equal parts of the
+// system turn steadily, of the system that an observer at rest sees.
+//
+// Let part k of n carry its states b_k in turning axes at the azimuth ψ + 2πk/n. The multi-part
+// (Coleman) transform writes them as z₀ + z_c cos ψ_k + z_s sin ψ_k + …; with ψ growing by Ω its
+// rates add to J
+//     −S,  S_kl = (Ω/n) Σ_h i h exp(i 2πh (k − l)/n),  |h| <= (n − 1)/2,
+// in the parts' own coordinates, at whatever azimuth. If the parts are equal and evenly spaced and
+// what carries them is symmetric, J − S is the constant matrix of the transformed system.
+#ifndef BOUGH_COSIM_MODES_H
+#define BOUGH_COSIM_MODES_H
+
+#include "core/base/eigen.h"
+#include "cosim/coupled.h"
+
+typedef struct bough_modes_def {
+    double time;         // [s]
+    const double *state; // (n_state)
+    const double *input; // (n_input), usually coupled->input
+    double point;        // 1/γ [1/s]
+    double spin;         // Ω [rad/s]; 0: no part turns
+    int n_part, n_row;   // parts by growing azimuth; rows of each
+    const int *row;      // (n_part × n_row) rows of the state that are the same of all parts
+} bough_modes_def;
+
+// The share of harmonic h in a pattern over n parts, complex: (1/n) Σ_k y_k exp(−i 2πhk/n), y (n)
+// given and share returned as real and imaginary part.
+void bough_modes_harmonic(int n, int h, const double *real, const double *imaginary, double share[2]);
+
+// S of the parts, rate (n_part × n_part), row-major.
+void bough_modes_rate(const bough_modes_def *def, double *rate);
+
+// Finds `wanted` pairs as bough_eigen_nearest does, shapes (n_state). BOUGH_FAILED also where the
+// spin is too fast for the point: it should be several times the largest h Ω.
+bough_status bough_modes_find(bough_arena *arena, bough_coupled *coupled, const bough_modes_def *def,
+                              int wanted, bough_eigen_pair *pair, int *found);
+
+#endif

@@ -1,0 +1,266 @@
+#include "cosim/analysis/path.h"
+
+#include "cosim/analysis/equilibrium.h"
+
+#include <float.h>
+#include <math.h>
+#include <string.h>
+
+enum { CORRECTIONS = 30, FEW = 16, PARABOLAS = 5 };
+
+// γ is as long as makes steps of Newton's method of those of implicit Euler: until the answer to the loads
+// changes by no more than this when it is taken four times as long.
+static const double shift = 0.03, longer = 4, longest = 1e6; // [-, -, s]
+static const double most_turn = 0.5;                         // of a vertex or body in a correction [rad]
+static const double rounding = 1e-5;  // corrections that only rounding keeps from contracting
+static const double smooth = 0.97;    // least cosine between the tangents of neighbouring points
+static const double straight = 0.995; // cosine from which steps grow
+static const double growth = 1.6, shrink = 0.4, least_step = 1e-9;
+
+bough_path_def bough_path_def_default(void) {
+    return (bough_path_def){.step = 0.02, .tolerance = 1e-8, .steps = 2000};
+}
+
+// A point and the path's direction there: state then share, of norm 1.
+typedef struct place {
+    double share, *state, *tangent; // (n), (n + 1)
+} place;
+
+typedef struct path {
+    bough_coupled *coupled;
+    const bough_path_def *def;
+    int n;                                       // states
+    double *scale, *rate, *full, *load, *change; // (n); load: (I − γJ)⁻¹ γ ∂F/∂λ
+    double *moved;                               // (n)
+    place here, next, limit, next_limit;
+    double gamma; // [s]
+} path;
+
+static void take_place(bough_arena *arena, size_t n, place *p) {
+    p->state = bough_arena_doubles(arena, n);
+    p->tangent = bough_arena_doubles(arena, n + 1);
+}
+
+static void take(path *p, bough_arena *arena) {
+    size_t n = (size_t)p->n;
+    bough_arena_each(arena, n, &p->scale, &p->rate, &p->full, &p->load, &p->change, &p->moved);
+    place *const places[] = {&p->here, &p->next, &p->limit, &p->next_limit};
+    for (int i = 0; i < 4; i++) take_place(arena, n, places[i]);
+}
+
+// Mean over the states in units of their scales, and shares.
+static double product(const path *p, const double *a, double a_share, const double *b, double b_share) {
+    double sum = 0;
+    for (int k = 0; k < p->n; k++) sum += a[k] / p->scale[k] * (b[k] / p->scale[k]);
+    return sum / p->n + a_share * b_share;
+}
+
+static double largest(const path *p, const double *x) {
+    double size = 0;
+    for (int k = 0; k < p->n; k++) size = fmax(size, fabs(x[k]) / p->scale[k]);
+    return size;
+}
+
+static bool add(path *p, place *at, const double *change, double share) {
+    double turn = 0;
+    if (p->def->move) {
+        turn = p->def->move(p->def->self, at->state, change, p->moved);
+    } else {
+        for (int k = 0; k < p->n; k++) p->moved[k] = at->state[k] + change[k];
+    }
+    if (!(turn < most_turn)) return false;
+    memcpy(at->state, p->moved, (size_t)p->n * sizeof *p->moved);
+    at->share += share;
+    if (p->def->rest) p->def->rest(p->def->self, at->state);
+    return true;
+}
+
+// F into p->rate, the factors and p->load at a place.
+static bool linearise(path *p, const place *at) {
+    double end = p->def->end, time = fmin(fmax(at->share, 0), 1) * end;
+    bough_status status = bough_coupled_rate(p->coupled, end, at->state, p->full);
+    if (bough_is_ok(&status)) status = bough_coupled_rate(p->coupled, 0, at->state, p->rate);
+    if (!bough_is_ok(&status)) return false;
+    for (int k = 0; k < p->n; k++) {
+        p->load[k] = p->gamma * (p->full[k] - p->rate[k]);
+        p->rate[k] += at->share * (p->full[k] - p->rate[k]);
+    }
+    bough_coupled_inputs(p->coupled, time, at->state);
+    status = bough_coupled_setup(p->coupled, time, at->state, p->coupled->input, p->gamma);
+    if (!bough_is_ok(&status)) return false;
+    bough_coupled_solve(p->coupled, p->load);
+    return isfinite(largest(p, p->load));
+}
+
+// The factors' γ, and the factors and p->load of a place with it.
+static bool choose_gamma(path *p, const place *at) {
+    for (p->gamma = BOUGH_EQUILIBRIUM_LONGEST; linearise(p, at); p->gamma *= longer) {
+        double change = 0, size = largest(p, p->load);
+        for (int k = 0; k < p->n; k++) change = fmax(change, fabs(p->load[k] - p->change[k]) / p->scale[k]);
+        bool same = change <= shift * size;
+        memcpy(p->change, p->load, (size_t)p->n * sizeof *p->load);
+        if (same || p->gamma > longest) return true;
+    }
+    return false;
+}
+
+// The direction at a place from p->load, towards that of `before` (n + 1), or with a growing share.
+static void direct(path *p, const double *before, double *tangent) {
+    double norm = sqrt(product(p, p->load, 1, p->load, 1)), sign = 1;
+    if (before) sign = copysign(1, product(p, p->load, 1, before, before[p->n]));
+    for (int k = 0; k < p->n; k++) tangent[k] = sign * p->load[k] / norm;
+    tangent[p->n] = sign / norm;
+}
+
+// Corrects a predicted place in the plane normal to `tangent`, or at its share where `fixed`; leaves the
+// factors and p->load of about the place. The number of corrections, 0: none led there.
+static int correct(path *p, const double *tangent, bool fixed, place *at) {
+    double before = INFINITY;
+    for (int i = 1; i <= CORRECTIONS; i++) {
+        if (!linearise(p, at)) return 0;
+        for (int k = 0; k < p->n; k++) p->change[k] = p->gamma * p->rate[k];
+        bough_coupled_solve(p->coupled, p->change);
+        double along = product(p, p->change, 0, tangent, tangent[p->n]);
+        double share = fixed ? 0 : -along / product(p, p->load, 1, tangent, tangent[p->n]);
+        for (int k = 0; k < p->n; k++) p->change[k] += share * p->load[k];
+        double size = fmax(largest(p, p->change), fabs(share));
+        if (!isfinite(size) || !add(p, at, p->change, share)) return 0;
+        if (size < p->def->tolerance || (size < rounding && !(size < 0.5 * before))) return i;
+        if (i > 2 && !(size < before)) return 0;
+        before = size;
+    }
+    return 0;
+}
+
+static void copy_place(const path *p, const place *from, place *to) {
+    memcpy(to->state, from->state, (size_t)p->n * sizeof *to->state);
+    memcpy(to->tangent, from->tangent, (size_t)(p->n + 1) * sizeof *to->tangent);
+    to->share = from->share;
+}
+
+// From `here` by a step along its tangent to `to`, with the direction there. The corrections, 0: none.
+static int go(path *p, double step, place *to) {
+    copy_place(p, &p->here, to);
+    for (int k = 0; k < p->n; k++) p->change[k] = step * p->here.tangent[k];
+    if (!add(p, to, p->change, step * p->here.tangent[p->n])) return 0;
+    int corrections = correct(p, p->here.tangent, false, to);
+    if (corrections > 0) direct(p, p->here.tangent, to->tangent);
+    return corrections;
+}
+
+static double cosine(const path *p, const place *a, const place *b) {
+    return product(p, a->tangent, a->tangent[p->n], b->tangent, b->tangent[p->n]);
+}
+
+// Where the parabola through three points (s, share), in order, has its extremum.
+static double extremum(const double s[3], const double share[3]) {
+    double left = s[1] - s[0], right = s[2] - s[1];
+    double before = (share[1] - share[0]) / left, after = (share[2] - share[1]) / right;
+    double curvature = (after - before) / (left + right); // half the second derivative
+    return s[1] - 0.5 * (before + curvature * left) / curvature;
+}
+
+// The limit point about `here` into p->limit: `before` and `next` lie at s[0] and s[2] from it. Its
+// distance; shares are those of points on the path, so that it does not hang on how exact tangents are.
+static double find_limit(path *p, double s[3], double share[3]) {
+    double found = 0;
+    copy_place(p, &p->here, &p->limit);
+    for (int i = 0; i < PARABOLAS; i++) {
+        double at = extremum(s, share);
+        if (!(at > s[0] && at < s[2]) || fabs(at - s[1]) < 1e-4 * (s[2] - s[0])) break;
+        if (go(p, at, &p->next_limit) == 0) break;
+        bool better = (p->next_limit.share - share[1]) * (share[1] - share[0]) >= 0;
+        int side = at < s[1] ? 0 : 2;
+        if (better) {
+            place old = p->limit;
+            p->limit = p->next_limit;
+            p->next_limit = old;
+            found = at;
+            s[2 - side] = s[1], share[2 - side] = share[1];
+            s[1] = at, share[1] = p->limit.share;
+        } else {
+            s[side] = at, share[side] = p->next_limit.share;
+        }
+    }
+    return found;
+}
+
+// The last place into p->limit: at this share, between `here` and `next`.
+static bool finish(path *p, double share) {
+    double ahead = share - p->here.share, slope = p->here.tangent[p->n];
+    copy_place(p, &p->here, &p->limit);
+    if (!(ahead * slope > 0)) return ahead == 0;
+    for (int k = 0; k < p->n; k++) p->change[k] = ahead / slope * p->here.tangent[k];
+    return add(p, &p->limit, p->change, ahead) && correct(p, p->here.tangent, true, &p->limit) > 0;
+}
+
+static bough_status tell(path *p, const place *at, bool limit, bough_path_report *report) {
+    report->points++;
+    report->limits += limit;
+    report->share = at->share;
+    return p->def->point ? p->def->point(p->def->self, at->share, at->state, limit) : bough_ok();
+}
+
+// Tells `here`, and the limit point about it if there is one; `back` and `step` are the distances to the
+// points before, whose share was `before`, and behind.
+static bough_status tell_here(path *p, double back, double before, double step, bough_path_report *report) {
+    double s[3] = {-back, 0, step}, share[3] = {before, p->here.share, p->next.share};
+    bool turns = back > 0 && (share[1] - share[0]) * (share[2] - share[1]) < 0;
+    double at = turns ? find_limit(p, s, share) : 0;
+    bough_status status = bough_ok();
+    if (turns && at < 0) status = tell(p, &p->limit, true, report);
+    if (bough_is_ok(&status) && (!turns || at != 0)) status = tell(p, &p->here, false, report);
+    if (bough_is_ok(&status) && turns && at >= 0) status = tell(p, &p->limit, true, report);
+    return status;
+}
+
+// From `here` on to the share 1 or −1.
+static bough_status follow(path *p, bough_path_report *report) {
+    double step = p->def->step, back = 0, before = 0;
+    bough_status status = bough_ok();
+    while (bough_is_ok(&status) && report->steps++ < p->def->steps && step > least_step) {
+        int corrections = go(p, step, &p->next);
+        double turned = corrections > 0 ? cosine(p, &p->here, &p->next) : -1;
+        bool over = fabs(p->next.share) >= 1;
+        double last = copysign(1, p->next.share);
+        if (corrections == 0 || turned < smooth || (over && !finish(p, last))) {
+            if (corrections == 0)
+                p->gamma = fmax(p->gamma / longer, BOUGH_EQUILIBRIUM_LONGEST); // less rounding
+            step *= shrink;
+            continue;
+        }
+        if (over) {
+            report->reversed = last < 0;
+            status = tell(p, &p->here, false, report);
+            copy_place(p, &p->limit, &p->here);
+            return bough_is_ok(&status) ? tell(p, &p->here, false, report) : status;
+        }
+        status = tell_here(p, back, before, step, report);
+        place old = p->here;
+        back = step, before = old.share;
+        p->here = p->next;
+        p->next = old;
+        if (corrections <= FEW && turned > straight) step *= growth;
+    }
+    if (bough_is_ok(&status)) status = tell(p, &p->here, false, report);
+    if (!bough_is_ok(&status)) return status;
+    return bough_fail(BOUGH_FAILED, "the path of equilibria ends at %.6g of the loads after %d steps",
+                      p->here.share, report->steps);
+}
+
+bough_status bough_path_follow(bough_arena *arena, bough_coupled *coupled, const bough_path_def *def,
+                               double *state, bough_path_report *report) {
+    const bough_assembly *a = coupled->assembly;
+    path p = {.coupled = coupled, .def = def, .n = a->n_state};
+    *report = (bough_path_report){0};
+    take(&p, arena);
+    bough_assembly_scales(a, p.scale);
+    memcpy(p.here.state, state, (size_t)p.n * sizeof *state);
+    if (!choose_gamma(&p, &p.here)) {
+        return bough_fail(BOUGH_FAILED, "the equilibrium without load is unstable or not unique");
+    }
+    direct(&p, NULL, p.here.tangent);
+    bough_status status = follow(&p, report);
+    memcpy(state, p.here.state, (size_t)p.n * sizeof *state);
+    return status;
+}

@@ -1,0 +1,318 @@
+// Two watches serve where no other solution shows the error; what each finds on random scenes is in
+// docs/verification.md.
+//
+// A force that has grown by a factor of 100 since its first steps, and that the members do not agree on, is
+// analysed, and again after each further factor of 100: the coupling is the cause if its eigenvalues about the current state explain that growth and
+// those of a shorter macro step, or of ramp there, do not. So growth that belongs to the mechanics, such as a
+// fall or flutter, goes on. Members whose equations are not known have no eigenvalues; of these the coupling
+// is the cause if the force obtained and the force applied have nothing in common.
+//
+// The energy that the interfaces add or remove tells an implicit coupling that is stable but wrong.
+#include "cosim/watch/monitor.h"
+
+#include "cosim/scheme.h"
+#include "cosim/analysis/stability.h"
+
+#include <math.h>
+#include <string.h>
+
+enum { FIRST_STEPS = 8 };
+static const double suspicious_growth = 100;
+
+// Difference of the forces obtained and applied, of the largest so far, below which an implicit coupling that
+// does not iterate is not the cause of any growth yet. (Explicit ones may apply all forces as obtained.)
+static const double agreement = 1e-5;
+
+// Up to three components of one connection: a vector, measured by its norm.
+typedef struct group {
+    int first, count;   // inputs, numbered over all
+    int to, from;       // members
+    bool kinematic;
+    double defect_max, defect_sum; // Σ of squares over the steps
+    double magnitude;   // largest norm of the obtained value so far
+    double small;       // largest norm of the first steps with one, or when last looked into
+    double small_time;  // then [s]
+    int first_steps;    // of these so far
+} group;
+
+// The error of one interface.
+typedef struct account {
+    bough_interface_energy total, closed; // closed: at the end of the last window
+} account;
+
+struct bough_monitor {
+    const char *advice; // another scheme to try, or ""
+    bool resting; // growth is not judged
+    int n_group;
+    group *group;
+    long steps;
+    account *account;      // (n_interface)
+    int window_steps;      // in the open window
+    double window_time;    // its length so far [s]
+    int unbalanced;        // windows in a row that make or lose energy
+    double *start;         // (n_input) scratch
+};
+
+static int receiver(const bough_assembly *a, int input) {
+    int i = 0;
+    while (input >= a->input_offset[i + 1]) i++;
+    return i;
+}
+
+static void make_groups(bough_monitor *m, const bough_assembly *a) {
+    for (int j = 0; j < a->n_input; j++) {
+        if (a->vector[j] == j) {
+            m->group[m->n_group++] = (group){.first = j,
+                                             .to = receiver(a, j),
+                                             .from = a->source_member[j],
+                                             .kinematic = a->kinematic[j]};
+        }
+        m->group[m->n_group - 1].count++;
+    }
+}
+
+bough_monitor *bough_monitor_create(bough_arena *arena, const bough_coupling *coupling) {
+    const bough_assembly *a = coupling->assembly;
+    size_t n_input = (size_t)a->n_input;
+    bough_monitor *m = bough_arena_take(arena, sizeof *m);
+    m->advice = a->opaque || coupling->scheme->one_system ? "" : " or scheme: monolithic";
+    m->group = bough_arena_take(arena, n_input * sizeof *m->group);
+    m->start = bough_arena_doubles(arena, n_input);
+    m->account = bough_arena_take(arena, (size_t)a->n_interface * sizeof *m->account);
+    make_groups(m, a);
+    return m;
+}
+
+// -- non-finite values ----------------------------------------------------------------------------
+
+// In vector lanes: what is not finite leaves a NaN.
+static bool all_finite(const double *x, int n) {
+    double sum = 0;
+#pragma omp simd reduction(+ : sum)
+    for (int i = 0; i < n; i++) sum += x[i] - x[i];
+    return sum == 0;
+}
+
+static bough_status check_finite(const bough_monitor *m, const bough_coupling *c) {
+    const bough_assembly *a = c->assembly;
+    for (int i = 0; i < a->n_member; i++) {
+        const bough_system *s = &a->member[i]->system;
+        if (all_finite(a->member[i]->state, s->n_state) &&
+            all_finite(c->output + a->output_offset[i], s->n_output)) {
+            continue;
+        }
+        return bough_fail(BOUGH_FAILED,
+                          "%s: no finite state or output at %.6g s (scheme %s, macro step %.6g s); "
+                          "try a smaller macro step%s",
+                          s->name, c->t1, c->scheme->name, c->t1 - c->t0,
+                          m->advice);
+    }
+    return bough_ok();
+}
+
+// -- growth ---------------------------------------------------------------------------------------
+
+static double norm(const double *x, int n) {
+    double sum = 0;
+    for (int i = 0; i < n; i++) sum += x[i] * x[i];
+    return sqrt(sum);
+}
+
+// Growth of whatever grows fastest [1/s], about the current state; negative: nothing, or unknown.
+static double fastest_growth(const bough_coupling *c, const bough_scheme_options *options,
+                             double macro_step) {
+    bough_stability s = {0};
+    double fine = macro_step / 32; // what members ring at within a step counts too
+    bough_status status = bough_stability_judge_by(c->assembly, options, macro_step, fine, &s);
+    return bough_is_ok(&status) ? fmax(s.growth, s.rising) : -1;
+}
+
+// Nothing is known of what a member with unknown equations brings along, so growth alone says nothing.
+static const double unrelated = 0.5; // difference of the forces obtained and applied, of the largest so far
+
+static bool coupling_grows(const bough_coupling *c, const group *g, double defect, double *growth) {
+    static const int shorter[] = {8, 64, 64};
+    double needed = log(suspicious_growth) / (c->t1 - g->small_time); // for what was seen
+    *growth = needed;
+    if (c->assembly->opaque) return defect > unrelated * g->magnitude;
+    bough_scheme_options options = bough_scheme_options_in_use(c);
+    double h = c->t1 - c->t0, own;
+    *growth = fastest_growth(c, &options, h);
+    own = *growth / 2;
+    for (int k = 0; k < 3 && *growth > needed / 2 && own >= *growth / 2; k++) {
+        if (k == 2) options.name = "ramp"; // an explicit scheme may grow at short steps, too, and faster
+        own = fastest_growth(c, &options, h / shorter[k]);
+    }
+    return own < *growth / 2;
+}
+
+static bough_status look_into(const bough_monitor *m, const bough_coupling *c, const group *g,
+                              double defect) {
+    double growth;
+    if (!coupling_grows(c, g, defect, &growth)) return bough_ok();
+    const bough_assembly *a = c->assembly;
+    return bough_fail(BOUGH_FAILED,
+                      "coupling of %s and %s is unstable at %.6g s: scheme %s, macro step %.6g s, "
+                      "their force has grown by more than a factor of 100, by %.3g per "
+                      "second; try a smaller macro step%s",
+                      a->member[g->from]->system.name, a->member[g->to]->system.name, c->t1, c->scheme->name,
+                      c->t1 - c->t0, growth, m->advice);
+}
+
+static bough_status watch_size(const bough_monitor *m, const bough_coupling *c, group *g, double size,
+                               double defect) {
+    if (g->first_steps < FIRST_STEPS) {
+        g->first_steps += size > 0;
+        g->small = fmax(g->small, size);
+        g->small_time = c->t1;
+    } else if (!g->kinematic && size > suspicious_growth * g->small &&
+               (c->iteration || c->scheme->explicit_forces || defect > agreement * g->magnitude)) {
+        bough_status status = look_into(m, c, g, defect);
+        g->small = size;
+        g->small_time = c->t1;
+        return status;
+    }
+    return bough_ok();
+}
+
+static bough_status judge_group(const bough_monitor *m, bough_coupling *c, group *g) {
+    double difference[3];
+    for (int i = 0; i < g->count; i++) {
+        difference[i] = c->input[g->first + i] - c->applied[g->first + i];
+    }
+    double defect = norm(difference, g->count), size = norm(c->input + g->first, g->count);
+    g->magnitude = fmax(g->magnitude, size);
+    g->defect_max = fmax(g->defect_max, defect);
+    g->defect_sum += defect * defect;
+    return m->resting ? bough_ok() : watch_size(m, c, g, size, defect);
+}
+
+// -- energy ---------------------------------------------------------------------------------------
+
+static double dot(const double *x, const double *y, int n) {
+    double sum = 0;
+    for (int i = 0; i < n; i++) sum += x[i] * y[i];
+    return sum;
+}
+
+// Trapezoidal work of the obtained wrench, and of its difference to the applied wrench.
+static void keep_accounts(bough_monitor *m, const bough_coupling *c) {
+    const bough_assembly *a = c->assembly;
+    const double *before = c->past[1];
+    double half = (c->t1 - c->t0) / 2;
+    for (int i = 0; i < a->n_member; i++) {
+        bough_signal_value(&c->signal[i], c->t0, m->start + a->input_offset[i]);
+    }
+    for (int k = 0; k < a->n_interface; k++) {
+        const bough_interface *f = &a->interface[k];
+        const double *v0 = before + f->twist, *v1 = c->input + f->twist;
+        double obtained0 = dot(before + f->wrench, v0, f->count);
+        double obtained1 = dot(c->input + f->wrench, v1, f->count);
+        double applied = dot(m->start + f->wrench, v0, f->count) +
+                         dot(c->applied + f->wrench, v1, f->count);
+        double residual = half * (obtained0 + obtained1 - applied);
+        double exchanged = half * (fabs(obtained0) + fabs(obtained1));
+        m->account[k].total.residual += residual;
+        m->account[k].total.exchanged += exchanged;
+    }
+}
+
+// The share of the exchanged energy that the interfaces have added or removed, over the whole run and in the
+// last two windows, so that a sudden start, which no macro step resolves, does not count. Only this
+// detects an implicit coupling that is stable but wrong, such as the damped ramp on a light body; accurate
+// couplings stay a hundred times below. Schemes with constant forces are of first order and exceed it.
+static const double most_energy_error = 0.01;
+enum { MOST_UNBALANCED = 2 };
+
+// Error and exchange of all interfaces, over the run or since the last window closed.
+static bough_interface_energy sum_energy(const bough_monitor *m, int n, bool since) {
+    bough_interface_energy sum = {0};
+    for (int k = 0; k < n; k++) {
+        const account *x = &m->account[k];
+        sum.residual += fabs(x->total.residual - (since ? x->closed.residual : 0));
+        sum.exchanged += x->total.exchanged - (since ? x->closed.exchanged : 0);
+    }
+    return sum;
+}
+
+static bool holds_forces(const bough_coupling *c) {
+    return c->scheme->explicit_forces || bough_scheme_defect_order(c->scheme, &c->options) == 1;
+}
+
+static bough_status judge_balance(bough_monitor *m, const bough_coupling *c) {
+    const bough_assembly *a = c->assembly;
+    bough_interface_energy all = sum_energy(m, a->n_interface, false);
+    bough_interface_energy last = sum_energy(m, a->n_interface, true);
+    bool balanced = all.residual <= most_energy_error * all.exchanged ||
+                    last.residual <= most_energy_error * last.exchanged;
+    m->unbalanced = balanced ? 0 : m->unbalanced + 1;
+    int worst = 0;
+    for (int k = 0; k < a->n_interface; k++) {
+        m->account[k].closed = m->account[k].total;
+        double residual = fabs(m->account[k].total.residual);
+        if (residual > fabs(m->account[worst].total.residual)) worst = k;
+    }
+    if (holds_forces(c) || m->unbalanced < MOST_UNBALANCED) return bough_ok();
+    int body = a->interface[worst].body;
+    return bough_fail(BOUGH_FAILED,
+                      "the coupling of %s has lost the solution at %.6g s (scheme %s, macro step "
+                      "%.6g s): the coupling itself adds or removes %.2g of the energy "
+                      "exchanged at the interfaces; try a smaller macro step%s",
+                      a->member[body]->system.name, c->t1, c->scheme->name, c->t1 - c->t0,
+                      all.residual / all.exchanged, m->advice);
+}
+
+// Windows are of at least 64 steps and a second.
+static bough_status judge_energy(bough_monitor *m, const bough_coupling *c) {
+    m->window_steps++;
+    m->window_time += c->t1 - c->t0;
+    if (m->window_steps < 64 || m->window_time < 1 - 1e-9) return bough_ok();
+    m->window_steps = 0;
+    m->window_time = 0;
+    return judge_balance(m, c);
+}
+
+// -- the step -------------------------------------------------------------------------------------
+
+bough_status bough_monitor_step(bough_monitor *m, bough_coupling *c) {
+    bough_status status = check_finite(m, c);
+    if (!bough_is_ok(&status)) return status;
+    m->steps++;
+    keep_accounts(m, c);
+    for (int k = 0; k < m->n_group && bough_is_ok(&status); k++) {
+        status = judge_group(m, c, &m->group[k]);
+    }
+    return bough_is_ok(&status) && !m->resting ? judge_energy(m, c) : status;
+}
+
+void bough_monitor_judge(bough_monitor *m, bool judges) { m->resting = !judges; }
+
+void bough_monitor_snapshot(bough_monitor *m, const bough_coupling *c, bough_snapshot *s) {
+    const bough_assembly *a = c->assembly;
+    bough_snapshot_take(s, m->group, (size_t)m->n_group * sizeof *m->group);
+    bough_snapshot_take(s, &m->steps, sizeof m->steps);
+    bough_snapshot_take(s, m->account, (size_t)a->n_interface * sizeof *m->account);
+    bough_snapshot_take(s, &m->window_steps, sizeof m->window_steps);
+    bough_snapshot_take(s, &m->window_time, sizeof m->window_time);
+    bough_snapshot_take(s, &m->unbalanced, sizeof m->unbalanced);
+}
+
+bough_coupling_report bough_monitor_report(const bough_monitor *m, const bough_coupling *c) {
+    bough_coupling_report report = {0};
+    for (int k = 0; k < m->n_group && m->steps > 0; k++) {
+        const group *g = &m->group[k];
+        if (g->magnitude == 0) continue;
+        double rms = sqrt(g->defect_sum / (double)m->steps);
+        report.defect_max = fmax(report.defect_max, g->defect_max / g->magnitude);
+        report.defect_rms = fmax(report.defect_rms, rms / g->magnitude);
+    }
+    for (int k = 0; k < c->assembly->n_interface; k++) {
+        report.energy_residual += fabs(m->account[k].total.residual);
+        report.energy_exchanged += m->account[k].total.exchanged;
+    }
+    return report;
+}
+
+bough_interface_energy bough_monitor_energy(const bough_monitor *m, int interface) {
+    return m->account[interface].total;
+}

@@ -1,0 +1,169 @@
+#include "flexbody/rod/ground_load.h"
+
+#include <string.h>
+
+// A load is linear in the axes' components: value = Σ_j axis_j by_axis_j.
+typedef struct ground_load {
+    struct ground_load *next;
+    bough_rod_ramped_load *resolved; // in BRF axes, one of the body's
+    double *by_axis;                 // (9 × 6 × stride)
+} ground_load;
+
+struct bough_ground_body {
+    bough_system inner;
+    bough_system_ops ops;
+    const bough_rod_model *mesh;
+    bough_rod_loads *loads;
+    ground_load *first;
+    double *rate, *out, *zero; // (n_state), (n_output), (inputs) scratch
+    double *probe;             // (inputs) scratch
+};
+
+void bough_ground_body_turn(bough_ground_body *b, const double *axis) {
+    int count = 6 * b->mesh->stride;
+    for (ground_load *l = b->first; l != NULL; l = l->next) {
+        double *restrict value = l->resolved->value;
+        memset(value, 0, (size_t)count * sizeof *value);
+        for (int j = 0; j < BOUGH_GROUND_AXES; j++) {
+            const double *restrict by = l->by_axis + (size_t)j * (size_t)count;
+            for (int k = 0; k < count; k++) value[k] += axis[j] * by[k];
+        }
+    }
+}
+
+// -- the contract ---------------------------------------------------------------------------------
+
+static bool derivative(void *self, double t, const double *state, const double *input, double *rate) {
+    bough_ground_body *b = self;
+    bough_ground_body_turn(b, input + b->inner.n_input);
+    return b->inner.ops->derivative(b->inner.self, t, state, input, rate);
+}
+
+static void output(void *self, double t, const double *state, const double *input, double *out) {
+    bough_ground_body *b = self;
+    bough_ground_body_turn(b, input + b->inner.n_input);
+    b->inner.ops->output(b->inner.self, t, state, input, out);
+}
+
+// The input with other axes. f and h are linear in these: their differences are exact.
+static double *with_axes(bough_ground_body *b, const double *input, const double *axes) {
+    memcpy(b->probe, input, (size_t)b->inner.n_input * sizeof *input);
+    memcpy(b->probe + b->inner.n_input, axes, BOUGH_GROUND_AXES * sizeof *axes);
+    return b->probe;
+}
+
+// NOLINTNEXTLINE(readability-function-size): the contract fixes the parameters
+static void output_tangent(void *self, double t, const double *state, const double *input,
+                           const double *state_rate, const double *input_rate, double *out) {
+    bough_ground_body *b = self;
+    bough_ground_body_turn(b, input + b->inner.n_input);
+    b->inner.ops->output_tangent(b->inner.self, t, state, input, state_rate, input_rate, out);
+    if (input_rate == NULL) return;
+    for (int side = 0; side < 2; side++) {
+        const double *axes = side == 0 ? input_rate + b->inner.n_input : b->zero;
+        output(b, t, state, with_axes(b, input, axes), b->out);
+        for (int k = 0; k < b->inner.n_output; k++) out[k] += (1 - 2 * side) * b->out[k];
+    }
+}
+
+static void input_columns(void *self, double t, const double *state, const double *input, double *column) {
+    bough_ground_body *b = self;
+    bough_ground_body_turn(b, input + b->inner.n_input);
+    b->inner.ops->input_columns(b->inner.self, t, state, input, column);
+    column += (size_t)b->inner.n_input * (size_t)b->inner.n_state;
+    derivative(b, t, state, with_axes(b, input, b->zero), b->rate);
+    for (int j = 0; j < BOUGH_GROUND_AXES; j++, column += b->inner.n_state) {
+        double unit[BOUGH_GROUND_AXES] = {0};
+        unit[j] = 1;
+        derivative(b, t, state, with_axes(b, input, unit), column);
+        for (int k = 0; k < b->inner.n_state; k++) column[k] -= b->rate[k];
+    }
+}
+
+static void *factors(void *self, bough_arena *arena) {
+    const bough_ground_body *b = self;
+    return b->inner.ops->factors(b->inner.self, arena);
+}
+
+static bool linearise(void *self, double t, const double *state, const double *input, void *factors) {
+    bough_ground_body *b = self;
+    bough_ground_body_turn(b, input + b->inner.n_input);
+    return b->inner.ops->linearise(b->inner.self, t, state, input, factors);
+}
+
+static bool factor(void *self, void *factors, double gamma) {
+    const bough_ground_body *b = self;
+    return b->inner.ops->factor(b->inner.self, factors, gamma);
+}
+
+static void solve(void *self, void *factors, double *x) {
+    const bough_ground_body *b = self;
+    b->inner.ops->solve(b->inner.self, factors, x);
+}
+
+static bool constrain(void *self, double t, double *state) {
+    const bough_ground_body *b = self;
+    return b->inner.ops->constrain(b->inner.self, t, state);
+}
+
+static void project(void *self, const double *state, double *x) {
+    const bough_ground_body *b = self;
+    b->inner.ops->project(b->inner.self, state, x);
+}
+
+// -- life -----------------------------------------------------------------------------------------
+
+bough_ground_body *bough_ground_body_create(bough_arena *arena, const bough_system *inner,
+                                            const bough_rod_model *mesh, bough_rod_loads *loads) {
+    bough_ground_body *b = bough_arena_take(arena, sizeof *b);
+    size_t inputs = (size_t)inner->n_input + BOUGH_GROUND_AXES;
+    *b = (bough_ground_body){.inner = *inner,
+                             .ops = {BOUGH_SYSTEM_REQUIRED},
+                             .mesh = mesh,
+                             .loads = loads,
+                             .rate = bough_arena_doubles(arena, (size_t)inner->n_state),
+                             .out = bough_arena_doubles(arena, (size_t)inner->n_output),
+                             .zero = bough_arena_doubles(arena, inputs),
+                             .probe = bough_arena_doubles(arena, inputs)};
+    if (inner->ops->constrain != NULL) b->ops.constrain = constrain;
+    if (inner->ops->project != NULL) b->ops.project = project;
+    return b;
+}
+
+bough_system bough_ground_body_system(bough_ground_body *body) {
+    bough_system system = body->inner;
+    system.n_input += BOUGH_GROUND_AXES;
+    system.ops = &body->ops;
+    system.self = body;
+    return system;
+}
+
+// The value of the load, as vertices have it, with one component of the axes 1 and the others 0.
+static void add_axis(const bough_ground_body *b, const bough_ground_load_def *def, int j,
+                     bough_rod_ramped_load *to) {
+    double wrench[2][6] = {{0}};
+    const double *const given[2] = {def->wrench, def->end};
+    int axis = j / 3, component = j % 3;
+    for (int side = 0; side < 2; side++) {
+        wrench[side][component] = given[side][axis];
+        wrench[side][3 + component] = given[side][3 + axis];
+    }
+    bool tapered = memcmp(def->wrench, def->end, sizeof def->end) != 0;
+    bough_rod_lump(b->mesh, def->reach, wrench[0], tapered ? wrench[1] : NULL, to);
+    bough_rod_lump_line(b->mesh, to);
+}
+
+void bough_ground_body_load(bough_ground_body *b, bough_arena *arena, const bough_ground_load_def *def) {
+    size_t size = 6 * (size_t)b->mesh->stride;
+    ground_load *l = bough_arena_take(arena, sizeof *l);
+    *l = (ground_load){.next = b->first, .by_axis = bough_arena_doubles(arena, BOUGH_GROUND_AXES * size)};
+    b->first = l;
+    l->resolved = bough_rod_loads_tabled(b->loads, arena, b->mesh, false, def->n, def->times, def->factors);
+    l->resolved->start = def->ramp[0];
+    l->resolved->end = def->ramp[1];
+    for (int j = 0; j < BOUGH_GROUND_AXES; j++) {
+        memset(l->resolved->value, 0, size * sizeof(double));
+        add_axis(b, def, j, l->resolved);
+        memcpy(l->by_axis + (size_t)j * size, l->resolved->value, size * sizeof(double));
+    }
+}

@@ -1,0 +1,270 @@
+// Builds the constant rod model from its discretised definition.
+#include "flexbody/rod/rod.h"
+
+#include "core/tree/force.h"
+#include "core/base/symmetric6.h"
+#include "flexbody/rod/rod_segment.h"
+
+#include <string.h>
+
+// The upper triangle of (11)'s mass in section axes: [mE, −ξ(s); ξ(s), I].
+static void mass_matrix(const bough_vertex_inertia *v, double *upper) {
+    const double *j = v->inertia;
+    bough_vec3 s = v->moment;
+    const double rows[21] = {v->mass, 0,   0,    0, s.z,  -s.y, v->mass, 0,    -s.z, 0,   s.x,
+                             v->mass, s.y, -s.x, 0, j[0], j[3], j[4],    j[1], j[5], j[2]};
+    memcpy(upper, rows, sizeof rows);
+}
+
+static void take_arrays(bough_rod_model *m, bough_arena *arena) {
+    size_t s = (size_t)m->stride, vertices = (size_t)m->n_segment + 1;
+    m->span = bough_arena_doubles(arena, vertices);
+    m->position0 = bough_arena_take(arena, vertices * sizeof *m->position0);
+    m->rotation0 = bough_arena_take(arena, vertices * sizeof *m->rotation0);
+    m->vertex = bough_arena_take(arena, vertices * sizeof *m->vertex);
+    bough_arena_each(arena, s, &m->length, &m->inverse_length, &m->mass);
+    m->strain0 = bough_arena_doubles(arena, 6 * s);
+    m->inertia = bough_arena_doubles(arena, 6 * s);
+    m->bend0 = bough_arena_doubles(arena, 3 * s);
+    m->moment = bough_arena_doubles(arena, 3 * s);
+    bough_arena_each(arena, 21 * s, &m->stiffness, &m->damping, &m->inverse_mass);
+    m->line = bough_arena_doubles(arena, 72 * s);
+    m->gradient = bough_arena_doubles(arena, 25 * s);
+}
+
+// h²/12 times the change of curvature along a segment, F m' + F' m (rod_elastic.h): L by the strains,
+// G = h²/12 F by m', and R.
+static void set_gradient(bough_rod_model *m, const bough_rod_def *def, int n, const double *compliance) {
+    const double *c = def->stiffness + 21 * n, *u = m->strain0 + 3 * m->stride + n;
+    double h = def->span[n + 1] - def->span[n], part = h * h / 12;
+    double x = u[0], y = u[m->stride], z = u[2 * m->stride], stiffest = 0, softest = 0;
+    const double turned[3][3] = {{0, z, -y}, {-z, 0, x}, {y, -x, 0}}; // m×κ⁰
+    for (int i = 0; i < 3; i++) {
+        double f[3];
+        for (int j = 0; j < 3; j++) f[j] = compliance[bough_symmetric6_index(3 + i, 3 + j)];
+        double change[6] = {-f[1], f[0]};
+        for (int j = 0; j < 3; j++) {
+            change[3 + j] = def->taper ? def->taper[9 * n + 3 * i + j] : 0;
+            for (int k = 0; k < 3; k++) change[3 + j] += f[k] * turned[k][j];
+        }
+        for (int j = 0; j < 6; j++) {
+            double sum = 0;
+            for (int k = 0; k < 6; k++) sum += change[k] * c[bough_symmetric6_index(k, j)];
+            m->gradient[(6 * i + j) * m->stride + n] = part * sum;
+        }
+        for (int j = i; j < 3; j++) {
+            m->gradient[(18 + (i == 0 ? j : i + j + 1)) * m->stride + n] = part * f[j];
+        }
+        stiffest += c[bough_symmetric6_index(3 + i, 3 + i)];
+        softest += f[i];
+    }
+    m->gradient[24 * m->stride + n] = part * stiffest * softest;
+}
+
+static bough_status set_segment(bough_rod_model *m, const bough_rod_def *def, int n) {
+    int s = m->stride;
+    double h = def->span[n + 1] - def->span[n], compliance[21];
+    if (!(h > 0)) {
+        return bough_fail(BOUGH_INVALID, "rod %s: segment %d has length %g m", m->name, n + 1, h);
+    }
+    if (!bough_symmetric6_inverse(def->stiffness + 21 * n, compliance)) {
+        return bough_fail(BOUGH_INVALID,
+                          "rod %s: the stiffness of segment %d is not positive"
+                          " definite",
+                          m->name, n + 1);
+    }
+    m->length[n] = h;
+    m->inverse_length[n] = 1 / h;
+    for (int k = 0; k < 21; k++) {
+        m->stiffness[k * s + n] = def->stiffness[21 * n + k];
+        m->damping[k * s + n] = def->damping[21 * n + k];
+    }
+    for (int k = 0; k < 72 && def->line != NULL; k++) m->line[k * s + n] = def->line[72 * n + k];
+    vertex_state left = {.x = def->position[n], .p = def->rotation[n]};
+    vertex_state right = {.x = def->position[n + 1], .p = def->rotation[n + 1]};
+    segment_geometry shape = segment_shape(left, right, 1 / h);
+    if (shape.w < 0.5) {
+        return bough_fail(BOUGH_INVALID,
+                          "rod %s: the undeformed section turns by more than 120°"
+                          " over segment %d; use more segments",
+                          m->name, n + 1);
+    }
+    bough_vec3 bend = bough_sub(bough_rotation_matrix(right.p).c3, bough_rotation_matrix(left.p).c3);
+    bend = bough_mat3_tmul(shape.r, bend);
+    const double bend0[3] = {bend.x, bend.y, bend.z};
+    for (int k = 0; k < 3; k++) m->bend0[k * s + n] = bend0[k];
+    const double e0[6] = {shape.stretch.x, shape.stretch.y, shape.stretch.z,
+                          shape.phi.x / h, shape.phi.y / h, shape.phi.z / h};
+    for (int k = 0; k < 6; k++) m->strain0[k * s + n] = e0[k];
+    set_gradient(m, def, n, compliance);
+    return bough_ok();
+}
+
+static bough_status set_vertex(bough_rod_model *m, const bough_rod_def *def, int i) {
+    int s = m->stride;
+    const bough_vertex_inertia *v = &def->inertia[i];
+    double mass[21], inverse[21];
+    mass_matrix(v, mass);
+    if (!bough_symmetric6_inverse(mass, inverse)) {
+        return bough_fail(BOUGH_INVALID,
+                          "rod %s: the inertia of vertex %d is not positive"
+                          " definite",
+                          m->name, i);
+    }
+    for (int k = 0; k < 21; k++) m->inverse_mass[k * s + i - 1] = inverse[k];
+    for (int k = 0; k < 6; k++) m->inertia[k * s + i - 1] = v->inertia[k];
+    m->mass[i - 1] = v->mass;
+    m->moment[i - 1] = v->moment.x;
+    m->moment[s + i - 1] = v->moment.y;
+    m->moment[2 * s + i - 1] = v->moment.z;
+    return bough_ok();
+}
+
+bough_status bough_rod_create(bough_arena *arena, const bough_rod_def *def, bough_rod_model **model) {
+    bough_rod_model *m = bough_arena_take(arena, sizeof *m);
+    m->name = bough_arena_string(arena, def->name);
+    m->n_segment = def->n_segment;
+    m->n = def->carries ? def->n_segment - 1 : def->n_segment;
+    if (m->n < 1) {
+        return bough_fail(BOUGH_INVALID, "rod %s: %d segments; a rod%s has at least %d", m->name,
+                          m->n_segment, def->carries ? " that carries bodies" : "", def->carries ? 2 : 1);
+    }
+    m->stride = bough_padded(m->n_segment + BOUGH_LANES); // vertices go by lanes from 1 on
+    take_arrays(m, arena);
+    size_t vertices = (size_t)m->n_segment + 1;
+    memcpy(m->span, def->span, vertices * sizeof *m->span);
+    memcpy(m->position0, def->position, vertices * sizeof *m->position0);
+    memcpy(m->rotation0, def->rotation, vertices * sizeof *m->rotation0);
+    m->root = bough_rotation_matrix(m->rotation0[0]);
+    memcpy(m->vertex, def->inertia, vertices * sizeof *m->vertex);
+    for (int n = 0; n < m->n_segment; n++) {
+        bough_status status = set_segment(m, def, n);
+        if (bough_is_ok(&status)) status = set_vertex(m, def, n + 1);
+        if (!bough_is_ok(&status)) return status;
+    }
+    *model = m;
+    return bough_ok();
+}
+
+double *bough_rod_vertex_rows(bough_arena *arena, const bough_rod_model *model, int rows) {
+    size_t room = (size_t)rows * (size_t)model->stride + BOUGH_LANES;
+    return bough_arena_doubles(arena, room) + BOUGH_LANES - 1;
+}
+
+void bough_rod_scratch_init(bough_rod_scratch *scratch, bough_arena *arena, const bough_rod_model *model) {
+    scratch->vertex = bough_rod_vertex_rows(arena, model, BOUGH_ROD_STATES);
+    for (int i = 0; i < model->stride; i++) {
+        scratch->vertex[BOUGH_ROD_P * model->stride + i] = 1; // beyond the last: no rotation
+    }
+    scratch->segment = bough_arena_doubles(arena, 9 * (size_t)model->stride);
+    scratch->load = bough_rod_vertex_rows(arena, model, 6);
+    scratch->follower = bough_rod_vertex_rows(arena, model, 6);
+    scratch->following = bough_arena_doubles(arena, 3 * (size_t)model->stride);
+    scratch->time = 0;
+    scratch->rest = model->strain0;
+    scratch->turning = false;
+    scratch->along = bough_arena_doubles(arena, 12 * (size_t)model->stride);
+    scratch->own_rest = bough_arena_doubles(arena, 6 * (size_t)model->stride);
+}
+
+void bough_rod_loads_init(bough_rod_loads *loads, bough_arena *arena, const bough_rod_model *model) {
+    loads->start = 0;
+    loads->value = bough_rod_vertex_rows(arena, model, 6);
+    loads->rate = bough_rod_vertex_rows(arena, model, 6);
+    loads->curve = bough_rod_vertex_rows(arena, model, 6);
+    loads->damped = false;
+    loads->slope = bough_rod_vertex_rows(arena, model, 12);
+    loads->angle = bough_rod_vertex_rows(arena, model, 4);
+    loads->rest = bough_arena_doubles(arena, 6 * (size_t)model->stride);
+    loads->rest_rate = bough_arena_doubles(arena, 6 * (size_t)model->stride);
+    loads->moving = false;
+    loads->ramped = NULL;
+    memcpy(loads->rest, model->strain0, 6 * (size_t)model->stride * sizeof *loads->rest);
+}
+
+static bough_rod_ramped_load *add_load(bough_rod_loads *loads, bough_arena *arena,
+                                       const bough_rod_model *model, bool follower) {
+    bough_rod_ramped_load *fresh = bough_arena_take(arena, sizeof *fresh);
+    *fresh = (bough_rod_ramped_load){.next = loads->ramped,
+                                     .follower = follower,
+                                     .value = bough_rod_vertex_rows(arena, model, 6),
+                                     .line = bough_arena_doubles(arena, 12 * (size_t)model->stride)};
+    loads->ramped = fresh;
+    return fresh;
+}
+
+bough_rod_ramped_load *bough_rod_loads_ramped(bough_rod_loads *loads, bough_arena *arena,
+                                              const bough_rod_model *model, bool follower,
+                                              const double ramp[2]) {
+    for (bough_rod_ramped_load *l = loads->ramped; l != NULL; l = l->next) {
+        bool same = l->n == 0 && l->start == ramp[0] && l->end == ramp[1];
+        if (same && l->follower == follower) return l;
+    }
+    bough_rod_ramped_load *fresh = add_load(loads, arena, model, follower);
+    fresh->start = ramp[0];
+    fresh->end = ramp[1];
+    return fresh;
+}
+
+bough_rod_ramped_load *bough_rod_loads_tabled(bough_rod_loads *loads, bough_arena *arena,
+                                              const bough_rod_model *model, bool follower, int n,
+                                              const double *times, const double *factors) {
+    bough_rod_ramped_load *fresh = add_load(loads, arena, model, follower);
+    fresh->n = n;
+    fresh->times = times;
+    fresh->factors = factors;
+    return fresh;
+}
+
+void bough_rod_line_strain(const bough_rod_model *m, const double *line, double *along) {
+    int s = m->stride, n = m->n_segment;
+    for (int i = 0; i < 6; i++) {
+        const double *restrict d = m->line + 6 * i * s;
+        double *restrict row = along + i * s;
+#pragma omp simd
+        for (int k = 0; k < n; k++) {
+            double sum = 0;
+            for (int j = 0; j < 6; j++) {
+                sum += d[j * s + k] * line[j * n + k] + d[(36 + j) * s + k] * line[(6 + j) * n + k];
+            }
+            row[k] = sum;
+        }
+    }
+}
+
+void bough_rod_loads_along(const bough_rod_model *m, const double *line, const double *rate,
+                           bough_rod_loads *loads) {
+    bough_rod_line_strain(m, line, loads->rest);
+    bough_rod_line_strain(m, rate, loads->rest_rate);
+    loads->moving = true;
+    double *restrict rest = loads->rest;
+    const double *restrict strain0 = m->strain0;
+#pragma omp simd
+    for (int k = 0; k < 6 * m->stride; k++) rest[k] += strain0[k];
+}
+
+double bough_rod_ramp_factor(const bough_rod_ramped_load *load, double t) {
+    if (load->n > 0) return bough_table_value(load->n, load->times, load->factors, t);
+    return bough_ramp_factor(load->start, load->end, t);
+}
+
+bool bough_rod_loads_follow(const bough_rod_loads *loads) {
+    for (const bough_rod_ramped_load *l = loads->ramped; l != NULL; l = l->next) {
+        if (l->follower) return true;
+    }
+    return false;
+}
+
+void bough_rod_rest_state(const bough_rod_model *m, const double *input, double *state) {
+    int n = m->n;
+    bough_vec3 u0 = {input[0], input[1], input[2]}, omega = {input[3], input[4], input[5]};
+    for (int i = 0; i < n; i++) {
+        bough_vec3 x = m->position0[i + 1];
+        bough_quaternion p = m->rotation0[i + 1];
+        bough_vec3 u = bough_add(u0, bough_cross(omega, x));
+        bough_vec3 w = bough_mat3_tmul(bough_rotation_matrix(p), omega);
+        const double values[BOUGH_ROD_STATES] = {x.x, x.y, x.z, p.w, p.x, p.y, p.z,
+                                                 u.x, u.y, u.z, w.x, w.y, w.z};
+        for (int c = 0; c < BOUGH_ROD_STATES; c++) state[c * n + i] = values[c];
+    }
+}

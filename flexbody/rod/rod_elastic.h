@@ -1,0 +1,117 @@
+// The elastic law of one rod segment, whose curvature changes along it. Of the sections' energy
+// ½∫κ·F⁻¹κ the mean strains e = (γ, κ) tell ½ e·C e; the moment that changes along the segment,
+// m' = m×(κ⁰ + κ) − t×n, adds
+//     −χΠ,  Π = y·L e + ½ y·G y,  y = m×κ,  (n, m) = C e,  χ = 1/(1 + R κ·κ),
+// Π the part of h²/24 m'·F m' that is beyond linear statics: without it a rod that bends two ways at
+// once twists wrongly by a share of h² (docs/theory.md). χ is 1 up to higher orders and keeps the
+// energy positive whatever the strains: R = h²/12 times at least the ratio of the largest to the least
+// stiffness. Inline, for loops over lanes.
+#ifndef BOUGH_FLEXBODY_ROD_ELASTIC_H
+#define BOUGH_FLEXBODY_ROD_ELASTIC_H
+
+#include "flexbody/rod/rod_segment.h"
+
+static inline strain add_strain(strain a, strain b) {
+    return (strain){bough_add(a.v, b.v), bough_add(a.u, b.u)};
+}
+
+// L e and G y of segment n, its arrays L by rows and G's upper triangle of the given stride.
+static inline bough_vec3 gradient_linear(const double *restrict gradient, int stride, int n, strain e) {
+#define L(k) gradient[(k)*stride + n]
+    return (bough_vec3){
+        L(0) * e.v.x + L(1) * e.v.y + L(2) * e.v.z + L(3) * e.u.x + L(4) * e.u.y + L(5) * e.u.z,
+        L(6) * e.v.x + L(7) * e.v.y + L(8) * e.v.z + L(9) * e.u.x + L(10) * e.u.y + L(11) * e.u.z,
+        L(12) * e.v.x + L(13) * e.v.y + L(14) * e.v.z + L(15) * e.u.x + L(16) * e.u.y + L(17) * e.u.z};
+}
+
+static inline bough_vec3 gradient_bend(const double *restrict gradient, int stride, int n, bough_vec3 y) {
+    return (bough_vec3){L(18) * y.x + L(19) * y.y + L(20) * y.z, L(19) * y.x + L(21) * y.y + L(22) * y.z,
+                        L(20) * y.x + L(22) * y.y + L(23) * y.z};
+}
+
+// Lᵀ y
+static inline strain gradient_transposed(const double *restrict gradient, int stride, int n, bough_vec3 y) {
+#define COLUMN(j) (L(j) * y.x + L(6 + (j)) * y.y + L(12 + (j)) * y.z)
+    return (strain){{COLUMN(0), COLUMN(1), COLUMN(2)}, {COLUMN(3), COLUMN(4), COLUMN(5)}};
+#undef COLUMN
+}
+
+// C (0, p)
+static inline strain moment_times(const double *restrict c, int stride, int n, bough_vec3 p) {
+#define C(k) c[(k)*stride + n]
+    return (strain){{C(3) * p.x + C(4) * p.y + C(5) * p.z, C(8) * p.x + C(9) * p.y + C(10) * p.z,
+                     C(12) * p.x + C(13) * p.y + C(14) * p.z},
+                    {C(15) * p.x + C(16) * p.y + C(17) * p.z, C(16) * p.x + C(18) * p.y + C(19) * p.z,
+                     C(17) * p.x + C(19) * p.y + C(20) * p.z}};
+#undef C
+}
+
+// The law at one strain.
+typedef struct elastic_state {
+    strain stress;       // C e, its moment m
+    strain bent;         // ∂Π/∂e
+    bough_vec3 kappa, b; // κ, L e + G y
+    double value;        // Π
+    double limit;        // χ
+    double slope;        // ∂χ/∂κ = slope κ
+} elastic_state;
+
+// ∂Π/∂e by δΠ = δm·(κ×b) + δκ·(b×m) + y·L δe.
+static inline elastic_state elastic_at(const double *restrict c, const double *restrict gradient, int stride,
+                                       int n, strain e) {
+    elastic_state s = {.stress = symmetric_times(c, stride, n, e), .kappa = e.u};
+    bough_vec3 m = s.stress.u, y = bough_cross(m, e.u);
+    bough_vec3 linear = gradient_linear(gradient, stride, n, e);
+    bough_vec3 bend = gradient_bend(gradient, stride, n, y);
+    s.b = bough_add(linear, bend);
+    s.bent = add_strain(moment_times(c, stride, n, bough_cross(e.u, s.b)),
+                        gradient_transposed(gradient, stride, n, y));
+    s.bent.u = bough_add(s.bent.u, bough_cross(s.b, m));
+    s.value = bough_dot(y, bough_axpy(0.5, bend, linear));
+    s.limit = 1 / (1 + L(24) * bough_dot(e.u, e.u));
+    s.slope = -2 * L(24) * s.limit * s.limit;
+    return s;
+}
+
+// The derivative of the energy: C e − χ ∂Π/∂e − Π ∂χ/∂e.
+static inline strain elastic_stress(elastic_state s) {
+    bough_vec3 u = bough_axpy(-s.limit, s.bent.u, s.stress.u);
+    return (strain){bough_axpy(-s.limit, s.bent.v, s.stress.v), bough_axpy(-s.value * s.slope, s.kappa, u)};
+}
+
+static inline strain segment_stress(const double *restrict c, const double *restrict gradient, int stride,
+                                    int n, strain e) {
+    return elastic_stress(elastic_at(c, gradient, stride, n, e));
+}
+
+// Its variation: C δe − δχ ∂Π/∂e − χ δ∂Π/∂e − δ(Π slope) κ − Π slope δκ.
+static inline strain elastic_variation(const double *restrict c, const double *restrict gradient, int stride,
+                                       int n, elastic_state s, strain de) {
+    strain stress = symmetric_times(c, stride, n, de);
+    bough_vec3 m = s.stress.u, dm = stress.u;
+    bough_vec3 dy = bough_add(bough_cross(dm, s.kappa), bough_cross(m, de.u));
+    bough_vec3 db =
+        bough_add(gradient_linear(gradient, stride, n, de), gradient_bend(gradient, stride, n, dy));
+    bough_vec3 dp = bough_add(bough_cross(de.u, s.b), bough_cross(s.kappa, db));
+    strain bent = add_strain(moment_times(c, stride, n, dp), gradient_transposed(gradient, stride, n, dy));
+    bent.u = bough_add(bent.u, bough_add(bough_cross(db, m), bough_cross(s.b, dm)));
+    double along = bough_dot(s.kappa, de.u), dlimit = s.slope * along;
+    double dvalue = bough_dot(s.bent.v, de.v) + bough_dot(s.bent.u, de.u);
+    double dslope = -4 * L(24) * s.limit * dlimit;
+    bough_vec3 u = bough_axpy(-(dvalue * s.slope + s.value * dslope), s.kappa, stress.u);
+    u = bough_axpy(-s.value * s.slope, de.u, u);
+    return (strain){bough_axpy(-dlimit, s.bent.v, bough_axpy(-s.limit, bent.v, stress.v)),
+                    bough_axpy(-dlimit, s.bent.u, bough_axpy(-s.limit, bent.u, u))};
+}
+
+// Per length [N].
+static inline double segment_energy(const double *restrict c, const double *restrict gradient, int stride,
+                                    int n, strain e) {
+    elastic_state s = elastic_at(c, gradient, stride, n, e);
+    double straight = 0.5 * (bough_dot(e.v, s.stress.v) + bough_dot(e.u, s.stress.u));
+    return straight - s.limit * s.value;
+}
+
+#undef L
+
+#endif

@@ -1,0 +1,35 @@
+// Forces and moments along a rod as work-equivalent loads on its vertices.
+#ifndef BOUGH_FLEXBODY_ROD_LOAD_H
+#define BOUGH_FLEXBODY_ROD_LOAD_H
+
+#include "flexbody/rod/rod.h"
+
+// Where a load acts, in arc length: at `from` if to == from, else constant along [from, to].
+typedef struct bough_rod_reach {
+    double from, to; // [m]
+} bough_rod_reach;
+
+// Adds to the load a wrench (force, moment) [N, N m], in the load's axes. Along a stretch `wrench` is per
+// length [N/m, N m/m] at its start and `end` at its end, linear between; NULL: the same. Vertices share it by
+// hat functions. What covers whole segments goes to load->line as well, exact for any section tables. Of a
+// force that acts at a place in a segment or on a part of it, the equal and opposite moments of a linear
+// element on the two vertices account for its bending there, exact for uniform sections; their direction is
+// that of the undeformed rod.
+void bough_rod_lump(const bough_rod_model *m, bough_rod_reach reach, const double *wrench, const double *end,
+                    bough_rod_ramped_load *load);
+
+// Puts what load->line does to the undeformed rod into load->value: forces and moments on the two
+// vertices of each segment that cancel. For bodies that know loads on vertices only.
+void bough_rod_lump_line(const bough_rod_model *m, bough_rod_ramped_load *load);
+
+// The same of a strain D q (6 × stride) on a dead load: adds to value (6 × stride).
+void bough_rod_lump_strain(const bough_rod_model *m, const double *line_strain, double *value);
+
+// Loads per length in the axes of the segments' middles (12 × n_segment) from those in BRF axes (same);
+// `rotation` are the vertices' quaternions, of about unit length (4 × (n_segment + 1)). Adds to the
+// loads on the vertices (6 × (n_segment + 1), BRF axes) the moments about the segments' chords of what
+// acts on the axis, which bends away from them under load.
+void bough_rod_take_line(const bough_rod_model *m, const double *rotation, const double *line, double *turned,
+                         double *load);
+
+#endif

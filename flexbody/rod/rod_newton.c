@@ -1,0 +1,267 @@
+// Newton's matrix of the rod: elimination of the kinematic rows, factors, solution.
+#include "flexbody/rod/rod_tangent.h"
+
+#include "flexbody/rod/rod_lanes.h"
+#include "flexbody/rod/rod_tangent_layout.h"
+#include "flexbody/rod/rod_tile.h"
+
+#include <string.h>
+
+// (E + ξ(a))⁻¹ y = (y + a (a·y) − a×y)/(1 + |a|²)
+static inline bough_vec3 solve_cross(bough_vec3 a, bough_vec3 y) {
+    bough_vec3 sum = bough_axpy(bough_dot(a, y), a, bough_sub(y, bough_cross(a, y)));
+    return bough_scale(1 / (1 + bough_dot(a, a)), sum);
+}
+
+// -- elimination and factorisation ----------------------------------------------------------------
+
+// A_φ = (eE + ξ(a) + qqᵀ/f)⁻¹ of every vertex, a = ½γ(W + Rᵀω), q = ½γ(W − Rᵀω), by
+// Sherman–Morrison; e and f are 1 but for the norm's restoring κ(1 − |p|²)p, linearised.
+static void eliminate_rotations(const bough_rod_model *m, bough_rod_tangent *k) {
+    int n = m->n, s = m->stride;
+    double gamma = k->gamma;
+    double *restrict kept = k->vertex;
+#pragma omp simd
+    for (int v = 1; v <= n; v++) {
+        bough_vec3 w = load3(kept + KEPT_W * s, s, v), o = load3(kept + KEPT_OMEGA * s, s, v);
+        bough_vec3 vector = load3(kept + (KEPT_P + 1) * s, s, v);
+        double scalar = kept[KEPT_P * s + v];
+        double square = scalar * scalar + bough_dot(vector, vector);
+        double e = 1 - gamma * BOUGH_ROD_NORM_RATE * (1 - square);
+        double f = e + 2 * gamma * BOUGH_ROD_NORM_RATE * square;
+        bough_vec3 a = bough_scale(0.5 * gamma / e, bough_add(w, o));
+        bough_vec3 q = bough_scale(0.5 * gamma, bough_sub(w, o));
+        bough_vec3 bq = bough_scale(1 / e, solve_cross(a, q));
+        double weight = 1 / (f + bough_dot(q, bq));
+        for (int j = 0; j < 3; j++) {
+            bough_vec3 b = bough_scale(1 / e, solve_cross(a, bough_unit3(j)));
+            b = bough_axpy(-weight * bough_dot(q, b), bq, b);
+            kept[(KEPT_TURN + j) * s + v] = b.x;
+            kept[(KEPT_TURN + 3 + j) * s + v] = b.y;
+            kept[(KEPT_TURN + 6 + j) * s + v] = b.z;
+        }
+        kept[KEPT_SCALE * s + v] = 1 / f;
+    }
+}
+
+// Column j of γ² A of a vertex has entries in three rows only: of shifts in 0..2, the same for all
+// vertices, of rotations in 3..5.
+typedef struct elimination {
+    double shift[3][3]; // by columns
+    const double *turn; // row 3 i + k of A_φ at [(3 i + k)·stride]
+    int stride;
+    double square; // γ²
+} elimination;
+
+// Column j of mass − γ Dᵥ − γ² K A for one block; the mass is NULL off the diagonal.
+static inline void form_column(const elimination *e, int v, int j, const double *position,
+                               const double *velocity, const double *mass, double gamma,
+                               double *restrict out) {
+    const double *restrict k = position + (j < 3 ? 0 : W8 * 3);
+    double a[3];
+    for (int i = 0; i < 3; i++) {
+        a[i] = j < 3 ? e->shift[j][i] : e->square * e->turn[(3 * i + j - 3) * e->stride + v];
+    }
+#pragma omp simd
+    for (int i = 0; i < W8; i++) {
+        double sum = k[i] * a[0] + k[W8 + i] * a[1] + k[2 * W8 + i] * a[2];
+        out[i] = (mass == NULL ? 0 : mass[i]) - gamma * velocity[i] - sum;
+    }
+}
+
+static inline void form_block(const elimination *e, int v, const double *position, const double *velocity,
+                              const double *mass, double gamma, double *out) {
+    for (int j = 0; j < 6; j++) {
+        form_column(e, v, j, position, velocity + W8 * j, mass == NULL ? NULL : mass + W8 * j, gamma,
+                    out + W8 * j);
+    }
+}
+
+// M − γ(Dᵥ + γ K A): the columns of a block belong to the vertex on whose variation it acts.
+static void form_matrix(const bough_rod_model *m, bough_rod_tangent *k) {
+    const bough_block_tridiagonal *p = &k->blocks.position, *d = &k->blocks.velocity;
+    double g = k->gamma;
+    elimination e = {.turn = k->vertex + (size_t)KEPT_TURN * m->stride, .stride = m->stride, .square = g * g};
+    for (int j = 0; j < 3; j++) {
+        bough_vec3 column = solve_cross(bough_scale(g, k->omega), bough_unit3(j));
+        e.shift[j][0] = e.square * column.x;
+        e.shift[j][1] = e.square * column.y;
+        e.shift[j][2] = e.square * column.z;
+    }
+    for (int v = 1; v <= m->n; v++) {
+        size_t at = (size_t)(v - 1) * BOUGH_BLOCK, next = at + BOUGH_BLOCK;
+        form_block(&e, v, p->diagonal + at, d->diagonal + at, k->blocks.mass + at, g,
+                   k->matrix.diagonal + at);
+        if (v == m->n) break;
+        form_block(&e, v + 1, p->upper + at, d->upper + at, NULL, g, k->matrix.upper + at);
+        form_block(&e, v, p->lower + next, d->lower + next, NULL, g, k->matrix.lower + next);
+    }
+}
+
+bool bough_rod_factor(const bough_rod_model *m, bough_rod_tangent *k, double gamma) {
+    k->gamma = gamma;
+    eliminate_rotations(m, k);
+    form_matrix(m, k);
+    return bough_block_tridiagonal_factor(&k->matrix);
+}
+
+// -- solution -------------------------------------------------------------------------------------
+
+// A r_q of every vertex and the scalar part of the quaternion residual p⁻¹∘r.
+static void eliminate_residual(const bough_rod_model *m, const bough_rod_tangent *k, const double *restrict x,
+                               double *restrict q) {
+    int n = m->n, s = m->stride;
+    const double *restrict kept = k->vertex, *restrict turn = kept + KEPT_TURN * s;
+    bough_vec3 g = bough_scale(k->gamma, k->omega);
+    double gamma = k->gamma, gg = 1 / (1 + bough_dot(g, g));
+#pragma omp simd
+    for (int v = 1; v <= n; v++) {
+        bough_vec3 rx = load3(x, n, v - 1), rp = load3(x + 4 * n, n, v - 1);
+        bough_vec3 p = load3(kept + (KEPT_P + 1) * s, s, v);
+        double rw = x[3 * n + v - 1], pw = kept[KEPT_P * s + v];
+        double inverse = 1 / (pw * pw + bough_dot(p, p));
+        double scalar = inverse * (pw * rw + bough_dot(p, rp));
+        bough_vec3 rho = bough_axpy(pw, rp, bough_axpy(-rw, p, bough_cross(rp, p)));
+        rho = bough_scale(2 * inverse, rho);
+        bough_vec3 slip = bough_sub(load3(kept + KEPT_W * s, s, v), load3(kept + KEPT_OMEGA * s, s, v));
+        rho = bough_axpy(gamma * scalar * kept[KEPT_SCALE * s + v], slip, rho);
+        bough_vec3 shift = bough_axpy(bough_dot(g, rx), g, bough_sub(rx, bough_cross(g, rx)));
+        store3(q, s, v, bough_scale(gg, shift));
+        for (int i = 0; i < 3; i++) {
+            q[(3 + i) * s + v] = turn[3 * i * s + v] * rho.x + turn[(3 * i + 1) * s + v] * rho.y +
+                                 turn[(3 * i + 2) * s + v] * rho.z;
+        }
+        q[WORK_SCALAR * s + v] = scalar;
+    }
+}
+
+// A r_q of the ends of eight segments, a row for each direction of their tangents.
+static inline void gather_directions(const double *restrict q, int s, double *restrict d) {
+    for (int i = 0; i < 3; i++) {
+#pragma omp simd
+        for (int l = 0; l < LANES; l++) {
+            d[(DELTA + i) * LANES + l] = q[i * s + l + 1] - q[i * s + l];
+            d[(LEFT + i) * LANES + l] = q[(3 + i) * s + l];
+            d[(RIGHT + i) * LANES + l] = q[(3 + i) * s + l + 1];
+        }
+    }
+}
+
+// γ K A r_q of every segment.
+static void segment_residual(const bough_rod_model *m, const bough_rod_tangent *k, const double *restrict q,
+                             double *restrict force) {
+    int s = m->stride;
+    double gamma = k->gamma;
+    for (int first = 0; first < m->n_segment; first += LANES) {
+        _Alignas(64) double d[DIRECTIONS * LANES];
+        gather_directions(q + first, s, d);
+        for (int f = 0; f < FORCES; f++) {
+            const double *restrict t =
+                k->variation + (size_t)TANGENTS * first + (size_t)LANES * DIRECTIONS * f;
+            double *restrict out = force + f * s + first;
+#define TERM(j) t[LANES * (j) + l] * d[LANES * (j) + l]
+#pragma omp simd
+            for (int l = 0; l < LANES; l++) {
+                out[l] = gamma * ((TERM(0) + TERM(1) + TERM(2)) + (TERM(3) + TERM(4) + TERM(5)) +
+                                  (TERM(6) + TERM(7) + TERM(8)));
+            }
+#undef TERM
+        }
+    }
+}
+
+// M r_v + γ K A r_q of every vertex; M as in the tangent, but from its few numbers.
+static void velocity_residual(const bough_rod_model *m, const bough_rod_tangent *k, const double *restrict x,
+                              double *restrict work) {
+    int n = m->n, s = m->stride;
+    const double *restrict kept = k->vertex, *restrict own = k->local_position;
+    const double *restrict mass = m->mass, *restrict first = m->moment;
+    const double *restrict inertia = m->inertia, *restrict force = k->force;
+    double *restrict out = work + WORK_VELOCITY * s;
+    double gamma = k->gamma;
+#pragma omp simd
+    for (int v = 1; v <= n; v++) {
+        bough_mat3 r = load_matrix(kept + KEPT_R * s, s, v);
+        bough_vec3 ru = load3(x + 7 * n, n, v - 1), rw = load3(x + 10 * n, n, v - 1);
+        bough_vec3 offset = load3(first, s, v - 1), phi = load3(work + (WORK_Q + 3) * s, s, v);
+        phi = bough_scale(gamma, phi);
+        bough_vec3 f = bough_axpy(mass[v - 1], ru, bough_mat3_mul(r, bough_cross(rw, offset)));
+        bough_vec3 l =
+            bough_add(bough_cross(offset, bough_mat3_tmul(r, ru)), inertia_times(inertia, s, v - 1, rw));
+        bough_vec3 pull = bough_sub(load3(force, s, v), load3(force, s, v - 1));
+        bough_vec3 turn = bough_add(load3(force + 3 * s, s, v), load3(force + 6 * s, s, v - 1));
+        f = bough_add(f, bough_axpy(phi.x, load3(own, s, v), pull));
+        f = bough_axpy(phi.y, load3(own + 6 * s, s, v), f);
+        f = bough_axpy(phi.z, load3(own + 12 * s, s, v), f);
+        l = bough_add(l, bough_axpy(phi.x, load3(own + 3 * s, s, v), turn));
+        l = bough_axpy(phi.y, load3(own + 9 * s, s, v), l);
+        l = bough_axpy(phi.z, load3(own + 15 * s, s, v), l);
+        store3(out, s, v, f);
+        store3(out + 3 * s, s, v, l);
+    }
+}
+
+// The block solver's rows, one per vertex, from eight arrays over the vertices, and back.
+static void pack(int n, int s, const double *velocity, double *packed) {
+    for (int v = 1; v <= n; v += LANES) {
+        tile t;
+        for (int i = 0; i < W8; i++) {
+            memcpy(t.entry + LANES * i, velocity + i * s + v, LANES * sizeof(double));
+        }
+        turn_tile(t.entry, packed + W8 * (v - 1));
+    }
+}
+
+static void unpack(int n, int s, const double *packed, double *velocity) {
+    for (int v = 1; v <= n; v += LANES) {
+        tile t;
+        turn_tile(packed + W8 * (v - 1), t.entry);
+        for (int i = 0; i < 6; i++) {
+            memcpy(velocity + i * s + v, t.entry + LANES * i, LANES * sizeof(double));
+        }
+    }
+}
+
+// Velocities and the configuration that belongs to them back into the state's layout.
+static void recover(const bough_rod_model *m, const bough_rod_tangent *k, const double *restrict q,
+                    double *restrict x) {
+    int n = m->n, s = m->stride;
+    const double *restrict velocity = q + WORK_VELOCITY * s;
+    const double *restrict kept = k->vertex, *restrict turn = kept + KEPT_TURN * s;
+    bough_vec3 g = bough_scale(k->gamma, k->omega);
+    double gamma = k->gamma, gg = 1 / (1 + bough_dot(g, g));
+#pragma omp simd
+    for (int i = 0; i < n; i++) {
+        int v = i + 1;
+        bough_vec3 du = load3(velocity, s, v), rate = load3(velocity + 3 * s, s, v);
+        bough_vec3 dw = bough_scale(gamma, rate);
+        bough_vec3 gu = bough_scale(gamma, du);
+        bough_vec3 shift = bough_axpy(bough_dot(g, gu), g, bough_sub(gu, bough_cross(g, gu)));
+        store3(x, n, i, bough_axpy(gg, shift, load3(q, s, v)));
+        bough_vec3 phi = {turn[v] * dw.x + turn[s + v] * dw.y + turn[2 * s + v] * dw.z,
+                          turn[3 * s + v] * dw.x + turn[4 * s + v] * dw.y + turn[5 * s + v] * dw.z,
+                          turn[6 * s + v] * dw.x + turn[7 * s + v] * dw.y + turn[8 * s + v] * dw.z};
+        phi = bough_add(phi, load3(q + 3 * s, s, v));
+        bough_vec3 slip = bough_sub(load3(kept + KEPT_W * s, s, v), load3(kept + KEPT_OMEGA * s, s, v));
+        double scalar = q[WORK_SCALAR * s + v] - 0.25 * gamma * bough_dot(slip, phi);
+        scalar *= kept[KEPT_SCALE * s + v];
+        bough_vec3 p = load3(kept + (KEPT_P + 1) * s, s, v), half = bough_scale(0.5, phi);
+        double pw = kept[KEPT_P * s + v];
+        x[3 * n + i] = pw * scalar - bough_dot(p, half);
+        bough_vec3 vector = bough_axpy(pw, half, bough_axpy(scalar, p, bough_cross(p, half)));
+        store3(x + 4 * n, n, i, vector);
+        store3(x + 7 * n, n, i, du);
+        store3(x + 10 * n, n, i, rate);
+    }
+}
+
+void bough_rod_solve(const bough_rod_model *m, bough_rod_tangent *k, double *x) {
+    double *velocity = k->work + (size_t)WORK_VELOCITY * m->stride;
+    eliminate_residual(m, k, x, k->work);
+    segment_residual(m, k, k->work, k->force);
+    velocity_residual(m, k, x, k->work);
+    pack(m->n, m->stride, velocity, k->packed);
+    bough_block_tridiagonal_solve(&k->matrix, k->packed);
+    unpack(m->n, m->stride, k->packed, velocity);
+    recover(m, k, k->work, x);
+}

@@ -1,0 +1,233 @@
+#include "flexbody/rod/rod_static.h"
+
+#include "core/base/linalg.h"
+#include "flexbody/rod/rod_linear.h"
+#include "flexbody/rod/rod_move.h"
+
+#include <string.h>
+
+enum { W8 = 8 };
+
+static const double most_turn = 0.5; // of a vertex in one Newton step [rad]
+
+enum { BAND = 11, BAND_ROWS = 3 * BAND + 1 }; // of the stiffness, on either side of its diagonal
+
+enum { SHORTENED = 8 }; // steps of an increment; more end in other equilibria
+
+enum { EASY = 8 }; // iterations of an increment that encourage a larger one
+
+bough_rod_static_options bough_rod_static_options_default(void) {
+    return (bough_rod_static_options){1e-10, 1, 12, 30};
+}
+
+// Beyond this slenderness rounding can keep Newton's method from converging.
+static const double slender = 1e12;
+
+// EA L²/EI.
+static double slenderness(const bough_rod_model *m) {
+    const double *axial = m->stiffness + 11 * (size_t)m->stride;
+    const double *x = m->stiffness + 15 * (size_t)m->stride;
+    const double *y = m->stiffness + 18 * (size_t)m->stride;
+    double largest = 0, length = m->span[m->n];
+    for (int n = 0; n < m->n; n++) {
+        largest = fmax(largest, axial[n] * length * length / fmin(x[n], y[n]));
+    }
+    return largest;
+}
+
+static void take_ramped(bough_arena *arena, const bough_rod_model *m, bough_rod_ramped_load *load) {
+    load->value = bough_arena_doubles(arena, 6 * (size_t)m->stride);
+    load->line = bough_arena_doubles(arena, 12 * (size_t)m->stride);
+}
+
+void bough_rod_static_init(bough_rod_static *work, bough_arena *arena, const bough_rod_model *m) {
+    size_t states = (size_t)BOUGH_ROD_STATES * m->n;
+    bough_rod_scratch_init(&work->scratch, arena, m);
+    bough_rod_tangent_init(&work->tangent, arena, m);
+    bough_rod_loads_init(&work->scaled, arena, m);
+    work->rate = bough_arena_doubles(arena, states);
+    work->trial = bough_arena_doubles(arena, states);
+    work->step = bough_arena_doubles(arena, (size_t)W8 * m->n);
+    work->force = bough_arena_doubles(arena, (size_t)6 * m->n);
+    work->band = bough_arena_doubles(arena, (size_t)BAND_ROWS * 6 * m->n);
+    work->pivot = bough_arena_take(arena, (size_t)6 * m->n * sizeof *work->pivot);
+    work->follower = (bough_rod_ramped_load){.follower = true};
+    work->dead = (bough_rod_ramped_load){.follower = false};
+    take_ramped(arena, m, &work->follower);
+    take_ramped(arena, m, &work->dead);
+}
+
+// Residual forces M v̇ of all vertices into step (n × 8); returns the largest component, forces and
+// moments measured against `reference`.
+static double residual(const bough_rod_model *m, bough_rod_static *w, double reference) {
+    int n = m->n;
+    const double *a = w->rate + (size_t)BOUGH_ROD_U * n;
+    double largest = 0;
+    for (int i = 0; i < n; i++) {
+        double *row = w->step + (size_t)W8 * i;
+        const double minus[W8] = {
+            -a[i], -a[n + i], -a[2 * n + i], -a[3 * n + i], -a[4 * n + i], -a[5 * n + i], 0, 0};
+        memset(row, 0, W8 * sizeof *row);
+        bough_block_subtract(w->tangent.blocks.mass + (size_t)i * BOUGH_BLOCK, minus, row);
+        for (int c = 0; c < 6; c++) largest = fmax(largest, fabs(row[c]));
+    }
+    return largest / reference;
+}
+
+// The largest stress resultant and load: what a residual is small against.
+static double magnitude(const bough_rod_model *m, const bough_rod_static *w) {
+    double largest = 1e-300;
+    for (int c = 0; c < 9; c++) {
+        for (int i = 0; i < m->n; i++) {
+            largest = fmax(largest, fabs(w->scratch.segment[c * m->stride + i]));
+        }
+    }
+    for (int k = 0; k < 6 * m->stride; k++) largest = fmax(largest, fabs(w->scratch.load[k]));
+    return largest;
+}
+
+static bough_vec3 step_of(const double *step, int i, int from) {
+    const double *d = step + (size_t)W8 * i + from;
+    return bough_v3(d[0], d[1], d[2]);
+}
+
+// Moves the rod by a step, shortened so that no vertex turns by more than most_turn. Returns the
+// largest change, lengths measured against the rod's.
+static double update(const bough_rod_model *m, const double *step, double *state) {
+    double turn = bough_rod_turn(m, step), shift = 0;
+    for (int i = 0; i < m->n; i++) shift = fmax(shift, bough_norm(step_of(step, i, 0)) / m->span[m->n]);
+    bough_rod_move(m, step, turn > most_turn ? most_turn / turn : 1, state, NULL);
+    return fmax(turn, shift);
+}
+
+// The block that couples vertex i to j.
+static void put_in_band(const double *block, int i, int j, double *band) {
+    for (int column = 0; column < 6; column++) {
+        double *to = band + (size_t)BAND_ROWS * (6 * j + column) + 2 * BAND + 6 * (i - j) - column;
+        for (int row = 0; row < 6; row++) to[row] = block[W8 * column + row];
+    }
+}
+
+// K δq = residual, in place in step. With pivoting: blocks eliminated in their order leave of the residual
+// what would strain a slender rod.
+static bool newton_step(const bough_rod_model *m, bough_rod_static *w, const double *input,
+                        const double *state) {
+    const bough_block_tridiagonal *a = &w->tangent.matrix;
+    bough_rod_linear_stiffness(m, &w->tangent.blocks, input, state, &w->tangent.matrix);
+    memset(w->band, 0, (size_t)BAND_ROWS * 6 * m->n * sizeof(double));
+    for (int i = 0; i < m->n; i++) {
+        size_t at = (size_t)i * BOUGH_BLOCK;
+        put_in_band(a->diagonal + at, i, i, w->band);
+        if (i > 0) put_in_band(a->lower + at, i, i - 1, w->band);
+        if (i < m->n - 1) put_in_band(a->upper + at, i, i + 1, w->band);
+        memcpy(w->force + 6 * i, w->step + W8 * i, 6 * sizeof(double));
+    }
+    if (!bough_band_solve(6 * m->n, BAND, w->band, w->pivot, w->force)) return false;
+    for (int i = 0; i < m->n; i++) memcpy(w->step + W8 * i, w->force + 6 * i, 6 * sizeof(double));
+    return true;
+}
+
+// Newton's method under w->scaled. False when it does not converge.
+static bool converge(const bough_rod_model *m, const double *input, const bough_rod_static_options *options,
+                     bough_rod_static *w, double *state) {
+    int shortened = 0;
+    for (int k = 0; k < options->iterations; k++) {
+        w->iterations++;
+        bough_rod_ride(m, input, state);
+        if (!bough_rod_linearise(m, &w->scaled, 0, state, input, &w->scratch, &w->tangent)) {
+            return false;
+        }
+        bough_rod_derivative(m, &w->scaled, 0, state, input, &w->scratch, w->rate);
+        if (residual(m, w, magnitude(m, w)) < options->tolerance) return true;
+        if (!newton_step(m, w, input, state)) return false;
+        double change = update(m, w->step, state);
+        shortened += change > most_turn;
+        if (shortened > SHORTENED) return false;
+        // rounding in a stiff rod keeps the residual up; then the steps tell
+        if (change < options->tolerance) {
+            bough_rod_ride(m, input, state);
+            return true;
+        }
+    }
+    return false;
+}
+
+// Adds what the ramped loads of one kind end with. Whether there are any.
+static bool sum_ramped(const bough_rod_model *m, const bough_rod_loads *loads, double share,
+                       bough_rod_ramped_load *sum) {
+    size_t count = 6 * (size_t)m->stride;
+    bool any = false;
+    memset(sum->value, 0, count * sizeof(double));
+    memset(sum->line, 0, 2 * count * sizeof(double));
+    sum->along = false;
+    for (const bough_rod_ramped_load *l = loads->ramped; l != NULL; l = l->next) {
+        if (l->follower != sum->follower) continue;
+        any = true;
+        sum->along = sum->along || l->along;
+        double factor = share * (l->n > 0 ? l->factors[l->n - 1] : 1);
+        for (size_t k = 0; k < count; k++) sum->value[k] += factor * l->value[k];
+        for (size_t k = 0; k < 2 * count; k++) sum->line[k] += factor * l->line[k];
+    }
+    return any;
+}
+
+static void scale_loads(const bough_rod_model *m, const bough_rod_loads *loads, double share,
+                        bough_rod_static *w) {
+    int count = 6 * m->stride;
+    for (int k = 0; k < count; k++) {
+        w->scaled.value[k] = share * loads->value[k];
+        w->scaled.rest[k] = m->strain0[k] + share * (loads->rest[k] - m->strain0[k]);
+    }
+    w->scaled.ramped = NULL;
+    bough_rod_ramped_load *const kinds[2] = {&w->follower, &w->dead};
+    for (int k = 0; k < 2; k++) {
+        if (!sum_ramped(m, loads, share, kinds[k])) continue;
+        kinds[k]->next = w->scaled.ramped;
+        w->scaled.ramped = kinds[k];
+    }
+}
+
+// Centrifugal forces grow with the square of the twist.
+static void scale_input(const double *input, double share, double *scaled) {
+    for (int k = 0; k < BOUGH_ROD_INPUTS; k++) {
+        scaled[k] = (k < BOUGH_ROD_INPUTS - 3 ? sqrt(share) : share) * input[k];
+    }
+}
+
+static bough_status not_found(const bough_rod_model *m, double reached) {
+    double ratio = slenderness(m);
+    if (ratio > slender) {
+        return bough_fail(BOUGH_FAILED,
+                          "rod %s: no static equilibrium found: EA L²/EI is %.2g, and beyond %.0e"
+                          " the rounding of positions bends the rod; with EA = %.0e EI/L² it bends the same",
+                          m->name, ratio, slender, 1e8);
+    }
+    return bough_fail(BOUGH_FAILED,
+                      "rod %s: no static equilibrium found beyond %.4g %% of"
+                      " the load; the rod may buckle there, or more segments are needed",
+                      m->name, 100 * reached);
+}
+
+bough_status bough_rod_steady(const bough_rod_model *m, const bough_rod_loads *loads, const double *input,
+                              const bough_rod_static_options *options, bough_rod_static *work,
+                              double *state) {
+    size_t bytes = (size_t)BOUGH_ROD_STATES * m->n * sizeof *state;
+    double reached = 0, largest = 1.0 / options->increments, increment = largest;
+    double least = ldexp(largest, -options->halvings);
+    work->iterations = 0;
+    while (reached < 1) {
+        double target = fmin(reached + increment, 1), scaled[BOUGH_ROD_INPUTS];
+        int before = work->iterations;
+        scale_loads(m, loads, target, work);
+        scale_input(input, target, scaled);
+        memcpy(work->trial, state, bytes);
+        if (converge(m, scaled, options, work, work->trial)) {
+            memcpy(state, work->trial, bytes);
+            reached = target;
+            if (work->iterations - before <= EASY) increment = fmin(2 * increment, largest);
+        } else if ((increment /= 2) < least) {
+            return not_found(m, reached);
+        }
+    }
+    return bough_ok();
+}

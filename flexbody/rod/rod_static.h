@@ -1,0 +1,44 @@
+// Equilibrium of a rod whose root is held, at rest or in steady rotation: Newton–Raphson on the
+// analytic tangent, unsymmetric under follower loads, with increments of load, following large
+// rotations.
+#ifndef BOUGH_FLEXBODY_ROD_STATIC_H
+#define BOUGH_FLEXBODY_ROD_STATIC_H
+
+#include "flexbody/rod/rod_tangent.h"
+
+typedef struct bough_rod_static_options {
+    double tolerance; // of the residual force, relative to the largest load or stress resultant,
+                      // or of the last step [rad, lengths of the rod]
+    int increments;   // equal parts of load to begin with; halved where Newton does not converge,
+                      // doubled again where it does easily
+    int halvings;     // of a part before giving up
+    int iterations;   // of Newton's method per increment
+} bough_rod_static_options;
+
+// 1e-10, 1 increment, 12 halvings, 30 iterations.
+bough_rod_static_options bough_rod_static_options_default(void);
+
+// Work of the solution; build with the rod.
+typedef struct bough_rod_static {
+    bough_rod_scratch scratch;
+    bough_rod_tangent tangent;
+    bough_rod_loads scaled;               // the loads of the present increment
+    bough_rod_ramped_load follower, dead; // its ramped ones
+    double *rate;                         // (13 n)
+    double *step;                         // (n × 8)
+    double *trial;                        // (13 n)
+    double *force, *band;                 // (6 n), (34 × 6 n) K in LAPACK's band storage
+    int *pivot;                           // (6 n)
+    int iterations;                       // of the last solution, all increments together
+} bough_rod_static;
+
+void bough_rod_static_init(bough_rod_static *work, bough_arena *arena, const bough_rod_model *m);
+
+// Brings `state` (13 n), from where it is, to rest in a BRF of constant twist and gravity, `input`
+// (9, BRF axes), under loads->value (its rates are ignored) and the whole of the ramped loads. An
+// increment is a share of loads, gravity and the square of the twist. BOUGH_FAILED names the rod and
+// the share of load reached; the state is then the last equilibrium.
+bough_status bough_rod_steady(const bough_rod_model *m, const bough_rod_loads *loads, const double *input,
+                              const bough_rod_static_options *options, bough_rod_static *work, double *state);
+
+#endif

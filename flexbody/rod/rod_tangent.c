@@ -1,0 +1,226 @@
+// Linearisation of the rod: exact tangents of segment forces and of the vertices' balances.
+#include "flexbody/rod/rod_tangent.h"
+
+#include "flexbody/rod/rod_lanes.h"
+#include "flexbody/rod/rod_tangent_layout.h"
+#include "flexbody/rod/rod_variation.h"
+
+#include <string.h>
+
+void bough_rod_tangent_init(bough_rod_tangent *k, bough_arena *arena, const bough_rod_model *m) {
+    size_t s = (size_t)m->stride;
+    k->variation = bough_arena_doubles(arena, TANGENTS * s);
+    k->local_position = bough_rod_vertex_rows(arena, m, 18);
+    k->vertex = bough_rod_vertex_rows(arena, m, KEPT);
+    k->work = bough_rod_vertex_rows(arena, m, WORK);
+    k->rate = bough_arena_doubles(arena, BOUGH_ROD_STATES * s);
+    k->root = bough_arena_doubles(arena, TANGENTS);
+    k->end = bough_arena_doubles(arena, TANGENTS);
+    k->force = bough_arena_doubles(arena, FORCES * s);
+    k->packed = bough_arena_doubles(arena, (size_t)bough_padded(m->n) * W8);
+    bough_block_tridiagonal_init(&k->matrix, arena, m->n);
+    bough_rod_blocks_init(&k->blocks, arena, m);
+}
+
+// -- a vertex' own terms --------------------------------------------------------------------------
+
+static inline void store_column(double *restrict block, int l, int row, int column, bough_vec3 x) {
+    store3(block + (6 * row + column) * LANES, 6 * LANES, l, x);
+}
+
+static void keep_vertices(const bough_rod_model *m, const double *restrict state,
+                          const double *restrict vertex, bough_rod_tangent *k) {
+    int n = m->n, s = m->stride;
+    double *restrict kept = k->vertex;
+    bough_vec3 omega = k->omega;
+#pragma omp simd
+    for (int v = 1; v <= n; v++) {
+        vertex_state a = load_vertex(vertex, s, v);
+        bough_mat3 r = bough_rotation_matrix(a.p);
+        kept[KEPT_P * s + v] = state[3 * n + v - 1];
+        store3(kept + (KEPT_P + 1) * s, s, v, load3(state + 4 * n, n, v - 1));
+        store3(kept + KEPT_W * s, s, v, a.w);
+        store3(kept + KEPT_OMEGA * s, s, v, bough_mat3_tmul(r, omega));
+        store3(kept + KEPT_R * s, s, v, r.c1);
+        store3(kept + (KEPT_R + 3) * s, s, v, r.c2);
+        store3(kept + (KEPT_R + 6) * s, s, v, r.c3);
+    }
+}
+
+// The mass of (11), force in BRF axes: [mE, −Rξ(s); ξ(s)Rᵀ, Î], column j of each half, of eight
+// vertices.
+static void mass_columns(const bough_rod_model *m, const bough_rod_tangent *k, int first, int j,
+                         double *restrict mass) {
+    int s = m->stride;
+    const double *restrict kept = k->vertex + first + 1, *restrict moment = m->moment + first;
+    const double *restrict inertia = m->inertia + first, *restrict weight = m->mass + first;
+    bough_vec3 e = bough_unit3(j);
+#pragma omp simd
+    for (int l = 0; l < LANES; l++) {
+        bough_mat3 r = load_matrix(kept + KEPT_R * s, s, l);
+        bough_vec3 offset = load3(moment, s, l);
+        store_column(mass, l, 0, j, bough_scale(weight[l], e));
+        store_column(mass, l, 3, j, bough_cross(offset, bough_mat3_tmul(r, e)));
+        store_column(mass, l, 0, 3 + j, bough_mat3_mul(r, bough_cross(e, offset)));
+        store_column(mass, l, 3, 3 + j, inertia_times(inertia, s, l, e));
+    }
+}
+
+// What the velocities change in (11) beyond the segments' forces.
+static void velocity_columns(const bough_rod_model *m, const bough_rod_tangent *k, int first, int j,
+                             double *restrict out) {
+    int s = m->stride;
+    const double *restrict kept = k->vertex + first + 1, *restrict moment = m->moment + first;
+    const double *restrict inertia = m->inertia + first, *restrict weight = m->mass + first;
+    bough_vec3 e = bough_unit3(j), turn = bough_cross(k->omega, e);
+#pragma omp simd
+    for (int l = 0; l < LANES; l++) {
+        bough_mat3 r = load_matrix(kept + KEPT_R * s, s, l);
+        bough_vec3 offset = load3(moment, s, l), w = load3(kept + KEPT_W * s, s, l);
+        bough_vec3 centrifugal =
+            bough_add(bough_cross(e, bough_cross(w, offset)), bough_cross(w, bough_cross(e, offset)));
+        bough_vec3 gyroscopic = bough_add(bough_cross(e, inertia_times(inertia, s, l, w)),
+                                          bough_cross(w, inertia_times(inertia, s, l, e)));
+        store_column(out, l, 0, j, bough_scale(-weight[l], turn));
+        store_column(out, l, 3, j, bough_cross(bough_mat3_tmul(r, turn), offset));
+        store_column(out, l, 0, 3 + j, bough_scale(-1, bough_mat3_mul(r, centrifugal)));
+        store_column(out, l, 3, 3 + j, bough_scale(-1, gyroscopic));
+    }
+}
+
+typedef struct vertex_load {
+    bough_vec3 f, l; // force in BRF axes, moment in section axes
+} vertex_load;
+
+// Row j of the loads' slopes.
+static inline vertex_load slope_at(const double *restrict slope, int s, int i, int j, bough_mat3 r) {
+    const double *restrict row = slope + j * s + i;
+    return (vertex_load){{row[0], row[4 * s], 0}, bough_mat3_tmul(r, bough_v3(0, 0, row[8 * s]))};
+}
+
+// Adds what the loads change with velocity along x and y and with W₃.
+static void damping_columns(const bough_rod_model *m, const bough_rod_loads *loads,
+                            const bough_rod_tangent *k, int first, double *restrict out) {
+    static const int row[3] = {0, 1, 3}, column[3] = {0, 1, 5};
+    int s = m->stride;
+    const double *restrict kept = k->vertex + first + 1, *restrict slope = loads->slope + first + 1;
+    for (int j = 0; j < 3; j++) {
+        double *restrict to = out + column[j] * LANES;
+        int from = row[j];
+#pragma omp simd
+        for (int l = 0; l < LANES; l++) {
+            vertex_load f = slope_at(slope, s, l, from, load_matrix(kept + KEPT_R * s, s, l));
+            to[l] += f.f.x;
+            to[6 * LANES + l] += f.f.y;
+            to[18 * LANES + l] += f.l.x;
+            to[24 * LANES + l] += f.l.y;
+            to[30 * LANES + l] += f.l.z;
+        }
+    }
+}
+
+// What the rotation of a vertex changes, from the accelerations `rate` (6 n: u̇, Ẇ): the moment of
+// a load in BRF axes and the first moment's forces turn with it.
+static void rotation_columns(const bough_rod_model *m, const double *restrict rate, const double *input,
+                             const bough_rod_scratch *scratch, bough_rod_tangent *k) {
+    int n = m->n, s = m->stride;
+    const double *restrict kept = k->vertex, *restrict first = m->moment;
+    const double *restrict vertex = scratch->vertex, *restrict load = scratch->load;
+    double *restrict out = k->local_position;
+    bough_vec3 omega = k->omega, gravity = {input[6], input[7], input[8]};
+#pragma omp simd
+    for (int v = 1; v <= n; v++) {
+        bough_mat3 r = load_matrix(kept + KEPT_R * s, s, v);
+        bough_vec3 offset = load3(first, s, v - 1), w = load3(kept + KEPT_W * s, s, v);
+        bough_vec3 u = load3(vertex + BOUGH_ROD_U * s, s, v);
+        bough_vec3 udot = load3(rate, n, v - 1), wdot = load3(rate + 3 * n, n, v - 1);
+        bough_vec3 felt = bough_sub(bough_add(udot, bough_cross(omega, u)), gravity);
+        bough_vec3 c = bough_mat3_tmul(r, felt);
+        bough_vec3 moment = bough_mat3_tmul(r, load3(load + 3 * s, s, v));
+        bough_vec3 shift = bough_add(bough_cross(wdot, offset), bough_cross(w, bough_cross(w, offset)));
+        for (int j = 0; j < 3; j++) {
+            bough_vec3 e = bough_unit3(j);
+            bough_vec3 force = bough_mat3_mul(r, bough_cross(shift, e));
+            bough_vec3 turned = bough_sub(bough_cross(moment, e), bough_cross(offset, bough_cross(c, e)));
+            store3(out + 6 * j * s, s, v, force);
+            store3(out + (6 * j + 3) * s, s, v, turned);
+        }
+    }
+}
+
+// Followers turn with their vertex: δ(R f) = R (δφ×f), and the moment in section axes stays, where
+// rotation_columns took it for a dead one.
+static void add_followers(const bough_rod_model *m, const bough_rod_scratch *scratch, bough_rod_tangent *k) {
+    int s = m->stride;
+    double *out = k->local_position;
+    for (int v = 1; v <= m->n; v++) {
+        bough_mat3 r = load_matrix(k->vertex + (size_t)KEPT_R * s, s, v);
+        bough_vec3 force = load3(scratch->follower, s, v);
+        bough_vec3 moment = load3(scratch->follower + 3 * s, s, v);
+        for (int j = 0; j < 3; j++) {
+            bough_vec3 pull = bough_mat3_mul(r, bough_cross(bough_unit3(j), force));
+            bough_vec3 turn = bough_cross(bough_unit3(j), moment);
+            bough_vec3 old_pull = load3(out + 6 * j * s, s, v);
+            bough_vec3 old_turn = load3(out + (6 * j + 3) * s, s, v);
+            store3(out + 6 * j * s, s, v, bough_add(old_pull, pull));
+            store3(out + (6 * j + 3) * s, s, v, bough_add(old_turn, turn));
+        }
+    }
+}
+
+// Adds what they change with the rotation about the section's normal.
+static void add_turning(const bough_rod_model *m, const bough_rod_loads *loads, bough_rod_tangent *k) {
+    int s = m->stride;
+    const double *restrict kept = k->vertex, *restrict slope = loads->slope;
+    double *restrict out = k->local_position + 12 * s;
+#pragma omp simd
+    for (int v = 1; v <= m->n; v++) {
+        vertex_load f = slope_at(slope, s, v, 2, load_matrix(kept + KEPT_R * s, s, v));
+        store3(out, s, v, bough_add(load3(out, s, v), f.f));
+        store3(out + 3 * s, s, v, bough_add(load3(out + 3 * s, s, v), f.l));
+    }
+}
+
+// The velocities' tangents of a segment that is one of the eight.
+static void keep_velocity(const bough_rod_eight *eight, int segment, double *to) {
+    int lane = segment - eight->first;
+    if (lane < 0 || lane >= LANES) return;
+    for (int i = 0; i < TANGENTS; i++) to[i] = eight->velocity[LANES * i + lane];
+}
+
+// Segments first..first + 7 and the vertices at their right ends.
+static void linearise_eight(const bough_rod_model *m, const bough_rod_loads *loads,
+                            const bough_rod_scratch *scratch, int first, bough_rod_tangent *k) {
+    _Alignas(64) double base[BOUGH_ROD_BASE * LANES];
+    bough_rod_eight eight;
+    eight.first = first;
+    double *position = k->variation + (size_t)TANGENTS * first;
+    bough_rod_base(m, scratch, first, base);
+    bough_rod_position_variation(m, scratch, first, base, position);
+    bough_rod_velocity_variation(m, first, base, eight.velocity);
+    for (int j = 0; j < 3; j++) {
+        mass_columns(m, k, first, j, eight.mass);
+        velocity_columns(m, k, first, j, eight.own_velocity);
+    }
+    if (loads->damped) damping_columns(m, loads, k, first, eight.own_velocity);
+    keep_velocity(&eight, 0, k->root);
+    if (bough_rod_carries(m)) keep_velocity(&eight, m->n, k->end);
+    bough_rod_form_blocks(m, k, &eight);
+}
+
+bool bough_rod_linearise(const bough_rod_model *m, const bough_rod_loads *loads, double t,
+                         const double *state, const double *input, bough_rod_scratch *scratch,
+                         bough_rod_tangent *k) {
+    double *rate = k->rate;
+    if (!bough_rod_derivative(m, loads, t, state, input, scratch, rate)) return false;
+    k->omega = bough_v3(input[3], input[4], input[5]);
+    keep_vertices(m, state, scratch->vertex, k);
+    rotation_columns(m, rate + (size_t)BOUGH_ROD_U * m->n, input, scratch, k);
+    if (bough_rod_loads_follow(loads)) add_followers(m, scratch, k);
+    if (loads->damped) add_turning(m, loads, k);
+    if (bough_rod_carries(m)) bough_rod_keep_end(m, loads, input + BOUGH_ROD_INPUTS, scratch, k);
+    for (int first = 0; first < m->n_segment; first += LANES) {
+        linearise_eight(m, loads, scratch, first, k);
+    }
+    return true;
+}

@@ -1,0 +1,96 @@
+// The rod's Newton matrix (docs/theory.md, "Newton matrix"): analytic tangents, elimination of the
+// kinematic rows, and solution of (I − γ ∂f/∂y) x = b through the 6×6 block-tridiagonal system in the
+// velocities
+//     (M − γ(Dᵥ + γ K A)) δv = M r_v + γ K A r_q,
+// K, Dᵥ the tangents of force with respect to configuration and velocity, A the elimination of the
+// configuration increments. Tangents are found per segment and per vertex as structures of arrays and
+// then put into blocks, of which each factorisation forms its matrix.
+#ifndef BOUGH_FLEXBODY_ROD_TANGENT_H
+#define BOUGH_FLEXBODY_ROD_TANGENT_H
+
+#include "core/base/block_tridiagonal.h"
+#include "flexbody/rod/rod.h"
+
+// The tangents as blocks: M v̇ = K δq + Dᵥ δv.
+typedef struct bough_rod_blocks {
+    bough_block_tridiagonal position; // K: ∂(vertex force)/∂(x, φ)
+    bough_block_tridiagonal velocity; // Dᵥ: ∂(vertex force)/∂(u, W)
+    double *mass;                     // (padded n × block)
+} bough_rod_blocks;
+
+// A linearisation and its factorisation; several may exist for one rod. Arrays over segments and
+// vertices have the model's stride; moving vertex v is at index v = 1..n.
+typedef struct bough_rod_tangent {
+    // computed by bough_rod_linearise
+    double *variation;      // of segment forces by configuration, eight segments at a time: see
+                            // rod_variation.h (padded N × 81)
+    double *local_position; // tangents of a vertex' own terms, by rotation (18 × stride)
+    double *vertex;         // see rod_tangent_layout.h
+    bough_vec3 omega;       // of the BRF
+    double *rate;           // f (13 × stride)
+    double *root;           // of the first segment's forces by velocities, 9 f + d (81)
+    double *end;            // the same of the last segment of a rod that carries bodies (81)
+    double end_rotation[4]; // of such a rod's last vertex, whose turn changes
+    double end_load[18];    // the loads on it: force and moment by columns
+    bough_rod_blocks blocks;
+    // computed by bough_rod_factor
+    double gamma;
+    bough_block_tridiagonal matrix;
+    double *force;  // γ K A r_q of the segments (9 × stride)
+    double *work;   // of a solution
+    double *packed; // (padded n × 8)
+} bough_rod_tangent;
+
+void bough_rod_tangent_init(bough_rod_tangent *k, bough_arena *arena, const bough_rod_model *m);
+void bough_rod_blocks_init(bough_rod_blocks *b, bough_arena *arena, const bough_rod_model *m);
+
+// Tangents at a state. False when they are not finite there.
+bool bough_rod_linearise(const bough_rod_model *m, const bough_rod_loads *loads, double t,
+                         const double *state, const double *input, bough_rod_scratch *scratch,
+                         bough_rod_tangent *k);
+
+// What goes into the blocks of eight segments and the vertices at their right ends only, rows of 8.
+typedef struct bough_rod_eight {
+    int first;                                // segment
+    _Alignas(64) double velocity[81 * 8];     // of segment forces, by velocities: as `variation`
+    _Alignas(64) double mass[36 * 8];         // of (11) with force in BRF axes
+    _Alignas(64) double own_velocity[36 * 8]; // tangents of a vertex' own terms, by u, W
+} bough_rod_eight;
+
+// Puts them and the tangents by configuration into blocks. To be called in the order of segments.
+void bough_rod_form_blocks(const bough_rod_model *m, bough_rod_tangent *k, const bough_rod_eight *eight);
+
+// Factors I − γ ∂f/∂y of the last linearisation. False when singular.
+bool bough_rod_factor(const bough_rod_model *m, bough_rod_tangent *k, double gamma);
+
+// Solves (I − γ ∂f/∂y) x = b in place (13 n).
+void bough_rod_solve(const bough_rod_model *m, bough_rod_tangent *k, double *x);
+
+// ∂f/∂input at a time and state: (n_inputs × 13 n), row j for input j.
+void bough_rod_input_columns(const bough_rod_model *m, const bough_rod_loads *loads, double t,
+                             const double *state, const double *input, bough_rod_scratch *scratch,
+                             double *column);
+
+// Where and along what a wrench is differentiated; either rate may be NULL for zero.
+typedef struct bough_rod_variation {
+    const double *state, *input, *state_rate, *input_rate;
+} bough_rod_variation;
+
+// Derivative of the root wrench (6) at time t.
+void bough_rod_wrench_tangent(const bough_rod_model *m, const bough_rod_loads *loads, double t,
+                              const bough_rod_variation *at, bough_rod_scratch *scratch, double *wrench);
+
+// The same of bough_rod_end_wrench.
+void bough_rod_end_tangent(const bough_rod_model *m, const bough_rod_loads *loads, double t,
+                           const bough_rod_variation *at, bough_rod_scratch *scratch, double *wrench);
+
+// Into a linearisation of a rod that carries bodies: what the turn of the last vertex, whose motion is
+// `end`, changes in the loads in scratch.
+void bough_rod_keep_end(const bough_rod_model *m, const bough_rod_loads *loads, const double *end,
+                        const bough_rod_scratch *scratch, bough_rod_tangent *k);
+
+// Derivatives of both wrenches where `k` was linearised, from its tangents.
+void bough_rod_kept_wrench_tangent(const bough_rod_model *m, const bough_rod_tangent *k,
+                                   const double *state_rate, const double *input_rate, double *wrench);
+
+#endif

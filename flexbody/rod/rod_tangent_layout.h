@@ -1,0 +1,36 @@
+// How the arrays of a bough_rod_tangent are laid out: shared by the files that fill and use them.
+#ifndef BOUGH_FLEXBODY_ROD_TANGENT_LAYOUT_H
+#define BOUGH_FLEXBODY_ROD_TANGENT_LAYOUT_H
+
+#include "core/base/base.h"
+
+enum {
+    FORCES = 9,     // f, left moment, right moment
+    DIRECTIONS = 9, // Δx, φ left, φ right; then Δu, W left, W right
+    TANGENTS = FORCES * DIRECTIONS,
+    LANES = BOUGH_LANES,
+    W8 = 8,
+};
+
+// Rows of `vertex`: what elimination and solution need of each vertex.
+enum {
+    KEPT_P = 0,      // quaternion as in the state, not normalised
+    KEPT_W = 4,      // W
+    KEPT_OMEGA = 7,  // Rᵀω
+    KEPT_R = 10,     // R by columns
+    KEPT_TURN = 19,  // elimination of rotations A_φ, by rows
+    KEPT_SCALE = 28, // 1/(factor of the quaternion's scale)
+    KEPT = 29,
+};
+
+// Rows of `work`.
+enum {
+    WORK_Q = 0,        // eliminated configuration residual A r_q
+    WORK_SCALAR = 6,   // of the quaternion residual
+    WORK_VELOCITY = 7, // residual, then increments of the velocities
+    WORK = WORK_VELOCITY + W8,
+};
+
+enum { DELTA = 0, LEFT = 3, RIGHT = 6, F = 0, LL = 3, LR = 6 }; // directions; forces
+
+#endif

@@ -1,0 +1,349 @@
+#include "flexbody/section/section.h"
+
+#include "core/base/linalg.h"
+#include "core/base/symmetric6.h"
+#include "flexbody/rod/rod_segment.h"
+#include "flexbody/section/section_axis.h"
+
+#include <string.h>
+
+// -- stiffness ------------------------------------------------------------------------------------
+
+typedef double matrix6[6][6];
+
+// D = diag(√μ) C diag(√μ)
+static void section_damping(const double mu[6], const double *stiffness, double *damping) {
+    for (int i = 0; i < 6; i++) {
+        for (int j = i; j < 6; j++) {
+            int k = bough_symmetric6_index(i, j);
+            damping[k] = sqrt(mu[i] * mu[j]) * stiffness[k];
+        }
+    }
+}
+
+static void unpack(const double *upper, matrix6 full) {
+    for (int i = 0; i < 6; i++) {
+        for (int j = 0; j < 6; j++) full[i][j] = upper[bough_symmetric6_index(i, j)];
+    }
+}
+
+// sum += weight·aᵀ b
+static void add_product(double weight, matrix6 a, matrix6 b, matrix6 sum) {
+    for (int i = 0; i < 6; i++) {
+        for (int j = 0; j < 6; j++) {
+            for (int k = 0; k < 6; k++) sum[i][j] += weight * a[k][i] * b[k][j];
+        }
+    }
+}
+
+// sum += weight·aᵀ b a for symmetric b, upper triangle only
+static void add_congruent(double weight, matrix6 a, matrix6 b, double *sum) {
+    matrix6 ba = {{0}};
+    add_product(1, b, a, ba);
+    for (int i = 0; i < 6; i++) {
+        for (int j = i; j < 6; j++) {
+            double entry = 0;
+            for (int k = 0; k < 6; k++) entry += a[k][i] * ba[k][j];
+            sum[bough_symmetric6_index(i, j)] += weight * entry;
+        }
+    }
+}
+
+// The stress at s from the one at the middle: n(s) = n, m(s) = m − (s − s_mid) d₃×n.
+static void carry(double distance, matrix6 t) {
+    for (int i = 0; i < 6; i++) {
+        for (int j = 0; j < 6; j++) t[i][j] = i == j;
+    }
+    t[3][1] = distance;
+    t[4][0] = -distance;
+}
+
+// The stress that a load per length adds to the one carried from the middle of a segment of length h,
+// its vertices taking their shares by hat functions. Its moments vanish at both ends.
+//     uniform load f, m:     n = −f σ,               m = d₃×f (σ² − h²/4)/2 − m σ
+//     load f σ, m σ:         n = f (h²/24 − σ²/2),   m = d₃×f (σ³ − h²σ/4)/6 + m (h²/24 − σ²/2)
+static void line_stress(double sigma, double h, bool slope, matrix6 stress) {
+    double square = sigma * sigma, along = slope ? h * h / 24 - 0.5 * square : -sigma;
+    double bend = (slope ? sigma / 6 : 0.5) * (square - 0.25 * h * h);
+    memset(stress, 0, sizeof(matrix6));
+    for (int i = 0; i < 6; i++) stress[i][i] = along;
+    stress[3][1] = -bend;
+    stress[4][0] = bend;
+}
+
+// What lies between the left end of a segment and s.
+typedef struct mass_sum {
+    const bough_section_axis *axis;
+    double to, twist;  // s; of the segment's mid frame
+    double mass, arm;  // ∫ρ, ∫ρ (s − s′)
+    bough_vec3 offset; // ∫ρ c in the mid frame
+} mass_sum;
+
+static void add_mass(void *context, double s, double weight) {
+    mass_sum *c = context;
+    bough_section_station x = bough_section_at(c->axis, s);
+    double turn = -(x.twist - c->twist), mass = weight * x.mass;
+    double cosine = cos(turn), sine = sin(turn);
+    bough_vec3 centre = {cosine * x.centre[0] - sine * x.centre[1], sine * x.centre[0] + cosine * x.centre[1],
+                         0};
+    c->mass += mass;
+    c->arm += mass * (c->to - s);
+    c->offset = bough_axpy(mass, centre, c->offset);
+}
+
+// The same with the left vertex' hat function.
+typedef struct share_sum {
+    mass_sum *whole;
+    double length, mass, curvature; // curvature: ∫ρ (s − a)(b − s)
+    bough_vec3 moment;
+} share_sum;
+
+static void add_share(void *context, double s, double weight) {
+    share_sum *c = context;
+    mass_sum here = {.axis = c->whole->axis, .to = s, .twist = c->whole->twist};
+    double hat = (c->whole->to - s) / c->length;
+    add_mass(&here, s, weight);
+    c->mass += hat * here.mass;
+    c->moment = bough_axpy(hat, here.offset, c->moment);
+    c->curvature += here.mass * (1 - hat) * hat * c->length * c->length;
+}
+
+// The stress n = m g, m = s×g of an acceleration g on a mass and first moment, three columns.
+static void share_stress(bough_section_share x, matrix6 stress) {
+    memset(stress, 0, sizeof(matrix6));
+    for (int i = 0; i < 3; i++) stress[i][i] = x.mass;
+    stress[3][1] = -x.moment.z;
+    stress[3][2] = x.moment.y;
+    stress[4][0] = x.moment.z;
+    stress[4][2] = -x.moment.x;
+    stress[5][0] = -x.moment.y;
+    stress[5][1] = x.moment.x;
+}
+
+typedef struct segment_sum {
+    const bough_section_axis *axis;
+    double from, length;      // [m]
+    bough_section_share left; // of the left vertex by hat functions
+    double middle, twist;     // of the segment's mid frame [m, rad]
+    double compliance[21];    // ∫ Tᵀ F T
+    double loss[21];          // ∫ Tᵀ F D F T
+    matrix6 line[2];          // ∫ Tᵀ F S, S of line_stress
+    double taper[9];          // ∫ F (s − s_mid) of bending and twist
+    matrix6 weight;           // the same of weight_stress, three columns
+    bool definite;
+} segment_sum;
+
+// The stress by a uniform acceleration g, three columns, beyond the one carried from the middle, if the
+// left vertex takes the given share of mass and first moment:
+//     n = (m_left − ∫ρ) g,   m = (s_left − ∫ρ c)×g − d₃×g (m_left (s − a) − ∫ρ (s − s′)).
+static void weight_stress(const segment_sum *c, double s, matrix6 stress) {
+    mass_sum below = {.axis = c->axis, .to = s, .twist = c->twist};
+    bough_section_integrate(c->axis, c->from, s, add_mass, &below);
+    bough_vec3 arm = bough_sub(c->left.moment, below.offset);
+    arm.z -= c->left.mass * (s - c->from) - below.arm;
+    share_stress((bough_section_share){c->left.mass - below.mass, arm}, stress);
+}
+
+// Shares by hat functions, with the first moment along the axis by which a bending wave errs least in
+// a uniform segment: ½∫ρ (s − a)(b − s)/h.
+static void share_left(segment_sum *c) {
+    double to = c->from + c->length;
+    mass_sum whole = {.axis = c->axis, .to = to, .twist = c->twist};
+    share_sum left = {.whole = &whole, .length = c->length};
+    bough_section_integrate(c->axis, c->from, to, add_share, &left);
+    c->left = (bough_section_share){left.mass, left.moment};
+    c->left.moment.z += 0.5 * left.curvature / c->length;
+}
+
+// Σ aᵢⱼ bᵢⱼ
+static double trace(matrix6 a, matrix6 b) {
+    double sum = 0;
+    for (int i = 0; i < 36; i++) sum += a[i / 6][i % 6] * b[i / 6][i % 6];
+    return sum;
+}
+
+static void add_compliance(void *context, double s, double weight) {
+    segment_sum *c = context;
+    bough_section_station x = bough_section_at(c->axis, s);
+    double compliance[21], damping[21], turn = -(x.twist - c->twist);
+    matrix6 t, f, d, line, ft = {{0}};
+    if (!bough_symmetric6_inverse(x.stiffness, compliance)) {
+        c->definite = false;
+        return;
+    }
+    section_damping(c->axis->table->damping, x.stiffness, damping);
+    unpack(compliance, f);
+    for (int i = 0; i < 9; i++) c->taper[i] += weight * (s - c->middle) * f[3 + i / 3][3 + i % 3];
+    bough_symmetric6_turn(compliance, turn, compliance);
+    bough_symmetric6_turn(damping, turn, damping);
+    unpack(compliance, f);
+    unpack(damping, d);
+    carry(s - c->middle, t);
+    add_congruent(weight, t, f, c->compliance);
+    add_product(1, f, t, ft);
+    add_congruent(weight, ft, d, c->loss);
+    for (int slope = 0; slope < 2; slope++) {
+        line_stress(s - c->middle, c->length, slope == 1, line);
+        add_product(weight, ft, line, c->line[slope]);
+    }
+    weight_stress(c, s, line);
+    add_product(weight, ft, line, c->weight);
+}
+
+// What the left vertex' share has to gain (the right one's to lose) for the weight to be met with the
+// least strain energy beyond the one of the vertices' shares: normal equations in the shares' stress
+// in the middle, by the compliance there. Linear statics under weight is then exact at the vertices
+// wherever four numbers can make it so, and so are slow waves.
+static bough_section_share best_gain(segment_sum *c) {
+    enum { UNKNOWNS = 4 };
+    matrix6 compliance, stress[UNKNOWNS];
+    double normal[UNKNOWNS * UNKNOWNS], gain[UNKNOWNS];
+    const bough_section_share unit[UNKNOWNS] = {
+        {1, {0, 0, -0.5 * c->length}}, {0, {1, 0, 0}}, {0, {0, 1, 0}}, {0, {0, 0, 1}}};
+    unpack(c->compliance, compliance);
+    for (int k = 0; k < UNKNOWNS; k++) share_stress(unit[k], stress[k]);
+    for (int k = 0; k < UNKNOWNS; k++) {
+        matrix6 product = {{0}}, whole = {{0}};
+        add_product(1, compliance, stress[k], product);
+        for (int l = 0; l < UNKNOWNS; l++) normal[UNKNOWNS * k + l] = trace(product, stress[l]);
+        add_product(1, stress[k], c->weight, whole);
+        gain[k] = 0;
+        for (int j = 0; j < 3; j++) gain[k] -= whole[j][j];
+    }
+    if (!bough_cholesky_factor(UNKNOWNS, normal)) return (bough_section_share){0};
+    bough_cholesky_solve(UNKNOWNS, normal, gain);
+    return (bough_section_share){gain[0], bough_v3(gain[1], gain[2], gain[3])};
+}
+
+// The rod's strains by the mean strains of a straight, untwisted segment, e = Q (γ, κ), linearised at
+// the undeformed one: with a and b the rotations of the ends in the middle's axes,
+//     κ = (b − a)/h,  U = H κ,  γ = Δx/h + y×(a + b)/2,  y = γ + (h/2) y×(κ×t),
+// and V by y and by δv of h κ (rod_segment.h).
+static void strain_map(segment_geometry shape, double h, matrix6 q) {
+    memset(q, 0, sizeof(matrix6));
+    for (int j = 0; j < 3; j++) {
+        bough_vec3 own = along_axis(shape.v, bough_unit3(j));
+        bough_vec3 chord = bough_cross(shape.chord, bough_cross(bough_unit3(j), shape.t));
+        bough_vec3 turn = half_turn(shape.v, shape.t, bough_unit3(j));
+        bough_vec3 shear = along_axis_variation(shape.v, turn, shape.chord, bough_scale(0.5, chord));
+        bough_vec3 bend = rotation_tangent(shape.c, shape.g, shape.v, bough_unit3(j));
+        const double column[6] = {h * shear.x, h * shear.y, h * shear.z, bend.x, bend.y, bend.z};
+        q[0][j] = own.x;
+        q[1][j] = own.y;
+        q[2][j] = own.z;
+        for (int i = 0; i < 6; i++) q[i][3 + j] = column[i];
+    }
+}
+
+// Sums over a segment divided by its length, in the rod's strains.
+static void change_strains(segment_sum *c, matrix6 q) {
+    matrix6 turned, compliance;
+    double f[21] = {0};
+    for (int i = 0; i < 36; i++) turned[i / 6][i % 6] = q[i % 6][i / 6];
+    unpack(c->compliance, compliance);
+    add_congruent(1 / c->length, turned, compliance, f);
+    memcpy(c->compliance, f, sizeof f);
+    unpack(c->loss, compliance);
+    memset(f, 0, sizeof f);
+    add_congruent(1 / c->length, turned, compliance, f);
+    memcpy(c->loss, f, sizeof f);
+    for (int slope = 0; slope < 2; slope++) {
+        matrix6 line = {{0}};
+        add_product(1 / c->length, turned, c->line[slope], line);
+        memcpy(c->line[slope], line, sizeof line);
+    }
+}
+
+// What a segment is discretised to.
+typedef struct segment_law {
+    double *stiffness, *damping; // (21)
+    double *line;                // (72): two matrices by rows
+    double *taper;               // (9)
+    bough_section_share *gain;
+} segment_law;
+
+// Stiffness and damping of a segment whose end forces are met exactly in linear statics: the
+// inverse of the compliance that the stress, constant force and linear moment, meets on its way
+// through the section tables. Bending within the segment appears as compliance in shear
+// (MacNeal's residual bending flexibility). Damping dissipates what the sections would. `line` is the
+// mean strain that a load along the segment makes (docs/theory.md, "Section tables to segments").
+static bool segment_matrices(const bough_section_axis *a, const bough_rod_def *def, int n, segment_law law) {
+    double from = def->span[n], to = def->span[n + 1];
+    vertex_state left = {.x = def->position[n], .p = def->rotation[n]};
+    vertex_state right = {.x = def->position[n + 1], .p = def->rotation[n + 1]};
+    segment_sum c = {
+        .axis = a, .from = from, .length = to - from, .middle = 0.5 * (from + to), .definite = true};
+    matrix6 q, k, loss;
+    c.twist = 0.5 * (bough_section_at(a, from).twist + bough_section_at(a, to).twist);
+    share_left(&c);
+    bough_section_integrate(a, from, to, add_compliance, &c);
+    *law.gain = c.definite ? best_gain(&c) : (bough_section_share){0};
+    strain_map(segment_shape(left, right, 1 / c.length), c.length, q);
+    change_strains(&c, q);
+    if (!c.definite || !bough_symmetric6_inverse(c.compliance, law.stiffness)) return false;
+    unpack(law.stiffness, k);
+    unpack(c.loss, loss);
+    memset(law.damping, 0, 21 * sizeof *law.damping);
+    add_congruent(1, k, loss, law.damping);
+    memcpy(law.line, c.line, sizeof c.line);
+    for (int i = 0; i < 9; i++) law.taper[i] = 12 / (c.length * c.length * c.length) * c.taper[i];
+    return true;
+}
+
+// -- whole ----------------------------------------------------------------------------------------
+
+typedef struct arrays {
+    double *span, *stiffness, *damping, *line, *taper;
+    bough_vec3 *position;
+    bough_quaternion *rotation;
+    bough_vertex_inertia *inertia;
+    bough_section_share *gain;
+} arrays;
+
+static arrays take_arrays(bough_arena *arena, int n) {
+    size_t vertices = (size_t)n + 1;
+    arrays a = {.span = bough_arena_doubles(arena, vertices),
+                .stiffness = bough_arena_doubles(arena, 21 * (size_t)n),
+                .damping = bough_arena_doubles(arena, 21 * (size_t)n),
+                .line = bough_arena_doubles(arena, 72 * (size_t)n),
+                .taper = bough_arena_doubles(arena, 9 * (size_t)n),
+                .gain = bough_arena_take(arena, (size_t)n * sizeof(bough_section_share)),
+                .position = bough_arena_take(arena, vertices * sizeof(bough_vec3)),
+                .rotation = bough_arena_take(arena, vertices * sizeof(bough_quaternion)),
+                .inertia = bough_arena_take(arena, vertices * sizeof(bough_vertex_inertia))};
+    return a;
+}
+
+bough_status bough_section_discretise(bough_arena *arena, const bough_section_table *table, int n_segment,
+                                      bough_rod_def *def) {
+    bough_section_axis a;
+    bough_section_axis_init(&a, arena, table);
+    arrays m = take_arrays(arena, n_segment);
+    *def = (bough_rod_def){.name = table->name,
+                           .n_segment = n_segment,
+                           .span = m.span,
+                           .position = m.position,
+                           .rotation = m.rotation,
+                           .stiffness = m.stiffness,
+                           .damping = m.damping,
+                           .line = m.line,
+                           .taper = m.taper,
+                           .inertia = m.inertia};
+    for (int i = 0; i <= n_segment; i++) {
+        m.span[i] = bough_section_length(&a) * i / n_segment;
+        m.position[i] = bough_section_at(&a, m.span[i]).position;
+        m.rotation[i] = bough_section_rotation(&a, m.span[i]);
+    }
+    for (int k = 0; k < n_segment; k++) {
+        segment_law law = {m.stiffness + 21 * (size_t)k, m.damping + 21 * (size_t)k, m.line + 72 * (size_t)k,
+                           m.taper + 9 * (size_t)k, m.gain + k};
+        if (!segment_matrices(&a, def, k, law)) {
+            return bough_fail(BOUGH_INVALID,
+                              "rod %s: the stiffness between %g m and %g m is not"
+                              " positive definite",
+                              table->name, m.span[k], m.span[k + 1]);
+        }
+    }
+    bough_section_lump(arena, &a, def, m.gain, m.inertia);
+    return bough_ok();
+}

@@ -1,0 +1,33 @@
+// Section tables of a rod and their discretisation: stiffness integrated over segments, inertia
+// over the half-segments of each vertex. Between stations everything is linear in arc length.
+#ifndef BOUGH_FLEXBODY_SECTION_H
+#define BOUGH_FLEXBODY_SECTION_H
+
+#include "flexbody/rod/rod.h"
+
+// A section at a station of the reference axis.
+typedef struct bough_section_station {
+    bough_vec3 position;  // of the reference axis in the BRF [m]
+    double twist;         // section axes are turned by −twist about the axis' tangent [rad]
+    double stiffness[21]; // upper triangle by rows, in section axes [N, N m, N m²]
+    double mass;          // per length [kg/m]
+    double centre[2];     // mass centre in section axes [m]
+    double inertia[4];    // Ixx Iyy Ixy Izz about the reference axis per length [kg m]
+} bough_section_station;
+
+typedef struct bough_section_table {
+    const char *name;
+    int n_station; // 1: a uniform rod of `length` along z
+    const bough_section_station *station;
+    double length;     // used when n_station is 1 [m]
+    double damping[6]; // D = diag(√μ) C diag(√μ), μ per strain component [s]
+} bough_section_table;
+
+// A definition with `n_segment` equal segments in the arena.
+bough_status bough_section_discretise(bough_arena *arena, const bough_section_table *table, int n_segment,
+                                      bough_rod_def *def);
+
+// The whole rod as one rigid body, in the BRF about its origin: first moment and tensor.
+bough_vertex_inertia bough_section_rigid(const bough_rod_def *def);
+
+#endif

@@ -1,0 +1,163 @@
+#include "flexbody/section/section_axis.h"
+
+#include "core/base/symmetric6.h"
+
+#include <math.h>
+
+enum { MOST_HALVINGS = 40 };
+
+enum { POINTS = 8 }; // of Gauss–Legendre quadrature on each stretch without a station inside
+
+static const double gauss_at[POINTS] = {-0.9602898564975363, -0.7966664774136267, -0.5255324099163290,
+                                        -0.1834346424956498, 0.1834346424956498,  0.5255324099163290,
+                                        0.7966664774136267,  0.9602898564975363};
+static const double gauss_weight[POINTS] = {0.1012285362903763, 0.2223810344533745, 0.3137066458778873,
+                                            0.3626837833783620, 0.3626837833783620, 0.3137066458778873,
+                                            0.2223810344533745, 0.1012285362903763};
+
+void bough_section_axis_init(bough_section_axis *a, bough_arena *arena, const bough_section_table *table) {
+    a->table = table;
+    a->n = table->n_station;
+    a->station = table->station;
+    if (table->n_station == 1) { // a uniform rod is two equal stations
+        bough_section_station *two = bough_arena_take(arena, 2 * sizeof *two);
+        two[0] = two[1] = table->station[0];
+        two[0].position = bough_v3(0, 0, 0);
+        two[1].position = bough_v3(0, 0, table->length);
+        a->station = two;
+        a->n = 2;
+    }
+    a->arc = bough_arena_doubles(arena, (size_t)a->n);
+    for (int k = 1; k < a->n; k++) {
+        bough_vec3 step = bough_sub(a->station[k].position, a->station[k - 1].position);
+        a->arc[k] = a->arc[k - 1] + bough_norm(step);
+    }
+}
+
+double bough_section_length(const bough_section_axis *a) { return a->arc[a->n - 1]; }
+
+// The interval that holds s and the share of its upper station.
+static int locate(const bough_section_axis *a, double s, double *share) {
+    int k = 0;
+    while (k < a->n - 2 && s >= a->arc[k + 1]) k++;
+    *share = bough_clamp((s - a->arc[k]) / (a->arc[k + 1] - a->arc[k]), 0, 1);
+    return k;
+}
+
+static double mix(double share, double low, double high) { return low + share * (high - low); }
+
+void bough_section_central(const bough_section_station *x, double central[4]) {
+    double cx = x->centre[0], cy = x->centre[1];
+    central[0] = x->inertia[0] - x->mass * cy * cy;
+    central[1] = x->inertia[1] - x->mass * cx * cx;
+    central[2] = x->inertia[2] + x->mass * cx * cy;
+    central[3] = x->inertia[3] - x->mass * (cx * cx + cy * cy);
+}
+
+static bool is_positive(const double central[4]) {
+    return central[0] > 0 && central[1] > 0 && central[3] > 0 &&
+           central[0] * central[1] > central[2] * central[2];
+}
+
+// Between stations that lie far apart, mass and offset that are linear may need more inertia than the
+// linear one: there it is linear about the mass centre.
+static void mend_inertia(const bough_section_station *low, const bough_section_station *high, double share,
+                         bough_section_station *x) {
+    double central[4], below[4], above[4];
+    bough_section_central(x, central);
+    if (is_positive(central)) return;
+    bough_section_central(low, below);
+    bough_section_central(high, above);
+    for (int i = 0; i < 4; i++) x->inertia[i] += mix(share, below[i], above[i]) - central[i];
+}
+
+bough_section_station bough_section_at(const bough_section_axis *a, double s) {
+    double f;
+    int k = locate(a, s, &f);
+    const bough_section_station *l = &a->station[k], *h = l + 1;
+    bough_section_station x;
+    x.position = bough_between(l->position, h->position, f);
+    x.twist = mix(f, l->twist, h->twist);
+    x.mass = mix(f, l->mass, h->mass);
+    for (int i = 0; i < 21; i++) x.stiffness[i] = mix(f, l->stiffness[i], h->stiffness[i]);
+    for (int i = 0; i < 2; i++) x.centre[i] = mix(f, l->centre[i], h->centre[i]);
+    for (int i = 0; i < 4; i++) x.inertia[i] = mix(f, l->inertia[i], h->inertia[i]);
+    mend_inertia(l, h, f, &x);
+    return x;
+}
+
+// Tangent of the axis at s; at a station the mean of its two sides.
+static bough_vec3 tangent_at(const bough_section_axis *a, double s) {
+    double f;
+    int k = locate(a, s, &f);
+    bough_vec3 t = bough_sub(a->station[k + 1].position, a->station[k].position);
+    t = bough_scale(1 / bough_norm(t), t);
+    if (f == 0 && k > 0) {
+        bough_vec3 before = bough_sub(a->station[k].position, a->station[k - 1].position);
+        t = bough_axpy(1 / bough_norm(before), before, t);
+        t = bough_scale(1 / bough_norm(t), t);
+    }
+    return t;
+}
+
+// The shortest turn of z onto the tangent, then −twist about it.
+bough_quaternion bough_section_rotation(const bough_section_axis *a, double s) {
+    bough_vec3 t = tangent_at(a, s);
+    bough_quaternion lean = bough_quaternion_normalised((bough_quaternion){1 + t.z, -t.y, t.x, 0});
+    double half = -0.5 * bough_section_at(a, s).twist;
+    return bough_quaternion_product(lean, (bough_quaternion){cos(half), 0, 0, sin(half)});
+}
+
+static void integrate_piece(double from, double to, bough_section_visitor visit, void *context) {
+    double half = 0.5 * (to - from);
+    for (int p = 0; p < POINTS; p++) {
+        visit(context, 0.5 * (from + to) + half * gauss_at[p], half * gauss_weight[p]);
+    }
+}
+
+// How often a stretch is to be halved towards its softer end: compliances, 1/(a + b s), then vary by
+// little more than a factor of two over each piece.
+static int halvings(const bough_section_axis *a, double soft, double stiff) {
+    bough_section_station low = bough_section_at(a, soft), high = bough_section_at(a, stiff);
+    double ratio = 1;
+    for (int i = 0; i < 6; i++) {
+        int k = bough_symmetric6_index(i, i);
+        if (low.stiffness[k] > 0) ratio = fmax(ratio, high.stiffness[k] / low.stiffness[k]);
+    }
+    return (int)fmin(ceil(log2(ratio) - 0.5), MOST_HALVINGS);
+}
+
+// A stretch without a station inside.
+static void integrate_stretch(const bough_section_axis *a, double from, double to,
+                              bough_section_visitor visit, void *context) {
+    double middle = 0.5 * (from + to), inside = to - 1e-9 * (to - from); // before a station
+    int below = halvings(a, from, inside), above = halvings(a, inside, from);
+    if (below == 0 && above == 0) {
+        integrate_piece(from, to, visit, context);
+        return;
+    }
+    double low = from + ldexp(middle - from, -below), high = to - ldexp(to - middle, -above);
+    integrate_piece(from, low, visit, context);
+    for (int k = below - 1; k >= 0; k--) {
+        double next = from + ldexp(middle - from, -k);
+        integrate_piece(low, next, visit, context);
+        low = next;
+    }
+    for (int k = 1; k <= above; k++) {
+        double next = to - ldexp(to - middle, -k);
+        integrate_piece(low, next, visit, context);
+        low = next;
+    }
+    integrate_piece(high, to, visit, context);
+}
+
+void bough_section_integrate(const bough_section_axis *a, double from, double to, bough_section_visitor visit,
+                             void *context) {
+    for (int k = 0; k < a->n && from < to; k++) {
+        double end = k + 1 < a->n ? a->arc[k + 1] : to;
+        if (end <= from) continue;
+        if (end > to) end = to;
+        integrate_stretch(a, from, end, visit, context);
+        from = end;
+    }
+}

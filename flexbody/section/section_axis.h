@@ -1,0 +1,44 @@
+// The reference axis of a section table by arc length: sections on it and integrals along it; for
+// section*.c only.
+#ifndef BOUGH_FLEXBODY_SECTION_AXIS_H
+#define BOUGH_FLEXBODY_SECTION_AXIS_H
+
+#include "flexbody/section/section.h"
+
+// The table with the arc length of each station.
+typedef struct bough_section_axis {
+    const bough_section_table *table;
+    int n; // stations, 2 or more
+    const bough_section_station *station;
+    double *arc; // (n) [m]
+} bough_section_axis;
+
+void bough_section_axis_init(bough_section_axis *a, bough_arena *arena, const bough_section_table *table);
+
+double bough_section_length(const bough_section_axis *a);
+
+// The section at arc length s, and its axes in the BRF.
+bough_section_station bough_section_at(const bough_section_axis *a, double s);
+bough_quaternion bough_section_rotation(const bough_section_axis *a, double s);
+
+// Its inertia about the mass centre: central (Ixx Iyy Ixy Izz) [kg m].
+void bough_section_central(const bough_section_station *x, double central[4]);
+
+// Calls visit(context, s, weight) at the points of a quadrature from one arc length to another: exact
+// for polynomials of degree 15 between stations, and for compliances to 1e-9.
+typedef void (*bough_section_visitor)(void *context, double s, double weight);
+void bough_section_integrate(const bough_section_axis *a, double from, double to, bough_section_visitor visit,
+                             void *context);
+
+// A vertex' share of a segment's mass and first moment, in the axes of the segment's middle.
+typedef struct bough_section_share {
+    double mass;       // [kg]
+    bough_vec3 moment; // [kg m]
+} bough_section_share;
+
+// Inertia lumped to the vertices of a def that has its mesh (section_inertia.c): vertex (N + 1). Per
+// segment (N), gain is what its left vertex takes beyond its share by hat functions.
+void bough_section_lump(bough_arena *arena, const bough_section_axis *a, const bough_rod_def *def,
+                        const bough_section_share *gain, bough_vertex_inertia *vertex);
+
+#endif

@@ -1,0 +1,105 @@
+// A small FMU for tests, written against the standard and not against bough: a spring and a damper that
+// follow a velocity, F = −k ∫v dt − c v. The instantiation token names a fault.
+#include "apps/bough/model/fmi3.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { VELOCITY = 10, FORCE = 20 };
+static const double stiffness = 8, damping = 0.4;
+
+typedef struct sample {
+    double x, v, time;
+    const char *fault;
+    void *environment;
+    fmi3_log *log;
+} sample;
+
+static const char *const faults[] = {"", "late", "infinite", "early"};
+
+fmi3_instance fmi3InstantiateCoSimulation(fmi3_string name, fmi3_string token, fmi3_string resources,
+                                          bool visible, bool logging, bool event_mode,
+                                          bool early_return, const fmi3_reference *intermediate,
+                                          size_t n_intermediate, fmi3_environment environment,
+                                          fmi3_log *log, fmi3_intermediate *update) {
+    (void)name, (void)visible, (void)logging, (void)event_mode, (void)early_return, (void)intermediate;
+    (void)n_intermediate, (void)update;
+    if (strcmp(token, "refuses") == 0) {
+        log(environment, FMI3_ERROR, "all", "no licence");
+        return NULL;
+    }
+    if (resources[0] != '/' || resources[strlen(resources) - 1] != '/') return NULL;
+    sample *s = calloc(1, sizeof *s);
+    if (!s) return NULL;
+    *s = (sample){.fault = "", .environment = environment, .log = log};
+    for (size_t k = 0; k < sizeof faults / sizeof *faults; k++) {
+        if (strcmp(token, faults[k]) == 0) s->fault = faults[k];
+    }
+    return s;
+}
+
+void fmi3FreeInstance(fmi3_instance instance) { free(instance); }
+
+fmi3_status fmi3EnterInitializationMode(fmi3_instance instance, bool has_tolerance, double tolerance,
+                                        double start, bool has_stop, double stop) {
+    (void)instance, (void)has_tolerance, (void)tolerance;
+    return start == 0 && has_stop && stop > 0 ? FMI3_OK : FMI3_ERROR;
+}
+
+fmi3_status fmi3ExitInitializationMode(fmi3_instance instance) { return instance ? FMI3_OK : FMI3_ERROR; }
+
+fmi3_status fmi3Terminate(fmi3_instance instance) { return instance ? FMI3_OK : FMI3_ERROR; }
+
+fmi3_status fmi3GetFloat64(fmi3_instance instance, const fmi3_reference *reference, size_t n,
+                           double *value, size_t n_value) {
+    const sample *s = instance;
+    if (n != 1 || n_value != 1 || reference[0] != FORCE) return FMI3_ERROR;
+    value[0] = -stiffness * s->x - damping * s->v;
+    if (strcmp(s->fault, "infinite") == 0 && s->time > 0.5) value[0] = 1 / (s->v - s->v);
+    return FMI3_OK;
+}
+
+fmi3_status fmi3SetFloat64(fmi3_instance instance, const fmi3_reference *reference, size_t n,
+                           const double *value, size_t n_value) {
+    sample *s = instance;
+    if (n != 1 || n_value != 1 || reference[0] != VELOCITY) return FMI3_ERROR;
+    s->v = value[0];
+    return FMI3_OK;
+}
+
+#ifndef LACKS_STEP
+fmi3_status fmi3DoStep(fmi3_instance instance, double time, double step, bool no_return, bool *event,
+                       bool *terminate, bool *early, double *reached) {
+    sample *s = instance;
+    (void)no_return, (void)event;
+    if (strcmp(s->fault, "late") == 0 && time > 0.5) {
+        s->log(s->environment, FMI3_ERROR, "all", "the oil is too hot");
+        return FMI3_ERROR;
+    }
+    if (strcmp(s->fault, "early") == 0 && time > 0.5) *terminate = true;
+    *early = false;
+    s->x += step * s->v;
+    s->time = *reached = time + step;
+    return FMI3_OK;
+}
+#endif
+
+fmi3_status fmi3GetFMUState(fmi3_instance instance, fmi3_state *state) {
+    if (!*state) *state = malloc(sizeof(sample));
+    if (!*state) return FMI3_ERROR;
+    memcpy(*state, instance, sizeof(sample));
+    return FMI3_OK;
+}
+
+fmi3_status fmi3SetFMUState(fmi3_instance instance, fmi3_state state) {
+    memcpy(instance, state, sizeof(sample));
+    return FMI3_OK;
+}
+
+fmi3_status fmi3FreeFMUState(fmi3_instance instance, fmi3_state *state) {
+    (void)instance;
+    free(*state);
+    *state = NULL;
+    return FMI3_OK;
+}

@@ -1,0 +1,606 @@
+#!/bin/sh
+# The command line as a user meets it: test_cli.sh PROGRAM SOURCE_FOLDER VERSION
+# Every check that fails says so in one line; the exit code is the test's.
+set -u
+bough=$1
+folder=$2
+scenes=$2/tests/data/scenes
+bar=$2/apps/beams/rubber-bar.yaml
+mechanisms=$2/apps/mechanisms
+beam=$2/tests/data/scenes/example-beam.yaml
+turbine=$2/apps/turbine/runup.yaml
+version=$3
+. "$(dirname "$0")/scratch.sh"
+mkdir work
+cd work || exit 1
+
+empty() { [ ! -s "$1" ] || fail "$said: $1 should be empty, has: $(cat "$1")"; }
+exists() { [ -e "$1" ] || fail "$said: no $1"; }
+missing() { [ ! -e "$1" ] || fail "$said: $1 should not exist"; }
+nothing_written() { [ -z "$(ls -A .)" ] || fail "$said: wrote $(ls -A .)"; }
+
+# refused MESSAGE ARGUMENT...: a usage error, told on stderr, and nothing done.
+refused() {
+    message=$1
+    shift
+    expect 2 "$@"
+    has ../stderr "$message"
+    empty ../stdout
+    nothing_written
+}
+
+count() { tr -cd "$1" <"$2" | wc -c; }
+
+# Shape of JSON as far as grep sees it: brackets pair, no comma before a closing one, no NaN.
+json() {
+    exists "$1"
+    [ "$(count '{' "$1")" -eq "$(count '}' "$1")" ] || fail "$said: braces in $1"
+    [ "$(count '[' "$1")" -eq "$(count ']' "$1")" ] || fail "$said: brackets in $1"
+    tr -d ' \n' <"$1" | grep -q '^{.*}$' || fail "$said: $1 is not one object"
+    tr -d ' \n' <"$1" | grep -q ',[]}]' && fail "$said: stray comma in $1"
+    grep -qi ': *-\{0,1\}\(nan\|inf\)' "$1" && fail "$said: not a JSON number in $1"
+    missing "$1.partial"
+}
+
+usage() {
+    "$bough" >../stdout 2>../stderr
+    [ $? -eq 2 ] || fail "no argument: exit code should be 2"
+    said=bough
+    has ../stderr 'bough run SCENE'
+    empty ../stdout
+    refused "unknown command 'rnu' (did you mean 'run'?)" rnu
+    refused 'known: run, check, static' frobnicate
+    refused "unknown option '--treads' (did you mean '--threads'?)" run "$bar" --treads 2
+    refused "unknown option '--thread' (did you mean '--threads'?)" run "$bar" --thread 2
+    refused "unknown option '--thread=2' (did you mean '--threads'?)" run "$bar" --thread=2
+    refused "unknown option '-x'" run -x "$bar"
+    refused "unknown option '--out'" check "$bar" --out x
+    refused '\-\-quiet takes no value' run "$bar" --quiet=1
+    refused '\-\-set needs a value: --set KEY=VALUE' run "$bar" --set
+    refused 'missing SCENE' run
+    refused "unexpected argument 'more'" run "$bar" more
+    refused "unexpected argument 'more'" run -- "$bar" more
+    for n in 0 65 -1 2x '' 99999999999999999999; do
+        refused 'whole number from 1 to 64' run "$bar" --threads "$n"
+    done
+    POSIXLY_CORRECT=1 refused "unknown option '--bogus'" run "$bar" --bogus
+    refused "unknown topic 'scen' (did you mean 'scene'?)" help scen
+}
+
+help() {
+    expect 0 --version
+    has ../stdout "^bough $version\$"
+    for form in help --help -h; do
+        expect 0 $form
+        has ../stdout 'bough check SCENE'
+        empty ../stderr
+    done
+    expect 0 help scene
+    has ../stdout 'macro_step: (number.* s'
+    expect 0 help channels
+    has ../stdout '^| RootMyb{a} | kN-m |'
+    expect 0 help study
+    has ../stdout '^- equivalent_cycles: '
+    refused "json-schema: of 'scene' or 'study', got 'coupling'" help coupling --json-schema
+    expect 0 help coupling
+    has ../stdout '^ *ramp '
+    for form in 'help run' 'run --help' 'run -h'; do
+        # shellcheck disable=SC2086 # two words
+        expect 0 $form
+        has ../stdout '^usage: bough run SCENE \[--set KEY=VALUE\]\.\.\. \[--out DIR\]'
+    done
+    nothing_written
+    "$bough" help >/dev/full 2>../stderr && fail 'bough help >/dev/full: should fail'
+    has ../stderr 'cannot write to the standard output'
+}
+
+# Errors stand one a line as file:line:col: error: path: text.
+bad_scenes() {
+    sed 's/^gravity:/gravty:/' "$bar" >../bad.yaml
+    for verb in run check; do
+        expect 2 "$verb" ../bad.yaml
+        has ../stderr "^\.\./bad\.yaml:[0-9]*:1: error: .*gravty.*did you mean 'gravity'"
+        [ "$(wc -l <../stderr)" -eq 1 ] || fail "$said: more than the one error"
+        empty ../stdout
+        nothing_written
+    done
+    refused 'error: simulation: unknown key .durration' run "$bar" --set simulation.durration=1
+    printf 'kind: sweep\nscene: %s\ngrid:\n  simulation.durration: [1]\n' "$bar" >../sweep.yaml
+    refused '^../sweep.yaml:4:26: error: simulation: unknown key .durration' study ../sweep.yaml
+    refused "error: .*unit" run "$bar" --set 'simulation.duration=1 kg'
+    refused 'absent.yaml: error: ' run absent.yaml
+    printf 'kind: sweep\nscene: x.yaml\n' >../study.yaml
+    refused "study.yaml:1:7: error: kind: this is a study, not a scene: 'bough study ../study.yaml'" run ../study.yaml
+    refused "this is a scene, not a study: 'bough run $bar' runs it" study "$bar"
+}
+
+# A setting that is read by no part of the run is named, at its place, unless the command line has replaced
+# the choice that it belongs to.
+unused_settings() {
+    unused="warning: simulation.coupling.order: not used with 'scheme: ramp', only with extrapolated, iterated"
+    expect 0 check "$turbine"
+    empty ../stderr
+    expect 0 check "$turbine" --set simulation.coupling.order=2
+    has ../stderr "^--set: $unused\$"
+    expect 0 check "$turbine" --set simulation.coupling.scheme=monolithic
+    empty ../stderr
+    sed "s/^simulation: {/&coupling: {scheme: ramp, order: 2}, master: {solver: ida, rho: 0.5}, /" "$beam" >../unused.yaml
+    expect 0 check ../unused.yaml
+    has ../stderr "^\.\./unused\.yaml:3:46: $unused\$"
+    has ../stderr "^\.\./unused\.yaml:3:77: warning: simulation.master.rho: not used with 'solver: ida'\$"
+    [ "$(wc -l <../stderr)" -eq 2 ] || fail "$said: more than the two warnings"
+    expect 0 check "$bar" --set 'simulation.micro.rtol=1e-5' --set simulation.step_control.tolerance=1e-3 \
+        --set 'bodies[bar].micro.rtol=1e-5' --set simulation.coupling.scheme=monolithic
+    has ../stderr "^--set: warning: simulation.micro: not used with 'scheme: monolithic', only with frozen"
+    has ../stderr "^--set: warning: simulation.step_control: not used with 'scheme: monolithic', only"
+    has ../stderr "^--set: warning: body 'bar': micro: not used with 'scheme: monolithic'\$"
+    # every key of the coupling that only some schemes read, with one that does not
+    for key in order=1 exchange=waveform accelerator=aitken relaxation=0.5 tolerance=1e-5 iterations=5; do
+        expect 0 check "$turbine" --set "simulation.coupling.$key"
+        has ../stderr "warning: simulation.coupling.${key%%=*}: not used with 'scheme: ramp', only with .*iterated"
+    done
+    expect 0 check "$bar" --set simulation.coupling.theta=0.6
+    has ../stderr "warning: simulation.coupling.theta: not used with 'scheme: monolithic', only with ramp"
+    nothing_written
+}
+
+checks() {
+    expect 0 check "$bar" --set 'bodies[0].rod.segments=8'
+    has ../stdout '^body bar: rod; revolute about y on ground: 1 degree of freedom; 8 segments, 104 states'
+    has ../stdout '^tree: 2 states'
+    has ../stdout '^states: 106$'
+    has ../stdout '^macro_steps: 1000$'
+    has ../stdout '^aero: not built: no aero block$'
+    has ../stdout '^model_bytes: [1-9]'
+    empty ../stderr
+    expect 0 check "$turbine" --set 'bodies[3].rod.segments=8' --set 'bodies[4].rod.segments=8' \
+        --set 'bodies[5].rod.segments=8' --set 'bodies[5].fidelity=rigid'
+    has ../stdout '^states: 210$'
+    has ../stdout '^body nacelle: rigid; fixed to tower, welded to ground: no states'
+    has ../stdout '^body blade1: rod; fixed to hub, welded to hub: .*104 states.*mass 168.* length 61.5 m'
+    has ../stdout '^body blade3: rigid: no states of its own'
+    has ../stdout '^joints: 1 moving, 5 fixed$'
+    has ../stdout '^ports: 2,'
+    has ../stdout '^coupling: ramp, theta auto'
+    has ../stdout '^aero: built, 3 blades of '
+    has ../stdout '^rotor: 3 blades, radius 62.94 m, hub height 90 m, tilt 5 deg, overhang 5.0191 m upwind'
+    has ../stdout '^blade blade2: pitch 6.5 deg, cone -2.5 deg, root at 1.5 m'
+    has ../stdout '^wind: uniform, 20 m/s, to 0 deg from x, 0 m/s upwards; at the hub at 0 s \[20, 0, 0\]'
+    has ../stdout '^control: not built'
+    has ../stdout '^load on joint hub: -1.19e+07 N m, ramp from 0 to 20 s$'
+    has ../stdout '^results: 2001 rows of 51 columns, 1.84 MB$'
+    expect 0 check "$folder/apps/turbine/rotor.yaml" --set "aero.wind={kind: bts, file: turbulence.bts}"
+    has ../stdout '^wind: box file .*turbulence.bts, mean .* m/s, .* s.*: covers the rotor'
+    expect 0 check "$folder/apps/turbine/land-operation.yaml"
+    has ../stdout '^control: built, variable-speed law, 25 Hz, gear ratio 97, generator torque and pitch, 0 ev'
+    expect 2 check "$turbine" --set 'control={kind: variable-speed}'
+    has ../stderr "error: control: the joint of 'blade1' cannot pitch it: .*'pitch: false'"
+    expect 0 check "$turbine" --set 'control={kind: variable-speed, pitch: false}'
+    has ../stdout '^control: built, .* generator torque only'
+    sed 's/^    mass: .*/&\n    inertia: [5.1e6, 1e3, 1e3]/' "$mechanisms/pendulum.yaml" >../odd.yaml
+    expect 0 check ../odd.yaml
+    has ../stderr "^../odd.yaml:[0-9]*:[0-9]*: warning: body '.*': no mass distribution has the inertia"
+    refused 'mass: must be in \[0, 1e12\] kg' run "$mechanisms/pendulum.yaml" --set 'bodies[0].mass=1e300 t'
+    refused "error: aero.wind.speed: must be in \[0, 150\] m/s, got '300'" check "$turbine" --set aero.wind.speed=300
+    refused "solver: expected one of .*, got 'cvode' (did you mean 'cvode-bdf'?)" check "$bar" --set simulation.micro.solver=cvode
+    for key in interval from frames vertices; do
+        expect 0 check "$bar" --set "simulation.output.$key=1000 s"
+        has ../stderr "^--set: warning: simulation.output.$key: 1000 s is longer than the run, 1 s\$"
+    done
+    refused "error: --set: control.library: the controller cannot be loaded: .*no.so" check \
+        "$folder/apps/turbine/power.yaml" --set 'control={kind: bladed, library: no.so}'
+    refused "error: --set: aero.wind.file: cannot open the wind file .*no.bts" check "$turbine" --set 'aero.wind={kind: bts, file: no.bts}'
+    expect 0 check "$beam" --set 'bodies[beam].rod.segments=1'
+    has ../stdout '^warning: beam at 0 s: a rod of one segment bends by a third too little'
+    refused 'at most 1e+09 are taken' check "$bar" --set 'simulation.duration=1e30 s'
+    expect 0 check "$scenes/joints.yaml"
+    has ../stdout '^body fork: rigid; universal about x and y on ground: 2 degrees of freedom'
+    has ../stdout '^body piston: rigid; cylindrical along and about z on fork: 2 degrees'
+    has ../stdout '^body puck: rigid; planar normal to z on ground: 3 degrees of freedom'
+    has ../stdout '^joints: 3 moving, 0 fixed$'
+    expect 0 check "$scenes/springs.yaml"
+    has ../stdout '^body slider: .* 1 degree of freedom, spring 50 N/m, damper 0.5 N s/m, stops 3000 N/m'
+    expect 0 check "$scenes/motion.yaml"
+    has ../stdout '^body table: .* 1 degree of freedom, 1 of them prescribed'
+    expect 0 check "$mechanisms/elastic-pendulum.yaml"
+    has ../stdout '^springs: 1$'
+    expect 0 check "$bar" --set 'simulation.coupling={scheme: extrapolated, order: 2}' \
+        --set 'simulation.duration=10 ms' --set 'simulation.macro_step=2.5 ms'
+    has ../stdout '^coupling: extrapolated, order 2 '
+    has ../stdout '^macro_steps: 4$'
+    expect 0 check "$bar" --set 'simulation.coupling={scheme: iterated, accelerator: aitken}' \
+        --set 'simulation.coupling.tolerance=1e-5'
+    has ../stdout '^coupling: iterated, order 1, accelerator aitken, tolerance 1e-05 in at most 30 '
+    nothing_written
+}
+
+# The times of the rows in ms.
+row_times() { sed '1,/^ *(s)/d' "$1" | awk '{print $1 * 1000}' | tr '\n' ' '; }
+
+complete_run() {
+    expect 0 run "$bar" --set 'simulation.duration=22 ms' --set 'simulation.output.interval=5 ms' \
+        --threads 2
+    out=out/rubber-bar
+    has ../stdout '^results: 6 rows of 6 columns, 0.000654 MB$'
+    has ../stdout '^status: complete$'
+    has ../stdout '^real_time_factor: [0-9]'
+    has ../stdout '^peak_memory_mb: [0-9]'
+    has ../stdout "^out: $out\$"
+    empty ../stderr
+    json $out/summary.json
+    has $out/summary.json '"bough_version": "'"$version"'"'
+    has $out/summary.json '"simulation.duration=22 ms"'
+    has $out/summary.json '"status": "complete"'
+    has $out/summary.json '"diagnosis": null'
+    has $out/summary.json '"time": 0.022,'
+    has $out/summary.json '"macro_steps": 22,'
+    has $out/summary.json '"threads": 2,'
+    has $out/summary.json '"states": 522,'
+    for key in scheme order theta macro_step wall_s cpu_s build_s real_time_factor bodies joints \
+        peak_memory_bytes model_bytes defect_max defect_rms energy_residual energy_exchanged \
+        interfaces error_estimate; do
+        has $out/summary.json "\"$key\": "
+    done
+    for key in name kind; do
+        [ "$(grep -c "\"$key\": " $out/summary.json)" -eq 2 ] || fail "$said: $key of 2 subsystems"
+    done
+    # the monolithic scheme's integrator of the whole beside them
+    for key in solver steps derivatives jacobians factorisations iterations starts; do
+        [ "$(grep -c "\"$key\": " $out/summary.json)" -eq 3 ] || fail "$said: $key of 2 and the whole"
+    done
+    [ "$(grep -o '"solver": .*' $out/summary.json | sort -u | wc -l)" -eq 1 ] || fail "$said: solvers that did not run"
+    missing $out/channels.out.partial
+    has $out/channels.out '^Complete: 6 rows'
+    # t = 0, each interval, and the end that is no multiple of it
+    row_times $out/channels.out >../times
+    has ../times '^0 5 10 15 20 22 $'
+    expect 0 run "$bar" --set 'simulation.duration=20 ms' --set 'simulation.output.interval=10 ms'
+    row_times $out/channels.out >../times
+    has ../times '^0 10 20 $'
+    missing $out/channels.outb
+    expect 0 run "$bar" --set 'simulation.duration=20 ms' --set simulation.output.binary=true
+    [ "$(od -A n -t d2 -N 2 $out/channels.outb)" -eq 4 ] || fail "$said: format 4"
+    expect 0 run "$bar" --set 'simulation.duration=20 ms'
+    missing $out/channels.outb # an older one does not stand beside new rows
+    rm -r out
+}
+
+failed_run() {
+    expect 3 run "$bar" --set simulation.coupling.scheme=frozen --set 'simulation.macro_step=5 ms' \
+        --out failed
+    has ../stderr '^bough: error: .*macro step 0.005 s.*try '
+    has ../stdout '^status: failed$'
+    json failed/summary.json
+    has failed/summary.json '"status": "failed"'
+    has failed/summary.json '"diagnosis": ".*macro step 0.005 s.*try '
+    has failed/channels.out '^INCOMPLETE: [1-9][0-9]* rows, then '
+    rm -r failed
+}
+
+# start_long [WORD]...: starts a run that would take hours, in the background, behind the words, and waits
+# until it steps.
+start_long() {
+    rm -rf long
+    mkdir long
+    echo earlier >long/summary.json
+    echo earlier >long/channels.out
+    said="bough run ... --out long"
+    "$@" "$bough" run "$beam" --set 'simulation.duration=1000000 s' --out long >../stdout 2>../stderr &
+    long=$!
+    waited=0
+    while [ ! -e long/channels.out.partial ] && [ $waited -lt 20 ]; do
+        sleep 1
+        waited=$((waited + 1))
+    done
+    sleep 1
+}
+
+interrupted_run() {
+    for signal in TERM INT HUP XCPU; do
+        start_long
+        kill -s $signal $long
+        [ $signal != XCPU ] || kill -s $signal $long 2>/dev/null # it comes every second
+        wait $long
+        code=$?
+        [ $code -eq 130 ] || fail "SIG$signal: exit code $code, expected 130"
+        has ../stderr '^bough: interrupted at [0-9]'
+        has ../stdout '^status: interrupted$'
+        json long/summary.json
+        has long/summary.json '"status": "interrupted"'
+        has long/channels.out '^INCOMPLETE: [1-9][0-9]* rows, then interrupted'
+        rows=$(sed '1,/^ *(s)/d' long/channels.out | wc -l)
+        has long/summary.json "\"rows\": $rows,"
+    done
+    start_long nohup
+    kill -s HUP $long
+    sleep 1
+    kill -0 $long || fail "$said: a run behind nohup ended with SIGHUP"
+    kill -s KILL $long
+    wait $long 2>/dev/null
+    has long/summary.json '^earlier$' # what was there stays until the new run can replace it
+    has long/channels.out '^earlier$'
+    has long/channels.out.partial '^INCOMPLETE'
+    rm -r long
+}
+
+# Whatever standard streams are closed, no file of results has the number of one.
+closed_streams() {
+    short='simulation.duration=5 ms'
+    expect 0 run "$bar" --set "$short" --set simulation.output.frames=1e-3 --out open
+    for closed in '<&-' '>&-' '2>&-' '<&- >&-' '>&- 2>&-' '<&- >&- 2>&-'; do
+        said="bough run ... $closed"
+        (eval "exec $closed" && exec "$bough" run "$bar" --set "$short" \
+            --set simulation.output.frames=1e-3 --out closed) >/dev/null 2>&1
+        code=$?
+        [ $code -eq 0 ] || fail "$said: exit code $code"
+        json closed/summary.json
+        diff -r -x summary.json -x stdout open closed >../differ || fail "$said: $(head -n 3 ../differ)"
+        rm -rf closed
+    done
+    rm -r open
+}
+
+bad_output() {
+    short='simulation.duration=5 ms'
+    echo mine >taken
+    for out in taken taken/below; do
+        expect 1 run "$bar" --set "$short" --out $out
+        has ../stderr '^bough: error: .*taken.* is a file'
+        empty ../stdout
+    done
+    has taken '^mine$'
+    expect 1 run "$bar" --set "$short" --out /proc/no-folder-can-be-made-here
+    has ../stderr '^bough: error: cannot create the folder'
+    expect 2 run "$bar" --set "$short" --out ''
+    mkdir full
+    ln -s /dev/full full/summary.json.partial
+    expect 1 run "$bar" --set "$short" --out full
+    has ../stderr '^bough: error: .*No space left'
+    missing full/summary.json
+    rm -r full/*
+    ln -s /dev/full full/channels.out.partial
+    expect 1 run "$bar" --set "$short" --out full
+    has ../stderr '^bough: error: .*No space left'
+    rm -r full taken
+}
+
+# A cantilever under a force at its tip: the moment at a place is the force times what is left.
+sensed() {
+    cat >../bar.yaml <<'EOF'
+gravity: [0, 0, 0]
+simulation: {duration: 10 ms, macro_step: 10 ms, initial: equilibrium, output: {channels: ['*Spn*']}}
+bodies:
+  - name: bar
+    fidelity: rod
+    joint: {kind: fixed, parent: ground}
+    rod: {length: 2 m, segments: 8, stiffness: [1e8, 1e8, 3e8, 20e3, 20e3, 15e3], mass: [1, 0, 0, 1e-4, 1e-4, 0]}
+sensors: [{body: bar, at: [0, 0.6 m, 2 m]}]
+loads: [{body: bar, at: tip, force: [10, 0, 7]}]
+EOF
+    expect 0 run ../bar.yaml --out sensed
+    awk '/^ *Time/ { for (i = 1; i <= NF; i++) at[$i] = i }
+        $1 + 0 > 0.005 { for (name in at) print name, $at[name] }' sensed/channels.out >../sensed
+    [ "$(wc -l <../sensed)" -eq 37 ] || fail "$said: 36 channels and the time"
+    near ../sensed '^barSpn1MLy ' 2 0.0199907 1e-6 # 10 N times 2 m, less 7 N times the deflection
+    near ../sensed '^barSpn2MLy ' 2 0.0139918 1e-6
+    near ../sensed '^barSpn3MLy ' 2 0 1e-9
+    near ../sensed '^barSpn1FLx ' 2 0.01 1e-9
+    near ../sensed '^barSpn2FLz ' 2 0.0070051 1e-7 # turned with the section by 0.029 deg
+    near ../sensed '^barSpn3TDx ' 2 0.0013328 1e-6 # F L^3 / 3 EI
+    rm -r sensed
+    refused "bodies\[0\]\|sensors\[0\].body: there is no body 'b'" run ../bar.yaml --set 'sensors[0].body=b'
+    refused "3 m is beyond the end of 'bar', at 2 m" run ../bar.yaml --set 'sensors[0].at=[3 m]'
+    expect 2 run ../bar.yaml --set 'simulation.output.channels=[Rot*]'
+    has ../stderr "simulation.output.channels\[0\]: no channel matches 'Rot\*'"
+    sed 's/^simulation: {/&output: {channels: [beamTipZ, beamTipQ]}, /' "$beam" >../named.yaml
+    expect 2 check ../named.yaml
+    has ../stderr "error: \.\./named\.yaml:3:44: simulation.output.channels\[1\]: no channel matches 'beamTipQ' (did you mean 'beamTip.'?)"
+    expect 0 check ../bar.yaml --set 'bodies[bar].rod.segments=4'
+    has ../stdout '^body bar: .* 4 segments'
+    refused "there is no item with 'name: baz' in that list (did you mean 'bar'?)" check ../bar.yaml --set 'bodies[baz].rod.segments=4'
+    # the same wrench from both sides of the cut
+    expect 0 run "$folder/apps/turbine/land.yaml" --set 'simulation.duration=0.1 s' --out sensed \
+        --set 'sensors=[{body: blade1, at: [0]}, {body: tower, at: [0, 87.6 m]}]'
+    awk '/^ *Time/ { for (i = 1; i <= NF; i++) at[$i] = i }
+        $1 + 0 > 0.095 { for (name in at) print name, $at[name] }' sensed/channels.out >../sensed
+    value() { sed -n "s/^$1 //p" ../sensed; }
+    # the table begins with a twist of 13.308 deg, as in OpenFAST
+    near ../sensed "^Spn1MLyb1 " 2 "$(awk "BEGIN { t = 13.308 / 57.29578; print cos(t) * $(value RootMyb1) + sin(t) * $(value RootMxb1) }")" 1e-3
+    near ../sensed "^Spn1MLxb1 " 2 "$(awk "BEGIN { t = 13.308 / 57.29578; print cos(t) * $(value RootMxb1) - sin(t) * $(value RootMyb1) }")" 1e-3
+    near ../sensed '^TwHt1MLyt ' 2 "$(value TwrBsMyt)" 1e-3
+    near ../sensed '^TwHt2FLzt ' 2 "$(value YawBrFzp)" 1
+    # the tower's two interfaces
+    [ "$(grep -A 1 '"body": "tower"' sensed/summary.json | grep -c '"place": "end"')" -eq 1 ] || fail "$said: one end"
+    near ../sensed '^RotTorq ' 2 59.5 1e-3 # 11.9 MN m at a two hundredth of the ramp
+    rm -r sensed
+}
+
+# near FILE PATTERN N VALUE TOLERANCE: word N of the line that matches.
+near() {
+    grep -e "$2" "$1" | awk -v n="$3" -v want="$4" -v by="$5" \
+        '{ d = $n - want; if (d < 0) d = -d; if (d <= by) good = 1 } END { exit !good }' ||
+        fail "$said: word $3 of '$(grep -e "$2" "$1")' is not $4"
+}
+
+# The blade under 100 kN at its tip: reference of a geometrically exact beam by shooting.
+statics() {
+    blade=$2/tests/data/scenes/blade.yaml
+    expect 0 static "$blade" --set 'loads=[{body: blade, at: tip, force: [100 kN, 0, 0]}]'
+    has ../stdout '^rod blade: 48 segments, 61.5 m, [0-9]* iterations$'
+    near ../stdout '^tip blade: u ' 4 7.68969 0.0015
+    near ../stdout '^tip blade: u ' 5 -0.414706 0.0015
+    near ../stdout '^tip blade: u ' 6 -1.122878 0.0015
+    near ../stdout '^root blade: force ' 4 100000 0.01
+    has ../stdout '^out: out/blade$'
+    empty ../stderr
+    [ "$(wc -l <out/blade/static.csv)" -eq 50 ] || fail "$said: static.csv has not 50 lines"
+    has out/blade/static.csv '^rod,span (m),ux (m),'
+    has out/blade/static.csv '^blade,61.5,7.6'
+    rm -r out
+    expect 0 static "$blade" --set 'loads=[{body: blade, at: tip, force: [100 kN, 0, 0]}]' \
+        --set bodies[0].fidelity=segmented-modal --set bodies[0].modal.pieces=24 --out pieces
+    near ../stdout '^modal blade: tip moved by ' 6 7.68969 0.02
+    rm -r pieces
+    expect 0 static "$turbine" --out turning
+    has ../stdout '^whole scene: .* steps, .* samples of the air, loads at 20 s$'
+    has ../stdout '^joint hub: revolute 0 deg, keeps its speed 0.5$'
+    [ "$(wc -l <turning/static.csv)" -eq 112 ] || fail "$said: static.csv has not 112 lines"
+    has turning/static-channels.csv '^channel,unit,value'
+    has turning/static-channels.csv '^RtAeroMxh,N-m,[0-9]'
+    rm -r turning
+    expect 3 static "$turbine" --set bodies[2].joint.speed=0 --out failed
+    has ../stderr 'no equilibrium found in .* a free joint needs a spring, a speed or a motion'
+    refused "'x' is not\|there is no body 'x'" static "$blade" \
+        --set 'loads=[{body: x, at: tip, force: [1, 0, 0]}]'
+    expect 3 static "$blade" --set 'bodies[0].rod.segments=4' --out failed \
+        --set 'loads=[{body: blade, at: tip, moment: [0, 1e9, 0]}]'
+    has ../stderr '^bough: error: rod blade: no static equilibrium found beyond .* % of the load'
+    nothing_written
+}
+
+# The blade's frequencies at rest: beam finite elements converged at 800 elements.
+modes() {
+    blade=$2/tests/data/scenes/blade.yaml
+    expect 0 modes "$blade" --set 'modes={count: 6, shapes: true}'
+    has ../stdout '^rod blade: 48 segments, 61.5 m, root held$'
+    near ../stdout '^ *1 ' 2 0.68582 0.0005
+    near ../stdout '^ *2 ' 2 1.08057 0.0005
+    has ../stdout '^ *6 .* torsion '
+    empty ../stderr
+    [ "$(wc -l <out/blade/modes.csv)" -eq 7 ] || fail "$said: modes.csv has not 7 lines"
+    [ "$(wc -l <out/blade/shapes.csv)" -eq 295 ] || fail "$said: shapes.csv has not 295 lines"
+    has out/blade/modes.csv '^rod,mode,frequency (Hz),'
+    expect 0 modes "$turbine" --set 'modes={count: 2, speed: 12.1 rpm}' --out turning
+    has ../stdout '^rod blade3: .* turning at 12.1 rpm about (0.996195, 0, -0.0871557)'
+    near ../stdout '^ *1 ' 2 0.7349 0.001
+    missing turning/shapes.csv
+    expect 0 modes "$turbine" --set 'modes={count: 3, of: scene, at: undeformed}' --out campbell \
+        --sweep 'gravity=[0, 0, -9], [0, 0, 0]' --sweep 'simulation.master.rtol=1e-5, 1e-6'
+    [ "$(wc -l <campbell/campbell.csv)" -eq 7 ] || fail "$said: campbell.csv has not 7 lines"
+    has campbell/campbell.csv '^1,"\[0, 0, -9\]","1e-5",'
+    has campbell/campbell.svg '^</svg>'
+    rm -r campbell
+    expect 0 modes "$turbine" --set 'modes={count: 3, at: undeformed, shapes: true}' --out whole
+    has ../stdout '^whole scene: .*, rotor at 4.77465 rpm, seen by an observer at rest, rotor free to turn; the air'
+    has ../stdout '^ *1 .* blades .* flap .* backward '
+    has whole/shapes.csv '^body,mode,span (m),ux (m),'
+    [ "$(wc -l <whole/shapes.csv)" -eq 343 ] || fail "$said: shapes.csv has not 343 lines"
+    has whole/modes.csv '^mode,frequency (Hz),.*,pattern,collective (-),forward (-),backward (-),tower'
+    rm -r whole
+    expect 0 modes "$beam" --set 'loads=[{body: beam, at: tip, force: [0, 0, -3 kN], frame: follower}]'
+    has ../stdout '^unstable beam: mode [23] grows at '
+    rm -r out turning
+    refused 'no revolute joint carries it' modes "$blade" --set 'modes.speed=1 rad/s'
+    refused "'b=1' has 1 values, the first 2" modes "$turbine" --sweep 'a=1, 2' --sweep 'b=1'
+    refused "expects KEY=V1, V2" modes "$turbine" --sweep 'gravity'
+    refused "modes.about: the joint of 'nacelle' must be revolute" modes "$turbine" \
+        --set 'modes.about=nacelle'
+    refused "modes.speed: only used with 'of: rods'" modes "$turbine" \
+        --set 'modes={of: scene, speed: 12.1 rpm}'
+    refused "modes.axis: only used without 'about'" modes "$turbine" \
+        --set 'modes={about: hub, axis: [1, 0, 0]}'
+}
+
+# Frames at the times asked for, the rod's axis in each, and a page of all.
+shown() {
+    expect 0 run "$bar" --set 'simulation.duration=20 ms' --set 'simulation.output.frames=5 ms' --out out
+    [ "$(grep -c '<DataSet ' out/frames.pvd)" -eq 5 ] || fail "$said: five frames"
+    has out/frames.pvd 'timestep="0.02" file="frames/000004.vtp"'
+    [ "$(grep -c '^[-0-9.e]* [-0-9.e]* [-0-9.e]*$' out/frames/000004.vtp)" -ge 40 ] ||
+        fail "$said: the points of the rod"
+    expect 0 report out
+    has ../stdout '^report: out/report.html$'
+    has out/report.html 'data.summary = '
+    touch out/frames/mine.vtp
+    expect 0 run "$bar" --set 'simulation.duration=20 ms' --set 'simulation.output.frames=10 ms' --out out
+    [ "$(find out/frames | wc -l)" -eq 5 ] || fail "$said: three frames and what is not ours"
+    missing out/report.html # of the run before
+    rm out/frames/mine.vtp
+    expect 0 run "$bar" --set 'simulation.duration=10 ms' --out other
+    expect 0 report out other
+    has ../stdout '^report: out/report.html$'
+    has out/report.html '^{name: "other", channels: '
+    mkdir nothing
+    expect 2 report out nothing
+    has ../stderr "'nothing' holds no run's results"
+    rm -r other nothing
+    expect 0 run "$bar" --set 'simulation.duration=20 ms' --out out
+    missing out/frames
+    missing out/frames.pvd
+    rm -r out
+    refused 'holds no results' report .
+    refused "there is no folder 'nowhere'" report nowhere
+}
+
+# A foreign model as a scene, and what is told of a bad one.
+imported() {
+    expect 0 import openfast "$folder/tests/data/decks/main.fst" --out out
+    has ../stdout '^scene: out/scene.yaml$'
+    has out/import.txt '^left out:$'
+    expect 0 check out/scene.yaml
+    rm -r out
+    sed 's/CompHydro/CompHydra/; s/CompElast/CompPlast/' "$folder/tests/data/decks/main.fst" >../bad.fst
+    refused "bad.fst: no 'CompElast': expected a line" import openfast ../bad.fst --out out
+    refused "cannot read 'none.fst'" import openfast none.fst --out out
+    refused 'cannot open the wind file none.bts' \
+        import openfast "$folder/tests/data/decks/main.fst" --wind none.bts --out out
+    refused 'the controller cannot be loaded' \
+        import openfast "$folder/tests/data/decks/main.fst" --controller ./none.so --out out
+    refused 'missing KIND FILE' import openfast
+    expect 0 import windio "$folder/tests/data/decks/turbine-2.yaml" --out out
+    has ../stdout '^scene: out/scene.yaml$'
+    expect 0 check out/scene.yaml
+    rm -r out
+    refused 'main.fst:[0-9]*:[0-9]*: unexpected' import windio "$folder/tests/data/decks/main.fst" --out out
+    refused "unknown kind 'adams'" import adams main.cmd --out out
+    refused 'unexpected argument' import openfast main.fst more --out out
+}
+
+# Two workers fill one folder, by themselves and as a Slurm array would start them.
+spread() {
+    cat >../spread.yaml <<END
+kind: stability
+scene: $bar
+reference: {simulation.coupling.scheme: monolithic, simulation.macro_step: 1 ms}
+grid:
+  bodies[0].rod.segments: [8, 12]
+  simulation.coupling.scheme: [monolithic]
+  simulation.macro_step: [1 ms, 2 ms]
+common: {simulation.duration: 4 ms, simulation.output.interval: 4 ms}
+measures:
+  - {name: tip, channels: [barTipX, barTipZ]}
+END
+    said="spread.sh"
+    BOUGH=$bough "$folder/apps/studies/spread.sh" ../spread.yaml 2 out >../stdout 2>../stderr ||
+        fail "spread.sh: $(cat ../stderr)"
+    has ../stdout '^4 of 4 held, 0 stopped'
+    [ "$(grep -l 'macro_step=' out/cases/*.case | wc -l)" -eq 4 ] || fail "$said: four cells"
+    rm -r out
+    for k in 1 2; do
+        SLURM_ARRAY_TASK_ID=$k BOUGH=$bough "$folder/apps/studies/spread.sh" ../spread.yaml 2 out \
+            >../stdout 2>../stderr || fail "spread.sh: $(cat ../stderr)"
+    done
+    has ../stdout ' 0 of 4 cells still missing'
+    rm -r out
+    refused 'expects K/N' study ../spread.yaml --part 3/2
+    refused 'kind: expected one of work-precision' study "$folder/tests/verification/two-mass.yaml"
+}
+
+usage
+help
+bad_scenes
+unused_settings
+checks
+complete_run
+failed_run
+statics "$@"
+sensed
+modes "$@"
+interrupted_run
+closed_streams
+bad_output
+shown
+imported
+spread
+[ $failures -eq 0 ] && echo "all checks passed"
+[ $failures -eq 0 ]

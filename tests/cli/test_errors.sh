@@ -1,0 +1,133 @@
+#!/bin/sh
+# What a run's companion tells of its error, and what the bound makes of it: test_errors.sh PROGRAM SOURCE_FOLDER.
+set -u
+bough=$1 source=$2
+. "$(dirname "$0")/scratch.sh"
+
+# run CODE PATTERN SCENE [ARGUMENT]...: a line of what the run says matches.
+run() {
+    code=$1 pattern=$2
+    shift 2
+    says "$code" "$pattern" run "$@" --quiet --out out
+}
+
+# A rod as arm on the rocker of a four-bar linkage, under ramp: the closed loop makes the rocker light. The run goes to
+# its end, and the message names cause and remedy.
+cat >four-bar.yaml <<'END'
+simulation: {duration: 0.9 s, macro_step: 20 ms, coupling: {scheme: ramp}}
+bodies:
+  - {name: crank, fidelity: rigid, mass: 20, inertia: [0.4, 0.4, 0.005],
+     joint: {kind: revolute, axis: y, parent: ground, angle: 0.35 rad, speed: 6 rad/s}}
+  - {name: coupler, fidelity: rigid, mass: 20, centre_of_mass: [0.5, 0, 0], inertia: [0.02, 1.7, 1.7],
+     joint: {kind: revolute, axis: y, parent: crank, placement: [move z 0.5], angle: -0.42 rad}}
+  - {name: rocker, fidelity: rigid, mass: 20, centre_of_mass: [0, 0, 0.28], inertia: [0.5, 0.5, 0.006],
+     joint: {kind: revolute, axis: y, parent: ground, placement: [move x 1.1], angle: 0.12 rad}}
+  - {name: arm, fidelity: rod, joint: {kind: fixed, parent: rocker},
+     rod: {length: 0.7, segments: 1, stiffness: [8e7, 8e7, 2.4e8, 2.4e4, 2.4e4, 1.8e4],
+           damping: [2e-3, 2e-3, 2e-3, 2e-3, 2e-3, 2e-3], mass: [9, 0, 0, 9e-4, 9e-4, 0]}}
+closures: [{name: pin, kind: spherical, from: coupler, from_placement: [move x 1], to: rocker,
+            to_placement: [move z 0.55]}]
+END
+run 3 'error bound 0.05 is exceeded: [a-zA-Z]* errs by .* of its range, noticeably from .* s on; cause: the coupling .*; try scheme: monolithic' four-bar.yaml
+grep -q '"status": "complete"' out/summary.json || fail 'results beyond the bound are complete'
+grep -q '"diagnosis": "the error bound' out/summary.json || fail 'the diagnosis of a run beyond its bound'
+grep -q '^Complete' out/channels.out || fail 'the rows of a run beyond its bound'
+coupled='simulation.coupling={scheme: monolithic}'
+run 0 '^error: ' four-bar.yaml --set "$coupled" --set 'simulation.master={solver: rosenbrock, rtol: 1e-5}'
+run 0 '^status: complete' four-bar.yaml --set simulation.error_bound=0
+
+# Generalised-alpha errs by the length of its steps, however small its rtol, which is that of Newton's method.
+alpha='generalized-alpha, rtol: 1e-8'
+run 3 'errs by .*; try master.step: .* s or master.solver: rosenbrock' four-bar.yaml --set "$coupled" \
+    --set "simulation.master={solver: $alpha}" --set simulation.error_bound=0.01
+run 0 '^error: ' four-bar.yaml --set "$coupled" --set "simulation.master={solver: $alpha, step: 0.2 ms}"
+
+# A mesh that is too coarse is the user's choice: a warning with the number of segments, and the shares.
+cat >coarse.yaml <<'END'
+simulation: {duration: 2 s, macro_step: 10 ms, coupling: {scheme: monolithic}, master: {solver: rosenbrock, rtol: 1e-5}}
+gravity: [0, 0, -9.81]
+bodies:
+  - {name: beam, fidelity: rod, joint: {kind: fixed, parent: ground, placement: [rotate y 90 deg]},
+     rod: {length: 2, segments: 2, stiffness: [1e6, 1e6, 3e6, 300, 300, 250],
+           damping: [1e-2, 1e-2, 1e-2, 1e-2, 1e-2, 1e-2], mass: [3, 0, 0, 1e-3, 1e-3, 0]}}
+END
+run 0 'warning: .*; cause: the mesh; try rod.segments: [0-9]*$' coarse.yaml
+for share in mesh time; do
+    grep -q "\"$share\": {" out/summary.json || fail "the share of the $share"
+done
+run 0 '^error: .*; mesh [0-9.e-]*; time ' coarse.yaml --set simulation.error_shares=true --set simulation.error_bound=0
+
+# The error belongs to the run: it is the same whatever is recorded, to the last bit.
+turbine=$source/tests/data/scenes/example-turbine.yaml
+errors() {
+    "$bough" run "$turbine" --quiet --threads 1 --out out --set 'simulation.duration=1 s' "$@" >log 2>&1 || fail "run $*: $(cat log)"
+    sed -n '/"error": {/,/"statistics_from"/p' out/summary.json
+}
+errors --set 'simulation.output.interval=20 ms' >all
+for output in '{channels: [RotSpeed]}' "{channels: ['Tip*', RootMyb1]}" "{channels: ['*'], interval: 100 ms}" \
+    '{interval: 1 s}' '{channels: [Azimuth], interval: 500 ms, frames: 0.5 s}'; do
+    errors --set "simulation.output=$output" >some
+    cmp -s all some || fail "errors with output $output: $(diff all some | head -5)"
+done
+
+# A straight bar in free fall: what hardly moves does not count, whatever its error relative to nothing.
+cat >fall.yaml <<'END'
+simulation: {duration: 0.5 s, macro_step: 10 ms, coupling: {scheme: ramp}}
+bodies:
+  - {name: carriage, joint: {kind: planar, parent: ground, axis: x}, fidelity: rigid, mass: 2, inertia: [0.01, 0.01, 0.01]}
+  - {name: arm, fidelity: rod, joint: {kind: fixed, parent: carriage},
+     rod: {length: 0.8, segments: 3, stiffness: [5e6, 5e6, 1.4e7, 200, 200, 150], mass: [0.5, 0, 0, 1e-5, 1e-5, 0]}}
+END
+run 0 '^status: complete' fall.yaml
+
+# A step whose repetitions end before they agree goes on, because the companion tells what the run errs by; else it stops.
+cat >carrying.yaml <<'END'
+simulation: {duration: 0.1 s, macro_step: 20 ms, coupling: {scheme: ramp}}
+bodies:
+  - {name: mast, fidelity: rod, joint: {kind: fixed, parent: ground},
+     rod: {length: 1, segments: 2, stiffness: [1.2e4, 1.2e4, 3.6e4, 1, 3, 0.8],
+           damping: [3e-3, 3e-3, 3e-3, 3e-3, 3e-3, 3e-3], mass: [0.4, 0, 0, 1.2e-5, 1.2e-5, 0]}}
+  - {name: head, joint: {kind: fixed, parent: mast}, fidelity: rigid, mass: 1.8, inertia: [7e-3, 7e-3, 2e-3]}
+END
+noisy='simulation.coupling={scheme: iterated, tolerance: 1e-12, iterations: 5}'
+run 0 'warning: .* of 20 macro steps went on before they had converged' carrying.yaml --set "$noisy" --set 'simulation.macro_step=5 ms'
+run 3 'not converged' carrying.yaml --set "$noisy" --set 'simulation.macro_step=5 ms' --set simulation.error_estimate=none
+
+# All speeds of a driven parallelogram are constant: an error of a millionth of them is none of their range.
+cat >parallelogram.yaml <<'END'
+simulation: {duration: 0.1 s, macro_step: 2 ms}
+bodies:
+  - {name: crank, fidelity: rigid, mass: 0.4, inertia: [8e-3, 8e-3, 1e-4],
+     joint: {kind: revolute, axis: y, parent: ground, angle: 40 deg, motion: {speed: 6 rad/s}}}
+  - {name: coupler, fidelity: rigid, mass: 0.4, centre_of_mass: [0.5, 0, 0], inertia: [4e-4, 0.034, 0.034],
+     joint: {kind: revolute, axis: y, parent: crank, placement: [move z 0.5], angle: -40 deg}}
+  - {name: rocker, fidelity: rigid, mass: 0.4, inertia: [8e-3, 8e-3, 1e-4],
+     joint: {kind: revolute, axis: y, parent: ground, placement: [move x 1], angle: 40 deg}}
+closures: [{name: pin, kind: spherical, from: coupler, from_placement: [move x 1], to: rocker, to_placement: [move z 0.5]}]
+END
+run 0 '^error: [a-zA-Z]* [0-9.e-]* [a-z/]*, 0\.[0-9]* of its range' parallelogram.yaml
+
+# A whip without damping that is jerked up.
+cat >whip.yaml <<'END'
+simulation: {duration: 1 s, macro_step: 5 ms, coupling: {scheme: frozen}, micro: {solver: generalized-alpha, step: 1 ms}}
+bodies:
+  - {name: frame, fidelity: rigid, mass: 50, inertia: [5, 5, 5],
+     joint: {kind: prismatic, axis: z, parent: ground, motion: {position: {from: 0, to: 0.3, ramp: [0.2 s, 0.25 s]}}}}
+  - {name: whip, fidelity: rod, joint: {kind: fixed, parent: frame, placement: [rotate y 90 deg]},
+     rod: {length: 1.5, segments: 8, stiffness: [1e6, 1e6, 3e6, 30, 30, 25], mass: [0.3, 0, 0, 1e-5, 1e-5, 0]}}
+END
+run 0 'whipTipZ errs by 0\.0[0-9]* m' whip.yaml
+grep -q '"source": "companion"' out/summary.json || fail 'the companion of the whip'
+
+# What precedes simulation.output.from does not count.
+run 0 '^error: ' whip.yaml --set simulation.output.from='0.5 s'
+
+# Without a companion nothing is told, and the run says so.
+run 0 '^error: not estimated: simulation.error_estimate is none' fall.yaml --set simulation.error_estimate=none
+grep -q '"relative": null' out/summary.json || fail 'an unknown error is null'
+
+# The estimates of earlier versions are refused with what to write instead.
+for word in auto second-solution linearised; do
+    says 2 "error_estimate: expected one of companion, none, got '$word'" run fall.yaml --out out --set simulation.error_estimate=$word
+done
+[ $failures -eq 0 ]

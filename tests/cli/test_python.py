@@ -1,0 +1,145 @@
+"""The Python module against the program: test_python.py BOUGH SOURCE."""
+import os
+import subprocess
+import sys
+import tempfile
+import unittest
+
+import bough
+
+PROGRAM, SOURCE = sys.argv[1:3]
+PENDULUM = SOURCE + "/apps/mechanisms/pendulum.yaml"
+RUNUP = SOURCE + "/apps/turbine/runup.yaml"
+FEW = ["bodies[3-5].rod.segments=8", "simulation.threads=1"]
+
+
+class Module(unittest.TestCase):
+    def test_rows_are_those_of_the_program(self):
+        settings = ["simulation.duration=0.5 s", "simulation.output.interval=0.01 s"]
+        with tempfile.TemporaryDirectory() as folder:
+            sets = [word for s in settings for word in ("--set", s)]
+            subprocess.run([PROGRAM, "run", PENDULUM, "--out", folder, "--quiet", *sets],
+                           check=True, stdout=subprocess.DEVNULL)
+            with open(folder + "/channels.out") as file:
+                lines = [line.split() for line in file]
+        head = next(i for i, words in enumerate(lines) if words[:1] == ["Time"])
+        with bough.Session(PENDULUM, *settings) as session:
+            self.assertEqual(lines[head][1:], session.names)
+            self.assertEqual(lines[head + 1][1:], ["(%s)" % unit for unit in session.units])
+            macro_step = session.duration / (len(session.advance()["Time"]) - 1)
+        every = round(0.01 / macro_step)
+        with bough.Session(PENDULUM, *settings) as session:
+            rows = session.advance()
+        for i, words in enumerate(lines[head + 2:]):
+            for name, word in zip(["Time", *session.names], words):
+                self.assertAlmostEqual(rows[name][i * every], float(word),
+                                       delta=1e-8 * abs(float(word)) + 1e-15)
+        self.assertEqual(len(lines[head + 2:]), (len(rows["Time"]) - 1) // every + 1)
+
+    def test_a_restored_run_goes_on_to_the_same_bits(self):
+        with bough.Session(RUNUP, *FEW) as run, bough.Session(RUNUP, *FEW) as other:
+            run.advance(0.4)
+            copy = run.save()
+            first = run.advance(0.8)
+            other.restore(copy)
+            run.restore(copy)
+            self.assertAlmostEqual(run.time, 0.4)
+            for again in run.advance(0.8), other.advance(0.8):
+                for name in first:
+                    self.assertEqual(bytes(again[name]), bytes(first[name]), name)
+
+    def test_a_step_is_told_until_the_end(self):
+        with bough.Session(PENDULUM, "simulation.duration=0.1 s") as session:
+            steps = 0
+            while session.step():
+                steps += 1
+            self.assertGreater(steps, 1)
+            self.assertAlmostEqual(session.time, 0.1)
+            self.assertFalse(session.step())
+
+    def test_inputs_are_set_by_name(self):
+        load = "loads=[{joint: bob, torque: %s}]"
+        with bough.Session(PENDULUM, "simulation.duration=0.5 s", load % "0, input: push") as run:
+            self.assertEqual(run.inputs, {"push": "N m"})
+            run["push"] = "3e-3 kN m"
+            rows = run.advance()
+            with self.assertRaises(bough.Error):
+                run["push"] = "3 kg"
+            self.assertEqual(run["push"], 3)
+            with self.assertRaises(KeyError) as caught:
+                run["psuh"] = 1
+            self.assertIn("no input 'psuh' (did you mean 'push'?)", str(caught.exception))
+            with self.assertRaises(TypeError):
+                run["push"] = None
+        with bough.Session(PENDULUM, "simulation.duration=0.5 s", load % "3 N m") as other:
+            self.assertEqual(bytes(other.advance()["bobPos"]), bytes(rows["bobPos"]))
+
+    def test_errors_say_what_the_program_says(self):
+        with self.assertRaises(bough.Error) as caught:
+            bough.Session(PENDULUM, "simulation.duratoin=1 s")
+        self.assertEqual(caught.exception.code, bough.INVALID)
+        self.assertIn("duration", str(caught.exception))
+        with bough.Session(PENDULUM) as pendulum, bough.Session(RUNUP, *FEW) as run:
+            with self.assertRaises(bough.Error):
+                run.restore(pendulum.save())
+            for wrong in (lambda: pendulum["bobPoss"], lambda: pendulum.advance(channels=["bobPoss"]),
+                          lambda: pendulum.advance(channels="bobPoss")):
+                with self.assertRaises(KeyError) as caught:
+                    wrong()
+                self.assertIsInstance(caught.exception, bough.Error)
+                self.assertIn("no channel 'bobPoss' (did you mean 'bobPos'?)", str(caught.exception))
+            with self.assertRaises(TypeError):
+                pendulum[3]
+            with self.assertRaises(bough.Error):
+                pendulum.restore(b"no copy")
+            with self.assertRaises(ValueError):
+                pendulum.advance(float("nan"))
+        with self.assertRaises(ValueError):
+            pendulum.step()
+
+    def test_the_nearest_name_is_the_one_that_begins_alike(self):
+        with self.assertRaises(bough.Error) as caught:
+            bough.Session(RUNUP, "aero.wind.sped=12 m/s")
+        self.assertIn("did you mean 'speed'?", str(caught.exception))
+
+    def test_an_input_takes_what_the_scene_would(self):
+        with bough.Session(RUNUP, *FEW, "aero.wind.input=wind") as run:
+            before = run["wind"]
+            for bad in -3, "-3 m/s", float("nan"), "12 kg":
+                with self.assertRaises(bough.Error):
+                    run["wind"] = bad
+            self.assertEqual(run["wind"], before)
+            run["wind"] = "10 m/s"
+            self.assertEqual(run["wind"], 10)
+
+    def test_values_are_a_view_that_outlives_the_session(self):
+        with bough.Session(PENDULUM) as session:
+            values = session.values
+            before = list(values)
+            session.step()
+            session.values
+            self.assertNotEqual(before, list(values))
+            with self.assertRaises((TypeError, ValueError)):
+                values[0] = 1.0
+        del session
+        self.assertEqual(len(list(values)), len(before))
+
+    def test_the_example_of_the_documents_runs(self):
+        with open(SOURCE + "/docs/programs.md") as file:
+            code = file.read().split("## Python")[1].split("```")[1]
+        shorter = code.replace('"aero.wind.input=wind"', '"aero.wind.input=wind", "simulation.duration=0.1 s"')
+        self.assertNotEqual(code, shorter)
+        ran = subprocess.run([sys.executable, "-c", shorter], check=True, cwd=SOURCE, stdout=subprocess.PIPE)
+        self.assertIn(b"{'wind': 'm/s'}", ran.stdout)
+
+    def test_the_example_runs(self):
+        with tempfile.TemporaryDirectory() as folder:
+            ran = subprocess.run([sys.executable, SOURCE + "/apps/bough/exchange/what_if.py"], check=True,
+                                 stdout=subprocess.PIPE, cwd=folder)
+            pictures = os.listdir(folder)
+        self.assertIn(b"repeated to the bit: True", ran.stdout)
+        self.assertEqual(pictures, ["what-if.svg"] if b"picture" in ran.stdout else [])
+
+
+if __name__ == "__main__":
+    unittest.main(argv=sys.argv[:1])

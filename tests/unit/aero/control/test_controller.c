@@ -1,0 +1,215 @@
+#include "aero/control/controller.h"
+
+#include "core/base/base.h"
+#include "tests/unit/check.h"
+
+static const double rpm = BOUGH_PI / 30, gear = 97, inertia = 43784725; // slow shaft [kg m²]
+
+// The values of the report.
+static bough_controller_def baseline(void) {
+    return (bough_controller_def){.corner = 1.570796,
+                                  .cut_in = 70.16224,
+                                  .optimal_from = 91.21091,
+                                  .optimal_gain = 2.332287,
+                                  .rated_speed = 121.6805,
+                                  .rated_power = 5296610,
+                                  .slip = 0.1,
+                                  .most_torque = 47402.91,
+                                  .torque_rate = 15000,
+                                  .power_pitch = 0.01745329,
+                                  .reference_speed = 122.9096,
+                                  .proportional = 0.01882681,
+                                  .integral = 0.008068634,
+                                  .halving_pitch = 0.1099965,
+                                  .least_pitch = 0,
+                                  .most_pitch = BOUGH_PI / 2,
+                                  .pitch_rate = 0.1396263};
+}
+
+// The report derives its gains from a damping ratio of 0.7 and 0.6 rad/s at rated, where a pitch of
+// 1 rad takes 25.52 MW: KP = 2 J Ω ζ ω/(N·25.52e6), KI = J Ω ω²/(N·25.52e6).
+static void gains_are_those_of_the_design(void **state) {
+    (void)state;
+    bough_controller_def d = baseline();
+    double speed = 12.1 * rpm, unit = inertia * speed / (gear * 25.52e6);
+    check_near(d.proportional, 2 * 0.7 * 0.6 * unit, 1e-3, 0);
+    check_near(d.integral, 0.36 * unit, 1e-3, 0);
+    check_near(d.reference_speed, gear * speed, 1e-4, 0);
+    check_near(d.most_torque, 1.1 * 43093.55, 1e-5, 0);
+    bough_status status = bough_controller_check(&d);
+    assert_int_equal(status.code, BOUGH_OK);
+}
+
+// Torque of the regions and where they meet: the report's figure 7-1.
+static void torque_follows_the_regions(void **state) {
+    (void)state;
+    bough_controller_def d = baseline();
+    static const double table[][3] = {{500, 0, 0},        {669.9, 0, 0},           {871, 0, 19403.3},
+                                      {1000, 0, 25576.4}, {1161.963, 0, 43528.7},  {1173.7, 0, 43093.5},
+                                      {1300, 0, 38906.9}, {1100, 0.0175, 45980.8}, {1000, 0.2, 47402.9}};
+    for (size_t i = 0; i < sizeof table / sizeof *table; i++) {
+        const double *t = table[i];
+        check_near(bough_controller_torque(&d, t[0] * rpm, t[1]), t[2], 2e-5, 0.5);
+    }
+    double before = 0;
+    for (double w = 60; w < d.rated_speed; w += 0.01) { // without a jump
+        double torque = bough_controller_torque(&d, w, 0);
+        assert_true(torque >= before && torque < before + 80);
+        before = torque;
+    }
+}
+
+// From -1 to 1.3 of rated speed, at any pitch: no torque up to cut-in, positive above, without a jump up to
+// where the pitched turbine has constant power.
+static void torque_never_drives(void **state) {
+    (void)state;
+    static const double pitches[] = {0, 0.018, 0.3, 1.57};
+    for (int k = 0; k < 8; k++) {
+        bough_controller_def d = baseline();
+        if (k >= 4) d.cut_in = 0;
+        double pitch = pitches[k % 4], before = 0;
+        for (double w = -d.rated_speed; w < 1.3 * d.rated_speed; w += 0.01) {
+            double torque = bough_controller_torque(&d, w, pitch);
+            assert_true(w <= d.cut_in ? torque == 0 : torque > 0);
+            assert_true(w >= d.optimal_from || fabs(torque - before) < 25);
+            before = torque;
+        }
+    }
+}
+
+// From the synchronous speed the line of the slip goes both ways, to the most torque of either sign; GenModel
+// 1 of OpenFAST's ServoDyn.
+static void an_induction_generator_drives_below_its_synchronous_speed(void **state) {
+    (void)state;
+    bough_controller_def d = baseline();
+    const double most = 450, synchronous = 600 * rpm, slip = 0.03;
+    d.motoring = true, d.optimal_gain = 0, d.cut_in = 0, d.optimal_from = 1e-3;
+    d.above_rated = BOUGH_CONSTANT_TORQUE, d.slip = slip, d.most_torque = most, d.torque_rate = 1e9;
+    d.rated_speed = synchronous * (1 + slip), d.rated_power = most * d.rated_speed;
+    bough_status status = bough_controller_check(&d);
+    assert_int_equal(status.code, BOUGH_OK);
+    for (double w = -2 * synchronous; w < 2 * synchronous; w += 0.1) {
+        double expected = bough_clamp(most * (w - synchronous) / (slip * synchronous), -most, most);
+        check_near(bough_controller_torque(&d, w, 0), expected, 1e-9, 1e-9);
+    }
+    bough_controller_state s = {0};
+    for (int k = 0; k < 2; k++) bough_controller_advance(&d, 0, 0, 0.02, &s);
+    check_near(s.torque, -most, 1e-12, 0);
+    d.optimal_gain = 1e-3;
+    status = bough_controller_check(&d);
+    assert_int_equal(status.code, BOUGH_INVALID);
+}
+
+// A rotor that something else stops and turns back: the filter and the rate of the torque keep none.
+static void a_rotor_that_reverses_has_no_torque(void **state) {
+    (void)state;
+    bough_controller_def d = baseline();
+    bough_controller_state s = {0};
+    bough_controller_advance(&d, 110, 0, 0.02, &s);
+    assert_true(s.torque > 20000);
+    for (double speed = 110; speed > -50; speed -= 2) {
+        bough_controller_advance(&d, speed, 0, 0.02, &s);
+        if (speed <= 0) check_near(s.torque, 0, 0, 0);
+    }
+}
+
+// Constant torque instead, and a line that is as good as vertical.
+static void torque_may_stay(void **state) {
+    (void)state;
+    bough_controller_def d = baseline();
+    d.above_rated = BOUGH_CONSTANT_TORQUE;
+    double rated = d.rated_power / d.rated_speed;
+    check_near(bough_controller_torque(&d, 1.5 * d.rated_speed, 0), rated, 1e-12, 0);
+    d.slip = 1e-9;
+    bough_status status = bough_controller_check(&d);
+    assert_int_equal(status.code, BOUGH_OK);
+    check_near(bough_controller_torque(&d, d.rated_speed * (1 + 1e-9), 0), rated, 1e-12, 0);
+    double below = d.rated_speed * (1 - 1e-6);
+    check_near(bough_controller_torque(&d, below, 0), d.optimal_gain * below * below, 1e-12, 0);
+}
+
+static void limits_hold(void **state) {
+    (void)state;
+    bough_controller_def d = baseline();
+    bough_controller_state s = {0};
+    bough_controller_advance(&d, 90, 0.1, 0.02, &s);
+    check_near(s.pitch, 0.1, 0, 0);
+    for (int k = 0; k < 400; k++) {
+        bough_controller_state last = s;
+        bough_controller_advance(&d, k < 200 ? 200 : 10, s.pitch, 0.02, &s);
+        assert_true(fabs(s.pitch - last.pitch) <= d.pitch_rate * 0.02 * (1 + 1e-9));
+        assert_true(fabs(s.torque - last.torque) <= d.torque_rate * 0.02 * (1 + 1e-9));
+        assert_true(s.pitch >= d.least_pitch && s.pitch <= d.most_pitch);
+    }
+    // The integral does not run away while the pitch is at its least.
+    for (int k = 0; k < 50000; k++) bough_controller_advance(&d, 10, s.pitch, 0.02, &s);
+    check_near(s.pitch, 0, 0, 0);
+    check_near(s.integral, 0, 0, 0);
+}
+
+// A rotor of that inertia whose power falls with the pitch as the report says comes back to the
+// reference speed after a gust, from either side.
+static void speed_is_regulated(void **state) {
+    (void)state;
+    bough_controller_def d = baseline();
+    const double step = 0.0125, rated = 5296610;
+    for (int sign = -1; sign <= 1; sign += 2) {
+        bough_controller_state s = {0};
+        double speed = (12.1 + sign) * rpm, pitch = 0.2, largest = 0;
+        for (double t = 0; t < 120; t += step) {
+            bough_controller_advance(&d, gear * speed, pitch, step, &s);
+            pitch = s.pitch;
+            double lost = 25.52e6 * (pitch + pitch * pitch / (2 * d.halving_pitch));
+            double wind = 25.52e6 * (0.2 + 0.04 / (2 * d.halving_pitch));
+            double power = rated + wind - lost;
+            speed += step / inertia * (power / speed - gear * s.torque);
+            if (t > 60) largest = fmax(largest, fabs(speed / (12.1 * rpm) - 1));
+        }
+        assert_true(largest < 2e-3);
+        check_near(pitch, 0.2, 1e-2, 0);
+        check_near(gear * s.torque * speed, rated, 1e-3, 0);
+    }
+}
+
+static void senseless_constants_are_refused(void **state) {
+    (void)state;
+    for (int i = 0; i < 6; i++) {
+        bough_controller_def d = baseline();
+        if (i == 4) d.cut_in = -1;
+        if (i == 5) d.optimal_gain = -1;
+        if (i == 0) d.slip = 0;
+        if (i == 1) d.least_pitch = 2;
+        if (i == 2) d.cut_in = 100;
+        if (i == 3) d.optimal_gain = 40;
+        bough_status status = bough_controller_check(&d);
+        assert_int_equal(status.code, BOUGH_INVALID);
+    }
+}
+
+// The line of a nearly vertical slip meets the parabola at its synchronous speed.
+static void slip_of_nearly_nothing_is_a_vertical_line(void **state) {
+    (void)state;
+    bough_controller_def d = baseline();
+    d.slip = 1e-7;
+    d.optimal_from = 1e-3, d.cut_in = 0;
+    bough_status status = bough_controller_check(&d);
+    assert_int_equal(status.code, BOUGH_OK);
+    double below = d.rated_speed * (1 - 1e-6);
+    check_near(bough_controller_torque(&d, below, 0), d.optimal_gain * below * below, 1e-12, 0);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(gains_are_those_of_the_design),
+        cmocka_unit_test(torque_follows_the_regions),
+        cmocka_unit_test(torque_never_drives),
+        cmocka_unit_test(a_rotor_that_reverses_has_no_torque),
+        cmocka_unit_test(an_induction_generator_drives_below_its_synchronous_speed),
+        cmocka_unit_test(torque_may_stay),
+        cmocka_unit_test(limits_hold),
+        cmocka_unit_test(speed_is_regulated),
+        cmocka_unit_test(senseless_constants_are_refused),
+        cmocka_unit_test(slip_of_nearly_nothing_is_a_vertical_line),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

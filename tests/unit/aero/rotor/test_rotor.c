@@ -1,0 +1,753 @@
+#include "aero/rotor/rotor.h"
+
+#include "core/base/base.h"
+#include "core/base/rotation.h"
+#include "tests/unit/check.h"
+#include "tests/unit/nrel5mw_aero.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+static const double degree = BOUGH_PI / 180, rpm = BOUGH_PI / 30;
+
+enum { VERTICES = 25, BLADES = 3, STATIONS = 19 };
+
+// A rigid rotor on straight blades: what the loads need of a turbine.
+typedef struct rig {
+    bough_arena *arena;
+    bough_rotor_def def;
+    const bough_rotor *rotor;
+    bough_rotor_data data;
+    bough_rotor_motion motion;
+    double tilt, cone, overhang; // cone: blade tips upwind [rad], [m]
+    double pitch, speed;
+    bough_station_def station[STATIONS];
+    double span[VERTICES];
+    bough_vec3 axis[VERTICES];
+    bough_mat3 section[VERTICES];
+    bough_vec3 position[BLADES * VERTICES], velocity[BLADES * VERTICES], spin[BLADES * VERTICES];
+    bough_mat3 rotation[BLADES * VERTICES];
+    bough_blade_motion blade[BLADES];
+    double vertex[BLADES][BOUGH_BLADE_ROWS * VERTICES];
+    bough_vec3 force[BLADES * VERTICES], moment[BLADES * VERTICES]; // ground axes
+} rig;
+
+static bough_mat3 turned(bough_vec3 rotation_vector) {
+    return bough_rotation_matrix(bough_quaternion_exponential(rotation_vector));
+}
+
+static rig *create_rig(bool flat) {
+    rig *r = calloc(1, sizeof *r);
+    r->arena = bough_arena_create();
+    r->def = bough_rotor_def_default();
+    nrel5mw_stations(r->station, flat);
+    for (int i = 0; i < VERTICES; i++) {
+        r->span[i] = 61.5 * i / (VERTICES - 1);
+        r->axis[i] = bough_v3(0, 0, r->span[i]);
+        r->section[i] = bough_mat3_identity();
+    }
+    r->def.hub_radius = 1.5;
+    r->def.n_polar = 8;
+    r->def.polar = nrel5mw_polars;
+    r->def.n_station = STATIONS;
+    r->def.station = r->station;
+    r->def.n_vertex = VERTICES;
+    r->def.vertex_span = r->span;
+    r->def.vertex_position = r->axis;
+    r->def.vertex_rotation = r->section;
+    r->motion.blade = r->blade;
+    if (!flat) {
+        r->tilt = 5 * degree;
+        r->cone = 2.5 * degree;
+        r->overhang = 5.0191;
+        r->def.tower = (bough_tower_def){
+            .n = 12, .height = nrel5mw_tower_height, .diameter = nrel5mw_tower_diameter};
+    }
+    return r;
+}
+
+static void build(rig *r) {
+    bough_status status = bough_rotor_build(r->arena, &r->def, &r->rotor);
+    if (!bough_is_ok(&status)) print_error("%s\n", status.message);
+    assert_int_equal(status.code, BOUGH_OK);
+    bough_rotor_data_build(r->arena, r->rotor, &r->data);
+}
+
+static void destroy_rig(rig *r) {
+    bough_arena_destroy(r->arena);
+    free(r);
+}
+
+// Places the rigid rotor at an azimuth of blade 1 (0: up).
+static void place(rig *r, double azimuth) {
+    bough_mat3 nacelle = turned(bough_v3(0, r->tilt, 0));
+    r->motion.shaft = nacelle.c1;
+    r->motion.hub = bough_axpy(-r->overhang, nacelle.c1, bough_v3(0, 0, 87.6 + 1.96256));
+    bough_vec3 omega = bough_scale(r->speed, nacelle.c1);
+    for (int b = 0; b < BLADES; b++) {
+        bough_mat3 blade = bough_mat3_product(
+            nacelle, turned(bough_v3(azimuth + 2 * BOUGH_PI * b / BLADES, 0, 0)));
+        blade = bough_mat3_product(blade, turned(bough_v3(0, -r->cone, 0)));
+        blade = bough_mat3_product(blade, turned(bough_v3(0, 0, -r->pitch)));
+        for (int i = 0; i < VERTICES; i++) {
+            int k = b * VERTICES + i;
+            bough_vec3 arm = bough_mat3_mul(blade, bough_add(r->axis[i], bough_v3(0, 0, 1.5)));
+            r->position[k] = bough_add(r->motion.hub, arm);
+            r->rotation[k] = bough_mat3_product(blade, r->section[i]);
+            r->velocity[k] = bough_cross(omega, arm);
+            r->spin[k] = omega;
+        }
+    }
+}
+
+static void operate(rig *r, double wind, double pitch_deg, double speed_rpm) {
+    r->def.wind.speed = wind;
+    r->speed = speed_rpm * rpm;
+    r->pitch = pitch_deg * degree;
+    build(r);
+}
+
+// Blade by blade into a frame that stands somewhere: the loads do not depend on it.
+static void send_motion(rig *r) {
+    for (int k = 0; k < BLADES * VERTICES; k++) {
+        int b = k / VERTICES, i = k % VERTICES;
+        bough_transform f = {bough_v3(-3, 40, 7 * b), turned(bough_v3(0.4 * b, 0.3, -0.2))};
+        bough_vec3 x = bough_mat3_tmul(f.rotation, bough_sub(r->position[k], f.position));
+        bough_vec3 v = bough_mat3_tmul(f.rotation, r->velocity[k]);
+        bough_vec3 w = bough_mat3_tmul(r->rotation[k], r->spin[k]);
+        bough_quaternion p = bough_quaternion_of_matrix(
+            bough_mat3_product(bough_mat3_transpose(f.rotation), r->rotation[k]));
+        const double row[BOUGH_BLADE_ROWS] = {x.x, x.y, x.z, p.w, p.x, p.y, p.z,
+                                              v.x, v.y, v.z, w.x, w.y, w.z};
+        for (int c = 0; c < BOUGH_BLADE_ROWS; c++) r->vertex[b][c * VERTICES + i] = row[c];
+        r->blade[b] = (bough_blade_motion){f, r->vertex[b]};
+    }
+}
+
+static void fetch_loads(rig *r) {
+    for (int k = 0; k < BLADES * VERTICES; k++) {
+        int b = k / VERTICES, i = k % VERTICES;
+        double x[6];
+        for (int c = 0; c < 6; c++) x[c] = r->data.load[(6 * b + c) * VERTICES + i];
+        r->force[k] = bough_mat3_mul(r->blade[b].frame.rotation, bough_v3(x[0], x[1], x[2]));
+        r->moment[k] = bough_mat3_mul(r->blade[b].frame.rotation, bough_v3(x[3], x[4], x[5]));
+    }
+}
+
+static void sample_as_placed(rig *r) {
+    send_motion(r);
+    bough_rotor_sample(r->rotor, &r->motion, &r->data);
+    fetch_loads(r);
+}
+
+static void sample(rig *r, double azimuth) {
+    place(r, azimuth);
+    sample_as_placed(r);
+}
+
+// The flat rotor without tilt, cone and offsets, with Buhl's high thrust.
+static rig *create_flat_rig(void) {
+    rig *r = create_rig(true);
+    r->def.induction.high_thrust = BOUGH_HIGH_THRUST_BUHL;
+    return r;
+}
+
+// Thrust [kN] and torque [kN m] of the flat rotor: AeroDyn v5, and to six digits an independent
+// solution of the same equations.
+static void flat_rotor_matches_reference(void **state) {
+    (void)state;
+    static const double table[][5] = {
+        {3, 0, 6.972, 77.370925, 54.299714},       {4, 0, 7.183, 120.905807, 246.723471},
+        {8, 0, 9.156, 384.414061, 1976.531272},    {10, 0, 11.431, 600.183949, 3091.937526},
+        {11, 0, 11.89, 700.397181, 3932.783839},   {12, 3.823, 12.1, 589.108228, 4199.850531},
+        {18, 14.92, 12.1, 337.306733, 4163.84765}, {25, 23.469, 12.1, 244.203811, 3637.726746}};
+    for (size_t i = 0; i < sizeof table / sizeof *table; i++) {
+        rig *r = create_flat_rig();
+        operate(r, table[i][0], table[i][1], table[i][2]);
+        sample(r, 0.4);
+        check_near(r->data.thrust, 1e3 * table[i][3], 1e-5, 0);
+        check_near(r->data.torque, 1e3 * table[i][4], 1e-5, 0);
+        destroy_rig(r);
+    }
+}
+
+// Switching the corrections off one by one at 8 m/s, and heavy loading at 15 rpm.
+static void switches_match_reference(void **state) {
+    (void)state;
+    static const double table[5][2] = {{397.593, 2146.476},
+                                       {384.535, 1976.489},
+                                       {382.420, 1995.611},
+                                       {384.880, 1978.841},
+                                       {493.990, 889.607}};
+    for (int i = 0; i < 5; i++) {
+        rig *r = create_flat_rig();
+        bough_induction_options *o = &r->def.induction;
+        o->tip_loss = i != 0;
+        o->hub_loss = i != 1;
+        o->tangential = i != 2;
+        o->axial_drag = i != 3;
+        operate(r, 8, 0, i == 4 ? 15 : 9.156);
+        sample(r, 0);
+        check_near(r->data.thrust, 1e3 * table[i][0], 1e-4, 0);
+        check_near(r->data.torque, 1e3 * table[i][1], 1e-4, 0);
+        destroy_rig(r);
+    }
+}
+
+// Every station at 8 m/s: inflow x, y, relative speed, φ, α, a, a', Cl, Cd, force x, y. AeroDyn v5.
+static void stations_match_reference(void **state) {
+    (void)state;
+    // clang-format off
+    static const double table[STATIONS][11] = {
+        {8, 1.4382211, 1.4382211, 0, -13.308, 1, 0, 0, 0.5, 0, -2.2437578},
+        {8, 2.7486323, 7.747101, 71.038353, 57.730353, 0.084160682, -0.084160682, 0, 0.5, 61.570565, -21.154356},
+        {8, 5.3693588, 9.1786945, 56.131679, 42.823679, 0.04734269, -0.04734269, 0, 0.5, 82.564891, -55.415066},
+        {8, 7.9900854, 10.982422, 45.035526, 31.727526, 0.028680187, -0.028680187, 0, 0.35, 76.233874, -76.139395},
+        {8, 11.266065, 13.485452, 26.509642, 13.201642, 0.24759872, 0.071144324, 1.5230821, 0.11931222, 718.85357, 290.88041},
+        {8, 15.197203, 16.997202, 20.059785, 8.5797845, 0.27124398, 0.05059269, 1.3259785, 0.012711698, 1028.9052, 364.5672},
+        {8, 19.128341, 20.607258, 16.925217, 6.7632172, 0.25009342, 0.03065217, 1.1041654, 0.011405287, 1228.7198, 360.08074},
+        {8, 23.059479, 24.302002, 14.337997, 5.3269966, 0.24772673, 0.021056774, 0.98585556, 0.0098307986, 1471.8145, 360.60464},
+        {8, 26.990616, 28.045367, 11.955757, 4.1607573, 0.27377812, 0.016538583, 0.97161239, 0.0073964544, 1837.8742, 374.57445},
+        {8, 30.921754, 31.840209, 10.400601, 3.8566007, 0.28148804, 0.012784108, 0.93421849, 0.0072426403, 2141.5518, 375.93395},
+        {8, 34.852892, 35.652472, 8.8799601, 3.5189601, 0.31206405, 0.01068052, 0.94982017, 0.0066189601, 2561.4069, 381.92245},
+        {8, 38.784029, 39.490504, 7.7648981, 3.5768981, 0.3330618, 0.008879377, 0.95538222, 0.0066768981, 2946.9052, 380.87861},
+        {8, 42.715167, 43.368425, 7.2577693, 4.1327693, 0.31513947, 0.0071586517, 0.91300293, 0.0054531077, 3142.886, 381.19716},
+        {8, 46.646305, 47.238574, 6.546013, 4.227013, 0.32684387, 0.0060948611, 0.92365247, 0.0054908052, 3468.9803, 377.18344},
+        {8, 50.577443, 51.114984, 5.8889672, 4.3629672, 0.34444397, 0.0052945894, 0.93901529, 0.0055451869, 3766.1479, 365.99735},
+        {8, 53.853423, 54.343531, 5.2827183, 4.4197183, 0.37457219, 0.0048146376, 0.94542817, 0.0055678873, 3940.8854, 340.99138},
+        {8, 56.474149, 56.920539, 4.7010481, 4.3310481, 0.41687228, 0.0045136236, 0.93540843, 0.0055324192, 3861.0674, 294.52932},
+        {8, 59.094876, 59.511779, 4.3029362, 4.1969362, 0.44185518, 0.0042162116, 0.92025379, 0.0054787745, 2825.9898, 195.72054},
+        {8, 60.405191, 60.405191, 0, -0.106, 1, 0, 0.429916, 0.0052, 1363.3916, -16.490748},
+    };
+    // clang-format on
+    rig *r = create_flat_rig();
+    operate(r, 8, 0, 9.156);
+    sample(r, 1);
+    for (int j = 0; j < STATIONS; j++) {
+        const double *t = table[j];
+        bough_station s = bough_rotor_station(&r->data, 0, j);
+        const double value[11] = {
+            s.inflow_x,          s.inflow_y, s.speed,      s.phi / degree,
+            s.alpha / degree,    s.axial,    s.tangential, s.coefficients.lift,
+            s.coefficients.drag, s.force_x,  s.force_y};
+        for (int c = 0; c < 11; c++)
+            check_near(value[c], t[c], 1e-5, 2e-6);
+    }
+    destroy_rig(r);
+}
+
+static void mean_of_revolution(rig *r, double *thrust, double *torque) {
+    enum { SAMPLES = 72 }; // over the passage of one blade
+    *thrust = *torque = 0;
+    for (int k = 0; k < SAMPLES; k++) {
+        sample(r, 2 * BOUGH_PI / BLADES * k / SAMPLES);
+        *thrust += r->data.thrust / SAMPLES;
+        *torque += r->data.torque / SAMPLES;
+    }
+}
+
+// The whole turbine with rigid blades: tilt 5°, pre-cone 2.5°, tower potential flow, skewed wake.
+// Wind, pitch, speed, mean thrust [kN] and torque [kN m]: OpenFAST v5.
+static void rigid_turbine_matches_reference(void **state) {
+    (void)state;
+    static const double table[12][5] = {
+        {4, 0, 7.2, 122.637, 260.011},       {6, 0, 7.9, 233.22, 950.717},
+        {8, 0, 6, 244.148, 2145.35},         {8, 0, 9.16, 382.103, 1960.59},
+        {8, 0, 15, 501.001, 950.214},        {8, 5, 9.16, 232.219, 1481.82},
+        {11.4, 0, 12.1, 737.315, 4236.88},   {13, 6.6, 12.1, 496.79, 4123.98},
+        {15, 10.45, 12.1, 404.739, 4109.58}, {20, 6.5, 14, 1102.77, 12095},
+        {20, 17.47, 12.1, 302.035, 4041.38}, {25, 23.47, 12.1, 232.542, 3459.5}};
+    for (int i = 0; i < 12; i++) {
+        rig *r = create_rig(false);
+        operate(r, table[i][0], table[i][1], table[i][2]);
+        double thrust, torque;
+        mean_of_revolution(r, &thrust, &torque);
+        check_near(thrust, 1e3 * table[i][3], 2e-3, 0);
+        check_near(torque, 1e3 * table[i][4], 2e-3, 0);
+        destroy_rig(r);
+    }
+}
+
+// In calm air a coned blade meets only its own motion. Where the aerodynamic centre is off the
+// axis, that is not square to the section's normal: the blade turns about its own axis, too.
+static void angle_of_attack_is_in_the_plane_of_the_section(void **state) {
+    (void)state;
+    rig *r = create_rig(true);
+    r->cone = 20 * degree;
+    for (int j = 0; j < STATIONS; j++) r->station[j].centre_y = -2;
+    operate(r, 0, 7, 10);
+    sample(r, 0.4);
+    bough_mat3 blade = r->rotation[0];
+    for (int j = 5; j < STATIONS; j++) {
+        bough_vec3 centre = bough_v3(0, -2, r->station[j].span + 1.5);
+        bough_vec3 arm = bough_mat3_mul(blade, centre);
+        bough_vec3 inflow = bough_scale(-r->speed, bough_cross(r->motion.shaft, arm));
+        double normal = bough_dot(inflow, blade.c1), chord = bough_dot(inflow, blade.c2);
+        bough_station s = bough_rotor_station(&r->data, 0, j);
+        check_near(s.alpha, atan2(normal, chord) - r->station[j].twist, 0, 1e-9);
+        assert_true(fabs(s.alpha - (s.phi - s.twist)) > 0.01 / s.radius);
+    }
+    destroy_rig(r);
+}
+
+// Bends, twists and moves the placed blades smoothly by some decimetres and degrees.
+static void disturb(rig *r) {
+    for (int k = 0; k < BLADES * VERTICES; k++) {
+        double s = r->span[k % VERTICES] / 61.5, b = 1 + 0.3 * (k / VERTICES);
+        r->rotation[k] = bough_mat3_product(
+            r->rotation[k], turned(bough_v3(-0.05 * b * s, 0.12 * s * s, 0.08 * b * s)));
+        r->position[k] = bough_axpy(4 * b * s * s, bough_v3(0.9, 0.1, -0.2), r->position[k]);
+        r->velocity[k] = bough_add(r->velocity[k], bough_v3(b * s * s, -0.4 * s, 0.2));
+        r->spin[k] = bough_add(r->spin[k], bough_v3(0.01, 0.02 * s, -0.01 * b));
+    }
+}
+
+// Force and moment about the origin of the line loads of blade 0, independently of the weights:
+// many points along the deformed axis, between vertices and stations linear.
+static void integrate_line_load(const rig *r, const bough_vec3 *force, const bough_vec3 *moment,
+                                bough_vec3 *total, bough_vec3 *about) {
+    enum { POINTS = 400000 };
+    *total = *about = bough_v3(0, 0, 0);
+    double end = r->station[STATIONS - 1].span, ds = end / POINTS;
+    for (int k = 0, i = 0, j = 0; k < POINTS; k++) {
+        double s = (k + 0.5) * ds;
+        while (i < VERTICES - 2 && r->span[i + 1] < s)
+            i++;
+        while (j < STATIONS - 2 && r->station[j + 1].span < s)
+            j++;
+        double w = (s - r->span[i]) / (r->span[i + 1] - r->span[i]);
+        double v = (s - r->station[j].span) / (r->station[j + 1].span - r->station[j].span);
+        bough_vec3 x =
+            bough_add(bough_scale(1 - w, r->position[i]), bough_scale(w, r->position[i + 1]));
+        bough_vec3 f = bough_add(bough_scale(1 - v, force[j]), bough_scale(v, force[j + 1]));
+        bough_vec3 m = bough_add(bough_scale(1 - v, moment[j]), bough_scale(v, moment[j + 1]));
+        *total = bough_axpy(ds, f, *total);
+        *about = bough_axpy(ds, bough_add(bough_cross(x, f), m), *about);
+    }
+}
+
+// The line load is rebuilt from the reported stations; without offsets, with flat blades.
+static void mapping_conserves_force_and_moment(void **state) {
+    (void)state;
+    rig *r = create_rig(true);
+    operate(r, 12, 3, 11);
+    place(r, 0.7);
+    // Bent out of the rotor plane and stretched, sections unturned: the element axes stay.
+    for (int k = 0; k < BLADES * VERTICES; k++) {
+        double s = r->span[k % VERTICES] / 61.5;
+        r->position[k] = bough_axpy(6 * s * s, r->motion.shaft, r->position[k]);
+        r->position[k] = bough_axpy(-1.5 * s * s, r->rotation[k].c3, r->position[k]);
+    }
+    sample_as_placed(r);
+    bough_vec3 z = r->rotation[0].c3, y = bough_cross(z, r->motion.shaft), x = bough_cross(y, z);
+    bough_vec3 force[STATIONS], moment[STATIONS], total, about;
+    for (int j = 0; j < STATIONS; j++) {
+        bough_station s = bough_rotor_station(&r->data, 0, j);
+        double c = r->station[j].chord;
+        force[j] = bough_axpy(-s.force_y, y, bough_scale(s.force_x, x));
+        moment[j] =
+            bough_scale(0.5 * 1.225 * s.speed * s.speed * c * c * s.coefficients.moment, z);
+    }
+    integrate_line_load(r, force, moment, &total, &about);
+    for (int i = 0; i < VERTICES; i++) {
+        total = bough_sub(total, r->force[i]);
+        about = bough_sub(about, bough_cross(r->position[i], r->force[i]));
+        about = bough_sub(about, r->moment[i]);
+    }
+    check_near(bough_norm(total), 0, 0, 1e-3); // of 2e5 N: the error of the summation
+    check_near(bough_norm(about), 0, 0, 2e-1); // of 2e7 N m
+    destroy_rig(r);
+}
+
+// Aerodynamic-centre offsets leave the forces of a station and add offset × force.
+static void offsets_carry_moment(void **state) {
+    (void)state;
+    rig *r = create_rig(true);
+    for (int j = 0; j < STATIONS; j++)
+        r->station[j].centre_y = -0.4;
+    r->def.pitching_moment = false;
+    operate(r, 10, 2, 10);
+    sample(r, 0);
+    bough_vec3 force = {0}, moment = {0};
+    for (int i = 0; i < VERTICES; i++) {
+        force = bough_add(force, r->force[i]);
+        moment = bough_add(moment, r->moment[i]);
+    }
+    bough_mat3 blade = r->rotation[0];
+    bough_vec3 expected = bough_cross(bough_scale(-0.4, blade.c2), force);
+    check_near(bough_norm(bough_sub(moment, expected)), 0, 0, 1e-9 * bough_norm(expected));
+    assert_true(bough_norm(expected) > 1e4);
+    destroy_rig(r);
+}
+
+static void check_same_loads(const rig *a, const rig *b, const bough_mat3 *turn) {
+    for (int k = 0; k < BLADES * VERTICES; k++) {
+        bough_vec3 f = a->force[k], m = a->moment[k];
+        if (turn) f = bough_mat3_mul(*turn, f), m = bough_mat3_mul(*turn, m);
+        check_near(bough_norm(bough_sub(f, b->force[k])), 0, 0, 1e-5);
+        check_near(bough_norm(bough_sub(m, b->moment[k])), 0, 0, 1e-5);
+    }
+}
+
+// Structural section axes may include the structural twist, or any other fixed angles.
+static void section_axes_are_arbitrary(void **state) {
+    (void)state;
+    rig *a = create_rig(false), *b = create_rig(false);
+    for (int i = 0; i < VERTICES; i++)
+        b->section[i] = turned(bough_v3(0, 0, -0.01 * (24 - i)));
+    operate(a, 9, 1, 10);
+    operate(b, 9, 1, 10);
+    sample(a, 2);
+    sample(b, 2);
+    check_same_loads(a, b, NULL);
+    destroy_rig(a);
+    destroy_rig(b);
+}
+
+// Moving with the wind of the same speed, or standing elsewhere, changes nothing.
+static void rigid_translation_changes_nothing(void **state) {
+    (void)state;
+    rig *a = create_rig(false), *b = create_rig(false);
+    a->def.tower.n = b->def.tower.n = 0;
+    operate(a, 11, 0, 10);
+    operate(b, 14, 0, 10);
+    place(a, 1);
+    place(b, 1);
+    disturb(a);
+    disturb(b);
+    bough_vec3 shift = bough_v3(7, -3, 20), drift = bough_v3(3, 0, 0);
+    for (int k = 0; k < BLADES * VERTICES; k++) {
+        b->position[k] = bough_add(b->position[k], shift);
+        b->velocity[k] = bough_add(b->velocity[k], drift);
+    }
+    b->motion.hub = bough_add(b->motion.hub, shift);
+    sample_as_placed(a);
+    sample_as_placed(b);
+    check_same_loads(a, b, NULL);
+    destroy_rig(a);
+    destroy_rig(b);
+}
+
+// A third of a turn exchanges the blades.
+static void blades_are_alike(void **state) {
+    (void)state;
+    rig *a = create_rig(true), *b = create_rig(true);
+    operate(a, 11, 0, 10);
+    operate(b, 11, 0, 10);
+    sample(a, 0.3);
+    sample(b, 0.3 + 0.5);
+    bough_mat3 turn = turned(bough_v3(0.5, 0, 0));
+    check_same_loads(a, b, &turn);
+    destroy_rig(a);
+    destroy_rig(b);
+}
+
+// Nothing is kept between samples, so repeated steps repeat their loads to the bit.
+static void sample_is_a_function_of_motion(void **state) {
+    (void)state;
+    rig *a = create_rig(false), *b = create_rig(false);
+    operate(a, 20, 6.5, 14);
+    operate(b, 20, 6.5, 14);
+    for (int k = 0; k < 20; k++) {
+        sample(a, 0.3 * k);
+        disturb(a);
+        sample_as_placed(a);
+    }
+    sample(a, 0.9);
+    size_t before = bough_arena_bytes(b->arena);
+    sample(b, 0.9);
+    assert_true(bough_arena_bytes(b->arena) == before);
+    size_t size = BLADES * VERTICES * sizeof *a->force;
+    assert_memory_equal(a->force, b->force, size);
+    assert_memory_equal(a->moment, b->moment, size);
+    destroy_rig(a);
+    destroy_rig(b);
+}
+
+// Calm, locked, feathered, turning backwards, overspeeding, blown from behind.
+// Loads on the vertices (force x, y and moment z in the frame's axes) of the first blade.
+static void fetch_rows(const rig *r, double row[3][VERTICES]) {
+    static const int place[3] = {0, 1, 5};
+    for (int c = 0; c < 3; c++)
+        memcpy(row[c], r->data.load + place[c] * VERTICES, sizeof row[c]);
+}
+
+// How far the slopes are from what a motion of all vertices of the first blade changes, per direction
+// of the motion, relative to the largest change on the blade: the whole blade moves along x or y, or
+// turns about its span.
+static void measure_slopes(rig *r, double off[4]) {
+    static double before[3][VERTICES], after[3][VERTICES];
+    static const double step[4] = {0.05, 0.05, 2e-4, 2e-3};
+    double *rows = r->vertex[0];
+    sample(r, 0.7);
+    for (int j = 0; j < 4; j++) {
+        double most = 0, worst = 0;
+        for (int side = 0; side < 2; side++) {
+            double d = side == 0 ? -step[j] : step[j];
+            sample(r, 0.7);
+            for (int i = 0; i < VERTICES; i++) {
+                double *p = rows + BOUGH_BLADE_ROTATION * VERTICES + i;
+                double w = p[0], x = p[VERTICES], y = p[2 * VERTICES], z = p[3 * VERTICES];
+                if (j < 2) rows[(BOUGH_BLADE_VELOCITY + j) * VERTICES + i] += d;
+                if (j == 3) rows[(BOUGH_BLADE_SPIN + 2) * VERTICES + i] += d;
+                if (j != 2) continue;
+                p[0] = w - d / 2 * z; // p ∘ (1, 0, 0, d/2)
+                p[VERTICES] = x + d / 2 * y;
+                p[2 * VERTICES] = y - d / 2 * x;
+                p[3 * VERTICES] = z + d / 2 * w;
+            }
+            bough_rotor_sample(r->rotor, &r->motion, &r->data);
+            fetch_rows(r, side == 0 ? before : after);
+        }
+        sample(r, 0.7);
+        for (int c = 0; c < 2; c++) {
+            for (int i = 0; i < VERTICES; i++) {
+                double change = (after[c][i] - before[c][i]) / (2 * step[j]);
+                double slope = r->data.slope[(4 * c + j) * VERTICES + i];
+                most = fmax(most, fabs(change));
+                worst = fmax(worst, fabs(change - slope));
+            }
+        }
+        off[j] = worst / most;
+    }
+}
+
+// Slopes are those of the momentum balance without drag and skew: near enough for
+// loads that go on from sample to sample.
+static void loads_follow_the_motion_by_their_slopes(void **state) {
+    (void)state;
+    static const double wind[3] = {8, 12, 20}, pitch[3] = {0, 3, 6.5}, speed[3] = {9, 12.1, 14};
+    for (int k = 0; k < 3; k++) {
+        rig *r = create_rig(false);
+        r->def.slopes = true;
+        operate(r, wind[k], pitch[k], speed[k]);
+        double off[4];
+        measure_slopes(r, off);
+        print_message("wind %g m/s: %.2f %.2f %.2f %.2f\n", wind[k], off[0], off[1], off[2], off[3]);
+        for (int j = 0; j < 4; j++) assert_true(off[j] < (j == 2 ? 0.2 : 0.12));
+        destroy_rig(r);
+    }
+}
+
+static void odd_states_are_finite(void **state) {
+    (void)state;
+    static const double wind[] = {-15, 0, 1e-9, 8, 60}, pitch[] = {-180, -30, 0, 90};
+    static const double speed[] = {-12, 0, 1e-9, 3, 40};
+    for (int i = 0; i < 5 * 4 * 5; i++) {
+        rig *r = create_rig(false);
+        operate(r, wind[i % 5], pitch[i / 5 % 4], speed[i / 20]);
+        sample(r, 0.1 * i);
+        assert_true(isfinite(r->data.thrust) && isfinite(r->data.torque));
+        for (int k = 0; k < BLADES * VERTICES; k++) {
+            assert_true(isfinite(bough_norm(r->force[k])));
+            assert_true(isfinite(bough_norm(r->moment[k])));
+        }
+        destroy_rig(r);
+    }
+}
+
+// -- dynamic inflow ------------------------------------------------------------------------------
+
+static rig *create_inflow_rig(double time) {
+    rig *r = create_flat_rig();
+    r->def.inflow = (bough_inflow_def){BOUGH_INFLOW_OYE, time};
+    operate(r, 8, 0, 9.156);
+    return r;
+}
+
+static void sample_at(rig *r, double t) {
+    r->motion.time = t;
+    sample(r, r->speed * t);
+}
+
+// Thrust [kN] after a step of the pitch from 0 to 3.7° at 20 s: AeroDyn v5, slow time constant 5 s,
+// discrete in steps of 50 ms.
+static void pitch_step_matches_reference(void **state) {
+    (void)state;
+    static const double table[][2] = {{20, 210.3897},  {20.1, 213.48109}, {21, 233.39587},
+                                      {22, 245.80637}, {23, 253.38355},   {24, 258.48886},
+                                      {25, 262.17411}, {26, 264.95534},   {28, 268.83479},
+                                      {30, 271.32461}, {35, 274.45232},   {40, 275.59214}};
+    rig *r = create_inflow_rig(5);
+    int row = 0;
+    for (int k = 0; k <= 800; k++) {
+        double t = 0.05 * k;
+        if (t > 20 - 1e-9) r->pitch = 3.7 * degree;
+        sample_at(r, t);
+        if (t < 19.99) check_near(r->data.thrust, 384.4141e3, 1e-5, 0);
+        if (fabs(t - table[row][0]) > 1e-6) continue;
+        check_near(r->data.thrust, 1e3 * table[row++][1], 1e-6, 0);
+    }
+    assert_int_equal(row, 12);
+    sample_at(r, 4000);
+    sample_at(r, 8000);
+    check_near(r->data.thrust, 276.2547e3, 1e-5, 0);
+    destroy_rig(r);
+}
+
+static void move_memory(rig *r, bough_snapshot_move move, double *copy) {
+    bough_rotor_memory_snapshot(r->rotor, &r->data, &(bough_snapshot){move, (char *)copy, 0});
+}
+
+// The memory restored, a step repeats to the bit; a step of any length is stable.
+static void inflow_is_saved_and_restored(void **state) {
+    (void)state;
+    rig *r = create_inflow_rig(0);
+    int n = bough_rotor_memory_size(r->rotor);
+    assert_int_equal(n, 3 + 6 * BLADES * STATIONS);
+    double *memory = calloc((size_t)n, sizeof *memory);
+    for (int k = 0; k < 5; k++) sample_at(r, 0.3 * k);
+    move_memory(r, BOUGH_SNAPSHOT_SAVE, memory);
+    r->pitch = 3 * degree;
+    sample_at(r, 2);
+    double thrust = r->data.thrust;
+    sample_at(r, 500);
+    assert_true(isfinite(r->data.thrust) && fabs(r->data.thrust - thrust) > 1e3);
+    move_memory(r, BOUGH_SNAPSHOT_RESTORE, memory);
+    sample_at(r, 2);
+    check_near(r->data.thrust, thrust, 0, 0);
+    free(memory);
+    destroy_rig(r);
+}
+
+// What a sample told is told again once stored and put back, the blades' distance to the tower included,
+// which differs from blade to blade.
+static void told_is_saved_and_restored(void **state) {
+    (void)state;
+    rig *r = create_rig(false);
+    operate(r, 8, 0, 9);
+    sample(r, BOUGH_PI); // blade 1 in front of the tower
+    bough_snapshot told = {.move = BOUGH_SNAPSHOT_MEASURE};
+    bough_rotor_told_snapshot(r->rotor, &r->data, &told);
+    char *copy = test_malloc(told.used);
+    bough_rotor_extremes before[BLADES];
+    for (int b = 0; b < BLADES; b++) before[b] = bough_rotor_look(r->rotor, &r->data, b);
+    assert_true(before[0].distance < 10 && before[1].distance > 2 * before[0].distance);
+    double thrust = r->data.thrust;
+    told = (bough_snapshot){BOUGH_SNAPSHOT_SAVE, copy, 0};
+    bough_rotor_told_snapshot(r->rotor, &r->data, &told);
+    operate(r, 12, 3, 6);
+    sample(r, 1);
+    assert_true(bough_rotor_look(r->rotor, &r->data, 0).distance != before[0].distance);
+    told = (bough_snapshot){BOUGH_SNAPSHOT_RESTORE, copy, 0};
+    bough_rotor_told_snapshot(r->rotor, &r->data, &told);
+    check_near(r->data.thrust, thrust, 0, 0);
+    for (int b = 0; b < BLADES; b++) {
+        bough_rotor_extremes after = bough_rotor_look(r->rotor, &r->data, b);
+        assert_true(after.distance == before[b].distance && after.speed == before[b].speed);
+    }
+    test_free(copy);
+    destroy_rig(r);
+}
+
+// The time constant by its formula; one long advance equals many short ones.
+static void inflow_advances_exactly(void **state) {
+    (void)state;
+    const bough_inflow_def from_load = {BOUGH_INFLOW_OYE, 0}, fixed = {BOUGH_INFLOW_OYE, 4};
+    check_near(bough_inflow_time(&from_load, 0.3, 60, 10), 6.6 / 0.61, 1e-14, 0);
+    check_near(bough_inflow_time(&from_load, 0.9, 60, 10), 6.6 / 0.35, 1e-14, 0);
+    check_near(bough_inflow_time(&fixed, 0.3, 60, 10), 4, 0, 0);
+    bough_inflow_state one, many;
+    const double start[2] = {2, -1};
+    bough_inflow_start(&one, start);
+    bough_inflow_start(&many, start);
+    for (int k = 1; k <= 1000; k++) {
+        const double sought[2] = {2 + 0.004 * k, -1 + 0.001 * k};
+        bough_inflow_advance(&many, sought, 0.01, 5, 0.7);
+        if (k == 1000) bough_inflow_advance(&one, sought, 10, 5, 0.7);
+    }
+    for (int c = 0; c < 2; c++) check_near(one.reached[c], many.reached[c], 1e-11, 0);
+    assert_true(one.reached[0] > 3 && one.reached[0] < 6);
+}
+
+// -- dynamic stall -------------------------------------------------------------------------------
+
+// Held still the rotor comes to its static loads; on the way, after a step of pitch into stall, it
+// carries more than them; the memory restored, the step repeats to the bit.
+static void stall_is_late_and_repeats(void **state) {
+    (void)state;
+    rig *still = create_flat_rig(), *r = create_flat_rig();
+    r->def.stall = BOUGH_STALL_HGM;
+    r->def.inflow.kind = BOUGH_INFLOW_OYE;
+    operate(still, 16, -8, 12.1);
+    operate(r, 16, 3, 12.1);
+    assert_int_equal(bough_rotor_memory_size(still->rotor), 0);
+    int n = bough_rotor_memory_size(r->rotor);
+    assert_int_equal(n, 3 + (6 + 9) * BLADES * STATIONS);
+    double *memory = calloc((size_t)n, sizeof *memory), most = 0;
+    sample(still, 0);
+    for (int k = 0; k < 50; k++) sample_at(r, 0.02 * k);
+    move_memory(r, BOUGH_SNAPSHOT_SAVE, memory);
+    r->pitch = -8 * degree;
+    for (int k = 50; k < 60; k++) {
+        sample_at(r, 0.02 * k);
+        most = fmax(most, r->data.thrust);
+    }
+    double thrust = r->data.thrust;
+    assert_true(most > 1.02 * still->data.thrust);
+    move_memory(r, BOUGH_SNAPSHOT_RESTORE, memory);
+    for (int k = 50; k < 60; k++) sample_at(r, 0.02 * k);
+    check_near(r->data.thrust, thrust, 0, 0);
+    // The blade turns in space, cone or not: flat here, so nothing but the static polars is left.
+    for (int k = 1; k < 5; k++) sample_at(r, 1e4 * k);
+    check_near(r->data.thrust, still->data.thrust, 1e-6, 0);
+    check_near(r->data.torque, still->data.torque, 1e-6, 0);
+    free(memory);
+    destroy_rig(still);
+    destroy_rig(r);
+}
+
+// The rotor's own turn is no pitch rate of a coned blade's sections: in steady wind they carry the static
+// polars' loads.
+static void stall_keeps_the_loads_of_a_coned_rotor(void **state) {
+    (void)state;
+    for (int sign = -1; sign <= 1; sign += 2) {
+        rig *still = create_flat_rig(), *r = create_flat_rig();
+        still->cone = r->cone = sign * 2.5 * degree;
+        r->def.stall = BOUGH_STALL_HGM;
+        operate(still, 11.4, 0, 12.1);
+        operate(r, 11.4, 0, 12.1);
+        sample(still, 0);
+        for (int k = 0; k < 3; k++) sample_at(r, 1e3 * k);
+        check_near(r->data.torque, still->data.torque, 1e-9, 0);
+        check_near(r->data.thrust, still->data.thrust, 1e-9, 0);
+        destroy_rig(still);
+        destroy_rig(r);
+    }
+}
+
+static void station_off_the_blade_is_refused(void **state) {
+    (void)state;
+    rig *r = create_rig(true);
+    r->station[18].span = 62;
+    bough_status status = bough_rotor_build(r->arena, &r->def, &r->rotor);
+    assert_int_equal(status.code, BOUGH_INVALID);
+    assert_null(r->rotor);
+    destroy_rig(r);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(flat_rotor_matches_reference),
+        cmocka_unit_test(switches_match_reference),
+        cmocka_unit_test(stations_match_reference),
+        cmocka_unit_test(rigid_turbine_matches_reference),
+        cmocka_unit_test(angle_of_attack_is_in_the_plane_of_the_section),
+        cmocka_unit_test(mapping_conserves_force_and_moment),
+        cmocka_unit_test(offsets_carry_moment),
+        cmocka_unit_test(section_axes_are_arbitrary),
+        cmocka_unit_test(rigid_translation_changes_nothing),
+        cmocka_unit_test(blades_are_alike),
+        cmocka_unit_test(sample_is_a_function_of_motion),
+        cmocka_unit_test(loads_follow_the_motion_by_their_slopes),
+        cmocka_unit_test(odd_states_are_finite),
+        cmocka_unit_test(pitch_step_matches_reference),
+        cmocka_unit_test(inflow_is_saved_and_restored),
+        cmocka_unit_test(told_is_saved_and_restored),
+        cmocka_unit_test(inflow_advances_exactly),
+        cmocka_unit_test(stall_is_late_and_repeats),
+        cmocka_unit_test(stall_keeps_the_loads_of_a_coned_rotor),
+        cmocka_unit_test(station_off_the_blade_is_refused),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

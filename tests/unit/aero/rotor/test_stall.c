@@ -1,0 +1,302 @@
+#include "aero/rotor/stall.h"
+
+#include "core/base/base.h"
+#include "tests/unit/check.h"
+#include "tests/unit/nrel5mw_aero.h"
+
+#include <complex.h>
+#include <string.h>
+
+static const double degree = BOUGH_PI / 180;
+
+typedef struct foils {
+    bough_arena *arena;
+    bough_polar polar[8], plate;
+} foils;
+
+// Lift 2π(α − 1°) up to 20° from there, without drag.
+static const double plate_rows[4][4] = {
+    {-180, 0, 0, 0}, {-19, -20 * 2 * BOUGH_PI * BOUGH_PI / 180, 0, 0},
+    {21, 20 * 2 * BOUGH_PI * BOUGH_PI / 180, 0, 0}, {180, 0, 0, 0}};
+
+static int set_up(void **state) {
+    foils *a = test_malloc(sizeof *a);
+    a->arena = bough_arena_create();
+    bough_polar_def plate = {.name = "plate", .n = 4, .row = &plate_rows[0][0]};
+    bough_polar_build(a->arena, &plate, &a->plate);
+    for (int i = 0; i < 8; i++) {
+        bough_polar_build(a->arena, nrel5mw_polars + i, a->polar + i);
+    }
+    *state = a;
+    return 0;
+}
+
+static int tear_down(void **state) {
+    foils *a = *state;
+    bough_arena_destroy(a->arena);
+    test_free(a);
+    return 0;
+}
+
+static void check_static(const bough_polar *polar, double alpha, bough_coefficients k) {
+    bough_coefficients s = bough_polar_at(polar, alpha);
+    check_near(k.lift, s.lift, 1e-8, 1e-8);
+    check_near(k.drag, s.drag, 1e-8, 1e-8);
+    check_near(k.moment, s.moment, 1e-8, 1e-8);
+}
+
+// Static lift is the mixture of attached and separated, at every angle of every airfoil; f is one
+// somewhere in attached flow and zero in deep stall.
+static void parts_make_the_static_polar(void **state) {
+    foils *a = *state;
+    for (int p = 2; p < 8; p++) {
+        bough_polar foil = a->polar[p];
+        double most = 0, f, separated;
+        assert_true(foil.slope > 5 && foil.slope < 9);
+        check_near(bough_polar_at(&a->polar[p], foil.zero_lift).lift, 0, 0, 1e-12);
+        for (double alpha = -BOUGH_PI; alpha < BOUGH_PI; alpha += 0.1234 * degree) {
+            bough_stall_split(&foil, alpha, &f, &separated);
+            double lift = f * foil.slope * (alpha - foil.zero_lift) + (1 - f) * separated;
+            check_near(lift, bough_polar_at(&a->polar[p], alpha).lift, 0, 1e-9);
+            assert_true(f >= 0 && f <= 1);
+            if (fabs(alpha) > 60 * degree) check_near(f, 0, 0, 0);
+            most = fmax(most, f);
+        }
+        assert_true(most > 0.95);
+    }
+    check_near(a->polar[0].slope, 0, 0, 0); // a cylinder
+}
+
+// From wherever it comes, steady flow ends on the static polar, with steps of any length.
+static void steady_limit_is_the_static_polar(void **state) {
+    foils *a = *state;
+    for (int p = 0; p < 8; p++) {
+        bough_polar foil = a->polar[p];
+        for (double angle = -178; angle < 180; angle += 7.3) {
+            bough_stall_state s = {0};
+            bough_coefficients k = bough_stall_advance(
+                &foil, 3, (bough_stall_inflow){50, angle * degree, 0}, 0, &s);
+            check_static(&a->polar[p], angle * degree, k); // started in equilibrium
+            bough_stall_advance(&foil, 3, (bough_stall_inflow){30, (angle + 170) * degree, 0.3},
+                                0.02, &s);
+            for (int i = 0; i < 4; i++)
+                k = bough_stall_advance(&foil, 3, (bough_stall_inflow){50, angle * degree, 0}, 1e3,
+                                        &s);
+            check_static(&a->polar[p], angle * degree, k);
+        }
+    }
+}
+
+// In the steps of a run: a section that comes from the angle without lift and stays where it is has the
+// coefficients of its polar within 20 s, to 1e-3 at every angle of operation; of joined straight lines, of
+// cubics, and of mixtures of neighbours.
+static void a_run_settles_on_the_static_polar(void **state) {
+    foils *a = *state;
+    enum { N = 8, STEPS = 1000 };
+    bough_polar polar[3 * N - 1];
+    memcpy(polar, a->polar, sizeof a->polar);
+    for (int i = 0; i < N; i++) {
+        bough_polar *smooth = polar + N + i, *mixed = polar + 2 * N + i;
+        bough_polar_build(a->arena, nrel5mw_polars + i, smooth);
+        bough_polar_smoothen(a->arena, smooth);
+        if (i + 1 < N)
+            bough_polar_blend(a->arena, a->polar + i, a->polar + i + 1, 0.4, mixed);
+    }
+    double worst = 0;
+    for (int p = 0; p < 3 * N - 1; p++) {
+        bough_polar foil = *(polar + p);
+        for (double angle = -10; angle <= 15; angle += 0.25) {
+            bough_stall_state s = {0};
+            bough_coefficients k = bough_stall_advance(
+                &foil, 3, (bough_stall_inflow){50, foil.zero_lift, 0}, 0, &s);
+            for (int i = 0; i < STEPS; i++)
+                k = bough_stall_advance(&foil, 3, (bough_stall_inflow){50, angle * degree, 0}, 0.02,
+                                        &s);
+            bough_coefficients fixed = bough_polar_at(polar + p, angle * degree);
+            worst = fmax(worst, fmax(fabs(k.lift - fixed.lift), fabs(k.drag - fixed.drag)));
+            worst = fmax(worst, fabs(k.moment - fixed.moment));
+        }
+    }
+    print_message("most off the static polars: %.2g\n", worst);
+    assert_true(worst < 1e-3);
+}
+
+// Attached flow: lift at the reduced frequency k is slope·C(k) with Jones' approximation of
+// Theodorsen's function, C = 1 − Σ A ik/(ik + b).
+static void attached_lift_is_indicial(void **state) {
+    foils *a = *state;
+    bough_polar foil = a->plate;
+    check_near(foil.slope, 2 * BOUGH_PI, 1e-9, 0);
+    check_near(foil.zero_lift, degree, 1e-9, 0);
+    const double speed = 40, chord = 2, amplitude = degree;
+    const double complex i1 = I;
+    for (double k = 0.02; k < 0.7; k *= 2) {
+        enum { PER_CYCLE = 400, CYCLES = 60 };
+        double omega = 2 * k * speed / chord, step = 2 * BOUGH_PI / omega / PER_CYCLE;
+        double complex got = 0, ik = i1 * k;
+        double complex c = 1 - 0.165 * ik / (ik + 0.0455) - 0.335 * ik / (ik + 0.3);
+        bough_stall_state s = {0};
+        for (int i = 0; i <= PER_CYCLE * CYCLES; i++) {
+            double phase = 2 * BOUGH_PI * (i % PER_CYCLE) / PER_CYCLE;
+            bough_stall_inflow inflow = {speed, 4 * degree + amplitude * sin(phase), 0};
+            double lift = bough_stall_advance(&foil, chord, inflow, step, &s).lift;
+            if (i > PER_CYCLE * (CYCLES - 1)) got += lift * cexp(-i1 * phase) * 2 / PER_CYCLE;
+        }
+        double complex expected = -i1 * foil.slope * amplitude * c; // of a sine
+        check_near(cabs(got - expected), 0, 0, 1e-4 * cabs(expected));
+    }
+}
+
+// A rotation that goes on lifts by the downwash at three quarters of the chord and by the apparent
+// mass: slope·x + πx with x = c·rate/(2U). The circulation's part stands square to the flow there, and
+// the rotation leans it back by x more.
+static void rotation_lifts(void **state) {
+    foils *a = *state;
+    bough_polar foil = a->plate;
+    bough_stall_state s = {0};
+    bough_coefficients k = {0};
+    for (int i = 0; i < 3; i++)
+        k = bough_stall_advance(&foil, 2, (bough_stall_inflow){40, 4 * degree, 0.4}, 100, &s);
+    double x = 2 * 0.4 / 80;
+    check_near(k.lift, foil.slope * (3 * degree + x) + BOUGH_PI * x, 1e-9, 0);
+    check_near(k.drag, foil.slope * (3 * degree + x) * x, 1e-9, 0);
+    check_near(k.moment, -BOUGH_PI * x / 2, 1e-9, 0);
+}
+
+// Right after a step of the angle of attack, attached, half of the step lies between the angle and
+// the effective one: drag (α − α_E) Cl of the circulation.
+static void withheld_lift_leans_back(void **state) {
+    foils *a = *state;
+    bough_polar foil = a->plate;
+    bough_stall_state s = {0};
+    bough_stall_advance(&foil, 2, (bough_stall_inflow){40, 4 * degree, 0}, 0, &s);
+    bough_stall_advance(&foil, 2, (bough_stall_inflow){40, 4 * degree, 0}, 100, &s);
+    bough_coefficients k =
+        bough_stall_advance(&foil, 2, (bough_stall_inflow){40, 6 * degree, 0}, 1e-7, &s);
+    check_near(k.lift, foil.slope * 4 * degree, 1e-5, 0);
+    check_near(k.drag, degree * k.lift, 1e-4, 0);
+}
+
+// Lift against angle over one period, after `cycles`.
+typedef struct loop {
+    double area;       // ∮ Cl dα, positive: the air does work on the section
+    double gap;        // between its ends
+    double up, down;   // lift at the mean angle
+    double highest;
+} loop;
+
+static loop run_loop(const bough_polar *foil, double mean, double amplitude, int cycles,
+                     int per_cycle) {
+    const double speed = 50, chord = 3, k = 0.08, omega = 2 * k * speed / chord;
+    double step = 2 * BOUGH_PI / omega / per_cycle, before = 0, angle = mean, first = 0;
+    bough_stall_state s = {0};
+    loop l = {0};
+    for (int i = 0; i <= cycles * per_cycle; i++) {
+        double phase = 2 * BOUGH_PI * (i % per_cycle) / per_cycle;
+        double alpha = mean + amplitude * sin(phase);
+        double lift =
+            bough_stall_advance(foil, chord, (bough_stall_inflow){speed, alpha, 0}, step, &s).lift;
+        int last = i - (cycles - 1) * per_cycle;
+        if (last == 0) first = l.up = lift;
+        if (last > 0) l.area += (lift + before) / 2 * (alpha - angle);
+        if (last == per_cycle / 2) l.down = lift;
+        if (last >= 0) l.highest = fmax(l.highest, lift);
+        before = lift;
+        angle = alpha;
+    }
+    l.gap = fabs(before - first);
+    return l;
+}
+
+// In stall lift is higher while the angle grows; the loop closes, and halving the step moves it at
+// second order.
+static void stall_loop_is_closed(void **state) {
+    foils *a = *state;
+    bough_polar foil = a->polar[7];
+    loop coarse = run_loop(&foil, 12 * degree, 5 * degree, 6, 200);
+    loop middle = run_loop(&foil, 12 * degree, 5 * degree, 6, 400);
+    loop fine = run_loop(&foil, 12 * degree, 5 * degree, 6, 800);
+    assert_true(fine.gap < 1e-6);
+    assert_true(fine.up > fine.down + 0.1);
+    double most = 0;
+    for (double d = 7; d <= 17; d += 0.1)
+        most = fmax(most, bough_polar_at(&a->polar[7], d * degree).lift);
+    assert_true(fine.highest > most + 0.05); // stall is late
+    print_message("loop: up %.4f, down %.4f, highest %.4f (static %.4f), area %.5f\n", fine.up,
+                  fine.down, fine.highest, most, fine.area);
+    double ratio = (coarse.area - middle.area) / (middle.area - fine.area);
+    assert_true(ratio > 3 && ratio < 5);
+}
+
+// The slopes are those of an advance from the same state whose angle or rotation differs, in attached,
+// stalled and partly static flow. A step of a hundredth of a chord leaves the separation as it is.
+static void slopes_are_those_of_an_advance(void **state) {
+    foils *a = *state;
+    const double chord = 3, step = 6e-4, d = 1e-3, turning = 0.2;
+    static const double angle[] = {4.03, 13.03, 24.03, 43.03, -45.03, 75.03};
+    for (int p = 0; p < 8; p++) {
+        bough_polar foil = a->polar[p];
+        for (int i = 0; i < 6; i++) {
+            double alpha = angle[i] * degree;
+            bough_stall_state before = {0};
+            bough_stall_inflow inflow = {50, alpha - 3 * degree, 0};
+            bough_stall_advance(&foil, chord, inflow, 0, &before);
+            bough_coefficients change[2][2];
+            for (int k = 0; k < 4; k++) {
+                double by = k % 2 == 0 ? -d / 2 : d / 2;
+                bough_stall_state s = before;
+                inflow = (bough_stall_inflow){50, alpha + (k < 2 ? by : 0), turning + (k < 2 ? 0 : 20 * by)};
+                change[k / 2][k % 2] = bough_stall_advance(&foil, chord, inflow, step, &s);
+            }
+            bough_stall_state s = before;
+            inflow = (bough_stall_inflow){50, alpha, turning};
+            bough_stall_advance(&foil, chord, inflow, step, &s);
+            bough_stall_slopes k = bough_stall_slopes_of(&foil, chord, inflow, step, &s);
+            const bough_coefficients told[2] = {k.angle, k.rate};
+            for (int j = 0; j < 2; j++) {
+                double by = j == 0 ? d : 20 * d, whole = j == 0 ? 1 : chord / 100;
+                check_near(told[j].lift, (change[j][1].lift - change[j][0].lift) / by, 1e-2, 2e-2 * whole);
+                check_near(told[j].drag, (change[j][1].drag - change[j][0].drag) / by, 1e-2, 2e-2 * whole);
+                check_near(told[j].moment, (change[j][1].moment - change[j][0].moment) / by, 1e-2,
+                           2e-2 * whole);
+            }
+        }
+    }
+}
+
+// Any flow, however it jumps, gives finite coefficients.
+static void odd_flow_is_finite(void **state) {
+    foils *a = *state;
+    uint64_t seed = 3;
+    for (int p = 0; p < 8; p++) {
+        bough_polar foil = a->polar[p];
+        bough_stall_state s = {0};
+        for (int i = 0; i < 20000; i++) {
+            double r[4];
+            for (int c = 0; c < 4; c++) {
+                seed = seed * 6364136223846793005u + 1442695040888963407u;
+                r[c] = (double)(seed >> 11) / 9007199254740992.;
+            }
+            bough_stall_inflow inflow = {i % 9 ? 90 * r[0] : 0, 20 * (r[1] - 0.5),
+                                         1e3 * (r[2] - 0.5) * (i % 5 == 0)};
+            double step = i % 7 ? 0.02 * r[3] : (i % 14 ? 0 : 1e6);
+            bough_coefficients k = bough_stall_advance(&foil, 3, inflow, step, &s);
+            assert_true(fabs(k.lift) < 1e2 && fabs(k.drag) < 1e3 && fabs(k.moment) < 1e2);
+        }
+    }
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(parts_make_the_static_polar),
+        cmocka_unit_test(steady_limit_is_the_static_polar),
+        cmocka_unit_test(a_run_settles_on_the_static_polar),
+        cmocka_unit_test(attached_lift_is_indicial),
+        cmocka_unit_test(rotation_lifts),
+        cmocka_unit_test(withheld_lift_leans_back),
+        cmocka_unit_test(stall_loop_is_closed),
+        cmocka_unit_test(slopes_are_those_of_an_advance),
+        cmocka_unit_test(odd_flow_is_finite),
+    };
+    return cmocka_run_group_tests(tests, set_up, tear_down);
+}

@@ -1,0 +1,103 @@
+#include "aero/wind/wind.h"
+
+#include "core/base/base.h"
+#include "tests/unit/check.h"
+
+// Of a def without a table.
+static bough_wind built(const bough_wind_def *def) {
+    bough_wind wind;
+    bough_status status = bough_wind_build(NULL, def, &wind);
+    assert_int_equal(status.code, BOUGH_OK);
+    return wind;
+}
+
+static void default_is_calm(void **state) {
+    (void)state;
+    bough_wind_def def = bough_wind_def_default();
+    bough_wind wind = built(&def);
+    bough_vec3 v = bough_wind_at(&wind, bough_v3(1, 2, 3), 4);
+    check_near(bough_norm(v), 0, 0, 0);
+}
+
+static void uniform_wind_blows_along_x_everywhere(void **state) {
+    (void)state;
+    bough_wind_def def = bough_wind_def_default();
+    def.speed = 8;
+    bough_wind wind = built(&def);
+    for (double z = -10; z < 200; z += 30) {
+        bough_vec3 v = bough_wind_at(&wind, bough_v3(z, -z, z), z);
+        check_near(v.x, 8, 0, 0);
+        check_near(hypot(v.y, v.z), 0, 0, 0);
+    }
+}
+
+static void shear_follows_power_law(void **state) {
+    (void)state;
+    const bough_wind_def def = {
+        .speed = 10, .shear = BOUGH_WIND_POWER, .exponent = 0.2, .reference_height = 90};
+    bough_wind wind = built(&def);
+    check_near(bough_wind_at(&wind, bough_v3(0, 0, 90), 0).x, 10, 1e-15, 0);
+    check_near(bough_wind_at(&wind, bough_v3(0, 0, 45), 0).x, 8.705505632961241, 1e-14, 0);
+    check_near(bough_wind_at(&wind, bough_v3(0, 0, -1), 0).x, 0, 0, 0);
+}
+
+// From height to height the speed grows by the same amount wherever their ratio is the same.
+static void shear_follows_logarithmic_law(void **state) {
+    (void)state;
+    const bough_wind_def def = {
+        .speed = 10, .shear = BOUGH_WIND_LOG, .roughness = 0.1, .reference_height = 100};
+    bough_wind wind = built(&def);
+    static const double table[][2] = {{100, 10}, {10, 20. / 3}, {1, 10. / 3}, {0.1, 0},
+                                      {0.05, 0}, {-5, 0},       {1000, 40. / 3}};
+    for (size_t i = 0; i < sizeof table / sizeof *table; i++) {
+        double u = bough_wind_at(&wind, bough_v3(3, 4, table[i][0]), 0).x;
+        check_near(u, table[i][1], 1e-14, 1e-14);
+    }
+}
+
+// Towards 30° from x and upwards; shear and table change the horizontal part alone.
+static void direction_turns_the_horizontal_part(void **state) {
+    (void)state;
+    const bough_wind_def def = {.speed = 8,
+                                .vertical = -1.5,
+                                .direction = BOUGH_PI / 6,
+                                .shear = BOUGH_WIND_POWER,
+                                .exponent = 0.5,
+                                .reference_height = 100};
+    bough_wind wind = built(&def);
+    bough_vec3 v = bough_wind_at(&wind, bough_v3(5, -7, 25), 3);
+    check_near(v.x, 4 * sqrt(0.75), 1e-14, 0);
+    check_near(v.y, 4 * 0.5, 1e-14, 0);
+    check_near(v.z, -1.5, 0, 0);
+}
+
+// A gust between uneven times; the def's tables may be gone after the build.
+static void table_is_linear_between_and_constant_outside(void **state) {
+    (void)state;
+    double time[] = {10, 12, 13, 20}, speed[] = {8, 8, 14, 7};
+    const bough_wind_def def = {.speed = 99, .n_time = 4, .time = time, .speed_at_time = speed};
+    bough_arena *arena = bough_arena_create();
+    bough_wind wind;
+    bough_status status = bough_wind_build(arena, &def, &wind);
+    assert_int_equal(status.code, BOUGH_OK);
+    for (int i = 0; i < 4; i++) time[i] = speed[i] = -1;
+    static const double expected[][2] = {{-5, 8},    {10, 8}, {11, 8},    {12, 8}, {12.5, 11},
+                                         {13, 14},   {15, 12}, {16.5, 10.5}, {20, 7}, {1e6, 7}};
+    for (size_t i = 0; i < sizeof expected / sizeof *expected; i++) {
+        double u = bough_wind_at(&wind, bough_v3(0, 0, 50), expected[i][0]).x;
+        check_near(u, expected[i][1], 1e-14, 0);
+    }
+    bough_arena_destroy(arena);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(default_is_calm),
+        cmocka_unit_test(uniform_wind_blows_along_x_everywhere),
+        cmocka_unit_test(shear_follows_power_law),
+        cmocka_unit_test(shear_follows_logarithmic_law),
+        cmocka_unit_test(direction_turns_the_horizontal_part),
+        cmocka_unit_test(table_is_linear_between_and_constant_outside),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,285 @@
+// Modes of whole scenes.
+#include "apps/bough/analysis/steady.h"
+#include "apps/bough/analysis/vibration.h"
+#include "tests/unit/built_scene.h"
+
+#include <string.h>
+
+static const char pendulum[] = "apps/mechanisms/pendulum.yaml", runup[] = "apps/turbine/runup.yaml";
+
+typedef struct found {
+    bough_arena *arena;
+    bough_simulation *s;
+    bough_vibration v;
+} found;
+
+static found modes_of(const char *path, const char *const *sets, int count) {
+    found f = {.arena = bough_arena_create()};
+    f.s = scene_build(f.arena, path, sets);
+    bough_status status = bough_vibration_find(f.arena, f.s, count, &f.v);
+    if (!bough_is_ok(&status)) fail_msg("%s", status.message);
+    return f;
+}
+
+// ω² = g/l
+static void pendulum_swings(void **context) {
+    (void)context;
+    const char *sets[] = {NULL};
+    found f = modes_of(pendulum, sets, 4);
+    assert_int_equal(f.v.found, 1);
+    check_near(f.v.mode[0].frequency, sqrt(9.81) / (2 * BOUGH_PI), 1e-8, 0);
+    check_near(f.v.mode[0].damping, 0, 0, 1e-9);
+    check_near(f.v.mode[0].share[0], 1, 1e-12, 0);
+    bough_arena_destroy(f.arena);
+}
+
+// m l² λ² + c λ + m g l = 0
+static void damper_damps_the_pendulum(void **context) {
+    (void)context;
+    const char *sets[] = {"bodies[0].joint.damping=2", NULL};
+    found f = modes_of(pendulum, sets, 4);
+    check_near(f.v.mode[0].frequency, sqrt(9.81) / (2 * BOUGH_PI), 1e-8, 0);
+    check_near(f.v.mode[0].damping, 1 / sqrt(9.81), 1e-8, 0);
+    check_near(f.v.mode[0].damped_frequency, sqrt(9.81 - 1) / (2 * BOUGH_PI), 1e-8, 0);
+    bough_arena_destroy(f.arena);
+}
+
+// On a spherical joint it swings in two planes; its free turn and its quaternion give nothing.
+static void spherical_pendulum_swings_twice(void **context) {
+    (void)context;
+    const char *sets[] = {"bodies[0].joint={kind: spherical, parent: ground}",
+                          "bodies[0].inertia=[0.1, 0.1, 0.1]", NULL};
+    found f = modes_of(pendulum, sets, 6);
+    double expected = sqrt(9.81 / 1.1) / (2 * BOUGH_PI);
+    assert_int_equal(f.v.found, 2);
+    for (int k = 0; k < 2; k++) check_near(f.v.mode[k].frequency, expected, 1e-7, 0);
+    bough_arena_destroy(f.arena);
+}
+
+// Two windows of four-bars hang: ω² = g ((N + 1)/2 + N)/((N + 1)/3 + N), and nothing else moves.
+static void closed_loops_swing_as_one(void **context) {
+    (void)context;
+    const char *sets[] = {"bodies[0].joint.speed=0", "bodies[0].joint.angle=180 deg",
+                          "bodies[1].joint.angle=180 deg", "bodies[2].joint.angle=180 deg",
+                          "bodies[3].joint.angle=-180 deg", "bodies[4].joint.angle=-180 deg", NULL};
+    found f = modes_of("apps/mechanisms/four-bar.yaml", sets, 6);
+    assert_int_equal(f.v.found, 1);
+    check_near(f.v.mode[0].frequency, sqrt(9.81 * 3.5 / 3) / (2 * BOUGH_PI), 1e-6, 0);
+    bough_arena_destroy(f.arena);
+}
+
+// Clamped and propped: β² √(EI/ρA)/2πL², β = 3.926602, in both planes; shear and inertia of the
+// sections lower it a little.
+static void propped_beam_vibrates_in_both_planes(void **context) {
+    (void)context;
+    const char *sets[] = {NULL};
+    found f = modes_of("tests/data/scenes/prop.yaml", sets, 3);
+    double exact = 3.926602 * 3.926602 * sqrt(1e5 / 2) / (2 * BOUGH_PI * 9);
+    for (int k = 0; k < 2; k++) check_near(f.v.mode[k].frequency, exact, 3e-3, 0);
+    assert_true(f.v.mode[2].frequency > 2 * exact);
+    bough_arena_destroy(f.arena);
+}
+
+// A disc that spins in two elastic gimbals: A λ² ± i C Ω λ + k = 0.
+static void gyroscope_nutates_and_precesses(void **context) {
+    (void)context;
+    const char *sets[] = {
+        "bodies=[{name: outer, fidelity: rigid, joint: {kind: revolute, parent: ground, axis: x, "
+        "stiffness: 50}}, {name: inner, fidelity: rigid, joint: {kind: revolute, parent: outer, "
+        "axis: y, stiffness: 50}}, {name: disc, fidelity: rigid, inertia: [1, 1, 1.6], "
+        "joint: {kind: revolute, parent: inner, axis: z, motion: {speed: 10 rad/s}}}]",
+        "markers=[]", NULL};
+    found f = modes_of(pendulum, sets, 4);
+    double half = 0.5 * 1.6 * 10, root = sqrt(half * half + 50);
+    assert_int_equal(f.v.found, 2);
+    check_near(f.v.mode[0].frequency, (root - half) / (2 * BOUGH_PI), 1e-8, 0);
+    check_near(f.v.mode[1].frequency, (root + half) / (2 * BOUGH_PI), 1e-8, 0);
+    assert_true(f.v.frozen); // it is no turbine's rotor
+    bough_arena_destroy(f.arena);
+}
+
+// A nearly massless cantilever of length L with a body at its end, its centre a further:
+// flexibility D and mass M of the end's deflection and turn, 1/ω² are the eigenvalues of D M.
+static void body_on_a_rod_swings(void **context) {
+    (void)context;
+    const char *sets[] = {"gravity=[0, 0, 0]", "bodies[0].rod.mass=[1e-6, 0, 0, 1e-9, 1e-9, 0]",
+                          NULL};
+    found f = modes_of("tests/data/scenes/tip-weight.yaml", sets, 5);
+    double l = 2, ei = 1000, ga = 1e5, m = 0.05, a = 0.1, j = 2e-3;
+    double d[3] = {l * l * l / (3 * ei) + l / ga, l * l / (2 * ei), l / ei};
+    double mass[3] = {m, m * a, j + m * a * a};
+    double trace = d[0] * mass[0] + 2 * d[1] * mass[1] + d[2] * mass[2];
+    double determinant = (d[0] * d[2] - d[1] * d[1]) * (mass[0] * mass[2] - mass[1] * mass[1]);
+    double largest = 0.5 * (trace + sqrt(trace * trace - 4 * determinant));
+    double torsion = l / 800 * 1e-3;
+    assert_int_equal(f.v.found, 5);
+    for (int k = 0; k < 5; k++) {
+        double square = k < 2 ? largest : k == 2 ? torsion : determinant / largest;
+        check_near(f.v.mode[k].frequency, 1 / (2 * BOUGH_PI * sqrt(square)), 1e-4, 0);
+        assert_true(f.v.mode[k].share[1] > 0.99);
+    }
+    bough_arena_destroy(f.arena);
+}
+
+#define HUB(motion)                                                                               \
+    "bodies[2].joint={kind: revolute, parent: nacelle, axis: x, motion: " motion                  \
+    ", placement: [move z 1.96256 m, rotate y 5 deg, move x -5.0191 m]}"
+#define CALM "aero.ramp=[0, 1000]", "aero.wind.speed=0", "loads=[]", "gravity=[0, 0, 0]"
+#define COARSE "bodies[3].rod.segments=8", "bodies[4].rod.segments=8", "bodies[5].rod.segments=8"
+
+// The blades of a locked rotor on a rigid support do not know of each other.
+static void parked_blades_have_their_own_frequencies(void **context) {
+    (void)context;
+    const char *sets[] = {HUB("{angle: 0}"), CALM, COARSE, "modes.at=undeformed", NULL};
+    found f = modes_of(runup, sets, 9);
+    bough_beam *beam = &f.s->beam[0];
+    bough_steady steady;
+    bough_turning rest = {0};
+    bough_status status = bough_steady_find(f.arena, f.s, beam, &rest, &steady);
+    assert_true(bough_is_ok(&status));
+    bough_rod_mode_list list = {.wanted = 3};
+    status = bough_rod_modes(f.arena, steady.model, &steady.work, steady.input, steady.state,
+                             &list);
+    assert_true(bough_is_ok(&status));
+    assert_int_equal(f.v.found, 9);
+    for (int k = 0; k < 9; k++) {
+        check_near(f.v.mode[k].frequency, list.mode[k / 3].frequency, 1e-7, 0);
+        check_near(f.v.mode[k].damping, list.mode[k / 3].damping, 1e-6, 0);
+        assert_true(f.v.mode[k].blades);
+        assert_int_equal(f.v.mode[k].direction, list.mode[k / 3].dominant);
+    }
+    bough_arena_destroy(f.arena);
+}
+
+static const bough_scene_mode *mode_with(const found *f, int direction, bough_pattern pattern) {
+    for (int k = 0; k < f->v.found; k++) {
+        const bough_scene_mode *m = &f->v.mode[k];
+        if (m->direction == direction && m->pattern == pattern) return m;
+    }
+    fail_msg("no such mode");
+    return NULL;
+}
+
+// On a rigid support an observer at rest sees each blade frequency, and it plus and minus the
+// rotor's, exactly; the equilibrium is stretched by the rotation.
+static void whirl_is_split_by_the_rotation(void **context) {
+    (void)context;
+    const char *sets[] = {HUB("{speed: 12.1 rpm}"), CALM, COARSE, "aero.air_density=1e-9",
+                          NULL};
+    found f = modes_of(runup, sets, 6);
+    assert_false(f.v.frozen);
+    for (int direction = BOUGH_ROD_FLAP; direction <= BOUGH_ROD_EDGE; direction++) {
+        const bough_scene_mode *mean = mode_with(&f, direction, BOUGH_PATTERN_COLLECTIVE);
+        const bough_scene_mode *forward = mode_with(&f, direction, BOUGH_PATTERN_FORWARD);
+        const bough_scene_mode *backward = mode_with(&f, direction, BOUGH_PATTERN_BACKWARD);
+        check_near(forward->damped_frequency - mean->damped_frequency, 12.1 / 60, 0, 1e-7);
+        check_near(mean->damped_frequency - backward->damped_frequency, 12.1 / 60, 0, 1e-7);
+        check_near(forward->growth, mean->growth, 1e-5, 0);
+        check_near(forward->whirl[1], 1, 0, 1e-6);
+        check_near(backward->whirl[2], 1, 0, 1e-6);
+        check_near(mean->whirl[0], 1, 0, 1e-6);
+    }
+    bough_arena_destroy(f.arena);
+}
+
+// What gravity does to a blade in a slow revolution averages out: its bending adds no stress.
+static void gravity_averages_out(void **context) {
+    (void)context;
+    const char *with[] = {HUB("{speed: 1e-3 rpm}"), "aero.ramp=[0, 1000]", "aero.wind.speed=0",
+                          "loads=[]", COARSE, "modes.shapes=true", NULL};
+    const char *without[] = {HUB("{angle: 0}"), CALM, COARSE, "modes.at=undeformed", NULL};
+    found a = modes_of(runup, with, 6), b = modes_of(runup, without, 6);
+    for (int k = 0; k < 6; k++) {
+        check_near(a.v.mode[k].frequency, b.v.mode[k].frequency, 1e-4, 0);
+    }
+    bough_arena_destroy(a.arena);
+    bough_arena_destroy(b.arena);
+}
+
+// The rows of a shape join: a rod's end and what hangs on it move alike; the largest is real and 1.
+static void shapes_join_the_bodies(void **context) {
+    (void)context;
+    const char *sets[] = {"modes.shapes=true", NULL};
+    found f = modes_of("tests/data/scenes/tip-weight.yaml", sets, 2);
+    assert_int_equal(f.v.n_row, 5 + 1);
+    const bough_shape_row *row = f.v.mode[0].shape, *end = row + 4, *weight = row + 5;
+    const double lever[3] = {0, 0.1 * end->motion[0][5], -0.1 * end->motion[0][4]}; // along x
+    double most = 0;
+    for (int c = 0; c < 6; c++) check_near(row->motion[0][c], 0, 0, 1e-9);
+    for (int c = 0; c < 3; c++) {
+        check_near(weight->motion[0][c], end->motion[0][c] + lever[c], 0, 1e-5);
+        check_near(weight->motion[0][3 + c], end->motion[0][3 + c], 1e-6, 1e-9);
+        most = fmax(most, fabs(weight->motion[0][c]));
+    }
+    check_near(most, 1, 0, 1e-9);
+    check_near(end->span, 2, 1e-12, 0);
+    bough_arena_destroy(f.arena);
+}
+
+// Reduced to their modes, the blades of a rotor on a rigid support keep patterns and frequencies.
+static void modal_blades_whirl_as_rods_do(void **context) {
+    (void)context;
+    const char *rods[] = {HUB("{speed: 6 rpm}"), CALM, COARSE, "aero.air_density=1e-9", NULL};
+    const char *modal[] = {HUB("{speed: 6 rpm}"), CALM, COARSE, "aero.air_density=1e-9",
+                           "bodies[3].fidelity=modal", "bodies[4].fidelity=modal",
+                           "bodies[5].fidelity=modal", NULL};
+    found a = modes_of(runup, rods, 6), b = modes_of(runup, modal, 6);
+    for (int k = 0; k < 6; k++) {
+        const bough_scene_mode *rod = &a.v.mode[k], *reduced = &b.v.mode[k];
+        check_near(reduced->frequency, rod->frequency, 1e-2, 0);
+        assert_int_equal(reduced->pattern, rod->pattern);
+        assert_int_equal(reduced->direction, rod->direction);
+        check_near(reduced->share[3], rod->share[3], 1e-2, 0);
+    }
+    bough_arena_destroy(a.arena);
+    bough_arena_destroy(b.arena);
+}
+
+// On a support that yaws and rolls the transformed system is the same at any azimuth; that of the
+// blades' own axes is not.
+static void azimuth_does_not_matter(void **context) {
+    (void)context;
+    const char *nacelle =
+        "bodies[1].joint={kind: revolute, parent: tower, axis: z, stiffness: 3e8, placement: "
+        "[move z 87.6 m]}";
+    const char *zero[] = {HUB("{speed: 12.1 rpm}"), nacelle, CALM, COARSE,
+                          "modes.at=undeformed", NULL};
+    const char *turned[] = {HUB("{speed: 12.1 rpm}"), nacelle, CALM, COARSE,
+                            "bodies[3].joint.placement=[rotate x 40 deg, rotate y -2.5 deg, "
+                            "move z 1.5 m]",
+                            "bodies[4].joint.placement=[rotate x 160 deg, rotate y -2.5 deg, "
+                            "move z 1.5 m]",
+                            "bodies[5].joint.placement=[rotate x 280 deg, rotate y -2.5 deg, "
+                            "move z 1.5 m]",
+                            "modes.at=undeformed", NULL};
+    found a = modes_of(runup, zero, 8), b = modes_of(runup, turned, 8);
+    double support = 0;
+    for (int k = 0; k < 8; k++) {
+        check_near(a.v.mode[k].frequency, b.v.mode[k].frequency, 1e-7, 0);
+        check_near(a.v.mode[k].growth, b.v.mode[k].growth, 1e-4, 1e-7);
+        assert_int_equal(a.v.mode[k].pattern, b.v.mode[k].pattern);
+        support = fmax(support, a.v.mode[k].share[1]);
+    }
+    assert_true(support > 0.01); // the nacelle moves
+    bough_arena_destroy(a.arena);
+    bough_arena_destroy(b.arena);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(pendulum_swings),
+        cmocka_unit_test(damper_damps_the_pendulum),
+        cmocka_unit_test(spherical_pendulum_swings_twice),
+        cmocka_unit_test(gyroscope_nutates_and_precesses),
+        cmocka_unit_test(body_on_a_rod_swings),
+        cmocka_unit_test(modal_blades_whirl_as_rods_do),
+        cmocka_unit_test(gravity_averages_out),
+        cmocka_unit_test(shapes_join_the_bodies),
+        cmocka_unit_test(closed_loops_swing_as_one),
+        cmocka_unit_test(propped_beam_vibrates_in_both_planes),
+        cmocka_unit_test(parked_blades_have_their_own_frequencies),
+        cmocka_unit_test(whirl_is_split_by_the_rotation),
+        cmocka_unit_test(azimuth_does_not_matter),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,185 @@
+// Weights of a load set's cases and what their sums are, beside formulas by hand.
+#include "apps/bough/cases/lifetime.h"
+
+#include "apps/bough/cases/load_set_internal.h"
+#include "tests/unit/check.h"
+
+#include <math.h>
+#include <string.h>
+
+static const char text[] =
+    "kind: load-set\n"
+    "scene: scene.yaml\n"
+    "slopes: [4, 10]\n"
+    "equivalent_cycles: 1e6\n"
+    "lifetime: 25\n"
+    "wind: {average: 8, shape: 2}\n"
+    "channels: [bobPos]\n"
+    "cases:\n"
+    "  - {name: A, weibull: 0.9, grid: {aero.wind.speed: [6, 8, 12 m/s], x.seed: [1, 2]}}\n"
+    "  - {name: B, hours: 50, factor: 1.1, grid: {y: [1, 2, 3, 4]}}\n"
+    "  - {name: C, events: 1000, extremes: false, grid: {y: [1, 2]}}\n"
+    "  - {name: D, factor: 2}\n";
+
+enum { CASES = 13 };
+
+// The set without its scenes: groups and cases alone.
+static bough_load_set made(bough_load_case cases[CASES], bough_load_group group[4]) {
+    static double slope[] = {4, 10};
+    static const char *channel[] = {"load", "other"}, *unit[] = {"kN-m", "rpm"};
+    bough_load_set set = {.n_slope = 2,
+                          .slope = slope,
+                          .cycles = 1e6,
+                          .lifetime = 25,
+                          .wind = {.average = 8, .shape = 2},
+                          .n_group = 2,
+                          .group = group,
+                          .n_case = 3,
+                          .cases = cases,
+                          .n_channel = 2,
+                          .channel = channel,
+                          .unit = unit};
+    group[0] = (bough_load_group){.hours = 50, .factor = 1.5, .favourable = 0.9, .extremes = true};
+    group[1] = (bough_load_group){.events = 100, .factor = 1, .favourable = 0.9, .extremes = true};
+    cases[0] = (bough_load_case){.group = 0, .share = 0.5};
+    cases[1] = (bough_load_case){.group = 0, .share = 0.5};
+    cases[2] = (bough_load_case){.group = 1, .share = 1};
+    return set;
+}
+
+// A result of a sine of range 2a about m over n periods, sampled 8 times each, every 0.5 s.
+static bough_case_result sine(bough_arena *arena, const bough_load_set *set, double m, double a, int n) {
+    bough_case_result r = bough_case_take(arena, set);
+    for (int i = 0; i <= 8 * n; i++) {
+        const double value[2] = {m + a * cos(0.25 * 3.14159265358979323846 * i), i};
+        bough_counts_add(&r.counts, 0.5 * i, value);
+    }
+    bough_counts_finish(&r.counts);
+    r.counted = r.time = 4. * n;
+    r.done = true;
+    return r;
+}
+
+static void sums_are_those_by_hand(void **state) {
+    (void)state;
+    bough_arena *arena = bough_arena_create();
+    bough_load_case cases[CASES];
+    bough_load_group group[4];
+    bough_load_set set = made(cases, group);
+    bough_lifetime l;
+    l = bough_lifetime_take(arena, &set);
+    const double amplitude[3] = {1, 3, 5}, mean[3] = {0, 10, 0};
+    for (int i = 0; i < 3; i++) {
+        bough_case_result r = sine(arena, &set, mean[i], amplitude[i], 20);
+        bough_lifetime_add(&l, i, &r);
+    }
+    // Two cases with 25 hours a year each, in runs of 80 s with 20 cycles; 100 events a year.
+    double runs = 25 * 25 * 3600 / 80., events = 2500;
+    for (int k = 0; k < 2; k++) {
+        double m = set.slope[k];
+        double damage = 20 * (runs * (pow(2, m) + pow(6, m)) + events * pow(10, m));
+        check_near(bough_lifetime_equivalent(&l, 0, k), pow(damage / 1e6, 1 / m), 1e-12, 0);
+    }
+    check_near(l.channel[0].cycles, 20 * (2 * runs + events), 1e-12, 0);
+    check_near(l.hours, 2 * 625 + events * 80 / 3600, 1e-12, 0);
+    double hours = 0;
+    for (int64_t k = l.channel[0].levels.low; k <= l.channel[0].levels.high; k++)
+        hours += bough_levels_inside(&l.channel[0].levels, k);
+    check_near(hours, l.hours, 1e-12, 0);
+    // Factors count: 1.5·13 stands above 1·5, −5 below 1.5·(−1).
+    check_near(l.channel[0].most.value, 13, 1e-14, 0);
+    check_near(l.channel[0].most.factor, 1.5, 0, 0);
+    assert_int_equal(l.channel[0].most.number, 1);
+    check_near(l.channel[0].least.value, -5, 1e-14, 0);
+    assert_int_equal(l.channel[0].least.number, 2);
+    check_near(l.channel[0].least.at, 2, 1e-14, 0);
+    check_near(l.channel[0].least.row[1], 4, 1e-14, 0); // the other channel then
+    check_near(l.lacking, 0, 0, 0);
+    bough_arena_destroy(arena);
+}
+
+static void what_is_lacking_is_told(void **state) {
+    (void)state;
+    bough_arena *arena = bough_arena_create();
+    bough_load_case cases[CASES];
+    bough_load_group group[4];
+    bough_load_set set = made(cases, group);
+    bough_lifetime l;
+    l = bough_lifetime_take(arena, &set);
+    bough_case_result good = sine(arena, &set, 0, 1, 5), failed = good, missing = good;
+    failed.outcome = bough_fail(BOUGH_FAILED, "broke");
+    missing.done = false;
+    group[1] = (bough_load_group){.hours = 150, .factor = 1, .favourable = 0.9, .extremes = true};
+    l = bough_lifetime_take(arena, &set);
+    bough_lifetime_add(&l, 0, &good);
+    bough_lifetime_add(&l, 1, &failed);
+    bough_lifetime_add(&l, 2, &missing);
+    assert_int_equal(l.n_failed, 1);
+    assert_int_equal(l.n_missing, 1);
+    check_near(l.lacking, 1 - 25. / 200, 1e-12, 0);
+    bough_arena_destroy(arena);
+}
+
+// A load of 7 to 13 and one of -13 to -7: what is nearest to zero relieves. A speed of 0 to 160 and what else
+// there is at that moment have no factor.
+static void factors_are_of_loads_and_on_the_safe_side(void **state) {
+    (void)state;
+    bough_arena *arena = bough_arena_create();
+    bough_load_case cases[CASES];
+    bough_load_group group[4];
+    bough_load_set set = made(cases, group);
+    for (int sign = -1; sign <= 1; sign += 2) {
+        bough_lifetime l = bough_lifetime_take(arena, &set);
+        bough_case_result r = sine(arena, &set, 10 * sign, 3, 20);
+        bough_lifetime_add(&l, 0, &r);
+        const bough_lifetime_channel *load = &l.channel[0], *speed = &l.channel[1];
+        const bough_extreme *near = sign > 0 ? &load->least : &load->most;
+        const bough_extreme *far = sign > 0 ? &load->most : &load->least;
+        check_near(near->value, 7 * sign, 1e-14, 0);
+        check_near(near->factor, 0.9, 0, 0);
+        check_near(far->value, 13 * sign, 1e-14, 0);
+        check_near(far->factor, 1.5, 0, 0);
+        check_near(speed->most.value, 160, 0, 0);
+        check_near(speed->most.factor, 1, 0, 0);
+        check_near(speed->most.row[0], 10 * sign + 3, 1e-14, 0);
+        check_near(speed->least.factor, 1, 0, 0);
+    }
+    bough_arena_destroy(arena);
+}
+
+// Shares of the hours: bins half way between the speeds of a Rayleigh distribution.
+static void speeds_weigh_by_weibull(void **state) {
+    (void)state;
+    bough_arena *arena = bough_arena_create();
+    bough_errors errors = {.arena = arena};
+    bough_node *root = bough_text_parse(arena, "set.yaml", text, strlen(text), &errors);
+    bough_load_set *set = bough_load_set_parse(arena, "set.yaml", root, &errors);
+    bough_errors_print(&errors, stderr);
+    assert_non_null(set);
+    assert_int_equal(set->n_case, CASES);
+    const double edge[4] = {5, 7, 10, 14};
+    for (int i = 0; i < 3; i++) {
+        double below = exp(-0.25 * 3.14159265358979323846 * pow(edge[i] / 8, 2));
+        double above = exp(-0.25 * 3.14159265358979323846 * pow(edge[i + 1] / 8, 2));
+        for (int seed = 0; seed < 2; seed++) {
+            double weight = bough_load_set_weight(set, &set->cases[2 * i + seed], 600);
+            check_near(weight, 0.5 * (below - above) * 0.9 * 8766 * 25 * 6, 1e-12, 0);
+        }
+    }
+    check_near(bough_load_set_weight(set, &set->cases[6], 600), 50 * 25 * 6 / 4., 1e-12, 0);
+    check_near(bough_load_set_weight(set, &set->cases[11], 600), 1000 * 25 / 2., 1e-12, 0);
+    check_near(bough_load_set_weight(set, &set->cases[12], 600), 0, 0, 0);
+    assert_string_equal(set->cases[3].settings, "speed=8, seed=2");
+    check_near(set->group[1].favourable, 0.9, 0, 0);
+    bough_arena_destroy(arena);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(sums_are_those_by_hand),
+        cmocka_unit_test(what_is_lacking_is_told),
+        cmocka_unit_test(factors_are_of_loads_and_on_the_safe_side),
+        cmocka_unit_test(speeds_weigh_by_weibull),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,406 @@
+#include "apps/bough/cases/study_perform.h"
+#include "apps/bough/cases/study_run.h"
+#include "apps/bough/cases/study_table.h"
+#include "tests/unit/scratch.h"
+
+// The rubber bar falls for 20 ms: monolithic runs are good, frozen ones fail at once, since the
+// interface body has no mass of its own.
+#define BAR "scene: " BOUGH_SOURCE_DIR "/apps/beams/rubber-bar.yaml\n"
+#define HEAD "title: Falling bar\nkind: work-precision\n" BAR
+#define REFERENCE                                                                                  \
+    "reference: {simulation.coupling.scheme: monolithic, simulation.macro_step: 1 ms}\n"
+#define GRID                                                                                       \
+    "grid:\n  simulation.coupling.scheme: [monolithic, frozen]\n"                                  \
+    "  simulation.macro_step: [1 ms, 4 ms]\n"
+#define COMMON "common: {simulation.duration: 20 ms, simulation.output.interval: 4 ms}\n"
+#define MEASURES                                                                                   \
+    "measures:\n  - {name: tip, channels: [barTipX, barTipZ]}\n"                                   \
+    "  - {name: angle, channel: barPos, scale: 0.0174533, unit: rad}\n"
+static const char good_study[] = HEAD REFERENCE GRID COMMON MEASURES;
+
+typedef struct fixture {
+    bough_arena *arena;
+    bough_errors errors;
+    bough_study *study;
+    char path[128];
+} fixture;
+
+static bough_status open_study(fixture *f, const char *folder, const char *text) {
+    *f = (fixture){.arena = bough_arena_create()};
+    f->errors.arena = f->arena;
+    snprintf(f->path, sizeof f->path, "%s/study.yaml", folder);
+    FILE *file = fopen(f->path, "w");
+    assert_non_null(file);
+    fputs(text, file);
+    fclose(file);
+    return bough_study_read(f->arena, f->path, 0, &f->errors, &f->study);
+}
+
+static void open_good(fixture *f, const char *folder) {
+    bough_status status = open_study(f, folder, good_study);
+    bough_errors_print(&f->errors, stderr);
+    assert_true(bough_is_ok(&status));
+}
+
+static void close_study(fixture *f) { bough_arena_destroy(f->arena); }
+
+// A stop request has no argument through which it could count.
+static int runs_allowed;         // NOLINT(cppcoreguidelines-avoid-non-const-global-variables)
+static const char *runs_counted; // NOLINT(cppcoreguidelines-avoid-non-const-global-variables)
+static int asked;                // NOLINT(cppcoreguidelines-avoid-non-const-global-variables)
+static bool stopped;             // NOLINT(cppcoreguidelines-avoid-non-const-global-variables)
+
+enum { ALL = 1000 };
+
+// Results in the folder, that of the reference among them.
+static int count_results(const char *folder) { return scratch_files(folder, "cases", ".case", NULL); }
+
+// Asked at each evaluation of a run; the file is read now and then.
+static bool stop(void) {
+    if (asked++ % 64 == 0 && runs_allowed < ALL) {
+        stopped = stopped || count_results(runs_counted) - 1 >= runs_allowed;
+    }
+    return stopped;
+}
+
+// Performs the study of the folder until so many runs are stored; `table` receives what was printed.
+static bough_status perform(const char *folder, const char *text, int runs, char table[4096]) {
+    fixture f;
+    bough_status status = open_study(&f, folder, text);
+    assert_true(bough_is_ok(&status));
+    runs_allowed = runs;
+    runs_counted = folder;
+    asked = 0;
+    stopped = false;
+    FILE *stream = tmpfile();
+    assert_non_null(stream);
+    bough_study_options options = {.folder = folder, .quiet = true, .stop = stop, .stream = stream};
+    status = bough_study_perform(f.arena, f.study, &options);
+    rewind(stream);
+    memset(table, 0, 4096);
+    assert_true(fread(table, 1, 4095, stream) < 4095);
+    fclose(stream);
+    close_study(&f);
+    return status;
+}
+
+static int count(const char *text, const char *what) {
+    int n = 0;
+    for (; text && (text = strstr(text, what)); text += strlen(what))
+        n++;
+    return n;
+}
+
+static int count_in(const char *folder, const char *name, const char *what) {
+    char *text = scratch_read(folder, name);
+    assert_non_null(text);
+    int n = count(text, what);
+    free(text);
+    return n;
+}
+
+// -- reading --------------------------------------------------------------------------------------
+
+static void grid_is_the_product_of_its_values(void **state) {
+    fixture f;
+    open_good(&f, *state);
+    const bough_study *s = f.study;
+    assert_int_equal(s->n_cell, 4);
+    assert_string_equal(s->cell[0].settings, "scheme=monolithic, macro_step=1 ms");
+    assert_string_equal(s->cell[3].settings, "scheme=frozen, macro_step=4 ms");
+    assert_int_equal(s->cell[3].n_set, 4);
+    assert_string_equal(s->cell[3].set[0], "simulation.duration=20 ms");
+    assert_string_equal(s->cell[3].set[3], "simulation.macro_step=4 ms");
+    assert_string_equal(bough_study_value(s, s->reference_cell, 1), "1 ms");
+    assert_int_equal(s->n_channel, 3);
+    assert_string_equal(s->measure[0].unit, "m");
+    check_near(s->interval, 4e-3, 1e-15, 0);
+    close_study(&f);
+}
+
+// Keys of the same last part are told apart; a quoted value stays text.
+static void labels_are_unique_and_quotes_are_kept(void **state) {
+    fixture f;
+    bough_status status = open_study(
+        &f, *state,
+        HEAD REFERENCE "grid: {simulation.master.rtol: [1e-6], simulation.micro.rtol: [1e-5],"
+                       " title: ['it''s: 1']}\n" MEASURES);
+    assert_true(bough_is_ok(&status));
+    const bough_study_cell *cell = &f.study->cell[0];
+    assert_string_equal(cell->settings, "master.rtol=1e-6, micro.rtol=1e-5, title=it's: 1");
+    assert_string_equal(cell->set[2], "title='it''s: 1'");
+    close_study(&f);
+}
+
+// A cell may replace a whole block of keys at once.
+static void a_mapping_is_a_value(void **state) {
+    fixture f;
+    bough_status status = open_study(
+        &f, *state,
+        HEAD REFERENCE "grid: {simulation.micro: [{solver: rosenbrock, step: 2 ms}]}\n" MEASURES);
+    assert_true(bough_is_ok(&status));
+    assert_string_equal(f.study->cell[0].set[0],
+                        "simulation.micro={solver: rosenbrock, step: 2 ms}");
+    close_study(&f);
+}
+
+// "line:column path" of every error, one a line.
+static void check_errors(const char *folder, const char *text, const char *expected) {
+    fixture f;
+    char told[2048] = "";
+    bough_status status = open_study(&f, folder, text);
+    assert_int_equal(status.code, BOUGH_INVALID);
+    assert_null(f.study);
+    for (int i = 0; i < f.errors.n; i++) {
+        size_t used = strlen(told);
+        const bough_error *e = &f.errors.item[i];
+        assert_string_equal(e->file, f.path);
+        snprintf(told + used, sizeof told - used, "%d:%d %s\n", e->line, e->column, e->path);
+    }
+    assert_string_equal(told, expected);
+    close_study(&f);
+}
+
+static void bad_keys_are_told_all_at_once(void **state) {
+    check_errors(*state,
+                 "titel: x\nkind: work-precisoin\nscene: [a]\nreference: none\n"
+                 "grid: {a.b: 1, c: [{e: [1]}, 2]}\ncommon: {d: {e: {f: 1}}}\nrepeat: 0\n"
+                 "measures:\n  - {name: x}\n  - {name: y, channels: [], norm: max}\n"
+                 "  - {name: z, channel: c, scale: 2}\n",
+                 "1:1 \n2:7 kind\n3:8 scene\n4:12 reference\n5:13 grid.a.b\n"
+                 "7:9 repeat\n9:5 measures[0]\n10:25 measures[1].channels\n"
+                 "10:35 measures[1].norm\n11:5 measures[2].scale\n");
+}
+
+static void replacements_are_checked_where_the_study_gives_them(void **state) {
+    check_errors(*state,
+                 HEAD "reference: {simulation.coupling.schme: ramp}\n"
+                      "grid:\n  simulation.coupling.scheme: [ramp, rmap]\n"
+                      "  simulation.macro_step: [1 ms, 1 kg]\n"
+                      "common: {gravity: 3}\n" MEASURES,
+                 "4:40 simulation.coupling\n6:38 simulation.coupling.scheme\n"
+                 "7:33 simulation.macro_step\n8:19 gravity\n");
+}
+
+static void channels_and_their_units_are_checked(void **state) {
+    check_errors(*state,
+                 HEAD REFERENCE GRID COMMON
+                 "measures:\n  - {name: tip, channels: [barTipX, barTipQ]}\n"
+                 "  - {name: angle, channel: barPos, unit: rad}\n",
+                 "10:5 measures\n11:5 measures\n");
+}
+
+static void output_times_must_be_common(void **state) {
+    check_errors(*state,
+                 HEAD REFERENCE "grid: {simulation.output.interval: [5 ms, 10 ms]}\n" MEASURES,
+                 "5:7 grid\n");
+}
+
+static void missing_scene_is_told(void **state) {
+    check_errors(*state, "kind: work-precision\nscene: none.yaml\n" REFERENCE GRID MEASURES,
+                 "2:8 scene\n");
+}
+
+// -- differences ----------------------------------------------------------------------------------
+
+static void differences_are_the_largest_norms(void **state) {
+    (void)state;
+    bough_study_vector pairs[] = {{2, NULL}, {2, NULL}};
+    bough_study_measure measures[] = {
+        {.channels = {2, pairs}, .norm = BOUGH_STUDY_EUCLID, .scale = 10},
+        {.channels = {1, pairs}, .norm = BOUGH_STUDY_LARGEST, .scale = 1}};
+    bough_study study = {.n_measure = 2, .measure = measures};
+    double a[] = {0, 0, 0, 0, 5, 6, 3, 4, 1, 0, 5, 8};
+    double b[] = {0, 0, 0, 0, 5, 6, 0, 0, 0, 0, 5, 6};
+    bough_study_series x = {2, 6, 2, a}, y = {2, 6, 2, b};
+    double error[2];
+    bough_study_compare(&study, &x, &y, error);
+    check_near(error[0], 50, 1e-15, 0);
+    check_near(error[1], 2, 1e-15, 0);
+    a[1] = NAN;
+    bough_study_compare(&study, &x, &y, error);
+    assert_true(isnan(error[0]));
+    check_near(error[1], 2, 1e-15, 0);
+}
+
+static void reference_differs_from_itself_by_nothing(void **state) {
+    fixture f;
+    open_good(&f, *state);
+    bough_study_series reference = bough_study_series_take(f.arena, f.study);
+    bough_study_series series = bough_study_series_take(f.arena, f.study);
+    bough_study_drive drive = {.stop = NULL};
+    bough_study_result result;
+    double error[2];
+    bough_study_run(f.study, f.study->reference_cell, 1, &drive, &reference, &result);
+    assert_int_equal(reference.filled, 6);
+    bough_status status = bough_study_run(f.study, &f.study->cell[0], 3, &drive, &series, &result);
+    assert_true(bough_is_ok(&status) && bough_is_ok(&result.outcome) && result.done);
+    assert_true(result.wall > 0 && result.cpu > 0);
+    check_near(result.time, 0.02, 1e-14, 0);
+    bough_study_compare(f.study, &series, &reference, error);
+    assert_true(error[0] == 0 && error[1] == 0);
+    series.value[3] += 0.5; // the first channel of the second row
+    bough_study_compare(f.study, &series, &reference, error);
+    check_near(error[0], 0.5, 1e-12, 0);
+    close_study(&f);
+}
+
+// -- results --------------------------------------------------------------------------------------
+
+static void every_run_has_a_row(void **state) {
+    char table[4096];
+    bough_status status = perform(*state, good_study, ALL, table);
+    assert_true(bough_is_ok(&status));
+    assert_int_equal(count_in(*state, "table.csv", "\n"), 1 + 1 + 4);
+    assert_int_equal(count_results(*state), 1 + 4);
+    assert_int_equal(count_in(*state, "table.csv", ",tip [m],tip estimated [m],angle [rad],"), 1);
+    char *text = scratch_read(*state, "table.txt");
+    assert_string_equal(text, table);
+    free(text);
+    assert_int_equal(count(table, "monolithic"), 3);
+    assert_int_equal(count(table, "  ok  "), 3);
+}
+
+static void failed_runs_are_told_with_their_diagnosis(void **state) {
+    char table[4096];
+    bough_status status = perform(*state, good_study, ALL, table);
+    assert_true(bough_is_ok(&status));
+    assert_int_equal(count(table, "failed at t=0.00"), 2);
+    assert_int_equal(count(table, "failed: scheme=frozen, macro_step="), 2);
+    assert_int_equal(count_in(*state, "table.csv", ",failed,"), 2);
+    assert_int_equal(count_in(*state, "table.csv", "grows by a factor of "), 2);
+    assert_int_equal(count_in(*state, "plot.svg", "frozen — 1 ms failed at t=0.00"), 1);
+    assert_int_equal(count_in(*state, "plot.svg", "<polyline"), 4);
+    assert_int_equal(count_in(*state, "plot.svg", "</svg>\n"), 1);
+}
+
+// The title ends within the picture, its letters being 0.6 times as wide as high.
+static void no_title_is_clipped(void **state) {
+    static const char title[] = "Falling bar, whose study has a title that is wider than its panels side by "
+                                "side, and wider still, so that the picture must have room for it";
+    char table[4096], text[4096];
+    snprintf(text, sizeof text, "title: '%s'%s", title, strchr(good_study, '\n'));
+    bough_status status = perform(*state, text, ALL, table);
+    assert_true(bough_is_ok(&status));
+    char *picture = scratch_read(*state, "plot.svg"), *at = strstr(picture, "font-size=\"15\"");
+    assert_non_null(strstr(at, title));
+    while (strncmp(at, "x=\"", 3) != 0) at--;
+    double width = strtod(strstr(picture, "width=\"") + 7, NULL);
+    assert_true(strtod(at + 3, NULL) + 0.6 * 15 * (double)strlen(title) <= width);
+    free(picture);
+}
+
+static void failed_reference_ends_the_study(void **state) {
+    char table[4096];
+    bough_status status = perform(
+        *state, HEAD "reference: {simulation.coupling.scheme: frozen}\n" GRID COMMON MEASURES, ALL,
+        table);
+    assert_int_equal(status.code, BOUGH_FAILED);
+    assert_non_null(strstr(status.message, "the reference failed: "));
+    assert_false(scratch_has(*state, "table.csv"));
+}
+
+static void interrupted_study_goes_on(void **state) {
+    char table[4096], again[4096], name[256];
+    bough_status status = perform(*state, good_study, 1, table);
+    assert_int_equal(status.code, BOUGH_INTERRUPTED);
+    assert_non_null(strstr(status.message, "after 1 of 4 runs"));
+    assert_int_equal(scratch_files(*state, "cases", ".case", name), 1 + 1);
+    assert_false(scratch_has(*state, "table.csv"));
+    char *first = scratch_read(*state, name); // with the run's time, which differs in each
+    status = perform(*state, good_study, ALL, table);
+    assert_true(bough_is_ok(&status));
+    char *kept = scratch_read(*state, name);
+    assert_string_equal(kept, first);
+    free(first);
+    free(kept);
+    assert_int_equal(count_results(*state), 1 + 4);
+    status = perform(*state, good_study, 0, again);
+    assert_true(bough_is_ok(&status));
+    assert_int_equal(asked, 0);
+    assert_string_equal(again, table);
+}
+
+// What a process that is killed has begun is no result; a result that is cut off is refused by name, and
+// runs again once it is removed.
+static void half_a_result_is_none(void **state) {
+    char table[4096], name[256], path[512];
+    bough_status status = perform(*state, good_study, 1, table);
+    snprintf(path, sizeof path, "%s/cases/0123.case.partial", (char *)*state);
+    FILE *file = fopen(path, "w");
+    assert_non_null(file);
+    fputs("case 0123 finger", file);
+    fclose(file);
+    status = perform(*state, good_study, ALL, table);
+    assert_true(bough_is_ok(&status));
+    assert_int_equal(scratch_files(*state, "cases", ".case", name), 1 + 4);
+    snprintf(path, sizeof path, "%s/%s", (char *)*state, name);
+    char *text = scratch_read(*state, name);
+    assert_int_equal(truncate(path, (off_t)strlen(text) - 6), 0);
+    free(text);
+    status = perform(*state, good_study, 0, table);
+    assert_int_equal(status.code, BOUGH_IO);
+    assert_non_null(strstr(status.message, name));
+    assert_int_equal(remove(path), 0);
+    status = perform(*state, good_study, ALL, table);
+    assert_true(bough_is_ok(&status));
+    assert_int_equal(count_results(*state), 1 + 4);
+}
+
+static void other_settings_are_run_anew_and_a_grown_grid_is_completed(void **state) {
+    char table[4096];
+    perform(*state, good_study, ALL, table);
+    int whole = asked;
+    bough_status status =
+        perform(*state,
+                HEAD REFERENCE GRID "common: {simulation.duration: 20 ms,"
+                                    " simulation.output.interval: 20 ms}\n" MEASURES,
+                0, table);
+    assert_int_equal(status.code, BOUGH_INTERRUPTED);
+    static const char grown[] =
+        HEAD REFERENCE "grid:\n  simulation.coupling.scheme: [monolithic, frozen, gauss-seidel]\n"
+                       "  simulation.macro_step: [1 ms, 4 ms]\n" COMMON MEASURES;
+    status = perform(*state, grown, ALL, table);
+    assert_true(bough_is_ok(&status));
+    assert_in_range(asked, 1, whole - 1);
+    assert_int_equal(count_in(*state, "table.csv", "\n"), 1 + 1 + 6);
+}
+
+static void csv_text_is_quoted_where_needed(void **state) {
+    (void)state;
+    char text[64] = "";
+    FILE *file = tmpfile();
+    assert_non_null(file);
+    bough_csv_text(file, "plain");
+    bough_csv_text(file, "a, \"b\"\nc");
+    rewind(file);
+    assert_true(fread(text, 1, sizeof text - 1, file) > 0);
+    fclose(file);
+    assert_string_equal(text, "plain\"a, \"\"b\"\" c\"");
+}
+
+#define SCRATCH(test) cmocka_unit_test_setup_teardown(test, scratch_make, scratch_remove)
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        SCRATCH(grid_is_the_product_of_its_values),
+        SCRATCH(a_mapping_is_a_value),
+        SCRATCH(labels_are_unique_and_quotes_are_kept),
+        SCRATCH(bad_keys_are_told_all_at_once),
+        SCRATCH(replacements_are_checked_where_the_study_gives_them),
+        SCRATCH(channels_and_their_units_are_checked),
+        SCRATCH(output_times_must_be_common),
+        SCRATCH(missing_scene_is_told),
+        cmocka_unit_test(differences_are_the_largest_norms),
+        SCRATCH(reference_differs_from_itself_by_nothing),
+        SCRATCH(every_run_has_a_row),
+        SCRATCH(failed_runs_are_told_with_their_diagnosis),
+        SCRATCH(no_title_is_clipped),
+        SCRATCH(failed_reference_ends_the_study),
+        SCRATCH(interrupted_study_goes_on),
+        SCRATCH(half_a_result_is_none),
+        SCRATCH(other_settings_are_run_anew_and_a_grown_grid_is_completed),
+        cmocka_unit_test(csv_text_is_quoted_where_needed),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,58 @@
+// Studies of kind timing: all cells in every turn, and their errors.
+#include "apps/bough/cases/study_perform.h"
+#include "apps/bough/cases/study_timing.h"
+#include "tests/unit/scratch.h"
+
+static const char text[] =
+    "title: Falling bar\nkind: timing\nrepeat: 3\n"
+    "scene: " BOUGH_SOURCE_DIR "/apps/beams/rubber-bar.yaml\n"
+    "reference: {simulation.coupling.scheme: monolithic, simulation.macro_step: 1 ms}\n"
+    "grid:\n  simulation.micro.rtol: [1e-4, 1e-5]\n  simulation.macro_step: [1 ms, 4 ms]\n"
+    "common: {simulation.coupling.scheme: monolithic, simulation.duration: 20 ms,"
+    " simulation.output.interval: 4 ms}\n"
+    "measures:\n  - {name: tip, channels: [barTipX, barTipZ]}\n";
+
+static int count(const char *in, const char *what) {
+    int n = 0;
+    for (; (in = strstr(in, what)); in += strlen(what)) n++;
+    return n;
+}
+
+static void write_study(const char *folder, char path[128]) {
+    snprintf(path, 128, "%s/study.yaml", folder);
+    FILE *file = fopen(path, "w");
+    assert_non_null(file);
+    fputs(text, file);
+    fclose(file);
+}
+
+static void every_turn_has_every_cell_and_errors_are_told(void **state) {
+    char path[128];
+    const char *folder = *state;
+    write_study(folder, path);
+    bough_arena *arena = bough_arena_create();
+    bough_errors errors = {.arena = arena};
+    bough_study *study;
+    bough_status status = bough_study_read(arena, path, 0, &errors, &study);
+    bough_errors_print(&errors, stderr);
+    assert_int_equal(status.code, BOUGH_OK);
+    FILE *stream = tmpfile();
+    bough_study_options options = {.folder = folder, .quiet = true, .stream = stream};
+    status = bough_study_perform(arena, study, &options);
+    assert_int_equal(status.code, BOUGH_OK);
+    fclose(stream);
+    char *csv = scratch_read(folder, "timing.csv"), *table = scratch_read(folder, "table.txt");
+    assert_int_equal(count(csv, "\n"), 1 + 4 * 3);
+    assert_int_equal(count(csv, ",1\n"), 2 * 3); // against itself
+    assert_int_equal(count(table, "0.0e+00"), 2); // the reference's settings
+    free(csv), free(table);
+    bough_arena_destroy(arena);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test_setup_teardown(every_turn_has_every_cell_and_errors_are_told, scratch_make,
+                                        scratch_remove),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,119 @@
+// The arena: alignment, zeroing, work that is left where memory ends, release in reverse order.
+#include "tests/unit/check.h"
+
+#include "core/base/arena.h"
+
+#include <string.h>
+
+static void blocks_are_aligned_zeroed_and_apart(void **state) {
+    (void)state;
+    bough_arena *arena = bough_arena_create();
+    assert_non_null(arena);
+    unsigned char *blocks[50];
+    for (int i = 0; i < 50; i++) {
+        size_t size = (size_t)(1 + 37 * i);
+        blocks[i] = bough_arena_take(arena, size);
+        assert_int_equal((uintptr_t)blocks[i] % 64, 0);
+        for (size_t k = 0; k < size; k++)
+            assert_int_equal(blocks[i][k], 0);
+        memset(blocks[i], i + 1, size);
+    }
+    for (int i = 0; i < 50; i++) {
+        assert_int_equal(blocks[i][0], i + 1);
+        assert_int_equal(blocks[i][37 * i], i + 1);
+    }
+    assert_true(bough_arena_bytes(arena) >= 50 * (1 + 37 * 49) / 2);
+    bough_arena_destroy(arena);
+}
+
+static void strings_are_copied(void **state) {
+    (void)state;
+    bough_arena *arena = bough_arena_create();
+    char text[] = "hub";
+    char *copy = bough_arena_string(arena, text);
+    text[0] = 'x';
+    assert_string_equal(copy, "hub");
+    assert_null(bough_arena_string(arena, NULL));
+    bough_arena_destroy(arena);
+}
+
+static bool reached;
+
+static bough_status take_too_much(bough_arena *arena, void *self) {
+    bough_arena *child = bough_arena_child(bough_arena_child(arena));
+    bough_arena_take(child, 8);
+    if (*(bool *)self) bough_arena_doubles(child, (size_t)-1 / 4); // its bytes overflow
+    else bough_arena_take(arena, (size_t)-1);
+    reached = true;
+    return bough_ok();
+}
+
+static bough_status take_little(bough_arena *arena, void *self) {
+    bough_arena_take(arena, 8);
+    reached = true;
+    return *(bool *)self ? bough_fail(BOUGH_FAILED, "its own") : bough_ok();
+}
+
+// The guards outside stay as they are.
+static bough_status guard_both(bough_arena *arena, void *self) {
+    assert_int_equal(bough_arena_guard(arena, take_too_much, self).code, BOUGH_OUT_OF_MEMORY);
+    return take_too_much(arena, self);
+}
+
+static void work_is_left_where_memory_ends(void **state) {
+    (void)state;
+    bool of_child = false, fails = true;
+    reached = false;
+    assert_int_equal(bough_arena_use(take_too_much, &of_child).code, BOUGH_OUT_OF_MEMORY);
+    of_child = true;
+    bough_status status = bough_arena_use(guard_both, &of_child);
+    assert_int_equal(status.code, BOUGH_OUT_OF_MEMORY);
+    assert_non_null(strstr(status.message, "memory"));
+    assert_false(reached);
+    assert_int_equal(bough_arena_use(take_little, &fails).code, BOUGH_FAILED);
+    fails = false;
+    assert_int_equal(bough_arena_use(take_little, &fails).code, BOUGH_OK);
+    assert_true(reached);
+}
+
+typedef struct record {
+    int order[3], count, id[3];
+} record;
+
+typedef struct handle {
+    record *into;
+    int id;
+} handle;
+
+static void note(void *object) {
+    handle *h = object;
+    h->into->order[h->into->count++] = h->id;
+}
+
+static void objects_are_released_newest_first(void **state) {
+    (void)state;
+    record r = {0};
+    bough_arena *arena = bough_arena_create();
+    for (int i = 0; i < 3; i++) {
+        // the handle lives in the arena: it must outlast its own release
+        handle *h = bough_arena_take(arena, sizeof *h);
+        *h = (handle){&r, i};
+        bough_arena_on_destroy(arena, note, h);
+    }
+    assert_int_equal(r.count, 0);
+    bough_arena_destroy(arena);
+    assert_int_equal(r.count, 3);
+    for (int i = 0; i < 3; i++)
+        assert_int_equal(r.order[i], 2 - i);
+    bough_arena_destroy(NULL);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(blocks_are_aligned_zeroed_and_apart),
+        cmocka_unit_test(strings_are_copied),
+        cmocka_unit_test(work_is_left_where_memory_ends),
+        cmocka_unit_test(objects_are_released_newest_first),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,157 @@
+// Eigenvalues of block-tridiagonal systems with closed forms.
+#include "tests/unit/check.h"
+
+#include "core/base/base.h"
+#include "core/base/eigen.h"
+
+#include <string.h>
+
+enum { N = 40, WANTED = 10 };
+
+typedef struct chain {
+    bough_arena *arena;
+    double *mass;
+    bough_block_tridiagonal damping, stiffness;
+    bough_eigen_pair pair[WANTED];
+    int found;
+    bough_status status;
+} chain;
+
+static chain empty_chain(int n) {
+    chain c = {.arena = bough_arena_create()};
+    c.mass = bough_arena_doubles(c.arena, (size_t)n * BOUGH_BLOCK);
+    bough_block_tridiagonal_init(&c.damping, c.arena, n);
+    bough_block_tridiagonal_init(&c.stiffness, c.arena, n);
+    return c;
+}
+
+// Unit masses on springs k[c] in each of six directions, fixed at one end and free at the other.
+static chain springs(int n, const double k[6]) {
+    chain c = empty_chain(n);
+    for (int i = 0; i < n; i++) {
+        for (int d = 0; d < 6; d++) {
+            int at = i * BOUGH_BLOCK + 9 * d;
+            c.mass[at] = 1;
+            c.stiffness.diagonal[at] = i < n - 1 ? 2 * k[d] : k[d];
+            c.stiffness.lower[at] = c.stiffness.upper[at] = -k[d];
+        }
+    }
+    return c;
+}
+
+static void solve(chain *c, int wanted) {
+    bough_eigen_problem problem = {"chain", c->mass, &c->damping, &c->stiffness};
+    c->status = bough_eigen_smallest(c->arena, &problem, wanted, c->pair, &c->found);
+}
+
+// Two directions are equal, two are three times as stiff: 2√k sin((2j − 1)π/(4n + 2)), each twice.
+static void chain_of_masses_has_its_frequencies(void **context) {
+    (void)context;
+    const double k[6] = {1, 1, 3, 3, 1000, 1000};
+    chain c = springs(N, k);
+    solve(&c, WANTED);
+    assert_int_equal(c.status.code, BOUGH_OK);
+    assert_int_equal(c.found, WANTED);
+    double last = 0;
+    for (int i = 0, soft = 1, stiff = 1; i < WANTED; i += 2) {
+        double a = 2 * sin((2 * soft - 1) * BOUGH_PI / (4 * N + 2));
+        double b = 2 * sqrt(3) * sin((2 * stiff - 1) * BOUGH_PI / (4 * N + 2));
+        double expected = a < b ? a : b;
+        if (a < b) {
+            soft++;
+        } else {
+            stiff++;
+        }
+        for (int copy = 0; copy < 2; copy++) {
+            check_near(c.pair[i + copy].imaginary, expected, 1e-10, 0);
+            check_near(c.pair[i + copy].real, 0, 0, 1e-10);
+            assert_true(c.pair[i + copy].imaginary >= last * (1 - 1e-10));
+        }
+        last = expected;
+    }
+    bough_arena_destroy(c.arena);
+}
+
+// (λ²M + λC + K) q = 0 for what is returned, with damping and gyroscopic terms.
+static void pairs_satisfy_the_equation(void **context) {
+    (void)context;
+    const double k[6] = {1, 1, 3, 3, 10, 10};
+    chain c = springs(N, k), copy = springs(N, k);
+    for (int i = 0; i < N; i++) {
+        for (int d = 0; d < 6; d++) c.damping.diagonal[i * BOUGH_BLOCK + 9 * d] = 0.01 * (d + 1);
+        c.damping.diagonal[i * BOUGH_BLOCK + 1] = 0.3;
+        c.damping.diagonal[i * BOUGH_BLOCK + 8] = -0.3;
+    }
+    solve(&c, WANTED);
+    assert_int_equal(c.status.code, BOUGH_OK);
+    for (int p = 0; p < c.found; p++) {
+        double s = c.pair[p].real, w = c.pair[p].imaginary, sum = 0, size = 0;
+        double combined[2][8 * N], result[2][8 * N] = {{0}};
+        const double *a = c.pair[p].shape_real, *b = c.pair[p].shape_imag;
+        for (int i = 0; i < 8 * N; i++) { // λ q, then C λ q + K q, then + λ² q
+            combined[0][i] = s * a[i] - w * b[i];
+            combined[1][i] = s * b[i] + w * a[i];
+        }
+        for (int part = 0; part < 2; part++) {
+            bough_block_tridiagonal_subtract(&c.damping, combined[part], result[part]);
+            bough_block_tridiagonal_subtract(&copy.stiffness, part == 0 ? a : b, result[part]);
+        }
+        for (int i = 0; i < 8 * N; i++) {
+            double x = result[0][i] - (s * combined[0][i] - w * combined[1][i]);
+            double y = result[1][i] - (s * combined[1][i] + w * combined[0][i]);
+            sum += x * x + y * y;
+            size += a[i] * a[i] + b[i] * b[i];
+        }
+        check_near(sqrt(sum), 0, 0, 1e-8 * (s * s + w * w) * sqrt(size));
+        assert_true(s < 0);
+    }
+    bough_arena_destroy(c.arena);
+    bough_arena_destroy(copy.arena);
+}
+
+static void small_system_gives_all_it_has(void **context) {
+    (void)context;
+    const double k[6] = {1, 4, 9, 16, 25, 36};
+    chain c = springs(1, k);
+    solve(&c, WANTED);
+    assert_int_equal(c.status.code, BOUGH_OK);
+    assert_int_equal(c.found, 6);
+    for (int i = 0; i < 6; i++) check_near(c.pair[i].imaginary, i + 1, 1e-10, 0);
+    bough_arena_destroy(c.arena);
+}
+
+// Beyond buckling a real solution grows; an overdamped one decays and is not listed.
+static void growing_solution_is_listed(void **context) {
+    (void)context;
+    const double k[6] = {-4, 1, 9, 16, 25, 36};
+    chain c = springs(1, k);
+    c.damping.diagonal[9] = 50;
+    solve(&c, WANTED);
+    assert_int_equal(c.status.code, BOUGH_OK);
+    assert_int_equal(c.found, 5);
+    check_near(c.pair[0].real, 2, 1e-10, 0);
+    check_near(c.pair[0].imaginary, 0, 0, 0);
+    check_near(c.pair[1].imaginary, 3, 1e-10, 0);
+    bough_arena_destroy(c.arena);
+}
+
+static void singular_stiffness_is_diagnosed(void **context) {
+    (void)context;
+    const double k[6] = {1, 1, 0, 1, 1, 1};
+    chain c = springs(3, k);
+    solve(&c, WANTED);
+    assert_int_equal(c.status.code, BOUGH_FAILED);
+    assert_non_null(strstr(c.status.message, "chain: the stiffness"));
+    bough_arena_destroy(c.arena);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(chain_of_masses_has_its_frequencies),
+        cmocka_unit_test(pairs_satisfy_the_equation),
+        cmocka_unit_test(small_system_gives_all_it_has),
+        cmocka_unit_test(growing_solution_is_listed),
+        cmocka_unit_test(singular_stiffness_is_diagnosed),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

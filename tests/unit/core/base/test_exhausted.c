@@ -1,0 +1,175 @@
+// Memory that ends anywhere while a run is set up: it is told, nothing leaks, nothing crashes.
+#include "apps/bough/results/folder.h"
+#include "apps/bough/results/frames.h"
+#include "apps/bough/results/recorder.h"
+#include "apps/bough/model/build.h"
+#include "apps/bough/model/companion.h"
+#include "apps/bough/model/shape.h"
+#include "tests/unit/check.h"
+#include "tests/unit/scratch.h"
+
+#include <sundials/sundials_nvector.h>
+
+// -- the allocator --------------------------------------------------------------------------------
+
+static bool armed, once; // once: a single allocation is refused, the next ones succeed
+static long left;        // allocations before that
+static int spared;       // allocations to come that are not counted
+
+// The linker puts these in place of the functions that our own code calls.
+void *__real_malloc(size_t size);
+void *__real_calloc(size_t count, size_t size);
+void *__real_realloc(void *block, size_t size);
+void *__real_aligned_alloc(size_t alignment, size_t size);
+N_Vector __real_N_VCloneEmpty(N_Vector model);
+N_Vector __wrap_N_VCloneEmpty(N_Vector model);
+void *__wrap_malloc(size_t size);
+void *__wrap_calloc(size_t count, size_t size);
+void *__wrap_realloc(void *block, size_t size);
+void *__wrap_aligned_alloc(size_t alignment, size_t size);
+
+static bool refuse(void) {
+    if (!armed || spared-- > 0) return false;
+    spared = 0;
+    left--;
+    return once ? left == -1 : left < 0;
+}
+
+void *__wrap_malloc(size_t size) { return refuse() ? NULL : __real_malloc(size); }
+
+void *__wrap_calloc(size_t count, size_t size) {
+    return refuse() ? NULL : __real_calloc(count, size);
+}
+
+void *__wrap_realloc(void *block, size_t size) {
+    return refuse() ? NULL : __real_realloc(block, size);
+}
+
+void *__wrap_aligned_alloc(size_t alignment, size_t size) {
+    return refuse() ? NULL : __real_aligned_alloc(alignment, size);
+}
+
+// SUNDIALS clones vectors and does not look whether it got one: see bough_vector_room.
+N_Vector __wrap_N_VCloneEmpty(N_Vector model) {
+    spared = 1; // the data
+    return __real_N_VCloneEmpty(model);
+}
+
+// -- what is tried --------------------------------------------------------------------------------
+
+typedef struct subject {
+    const char *path, *folder;
+    const char *const *set; // ends with NULL
+} subject;
+
+static bough_status open_output(bough_arena *arena, const subject *x, bough_simulation *s) {
+    bough_channels channels = bough_channels_start(arena);
+    bough_status status = bough_simulation_channels(s, &channels);
+    bough_companion companion;
+    if (bough_is_ok(&status)) status = bough_companion_create(arena, s, &channels, &companion);
+    bough_recorder *recorder;
+    bough_recorder_def def = {.folder = x->folder, .title = "x", .channels = &channels};
+    if (bough_is_ok(&status)) status = bough_recorder_open(arena, &def, &recorder);
+    if (bough_is_ok(&status)) status = bough_recorder_sample(recorder, 0);
+    bough_shape shape;
+    if (bough_is_ok(&status)) status = bough_shape_create(arena, s, &shape);
+    if (!bough_is_ok(&status)) return status;
+    bough_frames *frames;
+    bough_frames_def frames_def = {.folder = x->folder,
+                                   .n_line = shape.n_line,
+                                   .line = shape.line,
+                                   .points = bough_shape_points,
+                                   .loads = bough_shape_loads,
+                                   .self = &shape};
+    status = bough_frames_open(arena, &frames_def, &frames);
+    return bough_is_ok(&status) ? bough_frames_sample(frames, 0) : status;
+}
+
+// What `bough run` does before its first step, and that step.
+static bough_status set_up(bough_arena *arena, void *self) {
+    const subject *x = self;
+    bough_errors errors = {.arena = arena};
+    bough_scene *scene;
+    bough_simulation *s;
+    int n = 0;
+    while (x->set[n]) n++;
+    bough_status status = bough_scene_read(arena, x->path, x->set, n, &errors, &scene);
+    if (bough_is_ok(&status)) status = bough_simulation_build(arena, scene, &s);
+    if (bough_is_ok(&status)) status = open_output(arena, x, s);
+    return bough_is_ok(&status) ? bough_step(s->master) : status;
+}
+
+static bool tells(const bough_status *status) {
+    return status->code == BOUGH_OUT_OF_MEMORY && strstr(status->message, "memory");
+}
+
+// Returns whether an allocation was refused.
+static bool try_without(subject *x, long k, bool only_one) {
+    left = k;
+    once = only_one;
+    armed = true;
+    bough_status status = bough_arena_use(set_up, x);
+    armed = false;
+    bool refused = left < 0;
+    if (refused ? !bough_is_ok(&status) && !tells(&status) : !bough_is_ok(&status)) {
+        print_error("%s, allocation %ld: code %d: %s\n", x->path, k, status.code, status.message);
+        fail();
+    }
+    return refused;
+}
+
+// One allocation after the other is refused, alone and with all that follow.
+static void try_all(void **state, const char *path, int stride, const char *const *set) {
+    char file[512];
+    subject x = {.path = file, .folder = *state, .set = set};
+    snprintf(file, sizeof file, BOUGH_SOURCE_DIR "/%s", path);
+    for (int only_one = 0; only_one < 2; only_one++) {
+        long k = 0;
+        while (try_without(&x, k, only_one)) k += stride;
+        assert_true(k > 100);
+    }
+}
+
+static void a_rod_of_every_kind_is_told(void **state) {
+    static const char *const micro[] = {"rosenbrock", "cvode-bdf", "arkode-esdirk",
+                                        "generalized-alpha"};
+    for (int i = 0; i < 4; i++) {
+        char text[80];
+        snprintf(text, sizeof text, "simulation.micro.solver=%s", micro[i]);
+        try_all(state, "apps/beams/rubber-bar.yaml", i == 0 ? 1 : 5,
+                (const char *const[]){"bodies[0].rod.segments=4", text, NULL});
+    }
+    try_all(state, "apps/beams/rubber-bar.yaml", 29,
+            (const char *const[]){"bodies[0].rod.segments=4", "bodies[0].fidelity=modal", NULL});
+}
+
+static void every_scheme_is_told(void **state) {
+    static const char *const scheme[] = {"frozen", "gauss-seidel", "extrapolated", "iterated",
+                                         "monolithic"};
+    for (int i = 0; i < 5; i++) {
+        char text[80];
+        snprintf(text, sizeof text, "simulation.coupling={scheme: %s}", scheme[i]);
+        try_all(state, "apps/beams/rubber-bar.yaml", 3,
+                (const char *const[]){"bodies[0].rod.segments=1", text, NULL});
+    }
+}
+
+static void a_mechanism_is_told(void **state) {
+    const char *const none[] = {NULL};
+    try_all(state, "tests/data/scenes/closed.yaml", 3, none);
+    try_all(state, "tests/data/scenes/arms.yaml", 7, none);
+}
+
+static void a_turbine_is_told(void **state) {
+    try_all(state, "tests/data/scenes/example-turbine.yaml", 23, (const char *const[]){NULL});
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test_setup_teardown(a_rod_of_every_kind_is_told, scratch_make, scratch_remove),
+        cmocka_unit_test_setup_teardown(every_scheme_is_told, scratch_make, scratch_remove),
+        cmocka_unit_test_setup_teardown(a_mechanism_is_told, scratch_make, scratch_remove),
+        cmocka_unit_test_setup_teardown(a_turbine_is_told, scratch_make, scratch_remove),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,236 @@
+// Dense algebra against known solutions.
+#include "tests/unit/check.h"
+
+#include "core/base/linalg.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+static void lu_solves_with_interchanges(void **state) {
+    (void)state;
+    // column-major; the first pivot is zero
+    double a[9] = {0, 2, 1, 1, 0, 1, 3, 1, 0};
+    const double x[6] = {1, -2, 3, 0.5, 4, -1};
+    double b[6] = {0};
+    int pivot[3];
+    for (int k = 0; k < 2; k++) {
+        for (int c = 0; c < 3; c++) {
+            for (int r = 0; r < 3; r++)
+                b[3 * k + r] += a[3 * c + r] * x[3 * k + c];
+        }
+    }
+    assert_true(bough_dense_factor(3, a, pivot));
+    bough_dense_solve(3, 2, a, pivot, b);
+    for (int i = 0; i < 6; i++)
+        check_near(b[i], x[i], 1e-14, 0);
+}
+
+// Zeros on the diagonal: rows are exchanged within the band.
+static void band_is_solved_with_interchanges(void **state) {
+    (void)state;
+    enum { UNKNOWNS = 12, WIDTH = 2, ROWS = 3 * WIDTH + 1 };
+    double a[ROWS * UNKNOWNS] = {0}, b[UNKNOWNS] = {0};
+    int pivot[UNKNOWNS];
+    for (int i = 0; i < UNKNOWNS; i++) {
+        for (int j = 0; j < UNKNOWNS; j++) {
+            if (abs(i - j) > WIDTH || i == j) continue;
+            double entry = sin(1.7 * i * i + 3 * j) + 1.2;
+            a[ROWS * j + 2 * WIDTH + i - j] = entry;
+            b[i] += entry * (j - 2.5);
+        }
+    }
+    assert_true(bough_band_solve(UNKNOWNS, WIDTH, a, pivot, b));
+    for (int i = 0; i < UNKNOWNS; i++) check_near(b[i], i - 2.5, 0, 1e-11);
+    memset(a, 0, sizeof a);
+    assert_false(bough_band_solve(UNKNOWNS, WIDTH, a, pivot, b));
+}
+
+// By hand up to six unknowns, by a library beyond; diagonals are small, so that rows are exchanged.
+static void lu_solves_systems_of_any_size(void **state) {
+    (void)state;
+    for (int n = 1; n <= 9; n++) {
+        double a[81], b[9] = {0};
+        int pivot[9];
+        for (int k = 0; k < n * n; k++) a[k] = sin(1.7 * k * k + n) - (k % (n + 1) == 0 ? 0.9 : 0);
+        for (int c = 0; c < n; c++) {
+            for (int r = 0; r < n; r++) b[r] += a[c * n + r] * (c - 2.5);
+        }
+        assert_true(bough_dense_factor(n, a, pivot));
+        bough_dense_solve(n, 1, a, pivot, b);
+        for (int i = 0; i < n; i++) check_near(b[i], i - 2.5, 0, 1e-12);
+        memset(b, 0, sizeof b); // and its transpose
+        for (int k = 0; k < n * n; k++) a[k] = sin(1.7 * k * k + n) - (k % (n + 1) == 0 ? 0.9 : 0);
+        for (int c = 0; c < n; c++) {
+            for (int r = 0; r < n; r++) b[c] += a[c * n + r] * (r - 2.5);
+        }
+        assert_true(bough_dense_factor(n, a, pivot));
+        bough_dense_solve_transposed(n, 1, a, pivot, b);
+        for (int i = 0; i < n; i++) check_near(b[i], i - 2.5, 0, 1e-12);
+    }
+}
+
+// (2 × 3)(3 × 2), and the transpose of the first.
+static void product_of_matrices(void **state) {
+    (void)state;
+    const double a[6] = {1, 2, 3, 4, 5, 6}, b[6] = {1, 0, -1, 2, 1, 0}, at[6] = {1, 3, 5, 2, 4, 6};
+    const double expected[4] = {-4, -4, 5, 8};
+    double c[4] = {1, 1, 1, 1};
+    bough_dense_product((bough_product){2, 2, 3, false, 1, 0}, a, b, c);
+    for (int i = 0; i < 4; i++) check_near(c[i], expected[i], 1e-15, 0);
+    bough_dense_product((bough_product){2, 2, 3, true, 2, -1}, at, b, c);
+    for (int i = 0; i < 4; i++) check_near(c[i], expected[i], 1e-15, 0);
+}
+
+static void lu_refuses_singular_and_nan(void **state) {
+    (void)state;
+    double singular[4] = {1, 2, 2, 4}, nan[4] = {1, 0, NAN, 1};
+    int pivot[2];
+    assert_false(bough_dense_factor(2, singular, pivot));
+    assert_false(bough_dense_factor(2, nan, pivot));
+    assert_true(bough_dense_factor(0, NULL, NULL));
+    bough_dense_solve(0, 1, NULL, NULL, NULL);
+}
+
+static void complex_lu_solves(void **state) {
+    (void)state;
+    // ((0, 2 + i), (1 − i, 3)) (1 + 2i, −1) = (−2 − i, 0 + i)
+    double a[8] = {0, 0, 1, -1, 2, 1, 3, 0}, b[4] = {-2, -1, 0, 1};
+    const double x[4] = {1, 2, -1, 0};
+    int pivot[2];
+    assert_true(bough_complex_factor(2, a, pivot));
+    bough_complex_solve(2, a, pivot, b);
+    for (int i = 0; i < 4; i++)
+        check_near(b[i], x[i], 0, 1e-14);
+    double nan[8] = {0, NAN, 1, 0, 1, 0, 1, 0}, singular[8] = {1, 1, 2, 2, 1, 1, 2, 2};
+    assert_false(bough_complex_factor(2, nan, pivot));
+    assert_false(bough_complex_factor(2, singular, pivot));
+    assert_true(bough_complex_factor(0, NULL, NULL));
+}
+
+// Eigenvalues 1, 2, 4 of Q diag Qᵀ with a Householder reflection Q, and the product again.
+static void symmetric_eigenvectors_rebuild_the_matrix(void **state) {
+    (void)state;
+    const double v[3] = {1, 2, -2}, expected[3] = {1, 2, 4};
+    double q[3][3], a[9] = {0}, copy[9], value[3], work[24];
+    for (int i = 0; i < 3; i++) {
+        for (int j = 0; j < 3; j++)
+            q[i][j] = (i == j) - 2 * v[i] * v[j] / 9;
+    }
+    for (int k = 0; k < 9; k++) {
+        for (int e = 0; e < 3; e++)
+            a[k] += q[k / 3][e] * expected[e] * q[k % 3][e];
+    }
+    memcpy(copy, a, sizeof a);
+    assert_true(bough_symmetric_eigen(3, copy, value, work));
+    for (int k = 0; k < 9; k++) {
+        double sum = 0;
+        for (int e = 0; e < 3; e++)
+            sum += copy[3 * e + k / 3] * value[e] * copy[3 * e + k % 3];
+        check_near(sum, a[k], 0, 1e-14);
+    }
+    for (int e = 0; e < 3; e++)
+        check_near(value[e], expected[e], 1e-14, 0);
+    copy[0] = NAN;
+    assert_false(bough_symmetric_eigen(3, copy, value, work));
+    assert_true(bough_symmetric_eigen(0, NULL, NULL, NULL));
+}
+
+// A rotation scaled by 0.5 beside the number 3, seen through a change of basis.
+static void eigenvalues_and_vectors(void **state) {
+    (void)state;
+    const double a[9] = {0, 0.5, 0, -0.5, 0, 0, 1, 1, 3};
+    double copy[9], value[6], v[9], work[24];
+    memcpy(copy, a, sizeof a);
+    assert_true(bough_dense_eigen(3, copy, value, v, work));
+    for (int k = 0; k < 3; k++) {
+        bool pair = value[3 + k] != 0;
+        check_near(hypot(value[k], value[3 + k]), pair ? 0.5 : 3, 1e-14, 0);
+        const double *real = v + 3 * k, *imaginary = v + 3 * k + 3;
+        for (int i = 0; i < 3; i++) {
+            double product = 0, expected = value[k] * real[i];
+            for (int j = 0; j < 3; j++)
+                product += a[3 * j + i] * real[j];
+            if (pair) expected -= value[3 + k] * imaginary[i];
+            check_near(product, expected, 0, 1e-14);
+        }
+        if (pair) k++;
+    }
+    copy[0] = NAN;
+    assert_false(bough_dense_eigen(3, copy, value, v, work));
+}
+
+// The second difference matrix: 2 − 2 cos(kπ/(n + 1)), its vectors sines.
+static void smallest_eigenvalues_of_a_symmetric_matrix(void **state) {
+    (void)state;
+    enum { SIZE = 6, COUNT = 3 };
+    double a[SIZE * SIZE] = {0}, value[SIZE], vector[SIZE * COUNT], work[26 * SIZE];
+    int index[12 * SIZE];
+    for (int j = 0; j < SIZE; j++) {
+        a[SIZE * j + j] = 2;
+        if (j + 1 < SIZE) a[SIZE * j + j + 1] = -1;
+    }
+    assert_true(bough_symmetric_smallest(SIZE, a, COUNT, value, vector, work, index));
+    for (int k = 0; k < COUNT; k++) {
+        double angle = (k + 1) * acos(-1) / (SIZE + 1), norm = sqrt(2.0 / (SIZE + 1));
+        check_near(value[k], 2 - 2 * cos(angle), 1e-14, 0);
+        double sign = vector[SIZE * k] < 0 ? -1 : 1;
+        for (int i = 0; i < SIZE; i++) {
+            check_near(sign * vector[SIZE * k + i], norm * sin((i + 1) * angle), 0, 1e-14);
+        }
+    }
+    a[0] = NAN;
+    assert_false(bough_symmetric_smallest(SIZE, a, COUNT, value, vector, work, index));
+}
+
+// A = L Lᵀ with L known; only the lower triangle of A is given.
+static void cholesky_finds_the_factor(void **state) {
+    (void)state;
+    const double l[9] = {2, 0, 0, 1, 3, 0, -1, 0.5, 1.5};
+    double a[9], b[3] = {0};
+    const double x[3] = {1, 2, -3};
+    for (int i = 0; i < 3; i++) {
+        for (int j = 0; j < 3; j++) {
+            double sum = 0;
+            for (int k = 0; k < 3; k++)
+                sum += l[3 * i + k] * l[3 * j + k];
+            a[3 * i + j] = j <= i ? sum : (double)NAN;
+            b[i] += sum * x[j];
+        }
+    }
+    assert_true(bough_cholesky_factor(3, a));
+    for (int i = 0; i < 3; i++) {
+        for (int j = 0; j <= i; j++)
+            check_near(a[3 * i + j], l[3 * i + j], 1e-15, 1e-15);
+    }
+    bough_cholesky_solve(3, a, b);
+    for (int i = 0; i < 3; i++)
+        check_near(b[i], x[i], 1e-14, 0);
+}
+
+static void cholesky_refuses_indefinite_and_nearly_singular(void **state) {
+    (void)state;
+    double indefinite[4] = {1, 0, 2, 1}, near[4] = {1, 0, 1, 1 + 1e-14}, zero[1] = {0};
+    double nan[1] = {NAN}, fine[4] = {1, 0, 1, 1 + 1e-10};
+    assert_false(bough_cholesky_factor(2, indefinite));
+    assert_false(bough_cholesky_factor(2, near));
+    assert_false(bough_cholesky_factor(1, zero));
+    assert_false(bough_cholesky_factor(1, nan));
+    assert_true(bough_cholesky_factor(2, fine));
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(lu_solves_with_interchanges),
+        cmocka_unit_test(band_is_solved_with_interchanges),
+        cmocka_unit_test(lu_solves_systems_of_any_size),
+        cmocka_unit_test(product_of_matrices),
+        cmocka_unit_test(lu_refuses_singular_and_nan),
+        cmocka_unit_test(complex_lu_solves),
+        cmocka_unit_test(symmetric_eigenvectors_rebuild_the_matrix),
+        cmocka_unit_test(eigenvalues_and_vectors),
+        cmocka_unit_test(smallest_eigenvalues_of_a_symmetric_matrix),
+        cmocka_unit_test(cholesky_finds_the_factor),
+        cmocka_unit_test(cholesky_refuses_indefinite_and_nearly_singular),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,122 @@
+// The method of scenes that name none, on oscillators with known motion: a slow one stays with the
+// Rosenbrock method, an undamped fast one is left to IDA, one that is too fast ends with its reason.
+#include "tests/unit/check.h"
+#include "tests/unit/integrator.h"
+
+#include "core/solve/integrator.h"
+
+enum { N = 2 };
+
+typedef struct oscillator {
+    double omega; // [1/s]
+    double gamma;
+} oscillator;
+
+static bool derivative(void *self, double t, const double *y, double *rate) {
+    const oscillator *o = self;
+    (void)t;
+    rate[0] = o->omega * y[1];
+    rate[1] = -o->omega * y[0];
+    return true;
+}
+
+static bool linearise(void *self, double t, const double *y) {
+    (void)self, (void)t, (void)y;
+    return true;
+}
+
+static bool factor(void *self, double gamma) {
+    oscillator *o = self;
+    o->gamma = gamma;
+    return true;
+}
+
+static void solve(void *self, double *x) {
+    const oscillator *o = self;
+    double g = o->gamma * o->omega, x0 = x[0];
+    x[0] = (x0 + g * x[1]) / (1 + g * g);
+    x[1] = (x[1] - g * x0) / (1 + g * g);
+}
+
+typedef struct outcome {
+    bough_status status;
+    double error; // of the motion at the end
+    bough_statistics work;
+} outcome;
+
+// `count` macro steps [s] from (0, 1).
+static outcome run_for(bough_integrator_kind kind, double omega, int count, double macro) {
+    static const double scale[N] = {1, 1};
+    oscillator o = {.omega = omega};
+    bough_ode ode = {.name = "oscillator", .n = N, .scale = scale, .self = &o,
+                     .derivative = derivative, .linearise = linearise, .factor = factor, .solve = solve};
+    bough_integrator_options options = {.kind = kind, .rtol = 1e-5};
+    bough_integrator method;
+    bough_arena *arena = bough_arena_create();
+    outcome r = {.status = bough_integrator_create(arena, &ode, &options, &method)};
+    assert_int_equal(r.status.code, BOUGH_OK);
+    double y[N] = {0, 1};
+    for (int k = 0; k < count && bough_is_ok(&r.status); k++) {
+        r.status = integrator_advance(&method, k * macro, (k + 1) * macro, k == 0, y);
+    }
+    r.error = hypot(y[0] - sin(omega * count * macro), y[1] - cos(omega * count * macro));
+    method.ops->statistics(method.self, &r.work);
+    bough_arena_destroy(arena);
+    return r;
+}
+
+static outcome run(bough_integrator_kind kind, double omega, int count) {
+    return run_for(kind, omega, count, 0.01);
+}
+
+static void slow_motion_is_the_rosenbrock_methods(void **state) {
+    (void)state;
+    outcome own = run(BOUGH_AUTOMATIC, 20, 50), rosenbrock = run(BOUGH_ROSENBROCK, 20, 50);
+    assert_int_equal(own.status.code, BOUGH_OK);
+    assert_true(own.error == rosenbrock.error && own.error < 1e-3);
+    assert_int_equal(own.work.steps, rosenbrock.work.steps);
+    assert_int_equal(own.work.iterations, 0);
+}
+
+// 4 kHz, 400 periods.
+static void fast_vibrations_take_a_fifth_of_the_evaluations(void **state) {
+    (void)state;
+    outcome own = run(BOUGH_AUTOMATIC, 25000, 10), rosenbrock = run(BOUGH_ROSENBROCK, 25000, 10);
+    print_message("evaluations %ld, %ld; errors %.2e, %.2e\n", own.work.derivatives,
+                  rosenbrock.work.derivatives, own.error, rosenbrock.error);
+    assert_int_equal(own.status.code, BOUGH_OK);
+    assert_true(own.work.iterations > 0);
+    assert_true(own.work.derivatives < rosenbrock.work.derivatives / 5);
+    assert_true(own.error < rosenbrock.error);
+}
+
+// 5 kHz in macro steps of 1 ms, of which none takes the Rosenbrock method more than some hundred steps.
+static void short_macro_steps_leave_fast_vibrations_to_ida(void **state) {
+    (void)state;
+    outcome own = run_for(BOUGH_AUTOMATIC, 30000, 100, 1e-3),
+            rosenbrock = run_for(BOUGH_ROSENBROCK, 30000, 100, 1e-3);
+    print_message("evaluations %ld, %ld; errors %.2e, %.2e\n", own.work.derivatives,
+                  rosenbrock.work.derivatives, own.error, rosenbrock.error);
+    assert_int_equal(own.status.code, BOUGH_OK);
+    assert_true(own.work.derivatives < rosenbrock.work.derivatives / 3);
+    assert_true(own.error < rosenbrock.error);
+}
+
+static void what_nobody_would_wait_for_ends_with_its_reason(void **state) {
+    (void)state;
+    outcome own = run(BOUGH_AUTOMATIC, 3e6, 10);
+    assert_int_equal(own.status.code, BOUGH_FAILED);
+    assert_non_null(strstr(own.status.message, "oscillator"));
+    assert_non_null(strstr(own.status.message, "follows vibrations that fast"));
+    assert_true(own.work.steps < 70000);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(slow_motion_is_the_rosenbrock_methods),
+        cmocka_unit_test(fast_vibrations_take_a_fifth_of_the_evaluations),
+        cmocka_unit_test(short_macro_steps_leave_fast_vibrations_to_ida),
+        cmocka_unit_test(what_nobody_would_wait_for_ends_with_its_reason),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

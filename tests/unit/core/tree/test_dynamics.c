@@ -1,0 +1,176 @@
+// The recursions of the tree against each other, and its tangents.
+#include "tests/unit/rigid_tree.h"
+#include "tests/unit/tree_measure.h"
+
+// -- recursions against each other -----------------------------------------------------------
+
+static void inverse_dynamics_inverts_forward_dynamics(void **state) {
+    (void)state;
+    fixture f = everything(1e-6);
+    double acceleration[MOST], residual[MOST], bias[MOST], mass[MOST * MOST];
+    double zero[MOST] = {0};
+    int n = f.tree->n_v;
+    double t = 0.2;
+    bough_tree_kinematics(f.tree, f.m->state, f.data);
+    assert_true(bough_tree_forward_dynamics(f.tree, f.data, t, some_input, acceleration));
+    bough_tree_inverse_dynamics(f.tree, f.data, t, some_input, acceleration, residual);
+    bough_tree_inverse_dynamics(f.tree, f.data, t, some_input, zero, bias);
+    tree_mass_matrix(f.tree, f.data, mass);
+    for (int i = 0; i < n; i++) {
+        check_near(residual[i], 0, 0, 1e-11);
+        double sum = bias[i]; // M v̇ + h − τ with M by composite bodies
+        for (int j = 0; j < n; j++)
+            sum += mass[n * i + j] * acceleration[j];
+        check_near(sum, 0, 0, 1e-11);
+        assert_true(fabs(bias[i]) > 1e-6);
+    }
+    bough_arena_destroy(f.arena);
+}
+
+static void kinetic_energy_is_the_mass_matrix_form(void **state) {
+    (void)state;
+    fixture f = everything(1e-6);
+    double mass[MOST * MOST], energy = 0;
+    int n = f.tree->n_v;
+    const double *v = f.m->state + f.tree->n_q;
+    bough_tree_kinematics(f.tree, f.m->state, f.data);
+    tree_mass_matrix(f.tree, f.data, mass);
+    for (int i = 0; i < n; i++) {
+        for (int j = 0; j < n; j++)
+            energy += 0.5 * v[i] * mass[n * i + j] * v[j];
+    }
+    check_near(tree_sum(f.tree, f.data).kinetic, energy, 1e-12, 0);
+    bough_arena_destroy(f.arena);
+}
+
+// Power of the loads = rate of the energy, by differences along the exact motion.
+static void energy_follows_the_power_of_the_loads(void **state) {
+    (void)state;
+    fixture f = everything(1e-11);
+    f.tree->external[2].active = false;
+    f.tree->n_loads = 0;
+    for (int i = 0; i < f.tree->n_links; i++)
+        f.tree->links[i].spring.damping = 0;
+    f.tree->springs[0].damping = 0;
+    bough_tree_kinematics(f.tree, f.m->state, f.data);
+    tree_sums before = tree_sum(f.tree, f.data);
+    for (int k = 1; k <= 10; k++)
+        advance(&f, 0.1 * k, k == 1);
+    bough_tree_kinematics(f.tree, f.m->state, f.data);
+    tree_sums after = tree_sum(f.tree, f.data);
+    assert_true(fabs(after.kinetic - before.kinetic) > 1);
+    assert_true(after.elastic > 0 && after.elastic != before.elastic);
+    check_near(after.kinetic + after.potential + after.elastic,
+               before.kinetic + before.potential + before.elastic, 1e-7, 1e-7);
+    bough_arena_destroy(f.arena);
+}
+
+// -- tangents --------------------------------------------------------------------------------
+
+static void output_tangent_is_the_derivative(void **state) {
+    (void)state;
+    fixture f = everything(1e-6);
+    int n = f.s.n_state, m = f.s.n_output;
+    double change[MOST], plus[MOST], minus[MOST], y[MOST], tangent[MOST], h = 1e-6;
+    unsigned seed = 3;
+    for (int i = 0; i < n; i++)
+        change[i] = next(&seed);
+    for (int side = 0; side < 2; side++) {
+        for (int i = 0; i < n; i++)
+            y[i] = f.m->state[i] + (side == 0 ? h : -h) * change[i];
+        f.s.ops->output(f.s.self, 0, y, some_input, side == 0 ? plus : minus);
+    }
+    f.s.ops->output_tangent(f.s.self, 0, f.m->state, some_input, change, NULL, tangent);
+    for (int i = 0; i < m; i++) {
+        check_near(tangent[i], (plus[i] - minus[i]) / (2 * h), 1e-8, 1e-8);
+        assert_true(fabs(tangent[i]) > 1e-4);
+    }
+    bough_arena_destroy(f.arena);
+}
+
+// Along the motion: the links' accelerations of the forward dynamics, and ġ = −ω×g.
+static void output_tangent_along_the_motion_is_the_acceleration(void **state) {
+    (void)state;
+    fixture f = everything(1e-6);
+    double rate[MOST], tangent[MOST], out[MOST];
+    assert_true(f.s.ops->derivative(f.s.self, 0, f.m->state, some_input, rate));
+    f.s.ops->output(f.s.self, 0, f.m->state, some_input, out);
+    f.s.ops->output_tangent(f.s.self, 0, f.m->state, some_input, rate, NULL, tangent);
+    bough_tree_kinematics(f.tree, f.m->state, f.data);
+    double ignored[MOST];
+    assert_true(bough_tree_forward_dynamics(f.tree, f.data, 0, some_input, ignored));
+    for (int p = 0; p < 2; p++) {
+        const bough_frame *port = &f.tree->ports[p];
+        double expected[6];
+        bough_twist_store(bough_twist_to_child(&port->placement, f.data->acceleration[port->link]),
+                          expected);
+        for (int i = 0; i < 6; i++)
+            check_near(tangent[9 * p + i], expected[i], 1e-12, 1e-12);
+        bough_vec3 omega = bough_v3(out[9 * p + 3], out[9 * p + 4], out[9 * p + 5]);
+        bough_vec3 g = bough_v3(out[9 * p + 6], out[9 * p + 7], out[9 * p + 8]);
+        bough_vec3 gdot = bough_cross(g, omega);
+        check_near(tangent[9 * p + 6], gdot.x, 1e-12, 1e-12);
+        check_near(tangent[9 * p + 7], gdot.y, 1e-12, 1e-12);
+        check_near(tangent[9 * p + 8], gdot.z, 1e-12, 1e-12);
+        check_near(bough_norm(g), bough_norm(f.tree->gravity), 1e-14, 0);
+    }
+    bough_arena_destroy(f.arena);
+}
+
+static void input_columns_are_the_derivative(void **state) {
+    (void)state;
+    fixture f = everything(1e-6);
+    int n = f.s.n_state;
+    double *columns = calloc((size_t)(n * f.s.n_input), sizeof(double));
+    double plus[MOST], minus[MOST], u[12];
+    f.s.ops->input_columns(f.s.self, 0.2, f.m->state, some_input, columns);
+    for (int j = 0; j < f.s.n_input; j++) {
+        memcpy(u, some_input, sizeof u);
+        u[j] += 0.5; // f is linear in u: no truncation error
+        f.s.ops->derivative(f.s.self, 0.2, f.m->state, u, plus);
+        u[j] -= 1;
+        f.s.ops->derivative(f.s.self, 0.2, f.m->state, u, minus);
+        for (int i = 0; i < n; i++)
+            check_near(columns[n * j + i], plus[i] - minus[i], 1e-9, 1e-11);
+    }
+    free(columns);
+    bough_arena_destroy(f.arena);
+}
+
+// (I − γJ) x = b with x by solve and J x by a difference of f along x.
+static void solve_inverts_the_linearisation(void **state) {
+    (void)state;
+    fixture f = everything(1e-6);
+    int n = f.s.n_state;
+    double x[MOST], b[MOST], y[MOST], plus[MOST], minus[MOST], gamma = 0.07, h = 1e-6;
+    unsigned seed = 5;
+    for (int i = 0; i < n; i++)
+        x[i] = b[i] = next(&seed);
+    void *factors = f.s.ops->factors(f.s.self, f.arena);
+    assert_non_null(factors);
+    assert_true(f.s.ops->linearise(f.s.self, 0.2, f.m->state, some_input, factors));
+    assert_true(f.s.ops->factor(f.s.self, factors, gamma));
+    f.s.ops->solve(f.s.self, factors, x);
+    for (int side = 0; side < 2; side++) {
+        for (int i = 0; i < n; i++)
+            y[i] = f.m->state[i] + (side == 0 ? h : -h) * x[i];
+        f.s.ops->derivative(f.s.self, 0.2, y, some_input, side == 0 ? plus : minus);
+    }
+    for (int i = 0; i < n; i++) {
+        check_near(x[i] - gamma * (plus[i] - minus[i]) / (2 * h), b[i], 1e-7, 1e-7);
+    }
+    bough_arena_destroy(f.arena);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(inverse_dynamics_inverts_forward_dynamics),
+        cmocka_unit_test(kinetic_energy_is_the_mass_matrix_form),
+        cmocka_unit_test(energy_follows_the_power_of_the_loads),
+        cmocka_unit_test(output_tangent_is_the_derivative),
+        cmocka_unit_test(output_tangent_along_the_motion_is_the_acceleration),
+        cmocka_unit_test(input_columns_are_the_derivative),
+        cmocka_unit_test(solve_inverts_the_linearisation),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,145 @@
+// The port of the tree at which a flexible body that carries bodies ends.
+#include "tests/unit/check.h"
+#include "tests/unit/contract.h"
+#include "tests/unit/tree_measure.h"
+
+#include "core/base/base.h"
+#include "core/tree/dynamics.h"
+#include "core/base/rotation.h"
+#include "core/tree/tree_build.h"
+#include "core/tree/tree_system.h"
+
+#include <string.h>
+
+enum { BASE, WELDED, END, TOP, BODIES };
+enum { INPUTS = 12, OUTPUTS = 22, MOST = 24 };
+
+typedef struct fixture {
+    bough_arena *arena;
+    bough_tree *tree;
+    bough_tree_data *data;
+    bough_system s;
+    bough_member *m;
+    double state[MOST], input[INPUTS];
+} fixture;
+
+static bough_body_def body(const char *name, int parent, bough_joint_kind kind, double mass) {
+    bough_body_def b = bough_body_def_default();
+    b.name = name;
+    b.parent = parent;
+    b.kind = kind;
+    b.joint.position = bough_v3(0.3, -0.2, 0.5);
+    b.joint.rotation = bough_rotation_matrix(bough_quaternion_exponential(bough_v3(.4, -.7, .2)));
+    b.mass = mass;
+    b.mass_centre = bough_v3(0.1, 0.2, -0.1);
+    b.inertia = (bough_mat3){{mass, 0, 0}, {0, 1.2 * mass, 0.1 * mass}, {0, 0.1 * mass, mass}};
+    return b;
+}
+
+// A flexible body hangs on a body that is welded to a hinged one, and ends where a hinge follows.
+static bough_status create(fixture *f, bough_joint_kind kind) {
+    bough_body_def bodies[BODIES] = {
+        [BASE] = body("base", BOUGH_GROUND, BOUGH_JOINT_REVOLUTE, 2),
+        [WELDED] = body("welded", BASE, BOUGH_JOINT_FIXED, 0),
+        [END] = body("end", WELDED, kind, 0),
+        [TOP] = body("top", END, BOUGH_JOINT_REVOLUTE, 3)};
+    bodies[END].coordinates[3] = 1;
+    const bough_marker_def marker = {"root", WELDED, bough_transform_identity()};
+    const bough_inertia vertex = {0.7, {0.1, 0, -0.2}, {{0.3, 0, 0}, {0, 0.4, 0}, {0, 0, 0.5}}};
+    const bough_port_def port = {.name = "root", .root = vertex};
+    const bough_end_def end = {"end of a rod", END, vertex};
+    const bough_tree_def def = {.gravity = {1, -2, -9},
+                                .n_bodies = BODIES,
+                                .bodies = bodies,
+                                .n_markers = 1,
+                                .markers = &marker,
+                                .n_ports = 1,
+                                .ports = &port,
+                                .n_ends = 1,
+                                .ends = &end};
+    return bough_tree_create(f->arena, &def, &f->tree);
+}
+
+static fixture make(void) {
+    fixture f = {.arena = bough_arena_create()};
+    bough_status status = create(&f, BOUGH_JOINT_FREE);
+    assert_int_equal(status.code, BOUGH_OK);
+    f.data = bough_tree_data_create(f.arena, f.tree);
+    f.s = bough_tree_system_create(f.arena, f.tree, "tree");
+    f.m = member_of(f.arena, &f.s, (bough_integrator_options){BOUGH_IDA, 1e-8, 0, 0, 0});
+    for (int i = 0; i < f.s.n_state; i++) f.state[i] = sin(2.3 * i + 0.4);
+    int p = f.tree->links[f.tree->ends[0].link].first_coordinate + 3;
+    bough_quaternion q = bough_quaternion_exponential(bough_v3(0.5, 0.3, -1));
+    f.state[p] = q.w, f.state[p + 1] = q.x, f.state[p + 2] = q.y, f.state[p + 3] = q.z;
+    for (int j = 0; j < INPUTS; j++) f.input[j] = cos(1.9 * j);
+    return f;
+}
+
+static void tree_with_an_end_fulfils_the_contract(void **context) {
+    (void)context;
+    fixture f = make();
+    assert_int_equal(f.s.n_input, INPUTS);
+    assert_int_equal(f.s.n_output, OUTPUTS);
+    contract_point at = {0.2, f.state, f.input, 1e-5};
+    contract_check(f.m, at, 0.07, 0.05);
+    contract_set_state(f.m, at, 1e-4);
+    bough_arena_destroy(f.arena);
+}
+
+// Position and rotation in the frame of the flexible body, velocity of the same point in its axes.
+static void outputs_are_the_motion_in_the_frame_of_the_flexible_body(void **context) {
+    (void)context;
+    fixture f = make();
+    double out[OUTPUTS];
+    f.s.ops->output(f.s.self, 0, f.state, f.input, out);
+    const double *end = out + BOUGH_PORT_OUTPUTS;
+    bough_tree_kinematics(f.tree, f.state, f.data);
+    bough_body_def joint = body("", 0, BOUGH_JOINT_FREE, 0); // its placement
+    bough_transform frame = bough_transform_compose(
+        bough_tree_frame_pose(f.data, &f.tree->bodies[WELDED]), joint.joint);
+    bough_transform pose = bough_tree_frame_pose(f.data, &f.tree->bodies[END]);
+    bough_twist twist = bough_tree_frame_velocity(f.data, &f.tree->bodies[END]);
+    bough_transform local = bough_transform_compose(bough_transform_inverse(frame), pose);
+    bough_quaternion p = {end[9], end[10], end[11], end[12]};
+    bough_mat3 r = bough_rotation_matrix(p);
+    bough_vec3 u = bough_mat3_tmul(frame.rotation, twist.linear);
+    bough_vec3 w = bough_mat3_tmul(pose.rotation, twist.angular);
+    const double expected[9] = {u.x, u.y, u.z, w.x, w.y, w.z,
+                                local.position.x, local.position.y, local.position.z};
+    for (int k = 0; k < 9; k++) check_near(end[k], expected[k], 1e-13, 1e-13);
+    check_near(bough_norm(bough_sub(r.c1, local.rotation.c1)), 0, 0, 1e-13);
+    check_near(bough_norm(bough_sub(r.c2, local.rotation.c2)), 0, 0, 1e-13);
+    bough_arena_destroy(f.arena);
+}
+
+// v·M Δv̇ = wrench · twist: the six inputs are conjugate to the first six outputs.
+static void wrench_and_twist_are_conjugate(void **context) {
+    (void)context;
+    fixture f = make();
+    double with[MOST], without[MOST], mass[MOST * MOST], out[OUTPUTS], power = 0, expected = 0;
+    double none[INPUTS] = {0};
+    memcpy(none, f.input, BOUGH_PORT_INPUTS * sizeof(double));
+    assert_true(f.s.ops->derivative(f.s.self, 0, f.state, f.input, with));
+    assert_true(f.s.ops->derivative(f.s.self, 0, f.state, none, without));
+    f.s.ops->output(f.s.self, 0, f.state, f.input, out);
+    int n = f.tree->n_v, q = f.tree->n_q;
+    bough_tree_kinematics(f.tree, f.state, f.data);
+    tree_mass_matrix(f.tree, f.data, mass);
+    for (int i = 0; i < n; i++) {
+        for (int j = 0; j < n; j++) {
+            power += f.state[q + i] * mass[n * i + j] * (with[q + j] - without[q + j]);
+        }
+    }
+    for (int k = 0; k < 6; k++) expected += f.input[6 + k] * out[BOUGH_PORT_OUTPUTS + k];
+    check_near(power, expected, 1e-12, 1e-12);
+    bough_arena_destroy(f.arena);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(tree_with_an_end_fulfils_the_contract),
+        cmocka_unit_test(outputs_are_the_motion_in_the_frame_of_the_flexible_body),
+        cmocka_unit_test(wrench_and_twist_are_conjugate),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,178 @@
+// The verdict on a coupling by its eigenvalues: the limits of the two-mass oscillator, which long
+// runs confirm (test_scheme.c), within 2 %.
+#include "cosim/analysis/linear_member.h"
+#include "tests/unit/contract.h"
+#include "tests/unit/two_mass.h"
+
+static void build(bough_two_mass *m, const char *scheme, double macro_step) {
+    bough_master_def def = bough_master_def_default();
+    def.scheme.name = scheme;
+    def.macro_step = macro_step;
+    def.duration = 10;
+    bough_status status = bough_two_mass_build(m, def);
+    if (!bough_is_ok(&status)) fail_msg("%s", status.message);
+}
+
+static bough_stability judge(const bough_two_mass *m, const bough_scheme_options *options, double h) {
+    bough_stability result;
+    bough_status status = bough_stability_judge(m->master->assembly, options, h, &result);
+    if (!bough_is_ok(&status)) fail_msg("%s", status.message);
+    return result;
+}
+
+static void check_limit(const bough_two_mass *m, const bough_scheme_options *options, double limit) {
+    assert_true(judge(m, options, .98 * limit).growth < 0);
+    assert_true(judge(m, options, 1.02 * limit).growth > 0);
+}
+
+static void limits_come_out_of_the_eigenvalues(void **state) {
+    (void)state;
+    static const double parallel[3] = {.2254, .2277, .2501}, first[3] = {.0777, .3175, .2839},
+                        last[3] = {.0777, .3069, .2831};
+    bough_scheme_options options = bough_scheme_options_default();
+    bough_two_mass m = bough_two_mass_default();
+    build(&m, "ramp", .01);
+    options.name = "frozen";
+    check_limit(&m, &options, parallel[0]);
+    options.name = "extrapolated";
+    options.interpolation = BOUGH_POLYNOMIAL;
+    for (options.order = 0; options.order < 3; options.order++) {
+        options.parallel = true;
+        check_limit(&m, &options, parallel[options.order]);
+        options.parallel = false;
+        check_limit(&m, &options, first[options.order]);
+        options.reversed = true;
+        check_limit(&m, &options, last[options.order]);
+        options.reversed = false;
+    }
+    bough_two_mass_destroy(&m);
+}
+
+// A small macro step shows the slowest mode of the two masses themselves.
+static void growth_and_frequency_are_those_of_the_slowest_mode(void **state) {
+    (void)state;
+    bough_scheme_options options = bough_scheme_options_default();
+    bough_two_mass m = bough_two_mass_default();
+    build(&m, "ramp", .01);
+    bough_stability slowest = judge(&m, &options, .005);
+    check_near(slowest.growth, -.1406, .01, 0);
+    check_near(slowest.frequency, .5916, .01, 0);
+    assert_false(bough_stability_grows(&slowest));
+    bough_two_mass_destroy(&m);
+}
+
+// Mass 1 without a spring of its own and 1e-4 of mass 2.
+static bough_two_mass light_case(void) {
+    bough_two_mass m = bough_two_mass_default();
+    m.s1 = (bough_spring_mass){1e-4, 0, 0};
+    return m;
+}
+
+static void ramp_holds_on_a_light_interface_body(void **state) {
+    (void)state;
+    bough_scheme_options options = bough_scheme_options_default();
+    bough_two_mass m = light_case();
+    build(&m, "ramp", .02);
+    for (int k = 1; k <= 16; k *= 2) assert_true(judge(&m, &options, .005 * k).growth < 0);
+    options.name = "gauss-seidel";
+    // a sweep turns the sign over and multiplies by more than e^pi
+    bough_stability wild = judge(&m, &options, .02);
+    assert_true(wild.growth > 3.14159 / .02);
+    check_near(wild.frequency, 25, .05, 0);
+    options.name = "monolithic";
+    bough_stability result;
+    bough_status status = bough_stability_judge(m.master->assembly, &options, .02, &result);
+    assert_int_equal(status.code, BOUGH_INVALID);
+    bough_two_mass_destroy(&m);
+}
+
+// What the iterated scheme converges to is judged, not what its tolerance leaves; growth as runs of
+// the two masses show it.
+static void iterated_is_judged_as_if_converged(void **state) {
+    (void)state;
+    bough_scheme_options options = bough_scheme_options_default();
+    bough_two_mass m = light_case();
+    build(&m, "ramp", .02);
+    options.name = "iterated";
+    options.accelerator = BOUGH_ACCELERATE_NONE;
+    options.exchange = BOUGH_EXCHANGE_END_VALUES;
+    options.tolerance = .1;
+    check_near(judge(&m, &options, .02).growth, 4.428, .01, 0);
+    assert_true(judge(&m, &options, .01).growth < 0);
+    options.order = 0;
+    for (int k = 1; k <= 8; k *= 2) assert_true(judge(&m, &options, .005 * k).growth < 0);
+    bough_two_mass_destroy(&m);
+}
+
+static void the_master_warns_of_an_unstable_coupling(void **state) {
+    (void)state;
+    bough_two_mass m = bough_two_mass_default();
+    build(&m, "gauss-seidel", .25); // the motion interpolated by cubics: holds to .205
+    assert_non_null(strstr(m.master->verdict, "gauss-seidel"));
+    assert_non_null(strstr(m.master->verdict, "macro_step: 0.125 s holds"));
+    assert_non_null(strstr(m.master->verdict, "scheme: ramp holds"));
+    bough_two_mass_destroy(&m);
+    m = bough_two_mass_default();
+    build(&m, "gauss-seidel", .19);
+    assert_string_equal(m.master->verdict, "");
+    bough_two_mass_destroy(&m);
+}
+
+// A mass pushed away by its wall oscillates with no other: what grows is not the coupling's doing.
+static void growth_of_the_mechanics_is_no_verdict(void **state) {
+    (void)state;
+    bough_two_mass m = bough_two_mass_default();
+    m.s1.c = m.s2.c = -.2;
+    m.c = 0;
+    build(&m, "extrapolated", .01);
+    bough_stability now = judge(&m, &m.master->coupling->options, .01);
+    check_near(now.growth, .1, .02, 0);
+    assert_string_equal(m.master->verdict, "");
+    bough_two_mass_destroy(&m);
+}
+
+static void judging_changes_nothing(void **state) {
+    (void)state;
+    bough_scheme_options options = bough_scheme_options_default();
+    bough_two_mass m = bough_two_mass_default(), n = bough_two_mass_default();
+    build(&m, "ramp", .02);
+    build(&n, "ramp", .02);
+    for (int k = 0; k < 100; k++) {
+        if (k % 10 == 0) judge(&m, &options, .05);
+        bough_step(m.master);
+        bough_step(n.master);
+    }
+    assert_memory_equal(m.mass[0].y, n.mass[0].y, sizeof m.mass[0].y);
+    assert_memory_equal(m.mass[1].y, n.mass[1].y, sizeof m.mass[1].y);
+    bough_two_mass_destroy(&m);
+    bough_two_mass_destroy(&n);
+}
+
+static void linear_members_fulfil_the_contract(void **state) {
+    (void)state;
+    const double y[2] = {.3, -.7}, u[2] = {.4, .2};
+    bough_two_mass m = bough_two_mass_default();
+    build(&m, "ramp", .02);
+    for (int i = 0; i < 2; i++) {
+        bough_member linear_member;
+        bough_linear_member_create(m.arena, &m.member[i], u, 5e-3, &linear_member);
+        contract_point at = {.t = 0, .state = y, .input = u, .tolerance = 1e-5};
+        contract_check(&linear_member, at, .05, .1);
+        contract_set_state(&linear_member, at, 1e-4);
+    }
+    bough_two_mass_destroy(&m);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(limits_come_out_of_the_eigenvalues),
+        cmocka_unit_test(growth_and_frequency_are_those_of_the_slowest_mode),
+        cmocka_unit_test(ramp_holds_on_a_light_interface_body),
+        cmocka_unit_test(iterated_is_judged_as_if_converged),
+        cmocka_unit_test(the_master_warns_of_an_unstable_coupling),
+        cmocka_unit_test(growth_of_the_mechanics_is_no_verdict),
+        cmocka_unit_test(judging_changes_nothing),
+        cmocka_unit_test(linear_members_fulfil_the_contract),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,259 @@
+// Condensed interfaces of random linear members against the system as a whole.
+#include "core/base/linalg.h"
+#include "cosim/coupled.h"
+#include "tests/unit/check.h"
+
+#include <math.h>
+#include <string.h>
+
+enum { MOST = 12, MEMBERS = 4, STATES = MEMBERS * MOST, PORTS = MEMBERS * MOST };
+
+// ẏ = A y + B u, o = C y + D u
+typedef struct member {
+    bough_system s;
+    bough_member m;
+    double a[MOST * MOST], b[MOST * MOST], c[MOST * MOST], d[MOST * MOST];
+    double matrix[MOST * MOST], state[MOST];
+    int pivot[MOST];
+} member;
+
+static void add_product(int rows, int columns, const double *m, const double *x, double *sum) {
+    for (int i = 0; i < rows && x != NULL; i++) {
+        for (int j = 0; j < columns; j++) sum[i] += m[i * MOST + j] * x[j];
+    }
+}
+
+static bool derivative(void *self, double t, const double *y, const double *u, double *rate) {
+    (void)t;
+    const member *m = self;
+    memset(rate, 0, (size_t)m->s.n_state * sizeof(double));
+    add_product(m->s.n_state, m->s.n_state, m->a, y, rate);
+    add_product(m->s.n_state, m->s.n_input, m->b, u, rate);
+    return true;
+}
+
+static void output(void *self, double t, const double *y, const double *u, double *out) {
+    (void)t;
+    const member *m = self;
+    memset(out, 0, (size_t)m->s.n_output * sizeof(double));
+    add_product(m->s.n_output, m->s.n_state, m->c, y, out);
+    add_product(m->s.n_output, m->s.n_input, m->d, u, out);
+}
+
+// NOLINTNEXTLINE(readability-function-size): the contract fixes the parameters
+static void output_tangent(void *self, double t, const double *y, const double *u, const double *state_rate,
+                           const double *input_rate, double *rate) {
+    (void)y, (void)u;
+    output(self, t, state_rate, input_rate, rate);
+}
+
+static void input_columns(void *self, double t, const double *y, const double *u, double *column) {
+    (void)t, (void)y, (void)u;
+    const member *m = self;
+    for (int j = 0; j < m->s.n_input; j++) {
+        for (int i = 0; i < m->s.n_state; i++) *column++ = m->b[i * MOST + j];
+    }
+}
+
+static void *factors(void *self, bough_arena *arena) {
+    (void)arena;
+    return self;
+}
+
+static bool linearise(void *self, double t, const double *y, const double *u, void *factors) {
+    (void)self, (void)t, (void)y, (void)u, (void)factors;
+    return true;
+}
+
+static bool factor(void *self, void *factors, double gamma) {
+    (void)factors;
+    member *m = self;
+    int n = m->s.n_state;
+    for (int j = 0; j < n; j++) {
+        for (int i = 0; i < n; i++) m->matrix[j * n + i] = (i == j) - gamma * m->a[i * MOST + j];
+    }
+    return n == 0 || bough_dense_factor(n, m->matrix, m->pivot);
+}
+
+static void solve(void *self, void *factors, double *x) {
+    (void)factors;
+    const member *m = self;
+    if (m->s.n_state > 0) bough_dense_solve(m->s.n_state, 1, m->matrix, m->pivot, x);
+}
+
+static double noise(unsigned *seed) {
+    *seed = *seed * 1664525u + 1013904223u;
+    return (double)(*seed >> 8) / (1 << 23) - 1;
+}
+
+static void make(member *m, int n_state, int n_input, int n_output, bool feedthrough, unsigned seed) {
+    static const bough_system_ops ops = {BOUGH_SYSTEM_REQUIRED};
+    *m = (member){.s = {.name = "member",
+                        .n_state = n_state,
+                        .n_input = n_input,
+                        .n_output = n_output,
+                        .ops = &ops,
+                        .self = m}};
+    m->m = (bough_member){.system = m->s, .state = m->state};
+    for (int k = 0; k < MOST * MOST; k++) {
+        m->a[k] = noise(&seed);
+        m->b[k] = noise(&seed);
+        m->c[k] = noise(&seed);
+        m->d[k] = feedthrough ? .3 * noise(&seed) : 0;
+    }
+}
+
+typedef struct plan {
+    const char *what;
+    int n_state[MEMBERS], n_input[MEMBERS], n_output[MEMBERS], stage[MEMBERS];
+    bool feedthrough[MEMBERS];
+    int n_connection;
+    const bough_connection *connection;
+    int unknowns; // of the interface
+} plan;
+
+static void check(const plan *p) {
+    bough_arena *arena = bough_arena_create();
+    member m[MEMBERS];
+    bough_assembly_member part[MEMBERS];
+    for (int i = 0; i < MEMBERS; i++) {
+        make(&m[i], p->n_state[i], p->n_input[i], p->n_output[i], p->feedthrough[i], 7u + i);
+        part[i] = (bough_assembly_member){&m[i].m, p->stage[i]};
+    }
+    bough_assembly_def def = {MEMBERS, part, p->n_connection, p->connection};
+    bough_assembly *a;
+    bough_coupled *coupled = NULL;
+    bough_status status = bough_assembly_build(arena, &def, &a);
+    if (bough_is_ok(&status)) coupled = bough_coupled_create(arena, a, NULL);
+    if (!bough_is_ok(&status)) fail_msg("%s: %s", p->what, status.message);
+    assert_int_equal(coupled->interface->n, p->unknowns);
+
+    unsigned seed = 3;
+    double y[STATES], r[STATES], x[STATES], before[STATES], after[STATES];
+    double outside[PORTS], input[PORTS], gamma = .2;
+    for (int k = 0; k < a->n_state; k++) y[k] = noise(&seed), r[k] = x[k] = noise(&seed);
+    for (int j = 0; j < a->n_input; j++) outside[j] = noise(&seed);
+    bough_coupled_rate(coupled, 0, y, before);
+    memcpy(input, coupled->input, (size_t)a->n_input * sizeof(double));
+    status = bough_coupled_setup(coupled, 0, y, input, gamma);
+    assert_true(bough_is_ok(&status));
+    bough_coupled_solve_driven(coupled, outside, x);
+
+    // x = r + γ (A x + B δu) member by member, δu = P (C x + D δu) + outside
+    double change[PORTS], answer[PORTS];
+    for (int i = 0; i < MEMBERS; i++) {
+        const double *du = coupled->change + a->input_offset[i], *dx = x + a->state_offset[i];
+        output(&m[i], 0, dx, du, answer + a->output_offset[i]);
+        derivative(&m[i], 0, dx, du, after + a->state_offset[i]);
+    }
+    for (int j = 0; j < a->n_input; j++) change[j] = answer[a->source[j]] + outside[j];
+    for (int j = 0; j < a->n_input; j++) check_near(coupled->change[j], change[j], 0, 1e-9);
+    for (int k = 0; k < a->n_state; k++) check_near(x[k] - gamma * after[k], r[k], 0, 1e-9);
+    bough_arena_destroy(arena);
+}
+
+// Three followers on one leader.
+static const bough_connection star[] = {{0, 0, 1, 0, 4, true},  {0, 4, 2, 0, 4, true},
+                                        {0, 8, 3, 0, 4, true},  {1, 0, 0, 0, 3, false},
+                                        {2, 0, 0, 3, 3, false}, {3, 0, 0, 6, 3, false}};
+
+static const plan plans[] = {{.what = "three on a leader of two states, along these",
+                              .n_state = {2, 7, 6, 5},
+                              .n_input = {9, 4, 4, 4},
+                              .n_output = {12, 3, 3, 3},
+                              .stage = {0, 1, 1, 1},
+                              .feedthrough = {false, true, true, false},
+                              .n_connection = 6,
+                              .unknowns = 2,
+                              .connection = star},
+                             {.what = "a leader of many states, by its inputs",
+                              .n_state = {12, 7, 6, 5},
+                              .n_input = {9, 4, 4, 4},
+                              .n_output = {12, 3, 3, 3},
+                              .stage = {0, 1, 1, 2},
+                              .feedthrough = {false, true, true, false},
+                              .n_connection = 6,
+                              .unknowns = 9,
+                              .connection = star},
+                             {.what = "a leader that answers at once",
+                              .n_state = {2, 7, 6, 5},
+                              .n_input = {9, 4, 4, 4},
+                              .n_output = {12, 3, 3, 3},
+                              .stage = {0, 1, 1, 1},
+                              .feedthrough = {true, false, false, false},
+                              .n_connection = 6,
+                              .unknowns = 9,
+                              .connection = star},
+                             {.what = "two leaders, one follower on both, one leader without states",
+                              .n_state = {2, 0, 6, 5},
+                              .n_input = {3, 3, 4, 4},
+                              .n_output = {6, 2, 4, 2},
+                              .stage = {0, 0, 1, 1},
+                              .feedthrough = {false, false, true, true},
+                              .n_connection = 6,
+                              .unknowns = 2,
+                              .connection = (const bough_connection[]){{0, 0, 2, 0, 2, true},
+                                                                       {1, 0, 2, 2, 2, true},
+                                                                       {0, 2, 3, 0, 4, true},
+                                                                       {2, 0, 0, 0, 3, false},
+                                                                       {2, 3, 1, 0, 1, false},
+                                                                       {3, 0, 1, 1, 2, false}}},
+                             {.what = "followers connected with each other lead",
+                              .n_state = {2, 7, 6, 5},
+                              .n_input = {3, 4, 4, 2},
+                              .n_output = {6, 6, 3, 3},
+                              .stage = {0, 1, 1, 1},
+                              .feedthrough = {false, true, false, false},
+                              .n_connection = 5,
+                              .unknowns = 2 + 4 + 4,
+                              .connection = (const bough_connection[]){{0, 0, 1, 0, 4, true},
+                                                                       {0, 4, 3, 0, 2, true},
+                                                                       {1, 0, 2, 0, 4, true},
+                                                                       {2, 0, 0, 0, 2, false},
+                                                                       {3, 0, 0, 2, 1, false}}}};
+
+static void every_shape_solves_the_whole(void **state) {
+    (void)state;
+    for (size_t k = 0; k < sizeof plans / sizeof *plans; k++) check(&plans[k]);
+}
+
+// The gain of the interface.
+static void radius_is_that_of_the_loop(void **state) {
+    (void)state;
+    bough_arena *arena = bough_arena_create();
+    member m[2];
+    make(&m[0], 2, 3, 3, false, 1);
+    make(&m[1], 4, 3, 3, false, 2);
+    const bough_assembly_member part[] = {{&m[0].m, 0}, {&m[1].m, 1}};
+    const bough_connection connection[] = {{0, 0, 1, 0, 3, true}, {1, 0, 0, 0, 3, false}};
+    bough_assembly_def def = {2, part, 2, connection};
+    bough_assembly *a;
+    bough_condensed *k;
+    bough_status status = bough_assembly_build(arena, &def, &a);
+    assert_true(bough_is_ok(&status));
+    k = bough_condensed_create(arena, a);
+    assert_true(bough_is_ok(&status));
+    const double zero[MOST] = {0};
+    bough_operating_point at = {.state = zero, .input = zero, .gamma = .4};
+    for (int i = 0; i < 2; i++) assert_true(bough_condensed_linearise(k, i, &at));
+    assert_true(bough_condensed_factor_leader(k, 0, &at));
+    assert_true(bough_condensed_factor_follower(k, 1, &at));
+    bough_condensed_respond(k, 1, &at);
+    assert_true(bough_condensed_close(k));
+    // the larger root of the 2 × 2 loop
+    assert_true(fabs(k->loop[0]) > 1e-3);
+    double trace = k->loop[0] + k->loop[3];
+    double det = k->loop[0] * k->loop[3] - k->loop[1] * k->loop[2];
+    double square = .25 * trace * trace - det;
+    double radius = square > 0 ? .5 * fabs(trace) + sqrt(square) : sqrt(det);
+    check_near(bough_condensed_radius(k), radius, 1e-2, 0);
+    bough_arena_destroy(arena);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(every_shape_solves_the_whole),
+        cmocka_unit_test(radius_is_that_of_the_loop),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

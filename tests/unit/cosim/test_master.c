@@ -1,0 +1,190 @@
+// The macro loop: its times, sampled loads, threads, and what it refuses.
+#include "tests/unit/two_mass.h"
+
+static bough_master_def definition(double macro_step, double duration) {
+    bough_master_def def = bough_master_def_default();
+    def.macro_step = macro_step;
+    def.duration = duration;
+    return def;
+}
+
+static bough_status run(bough_master *m) {
+    bough_status status = bough_ok();
+    while (bough_is_ok(&status) && !bough_master_done(m)) status = bough_step(m);
+    return status;
+}
+
+static void steps_end_on_events_and_on_the_duration(void **state) {
+    (void)state;
+    const double event[] = {.45, .3, .3, 7}, expected[] = {.1, .2, .3, .4, .45, .5, .55};
+    bough_master_def def = definition(.1, .55);
+    def.event = event;
+    def.n_event = 4;
+    bough_two_mass m = bough_two_mass_default();
+    bough_status status = bough_two_mass_build(&m, def);
+    for (int k = 0; k < 7; k++) {
+        assert_false(bough_master_done(m.master));
+        status = bough_step(m.master);
+        assert_true(bough_is_ok(&status));
+        check_near(m.master->time, expected[k], 0, 1e-15);
+        assert_int_equal(m.master->at_event, k == 2 || k == 4);
+    }
+    assert_true(bough_master_done(m.master));
+    bough_two_mass_destroy(&m);
+}
+
+typedef struct samples {
+    int count;
+    double time[16], next[16];
+} samples;
+
+static bough_status sample(void *self, double t, double t_next, bool *jumped) {
+    samples *s = self;
+    s->time[s->count] = t;
+    s->next[s->count++] = t_next;
+    *jumped = false;
+    return bough_ok();
+}
+
+static void loads_are_sampled_at_their_period(void **state) {
+    (void)state;
+    samples taken = {0};
+    const double event = .25;
+    bough_sampled_load load = {.period = .2, .self = &taken, .sample = sample};
+    bough_master_def def = definition(.1, .7);
+    def.load = &load;
+    def.event = &event;
+    def.n_load = def.n_event = 1;
+    bough_two_mass m = bough_two_mass_default();
+    bough_two_mass_build(&m, def);
+    bough_status status = run(m.master);
+    assert_true(bough_is_ok(&status));
+    assert_int_equal(taken.count, 4);
+    for (int k = 0; k < 4; k++) {
+        check_near(taken.time[k], .2 * k, 0, 1e-15);
+        check_near(taken.next[k], .2 * (k + 1), 0, 1e-15);
+    }
+    bough_two_mass_destroy(&m);
+}
+
+// -- one leader, three followers ------------------------------------------------------------------
+
+enum { N_FOLLOWER = 3 };
+
+typedef struct star {
+    bough_oscillator mass[1 + N_FOLLOWER];
+    bough_member member[1 + N_FOLLOWER];
+    bough_arena *arena;
+    bough_master *master;
+} star;
+
+static bough_status star_build(star *s, bough_master_def def) {
+    bough_assembly_member part[1 + N_FOLLOWER];
+    bough_connection connection[2 * N_FOLLOWER];
+    for (int i = 0; i < N_FOLLOWER; i++) {
+        bough_oscillator *follower = &s->mass[1 + i];
+        *follower =
+            bough_oscillator_motion_in((bough_spring_mass){1 + i, 20, .3}, 10, .5, .5 - .2 * i);
+        s->mass[0] = bough_oscillator_force_in((bough_spring_mass){1, 10, .2}, 1, 0);
+        oscillator_widen(&s->mass[0], follower);
+        connection[2 * i] = (bough_connection){.to = 1 + i, .count = 3, .kinematic = true};
+        connection[2 * i + 1] = (bough_connection){.from = 1 + i, .to_offset = i, .count = 1};
+    }
+    for (int i = 0; i <= N_FOLLOWER; i++) {
+        bough_oscillator_member(&s->mass[i], i ? "follower" : "leader", &s->member[i]);
+        part[i] = (bough_assembly_member){&s->member[i], i > 0};
+    }
+    def.assembly = (bough_assembly_def){.n_member = 1 + N_FOLLOWER,
+                                        .member = part,
+                                        .n_connection = 2 * N_FOLLOWER,
+                                        .connection = connection};
+    s->arena = bough_arena_create();
+    return bough_master_build(s->arena, &def, &s->master);
+}
+
+static star star_run(const char *scheme, double macro_step, int threads) {
+    star s;
+    bough_master_def def = definition(macro_step, 4);
+    def.scheme.name = scheme;
+    def.scheme.integrator.rtol = 1e-10;
+    bough_arena *arena = bough_arena_create();
+    def.pool = bough_pool_create(arena, threads);
+    bough_status status = star_build(&s, def);
+    if (bough_is_ok(&status)) status = run(s.master);
+    if (!bough_is_ok(&status)) fail_msg("%s: %s", scheme, status.message);
+    bough_arena_destroy(s.arena);
+    bough_arena_destroy(arena);
+    return s;
+}
+
+static void threads_do_not_change_a_bit(void **state) {
+    (void)state;
+    const char *name;
+    for (int k = 0; (name = bough_scheme_name(k)) != NULL; k++) {
+        star one = star_run(name, .02, 1);
+        for (int threads = 2; threads <= 8; threads += threads < 3 ? 1 : 5) {
+            star many = star_run(name, .02, threads);
+            for (int i = 0; i <= N_FOLLOWER; i++) {
+                assert_memory_equal(one.mass[i].y, many.mass[i].y, sizeof one.mass[i].y);
+            }
+        }
+    }
+}
+
+static double star_distance(const star *a, const star *b) {
+    double worst = 0;
+    for (int i = 0; i <= N_FOLLOWER; i++) {
+        worst = fmax(worst, fabs(a->mass[i].y[0] - b->mass[i].y[0]));
+    }
+    return worst;
+}
+
+// Followers with more inputs than the leader has states, rates of motion held, several bodies.
+static void schemes_converge_to_the_monolithic_run(void **state) {
+    (void)state;
+    static const struct {
+        const char *name;
+        double order, error;
+    } expected[] = {
+        {"ramp", 3, 1e-4}, {"gauss-seidel", 1, 6e-3}, {"extrapolated", 2, 3e-4}, {"frozen", 1, 6e-3}};
+    star exact = star_run("monolithic", .02, 1);
+    for (int k = 0; k < 4; k++) {
+        star coarse = star_run(expected[k].name, .02, 1), fine = star_run(expected[k].name, .01, 1);
+        double e1 = star_distance(&coarse, &exact), e2 = star_distance(&fine, &exact);
+        assert_true(e1 < expected[k].error);
+        check_near(log2(e1 / e2), expected[k].order, 0, .25);
+    }
+}
+
+static void algebraic_loops_are_refused(void **state) {
+    (void)state;
+    bough_oscillator mass[2];
+    bough_member member[2];
+    bough_assembly_member part[2];
+    bough_connection connection[2];
+    for (int i = 0; i < 2; i++) {
+        mass[i] = bough_oscillator_motion_in((bough_spring_mass){1, 20, .3}, 10, .5, 0);
+        mass[i].n_output = 2;
+        bough_oscillator_member(&mass[i], "mass", &member[i]);
+        part[i] = (bough_assembly_member){&member[i], i};
+        connection[i] = (bough_connection){.from = i, .to = 1 - i, .count = 2};
+    }
+    bough_arena *arena = bough_arena_create();
+    bough_assembly *assembly;
+    bough_assembly_def def = {2, part, 2, connection};
+    bough_status status = bough_assembly_build(arena, &def, &assembly);
+    assert_int_equal(status.code, BOUGH_INVALID);
+    assert_non_null(strstr(status.message, "algebraic loop"));
+    bough_arena_destroy(arena);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(steps_end_on_events_and_on_the_duration),
+        cmocka_unit_test(loads_are_sampled_at_their_period),
+        cmocka_unit_test(threads_do_not_change_a_bit),
+        cmocka_unit_test(schemes_converge_to_the_monolithic_run),
+        cmocka_unit_test(algebraic_loops_are_refused),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

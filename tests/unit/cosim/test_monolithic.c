@@ -1,0 +1,65 @@
+#include "tests/unit/two_mass.h"
+
+static double error_with(bough_integrator_options integrator) {
+    bough_two_mass m = bough_two_mass_default();
+    bough_master_def def = bough_master_def_default();
+    def.scheme.name = "monolithic";
+    def.scheme.integrator = integrator;
+    def.macro_step = .1;
+    def.duration = 10;
+    bough_status status = bough_two_mass_build(&m, def);
+    if (!bough_is_ok(&status)) fail_msg("%s", status.message);
+    double error = two_mass_error(&m);
+    bough_coupling_report report = bough_monitor_report(m.master->monitor, m.master->coupling);
+    check_near(report.defect_max, 0, 0, 1e-12);
+    bough_two_mass_destroy(&m);
+    return error;
+}
+
+static double error_at(bough_integrator_kind kind, double rtol) {
+    return error_with((bough_integrator_options){.kind = kind, .rtol = rtol});
+}
+
+static void error_follows_the_tolerance(void **state) {
+    (void)state;
+    double coarse = error_at(BOUGH_IDA, 1e-6), fine = error_at(BOUGH_IDA, 1e-10);
+    check_near(coarse, 0, 0, 1e-4);
+    check_near(fine, 0, 0, 2e-8);
+    assert_true(fine < 1e-2 * coarse);
+}
+
+static void with_every_integrator(void **state) {
+    (void)state;
+    for (int kind = BOUGH_IDA; kind <= BOUGH_ROSENBROCK; kind++) {
+        if (kind == BOUGH_GENERALIZED_ALPHA) continue; // has no error control
+        double coarse = error_at(kind, 1e-5), fine = error_at(kind, 1e-9);
+        print_message("%s: %.1e, %.1e\n", bough_integrator_find(kind)->name, coarse, fine);
+        check_near(coarse, 0, 0, 1e-3);
+        check_near(fine, 0, 0, 1e-6);
+    }
+}
+
+// Equal steps, members coupled at the stages: the method's order for all bodies together.
+static void coupled_stages_keep_the_order(void **state) {
+    (void)state;
+    static const struct {
+        bough_integrator_kind kind;
+        int order;
+    } method[] = {{BOUGH_ROSENBROCK, 3}, {BOUGH_GENERALIZED_ALPHA, 2}};
+    for (int k = 0; k < 2; k++) {
+        bough_integrator_options o = {.kind = method[k].kind, .rtol = 1, .step = .01, .rho = .8};
+        if (o.kind == BOUGH_GENERALIZED_ALPHA) o.rtol = 1e-12;
+        double coarse = error_with(o);
+        o.step = .005;
+        check_near(log2(coarse / error_with(o)), method[k].order, 0, .2);
+    }
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(error_follows_the_tolerance),
+        cmocka_unit_test(with_every_integrator),
+        cmocka_unit_test(coupled_stages_keep_the_order),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

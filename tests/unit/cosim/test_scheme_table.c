@@ -1,0 +1,97 @@
+// A scheme is one file and one line of the table: what scheme_toy.c adds is found, read from
+// scenes, described, judged, stepped and diagnosed like any other.
+#include "tests/unit/scene_text.h"
+#include "tests/unit/two_mass.h"
+
+static bough_master_def definition(double macro_step) {
+    bough_master_def def = bough_master_def_default();
+    def.scheme.name = "toy";
+    def.macro_step = macro_step;
+    def.duration = 10;
+    return def;
+}
+
+static void the_table_lists_it_once(void **state) {
+    (void)state;
+    int found = 0, n = 0;
+    for (const char *name; (name = bough_scheme_name(n)) != NULL; n++)
+        found += !strcmp(name, "toy");
+    assert_int_equal(found, 1);
+    assert_int_equal(n, 7);
+    assert_string_equal(bough_scheme_find("toy")->name, "toy");
+    assert_null(bough_scheme_name(-1));
+    assert_null(bough_scheme_find("toys"));
+}
+
+static void entries_name_schemes_of_the_table(void **state) {
+    (void)state;
+    const char *name;
+    for (int i = 0; (name = bough_scheme_name(i)) != NULL; i++) {
+        const bough_scheme *s = bough_scheme_find(name);
+        char text[BOUGH_SCHEME_TEXT];
+        bough_scheme_options options = bough_scheme_options_default();
+        assert_ptr_equal(s, bough_scheme_find(s->name));
+        bough_scheme_describe(s, &options, text);
+        assert_memory_equal(text, name, strlen(name));
+    }
+}
+
+#define SCENE(scheme)                                                                              \
+    "simulation: {duration: 1, macro_step: 0.1, coupling: {scheme: " scheme "}}\n"                 \
+    "bodies:\n" BODY("a", "ground")
+
+static void scenes_name_it(void **state) {
+    (void)state;
+    write_file("s.yaml", SCENE("toy"));
+    fixture f = read_scene("s.yaml", NULL, 0);
+    assert_string_equal(f.printed, "");
+    assert_string_equal(bough_scheme_name(f.scene->simulation.coupling.scheme), "toy");
+    stop(&f);
+    write_file("s.yaml", SCENE("toi"));
+    f = read_scene("s.yaml", NULL, 0);
+    assert_non_null(strstr(f.printed, "(did you mean 'toy'?)"));
+    stop(&f);
+}
+
+static void it_is_stepped_at_its_order(void **state) {
+    (void)state;
+    double error[2];
+    for (int k = 0; k < 2; k++) {
+        bough_two_mass m = bough_two_mass_default();
+        bough_status status = bough_two_mass_build(&m, definition(.02 / (k + 1)));
+        if (!bough_is_ok(&status)) fail_msg("%s", status.message);
+        bough_two_mass_history(&m);
+        error[k] = two_mass_error(&m);
+        assert_string_equal(m.master->verdict, "");
+        bough_two_mass_destroy(&m);
+    }
+    check_near(error[0] / error[1], 4, .1, 0);
+}
+
+static void it_is_judged_and_diagnosed(void **state) {
+    (void)state;
+    bough_two_mass m = bough_two_mass_default();
+    bough_master_def def = definition(.5);
+    def.duration = 1000;
+    bough_status status = bough_two_mass_build(&m, def);
+    if (!bough_is_ok(&status)) fail_msg("%s", status.message);
+    assert_non_null(strstr(m.master->verdict, "scheme toy at a macro step of 0.5 s is unstable"));
+    assert_non_null(strstr(m.master->verdict, "scheme: ramp holds"));
+    double worst;
+    status = bough_two_mass_error(&m, &worst);
+    assert_int_equal(status.code, BOUGH_FAILED);
+    assert_non_null(strstr(status.message, "scheme toy"));
+    assert_non_null(strstr(status.message, "or scheme: monolithic"));
+    bough_two_mass_destroy(&m);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(the_table_lists_it_once),
+        cmocka_unit_test(entries_name_schemes_of_the_table),
+        cmocka_unit_test(scenes_name_it),
+        cmocka_unit_test(it_is_stepped_at_its_order),
+        cmocka_unit_test(it_is_judged_and_diagnosed),
+    };
+    return cmocka_run_group_tests(tests, enter, leave);
+}

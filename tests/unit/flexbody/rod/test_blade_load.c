@@ -1,0 +1,164 @@
+// The clamped NREL 5 MW blade under loads along it, in linear statics: against the integral of its
+// sections' strains.
+#include "tests/unit/check.h"
+#include "tests/unit/sample_rod.h"
+
+#include "apps/bough/model/build.h"
+#include "core/base/symmetric6.h"
+#include "flexbody/rod/rod_load.h"
+#include "flexbody/rod/rod_static.h"
+
+#include <string.h>
+
+enum { STEPS = 123000 }; // of the integrals along the blade, half a millimetre each
+
+// A load per length along the blade, in its axes.
+typedef void (*line_load)(int n_segment, double length, double s, double q[6]);
+
+typedef struct blade {
+    bough_arena *arena;
+    const bough_scene_structure *table;
+    bough_rod_def def;
+    bough_rod_model *model;
+} blade;
+
+static blade blade_with(int segments) {
+    blade b = {.arena = bough_arena_create()};
+    bough_errors errors = {.arena = b.arena};
+    bough_scene *scene = NULL;
+    bough_simulation *simulation = NULL;
+    bough_status s = bough_scene_read(b.arena, BOUGH_SOURCE_DIR "/tests/data/scenes/blade.yaml", NULL, 0,
+                                      &errors, &scene);
+    assert_int_equal(s.code, BOUGH_OK);
+    scene->body[0].rod.n_segment = segments;
+    s = bough_simulation_build(b.arena, scene, &simulation);
+    assert_int_equal(s.code, BOUGH_OK);
+    b.table = &scene->body[0].rod.structure;
+    b.def = simulation->beam[0].def;
+    s = bough_rod_create(b.arena, &b.def, &b.model);
+    assert_int_equal(s.code, BOUGH_OK);
+    return b;
+}
+
+// Compliance at s in the blade's axes.
+static void compliance_at(const bough_scene_structure *table, double s, double full[36]) {
+    int k = 0;
+    while (k < table->n_station - 2 && s >= table->station[k + 1].def.position.z) k++;
+    const bough_section_station *a = &table->station[k].def, *b = &table->station[k + 1].def;
+    double share = (s - a->position.z) / (b->position.z - a->position.z), upper[21];
+    for (int i = 0; i < 21; i++) upper[i] = a->stiffness[i] + share * (b->stiffness[i] - a->stiffness[i]);
+    assert_true(bough_symmetric6_inverse(upper, upper));
+    bough_symmetric6_turn(upper, -(a->twist + share * (b->twist - a->twist)), upper);
+    for (int i = 0; i < 36; i++) full[i] = upper[bough_symmetric6_index(i / 6, i % 6)];
+}
+
+static bough_vec3 vec(const double *x) { return bough_v3(x[0], x[1], x[2]); }
+
+// Displacement and rotation at the vertices (6 × (n + 1)) by the midpoint rule: the stress from the
+// tip inwards, then the strains from the root outwards.
+static void integrate(const blade *b, line_load load, double *exact) {
+    const bough_vec3 along = {0, 0, 1};
+    int n = b->def.n_segment;
+    double length = b->table->length, h = length / STEPS;
+    double *stress = bough_arena_doubles(b->arena, 6 * (size_t)STEPS);
+    bough_vec3 f = {0, 0, 0}, m = {0, 0, 0}, x = {0, 0, 0}, turn = {0, 0, 0};
+    for (int k = STEPS - 1; k >= 0; k--) { // to the middle of each step, then past it
+        for (int half = 0; half < 2; half++) {
+            double q[6];
+            load(n, length, h * (k + (half == 0 ? 0.75 : 0.25)), q);
+            bough_vec3 df = bough_scale(0.5 * h, vec(q)), mean = bough_axpy(0.5, df, f);
+            m = bough_axpy(0.5 * h, bough_add(vec(q + 3), bough_cross(along, mean)), m);
+            f = bough_add(f, df);
+            const double values[6] = {f.x, f.y, f.z, m.x, m.y, m.z};
+            if (half == 0) memcpy(stress + 6 * (size_t)k, values, sizeof values);
+        }
+    }
+    for (int k = 0; k < STEPS; k++) {
+        double c[36], e[6] = {0};
+        compliance_at(b->table, h * (k + 0.5), c);
+        for (int i = 0; i < 36; i++) e[i / 6] += c[i] * stress[6 * (size_t)k + i % 6];
+        bough_vec3 middle = bough_axpy(0.5 * h, vec(e + 3), turn);
+        x = bough_axpy(h, bough_add(vec(e), bough_cross(middle, along)), x);
+        turn = bough_axpy(h, vec(e + 3), turn);
+        if ((k + 1) * n % STEPS != 0) continue;
+        const double values[6] = {x.x, x.y, x.z, turn.x, turn.y, turn.z};
+        memcpy(exact + 6 * ((k + 1) * n / STEPS), values, sizeof values);
+    }
+}
+
+// The same of the rod: loads so small that it is linear.
+static void solve(const blade *b, line_load load, double scale, double *found) {
+    const bough_rod_model *m = b->model;
+    const double at_rest[BOUGH_ROD_INPUTS] = {0}, always[2] = {0, 0};
+    bough_rod_static_options options = bough_rod_static_options_default();
+    bough_rod_loads loads;
+    bough_rod_static work;
+    int n = m->n;
+    double *state = bough_arena_doubles(b->arena, (size_t)BOUGH_ROD_STATES * n);
+    bough_rod_loads_init(&loads, b->arena, m);
+    bough_rod_static_init(&work, b->arena, m);
+    bough_rod_ramped_load *to = bough_rod_loads_ramped(&loads, b->arena, m, false, always);
+    for (int k = 0; k < n; k++) {
+        double q[6];
+        load(n, b->table->length, 0.5 * (m->span[k] + m->span[k + 1]), q);
+        for (int c = 0; c < 6; c++) q[c] *= scale;
+        bough_rod_lump(m, (bough_rod_reach){m->span[k], m->span[k + 1]}, q, NULL, to);
+    }
+    bough_rod_rest_state(m, at_rest, state);
+    bough_status s = rod_equilibrium(m, &loads, bough_v3(0, 0, 0), &options, &work, state);
+    assert_int_equal(s.code, BOUGH_OK);
+    for (int i = 1; i <= n; i++) {
+        const double *y = state + i - 1;
+        bough_quaternion p = {y[3 * n], y[4 * n], y[5 * n], y[6 * n]};
+        bough_vec3 x = bough_sub(bough_v3(y[0], y[n], y[2 * n]), m->position0[i]);
+        bough_vec3 turn = bough_quaternion_logarithm(
+            bough_quaternion_product(p, bough_quaternion_conjugate(m->rotation0[i])));
+        const double values[6] = {x.x, x.y, x.z, turn.x, turn.y, turn.z};
+        for (int c = 0; c < 6; c++) found[6 * i + c] = values[c] / scale;
+    }
+}
+
+// The largest error of displacements and of rotations, each against the largest.
+static double error_of(int segments, line_load load) {
+    const double scale = 1e-4;
+    blade b = blade_with(segments);
+    double *exact = bough_arena_doubles(b.arena, 6 * ((size_t)segments + 1));
+    double *found = bough_arena_doubles(b.arena, 6 * ((size_t)segments + 1));
+    double error[2] = {0, 0}, size[2] = {0, 0};
+    integrate(&b, load, exact);
+    solve(&b, load, scale, found);
+    for (int i = 0; i < 6 * (segments + 1); i++) {
+        int kind = i % 6 / 3;
+        error[kind] = fmax(error[kind], fabs(found[i] - exact[i]));
+        size[kind] = fmax(size[kind], fabs(exact[i]));
+    }
+    bough_arena_destroy(b.arena);
+    return fmax(error[0] / size[0], error[1] / size[1]);
+}
+
+// Another force and moment along each segment.
+static void steps(int n, double length, double s, double q[6]) {
+    static const double force[3] = {1, -0.5, 0.3}, moment[3] = {0.4, 0.7, 2};
+    int k = (int)bough_clamp(s * n / length, 0, n - 1);
+    for (int c = 0; c < 3; c++) q[c] = force[c] * cos(1 + k * (c + 1));
+    for (int c = 0; c < 3; c++) q[3 + c] = moment[c] * cos(2 + k * (c + 2));
+}
+
+static void twisting(int n, double length, double s, double q[6]) {
+    (void)n, (void)length, (void)s;
+    const double values[6] = {0, 0, 0, 0, 0, 1};
+    memcpy(q, values, sizeof values);
+}
+
+static void statics_is_exact_under_uniform_loads_on_segments(void **context) {
+    (void)context;
+    assert_true(error_of(12, twisting) < 1e-6);
+    assert_true(error_of(12, steps) < 1e-6);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(statics_is_exact_under_uniform_loads_on_segments),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,124 @@
+// Loads in ground axes on bodies that move: their resolution against statics on a turning arm, the motion
+// they make against that under gravity, and the contract of the system.
+#include "apps/bough/model/build.h"
+#include "tests/unit/built_scene.h"
+#include "tests/unit/contract.h"
+
+static const char scene[] = "tests/data/scenes/dead-load.yaml";
+
+static const char apart[] = "bodies[1].joint.parent=ground"; // the arm carries nothing
+
+static void run_to_end(bough_simulation *s) {
+    while (!bough_master_done(s->master)) scene_step(s);
+    bough_simulation_update(s);
+}
+
+// -- a light, stiff arm turned at a given speed ---------------------------------------------------
+
+// In every scheme the root's wrench is R^T (F, x × F + M).
+static void load_keeps_its_direction_while_the_arm_turns(void **context) {
+    (void)context;
+    const char *const schemes[] = {"monolithic", "ramp", "iterated", "gauss-seidel"};
+    const bough_vec3 force = {3, -2, -5}, moment = {0.5, 2, -1};
+    for (size_t k = 0; k < sizeof schemes / sizeof *schemes; k++) {
+        char scheme[64];
+        snprintf(scheme, sizeof scheme, "simulation.coupling={scheme: %s}", schemes[k]);
+        const char *const sets[] = {
+            scheme, "simulation.duration=1 s",
+            "bodies[0].joint={kind: revolute, axis: y, parent: ground, placement: [rotate z 25 deg, "
+            "rotate x 20 deg], motion: {angle: {from: 70 deg, to: 130 deg, ramp: [0, 0.9 s]}}}",
+            apart,
+            "bodies[0].rod.mass=[1e-3, 0, 0, 1e-7, 1e-7, 0]",
+            "bodies[0].rod.stiffness=[1e9, 1e9, 1e9, 1e7, 1e7, 1e7]",
+            "loads[0]={body: arm, at: tip, force: [3, -2, -5], moment: [0.5, 2, -1]}", NULL};
+        bough_arena *arena = bough_arena_create();
+        bough_simulation *s = scene_build(arena, scene, sets);
+        run_to_end(s);
+        const bough_beam *arm = &s->beam[0];
+        bough_mat3 r = bough_tree_frame_pose(s->view, &s->tree->markers[arm->marker]).rotation;
+        bough_vec3 f = bough_mat3_tmul(r, force), m = bough_mat3_tmul(r, moment);
+        m = bough_add(m, bough_cross(bough_v3(0, 0, 2), f));
+        const double expected[6] = {f.x, f.y, f.z, m.x, m.y, m.z};
+        double root[BOUGH_ROD_MOST_OUTPUTS];
+        bough_simulation_root(s, arm, 1, root);
+        for (int c = 0; c < 6; c++) check_near(root[c], expected[c], 0, 0.02);
+        bough_arena_destroy(arena);
+    }
+}
+
+// -- gravity --------------------------------------------------------------------------------------
+
+static bough_vec3 tip_after(const char *const *sets) {
+    bough_arena *arena = bough_arena_create();
+    bough_simulation *s = scene_build(arena, scene, sets);
+    run_to_end(s);
+    bough_quaternion rotation;
+    bough_vec3 tip = bough_simulation_beam_tip(s, &s->beam[0], &rotation);
+    bough_transform pose = bough_tree_frame_pose(s->view, &s->tree->markers[s->beam[0].marker]);
+    tip = bough_add(pose.position, bough_mat3_mul(pose.rotation, tip));
+    bough_arena_destroy(arena);
+    return tip;
+}
+
+static void pendulum_swings_as_under_gravity(const char *scheme, const char *body) {
+    const char *const heavy[] = {scheme, body, apart, "gravity=[1, -2, -9.8]", "loads[0].force=[0, 0, 0]",
+                                 NULL};
+    const char *const loaded[] = {scheme, body, apart, NULL};
+    bough_vec3 expected = tip_after(heavy), tip = tip_after(loaded);
+    check_near(bough_norm(bough_sub(tip, expected)), 0, 0, 1e-3);
+}
+
+static void load_of_a_weight_moves_a_pendulum_as_the_weight(void **context) {
+    (void)context;
+    const char *const rod = "title=rod";
+    pendulum_swings_as_under_gravity("simulation.coupling={scheme: monolithic}", rod);
+    pendulum_swings_as_under_gravity("simulation.coupling={scheme: ramp}", rod);
+    pendulum_swings_as_under_gravity("simulation.coupling={scheme: iterated}", rod);
+    pendulum_swings_as_under_gravity("simulation.coupling={scheme: monolithic}",
+                                     "bodies[0].fidelity=modal");
+}
+
+// A load at the end of a rod that carries a body is a load on that body.
+static void load_at_a_carrying_end_is_one_on_what_it_carries(void **context) {
+    (void)context;
+    const char *const on_rod[] = {
+        "loads[0]={body: arm, at: tip, force: [1, 2, -3], moment: [0.5, 2, -1]}", NULL};
+    const char *const on_body[] = {
+        "loads[0]={body: bob, force: [1, 2, -3], moment: [0.5, 2, -1]}", NULL};
+    bough_vec3 tip = tip_after(on_rod), expected = tip_after(on_body);
+    check_near(bough_norm(bough_sub(tip, expected)), 0, 0, 1e-6);
+}
+
+// -- the contract ---------------------------------------------------------------------------------
+
+static void check_contract(const char *const *sets) {
+    bough_arena *arena = bough_arena_create();
+    bough_simulation *s = scene_build(arena, scene, sets);
+    for (int k = 0; k < 20; k++) scene_step(s);
+    const bough_system *rod = &s->rod[0].system;
+    contract_point at = {s->master->time, s->rod[0].state,
+                         bough_simulation_rod_input(s, &s->beam[0]), 1e-5};
+    contract_check_system(rod, at, 1e-3);
+    contract_point tree = {s->master->time, s->leader.state, s->master->coupling->input, 1e-5};
+    contract_check_system(&s->leader.system, tree, 1e-3);
+    bough_arena_destroy(arena);
+}
+
+static void systems_fulfil_the_contract(void **context) {
+    (void)context;
+    const char *const rod[] = {apart, NULL}, *const carrying[] = {NULL};
+    const char *const modal[] = {apart, "bodies[0].fidelity=modal", NULL};
+    check_contract(rod);
+    check_contract(carrying);
+    check_contract(modal);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(load_keeps_its_direction_while_the_arm_turns),
+        cmocka_unit_test(load_of_a_weight_moves_a_pendulum_as_the_weight),
+        cmocka_unit_test(load_at_a_carrying_end_is_one_on_what_it_carries),
+        cmocka_unit_test(systems_fulfil_the_contract),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

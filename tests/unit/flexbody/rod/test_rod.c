@@ -1,0 +1,436 @@
+// The rod's forces, balances and tangents.
+#include "tests/unit/check.h"
+
+#include "flexbody/rod/rod_tangent.h"
+#include "tests/unit/sample_rod.h"
+
+#include <stdlib.h>
+
+enum { N = 7, STATES = BOUGH_ROD_STATES * N };
+
+typedef struct fixture {
+    bough_arena *arena;
+    bough_rod_model *model;
+    bough_rod_scratch scratch;
+    bough_rod_loads loads;
+    bough_rod_tangent tangent;
+    double state[STATES], input[BOUGH_ROD_INPUTS];
+} fixture;
+
+static int setup(void **context) {
+    static const double input[BOUGH_ROD_INPUTS] = {0.4, -0.3, 0.7, 0.5, -0.8, 0.6, 1, -2, -9};
+    fixture *f = calloc(1, sizeof *f);
+    f->arena = bough_arena_create();
+    f->model = sample_general(f->arena, N);
+    bough_rod_scratch_init(&f->scratch, f->arena, f->model);
+    bough_rod_loads_init(&f->loads, f->arena, f->model);
+    bough_rod_tangent_init(&f->tangent, f->arena, f->model);
+    memcpy(f->input, input, sizeof input);
+    sample_state(f->model, f->input, f->state);
+    sample_loads(f->model, &f->loads);
+    *context = f;
+    return 0;
+}
+
+static int teardown(void **context) {
+    fixture *f = *context;
+    bough_arena_destroy(f->arena);
+    free(f);
+    return 0;
+}
+
+static void derivative(fixture *f, const double *state, const double *input, double *rate) {
+    assert_true(bough_rod_derivative(f->model, &f->loads, 0.5, state, input, &f->scratch, rate));
+}
+
+// (f(y + εd) − f(y − εd))/2ε
+static void directional(fixture *f, const double *dstate, const double *dinput, double *d) {
+    const double eps = 3e-6;
+    double yp[STATES], ym[STATES], up[BOUGH_ROD_INPUTS], um[BOUGH_ROD_INPUTS], fm[STATES];
+    for (int k = 0; k < STATES; k++) {
+        yp[k] = f->state[k] + eps * dstate[k];
+        ym[k] = f->state[k] - eps * dstate[k];
+    }
+    for (int k = 0; k < BOUGH_ROD_INPUTS; k++) {
+        up[k] = f->input[k] + eps * dinput[k];
+        um[k] = f->input[k] - eps * dinput[k];
+    }
+    derivative(f, yp, up, d);
+    derivative(f, ym, um, fm);
+    for (int k = 0; k < STATES; k++) d[k] = (d[k] - fm[k]) / (2 * eps);
+}
+
+static void undeformed_rod_moving_rigidly_feels_no_stress(void **context) {
+    fixture *f = *context;
+    double wrench[6];
+    memset(f->loads.value, 0, 6 * (size_t)f->model->stride * sizeof(double));
+    memset(f->loads.rate, 0, 6 * (size_t)f->model->stride * sizeof(double));
+    bough_rod_rest_state(f->model, f->input, f->state);
+    bough_rod_gather(f->model, f->state, f->input, &f->scratch);
+    assert_true(bough_rod_forces(f->model, 0, N, &f->scratch));
+    for (int k = 0; k < 9; k++) {
+        for (int n = 0; n < N; n++) {
+            check_near(f->scratch.segment[k * f->model->stride + n], 0, 0, 1e-12);
+        }
+    }
+    bough_rod_root_wrench(f->model, &f->loads, 0, f->state, f->input, &f->scratch, wrench);
+    for (int k = 0; k < 6; k++) check_near(wrench[k], 0, 0, 1e-12);
+}
+
+// Without damping the power of the vertex forces is minus the rate of the elastic energy.
+static void forces_are_the_gradient_of_the_energy(void **context) {
+    fixture *f = *context;
+    bough_rod_model *m = f->model;
+    int s = m->stride;
+    double rate[STATES], energy[2];
+    memset(m->damping, 0, 21 * (size_t)s * sizeof(double));
+    double still[BOUGH_ROD_INPUTS] = {0};
+    memset(f->loads.value, 0, 6 * (size_t)s * sizeof(double));
+    memset(f->loads.rate, 0, 6 * (size_t)s * sizeof(double));
+    derivative(f, f->state, still, rate);
+    const double *seg = f->scratch.segment, *v = f->scratch.vertex;
+    double power = 0;
+    for (int i = 1; i <= N; i++) {
+        for (int c = 0; c < 3; c++) {
+            power += (seg[c * s + i] - seg[c * s + i - 1]) * v[(BOUGH_ROD_U + c) * s + i];
+            power += (seg[(3 + c) * s + i] + seg[(6 + c) * s + i - 1]) * v[(BOUGH_ROD_W + c) * s + i];
+        }
+    }
+    for (int side = 0; side < 2; side++) {
+        double moved[STATES], eps = side == 0 ? -1e-6 : 1e-6;
+        for (int k = 0; k < STATES; k++) moved[k] = f->state[k] + eps * rate[k];
+        bough_rod_gather(m, moved, still, &f->scratch);
+        energy[side] = bough_rod_elastic_energy(m, &f->scratch);
+    }
+    check_near(power, -(energy[1] - energy[0]) / 2e-6, 1e-7, 0);
+}
+
+static void check_newton(fixture *f) {
+    const double gammas[] = {1e-3, 0.07, 0.4};
+    for (int g = 0; g < 3; g++) {
+        unsigned seed = 3;
+        double d[STATES], jd[STATES], b[STATES], none[BOUGH_ROD_INPUTS] = {0};
+        for (int k = 0; k < STATES; k++) d[k] = sample_random(&seed);
+        directional(f, d, none, jd);
+        for (int k = 0; k < STATES; k++) b[k] = d[k] - gammas[g] * jd[k];
+        assert_true(
+            bough_rod_linearise(f->model, &f->loads, 0.5, f->state, f->input, &f->scratch, &f->tangent));
+        assert_true(bough_rod_factor(f->model, &f->tangent, gammas[g]));
+        bough_rod_solve(f->model, &f->tangent, b);
+        for (int k = 0; k < STATES; k++) check_near(b[k], d[k], 0, 2e-7);
+    }
+}
+
+static void newton_solution_inverts_the_jacobian(void **context) { check_newton(*context); }
+
+// A rod of any number of segments, in a strongly deformed state.
+typedef struct sized {
+    bough_arena *arena;
+    bough_rod_model *model;
+    bough_rod_scratch scratch;
+    bough_rod_loads loads;
+    bough_rod_tangent tangent;
+    double *state, *x, *rate, *moved; // (13 n)
+    double input[BOUGH_ROD_MOST_INPUTS];
+} sized;
+
+static sized build_sized(int n_segment, bool carries) {
+    sized r = {.arena = bough_arena_create(), .input = {0.4, -0.3, 0.7, 0.5, -0.8, 0.6, 1, -2, -9}};
+    r.model = sample_general_as(r.arena, n_segment, carries);
+    bough_rod_scratch_init(&r.scratch, r.arena, r.model);
+    bough_rod_loads_init(&r.loads, r.arena, r.model);
+    bough_rod_tangent_init(&r.tangent, r.arena, r.model);
+    double **const arrays[] = {&r.state, &r.x, &r.rate, &r.moved};
+    for (int k = 0; k < 4; k++) {
+        *arrays[k] = bough_arena_doubles(r.arena, BOUGH_ROD_STATES * (size_t)r.model->n);
+    }
+    sample_state(r.model, r.input, r.state);
+    sample_loads(r.model, &r.loads);
+    bough_vec3 x = r.model->position0[n_segment];
+    bough_quaternion p = r.model->rotation0[n_segment];
+    const double end[BOUGH_ROD_END_INPUTS] = {0.1, 0.2, 0.3, 0.3, 0.2, 0.1, x.x,
+                                              x.y, x.z, p.w, p.x, p.y, p.z};
+    memcpy(r.input + BOUGH_ROD_INPUTS, end, sizeof end);
+    return r;
+}
+
+// (I − γJ) d for a random d into x, by differences; d itself by the solution.
+static void check_sized(int n_segment, bool carries) {
+    const double eps = 1e-6, gamma = 0.07;
+    sized r = build_sized(n_segment, carries);
+    int count = BOUGH_ROD_STATES * r.model->n;
+    for (int side = -1; side <= 1; side += 2) {
+        unsigned seed = 3;
+        for (int k = 0; k < count; k++) r.moved[k] = r.state[k] + side * eps * sample_random(&seed);
+        assert_true(bough_rod_derivative(r.model, &r.loads, 0.5, r.moved, r.input, &r.scratch, r.rate));
+        for (int k = 0; k < count; k++) r.x[k] -= side * gamma * r.rate[k] / (2 * eps);
+    }
+    unsigned seed = 3;
+    for (int k = 0; k < count; k++) r.x[k] += sample_random(&seed);
+    assert_true(bough_rod_linearise(r.model, &r.loads, 0.5, r.state, r.input, &r.scratch, &r.tangent));
+    assert_true(bough_rod_factor(r.model, &r.tangent, gamma));
+    bough_rod_solve(r.model, &r.tangent, r.x);
+    seed = 3;
+    for (int k = 0; k < count; k++) check_near(r.x[k], sample_random(&seed), 0, 1e-6);
+    bough_arena_destroy(r.arena);
+}
+
+// Segments go by eight: fewer, just as many, one more.
+static void newton_solution_holds_for_any_number_of_segments(void **context) {
+    (void)context;
+    const int sizes[] = {1, 2, 7, 8, 9, 16, 17, 25};
+    for (int k = 0; k < 8; k++) {
+        check_sized(sizes[k], false);
+        if (sizes[k] > 1) check_sized(sizes[k], true);
+    }
+}
+
+// What is left out depends on neither time nor input.
+static void second_evaluation_at_a_state_is_the_same(void **context) {
+    (void)context;
+    for (int carries = 0; carries < 2; carries++) {
+        sized r = build_sized(11, carries);
+        int count = BOUGH_ROD_STATES * r.model->n;
+        const bough_rod_loads *l = &r.loads;
+        bough_rod_derivative(r.model, l, 0.5, r.state, r.input, &r.scratch, r.rate);
+        for (int k = 0; k < 12; k++) r.input[k] += 0.1 * k - 0.3;
+        assert_true(bough_rod_derivative_again(r.model, l, 0.75, r.state, r.input, &r.scratch, r.x));
+        assert_true(bough_rod_derivative(r.model, l, 0.75, r.state, r.input, &r.scratch, r.rate));
+        for (int k = 0; k < count; k++) check_near(r.x[k], r.rate[k], 1e-12, 1e-12);
+        bough_arena_destroy(r.arena);
+    }
+}
+
+// Half of the ramp is reached at the time of evaluation.
+static bough_rod_ramped_load *ramped(fixture *f, bool follower) {
+    const double ramp[2] = {0.25, 0.75};
+    bough_rod_ramped_load *l = bough_rod_loads_ramped(&f->loads, f->arena, f->model, follower, ramp);
+    assert_non_null(l);
+    assert_ptr_equal(l, bough_rod_loads_ramped(&f->loads, f->arena, f->model, follower, ramp));
+    return l;
+}
+
+static void newton_solution_knows_follower_loads(void **context) {
+    fixture *f = *context;
+    unsigned seed = 21;
+    double *follower = ramped(f, true)->value, *dead = ramped(f, false)->value;
+    for (int k = 0; k < 6 * f->model->stride; k++) {
+        follower[k] = 5 * sample_random(&seed);
+        dead[k] = 5 * sample_random(&seed);
+    }
+    check_newton(f);
+}
+
+// Loads that follow the vertices' motion, about the rotations of the state.
+static void newton_solution_knows_loads_that_follow_the_motion(void **context) {
+    fixture *f = *context;
+    unsigned seed = 27;
+    int s = f->model->stride;
+    f->loads.damped = true;
+    for (int v = 1; v <= N; v++) {
+        for (int k = 0; k < 12; k++) f->loads.slope[k * s + v] = 5 * sample_random(&seed);
+        const double *p = f->state + BOUGH_ROD_P * N + v - 1;
+        double w = p[0], x = p[N], y = p[2 * N], z = p[3 * N];
+        double scale = 2 / sqrt(w * w + x * x + y * y + z * z);
+        const double row[4] = {-scale * z, scale * y, -scale * x, scale * w};
+        for (int k = 0; k < 4; k++) f->loads.angle[k * s + v] = row[k];
+    }
+    check_newton(f);
+}
+
+// Random loads along all segments, dead ones and followers, and strains by them.
+static void lay_along(fixture *f) {
+    unsigned seed = 23;
+    bough_rod_ramped_load *load[2] = {ramped(f, true), ramped(f, false)};
+    for (int k = 0; k < 36 * f->model->stride; k++) f->model->line[k] = 0.05 * sample_random(&seed);
+    for (int kind = 0; kind < 2; kind++) {
+        load[kind]->along = true;
+        for (int k = 0; k < 6 * f->model->stride; k++) load[kind]->line[k] = 5 * sample_random(&seed);
+    }
+}
+
+// D q turns in the segments where the loads along them are dead.
+static void newton_solution_knows_loads_along_segments(void **context) {
+    fixture *f = *context;
+    lay_along(f);
+    check_newton(f);
+}
+
+static void second_evaluation_knows_loads_along_segments(void **context) {
+    fixture *f = *context;
+    double first[STATES], again[STATES];
+    lay_along(f);
+    derivative(f, f->state, f->input, first);
+    assert_true(bough_rod_derivative_again(f->model, &f->loads, 0.7, f->state, f->input, &f->scratch, again));
+    assert_true(bough_rod_derivative(f->model, &f->loads, 0.7, f->state, f->input, &f->scratch, first));
+    for (int k = 0; k < STATES; k++) check_near(again[k], first[k], 1e-12, 1e-12);
+}
+
+// Between the two the coupled bodies ask for the wrench at the later time.
+static void second_evaluation_is_no_other_after_a_wrench(void **context) {
+    fixture *f = *context;
+    double first[STATES], again[2][STATES], wrench[6], change = 0;
+    unsigned seed = 29;
+    f->loads.moving = true;
+    for (int k = 0; k < 6 * f->model->stride; k++) f->loads.rest_rate[k] = 0.01 * sample_random(&seed);
+    for (int asked = 0; asked < 2; asked++) {
+        derivative(f, f->state, f->input, first);
+        if (asked) {
+            bough_rod_root_wrench(f->model, &f->loads, 0.7, f->state, f->input, &f->scratch, wrench);
+        }
+        assert_true(bough_rod_derivative_again(f->model, &f->loads, 0.7, f->state, f->input, &f->scratch,
+                                               again[asked]));
+    }
+    for (int k = 0; k < STATES; k++) {
+        assert_true(again[0][k] == again[1][k]);
+        change = fmax(change, fabs(again[0][k] - first[k]));
+    }
+    assert_true(change > 1e-3);
+}
+
+// A follower load is at every state the dead load that its section's rotation makes of it.
+static void follower_load_turns_with_its_section(void **context) {
+    fixture *f = *context;
+    int s = f->model->stride;
+    unsigned seed = 8;
+    double with[STATES], same[STATES], wrench[2][6];
+    double *value = ramped(f, true)->value;
+    for (int k = 0; k < 6 * s; k++) value[k] = sample_random(&seed);
+    derivative(f, f->state, f->input, with);
+    bough_rod_root_wrench(f->model, &f->loads, 0.5, f->state, f->input, &f->scratch, wrench[0]);
+    f->loads.ramped = NULL;
+    for (int i = 0; i <= N; i++) {
+        bough_quaternion p = f->model->rotation0[0];
+        const double *y = f->state + i - 1;
+        if (i > 0) p = (bough_quaternion){y[3 * N], y[4 * N], y[5 * N], y[6 * N]};
+        bough_mat3 r = bough_rotation_matrix(bough_quaternion_normalised(p));
+        for (int c = 0; c < 6; c += 3) {
+            bough_vec3 part = {value[c * s + i], value[(c + 1) * s + i], value[(c + 2) * s + i]};
+            part = bough_scale(0.5, bough_mat3_mul(r, part));
+            f->loads.value[c * s + i] += part.x;
+            f->loads.value[(c + 1) * s + i] += part.y;
+            f->loads.value[(c + 2) * s + i] += part.z;
+        }
+    }
+    derivative(f, f->state, f->input, same);
+    bough_rod_root_wrench(f->model, &f->loads, 0.5, f->state, f->input, &f->scratch, wrench[1]);
+    for (int k = 0; k < STATES; k++) check_near(with[k], same[k], 1e-12, 1e-12);
+    for (int k = 0; k < 6; k++) check_near(wrench[0][k], wrench[1][k], 1e-12, 1e-12);
+}
+
+static void ramped_load_grows_between_its_times(void **context) {
+    (void)context;
+    const bough_rod_ramped_load step = {.start = 2, .end = 2}, ramp = {.start = 1, .end = 3};
+    const bough_rod_ramped_load always = {.start = 0, .end = 0};
+    const double times[2] = {1, 2}, factors[2] = {-1, 3};
+    const bough_rod_ramped_load table = {.n = 2, .times = times, .factors = factors};
+    check_near(bough_rod_ramp_factor(&always, -1), 1, 0, 0);
+    check_near(bough_rod_ramp_factor(&step, 1.999), 0, 0, 0);
+    check_near(bough_rod_ramp_factor(&step, 2), 1, 0, 0);
+    check_near(bough_rod_ramp_factor(&table, 0), -1, 0, 0);
+    check_near(bough_rod_ramp_factor(&table, 1.25), 0, 0, 1e-15);
+    check_near(bough_rod_ramp_factor(&table, 4), 3, 0, 0);
+    check_near(bough_rod_ramp_factor(&ramp, 0.5), 0, 0, 0);
+    check_near(bough_rod_ramp_factor(&ramp, 1.5), 0.25, 0, 1e-15);
+    check_near(bough_rod_ramp_factor(&ramp, 4), 1, 0, 0);
+}
+
+static void input_columns_match_differences(void **context) {
+    fixture *f = *context;
+    double column[BOUGH_ROD_INPUTS * STATES], d[STATES], none[STATES] = {0};
+    bough_rod_input_columns(f->model, &f->loads, 0.5, f->state, f->input, &f->scratch, column);
+    for (int j = 0; j < BOUGH_ROD_INPUTS; j++) {
+        double unit[BOUGH_ROD_INPUTS] = {0};
+        unit[j] = 1;
+        directional(f, none, unit, d);
+        for (int k = 0; k < STATES; k++) check_near(column[j * STATES + k], d[k], 0, 1e-7);
+    }
+}
+
+static void check_wrench_tangent(fixture *f) {
+    unsigned seed = 9;
+    const double eps = 1e-6;
+    double ds[STATES], du[BOUGH_ROD_INPUTS], y[STATES], u[BOUGH_ROD_INPUTS], side[2][6], d[6];
+    for (int k = 0; k < STATES; k++) ds[k] = sample_random(&seed);
+    for (int k = 0; k < BOUGH_ROD_INPUTS; k++) du[k] = sample_random(&seed);
+    for (int s = 0; s < 2; s++) {
+        double step = s == 0 ? -eps : eps;
+        for (int k = 0; k < STATES; k++) y[k] = f->state[k] + step * ds[k];
+        for (int k = 0; k < BOUGH_ROD_INPUTS; k++) u[k] = f->input[k] + step * du[k];
+        bough_rod_root_wrench(f->model, &f->loads, 0.5, y, u, &f->scratch, side[s]);
+    }
+    bough_rod_variation at = {f->state, f->input, ds, du};
+    bough_rod_wrench_tangent(f->model, &f->loads, 0.5, &at, &f->scratch, d);
+    for (int k = 0; k < 6; k++) check_near(d[k], (side[1][k] - side[0][k]) / (2 * eps), 1e-7, 1e-7);
+    double kept[6];
+    assert_true(bough_rod_linearise(f->model, &f->loads, 0.5, f->state, f->input, &f->scratch, &f->tangent));
+    bough_rod_kept_wrench_tangent(f->model, &f->tangent, ds, du, kept);
+    for (int k = 0; k < 6; k++) check_near(kept[k], d[k], 1e-12, 1e-12);
+}
+
+static void wrench_tangent_matches_differences(void **context) { check_wrench_tangent(*context); }
+
+static void wrench_tangent_knows_loads_along_segments(void **context) {
+    lay_along(*context);
+    check_wrench_tangent(*context);
+}
+
+// p and −p are the same rotation at any vertex.
+static void quaternion_sign_does_not_matter(void **context) {
+    fixture *f = *context;
+    double a[STATES], b[STATES];
+    derivative(f, f->state, f->input, a);
+    for (int c = 3; c < 7; c++) f->state[c * N + 3] *= -1;
+    derivative(f, f->state, f->input, b);
+    for (int k = 7 * N; k < STATES; k++) check_near(b[k], a[k], 0, 1e-12 * fabs(a[k]) + 1e-12);
+}
+
+// A rod carried by a turning frame moves as the same rod seen from the frame at rest.
+static void motion_does_not_depend_on_the_frame(void **context) {
+    fixture *f = *context;
+    double rate[STATES], seen[STATES], still[BOUGH_ROD_INPUTS] = {0, 0, 0, 0, 0, 0, 1, -2, -9};
+    // the first segment would feel the root's motion: compare the vertices beyond it
+    derivative(f, f->state, still, rate);
+    derivative(f, f->state, f->input, seen);
+    bough_vec3 omega = {f->input[3], f->input[4], f->input[5]};
+    for (int i = 1; i < N; i++) {
+        bough_vec3 u = {f->state[7 * N + i], f->state[8 * N + i], f->state[9 * N + i]};
+        bough_vec3 turn = bough_cross(omega, u);
+        check_near(seen[7 * N + i] + turn.x, rate[7 * N + i], 1e-12, 1e-12);
+        check_near(seen[8 * N + i] + turn.y, rate[8 * N + i], 1e-12, 1e-12);
+        check_near(seen[10 * N + i], rate[10 * N + i], 1e-12, 1e-12);
+    }
+}
+
+static void overturned_segment_is_refused(void **context) {
+    fixture *f = *context;
+    double rate[STATES];
+    double half[4] = {0, 1, 0, 0};
+    for (int c = 0; c < 4; c++) f->state[(3 + c) * N + 4] = half[c];
+    bool ok = bough_rod_derivative(f->model, &f->loads, 0, f->state, f->input, &f->scratch, rate);
+    assert_false(ok);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test_setup_teardown(undeformed_rod_moving_rigidly_feels_no_stress, setup, teardown),
+        cmocka_unit_test_setup_teardown(forces_are_the_gradient_of_the_energy, setup, teardown),
+        cmocka_unit_test_setup_teardown(newton_solution_inverts_the_jacobian, setup, teardown),
+        cmocka_unit_test(newton_solution_holds_for_any_number_of_segments),
+        cmocka_unit_test(second_evaluation_at_a_state_is_the_same),
+        cmocka_unit_test_setup_teardown(newton_solution_knows_follower_loads, setup, teardown),
+        cmocka_unit_test_setup_teardown(newton_solution_knows_loads_along_segments, setup, teardown),
+        cmocka_unit_test_setup_teardown(newton_solution_knows_loads_that_follow_the_motion, setup, teardown),
+        cmocka_unit_test_setup_teardown(second_evaluation_knows_loads_along_segments, setup, teardown),
+        cmocka_unit_test_setup_teardown(second_evaluation_is_no_other_after_a_wrench, setup, teardown),
+        cmocka_unit_test_setup_teardown(wrench_tangent_knows_loads_along_segments, setup, teardown),
+        cmocka_unit_test_setup_teardown(follower_load_turns_with_its_section, setup, teardown),
+        cmocka_unit_test(ramped_load_grows_between_its_times),
+        cmocka_unit_test_setup_teardown(input_columns_match_differences, setup, teardown),
+        cmocka_unit_test_setup_teardown(wrench_tangent_matches_differences, setup, teardown),
+        cmocka_unit_test_setup_teardown(quaternion_sign_does_not_matter, setup, teardown),
+        cmocka_unit_test_setup_teardown(motion_does_not_depend_on_the_frame, setup, teardown),
+        cmocka_unit_test_setup_teardown(overturned_segment_is_refused, setup, teardown),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,70 @@
+// The small turbine of tests/data/decks in a scratch folder, changed, and imported.
+#ifndef BOUGH_TESTS_IMPORT_DECK_H
+#define BOUGH_TESTS_IMPORT_DECK_H
+
+#include "tests/unit/import.h"
+
+#include "aero/wind/wind_box.h"
+#include "apps/bough/results/folder.h"
+
+static const char *const decks[] = {
+    "main.fst",        "parts/elasto.dat",     "parts/blade.dat",       "parts/tower.dat",
+    "parts/beam.dat",  "parts/beam-blade.dat", "parts/wind.dat",        "parts/aero.dat",
+    "parts/servo.dat", "parts/aero-blade.dat", "parts/foils/round.dat", "parts/foils/flat.dat",
+    "v4/main.fst",     "v4/elasto.dat",        "v4/blade.dat",          "v4/aero.dat",
+    "v5/main.fst",     "v5/elasto.dat",        "v5/aero-blade.dat",     "v5/aero.dat",
+    "v5/servo.dat",    "v5/beam.dat",          "v5/beam-blade.dat",
+};
+enum { N_DECK = sizeof decks / sizeof *decks };
+
+// A box of 12 m/s with steps of 2 m/s across, in parts/box.bts; it lasts long and repeats.
+static inline void write_box(const char *folder) {
+    enum { TIMES = 8 };
+    char path[SCRATCH_PATH];
+    int16_t value[TIMES * 4 * 3];
+    for (int i = 0; i < TIMES * 4; i++) {
+        value[3 * i] = (int16_t)(1200 + (i % 2 ? 100 : -100));
+        value[3 * i + 1] = value[3 * i + 2] = 0;
+    }
+    const bough_wind_box box = {.periodic = true, .n_z = 2, .n_y = 2, .n_time = TIMES, .dz = 30,
+                                .dy = 30, .dt = 0.5, .mean = 12, .hub = 21, .bottom = 6,
+                                .scale = {0.01, 0.01, 0.01}, .value = value};
+    snprintf(path, sizeof path, "%s/parts/box.bts", folder);
+    FILE *file = fopen(path, "wb");
+    assert_non_null(file);
+    assert_true(bough_wind_box_write(&box, "test", file));
+    fclose(file);
+}
+
+// Imports the decks under this main file with two texts replaced (NULL: none).
+static inline trial import_given(const char *main, const edit *one, const edit *two,
+                                 const bough_import_options *options) {
+    static const char *const folder[] = {"parts/foils", "v4", "v5"};
+    trial t = {.arena = bough_arena_create()};
+    char path[SCRATCH_PATH];
+    assert_non_null(mkdtemp(scratch_name(t.folder)));
+    for (int i = 0; i < 3; i++) {
+        snprintf(path, sizeof path, "%s/%s", t.folder, folder[i]);
+        bough_status made = bough_folder_make(path);
+        assert_true(bough_is_ok(&made));
+    }
+    for (int i = 0; i < N_DECK; i++)
+        copy_deck(t.folder, decks[i], one, two);
+    write_box(t.folder);
+    snprintf(path, sizeof path, "%s/%s", t.folder, main);
+    snprintf(t.out, sizeof t.out, "%s/out", t.folder);
+    t.status = bough_import_openfast(path, t.out, options, NULL);
+    return t;
+}
+
+static inline trial import_main(const char *main, const edit *one, const edit *two) {
+    return import_given(main, one, two, &(bough_import_options){0});
+}
+
+static inline trial import_with(const edit *one, const edit *two) {
+    return import_main("main.fst", one, two);
+}
+
+static inline trial import(const edit *change) { return import_with(change, NULL); }
+
+#endif

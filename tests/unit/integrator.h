@@ -1,0 +1,12 @@
+// An integrator stepped by itself, for tests.
+#ifndef BOUGH_TESTS_INTEGRATOR_H
+#define BOUGH_TESTS_INTEGRATOR_H
+
+#include "core/solve/integrator.h"
+
+static inline bough_status integrator_advance(const bough_integrator *i, double t, double t1,
+                                              bool restart, double *y) {
+    return i->ops->advance(i->self, &t, t1, t1, restart, y);
+}
+
+#endif

@@ -1,0 +1,228 @@
+// What follows from simulation.accuracy: the settings that a scene does not name, and the error that they
+// leave.
+#include "apps/bough/model/run.h"
+#include "tests/unit/built_scene.h"
+#include "tests/unit/scene_text.h"
+
+// -- settings -------------------------------------------------------------------------------------
+
+#define BAR(keys)                                                                                            \
+    "simulation: {duration: 1.2 s" keys "}\nbodies:\n"                                                       \
+    "  - {name: b, fidelity: rod, joint: {kind: fixed, parent: ground}, rod: {length: 2,\n"                  \
+    "      stiffness: [1, 1, 1, 1, 1, 1], mass: [1, 0, 0, 1, 1, 0]}}\n"
+
+static fixture accepted(const char *text) {
+    write_file("s.yaml", text);
+    fixture f = read_scene("s.yaml", NULL, 0);
+    assert_string_equal(f.printed, "");
+    return f;
+}
+
+static void everything_follows_from_the_default(void **state) {
+    (void)state;
+    fixture f = accepted(BAR(""));
+    const bough_scene_simulation *s = &f.scene->simulation;
+    check_near(s->accuracy, 0.005, 0, 0);
+    assert_string_equal(bough_scheme_name(s->coupling.scheme), "monolithic");
+    assert_int_equal(s->master.solver, BOUGH_AUTOMATIC);
+    check_near(s->master.rtol, 5e-5, 1e-12, 0);
+    check_near(s->master.step, 0, 0, 0);
+    check_near(s->micro.rtol, 1e-4, 1e-12, 0);
+    check_near(s->micro.step, 5e-3, 1e-12, 0);
+    check_near(s->macro_step, 0.01, 1e-12, 0); // at least a hundred, of which the duration is a multiple
+    check_near(s->output.interval, s->macro_step, 0, 0);
+    assert_int_equal(f.scene->body[0].rod.n_segment, 32);
+    stop(&f);
+}
+
+static void everything_scales_with_the_accuracy(void **state) {
+    (void)state;
+    fixture f = accepted(BAR(", accuracy: 0.02"));
+    check_near(f.scene->simulation.master.rtol, 2e-4, 1e-12, 0);
+    check_near(f.scene->simulation.micro.step, 10e-3, 1e-12, 0);
+    assert_int_equal(f.scene->body[0].rod.n_segment, 16);
+    stop(&f);
+    f = accepted(BAR(", accuracy: 0.001, macro_step: 20 ms"));
+    check_near(f.scene->simulation.master.rtol, 1e-5, 1e-12, 0);
+    assert_int_equal(f.scene->body[0].rod.n_segment, 72);
+    stop(&f);
+    f = accepted(BAR(", accuracy: 5e-6"));
+    check_near(f.scene->simulation.master.rtol, 5e-8, 1e-12, 0);
+    assert_int_equal(f.scene->simulation.master.solver, BOUGH_IDA); // as with that rtol named
+    stop(&f);
+}
+
+// A key that is named holds; those beside it still follow.
+static void keys_replace_one_by_one(void **state) {
+    (void)state;
+    fixture f = accepted(BAR(", master: {rtol: 1e-3}"));
+    assert_int_equal(f.scene->simulation.master.solver, BOUGH_AUTOMATIC);
+    check_near(f.scene->simulation.master.rtol, 1e-3, 1e-12, 0);
+    check_near(f.scene->simulation.micro.rtol, 1e-4, 1e-12, 0);
+    stop(&f);
+    f = accepted(BAR(", master: {solver: radau5}"));
+    assert_int_equal(f.scene->simulation.master.solver, BOUGH_RADAU5);
+    check_near(f.scene->simulation.master.rtol, 5e-5, 1e-12, 0);
+    stop(&f);
+    f = accepted(BAR(", coupling: {scheme: monolithic}"));
+    assert_int_equal(f.scene->simulation.master.solver, BOUGH_AUTOMATIC);
+    stop(&f);
+    f = accepted(BAR(", coupling: {scheme: ramp}, micro: {solver: rosenbrock}"));
+    assert_int_equal(f.scene->simulation.master.solver, BOUGH_IDA);
+    check_near(f.scene->simulation.master.rtol, 1e-6, 1e-12, 0);
+    check_near(f.scene->simulation.micro.rtol, 1e-4, 1e-12, 0);
+    check_near(f.scene->simulation.micro.step, 5e-3, 1e-12, 0);
+    stop(&f);
+    f = accepted(BAR(", macro_step: 40 ms"));
+    check_near(f.scene->simulation.macro_step, 0.04, 1e-12, 0);
+    stop(&f);
+    f = accepted(BAR(", output: {interval: 15 ms}"));
+    check_near(f.scene->simulation.macro_step, 0.005, 1e-12, 0); // 15 ms and 1.2 s are multiples
+    stop(&f);
+}
+
+static void durations_without_a_round_step_are_divided(void **state) {
+    (void)state;
+    fixture f = accepted("simulation: {duration: 0.777777777}\nbodies:\n" BODY("a", "ground"));
+    double count = 0.777777777 / f.scene->simulation.macro_step;
+    check_near(count, 100, 1e-9, 0);
+    stop(&f);
+}
+
+#define TURBINE(keys)                                                                                        \
+    "simulation: {duration: 12 s" keys "}\nbodies:\n"                                                        \
+    "  - {name: hub, mass: 1, fidelity: rigid, joint: {kind: revolute, parent: ground, axis: x}}\n"          \
+    "  - {name: b, fidelity: rod, joint: {kind: fixed, parent: hub}, rod: {length: 60,\n"                    \
+    "      stiffness: [1, 1, 1, 1, 1, 1], mass: [1, 0, 0, 1, 1, 0]}}\n"                                      \
+    "turbine: {rotor: hub, blades: [b]}\n"                                                                   \
+    "aero: {wind: {speed: 8}, blade: aero.yaml, polars: polars.yaml, hub_radius: 3}\n"
+
+// Samples of the air lie 1.55 degrees of a tip at 80 m/s apart, in whole macro steps.
+static void the_rate_of_the_air_follows_the_radius(void **state) {
+    (void)state;
+    static const struct {
+        const char *text;
+        double macro_step, rate;
+    } cases[] = {
+        {TURBINE(""), 20e-3, 50},
+        {TURBINE(", macro_step: 4 ms"), 4e-3, 50},
+        {TURBINE(", macro_step: 50 ms"), 50e-3, 20}, // no finer than the step
+        {TURBINE(", accuracy: 0.001"), 10e-3, 100},
+        {TURBINE(", accuracy: 0.001, macro_step: 2 ms"), 2e-3, 1 / 0.012},
+        {TURBINE(", accuracy: 0.04"), 20e-3, 25},
+    };
+    write_file("aero.yaml", "stations:\n- {span: 0, chord: 1, polar: p}\n- {span: 60, chord: 1, polar: p}\n");
+    write_file("polars.yaml", "polars:\n- name: p\n  table: {columns: [alpha deg, cl, cd, cm],\n"
+                              "    rows: [[-180, 0, 0, 0], [180, 0, 0, 0]]}\n");
+    for (size_t k = 0; k < sizeof cases / sizeof *cases; k++) {
+        fixture f = accepted(cases[k].text);
+        check_near(f.scene->simulation.macro_step, cases[k].macro_step, 1e-12, 0);
+        check_near(f.scene->aero.rate, cases[k].rate, 1e-9, 0);
+        stop(&f);
+    }
+}
+
+// -- errors ---------------------------------------------------------------------------------------
+
+enum { MOST_CHANNELS = 160, MOST_ROWS = 301, MOST_SETS = 16 };
+
+typedef struct recorded {
+    int n_channel, n_row;
+    double row[MOST_ROWS][MOST_CHANNELS];
+} recorded;
+
+static void record(const char *path, const char *const *sets, const char *last, recorded *r) {
+    const char *all[MOST_SETS] = {"simulation.error_estimate=none"};
+    int n = 1;
+    for (; *sets; sets++) all[n++] = *sets;
+    all[n] = last;
+    bough_arena *arena = bough_arena_create();
+    bough_run run;
+    bough_status status = bough_run_create(arena, scene_read(arena, path, all), &run);
+    assert_int_equal(status.code, BOUGH_OK);
+    r->n_channel = run.channels.count;
+    assert_true(r->n_channel <= MOST_CHANNELS);
+    bough_run_start(&run);
+    for (r->n_row = 0; !bough_run_done(&run); r->n_row++) {
+        assert_true(r->n_row < MOST_ROWS);
+        status = bough_run_step(&run);
+        assert_int_equal(status.code, BOUGH_OK);
+        memcpy(r->row[r->n_row], bough_run_values(&run), (size_t)r->n_channel * sizeof(double));
+    }
+    bough_arena_destroy(arena);
+}
+
+// The largest error of a channel over the range of all that is as large as a thousandth of the largest range.
+static double error_of(const recorded *r, const recorded *truth) {
+    assert_int_equal(r->n_row, truth->n_row);
+    double worst = 0;
+    for (int i = 0; i < r->n_channel; i++) {
+        double low = truth->row[0][i], high = low, error = 0, size = 0;
+        for (int k = 0; k < r->n_row; k++) {
+            double value = truth->row[k][i];
+            low = fmin(low, value);
+            high = fmax(high, value);
+            size = fmax(size, fabs(value));
+            error = fmax(error, fabs(r->row[k][i] - value));
+        }
+        if (high - low > 1e-3 * fmax(size, 1)) worst = fmax(worst, error / (high - low));
+    }
+    return worst;
+}
+
+static void check_errors(const char *path, const char *const *sets) {
+    static const char *const accuracies[] = {"simulation.accuracy=0.02", "simulation.accuracy=0.005",
+                                             "simulation.accuracy=0.001"};
+    static const double bound[] = {0.02, 0.005, 0.001};
+    static recorded run, truth;
+    double error[3];
+    record(path, sets, "simulation.master={solver: ida, rtol: 1e-9}", &truth);
+    for (int k = 0; k < 3; k++) {
+        record(path, sets, accuracies[k], &run);
+        error[k] = error_of(&run, &truth);
+        print_message("%s, %s: %.2g\n", path, accuracies[k], error[k]);
+    }
+    for (int k = 0; k < 3; k++) assert_true(error[k] < 2 * bound[k]);
+    assert_true(error[1] < 0.7 * error[0] && error[2] < 0.7 * error[1]);
+}
+
+static void errors_of_a_bar(void **state) {
+    (void)state;
+    static const char *const sets[] = {"simulation.coupling={}",
+                                       "simulation.master={}",
+                                       "simulation.micro={}",
+                                       "simulation.macro_step=10 ms",
+                                       "simulation.output.interval=10 ms",
+                                       NULL};
+    check_errors("apps/beams/rubber-bar.yaml", sets);
+}
+
+static void errors_of_a_four_bar(void **state) {
+    (void)state;
+    static const char *const sets[] = {"simulation.master={}", "simulation.duration=0.8 s",
+                                       "simulation.macro_step=40 ms", NULL}; // before the first pass
+    check_errors("apps/mechanisms/four-bar.yaml", sets);
+}
+
+static void errors_of_a_turbine(void **state) {
+    (void)state;
+    static const char *const sets[] = {
+        "simulation.coupling={}",        "simulation.master={}",          "simulation.micro={}",
+        "simulation.duration=4 s",       "bodies[blade1].rod.segments=6", "bodies[blade2].rod.segments=6",
+        "bodies[blade3].rod.segments=6", "aero.ramp=[0 s, 1 s]",          NULL};
+    check_errors("apps/turbine/runup.yaml", sets);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(everything_follows_from_the_default),
+        cmocka_unit_test(everything_scales_with_the_accuracy),
+        cmocka_unit_test(keys_replace_one_by_one),
+        cmocka_unit_test(durations_without_a_round_step_are_divided),
+        cmocka_unit_test(the_rate_of_the_air_follows_the_radius),
+        cmocka_unit_test(errors_of_a_bar),
+        cmocka_unit_test(errors_of_a_four_bar),
+        cmocka_unit_test(errors_of_a_turbine),
+    };
+    return cmocka_run_group_tests(tests, enter, leave);
+}

@@ -1,0 +1,482 @@
+// What is built of a scene: everything it names, in the right place, and nothing else.
+#include "tests/unit/built_scene.h"
+#include "tests/unit/tree_measure.h"
+
+#include "apps/bough/model/aero_link.h"
+#include "flexbody/section/section.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+static const char *const no_sets[] = {NULL};
+static const char runup[] = "apps/turbine/runup.yaml", arms[] = "tests/data/scenes/arms.yaml";
+
+static void check_vec3(bough_vec3 value, bough_vec3 expected, double tolerance) {
+    check_near(value.x, expected.x, 0, tolerance);
+    check_near(value.y, expected.y, 0, tolerance);
+    check_near(value.z, expected.z, 0, tolerance);
+}
+
+// -- parts ----------------------------------------------------------------------------------------
+
+static void scene_without_aero_samples_nothing(void **context) {
+    (void)context;
+    bough_arena *arena = bough_arena_create();
+    bough_simulation *s = scene_build(arena, arms, no_sets);
+    assert_null(s->aero);
+    assert_int_equal(s->master->n_load, 0);
+    assert_int_equal(s->n_beam, 3);
+    assert_int_equal(s->n_rod, 2);
+    assert_int_equal(s->master->assembly->n_member, 3);
+    bough_arena_destroy(arena);
+    arena = bough_arena_create();
+    s = scene_build(arena, runup, no_sets);
+    assert_non_null(s->aero);
+    assert_int_equal(s->master->n_load, 1);
+    check_near(s->master->load[0].period, 0.02, 1e-15, 0);
+    bough_arena_destroy(arena);
+}
+
+static void rods_take_ports_in_the_order_of_the_scene(void **context) {
+    (void)context;
+    static const char *const names[] = {"third", "stiff", "first"};
+    static const int ports[] = {0, -1, 1}, bodies[] = {0, 2, 3};
+    bough_arena *arena = bough_arena_create();
+    bough_simulation *s = scene_build(arena, arms, no_sets);
+    for (int k = 0; k < 3; k++) {
+        const bough_beam *beam = &s->beam[k];
+        assert_string_equal(beam->body->name, names[k]);
+        assert_string_equal(s->tree->markers[beam->marker].name, names[k]);
+        assert_int_equal(beam->port, ports[k]);
+        assert_ptr_equal(bough_simulation_beam(s, bodies[k]), beam);
+        assert_int_equal(beam->rod == NULL, ports[k] < 0);
+        if (beam->rod == NULL) continue;
+        assert_ptr_equal(s->rod[beam->port].system.self, beam->rod);
+        assert_ptr_equal(s->master->assembly->member[beam->port + 1], &s->rod[beam->port]);
+        assert_string_equal(s->rod[beam->port].system.name, names[k]);
+        assert_string_equal(s->tree->ports[beam->port].name, names[k]);
+    }
+    assert_null(bough_simulation_beam(s, 1));
+    assert_ptr_equal(s->master->assembly->member[0], &s->leader);
+    bough_arena_destroy(arena);
+}
+
+// Each rod is moved by its own root and its wrench returns there.
+static void rods_are_connected_to_their_roots(void **context) {
+    (void)context;
+    bough_arena *arena = bough_arena_create();
+    bough_simulation *s = scene_build(arena, arms, no_sets);
+    const bough_assembly *a = s->master->assembly;
+    static const double radius[] = {3, 1}; // of the ports' roots
+    for (int p = 0; p < 2; p++) {
+        const double *input = s->master->coupling->input + a->input_offset[p + 1];
+        double speed = sqrt(input[0] * input[0] + input[1] * input[1] + input[2] * input[2]);
+        double weight = sqrt(input[6] * input[6] + input[7] * input[7] + input[8] * input[8]);
+        check_near(speed, 2 * radius[p], 1e-14, 0);
+        check_near(input[3], p == 0 ? 2 * cos(BOUGH_PI / 6) : 2, 1e-14, 0); // pitch turns the axes
+        check_near(weight, 9.8, 1e-14, 0);
+        for (int c = 0; c < BOUGH_PORT_INPUTS; c++) {
+            int j = a->input_offset[0] + BOUGH_PORT_INPUTS * p + c;
+            assert_int_equal(a->source_member[j], p + 1);
+            assert_int_equal(a->source[j], a->output_offset[p + 1] + c);
+            assert_false(a->kinematic[j]);
+        }
+        assert_true(a->kinematic[a->input_offset[p + 1]]);
+    }
+    bough_arena_destroy(arena);
+}
+
+static void rigid_blades_leave_the_tree_alone(void **context) {
+    (void)context;
+    static const char *const sets[] = {"bodies[3].fidelity=rigid", "bodies[4].fidelity=rigid",
+                                       "bodies[5].fidelity=rigid", NULL};
+    bough_arena *arena = bough_arena_create();
+    bough_simulation *s = scene_build(arena, runup, sets);
+    assert_int_equal(s->n_rod, 0);
+    assert_int_equal(s->n_beam, 3);
+    assert_int_equal(s->leader.system.n_state, 2);
+    assert_int_equal(s->leader.system.n_input, 0);
+    assert_int_equal(s->master->assembly->n_member, 1);
+    assert_int_equal(s->master->assembly->n_state, 2);
+    for (int k = 0; k < 3; k++) assert_null(s->beam[k].rod);
+    assert_non_null(s->aero); // which loads them as bodies
+    for (int k = 0; k < 10; k++) scene_step(s);
+    assert_true(s->leader.state[1] > 0.5);
+    bough_arena_destroy(arena);
+}
+
+// Half a second of the run-up: the rotor turns as with rods, the tips bend as theirs.
+static void modal_blades_move_as_rods(void **context) {
+    (void)context;
+    static const char *const sets[3][4] = {
+        {"bodies[3].fidelity=rod", "bodies[4].fidelity=rod", "bodies[5].fidelity=rod", NULL},
+        {"bodies[3].fidelity=modal", "bodies[4].fidelity=modal", "bodies[5].fidelity=modal", NULL},
+        {"bodies[3].fidelity=segmented-modal", "bodies[4].fidelity=segmented-modal",
+         "bodies[5].fidelity=segmented-modal", NULL}};
+    double speed[3], tip[3];
+    for (int k = 0; k < 3; k++) {
+        bough_arena *arena = bough_arena_create();
+        bough_quaternion turn;
+        bough_simulation *s = scene_build(arena, runup, sets[k]);
+        assert_int_equal(s->n_rod, 3);
+        assert_true((s->beam[0].rod != NULL) == (k == 0));
+        for (int i = 0; i < 50; i++) scene_step(s);
+        bough_simulation_update(s);
+        speed[k] = s->leader.state[1];
+        tip[k] = bough_simulation_beam_tip(s, &s->beam[0], &turn).x -
+                 s->beam[0].def.position[s->beam[0].def.n_segment].x;
+        bough_arena_destroy(arena);
+    }
+    for (int k = 1; k < 3; k++) {
+        check_near(speed[k], speed[0], 2e-3, 0);
+        check_near(tip[k], tip[0], 0.02, 0);
+    }
+}
+
+// -- placement and initial motion -----------------------------------------------------------------
+
+static bough_transform pose_of(const bough_simulation *s, const char *body) {
+    return bough_tree_frame_pose(s->view, &s->tree->bodies[tree_find_body(s->tree, body)]);
+}
+
+static const char carrying[] = "tests/data/scenes/carrying.yaml";
+
+// From the undeformed end, in the axes of the rod's body whatever the section's twist.
+static void bodies_hang_on_the_end_of_a_rod_bent_or_rigid(void **context) {
+    (void)context;
+    static const char *const fidelity[] = {"bodies[0].fidelity=rod", "bodies[0].fidelity=rigid"};
+    for (int k = 0; k < 2; k++) {
+        const char *const sets[] = {fidelity[k], NULL};
+        bough_arena *arena = bough_arena_create();
+        bough_simulation *s = scene_build(arena, carrying, sets);
+        bough_transform pose = pose_of(s, "weight");
+        check_near(pose.position.x, 1, 1e-14, 0);
+        check_near(pose.position.y, -0.3, 1e-14, 0);
+        check_near(pose.position.z, 2, 1e-14, 0);
+        check_near(pose.rotation.c1.x, 0, 0, 1e-15);
+        check_near(pose.rotation.c1.y, 1, 1e-14, 0);
+        check_near(pose.rotation.c3.z, 1, 1e-14, 0);
+        bough_arena_destroy(arena);
+    }
+}
+
+static void end_of_a_rod_is_connected_to_its_body(void **context) {
+    (void)context;
+    bough_arena *arena = bough_arena_create();
+    bough_simulation *s = scene_build(arena, carrying, no_sets);
+    const bough_assembly *a = s->master->assembly;
+    const bough_beam *beam = &s->beam[0];
+    assert_int_equal(beam->end, 0);
+    assert_int_equal(s->n_end, 1);
+    assert_int_equal(s->tree->n_bodies, 3);
+    assert_string_equal(s->tree->ends[0].name, "cable end");
+    assert_int_equal(s->leader.system.n_state, 13); // the end is free, the weight welded to it
+    assert_int_equal(s->rod[0].system.n_state, 13 * 3);
+    assert_int_equal(a->n_interface, 2);
+    assert_int_equal(a->interface[1].body, 1);
+    assert_int_equal(a->interface[1].twist, a->input_offset[1] + BOUGH_ROD_INPUTS);
+    assert_int_equal(a->interface[1].wrench, BOUGH_PORT_INPUTS);
+    const double *end = bough_simulation_rod_input(s, beam) + BOUGH_ROD_INPUTS;
+    bough_quaternion p = beam->def.rotation[4];
+    const double expected[BOUGH_ROD_END_INPUTS] = {0, 0, 0, 0, 0, 0, 0, 0, 2, p.w, p.x, p.y, p.z};
+    for (int k = 0; k < BOUGH_ROD_END_INPUTS; k++) check_near(end[k], expected[k], 1e-15, 1e-15);
+    bough_arena_destroy(arena);
+}
+
+static bough_twist velocity_of(const bough_simulation *s, const char *body) {
+    return bough_tree_frame_velocity(s->view,
+                                     &s->tree->bodies[tree_find_body(s->tree, body)]);
+}
+
+// The hub stands at 90°: what points along z at 0 points along −y.
+static void bodies_start_where_the_scene_puts_them(void **context) {
+    (void)context;
+    bough_arena *arena = bough_arena_create();
+    bough_simulation *s = scene_build(arena, arms, no_sets);
+    double half = sqrt(3) / 2;
+    check_vec3(pose_of(s, "first").position, bough_v3(0, -1, 10), 1e-14);
+    check_vec3(pose_of(s, "stiff").position, bough_v3(0, 1, 10 - 2 * half), 1e-14);
+    check_vec3(pose_of(s, "third").position, bough_v3(0, 1.5, 10 + 3 * half), 1e-14);
+    check_vec3(pose_of(s, "carriage").position, bough_v3(0, 0.5, 0), 1e-14);
+    check_vec3(velocity_of(s, "first").linear, bough_v3(0, 0, -2), 1e-14);
+    check_vec3(velocity_of(s, "carriage").linear, bough_v3(0, -3, 0), 1e-14);
+    check_vec3(velocity_of(s, "thrown").linear, bough_v3(1, 2, 3), 1e-14);
+    check_vec3(velocity_of(s, "thrown").angular, bough_v3(4, 5, 6), 1e-14);
+    // pitch is the last rotation, by −30° about the arm
+    bough_mat3 r = pose_of(s, "third").rotation;
+    check_vec3(r.c3, bough_v3(0, 0.5, half), 1e-14);
+    check_vec3(bough_v3(r.c1.x, r.c2.x, r.c3.x), bough_v3(half, 0.5, 0), 1e-14);
+    bough_arena_destroy(arena);
+}
+
+// Vertices of beams, flexible or rigid, lie along their arm and turn with the hub.
+static void beams_move_with_the_hub_at_first(void **context) {
+    (void)context;
+    static const char *const names[] = {"third", "stiff", "first"};
+    bough_vec3 position[5], velocity[5], angular[5], omega = {2, 0, 0}, hub = {0, 0, 10};
+    bough_mat3 rotation[5];
+    bough_arena *arena = bough_arena_create();
+    bough_simulation *s = scene_build(arena, arms, no_sets);
+    for (int k = 0; k < 3; k++) {
+        bough_transform root = pose_of(s, names[k]);
+        bough_beam_motion motion = {position, velocity, angular, rotation};
+        bough_simulation_beam_motion(s, &s->beam[k], motion);
+        for (int i = 0; i < 5; i++) {
+            bough_vec3 expected = bough_axpy(0.5 * i, root.rotation.c3, root.position);
+            check_vec3(position[i], expected, 1e-14);
+            check_vec3(velocity[i], bough_cross(omega, bough_sub(expected, hub)), 1e-13);
+            check_vec3(angular[i], omega, 1e-14);
+            check_vec3(rotation[i].c1, root.rotation.c1, 1e-14);
+            check_vec3(rotation[i].c3, root.rotation.c3, 1e-14);
+        }
+    }
+    bough_arena_destroy(arena);
+}
+
+static void a_body_may_have_its_own_sub_solver(void **context) {
+    (void)context;
+    static const char *const sets[] = {"bodies[0].micro.solver=arkode-esdirk",
+                                       "simulation.micro.solver=generalized-alpha", NULL};
+    bough_arena *arena = bough_arena_create();
+    bough_simulation *s = scene_build(arena, arms, sets);
+    assert_string_equal(s->rod[0].solver, "ARKODE ESDIRK");
+    assert_string_equal(s->rod[1].solver, "generalised-α");
+    for (int k = 0; k < 5; k++) {
+        bough_status status = bough_step(s->master);
+        assert_int_equal(status.code, BOUGH_OK);
+    }
+    bough_arena_destroy(arena);
+}
+
+static void joint_loads_act_and_their_corners_are_events(void **context) {
+    (void)context;
+    bough_arena *arena = bough_arena_create();
+    bough_simulation *s = scene_build(arena, arms, no_sets);
+    assert_int_equal(s->master->n_event, 2);
+    check_near(s->master->event[0], 0.2, 1e-15, 0);
+    check_near(s->master->event[1], 0.4, 1e-15, 0);
+    for (int k = 0; k < 600; k++) scene_step(s);
+    // impulse 8 N · (0.1 + 0.2) s on 4 kg
+    bough_simulation_update(s);
+    check_near(velocity_of(s, "carriage").linear.y, -3 + 8 * 0.3 / 4, 1e-5, 0); // IDA at 1e-6
+    bough_arena_destroy(arena);
+    arena = bough_arena_create();
+    s = scene_build(arena, runup, no_sets);
+    assert_int_equal(s->master->n_event, 4);
+    check_near(s->master->event[2], 2, 1e-15, 0); // of the aerodynamics
+    check_near(s->master->event[3], 20, 1e-15, 0);
+    bough_arena_destroy(arena);
+}
+
+// -- inertia --------------------------------------------------------------------------------------
+
+static bough_mat3 about(int axis, double angle) {
+    bough_vec3 unit = {axis == 0, axis == 1, axis == 2};
+    return bough_rotation_matrix(bough_quaternion_exponential(bough_scale(angle, unit)));
+}
+
+// A blade of the run-up about the hub, straight from the table: sections between two stations in
+// thin slices.
+static bough_inertia blade_about_hub(const bough_scene_body *body, double azimuth) {
+    const bough_scene_structure *table = &body->rod.structure;
+    const double degree = BOUGH_PI / 180;
+    enum { SLICES = 200 };
+    bough_inertia sum = {0};
+    bough_mat3 lean = bough_mat3_product(about(0, azimuth), about(1, -2.5 * degree));
+    for (int k = 0; k + 1 < table->n_station; k++) {
+        const bough_section_station *low = &table->station[k].def, *high = &table->station[k + 1].def;
+        double thickness = (high->position.z - low->position.z) / SLICES;
+        for (int slice = 0; slice < SLICES; slice++) {
+            double f = (slice + 0.5) / SLICES, g = 1 - f;
+            double z = g * low->position.z + f * high->position.z;
+            double twist = g * low->twist + f * high->twist;
+            double ix = g * low->inertia[0] + f * high->inertia[0];
+            double iy = g * low->inertia[1] + f * high->inertia[1];
+            double mass = thickness * (g * low->mass + f * high->mass);
+            bough_mat3 own = {{thickness * ix, 0, 0}, {0, thickness * iy, 0},
+                              {0, 0, thickness * (ix + iy)}};
+            bough_transform x = {bough_scale(1.5 + z, lean.c3),
+                                 bough_mat3_product(lean, about(2, -twist - 6.5 * degree))};
+            bough_inertia section = {mass, {0, 0, 0}, own};
+            sum = bough_inertia_add(sum, bough_inertia_to_parent(&x, section));
+        }
+    }
+    return sum;
+}
+
+static void check_inertia(bough_inertia value, bough_inertia expected, double tolerance) {
+    check_near(value.mass, expected.mass, tolerance, 0);
+    check_vec3(value.first, expected.first, tolerance * 60 * expected.mass);
+    double size = tolerance * expected.rotational.c1.x;
+    check_vec3(value.rotational.c1, expected.rotational.c1, size);
+    check_vec3(value.rotational.c2, expected.rotational.c2, size);
+    check_vec3(value.rotational.c3, expected.rotational.c3, size);
+}
+
+static void rigid_blades_have_the_inertia_of_their_table(void **context) {
+    (void)context;
+    static const char *const sets[] = {"bodies[3].fidelity=rigid", "bodies[4].fidelity=rigid",
+                                       "bodies[5].fidelity=rigid", "bodies[4].rod.segments=12",
+                                       "bodies[3].rod.segments=12", "bodies[5].rod.segments=12",
+                                       NULL};
+    bough_arena *arena = bough_arena_create();
+    bough_simulation *s = scene_build(arena, runup, sets);
+    bough_mat3 hub = {{5.1414234e6, 0, 0}, {0, 2.6e6, 0}, {0, 0, 2.6e6}};
+    bough_inertia expected = {56780, {0, 0, 0}, hub};
+    for (int b = 0; b < 3; b++) {
+        bough_inertia blade = blade_about_hub(&s->scene->body[3 + b], b * 2 * BOUGH_PI / 3);
+        check_near(blade.mass, 16844.75, 1e-5, 0); // as the table's head says
+        expected = bough_inertia_add(expected, blade);
+    }
+    assert_int_equal(s->tree->n_links, 1);
+    check_inertia(s->tree->links[0].inertia, expected, 1e-6);
+    bough_arena_destroy(arena);
+}
+
+// Arms of a uniform section, one with its mass beside the axis, in the hub's axes.
+static void rigid_arms_have_their_mass_where_the_section_says(void **context) {
+    (void)context;
+    static const char *const sets[] = {"bodies[0].fidelity=rigid", "bodies[3].fidelity=rigid",
+                                       NULL};
+    static const double angle[] = {4 * BOUGH_PI / 3, 2 * BOUGH_PI / 3, 0}, radius[] = {3, 2, 1};
+    bough_arena *arena = bough_arena_create();
+    bough_simulation *s = scene_build(arena, arms, sets);
+    bough_inertia expected = {50, {0, 0, 0}, {{5, 0, 0}, {0, 3, 0}, {0, 0, 3}}};
+    for (int k = 0; k < 3; k++) { // 1.5 kg/m from 0 to 2 m
+        double cx = k == 1 ? 0.02 : 0, cy = k == 1 ? -0.01 : 0, xy = k == 1 ? 1e-3 : 0;
+        bough_mat3 about_root = {{4 + 4e-3, 2 * xy, -3 * cx}, {2 * xy, 4 + 6e-3, -3 * cy},
+                                 {-3 * cx, -3 * cy, 1e-2}};
+        bough_mat3 r = bough_mat3_product(about(0, angle[k]),
+                                          about(2, k == 0 ? -BOUGH_PI / 6 : 0));
+        bough_transform x = {bough_scale(radius[k], r.c3), r};
+        bough_inertia arm = {3, bough_v3(3 * cx, 3 * cy, 3), about_root};
+        expected = bough_inertia_add(expected, bough_inertia_to_parent(&x, arm));
+    }
+    bough_inertia hub = s->tree->links[s->tree->bodies[1].link].inertia;
+    check_inertia(hub, expected, 1e-12);
+    bough_arena_destroy(arena);
+}
+
+// A rod's vertices but the root, in the axes of the link that carries it.
+static bough_inertia moving_inertia(const bough_simulation *s, const bough_beam *beam) {
+    const bough_rod_model *m = bough_rod_body_model(beam->rod);
+    bough_inertia sum = {0};
+    for (int i = 1; i <= m->n; i++) {
+        const double *j = m->vertex[i].inertia;
+        bough_inertia own = {m->vertex[i].mass, m->vertex[i].moment,
+                             {{j[0], j[3], j[4]}, {j[3], j[1], j[5]}, {j[4], j[5], j[2]}}};
+        bough_transform at = {m->position0[i], bough_rotation_matrix(m->rotation0[i])};
+        bough_transform x =
+            bough_transform_compose(s->tree->markers[beam->marker].placement, at);
+        sum = bough_inertia_add(sum, bough_inertia_to_parent(&x, own));
+    }
+    return sum;
+}
+
+// Of a flexible blade, here a twisted one, the tree carries the root vertex, the rod all others.
+static void flexible_blade_shares_its_inertia_with_the_tree(void **context) {
+    (void)context;
+    static const char turbine[] = "tests/data/scenes/example-turbine.yaml";
+    static const char *const sets[] = {"bodies[3].fidelity=rigid", NULL};
+    bough_arena *arena = bough_arena_create();
+    bough_simulation *rigid = scene_build(arena, turbine, sets);
+    bough_simulation *s = scene_build(arena, turbine, no_sets);
+    bough_inertia link = s->tree->links[0].inertia, moving = moving_inertia(s, &s->beam[0]);
+    assert_true(moving.mass > 300);
+    check_inertia(bough_inertia_add(link, moving), rigid->tree->links[0].inertia, 1e-13);
+    bough_arena_destroy(arena);
+}
+
+// -- threads --------------------------------------------------------------------------------------
+
+enum { MOST_STATES = 1000 };
+
+static int final_state(const char *scheme, int threads, double *state) {
+    char scheme_set[64], thread_set[64];
+    snprintf(scheme_set, sizeof scheme_set, "simulation.coupling.scheme=%s", scheme);
+    snprintf(thread_set, sizeof thread_set, "simulation.threads=%d", threads);
+    const char *sets[] = {"simulation.duration=1 s", "simulation.macro_step=4 ms", scheme_set,
+                          thread_set, "simulation.micro.step=2 ms",
+                          "bodies[3].rod.segments=12", "bodies[4].rod.segments=12",
+                          "bodies[5].rod.segments=12", NULL};
+    bough_arena *arena = bough_arena_create();
+    bough_simulation *s = scene_build(arena, runup, sets);
+    while (!bough_master_done(s->master)) scene_step(s);
+    const bough_assembly *a = s->master->assembly;
+    assert_true(a->n_state + a->n_output <= MOST_STATES);
+    for (int i = 0; i < a->n_member; i++) {
+        size_t bytes = (size_t)a->member[i]->system.n_state * sizeof *state;
+        memcpy(state + a->state_offset[i], a->member[i]->state, bytes);
+    }
+    memcpy(state + a->n_state, s->master->coupling->output, (size_t)a->n_output * sizeof *state);
+    int n = a->n_state + a->n_output;
+    bough_arena_destroy(arena);
+    return n;
+}
+
+static void threads_do_not_change_a_bit(const char *scheme) {
+    static const int threads[] = {2, 3, 8};
+    double one[MOST_STATES], many[MOST_STATES];
+    int n = final_state(scheme, 1, one);
+    assert_true(one[1] > 0.5); // the rotor turns faster than it began
+    for (int k = 0; k < 3; k++) {
+        assert_int_equal(final_state(scheme, threads[k], many), n);
+        assert_memory_equal(one, many, (size_t)n * sizeof *one);
+    }
+}
+
+static void frozen_on_many_threads(void **context) {
+    (void)context;
+    threads_do_not_change_a_bit("frozen");
+}
+
+static void gauss_seidel_on_many_threads(void **context) {
+    (void)context;
+    threads_do_not_change_a_bit("gauss-seidel");
+}
+
+static void extrapolated_on_many_threads(void **context) {
+    (void)context;
+    threads_do_not_change_a_bit("extrapolated");
+}
+
+static void iterated_on_many_threads(void **context) {
+    (void)context;
+    threads_do_not_change_a_bit("iterated");
+}
+
+static void ramp_on_many_threads(void **context) {
+    (void)context;
+    threads_do_not_change_a_bit("ramp");
+}
+
+static void monolithic_on_many_threads(void **context) {
+    (void)context;
+    threads_do_not_change_a_bit("monolithic");
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(scene_without_aero_samples_nothing),
+        cmocka_unit_test(rods_take_ports_in_the_order_of_the_scene),
+        cmocka_unit_test(rods_are_connected_to_their_roots),
+        cmocka_unit_test(rigid_blades_leave_the_tree_alone),
+        cmocka_unit_test(modal_blades_move_as_rods),
+        cmocka_unit_test(bodies_hang_on_the_end_of_a_rod_bent_or_rigid),
+        cmocka_unit_test(end_of_a_rod_is_connected_to_its_body),
+        cmocka_unit_test(bodies_start_where_the_scene_puts_them),
+        cmocka_unit_test(beams_move_with_the_hub_at_first),
+        cmocka_unit_test(a_body_may_have_its_own_sub_solver),
+        cmocka_unit_test(joint_loads_act_and_their_corners_are_events),
+        cmocka_unit_test(rigid_blades_have_the_inertia_of_their_table),
+        cmocka_unit_test(rigid_arms_have_their_mass_where_the_section_says),
+        cmocka_unit_test(flexible_blade_shares_its_inertia_with_the_tree),
+        cmocka_unit_test(frozen_on_many_threads),
+        cmocka_unit_test(gauss_seidel_on_many_threads),
+        cmocka_unit_test(extrapolated_on_many_threads),
+        cmocka_unit_test(iterated_on_many_threads),
+        cmocka_unit_test(ramp_on_many_threads),
+        cmocka_unit_test(monolithic_on_many_threads),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,238 @@
+// The companion of a run: what it tells against solutions that are finer in mesh, air and time.
+#include "apps/bough/model/coarser.h"
+#include "apps/bough/model/error_shares.h"
+#include "apps/bough/model/run.h"
+#include "tests/unit/built_scene.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+static const char example[] = "tests/data/scenes/example-turbine.yaml";
+enum { MOST = 256, STEPS = 100 };
+
+typedef struct outcome {
+    int n; // channels
+    char name[MOST][BOUGH_CHANNEL_NAME];
+    double value[STEPS][MOST]; // at multiples of 20 ms
+    double error[MOST];        // told
+    double largest[MOST];      // value
+    bool compared;
+    char reason[BOUGH_COMPANION_REASON];
+} outcome;
+
+static outcome *run_for(const char *path, int steps, const char *const *sets) {
+    outcome *o = calloc(1, sizeof *o);
+    bough_arena *arena = bough_arena_create();
+    bough_run r;
+    bough_status status = bough_run_create(arena, scene_read(arena, path, sets), &r);
+    if (!bough_is_ok(&status)) fail_msg("%s", status.message);
+    assert_true(r.channels.count <= MOST);
+    o->n = r.channels.count;
+    for (int i = 0; i < o->n; i++) strcpy(o->name[i], r.channels.channel[i].name);
+    for (int k = 0; k < steps; k++) {
+        do {
+            status = bough_run_step(&r);
+            if (!bough_is_ok(&status)) fail_msg("%s", status.message);
+        } while (r.simulation->master->time < 0.02 * (k + 1) - 1e-9);
+        memcpy(o->value[k], bough_run_values(&r), (size_t)o->n * sizeof(double));
+        for (int i = 0; i < o->n; i++) o->largest[i] = fmax(o->largest[i], fabs(o->value[k][i]));
+    }
+    for (int i = 0; i < o->n; i++)
+        o->error[i] = bough_companion_knows(r.companion, i) ? r.companion->error[i] : (double)NAN;
+    o->compared = r.companion->compared > 0;
+    memcpy(o->reason, r.companion->reason, sizeof o->reason);
+    bough_arena_destroy(arena);
+    return o;
+}
+
+static double true_error(const outcome *o, const outcome *truth, int channel, int steps) {
+    double error = 0;
+    for (int k = 0; k < steps; k++)
+        error = fmax(error, fabs(o->value[k][channel] - truth->value[k][channel]));
+    return error;
+}
+
+// The whole error of motion, by mesh, air, steps and coupling, for two schemes.
+static void the_whole_error_is_told(void **state) {
+    (void)state;
+    const char *const truth_sets[] = {"simulation.duration=2 s",
+                                      "simulation.coupling={scheme: monolithic}",
+                                      "simulation.master={solver: rosenbrock, step: 5 ms, rtol: 1e-6}",
+                                      "simulation.macro_step=5 ms",
+                                      "simulation.error_estimate=none",
+                                      "bodies[3-5].rod.segments=72",
+                                      "aero.rate=200",
+                                      NULL};
+    outcome *truth = run_for("apps/turbine/runup.yaml", STEPS, truth_sets);
+    assert_false(truth->compared);
+    static const char *const coupling[] = {"simulation.coupling={scheme: ramp, theta: auto}",
+                                           "simulation.coupling={scheme: monolithic}"};
+    static const char *const watched[] = {"RotSpeed",  "TipDxb1",  "TipDyb1",
+                                          "TwstDefl1", "RootMyb1", "RootMxb1"};
+    for (int c = 0; c < 2; c++) {
+        const char *const sets[] = {"simulation.duration=2 s", coupling[c],
+                                    "simulation.master={solver: rosenbrock, step: 10 ms, rtol: 3e-4}", NULL};
+        outcome *o = run_for("apps/turbine/runup.yaml", STEPS, sets);
+        assert_true(o->compared);
+        for (size_t w = 0; w < sizeof watched / sizeof *watched; w++) {
+            int i = 0;
+            while (strcmp(o->name[i], watched[w]) != 0) i++;
+            double error = true_error(o, truth, i, STEPS);
+            print_message("%s: true %.2g, told %.2g: %.2f\n", watched[w], error, o->error[i],
+                          o->error[i] / error);
+            assert_true(o->error[i] > error / 3 && o->error[i] < 5 * error);
+        }
+        free(o);
+    }
+    free(truth);
+}
+
+// Estimating changes no bit of the run.
+static void a_companion_changes_nothing(void **state) {
+    (void)state;
+    const char *const with[] = {"simulation.duration=1 s", NULL};
+    const char *const without[] = {"simulation.duration=1 s", "simulation.error_estimate=none", NULL};
+    outcome *a = run_for(example, 50, with), *b = run_for(example, 50, without);
+    assert_true(a->compared);
+    assert_false(b->compared);
+    assert_string_equal(b->reason, "simulation.error_estimate is none");
+    assert_memory_equal(a->value, b->value, sizeof a->value);
+    free(a);
+    free(b);
+}
+
+// Every channel has an error, forces, air and control too.
+static void every_channel_has_an_error(void **state) {
+    (void)state;
+    const char *const sets[] = {"simulation.duration=1 s", NULL};
+    outcome *o = run_for("apps/turbine/power.yaml", 50, sets);
+    for (int i = 0; i < o->n; i++) {
+        if (!isfinite(o->error[i])) fail_msg("%s has none", o->name[i]);
+    }
+    free(o);
+}
+
+#define LIBRARY                                                                                              \
+    "control={kind: bladed, rate: 50, gear_ratio: 97, input: memory, library: " BOUGH_SAMPLE_DISCON "}"
+
+// A library has a memory, and the companion one of its own: the run's values are those without it.
+static void a_library_is_copied(void **state) {
+    (void)state;
+    const char *const with[] = {"simulation.duration=1 s", LIBRARY, NULL};
+    const char *const without[] = {"simulation.duration=1 s", LIBRARY, "simulation.error_estimate=none",
+                                   NULL};
+    outcome *a = run_for("apps/turbine/power.yaml", 50, with),
+            *b = run_for("apps/turbine/power.yaml", 50, without);
+    assert_true(a->compared);
+    assert_memory_equal(a->value, b->value, sizeof a->value);
+    free(a);
+    free(b);
+}
+
+// -- the coarser scene ----------------------------------------------------------------------------
+
+static void a_scene_is_coarser_in_everything(void **state) {
+    (void)state;
+    bough_arena *arena = bough_arena_create();
+    const char *const sets[] = {NULL};
+    bough_scene *scene = scene_read(arena, "apps/turbine/runup-stages.yaml", sets);
+    const bough_scene *c = bough_coarser_scene(arena, scene, BOUGH_COARSER_ALL);
+    check_near(c->simulation.macro_step, 40e-3, 1e-15, 0);
+    check_near(c->simulation.master.step, 20e-3, 1e-15, 0);
+    check_near(c->simulation.master.rtol, 3e-3, 1e-15, 0);
+    check_near(c->aero.rate, 25, 1e-15, 0);
+    for (int i = 0; i < c->n_body; i++) {
+        if (scene->body[i].rod.node) assert_int_equal(c->body[i].rod.n_segment, 16);
+    }
+    // of the time alone: the air's samples do not let the macro step be longer
+    c = bough_coarser_scene(arena, scene, BOUGH_COARSER_TIME);
+    check_near(c->simulation.macro_step, 20e-3, 1e-15, 0);
+    check_near(c->aero.rate, 50, 1e-15, 0);
+    for (int i = 0; i < c->n_body; i++)
+        assert_int_equal(c->body[i].rod.n_segment, scene->body[i].rod.n_segment);
+    bough_arena_destroy(arena);
+}
+
+// Rods that can have no fewer segments get more, all blades as many, and the part of the difference follows.
+static void meshes_differ_as_far_as_they_can(void **state) {
+    (void)state;
+    static const struct {
+        const char *segments;
+        int other;
+        double share;
+    } cases[] = {{"bodies[3-5].rod.segments=8", 4, 0.25},
+                 {"bodies[3-5].rod.segments=3", 2, 0.6},
+                 {"bodies[3-5].rod.segments=1", 2, 1}};
+    bough_arena *arena = bough_arena_create();
+    for (size_t k = 0; k < sizeof cases / sizeof *cases; k++) {
+        const char *const sets[] = {cases[k].segments, NULL};
+        bough_scene *scene = scene_read(arena, "apps/turbine/runup.yaml", sets);
+        const bough_scene *c = bough_coarser_scene(arena, scene, BOUGH_COARSER_ALL);
+        for (int i = 3; i <= 5; i++) assert_int_equal(c->body[i].rod.n_segment, cases[k].other);
+        check_near(bough_coarser_share(scene, c), cases[k].share, 1e-12, 0);
+    }
+    bough_arena_destroy(arena);
+}
+
+// Another scheme than one system leaves the companion no error of a coupling, but the sub-solvers' steps,
+// twice as long.
+static void a_coupling_has_a_monolithic_companion(void **state) {
+    (void)state;
+    bough_arena *arena = bough_arena_create();
+    const char *const sets[] = {NULL};
+    bough_scene *scene = scene_read(arena, "apps/turbine/runup.yaml", sets);
+    const bough_scene *c = bough_coarser_scene(arena, scene, BOUGH_COARSER_ALL);
+    assert_string_equal(bough_scheme_name(c->simulation.coupling.scheme), "monolithic");
+    check_near(c->simulation.master.step, 20e-3, 1e-15, 0);
+    check_near(c->simulation.master.rtol, 4e-3, 1e-15, 0);
+    bough_arena_destroy(arena);
+}
+
+// -- what counts ----------------------------------------------------------------------------------
+
+typedef struct row {
+    const char *name, *unit;
+    double range, error;
+} row;
+
+static int worst_of(int n, const row *rows) {
+    bough_arena *arena = bough_arena_create();
+    bough_channels channels = bough_channels_start(arena);
+    bough_companion c = {.channels = &channels, .compared = 1};
+    bough_arena_each(arena, (size_t)n, &c.low, &c.high, &c.other_low, &c.other_high, &c.error, &c.noticed);
+    bough_channels_group(&channels, NULL, NULL);
+    for (int i = 0; i < n; i++) {
+        bough_channels_add(&channels, rows[i].unit, "%s", rows[i].name);
+        c.high[i] = c.other_high[i] = rows[i].range;
+        c.error[i] = rows[i].error;
+    }
+    int worst = bough_error_verdict_of(&c, true, c.error).channel;
+    bough_arena_destroy(arena);
+    return worst;
+}
+
+// A twist of rounding or of next to nothing is not judged by itself, beside blades that bend.
+static void what_hardly_moves_does_not_count(void **state) {
+    (void)state;
+    assert_int_equal(worst_of(2, (row[]){{"TipDxb1", "m", 4, .01}, {"TwstDefl1", "deg", 4e-16, 3e-16}}), 0);
+    assert_int_equal(
+        worst_of(
+            3, (row[]){{"TipDxb1", "m", 4, .01}, {"TwstDefl1", "deg", 2.5e-4, 2e-4}, {"Pos", "deg", 3, .01}}),
+        2);
+    assert_int_equal(worst_of(2, (row[]){{"one", "m", 1, .01}, {"other", "m", 2e-3, 1e-3}}), 1);
+    assert_int_equal(worst_of(2, (row[]){{"one", "m", 1, .01}, {"other", "m", 5e-4, 4e-4}}), 0);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(the_whole_error_is_told),
+        cmocka_unit_test(a_companion_changes_nothing),
+        cmocka_unit_test(every_channel_has_an_error),
+        cmocka_unit_test(a_library_is_copied),
+        cmocka_unit_test(a_scene_is_coarser_in_everything),
+        cmocka_unit_test(meshes_differ_as_far_as_they_can),
+        cmocka_unit_test(a_coupling_has_a_monolithic_companion),
+        cmocka_unit_test(what_hardly_moves_does_not_count),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,252 @@
+// Between controller and turbine: torque on the rotor's joint, blades steered by their pitch joints.
+#include "tests/unit/built_scene.h"
+
+#include "apps/bough/model/control_link.h"
+
+#include <string.h>
+
+static const char turbine[] = "apps/turbine/power.yaml";
+
+#define RIGID                                                                                                \
+    "simulation.threads=1", "bodies[3].fidelity=rigid", "bodies[4].fidelity=rigid", "bodies[5].fidelity=rigid"
+#define BLADED "control={kind: bladed, library: " BOUGH_SAMPLE_DISCON "}"
+
+typedef struct fixture {
+    bough_arena *arena;
+    bough_simulation *s;
+    bough_channels channels;
+} fixture;
+
+static fixture open_turbine(const char *const *sets) {
+    fixture f = {.arena = bough_arena_create()};
+    f.s = scene_build(f.arena, turbine, sets);
+    f.channels = bough_channels_start(f.arena);
+    bough_status status = bough_simulation_channels(f.s, &f.channels);
+    assert_int_equal(status.code, BOUGH_OK);
+    return f;
+}
+
+static void run_until(fixture *f, double t) {
+    while (f->s->master->time < t - 1e-9) scene_step(f->s);
+}
+
+static double channel(fixture *f, const char *name) {
+    double value[200];
+    int column = bough_channels_find(&f->channels, name);
+    assert_true(column >= 0 && f->channels.count <= 200);
+    bough_simulation_update(f->s);
+    bough_channels_sample(&f->channels, f->s->master->time, value);
+    return value[column];
+}
+
+// Above rated wind the law settles where a rigid rotor gives rated power at rated speed: a pitch of
+// 10.45° gives 2 % less than it.
+static void law_holds_speed_and_power(void **state) {
+    (void)state;
+    static const char *const sets[] = {RIGID,
+                                       "aero.wind.speed=15 m/s",
+                                       "bodies[3].pitch=8 deg",
+                                       "bodies[4].pitch=8 deg",
+                                       "bodies[5].pitch=8 deg",
+                                       "bodies[2].joint.speed=12.6 rpm",
+                                       NULL};
+    fixture f = open_turbine(sets);
+    run_until(&f, 60);
+    check_near(channel(&f, "RotSpeed"), 12.1, 2e-3, 0);
+    check_near(channel(&f, "BldPitch1"), 10.3, 0, 0.25);
+    check_near(channel(&f, "BldPitch3"), channel(&f, "BldPitch1"), 1e-12, 0);
+    check_near(channel(&f, "GenPwr"), 0.944 * 5296.61, 1e-3, 0);
+    check_near(channel(&f, "RtAeroPwr"), 5296610, 2e-2, 0); // blade 1 is near the tower
+    bough_arena_destroy(f.arena);
+}
+
+// Blades that nobody pitches and that stand beyond power_pitch: from standstill in a light wind the generator
+// has no torque below cut-in, and at 9 rpm that of the best tip-speed ratio.
+static void law_brakes_unsteered_blades_only(void **state) {
+    (void)state;
+    static const char *const sets[] = {RIGID,
+                                       "aero.wind.speed=6 m/s",
+                                       "control.pitch=false",
+                                       "bodies[3].pitch=10 deg",
+                                       "bodies[4].pitch=10 deg",
+                                       "bodies[5].pitch=10 deg",
+                                       "bodies[2].joint.speed=0 rpm",
+                                       NULL};
+    fixture f = open_turbine(sets);
+    for (int k = 1; k <= 10; k++) {
+        run_until(&f, k);
+        check_near(channel(&f, "GenTq"), 0, 0, 0);
+        assert_true(channel(&f, "RotSpeed") > 0);
+    }
+    bough_arena_destroy(f.arena);
+    static const char *const turning[] = {RIGID,
+                                          "aero.wind.speed=8 m/s",
+                                          "control.pitch=false",
+                                          "bodies[3].pitch=2 deg",
+                                          "bodies[4].pitch=2 deg",
+                                          "bodies[5].pitch=2 deg",
+                                          NULL};
+    f = open_turbine(turning);
+    run_until(&f, 0.04);
+    double speed = channel(&f, "GenSpeed") * BOUGH_PI / 30;
+    check_near(1e3 * channel(&f, "GenTq"), 2.332287 * speed * speed, 1e-2, 0);
+    bough_arena_destroy(f.arena);
+}
+
+// The library asks for a pitch of 0.1 + 0.001 t and 100 N m s of torque; both come a sample late,
+// the pitch first at 8°/s.
+static void library_steers_the_turbine(void **state) {
+    (void)state;
+    static const char *const sets[] = {RIGID, BLADED, NULL};
+    fixture f = open_turbine(sets);
+    check_near(channel(&f, "GenSpeed"), 97 * 9.16, 1e-9, 0); // before any sample
+    run_until(&f, 0.5);
+    check_near(channel(&f, "BldPitch1"), 8 * 0.5, 1e-6, 0);
+    check_near(channel(&f, "blade1Vel"), -8, 1e-6, 0);
+    run_until(&f, 1.98);
+    double speed = channel(&f, "GenSpeed") * BOUGH_PI / 30; // of the last sample
+    run_until(&f, 2);
+    check_near(channel(&f, "BldPitch2") * BOUGH_PI / 180, 0.10198, 1e-6, 0);
+    check_near(channel(&f, "GenTq"), 0.1 * speed, 1e-6, 0);
+    bough_arena_destroy(f.arena);
+}
+
+// Collective pitch reaches every blade, also beyond those that the interface has records for.
+static void library_steers_all_blades(void **state) {
+    (void)state;
+    static const char *const sets[] = {
+        RIGID,
+        BLADED,
+        "bodies[1].joint={kind: fixed, parent: ground, placement: [move z 87.6 m]}",
+        "bodies[0]={name: blade4, fidelity: rigid, joint: {kind: revolute, parent: hub, axis: z, "
+        "motion: {angle: 0 deg}, placement: [rotate x 60 deg, rotate y -2.5 deg, move z 1.5 m]}, "
+        "rod: {table: blade-structure.yaml, segments: 24}}",
+        "turbine.blades=[blade1, blade2, blade3, blade4]",
+        NULL};
+    fixture f = open_turbine(sets);
+    run_until(&f, 0.5);
+    check_near(channel(&f, "BldPitch4"), 8 * 0.5, 1e-6, 0);
+    bough_arena_destroy(f.arena);
+}
+
+// A turbine that looks along x in a wind of 10° across; a tower that bends moves its nacelle.
+static void library_is_told_of_the_nacelle(void **state) {
+    (void)state;
+    static const char *const sets[] = {RIGID, BLADED, "aero.wind.direction=10 deg", NULL};
+    static const char *const record[] = {"record 24", "record 37", "record 53", "record 70"};
+    for (int i = 0; i < 4; i++) {
+        fixture f = {.arena = bough_arena_create()};
+        bough_scene *scene = scene_read(f.arena, turbine, sets);
+        scene->control.input = record[i];
+        bough_status status = bough_simulation_build(f.arena, scene, &f.s);
+        assert_int_equal(status.code, BOUGH_OK);
+        f.channels = bough_channels_start(f.arena);
+        status = bough_simulation_channels(f.s, &f.channels);
+        assert_int_equal(status.code, BOUGH_OK);
+        run_until(&f, 1);
+        double told = 1000 * channel(&f, "GenTq"); // kN m
+        if (i == 0) check_near(told, 10 * BOUGH_PI / 180, 0, 5e-3);
+        if (i == 1) check_near(told, 0, 0, 5e-3);
+        if (i == 2) assert_true(fabs(told) < 2);
+        if (i == 3) check_near(told, 0, 0, 0); // rigid blades have no root moments
+        bough_arena_destroy(f.arena);
+    }
+}
+
+static void library_may_pitch_each_blade(void **state) {
+    (void)state;
+    static const char *const sets[] = {RIGID, BLADED, "control.law={pitch_rate: 1 rad/s}", NULL};
+    bough_arena *arena = bough_arena_create();
+    bough_scene *scene = scene_read(arena, turbine, sets);
+    scene->control.input = "individual"; // of no folder
+    bough_simulation *s = NULL;
+    bough_status status = bough_simulation_build(arena, scene, &s);
+    assert_int_equal(status.code, BOUGH_OK);
+    while (s->master->time < 1) scene_step(s);
+    for (int b = 0; b < 3; b++) {
+        const bough_beam *blade = bough_simulation_beam(s, scene->turbine.blade[b]);
+        check_near(bough_simulation_pitch(s, blade), 0.2 + 0.1 * b, 1e-6, 0);
+    }
+    bough_arena_destroy(arena);
+}
+
+// What the library reports ends the run with its message.
+static void failing_library_ends_the_run(void **state) {
+    (void)state;
+    static const char *const sets[] = {RIGID, BLADED, NULL};
+    bough_arena *arena = bough_arena_create();
+    bough_scene *scene = scene_read(arena, turbine, sets);
+    scene->control.input = "fail";
+    bough_simulation *s = NULL;
+    bough_status status = bough_simulation_build(arena, scene, &s);
+    while (bough_is_ok(&status) && s->master->time < 1) status = bough_step(s->master);
+    assert_int_equal(status.code, BOUGH_FAILED);
+    assert_non_null(strstr(status.message, "too late"));
+    check_near(s->master->time, 0.52, 1e-9, 0);
+    bough_arena_destroy(arena);
+}
+
+// A sample taken again from the saved memory steers as before.
+static void memory_is_saved_and_restored(void **state) {
+    (void)state;
+    static const char *const sets[] = {RIGID, "aero.wind.speed=15 m/s", NULL};
+    fixture f = open_turbine(sets);
+    run_until(&f, 3);
+    double saved[100], speed[2], torque[2], power[2];
+    bool jumped;
+    bough_sampled_load load = bough_control_link_load(f.s->control);
+    bough_snapshot copy = {BOUGH_SNAPSHOT_SAVE, (char *)saved, 0},
+                   back = {BOUGH_SNAPSHOT_RESTORE, (char *)saved, 0};
+    bough_snapshot room = {BOUGH_SNAPSHOT_MEASURE, NULL, 0};
+    bough_control_link_snapshot(f.s->control, &room);
+    assert_true(room.used <= sizeof saved);
+    bough_control_link_snapshot(f.s->control, &copy);
+    for (int k = 0; k < 2; k++) {
+        back.used = 0;
+        bough_control_link_snapshot(f.s->control, &back);
+        bough_status status = load.sample(load.self, 3, 3.02, &jumped);
+        assert_int_equal(status.code, BOUGH_OK);
+        bough_control_link_generator(f.s->control, &speed[k], &torque[k], &power[k]);
+        assert_false(jumped);
+    }
+    check_near(torque[1], torque[0], 0, 0);
+    check_near(power[1], power[0], 0, 0);
+    bough_arena_destroy(f.arena);
+}
+
+static void bad_scenes_are_refused(void **state) {
+    (void)state;
+    static const char *const bad[][2] = {
+        {"bodies[4].joint={kind: fixed, parent: hub}", "all or none"},
+        {"bodies[3].joint.axis=x", "turn about z"},
+        {"control.rate=33 Hz", "multiple of the macro step"},
+        {"control={kind: bladed}", "'library' is missing"},
+        {"control.law.slip=-1", "must be positive"},
+        {"control={kind: bladed, library: nowhere.so}", "cannot be loaded"},
+    };
+    for (size_t i = 0; i < sizeof bad / sizeof *bad; i++) {
+        bough_arena *arena = bough_arena_create();
+        bough_errors errors = {.arena = arena};
+        bough_scene *scene;
+        bough_simulation *s;
+        bough_status status =
+            bough_scene_read(arena, BOUGH_SOURCE_DIR "/apps/turbine/power.yaml", bad[i], 1, &errors, &scene);
+        if (bough_is_ok(&status)) status = bough_simulation_build(arena, scene, &s);
+        assert_int_equal(status.code, BOUGH_INVALID);
+        const char *told = errors.n > 0 ? errors.item[0].text : status.message;
+        if (!strstr(told, bad[i][1])) print_error("%s\n", told);
+        assert_non_null(strstr(told, bad[i][1]));
+        bough_arena_destroy(arena);
+    }
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(law_holds_speed_and_power),      cmocka_unit_test(law_brakes_unsteered_blades_only),
+        cmocka_unit_test(library_steers_the_turbine),     cmocka_unit_test(library_steers_all_blades),
+        cmocka_unit_test(library_is_told_of_the_nacelle), cmocka_unit_test(library_may_pitch_each_blade),
+        cmocka_unit_test(failing_library_ends_the_run),   cmocka_unit_test(memory_is_saved_and_restored),
+        cmocka_unit_test(bad_scenes_are_refused),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

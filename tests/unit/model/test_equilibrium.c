@@ -1,0 +1,74 @@
+#include "cosim/analysis/equilibrium.h"
+#include "tests/unit/two_mass.h"
+
+enum { N = 4 };
+
+typedef struct setup {
+    bough_two_mass m;
+    bough_coupled *coupled;
+    double y[N];
+} setup;
+
+static void build(setup *s) {
+    s->m = bough_two_mass_default();
+    bough_master_def def = bough_master_def_default();
+    def.macro_step = def.duration = .1;
+    bough_status status = bough_two_mass_build(&s->m, def);
+    if (!bough_is_ok(&status)) fail_msg("%s", status.message);
+    s->coupled = bough_coupled_create(s->m.arena, s->m.master->assembly, NULL);
+    assert_true(bough_is_ok(&status));
+    memcpy(s->y, s->m.y0, sizeof s->y);
+}
+
+static bough_equilibrium_report find(setup *s, bough_equilibrium_def def, bough_code code) {
+    bough_equilibrium_report report;
+    bough_status status = bough_equilibrium_find(s->m.arena, s->coupled, &def, s->y, &report);
+    assert_int_equal(status.code, code);
+    return report;
+}
+
+static void coupled_masses_come_to_rest(void **state) {
+    (void)state;
+    setup s;
+    build(&s);
+    find(&s, bough_equilibrium_def_default(), BOUGH_OK);
+    for (int k = 0; k < N; k++) check_near(s.y[k], 0, 0, 1e-9);
+    bough_two_mass_destroy(&s.m);
+}
+
+// The first mass held at 0.3: springs of 10 and 20 share it at the second.
+static void held_states_stay(void **state) {
+    (void)state;
+    const int held[2] = {0, 1};
+    setup s;
+    build(&s);
+    s.y[0] = .3;
+    bough_coupled_hold(s.m.arena, s.coupled, 2, held);
+    find(&s, bough_equilibrium_def_default(), BOUGH_OK);
+    check_near(s.y[0], .3, 0, 0);
+    check_near(s.y[1], 0, 0, 0);
+    check_near(s.y[2], .3 * 10 / 30, 0, 1e-9);
+    check_near(s.y[3], 0, 0, 1e-9);
+    bough_two_mass_destroy(&s.m);
+}
+
+static void too_few_steps_are_told(void **state) {
+    (void)state;
+    setup s;
+    build(&s);
+    bough_equilibrium_def def = bough_equilibrium_def_default();
+    def.steps = 2;
+    bough_equilibrium_report report = find(&s, def, BOUGH_FAILED);
+    assert_int_equal(report.steps, 2);
+    assert_true(report.change > 0);
+    bough_two_mass_destroy(&s.m);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(coupled_masses_come_to_rest),
+        cmocka_unit_test(held_states_stay),
+        cmocka_unit_test(too_few_steps_are_told),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

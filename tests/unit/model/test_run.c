@@ -1,0 +1,137 @@
+// The one run object: what is recorded when, stopping and going on, copies.
+#include "apps/bough/model/run.h"
+#include "tests/unit/built_scene.h"
+
+#include <stdlib.h>
+
+enum { MOST = 64 };
+
+typedef struct sampled {
+    int n;
+    double time[MOST];
+} sampled;
+
+static bough_status sample(void *self, double t) {
+    sampled *s = self;
+    assert_true(s->n < MOST);
+    s->time[s->n++] = t;
+    return bough_ok();
+}
+
+static const char *const short_run[] = {"simulation.duration=0.1 s", "simulation.macro_step=10 ms",
+                                        "simulation.output.interval=10 ms", NULL};
+
+static bough_run create(bough_arena *arena) {
+    bough_run run;
+    bough_scene *scene = scene_read(arena, "apps/mechanisms/pendulum.yaml", short_run);
+    bough_status status = bough_run_create(arena, scene, &run);
+    assert_int_equal(status.code, BOUGH_OK);
+    return run;
+}
+
+// Every 40 ms of 100 in steps of 10, and every 25 ms at the step after it; the end where it is asked for.
+static void records_are_taken_when_due(void **context) {
+    (void)context;
+    bough_arena *arena = bough_arena_create();
+    bough_run run = create(arena);
+    sampled coarse = {0}, between = {0};
+    bough_run_record_at(&run, (bough_run_record){0.04, true, .sample = sample, .self = &coarse});
+    bough_run_record_at(&run, (bough_run_record){0.025, .sample = sample, .self = &between});
+    bough_run_all(&run);
+    assert_int_equal(run.outcome.code, BOUGH_OK);
+    assert_true(bough_run_done(&run));
+    static const double expected[] = {0, 0.04, 0.08, 0.1}, after[] = {0, 0.03, 0.05, 0.08, 0.1};
+    assert_int_equal(coarse.n, 4);
+    for (int k = 0; k < 4; k++) check_near(coarse.time[k], expected[k], 1e-12, 1e-12);
+    assert_int_equal(between.n, 5);
+    for (int k = 0; k < 5; k++) check_near(between.time[k], after[k], 1e-12, 1e-12);
+    bough_arena_destroy(arena);
+}
+
+static bough_status stop_at_half(void *self) {
+    const bough_run *run = self;
+    return run->simulation->master->time > 0.045 ? bough_fail(BOUGH_INTERRUPTED, "enough")
+                                                 : bough_ok();
+}
+
+// A stopped run has its last record and goes on to the values of the one that was not stopped.
+static void a_stopped_run_goes_on(void **context) {
+    (void)context;
+    bough_arena *arena = bough_arena_create();
+    bough_run run = create(arena), whole = create(arena);
+    sampled rows = {0};
+    bough_run_record_at(&run, (bough_run_record){0.04, true, .sample = sample, .self = &rows});
+    run.after = stop_at_half;
+    run.self = &run;
+    bough_run_all(&run);
+    assert_int_equal(run.outcome.code, BOUGH_INTERRUPTED);
+    assert_string_equal(run.outcome.message, "enough");
+    assert_int_equal(rows.n, 3); // 0, 40 and 50 ms
+    check_near(rows.time[2], 0.05, 1e-12, 0);
+    run.after = NULL;
+    bough_run_all(&run);
+    bough_run_all(&whole);
+    assert_int_equal(run.outcome.code, BOUGH_OK);
+    assert_memory_equal(bough_run_values(&run), bough_run_values(&whole),
+                        (size_t)run.channels.count * sizeof(double));
+    bough_arena_destroy(arena);
+}
+
+// A copy holds what is due when: after it the same records follow.
+static void a_copy_goes_on_with_its_records(void **context) {
+    (void)context;
+    bough_arena *arena = bough_arena_create();
+    bough_run run = create(arena), other = create(arena);
+    sampled rows = {0}, later = {0};
+    bough_run_record_at(&run, (bough_run_record){0.04, true, .sample = sample, .self = &rows});
+    bough_run_record_at(&other, (bough_run_record){0.04, true, .sample = sample, .self = &later});
+    bough_run_start(&run);
+    for (int k = 0; k < 5; k++) bough_run_step(&run);
+    bough_status status = bough_run_storable(&run);
+    assert_int_equal(status.code, BOUGH_OK);
+    bough_snapshot measure = {.move = BOUGH_SNAPSHOT_MEASURE};
+    bough_run_snapshot(&run, &measure);
+    char *copy = malloc(measure.used);
+    bough_run_snapshot(&run, &(bough_snapshot){BOUGH_SNAPSHOT_SAVE, copy, 0});
+    bough_run_snapshot(&run, &(bough_snapshot){BOUGH_SNAPSHOT_RESTORE, copy, 0});
+    bough_run_snapshot(&other, &(bough_snapshot){BOUGH_SNAPSHOT_RESTORE, copy, 0});
+    free(copy);
+    bough_run_all(&run);
+    bough_run_all(&other);
+    assert_int_equal(rows.n, 4);
+    assert_int_equal(later.n, 2); // 80 and 100 ms
+    assert_true(later.time[0] == rows.time[2] && later.time[1] == rows.time[3]);
+    assert_memory_equal(bough_run_values(&run), bough_run_values(&other),
+                        (size_t)run.channels.count * sizeof(double));
+    assert_int_equal(bough_run_statistics(&run, 0).steps, bough_run_statistics(&other, 0).steps);
+    bough_arena_destroy(arena);
+}
+
+// An undamped bar under a scheme that cannot hold it.
+static void a_failed_run_has_no_values(void **context) {
+    (void)context;
+    static const char *const sets[] = {"simulation.coupling.scheme=frozen", NULL};
+    bough_arena *arena = bough_arena_create();
+    bough_run run;
+    sampled rows = {0};
+    bough_status status =
+        bough_run_create(arena, scene_read(arena, "apps/beams/rubber-bar.yaml", sets), &run);
+    assert_int_equal(status.code, BOUGH_OK);
+    assert_non_null(bough_run_values(&run));
+    bough_run_record_at(&run, (bough_run_record){10, true, .sample = sample, .self = &rows});
+    bough_run_all(&run);
+    assert_int_equal(run.outcome.code, BOUGH_FAILED);
+    assert_null(bough_run_values(&run));
+    assert_int_equal(rows.n, 1); // none at the end
+    bough_arena_destroy(arena);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(records_are_taken_when_due),
+        cmocka_unit_test(a_stopped_run_goes_on),
+        cmocka_unit_test(a_copy_goes_on_with_its_records),
+        cmocka_unit_test(a_failed_run_has_no_values),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,257 @@
+// Equilibrium of whole scenes.
+#include "apps/bough/analysis/steady.h"
+#include "apps/bough/model/equilibrium.h"
+#include "tests/unit/built_scene.h"
+
+#include <string.h>
+
+static const char runup[] = "apps/turbine/runup.yaml";
+
+static bough_equilibrium_work equilibrium_of(bough_simulation *s) {
+    bough_equilibrium_work work;
+    bough_status status =
+        bough_simulation_equilibrium(s, s->master->assembly, bough_equilibrium_time(s), &work);
+    if (!bough_is_ok(&status)) fail_msg("%s", status.message);
+    return work;
+}
+
+static double joint_angle(const bough_simulation *s, int body) {
+    int coordinate, speed;
+    assert_true(bough_tree_joint_rows(s->tree, body, &coordinate, &speed));
+    return s->leader.state[coordinate];
+}
+
+// A bob of 1 kg at 1 m from the horizontal on a spring: k θ + m g cos θ = 0.
+static void spring_holds_the_pendulum(void **context) {
+    (void)context;
+    const char *sets[] = {"bodies[0].joint.stiffness=20", NULL};
+    bough_arena *arena = bough_arena_create();
+    bough_simulation *s = scene_build(arena, "apps/mechanisms/pendulum.yaml", sets);
+    equilibrium_of(s);
+    double angle = joint_angle(s, 0);
+    assert_true(angle < -0.1);
+    check_near(20 * angle, -9.81 * cos(angle), 0, 1e-9);
+    bough_arena_destroy(arena);
+}
+
+// Started above the hinge: it falls and hangs.
+static void chain_hangs(void **context) {
+    (void)context;
+    const char *sets[] = {"bodies[0].joint.angle=-45 deg", NULL};
+    bough_arena *arena = bough_arena_create();
+    bough_simulation *s = scene_build(arena, "apps/mechanisms/chain.yaml", sets);
+    equilibrium_of(s);
+    check_near(sin(joint_angle(s, 0)), 1, 0, 1e-9);
+    for (int body = 1; body < 5; body++) {
+        check_near(sin(joint_angle(s, body)), 0, 0, 1e-9);
+        check_near(cos(joint_angle(s, body)), 1, 0, 1e-9);
+    }
+    bough_arena_destroy(arena);
+}
+
+// A cantilever of EI = 1 and L = 1 under a dead load q per length across it, by shooting:
+// θ″ = −q (1 − s) cos θ, θ(0) = 0, θ′(1) = 0; x, z and θ at the tip.
+static void shoot(double q, double tip[3]) {
+    enum { STEPS = 4000 };
+    double low = 0, high = q, end[4];
+    for (int trial = 0; trial < 60; trial++) {
+        double y[4] = {0, (low + high) / 2, 0, 0}, h = 1.0 / STEPS; // θ, θ′, x, z
+        for (int i = 0; i < STEPS; i++) {
+            double k[4][4], at[4];
+            for (int stage = 0; stage < 4; stage++) {
+                double c = stage == 0 ? 0 : stage == 3 ? 1 : 0.5;
+                for (int j = 0; j < 4; j++) at[j] = y[j] + (stage ? c * h * k[stage - 1][j] : 0);
+                k[stage][0] = at[1];
+                k[stage][1] = -q * (1 - (i + c) * h) * cos(at[0]);
+                k[stage][2] = sin(at[0]);
+                k[stage][3] = cos(at[0]);
+            }
+            for (int j = 0; j < 4; j++) y[j] += h / 6 * (k[0][j] + 2 * k[1][j] + 2 * k[2][j] + k[3][j]);
+        }
+        *(y[1] > 0 ? &high : &low) = (low + high) / 2;
+        memcpy(end, y, sizeof end);
+    }
+    tip[0] = end[2], tip[1] = end[3], tip[2] = end[0];
+}
+
+// The load acts on the axis, which bends away from the chords of segments: its moment about them counts, else
+// the rod converges at second order only.
+static void dead_line_load_bends_the_rod_at_fourth_order(void **context) {
+    (void)context;
+    double exact[3], error[2];
+    shoot(20, exact);
+    for (int k = 0; k < 2; k++) {
+        const char *sets[] = {k == 0 ? "bodies[0].rod.segments=8" : "bodies[0].rod.segments=16",
+                              "loads=[{body: beam, along: [0 m, 1 m], force: [20, 0, 0], frame: body}]",
+                              NULL};
+        bough_arena *arena = bough_arena_create();
+        bough_simulation *s = scene_build(arena, "apps/beams/elastica.yaml", sets);
+        equilibrium_of(s);
+        bough_quaternion p;
+        bough_vec3 tip = bough_simulation_beam_tip(s, &s->beam[0], &p);
+        error[k] = hypot(tip.x - exact[0], tip.z - exact[1]);
+        bough_arena_destroy(arena);
+    }
+    print_message("dead line load, tip off by %.2g and %.2g m\n", error[0], error[1]);
+    assert_true(error[1] < 1e-5);
+    assert_true(error[0] / error[1] > 12 && error[0] / error[1] < 25);
+}
+
+// The elastica under a transverse force F L²/EI = 1 and 10: tip deflections of the exact solution
+// (K. Bisshopp and D. Drucker 1945). Positions alone would let the axial stiffness answer to the square
+// of every turn.
+static void massless_tip_bends_the_elastica(void **context) {
+    (void)context;
+    const struct {
+        const char *force;
+        double deflection;
+    } cases[] = {{"loads[0].force=[1, 0, 0]", 0.30172}, {"loads[0].force=[10, 0, 0]", 0.81061}};
+    for (int k = 0; k < 2; k++) {
+        const char *sets[] = {cases[k].force, NULL};
+        bough_arena *arena = bough_arena_create();
+        bough_simulation *s = scene_build(arena, "tests/data/scenes/elastica-tip.yaml", sets);
+        bough_equilibrium_work work = equilibrium_of(s);
+        assert_in_range(work.steps, 1, 30);
+        bough_quaternion p;
+        check_near(bough_simulation_beam_tip(s, &s->beam[0], &p).x, cases[k].deflection, 2e-4, 0);
+        bough_arena_destroy(arena);
+    }
+}
+
+// x″ = −k² x with x′(L) = 1, k² = ρA Ω²/EA: the tip of a turning bar is at tan(kL)/k.
+static void turning_bar_stretches(void **context) {
+    (void)context;
+    const char *sets[] = {"bodies[1].joint.motion={speed: 20 rad/s}", NULL};
+    bough_arena *arena = bough_arena_create();
+    bough_simulation *s = scene_build(arena, "apps/beams/spin-up.yaml", sets);
+    equilibrium_of(s);
+    double k = sqrt(1.2 * 20 * 20 / 2.8e7), z = tan(10 * k) / k - 10;
+    int n = s->beam[0].def.n_segment;
+    const double *y = s->rod[s->beam[0].port].state;
+    check_near(y[3 * n - 1] - 10, z, 2e-3, 0);
+    check_near(y[n - 1], 0, 0, 1e-9);
+    check_near(joint_angle(s, 1), 0, 0, 0);
+    bough_arena_destroy(arena);
+}
+
+// The rod's own solution, by Newton's method with increments of load.
+static void rod_alone_stands_where_its_own_statics_says(void **context) {
+    (void)context;
+    const char *sets[] = {"loads=[{body: blade, at: tip, force: [100 kN, 0, 0]}]", NULL};
+    bough_arena *arena = bough_arena_create();
+    bough_simulation *s = scene_build(arena, "tests/data/scenes/blade.yaml", sets);
+    bough_turning rest = {0};
+    bough_steady steady;
+    bough_status status = bough_steady_find(arena, s, &s->beam[0], &rest, &steady);
+    assert_true(bough_is_ok(&status));
+    equilibrium_of(s);
+    int n = s->beam[0].def.n_segment;
+    const double *y = s->rod[s->beam[0].port].state;
+    for (int k = 0; k < 7 * n; k++) check_near(y[k], steady.state[k], 0, 1e-8);
+    bough_arena_destroy(arena);
+}
+
+// Nothing moves in a run that starts from the equilibrium of the parked turbine in its wind.
+static void parked_turbine_stays_at_rest(void **context) {
+    (void)context;
+    const char *sets[] = {"simulation.initial=equilibrium",
+                          "simulation.threads=1",
+                          "loads=[]",
+                          "bodies[2].joint={kind: revolute, parent: nacelle, axis: x, placement: "
+                          "[move z 89.6 m, move x -5 m], motion: {angle: 0}}",
+                          "aero.ramp=[0, 0]",
+                          "bodies[3].rod.segments=24",
+                          "bodies[4].rod.segments=24",
+                          "bodies[5].rod.segments=24",
+                          NULL};
+    bough_arena *arena = bough_arena_create();
+    bough_simulation *s = scene_build(arena, runup, sets);
+    size_t bytes = (size_t)s->rod[0].system.n_state * sizeof(double);
+    double *before = bough_arena_take(arena, 3 * bytes);
+    for (int k = 0; k < 3; k++)
+        memcpy(before + k * s->rod[0].system.n_state, s->rod[k].state, bytes);
+    int n = s->rod[0].system.n_state / BOUGH_ROD_STATES;
+    assert_true(fabs(before[n - 1]) > 0.5); // bent
+    for (int step = 0; step < 50; step++)
+        scene_step(s);
+    for (int k = 0; k < 3; k++) {
+        for (int i = 0; i < 3 * n; i++) {
+            check_near(s->rod[k].state[i], before[k * s->rod[0].system.n_state + i], 0, 1e-6);
+        }
+    }
+    bough_arena_destroy(arena);
+}
+
+// With tower, yaw drive and drive train.
+static void turbine_on_its_tower_stays_at_rest(void **context) {
+    (void)context;
+    const char *sets[] = {"bodies[0].rod.segments=8", "bodies[4].rod.segments=8",
+                          "bodies[5].rod.segments=8", "bodies[6].rod.segments=8", NULL};
+    bough_arena *arena = bough_arena_create();
+    bough_simulation *s = scene_build(arena, "apps/turbine/parked.yaml", sets);
+    size_t n = (size_t)s->master->assembly->n_state;
+    double *before = bough_arena_doubles(arena, 2 * n), *after = before + n;
+    bough_assembly_states(s->master->assembly, before);
+    for (int step = 0; step < 30; step++) scene_step(s);
+    bough_assembly_states(s->master->assembly, after);
+    for (size_t k = 0; k < n; k++) check_near(after[k], before[k], 0, 1e-6);
+    bough_arena_destroy(arena);
+}
+
+// At the speed where load and air balance, only the tower excites.
+static void turning_rotor_starts_smoothly(void **context) {
+    (void)context;
+    const char *sets[] = {"simulation.initial=equilibrium",
+                          "simulation.threads=1",
+                          "bodies[2].joint.speed=1.49 rad/s",
+                          "loads[0].ramp=[0, 0]",
+                          "aero.ramp=[0, 0]",
+                          "gravity=[0, 0, 0]",
+                          NULL};
+    const char *undeformed[] = {"simulation.threads=1", "bodies[2].joint.speed=1.49 rad/s",
+                                "loads[0].ramp=[0, 0]", "aero.ramp=[0, 0]",
+                                "gravity=[0, 0, 0]",    NULL};
+    double moved[2] = {0, 0};
+    for (int k = 0; k < 2; k++) {
+        bough_arena *arena = bough_arena_create();
+        bough_simulation *s = scene_build(arena, runup, k == 0 ? sets : undeformed);
+        int n = s->rod[0].system.n_state / BOUGH_ROD_STATES;
+        double start = s->rod[1].state[n - 1]; // the tip of a blade away from the tower
+        for (int step = 0; step < 25; step++) {
+            scene_step(s);
+            moved[k] = fmax(moved[k], fabs(s->rod[1].state[n - 1] - start));
+        }
+        bough_arena_destroy(arena);
+    }
+    printf("tip moves by %.3g m, from undeformed by %.3g m\n", moved[0], moved[1]);
+    assert_true(moved[0] < 0.02 * moved[1]);
+}
+
+static void driven_free_rotor_has_none(void **context) {
+    (void)context;
+    const char *sets[] = {"bodies[2].joint.speed=0", "aero.ramp=[0, 0]", NULL};
+    bough_arena *arena = bough_arena_create();
+    bough_simulation *s = scene_build(arena, runup, sets);
+    bough_equilibrium_work work;
+    bough_status status = bough_simulation_equilibrium(s, s->master->assembly, 0, &work);
+    assert_int_equal(status.code, BOUGH_FAILED);
+    assert_non_null(strstr(status.message, "no equilibrium"));
+    assert_non_null(strstr(status.message, "a spring, a speed or a motion"));
+    bough_arena_destroy(arena);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(spring_holds_the_pendulum),
+        cmocka_unit_test(chain_hangs),
+        cmocka_unit_test(dead_line_load_bends_the_rod_at_fourth_order),
+        cmocka_unit_test(massless_tip_bends_the_elastica),
+        cmocka_unit_test(turning_bar_stretches),
+        cmocka_unit_test(rod_alone_stands_where_its_own_statics_says),
+        cmocka_unit_test(parked_turbine_stays_at_rest),
+        cmocka_unit_test(turbine_on_its_tower_stays_at_rest),
+        cmocka_unit_test(turning_rotor_starts_smoothly),
+        cmocka_unit_test(driven_free_rotor_has_none),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

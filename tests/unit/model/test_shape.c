@@ -1,0 +1,66 @@
+// The shape of a scene, and the section loads along it.
+#include "apps/bough/model/equilibrium.h"
+#include "apps/bough/model/shape.h"
+#include "tests/unit/built_scene.h"
+
+// A bent rod under a force at its tip: every section carries the force and its moment about the section.
+static void tip_force_passes_all_sections(void **context) {
+    (void)context;
+    const char *sets[] = {"loads[0].force=[10, 0, 0]",
+                          "bodies[0].joint.placement=[rotate x 30 deg]", NULL};
+    bough_arena *arena = bough_arena_create();
+    bough_simulation *s = scene_build(arena, "apps/beams/elastica.yaml", sets);
+    bough_equilibrium_work work;
+    double t = bough_equilibrium_time(s);
+    bough_status status = bough_simulation_equilibrium(s, s->master->assembly, t, &work);
+    assert_int_equal(status.code, BOUGH_OK);
+    bough_simulation_update(s);
+    bough_shape shape;
+    status = bough_shape_create(arena, s, &shape);
+    assert_int_equal(status.code, BOUGH_OK);
+    int n = shape.line[0].n_point;
+    double *point = bough_arena_doubles(arena, 9 * (size_t)n);
+    double *force = point + 3 * n, *moment = force + 3 * n;
+    bough_shape_points(&shape, point);
+    bough_shape_loads(&shape, t, force, moment);
+    const double *tip = point + 3 * (n - 1);
+    for (int i = 0; i < n; i++) {
+        bough_vec3 arm = bough_v3(tip[0] - point[3 * i], tip[1] - point[3 * i + 1],
+                                  tip[2] - point[3 * i + 2]);
+        bough_vec3 expected = bough_cross(arm, bough_v3(10, 0, 0));
+        check_near(force[3 * i], 10, 1e-7, 0);
+        check_near(force[3 * i + 1], 0, 0, 1e-6);
+        check_near(force[3 * i + 2], 0, 0, 1e-6);
+        check_near(moment[3 * i], expected.x, 0, 1e-6);
+        check_near(moment[3 * i + 1], expected.y, 0, 1e-6);
+        check_near(moment[3 * i + 2], expected.z, 0, 1e-6);
+    }
+    assert_true(moment[1] > 3); // bent far: 10 N m on the straight rod
+    bough_arena_destroy(arena);
+}
+
+// A rigid body has no sections.
+static void rigid_bodies_carry_no_section_loads(void **context) {
+    (void)context;
+    const char *sets[] = {NULL};
+    bough_arena *arena = bough_arena_create();
+    bough_simulation *s = scene_build(arena, "apps/mechanisms/pendulum.yaml", sets);
+    bough_shape shape;
+    bough_status status = bough_shape_create(arena, s, &shape);
+    assert_int_equal(status.code, BOUGH_OK);
+    double force[9], moment[9] = {1};
+    bough_shape_loads(&shape, 0, force, moment);
+    for (int i = 0; i < 9; i++) {
+        check_near(force[i], 0, 0, 0);
+        check_near(moment[i], 0, 0, 0);
+    }
+    bough_arena_destroy(arena);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(tip_force_passes_all_sections),
+        cmocka_unit_test(rigid_bodies_carry_no_section_loads),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,188 @@
+// Limits of the models: each is told once, with time and body.
+#include "apps/bough/model/run.h"
+#include "apps/bough/model/validity.h"
+
+#include "tests/unit/built_scene.h"
+
+#include <string.h>
+
+static const char turbine[] = "tests/data/scenes/example-turbine.yaml";
+
+static bough_simulation *run_scene(bough_arena *arena, const char *scene, const char *const *sets,
+                                   int steps) {
+    bough_simulation *s = scene_build(arena, scene, sets);
+    for (int k = 0; k < steps; k++) {
+        scene_step(s);
+        bough_validity_check(s);
+    }
+    return s;
+}
+
+static bough_simulation *run(bough_arena *arena, const char *const *sets, int steps) {
+    return run_scene(arena, turbine, sets, steps);
+}
+
+// The limits that a run passes, a bit each.
+static int passed(const bough_simulation *s) {
+    int bits = 0;
+    for (int k = 0; k < BOUGH_LIMITS; k++) bits |= s->validity->limit[k].passed << k;
+    return bits;
+}
+
+static void within_the_limits_nothing_is_told(void **state) {
+    (void)state;
+    static const char *const sets[] = {NULL};
+    bough_arena *arena = bough_arena_create();
+    assert_int_equal(passed(run(arena, sets, 100)), 0);
+    bough_arena_destroy(arena);
+}
+
+// Blades of a few metres on the shaft at 18 rad/s.
+static void a_fast_section_is_told_once(void **state) {
+    (void)state;
+    static const char *const sets[] = {"bodies[2].joint.speed=18 rad/s", "aero.ramp=[0 s, 0 s]", NULL};
+    bough_arena *arena = bough_arena_create();
+    bough_simulation *s = run(arena, sets, 4);
+    bough_passing first = s->validity->limit[BOUGH_LIMIT_MACH];
+    assert_int_equal(passed(s), 1 << BOUGH_LIMIT_MACH);
+    assert_string_equal(s->scene->body[first.body].name, "blade1");
+    check_near(first.time, 0.02, 1e-12, 0);
+    assert_true(first.value > 170 && first.value < 250);
+    for (int k = 0; k < 4; k++) scene_step(s), bough_validity_check(s);
+    check_near(s->validity->limit[BOUGH_LIMIT_MACH].time, 0.02, 1e-12, 0);
+    char text[200];
+    bough_validity_describe(s, BOUGH_LIMIT_MACH, text, sizeof text);
+    assert_non_null(strstr(text, "blade1 at 0.02 s: a section meets the air at "));
+    bough_arena_destroy(arena);
+}
+
+// A cantilever whose tip moment rolls it up to a circle: 60 deg in each of six segments, 30 of twelve.
+static void a_turned_segment_is_told(void **state) {
+    (void)state;
+    static const char *const coarse[] = {"bodies[0].rod.segments=6", "simulation.initial=equilibrium", NULL};
+    static const char *const fine[] = {"bodies[0].rod.segments=12", "simulation.initial=equilibrium", NULL};
+    bough_arena *arena = bough_arena_create();
+    bough_simulation *s = scene_build(arena, "apps/beams/roll-up.yaml", fine);
+    bough_validity_check(s);
+    assert_int_equal(passed(s), 0);
+    s = scene_build(arena, "apps/beams/roll-up.yaml", coarse);
+    bough_validity_check(s);
+    assert_int_equal(passed(s), 1 << BOUGH_LIMIT_TURN);
+    check_near(s->validity->limit[BOUGH_LIMIT_TURN].value, 60, 1, 0);
+    bough_arena_destroy(arena);
+}
+
+// The hub on the tower's axis, without tilt: the hanging blade stands in the tower.
+static void a_blade_in_the_tower_is_told(void **state) {
+    (void)state;
+    static const char *const sets[] = {"bodies[2].joint.placement=[move z 1.2 m]", NULL};
+    bough_arena *arena = bough_arena_create();
+    bough_simulation *s = run(arena, sets, 4);
+    bough_passing first = s->validity->limit[BOUGH_LIMIT_TOWER];
+    assert_int_equal(passed(s), 1 << BOUGH_LIMIT_TOWER);
+    assert_string_equal(s->scene->body[first.body].name, "blade2");
+    assert_true(first.value >= 0 && first.value < 1);
+    bough_arena_destroy(arena);
+}
+
+// Each is seen before the first step; a scene without the defect passes nothing, above.
+static void defects_of_the_model_are_told_at_the_start(void **state) {
+    (void)state;
+    static const struct {
+        const char *scene, *set;
+        bough_limit limit;
+        double value;
+        const char *text;
+    } model[] = {
+        {turbine, "bodies[blade2].joint.placement=[rotate x 60 deg, move z 1.5 m]", BOUGH_LIMIT_SPACING, 60,
+         "hub at 0 s: the blades are not evenly spaced about its axis: between two of them are 60 deg"},
+        {turbine, "aero.wind.direction=90 deg", BOUGH_LIMIT_ACROSS, 90,
+         "hub at 0 s: its axis is across the wind, or faces away from it: the angle between them is 90 deg"},
+        {"tests/data/scenes/example-beam.yaml", "bodies[beam].rod.segments=1", BOUGH_LIMIT_MESH, 1,
+         "beam at 0 s: a rod of one segment bends by a third too little"},
+    };
+    for (int i = 0; i < 3; i++) {
+        const char *const sets[] = {model[i].set, NULL};
+        bough_arena *arena = bough_arena_create();
+        bough_simulation *s = scene_build(arena, model[i].scene, sets);
+        char text[400];
+        assert_int_equal(passed(s), 1 << model[i].limit);
+        check_near(s->validity->limit[model[i].limit].value, model[i].value, 1e-6, 0);
+        bough_validity_describe(s, model[i].limit, text, sizeof text);
+        assert_memory_equal(text, model[i].text, strlen(model[i].text));
+        bough_arena_destroy(arena);
+    }
+}
+
+#define IN_PIECES(blade) "bodies[" blade "].fidelity=segmented-modal", "bodies[" blade "].rod.segments=6"
+
+// Vibrations of the pieces grow under air at 10 Hz, and not at 50 Hz.
+static void samples_too_seldom_for_a_modal_blade_are_told(void **state) {
+    (void)state;
+    for (int rate = 10; rate <= 50; rate += 40) {
+        char chosen[32];
+        snprintf(chosen, sizeof chosen, "aero.rate=%d", rate);
+        const char *const sets[] = {IN_PIECES("blade1"),
+                                    IN_PIECES("blade2"),
+                                    IN_PIECES("blade3"),
+                                    chosen,
+                                    "aero.ramp=[0, 0]",
+                                    "simulation.coupling.scheme=monolithic",
+                                    "bodies[hub].joint.speed=1.2 rad/s",
+                                    NULL};
+        bough_arena *arena = bough_arena_create();
+        bough_simulation *s = run_scene(arena, "apps/turbine/runup.yaml", sets, 30);
+        assert_int_equal(s->validity->limit[BOUGH_LIMIT_SAMPLES].passed, rate == 10);
+        bough_arena_destroy(arena);
+    }
+}
+
+// Windows of four bars, whose rods all come to lie on one line at 0.75 s; a loop that stays away from such a
+// position.
+static void singular_positions_are_told(void **state) {
+    (void)state;
+    static const char *const sets[] = {NULL};
+    bough_arena *arena = bough_arena_create();
+    bough_simulation *s = run_scene(arena, "apps/mechanisms/four-bar.yaml", sets, 75);
+    bough_passing first = s->validity->limit[BOUGH_LIMIT_SINGULAR];
+    assert_int_equal(passed(s), 1 << BOUGH_LIMIT_SINGULAR);
+    assert_true(first.time > 0.6 && first.value < 0.01);
+    assert_int_equal(passed(run_scene(arena, "tests/data/scenes/closed.yaml", sets, 100)), 0);
+    bough_arena_destroy(arena);
+}
+
+// Two masses on stiff springs without damping, which ring at 16 and 31 kHz; at 160 and 310 Hz the same is
+// cheap.
+static void costly_motions_are_told(void **state) {
+    (void)state;
+    static const char *const stiff[] = {"springs[0-1].stiffness=1e10", "simulation.master.solver=ida",
+                                        "simulation.error_estimate=none", NULL};
+    for (int k = 0; k < 2; k++) {
+        bough_arena *arena = bough_arena_create();
+        bough_run run;
+        const bough_scene *scene =
+            scene_read(arena, "apps/mechanisms/elastic-double-pendulum.yaml", stiff + k);
+        bough_status status = bough_run_create(arena, scene, &run);
+        for (int i = 0; i < 30 && bough_is_ok(&status); i++) status = bough_run_step(&run);
+        assert_int_equal(status.code, BOUGH_OK);
+        bough_passing cost = run.simulation->validity->limit[BOUGH_LIMIT_STEPS];
+        assert_int_equal(passed(run.simulation), k == 0 ? 1 << BOUGH_LIMIT_STEPS : 0);
+        assert_true(k == 1 || (cost.time > 0.005 && cost.time < 0.295 && cost.value > 1000));
+        assert_true(k == 1 || cost.body == 0 || cost.body == 1);
+        bough_arena_destroy(arena);
+    }
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(within_the_limits_nothing_is_told),
+        cmocka_unit_test(defects_of_the_model_are_told_at_the_start),
+        cmocka_unit_test(a_fast_section_is_told_once),
+        cmocka_unit_test(a_blade_in_the_tower_is_told),
+        cmocka_unit_test(a_turned_segment_is_told),
+        cmocka_unit_test(singular_positions_are_told),
+        cmocka_unit_test(costly_motions_are_told),
+        cmocka_unit_test(samples_too_seldom_for_a_modal_blade_are_told),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,91 @@
+#include "apps/bough/results/channels.h"
+
+#include "tests/unit/check.h"
+
+#include <string.h>
+
+static void sample_times(void *self, double t, double *value) {
+    double *factor = self;
+    for (int i = 0; i < 3; i++)
+        value[i] = factor[i] * t;
+}
+
+static void sample_one(void *self, double t, double *value) {
+    (void)t;
+    *value = *(double *)self;
+}
+
+static void groups_fill_their_own_channels(void **state) {
+    (void)state;
+    bough_arena *arena = bough_arena_create();
+    bough_channels list = bough_channels_start(arena);
+    double factor[3] = {1, 2, 3}, constant = 7;
+    bough_channels_group(&list, sample_times, factor);
+    for (int i = 1; i <= 3; i++) {
+        bough_channels_add(&list, "m", "OoPDefl%d", i);
+        assert_true(bough_is_ok(&list.status));
+    }
+    bough_channels_group(&list, sample_one, &constant);
+    bough_channels_add(&list, "rpm", "RotSpeed");
+    assert_int_equal(list.count, 4);
+    assert_int_equal(bough_channels_find(&list, "OoPDefl2"), 1);
+    assert_int_equal(bough_channels_find(&list, "OoPDefl"), -1);
+    double value[4];
+    bough_channels_sample(&list, 10, value);
+    check_near(value[0], 10, 0, 0);
+    check_near(value[2], 30, 0, 0);
+    check_near(value[3], 7, 0, 0);
+    bough_arena_destroy(arena);
+}
+
+static void an_empty_group_is_not_asked(void **state) {
+    (void)state;
+    bough_arena *arena = bough_arena_create();
+    bough_channels list = bough_channels_start(arena);
+    bough_channels_group(&list, sample_one, NULL);
+    bough_channels_sample(&list, 0, NULL);
+    bough_arena_destroy(arena);
+}
+
+static void list_grows_without_losing_names(void **state) {
+    (void)state;
+    bough_arena *arena = bough_arena_create();
+    bough_channels list = bough_channels_start(arena);
+    bough_channels_group(&list, sample_one, NULL);
+    for (int i = 0; i < 1000; i++)
+        bough_channels_add(&list, "-", "channel%d", i);
+    assert_int_equal(list.count, 1000);
+    assert_string_equal(list.channel[0].name, "channel0");
+    assert_int_equal(bough_channels_find(&list, "channel999"), 999);
+    bough_arena_destroy(arena);
+}
+
+static void names_that_readers_cannot_split_are_refused(void **state) {
+    (void)state;
+    static const char *bad[] = {
+        "",     "two words", "tab\tname",
+        "Time", "twice",     "a_name_that_is_quite_a_bit_longer_than_forty_seven_characters",
+    };
+    bough_arena *arena = bough_arena_create();
+    for (size_t i = 0; i < sizeof bad / sizeof *bad; i++) {
+        bough_channels list = bough_channels_start(arena);
+        bough_channels_group(&list, sample_one, NULL);
+        bough_channels_add(&list, "m", "twice");
+        bough_channels_add(&list, "m", "%s", bad[i]);
+        assert_int_equal(list.status.code, BOUGH_INVALID);
+        assert_true(strlen(list.status.message) > 0);
+        bough_channels_add(&list, "m", "after");
+        assert_int_equal(list.count, 1);
+    }
+    bough_arena_destroy(arena);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(groups_fill_their_own_channels),
+        cmocka_unit_test(an_empty_group_is_not_asked),
+        cmocka_unit_test(list_grows_without_losing_names),
+        cmocka_unit_test(names_that_readers_cannot_split_are_refused),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

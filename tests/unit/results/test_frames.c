@@ -1,0 +1,126 @@
+// Frames for ParaView, and the page that shows them.
+#include "tests/unit/check.h"
+#include "tests/unit/scratch.h"
+
+#include "apps/bough/results/frames.h"
+#include "apps/bough/results/report.h"
+
+#include <string.h>
+
+static void points(void *self, double *point) {
+    const double *shift = self;
+    for (int i = 0; i < 5; i++) {
+        point[3 * i] = i + *shift;
+        point[3 * i + 1] = -0.5 * i;
+        point[3 * i + 2] = 2;
+    }
+}
+
+static void loads(void *self, double t, double *force, double *moment) {
+    (void)self;
+    for (int i = 0; i < 15; i++) force[i] = 100 * t + i, moment[i] = -force[i];
+}
+
+static void write_frames(const char *folder) {
+    static const bough_polyline line[] = {{"first", 3}, {"second", 2}};
+    double shift = 0;
+    bough_arena *arena = bough_arena_create();
+    bough_frames_def def = {
+        .folder = folder, .n_line = 2, .line = line, .points = points, .loads = loads, .self = &shift};
+    bough_frames *frames;
+    bough_status status = bough_frames_open(arena, &def, &frames);
+    assert_int_equal(status.code, BOUGH_OK);
+    for (int k = 0; k < 2; k++, shift += 0.25) {
+        status = bough_frames_sample(frames, 0.1 * k);
+        assert_int_equal(status.code, BOUGH_OK);
+    }
+    status = bough_frames_finish(frames);
+    assert_int_equal(status.code, BOUGH_OK);
+    bough_arena_destroy(arena);
+}
+
+static void write_text(const char *folder, const char *name, const char *text) {
+    char path[256];
+    snprintf(path, sizeof path, "%s/%s", folder, name);
+    FILE *file = fopen(path, "w");
+    assert_non_null(file);
+    fputs(text, file);
+    fclose(file);
+}
+
+static void has(const char *text, const char *part) {
+    if (strstr(text, part) == NULL) fail_msg("'%s' is missing in\n%s", part, text);
+}
+
+static void frames_are_polylines_with_times(void **context) {
+    const char *folder = *context;
+    write_frames(folder);
+    char *list = scratch_read(folder, "frames.pvd");
+    has(list, "<DataSet timestep=\"0\" file=\"frames/000000.vtp\"/>\n"
+              "<DataSet timestep=\"0.1\" file=\"frames/000001.vtp\"/>\n</Collection>");
+    char *frame = scratch_read(folder, "frames/000001.vtp");
+    has(frame, "NumberOfPoints=\"5\" NumberOfLines=\"2\"");
+    has(frame, "\n0.25 -0 2\n1.25 -0.5 2\n2.25 -1 2\n3.25 -1.5 2\n4.25 -2 2\n</DataArray>");
+    has(frame, "<PointData>\n<DataArray type=\"Float32\" Name=\"section force (N)\" "
+               "NumberOfComponents=\"3\" format=\"ascii\">\n10 11 12\n13 14 15\n");
+    has(frame, "Name=\"section moment (N m)\" NumberOfComponents=\"3\" format=\"ascii\">\n-10 -11");
+    has(frame, "Name=\"offsets\" format=\"ascii\">\n3\n5\n");
+    free(list);
+    free(frame);
+}
+
+static const char channels[] = "\nbough: a run\nComplete: 2 rows\n\n1 channel\n\n"
+                               "  Time\tRotSpeed\n (s)\t(rpm)\n 0.0E+00\t 1.25\n 1.0E-01\t-2.5\n";
+
+static void page_carries_all_data(void **context) {
+    const char *folder = *context;
+    write_frames(folder);
+    write_text(folder, "channels.out", channels);
+    write_text(folder, "summary.json", "{\"title\": \"a </script> trap\"}\n");
+    bough_status status = bough_report_write(1, &folder);
+    if (!bough_is_ok(&status)) fail_msg("%s", status.message);
+    char *page = scratch_read(folder, "report.html");
+    has(page, "<!DOCTYPE html>");
+    has(page, "data.summary = \"{\\\"title\\\": \\\"a \\u003c/script> trap\\\"}\\n\";");
+    has(page, "{names: [\"Time\",\"RotSpeed\"], units: [\"s\",\"rpm\"], rows: [\n[0,1.25],\n"
+              "[0.1,-2.5],\n]};");
+    has(page, "[0.1,0.25,-0,2,1.25,-0.5,2,");
+    has(page, "ends: [3,5,]");
+    has(page, "</html>");
+    assert_null(strstr(page, "@DATA@"));
+    assert_null(strstr(page, "http")); // nothing is fetched
+    free(page);
+}
+
+static void what_is_not_results_is_refused(void **context) {
+    const char *folder = *context;
+    bough_status status = bough_report_write(1, &folder);
+    assert_int_equal(status.code, BOUGH_INVALID);
+    has(status.message, "holds no results");
+    write_text(folder, "channels.out", "\n\n\n\n\n\nTime\tA\n(s)\t(m)\n0.0 1.0\n0.1\n");
+    status = bough_report_write(1, &folder);
+    assert_int_equal(status.code, BOUGH_INVALID);
+    has(status.message, "channels.out:10: not a row");
+    assert_false(scratch_has(folder, "report.html"));
+}
+
+static void a_lost_frame_is_told(void **context) {
+    const char *folder = *context;
+    write_frames(folder);
+    write_text(folder, "frames/000001.vtp", "<DataArray>\nnothing\n");
+    bough_status status = bough_report_write(1, &folder);
+    assert_int_equal(status.code, BOUGH_INVALID);
+    has(status.message, "frames/000001.vtp");
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test_setup_teardown(frames_are_polylines_with_times, scratch_make,
+                                        scratch_remove),
+        cmocka_unit_test_setup_teardown(page_carries_all_data, scratch_make, scratch_remove),
+        cmocka_unit_test_setup_teardown(what_is_not_results_is_refused, scratch_make,
+                                        scratch_remove),
+        cmocka_unit_test_setup_teardown(a_lost_frame_is_told, scratch_make, scratch_remove),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,101 @@
+// Scenes that tests read: files of the source, and texts written into a directory of their own, so
+// that paths in messages are short.
+#ifndef BOUGH_TESTS_SCENE_TEXT_H
+#define BOUGH_TESTS_SCENE_TEXT_H
+
+#include "apps/bough/scene/scene.h"
+#include "tests/unit/check.h"
+#include "tests/unit/scratch_name.h"
+
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#define SCENES BOUGH_SOURCE_DIR "/tests/data/scenes/"
+
+static const double degree = 3.14159265358979323846 / 180;
+
+typedef struct fixture {
+    bough_arena *arena;
+    bough_errors errors;
+    bough_scene *scene;
+    bough_status status;
+    char *printed;
+} fixture;
+
+static inline fixture read_scene(const char *path, const char *const *sets, int n_set) {
+    fixture f = {.arena = bough_arena_create()};
+    f.errors.arena = f.arena;
+    f.status = bough_scene_read(f.arena, path, sets, n_set, &f.errors, &f.scene);
+    size_t size;
+    FILE *stream = open_memstream(&f.printed, &size);
+    bough_errors_print(&f.errors, stream);
+    fclose(stream);
+    return f;
+}
+
+static inline void stop(fixture *f) {
+    bough_arena_destroy(f->arena);
+    free(f->printed);
+}
+
+static inline void write_file(const char *name, const char *text) {
+    FILE *stream = fopen(name, "w");
+    assert_non_null(stream);
+    fputs(text, stream);
+    fclose(stream);
+}
+
+static char directory[SCRATCH_NAME];
+
+static inline int enter(void **state) {
+    (void)state;
+    if (mkdtemp(scratch_name(directory)) == NULL || chdir(directory) != 0) return -1;
+    return 0;
+}
+
+static inline int leave(void **state) {
+    (void)state;
+    const char *const names[] = {"s.yaml", "blade.yaml", "aero.yaml", "polars.yaml"};
+    for (int i = 0; i < 4; i++)
+        remove(names[i]);
+    return chdir("/") == 0 && rmdir(directory) == 0 ? 0 : -1;
+}
+
+// Reading the scene must fail with exactly these lines.
+static inline void refuses(const char *text, const char *lines) {
+    write_file("s.yaml", text);
+    fixture f = read_scene("s.yaml", NULL, 0);
+    assert_string_equal(f.printed, lines);
+    assert_int_equal(f.status.code, lines[0] == '\0' ? BOUGH_OK : BOUGH_INVALID);
+    if (lines[0] != '\0') assert_null(f.scene);
+    stop(&f);
+}
+
+static inline void accepts(const char *text) { refuses(text, ""); }
+
+// A scene with one body, whose text (four spaces deep) goes on in line 6.
+#define SIMULATION "simulation: {duration: 1 s, macro_step: 10 ms}\n"
+#define JOINT "    joint: {kind: fixed, parent: ground}\n"
+#define ONE_BODY SIMULATION "bodies:\n  - name: a\n    fidelity: rigid\n" JOINT
+#define ROD_BODY SIMULATION "bodies:\n  - name: a\n    fidelity: rod\n" JOINT
+
+// Parts of scenes that need more.
+#define BODY(name, parent)                                                                         \
+    "  - {name: " name ", fidelity: rigid, joint: {kind: fixed, parent: " parent "}}\n"
+#define SMALL_ROD                                                                                  \
+    "rod: {length: 2, segments: 4, stiffness: [1, 1, 1, 1, 1, 1], mass: [1, 0, 0, 1, 1, 0]}"
+#define TWO_RODS                                                                                   \
+    SIMULATION "bodies:\n" BODY("a", "ground")                                                     \
+        "  - {name: b, fidelity: rod, joint: {kind: fixed, parent: ground}, " SMALL_ROD "}\n"       \
+        "  - {name: c, fidelity: rod, joint: {kind: revolute, parent: ground, axis: x}, "           \
+        SMALL_ROD "}\nloads:\n"
+#define ROTOR                                                                                      \
+    SIMULATION                                                                                     \
+    "bodies:\n  - {name: hub, mass: 1, fidelity: rigid, joint: {kind: revolute, parent: ground, "  \
+    "axis: x}}\n"                                                                                  \
+    "  - {name: b1, fidelity: rod, joint: {kind: fixed, parent: hub}, rod: &r {length: 5,\n"       \
+    "      stiffness: [1, 1, 1, 1, 1, 1], mass: [1, 0, 0, 1, 1, 0]}}\n"                            \
+    "  - {name: b2, fidelity: rod, joint: {kind: fixed, parent: ground}, rod: *r}\n"
+
+#endif

@@ -1,0 +1,30 @@
+// The two-mass oscillator for tests: an exact run that must succeed.
+#ifndef BOUGH_TESTS_TWO_MASS_H
+#define BOUGH_TESTS_TWO_MASS_H
+
+#include "tests/verification/two_mass.h"
+#include "tests/unit/check.h"
+
+#include <string.h>
+
+static inline double two_mass_error(bough_two_mass *m) {
+    double worst;
+    bough_status status = bough_two_mass_error(m, &worst);
+    if (!bough_is_ok(&status)) fail_msg("%s", status.message);
+    return worst;
+}
+
+// With 3 ports on either side: the leader takes the sum of three forces and tells (v, x, x), a
+// follower takes the mean of the two positions.
+static inline void oscillator_widen(bough_oscillator *leader, bough_oscillator *follower) {
+    for (int j = 1; j < 3; j++) leader->b[1][j] = leader->b[1][0];
+    leader->c[2][0] = leader->c[1][0];
+    leader->n_input = leader->n_output = 3;
+    follower->b[1][1] /= 2;
+    follower->d[0][1] /= 2;
+    follower->b[1][2] = follower->b[1][1];
+    follower->d[0][2] = follower->d[0][1];
+    follower->n_input = 3;
+}
+
+#endif
