@@ -151,23 +151,16 @@ static void respond(bough_coupled *coupled, int i) {
 
 static bool factor_border(bough_coupled *coupled);
 
-void bough_coupled_borrow(bough_coupled *coupled, bough_condensed *interface, double t, const double *state,
-                          const double *input, double gamma) {
+void bough_coupled_linearise(bough_coupled *coupled, double t, const double *state, const double *input) {
     const bough_assembly *a = coupled->assembly;
     memcpy(coupled->setup_state, state, (size_t)a->n_state * sizeof(double));
     memcpy(coupled->setup_input, input, (size_t)a->n_input * sizeof(double));
     coupled->setup_time = t;
-    coupled->gamma = gamma;
-    coupled->interface = interface;
-}
-
-void bough_coupled_linearise(bough_coupled *coupled, double t, const double *state, const double *input) {
-    bough_coupled_borrow(coupled, coupled->own, t, state, input, coupled->gamma);
     coupled->linearised = false;
 }
 
 bough_status bough_coupled_factor(bough_coupled *coupled, double gamma) {
-    assert(coupled->own != NULL && coupled->interface == coupled->own);
+    assert(coupled->interface != NULL);
     coupled->gamma = gamma;
     bough_pool_run(coupled->pool, coupled->assembly->n_member, factor, coupled);
     bough_status status = bough_coupled_failure(coupled);
@@ -356,7 +349,7 @@ bough_coupled *bough_coupled_create_evaluation(bough_arena *arena, const bough_a
 bough_coupled *bough_coupled_create(bough_arena *arena, const bough_assembly *assembly, bough_pool *pool) {
     bough_coupled *a = bough_coupled_create_evaluation(arena, assembly, pool);
     take_solution(a, arena);
-    a->interface = a->own = bough_condensed_create(arena, assembly);
+    a->interface = bough_condensed_create(arena, assembly);
     return a;
 }
 

@@ -24,13 +24,13 @@ typedef struct bough_coupled {
     // factors
     bool linearised; // at the place of setup
     double setup_time;
-    double *setup_state;              // (n_state) where the matrix was taken
-    double *setup_input;              // (n_input)
-    bough_condensed *interface, *own; // in use, its own
-    const double *outside;            // (n_input) of the solution in progress; NULL: 0
-    double *change;                   // (n_input) of the inputs with the last solution
-    double *led;                      // (n_input) the same without what comes from outside
-    double *output_change;            // (n_output) of each member by itself
+    double *setup_state; // (n_state) where the matrix was taken
+    double *setup_input; // (n_input)
+    bough_condensed *interface;
+    const double *outside; // (n_input) of the solution in progress; NULL: 0
+    double *change;        // (n_input) of the inputs with the last solution
+    double *led;           // (n_input) the same without what comes from outside
+    double *output_change; // (n_output) of each member by itself
 
     // states that are held
     int n_held;
@@ -71,11 +71,6 @@ bough_status bough_coupled_factor(bough_coupled *coupled, double gamma);
 // Both.
 bough_status bough_coupled_setup(bough_coupled *coupled, double t, const double *state, const double *input,
                                  double gamma);
-
-// The next solutions, without held states, are those by another's factors of I − γJ; outputs are
-// linearised about (t, state, input).
-void bough_coupled_borrow(bough_coupled *coupled, bough_condensed *interface, double t, const double *state,
-                          const double *input, double gamma);
 
 // x ← (I − γJ)⁻¹ x, x (n_state); coupled->change is then the change of the inputs with it.
 void bough_coupled_solve(bough_coupled *coupled, double *x);

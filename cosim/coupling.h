@@ -75,19 +75,10 @@ typedef struct bough_coupling {
     bool leaders_restart; // integrators of the stage in progress start anew
     int failed_member;    // −1, or the member whose move failed
 
-    // by schemes that exchange within the step: outputs obtained at these times, the last of which is t1
-    int n_within;              // 3; 0: others
-    const double *within_time; // (n_within) over the step, in (0, 1]
-    const double *within;      // (n_within × n_output)
-
     // scratch
     double *state_rate;       // (n_state)
     double *output_drift;     // (n_output)
     double *seen, *seen_rate; // (n_input)
-
-    // by schemes that have them: the linearised members of the last step and their γ; NULL
-    bough_condensed *interface;
-    double interface_gamma; // [s]
 
     // by the ramp scheme, for the summary
     double theta;           // in use

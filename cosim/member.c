@@ -66,7 +66,6 @@ bough_status bough_member_create(bough_arena *arena, const bough_system *system,
                      .solve = solve,
                      .elastic_rate = system->elastic_rate};
     bough_status status = bough_integrator_create(arena, &ode, options, &m->integrator);
-    m->own_error = m->integrator.own_error;
     return status;
 }
 
@@ -113,12 +112,9 @@ bough_statistics bough_member_statistics(const bough_member *m) {
 
 // -- state ----------------------------------------------------------------------------------------
 
-// The state is another's now: its own steps have made no error in it.
 static void begin_anew(bough_member *m, bool started) {
-    size_t size = (size_t)m->system.n_state * sizeof(double);
     m->started = started;
     m->paused = false;
-    if (m->own_error != NULL) memset(m->own_error, 0, size);
 }
 
 void bough_member_set(bough_member *m, double t, const double *state) {

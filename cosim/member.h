@@ -10,11 +10,9 @@
 
 typedef struct bough_member {
     bough_system system;
-    const char *solver; // its integrator, for messages: "IDA", "CVODE BDF", …
-    double time;        // current [s]
-    double *state;      // current (n_state)
-    double *own_error;  // (n_state) estimated errors of its own steps, summed since a reader last set
-                        // them to zero; NULL: no estimate
+    const char *solver;          // its integrator, for messages: "IDA", "CVODE BDF", …
+    double time;                 // current [s]
+    double *state;               // current (n_state)
     bough_integrator integrator; // ops NULL: there are no states
     bool opaque; // a foreign simulator, which has outputs and own steps but neither states nor tangents
 

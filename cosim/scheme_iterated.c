@@ -132,11 +132,6 @@ bough_status bough_iteration_create(bough_coupling *c, bough_arena *arena) {
     take(it, c->assembly, arena);
     it->obtained = c->end_output;
     if (waveform) it->obtained = bough_arena_doubles(arena, MOST_NODES * (size_t)c->assembly->n_output);
-    if (waveform) {
-        c->n_within = it->n_node;
-        c->within_time = it->node;
-        c->within = it->obtained;
-    }
     find_feedback(it, c);
     c->iteration = it;
     create_accelerator(c, it, arena);

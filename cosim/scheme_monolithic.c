@@ -143,9 +143,6 @@ static bough_status step(bough_coupling *c) {
     assert(whole->time == c->t0);
     bough_status status = bough_member_advance(whole, c->t1, NULL, c->restart);
     if (!bough_is_ok(&status)) return status;
-    const bough_coupled *factors = whole->factors;
-    c->interface = factors->own;
-    c->interface_gamma = factors->gamma;
     for (int i = 0; i < a->n_member; i++) {
         bough_member_set(a->member[i], c->t1, whole->state + a->state_offset[i]);
     }

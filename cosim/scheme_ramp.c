@@ -190,8 +190,6 @@ static bough_status predict(bough_coupling *c) {
     choose_inputs(c);
     r->gamma = r->theta * (c->t1 - c->t0);
     r->middle = c->t0 + r->gamma;
-    c->interface = r->interface;
-    c->interface_gamma = r->gamma;
     bough_staged_work work = {predict_leader, prepare_follower, predict_follower};
     bough_status status = bough_coupling_each_staged(c, work);
     if (!bough_is_ok(&status)) return status;
@@ -307,7 +305,6 @@ static bough_status prepare(bough_coupling *c, bough_arena *arena) {
     ramp *r = c->scheme_data;
     bough_status status = choose_theta(c);
     r->span = 0; // loads are sampled before the first step
-    c->interface = NULL;
     if (status.code == BOUGH_RETRY) return bough_ok();
     if (!bough_is_ok(&status) || !r->repeats) return status;
     return prepare_repetition(c, arena);

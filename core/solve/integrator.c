@@ -30,6 +30,5 @@ bough_status bough_integrator_create(bough_arena *arena, const bough_ode *ode,
                           ode->name, ops->title, ops->most_states, ode->n);
     }
     integrator->self = ops->create(arena, ode, options);
-    if (ops->own_error) integrator->own_error = ops->own_error(integrator->self);
     return bough_ok();
 }

@@ -87,8 +87,6 @@ typedef struct bough_integrator_ops {
     // was changed, or f jumps at *t.
     bough_status (*advance)(void *self, double *t, double pause, double t1, bool restart, double *y);
     void (*statistics)(const void *self, bough_statistics *sum); // added to sum
-    // (n) sum of the errors of all steps, by the method's own estimate. NULL: it has none.
-    double *(*own_error)(void *self);
     // The memory that the next step depends on, apart from t and y. NULL: the method restarts.
     void (*transfer)(void *self, bough_snapshot *s);
 } bough_integrator_ops;
@@ -96,7 +94,6 @@ typedef struct bough_integrator_ops {
 typedef struct bough_integrator {
     const bough_integrator_ops *ops;
     void *self;
-    double *own_error; // (n) as above, or NULL; readers set it to zero
 } bough_integrator;
 
 const bough_integrator_ops *bough_integrator_find(bough_integrator_kind kind);

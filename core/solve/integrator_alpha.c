@@ -30,9 +30,6 @@ typedef struct alpha {
     bool started;
     double *rate;                                 // ẏ₀ (n)
     double *next, *next_rate, *middle, *residual; // y₁, ẏ₁, y_f, work (n)
-    double *own_error;                            // (n)
-    double *slope;                                // (n) of ẏ over the last step
-    double last;                                  // its length, 0: there is none since the start [s]
     bough_statistics sum;
 } alpha;
 
@@ -45,8 +42,7 @@ static void *create(bough_arena *arena, const bough_ode *ode, const bough_integr
     m->am = 0.5 * (3 - options->rho) / (1 + options->rho);
     m->af = 1 / (1 + options->rho);
     m->gamma = 0.5 + m->am - m->af;
-    bough_arena_each(arena, n, &m->weight, &m->rate, &m->next, &m->next_rate, &m->middle, &m->residual,
-                     &m->own_error, &m->slope);
+    bough_arena_each(arena, n, &m->weight, &m->rate, &m->next, &m->next_rate, &m->middle, &m->residual);
     for (size_t i = 0; i < n; i++) m->weight[i] = 1 / ode->scale[i];
     return m;
 }
@@ -136,21 +132,14 @@ static bool converge(alpha *m, double t, const double *y, double h) {
 }
 
 // y, ẏ₀ ← y₁, ẏ₁
-static void accept(alpha *m, double h, double *restrict y) {
-    double af = m->af, am = m->am, s = af - am;
-    double constant = 1.0 / 12 - 0.5 * s * s + 0.5 * (af * (1 - af) - am * (1 - am));
-    double factor = m->last > 0 ? constant * h * h * h * 2 / (h + m->last) : 0;
+static void accept(alpha *m, double *restrict y) {
     const double *restrict next = m->next, *restrict next_rate = m->next_rate;
-    double *restrict rate = m->rate, *restrict slope = m->slope, *restrict error = m->own_error;
+    double *restrict rate = m->rate;
 #pragma omp simd
     for (int i = 0; i < m->ode.n; i++) {
-        double now = (next_rate[i] - rate[i]) / h;
-        error[i] += factor * (now - slope[i]);
-        slope[i] = now;
         y[i] = next[i];
         rate[i] = next_rate[i];
     }
-    m->last = h;
     m->sum.steps++;
 }
 
@@ -163,7 +152,7 @@ static bool take_step(alpha *m, double t, double h, double *y) {
         predict(m, y, h);
         if (!renew_factors(m, t, y, gamma)) return false;
         if (converge(m, t, y, h)) {
-            accept(m, h, y);
+            accept(m, y);
             return true;
         }
         m->sum.failed_steps++;
@@ -176,7 +165,6 @@ static bool start(alpha *m, double t, const double *y) {
     m->sum.starts++;
     m->started = true;
     m->stale = true;
-    m->last = 0;
     m->sum.derivatives++;
     return m->ode.derivative(m->ode.self, t, y, m->rate);
 }
@@ -204,11 +192,6 @@ static bough_status advance(void *self, double *t, double pause, double t1, bool
                       m->ode.name, *t, longest);
 }
 
-static double *own_error(void *self) {
-    alpha *m = self;
-    return m->own_error;
-}
-
 static void statistics(const void *self, bough_statistics *sum) {
     const alpha *m = self;
     bough_statistics_add(sum, &m->sum);
@@ -221,5 +204,4 @@ const bough_integrator_ops bough_integrator_alpha = {
     .create = create,
     .advance = advance,
     .statistics = statistics,
-    .own_error = own_error,
 };

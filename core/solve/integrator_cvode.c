@@ -37,7 +37,6 @@ static const bough_newton_library library = {
     .stop_at = CVodeSetStopTime,
     .step = step,
     .current_time = CVodeGetCurrentTime,
-    .local_error = CVodeGetEstLocalErrors,
     .count = count,
 };
 
@@ -74,5 +73,4 @@ const bough_integrator_ops bough_integrator_cvode = {
     .create = create,
     .advance = bough_newton_run_advance,
     .statistics = bough_newton_run_statistics,
-    .own_error = bough_newton_run_own_error,
 };

@@ -137,7 +137,6 @@ bough_newton_run *bough_newton_run_create(bough_arena *arena, const bough_ode *o
     bough_arena_on_destroy(arena, destroy, run);
     run->library = library;
     run->most_steps = MOST_STEPS;
-    run->own_error = bough_arena_doubles(arena, (size_t)ode->n);
     if (!bough_newton_handle_create(&run->newton, ode, rtol)) bough_arena_leave(arena);
     run->beside = bough_vector_create(ode->n, run->newton.context);
     if (run->beside == NULL) bough_arena_leave(arena);
@@ -187,7 +186,7 @@ static const char *reason(bough_newton_run *run, int flag) {
     }
 }
 
-// All steps to t1, the integrator's to the last bit, with their local errors. One step a call: the
+// All steps to t1, the integrator's to the last bit. One step a call: the
 // interpolant of a call to the end may miss a stiff state there.
 static int cross(bough_newton_run *run, double t1, double *reached) {
     const bough_newton_library *library = run->library;
@@ -195,10 +194,6 @@ static int cross(bough_newton_run *run, double t1, double *reached) {
     for (int k = 0; flag >= 0 && *reached < t1; k++) {
         if (k == run->most_steps) return CV_TOO_MUCH_WORK;
         flag = library->step(run, t1, reached);
-        if (flag < 0 || library->local_error == NULL) continue;
-        if (library->local_error(run->memory, run->beside) != 0) break;
-        const double *error = bough_vector_data(run->beside);
-        for (int i = 0; i < run->newton.ode.n; i++) run->own_error[i] += error[i];
     }
     return flag;
 }
@@ -236,9 +231,4 @@ void bough_newton_run_statistics(const void *self, bough_statistics *sum) {
     sum->jacobians += run->newton.jacobians;
     sum->factorisations += run->newton.factorisations;
     if (run->started) run->library->count(run->memory, sum);
-}
-
-double *bough_newton_run_own_error(void *self) {
-    bough_newton_run *run = self;
-    return run->own_error;
 }

@@ -57,7 +57,6 @@ typedef struct bough_newton_library {
     int (*stop_at)(void *memory, double t);
     int (*step)(bough_newton_run *run, double t1, double *reached); // one, to t1 at most
     int (*current_time)(void *memory, double *t);
-    int (*local_error)(void *memory, N_Vector error);   // of the last step; NULL: not told
     void (*count)(void *memory, bough_statistics *sum); // since the last start, added
 } bough_newton_library;
 
@@ -67,7 +66,6 @@ struct bough_newton_run {
     void *memory;
     int most_steps; // in a macro step
     bool started;
-    double *own_error;     // (n)
     N_Vector beside;       // (n) errors of the last step; of IDA ẏ
     bough_statistics past; // of the integrations before the last start
 };
@@ -80,6 +78,5 @@ void bough_newton_run_destroy(bough_newton_run *run);
 // As in bough_integrator_ops.
 bough_status bough_newton_run_advance(void *run, double *t, double pause, double t1, bool restart, double *y);
 void bough_newton_run_statistics(const void *run, bough_statistics *sum);
-double *bough_newton_run_own_error(void *run);
 
 #endif

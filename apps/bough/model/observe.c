@@ -151,12 +151,10 @@ static void add_drive(const bough_scene_body *body, int k, bough_channels *list)
 
 static void add_drives(bough_simulation *s, bough_channels *list) {
     bough_channels_group(list, sample_drives, s);
-    s->first_drive = list->count;
     for (int i = 0; i < 2 * s->scene->n_body; i++) {
         const bough_scene_body *body = &s->scene->body[i / 2];
         if (is_driven(&body->joint, i % 2)) add_drive(body, i % 2, list);
     }
-    s->n_drive = list->count - s->first_drive;
 }
 
 static void sample_springs(void *self, double t, double *value) {
@@ -207,10 +205,8 @@ static void sample_closures(void *self, double t, double *value) {
 
 static void add_closures(bough_simulation *s, bough_channels *list) {
     bough_channels_group(list, sample_closures, s);
-    s->first_closure = list->count;
     for (int k = 0; k < s->scene->n_closure; k++)
         bough_channel_family_add(list, BOUGH_CHANNELS_CLOSURE, s->scene->closure[k].name, "");
-    s->n_closure = list->count - s->first_closure;
 }
 
 static void sample_markers(void *self, double t, double *value) {
@@ -515,9 +511,7 @@ bough_status bough_simulation_channels(bough_simulation *s, bough_channels *chan
     if (s->tower_top != NULL) add_tower(s, channels);
     add_tips(s, channels);
     bough_observe_sections(s, channels);
-    s->first_bearing = channels->count;
     if (s->tower_top != NULL) bough_observe_yaw_bearing(s, channels);
-    s->n_bearing = channels->count - s->first_bearing;
     s->n_motion_channel = channels->count;
     add_fmus(s, channels);
     if (turbine) bough_observe_shaft(s, channels);

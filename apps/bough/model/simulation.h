@@ -54,9 +54,6 @@ typedef struct bough_simulation {
     const bough_beam *tower_foot, *tower_top;
     bough_transform tower_rest;
     int n_motion_channel; // the first channels: they follow from the states
-    // of them those that also follow from the rods' wrenches: forces of driven joints, of closures, of the
-    // nacelle
-    int first_drive, n_drive, first_closure, n_closure, first_bearing, n_bearing;
 } bough_simulation;
 
 // Registers the channels that the scene's parts give.

@@ -94,38 +94,6 @@ static void order_is_two_for_any_damping(void **context) {
     }
 }
 
-static bool decay(void *self, double t, const double *y, double *rate) {
-    (void)self, (void)t;
-    rate[0] = -y[0];
-    return true;
-}
-
-static void solve_decay(void *self, double *x) {
-    const problem *p = self;
-    x[0] /= 1 + p->gamma;
-}
-
-// ẏ = −y: steps err by −C h³ e⁻ᵗ, together by −C h² (1 − e⁻ᵀ), and the run, in which each decays, by
-// −C h² T e⁻ᵀ, but for what ẏ₀ errs by at the start.
-static void its_own_error_is_told(void **context) {
-    (void)context;
-    static const double scale[1] = {1};
-    for (double rho = 0.4; rho <= 1; rho += 0.2) {
-        problem p = {0};
-        double y[1] = {1}, end = 2, h = 0.01;
-        bough_arena *arena = bough_arena_create();
-        bough_ode ode = {"decay", 1, scale, &p, decay, NULL, linearise, factor, solve_decay, 0};
-        bough_integrator_options options = {BOUGH_GENERALIZED_ALPHA, 1e-10, h, rho, 0};
-        bough_status status = bough_integrator_create(arena, &ode, &options, &p.micro);
-        assert_true(bough_is_ok(&status));
-        status = integrator_advance(&p.micro, 0, end, true, y);
-        assert_true(bough_is_ok(&status));
-        double told = p.micro.own_error[0] / (1 - exp(-end));
-        check_near(told, (y[0] - exp(-end)) / (end * exp(-end)), 0.2, 0);
-        bough_arena_destroy(arena);
-    }
-}
-
 // A mode far above the step's reach is damped by ρ∞ each step.
 static void highest_frequencies_are_damped_as_asked(void **context) {
     (void)context;
@@ -175,7 +143,6 @@ static void counts_its_work(void **context) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(order_is_two_for_any_damping),
-        cmocka_unit_test(its_own_error_is_told),
         cmocka_unit_test(highest_frequencies_are_damped_as_asked),
         cmocka_unit_test(what_has_no_value_ends_with_a_diagnosis),
         cmocka_unit_test(counts_its_work),

@@ -121,29 +121,6 @@ static void error_follows_the_tolerance(void **context) {
     assert_true(before > 100);
 }
 
-// What it tells of its own error, summed over the run without the equation's own growth or decay: of
-// the embedded order 2, and twice that is more than what is true.
-static double told_with(double step, double *error) {
-    problem p = {.skew = 1, .wall = (double)INFINITY};
-    double y[N], end[N];
-    bough_arena *arena = build(&p, step, 1);
-    exact(0, y);
-    const double *told = p.micro.own_error;
-    integrator_advance(&p.micro, 0, 0.5, false, y);
-    exact(0.5, end);
-    double sum = fabs(told[3]);
-    *error = fabs(y[3] - end[3]);
-    bough_arena_destroy(arena);
-    return sum;
-}
-
-static void its_own_error_is_told(void **context) {
-    (void)context;
-    double error, finer, coarse = told_with(0.05, &error), fine = told_with(0.025, &finer);
-    check_near(log2(coarse / fine), 2, 0, 0.3);
-    assert_true(2 * coarse > error && 2 * fine > finer);
-}
-
 // A mode far above the step's reach is gone after a few steps.
 static void stiff_mode_is_forgotten(void **context) {
     (void)context;
@@ -204,7 +181,6 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(order_is_three_whatever_the_tangents),
         cmocka_unit_test(error_follows_the_tolerance),
-        cmocka_unit_test(its_own_error_is_told),
         cmocka_unit_test(stiff_mode_is_forgotten),
         cmocka_unit_test(a_restart_gives_the_same_bits),
         cmocka_unit_test(a_pause_changes_no_bit),
