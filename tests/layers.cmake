@@ -150,7 +150,6 @@ owned_by("^aero/wind/wind_fourier\\.c$" "${include}fftw3\\.h" "only aero/wind/wi
 owned_by("^apps/bough/config/text\\.c$" "${include}yaml\\.h" "only apps/bough/config/text.c uses libyaml")
 
 owned_by("^apps/bough/scene/fmu_description\\.c$" "${include}expat\\.h" "only apps/bough/scene/fmu_description.c uses expat")
-owned_by("^apps/bough/results/vertices\\.c$" "${include}hdf5\\.h" "only apps/bough/results/vertices.c uses HDF5")
 
 if(found)
   message(FATAL_ERROR "${found} violation(s) of the layers")

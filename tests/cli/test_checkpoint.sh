@@ -165,7 +165,7 @@ has stderr "process $process is writing results into 'busy'"
 kill -s KILL $process
 wait $process 2>/dev/null
 mkdir -p busy/frames
-touch busy/frames/000007.vtp.partial busy/vertices.h5.partial
+touch busy/frames/000007.vtp.partial busy/channels.outb.partial
 expect 0 run "$bar" --out busy --quiet --set 'simulation.duration=0.1 s'
 [ -z "$(find busy -name '*.partial' -o -name '*.lock')" ] || fail "left in busy: $(ls -R busy)"
 

@@ -183,10 +183,12 @@ checks() {
     refused 'mass: must be in \[0, 1e12\] kg' run "$mechanisms/pendulum.yaml" --set 'bodies[0].mass=1e300 t'
     refused "error: aero.wind.speed: must be in \[0, 150\] m/s, got '300'" check "$turbine" --set aero.wind.speed=300
     refused "solver: expected one of .*, got 'cvode' (did you mean 'cvode-bdf'?)" check "$bar" --set simulation.micro.solver=cvode
-    for key in interval from frames vertices; do
+    for key in interval from frames; do
         expect 0 check "$bar" --set "simulation.output.$key=1000 s"
         has ../stderr "^--set: warning: simulation.output.$key: 1000 s is longer than the run, 1 s\$"
     done
+    refused "simulation.output: the key 'vertices' was removed: 'frames: 0.1 s' stores" check "$bar" \
+        --set 'simulation.output.vertices=0.1 s'
     refused "error: --set: control.library: the controller cannot be loaded: .*no.so" check \
         "$folder/apps/turbine/power.yaml" --set 'control={kind: bladed, library: no.so}'
     refused "error: --set: aero.wind.file: cannot open the wind file .*no.bts" check "$turbine" --set 'aero.wind={kind: bts, file: no.bts}'

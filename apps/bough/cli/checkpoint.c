@@ -71,10 +71,6 @@ static bough_status check_interval(const bough_job *job, double interval) {
     const bough_master *m = job->run.simulation->master;
     bough_status status = bough_simulation_storable(job->run.simulation);
     if (!bough_is_ok(&status)) return status;
-    if (job->run.simulation->scene->simulation.output.vertices > 0) {
-        return bough_fail(BOUGH_INVALID, "--checkpoint: vertices.h5 cannot be continued; leave out "
-                                         "simulation.output.vertices, or store frames");
-    }
     if (interval > m->duration) {
         return bough_fail(BOUGH_INVALID,
                           "--checkpoint %.9g s is longer than the run, %.9g s: "

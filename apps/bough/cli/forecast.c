@@ -9,7 +9,7 @@ static const double long_run = 1e6;    // macro steps
 static const double much_data = 1e9;   // [bytes]
 static const double frame_head = 900;  // bytes of a frame's file beside its points
 static const double frame_point = 110; // bytes of one of its points
-enum { COLUMN = 18, VERTEX = 144 };    // bytes of a value in channels.out, of a vertex in vertices.h5
+enum { COLUMN = 18 };                  // bytes of a value in channels.out
 
 // How often something is recorded: at the start and after every interval.
 static double samples(double duration, double interval) {
@@ -22,9 +22,8 @@ bough_forecast bough_run_results(const bough_simulation *simulation, const bough
     double duration = simulation->master->duration;
     double row = COLUMN * (channels->count + 1.0) + 1 + (output->binary ? 2 * channels->count : 0);
     double rows = 1 + ceil(duration / output->interval - 1e-9); // the end is recorded too
-    return (bough_forecast){
-        rows, row * rows + (frame_head + frame_point * n_point) * samples(duration, output->frames) +
-                  VERTEX * n_point * samples(duration, output->vertices)};
+    return (bough_forecast){rows, row * rows + (frame_head + frame_point * n_point) *
+                                                   samples(duration, output->frames)};
 }
 
 void bough_forecast_print(bough_forecast f, const bough_channels *channels, FILE *stream) {

@@ -3,12 +3,11 @@
 #define BOUGH_APPS_BOUGH_JOB_H
 
 #include "apps/bough/cli/options.h"
-#include "apps/bough/results/recorder.h"
-#include "apps/bough/results/statistics.h"
-#include "apps/bough/results/vertices.h"
 #include "apps/bough/model/error_shares.h"
 #include "apps/bough/model/run.h"
 #include "apps/bough/model/shape.h"
+#include "apps/bough/results/recorder.h"
+#include "apps/bough/results/statistics.h"
 
 #include <stdint.h>
 
@@ -28,8 +27,7 @@ typedef struct bough_job {
     bough_recorder *recorder;
     bough_sample_statistics *statistics; // (recorded.count) of the rows
     bough_shape shape;
-    bough_frames *frames;     // NULL: none are stored
-    bough_vertices *vertices; // NULL: none are stored
+    bough_frames *frames; // NULL: none are stored
     bough_checkpoint checkpoint;
     bough_kept rows, frames_kept;      // at the last checkpoint
     bough_error_shares shares;         // of mesh, air and time

@@ -6,10 +6,10 @@
 #include "apps/bough/cli/open.h"
 #include "apps/bough/cli/stop.h"
 #include "apps/bough/cli/verb.h"
+#include "apps/bough/model/validity.h"
 #include "apps/bough/results/binary.h"
 #include "apps/bough/results/folder.h"
 #include "apps/bough/results/lock.h"
-#include "apps/bough/model/validity.h"
 
 // -- recording ------------------------------------------------------------------------------------
 
@@ -28,39 +28,21 @@ static bough_status sample_frame(void *self, double t) {
     return bough_frames_sample(((bough_job *)self)->frames, t);
 }
 
-static bough_status sample_vertices(void *self, double t) {
-    return bough_vertices_sample(((bough_job *)self)->vertices, t);
-}
-
 static void record(bough_job *job) {
     const bough_scene_output *output = &job->run.simulation->scene->simulation.output;
     bough_run_record rows = {output->interval, true, .sample = sample_row, .self = job};
     bough_run_record frames = {output->frames, .sample = sample_frame, .self = job};
-    bough_run_record vertices = {output->vertices, .sample = sample_vertices, .self = job};
     bough_run_record_at(&job->run, rows);
     if (output->frames > 0) bough_run_record_at(&job->run, frames);
-    if (output->vertices > 0) bough_run_record_at(&job->run, vertices);
 }
 
 // -- results --------------------------------------------------------------------------------------
 
-static bough_status open_vertices(bough_job *job) {
-    bough_polyline *body = bough_shape_bodies(job->arena, &job->shape);
-    bough_vertices_def def = {.folder = job->folder,
-                              .n_body = job->shape.n_line,
-                              .body = body,
-                              .motion = bough_shape_motion,
-                              .loads = bough_shape_vertex_loads,
-                              .self = &job->shape};
-    return bough_vertices_open(job->arena, &def, &job->vertices);
-}
-
 static bough_status open_frames(bough_job *job) {
     const bough_scene_output *output = &job->run.simulation->scene->simulation.output;
-    if (!(output->frames > 0 || output->vertices > 0)) return bough_ok();
+    if (!(output->frames > 0)) return bough_ok();
     bough_status status = bough_shape_create(job->arena, job->run.simulation, &job->shape);
-    if (bough_is_ok(&status) && output->vertices > 0) status = open_vertices(job);
-    if (!bough_is_ok(&status) || !(output->frames > 0)) return status;
+    if (!bough_is_ok(&status)) return status;
     bough_frames_def def = {.folder = job->folder,
                             .n_line = job->shape.n_line,
                             .line = job->shape.line,
@@ -138,9 +120,6 @@ static bough_status close_results(bough_job *job) {
         return job->run.outcome;
     }
     status = bough_folder_remove(job->folder, "summary.json");
-    if (bough_is_ok(&status)) status = bough_folder_remove(job->folder, "vertices.h5");
-    bool whole = bough_is_ok(&status) && bough_is_ok(&job->run.outcome);
-    if (whole && job->vertices) status = bough_vertices_finish(job->vertices);
     if (bough_is_ok(&status)) status = bough_folder_remove(job->folder, "channels.outb");
     if (bough_is_ok(&status)) status = bough_folder_remove(job->folder, "report.html");
     if (bough_is_ok(&status)) {

@@ -21,8 +21,7 @@ static void take_scratch(bough_arena *arena, bough_shape *shape) {
     shape->scratch = bough_arena_take(arena, (size_t)shape->n_line * sizeof *shape->scratch);
     for (int i = 0; i < shape->n_line; i++) {
         if (has_rod(s, i)) {
-            bough_rod_scratch_init(&shape->scratch[i], arena,
-                                   bough_beam_mesh(bough_simulation_beam(s, i)));
+            bough_rod_scratch_init(&shape->scratch[i], arena, bough_beam_mesh(bough_simulation_beam(s, i)));
         }
     }
 }
@@ -87,62 +86,14 @@ static void rod_loads(const bough_shape *shape, int body, double t, double *forc
     }
 }
 
-// `rigid`: the number of points of a body without a beam.
-static void all_loads(const bough_shape *shape, int rigid, double t, double *force,
-                      double *moment) {
+void bough_shape_loads(void *self, double t, double *force, double *moment) {
+    const bough_shape *shape = self;
     for (int i = 0; i < shape->n_line; i++) {
-        bool beam = bough_simulation_beam(shape->simulation, i) != NULL;
-        int n = 3 * (beam ? shape->line[i].n_point : rigid);
+        int n = 3 * shape->line[i].n_point;
         memset(force, 0, (size_t)n * sizeof *force);
         memset(moment, 0, (size_t)n * sizeof *moment);
         if (has_rod(shape->simulation, i)) rod_loads(shape, i, t, force, moment);
         force += n;
         moment += n;
-    }
-}
-
-void bough_shape_loads(void *self, double t, double *force, double *moment) {
-    all_loads(self, RIGID_POINTS, t, force, moment);
-}
-
-void bough_shape_vertex_loads(void *self, double t, double *force, double *moment) {
-    all_loads(self, 1, t, force, moment);
-}
-
-bough_polyline *bough_shape_bodies(bough_arena *arena, const bough_shape *shape) {
-    bough_polyline *body = bough_arena_take(arena, (size_t)shape->n_line * sizeof *body);
-    for (int i = 0; i < shape->n_line; i++) {
-        body[i] = shape->line[i];
-        if (!bough_simulation_beam(shape->simulation, i)) body[i].n_point = 1;
-    }
-    return body;
-}
-
-// Returns the number of vertices.
-static int move_body(bough_shape *shape, int body) {
-    const bough_simulation *s = shape->simulation;
-    const bough_beam *beam = bough_simulation_beam(s, body);
-    if (beam) {
-        bough_simulation_beam_motion(s, beam, shape->motion);
-        return shape->line[body].n_point;
-    }
-    bough_transform own = bough_tree_frame_pose(s->view, &s->tree->bodies[body]);
-    shape->motion.position[0] = own.position;
-    shape->motion.rotation[0] = own.rotation;
-    return 1;
-}
-
-void bough_shape_motion(void *self, double *position, double *rotation) {
-    bough_shape *shape = self;
-    for (int i = 0; i < shape->n_line; i++) {
-        int n = move_body(shape, i);
-        for (int k = 0; k < n; k++, position += 3, rotation += 9) {
-            bough_vec3 x = shape->motion.position[k];
-            bough_mat3 m = shape->motion.rotation[k];
-            const double row[] = {m.c1.x, m.c2.x, m.c3.x, m.c1.y, m.c2.y,
-                                  m.c3.y, m.c1.z, m.c2.z, m.c3.z};
-            position[0] = x.x, position[1] = x.y, position[2] = x.z;
-            memcpy(rotation, row, sizeof row);
-        }
     }
 }

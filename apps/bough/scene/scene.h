@@ -44,7 +44,6 @@ typedef struct bough_scene_output {
     double interval;       // [s], a multiple of the macro step
     double from;           // of the statistics: what is before does not count [s]
     double frames;         // between stored shapes [s]; 0: none
-    double vertices;       // between stored vertices [s]; 0: none
     bool binary;           // channels.outb beside channels.out
     int n_channel;         // 0: all
     const char **channels; // (n_channel) patterns of those that are recorded

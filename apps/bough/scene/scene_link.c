@@ -357,13 +357,9 @@ bool bough_scene_is_multiple(double time, double step) {
 
 // Shapes are stored at ends of macro steps.
 static void check_shapes(bough_schema_reader *r, const bough_scene_output *output, double step) {
-    const char *const key[] = {"frames", "vertices"}, *const path[] = {"output.frames", "output.vertices"};
-    const double interval[] = {output->frames, output->vertices};
-    for (int k = 0; k < 2; k++) {
-        if (!(interval[k] > 0) || interval[k] >= (1 - 1e-9) * step) continue;
-        bough_schema_error(r, bough_link_value(output->node, key[k]), path[k],
-                           "%g s is less than the macro step, %g s", interval[k], step);
-    }
+    if (!(output->frames > 0) || output->frames >= (1 - 1e-9) * step) return;
+    bough_schema_error(r, bough_link_value(output->node, "frames"), "output.frames",
+                       "%g s is less than the macro step, %g s", output->frames, step);
 }
 
 static void check_times(bough_schema_reader *r, bough_scene *s) {

@@ -84,9 +84,6 @@ static const bough_key output_keys[] = {
     {KEY(NUMBER, frames), UNIT(TIME), .range = "> 0", .example = "0.1 s",
      .help = "time between shapes stored for ParaView, with the section loads of rods, and for "
              "`bough report`; default none"},
-    {KEY(NUMBER, vertices), UNIT(TIME), .range = "> 0", .example = "0.1 s",
-     .help = "time between positions, rotations and section loads of all vertices stored in "
-             "vertices.h5, by a program built with -DBOUGH_HDF5=ON; default none"},
     {KEY(BOOLEAN, binary), .fallback = "false",
      .help = "also writes channels.outb at the end, OpenFAST's binary format with 16 bits for each "
              "value"},
@@ -94,7 +91,10 @@ static const bough_key output_keys[] = {
      .help = "names or patterns of the channels that are recorded; default all"},
 };
 #undef FILLS
-static const bough_schema output_schema = {SCHEMA("the output", bough_scene_output, output_keys)};
+static const char *const removed_outputs[] = {
+    "vertices", "'frames: 0.1 s' stores the vertices of rods and their section loads, as .vtp", NULL};
+static const bough_schema output_schema = {SCHEMA("the output", bough_scene_output, output_keys),
+                                           .removed = removed_outputs};
 
 #define FILLS bough_scene_step_control
 static const bough_key step_control_keys[] = {

@@ -66,10 +66,10 @@ static bool is_unused(const bough_node *given, const bough_node *choice) {
 }
 
 static void warn_output(const bough_scene_simulation *s, FILE *stream) {
-    static const char *const keys[] = {"interval", "from", "frames", "vertices"};
+    static const char *const keys[] = {"interval", "from", "frames"};
     const bough_scene_output *output = &s->output;
-    const double time[] = {output->interval, output->from, output->frames, output->vertices};
-    for (int i = 0; i < 4; i++) {
+    const double time[] = {output->interval, output->from, output->frames};
+    for (int i = 0; i < 3; i++) {
         const bough_node *given = bough_node_find(output->node, keys[i]);
         if (!(time[i] > s->duration) || !is_unused(given, bough_node_find(s->node, "duration"))) continue;
         warn(given, stream, "simulation.output.%s: %g s is longer than the run, %g s", keys[i], time[i],
