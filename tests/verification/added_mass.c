@@ -2,8 +2,8 @@
 
 #include "apps/bough/config/schema.h"
 #include "apps/bough/results/folder.h"
-#include "apps/bough/cases/study_map.h"
 #include "apps/bough/cases/study_table.h"
+#include "tests/verification/map.h"
 #include "tests/verification/two_mass.h"
 
 #include <math.h>

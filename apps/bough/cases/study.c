@@ -1,9 +1,9 @@
 // The keys of a study and their reading.
 #include "apps/bough/cases/study.h"
 
-#include "apps/bough/config/schema_keys.h"
 #include "apps/bough/cases/load_set.h"
 #include "apps/bough/cases/study_internal.h"
+#include "apps/bough/config/schema_keys.h"
 #include "core/base/input_file.h"
 
 #include <errno.h>
@@ -215,7 +215,7 @@ static const bough_key study_keys[] = {
     {KEY(CHOICE, kind), CHOICES("work-precision", "timing", "stability", "sweep", "load-set"),
      .required = true,
      .help = "work-precision: time and error of every cell of the grid against one reference; "
-             "timing: cost of the cells, measured in turns; stability: map of errors and "
+             "timing: cost of the cells, measured in turns; stability: table of errors and "
              "diagnoses, each cell against a reference with the same model parameters; sweep: "
              "statistics of every cell; load-set: lifetime loads of weighted cases (both: "
              "docs/loads.md)"},

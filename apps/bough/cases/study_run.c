@@ -1,8 +1,8 @@
 #include "apps/bough/cases/study_run.h"
 
+#include "apps/bough/model/run.h"
 #include "apps/bough/results/recorder.h"
 #include "apps/bough/scene/fingerprint.h"
-#include "apps/bough/model/run.h"
 
 #include <assert.h>
 #include <math.h>
@@ -111,6 +111,10 @@ bough_status bough_study_same_files(bough_arena *arena, const bough_scene *scene
     return now == files ? bough_ok() : changed(scene->file, "");
 }
 
+static bool is_reference(const bough_study *s, const bough_study_cell *cell) {
+    return cell >= s->reference_cell && cell < s->reference_cell + s->n_reference;
+}
+
 static bough_status build(bough_arena *arena, const bough_study_cell *cell, cell_run *r) {
     bough_scene *scene;
     bough_study_source source = {r->study->scene, cell->n_set, cell->set, cell->files};
@@ -120,7 +124,7 @@ static bough_status build(bough_arena *arena, const bough_study_cell *cell, cell
         scene->simulation.threads = 1;
     else if (r->study->threads > 0)
         scene->simulation.threads = r->study->threads;
-    if (cell == r->study->reference_cell) scene->simulation.error_estimate = BOUGH_SCENE_NO_ESTIMATE;
+    if (is_reference(r->study, cell)) scene->simulation.error_estimate = BOUGH_SCENE_NO_ESTIMATE;
     bough_status built = bough_run_create(arena, scene, &r->run);
     status = bough_study_same_files(arena, scene, cell->files);
     if (!bough_is_ok(&status) || !bough_is_ok(&built)) return bough_is_ok(&status) ? built : status;

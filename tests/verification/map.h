@@ -1,7 +1,7 @@
 // A map of runs as an SVG picture of coloured cells: blue for a run that held, darker for a smaller error;
 // red for a run that was stopped. The text of a cell is shown when the pointer is on it.
-#ifndef BOUGH_APPS_STUDY_STUDY_MAP_H
-#define BOUGH_APPS_STUDY_STUDY_MAP_H
+#ifndef BOUGH_TESTS_VERIFICATION_MAP_H
+#define BOUGH_TESTS_VERIFICATION_MAP_H
 
 #include "core/base/status.h"
 

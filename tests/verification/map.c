@@ -1,4 +1,4 @@
-#include "apps/bough/cases/study_map.h"
+#include "tests/verification/map.h"
 
 #include "apps/bough/results/folder.h"
 #include "apps/bough/results/picture.h"
