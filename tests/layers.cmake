@@ -139,10 +139,9 @@ endforeach()
 
 owned_by("^core/base/linalg\\.c$" "${include}(lapacke?|cblas)|[^A-Za-z0-9_][sdcz][a-z][a-z0-9]+_[ \t]*\\("
   "only core/base/linalg.c calls LAPACK")
-owned_by("^core/solve/integrator_ida\\.c$" "${include}ida/" "only core/solve/integrator_ida.c uses IDA")
-owned_by("^core/solve/[^/]*\\.c$" "${include}(cvode|arkode)/" "only core/*.c uses CVODE and ARKODE")
-owned_by("^core/solve/" "${include}(sundials|nvector|sunmatrix|sunlinsol)"
-  "only core/ uses SUNDIALS")
+owned_by("^core/solve/sundials\\.c$" "${include}(ida|cvode|arkode)/" "only core/solve/sundials.c uses SUNDIALS")
+owned_by("^core/solve/(sundials|vector)\\.[ch]$" "${include}(sundials|nvector|sunmatrix|sunlinsol)"
+  "only core/solve/sundials.c and vector.c use SUNDIALS")
 owned_by("^(core/base/pool|apps/bough/exchange/runtime)\\.c$" "${include}omp\\.h|#[ \t]*pragma[ \t]+omp[ \t]+([^s]|s[^i])|[^a-z_]omp_[a-z]"
   "only core/base/pool.c uses OpenMP, but for simd loops")
 owned_by("^none$" "pthread_create|thrd_create" "threads are OpenMP's")
