@@ -39,13 +39,15 @@ static void copy_loads(bough_arena *arena, const bough_scene *scene, bough_scene
     }
 }
 
+enum { FEW_SEGMENTS = 4 }; // fewer: half of them tell nothing
+
 static bool has_mesh(const bough_scene_body *b) { return b->rod.node && b->fidelity != BOUGH_SCENE_RIGID; }
 
-// About half of n segments. A rod that cannot have much fewer gets twice as many: what lies between tells the
-// error, too.
+// About half of n segments. A rod that cannot have much fewer, or whose half would be too coarse for errors
+// to fall with their order, gets twice as many: what lies between tells the error, too.
 static int other_number(int n, int least) {
     int half = (n + 1) / 2, fewer = half > least ? half : least;
-    return 4 * fewer <= 3 * n ? fewer : 2 * n;
+    return n >= FEW_SEGMENTS && 4 * fewer <= 3 * n ? fewer : 2 * n;
 }
 
 static bool is_blade(const bough_scene *scene, int body) {

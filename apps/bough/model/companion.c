@@ -108,15 +108,17 @@ static double difference(const bough_channel *channel, double a, double b) {
     return channel->turn > 0 ? remainder(a - b, channel->turn) : a - b;
 }
 
-// What belongs to samples is compared where both have one.
+// Of the difference between two that hold values for samples, one of them twice as long: order 1.
+static const double share_held = 0.5;
+
 static void compare(bough_companion *c) {
-    bool sampled = bough_master_sampled(c->coarser->master);
+    double held = bough_master_sampled(c->coarser->master) ? c->share : fmax(c->share, share_held);
     sample(c);
     c->compared++;
     for (int i = 0; i < c->channels->count; i++) {
         const bough_channel *channel = &c->channels->channel[i];
-        if (channel->sampled && !sampled) continue;
-        double error = c->share * fabs(difference(channel, c->value[i], c->other[i]));
+        double share = channel->sampled ? held : c->share;
+        double error = share * fabs(difference(channel, c->value[i], c->other[i]));
         if (!(error <= c->error[i])) c->error[i] = error; // a NaN wins
     }
     bough_error_notice(c, c->run->master->time);

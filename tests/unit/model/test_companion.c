@@ -161,7 +161,8 @@ static void meshes_differ_as_far_as_they_can(void **state) {
         int other;
         double share;
     } cases[] = {{"bodies[3-5].rod.segments=8", 4, 0.25},
-                 {"bodies[3-5].rod.segments=3", 2, 0.6},
+                 {"bodies[3-5].rod.segments=5", 3, 0.75 / (25.0 / 9 - 1)},
+                 {"bodies[3-5].rod.segments=3", 6, 1},
                  {"bodies[3-5].rod.segments=1", 2, 1}};
     bough_arena *arena = bough_arena_create();
     for (size_t k = 0; k < sizeof cases / sizeof *cases; k++) {
