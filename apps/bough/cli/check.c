@@ -3,8 +3,8 @@
 #include "apps/bough/cli/forecast.h"
 #include "apps/bough/cli/open.h"
 #include "apps/bough/cli/verb.h"
-#include "apps/bough/results/progress.h"
 #include "apps/bough/model/validity.h"
+#include "apps/bough/results/progress.h"
 
 #include <math.h>
 #include <string.h>

@@ -9,7 +9,6 @@
 #include "apps/bough/results/picture.h"
 #include "apps/bough/scene/fingerprint.h"
 #include "apps/bough/scene/scene_files.h"
-#include "apps/bough/model/body_alone.h"
 
 #include <inttypes.h>
 #include <stdlib.h>
@@ -209,22 +208,6 @@ static void put_description(const export *x, FILE *out) {
 
 // -- the command ----------------------------------------------------------------------------------
 
-static bough_status list_body(export *x) {
-    bough_body *body;
-    bough_status status = bough_body_create(x->arena, x->simulation, x->options->body, &body);
-    if (!bough_is_ok(&status)) return status;
-    x->n_input = BOUGH_BODY_INPUTS;
-    x->n_output = BOUGH_BODY_OUTPUTS;
-    for (int k = 0; k < x->n_input; k++) {
-        const bough_body_variable *from = &bough_body_inputs[k];
-        x->input[k] =
-            (variable){from->name, bough_dimension_unit(from->dimension), bough_body_motion(body)[k]};
-    }
-    for (int k = 0; k < x->n_output; k++)
-        x->output[k] = (variable){bough_body_outputs[k].name, bough_body_outputs[k].unit, 0};
-    return status;
-}
-
 static bough_status list_scene(export *x, const bough_channels *channels) {
     const bough_scene *scene = x->simulation->scene;
     x->n_input = scene->n_input;
@@ -246,17 +229,15 @@ static bough_status list_variables(export *x) {
     bough_channels channels = bough_channels_start(x->arena);
     bough_status status = bough_simulation_channels(x->simulation, &channels);
     if (!bough_is_ok(&status)) return status;
-    size_t inputs = (size_t)x->simulation->scene->n_input + BOUGH_BODY_INPUTS;
-    size_t outputs = (size_t)channels.count + BOUGH_BODY_OUTPUTS;
-    x->input = bough_arena_take(x->arena, inputs * sizeof *x->input);
-    x->output = bough_arena_take(x->arena, outputs * sizeof *x->output);
-    return x->options->body ? list_body(x) : list_scene(x, &channels);
+    size_t inputs = (size_t)x->simulation->scene->n_input, outputs = (size_t)channels.count;
+    x->input = bough_arena_take(x->arena, (inputs + 1) * sizeof *x->input);
+    x->output = bough_arena_take(x->arena, (outputs + 1) * sizeof *x->output);
+    return list_scene(x, &channels);
 }
 
-// What a session opens: the token, the scene, the body, the settings, a line each.
+// What a session opens: the token, the scene, the settings, a line each.
 static void put_settings(const export *x, FILE *out) {
-    const char *body = x->options->body;
-    fprintf(out, "%s\n%s\n%s\nsimulation.threads=1\n", x->token, x->scene, body ? body : "");
+    fprintf(out, "%s\n%s\nsimulation.threads=1\n", x->token, x->scene);
     for (int k = 0; k < x->options->n_set; k++) fprintf(out, "%s\n", x->options->set[k]);
 }
 
@@ -316,24 +297,7 @@ static void make_token(export *x) {
     uint64_t hash = BOUGH_FINGERPRINT_START;
     bough_mix_scene(&hash, &(bough_file_sums){.arena = x->arena}, x->simulation->scene);
     for (int k = 0; k < x->options->n_set; k++) bough_mix_text(&hash, x->options->set[k]);
-    if (x->options->body) bough_mix_text(&hash, x->options->body);
     snprintf(x->token, sizeof x->token, "{bough-" BOUGH_VERSION "-%016" PRIx64 "}", hash);
-}
-
-// How another scene takes the body: its root vertex' inertia belongs to the carrier.
-static void print_body(const bough_simulation *s, const char *name) {
-    const bough_beam *beam = s->beam;
-    while (strcmp(beam->body->name, name) != 0) beam++;
-    bough_inertia root = bough_beam_root(&beam->def);
-    bough_vec3 centre = bough_scale(root.mass > 0 ? 1 / root.mass : 0, root.first);
-    bough_mat3 steiner = bough_steiner(bough_scale(-0.5, root.first), centre);
-    bough_mat3 i = bough_mat3_add(root.rotational, steiner);
-    printf("In a scene, unpacked to %s, in place of the rod:\n"
-           "    fidelity: fmu\n    fmu: {folder: %s, inputs: reached}\n    mass: %.17g\n"
-           "    centre_of_mass: [%.17g, %.17g, %.17g]\n"
-           "    inertia: [%.17g, %.17g, %.17g, %.17g, %.17g, %.17g]\n",
-           name, name, root.mass, centre.x, centre.y, centre.z, i.c1.x, i.c2.y, i.c3.z, i.c2.x, i.c3.x,
-           i.c3.y);
 }
 
 bough_status bough_verb_export(bough_arena *arena, const bough_options *options) {
@@ -360,6 +324,5 @@ bough_status bough_verb_export(bough_arena *arena, const bough_options *options)
     if (bough_is_ok(&status)) status = write_archive(&x, path);
     if (!bough_is_ok(&status)) return status;
     printf("inputs: %d\noutputs: %d\nfmu: %s\n", x.n_input, x.n_output, path);
-    if (options->body) print_body(simulation, options->body);
     return status;
 }

@@ -1,9 +1,9 @@
 // bough help, bough --help and bough --version.
+#include "apps/bough/cases/study.h"
 #include "apps/bough/cli/verb.h"
 #include "apps/bough/cli/version.h"
-#include "apps/bough/scene/scene.h"
 #include "apps/bough/model/channel_table.h"
-#include "apps/bough/cases/study.h"
+#include "apps/bough/scene/scene.h"
 #include "cosim/scheme.h"
 
 #include <string.h>

@@ -40,8 +40,6 @@ static const option_row rows[] = {
     {"hub-mass", "KG", "mass of the hub of a WindIO turbine without one", BOUGH_OPTION_HUB_MASS, false},
     {"nacelle-mass", "KG", "mass of the nacelle of a WindIO turbine without one", BOUGH_OPTION_NACELLE_MASS,
      false},
-    {"body", "NAME", "exports only this flexible body, for an FMU inside other models", BOUGH_OPTION_BODY,
-     false},
     {"json-schema", NULL, "of scene (default) or study: the keys as JSON Schema, for editors",
      BOUGH_OPTION_JSON, false},
     {"path", NULL, "follows the equilibria while the loads grow along their ramps, past limit points",
@@ -139,7 +137,6 @@ static bough_status take_option(bough_option_flag flag, const char *text, bough_
     case BOUGH_OPTION_CLAMP_BASE: options->clamp_base = true; break;
     case BOUGH_OPTION_HUB_MASS: return take_mass("hub-mass", text, &options->hub_mass);
     case BOUGH_OPTION_NACELLE_MASS: return take_mass("nacelle-mass", text, &options->nacelle_mass);
-    case BOUGH_OPTION_BODY: options->body = text; break;
     case BOUGH_OPTION_PATH: options->path = true; break;
     case BOUGH_OPTION_JSON: options->json = true; break;
     case BOUGH_OPTION_QUIET: options->quiet = true; break;

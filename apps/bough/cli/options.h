@@ -23,7 +23,6 @@ typedef enum bough_option_flag {
     BOUGH_OPTION_CLAMP_BASE = 1 << 10,
     BOUGH_OPTION_JSON = 1 << 11,
     BOUGH_OPTION_SWEEP = 1 << 12,
-    BOUGH_OPTION_BODY = 1 << 13,
     BOUGH_OPTION_PATH = 1 << 14,
     BOUGH_OPTION_HUB_MASS = 1 << 15,
     BOUGH_OPTION_NACELLE_MASS = 1 << 16,
@@ -55,7 +54,6 @@ typedef struct bough_options {
     const char **sweep;            // (n_sweep) "key=value, value, ..."
     const char *out;               // NULL: named after the scene
     int threads;                   // 0: as the scene says
-    const char *body;              // to be exported by itself; NULL: the whole scene
     const char *only;              // load case of a study; NULL: all
     int part, parts;               // of a study, from 1; 0: all of it
     const char *checkpoint;        // simulated time between checkpoints; NULL: none

@@ -1,7 +1,7 @@
 // What is said about the error of a run.
 #include "apps/bough/cli/run.h"
-#include "apps/bough/results/summary.h"
 #include "apps/bough/model/error_shares.h"
+#include "apps/bough/results/summary.h"
 
 #include <math.h>
 

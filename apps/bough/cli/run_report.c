@@ -2,8 +2,8 @@
 #include "apps/bough/cli/memory.h"
 #include "apps/bough/cli/run.h"
 #include "apps/bough/cli/version.h"
-#include "apps/bough/results/summary.h"
 #include "apps/bough/model/validity.h"
+#include "apps/bough/results/summary.h"
 
 #include <math.h>
 #include <string.h>

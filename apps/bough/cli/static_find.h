@@ -3,9 +3,9 @@
 #define BOUGH_APPS_BOUGH_STATIC_FIND_H
 
 #include "apps/bough/analysis/steady.h"
-#include "apps/bough/results/channels.h"
 #include "apps/bough/model/equilibrium.h"
 #include "apps/bough/model/error_shares.h"
+#include "apps/bough/results/channels.h"
 
 typedef struct bough_static {
     bough_simulation *simulation;

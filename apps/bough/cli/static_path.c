@@ -1,8 +1,8 @@
 #include "apps/bough/cli/static_path.h"
 
+#include "apps/bough/model/equilibrium.h"
 #include "apps/bough/results/channels.h"
 #include "apps/bough/results/folder.h"
-#include "apps/bough/model/equilibrium.h"
 
 typedef struct table {
     FILE *file;

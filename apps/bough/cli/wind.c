@@ -1,8 +1,8 @@
 // bough wind: the turbulence of a scene as a TurbSim full-field file, for other programs.
 #include "apps/bough/cli/open.h"
 #include "apps/bough/cli/verb.h"
-#include "apps/bough/results/folder.h"
 #include "apps/bough/model/aero_link.h"
+#include "apps/bough/results/folder.h"
 
 static bough_status write_box(const bough_wind_box *box, const char *title, const char *folder) {
     char path[BOUGH_PATH_MAX];

@@ -102,8 +102,8 @@ BOUGH_API int bough_session_set_text(bough_session *session, int input, const ch
    another wind or stiffness, and then shows what changes from that moment on.
 
    BOUGH_SESSION_INVALID, with the session unchanged: the copy belongs to another kind of scene; the time
-   is between two samples of the air or the control, of a companion half as many (take further steps first); the scene has a
-   controller's library, whose memory cannot be copied. */
+   is between two samples of the air or the control, of a companion half as many (take further steps first);
+   the scene has a controller's library, whose memory cannot be copied. */
 BOUGH_API size_t bough_session_size(const bough_session *session);
 BOUGH_API int bough_session_save(bough_session *session, void *copy);
 BOUGH_API int bough_session_restore(bough_session *session, const void *copy);

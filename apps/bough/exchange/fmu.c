@@ -1,9 +1,9 @@
-// A scene or a body as an FMU for co-simulation: a session behind the standard's functions. Value
+// A scene as an FMU for co-simulation: a session behind the standard's functions. Value
 // references: 0 the time, then the inputs, then the channels.
 //
-// resources/ holds scene.txt: the token, the path of the scene in resources/, the body ("" for the whole
-// scene), its settings, a line each; and the scene with its files. Steps are whole numbers of macro steps.
-#include "apps/bough/exchange/session_body.h"
+// resources/ holds scene.txt: the token, the path of the scene in resources/, its settings, a line each; and
+// the scene with its files. Steps are whole numbers of macro steps.
+#include "apps/bough/exchange/bough.h"
 #include "apps/bough/model/fmi3.h"
 
 #include <math.h>
@@ -19,7 +19,7 @@ typedef enum mode { INSTANTIATED, INITIALIZATION, STEP, TERMINATED } mode;
 typedef struct instance {
     bough_session *session;
     mode mode;
-    char *scene, *body;           // body NULL: the whole scene
+    char *scene;
     char *set[MOST_SETTINGS + 1]; // with room for another duration
     int n_set;
     bool logging;
@@ -88,8 +88,7 @@ static bool read_resources(instance *x, const char *resources, const char *token
         line[strcspn(line, "\r\n")] = '\0';
         if (number == 0) good = strcmp(line, token) == 0;
         if (number == 1) x->scene = join(resources, line);
-        if (number == 2 && line[0]) x->body = strdup(line);
-        if (number > 2 && x->n_set < MOST_SETTINGS) x->set[x->n_set++] = strdup(line);
+        if (number > 1 && x->n_set < MOST_SETTINGS) x->set[x->n_set++] = strdup(line);
         number++;
     }
     fclose(file);
@@ -98,7 +97,7 @@ static bool read_resources(instance *x, const char *resources, const char *token
 
 static bool open_session(instance *x) {
     bough_session_close(x->session);
-    x->session = bough_session_open_body(x->scene, (const char *const *)x->set, x->n_set, x->body);
+    x->session = bough_session_open(x->scene, (const char *const *)x->set, x->n_set);
     return x->session && bough_session_code(x->session) == BOUGH_SESSION_OK;
 }
 
@@ -133,7 +132,6 @@ void fmi3FreeInstance(fmi3_instance self) {
     bough_session_close(x->session);
     for (int k = 0; k < x->n_set; k++) free(x->set[k]);
     free(x->scene);
-    free(x->body);
     free(x);
 }
 
@@ -173,7 +171,6 @@ fmi3_status fmi3ExitInitializationMode(fmi3_instance self) {
     instance *x = self;
     if (x->mode != INITIALIZATION) return misplaced(x, "fmi3ExitInitializationMode");
     x->mode = STEP;
-    bough_session_begin_body(x->session);
     return FMI3_OK;
 }
 

@@ -1,10 +1,9 @@
-#include "apps/bough/exchange/session_body.h"
+#include "apps/bough/exchange/bough.h"
 
 #include "apps/bough/config/schema.h"
-#include "apps/bough/scene/fingerprint.h"
-#include "apps/bough/model/body_alone.h"
 #include "apps/bough/model/input_link.h"
 #include "apps/bough/model/run.h"
+#include "apps/bough/scene/fingerprint.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -16,11 +15,10 @@ struct bough_session {
     bough_arena *arena;
     bool open; // the run is there
     bough_run run;
-    bough_body *body; // stepped by itself; NULL: the scene is
-    uint64_t kind;    // fingerprint of what its copies hold
-    size_t size;      // of a copy [bytes]
-    int opening;      // code of the opening
-    int code;         // of the last call that has one
+    uint64_t kind; // fingerprint of what its copies hold
+    size_t size;   // of a copy [bytes]
+    int opening;   // code of the opening
+    int code;      // of the last call that has one
     char error[ERROR_TEXT];
 };
 
@@ -73,10 +71,6 @@ static void take(bough_session *s, bough_snapshot *snapshot) {
     head h = {.kind = s->kind};
     memcpy(h.magic, magic, sizeof magic);
     bough_snapshot_take(snapshot, &h, sizeof h);
-    if (s->body) {
-        bough_body_snapshot(s->body, snapshot);
-        return;
-    }
     bough_snapshot_doubles(snapshot, s->run.value, s->run.channels.count);
     bough_run_snapshot(&s->run, snapshot);
 }
@@ -120,7 +114,7 @@ int bough_session_save(bough_session *s, void *copy) {
     if (!is_open(s)) return conclude_closed(s, "save");
     if (failed(s)) return conclude_failed(s, "save");
     if (!copy) return conclude(s, bough_fail(BOUGH_INVALID, "save: no memory is given for the copy (NULL)"));
-    bough_status status = s->body ? bough_ok() : bough_run_storable(&s->run);
+    bough_status status = bough_run_storable(&s->run);
     if (!bough_is_ok(&status)) return conclude(s, status);
     bough_session_values(s);
     take(s, &(bough_snapshot){BOUGH_SNAPSHOT_SAVE, copy, 0});
@@ -145,7 +139,6 @@ typedef struct opening {
     bough_session *session;
     const char *path, *const *set;
     int n_set;
-    const char *body; // NULL: the whole scene
 } opening;
 
 static bough_status check_opening(const opening *o) {
@@ -173,12 +166,9 @@ static bough_status build(bough_arena *arena, void *self) {
         return status;
     }
     // nobody sees the errors unless the scene asks for them
-    if (o->body || !bough_node_find(scene->simulation.node, "error_estimate"))
+    if (!bough_node_find(scene->simulation.node, "error_estimate"))
         scene->simulation.error_estimate = BOUGH_SCENE_NO_ESTIMATE;
     status = bough_run_create(arena, scene, &s->run);
-    if (bough_is_ok(&status) && o->body) {
-        status = bough_body_create(arena, s->run.simulation, o->body, &s->body);
-    }
     if (!bough_is_ok(&status)) return status;
     bough_pool_region(s->run.pool, start_threads, NULL);
     describe_copy(s);
@@ -187,11 +177,6 @@ static bough_status build(bough_arena *arena, void *self) {
 }
 
 bough_session *bough_session_open(const char *scene, const char *const *set, int count) {
-    return bough_session_open_body(scene, set, count, NULL);
-}
-
-bough_session *bough_session_open_body(const char *scene, const char *const *set, int count,
-                                       const char *body) {
     bough_session *s = calloc(1, sizeof *s);
     if (!s) return NULL;
     s->arena = bough_arena_create();
@@ -199,7 +184,7 @@ bough_session *bough_session_open_body(const char *scene, const char *const *set
         free(s);
         return NULL;
     }
-    opening o = {s, scene, set, count, body};
+    opening o = {s, scene, set, count};
     s->opening = conclude(s, bough_arena_guard(s->arena, build, &o));
     return s;
 }
@@ -217,38 +202,30 @@ const char *bough_session_warning(const bough_session *s) {
 int bough_session_step(bough_session *s) {
     if (!is_open(s)) return conclude_closed(s, "step");
     if (failed(s)) return conclude(s, s->run.outcome);
-    if (s->body) return conclude(s, s->run.outcome = bough_body_step(s->body));
     if (bough_run_done(&s->run)) return BOUGH_SESSION_DONE;
     return conclude(s, bough_run_step(&s->run));
 }
 
 double bough_session_time(const bough_session *s) {
-    if (s && s->body) return bough_body_time(s->body);
     return is_open(s) ? s->run.simulation->master->time : (double)NAN;
 }
 
 double bough_session_duration(const bough_session *s) {
-    if (s && s->body) return HUGE_VAL;
     return is_open(s) ? s->run.simulation->master->duration : (double)NAN;
 }
 
-int bough_session_count(const bough_session *s) {
-    if (!is_open(s)) return 0;
-    return s->body ? BOUGH_BODY_OUTPUTS : s->run.channels.count;
-}
+int bough_session_count(const bough_session *s) { return is_open(s) ? s->run.channels.count : 0; }
 
 static bool known(const bough_session *s, int channel) {
     return channel >= 0 && channel < bough_session_count(s);
 }
 
 const char *bough_session_name(const bough_session *s, int channel) {
-    if (!known(s, channel)) return "";
-    return s->body ? bough_body_outputs[channel].name : s->run.channels.channel[channel].name;
+    return known(s, channel) ? s->run.channels.channel[channel].name : "";
 }
 
 const char *bough_session_unit(const bough_session *s, int channel) {
-    if (!known(s, channel)) return "";
-    return s->body ? bough_body_outputs[channel].unit : s->run.channels.channel[channel].unit;
+    return known(s, channel) ? s->run.channels.channel[channel].unit : "";
 }
 
 // The index of a name among n; -1 with a message that names the nearest of them.
@@ -276,7 +253,6 @@ int bough_session_find(bough_session *s, const char *name) {
 
 const double *bough_session_values(bough_session *s) {
     if (!is_open(s)) return NULL;
-    if (s->body) return failed(s) ? NULL : bough_body_wrench(s->body);
     return s->run.channels.count > 0 ? bough_run_values(&s->run) : NULL;
 }
 
@@ -286,7 +262,7 @@ double bough_session_read(bough_session *s, int channel) {
 }
 
 double bough_session_estimate(const bough_session *s, int channel) {
-    bool there = s->open && !s->body && known(s, channel) && bough_companion_knows(s->run.companion, channel);
+    bool there = s->open && known(s, channel) && bough_companion_knows(s->run.companion, channel);
     return there ? s->run.companion->error[channel] : (double)NAN;
 }
 
@@ -302,22 +278,19 @@ static bool is_input(const bough_session *s, int input) {
 
 static double *input_value(const bough_session *s, int input) {
     if (!is_input(s, input)) return NULL;
-    return (s->body ? bough_body_motion(s->body) : bough_input_link_values(s->run.simulation->inputs)) +
-           input;
+    return bough_input_link_values(s->run.simulation->inputs) + input;
 }
 
 static bough_dimension input_dimension(const bough_session *s, int input) {
-    return s->body ? bough_body_inputs[input].dimension : (bough_dimension)input_at(s, input)->dimension;
+    return (bough_dimension)input_at(s, input)->dimension;
 }
 
 int bough_session_inputs(const bough_session *s) {
-    if (s && s->body) return BOUGH_BODY_INPUTS;
     return is_open(s) ? s->run.simulation->scene->n_input : 0;
 }
 
 const char *bough_session_input_name(const bough_session *s, int input) {
-    if (!is_input(s, input)) return "";
-    return s->body ? bough_body_inputs[input].name : input_at(s, input)->name;
+    return is_input(s, input) ? input_at(s, input)->name : "";
 }
 
 const char *bough_session_input_unit(const bough_session *s, int input) {
@@ -333,11 +306,6 @@ double bough_session_input_value(const bough_session *s, int input) {
     return value ? *value : (double)NAN;
 }
 
-// What the scene's keys allow of the same quantity.
-static const char *input_range(const bough_session *s, int input) {
-    return s->body ? NULL : input_at(s, input)->range;
-}
-
 int bough_session_set(bough_session *s, int input, double value) {
     if (!is_open(s)) return conclude_closed(s, "set");
     if (failed(s)) return conclude_failed(s, "set");
@@ -346,7 +314,7 @@ int bough_session_set(bough_session *s, int input, double value) {
         return conclude(s, bough_fail(BOUGH_INVALID, "the scene has no input of index %d: it has %d", input,
                                       bough_session_inputs(s)));
     }
-    const char *range = input_range(s, input);
+    const char *range = input_at(s, input)->range; // what the scene's keys allow of the same quantity
     if (!isfinite(value)) {
         return conclude(s, bough_fail(BOUGH_INVALID, "input %s: expected a finite number, got %g",
                                       bough_session_input_name(s, input), value));
@@ -370,10 +338,6 @@ int bough_session_set_text(bough_session *s, int input, const char *text) {
                                       text, why[0] ? ": " : "", why));
     }
     return bough_session_set(s, input, value);
-}
-
-void bough_session_begin_body(bough_session *s) {
-    if (s && s->body) bough_body_begin(s->body);
 }
 
 void bough_session_close(bough_session *s) {

@@ -10,8 +10,7 @@
 // The joint frame in the frame of the tree's body it hangs on: from where bodies hang on the parent
 // the steps in order, then the pitch.
 static bough_transform placement(const bough_scene_body *body, bough_transform x) {
-    x = bough_transform_compose(
-        x, bough_placement(body->joint.n_placement, body->joint.placement));
+    x = bough_transform_compose(x, bough_placement(body->joint.n_placement, body->joint.placement));
     if (body->pitch != 0) {
         bough_transform pitch = bough_transform_identity();
         pitch.rotation = bough_placement_turn(BOUGH_SCENE_Z, -body->pitch);
@@ -96,8 +95,7 @@ static void set_joint(const bough_builder *b, const bough_scene_body *from, boug
 static void set_mass(const bough_scene_body *from, const bough_beam *beam, bough_body_def *to) {
     if (beam == NULL) {
         to->mass = from->mass;
-        to->mass_centre = bough_v3(from->centre_of_mass[0], from->centre_of_mass[1],
-                                   from->centre_of_mass[2]);
+        to->mass_centre = bough_v3(from->centre_of_mass[0], from->centre_of_mass[1], from->centre_of_mass[2]);
         to->inertia = tensor(from->inertia);
         return;
     }
@@ -116,20 +114,18 @@ static bough_status discretise(bough_builder *b, bough_beam *beam) {
     size_t count = (size_t)rod->n_station;
     bough_section_station *station = bough_arena_take(b->arena, count * sizeof *station);
     for (int k = 0; k < rod->n_station; k++) station[k] = rod->station[k].def;
-    bough_section_table table = {.name = beam->body->name,
-                                 .n_station = rod->n_station,
-                                 .station = station,
-                                 .length = rod->length};
+    bough_section_table table = {
+        .name = beam->body->name, .n_station = rod->n_station, .station = station, .length = rod->length};
     memcpy(table.damping, rod->damping, sizeof table.damping);
-    return bough_section_discretise(b->arena, &table, beam->body->rod.n_segment,
-                                    &beam->def);
+    return bough_section_discretise(b->arena, &table, beam->body->rod.n_segment, &beam->def);
 }
 
 static bough_inertia vertex_inertia(const bough_vertex_inertia *v) {
     return (bough_inertia){v->mass, v->moment, tensor(v->inertia)};
 }
 
-bough_inertia bough_beam_root(const bough_rod_def *def) {
+// Inertia of the root vertex, which belongs to the carrier, in the body's frame about its origin.
+static bough_inertia root_inertia(const bough_rod_def *def) {
     bough_transform x = {{0, 0, 0}, bough_rotation_matrix(def->rotation[0])};
     return bough_inertia_to_parent(&x, vertex_inertia(&def->inertia[0]));
 }
@@ -181,13 +177,12 @@ static bough_status add_beam(bough_builder *b, int index) {
     beam->port = beam->end = -1;
     bough_status status = discretise(b, beam);
     if (!bough_is_ok(&status)) return status;
-    b->force.marker[s->n_beam++] =
-        (bough_marker_def){beam->body->name, index, bough_transform_identity()};
+    b->force.marker[s->n_beam++] = (bough_marker_def){beam->body->name, index, bough_transform_identity()};
     if (beam->body->fidelity == BOUGH_SCENE_RIGID) return bough_ok();
     beam->port = s->n_rod;
     beam->in_ground = moves_under_ground_loads(b->scene, index);
-    b->port[s->n_rod++] = (bough_port_def){beam->body->name, beam->marker,
-                                           bough_beam_root(&beam->def), beam->in_ground};
+    b->port[s->n_rod++] =
+        (bough_port_def){beam->body->name, beam->marker, root_inertia(&beam->def), beam->in_ground};
     return carries_bodies(b->scene, index) ? add_end(b, beam, index) : bough_ok();
 }
 

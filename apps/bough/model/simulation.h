@@ -7,8 +7,8 @@
 #include "apps/bough/scene/scene.h"
 #include "core/tree/tree.h"
 #include "cosim/master.h"
-#include "flexbody/rod/ground_load.h"
 #include "flexbody/modal/modal_system.h"
+#include "flexbody/rod/ground_load.h"
 #include "flexbody/rod/rod_system.h"
 
 struct bough_aero_link;
@@ -21,13 +21,13 @@ struct bough_validity;
 // sub-solver.
 typedef struct bough_beam {
     const bough_scene_body *body;
-    bough_rod_def def;    // the undeformed mesh in the body's frame
-    int marker;           // of the tree, the body's frame
-    int port;             // of the tree; −1 when rigid
-    bool in_ground;       // it moves under loads in ground axes
-    int end;              // of the tree, where bodies hang on the rod; −1 when it carries none
-    bough_rod_body *rod;     // NULL unless a rod
-    bough_modal_body *modal; // NULL unless modal
+    bough_rod_def def;         // the undeformed mesh in the body's frame
+    int marker;                // of the tree, the body's frame
+    int port;                  // of the tree; −1 when rigid
+    bool in_ground;            // it moves under loads in ground axes
+    int end;                   // of the tree, where bodies hang on the rod; −1 when it carries none
+    bough_rod_body *rod;       // NULL unless a rod
+    bough_modal_body *modal;   // NULL unless modal
     bough_ground_body *ground; // around either, NULL unless in_ground
 } bough_beam;
 
@@ -37,14 +37,14 @@ typedef struct bough_simulation {
     bough_tree_data *view; // for queries between steps
     double *acceleration;  // of the tree (n_v), scratch of queries
     bough_member leader;
-    int first_marker;      // of the tree, the first of those that the scene names
+    int first_marker; // of the tree, the first of those that the scene names
     int n_beam;
-    bough_beam *beam;      // (n_beam) bodies that have a rod, in the scene's order
-    bough_member *rod;     // (n_rod + n_fmu) in port order, the FMUs last
+    bough_beam *beam;  // (n_beam) bodies that have a rod, in the scene's order
+    bough_member *rod; // (n_rod + n_fmu) in port order, the FMUs last
     int n_rod, n_end, n_fmu;
-    struct bough_aero_link *aero; // NULL without an aero block
-    struct bough_input_link *inputs; // NULL without inputs
-    struct bough_drag_link *drag; // NULL without drag of tower and hub
+    struct bough_aero_link *aero;       // NULL without an aero block
+    struct bough_input_link *inputs;    // NULL without inputs
+    struct bough_drag_link *drag;       // NULL without drag of tower and hub
     struct bough_control_link *control; // NULL without a control block
     struct bough_jump_link *jump;       // NULL without loads that jump
     struct bough_validity *validity;    // limits of the models that the run has passed
@@ -84,9 +84,6 @@ const double *bough_simulation_rod_input(const bough_simulation *s, const bough_
 bough_vec3 bough_simulation_beam_tip(const bough_simulation *s, const bough_beam *beam,
                                      bough_quaternion *rotation);
 
-// Inertia of the root vertex, which belongs to the carrier, in the body's frame about its origin.
-bough_inertia bough_beam_root(const bough_rod_def *def);
-
 // Builds the flexible body of a beam, a rod or a modal body, in a frame that moves with `input` (9)
 // at the start.
 bough_status bough_beam_build(bough_arena *arena, bough_beam *beam, bough_integrator_options micro,
@@ -110,8 +107,8 @@ typedef struct bough_rotor_place {
 } bough_rotor_place;
 bough_rotor_place bough_simulation_rotor(const bough_simulation *s);
 
-// How the hub has turned about the shaft, and its speed: the sum of the joints about the rotor's axis between the
-// body that carries the rotor and the blades [rad], [rad/s].
+// How the hub has turned about the shaft, and its speed: the sum of the joints about the rotor's axis between
+// the body that carries the rotor and the blades [rad], [rad/s].
 void bough_simulation_hub_turn(const bough_simulation *s, double *angle, double *speed);
 
 // The name of the body, or of the group of bodies, with that state of the assembly.

@@ -196,8 +196,7 @@ static const bough_key fmu_keys[] = {
              "default [Fx, Fy, Fz, Mx, My, Mz]"},
     {NAMED("inputs", CHOICE), AT(hold), CHOICES("held", "reached"), .fallback = "held",
      .help = "what the FMU does with its inputs in a communication step: it keeps them, and gets "
-             "the motion in the middle of the step; or they are reached at the end of the step, as "
-             "FMUs of bough do"},
+             "the motion in the middle of the step; or they are reached at the end of the step"},
     {KEY(INTEGER, steps), .range = "[1, 100000]", .fallback = "1", .example = "10",
      .help = "communication steps in a macro step"},
 };
