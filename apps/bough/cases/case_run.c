@@ -6,6 +6,7 @@
 #include "apps/bough/model/run.h"
 #include "apps/bough/cases/study_run.h"
 
+#include <math.h>
 #include <time.h>
 
 typedef struct case_run {
@@ -83,7 +84,7 @@ static bough_status judge(bough_arena *arena, const case_run *r) {
     bough_error_shares shares = {0};
     char warning[BOUGH_ERROR_WARNING];
     bough_status status = bough_ok();
-    if (bough_error_exceeds(c, bound)) status = bough_error_shares_find(arena, c, r->stop, &shares);
+    if (bough_error_exceeds(c, bound)) status = bough_error_shares_find(arena, c, HUGE_VAL, r->stop, &shares);
     return bough_is_ok(&status) ? bough_error_judge(c, &shares, bound, warning) : status;
 }
 

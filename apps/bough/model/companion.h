@@ -24,7 +24,7 @@ typedef struct bough_companion {
     double *error;                  // (channels->count) largest so far, in the channels' units
     double *low, *high;             // (channels->count) range of the run
     double *other_low, *other_high; // (channels->count) of the companion
-    double *noticed; // (channels->count) when the error first passed a hundredth of the range [s]
+    double *noticed;                // (channels->count) when the error first passed the accuracy [s]
     int parted_for,
         astray_for;      // comparisons in a row in which the run, the companion has left the other behind
     bough_status status; // of its last step

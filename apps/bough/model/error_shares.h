@@ -27,17 +27,17 @@ typedef struct bough_error_shares {
 
 const char *bough_error_share_name(bough_error_share_kind kind);
 
-// After a complete run: makes the further runs. What is not known says why. BOUGH_INTERRUPTED by stop()
-// (NULL: never).
-bough_status bough_error_shares_find(bough_arena *arena, const bough_companion *c, bool (*stop)(void),
-                                     bough_error_shares *shares);
+// After a complete run: makes the further runs, up to that time [s]. What is not known says why.
+// BOUGH_INTERRUPTED by stop() (NULL: never).
+bough_status bough_error_shares_find(bough_arena *arena, const bough_companion *c, double until,
+                                     bool (*stop)(void), bough_error_shares *shares);
 
 enum { BOUGH_ERROR_WARNING = 600 };
 
 // The error of a motion beside the bound [1]; 0: no bound. Above it BOUGH_FAILED, with channel, time, cause
 // and the setting that meets it, unless the mesh alone is the cause: then that is the warning. Else the
-// warning is about a noticeable error, or that errors are not known any more, or "". `shares` is needed above
-// the bound.
+// warning is about an error above simulation.accuracy, with the settings that meet it, or that errors are not
+// known any more, or "". `shares` is needed above the bound; below it, it makes the settings surer.
 bough_status bough_error_judge(const bough_companion *c, const bough_error_shares *shares, double bound,
                                char warning[BOUGH_ERROR_WARNING]);
 

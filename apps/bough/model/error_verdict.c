@@ -114,8 +114,8 @@ int bough_error_worst(const bough_companion *c, int most, int *channel) {
 }
 
 void bough_error_notice(bough_companion *c, double t) {
+    double accuracy = c->run->scene->simulation.accuracy;
     for (int i = 0; i < c->channels->count; i++) {
-        if (c->noticed[i] < 0 && !(c->error[i] <= BOUGH_ERROR_NOTICEABLE * bough_error_range(c, i)))
-            c->noticed[i] = t;
+        if (c->noticed[i] < 0 && !(c->error[i] <= accuracy * bough_error_range(c, i))) c->noticed[i] = t;
     }
 }

@@ -4,9 +4,6 @@
 
 #include "apps/bough/model/companion.h"
 
-// The error relative to the channel's range from which on a run warns.
-#define BOUGH_ERROR_NOTICEABLE 0.01
-
 typedef struct bough_error_verdict {
     int channel;     // with the largest error relative to its range; −1: none counts
     double relative; // that error

@@ -1,6 +1,6 @@
 // What follows from `simulation.accuracy` where a scene does not name it: methods, tolerances, steps, the
 // rate of the air and segments. Each law has the order of the error that it limits; the factors are measured
-// on the turbines of apps/turbine and on random scenes (docs/theory.md).
+// on the turbines of apps/turbine and on random scenes (docs/coupling.md).
 #include "apps/bough/scene/scene_internal.h"
 
 #include <math.h>
@@ -13,8 +13,7 @@ static const double usual = 0.005; // accuracy at which the following hold
 // scenes.
 static const double whole_error = 100; // all bodies as one system
 static const double rod_error = 50;    // each rod under its own method
-static const double tree_error =
-    5000; // the tree beside them, which is cheap and starts again every macro step
+static const double tree_error = 5000; // the tree beside them: it is cheap, and starts every macro step
 static const double fine_rtol = 1e-6;  // below it BDF's high orders serve better
 static const double usual_step = 5e-3; // longest one of a rod's own method [s]; order 2
 
@@ -56,11 +55,14 @@ static void choose_master(bough_scene *scene) {
 // Lanes of eight are full at multiples of eight. The force at a rod's root has order 2.
 static const double usual_lanes = 4;
 
+static int usual_segments(const bough_scene *s) {
+    return 8 * (int)ceil(usual_lanes * sqrt(usual / s->simulation.accuracy) - 1e-9);
+}
+
 static void choose_segments(bough_scene *s) {
-    int lanes = (int)ceil(usual_lanes * sqrt(usual / s->simulation.accuracy) - 1e-9);
     for (int i = 0; i < s->n_body; i++) {
         bough_scene_rod *rod = &s->body[i].rod;
-        if (rod->node && !is_named(rod->node, "segments")) rod->n_segment = 8 * lanes;
+        if (rod->node && !is_named(rod->node, "segments")) rod->n_segment = usual_segments(s);
     }
 }
 
@@ -88,14 +90,16 @@ enum { DURATION, INTERVAL, AIR, CONTROL, PERIODS };
 static void take_periods(const bough_scene *s, double period[PERIODS]) {
     const bough_scene_simulation *simulation = &s->simulation;
     period[DURATION] = simulation->duration;
-    period[INTERVAL] = simulation->output.interval;
+    period[INTERVAL] = is_named(simulation->output.node, "interval") ? simulation->output.interval : 0;
     period[AIR] = s->aero.node && s->aero.rate > 0 ? 1 / s->aero.rate : 0;
     period[CONTROL] = s->control.node && s->control.rate > 0 ? 1 / s->control.rate : 0;
 }
 
-static bool divides(double step, const double period[PERIODS]) {
+bool bough_scene_step_fits(const bough_scene *s, double macro_step) {
+    double period[PERIODS];
+    take_periods(s, period);
     for (int i = 0; i < PERIODS; i++) {
-        if (!bough_scene_is_multiple(period[i], step)) return false;
+        if (!bough_scene_is_multiple(period[i], macro_step)) return false;
     }
     return true;
 }
@@ -106,36 +110,63 @@ static double round_step(double limit) {
     return (share >= 5 ? 5 : share >= 2 ? 2 : 1) * unit;
 }
 
-// The longest step up to `limit` of which all periods are multiples: a round one, else a part of the
-// shortest.
-static double common_step(double limit, const double period[PERIODS]) {
+// The longest macro step up to `limit` that fits: a round one, else a part of the shortest period.
+static double longest_step(const bough_scene *s, double limit) {
     for (double step = round_step(limit); step > 1e-3 * limit; step = round_step(0.9 * step)) {
-        if (divides(step, period)) return step;
+        if (bough_scene_step_fits(s, step)) return step;
     }
-    double shortest = (double)INFINITY;
+    double period[PERIODS], shortest = (double)INFINITY;
+    take_periods(s, period);
     for (int i = 0; i < PERIODS; i++) {
         if (period[i] > 0) shortest = fmin(shortest, period[i]);
     }
     double parts = ceil(shortest / limit);
     for (int i = 0; i < 1000; i++) {
-        if (divides(shortest / (parts + i), period)) return shortest / (parts + i);
+        if (bough_scene_step_fits(s, shortest / (parts + i))) return shortest / (parts + i);
     }
     return round_step(limit);
 }
 
 static void choose_times(bough_scene *s) {
     bough_scene_simulation *simulation = &s->simulation;
-    double air = air_period(s), period[PERIODS];
+    double air = air_period(s);
     if (!is_named(simulation->node, "macro_step")) {
         double limit = usual_macro_step * scale_of_time(s);
-        take_periods(s, period);
         if (simulation->duration > 0) limit = fmin(limit, simulation->duration / fewest_steps);
         if (air > 0 && !is_named(s->aero.node, "rate")) limit = fmin(limit, air);
-        simulation->macro_step = common_step(limit, period);
+        simulation->macro_step = longest_step(s, limit);
     }
     if (air > 0 && !is_named(s->aero.node, "rate") && simulation->macro_step > 0) {
         s->aero.rate = 1 / (simulation->macro_step * fmax(1, floor(air / simulation->macro_step + 1e-9)));
     }
+}
+
+// -- settings that are named ----------------------------------------------------------------------
+
+static double mesh_error(const bough_scene *s) {
+    double largest = 0;
+    for (int i = 0; i < s->n_body; i++) {
+        const bough_scene_rod *rod = &s->body[i].rod;
+        if (!is_named(rod->node, "segments") || s->body[i].fidelity == BOUGH_SCENE_RIGID) continue;
+        double coarser = (double)usual_segments(s) / rod->n_segment;
+        largest = fmax(largest, coarser * coarser);
+    }
+    return largest;
+}
+
+static double time_error(const bough_scene *s) {
+    const bough_scene_simulation *simulation = &s->simulation;
+    bool whole = bough_scheme_find(bough_scheme_name(simulation->coupling.scheme))->one_system;
+    const bough_scene_solver *solver = whole ? &simulation->master : &simulation->micro;
+    if (!is_named(solver->node, "rtol")) return 0;
+    return solver->rtol * (whole ? whole_error : rod_error) / simulation->accuracy;
+}
+
+void bough_scene_expect_errors(const bough_scene *s, double error[3]) {
+    double air = air_period(s);
+    error[0] = mesh_error(s);
+    error[1] = air > 0 && is_named(s->aero.node, "rate") ? pow(1 / (s->aero.rate * air), 3) : 0;
+    error[2] = time_error(s);
 }
 
 void bough_scene_apply_accuracy(bough_scene *s) {

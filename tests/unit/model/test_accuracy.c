@@ -170,6 +170,8 @@ static double error_of(const recorded *r, const recorded *truth) {
     return worst;
 }
 
+static const double enough = 1e-4; // the steps of Radau IIA, which linkages have, err by less at any accuracy
+
 static void check_errors(const char *path, const char *const *sets) {
     static const char *const accuracies[] = {"simulation.accuracy=0.02", "simulation.accuracy=0.005",
                                              "simulation.accuracy=0.001"};
@@ -183,7 +185,7 @@ static void check_errors(const char *path, const char *const *sets) {
         print_message("%s, %s: %.2g\n", path, accuracies[k], error[k]);
     }
     for (int k = 0; k < 3; k++) assert_true(error[k] < 2 * bound[k]);
-    assert_true(error[1] < 0.7 * error[0] && error[2] < 0.7 * error[1]);
+    for (int k = 1; k < 3; k++) assert_true(error[k] < fmax(0.7 * error[k - 1], enough));
 }
 
 static void errors_of_a_bar(void **state) {
