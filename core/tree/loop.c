@@ -1,15 +1,16 @@
 #include "core/tree/loop.h"
 
 #include "core/base/base.h"
-#include "core/tree/dynamics.h"
 #include "core/base/linalg.h"
+#include "core/tree/dynamics.h"
 #include "core/tree/loop_internal.h"
 
 #include <string.h>
 
 // Of the scaled matrix' eigenvalues: below this share of the largest, equations depend on each
-// other.
-static const double dependent = 1e-10;
+// other. It is the square of the distance from a position in which the loop could branch, relative to its
+// size.
+static const double dependent = 1e-9;
 // Of the diagonal's largest entry of the same kind: below this nothing moves.
 static const double rigid = 1e-13;
 // Of the largest entry of the other kind, both per length: below this the largest entry of a kind is the
@@ -141,16 +142,33 @@ static void find_largest(const bough_tree *tree, const bough_loops *l, double la
     if (straight) largest[1] = INFINITY;
 }
 
-// Scales the matrix to a diagonal of one and finds its eigenvectors. Rows that nothing moves drop
+// One scale for the translations of a closure and one for its rotations: its largest entry becomes one. Near
+// a position where equations begin to depend on each other, an entry of its own for each would hide that: the
+// loop's errors then turn the motion aside, with accelerations without bound. Rows that nothing moves drop
 // out.
-bool bough_loops_factor(const bough_tree *tree, bough_loops *l) {
+static void find_scales(const bough_tree *tree, bough_loops *l) {
     int m = tree->n_rows;
     double largest[2];
     find_largest(tree, l, largest);
-    for (int k = 0; k < m; k++) {
-        double diagonal = l->matrix[k * m + k];
-        l->scale[k] = diagonal > rigid * largest[turns(tree, k)] ? 1 / sqrt(diagonal) : 0;
+    for (int c = 0; c < tree->n_closures; c++) {
+        int first = tree->closures[c].first_row;
+        int last = c + 1 < tree->n_closures ? tree->closures[c + 1].first_row : m;
+        double own[2] = {0, 0};
+        for (int k = first; k < last; k++) {
+            double *x = &own[turns(tree, k)];
+            *x = fmax(*x, l->matrix[k * m + k]);
+        }
+        for (int k = first; k < last; k++) {
+            bool moves = l->matrix[k * m + k] > rigid * largest[turns(tree, k)];
+            l->scale[k] = moves ? 1 / sqrt(own[turns(tree, k)]) : 0;
+        }
     }
+}
+
+// Scales the matrix and finds its eigenvectors.
+bool bough_loops_factor(const bough_tree *tree, bough_loops *l) {
+    int m = tree->n_rows;
+    find_scales(tree, l);
     for (int j = 0; j < m; j++) {
         for (int k = 0; k < m; k++) l->matrix[j * m + k] *= l->scale[j] * l->scale[k];
     }
