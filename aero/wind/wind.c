@@ -2,7 +2,7 @@
 
 #include "aero/wind/wind_turbulence.h"
 #include "core/base/base.h"
-#include "core/tree/force.h"
+#include "core/base/schedule.h"
 
 #include <assert.h>
 #include <string.h>

@@ -2,6 +2,7 @@
 
 #include "core/base/base.h"
 #include "core/base/input_file.h"
+#include "core/base/schedule.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -105,18 +106,11 @@ static bough_wind_hub_row between(const bough_wind_hub_row *a, const bough_wind_
 }
 
 static bough_wind_hub_row row_at(const bough_wind_hub *hub, double t) {
-    int low = 0, high = hub->n - 1;
-    if (!(t > hub->row[0].time)) return hub->row[0];
-    if (t >= hub->row[high].time) return hub->row[high];
-    while (high - low > 1) { // time[low] ≤ t < time[high]
-        int middle = (low + high) / 2;
-        if (t < hub->row[middle].time) {
-            high = middle;
-        } else {
-            low = middle;
-        }
-    }
-    const bough_wind_hub_row *a = hub->row + low, *b = hub->row + high;
+    const bough_wind_hub_row *row = hub->row;
+    if (!(t > row[0].time)) return row[0];
+    if (t >= row[hub->n - 1].time) return row[hub->n - 1];
+    const bough_wind_hub_row *a = row + bough_table_row(hub->n, &row->time, sizeof *row / sizeof(double), t),
+                             *b = a + 1;
     return between(a, b, (t - a->time) / (b->time - a->time));
 }
 

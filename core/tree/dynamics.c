@@ -2,8 +2,8 @@
 #include "core/tree/dynamics.h"
 
 #include "core/base/base.h"
-#include "core/tree/force.h"
 #include "core/base/linalg.h"
+#include "core/tree/force.h"
 
 #include <string.h>
 
@@ -126,9 +126,7 @@ static void joint_loads(const bough_tree *tree, bough_tree_data *d, double t) {
     memcpy(d->force, d->passive, (size_t)tree->n_v * sizeof(double));
     for (int k = 0; k < tree->n_loads; k++) {
         const bough_joint_load_def *load = &tree->loads[k];
-        double factor = bough_ramp_factor(load->start, load->end, t);
-        double value = load->n > 0 ? bough_table_value(load->n, load->times, load->values, t) : load->value;
-        d->force[tree->links[load->body].first_speed] += factor * value;
+        d->force[tree->links[load->body].first_speed] += load->value * bough_schedule_at(&load->schedule, t);
     }
 }
 

@@ -212,31 +212,9 @@ bough_force_pair bough_element_change(const bough_tree *tree, const bough_tree_d
 
 // -- applied wrenches ----------------------------------------------------------------------------
 
-double bough_ramp_factor(double start, double end, double t) {
-    if (end <= start) return t >= start || start == 0;
-    return bough_clamp((t - start) / (end - start), 0, 1);
-}
-
-double bough_table_value(int n, const double *times, const double *values, double t) {
-    int low = 0, high = n - 1; // times[low] ≤ t < times[high]
-    if (t <= times[0]) return values[0];
-    if (t >= times[high]) return values[high];
-    while (high - low > 1) {
-        int middle = (low + high) / 2;
-        if (t < times[middle]) {
-            high = middle;
-        } else {
-            low = middle;
-        }
-    }
-    double f = (t - times[low]) / (times[high] - times[low]);
-    return (1 - f) * values[low] + f * values[high];
-}
-
 bough_wrench bough_applied_force(const bough_tree *tree, const bough_tree_data *data, int k, double t) {
     const bough_applied_def *a = &tree->applied[k];
-    double factor =
-        a->n > 0 ? bough_table_value(a->n, a->times, a->values, t) : bough_ramp_factor(a->start, a->end, t);
+    double factor = bough_schedule_at(&a->schedule, t);
     bough_wrench w = {bough_scale(factor, a->wrench.force), bough_scale(factor, a->wrench.moment)};
     if (!a->ground) return w;
     bough_mat3 r = bough_tree_frame_pose(data, &tree->markers[a->marker]).rotation;

@@ -34,9 +34,4 @@ bough_wrench bough_applied_force(const bough_tree *tree, const bough_tree_data *
 bough_wrench bough_applied_change(const bough_tree *tree, const bough_tree_data *data, int k, double t,
                                   bough_twist shift);
 
-// 0 before start, 1 after end, linear between. A ramp without length is a jump from 0 to 1 at its time;
-// with both times 0 it is always 1. And a table (n rows), linear between its times and held outside.
-double bough_ramp_factor(double start, double end, double t);
-double bough_table_value(int n, const double *times, const double *values, double t);
-
 #endif

@@ -6,10 +6,11 @@
 #define BOUGH_CORE_TREE_H
 
 #include "core/base/arena.h"
+#include "core/base/schedule.h"
+#include "core/base/status.h"
 #include "core/tree/constraint.h"
 #include "core/tree/joint.h"
 #include "core/tree/motion.h"
-#include "core/base/status.h"
 
 #include <stdbool.h>
 
@@ -74,15 +75,11 @@ typedef struct bough_end_def {
     bough_inertia inertia; // of the flexible body's vertex there, in body axes, as at a port
 } bough_end_def;
 
-// A load along a joint's axis: value × factor, factor rising linearly from 0 at `start` to 1 at
-// `end`; end <= start means constant from the beginning.
+// A load along a joint's axis: value × factor.
 typedef struct bough_joint_load_def {
-    int body;                     // whose joint; revolute or prismatic
-    double value;                 // [N m] or [N]
-    double start, end;            // [s]
-    int n;                        // rows of a table in place of the value, 0: none
-    const double *times, *values; // (n) times increasing [s], the value linear between them and
-                                  // held before and after; copied
+    int body;                // whose joint; revolute or prismatic
+    double value;            // [N m] or [N]
+    bough_schedule schedule; // of the factor; its table is copied
 } bough_joint_load_def;
 
 // A linear spring and damper on the line between two markers, which must not meet.
@@ -108,15 +105,12 @@ typedef struct bough_bushing_def {
     double stiffness[6], damping[6]; // three along, three about [N/m, N m/rad; times s]
 } bough_bushing_def;
 
-// A wrench on a marker: value × factor, factor rising linearly from 0 at `start` to 1 at `end`
-// (end <= start: always 1), or from a table.
+// A wrench on a marker: value × factor.
 typedef struct bough_applied_def {
-    int marker;                   // index
-    bough_wrench wrench;          // [N, N m]
-    bool ground;                  // in ground axes, else in the marker's
-    double start, end;            // [s]
-    int n;                        // rows of a table in place of the ramp, 0: none
-    const double *times, *values; // (n) times increasing [s], factors; copied
+    int marker;              // index
+    bough_wrench wrench;     // [N, N m]
+    bool ground;             // in ground axes, else in the marker's
+    bough_schedule schedule; // of the factor; its table is copied
 } bough_applied_def;
 
 typedef struct bough_tree_def {

@@ -171,10 +171,9 @@ static void *copied(bough_arena *arena, const void *from, size_t size) {
     return to;
 }
 
-// Copies a table's times and values (n each).
-static void copy_table(bough_arena *arena, int n, const double **times, const double **values) {
-    *times = copied(arena, *times, (size_t)n * sizeof(double));
-    *values = copied(arena, *values, (size_t)n * sizeof(double));
+static void copy_table(bough_arena *arena, bough_schedule *s) {
+    s->times = copied(arena, s->times, (size_t)s->n * sizeof(double));
+    s->values = copied(arena, s->values, (size_t)s->n * sizeof(double));
 }
 
 // What stands in the tree as in the definition, with tables of its own.
@@ -188,14 +187,8 @@ static void copy_forces(bough_arena *arena, const bough_tree_def *def, bough_tre
     tree->springs = copied(arena, def->springs, (size_t)def->n_springs * sizeof *def->springs);
     tree->bushings = copied(arena, def->bushings, (size_t)def->n_bushings * sizeof *def->bushings);
     tree->applied = copied(arena, def->applied, (size_t)def->n_applied * sizeof *def->applied);
-    for (int k = 0; k < def->n_loads; k++) {
-        bough_joint_load_def *load = &tree->loads[k];
-        copy_table(arena, load->n, &load->times, &load->values);
-    }
-    for (int k = 0; k < def->n_applied; k++) {
-        bough_applied_def *a = &tree->applied[k];
-        copy_table(arena, a->n, &a->times, &a->values);
-    }
+    for (int k = 0; k < def->n_loads; k++) copy_table(arena, &tree->loads[k].schedule);
+    for (int k = 0; k < def->n_applied; k++) copy_table(arena, &tree->applied[k].schedule);
 }
 
 static void take_frames(bough_arena *arena, const bough_tree_def *def, bough_tree *tree) {

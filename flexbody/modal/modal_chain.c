@@ -64,7 +64,7 @@ static void set_loads(const bough_modal_model *m, const bough_rod_loads *loads, 
         load[k] = loads->value[k] + elapsed * (loads->rate[k] + elapsed * loads->curve[k]);
     }
     for (const bough_rod_ramped_load *l = loads->ramped; l != NULL; l = l->next) {
-        double factor = bough_rod_ramp_factor(l, t);
+        double factor = bough_schedule_at(&l->schedule, t);
         for (int k = 0; k < count; k++) load[k] += factor * l->value[k];
     }
 }

@@ -158,9 +158,7 @@ void bough_ground_body_load(bough_ground_body *b, bough_arena *arena, const boug
     ground_load *l = bough_arena_take(arena, sizeof *l);
     *l = (ground_load){.next = b->first, .by_axis = bough_arena_doubles(arena, BOUGH_GROUND_AXES * size)};
     b->first = l;
-    l->resolved = bough_rod_loads_tabled(b->loads, arena, b->mesh, false, def->n, def->times, def->factors);
-    l->resolved->start = def->ramp[0];
-    l->resolved->end = def->ramp[1];
+    l->resolved = bough_rod_loads_add(b->loads, arena, b->mesh, false, &def->schedule);
     for (int j = 0; j < BOUGH_GROUND_AXES; j++) {
         memset(l->resolved->value, 0, size * sizeof(double));
         add_axis(b, def, j, l->resolved);

@@ -17,14 +17,12 @@ bough_ground_body *bough_ground_body_create(bough_arena *arena, const bough_syst
 // The inner system with inputs for the axes after its own.
 bough_system bough_ground_body_system(bough_ground_body *body);
 
-// Adds a load as bough_rod_lump does, `wrench` and `end` in ground axes; its factor is the ramp's, or that of
-// a table (n rows, borrowed).
+// Adds a load as bough_rod_lump does, `wrench` and `end` in ground axes; its table is
+// borrowed.
 typedef struct bough_ground_load_def {
     bough_rod_reach reach;
     double wrench[6], end[6]; // at both ends of the reach
-    double ramp[2];           // [s]
-    int n;                    // 0: no table
-    const double *times, *factors;
+    bough_schedule schedule;  // of the factor
 } bough_ground_load_def;
 void bough_ground_body_load(bough_ground_body *body, bough_arena *arena, const bough_ground_load_def *def);
 

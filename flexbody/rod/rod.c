@@ -1,7 +1,6 @@
 // Builds the constant rod model from its discretised definition.
 #include "flexbody/rod/rod.h"
 
-#include "core/tree/force.h"
 #include "core/base/symmetric6.h"
 #include "flexbody/rod/rod_segment.h"
 
@@ -182,10 +181,12 @@ void bough_rod_loads_init(bough_rod_loads *loads, bough_arena *arena, const boug
     memcpy(loads->rest, model->strain0, 6 * (size_t)model->stride * sizeof *loads->rest);
 }
 
-static bough_rod_ramped_load *add_load(bough_rod_loads *loads, bough_arena *arena,
-                                       const bough_rod_model *model, bool follower) {
+bough_rod_ramped_load *bough_rod_loads_add(bough_rod_loads *loads, bough_arena *arena,
+                                           const bough_rod_model *model, bool follower,
+                                           const bough_schedule *schedule) {
     bough_rod_ramped_load *fresh = bough_arena_take(arena, sizeof *fresh);
     *fresh = (bough_rod_ramped_load){.next = loads->ramped,
+                                     .schedule = *schedule,
                                      .follower = follower,
                                      .value = bough_rod_vertex_rows(arena, model, 6),
                                      .line = bough_arena_doubles(arena, 12 * (size_t)model->stride)};
@@ -195,25 +196,13 @@ static bough_rod_ramped_load *add_load(bough_rod_loads *loads, bough_arena *aren
 
 bough_rod_ramped_load *bough_rod_loads_ramped(bough_rod_loads *loads, bough_arena *arena,
                                               const bough_rod_model *model, bool follower,
-                                              const double ramp[2]) {
-    for (bough_rod_ramped_load *l = loads->ramped; l != NULL; l = l->next) {
-        bool same = l->n == 0 && l->start == ramp[0] && l->end == ramp[1];
+                                              const bough_schedule *schedule) {
+    for (bough_rod_ramped_load *l = loads->ramped; l != NULL && schedule->n == 0; l = l->next) {
+        const bough_schedule *own = &l->schedule;
+        bool same = own->n == 0 && own->start == schedule->start && own->end == schedule->end;
         if (same && l->follower == follower) return l;
     }
-    bough_rod_ramped_load *fresh = add_load(loads, arena, model, follower);
-    fresh->start = ramp[0];
-    fresh->end = ramp[1];
-    return fresh;
-}
-
-bough_rod_ramped_load *bough_rod_loads_tabled(bough_rod_loads *loads, bough_arena *arena,
-                                              const bough_rod_model *model, bool follower, int n,
-                                              const double *times, const double *factors) {
-    bough_rod_ramped_load *fresh = add_load(loads, arena, model, follower);
-    fresh->n = n;
-    fresh->times = times;
-    fresh->factors = factors;
-    return fresh;
+    return bough_rod_loads_add(loads, arena, model, follower, schedule);
 }
 
 void bough_rod_line_strain(const bough_rod_model *m, const double *line, double *along) {
@@ -241,11 +230,6 @@ void bough_rod_loads_along(const bough_rod_model *m, const double *line, const d
     const double *restrict strain0 = m->strain0;
 #pragma omp simd
     for (int k = 0; k < 6 * m->stride; k++) rest[k] += strain0[k];
-}
-
-double bough_rod_ramp_factor(const bough_rod_ramped_load *load, double t) {
-    if (load->n > 0) return bough_table_value(load->n, load->times, load->factors, t);
-    return bough_ramp_factor(load->start, load->end, t);
 }
 
 bool bough_rod_loads_follow(const bough_rod_loads *loads) {

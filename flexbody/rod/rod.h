@@ -17,6 +17,7 @@
 #include "core/base/arena.h"
 #include "core/base/base.h"
 #include "core/base/rotation.h"
+#include "core/base/schedule.h"
 #include "core/base/status.h"
 
 enum {
@@ -111,14 +112,11 @@ static inline int bough_rod_n_outputs(const bough_rod_model *m) {
 // loads that are linear over each segment. Weight and slow inertia forces need no such strain: the mass and
 // first moment of the vertices account for them (section.c).
 
-// Loads that change over time: value × factor, the factor that of a table or of a ramp as in
-// core/tree/force.h. Dead ones are resolved in BRF axes, followers in the section axes of each
-// vertex and segment, with which they turn.
+// Loads that change over time: value × factor. Dead ones are resolved in BRF axes, followers in the section
+// axes of each vertex and segment, with which they turn.
 typedef struct bough_rod_ramped_load {
     struct bough_rod_ramped_load *next;
-    double start, end;             // of the ramp [s]
-    int n;                         // rows of a table in place of the ramp, 0: none
-    const double *times, *factors; // (n) times increasing [s]; borrowed
+    bough_schedule schedule; // of the factor
     bool follower;
     double *value; // on vertices: force then moment (6 × stride), vertex 0 included [N, N m]
     double *line;  // the part of `value` that is spread along whole segments, per length: force then
@@ -170,18 +168,15 @@ double *bough_rod_vertex_rows(bough_arena *arena, const bough_rod_model *model, 
 void bough_rod_scratch_init(bough_rod_scratch *scratch, bough_arena *arena, const bough_rod_model *model);
 void bough_rod_loads_init(bough_rod_loads *loads, bough_arena *arena, const bough_rod_model *model);
 
-// The ramped load of this kind and ramp, a new one of zeros if there is none yet.
+// A new load of zeros.
+bough_rod_ramped_load *bough_rod_loads_add(bough_rod_loads *loads, bough_arena *arena,
+                                           const bough_rod_model *model, bool follower,
+                                           const bough_schedule *schedule);
+
+// The ramped load of this kind and ramp, a new one if there is none yet or the schedule is a table.
 bough_rod_ramped_load *bough_rod_loads_ramped(bough_rod_loads *loads, bough_arena *arena,
                                               const bough_rod_model *model, bool follower,
-                                              const double ramp[2]);
-
-// A new load of zeros whose factor is a table (n rows).
-bough_rod_ramped_load *bough_rod_loads_tabled(bough_rod_loads *loads, bough_arena *arena,
-                                              const bough_rod_model *model, bool follower, int n,
-                                              const double *times, const double *factors);
-
-// Share of a ramped load at time t.
-double bough_rod_ramp_factor(const bough_rod_ramped_load *load, double t);
+                                              const bough_schedule *schedule);
 
 // Sets the strains for loads along the segments, given per length (12 × n_segment: force and moment
 // [N/m, N], then their slopes) in the axes of a segment's middle (bough_rod_take_line), and at which rate

@@ -91,7 +91,7 @@ static void add_ramped(const bough_rod_model *m, const bough_rod_loads *loads, d
     bool follow = bough_rod_loads_follow(loads);
     if (follow) memset(scratch->follower, 0, 6 * (size_t)s * sizeof(double));
     for (const bough_rod_ramped_load *l = loads->ramped; l != NULL; l = l->next) {
-        double factor = bough_rod_ramp_factor(l, t);
+        double factor = bough_schedule_at(&l->schedule, t);
         double *to = l->follower ? scratch->follower : scratch->load;
         for (int k = 0; k < 6 * s; k++) to[k] += factor * l->value[k];
     }
@@ -143,7 +143,7 @@ static void add_along(const bough_rod_model *m, const bough_rod_loads *loads, do
     scratch->turning = true;
     scratch->rest = scratch->own_rest;
     for (const bough_rod_ramped_load *l = loads->ramped; l != NULL; l = l->next) {
-        double factor = bough_rod_ramp_factor(l, t);
+        double factor = bough_schedule_at(&l->schedule, t);
         if (!l->along) continue;
         for (int n = 0; n < m->n_segment; n++) {
             bough_mat3 r = middle_of(m, scratch, n);

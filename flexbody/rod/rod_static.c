@@ -164,7 +164,7 @@ static bool sum_ramped(const bough_rod_model *m, const bough_rod_loads *loads, d
         if (l->follower != sum->follower) continue;
         any = true;
         sum->along = sum->along || l->along;
-        double factor = share * (l->n > 0 ? l->factors[l->n - 1] : 1);
+        double factor = share * (l->schedule.n > 0 ? l->schedule.values[l->schedule.n - 1] : 1);
         for (size_t k = 0; k < count; k++) sum->value[k] += factor * l->value[k];
         for (size_t k = 0; k < 2 * count; k++) sum->line[k] += factor * l->line[k];
     }

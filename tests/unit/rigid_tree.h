@@ -118,7 +118,7 @@ static inline fixture everything_with(bough_integrator_kind solver, double rtol)
         {"second", 1, bough_inertia_of(0.2, bough_v3(0, 0.3, 0), diagonal(0.1, 0.1, 0.1)), false},
     };
     bough_spring_def springs[] = {{{0, 2}, 6, 0.4, 0.5}, {{1, 2}, 9, 0, 1.5}};
-    bough_joint_load_def loads[] = {{.body = 5, .value = 3.0, .start = 0.1, .end = 0.3},
+    bough_joint_load_def loads[] = {{.body = 5, .value = 3.0, .schedule = {.start = 0.1, .end = 0.3}},
                                     {.body = 3, .value = -2.0}};
     bough_tree_def def = {.gravity = {1, -2, -9},
                           .n_bodies = 10,

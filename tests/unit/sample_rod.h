@@ -153,10 +153,10 @@ static inline void sample_line(bough_rod_model *m) {
 // Adds loads along all segments that change in time: ramped dead ones and followers from 0.1 to 1 s, and
 // strains without stress that grow steadily.
 static inline void sample_loads_along(bough_arena *arena, const bough_rod_model *m, bough_rod_loads *loads) {
-    const double ramp[2] = {0.1, 1};
+    const bough_schedule ramp = {.start = 0.1, .end = 1};
     unsigned seed = 23;
     for (int follower = 0; follower < 2; follower++) {
-        bough_rod_ramped_load *load = bough_rod_loads_ramped(loads, arena, m, follower, ramp);
+        bough_rod_ramped_load *load = bough_rod_loads_ramped(loads, arena, m, follower, &ramp);
         load->along = true;
         for (int k = 0; k < 6 * m->stride; k++) load->line[k] = sample_random(&seed);
     }

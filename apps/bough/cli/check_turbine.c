@@ -1,7 +1,6 @@
 #include "apps/bough/cli/check_turbine.h"
 
 #include "apps/bough/model/aero_link.h"
-#include "core/tree/force.h"
 
 #include <math.h>
 

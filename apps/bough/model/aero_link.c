@@ -3,7 +3,7 @@
 #include "apps/bough/model/aero_motion.h"
 #include "apps/bough/model/aero_signal.h"
 #include "core/base/base.h"
-#include "core/tree/force.h"
+#include "core/base/schedule.h"
 
 #include <math.h>
 #include <string.h>
@@ -30,10 +30,10 @@ struct bough_aero_link {
 static bough_status same_mesh(const bough_aero_link *l, const bough_beam *beam) {
     const bough_beam *first = l->beam[0];
     if (beam->def.n_segment == first->def.n_segment) return bough_ok();
-    bough_status status =
-        bough_fail(BOUGH_INVALID,
-                   "blades %s and %s have %d and %d segments; the aerodynamics wants the same mesh on all blades",
-                   first->body->name, beam->body->name, first->def.n_segment, beam->def.n_segment);
+    bough_status status = bough_fail(
+        BOUGH_INVALID,
+        "blades %s and %s have %d and %d segments; the aerodynamics wants the same mesh on all blades",
+        first->body->name, beam->body->name, first->def.n_segment, beam->def.n_segment);
     const bough_node *segments = bough_node_find(beam->body->rod.node, "segments");
     return bough_scene_blame(segments ? segments : beam->body->rod.node, "rod.segments", status);
 }
@@ -160,13 +160,11 @@ static bough_status check_reach(bough_aero_link *l) {
     bough_vec3 hub = l->hub = bough_tree_frame_pose(l->simulation->view, rotor).position;
     double radius = rotor_radius(&scene->aero);
     if (bough_rotor_in_wind(l->rotor, hub, radius)) return bough_ok();
-    return bough_fail(BOUGH_INVALID,
-                      "the box of %s is too small for a rotor of %g m radius at %g m",
+    return bough_fail(BOUGH_INVALID, "the box of %s is too small for a rotor of %g m radius at %g m",
                       scene->aero.wind.def.file ? scene->aero.wind.def.file : "turbulence", radius, hub.z);
 }
 
-bough_status bough_aero_link_build(bough_arena *arena, bough_simulation *simulation,
-                                   bough_aero_link **link) {
+bough_status bough_aero_link_build(bough_arena *arena, bough_simulation *simulation, bough_aero_link **link) {
     bough_aero_link *l = bough_arena_take(arena, sizeof *l);
     tables t;
     l->simulation = simulation;
@@ -240,8 +238,7 @@ static void load_blade(void *self, int b, bough_part part) {
     const bough_aero_link *l = e->link;
     if (part != BOUGH_SECOND_HALF) bough_rotor_load(l->rotor, e->motion, b, e->data);
     if (part == BOUGH_FIRST_HALF || e->next == NULL) return;
-    bough_aero_signal_follow(l->signal[b], fresh_loads(l, b), course_of(l, b), e->next->start,
-                             e->next->span);
+    bough_aero_signal_follow(l->signal[b], fresh_loads(l, b), course_of(l, b), e->next->start, e->next->span);
 }
 
 // Of the motion that was found for the rotor; `move` finds it for a blade.
@@ -306,9 +303,7 @@ static bough_status sample(void *self, double t, double t_next, bool *jumped) {
 
 double bough_aero_link_evaluated(const bough_aero_link *link) { return link->time[link->shown]; }
 
-void bough_aero_link_renew(bough_aero_link *link) {
-    link->time[0] = link->time[1] = (double)NAN;
-}
+void bough_aero_link_renew(bough_aero_link *link) { link->time[0] = link->time[1] = (double)NAN; }
 
 void bough_aero_link_set_wind(bough_aero_link *link, double speed) {
     bough_rotor_set_speed(link->rotor, speed);

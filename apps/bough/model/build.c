@@ -12,8 +12,8 @@
 #include "apps/bough/model/load_link.h"
 #include "apps/bough/model/trim.h"
 #include "apps/bough/model/validity.h"
-#include "core/tree/dynamics.h"
 #include "core/base/linalg.h"
+#include "core/tree/dynamics.h"
 #include "core/tree/tree_build.h"
 #include "core/tree/tree_system.h"
 
@@ -36,7 +36,7 @@ static void add_motion(bough_builder *b, const bough_scene_motion *motion) {
 static void add_generator(bough_builder *b) {
     static const double times[2] = {0, 1}, values[2] = {0, 0};
     b->load[b->n_load++] =
-        (bough_joint_load_def){.body = b->scene->turbine.rotor, .n = 2, .times = times, .values = values};
+        (bough_joint_load_def){b->scene->turbine.rotor, 1, {.n = 2, .times = times, .values = values}};
 }
 
 static void set_loads(bough_builder *b) {
@@ -50,8 +50,8 @@ static void set_loads(bough_builder *b) {
         int corners = load->input == NULL ? load->n_time : 0;
         for (int i = 0; i < corners; i++) b->event[b->n_event++] = load->times[i];
         if (load->body_name != NULL) continue;
-        b->load[b->n_load++] = (bough_joint_load_def){
-            load->joint, load->amount, load->ramp[0], load->ramp[1], load->n_time, load->times, load->values};
+        b->load[b->n_load++] = (bough_joint_load_def){load->joint, load->n_time > 0 ? 1 : load->amount,
+                                                      bough_scene_load_schedule(load)};
     }
     if (b->scene->aero.node != NULL) add_ramp(b, b->scene->aero.ramp);
     if (b->scene->control.node != NULL) add_generator(b);

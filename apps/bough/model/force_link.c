@@ -4,12 +4,11 @@
 
 #include <string.h>
 
-void bough_force_link_take(bough_arena *arena, const bough_scene *scene, int n_beam,
-                           bough_force_link *link) {
+void bough_force_link_take(bough_arena *arena, const bough_scene *scene, int n_beam, bough_force_link *link) {
     size_t springs = (size_t)scene->n_spring, bushings = (size_t)scene->n_bushing;
     size_t closures = (size_t)scene->n_closure, loads = (size_t)scene->n_load;
-    size_t markers = (size_t)n_beam + 2 * (springs + bushings + closures) + loads +
-                     (size_t)scene->n_marker + 1;
+    size_t markers =
+        (size_t)n_beam + 2 * (springs + bushings + closures) + loads + (size_t)scene->n_marker + 1;
     link->marker = bough_arena_take(arena, markers * sizeof *link->marker);
     link->spring = bough_arena_take(arena, springs * sizeof *link->spring);
     link->bushing = bough_arena_take(arena, bushings * sizeof *link->bushing);
@@ -73,11 +72,7 @@ static void add_wrenches(const bough_scene *scene, bough_force_link *link) {
             (bough_applied_def){.marker = marker,
                                 .wrench = {point(load->force), point(load->moment)},
                                 .ground = load->frame == BOUGH_SCENE_LOAD_GROUND,
-                                .start = load->ramp[0],
-                                .end = load->ramp[1],
-                                .n = load->n_time,
-                                .times = load->times,
-                                .values = load->values};
+                                .schedule = bough_scene_load_schedule(load)};
     }
 }
 
@@ -98,8 +93,7 @@ void bough_force_link_fill(const bough_scene *scene, bough_force_link *link) {
     }
 }
 
-void bough_force_link_rest(const bough_scene *scene, const bough_tree_data *data,
-                           bough_tree *tree) {
+void bough_force_link_rest(const bough_scene *scene, const bough_tree_data *data, bough_tree *tree) {
     for (int k = 0; k < scene->n_bushing; k++) {
         const int *marker = tree->bushings[k].marker;
         bough_transform pose = bough_tree_frame_pose(data, &tree->markers[marker[0]]);

@@ -31,9 +31,9 @@ static double *table_of(const bough_simulation *s, int index) {
             on_bodies++;
         }
     }
-    if (load->body_name == NULL) return writable(s->tree->loads[on_joints].values);
+    if (load->body_name == NULL) return writable(s->tree->loads[on_joints].schedule.values);
     if (scene->body[load->body].fidelity == BOUGH_SCENE_RIGID) {
-        return writable(s->tree->applied[on_bodies].values);
+        return writable(s->tree->applied[on_bodies].schedule.values);
     }
     return load->values;
 }
@@ -71,8 +71,7 @@ bool bough_input_link_put(bough_input_link *link, int k, double value) {
 static void move_joint(bough_input_link *l, int k, double t, double t_next) {
     bough_motion_point from = points(l)[k], to = {l->memory[k], 0, 0};
     to.v = (to.q - from.q) / (t_next - t);
-    bough_tree_steer(l->simulation->tree, l->simulation->scene->input[k].index, t, t_next - t, from,
-                     to);
+    bough_tree_steer(l->simulation->tree, l->simulation->scene->input[k].index, t, t_next - t, from, to);
     points(l)[k] = to;
 }
 

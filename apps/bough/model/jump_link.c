@@ -5,7 +5,7 @@
 // A ramp of the model whose two times are 0 once the load acts, and beyond all times before.
 typedef struct jump {
     double at; // [s]
-    double *start, *end;
+    bough_schedule *ramp;
 } jump;
 
 struct bough_jump_link {
@@ -13,9 +13,9 @@ struct bough_jump_link {
     jump *jump; // (n)
 };
 
-static void add(bough_jump_link *link, double *start, double *end) {
-    if (!(*start > 0) || *end > *start) return;
-    link->jump[link->n++] = (jump){*start, start, end};
+static void add(bough_jump_link *link, bough_schedule *ramp) {
+    if (!(ramp->start > 0) || ramp->end > ramp->start) return;
+    link->jump[link->n++] = (jump){ramp->start, ramp};
 }
 
 static size_t count_loads(const bough_simulation *s) {
@@ -32,15 +32,15 @@ bough_status bough_jump_link_build(bough_arena *arena, bough_simulation *s) {
     bough_jump_link *link = bough_arena_take(arena, sizeof *link);
     *link = (bough_jump_link){0, bough_arena_take(arena, (count_loads(s) + 1) * sizeof(jump))};
     for (int k = 0; k < s->tree->n_loads; k++) {
-        add(link, &s->tree->loads[k].start, &s->tree->loads[k].end);
+        add(link, &s->tree->loads[k].schedule);
     }
     for (int k = 0; k < s->tree->n_applied; k++) {
-        add(link, &s->tree->applied[k].start, &s->tree->applied[k].end);
+        add(link, &s->tree->applied[k].schedule);
     }
     for (int k = 0; k < s->n_beam; k++) {
         if (s->beam[k].port < 0) continue;
         bough_rod_ramped_load *l = bough_beam_loads(&s->beam[k])->ramped;
-        for (; l != NULL; l = l->next) add(link, &l->start, &l->end);
+        for (; l != NULL; l = l->next) add(link, &l->schedule);
     }
     if (link->n > 0) s->jump = link;
     return bough_ok();
@@ -49,7 +49,7 @@ bough_status bough_jump_link_build(bough_arena *arena, bough_simulation *s) {
 void bough_jump_link_begin(bough_jump_link *link, double t) {
     for (int k = 0; k < link->n; k++) {
         jump *j = &link->jump[k];
-        *j->start = *j->end = t >= j->at ? 0 : HUGE_VAL;
+        j->ramp->start = j->ramp->end = t >= j->at ? 0 : HUGE_VAL;
     }
 }
 

@@ -6,8 +6,7 @@
 
 static bough_rod_reach reach_of(const bough_scene_load *load, const bough_rod_model *m) {
     switch ((bough_scene_load_place)load->place) {
-    case BOUGH_SCENE_AT_VERTEX:
-        return (bough_rod_reach){m->span[load->vertex], m->span[load->vertex]};
+    case BOUGH_SCENE_AT_VERTEX: return (bough_rod_reach){m->span[load->vertex], m->span[load->vertex]};
     case BOUGH_SCENE_AT_SPAN: return (bough_rod_reach){load->span[0], load->span[0]};
     case BOUGH_SCENE_ALONG: return (bough_rod_reach){load->span[0], load->span[1]};
     case BOUGH_SCENE_AT_TIP: break;
@@ -30,10 +29,7 @@ static void resolve(const bough_simulation *s, const bough_beam *beam, const bou
 
 static void add_ground(bough_arena *arena, const bough_beam *beam, const bough_scene_load *load) {
     bough_ground_load_def def = {.reach = reach_of(load, bough_beam_mesh(beam)),
-                                 .ramp = {load->ramp[0], load->ramp[1]},
-                                 .n = load->n_time,
-                                 .times = load->times,
-                                 .factors = load->values};
+                                 .schedule = bough_scene_load_schedule(load)};
     for (int c = 0; c < 3; c++) {
         def.wrench[c] = load->force[c], def.wrench[3 + c] = load->moment[c];
         def.end[c] = load->end_force[c], def.end[3 + c] = load->end_moment[c];
@@ -45,11 +41,8 @@ static void add(bough_arena *arena, const bough_simulation *s, const bough_beam 
                 const bough_scene_load *load) {
     const bough_rod_model *m = bough_beam_mesh(beam);
     bool follower = load->frame == BOUGH_SCENE_LOAD_FOLLOWER;
-    bough_rod_loads *loads = bough_beam_loads(beam);
-    bough_rod_ramped_load *to =
-        load->n_time > 0 ? bough_rod_loads_tabled(loads, arena, m, follower, load->n_time,
-                                                  load->times, load->values)
-                         : bough_rod_loads_ramped(loads, arena, m, follower, load->ramp);
+    bough_schedule schedule = bough_scene_load_schedule(load);
+    bough_rod_ramped_load *to = bough_rod_loads_ramped(bough_beam_loads(beam), arena, m, follower, &schedule);
     double wrench[6], end[6];
     resolve(s, beam, load, load->force, load->moment, wrench);
     resolve(s, beam, load, load->end_force, load->end_moment, end);
@@ -68,8 +61,10 @@ bough_status bough_load_link_build(bough_arena *arena, bough_simulation *s) {
             const bough_beam *beam = bough_simulation_beam(s, load->body);
             bool turns = beam->in_ground && load->frame == BOUGH_SCENE_LOAD_GROUND;
             if (turns != (pass == 1)) continue;
-            if (turns) add_ground(arena, beam, load);
-            else add(arena, s, beam, load);
+            if (turns)
+                add_ground(arena, beam, load);
+            else
+                add(arena, s, beam, load);
         }
     }
     return bough_ok();

@@ -1,7 +1,6 @@
 // The rotor's shaft: how the hub turns, and the torque between hub and drive train.
 #include "apps/bough/model/channel_table.h"
 #include "apps/bough/model/observe.h"
-#include "core/tree/force.h"
 #include "core/tree/loop.h"
 
 static const double degree = BOUGH_PI / 180, rpm = BOUGH_PI / 30;
@@ -100,8 +99,7 @@ static double joint_torque(const bough_simulation *s, int body, double t) {
     for (int k = 0; k < tree->n_loads; k++) {
         const bough_joint_load_def *load = &tree->loads[k];
         if (load->body != tree->bodies[body].link) continue;
-        torque += load->n > 0 ? bough_table_value(load->n, load->times, load->values, t)
-                              : load->value * bough_ramp_factor(load->start, load->end, t);
+        torque += load->value * bough_schedule_at(&load->schedule, t);
     }
     bool driven = s->scene->body[body].joint.motion.node != NULL;
     return torque + (driven ? s->view->drive[v - tree->n_q] : 0);

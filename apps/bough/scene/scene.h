@@ -244,6 +244,11 @@ typedef struct bough_scene_load {
     double point[3];                    // on a rigid body: in its frame [m]
 } bough_scene_load;
 
+// What its factor follows over time; its table is the scene's.
+static inline bough_schedule bough_scene_load_schedule(const bough_scene_load *load) {
+    return (bough_schedule){load->ramp[0], load->ramp[1], load->n_time, load->times, load->values};
+}
+
 // Springs and dampers along and about the axes of one body or the ground at a point of it, against
 // another as it stands at the start.
 typedef struct bough_scene_bushing {
@@ -501,7 +506,7 @@ typedef struct bough_scene_input {
     int dimension;     // bough_dimension
     const char *range; // of its values, SI: that of the key for which it stands; NULL: any
     double initial;    // until it is set, SI
-    int index;      // of the load, the body on the joint, or the blade
+    int index;         // of the load, the body on the joint, or the blade
 } bough_scene_input;
 
 typedef struct bough_scene {

@@ -44,8 +44,8 @@ static fixture mounted(double rtol, bool damped) {
         {{2, 0}, {3, 5, 7, 2, 5, 4}, {0.1 * c, 0.2 * c, 0.3 * c, 0.1 * c, 0.4 * c, 0.2 * c}}};
     const double times[] = {0, 0.3, 1}, values[] = {0.5, 2, -1};
     const bough_applied_def applied[] = {
-        {0, {{1, -2, 3}, {0.4, 0.5, -0.6}}, true, 0, 1, 0, NULL, NULL},
-        {1, {{2, 1, -1}, {-0.4, 0.3, 0.6}}, false, 0, 0, 3, times, values}};
+        {0, {{1, -2, 3}, {0.4, 0.5, -0.6}}, true, {.start = 0, .end = 1}},
+        {1, {{2, 1, -1}, {-0.4, 0.3, 0.6}}, false, {.n = 3, .times = times, .values = values}}};
     bough_tree_def def = {.gravity = {0, 0, -9.81}, .n_bodies = 2, .bodies = b, .n_markers = 3,
                           .markers = markers, .n_springs = 2, .springs = springs, .n_bushings = 2,
                           .bushings = bushings, .n_applied = damped ? 2 : 0, .applied = applied};
@@ -201,7 +201,7 @@ static void wrench_in_ground_axes_pushes_straight(void **state) {
     b.coordinates[3] = 1, b.speeds[5] = 4;
     const bough_marker_def marker = {"rim", 0, placed(0.5, 0, 0, 1)};
     const bough_applied_def applied = {
-        0, {{6, 0, 0}, {0, 0, 0}}, true, 0, 0, 3, times, values};
+        0, {{6, 0, 0}, {0, 0, 0}}, true, {.n = 3, .times = times, .values = values}};
     bough_tree_def def = {.n_bodies = 1, .bodies = &b, .n_markers = 1, .markers = &marker,
                           .n_applied = 1, .applied = &applied};
     fixture f = build(&def, 1e-10);

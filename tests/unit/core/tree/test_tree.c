@@ -106,7 +106,7 @@ static void ramped_joint_load_spins_up(void **state) {
     bough_body_def b = bough_body_def_default();
     b.name = "rotor", b.kind = BOUGH_JOINT_REVOLUTE, b.axis = bough_v3(0, 0, 2);
     b.inertia = diagonal(1, 1, 4);
-    bough_joint_load_def load = {.body = 0, .value = 8, .start = 1, .end = 3};
+    bough_joint_load_def load = {.body = 0, .value = 8, .schedule = {.start = 1, .end = 3}};
     bough_tree_def def = {.n_bodies = 1, .bodies = &b, .n_loads = 1, .loads = &load};
     fixture f = build(&def, 1e-9);
     advance(&f, 1, true);
@@ -266,7 +266,7 @@ static void tabulated_joint_load_spins_up(void **state) {
     const double times[] = {1, 3}, values[] = {8, 0};
     bough_body_def b = bough_body_def_default();
     b.name = "rotor", b.kind = BOUGH_JOINT_REVOLUTE, b.inertia = diagonal(1, 1, 4);
-    bough_joint_load_def load = {.body = 0, .n = 2, .times = times, .values = values};
+    bough_joint_load_def load = {.body = 0, .value = 1, .schedule = {.n = 2, .times = times, .values = values}};
     bough_tree_def def = {.n_bodies = 1, .bodies = &b, .n_loads = 1, .loads = &load};
     fixture f = build(&def, 1e-9);
     advance(&f, 1, true);

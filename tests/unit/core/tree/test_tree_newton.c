@@ -85,9 +85,10 @@ static fixture everything(void) {
     const bough_bushing_def bushings[] = {
         {{4, 2}, {8, 5, 3, 4, 6, 2}, {0.4, 0.2, 0.3, 0.2, 0.1, 0.5}},
         {{3, 1}, {3, 5, 7, 2, 5, 4}, {0.1, 0.2, 0.3, 0.1, 0.4, 0.2}}};
+    const bough_schedule always = {.start = 0};
     const bough_applied_def applied[] = {
-        {0, {{1, -2, 3}, {0.4, 0.5, -0.6}}, true, 0, 0, 0, NULL, NULL},
-        {2, {{2, 1, -1}, {-0.4, 0.3, 0.6}}, false, 0, 0, 0, NULL, NULL}};
+        {0, {{1, -2, 3}, {0.4, 0.5, -0.6}}, true, always},
+        {2, {{2, 1, -1}, {-0.4, 0.3, 0.6}}, false, always}};
     const bough_end_def ends[] = {{"end", 7, {.mass = 0.3}}};
     bough_tree_def def = {.gravity = {1, -2, -9}, .n_bodies = 10, .bodies = bodies, .n_markers = 5,
                           .markers = markers, .n_springs = 2, .springs = springs, .n_bushings = 2,

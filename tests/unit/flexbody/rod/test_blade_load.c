@@ -89,7 +89,8 @@ static void integrate(const blade *b, line_load load, double *exact) {
 // The same of the rod: loads so small that it is linear.
 static void solve(const blade *b, line_load load, double scale, double *found) {
     const bough_rod_model *m = b->model;
-    const double at_rest[BOUGH_ROD_INPUTS] = {0}, always[2] = {0, 0};
+    const double at_rest[BOUGH_ROD_INPUTS] = {0};
+    const bough_schedule always = {.start = 0};
     bough_rod_static_options options = bough_rod_static_options_default();
     bough_rod_loads loads;
     bough_rod_static work;
@@ -97,7 +98,7 @@ static void solve(const blade *b, line_load load, double scale, double *found) {
     double *state = bough_arena_doubles(b->arena, (size_t)BOUGH_ROD_STATES * n);
     bough_rod_loads_init(&loads, b->arena, m);
     bough_rod_static_init(&work, b->arena, m);
-    bough_rod_ramped_load *to = bough_rod_loads_ramped(&loads, b->arena, m, false, always);
+    bough_rod_ramped_load *to = bough_rod_loads_ramped(&loads, b->arena, m, false, &always);
     for (int k = 0; k < n; k++) {
         double q[6];
         load(n, b->table->length, 0.5 * (m->span[k] + m->span[k + 1]), q);

@@ -203,10 +203,10 @@ static void second_evaluation_at_a_state_is_the_same(void **context) {
 
 // Half of the ramp is reached at the time of evaluation.
 static bough_rod_ramped_load *ramped(fixture *f, bool follower) {
-    const double ramp[2] = {0.25, 0.75};
-    bough_rod_ramped_load *l = bough_rod_loads_ramped(&f->loads, f->arena, f->model, follower, ramp);
+    const bough_schedule ramp = {.start = 0.25, .end = 0.75};
+    bough_rod_ramped_load *l = bough_rod_loads_ramped(&f->loads, f->arena, f->model, follower, &ramp);
     assert_non_null(l);
-    assert_ptr_equal(l, bough_rod_loads_ramped(&f->loads, f->arena, f->model, follower, ramp));
+    assert_ptr_equal(l, bough_rod_loads_ramped(&f->loads, f->arena, f->model, follower, &ramp));
     return l;
 }
 
@@ -318,23 +318,6 @@ static void follower_load_turns_with_its_section(void **context) {
     for (int k = 0; k < 6; k++) check_near(wrench[0][k], wrench[1][k], 1e-12, 1e-12);
 }
 
-static void ramped_load_grows_between_its_times(void **context) {
-    (void)context;
-    const bough_rod_ramped_load step = {.start = 2, .end = 2}, ramp = {.start = 1, .end = 3};
-    const bough_rod_ramped_load always = {.start = 0, .end = 0};
-    const double times[2] = {1, 2}, factors[2] = {-1, 3};
-    const bough_rod_ramped_load table = {.n = 2, .times = times, .factors = factors};
-    check_near(bough_rod_ramp_factor(&always, -1), 1, 0, 0);
-    check_near(bough_rod_ramp_factor(&step, 1.999), 0, 0, 0);
-    check_near(bough_rod_ramp_factor(&step, 2), 1, 0, 0);
-    check_near(bough_rod_ramp_factor(&table, 0), -1, 0, 0);
-    check_near(bough_rod_ramp_factor(&table, 1.25), 0, 0, 1e-15);
-    check_near(bough_rod_ramp_factor(&table, 4), 3, 0, 0);
-    check_near(bough_rod_ramp_factor(&ramp, 0.5), 0, 0, 0);
-    check_near(bough_rod_ramp_factor(&ramp, 1.5), 0.25, 0, 1e-15);
-    check_near(bough_rod_ramp_factor(&ramp, 4), 1, 0, 0);
-}
-
 static void input_columns_match_differences(void **context) {
     fixture *f = *context;
     double column[BOUGH_ROD_INPUTS * STATES], d[STATES], none[STATES] = {0};
@@ -425,7 +408,6 @@ int main(void) {
         cmocka_unit_test_setup_teardown(second_evaluation_is_no_other_after_a_wrench, setup, teardown),
         cmocka_unit_test_setup_teardown(wrench_tangent_knows_loads_along_segments, setup, teardown),
         cmocka_unit_test_setup_teardown(follower_load_turns_with_its_section, setup, teardown),
-        cmocka_unit_test(ramped_load_grows_between_its_times),
         cmocka_unit_test_setup_teardown(input_columns_match_differences, setup, teardown),
         cmocka_unit_test_setup_teardown(wrench_tangent_matches_differences, setup, teardown),
         cmocka_unit_test_setup_teardown(quaternion_sign_does_not_matter, setup, teardown),

@@ -132,7 +132,8 @@ static void line_lumped_to_vertices_does_the_same_at_rest(void **context) {
     bough_arena *arena = bough_arena_create();
     for (int kind = 0; kind < 2; kind++) {
         bough_rod_model *m = sample_general(arena, N);
-        const double input[BOUGH_ROD_INPUTS] = {0}, ramp[2] = {0, 0};
+        const double input[BOUGH_ROD_INPUTS] = {0};
+        const bough_schedule ramp = {.start = 0};
         double state[BOUGH_ROD_STATES * N], rate[2][BOUGH_ROD_STATES * N];
         bough_rod_loads loads;
         bough_rod_scratch scratch;
@@ -140,7 +141,7 @@ static void line_lumped_to_vertices_does_the_same_at_rest(void **context) {
         bough_rod_loads_init(&loads, arena, m);
         bough_rod_scratch_init(&scratch, arena, m);
         bough_rod_rest_state(m, input, state);
-        bough_rod_ramped_load *load = bough_rod_loads_ramped(&loads, arena, m, kind == 0, ramp);
+        bough_rod_ramped_load *load = bough_rod_loads_ramped(&loads, arena, m, kind == 0, &ramp);
         for (int k = 0; k < 36 * m->stride; k++) m->line[k] = 1e-6 * sample_random(&seed);
         for (int k = 0; k < 6 * m->stride; k++) load->line[k] = sample_random(&seed);
         load->along = true;

@@ -189,9 +189,9 @@ static void rotating_rod_stiffens_as_wrights(void **context) {
 // -- follower loads -------------------------------------------------------------------------------
 
 static void press(bar *b, double force) {
-    const double constant[2] = {0, 0};
+    const bough_schedule constant = {.start = 0, .end = 0};
     build(b, (uniform){1e8, 1e8, 1, 9, 10, 1, 1e-8, 0}, 60);
-    double *value = bough_rod_loads_ramped(&b->loads, b->arena, b->model, true, constant)->value;
+    double *value = bough_rod_loads_ramped(&b->loads, b->arena, b->model, true, &constant)->value;
     value[2 * b->model->stride + b->model->n] = -force;
     solve(b, at_rest);
 }
@@ -277,7 +277,7 @@ static double distance(const double *value, int n, double real, double imaginary
 static void modes_are_eigenvalues_of_the_equation_of_motion(void **context) {
     (void)context;
     const double input[BOUGH_ROD_INPUTS] = {0.4, -0.3, 0.7, 0.5, -0.8, 0.6, 1, -2, -0.5};
-    const double constant[2] = {0, 0};
+    const bough_schedule constant = {.start = 0, .end = 0};
     static double matrix[STATES * STATES], vector[STATES * STATES];
     double value[2 * STATES], work[8 * STATES];
     unsigned seed = 4;
@@ -287,7 +287,7 @@ static void modes_are_eigenvalues_of_the_equation_of_motion(void **context) {
     bough_rod_loads_init(&b.loads, b.arena, b.model);
     bough_rod_static_init(&b.work, b.arena, b.model);
     double *follower =
-        bough_rod_loads_ramped(&b.loads, b.arena, b.model, true, constant)->value;
+        bough_rod_loads_ramped(&b.loads, b.arena, b.model, true, &constant)->value;
     for (int k = 0; k < 6 * b.model->stride; k++) {
         follower[k] = sample_random(&seed);
         b.loads.value[k] = sample_random(&seed);

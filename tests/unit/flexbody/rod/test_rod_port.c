@@ -21,8 +21,8 @@ static bough_rod_body *make(bough_arena *arena, bough_rod_model *model, const do
     bough_rod_loads *loads = bough_rod_body_loads(body);
     sample_loads(model, loads);
     for (int k = 0; k < 2; k++) {
-        const double ramp[2] = {0.1 * k, 1};
-        double *value = bough_rod_loads_ramped(loads, arena, model, k == 0, ramp)->value;
+        const bough_schedule ramp = {.start = 0.1 * k, .end = 1};
+        double *value = bough_rod_loads_ramped(loads, arena, model, k == 0, &ramp)->value;
         for (int i = 0; i < 6 * model->stride; i++) value[i] = 0.4 * sin(i + k);
     }
     return body;

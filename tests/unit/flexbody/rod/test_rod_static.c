@@ -94,7 +94,8 @@ static void load_that_falls_along_the_rod_bends_it_as_beam_theory_says(void **co
     // of shear with what the moment's change along a segment of 0.4 m adds
     const double shear_stiffness = 1 / (1e-4 + 0.4 * 0.4 / 12 / 3), q = 1e-4, length = 2;
     const double stiffness[6] = {shear_stiffness, shear_stiffness, 1e6, 3, 3, 1};
-    const double start[6] = {q, 0, 0, 0, 0, 0}, end[6] = {0}, always[2] = {0, 0};
+    const double start[6] = {q, 0, 0, 0, 0, 0}, end[6] = {0};
+    const bough_schedule always = {.start = 0};
     for (int k = 0; k < 2; k++) {
         double to = k == 0 ? length : 1.1;
         bough_arena *arena = bough_arena_create();
@@ -105,7 +106,7 @@ static void load_that_falls_along_the_rod_bends_it_as_beam_theory_says(void **co
             b.model->line[(6 * 3 + 1) * b.model->stride + n] = mean;
         }
         bough_rod_lump(b.model, (bough_rod_reach){0, to}, start, end,
-                       bough_rod_loads_ramped(&b.loads, arena, b.model, false, always));
+                       bough_rod_loads_ramped(&b.loads, arena, b.model, false, &always));
         solve(&b, bough_rod_static_options_default());
         double bending = q * pow(to, 4) / 30 / 3, turn = q * pow(to, 3) / 24 / 3;
         double shear = q * to * to / 6 / 1e4;
@@ -146,10 +147,11 @@ static bent strip_of(bough_arena *arena, int n, double pretwist) {
 static double polynomial_error(int n) {
     static const double place[3] = {-0.7745966692414834, 0, 0.7745966692414834},
                         weight[3] = {5. / 18, 4. / 9, 5. / 18};
-    const double length = 1.5, scale = 1e-4, always[2] = {0, 0};
+    const double length = 1.5, scale = 1e-4;
+    const bough_schedule always = {.start = 0};
     bough_arena *arena = bough_arena_create();
     bent b = strip_of(arena, n, 0);
-    bough_rod_ramped_load *load = bough_rod_loads_ramped(&b.loads, arena, b.model, false, always);
+    bough_rod_ramped_load *load = bough_rod_loads_ramped(&b.loads, arena, b.model, false, &always);
     for (int k = 0; k < n; k++) {
         double h = length / n, mean = 0, slope = 0;
         for (int i = 0; i < 3; i++) {
@@ -184,7 +186,8 @@ static void polynomial_line_loads_converge_at_fourth_order(void **context) {
 // The tip of a cantilever under force and moment per length that stay in its sections' axes and a force at
 // the tip that does not, EI 2 and `edge`, in lengths.
 static bough_vec3 followed_tip(int n, double edge, const double line[6], bough_vec3 force) {
-    const double always[2] = {0, 0}, length = 1.5;
+    const bough_schedule always = {.start = 0};
+    const double length = 1.5;
     const bough_section_station station = {
         .stiffness = {1e8, 0, 0, 0, 0, 0, 1e8, 0, 0, 0, 0, 1e8, 0, 0, 0, 2, 0, 0, edge, 0, 3},
         .mass = 1,
@@ -193,7 +196,7 @@ static bough_vec3 followed_tip(int n, double edge, const double line[6], bough_v
     bent b = table_rod(
         arena, (bough_section_table){.name = "strip", .n_station = 1, .station = &station, .length = length},
         n);
-    bough_rod_ramped_load *load = bough_rod_loads_ramped(&b.loads, arena, b.model, true, always);
+    bough_rod_ramped_load *load = bough_rod_loads_ramped(&b.loads, arena, b.model, true, &always);
     bough_rod_lump(b.model, (bough_rod_reach){0, length}, line, NULL, load);
     const double at_tip[3] = {force.x, force.y, force.z};
     for (int c = 0; c < 3; c++) b.loads.value[c * b.model->stride + n] = at_tip[c];
@@ -251,11 +254,11 @@ static void bending_two_ways_twists(void **context) {
 // across it, with 100·2^mesh segments.
 static void follower_tip(double force, int mesh, double tip[2]) {
     const double stiffness[6] = {1.61538e8, 1.61538e8, 3.2307e8, 3.5e7, 3.5e7, 3.5e7};
-    const double constant[2] = {0, 0};
+    const bough_schedule constant = {.start = 0, .end = 0};
     bough_arena *arena = bough_arena_create();
     int n = 100 << mesh;
     bent b = straight_rod(arena, n, 100, stiffness);
-    bough_rod_loads_ramped(&b.loads, arena, b.model, true, constant)->value[n] = force;
+    bough_rod_loads_ramped(&b.loads, arena, b.model, true, &constant)->value[n] = force;
     solve(&b, bough_rod_static_options_default());
     tip[0] = vertex(&b, n).z - 100;
     tip[1] = vertex(&b, n).x;
