@@ -11,6 +11,8 @@
 // other. It is the square of the distance from a position in which the loop could branch, relative to its
 // size.
 static const double dependent = 1e-9;
+// The same per opening of the loop relative to its size, up to this share.
+static const double per_opening = 30, most_dependent = 1e-7;
 // Of the diagonal's largest entry of the same kind: below this nothing moves.
 static const double rigid = 1e-13;
 // Of the largest entry of the other kind, both per length: below this the largest entry of a kind is the
@@ -142,6 +144,16 @@ static void find_largest(const bough_tree *tree, const bough_loops *l, double la
     if (straight) largest[1] = INFINITY;
 }
 
+// A loop that is open by ε of its size goes on in the other way within a distance of √ε from such a position.
+static double least_eigenvalue(const bough_tree *tree, const bough_loops *l) {
+    double open = 0;
+    for (int k = 0; k < tree->n_rows; k++) {
+        double size = turns(tree, k) ? 1 : tree->closure_size;
+        open = fmax(open, fabs(l->row[k].value) / size);
+    }
+    return fmin(fmax(dependent, per_opening * open), most_dependent) * l->value[tree->n_rows - 1];
+}
+
 // One scale for the translations of a closure and one for its rotations: its largest entry becomes one. Near
 // a position where equations begin to depend on each other, an entry of its own for each would hide that: the
 // loop's errors then turn the motion aside, with accelerations without bound. Rows that nothing moves drop
@@ -173,9 +185,10 @@ bool bough_loops_factor(const bough_tree *tree, bough_loops *l) {
         for (int k = 0; k < m; k++) l->matrix[j * m + k] *= l->scale[j] * l->scale[k];
     }
     if (!bough_symmetric_eigen(m, l->matrix, l->value, l->work)) return false;
+    double least = least_eigenvalue(tree, l);
     l->rank = 0;
     for (int k = 0; k < m; k++) {
-        if (l->value[k] > dependent * l->value[m - 1]) l->rank++;
+        if (l->value[k] > least) l->rank++;
     }
     return true;
 }
@@ -190,9 +203,10 @@ bool bough_loops_mobility(const bough_tree *tree, bough_tree_data *d) {
 void bough_loops_solve(const bough_tree *tree, const bough_loops *l, double *x) {
     int m = tree->n_rows;
     double *part = l->work;
+    double least = least_eigenvalue(tree, l);
     for (int i = 0; i < m; i++) {
         part[i] = 0;
-        if (l->value[i] <= dependent * l->value[m - 1]) continue;
+        if (l->value[i] <= least) continue;
         for (int k = 0; k < m; k++) part[i] += l->matrix[i * m + k] * l->scale[k] * x[k];
         part[i] /= l->value[i];
     }
