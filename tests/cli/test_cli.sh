@@ -54,6 +54,7 @@ usage() {
     refused "unknown option '--thread' (did you mean '--threads'?)" run "$bar" --thread 2
     refused "unknown option '--thread=2' (did you mean '--threads'?)" run "$bar" --thread=2
     refused "unknown option '-x'" run -x "$bar"
+    refused "option --body was removed: an FMU is a whole scene" export fmu "$bar" --body bar
     refused "unknown option '--out'" check "$bar" --out x
     refused '\-\-quiet takes no value' run "$bar" --quiet=1
     refused '\-\-set needs a value: --set KEY=VALUE' run "$bar" --set

@@ -1,7 +1,4 @@
-#include "apps/bough/cli/open.h"
-#include "apps/bough/cli/checkpoint.h"
 #include "apps/bough/cli/run.h"
-#include "apps/bough/cli/verb.h"
 #include "tests/fuzz/fuzz.h"
 
 #include <signal.h>
@@ -14,8 +11,8 @@ enum { ROOM = 1 << 17 };
 
 static const char scene[] = BOUGH_SOURCE_DIR "/apps/beams/rubber-bar.yaml";
 static const char *set[] = {"bodies[0].rod.segments=4", "simulation.duration=1000 s"};
-static bough_options options = {.operand = scene, .n_set = 2, .set = set, .quiet = true};
-static bough_job job;
+static bough_run_options options = {.common = {.operand = scene, .set = {2, set}, .quiet = true}};
+static bough_run_command command;
 static uint8_t good[ROOM], changed[ROOM];
 static size_t good_size;
 
@@ -30,11 +27,11 @@ static size_t load(uint8_t *bytes) {
 
 // A run that is killed leaves it.
 static void make_good(void) {
-    options.out = fuzz_folder();
+    options.common.out = fuzz_folder();
     pid_t child = fork();
     if (child == 0) {
         options.checkpoint = "1ms";
-        bough_verb_run(bough_arena_create(), &options);
+        bough_command_run.run(bough_arena_create(), &options);
         _exit(1);
     }
     while (good_size == 0 && waitpid(child, NULL, WNOHANG) == 0) {
@@ -47,11 +44,12 @@ static void make_good(void) {
 }
 
 static void start(void) {
-    if (job.arena) return;
+    if (command.arena) return;
     make_good();
     options.resume = true;
-    job = (bough_job){.options = &options, .arena = bough_arena_create(), .folder = fuzz_folder()};
-    bough_status status = bough_job_build(&job);
+    command =
+        (bough_run_command){.options = &options, .arena = bough_arena_create(), .folder = fuzz_folder()};
+    bough_status status = bough_run_command_build(&command);
     fuzz_demand(bough_is_ok(&status), "a run");
 }
 
@@ -77,12 +75,12 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
     start();
     size_t n = change(data, size);
     fuzz_file("checkpoint.bin", changed, n);
-    bough_arena *arena = job.arena;
-    job.arena = bough_arena_create();
-    job.checkpoint = (bough_checkpoint){0};
-    bough_status status = bough_checkpoint_open(&job);
-    bough_arena_destroy(job.arena);
-    job.arena = arena;
+    bough_arena *arena = command.arena;
+    command.arena = bough_arena_create();
+    command.checkpoint = (bough_checkpoint){0};
+    bough_status status = bough_checkpoint_open(&command);
+    bough_arena_destroy(command.arena);
+    command.arena = arena;
     bool same = n == good_size && memcmp(changed, good, n) == 0;
     fuzz_demand(bough_is_ok(&status) == same, "accepted as it was written, else refused");
     fuzz_demand(same || (status.code == BOUGH_INVALID && status.message[0]), "a reason");

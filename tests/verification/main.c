@@ -1,16 +1,12 @@
 // bough-verify STUDY: one study of the verification, with the exit codes of bough.
-#include "apps/bough/cli/open.h"
-#include "apps/bough/cli/stop.h"
+#include "apps/bough/cli/command.h"
 #include "tests/verification/verification.h"
 
-static const bough_syntax syntax = {BOUGH_OPERAND_REQUIRED, "STUDY",
-                                    BOUGH_OPTION_OUT | BOUGH_OPTION_THREADS | BOUGH_OPTION_QUIET};
-
-static bough_status verify(bough_arena *arena, const bough_options *options) {
+static bough_status verify(bough_arena *arena, const void *given) {
+    const bough_options *options = given;
     bough_errors errors = {.arena = arena};
     bough_verification verification;
-    bough_status status =
-        bough_verification_read(arena, options->operand, &errors, &verification);
+    bough_status status = bough_verification_read(arena, options->operand, &errors, &verification);
     if (errors.n > 0 && status.code == BOUGH_INVALID) {
         bough_errors_print(&errors, stderr);
         status.message[0] = '\0';
@@ -28,19 +24,30 @@ static bough_status verify(bough_arena *arena, const bough_options *options) {
     return status;
 }
 
+static const bough_option rows[] = {BOUGH_OPTION_OUT, BOUGH_OPTION_THREADS, BOUGH_OPTION_QUIET, {0}};
+
+static const bough_command command = {
+    .name = "verify",
+    .summary = "runs a study of bough's own verification: verify, two-mass, added-mass, blade-models",
+    .operand = BOUGH_OPERAND_REQUIRED,
+    .operand_name = "STUDY",
+    .option = rows,
+    .size = sizeof(bough_options),
+    .run = verify,
+};
+
 int main(int argc, char **argv) {
-    bough_options options = {0};
+    bough_options *options = NULL;
     bough_arena *arena = bough_arena_create();
-    bough_status status = arena ? bough_options_read(arena, argc, argv, &syntax, &options)
+    bough_status status = arena ? bough_options_read(arena, argc, argv, &command, &options)
                                 : bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory");
-    if (bough_is_ok(&status) && options.help) {
+    if (bough_is_ok(&status) && options->help) {
         fputs("usage: bough-verify", stdout);
-        bough_options_usage(&syntax, stdout);
-        fputs("\nruns a study of bough's own verification: verify, two-mass, added-mass, blade-models\n",
-              stdout);
-        bough_options_help(&syntax, stdout);
+        bough_options_usage(&command, stdout);
+        printf("\n%s\n", command.summary);
+        bough_options_help(&command, stdout);
     } else if (bough_is_ok(&status)) {
-        status = verify(arena, &options);
+        status = command.run(arena, options);
     }
     bough_arena_destroy(arena);
     if (!bough_is_ok(&status) && status.message[0]) {

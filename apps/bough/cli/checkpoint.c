@@ -1,4 +1,4 @@
-#include "apps/bough/cli/checkpoint.h"
+#include "apps/bough/cli/run.h"
 
 #include "apps/bough/config/schema.h"
 #include "apps/bough/results/folder.h"
@@ -32,18 +32,19 @@ static uint64_t sum_of(const head *h, const char *copy) {
 
 // -- what is in it --------------------------------------------------------------------------------
 
-static void take_job(bough_job *job, bough_snapshot *s) {
-    bough_run *run = &job->run;
+static void take_state(bough_run_command *command, bough_snapshot *s) {
+    bough_run *run = &command->run;
     bough_run_snapshot(run, s);
-    bough_snapshot_take(s, &job->rows, sizeof job->rows);
-    bough_snapshot_take(s, &job->frames_kept, sizeof job->frames_kept);
-    bough_snapshot_take(s, job->statistics, (size_t)job->recorded.count * sizeof *job->statistics);
+    bough_snapshot_take(s, &command->rows, sizeof command->rows);
+    bough_snapshot_take(s, &command->frames_kept, sizeof command->frames_kept);
+    bough_snapshot_take(s, command->statistics,
+                        (size_t)command->recorded.count * sizeof *command->statistics);
     bough_snapshot_take(s, &run->wall_s, sizeof run->wall_s);
     bough_snapshot_take(s, &run->cpu_s, sizeof run->cpu_s);
 }
 
-static void move(bough_job *job, bough_snapshot_move direction) {
-    take_job(job, &(bough_snapshot){direction, job->checkpoint.copy, 0});
+static void move(bough_run_command *command, bough_snapshot_move direction) {
+    take_state(command, &(bough_snapshot){direction, command->checkpoint.copy, 0});
 }
 
 // -- options --------------------------------------------------------------------------------------
@@ -67,9 +68,9 @@ static bough_status check_samples(const bough_master *m, const char *of, double 
 }
 
 // Between samples a load has a past that is not in the copy.
-static bough_status check_interval(const bough_job *job, double interval) {
-    const bough_master *m = job->run.simulation->master;
-    bough_status status = bough_simulation_storable(job->run.simulation);
+static bough_status check_interval(const bough_run_command *command, double interval) {
+    const bough_master *m = command->run.simulation->master;
+    bough_status status = bough_simulation_storable(command->run.simulation);
     if (!bough_is_ok(&status)) return status;
     if (interval > m->duration) {
         return bough_fail(BOUGH_INVALID,
@@ -82,25 +83,26 @@ static bough_status check_interval(const bough_job *job, double interval) {
                           interval, m->macro_step);
     }
     status = check_samples(m, "", interval);
-    const bough_simulation *companion = job->run.companion->coarser;
+    const bough_simulation *companion = command->run.companion->coarser;
     return bough_is_ok(&status) && companion ? check_samples(companion->master, " of the companion", interval)
                                              : status;
 }
 
 // Threads and the folder change no result.
-static void find_fingerprints(bough_job *job) {
-    bough_checkpoint *c = &job->checkpoint;
+static void find_fingerprints(bough_run_command *command) {
+    bough_checkpoint *c = &command->checkpoint;
     c->program = c->input = BOUGH_FINGERPRINT_START;
     bough_mix_program(&c->program);
-    bough_mix_scene(&c->input, &(bough_file_sums){.arena = job->arena}, job->run.simulation->scene);
-    for (int i = 0; i < job->options->n_set; i++) bough_mix_text(&c->input, job->options->set[i]);
+    bough_mix_scene(&c->input, &(bough_file_sums){.arena = command->arena}, command->run.simulation->scene);
+    for (int i = 0; i < command->options->common.set.n; i++)
+        bough_mix_text(&c->input, command->options->common.set.text[i]);
 }
 
-static void take_memory(bough_job *job) {
+static void take_memory(bough_run_command *command) {
     bough_snapshot measure = {.move = BOUGH_SNAPSHOT_MEASURE};
-    take_job(job, &measure);
-    job->checkpoint.size = measure.used;
-    job->checkpoint.copy = bough_arena_take(job->arena, measure.used);
+    take_state(command, &measure);
+    command->checkpoint.size = measure.used;
+    command->checkpoint.copy = bough_arena_take(command->arena, measure.used);
 }
 
 // -- reading --------------------------------------------------------------------------------------
@@ -120,8 +122,8 @@ static bough_status other(const char *path, const char *what) {
 }
 
 // The sum is looked at first: only then the rest means what it says.
-static bough_status read_copy(bough_job *job, const char *path, FILE *file) {
-    bough_checkpoint *c = &job->checkpoint;
+static bough_status read_copy(bough_run_command *command, const char *path, FILE *file) {
+    bough_checkpoint *c = &command->checkpoint;
     head h;
     if (fread(&h, sizeof h, 1, file) != 1) return damaged(path);
     if (memcmp(h.magic, magic, sizeof magic) != 0) {
@@ -143,9 +145,9 @@ static bough_status read_copy(bough_job *job, const char *path, FILE *file) {
     return bough_ok();
 }
 
-static bough_status resume(bough_job *job) {
+static bough_status resume(bough_run_command *command) {
     char path[BOUGH_PATH_MAX];
-    bough_status status = bough_folder_path(job->folder, name, path);
+    bough_status status = bough_folder_path(command->folder, name, path);
     if (!bough_is_ok(&status)) return status;
     char why[BOUGH_INPUT_REASON];
     FILE *file = bough_input_open(path, BOUGH_INPUT_DATA, why);
@@ -158,35 +160,35 @@ static bough_status resume(bough_job *job) {
     if (!file) {
         return bough_fail(BOUGH_IO, "cannot read '%.200s': %s", path, why);
     }
-    status = read_copy(job, path, file);
+    status = read_copy(command, path, file);
     fclose(file);
-    if (bough_is_ok(&status)) status = check_interval(job, job->checkpoint.interval);
-    if (bough_is_ok(&status)) move(job, BOUGH_SNAPSHOT_RESTORE);
+    if (bough_is_ok(&status)) status = check_interval(command, command->checkpoint.interval);
+    if (bough_is_ok(&status)) move(command, BOUGH_SNAPSHOT_RESTORE);
     return status;
 }
 
-bough_status bough_checkpoint_open(bough_job *job) {
-    const bough_options *o = job->options;
-    bough_checkpoint *c = &job->checkpoint;
+bough_status bough_checkpoint_open(bough_run_command *command) {
+    const bough_run_options *o = command->options;
+    bough_checkpoint *c = &command->checkpoint;
     if (!o->checkpoint && !o->resume) return bough_ok();
     bough_status status = o->checkpoint ? read_interval(o->checkpoint, &c->interval) : bough_ok();
-    if (bough_is_ok(&status) && o->checkpoint) status = check_interval(job, c->interval);
+    if (bough_is_ok(&status) && o->checkpoint) status = check_interval(command, c->interval);
     if (!bough_is_ok(&status)) return status;
-    take_memory(job);
-    find_fingerprints(job);
-    return o->resume ? resume(job) : status;
+    take_memory(command);
+    find_fingerprints(command);
+    return o->resume ? resume(command) : status;
 }
 
 // -- writing --------------------------------------------------------------------------------------
 
-static bough_status write_copy(const bough_job *job) {
-    const bough_checkpoint *c = &job->checkpoint;
+static bough_status write_copy(const bough_run_command *command) {
+    const bough_checkpoint *c = &command->checkpoint;
     char path[BOUGH_PATH_MAX];
     FILE *file;
     head h = {.program = c->program, .input = c->input, .interval = c->interval, .size = c->size};
     memcpy(h.magic, magic, sizeof magic);
     h.sum = sum_of(&h, c->copy);
-    bough_status status = bough_folder_open(job->folder, name, path, &file);
+    bough_status status = bough_folder_open(command->folder, name, path, &file);
     if (!bough_is_ok(&status)) return status;
     errno = 0;
     bool good = fwrite(&h, sizeof h, 1, file) == 1 && fwrite(c->copy, 1, c->size, file) == c->size &&
@@ -197,26 +199,26 @@ static bough_status write_copy(const bough_job *job) {
     return status;
 }
 
-static bool is_due(const bough_job *job) {
-    const bough_master *m = job->run.simulation->master;
-    double turns = m->time / job->checkpoint.interval;
-    double off = fabs(turns - round(turns)) * job->checkpoint.interval;
+static bool is_due(const bough_run_command *command) {
+    const bough_master *m = command->run.simulation->master;
+    double turns = m->time / command->checkpoint.interval;
+    double off = fabs(turns - round(turns)) * command->checkpoint.interval;
     return off <= 1e-6 * m->macro_step && !bough_master_done(m);
 }
 
 // The rows that it counts on are on the disk before it is.
 bough_status bough_checkpoint_update(void *self) {
-    bough_job *job = self;
-    if (!(job->checkpoint.interval > 0) || !is_due(job)) return bough_ok();
-    bough_run_update_clock(&job->run);
-    bough_status status = bough_recorder_keep(job->recorder, &job->rows);
-    if (bough_is_ok(&status) && job->frames) {
-        status = bough_frames_keep(job->frames, &job->frames_kept);
+    bough_run_command *command = self;
+    if (!(command->checkpoint.interval > 0) || !is_due(command)) return bough_ok();
+    bough_run_update_clock(&command->run);
+    bough_status status = bough_recorder_keep(command->recorder, &command->rows);
+    if (bough_is_ok(&status) && command->frames) {
+        status = bough_frames_keep(command->frames, &command->frames_kept);
     }
     if (!bough_is_ok(&status)) return status;
-    move(job, BOUGH_SNAPSHOT_SAVE);
-    status = write_copy(job);
-    move(job, BOUGH_SNAPSHOT_RESTORE);
+    move(command, BOUGH_SNAPSHOT_SAVE);
+    status = write_copy(command);
+    move(command, BOUGH_SNAPSHOT_RESTORE);
     return status;
 }
 

@@ -1,16 +1,16 @@
 # Completion of bough's command line in bash. The program is asked, so that nothing here grows old.
 _bough() {
-    local word=${COMP_WORDS[COMP_CWORD]} verb=${COMP_WORDS[1]} words files=-f
+    local word=${COMP_WORDS[COMP_CWORD]} command=${COMP_WORDS[1]} words files=-f
     COMPREPLY=()
     if [ "$COMP_CWORD" -eq 1 ]; then
         words=$("$1" --help | sed -n 's/^  bough \([^ ]*\).*/\1/p') files=
-    elif [ "$verb" = help ] || [ "$verb" = --help ]; then
+    elif [ "$command" = help ] || [ "$command" = --help ]; then
         words=$("$1" --help | sed -n 's/^  bough \([a-z][^ ]*\).*/\1/p
             /^topics/,/^$/s/^  \([^ ]*\).*/\1/p') files=
-    elif [ "$verb" = import ] && [ "$COMP_CWORD" -eq 2 ]; then
+    elif [ "$command" = import ] && [ "$COMP_CWORD" -eq 2 ]; then
         words=$("$1" help import | grep -o "'[a-z]*" | tr -d "'") files=
     elif [ "${word#-}" != "$word" ]; then
-        words=$("$1" help "$verb" 2>/dev/null | sed -n 's/^  \(-h, \)\{0,1\}\(--[a-z-]*\).*/\2/p') files=
+        words=$("$1" help "$command" 2>/dev/null | sed -n 's/^  \(-h, \)\{0,1\}\(--[a-z-]*\).*/\2/p') files=
     fi
     while IFS= read -r word; do
         COMPREPLY+=("$word")

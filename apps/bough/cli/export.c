@@ -1,8 +1,6 @@
 // bough export: a scene as an FMU (FMI 3.0, co-simulation): its description from the tables of inputs
 // and channels, the library that runs it, the scene's files.
-#include "apps/bough/cli/open.h"
-#include "apps/bough/cli/verb.h"
-#include "apps/bough/cli/version.h"
+#include "apps/bough/cli/command.h"
 #include "apps/bough/config/schema.h"
 #include "apps/bough/results/archive.h"
 #include "apps/bough/results/folder.h"
@@ -238,7 +236,7 @@ static bough_status list_variables(export *x) {
 // What a session opens: the token, the scene, the settings, a line each.
 static void put_settings(const export *x, FILE *out) {
     fprintf(out, "%s\n%s\nsimulation.threads=1\n", x->token, x->scene);
-    for (int k = 0; k < x->options->n_set; k++) fprintf(out, "%s\n", x->options->set[k]);
+    for (int k = 0; k < x->options->set.n; k++) fprintf(out, "%s\n", x->options->set.text[k]);
 }
 
 static bough_status add_text(const export *x, const char *name, void (*put)(const export *x, FILE *out),
@@ -296,11 +294,19 @@ static bough_status write_archive(export *x, const char *path) {
 static void make_token(export *x) {
     uint64_t hash = BOUGH_FINGERPRINT_START;
     bough_mix_scene(&hash, &(bough_file_sums){.arena = x->arena}, x->simulation->scene);
-    for (int k = 0; k < x->options->n_set; k++) bough_mix_text(&hash, x->options->set[k]);
+    for (int k = 0; k < x->options->set.n; k++) bough_mix_text(&hash, x->options->set.text[k]);
     snprintf(x->token, sizeof x->token, "{bough-" BOUGH_VERSION "-%016" PRIx64 "}", hash);
 }
 
-bough_status bough_verb_export(bough_arena *arena, const bough_options *options) {
+static const bough_option rows[] = {
+    BOUGH_OPTION_SET,
+    BOUGH_OPTION_OUT,
+    {"body", "NAME", "an FMU is a whole scene, whose inputs are its loads and motions", NULL, 0, false},
+    {0},
+};
+
+static bough_status export_scene(bough_arena *arena, const void *given) {
+    const bough_options *options = given;
     if (strcmp(options->operand, "fmu") != 0) {
         return bough_fail(BOUGH_INVALID, "export: unknown kind '%.80s'; known: fmu", options->operand);
     }
@@ -326,3 +332,13 @@ bough_status bough_verb_export(bough_arena *arena, const bough_options *options)
     printf("inputs: %d\noutputs: %d\nfmu: %s\n", x.n_input, x.n_output, path);
     return status;
 }
+
+const bough_command bough_command_export = {
+    .name = "export",
+    .summary = "writes a scene as 'fmu', a model for co-simulation by other programs (FMI 3.0)",
+    .operand = BOUGH_OPERAND_TWO,
+    .operand_name = "KIND SCENE",
+    .option = rows,
+    .size = sizeof(bough_options),
+    .run = export_scene,
+};

@@ -1,4 +1,4 @@
-#include "apps/bough/cli/forecast.h"
+#include "apps/bough/cli/run.h"
 
 #include "apps/bough/results/progress.h"
 
@@ -54,21 +54,22 @@ static double least_step_time(const bough_run *run) {
     return 2 * shortest;
 }
 
-bough_status bough_run_forecast(const bough_job *job, FILE *stream) {
-    const bough_run *run = &job->run;
+bough_status bough_run_forecast(const bough_run_command *command, FILE *stream) {
+    const bough_run *run = &command->run;
     const bough_master *m = run->simulation->master;
     bough_forecast results =
-        bough_run_results(run->simulation, &job->recorded, bough_forecast_points(&job->shape));
+        bough_run_results(run->simulation, &command->recorded, bough_forecast_points(&command->shape));
     double steps = m->duration / m->macro_step, bytes = results.bytes;
     struct statvfs disk;
-    double room = statvfs(job->folder, &disk) == 0 ? (double)disk.f_bavail * (double)disk.f_frsize : HUGE_VAL;
+    double room =
+        statvfs(command->folder, &disk) == 0 ? (double)disk.f_bavail * (double)disk.f_frsize : HUGE_VAL;
     if (bytes > much_data && bytes > room) {
         return bough_fail(BOUGH_INVALID,
                           "the results take about %.3g GB, '%.200s' has room for %.3g GB: a longer "
                           "simulation.output.interval or shorter duration",
-                          1e-9 * bytes, job->folder, 1e-9 * room);
+                          1e-9 * bytes, command->folder, 1e-9 * room);
     }
-    bough_forecast_print(results, &job->recorded, stream);
+    bough_forecast_print(results, &command->recorded, stream);
     fflush(stream);
     if (steps <= long_run && bytes <= much_data) return bough_ok();
     fprintf(stderr, "bough: %.3g macro steps, more than %.2g hours\n", steps,

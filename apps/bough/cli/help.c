@@ -1,7 +1,6 @@
 // bough help, bough --help and bough --version.
 #include "apps/bough/cases/study.h"
-#include "apps/bough/cli/verb.h"
-#include "apps/bough/cli/version.h"
+#include "apps/bough/cli/command.h"
 #include "apps/bough/model/channel_table.h"
 #include "apps/bough/scene/scene.h"
 #include "cosim/scheme.h"
@@ -33,24 +32,25 @@ static const topic topics[] = {
 };
 static const char *const topic_names[] = {"scene", "study", "channels", "coupling", NULL};
 
-static void usage(const bough_verb *verb, const char *before, FILE *stream) {
-    fprintf(stream, "%sbough %s", before, verb->name);
-    bough_options_usage(&verb->syntax, stream);
+static void usage(const bough_command *command, const char *before, FILE *stream) {
+    fprintf(stream, "%sbough %s", before, command->name);
+    bough_options_usage(command, stream);
     fputc('\n', stream);
 }
 
-void bough_help_verb(const bough_verb *verb, FILE *stream) {
-    usage(verb, "usage: ", stream);
-    fprintf(stream, "%s\n", verb->summary);
-    bough_options_help(&verb->syntax, stream);
+void bough_help_command(const bough_command *command, FILE *stream) {
+    usage(command, "usage: ", stream);
+    fprintf(stream, "%s\n", command->summary);
+    bough_options_help(command, stream);
 }
 
 void bough_help_overview(FILE *stream) {
     fprintf(stream, "bough " BOUGH_VERSION ": flexible multibody dynamics\n\n");
-    for (const bough_verb *verb = bough_verbs; verb->name; verb++) {
-        usage(verb, "  ", stream);
-        fprintf(stream, "      %s\n", verb->summary);
+    for (const bough_command *const *c = bough_commands; *c; c++) {
+        usage(*c, "  ", stream);
+        fprintf(stream, "      %s\n", (*c)->summary);
     }
+    fprintf(stream, "  bough --version\n      prints the version\n");
     fprintf(stream, "\ntopics of help, besides the commands:\n");
     for (size_t i = 0; i < sizeof topics / sizeof *topics; i++) {
         fprintf(stream, "  %-13s %s\n", topics[i].name, topics[i].summary);
@@ -59,9 +59,22 @@ void bough_help_overview(FILE *stream) {
                     "130 interrupted, 1 any other failure\n");
 }
 
-bough_status bough_verb_help(bough_arena *arena, const bough_options *options) {
+typedef struct help_options {
+    bough_options common;
+    bool json;
+} help_options;
+
+static const bough_option rows[] = {
+    {"json-schema", NULL, "of scene (default) or study: the keys as JSON Schema, for editors",
+     bough_option_flag, offsetof(help_options, json), false},
+    {0},
+};
+
+static bough_status help(bough_arena *arena, const void *given) {
     (void)arena;
-    const char *word = options->operand ? options->operand : options->json ? "scene" : NULL;
+    const help_options *options = given;
+    const char *operand = options->common.operand;
+    const char *word = operand ? operand : options->json ? "scene" : NULL;
     if (!word) {
         bough_help_overview(stdout);
         return bough_ok();
@@ -80,15 +93,18 @@ bough_status bough_verb_help(bough_arena *arena, const bough_options *options) {
     if (options->json) {
         return bough_fail(BOUGH_INVALID, "--json-schema: of 'scene' or 'study', got '%.80s'", word);
     }
-    const bough_verb *verb = bough_verb_find(word);
-    if (!verb) return bough_verb_unknown("topic", word, topic_names);
-    bough_help_verb(verb, stdout);
+    const bough_command *command = bough_command_find(word);
+    if (!command) return bough_unknown_word("topic", word, topic_names);
+    bough_help_command(command, stdout);
     return bough_ok();
 }
 
-bough_status bough_verb_version(bough_arena *arena, const bough_options *options) {
-    (void)arena;
-    (void)options;
-    printf("bough " BOUGH_VERSION "\n");
-    return bough_ok();
-}
+const bough_command bough_command_help = {
+    .name = "help",
+    .summary = "explains a command, the keys of scenes and studies, the channels or the coupling schemes",
+    .operand = BOUGH_OPERAND_OPTIONAL,
+    .operand_name = "TOPIC",
+    .option = rows,
+    .size = sizeof(help_options),
+    .run = help,
+};

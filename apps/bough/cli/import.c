@@ -1,34 +1,69 @@
 // bough import: a foreign model as a scene.
 #include "apps/bough/import/import.h"
 
-#include "apps/bough/cli/open.h"
-#include "apps/bough/cli/verb.h"
+#include "apps/bough/cli/command.h"
 
+#include <stdlib.h>
 #include <string.h>
 
 enum { TRIAL_STEPS = 500 };
 
-bough_status bough_verb_import(bough_arena *arena, const bough_options *options) {
-    bool windio = strcmp(options->operand, "windio") == 0;
-    if (!windio && strcmp(options->operand, "openfast") != 0) {
-        return bough_fail(BOUGH_INVALID, "import: unknown kind '%.80s'; known: openfast, windio",
-                          options->operand);
+typedef struct import_options {
+    bough_options common;
+    bough_import_options model;
+} import_options;
+
+static bough_status read_mass(const char *name, const char *text, void *field) {
+    char *end;
+    double *mass = field;
+    *mass = strtod(text, &end);
+    if (end != text && *end == '\0' && *mass > 0 && *mass <= 1e9) return bough_ok();
+    return bough_fail(BOUGH_INVALID, "--%s expects a mass in kg up to 1e9, got '%.80s'", name, text);
+}
+
+#define AT(member) offsetof(import_options, model.member)
+static const bough_option rows[] = {
+    BOUGH_OPTION_OUT,
+    {"wind", "FILE", "wind for the imported model; replaces its own: .bts, .wnd or uniform",
+     bough_option_text, AT(wind), false},
+    {"controller", "FILE", "library with Bladed's interface; replaces the model's own", bough_option_text,
+     AT(controller), false},
+    {"clamp-base", NULL, "imports an offshore turbine as clamped at the base of its tower", bough_option_flag,
+     AT(clamp_base), false},
+    {"hub-mass", "KG", "mass of the hub of a WindIO turbine without one", read_mass, AT(hub_mass), false},
+    {"nacelle-mass", "KG", "mass of the nacelle of a WindIO turbine without one", read_mass, AT(nacelle_mass),
+     false},
+    {0},
+};
+
+static bough_status import(bough_arena *arena, const void *given) {
+    const import_options *options = given;
+    const char *kind = options->common.operand, *file = options->common.second;
+    bool windio = strcmp(kind, "windio") == 0;
+    if (!windio && strcmp(kind, "openfast") != 0) {
+        return bough_fail(BOUGH_INVALID, "import: unknown kind '%.80s'; known: openfast, windio", kind);
     }
-    bough_options named = *options; // the folder's name comes from the model's
-    named.operand = options->second;
+    bough_options named = options->common; // the folder's name comes from the model's
+    named.operand = file;
     const char *folder = bough_out_folder(arena, &named);
-    if (!windio && (options->hub_mass > 0 || options->nacelle_mass > 0)) {
+    bough_import_options model = options->model;
+    model.trial_steps = TRIAL_STEPS;
+    if (!windio && (model.hub_mass > 0 || model.nacelle_mass > 0)) {
         return bough_fail(BOUGH_INVALID,
                           "--hub-mass and --nacelle-mass are only for windio: an OpenFAST model has masses");
     }
-    const bough_import_options given = {.wind = options->wind,
-                                        .controller = options->controller,
-                                        .clamp_base = options->clamp_base,
-                                        .hub_mass = options->hub_mass,
-                                        .nacelle_mass = options->nacelle_mass,
-                                        .trial_steps = TRIAL_STEPS};
-    bough_status status = windio ? bough_import_windio(options->second, folder, &given, stdout)
-                                 : bough_import_openfast(options->second, folder, &given, stdout);
+    bough_status status = windio ? bough_import_windio(file, folder, &model, stdout)
+                                 : bough_import_openfast(file, folder, &model, stdout);
     if (bough_is_ok(&status)) printf("scene: %s/scene.yaml\n", folder);
     return status;
 }
+
+const bough_command bough_command_import = {
+    .name = "import",
+    .summary = "converts 'openfast MAIN.fst' or 'windio TURBINE.yaml' to a scene and lists what it took",
+    .operand = BOUGH_OPERAND_TWO,
+    .operand_name = "KIND FILE",
+    .option = rows,
+    .size = sizeof(import_options),
+    .run = import,
+};

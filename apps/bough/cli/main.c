@@ -1,5 +1,6 @@
 // bough: flexible multibody dynamics on the command line.
-#include "apps/bough/cli/verb.h"
+#include "apps/bough/cli/command.h"
+#include "apps/bough/config/schema.h"
 
 #include <errno.h>
 #include <fcntl.h>
@@ -9,72 +10,60 @@
 #include <string.h>
 #include <unistd.h>
 
-const bough_verb bough_verbs[] = {
-    {"run",
-     {BOUGH_OPERAND_REQUIRED, "SCENE",
-      BOUGH_OPTION_SET | BOUGH_OPTION_OUT | BOUGH_OPTION_THREADS | BOUGH_OPTION_CHECKPOINT |
-          BOUGH_OPTION_RESUME | BOUGH_OPTION_QUIET},
-     "simulates a scene and writes its results",
-     bough_verb_run},
-    {"check",
-     {BOUGH_OPERAND_REQUIRED, "SCENE", BOUGH_OPTION_SET},
-     "shows what a scene builds; nothing is run or written",
-     bough_verb_check},
-    {"static",
-     {BOUGH_OPERAND_REQUIRED, "SCENE", BOUGH_OPTION_SET | BOUGH_OPTION_OUT | BOUGH_OPTION_PATH},
-     "computes the equilibrium of rods and joints under gravity, loads and air",
-     bough_verb_static},
-    {"modes",
-     {BOUGH_OPERAND_REQUIRED, "SCENE", BOUGH_OPTION_SET | BOUGH_OPTION_OUT | BOUGH_OPTION_SWEEP},
-     "computes frequencies, damping and shapes of the whole scene or of each rod, at rest or "
-     "rotating",
-     bough_verb_modes},
-    {"study",
-     {BOUGH_OPERAND_REQUIRED, "STUDY",
-      BOUGH_OPTION_OUT | BOUGH_OPTION_THREADS | BOUGH_OPTION_PART | BOUGH_OPTION_CASE | BOUGH_OPTION_QUIET},
-     "runs a scene for a grid of settings and compares cost and error",
-     bough_verb_study},
-    {"wind",
-     {BOUGH_OPERAND_REQUIRED, "SCENE", BOUGH_OPTION_SET | BOUGH_OPTION_OUT},
-     "writes the turbulence of a scene for other programs: wind.bts",
-     bough_verb_wind},
-    {"report",
-     {BOUGH_OPERAND_SOME, "DIR", 0},
-     "makes one page of the results of a run or a study, or of several runs side by side: "
-     "DIR/report.html",
-     bough_verb_report},
-    {"import",
-     {BOUGH_OPERAND_TWO, "KIND FILE",
-      BOUGH_OPTION_OUT | BOUGH_OPTION_WIND | BOUGH_OPTION_CONTROLLER | BOUGH_OPTION_CLAMP_BASE |
-          BOUGH_OPTION_HUB_MASS | BOUGH_OPTION_NACELLE_MASS},
-     "converts 'openfast MAIN.fst' or 'windio TURBINE.yaml' to a scene and lists what it took",
-     bough_verb_import},
-    {"export",
-     {BOUGH_OPERAND_TWO, "KIND SCENE", BOUGH_OPTION_SET | BOUGH_OPTION_OUT},
-     "writes a scene as 'fmu', a model for co-simulation by other programs (FMI 3.0)",
-     bough_verb_export},
-    {"help",
-     {BOUGH_OPERAND_OPTIONAL, "TOPIC", BOUGH_OPTION_JSON},
-     "explains a command, the keys of scenes and studies, the channels or the coupling schemes",
-     bough_verb_help},
-    {"--help", {BOUGH_OPERAND_OPTIONAL, "TOPIC", BOUGH_OPTION_JSON}, "the same", bough_verb_help},
-    {"-h", {BOUGH_OPERAND_OPTIONAL, "TOPIC", BOUGH_OPTION_JSON}, "the same", bough_verb_help},
-    {"--version", {BOUGH_OPERAND_NONE, NULL, 0}, "prints the version", bough_verb_version},
-    {0},
+enum { MOST_WORDS = 32 };
+
+const bough_command *const bough_commands[] = {
+    &bough_command_run,
+    &bough_command_check,
+    &bough_command_static,
+    &bough_command_modes,
+    &bough_command_study,
+    &bough_command_wind,
+    &bough_command_report,
+    &bough_command_import,
+    &bough_command_export,
+    &bough_command_help,
+    NULL,
 };
+
+const bough_command *bough_command_find(const char *name) {
+    for (const bough_command *const *c = bough_commands; *c; c++) {
+        if (strcmp((*c)->name, name) == 0) return *c;
+    }
+    return NULL;
+}
+
+bough_status bough_unknown_word(const char *what, const char *word, const char *const *more) {
+    const char *known[MOST_WORDS];
+    char list[160] = "";
+    int n = 0;
+    for (const bough_command *const *c = bough_commands; *c && n < MOST_WORDS; c++) known[n++] = (*c)->name;
+    for (; more && *more && n < MOST_WORDS; more++) known[n++] = *more;
+    for (int i = 0; i < n; i++) {
+        size_t used = strlen(list);
+        snprintf(list + used, sizeof list - used, "%s%s", i == 0 ? "" : ", ", known[i]);
+    }
+    return bough_fail(BOUGH_INVALID, "unknown %s '%.80s'%s; known: %s", what, word,
+                      bough_suggest(word, known, n).text, list);
+}
 
 // self: the arguments, from the command on, ended by NULL
 static bough_status call(bough_arena *arena, void *self) {
     char **argv = self;
     int argc = 1;
     while (argv[argc]) argc++;
-    const bough_verb *verb = bough_verb_find(argv[0]);
-    if (!verb) return bough_verb_unknown("command", argv[0], NULL);
-    bough_options options;
-    bough_status status = bough_options_read(arena, argc, argv, &verb->syntax, &options);
+    if (strcmp(argv[0], "--version") == 0 && argc == 1) {
+        printf("bough " BOUGH_VERSION "\n");
+        return bough_ok();
+    }
+    bool asks = strcmp(argv[0], "--help") == 0 || strcmp(argv[0], "-h") == 0;
+    const bough_command *command = asks ? &bough_command_help : bough_command_find(argv[0]);
+    if (!command) return bough_unknown_word("command", argv[0], NULL);
+    bough_options *options;
+    bough_status status = bough_options_read(arena, argc, argv, command, &options);
     if (!bough_is_ok(&status)) return status;
-    if (!options.help) return verb->run(arena, &options);
-    bough_help_verb(verb, stdout);
+    if (!options->help) return command->run(arena, options);
+    bough_help_command(command, stdout);
     return status;
 }
 

@@ -1,11 +1,8 @@
 // bough modes: frequencies, damping and shapes of the whole scene (modes_whole.c), or of each rod,
 // clamped at its root, about equilibrium at rest or in steady rotation.
+#include "apps/bough/cli/modes.h"
 #include "apps/bough/analysis/steady.h"
 #include "apps/bough/analysis/vibration.h"
-#include "apps/bough/cli/modes_sweep.h"
-#include "apps/bough/cli/modes_whole.h"
-#include "apps/bough/cli/open.h"
-#include "apps/bough/cli/verb.h"
 #include "apps/bough/results/folder.h"
 #include "flexbody/rod/rod_modes.h"
 
@@ -137,8 +134,23 @@ static bough_status solve_all(bough_arena *arena, const bough_simulation *s, rod
     return bough_ok();
 }
 
-bough_status bough_verb_modes(bough_arena *arena, const bough_options *options) {
-    if (options->n_sweep > 0) return bough_modes_sweep(arena, options);
+typedef struct modes_options {
+    bough_options common;
+    bough_texts sweep; // "key=value, value, ..."
+} modes_options;
+
+static const bough_option rows[] = {
+    BOUGH_OPTION_SET,
+    BOUGH_OPTION_OUT,
+    {"sweep", "KEY=V1, V2, ...", "modes over operating points; the values of several --sweep vary together",
+     bough_option_texts, offsetof(modes_options, sweep), true},
+    {0},
+};
+
+static bough_status find(bough_arena *arena, const void *given) {
+    const modes_options *own = given;
+    const bough_options *options = &own->common;
+    if (own->sweep.n > 0) return bough_modes_sweep(arena, options, &own->sweep);
     bough_simulation *s;
     bough_status status = bough_open(arena, options, &s);
     if (bough_is_ok(&status)) status = bough_simulation_known(s, "it has no modes");
@@ -157,3 +169,14 @@ bough_status bough_verb_modes(bough_arena *arena, const bough_options *options) 
     if (bough_is_ok(&status)) printf("out: %s\n", folder);
     return status;
 }
+
+const bough_command bough_command_modes = {
+    .name = "modes",
+    .summary = "computes frequencies, damping and shapes of the whole scene or of each rod, at rest or "
+               "rotating",
+    .operand = BOUGH_OPERAND_REQUIRED,
+    .operand_name = "SCENE",
+    .option = rows,
+    .size = sizeof(modes_options),
+    .run = find,
+};

@@ -1,9 +1,9 @@
-#include "apps/bough/cli/modes_sweep.h"
-
+// bough modes --sweep: the modes of the whole scene over a list of operating points, as a table and a
+// Campbell diagram.
 #include "apps/bough/analysis/vibration.h"
-#include "apps/bough/cli/modes_whole.h"
-#include "apps/bough/cli/open.h"
+#include "apps/bough/cli/modes.h"
 #include "apps/bough/results/folder.h"
+#include "apps/bough/results/picture.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -13,6 +13,23 @@ enum { MOST_POINTS = 500 };
 
 // Shapes less alike than this (0 to 1) are not the same mode.
 static const double least_alike = 0.3;
+
+// One mode at one point.
+typedef struct sweep_mode {
+    int point, line; // a line joins what is the same mode of neighbouring points
+    double frequency, damped, damping;
+    char body[32], shape[16], pattern[16];
+} sweep_mode;
+
+typedef struct sweep {
+    int n_key, n_point;
+    const char **key;   // (n_key)
+    const char **value; // (n_key × n_point) as written
+    double *x, *speed;  // (n_point) of the first key, else its place in the list;
+                        // of the rotor [rpm]
+    int n_mode, n_line;
+    sweep_mode *mode; // (n_mode) point after point
+} sweep;
 
 // The modes of the point before, for finding them again.
 typedef struct tracks {
@@ -46,11 +63,11 @@ static int count_values(bough_arena *arena, const char *list) {
 }
 
 // 'KEY=V1, V2, ...', as many values of every key.
-static bough_status read_points(bough_arena *arena, const bough_options *options, bough_sweep *s) {
-    s->n_key = options->n_sweep;
+static bough_status read_points(bough_arena *arena, const bough_texts *sweeps, sweep *s) {
+    s->n_key = sweeps->n;
     s->key = bough_arena_take(arena, (size_t)s->n_key * sizeof *s->key);
     for (int k = 0; k < s->n_key; k++) {
-        const char *text = options->sweep[k], *list = strchr(text, '=');
+        const char *text = sweeps->text[k], *list = strchr(text, '=');
         int n = list ? count_values(arena, list + 1) : 0;
         if (n == 0 || n > MOST_POINTS) {
             return bough_fail(BOUGH_INVALID,
@@ -75,17 +92,17 @@ static bough_status read_points(bough_arena *arena, const bough_options *options
     return bough_ok();
 }
 
-static bough_status set_point(bough_arena *arena, const bough_options *options, const bough_sweep *s,
-                              int point, bough_options *at) {
+static bough_status set_point(bough_arena *arena, const bough_options *options, const sweep *s, int point,
+                              bough_options *at) {
     *at = *options;
-    at->set = bough_arena_take(arena, (size_t)(options->n_set + s->n_key) * sizeof *at->set);
-    for (int k = 0; k < options->n_set; k++) at->set[k] = options->set[k];
+    at->set.text = bough_arena_take(arena, (size_t)(options->set.n + s->n_key) * sizeof(char *));
+    for (int k = 0; k < options->set.n; k++) at->set.text[k] = options->set.text[k];
     for (int k = 0; k < s->n_key; k++) {
         const char *value = s->value[k * s->n_point + point];
         size_t size = strlen(s->key[k]) + strlen(value) + 2;
         char *text = bough_arena_take(arena, size);
         snprintf(text, size, "%s=%s", s->key[k], value);
-        at->set[at->n_set++] = text;
+        at->set.text[at->set.n++] = text;
     }
     return bough_ok();
 }
@@ -106,7 +123,7 @@ static double alikeness(int n, const double *a, const double *b) {
 }
 
 // The line of the mode most like this one and not far in frequency, or a new one.
-static int find_line(tracks *t, const double *shape, bough_sweep *s) {
+static int find_line(tracks *t, const double *shape, sweep *s) {
     int best = -1;
     double most = least_alike;
     for (int k = 0; k < t->n; k++) {
@@ -129,7 +146,7 @@ static tracks take_tracks(bough_arena *arena, int count, int n_state) {
 
 // The point's modes into the sweep, and its shapes to `now`.
 static void add_modes(const bough_simulation *sim, const bough_vibration *v, int point, tracks *before,
-                      tracks *now, bough_sweep *s) {
+                      tracks *now, sweep *s) {
     size_t n = (size_t)now->n_state;
     now->n = v->found;
     for (int k = 0; k < before->n; k++) before->taken[k] = false;
@@ -139,13 +156,12 @@ static void add_modes(const bough_simulation *sim, const bough_vibration *v, int
         memcpy(shape, v->pair[k].shape_real, n * sizeof *shape);
         memcpy(shape + n, v->pair[k].shape_imag, n * sizeof *shape);
         now->line[k] = find_line(before, shape, s);
-        bough_sweep_mode *to = &s->mode[s->n_mode++];
-        *to = (bough_sweep_mode){.point = point,
-                                 .line = now->line[k],
-                                 .frequency = m->frequency,
-                                 .damped = m->damped_frequency,
-                                 .damping = m->damping,
-                                 .growth = m->growth};
+        sweep_mode *to = &s->mode[s->n_mode++];
+        *to = (sweep_mode){.point = point,
+                           .line = now->line[k],
+                           .frequency = m->frequency,
+                           .damped = m->damped_frequency,
+                           .damping = m->damping};
         snprintf(to->body, sizeof to->body, "%s", bough_modes_body(sim, m));
         snprintf(to->shape, sizeof to->shape, "%s", bough_modes_shape(sim, m));
         snprintf(to->pattern, sizeof to->pattern, "%s", bough_pattern_names[m->pattern]);
@@ -155,7 +171,7 @@ static void add_modes(const bough_simulation *sim, const bough_vibration *v, int
 // -- points ---------------------------------------------------------------------------------------
 
 static bough_status solve_point(bough_arena *keep, const bough_options *options, int point, tracks *track,
-                                bough_sweep *s) {
+                                sweep *s) {
     bough_arena *arena = bough_arena_child(keep);
     bough_options at;
     bough_simulation *sim = NULL;
@@ -188,27 +204,27 @@ static bough_status solve_point(bough_arena *keep, const bough_options *options,
     return status;
 }
 
-static void print_point(const bough_sweep *s, int point, int first) {
+static void print_point(const sweep *s, int point, int first) {
     for (int k = 0; k < s->n_key; k++) {
         printf("%s%s=%s", k > 0 ? ", " : "", s->key[k], s->value[k * s->n_point + point]);
     }
     putchar('\n');
     for (int k = first; k < s->n_mode; k++) {
-        const bough_sweep_mode *m = &s->mode[k];
+        const sweep_mode *m = &s->mode[k];
         printf("%4d %12.6g %12.6g %11.5f  %-12s %-8s %s%s\n", m->line + 1, m->frequency, m->damped,
                100 * m->damping, m->body, m->shape, m->pattern, m->damping < -1e-6 ? "  unstable" : "");
     }
 }
 
 static void write_table(const void *self, FILE *file) {
-    const bough_sweep *s = self;
+    const sweep *s = self;
     fputs("point", file);
     for (int k = 0; k < s->n_key; k++) fprintf(file, ",%s", s->key[k]);
     fputs(",rotor speed (rpm),line,frequency (Hz),damped frequency (Hz),damping ratio (-),body,shape,"
           "pattern\n",
           file);
     for (int i = 0; i < s->n_mode; i++) {
-        const bough_sweep_mode *m = &s->mode[i];
+        const sweep_mode *m = &s->mode[i];
         fprintf(file, "%d", m->point + 1);
         for (int k = 0; k < s->n_key; k++) {
             fprintf(file, ",\"%s\"", s->value[k * s->n_point + m->point]);
@@ -218,11 +234,111 @@ static void write_table(const void *self, FILE *file) {
     }
 }
 
-bough_status bough_modes_sweep(bough_arena *arena, const bough_options *options) {
-    bough_sweep s = {0};
+// -- the Campbell diagram, with the multiples of the rotor's speed --------------------------------
+
+// Of the picture [px].
+enum { WIDTH = 900, HEIGHT = 380, LEFT = 64, RIGHT = 190, TOP = 40, GAP = 56, BOTTOM = 56 };
+
+// What is drawn upwards.
+typedef struct panel {
+    const sweep *sweep;
+    bough_panel at;
+    bool damping;
+    bool by_speed; // x is the rotor's speed, else the first key's number
+} panel;
+
+static double x_of(const panel *p, int point) {
+    return p->by_speed ? p->sweep->speed[point] : p->sweep->x[point];
+}
+
+static double right(const panel *p, double x) { return bough_axis_place(&p->at.x, x); }
+
+static double down(const panel *p, double y) { return bough_axis_place(&p->at.y, y); }
+
+static double value_of(const panel *p, const sweep_mode *m) {
+    return p->damping ? 100 * m->damping : m->frequency;
+}
+
+// n Ω for n = 1, 3, 6, … over the rotor's speed.
+static void draw_multiples(const panel *p) {
+    static const int multiples[] = {1, 2, 3, 6, 9};
+    for (size_t k = 0; p->by_speed && k < sizeof multiples / sizeof *multiples; k++) {
+        double slope = multiples[k] / 60., end = fmin(p->at.x.high, p->at.y.high / slope);
+        if (end <= p->at.x.low) continue;
+        fprintf(p->at.svg, "<path class=\"times\" d=\"M%.1f %.1fL%.1f %.1f\"/>\n", right(p, p->at.x.low),
+                down(p, slope * p->at.x.low), right(p, end), down(p, slope * end));
+        fprintf(p->at.svg, "<text class=\"times\" x=\"%.1f\" y=\"%.1f\">%dP</text>\n", right(p, end) - 22,
+                down(p, slope * end) + 12, multiples[k]);
+    }
+}
+
+static void draw_line(const panel *p, int line) {
+    const sweep *s = p->sweep;
+    const char *colour = bough_picture_colour(line);
+    const sweep_mode *last = NULL;
+    fprintf(p->at.svg, "<polyline fill=\"none\" stroke-width=\"1.6\" stroke=\"%s\" points=\"", colour);
+    for (int i = 0; i < s->n_mode; i++) {
+        const sweep_mode *m = &s->mode[i];
+        if (m->line != line) continue;
+        double y = fmin(fmax(value_of(p, m), p->at.y.low), p->at.y.high);
+        fprintf(p->at.svg, "%.1f,%.1f ", right(p, x_of(p, m->point)), down(p, y));
+        last = m;
+    }
+    fputs("\"/>\n", p->at.svg);
+    for (int i = 0; i < s->n_mode; i++) {
+        const sweep_mode *m = &s->mode[i];
+        double y = value_of(p, m);
+        if (m->line != line || y < p->at.y.low || y > p->at.y.high) continue;
+        fprintf(p->at.svg, "<circle r=\"3\" fill=\"%s\" cx=\"%.1f\" cy=\"%.1f\"/>\n", colour,
+                right(p, x_of(p, m->point)), down(p, y));
+    }
+    double y = last ? value_of(p, last) : p->at.y.high + 1;
+    if (y < p->at.y.low || y > p->at.y.high) return;
+    fprintf(p->at.svg, "<text x=\"%.1f\" y=\"%.1f\" fill=\"%s\">%d %s %s %s</text>\n",
+            right(p, x_of(p, last->point)) + 8, down(p, y) + 4, colour, line + 1, last->body, last->shape,
+            last->pattern);
+}
+
+static void draw_panel(const panel *p, const char *title, const char *across) {
+    bough_panel_axes(&p->at, title, across);
+    if (!p->damping) draw_multiples(p);
+    for (int line = 0; line < p->sweep->n_line; line++) draw_line(p, line);
+}
+
+static void plot(const void *self, FILE *svg) {
+    const sweep *s = self;
+    panel p = {.sweep = s};
+    p.at = (bough_panel){svg, bough_axis_between(LEFT, WIDTH - RIGHT, false),
+                         bough_axis_between(TOP + HEIGHT, TOP, false)};
+    for (int i = 1; i < s->n_point; i++) p.by_speed = p.by_speed || s->speed[i] != s->speed[0];
+    for (int i = 0; i < s->n_point; i++) bough_axis_include(&p.at.x, x_of(&p, i));
+    if (!(p.at.x.high > p.at.x.low)) bough_axis_widen(&p.at.x, 0.05);
+    double frequency = 0, damping = 0, least = 0;
+    for (int i = 0; i < s->n_mode; i++) {
+        frequency = fmax(frequency, s->mode[i].frequency);
+        if (s->mode[i].damped == 0) continue; // it does not oscillate
+        damping = fmax(damping, 100 * s->mode[i].damping);
+        least = fmin(least, 100 * s->mode[i].damping);
+    }
+    bough_picture_begin(svg, WIDTH, TOP + 2 * HEIGHT + GAP + BOTTOM);
+    fputs("<style>.times{stroke:#999;stroke-dasharray:5 4}text.times{stroke:none;fill:#777}</style>\n", svg);
+    p.at.y.low = 0;
+    p.at.y.high = 1.05 * fmax(frequency, 1e-3);
+    draw_panel(&p, "frequency [Hz]", NULL);
+    p.damping = true;
+    p.at.y = (bough_axis){1.05 * least, fmax(1.05 * damping, 0.1), TOP + 2 * HEIGHT + GAP, TOP + HEIGHT + GAP,
+                          false};
+    draw_panel(&p, "damping ratio [%]", p.by_speed ? "rotor speed [rpm]" : s->key[0]);
+    fputs("</svg>\n", svg);
+}
+
+// -- the sweep ------------------------------------------------------------------------------------
+
+bough_status bough_modes_sweep(bough_arena *arena, const bough_options *options, const bough_texts *sweeps) {
+    sweep s = {0};
     tracks track[2] = {{0}};
     const char *folder = bough_out_folder(arena, options);
-    bough_status status = read_points(arena, options, &s);
+    bough_status status = read_points(arena, sweeps, &s);
     if (!bough_is_ok(&status)) return status;
     printf("%4s %12s %12s %11s  %-12s %-8s pattern\n", "line", "frequency", "damped", "damping", "body",
            "shape");
@@ -233,7 +349,7 @@ bough_status bough_modes_sweep(bough_arena *arena, const bough_options *options)
     }
     if (bough_is_ok(&status)) status = bough_folder_make(folder);
     if (bough_is_ok(&status)) status = bough_folder_write(folder, "campbell.csv", write_table, &s);
-    if (bough_is_ok(&status)) status = bough_folder_write(folder, "campbell.svg", bough_modes_plot, &s);
+    if (bough_is_ok(&status)) status = bough_folder_write(folder, "campbell.svg", plot, &s);
     if (bough_is_ok(&status)) printf("out: %s\n", folder);
     return status;
 }

@@ -1,4 +1,4 @@
-#include "apps/bough/cli/open.h"
+#include "apps/bough/cli/command.h"
 
 #include "apps/bough/config/schema.h"
 
@@ -7,7 +7,7 @@
 bough_status bough_open_scene(bough_arena *arena, const bough_options *options, bough_scene **scene) {
     bough_errors errors = {.arena = arena};
     bough_status status =
-        bough_scene_read(arena, options->operand, options->set, options->n_set, &errors, scene);
+        bough_scene_read(arena, options->operand, options->set.text, options->set.n, &errors, scene);
     if (errors.n > 0 && status.code == BOUGH_INVALID) {
         bough_errors_print(&errors, stderr);
         status.message[0] = '\0';

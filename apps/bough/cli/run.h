@@ -1,22 +1,96 @@
-// bough run: one run, its files and its checkpoints.
-#ifndef BOUGH_APPS_BOUGH_RUN_H
-#define BOUGH_APPS_BOUGH_RUN_H
+// bough run: one run on the command line, with its files, its checkpoints and what is said about it.
+#ifndef BOUGH_APPS_CLI_RUN_H
+#define BOUGH_APPS_CLI_RUN_H
 
-#include "apps/bough/cli/job.h"
+#include "apps/bough/cli/command.h"
+#include "apps/bough/model/error_shares.h"
+#include "apps/bough/model/run.h"
+#include "apps/bough/model/shape.h"
+#include "apps/bough/results/recorder.h"
+#include "apps/bough/results/statistics.h"
 #include "apps/bough/results/summary.h"
+
+#include <stdint.h>
+
+typedef struct bough_checkpoint {
+    double interval;         // [s]; 0: none are written
+    uint64_t program, input; // fingerprints
+    size_t size;             // of a copy [bytes]
+    char *copy;              // (size)
+} bough_checkpoint;
+
+typedef struct bough_run_options {
+    bough_options common;
+    const char *checkpoint; // simulated time between checkpoints; NULL: none
+    bool resume;            // from the last one
+} bough_run_options;
+
+typedef struct bough_run_command {
+    const bough_run_options *options;
+    bough_arena *arena;
+    bough_run run;
+    bough_channels recorded; // those of the run's channels that are
+    const char *folder;
+    bough_recorder *recorder;
+    bough_sample_statistics *statistics; // (recorded.count) of the rows
+    bough_shape shape;
+    bough_frames *frames; // NULL: none are stored
+    bough_checkpoint checkpoint;
+    bough_kept rows, frames_kept;      // at the last checkpoint
+    bough_error_shares shares;         // of mesh, air and time
+    char warning[BOUGH_ERROR_WARNING]; // about the error of motion, or ""
+    bough_status verdict;              // on the error of a complete run
+    bool warned;                       // of the work, while it runs
+    double build_s;                    // wall time of reading and building [s]
+} bough_run_command;
 
 // Reads and builds the scene of the options, with what the run records and estimates. Errors in the
 // scene are told as by bough_open_scene.
-bough_status bough_job_build(bough_job *job);
+bough_status bough_run_command_build(bough_run_command *command);
 
-// Writes summary.json into the job's folder.
-bough_status bough_run_summarise(const bough_job *job);
+// Writes summary.json into the command's folder.
+bough_status bough_run_summarise(const bough_run_command *command);
 
 // What the run errs by (run_error.c): into the summary, and in the closing lines.
-void bough_run_write_error(bough_summary *s, const bough_job *job);
-void bough_run_tell_error(const bough_job *job, FILE *stream);
+void bough_run_write_error(bough_summary *s, const bough_run_command *command);
+void bough_run_tell_error(const bough_run_command *command, FILE *stream);
 
 // Tells the user how it went: a few lines "key: value".
-void bough_run_report(bough_job *job, FILE *stream);
+void bough_run_report(bough_run_command *command, FILE *stream);
+
+// -- checkpoints (checkpoint.c) -------------------------------------------------------------------
+
+// Reads the options and, to resume, the checkpoint in the run's folder; the simulation is then at
+// its time. BOUGH_INVALID where the interval does not suit the scene, there is no checkpoint, it is
+// damaged or of another program, scene or setting.
+bough_status bough_checkpoint_open(bough_run_command *command);
+
+// After a step of a bough_run_command: writes a checkpoint where one is due and goes on from it.
+bough_status bough_checkpoint_update(void *command);
+
+// Removes that of an earlier run, or of one that is complete.
+bough_status bough_checkpoint_remove(const char *folder);
+
+// -- what a run will take, before it starts (forecast.c) ------------------------------------------
+
+// What a run records.
+typedef struct bough_forecast {
+    double rows;  // of channels.out
+    double bytes; // of all files
+} bough_forecast;
+
+// Points of all lines of a shape.
+double bough_forecast_points(const bough_shape *shape);
+
+// Of the simulation with its channels and a shape of so many points.
+bough_forecast bough_run_results(const bough_simulation *simulation, const bough_channels *channels,
+                                 double n_point);
+
+// Writes "results: 101 rows of 6 columns, 0.012 MB".
+void bough_forecast_print(bough_forecast forecast, const bough_channels *channels, FILE *stream);
+
+// Tells what the command records, and of a long run (more than a million macro steps or a gigabyte)
+// steps and time on stderr. BOUGH_INVALID where the results cannot fit on the disk of its folder.
+bough_status bough_run_forecast(const bough_run_command *command, FILE *stream);
 
 #endif

@@ -1,14 +1,143 @@
 // What is said about a run: summary.json and the closing lines.
-#include "apps/bough/cli/memory.h"
 #include "apps/bough/cli/run.h"
-#include "apps/bough/cli/version.h"
+#include "apps/bough/model/error_shares.h"
 #include "apps/bough/model/validity.h"
 #include "apps/bough/results/summary.h"
 
 #include <math.h>
+#include <stdio.h>
 #include <string.h>
+#include <sys/resource.h>
 
 enum { LINE = 400 };
+
+enum { WORST = 3 };
+
+static double bound_of(const bough_run *run) { return run->simulation->scene->simulation.error_bound; }
+
+// A force or moment with an error above the bound, or "".
+static void warn_of_force(const bough_run *run, char text[BOUGH_ERROR_WARNING]) {
+    const bough_companion *c = run->companion;
+    bough_error_verdict v = bough_error_verdict_of(c, false, c->error);
+    text[0] = '\0';
+    if (v.channel < 0 || !(bound_of(run) > 0) || v.relative <= bound_of(run)) return;
+    const bough_channel *channel = &c->channels->channel[v.channel];
+    snprintf(text, BOUGH_ERROR_WARNING, "%s errs by %.2g %s, %.2g of its range", channel->name,
+             c->error[v.channel], channel->unit, v.relative);
+}
+
+// -- summary.json ---------------------------------------------------------------------------------
+
+static void write_worst(bough_summary *s, const bough_run *run, bool motion) {
+    const bough_companion *c = run->companion;
+    bough_error_verdict v = bough_error_verdict_of(c, motion, c->error);
+    bool known = v.channel >= 0;
+    bough_summary_text(s, "channel", known ? c->channels->channel[v.channel].name : NULL);
+    bough_summary_number(s, "relative", known ? v.relative : (double)NAN);
+    bough_summary_number(s, "from", known && v.time >= 0 ? v.time : (double)NAN);
+}
+
+static void write_verdict(bough_summary *s, const bough_run_command *command) {
+    const bough_companion *c = command->run.companion;
+    char force[BOUGH_ERROR_WARNING];
+    bough_summary_object(s, "error");
+    bough_summary_text(s, "source", c->compared > 0 ? "companion" : "not estimated");
+    bough_summary_text(s, "not_estimated", c->reason[0] ? c->reason : NULL);
+    bough_summary_number(s, "not_estimated_from", c->reason[0] ? c->from : (double)NAN);
+    bough_summary_number(s, "bound", bound_of(&command->run));
+    write_worst(s, &command->run, true);
+    bough_summary_text(s, "warning", command->warning[0] ? command->warning : NULL);
+    warn_of_force(&command->run, force);
+    bough_summary_object(s, "force");
+    write_worst(s, &command->run, false);
+    bough_summary_text(s, "warning", force[0] ? force : NULL);
+    bough_summary_end(s);
+    bough_summary_end(s);
+}
+
+// A number for each channel, in its unit.
+static void write_channels(bough_summary *s, const bough_run *run, const char *key, const double *error) {
+    bough_summary_object(s, key);
+    for (int i = 0; i < run->channels.count; i++) {
+        double known = bough_companion_knows(run->companion, i) ? error[i] : (double)NAN;
+        bough_summary_number(s, run->channels.channel[i].name, known);
+    }
+    bough_summary_end(s);
+}
+
+static void write_shares(bough_summary *s, const bough_run_command *command) {
+    if (!command->shares.found) return;
+    bough_summary_object(s, "error_shares");
+    bough_summary_number(s, "cpu_s", command->shares.cpu_s);
+    for (int k = 0; k < BOUGH_SHARES; k++) {
+        const bough_error_share *share = &command->shares.share[k];
+        const char *name = bough_error_share_name((bough_error_share_kind)k);
+        if (share->unknown[0]) {
+            bough_summary_object(s, name);
+            bough_summary_text(s, "not_estimated", share->unknown);
+            bough_summary_end(s);
+        } else {
+            write_channels(s, &command->run, name, share->largest);
+        }
+    }
+    bough_summary_end(s);
+}
+
+void bough_run_write_error(bough_summary *s, const bough_run_command *command) {
+    write_verdict(s, command);
+    write_channels(s, &command->run, "error_estimate", command->run.companion->error);
+    write_shares(s, command);
+}
+
+// -- closing lines --------------------------------------------------------------------------------
+
+static void tell_shares(const bough_run_command *command, int channel, FILE *stream) {
+    for (int k = 0; k < BOUGH_SHARES && command->shares.found; k++) {
+        const bough_error_share *share = &command->shares.share[k];
+        if (share->unknown[0]) continue;
+        fprintf(stream, "; %s %.2g", bough_error_share_name((bough_error_share_kind)k),
+                share->largest[channel]);
+    }
+}
+
+void bough_run_tell_error(const bough_run_command *command, FILE *stream) {
+    const bough_companion *c = command->run.companion;
+    char warning[BOUGH_ERROR_WARNING];
+    int worst[WORST], n = bough_error_worst(c, WORST, worst);
+    if (c->compared == 0) {
+        fprintf(stream, "error: not estimated: %s\n",
+                c->reason[0] ? c->reason : "the run has not reached the companion's first step");
+    } else if (n == 0) {
+        fprintf(stream, "error: none: nothing moves\n");
+    }
+    for (int k = 0; k < n; k++) {
+        const bough_channel *channel = &c->channels->channel[worst[k]];
+        fprintf(stream, "error: %s %.2g %s, %.2g of its range", channel->name, c->error[worst[k]],
+                channel->unit, bough_error_relative(c, worst[k], c->error[worst[k]]));
+        tell_shares(command, worst[k], stream);
+        fputc('\n', stream);
+    }
+    warn_of_force(&command->run, warning);
+    if (command->warning[0]) fprintf(stream, "warning: %s\n", command->warning);
+    if (warning[0]) fprintf(stream, "warning: %s\n", warning);
+}
+
+// -- memory ---------------------------------------------------------------------------------------
+
+// getrusage alone would not do: on Linux its figure survives exec, so that a large program that
+// starts this one passes its own memory on.
+static long long bough_peak_memory(void) {
+    long long kilobytes = 0;
+    char line[128];
+    FILE *file = fopen("/proc/self/status", "r");
+    while (file && kilobytes == 0 && fgets(line, sizeof line, file)) {
+        if (sscanf(line, "VmHWM: %lld kB", &kilobytes) != 1) kilobytes = 0;
+    }
+    if (file) fclose(file);
+    struct rusage usage;
+    if (kilobytes == 0 && getrusage(RUSAGE_SELF, &usage) == 0) kilobytes = usage.ru_maxrss;
+    return 1024 * kilobytes;
+}
 
 // -- figures --------------------------------------------------------------------------------------
 
@@ -21,20 +150,20 @@ static double real_time_factor(const bough_run *run) { return run->simulation->m
 
 // -- summary.json ---------------------------------------------------------------------------------
 
-static void write_input(bough_summary *s, const bough_job *job) {
-    const bough_scene *scene = job->run.simulation->scene;
+static void write_input(bough_summary *s, const bough_run_command *command) {
+    const bough_scene *scene = command->run.simulation->scene;
     bough_summary_text(s, "bough_version", BOUGH_VERSION);
     bough_summary_text(s, "scene", scene->file);
     bough_summary_text(s, "title", scene->title);
     bough_summary_array(s, "set");
-    for (int i = 0; i < job->options->n_set; i++) {
-        bough_summary_text(s, NULL, job->options->set[i]);
+    for (int i = 0; i < command->options->common.set.n; i++) {
+        bough_summary_text(s, NULL, command->options->common.set.text[i]);
     }
     bough_summary_end(s);
-    bough_summary_text(s, "status", outcome_name(&job->run));
-    const char *verdict = job->run.simulation->master->verdict;
+    bough_summary_text(s, "status", outcome_name(&command->run));
+    const char *verdict = command->run.simulation->master->verdict;
     bough_summary_text(s, "verdict", verdict[0] ? verdict : NULL);
-    const bough_status *end = bough_is_ok(&job->run.outcome) ? &job->verdict : &job->run.outcome;
+    const bough_status *end = bough_is_ok(&command->run.outcome) ? &command->verdict : &command->run.outcome;
     bough_summary_text(s, "diagnosis", bough_is_ok(end) ? NULL : end->message);
 }
 
@@ -77,28 +206,28 @@ static void write_method(bough_summary *s, const bough_run *run) {
     bough_summary_integer(s, "threads", bough_pool_threads(run->pool));
 }
 
-static void write_cost(bough_summary *s, const bough_job *job) {
-    const bough_run *run = &job->run;
+static void write_cost(bough_summary *s, const bough_run_command *command) {
+    const bough_run *run = &command->run;
     const bough_master *m = run->simulation->master;
     bough_summary_number(s, "duration", m->duration);
     bough_summary_number(s, "time", m->time);
     bough_summary_number(s, "wall_s", run->wall_s);
     bough_summary_number(s, "cpu_s", run->cpu_s);
-    bough_summary_number(s, "build_s", job->build_s);
+    bough_summary_number(s, "build_s", command->build_s);
     bough_summary_number(s, "real_time_factor", real_time_factor(run));
     bough_summary_integer(s, "peak_memory_bytes", bough_peak_memory());
-    bough_summary_integer(s, "model_bytes", (long long)bough_arena_bytes(job->arena));
+    bough_summary_integer(s, "model_bytes", (long long)bough_arena_bytes(command->arena));
 }
 
-static void write_size(bough_summary *s, const bough_job *job) {
-    const bough_run *run = &job->run;
+static void write_size(bough_summary *s, const bough_run_command *command) {
+    const bough_run *run = &command->run;
     const bough_simulation *sim = run->simulation;
     bough_summary_integer(s, "bodies", sim->scene->n_body);
     bough_summary_integer(s, "joints", bough_simulation_n_joints(sim));
     bough_summary_integer(s, "states", sim->master->assembly->n_state);
     bough_summary_integer(s, "macro_steps", sim->master->steps);
-    bough_summary_integer(s, "rows", bough_recorder_rows(job->recorder));
-    bough_summary_integer(s, "channels", job->recorded.count);
+    bough_summary_integer(s, "rows", bough_recorder_rows(command->recorder));
+    bough_summary_integer(s, "channels", command->recorded.count);
 }
 
 static void write_control(bough_summary *s, const bough_run *run) {
@@ -147,14 +276,14 @@ static void write_interfaces(bough_summary *s, const bough_run *run) {
 }
 
 // Of the channels' rows from simulation.output.from on.
-static void write_statistics(bough_summary *s, const bough_job *job) {
-    bough_summary_number(s, "statistics_from", job->run.simulation->scene->simulation.output.from);
+static void write_statistics(bough_summary *s, const bough_run_command *command) {
+    bough_summary_number(s, "statistics_from", command->run.simulation->scene->simulation.output.from);
     bough_summary_object(s, "statistics");
-    for (int k = 0; k < job->recorded.count; k++) {
-        const bough_sample_statistics *x = &job->statistics[k];
+    for (int k = 0; k < command->recorded.count; k++) {
+        const bough_sample_statistics *x = &command->statistics[k];
         if (!(x->n > 0)) continue;
-        bough_summary_object(s, job->recorded.channel[k].name);
-        bough_summary_text(s, "unit", job->recorded.channel[k].unit);
+        bough_summary_object(s, command->recorded.channel[k].name);
+        bough_summary_text(s, "unit", command->recorded.channel[k].unit);
         bough_summary_number(s, "min", x->least);
         bough_summary_number(s, "max", x->most);
         bough_summary_number(s, "mean", x->mean);
@@ -198,21 +327,21 @@ static void write_member(bough_summary *s, const bough_run *run, int member) {
     bough_summary_end(s);
 }
 
-bough_status bough_run_summarise(const bough_job *job) {
-    const bough_run *run = &job->run;
+bough_status bough_run_summarise(const bough_run_command *command) {
+    const bough_run *run = &command->run;
     bough_summary s;
-    bough_status status = bough_summary_open(&s, job->folder, "summary.json");
+    bough_status status = bough_summary_open(&s, command->folder, "summary.json");
     if (!bough_is_ok(&status)) return status;
-    write_input(&s, job);
+    write_input(&s, command);
     write_warnings(&s, run);
     write_method(&s, run);
-    write_cost(&s, job);
-    write_size(&s, job);
+    write_cost(&s, command);
+    write_size(&s, command);
     write_control(&s, run);
     write_accuracy(&s, run);
     write_interfaces(&s, run);
-    bough_run_write_error(&s, job);
-    write_statistics(&s, job);
+    bough_run_write_error(&s, command);
+    write_statistics(&s, command);
     write_whole(&s, run);
     const bough_assembly *assembly = run->simulation->master->assembly;
     bough_summary_array(&s, "subsystems");
@@ -224,11 +353,11 @@ bough_status bough_run_summarise(const bough_job *job) {
 // -- closing lines --------------------------------------------------------------------------------
 
 // Channels worth a line: the turbine's main ones, or else the first few.
-static void tell_channels(bough_job *job, FILE *stream) {
+static void tell_channels(bough_run_command *command, FILE *stream) {
     static const char *const main_channels[] = {"RotSpeed",  "RtAeroFxh", "RtAeroMxh",
                                                 "RtAeroPwr", "OoPDefl1",  "IPDefl1"};
     enum { MAIN = sizeof main_channels / sizeof *main_channels, FIRST_FEW = 4 };
-    bough_run *run = &job->run;
+    bough_run *run = &command->run;
     const bough_channels *c = &run->channels;
     const double *value = bough_run_values(run);
     if (!value) return; // after a failure the state means nothing
@@ -267,18 +396,18 @@ static void tell_warnings(const bough_run *run, FILE *stream) {
     bough_validity_print(run->simulation, stream);
 }
 
-void bough_run_report(bough_job *job, FILE *stream) {
-    bough_run *run = &job->run;
+void bough_run_report(bough_run_command *command, FILE *stream) {
+    bough_run *run = &command->run;
     fprintf(stream, "status: %s\n", outcome_name(run));
     fprintf(stream, "time: %.9g s\n", run->simulation->master->time);
     if (!bough_is_ok(&run->outcome))
-        fprintf(stream, "recorded: %ld rows\n", bough_recorder_rows(job->recorder));
+        fprintf(stream, "recorded: %ld rows\n", bough_recorder_rows(command->recorder));
     fprintf(stream, "real_time_factor: %.3g\n", real_time_factor(run));
     fprintf(stream, "wall_s: %.3g\n", run->wall_s);
     fprintf(stream, "peak_memory_mb: %.1f\n", (double)bough_peak_memory() / 1e6);
-    tell_channels(job, stream);
-    bough_run_tell_error(job, stream);
+    tell_channels(command, stream);
+    bough_run_tell_error(command, stream);
     tell_energy(run, stream);
     tell_warnings(run, stream);
-    fprintf(stream, "out: %s\n", job->folder);
+    fprintf(stream, "out: %s\n", command->folder);
 }

@@ -1,14 +1,187 @@
 // bough static: the shape of each rod and the angles of the joints at rest, or in steady rotation,
 // under gravity and the whole of the scene's loads.
-#include "apps/bough/cli/open.h"
-#include "apps/bough/cli/static_find.h"
-#include "apps/bough/cli/static_path.h"
-#include "apps/bough/cli/verb.h"
+#include "apps/bough/analysis/steady.h"
+#include "apps/bough/cli/command.h"
+#include "apps/bough/model/equilibrium.h"
+#include "apps/bough/model/error_shares.h"
+#include "apps/bough/results/channels.h"
 #include "apps/bough/results/folder.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
 
 enum { MOTION = 6 }; // displacement and rotation, or force and moment
 
 static const double degree = BOUGH_PI / 180;
+
+typedef struct equilibrium {
+    bough_simulation *simulation;
+    bool apart;                  // each rod by itself: no channels
+    double time;                 // of the loads of the whole scene [s]
+    bough_equilibrium_work work; // of the whole scene
+    int n;
+    bough_steady *rod;       // (n)
+    bough_channels channels; // of the whole scene
+    double *value;           // (channels.count)
+} equilibrium;
+
+enum {
+    STATIC_DISPLACEMENT, // of the tip [m]
+    STATIC_ROTATION,     // of the tip [rad]
+    STATIC_FORCE,        // at the root [N]
+    STATIC_MOMENT,       // at the root [N m]
+    STATIC_RESULTS,
+};
+
+typedef struct mesh_error {
+    char unknown[160]; // why it is not known; "": it is
+    double *largest;   // (channels.count) of each channel, in its unit
+} mesh_error;
+
+// -- the equilibrium, each rod by itself or all together, and the error of its mesh ---------------
+
+static bough_status find_apart(bough_arena *arena, equilibrium *x) {
+    const bough_simulation *s = x->simulation;
+    const bough_turning rest = {0};
+    for (int k = 0; k < s->n_beam; k++) {
+        if (s->beam[k].rod == NULL) continue;
+        bough_status status = bough_steady_find(arena, s, &s->beam[k], &rest, &x->rod[x->n++]);
+        if (!bough_is_ok(&status)) return status;
+    }
+    return bough_ok();
+}
+
+// All together, with what the run's channels are there: joints, drives, closures, markers, roots, rotor.
+static bough_status find_whole(bough_arena *arena, equilibrium *x) {
+    bough_simulation *s = x->simulation;
+    x->time = bough_equilibrium_time(s);
+    bough_status status = bough_simulation_equilibrium(s, s->master->assembly, x->time, &x->work);
+    for (int k = 0; k < s->n_beam && bough_is_ok(&status); k++) {
+        if (s->beam[k].rod == NULL) continue;
+        status = bough_steady_equilibrium(arena, s, &s->beam[k], x->time, &x->rod[x->n++]);
+    }
+    if (bough_is_ok(&status)) status = bough_simulation_channels(s, &x->channels);
+    if (!bough_is_ok(&status)) return status;
+    x->value = bough_arena_doubles(arena, (size_t)x->channels.count + 1);
+    bough_simulation_update(s);
+    bough_channels_sample(&x->channels, x->time, x->value);
+    return status;
+}
+
+// The equilibrium of the simulation, as built.
+static bough_status find_equilibrium(bough_arena *arena, bough_simulation *s, equilibrium *x) {
+    *x = (equilibrium){.simulation = s, .channels = bough_channels_start(arena)};
+    x->rod = bough_arena_take(arena, ((size_t)s->n_rod + 1) * sizeof *x->rod);
+    // a modal body only with the whole
+    x->apart = bough_equilibrium_apart(s) && bough_steady_rods(s) == s->n_rod;
+    return x->apart ? find_apart(arena, x) : find_whole(arena, x);
+}
+
+// Displacement and rotation of the tip, force and moment at the root.
+static void find_results(bough_steady *rod, bough_vec3 result[STATIC_RESULTS]) {
+    double wrench[6];
+    bough_steady_displacement(rod, rod->model->n_segment, &result[STATIC_DISPLACEMENT],
+                              &result[STATIC_ROTATION]);
+    bough_rod_root_wrench(rod->model, &rod->work.scaled, rod->time, rod->state, rod->input,
+                          &rod->work.scratch, wrench);
+    result[STATIC_FORCE] = bough_v3(wrench[0], wrench[1], wrench[2]);
+    result[STATIC_MOMENT] = bough_v3(wrench[3], wrench[4], wrench[5]);
+}
+
+// -- a finer mesh ---------------------------------------------------------------------------------
+
+static const double part = 16.0 / 15; // of the difference that is the error, at order 2
+
+typedef struct comparison {
+    equilibrium *coarse;
+    mesh_error *mesh;
+    double *error; // (n × STATIC_RESULTS)
+} comparison;
+
+static void compare(const comparison *c, equilibrium *fine) {
+    bough_vec3 here[STATIC_RESULTS], there[STATIC_RESULTS];
+    for (int k = 0; k < fine->n; k++) {
+        find_results(&c->coarse->rod[k], here);
+        find_results(&fine->rod[k], there);
+        for (int i = 0; i < STATIC_RESULTS; i++) {
+            c->error[STATIC_RESULTS * k + i] = part * bough_norm(bough_sub(here[i], there[i]));
+        }
+    }
+    for (int i = 0; !fine->apart && i < fine->simulation->n_motion_channel; i++) {
+        c->mesh->largest[i] = part * fabs(c->coarse->value[i] - fine->value[i]);
+    }
+}
+
+// Segments of the finer mesh by those of the scene: two would still miss a feature of a table, as the last
+// metre of a blade.
+enum { TIMES = 4 };
+
+// The finer mesh starts with the joints of the equilibrium found: a mechanism may have several.
+static void start_near(const bough_simulation *coarse, bough_simulation *fine) {
+    memcpy(fine->leader.state, coarse->leader.state, (size_t)fine->leader.system.n_state * sizeof(double));
+}
+
+// Loads on vertices stay at their places.
+static void follow_vertices(bough_arena *arena, bough_scene *scene) {
+    size_t n = (size_t)scene->n_load;
+    bough_scene_load *load = bough_arena_take(arena, n * sizeof *load);
+    for (size_t i = 0; i < n; i++) {
+        load[i] = scene->load[i];
+        if (load[i].place == BOUGH_SCENE_AT_VERTEX) load[i].vertex *= TIMES;
+    }
+    scene->load = load;
+}
+
+// False, with the reason, where no finer mesh tells the error.
+static bool refine(bough_arena *arena, bough_scene *scene, mesh_error *mesh) {
+    size_t n = (size_t)scene->n_body;
+    bough_scene_body *body = bough_arena_take(arena, n * sizeof *body);
+    bool any = false;
+    memcpy(body, scene->body, n * sizeof *body);
+    for (size_t i = 0; i < n; i++) {
+        if (!body[i].rod.node || body[i].fidelity == BOUGH_SCENE_RIGID) continue;
+        if (body[i].fidelity != BOUGH_SCENE_ROD) {
+            snprintf(mesh->unknown, sizeof mesh->unknown,
+                     "%.60s is a modal body, whose shapes have errors of their own", body[i].name);
+            return false;
+        }
+        body[i].rod.n_segment *= TIMES;
+        any = true;
+    }
+    if (!any) snprintf(mesh->unknown, sizeof mesh->unknown, "no body has a mesh");
+    follow_vertices(arena, scene);
+    scene->body = body;
+    return any;
+}
+
+static bough_status find_finer(bough_arena *arena, void *self) {
+    const comparison *c = self;
+    bough_scene scene = *c->coarse->simulation->scene;
+    bough_simulation *s;
+    equilibrium fine;
+    if (!refine(arena, &scene, c->mesh)) return bough_ok();
+    bough_status status = bough_simulation_build(arena, &scene, &s);
+    if (!bough_is_ok(&status)) return status;
+    start_near(c->coarse->simulation, s);
+    status = find_equilibrium(arena, s, &fine);
+    if (bough_is_ok(&status)) compare(c, &fine);
+    return status;
+}
+
+// What the mesh errs by: part of the difference to four times the segments. Of each rod (n ×
+// STATIC_RESULTS, norms), in arrays from the arena; of the channels in mesh->largest. Where it is not
+// known, mesh->unknown says why.
+static double *find_mesh_error(bough_arena *arena, equilibrium *x, mesh_error *mesh) {
+    *mesh = (mesh_error){.largest = bough_arena_doubles(arena, (size_t)x->channels.count + 1)};
+    comparison c = {x, mesh, bough_arena_doubles(arena, STATIC_RESULTS * ((size_t)x->n + 1))};
+    bough_status status = bough_arena_use(find_finer, &c);
+    if (!bough_is_ok(&status)) {
+        snprintf(mesh->unknown, sizeof mesh->unknown, "with %d times the segments: %.120s", TIMES,
+                 status.message);
+    }
+    return c.error;
+}
 
 // -- values ---------------------------------------------------------------------------------------
 
@@ -60,20 +233,20 @@ static void print_rod(bough_steady *x) {
         stress_of(x, n, value);
         print_row(middle_of(x, n), value);
     }
-    bough_vec3 result[BOUGH_STATIC_RESULTS];
-    bough_static_results(x, result);
+    bough_vec3 result[STATIC_RESULTS];
+    find_results(x, result);
     printf("tip %s:", m->name);
-    print_three(" u", result[BOUGH_STATIC_DISPLACEMENT], "m,");
-    print_three(" r", bough_scale(1 / degree, result[BOUGH_STATIC_ROTATION]), "deg\n");
+    print_three(" u", result[STATIC_DISPLACEMENT], "m,");
+    print_three(" r", bough_scale(1 / degree, result[STATIC_ROTATION]), "deg\n");
     printf("root %s:", m->name);
-    print_three(" force", result[BOUGH_STATIC_FORCE], "N,");
-    print_three(" moment", result[BOUGH_STATIC_MOMENT], "N m\n");
+    print_three(" force", result[STATIC_FORCE], "N,");
+    print_three(" moment", result[STATIC_MOMENT], "N m\n");
 }
 
-static void print_mesh_error(const bough_steady *x, const double error[BOUGH_STATIC_RESULTS]) {
+static void print_mesh_error(const bough_steady *x, const double error[STATIC_RESULTS]) {
     printf("mesh error %s: tip u %.2g m, r %.2g deg, root force %.2g N, moment %.2g N m\n", x->model->name,
-           error[BOUGH_STATIC_DISPLACEMENT], error[BOUGH_STATIC_ROTATION] / degree, error[BOUGH_STATIC_FORCE],
-           error[BOUGH_STATIC_MOMENT]);
+           error[STATIC_DISPLACEMENT], error[STATIC_ROTATION] / degree, error[STATIC_FORCE],
+           error[STATIC_MOMENT]);
 }
 
 // Coordinates and speeds of the joints, and the speeds that are kept.
@@ -96,7 +269,7 @@ static void print_joints(const bough_simulation *s) {
     }
 }
 
-static void print_whole(const bough_static *x) {
+static void print_whole(const equilibrium *x) {
     printf("whole scene: %d steps", x->work.steps);
     if (x->work.samples > 0) printf(", %d samples of the air", x->work.samples);
     if (x->time > 0) printf(", loads at %.6g s", x->time);
@@ -134,7 +307,7 @@ static void write_rod(FILE *file, const bough_steady *x) {
 }
 
 // What the run's channels are in the equilibrium: joints, drives, closures, markers, roots, rotor.
-static bough_status write_channels(const bough_static *x, const bough_mesh_error *mesh, const char *folder) {
+static bough_status write_channels(const equilibrium *x, const mesh_error *mesh, const char *folder) {
     char path[BOUGH_PATH_MAX];
     FILE *file = NULL;
     bough_status status = bough_folder_open(folder, "static-channels.csv", path, &file);
@@ -154,9 +327,69 @@ static bough_status write_channels(const bough_static *x, const bough_mesh_error
 }
 
 static void write_rods(const void *self, FILE *file) {
-    const bough_static *x = self;
+    const equilibrium *x = self;
     fputs(header, file);
     for (int k = 0; k < x->n; k++) write_rod(file, &x->rod[k]);
+}
+
+// -- a path: equilibria while the loads grow, with their limit points -----------------------------
+
+typedef struct path_table {
+    FILE *file;
+    const bough_channels *channels;
+    double *value; // (channels->count)
+    int point;
+} path_table;
+
+static void write_path_head(const path_table *t) {
+    fputs("point,limit,share of the loads (-)", t->file);
+    for (int i = 0; i < t->channels->count; i++)
+        fprintf(t->file, ",%s (%s)", t->channels->channel[i].name, t->channels->channel[i].unit);
+    fputc('\n', t->file);
+}
+
+static bough_status write_path_point(void *self, double time, double share, bool limit) {
+    path_table *t = self;
+    bough_channels_sample(t->channels, time, t->value);
+    fprintf(t->file, "%d,%d,%.10g", t->point, limit, share);
+    for (int i = 0; i < t->channels->count; i++) fprintf(t->file, ",%.10g", t->value[i]);
+    fputc('\n', t->file);
+    if (limit) printf("limit point: %.7g of the loads, point %d\n", share, t->point);
+    t->point++;
+    return bough_ok();
+}
+
+static void print_path_end(const bough_path_report *report) {
+    printf("path: %d points, %d limit points, %d steps, ", report->points, report->limits, report->steps);
+    printf("to %.7g of the loads\n", report->share);
+    puts("mesh error: not estimated along a path");
+}
+
+// Prints the limit points and writes every channel at every point to static-path.csv in the folder. What
+// has been followed is written also when the path ends before the loads are whole; the failure is
+// returned.
+static bough_status follow_path(bough_arena *arena, bough_simulation *s, const char *folder) {
+    char path[BOUGH_PATH_MAX];
+    bough_path_report report;
+    bough_channels channels = bough_channels_start(arena);
+    bough_status status = bough_simulation_channels(s, &channels);
+    if (!bough_is_ok(&status)) return status;
+    path_table t = {.channels = &channels};
+    t.value = bough_arena_doubles(arena, (size_t)channels.count + 1);
+    status = bough_folder_make(folder);
+    if (bough_is_ok(&status)) status = bough_folder_open(folder, "static-path.csv", path, &t.file);
+    if (!bough_is_ok(&status)) return status;
+    write_path_head(&t);
+    bough_status followed =
+        bough_simulation_path(s, s->master->assembly, (bough_path_listener){&t, write_path_point}, &report);
+    if (report.points == 0) {
+        bough_folder_discard(path, t.file);
+        return followed;
+    }
+    print_path_end(&report);
+    status = bough_folder_commit(path, t.file);
+    if (bough_is_ok(&status)) printf("out: %s\n", path);
+    return bough_is_ok(&followed) ? status : followed;
 }
 
 // -- the command ----------------------------------------------------------------------------------
@@ -178,7 +411,22 @@ static void print_modal(bough_simulation *s) {
     }
 }
 
-bough_status bough_verb_static(bough_arena *arena, const bough_options *options) {
+typedef struct static_options {
+    bough_options common;
+    bool path;
+} static_options;
+
+static const bough_option rows[] = {
+    BOUGH_OPTION_SET,
+    BOUGH_OPTION_OUT,
+    {"path", NULL, "follows the equilibria while the loads grow along their ramps, past limit points",
+     bough_option_flag, offsetof(static_options, path), false},
+    {0},
+};
+
+static bough_status find(bough_arena *arena, const void *given) {
+    const static_options *own = given;
+    const bough_options *options = &own->common;
     bough_simulation *s;
     bough_status status = bough_open(arena, options, &s);
     if (bough_is_ok(&status)) status = bough_simulation_known(s, "it has no equilibrium");
@@ -187,16 +435,16 @@ bough_status bough_verb_static(bough_arena *arena, const bough_options *options)
         return bough_fail(BOUGH_INVALID, "%.200s: no body of the scene can move or bend", s->scene->file);
     }
     const char *folder = bough_out_folder(arena, options);
-    if (options->path) return bough_static_path(arena, s, folder);
-    bough_static x;
-    bough_mesh_error mesh;
-    status = bough_static_find(arena, s, &x);
+    if (own->path) return follow_path(arena, s, folder);
+    equilibrium x;
+    mesh_error mesh;
+    status = find_equilibrium(arena, s, &x);
     if (!bough_is_ok(&status)) return status;
-    const double *error = bough_static_mesh_error(arena, &x, &mesh);
+    const double *error = find_mesh_error(arena, &x, &mesh);
     if (!x.apart) print_whole(&x);
     for (int k = 0; k < x.n; k++) {
         print_rod(&x.rod[k]);
-        if (mesh.unknown[0] == '\0') print_mesh_error(&x.rod[k], error + BOUGH_STATIC_RESULTS * k);
+        if (mesh.unknown[0] == '\0') print_mesh_error(&x.rod[k], error + STATIC_RESULTS * k);
     }
     print_modal(s);
     if (mesh.unknown[0]) printf("mesh error: not estimated: %s\n", mesh.unknown);
@@ -206,3 +454,13 @@ bough_status bough_verb_static(bough_arena *arena, const bough_options *options)
     if (bough_is_ok(&status)) printf("out: %s\n", folder);
     return status;
 }
+
+const bough_command bough_command_static = {
+    .name = "static",
+    .summary = "computes the equilibrium of rods and joints under gravity, loads and air",
+    .operand = BOUGH_OPERAND_REQUIRED,
+    .operand_name = "SCENE",
+    .option = rows,
+    .size = sizeof(static_options),
+    .run = find,
+};

@@ -1,7 +1,6 @@
-#include "apps/bough/cli/stop.h"
+#include "apps/bough/cli/command.h"
 
 #include <signal.h>
-#include <stddef.h>
 
 // A signal handler can reach nothing but a global.
 static volatile sig_atomic_t requested; // NOLINT(cppcoreguidelines-avoid-non-const-global-variables)

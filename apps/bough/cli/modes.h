@@ -1,13 +1,15 @@
-// The part of `bough modes` for whole scenes.
-#ifndef BOUGH_APPS_BOUGH_MODES_WHOLE_H
-#define BOUGH_APPS_BOUGH_MODES_WHOLE_H
+// The parts of `bough modes`.
+#ifndef BOUGH_APPS_CLI_MODES_H
+#define BOUGH_APPS_CLI_MODES_H
 
 #include "apps/bough/analysis/vibration.h"
-#include "apps/bough/cli/options.h"
-#include "apps/bough/model/build.h"
+#include "apps/bough/cli/command.h"
 
-// Finds, prints and writes them.
+// Finds, prints and writes the modes of a whole scene.
 bough_status bough_modes_whole(bough_arena *arena, const bough_options *options, bough_simulation *s);
+
+// Solves every point of --sweep and writes campbell.csv and campbell.svg.
+bough_status bough_modes_sweep(bough_arena *arena, const bough_options *options, const bough_texts *sweeps);
 
 // What moves most in a mode, and how.
 const char *bough_modes_body(const bough_simulation *s, const bough_scene_mode *mode);

@@ -1,0 +1,191 @@
+#include "apps/bough/cli/command.h"
+
+#include "apps/bough/config/schema.h"
+
+#include <errno.h>
+#include <getopt.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum {
+    MAX_THREADS = 64,
+    MOST_OPTIONS = 16, // of a command
+    FIRST = 256,       // codes of long options, above every character
+};
+
+// -- errors ---------------------------------------------------------------------------------------
+
+static int count(const bough_command *command) {
+    int n = 0;
+    while (command->option[n].name) n++;
+    return n;
+}
+
+static bough_status unknown_long(const bough_command *command, const char *word) {
+    const char *names[MOST_OPTIONS + 1] = {"help"};
+    for (int i = 0; i < count(command); i++) {
+        if (command->option[i].read) names[i + 1] = command->option[i].name;
+    }
+    char name[64];
+    snprintf(name, sizeof name, "%.*s", (int)strcspn(word + 2, "="), word + 2);
+    const char *near = bough_nearest(name, names, count(command) + 1);
+    return bough_fail(BOUGH_INVALID, "unknown option '%.80s'%s%s%s; see --help", word,
+                      near ? " (did you mean '--" : "", near ? near : "", near ? "'?)" : "");
+}
+
+// What getopt_long did not accept; `word` is the argument it stopped at.
+static bough_status refuse(const bough_command *command, const char *word) {
+    if (optopt >= FIRST) {
+        return bough_fail(BOUGH_INVALID, "option --%s takes no value", command->option[optopt - FIRST].name);
+    }
+    if (strncmp(word, "--", 2) == 0) return unknown_long(command, word);
+    return bough_fail(BOUGH_INVALID, "unknown option '-%c'; see --help", optopt);
+}
+
+static bough_status missing(const bough_command *command) {
+    const bough_option *row = &command->option[optopt - FIRST];
+    return bough_fail(BOUGH_INVALID, "option --%s needs a value: --%s %s", row->name, row->name,
+                      row->argument);
+}
+
+// -- values ---------------------------------------------------------------------------------------
+
+bough_status bough_option_text(const char *name, const char *text, void *field) {
+    (void)name;
+    *(const char **)field = text;
+    return bough_ok();
+}
+
+bough_status bough_option_texts(const char *name, const char *text, void *field) {
+    (void)name;
+    bough_texts *texts = field;
+    texts->text[texts->n++] = text;
+    return bough_ok();
+}
+
+bough_status bough_option_flag(const char *name, const char *text, void *field) {
+    (void)name, (void)text;
+    *(bool *)field = true;
+    return bough_ok();
+}
+
+bough_status bough_option_threads(const char *name, const char *text, void *field) {
+    char *end;
+    errno = 0;
+    long n = strtol(text, &end, 10);
+    if (end == text || *end != '\0' || errno || n < 1 || n > MAX_THREADS) {
+        return bough_fail(BOUGH_INVALID, "--%s expects a whole number from 1 to %d, got '%.80s'", name,
+                          MAX_THREADS, text);
+    }
+    *(int *)field = (int)n;
+    return bough_ok();
+}
+
+// -- reading --------------------------------------------------------------------------------------
+
+static bough_status take_operand(const bough_command *command, const char *word, bough_options *options) {
+    if (command->operand == BOUGH_OPERAND_TWO && options->operand && !options->second) {
+        options->second = word;
+        return bough_ok();
+    }
+    if (command->operand == BOUGH_OPERAND_SOME) {
+        options->operands[options->n_operand++] = word;
+        options->operand = options->operands[0];
+        return bough_ok();
+    }
+    if (command->operand == BOUGH_OPERAND_NONE || options->operand) {
+        return bough_fail(BOUGH_INVALID, "unexpected argument '%.200s'", word);
+    }
+    options->operand = word;
+    return bough_ok();
+}
+
+static void list_options(const bough_command *command, struct option *list) {
+    *list++ = (struct option){.name = "help", .val = 'h'};
+    for (int i = 0; i < count(command); i++) {
+        const bough_option *row = &command->option[i];
+        *list++ = (struct option){
+            .name = row->name, .has_arg = row->argument ? required_argument : no_argument, .val = FIRST + i};
+    }
+}
+
+// getopt_long accepts the beginning of a name, which a later option may share.
+static bool is_shortened(const char *word, const char *name) {
+    return strcspn(word + 2, "=") != strlen(name);
+}
+
+static bough_status take_option(const bough_option *row, const char *text, bough_options *options) {
+    if (row->read) return row->read(row->name, text, (char *)options + row->offset);
+    return bough_fail(BOUGH_INVALID, "the option --%s was removed: %s", row->name, row->help);
+}
+
+static bough_status take(const bough_command *command, int code, const char *word, bough_options *options) {
+    switch (code) {
+    case 1: return take_operand(command, optarg, options);
+    case 'h': options->help = true; return bough_ok();
+    case '?': return refuse(command, word);
+    case ':': return missing(command);
+    default: return take_option(&command->option[code - FIRST], optarg, options);
+    }
+}
+
+// The struct of the command, with room for as many values of a repeated option as there are words.
+static bough_options *take_memory(bough_arena *arena, const bough_command *command, int argc) {
+    bough_options *options = bough_arena_take(arena, command->size);
+    memset(options, 0, command->size);
+    options->operands = bough_arena_take(arena, (size_t)argc * sizeof(char *));
+    for (const bough_option *row = command->option; row->name; row++) {
+        bough_texts *texts = (bough_texts *)((char *)options + row->offset);
+        if (row->repeats) texts->text = bough_arena_take(arena, (size_t)argc * sizeof(char *));
+    }
+    return options;
+}
+
+bough_status bough_options_read(bough_arena *arena, int argc, char **argv, const bough_command *command,
+                                bough_options **result) {
+    bough_options *options = *result = take_memory(arena, command, argc);
+    struct option list[MOST_OPTIONS + 2] = {{0}};
+    list_options(command, list);
+    bough_status status = bough_ok();
+    opterr = 0; // messages are ours
+    // "-": operands come in order, whatever POSIXLY_CORRECT says; ":": tell missing from unknown.
+    for (int code; bough_is_ok(&status) && (code = getopt_long(argc, argv, "-:h", list, NULL)) != -1;) {
+        bool separate = code >= FIRST && optarg == argv[optind - 1]; // the value is a word of its own
+        const char *word = argv[optind - 1 - separate];
+        bool shortened = code >= FIRST && is_shortened(word, command->option[code - FIRST].name);
+        status = shortened ? unknown_long(command, word) : take(command, code, word, options);
+    }
+    for (; bough_is_ok(&status) && optind < argc; optind++) {
+        status = take_operand(command, argv[optind], options); // after "--"
+    }
+    const char *last = command->operand == BOUGH_OPERAND_TWO ? options->second : options->operand;
+    bool needed = command->operand != BOUGH_OPERAND_NONE && command->operand != BOUGH_OPERAND_OPTIONAL;
+    if (bough_is_ok(&status) && needed && !last && !options->help) {
+        return bough_fail(BOUGH_INVALID, "%s: missing %s; see --help", argv[0], command->operand_name);
+    }
+    return status;
+}
+
+// -- help -----------------------------------------------------------------------------------------
+
+void bough_options_usage(const bough_command *command, FILE *stream) {
+    if (command->operand == BOUGH_OPERAND_REQUIRED || command->operand == BOUGH_OPERAND_TWO)
+        fprintf(stream, " %s", command->operand_name);
+    if (command->operand == BOUGH_OPERAND_SOME) fprintf(stream, " %s...", command->operand_name);
+    if (command->operand == BOUGH_OPERAND_OPTIONAL) fprintf(stream, " [%s]", command->operand_name);
+    for (const bough_option *row = command->option; row->name; row++) {
+        if (!row->read) continue;
+        fprintf(stream, " [--%s%s%s]%s", row->name, row->argument ? " " : "",
+                row->argument ? row->argument : "", row->repeats ? "..." : "");
+    }
+}
+
+void bough_options_help(const bough_command *command, FILE *stream) {
+    for (const bough_option *row = command->option; row->name; row++) {
+        if (!row->read) continue;
+        char left[40];
+        snprintf(left, sizeof left, "--%s %s", row->name, row->argument ? row->argument : "");
+        fprintf(stream, "  %-18s %s\n", left, row->help);
+    }
+    fprintf(stream, "  %-18s %s\n", "-h, --help", "this text");
+}

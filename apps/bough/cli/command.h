@@ -1,0 +1,144 @@
+// A command of the program: its operands, its options as rows, and what it does. Each has a file of its own;
+// main.c lists them. Also what the commands share: the way to a built scene, and signals.
+#ifndef BOUGH_APPS_CLI_COMMAND_H
+#define BOUGH_APPS_CLI_COMMAND_H
+
+#include "apps/bough/model/build.h"
+#include "core/base/arena.h"
+#include "core/base/status.h"
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdio.h>
+
+// What `bough --version` and summary.json say; tests/cli/test_cli.sh compares it with the build's.
+#define BOUGH_VERSION "0.1.0"
+
+// -- options --------------------------------------------------------------------------------------
+
+// The values of an option that may be repeated, in their order.
+typedef struct bough_texts {
+    int n;
+    const char **text; // (n)
+} bough_texts;
+
+// What the command line says. A command with options of its own has a struct that begins with this one.
+typedef struct bough_options {
+    const char *operand; // the scene or the topic; NULL: not given
+    const char *second;  // of two operands
+    int n_operand;
+    const char **operands; // (n_operand) of one or more
+    bough_texts set;       // replacements "key=value"
+    const char *out;       // NULL: named after the operand
+    int threads;           // 0: as the scene says
+    bool quiet, help;
+} bough_options;
+
+typedef struct bough_option {
+    const char *name, *argument; // "out", "DIR"; argument NULL: none
+    const char *help;
+    // Reads the value into its field; NULL: the option was removed, `help` says what takes its place.
+    bough_status (*read)(const char *name, const char *text, void *field);
+    size_t offset; // of the field in the command's struct
+    bool repeats;  // the field is a bough_texts
+} bough_option;
+
+// Readers of options: const char *; bough_texts; bool; a number of threads, int.
+bough_status bough_option_text(const char *name, const char *text, void *field);
+bough_status bough_option_texts(const char *name, const char *text, void *field);
+bough_status bough_option_flag(const char *name, const char *text, void *field);
+bough_status bough_option_threads(const char *name, const char *text, void *field);
+
+// Rows that several commands have.
+#define BOUGH_OPTION_SET                                                                                     \
+    {                                                                                                        \
+        "set", "KEY=VALUE", "replaces or adds a value of the scene: 'bodies[blade1].pitch=5 deg'",           \
+            bough_option_texts, offsetof(bough_options, set), true                                           \
+    }
+#define BOUGH_OPTION_OUT                                                                                     \
+    {                                                                                                        \
+        "out", "DIR", "folder for the results; default out/<name of the scene>", bough_option_text,          \
+            offsetof(bough_options, out), false                                                              \
+    }
+#define BOUGH_OPTION_THREADS                                                                                 \
+    {                                                                                                        \
+        "threads", "N", "1 to 64; replaces the scene's number", bough_option_threads,                        \
+            offsetof(bough_options, threads), false                                                          \
+    }
+#define BOUGH_OPTION_QUIET                                                                                   \
+    { "quiet", NULL, "no progress line", bough_option_flag, offsetof(bough_options, quiet), false }
+
+// -- commands -------------------------------------------------------------------------------------
+
+typedef enum bough_operand {
+    BOUGH_OPERAND_NONE,
+    BOUGH_OPERAND_OPTIONAL,
+    BOUGH_OPERAND_REQUIRED,
+    BOUGH_OPERAND_TWO,
+    BOUGH_OPERAND_SOME, // one or more
+} bough_operand;
+
+typedef struct bough_command {
+    const char *name, *summary;
+    bough_operand operand;
+    const char *operand_name;   // "SCENE"; NULL without operand
+    const bough_option *option; // ended by a row without a name; every command also accepts --help
+    size_t size;                // of the struct that they fill
+    // Does the work. A failure without a message is already printed.
+    bough_status (*run)(bough_arena *arena, const void *options);
+} bough_command;
+
+extern const bough_command bough_command_run, bough_command_check, bough_command_static, bough_command_modes,
+    bough_command_study, bough_command_wind, bough_command_report, bough_command_import, bough_command_export,
+    bough_command_help;
+
+// All commands, ended by NULL (main.c).
+extern const bough_command *const bough_commands[];
+
+// The command of that name; NULL when there is none.
+const bough_command *bough_command_find(const char *name);
+
+// Reads argv[1] and what follows; argv[0] is the command's name. BOUGH_INVALID names what is wrong
+// and the nearest valid option. Texts are borrowed from argv.
+bough_status bough_options_read(bough_arena *arena, int argc, char **argv, const bough_command *command,
+                                bough_options **options);
+
+// Writes " SCENE [--set KEY=VALUE]... [--out DIR]", and one line for each option.
+void bough_options_usage(const bough_command *command, FILE *stream);
+void bough_options_help(const bough_command *command, FILE *stream);
+
+// Writes what the program can do, and what one command can (help.c).
+void bough_help_overview(FILE *stream);
+void bough_help_command(const bough_command *command, FILE *stream);
+
+// The failure of an unknown word: "unknown command 'rnu' (did you mean 'run'?)" and all that are known,
+// `more` among them (NULL-terminated, or NULL).
+bough_status bough_unknown_word(const char *what, const char *word, const char *const *more);
+
+// -- from the command line to a built scene (open.c) ----------------------------------------------
+
+// Reads the scene with the options' replacements and threads. Errors in it are written to stderr, one
+// a line, and the status then has no message.
+bough_status bough_open_scene(bough_arena *arena, const bough_options *options, bough_scene **scene);
+
+// Reads the scene in the same way and builds it.
+bough_status bough_open(bough_arena *arena, const bough_options *options, bough_simulation **simulation);
+
+// Those channels of `all`, which outlives the list, that the scene records. BOUGH_INVALID at a name or
+// pattern that none matches.
+bough_status bough_open_channels(const bough_scene *scene, const bough_channels *all,
+                                 bough_channels *recorded);
+
+// The folder for results: as the options say, else out/ and the operand's file name without its
+// extension.
+const char *bough_out_folder(bough_arena *arena, const bough_options *options);
+
+// -- SIGINT, SIGTERM, SIGHUP and SIGXCPU as a wish to stop after the current step (stop.c) --------
+
+// From now on the first of these signals is remembered; a second one ends the process at once, except
+// SIGXCPU. A reader of the output that ends does not end the process.
+void bough_stop_listen(void);
+
+bool bough_stop_requested(void);
+
+#endif
