@@ -109,8 +109,7 @@ static bough_status make_run(bough_arena *arena, const bough_blade_models *s, bo
     if (errors.n > 0) bough_errors_print(&errors, stderr);
     if (!bough_is_ok(&status)) return status;
     int n_blade = scene->turbine.n_blade;
-    *run = (bough_study){.scene = s->turbine,
-                         .n_measure = BOUGH_BLADE_MODELS_MEASURES,
+    *run = (bough_study){.n_measure = BOUGH_BLADE_MODELS_MEASURES,
                          .duration = scene->simulation.duration,
                          .interval = 5 * scene->simulation.macro_step};
     run->measure = bough_arena_take(arena, BOUGH_BLADE_MODELS_MEASURES * sizeof *run->measure);
@@ -124,8 +123,8 @@ static bough_status make_run(bough_arena *arena, const bough_blade_models *s, bo
 
 typedef struct outcome {
     bough_model_blade blade;
-    bough_study_cell cell;
-    bough_study_result result; // of the first run
+    bough_case cell;
+    bough_case_result result; // of the first run
     double cpu;                // least of the runs [s]
     double flap, twist;        // largest differences along the blade [m, rad]
     double rest, bent;         // largest relative differences of frequencies
@@ -148,7 +147,7 @@ static bough_status prepare(bough_arena *arena, comparison *c, const bough_blade
         status = bough_model_scene_sets(arena, c->study->turbine, &c->study->run, model, &sets);
     }
     if (!bough_is_ok(&status)) return status;
-    o->cell = (bough_study_cell){.n_set = sets.n, .set = sets.item, .settings = model->name};
+    o->cell = (bough_case){.scene = c->study->turbine, .n_set = sets.n, .set = sets.item, .settings = model->name};
     o->cpu = HUGE_VAL;
     return status;
 }
@@ -179,9 +178,9 @@ static bough_status compare_blades(const bough_model_blade *base, outcome *o) {
 }
 
 static bough_status run_once(comparison *c, outcome *o, bough_study_series *series) {
-    bough_study_result result;
+    bough_case_result result;
     c->drive.progress.label = o->cell.settings;
-    bough_status status = bough_study_run(&c->run, &o->cell, 1, &c->drive, series, &result);
+    bough_status status = bough_case_run(&c->run, &o->cell, 1, &c->drive, series, &result);
     if (!bough_is_ok(&status)) return status;
     if (!bough_is_ok(&result.outcome)) {
         return bough_fail(BOUGH_FAILED, "%.60s: %.300s", o->cell.settings, result.outcome.message);

@@ -3,7 +3,7 @@
 #define BOUGH_TESTS_VERIFICATION_BLADE_MODELS_INTERNAL_H
 
 #include "tests/verification/blade_models.h"
-#include "apps/bough/cases/study_run.h"
+#include "apps/bough/cases/case_run.h"
 
 enum { BOUGH_BLADE_MODELS_FREQUENCIES = 12, BOUGH_BLADE_MODELS_MEASURES = 3 };
 

@@ -1,82 +1,135 @@
 #include "apps/bough/cases/case_run.h"
 
-#include "apps/bough/results/folder.h"
-#include "apps/bough/results/recorder.h"
 #include "apps/bough/model/error_shares.h"
 #include "apps/bough/model/run.h"
-#include "apps/bough/cases/study_run.h"
+#include "apps/bough/results/folder.h"
+#include "apps/bough/results/recorder.h"
+#include "apps/bough/scene/fingerprint.h"
 
+#include <assert.h>
 #include <math.h>
+#include <stdlib.h>
+#include <string.h>
 #include <time.h>
 
 typedef struct case_run {
-    const bough_load_set *set;
-    const bough_load_case *chosen_case;
-    const char *folder;
-    bool (*stop)(void);
+    const bough_study *study;
+    const bough_case *chosen;
+    bough_study_drive *drive;
+    bough_study_series *series; // NULL: counts
     bough_case_result *result;
     bough_run run;
-    bough_recorder *recorder; // NULL: no series
-    int *column;              // (n_channel) of the set's channels among the run's
-    double *chosen;           // (n_channel)
-    bough_counts *counts;
+    int *column;              // (n_channel) of the study's channels among the run's
+    bough_recorder *recorder; // of all channels; NULL: none
+    double *value;            // (n_channel) of the study's channels
 } case_run;
 
-static double cpu_clock(void) {
-    struct timespec now;
-    clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
-    return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
-}
-
-bough_case_result bough_case_take(bough_arena *arena, const bough_load_set *set) {
+bough_case_result bough_case_take(bough_arena *arena, const bough_study *study) {
     bough_case_result result = {.outcome = bough_ok()};
-    bough_counts_take(arena, set->n_channel, set->n_slope, set->slope, &result.counts);
+    bough_counts_take(arena, study->n_channel, study->n_slope, study->slope, &result.counts);
     return result;
 }
 
-// -- recording ------------------------------------------------------------------------------------
+// -- sampling -------------------------------------------------------------------------------------
+
+static void choose(const case_run *r, const double *value, double *chosen) {
+    for (int i = 0; i < r->study->n_channel; i++) chosen[i] = value[r->column[i]];
+}
 
 static bough_status sample(void *self, double t) {
     case_run *r = self;
-    if (r->recorder) {
-        bough_status status = bough_recorder_sample(r->recorder, t);
-        if (!bough_is_ok(&status)) return status;
+    bough_study_series *s = r->series;
+    bough_status status = r->recorder ? bough_recorder_sample(r->recorder, t) : bough_ok();
+    if (!bough_is_ok(&status)) return status;
+    const double *value = r->recorder ? bough_recorder_values(r->recorder) : bough_run_values(&r->run);
+    if (s) {
+        assert(s->filled < s->n_row);
+        choose(r, value, s->value + (size_t)s->filled++ * (size_t)s->n_channel);
+    } else if (t >= r->study->from - 1e-6 * r->run.simulation->master->macro_step) {
+        choose(r, value, r->value);
+        bough_counts_add(&r->result->counts, t, r->value);
     }
-    if (t < r->set->from - 1e-6 * r->run.simulation->master->macro_step) return bough_ok();
-    const double *value = bough_run_values(&r->run);
-    for (int i = 0; i < r->set->n_channel; i++) r->chosen[i] = value[r->column[i]];
-    bough_counts_add(r->counts, t, r->chosen);
+    return status;
+}
+
+// Of each measure: the norm of the largest errors of its channels, which may have been at different times.
+static void gather_estimates(case_run *r) {
+    const bough_companion *c = r->run.companion;
+    for (int i = 0; i < r->study->n_channel; i++) {
+        bool known = bough_companion_knows(c, r->column[i]);
+        r->value[i] = known ? c->error[r->column[i]] : (double)NAN;
+    }
+    bough_study_norms(r->study, r->value, r->result->estimate);
+}
+
+// -- building -------------------------------------------------------------------------------------
+
+// The places of the study's channels among the run's.
+static bough_status find_columns(bough_arena *arena, case_run *r) {
+    const bough_study *s = r->study;
+    r->column = bough_arena_take(arena, (size_t)s->n_channel * sizeof *r->column);
+    for (int i = 0; i < s->n_channel; i++) {
+        r->column[i] = bough_channels_find(&r->run.channels, s->channel[i]);
+        if (r->column[i] < 0)
+            return bough_fail(BOUGH_INVALID, "this run has no channel '%.80s'", s->channel[i]);
+    }
     return bough_ok();
 }
 
-static bough_status open_series(bough_arena *arena, const bough_load_case *c, const char *folder,
-                                case_run *r) {
-    if (!r->set->series) return bough_ok();
-    bough_status status = bough_folder_make(folder);
-    bough_recorder_def def = {.folder = folder, .title = c->settings, .channels = &r->run.channels};
+static bough_status changed(const char *scene, const char *why) {
+    return bough_fail(BOUGH_IO,
+                      "the scene '%.150s' or a file of it has changed or is gone since the study "
+                      "began%s%.100s; runs so far are kept",
+                      scene, why[0] ? ": " : "", why);
+}
+
+// Every scene was read when the study began, so that an error now, BOUGH_IO, is of the study and not of the
+// run.
+static bough_status read_scene(bough_arena *arena, const bough_case *c, bough_scene **scene) {
+    bough_errors errors = {.arena = arena};
+    bough_status status = bough_scene_read(arena, c->scene, c->set, c->n_set, &errors, scene);
+    if (c->files == 0 || status.code != BOUGH_INVALID) return status;
+    return changed(c->scene, errors.n > 0 ? errors.item[0].text : "");
+}
+
+// BOUGH_IO when the files of a scene that has been built are others than when the study began: its run must
+// not be compared with earlier ones, nor what cannot be built be kept as a result.
+static bough_status same_files(bough_arena *arena, const bough_scene *scene, uint64_t files) {
+    uint64_t now = BOUGH_FINGERPRINT_START;
+    if (files == 0) return bough_ok();
+    bough_mix_scene(&now, &(bough_file_sums){.arena = arena}, scene);
+    return now == files ? bough_ok() : changed(scene->file, "");
+}
+
+static bool is_reference(const bough_study *s, const bough_case *c) {
+    return c >= s->reference_case && c < s->reference_case + s->n_reference;
+}
+
+static bough_status open_recorder(bough_arena *arena, case_run *r) {
+    bough_recorder_def def = {
+        .folder = r->drive->folder, .title = r->chosen->settings, .channels = &r->run.channels};
+    if (!def.folder) return bough_ok();
+    bough_status status = bough_folder_make(def.folder);
     return bough_is_ok(&status) ? bough_recorder_open(arena, &def, &r->recorder) : status;
 }
 
-// -- the run --------------------------------------------------------------------------------------
-
-// What cannot be built is a case that fails.
-static bough_status build(bough_arena *arena, const bough_load_case *c, const char *folder, case_run *r) {
+static bough_status build(bough_arena *arena, case_run *r) {
+    const bough_study *s = r->study;
     bough_scene *scene;
-    bough_study_source source = {c->scene, c->n_set, c->set, c->files};
-    bough_status status = bough_study_read_scene(arena, &source, &scene);
+    bough_status status = read_scene(arena, r->chosen, &scene);
     if (!bough_is_ok(&status)) return status;
-    scene->simulation.threads = 1;
+    int threads = s->is.parallel ? 1 : s->threads;
+    if (threads > 0) scene->simulation.threads = threads;
+    if (is_reference(s, r->chosen)) scene->simulation.error_estimate = BOUGH_SCENE_NO_ESTIMATE;
     bough_status built = bough_run_create(arena, scene, &r->run);
-    status = bough_study_same_files(arena, scene, c->files);
-    if (!bough_is_ok(&status)) return status;
-    status = built;
-    const bough_load_set *s = r->set;
-    r->chosen = bough_arena_doubles(arena, (size_t)s->n_channel);
-    if (bough_is_ok(&status))
-        status = bough_study_columns(arena, &r->run.channels, s->n_channel, s->channel, &r->column);
-    if (status.code == BOUGH_INVALID) status.code = BOUGH_FAILED;
-    return bough_is_ok(&status) ? open_series(arena, c, folder, r) : status;
+    status = same_files(arena, scene, r->chosen->files);
+    if (bough_is_ok(&status)) status = built;
+    if (bough_is_ok(&status)) status = find_columns(arena, r);
+    r->value = bough_arena_doubles(arena, (size_t)s->n_channel);
+    return bough_is_ok(&status) ? open_recorder(arena, r) : status;
 }
+
+// -- one run --------------------------------------------------------------------------------------
 
 static bough_status judge(bough_arena *arena, const case_run *r) {
     const bough_companion *c = r->run.companion;
@@ -84,42 +137,100 @@ static bough_status judge(bough_arena *arena, const case_run *r) {
     bough_error_shares shares = {0};
     char warning[BOUGH_ERROR_WARNING];
     bough_status status = bough_ok();
-    if (bough_error_exceeds(c, bound)) status = bough_error_shares_find(arena, c, HUGE_VAL, r->stop, &shares);
+    if (bough_error_exceeds(c, bound))
+        status = bough_error_shares_find(arena, c, HUGE_VAL, r->drive->stop, &shares);
     return bough_is_ok(&status) ? bough_error_judge(c, &shares, bound, warning) : status;
 }
 
 static bough_status run_in(bough_arena *arena, void *self) {
     case_run *r = self;
     bough_case_result *result = r->result;
-    bough_status status = build(arena, r->chosen_case, r->folder, r);
+    bough_status status = build(arena, r);
     if (!bough_is_ok(&status)) return status;
-    double interval = r->run.simulation->scene->simulation.output.interval;
-    bough_run_record_at(&r->run, (bough_run_record){interval, .sample = sample, .self = r});
-    r->run.beside = true;
-    r->run.stop = r->stop;
-    bough_run_all(&r->run);
-    if (bough_is_ok(&r->run.outcome)) r->run.outcome = judge(arena, r);
-    bough_counts_finish(r->counts);
-    result->time = r->run.simulation->master->time;
-    result->counted = result->time - r->set->from;
-    if (!r->recorder) return r->run.outcome;
-    bough_status end = bough_recorder_finish(r->recorder, &r->run.outcome);
-    return bough_is_ok(&r->run.outcome) ? end : r->run.outcome;
+    bough_run *run = &r->run;
+    const bough_master *m = run->simulation->master;
+    double interval = r->series ? r->study->interval : run->simulation->scene->simulation.output.interval;
+    if (r->series) r->series->filled = 0;
+    bough_run_record_at(run, (bough_run_record){interval, .sample = sample, .self = r});
+    run->beside = r->study->is.parallel; // these have one thread each
+    run->stop = r->drive->stop;
+    run->progress = &r->drive->progress;
+    bough_run_all(run);
+    assert(!r->series || !bough_is_ok(&run->outcome) || r->series->filled == r->series->n_row);
+    if (r->series) gather_estimates(r);
+    if (!r->series && bough_is_ok(&run->outcome)) run->outcome = judge(arena, r);
+    if (!r->series) bough_counts_finish(&result->counts);
+    result->cpu = run->cpu_s;
+    result->wall = run->wall_s;
+    result->time = m->time;
+    result->counted = m->time - r->study->from;
+    result->warned = m->verdict[0] != '\0';
+    result->coupling = bough_monitor_report(m->monitor, m->coupling);
+    if (r->recorder) status = bough_recorder_finish(r->recorder, &run->outcome);
+    return bough_is_ok(&run->outcome) ? status : run->outcome;
 }
 
-bough_status bough_case_run(const bough_load_set *set, const bough_load_case *c, const char *folder,
-                            bool (*stop)(void), bough_case_result *result) {
+static double cpu_clock(void) {
+    struct timespec now;
+    clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
+    return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
+}
+
+// With the building.
+static void run_timed(case_run *r) {
     double wall = bough_wall_clock(), cpu = cpu_clock();
-    case_run r = {.set = set,
-                  .chosen_case = c,
-                  .folder = folder,
-                  .stop = stop,
-                  .result = result,
-                  .counts = &result->counts};
-    result->outcome = bough_arena_use(run_in, &r);
-    result->cpu = cpu_clock() - cpu;
-    result->wall = bough_wall_clock() - wall;
-    if (bough_study_ends(result->outcome.code)) return result->outcome;
+    r->result->outcome = bough_arena_use(run_in, r);
+    r->result->cpu = cpu_clock() - cpu;
+    r->result->wall = bough_wall_clock() - wall;
+}
+
+// -- repeats --------------------------------------------------------------------------------------
+
+static int compare_numbers(const void *a, const void *b) {
+    double x = *(const double *)a, y = *(const double *)b;
+    return (x > y) - (x < y);
+}
+
+bough_spread bough_spread_of(const double *values, int n) {
+    double sorted[BOUGH_STUDY_REPEATS];
+    memcpy(sorted, values, (size_t)n * sizeof *values);
+    qsort(sorted, (size_t)n, sizeof *sorted, compare_numbers);
+    return (bough_spread){0.5 * (sorted[(n - 1) / 2] + sorted[n / 2]), sorted[n / 4], sorted[n - 1 - n / 4]};
+}
+
+// A run that fails says something about its settings, memory, files and interrupts do not.
+static bool ends_study(bough_code code) {
+    return code == BOUGH_INTERRUPTED || code == BOUGH_OUT_OF_MEMORY || code == BOUGH_IO;
+}
+
+static void run_repeatedly(case_run *r, int repeat) {
+    bough_case_result *result = r->result;
+    double wall[BOUGH_STUDY_REPEATS] = {0}, cpu[BOUGH_STUDY_REPEATS] = {0};
+    int n = 0;
+    assert(repeat >= 1 && repeat <= BOUGH_STUDY_REPEATS);
+    while (n < repeat && bough_is_ok(&result->outcome)) {
+        r->recorder = NULL;
+        result->outcome = bough_arena_use(run_in, r);
+        wall[n] = result->wall;
+        cpu[n] = result->cpu;
+        n++;
+    }
+    // The times of a failed repeat are its own: they belong to the time it reached.
+    if (!bough_is_ok(&result->outcome)) return;
+    result->wall = bough_spread_of(wall, n).median;
+    result->cpu = bough_spread_of(cpu, n).median;
+}
+
+bough_status bough_case_run(const bough_study *study, const bough_case *c, int repeat,
+                            bough_study_drive *drive, bough_study_series *series, bough_case_result *result) {
+    case_run r = {study, c, drive, series, result};
+    *result = (bough_case_result){.outcome = bough_ok(), .counts = result->counts};
+    for (int i = 0; i < study->n_measure; i++) result->error[i] = (double)NAN;
+    if (series)
+        run_repeatedly(&r, repeat);
+    else
+        run_timed(&r);
+    if (ends_study(result->outcome.code)) return result->outcome;
     result->done = true;
     return bough_ok();
 }

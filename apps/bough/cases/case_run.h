@@ -1,25 +1,50 @@
-// One case of a load set: its run and the counts of its channels.
-#ifndef BOUGH_APPS_STUDY_CASE_RUN_H
-#define BOUGH_APPS_STUDY_CASE_RUN_H
+// The run of one case: sampled channels or their statistics, times, and the run's own estimates.
+#ifndef BOUGH_APPS_CASES_CASE_RUN_H
+#define BOUGH_APPS_CASES_CASE_RUN_H
 
-#include "apps/bough/cases/load_set.h"
+#include "apps/bough/cases/compare.h"
+#include "apps/bough/cases/counts.h"
+#include "apps/bough/results/progress.h"
+#include "cosim/watch/monitor.h"
 
 typedef struct bough_case_result {
     bough_status outcome; // BOUGH_FAILED with a diagnosis: the run ended there
+    bool done;            // ended, well or not
     double time;          // reached [s]
-    double counted;       // of it after the load set's `from` [s]
-    double cpu, wall;     // of building and stepping [s]
+    double wall, cpu;     // of the stepping, medians of the repeats; of statistics with the building [s]
+
+    // compared
+    bool warned; // before the run
+    bough_coupling_report coupling;
+    double error[BOUGH_STUDY_MEASURES];    // NaN when the run failed
+    double estimate[BOUGH_STUDY_MEASURES]; // the run's own of the same; NaN where it has none
+
+    // with statistics
+    double counted; // of the time after the study's `from` [s]
     bough_counts counts;
-    bool done;
 } bough_case_result;
 
-// An empty result whose memory is the arena's.
-bough_case_result bough_case_take(bough_arena *arena, const bough_load_set *set);
+// An empty result with room for statistics, whose memory is the arena's.
+bough_case_result bough_case_take(bough_arena *arena, const bough_study *study);
 
-// Runs the case on one thread. The outcome of the run is in the result; the status is not BOUGH_OK when
-// the whole study must end: BOUGH_INTERRUPTED, BOUGH_OUT_OF_MEMORY, BOUGH_IO. The series, if the set asks for
-// them, are written to `folder`.
-bough_status bough_case_run(const bough_load_set *set, const bough_load_case *c, const char *folder,
-                            bool (*stop)(void), bough_case_result *result);
+// Median and quartiles of at most BOUGH_STUDY_REPEATS values.
+enum { BOUGH_STUDY_REPEATS = 99 };
+typedef struct bough_spread {
+    double median, low, high;
+} bough_spread;
+bough_spread bough_spread_of(const double *values, int n);
+
+// How the runs are driven.
+typedef struct bough_study_drive {
+    bool (*stop)(void);      // asked before each step; NULL: never stops
+    bough_progress progress; // of the terminal's line, labelled by what runs
+    const char *folder;      // where every run writes all its channels; NULL: nowhere
+} bough_study_drive;
+
+// Runs a case `repeat` times, and samples the study's channels into `series`, or NULL: into the result's
+// counts. The outcome of the run is in the result; the status is not BOUGH_OK when the whole study must end:
+// BOUGH_INTERRUPTED, BOUGH_OUT_OF_MEMORY, BOUGH_IO. The errors are not computed.
+bough_status bough_case_run(const bough_study *study, const bough_case *c, int repeat,
+                            bough_study_drive *drive, bough_study_series *series, bough_case_result *result);
 
 #endif

@@ -3,11 +3,11 @@
 #include <string.h>
 
 // Hours, or of events their number, that a case stands for.
-static double hours_of(const bough_load_set *set, int number) {
-    return bough_load_set_weight(set, &set->cases[number], 3600);
+static double hours_of(const bough_study *set, int number) {
+    return bough_case_weight(set, &set->cases[number], 3600);
 }
 
-bough_lifetime bough_lifetime_take(bough_arena *arena, const bough_load_set *set) {
+bough_lifetime bough_lifetime_take(bough_arena *arena, const bough_study *set) {
     size_t n = (size_t)set->n_channel;
     bough_lifetime l = {.set = set, .channel = bough_arena_take(arena, n * sizeof *l.channel)};
     double *rows = bough_arena_doubles(arena, 2 * n * n);
@@ -31,7 +31,7 @@ static double factor_of(const bough_load_group *g, const char *unit, double valu
     return sign * value < 0 ? g->favourable : g->factor;
 }
 
-static void add_extreme(bough_extreme *e, const bough_load_set *set, int number, int channel, double value,
+static void add_extreme(bough_extreme *e, const bough_study *set, int number, int channel, double value,
                         double at, const double *row, int sign) {
     double factor = factor_of(&set->group[set->cases[number].group], set->unit[channel], value, sign);
     if (e->found && !(sign * factor * value > sign * e->factor * e->value)) return;
@@ -62,7 +62,7 @@ static void add_fatigue(bough_lifetime *l, int i, const bough_channel_counts *c,
 }
 
 void bough_lifetime_add(bough_lifetime *l, int number, const bough_case_result *r) {
-    const bough_load_set *set = l->set;
+    const bough_study *set = l->set;
     l->simulated += r->done ? r->time : 0;
     l->cpu += r->done ? r->cpu : 0;
     if (!r->done || !bough_is_ok(&r->outcome)) {
@@ -71,7 +71,7 @@ void bough_lifetime_add(bough_lifetime *l, int number, const bough_case_result *
         l->lacking += l->total > 0 ? hours_of(set, number) / l->total : 1. / set->n_case;
         return;
     }
-    double weight = bough_load_set_weight(set, &set->cases[number], r->counted);
+    double weight = bough_case_weight(set, &set->cases[number], r->counted);
     l->hours += weight * r->counted / 3600;
     for (int i = 0; i < set->n_channel; i++) {
         const bough_channel_counts *c = &r->counts.channel[i];

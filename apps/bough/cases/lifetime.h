@@ -26,7 +26,7 @@ typedef struct bough_lifetime_channel {
 } bough_lifetime_channel;
 
 typedef struct bough_lifetime {
-    const bough_load_set *set;
+    const bough_study *set;
     bough_lifetime_channel *channel; // (n_channel)
     int n_failed, n_missing;         // cases
     double hours;                    // of the life that are in the sums
@@ -35,7 +35,7 @@ typedef struct bough_lifetime {
     double simulated, cpu;           // of all runs [s]
 } bough_lifetime;
 
-bough_lifetime bough_lifetime_take(bough_arena *arena, const bough_load_set *set);
+bough_lifetime bough_lifetime_take(bough_arena *arena, const bough_study *set);
 
 // Adds the next case. A result that is not done counts as missing.
 void bough_lifetime_add(bough_lifetime *l, int number, const bough_case_result *result);

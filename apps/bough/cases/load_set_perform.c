@@ -1,20 +1,20 @@
 #include "apps/bough/cases/load_set_perform.h"
 
-#include "apps/bough/config/schema.h"
-#include "apps/bough/results/folder.h"
-#include "apps/bough/results/progress.h"
 #include "apps/bough/cases/case_claim.h"
 #include "apps/bough/cases/case_file.h"
 #include "apps/bough/cases/load_set_plot.h"
 #include "apps/bough/cases/load_set_tables.h"
 #include "apps/bough/cases/result_file.h"
 #include "apps/bough/cases/study_batch.h"
+#include "apps/bough/config/schema.h"
+#include "apps/bough/results/folder.h"
+#include "apps/bough/results/progress.h"
 
 #include <stdlib.h>
 #include <string.h>
 
 typedef struct work {
-    const bough_load_set *set;
+    const bough_study *set;
     const bough_study_options *options;
     bough_batch batch; // a piece is a case of the list
     int claims;
@@ -25,10 +25,38 @@ typedef struct work {
 
 // -- a case ---------------------------------------------------------------------------------------
 
+// A piece of text, quoted for a shell where it must be.
+static void quote(FILE *f, const char *text) {
+    if (!strpbrk(text, " \t\"'\\$`&|;<>()[]{}*?#~!")) {
+        fputs(text, f);
+        return;
+    }
+    fputc('\'', f);
+    for (const char *c = text; *c; c++) {
+        if (*c == '\'')
+            fputs("'\\''", f);
+        else
+            fputc(*c, f);
+    }
+    fputc('\'', f);
+}
+
+// That runs the case alone.
+static void put_command(FILE *f, const bough_case *c) {
+    fputs("bough run ", f);
+    quote(f, c->scene);
+    for (int i = 0; i < c->n_set; i++) {
+        fputs(" --set ", f);
+        quote(f, c->set[i]);
+    }
+}
+
 static void tell_failure(const work *w, int number, const bough_status *outcome, FILE *f) {
-    const bough_load_case *c = &w->set->cases[number];
-    fprintf(f, "case %d failed (%s%s%s): %s\n    %s\n", number + 1, w->set->group[c->group].name,
-            c->settings[0] ? ", " : "", c->settings, outcome->message, c->command);
+    const bough_case *c = &w->set->cases[number];
+    fprintf(f, "case %d failed (%s%s%s): %s\n    ", number + 1, w->set->group[c->group].name,
+            c->settings[0] ? ", " : "", c->settings, outcome->message);
+    put_command(f, c);
+    fputc('\n', f);
 }
 
 static void count(work *w, int number, const bough_case_result *r) {
@@ -48,7 +76,8 @@ static bough_status run_case(bough_arena *arena, work *w, int number) {
     snprintf(name, sizeof name, "cases/%06d", number + 1);
     bough_status status = bough_folder_path(w->options->folder, name, folder);
     if (bough_is_ok(&status)) {
-        status = bough_case_run(w->set, &w->set->cases[number], folder, w->options->stop, &result);
+        bough_study_drive drive = {.stop = w->options->stop, .folder = w->set->series ? folder : NULL};
+        status = bough_case_run(w->set, &w->set->cases[number], 1, &drive, NULL, &result);
     }
     if (bough_is_ok(&status)) {
         status = bough_case_write(w->options->folder, w->set, number, &result);
@@ -95,7 +124,7 @@ static bough_status remove_tables(const char *folder) {
 }
 
 static bough_status check_name(bough_arena *arena, const work *w) {
-    const bough_load_set *s = w->set;
+    const bough_study *s = w->set;
     const char **names = bough_arena_take(arena, (size_t)s->n_group * sizeof *names);
     for (int i = 0; i < s->n_group; i++) {
         names[i] = s->group[i].name;
@@ -151,7 +180,7 @@ static bough_status read_all(bough_arena *arena, const work *w, bough_case_table
 
 // What the tables are made of.
 typedef struct conclusion {
-    const bough_load_set *set;
+    const bough_study *set;
     const char *folder;
     const bough_lifetime *lifetime;
     const bough_case_plot *plot;
@@ -160,9 +189,9 @@ typedef struct conclusion {
 
 static void print_table(const void *self, FILE *f) {
     const conclusion *c = self;
-    const bough_load_set *s = c->set;
+    const bough_study *s = c->set;
     fprintf(f, "%s\n", s->title ? s->title : s->file);
-    if (s->sweep) {
+    if (!s->is.weighted) {
         fprintf(f, "%d runs, %d failed; statistics of %d channels from %g s on in cases.csv\n", s->n_case,
                 c->lifetime->n_failed, s->n_channel, s->from);
     } else {
@@ -172,7 +201,7 @@ static void print_table(const void *self, FILE *f) {
 }
 
 static bough_status write_all(const conclusion *c) {
-    bool sweep = c->set->sweep;
+    bool sweep = !c->set->is.weighted;
     bough_status status = sweep ? bough_ok() : bough_lifetime_write(c->lifetime, c->folder);
     if (bough_is_ok(&status)) status = bough_folder_write(c->folder, "table.txt", print_table, c);
     if (!bough_is_ok(&status)) return status;
@@ -181,7 +210,7 @@ static bough_status write_all(const conclusion *c) {
 
 static bough_status judge(const work *w, const bough_lifetime *l) {
     if (l->n_failed == 0) return bough_ok();
-    if (w->set->sweep) {
+    if (!w->set->is.weighted) {
         return bough_fail(BOUGH_FAILED, "%d of %d runs failed: see table.txt", l->n_failed, w->set->n_case);
     }
     return bough_fail(BOUGH_FAILED,
@@ -239,7 +268,7 @@ static bough_status conclude(bough_arena *arena, const work *w) {
 
 bough_status bough_load_set_perform(bough_arena *arena, const bough_study *study,
                                     const bough_study_options *options) {
-    work w = {.set = study->load_set, .options = options};
+    work w = {.set = study, .options = options};
     w.batch = (bough_batch){options, "cases", .counts = !options->quiet, .perform = perform_case, .self = &w};
     bough_status status = start(arena, &w);
     if (bough_is_ok(&status)) status = run_cases(arena, &w);

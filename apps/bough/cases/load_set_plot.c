@@ -28,7 +28,7 @@ static void draw_axes(bough_panel *p, const char *channel, const char *unit, con
 
 // -- sweep ----------------------------------------------------------------------------------------
 
-bough_case_plot bough_case_plot_take(bough_arena *arena, const bough_load_set *set) {
+bough_case_plot bough_case_plot_take(bough_arena *arena, const bough_study *set) {
     int n = set->n_channel < BOUGH_CASE_PANELS ? set->n_channel : BOUGH_CASE_PANELS;
     size_t room = 3 * (size_t)n * (size_t)set->n_case;
     return (bough_case_plot){set, n, bough_arena_doubles(arena, room)};
@@ -46,7 +46,7 @@ void bough_case_plot_add(bough_case_plot *plot, int number, const bough_case_res
 }
 
 // The value of the grid's first key as a number; its place in the list where it is none.
-static double across_of(const bough_load_set *s, int number) {
+static double across_of(const bough_study *s, int number) {
     const bough_study_axis *axis = &s->grid.axis[0];
     int i = s->cases[number].index[0];
     char *end;
@@ -55,7 +55,7 @@ static double across_of(const bough_load_set *s, int number) {
 }
 
 static void draw_channel(const bough_case_plot *plot, int k, FILE *f) {
-    const bough_load_set *s = plot->set;
+    const bough_study *s = plot->set;
     bough_panel p = panel_at(f, k, false);
     for (int i = 0; i < s->n_case; i++) {
         bough_axis_include(&p.x, across_of(s, i));

@@ -1,7 +1,7 @@
 #include "apps/bough/cases/load_set_tables.h"
 
-#include "apps/bough/results/folder.h"
 #include "apps/bough/cases/study_table.h"
+#include "apps/bough/results/folder.h"
 
 #include <inttypes.h>
 #include <math.h>
@@ -9,9 +9,9 @@
 
 // -- cases ----------------------------------------------------------------------------------------
 
-static void head_cases(const bough_load_set *s, FILE *f) {
+static void head_cases(const bough_study *s, FILE *f) {
     fputs("case,", f);
-    if (s->sweep) {
+    if (!s->is.weighted) {
         for (int i = 0; i < s->grid.n; i++) {
             bough_csv_text(f, s->grid.axis[i].key);
             fputc(',', f);
@@ -34,7 +34,7 @@ static const char *outcome_of(const bough_case_result *r) {
     return bough_is_ok(&r->outcome) ? "ok" : "failed";
 }
 
-static void put_channel(const bough_load_set *s, const bough_case_result *r, int i, FILE *f) {
+static void put_channel(const bough_study *s, const bough_case_result *r, int i, FILE *f) {
     const bough_channel_counts *c = &r->counts.channel[i];
     const bough_sample_statistics *x = &c->statistics;
     fprintf(f, ",%.10g,%.10g,%.10g,%.10g", x->least, x->most, x->mean, bough_sample_statistics_deviation(x));
@@ -43,7 +43,7 @@ static void put_channel(const bough_load_set *s, const bough_case_result *r, int
     }
 }
 
-bough_status bough_case_tables_open(const char *folder, const bough_load_set *set, bough_case_tables *t) {
+bough_status bough_case_tables_open(const char *folder, const bough_study *set, bough_case_tables *t) {
     *t = (bough_case_tables){.set = set};
     bough_status status = bough_folder_open(folder, "cases.csv", t->cases_path, &t->cases);
     if (bough_is_ok(&status)) status = bough_folder_open(folder, "costs.csv", t->costs_path, &t->costs);
@@ -54,12 +54,12 @@ bough_status bough_case_tables_open(const char *folder, const bough_load_set *se
 }
 
 void bough_case_tables_add(bough_case_tables *t, int number, const bough_case_result *r) {
-    const bough_load_set *s = t->set;
-    const bough_load_case *c = &s->cases[number];
+    const bough_study *s = t->set;
+    const bough_case *c = &s->cases[number];
     FILE *f = t->cases;
     bool good = r->done && bough_is_ok(&r->outcome);
     fprintf(f, "%d,", number + 1);
-    if (s->sweep) {
+    if (!s->is.weighted) {
         for (int i = 0; i < s->grid.n; i++) {
             bough_csv_text(f, s->grid.axis[i].value.item[c->index[i]].value);
             fputc(',', f);
@@ -68,7 +68,7 @@ void bough_case_tables_add(bough_case_tables *t, int number, const bough_case_re
         bough_csv_text(f, s->group[c->group].name);
         fputc(',', f);
         bough_csv_text(f, c->settings);
-        fprintf(f, ",%.10g,", good ? bough_load_set_weight(s, c, r->counted) : 0);
+        fprintf(f, ",%.10g,", good ? bough_case_weight(s, c, r->counted) : 0);
     }
     fputs(outcome_of(r), f);
     for (int i = 0; i < s->n_channel; i++) {
@@ -101,7 +101,7 @@ bough_status bough_case_tables_close(bough_case_tables *t, bool keep) {
 
 static void put_equivalent(const void *self, FILE *f) {
     const bough_lifetime *l = self;
-    const bough_load_set *s = l->set;
+    const bough_study *s = l->set;
     fputs("channel,unit", f);
     for (int k = 0; k < s->n_slope; k++) fprintf(f, ",DEL(m=%g; %g cycles)", s->slope[k], s->cycles);
     fputs(",cycles in the life\n", f);
@@ -113,9 +113,9 @@ static void put_equivalent(const void *self, FILE *f) {
 }
 
 static void put_extreme(const bough_lifetime *l, int i, const char *what, const bough_extreme *e, FILE *f) {
-    const bough_load_set *s = l->set;
+    const bough_study *s = l->set;
     if (!e->found) return;
-    const bough_load_case *c = &s->cases[e->number];
+    const bough_case *c = &s->cases[e->number];
     fprintf(f, "%s,%s,%s,%.17g,%g,%.17g,%d,", s->channel[i], s->unit[i], what, e->value, e->factor,
             e->factor * e->value, e->number + 1);
     bough_csv_text(f, s->group[c->group].name);
@@ -128,7 +128,7 @@ static void put_extreme(const bough_lifetime *l, int i, const char *what, const 
 
 static void put_extremes(const void *self, FILE *f) {
     const bough_lifetime *l = self;
-    const bough_load_set *s = l->set;
+    const bough_study *s = l->set;
     fputs("channel,unit,extreme,characteristic,safety factor,design,case,load case,settings,time [s]", f);
     for (int k = 0; k < s->n_channel; k++) fprintf(f, ",%s [%s]", s->channel[k], s->unit[k]);
     fputc('\n', f);
@@ -175,7 +175,7 @@ bough_status bough_lifetime_write(const bough_lifetime *l, const char *folder) {
 // -- for people -----------------------------------------------------------------------------------
 
 static void print_extreme(const bough_lifetime *l, const bough_extreme *e, FILE *f) {
-    const bough_load_set *s = l->set;
+    const bough_study *s = l->set;
     if (!e->found) {
         fprintf(f, " %12s %6s %12s %-24s", "-", "", "", "");
         return;
@@ -187,7 +187,7 @@ static void print_extreme(const bough_lifetime *l, const bough_extreme *e, FILE 
 }
 
 static void print_extremes(const bough_lifetime *l, FILE *f) {
-    const bough_load_set *s = l->set;
+    const bough_study *s = l->set;
     const char *const title[] = {"smallest", "largest"};
     fprintf(f, "Extremes: characteristic value, partial safety factor of forces and moments, design value\n");
     fprintf(f, "%-12s %-6s", "channel", "unit");
@@ -204,7 +204,7 @@ static void print_extremes(const bough_lifetime *l, FILE *f) {
 }
 
 void bough_lifetime_print(const bough_lifetime *l, FILE *f) {
-    const bough_load_set *s = l->set;
+    const bough_study *s = l->set;
     fprintf(f, "%d cases, %.6g hours of a lifetime of %g years; equivalent loads at %g cycles\n", s->n_case,
             l->hours, s->lifetime, s->cycles);
     if (l->n_failed + l->n_missing > 0) {

@@ -6,12 +6,12 @@
 
 // cases.csv, a row a case with its channels' statistics, and costs.csv beside it, row by row.
 typedef struct bough_case_tables {
-    const bough_load_set *set;
+    const bough_study *set;
     FILE *cases, *costs;
     char cases_path[4096], costs_path[4096];
 } bough_case_tables;
 
-bough_status bough_case_tables_open(const char *folder, const bough_load_set *set, bough_case_tables *tables);
+bough_status bough_case_tables_open(const char *folder, const bough_study *set, bough_case_tables *tables);
 void bough_case_tables_add(bough_case_tables *t, int number, const bough_case_result *result);
 
 // Gives the files their names, or with `keep` false removes them.

@@ -1,144 +1,13 @@
 // The keys of a study and their reading.
 #include "apps/bough/cases/study.h"
 
-#include "apps/bough/cases/load_set.h"
+#include "apps/bough/cases/rainflow.h"
 #include "apps/bough/cases/study_internal.h"
 #include "apps/bough/config/schema_keys.h"
 #include "core/base/input_file.h"
 
-#include <errno.h>
 #include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
-
-// -- replacements ---------------------------------------------------------------------------------
-
-// A value in one line: 'text', [1, 2], {a: [1, 2]}. False when it is deeper than the stack of calls
-// should be.
-static bool put_flow(FILE *f, const bough_node *value) {
-    enum { DEEPEST = 8 };
-    if (value->height > DEEPEST) return false;
-    if (value->kind == BOUGH_SCALAR) {
-        if (value->quoted) fputc('\'', f);
-        for (const char *c = value->text; *c; c++) {
-            if (value->quoted && *c == '\'') fputc('\'', f);
-            fputc(*c, f);
-        }
-        if (value->quoted) fputc('\'', f);
-        return true;
-    }
-    bool mapping = value->kind == BOUGH_MAPPING;
-    fputc(mapping ? '{' : '[', f);
-    for (int i = 0; i < value->n; i++) {
-        if (i) fputs(", ", f);
-        if (mapping) fprintf(f, "%s: ", value->key[i]->text);
-        if (!put_flow(f, value->value[i])) return false;
-    }
-    fputc(mapping ? '}' : ']', f);
-    return true;
-}
-
-static const char *write_flow(bough_arena *arena, const bough_node *value) {
-    char *text = NULL;
-    size_t size = 0;
-    FILE *f = open_memstream(&text, &size);
-    if (!f) return NULL;
-    bool whole = put_flow(f, value);
-    fclose(f);
-    const char *kept = whole ? bough_arena_string(arena, text) : NULL;
-    free(text);
-    return kept;
-}
-
-// A value that was quoted is quoted again in the replacement, so that it stays what it is.
-static void read_setting(bough_schema_reader *r, const char *key, const bough_node *value,
-                         bough_study_setting *setting) {
-    char shown[64];
-    const char *flow = write_flow(r->arena, value), *text = value->kind == BOUGH_SCALAR ? value->text : flow;
-    if (!flow || text[0] == '\0') {
-        bough_schema_error(r, value, key, "expected one value, got %s", bough_node_shown(value, shown));
-        return;
-    }
-    size_t size = strlen(key) + strlen(flow) + 2;
-    char *set = bough_arena_take(r->arena, size);
-    snprintf(set, size, "%s=%s", key, flow);
-    *setting = (bough_study_setting){value, key, text, set};
-}
-
-static bool is_mapping(bough_schema_reader *r, const bough_node *node, const char *what) {
-    char shown[64];
-    if (node->kind == BOUGH_MAPPING && node->n > 0) return true;
-    bough_schema_error(r, node, "", "expected %s, got %s", what, bough_node_shown(node, shown));
-    return false;
-}
-
-void bough_study_read_settings(bough_schema_reader *r, const bough_node *node, void *field) {
-    bough_study_settings *settings = field;
-    if (!is_mapping(r, node, "keys of the scene with their values")) return;
-    settings->item = bough_arena_take(r->arena, (size_t)node->n * sizeof *settings->item);
-    settings->n = node->n;
-    for (int i = 0; i < node->n; i++) read_setting(r, node->key[i]->text, node->value[i], &settings->item[i]);
-}
-
-// -- grid -----------------------------------------------------------------------------------------
-
-// A value given twice would be run twice and count double.
-static void check_different(bough_schema_reader *r, const bough_study_axis *axis) {
-    const bough_study_settings *value = &axis->value;
-    for (int i = 1; i < value->n; i++) {
-        for (int k = 0; k < i && value->item[i].value && value->item[k].value; k++) {
-            if (strcmp(value->item[i].value, value->item[k].value) != 0) continue;
-            bough_schema_error(r, value->item[i].node, axis->key, "'%.80s' is given twice",
-                               value->item[i].value);
-            return;
-        }
-    }
-}
-
-static void read_axis(bough_schema_reader *r, const bough_node *key, const bough_node *values,
-                      bough_study_axis *axis) {
-    char shown[64];
-    *axis = (bough_study_axis){.node = key, .key = key->text, .label = key->text};
-    if (values->kind != BOUGH_SEQUENCE || values->n == 0) {
-        bough_schema_error(r, values, key->text, "expected a list of values, got %s",
-                           bough_node_shown(values, shown));
-        return;
-    }
-    axis->value.item = bough_arena_take(r->arena, (size_t)values->n * sizeof *axis->value.item);
-    axis->value.n = values->n;
-    for (int i = 0; i < values->n; i++) read_setting(r, key->text, values->value[i], &axis->value.item[i]);
-    check_different(r, axis);
-}
-
-static bool ends_with(const char *text, const char *end) {
-    size_t length = strlen(text), n = strlen(end);
-    return n <= length && strcmp(text + length - n, end) == 0;
-}
-
-// The last part of the key, or as many parts as tell it from the other axes' keys.
-static const char *short_label(const bough_study_grid *grid, int axis) {
-    const char *key = grid->axis[axis].key;
-    for (const char *label = key + strlen(key); label > key; label--) {
-        bool unique = label[-1] == '.' && *label;
-        for (int i = 0; unique && i < grid->n; i++)
-            unique = i == axis || !ends_with(grid->axis[i].key, label);
-        if (unique) return label;
-    }
-    return key;
-}
-
-void bough_study_read_grid(bough_schema_reader *r, const bough_node *node, void *field) {
-    bough_study_grid *grid = field;
-    if (!is_mapping(r, node, "keys of the scene, each with a list of values")) return;
-    if (node->n > BOUGH_STUDY_AXES) {
-        bough_schema_error(r, node, "", "expected at most %d keys, got %d", BOUGH_STUDY_AXES, node->n);
-        return;
-    }
-    grid->axis = bough_arena_take(r->arena, (size_t)node->n * sizeof *grid->axis);
-    grid->n = node->n;
-    for (int i = 0; i < node->n; i++) read_axis(r, node->key[i], node->value[i], &grid->axis[i]);
-    for (int i = 0; i < node->n; i++) grid->axis[i].label = short_label(grid, i);
-}
 
 // -- measures -------------------------------------------------------------------------------------
 
@@ -242,6 +111,110 @@ static void check_study(bough_schema_reader *r, void *item) {
 
 static const bough_schema study_schema = {
     SCHEMA("a study", bough_study, study_keys), .check = check_study};
+#define FILLS bough_load_group
+static const bough_key group_keys[] = {
+    {KEY(TEXT, name), .required = true, .example = "DLC1.2", .help = "name of the load case"},
+    {NAMED("scene", TEXT), AT(scene_name), .example = "parked.yaml",
+     .help = "scene of this load case; replaces the set's"},
+    {KEY(CUSTOM, set), .read = bough_study_read_settings, .form = "{KEY: VALUE, ...}",
+     .help = "replaced keys of its cases"},
+    {KEY(CUSTOM, grid), .read = bough_study_read_grid, .form = "{KEY: [VALUE, ...], ...}",
+     .help = "one case for each combination of the values; default one case"},
+    {KEY(NUMBER, weibull), .range = "[0, 1]", .fallback = "0", .example = "0.95",
+     .help = "share of all hours, distributed over the values of aero.wind.speed"},
+    {KEY(NUMBER, hours), .range = ">= 0", .fallback = "0", .example = "50",
+     .help = "hours in a year, of all its cases together"},
+    {KEY(NUMBER, events), .range = ">= 0", .fallback = "0", .example = "1000",
+     .help = "events in a year, of all its cases together; each run is one event"},
+    {KEY(NUMBER, factor), .range = "> 0", .fallback = "1.35", .example = "1.1",
+     .help = "partial safety factor of its extreme forces and moments"},
+    {KEY(NUMBER, favourable), .range = "(0, 1]", .fallback = "0.9", .example = "1",
+     .help = "factor of favourable loads in place of it: of a largest value below zero and a smallest "
+             "value above"},
+    {KEY(BOOLEAN, extremes), .fallback = "true", .help = "its extremes count"},
+};
+#undef FILLS
+
+static void check_group(bough_schema_reader *r, void *item) {
+    const bough_load_group *g = item;
+    if ((g->weibull > 0) + (g->hours > 0) + (g->events > 0) > 1) {
+        bough_schema_error(r, g->node, "", "expected at most one of 'weibull', 'hours', 'events'");
+    }
+}
+
+static const bough_schema group_schema = {
+    SCHEMA("a load case", bough_load_group, group_keys), .check = check_group};
+
+#define FILLS bough_load_wind
+static const bough_key wind_keys[] = {
+    {KEY(NUMBER, average), UNIT(SPEED), .range = "> 0", .required = true, .example = "10 m/s",
+     .help = "yearly mean at hub height"},
+    {KEY(NUMBER, shape), .range = "[1, 10]", .fallback = "2", .example = "2.1",
+     .help = "shape of the Weibull distribution; 2: Rayleigh distribution"},
+};
+#undef FILLS
+static const bough_schema wind_schema = {
+    SCHEMA("the wind's distribution", bough_load_wind, wind_keys)};
+
+#define FILLS bough_study
+#define HEAD(kinds)                                                                                \
+    {KEY(TEXT, title), .help = "one line of description"},                                         \
+    {KEY(CHOICE, kind), CHOICES(kinds), .required = true, .help = "kind of study"},                \
+    {KEY(CUSTOM, common), .read = bough_study_read_settings, .form = "{KEY: VALUE, ...}",          \
+     .help = "replaced keys of every case"},                                                       \
+    {KEY(NUMBER, from), UNIT(TIME), .range = ">= 0", .fallback = "0", .example = "30 s",           \
+     .help = "start of the statistics"},                                                           \
+    {NAMED("channels", TEXTS), AT(wanted), .count = 1, COUNT_AT(n_wanted),                         \
+     .example = "[RotSpeed, RootMyb1]", .help = "channels that are kept; default all"},            \
+    {KEY(BOOLEAN, series), .fallback = "false", .help = "every case keeps its channels.out"}
+
+static const bough_key sweep_keys[] = {
+    HEAD("sweep"),
+    {NAMED("scene", TEXT), AT(scene_name),
+     .help = "file of the scene, relative to the study; not given if the grid has the key 'scene'"},
+    {KEY(CUSTOM, grid), .read = bough_study_read_grid, .required = true,
+     .form = "{KEY: [VALUE, ...], ...}",
+     .help = "one run for each combination of the values; the key 'scene' takes files"},
+};
+static const bough_schema sweep_schema = {SCHEMA("a sweep", bough_study, sweep_keys)};
+
+static const bough_key set_keys[] = {
+    HEAD("load-set"),
+    {NAMED("scene", TEXT), AT(scene_name), .required = true,
+     .help = "file of the scene, relative to the study"},
+    {NAMED("slopes", NUMBERS), AT(slope), .range = "[1, 30]", .count = 1, .required = true,
+     COUNT_AT(n_slope), .example = "[4, 10]", .help = "exponents of the S-N curves"},
+    {NAMED("equivalent_cycles", NUMBER), AT(cycles), .range = "> 0", .fallback = "1e7",
+     .example = "2e6", .help = "number of cycles of the lifetime's damage-equivalent loads"},
+    {KEY(NUMBER, lifetime), .range = "> 0", .fallback = "20", .example = "25",
+     .help = "lifetime in years"},
+    {KEY(MAPPING, wind), .of = &wind_schema,
+     .help = "distribution of the wind speed, for 'weibull'"},
+    {NAMED("cases", LIST), AT(group), .of = &group_schema, .count = 1, .required = true,
+     COUNT_AT(n_group), .help = "design load cases"},
+};
+#undef FILLS
+
+static void check_set(bough_schema_reader *r, void *item) {
+    const bough_study *s = item;
+    if (s->n_slope > BOUGH_MOST_SLOPES) {
+        bough_schema_error(r, bough_node_find(s->node, "slopes"), "slopes",
+                           "expected at most %d, got %d", BOUGH_MOST_SLOPES, s->n_slope);
+    }
+    for (int i = 0; i < s->n_group; i++) {
+        const bough_load_group *g = &s->group[i];
+        if (g->weibull > 0 && !s->wind.node) {
+            bough_schema_error(r, g->node, "weibull", "needs the set's 'wind': its average speed");
+        }
+        for (int k = 0; k < i; k++) {
+            if (strcmp(s->group[k].name, g->name) != 0) continue;
+            bough_schema_error(r, g->node, "name", "'%.80s' is given twice", g->name);
+        }
+    }
+}
+
+static const bough_schema set_schema = {
+    SCHEMA("a load set", bough_study, set_keys), .check = check_set};
 // clang-format on
 
 // -- help -----------------------------------------------------------------------------------------
@@ -256,13 +229,13 @@ void bough_study_help(FILE *stream) {
           stream);
     bough_schema_help(&study_schema, 0, stream);
     fputs("\n## sweep\n\n", stream);
-    bough_schema_help(&bough_sweep_schema, 0, stream);
+    bough_schema_help(&sweep_schema, 0, stream);
     fputs("\n## load-set\n\n", stream);
-    bough_schema_help(&bough_load_set_schema, 0, stream);
+    bough_schema_help(&set_schema, 0, stream);
 }
 
 void bough_study_json_schema(FILE *stream) {
-    const bough_schema *schema[] = {&study_schema, &bough_sweep_schema, &bough_load_set_schema};
+    const bough_schema *schema[] = {&study_schema, &sweep_schema, &set_schema};
     bough_schema_json("A study of bough", schema, 3, stream);
 }
 
@@ -278,12 +251,12 @@ const char *bough_study_path(bough_arena *arena, const char *study, const char *
 }
 
 static bool find_scene(bough_arena *arena, bough_study *s, bough_errors *errors) {
-    s->scene = bough_study_path(arena, s->file, s->scene_name);
+    const char *scene = bough_study_path(arena, s->file, s->scene_name);
     char why[BOUGH_INPUT_REASON];
-    FILE *file = bough_input_open(s->scene, BOUGH_INPUT_TEXT, why);
+    FILE *file = bough_input_open(scene, BOUGH_INPUT_TEXT, why);
     if (!file) {
         bough_errors_add(errors, bough_node_find(s->node, "scene"), "scene",
-                         "file '%.200s' cannot be read: %s", s->scene, why);
+                         "file '%.200s' cannot be read: %s", scene, why);
         return false;
     }
     fclose(file);
@@ -306,44 +279,63 @@ static bool is_scene(const char *path, const bough_node *root, bough_errors *err
     return true;
 }
 
-static bool is_load_set(const bough_node *root) {
-    const bough_node *kind = bough_node_find(root, "kind");
-    return kind && kind->kind == BOUGH_SCALAR &&
-           (strcmp(kind->text, "sweep") == 0 || strcmp(kind->text, "load-set") == 0);
+// The kinds, by bough_study_kind. One that is not known is an error of the first one's key.
+static const struct {
+    const char *word;
+    const bough_schema *schema;
+    bough_study_traits is;
+} kinds[] = {
+    [BOUGH_STUDY_WORK_PRECISION] = {"work-precision", &study_schema, {.compared = true}},
+    [BOUGH_STUDY_TIMING] = {"timing", &study_schema, {.compared = true}},
+    [BOUGH_STUDY_STABILITY] = {"stability", &study_schema, {.compared = true, .parallel = true}},
+    [BOUGH_STUDY_SWEEP] = {"sweep", &sweep_schema, {.parallel = true}},
+    [BOUGH_STUDY_LOAD_SET] = {"load-set", &set_schema, {.parallel = true, .weighted = true}},
+};
+
+static int find_kind(const bough_node *root) {
+    const bough_node *word = bough_node_find(root, "kind");
+    int k = word && word->kind == BOUGH_SCALAR ? COUNT(kinds) - 1 : 0;
+    while (k > 0 && strcmp(kinds[k].word, word->text) != 0) k--;
+    return k;
 }
 
-// The kinds that have keys of their own.
-static bough_status read_load_set(bough_arena *arena, const bough_node *root, bough_errors *errors,
-                                  bough_study *s) {
-    bough_status status;
-    s->load_set = bough_load_set_read(arena, s->file, root, s->threads, errors, &status);
-    if (s->load_set) s->kind = s->load_set->sweep ? BOUGH_STUDY_SWEEP : BOUGH_STUDY_LOAD_SET;
-    return status;
+// A study without load cases is one.
+static void make_group(bough_arena *arena, bough_study *s) {
+    s->group = bough_arena_take(arena, sizeof *s->group);
+    s->n_group = 1;
+    *s->group = (bough_load_group){.node = s->node,
+                                   .name = kinds[s->kind].word,
+                                   .grid = s->grid,
+                                   .factor = 1,
+                                   .favourable = 1,
+                                   .extremes = true};
+}
+
+bough_study *bough_study_parse(bough_arena *arena, const char *path, const bough_node *root,
+                               bough_errors *errors) {
+    bough_study *s = bough_arena_take(arena, sizeof *s);
+    bough_schema_reader reader = {.arena = arena, .errors = errors, .directory = ""};
+    int kind = find_kind(root);
+    bough_schema_read(&reader, kinds[kind].schema, root, s);
+    if (errors->n > 0) return NULL;
+    s->file = bough_arena_string(arena, path);
+    s->kind = kind;
+    s->is = kinds[kind].is;
+    if (!s->is.weighted) make_group(arena, s);
+    if (!s->is.compared || find_scene(arena, s, errors)) bough_study_expand(arena, s, errors);
+    return errors->n > 0 ? NULL : s;
 }
 
 bough_status bough_study_read(bough_arena *arena, const char *path, int threads, bough_errors *errors,
                               bough_study **study) {
     *study = NULL;
-    bough_study *s = bough_arena_take(arena, sizeof *s);
+    bough_study *s = NULL;
     bough_node *root = bough_text_read(arena, path, errors);
-    if (!root) return finish(path, errors);
-    s->file = bough_arena_string(arena, path);
-    s->threads = threads;
-    if (is_scene(path, root, errors)) return finish(path, errors);
-    if (is_load_set(root)) {
-        bough_status status = read_load_set(arena, root, errors, s);
-        if (bough_is_ok(&status)) status = finish(path, errors);
-        if (bough_is_ok(&status)) *study = s;
-        return status;
-    }
-    bough_schema_reader reader = {.arena = arena, .errors = errors, .directory = ""};
-    bough_schema_read(&reader, &study_schema, root, s);
+    if (root && !is_scene(path, root, errors)) s = bough_study_parse(arena, path, root, errors);
     bough_status status = finish(path, errors);
     if (!bough_is_ok(&status)) return status;
-    if (find_scene(arena, s, errors)) {
-        bough_study_expand(arena, s, errors);
-        status = bough_study_check(arena, s, errors);
-    }
+    s->threads = threads;
+    status = bough_study_check(arena, s, errors);
     if (bough_is_ok(&status)) status = finish(path, errors);
     if (bough_is_ok(&status)) *study = s;
     return status;

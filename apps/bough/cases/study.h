@@ -1,5 +1,7 @@
-// A study: many runs of one scene and what is asked of them, as the user said it, checked down to
-// the last run's settings before the first run starts.
+// A study: the runs of one scene or more and what is asked of them, checked down to the last run's settings
+// before the first run starts. Runs are compared with a reference, or have statistics of their channels;
+// those of a load set also have load cycles, load levels and extremes, weighted by the number of times that a
+// case occurs in the turbine's lifetime.
 //
 // All memory belongs to the arena given to bough_study_read. Every struct begins with its place in
 // the text.
@@ -13,7 +15,7 @@
 #include <stdint.h>
 #include <stdio.h>
 
-enum { BOUGH_STUDY_AXES = 6, BOUGH_STUDY_MEASURES = 8, BOUGH_STUDY_CELLS = 10000 };
+enum { BOUGH_STUDY_AXES = 6, BOUGH_STUDY_MEASURES = 8, BOUGH_MOST_CASES = 100000 };
 
 typedef enum bough_study_kind {
     BOUGH_STUDY_WORK_PRECISION,
@@ -22,6 +24,13 @@ typedef enum bough_study_kind {
     BOUGH_STUDY_SWEEP,
     BOUGH_STUDY_LOAD_SET,
 } bough_study_kind;
+
+// What a kind asks of its runs.
+typedef struct bough_study_traits {
+    bool compared; // each with a reference; else each has statistics of its channels
+    bool parallel; // several at a time, each on one thread, or in parts
+    bool weighted; // loads of a lifetime
+} bough_study_traits;
 
 // A replacement in the scene.
 typedef struct bough_study_setting {
@@ -74,41 +83,84 @@ typedef struct bough_study_measure {
     const char *unit; // of the scaled difference; the channels' own unless given
 } bough_study_measure;
 
+// Cases of one kind, a design load case: a grid of settings.
+typedef struct bough_load_group {
+    const bough_node *node;
+    const char *name;
+    const char *scene_name; // in place of the set's; NULL: that
+    bough_study_settings set;
+    bough_study_grid grid;
+    // How often: one of these, or none for extremes alone.
+    double weibull;    // share of all hours, spread over the speeds of the grid; 0: not
+    double hours;      // a year, of all cases together; 0: not
+    double events;     // a year, of all cases together; 0: not
+    double factor;     // partial safety factor of extreme loads
+    double favourable; // of those that relieve: the largest below zero, the smallest above
+    bool extremes;     // whether they count
+} bough_load_group;
+
+typedef struct bough_load_wind {
+    const bough_node *node;
+    double average; // of the year at hub height [m/s]
+    double shape;   // of Weibull's distribution; 2: Rayleigh's
+} bough_load_wind;
+
 // One run of the study.
-typedef struct bough_study_cell {
-    int index[BOUGH_STUDY_AXES]; // of its value on each axis; −1 for the reference
+typedef struct bough_case {
+    int group;
+    int index[BOUGH_STUDY_AXES]; // of its value on each axis of the group; −1 where a reference has none
+    const char *scene;           // path
     int n_set;
     const char **set;     // (n_set) replacements in the scene
+    const char *settings; // those that tell it from the others, "scheme=ramp, macro_step=5 ms"
     int reference;        // to compare with
+    double share;         // of its group's hours or events
     uint64_t files;       // fingerprint of the scene's files, which must stay as they are; 0: may change
-    const char *settings; // those that tell it from the other cells, "scheme=ramp, macro_step=5 ms"
-} bough_study_cell;
+    uint64_t fingerprint; // of all that its result depends on
+} bough_case;
 
 typedef struct bough_study {
     const bough_node *node;
     const char *file; // path of the study
-    const char *title;
-    const char *scene_name, *scene; // as written; path
-    int kind;                       // bough_study_kind
-    bough_study_settings reference, common;
-    bough_study_grid grid;
+    const char *title, *scene_name;
+    int kind; // bough_study_kind
+    bough_study_traits is;
+    bough_study_settings common;
+    bough_study_grid grid; // of a load set each group has its own
+    int threads;           // 0: as the scene says; of parallel runs as many as processors
+
+    // of compared runs
+    bough_study_settings reference;
     int n_measure;
-    bough_study_measure *measure;    // (n_measure)
-    int repeat;                      // runs of each cell; times are their medians
-    int threads;                     // 0: as the scene says
-    struct bough_load_set *load_set; // all there is of kinds sweep and load-set, else NULL
+    bough_study_measure *measure; // (n_measure)
+    int repeat;                   // runs of each case; times are their medians
+
+    // of statistics
+    double from; // what is before it is left out [s]
+    bool series; // every case keeps its channels
+    int n_wanted;
+    const char **wanted; // (n_wanted) channels; none: all
+
+    // of a lifetime
+    int n_slope;
+    double *slope;   // (n_slope) exponents of the S-N curves
+    double cycles;   // of the equivalent loads
+    double lifetime; // [years]
+    bough_load_wind wind;
+    int n_group;
+    bough_load_group *group; // (n_group); one of all cases where there are no load cases
 
     // by bough_study_expand
-    int n_reference; // 1; of kind stability one for each combination of the model's parameters
-    bough_study_cell *reference_cell; // (n_reference)
-    int n_cell;
-    bough_study_cell *cell; // (n_cell), the last axis runs fastest
+    int n_reference;            // 1; of kind stability one for each combination of the model's parameters
+    bough_case *reference_case; // (n_reference)
+    int n_case;
+    bough_case *cases; // (n_case) by group, in it the last axis runs fastest
 
     // by bough_study_check, common to all runs
-    double duration, interval; // [s] interval: between the common output times
+    double duration, interval; // of compared runs [s] interval: between the common output times
     int n_channel;
-    const char **channel; // (n_channel) of all measures in their order
-    uint64_t fingerprint; // of all that the cells' results depend on, besides their settings and files
+    const char **channel; // (n_channel) of all measures in their order, or those that are kept
+    const char **unit;    // (n_channel) of those that are kept
 } bough_study;
 
 // Reads a study and checks it with every scene that its runs see. `threads` replaces the scene's
@@ -124,7 +176,11 @@ void bough_study_json_schema(FILE *stream);
 // A scene's path from that of the study which names it.
 const char *bough_study_path(bough_arena *arena, const char *study, const char *scene);
 
-// The value of a grid key in a cell; for the reference what its replacements say, "" if nothing.
-const char *bough_study_value(const bough_study *study, const bough_study_cell *cell, int axis);
+// The value of a grid key in a case; for the reference what its replacements say, "" if nothing.
+const char *bough_study_value(const bough_study *study, const bough_case *c, int axis);
+
+// How many times the case's run occurs in the lifetime, of which `counted` seconds were counted;
+// 0: no fatigue.
+double bough_case_weight(const bough_study *study, const bough_case *c, double counted);
 
 #endif

@@ -1,9 +1,8 @@
 #include "apps/bough/cases/study_cells.h"
 
-#include "apps/bough/results/folder.h"
-#include "apps/bough/scene/fingerprint.h"
 #include "apps/bough/cases/result_file.h"
 #include "apps/bough/cases/study_batch.h"
+#include "apps/bough/results/folder.h"
 
 #include <inttypes.h>
 
@@ -16,24 +15,21 @@ typedef struct work {
 // -- results in files -----------------------------------------------------------------------------
 
 // Named by what it depends on: the place in the grid may change.
-static bough_result_file file_of(const char *folder, const bough_study *s, const bough_study_cell *cell) {
-    bough_result_file file = {.folder = folder, .fingerprint = s->fingerprint};
-    const uint64_t files[] = {s->reference_cell[cell->reference].files, cell->files};
-    bough_mix(&file.fingerprint, files, sizeof files);
-    bough_mix_text(&file.fingerprint, cell->settings);
+static bough_result_file file_of(const char *folder, const bough_case *cell) {
+    bough_result_file file = {.folder = folder, .fingerprint = cell->fingerprint};
     snprintf(file.name, sizeof file.name, "%016" PRIx64, file.fingerprint);
     return file;
 }
 
 typedef struct content {
     const bough_study *study;
-    const bough_study_cell *cell;
-    const bough_study_result *result;
+    const bough_case *cell;
+    const bough_case_result *result;
 } content;
 
 static void put_result(const void *self, FILE *f) {
     const content *x = self;
-    const bough_study_result *r = x->result;
+    const bough_case_result *r = x->result;
     const bough_coupling_report *c = &r->coupling;
     const double run[] = {r->time, r->wall, r->cpu, r->warned};
     const double coupling[] = {c->defect_max, c->defect_rms, c->energy_residual, c->energy_exchanged};
@@ -44,7 +40,7 @@ static void put_result(const void *self, FILE *f) {
     bough_result_put(f, "estimates", x->study->n_measure, r->estimate);
 }
 
-static bool take_result(FILE *f, int n_measure, bough_study_result *r) {
+static bool take_result(FILE *f, int n_measure, bough_case_result *r) {
     double run[4], c[4];
     for (int byte = 0; byte != '\n';) // the settings are for people
         if ((byte = fgetc(f)) == EOF) return false;
@@ -60,9 +56,9 @@ static bool take_result(FILE *f, int n_measure, bough_study_result *r) {
     return r->done = true;
 }
 
-static bough_status read_result(const char *folder, const bough_study *s, const bough_study_cell *cell,
-                                bough_study_result *r) {
-    const bough_result_file file = file_of(folder, s, cell);
+static bough_status read_result(const char *folder, const bough_study *s, const bough_case *cell,
+                                bough_case_result *r) {
+    const bough_result_file file = file_of(folder, cell);
     FILE *stream;
     bough_status status = bough_result_open(&file, &r->outcome, &stream);
     return stream ? bough_result_close(&file, stream, take_result(stream, s->n_measure, r)) : status;
@@ -72,15 +68,15 @@ static bough_status read_results(const char *folder, bough_study_results *x) {
     const bough_study *s = x->study;
     bough_status status = bough_ok();
     for (int i = 0; i < s->n_reference && bough_is_ok(&status); i++)
-        status = read_result(folder, s, &s->reference_cell[i], &x->reference[i]);
-    for (int i = 0; i < s->n_cell && bough_is_ok(&status); i++)
-        status = read_result(folder, s, &s->cell[i], &x->result[i]);
+        status = read_result(folder, s, &s->reference_case[i], &x->reference[i]);
+    for (int i = 0; i < s->n_case && bough_is_ok(&status); i++)
+        status = read_result(folder, s, &s->cases[i], &x->result[i]);
     return status;
 }
 
-static bough_status keep(const work *w, const bough_study_cell *cell, const bough_study_result *result) {
+static bough_status keep(const work *w, const bough_case *cell, const bough_case_result *result) {
     const bough_study *s = w->results->study;
-    const bough_result_file file = file_of(w->batch.options->folder, s, cell);
+    const bough_result_file file = file_of(w->batch.options->folder, cell);
     const content x = {s, cell, result};
     return bough_result_write(&file, &result->outcome, put_result, &x);
 }
@@ -90,10 +86,10 @@ static bough_status keep(const work *w, const bough_study_cell *cell, const boug
 // Runs it again where its result is there but not its series.
 static bough_status run_reference(work *w, int group, bough_study_drive *drive, bough_study_series *series) {
     const bough_study *s = w->results->study;
-    const bough_study_cell *cell = &s->reference_cell[group];
-    bough_study_result *kept = &w->results->reference[group], r;
+    const bough_case *cell = &s->reference_case[group];
+    bough_case_result *kept = &w->results->reference[group], r;
     drive->progress.label = "reference";
-    bough_status status = bough_study_run(s, cell, 1, drive, series, &r);
+    bough_status status = bough_case_run(s, cell, 1, drive, series, &r);
     if (!bough_is_ok(&status)) return status;
     if (bough_is_ok(&r.outcome)) {
         bough_study_compare(s, series, series, r.error);
@@ -108,12 +104,12 @@ static bough_status run_reference(work *w, int group, bough_study_drive *drive, 
 static bough_status run_cell(work *w, int i, bough_study_drive *drive, const bough_study_series *reference,
                              bough_study_series *series) {
     const bough_study *s = w->results->study;
-    const bough_study_cell *cell = &s->cell[i];
-    bough_study_result *r = &w->results->result[i];
+    const bough_case *cell = &s->cases[i];
+    bough_case_result *r = &w->results->result[i];
     char label[96];
-    snprintf(label, sizeof label, "run %d of %d: %.50s", i + 1, s->n_cell, cell->settings);
+    snprintf(label, sizeof label, "run %d of %d: %.50s", i + 1, s->n_case, cell->settings);
     drive->progress.label = label;
-    bough_status status = bough_study_run(s, cell, s->repeat, drive, series, r);
+    bough_status status = bough_case_run(s, cell, s->repeat, drive, series, r);
     if (!bough_is_ok(&status)) return status;
     bool both = bough_is_ok(&r->outcome) && bough_is_ok(&w->results->reference[cell->reference].outcome);
     if (both) bough_study_compare(s, series, reference, r->error);
@@ -130,8 +126,8 @@ static bool is_mine(const bough_study_options *o, int group) {
 // Of one group; −1: of all.
 static int count_missing(const bough_study_results *x, int group) {
     int n = 0;
-    for (int i = 0; i < x->study->n_cell; i++)
-        n += (group < 0 || x->study->cell[i].reference == group) && !x->result[i].done;
+    for (int i = 0; i < x->study->n_case; i++)
+        n += (group < 0 || x->study->cases[i].reference == group) && !x->result[i].done;
     return n;
 }
 
@@ -151,8 +147,8 @@ static bough_status run_group(bough_arena *arena, void *self, int group) {
     bough_study_series reference = bough_study_series_take(arena, s);
     bough_study_series series = bough_study_series_take(arena, s);
     bough_status status = run_reference(w, group, &drive, &reference);
-    for (int i = 0; i < s->n_cell && bough_is_ok(&status); i++) {
-        if (s->cell[i].reference == group && !w->results->result[i].done)
+    for (int i = 0; i < s->n_case && bough_is_ok(&status); i++) {
+        if (s->cases[i].reference == group && !w->results->result[i].done)
             status = run_cell(w, i, &drive, &reference, &series);
     }
     bough_progress_clear(&drive.progress);
@@ -172,8 +168,8 @@ bough_status bough_study_cells(bough_arena *arena, const bough_study *study,
     *results = (bough_study_results){
         .study = study,
         .reference = bough_arena_take(arena, (size_t)study->n_reference * sizeof *results->reference),
-        .result = bough_arena_take(arena, (size_t)study->n_cell * sizeof *results->result)};
-    bool parallel = study->kind == BOUGH_STUDY_STABILITY;
+        .result = bough_arena_take(arena, (size_t)study->n_case * sizeof *results->result)};
+    bool parallel = study->is.parallel;
     work w = {.results = results, .parallel = parallel};
     bough_status status = bough_result_folder(options->folder);
     if (bough_is_ok(&status)) status = remove_tables(options->folder);

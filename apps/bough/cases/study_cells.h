@@ -3,15 +3,15 @@
 #ifndef BOUGH_APPS_STUDY_STUDY_CELLS_H
 #define BOUGH_APPS_STUDY_STUDY_CELLS_H
 
+#include "apps/bough/cases/case_run.h"
 #include "apps/bough/cases/study_options.h"
-#include "apps/bough/cases/study_run.h"
 
 // What the runs came to; those that are not done show so.
 typedef struct bough_study_results {
     const bough_study *study;
-    bough_study_result *reference; // (n_reference)
-    bough_study_result *result;    // (n_cell)
-    int ran;                       // cells in this call
+    bough_case_result *reference; // (n_reference)
+    bough_case_result *result;    // (n_case)
+    int ran;                      // cells in this call
 } bough_study_results;
 
 // Takes the results that are in the folder and runs what is missing of the options' part. Cells with the same

@@ -26,11 +26,10 @@ static perform_function *const kinds[] = {[BOUGH_STUDY_WORK_PRECISION] = work_pr
 
 bough_status bough_study_perform(bough_arena *arena, const bough_study *study,
                                  const bough_study_options *options) {
-    bool shared = study->kind >= BOUGH_STUDY_STABILITY;
-    if (options->parts > 0 && !shared) {
+    if (options->parts > 0 && !study->is.parallel) {
         return bough_fail(BOUGH_INVALID, "only studies of kind stability, sweep and load-set run in parts");
     }
-    if (options->only && study->kind != BOUGH_STUDY_LOAD_SET) {
+    if (options->only && !study->is.weighted) {
         return bough_fail(BOUGH_INVALID, "only a load set has load cases to choose by --case");
     }
     return kinds[study->kind](arena, study, options);

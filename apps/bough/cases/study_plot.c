@@ -31,19 +31,19 @@ typedef struct panel {
 
 static int along(const bough_study *s) { return s->grid.axis[s->grid.n - 1].value.n; }
 
-static int count_lines(const bough_study *s) { return s->n_cell / along(s); }
+static int count_lines(const bough_study *s) { return s->n_case / along(s); }
 
-static double cost(const bough_study_result *r) { return r->cpu / r->time; }
+static double cost(const bough_case_result *r) { return r->cpu / r->time; }
 
 // A logarithm needs a positive number: a run that equals the reference has no place.
-static bool has_point(const bough_study_result *r, int measure) {
+static bool has_point(const bough_case_result *r, int measure) {
     return r->done && bough_is_ok(&r->outcome) && r->error[measure] > 0 && cost(r) > 0;
 }
 
 static void find_ranges(panel *p) {
     bough_axis *x = &p->at.x, *y = &p->at.y;
-    for (int i = 0; i < p->results->study->n_cell; i++) {
-        const bough_study_result *r = &p->results->result[i];
+    for (int i = 0; i < p->results->study->n_case; i++) {
+        const bough_case_result *r = &p->results->result[i];
         if (!has_point(r, p->measure)) continue;
         bough_axis_include(x, r->error[p->measure]);
         bough_axis_include(y, cost(r));
@@ -77,7 +77,7 @@ static void draw_polyline(const panel *p, int line, int first, int n) {
     fprintf(p->at.svg, "<polyline fill=\"none\" stroke-width=\"1.6\" stroke=\"%s\" points=\"",
             bough_picture_colour(line));
     for (int i = first; i < first + n; i++) {
-        const bough_study_result *r = &p->results->result[i];
+        const bough_case_result *r = &p->results->result[i];
         if (!has_point(r, p->measure)) continue;
         fprintf(p->at.svg, "%.1f,%.1f ", bough_axis_place(&p->at.x, r->error[p->measure]),
                 bough_axis_place(&p->at.y, cost(r)));
@@ -88,11 +88,11 @@ static void draw_polyline(const panel *p, int line, int first, int n) {
 static void draw_points(const panel *p, int line, int first, int n) {
     const bough_study *s = p->results->study;
     for (int i = first; i < first + n; i++) {
-        const bough_study_result *r = &p->results->result[i];
+        const bough_case_result *r = &p->results->result[i];
         if (!has_point(r, p->measure)) continue;
         double x = bough_axis_place(&p->at.x, r->error[p->measure]);
         double y = bough_axis_place(&p->at.y, cost(r));
-        const char *value = bough_study_value(s, &s->cell[i], s->grid.n - 1);
+        const char *value = bough_study_value(s, &s->cases[i], s->grid.n - 1);
         bool before = x + 7 + bough_picture_letters(value) * LETTER > p->at.x.to + RIGHT; // no room
         draw_marker(p->at.svg, x, y, line);
         fprintf(p->at.svg, "<text class=\"weak\" font-size=\"10\" x=\"%.1f\" y=\"%.1f\"%s>",
@@ -114,7 +114,7 @@ static void draw_panel(panel *p) {
 
 // The settings that tell the line from others.
 static void put_line_name(FILE *svg, const bough_study *s, int line) {
-    const bough_study_cell *cell = &s->cell[line * along(s)];
+    const bough_case *cell = &s->cases[line * along(s)];
     int said = 0;
     for (int i = 0; i + 1 < s->grid.n; i++) {
         if (s->grid.axis[i].value.n < 2) continue;
@@ -129,12 +129,12 @@ static void put_missing(FILE *svg, const bough_study_results *results, int line)
     const bough_study *s = results->study;
     int n = along(s), said = 0;
     for (int i = line * n; i < (line + 1) * n; i++) {
-        const bough_study_result *r = &results->result[i];
+        const bough_case_result *r = &results->result[i];
         if (has_point(r, 0)) continue;
         char status[40];
         bough_study_status(r, status);
         fputs(said++ ? "; " : " — ", svg);
-        bough_picture_text(svg, bough_study_value(s, &s->cell[i], s->grid.n - 1));
+        bough_picture_text(svg, bough_study_value(s, &s->cases[i], s->grid.n - 1));
         fputc(' ', svg);
         bough_picture_text(svg, strcmp(status, "ok") == 0 ? "equals the reference" : status);
     }

@@ -8,12 +8,12 @@
 // By the first measure: errors below this may be the sub-solvers' own, which nobody estimates.
 static const double large = 0.05;
 
-static bool is_silent(const bough_study_result *r) {
+static bool is_silent(const bough_case_result *r) {
     if (!bough_is_ok(&r->outcome) || r->warned || !isfinite(r->error[0])) return false;
     return !(r->error[0] <= 3 * r->estimate[0]) && r->error[0] > large;
 }
 
-static bool held(const bough_study_result *r) { return r->done && bough_is_ok(&r->outcome); }
+static bool held(const bough_case_result *r) { return r->done && bough_is_ok(&r->outcome); }
 
 // "[1, 2, 3]" is shown by its first.
 static void shorten(const char *value, char text[24]) {
@@ -21,7 +21,7 @@ static void shorten(const char *value, char text[24]) {
     text[strcspn(text, ",]")] = '\0';
 }
 
-static void print_row_name(const bough_study *s, const bough_study_cell *cell, FILE *f) {
+static void print_row_name(const bough_study *s, const bough_case *cell, FILE *f) {
     char text[160] = "";
     size_t used = 0;
     for (int i = 0; i + 1 < s->grid.n && used < sizeof text; i++) {
@@ -34,7 +34,7 @@ static void print_row_name(const bough_study *s, const bough_study_cell *cell, F
 
 // "1.2e-03", with ! after a warning before the run and ? where it is silent; the time reached where it
 // stopped.
-static void print_cell(const bough_study_result *r, FILE *f) {
+static void print_cell(const bough_case_result *r, FILE *f) {
     char text[24] = "held";
     if (!held(r)) {
         snprintf(text, sizeof text, "%.3g s", r->time);
@@ -53,15 +53,15 @@ static void print(const bough_study_results *x, FILE *f) {
         "%s\n%.60s [%.20s]; !: warning before the run; seconds: stopped with a diagnosis, with its time\n%-40s",
         s->title ? s->title : s->file, s->measure[0].name, s->measure[0].unit, "");
     for (int k = 0; k < across->value.n; k++) fprintf(f, " %9s", across->value.item[k].value);
-    for (int i = 0; i < s->n_cell; i++) {
-        if (i % across->value.n == 0) print_row_name(s, &s->cell[i], f);
+    for (int i = 0; i < s->n_case; i++) {
+        if (i % across->value.n == 0) print_row_name(s, &s->cases[i], f);
         print_cell(&x->result[i], f);
     }
     fputc('\n', f);
 }
 
 static bough_status conclude(const bough_study_results *x, FILE *f) {
-    int n_held = 0, n_silent = 0, n = x->study->n_cell;
+    int n_held = 0, n_silent = 0, n = x->study->n_case;
     for (int i = 0; i < n; i++) {
         n_held += held(&x->result[i]);
         n_silent += is_silent(&x->result[i]);
@@ -77,7 +77,7 @@ bough_status bough_stability_perform(bough_arena *arena, const bough_study *stud
     bough_status status = bough_study_cells(arena, study, options, &x);
     if (bough_is_ok(&status) && options->parts > 0) {
         fprintf(options->stream, "part %d of %d: %d runs, %d of %d cells still missing\n", options->part,
-                options->parts, x.ran, bough_study_missing(&x), study->n_cell);
+                options->parts, x.ran, bough_study_missing(&x), study->n_case);
         return status;
     }
     if (bough_is_ok(&status)) status = bough_study_write_tables(&x, options->folder);

@@ -7,7 +7,7 @@
 
 enum { COLUMNS = BOUGH_STUDY_AXES + 2 * BOUGH_STUDY_MEASURES + 8, WIDTH = 48, SHORT = 100 };
 
-void bough_study_status(const bough_study_result *result, char text[40]) {
+void bough_study_status(const bough_case_result *result, char text[40]) {
     if (!result->done) {
         snprintf(text, 40, "not run");
     } else if (bough_is_ok(&result->outcome)) {
@@ -17,14 +17,14 @@ void bough_study_status(const bough_study_result *result, char text[40]) {
     }
 }
 
-static double real_time_factor(const bough_study_result *r) { return r->time / r->wall; }
+static double real_time_factor(const bough_case_result *r) { return r->time / r->wall; }
 
 // Row −1 is the reference.
-static const bough_study_cell *cell_of(const bough_study *s, int row) {
-    return row < 0 ? s->reference_cell : &s->cell[row];
+static const bough_case *cell_of(const bough_study *s, int row) {
+    return row < 0 ? s->reference_case : &s->cases[row];
 }
 
-static const bough_study_result *result_of(const bough_study_results *results, int row) {
+static const bough_case_result *result_of(const bough_study_results *results, int row) {
     return row < 0 ? results->reference : &results->result[row];
 }
 
@@ -70,7 +70,7 @@ static void put_head(line *l, const bough_study *s) {
 
 static void put_row(line *l, const bough_study_results *results, int row) {
     const bough_study *s = results->study;
-    const bough_study_result *r = result_of(results, row);
+    const bough_case_result *r = result_of(results, row);
     char status[40];
     bool good = r->done && bough_is_ok(&r->outcome);
     bough_study_status(r, status);
@@ -122,7 +122,7 @@ static void print_line(const line *l, const int width[COLUMNS], int n_left, FILE
     fputc('\n', stream);
 }
 
-static void print_diagnosis(const char *settings, const bough_study_result *r, FILE *stream) {
+static void print_diagnosis(const char *settings, const bough_case_result *r, FILE *stream) {
     if (!r->done || bough_is_ok(&r->outcome)) return;
     const char *text = r->outcome.message;
     size_t length = strlen(text);
@@ -139,18 +139,18 @@ void bough_study_print(const bough_study_results *results, FILE *stream) {
     int width[COLUMNS] = {0};
     put_head(&l, s);
     widen(&l, width);
-    for (int row = -1; row < s->n_cell; row++) {
+    for (int row = -1; row < s->n_case; row++) {
         put_row(&l, results, row);
         widen(&l, width);
     }
     if (s->title) fprintf(stream, "%s\n", s->title);
     put_head(&l, s);
     print_line(&l, width, s->grid.n + 2, stream);
-    for (int row = -1; row < s->n_cell; row++) {
+    for (int row = -1; row < s->n_case; row++) {
         put_row(&l, results, row);
         print_line(&l, width, s->grid.n + 2, stream);
     }
-    for (int row = -1; row < s->n_cell; row++)
+    for (int row = -1; row < s->n_case; row++)
         print_diagnosis(cell_of(s, row)->settings, result_of(results, row), stream);
 }
 
@@ -193,7 +193,7 @@ static void write_csv_number(FILE *f, double value) {
     }
 }
 
-static void write_csv_numbers(const bough_study *s, const bough_study_result *r, FILE *f) {
+static void write_csv_numbers(const bough_study *s, const bough_case_result *r, FILE *f) {
     write_csv_number(f, r->time);
     write_csv_number(f, r->wall);
     write_csv_number(f, r->cpu);
@@ -210,7 +210,7 @@ static void write_csv_numbers(const bough_study *s, const bough_study_result *r,
 
 static void write_csv_row(const bough_study_results *results, int row, FILE *f) {
     const bough_study *s = results->study;
-    const bough_study_result *r = result_of(results, row);
+    const bough_case_result *r = result_of(results, row);
     bool good = bough_is_ok(&r->outcome);
     if (row < 0) {
         fputs("reference", f);
@@ -231,7 +231,7 @@ static void write_csv_row(const bough_study_results *results, int row, FILE *f) 
 static void write_csv(const void *self, FILE *f) {
     const bough_study_results *results = self;
     write_csv_head(results->study, f);
-    for (int row = -1; row < results->study->n_cell; row++) write_csv_row(results, row, f);
+    for (int row = -1; row < results->study->n_case; row++) write_csv_row(results, row, f);
 }
 
 // -- files ----------------------------------------------------------------------------------------

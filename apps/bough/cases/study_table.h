@@ -10,7 +10,7 @@
 void bough_csv_text(FILE *file, const char *text);
 
 // "ok", "failed at t=12.3 s", "not run"
-void bough_study_status(const bough_study_result *result, char text[40]);
+void bough_study_status(const bough_case_result *result, char text[40]);
 
 // Aligned columns, and below them the beginning of each failed run's diagnosis.
 void bough_study_print(const bough_study_results *results, FILE *stream);

@@ -1,8 +1,8 @@
 #include "apps/bough/cases/study_timing.h"
 
-#include "apps/bough/results/folder.h"
-#include "apps/bough/cases/study_run.h"
+#include "apps/bough/cases/case_run.h"
 #include "apps/bough/cases/study_table.h"
+#include "apps/bough/results/folder.h"
 
 #include <string.h>
 
@@ -14,7 +14,7 @@ typedef struct cell_times {
 typedef struct timing {
     const bough_study *study;
     const bough_study_options *options;
-    cell_times *cell; // (n_cell)
+    cell_times *cell; // (n_case)
     bough_study_series reference, series;
     bough_study_drive drive;
 } timing;
@@ -23,14 +23,14 @@ typedef struct timing {
 // ratios are against.
 static int partner(const bough_study *s, int cell) {
     int last = s->grid.n - 1;
-    return cell - s->cell[cell].index[last];
+    return cell - s->cases[cell].index[last];
 }
 
 // -- runs -----------------------------------------------------------------------------------------
 
-static bough_status run(timing *t, const bough_study_cell *cell, bough_study_drive *drive,
-                        bough_study_series *series, bough_study_result *result) {
-    bough_status status = bough_study_run(t->study, cell, 1, drive, series, result);
+static bough_status run(timing *t, const bough_case *cell, bough_study_drive *drive,
+                        bough_study_series *series, bough_case_result *result) {
+    bough_status status = bough_case_run(t->study, cell, 1, drive, series, result);
     return bough_is_ok(&status) ? result->outcome : status;
 }
 
@@ -38,24 +38,24 @@ static bough_status run(timing *t, const bough_study_cell *cell, bough_study_dri
 // are the same.
 static bough_status take_turn(timing *t, int turn) {
     bough_study_drive drive = {.stop = t->options->stop, .folder = t->options->folder};
-    for (int i = 0; i < t->study->n_cell; i++) {
-        bough_study_result result;
-        bough_status status = run(t, &t->study->cell[i], &drive, &t->series, &result);
+    for (int i = 0; i < t->study->n_case; i++) {
+        bough_case_result result;
+        bough_status status = run(t, &t->study->cases[i], &drive, &t->series, &result);
         if (!bough_is_ok(&status)) return status;
         t->cell[i].wall[turn] = result.wall;
         t->cell[i].cpu[turn] = result.cpu;
         if (turn == 0) bough_study_compare(t->study, &t->series, &t->reference, t->cell[i].error);
     }
-    for (int i = 0; i < t->study->n_cell; i++) {
+    for (int i = 0; i < t->study->n_case; i++) {
         t->cell[i].ratio[turn] = t->cell[partner(t->study, i)].wall[turn] / t->cell[i].wall[turn];
     }
     return bough_ok();
 }
 
 static bough_status run_all(timing *t) {
-    bough_study_result reference;
+    bough_case_result reference;
     t->drive.progress.label = "reference";
-    bough_status status = run(t, t->study->reference_cell, &t->drive, &t->reference, &reference);
+    bough_status status = run(t, t->study->reference_case, &t->drive, &t->reference, &reference);
     bough_progress_clear(&t->drive.progress);
     for (int turn = 0; turn < t->study->repeat && bough_is_ok(&status); turn++) status = take_turn(t, turn);
     return status;
@@ -75,12 +75,12 @@ static void print_times(const void *self, FILE *f) {
         fprintf(f, "  %s [%s]", s->measure[m].name, s->measure[m].unit);
     }
     fprintf(f, "\n");
-    for (int i = 0; i < s->n_cell; i++) {
+    for (int i = 0; i < s->n_case; i++) {
         const cell_times *c = &t->cell[i];
         bough_spread wall = bough_spread_of(c->wall, s->repeat), cpu = bough_spread_of(c->cpu, s->repeat);
         bough_spread ratio = bough_spread_of(c->ratio, s->repeat);
         double x = s->duration;
-        fprintf(f, "%-52s %9.3f %9.3f %5.1f [%4.1f, %4.1f] %6.3f [%.3f, %.3f]", s->cell[i].settings,
+        fprintf(f, "%-52s %9.3f %9.3f %5.1f [%4.1f, %4.1f] %6.3f [%.3f, %.3f]", s->cases[i].settings,
                 cpu.median, wall.median, x / wall.median, x / wall.high, x / wall.low, ratio.median,
                 ratio.low, ratio.high);
         for (int m = 0; m < s->n_measure; m++) {
@@ -95,9 +95,9 @@ static void write_csv(const void *self, FILE *f) {
     const timing *t = self;
     const bough_study *s = t->study;
     fprintf(f, "settings,turn,cpu (s),wall (s),ratio\n");
-    for (int i = 0; i < s->n_cell; i++) {
+    for (int i = 0; i < s->n_case; i++) {
         for (int k = 0; k < s->repeat; k++) {
-            bough_csv_text(f, s->cell[i].settings);
+            bough_csv_text(f, s->cases[i].settings);
             fprintf(f, ",%d,%.6g,%.6g,%.6g\n", k + 1, t->cell[i].cpu[k], t->cell[i].wall[k],
                     t->cell[i].ratio[k]);
         }
@@ -107,7 +107,7 @@ static void write_csv(const void *self, FILE *f) {
 bough_status bough_timing_perform(bough_arena *arena, const bough_study *study,
                                   const bough_study_options *options) {
     timing t = {.study = study, .options = options};
-    t.cell = bough_arena_take(arena, (size_t)study->n_cell * sizeof *t.cell);
+    t.cell = bough_arena_take(arena, (size_t)study->n_case * sizeof *t.cell);
     t.reference = bough_study_series_take(arena, study);
     t.series = bough_study_series_take(arena, study);
     t.drive.stop = options->stop;

@@ -51,7 +51,7 @@ static bough_status perform(bough_arena *arena, const void *given) {
                                .quiet = options->quiet,
                                .stop = bough_stop_requested,
                                .stream = stdout};
-    if (!(own->part.n > 0) && !study->load_set) { // parts and load sets share a folder
+    if (!(own->part.n > 0) && study->is.compared) { // parts and load sets share a folder
         status = bough_folder_make(how.folder);
         if (bough_is_ok(&status)) status = bough_lock_folder(arena, how.folder);
         if (!bough_is_ok(&status)) return status;

@@ -1,7 +1,7 @@
 // Weights of a load set's cases and what their sums are, beside formulas by hand.
 #include "apps/bough/cases/lifetime.h"
 
-#include "apps/bough/cases/load_set_internal.h"
+#include "apps/bough/cases/study_internal.h"
 #include "tests/unit/check.h"
 
 #include <math.h>
@@ -24,10 +24,10 @@ static const char text[] =
 enum { CASES = 13 };
 
 // The set without its scenes: groups and cases alone.
-static bough_load_set made(bough_load_case cases[CASES], bough_load_group group[4]) {
+static bough_study made(bough_case cases[CASES], bough_load_group group[4]) {
     static double slope[] = {4, 10};
     static const char *channel[] = {"load", "other"}, *unit[] = {"kN-m", "rpm"};
-    bough_load_set set = {.n_slope = 2,
+    bough_study set = {.n_slope = 2,
                           .slope = slope,
                           .cycles = 1e6,
                           .lifetime = 25,
@@ -41,14 +41,14 @@ static bough_load_set made(bough_load_case cases[CASES], bough_load_group group[
                           .unit = unit};
     group[0] = (bough_load_group){.hours = 50, .factor = 1.5, .favourable = 0.9, .extremes = true};
     group[1] = (bough_load_group){.events = 100, .factor = 1, .favourable = 0.9, .extremes = true};
-    cases[0] = (bough_load_case){.group = 0, .share = 0.5};
-    cases[1] = (bough_load_case){.group = 0, .share = 0.5};
-    cases[2] = (bough_load_case){.group = 1, .share = 1};
+    cases[0] = (bough_case){.group = 0, .share = 0.5};
+    cases[1] = (bough_case){.group = 0, .share = 0.5};
+    cases[2] = (bough_case){.group = 1, .share = 1};
     return set;
 }
 
 // A result of a sine of range 2a about m over n periods, sampled 8 times each, every 0.5 s.
-static bough_case_result sine(bough_arena *arena, const bough_load_set *set, double m, double a, int n) {
+static bough_case_result sine(bough_arena *arena, const bough_study *set, double m, double a, int n) {
     bough_case_result r = bough_case_take(arena, set);
     for (int i = 0; i <= 8 * n; i++) {
         const double value[2] = {m + a * cos(0.25 * 3.14159265358979323846 * i), i};
@@ -63,9 +63,9 @@ static bough_case_result sine(bough_arena *arena, const bough_load_set *set, dou
 static void sums_are_those_by_hand(void **state) {
     (void)state;
     bough_arena *arena = bough_arena_create();
-    bough_load_case cases[CASES];
+    bough_case cases[CASES];
     bough_load_group group[4];
-    bough_load_set set = made(cases, group);
+    bough_study set = made(cases, group);
     bough_lifetime l;
     l = bough_lifetime_take(arena, &set);
     const double amplitude[3] = {1, 3, 5}, mean[3] = {0, 10, 0};
@@ -101,9 +101,9 @@ static void sums_are_those_by_hand(void **state) {
 static void what_is_lacking_is_told(void **state) {
     (void)state;
     bough_arena *arena = bough_arena_create();
-    bough_load_case cases[CASES];
+    bough_case cases[CASES];
     bough_load_group group[4];
-    bough_load_set set = made(cases, group);
+    bough_study set = made(cases, group);
     bough_lifetime l;
     l = bough_lifetime_take(arena, &set);
     bough_case_result good = sine(arena, &set, 0, 1, 5), failed = good, missing = good;
@@ -125,9 +125,9 @@ static void what_is_lacking_is_told(void **state) {
 static void factors_are_of_loads_and_on_the_safe_side(void **state) {
     (void)state;
     bough_arena *arena = bough_arena_create();
-    bough_load_case cases[CASES];
+    bough_case cases[CASES];
     bough_load_group group[4];
-    bough_load_set set = made(cases, group);
+    bough_study set = made(cases, group);
     for (int sign = -1; sign <= 1; sign += 2) {
         bough_lifetime l = bough_lifetime_take(arena, &set);
         bough_case_result r = sine(arena, &set, 10 * sign, 3, 20);
@@ -153,7 +153,7 @@ static void speeds_weigh_by_weibull(void **state) {
     bough_arena *arena = bough_arena_create();
     bough_errors errors = {.arena = arena};
     bough_node *root = bough_text_parse(arena, "set.yaml", text, strlen(text), &errors);
-    bough_load_set *set = bough_load_set_parse(arena, "set.yaml", root, &errors);
+    bough_study *set = bough_study_parse(arena, "set.yaml", root, &errors);
     bough_errors_print(&errors, stderr);
     assert_non_null(set);
     assert_int_equal(set->n_case, CASES);
@@ -162,13 +162,13 @@ static void speeds_weigh_by_weibull(void **state) {
         double below = exp(-0.25 * 3.14159265358979323846 * pow(edge[i] / 8, 2));
         double above = exp(-0.25 * 3.14159265358979323846 * pow(edge[i + 1] / 8, 2));
         for (int seed = 0; seed < 2; seed++) {
-            double weight = bough_load_set_weight(set, &set->cases[2 * i + seed], 600);
+            double weight = bough_case_weight(set, &set->cases[2 * i + seed], 600);
             check_near(weight, 0.5 * (below - above) * 0.9 * 8766 * 25 * 6, 1e-12, 0);
         }
     }
-    check_near(bough_load_set_weight(set, &set->cases[6], 600), 50 * 25 * 6 / 4., 1e-12, 0);
-    check_near(bough_load_set_weight(set, &set->cases[11], 600), 1000 * 25 / 2., 1e-12, 0);
-    check_near(bough_load_set_weight(set, &set->cases[12], 600), 0, 0, 0);
+    check_near(bough_case_weight(set, &set->cases[6], 600), 50 * 25 * 6 / 4., 1e-12, 0);
+    check_near(bough_case_weight(set, &set->cases[11], 600), 1000 * 25 / 2., 1e-12, 0);
+    check_near(bough_case_weight(set, &set->cases[12], 600), 0, 0, 0);
     assert_string_equal(set->cases[3].settings, "speed=8, seed=2");
     check_near(set->group[1].favourable, 0.9, 0, 0);
     bough_arena_destroy(arena);

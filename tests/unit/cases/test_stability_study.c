@@ -38,7 +38,7 @@ static bough_status perform(const char *folder, int part, int parts, int steps, 
     bough_status status = bough_study_read(arena, path, 2, &errors, &study);
     bough_errors_print(&errors, stderr);
     assert_int_equal(status.code, BOUGH_OK);
-    assert_int_equal(study->n_cell, CELLS);
+    assert_int_equal(study->n_case, CELLS);
     assert_int_equal(study->n_reference, REFERENCES);
     steps_left = steps;
     bough_study_options options = {

@@ -1,5 +1,5 @@
 #include "apps/bough/cases/study_perform.h"
-#include "apps/bough/cases/study_run.h"
+#include "apps/bough/cases/case_run.h"
 #include "apps/bough/cases/study_table.h"
 #include "tests/unit/scratch.h"
 
@@ -105,13 +105,13 @@ static void grid_is_the_product_of_its_values(void **state) {
     fixture f;
     open_good(&f, *state);
     const bough_study *s = f.study;
-    assert_int_equal(s->n_cell, 4);
-    assert_string_equal(s->cell[0].settings, "scheme=monolithic, macro_step=1 ms");
-    assert_string_equal(s->cell[3].settings, "scheme=frozen, macro_step=4 ms");
-    assert_int_equal(s->cell[3].n_set, 4);
-    assert_string_equal(s->cell[3].set[0], "simulation.duration=20 ms");
-    assert_string_equal(s->cell[3].set[3], "simulation.macro_step=4 ms");
-    assert_string_equal(bough_study_value(s, s->reference_cell, 1), "1 ms");
+    assert_int_equal(s->n_case, 4);
+    assert_string_equal(s->cases[0].settings, "scheme=monolithic, macro_step=1 ms");
+    assert_string_equal(s->cases[3].settings, "scheme=frozen, macro_step=4 ms");
+    assert_int_equal(s->cases[3].n_set, 4);
+    assert_string_equal(s->cases[3].set[0], "simulation.duration=20 ms");
+    assert_string_equal(s->cases[3].set[3], "simulation.macro_step=4 ms");
+    assert_string_equal(bough_study_value(s, s->reference_case, 1), "1 ms");
     assert_int_equal(s->n_channel, 3);
     assert_string_equal(s->measure[0].unit, "m");
     check_near(s->interval, 4e-3, 1e-15, 0);
@@ -126,7 +126,7 @@ static void labels_are_unique_and_quotes_are_kept(void **state) {
         HEAD REFERENCE "grid: {simulation.master.rtol: [1e-6], simulation.micro.rtol: [1e-5],"
                        " title: ['it''s: 1']}\n" MEASURES);
     assert_true(bough_is_ok(&status));
-    const bough_study_cell *cell = &f.study->cell[0];
+    const bough_case *cell = &f.study->cases[0];
     assert_string_equal(cell->settings, "master.rtol=1e-6, micro.rtol=1e-5, title=it's: 1");
     assert_string_equal(cell->set[2], "title='it''s: 1'");
     close_study(&f);
@@ -139,7 +139,7 @@ static void a_mapping_is_a_value(void **state) {
         &f, *state,
         HEAD REFERENCE "grid: {simulation.micro: [{solver: rosenbrock, step: 2 ms}]}\n" MEASURES);
     assert_true(bough_is_ok(&status));
-    assert_string_equal(f.study->cell[0].set[0],
+    assert_string_equal(f.study->cases[0].set[0],
                         "simulation.micro={solver: rosenbrock, step: 2 ms}");
     close_study(&f);
 }
@@ -229,11 +229,11 @@ static void reference_differs_from_itself_by_nothing(void **state) {
     bough_study_series reference = bough_study_series_take(f.arena, f.study);
     bough_study_series series = bough_study_series_take(f.arena, f.study);
     bough_study_drive drive = {.stop = NULL};
-    bough_study_result result;
+    bough_case_result result;
     double error[2];
-    bough_study_run(f.study, f.study->reference_cell, 1, &drive, &reference, &result);
+    bough_case_run(f.study, f.study->reference_case, 1, &drive, &reference, &result);
     assert_int_equal(reference.filled, 6);
-    bough_status status = bough_study_run(f.study, &f.study->cell[0], 3, &drive, &series, &result);
+    bough_status status = bough_case_run(f.study, &f.study->cases[0], 3, &drive, &series, &result);
     assert_true(bough_is_ok(&status) && bough_is_ok(&result.outcome) && result.done);
     assert_true(result.wall > 0 && result.cpu > 0);
     check_near(result.time, 0.02, 1e-14, 0);

@@ -1,0 +1,292 @@
+// What cannot be seen in the text of a study alone: whether every scene takes its replacements and has the
+// channels, and whether runs that are compared have common output times. Found before the first run, since
+// the last one may start hours later.
+#include "apps/bough/cases/study_internal.h"
+
+#include "apps/bough/config/schema.h"
+#include "apps/bough/model/build.h"
+#include "apps/bough/scene/fingerprint.h"
+
+#include <assert.h>
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+// -- fingerprint ----------------------------------------------------------------------------------
+
+static void mix_measure(uint64_t *hash, const bough_study_measure *m) {
+    char numbers[80];
+    for (int i = 0; i < m->channels.n; i++) {
+        for (int k = 0; k < m->channels.item[i].n; k++) bough_mix_text(hash, m->channels.item[i].channel[k]);
+        bough_mix_text(hash, "");
+    }
+    snprintf(numbers, sizeof numbers, "%d %.17g", m->norm, m->scale);
+    bough_mix_text(hash, numbers);
+}
+
+// The title and the grid's values are not in it: a grid may grow and keeps what was run. The
+// program is, where the system shows it: results of another one are not to be mixed in.
+static void mix_comparison(uint64_t *hash, const bough_study *s, const bough_case *c) {
+    char numbers[80];
+    for (int i = 0; i < s->reference_case->n_set; i++) bough_mix_text(hash, s->reference_case->set[i]);
+    for (int i = 0; i < s->common.n; i++) bough_mix_text(hash, s->common.item[i].set);
+    for (int i = 0; i < s->grid.n; i++) bough_mix_text(hash, s->grid.axis[i].key);
+    for (int i = 0; i < s->n_measure; i++) mix_measure(hash, &s->measure[i]);
+    snprintf(numbers, sizeof numbers, "%d %d", s->repeat, s->is.parallel ? 0 : s->threads);
+    bough_mix_text(hash, numbers);
+    const uint64_t files[] = {s->reference_case[c->reference].files, c->files};
+    bough_mix(hash, files, sizeof files);
+    bough_mix_text(hash, c->settings);
+}
+
+static void mix_statistics(uint64_t *hash, const bough_study *s, const bough_case *c) {
+    char numbers[64];
+    bough_mix(hash, &c->files, sizeof c->files);
+    for (int i = 0; i < c->n_set; i++) bough_mix_text(hash, c->set[i]);
+    snprintf(numbers, sizeof numbers, "%.17g %d %d %d", s->from, !s->is.weighted, s->series, s->n_wanted);
+    bough_mix_text(hash, numbers);
+    for (int i = 0; i < s->n_wanted; i++) bough_mix_text(hash, s->wanted[i]);
+    for (int i = 0; i < s->n_slope; i++) bough_mix(hash, &s->slope[i], sizeof s->slope[i]);
+}
+
+// -- scenes ---------------------------------------------------------------------------------------
+
+// Whether an error in a scene speaks of this replacement: its path is the key, or the key's parent
+// when the key itself is unknown and therefore named in the text.
+static bool concerns(const bough_error *e, const bough_study_setting *setting) {
+    if (strcmp(e->path, setting->key) == 0) return true;
+    char word[96];
+    const char *dot = strrchr(setting->key, '.');
+    snprintf(word, sizeof word, "'%.80s'", dot ? dot + 1 : setting->key);
+    size_t parent = dot ? (size_t)(dot - setting->key) : 0;
+    return strlen(e->path) == parent && strncmp(e->path, setting->key, parent) == 0 &&
+           strstr(e->text, word) != NULL;
+}
+
+static const bough_study_setting *concerned(const bough_study_settings *settings, const bough_error *e) {
+    for (int i = 0; i < settings->n; i++) {
+        if (concerns(e, &settings->item[i])) return &settings->item[i];
+    }
+    return NULL;
+}
+
+static const bough_study_setting *concerned_value(const bough_study_grid *grid, const int *index,
+                                                  const bough_error *e) {
+    for (int i = 0; i < grid->n; i++) {
+        const bough_study_setting *value = grid->axis[i].value.item;
+        if (index[i] >= 0 && concerns(e, &value[index[i]])) return &value[index[i]];
+    }
+    return NULL;
+}
+
+static bool is_reported(const bough_errors *errors, const bough_node *at, const bough_error *e) {
+    for (int i = 0; i < errors->n; i++) {
+        const bough_error *old = &errors->item[i];
+        if (old->line == at->line && old->column == at->column && strcmp(old->file, at->file) == 0 &&
+            strcmp(old->path, e->path) == 0 && strcmp(old->text, e->text) == 0) {
+            return true;
+        }
+    }
+    return false;
+}
+
+// Adds an error of a run's scene, once for all runs that have it: an error in a replacement at `origin`,
+// where the study gives it.
+static void report(const bough_error *e, const char *scene, const bough_node *origin, bough_errors *errors) {
+    bough_node where = {.file = e->file, .line = e->line, .column = e->column};
+    if (e->line == 0 && strcmp(e->file, scene) != 0) where = *origin;
+    if (!is_reported(errors, &where, e)) bough_errors_add(errors, &where, e->path, "%s", e->text);
+}
+
+static bool is_reference(const bough_study *s, const bough_case *c) {
+    return c >= s->reference_case && c < s->reference_case + s->n_reference;
+}
+
+// Where the study says what the error in the case's scene is about.
+static const bough_node *origin(const bough_study *s, const bough_case *c, const bough_error *e) {
+    const bough_load_group *g = &s->group[c->group];
+    bool reference = is_reference(s, c);
+    const bough_study_setting *found = concerned_value(&g->grid, c->index, e);
+    if (!found && reference) found = concerned(&s->reference, e);
+    if (!found) found = concerned(&g->set, e);
+    if (!found) found = concerned(&s->common, e);
+    if (found) return found->node;
+    return s->is.compared ? bough_node_find(s->node, reference ? "reference" : "grid") : g->node;
+}
+
+// -- channels -------------------------------------------------------------------------------------
+
+static void add_unknown(const bough_channels *channels, const char *name, const bough_node *node,
+                        const char *key, bough_errors *errors) {
+    const char **names = bough_arena_take(errors->arena, (size_t)(channels->count + 1) * sizeof *names);
+    for (int i = 0; i < channels->count; i++) names[i] = channels->channel[i].name;
+    bough_errors_add(errors, node, key, "the scene has no channel '%.80s'%s", name,
+                     bough_suggest(name, names, channels->count).text);
+}
+
+static void check_unit(bough_study_measure *m, const bough_channel *channel, bough_arena *arena,
+                       bough_errors *errors) {
+    if (!m->unit) m->unit = bough_arena_string(arena, channel->unit);
+    if (bough_node_find(m->node, "scale") || !m->unit || strcmp(m->unit, channel->unit) == 0) return;
+    bough_errors_add(errors, m->node, "measures", "channel %s is in %s, not %s: give a 'scale'",
+                     channel->name, channel->unit, m->unit);
+}
+
+static int count_channels(const bough_study *s) {
+    int n = 0;
+    for (int i = 0; i < s->n_measure; i++) {
+        for (int k = 0; k < s->measure[i].channels.n; k++) n += s->measure[i].channels.item[k].n;
+    }
+    return n;
+}
+
+static void check_vector(bough_study *s, bough_study_measure *m, const bough_study_vector *vector,
+                         const bough_channels *channels, bough_errors *errors) {
+    for (int i = 0; i < vector->n; i++) {
+        int k = bough_channels_find(channels, vector->channel[i]);
+        if (k < 0) {
+            add_unknown(channels, vector->channel[i], m->node, "measures", errors);
+        } else {
+            check_unit(m, &channels->channel[k], errors->arena, errors);
+        }
+        s->channel[s->n_channel++] = vector->channel[i];
+    }
+}
+
+static void check_measures(bough_arena *arena, bough_study *s, const bough_channels *channels,
+                           bough_errors *errors) {
+    s->channel = bough_arena_take(arena, (size_t)count_channels(s) * sizeof *s->channel);
+    for (int i = 0; i < s->n_measure; i++) {
+        for (int k = 0; k < s->measure[i].channels.n; k++)
+            check_vector(s, &s->measure[i], &s->measure[i].channels.item[k], channels, errors);
+    }
+}
+
+static void keep_channels(bough_arena *arena, bough_study *s, const bough_channels *channels) {
+    bool all = s->n_wanted == 0;
+    s->n_channel = all ? channels->count : s->n_wanted;
+    s->channel = bough_arena_take(arena, (size_t)s->n_channel * sizeof *s->channel);
+    s->unit = bough_arena_take(arena, (size_t)s->n_channel * sizeof *s->unit);
+    for (int i = 0; i < s->n_channel && s->channel && s->unit; i++) {
+        int k = all ? i : bough_channels_find(channels, s->wanted[i]);
+        s->channel[i] = bough_arena_string(arena, channels->channel[k].name);
+        s->unit[i] = bough_arena_string(arena, channels->channel[k].unit);
+    }
+}
+
+// The first scene's channels are the study's where it names none.
+static void check_wanted(bough_arena *arena, bough_study *s, const bough_channels *channels,
+                         bough_errors *errors) {
+    for (int i = 0; i < s->n_wanted; i++) {
+        if (bough_channels_find(channels, s->wanted[i]) < 0)
+            add_unknown(channels, s->wanted[i], bough_node_find(s->node, "channels"), "channels", errors);
+    }
+    if (errors->n == 0 && !s->channel) keep_channels(arena, s, channels);
+}
+
+static bough_status check_channels(bough_arena *arena, bough_arena *own, bough_study *s,
+                                   const bough_scene *scene, bough_errors *errors) {
+    bough_simulation *simulation;
+    bough_status status = bough_simulation_build(own, scene, &simulation);
+    if (!bough_is_ok(&status)) return status;
+    bough_channels channels = bough_channels_start(own);
+    status = bough_simulation_channels(simulation, &channels);
+    if (!bough_is_ok(&status)) return status;
+    if (s->is.compared)
+        check_measures(arena, s, &channels, errors);
+    else
+        check_wanted(arena, s, &channels, errors);
+    return status;
+}
+
+// -- times ----------------------------------------------------------------------------------------
+
+static void check_times(const bough_study *s, const bough_case *c, const bough_scene_simulation *sim,
+                        bough_errors *errors) {
+    const bough_node *grid = bough_node_find(s->node, "grid");
+    if (fabs(sim->output.interval - s->interval) > 1e-9 * s->interval) {
+        bough_errors_add(errors, grid, "grid",
+                         "%s: records every %.9g s, the reference every %.9g s; "
+                         "set simulation.output.interval in 'common'",
+                         c->settings, sim->output.interval, s->interval);
+    }
+    if (fabs(sim->duration - s->duration) > 1e-9 * s->duration) {
+        bough_errors_add(errors, grid, "grid", "%s: lasts %.9g s, the reference %.9g s", c->settings,
+                         sim->duration, s->duration);
+    }
+}
+
+static void check_from(const bough_study *s, const bough_scene *scene, const bough_case *c,
+                       bough_errors *errors) {
+    if (s->from < scene->simulation.duration) return;
+    char text[200];
+    snprintf(text, sizeof text, "%g s is not before the end, %g s, of %.100s", s->from,
+             scene->simulation.duration, c->scene);
+    const bough_node *at = bough_node_find(s->node, "from");
+    report(&(bough_error){at->file, at->line, at->column, "from", text}, c->scene, at, errors);
+}
+
+// -- cases ----------------------------------------------------------------------------------------
+
+typedef struct check {
+    bough_study *study;
+    uint64_t program; // fingerprint
+    bough_file_sums sums;
+    bough_errors *errors;
+} check;
+
+// Of the references the first says the times.
+static void check_duration(const check *k, const bough_case *c, const bough_scene *scene) {
+    bough_study *s = k->study;
+    if (c == s->reference_case) {
+        s->duration = scene->simulation.duration;
+        s->interval = scene->simulation.output.interval;
+    } else if (!s->is.compared) {
+        check_from(s, scene, c, k->errors);
+    } else if (s->duration > 0 && !is_reference(s, c)) {
+        check_times(s, c, &scene->simulation, k->errors);
+    }
+}
+
+static void take_fingerprint(check *k, bough_case *c, const bough_scene *scene) {
+    c->files = BOUGH_FINGERPRINT_START;
+    bough_mix_scene(&c->files, &k->sums, scene);
+    c->fingerprint = k->program;
+    if (k->study->is.compared)
+        mix_comparison(&c->fingerprint, k->study, c);
+    else
+        mix_statistics(&c->fingerprint, k->study, c);
+}
+
+// The channels are looked up in the first reference's scene, or in that of the first case of each group.
+static bough_status check_case(bough_arena *arena, check *k, bough_case *c, bool channels) {
+    bough_study *s = k->study;
+    bough_arena *own = bough_arena_child(arena);
+    bough_errors found = {.arena = own};
+    bough_scene *scene;
+    bough_status status = bough_scene_read(own, c->scene, c->set, c->n_set, &found, &scene);
+    for (int i = 0; i < found.n; i++)
+        report(&found.item[i], c->scene, origin(s, c, &found.item[i]), k->errors);
+    if (status.code == BOUGH_INVALID) status = bough_ok();
+    if (scene) {
+        take_fingerprint(k, c, scene);
+        check_duration(k, c, scene);
+    }
+    if (scene && channels && k->errors->n == 0) status = check_channels(arena, own, s, scene, k->errors);
+    bough_arena_destroy(own);
+    return status;
+}
+
+bough_status bough_study_check(bough_arena *arena, bough_study *s, bough_errors *errors) {
+    assert(errors->arena == arena);
+    check k = {s, BOUGH_FINGERPRINT_START, {.arena = arena}, errors};
+    bough_mix_program(&k.program);
+    bough_status status = bough_ok();
+    for (int i = 0; i < s->n_reference && bough_is_ok(&status) && errors->dropped == 0; i++)
+        status = check_case(arena, &k, &s->reference_case[i], i == 0);
+    for (int i = 0; i < s->n_case && bough_is_ok(&status) && errors->dropped == 0; i++) {
+        bool first = i == 0 || s->cases[i].group != s->cases[i - 1].group;
+        status = check_case(arena, &k, &s->cases[i], first && !s->is.compared);
+    }
+    return status;
+}

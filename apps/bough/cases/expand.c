@@ -1,0 +1,191 @@
+// From the grids of a study to its cases, with the share that each has of its load case, and to the
+// references.
+#include "apps/bough/cases/study_internal.h"
+#include "apps/bough/config/schema.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+static const char speed_key[] = "aero.wind.speed", scene_key[] = "scene";
+
+// -- weights --------------------------------------------------------------------------------------
+
+static double speed_of(const bough_study_axis *axis, int i) {
+    char why[160];
+    double speed = (double)NAN;
+    return bough_quantity(axis->value.item[i].value, BOUGH_SPEED, &speed, why) ? speed : (double)NAN;
+}
+
+// Weibull's share of the hours with less wind than that.
+static double share_below(const bough_load_wind *wind, double speed) {
+    double scale = wind->average / tgamma(1 + 1 / wind->shape);
+    return speed > 0 ? 1 - exp(-pow(speed / scale, wind->shape)) : 0;
+}
+
+// Of the speeds nearest to value i of the axis: the bin's edges are half way to its neighbours.
+static double share_of_speed(const bough_load_wind *wind, const bough_study_axis *axis, int i) {
+    int n = axis->value.n;
+    double here = speed_of(axis, i);
+    double below = i > 0 ? here - speed_of(axis, i - 1) : speed_of(axis, 1) - here;
+    double above = i < n - 1 ? speed_of(axis, i + 1) - here : below;
+    return share_below(wind, here + above / 2) - share_below(wind, here - below / 2);
+}
+
+// The place of an axis of that key in the grid; −1: there is none.
+static int axis_of(const bough_load_group *g, const char *key) {
+    int i = g->grid.n - 1;
+    while (i >= 0 && strcmp(g->grid.axis[i].key, key) != 0) i--;
+    return i;
+}
+
+static bool are_rising(const bough_study_axis *axis) {
+    for (int i = 1; i < axis->value.n; i++)
+        if (!(speed_of(axis, i) > speed_of(axis, i - 1))) return false;
+    return axis->value.n >= 2;
+}
+
+static void check_speeds(const bough_load_group *g, bough_errors *errors) {
+    int speeds = axis_of(g, speed_key);
+    if (!(g->weibull > 0) || (speeds >= 0 && are_rising(&g->grid.axis[speeds]))) return;
+    bough_errors_add(errors, g->node, "weibull",
+                     "'%.80s' needs at least two rising speeds of '%s' in its grid", g->name, speed_key);
+}
+
+static double share_of(const bough_study *s, const bough_case *c, int n_group) {
+    const bough_load_group *g = &s->group[c->group];
+    int speeds = axis_of(g, speed_key);
+    if (!(g->weibull > 0)) return 1. / n_group;
+    if (speeds < 0) return 0;
+    const bough_study_axis *axis = &g->grid.axis[speeds];
+    return share_of_speed(&s->wind, axis, c->index[speeds]) * axis->value.n / n_group;
+}
+
+double bough_case_weight(const bough_study *s, const bough_case *c, double counted) {
+    const bough_load_group *g = &s->group[c->group];
+    if (g->events > 0) return g->events * s->lifetime * c->share;
+    double hours = g->weibull > 0 ? 8766 * g->weibull : g->hours;
+    return hours * s->lifetime * c->share * 3600 / counted;
+}
+
+// -- cases ----------------------------------------------------------------------------------------
+
+static void add_sets(bough_case *c, const bough_study_settings *settings) {
+    for (int i = 0; i < settings->n; i++) c->set[c->n_set++] = settings->item[i].set;
+}
+
+static void take_sets(bough_arena *arena, const bough_study *s, int n_own, bough_case *c) {
+    c->set = bough_arena_take(arena, (size_t)(s->common.n + n_own) * sizeof *c->set);
+    add_sets(c, &s->common);
+}
+
+// The place of the axis of scenes; −1: there is none. All cases that are compared have one scene.
+static int scene_axis(const bough_study *s, const bough_load_group *g) {
+    return s->is.compared ? -1 : axis_of(g, scene_key);
+}
+
+static void make_case(bough_arena *arena, bough_study *s, int group, int number, int n_group, bough_case *c) {
+    const bough_load_group *g = &s->group[group];
+    const char *scene = g->scene_name ? g->scene_name : s->scene_name;
+    int scenes = scene_axis(s, g);
+    c->group = group;
+    bough_grid_place(&g->grid, number, c->index);
+    c->share = share_of(s, c, n_group);
+    take_sets(arena, s, g->set.n + g->grid.n, c);
+    add_sets(c, &g->set);
+    for (int i = 0; i < g->grid.n; i++) {
+        const bough_study_setting *value = &g->grid.axis[i].value.item[c->index[i]];
+        if (i == scenes)
+            scene = value->value;
+        else
+            c->set[c->n_set++] = value->set;
+    }
+    c->scene = bough_study_path(arena, s->file, scene);
+    c->settings = bough_grid_settings(arena, &g->grid, c->index);
+}
+
+// -- references -----------------------------------------------------------------------------------
+
+// What is no setting of the simulation is a parameter of the model.
+static bool is_model(const bough_study *s, int axis) {
+    return s->is.compared && s->is.parallel &&
+           strncmp(s->grid.axis[axis].key, "simulation.", strlen("simulation.")) != 0;
+}
+
+static int count_references(const bough_study *s) {
+    int n = 1;
+    for (int i = 0; i < s->grid.n; i++)
+        if (is_model(s, i)) n *= s->grid.axis[i].value.n;
+    return n;
+}
+
+// The number of the reference with a cell's parameters of the model.
+static int reference_of(const bough_study *s, const bough_case *cell) {
+    int number = 0;
+    for (int i = 0; i < s->grid.n; i++)
+        if (is_model(s, i)) number = number * s->grid.axis[i].value.n + cell->index[i];
+    return number;
+}
+
+// "reference", or with the parameters "reference: damping=1e-3"
+static const char *name_reference(bough_arena *arena, const bough_study *s, const bough_case *cell) {
+    char text[1024] = "reference";
+    for (int i = 0; i < s->grid.n; i++) {
+        size_t used = strlen(text);
+        if (!is_model(s, i)) continue;
+        snprintf(text + used, sizeof text - used, "%s %s=%s", used > 9 ? "," : ":", s->grid.axis[i].label,
+                 bough_study_value(s, cell, i));
+    }
+    return bough_arena_string(arena, text);
+}
+
+static void make_reference(bough_arena *arena, const bough_study *s, int number, bough_case *cell) {
+    take_sets(arena, s, s->reference.n + s->grid.n, cell);
+    for (int i = 0; i < BOUGH_STUDY_AXES; i++) cell->index[i] = -1;
+    for (int i = s->grid.n - 1; i >= 0; i--) {
+        if (!is_model(s, i)) continue;
+        cell->index[i] = number % s->grid.axis[i].value.n;
+        number /= s->grid.axis[i].value.n;
+        cell->set[cell->n_set++] = s->grid.axis[i].value.item[cell->index[i]].set;
+    }
+    add_sets(cell, &s->reference);
+    cell->scene = bough_study_path(arena, s->file, s->scene_name);
+    cell->settings = name_reference(arena, s, cell);
+}
+
+static void make_references(bough_arena *arena, bough_study *s) {
+    s->n_reference = count_references(s);
+    s->reference_case = bough_arena_take(arena, (size_t)s->n_reference * sizeof *s->reference_case);
+    for (int i = 0; i < s->n_reference; i++) make_reference(arena, s, i, &s->reference_case[i]);
+}
+
+// -- all ------------------------------------------------------------------------------------------
+
+static int count_group(const bough_load_group *g) { return bough_grid_count(&g->grid, BOUGH_MOST_CASES); }
+
+static void check_group(const bough_study *s, const bough_load_group *g, bough_errors *errors) {
+    check_speeds(g, errors);
+    if (s->scene_name || g->scene_name || scene_axis(s, g) >= 0) return;
+    bough_errors_add(errors, s->node, "", "required key 'scene' is missing");
+}
+
+void bough_study_expand(bough_arena *arena, bough_study *s, bough_errors *errors) {
+    long n = 0;
+    for (int g = 0; g < s->n_group && n <= BOUGH_MOST_CASES; g++) {
+        check_group(s, &s->group[g], errors);
+        n += count_group(&s->group[g]);
+    }
+    if (n > BOUGH_MOST_CASES)
+        bough_errors_add(errors, s->node, "", "expected at most %d cases", BOUGH_MOST_CASES);
+    if (errors->n > 0) return;
+    if (s->is.compared) make_references(arena, s);
+    s->cases = bough_arena_take(arena, (size_t)n * sizeof *s->cases);
+    for (int g = 0; g < s->n_group; g++) {
+        int n_group = count_group(&s->group[g]);
+        for (int i = 0; i < n_group; i++) {
+            bough_case *c = &s->cases[s->n_case++];
+            make_case(arena, s, g, i, n_group, c);
+            c->reference = reference_of(s, c);
+        }
+    }
+}
