@@ -223,7 +223,7 @@ static void run_repeatedly(case_run *r, int repeat) {
 
 bough_status bough_case_run(const bough_study *study, const bough_case *c, int repeat,
                             bough_study_drive *drive, bough_study_series *series, bough_case_result *result) {
-    case_run r = {study, c, drive, series, result};
+    case_run r = {.study = study, .chosen = c, .drive = drive, .series = series, .result = result};
     *result = (bough_case_result){.outcome = bough_ok(), .counts = result->counts};
     for (int i = 0; i < study->n_measure; i++) result->error[i] = (double)NAN;
     if (series)

@@ -1,10 +1,8 @@
 #include "apps/bough/cases/load_set_perform.h"
 
-#include "apps/bough/cases/case_claim.h"
-#include "apps/bough/cases/case_file.h"
 #include "apps/bough/cases/load_set_plot.h"
 #include "apps/bough/cases/load_set_tables.h"
-#include "apps/bough/cases/result_file.h"
+#include "apps/bough/cases/store.h"
 #include "apps/bough/cases/study_batch.h"
 #include "apps/bough/config/schema.h"
 #include "apps/bough/results/folder.h"
@@ -80,7 +78,7 @@ static bough_status run_case(bough_arena *arena, work *w, int number) {
         status = bough_case_run(w->set, &w->set->cases[number], 1, &drive, NULL, &result);
     }
     if (bough_is_ok(&status)) {
-        status = bough_case_write(w->options->folder, w->set, number, &result);
+        status = bough_store_write(w->options->folder, w->set, &w->set->cases[number], &result);
     }
     if (bough_is_ok(&status)) count(w, number, &result);
     return status;
@@ -92,7 +90,8 @@ static bough_status perform_case(bough_arena *arena, void *self, int i) {
     int number = w->to_do[i];
     bough_status status = bough_ok();
     if (!bough_claim(w->claims, number)) return status;
-    if (!bough_case_exists(w->options->folder, w->set, number)) status = run_case(arena, w, number);
+    if (!bough_store_has(w->options->folder, w->set, &w->set->cases[number]))
+        status = run_case(arena, w, number);
     bough_claim_drop(w->claims, number);
     return status;
 }
@@ -108,7 +107,7 @@ static bool is_mine(const work *w, int number) {
 static void list_cases(bough_arena *arena, work *w) {
     w->to_do = bough_arena_take(arena, (size_t)w->set->n_case * sizeof *w->to_do);
     for (int i = 0; i < w->set->n_case; i++) {
-        bool wanted = is_mine(w, i) && !bough_case_exists(w->options->folder, w->set, i);
+        bool wanted = is_mine(w, i) && !bough_store_has(w->options->folder, w->set, &w->set->cases[i]);
         if (wanted) w->to_do[w->batch.n++] = i;
     }
 }
@@ -136,7 +135,7 @@ static bough_status check_name(bough_arena *arena, const work *w) {
 
 static bough_status start(bough_arena *arena, work *w) {
     bough_status status = check_name(arena, w);
-    if (bough_is_ok(&status)) status = bough_result_folder(w->options->folder);
+    if (bough_is_ok(&status)) status = bough_store_open(w->options->folder);
     if (bough_is_ok(&status)) status = bough_claims_open(arena, w->options->folder, &w->claims);
     if (!bough_is_ok(&status)) return status;
     list_cases(arena, w);
@@ -166,7 +165,7 @@ static bough_status read_all(bough_arena *arena, const work *w, bough_case_table
                              bough_case_plot *plot, bough_lifetime *lifetime, FILE *failures) {
     bough_case_result result = bough_case_take(arena, w->set);
     for (int i = 0; i < w->set->n_case; i++) {
-        bough_status status = bough_case_read(w->options->folder, w->set, i, &result);
+        bough_status status = bough_store_read(w->options->folder, w->set, &w->set->cases[i], &result);
         if (!bough_is_ok(&status)) return status;
         bough_case_tables_add(tables, i, &result);
         bough_case_plot_add(plot, i, &result);
@@ -241,7 +240,8 @@ static bough_status conclude_in(bough_arena *arena, const work *w) {
 
 static int count_missing(const work *w) {
     int n = 0;
-    for (int i = 0; i < w->set->n_case; i++) n += !bough_case_exists(w->options->folder, w->set, i);
+    for (int i = 0; i < w->set->n_case; i++)
+        n += !bough_store_has(w->options->folder, w->set, &w->set->cases[i]);
     return n;
 }
 

@@ -1,10 +1,8 @@
 #include "apps/bough/cases/study_cells.h"
 
-#include "apps/bough/cases/result_file.h"
+#include "apps/bough/cases/store.h"
 #include "apps/bough/cases/study_batch.h"
 #include "apps/bough/results/folder.h"
-
-#include <inttypes.h>
 
 typedef struct work {
     bough_study_results *results;
@@ -14,71 +12,18 @@ typedef struct work {
 
 // -- results in files -----------------------------------------------------------------------------
 
-// Named by what it depends on: the place in the grid may change.
-static bough_result_file file_of(const char *folder, const bough_case *cell) {
-    bough_result_file file = {.folder = folder, .fingerprint = cell->fingerprint};
-    snprintf(file.name, sizeof file.name, "%016" PRIx64, file.fingerprint);
-    return file;
-}
-
-typedef struct content {
-    const bough_study *study;
-    const bough_case *cell;
-    const bough_case_result *result;
-} content;
-
-static void put_result(const void *self, FILE *f) {
-    const content *x = self;
-    const bough_case_result *r = x->result;
-    const bough_coupling_report *c = &r->coupling;
-    const double run[] = {r->time, r->wall, r->cpu, r->warned};
-    const double coupling[] = {c->defect_max, c->defect_rms, c->energy_residual, c->energy_exchanged};
-    bough_result_text(f, "settings", x->cell->settings);
-    bough_result_put(f, "run", 4, run);
-    bough_result_put(f, "coupling", 4, coupling);
-    bough_result_put(f, "errors", x->study->n_measure, r->error);
-    bough_result_put(f, "estimates", x->study->n_measure, r->estimate);
-}
-
-static bool take_result(FILE *f, int n_measure, bough_case_result *r) {
-    double run[4], c[4];
-    for (int byte = 0; byte != '\n';) // the settings are for people
-        if ((byte = fgetc(f)) == EOF) return false;
-    bool good = bough_result_take(f, "run", 4, run) && bough_result_take(f, "coupling", 4, c) &&
-                bough_result_take(f, "errors", n_measure, r->error) &&
-                bough_result_take(f, "estimates", n_measure, r->estimate);
-    if (!good) return false;
-    r->time = run[0];
-    r->wall = run[1];
-    r->cpu = run[2];
-    r->warned = run[3] > 0;
-    r->coupling = (bough_coupling_report){c[0], c[1], c[2], c[3]};
-    return r->done = true;
-}
-
-static bough_status read_result(const char *folder, const bough_study *s, const bough_case *cell,
-                                bough_case_result *r) {
-    const bough_result_file file = file_of(folder, cell);
-    FILE *stream;
-    bough_status status = bough_result_open(&file, &r->outcome, &stream);
-    return stream ? bough_result_close(&file, stream, take_result(stream, s->n_measure, r)) : status;
-}
-
 static bough_status read_results(const char *folder, bough_study_results *x) {
     const bough_study *s = x->study;
     bough_status status = bough_ok();
     for (int i = 0; i < s->n_reference && bough_is_ok(&status); i++)
-        status = read_result(folder, s, &s->reference_case[i], &x->reference[i]);
+        status = bough_store_read(folder, s, &s->reference_case[i], &x->reference[i]);
     for (int i = 0; i < s->n_case && bough_is_ok(&status); i++)
-        status = read_result(folder, s, &s->cases[i], &x->result[i]);
+        status = bough_store_read(folder, s, &s->cases[i], &x->result[i]);
     return status;
 }
 
 static bough_status keep(const work *w, const bough_case *cell, const bough_case_result *result) {
-    const bough_study *s = w->results->study;
-    const bough_result_file file = file_of(w->batch.options->folder, cell);
-    const content x = {s, cell, result};
-    return bough_result_write(&file, &result->outcome, put_result, &x);
+    return bough_store_write(w->batch.options->folder, w->results->study, cell, result);
 }
 
 // -- runs -----------------------------------------------------------------------------------------
@@ -171,7 +116,7 @@ bough_status bough_study_cells(bough_arena *arena, const bough_study *study,
         .result = bough_arena_take(arena, (size_t)study->n_case * sizeof *results->result)};
     bool parallel = study->is.parallel;
     work w = {.results = results, .parallel = parallel};
-    bough_status status = bough_result_folder(options->folder);
+    bough_status status = bough_store_open(options->folder);
     if (bough_is_ok(&status)) status = remove_tables(options->folder);
     if (bough_is_ok(&status)) status = read_results(options->folder, results);
     if (!bough_is_ok(&status)) return status;
