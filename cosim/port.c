@@ -1,6 +1,7 @@
 #include "cosim/port.h"
 
 #include "core/base/base.h"
+#include "core/base/cubic.h"
 
 bough_signal bough_port_signal(bough_arena *arena, int n) {
     return (bough_signal){.n = n, .t0 = 0, .t1 = 1, .coefficient = bough_arena_doubles(arena, 4 * (size_t)n)};
@@ -30,9 +31,9 @@ void bough_port_linear(bough_signal *s, int first, int count, const double *star
 void bough_port_hermite(bough_signal *s, int first, int count, bough_port_end start, bough_port_end end) {
     double length = s->t1 - s->t0;
     for (int j = 0; j < count; j++) {
-        double jump = end.value[j] - start.value[j];
-        double r0 = length * start.rate[j], r1 = length * end.rate[j];
-        set(s, first + j, start.value[j], r0, 3 * jump - 2 * r0 - r1, r0 + r1 - 2 * jump);
+        double r0 = length * start.rate[j], r1 = length * end.rate[j], bend[2];
+        bough_cubic_bend(end.value[j] - start.value[j], r0, r1, 1, bend);
+        set(s, first + j, start.value[j], r0, bend[0], bend[1]);
     }
 }
 

@@ -1,6 +1,7 @@
 #include "aero/rotor/polar.h"
 
 #include "core/base/base.h"
+#include "core/base/cubic.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -159,9 +160,8 @@ void bough_polar_smoothen(bough_arena *arena, bough_polar *polar) {
     for (int k = 0; k < last; k++) {
         double *row = polar->row + ROW * k, h = row[ROW] - row[0];
         for (int c = 0; c < 3; c++) {
-            double chord = row[4 + c], s0 = slope[3 * k + c], s1 = slope[3 * (k + 1) + c];
-            curve[6 * k + 2 * c] = (3 * chord - 2 * s0 - s1) / h;
-            curve[6 * k + 2 * c + 1] = (s0 + s1 - 2 * chord) / (h * h);
+            double s0 = slope[3 * k + c], s1 = slope[3 * (k + 1) + c];
+            bough_cubic_bend(row[4 + c], s0, s1, h, curve + 6 * k + 2 * c);
             row[4 + c] = s0;
         }
     }

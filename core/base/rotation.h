@@ -1,4 +1,4 @@
-// Rotations: unit quaternions p = (w, x, y, z), their matrices and the exponential.
+// Rotations: unit quaternions p = (w, x, y, z), their matrices, exponential, logarithm and their tangents.
 #ifndef BOUGH_CORE_ROTATION_H
 #define BOUGH_CORE_ROTATION_H
 
@@ -40,5 +40,65 @@ static inline bough_mat3 bough_rotation_matrix(bough_quaternion p) {
 
 // The quaternion of a rotation matrix, with w >= 0.
 bough_quaternion bough_quaternion_of_matrix(bough_mat3 r);
+
+// The rotation by an angle about a unit axis: cos E + sin ξ(a) + (1 − cos) a aᵀ
+static inline bough_mat3 bough_rotation_about(bough_vec3 a, double angle) {
+    double c = cos(angle), s = sin(angle);
+    return (bough_mat3){
+        bough_axpy((1 - c) * a.x, a, bough_v3(c, s * a.z, -s * a.y)),
+        bough_axpy((1 - c) * a.y, a, bough_v3(-s * a.z, c, s * a.x)),
+        bough_axpy((1 - c) * a.z, a, bough_v3(s * a.y, -s * a.x, c)),
+    };
+}
+
+// -- tangents of exponential and logarithm ---------------------------------------------------------
+
+// The tangent of the exponential at ψ, J(ψ) v = v + b ψ×v + c ψ×(ψ×v), which takes ψ̇ to the angular velocity
+// in the axes that stand still.
+typedef struct bough_exp_factors {
+    double b, c, db, dc; // and their derivatives by |ψ|²
+} bough_exp_factors;
+
+static inline bough_exp_factors bough_exp_factors_of(bough_vec3 psi) {
+    double t = bough_dot(psi, psi);
+    if (t < 0.05) {
+        return (bough_exp_factors){1 / 2. - t * (1 / 24. - t * (1 / 720. - t * (1 / 40320. - t / 3628800))),
+                                   1 / 6. -
+                                       t * (1 / 120. - t * (1 / 5040. - t * (1 / 362880. - t / 39916800))),
+                                   -1 / 24. + t * (1 / 360. - t * (1 / 13440. - t / 907200)),
+                                   -1 / 120. + t * (1 / 2520. - t * (1 / 120960. - t / 9979200))};
+    }
+    double angle = sqrt(t), b = (1 - cos(angle)) / t, c = (1 - sin(angle) / angle) / t;
+    return (bough_exp_factors){b, c, (sin(angle) / angle - 2 * b) / (2 * t), (b - 3 * c) / (2 * t)};
+}
+
+static inline bough_vec3 bough_exp_tangent(bough_exp_factors j, bough_vec3 psi, bough_vec3 v) {
+    bough_vec3 once = bough_cross(psi, v);
+    return bough_add(v, bough_axpy(j.c, bough_cross(psi, once), bough_scale(j.b, once)));
+}
+
+// Derivative of J(ψ) v along dψ, v held.
+static inline bough_vec3 bough_exp_tangent_change(bough_exp_factors j, bough_vec3 psi, bough_vec3 d,
+                                                  bough_vec3 v) {
+    double dt = 2 * bough_dot(psi, d);
+    bough_vec3 once = bough_cross(psi, v), other = bough_cross(d, v);
+    bough_vec3 twice = bough_add(bough_cross(d, once), bough_cross(psi, other));
+    bough_vec3 first = bough_axpy(j.db * dt, once, bough_scale(j.b, other));
+    return bough_add(first, bough_axpy(j.dc * dt, bough_cross(psi, once), bough_scale(j.c, twice)));
+}
+
+// Of the tangent of the logarithm, the inverse of J, θ̇ = (E − ½ξ(θ) + β ξ(θ)²) ω, |θ| = `angle`:
+// β = (1 − θ/2 cot θ/2)/θ², and β'/θ.
+static inline void bough_log_factors(double angle, double *beta, double *slope) {
+    double a2 = angle * angle;
+    if (angle < 0.1) {
+        *beta = 1.0 / 12 + a2 * (1.0 / 720 + a2 * (1.0 / 30240 + a2 / 1209600));
+        *slope = 1.0 / 360 + a2 * (1.0 / 7560 + a2 / 201600);
+        return;
+    }
+    double half = 0.5 * angle, sine = sin(half), cotangent = cos(half) / sine;
+    *beta = (1 - half * cotangent) / a2;
+    *slope = (0.25 / (sine * sine) - 2 / a2 + 0.5 * cotangent / angle) / a2;
+}
 
 #endif

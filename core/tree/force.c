@@ -109,19 +109,6 @@ static relative relative_of(const bough_tree *tree, const bough_tree_data *d, co
     return x;
 }
 
-// θ̇ = (E − ½ξ(θ) + β ξ(θ)²) ω with β = (1 − θ/2 cot θ/2)/θ², and β'/θ
-static void rate_factors(double angle, double *beta, double *slope) {
-    double a2 = angle * angle;
-    if (angle < 0.1) {
-        *beta = 1.0 / 12 + a2 * (1.0 / 720 + a2 * (1.0 / 30240 + a2 / 1209600));
-        *slope = 1.0 / 360 + a2 * (1.0 / 7560 + a2 / 201600);
-        return;
-    }
-    double half = 0.5 * angle, sine = sin(half), cotangent = cos(half) / sine;
-    *beta = (1 - half * cotangent) / a2;
-    *slope = (0.25 / (sine * sine) - 2 / a2 + 0.5 * cotangent / angle) / a2;
-}
-
 // What the rotation's spring energy ½ θᵀKθ gives as a moment: κ + ½ θ×κ + β θ×(θ×κ), κ = Kθ.
 static v3 elastic_moment(v3 theta, v3 kappa, double beta) {
     v3 once = bough_cross(theta, kappa);
@@ -131,7 +118,7 @@ static v3 elastic_moment(v3 theta, v3 kappa, double beta) {
 // Force and moment on the second marker.
 static bough_wrench on_second(const bough_bushing_def *b, const relative *x) {
     double beta, slope;
-    rate_factors(bough_norm(x->theta), &beta, &slope);
+    bough_log_factors(bough_norm(x->theta), &beta, &slope);
     v3 force = bough_add(scaled(b->stiffness, x->d), scaled(b->damping, x->d_rate));
     v3 moment = elastic_moment(x->theta, scaled(b->stiffness + 3, x->theta), beta);
     moment = bough_add(moment, scaled(b->damping + 3, x->omega));
@@ -152,7 +139,7 @@ static bough_force_pair bushing_force(const bough_tree *tree, const bough_tree_d
 // δ of the elastic moment along δθ
 static v3 moment_change(const bough_bushing_def *b, v3 theta, v3 change) {
     double beta, slope;
-    rate_factors(bough_norm(theta), &beta, &slope);
+    bough_log_factors(bough_norm(theta), &beta, &slope);
     v3 kappa = scaled(b->stiffness + 3, theta), once = bough_cross(theta, kappa);
     v3 sum = elastic_moment(theta, scaled(b->stiffness + 3, change), beta);
     v3 turned = bough_cross(change, kappa);
@@ -167,7 +154,7 @@ static bough_force_pair bushing_change(const bough_tree *tree, const bough_tree_
     relative x = relative_of(tree, d, b);
     bough_wrench w = on_second(b, &x);
     double beta, slope;
-    rate_factors(bough_norm(x.theta), &beta, &slope);
+    bough_log_factors(bough_norm(x.theta), &beta, &slope);
     // how the second marker turns, moves and speeds up as the first sees it
     v3 turn = bough_sub(bough_mat3_mul(x.r, shift[1].angular), shift[0].angular);
     v3 once = bough_cross(x.theta, turn);

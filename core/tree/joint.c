@@ -48,16 +48,6 @@ static bough_mat3 rotation_at(const double *p) {
     return bough_rotation_matrix(bough_quaternion_normalised(load(p)));
 }
 
-// The rotation by an angle about a unit axis: cos E + sin ξ(a) + (1 − cos) a aᵀ
-static bough_mat3 axis_rotation(bough_vec3 a, double angle) {
-    double c = cos(angle), s = sin(angle);
-    return (bough_mat3){
-        bough_axpy((1 - c) * a.x, a, bough_v3(c, s * a.z, -s * a.y)),
-        bough_axpy((1 - c) * a.y, a, bough_v3(-s * a.z, c, s * a.x)),
-        bough_axpy((1 - c) * a.z, a, bough_v3(s * a.y, -s * a.x, c)),
-    };
-}
-
 // The vector of x along what the joint slides; of two, along the second axis and axis × second.
 static bough_vec3 slide(const bough_joint *joint, const double *x) {
     switch (slides_of(joint)) {
@@ -72,7 +62,7 @@ static bough_vec3 slide(const bough_joint *joint, const double *x) {
 bough_transform bough_joint_pose(const bough_joint *joint, const double *q) {
     bough_transform moved = {slide(joint, q), bough_mat3_identity()};
     q += slides_of(joint);
-    if (spin_of(joint) == ABOUT_AXIS) moved.rotation = axis_rotation(joint->axis, q[0]);
+    if (spin_of(joint) == ABOUT_AXIS) moved.rotation = bough_rotation_about(joint->axis, q[0]);
     if (spin_of(joint) == ALL_WAYS) moved.rotation = rotation_at(q);
     return bough_transform_compose(joint->placement, moved);
 }

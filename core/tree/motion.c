@@ -1,6 +1,7 @@
 #include "core/tree/motion.h"
 
 #include "core/base/base.h"
+#include "core/base/cubic.h"
 
 #include <math.h>
 #include <string.h>
@@ -116,10 +117,8 @@ static void fit_positions(const bough_motion_def *def, bough_motion *m, double *
         c[0] = def->values[i];
         if (i == def->n - 1) break;
         double d = def->times[i + 1] - def->times[i];
-        double chord = chord_slope(def, i);
         c[1] = slope[i];
-        c[2] = (3 * chord - 2 * slope[i] - slope[i + 1]) / d;
-        c[3] = (slope[i] + slope[i + 1] - 2 * chord) / (d * d);
+        bough_cubic_bend(chord_slope(def, i), slope[i], slope[i + 1], d, c + 2);
     }
 }
 
@@ -151,13 +150,12 @@ bough_motion *bough_motion_create(bough_arena *arena, const bough_motion_def *de
 
 void bough_motion_steer(bough_motion *m, double t, double span, bough_motion_point from,
                         bough_motion_point to) {
-    double chord = (to.q - from.q) / span, *c = m->piece;
+    double *c = m->piece;
     m->n = 1;
     m->times[0] = t;
     m->rise = 0;
     c[0] = from.q;
     c[1] = from.v;
-    c[2] = (3 * chord - 2 * from.v - to.v) / span;
-    c[3] = (from.v + to.v - 2 * chord) / (span * span);
+    bough_cubic_bend((to.q - from.q) / span, from.v, to.v, span, c + 2);
     memcpy(c + 4, c, 4 * sizeof *c);
 }

@@ -1,5 +1,4 @@
-// Small algebra of modal pieces: vectors over the shapes, matrices by columns (m × stride), and
-// rotation vectors.
+// Small algebra of modal pieces: vectors over the shapes, matrices by columns (m × stride).
 #ifndef BOUGH_FLEXBODY_MODAL_ALGEBRA_H
 #define BOUGH_FLEXBODY_MODAL_ALGEBRA_H
 
@@ -125,38 +124,6 @@ static inline bough_vec3 arms_times(const bough_modal_point *at, const double *x
 // Momentum (P, L) about the frame's origin.
 static inline bough_wrench momentum_of(const bough_modal_point *at) {
     return (bough_wrench){dot3(at->piece, at->piece->rigid, at->eta), arms_times(at, at->eta)};
-}
-
-// -- rotation vectors: J(ψ) v = v + b ψ×v + c ψ×(ψ×v) ---------------------------------------------
-
-typedef struct turning {
-    double b, c, db, dc; // and their derivatives by |ψ|²
-} turning;
-
-static inline turning turning_of(bough_vec3 psi) {
-    double t = bough_dot(psi, psi);
-    if (t < 0.05) {
-        return (turning){1 / 2. - t * (1 / 24. - t * (1 / 720. - t * (1 / 40320. - t / 3628800))),
-                         1 / 6. - t * (1 / 120. - t * (1 / 5040. - t * (1 / 362880. - t / 39916800))),
-                         -1 / 24. + t * (1 / 360. - t * (1 / 13440. - t / 907200)),
-                         -1 / 120. + t * (1 / 2520. - t * (1 / 120960. - t / 9979200))};
-    }
-    double angle = sqrt(t), b = (1 - cos(angle)) / t, c = (1 - sin(angle) / angle) / t;
-    return (turning){b, c, (sin(angle) / angle - 2 * b) / (2 * t), (b - 3 * c) / (2 * t)};
-}
-
-static inline bough_vec3 tangent_map(turning j, bough_vec3 psi, bough_vec3 v) {
-    bough_vec3 once = bough_cross(psi, v);
-    return bough_add(v, bough_axpy(j.c, bough_cross(psi, once), bough_scale(j.b, once)));
-}
-
-// Derivative of J(ψ) v along dψ, v held.
-static inline bough_vec3 tangent_map_change(turning j, bough_vec3 psi, bough_vec3 d, bough_vec3 v) {
-    double dt = 2 * bough_dot(psi, d);
-    bough_vec3 once = bough_cross(psi, v), other = bough_cross(d, v);
-    bough_vec3 twice = bough_add(bough_cross(d, once), bough_cross(psi, other));
-    bough_vec3 first = bough_axpy(j.db * dt, once, bough_scale(j.b, other));
-    return bough_add(first, bough_axpy(j.dc * dt, bough_cross(psi, once), bough_scale(j.c, twice)));
 }
 
 #endif

@@ -16,7 +16,7 @@ bough_twist bough_modal_vertex(const bough_modal_piece *p, int i, const double *
 }
 
 bough_vec3 bough_modal_spin(bough_vec3 psi, bough_vec3 rate) {
-    return tangent_map(turning_of(psi), psi, rate);
+    return bough_exp_tangent(bough_exp_factors_of(psi), psi, rate);
 }
 
 // -- forward --------------------------------------------------------------------------------------

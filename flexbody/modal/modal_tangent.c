@@ -82,14 +82,14 @@ static void tip_change(const bough_modal_point *at, bough_twist dshift, bough_tw
                        const bough_modal_frame_change *d, bough_modal_frame_change *tip) {
     const bough_modal_piece *p = at->piece;
     bough_twist shift = at->tip_shift, move = at->tip_rate;
-    turning j = turning_of(shift.angular);
+    bough_exp_factors j = bough_exp_factors_of(shift.angular);
     bough_mat3 e = at->tip_turn;
-    bough_vec3 beta = bough_mat3_tmul(e, tangent_map(j, shift.angular, dshift.angular));
+    bough_vec3 beta = bough_mat3_tmul(e, bough_exp_tangent(j, shift.angular, dshift.angular));
     bough_vec3 x = bough_add(p->rod->position0[p->n], shift.linear);
     bough_vec3 du = bough_add(bough_add(d->velocity, dmove.linear),
                               bough_add(bough_cross(d->spin, x), bough_cross(at->frame.spin, dshift.linear)));
-    bough_vec3 dw = bough_add(bough_add(d->spin, tangent_map(j, shift.angular, dmove.angular)),
-                              tangent_map_change(j, shift.angular, dshift.angular, move.angular));
+    bough_vec3 dw = bough_add(bough_add(d->spin, bough_exp_tangent(j, shift.angular, dmove.angular)),
+                              bough_exp_tangent_change(j, shift.angular, dshift.angular, move.angular));
     tip->velocity = bough_sub(bough_mat3_tmul(e, du), bough_cross(beta, at->tip.velocity));
     tip->spin = bough_sub(bough_mat3_tmul(e, dw), bough_cross(beta, at->tip.spin));
     tip->gravity = bough_sub(bough_mat3_tmul(e, d->gravity), bough_cross(beta, at->tip.gravity));
@@ -101,14 +101,14 @@ static void tip_change(const bough_modal_point *at, bough_twist dshift, bough_tw
 static bough_wrench outer_change(const bough_modal_point *at, bough_vec3 dpsi, bough_wrench d,
                                  bough_vec3 *working) {
     bough_vec3 psi = at->tip_shift.angular, back = bough_scale(-1, psi);
-    turning j = turning_of(psi);
+    bough_exp_factors j = bough_exp_factors_of(psi);
     bough_mat3 e = at->tip_turn;
-    bough_vec3 turn = tangent_map(j, psi, dpsi), moment = bough_mat3_mul(e, at->outer.moment);
+    bough_vec3 turn = bough_exp_tangent(j, psi, dpsi), moment = bough_mat3_mul(e, at->outer.moment);
     bough_vec3 force = bough_mat3_mul(e, at->outer.force);
     bough_wrench w = {bough_add(bough_mat3_mul(e, d.force), bough_cross(turn, force)),
                       bough_add(bough_mat3_mul(e, d.moment), bough_cross(turn, moment))};
-    *working =
-        bough_add(tangent_map(j, back, w.moment), tangent_map_change(j, back, bough_scale(-1, dpsi), moment));
+    *working = bough_add(bough_exp_tangent(j, back, w.moment),
+                         bough_exp_tangent_change(j, back, bough_scale(-1, dpsi), moment));
     return w;
 }
 

@@ -84,6 +84,40 @@ static void normalising_handles_zero(void **state) {
     check_near(p.z, -0.8, 1e-15, 0);
 }
 
+// J by differences of exp(ψ + h v) exp(ψ)⁻¹, its change by differences of J, its inverse by β: on both sides of where
+// the factors change from series to formula.
+static void tangents_are_derivatives_and_inverses(void **state) {
+    (void)state;
+    const double angles[] = {1e-9, 0.05, 0.0999, 0.1001, 0.2236, 0.2237, 1, 3}, h = 1e-5;
+    const bough_vec3 v = {0.3, -0.5, 0.8}, d = {-0.2, 0.7, 0.4};
+    for (size_t i = 0; i < sizeof angles / sizeof *angles; i++) {
+        bough_vec3 psi = bough_scale(angles[i], axis), side[2], map[2];
+        for (int k = 0; k < 2; k++) {
+            bough_vec3 at = bough_axpy(k ? h : -h, v, psi), beside = bough_axpy(k ? h : -h, d, psi);
+            side[k] = bough_quaternion_logarithm(
+                bough_quaternion_product(bough_quaternion_exponential(at),
+                                         bough_quaternion_conjugate(bough_quaternion_exponential(psi))));
+            map[k] = bough_exp_tangent(bough_exp_factors_of(beside), beside, v);
+        }
+        bough_exp_factors j = bough_exp_factors_of(psi);
+        bough_vec3 w = bough_exp_tangent(j, psi, v), change = bough_exp_tangent_change(j, psi, d, v);
+        check_near(bough_norm(bough_axpy(-0.5 / h, bough_sub(side[1], side[0]), w)), 0, 0, 1e-9);
+        check_near(bough_norm(bough_axpy(-0.5 / h, bough_sub(map[1], map[0]), change)), 0, 0, 1e-9);
+        double beta, slope, more, less, none;
+        bough_log_factors(angles[i], &beta, &slope);
+        bough_vec3 once = bough_cross(psi, w);
+        bough_vec3 back = bough_axpy(beta, bough_cross(psi, once), bough_axpy(-0.5, once, w));
+        check_near(bough_norm(bough_sub(back, v)), 0, 0, 1e-14);
+        if (angles[i] < 0.2 && angles[i] > 0.06) continue; // differences across the change lose digits
+        bough_log_factors(angles[i] + h, &more, &none);
+        bough_log_factors(fabs(angles[i] - h), &less, &none);
+        check_near(slope * angles[i], (more - less) / (2 * h), 0, 1e-8);
+    }
+    bough_mat3 about = bough_rotation_about(bough_v3(0.6, 0, 0.8), 2.5);
+    bough_quaternion p = bough_quaternion_exponential(bough_v3(1.5, 0, 2));
+    check_near(distance(about, bough_rotation_matrix(p)), 0, 0, 1e-15);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(exponential_is_rodrigues_formula),
@@ -91,6 +125,7 @@ int main(void) {
         cmocka_unit_test(product_composes_rotations),
         cmocka_unit_test(matrix_gives_the_quaternion_back),
         cmocka_unit_test(normalising_handles_zero),
+        cmocka_unit_test(tangents_are_derivatives_and_inverses),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
