@@ -1,11 +1,28 @@
-// The run of one case: sampled channels or their statistics, times, and the run's own estimates.
+// The run of one case: sampled channels or their statistics, times, and the run's own estimates; differences
+// of runs at their common output times.
 #ifndef BOUGH_APPS_CASES_CASE_RUN_H
 #define BOUGH_APPS_CASES_CASE_RUN_H
 
-#include "apps/bough/cases/compare.h"
 #include "apps/bough/cases/counts.h"
+#include "apps/bough/cases/study.h"
 #include "apps/bough/results/progress.h"
 #include "cosim/watch/monitor.h"
+
+// Values of the study's channels at the common output times 0, interval, 2 interval, …
+typedef struct bough_study_series {
+    int n_row, n_channel;
+    int filled;    // rows sampled so far
+    double *value; // (n_row × n_channel)
+} bough_study_series;
+
+bough_study_series bough_study_series_take(bough_arena *arena, const bough_study *study);
+
+// The largest difference of each measure between the two series: error (n_measure).
+void bough_study_compare(const bough_study *study, const bough_study_series *series,
+                         const bough_study_series *reference, double *error);
+
+// Each measure's norm of the values (n_channel) of the study's channels: norm (n_measure).
+void bough_study_norms(const bough_study *study, const double *value, double *norm);
 
 typedef struct bough_case_result {
     bough_status outcome; // BOUGH_FAILED with a diagnosis: the run ended there

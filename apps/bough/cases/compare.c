@@ -1,4 +1,4 @@
-#include "apps/bough/cases/compare.h"
+#include "apps/bough/cases/case_run.h"
 
 #include <assert.h>
 #include <math.h>

@@ -1,5 +1,5 @@
 // bough study: many runs of one scene, compared.
-#include "apps/bough/cases/study_perform.h"
+#include "apps/bough/cases/perform.h"
 
 #include "apps/bough/cli/command.h"
 #include "apps/bough/results/folder.h"

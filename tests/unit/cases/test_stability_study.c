@@ -1,6 +1,6 @@
 // Studies of kind stability: a reference for each combination of the model's parameters, in parts and
 // whole. The rubber bar falls for 20 ms with two dampings; frozen runs fail at once.
-#include "apps/bough/cases/study_perform.h"
+#include "apps/bough/cases/perform.h"
 #include "tests/unit/check.h"
 #include "tests/unit/scratch.h"
 

@@ -1,6 +1,6 @@
-#include "apps/bough/cases/study_perform.h"
+#include "apps/bough/cases/perform.h"
 #include "apps/bough/cases/case_run.h"
-#include "apps/bough/cases/study_table.h"
+#include "apps/bough/cases/tables.h"
 #include "tests/unit/scratch.h"
 
 // The rubber bar falls for 20 ms: monolithic runs are good, frozen ones fail at once, since the
@@ -180,6 +180,14 @@ static void replacements_are_checked_where_the_study_gives_them(void **state) {
                       "common: {gravity: 3}\n" MEASURES,
                  "4:40 simulation.coupling\n6:38 simulation.coupling.scheme\n"
                  "7:33 simulation.macro_step\n8:19 gravity\n");
+}
+
+// A reference of kind stability has values on the model's axes alone.
+static void errors_of_a_reference_with_parameters_are_told(void **state) {
+    check_errors(*state,
+                 "title: Falling bar\nkind: stability\n" BAR REFERENCE
+                 "grid:\n  bodies[0].rod.damping: [x]\n  simulation.macro_step: [1 ms]\n" COMMON MEASURES,
+                 "6:27 bodies[0].rod.damping\n");
 }
 
 static void channels_and_their_units_are_checked(void **state) {
@@ -388,6 +396,7 @@ int main(void) {
         SCRATCH(labels_are_unique_and_quotes_are_kept),
         SCRATCH(bad_keys_are_told_all_at_once),
         SCRATCH(replacements_are_checked_where_the_study_gives_them),
+        SCRATCH(errors_of_a_reference_with_parameters_are_told),
         SCRATCH(channels_and_their_units_are_checked),
         SCRATCH(output_times_must_be_common),
         SCRATCH(missing_scene_is_told),

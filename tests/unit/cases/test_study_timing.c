@@ -1,6 +1,5 @@
 // Studies of kind timing: all cells in every turn, and their errors.
-#include "apps/bough/cases/study_perform.h"
-#include "apps/bough/cases/study_timing.h"
+#include "apps/bough/cases/perform.h"
 #include "tests/unit/scratch.h"
 
 static const char text[] =

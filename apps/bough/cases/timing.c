@@ -1,7 +1,5 @@
-#include "apps/bough/cases/study_timing.h"
+#include "apps/bough/cases/tables.h"
 
-#include "apps/bough/cases/case_run.h"
-#include "apps/bough/cases/study_table.h"
 #include "apps/bough/results/folder.h"
 
 #include <string.h>
@@ -104,8 +102,9 @@ static void write_csv(const void *self, FILE *f) {
     }
 }
 
-bough_status bough_timing_perform(bough_arena *arena, const bough_study *study,
-                                  const bough_study_options *options) {
+bough_status bough_timing_conclude(bough_arena *arena, const bough_study_results *results) {
+    const bough_study *study = results->study;
+    const bough_study_options *options = results->options;
     timing t = {.study = study, .options = options};
     t.cell = bough_arena_take(arena, (size_t)study->n_case * sizeof *t.cell);
     t.reference = bough_study_series_take(arena, study);

@@ -1,25 +1,27 @@
-#include "apps/bough/cases/load_set_tables.h"
+#include "apps/bough/cases/tables.h"
 
-#include "apps/bough/cases/study_table.h"
+#include "apps/bough/cases/store.h"
 #include "apps/bough/results/folder.h"
 
 #include <inttypes.h>
 #include <math.h>
+#include <stdlib.h>
 #include <string.h>
+
+// cases.csv, a row a case with its channels' statistics, and costs.csv beside it, row by row.
+typedef struct case_tables {
+    const bough_study *set;
+    FILE *cases, *costs;
+    char cases_path[4096], costs_path[4096];
+} case_tables;
 
 // -- cases ----------------------------------------------------------------------------------------
 
 static void head_cases(const bough_study *s, FILE *f) {
-    fputs("case,", f);
-    if (!s->is.weighted) {
-        for (int i = 0; i < s->grid.n; i++) {
-            bough_csv_text(f, s->grid.axis[i].key);
-            fputc(',', f);
-        }
-    } else {
-        fputs("load case,settings,occurrences [1],", f);
-    }
-    fputs("outcome", f);
+    fputs("case", f);
+    for (int i = 0; i < s->grid.n; i++) bough_csv_next(f, s->grid.axis[i].key);
+    if (s->is.weighted) fputs(",load case,settings,occurrences [1]", f);
+    fputs(",outcome", f);
     for (int i = 0; i < s->n_channel; i++) {
         static const char *const names[] = {"min", "max", "mean", "std"};
         for (int k = 0; k < 4; k++) fprintf(f, ",%s %s [%s]", s->channel[i], names[k], s->unit[i]);
@@ -43,8 +45,8 @@ static void put_channel(const bough_study *s, const bough_case_result *r, int i,
     }
 }
 
-bough_status bough_case_tables_open(const char *folder, const bough_study *set, bough_case_tables *t) {
-    *t = (bough_case_tables){.set = set};
+static bough_status open_tables(const char *folder, const bough_study *set, case_tables *t) {
+    *t = (case_tables){.set = set};
     bough_status status = bough_folder_open(folder, "cases.csv", t->cases_path, &t->cases);
     if (bough_is_ok(&status)) status = bough_folder_open(folder, "costs.csv", t->costs_path, &t->costs);
     if (!bough_is_ok(&status)) return status;
@@ -53,24 +55,19 @@ bough_status bough_case_tables_open(const char *folder, const bough_study *set, 
     return status;
 }
 
-void bough_case_tables_add(bough_case_tables *t, int number, const bough_case_result *r) {
+static void add_row(case_tables *t, int number, const bough_case_result *r) {
     const bough_study *s = t->set;
     const bough_case *c = &s->cases[number];
     FILE *f = t->cases;
     bool good = r->done && bough_is_ok(&r->outcome);
-    fprintf(f, "%d,", number + 1);
-    if (!s->is.weighted) {
-        for (int i = 0; i < s->grid.n; i++) {
-            bough_csv_text(f, s->grid.axis[i].value.item[c->index[i]].value);
-            fputc(',', f);
-        }
-    } else {
-        bough_csv_text(f, s->group[c->group].name);
-        fputc(',', f);
-        bough_csv_text(f, c->settings);
-        fprintf(f, ",%.10g,", good ? bough_case_weight(s, c, r->counted) : 0);
+    fprintf(f, "%d", number + 1);
+    for (int i = 0; i < s->grid.n; i++) bough_csv_next(f, bough_study_value(s, c, i));
+    if (s->is.weighted) {
+        bough_csv_next(f, s->group[c->group].name);
+        bough_csv_next(f, c->settings);
+        fprintf(f, ",%.10g", good ? bough_case_weight(s, c, r->counted) : 0);
     }
-    fputs(outcome_of(r), f);
+    fprintf(f, ",%s", outcome_of(r));
     for (int i = 0; i < s->n_channel; i++) {
         if (good)
             put_channel(s, r, i, f);
@@ -81,7 +78,8 @@ void bough_case_tables_add(bough_case_tables *t, int number, const bough_case_re
     fprintf(t->costs, "%d,%.9g,%.6g,%.6g\n", number + 1, r->done ? r->time : 0, r->cpu, r->wall);
 }
 
-bough_status bough_case_tables_close(bough_case_tables *t, bool keep) {
+// Gives the files their names, or with `keep` false removes them.
+static bough_status close_tables(case_tables *t, bool keep) {
     bough_status status = bough_ok();
     FILE *const file[] = {t->cases, t->costs};
     const char *const path[] = {t->cases_path, t->costs_path};
@@ -116,11 +114,10 @@ static void put_extreme(const bough_lifetime *l, int i, const char *what, const 
     const bough_study *s = l->set;
     if (!e->found) return;
     const bough_case *c = &s->cases[e->number];
-    fprintf(f, "%s,%s,%s,%.17g,%g,%.17g,%d,", s->channel[i], s->unit[i], what, e->value, e->factor,
+    fprintf(f, "%s,%s,%s,%.17g,%g,%.17g,%d", s->channel[i], s->unit[i], what, e->value, e->factor,
             e->factor * e->value, e->number + 1);
-    bough_csv_text(f, s->group[c->group].name);
-    fputc(',', f);
-    bough_csv_text(f, c->settings);
+    bough_csv_next(f, s->group[c->group].name);
+    bough_csv_next(f, c->settings);
     fprintf(f, ",%.9g", e->at);
     for (int k = 0; k < s->n_channel; k++) fprintf(f, ",%.10g", e->row[k]);
     fputc('\n', f);
@@ -165,14 +162,14 @@ static void put_levels(const void *self, FILE *f) {
     }
 }
 
-bough_status bough_lifetime_write(const bough_lifetime *l, const char *folder) {
+static bough_status write_lifetime(const bough_lifetime *l, const char *folder) {
     bough_status status = bough_folder_write(folder, "equivalent.csv", put_equivalent, l);
     if (bough_is_ok(&status)) status = bough_folder_write(folder, "extremes.csv", put_extremes, l);
     if (bough_is_ok(&status)) status = bough_folder_write(folder, "ranges.csv", put_ranges, l);
     return bough_is_ok(&status) ? bough_folder_write(folder, "levels.csv", put_levels, l) : status;
 }
 
-// -- for people -----------------------------------------------------------------------------------
+// -- table.txt -----------------------------------------------------------------------------------
 
 static void print_extreme(const bough_lifetime *l, const bough_extreme *e, FILE *f) {
     const bough_study *s = l->set;
@@ -203,7 +200,7 @@ static void print_extremes(const bough_lifetime *l, FILE *f) {
     }
 }
 
-void bough_lifetime_print(const bough_lifetime *l, FILE *f) {
+static void print_lifetime(const bough_lifetime *l, FILE *f) {
     const bough_study *s = l->set;
     fprintf(f, "%d cases, %.6g hours of a lifetime of %g years; equivalent loads at %g cycles\n", s->n_case,
             l->hours, s->lifetime, s->cycles);
@@ -220,4 +217,148 @@ void bough_lifetime_print(const bough_lifetime *l, FILE *f) {
         fputc('\n', f);
     }
     print_extremes(l, f);
+}
+
+// -- failures ---------------------------------------------------------------------------------------
+
+// A piece of text, quoted for a shell where it must be.
+static void quote(FILE *f, const char *text) {
+    if (!strpbrk(text, " \t\"'\\$`&|;<>()[]{}*?#~!")) {
+        fputs(text, f);
+        return;
+    }
+    fputc('\'', f);
+    for (const char *c = text; *c; c++) {
+        if (*c == '\'')
+            fputs("'\\''", f);
+        else
+            fputc(*c, f);
+    }
+    fputc('\'', f);
+}
+
+// That runs the case alone.
+static void put_command(FILE *f, const bough_case *c) {
+    fputs("bough run ", f);
+    quote(f, c->scene);
+    for (int i = 0; i < c->n_set; i++) {
+        fputs(" --set ", f);
+        quote(f, c->set[i]);
+    }
+}
+
+void bough_case_failed(const bough_study *s, int number, const bough_status *outcome, FILE *f) {
+    const bough_case *c = &s->cases[number];
+    fprintf(f, "case %d failed (%s%s%s): %s\n    ", number + 1, s->group[c->group].name,
+            c->settings[0] ? ", " : "", c->settings, outcome->message);
+    put_command(f, c);
+    fputc('\n', f);
+}
+
+// -- conclusion -----------------------------------------------------------------------------------
+
+// Reads the results one after the other: their number costs no memory.
+static bough_status read_all(bough_arena *arena, const bough_study_results *x, case_tables *tables,
+                             bough_case_plot *plot, bough_lifetime *lifetime, FILE *failures) {
+    bough_case_result result = bough_case_take(arena, x->study);
+    for (int i = 0; i < x->study->n_case; i++) {
+        bough_status status = bough_store_read(x->options->folder, x->study, &x->study->cases[i], &result);
+        if (!bough_is_ok(&status)) return status;
+        add_row(tables, i, &result);
+        bough_case_plot_add(plot, i, &result);
+        bough_lifetime_add(lifetime, i, &result);
+        if (result.done && !bough_is_ok(&result.outcome)) {
+            bough_case_failed(x->study, i, &result.outcome, failures);
+        }
+    }
+    return bough_ok();
+}
+
+// What the tables are made of.
+typedef struct conclusion {
+    const bough_study *set;
+    const char *folder;
+    const bough_lifetime *lifetime;
+    const bough_case_plot *plot;
+    char *failures; // a text
+} conclusion;
+
+static void print_table(const void *self, FILE *f) {
+    const conclusion *c = self;
+    const bough_study *s = c->set;
+    fprintf(f, "%s\n", s->title ? s->title : s->file);
+    if (!s->is.weighted) {
+        fprintf(f, "%d runs, %d failed; statistics of %d channels from %g s on in cases.csv\n", s->n_case,
+                c->lifetime->n_failed, s->n_channel, s->from);
+    } else {
+        print_lifetime(c->lifetime, f);
+    }
+    fputs(c->failures, f);
+}
+
+static bough_status write_all(const conclusion *c) {
+    bool sweep = !c->set->is.weighted;
+    bough_status status = sweep ? bough_ok() : write_lifetime(c->lifetime, c->folder);
+    if (bough_is_ok(&status)) status = bough_folder_write(c->folder, "table.txt", print_table, c);
+    if (!bough_is_ok(&status)) return status;
+    return sweep ? bough_case_plot_write(c->plot, c->folder) : bough_lifetime_plot(c->lifetime, c->folder);
+}
+
+static bough_status judge(const bough_study_results *x, const bough_lifetime *l) {
+    if (l->n_failed == 0) return bough_ok();
+    if (!x->study->is.weighted) {
+        return bough_fail(BOUGH_FAILED, "%d of %d runs failed: see table.txt", l->n_failed, x->study->n_case);
+    }
+    return bough_fail(BOUGH_FAILED,
+                      "%d of %d cases failed: the lifetime result is incomplete, %.3g %% of its "
+                      "weight is missing",
+                      l->n_failed, x->study->n_case, 100 * l->lacking);
+}
+
+static bough_status conclude_in(bough_arena *arena, const bough_study_results *x) {
+    bough_lifetime lifetime = bough_lifetime_take(arena, x->study);
+    bough_case_plot plot = bough_case_plot_take(arena, x->study);
+    case_tables tables;
+    conclusion all = {x->study, x->options->folder, &lifetime, &plot, NULL};
+    size_t size = 0;
+    FILE *stream = open_memstream(&all.failures, &size);
+    if (!stream) bough_arena_leave(arena);
+    bough_status status = open_tables(x->options->folder, x->study, &tables);
+    if (bough_is_ok(&status)) status = read_all(arena, x, &tables, &plot, &lifetime, stream);
+    bough_status end = close_tables(&tables, bough_is_ok(&status));
+    if (bough_is_ok(&status)) status = end;
+    fclose(stream);
+    if (bough_is_ok(&status)) status = write_all(&all);
+    if (bough_is_ok(&status)) print_table(&all, x->options->stream);
+    if (bough_is_ok(&status)) status = judge(x, &lifetime);
+    free(all.failures);
+    return status;
+}
+
+static int count_missing(const bough_study_results *x) {
+    int n = 0;
+    for (int i = 0; i < x->study->n_case; i++)
+        n += !bough_store_has(x->options->folder, x->study, &x->study->cases[i]);
+    return n;
+}
+
+// A part, and a call that leaves cases to others, has no tables.
+bough_status bough_statistics_conclude(bough_arena *arena, const bough_study_results *x) {
+    int missing = count_missing(x), n = x->study->n_case;
+    FILE *f = x->options->stream;
+    if (x->options->parts > 0) {
+        fprintf(f, "part %d of %d: %d cases run, %d of %d cases still missing\n", x->options->part,
+                x->options->parts, x->ran, missing, n);
+    } else if (missing > 0 && x->options->only) {
+        fprintf(f, "%d of %d cases still missing\n", missing, n);
+    } else if (missing > 0) {
+        fprintf(f,
+                "%d of %d cases are run by other processes; the same command makes the tables when "
+                "they are done\n",
+                missing, n);
+    } else {
+        return conclude_in(arena, x);
+    }
+    if (x->failed == 0) return bough_ok();
+    return bough_fail(BOUGH_FAILED, "%d of the %d cases run here failed", x->failed, x->ran);
 }

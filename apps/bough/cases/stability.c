@@ -1,6 +1,4 @@
-#include "apps/bough/cases/study_stability.h"
-
-#include "apps/bough/cases/study_table.h"
+#include "apps/bough/cases/tables.h"
 
 #include <math.h>
 #include <string.h>
@@ -71,17 +69,18 @@ static bough_status conclude(const bough_study_results *x, FILE *f) {
     return bough_fail(BOUGH_FAILED, "%d of %d cells are silent: marked ?", n_silent, n);
 }
 
-bough_status bough_stability_perform(bough_arena *arena, const bough_study *study,
-                                     const bough_study_options *options) {
-    bough_study_results x;
-    bough_status status = bough_study_cells(arena, study, options, &x);
-    if (bough_is_ok(&status) && options->parts > 0) {
-        fprintf(options->stream, "part %d of %d: %d runs, %d of %d cells still missing\n", options->part,
-                options->parts, x.ran, bough_study_missing(&x), study->n_case);
-        return status;
+bough_status bough_stability_conclude(bough_arena *arena, const bough_study_results *x) {
+    const bough_study_options *o = x->options;
+    (void)arena;
+    if (o->parts > 0) {
+        int n = x->study->n_case, missing = 0;
+        for (int i = 0; i < n; i++) missing += !x->result[i].done;
+        fprintf(o->stream, "part %d of %d: %d runs, %d of %d cells still missing\n", o->part, o->parts,
+                x->ran, missing, n);
+        return bough_ok();
     }
-    if (bough_is_ok(&status)) status = bough_study_write_tables(&x, options->folder);
+    bough_status status = bough_precision_tables(x, o->folder);
     if (!bough_is_ok(&status)) return status;
-    print(&x, options->stream);
-    return conclude(&x, options->stream);
+    print(x, o->stream);
+    return conclude(x, o->stream);
 }

@@ -1,4 +1,4 @@
-#include "apps/bough/cases/load_set_plot.h"
+#include "apps/bough/cases/tables.h"
 
 #include "apps/bough/results/channels.h"
 #include "apps/bough/results/folder.h"

@@ -1,4 +1,4 @@
-#include "apps/bough/cases/study_table.h"
+#include "apps/bough/cases/tables.h"
 
 #include "apps/bough/results/folder.h"
 #include <math.h>
@@ -7,7 +7,7 @@
 
 enum { COLUMNS = BOUGH_STUDY_AXES + 2 * BOUGH_STUDY_MEASURES + 8, WIDTH = 48, SHORT = 100 };
 
-void bough_study_status(const bough_case_result *result, char text[40]) {
+void bough_case_status(const bough_case_result *result, char text[40]) {
     if (!result->done) {
         snprintf(text, 40, "not run");
     } else if (bough_is_ok(&result->outcome)) {
@@ -73,7 +73,7 @@ static void put_row(line *l, const bough_study_results *results, int row) {
     const bough_case_result *r = result_of(results, row);
     char status[40];
     bool good = r->done && bough_is_ok(&r->outcome);
-    bough_study_status(r, status);
+    bough_case_status(r, status);
     l->n = 0;
     if (row < 0) {
         put(l, "reference");
@@ -133,7 +133,7 @@ static void print_diagnosis(const char *settings, const bough_case_result *r, FI
     fprintf(stream, "failed: %s: %.*s%s\n", settings, (int)length, text, cut ? "..." : "");
 }
 
-void bough_study_print(const bough_study_results *results, FILE *stream) {
+static void print(const bough_study_results *results, FILE *stream) {
     const bough_study *s = results->study;
     line l;
     int width[COLUMNS] = {0};
@@ -166,21 +166,23 @@ void bough_csv_text(FILE *file, const char *text) {
     if (quoted) fputc('"', file);
 }
 
+void bough_csv_next(FILE *file, const char *text) {
+    fputc(',', file);
+    bough_csv_text(file, text);
+}
+
 static void write_csv_head(const bough_study *s, FILE *f) {
     fputs("run", f);
     for (int i = 0; i < s->grid.n; i++) {
-        fputc(',', f);
-        bough_csv_text(f, s->grid.axis[i].key);
+        bough_csv_next(f, s->grid.axis[i].key);
     }
     fputs(",status,time [s],wall [s],cpu [s],real_time_factor [1]", f);
     for (int i = 0; i < s->n_measure; i++) {
         char name[200];
         snprintf(name, sizeof name, "%.120s [%.60s]", s->measure[i].name, s->measure[i].unit);
-        fputc(',', f);
-        bough_csv_text(f, name);
+        bough_csv_next(f, name);
         snprintf(name, sizeof name, "%.120s estimated [%.50s]", s->measure[i].name, s->measure[i].unit);
-        fputc(',', f);
-        bough_csv_text(f, name);
+        bough_csv_next(f, name);
     }
     fputs(",defect_max [1],defect_rms [1],energy_residual [J],energy_exchanged [J],diagnosis\n", f);
 }
@@ -218,13 +220,11 @@ static void write_csv_row(const bough_study_results *results, int row, FILE *f) 
         fprintf(f, "%d", row + 1);
     }
     for (int i = 0; i < s->grid.n; i++) {
-        fputc(',', f);
-        bough_csv_text(f, bough_study_value(s, cell_of(s, row), i));
+        bough_csv_next(f, bough_study_value(s, cell_of(s, row), i));
     }
     fprintf(f, ",%s", good ? "ok" : "failed");
     write_csv_numbers(s, r, f);
-    fputc(',', f);
-    bough_csv_text(f, good ? "" : r->outcome.message);
+    bough_csv_next(f, good ? "" : r->outcome.message);
     fputc('\n', f);
 }
 
@@ -236,9 +236,18 @@ static void write_csv(const void *self, FILE *f) {
 
 // -- files ----------------------------------------------------------------------------------------
 
-static void write_text(const void *self, FILE *f) { bough_study_print(self, f); }
+static void write_text(const void *self, FILE *f) { print(self, f); }
 
-bough_status bough_study_write_tables(const bough_study_results *results, const char *folder) {
+bough_status bough_precision_tables(const bough_study_results *results, const char *folder) {
     bough_status status = bough_folder_write(folder, "table.txt", write_text, results);
     return bough_is_ok(&status) ? bough_folder_write(folder, "table.csv", write_csv, results) : status;
+}
+
+bough_status bough_precision_conclude(bough_arena *arena, const bough_study_results *results) {
+    const bough_study_options *o = results->options;
+    (void)arena;
+    bough_status status = bough_precision_tables(results, o->folder);
+    if (bough_is_ok(&status)) status = bough_precision_plot(results, o->folder);
+    if (bough_is_ok(&status)) print(results, o->stream);
+    return status;
 }

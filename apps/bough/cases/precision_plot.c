@@ -1,4 +1,4 @@
-#include "apps/bough/cases/study_plot.h"
+#include "apps/bough/cases/tables.h"
 
 #include "apps/bough/results/folder.h"
 #include "apps/bough/results/picture.h"
@@ -132,7 +132,7 @@ static void put_missing(FILE *svg, const bough_study_results *results, int line)
         const bough_case_result *r = &results->result[i];
         if (has_point(r, 0)) continue;
         char status[40];
-        bough_study_status(r, status);
+        bough_case_status(r, status);
         fputs(said++ ? "; " : " — ", svg);
         bough_picture_text(svg, bough_study_value(s, &s->cases[i], s->grid.n - 1));
         fputc(' ', svg);
@@ -196,6 +196,6 @@ static void draw(const void *self, FILE *svg) {
     fputs("</svg>\n", svg);
 }
 
-bough_status bough_study_plot(const bough_study_results *results, const char *folder) {
+bough_status bough_precision_plot(const bough_study_results *results, const char *folder) {
     return bough_folder_write(folder, "plot.svg", draw, results);
 }
