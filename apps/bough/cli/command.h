@@ -89,8 +89,8 @@ typedef struct bough_command {
 } bough_command;
 
 extern const bough_command bough_command_run, bough_command_check, bough_command_static, bough_command_modes,
-    bough_command_study, bough_command_wind, bough_command_report, bough_command_import, bough_command_export,
-    bough_command_help;
+    bough_command_study, bough_command_tune, bough_command_wind, bough_command_report, bough_command_import,
+    bough_command_export, bough_command_help;
 
 // All commands, ended by NULL (main.c).
 extern const bough_command *const bough_commands[];

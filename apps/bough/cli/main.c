@@ -18,6 +18,7 @@ const bough_command *const bough_commands[] = {
     &bough_command_static,
     &bough_command_modes,
     &bough_command_study,
+    &bough_command_tune,
     &bough_command_wind,
     &bough_command_report,
     &bough_command_import,

@@ -1,0 +1,285 @@
+// Which settings are tried, and which of them are chosen.
+#include "apps/bough/cases/tune_internal.h"
+
+#include "apps/bough/results/folder.h"
+
+#include <math.h>
+#include <string.h>
+
+// -- the front ------------------------------------------------------------------------------------
+
+bool bough_tune_ended(const bough_tune_point *p) { return bough_is_ok(&p->outcome) && p->cpu > 0; }
+
+bool bough_tune_meets(const bough_tune_state *t, const bough_tune_point *p) {
+    return bough_tune_ended(p) && p->error <= t->error;
+}
+
+static bool beats(const bough_tune_state *t, const bough_tune_point *a, const bough_tune_point *b) {
+    bool meets = bough_tune_meets(t, a), other = bough_tune_meets(t, b);
+    if (meets != other) return meets;
+    return meets ? a->cpu < b->cpu : a->error < b->error;
+}
+
+void bough_tune_choose(bough_tune_state *t) {
+    t->chosen = -1;
+    for (int i = 0; i < t->n; i++) {
+        bough_tune_point *p = &t->point[i];
+        p->best = bough_tune_ended(p);
+        for (int k = 0; k < t->n && p->best; k++) {
+            const bough_tune_point *q = &t->point[k];
+            p->best = !(bough_tune_ended(q) && q->cpu < p->cpu && q->error <= p->error);
+        }
+        if (bough_tune_ended(p) && (t->chosen < 0 || beats(t, p, &t->point[t->chosen]))) t->chosen = i;
+    }
+}
+
+// -- settings -------------------------------------------------------------------------------------
+
+static const double longest_period = 0.1; // between samples of the air [s]
+static const double loosest = 0.02;       // rtol
+
+// The longest round period up to `wanted` [s] that is one or two macro steps of the scene.
+static double period_up_to(const bough_scene *scene, double wanted, double *macro_step) {
+    static const double round_one[] = {10, 8, 6.25, 5, 4, 3.125, 2.5, 2, 1.6, 1.25};
+    bough_scene s = *scene;
+    for (double unit = 0.01; unit > 1e-6; unit *= 0.1) {
+        for (size_t k = 0; k < sizeof round_one / sizeof *round_one; k++) {
+            double period = round_one[k] * unit;
+            s.aero.rate = 1 / period;
+            for (int parts = 1; parts <= 2 && period <= wanted * (1 + 1e-9); parts++) {
+                *macro_step = period / parts;
+                if (bough_scene_step_fits(&s, *macro_step)) return period;
+            }
+        }
+    }
+    *macro_step = scene->simulation.macro_step;
+    return 1 / scene->aero.rate;
+}
+
+static void set_rate(const bough_tune_state *t, double rate, bough_tune_settings *s) {
+    if (rate > 0) s->rate = 1 / period_up_to(t->scene, fmin(1 / rate, longest_period), &s->macro_step);
+}
+
+static double step_of(const bough_tune_settings *s) {
+    return s->step > 0 ? fmin(s->step, s->macro_step) : s->macro_step;
+}
+
+// A part of the macro step, at most `step`: steps end where it does.
+static void set_step(double step, bough_tune_settings *s) {
+    double parts = ceil(s->macro_step / step - 0.1);
+    s->step = parts > 1 ? s->macro_step / parts : 0;
+}
+
+static bool near(double a, double b, double share) { return fabs(a - b) <= share * fmax(a, b); }
+
+static bool same(const bough_tune_state *t, const bough_tune_settings *a, const bough_tune_settings *b) {
+    bool equal = a->scheme == b->scheme && a->solver == b->solver && near(step_of(a), step_of(b), 0.05) &&
+                 near(a->macro_step, b->macro_step, 1e-9) && near(a->rate, b->rate, 1e-9) &&
+                 near(a->rtol, b->rtol, 0.1);
+    for (int i = 0; i < t->scene->n_body && equal; i++)
+        equal = bough_tune_segments(t->scene, i, a) == bough_tune_segments(t->scene, i, b);
+    return equal;
+}
+
+// -- trying ---------------------------------------------------------------------------------------
+
+// Runs settings that were not run before; *at: their point, −1 where there is no room.
+static bough_status try(bough_tune_state *t, const bough_tune_settings *s, bool shares, int *at) {
+    *at = -1;
+    for (int i = 0; i < t->n; i++) {
+        if (same(t, s, &t->point[i].settings)) *at = i;
+    }
+    if (*at >= 0 || t->n == BOUGH_TUNE_POINTS) return bough_ok();
+    *at = t->n++;
+    t->point[*at] = (bough_tune_point){.settings = *s, .outcome = bough_ok()};
+    bough_status status = bough_tune_measure(t, shares, &t->point[*at]);
+    bough_tune_choose(t);
+    if (bough_is_ok(&status)) bough_tune_print(t, *at, t->options->stream);
+    return status;
+}
+
+// -- guided by shares -----------------------------------------------------------------------------
+
+enum { MESH, AIR, TIME, PARTS, ROUNDS = 5 };
+// Order of each part's error, and how many times finer or coarser it may become in one round.
+static const double order[PARTS] = {2, 3, 1}, most[PARTS] = {1.6, 2, 20};
+static const double order_of_step = 3;
+static const double margin = 0.85;  // of the error that is aimed at
+static const double close_to = 0.7; // of it: no further round is needed
+
+// Each part's factor: what brings its share to an equal part of the error. Shares belong to channels of their
+// own, and to a coarser run, so their sum is more than the error.
+static void follow_shares(const bough_tune_state *t, const bough_tune_point *p, bough_tune_settings *s) {
+    double factor[PARTS], share[PARTS], sum = 0;
+    int parts = 0;
+    for (int k = 0; k < PARTS; k++) {
+        share[k] = fmin(p->share[k], p->error);
+        parts += share[k] > 0;
+        sum += share[k];
+    }
+    for (int k = 0; k < PARTS; k++) {
+        double aim = margin * t->error * fmax(sum / p->error, 1) / fmax(parts, 1);
+        double finer = share[k] > 0 ? pow(share[k] / aim, 1 / order[k]) : 1;
+        factor[k] = fmax(1 / most[k], fmin(finer, most[k]));
+    }
+    double step = step_of(s);
+    s->mesh *= factor[MESH];
+    s->rtol = fmin(s->rtol / factor[TIME], loosest);
+    set_rate(t, s->rate * factor[AIR], s);
+    set_step(step / pow(factor[TIME], 1 / order_of_step), s);
+}
+
+// Until the error is close below what is to be met; a round that errs too much and more than the one before
+// is the last.
+static bough_status descend(bough_tune_state *t, bough_tune_settings *s) {
+    double before = HUGE_VAL;
+    for (int k = 0; k < ROUNDS; k++) {
+        int n = t->n, at;
+        bough_status status = try(t, s, true, &at);
+        if (!bough_is_ok(&status) || at < 0) return status;
+        const bough_tune_point *p = &t->point[at];
+        bool meets = bough_tune_meets(t, p);
+        if (!bough_tune_ended(p) || !p->shared || (k > 0 && t->n == n)) break;
+        if (meets ? p->error > close_to * t->error : !(p->error < before)) break;
+        before = p->error;
+        follow_shares(t, p, s);
+    }
+    return bough_ok();
+}
+
+// -- one setting at a time ------------------------------------------------------------------------
+
+enum { COARSER_MESH, LOOSER, LONGER, SHORTER, LOWER_RATE, RAMP, VARIATIONS };
+
+static bool has_rods(const bough_scene *scene) {
+    for (int i = 0; i < scene->n_body; i++) {
+        if (scene->body[i].rod.node && scene->body[i].fidelity != BOUGH_SCENE_RIGID) return true;
+    }
+    return false;
+}
+
+// False where the scene has no such variation.
+static bool vary(const bough_tune_state *t, int variation, bough_tune_settings *s) {
+    bough_scene scene = *t->scene;
+    scene.aero.rate = s->rate;
+    switch (variation) {
+    case COARSER_MESH: s->mesh *= 0.75; return has_rods(&scene);
+    case LOOSER: s->rtol *= 2.5; return s->rtol < loosest;
+    case LONGER:
+        if (!(s->step > 0)) s->macro_step *= 2;
+        s->step = 0;
+        return bough_scene_step_fits(&scene, s->macro_step);
+    case SHORTER: set_step(0.5 * step_of(s), s); return true;
+    case LOWER_RATE: set_rate(t, 0.8 * s->rate, s); return s->rate > 0;
+    default:
+        s->scheme = bough_scheme_index("ramp");
+        s->solver = BOUGH_ROSENBROCK;
+        s->step = fmin(step_of(s), 0.5 * s->macro_step);
+        return has_rods(&scene) && t->scene->n_closure == 0;
+    }
+}
+
+static bough_status vary_best(bough_tune_state *t) {
+    for (int k = 0; k < VARIATIONS; k++) {
+        if (t->chosen < 0) return bough_ok();
+        bough_tune_settings s = t->point[t->chosen].settings;
+        if (s.own && t->n > 1) s = t->point[1].settings;
+        s.own = false;
+        int at;
+        bough_status status = vary(t, k, &s) ? try(t, &s, false, &at) : bough_ok();
+        if (!bough_is_ok(&status)) return status;
+    }
+    return bough_ok();
+}
+
+// -- all ------------------------------------------------------------------------------------------
+
+static bough_tune_settings settings_of(const bough_scene *scene) {
+    const bough_scene_simulation *s = &scene->simulation;
+    bool whole = bough_scheme_find(bough_scheme_name(s->coupling.scheme))->one_system;
+    const bough_scene_solver *solver = whole ? &s->master : &s->micro;
+    return (bough_tune_settings){.own = true,
+                                 .scheme = s->coupling.scheme,
+                                 .solver = solver->solver,
+                                 .rtol = solver->rtol,
+                                 .step = solver->step,
+                                 .macro_step = s->macro_step,
+                                 .rate = scene->aero.node ? scene->aero.rate : 0,
+                                 .mesh = 1};
+}
+
+// All bodies as one system, as far as the scene's own settings say how.
+static bough_tune_settings start_of(const bough_tune_state *t) {
+    bough_tune_settings s = settings_of(t->scene);
+    s.own = false;
+    if (bough_scheme_find(bough_scheme_name(s.scheme))->one_system) return s;
+    s.scheme = bough_scheme_index("monolithic");
+    if (s.solver != BOUGH_ROSENBROCK && s.solver != BOUGH_GENERALIZED_ALPHA) s.step = 0;
+    s.solver = BOUGH_AUTOMATIC;
+    return s;
+}
+
+// Times differ by more than settings do: the candidates are run again, in turns.
+static bough_status time_again(bough_tune_state *t) {
+    for (int k = 0; k < 2; k++) {
+        for (int i = 0; i < t->n; i++) {
+            bough_tune_point *p = &t->point[i];
+            if (!p->best && !p->settings.own &&
+                !(bough_tune_meets(t, p) && p->cpu < 1.3 * t->point[t->chosen].cpu))
+                continue;
+            bough_status status = bough_tune_time(t, p);
+            if (!bough_is_ok(&status)) return status;
+        }
+    }
+    bough_tune_choose(t);
+    return bough_ok();
+}
+
+static bough_status search(bough_tune_state *t) {
+    bough_tune_settings own = settings_of(t->scene), s = start_of(t);
+    int at;
+    bough_status status = try(t, &own, bough_scheme_find(bough_scheme_name(own.scheme))->one_system, &at);
+    if (bough_is_ok(&status)) status = descend(t, &s);
+    if (bough_is_ok(&status)) status = vary_best(t);
+    return bough_is_ok(&status) ? time_again(t) : status;
+}
+
+// What the scene's own error costs.
+static void print_equal(const bough_tune_state *t) {
+    const bough_tune_point *own = &t->point[0], *least = own;
+    if (!bough_tune_ended(own)) return;
+    for (int i = 1; i < t->n; i++) {
+        const bough_tune_point *p = &t->point[i];
+        if (bough_tune_ended(p) && p->error <= own->error && p->cpu < least->cpu) least = p;
+    }
+    fprintf(t->options->stream,
+            "# the scene as written: error %.2g, %.3g s of CPU; no less accurate: run %d, %.3g s\n",
+            own->motion, own->cpu, (int)(least - t->point) + 1, least->cpu);
+}
+
+static bough_status conclude(const bough_tune_state *t) {
+    if (t->chosen < 0) return bough_fail(BOUGH_FAILED, "no run ended: %.200s", t->point[0].outcome.message);
+    const bough_tune_point *p = &t->point[t->chosen];
+    fprintf(t->options->stream, "\n");
+    bough_tune_print_settings(t, t->options->stream);
+    print_equal(t);
+    if (bough_tune_meets(t, p)) return bough_ok();
+    return bough_fail(BOUGH_FAILED, "no settings meet the error %.3g: the least is %.2g, with those above",
+                      t->error, p->error);
+}
+
+bough_status bough_tune(bough_arena *arena, const bough_tune_options *options) {
+    bough_errors errors = {.arena = arena};
+    bough_scene *scene;
+    bough_status status =
+        bough_scene_read(arena, options->scene, options->set, options->n_set, &errors, &scene);
+    if (!bough_is_ok(&status)) return status;
+    bough_tune_state *t = bough_arena_take(arena, sizeof *t);
+    *t = (bough_tune_state){.options = options, .scene = scene, .chosen = -1};
+    t->error = options->error > 0 ? options->error : scene->simulation.accuracy;
+    bough_tune_print(t, -1, options->stream);
+    status = search(t);
+    if (!bough_is_ok(&status)) return status;
+    if (t->chosen >= 0) status = bough_tune_write(t);
+    return bough_is_ok(&status) ? conclude(t) : status;
+}
