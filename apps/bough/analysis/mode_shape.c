@@ -1,6 +1,7 @@
 #include "apps/bough/analysis/mode_shape.h"
 
 #include "core/tree/dynamics.h"
+#include "cosim/analysis/modes.h"
 
 #include <float.h>
 #include <string.h>
@@ -174,4 +175,213 @@ void bough_mode_shape_move(const bough_mode_shape *x, bough_shape_row *row) {
     }
     scale_rows(row, bough_mode_shape_rows(s));
     bough_tree_kinematics(s->tree, x->state, s->view);
+}
+
+// -- shares ---------------------------------------------------------------------------------------
+
+const char *const bough_pattern_names[BOUGH_PATTERNS] = {"",       "collective", "forward",     "backward",
+                                                         "cosine", "sine",       "reactionless"};
+
+// -- energy ---------------------------------------------------------------------------------------
+
+// The scene's body that moves with a link: the one on its joint, or of a rod's end the first that
+// is fixed to it, or else the rod.
+static int body_on(const bough_simulation *s, int link) {
+    int n = s->scene->n_body, body = s->tree->links[link].body;
+    for (int i = 0; i < n && body >= n; i++) {
+        if (s->tree->bodies[i].link == link) body = i;
+    }
+    for (int k = 0; k < s->n_beam && body >= n; k++) {
+        if (s->beam[k].end == s->tree->links[link].body - n) {
+            body = (int)(s->beam[k].body - s->scene->body);
+        }
+    }
+    return body;
+}
+
+// Kinetic energy of the links along the shape.
+static void add_links(const bough_mode_shape *x, int part, double *share) {
+    const bough_simulation *s = x->simulation;
+    bough_tree_tangent(s->tree, x->state, bough_mode_shape_part(x, part), s->view);
+    for (int i = 0; i < s->tree->n_links; i++) {
+        const bough_link *link = &s->tree->links[i];
+        bough_twist v = s->view->acceleration[i];
+        share[body_on(s, i)] += bough_power(v, bough_inertia_mul(&link->inertia, v));
+    }
+}
+
+static double vertex_energy(const bough_vertex_inertia *v, bough_vec3 u, bough_vec3 w) {
+    const double *j = v->inertia;
+    bough_inertia inertia = {
+        v->mass, v->moment, {{j[0], j[3], j[4]}, {j[3], j[1], j[5]}, {j[4], j[5], j[2]}}};
+    bough_twist twist = {u, w};
+    return bough_power(twist, bough_inertia_mul(&inertia, twist));
+}
+
+static double rod_energy(const bough_mode_shape *x, const bough_beam *beam, int part) {
+    const bough_beam_shape *b = bough_mode_shape_beam(x, beam);
+    const bough_rod_model *m = bough_beam_mesh(beam);
+    const double *d = b->tangent[part] + (size_t)BOUGH_ROD_U * m->n;
+    double sum = 0;
+    int n = m->n;
+    for (int i = 0; i < n; i++) {
+        bough_vec3 u =
+            bough_mat3_tmul(bough_rod_rotation(b->state, n, i), bough_v3(d[i], d[n + i], d[2 * n + i]));
+        bough_vec3 w = {d[3 * n + i], d[4 * n + i], d[5 * n + i]};
+        sum += vertex_energy(&m->vertex[i + 1], u, w);
+    }
+    return sum;
+}
+
+static void set_shares(const bough_mode_shape *x, bough_scene_mode *mode) {
+    const bough_simulation *s = x->simulation;
+    int n_body = s->scene->n_body;
+    double sum = 0, blades = 0;
+    for (int part = 0; part < 2; part++) {
+        add_links(x, part, mode->share);
+        for (int k = 0; k < s->n_beam; k++) {
+            if (s->beam[k].port < 0) continue;
+            mode->share[s->beam[k].body - s->scene->body] += rod_energy(x, &s->beam[k], part);
+        }
+    }
+    for (int i = 0; i < n_body; i++) sum += mode->share[i];
+    for (int i = 0; i < n_body; i++) {
+        mode->share[i] /= sum > 0 ? sum : 1;
+        if (mode->share[i] > mode->share[mode->body]) mode->body = i;
+    }
+    for (int k = 0; k < x->group->n; k++) {
+        blades += mode->share[x->group->blade[k]->body - s->scene->body];
+    }
+    if (blades <= mode->share[mode->body]) return;
+    mode->blades = true;
+    mode->body = (int)(x->group->blade[0]->body - s->scene->body);
+}
+
+// -- bending ------------------------------------------------------------------------------------
+
+enum { BENDING = 6 };
+
+// The square root of its inertia times displacement c < 3 or turn of a vertex against the body.
+static double bending(const bough_mode_shape *x, const bough_beam *beam, int part, int i, int c) {
+    const bough_rod_model *m = bough_beam_mesh(beam);
+    int n = m->n;
+    const double *d = bough_mode_shape_beam(x, beam)->tangent[part],
+                 *y = bough_mode_shape_beam(x, beam)->state;
+    const bough_vertex_inertia *v = &m->vertex[i + 1];
+    if (c < 3) return sqrt(v->mass) * d[c * n + i];
+    bough_quaternion p = {y[3 * n + i], -y[4 * n + i], -y[5 * n + i], -y[6 * n + i]};
+    bough_quaternion dp = {d[3 * n + i], d[4 * n + i], d[5 * n + i], d[6 * n + i]};
+    bough_quaternion turn = bough_quaternion_product(p, dp);
+    const double turns[3] = {turn.x, turn.y, turn.z};
+    return 2 * sqrt(v->inertia[c - 3]) * turns[c - 3];
+}
+
+static void add_direction(const bough_mode_shape *x, const bough_beam *beam, double *sum) {
+    for (int i = 0; i < bough_beam_mesh(beam)->n; i++) {
+        for (int part = 0; part < 2; part++) {
+            for (int c = 0; c < 3; c++) sum[c] += pow(bending(x, beam, part, i, c), 2);
+            sum[BOUGH_ROD_TORSION] += pow(bending(x, beam, part, i, 5), 2);
+        }
+    }
+}
+
+// Of a rigid body: energy of its mass centre's motion along the ground's axes, and of its turn.
+static void add_motion(const bough_mode_shape *x, int body, int part, double *sum) {
+    const bough_simulation *s = x->simulation;
+    int link = s->tree->bodies[body].link;
+    if (link < 0) return;
+    const bough_inertia *inertia = &s->tree->links[link].inertia;
+    bough_tree_tangent(s->tree, x->state, bough_mode_shape_part(x, part), s->view);
+    bough_twist twist = s->view->acceleration[link];
+    bough_wrench momentum = bough_inertia_mul(inertia, twist);
+    bough_vec3 p = bough_mat3_mul(s->view->pose[link].rotation, momentum.force);
+    const double along[3] = {p.x, p.y, p.z};
+    sum[3] += bough_power(twist, momentum);
+    for (int c = 0; c < 3; c++) {
+        double energy = along[c] * along[c] / fmax(inertia->mass, DBL_MIN);
+        sum[c] += energy;
+        sum[3] -= energy;
+    }
+}
+
+static void set_direction(const bough_mode_shape *x, bough_scene_mode *mode) {
+    const bough_beam *beam = bough_simulation_beam(x->simulation, mode->body);
+    double sum[BOUGH_ROD_DIRECTIONS] = {0};
+    bool rigid = !mode->blades && (beam == NULL || beam->port < 0);
+    for (int part = 0; rigid && part < 2; part++) add_motion(x, mode->body, part, sum);
+    if (!mode->blades && !rigid) add_direction(x, beam, sum);
+    for (int k = 0; mode->blades && k < x->group->n; k++) add_direction(x, x->group->blade[k], sum);
+    mode->direction = 0;
+    for (int c = 0; c < BOUGH_ROD_DIRECTIONS; c++) {
+        if (sum[c] > sum[mode->direction]) mode->direction = c;
+    }
+}
+
+// -- patterns -------------------------------------------------------------------------------------
+
+// Squares of a pattern over the blades, by what they look like.
+typedef struct pattern {
+    double whole, collective, plus, minus, cosine, sine;
+} pattern;
+
+static double square(const double x[2]) { return x[0] * x[0] + x[1] * x[1]; }
+
+static void add_pattern(const bough_blade_group *group, const double *real, const double *imaginary,
+                        pattern *sum) {
+    double share[2], c[2] = {0, 0}, s[2] = {0, 0};
+    int n = group->n;
+    for (int k = 0; k < n; k++) {
+        double angle = group->azimuth + 2 * BOUGH_PI * k / n;
+        sum->whole += (real[k] * real[k] + imaginary[k] * imaginary[k]) / n;
+        c[0] += cos(angle) * real[k] / n, c[1] += cos(angle) * imaginary[k] / n;
+        s[0] += sin(angle) * real[k] / n, s[1] += sin(angle) * imaginary[k] / n;
+    }
+    sum->cosine += square(c);
+    sum->sine += square(s);
+    bough_modes_harmonic(n, 0, real, imaginary, share);
+    sum->collective += square(share);
+    bough_modes_harmonic(n, 1, real, imaginary, share);
+    sum->plus += square(share);
+    bough_modes_harmonic(n, -1, real, imaginary, share);
+    sum->minus += square(share);
+}
+
+static bough_pattern name_pattern(const pattern *p, const double whirl[3]) {
+    double whirling = whirl[1] + whirl[2], rest = 1 - whirl[0] - whirling;
+    if (whirl[0] >= fmax(whirling, rest)) return BOUGH_PATTERN_COLLECTIVE;
+    if (rest > whirling) return BOUGH_PATTERN_REACTIONLESS;
+    if (whirl[1] > 2 * whirl[2]) return BOUGH_PATTERN_FORWARD;
+    if (whirl[2] > 2 * whirl[1]) return BOUGH_PATTERN_BACKWARD;
+    return p->cosine > p->sine ? BOUGH_PATTERN_COSINE : BOUGH_PATTERN_SINE;
+}
+
+enum { MOST_BLADES = 16 };
+
+// A pattern exp(−i 2πk/n) exp(iωt) is cos(ωt − 2πk/n): it runs towards growing azimuth.
+static void set_pattern(const bough_mode_shape *x, bough_scene_mode *mode) {
+    const bough_blade_group *g = x->group;
+    pattern sum = {0};
+    if (g->n == 0 || g->n > MOST_BLADES) return;
+    for (int i = 0; i < bough_beam_mesh(g->blade[0])->n; i++) {
+        for (int c = 0; c < BENDING; c++) {
+            double real[MOST_BLADES], imaginary[MOST_BLADES];
+            for (int k = 0; k < g->n; k++) {
+                real[k] = bending(x, g->blade[k], 0, i, c);
+                imaginary[k] = bending(x, g->blade[k], 1, i, c);
+            }
+            add_pattern(g, real, imaginary, &sum);
+        }
+    }
+    if (!(sum.whole > 0)) return;
+    bool reversed = g->speed < 0;
+    mode->whirl[0] = sum.collective / sum.whole;
+    mode->whirl[1] = (reversed ? sum.plus : sum.minus) / sum.whole;
+    mode->whirl[2] = (reversed ? sum.minus : sum.plus) / sum.whole;
+    mode->pattern = name_pattern(&sum, mode->whirl);
+}
+
+void bough_mode_share_set(const bough_mode_shape *x, bough_scene_mode *mode) {
+    set_shares(x, mode);
+    set_direction(x, mode);
+    set_pattern(x, mode);
 }

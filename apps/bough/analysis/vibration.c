@@ -1,7 +1,7 @@
 #include "apps/bough/analysis/vibration.h"
 
 #include "apps/bough/analysis/aeroelastic.h"
-#include "apps/bough/analysis/mode_share.h"
+#include "apps/bough/analysis/mode_shape.h"
 #include "apps/bough/analysis/steady.h"
 #include "cosim/analysis/modes.h"
 

@@ -7,7 +7,7 @@
 #ifndef BOUGH_APPS_ANALYSIS_VIBRATION_H
 #define BOUGH_APPS_ANALYSIS_VIBRATION_H
 
-#include "apps/bough/analysis/mode_share.h"
+#include "apps/bough/analysis/mode_shape.h"
 #include "apps/bough/model/equilibrium.h"
 
 typedef struct bough_vibration {

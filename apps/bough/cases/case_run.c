@@ -4,7 +4,7 @@
 #include "apps/bough/model/run.h"
 #include "apps/bough/results/folder.h"
 #include "apps/bough/results/recorder.h"
-#include "apps/bough/scene/fingerprint.h"
+#include "apps/bough/scene/scene_files.h"
 
 #include <assert.h>
 #include <math.h>

@@ -5,7 +5,7 @@
 
 #include "apps/bough/config/schema.h"
 #include "apps/bough/model/build.h"
-#include "apps/bough/scene/fingerprint.h"
+#include "apps/bough/scene/scene_files.h"
 
 #include <assert.h>
 #include <math.h>

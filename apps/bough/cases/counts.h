@@ -4,7 +4,7 @@
 #define BOUGH_APPS_LOADS_COUNTS_H
 
 #include "apps/bough/cases/rainflow.h"
-#include "apps/bough/results/statistics.h"
+#include "apps/bough/results/recorder.h"
 #include "core/base/arena.h"
 
 // Of one channel. The two rows hold the extremes in the channel's own place.

@@ -2,7 +2,7 @@
 
 #include "apps/bough/config/schema.h"
 #include "apps/bough/results/folder.h"
-#include "apps/bough/scene/fingerprint.h"
+#include "apps/bough/scene/scene_files.h"
 #include "core/base/input_file.h"
 
 #include <errno.h>

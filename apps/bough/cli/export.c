@@ -5,7 +5,6 @@
 #include "apps/bough/results/archive.h"
 #include "apps/bough/results/folder.h"
 #include "apps/bough/results/picture.h"
-#include "apps/bough/scene/fingerprint.h"
 #include "apps/bough/scene/scene_files.h"
 
 #include <inttypes.h>

@@ -4,7 +4,6 @@
 #include "apps/bough/model/validity.h"
 #include "apps/bough/results/binary.h"
 #include "apps/bough/results/folder.h"
-#include "apps/bough/results/lock.h"
 
 // -- recording ------------------------------------------------------------------------------------
 

@@ -7,7 +7,6 @@
 #include "apps/bough/model/run.h"
 #include "apps/bough/model/shape.h"
 #include "apps/bough/results/recorder.h"
-#include "apps/bough/results/statistics.h"
 #include "apps/bough/results/summary.h"
 
 #include <stdint.h>

@@ -3,7 +3,6 @@
 
 #include "apps/bough/cli/command.h"
 #include "apps/bough/results/folder.h"
-#include "apps/bough/results/lock.h"
 
 typedef struct part {
     int k, n; // the k-th, from 1, of n; n 0: all

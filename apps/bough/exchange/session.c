@@ -3,7 +3,7 @@
 #include "apps/bough/config/schema.h"
 #include "apps/bough/model/input_link.h"
 #include "apps/bough/model/run.h"
-#include "apps/bough/scene/fingerprint.h"
+#include "apps/bough/scene/scene_files.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -1,4 +1,4 @@
-#include "apps/bough/import/entry.h"
+#include "apps/bough/import/windio.h"
 
 #include "apps/bough/config/schema.h"
 

@@ -1,7 +1,6 @@
 // InflowWind: the wind of the scene, or what stands for a file that is not there.
 #include "apps/bough/import/openfast.h"
-#include "apps/bough/import/wind_convert.h"
-#include "apps/bough/import/wind_given.h"
+#include "apps/bough/import/wind.h"
 
 #include <math.h>
 #include <string.h>

@@ -3,7 +3,6 @@
 // edgewise, turned by the twist; both matrices about the reference line: those of the scene.
 #include "apps/bough/import/section.h"
 #include "apps/bough/import/windio.h"
-#include "apps/bough/import/windio_layup.h"
 #include "core/base/symmetric6.h"
 
 #include <math.h>

@@ -1,6 +1,6 @@
 // Hub, nacelle and their bearings; wind; the generator's torque.
 #include "aero/control/discon.h"
-#include "apps/bough/import/wind_given.h"
+#include "apps/bough/import/wind.h"
 #include "apps/bough/import/windio.h"
 #include "core/base/base.h"
 

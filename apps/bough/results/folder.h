@@ -3,6 +3,7 @@
 #ifndef BOUGH_OUTPUT_FOLDER_H
 #define BOUGH_OUTPUT_FOLDER_H
 
+#include "core/base/arena.h"
 #include "core/base/status.h"
 
 #include <stdio.h>
@@ -51,5 +52,11 @@ bough_status bough_folder_commit(const char *path, FILE *file);
 
 // Closes the file and removes path.partial.
 void bough_folder_discard(const char *path, FILE *file);
+
+// -- one process at a time writes into a folder ---------------------------------------------------
+
+// Takes an existing folder until the arena is destroyed or the process ends, in whatever way. A folder
+// that another process holds is refused with that process's number.
+bough_status bough_lock_folder(bough_arena *arena, const char *folder);
 
 #endif

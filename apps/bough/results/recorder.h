@@ -42,4 +42,30 @@ const double *bough_recorder_values(const bough_recorder *recorder);
 // Rows written so far.
 long bough_recorder_rows(const bough_recorder *recorder);
 
+// -- numbers, as printf writes them but several times faster --------------------------------------
+
+// Writes x as printf's "%*.8E" does, into exactly `width` characters (at least 16) and a terminator.
+void bough_number_write(char *to, int width, double x);
+
+// -- statistics, sample by sample -----------------------------------------------------------------
+
+// Minimum, maximum, mean and standard deviation of a sampled quantity, sample by sample.
+//
+// B. P. Welford, "Note on a method for calculating corrected sums of squares and products",
+// Technometrics 4 (1962).
+
+// All zero: no sample yet.
+typedef struct bough_sample_statistics {
+    double n; // samples
+    double mean;
+    double squares;           // Σ (x − mean)²
+    double least, most;       // of all samples
+    double least_at, most_at; // when each was reached first [s]
+} bough_sample_statistics;
+
+void bough_sample_statistics_add(bough_sample_statistics *s, double t, double x);
+
+// The standard deviation of the samples about their mean, √(Σ (x − mean)²/n); NaN without samples.
+double bough_sample_statistics_deviation(const bough_sample_statistics *s);
+
 #endif

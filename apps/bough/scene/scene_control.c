@@ -1,5 +1,5 @@
 // The keys of a turbine's controller.
-#include "apps/bough/scene/scene_tables.h"
+#include "apps/bough/scene/scene_internal.h"
 
 #include <math.h>
 

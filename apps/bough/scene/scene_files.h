@@ -4,6 +4,8 @@
 
 #include "apps/bough/scene/scene.h"
 
+#include <stdint.h>
+
 typedef struct bough_scene_file {
     const char *key;  // that names it, "control.library"; "" of the scene itself
     const char *path; // as it is opened
@@ -19,5 +21,27 @@ typedef struct bough_scene_files {
 // files of its folder. A controller's input file has a form that only the controller knows: every word
 // of it that is the name of a file beside it counts.
 bough_scene_files bough_scene_list_files(bough_arena *arena, const bough_scene *scene);
+
+// -- fingerprints: FNV-1a, against mistakes, not against malice -----------------------------------
+
+#define BOUGH_FINGERPRINT_START UINT64_C(14695981039346656037)
+
+void bough_mix(uint64_t *hash, const void *bytes, size_t n);
+void bough_mix_text(uint64_t *hash, const char *text);
+
+// What the file holds; nothing of one that cannot be read.
+void bough_mix_file(uint64_t *hash, const char *path);
+
+// Sums of files, so that each is read once for scenes that share it.
+typedef struct bough_file_sums {
+    bough_arena *arena;
+    struct bough_file_sum *known; // NULL at the beginning
+} bough_file_sums;
+
+// What all files of bough_scene_list_files hold.
+void bough_mix_scene(uint64_t *hash, bough_file_sums *sums, const bough_scene *scene);
+
+// The running program, where the system shows it.
+void bough_mix_program(uint64_t *hash);
 
 #endif

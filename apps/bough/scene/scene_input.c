@@ -1,5 +1,5 @@
 // Inputs: what the scene leaves to whoever steps it, by name.
-#include "apps/bough/scene/scene_tables.h"
+#include "apps/bough/scene/scene_internal.h"
 
 #include <stdio.h>
 #include <string.h>

@@ -3,6 +3,7 @@
 #define BOUGH_APPS_SCENE_SCENE_INTERNAL_H
 
 #include "apps/bough/config/schema.h"
+#include "apps/bough/config/schema_keys.h"
 #include "apps/bough/scene/scene.h"
 
 // The table of a whole scene; fills a bough_scene.
@@ -110,5 +111,18 @@ void bough_link_inputs(bough_schema_reader *r, bough_scene *s);
 // Replaces or adds the value that "path.to[2].key=value" names; the new root, or NULL after an
 // error. Nodes that an alias shares are copied before they change.
 bough_node *bough_scene_set(bough_arena *arena, bough_node *root, const char *set, bough_errors *errors);
+
+// -- words of the tables of keys ------------------------------------------------------------------
+
+// clang-format off
+#define ZERO3 "[0, 0, 0]"
+#define WIND_SPEED_RANGE "[0, 150]"
+#define PLACEMENT_FORM "list of 'move x|y|z LENGTH' and 'rotate x|y|z ANGLE'"
+
+#define RAMP                                                                                       \
+    {KEY(VECTOR, ramp), .count = 2, UNIT(TIME), .range = ">= 0", .fallback = "[0, 0]",             \
+     .example = "[0 s, 20 s]",                                                                     \
+     .help = "grows linearly from zero at the first time to the full value at the second; two "    \
+             "equal times above 0 make a jump"}
 
 #endif

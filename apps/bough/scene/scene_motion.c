@@ -1,5 +1,5 @@
 // The prescribed motion of a joint: its speed or itself, constant, by a ramp or by a table.
-#include "apps/bough/scene/scene_tables.h"
+#include "apps/bough/scene/scene_internal.h"
 
 #include <math.h>
 #include <string.h>

@@ -1,5 +1,5 @@
 // The keys of a scene: simulation, modes, the whole. Its parts are in scene_schema_NAME.c.
-#include "apps/bough/scene/scene_tables.h"
+#include "apps/bough/scene/scene_internal.h"
 
 // One line a key would become one line a field:
 // clang-format off

@@ -1,5 +1,5 @@
 // The keys of wind, airfoils, blade elements and tower.
-#include "apps/bough/scene/scene_tables.h"
+#include "apps/bough/scene/scene_internal.h"
 
 // One line a key would become one line a field:
 // clang-format off

@@ -28,8 +28,7 @@ typedef struct thing {
 static void read_sum(bough_schema_reader *r, const bough_node *node, void *field) {
     double v[4];
     int n = bough_schema_numbers(r, node, 4, v, "a list of at most 4 numbers");
-    for (int i = 0; i < n; i++)
-        *(int *)field += (int)v[i];
+    for (int i = 0; i < n; i++) *(int *)field += (int)v[i];
 }
 
 static const bough_key part_keys[] = {
@@ -53,7 +52,8 @@ static void check_part(bough_schema_reader *r, void *item) {
     }
 }
 
-static const bough_schema part_schema = {"a part", sizeof(part), 2, part_keys, check_part};
+static const bough_schema part_schema = {
+    .name = "a part", .size = sizeof(part), .n_key = 2, .key = part_keys, .check = check_part};
 
 static const bough_key thing_keys[] = {
     {.name = "kind",
@@ -142,8 +142,12 @@ static const bough_key thing_keys[] = {
      .offset = offsetof(thing, sum),
      .help = "a sum"},
 };
-static const bough_schema thing_schema = {
-    "a thing", sizeof(thing), sizeof thing_keys / sizeof thing_keys[0], thing_keys, NULL};
+static const char *const former_keys[] = {"sort", "'kind' has its values", NULL};
+static const bough_schema thing_schema = {.name = "a thing",
+                                          .size = sizeof(thing),
+                                          .n_key = sizeof thing_keys / sizeof thing_keys[0],
+                                          .key = thing_keys,
+                                          .removed = former_keys};
 
 typedef struct fixture {
     bough_arena *arena;
@@ -217,8 +221,7 @@ static void defaults_are_filled(void **state) {
     check_near(f.thing.share, 0, 0, 0);
     assert_true(f.thing.on);
     check_near(f.thing.vector[2], 2, 0, 0);
-    assert_null(
-        f.thing.inner.node); // left out: no error about its required key, its defaults stand
+    assert_null(f.thing.inner.node); // left out: no error about its required key, its defaults stand
     assert_string_equal(f.thing.inner.label, "none");
     assert_int_equal(f.thing.n_part, 0);
     assert_null(f.thing.label);
@@ -268,8 +271,8 @@ static void misspelt_words_get_a_hint(void **state) {
     (void)state;
     refuses("kind: turnign\n", "f:1:7: error: kind: expected one of turning, sliding, fixed, got "
                                "'turnign' (did you mean 'turning'?)\n");
-    refuses("kind: zzz\n",
-            "f:1:7: error: kind: expected one of turning, sliding, fixed, got 'zzz'\n");
+    refuses("kind: zzz\n", "f:1:7: error: kind: expected one of turning, sliding, fixed, got 'zzz'\n");
+    refuses("kind: fixed\nsort: 3\n", "f:2:1: error: the key 'sort' was removed: 'kind' has its values\n");
     refuses("kind: fixed\ncuont: 3\nxyzzy: 1\ninner: {length: 1, lable: x}\n",
             "f:2:1: error: unknown key 'cuont' (did you mean 'count'?)\n"
             "f:3:1: error: unknown key 'xyzzy'\n"
@@ -278,8 +281,7 @@ static void misspelt_words_get_a_hint(void **state) {
 
 static void wrong_types_are_refused(void **state) {
     (void)state;
-    refuses("kind: [fixed]\n",
-            "f:1:7: error: kind: expected one of turning, sliding, fixed, got a list\n");
+    refuses("kind: [fixed]\n", "f:1:7: error: kind: expected one of turning, sliding, fixed, got a list\n");
     refuses("kind: fixed\ncount: 1.5\n", "f:2:8: error: count: expected a whole number, got "
                                          "'1.5'\n");
     refuses("kind: fixed\ncount: {}\n", "f:2:8: error: count: expected a whole number, got an "
@@ -309,9 +311,8 @@ static void wrong_types_are_refused(void **state) {
                                          "keys), got '5'\n");
     refuses("kind: fixed\nsum: [1, 2 m]\n", "f:2:10: error: sum[1]: expected a plain number in SI "
                                             "units, got '2 m'\n");
-    refuses("kind: fixed\nsum: [1, 2, 3, 4, 5]\n",
-            "f:2:6: error: sum: expected a list of at most 4 "
-            "numbers, got 5 items\n");
+    refuses("kind: fixed\nsum: [1, 2, 3, 4, 5]\n", "f:2:6: error: sum: expected a list of at most 4 "
+                                                   "numbers, got 5 items\n");
     refuses("- kind\n", "f:1:1: error: expected a thing (a mapping of keys), got a list\n");
 }
 
@@ -321,8 +322,7 @@ static void only_true_and_false_are_booleans(void **state) {
     for (size_t i = 0; i < sizeof others / sizeof others[0]; i++) {
         char text[60], line[80];
         snprintf(text, sizeof text, "kind: fixed\non: %s\n", others[i]);
-        snprintf(line, sizeof line, "f:2:5: error: on: expected true or false, got '%s'\n",
-                 others[i]);
+        snprintf(line, sizeof line, "f:2:5: error: on: expected true or false, got '%s'\n", others[i]);
         refuses(text, line);
     }
     refuses("kind: fixed\non: 'true'\n", "f:2:5: error: on: expected true or false, got 'true'\n");
@@ -370,11 +370,9 @@ static void checks_run_on_clean_mappings_only(void **state) {
 static void long_values_are_cut(void **state) {
     (void)state;
     char text[400] = "kind: fixed\ncount: ", line[200];
-    for (int i = 0; i < 100; i++)
-        strcat(text, "é");
+    for (int i = 0; i < 100; i++) strcat(text, "é");
     strcpy(line, "f:2:8: error: count: expected a whole number, got '");
-    for (int i = 0; i < 22; i++)
-        strcat(line, "é");
+    for (int i = 0; i < 22; i++) strcat(line, "é");
     strcat(line, "...'\n");
     refuses(text, line);
 }
@@ -448,8 +446,7 @@ static void angles_need_a_unit(void **state) {
     quantity_is("-0.0", BOUGH_ANGULAR_SPEED, 0);
     quantity_is("6.5 rad", BOUGH_ANGLE, 6.5);
     quantity_fails("6.5", BOUGH_ANGLE, "6.5 rad is 372.4 deg; write '6.5 deg' or '6.5 rad'");
-    quantity_fails("2", BOUGH_ANGULAR_SPEED,
-                   "2 rad/s is 19.1 rpm; write '2 rpm' or '2 rad/s'");
+    quantity_fails("2", BOUGH_ANGULAR_SPEED, "2 rad/s is 19.1 rpm; write '2 rpm' or '2 rad/s'");
 }
 
 static void numbers_are_strict(void **state) {
@@ -481,8 +478,7 @@ static void numbers_do_not_depend_on_the_locale(void **state) {
     (void)state;
     const char *const names[] = {"de_DE.UTF-8", "de_DE.utf8", "fr_FR.UTF-8", "de_DE"};
     bool set = false;
-    for (int i = 0; i < 4 && !set; i++)
-        set = setlocale(LC_NUMERIC, names[i]) != NULL;
+    for (int i = 0; i < 4 && !set; i++) set = setlocale(LC_NUMERIC, names[i]) != NULL;
     if (!set) skip();
     quantity_is("1.5 m", BOUGH_LENGTH, 1.5);
     setlocale(LC_NUMERIC, "C");
@@ -514,8 +510,7 @@ static void hostile_keys_end_fast(void **state) {
     (void)state;
     enum { N = 300000 };
     char *text = malloc(16 * N + 20), *next = text + sprintf(text, "kind: fixed\n");
-    for (int i = 0; i < N; i++)
-        next += sprintf(next, "cuont%d: 1\n", i);
+    for (int i = 0; i < N; i++) next += sprintf(next, "cuont%d: 1\n", i);
     clock_t begin = clock();
     fixture f = read_thing(text);
     assert_int_equal(f.errors.n + f.errors.dropped, N);

@@ -3,7 +3,7 @@
 
 #include "apps/bough/exchange/bough.h"
 #include "apps/bough/import/section.h"
-#include "apps/bough/import/trial.h"
+#include "apps/bough/import/draft.h"
 #include "tests/unit/scratch.h"
 
 // A reference line of 5 m along z and 5 m on a slope of 3 to 4; a station at 6.25 m of it.

@@ -1,6 +1,6 @@
 // Boxes from files in the style of Bladed and HAWC, written here by their formats: velocities at the
 // grid's points by hand.
-#include "apps/bough/import/wind_convert.h"
+#include "apps/bough/import/wind.h"
 
 #include "tests/unit/check.h"
 #include "tests/unit/scratch_name.h"

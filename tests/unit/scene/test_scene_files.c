@@ -1,6 +1,5 @@
 // The one list of the files that a scene names: every key that names one is in it, and the fingerprint
 // changes with each of them.
-#include "apps/bough/scene/fingerprint.h"
 #include "apps/bough/scene/scene_files.h"
 #include "tests/unit/scene_text.h"
 #include "tests/unit/scratch.h"
