@@ -123,6 +123,45 @@ if parallel --version 2>/dev/null | grep -q 'GNU parallel'; then
     same whole jobs
 fi
 
+# The one case in twenty with a companion, the first, tells errors; companions change no load.
+grep -q '^errors estimated from the companions of 1 cases' whole/table.txt || fail "errors: $(head -n 4 whole/table.txt)"
+sed 's/^from/companions: none\n&/' set.yaml >unknown.yaml
+study 0 'errors not estimated: companions: none' unknown.yaml --out unknown
+loads() { cut -d, -f1-4,7 "$1/equivalent.csv"; }
+[ "$(loads whole)" = "$(loads unknown)" ] || fail "companions change equivalent loads: $(loads whole; loads unknown)"
+[ "$(awk -F, 'NR > 1 && $5 == "nan" && $6 == "nan"' unknown/equivalent.csv | wc -l)" -eq 3 ] ||
+    fail "errors without companions: $(cat unknown/equivalent.csv)"
+
+# Errors of equivalent loads, told by companions of all cases, beside a solution with a third of the segments' length,
+# a quarter of the step and half the sampling time.
+errors_of() {
+    cat <<END
+kind: load-set
+scene: $power
+from: 4 s
+companions: $1
+channels: [RootMyb1, RootMxb1, RootMzb1]
+slopes: [4, 10]
+wind: {average: 10 m/s}
+common: {simulation.duration: 16 s, simulation.output.interval: 20 ms, simulation.master.rtol: 4.5e-3,
+         aero.wind: {kind: iec, condition: ntm, reference_height: 90, points: 5, time_step: 0.2}, $2}
+cases:
+  - name: DLC1.2
+    weibull: 0.95
+    grid: {aero.wind.speed: [8, 16], aero.wind.seed: [1, 2]}
+END
+}
+errors_of all '"bodies[3-5].rod.segments": 12, simulation.master.step: 20 ms' >coarse.yaml
+errors_of none '"bodies[3-5].rod.segments": 36, simulation.master.step: 5 ms, simulation.macro_step: 10 ms,
+    aero.rate: 100 Hz' >fine.yaml
+study 0 'errors estimated from the companions of 4 cases' coarse.yaml --out coarse
+study 0 '' fine.yaml --out fine
+paste -d, coarse/equivalent.csv fine/equivalent.csv | awk -F, '
+    NR > 1 { for (k = 3; k <= 4; k++) {
+        true = $k - $(k + 7); if (true < 0) true = -true
+        if (!($(k + 2) > true / 3 && $(k + 2) < 4 * true)) { bad = 1; print $1, "told", $(k + 2), "true", true > "/dev/stderr" } } }
+    END { exit bad }' || fail "errors of equivalent loads"
+
 # -- what a file says decides, not its name --------------------------------------------------------
 
 # A controller whose gain is in its input file: results of another gain are not reused.
@@ -194,7 +233,7 @@ study 0 'ran 1 cases' set.yaml --out damaged
 same whole damaged
 
 # A case that fails is told, the others go on, and the result says what it lacks.
-sed 's/speed: \[8, 16\]/speed: [8], simulation.error_bound: [0, 1e-12]/' set.yaml >failing.yaml
+sed 's/speed: \[8, 16\]/speed: [8], simulation.error_bound: [0, 1e-12]/;s/^from/companions: all\n&/' set.yaml >failing.yaml
 study 3 'case 8 failed (DLC1.3, speed=8, error_bound=1e-12)' failing.yaml --out failing
 grep -q "bough run .*--set aero.wind.speed=8 --set simulation.error_bound=1e-12" log || fail "no command line of the failed case: $(cat log)"
 grep -q '1 of 10 cases failed: the lifetime result is incomplete' log || fail "not told incomplete: $(cat log)"
@@ -216,6 +255,7 @@ refused "'DLC1.2' is given twice" 's/DLC1.3/DLC1.2/'
 refused "did you mean 'RootMyb1'" 's/RootMyb1/RootMyb4/'
 refused 'at least two rising speeds' 's/\[8, 12, 16\]/[12]/'
 refused 'is not before the end' 's/from: 1 s/from: 5 s/'
+refused "expected '1 in N'" 's/^from/companions: some\n&/'
 refused 'unknown key' 's/wind.seed/wind.seeds/'
 refused 'at most one of' 's/events: 100/events: 100, hours: 2/;s/    events: 100, /    events: 100\n    /'
 study 2 "no load case 'DLC1.4' (did you mean 'DLC1.[2-5]'" set.yaml --out none --case DLC1.4

@@ -22,11 +22,13 @@ typedef struct case_run {
     int *column;              // (n_channel) of the study's channels among the run's
     bough_recorder *recorder; // of all channels; NULL: none
     double *value;            // (n_channel) of the study's channels
+    bough_counts pair[2];     // of the run and of its companion at their common times
 } case_run;
 
 bough_case_result bough_case_take(bough_arena *arena, const bough_study *study) {
     bough_case_result result = {.outcome = bough_ok()};
     bough_counts_take(arena, study->n_channel, study->n_slope, study->slope, &result.counts);
+    result.load_error = bough_arena_take(arena, (size_t)study->n_channel * sizeof *result.load_error);
     return result;
 }
 
@@ -34,6 +36,19 @@ bough_case_result bough_case_take(bough_arena *arena, const bough_study *study) 
 
 static void choose(const case_run *r, const double *value, double *chosen) {
     for (int i = 0; i < r->study->n_channel; i++) chosen[i] = value[r->column[i]];
+}
+
+static void count(case_run *r, bough_counts *counts, double t, const double *value) {
+    choose(r, value, r->value);
+    bough_counts_add(counts, t, r->value);
+}
+
+static void count_all(case_run *r, double t, const double *value) {
+    const bough_companion *c = r->run.companion;
+    count(r, &r->result->counts, t, value);
+    if (!r->study->is.weighted || !bough_companion_compares(c)) return;
+    count(r, &r->pair[0], t, c->value);
+    count(r, &r->pair[1], t, c->other);
 }
 
 static bough_status sample(void *self, double t) {
@@ -46,8 +61,7 @@ static bough_status sample(void *self, double t) {
         assert(s->filled < s->n_row);
         choose(r, value, s->value + (size_t)s->filled++ * (size_t)s->n_channel);
     } else if (t >= r->study->from - 1e-6 * r->run.simulation->master->macro_step) {
-        choose(r, value, r->value);
-        bough_counts_add(&r->result->counts, t, r->value);
+        count_all(r, t, value);
     }
     return status;
 }
@@ -60,6 +74,31 @@ static void gather_estimates(case_run *r) {
         r->value[i] = known ? c->error[r->column[i]] : (double)NAN;
     }
     bough_study_norms(r->study, r->value, r->result->estimate);
+}
+
+// -- errors of loads ------------------------------------------------------------------------------
+
+static bough_load_error error_of(const bough_channel_counts *run, const bough_channel_counts *other,
+                                 double share) {
+    bough_load_error e = {.least = share * fabs(run->statistics.least - other->statistics.least),
+                          .most = share * fabs(run->statistics.most - other->statistics.most)};
+    for (int k = 0; k < run->rainflow.n_slope; k++) {
+        double slope = run->rainflow.slope[k];
+        double load = bough_equivalent_load(run->rainflow.damage[k], slope, 1);
+        double others = bough_equivalent_load(other->rainflow.damage[k], slope, 1);
+        e.damage[k] = run->rainflow.damage[k];
+        e.larger[k] = pow(load + share * fabs(others - load), slope);
+    }
+    return e;
+}
+
+static void find_load_errors(case_run *r) {
+    const bough_companion *c = r->run.companion;
+    bough_case_result *result = r->result;
+    result->has_companion = c->coarser && !c->reason[0] && r->pair[0].channel[0].statistics.n > 0;
+    for (int k = 0; k < 2; k++) bough_counts_finish(&r->pair[k]);
+    for (int i = 0; i < r->study->n_channel && result->has_companion; i++)
+        result->load_error[i] = error_of(&r->pair[0].channel[i], &r->pair[1].channel[i], c->share);
 }
 
 // -- building -------------------------------------------------------------------------------------
@@ -121,11 +160,14 @@ static bough_status build(bough_arena *arena, case_run *r) {
     int threads = s->is.parallel ? 1 : s->threads;
     if (threads > 0) scene->simulation.threads = threads;
     if (is_reference(s, r->chosen)) scene->simulation.error_estimate = BOUGH_SCENE_NO_ESTIMATE;
+    if (!r->series) scene->simulation.output.from = s->from;
     bough_status built = bough_run_create(arena, scene, &r->run);
     status = same_files(arena, scene, r->chosen->files);
     if (bough_is_ok(&status)) status = built;
     if (bough_is_ok(&status)) status = find_columns(arena, r);
     r->value = bough_arena_doubles(arena, (size_t)s->n_channel);
+    for (int k = 0; k < 2 && s->is.weighted; k++)
+        bough_counts_take(arena, s->n_channel, s->n_slope, s->slope, &r->pair[k]);
     return bough_is_ok(&status) ? open_recorder(arena, r) : status;
 }
 
@@ -160,6 +202,7 @@ static bough_status run_in(bough_arena *arena, void *self) {
     if (r->series) gather_estimates(r);
     if (!r->series && bough_is_ok(&run->outcome)) run->outcome = judge(arena, r);
     if (!r->series) bough_counts_finish(&result->counts);
+    if (r->study->is.weighted) find_load_errors(r);
     result->cpu = run->cpu_s;
     result->wall = run->wall_s;
     result->time = m->time;
@@ -224,7 +267,8 @@ static void run_repeatedly(case_run *r, int repeat) {
 bough_status bough_case_run(const bough_study *study, const bough_case *c, int repeat,
                             bough_study_drive *drive, bough_study_series *series, bough_case_result *result) {
     case_run r = {.study = study, .chosen = c, .drive = drive, .series = series, .result = result};
-    *result = (bough_case_result){.outcome = bough_ok(), .counts = result->counts};
+    *result = (bough_case_result){
+        .outcome = bough_ok(), .counts = result->counts, .load_error = result->load_error};
     for (int i = 0; i < study->n_measure; i++) result->error[i] = (double)NAN;
     if (series)
         run_repeatedly(&r, repeat);

@@ -24,6 +24,14 @@ void bough_study_compare(const bough_study *study, const bough_study_series *ser
 // Each measure's norm of the values (n_channel) of the study's channels: norm (n_measure).
 void bough_study_norms(const bough_study *study, const double *value, double *norm);
 
+// How far the loads of a channel may be from the truth, by the case's companion. Both are counted at their
+// common times.
+typedef struct bough_load_error {
+    double least, most;               // error of the smallest and of the largest value [unit of the channel]
+    double damage[BOUGH_MOST_SLOPES]; // Σ n Sᵐ of the run
+    double larger[BOUGH_MOST_SLOPES]; // the same of an equivalent load that is larger by its error
+} bough_load_error;
+
 typedef struct bough_case_result {
     bough_status outcome; // BOUGH_FAILED with a diagnosis: the run ended there
     bool done;            // ended, well or not
@@ -39,6 +47,8 @@ typedef struct bough_case_result {
     // with statistics
     double counted; // of the time after the study's `from` [s]
     bough_counts counts;
+    bool has_companion;           // whose errors of loads follow
+    bough_load_error *load_error; // (n_channel)
 } bough_case_result;
 
 // An empty result with room for statistics, whose memory is the arena's.

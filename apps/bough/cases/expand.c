@@ -74,8 +74,17 @@ static void add_sets(bough_case *c, const bough_study_settings *settings) {
     for (int i = 0; i < settings->n; i++) c->set[c->n_set++] = settings->item[i].set;
 }
 
+// The choice depends on the case's place in the set alone, so that all processes agree. What the scene says
+// is replaced: errors of loads count here, the bound of single channels only where the set itself gives one.
+static void add_companion(const bough_study *s, bough_case *c) {
+    bool has_one = s->companions > 0 && (c - s->cases) % s->companions == 0;
+    c->set[c->n_set++] = has_one ? "simulation.error_estimate=companion" : "simulation.error_estimate=none";
+    if (has_one) c->set[c->n_set++] = "simulation.error_bound=0";
+}
+
 static void take_sets(bough_arena *arena, const bough_study *s, int n_own, bough_case *c) {
-    c->set = bough_arena_take(arena, (size_t)(s->common.n + n_own) * sizeof *c->set);
+    c->set = bough_arena_take(arena, (size_t)(s->common.n + n_own + 2) * sizeof *c->set);
+    if (s->is.weighted) add_companion(s, c);
     add_sets(c, &s->common);
 }
 

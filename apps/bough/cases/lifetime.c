@@ -1,5 +1,6 @@
 #include "apps/bough/cases/lifetime.h"
 
+#include <math.h>
 #include <string.h>
 
 // Hours, or of events their number, that a case stands for.
@@ -15,6 +16,9 @@ bough_lifetime bough_lifetime_take(bough_arena *arena, const bough_study *set) {
         l.channel[i].least.row = rows + 2 * i * n;
         l.channel[i].most.row = rows + (2 * i + 1) * n;
     }
+    size_t rows_of_errors = (size_t)set->n_group + 1;
+    l.n_compared = bough_arena_take(arena, rows_of_errors * sizeof *l.n_compared);
+    l.errors = bough_arena_take(arena, rows_of_errors * n * sizeof *l.errors);
     for (int i = 0; i < set->n_case; i++) l.total += hours_of(set, i);
     return l;
 }
@@ -31,24 +35,26 @@ static double factor_of(const bough_load_group *g, const char *unit, double valu
     return sign * value < 0 ? g->favourable : g->factor;
 }
 
-static void add_extreme(bough_extreme *e, const bough_study *set, int number, int channel, double value,
-                        double at, const double *row, int sign) {
+static void add_extreme(bough_extreme *e, const bough_study *set, int number, int channel,
+                        const bough_channel_counts *c, int sign) {
+    const bough_sample_statistics *s = &c->statistics;
+    double value = sign > 0 ? s->most : s->least;
     double factor = factor_of(&set->group[set->cases[number].group], set->unit[channel], value, sign);
     if (e->found && !(sign * factor * value > sign * e->factor * e->value)) return;
     e->found = true;
     e->value = value;
     e->factor = factor;
-    e->at = at;
+    e->range = s->most - s->least;
+    e->at = sign > 0 ? s->most_at : s->least_at;
     e->number = number;
-    memcpy(e->row, row, (size_t)set->n_channel * sizeof *row);
+    memcpy(e->row, sign > 0 ? c->at_most : c->at_least, (size_t)set->n_channel * sizeof *e->row);
 }
 
 static void add_extremes(bough_lifetime *l, int number, int i, const bough_channel_counts *c) {
-    const bough_sample_statistics *s = &c->statistics;
     bough_lifetime_channel *to = &l->channel[i];
-    if (!l->set->group[l->set->cases[number].group].extremes || s->n == 0) return;
-    add_extreme(&to->least, l->set, number, i, s->least, s->least_at, c->at_least, -1);
-    add_extreme(&to->most, l->set, number, i, s->most, s->most_at, c->at_most, 1);
+    if (!l->set->group[l->set->cases[number].group].extremes || c->statistics.n == 0) return;
+    add_extreme(&to->least, l->set, number, i, c, -1);
+    add_extreme(&to->most, l->set, number, i, c, 1);
 }
 
 static void add_fatigue(bough_lifetime *l, int i, const bough_channel_counts *c, double weight,
@@ -59,6 +65,27 @@ static void add_fatigue(bough_lifetime *l, int i, const bough_channel_counts *c,
     to->cycles += weight * c->rainflow.cycles;
     bough_levels_merge(&to->ranges, &c->rainflow.ranges, weight, 0);
     bough_levels_merge(&to->levels, &c->levels, weight * step / 3600, weight);
+}
+
+static void add_errors(bough_lifetime *l, int number, const bough_case_result *r, double weight) {
+    const bough_study *set = l->set;
+    const int rows[] = {set->cases[number].group, set->n_group};
+    for (int row = 0; row < 2; row++) {
+        l->n_compared[rows[row]]++;
+        for (int i = 0; i < set->n_channel; i++) {
+            const bough_sample_statistics *s = &r->counts.channel[i].statistics;
+            bough_extreme_errors *to = &l->errors[rows[row] * set->n_channel + i];
+            to->range += (s->most - s->least) * (s->most - s->least);
+            to->least += r->load_error[i].least * r->load_error[i].least;
+            to->most += r->load_error[i].most * r->load_error[i].most;
+        }
+    }
+    for (int i = 0; i < set->n_channel; i++) {
+        for (int k = 0; k < set->n_slope; k++) {
+            l->channel[i].compared[k] += weight * r->load_error[i].damage[k];
+            l->channel[i].larger[k] += weight * r->load_error[i].larger[k];
+        }
+    }
 }
 
 void bough_lifetime_add(bough_lifetime *l, int number, const bough_case_result *r) {
@@ -78,8 +105,30 @@ void bough_lifetime_add(bough_lifetime *l, int number, const bough_case_result *
         add_extremes(l, number, i, c);
         if (weight > 0) add_fatigue(l, i, c, weight, r->counted);
     }
+    if (r->has_companion) add_errors(l, number, r, weight);
 }
 
 double bough_lifetime_equivalent(const bough_lifetime *l, int channel, int slope) {
     return bough_equivalent_load(l->channel[channel].damage[slope], l->set->slope[slope], l->set->cycles);
+}
+
+// The part `x` of `whole`, of what is also zero where the whole is.
+static double part(double x, double whole) { return x == 0 ? 0 : whole > 0 ? x / whole : (double)NAN; }
+
+double bough_lifetime_equivalent_error(const bough_lifetime *l, int channel, int slope) {
+    const bough_lifetime_channel *c = &l->channel[channel];
+    double m = l->set->slope[slope];
+    if (l->n_compared[l->set->n_group] == 0) return (double)NAN;
+    double load = bough_equivalent_load(c->compared[slope], m, l->set->cycles);
+    double larger = bough_equivalent_load(c->larger[slope], m, l->set->cycles);
+    return part(larger - load, load) * bough_lifetime_equivalent(l, channel, slope);
+}
+
+double bough_lifetime_extreme_error(const bough_lifetime *l, int channel, const bough_extreme *e) {
+    int group = l->set->cases[e->number].group;
+    int row = l->n_compared[group] > 0 ? group : l->set->n_group;
+    const bough_extreme_errors *sum = &l->errors[row * l->set->n_channel + channel];
+    if (!e->found || l->n_compared[row] == 0) return (double)NAN;
+    bool least = e == &l->channel[channel].least;
+    return sqrt(part(least ? sum->least : sum->most, sum->range)) * e->range;
 }

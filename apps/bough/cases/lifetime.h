@@ -12,6 +12,7 @@ typedef struct bough_extreme {
     bool found;
     double value;  // characteristic: as the run has it, in the channel's unit
     double factor; // [-]
+    double range;  // of the channel in that case
     double at;     // [s]
     int number;    // of its case
     double *row;   // (n_channel) all channels at that moment, characteristic
@@ -23,7 +24,15 @@ typedef struct bough_lifetime_channel {
     bough_levels ranges; // cycles by their range
     bough_levels levels; // hours at each level, upward crossings
     bough_extreme least, most;
+    // Σ n Sᵐ over the life of the cases with a companion, and with their equivalent loads larger by their
+    // errors
+    double compared[BOUGH_MOST_SLOPES], larger[BOUGH_MOST_SLOPES];
 } bough_lifetime_channel;
+
+// Sums over cases with a companion, of one channel.
+typedef struct bough_extreme_errors {
+    double range, least, most; // of the squares of range, error of the smallest and of the largest value
+} bough_extreme_errors;
 
 typedef struct bough_lifetime {
     const bough_study *set;
@@ -33,6 +42,8 @@ typedef struct bough_lifetime {
     double total;                    // hours and events of all cases
     double lacking;                  // share of the cases' weight that failed or is missing
     double simulated, cpu;           // of all runs [s]
+    int *n_compared;                 // (n_group + 1) cases with a companion of each load case; last of all
+    bough_extreme_errors *errors;    // (n_group + 1, n_channel) likewise
 } bough_lifetime;
 
 bough_lifetime bough_lifetime_take(bough_arena *arena, const bough_study *set);
@@ -42,5 +53,13 @@ void bough_lifetime_add(bough_lifetime *l, int number, const bough_case_result *
 
 // Damage-equivalent load of a channel over the life, for the k-th slope.
 double bough_lifetime_equivalent(const bough_lifetime *l, int channel, int slope);
+
+// Its error: the cases with a companion stand for all. NaN: not known.
+double bough_lifetime_equivalent_error(const bough_lifetime *l, int channel, int slope);
+
+// How far a characteristic extreme of the channel, its least or its most, may be from the truth. The cases
+// with a companion of its load case stand for it, or all where that has none: root mean square of their
+// errors, relative to the range. NaN: not known.
+double bough_lifetime_extreme_error(const bough_lifetime *l, int channel, const bough_extreme *e);
 
 #endif

@@ -102,10 +102,12 @@ static void put_equivalent(const void *self, FILE *f) {
     const bough_study *s = l->set;
     fputs("channel,unit", f);
     for (int k = 0; k < s->n_slope; k++) fprintf(f, ",DEL(m=%g; %g cycles)", s->slope[k], s->cycles);
+    for (int k = 0; k < s->n_slope; k++) fprintf(f, ",error of DEL(m=%g)", s->slope[k]);
     fputs(",cycles in the life\n", f);
     for (int i = 0; i < s->n_channel; i++) {
         fprintf(f, "%s,%s", s->channel[i], s->unit[i]);
         for (int k = 0; k < s->n_slope; k++) fprintf(f, ",%.17g", bough_lifetime_equivalent(l, i, k));
+        for (int k = 0; k < s->n_slope; k++) fprintf(f, ",%.6g", bough_lifetime_equivalent_error(l, i, k));
         fprintf(f, ",%.17g\n", l->channel[i].cycles);
     }
 }
@@ -118,7 +120,7 @@ static void put_extreme(const bough_lifetime *l, int i, const char *what, const 
             e->factor * e->value, e->number + 1);
     bough_csv_next(f, s->group[c->group].name);
     bough_csv_next(f, c->settings);
-    fprintf(f, ",%.9g", e->at);
+    fprintf(f, ",%.9g,%.6g,%d", e->at, bough_lifetime_extreme_error(l, i, e), l->n_compared[c->group]);
     for (int k = 0; k < s->n_channel; k++) fprintf(f, ",%.10g", e->row[k]);
     fputc('\n', f);
 }
@@ -126,7 +128,9 @@ static void put_extreme(const bough_lifetime *l, int i, const char *what, const 
 static void put_extremes(const void *self, FILE *f) {
     const bough_lifetime *l = self;
     const bough_study *s = l->set;
-    fputs("channel,unit,extreme,characteristic,safety factor,design,case,load case,settings,time [s]", f);
+    fputs("channel,unit,extreme,characteristic,safety factor,design,case,load case,settings,time [s],"
+          "error,companions of the load case",
+          f);
     for (int k = 0; k < s->n_channel; k++) fprintf(f, ",%s [%s]", s->channel[k], s->unit[k]);
     fputc('\n', f);
     for (int i = 0; i < s->n_channel; i++) {
@@ -171,31 +175,43 @@ static bough_status write_lifetime(const bough_lifetime *l, const char *folder) 
 
 // -- table.txt -----------------------------------------------------------------------------------
 
-static void print_extreme(const bough_lifetime *l, const bough_extreme *e, FILE *f) {
+// An error that is not known is a dash.
+static void print_error(FILE *f, double error) {
+    if (isfinite(error))
+        fprintf(f, " %9.2g", error);
+    else
+        fprintf(f, " %9s", "-");
+}
+
+static void print_extreme(const bough_lifetime *l, int i, const bough_extreme *e, FILE *f) {
     const bough_study *s = l->set;
     if (!e->found) {
-        fprintf(f, " %12s %6s %12s %-24s", "-", "", "", "");
+        fprintf(f, " %12s %9s %6s %12s %-24s", "-", "", "", "", "");
         return;
     }
     char where[64];
     snprintf(where, sizeof where, "%.14s #%d %.4g s", s->group[s->cases[e->number].group].name, e->number + 1,
              e->at);
-    fprintf(f, " %12.5g %6.3g %12.5g %-24s", e->value, e->factor, e->factor * e->value, where);
+    fprintf(f, " %12.5g", e->value);
+    print_error(f, bough_lifetime_extreme_error(l, i, e));
+    fprintf(f, " %6.3g %12.5g %-24s", e->factor, e->factor * e->value, where);
 }
 
 static void print_extremes(const bough_lifetime *l, FILE *f) {
     const bough_study *s = l->set;
     const char *const title[] = {"smallest", "largest"};
-    fprintf(f, "Extremes: characteristic value, partial safety factor of forces and moments, design value\n");
+    fprintf(
+        f,
+        "Extremes: characteristic value, its error, partial safety factor of forces and moments, design value\n");
     fprintf(f, "%-12s %-6s", "channel", "unit");
     for (int k = 0; k < 2; k++) {
-        fprintf(f, " %12s %6s %12s %-24s", title[k], "factor", "design", "case, time");
+        fprintf(f, " %12s %9s %6s %12s %-24s", title[k], "error", "factor", "design", "case, time");
     }
     fputc('\n', f);
     for (int i = 0; i < s->n_channel; i++) {
         fprintf(f, "%-12s %-6s", s->channel[i], s->unit[i]);
-        print_extreme(l, &l->channel[i].least, f);
-        print_extreme(l, &l->channel[i].most, f);
+        print_extreme(l, i, &l->channel[i].least, f);
+        print_extreme(l, i, &l->channel[i].most, f);
         fputc('\n', f);
     }
 }
@@ -208,12 +224,21 @@ static void print_lifetime(const bough_lifetime *l, FILE *f) {
         fprintf(f, "INCOMPLETE: %d cases failed, %d are missing, %.3g %% of the weight is missing\n",
                 l->n_failed, l->n_missing, 100 * l->lacking);
     }
+    int compared = l->n_compared[s->n_group];
+    if (compared > 0)
+        fprintf(f, "errors estimated from the companions of %d cases\n", compared);
+    else
+        fprintf(f, "errors not estimated: %s\n",
+                s->companions > 0 ? "the companions broke down" : "companions: none");
     fprintf(f, "%-12s %-6s", "channel", "unit");
-    for (int k = 0; k < s->n_slope; k++) fprintf(f, "   DEL m=%-4g", s->slope[k]);
+    for (int k = 0; k < s->n_slope; k++) fprintf(f, "   DEL m=%-4g %9s", s->slope[k], "error");
     fputc('\n', f);
     for (int i = 0; i < s->n_channel; i++) {
         fprintf(f, "%-12s %-6s", s->channel[i], s->unit[i]);
-        for (int k = 0; k < s->n_slope; k++) fprintf(f, " %12.5g", bough_lifetime_equivalent(l, i, k));
+        for (int k = 0; k < s->n_slope; k++) {
+            fprintf(f, " %12.5g", bough_lifetime_equivalent(l, i, k));
+            print_error(f, bough_lifetime_equivalent_error(l, i, k));
+        }
         fputc('\n', f);
     }
     print_extremes(l, f);

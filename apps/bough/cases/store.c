@@ -121,11 +121,20 @@ static void put_channel(FILE *f, const bough_study *s, const bough_channel_count
     put(f, "most", s->n_channel, c->at_most);
 }
 
+static void put_error(FILE *f, const bough_study *s, const bough_load_error *e) {
+    const double extremes[] = {e->least, e->most};
+    put(f, "error", 2, extremes);
+    put(f, "damage", s->n_slope, e->damage);
+    put(f, "larger", s->n_slope, e->larger);
+}
+
 static void put_statistics(FILE *f, const bough_study *s, const bough_case_result *r) {
-    const double run[] = {r->time, r->counted, r->cpu, r->wall, r->counts.broken};
-    put(f, "run", 5, run);
-    for (int i = 0; bough_is_ok(&r->outcome) && i < s->n_channel; i++)
+    const double run[] = {r->time, r->counted, r->cpu, r->wall, r->counts.broken, r->has_companion};
+    put(f, "run", 6, run);
+    for (int i = 0; bough_is_ok(&r->outcome) && i < s->n_channel; i++) {
         put_channel(f, s, &r->counts.channel[i]);
+        if (r->has_companion) put_error(f, s, &r->load_error[i]);
+    }
 }
 
 static bool take_levels(FILE *f, const char *name, bough_levels *l) {
@@ -161,16 +170,27 @@ static bool take_channel(FILE *f, const bough_study *s, bough_channel_counts *c)
            take(f, "least", s->n_channel, c->at_least) && take(f, "most", s->n_channel, c->at_most);
 }
 
+static bool take_error(FILE *f, const bough_study *s, bough_load_error *e) {
+    double extremes[2];
+    if (!take(f, "error", 2, extremes)) return false;
+    e->least = extremes[0];
+    e->most = extremes[1];
+    return take(f, "damage", s->n_slope, e->damage) && take(f, "larger", s->n_slope, e->larger);
+}
+
 static bool take_statistics(FILE *f, const bough_study *s, bough_case_result *r) {
-    double run[5];
-    if (!take(f, "run", 5, run)) return false;
+    double run[6];
+    if (!take(f, "run", 6, run)) return false;
     r->time = run[0];
     r->counted = run[1];
     r->cpu = run[2];
     r->wall = run[3];
     r->counts.broken = run[4];
-    for (int i = 0; bough_is_ok(&r->outcome) && i < s->n_channel; i++)
+    r->has_companion = run[5] > 0;
+    for (int i = 0; bough_is_ok(&r->outcome) && i < s->n_channel; i++) {
         if (!take_channel(f, s, &r->counts.channel[i])) return false;
+        if (r->has_companion && !take_error(f, s, &r->load_error[i])) return false;
+    }
     return true;
 }
 

@@ -111,6 +111,21 @@ static void check_study(bough_schema_reader *r, void *item) {
 
 static const bough_schema study_schema = {
     SCHEMA("a study", bough_study, study_keys), .check = check_study};
+
+static void read_companions(bough_schema_reader *r, const bough_node *node, void *field) {
+    const char *text = node->kind == BOUGH_SCALAR ? node->text : "";
+    char shown[64];
+    int *every = field;
+    if (strcmp(text, "none") == 0) {
+        *every = 0;
+    } else if (strcmp(text, "all") == 0) {
+        *every = 1;
+    } else if (strncmp(text, "1 in ", 5) != 0 || !bough_whole_number(text + 5, every) || *every < 1) {
+        bough_schema_error(r, node, "", "expected '1 in N' with a whole number N, 'all' or 'none', got %s",
+                           bough_node_shown(node, shown));
+    }
+}
+
 #define FILLS bough_load_group
 static const bough_key group_keys[] = {
     {KEY(TEXT, name), .required = true, .example = "DLC1.2", .help = "name of the load case"},
@@ -188,6 +203,9 @@ static const bough_key set_keys[] = {
      .example = "2e6", .help = "number of cycles of the lifetime's damage-equivalent loads"},
     {KEY(NUMBER, lifetime), .range = "> 0", .fallback = "20", .example = "25",
      .help = "lifetime in years"},
+    {KEY(CUSTOM, companions), .read = read_companions, .form = "1 in N|all|none", .fallback = "1 in 20",
+     .help = "cases that have a companion, whatever the scene says: the errors of equivalent loads and "
+             "extremes follow from them"},
     {KEY(MAPPING, wind), .of = &wind_schema,
      .help = "distribution of the wind speed, for 'weibull'"},
     {NAMED("cases", LIST), AT(group), .of = &group_schema, .count = 1, .required = true,

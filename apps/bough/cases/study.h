@@ -146,6 +146,7 @@ typedef struct bough_study {
     double *slope;   // (n_slope) exponents of the S-N curves
     double cycles;   // of the equivalent loads
     double lifetime; // [years]
+    int companions;  // every so many cases, from the first on, have a companion; 0: none
     bough_load_wind wind;
     int n_group;
     bough_load_group *group; // (n_group); one of all cases where there are no load cases

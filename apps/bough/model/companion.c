@@ -169,6 +169,11 @@ void bough_companion_compare(bough_companion *c) {
     }
 }
 
+bool bough_companion_compares(const bough_companion *c) {
+    return alive(c) && c->coarser->master->time == c->run->master->time && counts_now(c) &&
+           bough_master_sampled(c->coarser->master);
+}
+
 bool bough_companion_knows(const bough_companion *c, int channel) {
     return c->compared > 0 && isfinite(c->error[channel]);
 }

@@ -44,6 +44,9 @@ void bough_companion_step(bough_companion *c);
 // After a step of the run: compares the two if they are at one time. Changes no result.
 void bough_companion_compare(bough_companion *c);
 
+// Whether `value` and `other` are of the present time of the run, at which the companion's loads are sampled.
+bool bough_companion_compares(const bough_companion *c);
+
 // Whether the channel's error is known.
 bool bough_companion_knows(const bough_companion *c, int channel);
 

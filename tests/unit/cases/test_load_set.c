@@ -28,17 +28,17 @@ static bough_study made(bough_case cases[CASES], bough_load_group group[4]) {
     static double slope[] = {4, 10};
     static const char *channel[] = {"load", "other"}, *unit[] = {"kN-m", "rpm"};
     bough_study set = {.n_slope = 2,
-                          .slope = slope,
-                          .cycles = 1e6,
-                          .lifetime = 25,
-                          .wind = {.average = 8, .shape = 2},
-                          .n_group = 2,
-                          .group = group,
-                          .n_case = 3,
-                          .cases = cases,
-                          .n_channel = 2,
-                          .channel = channel,
-                          .unit = unit};
+                       .slope = slope,
+                       .cycles = 1e6,
+                       .lifetime = 25,
+                       .wind = {.average = 8, .shape = 2},
+                       .n_group = 2,
+                       .group = group,
+                       .n_case = 3,
+                       .cases = cases,
+                       .n_channel = 2,
+                       .channel = channel,
+                       .unit = unit};
     group[0] = (bough_load_group){.hours = 50, .factor = 1.5, .favourable = 0.9, .extremes = true};
     group[1] = (bough_load_group){.events = 100, .factor = 1, .favourable = 0.9, .extremes = true};
     cases[0] = (bough_case){.group = 0, .share = 0.5};
@@ -120,6 +120,80 @@ static void what_is_lacking_is_told(void **state) {
     bough_arena_destroy(arena);
 }
 
+// Companions of the first two cases: an equivalent load that is larger by its error for each.
+static void errors_are_those_of_companions(void **state) {
+    (void)state;
+    bough_arena *arena = bough_arena_create();
+    bough_case cases[CASES];
+    bough_load_group group[4];
+    bough_study set = made(cases, group);
+    bough_lifetime l = bough_lifetime_take(arena, &set);
+    assert_true(isnan(bough_lifetime_equivalent_error(&l, 0, 0)));
+    const double amplitude[3] = {1, 3, 5}, larger[2] = {1.01, 1.02};
+    for (int i = 0; i < 3; i++) {
+        bough_case_result r = sine(arena, &set, i < 2 ? 0 : -4, amplitude[i], 20);
+        r.has_companion = i < 2;
+        if (i < 2) r.load_error[0] = (bough_load_error){.least = 0.1, .most = 0.2 * i};
+        for (int k = 0; k < 2 && i < 2; k++) {
+            double damage = r.counts.channel[0].rainflow.damage[k];
+            r.load_error[0].damage[k] = damage;
+            r.load_error[0].larger[k] = damage * pow(larger[i], set.slope[k]);
+        }
+        bough_lifetime_add(&l, i, &r);
+    }
+    for (int k = 0; k < 2; k++) {
+        double m = set.slope[k], load = pow(2, m) + pow(6, m);
+        double with_error = pow(2 * 1.01, m) + pow(6 * 1.02, m);
+        double relative = pow(with_error / load, 1 / m) - 1;
+        check_near(bough_lifetime_equivalent_error(&l, 0, k), relative * bough_lifetime_equivalent(&l, 0, k),
+                   1e-10, 0);
+    }
+    // The largest value is of the first load case, the smallest of the second, which has no companion.
+    const double squares = 4 + 36;
+    assert_int_equal(l.channel[0].most.number, 1);
+    check_near(bough_lifetime_extreme_error(&l, 0, &l.channel[0].most), sqrt(0.04 / squares) * 6, 1e-12, 0);
+    assert_int_equal(l.channel[0].least.number, 2);
+    check_near(bough_lifetime_extreme_error(&l, 0, &l.channel[0].least), sqrt(0.02 / squares) * 10, 1e-12, 0);
+    // A channel whose companions show no error has none.
+    check_near(bough_lifetime_extreme_error(&l, 1, &l.channel[1].most), 0, 0, 0);
+    check_near(bough_lifetime_equivalent_error(&l, 1, 0), 0, 0, 0);
+    bough_arena_destroy(arena);
+}
+
+static bough_study *read_with(bough_arena *arena, const char *line, bough_errors *errors) {
+    char with[2000];
+    snprintf(with, sizeof with, "%s%s", line, text);
+    bough_node *root = bough_text_parse(arena, "set.yaml", with, strlen(with), errors);
+    return bough_study_parse(arena, "set.yaml", root, errors);
+}
+
+// Which cases have a companion depends on their numbers alone.
+static void companions_are_spread_by_number(void **state) {
+    (void)state;
+    static const struct {
+        const char *line;
+        int every;
+    } sets[] = {{"", 20}, {"companions: 1 in 3\n", 3}, {"companions: all\n", 1}, {"companions: none\n", 0}};
+    bough_arena *arena = bough_arena_create();
+    for (size_t i = 0; i < sizeof sets / sizeof *sets; i++) {
+        bough_errors errors = {.arena = arena};
+        bough_study *set = read_with(arena, sets[i].line, &errors);
+        assert_non_null(set);
+        for (int k = 0; k < set->n_case; k++) {
+            bool has_one = sets[i].every > 0 && k % sets[i].every == 0;
+            assert_string_equal(set->cases[k].set[0], has_one ? "simulation.error_estimate=companion"
+                                                              : "simulation.error_estimate=none");
+        }
+    }
+    static const char *const bad[] = {"companions: 1 in 0\n", "companions: 20\n", "companions: [all]\n"};
+    for (size_t i = 0; i < sizeof bad / sizeof *bad; i++) {
+        bough_errors errors = {.arena = arena};
+        assert_null(read_with(arena, bad[i], &errors));
+        assert_non_null(strstr(errors.item[0].text, "expected '1 in N'"));
+    }
+    bough_arena_destroy(arena);
+}
+
 // A load of 7 to 13 and one of -13 to -7: what is nearest to zero relieves. A speed of 0 to 160 and what else
 // there is at that moment have no factor.
 static void factors_are_of_loads_and_on_the_safe_side(void **state) {
@@ -178,6 +252,8 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(sums_are_those_by_hand),
         cmocka_unit_test(what_is_lacking_is_told),
+        cmocka_unit_test(errors_are_those_of_companions),
+        cmocka_unit_test(companions_are_spread_by_number),
         cmocka_unit_test(factors_are_of_loads_and_on_the_safe_side),
         cmocka_unit_test(speeds_weigh_by_weibull),
     };
