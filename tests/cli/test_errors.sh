@@ -107,16 +107,16 @@ closures: [{name: pin, kind: spherical, from: coupler, from_placement: [move x 1
 END
 run 0 '^error: [a-zA-Z]* [0-9.e-]* [a-z/]*, 0\.[0-9]* of its range' parallelogram.yaml
 
-# A whip without damping that is jerked up.
+# A whip without damping that is jerked up: against 32 segments and tight tolerances it errs by 0.060 m.
 cat >whip.yaml <<'END'
-simulation: {duration: 1 s, macro_step: 5 ms, coupling: {scheme: frozen}, micro: {solver: generalized-alpha, step: 1 ms}}
+simulation: {duration: 1 s, macro_step: 5 ms, error_bound: 0.1, coupling: {scheme: frozen}, micro: {solver: generalized-alpha, step: 1 ms}}
 bodies:
   - {name: frame, fidelity: rigid, mass: 50, inertia: [5, 5, 5],
      joint: {kind: prismatic, axis: z, parent: ground, motion: {position: {from: 0, to: 0.3, ramp: [0.2 s, 0.25 s]}}}}
   - {name: whip, fidelity: rod, joint: {kind: fixed, parent: frame, placement: [rotate y 90 deg]},
      rod: {length: 1.5, segments: 8, stiffness: [1e6, 1e6, 3e6, 30, 30, 25], mass: [0.3, 0, 0, 1e-5, 1e-5, 0]}}
 END
-run 0 'whipTipZ errs by 0\.0[0-9]* m' whip.yaml
+run 0 'whipTipZ errs by 0\.06[0-9]* m' whip.yaml
 grep -q '"source": "companion"' out/summary.json || fail 'the companion of the whip'
 
 # What precedes simulation.output.from does not count.

@@ -1,6 +1,7 @@
 #include "apps/bough/model/coarser.h"
 
 #include "cosim/master.h"
+#include "cosim/scheme.h"
 
 #include <math.h>
 #include <string.h>
@@ -39,12 +40,12 @@ static void copy_loads(bough_arena *arena, const bough_scene *scene, bough_scene
     }
 }
 
-enum { FEW_SEGMENTS = 4 }; // fewer: half of them tell nothing
+enum { FEW_SEGMENTS = 9 }; // fewer: errors of half of them do not fall with their order
 
 static bool has_mesh(const bough_scene_body *b) { return b->rod.node && b->fidelity != BOUGH_SCENE_RIGID; }
 
-// About half of n segments. A rod that cannot have much fewer, or whose half would be too coarse for errors
-// to fall with their order, gets twice as many: what lies between tells the error, too.
+// About half of n segments. A rod of few segments, or that cannot have much fewer, gets twice as many: what
+// lies between tells the error, too.
 static int other_number(int n, int least) {
     int half = (n + 1) / 2, fewer = half > least ? half : least;
     return n >= FEW_SEGMENTS && 4 * fewer <= 3 * n ? fewer : 2 * n;
@@ -79,9 +80,11 @@ static void change_segments(bough_arena *arena, const bough_scene *scene, bough_
     }
 }
 
-// At order 2 the error of n segments is 1/|r² − 1| of the difference to n/r segments.
+// At order 2 the error of n segments is 1/|r² − 1| of the difference to n/r segments. What an explicit
+// coupling errs by is the whole difference.
 double bough_coarser_share(const bough_scene *scene, const bough_scene *other) {
-    double least = 3;
+    const bough_scheme *scheme = bough_scheme_find(bough_scheme_name(scene->simulation.coupling.scheme));
+    double least = scheme->explicit_forces ? 0.75 : 3;
     for (int i = 0; i < scene->n_body; i++) {
         if (!has_mesh(&scene->body[i])) continue;
         double r = (double)scene->body[i].rod.n_segment / other->body[i].rod.n_segment;

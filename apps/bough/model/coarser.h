@@ -6,7 +6,7 @@
 
 // What the copy is coarser in. A set of these.
 enum {
-    BOUGH_COARSER_MESH = 1, // half the segments of each rod, or twice as many where it has too few
+    BOUGH_COARSER_MESH = 1, // half the segments of each rod, or twice as many where it has few
     BOUGH_COARSER_AIR = 2,  // half the aerodynamic sampling rate
     // Twice the macro step and the longest step, ten times the tolerance; all bodies as one system, whose
     // steps know no error of a coupling.
@@ -18,7 +18,8 @@ enum {
 bough_scene *bough_coarser_scene(bough_arena *arena, const bough_scene *scene, int parts);
 
 // The part of the difference between solutions of the scene and of such a copy that the scene's solution errs
-// by: a quarter, between an order of 2 and of 3, and more where meshes differ by less than a factor of two.
+// by: a quarter, between an order of 2 and of 3; more where meshes differ by less than a factor of two; the
+// whole one where the mesh is finer or an explicit coupling errs by it.
 double bough_coarser_share(const bough_scene *scene, const bough_scene *other);
 
 #endif

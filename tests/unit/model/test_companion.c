@@ -153,20 +153,23 @@ static void a_scene_is_coarser_in_everything(void **state) {
     bough_arena_destroy(arena);
 }
 
-// Rods that can have no fewer segments get more, all blades as many, and the part of the difference follows.
+// Rods of few segments get more, all blades as many, and the part of the difference follows; it is the whole
+// one where a coupling is explicit.
 static void meshes_differ_as_far_as_they_can(void **state) {
     (void)state;
     static const struct {
-        const char *segments;
+        const char *segments, *coupling;
         int other;
         double share;
-    } cases[] = {{"bodies[3-5].rod.segments=8", 4, 0.25},
-                 {"bodies[3-5].rod.segments=5", 3, 0.75 / (25.0 / 9 - 1)},
-                 {"bodies[3-5].rod.segments=3", 6, 1},
-                 {"bodies[3-5].rod.segments=1", 2, 1}};
+    } cases[] = {
+        {"bodies[3-5].rod.segments=16", "simulation.coupling={scheme: ramp}", 8, 0.25},
+        {"bodies[3-5].rod.segments=9", "simulation.coupling={scheme: ramp}", 5, 0.75 / (81.0 / 25 - 1)},
+        {"bodies[3-5].rod.segments=8", "simulation.coupling={scheme: ramp}", 16, 1},
+        {"bodies[3-5].rod.segments=1", "simulation.coupling={scheme: ramp}", 2, 1},
+        {"bodies[3-5].rod.segments=16", "simulation.coupling={scheme: frozen}", 8, 1}};
     bough_arena *arena = bough_arena_create();
     for (size_t k = 0; k < sizeof cases / sizeof *cases; k++) {
-        const char *const sets[] = {cases[k].segments, NULL};
+        const char *const sets[] = {cases[k].segments, cases[k].coupling, NULL};
         bough_scene *scene = scene_read(arena, "apps/turbine/runup.yaml", sets);
         const bough_scene *c = bough_coarser_scene(arena, scene, BOUGH_COARSER_ALL);
         for (int i = 3; i <= 5; i++) assert_int_equal(c->body[i].rod.n_segment, cases[k].other);
