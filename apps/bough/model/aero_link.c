@@ -1,7 +1,5 @@
 #include "apps/bough/model/aero_link.h"
 
-#include "apps/bough/model/aero_motion.h"
-#include "apps/bough/model/aero_signal.h"
 #include "core/base/base.h"
 #include "core/base/schedule.h"
 

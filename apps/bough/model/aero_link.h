@@ -4,13 +4,13 @@
 #define BOUGH_APPS_SIMULATION_AERO_LINK_H
 
 #include "aero/rotor/rotor.h"
+#include "apps/bough/model/build.h"
 #include "apps/bough/model/simulation.h"
 
 typedef struct bough_aero_link bough_aero_link;
 
 // Builds the rotor of the scene's aero block for the simulation's blades.
-bough_status bough_aero_link_build(bough_arena *arena, bough_simulation *simulation,
-                                   bough_aero_link **link);
+bough_status bough_aero_link_build(bough_arena *arena, bough_simulation *simulation, bough_aero_link **link);
 
 // The sampled load for the master's loop.
 bough_sampled_load bough_aero_link_load(bough_aero_link *link);
@@ -48,5 +48,81 @@ const bough_rotor_data *bough_aero_link_data(const bough_aero_link *link, double
 
 // The wind at the place where the hub stood at the start, at a time [s], undisturbed, ground axes [m/s].
 bough_vec3 bough_aero_link_hub_wind(const bough_aero_link *link, double t);
+
+// -- the motion of the blades (aero_motion.c) -----------------------------------------------------
+
+// How a rotor's blades move: as they do at present, and as expected at the next sample of the air.
+
+typedef struct bough_aero_motion bough_aero_motion;
+
+// `beam` (n_blade) must stay.
+bough_aero_motion *bough_aero_motion_build(bough_arena *arena, bough_simulation *simulation,
+                                           const bough_beam *const *beam);
+
+// The motion as it is at the present time t. First the whole rotor's, then each blade's, which may be
+// given to different threads.
+void bough_aero_motion_rotor(bough_aero_motion *m, double t);
+void bough_aero_motion_blade(bough_aero_motion *m, int blade);
+
+// The motion expected at t + ahead, the time of the next such call. Within each blade's frame the rows are
+// extrapolated by the parabola through this call and the last two. The frame moves on by its velocity with
+// Adams' formula of third order. Lower orders are used where they would have predicted this call better.
+void bough_aero_motion_expect_rotor(bough_aero_motion *m, double t, double ahead);
+void bough_aero_motion_expect_blade(bough_aero_motion *m, int blade);
+
+// The result of the last calls above.
+const bough_rotor_motion *bough_aero_motion_found(const bough_aero_motion *m);
+
+// A blade's rows, BOUGH_BLADE_ROWS × n_vertex, at this call and the one before (this, if there is none).
+const double *bough_aero_motion_now(const bough_aero_motion *m, int blade);
+const double *bough_aero_motion_before(const bough_aero_motion *m, int blade);
+
+// Makes the next call the first.
+void bough_aero_motion_forget(bough_aero_motion *m);
+
+// All that the next calls depend on.
+void bough_aero_motion_snapshot(bough_aero_motion *m, bough_snapshot *snapshot);
+
+// -- loads between the samples of the air (aero_signal.c) -----------------------------------------
+
+// The aerodynamic loads on one blade as functions of time between two samples.
+
+// For a rod: force and moment on each vertex in the body's axes (6 × vertices), then force and moment per
+// length along each segment in the axes of its middle, mean and slope (12 × segments). For a modal body:
+// the first of these. For a rigid body: the resultant (6).
+typedef struct bough_aero_signal bough_aero_signal;
+
+// A rotor's loads on the blade: on vertices (6 × n), mean and slope per length of segments
+// (12 × (n − 1)), both in the axes of the blade's frame; their slopes (bough_rotor_data.slope; NULL: none);
+// all by a factor.
+typedef struct bough_aero_fresh {
+    const double *load, *line, *slope;
+    double factor;
+} bough_aero_fresh;
+
+// A blade's motion, rows as in bough_blade_motion.
+typedef struct bough_aero_course {
+    const double *before, *now, *next; // at the sample before, now, and as expected at the next
+} bough_aero_course;
+
+bough_status bough_aero_signal_build(bough_arena *arena, bough_simulation *simulation, const bough_beam *beam,
+                                     bough_aero_signal **signal);
+
+// The loads stay as they are from `start` on. `next` is the motion that they belong to.
+void bough_aero_signal_hold(bough_aero_signal *s, bough_aero_fresh fresh, bough_aero_course course,
+                            double start);
+
+// They go from what they are now to the fresh ones over the span [s]. A signal that has been held or
+// followed before is continuous.
+void bough_aero_signal_follow(bough_aero_signal *s, bough_aero_fresh fresh, bough_aero_course course,
+                              double start, double span);
+
+// The recent difference between the loads and those at the body's actual motion, relative to the loads; 0 for
+// a rod, whose loads follow its motion. About 1: the sampling rate is too low for the body's vibrations,
+// which then grow.
+double bough_aero_signal_missed(const bough_aero_signal *s);
+
+// All that the signal depends on; restoring gives it to the body.
+void bough_aero_signal_snapshot(bough_aero_signal *s, bough_snapshot *snapshot);
 
 #endif

@@ -1,4 +1,4 @@
-#include "apps/bough/model/aero_motion.h"
+#include "apps/bough/model/aero_link.h"
 
 #include "core/base/rotation.h"
 
@@ -100,8 +100,7 @@ static void enter(bough_aero_motion *m, int b) {
     for (int i = CALLS - 1; i > 0; i--) memcpy(m->state[i] + at, m->state[i - 1] + at, bytes);
     bough_simulation_beam_rows(s, m->beam[b], now);
     if (m->known > 1) same_sign(m->n_vertex, m->state[1] + at + rotation, now + rotation);
-    bough_twist_store(bough_tree_frame_twist(s->view, &s->tree->markers[m->beam[b]->marker]),
-                      frame + TWIST);
+    bough_twist_store(bough_tree_frame_twist(s->view, &s->tree->markers[m->beam[b]->marker]), frame + TWIST);
     if (b > 0) return;
     bough_transform pose = frame_of(m, b);
     store(bough_mat3_tmul(pose.rotation, bough_sub(m->found.hub, pose.position)), frame + HUB);

@@ -1,4 +1,4 @@
-#include "apps/bough/model/aero_signal.h"
+#include "apps/bough/model/aero_link.h"
 
 #include "aero/rotor/rotor.h"
 #include "flexbody/rod/rod_load.h"
@@ -19,16 +19,16 @@ struct bough_aero_signal {
     bough_simulation *simulation;
     const bough_beam *beam;
     int n, n_vertex;
-    double start, span;      // [s]
-    double damped;           // 1: the body adds S·motion
-    double missed;           // mean square of what the loads have missed, of that of the loads
-    double *sampled;         // (n) whole loads at the sample before
-    double *reached;         // (n) whole loads that the signal goes to, on the expected motion
+    double start, span;           // [s]
+    double damped;                // 1: the body adds S·motion
+    double missed;                // mean square of what the loads have missed, of that of the loads
+    double *sampled;              // (n) whole loads at the sample before
+    double *reached;              // (n) whole loads that the signal goes to, on the expected motion
     double *value, *rate, *curve; // (n) of the signal since `start`
-    double *slope;           // S (BOUGH_SLOPES × n_vertex)
-    double *angle;           // rotation of a section about its normal by its quaternion (4 × n_vertex)
-    double *expected;        // S·expected motion (3 × n_vertex)
-    double *row;             // start of the block of all that is saved, from `start` on
+    double *slope;                // S (BOUGH_SLOPES × n_vertex)
+    double *angle;                // rotation of a section about its normal by its quaternion (4 × n_vertex)
+    double *expected;             // S·expected motion (3 × n_vertex)
+    double *row;                  // start of the block of all that is saved, from `start` on
     // scratch
     double *fresh;           // (n)
     double *now, *before;    // S·motion (3 × n_vertex)
@@ -61,8 +61,8 @@ static void take(bough_arena *arena, bough_aero_signal *s) {
     s->lumped = bough_arena_doubles(arena, 6 * stride);
 }
 
-bough_status bough_aero_signal_build(bough_arena *arena, bough_simulation *simulation,
-                                     const bough_beam *beam, bough_aero_signal **signal) {
+bough_status bough_aero_signal_build(bough_arena *arena, bough_simulation *simulation, const bough_beam *beam,
+                                     bough_aero_signal **signal) {
     bough_aero_signal *s = bough_arena_take(arena, sizeof *s);
     s->simulation = simulation;
     s->beam = beam;
@@ -146,8 +146,7 @@ static void apply_slope(const bough_aero_signal *s, const double *rows, double *
         phi /= sqrt(w * w + x * x + y * y + z * z);
         for (int c = 0; c < 3; c++) {
             const double *restrict row = slope + 4 * c * n + i;
-            load[c * n + i] =
-                row[0] * u[i] + row[n] * u[n + i] + row[2 * n] * phi + row[3 * n] * spin[i];
+            load[c * n + i] = row[0] * u[i] + row[n] * u[n + i] + row[2 * n] * phi + row[3 * n] * spin[i];
         }
     }
 }
@@ -189,8 +188,7 @@ static void take_slope(bough_aero_signal *s, bough_aero_fresh fresh, bough_aero_
 static void put(bough_aero_signal *s) {
     const bough_beam *beam = s->beam;
     if (beam->port < 0) {
-        bough_tree_set_wrench(s->simulation->tree, beam->marker, s->start, s->value, s->rate,
-                              s->curve);
+        bough_tree_set_wrench(s->simulation->tree, beam->marker, s->start, s->value, s->rate, s->curve);
         return;
     }
     bough_rod_loads *rod = bough_beam_loads(beam);
@@ -258,8 +256,8 @@ static void note_missed(bough_aero_signal *s) {
     if (size > 0) s->missed += 0.1 * (fmin(missed / size, 1) - s->missed);
 }
 
-void bough_aero_signal_follow(bough_aero_signal *s, bough_aero_fresh fresh,
-                              bough_aero_course course, double start, double span) {
+void bough_aero_signal_follow(bough_aero_signal *s, bough_aero_fresh fresh, bough_aero_course course,
+                              double start, double span) {
     size_t bytes = (size_t)s->n * sizeof(double);
     double *whole = s->whole, *last = s->last;
     bool rod = s->beam->rod != NULL;

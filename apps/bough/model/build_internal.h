@@ -2,8 +2,85 @@
 #ifndef BOUGH_APPS_SIMULATION_BUILD_INTERNAL_H
 #define BOUGH_APPS_SIMULATION_BUILD_INTERNAL_H
 
+#include "apps/bough/model/equilibrium.h"
 #include "apps/bough/model/simulation.h"
-#include "apps/bough/model/force_link.h"
+#include "apps/bough/scene/scene.h"
+#include "core/tree/joint.h"
+#include "core/tree/tree.h"
+#include "cosim/member.h"
+
+// -- springs, bushings, closures, applied wrenches and recorded points (load_link.c) --------------
+
+// The markers of the tree and the elements between them. The first markers are those of the beams, which the
+// caller fills.
+typedef struct bough_force_link {
+    int n_marker;  // of the tree, those of the beams included
+    int first_own; // the first of those that the scene names
+    int hub;       // on which the hub's drag acts; −1: none
+    bough_marker_def *marker;
+    bough_spring_def *spring;
+    bough_bushing_def *bushing;
+    bough_closure_def *closure;
+    int n_applied;
+    bough_applied_def *applied;
+} bough_force_link;
+
+// Takes the memory, with room for so many markers of beams.
+void bough_force_link_take(bough_arena *arena, const bough_scene *scene, int n_beam, bough_force_link *link);
+
+// Fills everything, the markers from n_marker on.
+void bough_force_link_fill(const bough_scene *scene, bough_force_link *link);
+
+// Turns the second markers of the bushings so that nothing acts at the state of `data`.
+void bough_force_link_rest(const bough_scene *scene, const bough_tree_data *data, bough_tree *tree);
+
+// -- loads on rods, lumped to their vertices (load_link.c) ----------------------------------------
+
+// Needs the rods and the view of a built simulation.
+bough_status bough_load_link_build(bough_arena *arena, bough_simulation *s);
+
+// -- placements and axes of a scene as transforms and vectors (build_bodies.c) --------------------
+
+// The unit vector of a bough_scene_axis.
+bough_vec3 bough_placement_axis(int axis);
+
+// The rotation by an angle [rad] about one of the axes.
+bough_mat3 bough_placement_turn(int axis, double angle);
+
+// The frame after n steps, in the frame they start from.
+bough_transform bough_placement(int n, const bough_scene_step *step);
+
+// -- an FMU as a member (fmu_member.c) ------------------------------------------------------------
+
+// An FMU as a member: it advances by its own steps from communication point to communication point, under
+// the motion of a body's frame, and answers with the wrench on the carrier. Its equations are not known, so
+// the system has outputs only: those of the last communication point.
+
+// Loads the FMU's library and makes an instance, which the arena releases, at time 0 under `motion`
+// (BOUGH_SCENE_MOTION); `duration` [s] is that of the run. BOUGH_INVALID: the library is missing or lacks a
+// function of the standard. BOUGH_FAILED: the FMU reports an error; the message is its own. The member must
+// stay where it is.
+bough_status bough_fmu_member_create(bough_arena *arena, const bough_scene_body *body, const double *motion,
+                                     double duration, bough_member *member);
+
+// -- the steady operation of a turbine as the start of a run (trim.c) -----------------------------
+
+// The steady operation of a turbine in the wind at time 0 as the start of a run: the rotor turns at the
+// speed, and the blades are pitched to the angle, at which the air's torque is the generator's under the
+// control law. Below rated power the pitch is the law's least and the speed is sought; else the speed is the
+// pitch controller's and the pitch is sought. The bodies are in equilibrium there (equilibrium.h).
+
+typedef struct bough_trim {
+    double speed, pitch; // of the rotor [rad/s], of the blades [rad]
+    double torque;       // of the air, about the shaft [N m]
+    int tries;           // speeds and pitches whose equilibrium was found
+} bough_trim;
+
+// Needs a control law. BOUGH_FAILED where there is no steady operation.
+bough_status bough_simulation_trim(bough_arena *arena, bough_simulation *s, const bough_assembly *assembly,
+                                   bough_trim *trim);
+
+// -- the builder ----------------------------------------------------------------------------------
 
 // What is gathered while building; the pieces point into the arena.
 typedef struct bough_builder {
@@ -18,7 +95,7 @@ typedef struct bough_builder {
     bough_joint_load_def *load; // (n_load): those on joints
     int n_load;
     bough_assembly_member *member; // leader, then rods
-    bough_connection *connection; // two per rod, two more of one that carries bodies
+    bough_connection *connection;  // two per rod, two more of one that carries bodies
     int n_connection;
     double *event; // corners of loads and of the aerodynamics
     int n_event;

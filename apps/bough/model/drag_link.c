@@ -65,8 +65,8 @@ static void blow_tower(bough_drag_link *l, double t, double factor) {
     bough_simulation_beam_motion(s, l->tower, l->motion);
     if (l->tower->port < 0) memset(l->fresh, 0, 6 * sizeof *l->fresh);
     for (int i = 0; i < n; i++) {
-        bough_vec3 f = bough_rotor_tower_drag(l->rotor, l->motion.position[i],
-                                              l->motion.rotation[i].c3, l->motion.velocity[i], t);
+        bough_vec3 f = bough_rotor_tower_drag(l->rotor, l->motion.position[i], l->motion.rotation[i].c3,
+                                              l->motion.velocity[i], t);
         f = bough_mat3_tmul(pose.rotation, bough_scale(factor * share_of(l->tower, i), f));
         if (l->tower->port >= 0) {
             l->fresh[i] = f.x, l->fresh[n + i] = f.y, l->fresh[2 * n + i] = f.z;
@@ -83,8 +83,7 @@ static void blow_hub(bough_drag_link *l, double t, double factor) {
     const bough_frame *frame = &s->tree->markers[l->hub_marker];
     bough_transform pose = bough_tree_frame_pose(s->view, frame);
     bough_vec3 velocity = bough_tree_frame_velocity(s->view, frame).linear;
-    bough_vec3 f = bough_rotor_hub_drag(l->rotor, s->scene->aero.hub_drag_area, pose.position,
-                                        velocity, t);
+    bough_vec3 f = bough_rotor_hub_drag(l->rotor, s->scene->aero.hub_drag_area, pose.position, velocity, t);
     f = bough_mat3_tmul(pose.rotation, bough_scale(factor, f));
     const double values[6] = {f.x, f.y, f.z};
     memcpy(l->fresh + l->n_tower, values, sizeof values);
@@ -96,8 +95,7 @@ static void put(bough_drag_link *l) {
     double start = l->memory[2 * l->n];
     bough_tree *tree = l->simulation->tree;
     if (l->hub_marker >= 0) {
-        bough_tree_set_wrench(tree, l->hub_marker, start, value + l->n_tower, rate + l->n_tower,
-                              NULL);
+        bough_tree_set_wrench(tree, l->hub_marker, start, value + l->n_tower, rate + l->n_tower, NULL);
     }
     if (l->tower == NULL) return;
     if (l->tower->port < 0) {

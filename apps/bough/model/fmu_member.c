@@ -1,4 +1,4 @@
-#include "apps/bough/model/fmu_member.h"
+#include "apps/bough/model/build_internal.h"
 
 #include "apps/bough/model/fmi3.h"
 
@@ -49,8 +49,7 @@ typedef struct fmu_member {
 
 // -- messages -------------------------------------------------------------------------------------
 
-static void hear(fmi3_environment environment, fmi3_status status, fmi3_string category,
-                 fmi3_string text) {
+static void hear(fmi3_environment environment, fmi3_status status, fmi3_string category, fmi3_string text) {
     fmu_member *x = environment;
     (void)category;
     if (status >= FMI3_DISCARD && text) snprintf(x->message, sizeof x->message, "%s", text);
@@ -64,8 +63,8 @@ static bough_status refused(fmu_member *x, const char *function, double t, fmi3_
     const char *name = status <= FMI3_FATAL ? names[status] : "unknown status";
     x->started = false;
     if (status == FMI3_FATAL) x->instance = NULL;
-    return bough_fail(BOUGH_FAILED, "%s: the FMU's %s at %.6g s: %s%s%s", x->body->name, function, t,
-                      name, x->message[0] ? ": " : "", x->message);
+    return bough_fail(BOUGH_FAILED, "%s: the FMU's %s at %.6g s: %s%s%s", x->body->name, function, t, name,
+                      x->message[0] ? ": " : "", x->message);
 }
 
 // -- the library ----------------------------------------------------------------------------------
@@ -87,8 +86,8 @@ static void look_up(const fmu_member *x, const char *name, void *function, const
 
 static bough_status misfit(const bough_scene_body *body, const char *what, const char *detail) {
     const bough_node *place = body->fmu.node;
-    return bough_fail(BOUGH_INVALID, "%.160s:%d:%d: the FMU of '%.40s' %s %.200s", place->file,
-                      place->line, place->column, body->name, what, detail);
+    return bough_fail(BOUGH_INVALID, "%.160s:%d:%d: the FMU of '%.40s' %s %.200s", place->file, place->line,
+                      place->column, body->name, what, detail);
 }
 
 static bough_status open_library(fmu_member *x, bough_arena *arena) {
@@ -96,8 +95,8 @@ static bough_status open_library(fmu_member *x, bough_arena *arena) {
     const bough_fmu_description *d = &fmu->description;
     char path[PATH_MAX];
     const char *missing = NULL;
-    snprintf(path, sizeof path, "%s%s/binaries/" PLATFORM "/%s.so",
-             strchr(fmu->folder, '/') ? "" : "./", fmu->folder, d->identifier);
+    snprintf(path, sizeof path, "%s%s/binaries/" PLATFORM "/%s.so", strchr(fmu->folder, '/') ? "" : "./",
+             fmu->folder, d->identifier);
     x->library = dlopen(path, RTLD_NOW | RTLD_LOCAL);
     if (!x->library) return misfit(x->body, "cannot be loaded:", dlerror());
     bough_arena_on_destroy(arena, let_go, x);
@@ -160,13 +159,13 @@ static void list_variables(fmu_member *x) {
 static bough_status step(fmu_member *x, double t, double h) {
     bool event = false, terminate = false, early = false;
     double reached = t + h;
-    fmi3_status status = x->step(x->instance, t, h, !x->body->fmu.description.restores, &event,
-                                 &terminate, &early, &reached);
+    fmi3_status status =
+        x->step(x->instance, t, h, !x->body->fmu.description.restores, &event, &terminate, &early, &reached);
     x->steps++;
     if (!is_good(status)) return refused(x, "fmi3DoStep", t, status);
     if (!terminate && !early) return bough_ok();
-    return bough_fail(BOUGH_FAILED, "%s: the FMU ended its step at %.6g s, before %.6g s%s",
-                      x->body->name, reached, t + h, terminate ? ": it asks to terminate" : "");
+    return bough_fail(BOUGH_FAILED, "%s: the FMU ended its step at %.6g s, before %.6g s%s", x->body->name,
+                      reached, t + h, terminate ? ": it asks to terminate" : "");
 }
 
 static bough_status advance(void *self, double *t, double pause, double t1, bool restart, double *y) {
@@ -215,13 +214,12 @@ static void transfer(void *self, bough_snapshot *s) {
         return;
     }
     fmi3_state *state = &x->state[*number - 1];
-    fmi3_status status = s->move == BOUGH_SNAPSHOT_SAVE ? x->get_state(x->instance, state)
-                                                        : x->set_state(x->instance, *state);
+    fmi3_status status =
+        s->move == BOUGH_SNAPSHOT_SAVE ? x->get_state(x->instance, state) : x->set_state(x->instance, *state);
     if (!is_good(status)) x->lost = true;
 }
 
-static const bough_integrator_ops steps = {
-    .title = "FMU", .advance = advance, .statistics = statistics};
+static const bough_integrator_ops steps = {.title = "FMU", .advance = advance, .statistics = statistics};
 static const bough_integrator_ops steps_and_states = {
     .title = "FMU", .advance = advance, .statistics = statistics, .transfer = transfer};
 
@@ -246,8 +244,7 @@ static void output_tangent(void *self, double t, const double *state, const doub
     memset(rate, 0, BOUGH_SCENE_WRENCH * sizeof *rate);
 }
 
-static void input_columns(void *self, double t, const double *state, const double *input,
-                          double *column) {
+static void input_columns(void *self, double t, const double *state, const double *input, double *column) {
     (void)self, (void)t, (void)state, (void)input, (void)column;
 }
 
@@ -256,8 +253,7 @@ static void *factors(void *self, bough_arena *arena) {
     return self;
 }
 
-static bool linearise(void *self, double t, const double *state, const double *input,
-                      void *kept) {
+static bool linearise(void *self, double t, const double *state, const double *input, void *kept) {
     (void)self, (void)t, (void)state, (void)input, (void)kept;
     return true;
 }
@@ -281,8 +277,8 @@ static bough_status instantiate(fmu_member *x) {
         return bough_fail(BOUGH_IO, "the name of the current folder is not known");
     }
     snprintf(resources, sizeof resources, "%s%s%s/resources/", here, absolute ? "" : "/", fmu->folder);
-    x->instance = x->instantiate(x->body->name, fmu->description.token, resources, false, true, false,
-                                 false, NULL, 0, x, hear, NULL);
+    x->instance = x->instantiate(x->body->name, fmu->description.token, resources, false, true, false, false,
+                                 NULL, 0, x, hear, NULL);
     return x->instance ? bough_ok() : refused(x, "fmi3InstantiateCoSimulation", 0, FMI3_ERROR);
 }
 
@@ -298,8 +294,8 @@ static bough_status initialise(fmu_member *x, const double *motion, double durat
     return bough_is_ok(&status) ? get_wrench(x, 0) : status;
 }
 
-bough_status bough_fmu_member_create(bough_arena *arena, const bough_scene_body *body,
-                                     const double *motion, double duration, bough_member *member) {
+bough_status bough_fmu_member_create(bough_arena *arena, const bough_scene_body *body, const double *motion,
+                                     double duration, bough_member *member) {
     fmu_member *x = bough_arena_take(arena, sizeof *x);
     *x = (fmu_member){.body = body, .member = member};
     list_variables(x);
@@ -307,15 +303,18 @@ bough_status bough_fmu_member_create(bough_arena *arena, const bough_scene_body 
     if (bough_is_ok(&status)) status = instantiate(x);
     if (bough_is_ok(&status)) status = initialise(x, motion, duration);
     bool restores = body->fmu.description.restores;
-    *member = (bough_member){
-        .system = {.name = body->name, .kind = "FMU", .n_input = BOUGH_SCENE_MOTION,
-                   .n_output = BOUGH_SCENE_WRENCH, .ops = &operations, .self = x},
-        .solver = "FMU",
-        .opaque = true,
-        .state = bough_arena_doubles(arena, 1),
-        .integrated = bough_arena_doubles(arena, 1),
-        .input = bough_arena_doubles(arena, BOUGH_SCENE_MOTION),
-        .factors = x,
-        .integrator = {.ops = restores ? &steps_and_states : &steps, .self = x}};
+    *member = (bough_member){.system = {.name = body->name,
+                                        .kind = "FMU",
+                                        .n_input = BOUGH_SCENE_MOTION,
+                                        .n_output = BOUGH_SCENE_WRENCH,
+                                        .ops = &operations,
+                                        .self = x},
+                             .solver = "FMU",
+                             .opaque = true,
+                             .state = bough_arena_doubles(arena, 1),
+                             .integrated = bough_arena_doubles(arena, 1),
+                             .input = bough_arena_doubles(arena, BOUGH_SCENE_MOTION),
+                             .factors = x,
+                             .integrator = {.ops = restores ? &steps_and_states : &steps, .self = x}};
     return status;
 }

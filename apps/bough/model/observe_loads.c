@@ -1,7 +1,7 @@
 // Loads inside the structure: in sections of rods, on the tower's top.
 #include "apps/bough/model/channel_table.h"
 #include "apps/bough/model/observe.h"
-#include "apps/bough/model/section_load.h"
+#include "apps/bough/model/shape.h"
 #include "core/tree/force.h"
 
 #include <stdio.h>

@@ -1,4 +1,4 @@
-#include "apps/bough/model/trim.h"
+#include "apps/bough/model/build_internal.h"
 
 #include "apps/bough/model/aero_link.h"
 #include "apps/bough/model/control_link.h"
@@ -100,16 +100,17 @@ static void seek_speed(search *x, double speed, double f, double pitch) {
         }
         speed = next, f = g;
         if (speed > standing * reference && speed < reference / standing) continue;
-        x->status = bough_fail(BOUGH_FAILED, "no steady operation: the torque of the air equals "
-                                        "that of the generator at no speed from %.4g to %.4g rpm",
-                               fmin(speed, reference) * 30 / BOUGH_PI,
-                               fmax(speed, reference) * 30 / BOUGH_PI);
+        x->status =
+            bough_fail(BOUGH_FAILED,
+                       "no steady operation: the torque of the air equals "
+                       "that of the generator at no speed from %.4g to %.4g rpm",
+                       fmin(speed, reference) * 30 / BOUGH_PI, fmax(speed, reference) * 30 / BOUGH_PI);
         return;
     }
 }
 
-bough_status bough_simulation_trim(bough_arena *arena, bough_simulation *s,
-                                   const bough_assembly *assembly, bough_trim *trim) {
+bough_status bough_simulation_trim(bough_arena *arena, bough_simulation *s, const bough_assembly *assembly,
+                                   bough_trim *trim) {
     bough_arena *own = bough_arena_child(arena);
     const bough_scene_control *control = &s->scene->control;
     search x = {.simulation = s,
@@ -120,8 +121,7 @@ bough_status bough_simulation_trim(bough_arena *arena, bough_simulation *s,
                 .status = bough_ok()};
     bool pitches = bough_control_link_pitches(s->control);
     double speed = x.law->reference_speed / x.gear;
-    double pitch = pitches ? x.law->least_pitch
-                           : s->scene->body[s->scene->turbine.blade[0]].pitch;
+    double pitch = pitches ? x.law->least_pitch : s->scene->body[s->scene->turbine.blade[0]].pitch;
     double f = surplus(&x, speed, pitch);
     if (bough_is_ok(&x.status) && f > tolerance && pitches) {
         seek_pitch(&x, speed, f);
