@@ -5,7 +5,7 @@
 #include "apps/bough/scene/scene.h"
 #include "apps/bough/cases/study.h"
 #include "tests/verification/blade_models_internal.h"
-#include "apps/bough/cases/tables.h"
+#include "apps/bough/cases/perform.h"
 
 #include <math.h>
 #include <string.h>

@@ -2,7 +2,7 @@
 
 #include "apps/bough/config/schema.h"
 #include "apps/bough/results/folder.h"
-#include "apps/bough/cases/tables.h"
+#include "apps/bough/cases/perform.h"
 #include "tests/verification/map.h"
 #include "tests/verification/two_mass.h"
 

@@ -3,7 +3,7 @@
 
 #include "apps/bough/results/folder.h"
 #include "apps/bough/results/progress.h"
-#include "apps/bough/cases/tables.h"
+#include "apps/bough/cases/perform.h"
 
 #include <math.h>
 #include <string.h>

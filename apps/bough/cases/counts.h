@@ -1,7 +1,7 @@
 // What a run's loads come to, sample by sample, in memory that does not grow with time: statistics,
 // cycles, time at levels, and the extremes of every channel with all others at that moment.
-#ifndef BOUGH_APPS_LOADS_COUNTS_H
-#define BOUGH_APPS_LOADS_COUNTS_H
+#ifndef BOUGH_APPS_CASES_COUNTS_H
+#define BOUGH_APPS_CASES_COUNTS_H
 
 #include "apps/bough/cases/rainflow.h"
 #include "apps/bough/results/recorder.h"

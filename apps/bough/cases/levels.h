@@ -2,8 +2,8 @@
 // cycles have which range: bins whose width is a power of two and whose edges are its multiples. As
 // the values spread, pairs of bins become one, so the memory is fixed, and the bins follow from the
 // least and the largest value alone: counts of parts that are added are those of the whole.
-#ifndef BOUGH_APPS_LOADS_LEVELS_H
-#define BOUGH_APPS_LOADS_LEVELS_H
+#ifndef BOUGH_APPS_CASES_LEVELS_H
+#define BOUGH_APPS_CASES_LEVELS_H
 
 #include <stdbool.h>
 #include <stdint.h>

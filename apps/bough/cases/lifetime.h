@@ -1,7 +1,7 @@
 // Loads of all cases of a load set over the turbine's lifetime. The cases are summed in their order, so
 // that the result is the same to the bit, whichever process has run which case.
-#ifndef BOUGH_APPS_STUDY_LIFETIME_H
-#define BOUGH_APPS_STUDY_LIFETIME_H
+#ifndef BOUGH_APPS_CASES_LIFETIME_H
+#define BOUGH_APPS_CASES_LIFETIME_H
 
 #include "apps/bough/cases/case_run.h"
 

@@ -1,8 +1,20 @@
-// Performs a study of any kind.
+// Performs a study of any kind: its runs, and what they come to, tables and pictures by kind.
 #ifndef BOUGH_APPS_CASES_PERFORM_H
 #define BOUGH_APPS_CASES_PERFORM_H
 
-#include "apps/bough/cases/tables.h"
+#include "apps/bough/cases/lifetime.h"
+
+#include <stdio.h>
+
+// How a study is performed.
+typedef struct bough_study_options {
+    const char *folder; // for the results; made if missing
+    int part, parts;    // which of how many shares of the cases, from 1; parts 0: all
+    const char *only;   // load case; NULL: all
+    bool quiet;         // no progress line
+    bool (*stop)(void); // asked before each step; NULL: never stops
+    FILE *stream;       // receives the table
+} bough_study_options;
 
 // Runs the cases that have no result in the folder and that no other process runs, and writes the results
 // there. A run that fails is a result too. BOUGH_FAILED when the reference fails, when cases with statistics
@@ -10,5 +22,68 @@
 // next call continues it.
 bough_status bough_study_perform(bough_arena *arena, const bough_study *study,
                                  const bough_study_options *options);
+
+typedef struct bough_study_results {
+    const bough_study *study;
+    const bough_study_options *options;
+    bough_case_result *reference, *result; // of compared runs (n_reference), (n_case)
+    int ran, failed;                       // runs in this call
+} bough_study_results;
+
+// Each writes the tables of its kind into the folder and prints the most important one: when all results are
+// there, else what is missing.
+typedef bough_status bough_study_conclude(bough_arena *arena, const bough_study_results *results);
+
+// table.txt, table.csv and the work-precision diagram plot.svg.
+bough_study_conclude bough_precision_conclude;
+
+// table.csv, and a table over the macro step and parameters of the model. BOUGH_FAILED when a run is silent:
+// it held with a large error, without a warning before the run, and its own estimate is far below the error.
+bough_study_conclude bough_stability_conclude;
+
+// cases.csv, costs.csv and table.txt; of a load set also equivalent.csv, extremes.csv, ranges.csv and
+// levels.csv. All but costs.csv follow from the cases' results alone. BOUGH_FAILED when cases have failed.
+bough_study_conclude bough_statistics_conclude;
+
+// Runs all cases of a study of kind timing in turns, so that other load of the machine affects all alike;
+// ratios of times are computed within a turn. Writes timing.csv and table.txt.
+bough_study_conclude bough_timing_conclude;
+
+// plot.svg of compared runs: cost against error on logarithmic axes, a panel for each measure, a line for
+// each combination of the settings before the last, which runs along the line; runs that failed have no
+// point, the legend names them.
+bough_status bough_precision_plot(const bough_study_results *results, const char *folder);
+
+enum { BOUGH_CASE_PANELS = 6 };
+
+// Least, largest and mean of the first channels of every case; NaN where it failed.
+typedef struct bough_case_plot {
+    const bough_study *set;
+    int n_panel;
+    double *value; // (n_case × n_panel × 3)
+} bough_case_plot;
+
+bough_case_plot bough_case_plot_take(bough_arena *arena, const bough_study *set);
+void bough_case_plot_add(bough_case_plot *plot, int number, const bough_case_result *result);
+
+// Either writes folder/plot.svg: of a sweep a channel's mean, least and largest value over the first key of
+// the grid; of a load set its ranges over how often they are exceeded in the lifetime.
+bough_status bough_case_plot_write(const bough_case_plot *plot, const char *folder);
+bough_status bough_lifetime_plot(const bough_lifetime *l, const char *folder);
+
+// table.txt and table.csv of compared runs.
+bough_status bough_precision_tables(const bough_study_results *results, const char *folder);
+
+// "ok", "failed at t=12.3 s", "not run"
+void bough_case_status(const bough_case_result *result, char text[40]);
+
+// Writes a field of a CSV file, in quotes where it needs them; line ends become blanks.
+void bough_csv_text(FILE *file, const char *text);
+
+// The same behind a comma.
+void bough_csv_next(FILE *file, const char *text);
+
+// A case that failed, with the command that runs it alone.
+void bough_case_failed(const bough_study *study, int number, const bough_status *outcome, FILE *file);
 
 #endif

@@ -1,6 +1,7 @@
-#include "apps/bough/cases/tables.h"
+#include "apps/bough/cases/perform.h"
 
 #include "apps/bough/results/folder.h"
+
 #include <math.h>
 #include <stdarg.h>
 #include <string.h>
@@ -45,11 +46,10 @@ static void put(line *l, const char *format, ...) {
 }
 
 static void put_number(line *l, bool known, double value) {
-    if (known) {
+    if (known)
         put(l, "%.3g", value);
-    } else {
+    else
         put(l, "-");
-    }
 }
 
 static void put_head(line *l, const bough_study *s) {
@@ -75,11 +75,10 @@ static void put_row(line *l, const bough_study_results *results, int row) {
     bool good = r->done && bough_is_ok(&r->outcome);
     bough_case_status(r, status);
     l->n = 0;
-    if (row < 0) {
+    if (row < 0)
         put(l, "reference");
-    } else {
+    else
         put(l, "%d", row + 1);
-    }
     for (int i = 0; i < s->grid.n; i++) {
         const char *value = bough_study_value(s, cell_of(s, row), i);
         put(l, "%.40s", value[0] ? value : "as the scene");
@@ -173,9 +172,7 @@ void bough_csv_next(FILE *file, const char *text) {
 
 static void write_csv_head(const bough_study *s, FILE *f) {
     fputs("run", f);
-    for (int i = 0; i < s->grid.n; i++) {
-        bough_csv_next(f, s->grid.axis[i].key);
-    }
+    for (int i = 0; i < s->grid.n; i++) bough_csv_next(f, s->grid.axis[i].key);
     fputs(",status,time [s],wall [s],cpu [s],real_time_factor [1]", f);
     for (int i = 0; i < s->n_measure; i++) {
         char name[200];
@@ -188,11 +185,8 @@ static void write_csv_head(const bough_study *s, FILE *f) {
 }
 
 static void write_csv_number(FILE *f, double value) {
-    if (isfinite(value)) {
-        fprintf(f, ",%.9g", value);
-    } else {
-        fputc(',', f);
-    }
+    fputc(',', f);
+    if (isfinite(value)) fprintf(f, "%.9g", value);
 }
 
 static void write_csv_numbers(const bough_study *s, const bough_case_result *r, FILE *f) {
@@ -214,14 +208,11 @@ static void write_csv_row(const bough_study_results *results, int row, FILE *f) 
     const bough_study *s = results->study;
     const bough_case_result *r = result_of(results, row);
     bool good = bough_is_ok(&r->outcome);
-    if (row < 0) {
+    if (row < 0)
         fputs("reference", f);
-    } else {
+    else
         fprintf(f, "%d", row + 1);
-    }
-    for (int i = 0; i < s->grid.n; i++) {
-        bough_csv_next(f, bough_study_value(s, cell_of(s, row), i));
-    }
+    for (int i = 0; i < s->grid.n; i++) bough_csv_next(f, bough_study_value(s, cell_of(s, row), i));
     fprintf(f, ",%s", good ? "ok" : "failed");
     write_csv_numbers(s, r, f);
     bough_csv_next(f, good ? "" : r->outcome.message);

@@ -2,8 +2,8 @@
 //
 // The memory is fixed: the standard's open ranges always decrease, and where there are more of them
 // than fit, the two points of the smallest are counted as one cycle at once.
-#ifndef BOUGH_APPS_LOADS_RAINFLOW_H
-#define BOUGH_APPS_LOADS_RAINFLOW_H
+#ifndef BOUGH_APPS_CASES_RAINFLOW_H
+#define BOUGH_APPS_CASES_RAINFLOW_H
 
 #include "apps/bough/cases/levels.h"
 

@@ -1,4 +1,5 @@
-#include "apps/bough/cases/tables.h"
+// Kind stability: a cell either held, with an error, or was stopped with a diagnosis.
+#include "apps/bough/cases/perform.h"
 
 #include <math.h>
 #include <string.h>

@@ -1,9 +1,8 @@
-#include "apps/bough/cases/tables.h"
+#include "apps/bough/cases/perform.h"
 
 #include "apps/bough/cases/store.h"
 #include "apps/bough/results/folder.h"
 
-#include <inttypes.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>

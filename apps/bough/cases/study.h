@@ -5,8 +5,8 @@
 //
 // All memory belongs to the arena given to bough_study_read. Every struct begins with its place in
 // the text.
-#ifndef BOUGH_APPS_STUDY_STUDY_H
-#define BOUGH_APPS_STUDY_STUDY_H
+#ifndef BOUGH_APPS_CASES_STUDY_H
+#define BOUGH_APPS_CASES_STUDY_H
 
 #include "apps/bough/config/text.h"
 #include "core/base/arena.h"

@@ -1,6 +1,6 @@
 // What the files that read a study share among themselves.
-#ifndef BOUGH_APPS_STUDY_STUDY_INTERNAL_H
-#define BOUGH_APPS_STUDY_STUDY_INTERNAL_H
+#ifndef BOUGH_APPS_CASES_STUDY_INTERNAL_H
+#define BOUGH_APPS_CASES_STUDY_INTERNAL_H
 
 #include "apps/bough/cases/study.h"
 #include "apps/bough/config/schema.h"

@@ -1,4 +1,4 @@
-#include "apps/bough/cases/tables.h"
+#include "apps/bough/cases/perform.h"
 
 #include "apps/bough/results/folder.h"
 

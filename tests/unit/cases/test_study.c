@@ -1,6 +1,5 @@
 #include "apps/bough/cases/perform.h"
 #include "apps/bough/cases/case_run.h"
-#include "apps/bough/cases/tables.h"
 #include "tests/unit/scratch.h"
 
 // The rubber bar falls for 20 ms: monolithic runs are good, frozen ones fail at once, since the
