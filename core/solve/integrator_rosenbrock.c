@@ -47,6 +47,7 @@ typedef struct rosenbrock {
     int most_steps;             // in a macro step, and after a fifth of them their number is foreseen
     double longest;             // step allowed next [s]
     double factored;            // γh of the factors; 0: none
+    int kept;                   // steps with the same tangents at most
     int age, most_age;          // steps since the tangents were found, and after which they are renewed
     bool started;
     int drifted;               // steps since ∂f/∂t was found
@@ -167,6 +168,8 @@ static void *create(bough_arena *arena, const bough_ode *ode, const bough_integr
     rosenbrock *m = bough_arena_take(arena, sizeof *m);
     size_t n = (size_t)ode->n;
     m->ode = *ode;
+    m->kept = options->coarse ? MOST_AGE / 2 : MOST_AGE;
+    if (options->coarse) m->ode.elastic_rate /= 3;
     m->find = find_alone;
     m->finder = m;
     m->step = options->step > 0 ? options->step : (double)INFINITY;
@@ -199,7 +202,7 @@ static void choose_age(rosenbrock *m) {
         whole += fresh * fresh;
     }
     double wanted = m->age * most_change * sqrt(whole / fmax(change, 1e-300));
-    m->most_age = (int)fmax(1, fmin(fmin(MOST_AGE, m->age + 1), wanted));
+    m->most_age = (int)fmax(1, fmin(fmin(m->kept, m->age + 1), wanted));
 }
 
 static bool renew_tangents(rosenbrock *m, double t, const double *y, double gamma) {
@@ -208,7 +211,7 @@ static bool renew_tangents(rosenbrock *m, double t, const double *y, double gamm
     m->sum.jacobians++;
     m->sum.factorisations++;
     if (!m->ode.linearise(m->ode.self, t, y) || !m->ode.factor(m->ode.self, gamma)) return false;
-    if (!undamped(m, gamma / gamma_h)) m->most_age = MOST_AGE;
+    if (!undamped(m, gamma / gamma_h)) m->most_age = m->kept;
     if (compare && fabs(m->factored - gamma) <= 1e-9 * gamma) {
         filter_increment(m, m->fresh);
         choose_age(m);

@@ -64,7 +64,7 @@ same "$rod" '0.5 s'
 
 # Where neither the scene nor the command says a number, OpenMP's environment does.
 of_environment() {
-    run out "$turbine" --set 'simulation.duration=40 ms' --set simulation.threads=0
+    run out "$turbine" --set 'simulation.duration=40 ms' --set simulation.threads=0 --set simulation.error_bound=0
     grep -q "\"threads\": $1," out/summary.json || fail "the environment's number of threads, $1"
 }
 of_environment 1

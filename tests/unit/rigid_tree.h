@@ -34,7 +34,7 @@ static inline fixture build_with(const bough_tree_def *def, bough_integrator_kin
     assert_int_equal(status.code, BOUGH_OK);
     f.data = bough_tree_data_create(f.arena, f.tree);
     f.s = bough_tree_system_create(f.arena, f.tree, "tree");
-    f.m = member_of(f.arena, &f.s, (bough_integrator_options){solver, rtol, 0, 0.8, 0});
+    f.m = member_of(f.arena, &f.s, (bough_integrator_options){solver, rtol, 0, 0.8, 0, false});
     assert_true(f.s.n_state <= MOST);
     return f;
 }

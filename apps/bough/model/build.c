@@ -71,7 +71,8 @@ static bough_integrator_options solver_options(const bough_scene_solver *solver)
     return (bough_integrator_options){.kind = (bough_integrator_kind)solver->solver,
                                       .rtol = solver->rtol,
                                       .step = solver->step,
-                                      .rho = solver->rho};
+                                      .rho = solver->rho,
+                                      .coarse = solver->coarse};
 }
 
 static bough_scheme_options scheme_options(const bough_scene *scene) {

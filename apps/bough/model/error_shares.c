@@ -9,8 +9,6 @@
 #include <string.h>
 #include <time.h>
 
-static const double usual_share = 0.25; // of the difference, as of the whole error (coarser.h)
-
 const char *bough_error_share_name(bough_error_share_kind kind) {
     static const char *const names[BOUGH_SHARES] = {"mesh", "air", "time"};
     return names[kind];
@@ -99,6 +97,8 @@ static void build_finer(bough_arena *arena, const finding *x, other_run finer[BO
 // From the start to `until`; a run that fails leaves its share unknown.
 static bough_status find(bough_arena *arena, void *self) {
     const finding *x = self;
+    const bough_scene *scene = x->companion->run->scene;
+    const double usual = bough_coarser_share(scene, scene); // without a change of the mesh
     other_run base, finer[BOUGH_SHARES] = {{0}};
     bough_status status = build(arena, x->companion->run, BOUGH_COARSER_ALL, &base);
     if (bough_is_ok(&status)) build_finer(arena, x, finer);
@@ -114,7 +114,7 @@ static bough_status find(bough_arena *arena, void *self) {
             if (!finer[k].simulation || share->unknown[0]) continue;
             bough_status own = advance(&finer[k], base.simulation->master->time);
             if (bough_is_ok(&own))
-                compare(&base, &finer[k], k == BOUGH_SHARE_MESH ? x->companion->share : usual_share, share);
+                compare(&base, &finer[k], k == BOUGH_SHARE_MESH ? x->companion->share : usual, share);
             else
                 unknown(share, "%.150s", own.message);
         }
@@ -154,6 +154,7 @@ bough_status bough_error_shares_find(bough_arena *arena, const bough_companion *
 
 enum { ADVICE = 160 };
 static const double mesh_order = 2, air_order = 2, time_order = 2; // at least
+static const double most_halvings = 6;                             // of the macro step that are worth trying
 static const double margin = 1.1;                                  // of the settings that are proposed
 
 // The segments that divide the mesh's error by a factor: their number where all rods have the same.
@@ -181,12 +182,17 @@ static void advise_air(const bough_scene *scene, double factor, char text[ADVICE
         snprintf(text + n, (size_t)(ADVICE - n), " with macro_step: %.4g s", 1 / rate);
 }
 
-static void advise_time(const bough_scene *scene, double factor, char text[ADVICE]) {
-    const bough_scene_simulation *x = &scene->simulation;
-    bool one_system = bough_scheme_find(bough_scheme_name(x->coupling.scheme))->one_system;
+static void advise_time(const bough_scene *s, double factor, char text[ADVICE]) {
+    const bough_scene_simulation *x = &s->simulation;
+    const bough_scheme *scheme = bough_scheme_find(bough_scheme_name(x->coupling.scheme));
     double shorter = pow(factor, -1 / time_order) / margin;
-    if (!one_system) {
-        snprintf(text, ADVICE, "scheme: monolithic or macro_step: %.2g s", shorter * x->macro_step);
+    if (!scheme->one_system) {
+        double halvings =
+            ceil(log2(margin * factor) / bough_scheme_defect_order(scheme, &x->coupling.options));
+        int n = snprintf(text, ADVICE, "scheme: monolithic");
+        if (halvings <= most_halvings)
+            snprintf(text + n, (size_t)(ADVICE - n), " or macro_step: %.9g s",
+                     x->macro_step * exp2(-halvings));
     } else if (x->master.solver == BOUGH_GENERALIZED_ALPHA) {
         double step = x->master.step > 0 ? fmin(x->master.step, x->macro_step) : x->macro_step;
         snprintf(text, ADVICE, "master.step: %.2g s or master.solver: rosenbrock", shorter * step);

@@ -37,6 +37,7 @@ typedef struct bough_scene_solver {
     double rtol; // [-]
     double step; // generalised-α and Rosenbrock: longest step [s]; 0: none
     double rho;  // its spectral radius at infinite frequency [-]
+    bool coarse; // for a companion; not in a file
 } bough_scene_solver;
 
 typedef struct bough_scene_output {

@@ -162,8 +162,8 @@ static void meshes_differ_as_far_as_they_can(void **state) {
         int other;
         double share;
     } cases[] = {
-        {"bodies[3-5].rod.segments=16", "simulation.coupling={scheme: ramp}", 8, 0.25},
-        {"bodies[3-5].rod.segments=9", "simulation.coupling={scheme: ramp}", 5, 0.75 / (81.0 / 25 - 1)},
+        {"bodies[3-5].rod.segments=16", "simulation.coupling={scheme: monolithic}", 8, 0.25},
+        {"bodies[3-5].rod.segments=9", "simulation.coupling={scheme: monolithic}", 5, 0.75 / (81.0 / 25 - 1)},
         {"bodies[3-5].rod.segments=8", "simulation.coupling={scheme: ramp}", 16, 1},
         {"bodies[3-5].rod.segments=1", "simulation.coupling={scheme: ramp}", 2, 1},
         {"bodies[3-5].rod.segments=16", "simulation.coupling={scheme: frozen}", 8, 1}};
@@ -189,6 +189,7 @@ static void a_coupling_has_a_monolithic_companion(void **state) {
     assert_string_equal(bough_scheme_name(c->simulation.coupling.scheme), "monolithic");
     check_near(c->simulation.master.step, 20e-3, 1e-15, 0);
     check_near(c->simulation.master.rtol, 4e-3, 1e-15, 0);
+    check_near(bough_coarser_share(scene, c), 0.4, 1e-12, 0);
     bough_arena_destroy(arena);
 }
 

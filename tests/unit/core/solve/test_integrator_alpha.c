@@ -64,7 +64,7 @@ static bough_arena *build(problem *p, double step, double rho) {
     static const double scale[3] = {1, 1, 1};
     bough_arena *arena = bough_arena_create();
     bough_ode ode = {"sample", 3, scale, p, derivative, NULL, linearise, factor, solve, 0};
-    bough_integrator_options options = {BOUGH_GENERALIZED_ALPHA, 1e-10, step, rho, 0};
+    bough_integrator_options options = {BOUGH_GENERALIZED_ALPHA, 1e-10, step, rho, 0, false};
     bough_status status = bough_integrator_create(arena, &ode, &options, &p->micro);
     assert_int_equal(status.code, BOUGH_OK);
     return arena;

@@ -69,7 +69,7 @@ static bough_arena *build(problem *p, double step, double rtol) {
     static const double scale[N] = {1, 1, 1, 1};
     bough_arena *arena = bough_arena_create();
     bough_ode ode = {"sample", N, scale, p, derivative, NULL, linearise, factor, solve, 0};
-    bough_integrator_options options = {BOUGH_ROSENBROCK, rtol, step, 0, 0};
+    bough_integrator_options options = {BOUGH_ROSENBROCK, rtol, step, 0, 0, false};
     bough_status status = bough_integrator_create(arena, &ode, &options, &p->micro);
     assert_int_equal(status.code, BOUGH_OK);
     return arena;

@@ -103,7 +103,7 @@ static fixture build(const bough_tree_def *def, bough_integrator_kind solver, do
     if (!bough_is_ok(&status)) fail_msg("%s", status.message);
     f.data = bough_tree_data_create(f.arena, f.tree);
     f.s = bough_tree_system_create(f.arena, f.tree, "tree");
-    f.m = member_of(f.arena, &f.s, (bough_integrator_options){solver, rtol, 0, 0.8, 0});
+    f.m = member_of(f.arena, &f.s, (bough_integrator_options){solver, rtol, 0, 0.8, 0, false});
     assert_true(f.s.n_state <= MOST);
     return f;
 }

@@ -66,7 +66,7 @@ static fixture make(void) {
     assert_int_equal(status.code, BOUGH_OK);
     f.data = bough_tree_data_create(f.arena, f.tree);
     f.s = bough_tree_system_create(f.arena, f.tree, "tree");
-    f.m = member_of(f.arena, &f.s, (bough_integrator_options){BOUGH_IDA, 1e-8, 0, 0, 0});
+    f.m = member_of(f.arena, &f.s, (bough_integrator_options){BOUGH_IDA, 1e-8, 0, 0, 0, false});
     for (int i = 0; i < f.s.n_state; i++) f.state[i] = sin(2.3 * i + 0.4);
     int p = f.tree->links[f.tree->ends[0].link].first_coordinate + 3;
     bough_quaternion q = bough_quaternion_exponential(bough_v3(0.5, 0.3, -1));

@@ -69,7 +69,7 @@ static void operations_agree_on_a_deformed_loaded_rod(void **context) {
     contract_point at = {0.5, state, input, 1e-5};
     contract_check(r.m, at, 0.03, 0.01);
     // by steps between which it may pause
-    bough_integrator_options steps = {BOUGH_ROSENBROCK, 1e-3, 2e-3, 0, 0};
+    bough_integrator_options steps = {BOUGH_ROSENBROCK, 1e-3, 2e-3, 0, 0, false};
     contract_check(member_of(r.arena, &r.s, steps), at, 0.03, 0.01);
     for (int i = 0; i < N; i++) { // advance normalises the quaternions
         bough_quaternion p = turn_of(state, N, i + 1);
@@ -474,7 +474,7 @@ static void stiff_rod_keeps_its_amplitude_under_the_rosenbrock_method(void **con
     (void)context;
     const double length = 10, period = 1;
     const double stiffness[6] = {3e8, 3e8, 1e9, 3.2e4, 3.2e4, 2.5e4}, inertia[4] = {1.002, 1e-4, 1e-4, 2e-4};
-    const bough_integrator_options steps = {BOUGH_ROSENBROCK, 3e-4, 0.01, 0, 0};
+    const bough_integrator_options steps = {BOUGH_ROSENBROCK, 3e-4, 0.01, 0, 0, false};
     bough_arena *arena = bough_arena_create();
     rod r = make(arena, sample_uniform(arena, 24, length, stiffness, 0, inertia), 1e-6, at_rest);
     r.m = member_of(arena, &r.s, steps);
