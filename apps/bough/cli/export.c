@@ -92,24 +92,6 @@ static bough_status place_files(export *x) {
 
 // -- description ----------------------------------------------------------------------------------
 
-#define DEGREE 0.017453292519943295
-#define RPM 0.10471975511965977
-
-// Exponents of the SI's base units, and the factor to them.
-static const struct {
-    const char *name;
-    int kg, m, s, rad;
-    double factor;
-} units[] = {
-    {"s", 0, 0, 1, 0, 1},           {"Hz", 0, 0, -1, 0, 1},      {"kg", 1, 0, 0, 0, 1},
-    {"m", 0, 1, 0, 0, 1},           {"m/s", 0, 1, -1, 0, 1},     {"m/s^2", 0, 1, -2, 0, 1},
-    {"rad", 0, 0, 0, 1, 1},         {"rad/s", 0, 0, -1, 1, 1},   {"deg", 0, 0, 0, 1, DEGREE},
-    {"deg/s", 0, 0, -1, 1, DEGREE}, {"rpm", 0, 0, -1, 1, RPM},   {"N", 1, 1, -2, 0, 1},
-    {"kN", 1, 1, -2, 0, 1000},      {"N/m", 1, 0, -2, 0, 1},     {"N m", 1, 2, -2, 0, 1},
-    {"N-m", 1, 2, -2, 0, 1},        {"kN-m", 1, 2, -2, 0, 1000}, {"N m/m", 1, 1, -2, 0, 1},
-    {"W", 1, 2, -3, 0, 1},          {"kW", 1, 2, -3, 0, 1000},   {"-", 0, 0, 0, 0, 1},
-};
-
 static void put_exponent(const char *name, int exponent, FILE *out) {
     if (exponent != 0) fprintf(out, " %s=\"%d\"", name, exponent);
 }
@@ -118,14 +100,19 @@ static void put_unit(const char *unit, FILE *out) {
     fputs("    <Unit name=\"", out);
     bough_picture_text(out, unit);
     fputs("\">", out);
-    for (size_t k = 0; k < sizeof units / sizeof *units; k++) {
-        if (strcmp(units[k].name, unit) != 0) continue;
+    static const char *const base[BOUGH_BASE_UNITS] = {"m", "kg", "s", "rad"};
+    int exponent[BOUGH_BASE_UNITS];
+    double factor;
+    char text[40], why[160];
+    // channels write "kN-m" for a product, and "-" for a pure number
+    snprintf(text, sizeof text, "%s", unit);
+    for (char *c = text; *c; c++) {
+        if (*c == '-') *c = ' ';
+    }
+    if (bough_unit_base(text, &factor, exponent, why)) {
         fputs("<BaseUnit", out);
-        put_exponent("kg", units[k].kg, out);
-        put_exponent("m", units[k].m, out);
-        put_exponent("s", units[k].s, out);
-        put_exponent("rad", units[k].rad, out);
-        if (units[k].factor != 1) fprintf(out, " factor=\"%.17g\"", units[k].factor);
+        for (int k = 0; k < BOUGH_BASE_UNITS; k++) put_exponent(base[k], exponent[k], out);
+        if (factor != 1) fprintf(out, " factor=\"%.17g\"", factor);
         fputs("/>", out);
     }
     fputs("</Unit>\n", out);

@@ -121,6 +121,11 @@ int bough_schema_numbers(bough_schema_reader *reader, const bough_node *node, in
 // not one; `why` then receives the reason.
 bool bough_quantity(const char *text, bough_dimension dimension, double *value, char why[160]);
 
+// A unit such as "kN", "rad/s", "kg m^2" in base units: its factor and the exponents of m, kg, s and rad.
+// False with a reason for what is none.
+enum { BOUGH_BASE_UNITS = 4 };
+bool bough_unit_base(const char *text, double *factor, int exponent[BOUGH_BASE_UNITS], char why[160]);
+
 // Whether the value is in a range "> 0", ">= 0", "[0, 2]"; NULL: any is.
 bool bough_in_range(double value, const char *range);
 

@@ -10,8 +10,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-// Exponents of m, kg, s and rad.
-enum { N_BASE = 4 };
+enum { N_BASE = BOUGH_BASE_UNITS };
 
 typedef struct unit {
     const char *symbol;
@@ -33,6 +32,7 @@ static const unit units[] = {
     {"Hz", 1, {0, 0, -1, 0}, true},
     {"N", 1, {1, 1, -2, 0}, true},
     {"Pa", 1, {-1, 1, -2, 0}, true},
+    {"W", 1, {2, 1, -3, 0}, true},
     {"1", 1, {0, 0, 0, 0}, false},
 };
 
@@ -136,10 +136,11 @@ static bool apply_token(char *token, int sign, double *factor, int exponent[N_BA
     return true;
 }
 
-// The factor of a unit expression; false with a reason when it is not of the dimension.
-static bool unit_factor(const char *text, bough_dimension dimension, double *factor, char why[160]) {
-    int exponent[N_BASE] = {0}, sign = 1;
+bool bough_unit_base(const char *text, double *factor, int exponent[BOUGH_BASE_UNITS], char why[160]) {
+    int sign = 1;
+    memset(exponent, 0, N_BASE * sizeof *exponent);
     *factor = 1;
+    snprintf(why, 160, "the unit '%.40s' does not fit", text + strspn(text, " "));
     for (const char *c = text + strspn(text, " *"); *c != '\0'; c += strspn(c, " *")) {
         if (*c == '/') {
             if (sign < 0) break;
@@ -157,8 +158,14 @@ static bool unit_factor(const char *text, bough_dimension dimension, double *fac
         sign = 1;
         c += length;
     }
-    snprintf(why, 160, "the unit '%.40s' does not fit", text + strspn(text, " "));
-    return sign > 0 && memcmp(exponent, dimensions[dimension].exponent, sizeof exponent) == 0;
+    return sign > 0;
+}
+
+// The factor of a unit expression; false with a reason when it is not of the dimension.
+static bool unit_factor(const char *text, bough_dimension dimension, double *factor, char why[160]) {
+    int exponent[N_BASE];
+    return bough_unit_base(text, factor, exponent, why) &&
+           memcmp(exponent, dimensions[dimension].exponent, sizeof exponent) == 0;
 }
 
 bool bough_unit_fits(const char *text, bough_dimension dimension, char why[160]) {

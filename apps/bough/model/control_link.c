@@ -252,12 +252,6 @@ struct bough_control_link {
 
 static int blade_body(const bough_control_link *l, int b) { return l->simulation->scene->turbine.blade[b]; }
 
-static bough_motion_point joint_point(const bough_simulation *s, int body) {
-    int q, v;
-    bough_tree_joint_rows(s->tree, body, &q, &v);
-    return (bough_motion_point){s->leader.state[q], s->leader.state[v], 0};
-}
-
 bough_status bough_control_link_build(bough_arena *arena, bough_simulation *simulation, int load,
                                       bough_control_link **link) {
     const bough_scene *scene = simulation->scene;
@@ -268,7 +262,7 @@ bough_status bough_control_link_build(bough_arena *arena, bough_simulation *simu
     l->n_blade = scene->turbine.n_blade;
     l->steers = scene->control.pitch && scene->body[scene->turbine.blade[0]].joint.motion.node != NULL;
     for (int b = 0; b < l->n_blade && l->steers; b++)
-        l->now.pitch_joint[b] = joint_point(simulation, blade_body(l, b));
+        l->now.pitch_joint[b] = bough_simulation_joint_point(simulation, blade_body(l, b));
     *link = l;
     if (l->control->kind == BOUGH_SCENE_EXTERNAL) return bough_ok();
     if (l->control->kind == BOUGH_SCENE_VARIABLE_SPEED) {
@@ -426,7 +420,7 @@ static bough_status sample(void *self, double t, double t_next, bool *jumped) {
     const bough_scene_control *control = l->control;
     double step = t_next - t;
     bough_simulation_update(s);
-    bough_motion_point rotor = joint_point(s, s->scene->turbine.rotor);
+    bough_motion_point rotor = bough_simulation_joint_point(s, s->scene->turbine.rotor);
     double speed = control->gear_ratio * rotor.v;
     bough_discon_sensed sensed = sense(l, t, step, speed);
     bough_discon_demand demand = {0};

@@ -38,12 +38,6 @@ static double *table_of(const bough_simulation *s, int index) {
     return load->values;
 }
 
-static bough_motion_point joint_point(const bough_simulation *s, int body) {
-    int q, v;
-    bough_tree_joint_rows(s->tree, body, &q, &v);
-    return (bough_motion_point){s->leader.state[q], s->leader.state[v], 0};
-}
-
 bough_status bough_input_link_build(bough_arena *arena, bough_simulation *s) {
     int n = s->scene->n_input;
     if (n == 0) return bough_ok();
@@ -54,7 +48,7 @@ bough_status bough_input_link_build(bough_arena *arena, bough_simulation *s) {
         const bough_scene_input *input = &s->scene->input[k];
         l->memory[k] = l->memory[n + k] = input->initial;
         if (input->kind == BOUGH_INPUT_LOAD) l->table[k] = table_of(s, input->index);
-        if (input->kind == BOUGH_INPUT_MOTION) points(l)[k] = joint_point(s, input->index);
+        if (input->kind == BOUGH_INPUT_MOTION) points(l)[k] = bough_simulation_joint_point(s, input->index);
     }
     s->inputs = l;
     return bough_ok();

@@ -26,10 +26,6 @@ typedef struct sensor {
 
 enum { PLACE_CHANNELS = 12 };
 
-static bough_vec3 blend(bough_vec3 a, bough_vec3 b, double share) {
-    return bough_add(a, bough_scale(share, bough_sub(b, a)));
-}
-
 // A vertex as gathered in scratch->vertex: place and rotation in the body's frame.
 static bough_vec3 vertex_position(const sensor *x, int i) {
     const double *v = x->scratch.vertex + i;
@@ -60,9 +56,9 @@ static bough_mat3 axes_between(bough_quaternion p, bough_quaternion q, double sh
 static void sample_place(const sensor *x, place at, double *value) {
     int left = at.segment, right = left + 1;
     const bough_rod_def *def = &x->beam->def;
-    bough_vec3 shift = blend(bough_sub(vertex_position(x, left), def->position[left]),
-                             bough_sub(vertex_position(x, right), def->position[right]), at.share);
-    bough_vec3 turn = blend(vertex_turn(x, left), vertex_turn(x, right), at.share);
+    bough_vec3 shift = bough_blend(bough_sub(vertex_position(x, left), def->position[left]),
+                                   bough_sub(vertex_position(x, right), def->position[right]), at.share);
+    bough_vec3 turn = bough_blend(vertex_turn(x, left), vertex_turn(x, right), at.share);
     bough_section_load load = bough_section_in_segment(x->beam, &x->scratch, left, at.share);
     bough_mat3 axes = axes_between(vertex_rotation(x, left), vertex_rotation(x, right), at.share);
     bough_vec3 force = bough_mat3_tmul(axes, load.force);

@@ -178,3 +178,9 @@ const char *bough_simulation_body_of(const bough_simulation *s, const bough_asse
     }
     return assembly->member[0]->system.name;
 }
+
+bough_motion_point bough_simulation_joint_point(const bough_simulation *s, int body) {
+    int q, v;
+    bough_tree_joint_rows(s->tree, body, &q, &v);
+    return (bough_motion_point){s->leader.state[q], s->leader.state[v], 0};
+}

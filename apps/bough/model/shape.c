@@ -25,10 +25,6 @@ static bough_mat3 vertex_axes(const bough_rod_model *m, const bough_rod_scratch 
     return bough_rotation_matrix((bough_quaternion){p[3 * n], p[4 * n], p[5 * n], p[6 * n]});
 }
 
-static bough_vec3 blend(bough_vec3 a, bough_vec3 b, double share) {
-    return bough_add(a, bough_scale(share, bough_sub(b, a)));
-}
-
 // The moment goes linearly from what the segment does to the left vertex to the opposite of what it
 // does to the right one.
 bough_section_load bough_section_in_segment(const bough_beam *beam, const bough_rod_scratch *scratch,
@@ -38,7 +34,7 @@ bough_section_load bough_section_in_segment(const bough_beam *beam, const bough_
     bough_vec3 last =
         bough_mat3_mul(vertex_axes(m, scratch, segment + 1), segment_row(m, scratch, segment, 6));
     return (bough_section_load){.force = segment_row(m, scratch, segment, 0),
-                                .moment = blend(first, bough_scale(-1, last), share)};
+                                .moment = bough_blend(first, bough_scale(-1, last), share)};
 }
 
 bough_section_load bough_section_at_vertex(const bough_beam *beam, const bough_rod_scratch *scratch,
@@ -47,7 +43,7 @@ bough_section_load bough_section_at_vertex(const bough_beam *beam, const bough_r
     int inner = vertex > 0 ? vertex - 1 : 0, outer = vertex < n ? vertex : n - 1;
     bough_section_load a = bough_section_in_segment(beam, scratch, inner, vertex - inner);
     bough_section_load b = bough_section_in_segment(beam, scratch, outer, vertex - outer);
-    return (bough_section_load){blend(a.force, b.force, 0.5), blend(a.moment, b.moment, 0.5)};
+    return (bough_section_load){bough_blend(a.force, b.force, 0.5), bough_blend(a.moment, b.moment, 0.5)};
 }
 
 enum { RIGID_POINTS = 3 };

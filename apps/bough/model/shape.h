@@ -25,6 +25,11 @@ void bough_shape_loads(void *self, double t, double *force, double *moment);
 
 // -- forces and moments in the sections of a rod --------------------------------------------------
 
+// a at share 0, b at share 1.
+static inline bough_vec3 bough_blend(bough_vec3 a, bough_vec3 b, double share) {
+    return bough_add(a, bough_scale(share, bough_sub(b, a)));
+}
+
 typedef struct bough_section_load {
     bough_vec3 force, moment; // [N], [N m] in the axes of the rod's body
 } bough_section_load;

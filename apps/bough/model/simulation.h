@@ -80,6 +80,9 @@ bough_beam *bough_simulation_beam(const bough_simulation *s, int body);
 // The input of a rod at the current synchronisation point: see rod.h.
 const double *bough_simulation_rod_input(const bough_simulation *s, const bough_beam *beam);
 
+// Angle or displacement of a body's joint and its rate, in the leader's state.
+bough_motion_point bough_simulation_joint_point(const bough_simulation *s, int body);
+
 // Position of a beam's last vertex in the body's frame, in which `rotation` is its section's.
 bough_vec3 bough_simulation_beam_tip(const bough_simulation *s, const bough_beam *beam,
                                      bough_quaternion *rotation);
