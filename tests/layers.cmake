@@ -145,7 +145,7 @@ owned_by("^core/solve/(sundials|vector)\\.[ch]$" "${include}(sundials|nvector|su
 owned_by("^(core/base/pool|apps/bough/exchange/runtime)\\.c$" "${include}omp\\.h|#[ \t]*pragma[ \t]+omp[ \t]+([^s]|s[^i])|[^a-z_]omp_[a-z]"
   "only core/base/pool.c uses OpenMP, but for simd loops")
 owned_by("^none$" "pthread_create|thrd_create" "threads are OpenMP's")
-owned_by("^aero/wind/wind_fourier\\.c$" "${include}fftw3\\.h" "only aero/wind/wind_fourier.c uses FFTW")
+owned_by("^aero/wind/wind_turbulence\\.c$" "${include}fftw3\\.h" "only aero/wind/wind_turbulence.c uses FFTW")
 owned_by("^apps/bough/config/text\\.c$" "${include}yaml\\.h" "only apps/bough/config/text.c uses libyaml")
 
 owned_by("^apps/bough/scene/fmu_description\\.c$" "${include}expat\\.h" "only apps/bough/scene/fmu_description.c uses expat")

@@ -3,6 +3,7 @@
 #include "core/base/base.h"
 #include "core/base/input_file.h"
 
+#include <math.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -163,8 +164,10 @@ static bough_vec3 point_at(const bough_wind_box *box, int time, int64_t point) {
 
 static bough_vec3 grid_at(const bough_wind_box *box, int time, place y, place z) {
     int64_t low = (int64_t)z.low * box->n_y, high = (int64_t)z.high * box->n_y;
-    bough_vec3 below = bough_between(point_at(box, time, low + y.low), point_at(box, time, low + y.high), y.weight);
-    bough_vec3 above = bough_between(point_at(box, time, high + y.low), point_at(box, time, high + y.high), y.weight);
+    bough_vec3 below =
+        bough_between(point_at(box, time, low + y.low), point_at(box, time, low + y.high), y.weight);
+    bough_vec3 above =
+        bough_between(point_at(box, time, high + y.low), point_at(box, time, high + y.high), y.weight);
     return bough_between(below, above, z.weight);
 }
 
@@ -183,9 +186,57 @@ bough_vec3 bough_wind_box_at(const bough_wind_box *box, bough_vec3 position, dou
     place time = time_of(box, position.x, t);
     double height = (position.z - box->bottom) / box->dz;
     if (height < 0 && box->n_tower > 0) {
-        return bough_between(tower_at(box, time.low, -height), tower_at(box, time.high, -height), time.weight);
+        return bough_between(tower_at(box, time.low, -height), tower_at(box, time.high, -height),
+                             time.weight);
     }
     place z = place_of(height, box->n_z);
     place y = place_of((position.y + box->half_width) / box->dy, box->n_y);
     return bough_between(grid_at(box, time.low, y, z), grid_at(box, time.high, y, z), time.weight);
+}
+
+// -- writing -----------------------------------------------------------------------------------
+
+enum { TEXT = 100 };
+
+static void put16(FILE *f, int value) {
+    unsigned u = (unsigned)value;
+    putc((int)(u & 0xFF), f);
+    putc((int)(u >> 8 & 0xFF), f);
+}
+
+static void put32(FILE *f, int32_t value) {
+    uint32_t u = (uint32_t)value;
+    put16(f, (int)(u & 0xFFFF));
+    put16(f, (int)(u >> 16));
+}
+
+static void put_float(FILE *f, double value) {
+    float x = (float)value;
+    int32_t bits;
+    memcpy(&bits, &x, sizeof bits);
+    put32(f, bits);
+}
+
+static void put_head(FILE *f, const bough_wind_box *box, const char *text) {
+    const double measures[] = {box->dz, box->dy, box->dt, box->mean, box->hub, box->bottom};
+    int length = (int)strnlen(text, TEXT);
+    put16(f, box->periodic ? 8 : 7);
+    put32(f, box->n_z);
+    put32(f, box->n_y);
+    put32(f, box->n_tower);
+    put32(f, box->n_time);
+    for (int i = 0; i < 6; i++) put_float(f, measures[i]);
+    for (int c = 0; c < 3; c++) {
+        put_float(f, 1 / box->scale[c]);
+        put_float(f, box->offset[c]);
+    }
+    put32(f, length);
+    fwrite(text, 1, (size_t)length, f);
+}
+
+bool bough_wind_box_write(const bough_wind_box *box, const char *text, FILE *f) {
+    int64_t points = (int64_t)box->n_z * box->n_y + box->n_tower;
+    put_head(f, box, text);
+    for (int64_t k = 0; k < 3 * points * box->n_time; k++) put16(f, box->value[k]);
+    return !ferror(f);
 }

@@ -1,12 +1,62 @@
 #include "aero/wind/wind_turbulence.h"
 
-#include "aero/wind/wind_fourier.h"
 #include "core/base/base.h"
 #include "core/base/linalg.h"
 
+#include <complex.h>
+#include <fftw3.h>
 #include <math.h>
+#include <pthread.h>
 #include <stdlib.h>
 #include <string.h>
+
+// The sum of n waves, by FFTW.
+typedef struct fourier {
+    fftw_complex *amplitude; // (n/2 + 1)
+    double *sum;             // (n)
+    fftw_plan plan;
+} fourier;
+
+// The library's planner is one for the process.
+static pthread_mutex_t planner = PTHREAD_MUTEX_INITIALIZER;
+
+static void fourier_destroy(fourier *f) {
+    if (!f) return;
+    pthread_mutex_lock(&planner);
+    if (f->plan) fftw_destroy_plan(f->plan);
+    pthread_mutex_unlock(&planner);
+    fftw_free(f->amplitude);
+    fftw_free(f->sum);
+    free(f);
+}
+
+// For n times, even; NULL without memory. The plan is chosen without measuring, so that the same n
+// always gives the same bits.
+static fourier *fourier_create(int n) {
+    fourier *f = calloc(1, sizeof *f);
+    if (!f) return NULL;
+    f->amplitude = fftw_malloc(((size_t)n / 2 + 1) * sizeof *f->amplitude);
+    f->sum = fftw_malloc((size_t)n * sizeof *f->sum);
+    if (f->amplitude && f->sum) {
+        pthread_mutex_lock(&planner);
+        f->plan = fftw_plan_dft_c2r_1d(n, f->amplitude, f->sum, FFTW_ESTIMATE);
+        pthread_mutex_unlock(&planner);
+    }
+    if (f->plan) return f;
+    fourier_destroy(f);
+    return NULL;
+}
+
+// Complex amplitudes of the waves 0 … n/2, real and imaginary part next to each other: set them
+// before each sum, which overwrites them.
+static double *fourier_amplitude(fourier *f) { return (double *)f->amplitude; }
+
+// x_k = A₀ + Σ 2 Re(A_m e^{2πi m k/n}) over m = 1 … n/2 − 1, with the amplitude n/2 once; x (n) is
+// valid until the next sum.
+static const double *fourier_sum(fourier *f) {
+    fftw_execute(f->plan);
+    return f->sum;
+}
 
 // Below NEGLIGIBLE, points next to each other are taken as not coherent.
 static const double NEGLIGIBLE = 1e-3;
@@ -45,7 +95,7 @@ typedef struct maker {
     const bough_wind_iec_def *def;
     bough_wind_box *box;
     int16_t *value; // of the box
-    bough_fourier *fourier;
+    fourier *fourier;
     int n_point, n_wave; // waves 1 … n_wave
     int n_coherent;      // the slowest of them, whose points are mixed
     double step;         // between frequencies [Hz]
@@ -146,7 +196,7 @@ static bough_status mix_all(maker *m) {
 // -- series ---------------------------------------------------------------------------------------
 
 static void set_waves(maker *m, int component, int point) {
-    double *a = bough_fourier_amplitude(m->fourier);
+    double *a = fourier_amplitude(m->fourier);
     memset(a, 0, 2 * ((size_t)m->n_wave + 2) * sizeof *a);
     for (int i = 1; i <= m->n_wave; i++) {
         if (component == 0 && i <= m->n_coherent) {
@@ -184,7 +234,7 @@ static bough_status make_component(maker *m, int component) {
     }
     for (int p = 0; p < m->n_point; p++) {
         set_waves(m, component, p);
-        store(m, component, p, bough_fourier_sum(m->fourier));
+        store(m, component, p, fourier_sum(m->fourier));
     }
     return bough_ok();
 }
@@ -271,7 +321,7 @@ static bough_status make_in(bough_arena *scratch, maker *m) {
     m->factor = bough_arena_doubles(scratch, n * n);
     m->table = bough_arena_doubles(scratch, n);
     place *places = bough_arena_take(scratch, n * sizeof *places);
-    m->fourier = bough_fourier_create(m->box->n_time);
+    m->fourier = fourier_create(m->box->n_time);
     if (!m->fourier) bough_arena_leave(scratch);
     set_order(m, places);
     bough_status status = bough_ok();
@@ -292,7 +342,7 @@ bough_status bough_turbulence_make(bough_arena *arena, const bough_wind_iec_def 
     box->value = m.value = bough_arena_take(arena, values * sizeof *m.value);
     bough_arena *scratch = bough_arena_child(arena);
     bough_status status = make_in(scratch, &m);
-    bough_fourier_destroy(m.fourier);
+    fourier_destroy(m.fourier);
     bough_arena_destroy(scratch);
     return status;
 }

@@ -3,7 +3,6 @@
 #include "core/base/base.h"
 #include "core/base/linalg.h"
 #include "core/tree/dynamics.h"
-#include "core/tree/loop_internal.h"
 
 #include <string.h>
 
@@ -64,7 +63,8 @@ bough_loops *bough_loops_create(bough_arena *arena, const bough_tree *tree) {
 
 // -- rows ------------------------------------------------------------------------------------
 
-const bough_frame *bough_loops_end(const bough_tree *tree, int closure, int end) {
+// The marker at an end of a closure, and the closure that an equation belongs to.
+static const bough_frame *end_of(const bough_tree *tree, int closure, int end) {
     return &tree->markers[tree->closures[closure].marker[end]];
 }
 
@@ -74,14 +74,13 @@ static bough_frame_motion motion_of(const bough_tree_data *d, const bough_frame 
 
 void bough_loops_rows(const bough_tree *tree, bough_tree_data *d) {
     for (int c = 0; c < tree->n_closures; c++) {
-        bough_frame_motion a = motion_of(d, bough_loops_end(tree, c, 0)),
-                           b = motion_of(d, bough_loops_end(tree, c, 1));
+        bough_frame_motion a = motion_of(d, end_of(tree, c, 0)), b = motion_of(d, end_of(tree, c, 1));
         bough_constraint_rows(&tree->closures[c].constraint, &a, &b,
                               d->loops->row + tree->closures[c].first_row);
     }
 }
 
-int bough_loops_of_row(const bough_tree *tree, int row) {
+static int closure_of(const bough_tree *tree, int row) {
     int c = tree->n_closures - 1;
     while (tree->closures[c].first_row > row) c--;
     return c;
@@ -95,7 +94,7 @@ static bough_twist rate_of(const bough_tree_data *d, const bough_frame *frame) {
 // x = G v̇ with the links' accelerations that stand in the data
 static void find_rates(const bough_tree *tree, const bough_tree_data *d, double *x) {
     for (int c = 0; c < tree->n_closures; c++) {
-        bough_twist a = rate_of(d, bough_loops_end(tree, c, 0)), b = rate_of(d, bough_loops_end(tree, c, 1));
+        bough_twist a = rate_of(d, end_of(tree, c, 0)), b = rate_of(d, end_of(tree, c, 1));
         int first = tree->closures[c].first_row;
         for (int k = first; k < first + bough_constraint_n_rows(&tree->closures[c].constraint); k++) {
             const bough_wrench *w = d->loops->row[k].wrench;
@@ -109,12 +108,12 @@ static void find_rates(const bough_tree *tree, const bough_tree_data *d, double 
 // Row `row` of M⁻¹Gᵀ, and G times it into the matrix
 static void respond(const bough_tree *tree, bough_tree_data *d, int row) {
     bough_loops *l = d->loops;
-    int c = bough_loops_of_row(tree, row), m = tree->n_rows, n = tree->n_v;
+    int c = closure_of(tree, row), m = tree->n_rows, n = tree->n_v;
     double *sum = l->response + (size_t)row * (size_t)n, *column = l->matrix + (size_t)row * (size_t)m;
     memset(sum, 0, (size_t)n * sizeof(double));
     memset(column, 0, (size_t)m * sizeof(double));
     for (int end = 0; end < 2; end++) {
-        const bough_frame *frame = bough_loops_end(tree, c, end);
+        const bough_frame *frame = end_of(tree, c, end);
         if (frame->link < 0) continue;
         bough_tree_free_response(tree, d, frame, l->row[row].wrench[end], l->speed);
         find_rates(tree, d, l->work);
@@ -125,7 +124,7 @@ static void respond(const bough_tree *tree, bough_tree_data *d, int row) {
 
 // Whether an equation is one of rotation.
 static bool turns(const bough_tree *tree, int row) {
-    const bough_closure *c = &tree->closures[bough_loops_of_row(tree, row)];
+    const bough_closure *c = &tree->closures[closure_of(tree, row)];
     return row - c->first_row >= c->constraint.n_translation;
 }
 
@@ -178,7 +177,7 @@ static void find_scales(const bough_tree *tree, bough_loops *l) {
 }
 
 // Scales the matrix and finds its eigenvectors.
-bool bough_loops_factor(const bough_tree *tree, bough_loops *l) {
+static bool factor(const bough_tree *tree, bough_loops *l) {
     int m = tree->n_rows;
     find_scales(tree, l);
     for (int j = 0; j < m; j++) {
@@ -194,13 +193,13 @@ bool bough_loops_factor(const bough_tree *tree, bough_loops *l) {
 }
 
 // After kinematics, bough_loops_rows and free dynamics at this state.
-bool bough_loops_mobility(const bough_tree *tree, bough_tree_data *d) {
+static bool find_mobility(const bough_tree *tree, bough_tree_data *d) {
     for (int k = 0; k < tree->n_rows; k++) respond(tree, d, k);
-    return bough_loops_factor(tree, d->loops);
+    return factor(tree, d->loops);
 }
 
 // The least x of all that make G M⁻¹Gᵀ x = x as far as it can be, in place
-void bough_loops_solve(const bough_tree *tree, const bough_loops *l, double *x) {
+static void solve(const bough_tree *tree, const bough_loops *l, double *x) {
     int m = tree->n_rows;
     double *part = l->work;
     double least = least_eigenvalue(tree, l);
@@ -218,7 +217,7 @@ void bough_loops_solve(const bough_tree *tree, const bough_loops *l, double *x) 
 }
 
 // speed (n_v) = M⁻¹Gᵀ x
-void bough_loops_spread(const bough_tree *tree, const bough_loops *l, const double *x, double *speed) {
+static void spread(const bough_tree *tree, const bough_loops *l, const double *x, double *speed) {
     int n = tree->n_v;
     memset(speed, 0, (size_t)n * sizeof(double));
     for (int j = 0; j < tree->n_rows; j++) {
@@ -240,11 +239,11 @@ bool bough_tree_forward_dynamics(const bough_tree *tree, bough_tree_data *d, dou
     find_rates(tree, d, x);
     for (int k = 0; k < m; k++)
         l->multiplier[k] = -(x[k] + l->row[k].bias + l->row[k].rate / tree->closure_time);
-    if (!bough_loops_mobility(tree, d)) return false;
-    bough_loops_solve(tree, l, l->multiplier);
+    if (!find_mobility(tree, d)) return false;
+    solve(tree, l, l->multiplier);
     for (int k = 0; k < m; k++) x[k] = l->row[k].value / tree->closure_time;
-    bough_loops_solve(tree, l, x);
-    bough_loops_spread(tree, l, x, l->correction);
+    solve(tree, l, x);
+    spread(tree, l, x, l->correction);
     return bough_tree_free_dynamics(tree, d, t, input, acceleration);
 }
 
@@ -255,8 +254,8 @@ void bough_tree_response(const bough_tree *tree, bough_tree_data *d, const bough
     if (l == NULL || frame->link < 0) return;
     double *x = l->work + 4 * tree->n_rows;
     find_rates(tree, d, x);
-    bough_loops_solve(tree, l, x);
-    bough_loops_spread(tree, l, x, l->speed);
+    solve(tree, l, x);
+    spread(tree, l, x, l->speed);
     for (int k = 0; k < tree->n_v; k++) change[k] -= l->speed[k];
 }
 
@@ -289,7 +288,7 @@ double bough_loops_margin(const bough_tree *tree, bough_tree_data *d, int *closu
     for (int k = 1; k < m; k++) {
         if (fabs(vector[k]) > fabs(vector[row])) row = k;
     }
-    *closure = bough_loops_of_row(tree, row);
+    *closure = closure_of(tree, row);
     return l->value[smallest] / l->value[m - 1];
 }
 
@@ -302,4 +301,168 @@ bough_wrench bough_loops_wrench(const bough_tree *tree, const bough_tree_data *d
         sum.moment = bough_axpy(d->loops->multiplier[k], w.moment, sum.moment);
     }
     return sum;
+}
+
+// -- the initial state: coordinates and speeds that satisfy the closures -----------------------
+
+enum { MOST_ITERATIONS = 60 };
+static const double longest = 0.05;    // step of a coordinate [rad, m]: a shallow arch turns over else
+static const double near_enough = 0.1; // of the mechanism's extent, and in equations of directions
+static const double satisfied = 1e-10;
+
+// The largest distance from a closure's end to the ground's origin, a link or another closure [m]
+static double extent(const bough_tree *tree, const bough_tree_data *d) {
+    bough_vec3 at = bough_tree_frame_pose(d, end_of(tree, 0, 0)).position;
+    double largest = bough_norm(at);
+    for (int i = 0; i < tree->n_links; i++)
+        largest = fmax(largest, bough_norm(bough_sub(d->pose[i].position, at)));
+    for (int c = 0; c < tree->n_closures; c++) {
+        bough_vec3 x = bough_tree_frame_pose(d, end_of(tree, c, 0)).position;
+        largest = fmax(largest, bough_norm(bough_sub(x, at)));
+    }
+    return largest > 1e-6 ? largest : 1;
+}
+
+// The row that is violated most, lengths measured by `size`.
+static int worst_row(const bough_tree *tree, const bough_tree_data *d, bool of_rate, double size,
+                     double *violation) {
+    int worst = 0;
+    *violation = 0;
+    for (int k = 0; k < tree->n_rows; k++) {
+        const bough_closure *c = &tree->closures[closure_of(tree, k)];
+        const bough_constraint_row *row = &d->loops->row[k];
+        double x = fabs(of_rate ? row->rate : row->value);
+        if (k - c->first_row < c->constraint.n_translation) x /= size;
+        if (x <= *violation) continue;
+        *violation = x;
+        worst = k;
+    }
+    return worst;
+}
+
+static bough_status refuse(const bough_tree *tree, const bough_tree_data *d, int row, bool of_rate) {
+    const bough_closure *c = &tree->closures[closure_of(tree, row)];
+    bool turns = row - c->first_row >= c->constraint.n_translation;
+    if (of_rate) {
+        return bough_fail(BOUGH_INVALID,
+                          "closure '%s': with the initial speeds its ends move apart at %.4g %s; "
+                          "leave out the speeds that should follow the others",
+                          c->name, fabs(d->loops->row[row].rate), turns ? "rad/s" : "m/s");
+    }
+    return bough_fail(BOUGH_INVALID,
+                      "closure '%s': its ends are %.4g %s apart, from where it cannot be assembled; "
+                      "correct the joints' initial positions, the closure's placements or its axis",
+                      c->name, fabs(d->loops->row[row].value), turns ? "(sine of an angle)" : "m");
+}
+
+// One step of Newton's method, the least in the measure of the inertias.
+static bool approach(bough_tree *tree, bough_tree_data *d) {
+    bough_loops *l = d->loops;
+    double *q = tree->initial, step[BOUGH_JOINT_COORDINATES];
+    memset(l->multiplier, 0, (size_t)tree->n_rows * sizeof(double));
+    if (!bough_tree_free_dynamics(tree, d, 0, NULL, l->speed) || !find_mobility(tree, d)) {
+        return false;
+    }
+    double *x = l->work + 4 * tree->n_rows;
+    for (int k = 0; k < tree->n_rows; k++) x[k] = l->row[k].value;
+    solve(tree, l, x);
+    spread(tree, l, x, l->correction);
+    double largest = 0;
+    for (int k = 0; k < tree->n_v; k++) largest = fmax(largest, fabs(l->correction[k]));
+    for (int k = 0; k < tree->n_v && largest > longest; k++) l->correction[k] *= longest / largest;
+    for (int i = 0; i < tree->n_links; i++) {
+        const bough_link *link = &tree->links[i];
+        double *own = q + link->first_coordinate;
+        bough_joint_rate(&link->joint, own, l->correction + link->first_speed, step);
+        for (int k = 0; k < link->n_coordinates; k++) own[k] -= step[k];
+        bough_joint_normalise(&link->joint, own);
+    }
+    for (int k = 0; k < tree->n_v; k++)
+        tree->closure_moved = fmax(tree->closure_moved, fabs(l->correction[k]));
+    return true;
+}
+
+static bough_status assemble_positions(bough_tree *tree, bough_tree_data *d, double size) {
+    double violation;
+    for (int i = 0;; i++) {
+        bough_tree_kinematics(tree, tree->initial, d);
+        bough_loops_rows(tree, d);
+        int row = worst_row(tree, d, false, size, &violation);
+        if (violation <= satisfied && i > 0) return bough_ok();
+        bool far = i == 0 && violation > near_enough;
+        if (far || i == MOST_ITERATIONS || !approach(tree, d)) return refuse(tree, d, row, false);
+    }
+}
+
+// Row `row` of G
+static void jacobian_row(const bough_tree *tree, const bough_tree_data *d, int row, double *g) {
+    memset(g, 0, (size_t)tree->n_v * sizeof(double));
+    for (int end = 0; end < 2; end++) {
+        const bough_frame *frame = end_of(tree, closure_of(tree, row), end);
+        if (frame->link < 0) continue;
+        bough_wrench w = bough_wrench_to_parent(&frame->placement, d->loops->row[row].wrench[end]);
+        for (int i = frame->link; i >= 0; i = tree->links[i].parent) {
+            const bough_link *link = &tree->links[i];
+            double own[BOUGH_JOINT_SPEEDS];
+            bough_joint_force(&link->joint, w, own);
+            for (int k = 0; k < link->n_speeds; k++) g[link->first_speed + k] += own[k];
+            w = bough_wrench_to_parent(&d->relative[i], w);
+        }
+    }
+}
+
+// Speeds that are zero follow those that are given: the least squares of G δ = −G v over them, or,
+// with all of them free, over all.
+static bool follow(bough_tree *tree, bough_tree_data *d, bool all) {
+    bough_loops *l = d->loops;
+    int m = tree->n_rows, n = tree->n_v;
+    double *v = tree->initial + tree->n_q, *x = l->work + 4 * m;
+    for (int j = 0; j < m; j++) {
+        double *g = l->response + (size_t)j * (size_t)n;
+        jacobian_row(tree, d, j, g);
+        for (int k = 0; k < n; k++) {
+            if (!all && v[k] != 0) g[k] = 0;
+        }
+        for (int i = 0; i < tree->n_links; i++) {
+            if (tree->links[i].motion != NULL) g[tree->links[i].first_speed] = 0;
+        }
+    }
+    for (int i = 0; i < m; i++) {
+        for (int j = 0; j < m; j++) {
+            double sum = 0;
+            for (int k = 0; k < n; k++) sum += l->response[i * n + k] * l->response[j * n + k];
+            l->matrix[i * m + j] = sum;
+        }
+    }
+    if (!factor(tree, l)) return false;
+    for (int j = 0; j < m; j++) x[j] = l->row[j].rate;
+    solve(tree, l, x);
+    spread(tree, l, x, l->speed);
+    for (int k = 0; k < n; k++) v[k] -= l->speed[k];
+    return true;
+}
+
+static bough_status assemble_speeds(bough_tree *tree, bough_tree_data *d, double size) {
+    double violation, fastest = 0;
+    for (int k = 0; k < tree->n_v; k++) fastest = fmax(fastest, fabs(tree->initial[tree->n_q + k]));
+    for (int attempt = 0;; attempt++) {
+        bough_tree_kinematics(tree, tree->initial, d);
+        bough_loops_rows(tree, d);
+        int row = worst_row(tree, d, true, size, &violation);
+        if (violation <= satisfied * fastest) return bough_ok();
+        bool far = attempt == 1 && violation > near_enough * fastest;
+        if (far || attempt == 3 || !follow(tree, d, attempt > 0)) return refuse(tree, d, row, true);
+    }
+}
+
+bough_status bough_loops_assemble(bough_tree *tree, bough_tree_data *d) {
+    if (d->loops == NULL) return bough_ok();
+    bough_tree_kinematics(tree, tree->initial, d);
+    double size = tree->closure_size = extent(tree, d);
+    bough_status status = assemble_positions(tree, d, size);
+    if (bough_is_ok(&status)) {
+        tree->closure_rank = d->loops->rank;
+        status = assemble_speeds(tree, d, size);
+    }
+    return status;
 }

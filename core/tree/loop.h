@@ -51,4 +51,7 @@ double bough_loops_margin(const bough_tree *tree, bough_tree_data *data, int *cl
 // what remains, where that is impossible. Sets closure_rank, closure_moved and closure_size of the tree.
 bough_status bough_loops_assemble(bough_tree *tree, bough_tree_data *data);
 
+// The closures' equations at the data's poses and twists, into loops->row.
+void bough_loops_rows(const bough_tree *tree, bough_tree_data *data);
+
 #endif

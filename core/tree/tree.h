@@ -1,6 +1,6 @@
 // The rigid multibody tree in joint coordinates: the user's definition (def), the constant model with its
 // loads, and the data of one evaluation. Bodies that cannot move relative to each other form one link, so
-// fixed joints cost no states and no work. tree_build.h builds the tree, force.h contains its forces,
+// fixed joints cost no states and no work. tree_build.c builds the tree, force.h contains its forces,
 // dynamics.h the recursions, loop.h the closures.
 #ifndef BOUGH_CORE_TREE_H
 #define BOUGH_CORE_TREE_H
@@ -8,6 +8,7 @@
 #include "core/base/arena.h"
 #include "core/base/schedule.h"
 #include "core/base/status.h"
+#include "core/solve/system.h"
 #include "core/tree/constraint.h"
 #include "core/tree/joint.h"
 #include "core/tree/motion.h"
@@ -271,5 +272,26 @@ bough_transform bough_tree_frame_pose(const bough_tree_data *data, const bough_f
 // The twist of a frame in its own axes, and of its origin in ground axes.
 bough_twist bough_tree_frame_twist(const bough_tree_data *data, const bough_frame *frame);
 bough_twist bough_tree_frame_velocity(const bough_tree_data *data, const bough_frame *frame);
+
+// -- building ----------------------------------------------------------------------------------
+
+// Builds the tree in the arena from a def whose indices are valid, parents without a cycle.
+// BOUGH_INVALID, naming the body, for a place that is not finite, a joint that moves no inertia and a
+// loop that does not close.
+bough_status bough_tree_create(bough_arena *arena, const bough_tree_def *def, bough_tree **tree);
+
+// Data for evaluations of the tree; as many as there are threads or users.
+bough_tree_data *bough_tree_data_create(bough_arena *arena, const bough_tree *tree);
+
+// -- as a system -------------------------------------------------------------------------------
+
+// The rigid tree behind the contract of system.h: kind "tree". State (q, v), input 6 and output 9
+// per port, 6 and 13 per end, output 9 per port with axes, as in tree.h; q̇ = N(q) v and v̇ by the
+// recursive forward dynamics, in O(n). Prescribed joints are where their motion says: f and h do not depend
+// on their states, which hold q(t) and v(t) at the end of every step, so that nothing drifts under any
+// integrator or scheme. Newton's systems are solved in O(n) by tree_newton.h; with closures by dense matrices
+// from differences. In the arena; `name` is copied. Tolerance per state: rtol × (1 rad, 1 m, 1 of a
+// quaternion, 1 rad/s, 1 m/s).
+bough_system bough_tree_system_create(bough_arena *arena, bough_tree *tree, const char *name);
 
 #endif

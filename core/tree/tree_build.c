@@ -1,4 +1,4 @@
-#include "core/tree/tree_build.h"
+#include "core/tree/tree.h"
 
 #include "core/base/base.h"
 #include "core/tree/dynamics.h"

@@ -1,17 +1,63 @@
-#include "core/tree/tree_newton_internal.h"
+#include "core/tree/tree_newton.h"
 
+#include "core/base/linalg.h"
 #include "core/tree/dynamics.h"
 #include "core/tree/force.h"
-#include "core/base/linalg.h"
 
 #include <string.h>
 
-enum { N = BOUGH_TWIST, Z = BOUGH_CHANGE };
+enum { N = 6, Z = 18 }; // components of a twist, of ζ
+
+// ζ of a link
+typedef struct change {
+    bough_twist pose, speed, acceleration;
+} change;
+
+enum { ROWS = N * Z, BLOCK = 24 * 12 };
+
+// A link's part of the factors, in its own axes
+typedef struct node {
+    bough_transform relative;
+    bough_twist speed, joint, carried, pulled; // V, S v, X V_λ, X (A_λ − g)
+    bough_wrench force;                        // through the joint, F
+    bough_wrench end_force;                    // of an end, which keeps its direction when the link turns
+    double tau_q, tau_v;                       // −∂τ/∂q, −∂τ/∂v
+    double matrix[ROWS];                       // 𝒜 (6 × 18)
+    double column[ROWS];                       // Σ, a row per speed
+    double back[ROWS];                         // D⁻¹ Sᵀ𝒜, a row per speed
+    double gain[N * N];                        // what x gives the parent, a row per speed
+    double coordinate[N * N];                  // δη along each speed, a row per speed
+    double factor[N * N];                      // D
+    int pivot[N];
+    // of the present solution
+    change known, total; // ζ⁰, ζ
+    bough_wrench load;   // p
+    double speeds[N];    // x
+} node;
+
+// One end of a spring or bushing on a link
+typedef struct newton_end {
+    int element, side, link;
+    const bough_frame *frame;
+} newton_end;
+
+struct bough_tree_newton {
+    const bough_tree *tree;
+    node *node;         // (n_links)
+    double c;           // δv̇ = c δv
+    double *state;      // (n_q + n_v) where it is linearised
+    int n_ends, n_rows; // n_rows = 6 n_ends
+    newton_end *ends;   // (n_ends)
+    double *block;      // J of each element: ∂(both wrenches)/∂(poses, twists), 24 rows of 12
+    double *matrix;     // E − J T⁻¹ Eᵀ (n_rows × n_rows, column-major)
+    int *pivot;         // (n_rows)
+    double *coupling;   // (n_rows) changes of the ends' wrenches
+    double *zero;       // (n_q + n_v) zeros
+    double *keep;       // (n_q + n_v) scratch
+};
 
 typedef bough_twist twist;
 typedef bough_wrench wrench;
-typedef bough_newton_change change;
-typedef bough_newton_node node;
 
 static const twist no_twist;
 static const wrench no_wrench;
@@ -290,8 +336,9 @@ static void substitute(const bough_tree_newton *w) {
     }
 }
 
-void bough_newton_sweep(const bough_tree_newton *w, const double *coupling, const double *a,
-                        const double *x) {
+// Solves without the springs and bushings, into the nodes' speeds and total changes: r as in
+// bough_tree_newton_solve, the ends' wrenches changed by `coupling` (n_rows) or NULL for none.
+static void sweep(const bough_tree_newton *w, const double *coupling, const double *a, const double *x) {
     for (int i = 0; i < w->tree->n_links; i++) w->node[i].load = no_wrench;
     for (int e = 0; coupling != NULL && e < w->n_ends; e++) {
         wrench by = bough_wrench_load(coupling + N * e);
@@ -300,6 +347,80 @@ void bough_newton_sweep(const bough_tree_newton *w, const double *coupling, cons
     }
     eliminate(w, a, x);
     substitute(w);
+}
+
+// -- springs and bushings ----------------------------------------------------------------------
+
+// The changes c of the wrenches at their ends are J ζ, and ζ those of the tree without them under c:
+// (E − J T⁻¹ Eᵀ) c = J T⁻¹ r.
+
+static const twist no_twist;
+
+// Lists the ends of springs and bushings, which sets n_ends and n_rows.
+static void list_ends(bough_tree_newton *w) {
+    for (int e = 0; e < bough_tree_n_elements(w->tree); e++) {
+        for (int side = 0; side < 2; side++) {
+            const bough_frame *frame = bough_element_frame(w->tree, e, side);
+            if (frame->link < 0) continue;
+            w->ends[w->n_ends++] = (newton_end){e, side, frame->link, frame};
+        }
+    }
+    w->n_rows = N * w->n_ends;
+}
+
+// Their tangents at the data's poses and twists, then the factors of the system that couples them.
+static void find_blocks(const bough_tree_newton *w, const bough_tree_data *d) {
+    for (int e = 0; e < bough_tree_n_elements(w->tree); e++) {
+        for (int k = 0; k < 24; k++) {
+            twist shift[2] = {no_twist, no_twist}, rate[2] = {no_twist, no_twist};
+            (k < 12 ? shift : rate)[(k / N) % 2] = bough_twist_unit(k % N);
+            bough_force_pair by = bough_element_change(w->tree, d, e, shift, rate);
+            double *row = w->block + (size_t)BLOCK * (size_t)e + 12 * k;
+            bough_wrench_store(by.on[0], row);
+            bough_wrench_store(by.on[1], row + N);
+        }
+    }
+}
+
+// How the present ζ change the ends' wrenches (n_rows)
+static void find_coupling(const bough_tree_newton *w, double *change_of) {
+    memset(change_of, 0, (size_t)w->n_rows * sizeof(double));
+    for (int e = 0; e < w->n_ends; e++) {
+        const newton_end *from = &w->ends[e];
+        double z[2 * N];
+        const node *n = &w->node[from->link];
+        bough_twist_store(bough_twist_to_child(&from->frame->placement, n->total.pose), z);
+        bough_twist_store(bough_twist_to_child(&from->frame->placement, n->total.speed), z + N);
+        const double *block = w->block + (size_t)BLOCK * (size_t)from->element;
+        // the ends of one element are neighbours in the list
+        for (int to = e - 1 < 0 ? 0 : e - 1; to <= e + 1 && to < w->n_ends; to++) {
+            if (w->ends[to].element != from->element) continue;
+            for (int k = 0; k < 2 * N; k++) {
+                int column = (k < N ? 0 : 12) + N * from->side + k % N;
+                for (int r = 0; r < N; r++)
+                    change_of[N * to + r] += block[12 * column + N * w->ends[to].side + r] * z[k];
+            }
+        }
+    }
+}
+
+static bool factor_coupling(const bough_tree_newton *w) {
+    int m = w->n_rows;
+    for (int j = 0; j < m; j++) {
+        double *column = w->matrix + (size_t)m * (size_t)j;
+        memset(w->coupling, 0, (size_t)m * sizeof(double));
+        w->coupling[j] = 1;
+        sweep(w, w->coupling, NULL, w->zero);
+        find_coupling(w, column);
+        for (int i = 0; i < m; i++) column[i] = (i == j ? 1 : 0) - column[i];
+    }
+    return bough_dense_factor(m, w->matrix, w->pivot);
+}
+
+// The changes of the ends' wrenches from those that the present solution has, in newton->coupling.
+static void solve_coupling(const bough_tree_newton *w) {
+    find_coupling(w, w->coupling);
+    bough_dense_solve(w->n_rows, 1, w->matrix, w->pivot, w->coupling);
 }
 
 // -- the whole -------------------------------------------------------------------------------
@@ -319,8 +440,8 @@ bool bough_tree_newton_setup(bough_tree_newton *w, bough_tree_data *data, double
     }
     add_applied(w, data, t);
     add_ends(w, data, input);
-    bough_newton_blocks(w, data);
-    return factor_tree(w) && (w->n_rows == 0 || bough_newton_factor_coupling(w));
+    find_blocks(w, data);
+    return factor_tree(w) && (w->n_rows == 0 || factor_coupling(w));
 }
 
 static void store_solution(const bough_tree_newton *w, double *x) {
@@ -338,10 +459,10 @@ static void store_solution(const bough_tree_newton *w, double *x) {
 }
 
 void bough_tree_newton_solve(bough_tree_newton *w, const double *a, double *x) {
-    bough_newton_sweep(w, NULL, a, x);
+    sweep(w, NULL, a, x);
     if (w->n_rows > 0) {
-        bough_newton_solve_coupling(w);
-        bough_newton_sweep(w, w->coupling, a, x);
+        solve_coupling(w);
+        sweep(w, w->coupling, a, x);
     }
     store_solution(w, x);
 }
@@ -355,8 +476,8 @@ bough_tree_newton *bough_tree_newton_create(bough_arena *arena, const bough_tree
     w->zero = bough_arena_doubles(arena, n + BOUGH_JOINT_COORDINATES);
     w->keep = bough_arena_doubles(arena, n);
     w->ends = bough_arena_take(arena, 2 * elements * sizeof *w->ends);
-    w->block = bough_arena_doubles(arena, BOUGH_NEWTON_BLOCK * elements);
-    bough_newton_list_ends(w);
+    w->block = bough_arena_doubles(arena, BLOCK * elements);
+    list_ends(w);
     size_t m = (size_t)w->n_rows;
     w->matrix = bough_arena_doubles(arena, m * m);
     w->pivot = bough_arena_take(arena, m * sizeof(int));

@@ -1,11 +1,10 @@
 // The tree as a system.
-#include "core/tree/tree_system.h"
+#include "core/tree/tree.h"
 
 #include "core/base/base.h"
 #include "core/tree/dynamics.h"
 #include "core/base/linalg.h"
 #include "core/tree/loop.h"
-#include "core/tree/tree_build.h"
 #include "core/tree/tree_newton.h"
 
 #include <string.h>

@@ -4,7 +4,6 @@
 #include "flexbody/rod/rod_tangent.h"
 
 #include "flexbody/rod/rod_tangent_layout.h"
-#include "flexbody/rod/rod_tile.h"
 
 #include <string.h>
 

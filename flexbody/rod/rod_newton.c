@@ -3,7 +3,6 @@
 
 #include "flexbody/rod/rod_lanes.h"
 #include "flexbody/rod/rod_tangent_layout.h"
-#include "flexbody/rod/rod_tile.h"
 
 #include <string.h>
 

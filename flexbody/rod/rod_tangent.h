@@ -23,7 +23,7 @@ typedef struct bough_rod_blocks {
 typedef struct bough_rod_tangent {
     // computed by bough_rod_linearise
     double *variation;      // of segment forces by configuration, eight segments at a time: see
-                            // rod_variation.h (padded N × 81)
+                            // rod_tangent_layout.h (padded N × 81)
     double *local_position; // tangents of a vertex' own terms, by rotation (18 × stride)
     double *vertex;         // see rod_tangent_layout.h
     bough_vec3 omega;       // of the BRF

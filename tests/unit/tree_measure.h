@@ -3,7 +3,7 @@
 #ifndef BOUGH_TESTS_TREE_MEASURE_H
 #define BOUGH_TESTS_TREE_MEASURE_H
 
-#include "core/tree/loop_internal.h"
+#include "core/tree/loop.h"
 
 #include <assert.h>
 #include <math.h>

@@ -12,8 +12,7 @@
 #include "apps/bough/model/validity.h"
 #include "core/base/linalg.h"
 #include "core/tree/dynamics.h"
-#include "core/tree/tree_build.h"
-#include "core/tree/tree_system.h"
+#include "core/tree/tree.h"
 
 #include <string.h>
 

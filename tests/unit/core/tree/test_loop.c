@@ -8,8 +8,7 @@
 #include "core/tree/dynamics.h"
 #include "core/tree/loop.h"
 #include "core/base/rotation.h"
-#include "core/tree/tree_build.h"
-#include "core/tree/tree_system.h"
+#include "core/tree/tree.h"
 
 #include <stdlib.h>
 #include <string.h>

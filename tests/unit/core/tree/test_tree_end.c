@@ -6,8 +6,7 @@
 #include "core/base/base.h"
 #include "core/tree/dynamics.h"
 #include "core/base/rotation.h"
-#include "core/tree/tree_build.h"
-#include "core/tree/tree_system.h"
+#include "core/tree/tree.h"
 
 #include <string.h>
 

@@ -6,7 +6,7 @@
 #include "core/tree/dynamics.h"
 #include "core/tree/force.h"
 #include "core/base/rotation.h"
-#include "core/tree/tree_build.h"
+#include "core/tree/tree.h"
 #include "core/tree/tree_newton.h"
 
 #include <string.h>
