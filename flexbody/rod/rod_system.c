@@ -1,10 +1,233 @@
+// The rod as a system, and its ports linearised: what the motion of its two ends does to the rod, and the rod to them.
 #include "flexbody/rod/rod_system.h"
 
 #include "core/base/symmetric6.h"
+#include "flexbody/rod/rod_lanes.h"
 #include "flexbody/rod/rod_tangent.h"
+#include "flexbody/rod/rod_tangent_layout.h"
 
 #include <math.h>
 #include <string.h>
+
+static bough_vec3 vector_at(const double *x) { return bough_v3(x[0], x[1], x[2]); }
+
+// p⁻¹∘r: the rotation 2·vector of a quaternion's variation r, any |p|
+static bough_vec3 turn_of(const double *p, int p_stride, const double *r, int stride) {
+    bough_quaternion q = {p[0], p[p_stride], p[2 * p_stride], p[3 * p_stride]};
+    bough_quaternion dq = {r[0], r[stride], r[2 * stride], r[3 * stride]};
+    bough_quaternion d = bough_quaternion_product(bough_quaternion_conjugate(q), dq);
+    double inverse = 1 / (q.w * q.w + q.x * q.x + q.y * q.y + q.z * q.z);
+    return bough_scale(2 * inverse, bough_v3(d.x, d.y, d.z));
+}
+
+// -- variations of vertices -----------------------------------------------------------------------
+
+static vertex_variation root_variation(const bough_rod_model *m, const double *d) {
+    return (vertex_variation){.u = vector_at(d), .w = bough_mat3_tmul(m->root, vector_at(d + 3))};
+}
+
+// Of the moving vertex i + 1, whose quaternion is p, along the variation d of the state.
+static vertex_variation state_variation(const bough_rod_model *m, const double *p, int stride,
+                                        const double *d, int i) {
+    int n = m->n;
+    return (vertex_variation){.x = load3(d, n, i),
+                              .phi = turn_of(p, stride, d + 3 * n + i, n),
+                              .u = load3(d + (size_t)BOUGH_ROD_U * n, n, i),
+                              .w = load3(d + (size_t)BOUGH_ROD_W * n, n, i)};
+}
+
+// Of the first and the last one, by the quaternions in a state.
+static vertex_variation first_variation(const bough_rod_model *m, const double *state, const double *d) {
+    return state_variation(m, state + 3 * m->n, m->n, d, 0);
+}
+
+static vertex_variation last_variation(const bough_rod_model *m, const double *state, const double *d) {
+    return state_variation(m, state + 4 * m->n - 1, m->n, d, m->n - 1);
+}
+
+// The same where k was linearised.
+static vertex_variation kept_variation(const bough_rod_model *m, const bough_rod_tangent *k, const double *d,
+                                       int i) {
+    return state_variation(m, k->vertex + (size_t)KEPT_P * m->stride + i + 1, m->stride, d, i);
+}
+
+// Of the last vertex, whose quaternion is p; its motion: u, W, x, p.
+static vertex_variation end_variation(const double *p, const double *d) {
+    return (vertex_variation){
+        .u = vector_at(d), .w = vector_at(d + 3), .x = vector_at(d + 6), .phi = turn_of(p, 1, d + 9, 1)};
+}
+
+// -- the wrenches ---------------------------------------------------------------------------------
+
+void bough_rod_wrench_tangent(const bough_rod_model *m, const bough_rod_loads *loads, double t,
+                              const bough_rod_variation *at, bough_rod_scratch *scratch, double *wrench) {
+    double now[BOUGH_ROD_OUTPUTS]; // leaves vertices and loads in scratch
+    bough_rod_root_wrench(m, loads, t, at->state, at->input, scratch, now);
+    vertex_variation l = {0}, r = {0};
+    if (at->input_rate != NULL) l = root_variation(m, at->input_rate);
+    if (at->state_rate != NULL) r = first_variation(m, at->state, at->state_rate);
+    segment_force f = segment_tangent(m, scratch, 0, &l, &r);
+    store3(wrench, 1, 0, f.f);
+    store3(wrench + 3, 1, 0, bough_mat3_mul(m->root, f.ll));
+}
+
+// What turning the last vertex by phi changes in the loads on it: in section axes a dead moment
+// turns, in BRF axes the force of a follower.
+static segment_force load_variation(const bough_rod_model *m, const bough_rod_loads *loads,
+                                    const bough_rod_scratch *scratch, bough_vec3 phi) {
+    int s = m->stride, end = m->n_segment;
+    bough_mat3 r = bough_rotation_matrix(load_vertex(scratch->vertex, s, end).p);
+    bough_vec3 moment = bough_mat3_tmul(r, load3(scratch->load + 3 * s, s, end));
+    segment_force d = {.f = {0, 0, 0}};
+    if (bough_rod_loads_follow(loads)) {
+        bough_vec3 force = load3(scratch->follower, s, end);
+        d.f = bough_mat3_mul(r, bough_cross(phi, force));
+        moment = bough_sub(moment, load3(scratch->follower + 3 * s, s, end));
+    }
+    d.lr = bough_cross(moment, phi);
+    return d;
+}
+
+void bough_rod_keep_end(const bough_rod_model *m, const bough_rod_loads *loads, const double *end,
+                        const bough_rod_scratch *scratch, bough_rod_tangent *k) {
+    memcpy(k->end_rotation, end + 9, 4 * sizeof(double));
+    for (int j = 0; j < 3; j++) {
+        segment_force load = load_variation(m, loads, scratch, bough_unit3(j));
+        store3(k->end_load + 3 * j, 1, 0, load.f);
+        store3(k->end_load + 9 + 3 * j, 1, 0, load.lr);
+    }
+}
+
+// A segment's forces by the motion of its vertices, `position` being in lanes.
+static segment_force kept_force(const double *position, const double *velocity, vertex_variation l,
+                                vertex_variation r) {
+    double q[DIRECTIONS], v[DIRECTIONS], force[FORCES];
+    store3(q + DELTA, 1, 0, bough_sub(r.x, l.x));
+    store3(q + LEFT, 1, 0, l.phi);
+    store3(q + RIGHT, 1, 0, r.phi);
+    store3(v + DELTA, 1, 0, bough_sub(r.u, l.u));
+    store3(v + LEFT, 1, 0, l.w);
+    store3(v + RIGHT, 1, 0, r.w);
+    for (int f = 0; f < FORCES; f++, position += LANES * DIRECTIONS, velocity += DIRECTIONS) {
+        force[f] = 0;
+        for (int d = 0; d < DIRECTIONS; d++) {
+            force[f] += position[LANES * d] * q[d] + velocity[d] * v[d];
+        }
+    }
+    return (segment_force){vector_at(force + F), vector_at(force + LL), vector_at(force + LR)};
+}
+
+static void kept_end_tangent(const bough_rod_model *m, const bough_rod_tangent *k, const double *state_rate,
+                             const double *input_rate, double *wrench) {
+    int lane = m->n % LANES;
+    const double *position = k->variation + (size_t)TANGENTS * (m->n - lane) + lane;
+    vertex_variation l = {0}, r = {0};
+    if (state_rate != NULL) l = kept_variation(m, k, state_rate, m->n - 1);
+    if (input_rate != NULL) r = end_variation(k->end_rotation, input_rate + BOUGH_ROD_INPUTS);
+    segment_force f = kept_force(position, k->end, l, r);
+    bough_mat3 pull = load_matrix(k->end_load, 1, 0), turn = load_matrix(k->end_load + 9, 1, 0);
+    store3(wrench, 1, 0, bough_sub(bough_mat3_mul(pull, r.phi), f.f));
+    store3(wrench + 3, 1, 0, bough_add(bough_mat3_mul(turn, r.phi), f.lr));
+}
+
+void bough_rod_kept_wrench_tangent(const bough_rod_model *m, const bough_rod_tangent *k,
+                                   const double *state_rate, const double *input_rate, double *wrench) {
+    vertex_variation l = {0}, r = {0};
+    if (input_rate != NULL) l = root_variation(m, input_rate);
+    if (state_rate != NULL) r = kept_variation(m, k, state_rate, 0);
+    segment_force f = kept_force(k->variation, k->root, l, r);
+    store3(wrench, 1, 0, f.f);
+    store3(wrench + 3, 1, 0, bough_mat3_mul(m->root, f.ll));
+    if (!bough_rod_carries(m)) return;
+    kept_end_tangent(m, k, state_rate, input_rate, wrench + BOUGH_ROD_OUTPUTS);
+}
+
+void bough_rod_end_tangent(const bough_rod_model *m, const bough_rod_loads *loads, double t,
+                           const bough_rod_variation *at, bough_rod_scratch *scratch, double *wrench) {
+    double now[BOUGH_ROD_END_OUTPUTS]; // leaves vertices and loads in scratch
+    bough_rod_end_wrench(m, loads, t, at->state, at->input, scratch, now);
+    vertex_variation l = {0}, r = {0};
+    if (at->state_rate != NULL) l = last_variation(m, at->state, at->state_rate);
+    if (at->input_rate != NULL) {
+        r = end_variation(at->input + BOUGH_ROD_INPUTS + 9, at->input_rate + BOUGH_ROD_INPUTS);
+    }
+    segment_force f = segment_tangent(m, scratch, m->n, &l, &r);
+    segment_force load = load_variation(m, loads, scratch, r.phi);
+    store3(wrench, 1, 0, bough_sub(load.f, f.f));
+    store3(wrench + 3, 1, 0, bough_add(load.lr, f.lr));
+}
+
+// -- the rate -------------------------------------------------------------------------------------
+
+// Adds the acceleration of moving vertex i + 1 by a force in BRF axes and a moment in section axes.
+static void vertex_response(const bough_rod_model *m, const bough_rod_scratch *scratch, int i,
+                            bough_vec3 force, bough_vec3 moment, double *column) {
+    int n = m->n;
+    bough_mat3 r = bough_rotation_matrix(load_vertex(scratch->vertex, m->stride, i + 1).p);
+    strain h = {bough_mat3_tmul(r, force), moment};
+    strain q = symmetric_times(m->inverse_mass, m->stride, i, h);
+    bough_vec3 u = bough_mat3_mul(r, q.v);
+    const double values[6] = {u.x, u.y, u.z, q.u.x, q.u.y, q.u.z};
+    for (int c = 0; c < 6; c++) column[(BOUGH_ROD_U + c) * n + i] += values[c];
+}
+
+// Column of ∂f/∂u₀ⱼ, ∂f/∂ωⱼ or ∂f/∂gⱼ over the vertices' kinematics; e the unit vector.
+static void frame_column(const bough_rod_model *m, const double *state, int kind, bough_vec3 e,
+                         double *column) {
+    int n = m->n;
+    for (int i = 0; i < n; i++) {
+        bough_vec3 x = load3(state, n, i), u = load3(state + (size_t)BOUGH_ROD_U * n, n, i);
+        bough_quaternion p = {state[3 * n + i], state[4 * n + i], state[5 * n + i], state[6 * n + i]};
+        if (kind == 0) store3(column, n, i, bough_scale(-1, e));
+        if (kind == 2) store3(column + (size_t)BOUGH_ROD_U * n, n, i, e);
+        if (kind != 1) continue;
+        bough_quaternion turn = bough_quaternion_product((bough_quaternion){0, e.x, e.y, e.z}, p);
+        store3(column, n, i, bough_cross(x, e));
+        column[3 * n + i] = -0.5 * turn.w;
+        store3(column + (size_t)4 * n, n, i, bough_scale(-0.5, bough_v3(turn.x, turn.y, turn.z)));
+        store3(column + (size_t)BOUGH_ROD_U * n, n, i, bough_cross(u, e));
+    }
+}
+
+// The root's motion strains the first segment.
+static void root_columns(const bough_rod_model *m, const double *state, const bough_rod_scratch *scratch,
+                         double *column) {
+    for (int j = 0; j < BOUGH_ROD_INPUTS; j++, column += (size_t)BOUGH_ROD_STATES * m->n) {
+        double e[6] = {0};
+        frame_column(m, state, j / 3, bough_unit3(j % 3), column);
+        if (j / 3 == 2) continue;
+        e[j] = 1;
+        vertex_variation l = root_variation(m, e), r = {0};
+        segment_force f = segment_tangent(m, scratch, 0, &l, &r);
+        vertex_response(m, scratch, 0, bough_scale(-1, f.f), f.lr, column);
+    }
+}
+
+// The end's motion strains the last one.
+static void end_columns(const bough_rod_model *m, const double *end, const bough_rod_scratch *scratch,
+                        double *column) {
+    for (int j = 0; j < BOUGH_ROD_END_INPUTS; j++, column += (size_t)BOUGH_ROD_STATES * m->n) {
+        double e[BOUGH_ROD_END_INPUTS] = {0};
+        e[j] = 1;
+        vertex_variation l = {0}, r = end_variation(end + 9, e);
+        segment_force f = segment_tangent(m, scratch, m->n, &l, &r);
+        vertex_response(m, scratch, m->n - 1, f.f, f.ll, column);
+    }
+}
+
+void bough_rod_input_columns(const bough_rod_model *m, const bough_rod_loads *loads, double t,
+                             const double *state, const double *input, bough_rod_scratch *scratch,
+                             double *column) {
+    size_t size = (size_t)BOUGH_ROD_STATES * m->n, inputs = (size_t)bough_rod_n_inputs(m);
+    bough_rod_gather(m, state, input, scratch);
+    bough_rod_load(m, loads, t, scratch);
+    memset(column, 0, inputs * size * sizeof *column);
+    root_columns(m, state, scratch, column);
+    if (!bough_rod_carries(m)) return;
+    end_columns(m, input + BOUGH_ROD_INPUTS, scratch, column + BOUGH_ROD_INPUTS * size);
+}
+
+// -- the system --------------------------------------------------------------------------------
 
 struct bough_rod_body {
     const bough_rod_model *model;

@@ -4,7 +4,7 @@
 #include "apps/bough/model/drag_link.h"
 #include "apps/bough/model/jump_link.h"
 #include "cosim/analysis/equilibrium.h"
-#include "flexbody/rod/rod_move.h"
+#include "flexbody/rod/rod_static.h"
 
 #include <math.h>
 #include <string.h>
@@ -104,7 +104,7 @@ typedef struct search {
     bough_simulation *simulation;
     bough_coupled *coupled;
     double time;
-    double *change; // of one rod's vertices, see rod_move.h
+    double *change; // of one rod's vertices, see rod_static.h
 } search;
 
 // Rods turn without stretching, and what hangs on their ends goes with them.
