@@ -207,6 +207,12 @@ typedef struct bough_scene_body {
     bough_scene_fmu fmu;      // fidelity fmu
 } bough_scene_body;
 
+// Whether the body bends: it is no rigid one, and its fidelity was read without an error.
+static inline bool bough_scene_is_flexible(const bough_scene_body *body) {
+    return body->fidelity == BOUGH_SCENE_ROD || body->fidelity == BOUGH_SCENE_MODAL ||
+           body->fidelity == BOUGH_SCENE_SEGMENTED_MODAL || body->fidelity == BOUGH_SCENE_FMU;
+}
+
 typedef enum bough_scene_load_frame {
     BOUGH_SCENE_LOAD_GROUND,   // ground axes
     BOUGH_SCENE_LOAD_BODY,     // axes of the body's frame

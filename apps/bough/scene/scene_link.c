@@ -113,7 +113,8 @@ static void link_parent(bough_schema_reader *r, bough_scene *s, int i) {
     }
     const bough_node *node = bough_link_value(joint->node, "parent");
     joint->parent = bough_link_body(r, s, node, "parent", joint->parent_name);
-    if (joint->parent >= 0 && s->body[joint->parent].fidelity > BOUGH_SCENE_ROD) {
+    if (joint->parent >= 0 && bough_scene_is_flexible(&s->body[joint->parent]) &&
+        s->body[joint->parent].fidelity != BOUGH_SCENE_ROD) {
         bool fmu = s->body[joint->parent].fidelity == BOUGH_SCENE_FMU;
         bough_schema_error(r, node, "parent", "'%s' is %s, which cannot carry bodies; %s", joint->parent_name,
                            fmu ? "an FMU" : "a modal body",
@@ -244,7 +245,7 @@ static void link_ends(bough_schema_reader *r, const bough_scene *s, const bough_
         if (name[end] == NULL || strcmp(name[end], "ground") == 0) continue;
         const bough_node *node = bough_link_value(item, keys[end]);
         body[end] = bough_link_body(r, s, node, keys[end], name[end]);
-        if (body[end] < 0 || s->body[body[end]].fidelity <= BOUGH_SCENE_RIGID) continue;
+        if (body[end] < 0 || !bough_scene_is_flexible(&s->body[body[end]])) continue;
         bough_schema_error(r, node, keys[end],
                            "'%s' is no rigid body; it must be one, which may hang on a rod and "
                            "needs no mass",
@@ -278,7 +279,7 @@ static void link_marker(bough_schema_reader *r, const bough_scene *s, void *item
     if (marker->body_name == NULL || strcmp(marker->body_name, "ground") == 0) return;
     const bough_node *node = bough_link_value(marker->node, "body");
     marker->body = bough_link_body(r, s, node, "body", marker->body_name);
-    if (marker->body < 0 || s->body[marker->body].fidelity <= BOUGH_SCENE_RIGID) return;
+    if (marker->body < 0 || !bough_scene_is_flexible(&s->body[marker->body])) return;
     bough_schema_error(r, node, "body",
                        s->body[marker->body].fidelity == BOUGH_SCENE_FMU
                            ? "'%s' is an FMU: name the body that carries it"

@@ -189,7 +189,7 @@ void bough_scene_check_body_load(bough_schema_reader *r, const bough_scene *scen
     const bough_scene_body *body = &scene->body[load->body];
     const bough_node *name = bough_node_find(load->node, "body");
     if (body->fidelity == BOUGH_SCENE_RIGID) check_rigid_load(r, load);
-    if (body->fidelity <= BOUGH_SCENE_RIGID) return;
+    if (!bough_scene_is_flexible(body)) return;
     if (body->fidelity == BOUGH_SCENE_FMU) {
         bough_schema_error(r, name, "body", "'%s' is an FMU: loads act on rigid bodies and rods",
                            load->body_name);
@@ -197,7 +197,7 @@ void bough_scene_check_body_load(bough_schema_reader *r, const bough_scene *scen
     }
     bough_scene_refuse(r, load->node, "point", "only used with a rigid body");
     if (!check_either(r, load->node, "at", "along")) return;
-    if (body->fidelity > BOUGH_SCENE_ROD && load->frame == BOUGH_SCENE_LOAD_FOLLOWER) {
+    if (body->fidelity != BOUGH_SCENE_ROD && load->frame == BOUGH_SCENE_LOAD_FOLLOWER) {
         bough_schema_error(r, bough_node_find(load->node, "frame"), "frame",
                            "'%s' is a modal body, on which loads do not turn with its sections: make"
                            " it a rod or give 'frame: body'",
