@@ -256,11 +256,15 @@ static void link_ends(bough_schema_reader *r, const bough_scene *s, const bough_
     }
 }
 
-// The kinds are a joint's but free.
+// The kinds of a closure's table of keys, as joints of the tree.
+static const int closure_kinds[] = {BOUGH_JOINT_FIXED,     BOUGH_JOINT_REVOLUTE,    BOUGH_JOINT_PRISMATIC,
+                                    BOUGH_JOINT_SPHERICAL, BOUGH_JOINT_CYLINDRICAL, BOUGH_JOINT_UNIVERSAL,
+                                    BOUGH_JOINT_PLANAR};
+
 static void link_closure(bough_schema_reader *r, const bough_scene *s, void *item) {
     bough_scene_closure *c = item;
     link_ends(r, s, c->node, c->body_name, c->body);
-    if (c->kind >= BOUGH_JOINT_FREE) c->kind++;
+    if (c->kind >= 0) c->kind = closure_kinds[c->kind];
 }
 
 static void link_spring(bough_schema_reader *r, const bough_scene *s, void *item) {

@@ -401,7 +401,7 @@ void bough_scene_check_wind(bough_schema_reader *r, void *item) {
         check_wind_condition(r, w);
         return;
     }
-    if (w->kind >= BOUGH_SCENE_WIND_WND) {
+    if (w->kind == BOUGH_SCENE_WIND_WND || w->kind == BOUGH_SCENE_WIND_BTS) {
         check_wind_file(r, w);
         return;
     }
