@@ -45,7 +45,7 @@ static void choose_master(bough_scene *scene) {
     if (!is_named(master->node, "rtol")) master->rtol = s->accuracy / (whole ? whole_error : tree_error);
     if (whole && !is_named(master->node, "solver")) {
         master->solver = is_linkage(scene)          ? BOUGH_RADAU5
-                         : master->rtol < fine_rtol ? BOUGH_CVODE_BDF
+                         : master->rtol < fine_rtol ? BOUGH_IDA
                                                     : BOUGH_AUTOMATIC;
     }
 }

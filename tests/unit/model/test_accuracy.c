@@ -48,7 +48,7 @@ static void everything_scales_with_the_accuracy(void **state) {
     stop(&f);
     f = accepted(BAR(", accuracy: 5e-6"));
     check_near(f.scene->simulation.master.rtol, 5e-8, 1e-12, 0);
-    assert_int_equal(f.scene->simulation.master.solver, BOUGH_CVODE_BDF); // as with that rtol named
+    assert_int_equal(f.scene->simulation.master.solver, BOUGH_IDA); // as with that rtol named
     stop(&f);
 }
 
