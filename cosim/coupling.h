@@ -2,9 +2,9 @@
 #ifndef BOUGH_COSIM_COUPLING_H
 #define BOUGH_COSIM_COUPLING_H
 
-#include "core/solve/integrator.h"
 #include "core/base/pool.h"
 #include "core/base/snapshot.h"
+#include "core/solve/integrator.h"
 #include "cosim/accelerate.h"
 #include "cosim/condense.h"
 

@@ -3,11 +3,11 @@
 #ifndef BOUGH_COSIM_MASTER_H
 #define BOUGH_COSIM_MASTER_H
 
+#include "cosim/analysis/stability.h"
+#include "cosim/scheme.h"
+#include "cosim/step_control.h"
 #include "cosim/watch/breakdown.h"
 #include "cosim/watch/monitor.h"
-#include "cosim/scheme.h"
-#include "cosim/analysis/stability.h"
-#include "cosim/step_control.h"
 
 // Loads with a sampling rate of their own: sample() is called at multiples of the period, between steps,
 // and sets the loads inside the members for [t, t_next]. It may be NULL if there is only begin().

@@ -1,6 +1,6 @@
 // A member of an assembly: a system, its current time and state, and the integrator that advances it over
-// a macro step by its own steps. The integrator need not be in the table of core/solve/integrator.h: a foreign
-// simulator is a member with an integrator of its own.
+// a macro step by its own steps. The integrator need not be in the table of core/solve/integrator.h: a
+// foreign simulator is a member with an integrator of its own.
 #ifndef BOUGH_COSIM_MEMBER_H
 #define BOUGH_COSIM_MEMBER_H
 

@@ -16,11 +16,11 @@
 // the macro step show that the trapezoidal rule is unstable, all steps have the smallest stable θ: slightly
 // above 1/2, of order 1 with an error 2θ − 1 times as large. If no θ is stable, the step is repeated with
 // waveforms (iteration.h). The interface is solved as in condense.h.
+#include "cosim/analysis/stability.h"
 #include "cosim/condense.h"
 #include "cosim/iteration.h"
 #include "cosim/port.h"
 #include "cosim/scheme.h"
-#include "cosim/analysis/stability.h"
 
 #include <math.h>
 #include <string.h>

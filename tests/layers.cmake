@@ -150,6 +150,18 @@ owned_by("^apps/bough/config/text\\.c$" "${include}yaml\\.h" "only apps/bough/co
 
 owned_by("^apps/bough/scene/fmu_description\\.c$" "${include}expat\\.h" "only apps/bough/scene/fmu_description.c uses expat")
 
+# A file that grows beyond this holds more than one concept.
+file(GLOB_RECURSE files RELATIVE ${ROOT} ${ROOT}/core/*.[ch] ${ROOT}/flexbody/*.[ch] ${ROOT}/aero/*.[ch]
+  ${ROOT}/cosim/*.[ch] ${ROOT}/apps/*.[ch])
+foreach(file IN LISTS files)
+  file(STRINGS ${ROOT}/${file} lines ENCODING UTF-8)
+  list(LENGTH lines count)
+  if(count GREATER 600)
+    message(NOTICE "${file}: ${count} lines, at most 600")
+    math(EXPR found "${found} + 1")
+  endif()
+endforeach()
+
 if(found)
   message(FATAL_ERROR "${found} violation(s) of the layers")
 endif()

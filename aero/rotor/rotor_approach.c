@@ -103,7 +103,7 @@ static void move_stations(const bough_rotor *rotor, const bough_rotor_motion *mo
         element_axes e = axes_at(shaft, aside, bough_sub(centre, hub), section.c3);
         bough_vec3 turning =
             bough_between(bough_mat3_mul(bough_rotation_matrix(p), lane_load(spin, n, a)),
-                           bough_mat3_mul(bough_rotation_matrix(q), lane_load(spin, n, b)), w);
+                          bough_mat3_mul(bough_rotation_matrix(q), lane_load(spin, n, b)), w);
         bough_vec3 moving = bough_between(lane_load(velocity, n, a), lane_load(velocity, n, b), w);
         lane_store(r.arm, s, j, arm);
         lane_store(r.x, s, j, e.x);

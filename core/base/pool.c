@@ -36,15 +36,16 @@ struct bough_pool {
     // the list in progress, written before `list` tells of it
     bough_task task;
     void *data;
-    int first; // number of its first task
+    int first;                                 // number of its first task
     _Alignas(LINE) atomic_uint_least64_t list; // its number << 16 | how many tasks
-    uint64_t list_before; // the region
-    atomic_bool ended;    // the region's work is
+    uint64_t list_before;                      // the region
+    atomic_bool ended;                         // the region's work is
     slot slot[MOST_TASKS];
     wait_queue idle, waiting;
     pthread_mutex_t mutex; // of both
-    _Alignas(LINE) int n_alone; // tasks of the list in progress that the caller has done, in a line of its own
-    atomic_bool alone;          // of the last list, all of them
+    _Alignas(
+        LINE) int n_alone; // tasks of the list in progress that the caller has done, in a line of its own
+    atomic_bool alone;     // of the last list, all of them
 };
 
 static uint64_t number_of(uint64_t list) { return list >> 16; }
@@ -129,8 +130,8 @@ static int owner(const bough_pool *p, int k) {
     return k / p->n_thread % 2 == 0 ? place : p->n_thread - 1 - place;
 }
 
-// The caller's time to wait for a task's owner [ns]: none where no other thread has come, so that lists cost no
-// more than on one thread.
+// The caller's time to wait for a task's owner [ns]: none where no other thread has come, so that lists cost
+// no more than on one thread.
 static long time_to_wait(const bough_pool *p) { return atomic_load(&p->alone) ? 0 : steal_time; }
 
 // A thread's own tasks, then those of threads that do not come.

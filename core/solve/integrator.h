@@ -71,7 +71,7 @@ typedef struct bough_integrator_options {
     double rho;     // of generalised-α: spectral radius at infinite frequency, 0 … 1
     int most_steps; // of IDA and the Rosenbrock method in a macro step; 0: their own limits
     bool coarse;    // of long steps: the Rosenbrock method takes a third of the usual damping to cover old
-                 // tangents, and renews them after half the usual steps
+                    // tangents, and renews them after half the usual steps
 } bough_integrator_options;
 
 // Options besides rtol that only some methods read.

@@ -1,32 +1,32 @@
 // What a scene gets that names no method: the Rosenbrock method, and IDA where that takes fewer evaluations.
 // The former's steps are long where motion is slow or stiff and damped. Where stiff members vibrate without
 // damping every method must follow them, and IDA then takes an evaluation a step and order 5: a tenth of the
-// cost at a tenth of the tolerance. So IDA is tried after a macro step of many steps, and stays where it takes
-// fewer evaluations for the same time; what stops the Rosenbrock method is left to IDA as well.
+// cost at a tenth of the tolerance. So IDA is tried after a macro step of many steps, and stays where it
+// takes fewer evaluations for the same time; what stops the Rosenbrock method is left to IDA as well.
 #include "core/solve/integrator.h"
 
 #include <math.h>
 
 enum { ROSENBROCK_STEPS = 1000, IDA_STEPS = 60000, LEAST_IDA_STEPS = 5000 }; // most in a macro step
-enum { MANY_STEPS = 100 }; // in a macro step: beside as many the start of IDA costs little
+enum { MANY_STEPS = 100 };           // in a macro step: beside as many the start of IDA costs little
 static const double most_work = 2e7; // of IDA in a macro step: steps times states
-static const double share = 0.1; // of the tolerance, for IDA: its errors add up over many short steps
+static const double share = 0.1;     // of the tolerance, for IDA: its errors add up over many short steps
 
 typedef struct automatic {
     bough_integrator rosenbrock, ida;
     bool fast;  // IDA took the last macro step, and its history goes on
     bool stays; // and it takes the next
-    double work; // evaluations that the Rosenbrock method takes in a second, where it takes many steps; else 0
+    double
+        work; // evaluations that the Rosenbrock method takes in a second, where it takes many steps; else 0
     double lost; // the same when IDA took no fewer
 } automatic;
 
-static bough_integrator make(const bough_integrator_ops *ops, bough_arena *arena,
-                             const bough_ode *ode, const bough_integrator_options *options) {
+static bough_integrator make(const bough_integrator_ops *ops, bough_arena *arena, const bough_ode *ode,
+                             const bough_integrator_options *options) {
     return (bough_integrator){.ops = ops, .self = ops->create(arena, ode, options)};
 }
 
-static void *create(bough_arena *arena, const bough_ode *ode,
-                    const bough_integrator_options *options) {
+static void *create(bough_arena *arena, const bough_ode *ode, const bough_integrator_options *options) {
     automatic *m = bough_arena_take(arena, sizeof *m);
     bough_integrator_options own = *options;
     own.kind = BOUGH_ROSENBROCK;
@@ -55,8 +55,7 @@ static bough_status take(bough_integrator *integrator, double *t, double t1, boo
     return status;
 }
 
-static bough_status advance(void *self, double *t, double pause, double t1, bool restart,
-                            double *y) {
+static bough_status advance(void *self, double *t, double pause, double t1, bool restart, double *y) {
     (void)pause;
     automatic *m = self;
     bough_statistics work;

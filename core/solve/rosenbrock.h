@@ -1,5 +1,5 @@
-// The formulas of a step of the Rosenbrock method (core/solve/integrator_rosenbrock.c) over ranges of states, for a
-// caller that evaluates and solves a system of several members itself.
+// The formulas of a step of the Rosenbrock method (core/solve/integrator_rosenbrock.c) over ranges of states,
+// for a caller that evaluates and solves a system of several members itself.
 #ifndef BOUGH_CORE_ROSENBROCK_H
 #define BOUGH_CORE_ROSENBROCK_H
 

@@ -2,8 +2,8 @@
 #include "core/tree/tree.h"
 
 #include "core/base/base.h"
-#include "core/tree/dynamics.h"
 #include "core/base/linalg.h"
+#include "core/tree/dynamics.h"
 #include "core/tree/loop.h"
 #include "core/tree/tree_newton.h"
 

@@ -28,7 +28,7 @@ typedef struct map {
     bough_coupling *coupling;
     double macro_step, sub_step;
     int repeat;
-    int n;          // n_state + 3 n_input
+    int n; // n_state + 3 n_input
     bough_arnoldi arnoldi;
     int before;      // vectors done last time
     double *earlier; // (2 × before) eigenvalues then
@@ -176,19 +176,13 @@ static double moved(const map *m, const ritz *r) {
 }
 
 // What its residual leaves open; unfinished values of the many slow modes may exceed 1 by a little.
-static double margin(const ritz *r) {
-    return 0.3 * fabs(r->modulus - 1);
-}
+static double margin(const ritz *r) { return 0.3 * fabs(r->modulus - 1); }
 
-static bool likely(const ritz *r) {
-    return r->residual < margin(r) && r->residual < 0.05;
-}
+static bool likely(const ritz *r) { return r->residual < margin(r) && r->residual < 0.05; }
 
 // Accurate enough to decide whether it is above 1. For nearly parallel modes a small residual is not
 // enough: the value must also have existed before the last vectors were added.
-static bool certain(const map *m, const ritz *r) {
-    return likely(r) && moved(m, r) < margin(r);
-}
+static bool certain(const map *m, const ritz *r) { return likely(r) && moved(m, r) < margin(r); }
 
 static ritz ritz_value(const map *m, int column) {
     const bough_arnoldi *a = &m->arnoldi;
@@ -334,9 +328,7 @@ bough_status bough_stability_judge_by(const bough_assembly *a, const bough_schem
 
 // -- advice ---------------------------------------------------------------------------------------
 
-bool bough_stability_grows(const bough_stability *s) {
-    return s->growth > threshold;
-}
+bool bough_stability_grows(const bough_stability *s) { return s->growth > threshold; }
 
 // Analyses an alternative; true when it is stable. The smallest growth is kept.
 static bool holds(const bough_assembly *a, const bough_scheme_options *options, double macro_step,
@@ -379,8 +371,8 @@ void bough_stability_describe(const bough_assembly *a, const bough_stability_adv
                           options->name, macro_step, advice->now.frequency,
                           a->member[advice->now.body]->system.name, advice->now.growth);
     if (advice->macro_step > 0) {
-        length += snprintf(text + length, (size_t)(BOUGH_VERDICT - length),
-                           "; macro_step: %.9g s holds", advice->macro_step);
+        length += snprintf(text + length, (size_t)(BOUGH_VERDICT - length), "; macro_step: %.9g s holds",
+                           advice->macro_step);
     }
     if (advice->ramp_holds) {
         snprintf(text + length, (size_t)(BOUGH_VERDICT - length), "; scheme: ramp holds");

@@ -3,8 +3,8 @@
 #ifndef BOUGH_COSIM_BREAKDOWN_H
 #define BOUGH_COSIM_BREAKDOWN_H
 
-#include "cosim/coupling.h"
 #include "cosim/analysis/stability.h"
+#include "cosim/coupling.h"
 
 typedef struct bough_breakdown bough_breakdown;
 

@@ -2,16 +2,17 @@
 // docs/verification.md.
 //
 // A force that has grown by a factor of 100 since its first steps, and that the members do not agree on, is
-// analysed, and again after each further factor of 100: the coupling is the cause if its eigenvalues about the current state explain that growth and
-// those of a shorter macro step, or of ramp there, do not. So growth that belongs to the mechanics, such as a
-// fall or flutter, goes on. Members whose equations are not known have no eigenvalues; of these the coupling
-// is the cause if the force obtained and the force applied have nothing in common.
+// analysed, and again after each further factor of 100: the coupling is the cause if its eigenvalues about
+// the current state explain that growth and those of a shorter macro step, or of ramp there, do not. So
+// growth that belongs to the mechanics, such as a fall or flutter, goes on. Members whose equations are not
+// known have no eigenvalues; of these the coupling is the cause if the force obtained and the force applied
+// have nothing in common.
 //
 // The energy that the interfaces add or remove tells an implicit coupling that is stable but wrong.
 #include "cosim/watch/monitor.h"
 
-#include "cosim/scheme.h"
 #include "cosim/analysis/stability.h"
+#include "cosim/scheme.h"
 
 #include <math.h>
 #include <string.h>
@@ -25,14 +26,14 @@ static const double agreement = 1e-5;
 
 // Up to three components of one connection: a vector, measured by its norm.
 typedef struct group {
-    int first, count;   // inputs, numbered over all
-    int to, from;       // members
+    int first, count; // inputs, numbered over all
+    int to, from;     // members
     bool kinematic;
     double defect_max, defect_sum; // Σ of squares over the steps
-    double magnitude;   // largest norm of the obtained value so far
-    double small;       // largest norm of the first steps with one, or when last looked into
-    double small_time;  // then [s]
-    int first_steps;    // of these so far
+    double magnitude;              // largest norm of the obtained value so far
+    double small;                  // largest norm of the first steps with one, or when last looked into
+    double small_time;             // then [s]
+    int first_steps;               // of these so far
 } group;
 
 // The error of one interface.
@@ -42,15 +43,15 @@ typedef struct account {
 
 struct bough_monitor {
     const char *advice; // another scheme to try, or ""
-    bool resting; // growth is not judged
+    bool resting;       // growth is not judged
     int n_group;
     group *group;
     long steps;
-    account *account;      // (n_interface)
-    int window_steps;      // in the open window
-    double window_time;    // its length so far [s]
-    int unbalanced;        // windows in a row that make or lose energy
-    double *start;         // (n_input) scratch
+    account *account;   // (n_interface)
+    int window_steps;   // in the open window
+    double window_time; // its length so far [s]
+    int unbalanced;     // windows in a row that make or lose energy
+    double *start;      // (n_input) scratch
 };
 
 static int receiver(const bough_assembly *a, int input) {
@@ -62,10 +63,8 @@ static int receiver(const bough_assembly *a, int input) {
 static void make_groups(bough_monitor *m, const bough_assembly *a) {
     for (int j = 0; j < a->n_input; j++) {
         if (a->vector[j] == j) {
-            m->group[m->n_group++] = (group){.first = j,
-                                             .to = receiver(a, j),
-                                             .from = a->source_member[j],
-                                             .kinematic = a->kinematic[j]};
+            m->group[m->n_group++] = (group){
+                .first = j, .to = receiver(a, j), .from = a->source_member[j], .kinematic = a->kinematic[j]};
         }
         m->group[m->n_group - 1].count++;
     }
@@ -104,8 +103,7 @@ static bough_status check_finite(const bough_monitor *m, const bough_coupling *c
         return bough_fail(BOUGH_FAILED,
                           "%s: no finite state or output at %.6g s (scheme %s, macro step %.6g s); "
                           "try a smaller macro step%s",
-                          s->name, c->t1, c->scheme->name, c->t1 - c->t0,
-                          m->advice);
+                          s->name, c->t1, c->scheme->name, c->t1 - c->t0, m->advice);
     }
     return bough_ok();
 }
@@ -208,8 +206,7 @@ static void keep_accounts(bough_monitor *m, const bough_coupling *c) {
         const double *v0 = before + f->twist, *v1 = c->input + f->twist;
         double obtained0 = dot(before + f->wrench, v0, f->count);
         double obtained1 = dot(c->input + f->wrench, v1, f->count);
-        double applied = dot(m->start + f->wrench, v0, f->count) +
-                         dot(c->applied + f->wrench, v1, f->count);
+        double applied = dot(m->start + f->wrench, v0, f->count) + dot(c->applied + f->wrench, v1, f->count);
         double residual = half * (obtained0 + obtained1 - applied);
         double exchanged = half * (fabs(obtained0) + fabs(obtained1));
         m->account[k].total.residual += residual;

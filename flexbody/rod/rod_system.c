@@ -1,4 +1,5 @@
-// The rod as a system, and its ports linearised: what the motion of its two ends does to the rod, and the rod to them.
+// The rod as a system, and its ports linearised: what the motion of its two ends does to the rod, and the rod
+// to them.
 #include "flexbody/rod/rod_system.h"
 
 #include "core/base/symmetric6.h"

@@ -19,10 +19,10 @@ typedef struct sample {
 static const char *const faults[] = {"", "late", "infinite", "early"};
 
 fmi3_instance fmi3InstantiateCoSimulation(fmi3_string name, fmi3_string token, fmi3_string resources,
-                                          bool visible, bool logging, bool event_mode,
-                                          bool early_return, const fmi3_reference *intermediate,
-                                          size_t n_intermediate, fmi3_environment environment,
-                                          fmi3_log *log, fmi3_intermediate *update) {
+                                          bool visible, bool logging, bool event_mode, bool early_return,
+                                          const fmi3_reference *intermediate, size_t n_intermediate,
+                                          fmi3_environment environment, fmi3_log *log,
+                                          fmi3_intermediate *update) {
     (void)name, (void)visible, (void)logging, (void)event_mode, (void)early_return, (void)intermediate;
     (void)n_intermediate, (void)update;
     if (strcmp(token, "refuses") == 0) {
@@ -51,8 +51,8 @@ fmi3_status fmi3ExitInitializationMode(fmi3_instance instance) { return instance
 
 fmi3_status fmi3Terminate(fmi3_instance instance) { return instance ? FMI3_OK : FMI3_ERROR; }
 
-fmi3_status fmi3GetFloat64(fmi3_instance instance, const fmi3_reference *reference, size_t n,
-                           double *value, size_t n_value) {
+fmi3_status fmi3GetFloat64(fmi3_instance instance, const fmi3_reference *reference, size_t n, double *value,
+                           size_t n_value) {
     const sample *s = instance;
     if (n != 1 || n_value != 1 || reference[0] != FORCE) return FMI3_ERROR;
     value[0] = -stiffness * s->x - damping * s->v;

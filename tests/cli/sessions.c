@@ -26,8 +26,10 @@ static int use(const char *scene) {
 int main(int argc, char **argv) {
     int failed = argc != 3;
     for (int k = 1; argc == 3 && k <= atoi(argv[2]); k++) {
-        if (k % 10 != 0) failed += use(argv[1]);
-        else bough_session_close(bough_session_open("/nowhere/scene.yaml", NULL, 0));
+        if (k % 10 != 0)
+            failed += use(argv[1]);
+        else
+            bough_session_close(bough_session_open("/nowhere/scene.yaml", NULL, 0));
     }
     return failed > 0;
 }

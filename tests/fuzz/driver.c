@@ -26,9 +26,26 @@ typedef struct fuzzer {
 
 // What parsers trip over.
 static const char *const words[] = {
-    "\n", "\n  ", "- ", ": ", "{", "}", "[", "]", "&a ", "*a", "<<: *a", "!t ", "|", ">", "'", "\"", "#",
-    "0", "-1", "1e999", "-1e308", "1e-320", "nan", "inf", "0x1p9", "99999999999999999999", "2147483648",
-    "1 s", "deg", "m^99", ".", ",", "\t", "\x80", "\xff\xfe", "\xef\xbb\xbf", "%", "@", "---\n", "...\n",
+    "\n",         "\n  ",
+    "- ",         ": ",
+    "{",          "}",
+    "[",          "]",
+    "&a ",        "*a",
+    "<<: *a",     "!t ",
+    "|",          ">",
+    "'",          "\"",
+    "#",          "0",
+    "-1",         "1e999",
+    "-1e308",     "1e-320",
+    "nan",        "inf",
+    "0x1p9",      "99999999999999999999",
+    "2147483648", "1 s",
+    "deg",        "m^99",
+    ".",          ",",
+    "\t",         "\x80",
+    "\xff\xfe",   "\xef\xbb\xbf",
+    "%",          "@",
+    "---\n",      "...\n",
 };
 enum { WORDS = sizeof words / sizeof *words };
 
@@ -71,8 +88,7 @@ static void change(fuzzer *f) {
     default:
         if (width > f->size - at) width = f->size - at;
         memcpy(again, f->data + at, width);
-        for (size_t i = below(f, 20); i > 0; i--)
-            splice(f, at, 0, again, width);
+        for (size_t i = below(f, 20); i > 0; i--) splice(f, at, 0, again, width);
     }
 }
 
@@ -135,20 +151,17 @@ int main(int argc, char **argv) {
     time_t end = seconds ? time(NULL) + strtol(seconds, NULL, 10) : 0;
     fuzz_demand(argc > 2, "usage: driver STATE SEED...");
     f.state = argv[1];
-    for (int i = 2; i < argc; i++)
-        add(&f, argv[i]);
+    for (int i = 2; i < argc; i++) add(&f, argv[i]);
     for (int i = 0; i < f.n; i++) {
         start_from(&f, &f.item[i]);
         feed(&f);
     }
     for (; seconds ? time(NULL) < end : done < n; done++) {
         start_from(&f, &f.item[below(&f, (size_t)f.n)]);
-        for (size_t changes = 1 + below(&f, CHANGES); changes > 0; changes--)
-            change(&f);
+        for (size_t changes = 1 + below(&f, CHANGES); changes > 0; changes--) change(&f);
         feed(&f);
     }
-    for (int i = 0; i < f.n; i++)
-        free(f.item[i].data);
+    for (int i = 0; i < f.n; i++) free(f.item[i].data);
     remove(f.state);
     printf("%d seeds, %ld mutations\n", f.n, done);
     return 0;

@@ -6,11 +6,12 @@
 #include <sys/stat.h>
 
 static const char *const decks[] = {
-    "main.fst", "parts/elasto.dat", "parts/blade.dat", "parts/tower.dat", "parts/aero.dat",
-    "parts/aero-blade.dat", "parts/foils/flat.dat", "parts/servo.dat", "parts/wind.dat",
-    "parts/beam.dat", "parts/beam-blade.dat", "parts/foils/round.dat", "v4/main.fst", "v4/elasto.dat",
-    "v4/blade.dat", "v4/aero.dat", "v5/main.fst", "v5/elasto.dat", "v5/aero.dat", "v5/aero-blade.dat",
-    "v5/servo.dat", "v5/beam.dat", "v5/beam-blade.dat",
+    "main.fst",       "parts/elasto.dat",     "parts/blade.dat",      "parts/tower.dat",
+    "parts/aero.dat", "parts/aero-blade.dat", "parts/foils/flat.dat", "parts/servo.dat",
+    "parts/wind.dat", "parts/beam.dat",       "parts/beam-blade.dat", "parts/foils/round.dat",
+    "v4/main.fst",    "v4/elasto.dat",        "v4/blade.dat",         "v4/aero.dat",
+    "v5/main.fst",    "v5/elasto.dat",        "v5/aero.dat",          "v5/aero-blade.dat",
+    "v5/servo.dat",   "v5/beam.dat",          "v5/beam-blade.dat",
 };
 enum { DECKS = sizeof decks / sizeof *decks, ROOM = 1 << 16 };
 
@@ -45,8 +46,7 @@ static void start(void) {
     make("parts/foils");
     make("v4");
     make("v5");
-    for (int i = 0; i < DECKS; i++)
-        load(i);
+    for (int i = 0; i < DECKS; i++) load(i);
 }
 
 // The deck that begins most like the input.

@@ -7,8 +7,8 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
     char out[SCRATCH_PATH], path[SCRATCH_PATH + 32];
     snprintf(out, sizeof out, "%s/out", fuzz_folder());
     snprintf(path, sizeof path, "%s/scene.yaml", out);
-    bough_status status = bough_import_windio(fuzz_file("turbine.yaml", data, size), out,
-                                              &(bough_import_options){0}, NULL);
+    bough_status status =
+        bough_import_windio(fuzz_file("turbine.yaml", data, size), out, &(bough_import_options){0}, NULL);
     fuzz_demand(bough_is_ok(&status) || status.message[0], "a reason");
     if (!bough_is_ok(&status)) return 0;
     bough_arena *arena = bough_arena_create();

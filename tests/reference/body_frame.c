@@ -35,15 +35,13 @@ static int slot_of(const bough_structure *s, int vertex) {
 // y += sign · A x and y += sign · Aᵀx
 static void add_product(const double *a, const double *x, double sign, double *y) {
     for (int i = 0; i < 6; i++) {
-        for (int j = 0; j < 6; j++)
-            y[i] += sign * a[6 * i + j] * x[j];
+        for (int j = 0; j < 6; j++) y[i] += sign * a[6 * i + j] * x[j];
     }
 }
 
 static void add_transposed(const double *a, const double *x, double sign, double *y) {
     for (int i = 0; i < 6; i++) {
-        for (int j = 0; j < 6; j++)
-            y[i] += sign * a[6 * j + i] * x[j];
+        for (int j = 0; j < 6; j++) y[i] += sign * a[6 * j + i] * x[j];
     }
 }
 
@@ -51,8 +49,7 @@ static void add_transposed(const double *a, const double *x, double sign, double
 static void add_transposed_block(const double *a, const double *b, double sign, double *c) {
     for (int i = 0; i < 6; i++) {
         for (int k = 0; k < 6; k++) {
-            for (int j = 0; j < 6; j++)
-                c[6 * i + j] += sign * a[6 * k + i] * b[6 * k + j];
+            for (int j = 0; j < 6; j++) c[6 * i + j] += sign * a[6 * k + i] * b[6 * k + j];
         }
     }
 }
@@ -62,23 +59,18 @@ static void block_product(const double *a, const double *b, double *c) {
     memset(c, 0, BLOCK * sizeof *c);
     for (int i = 0; i < 6; i++) {
         for (int k = 0; k < 6; k++) {
-            for (int j = 0; j < 6; j++)
-                c[6 * i + j] += a[6 * i + k] * b[6 * k + j];
+            for (int j = 0; j < 6; j++) c[6 * i + j] += a[6 * i + k] * b[6 * k + j];
         }
     }
 }
 
 static void set_corner(double *block, int row, int column, bough_mat3 m) {
-    const double values[9] = {m.c1.x, m.c2.x, m.c3.x, m.c1.y, m.c2.y,
-                              m.c3.y, m.c1.z, m.c2.z, m.c3.z};
-    for (int k = 0; k < 9; k++)
-        block[6 * (row + k / 3) + column + k % 3] = values[k];
+    const double values[9] = {m.c1.x, m.c2.x, m.c3.x, m.c1.y, m.c2.y, m.c3.y, m.c1.z, m.c2.z, m.c3.z};
+    for (int k = 0; k < 9; k++) block[6 * (row + k / 3) + column + k % 3] = values[k];
 }
 
 // ξ(u) v = u × v
-static bough_mat3 skew(bough_vec3 u) {
-    return (bough_mat3){{0, u.z, -u.y}, {-u.z, 0, u.x}, {u.y, -u.x, 0}};
-}
+static bough_mat3 skew(bough_vec3 u) { return (bough_mat3){{0, u.z, -u.y}, {-u.z, 0, u.x}, {u.y, -u.x, 0}}; }
 
 // -- kinematics -----------------------------------------------------------------------------------
 
@@ -113,8 +105,7 @@ void bough_body_frame_relative(int n, bough_twist v_r, const bough_vertex *verte
 // (14) of one vertex in BRF axes, Ω̇ₙ = R̂ₙᵀω̇ₙ:
 //     F_R = [E, −ξ(x̂); 0, R̂ᵀ],  F_E = [E, 0; 0, R̂ᵀ],
 //     G = (Ω₀×(Ω₀×x̂) + 2 Ω₀×x̂˙, R̂ᵀ(Ω₀×ω̂))
-static void transformation(bough_body_frame *b, int i, bough_vec3 omega,
-                           const bough_relative_vertex *v) {
+static void transformation(bough_body_frame *b, int i, bough_vec3 omega, const bough_relative_vertex *v) {
     bough_mat3 r = bough_rotation_matrix(v->rotation);
     double *f_r = b->f_r + (size_t)BLOCK * i, *f_e = b->f_e + (size_t)BLOCK * i;
     set_corner(f_r, 0, 0, bough_mat3_identity());
@@ -137,8 +128,7 @@ static bool add_term(bough_body_frame *b, const bough_structure_term *term) {
     for (int i = 0; i < s->n_vertex; i++) {
         double values[6];
         bough_wrench_store(b->term[i], values);
-        for (int c = 0; c < 6; c++)
-            b->force[6 * i + c] += values[c];
+        for (int c = 0; c < 6; c++) b->force[6 * i + c] += values[c];
     }
     return ok;
 }
@@ -190,8 +180,7 @@ bool bough_body_frame_evaluate(bough_body_frame *b, const bough_frame_motion *mo
     int n = b->structure->n_vertex;
     bough_transform here = bough_transform_identity();
     bough_body_frame_vertices(n, &here, motion->twist, relative, b->vertex);
-    for (int i = 0; i < n; i++)
-        transformation(b, i, motion->twist.angular, &relative[i]);
+    for (int i = 0; i < n; i++) transformation(b, i, motion->twist.angular, &relative[i]);
     bool ok = newton_euler(b);
     clear_flexible(b);
     project(b, motion->gravity);
@@ -236,11 +225,9 @@ void bough_body_frame_add_wrench(bough_body_frame *b, const bough_attachment *at
 static void eliminated(const double *factor, const double *s, double *x) {
     for (int j = 0; j < 6; j++) {
         double column[6];
-        for (int i = 0; i < 6; i++)
-            column[i] = s[6 * i + j];
+        for (int i = 0; i < 6; i++) column[i] = s[6 * i + j];
         bough_cholesky_solve(6, factor, column);
-        for (int i = 0; i < 6; i++)
-            x[6 * i + j] = column[i];
+        for (int i = 0; i < 6; i++) x[6 * i + j] = column[i];
     }
 }
 
@@ -256,8 +243,7 @@ void bough_body_frame_reduce(const bough_body_frame *b, double *inertia, double 
     }
 }
 
-void bough_body_frame_flexible(const bough_body_frame *b, const double *v_r_rate,
-                               double *v_e_rate) {
+void bough_body_frame_flexible(const bough_body_frame *b, const double *v_r_rate, double *v_e_rate) {
     for (int k = 0; k < b->structure->n_vertex - 1; k++) {
         double *rate = v_e_rate + (size_t)6 * k;
         memcpy(rate, b->h_e + (size_t)6 * k, 6 * sizeof *rate);
@@ -266,8 +252,8 @@ void bough_body_frame_flexible(const bough_body_frame *b, const double *v_r_rate
     }
 }
 
-void bough_body_frame_accelerations(const bough_body_frame *b, const double *v_r_rate,
-                                    const double *v_e_rate, bough_twist *acceleration) {
+void bough_body_frame_accelerations(const bough_body_frame *b, const double *v_r_rate, const double *v_e_rate,
+                                    bough_twist *acceleration) {
     for (int i = 0; i < b->structure->n_vertex; i++) {
         double a[6];
         int k = slot_of(b->structure, i);

@@ -33,10 +33,10 @@ typedef struct bough_body_frame {
     const bough_structure *structure;
     // computed by bough_body_frame_evaluate: over all vertices, with the structure's coordinates
     bough_vertex *vertex; // (13) in BRF axes, absolute velocities
-    double *f_r, *f_e; // (14) F: blocks of v̇_R and of the vertex' own v̇_E (n_vertex × 36 each)
-    double *g;         // (14) G (n_vertex × 6)
-    double *mass;      // (11) (n_vertex × 36)
-    double *force;     // right-hand side of (11) (n_vertex × 6)
+    double *f_r, *f_e;    // (14) F: blocks of v̇_R and of the vertex' own v̇_E (n_vertex × 36 each)
+    double *g;            // (14) G (n_vertex × 6)
+    double *mass;         // (11) (n_vertex × 36)
+    double *force;        // right-hand side of (11) (n_vertex × 6)
     // the equations (12), n_E = 6 (n_vertex − 1)
     double m_r[36];
     double *s;          // S (n_E × 6)
@@ -78,7 +78,7 @@ void bough_body_frame_reduce(const bough_body_frame *b, double *inertia, double 
 void bough_body_frame_flexible(const bough_body_frame *b, const double *v_r_rate, double *v_e_rate);
 
 // (14): a = F·(v̇_R, v̇_E) + G of every vertex (n_vertex): ẍ in BRF axes, Ω̇ in vertex axes.
-void bough_body_frame_accelerations(const bough_body_frame *b, const double *v_r_rate,
-                                    const double *v_e_rate, bough_twist *acceleration);
+void bough_body_frame_accelerations(const bough_body_frame *b, const double *v_r_rate, const double *v_e_rate,
+                                    bough_twist *acceleration);
 
 #endif

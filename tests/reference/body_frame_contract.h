@@ -30,8 +30,7 @@ static inline void structure_evaluate(const structure_case *c, bool wrenches, bo
 }
 
 // The reference: (10)/(11) of every vertex in the ground, solved for the accelerations.
-static inline void structure_newton_euler(const structure_case *c, bool wrenches,
-                                          bough_twist *acceleration) {
+static inline void structure_newton_euler(const structure_case *c, bool wrenches, bough_twist *acceleration) {
     const bough_structure *s = c->structure;
     const bough_structure_term terms[3] = {s->ops->elastic, s->ops->viscous, s->ops->inertial};
     bough_vertex vertex[STRUCTURE_MAX];
@@ -41,8 +40,7 @@ static inline void structure_newton_euler(const structure_case *c, bool wrenches
     structure_vertices(c, vertex);
     for (int k = 0; k < 3; k++) {
         assert_true(terms[k].force(s->self, vertex, force));
-        for (int i = 0; i < s->n_vertex; i++)
-            sum[i] = bough_wrench_add(sum[i], force[i]);
+        for (int i = 0; i < s->n_vertex; i++) sum[i] = bough_wrench_add(sum[i], force[i]);
     }
     for (int k = 0; wrenches && k < STRUCTURE_WRENCHES; k++) {
         bough_attachment at = structure_attachment(c, k);
@@ -53,8 +51,7 @@ static inline void structure_newton_euler(const structure_case *c, bool wrenches
         sum[at.vertex] = bough_wrench_add(sum[at.vertex], add);
     }
     bough_vec3 gravity = bough_mat3_mul(c->pose.rotation, c->motion.gravity);
-    for (int i = 0; i < s->n_vertex; i++)
-        weight[i].linear = gravity;
+    for (int i = 0; i < s->n_vertex; i++) weight[i].linear = gravity;
     structure_mass_times(s, vertex, weight, force);
     s->ops->mass(s->self, vertex, mass);
     for (int i = 0; i < s->n_vertex; i++) {
@@ -74,14 +71,13 @@ static inline void structure_to_ground(const structure_case *c, bough_twist *acc
 }
 
 // The case a small time later, moving with the accelerations given.
-static inline structure_case structure_later(const structure_case *c, double step,
-                                             const double *v_r_rate, const double *v_e_rate) {
+static inline structure_case structure_later(const structure_case *c, double step, const double *v_r_rate,
+                                             const double *v_e_rate) {
     structure_case d = *c;
     bough_twist v = c->motion.twist, rate = bough_twist_load(v_r_rate);
     bough_quaternion turn = bough_quaternion_exponential(bough_scale(step, v.angular));
     rate.linear = bough_sub(rate.linear, bough_cross(v.angular, v.linear));
-    d.pose.position =
-        bough_axpy(step, bough_mat3_mul(c->pose.rotation, v.linear), c->pose.position);
+    d.pose.position = bough_axpy(step, bough_mat3_mul(c->pose.rotation, v.linear), c->pose.position);
     d.pose.rotation = bough_mat3_product(c->pose.rotation, bough_rotation_matrix(turn));
     d.motion.twist.linear = bough_axpy(step, rate.linear, v.linear);
     d.motion.twist.angular = bough_axpy(step, rate.angular, v.angular);
@@ -105,10 +101,8 @@ static inline void structure_check_transformation(const structure_case *c, bough
     double v_r_rate[6], v_e_rate[6 * STRUCTURE_MAX];
     bough_vertex side[2][STRUCTURE_MAX];
     bough_twist a[STRUCTURE_MAX], slope[STRUCTURE_MAX];
-    for (int k = 0; k < 6; k++)
-        v_r_rate[k] = structure_number(&at);
-    for (int k = 0; k < 6 * n; k++)
-        v_e_rate[k] = structure_number(&at);
+    for (int k = 0; k < 6; k++) v_r_rate[k] = structure_number(&at);
+    for (int k = 0; k < 6 * n; k++) v_e_rate[k] = structure_number(&at);
     structure_evaluate(c, false, b);
     bough_body_frame_accelerations(b, v_r_rate, v_e_rate, a);
     structure_to_ground(c, a);
@@ -131,16 +125,13 @@ static inline void structure_check_projection(const structure_case *c, bough_bod
     double x[2][6 + 6 * STRUCTURE_MAX] = {{0}}, zero[6 * STRUCTURE_MAX] = {0};
     bough_twist a[2][STRUCTURE_MAX], g[STRUCTURE_MAX];
     structure_evaluate(c, false, b);
-    for (int k = 0; k < 2 * (6 + n_e); k++)
-        x[k % 2][k / 2] = structure_number(&at);
-    for (int k = 0; k < 2; k++)
-        bough_body_frame_accelerations(b, x[k], x[k] + 6, a[k]);
+    for (int k = 0; k < 2 * (6 + n_e); k++) x[k % 2][k / 2] = structure_number(&at);
+    for (int k = 0; k < 2; k++) bough_body_frame_accelerations(b, x[k], x[k] + 6, a[k]);
     bough_body_frame_accelerations(b, zero, zero, g);
     double power = 0, reduced = 0, row[6 + 6 * STRUCTURE_MAX] = {0};
     for (int i = 0; i < n; i++) { // residual of (11) at accelerations a[0], against F x[1]
         bough_twist relative = {bough_sub(a[0][i].linear, c->motion.gravity), a[0][i].angular};
-        bough_twist test = {bough_sub(a[1][i].linear, g[i].linear),
-                            bough_sub(a[1][i].angular, g[i].angular)};
+        bough_twist test = {bough_sub(a[1][i].linear, g[i].linear), bough_sub(a[1][i].angular, g[i].angular)};
         double values[6], product[6] = {0};
         bough_twist_store(relative, values);
         structure_multiply(b->mass + 36 * i, values, product);
@@ -150,8 +141,7 @@ static inline void structure_check_projection(const structure_case *c, bough_bod
     }
     structure_multiply(b->m_r, x[0], row); // M v̇ of (12), then less h
     for (int k = 0; k < n - 1; k++) {
-        for (int i = 0; i < 36; i++)
-            row[i % 6] += b->s[36 * k + i] * x[0][6 + 6 * k + i / 6];
+        for (int i = 0; i < 36; i++) row[i % 6] += b->s[36 * k + i] * x[0][6 + 6 * k + i / 6];
         structure_multiply(b->s + 36 * k, x[0], row + 6 + 6 * k);
         structure_multiply(b->m_e + 36 * k, x[0] + 6 + 6 * k, row + 6 + 6 * k);
     }
@@ -162,8 +152,7 @@ static inline void structure_check_projection(const structure_case *c, bough_bod
 }
 
 // A marker's twist in BRF axes, its Jacobian by differences: linear in the velocities.
-static inline bough_twist structure_marker_twist(const structure_case *c,
-                                                 const bough_attachment *at) {
+static inline bough_twist structure_marker_twist(const structure_case *c, const bough_attachment *at) {
     bough_vertex vertex[STRUCTURE_MAX];
     bough_transform here = bough_transform_identity();
     bough_body_frame_vertices(c->structure->n_vertex, &here, c->motion.twist, c->relative, vertex);
@@ -188,8 +177,7 @@ static inline void structure_check_jacobians(const structure_case *c, bough_body
             twist[j] += 1;
             moved.motion.twist = bough_twist_load(twist);
             bough_twist_store(structure_marker_twist(&moved, &at), after);
-            for (int i = 0; i < 6; i++)
-                expected_r[6 * j + i] = after[i] - before[i];
+            for (int i = 0; i < 6; i++) expected_r[6 * j + i] = after[i] - before[i];
             if (k < 0) continue;
             moved = *c;
             bough_relative_vertex *r = &moved.relative[at.vertex];
@@ -198,8 +186,7 @@ static inline void structure_check_jacobians(const structure_case *c, bough_body
             r->velocity = bough_v3(own[0], own[1], own[2]);
             r->spin = bough_v3(own[3], own[4], own[5]);
             bough_twist_store(structure_marker_twist(&moved, &at), after);
-            for (int i = 0; i < 6; i++)
-                expected_e[6 * j + i] = after[i] - before[i];
+            for (int i = 0; i < 6; i++) expected_e[6 * j + i] = after[i] - before[i];
         }
         structure_near(j_r, expected_r, 36, 1e-13, "J_R");
         structure_near(j_e, expected_e, 36, 1e-13, "J_E");
@@ -231,8 +218,7 @@ static inline void structure_check_equivalence(const structure_case *c, bough_bo
 
 // The forces on the reference vertex about the BRF's origin: its share of the inner forces and of
 // the wrenches, and the gyroscopic term and weight of its own inertia, here those of a rigid body.
-static inline bough_wrench structure_reference_forces(const structure_case *c,
-                                                      const bough_body_frame *b,
+static inline bough_wrench structure_reference_forces(const structure_case *c, const bough_body_frame *b,
                                                       const bough_inertia *own) {
     const bough_structure *s = c->structure;
     const bough_vertex *v = b->vertex + s->reference;
@@ -268,8 +254,7 @@ static inline void structure_check_reduced(const structure_case *c, bough_body_f
         double unit[6] = {0}, column[6];
         unit[j] = 1;
         bough_wrench_store(bough_inertia_mul(&carried, bough_twist_load(unit)), column);
-        for (int i = 0; i < 6; i++)
-            expected[6 * i + j] = column[i];
+        for (int i = 0; i < 6; i++) expected[6 * i + j] = column[i];
     }
     structure_near(inertia, expected, 36, 1e-11, "reduced inertia");
     bough_wrench sum = structure_reference_forces(c, b, &carried);

@@ -20,8 +20,7 @@ static void add_pair(bough_wrench *vertex, link_force f) {
 
 // One link's force, and its derivative.
 typedef link_force link_function(const chain_link *k, const link_shape *g);
-typedef link_force link_derivative(const chain_link *k, const link_shape *g,
-                                   const link_change *change);
+typedef link_force link_derivative(const chain_link *k, const link_shape *g, const link_change *change);
 
 static bool sum_forces(const chain *c, const bough_vertex *vertex, link_function *force_of,
                        bough_wrench *force) {
@@ -35,9 +34,8 @@ static bool sum_forces(const chain *c, const bough_vertex *vertex, link_function
     return ok;
 }
 
-static bool sum_tangents(const chain *c, const bough_vertex *vertex,
-                         const bough_vertex_change *change, link_derivative *derivative_of,
-                         bough_wrench *force) {
+static bool sum_tangents(const chain *c, const bough_vertex *vertex, const bough_vertex_change *change,
+                         link_derivative *derivative_of, bough_wrench *force) {
     bool ok = true;
     memset(force, 0, ((size_t)c->n + 1) * sizeof *force);
     for (int i = 0; i < c->n; i++) {
@@ -53,8 +51,8 @@ static bool elastic(void *self, const bough_vertex *vertex, bough_wrench *force)
     return sum_forces(self, vertex, link_elastic, force);
 }
 
-static bool elastic_tangent(void *self, const bough_vertex *vertex,
-                            const bough_vertex_change *change, bough_wrench *force_change) {
+static bool elastic_tangent(void *self, const bough_vertex *vertex, const bough_vertex_change *change,
+                            bough_wrench *force_change) {
     return sum_tangents(self, vertex, change, link_elastic_change, force_change);
 }
 
@@ -62,8 +60,8 @@ static bool viscous(void *self, const bough_vertex *vertex, bough_wrench *force)
     return sum_forces(self, vertex, link_viscous, force);
 }
 
-static bool viscous_tangent(void *self, const bough_vertex *vertex,
-                            const bough_vertex_change *change, bough_wrench *force_change) {
+static bool viscous_tangent(void *self, const bough_vertex *vertex, const bough_vertex_change *change,
+                            bough_wrench *force_change) {
     return sum_tangents(self, vertex, change, link_viscous_change, force_change);
 }
 
@@ -82,8 +80,8 @@ static bool inertial(void *self, const bough_vertex *vertex, bough_wrench *force
     return true;
 }
 
-static bool inertial_tangent(void *self, const bough_vertex *vertex,
-                             const bough_vertex_change *change, bough_wrench *force_change) {
+static bool inertial_tangent(void *self, const bough_vertex *vertex, const bough_vertex_change *change,
+                             bough_wrench *force_change) {
     bough_lumped_inertial_tangent(&((chain *)self)->lumped, vertex, change, force_change);
     return true;
 }
@@ -109,8 +107,8 @@ static const bough_structure_ops chain_ops = {
 // -- build ----------------------------------------------------------------------------------------
 
 static bool usable(const bough_chain_link *k) {
-    return k->stiffness > 0 && k->hardening >= 0 && k->damping >= 0 &&
-           k->rotational_stiffness >= 0 && k->rotational_damping >= 0;
+    return k->stiffness > 0 && k->hardening >= 0 && k->damping >= 0 && k->rotational_stiffness >= 0 &&
+           k->rotational_damping >= 0;
 }
 
 static bough_status set_link(const bough_chain_def *def, int i, chain_link *k) {
@@ -125,8 +123,7 @@ static bough_status set_link(const bough_chain_def *def, int i, chain_link *k) {
     k->rest_turn = bough_quaternion_identity();
     link_shape g = link_shape_of(k, l, r);
     if (!(g.length > 0)) {
-        return bough_fail(BOUGH_INVALID, "chain %s: the hooks of link %d coincide", def->name,
-                          i + 1);
+        return bough_fail(BOUGH_INVALID, "chain %s: the hooks of link %d coincide", def->name, i + 1);
     }
     k->rest_length = g.length;
     k->rest_turn = g.turn;
@@ -157,8 +154,7 @@ static bough_status check_vertices(const bough_chain_def *def) {
     return bough_ok();
 }
 
-bough_status bough_chain_create(bough_arena *arena, const bough_chain_def *def,
-                                bough_structure **structure) {
+bough_status bough_chain_create(bough_arena *arena, const bough_chain_def *def, bough_structure **structure) {
     bough_status status = check_vertices(def);
     if (!bough_is_ok(&status)) return status;
     size_t n = (size_t)def->n_link + 1;

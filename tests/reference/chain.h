@@ -32,7 +32,6 @@ typedef struct bough_chain_def {
 
 // Builds the chain, which copies its definition. BOUGH_INVALID names the vertex or link that is
 // not usable. A force does not exist where two hooks coincide.
-bough_status bough_chain_create(bough_arena *arena, const bough_chain_def *def,
-                                bough_structure **structure);
+bough_status bough_chain_create(bough_arena *arena, const bough_chain_def *def, bough_structure **structure);
 
 #endif

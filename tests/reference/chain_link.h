@@ -33,8 +33,7 @@ typedef struct link_force {
     bough_wrench left, right; // generalised forces on the two vertices
 } link_force;
 
-static inline link_shape link_shape_of(const chain_link *k, const bough_vertex *l,
-                                       const bough_vertex *r) {
+static inline link_shape link_shape_of(const chain_link *k, const bough_vertex *l, const bough_vertex *r) {
     const bough_vec3 a = k->link.left, b = k->link.right;
     link_shape g = {.l = bough_rotation_matrix(l->rotation),
                     .r = bough_rotation_matrix(r->rotation),
@@ -49,8 +48,7 @@ static inline link_shape link_shape_of(const chain_link *k, const bough_vertex *
     g.length = bough_norm(y);
     g.n = bough_scale(1 / g.length, y);
     g.rate = bough_dot(g.n, g.ydot);
-    bough_quaternion d =
-        bough_quaternion_product(bough_quaternion_conjugate(l->rotation), r->rotation);
+    bough_quaternion d = bough_quaternion_product(bough_quaternion_conjugate(l->rotation), r->rotation);
     g.turn = bough_quaternion_product(d, bough_quaternion_conjugate(k->rest_turn));
     return g;
 }
@@ -73,8 +71,8 @@ static inline link_force hook_force(const chain_link *k, const link_shape *g, bo
 }
 
 // Its derivative for δf = df: the moment arms turn with their vertices.
-static inline link_force hook_force_change(const chain_link *k, const link_shape *g,
-                                           const link_change *d, bough_vec3 f, bough_vec3 df) {
+static inline link_force hook_force_change(const chain_link *k, const link_shape *g, const link_change *d,
+                                           bough_vec3 f, bough_vec3 df) {
     link_force varied = hook_force(k, g, df);
     bough_vec3 fl = bough_cross(d->turn_l, bough_mat3_tmul(g->l, f));
     bough_vec3 fr = bough_cross(d->turn_r, bough_mat3_tmul(g->r, f));
@@ -124,17 +122,16 @@ static inline link_force link_viscous(const chain_link *k, const link_shape *g) 
 // -- derivatives ----------------------------------------------------------------------------------
 
 // δ of the hook's place x + R a and of its velocity u + R (Ω×a)
-static inline void hook_change(bough_mat3 r, bough_vec3 w, bough_vec3 a,
-                               const bough_vertex_change *c, bough_vec3 *place, bough_vec3 *rate) {
-    bough_vec3 carried =
-        bough_add(bough_cross(c->turn, bough_cross(w, a)), bough_cross(c->spin, a));
+static inline void hook_change(bough_mat3 r, bough_vec3 w, bough_vec3 a, const bough_vertex_change *c,
+                               bough_vec3 *place, bough_vec3 *rate) {
+    bough_vec3 carried = bough_add(bough_cross(c->turn, bough_cross(w, a)), bough_cross(c->spin, a));
     *place = bough_add(c->position, bough_mat3_mul(r, bough_cross(c->turn, a)));
     *rate = bough_add(c->velocity, bough_mat3_mul(r, carried));
 }
 
 // δ(2 w v) for d → d∘exp(ψ), ψ = D₀δφ_r − Dᵀδφ_l: δw = −½ v·ψ, δv = ½ (wψ + v×ψ)
-static inline bough_vec3 bend_change(const chain_link *k, const link_shape *g,
-                                     const bough_vertex_change *l, const bough_vertex_change *r) {
+static inline bough_vec3 bend_change(const chain_link *k, const link_shape *g, const bough_vertex_change *l,
+                                     const bough_vertex_change *r) {
     bough_mat3 rest = bough_rotation_matrix(k->rest_turn), turn = bough_rotation_matrix(g->turn);
     bough_vec3 psi = bough_sub(bough_mat3_mul(rest, r->turn), bough_mat3_tmul(turn, l->turn));
     double w = g->turn.w;
@@ -144,8 +141,7 @@ static inline bough_vec3 bend_change(const chain_link *k, const link_shape *g,
 }
 
 static inline link_change link_change_of(const chain_link *k, const link_shape *g,
-                                         const bough_vertex_change *l,
-                                         const bough_vertex_change *r) {
+                                         const bough_vertex_change *l, const bough_vertex_change *r) {
     link_change d = {.turn_l = l->turn, .turn_r = r->turn, .wl = l->spin, .wr = r->spin};
     bough_vec3 place_l, place_r, rate_l, rate_r;
     hook_change(g->l, g->wl, k->link.left, l, &place_l, &rate_l);
@@ -158,8 +154,7 @@ static inline link_change link_change_of(const chain_link *k, const link_shape *
     return d;
 }
 
-static inline link_force link_elastic_change(const chain_link *k, const link_shape *g,
-                                             const link_change *d) {
+static inline link_force link_elastic_change(const chain_link *k, const link_shape *g, const link_change *d) {
     double e = g->length - k->rest_length, tension = spring_tension(k, g);
     double slope = k->link.stiffness + 3 * k->link.hardening * e * e;
     bough_vec3 df = bough_axpy(slope * d->length, g->n, bough_scale(tension, d->n));
@@ -167,8 +162,7 @@ static inline link_force link_elastic_change(const chain_link *k, const link_sha
     return add_bending(k, d->bend, f);
 }
 
-static inline link_force link_viscous_change(const chain_link *k, const link_shape *g,
-                                             const link_change *d) {
+static inline link_force link_viscous_change(const chain_link *k, const link_shape *g, const link_change *d) {
     double b = k->link.rotational_damping, tension = k->link.damping * g->rate;
     bough_vec3 df = bough_axpy(k->link.damping * d->rate, g->n, bough_scale(tension, d->n));
     link_force f = hook_force_change(k, g, d, bough_scale(tension, g->n), df);

@@ -5,8 +5,7 @@
 // A column of a 6×6 row-major matrix.
 static void store_column(double *m, int j, bough_vec3 upper, bough_vec3 lower) {
     const double values[6] = {upper.x, upper.y, upper.z, lower.x, lower.y, lower.z};
-    for (int i = 0; i < 6; i++)
-        m[6 * i + j] = values[i];
+    for (int i = 0; i < 6; i++) m[6 * i + j] = values[i];
 }
 
 void bough_lumped_mass(const bough_lumped *b, const bough_vertex *vertex, double *mass) {
@@ -17,8 +16,7 @@ void bough_lumped_mass(const bough_lumped *b, const bough_vertex *vertex, double
         double *m = mass + (size_t)36 * i;
         for (int j = 0; j < 3; j++) {
             bough_vec3 e = unit[j];
-            store_column(m, j, bough_scale(v->mass, e),
-                         bough_cross(v->first, bough_mat3_tmul(r, e)));
+            store_column(m, j, bough_scale(v->mass, e), bough_cross(v->first, bough_mat3_tmul(r, e)));
             store_column(m, 3 + j, bough_mat3_mul(r, bough_cross(e, v->first)),
                          bough_mat3_mul(v->rotational, e));
         }
@@ -57,8 +55,7 @@ void bough_lumped_inertial_tangent(const bough_lumped *b, const bough_vertex *ve
         bough_mat3 r = bough_rotation_matrix(vertex[i].rotation);
         bough_vec3 w = vertex[i].spin, dw = change[i].spin, s = v->first;
         bough_vec3 centripetal = bough_cross(w, bough_cross(w, s));
-        bough_vec3 varied =
-            bough_add(bough_cross(dw, bough_cross(w, s)), bough_cross(w, bough_cross(dw, s)));
+        bough_vec3 varied = bough_add(bough_cross(dw, bough_cross(w, s)), bough_cross(w, bough_cross(dw, s)));
         varied = bough_add(varied, bough_cross(change[i].turn, centripetal));
         force_change[i].force = bough_mat3_mul(r, bough_scale(-1, varied));
         force_change[i].moment = bough_add(bough_cross(bough_mat3_mul(v->rotational, dw), w),

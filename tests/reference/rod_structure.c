@@ -1,7 +1,7 @@
 #include "tests/reference/rod_structure.h"
 
-#include "tests/reference/lumped.h"
 #include "flexbody/rod/rod_elastic.h"
+#include "tests/reference/lumped.h"
 
 #include <string.h>
 
@@ -18,9 +18,7 @@ typedef struct segment {
     segment_geometry shape;
 } segment;
 
-static bough_vec3 load3(const double *a, int s, int i) {
-    return (bough_vec3){a[i], a[s + i], a[2 * s + i]};
-}
+static bough_vec3 load3(const double *a, int s, int i) { return (bough_vec3){a[i], a[s + i], a[2 * s + i]}; }
 
 static vertex_state state_of(const bough_vertex *v) {
     return (vertex_state){.x = v->position, .u = v->velocity, .w = v->spin, .p = v->rotation};
@@ -31,9 +29,8 @@ static vertex_variation variation_of(const bough_vertex_change *c) {
 }
 
 static segment segment_at(const bough_rod_model *m, const bough_vertex *vertex, int n) {
-    segment g = {
-        n,       m->length[n], m->inverse_length[n], state_of(vertex + n), state_of(vertex + n + 1),
-        {.w = 0}};
+    segment g = {n,       m->length[n], m->inverse_length[n], state_of(vertex + n), state_of(vertex + n + 1),
+                 {.w = 0}};
     g.shape = segment_shape(g.left, g.right, g.inverse);
     return g;
 }
@@ -41,8 +38,7 @@ static segment segment_at(const bough_rod_model *m, const bough_vertex *vertex, 
 static strain strain_of(const bough_rod_model *m, const segment *g) {
     int s = m->stride;
     bough_vec3 v0 = load3(m->strain0, s, g->n), u0 = load3(m->strain0 + 3 * s, s, g->n);
-    return (strain){bough_sub(g->shape.stretch, v0),
-                    bough_sub(bough_scale(g->inverse, g->shape.phi), u0)};
+    return (strain){bough_sub(g->shape.stretch, v0), bough_sub(bough_scale(g->inverse, g->shape.phi), u0)};
 }
 
 // Ĉ e of (4) and D̂ ė of (5)
@@ -55,17 +51,15 @@ static strain viscous_stress(const bough_rod_model *m, const segment *g) {
     return symmetric_times(m->damping, m->stride, g->n, rate);
 }
 
-static strain law_stress_change(const bough_rod_model *m, const segment *g,
-                                    const segment_variation *d) {
+static strain law_stress_change(const bough_rod_model *m, const segment *g, const segment_variation *d) {
     strain change = {d->stretch, bough_scale(g->inverse, d->phi)};
     int s = m->stride;
     elastic_state at = elastic_at(m->stiffness, m->gradient, s, g->n, strain_of(m, g));
     return elastic_variation(m->stiffness, m->gradient, s, g->n, at, change);
 }
 
-static strain viscous_stress_change(const bough_rod_model *m, const segment *g,
-                                    const segment_variation *d, const vertex_variation *l,
-                                    const vertex_variation *r) {
+static strain viscous_stress_change(const bough_rod_model *m, const segment *g, const segment_variation *d,
+                                    const vertex_variation *l, const vertex_variation *r) {
     segment_rate motion = segment_motion(g->shape, g->left, g->right);
     strain change = rate_variation(g->shape, motion, *d, l, r, g->inverse);
     return symmetric_times(m->damping, m->stride, g->n, change);
@@ -108,8 +102,8 @@ static bool viscous(void *self, const bough_vertex *vertex, bough_wrench *force)
     return ok;
 }
 
-static bool elastic_tangent(void *self, const bough_vertex *vertex,
-                            const bough_vertex_change *change, bough_wrench *force_change) {
+static bool elastic_tangent(void *self, const bough_vertex *vertex, const bough_vertex_change *change,
+                            bough_wrench *force_change) {
     const bough_rod_model *m = ((const rod_structure *)self)->model;
     bool ok = true;
     clear(m, force_change);
@@ -124,8 +118,8 @@ static bool elastic_tangent(void *self, const bough_vertex *vertex,
     return ok;
 }
 
-static bool viscous_tangent(void *self, const bough_vertex *vertex,
-                            const bough_vertex_change *change, bough_wrench *force_change) {
+static bool viscous_tangent(void *self, const bough_vertex *vertex, const bough_vertex_change *change,
+                            bough_wrench *force_change) {
     const bough_rod_model *m = ((const rod_structure *)self)->model;
     bool ok = true;
     clear(m, force_change);
@@ -155,8 +149,8 @@ static bool inertial(void *self, const bough_vertex *vertex, bough_wrench *force
     return true;
 }
 
-static bool inertial_tangent(void *self, const bough_vertex *vertex,
-                             const bough_vertex_change *change, bough_wrench *force_change) {
+static bool inertial_tangent(void *self, const bough_vertex *vertex, const bough_vertex_change *change,
+                             bough_wrench *force_change) {
     bough_lumped_inertial_tangent(&((rod_structure *)self)->lumped, vertex, change, force_change);
     return true;
 }
@@ -167,8 +161,7 @@ static void mass(void *self, const bough_vertex *vertex, double *block) {
 
 static void mass_tangent(void *self, const bough_vertex *vertex, const bough_vertex_change *change,
                          const bough_twist *acceleration, bough_wrench *product) {
-    bough_lumped_mass_tangent(&((rod_structure *)self)->lumped, vertex, change, acceleration,
-                              product);
+    bough_lumped_mass_tangent(&((rod_structure *)self)->lumped, vertex, change, acceleration, product);
 }
 
 static const bough_structure_ops rod_ops = {
@@ -182,8 +175,7 @@ static const bough_structure_ops rod_ops = {
 
 static bough_inertia inertia_of(const bough_vertex_inertia *v) {
     const double *j = v->inertia; // xx yy zz xy xz yz
-    return (bough_inertia){
-        v->mass, v->moment, {{j[0], j[3], j[4]}, {j[3], j[1], j[5]}, {j[4], j[5], j[2]}}};
+    return (bough_inertia){v->mass, v->moment, {{j[0], j[3], j[4]}, {j[3], j[1], j[5]}, {j[4], j[5], j[2]}}};
 }
 
 bough_status bough_rod_structure_create(bough_arena *arena, const bough_rod_model *model,

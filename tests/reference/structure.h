@@ -71,8 +71,8 @@ typedef struct bough_attachment {
 
 // Jᵀ(f, l): the generalised force on the attachment's vertex of a wrench at the attachment, the
 // wrench in the frame's axes.
-static inline bough_wrench bough_attachment_force(const bough_attachment *at,
-                                                  const bough_vertex *vertex, bough_wrench w) {
+static inline bough_wrench bough_attachment_force(const bough_attachment *at, const bough_vertex *vertex,
+                                                  bough_wrench w) {
     bough_mat3 r = bough_rotation_matrix(vertex[at->vertex].rotation);
     bough_vec3 lever = bough_cross(at->arm, bough_mat3_tmul(r, w.force));
     return (bough_wrench){w.force, bough_add(bough_mat3_tmul(r, w.moment), lever)};

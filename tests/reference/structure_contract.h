@@ -37,8 +37,7 @@ static inline void structure_near(const void *value, const void *expected, int n
                                   const char *what) {
     const double *a = value, *b = expected;
     double largest = 1e-30;
-    for (int i = 0; i < n; i++)
-        largest = fmax(largest, fabs(b[i]));
+    for (int i = 0; i < n; i++) largest = fmax(largest, fabs(b[i]));
     for (int i = 0; i < n; i++) {
         if (fabs(a[i] - b[i]) <= tolerance * largest) continue;
         fail_msg("%s[%d] = %.12g, expected %.12g (largest %.3g)", what, i, a[i], b[i], largest);
@@ -55,14 +54,13 @@ static inline void structure_small(const void *value, int n, double allowed, con
 // y += A x for a 6×6 row-major block
 static inline void structure_multiply(const double *a, const double *x, double *y) {
     for (int i = 0; i < 6; i++) {
-        for (int j = 0; j < 6; j++)
-            y[i] += a[6 * i + j] * x[j];
+        for (int j = 0; j < 6; j++) y[i] += a[6 * i + j] * x[j];
     }
 }
 
 // A case of the structure, deformed about its rest by up to `size` [m, rad].
-static inline structure_case structure_case_at(const bough_structure *s,
-                                               const bough_inertia *inertia, double size) {
+static inline structure_case structure_case_at(const bough_structure *s, const bough_inertia *inertia,
+                                               double size) {
     int at = 0;
     structure_case c = {.structure = s, .inertia = inertia};
     assert_true(s->n_vertex <= STRUCTURE_MAX);
@@ -78,15 +76,13 @@ static inline structure_case structure_case_at(const bough_structure *s,
         c.relative[i].spin = structure_vector(&at, 0.8);
     }
     const bough_vertex *r = &s->rest[s->reference];
-    c.relative[s->reference] =
-        (bough_relative_vertex){.position = r->position, .rotation = r->rotation};
+    c.relative[s->reference] = (bough_relative_vertex){.position = r->position, .rotation = r->rotation};
     return c;
 }
 
 // The case's vertices in the ground.
 static inline void structure_vertices(const structure_case *c, bough_vertex *vertex) {
-    bough_body_frame_vertices(c->structure->n_vertex, &c->pose, c->motion.twist, c->relative,
-                              vertex);
+    bough_body_frame_vertices(c->structure->n_vertex, &c->pose, c->motion.twist, c->relative, vertex);
 }
 
 static inline void structure_change(int n, int seed, bough_vertex_change *change) {
@@ -120,14 +116,12 @@ static inline double structure_power(int n, const bough_wrench *force, const bou
 }
 
 // Sum of generalised forces (or momenta) as one wrench about the frame's origin.
-static inline bough_wrench structure_sum(int n, const bough_vertex *vertex,
-                                         const bough_wrench *force) {
+static inline bough_wrench structure_sum(int n, const bough_vertex *vertex, const bough_wrench *force) {
     bough_wrench sum = {{0, 0, 0}, {0, 0, 0}};
     for (int i = 0; i < n; i++) {
         bough_mat3 r = bough_rotation_matrix(vertex[i].rotation);
-        bough_wrench one = {force[i].force,
-                            bough_add(bough_mat3_mul(r, force[i].moment),
-                                      bough_cross(vertex[i].position, force[i].force))};
+        bough_wrench one = {force[i].force, bough_add(bough_mat3_mul(r, force[i].moment),
+                                                      bough_cross(vertex[i].position, force[i].force))};
         sum = bough_wrench_add(sum, one);
     }
     return sum;
@@ -166,8 +160,7 @@ static inline void structure_check_gradient(const structure_case *c) {
         structure_shift(s->n_vertex, vertex, step, change, shifted);
         gradient[k] = -(s->ops->elastic_energy(s->self, shifted) - back) / (2 * step);
     }
-    for (int i = 0; i < s->n_vertex; i++)
-        bough_wrench_store(force[i], values + 6 * i);
+    for (int i = 0; i < s->n_vertex; i++) bough_wrench_store(force[i], values + 6 * i);
     structure_near(values, gradient, 6 * s->n_vertex, 1e-7, "elastic force");
     assert_true(s->ops->elastic.force(s->self, s->rest, force));
     structure_small(force, 6 * s->n_vertex, 1e-11, "elastic force at rest");
@@ -176,8 +169,7 @@ static inline void structure_check_gradient(const structure_case *c) {
 
 // Elastic and viscous forces are inner ones: without resultant, and the same seen from the ground
 // with the BRF's motion as from the BRF at rest.
-static inline void structure_check_inner(const structure_case *c,
-                                         const bough_structure_term *term) {
+static inline void structure_check_inner(const structure_case *c, const bough_structure_term *term) {
     const bough_structure *s = c->structure;
     bough_vertex vertex[STRUCTURE_MAX], seen[STRUCTURE_MAX];
     bough_wrench force[STRUCTURE_MAX], inner[STRUCTURE_MAX];
@@ -235,8 +227,7 @@ static inline void structure_check_mass(const structure_case *c) {
         int block = k / 36 * 36, i = k % 36 / 6, j = k % 6;
         check_near(mass[k], mass[block + 6 * j + i], 1e-14, 1e-14);
     }
-    for (int i = 0; i < s->n_vertex; i++)
-        assert_true(bough_cholesky_factor(6, mass + 36 * i));
+    for (int i = 0; i < s->n_vertex; i++) assert_true(bough_cholesky_factor(6, mass + 36 * i));
     for (int i = 0; i < s->n_vertex; i++) {
         bough_transform x = {vertex[i].position, bough_rotation_matrix(vertex[i].rotation)};
         bough_twist own = {bough_mat3_tmul(x.rotation, vertex[i].velocity), vertex[i].spin};
@@ -266,8 +257,7 @@ static inline void structure_check_total_mass(const structure_case *c) {
         bough_wrench product[STRUCTURE_MAX], expected = bough_inertia_mul(&total, field);
         for (int i = 0; i < s->n_vertex; i++) {
             bough_mat3 r = bough_rotation_matrix(vertex[i].rotation);
-            local[i].linear =
-                bough_add(field.linear, bough_cross(field.angular, vertex[i].position));
+            local[i].linear = bough_add(field.linear, bough_cross(field.angular, vertex[i].position));
             local[i].angular = bough_mat3_tmul(r, field.angular);
         }
         structure_mass_times(s, vertex, local, product);
@@ -294,8 +284,7 @@ static inline void structure_check_inertial(const structure_case *c) {
     }
     for (int side = 0; side < 2; side++) {
         structure_shift(n, vertex, side ? step : -step, motion, moved);
-        for (int i = 0; i < n; i++)
-            velocity[i] = (bough_twist){moved[i].velocity, moved[i].spin};
+        for (int i = 0; i < n; i++) velocity[i] = (bough_twist){moved[i].velocity, moved[i].spin};
         structure_mass_times(s, moved, velocity, momentum[side]);
         for (int i = 0; i < n; i++) {
             momentum[side][i] = structure_sum(1, moved + i, momentum[side] + i);
@@ -307,16 +296,13 @@ static inline void structure_check_inertial(const structure_case *c) {
         double values[2][6], slope[6];
         bough_wrench difference = bough_wrench_sub(rate[i], force[i]);
         difference = structure_sum(1, vertex + i, &difference);
-        for (int k = 0; k < 2; k++)
-            bough_wrench_store(momentum[k][i], values[k]);
-        for (int k = 0; k < 6; k++)
-            slope[k] = (values[1][k] - values[0][k]) / (2 * step);
+        for (int k = 0; k < 2; k++) bough_wrench_store(momentum[k][i], values[k]);
+        for (int k = 0; k < 6; k++) slope[k] = (values[1][k] - values[0][k]) / (2 * step);
         structure_near(&difference, slope, 6, 1e-8, "rate of momentum");
     }
 }
 
-static inline void structure_check_tangent(const structure_case *c,
-                                           const bough_structure_term *term) {
+static inline void structure_check_tangent(const structure_case *c, const bough_structure_term *term) {
     const bough_structure *s = c->structure;
     const double step = 1e-6;
     int n = s->n_vertex;
@@ -350,8 +336,7 @@ static inline void structure_check_mass_tangent(const structure_case *c) {
     bough_wrench tangent[STRUCTURE_MAX], side[2][STRUCTURE_MAX], difference[STRUCTURE_MAX];
     structure_vertices(c, vertex);
     structure_change(n, 3, change);
-    for (int i = 0; i < n; i++)
-        a[i] = (bough_twist){change[i].velocity, change[i].spin};
+    for (int i = 0; i < n; i++) a[i] = (bough_twist){change[i].velocity, change[i].spin};
     for (int k = 0; k < 2; k++) {
         structure_shift(n, vertex, k ? step : -step, change, shifted);
         structure_mass_times(s, shifted, a, side[k]);

@@ -26,8 +26,8 @@ static int setup(void **context) {
     for (int i = 0; i <= N; i++) {
         const bough_vertex_inertia *v = &f->model->vertex[i];
         const double *j = v->inertia;
-        f->inertia[i] = (bough_inertia){
-            v->mass, v->moment, {{j[0], j[3], j[4]}, {j[3], j[1], j[5]}, {j[4], j[5], j[2]}}};
+        f->inertia[i] =
+            (bough_inertia){v->mass, v->moment, {{j[0], j[3], j[4]}, {j[3], j[1], j[5]}, {j[4], j[5], j[2]}}};
     }
     f->at = structure_case_at(f->structure, f->inertia, 0.25);
     *context = f;
@@ -58,12 +58,11 @@ static void rod_state(const fixture *f, double *state, double *input) {
     bough_body_frame_vertices(N + 1, &here, f->at.motion.twist, f->at.relative, vertex);
     for (int i = 1; i <= N; i++) {
         const bough_vertex *v = &vertex[i];
-        const double values[BOUGH_ROD_STATES] = {
-            v->position.x, v->position.y, v->position.z, v->rotation.w, v->rotation.x,
-            v->rotation.y, v->rotation.z, v->velocity.x, v->velocity.y, v->velocity.z,
-            v->spin.x,     v->spin.y,     v->spin.z};
-        for (int c = 0; c < BOUGH_ROD_STATES; c++)
-            state[c * N + i - 1] = values[c];
+        const double values[BOUGH_ROD_STATES] = {v->position.x, v->position.y, v->position.z, v->rotation.w,
+                                                 v->rotation.x, v->rotation.y, v->rotation.z, v->velocity.x,
+                                                 v->velocity.y, v->velocity.z, v->spin.x,     v->spin.y,
+                                                 v->spin.z};
+        for (int c = 0; c < BOUGH_ROD_STATES; c++) state[c * N + i - 1] = values[c];
     }
     bough_twist_store(f->at.motion.twist, input);
     input[6] = f->at.motion.gravity.x;
@@ -78,8 +77,7 @@ static void load_both(const fixture *f, bough_rod_loads *loads, bough_body_frame
     memset(loads->rate, 0, 6 * (size_t)f->model->stride * sizeof(double));
     for (int i = 0; i <= N; i++) {
         double values[6];
-        for (int c = 0; c < 6; c++)
-            values[c] = loads->value[c * f->model->stride + i];
+        for (int c = 0; c < 6; c++) values[c] = loads->value[c * f->model->stride + i];
         bough_attachment at = {i, {0, 0, 0}};
         bough_body_frame_add_wrench(b, &at, bough_wrench_load(values));
     }
@@ -100,8 +98,7 @@ static void accelerations_are_those_of_the_rods_right_hand_side(void **context) 
     load_both(f, &loads, &b);
     rod_state(f, state, input);
     assert_true(bough_rod_derivative(f->model, &loads, 0, state, input, &scratch, rate));
-    for (int k = 0; k < 6 * N; k++)
-        expected[k] = rate[(BOUGH_ROD_U + k / N) * N + k % N];
+    for (int k = 0; k < 6 * N; k++) expected[k] = rate[(BOUGH_ROD_U + k / N) * N + k % N];
     for (int which = 0; which < 2; which++) {
         bough_twist a[N + 1];
         bough_body_frame_flexible(&b, v_r_rate[which], v_e_rate);
@@ -110,8 +107,7 @@ static void accelerations_are_those_of_the_rods_right_hand_side(void **context) 
             bough_vec3 turn = bough_cross(f->at.motion.twist.angular, b.vertex[i].velocity);
             double one[6];
             bough_twist_store((bough_twist){bough_sub(a[i].linear, turn), a[i].angular}, one);
-            for (int c = 0; c < 6; c++)
-                values[c * N + i - 1] = one[c];
+            for (int c = 0; c < 6; c++) values[c * N + i - 1] = one[c];
         }
         structure_near(values, expected, 6 * N, 1e-10, "rate of u and W");
     }
@@ -177,8 +173,7 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test_setup_teardown(rod_fulfils_the_structural_contract, setup, teardown),
         cmocka_unit_test_setup_teardown(body_frame_of_the_rod_is_exact, setup, teardown),
-        cmocka_unit_test_setup_teardown(accelerations_are_those_of_the_rods_right_hand_side, setup,
-                                        teardown),
+        cmocka_unit_test_setup_teardown(accelerations_are_those_of_the_rods_right_hand_side, setup, teardown),
         cmocka_unit_test_setup_teardown(reduced_force_is_the_root_wrench, setup, teardown),
         cmocka_unit_test_setup_teardown(energy_is_that_of_the_rod, setup, teardown),
         cmocka_unit_test_setup_teardown(relative_coordinates_are_undone, setup, teardown),

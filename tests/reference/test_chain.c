@@ -29,13 +29,8 @@ static int setup(void **context) {
         f->inertia[i] = bough_inertia_of(1.5 + 0.2 * i, structure_vector(&at, 0.1), about);
     }
     for (int i = 0; i < N; i++) {
-        f->link[i] = (bough_chain_link){structure_vector(&at, 0.15),
-                                        structure_vector(&at, 0.15),
-                                        40 + 3 * i,
-                                        25,
-                                        1.2,
-                                        15 - i,
-                                        0.7};
+        f->link[i] = (bough_chain_link){
+            structure_vector(&at, 0.15), structure_vector(&at, 0.15), 40 + 3 * i, 25, 1.2, 15 - i, 0.7};
     }
     f->def = (bough_chain_def){"sample", N, 0, f->link, f->rest, f->inertia};
     *context = f;
@@ -144,8 +139,8 @@ static void rate_in_the_ground(flight *f, const bough_vertex *y, bough_vertex *r
     at.motion.gravity = f->gravity;
     structure_newton_euler(&at, false, a);
     for (int i = 0; i <= N; i++) {
-        rate[i] = (bough_vertex){y[i].velocity, turn_rate(y[i].rotation, y[i].spin), a[i].linear,
-                                 a[i].angular};
+        rate[i] =
+            (bough_vertex){y[i].velocity, turn_rate(y[i].rotation, y[i].spin), a[i].linear, a[i].angular};
     }
 }
 
@@ -175,9 +170,8 @@ static void rate_in_the_frame(flight *f, const bough_vertex *y, bough_vertex *ra
         bough_twist a = bough_twist_load(is_frame ? v_r_rate : v_e_rate + 6 * k++);
         bough_vec3 w = y[i].spin, u = y[i].velocity;
         if (is_frame) {
-            rate[i] =
-                (bough_vertex){bough_mat3_mul(at.pose.rotation, u), turn_rate(y[i].rotation, w),
-                               bough_sub(a.linear, bough_cross(w, u)), a.angular};
+            rate[i] = (bough_vertex){bough_mat3_mul(at.pose.rotation, u), turn_rate(y[i].rotation, w),
+                                     bough_sub(a.linear, bough_cross(w, u)), a.angular};
         } else { // ω̂ in BRF axes turns from the left
             bough_vec3 own = bough_mat3_tmul(bough_rotation_matrix(y[i].rotation), w);
             rate[i] = (bough_vertex){u, turn_rate(y[i].rotation, own), a.linear, a.angular};
@@ -205,8 +199,7 @@ static void runge_kutta(flight *f, flight_rate *rate_of, double h, double *y) {
 static bough_vec3 momentum_of(const bough_structure *s, const bough_vertex *vertex) {
     bough_twist velocity[N + 1];
     bough_wrench momentum[N + 1];
-    for (int i = 0; i <= N; i++)
-        velocity[i] = (bough_twist){vertex[i].velocity, vertex[i].spin};
+    for (int i = 0; i <= N; i++) velocity[i] = (bough_twist){vertex[i].velocity, vertex[i].spin};
     structure_mass_times(s, vertex, velocity, momentum);
     return structure_sum(N + 1, vertex, momentum).force;
 }
@@ -276,8 +269,7 @@ int main(void) {
         cmocka_unit_test_setup_teardown(chain_fulfils_the_structural_contract, setup, teardown),
         cmocka_unit_test_setup_teardown(body_frame_of_the_chain_is_exact, setup, teardown),
         cmocka_unit_test_setup_teardown(spring_and_damper_follow_their_laws, setup, teardown),
-        cmocka_unit_test_setup_teardown(rotational_spring_and_damper_follow_their_laws, setup,
-                                        teardown),
+        cmocka_unit_test_setup_teardown(rotational_spring_and_damper_follow_their_laws, setup, teardown),
         cmocka_unit_test_setup_teardown(free_flight_is_one_in_both_formulations, setup, teardown),
         cmocka_unit_test_setup_teardown(unusable_definitions_are_refused_by_name, setup, teardown),
     };

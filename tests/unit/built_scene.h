@@ -6,8 +6,7 @@
 #include "tests/unit/check.h"
 
 // Reads the scene at `path` within the sources; `sets` ends with NULL.
-static inline bough_scene *scene_read(bough_arena *arena, const char *path,
-                                      const char *const *sets) {
+static inline bough_scene *scene_read(bough_arena *arena, const char *path, const char *const *sets) {
     bough_errors errors = {.arena = arena};
     bough_scene *scene = NULL;
     char file[512];
@@ -20,8 +19,7 @@ static inline bough_scene *scene_read(bough_arena *arena, const char *path,
     return scene;
 }
 
-static inline bough_simulation *scene_build(bough_arena *arena, const char *path,
-                                            const char *const *sets) {
+static inline bough_simulation *scene_build(bough_arena *arena, const char *path, const char *const *sets) {
     bough_simulation *s = NULL;
     bough_status status = bough_simulation_build(arena, scene_read(arena, path, sets), &s);
     if (!bough_is_ok(&status)) print_error("%s\n", status.message);

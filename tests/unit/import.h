@@ -32,8 +32,7 @@ static inline void apply(const edit *change, const char *name, char text[8192]) 
 }
 
 // Writes a deck of tests/data/decks into the folder, changed.
-static inline void copy_deck(const char *folder, const char *name, const edit *one,
-                             const edit *two) {
+static inline void copy_deck(const char *folder, const char *name, const edit *one, const edit *two) {
     char path[SCRATCH_PATH], text[8192];
     snprintf(path, sizeof path, "%s/tests/data/decks/%s", BOUGH_SOURCE_DIR, name);
     FILE *in = fopen(path, "r");
@@ -82,9 +81,7 @@ static inline double number(const bough_node *node, const char *path) {
     return strtod(at(node, path)->text, NULL);
 }
 
-static inline const char *text(const bough_node *node, const char *path) {
-    return at(node, path)->text;
-}
+static inline const char *text(const bough_node *node, const char *path) { return at(node, path)->text; }
 
 static inline bool list_says(trial *t, const char *words) {
     char path[SCRATCH_PATH], all[8192];

@@ -26,9 +26,18 @@ static inline void write_box(const char *folder) {
         value[3 * i] = (int16_t)(1200 + (i % 2 ? 100 : -100));
         value[3 * i + 1] = value[3 * i + 2] = 0;
     }
-    const bough_wind_box box = {.periodic = true, .n_z = 2, .n_y = 2, .n_time = TIMES, .dz = 30,
-                                .dy = 30, .dt = 0.5, .mean = 12, .hub = 21, .bottom = 6,
-                                .scale = {0.01, 0.01, 0.01}, .value = value};
+    const bough_wind_box box = {.periodic = true,
+                                .n_z = 2,
+                                .n_y = 2,
+                                .n_time = TIMES,
+                                .dz = 30,
+                                .dy = 30,
+                                .dt = 0.5,
+                                .mean = 12,
+                                .hub = 21,
+                                .bottom = 6,
+                                .scale = {0.01, 0.01, 0.01},
+                                .value = value};
     snprintf(path, sizeof path, "%s/parts/box.bts", folder);
     FILE *file = fopen(path, "wb");
     assert_non_null(file);
@@ -48,8 +57,7 @@ static inline trial import_given(const char *main, const edit *one, const edit *
         bough_status made = bough_folder_make(path);
         assert_true(bough_is_ok(&made));
     }
-    for (int i = 0; i < N_DECK; i++)
-        copy_deck(t.folder, decks[i], one, two);
+    for (int i = 0; i < N_DECK; i++) copy_deck(t.folder, decks[i], one, two);
     write_box(t.folder);
     snprintf(path, sizeof path, "%s/%s", t.folder, main);
     snprintf(t.out, sizeof t.out, "%s/out", t.folder);

@@ -6,9 +6,9 @@
 #include "tests/unit/member.h"
 
 #include "core/base/base.h"
+#include "core/base/rotation.h"
 #include "core/tree/dynamics.h"
 #include "core/tree/loop.h"
-#include "core/base/rotation.h"
 #include "core/tree/tree.h"
 
 #include <stdlib.h>
@@ -81,12 +81,9 @@ static inline bough_body_def random_body(unsigned *seed, const char *name, int p
     b.mass = 1 + 0.5 * next(seed);
     b.mass_centre = next3(seed);
     bough_mat3 r = turned(next(seed), next(seed), next(seed));
-    b.inertia =
-        bough_mat3_product(r, bough_mat3_product(diagonal(0.3, 0.5, 0.7), bough_mat3_transpose(r)));
-    for (int k = 0; k < BOUGH_JOINT_COORDINATES; k++)
-        b.coordinates[k] = next(seed);
-    for (int k = 0; k < BOUGH_JOINT_SPEEDS; k++)
-        b.speeds[k] = next(seed);
+    b.inertia = bough_mat3_product(r, bough_mat3_product(diagonal(0.3, 0.5, 0.7), bough_mat3_transpose(r)));
+    for (int k = 0; k < BOUGH_JOINT_COORDINATES; k++) b.coordinates[k] = next(seed);
+    for (int k = 0; k < BOUGH_JOINT_SPEEDS; k++) b.speeds[k] = next(seed);
     return b;
 }
 
@@ -96,17 +93,15 @@ static inline fixture everything_with(bough_integrator_kind solver, double rtol)
     static const char *names[] = {"a", "b", "c", "d", "e", "f", "g", "h", "i", "j"};
     static const int parents[] = {8, 0, 7, 9, 3, 4, BOUGH_GROUND, BOUGH_GROUND, 2, 2};
     static const bough_joint_kind kinds[] = {
-        BOUGH_JOINT_REVOLUTE,  BOUGH_JOINT_SPHERICAL, BOUGH_JOINT_FREE,
-        BOUGH_JOINT_PRISMATIC, BOUGH_JOINT_FIXED,     BOUGH_JOINT_REVOLUTE,
-        BOUGH_JOINT_SPHERICAL, BOUGH_JOINT_UNIVERSAL, BOUGH_JOINT_CYLINDRICAL,
-        BOUGH_JOINT_PLANAR};
+        BOUGH_JOINT_REVOLUTE,    BOUGH_JOINT_SPHERICAL, BOUGH_JOINT_FREE,      BOUGH_JOINT_PRISMATIC,
+        BOUGH_JOINT_FIXED,       BOUGH_JOINT_REVOLUTE,  BOUGH_JOINT_SPHERICAL, BOUGH_JOINT_UNIVERSAL,
+        BOUGH_JOINT_CYLINDRICAL, BOUGH_JOINT_PLANAR};
     unsigned seed = 7;
     bough_body_def bodies[10];
-    for (int i = 0; i < 10; i++)
-        bodies[i] = random_body(&seed, names[i], parents[i], kinds[i]);
+    for (int i = 0; i < 10; i++) bodies[i] = random_body(&seed, names[i], parents[i], kinds[i]);
     bodies[5].spring = (bough_joint_spring){.stiffness = 7, .damping = 0.5, .rest = 0.3};
-    bodies[3].spring = (bough_joint_spring){
-        .stiffness = 3, .damping = 1, .low = -2, .high = -1, .stop_stiffness = 20};
+    bodies[3].spring =
+        (bough_joint_spring){.stiffness = 3, .damping = 1, .low = -2, .high = -1, .stop_stiffness = 20};
     bough_marker_def markers[] = {
         {"on b", 1, {next3(&seed), turned(0.3, -0.4, 1)}},
         {"on e", 4, {next3(&seed), turned(-1, 0.2, 0.5)}},

@@ -27,8 +27,7 @@ void DISCON(float *swap, int *fail, char *input, char *output, char *message) {
     if (file) fclose(file);
     swap[46] = gain * swap[19];
     swap[44] = 0.1f + 0.001f * swap[1];
-    for (int b = 0; b < 3; b++)
-        swap[41 + b] = 0.2f + 0.1f * (float)b;
+    for (int b = 0; b < 3; b++) swap[41 + b] = 0.2f + 0.1f * (float)b;
     static float before; // of which a library has one
     if (strcmp(input, "memory") == 0) swap[46] = 50 * (swap[19] + before);
     before = swap[19];

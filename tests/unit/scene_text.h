@@ -57,8 +57,7 @@ static inline int enter(void **state) {
 static inline int leave(void **state) {
     (void)state;
     const char *const names[] = {"s.yaml", "blade.yaml", "aero.yaml", "polars.yaml"};
-    for (int i = 0; i < 4; i++)
-        remove(names[i]);
+    for (int i = 0; i < 4; i++) remove(names[i]);
     return chdir("/") == 0 && rmdir(directory) == 0 ? 0 : -1;
 }
 
@@ -81,21 +80,20 @@ static inline void accepts(const char *text) { refuses(text, ""); }
 #define ROD_BODY SIMULATION "bodies:\n  - name: a\n    fidelity: rod\n" JOINT
 
 // Parts of scenes that need more.
-#define BODY(name, parent)                                                                         \
-    "  - {name: " name ", fidelity: rigid, joint: {kind: fixed, parent: " parent "}}\n"
-#define SMALL_ROD                                                                                  \
-    "rod: {length: 2, segments: 4, stiffness: [1, 1, 1, 1, 1, 1], mass: [1, 0, 0, 1, 1, 0]}"
-#define TWO_RODS                                                                                   \
-    SIMULATION "bodies:\n" BODY("a", "ground")                                                     \
-        "  - {name: b, fidelity: rod, joint: {kind: fixed, parent: ground}, " SMALL_ROD "}\n"       \
-        "  - {name: c, fidelity: rod, joint: {kind: revolute, parent: ground, axis: x}, "           \
-        SMALL_ROD "}\nloads:\n"
-#define ROTOR                                                                                      \
-    SIMULATION                                                                                     \
-    "bodies:\n  - {name: hub, mass: 1, fidelity: rigid, joint: {kind: revolute, parent: ground, "  \
-    "axis: x}}\n"                                                                                  \
-    "  - {name: b1, fidelity: rod, joint: {kind: fixed, parent: hub}, rod: &r {length: 5,\n"       \
-    "      stiffness: [1, 1, 1, 1, 1, 1], mass: [1, 0, 0, 1, 1, 0]}}\n"                            \
+#define BODY(name, parent) "  - {name: " name ", fidelity: rigid, joint: {kind: fixed, parent: " parent "}}\n"
+#define SMALL_ROD "rod: {length: 2, segments: 4, stiffness: [1, 1, 1, 1, 1, 1], mass: [1, 0, 0, 1, 1, 0]}"
+#define TWO_RODS                                                                                              \
+    SIMULATION "bodies:\n" BODY(                                                                              \
+        "a",                                                                                                  \
+        "ground") "  - {name: b, fidelity: rod, joint: {kind: fixed, parent: ground}, " SMALL_ROD "}\n"       \
+                  "  - {name: c, fidelity: rod, joint: {kind: revolute, parent: ground, axis: x}, " SMALL_ROD \
+                  "}\nloads:\n"
+#define ROTOR                                                                                                \
+    SIMULATION                                                                                               \
+    "bodies:\n  - {name: hub, mass: 1, fidelity: rigid, joint: {kind: revolute, parent: ground, "            \
+    "axis: x}}\n"                                                                                            \
+    "  - {name: b1, fidelity: rod, joint: {kind: fixed, parent: hub}, rod: &r {length: 5,\n"                 \
+    "      stiffness: [1, 1, 1, 1, 1, 1], mass: [1, 0, 0, 1, 1, 0]}}\n"                                      \
     "  - {name: b2, fidelity: rod, joint: {kind: fixed, parent: ground}, rod: *r}\n"
 
 #endif

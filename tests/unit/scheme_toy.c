@@ -6,8 +6,7 @@
 
 static void hold(bough_coupling *c, int member) {
     const bough_assembly *a = c->assembly;
-    for (int j = a->input_offset[member], local = 0; j < a->input_offset[member + 1];
-         j++, local++) {
+    for (int j = a->input_offset[member], local = 0; j < a->input_offset[member + 1]; j++, local++) {
         double slope = 0;
         if (c->n_past > 1) {
             slope = (c->past[0][j] - c->past[1][j]) / (c->past_time[0] - c->past_time[1]);
@@ -19,8 +18,7 @@ static void hold(bough_coupling *c, int member) {
 
 static bough_status step(bough_coupling *c) {
     bough_coupling_begin(c);
-    for (int i = 0; i < c->assembly->n_member; i++)
-        hold(c, i);
+    for (int i = 0; i < c->assembly->n_member; i++) hold(c, i);
     return bough_coupling_advance(c, BOUGH_ALL_STAGES, true);
 }
 

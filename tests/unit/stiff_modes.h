@@ -16,15 +16,14 @@ enum { N = 3 };
 // ẏ = Q Λ (w(t) − Qᵀy) with Q orthogonal, w = (cos t, cos t, cos t): each mode follows the cosine
 // with its own rate.
 static const double rates[N] = {0.7, 40, 3000}; // Λ [1/s]
-static const double columns[N][N] = {{2.0 / 3, 2.0 / 3, 1.0 / 3},
-                                     {-2.0 / 3, 1.0 / 3, 2.0 / 3},
-                                     {1.0 / 3, -2.0 / 3, 2.0 / 3}};
+static const double columns[N][N] = {
+    {2.0 / 3, 2.0 / 3, 1.0 / 3}, {-2.0 / 3, 1.0 / 3, 2.0 / 3}, {1.0 / 3, -2.0 / 3, 2.0 / 3}};
 
 typedef struct problem {
     bough_arena *arena;
     bough_integrator micro;
-    double wall;   // f has no value beyond [s]
-    bool lasting;  // nor anywhere once it was asked for there
+    double wall;  // f has no value beyond [s]
+    bool lasting; // nor anywhere once it was asked for there
     bool broken;
     bool singular;
     double latest; // time of an evaluation [s]

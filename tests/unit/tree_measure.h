@@ -41,8 +41,8 @@ static inline tree_sums tree_sum(const bough_tree *tree, const bough_tree_data *
 
 // Column k of link i of M: the wrench of a unit speed, felt by the link's own joint and its
 // ancestors'; `composite`: the inertia of the link and all that it carries.
-static inline void tree_mass_column(const bough_tree *tree, const bough_tree_data *d,
-                                    bough_inertia composite, int i, int k, double *mass) {
+static inline void tree_mass_column(const bough_tree *tree, const bough_tree_data *d, bough_inertia composite,
+                                    int i, int k, double *mass) {
     const bough_link *link = &tree->links[i];
     int n = tree->n_v, row = link->first_speed + k;
     double unit[BOUGH_JOINT_SPEEDS] = {0};
@@ -61,8 +61,7 @@ static inline void tree_mass_column(const bough_tree *tree, const bough_tree_dat
 }
 
 // M(q) (n_v × n_v), symmetric, by composite rigid bodies.
-static inline void tree_mass_matrix(const bough_tree *tree, const bough_tree_data *d,
-                                    double *mass) {
+static inline void tree_mass_matrix(const bough_tree *tree, const bough_tree_data *d, double *mass) {
     enum { MOST_LINKS = 64 };
     bough_inertia composite[MOST_LINKS];
     assert(tree->n_links <= MOST_LINKS);
@@ -70,8 +69,7 @@ static inline void tree_mass_matrix(const bough_tree *tree, const bough_tree_dat
     for (int i = 0; i < tree->n_links; i++) composite[i] = tree->links[i].inertia;
     for (int i = tree->n_links - 1; i >= 0; i--) {
         const bough_link *link = &tree->links[i];
-        for (int k = 0; k < link->n_speeds; k++)
-            tree_mass_column(tree, d, composite[i], i, k, mass);
+        for (int k = 0; k < link->n_speeds; k++) tree_mass_column(tree, d, composite[i], i, k, mass);
         if (link->parent < 0) continue;
         bough_inertia *up = &composite[link->parent];
         *up = bough_inertia_add(*up, bough_inertia_to_parent(&d->relative[i], composite[i]));
@@ -80,8 +78,8 @@ static inline void tree_mass_matrix(const bough_tree *tree, const bough_tree_dat
 
 // How far a closure is from being satisfied: the largest of its equations [m, –] and of their
 // rates [m/s, 1/s].
-static inline void tree_closure_error(const bough_tree *tree, bough_tree_data *d, int closure,
-                                      double *value, double *rate) {
+static inline void tree_closure_error(const bough_tree *tree, bough_tree_data *d, int closure, double *value,
+                                      double *rate) {
     const bough_closure *c = &tree->closures[closure];
     bough_loops_rows(tree, d);
     *value = *rate = 0;

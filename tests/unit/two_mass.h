@@ -2,8 +2,8 @@
 #ifndef BOUGH_TESTS_TWO_MASS_H
 #define BOUGH_TESTS_TWO_MASS_H
 
-#include "tests/verification/two_mass.h"
 #include "tests/unit/check.h"
+#include "tests/verification/two_mass.h"
 
 #include <string.h>
 

@@ -1,8 +1,8 @@
 #include "tests/verification/added_mass.h"
 
+#include "apps/bough/cases/perform.h"
 #include "apps/bough/config/schema.h"
 #include "apps/bough/results/folder.h"
-#include "apps/bough/cases/perform.h"
 #include "tests/verification/map.h"
 #include "tests/verification/two_mass.h"
 
@@ -160,7 +160,7 @@ typedef struct outcome {
     double sweeps; // per macro step; 1 where the scheme does not iterate
     double error;  // of either position over the run, relative to the start [1]
     bough_status status;
-    double time;   // reached [s]
+    double time; // reached [s]
     char verdict[BOUGH_VERDICT];
 } outcome;
 
@@ -281,8 +281,7 @@ static void perform_run(bough_arena *arena, const added_mass_study *s, int i, in
 
 static bough_status perform_runs(bough_arena *arena, const added_mass_study *s, report *out) {
     FILE *f = out->options->stream;
-    fprintf(f, "\nruns: sweeps per step / relative error, or when they were stopped; mass ratio\n%-22s",
-            "");
+    fprintf(f, "\nruns: sweeps per step / relative error, or when they were stopped; mass ratio\n%-22s", "");
     for (int k = 0; k < s->n_ratio; k++) fprintf(f, "  %10g", s->ratio[k]);
     for (int i = 0; i < WAYS; i++) {
         fprintf(f, "\n%-22s", ways[i].name);

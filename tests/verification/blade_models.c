@@ -1,11 +1,11 @@
 #include "tests/verification/blade_models.h"
 
+#include "apps/bough/cases/perform.h"
+#include "apps/bough/cases/study.h"
 #include "apps/bough/config/schema.h"
 #include "apps/bough/results/folder.h"
 #include "apps/bough/scene/scene.h"
-#include "apps/bough/cases/study.h"
 #include "tests/verification/blade_models_internal.h"
-#include "apps/bough/cases/perform.h"
 
 #include <math.h>
 #include <string.h>
@@ -93,8 +93,7 @@ static void set_measure(bough_arena *arena, int k, int n_blade, bough_study *run
         m->channels.item[v] = (bough_study_vector){each, names};
         for (int c = 0; c < each && names; c++) {
             char text[32];
-            snprintf(text, sizeof text, measures[k].n > 0 ? "%s%d" : "%s", measures[k].channel[c],
-                     v + 1);
+            snprintf(text, sizeof text, measures[k].n > 0 ? "%s%d" : "%s", measures[k].channel[c], v + 1);
             names[c] = run->channel[run->n_channel++] = bough_arena_string(arena, text);
         }
     }
@@ -104,8 +103,7 @@ static void set_measure(bough_arena *arena, int k, int n_blade, bough_study *run
 static bough_status make_run(bough_arena *arena, const bough_blade_models *s, bough_study *run) {
     bough_errors errors = {.arena = arena};
     bough_scene *scene;
-    bough_status status =
-        bough_scene_read(arena, s->turbine, s->run.item, s->run.n, &errors, &scene);
+    bough_status status = bough_scene_read(arena, s->turbine, s->run.item, s->run.n, &errors, &scene);
     if (errors.n > 0) bough_errors_print(&errors, stderr);
     if (!bough_is_ok(&status)) return status;
     int n_blade = scene->turbine.n_blade;
@@ -125,9 +123,9 @@ typedef struct outcome {
     bough_model_blade blade;
     bough_case cell;
     bough_case_result result; // of the first run
-    double cpu;                // least of the runs [s]
-    double flap, twist;        // largest differences along the blade [m, rad]
-    double rest, bent;         // largest relative differences of frequencies
+    double cpu;               // least of the runs [s]
+    double flap, twist;       // largest differences along the blade [m, rad]
+    double rest, bent;        // largest relative differences of frequencies
 } outcome;
 
 typedef struct comparison {
@@ -139,15 +137,15 @@ typedef struct comparison {
     outcome *outcome; // (n)
 } comparison;
 
-static bough_status prepare(bough_arena *arena, comparison *c, const bough_blade_model *model,
-                            outcome *o) {
+static bough_status prepare(bough_arena *arena, comparison *c, const bough_blade_model *model, outcome *o) {
     bough_model_sets sets;
     bough_status status = bough_model_blade_find(arena, c->study, model, &o->blade);
     if (bough_is_ok(&status)) {
         status = bough_model_scene_sets(arena, c->study->turbine, &c->study->run, model, &sets);
     }
     if (!bough_is_ok(&status)) return status;
-    o->cell = (bough_case){.scene = c->study->turbine, .n_set = sets.n, .set = sets.item, .settings = model->name};
+    o->cell =
+        (bough_case){.scene = c->study->turbine, .n_set = sets.n, .set = sets.item, .settings = model->name};
     o->cpu = HUGE_VAL;
     return status;
 }
@@ -164,8 +162,7 @@ static bough_status compare_blades(const bough_model_blade *base, outcome *o) {
     const bough_model_blade *blade = &o->blade;
     int step = base->n / blade->n;
     if (step * blade->n != base->n) {
-        return bough_fail(BOUGH_INVALID,
-                          "the reference's %d segments are no multiple of %d of '%s'", base->n,
+        return bough_fail(BOUGH_INVALID, "the reference's %d segments are no multiple of %d of '%s'", base->n,
                           blade->n, o->cell.settings);
     }
     for (int i = 0; i <= blade->n; i++) {
@@ -212,21 +209,21 @@ static bough_status measure_all(bough_arena *arena, comparison *c) {
 
 static void print_table(const comparison *c, FILE *f) {
     const bough_model_blade *base = &c->base.blade;
-    fprintf(f,
-            "%s\nreference: tip %.4f m, twist %.4f deg, f1 %.5f Hz, f12 %.4f Hz; %.2f s of CPU\n",
+    fprintf(f, "%s\nreference: tip %.4f m, twist %.4f deg, f1 %.5f Hz, f12 %.4f Hz; %.2f s of CPU\n",
             c->study->title, base->flap[base->n], DEGREES(base->twist[base->n]), base->rest[0],
             base->rest[BOUGH_BLADE_MODELS_FREQUENCIES - 1], c->base.cpu);
-    fprintf(f, "%-22s %6s | clamped blade: largest differences       | run: largest differences"
-               "             CPU\n", "", "states");
-    fprintf(f, "%-22s %6s | %8s %8s %9s %9s   | %8s %8s %8s %9s %6s\n", "", "", "tip (%)",
-            "twist (°)", "f1-12 (%)", "bent (%)", "tip (m)", "twist (°)", "speed(rpm)", "(s)",
-            "ratio");
+    fprintf(f,
+            "%-22s %6s | clamped blade: largest differences       | run: largest differences"
+            "             CPU\n",
+            "", "states");
+    fprintf(f, "%-22s %6s | %8s %8s %9s %9s   | %8s %8s %8s %9s %6s\n", "", "", "tip (%)", "twist (°)",
+            "f1-12 (%)", "bent (%)", "tip (m)", "twist (°)", "speed(rpm)", "(s)", "ratio");
     for (int k = 0; k < c->study->n; k++) {
         const outcome *o = &c->outcome[k];
         fprintf(f, "%-22.22s %6d | %8.3f %8.4f %9.3f %9.3f   | %8.4f %8.4f %9.5f %9.3f %6.2f\n",
                 o->cell.settings, o->blade.n_state, 100 * o->flap / fabs(base->flap[base->n]),
-                DEGREES(o->twist), 100 * o->rest, 100 * o->bent, o->result.error[0],
-                o->result.error[1], o->result.error[2], o->cpu, o->cpu / c->outcome[0].cpu);
+                DEGREES(o->twist), 100 * o->rest, 100 * o->bent, o->result.error[0], o->result.error[1],
+                o->result.error[2], o->cpu, o->cpu / c->outcome[0].cpu);
     }
 }
 
@@ -242,14 +239,15 @@ static void write_rows(const comparison *c, FILE *f) {
     for (int k = 0; k < BOUGH_BLADE_MODELS_FREQUENCIES; k++) fprintf(f, ",f%d (Hz)", k + 1);
     for (int k = 0; k < BOUGH_BLADE_MODELS_FREQUENCIES; k++) fprintf(f, ",bent f%d (Hz)", k + 1);
     fputs(",largest flap difference (m),largest twist difference (deg),run tip difference (m),"
-          "run twist difference (deg),run speed difference (rpm),CPU (s)\n", f);
+          "run twist difference (deg),run speed difference (rpm),CPU (s)\n",
+          f);
     write_frequencies(f, "reference", &c->base.blade);
     fprintf(f, ",0,0,0,0,0,%.6g\n", c->base.cpu);
     for (int k = 0; k < c->study->n; k++) {
         const outcome *o = &c->outcome[k];
         write_frequencies(f, o->cell.settings, &o->blade);
-        fprintf(f, ",%.6g,%.6g,%.6g,%.6g,%.6g,%.6g\n", o->flap, DEGREES(o->twist),
-                o->result.error[0], o->result.error[1], o->result.error[2], o->cpu);
+        fprintf(f, ",%.6g,%.6g,%.6g,%.6g,%.6g,%.6g\n", o->flap, DEGREES(o->twist), o->result.error[0],
+                o->result.error[1], o->result.error[2], o->cpu);
     }
 }
 

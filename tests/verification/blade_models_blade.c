@@ -1,14 +1,13 @@
 // The clamped blade of a study of blade models: equilibrium and frequencies of whatever models it.
 #include "apps/bough/analysis/steady.h"
+#include "flexbody/rod/rod_modes.h"
 #include "tests/verification/blade_models_internal.h"
 #include "tests/verification/modal_static.h"
-#include "flexbody/rod/rod_modes.h"
 
 #include <string.h>
 
-bough_status bough_model_scene_sets(bough_arena *arena, const char *scene,
-                                    const bough_model_sets *given, const bough_blade_model *model,
-                                    bough_model_sets *sets) {
+bough_status bough_model_scene_sets(bough_arena *arena, const char *scene, const bough_model_sets *given,
+                                    const bough_blade_model *model, bough_model_sets *sets) {
     bough_errors errors = {.arena = arena};
     bough_scene *read;
     bough_status status = bough_scene_read(arena, scene, given->item, given->n, &errors, &read);
@@ -36,8 +35,8 @@ static void set_shape(const bough_rod_model *m, const double *y, bough_model_bla
     for (int i = 0; i < n; i++) {
         bough_quaternion p = {y[3 * n + i], y[4 * n + i], y[5 * n + i], y[6 * n + i]};
         bough_quaternion undeformed = bough_quaternion_conjugate(m->rotation0[i + 1]);
-        bough_vec3 turn = bough_quaternion_logarithm(
-            bough_quaternion_product(bough_quaternion_normalised(p), undeformed));
+        bough_vec3 turn =
+            bough_quaternion_logarithm(bough_quaternion_product(bough_quaternion_normalised(p), undeformed));
         blade->flap[i + 1] = y[i] - m->position0[i + 1].x;
         blade->twist[i + 1] = turn.z;
     }
@@ -71,8 +70,8 @@ static bough_status find_modal(bough_arena *arena, bough_simulation *s, const bo
     if (!state) return bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory");
     bough_status status = bough_modal_steady(m, loads, time, input, arena, state);
     if (bough_is_ok(&status)) {
-        status = bough_modal_frequencies(arena, m, loads, time, input, state,
-                                         BOUGH_BLADE_MODELS_FREQUENCIES, frequency, &found);
+        status = bough_modal_frequencies(arena, m, loads, time, input, state, BOUGH_BLADE_MODELS_FREQUENCIES,
+                                         frequency, &found);
     }
     if (bough_is_ok(&status)) {
         set_shape(m->rod, bough_modal_body_vertices(beam->modal, state, input, 1), blade);

@@ -2,8 +2,8 @@
 #ifndef BOUGH_TESTS_VERIFICATION_BLADE_MODELS_INTERNAL_H
 #define BOUGH_TESTS_VERIFICATION_BLADE_MODELS_INTERNAL_H
 
-#include "tests/verification/blade_models.h"
 #include "apps/bough/cases/case_run.h"
+#include "tests/verification/blade_models.h"
 
 enum { BOUGH_BLADE_MODELS_FREQUENCIES = 12, BOUGH_BLADE_MODELS_MEASURES = 3 };
 
@@ -34,15 +34,14 @@ typedef struct bough_blade_models {
 
 // A clamped blade at rest.
 typedef struct bough_model_blade {
-    int n_state, n; // states; segments
+    int n_state, n;              // states; segments
     double *span, *flap, *twist; // [m], displacement along x [m] and rotation about z [rad] (n + 1)
     double rest[BOUGH_BLADE_MODELS_FREQUENCIES], bent[BOUGH_BLADE_MODELS_FREQUENCIES]; // [Hz]
 } bough_model_blade;
 
 // The scene's replacements: those given, then the model's for every body that is a beam.
-bough_status bough_model_scene_sets(bough_arena *arena, const char *scene,
-                                    const bough_model_sets *given, const bough_blade_model *model,
-                                    bough_model_sets *sets);
+bough_status bough_model_scene_sets(bough_arena *arena, const char *scene, const bough_model_sets *given,
+                                    const bough_blade_model *model, bough_model_sets *sets);
 
 // Its equilibrium under the load, and its frequencies.
 bough_status bough_model_blade_find(bough_arena *arena, const bough_blade_models *study,

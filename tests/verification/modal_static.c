@@ -5,7 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-static const double long_time = 1e8; // γ at which I − γ ∂f/∂y is −γ ∂f/∂y [s]
+static const double long_time = 1e8;   // γ at which I − γ ∂f/∂y is −γ ∂f/∂y [s]
 static const double tolerance = 1e-11; // of a step, in the shapes' scales
 static const double longest = 5;       // step, in those scales: half a radian
 
@@ -45,8 +45,10 @@ bough_status bough_modal_steady(const bough_modal_model *m, const bough_rod_load
         if (size < tolerance || (size < 1e3 * tolerance && size > 0.5 * before)) return bough_ok();
         before = size;
     }
-    return bough_fail(BOUGH_FAILED, "%s: no equilibrium found; the loads may be beyond what its"
-                      " linear pieces can bear", m->name);
+    return bough_fail(BOUGH_FAILED,
+                      "%s: no equilibrium found; the loads may be beyond what its"
+                      " linear pieces can bear",
+                      m->name);
 }
 
 static int ascending(const void *a, const void *b) {
@@ -67,8 +69,7 @@ static void set_jacobian(const bough_modal_model *m, bough_modal_chain *chain, d
 
 bough_status bough_modal_frequencies(bough_arena *arena, const bough_modal_model *m,
                                      const bough_rod_loads *loads, double t, const double *input,
-                                     const double *state, int wanted, double *frequency,
-                                     int *found) {
+                                     const double *state, int wanted, double *frequency, int *found) {
     size_t n = (size_t)m->n_state;
     bough_modal_chain chain;
     double *jacobian = bough_arena_doubles(arena, n * n), *unit = bough_arena_doubles(arena, n);

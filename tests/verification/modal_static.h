@@ -16,7 +16,6 @@ bough_status bough_modal_steady(const bough_modal_model *m, const bough_rod_load
 // be found.
 bough_status bough_modal_frequencies(bough_arena *arena, const bough_modal_model *m,
                                      const bough_rod_loads *loads, double t, const double *input,
-                                     const double *state, int wanted, double *frequency,
-                                     int *found);
+                                     const double *state, int wanted, double *frequency, int *found);
 
 #endif

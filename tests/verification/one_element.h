@@ -15,8 +15,7 @@ typedef struct bough_induction {
     int evaluations; // of the residual
 } bough_induction;
 
-static inline bough_induction induction_at(const bough_induction_options *options,
-                                           const bough_element *e) {
+static inline bough_induction induction_at(const bough_induction_options *options, const bough_element *e) {
     enum { N = BOUGH_LANES, ROWS = 9 };
     const double own[ROWS] = {e->solidity, e->tip_factor, e->hub_factor,  e->cone,      e->twist,
                               e->inflow_x, e->inflow_y,   e->skew_normal, e->skew_chord};
@@ -26,8 +25,7 @@ static inline bough_induction induction_at(const bough_induction_options *option
         polar[i] = e->polar;
         for (int k = 0; k < ROWS; k++) r[k][i] = own[k];
     }
-    const bough_elements copies = {N,    polar, r[0], r[1], r[2], r[3],
-                                   r[4], r[5],  r[6], r[7], r[8], e->skew};
+    const bough_elements copies = {N, polar, r[0], r[1], r[2], r[3], r[4], r[5], r[6], r[7], r[8], e->skew};
     int evaluations = bough_induction_solve(options, &copies, axial, tangential, loss);
     return (bough_induction){axial[0], tangential[0], loss[0], evaluations};
 }

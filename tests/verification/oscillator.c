@@ -3,8 +3,7 @@
 #include <math.h>
 #include <string.h>
 
-static bool derivative(void *self, double t, const double *y, const double *u,
-                                         double *rate) {
+static bool derivative(void *self, double t, const double *y, const double *u, double *rate) {
     const bough_oscillator *o = self;
     (void)t;
     for (int i = 0; i < o->n_state; i++) {
@@ -14,8 +13,8 @@ static bool derivative(void *self, double t, const double *y, const double *u,
     return o->n_state == 0 || (isfinite(rate[0]) && isfinite(rate[1]));
 }
 
-static void output_tangent(void *self, double t, const double *y, const double *u,
-                                             const double *dy, const double *du, double *out) {
+static void output_tangent(void *self, double t, const double *y, const double *u, const double *dy,
+                           const double *du, double *out) {
     const bough_oscillator *o = self;
     (void)t, (void)y, (void)u;
     for (int i = 0; i < o->n_output; i++) {
@@ -24,13 +23,11 @@ static void output_tangent(void *self, double t, const double *y, const double *
     }
 }
 
-static void output(void *self, double t, const double *y, const double *u,
-                                     double *out) {
+static void output(void *self, double t, const double *y, const double *u, double *out) {
     output_tangent(self, t, y, u, y, u, out);
 }
 
-static void input_columns(void *self, double t, const double *y, const double *u,
-                                            double *column) {
+static void input_columns(void *self, double t, const double *y, const double *u, double *column) {
     const bough_oscillator *o = self;
     (void)t, (void)y, (void)u;
     for (int j = 0; j < o->n_input && o->n_state > 0; j++) {
@@ -106,8 +103,7 @@ static void step(const bough_oscillator *o, double t, double h, double *y) {
     }
 }
 
-static bough_status advance(void *self, double *t, double pause, double t1, bool restart,
-                            double *y) {
+static bough_status advance(void *self, double *t, double pause, double t1, bool restart, double *y) {
     bough_oscillator *o = self;
     (void)pause;
     double rate = sqrt(fabs(o->a[1][0])) + fabs(o->a[1][1]) + 1, t0 = *t;
@@ -128,9 +124,7 @@ static void statistics(const void *self, bough_statistics *sum) {
 }
 
 // Its states are all that a step depends on.
-static void transfer(void *self, bough_snapshot *s) {
-    (void)self, (void)s;
-}
+static void transfer(void *self, bough_snapshot *s) { (void)self, (void)s; }
 
 static const bough_integrator_ops taylor = {
     .title = "Taylor series", .advance = advance, .statistics = statistics, .transfer = transfer};
@@ -182,8 +176,7 @@ bough_oscillator bough_oscillator_motion_in(bough_spring_mass s, double k, doubl
                               .y = {x, 0}};
 }
 
-bough_oscillator bough_oscillator_motion_in_and_out(bough_spring_mass s, double k, double c,
-                                                 double x) {
+bough_oscillator bough_oscillator_motion_in_and_out(bough_spring_mass s, double k, double c, double x) {
     return (bough_oscillator){.a = {{0, 1}, {-(s.k + k) / s.m, -(s.c + c) / s.m}},
                               .b = {{0}, {c / s.m, k / s.m}},
                               .c = {{0, 1}, {1, 0}},

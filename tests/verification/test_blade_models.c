@@ -1,6 +1,6 @@
 // The study that compares a blade's models: what it finds of a small clamped blade and a short run.
-#include "tests/verification/blade_models_internal.h"
 #include "tests/unit/scratch.h"
+#include "tests/verification/blade_models_internal.h"
 
 static const char head[] = "title: Two models\nkind: blade-models\n"
                            "blade: " BOUGH_SOURCE_DIR "/apps/beams/blade.yaml\n"
@@ -9,11 +9,10 @@ static const char head[] = "title: Two models\nkind: blade-models\n"
                            "turbine: " BOUGH_SOURCE_DIR "/apps/turbine/runup.yaml\n"
                            "run: [simulation.duration=0.2 s, simulation.threads=1]\n"
                            "reference: {body: [fidelity=rod, rod.segments=24]}\nrepeat: 1\n";
-static const char models[] =
-    "models:\n"
-    "  - {name: same, body: [fidelity=rod, rod.segments=24]}\n"
-    "  - {name: coarse, body: [fidelity=rod, rod.segments=12]}\n"
-    "  - {name: linear, body: [fidelity=modal, rod.segments=24, modal.modes=14]}\n";
+static const char models[] = "models:\n"
+                             "  - {name: same, body: [fidelity=rod, rod.segments=24]}\n"
+                             "  - {name: coarse, body: [fidelity=rod, rod.segments=12]}\n"
+                             "  - {name: linear, body: [fidelity=modal, rod.segments=24, modal.modes=14]}\n";
 
 static bough_blade_models *read_study(bough_arena *arena, const char *folder, const char *text,
                                       bough_errors *errors) {
@@ -37,8 +36,7 @@ static void blades_are_found_by_their_models(void **state) {
     assert_non_null(study);
     bough_model_blade blade[3];
     for (int k = 0; k < 3; k++) {
-        bough_status status =
-            bough_model_blade_find(arena, study, &study->model[k], &blade[k]);
+        bough_status status = bough_model_blade_find(arena, study, &study->model[k], &blade[k]);
         assert_int_equal(status.code, BOUGH_OK);
     }
     assert_int_equal(blade[0].n, 24);
@@ -67,8 +65,8 @@ static void table_and_file_hold_every_model(void **state) {
     const char *same = strstr(table, "\nsame ");
     assert_non_null(same);
     double values[8];
-    int states, n = sscanf(same + 23, "%d | %lf %lf %lf %lf | %lf %lf %lf", &states, &values[0],
-                           &values[1], &values[2], &values[3], &values[4], &values[5], &values[6]);
+    int states, n = sscanf(same + 23, "%d | %lf %lf %lf %lf | %lf %lf %lf", &states, &values[0], &values[1],
+                           &values[2], &values[3], &values[4], &values[5], &values[6]);
     assert_int_equal(n, 8);
     for (int k = 0; k < 7; k++) check_near(values[k], 0, 0, 0); // it is the reference
     char *csv = scratch_read(*state, "blade-models.csv");
@@ -82,8 +80,8 @@ static void table_and_file_hold_every_model(void **state) {
 static void meshes_must_fit_the_reference(void **state) {
     bough_arena *arena = bough_arena_create();
     bough_errors errors = {0};
-    bough_blade_models *study = read_study(
-        arena, *state, "models: [{name: odd, body: [fidelity=rod, rod.segments=7]}]\n", &errors);
+    bough_blade_models *study =
+        read_study(arena, *state, "models: [{name: odd, body: [fidelity=rod, rod.segments=7]}]\n", &errors);
     bough_verification_options options = {.folder = *state, .quiet = true, .stream = stderr};
     bough_status status = bough_blade_models_perform(arena, study, &options);
     assert_int_equal(status.code, BOUGH_INVALID);
@@ -101,12 +99,9 @@ static void keys_are_checked(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test_setup_teardown(blades_are_found_by_their_models, scratch_make,
-                                        scratch_remove),
-        cmocka_unit_test_setup_teardown(table_and_file_hold_every_model, scratch_make,
-                                        scratch_remove),
-        cmocka_unit_test_setup_teardown(meshes_must_fit_the_reference, scratch_make,
-                                        scratch_remove),
+        cmocka_unit_test_setup_teardown(blades_are_found_by_their_models, scratch_make, scratch_remove),
+        cmocka_unit_test_setup_teardown(table_and_file_hold_every_model, scratch_make, scratch_remove),
+        cmocka_unit_test_setup_teardown(meshes_must_fit_the_reference, scratch_make, scratch_remove),
         cmocka_unit_test_setup_teardown(keys_are_checked, scratch_make, scratch_remove),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

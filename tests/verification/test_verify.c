@@ -1,23 +1,23 @@
 // Studies of kind verify: what is read, judged and told.
-#include "tests/verification/verify.h"
 #include "tests/unit/scratch.h"
+#include "tests/verification/verify.h"
 
 #define BEAMS BOUGH_SOURCE_DIR "/apps/beams/"
 #define HEAD "title: Two beams\nkind: verify\ncases:\n"
-#define ROLL_UP                                                                                    \
-    "  - name: roll-up, one turn\n    scene: " BEAMS "roll-up.yaml\n    do: static\n"              \
-    "    meshes: [5, 10, 20]\n    expect:\n"                                                       \
+#define ROLL_UP                                                                                              \
+    "  - name: roll-up, one turn\n    scene: " BEAMS "roll-up.yaml\n    do: static\n"                        \
+    "    meshes: [5, 10, 20]\n    expect:\n"                                                                 \
     "      - {quantity: tip uz, value: -10, absolute: 1e-8}\n"
-#define ELASTICA(tolerance)                                                                        \
-    "  - name: elastica\n    scene: " BEAMS "elastica.yaml\n    do: static\n"                      \
-    "    meshes: [10, 20, 40]\n    expect:\n"                                                      \
+#define ELASTICA(tolerance)                                                                                  \
+    "  - name: elastica\n    scene: " BEAMS "elastica.yaml\n    do: static\n"                                \
+    "    meshes: [10, 20, 40]\n    expect:\n"                                                                \
     "      - {quantity: tip ux, value: 0.81060902488, relative: " tolerance ", extrapolate: true}\n"
-#define TOO_FEW(text)                                                                              \
-    "  - name: too few segments\n    scene: " BEAMS "roll-up.yaml\n    do: static\n"               \
-    "    set:\n      loads[0].moment: [0, 628, 0]\n"                                               \
+#define TOO_FEW(text)                                                                                        \
+    "  - name: too few segments\n    scene: " BEAMS "roll-up.yaml\n    do: static\n"                         \
+    "    set:\n      loads[0].moment: [0, 628, 0]\n"                                                         \
     "    expect: [{diagnosis: " text "}]\n"
-#define FLYING                                                                                     \
-    "  - name: flying rod\n    scene: " BEAMS "flying-rod.yaml\n    do: run\n"                     \
+#define FLYING                                                                                               \
+    "  - name: flying rod\n    scene: " BEAMS "flying-rod.yaml\n    do: run\n"                               \
     "    meshes: [8]\n    set: {simulation.duration: 3 s}\n    expect:\n"
 
 typedef struct fixture {
@@ -113,9 +113,8 @@ static void free_flight_keeps_energy_and_momenta(void **state) {
                 table);
     assert_int_equal(status.code, BOUGH_OK);
     // while the load acts they change
-    status = perform(*state,
-                     HEAD FLYING "      - {quantity: drift of momentum from 0 s, absolute: 0.1}\n",
-                     table);
+    status =
+        perform(*state, HEAD FLYING "      - {quantity: drift of momentum from 0 s, absolute: 0.1}\n", table);
     assert_int_equal(status.code, BOUGH_FAILED);
 }
 
@@ -142,12 +141,11 @@ static void means_and_amplitudes_of_a_rotor(void **state) {
 
 static void a_run_that_fails_has_not_shown_its_values(void **state) {
     char table[4096];
-    bough_status status =
-        perform(*state,
-                HEAD "  - name: frozen\n    scene: " BEAMS "rubber-bar.yaml\n    do: run\n"
-                     "    set: {simulation.coupling.scheme: frozen}\n    expect:\n"
-                     "      - {quantity: drift of energy from 0 s, absolute: 1e3}\n",
-                table);
+    bough_status status = perform(*state,
+                                  HEAD "  - name: frozen\n    scene: " BEAMS "rubber-bar.yaml\n    do: run\n"
+                                       "    set: {simulation.coupling.scheme: frozen}\n    expect:\n"
+                                       "      - {quantity: drift of energy from 0 s, absolute: 1e3}\n",
+                                  table);
     assert_int_equal(status.code, BOUGH_FAILED);
     assert_true(says(table, "failed: "));
 }
@@ -161,15 +159,13 @@ static void check_error(const char *folder, const char *text, const char *messag
     bough_arena_destroy(f.arena);
 }
 
-#define CASE(lines)                                                                                \
-    HEAD "  - name: a\n    scene: " BEAMS "elastica.yaml\n" lines
+#define CASE(lines) HEAD "  - name: a\n    scene: " BEAMS "elastica.yaml\n" lines
 static void mistakes_are_told_before_the_first_case(void **state) {
     check_error(*state, CASE("    do: static\n    expect: [{quantity: tip q, absolute: 1}]\n"),
                 "expected 'tip x|y|z");
     check_error(*state, CASE("    do: static\n    expect: [{quantity: tip x}]\n"),
                 "one of 'relative' and 'absolute'");
-    check_error(*state,
-                CASE("    do: static\n    expect: [{quantity: frequency 1, absolute: 1}]\n"),
+    check_error(*state, CASE("    do: static\n    expect: [{quantity: frequency 1, absolute: 1}]\n"),
                 "does not come from");
     check_error(*state,
                 CASE("    do: static\n    meshes: [5, 10, 40]\n"
@@ -183,18 +179,12 @@ static void mistakes_are_told_before_the_first_case(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test_setup_teardown(cases_that_hold_are_a_success, scratch_make,
-                                        scratch_remove),
-        cmocka_unit_test_setup_teardown(a_case_that_does_not_hold_is_a_failure, scratch_make,
-                                        scratch_remove),
-        cmocka_unit_test_setup_teardown(order_is_observed_over_three_meshes, scratch_make,
-                                        scratch_remove),
-        cmocka_unit_test_setup_teardown(a_diagnosis_is_expected_or_missed, scratch_make,
-                                        scratch_remove),
-        cmocka_unit_test_setup_teardown(free_flight_keeps_energy_and_momenta, scratch_make,
-                                        scratch_remove),
-        cmocka_unit_test_setup_teardown(means_and_amplitudes_of_a_rotor, scratch_make,
-                                        scratch_remove),
+        cmocka_unit_test_setup_teardown(cases_that_hold_are_a_success, scratch_make, scratch_remove),
+        cmocka_unit_test_setup_teardown(a_case_that_does_not_hold_is_a_failure, scratch_make, scratch_remove),
+        cmocka_unit_test_setup_teardown(order_is_observed_over_three_meshes, scratch_make, scratch_remove),
+        cmocka_unit_test_setup_teardown(a_diagnosis_is_expected_or_missed, scratch_make, scratch_remove),
+        cmocka_unit_test_setup_teardown(free_flight_keeps_energy_and_momenta, scratch_make, scratch_remove),
+        cmocka_unit_test_setup_teardown(means_and_amplitudes_of_a_rotor, scratch_make, scratch_remove),
         cmocka_unit_test_setup_teardown(a_run_that_fails_has_not_shown_its_values, scratch_make,
                                         scratch_remove),
         cmocka_unit_test_setup_teardown(mistakes_are_told_before_the_first_case, scratch_make,

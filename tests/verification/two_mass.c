@@ -6,8 +6,7 @@
 #include <string.h>
 
 bough_two_mass bough_two_mass_default(void) {
-    return (bough_two_mass){
-        .s1 = {1, 10, .2}, .s2 = {1, 20, .3}, .k = 10, .c = .5, .y0 = {0, 0, .5, 0}};
+    return (bough_two_mass){.s1 = {1, 10, .2}, .s2 = {1, 20, .3}, .k = 10, .c = .5, .y0 = {0, 0, .5, 0}};
 }
 
 // -- exact solution -------------------------------------------------------------------------------
@@ -15,8 +14,8 @@ bough_two_mass bough_two_mass_default(void) {
 // Taylor series over short steps.
 void bough_two_mass_exact(const bough_two_mass *m, double duration, double y[4]) {
     bough_spring_mass s1 = m->s1, s2 = m->s2;
-    double rate = sqrt((s1.k + m->k) / s1.m + (s2.k + m->k) / s2.m) + (s1.c + m->c) / s1.m +
-                  (s2.c + m->c) / s2.m + 1;
+    double rate =
+        sqrt((s1.k + m->k) / s1.m + (s2.k + m->k) / s2.m) + (s1.c + m->c) / s1.m + (s2.c + m->c) / s2.m + 1;
     int n = (int)ceil(fabs(duration) * rate);
     double h = duration / n;
     for (int step = 0; step < n; step++) {
@@ -47,9 +46,8 @@ static void make_masses(bough_two_mass *m) {
         m->mass[1] = bough_oscillator_motion_in_and_out(m->s2, m->k, m->c, y[2]);
     } else {
         m->mass[0] = bough_oscillator_force_in(m->s1, 1, y[0]);
-        m->mass[1] = m->cut == BOUGH_CUT_FORCE_FORCE
-                         ? bough_oscillator_force_in(m->s2, -1, y[2])
-                         : bough_oscillator_motion_in(m->s2, m->k, m->c, y[2]);
+        m->mass[1] = m->cut == BOUGH_CUT_FORCE_FORCE ? bough_oscillator_force_in(m->s2, -1, y[2])
+                                                     : bough_oscillator_motion_in(m->s2, m->k, m->c, y[2]);
     }
     m->mass[2] = bough_oscillator_link(m->k, m->c);
     m->mass[0].y[1] = y[1];

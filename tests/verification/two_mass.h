@@ -3,8 +3,8 @@
 #ifndef BOUGH_TESTS_VERIFICATION_TWO_MASS_H
 #define BOUGH_TESTS_VERIFICATION_TWO_MASS_H
 
-#include "tests/verification/oscillator.h"
 #include "cosim/master.h"
+#include "tests/verification/oscillator.h"
 
 typedef enum bough_cut {
     BOUGH_CUT_FORCE_DISPLACEMENT,        // mass 1 takes the force, mass 2 the motion
@@ -14,10 +14,10 @@ typedef enum bough_cut {
 
 typedef struct bough_two_mass {
     bough_spring_mass s1, s2;
-    double k, c;    // of the coupling [N/m, N s/m]
-    double y0[4];   // (x1, v1, x2, v2) at time 0 [m, m/s]
+    double k, c;  // of the coupling [N/m, N s/m]
+    double y0[4]; // (x1, v1, x2, v2) at time 0 [m, m/s]
     bough_cut cut;
-    bool kinematic; // motions are marked as such: where held, by their rate
+    bool kinematic;           // motions are marked as such: where held, by their rate
     bough_oscillator mass[3]; // the third is the spring of the force–force cut
     bough_member member[3];
     bough_arena *arena;

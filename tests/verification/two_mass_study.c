@@ -1,8 +1,8 @@
 #include "tests/verification/two_mass_study.h"
 
+#include "apps/bough/cases/perform.h"
 #include "apps/bough/config/schema.h"
 #include "apps/bough/results/folder.h"
-#include "apps/bough/cases/perform.h"
 #include "tests/verification/map.h"
 #include "tests/verification/two_mass.h"
 
@@ -19,10 +19,10 @@ typedef struct variant {
     const char *scheme; // one of bough_scheme_name
     bool parallel, reversed;
     int n_degree;
-    double *degree;     // (n_degree) polynomial degrees; of schemes without one 0
+    double *degree; // (n_degree) polynomial degrees; of schemes without one 0
     int n_limit, n_error;
-    double *limit;      // (n_limit) expected largest macro step per degree; 0: none in the scan [s]
-    double *error;      // (n_error) expected per degree and macro step [m]
+    double *limit; // (n_limit) expected largest macro step per degree; 0: none in the scan [s]
+    double *error; // (n_error) expected per degree and macro step [m]
 } variant;
 
 typedef struct model {
@@ -46,11 +46,11 @@ typedef struct bough_two_mass_study {
 
 // What one variant and degree came to.
 typedef struct result {
-    double limit;                      // 0: stable over the whole scan [s]
-    double error[STEPS];               // NaN when the run failed [m]
+    double limit;        // 0: stable over the whole scan [s]
+    double error[STEPS]; // NaN when the run failed [m]
     double order;
     bool limit_good, error_good;
-    double radius[COLUMNS];            // spectral radius over the scan
+    double radius[COLUMNS]; // spectral radius over the scan
 } result;
 
 // -- reading --------------------------------------------------------------------------------------
@@ -66,8 +66,8 @@ static void check_variant(bough_schema_reader *r, void *item) {
                            near ? " (did you mean '" : "", near ? near : "", near ? "'?)" : "");
     }
     if (v->n_limit != 0 && v->n_limit != v->n_degree) {
-        bough_schema_error(r, v->node, "limits", "expected one for each degree, %d, got %d",
-                           v->n_degree, v->n_limit);
+        bough_schema_error(r, v->node, "limits", "expected one for each degree, %d, got %d", v->n_degree,
+                           v->n_limit);
     }
     if (v->n_error != 0 && v->n_error != STEPS * v->n_degree) {
         bough_schema_error(r, v->node, "errors", "expected %d for each degree, %d, got %d", STEPS,
@@ -168,8 +168,7 @@ static bough_two_mass two_masses(const model *m, const variant *v) {
     return x;
 }
 
-static bough_master_def definition(const model *m, const variant *v, int degree,
-                                   double macro_step) {
+static bough_master_def definition(const model *m, const variant *v, int degree, double macro_step) {
     bough_master_def def = bough_master_def_default();
     def.scheme.name = v->scheme;
     def.scheme.order = degree;
@@ -214,8 +213,7 @@ static bough_status scan(const model *m, const variant *v, int degree, result *r
 static void run(const model *m, const variant *v, int degree, int step, result *r) {
     bough_two_mass x = two_masses(m, v);
     r->error[step] = (double)NAN;
-    bough_status status =
-        bough_two_mass_build(&x, definition(m, v, degree, m->macro_step[step]));
+    bough_status status = bough_two_mass_build(&x, definition(m, v, degree, m->macro_step[step]));
     if (bough_is_ok(&status)) {
         bough_two_mass_history(&x);
         status = bough_two_mass_error(&x, &r->error[step]);
@@ -278,16 +276,14 @@ static void write_line(const model *m, const variant *v, int row, const result *
 
 static void paint(const model *m, const result *r, bough_map_cell *cell, int n_column) {
     for (int k = 0; k < n_column; k++) {
-        double h = m->scan[0] * pow(m->scan[1] / m->scan[0],
-                                    (double)(k * FINER) / (COLUMNS * FINER - 1));
+        double h = m->scan[0] * pow(m->scan[1] / m->scan[0], (double)(k * FINER) / (COLUMNS * FINER - 1));
         cell[k].kind = stable(r->radius[k]) ? BOUGH_MAP_GOOD : BOUGH_MAP_STOPPED;
         cell[k].shade = 0.3 + 0.7 * fmin(1, (1 - r->radius[k]) / 0.1);
         snprintf(cell[k].text, sizeof cell[k].text, "%.4f", h);
     }
 }
 
-static bough_status perform_row(bough_arena *arena, const model *m, const variant *v, int row,
-                                report *out) {
+static bough_status perform_row(bough_arena *arena, const model *m, const variant *v, int row, report *out) {
     result r = {0};
     char name[80];
     bough_status status = scan(m, v, (int)v->degree[row], &r);
@@ -335,8 +331,7 @@ static bough_status take_map(bough_arena *arena, const two_mass_study *s, bough_
 
 static bough_status perform_all(bough_arena *arena, const two_mass_study *s, report *out) {
     fprintf(out->options->stream,
-            "%-14s %-24s k  limit [s] (expected)  largest errors [m]            order\n",
-            "model", "variant");
+            "%-14s %-24s k  limit [s] (expected)  largest errors [m]            order\n", "model", "variant");
     fputs("model,variant,degree,limit [s],expected [s],macro step [s],error [m],expected [m],"
           "macro step [s],error [m],expected [m],macro step [s],error [m],expected [m],order,verdict\n",
           out->csv);
@@ -361,6 +356,5 @@ bough_status bough_two_mass_perform(bough_arena *arena, const void *study,
     bough_status written = bough_folder_commit(path, out.csv);
     if (!bough_is_ok(&status)) return status;
     if (!bough_is_ok(&written) || out.failed == 0) return written;
-    return bough_fail(BOUGH_FAILED, "%d of %d figures are not the expected ones", out.failed,
-                      out.n);
+    return bough_fail(BOUGH_FAILED, "%d of %d figures are not the expected ones", out.failed, out.n);
 }

@@ -8,8 +8,7 @@
 #include "tests/verification/verification.h"
 
 // Reads the cases from the root of a study; adds what is wrong to `errors`.
-void *bough_two_mass_read(bough_arena *arena, const char *path, const bough_node *root,
-                          bough_errors *errors);
+void *bough_two_mass_read(bough_arena *arena, const char *path, const bough_node *root, bough_errors *errors);
 
 // Prints and writes two-mass.csv and plot.svg. BOUGH_FAILED when a figure is not the expected one.
 bough_status bough_two_mass_perform(bough_arena *arena, const void *study,

@@ -20,10 +20,8 @@ typedef struct bough_verification_options {
 // A kind of study. What `read` returns `perform` takes.
 typedef struct bough_verification_kind {
     const char *name; // of the key `kind`
-    void *(*read)(bough_arena *arena, const char *path, const bough_node *root,
-                  bough_errors *errors);
-    bough_status (*perform)(bough_arena *arena, const void *study,
-                            const bough_verification_options *options);
+    void *(*read)(bough_arena *arena, const char *path, const bough_node *root, bough_errors *errors);
+    bough_status (*perform)(bough_arena *arena, const void *study, const bough_verification_options *options);
 } bough_verification_kind;
 
 typedef struct bough_verification {

@@ -1,9 +1,9 @@
 // The keys of a study of kind verify and their reading.
 #include "tests/verification/verify.h"
 
+#include "apps/bough/cases/study.h"
 #include "apps/bough/config/schema.h"
 #include "apps/bough/model/build.h"
-#include "apps/bough/cases/study.h"
 
 #include <math.h>
 #include <string.h>
@@ -171,12 +171,12 @@ static void check_expect(bough_schema_reader *r, void *item) {
     if (!parse_tip(e->name, q) && !parse_mode(e->name, q) && !parse_drift(e->name, q) &&
         !parse_work(e->name, q) && !parse_inflow(e->name, q) && !parse_wave(r->arena, e->name, q) &&
         !parse_channel(r->arena, e->name, q)) {
-        bough_schema_error(r, e->node, "quantity", "expected %s, got '%.80s'", quantity_form,
-                           e->name);
+        bough_schema_error(r, e->node, "quantity", "expected %s, got '%.80s'", quantity_form, e->name);
     }
     if ((e->relative > 0) == (e->absolute > 0)) {
-        bough_schema_error(r, e->node, "", "expected one of 'relative' and 'absolute', the "
-                                           "tolerance");
+        bough_schema_error(r, e->node, "",
+                           "expected one of 'relative' and 'absolute', the "
+                           "tolerance");
     }
 }
 
@@ -196,8 +196,7 @@ static void check_meshes(bough_schema_reader *r, const bough_verify_case *x) {
             grows = grows && fabs(last - first) < 1e-9 * first;
         }
         if (whole && grows) continue;
-        bough_schema_error(r, node, "meshes",
-                           "expected numbers of segments that grow by a constant factor");
+        bough_schema_error(r, node, "meshes", "expected numbers of segments that grow by a constant factor");
         return;
     }
 }
@@ -211,15 +210,13 @@ static void check_case(bough_schema_reader *r, void *item) {
             bough_schema_error(r, e->node, "extrapolate", "needs two 'meshes' or more");
         }
         if (e->diagnosis) continue;
-        bool fits = x->action == BOUGH_VERIFY_STATIC  ? e->quantity.what == BOUGH_VERIFY_TIP
-                    : x->action == BOUGH_VERIFY_INFLOW
-                        ? e->quantity.what == BOUGH_VERIFY_INFLOW_QUANTITY
-                    : x->action == BOUGH_VERIFY_MODES ? e->quantity.what > BOUGH_VERIFY_TIP &&
-                                                            e->quantity.what < BOUGH_VERIFY_AT
-                                                      : e->quantity.what >= BOUGH_VERIFY_AT;
+        bool fits = x->action == BOUGH_VERIFY_STATIC   ? e->quantity.what == BOUGH_VERIFY_TIP
+                    : x->action == BOUGH_VERIFY_INFLOW ? e->quantity.what == BOUGH_VERIFY_INFLOW_QUANTITY
+                    : x->action == BOUGH_VERIFY_MODES
+                        ? e->quantity.what > BOUGH_VERIFY_TIP && e->quantity.what < BOUGH_VERIFY_AT
+                        : e->quantity.what >= BOUGH_VERIFY_AT;
         if (fits) continue;
-        bough_schema_error(r, e->node, "quantity", "'%.60s' does not come from what the case does",
-                           e->name);
+        bough_schema_error(r, e->node, "quantity", "'%.60s' does not come from what the case does", e->name);
     }
 }
 
@@ -317,14 +314,13 @@ static void check_scene(bough_arena *arena, bough_verify_case *x, bough_errors *
     }
     for (int i = 0; i < found.n; i++) {
         const bough_error *e = &found.item[i];
-        bough_errors_add(errors, x->node, x->name, "%.60s:%d: %.80s: %.200s", e->file, e->line,
-                         e->path, e->text);
+        bough_errors_add(errors, x->node, x->name, "%.60s:%d: %.80s: %.200s", e->file, e->line, e->path,
+                         e->text);
     }
     bough_arena_destroy(own);
 }
 
-void *bough_verify_read(bough_arena *arena, const char *path, const bough_node *root,
-                        bough_errors *errors) {
+void *bough_verify_read(bough_arena *arena, const char *path, const bough_node *root, bough_errors *errors) {
     bough_verify *v = bough_arena_take(arena, sizeof *v);
     if (!v) return NULL;
     bough_schema_reader reader = {.arena = arena, .errors = errors, .directory = ""};

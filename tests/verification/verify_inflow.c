@@ -41,8 +41,7 @@ static double difference(bough_induction a, bough_induction b) {
     return fmax(fabs(a.axial - b.axial), fabs(a.tangential - b.tangential));
 }
 
-static bough_status build_polars(bough_arena *arena, const bough_scene_polars *from,
-                                 bough_polar *polar) {
+static bough_status build_polars(bough_arena *arena, const bough_scene_polars *from, bough_polar *polar) {
     for (int k = 0; k < from->n_polar; k++) {
         const bough_scene_polar *p = &from->polar[k];
         double *row = bough_arena_doubles(arena, 4 * (size_t)p->n_row);
@@ -58,8 +57,8 @@ static bough_status build_polars(bough_arena *arena, const bough_scene_polars *f
     return bough_ok();
 }
 
-bough_status bough_verify_inflow(bough_arena *arena, const bough_verify_case *x,
-                                 const bough_scene *scene, double *value) {
+bough_status bough_verify_inflow(bough_arena *arena, const bough_verify_case *x, const bough_scene *scene,
+                                 double *value) {
     int n_polar = scene->aero.polars.n_polar;
     if (n_polar == 0) return bough_fail(BOUGH_INVALID, "the scene has no polars");
     bough_polar *polar = bough_arena_take(arena, (size_t)n_polar * sizeof *polar);

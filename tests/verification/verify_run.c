@@ -1,11 +1,11 @@
 // One case of a study of kind verify on one mesh: its quantities.
-#include "tests/verification/verify.h"
 #include "tests/unit/tree_measure.h"
+#include "tests/verification/verify.h"
 
 #include "apps/bough/analysis/steady.h"
 #include "apps/bough/analysis/vibration.h"
-#include "apps/bough/model/run.h"
 #include "apps/bough/model/equilibrium.h"
+#include "apps/bough/model/run.h"
 #include "flexbody/rod/rod_modes.h"
 
 #include <assert.h>
@@ -14,15 +14,13 @@
 
 // -- scene ----------------------------------------------------------------------------------------
 
-static bough_status open_scene(bough_arena *arena, const bough_verify_case *x, int k,
-                               bough_run *run) {
+static bough_status open_scene(bough_arena *arena, const bough_verify_case *x, int k, bough_run *run) {
     bough_errors errors = {.arena = arena};
     bough_scene *scene;
     char mesh[160];
     const char **set = bough_arena_take(arena, ((size_t)x->set.n + 1) * sizeof *set);
     if (!set) return bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory");
-    for (int i = 0; i < x->set.n; i++)
-        set[i] = x->set.item[i];
+    for (int i = 0; i < x->set.n; i++) set[i] = x->set.item[i];
     int n = x->set.n;
     if (x->n_mesh > 0) {
         bough_verify_mesh(x, k, mesh);
@@ -73,8 +71,7 @@ static bough_status do_static(bough_arena *arena, const bough_verify_case *x, bo
     bough_steady found;
     bough_status status = steady(arena, s, &found);
     for (int i = 0; i < x->n_expect && bough_is_ok(&status); i++) {
-        if (!x->expect[i].diagnosis)
-            value[i] = tip_component(&found, x->expect[i].quantity.index);
+        if (!x->expect[i].diagnosis) value[i] = tip_component(&found, x->expect[i].quantity.index);
     }
     return status;
 }
@@ -166,8 +163,8 @@ static bool gauge_init(gauge *g, bough_arena *arena, bough_simulation *s) {
     return true;
 }
 
-static void add_vertex(const bough_beam *beam, const bough_beam_motion *m, int i,
-                       bough_vec3 gravity, invariants *sum) {
+static void add_vertex(const bough_beam *beam, const bough_beam_motion *m, int i, bough_vec3 gravity,
+                       invariants *sum) {
     const bough_vertex_inertia *v = &beam->def.inertia[i];
     bough_vec3 u = m->velocity[i], x = m->position[i];
     bough_vec3 w = bough_mat3_tmul(m->rotation[i], m->angular_velocity[i]);
@@ -199,10 +196,9 @@ static invariants measure(const gauge *g) {
         if (!beam->rod) continue;
         const bough_rod_model *model = bough_rod_body_model(beam->rod);
         bough_simulation_beam_motion(s, beam, g->motion[k]);
-        for (int i = 1; i <= model->n; i++)
-            add_vertex(beam, &g->motion[k], i, s->tree->gravity, &sum);
-        bough_rod_gather(model, s->rod[beam->port].state,
-                         bough_simulation_rod_input(s, beam), &g->scratch[k]);
+        for (int i = 1; i <= model->n; i++) add_vertex(beam, &g->motion[k], i, s->tree->gravity, &sum);
+        bough_rod_gather(model, s->rod[beam->port].state, bough_simulation_rod_input(s, beam),
+                         &g->scratch[k]);
         sum.strain_energy += bough_rod_elastic_energy(model, &g->scratch[k]);
     }
     sum.energy += sum.strain_energy;
@@ -250,10 +246,10 @@ typedef struct case_run {
     const bough_verify_case *x;
     bough_run *run;
     const double *sample; // (run->channels.count)
-    int *column;    // (n_expect); −1: no channel
-    drift *drift;   // (n_expect)
-    wave *wave;     // (n_expect)
-    int azimuth;    // its column; −1: no rotor
+    int *column;          // (n_expect); −1: no channel
+    drift *drift;         // (n_expect)
+    wave *wave;           // (n_expect)
+    int azimuth;          // its column; −1: no rotor
     gauge gauge;
     bool conserves; // some quantity is a drift
     double *value;  // (n_expect)
@@ -335,8 +331,8 @@ static void count_work(case_run *r) {
     }
 }
 
-static bough_status do_run(bough_arena *arena, const bough_verify_case *x, bough_run *run,
-                           bool (*stop)(void), double *value) {
+static bough_status do_run(bough_arena *arena, const bough_verify_case *x, bough_run *run, bool (*stop)(void),
+                           double *value) {
     case_run r = {.x = x, .run = run, .value = value};
     bough_status status = prepare(arena, &r);
     if (!bough_is_ok(&status)) return status;
@@ -359,17 +355,15 @@ void bough_verify_run(bough_arena *arena, const bough_verify_case *x, int k, boo
         bough_arena_destroy(own);
         return;
     }
-    for (int i = 0; i < x->n_expect; i++)
-        result->value[i] = NAN;
+    for (int i = 0; i < x->n_expect; i++) result->value[i] = NAN;
     result->outcome = open_scene(own, x, k, &run);
     if (bough_is_ok(&result->outcome) && x->action == BOUGH_VERIFY_INFLOW) {
         result->outcome = bough_verify_inflow(own, x, run.simulation->scene, result->value);
     } else if (bough_is_ok(&result->outcome)) {
         bough_simulation *s = run.simulation;
-        result->outcome = x->action == BOUGH_VERIFY_STATIC ? do_static(own, x, s, result->value)
-                          : x->action == BOUGH_VERIFY_MODES
-                              ? do_modes(own, x, s, result->value)
-                              : do_run(own, x, &run, stop, result->value);
+        result->outcome = x->action == BOUGH_VERIFY_STATIC  ? do_static(own, x, s, result->value)
+                          : x->action == BOUGH_VERIFY_MODES ? do_modes(own, x, s, result->value)
+                                                            : do_run(own, x, &run, stop, result->value);
     }
     bough_arena_destroy(own);
 }

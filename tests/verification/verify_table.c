@@ -1,9 +1,9 @@
 // The cases of a study of kind verify one after the other: what holds and what does not.
 #include "tests/verification/verify.h"
 
+#include "apps/bough/cases/perform.h"
 #include "apps/bough/results/folder.h"
 #include "apps/bough/results/progress.h"
-#include "apps/bough/cases/perform.h"
 
 #include <math.h>
 #include <string.h>
@@ -33,8 +33,7 @@ static double observed_order(const bough_verify_case *x, const double *v, double
 }
 
 // v: on each mesh.
-static verdict judge_value(const bough_verify_case *x, const bough_verify_expect *e,
-                           const double *v) {
+static verdict judge_value(const bough_verify_case *x, const bough_verify_expect *e, const double *v) {
     int last = x->n_mesh > 0 ? x->n_mesh - 1 : 0;
     verdict d = {.result = v[last], .relative = e->relative > 0};
     if (e->extrapolate) {
@@ -57,8 +56,8 @@ static verdict judge(const bough_verify_case *x, int i, const bough_verify_resul
     int n = x->n_mesh > 0 ? x->n_mesh : 1;
     double v[BOUGH_VERIFY_MESHES];
     if (e->diagnosis) {
-        return (verdict){.result = NAN, .error = NAN, .order = NAN,
-                         .holds = judge_diagnosis(e, &result[n - 1])};
+        return (verdict){
+            .result = NAN, .error = NAN, .order = NAN, .holds = judge_diagnosis(e, &result[n - 1])};
     }
     for (int k = 0; k < n; k++) { // a run that ended early has not shown it
         v[k] = NAN;
@@ -70,8 +69,8 @@ static verdict judge(const bough_verify_case *x, int i, const bough_verify_resul
 // -- table ----------------------------------------------------------------------------------------
 
 static void print_head(FILE *stream) {
-    fprintf(stream, "%-36s %-34s %13s %13s %9s %6s %11s\n", "case", "quantity", "reference",
-            "result", "error", "order", "tolerance");
+    fprintf(stream, "%-36s %-34s %13s %13s %9s %6s %11s\n", "case", "quantity", "reference", "result",
+            "error", "order", "tolerance");
 }
 
 static void print_line(FILE *stream, const bough_verify_case *x, int i, const verdict *d) {
@@ -84,19 +83,17 @@ static void print_line(FILE *stream, const bough_verify_case *x, int i, const ve
     }
     if (isfinite(d->order)) snprintf(order, sizeof order, "%.2f", d->order);
     snprintf(tolerance, sizeof tolerance, "%.1e%s", d->tolerance, d->relative ? " of" : "   ");
-    fprintf(stream, "%-36.36s %-34.34s %13.7g %13.7g %9.1e %6s %11s  %s\n", x->name, e->name,
-            e->value, d->result, d->error, order, tolerance, word);
+    fprintf(stream, "%-36.36s %-34.34s %13.7g %13.7g %9.1e %6s %11s  %s\n", x->name, e->name, e->value,
+            d->result, d->error, order, tolerance, word);
 }
 
-static void write_line(FILE *csv, const bough_verify_case *x, int i, const verdict *d,
-                       double wall) {
+static void write_line(FILE *csv, const bough_verify_case *x, int i, const verdict *d, double wall) {
     const bough_verify_expect *e = &x->expect[i];
     bough_csv_text(csv, x->name);
     fputc(',', csv);
     bough_csv_text(csv, e->diagnosis ? e->diagnosis : e->name);
-    fprintf(csv, ",%.12g,%.12g,%.3g,%.3g,%.3g,%s,%s,%.3g\n", e->value, d->result, d->error,
-            d->order, d->tolerance, d->relative ? "relative" : "absolute",
-            d->holds ? "pass" : "fail", wall);
+    fprintf(csv, ",%.12g,%.12g,%.3g,%.3g,%.3g,%s,%s,%.3g\n", e->value, d->result, d->error, d->order,
+            d->tolerance, d->relative ? "relative" : "absolute", d->holds ? "pass" : "fail", wall);
 }
 
 // -- cases ----------------------------------------------------------------------------------------
@@ -108,8 +105,7 @@ static bool expects_diagnosis(const bough_verify_case *x) {
     return false;
 }
 
-static void tell(const bough_verify_case *x, const bough_verify_result *result, double wall,
-                 report *r) {
+static void tell(const bough_verify_case *x, const bough_verify_result *result, double wall, report *r) {
     int n = x->n_mesh > 0 ? x->n_mesh : 1;
     for (int i = 0; i < x->n_expect; i++) {
         verdict d = judge(x, i, result);
@@ -121,8 +117,7 @@ static void tell(const bough_verify_case *x, const bough_verify_result *result, 
     for (int k = 0; k < n; k++) {
         if (bough_is_ok(&result[k].outcome)) continue;
         bool own = expects_diagnosis(x);
-        fprintf(r->options->stream, "    %s%.300s\n", own ? "" : "failed: ",
-                result[k].outcome.message);
+        fprintf(r->options->stream, "    %s%.300s\n", own ? "" : "failed: ", result[k].outcome.message);
     }
     fflush(r->options->stream);
 }
@@ -144,13 +139,11 @@ static bough_status perform_all(bough_arena *arena, const bough_verify *v, repor
     bough_status status = bough_ok();
     double began = bough_wall_clock();
     print_head(r->options->stream);
-    fputs("case,quantity,reference,result,error,order,tolerance,kind,verdict,case wall (s)\n",
-          r->csv);
-    for (int i = 0; i < v->n_case && bough_is_ok(&status); i++)
-        status = perform_case(arena, &v->cases[i], r);
+    fputs("case,quantity,reference,result,error,order,tolerance,kind,verdict,case wall (s)\n", r->csv);
+    for (int i = 0; i < v->n_case && bough_is_ok(&status); i++) status = perform_case(arena, &v->cases[i], r);
     if (!bough_is_ok(&status)) return status;
-    fprintf(r->options->stream, "%d of %d hold, %d cases in %.1f s\n", r->n - r->failed, r->n,
-            v->n_case, bough_wall_clock() - began);
+    fprintf(r->options->stream, "%d of %d hold, %d cases in %.1f s\n", r->n - r->failed, r->n, v->n_case,
+            bough_wall_clock() - began);
     return status;
 }
 

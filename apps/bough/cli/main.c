@@ -13,18 +13,9 @@
 enum { MOST_WORDS = 32 };
 
 const bough_command *const bough_commands[] = {
-    &bough_command_run,
-    &bough_command_check,
-    &bough_command_static,
-    &bough_command_modes,
-    &bough_command_study,
-    &bough_command_tune,
-    &bough_command_wind,
-    &bough_command_report,
-    &bough_command_import,
-    &bough_command_export,
-    &bough_command_help,
-    NULL,
+    &bough_command_run,    &bough_command_check,  &bough_command_static, &bough_command_modes,
+    &bough_command_study,  &bough_command_tune,   &bough_command_wind,   &bough_command_report,
+    &bough_command_import, &bough_command_export, &bough_command_help,   NULL,
 };
 
 const bough_command *bough_command_find(const char *name) {

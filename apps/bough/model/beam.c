@@ -33,8 +33,8 @@ bough_status bough_beam_build(bough_arena *arena, bough_beam *beam, bough_integr
         rod ? build_rod(arena, beam, input, &system) : build_modal(arena, beam, input, &system);
     if (!bough_is_ok(&status)) return status;
     if (beam->in_ground) {
-        beam->ground = bough_ground_body_create(arena, &system, bough_beam_mesh(beam),
-                                                bough_beam_loads(beam));
+        beam->ground =
+            bough_ground_body_create(arena, &system, bough_beam_mesh(beam), bough_beam_loads(beam));
         system = bough_ground_body_system(beam->ground);
     }
     return bough_member_create(arena, &system, 0, &micro, member);
@@ -45,8 +45,7 @@ const bough_rod_model *bough_beam_mesh(const bough_beam *beam) {
 }
 
 bough_rod_loads *bough_beam_loads(const bough_beam *beam) {
-    return beam->rod != NULL ? bough_rod_body_loads(beam->rod)
-                             : bough_modal_body_loads(beam->modal);
+    return beam->rod != NULL ? bough_rod_body_loads(beam->rod) : bough_modal_body_loads(beam->modal);
 }
 
 const double *bough_beam_state(const bough_simulation *s, const bough_beam *beam, int first) {

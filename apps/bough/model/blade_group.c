@@ -105,22 +105,20 @@ bough_status bough_blade_group_find(bough_arena *arena, const bough_simulation *
 }
 
 // Position and rotation of a rod's vertex in its body's frame; the root is held.
-static void vertex_of(const bough_rod_model *m, const double *y, int i, bough_vec3 *x,
-                      bough_quaternion *p) {
+static void vertex_of(const bough_rod_model *m, const double *y, int i, bough_vec3 *x, bough_quaternion *p) {
     int n = m->n, at = i - 1;
     *x = m->position0[0];
     *p = m->rotation0[0];
     if (i == 0) return;
     *x = bough_v3(y[at], y[n + at], y[2 * n + at]);
-    *p = bough_quaternion_normalised((bough_quaternion){
-        y[3 * n + at], y[4 * n + at], y[5 * n + at], y[6 * n + at]});
+    *p = bough_quaternion_normalised(
+        (bough_quaternion){y[3 * n + at], y[4 * n + at], y[5 * n + at], y[6 * n + at]});
 }
 
 // The rotation halfway between two.
 static bough_mat3 middle(bough_quaternion p, bough_quaternion q) {
     bough_quaternion step = bough_quaternion_product(bough_quaternion_conjugate(p), q);
-    bough_quaternion half =
-        bough_quaternion_exponential(bough_scale(0.5, bough_quaternion_logarithm(step)));
+    bough_quaternion half = bough_quaternion_exponential(bough_scale(0.5, bough_quaternion_logarithm(step)));
     return bough_rotation_matrix(bough_quaternion_product(p, half));
 }
 

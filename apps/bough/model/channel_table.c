@@ -234,8 +234,7 @@ static void fill(const char *form, const char *a, const char *b, char *text, siz
     text[used] = '\0';
 }
 
-void bough_channel_family_add(bough_channels *list, bough_channel_part part, const char *a,
-                              const char *b) {
+void bough_channel_family_add(bough_channels *list, bough_channel_part part, const char *a, const char *b) {
     const bough_channel_family *family = &bough_channel_families[part];
     for (int k = 0; k < family->n; k++) {
         char name[2 * BOUGH_CHANNEL_NAME];
@@ -259,15 +258,16 @@ static void print_family(const bough_channel_family *f, FILE *stream) {
 }
 
 void bough_channel_table_help(FILE *stream) {
-    fputs("# Channels\n\n"
-          "This page lists all channels that a run records in `channels.out`, by part of the scene. "
-          "`bough check SCENE` prints\ntheir number; `simulation.output.channels` selects some of "
-          "them. Ground axes have z up. The blade's axes are those of\nits body: z runs from root to "
-          "tip, and the axes turn with the pitch. The last column has OpenFAST's name of the "
-          "same\nquantity. Where OpenFAST has small angles or a straight blade, the two agree to first order: "
-          "displacements count\nfrom the undeformed blade, bent or not, and rotations are rotation vectors. "
-          "The nacelle's forces on the tower's top\nare of all that the scene puts there, also of the "
-          "yaw bearing. Rigid blades have no root loads: these are zero.\n",
-          stream);
+    fputs(
+        "# Channels\n\n"
+        "This page lists all channels that a run records in `channels.out`, by part of the scene. "
+        "`bough check SCENE` prints\ntheir number; `simulation.output.channels` selects some of "
+        "them. Ground axes have z up. The blade's axes are those of\nits body: z runs from root to "
+        "tip, and the axes turn with the pitch. The last column has OpenFAST's name of the "
+        "same\nquantity. Where OpenFAST has small angles or a straight blade, the two agree to first order: "
+        "displacements count\nfrom the undeformed blade, bent or not, and rotations are rotation vectors. "
+        "The nacelle's forces on the tower's top\nare of all that the scene puts there, also of the "
+        "yaw bearing. Rigid blades have no root loads: these are zero.\n",
+        stream);
     for (int i = 0; i < BOUGH_CHANNEL_PARTS; i++) print_family(&bough_channel_families[i], stream);
 }

@@ -9,7 +9,7 @@
 #include <stdio.h>
 
 typedef struct bough_channel_row {
-    const char *name;     // with "{a}" and "{b}" where the first and the second part are put in
+    const char *name; // with "{a}" and "{b}" where the first and the second part are put in
     const char *unit;
     const char *meaning;  // axes and sign
     const char *openfast; // its name there, NULL: it has none
@@ -22,7 +22,7 @@ typedef struct bough_channel_family {
     const char *parts; // what {a} and {b} are; NULL: none
     int n;
     const bough_channel_row *row; // (n), in the order of the values
-    bool sampled; // the values belong to the last sample of the air or the control
+    bool sampled;                 // the values belong to the last sample of the air or the control
 } bough_channel_family;
 
 typedef enum bough_channel_part {
@@ -63,8 +63,7 @@ typedef enum bough_channel_part {
 extern const bough_channel_family bough_channel_families[BOUGH_CHANNEL_PARTS];
 
 // Adds the channels of a part to the list's last group.
-void bough_channel_family_add(bough_channels *list, bough_channel_part part, const char *a,
-                              const char *b);
+void bough_channel_family_add(bough_channels *list, bough_channel_part part, const char *a, const char *b);
 
 // Writes all of them as Markdown.
 void bough_channel_table_help(FILE *stream);

@@ -1,10 +1,10 @@
 // The channels of a simulation: what each part of the scene gives to be recorded. OpenFAST's names
 // where the quantity is the same.
-#include "apps/bough/model/aero_link.h"
-#include "apps/bough/model/simulation.h"
-#include "apps/bough/model/channel_table.h"
 #include "apps/bough/model/observe.h"
+#include "apps/bough/model/aero_link.h"
+#include "apps/bough/model/channel_table.h"
 #include "apps/bough/model/control_link.h"
+#include "apps/bough/model/simulation.h"
 #include "core/tree/dynamics.h"
 #include "core/tree/force.h"
 #include "core/tree/loop.h"
@@ -178,13 +178,10 @@ static void sample_bushings(void *self, double t, double *value) {
         double energy;
         int element = s->tree->n_springs + k;
         bough_force_pair pair = bough_element_force(s->tree, s->view, element, &energy);
-        bough_transform first =
-            bough_tree_frame_pose(s->view, bough_element_frame(s->tree, element, 0));
-        bough_transform second =
-            bough_tree_frame_pose(s->view, bough_element_frame(s->tree, element, 1));
+        bough_transform first = bough_tree_frame_pose(s->view, bough_element_frame(s->tree, element, 0));
+        bough_transform second = bough_tree_frame_pose(s->view, bough_element_frame(s->tree, element, 1));
         bough_mat3 r = bough_mat3_product(bough_mat3_transpose(first.rotation), second.rotation);
-        bough_wrench w = {bough_mat3_mul(r, pair.on[1].force),
-                          bough_mat3_mul(r, pair.on[1].moment)};
+        bough_wrench w = {bough_mat3_mul(r, pair.on[1].force), bough_mat3_mul(r, pair.on[1].moment)};
         bough_wrench_store(w, value);
     }
 }
@@ -257,18 +254,25 @@ static void sample_blades(void *self, double t, double *value) {
         bough_vec3 d, turn;
         tip(s, beam, &d, &turn);
         bough_simulation_root(s, beam, t, root);
-        const double values[BLADE_CHANNELS] = {
-            d.x * c + d.y * sine, d.y * c - d.x * sine, turn.z / DEGREE, d.x, d.y, d.z,
-            root[0] / 1e3, root[1] / 1e3, root[2] / 1e3,
-            root[3] / 1e3, root[4] / 1e3, root[5] / 1e3};
+        const double values[BLADE_CHANNELS] = {d.x * c + d.y * sine,
+                                               d.y * c - d.x * sine,
+                                               turn.z / DEGREE,
+                                               d.x,
+                                               d.y,
+                                               d.z,
+                                               root[0] / 1e3,
+                                               root[1] / 1e3,
+                                               root[2] / 1e3,
+                                               root[3] / 1e3,
+                                               root[4] / 1e3,
+                                               root[5] / 1e3};
         for (int k = 0; k < BLADE_CHANNELS; k++) value[k] = values[k];
     }
 }
 
 static void add_blades(bough_simulation *s, bough_channels *list) {
     bough_channels_group(list, sample_blades, s);
-    for (int b = 0; b < s->scene->turbine.n_blade; b++)
-        add_numbered(list, BOUGH_CHANNELS_BLADE, b + 1);
+    for (int b = 0; b < s->scene->turbine.n_blade; b++) add_numbered(list, BOUGH_CHANNELS_BLADE, b + 1);
 }
 
 // The rod nearest to the rotor that carries it, and the last of the rods that carry that one.
@@ -290,8 +294,7 @@ static bough_transform top_at_foot(const bough_simulation *s, bough_transform ti
     const bough_frame *markers = s->tree->markers;
     bough_transform foot = bough_tree_frame_pose(s->view, &markers[s->tower_foot->marker]);
     bough_transform top = bough_tree_frame_pose(s->view, &markers[s->tower_top->marker]);
-    return bough_transform_compose(bough_transform_inverse(foot),
-                                   bough_transform_compose(top, tip));
+    return bough_transform_compose(bough_transform_inverse(foot), bough_transform_compose(top, tip));
 }
 
 enum { TOWER_CHANNELS = 12 };
@@ -304,8 +307,7 @@ static void sample_tower(void *self, double t, double *value) {
     bough_vec3 x = bough_simulation_beam_tip(s, s->tower_top, &p);
     bough_transform top = top_at_foot(s, (bough_transform){x, bough_rotation_matrix(p)});
     bough_vec3 d = bough_sub(top.position, s->tower_rest.position);
-    bough_mat3 turned =
-        bough_mat3_product(top.rotation, bough_mat3_transpose(s->tower_rest.rotation));
+    bough_mat3 turned = bough_mat3_product(top.rotation, bough_mat3_transpose(s->tower_rest.rotation));
     bough_vec3 turn = bough_quaternion_logarithm(bough_quaternion_of_matrix(turned));
     value = bough_observe_vector(turn, DEGREE, bough_observe_vector(d, 1, value));
     bough_simulation_root(s, s->tower_foot, t, root);
@@ -316,8 +318,8 @@ static void add_tower(bough_simulation *s, bough_channels *list) {
     const bough_rod_def *top = &s->tower_top->def;
     int n = top->n_segment;
     bough_tree_kinematics(s->tree, s->tree->initial, s->view); // where no rod is bent
-    s->tower_rest = top_at_foot(
-        s, (bough_transform){top->position[n], bough_rotation_matrix(top->rotation[n])});
+    s->tower_rest =
+        top_at_foot(s, (bough_transform){top->position[n], bough_rotation_matrix(top->rotation[n])});
     bough_simulation_update(s);
     bough_channels_group(list, sample_tower, s);
     bough_channel_family_add(list, BOUGH_CHANNELS_TOWER, "", "");
@@ -337,8 +339,7 @@ static void sample_tips(void *self, double t, double *value) {
     for (int k = 0; k < s->n_beam; k++) {
         const bough_beam *beam = &s->beam[k];
         if (is_blade(s->scene, beam->body)) continue;
-        bough_transform pose =
-            bough_tree_frame_pose(s->view, &s->tree->markers[beam->marker]);
+        bough_transform pose = bough_tree_frame_pose(s->view, &s->tree->markers[beam->marker]);
         bough_vec3 d, turn;
         tip(s, beam, &d, &turn);
         bough_vec3 x = bough_add(beam->def.position[beam->def.n_segment], d);
@@ -387,8 +388,7 @@ static void sample_wind(void *self, double t, double *value) {
     const bough_rotor_data *data = bough_aero_link_data(s->aero, &factor);
     bough_vec3 mean = bough_mat3_tmul(axes, bough_sub(data->disk_wind, data->disk_velocity));
     double ratio = hub_spin(s) * bough_simulation_rotor(s).radius / mean.x;
-    const double values[] = {wind.x, wind.y, wind.z, mean.x, mean.y, mean.z,
-                             isfinite(ratio) ? ratio : 0};
+    const double values[] = {wind.x, wind.y, wind.z, mean.x, mean.y, mean.z, isfinite(ratio) ? ratio : 0};
     memcpy(value, values, sizeof values);
 }
 
@@ -408,10 +408,16 @@ static void sample_nodes(void *self, double t, double *value) {
     for (int k = 0; k < s->scene->turbine.n_blade * aero->n_node; k++, value += NODE_CHANNELS) {
         int node = (int)aero->nodes[k % aero->n_node] - 1;
         bough_station x = bough_rotor_station(data, k / aero->n_node, node);
-        const double values[NODE_CHANNELS] = {
-            x.speed, x.alpha / DEGREE, x.phi / DEGREE, x.axial, x.tangential,
-            x.coefficients.lift, x.coefficients.drag, x.coefficients.moment,
-            factor * x.force_x, factor * x.force_y};
+        const double values[NODE_CHANNELS] = {x.speed,
+                                              x.alpha / DEGREE,
+                                              x.phi / DEGREE,
+                                              x.axial,
+                                              x.tangential,
+                                              x.coefficients.lift,
+                                              x.coefficients.drag,
+                                              x.coefficients.moment,
+                                              factor * x.force_x,
+                                              factor * x.force_y};
         memcpy(value, values, sizeof values);
     }
 }
@@ -471,8 +477,7 @@ static void sample_control(void *self, double t, double *value) {
 static void add_control(bough_simulation *s, bough_channels *list) {
     bough_channels_group(list, sample_control, s);
     bough_channel_family_add(list, BOUGH_CHANNELS_CONTROL, "", "");
-    for (int b = 0; b < s->scene->turbine.n_blade; b++)
-        add_numbered(list, BOUGH_CHANNELS_PITCH, b + 1);
+    for (int b = 0; b < s->scene->turbine.n_blade; b++) add_numbered(list, BOUGH_CHANNELS_PITCH, b + 1);
 }
 
 // What a control law outside is told.
@@ -483,16 +488,14 @@ static void sample_law(void *self, double t, double *value) {
     joint_state(s, s->scene->turbine.rotor, &angle, &speed);
     value[0] = s->scene->control.gear_ratio * speed;
     for (int b = 0; b < s->scene->turbine.n_blade; b++) {
-        value[1 + b] =
-            bough_simulation_pitch(s, bough_simulation_beam(s, s->scene->turbine.blade[b]));
+        value[1 + b] = bough_simulation_pitch(s, bough_simulation_beam(s, s->scene->turbine.blade[b]));
     }
 }
 
 static void add_law(bough_simulation *s, bough_channels *list) {
     bough_channels_group(list, sample_law, s);
     bough_channel_family_add(list, BOUGH_CHANNELS_LAW, "", "");
-    for (int b = 0; b < s->scene->turbine.n_blade; b++)
-        add_numbered(list, BOUGH_CHANNELS_LAW_PITCH, b + 1);
+    for (int b = 0; b < s->scene->turbine.n_blade; b++) add_numbered(list, BOUGH_CHANNELS_LAW_PITCH, b + 1);
 }
 
 bough_status bough_simulation_channels(bough_simulation *s, bough_channels *channels) {

@@ -3,8 +3,8 @@
 #ifndef BOUGH_APPS_SIMULATION_RUN_H
 #define BOUGH_APPS_SIMULATION_RUN_H
 
-#include "apps/bough/results/progress.h"
 #include "apps/bough/model/companion.h"
+#include "apps/bough/results/progress.h"
 
 enum { BOUGH_RUN_RECORDS = 4 };
 

@@ -568,8 +568,8 @@ const bough_scene_solver *bough_scene_micro(const bough_scene *scene, const boug
 // Length of a rod's axis, straight between its stations [m].
 double bough_scene_arc_length(const bough_scene_structure *structure);
 
-// The errors that settings which the scene names lead one to expect, over its accuracy: of mesh, air and time;
-// 0 where they follow from the accuracy.
+// The errors that settings which the scene names lead one to expect, over its accuracy: of mesh, air and
+// time; 0 where they follow from the accuracy.
 void bough_scene_expect_errors(const bough_scene *scene, double error[3]);
 
 // Whether the duration and the periods of output, air and control are multiples of the macro step [s].

@@ -97,15 +97,14 @@ static void dynamic_damping_is_that_of_time_marching(void **state) {
         snprintf(inflow, sizeof inflow, "aero.induction.inflow=%s", air[k][0]);
         snprintf(stall, sizeof stall, "aero.dynamic_stall=%s", air[k][1]);
         bough_arena *arena = bough_arena_create();
-        bough_simulation *s =
-            build(arena, (const char *const[]){inflow, stall, "modes.air=dynamic", NULL});
+        bough_simulation *s = build(arena, (const char *const[]){inflow, stall, "modes.air=dynamic", NULL});
         bough_scene_mode m = slide_mode(arena, s);
-        bough_simulation *run = build(
-            arena, (const char *const[]){inflow, stall, "simulation.initial=equilibrium",
-                                         "simulation.duration=20 s",
-                                         "loads[0]={body: nacelle, force: [1e5, 0, 0], factor: {times: "
-                                         "[0, 0.5, 1], values: [0, 1, 0]}}",
-                                         NULL});
+        bough_simulation *run =
+            build(arena, (const char *const[]){inflow, stall, "simulation.initial=equilibrium",
+                                               "simulation.duration=20 s",
+                                               "loads[0]={body: nacelle, force: [1e5, 0, 0], factor: {times: "
+                                               "[0, 0.5, 1], values: [0, 1, 0]}}",
+                                               NULL});
         double growth, frequency;
         march(run, &growth, &frequency);
         check_near(m.growth, growth, 2e-3, 0);
@@ -117,9 +116,13 @@ static void dynamic_damping_is_that_of_time_marching(void **state) {
 // The blades bend; next to no air: the reduced system has the modes of the bodies.
 static void thin_air_leaves_the_modes_as_they_are(void **state) {
     (void)state;
-    const char *sets[] = {"bodies[2].joint.speed=12.1 rpm", "bodies[3-5].rod.segments=10",
-                          "aero.air_density=1e-9", "modes.count=8", "modes.air=frozen",
-                          "simulation.threads=1", NULL};
+    const char *sets[] = {"bodies[2].joint.speed=12.1 rpm",
+                          "bodies[3-5].rod.segments=10",
+                          "aero.air_density=1e-9",
+                          "modes.count=8",
+                          "modes.air=frozen",
+                          "simulation.threads=1",
+                          NULL};
     bough_arena *arena = bough_arena_create();
     bough_vibration v[2];
     for (int k = 0; k < 2; k++) {
@@ -240,8 +243,10 @@ static void wing_flutters_at_the_speed_of_strip_theory(void **state) {
     while (high - low > 0.02) {
         double middle = 0.5 * (low + high);
         bough_scene_mode mode = fluttering(middle);
-        if (mode.growth > 0) high = middle;
-        else low = middle;
+        if (mode.growth > 0)
+            high = middle;
+        else
+            low = middle;
         omega = 2 * BOUGH_PI * mode.damped_frequency;
     }
     print_message("flutter at %.2f m/s, %.2f rad/s\n", low, omega);
@@ -285,15 +290,16 @@ static void wing_flutters_in_time_as_its_modes_say(void **state) {
 
 // -- the rotor's speed ----------------------------------------------------------------------------
 
-#define OPERATION(wind) "aero.wind={kind: uniform, speed: " wind "}", "aero.ramp=[0 s, 0 s]", \
-    "modes={of: scene, air: quasi-steady}", "bodies[3-5].rod.segments=10", "simulation.threads=1"
+#define OPERATION(wind)                                                                                      \
+    "aero.wind={kind: uniform, speed: " wind "}", "aero.ramp=[0 s, 0 s]",                                    \
+        "modes={of: scene, air: quasi-steady}", "bodies[3-5].rod.segments=10", "simulation.threads=1"
 
 // Of the air in equilibrium at a speed of the rotor.
 static double torque_at(const char *wind, const char *speed) {
     bough_arena *arena = bough_arena_create();
-    bough_simulation *s = scene_build(arena, "apps/turbine/land-operation.yaml",
-                                      (const char *const[]){OPERATION("12 m/s"), wind, speed,
-                                                            "simulation.initial=equilibrium", NULL});
+    bough_simulation *s = scene_build(
+        arena, "apps/turbine/land-operation.yaml",
+        (const char *const[]){OPERATION("12 m/s"), wind, speed, "simulation.initial=equilibrium", NULL});
     double factor, torque = bough_aero_link_data(s->aero, &factor)->torque;
     bough_arena_destroy(arena);
     return torque;

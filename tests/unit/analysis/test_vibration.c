@@ -59,9 +59,13 @@ static void spherical_pendulum_swings_twice(void **context) {
 // Two windows of four-bars hang: ω² = g ((N + 1)/2 + N)/((N + 1)/3 + N), and nothing else moves.
 static void closed_loops_swing_as_one(void **context) {
     (void)context;
-    const char *sets[] = {"bodies[0].joint.speed=0", "bodies[0].joint.angle=180 deg",
-                          "bodies[1].joint.angle=180 deg", "bodies[2].joint.angle=180 deg",
-                          "bodies[3].joint.angle=-180 deg", "bodies[4].joint.angle=-180 deg", NULL};
+    const char *sets[] = {"bodies[0].joint.speed=0",
+                          "bodies[0].joint.angle=180 deg",
+                          "bodies[1].joint.angle=180 deg",
+                          "bodies[2].joint.angle=180 deg",
+                          "bodies[3].joint.angle=-180 deg",
+                          "bodies[4].joint.angle=-180 deg",
+                          NULL};
     found f = modes_of("apps/mechanisms/four-bar.yaml", sets, 6);
     assert_int_equal(f.v.found, 1);
     check_near(f.v.mode[0].frequency, sqrt(9.81 * 3.5 / 3) / (2 * BOUGH_PI), 1e-6, 0);
@@ -102,8 +106,7 @@ static void gyroscope_nutates_and_precesses(void **context) {
 // flexibility D and mass M of the end's deflection and turn, 1/ω² are the eigenvalues of D M.
 static void body_on_a_rod_swings(void **context) {
     (void)context;
-    const char *sets[] = {"gravity=[0, 0, 0]", "bodies[0].rod.mass=[1e-6, 0, 0, 1e-9, 1e-9, 0]",
-                          NULL};
+    const char *sets[] = {"gravity=[0, 0, 0]", "bodies[0].rod.mass=[1e-6, 0, 0, 1e-9, 1e-9, 0]", NULL};
     found f = modes_of("tests/data/scenes/tip-weight.yaml", sets, 5);
     double l = 2, ei = 1000, ga = 1e5, m = 0.05, a = 0.1, j = 2e-3;
     double d[3] = {l * l * l / (3 * ei) + l / ga, l * l / (2 * ei), l / ei};
@@ -121,8 +124,8 @@ static void body_on_a_rod_swings(void **context) {
     bough_arena_destroy(f.arena);
 }
 
-#define HUB(motion)                                                                               \
-    "bodies[2].joint={kind: revolute, parent: nacelle, axis: x, motion: " motion                  \
+#define HUB(motion)                                                                                          \
+    "bodies[2].joint={kind: revolute, parent: nacelle, axis: x, motion: " motion                             \
     ", placement: [move z 1.96256 m, rotate y 5 deg, move x -5.0191 m]}"
 #define CALM "aero.ramp=[0, 1000]", "aero.wind.speed=0", "loads=[]", "gravity=[0, 0, 0]"
 #define COARSE "bodies[3].rod.segments=8", "bodies[4].rod.segments=8", "bodies[5].rod.segments=8"
@@ -138,8 +141,7 @@ static void parked_blades_have_their_own_frequencies(void **context) {
     bough_status status = bough_steady_find(f.arena, f.s, beam, &rest, &steady);
     assert_true(bough_is_ok(&status));
     bough_rod_mode_list list = {.wanted = 3};
-    status = bough_rod_modes(f.arena, steady.model, &steady.work, steady.input, steady.state,
-                             &list);
+    status = bough_rod_modes(f.arena, steady.model, &steady.work, steady.input, steady.state, &list);
     assert_true(bough_is_ok(&status));
     assert_int_equal(f.v.found, 9);
     for (int k = 0; k < 9; k++) {
@@ -164,8 +166,7 @@ static const bough_scene_mode *mode_with(const found *f, int direction, bough_pa
 // rotor's, exactly; the equilibrium is stretched by the rotation.
 static void whirl_is_split_by_the_rotation(void **context) {
     (void)context;
-    const char *sets[] = {HUB("{speed: 12.1 rpm}"), CALM, COARSE, "aero.air_density=1e-9",
-                          NULL};
+    const char *sets[] = {HUB("{speed: 12.1 rpm}"), CALM, COARSE, "aero.air_density=1e-9", NULL};
     found f = modes_of(runup, sets, 6);
     assert_false(f.v.frozen);
     for (int direction = BOUGH_ROD_FLAP; direction <= BOUGH_ROD_EDGE; direction++) {
@@ -185,8 +186,13 @@ static void whirl_is_split_by_the_rotation(void **context) {
 // What gravity does to a blade in a slow revolution averages out: its bending adds no stress.
 static void gravity_averages_out(void **context) {
     (void)context;
-    const char *with[] = {HUB("{speed: 1e-3 rpm}"), "aero.ramp=[0, 1000]", "aero.wind.speed=0",
-                          "loads=[]", COARSE, "modes.shapes=true", NULL};
+    const char *with[] = {HUB("{speed: 1e-3 rpm}"),
+                          "aero.ramp=[0, 1000]",
+                          "aero.wind.speed=0",
+                          "loads=[]",
+                          COARSE,
+                          "modes.shapes=true",
+                          NULL};
     const char *without[] = {HUB("{angle: 0}"), CALM, COARSE, "modes.at=undeformed", NULL};
     found a = modes_of(runup, with, 6), b = modes_of(runup, without, 6);
     for (int k = 0; k < 6; k++) {
@@ -220,9 +226,14 @@ static void shapes_join_the_bodies(void **context) {
 static void modal_blades_whirl_as_rods_do(void **context) {
     (void)context;
     const char *rods[] = {HUB("{speed: 6 rpm}"), CALM, COARSE, "aero.air_density=1e-9", NULL};
-    const char *modal[] = {HUB("{speed: 6 rpm}"), CALM, COARSE, "aero.air_density=1e-9",
-                           "bodies[3].fidelity=modal", "bodies[4].fidelity=modal",
-                           "bodies[5].fidelity=modal", NULL};
+    const char *modal[] = {HUB("{speed: 6 rpm}"),
+                           CALM,
+                           COARSE,
+                           "aero.air_density=1e-9",
+                           "bodies[3].fidelity=modal",
+                           "bodies[4].fidelity=modal",
+                           "bodies[5].fidelity=modal",
+                           NULL};
     found a = modes_of(runup, rods, 6), b = modes_of(runup, modal, 6);
     for (int k = 0; k < 6; k++) {
         const bough_scene_mode *rod = &a.v.mode[k], *reduced = &b.v.mode[k];
@@ -242,16 +253,19 @@ static void azimuth_does_not_matter(void **context) {
     const char *nacelle =
         "bodies[1].joint={kind: revolute, parent: tower, axis: z, stiffness: 3e8, placement: "
         "[move z 87.6 m]}";
-    const char *zero[] = {HUB("{speed: 12.1 rpm}"), nacelle, CALM, COARSE,
-                          "modes.at=undeformed", NULL};
-    const char *turned[] = {HUB("{speed: 12.1 rpm}"), nacelle, CALM, COARSE,
+    const char *zero[] = {HUB("{speed: 12.1 rpm}"), nacelle, CALM, COARSE, "modes.at=undeformed", NULL};
+    const char *turned[] = {HUB("{speed: 12.1 rpm}"),
+                            nacelle,
+                            CALM,
+                            COARSE,
                             "bodies[3].joint.placement=[rotate x 40 deg, rotate y -2.5 deg, "
                             "move z 1.5 m]",
                             "bodies[4].joint.placement=[rotate x 160 deg, rotate y -2.5 deg, "
                             "move z 1.5 m]",
                             "bodies[5].joint.placement=[rotate x 280 deg, rotate y -2.5 deg, "
                             "move z 1.5 m]",
-                            "modes.at=undeformed", NULL};
+                            "modes.at=undeformed",
+                            NULL};
     found a = modes_of(runup, zero, 8), b = modes_of(runup, turned, 8);
     double support = 0;
     for (int k = 0; k < 8; k++) {

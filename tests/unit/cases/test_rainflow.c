@@ -22,7 +22,7 @@ static double cycles_of(const bough_rainflow *r, double range) {
 static void counts_the_example_of_the_standard(void **state) {
     (void)state;
     static const double history[] = {-2, 1, -3, 5, -1, 3, -4, 4, -2}, slope[] = {1, 3, 10};
-    static const double table[][2] = {{10, 0}, {9, 0.5}, {8, 1}, {7, 0},   {6, 0.5},
+    static const double table[][2] = {{10, 0}, {9, 0.5}, {8, 1},   {7, 0}, {6, 0.5},
                                       {5, 0},  {4, 1.5}, {3, 0.5}, {2, 0}, {1, 0}};
     bough_rainflow r = counted(history, 9, slope, 3);
     double sum[3] = {0};
@@ -39,8 +39,8 @@ static void counts_the_example_of_the_standard(void **state) {
 // Samples between the turning points and values that stand still change nothing.
 static void only_turning_points_count(void **state) {
     (void)state;
-    static const double dense[] = {-2, -2, 0,   1, 1,  -1, -3, 0, 5, 5,  4, -1, -1, 1,
-                                   3,  2,  2,   0, -4, -4, 0,  4, 3, -2, -2},
+    static const double dense[] = {-2, -2, 0, 1, 1, -1, -3, 0, 5, 5, 4,  -1, -1,
+                                   1,  3,  2, 2, 0, -4, -4, 0, 4, 3, -2, -2},
                         slope[] = {3};
     bough_rainflow r = counted(dense, sizeof dense / sizeof *dense, slope, 1);
     check_near(r.damage[0], 0.5 * (729 + 216 + 27) + 512 + 1.5 * 64, 1e-14, 0);

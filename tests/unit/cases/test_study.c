@@ -1,19 +1,18 @@
-#include "apps/bough/cases/perform.h"
 #include "apps/bough/cases/case_run.h"
+#include "apps/bough/cases/perform.h"
 #include "tests/unit/scratch.h"
 
 // The rubber bar falls for 20 ms: monolithic runs are good, frozen ones fail at once, since the
 // interface body has no mass of its own.
 #define BAR "scene: " BOUGH_SOURCE_DIR "/apps/beams/rubber-bar.yaml\n"
 #define HEAD "title: Falling bar\nkind: work-precision\n" BAR
-#define REFERENCE                                                                                  \
-    "reference: {simulation.coupling.scheme: monolithic, simulation.macro_step: 1 ms}\n"
-#define GRID                                                                                       \
-    "grid:\n  simulation.coupling.scheme: [monolithic, frozen]\n"                                  \
+#define REFERENCE "reference: {simulation.coupling.scheme: monolithic, simulation.macro_step: 1 ms}\n"
+#define GRID                                                                                                 \
+    "grid:\n  simulation.coupling.scheme: [monolithic, frozen]\n"                                            \
     "  simulation.macro_step: [1 ms, 4 ms]\n"
 #define COMMON "common: {simulation.duration: 20 ms, simulation.output.interval: 4 ms}\n"
-#define MEASURES                                                                                   \
-    "measures:\n  - {name: tip, channels: [barTipX, barTipZ]}\n"                                   \
+#define MEASURES                                                                                             \
+    "measures:\n  - {name: tip, channels: [barTipX, barTipZ]}\n"                                             \
     "  - {name: angle, channel: barPos, scale: 0.0174533, unit: rad}\n"
 static const char good_study[] = HEAD REFERENCE GRID COMMON MEASURES;
 
@@ -85,8 +84,7 @@ static bough_status perform(const char *folder, const char *text, int runs, char
 
 static int count(const char *text, const char *what) {
     int n = 0;
-    for (; text && (text = strstr(text, what)); text += strlen(what))
-        n++;
+    for (; text && (text = strstr(text, what)); text += strlen(what)) n++;
     return n;
 }
 
@@ -120,10 +118,10 @@ static void grid_is_the_product_of_its_values(void **state) {
 // Keys of the same last part are told apart; a quoted value stays text.
 static void labels_are_unique_and_quotes_are_kept(void **state) {
     fixture f;
-    bough_status status = open_study(
-        &f, *state,
-        HEAD REFERENCE "grid: {simulation.master.rtol: [1e-6], simulation.micro.rtol: [1e-5],"
-                       " title: ['it''s: 1']}\n" MEASURES);
+    bough_status status =
+        open_study(&f, *state,
+                   HEAD REFERENCE "grid: {simulation.master.rtol: [1e-6], simulation.micro.rtol: [1e-5],"
+                                  " title: ['it''s: 1']}\n" MEASURES);
     assert_true(bough_is_ok(&status));
     const bough_case *cell = &f.study->cases[0];
     assert_string_equal(cell->settings, "master.rtol=1e-6, micro.rtol=1e-5, title=it's: 1");
@@ -135,11 +133,9 @@ static void labels_are_unique_and_quotes_are_kept(void **state) {
 static void a_mapping_is_a_value(void **state) {
     fixture f;
     bough_status status = open_study(
-        &f, *state,
-        HEAD REFERENCE "grid: {simulation.micro: [{solver: rosenbrock, step: 2 ms}]}\n" MEASURES);
+        &f, *state, HEAD REFERENCE "grid: {simulation.micro: [{solver: rosenbrock, step: 2 ms}]}\n" MEASURES);
     assert_true(bough_is_ok(&status));
-    assert_string_equal(f.study->cases[0].set[0],
-                        "simulation.micro={solver: rosenbrock, step: 2 ms}");
+    assert_string_equal(f.study->cases[0].set[0], "simulation.micro={solver: rosenbrock, step: 2 ms}");
     close_study(&f);
 }
 
@@ -191,21 +187,18 @@ static void errors_of_a_reference_with_parameters_are_told(void **state) {
 
 static void channels_and_their_units_are_checked(void **state) {
     check_errors(*state,
-                 HEAD REFERENCE GRID COMMON
-                 "measures:\n  - {name: tip, channels: [barTipX, barTipQ]}\n"
-                 "  - {name: angle, channel: barPos, unit: rad}\n",
+                 HEAD REFERENCE GRID COMMON "measures:\n  - {name: tip, channels: [barTipX, barTipQ]}\n"
+                                            "  - {name: angle, channel: barPos, unit: rad}\n",
                  "10:5 measures\n11:5 measures\n");
 }
 
 static void output_times_must_be_common(void **state) {
-    check_errors(*state,
-                 HEAD REFERENCE "grid: {simulation.output.interval: [5 ms, 10 ms]}\n" MEASURES,
+    check_errors(*state, HEAD REFERENCE "grid: {simulation.output.interval: [5 ms, 10 ms]}\n" MEASURES,
                  "5:7 grid\n");
 }
 
 static void missing_scene_is_told(void **state) {
-    check_errors(*state, "kind: work-precision\nscene: none.yaml\n" REFERENCE GRID MEASURES,
-                 "2:8 scene\n");
+    check_errors(*state, "kind: work-precision\nscene: none.yaml\n" REFERENCE GRID MEASURES, "2:8 scene\n");
 }
 
 // -- differences ----------------------------------------------------------------------------------
@@ -213,9 +206,8 @@ static void missing_scene_is_told(void **state) {
 static void differences_are_the_largest_norms(void **state) {
     (void)state;
     bough_study_vector pairs[] = {{2, NULL}, {2, NULL}};
-    bough_study_measure measures[] = {
-        {.channels = {2, pairs}, .norm = BOUGH_STUDY_EUCLID, .scale = 10},
-        {.channels = {1, pairs}, .norm = BOUGH_STUDY_LARGEST, .scale = 1}};
+    bough_study_measure measures[] = {{.channels = {2, pairs}, .norm = BOUGH_STUDY_EUCLID, .scale = 10},
+                                      {.channels = {1, pairs}, .norm = BOUGH_STUDY_LARGEST, .scale = 1}};
     bough_study study = {.n_measure = 2, .measure = measures};
     double a[] = {0, 0, 0, 0, 5, 6, 3, 4, 1, 0, 5, 8};
     double b[] = {0, 0, 0, 0, 5, 6, 0, 0, 0, 0, 5, 6};
@@ -300,8 +292,7 @@ static void no_title_is_clipped(void **state) {
 static void failed_reference_ends_the_study(void **state) {
     char table[4096];
     bough_status status = perform(
-        *state, HEAD "reference: {simulation.coupling.scheme: frozen}\n" GRID COMMON MEASURES, ALL,
-        table);
+        *state, HEAD "reference: {simulation.coupling.scheme: frozen}\n" GRID COMMON MEASURES, ALL, table);
     assert_int_equal(status.code, BOUGH_FAILED);
     assert_non_null(strstr(status.message, "the reference failed: "));
     assert_false(scratch_has(*state, "table.csv"));
@@ -358,11 +349,10 @@ static void other_settings_are_run_anew_and_a_grown_grid_is_completed(void **sta
     char table[4096];
     perform(*state, good_study, ALL, table);
     int whole = asked;
-    bough_status status =
-        perform(*state,
-                HEAD REFERENCE GRID "common: {simulation.duration: 20 ms,"
-                                    " simulation.output.interval: 20 ms}\n" MEASURES,
-                0, table);
+    bough_status status = perform(*state,
+                                  HEAD REFERENCE GRID "common: {simulation.duration: 20 ms,"
+                                                      " simulation.output.interval: 20 ms}\n" MEASURES,
+                                  0, table);
     assert_int_equal(status.code, BOUGH_INTERRUPTED);
     static const char grown[] =
         HEAD REFERENCE "grid:\n  simulation.coupling.scheme: [monolithic, frozen, gauss-seidel]\n"

@@ -42,7 +42,7 @@ static void every_turn_has_every_cell_and_errors_are_told(void **state) {
     fclose(stream);
     char *csv = scratch_read(folder, "timing.csv"), *table = scratch_read(folder, "table.txt");
     assert_int_equal(count(csv, "\n"), 1 + 4 * 3);
-    assert_int_equal(count(csv, ",1\n"), 2 * 3); // against itself
+    assert_int_equal(count(csv, ",1\n"), 2 * 3);  // against itself
     assert_int_equal(count(table, "0.0e+00"), 2); // the reference's settings
     free(csv), free(table);
     bough_arena_destroy(arena);

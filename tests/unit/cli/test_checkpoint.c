@@ -66,8 +66,7 @@ static void every_scheme_goes_on(void **context) {
     for (int k = 0; (name = bough_scheme_name(k)) != NULL; k++) {
         char scheme[64];
         snprintf(scheme, sizeof scheme, "simulation.coupling.scheme=%s", name);
-        const char *const sets[] = {scheme, "simulation.macro_step=0.5 ms",
-                                    "bodies[0].rod.segments=6", NULL};
+        const char *const sets[] = {scheme, "simulation.macro_step=0.5 ms", "bodies[0].rod.segments=6", NULL};
         check_continued(bar, sets, 45, 45); // over the ends of batches of 32 steps
     }
 }
@@ -75,13 +74,13 @@ static void every_scheme_goes_on(void **context) {
 static void every_solver_goes_on(void **context) {
     (void)context;
     static const char *const solver[] = {
-        "simulation.micro.solver=cvode-bdf",      "simulation.micro.solver=generalized-alpha",
-        "simulation.micro.solver=arkode-esdirk",  "simulation.micro.solver=rosenbrock",
+        "simulation.micro.solver=cvode-bdf",     "simulation.micro.solver=generalized-alpha",
+        "simulation.micro.solver=arkode-esdirk", "simulation.micro.solver=rosenbrock",
         "simulation.master={solver: radau5}",
     };
     for (size_t k = 0; k < sizeof solver / sizeof *solver; k++) {
-        const char *const sets[] = {solver[k], "simulation.micro.step=0.5 ms",
-                                    "bodies[0].rod.segments=6", NULL};
+        const char *const sets[] = {solver[k], "simulation.micro.step=0.5 ms", "bodies[0].rod.segments=6",
+                                    NULL};
         check_continued(bar, sets, 20, 20);
     }
 }
@@ -117,12 +116,9 @@ static void modal_bodies_go_on(void **context) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(every_scheme_goes_on),
-        cmocka_unit_test(every_solver_goes_on),
-        cmocka_unit_test(controlled_steps_go_on),
-        cmocka_unit_test(the_turbine_goes_on),
-        cmocka_unit_test(the_controlled_turbine_goes_on),
-        cmocka_unit_test(modal_bodies_go_on),
+        cmocka_unit_test(every_scheme_goes_on),           cmocka_unit_test(every_solver_goes_on),
+        cmocka_unit_test(controlled_steps_go_on),         cmocka_unit_test(the_turbine_goes_on),
+        cmocka_unit_test(the_controlled_turbine_goes_on), cmocka_unit_test(modal_bodies_go_on),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

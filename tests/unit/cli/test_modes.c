@@ -28,8 +28,7 @@ static void build(setup *s, bough_two_mass masses) {
 }
 
 static void find(setup *s, int wanted) {
-    bough_status status =
-        bough_modes_find(s->m.arena, s->coupled, &s->def, wanted, s->pair, &s->found);
+    bough_status status = bough_modes_find(s->m.arena, s->coupled, &s->def, wanted, s->pair, &s->found);
     if (!bough_is_ok(&status)) fail_msg("%s", status.message);
 }
 

@@ -41,9 +41,7 @@ static void refuses_bytes(const char *text, size_t size, const char *lines) {
     stop(&f);
 }
 
-static void refuses(const char *text, const char *lines) {
-    refuses_bytes(text, strlen(text), lines);
-}
+static void refuses(const char *text, const char *lines) { refuses_bytes(text, strlen(text), lines); }
 
 static double seconds_since(clock_t begin) { return (double)(clock() - begin) / CLOCKS_PER_SEC; }
 
@@ -105,14 +103,12 @@ static void structure_errors_are_refused(void **state) {
     (void)state;
     refuses("", "f:1:1: error: the file is empty\n");
     refuses("# only a comment\n", "f:1:1: error: the file is empty\n");
-    refuses("a: 1\nb: 2\na: 3\nb: 4\na: 5\n",
-            "f:3:1: error: key 'a' is given twice (first in line 1)\n"
-            "f:5:1: error: key 'a' is given twice (first in line 3)\n"
-            "f:4:1: error: key 'b' is given twice (first in line 2)\n");
+    refuses("a: 1\nb: 2\na: 3\nb: 4\na: 5\n", "f:3:1: error: key 'a' is given twice (first in line 1)\n"
+                                              "f:5:1: error: key 'a' is given twice (first in line 3)\n"
+                                              "f:4:1: error: key 'b' is given twice (first in line 2)\n");
     refuses("a: 1\n---\nb: 2\n", "f:2:1: error: a file holds one document only\n");
     refuses("[a]: 1\n", "f:1:1: error: a key must be plain text, not a list or a mapping\n");
-    refuses("x: &k [a]\n*k : 1\n",
-            "f:2:1: error: a key must be plain text, not a list or a mapping\n");
+    refuses("x: &k [a]\n*k : 1\n", "f:2:1: error: a key must be plain text, not a list or a mapping\n");
     refuses("a: !!int 3\n", "f:1:4: error: tags (!...) are not used here\n");
     refuses("a: !x [3]\n", "f:1:4: error: tags (!...) are not used here\n");
     refuses("a: *b\n", "f:1:4: error: this alias has no anchor before it\n");
@@ -150,8 +146,7 @@ static void deep_files_end_fast(void **state) {
     const char *const openings[] = {"[", "{", "- ", "? "};
     for (int k = 0; k < 4; k++) {
         size_t width = strlen(openings[k]);
-        for (int i = 0; i < N; i++)
-            memcpy(text + width * (size_t)i, openings[k], width);
+        for (int i = 0; i < N; i++) memcpy(text + width * (size_t)i, openings[k], width);
         clock_t begin = clock();
         fixture f = start();
         assert_null(bough_text_parse(f.arena, "f", text, width * N, &f.errors));
@@ -169,8 +164,7 @@ static void alias_bombs_end_fast(void **state) {
         char line[160];
         snprintf(line, sizeof line, "a%d: &a%d [", i, i);
         for (int k = 0; k < 10; k++) {
-            snprintf(line + strlen(line), sizeof line - strlen(line), "*a%d%s", i - 1,
-                     k < 9 ? ", " : "]\n");
+            snprintf(line + strlen(line), sizeof line - strlen(line), "*a%d%s", i - 1, k < 9 ? ", " : "]\n");
         }
         strcat(text, line);
     }
@@ -196,8 +190,7 @@ static void many_values_are_refused(void **state) {
     size_t size = 2100001;
     char *text = malloc(size);
     text[0] = '[';
-    for (size_t i = 1; i < size; i += 2)
-        memcpy(text + i, "1,", 2);
+    for (size_t i = 1; i < size; i += 2) memcpy(text + i, "1,", 2);
     clock_t begin = clock();
     refuses_bytes(text, size, "f:1:2000000: error: more than a million values\n");
     assert_true(seconds_since(begin) < 10);
@@ -208,8 +201,7 @@ static void many_duplicate_keys_end_fast(void **state) {
     (void)state;
     enum { N = 100000 };
     char *text = malloc(7 * N + 1);
-    for (int i = 0; i < N; i++)
-        memcpy(text + 7 * i, "key: 1\n", 7);
+    for (int i = 0; i < N; i++) memcpy(text + 7 * i, "key: 1\n", 7);
     clock_t begin = clock();
     fixture f = start();
     assert_null(bough_text_parse(f.arena, "f", text, 7 * N, &f.errors));
@@ -226,9 +218,8 @@ static void unreadable_files_are_named(void **state) {
     fixture f = start();
     assert_null(bough_text_read(f.arena, "/nonexistent/x.yaml", &f.errors));
     assert_null(bough_text_read(f.arena, "/", &f.errors));
-    assert_string_equal(printed(&f),
-                        "/nonexistent/x.yaml: error: cannot be read: No such file or directory\n"
-                        "/: error: cannot be read: Is a directory\n");
+    assert_string_equal(printed(&f), "/nonexistent/x.yaml: error: cannot be read: No such file or directory\n"
+                                     "/: error: cannot be read: Is a directory\n");
     stop(&f);
 }
 
@@ -239,8 +230,7 @@ static void large_files_are_refused(void **state) {
     FILE *stream = fdopen(descriptor, "w");
     char line[1024];
     memset(line, '#', sizeof line);
-    for (int i = 0; i < 17 * 1024; i++)
-        fwrite(line, 1, sizeof line, stream);
+    for (int i = 0; i < 17 * 1024; i++) fwrite(line, 1, sizeof line, stream);
     fclose(stream);
     char expected[SCRATCH_PATH];
     snprintf(expected, sizeof expected, "%s: error: cannot be read: the file is larger than 16 MB\n", path);
@@ -261,8 +251,7 @@ static void errors_are_sorted_by_place(void **state) {
         {.file = "main", .line = 9, .column = 1}, {.file = "a", .line = 7, .column = 1},
         {.file = "main", .line = 2, .column = 5}, {.file = "--set"},
         {.file = "main", .line = 2, .column = 5}};
-    for (int i = 0; i < 7; i++)
-        bough_errors_add(&f.errors, &places[i], i == 1 ? "p" : "", "%d", i);
+    for (int i = 0; i < 7; i++) bough_errors_add(&f.errors, &places[i], i == 1 ? "p" : "", "%d", i);
     bough_errors_sort(&f.errors, "main");
     assert_string_equal(printed(&f), "--set: error: 5\nmain:2:5: error: 4\nmain:2:5: error: 6\n"
                                      "main:9:1: error: 2\nmain:9:2: error: p: 1\na:7:1: error: 3\n"

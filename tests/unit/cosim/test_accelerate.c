@@ -77,11 +77,8 @@ static void close_interface(void *self, double *x) {
 static int newton_evaluations(jacobian j) {
     bough_arena *arena = bough_arena_create();
     double u[MOST];
-    bough_accelerator_def def = {.kind = BOUGH_ACCELERATE_NEWTON,
-                                 .n = j.p.n,
-                                 .relaxation = .5,
-                                 .solve = close_interface,
-                                 .self = &j};
+    bough_accelerator_def def = {
+        .kind = BOUGH_ACCELERATE_NEWTON, .n = j.p.n, .relaxation = .5, .solve = close_interface, .self = &j};
     bough_accelerator *a = bough_accelerator_create(arena, &def);
     int count = solve(a, j.p, u);
     bough_arena_destroy(arena);

@@ -170,8 +170,7 @@ static void take_steps(void *self) {
     stop_counting();
     long taken = atomic_load(&allocations), released = atomic_load(&releases);
     if (taken == 0 && released == 0) return;
-    fail_msg("%s: %ld allocations and %ld releases in %d steps", run->what, taken, released,
-             run->steps);
+    fail_msg("%s: %ld allocations and %ld releases in %d steps", run->what, taken, released, run->steps);
 }
 
 static void count_steps(const char *folder, const char *path, int steps, const char *what,
@@ -188,13 +187,17 @@ static const char runup[] = "apps/turbine/runup.yaml";
 // Explicit schemes want a small macro step; the aerodynamics are sampled every second one.
 static void every_scheme_and_sub_solver_takes_no_memory(void **context) {
     if (!CAN_COUNT) skip();
-    static const char *const solver[] = {"cvode-bdf",         "arkode-esdirk", "ida",
-                                         "generalized-alpha", "rosenbrock"};
+    static const char *const solver[] = {"cvode-bdf", "arkode-esdirk", "ida", "generalized-alpha",
+                                         "rosenbrock"};
     char scheme_set[64], solver_set[64], what[128];
-    const char *sets[] = {"simulation.duration=2 s",    "simulation.threads=1",
-                          "simulation.macro_step=1 ms", "simulation.micro.step=1 ms",
-                          "aero.rate=500 Hz",           "bodies[3-5].rod.segments=8",
-                          scheme_set,                   solver_set,
+    const char *sets[] = {"simulation.duration=2 s",
+                          "simulation.threads=1",
+                          "simulation.macro_step=1 ms",
+                          "simulation.micro.step=1 ms",
+                          "aero.rate=500 Hz",
+                          "bodies[3-5].rod.segments=8",
+                          scheme_set,
+                          solver_set,
                           NULL};
     for (int i = 0; bough_scheme_name(i); i++) {
         for (int k = 0; k < 4; k++) {
@@ -211,9 +214,12 @@ static void every_scheme_and_sub_solver_takes_no_memory(void **context) {
 static void every_master_solver_takes_no_memory(void **context) {
     if (!CAN_COUNT) skip();
     char scheme_set[64], solver_set[64], what[128];
-    const char *sets[] = {"simulation.duration=2 s",    "simulation.threads=1",
-                          "simulation.macro_step=2 ms", "bodies[3-5].rod.segments=8",
-                          scheme_set,                   solver_set,
+    const char *sets[] = {"simulation.duration=2 s",
+                          "simulation.threads=1",
+                          "simulation.macro_step=2 ms",
+                          "bodies[3-5].rod.segments=8",
+                          scheme_set,
+                          solver_set,
                           NULL};
     for (int whole = 0; whole < 2; whole++) {
         for (int i = 0; bough_integrator_name(i); i++) {
@@ -286,8 +292,8 @@ static void rods_that_carry_take_no_memory(void **context) {
 
 static void modal_bodies_take_no_memory(void **context) {
     if (!CAN_COUNT) skip();
-    const char *sets[] = {"simulation.duration=2 s", "simulation.threads=1",
-                          "bodies[3].fidelity=modal", "bodies[4].fidelity=segmented-modal", NULL};
+    const char *sets[] = {"simulation.duration=2 s", "simulation.threads=1", "bodies[3].fidelity=modal",
+                          "bodies[4].fidelity=segmented-modal", NULL};
     count_steps(*context, runup, COUNTED, "modal bodies", sets);
 }
 

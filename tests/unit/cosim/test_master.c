@@ -83,8 +83,7 @@ static bough_status star_build(star *s, bough_master_def def) {
     bough_connection connection[2 * N_FOLLOWER];
     for (int i = 0; i < N_FOLLOWER; i++) {
         bough_oscillator *follower = &s->mass[1 + i];
-        *follower =
-            bough_oscillator_motion_in((bough_spring_mass){1 + i, 20, .3}, 10, .5, .5 - .2 * i);
+        *follower = bough_oscillator_motion_in((bough_spring_mass){1 + i, 20, .3}, 10, .5, .5 - .2 * i);
         s->mass[0] = bough_oscillator_force_in((bough_spring_mass){1, 10, .2}, 1, 0);
         oscillator_widen(&s->mass[0], follower);
         connection[2 * i] = (bough_connection){.to = 1 + i, .count = 3, .kinematic = true};
@@ -94,10 +93,8 @@ static bough_status star_build(star *s, bough_master_def def) {
         bough_oscillator_member(&s->mass[i], i ? "follower" : "leader", &s->member[i]);
         part[i] = (bough_assembly_member){&s->member[i], i > 0};
     }
-    def.assembly = (bough_assembly_def){.n_member = 1 + N_FOLLOWER,
-                                        .member = part,
-                                        .n_connection = 2 * N_FOLLOWER,
-                                        .connection = connection};
+    def.assembly = (bough_assembly_def){
+        .n_member = 1 + N_FOLLOWER, .member = part, .n_connection = 2 * N_FOLLOWER, .connection = connection};
     s->arena = bough_arena_create();
     return bough_master_build(s->arena, &def, &s->master);
 }

@@ -2,13 +2,9 @@
 
 #include "tests/unit/check.h"
 
-static double cubic(double t) {
-    return 1 + t * (-2 + t * (3 - t));
-}
+static double cubic(double t) { return 1 + t * (-2 + t * (3 - t)); }
 
-static double cubic_rate(double t) {
-    return -2 + t * (6 - 3 * t);
-}
+static double cubic_rate(double t) { return -2 + t * (6 - 3 * t); }
 
 static void check_signal(const bough_signal *s, double (*expected)(double)) {
     for (double t = s->t0; t <= s->t1; t += .1) {
@@ -31,13 +27,9 @@ static double constant(double t) {
     return 4;
 }
 
-static double line(double t) {
-    return 4 - 3 * (t - 2);
-}
+static double line(double t) { return 4 - 3 * (t - 2); }
 
-static double parabola(double t) {
-    return 2 - t + .5 * t * t;
-}
+static double parabola(double t) { return 2 - t + .5 * t * t; }
 
 static void held_values_and_rates(void **state) {
     (void)state;

@@ -53,9 +53,8 @@ static void oscillators_fulfil_the_contract(void **state) {
 
 static void parallel_errors_and_orders(void **state) {
     (void)state;
-    static const double expected[3][3] = {{5.00e-2, 2.47e-2, 1.23e-2},
-                                          {8.21e-3, 2.05e-3, 5.10e-4},
-                                          {1.89e-3, 2.37e-4, 2.95e-5}};
+    static const double expected[3][3] = {
+        {5.00e-2, 2.47e-2, 1.23e-2}, {8.21e-3, 2.05e-3, 5.10e-4}, {1.89e-3, 2.37e-4, 2.95e-5}};
     bough_master_def def = definition("extrapolated", 0);
     def.scheme.parallel = true;
     for (int order = 0; order < 3; order++) {
@@ -67,9 +66,8 @@ static void parallel_errors_and_orders(void **state) {
 
 static void sequential_errors_and_orders(void **state) {
     (void)state;
-    static const double expected[3][3] = {{5.98e-2, 2.51e-2, 1.23e-2},
-                                          {6.31e-3, 1.57e-3, 3.91e-4},
-                                          {1.80e-3, 2.22e-4, 2.76e-5}};
+    static const double expected[3][3] = {
+        {5.98e-2, 2.51e-2, 1.23e-2}, {6.31e-3, 1.57e-3, 3.91e-4}, {1.80e-3, 2.22e-4, 2.76e-5}};
     bough_master_def def = definition("extrapolated", 0);
     def.scheme.interpolation = BOUGH_POLYNOMIAL;
     for (int order = 0; order < 3; order++) {
@@ -222,9 +220,8 @@ static bough_master_def iterated(bough_acceleration accelerator, double macro_st
 
 static void iterated_errors_and_orders(void **state) {
     (void)state;
-    static const double expected[3][3] = {{4.75e-2, 2.41e-2, 1.21e-2},
-                                          {1.63e-3, 4.07e-4, 1.02e-4},
-                                          {2.09e-4, 2.61e-5, 3.26e-6}};
+    static const double expected[3][3] = {
+        {4.75e-2, 2.41e-2, 1.21e-2}, {1.63e-3, 4.07e-4, 1.02e-4}, {2.09e-4, 2.61e-5, 3.26e-6}};
     bough_master_def def = iterated(BOUGH_ACCELERATE_IQN_ILS, 0);
     for (int order = 0; order < 3; order++) {
         def.scheme.order = order;

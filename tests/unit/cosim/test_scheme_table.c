@@ -14,8 +14,7 @@ static bough_master_def definition(double macro_step) {
 static void the_table_lists_it_once(void **state) {
     (void)state;
     int found = 0, n = 0;
-    for (const char *name; (name = bough_scheme_name(n)) != NULL; n++)
-        found += !strcmp(name, "toy");
+    for (const char *name; (name = bough_scheme_name(n)) != NULL; n++) found += !strcmp(name, "toy");
     assert_int_equal(found, 1);
     assert_int_equal(n, 7);
     assert_string_equal(bough_scheme_find("toy")->name, "toy");
@@ -36,8 +35,8 @@ static void entries_name_schemes_of_the_table(void **state) {
     }
 }
 
-#define SCENE(scheme)                                                                              \
-    "simulation: {duration: 1, macro_step: 0.1, coupling: {scheme: " scheme "}}\n"                 \
+#define SCENE(scheme)                                                                                        \
+    "simulation: {duration: 1, macro_step: 0.1, coupling: {scheme: " scheme "}}\n"                           \
     "bodies:\n" BODY("a", "ground")
 
 static void scenes_name_it(void **state) {

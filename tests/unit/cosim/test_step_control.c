@@ -15,8 +15,7 @@ static bough_master_def definition(const char *scheme, double macro_step, double
 // with an eighth of the macro step. So nothing of the steps taken back is left.
 static void steps_taken_back_leave_nothing(void **state) {
     (void)state;
-    static const char *const schemes[] = {"frozen", "gauss-seidel", "extrapolated", "ramp",
-                                          "iterated"};
+    static const char *const schemes[] = {"frozen", "gauss-seidel", "extrapolated", "ramp", "iterated"};
     for (size_t k = 0; k < sizeof schemes / sizeof *schemes; k++) {
         for (int light = 0; light < 2; light++) {
             bough_two_mass m = bough_two_mass_default(), fixed = bough_two_mass_default();
@@ -100,8 +99,7 @@ static bough_integrator_ops failing; // NOLINT(cppcoreguidelines-avoid-non-const
 static bough_code failure;
 static int calls;
 
-static bough_status fail_to_advance(void *self, double *t, double pause, double t1, bool restart,
-                                    double *y) {
+static bough_status fail_to_advance(void *self, double *t, double pause, double t1, bool restart, double *y) {
     (void)self, (void)t, (void)pause, (void)restart, (void)y;
     calls++;
     return bough_fail(failure, "mass1 at t = %g s: gave up", t1);

@@ -2,8 +2,8 @@
 #include "tests/unit/import_deck.h"
 
 #include "apps/bough/exchange/bough.h"
-#include "apps/bough/import/section.h"
 #include "apps/bough/import/draft.h"
+#include "apps/bough/import/section.h"
 #include "tests/unit/scratch.h"
 
 // A reference line of 5 m along z and 5 m on a slope of 3 to 4; a station at 6.25 m of it.
@@ -147,8 +147,7 @@ static void versions_three_to_five_give_one_scene(void **context) {
         for (int i = 0; i < 2; i++) {
             trial t = import_main(newer[i], &(edit){newer[i], "2    CompElast", value}, NULL);
             assert_string_equal(t.status.message, "");
-            for (size_t k = 0; k < sizeof files / sizeof *files; k++)
-                same_file(&old, &t, files[k]);
+            for (size_t k = 0; k < sizeof files / sizeof *files; k++) same_file(&old, &t, files[k]);
             assert_false(list_says(&t, "undamped"));
             done(&t);
         }
@@ -175,8 +174,7 @@ static void what_version_five_adds_is_told(void **context) {
     t = import_main("v5/main.fst", &mirror, NULL);
     assert_non_null(strstr(t.status.message, "main.fst:25: MirrorRotor: expected False"));
     done(&t);
-    const edit redistribution = {"v5/aero.dat", "\"default\"     SkewRedistr_Mod",
-                                 "0  SkewRedistr_Mod"};
+    const edit redistribution = {"v5/aero.dat", "\"default\"     SkewRedistr_Mod", "0  SkewRedistr_Mod"};
     t = import_main("v5/main.fst", &redistribution, NULL);
     assert_string_equal(text(read_file(&t, "scene.yaml"), "aero.induction.skew"), "none");
     done(&t);
@@ -186,8 +184,7 @@ static void what_version_five_adds_is_told(void **context) {
 static void frequencies_are_those_of_beams(void **context) {
     (void)context;
     const double span[] = {0, 3, 6}, same[] = {4, 4, 4}, mass[] = {9, 9, 9};
-    check_near(bough_section_frequency(3, span, same, mass), 3.51602 * sqrt(4 / (9 * 1296.0)), 1e-4,
-               0);
+    check_near(bough_section_frequency(3, span, same, mass), 3.51602 * sqrt(4 / (9 * 1296.0)), 1e-4, 0);
     double x[41], stiffness[41], thin[41];
     for (int i = 0; i < 41; i++) {
         double left = 1 - 0.999 * i / 40;
@@ -195,8 +192,7 @@ static void frequencies_are_those_of_beams(void **context) {
         stiffness[i] = 4 * left * left * left;
         thin[i] = 9 * left;
     }
-    check_near(bough_section_frequency(41, x, stiffness, thin), 5.315 * sqrt(4 / (9 * 1296.0)),
-               3e-3, 0);
+    check_near(bough_section_frequency(41, x, stiffness, thin), 5.315 * sqrt(4 / (9 * 1296.0)), 3e-3, 0);
 }
 
 static void a_scene_steps(const edit *one, const edit *two) {
@@ -206,8 +202,7 @@ static void a_scene_steps(const edit *one, const edit *two) {
     snprintf(path, sizeof path, "%s/scene.yaml", t.out);
     bough_session *s = bough_session_open(path, NULL, 0);
     assert_string_equal(bough_session_error(s), "");
-    for (int i = 0; i < 4; i++)
-        assert_int_equal(bough_session_step(s), BOUGH_SESSION_OK);
+    for (int i = 0; i < 4; i++) assert_int_equal(bough_session_step(s), BOUGH_SESSION_OK);
     check_near(bough_session_read(s, bough_session_find(s, "RotSpeed")), 20, 0.2, 0);
     bough_session_close(s);
     done(&t);
@@ -231,8 +226,7 @@ static void controller_libraries_and_wind_files_stay_in_place(void **context) {
              "\"parts\\in\"  DLL_InFile\n0  XContrl",
              BOUGH_SAMPLE_DISCON);
     const edit library = {"parts/servo.dat", "0   PCMode", line};
-    const edit wind = {"parts/wind.dat", "1    WindType",
-                       "\"BOX.bts\"  FileName_BTS\n3    WindType"};
+    const edit wind = {"parts/wind.dat", "1    WindType", "\"BOX.bts\"  FileName_BTS\n3    WindType"};
     trial t = import_with(&library, &wind);
     assert_string_equal(t.status.message, "");
     const bough_node *s = read_file(&t, "scene.yaml");
@@ -354,8 +348,7 @@ static void bad_decks_are_told_where(void **context) {
          "servo.dat:5: GenEff: expected 0 to 100, got 195"},
         {{"parts/wind.dat", "12    HWindSpeed", "-1 HWindSpeed"},
          "wind.dat:6: HWindSpeed: expected 0 to 200, got -1"},
-        {{"parts/elasto.dat", "3    NumBl", "40    NumBl"},
-         "elasto.dat:14: NumBl: expected a whole"},
+        {{"parts/elasto.dat", "3    NumBl", "40    NumBl"}, "elasto.dat:14: NumBl: expected a whole"},
         {{"parts/elasto.dat", "True          YawDOF", "Maybe         YawDOF"},
          "elasto.dat:7: YawDOF: expected True or False, got 'Maybe'"},
         {{"main.fst", "parts/wind.dat", "parts/wand.dat"}, "main.fst:17: cannot read"},
@@ -364,13 +357,11 @@ static void bad_decks_are_told_where(void **context) {
         {{"parts/beam.dat", "kp_zr", "kp_z"}, "beam.dat: no table with the columns kp_xr"},
         {{"parts/beam.dat", "5.0     6.0", "nan     6.0"}, "beam.dat:10: kp_zr: expected a number"},
         {{"parts/beam.dat", "5.0     6.0", "9.5     6.0"}, "kp_zr: expected increasing values"},
-        {{"parts/beam-blade.dat", "  0.625", "  1.625"},
-         "beam-blade.dat:24: the station is at 1.625"},
+        {{"parts/beam-blade.dat", "  0.625", "  1.625"}, "beam-blade.dat:24: the station is at 1.625"},
         {{"parts/beam-blade.dat", "3   station_total", "4   station_total"}, "the file ends"},
         {{"parts/aero-blade.dat", "6.0       2 ", "6.0       3 "}, "BlAFID: row 2: expected"},
         {{"parts/aero-blade.dat", "  3   NumBlNds", "  4   NumBlNds"}, "3 rows, expected 4"},
-        {{"parts/foils/flat.dat", "-10.0", "-190.0"},
-         "flat.dat:7: alpha: expected"},
+        {{"parts/foils/flat.dat", "-10.0", "-190.0"}, "flat.dat:7: alpha: expected"},
         {{"parts/aero-blade.dat", "2       1.0\n", "2       0.0\n"},
          "aero-blade.dat:3: BlChord: row 2: expected a positive chord"},
         {{"parts/servo.dat", "400   VS_RtTq", "4   VS_RtTq"}, "servo.dat:7: VS_RtGnSp"},

@@ -35,7 +35,10 @@ static void put_value(FILE *out, const char *w, size_t n) {
     if (is_number(w, n)) {
         unsigned how = chance(5);
         fprintf(out, "%s%.*s%s", how == 1 && w[0] != '-' ? "+" : "", (int)n, w,
-                how == 2 ? "E+00" : how == 3 ? "d0" : how == 4 ? "+000" : "");
+                how == 2   ? "E+00"
+                : how == 3 ? "d0"
+                : how == 4 ? "+000"
+                           : "");
     } else if (n >= 4 && strncmp(w, "True", 4) == 0) {
         static const char *const flag[] = {"True", "T", ".TRUE.", "true", "t"};
         fputs(flag[chance(5)], out);
@@ -71,8 +74,7 @@ static void put_entry(FILE *out, const char *line, bool low) {
     fputs(chance(2) ? "\t" : "   ", out);
     put_value(out, value, n);
     fputs(chance(2) ? "\t\t" : "  ", out);
-    for (size_t i = 0; i < m; i++)
-        fputc(low ? tolower((unsigned char)name[i]) : name[i], out);
+    for (size_t i = 0; i < m; i++) fputc(low ? tolower((unsigned char)name[i]) : name[i], out);
     if (chance(2)) fputs(at, out);
     if (chance(4) == 0) fputs(" - \xb5m, d\xc3\xa9j\xc3\xa0 vu (\"quoted\")", out);
 }
@@ -115,14 +117,12 @@ static void reverse(const char *folder, const char *name) {
     assert_non_null(in);
     text[fread(text, 1, sizeof text - 1, in)] = '\0';
     fclose(in);
-    for (char *at = strtok(text, "\n"); at && n < 200; at = strtok(NULL, "\n"))
-        line[n++] = at;
+    for (char *at = strtok(text, "\n"); at && n < 200; at = strtok(NULL, "\n")) line[n++] = at;
     snprintf(path, sizeof path, "%s/%s", folder, name);
     FILE *out = fopen(path, "w");
     assert_non_null(out);
     fprintf(out, "%s\n%s\n", line[0], line[1]);
-    for (int i = n - 1; i > 1; i--)
-        fprintf(out, "%s\n", line[i]);
+    for (int i = n - 1; i > 1; i--) fprintf(out, "%s\n", line[i]);
     fclose(out);
 }
 
@@ -155,8 +155,7 @@ static void every_spelling_gives_the_same_scene(void **context) {
         trial t = import_main(mains[m], NULL, NULL);
         for (int seed = 0; seed < SEEDS; seed++) {
             state = (uint32_t)(1000 * m + seed);
-            for (int i = 0; i < N_DECK; i++)
-                respell(t.folder, decks[i]);
+            for (int i = 0; i < N_DECK; i++) respell(t.folder, decks[i]);
             again(&t, mains[m]);
             if (!bough_is_ok(&t.status)) fail_msg("seed %d: %s", seed, t.status.message);
             same_results(&base, &t);
@@ -168,11 +167,10 @@ static void every_spelling_gives_the_same_scene(void **context) {
 
 static void order_does_not_matter(void **context) {
     (void)context;
-    static const char *const plain[] = {"main.fst", "parts/elasto.dat", "parts/servo.dat",
-                                        "parts/wind.dat", "v4/elasto.dat", "v5/servo.dat"};
+    static const char *const plain[] = {"main.fst",       "parts/elasto.dat", "parts/servo.dat",
+                                        "parts/wind.dat", "v4/elasto.dat",    "v5/servo.dat"};
     trial base = import_main("main.fst", NULL, NULL), t = import_main("main.fst", NULL, NULL);
-    for (size_t i = 0; i < sizeof plain / sizeof *plain; i++)
-        reverse(t.folder, plain[i]);
+    for (size_t i = 0; i < sizeof plain / sizeof *plain; i++) reverse(t.folder, plain[i]);
     again(&t, "main.fst");
     assert_string_equal(t.status.message, "");
     same_results(&base, &t);
@@ -184,14 +182,14 @@ static void order_does_not_matter(void **context) {
 static void labels_and_defaults(void **context) {
     (void)context;
     trial base = import_main("main.fst", NULL, NULL);
-    trial t = import(&(edit){"parts/aero.dat", "\"foils/round.dat\"    AFNames  - airfoils",
-                             "\"foils/round.dat\""});
+    trial t = import(
+        &(edit){"parts/aero.dat", "\"foils/round.dat\"    AFNames  - airfoils", "\"foils/round.dat\""});
     assert_string_equal(t.status.message, "");
     same_results(&base, &t);
     done(&t);
-    static const char *const optional[] = {
-        "          2   WakeMod", "          2   SkewMod",  "True          TipLoss",
-        "          4   UAMod",   "        2.5   tau1_const", "          1   DBEMT_Mod"};
+    static const char *const optional[] = {"          2   WakeMod",    "          2   SkewMod",
+                                           "True          TipLoss",    "          4   UAMod",
+                                           "        2.5   tau1_const", "          1   DBEMT_Mod"};
     for (size_t i = 0; i < sizeof optional / sizeof *optional; i++) {
         char to[64];
         snprintf(to, sizeof to, "\"DEFAULT\"   %s", optional[i] + 14);

@@ -135,8 +135,8 @@ static void twist_turns_sections(void **context) {
     double compliance[21], turn = 0.6, half = 0.5 * turn, mean = 0.5 - 0.5 * sin(turn) / turn; // sin²
     double tangent = half / sin(half); // the rod's bending by the ends' rotation over the length
     assert_true(bough_symmetric6_inverse(turned.stiffness, compliance));
-    check_near(compliance[bough_symmetric6_index(3, 3)],
-               tangent * tangent * ((1 - mean) / 2e4 + mean / 3e4), 1e-12, 0);
+    check_near(compliance[bough_symmetric6_index(3, 3)], tangent * tangent * ((1 - mean) / 2e4 + mean / 3e4),
+               1e-12, 0);
     bough_arena_destroy(arena);
 }
 

@@ -10,8 +10,7 @@ typedef struct section {
     double k[36], m[36];
 } section;
 
-static section solve(int n_node, const double *x, const double *y, int n_wall,
-                     const bough_wall *wall) {
+static section solve(int n_node, const double *x, const double *y, int n_wall, const bough_wall *wall) {
     section s;
     bough_arena *arena = bough_arena_create();
     bough_status status = bough_wall_section(arena, n_node, x, y, n_wall, wall, s.k, s.m);
@@ -117,14 +116,14 @@ static void cells_share_the_torsion(void **state) {
     section outside = solve(n, x, y, n_wall, wall);
     double perimeter = 4 * a + 2 * b, area = 2 * a * b;
     // about its shear centre: the inverse of the compliance to twist
-    double k[9] = {outside.k[0], outside.k[1], outside.k[5], outside.k[1], outside.k[7],
+    double k[9] = {outside.k[0],  outside.k[1], outside.k[5],  outside.k[1], outside.k[7],
                    outside.k[11], outside.k[5], outside.k[11], outside.k[35]};
     double det2 = k[0] * k[4] - k[1] * k[3];
     double own = k[8] - (k[2] * (k[2] * k[4] - k[5] * k[1]) + k[5] * (k[5] * k[0] - k[2] * k[3])) / det2;
     check_near(own, 4 * area * area * 80e9 * 1e-3 / perimeter, 2e-3, 0);
     wall[n_wall++] = (bough_wall){2 * N * 1 / 5, 2 * N * 1 / 5 + 2 * N / 2, 1, &thin, 1}; // x = a
     section both = solve(n, x, y, n_wall, wall);
-    double q[9] = {both.k[0], both.k[1], both.k[5], both.k[1], both.k[7],
+    double q[9] = {both.k[0],  both.k[1], both.k[5],  both.k[1], both.k[7],
                    both.k[11], both.k[5], both.k[11], both.k[35]};
     det2 = q[0] * q[4] - q[1] * q[3];
     double own2 = q[8] - (q[2] * (q[2] * q[4] - q[5] * q[1]) + q[5] * (q[5] * q[0] - q[2] * q[3])) / det2;
@@ -166,12 +165,9 @@ static void plies_turn(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(tube_has_its_formulas),
-        cmocka_unit_test(box_of_four_walls_has_its_formulas),
-        cmocka_unit_test(offsets_move_along),
-        cmocka_unit_test(slit_tube_has_its_shear_centre_outside),
-        cmocka_unit_test(cells_share_the_torsion),
-        cmocka_unit_test(plies_turn),
+        cmocka_unit_test(tube_has_its_formulas),   cmocka_unit_test(box_of_four_walls_has_its_formulas),
+        cmocka_unit_test(offsets_move_along),      cmocka_unit_test(slit_tube_has_its_shear_centre_outside),
+        cmocka_unit_test(cells_share_the_torsion), cmocka_unit_test(plies_turn),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -59,8 +59,7 @@ static void put_velocities(FILE *f) {
     for (int t = 0; t < N_T; t++)
         for (int z = 0; z < N_Z; z++)
             for (int y = 0; y < N_Y; y++)
-                for (int c = 0; c < 3; c++)
-                    put16(f, normalised(t, z, y, c));
+                for (int c = 0; c < 3; c++) put16(f, normalised(t, z, y, c));
 }
 
 // Of model 4 with its own intensities 10, 8 and 5 %, or an old head and those of the summary.
@@ -68,37 +67,33 @@ static void write_bladed(const place *p, bool old, const char *clockwise, const 
     FILE *f = fopen(p->wind, "wb");
     assert_non_null(f);
     if (old) {
-        const int head[] = {-3, 30000, 20000, 5000, N_T / 2, 100, 0, 0, 0, 0, 1, 1000 * N_Z,
-                            1000 * N_Y, 0, 0, 0, 0, 0, 0};
-        for (size_t i = 0; i < sizeof head / sizeof *head; i++)
-            put16(f, head[i]);
+        const int head[] = {-3, 30000,      20000,      5000, N_T / 2, 100, 0, 0, 0, 0,
+                            1,  1000 * N_Z, 1000 * N_Y, 0,    0,       0,   0, 0, 0};
+        for (size_t i = 0; i < sizeof head / sizeof *head; i++) put16(f, head[i]);
     } else {
         const double own[] = {45, 0.03, 90, 10, 8, 5}, common[] = {30, 20, 5};
         put16(f, -99);
         put16(f, 4);
         put32(f, 3);
-        for (int i = 0; i < 6; i++)
-            put_real(f, own[i]);
-        for (int i = 0; i < 3; i++)
-            put_real(f, common[i]);
+        for (int i = 0; i < 6; i++) put_real(f, own[i]);
+        for (int i = 0; i < 3; i++) put_real(f, common[i]);
         put32(f, N_T / 2);
         put_real(f, 10);
-        for (int i = 0; i < 3; i++)
-            put_real(f, 0);
+        for (int i = 0; i < 3; i++) put_real(f, 0);
         put32(f, 0);
         put32(f, 77);
         put32(f, N_Z);
         put32(f, N_Y);
-        for (int i = 0; i < 6; i++)
-            put_real(f, 0);
+        for (int i = 0; i < 6; i++) put_real(f, 0);
     }
     put_velocities(f);
     fclose(f);
     f = fopen(p->sum, "w");
     assert_non_null(f);
-    fprintf(f, "TurbSim\n\n%s  Clockwise rotation\n  90.0  Hub height [m]\n  80.0  Grid width [m]\n"
-               "BLADED-STYLE BINARY SCALING PARAMETERS\n\n   UBAR  = 10.0 m/s\n   TI(u) = 10.0 %%\n"
-               "   TI(v) =  8.0 %%\n   TI(w) =  5.0 %%\n\n   Height offset = 5.0 m\n%s",
+    fprintf(f,
+            "TurbSim\n\n%s  Clockwise rotation\n  90.0  Hub height [m]\n  80.0  Grid width [m]\n"
+            "BLADED-STYLE BINARY SCALING PARAMETERS\n\n   UBAR  = 10.0 m/s\n   TI(u) = 10.0 %%\n"
+            "   TI(v) =  8.0 %%\n   TI(w) =  5.0 %%\n\n   Height offset = 5.0 m\n%s",
             clockwise, more);
     fclose(f);
 }
@@ -116,8 +111,8 @@ static void check_bladed(place *p, bool turned, double sideways) {
             for (int y = 0; y < N_Y; y++) {
                 int from = turned ? N_Y - 1 - y : y;
                 double later = box.periodic ? 0 : 20 / 10.; // it starts half a width downwind
-                bough_vec3 v = bough_wind_box_at(
-                    &box, bough_v3(0, -20 + 20 * y, 70 + 30 * z), 0.5 * t - later);
+                bough_vec3 v =
+                    bough_wind_box_at(&box, bough_v3(0, -20 + 20 * y, 70 + 30 * z), 0.5 * t - later);
                 check_near(v.x, 10 + scale[0] * normalised(t, z, from, 0), 1e-6, 1e-6);
                 check_near(v.y, scale[1] * normalised(t, z, from, 1), 1e-6, 1e-6);
                 check_near(v.z, scale[2] * normalised(t, z, from, 2), 1e-6, 1e-6);
@@ -167,20 +162,17 @@ static void write_hawc(const place *p, char path[3][SCRATCH_PATH], const char *c
         assert_non_null(f);
         for (int x = 0; x < N_T; x++)
             for (int y = N_Y - 1; y >= 0; y--)
-                for (int z = 0; z < N_Z; z++)
-                    put_real(f, unscaled(x, y, z, c));
+                for (int z = 0; z < N_Z; z++) put_real(f, unscaled(x, y, z, c));
         fclose(f);
     }
     *file = list;
 }
 
-static void check_hawc(const bough_wind_box *box, double factor, double mean_kept, double low,
-                       double high) {
+static void check_hawc(const bough_wind_box *box, double factor, double mean_kept, double low, double high) {
     for (int x = 0; x < N_T; x++) {
         for (int z = 0; z < N_Z; z++) {
             for (int y = 0; y < N_Y; y++) {
-                bough_vec3 v =
-                    bough_wind_box_at(box, bough_v3(0, -20 + 20 * y, 75 + 30 * z), 0.5 * x);
+                bough_vec3 v = bough_wind_box_at(box, bough_v3(0, -20 + 20 * y, 75 + 30 * z), 0.5 * x);
                 double u = unscaled(x, y, z, 0), mean = 0.01 * z;
                 check_near(v.x, (z ? high : low) + factor * (u - (1 - mean_kept) * mean), 0, 1e-3);
                 check_near(v.y, factor * unscaled(x, y, z, 1), 0, 1e-3);
@@ -195,8 +187,15 @@ static void hawc_files_are_boxes(void **state) {
     char path[3][SCRATCH_PATH];
     const char *const *file;
     write_hawc(p, path, &file);
-    bough_hawc_def d = {.file = {file[0], file[1], file[2]}, .nx = N_T, .ny = N_Y, .nz = N_Z,
-                        .dx = 5, .dy = 20, .dz = 30, .height = 90, .mean = 10};
+    bough_hawc_def d = {.file = {file[0], file[1], file[2]},
+                        .nx = N_T,
+                        .ny = N_Y,
+                        .nz = N_Z,
+                        .dx = 5,
+                        .dy = 20,
+                        .dz = 30,
+                        .height = 90,
+                        .mean = 10};
     bough_wind_box box;
     bough_status status = bough_wind_hawc_read(p->arena, &d, &box);
     assert_string_equal(status.message, "");

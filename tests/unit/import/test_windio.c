@@ -68,8 +68,7 @@ static void tower_and_elements_are_those_of_the_file(void **context) {
     (void)context;
     trial t = import_of("turbine-1.yaml", NULL);
     const bough_node *foot = at(read_file(&t, "tower-structure.yaml"), "stations.rows.0");
-    double pi = acos(-1.0), area = pi / 4 * (4 - 1.96 * 1.96),
-           second = pi / 64 * (16 - pow(1.96, 4));
+    double pi = acos(-1.0), area = pi / 4 * (4 - 1.96 * 1.96), second = pi / 64 * (16 - pow(1.96, 4));
     check_near(number(foot, "2.2"), 2e11 * area, 1e-9, 0);
     check_near(number(foot, "2.0"), 8e10 * area / 2, 1e-9, 0);
     check_near(number(foot, "2.3"), 2e11 * second, 1e-9, 0);
@@ -127,8 +126,7 @@ static void turbine_has_the_files_values(void **context) {
     assert_string_equal(text(s, "aero.wind.reference_height"), "21.5 m");
     done(&t);
     t = import_with("rotor_orientation: Upwind", "rotor_orientation: Downwind");
-    assert_string_equal(text(read_file(&t, "scene.yaml"), "bodies.2.joint.placement.1"),
-                        "move x 2 m");
+    assert_string_equal(text(read_file(&t, "scene.yaml"), "bodies.2.joint.placement.1"), "move x 2 m");
     done(&t);
 }
 
@@ -136,8 +134,7 @@ static void turbine_has_the_files_values(void **context) {
 static void same(const bough_node *a, const bough_node *b) {
     assert_int_equal(a->kind, b->kind);
     assert_int_equal(a->n, b->n);
-    for (int i = 0; i < a->n; i++)
-        same(a->value[i], b->value[i]);
+    for (int i = 0; i < a->n; i++) same(a->value[i], b->value[i]);
     if (a->kind != BOUGH_SCALAR) return;
     char *rest_a, *rest_b;
     double x = strtod(a->text, &rest_a), y = strtod(b->text, &rest_b);
@@ -154,9 +151,8 @@ static void both_layouts_give_one_scene(void **context) {
     assert_true(list_says(&second, "the layout of version 2"));
     done(&second);
     // the nacelle's inertia about its own centre and about the tower's top
-    second =
-        import_of("turbine-2.yaml", &(edit){"turbine-2.yaml", "[12000, 15000, 8000, 0, -4000, 0]",
-                                            "[4000, 5000, 6000]\n      inertia_tt: [12000]"});
+    second = import_of("turbine-2.yaml", &(edit){"turbine-2.yaml", "[12000, 15000, 8000, 0, -4000, 0]",
+                                                 "[4000, 5000, 6000]\n      inertia_tt: [12000]"});
     same(read_file(&first, "scene.yaml"), read_file(&second, "scene.yaml"));
     done(&second);
     done(&first);
@@ -164,10 +160,10 @@ static void both_layouts_give_one_scene(void **context) {
 
 static void what_is_not_given_is_told(void **context) {
     (void)context;
-    trial t = import_of(
-        "turbine-2.yaml",
-        &(edit){"turbine-2.yaml", "efficiency: 0.95}",
-                "efficiency: 0.95}\n    generator: {elastic_properties: {inertia: [3, 1, 1]}}"});
+    trial t =
+        import_of("turbine-2.yaml",
+                  &(edit){"turbine-2.yaml", "efficiency: 0.95}",
+                          "efficiency: 0.95}\n    generator: {elastic_properties: {inertia: [3, 1, 1]}}"});
     const bough_node *s = read_file(&t, "scene.yaml"); // the generator by itself, for the shaft's torque
     assert_string_equal(text(s, "turbine.rotor"), "generator");
     assert_string_equal(text(s, "bodies.3.joint.parent"), "generator");
@@ -177,8 +173,7 @@ static void what_is_not_given_is_told(void **context) {
     t = import_with("      layers:", "      other:");
     assert_true(list_says(&t, "no layers, so it is rigid"));
     assert_string_equal(text(read_file(&t, "scene.yaml"), "bodies.0.name"), "nacelle");
-    assert_string_equal(text(read_file(&t, "scene.yaml"), "bodies.0.joint.placement.0"),
-                        "move z 20 m");
+    assert_string_equal(text(read_file(&t, "scene.yaml"), "bodies.0.joint.placement.0"), "move z 20 m");
     done(&t);
     t = import_with("  rated_power", "  other");
     assert_true(list_says(&t, "no rated_power: no torque"));
@@ -189,8 +184,8 @@ static void what_is_not_given_is_told(void **context) {
     assert_true(list_says(&t, "deg; the value at 180 deg is the mean of its ends"));
     check_near(number(read_file(&t, "airfoils.yaml"), "polars.1.table.rows.0.3"), 5e-3, 1e-9, 0);
     done(&t);
-    t = import_of("turbine-2.yaml", &(edit){"turbine-2.yaml", "mu: [0, 0, 0, 0, 0, 0]",
-                                            "mu: [1.e-3, 0, 0, 0, 4.e-3, 0]"});
+    t = import_of("turbine-2.yaml",
+                  &(edit){"turbine-2.yaml", "mu: [0, 0, 0, 0, 0, 0]", "mu: [1.e-3, 0, 0, 0, 4.e-3, 0]"});
     check_near(number(read_file(&t, "blade-structure.yaml"), "damping.4"), 4e-3, 1e-9, 0);
     done(&t);
 }
@@ -198,10 +193,13 @@ static void what_is_not_given_is_told(void **context) {
 // Masses that the file lacks come from the user, not from other turbines.
 static void missing_masses_are_asked_for(void **context) {
     (void)context;
-    const edit hub = {"turbine-1.yaml", "    elastic_properties_mb: {system_mass: 3000", "    other: {a: 3000"};
-    const edit nacelle = {"turbine-2.yaml", "    elastic_properties:\n      mass: 8000", "    other:\n      mass: 8000"};
+    const edit hub = {"turbine-1.yaml", "    elastic_properties_mb: {system_mass: 3000",
+                      "    other: {a: 3000"};
+    const edit nacelle = {"turbine-2.yaml", "    elastic_properties:\n      mass: 8000",
+                          "    other:\n      mass: 8000"};
     trial t = import_of("turbine-1.yaml", &hub);
-    assert_non_null(strstr(t.status.message, ": expected the mass of the hub, 'elastic_properties.mass'; --hub-mass KG"));
+    assert_non_null(
+        strstr(t.status.message, ": expected the mass of the hub, 'elastic_properties.mass'; --hub-mass KG"));
     done(&t);
     t = import_given("turbine-1.yaml", &hub, &(bough_import_options){.hub_mass = 2500});
     assert_string_equal(t.status.message, "");
@@ -225,7 +223,8 @@ static void missing_masses_are_asked_for(void **context) {
 // Matrices of a blade without shear have zeros for it.
 static void no_shear_is_stiff(void **context) {
     (void)context;
-    trial t = import_of("turbine-2.yaml", &(edit){"turbine-2.yaml", "K11: [50000000, 5000000]", "K11: [0, 0]"});
+    trial t =
+        import_of("turbine-2.yaml", &(edit){"turbine-2.yaml", "K11: [50000000, 5000000]", "K11: [0, 0]"});
     assert_string_equal(t.status.message, "");
     assert_true(list_says(&t, "shear stiffness of zero (K11, K22)"));
     const bough_node *rows = at(read_file(&t, "blade-structure.yaml"), "stations.rows");
@@ -251,7 +250,8 @@ static void units_are_those_of_the_layout(void **context) {
     done(&t);
     t = import_of("turbine-2.yaml", &(edit){"turbine-2.yaml", "  rated_rotor_speed: 28.64788975654116",
                                             "  torque: {VS_maxspd: 20}"});
-    check_near(number(read_file(&t, "scene.yaml"), "control.law.reference_speed"), 10 * 120 * degree, 1e-9, 0);
+    check_near(number(read_file(&t, "scene.yaml"), "control.law.reference_speed"), 10 * 120 * degree, 1e-9,
+               0);
     done(&t);
 }
 
@@ -297,8 +297,7 @@ static void scene_steps(void **context) {
     snprintf(path, sizeof path, "%s/scene.yaml", t.out);
     bough_session *s = bough_session_open(path, NULL, 0);
     assert_string_equal(bough_session_error(s), "");
-    for (int i = 0; i < 4; i++)
-        assert_int_equal(bough_session_step(s), BOUGH_SESSION_OK);
+    for (int i = 0; i < 4; i++) assert_int_equal(bough_session_step(s), BOUGH_SESSION_OK);
     check_near(bough_session_read(s, bough_session_find(s, "RotSpeed")), 67.5 / acos(-1.0), 0.05,
                0); // torque acts before there is wind
     bough_session_close(s);
@@ -341,7 +340,8 @@ static void bad_files_are_told_where(void **context) {
          "number_of_blades: expected a whole number from 1 to 16, got 2.5"},
         {"gear_ratio: 10", "gear_ratio: 10\n      gear_ratio: 10", "is given twice"},
         {"gear_ratio: 10", "gear_ratio: -1", "gear_ratio: expected a positive value"},
-        {"[4000, 5000, 6000]", "[0, 0, 0, 0, 0, 6000]", "inertia: expected xx, yy, zz, xy, xz, yz of a matrix"},
+        {"[4000, 5000, 6000]", "[0, 0, 0, 0, 0, 6000]",
+         "inertia: expected xx, yy, zz, xy, xz, yz of a matrix"},
         {"VS_maxspd", "VS_other", "control: expected the rotor's rated speed, 'torque.VS_maxspd' or"},
     };
     for (size_t i = 0; i < sizeof bad / sizeof *bad; i++) {

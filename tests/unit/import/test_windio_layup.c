@@ -24,8 +24,7 @@ static void replace(char *text, size_t size, const char *from, const char *to) {
 static void put_circle(FILE *out, const char *name, bool above, double flat) {
     enum { N = 120 };
     fprintf(out, "  - name: %s-shape\n    coordinates:\n      x: [", name);
-    for (int i = 0; i <= N; i++)
-        fprintf(out, "%s%.9g", i ? ", " : "", 0.5 + 0.5 * cos(2 * pi * i / N));
+    for (int i = 0; i <= N; i++) fprintf(out, "%s%.9g", i ? ", " : "", 0.5 + 0.5 * cos(2 * pi * i / N));
     fputs("]\n      y: [", out);
     for (int i = 0; i <= N; i++) {
         double y = 0.5 * flat * sin(2 * pi * i / N) * (above ? 1 : -1);
@@ -84,8 +83,8 @@ static trial import_layers(options o) {
     return t;
 }
 
-#define WALL                                                                                       \
-    "      layers:\n"                                                                              \
+#define WALL                                                                                                 \
+    "      layers:\n"                                                                                        \
     "        - {name: wall, material: steel, thickness: {grid: [0, 1], values: [0.01, 0.01]}}\n"
 
 // The station's k-th number of stiffness [21, or its six] and mass [7].
@@ -132,19 +131,26 @@ static void arcs_are_said_in_many_ways(void **context) {
     char values[4][400];
     snprintf(values[0], sizeof values[0],
              "start_nd_arc: {grid: [0, 1], values: [%.9g, %.9g]}, end_nd_arc: {grid: [0, 1], values: "
-             "[%.9g, %.9g]}", middle - half, middle - half, middle + half, middle + half);
+             "[%.9g, %.9g]}",
+             middle - half, middle - half, middle + half, middle + half);
     snprintf(values[1], sizeof values[1],
              "midpoint_nd_arc: {grid: [0, 1], values: [%.9g, %.9g]}, width: {grid: [0, 1], values: [0.4, "
-             "0.4]}", middle, middle);
+             "0.4]}",
+             middle, middle);
     snprintf(values[2], sizeof values[2],
              "start_nd_arc: {grid: [0, 1], values: [%.9g, %.9g]}, width: {grid: [0, 1], values: [0.4, "
-             "0.4]}", middle - half, middle - half);
-    snprintf(values[3], sizeof values[3],
-             "start_nd_arc: {grid: [0, 1], values: [%.9g, %.9g]}, end_nd_arc: {grid: [0, 1], values: [1, 1]}, "
-             "width: {grid: [0, 1], values: [0.4, 0.4], defines: [end_nd_arc]}",
+             "0.4]}",
              middle - half, middle - half);
+    snprintf(
+        values[3], sizeof values[3],
+        "start_nd_arc: {grid: [0, 1], values: [%.9g, %.9g]}, end_nd_arc: {grid: [0, 1], values: [1, 1]}, "
+        "width: {grid: [0, 1], values: [0.4, 0.4], defines: [end_nd_arc]}",
+        middle - half, middle - half);
     const char *const ways[] = {
-        values[0], values[1], values[2], values[3],
+        values[0],
+        values[1],
+        values[2],
+        values[3],
         "start_nd_arc: {grid: [0, 1], values: [0, 0]}, end_nd_arc: {grid: [0, 1], values: [1, 1]}, "
         "width: {grid: [0, 1], values: [0.4, 0.4], defines: [start_nd_arc, end_nd_arc]}, plane_intersection: "
         "{side: suction, defines: [midpoint_nd_arc], plane_type1: {rotation: 0}, offset: {grid: [0, 1], "
@@ -199,14 +205,16 @@ static void webs_cross_the_section(void **context) {
         snprintf(structure, sizeof structure,
                  "      webs:\n        - {name: plate, %s}\n" WALL
                  "        - {name: skin, web: plate, material: steel, n_plies: {grid: [0, 1], values: "
-                 "[4, 4]}}\n", place[i]);
+                 "[4, 4]}}\n",
+                 place[i]);
         trial t = import_layers((options){structure, false});
         assert_non_null(strstr(t.status.message, "ply_t")); // steel has none here
         done(&t);
         snprintf(structure, sizeof structure,
                  "      webs:\n        - {name: plate, %s}\n" WALL
                  "        - {name: skin, web: plate, material: steel, thickness: {grid: [0, 1], values: "
-                 "[0.02, 0.02]}}\n", place[i]);
+                 "[0.02, 0.02]}}\n",
+                 place[i]);
         t = import_layers((options){structure, false});
         assert_string_equal(t.status.message, "");
         const bough_node *rows = at(read_file(&t, "blade-structure.yaml"), "stations.rows");
@@ -221,12 +229,15 @@ static void webs_cross_the_section(void **context) {
 // Real files have matrices whose inertia misses an entry beside layers that are right.
 static void impossible_matrices_give_way_to_layers(void **context) {
     (void)context;
-    static const char matrix[] = "{grid: [0, 1], values: [[1, 0, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, "
-                                 "0, 0, 1], [1, 0, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 0, 1]]}";
+    static const char matrix[] =
+        "{grid: [0, 1], values: [[1, 0, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, "
+        "0, 0, 1], [1, 0, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 0, 1]]}";
     char structure[2048];
-    snprintf(structure, sizeof structure,
-             WALL "    elastic_properties_mb:\n      six_x_six:\n        stiff_matrix: %s\n        inertia_matrix: %s\n",
-             matrix, matrix);
+    snprintf(
+        structure, sizeof structure,
+        WALL
+        "    elastic_properties_mb:\n      six_x_six:\n        stiff_matrix: %s\n        inertia_matrix: %s\n",
+        matrix, matrix);
     trial t = import_layers((options){structure, true});
     assert_string_equal(t.status.message, "");
     assert_true(list_says(&t, "blade: the matrices of stiffness and inertia, which no section can have"));
@@ -244,11 +255,13 @@ static void bad_layers_are_told(void **context) {
          "material: no material is named 'wood'"},
         {"      layers:\n        - {name: wall, material: steel}\n", "expected a key 'thickness' here"},
         {WALL "        - {name: skin, web: plate, material: steel, thickness: {grid: [0, 1], values: [1, "
-              "1]}}\n", "web: no web is named 'plate'"},
+              "1]}}\n",
+         "web: no web is named 'plate'"},
         {WALL "        - {name: a, material: steel, thickness: {grid: [0, 1], values: [0.1, 0.1]}, "
               "start_nd_arc: {fixed: b}, end_nd_arc: {fixed: b}}\n"
               "        - {name: b, material: steel, thickness: {grid: [0, 1], values: [0.1, 0.1]}, "
-              "start_nd_arc: {fixed: a}, end_nd_arc: {fixed: a}}\n", "it refers to itself"},
+              "start_nd_arc: {fixed: a}, end_nd_arc: {fixed: a}}\n",
+         "it refers to itself"},
     };
     for (size_t i = 0; i < sizeof bad / sizeof *bad; i++) {
         trial t = import_layers((options){bad[i].structure, true});
@@ -261,10 +274,8 @@ static void bad_layers_are_told(void **context) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(tube_of_one_layer),
-        cmocka_unit_test(arcs_are_said_in_many_ways),
-        cmocka_unit_test(webs_cross_the_section),
-        cmocka_unit_test(impossible_matrices_give_way_to_layers),
+        cmocka_unit_test(tube_of_one_layer),      cmocka_unit_test(arcs_are_said_in_many_ways),
+        cmocka_unit_test(webs_cross_the_section), cmocka_unit_test(impossible_matrices_give_way_to_layers),
         cmocka_unit_test(bad_layers_are_told),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -482,8 +482,9 @@ static void blades_want_one_mesh(void **context) {
     bough_simulation *s = NULL;
     bough_status status = bough_simulation_build(arena, scene_read(arena, turbine, sets), &s);
     assert_int_equal(status.code, BOUGH_INVALID);
-    assert_string_equal(status.message, "--set: rod.segments: blades blade1 and blade2 have 12 and 10 segments; the"
-                                        " aerodynamics wants the same mesh on all blades");
+    assert_string_equal(status.message,
+                        "--set: rod.segments: blades blade1 and blade2 have 12 and 10 segments; the"
+                        " aerodynamics wants the same mesh on all blades");
     assert_null(s);
     bough_arena_destroy(arena);
 }

@@ -184,8 +184,7 @@ static void end_of_a_rod_is_connected_to_its_body(void **context) {
 }
 
 static bough_twist velocity_of(const bough_simulation *s, const char *body) {
-    return bough_tree_frame_velocity(s->view,
-                                     &s->tree->bodies[tree_find_body(s->tree, body)]);
+    return bough_tree_frame_velocity(s->view, &s->tree->bodies[tree_find_body(s->tree, body)]);
 }
 
 // The hub stands at 90°: what points along z at 0 points along −y.
@@ -293,8 +292,7 @@ static bough_inertia blade_about_hub(const bough_scene_body *body, double azimut
             double ix = g * low->inertia[0] + f * high->inertia[0];
             double iy = g * low->inertia[1] + f * high->inertia[1];
             double mass = thickness * (g * low->mass + f * high->mass);
-            bough_mat3 own = {{thickness * ix, 0, 0}, {0, thickness * iy, 0},
-                              {0, 0, thickness * (ix + iy)}};
+            bough_mat3 own = {{thickness * ix, 0, 0}, {0, thickness * iy, 0}, {0, 0, thickness * (ix + iy)}};
             bough_transform x = {bough_scale(1.5 + z, lean.c3),
                                  bough_mat3_product(lean, about(2, -twist - 6.5 * degree))};
             bough_inertia section = {mass, {0, 0, 0}, own};
@@ -315,9 +313,12 @@ static void check_inertia(bough_inertia value, bough_inertia expected, double to
 
 static void rigid_blades_have_the_inertia_of_their_table(void **context) {
     (void)context;
-    static const char *const sets[] = {"bodies[3].fidelity=rigid", "bodies[4].fidelity=rigid",
-                                       "bodies[5].fidelity=rigid", "bodies[4].rod.segments=12",
-                                       "bodies[3].rod.segments=12", "bodies[5].rod.segments=12",
+    static const char *const sets[] = {"bodies[3].fidelity=rigid",
+                                       "bodies[4].fidelity=rigid",
+                                       "bodies[5].fidelity=rigid",
+                                       "bodies[4].rod.segments=12",
+                                       "bodies[3].rod.segments=12",
+                                       "bodies[5].rod.segments=12",
                                        NULL};
     bough_arena *arena = bough_arena_create();
     bough_simulation *s = scene_build(arena, runup, sets);
@@ -336,18 +337,16 @@ static void rigid_blades_have_the_inertia_of_their_table(void **context) {
 // Arms of a uniform section, one with its mass beside the axis, in the hub's axes.
 static void rigid_arms_have_their_mass_where_the_section_says(void **context) {
     (void)context;
-    static const char *const sets[] = {"bodies[0].fidelity=rigid", "bodies[3].fidelity=rigid",
-                                       NULL};
+    static const char *const sets[] = {"bodies[0].fidelity=rigid", "bodies[3].fidelity=rigid", NULL};
     static const double angle[] = {4 * BOUGH_PI / 3, 2 * BOUGH_PI / 3, 0}, radius[] = {3, 2, 1};
     bough_arena *arena = bough_arena_create();
     bough_simulation *s = scene_build(arena, arms, sets);
     bough_inertia expected = {50, {0, 0, 0}, {{5, 0, 0}, {0, 3, 0}, {0, 0, 3}}};
     for (int k = 0; k < 3; k++) { // 1.5 kg/m from 0 to 2 m
         double cx = k == 1 ? 0.02 : 0, cy = k == 1 ? -0.01 : 0, xy = k == 1 ? 1e-3 : 0;
-        bough_mat3 about_root = {{4 + 4e-3, 2 * xy, -3 * cx}, {2 * xy, 4 + 6e-3, -3 * cy},
-                                 {-3 * cx, -3 * cy, 1e-2}};
-        bough_mat3 r = bough_mat3_product(about(0, angle[k]),
-                                          about(2, k == 0 ? -BOUGH_PI / 6 : 0));
+        bough_mat3 about_root = {
+            {4 + 4e-3, 2 * xy, -3 * cx}, {2 * xy, 4 + 6e-3, -3 * cy}, {-3 * cx, -3 * cy, 1e-2}};
+        bough_mat3 r = bough_mat3_product(about(0, angle[k]), about(2, k == 0 ? -BOUGH_PI / 6 : 0));
         bough_transform x = {bough_scale(radius[k], r.c3), r};
         bough_inertia arm = {3, bough_v3(3 * cx, 3 * cy, 3), about_root};
         expected = bough_inertia_add(expected, bough_inertia_to_parent(&x, arm));
@@ -363,11 +362,11 @@ static bough_inertia moving_inertia(const bough_simulation *s, const bough_beam 
     bough_inertia sum = {0};
     for (int i = 1; i <= m->n; i++) {
         const double *j = m->vertex[i].inertia;
-        bough_inertia own = {m->vertex[i].mass, m->vertex[i].moment,
+        bough_inertia own = {m->vertex[i].mass,
+                             m->vertex[i].moment,
                              {{j[0], j[3], j[4]}, {j[3], j[1], j[5]}, {j[4], j[5], j[2]}}};
         bough_transform at = {m->position0[i], bough_rotation_matrix(m->rotation0[i])};
-        bough_transform x =
-            bough_transform_compose(s->tree->markers[beam->marker].placement, at);
+        bough_transform x = bough_transform_compose(s->tree->markers[beam->marker].placement, at);
         sum = bough_inertia_add(sum, bough_inertia_to_parent(&x, own));
     }
     return sum;
@@ -395,10 +394,15 @@ static int final_state(const char *scheme, int threads, double *state) {
     char scheme_set[64], thread_set[64];
     snprintf(scheme_set, sizeof scheme_set, "simulation.coupling.scheme=%s", scheme);
     snprintf(thread_set, sizeof thread_set, "simulation.threads=%d", threads);
-    const char *sets[] = {"simulation.duration=1 s", "simulation.macro_step=4 ms", scheme_set,
-                          thread_set, "simulation.micro.step=2 ms",
-                          "bodies[3].rod.segments=12", "bodies[4].rod.segments=12",
-                          "bodies[5].rod.segments=12", NULL};
+    const char *sets[] = {"simulation.duration=1 s",
+                          "simulation.macro_step=4 ms",
+                          scheme_set,
+                          thread_set,
+                          "simulation.micro.step=2 ms",
+                          "bodies[3].rod.segments=12",
+                          "bodies[4].rod.segments=12",
+                          "bodies[5].rod.segments=12",
+                          NULL};
     bough_arena *arena = bough_arena_create();
     bough_simulation *s = scene_build(arena, runup, sets);
     while (!bough_master_done(s->master)) scene_step(s);

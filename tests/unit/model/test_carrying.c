@@ -115,8 +115,8 @@ static void spring_takes_hold_of_a_rod(void **context) {
 
 static void rod_that_carries_nothing_heavy_moves_as_a_free_one(void **context) {
     (void)context;
-#define SAME                                                                                       \
-    "bodies[1].mass=0", "gravity=[9, -5, 0]", "simulation.duration=0.3 s",                         \
+#define SAME                                                                                                 \
+    "bodies[1].mass=0", "gravity=[9, -5, 0]", "simulation.duration=0.3 s",                                   \
         "simulation.coupling.scheme=monolithic", "simulation.master.rtol=1e-8"
     static const char *const hung[] = {SAME, NULL};
     static const char *const apart[] = {SAME, "bodies[1].joint.parent=ground", NULL};
@@ -140,8 +140,8 @@ static void rods_in_a_row_are_the_whole(void **context) {
     (void)context;
     static const char path[] = "tests/data/scenes/tower-in-parts.yaml";
     static const char *const whole[] = {"bodies[0].rod.part=[0, 87.6]", "bodies[0].rod.segments=20",
-                                        "bodies[1].joint.parent=ground",
-                                        "bodies[2].joint.parent=lower", NULL};
+                                        "bodies[1].joint.parent=ground", "bodies[2].joint.parent=lower",
+                                        NULL};
     bough_arena *arena = bough_arena_create();
     bough_simulation *parts = scene_build(arena, path, no_sets);
     bough_simulation *one = scene_build(arena, path, whole);
@@ -203,11 +203,10 @@ static invariants measure(const bough_simulation *s, bough_rod_scratch *scratch)
         sum.energy += 0.5 * bough_power(twist, p);
         bough_vec3 linear = bough_mat3_mul(r[i], p.force);
         sum.momentum = bough_add(sum.momentum, linear);
-        sum.angular = bough_add(sum.angular, bough_add(bough_mat3_mul(r[i], p.moment),
-                                                       bough_cross(x[i], linear)));
+        sum.angular =
+            bough_add(sum.angular, bough_add(bough_mat3_mul(r[i], p.moment), bough_cross(x[i], linear)));
     }
-    bough_rod_gather(m, s->rod[beam->port].state, bough_simulation_rod_input(s, beam),
-                     scratch);
+    bough_rod_gather(m, s->rod[beam->port].state, bough_simulation_rod_input(s, beam), scratch);
     sum.energy += bough_rod_elastic_energy(m, scratch);
     return sum;
 }
@@ -261,8 +260,8 @@ static void every_scheme_comes_to_the_monolithic_motion(void **context) {
     static const struct {
         const char *scheme;
         double error;
-    } schemes[] = {{"frozen", 3e-3},       {"gauss-seidel", 2e-3}, {"extrapolated", 1e-4},
-                   {"iterated", 3e-4},     {"ramp", 2e-5}};
+    } schemes[] = {
+        {"frozen", 3e-3}, {"gauss-seidel", 2e-3}, {"extrapolated", 1e-4}, {"iterated", 3e-4}, {"ramp", 2e-5}};
     double exact[4], end[4], start[4] = {0, 0, 10, 1};
     end_of_run("simulation.coupling.scheme=monolithic", "simulation.macro_step=2.5 ms", exact);
     assert_true(distance(exact, start) > 0.05);
@@ -306,9 +305,8 @@ static void parked_turbine_swings_as_published(void **context) {
 // 0.3211 Hz of the same bodies, rigid, without gravity and shear; shear takes 0.4 %.
 static void tower_with_rigid_blades_swings_as_by_ritz(void **context) {
     (void)context;
-    static const char *const sets[] = {"gravity=[0, 0, 0]",        "bodies[3].fidelity=rigid",
-                                       "bodies[4].fidelity=rigid", "bodies[5].fidelity=rigid",
-                                       NULL};
+    static const char *const sets[] = {"gravity=[0, 0, 0]", "bodies[3].fidelity=rigid",
+                                       "bodies[4].fidelity=rigid", "bodies[5].fidelity=rigid", NULL};
     static const double ritz[] = {0.3233 * 0.996, 0.3211 * 0.996};
     for (int axis = 0; axis < 2; axis++) {
         bough_arena *arena = bough_arena_create();
@@ -323,8 +321,8 @@ static void tower_with_rigid_blades_swings_as_by_ritz(void **context) {
 static void jolt_at_the_start_does_not_end_a_run(void **context) {
     (void)context;
     static const char *const sets[] = {"simulation.initial=undeformed", "simulation.duration=3 s",
-                                       "bodies[3].fidelity=rigid", "bodies[4].fidelity=rigid",
-                                       "bodies[5].fidelity=rigid", NULL};
+                                       "bodies[3].fidelity=rigid",      "bodies[4].fidelity=rigid",
+                                       "bodies[5].fidelity=rigid",      NULL};
     bough_arena *arena = bough_arena_create();
     bough_simulation *s = scene_build(arena, parked, sets);
     run(s);

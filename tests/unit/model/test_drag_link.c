@@ -8,8 +8,9 @@
 
 static const char turbine[] = "apps/turbine/land.yaml";
 
-#define FEW "simulation.threads=1", "bodies[0].rod.segments=10", "bodies[4].rod.segments=12",     \
-            "bodies[5].rod.segments=12", "bodies[6].rod.segments=12"
+#define FEW                                                                                                  \
+    "simulation.threads=1", "bodies[0].rod.segments=10", "bodies[4].rod.segments=12",                        \
+        "bodies[5].rod.segments=12", "bodies[6].rod.segments=12"
 #define DRAG "aero.ramp=[0 s, 0 s]", "aero.tower.body=tower", "aero.tower.drag=[0.8]"
 
 // ½ρ c V² ∫D dz of the scene's tower, at 20 m/s [N].
@@ -32,9 +33,7 @@ static bough_simulation *sampled(bough_arena *arena, const char *const *sets, do
     return s;
 }
 
-static bough_wrench on(const bough_simulation *s, int marker) {
-    return s->tree->external[marker].value;
-}
+static bough_wrench on(const bough_simulation *s, int marker) { return s->tree->external[marker].value; }
 
 // At rest: the sum over the vertices.
 static void tower_drag_is_the_integral(void **state) {
@@ -129,8 +128,8 @@ static void bad_bodies_are_refused(void **state) {
         bough_arena *arena = bough_arena_create();
         bough_errors errors = {.arena = arena};
         bough_scene *scene;
-        bough_status status = bough_scene_read(arena, BOUGH_SOURCE_DIR "/apps/turbine/land.yaml",
-                                               bad[i], 1, &errors, &scene);
+        bough_status status =
+            bough_scene_read(arena, BOUGH_SOURCE_DIR "/apps/turbine/land.yaml", bad[i], 1, &errors, &scene);
         assert_int_equal(status.code, BOUGH_INVALID);
         assert_non_null(strstr(errors.item[0].text, bad[i][1]));
         bough_arena_destroy(arena);
@@ -139,10 +138,8 @@ static void bad_bodies_are_refused(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(tower_drag_is_the_integral),
-        cmocka_unit_test(hub_drag_blows_downwind),
-        cmocka_unit_test(drag_runs_and_repeats),
-        cmocka_unit_test(held_drag_is_constant),
+        cmocka_unit_test(tower_drag_is_the_integral), cmocka_unit_test(hub_drag_blows_downwind),
+        cmocka_unit_test(drag_runs_and_repeats),      cmocka_unit_test(held_drag_is_constant),
         cmocka_unit_test(bad_bodies_are_refused),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -4,19 +4,19 @@
 #include "tests/unit/scene_text.h"
 
 // A slide pushed by its joint, a free rigid body, a free rod under a load along it; each of 2 kg.
-#define BODIES                                                                                     \
-    "bodies:\n"                                                                                   \
-    "  - {name: slide, fidelity: rigid, mass: 2, inertia: [1, 1, 1],\n"                            \
-    "     joint: {kind: prismatic, axis: x, parent: ground}}\n"                                   \
-    "  - {name: body, fidelity: rigid, mass: 2, inertia: [1, 1, 1],\n"                             \
-    "     joint: {kind: free, parent: ground}}\n"                                                 \
-    "  - name: rod\n    fidelity: rod\n    joint: {kind: free, parent: ground}\n"                  \
-    "    rod: {length: 1 m, segments: 4, stiffness: [1e4, 1e4, 1e4, 10, 10, 10],\n"                 \
+#define BODIES                                                                                               \
+    "bodies:\n"                                                                                              \
+    "  - {name: slide, fidelity: rigid, mass: 2, inertia: [1, 1, 1],\n"                                      \
+    "     joint: {kind: prismatic, axis: x, parent: ground}}\n"                                              \
+    "  - {name: body, fidelity: rigid, mass: 2, inertia: [1, 1, 1],\n"                                       \
+    "     joint: {kind: free, parent: ground}}\n"                                                            \
+    "  - name: rod\n    fidelity: rod\n    joint: {kind: free, parent: ground}\n"                            \
+    "    rod: {length: 1 m, segments: 4, stiffness: [1e4, 1e4, 1e4, 10, 10, 10],\n"                          \
     "      damping: [0.01, 0.01, 0.01, 0.01, 0.01, 0.01], mass: [2, 0, 0, 0.01, 0.01, 0]}\n"
-#define LOADS(ramp)                                                                                \
-    "loads:\n  - {joint: slide, force: 6, ramp: " ramp "}\n"                                       \
-    "  - {body: body, force: [6, 0, 0], ramp: " ramp "}\n"                                          \
-    "  - {body: rod, along: [0, 1 m], force: [6, 0, 0], frame: body, ramp: " ramp "}\n"             \
+#define LOADS(ramp)                                                                                          \
+    "loads:\n  - {joint: slide, force: 6, ramp: " ramp "}\n"                                                 \
+    "  - {body: body, force: [6, 0, 0], ramp: " ramp "}\n"                                                   \
+    "  - {body: rod, along: [0, 1 m], force: [6, 0, 0], frame: body, ramp: " ramp "}\n"                      \
     "markers:\n  - {name: at, body: body}\n"
 
 static void load(const char *text, bough_arena *arena, bough_simulation **s) {
@@ -30,9 +30,7 @@ static void load(const char *text, bough_arena *arena, bough_simulation **s) {
     assert_int_equal(status.code, BOUGH_OK);
 }
 
-static double after(double t, double jump) {
-    return t > jump ? 1.5 * (t - jump) * (t - jump) : 0;
-}
+static double after(double t, double jump) { return t > jump ? 1.5 * (t - jump) * (t - jump) : 0; }
 
 // The rod takes part in the coupling, whose error counts.
 static void check_parabolas(const char *text, double jump, double tolerance, double coupled) {
@@ -61,9 +59,11 @@ static void a_load_that_jumps_acts_from_its_time_on(void **context) {
     check_parabolas(SIMULATE("") BODIES LOADS("[0.507 s, 0.507 s]"), 0.507, 1e-5, 4e-3);
     check_parabolas(SIMULATE("") BODIES LOADS("[0.5 s, 0.5 s]"), 0.5, 1e-5, 4e-3);
     check_parabolas(SIMULATE(", coupling: {scheme: monolithic}, master: {solver: rosenbrock, rtol: 1e-6}")
-                        BODIES LOADS("[0.507 s, 0.507 s]"), 0.507, 1e-7, 1e-7);
+                        BODIES LOADS("[0.507 s, 0.507 s]"),
+                    0.507, 1e-7, 1e-7);
     check_parabolas(SIMULATE(", coupling: {scheme: monolithic}, master: {rtol: 1e-8}")
-                        BODIES LOADS("[0.5 s, 0.5 s]"), 0.5, 1e-6, 1e-6);
+                        BODIES LOADS("[0.5 s, 0.5 s]"),
+                    0.5, 1e-6, 1e-6);
 }
 
 // Without a jump there is nothing to do, and a load from time 0 on is none.

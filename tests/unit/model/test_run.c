@@ -50,8 +50,7 @@ static void records_are_taken_when_due(void **context) {
 
 static bough_status stop_at_half(void *self) {
     const bough_run *run = self;
-    return run->simulation->master->time > 0.045 ? bough_fail(BOUGH_INTERRUPTED, "enough")
-                                                 : bough_ok();
+    return run->simulation->master->time > 0.045 ? bough_fail(BOUGH_INTERRUPTED, "enough") : bough_ok();
 }
 
 // A stopped run has its last record and goes on to the values of the one that was not stopped.

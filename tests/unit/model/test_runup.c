@@ -14,11 +14,11 @@ enum { MOST_ROWS = 2100, BLADES = 3 };
 // What a run leaves behind, a row per macro step.
 typedef struct history {
     int n;
-    double time[MOST_ROWS], angle[MOST_ROWS], speed[MOST_ROWS]; // [s, rad, rad/s]
+    double time[MOST_ROWS], angle[MOST_ROWS], speed[MOST_ROWS];                      // [s, rad, rad/s]
     double thrust[MOST_ROWS], torque[MOST_ROWS], weight[MOST_ROWS], load[MOST_ROWS]; // [N, N m]
-    double momentum[MOST_ROWS];                                 // about the shaft [kg m²/s]
-    double out_of_plane[MOST_ROWS];                             // blade 1 [m]
-    bough_vec3 tip[MOST_ROWS][BLADES];                          // in blade-root axes [m]
+    double momentum[MOST_ROWS];        // about the shaft [kg m²/s]
+    double out_of_plane[MOST_ROWS];    // blade 1 [m]
+    bough_vec3 tip[MOST_ROWS][BLADES]; // in blade-root axes [m]
 } history;
 
 static const double load_torque = 11.9e6; // after its ramp of 20 s [N m]
@@ -27,8 +27,8 @@ static bough_simulation *build(bough_arena *arena, const char *const *sets, int 
     bough_errors errors = {.arena = arena};
     bough_scene *scene = NULL;
     bough_simulation *s = NULL;
-    bough_status status = bough_scene_read(arena, BOUGH_SOURCE_DIR "/apps/turbine/runup.yaml", sets,
-                                           n_set, &errors, &scene);
+    bough_status status =
+        bough_scene_read(arena, BOUGH_SOURCE_DIR "/apps/turbine/runup.yaml", sets, n_set, &errors, &scene);
     bough_errors_print(&errors, stderr);
     assert_int_equal(status.code, BOUGH_OK);
     status = bough_simulation_build(arena, scene, &s);
@@ -39,23 +39,20 @@ static bough_simulation *build(bough_arena *arena, const char *const *sets, int 
 
 // Angular momentum of a blade about the shaft and the moment of its weight, vertex by vertex in
 // ground axes; the root vertex included.
-static void add_blade(const bough_simulation *s, const bough_beam *beam, bough_vec3 hub,
-                      bough_vec3 shaft, double *momentum, double *weight) {
+static void add_blade(const bough_simulation *s, const bough_beam *beam, bough_vec3 hub, bough_vec3 shaft,
+                      double *momentum, double *weight) {
     bough_vec3 position[64], velocity[64], angular[64], gravity = {0, 0, -9.80665};
     bough_mat3 rotation[64];
-    bough_simulation_beam_motion(s, beam, (bough_beam_motion){position, velocity, angular,
-                                                              rotation});
+    bough_simulation_beam_motion(s, beam, (bough_beam_motion){position, velocity, angular, rotation});
     for (int i = 0; i <= beam->def.n_segment; i++) {
         const bough_vertex_inertia *v = &beam->def.inertia[i];
         bough_vec3 x = bough_sub(position[i], hub), w = bough_mat3_tmul(rotation[i], angular[i]);
         bough_vec3 arm = bough_mat3_mul(rotation[i], v->moment);
         bough_vec3 linear = bough_axpy(v->mass, velocity[i], bough_cross(angular[i], arm));
         const double *j = v->inertia;
-        bough_vec3 spin = {j[0] * w.x + j[3] * w.y + j[4] * w.z,
-                           j[3] * w.x + j[1] * w.y + j[5] * w.z,
+        bough_vec3 spin = {j[0] * w.x + j[3] * w.y + j[4] * w.z, j[3] * w.x + j[1] * w.y + j[5] * w.z,
                            j[4] * w.x + j[5] * w.y + j[2] * w.z};
-        bough_vec3 own = bough_add(bough_mat3_mul(rotation[i], spin),
-                                   bough_cross(arm, velocity[i]));
+        bough_vec3 own = bough_add(bough_mat3_mul(rotation[i], spin), bough_cross(arm, velocity[i]));
         bough_vec3 lever = bough_axpy(v->mass, x, arm);
         *momentum += bough_dot(shaft, bough_add(bough_cross(x, linear), own));
         *weight += bough_dot(shaft, bough_cross(lever, gravity));

@@ -168,12 +168,10 @@ static void parked_turbine_stays_at_rest(void **context) {
     bough_simulation *s = scene_build(arena, runup, sets);
     size_t bytes = (size_t)s->rod[0].system.n_state * sizeof(double);
     double *before = bough_arena_take(arena, 3 * bytes);
-    for (int k = 0; k < 3; k++)
-        memcpy(before + k * s->rod[0].system.n_state, s->rod[k].state, bytes);
+    for (int k = 0; k < 3; k++) memcpy(before + k * s->rod[0].system.n_state, s->rod[k].state, bytes);
     int n = s->rod[0].system.n_state / BOUGH_ROD_STATES;
     assert_true(fabs(before[n - 1]) > 0.5); // bent
-    for (int step = 0; step < 50; step++)
-        scene_step(s);
+    for (int step = 0; step < 50; step++) scene_step(s);
     for (int k = 0; k < 3; k++) {
         for (int i = 0; i < 3 * n; i++) {
             check_near(s->rod[k].state[i], before[k * s->rod[0].system.n_state + i], 0, 1e-6);
@@ -185,8 +183,8 @@ static void parked_turbine_stays_at_rest(void **context) {
 // With tower, yaw drive and drive train.
 static void turbine_on_its_tower_stays_at_rest(void **context) {
     (void)context;
-    const char *sets[] = {"bodies[0].rod.segments=8", "bodies[4].rod.segments=8",
-                          "bodies[5].rod.segments=8", "bodies[6].rod.segments=8", NULL};
+    const char *sets[] = {"bodies[0].rod.segments=8", "bodies[4].rod.segments=8", "bodies[5].rod.segments=8",
+                          "bodies[6].rod.segments=8", NULL};
     bough_arena *arena = bough_arena_create();
     bough_simulation *s = scene_build(arena, "apps/turbine/parked.yaml", sets);
     size_t n = (size_t)s->master->assembly->n_state;

@@ -6,8 +6,7 @@
 // A bent rod under a force at its tip: every section carries the force and its moment about the section.
 static void tip_force_passes_all_sections(void **context) {
     (void)context;
-    const char *sets[] = {"loads[0].force=[10, 0, 0]",
-                          "bodies[0].joint.placement=[rotate x 30 deg]", NULL};
+    const char *sets[] = {"loads[0].force=[10, 0, 0]", "bodies[0].joint.placement=[rotate x 30 deg]", NULL};
     bough_arena *arena = bough_arena_create();
     bough_simulation *s = scene_build(arena, "apps/beams/elastica.yaml", sets);
     bough_equilibrium_work work;
@@ -25,8 +24,8 @@ static void tip_force_passes_all_sections(void **context) {
     bough_shape_loads(&shape, t, force, moment);
     const double *tip = point + 3 * (n - 1);
     for (int i = 0; i < n; i++) {
-        bough_vec3 arm = bough_v3(tip[0] - point[3 * i], tip[1] - point[3 * i + 1],
-                                  tip[2] - point[3 * i + 2]);
+        bough_vec3 arm =
+            bough_v3(tip[0] - point[3 * i], tip[1] - point[3 * i + 1], tip[2] - point[3 * i + 2]);
         bough_vec3 expected = bough_cross(arm, bough_v3(10, 0, 0));
         check_near(force[3 * i], 10, 1e-7, 0);
         check_near(force[3 * i + 1], 0, 0, 1e-6);

@@ -78,15 +78,13 @@ static void vertex_rate(const absolute_bar *b, int i, double *rate) {
     bough_vec3 force = bough_sub(part(f, s, i), part(f, s, i - 1));
     bough_vec3 moment = bough_add(part(f + 3 * s, s, i), part(f + 6 * s, s, i - 1));
     bough_vec3 offset = v->moment, weight = {0, 0, -gravity}, a, alpha;
-    bough_vec3 inner = bough_sub(bough_mat3_tmul(r, force),
-                                 bough_cross(w, bough_cross(w, offset)));
+    bough_vec3 inner = bough_sub(bough_mat3_tmul(r, force), bough_cross(w, bough_cross(w, offset)));
     bough_vec3 turn = bough_sub(moment, bough_cross(w, inertia_times(v->inertia, w)));
     balance(v, inner, turn, &a, &alpha);
     bough_vec3 udot = bough_add(bough_mat3_mul(r, a), weight);
     bough_quaternion pdot = bough_quaternion_product(p, (bough_quaternion){0, w.x, w.y, w.z});
-    const double values[COMPONENTS] = {u.x, u.y, u.z, pdot.w / 2, pdot.x / 2, pdot.y / 2,
-                                       pdot.z / 2, udot.x, udot.y, udot.z, alpha.x, alpha.y,
-                                       alpha.z};
+    const double values[COMPONENTS] = {u.x,    u.y,    u.z,    pdot.w / 2, pdot.x / 2, pdot.y / 2, pdot.z / 2,
+                                       udot.x, udot.y, udot.z, alpha.x,    alpha.y,    alpha.z};
     for (int c = 0; c < COMPONENTS; c++) rate[c * n + i - 1] = values[c];
 }
 
@@ -97,8 +95,7 @@ static void absolute_rate(absolute_bar *b, const double *y, double *rate) {
     const bough_vertex_inertia *root = &b->model->vertex[0];
     double angle = y[COMPONENTS * SEGMENTS];
     bough_vec3 weight = bough_mat3_tmul(bar_axes(angle), bough_v3(0, 0, -gravity));
-    double moment = b->scratch.segment[4 * b->model->stride] +
-                    bough_cross(root->moment, weight).y;
+    double moment = b->scratch.segment[4 * b->model->stride] + bough_cross(root->moment, weight).y;
     rate[COMPONENTS * SEGMENTS] = y[COMPONENTS * SEGMENTS + 1];
     rate[COMPONENTS * SEGMENTS + 1] = moment / root->inertia[1];
 }
@@ -134,8 +131,8 @@ static bough_simulation *in_the_tree(bough_arena *arena, const char *segments) {
     bough_errors errors = {.arena = arena};
     bough_scene *scene = NULL;
     bough_simulation *s = NULL;
-    bough_status status = bough_scene_read(arena, BOUGH_SOURCE_DIR "/apps/beams/rubber-bar.yaml",
-                                           sets, 4, &errors, &scene);
+    bough_status status =
+        bough_scene_read(arena, BOUGH_SOURCE_DIR "/apps/beams/rubber-bar.yaml", sets, 4, &errors, &scene);
     bough_errors_print(&errors, stderr);
     assert_int_equal(status.code, BOUGH_OK);
     status = bough_simulation_build(arena, scene, &s);

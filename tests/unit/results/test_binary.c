@@ -72,8 +72,7 @@ static bytes read_bytes(const char *folder) {
 static uint64_t take(bytes *b, int n) {
     uint64_t bits = 0;
     assert_true(b->at + n <= b->n);
-    for (int i = 0; i < n; i++)
-        bits |= (uint64_t)b->all[b->at++] << 8 * i;
+    for (int i = 0; i < n; i++) bits |= (uint64_t)b->all[b->at++] << 8 * i;
     return bits;
 }
 
@@ -112,15 +111,12 @@ static void values_are_those_of_the_rows(void **state) {
     check_near(take_double(&b), 2, 0, 0);
     check_near(take_double(&b), 0.05, 0, 0);
     float scale[CHANNELS], offset[CHANNELS];
-    for (int k = 0; k < CHANNELS; k++)
-        scale[k] = take_float(&b);
-    for (int k = 0; k < CHANNELS; k++)
-        offset[k] = take_float(&b);
+    for (int k = 0; k < CHANNELS; k++) scale[k] = take_float(&b);
+    for (int k = 0; k < CHANNELS; k++) offset[k] = take_float(&b);
     take_word(&b, (int)take(&b, 4), "scene.yaml");
-    const char *const word[] = {"Time", "RotSpeed", "a_name_longer_than_ten", "load", "rest",
-                                "(s)",  "(rpm)",    "(kN-m)",                 "(N)",  "(-)"};
-    for (int k = 0; k < 10; k++)
-        take_word(&b, width, word[k]);
+    const char *const word[] = {
+        "Time", "RotSpeed", "a_name_longer_than_ten", "load", "rest", "(s)", "(rpm)", "(kN-m)", "(N)", "(-)"};
+    for (int k = 0; k < 10; k++) take_word(&b, width, word[k]);
     const double range[CHANNELS] = {24, 0, 1, 0}, size[CHANNELS] = {16, 7.25, 1e6, 0};
     for (int i = 0; i < ROWS; i++) {
         double expected[CHANNELS];
@@ -161,8 +157,7 @@ static void rows_that_are_gone_are_told(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test_setup_teardown(values_are_those_of_the_rows, scratch_make, scratch_remove),
-        cmocka_unit_test_setup_teardown(what_it_cannot_hold_is_refused, scratch_make,
-                                        scratch_remove),
+        cmocka_unit_test_setup_teardown(what_it_cannot_hold_is_refused, scratch_make, scratch_remove),
         cmocka_unit_test_setup_teardown(rows_that_are_gone_are_told, scratch_make, scratch_remove),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

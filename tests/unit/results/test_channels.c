@@ -6,8 +6,7 @@
 
 static void sample_times(void *self, double t, double *value) {
     double *factor = self;
-    for (int i = 0; i < 3; i++)
-        value[i] = factor[i] * t;
+    for (int i = 0; i < 3; i++) value[i] = factor[i] * t;
 }
 
 static void sample_one(void *self, double t, double *value) {
@@ -52,8 +51,7 @@ static void list_grows_without_losing_names(void **state) {
     bough_arena *arena = bough_arena_create();
     bough_channels list = bough_channels_start(arena);
     bough_channels_group(&list, sample_one, NULL);
-    for (int i = 0; i < 1000; i++)
-        bough_channels_add(&list, "-", "channel%d", i);
+    for (int i = 0; i < 1000; i++) bough_channels_add(&list, "-", "channel%d", i);
     assert_int_equal(list.count, 1000);
     assert_string_equal(list.channel[0].name, "channel0");
     assert_int_equal(bough_channels_find(&list, "channel999"), 999);

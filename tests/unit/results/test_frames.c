@@ -115,11 +115,9 @@ static void a_lost_frame_is_told(void **context) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test_setup_teardown(frames_are_polylines_with_times, scratch_make,
-                                        scratch_remove),
+        cmocka_unit_test_setup_teardown(frames_are_polylines_with_times, scratch_make, scratch_remove),
         cmocka_unit_test_setup_teardown(page_carries_all_data, scratch_make, scratch_remove),
-        cmocka_unit_test_setup_teardown(what_is_not_results_is_refused, scratch_make,
-                                        scratch_remove),
+        cmocka_unit_test_setup_teardown(what_is_not_results_is_refused, scratch_make, scratch_remove),
         cmocka_unit_test_setup_teardown(a_lost_frame_is_told, scratch_make, scratch_remove),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -28,8 +28,8 @@ static void hard_cases(void **state) {
     (void)state;
     for (int e = -30; e <= 30; e++) {
         double x = pow(10, e);
-        const double near[] = {x, nextafter(x, 0), nextafter(x, 1e300), 9.999999995 * x,
-                               1.000000005 * x, 5 * x, -x};
+        const double near[] = {
+            x, nextafter(x, 0), nextafter(x, 1e300), 9.999999995 * x, 1.000000005 * x, 5 * x, -x};
         for (size_t k = 0; k < sizeof near / sizeof *near; k++) check_same(near[k]);
     }
     for (int k = 0; k < 1000; k++) {

@@ -79,8 +79,7 @@ static void file_has_the_layout_that_readers_expect(void **state) {
 static void failed_run_keeps_its_rows_and_is_marked(void **state) {
     fixture f;
     open_recorder(&f, *state);
-    for (int i = 0; i < 5; i++)
-        bough_recorder_sample(f.recorder, i);
+    for (int i = 0; i < 5; i++) bough_recorder_sample(f.recorder, i);
     bough_status failure = bough_fail(BOUGH_FAILED, "blade1 gave up\nat 4.2 s");
     bough_status status = bough_recorder_finish(f.recorder, &failure);
     assert_true(bough_is_ok(&status));
@@ -106,8 +105,7 @@ static void long_message_is_cut_between_characters(void **state) {
     bough_recorder_finish(f.recorder, &failure);
     char *text = scratch_read(*state, "channels.out");
     const unsigned char *end = (const unsigned char *)line_of(text, 4) - 2;
-    while (*end == ' ')
-        end--;
+    while (*end == ' ') end--;
     assert_int_equal(end[0], 0x89); // "ω" is CF 89
     assert_int_equal(end[-1], 0xCF);
     free(text);

@@ -60,12 +60,10 @@ static void texts_are_escaped(void **state) {
 }
 
 static void numbers_survive_the_round_trip(void **state) {
-    static const double numbers[] = {0.0, -1.5e-300, 1e22, 4.9406564584124654e-324,
-                                     123.456789012345678};
+    static const double numbers[] = {0.0, -1.5e-300, 1e22, 4.9406564584124654e-324, 123.456789012345678};
     bough_summary s;
     bough_summary_open(&s, *state, "summary.json");
-    for (int i = 0; i < 5; i++)
-        bough_summary_number(&s, "x", numbers[i]);
+    for (int i = 0; i < 5; i++) bough_summary_number(&s, "x", numbers[i]);
     bough_summary_close(&s);
     char *text = scratch_read(*state, "summary.json");
     const char *at = text;

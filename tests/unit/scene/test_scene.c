@@ -129,8 +129,7 @@ static void uniform_beam_needs_no_table(void **state) {
 // Every scene that the project ships must be a good one.
 static void shipped_scenes_are_good(void **state) {
     (void)state;
-    const char *const names[] = {"turbine/runup.yaml", "turbine/runup-rated.yaml",
-                                 "beams/rubber-bar.yaml"};
+    const char *const names[] = {"turbine/runup.yaml", "turbine/runup-rated.yaml", "beams/rubber-bar.yaml"};
     for (int i = 0; i < 3; i++) {
         char path[300];
         snprintf(path, sizeof path, "%s/apps/%s", BOUGH_SOURCE_DIR, names[i]);
@@ -143,11 +142,10 @@ static void shipped_scenes_are_good(void **state) {
 
 static void parents_come_first_in_the_order(void **state) {
     (void)state;
-    write_file("s.yaml",
-               SIMULATION "bodies:\n"
-                          "  - {name: c, fidelity: rigid, joint: {kind: fixed, parent: b}}\n"
-                          "  - {name: b, fidelity: rigid, joint: {kind: fixed, parent: a}}\n"
-                          "  - {name: a, fidelity: rigid, joint: {kind: fixed, parent: ground}}\n");
+    write_file("s.yaml", SIMULATION "bodies:\n"
+                                    "  - {name: c, fidelity: rigid, joint: {kind: fixed, parent: b}}\n"
+                                    "  - {name: b, fidelity: rigid, joint: {kind: fixed, parent: a}}\n"
+                                    "  - {name: a, fidelity: rigid, joint: {kind: fixed, parent: ground}}\n");
     fixture f = read_scene("s.yaml", NULL, 0);
     assert_string_equal(f.printed, "");
     assert_int_equal(f.scene->order[0], 2);
@@ -214,8 +212,8 @@ static void joints_of_several_axes_are_read(void **state) {
 
 static void stops_need_a_stiffness_and_an_order(void **state) {
     (void)state;
-#define HINGE(more)                                                                                \
-    SIMULATION "bodies:\n  - name: a\n    fidelity: rigid\n    inertia: [1, 1, 1]\n    joint:\n"     \
+#define HINGE(more)                                                                                          \
+    SIMULATION "bodies:\n  - name: a\n    fidelity: rigid\n    inertia: [1, 1, 1]\n    joint:\n"             \
                "      {kind: revolute, parent: ground, axis: x, " more "}\n"
     accepts(HINGE("rest: 5 deg, stiffness: 3, stop: [-10 deg, 10 deg], stop_stiffness: 4"));
     refuses(HINGE("stop: [0, 1 rad]"), "s.yaml:7:55: error: bodies[0].joint.stop: 'stop' and "
@@ -230,9 +228,9 @@ static void stops_need_a_stiffness_and_an_order(void **state) {
 
 static void tables_of_joint_loads_are_checked(void **state) {
     (void)state;
-#define LOADED(more)                                                                               \
-    SIMULATION "bodies:\n  - name: a\n    fidelity: rigid\n    inertia: [1, 1, 1]\n"               \
-               "    joint: {kind: revolute, parent: ground, axis: x}\nloads:\n"                    \
+#define LOADED(more)                                                                                         \
+    SIMULATION "bodies:\n  - name: a\n    fidelity: rigid\n    inertia: [1, 1, 1]\n"                         \
+               "    joint: {kind: revolute, parent: ground, axis: x}\nloads:\n"                              \
                "  - {joint: a, torque: " more "}\n"
     accepts(LOADED("{times: [0, 1 s], values: [2 kN m, 0]}"));
     refuses(LOADED("{times: [0, 1, 1], values: [2, 0, 1]}"),
@@ -258,8 +256,7 @@ static void closures_join_two_rigid_bodies(void **state) {
 #define CLOSED(rest) ONE_BODY "closures:\n  - {name: c, from: ground, to: a, " rest "}\n"
     accepts(CLOSED("kind: spherical"));
     accepts(CLOSED("kind: revolute, axis: y, to_placement: [move x 1 m, rotate z 5 deg]"));
-    refuses(CLOSED("kind: revolute"),
-            "s.yaml:7:5: error: closures[0]: required key 'axis' is missing\n");
+    refuses(CLOSED("kind: revolute"), "s.yaml:7:5: error: closures[0]: required key 'axis' is missing\n");
     refuses(CLOSED("kind: spherical, from_placement: [move q 1 m]"),
             "s.yaml:7:70: error: closures[0].from_placement[0]: expected 'move x|y|z LENGTH' or "
             "'rotate x|y|z ANGLE', got 'move q 1 m'\n");
@@ -332,8 +329,7 @@ static void hostile_scenes_end_fast(void **state) {
     (void)state;
     FILE *stream = fopen("s.yaml", "w");
     fputs(SIMULATION "bodies:\n", stream);
-    for (int i = 0; i < 9000; i++)
-        fprintf(stream, "- {name: n%d, joint: {parent: m%d}}\n", i, i);
+    for (int i = 0; i < 9000; i++) fprintf(stream, "- {name: n%d, joint: {parent: m%d}}\n", i, i);
     fclose(stream);
     clock_t begin = clock();
     fixture f = read_scene("s.yaml", NULL, 0);
@@ -341,8 +337,7 @@ static void hostile_scenes_end_fast(void **state) {
     stop(&f);
     stream = fopen("s.yaml", "w");
     fputs(SIMULATION "bodies:\n", stream);
-    for (int i = 0; i < 10001; i++)
-        fputs("- {}\n", stream);
+    for (int i = 0; i < 10001; i++) fputs("- {}\n", stream);
     fclose(stream);
     f = read_scene("s.yaml", NULL, 0);
     assert_string_equal(f.printed, "s.yaml:3:1: error: bodies: expected at most 10000 items, got "

@@ -15,12 +15,12 @@ static void modes_name_their_axis(void **state) {
     accepts(TWO_RODS "  []\nmodes: {speed: 10 rpm, about: c, shapes: true}\n");
 }
 
-#define AERO                                                                                       \
-    "aero: {rate: 50 Hz, wind: {speed: 8}, blade: aero.yaml, polars: polars.yaml, hub_radius: "    \
+#define AERO                                                                                                 \
+    "aero: {rate: 50 Hz, wind: {speed: 8}, blade: aero.yaml, polars: polars.yaml, hub_radius: "              \
     "1}\n"
 #define BLADE "stations:\n- {span: 0, chord: 1, polar: p}\n- {span: 5, chord: 1, polar: p}\n"
-#define POLARS                                                                                     \
-    "polars:\n- name: p\n  table: {columns: [alpha deg, cl, cd, cm], rows: [[-180, 0, 0, 0], "     \
+#define POLARS                                                                                               \
+    "polars:\n- name: p\n  table: {columns: [alpha deg, cl, cd, cm], rows: [[-180, 0, 0, 0], "               \
     "[180, 0, 0, 0]]}\n"
 
 static void turbine_names_are_checked(void **state) {
@@ -42,24 +42,22 @@ static void aerodynamics_are_consistent(void **state) {
     write_file("polars.yaml", POLARS);
     accepts(ROTOR "turbine: {rotor: hub, blades: [b1]}\n" AERO);
     refuses(ROTOR AERO, "s.yaml:7:7: error: aero: needs 'turbine', which names rotor and blades\n");
-    refuses(
-        ROTOR "turbine: {rotor: hub, blades: [b1]}\n"
-              "aero: {rate: 30 Hz, wind: {speed: 8}, blade: aero.yaml, polars: polars.yaml,\n"
-              "       hub_radius: 1, ramp: [1, 0], tower: {height: [0, 20, 10], diameter: [1, "
-              "2]}}\n",
-        "s.yaml:8:14: error: aero.rate: its period 0.0333333 s is not a multiple of the macro "
-        "step, 0.01 s\n"
-        "s.yaml:9:29: error: aero.ramp: must end after it starts, got [1 s, 0 s]\n"
-        "s.yaml:9:61: error: aero.tower.height[2]: must be more than the 20 m before it, got 10 "
-        "m\n"
-        "s.yaml:9:76: error: aero.tower.diameter: has 2 values, but height has 3\n");
-    refuses(
-        ROTOR "turbine: {rotor: hub, blades: [b1]}\n"
-              "aero: {rate: 50 Hz, wind: {speed: 8}, blade: aero.yaml, polars: polars.yaml,\n"
-              "       hub_radius: 1, tower: {height: [0, 10, 20], diameter: [1, 1, 1], "
-              "drag: [1, 2]}}\n",
-        "s.yaml:9:79: error: aero.tower.drag: has 2 values, but height has 3; give one or as "
-        "many\n");
+    refuses(ROTOR "turbine: {rotor: hub, blades: [b1]}\n"
+                  "aero: {rate: 30 Hz, wind: {speed: 8}, blade: aero.yaml, polars: polars.yaml,\n"
+                  "       hub_radius: 1, ramp: [1, 0], tower: {height: [0, 20, 10], diameter: [1, "
+                  "2]}}\n",
+            "s.yaml:8:14: error: aero.rate: its period 0.0333333 s is not a multiple of the macro "
+            "step, 0.01 s\n"
+            "s.yaml:9:29: error: aero.ramp: must end after it starts, got [1 s, 0 s]\n"
+            "s.yaml:9:61: error: aero.tower.height[2]: must be more than the 20 m before it, got 10 "
+            "m\n"
+            "s.yaml:9:76: error: aero.tower.diameter: has 2 values, but height has 3\n");
+    refuses(ROTOR "turbine: {rotor: hub, blades: [b1]}\n"
+                  "aero: {rate: 50 Hz, wind: {speed: 8}, blade: aero.yaml, polars: polars.yaml,\n"
+                  "       hub_radius: 1, tower: {height: [0, 10, 20], diameter: [1, 1, 1], "
+                  "drag: [1, 2]}}\n",
+            "s.yaml:9:79: error: aero.tower.drag: has 2 values, but height has 3; give one or as "
+            "many\n");
     write_file("aero.yaml", "stations:\n- {span: 0, chord: 1, polar: p}\n"
                             "- {span: 6, chord: 0, polar: q}\n");
     refuses(ROTOR "turbine: {rotor: hub, blades: [b1]}\n" AERO,
@@ -74,10 +72,10 @@ static void aerodynamics_are_consistent(void **state) {
                         "it, got 0 m\n");
 }
 
-#define WIND(keys)                                                                                 \
-    ROTOR "turbine: {rotor: hub, blades: [b1]}\n"                                                  \
-          "aero:\n  rate: 50 Hz\n  blade: aero.yaml\n  polars: polars.yaml\n"                      \
-          "  hub_radius: 1\n"                                                                      \
+#define WIND(keys)                                                                                           \
+    ROTOR "turbine: {rotor: hub, blades: [b1]}\n"                                                            \
+          "aero:\n  rate: 50 Hz\n  blade: aero.yaml\n  polars: polars.yaml\n"                                \
+          "  hub_radius: 1\n"                                                                                \
           "  wind: {" keys "}\n"
 
 static void wind_is_a_speed_or_a_table(void **state) {
@@ -128,10 +126,8 @@ static void polars_cover_the_circle(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(modes_name_their_axis),
-        cmocka_unit_test(turbine_names_are_checked),
-        cmocka_unit_test(aerodynamics_are_consistent),
-        cmocka_unit_test(wind_is_a_speed_or_a_table),
+        cmocka_unit_test(modes_name_their_axis),       cmocka_unit_test(turbine_names_are_checked),
+        cmocka_unit_test(aerodynamics_are_consistent), cmocka_unit_test(wind_is_a_speed_or_a_table),
         cmocka_unit_test(polars_cover_the_circle),
     };
     return cmocka_run_group_tests(tests, enter, leave);

@@ -3,27 +3,26 @@
 
 static void all_errors_are_shown_in_order(void **state) {
     (void)state;
-    refuses(
-        "titel: x\n"
-        "simulation:\n"
-        "  duration: 1 kg\n"
-        "  coupling: {scheme: rampe}\n"
-        "bodies:\n"
-        "  - name: a\n"
-        "    fidelity: rigid\n"
-        "    joint: {kind: revolute, parent: grond}\n"
-        "    mass: -1\n"
-        "loads:\n"
-        "  - {joint: b, torque: 1}\n",
-        "s.yaml:1:1: error: unknown key 'titel' (did you mean 'title'?)\n"
-        "s.yaml:3:13: error: simulation.duration: expected a time (in s, or with a unit, as '20 "
-        "ms'), got '1 kg': the unit 'kg' does not fit\n"
-        "s.yaml:4:22: error: simulation.coupling.scheme: expected one of frozen, gauss-seidel, "
-        "extrapolated, iterated, ramp, monolithic, got 'rampe' (did you mean 'ramp'?)\n"
-        "s.yaml:8:12: error: bodies[0].joint: required key 'axis' is missing\n"
-        "s.yaml:8:37: error: bodies[0].joint.parent: there is no body 'grond' (did you mean 'ground'?)\n"
-        "s.yaml:9:11: error: bodies[0].mass: must be in [0, 1e12] kg, got '-1'\n"
-        "s.yaml:11:13: error: loads[0].joint: there is no body 'b' (did you mean 'a'?)\n");
+    refuses("titel: x\n"
+            "simulation:\n"
+            "  duration: 1 kg\n"
+            "  coupling: {scheme: rampe}\n"
+            "bodies:\n"
+            "  - name: a\n"
+            "    fidelity: rigid\n"
+            "    joint: {kind: revolute, parent: grond}\n"
+            "    mass: -1\n"
+            "loads:\n"
+            "  - {joint: b, torque: 1}\n",
+            "s.yaml:1:1: error: unknown key 'titel' (did you mean 'title'?)\n"
+            "s.yaml:3:13: error: simulation.duration: expected a time (in s, or with a unit, as '20 "
+            "ms'), got '1 kg': the unit 'kg' does not fit\n"
+            "s.yaml:4:22: error: simulation.coupling.scheme: expected one of frozen, gauss-seidel, "
+            "extrapolated, iterated, ramp, monolithic, got 'rampe' (did you mean 'ramp'?)\n"
+            "s.yaml:8:12: error: bodies[0].joint: required key 'axis' is missing\n"
+            "s.yaml:8:37: error: bodies[0].joint.parent: there is no body 'grond' (did you mean 'ground'?)\n"
+            "s.yaml:9:11: error: bodies[0].mass: must be in [0, 1e12] kg, got '-1'\n"
+            "s.yaml:11:13: error: loads[0].joint: there is no body 'b' (did you mean 'a'?)\n");
 }
 
 static void missing_parts_are_named(void **state) {
@@ -48,13 +47,12 @@ static void joint_keys_fit_the_kind(void **state) {
             "revolute/cylindrical/planar'\n"
             "s.yaml:6:61: error: bodies[0].joint.speed: only used with 'kind: "
             "revolute/prismatic/cylindrical'\n");
-    refuses(
-        SIMULATION "bodies:\n  - name: a\n    fidelity: rigid\n    mass: 1\n"
-                   "    joint: {kind: prismatic, parent: ground, axis: w, position: 1 deg}\n",
-        "s.yaml:6:52: error: bodies[0].joint.axis: expected one of x, y, z, got 'w' (did you "
-        "mean 'x'?)\n"
-        "s.yaml:6:65: error: bodies[0].joint.position: expected a length (in m, or with a unit, "
-        "as '61.5 m'), got '1 deg': the unit 'deg' does not fit\n");
+    refuses(SIMULATION "bodies:\n  - name: a\n    fidelity: rigid\n    mass: 1\n"
+                       "    joint: {kind: prismatic, parent: ground, axis: w, position: 1 deg}\n",
+            "s.yaml:6:52: error: bodies[0].joint.axis: expected one of x, y, z, got 'w' (did you "
+            "mean 'x'?)\n"
+            "s.yaml:6:65: error: bodies[0].joint.position: expected a length (in m, or with a unit, "
+            "as '61.5 m'), got '1 deg': the unit 'deg' does not fit\n");
 }
 
 static void bad_placements_are_refused(void **state) {
@@ -105,17 +103,15 @@ static void moving_joints_need_mass(void **state) {
                        "ground, axis: x}}\n" BODY("b", "a"),
             "s.yaml:3:5: error: bodies[0]: a joint that moves must carry mass: give 'mass' here or "
             "to a body that hangs on this one\n");
-    accepts(SIMULATION
-            "bodies:\n  - {name: a, fidelity: rigid, joint: {kind: revolute, parent: "
-            "ground, axis: x}}\n"
-            "  - {name: b, fidelity: rigid, mass: 1, joint: {kind: fixed, parent: a}}\n");
+    accepts(SIMULATION "bodies:\n  - {name: a, fidelity: rigid, joint: {kind: revolute, parent: "
+                       "ground, axis: x}}\n"
+                       "  - {name: b, fidelity: rigid, mass: 1, joint: {kind: fixed, parent: a}}\n");
 }
 
 static void body_keys_fit_the_fidelity(void **state) {
     (void)state;
-    refuses(ROD_BODY,
-            "s.yaml:3:5: error: bodies[0]: required key 'rod' is missing (with 'fidelity: "
-            "rod')\n");
+    refuses(ROD_BODY, "s.yaml:3:5: error: bodies[0]: required key 'rod' is missing (with 'fidelity: "
+                      "rod')\n");
     refuses(ONE_BODY "    pitch: 1 deg\n", "s.yaml:6:12: error: bodies[0].pitch: only used with a "
                                            "rod\n");
     refuses(ROD_BODY "    mass: 1\n"
@@ -127,7 +123,8 @@ static void body_keys_fit_the_fidelity(void **state) {
                      "0]}\n",
             "s.yaml:8:10: error: bodies[0].rod: a rigid body gets its mass from a rod or from 'mass', "
             "'centre_of_mass' and 'inertia', not from both\n");
-    refuses(ONE_BODY "    mass: 1\n    centre_of_mass: [1, 0, 0]\n    inertia: [1, 1, 1]\n    rod: {segments: 4}\n",
+    refuses(ONE_BODY
+            "    mass: 1\n    centre_of_mass: [1, 0, 0]\n    inertia: [1, 1, 1]\n    rod: {segments: 4}\n",
             "s.yaml:9:10: error: bodies[0].rod: a rigid body gets its mass from a rod or from 'mass', "
             "'centre_of_mass' and 'inertia', not from both\n");
     refuses(ROD_BODY "    rod: {part: [0, 1], length: 1, stiffness: [1, 1, 1, 1, 1, 1], mass: [1, "
@@ -156,11 +153,10 @@ static void rods_are_complete(void **state) {
         "table)\n");
     refuses(ROD_BODY "    rod: {length: 1, stiffness: [1, 1, 1, 1, 1, 1]}\n",
             "s.yaml:6:10: error: bodies[0].rod: required key 'mass' is missing (without a table)\n");
-    refuses(
-        ROD_BODY "    rod: {table: none.yaml, segments: 0}\n",
-        "s.yaml:6:18: error: bodies[0].rod.table: file 'none.yaml' cannot be read: No such file "
-        "or directory\n"
-        "s.yaml:6:39: error: bodies[0].rod.segments: must be in [1, 10000], got '0'\n");
+    refuses(ROD_BODY "    rod: {table: none.yaml, segments: 0}\n",
+            "s.yaml:6:18: error: bodies[0].rod.table: file 'none.yaml' cannot be read: No such file "
+            "or directory\n"
+            "s.yaml:6:39: error: bodies[0].rod.segments: must be in [1, 10000], got '0'\n");
     refuses(ROD_BODY "    rod: {length: 1, stiffness: [1, 1, 1, 1, 1], mass: [1, 0, 0]}\n",
             "s.yaml:6:33: error: bodies[0].rod.stiffness: expected a list of 6 (diagonal) or 21 "
             "(upper triangle) numbers, got 5 items\n"
@@ -174,32 +170,31 @@ static void rods_are_complete(void **state) {
 
 static void section_matrices_are_checked(void **state) {
     (void)state;
-    refuses(ROD_BODY
-            "    rod:\n      length: 1\n"
-            "      stiffness: [1, 0, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 1, 2, 0, 1, 0, "
-            "1]\n      mass: [1, 0, 0, 1, 1, 0]\n",
-            "s.yaml:8:73: error: bodies[0].rod.stiffness[18]: the stiffness matrix must be positive definite: "
-            "in the row of bend about y the entries off the diagonal are too large\n");
+    refuses(
+        ROD_BODY "    rod:\n      length: 1\n"
+                 "      stiffness: [1, 0, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 1, 2, 0, 1, 0, "
+                 "1]\n      mass: [1, 0, 0, 1, 1, 0]\n",
+        "s.yaml:8:73: error: bodies[0].rod.stiffness[18]: the stiffness matrix must be positive definite: "
+        "in the row of bend about y the entries off the diagonal are too large\n");
     refuses(ROD_BODY "    rod: {length: 1, stiffness: [1, 1, 1, 1, 1, 0], mass: [0, 0, 0, 1, 1, "
                      "0]}\n",
             "s.yaml:6:49: error: bodies[0].rod.stiffness[5]: the stiffness matrix must be positive definite: "
             "the diagonal has 0 for twist\n"
             "s.yaml:6:60: error: bodies[0].rod.mass: the mass per length must be > 0 kg/m\n");
     // Negative in the last pivot only.
-    refuses(ROD_BODY
-            "    rod:\n      length: 1\n"
-            "      stiffness: [1, 0, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 1, 2, "
-            "1]\n      mass: [1, 0, 0, 1, 1, 0]\n",
-            "s.yaml:8:79: error: bodies[0].rod.stiffness[20]: the stiffness matrix must be positive definite: "
-            "in the row of twist the entries off the diagonal are too large\n");
+    refuses(
+        ROD_BODY "    rod:\n      length: 1\n"
+                 "      stiffness: [1, 0, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 1, 2, "
+                 "1]\n      mass: [1, 0, 0, 1, 1, 0]\n",
+        "s.yaml:8:79: error: bodies[0].rod.stiffness[20]: the stiffness matrix must be positive definite: "
+        "in the row of twist the entries off the diagonal are too large\n");
     // About the mass centre nothing is left of Iyy = m cx².
     refuses(ROD_BODY "    rod: {length: 1, stiffness: [1, 1, 1, 1, 1, 1], mass: [4, 0.5, 0, 1, 1, "
                      "0]}\n",
             "s.yaml:6:59: error: bodies[0].rod.mass: the inertia about the mass centre must be "
             "positive definite: the diagonal has 0 for Iyy - m cx^2\n");
-    accepts(ROD_BODY
-            "    rod: {length: 1, stiffness: [1, 1, 1, 1, 1, 1], mass: [4, 0.5, 0, 1, 1.01, "
-            "0]}\n");
+    accepts(ROD_BODY "    rod: {length: 1, stiffness: [1, 1, 1, 1, 1, 1], mass: [4, 0.5, 0, 1, 1.01, "
+                     "0]}\n");
 }
 
 // A structure table with these spans must give these errors.
@@ -225,11 +220,10 @@ static void stations_run_from_zero_to_the_length(void **state) {
     refuses_spans("", (const char *[3]){"0", "2", "2"},
                   "blade.yaml:6:6: error: stations.rows[2].span: must be more than the 2 m before "
                   "it, got 2 m\n");
-    refuses_spans(
-        "", (const char *[3]){"0.5", "0.1", "2"},
-        "blade.yaml:4:6: error: stations.rows[0].span: the first must be 0 m, got 0.5 m\n"
-        "blade.yaml:5:6: error: stations.rows[1].span: must be more than the 0.5 m before "
-        "it, got 0.1 m\n");
+    refuses_spans("", (const char *[3]){"0.5", "0.1", "2"},
+                  "blade.yaml:4:6: error: stations.rows[0].span: the first must be 0 m, got 0.5 m\n"
+                  "blade.yaml:5:6: error: stations.rows[1].span: must be more than the 0.5 m before "
+                  "it, got 0.1 m\n");
     refuses_spans("length: 3\n", (const char *[3]){"0", "1", "2"},
                   "blade.yaml:1:9: error: length: is 3 m, but the last station stands at 2 m\n");
     refuses_spans("", (const char *[3]){"0"},

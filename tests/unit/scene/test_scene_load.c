@@ -3,15 +3,14 @@
 
 static void times_fit_the_macro_step(void **state) {
     (void)state;
-    refuses(
-        "simulation: {duration: 1.005, macro_step: 10 ms, output: {interval: 25 ms}}\n"
-        "bodies:\n" BODY("a", "ground"),
-        "s.yaml:1:24: error: simulation.duration: 1.005 s is not a multiple of the macro step, "
-        "0.01 s\n"
-        "s.yaml:1:69: error: simulation.output.interval: 0.025 s is not a multiple of the macro "
-        "step, 0.01 s\n");
-    refuses("simulation: {duration: 1, macro_step: 0.1, output: {interval: 10 ms}}\nbodies:\n" BODY(
-                "a", "ground"),
+    refuses("simulation: {duration: 1.005, macro_step: 10 ms, output: {interval: 25 ms}}\n"
+            "bodies:\n" BODY("a", "ground"),
+            "s.yaml:1:24: error: simulation.duration: 1.005 s is not a multiple of the macro step, "
+            "0.01 s\n"
+            "s.yaml:1:69: error: simulation.output.interval: 0.025 s is not a multiple of the macro "
+            "step, 0.01 s\n");
+    refuses("simulation: {duration: 1, macro_step: 0.1, output: {interval: 10 ms}}\nbodies:\n" BODY("a",
+                                                                                                    "ground"),
             "s.yaml:1:63: error: simulation.output.interval: 0.01 s is not a multiple of the macro "
             "step, 0.1 s\n");
     accepts("simulation: {duration: 0.3, macro_step: 0.1}\nbodies:\n" BODY("a", "ground"));
@@ -41,8 +40,8 @@ static void loads_fit_their_joints(void **state) {
             "s.yaml:11:33: error: loads[5].ramp: must end after it starts, got [2 s, 1 s]\n");
 }
 
-#define MODAL(fidelity) SIMULATION "bodies:\n  - name: a\n    fidelity: " fidelity "\n" JOINT "    "   \
-    SMALL_ROD "\n"
+#define MODAL(fidelity)                                                                                      \
+    SIMULATION "bodies:\n  - name: a\n    fidelity: " fidelity "\n" JOINT "    " SMALL_ROD "\n"
 
 static void modal_bodies_are_rods_reduced(void **state) {
     (void)state;
@@ -142,10 +141,8 @@ static void loads_fit_their_rods(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(times_fit_the_macro_step),
-        cmocka_unit_test(loads_fit_their_joints),
-        cmocka_unit_test(modal_bodies_are_rods_reduced),
-        cmocka_unit_test(loads_act_on_rods),
+        cmocka_unit_test(times_fit_the_macro_step),      cmocka_unit_test(loads_fit_their_joints),
+        cmocka_unit_test(modal_bodies_are_rods_reduced), cmocka_unit_test(loads_act_on_rods),
         cmocka_unit_test(loads_fit_their_rods),
     };
     return cmocka_run_group_tests(tests, enter, leave);

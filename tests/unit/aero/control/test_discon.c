@@ -21,14 +21,12 @@ static void demands_come_back(void **state) {
     (void)state;
     for (int individual = 0; individual < 2; individual++) {
         fixture f = open_controller(individual ? "individual" : "");
-        bough_discon_sensed sensed = {.time = 2, .step = 0.01, .n_blade = 3,
-                                      .generator_speed = 120};
+        bough_discon_sensed sensed = {.time = 2, .step = 0.01, .n_blade = 3, .generator_speed = 120};
         bough_discon_demand demand;
         bough_status status = bough_discon_call(f.discon, &sensed, &demand);
         assert_int_equal(status.code, BOUGH_OK);
         check_near(demand.torque, 12000, 1e-6, 0);
-        for (int b = 0; b < 3; b++)
-            check_near(demand.pitch[b], individual ? 0.2 + 0.1 * b : 0.102, 1e-6, 0);
+        for (int b = 0; b < 3; b++) check_near(demand.pitch[b], individual ? 0.2 + 0.1 * b : 0.102, 1e-6, 0);
         bough_arena_destroy(f.arena);
     }
 }
@@ -50,19 +48,32 @@ static void more_blades_than_records_have_one_pitch(void **state) {
 // Every record that the controller is told, by its number in the interface's manual.
 static void records_are_served(void **state) {
     (void)state;
-    const bough_discon_sensed sensed = {.time = 2, .step = 0.5, .n_blade = 3, .pitch = {0.1, 0.2, 0.3},
-        .root_moment = {1e6, 2e6, 3e6}, .in_plane = {4e6, 5e6, 6e6}, .individual = true,
-        .yaw_error = 0.25, .heading = -0.5, .acceleration = {0.7, -0.8}, .nodding = 0.01,
-        .generator_speed = 120, .rotor_speed = 1.25, .torque = 4e4, .shaft_power = 5e6,
-        .electrical_power = 4.7e6, .wind = 12, .azimuth = 3};
+    const bough_discon_sensed sensed = {.time = 2,
+                                        .step = 0.5,
+                                        .n_blade = 3,
+                                        .pitch = {0.1, 0.2, 0.3},
+                                        .root_moment = {1e6, 2e6, 3e6},
+                                        .in_plane = {4e6, 5e6, 6e6},
+                                        .individual = true,
+                                        .yaw_error = 0.25,
+                                        .heading = -0.5,
+                                        .acceleration = {0.7, -0.8},
+                                        .nodding = 0.01,
+                                        .generator_speed = 120,
+                                        .rotor_speed = 1.25,
+                                        .torque = 4e4,
+                                        .shaft_power = 5e6,
+                                        .electrical_power = 4.7e6,
+                                        .wind = 12,
+                                        .azimuth = 3};
     const struct {
         int number;
         double value;
-    } record[] = {{1, 0}, {2, 2}, {3, 0.5}, {4, 0.1}, {14, 5e6}, {15, 4.7e6}, {20, 120}, {21, 1.25},
-                  {23, 4e4}, {24, 0.25}, {27, 12}, {28, 1}, {30, 1e6}, {31, 2e6}, {32, 3e6}, {33, 0.2},
-                  {34, 0.3}, {35, 1}, {37, -0.5}, {49, 1024}, {50, 9}, {51, 6}, {53, 0.7}, {54, -0.8},
-                  {60, 3}, {61, 3}, {62, 1000}, {63, 7192}, {64, 1024}, {69, 4e6}, {70, 5e6}, {71, 6e6},
-                  {83, 0.01}, {129, 8192}};
+    } record[] = {{1, 0},     {2, 2},    {3, 0.5},   {4, 0.1},  {14, 5e6},  {15, 4.7e6}, {20, 120},
+                  {21, 1.25}, {23, 4e4}, {24, 0.25}, {27, 12},  {28, 1},    {30, 1e6},   {31, 2e6},
+                  {32, 3e6},  {33, 0.2}, {34, 0.3},  {35, 1},   {37, -0.5}, {49, 1024},  {50, 9},
+                  {51, 6},    {53, 0.7}, {54, -0.8}, {60, 3},   {61, 3},    {62, 1000},  {63, 7192},
+                  {64, 1024}, {69, 4e6}, {70, 5e6},  {71, 6e6}, {83, 0.01}, {129, 8192}};
     for (size_t i = 0; i < sizeof record / sizeof *record; i++) {
         char input[16];
         snprintf(input, sizeof input, "record %02d", record[i].number);
@@ -125,12 +136,9 @@ static void what_is_no_controller_is_refused(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(demands_come_back),
-        cmocka_unit_test(more_blades_than_records_have_one_pitch),
-        cmocka_unit_test(records_are_served),
-        cmocka_unit_test(status_tells_first_and_last),
-        cmocka_unit_test(failures_are_told),
-        cmocka_unit_test(what_is_no_controller_is_refused),
+        cmocka_unit_test(demands_come_back),  cmocka_unit_test(more_blades_than_records_have_one_pitch),
+        cmocka_unit_test(records_are_served), cmocka_unit_test(status_tells_first_and_last),
+        cmocka_unit_test(failures_are_told),  cmocka_unit_test(what_is_no_controller_is_refused),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -150,8 +150,7 @@ static void high_thrust_lies_on_parabola(void **state) {
         double a = induction_at(&options, &e).axial, b = a - 0.35;
         if (a > 0.4) {
             seen++;
-            check_near(thrust(&e, a), 0.91 + b * (1.2 + b * (2 - 0.91 - 1.2 * 0.65) / 0.4225), 1e-9,
-                       0);
+            check_near(thrust(&e, a), 0.91 + b * (1.2 + b * (2 - 0.91 - 1.2 * 0.65) / 0.4225), 1e-9, 0);
         }
         options.high_thrust = BOUGH_HIGH_THRUST_BUHL;
         a = induction_at(&options, &e).axial;

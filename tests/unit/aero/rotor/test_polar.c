@@ -36,8 +36,7 @@ static void interpolation_is_linear(void **state) {
     bough_polar polar = build(arena, def);
     for (double a = -179.99; a < 180; a += 0.0371) {
         int i = 0;
-        while (i < def->n - 2 && def->row[4 * (i + 1)] < a)
-            i++;
+        while (i < def->n - 2 && def->row[4 * (i + 1)] < a) i++;
         const double *r = def->row + 4 * i;
         double w = (a - r[0]) / (r[4] - r[0]);
         bough_coefficients c = bough_polar_at(&polar, a * degree);
@@ -185,12 +184,10 @@ static void gaps_are_known(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(knots_are_reproduced),   cmocka_unit_test(interpolation_is_linear),
-        cmocka_unit_test(turns_repeat),           cmocka_unit_test(any_angle_has_an_answer),
-        cmocka_unit_test(gap_is_bridged),
-        cmocka_unit_test(smooth_polars_are_monotone_and_smooth),
-        cmocka_unit_test(blends_are_exact),
-        cmocka_unit_test(gaps_are_known),
+        cmocka_unit_test(knots_are_reproduced), cmocka_unit_test(interpolation_is_linear),
+        cmocka_unit_test(turns_repeat),         cmocka_unit_test(any_angle_has_an_answer),
+        cmocka_unit_test(gap_is_bridged),       cmocka_unit_test(smooth_polars_are_monotone_and_smooth),
+        cmocka_unit_test(blends_are_exact),     cmocka_unit_test(gaps_are_known),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

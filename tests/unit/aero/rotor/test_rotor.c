@@ -60,8 +60,8 @@ static rig *create_rig(bool flat) {
         r->tilt = 5 * degree;
         r->cone = 2.5 * degree;
         r->overhang = 5.0191;
-        r->def.tower = (bough_tower_def){
-            .n = 12, .height = nrel5mw_tower_height, .diameter = nrel5mw_tower_diameter};
+        r->def.tower =
+            (bough_tower_def){.n = 12, .height = nrel5mw_tower_height, .diameter = nrel5mw_tower_diameter};
     }
     return r;
 }
@@ -85,8 +85,8 @@ static void place(rig *r, double azimuth) {
     r->motion.hub = bough_axpy(-r->overhang, nacelle.c1, bough_v3(0, 0, 87.6 + 1.96256));
     bough_vec3 omega = bough_scale(r->speed, nacelle.c1);
     for (int b = 0; b < BLADES; b++) {
-        bough_mat3 blade = bough_mat3_product(
-            nacelle, turned(bough_v3(azimuth + 2 * BOUGH_PI * b / BLADES, 0, 0)));
+        bough_mat3 blade =
+            bough_mat3_product(nacelle, turned(bough_v3(azimuth + 2 * BOUGH_PI * b / BLADES, 0, 0)));
         blade = bough_mat3_product(blade, turned(bough_v3(0, -r->cone, 0)));
         blade = bough_mat3_product(blade, turned(bough_v3(0, 0, -r->pitch)));
         for (int i = 0; i < VERTICES; i++) {
@@ -115,8 +115,8 @@ static void send_motion(rig *r) {
         bough_vec3 x = bough_mat3_tmul(f.rotation, bough_sub(r->position[k], f.position));
         bough_vec3 v = bough_mat3_tmul(f.rotation, r->velocity[k]);
         bough_vec3 w = bough_mat3_tmul(r->rotation[k], r->spin[k]);
-        bough_quaternion p = bough_quaternion_of_matrix(
-            bough_mat3_product(bough_mat3_transpose(f.rotation), r->rotation[k]));
+        bough_quaternion p =
+            bough_quaternion_of_matrix(bough_mat3_product(bough_mat3_transpose(f.rotation), r->rotation[k]));
         const double row[BOUGH_BLADE_ROWS] = {x.x, x.y, x.z, p.w, p.x, p.y, p.z,
                                               v.x, v.y, v.z, w.x, w.y, w.z};
         for (int c = 0; c < BOUGH_BLADE_ROWS; c++) r->vertex[b][c * VERTICES + i] = row[c];
@@ -226,12 +226,10 @@ static void stations_match_reference(void **state) {
     for (int j = 0; j < STATIONS; j++) {
         const double *t = table[j];
         bough_station s = bough_rotor_station(&r->data, 0, j);
-        const double value[11] = {
-            s.inflow_x,          s.inflow_y, s.speed,      s.phi / degree,
-            s.alpha / degree,    s.axial,    s.tangential, s.coefficients.lift,
-            s.coefficients.drag, s.force_x,  s.force_y};
-        for (int c = 0; c < 11; c++)
-            check_near(value[c], t[c], 1e-5, 2e-6);
+        const double value[11] = {s.inflow_x,          s.inflow_y, s.speed,      s.phi / degree,
+                                  s.alpha / degree,    s.axial,    s.tangential, s.coefficients.lift,
+                                  s.coefficients.drag, s.force_x,  s.force_y};
+        for (int c = 0; c < 11; c++) check_near(value[c], t[c], 1e-5, 2e-6);
     }
     destroy_rig(r);
 }
@@ -294,8 +292,8 @@ static void angle_of_attack_is_in_the_plane_of_the_section(void **state) {
 static void disturb(rig *r) {
     for (int k = 0; k < BLADES * VERTICES; k++) {
         double s = r->span[k % VERTICES] / 61.5, b = 1 + 0.3 * (k / VERTICES);
-        r->rotation[k] = bough_mat3_product(
-            r->rotation[k], turned(bough_v3(-0.05 * b * s, 0.12 * s * s, 0.08 * b * s)));
+        r->rotation[k] =
+            bough_mat3_product(r->rotation[k], turned(bough_v3(-0.05 * b * s, 0.12 * s * s, 0.08 * b * s)));
         r->position[k] = bough_axpy(4 * b * s * s, bough_v3(0.9, 0.1, -0.2), r->position[k]);
         r->velocity[k] = bough_add(r->velocity[k], bough_v3(b * s * s, -0.4 * s, 0.2));
         r->spin[k] = bough_add(r->spin[k], bough_v3(0.01, 0.02 * s, -0.01 * b));
@@ -311,14 +309,11 @@ static void integrate_line_load(const rig *r, const bough_vec3 *force, const bou
     double end = r->station[STATIONS - 1].span, ds = end / POINTS;
     for (int k = 0, i = 0, j = 0; k < POINTS; k++) {
         double s = (k + 0.5) * ds;
-        while (i < VERTICES - 2 && r->span[i + 1] < s)
-            i++;
-        while (j < STATIONS - 2 && r->station[j + 1].span < s)
-            j++;
+        while (i < VERTICES - 2 && r->span[i + 1] < s) i++;
+        while (j < STATIONS - 2 && r->station[j + 1].span < s) j++;
         double w = (s - r->span[i]) / (r->span[i + 1] - r->span[i]);
         double v = (s - r->station[j].span) / (r->station[j + 1].span - r->station[j].span);
-        bough_vec3 x =
-            bough_add(bough_scale(1 - w, r->position[i]), bough_scale(w, r->position[i + 1]));
+        bough_vec3 x = bough_add(bough_scale(1 - w, r->position[i]), bough_scale(w, r->position[i + 1]));
         bough_vec3 f = bough_add(bough_scale(1 - v, force[j]), bough_scale(v, force[j + 1]));
         bough_vec3 m = bough_add(bough_scale(1 - v, moment[j]), bough_scale(v, moment[j + 1]));
         *total = bough_axpy(ds, f, *total);
@@ -345,8 +340,7 @@ static void mapping_conserves_force_and_moment(void **state) {
         bough_station s = bough_rotor_station(&r->data, 0, j);
         double c = r->station[j].chord;
         force[j] = bough_axpy(-s.force_y, y, bough_scale(s.force_x, x));
-        moment[j] =
-            bough_scale(0.5 * 1.225 * s.speed * s.speed * c * c * s.coefficients.moment, z);
+        moment[j] = bough_scale(0.5 * 1.225 * s.speed * s.speed * c * c * s.coefficients.moment, z);
     }
     integrate_line_load(r, force, moment, &total, &about);
     for (int i = 0; i < VERTICES; i++) {
@@ -363,8 +357,7 @@ static void mapping_conserves_force_and_moment(void **state) {
 static void offsets_carry_moment(void **state) {
     (void)state;
     rig *r = create_rig(true);
-    for (int j = 0; j < STATIONS; j++)
-        r->station[j].centre_y = -0.4;
+    for (int j = 0; j < STATIONS; j++) r->station[j].centre_y = -0.4;
     r->def.pitching_moment = false;
     operate(r, 10, 2, 10);
     sample(r, 0);
@@ -393,8 +386,7 @@ static void check_same_loads(const rig *a, const rig *b, const bough_mat3 *turn)
 static void section_axes_are_arbitrary(void **state) {
     (void)state;
     rig *a = create_rig(false), *b = create_rig(false);
-    for (int i = 0; i < VERTICES; i++)
-        b->section[i] = turned(bough_v3(0, 0, -0.01 * (24 - i)));
+    for (int i = 0; i < VERTICES; i++) b->section[i] = turned(bough_v3(0, 0, -0.01 * (24 - i)));
     operate(a, 9, 1, 10);
     operate(b, 9, 1, 10);
     sample(a, 2);
@@ -468,8 +460,7 @@ static void sample_is_a_function_of_motion(void **state) {
 // Loads on the vertices (force x, y and moment z in the frame's axes) of the first blade.
 static void fetch_rows(const rig *r, double row[3][VERTICES]) {
     static const int place[3] = {0, 1, 5};
-    for (int c = 0; c < 3; c++)
-        memcpy(row[c], r->data.load + place[c] * VERTICES, sizeof row[c]);
+    for (int c = 0; c < 3; c++) memcpy(row[c], r->data.load + place[c] * VERTICES, sizeof row[c]);
 }
 
 // How far the slopes are from what a motion of all vertices of the first blade changes, per direction
@@ -564,10 +555,9 @@ static void sample_at(rig *r, double t) {
 // discrete in steps of 50 ms.
 static void pitch_step_matches_reference(void **state) {
     (void)state;
-    static const double table[][2] = {{20, 210.3897},  {20.1, 213.48109}, {21, 233.39587},
-                                      {22, 245.80637}, {23, 253.38355},   {24, 258.48886},
-                                      {25, 262.17411}, {26, 264.95534},   {28, 268.83479},
-                                      {30, 271.32461}, {35, 274.45232},   {40, 275.59214}};
+    static const double table[][2] = {{20, 210.3897},  {20.1, 213.48109}, {21, 233.39587}, {22, 245.80637},
+                                      {23, 253.38355}, {24, 258.48886},   {25, 262.17411}, {26, 264.95534},
+                                      {28, 268.83479}, {30, 271.32461},   {35, 274.45232}, {40, 275.59214}};
     rig *r = create_inflow_rig(5);
     int row = 0;
     for (int k = 0; k <= 800; k++) {

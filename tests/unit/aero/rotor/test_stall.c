@@ -15,9 +15,10 @@ typedef struct foils {
 } foils;
 
 // Lift 2π(α − 1°) up to 20° from there, without drag.
-static const double plate_rows[4][4] = {
-    {-180, 0, 0, 0}, {-19, -20 * 2 * BOUGH_PI * BOUGH_PI / 180, 0, 0},
-    {21, 20 * 2 * BOUGH_PI * BOUGH_PI / 180, 0, 0}, {180, 0, 0, 0}};
+static const double plate_rows[4][4] = {{-180, 0, 0, 0},
+                                        {-19, -20 * 2 * BOUGH_PI *BOUGH_PI / 180, 0, 0},
+                                        {21, 20 * 2 * BOUGH_PI *BOUGH_PI / 180, 0, 0},
+                                        {180, 0, 0, 0}};
 
 static int set_up(void **state) {
     foils *a = test_malloc(sizeof *a);
@@ -74,14 +75,12 @@ static void steady_limit_is_the_static_polar(void **state) {
         bough_polar foil = a->polar[p];
         for (double angle = -178; angle < 180; angle += 7.3) {
             bough_stall_state s = {0};
-            bough_coefficients k = bough_stall_advance(
-                &foil, 3, (bough_stall_inflow){50, angle * degree, 0}, 0, &s);
+            bough_coefficients k =
+                bough_stall_advance(&foil, 3, (bough_stall_inflow){50, angle * degree, 0}, 0, &s);
             check_static(&a->polar[p], angle * degree, k); // started in equilibrium
-            bough_stall_advance(&foil, 3, (bough_stall_inflow){30, (angle + 170) * degree, 0.3},
-                                0.02, &s);
+            bough_stall_advance(&foil, 3, (bough_stall_inflow){30, (angle + 170) * degree, 0.3}, 0.02, &s);
             for (int i = 0; i < 4; i++)
-                k = bough_stall_advance(&foil, 3, (bough_stall_inflow){50, angle * degree, 0}, 1e3,
-                                        &s);
+                k = bough_stall_advance(&foil, 3, (bough_stall_inflow){50, angle * degree, 0}, 1e3, &s);
             check_static(&a->polar[p], angle * degree, k);
         }
     }
@@ -99,19 +98,17 @@ static void a_run_settles_on_the_static_polar(void **state) {
         bough_polar *smooth = polar + N + i, *mixed = polar + 2 * N + i;
         bough_polar_build(a->arena, nrel5mw_polars + i, smooth);
         bough_polar_smoothen(a->arena, smooth);
-        if (i + 1 < N)
-            bough_polar_blend(a->arena, a->polar + i, a->polar + i + 1, 0.4, mixed);
+        if (i + 1 < N) bough_polar_blend(a->arena, a->polar + i, a->polar + i + 1, 0.4, mixed);
     }
     double worst = 0;
     for (int p = 0; p < 3 * N - 1; p++) {
         bough_polar foil = *(polar + p);
         for (double angle = -10; angle <= 15; angle += 0.25) {
             bough_stall_state s = {0};
-            bough_coefficients k = bough_stall_advance(
-                &foil, 3, (bough_stall_inflow){50, foil.zero_lift, 0}, 0, &s);
+            bough_coefficients k =
+                bough_stall_advance(&foil, 3, (bough_stall_inflow){50, foil.zero_lift, 0}, 0, &s);
             for (int i = 0; i < STEPS; i++)
-                k = bough_stall_advance(&foil, 3, (bough_stall_inflow){50, angle * degree, 0}, 0.02,
-                                        &s);
+                k = bough_stall_advance(&foil, 3, (bough_stall_inflow){50, angle * degree, 0}, 0.02, &s);
             bough_coefficients fixed = bough_polar_at(polar + p, angle * degree);
             worst = fmax(worst, fmax(fabs(k.lift - fixed.lift), fabs(k.drag - fixed.drag)));
             worst = fmax(worst, fabs(k.moment - fixed.moment));
@@ -171,22 +168,20 @@ static void withheld_lift_leans_back(void **state) {
     bough_stall_state s = {0};
     bough_stall_advance(&foil, 2, (bough_stall_inflow){40, 4 * degree, 0}, 0, &s);
     bough_stall_advance(&foil, 2, (bough_stall_inflow){40, 4 * degree, 0}, 100, &s);
-    bough_coefficients k =
-        bough_stall_advance(&foil, 2, (bough_stall_inflow){40, 6 * degree, 0}, 1e-7, &s);
+    bough_coefficients k = bough_stall_advance(&foil, 2, (bough_stall_inflow){40, 6 * degree, 0}, 1e-7, &s);
     check_near(k.lift, foil.slope * 4 * degree, 1e-5, 0);
     check_near(k.drag, degree * k.lift, 1e-4, 0);
 }
 
 // Lift against angle over one period, after `cycles`.
 typedef struct loop {
-    double area;       // ∮ Cl dα, positive: the air does work on the section
-    double gap;        // between its ends
-    double up, down;   // lift at the mean angle
+    double area;     // ∮ Cl dα, positive: the air does work on the section
+    double gap;      // between its ends
+    double up, down; // lift at the mean angle
     double highest;
 } loop;
 
-static loop run_loop(const bough_polar *foil, double mean, double amplitude, int cycles,
-                     int per_cycle) {
+static loop run_loop(const bough_polar *foil, double mean, double amplitude, int cycles, int per_cycle) {
     const double speed = 50, chord = 3, k = 0.08, omega = 2 * k * speed / chord;
     double step = 2 * BOUGH_PI / omega / per_cycle, before = 0, angle = mean, first = 0;
     bough_stall_state s = {0};
@@ -194,8 +189,7 @@ static loop run_loop(const bough_polar *foil, double mean, double amplitude, int
     for (int i = 0; i <= cycles * per_cycle; i++) {
         double phase = 2 * BOUGH_PI * (i % per_cycle) / per_cycle;
         double alpha = mean + amplitude * sin(phase);
-        double lift =
-            bough_stall_advance(foil, chord, (bough_stall_inflow){speed, alpha, 0}, step, &s).lift;
+        double lift = bough_stall_advance(foil, chord, (bough_stall_inflow){speed, alpha, 0}, step, &s).lift;
         int last = i - (cycles - 1) * per_cycle;
         if (last == 0) first = l.up = lift;
         if (last > 0) l.area += (lift + before) / 2 * (alpha - angle);
@@ -219,11 +213,10 @@ static void stall_loop_is_closed(void **state) {
     assert_true(fine.gap < 1e-6);
     assert_true(fine.up > fine.down + 0.1);
     double most = 0;
-    for (double d = 7; d <= 17; d += 0.1)
-        most = fmax(most, bough_polar_at(&a->polar[7], d * degree).lift);
+    for (double d = 7; d <= 17; d += 0.1) most = fmax(most, bough_polar_at(&a->polar[7], d * degree).lift);
     assert_true(fine.highest > most + 0.05); // stall is late
-    print_message("loop: up %.4f, down %.4f, highest %.4f (static %.4f), area %.5f\n", fine.up,
-                  fine.down, fine.highest, most, fine.area);
+    print_message("loop: up %.4f, down %.4f, highest %.4f (static %.4f), area %.5f\n", fine.up, fine.down,
+                  fine.highest, most, fine.area);
     double ratio = (coarse.area - middle.area) / (middle.area - fine.area);
     assert_true(ratio > 3 && ratio < 5);
 }

@@ -68,8 +68,8 @@ static void flow_follows_the_wall(void **state) {
 
 static const double six_metres[] = {6, 6}, two_heights[] = {0, 100};
 
-static bough_tower build_kind(bough_arena *arena, bough_tower_influence influence,
-                              bough_tower_shadow shadow, const double *drag) {
+static bough_tower build_kind(bough_arena *arena, bough_tower_influence influence, bough_tower_shadow shadow,
+                              const double *drag) {
     const bough_tower_def def = {.n = 2,
                                  .height = two_heights,
                                  .diameter = six_metres,
@@ -86,10 +86,7 @@ static void bak_matches_reference(void **state) {
     (void)state;
     bough_arena *arena = bough_arena_create();
     static const double height[] = {0, 87.6}, diameter[] = {6, 3.87}, drag[] = {0, 0};
-    bough_tower_def def = {.n = 2,
-                           .height = height,
-                           .diameter = diameter,
-                           .influence = BOUGH_TOWER_BAK};
+    bough_tower_def def = {.n = 2, .height = height, .diameter = diameter, .influence = BOUGH_TOWER_BAK};
     bough_tower tower;
     bough_tower_build(arena, &def, &tower);
     check_near(wind_at_blade(&tower, BOUGH_PI, 52.75).x, 6.290952, 1e-6, 0);
@@ -127,16 +124,15 @@ static void powles_takes_its_share_behind(void **state) {
     bough_tower without = build_kind(arena, BOUGH_TOWER_POTENTIAL, BOUGH_TOWER_SHADOW_NONE, drag);
     bough_tower with = build_kind(arena, BOUGH_TOWER_POTENTIAL, BOUGH_TOWER_SHADOW_POWLES, drag);
     static const double table[][3] = {
-        {4, 0, 0.35},       {9, 0, 0.7 / 3},       {1.5, 0, 0.5},       {-4, 0, 0},
-        {4, 2.2, 0},        {4, -2.2, 0},          {0, 0.9, 0},         {4, 3, 0},
-        {3, 1.0, 0.158518}, {3, -1.0, 0.158518},
+        {4, 0, 0.35}, {9, 0, 0.7 / 3}, {1.5, 0, 0.5}, {-4, 0, 0},         {4, 2.2, 0},
+        {4, -2.2, 0}, {0, 0.9, 0},     {4, 3, 0},     {3, 1.0, 0.158518}, {3, -1.0, 0.158518},
     };
     for (size_t i = 0; i < sizeof table / sizeof *table; i++) {
         double x = 3 * table[i][0], y = 3 * table[i][1];
         bough_vec3 at = bough_v3(0.6 * x - 0.8 * y, 0.8 * x + 0.6 * y, 20);
         bough_vec3 wind = bough_v3(6, 8, 2);
-        bough_vec3 taken = bough_sub(bough_tower_disturbed(&without, at, wind),
-                                     bough_tower_disturbed(&with, at, wind));
+        bough_vec3 taken =
+            bough_sub(bough_tower_disturbed(&without, at, wind), bough_tower_disturbed(&with, at, wind));
         check_near(taken.x, 6 * table[i][2], 0, 1e-5);
         check_near(taken.y, 8 * table[i][2], 0, 1e-5);
         check_near(taken.z, 0, 0, 0);

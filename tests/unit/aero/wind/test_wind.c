@@ -47,7 +47,7 @@ static void shear_follows_logarithmic_law(void **state) {
     const bough_wind_def def = {
         .speed = 10, .shear = BOUGH_WIND_LOG, .roughness = 0.1, .reference_height = 100};
     bough_wind wind = built(&def);
-    static const double table[][2] = {{100, 10}, {10, 20. / 3}, {1, 10. / 3}, {0.1, 0},
+    static const double table[][2] = {{100, 10}, {10, 20. / 3}, {1, 10. / 3},   {0.1, 0},
                                       {0.05, 0}, {-5, 0},       {1000, 40. / 3}};
     for (size_t i = 0; i < sizeof table / sizeof *table; i++) {
         double u = bough_wind_at(&wind, bough_v3(3, 4, table[i][0]), 0).x;
@@ -81,8 +81,8 @@ static void table_is_linear_between_and_constant_outside(void **state) {
     bough_status status = bough_wind_build(arena, &def, &wind);
     assert_int_equal(status.code, BOUGH_OK);
     for (int i = 0; i < 4; i++) time[i] = speed[i] = -1;
-    static const double expected[][2] = {{-5, 8},    {10, 8}, {11, 8},    {12, 8}, {12.5, 11},
-                                         {13, 14},   {15, 12}, {16.5, 10.5}, {20, 7}, {1e6, 7}};
+    static const double expected[][2] = {{-5, 8},  {10, 8},  {11, 8},      {12, 8}, {12.5, 11},
+                                         {13, 14}, {15, 12}, {16.5, 10.5}, {20, 7}, {1e6, 7}};
     for (size_t i = 0; i < sizeof expected / sizeof *expected; i++) {
         double u = bough_wind_at(&wind, bough_v3(0, 0, 50), expected[i][0]).x;
         check_near(u, expected[i][1], 1e-14, 0);

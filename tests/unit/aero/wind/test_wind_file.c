@@ -80,19 +80,18 @@ static void hub_rows_are_interpolated(void **state) {
     // 10 (1 + 0.1·50/126 + 0.3·21/126) + 2 towards −30°, 50 m beside the axis.
     bough_vec3 beside = bough_v3(50 * sin(30 * degree), 50 * cos(30 * degree), 111);
     double speed = 12 + 10 * (0.1 * 50 + 0.3 * 21) / 126;
-    check_vec(bough_wind_at(&wind, beside, 20), speed * cos(30 * degree),
-              -speed * sin(30 * degree), 0);
+    check_vec(bough_wind_at(&wind, beside, 20), speed * cos(30 * degree), -speed * sin(30 * degree), 0);
     check_vec(bough_wind_at(&wind, hub, 99), 10 * cos(8 * degree), 0, 10 * sin(8 * degree));
 }
 
 static void bad_hub_files_are_refused(void **state) {
     place *p = *state;
-    static const char *const bad[][2] = {{"! nothing\n\n", "no rows"},
-                                         {"0 8 0 0 0 0 0\n", ":1:"},
-                                         {"0 8 0 0 0 0 0 0\n5 8 0 east 0 0 0 0\n", ":2:"},
-                                         {"0 8 0 0 0 0 0 nan\n", ":1:"},
-                                         {"0 8 0 0 0 0 0 0\n0 8 0 0 0 0 0 0\n",
-                                          ":2: the time must be more than the 0 s before it, got 0 s"}};
+    static const char *const bad[][2] = {
+        {"! nothing\n\n", "no rows"},
+        {"0 8 0 0 0 0 0\n", ":1:"},
+        {"0 8 0 0 0 0 0 0\n5 8 0 east 0 0 0 0\n", ":2:"},
+        {"0 8 0 0 0 0 0 nan\n", ":1:"},
+        {"0 8 0 0 0 0 0 0\n0 8 0 0 0 0 0 0\n", ":2: the time must be more than the 0 s before it, got 0 s"}};
     for (size_t i = 0; i < sizeof bad / sizeof *bad; i++) {
         bough_wind wind;
         write_file(p, bad[i][0], strlen(bad[i][0]));
@@ -136,12 +135,11 @@ static void fill_box(unsigned char *bytes, int kind) {
 }
 
 static bough_vec3 expected(double time, double y, double z) {
-    return bough_v3(10 + 0.1 * time / dt + 0.3 * (z - bottom) / dz + 0.2 * y / dy,
-                    0.04 * time / dt, 0.04 * (z - bottom) / dz);
+    return bough_v3(10 + 0.1 * time / dt + 0.3 * (z - bottom) / dz + 0.2 * y / dy, 0.04 * time / dt,
+                    0.04 * (z - bottom) / dz);
 }
 
-static void check_point(const bough_wind *wind, double x, double y, double z, double t,
-                        double time) {
+static void check_point(const bough_wind *wind, double x, double y, double z, double t, double time) {
     bough_vec3 e = expected(time, y, z);
     check_vec(bough_wind_at(wind, bough_v3(x, y, z), t), e.x, e.y, e.z);
 }
@@ -241,8 +239,7 @@ static void direction_turns_a_file(void **state) {
     bough_wind wind;
     fill_box(bytes, 7);
     write_file(p, bytes, SIZE);
-    bough_wind_def def = {.source = BOUGH_WIND_BOX_FILE, .file = p->path,
-                          .direction = 90 * degree};
+    bough_wind_def def = {.source = BOUGH_WIND_BOX_FILE, .file = p->path, .direction = 90 * degree};
     bough_status status = bough_wind_build(p->arena, &def, &wind);
     assert_int_equal(status.code, BOUGH_OK);
     bough_vec3 e = expected(1, -20, 70), v = bough_wind_at(&wind, bough_v3(20, 45, 70), 1);

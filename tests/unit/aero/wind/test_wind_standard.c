@@ -107,8 +107,8 @@ static void gusts_reach_what_the_formulas_say(void **state) {
 static void upflow_and_veer_turn_any_wind(void **state) {
     (void)state;
     bough_arena *arena = bough_arena_create();
-    bough_wind_def def = {.speed = 10, .vertical = 1, .upflow = 8 * degree, .veer = 0.1 * degree,
-                          .reference_height = 90};
+    bough_wind_def def = {
+        .speed = 10, .vertical = 1, .upflow = 8 * degree, .veer = 0.1 * degree, .reference_height = 90};
     bough_wind w = built(arena, &def);
     double c = cos(8 * degree), s = sin(8 * degree);
     bough_vec3 hub = bough_wind_at(&w, bough_v3(0, 0, 90), 0);

@@ -14,8 +14,7 @@ static void blocks_are_aligned_zeroed_and_apart(void **state) {
         size_t size = (size_t)(1 + 37 * i);
         blocks[i] = bough_arena_take(arena, size);
         assert_int_equal((uintptr_t)blocks[i] % 64, 0);
-        for (size_t k = 0; k < size; k++)
-            assert_int_equal(blocks[i][k], 0);
+        for (size_t k = 0; k < size; k++) assert_int_equal(blocks[i][k], 0);
         memset(blocks[i], i + 1, size);
     }
     for (int i = 0; i < 50; i++) {
@@ -42,8 +41,10 @@ static bool reached;
 static bough_status take_too_much(bough_arena *arena, void *self) {
     bough_arena *child = bough_arena_child(bough_arena_child(arena));
     bough_arena_take(child, 8);
-    if (*(bool *)self) bough_arena_doubles(child, (size_t)-1 / 4); // its bytes overflow
-    else bough_arena_take(arena, (size_t)-1);
+    if (*(bool *)self)
+        bough_arena_doubles(child, (size_t)-1 / 4); // its bytes overflow
+    else
+        bough_arena_take(arena, (size_t)-1);
     reached = true;
     return bough_ok();
 }
@@ -103,8 +104,7 @@ static void objects_are_released_newest_first(void **state) {
     assert_int_equal(r.count, 0);
     bough_arena_destroy(arena);
     assert_int_equal(r.count, 3);
-    for (int i = 0; i < 3; i++)
-        assert_int_equal(r.order[i], 2 - i);
+    for (int i = 0; i < 3; i++) assert_int_equal(r.order[i], 2 - i);
     bough_arena_destroy(NULL);
 }
 

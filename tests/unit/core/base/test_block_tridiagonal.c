@@ -223,8 +223,7 @@ static void refuses_singular_pivots(void **context) {
     assert_false(bough_block_tridiagonal_factor(&f.m));
     fixture g = take(2);
     for (int i = 0; i < 6; i++) {
-        double *entries[4] = {g.m.diagonal, g.m.diagonal + BOUGH_BLOCK, g.m.upper,
-                              g.m.lower + BOUGH_BLOCK};
+        double *entries[4] = {g.m.diagonal, g.m.diagonal + BOUGH_BLOCK, g.m.upper, g.m.lower + BOUGH_BLOCK};
         for (int k = 0; k < 4; k++) entries[k][9 * i] = 2;
     }
     assert_false(bough_block_tridiagonal_factor(&g.m));

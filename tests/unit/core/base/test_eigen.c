@@ -147,10 +147,8 @@ static void singular_stiffness_is_diagnosed(void **context) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(chain_of_masses_has_its_frequencies),
-        cmocka_unit_test(pairs_satisfy_the_equation),
-        cmocka_unit_test(small_system_gives_all_it_has),
-        cmocka_unit_test(growing_solution_is_listed),
+        cmocka_unit_test(chain_of_masses_has_its_frequencies), cmocka_unit_test(pairs_satisfy_the_equation),
+        cmocka_unit_test(small_system_gives_all_it_has),       cmocka_unit_test(growing_solution_is_listed),
         cmocka_unit_test(singular_stiffness_is_diagnosed),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -1,10 +1,10 @@
 // Memory that ends anywhere while a run is set up: it is told, nothing leaks, nothing crashes.
-#include "apps/bough/results/folder.h"
-#include "apps/bough/results/frames.h"
-#include "apps/bough/results/recorder.h"
 #include "apps/bough/model/build.h"
 #include "apps/bough/model/companion.h"
 #include "apps/bough/model/shape.h"
+#include "apps/bough/results/folder.h"
+#include "apps/bough/results/frames.h"
+#include "apps/bough/results/recorder.h"
 #include "tests/unit/check.h"
 #include "tests/unit/scratch.h"
 
@@ -37,13 +37,9 @@ static bool refuse(void) {
 
 void *__wrap_malloc(size_t size) { return refuse() ? NULL : __real_malloc(size); }
 
-void *__wrap_calloc(size_t count, size_t size) {
-    return refuse() ? NULL : __real_calloc(count, size);
-}
+void *__wrap_calloc(size_t count, size_t size) { return refuse() ? NULL : __real_calloc(count, size); }
 
-void *__wrap_realloc(void *block, size_t size) {
-    return refuse() ? NULL : __real_realloc(block, size);
-}
+void *__wrap_realloc(void *block, size_t size) { return refuse() ? NULL : __real_realloc(block, size); }
 
 void *__wrap_aligned_alloc(size_t alignment, size_t size) {
     return refuse() ? NULL : __real_aligned_alloc(alignment, size);
@@ -131,8 +127,7 @@ static void try_all(void **state, const char *path, int stride, const char *cons
 }
 
 static void a_rod_of_every_kind_is_told(void **state) {
-    static const char *const micro[] = {"rosenbrock", "cvode-bdf", "arkode-esdirk",
-                                        "generalized-alpha"};
+    static const char *const micro[] = {"rosenbrock", "cvode-bdf", "arkode-esdirk", "generalized-alpha"};
     for (int i = 0; i < 4; i++) {
         char text[80];
         snprintf(text, sizeof text, "simulation.micro.solver=%s", micro[i]);
@@ -144,8 +139,7 @@ static void a_rod_of_every_kind_is_told(void **state) {
 }
 
 static void every_scheme_is_told(void **state) {
-    static const char *const scheme[] = {"frozen", "gauss-seidel", "extrapolated", "iterated",
-                                         "monolithic"};
+    static const char *const scheme[] = {"frozen", "gauss-seidel", "extrapolated", "iterated", "monolithic"};
     for (int i = 0; i < 5; i++) {
         char text[80];
         snprintf(text, sizeof text, "simulation.coupling={scheme: %s}", scheme[i]);

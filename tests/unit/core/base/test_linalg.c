@@ -15,14 +15,12 @@ static void lu_solves_with_interchanges(void **state) {
     int pivot[3];
     for (int k = 0; k < 2; k++) {
         for (int c = 0; c < 3; c++) {
-            for (int r = 0; r < 3; r++)
-                b[3 * k + r] += a[3 * c + r] * x[3 * k + c];
+            for (int r = 0; r < 3; r++) b[3 * k + r] += a[3 * c + r] * x[3 * k + c];
         }
     }
     assert_true(bough_dense_factor(3, a, pivot));
     bough_dense_solve(3, 2, a, pivot, b);
-    for (int i = 0; i < 6; i++)
-        check_near(b[i], x[i], 1e-14, 0);
+    for (int i = 0; i < 6; i++) check_near(b[i], x[i], 1e-14, 0);
 }
 
 // Zeros on the diagonal: rows are exchanged within the band.
@@ -99,8 +97,7 @@ static void complex_lu_solves(void **state) {
     int pivot[2];
     assert_true(bough_complex_factor(2, a, pivot));
     bough_complex_solve(2, a, pivot, b);
-    for (int i = 0; i < 4; i++)
-        check_near(b[i], x[i], 0, 1e-14);
+    for (int i = 0; i < 4; i++) check_near(b[i], x[i], 0, 1e-14);
     double nan[8] = {0, NAN, 1, 0, 1, 0, 1, 0}, singular[8] = {1, 1, 2, 2, 1, 1, 2, 2};
     assert_false(bough_complex_factor(2, nan, pivot));
     assert_false(bough_complex_factor(2, singular, pivot));
@@ -113,23 +110,19 @@ static void symmetric_eigenvectors_rebuild_the_matrix(void **state) {
     const double v[3] = {1, 2, -2}, expected[3] = {1, 2, 4};
     double q[3][3], a[9] = {0}, copy[9], value[3], work[24];
     for (int i = 0; i < 3; i++) {
-        for (int j = 0; j < 3; j++)
-            q[i][j] = (i == j) - 2 * v[i] * v[j] / 9;
+        for (int j = 0; j < 3; j++) q[i][j] = (i == j) - 2 * v[i] * v[j] / 9;
     }
     for (int k = 0; k < 9; k++) {
-        for (int e = 0; e < 3; e++)
-            a[k] += q[k / 3][e] * expected[e] * q[k % 3][e];
+        for (int e = 0; e < 3; e++) a[k] += q[k / 3][e] * expected[e] * q[k % 3][e];
     }
     memcpy(copy, a, sizeof a);
     assert_true(bough_symmetric_eigen(3, copy, value, work));
     for (int k = 0; k < 9; k++) {
         double sum = 0;
-        for (int e = 0; e < 3; e++)
-            sum += copy[3 * e + k / 3] * value[e] * copy[3 * e + k % 3];
+        for (int e = 0; e < 3; e++) sum += copy[3 * e + k / 3] * value[e] * copy[3 * e + k % 3];
         check_near(sum, a[k], 0, 1e-14);
     }
-    for (int e = 0; e < 3; e++)
-        check_near(value[e], expected[e], 1e-14, 0);
+    for (int e = 0; e < 3; e++) check_near(value[e], expected[e], 1e-14, 0);
     copy[0] = NAN;
     assert_false(bough_symmetric_eigen(3, copy, value, work));
     assert_true(bough_symmetric_eigen(0, NULL, NULL, NULL));
@@ -148,8 +141,7 @@ static void eigenvalues_and_vectors(void **state) {
         const double *real = v + 3 * k, *imaginary = v + 3 * k + 3;
         for (int i = 0; i < 3; i++) {
             double product = 0, expected = value[k] * real[i];
-            for (int j = 0; j < 3; j++)
-                product += a[3 * j + i] * real[j];
+            for (int j = 0; j < 3; j++) product += a[3 * j + i] * real[j];
             if (pair) expected -= value[3 + k] * imaginary[i];
             check_near(product, expected, 0, 1e-14);
         }
@@ -191,20 +183,17 @@ static void cholesky_finds_the_factor(void **state) {
     for (int i = 0; i < 3; i++) {
         for (int j = 0; j < 3; j++) {
             double sum = 0;
-            for (int k = 0; k < 3; k++)
-                sum += l[3 * i + k] * l[3 * j + k];
+            for (int k = 0; k < 3; k++) sum += l[3 * i + k] * l[3 * j + k];
             a[3 * i + j] = j <= i ? sum : (double)NAN;
             b[i] += sum * x[j];
         }
     }
     assert_true(bough_cholesky_factor(3, a));
     for (int i = 0; i < 3; i++) {
-        for (int j = 0; j <= i; j++)
-            check_near(a[3 * i + j], l[3 * i + j], 1e-15, 1e-15);
+        for (int j = 0; j <= i; j++) check_near(a[3 * i + j], l[3 * i + j], 1e-15, 1e-15);
     }
     bough_cholesky_solve(3, a, b);
-    for (int i = 0; i < 3; i++)
-        check_near(b[i], x[i], 1e-14, 0);
+    for (int i = 0; i < 3; i++) check_near(b[i], x[i], 1e-14, 0);
 }
 
 static void cholesky_refuses_indefinite_and_nearly_singular(void **state) {

@@ -113,9 +113,7 @@ static void items_that_fill_no_turn_are_halved(void **state) {
     }
 }
 
-static void nap(long ns) {
-    nanosleep(&(struct timespec){.tv_nsec = ns}, NULL);
-}
+static void nap(long ns) { nanosleep(&(struct timespec){.tv_nsec = ns}, NULL); }
 
 // The first task is slow, so that its waiters and the caller sleep.
 static void wait_for_the_first(void *data, int k) {

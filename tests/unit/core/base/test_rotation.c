@@ -46,8 +46,8 @@ static void logarithm_inverts_the_exponential(void **state) {
         check_near(bough_norm(bough_sub(also, expected)), 0, 0, 1e-15 + 1e-15 * angles[i]);
     }
     bough_quaternion beyond = bough_quaternion_exponential(bough_scale(2 * pi - 0.5, axis));
-    check_near(bough_norm(bough_add(bough_quaternion_logarithm(beyond), bough_scale(0.5, axis))), 0,
-               0, 1e-14);
+    check_near(bough_norm(bough_add(bough_quaternion_logarithm(beyond), bough_scale(0.5, axis))), 0, 0,
+               1e-14);
 }
 
 static void product_composes_rotations(void **state) {
@@ -84,8 +84,8 @@ static void normalising_handles_zero(void **state) {
     check_near(p.z, -0.8, 1e-15, 0);
 }
 
-// J by differences of exp(ψ + h v) exp(ψ)⁻¹, its change by differences of J, its inverse by β: on both sides of where
-// the factors change from series to formula.
+// J by differences of exp(ψ + h v) exp(ψ)⁻¹, its change by differences of J, its inverse by β: on both sides
+// of where the factors change from series to formula.
 static void tangents_are_derivatives_and_inverses(void **state) {
     (void)state;
     const double angles[] = {1e-9, 0.05, 0.0999, 0.1001, 0.2236, 0.2237, 1, 3}, h = 1e-5;

@@ -118,8 +118,7 @@ static void turn_is_a_rotation_about_z(void **context) {
         bough_symmetric6_turn(a, angles[k], turned);
         turned_explicitly(a, angles[k], expected);
         for (int i = 0; i < 36; i++) {
-            check_near(turned[bough_symmetric6_index(i / 6, i % 6)], expected[i / 6][i % 6], 1e-14,
-                       1e-14);
+            check_near(turned[bough_symmetric6_index(i / 6, i % 6)], expected[i / 6][i % 6], 1e-14, 1e-14);
         }
         bough_symmetric6_turn(turned, -angles[k], back);
         for (int i = 0; i < 21; i++) check_near(back[i], a[i], 1e-14, 1e-14);

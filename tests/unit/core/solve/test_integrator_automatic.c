@@ -48,8 +48,14 @@ typedef struct outcome {
 static outcome run_for(bough_integrator_kind kind, double omega, int count, double macro) {
     static const double scale[N] = {1, 1};
     oscillator o = {.omega = omega};
-    bough_ode ode = {.name = "oscillator", .n = N, .scale = scale, .self = &o,
-                     .derivative = derivative, .linearise = linearise, .factor = factor, .solve = solve};
+    bough_ode ode = {.name = "oscillator",
+                     .n = N,
+                     .scale = scale,
+                     .self = &o,
+                     .derivative = derivative,
+                     .linearise = linearise,
+                     .factor = factor,
+                     .solve = solve};
     bough_integrator_options options = {.kind = kind, .rtol = 1e-5};
     bough_integrator method;
     bough_arena *arena = bough_arena_create();

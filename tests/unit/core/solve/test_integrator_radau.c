@@ -49,15 +49,13 @@ static bool van_der_pol(problem *p, double t, const double *y, double *rate) {
     return true;
 }
 
-static problem make(int n, bool (*f)(problem *, double, const double *, double *),
-                    double stiffness) {
+static problem make(int n, bool (*f)(problem *, double, const double *, double *), double stiffness) {
     return (problem){.n = n, .f = f, .stiffness = stiffness, .latest = -1, .break_after = 1e9};
 }
 
 static bough_integrator create(bough_arena *arena, problem *p, double rtol) {
     const double *scale = p->f == van_der_pol ? wild : unit;
-    bough_ode ode = {.name = "test", .n = p->n, .scale = scale, .self = p,
-                     .derivative = derivative};
+    bough_ode ode = {.name = "test", .n = p->n, .scale = scale, .self = p, .derivative = derivative};
     bough_integrator_options options = {.kind = BOUGH_RADAU5, .rtol = rtol};
     bough_integrator radau;
     bough_status status = bough_integrator_create(arena, &ode, &options, &radau);
@@ -81,8 +79,7 @@ static result run(problem p, double rtol, const double *y0, double t1, int calls
     bough_arena *arena = bough_arena_create();
     bough_integrator radau = create(arena, &p, rtol);
     memcpy(r.y, y0, (size_t)p.n * sizeof *y0);
-    for (int k = 1; k <= calls; k++)
-        advance(&radau, (k - 1) * t1 / calls, k * t1 / calls, r.y);
+    for (int k = 1; k <= calls; k++) advance(&radau, (k - 1) * t1 / calls, k * t1 / calls, r.y);
     radau.ops->statistics(radau.self, &r.count);
     bough_arena_destroy(arena);
     return r;

@@ -15,8 +15,8 @@ enum { N = 4 };
 typedef struct problem {
     bough_integrator micro;
     double gamma, tangent[N];
-    double skew;       // factor of the stiffness that the tangents know
-    double wall;       // f has no value beyond [s]
+    double skew; // factor of the stiffness that the tangents know
+    double wall; // f has no value beyond [s]
 } problem;
 
 static bool derivative(void *self, double t, const double *y, double *rate) {
@@ -88,8 +88,7 @@ static double error_with(double step, double rtol, double skew, long *steps) {
     bough_arena *arena = build(&p, step, rtol);
     exact(0, y);
     for (int k = 0; k < 10; k++) {
-        bough_status status =
-            integrator_advance(&p.micro, 0.2 * k, 0.2 * (k + 1), false, y);
+        bough_status status = integrator_advance(&p.micro, 0.2 * k, 0.2 * (k + 1), false, y);
         assert_int_equal(status.code, BOUGH_OK);
     }
     bough_statistics sum = {0};

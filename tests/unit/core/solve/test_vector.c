@@ -14,14 +14,11 @@ typedef struct fixture {
 } fixture;
 
 // Of both signs and never zero; the sine's argument is exact, fused multiply-add or not.
-static double entry(int i, int k) {
-    return sin(1.75 * i + 0.875 * k) + 0.1 * k + 0.01;
-}
+static double entry(int i, int k) { return sin(1.75 * i + 0.875 * k) + 0.1 * k + 0.01; }
 
 static N_Vector filled(N_Vector model, int k) {
     N_Vector v = N_VClone(model);
-    for (int i = 0; i < N_VGetLength(v); i++)
-        bough_vector_data(v)[i] = entry(i, k);
+    for (int i = 0; i < N_VGetLength(v); i++) bough_vector_data(v)[i] = entry(i, k);
     return v;
 }
 
@@ -54,8 +51,8 @@ static void destroy(fixture *f) {
     SUNContext_Free(&f->context);
 }
 
-#define for_each_length(f, n)                                                                      \
-    for (int which = 0, n; which < N_LENGTHS; which++)                                             \
+#define for_each_length(f, n)                                                                                \
+    for (int which = 0, n; which < N_LENGTHS; which++)                                                       \
         if (n = lengths[which], f = create(n), 1)
 
 static double at(N_Vector v, int i) { return bough_vector_data(v)[i]; }
@@ -86,32 +83,23 @@ static void elementwise_operations(void **state) {
     fixture f;
     for_each_length(f, n) {
         N_VLinearSum(2, f.x, -3, f.y, f.z);
-        for (int i = 0; i < n; i++)
-            check_near(at(f.z, i), 2 * entry(i, 1) - 3 * entry(i, 2), 1e-14, 1e-14);
+        for (int i = 0; i < n; i++) check_near(at(f.z, i), 2 * entry(i, 1) - 3 * entry(i, 2), 1e-14, 1e-14);
         N_VProd(f.x, f.y, f.z);
-        for (int i = 0; i < n; i++)
-            check_near(at(f.z, i), entry(i, 1) * entry(i, 2), 1e-15, 0);
+        for (int i = 0; i < n; i++) check_near(at(f.z, i), entry(i, 1) * entry(i, 2), 1e-15, 0);
         N_VDiv(f.x, f.y, f.z);
-        for (int i = 0; i < n; i++)
-            check_near(at(f.z, i), entry(i, 1) / entry(i, 2), 1e-15, 0);
+        for (int i = 0; i < n; i++) check_near(at(f.z, i), entry(i, 1) / entry(i, 2), 1e-15, 0);
         N_VScale(-1.5, f.x, f.z);
-        for (int i = 0; i < n; i++)
-            check_near(at(f.z, i), -1.5 * entry(i, 1), 1e-15, 0);
+        for (int i = 0; i < n; i++) check_near(at(f.z, i), -1.5 * entry(i, 1), 1e-15, 0);
         N_VAbs(f.x, f.z);
-        for (int i = 0; i < n; i++)
-            check_near(at(f.z, i), fabs(entry(i, 1)), 0, 0);
+        for (int i = 0; i < n; i++) check_near(at(f.z, i), fabs(entry(i, 1)), 0, 0);
         N_VInv(f.x, f.z);
-        for (int i = 0; i < n; i++)
-            check_near(at(f.z, i), 1 / entry(i, 1), 1e-15, 0);
+        for (int i = 0; i < n; i++) check_near(at(f.z, i), 1 / entry(i, 1), 1e-15, 0);
         N_VAddConst(f.x, 0.25, f.z);
-        for (int i = 0; i < n; i++)
-            check_near(at(f.z, i), entry(i, 1) + 0.25, 1e-15, 0);
+        for (int i = 0; i < n; i++) check_near(at(f.z, i), entry(i, 1) + 0.25, 1e-15, 0);
         N_VCompare(0.5, f.x, f.z);
-        for (int i = 0; i < n; i++)
-            check_near(at(f.z, i), fabs(entry(i, 1)) >= 0.5, 0, 0);
+        for (int i = 0; i < n; i++) check_near(at(f.z, i), fabs(entry(i, 1)) >= 0.5, 0, 0);
         N_VConst(7, f.z);
-        for (int i = 0; i < n; i++)
-            check_near(at(f.z, i), 7, 0, 0);
+        for (int i = 0; i < n; i++) check_near(at(f.z, i), 7, 0, 0);
         destroy(&f);
     }
 }
@@ -164,8 +152,7 @@ static void tests_with_a_verdict(void **state) {
         int verdict = N_VConstrMask(f.w, f.x, f.z);
         for (int i = 0; i < n; i++) {
             double c = kind[i % 5], x = value[i % 3];
-            int bad = (c == 1 && x < 0) || (c == 2 && x <= 0) || (c == -1 && x > 0) ||
-                      (c == -2 && x >= 0);
+            int bad = (c == 1 && x < 0) || (c == 2 && x <= 0) || (c == -1 && x > 0) || (c == -2 && x >= 0);
             check_near(at(f.z, i), bad, 0, 0);
             broken += bad;
         }
@@ -191,8 +178,7 @@ static void fused_operations(void **state) {
         }
         assert_int_equal(N_VLinearSumVectorArray(COUNT, 2, f.several, -1, f.others, f.results), 0);
         for (int k = 0; k < COUNT; k++) {
-            check_near(at(f.results[k], n - 1), 2 * entry(n - 1, 4 + k) - entry(n - 1, 9 + k),
-                       1e-14, 1e-14);
+            check_near(at(f.results[k], n - 1), 2 * entry(n - 1, 4 + k) - entry(n - 1, 9 + k), 1e-14, 1e-14);
         }
         assert_int_equal(N_VWrmsNormVectorArray(COUNT, f.several, f.others, norms), 0);
         for (int k = 0; k < COUNT; k++) {
@@ -203,8 +189,7 @@ static void fused_operations(void **state) {
             check_near(at(f.results[k], 0), c[k] * entry(0, 4 + k), 1e-15, 0);
         }
         assert_int_equal(N_VConstVectorArray(COUNT, 3, f.results), 0);
-        for (int k = 0; k < COUNT; k++)
-            check_near(at(f.results[k], n - 1), 3, 0, 0);
+        for (int k = 0; k < COUNT; k++) check_near(at(f.results[k], n - 1), 3, 0, 0);
         // even and odd numbers of summands; the result may be the first of them
         for (int count = COUNT; count >= 1; count--) {
             N_Vector result = count == 3 ? f.several[0] : f.z;
@@ -212,8 +197,7 @@ static void fused_operations(void **state) {
             assert_int_equal(N_VLinearCombination(count, c, f.several, result), 0);
             for (int i = 0; i < n; i++) {
                 double sum = c[0] * at(f.x, i);
-                for (int k = 1; k < count; k++)
-                    sum += c[k] * entry(i, 4 + k);
+                for (int k = 1; k < count; k++) sum += c[k] * entry(i, 4 + k);
                 check_near(at(result, i), sum, 1e-14, 1e-14);
             }
         }

@@ -19,8 +19,7 @@ static void inverse_dynamics_inverts_forward_dynamics(void **state) {
     for (int i = 0; i < n; i++) {
         check_near(residual[i], 0, 0, 1e-11);
         double sum = bias[i]; // M v̇ + h − τ with M by composite bodies
-        for (int j = 0; j < n; j++)
-            sum += mass[n * i + j] * acceleration[j];
+        for (int j = 0; j < n; j++) sum += mass[n * i + j] * acceleration[j];
         check_near(sum, 0, 0, 1e-11);
         assert_true(fabs(bias[i]) > 1e-6);
     }
@@ -36,8 +35,7 @@ static void kinetic_energy_is_the_mass_matrix_form(void **state) {
     bough_tree_kinematics(f.tree, f.m->state, f.data);
     tree_mass_matrix(f.tree, f.data, mass);
     for (int i = 0; i < n; i++) {
-        for (int j = 0; j < n; j++)
-            energy += 0.5 * v[i] * mass[n * i + j] * v[j];
+        for (int j = 0; j < n; j++) energy += 0.5 * v[i] * mass[n * i + j] * v[j];
     }
     check_near(tree_sum(f.tree, f.data).kinetic, energy, 1e-12, 0);
     bough_arena_destroy(f.arena);
@@ -49,13 +47,11 @@ static void energy_follows_the_power_of_the_loads(void **state) {
     fixture f = everything(1e-11);
     f.tree->external[2].active = false;
     f.tree->n_loads = 0;
-    for (int i = 0; i < f.tree->n_links; i++)
-        f.tree->links[i].spring.damping = 0;
+    for (int i = 0; i < f.tree->n_links; i++) f.tree->links[i].spring.damping = 0;
     f.tree->springs[0].damping = 0;
     bough_tree_kinematics(f.tree, f.m->state, f.data);
     tree_sums before = tree_sum(f.tree, f.data);
-    for (int k = 1; k <= 10; k++)
-        advance(&f, 0.1 * k, k == 1);
+    for (int k = 1; k <= 10; k++) advance(&f, 0.1 * k, k == 1);
     bough_tree_kinematics(f.tree, f.m->state, f.data);
     tree_sums after = tree_sum(f.tree, f.data);
     assert_true(fabs(after.kinetic - before.kinetic) > 1);
@@ -73,11 +69,9 @@ static void output_tangent_is_the_derivative(void **state) {
     int n = f.s.n_state, m = f.s.n_output;
     double change[MOST], plus[MOST], minus[MOST], y[MOST], tangent[MOST], h = 1e-6;
     unsigned seed = 3;
-    for (int i = 0; i < n; i++)
-        change[i] = next(&seed);
+    for (int i = 0; i < n; i++) change[i] = next(&seed);
     for (int side = 0; side < 2; side++) {
-        for (int i = 0; i < n; i++)
-            y[i] = f.m->state[i] + (side == 0 ? h : -h) * change[i];
+        for (int i = 0; i < n; i++) y[i] = f.m->state[i] + (side == 0 ? h : -h) * change[i];
         f.s.ops->output(f.s.self, 0, y, some_input, side == 0 ? plus : minus);
     }
     f.s.ops->output_tangent(f.s.self, 0, f.m->state, some_input, change, NULL, tangent);
@@ -102,10 +96,8 @@ static void output_tangent_along_the_motion_is_the_acceleration(void **state) {
     for (int p = 0; p < 2; p++) {
         const bough_frame *port = &f.tree->ports[p];
         double expected[6];
-        bough_twist_store(bough_twist_to_child(&port->placement, f.data->acceleration[port->link]),
-                          expected);
-        for (int i = 0; i < 6; i++)
-            check_near(tangent[9 * p + i], expected[i], 1e-12, 1e-12);
+        bough_twist_store(bough_twist_to_child(&port->placement, f.data->acceleration[port->link]), expected);
+        for (int i = 0; i < 6; i++) check_near(tangent[9 * p + i], expected[i], 1e-12, 1e-12);
         bough_vec3 omega = bough_v3(out[9 * p + 3], out[9 * p + 4], out[9 * p + 5]);
         bough_vec3 g = bough_v3(out[9 * p + 6], out[9 * p + 7], out[9 * p + 8]);
         bough_vec3 gdot = bough_cross(g, omega);
@@ -130,8 +122,7 @@ static void input_columns_are_the_derivative(void **state) {
         f.s.ops->derivative(f.s.self, 0.2, f.m->state, u, plus);
         u[j] -= 1;
         f.s.ops->derivative(f.s.self, 0.2, f.m->state, u, minus);
-        for (int i = 0; i < n; i++)
-            check_near(columns[n * j + i], plus[i] - minus[i], 1e-9, 1e-11);
+        for (int i = 0; i < n; i++) check_near(columns[n * j + i], plus[i] - minus[i], 1e-9, 1e-11);
     }
     free(columns);
     bough_arena_destroy(f.arena);
@@ -144,16 +135,14 @@ static void solve_inverts_the_linearisation(void **state) {
     int n = f.s.n_state;
     double x[MOST], b[MOST], y[MOST], plus[MOST], minus[MOST], gamma = 0.07, h = 1e-6;
     unsigned seed = 5;
-    for (int i = 0; i < n; i++)
-        x[i] = b[i] = next(&seed);
+    for (int i = 0; i < n; i++) x[i] = b[i] = next(&seed);
     void *factors = f.s.ops->factors(f.s.self, f.arena);
     assert_non_null(factors);
     assert_true(f.s.ops->linearise(f.s.self, 0.2, f.m->state, some_input, factors));
     assert_true(f.s.ops->factor(f.s.self, factors, gamma));
     f.s.ops->solve(f.s.self, factors, x);
     for (int side = 0; side < 2; side++) {
-        for (int i = 0; i < n; i++)
-            y[i] = f.m->state[i] + (side == 0 ? h : -h) * x[i];
+        for (int i = 0; i < n; i++) y[i] = f.m->state[i] + (side == 0 ? h : -h) * x[i];
         f.s.ops->derivative(f.s.self, 0.2, y, some_input, side == 0 ? plus : minus);
     }
     for (int i = 0; i < n; i++) {

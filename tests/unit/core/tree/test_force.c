@@ -46,9 +46,17 @@ static fixture mounted(double rtol, bool damped) {
     const bough_applied_def applied[] = {
         {0, {{1, -2, 3}, {0.4, 0.5, -0.6}}, true, {.start = 0, .end = 1}},
         {1, {{2, 1, -1}, {-0.4, 0.3, 0.6}}, false, {.n = 3, .times = times, .values = values}}};
-    bough_tree_def def = {.gravity = {0, 0, -9.81}, .n_bodies = 2, .bodies = b, .n_markers = 3,
-                          .markers = markers, .n_springs = 2, .springs = springs, .n_bushings = 2,
-                          .bushings = bushings, .n_applied = damped ? 2 : 0, .applied = applied};
+    bough_tree_def def = {.gravity = {0, 0, -9.81},
+                          .n_bodies = 2,
+                          .bodies = b,
+                          .n_markers = 3,
+                          .markers = markers,
+                          .n_springs = 2,
+                          .springs = springs,
+                          .n_bushings = 2,
+                          .bushings = bushings,
+                          .n_applied = damped ? 2 : 0,
+                          .applied = applied};
     return build(&def, rtol);
 }
 
@@ -62,10 +70,13 @@ static void bushing_is_linear_along_and_about_an_axis(void **state) {
     b.coordinates[2] = 0.7, b.coordinates[3] = cos(1.2), b.coordinates[6] = sin(1.2);
     const bough_marker_def markers[] = {{"ground", BOUGH_GROUND, bough_transform_identity()},
                                         {"plate", 0, bough_transform_identity()}};
-    const bough_bushing_def bushing = {
-        {0, 1}, {100, 100, 50, 30, 30, 8}, {0, 0, 0.8, 0, 0, 0.4}};
-    bough_tree_def def = {.n_bodies = 1, .bodies = &b, .n_markers = 2, .markers = markers,
-                          .n_bushings = 1, .bushings = &bushing};
+    const bough_bushing_def bushing = {{0, 1}, {100, 100, 50, 30, 30, 8}, {0, 0, 0.8, 0, 0, 0.4}};
+    bough_tree_def def = {.n_bodies = 1,
+                          .bodies = &b,
+                          .n_markers = 2,
+                          .markers = markers,
+                          .n_bushings = 1,
+                          .bushings = &bushing};
     fixture f = build(&def, 1e-10);
     double t = 2.3, delta = 0.2, w = sqrt(25 - delta * delta);
     go_to(&f, t);
@@ -120,8 +131,7 @@ static void elements_act_and_react(void **state) {
 static bough_twist moved(const double *change) { return bough_twist_load(change); }
 
 static bough_transform shifted(bough_transform x, bough_twist by) {
-    bough_transform step = {by.linear, bough_rotation_matrix(
-                                           bough_quaternion_exponential(by.angular))};
+    bough_transform step = {by.linear, bough_rotation_matrix(bough_quaternion_exponential(by.angular))};
     return bough_transform_compose(x, step);
 }
 
@@ -158,8 +168,8 @@ static void changes_are_derivatives(void **state) {
         for (int i = 0; i < 2; i++) f.data->pose[i] = pose[i], f.data->twist[i] = twist[i];
         bough_twist s[2], r[2];
         for (int end = 0; end < 2; end++) {
-            const bough_frame *frame = k >= 0 ? &f.tree->markers[f.tree->applied[k].marker]
-                                              : bough_element_frame(f.tree, e, end);
+            const bough_frame *frame =
+                k >= 0 ? &f.tree->markers[f.tree->applied[k].marker] : bough_element_frame(f.tree, e, end);
             bough_twist none = {{0, 0, 0}, {0, 0, 0}};
             bool ground = frame->link < 0;
             s[end] = ground ? none : bough_twist_to_child(&frame->placement, shift[frame->link]);
@@ -202,8 +212,8 @@ static void wrench_in_ground_axes_pushes_straight(void **state) {
     const bough_marker_def marker = {"rim", 0, placed(0.5, 0, 0, 1)};
     const bough_applied_def applied = {
         0, {{6, 0, 0}, {0, 0, 0}}, true, {.n = 3, .times = times, .values = values}};
-    bough_tree_def def = {.n_bodies = 1, .bodies = &b, .n_markers = 1, .markers = &marker,
-                          .n_applied = 1, .applied = &applied};
+    bough_tree_def def = {
+        .n_bodies = 1, .bodies = &b, .n_markers = 1, .markers = &marker, .n_applied = 1, .applied = &applied};
     fixture f = build(&def, 1e-10);
     go_to(&f, 1);
     check_near(f.m->state[0], 3.0 / 6, 1e-8, 0); // ∫∫ 3t

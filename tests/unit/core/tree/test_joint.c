@@ -1,21 +1,19 @@
 // Joints: poses by hand, and N(q) against differences of the pose.
 #include "tests/unit/check.h"
 
-#include "core/tree/joint.h"
 #include "core/base/rotation.h"
+#include "core/tree/joint.h"
 
 #include <string.h>
 
-static const bough_joint_kind kinds[] = {BOUGH_JOINT_FIXED, BOUGH_JOINT_REVOLUTE,
-                                         BOUGH_JOINT_PRISMATIC, BOUGH_JOINT_SPHERICAL,
-                                         BOUGH_JOINT_FREE, BOUGH_JOINT_CYLINDRICAL,
+static const bough_joint_kind kinds[] = {BOUGH_JOINT_FIXED,     BOUGH_JOINT_REVOLUTE, BOUGH_JOINT_PRISMATIC,
+                                         BOUGH_JOINT_SPHERICAL, BOUGH_JOINT_FREE,     BOUGH_JOINT_CYLINDRICAL,
                                          BOUGH_JOINT_PLANAR};
 enum { N_KINDS = sizeof kinds / sizeof *kinds };
 
 // The quaternions have length 2: only their direction may count.
 static const double coordinates[N_KINDS][7] = {
-    {0}, {0.7}, {-0.4}, {1, -1, 1, 1}, {0.3, 0.2, -0.5, 1, 1, -1, 1},
-    {0.4, -1.3}, {0.6, -0.2, 2.1}};
+    {0}, {0.7}, {-0.4}, {1, -1, 1, 1}, {0.3, 0.2, -0.5, 1, 1, -1, 1}, {0.4, -1.3}, {0.6, -0.2, 2.1}};
 static const double speeds[6] = {0.3, -0.8, 0.5, 1.2, -0.6, 0.9};
 
 static bough_joint joint_of(bough_joint_kind kind) {
@@ -79,16 +77,14 @@ static void rate_moves_the_pose_by_the_twist(void **state) {
         bough_transform side[2], here = bough_joint_pose(&j, coordinates[k]);
         bough_joint_rate(&j, coordinates[k], speeds, rate);
         for (int s = 0; s < 2; s++) {
-            for (int i = 0; i < 7; i++)
-                q[i] = coordinates[k][i];
+            for (int i = 0; i < 7; i++) q[i] = coordinates[k][i];
             for (int i = 0; i < bough_joint_n_coordinates(kinds[k]); i++) {
                 q[i] += (s ? h : -h) * rate[i];
             }
             side[s] = bough_joint_pose(&j, q);
         }
         bough_twist v = bough_joint_twist(&j, speeds);
-        bough_vec3 moved =
-            bough_mat3_tmul(here.rotation, bough_sub(side[1].position, side[0].position));
+        bough_vec3 moved = bough_mat3_tmul(here.rotation, bough_sub(side[1].position, side[0].position));
         bough_vec3 turned = bough_quaternion_logarithm(bough_quaternion_of_matrix(
             bough_mat3_product(bough_mat3_transpose(side[0].rotation), side[1].rotation)));
         check_near(bough_norm(bough_axpy(-2 * h, v.linear, moved)), 0, 0, 1e-8 * 2 * h);
@@ -105,8 +101,7 @@ static void speed_inverts_the_rate(void **state) {
         bough_joint_rate(&j, coordinates[k], speeds, rate);
         int row = kinds[k] == BOUGH_JOINT_FREE ? 3 : 0; // stretching a quaternion is no motion
         if (bough_joint_n_coordinates(kinds[k]) >= 4) {
-            for (int i = row; i < row + 4; i++)
-                rate[i] += 0.3 * coordinates[k][i];
+            for (int i = row; i < row + 4; i++) rate[i] += 0.3 * coordinates[k][i];
         }
         bough_joint_speed(&j, coordinates[k], rate, v);
         for (int i = 0; i < bough_joint_n_speeds(kinds[k]); i++) {
@@ -123,8 +118,7 @@ static void force_is_dual_to_the_twist(void **state) {
         bough_joint j = joint_of(kinds[k]);
         double tau[6] = {0}, power = 0;
         bough_joint_force(&j, f, tau);
-        for (int i = 0; i < bough_joint_n_speeds(kinds[k]); i++)
-            power += tau[i] * speeds[i];
+        for (int i = 0; i < bough_joint_n_speeds(kinds[k]); i++) power += tau[i] * speeds[i];
         check_near(power, bough_power(bough_joint_twist(&j, speeds), f), 1e-14, 0);
     }
 }
@@ -141,8 +135,7 @@ static void normalising_keeps_the_pose(void **state) {
     check_near(q[2], -0.5, 0, 0);    // the position is left alone
     for (int k = 0; k < 1000; k++) { // twice is as once
         double once[7], twice[7];
-        for (int i = 0; i < 7; i++)
-            once[i] = sin(1.3 * k + 0.7 * i * i);
+        for (int i = 0; i < 7; i++) once[i] = sin(1.3 * k + 0.7 * i * i);
         bough_joint_normalise(&j, once);
         memcpy(twice, once, sizeof once);
         bough_joint_normalise(&j, twice);
@@ -183,8 +176,7 @@ static void inertia_moves_with_the_frame(void **state) {
     }
     bough_inertia parent = bough_inertia_to_parent(&x, child);
     bough_twist inside = bough_twist_to_child(&x, some_twist);
-    check_near(0.5 * bough_power(some_twist, bough_inertia_mul(&parent, some_twist)), energy, 1e-14,
-               0);
+    check_near(0.5 * bough_power(some_twist, bough_inertia_mul(&parent, some_twist)), energy, 1e-14, 0);
     check_near(0.5 * bough_power(inside, bough_inertia_mul(&child, inside)), energy, 1e-14, 0);
 }
 

@@ -5,9 +5,9 @@
 #include "tests/unit/tree_measure.h"
 
 #include "core/base/base.h"
+#include "core/base/rotation.h"
 #include "core/tree/dynamics.h"
 #include "core/tree/loop.h"
-#include "core/base/rotation.h"
 #include "core/tree/tree.h"
 
 #include <stdlib.h>
@@ -37,9 +37,8 @@ static bough_frame_motion moving(double t, double seed) {
     double s = sin(seed + t), c = cos(seed + t);
     // the rotation by the vector t·w about a turned start: Ω = w in body axes
     bough_vec3 w = bough_v3(0.7 * seed, -0.4, 0.9);
-    bough_quaternion p =
-        bough_quaternion_product(bough_quaternion_exponential(bough_v3(0.3, seed, -0.2)),
-                                 bough_quaternion_exponential(bough_scale(t, w)));
+    bough_quaternion p = bough_quaternion_product(bough_quaternion_exponential(bough_v3(0.3, seed, -0.2)),
+                                                  bough_quaternion_exponential(bough_scale(t, w)));
     m.pose.rotation = bough_rotation_matrix(p);
     m.pose.position = bough_v3(s, 0.5 * c, s * c);
     bough_vec3 velocity = bough_v3(c, -0.5 * s, c * c - s * s);
@@ -77,8 +76,8 @@ static void rates_and_bias_are_the_derivatives(void **state) {
             double slope = (at[2][r].value - at[0][r].value) / (2 * h);
             double second_slope = (at[2][r].rate - at[0][r].rate) / (2 * h);
             check_near(row->rate, slope, 0, 1e-7);
-            check_near(bough_power(va, row->wrench[0]) + bough_power(vb, row->wrench[1]), row->rate,
-                       0, 1e-13);
+            check_near(bough_power(va, row->wrench[0]) + bough_power(vb, row->wrench[1]), row->rate, 0,
+                       1e-13);
             double second_rate =
                 bough_power(aa, row->wrench[0]) + bough_power(ab, row->wrench[1]) + row->bias;
             check_near(second_rate, second_slope, 0, 1e-6);
@@ -141,8 +140,7 @@ static void base_and_arm(bough_body_def *b, bough_joint_kind kind) {
     b[1].second_axis = bough_cross(b[1].axis, bough_v3(1, 0.2, 0.5));
     for (int k = 0; k < BOUGH_JOINT_COORDINATES; k++)
         b[1].coordinates[k] = kind == BOUGH_JOINT_SPHERICAL ? k == 0 : 0.1 * k + 0.2;
-    for (int k = 0; k < BOUGH_JOINT_SPEEDS; k++)
-        b[1].speeds[k] = 0.6 - 0.25 * k;
+    for (int k = 0; k < BOUGH_JOINT_SPEEDS; k++) b[1].speeds[k] = 0.6 - 0.25 * k;
     b[1].mass = 1, b[1].mass_centre = bough_v3(0.3, -0.2, 0.25);
     b[1].inertia = diagonal(0.05, 0.08, 0.06);
 }
@@ -271,8 +269,7 @@ static void make_windows(windows *w, int n, bough_joint_kind kind) {
         w->marker[2 * i].placement.position = bough_v3(1, 0, 0);
         w->marker[2 * i + 1] = (bough_marker_def){"top", i + 1, bough_transform_identity()};
         w->marker[2 * i + 1].placement.position = bough_v3(0, 0, 1);
-        w->closure[i] =
-            (bough_closure_def){"close", kind, {2 * i, 2 * i + 1}, {0, 1, 0}, {1, 0, 0}};
+        w->closure[i] = (bough_closure_def){"close", kind, {2 * i, 2 * i + 1}, {0, 1, 0}, {1, 0, 0}};
     }
     w->def = (bough_tree_def){.gravity = down,
                               .n_bodies = 2 * n + 1,
@@ -330,8 +327,7 @@ static void windows_pass_the_singular_position(void **state) {
     make_windows(&w, 1, BOUGH_JOINT_REVOLUTE);
     for (int solver = BOUGH_IDA; solver <= BOUGH_RADAU5; solver += BOUGH_RADAU5) {
         fixture f = build(&w.def, solver, 1e-9);
-        for (int k = 1; k <= 1000; k++)
-            advance(&f, 0.01 * k, k == 1);
+        for (int k = 1; k <= 1000; k++) advance(&f, 0.01 * k, k == 1);
         bough_transform a = bough_tree_frame_pose(f.data, &f.tree->bodies[0]);
         bough_vec3 top = bough_mat3_mul(a.rotation, bough_v3(0, 0, 1));
         print_message("top at %.9f %.9f\n", top.x, top.z);
@@ -368,8 +364,7 @@ static void closed_trees_fulfil_the_contract(void **state) {
         contract_point at = {0.2, y, input, 1e-5};
         contract_check(f.m, at, 0.07, 0.05);
         contract_set_state(f.m, at, 1e-4);
-        for (int i = 0; i < f.s.n_state; i++)
-            y[i] += 0.01 * sin(3.0 * i);
+        for (int i = 0; i < f.s.n_state; i++) y[i] += 0.01 * sin(3.0 * i);
         contract_check(f.m, at, 0.07, 0.05);
         bough_arena_destroy(open.arena);
         bough_arena_destroy(f.arena);
@@ -471,8 +466,7 @@ static void arches_are_assembled(void **state) {
     check_closed(&f, 1e-9);
     assert_int_equal(f.tree->closure_rank, 2);
     tree_sums start = tree_sum(f.tree, f.data);
-    for (int k = 1; k <= 20; k++)
-        advance(&f, 0.01 * k, k == 1);
+    for (int k = 1; k <= 20; k++) advance(&f, 0.01 * k, k == 1);
     check_closed(&f, 1e-6);
     tree_sums end = tree_sum(f.tree, f.data);
     check_near(end.kinetic + end.potential, start.kinetic + start.potential, 0, 1e-5);

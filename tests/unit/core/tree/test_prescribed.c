@@ -9,7 +9,7 @@ static const char *const scene = "tests/data/scenes/pitching.yaml";
 enum { MOST = 512, HUB = 0, STEERED = 1, RAMPED = 2 };
 
 typedef struct end {
-    int n;             // states of all members
+    int n; // states of all members
     double state[MOST];
 } end;
 
@@ -59,8 +59,7 @@ static void run(const char *scheme, const char *solver, const char *rtol, bool s
 
 static double distance(const end *a, const end *b) {
     double largest = 0;
-    for (int i = 0; i < a->n; i++)
-        largest = fmax(largest, fabs(a->state[i] - b->state[i]));
+    for (int i = 0; i < a->n; i++) largest = fmax(largest, fabs(a->state[i] - b->state[i]));
     return largest;
 }
 
@@ -70,8 +69,7 @@ enum { SOLVERS = sizeof solvers / sizeof *solvers };
 
 // Speeds are of up to 20 m/s; a spline's acceleration jumps at the ends of the table.
 static void check_schemes(bool steered) {
-    static const char *const schemes[] = {"ramp", "extrapolated", "iterated", "gauss-seidel",
-                                          "frozen"};
+    static const char *const schemes[] = {"ramp", "extrapolated", "iterated", "gauss-seidel", "frozen"};
     static const double bound[] = {1e-4, 5e-4, 1e-3, 5e-3, 5e-3};
     end exact, found;
     run("monolithic", "rosenbrock", "1e-9", steered, &exact);

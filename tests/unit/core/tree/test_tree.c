@@ -133,8 +133,7 @@ static void sprung_joint_oscillates_and_decays(void **state) {
     for (int k = 1; k <= 8; k++) {
         double t = 0.25 * k * period, decay = exp(-delta * t);
         advance(&f, t, k == 1);
-        double expected =
-            0.7 * (1 - decay * (cos(omega * t) + delta / omega * sin(omega * t)));
+        double expected = 0.7 * (1 - decay * (cos(omega * t) + delta / omega * sin(omega * t)));
         check_near(f.m->state[0], expected, 0, 1e-7);
         check_near(f.m->state[1], 0.7 * decay * 16 / omega * sin(omega * t), 0, 1e-6);
     }
@@ -178,8 +177,8 @@ static void two_bodies_swing_on_a_spring(void **state) {
     }
     b[1].coordinates[0] = 2.5, b[0].speeds[4] = 1; // the turning marker feels it all the same
     bough_spring_def spring = {{0, 1}, 12, 0, 2};
-    bough_tree_def def = {.n_bodies = 2, .bodies = b, .n_markers = 2, .markers = markers,
-                          .n_springs = 1, .springs = &spring};
+    bough_tree_def def = {
+        .n_bodies = 2, .bodies = b, .n_markers = 2, .markers = markers, .n_springs = 1, .springs = &spring};
     fixture f = build(&def, 1e-10);
     double omega = sqrt(12 / 0.75), t = 1.3;
     advance(&f, t, true);
@@ -266,7 +265,8 @@ static void tabulated_joint_load_spins_up(void **state) {
     const double times[] = {1, 3}, values[] = {8, 0};
     bough_body_def b = bough_body_def_default();
     b.name = "rotor", b.kind = BOUGH_JOINT_REVOLUTE, b.inertia = diagonal(1, 1, 4);
-    bough_joint_load_def load = {.body = 0, .value = 1, .schedule = {.n = 2, .times = times, .values = values}};
+    bough_joint_load_def load = {
+        .body = 0, .value = 1, .schedule = {.n = 2, .times = times, .values = values}};
     bough_tree_def def = {.n_bodies = 1, .bodies = &b, .n_loads = 1, .loads = &load};
     fixture f = build(&def, 1e-9);
     advance(&f, 1, true);
@@ -292,10 +292,10 @@ static void welded_bodies_move_as_one(void **state) {
     bough_body_def parts[3] = {extra, tower, whole}; // children before parents
     parts[2].parent = 1;
     parts[2].joint = bough_transform_compose(bough_transform_inverse(tower.joint), whole.joint);
-    bough_inertia sum = bough_inertia_add(
-        bough_inertia_of(whole.mass, whole.mass_centre, whole.inertia),
-        bough_inertia_to_parent(&extra.joint,
-                                bough_inertia_of(extra.mass, extra.mass_centre, extra.inertia)));
+    bough_inertia sum =
+        bough_inertia_add(bough_inertia_of(whole.mass, whole.mass_centre, whole.inertia),
+                          bough_inertia_to_parent(
+                              &extra.joint, bough_inertia_of(extra.mass, extra.mass_centre, extra.inertia)));
     whole.mass = sum.mass;
     whole.mass_centre = bough_scale(1 / sum.mass, sum.first);
     bough_mat3 shift = bough_steiner(bough_scale(-0.5, sum.first), whole.mass_centre);
@@ -307,8 +307,7 @@ static void welded_bodies_move_as_one(void **state) {
     assert_int_equal(b.tree->n_links, 1);
     advance(&a, 1, true);
     advance(&b, 1, true);
-    for (int i = 0; i < 7; i++)
-        check_near(b.m->state[i], a.m->state[i], 0, 1e-6);
+    for (int i = 0; i < 7; i++) check_near(b.m->state[i], a.m->state[i], 0, 1e-6);
     assert_true(fabs(a.m->state[1] - a.tree->initial[1]) > 1e-2);
     bough_arena_destroy(a.arena);
     bough_arena_destroy(b.arena);
@@ -321,8 +320,8 @@ static void root_inertia_is_felt_as_a_welded_body(void **state) {
     bough_body_def b[2] = {random_body(&seed, "hub", BOUGH_GROUND, BOUGH_JOINT_FREE),
                            random_body(&seed, "root", 0, BOUGH_JOINT_FIXED)};
     bough_marker_def marker = {"flange", 0, b[1].joint};
-    bough_port_def port = {
-        .name = "blade", .root = bough_inertia_of(b[1].mass, b[1].mass_centre, b[1].inertia)};
+    bough_port_def port = {.name = "blade",
+                           .root = bough_inertia_of(b[1].mass, b[1].mass_centre, b[1].inertia)};
     bough_tree_def welded = {.gravity = down_z, .n_bodies = 2, .bodies = b};
     bough_tree_def ported = {.gravity = down_z,
                              .n_bodies = 1,
@@ -335,8 +334,7 @@ static void root_inertia_is_felt_as_a_welded_body(void **state) {
     double a[MOST], c[MOST], zero[6] = {0};
     f.s.ops->derivative(f.s.self, 0, f.m->state, NULL, a);
     g.s.ops->derivative(g.s.self, 0, g.m->state, zero, c);
-    for (int i = 0; i < f.s.n_state; i++)
-        check_near(c[i], a[i], 1e-12, 1e-12);
+    for (int i = 0; i < f.s.n_state; i++) check_near(c[i], a[i], 1e-12, 1e-12);
     bough_arena_destroy(f.arena);
     bough_arena_destroy(g.arena);
 }

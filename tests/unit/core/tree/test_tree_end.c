@@ -4,8 +4,8 @@
 #include "tests/unit/tree_measure.h"
 
 #include "core/base/base.h"
-#include "core/tree/dynamics.h"
 #include "core/base/rotation.h"
+#include "core/tree/dynamics.h"
 #include "core/tree/tree.h"
 
 #include <string.h>
@@ -37,11 +37,10 @@ static bough_body_def body(const char *name, int parent, bough_joint_kind kind, 
 
 // A flexible body hangs on a body that is welded to a hinged one, and ends where a hinge follows.
 static bough_status create(fixture *f, bough_joint_kind kind) {
-    bough_body_def bodies[BODIES] = {
-        [BASE] = body("base", BOUGH_GROUND, BOUGH_JOINT_REVOLUTE, 2),
-        [WELDED] = body("welded", BASE, BOUGH_JOINT_FIXED, 0),
-        [END] = body("end", WELDED, kind, 0),
-        [TOP] = body("top", END, BOUGH_JOINT_REVOLUTE, 3)};
+    bough_body_def bodies[BODIES] = {[BASE] = body("base", BOUGH_GROUND, BOUGH_JOINT_REVOLUTE, 2),
+                                     [WELDED] = body("welded", BASE, BOUGH_JOINT_FIXED, 0),
+                                     [END] = body("end", WELDED, kind, 0),
+                                     [TOP] = body("top", END, BOUGH_JOINT_REVOLUTE, 3)};
     bodies[END].coordinates[3] = 1;
     const bough_marker_def marker = {"root", WELDED, bough_transform_identity()};
     const bough_inertia vertex = {0.7, {0.1, 0, -0.2}, {{0.3, 0, 0}, {0, 0.4, 0}, {0, 0, 0.5}}};
@@ -94,8 +93,8 @@ static void outputs_are_the_motion_in_the_frame_of_the_flexible_body(void **cont
     const double *end = out + BOUGH_PORT_OUTPUTS;
     bough_tree_kinematics(f.tree, f.state, f.data);
     bough_body_def joint = body("", 0, BOUGH_JOINT_FREE, 0); // its placement
-    bough_transform frame = bough_transform_compose(
-        bough_tree_frame_pose(f.data, &f.tree->bodies[WELDED]), joint.joint);
+    bough_transform frame =
+        bough_transform_compose(bough_tree_frame_pose(f.data, &f.tree->bodies[WELDED]), joint.joint);
     bough_transform pose = bough_tree_frame_pose(f.data, &f.tree->bodies[END]);
     bough_twist twist = bough_tree_frame_velocity(f.data, &f.tree->bodies[END]);
     bough_transform local = bough_transform_compose(bough_transform_inverse(frame), pose);
@@ -103,8 +102,8 @@ static void outputs_are_the_motion_in_the_frame_of_the_flexible_body(void **cont
     bough_mat3 r = bough_rotation_matrix(p);
     bough_vec3 u = bough_mat3_tmul(frame.rotation, twist.linear);
     bough_vec3 w = bough_mat3_tmul(pose.rotation, twist.angular);
-    const double expected[9] = {u.x, u.y, u.z, w.x, w.y, w.z,
-                                local.position.x, local.position.y, local.position.z};
+    const double expected[9] = {
+        u.x, u.y, u.z, w.x, w.y, w.z, local.position.x, local.position.y, local.position.z};
     for (int k = 0; k < 9; k++) check_near(end[k], expected[k], 1e-13, 1e-13);
     check_near(bough_norm(bough_sub(r.c1, local.rotation.c1)), 0, 0, 1e-13);
     check_near(bough_norm(bough_sub(r.c2, local.rotation.c2)), 0, 0, 1e-13);

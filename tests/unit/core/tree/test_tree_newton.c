@@ -3,9 +3,9 @@
 #include "tests/unit/tree_measure.h"
 
 #include "core/base/base.h"
+#include "core/base/rotation.h"
 #include "core/tree/dynamics.h"
 #include "core/tree/force.h"
-#include "core/base/rotation.h"
 #include "core/tree/tree.h"
 #include "core/tree/tree_newton.h"
 
@@ -72,8 +72,8 @@ static fixture everything(void) {
     bough_body_def bodies[10];
     for (int i = 0; i < 10; i++) bodies[i] = body(&seed, parents[i], kinds[i]);
     bodies[9].spring = (bough_joint_spring){.stiffness = 7, .damping = 0.5, .rest = 0.3};
-    bodies[3].spring = (bough_joint_spring){
-        .stiffness = 3, .damping = 1, .low = -2, .high = -1.2, .stop_stiffness = 20};
+    bodies[3].spring =
+        (bough_joint_spring){.stiffness = 3, .damping = 1, .low = -2, .high = -1.2, .stop_stiffness = 20};
     bodies[0].motion = (bough_motion_def){true, true, 0.4, 2, 0, 1, 0, NULL, NULL};
     bodies[8].motion = (bough_motion_def){true, false, -0.4, 0.6, 0, 1, 0, NULL, NULL};
     const bough_marker_def markers[] = {{"a", 2, placed(&seed)},
@@ -82,17 +82,24 @@ static fixture everything(void) {
                                         {"d", BOUGH_GROUND, placed(&seed)},
                                         {"e", 1, placed(&seed)}};
     const bough_spring_def springs[] = {{{0, 1}, 20, 0.4, 0.5}, {{2, 3}, 9, 0.2, 1.5}};
-    const bough_bushing_def bushings[] = {
-        {{4, 2}, {8, 5, 3, 4, 6, 2}, {0.4, 0.2, 0.3, 0.2, 0.1, 0.5}},
-        {{3, 1}, {3, 5, 7, 2, 5, 4}, {0.1, 0.2, 0.3, 0.1, 0.4, 0.2}}};
+    const bough_bushing_def bushings[] = {{{4, 2}, {8, 5, 3, 4, 6, 2}, {0.4, 0.2, 0.3, 0.2, 0.1, 0.5}},
+                                          {{3, 1}, {3, 5, 7, 2, 5, 4}, {0.1, 0.2, 0.3, 0.1, 0.4, 0.2}}};
     const bough_schedule always = {.start = 0};
-    const bough_applied_def applied[] = {
-        {0, {{1, -2, 3}, {0.4, 0.5, -0.6}}, true, always},
-        {2, {{2, 1, -1}, {-0.4, 0.3, 0.6}}, false, always}};
+    const bough_applied_def applied[] = {{0, {{1, -2, 3}, {0.4, 0.5, -0.6}}, true, always},
+                                         {2, {{2, 1, -1}, {-0.4, 0.3, 0.6}}, false, always}};
     const bough_end_def ends[] = {{"end", 7, {.mass = 0.3}}};
-    bough_tree_def def = {.gravity = {1, -2, -9}, .n_bodies = 10, .bodies = bodies, .n_markers = 5,
-                          .markers = markers, .n_springs = 2, .springs = springs, .n_bushings = 2,
-                          .bushings = bushings, .n_applied = 2, .applied = applied, .n_ends = 1,
+    bough_tree_def def = {.gravity = {1, -2, -9},
+                          .n_bodies = 10,
+                          .bodies = bodies,
+                          .n_markers = 5,
+                          .markers = markers,
+                          .n_springs = 2,
+                          .springs = springs,
+                          .n_bushings = 2,
+                          .bushings = bushings,
+                          .n_applied = 2,
+                          .applied = applied,
+                          .n_ends = 1,
                           .ends = ends};
     return build(&def);
 }
@@ -154,8 +161,7 @@ static void known_accelerations_are_forces(void **state) {
     for (int i = 0; i < f.tree->n_links; i++) {
         if (f.tree->links[i].motion != NULL) a[f.tree->links[i].first_speed] = 0;
     }
-    assert_true(
-        bough_tree_newton_setup(f.newton, f.data, 0.3, input, f.tree->initial, rate, 20));
+    assert_true(bough_tree_newton_setup(f.newton, f.data, 0.3, input, f.tree->initial, rate, 20));
     bough_tree_kinematics(f.tree, f.tree->initial, f.data);
     tree_mass_matrix(f.tree, f.data, mass);
     for (int i = 0; i < n_v; i++) {

@@ -1,6 +1,6 @@
 // The tree behind the contract: copies, histories, ports.
-#include "tests/unit/rigid_tree.h"
 #include "tests/unit/contract.h"
+#include "tests/unit/rigid_tree.h"
 #include "tests/unit/tree_measure.h"
 
 static void tree_fulfils_the_contract(void **state) {
@@ -21,8 +21,7 @@ static void restored_copies_repeat_bit_by_bit(void **state) {
     fixture f = everything(1e-7);
     int n = f.s.n_state;
     double coefficient[48] = {0}, first[MOST], second[MOST];
-    for (int i = 0; i < 24; i++)
-        coefficient[i] = some_input[i % 12];
+    for (int i = 0; i < 24; i++) coefficient[i] = some_input[i % 12];
     bough_signal signal = {12, 0, 0.5, coefficient};
     bough_status status = bough_member_advance(f.m, 0.2, &signal, true);
     assert_int_equal(status.code, BOUGH_OK);
@@ -48,8 +47,7 @@ static void radau_goes_on_from_a_copy_as_if_nothing_had_been(void **state) {
     fixture f = everything_with(BOUGH_RADAU5, 1e-7), tight = everything(1e-11);
     size_t n = (size_t)f.s.n_state * sizeof(double);
     double coefficient[48] = {0}, first[MOST];
-    for (int i = 0; i < 24; i++)
-        coefficient[i] = some_input[i % 12];
+    for (int i = 0; i < 24; i++) coefficient[i] = some_input[i % 12];
     bough_signal signal = {12, 0, 1, coefficient};
     for (int k = 1; k <= 25; k++) {
         char *copy = member_save(f.arena, f.m);
@@ -62,8 +60,7 @@ static void radau_goes_on_from_a_copy_as_if_nothing_had_been(void **state) {
     }
     bough_member_advance(tight.m, 0.3, &signal, true);
     bough_member_advance(tight.m, 0.5, &signal, true);
-    for (int i = 0; i < f.s.n_state; i++)
-        check_near(f.m->state[i], tight.m->state[i], 1e-6, 1e-6);
+    for (int i = 0; i < f.s.n_state; i++) check_near(f.m->state[i], tight.m->state[i], 1e-6, 1e-6);
     bough_arena_destroy(f.arena);
     bough_arena_destroy(tight.arena);
 }
@@ -74,8 +71,7 @@ static void kept_history_keeps_the_accuracy(void **state) {
     fixture f = everything(1e-7), tight = everything(1e-11);
     bough_statistics count;
     double coefficient[48] = {0};
-    for (int i = 0; i < 24; i++)
-        coefficient[i] = some_input[i % 12];
+    for (int i = 0; i < 24; i++) coefficient[i] = some_input[i % 12];
     bough_signal signal = {12, 0, 1, coefficient};
     for (int k = 1; k <= 25; k++) {
         bough_status status = bough_member_advance(f.m, 0.02 * k, &signal, k == 1);
@@ -83,8 +79,7 @@ static void kept_history_keeps_the_accuracy(void **state) {
     }
     bough_member_advance(tight.m, 0.3, &signal, true); // the ramp's end is a kink
     bough_member_advance(tight.m, 0.5, &signal, true);
-    for (int i = 0; i < f.s.n_state; i++)
-        check_near(f.m->state[i], tight.m->state[i], 1e-5, 1e-5);
+    for (int i = 0; i < f.s.n_state; i++) check_near(f.m->state[i], tight.m->state[i], 1e-5, 1e-5);
     count = bough_member_statistics(f.m);
     assert_int_equal(count.starts, 1);
     assert_true(count.steps > 0 && count.jacobians > 0 && count.derivatives > count.steps);
@@ -100,13 +95,11 @@ static void external_wrench_acts_as_a_port_does(void **state) {
     bough_tree_set_wrench(f.tree, 2, 0, NULL, NULL, NULL);
     f.s.ops->derivative(f.s.self, 0.4, f.m->state, some_input, a);
     for (int m = 0; m < 2; m++) {
-        for (int i = 0; i < 6; i++)
-            later[i] = some_input[6 * m + i] - 0.3 * rate[i];
+        for (int i = 0; i < 6; i++) later[i] = some_input[6 * m + i] - 0.3 * rate[i];
         bough_tree_set_wrench(f.tree, m, 0.1, later, rate, NULL);
     }
     f.s.ops->derivative(f.s.self, 0.4, f.m->state, zero, b);
-    for (int i = 0; i < f.s.n_state; i++)
-        check_near(b[i], a[i], 1e-11, 1e-11);
+    for (int i = 0; i < f.s.n_state; i++) check_near(b[i], a[i], 1e-11, 1e-11);
     bough_arena_destroy(f.arena);
 }
 
@@ -119,8 +112,7 @@ static void frame_velocity_is_the_rate_of_the_pose(void **state) {
     bough_transform pose[2];
     f.s.ops->derivative(f.s.self, 0, f.m->state, some_input, rate);
     for (int side = 0; side < 2; side++) {
-        for (int i = 0; i < f.s.n_state; i++)
-            y[i] = f.m->state[i] + (side ? h : -h) * rate[i];
+        for (int i = 0; i < f.s.n_state; i++) y[i] = f.m->state[i] + (side ? h : -h) * rate[i];
         bough_tree_kinematics(f.tree, y, f.data);
         pose[side] = bough_tree_frame_pose(f.data, marker);
     }

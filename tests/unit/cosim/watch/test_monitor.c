@@ -10,8 +10,7 @@ static bough_status run(bough_two_mass m, const char *scheme, double macro_step,
     def.macro_step = macro_step;
     def.duration = duration;
     bough_status status = bough_two_mass_build(&m, def);
-    while (bough_is_ok(&status) && !bough_master_done(m.master))
-        status = bough_step(m.master);
+    while (bough_is_ok(&status) && !bough_master_done(m.master)) status = bough_step(m.master);
     *stopped = m.master->time;
     bough_two_mass_destroy(&m);
     return status;
@@ -75,8 +74,7 @@ static void what_is_not_finite_is_told(void **state) {
 }
 
 // The fate of a run of 20 s: −1 stopped, else its largest motion relative to the start.
-static double fate(bough_two_mass m, const char *scheme, bough_exchange exchange,
-                   double macro_step) {
+static double fate(bough_two_mass m, const char *scheme, bough_exchange exchange, double macro_step) {
     bough_master_def def = bough_master_def_default();
     def.scheme.name = scheme;
     def.scheme.exchange = exchange;
@@ -106,9 +104,9 @@ typedef struct variant {
 // does not hold is stopped; 1e4 is what a first step of 13 radians throws the masses by.
 static void no_scheme_blows_up_in_silence(void **state) {
     (void)state;
-    static const variant tried[] = {
-        {.scheme = "frozen"}, {.scheme = "gauss-seidel"}, {.scheme = "extrapolated"},
-        {.scheme = "ramp"},   {.scheme = "iterated"},     {"iterated", BOUGH_EXCHANGE_WAVEFORM}};
+    static const variant tried[] = {{.scheme = "frozen"},       {.scheme = "gauss-seidel"},
+                                    {.scheme = "extrapolated"}, {.scheme = "ramp"},
+                                    {.scheme = "iterated"},     {"iterated", BOUGH_EXCHANGE_WAVEFORM}};
     unsigned seed = 1;
     int stopped = 0;
     for (int n = 0; n < 60; n++) {

@@ -1,7 +1,6 @@
 // Modal bodies against the rod they stand for, and against the laws of conservation.
 #include "tests/unit/check.h"
 
-#include "tests/verification/modal_static.h"
 #include "cosim/port.h"
 #include "flexbody/modal/modal_system.h"
 #include "flexbody/rod/rod_modes.h"
@@ -9,14 +8,14 @@
 #include "flexbody/section/section.h"
 #include "tests/unit/contract.h"
 #include "tests/unit/sample_rod.h"
+#include "tests/verification/modal_static.h"
 
 enum { N = 5 };
 
 static const double swaying[BOUGH_ROD_INPUTS] = {0.4, -0.3, 0.7, 0.5, -0.8, 0.6, 1, -2, -9};
 static const bough_modal_options everything = {6 * N, true, false};
 
-static bough_modal_model *general(bough_arena *arena, int n, int pieces,
-                                  bough_modal_options options) {
+static bough_modal_model *general(bough_arena *arena, int n, int pieces, bough_modal_options options) {
     bough_rod_def def = sample_def(n, sample_general_arrays(arena, n), false);
     bough_modal_model *m = NULL;
     bough_status status = bough_modal_create(arena, &def, pieces, options, &m);
@@ -25,8 +24,7 @@ static bough_modal_model *general(bough_arena *arena, int n, int pieces,
     return m;
 }
 
-static bough_modal_body *body_of(bough_arena *arena, const bough_modal_model *m,
-                                 const double *input) {
+static bough_modal_body *body_of(bough_arena *arena, const bough_modal_model *m, const double *input) {
     return bough_modal_body_create(arena, m, input);
 }
 
@@ -43,8 +41,8 @@ static void check_contract(int pieces, bough_modal_options options) {
     for (int k = 0; k < m->n_state; k++) state[k] += 0.1 * s.scale[k] * sample_random(&seed);
     sample_loads(m->rod, bough_modal_body_loads(body));
     contract_point at = {0.5, state, swaying, 1e-5};
-    bough_member *body_member = member_of(
-        arena, &s, (bough_integrator_options){.kind = BOUGH_CVODE_BDF, .rtol = 1e-8});
+    bough_member *body_member =
+        member_of(arena, &s, (bough_integrator_options){.kind = BOUGH_CVODE_BDF, .rtol = 1e-8});
     contract_check(body_member, at, 0.03, 0.01);
     contract_set_state(body_member, at, 1e-5);
     bough_arena_destroy(arena);
@@ -137,12 +135,11 @@ enum { SEGMENTS = 16, WANTED = 8 };
 
 // A blade-like bar along z, 60 m long: soft in x, stiffer in y, no damping.
 static bough_rod_def bar_def(bough_arena *arena) {
-    bough_section_station section = {.stiffness = {[0] = 1e9, [6] = 1e9, [11] = 8e9, [15] = 4e9,
-                                                   [18] = 1e9, [20] = 1e8},
-                                     .mass = 300,
-                                     .inertia = {400, 100, 0, 500}};
-    bough_section_table table = {
-        .name = "bar", .n_station = 1, .station = &section, .length = 60};
+    bough_section_station section = {
+        .stiffness = {[0] = 1e9, [6] = 1e9, [11] = 8e9, [15] = 4e9, [18] = 1e9, [20] = 1e8},
+        .mass = 300,
+        .inertia = {400, 100, 0, 500}};
+    bough_section_table table = {.name = "bar", .n_station = 1, .station = &section, .length = 60};
     bough_rod_def def;
     bough_status s = bough_section_discretise(arena, &table, SEGMENTS, &def);
     assert_int_equal(s.code, BOUGH_OK);
@@ -197,8 +194,7 @@ static void frequencies(bar *b, const double *input, double *rod, double *modal)
     rest_modal(b, input);
     bough_status s = bough_rod_modes(b->arena, b->rod, &b->work, input, b->vertices, &list);
     assert_int_equal(s.code, BOUGH_OK);
-    s = bough_modal_frequencies(b->arena, b->modal, &b->loads, 0, input, b->state, WANTED, modal,
-                                &found);
+    s = bough_modal_frequencies(b->arena, b->modal, &b->loads, 0, input, b->state, WANTED, modal, &found);
     assert_int_equal(s.code, BOUGH_OK);
     assert_int_equal(list.found, WANTED);
     assert_int_equal(found, WANTED);
@@ -280,8 +276,7 @@ static void momentum(const bough_rod_model *rod, const double *state, double *to
     for (int i = 0; i < n; i++) {
         const double *y = state + i, *j = rod->vertex[i + 1].inertia;
         bough_vec3 x = {y[0], y[n], y[2 * n]};
-        bough_vec3 mu = bough_scale(rod->vertex[i + 1].mass,
-                                    bough_v3(y[7 * n], y[8 * n], y[9 * n]));
+        bough_vec3 mu = bough_scale(rod->vertex[i + 1].mass, bough_v3(y[7 * n], y[8 * n], y[9 * n]));
         bough_vec3 w = {y[10 * n], y[11 * n], y[12 * n]};
         bough_quaternion q = {y[3 * n], y[4 * n], y[5 * n], y[6 * n]};
         bough_vec3 h = {j[0] * w.x + j[3] * w.y + j[4] * w.z, j[3] * w.x + j[1] * w.y + j[5] * w.z,
@@ -305,8 +300,7 @@ static void lost(double small, double *force, double *moment) {
     }
     bough_rod_def def = sample_def(N, arrays, false);
     bough_modal_model *m = NULL;
-    bough_status status = bough_modal_create(arena, &def, 1, (bough_modal_options){4, false, true},
-                                             &m);
+    bough_status status = bough_modal_create(arena, &def, 1, (bough_modal_options){4, false, true}, &m);
     assert_int_equal(status.code, BOUGH_OK);
     bough_modal_chain chain;
     bough_rod_loads none;
@@ -354,7 +348,8 @@ static void few_shapes_keep_momentum(void **context) {
     check_near(moment[0] / moment[1], 4, 0.2, 0);
 }
 
-// Loads that bend over a step act as they are: the tip follows them whether the step is taken in one or in eight.
+// Loads that bend over a step act as they are: the tip follows them whether the step is taken in one or in
+// eight.
 static void loads_bend_over_a_step(void **context) {
     (void)context;
     const double still[BOUGH_ROD_INPUTS] = {0};
@@ -366,8 +361,8 @@ static void loads_bend_over_a_step(void **context) {
         bough_modal_body *body = body_of(arena, m, still);
         bough_modal_body_loads(body)->curve[m->rod->n] = 1e3; // along x at the tip
         bough_system s = bough_modal_body_system(body);
-        bough_member *member = member_of(
-            arena, &s, (bough_integrator_options){.kind = BOUGH_ROSENBROCK, .rtol = 1e-9});
+        bough_member *member =
+            member_of(arena, &s, (bough_integrator_options){.kind = BOUGH_ROSENBROCK, .rtol = 1e-9});
         bough_signal input = bough_port_signal(arena, BOUGH_ROD_INPUTS);
         for (int i = 0; i < parts[k]; i++) {
             input.t0 = 0.02 * i / parts[k];

@@ -27,8 +27,8 @@ static blade blade_with(int segments) {
     bough_scene *scene = NULL;
     bough_simulation *simulation = NULL;
     bough_rod_model *model = NULL;
-    bough_status s = bough_scene_read(b.arena, BOUGH_SOURCE_DIR "/tests/data/scenes/blade.yaml", NULL, 0,
-                                      &errors, &scene);
+    bough_status s =
+        bough_scene_read(b.arena, BOUGH_SOURCE_DIR "/tests/data/scenes/blade.yaml", NULL, 0, &errors, &scene);
     bough_errors_print(&errors, stderr);
     assert_int_equal(s.code, BOUGH_OK);
     scene->body[0].rod.n_segment = segments;
@@ -49,8 +49,7 @@ static blade blade_with(int segments) {
 static void solve(blade *b, bough_vec3 gravity) {
     bough_rod_static_options options = bough_rod_static_options_default();
     options.tolerance = 1e-9;
-    bough_status s =
-        rod_equilibrium(b->model, &b->loads, gravity, &options, &b->work, b->state);
+    bough_status s = rod_equilibrium(b->model, &b->loads, gravity, &options, &b->work, b->state);
     if (!bough_is_ok(&s)) print_error("%s\n", s.message);
     assert_int_equal(s.code, BOUGH_OK);
 }
@@ -137,8 +136,8 @@ static void frequencies(blade *b, double hertz[MODES]) {
     double *image = calloc((size_t)MODES * size, sizeof *image);
     double *x = calloc((size_t)size, sizeof *x), *mx = calloc((size_t)size, sizeof *mx);
     bough_block_tridiagonal *k = &b->work.tangent.blocks.position, *a = &b->work.tangent.matrix;
-    assert_true(bough_rod_linearise(b->model, &b->loads, 0, b->state, at_rest, &b->work.scratch,
-                                    &b->work.tangent));
+    assert_true(
+        bough_rod_linearise(b->model, &b->loads, 0, b->state, at_rest, &b->work.scratch, &b->work.tangent));
     for (int j = 0; j < n * BOUGH_BLOCK; j++) {
         a->lower[j] = -k->lower[j];
         a->diagonal[j] = -k->diagonal[j];
@@ -217,8 +216,7 @@ static const bough_rod_mode *modes_at(blade *b, double rpm) {
     bough_rod_static_options options = bough_rod_static_options_default();
     bough_rod_mode_list list = {.wanted = MODES};
     bough_rod_rest_state(b->model, input, b->state);
-    bough_status s =
-        bough_rod_steady(b->model, &b->loads, input, &options, &b->work, b->state);
+    bough_status s = bough_rod_steady(b->model, &b->loads, input, &options, &b->work, b->state);
     if (bough_is_ok(&s)) {
         s = bough_rod_modes(b->arena, b->model, &b->work, input, b->state, &list);
     }
@@ -234,8 +232,8 @@ static const bough_rod_mode *modes_at(blade *b, double rpm) {
 // increment, ten times Ω², has no counterpart and is not compared.
 static void rotation_stiffens_and_spin_softens_the_blade(void **context) {
     (void)context;
-    const double reference[5][2] = {{.68548, .73673}, {1.08323, 1.10962}, {1.94407, 2.00245},
-                                    {3.74204, 3.76835}, {4.38208, 4.43745}};
+    const double reference[5][2] = {
+        {.68548, .73673}, {1.08323, 1.10962}, {1.94407, 2.00245}, {3.74204, 3.76835}, {4.38208, 4.43745}};
     const double damping[6] = {.4685e-2, .4737e-2, 1.3021e-2, 1.6114e-2, 2.8268e-2, 3.8585e-2};
     const int edgewise[5] = {0, 1, 0, 1, 0};
     const double spin = 12.1 / 60;

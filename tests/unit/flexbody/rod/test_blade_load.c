@@ -27,8 +27,8 @@ static blade blade_with(int segments) {
     bough_errors errors = {.arena = b.arena};
     bough_scene *scene = NULL;
     bough_simulation *simulation = NULL;
-    bough_status s = bough_scene_read(b.arena, BOUGH_SOURCE_DIR "/tests/data/scenes/blade.yaml", NULL, 0,
-                                      &errors, &scene);
+    bough_status s =
+        bough_scene_read(b.arena, BOUGH_SOURCE_DIR "/tests/data/scenes/blade.yaml", NULL, 0, &errors, &scene);
     assert_int_equal(s.code, BOUGH_OK);
     scene->body[0].rod.n_segment = segments;
     s = bough_simulation_build(b.arena, scene, &simulation);

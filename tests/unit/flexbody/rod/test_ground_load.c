@@ -24,13 +24,15 @@ static void load_keeps_its_direction_while_the_arm_turns(void **context) {
         char scheme[64];
         snprintf(scheme, sizeof scheme, "simulation.coupling={scheme: %s}", schemes[k]);
         const char *const sets[] = {
-            scheme, "simulation.duration=1 s",
+            scheme,
+            "simulation.duration=1 s",
             "bodies[0].joint={kind: revolute, axis: y, parent: ground, placement: [rotate z 25 deg, "
             "rotate x 20 deg], motion: {angle: {from: 70 deg, to: 130 deg, ramp: [0, 0.9 s]}}}",
             apart,
             "bodies[0].rod.mass=[1e-3, 0, 0, 1e-7, 1e-7, 0]",
             "bodies[0].rod.stiffness=[1e9, 1e9, 1e9, 1e7, 1e7, 1e7]",
-            "loads[0]={body: arm, at: tip, force: [3, -2, -5], moment: [0.5, 2, -1]}", NULL};
+            "loads[0]={body: arm, at: tip, force: [3, -2, -5], moment: [0.5, 2, -1]}",
+            NULL};
         bough_arena *arena = bough_arena_create();
         bough_simulation *s = scene_build(arena, scene, sets);
         run_to_end(s);
@@ -74,17 +76,15 @@ static void load_of_a_weight_moves_a_pendulum_as_the_weight(void **context) {
     pendulum_swings_as_under_gravity("simulation.coupling={scheme: monolithic}", rod);
     pendulum_swings_as_under_gravity("simulation.coupling={scheme: ramp}", rod);
     pendulum_swings_as_under_gravity("simulation.coupling={scheme: iterated}", rod);
-    pendulum_swings_as_under_gravity("simulation.coupling={scheme: monolithic}",
-                                     "bodies[0].fidelity=modal");
+    pendulum_swings_as_under_gravity("simulation.coupling={scheme: monolithic}", "bodies[0].fidelity=modal");
 }
 
 // A load at the end of a rod that carries a body is a load on that body.
 static void load_at_a_carrying_end_is_one_on_what_it_carries(void **context) {
     (void)context;
-    const char *const on_rod[] = {
-        "loads[0]={body: arm, at: tip, force: [1, 2, -3], moment: [0.5, 2, -1]}", NULL};
-    const char *const on_body[] = {
-        "loads[0]={body: bob, force: [1, 2, -3], moment: [0.5, 2, -1]}", NULL};
+    const char *const on_rod[] = {"loads[0]={body: arm, at: tip, force: [1, 2, -3], moment: [0.5, 2, -1]}",
+                                  NULL};
+    const char *const on_body[] = {"loads[0]={body: bob, force: [1, 2, -3], moment: [0.5, 2, -1]}", NULL};
     bough_vec3 tip = tip_after(on_rod), expected = tip_after(on_body);
     check_near(bough_norm(bough_sub(tip, expected)), 0, 0, 1e-6);
 }
@@ -96,8 +96,7 @@ static void check_contract(const char *const *sets) {
     bough_simulation *s = scene_build(arena, scene, sets);
     for (int k = 0; k < 20; k++) scene_step(s);
     const bough_system *rod = &s->rod[0].system;
-    contract_point at = {s->master->time, s->rod[0].state,
-                         bough_simulation_rod_input(s, &s->beam[0]), 1e-5};
+    contract_point at = {s->master->time, s->rod[0].state, bough_simulation_rod_input(s, &s->beam[0]), 1e-5};
     contract_check_system(rod, at, 1e-3);
     contract_point tree = {s->master->time, s->leader.state, s->master->coupling->input, 1e-5};
     contract_check_system(&s->leader.system, tree, 1e-3);

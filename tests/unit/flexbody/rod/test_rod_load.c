@@ -51,8 +51,7 @@ static void resultant_of_a_point_load_is_the_load(void **context) {
         int n = 0;
         while (n < N - 1 && s >= m->span[n + 1]) n++;
         double xi = (s - m->span[n]) / (m->span[n + 1] - m->span[n]);
-        bough_vec3 at = bough_axpy(xi, bough_sub(m->position0[n + 1], m->position0[n]),
-                                   m->position0[n]);
+        bough_vec3 at = bough_axpy(xi, bough_sub(m->position0[n + 1], m->position0[n]), m->position0[n]);
         bough_vec3 force = {3, -2, 0.5}, moment = {1, 4, -0.7};
         check_vector(sum.force, force);
         check_vector(sum.moment, bough_add(moment, bough_cross(at, force)));
@@ -119,8 +118,7 @@ static void follower_is_lumped_in_section_axes(void **context) {
     bough_rod_lump(m, last, in_section, NULL, &follower);
     for (int c = 0; c < 6; c += 3) {
         const double *v = follower.value + c * s + N, *d = dead.value + c * s + N;
-        check_vector(bough_mat3_mul(r, bough_v3(v[0], v[s], v[2 * s])),
-                     bough_v3(d[0], d[s], d[2 * s]));
+        check_vector(bough_mat3_mul(r, bough_v3(v[0], v[s], v[2 * s])), bough_v3(d[0], d[s], d[2 * s]));
     }
     bough_arena_destroy(arena);
 }

@@ -29,8 +29,11 @@ typedef struct bar {
 
 static void build(bar *b, uniform u, int segments) {
     b->arena = bough_arena_create();
-    bough_section_station section = {.stiffness = {[0] = u.shear, [6] = u.shear, [11] = u.axial,
-                                                   [15] = u.bend_x, [18] = u.bend_y,
+    bough_section_station section = {.stiffness = {[0] = u.shear,
+                                                   [6] = u.shear,
+                                                   [11] = u.axial,
+                                                   [15] = u.bend_x,
+                                                   [18] = u.bend_y,
                                                    [20] = u.torsion},
                                      .mass = u.mass,
                                      .inertia = {u.inertia, u.inertia, 0, 2 * u.inertia}};
@@ -256,8 +259,8 @@ static void jacobian(bar *b, const double *input, double *matrix) {
         for (int side = 0; side < 2; side++) {
             memcpy(moved, b->state, sizeof moved);
             moved[j] += side == 0 ? eps : -eps;
-            assert_true(bough_rod_derivative(b->model, &b->loads, 0, moved, input,
-                                             &b->work.scratch, side == 0 ? high : low));
+            assert_true(bough_rod_derivative(b->model, &b->loads, 0, moved, input, &b->work.scratch,
+                                             side == 0 ? high : low));
         }
         for (int i = 0; i < STATES; i++) matrix[j * STATES + i] = (high[i] - low[i]) / (2 * eps);
     }
@@ -286,8 +289,7 @@ static void modes_are_eigenvalues_of_the_equation_of_motion(void **context) {
     b.state = bough_arena_doubles(b.arena, STATES);
     bough_rod_loads_init(&b.loads, b.arena, b.model);
     bough_rod_static_init(&b.work, b.arena, b.model);
-    double *follower =
-        bough_rod_loads_ramped(&b.loads, b.arena, b.model, true, &constant)->value;
+    double *follower = bough_rod_loads_ramped(&b.loads, b.arena, b.model, true, &constant)->value;
     for (int k = 0; k < 6 * b.model->stride; k++) {
         follower[k] = sample_random(&seed);
         b.loads.value[k] = sample_random(&seed);

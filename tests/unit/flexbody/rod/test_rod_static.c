@@ -133,10 +133,13 @@ static bent table_rod(bough_arena *arena, bough_section_table table, int n) {
 // A strip of 1.5 m, bending stiffness 2 and 36, torsional 3, its ends turned by `pretwist`.
 static bent strip_of(bough_arena *arena, int n, double pretwist) {
     const bough_section_station station[2] = {
-        {.stiffness = {1e8, 0, 0, 0, 0, 0, 1e8, 0, 0, 0, 0, 1e8, 0, 0, 0, 2, 0, 0, 36, 0, 3}, .mass = 1,
+        {.stiffness = {1e8, 0, 0, 0, 0, 0, 1e8, 0, 0, 0, 0, 1e8, 0, 0, 0, 2, 0, 0, 36, 0, 3},
+         .mass = 1,
          .inertia = {0.01, 0.01, 0, 0.02}},
-        {.position = {0, 0, 1.5}, .twist = pretwist,
-         .stiffness = {1e8, 0, 0, 0, 0, 0, 1e8, 0, 0, 0, 0, 1e8, 0, 0, 0, 2, 0, 0, 36, 0, 3}, .mass = 1,
+        {.position = {0, 0, 1.5},
+         .twist = pretwist,
+         .stiffness = {1e8, 0, 0, 0, 0, 0, 1e8, 0, 0, 0, 0, 1e8, 0, 0, 0, 2, 0, 0, 36, 0, 3},
+         .mass = 1,
          .inertia = {0.01, 0.01, 0, 0.02}}};
     return table_rod(arena, (bough_section_table){.name = "strip", .n_station = 2, .station = station}, n);
 }
@@ -316,8 +319,7 @@ static void slender_rod_takes_few_iterations(void **context) {
         bent b = straight_rod(arena, 200, 1, stiffness);
         bough_rod_static_options options = bough_rod_static_options_default();
         bough_vec3 weight = {100, 0, 0}; // of 1 kg/m
-        bough_status s =
-            rod_equilibrium(b.model, &b.loads, weight, &options, &b.work, b.state);
+        bough_status s = rod_equilibrium(b.model, &b.loads, weight, &options, &b.work, b.state);
         if (!bough_is_ok(&s)) print_error("%s\n", s.message);
         assert_int_equal(s.code, BOUGH_OK);
         assert_in_range(b.work.iterations, 2, 15);
