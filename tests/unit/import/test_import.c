@@ -251,7 +251,7 @@ static void trials_call_the_library(void **context) {
     (void)context;
     char line[512];
     const edit library = {"parts/servo.dat", "0   PCMode", line};
-    put_library(line, "third"); // reports a failure twice
+    put_library(line, "fifth"); // reports a failure in two trials, to the run and to its companion
     trial t = import(&library);
     assert_string_equal(t.status.message, "");
     assert_true(list_says(&t, "\ntried:\n  rtol 4.5e-4: "));
