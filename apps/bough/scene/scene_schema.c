@@ -134,11 +134,11 @@ static const bough_key simulation_keys[] = {
      .help = "largest estimated error of a channel of motion, relative to the channel's range; a run with a larger "
              "error ends with exit code 3 and names the cause, or warns if the mesh alone is the cause; 0: no bound"},
     {KEY(CHOICE, error_estimate), .fallback = "companion", CHOICES("companion", "none"),
-     .help = "companion: a second solution beside the run that is coarser in everything (half the segments, "
-             "twice the steps, half the sampling rate of the air) tells the whole error of every channel, for "
-             "a third to a half of the run's cost"},
+     .help = "companion: a second solution beside the run that is coarser (half the segments, twice the "
+             "steps, half the sampling rate of the air) gives the whole error of every channel, for a third to a half "
+             "of the run's cost; a rod of up to eight segments has twice as many there, which costs up to nine tenths"},
     {KEY(BOOLEAN, error_shares), .fallback = "false",
-     .help = "also tells the shares of mesh, air and time in the error, by further runs after the run"},
+     .help = "also gives the errors of mesh, air and time by themselves, by further runs after the run"},
     {KEY(INTEGER, threads), .range = "[0, 1024]", .fallback = "0", .example = "2",
      .help = "threads for the rods; --threads overrides; 0: OMP_NUM_THREADS, 1 where that is not "
              "set"},
