@@ -52,6 +52,8 @@ static bough_status make_standard(bough_arena *arena, bough_wind *wind) {
 }
 
 static bough_status build(bough_arena *arena, const bough_wind_def *def, bough_wind *wind) {
+    wind->box = def->box;
+    if (def->box) return bough_ok();
     if (def->source == BOUGH_WIND_STANDARD) return make_standard(arena, wind);
     if (def->source == BOUGH_WIND_HUB_FILE) return read_hub(arena, wind);
     if (def->source == BOUGH_WIND_BOX_FILE) return read_box(arena, wind);

@@ -40,9 +40,10 @@ typedef struct bough_wind_def {
     // In place of all but the direction, about which the file's wind is turned.
     bough_wind_source source;
     const char *file;
-    double reference_length; // of the linear shears of a hub file [m]
-    double until;            // how long a box must last [s]
-    bough_wind_iec_def iec;  // source STANDARD
+    double reference_length;   // of the linear shears of a hub file [m]
+    double until;              // how long a box must last [s]
+    bough_wind_iec_def iec;    // source STANDARD
+    const bough_wind_box *box; // of another wind of the same definition, shared; NULL: one of its own
     // Of any source: the whole wind inclined upwards, and turned about the vertical with the height,
     // clockwise seen from above, about that of the reference or of a box's hub.
     double upflow; // [rad]

@@ -1,5 +1,6 @@
 #include "apps/bough/model/coarser.h"
 
+#include "apps/bough/model/aero_link.h"
 #include "cosim/master.h"
 #include "cosim/scheme.h"
 
@@ -162,5 +163,11 @@ bough_scene *bough_coarser_scene(bough_arena *arena, const bough_scene *scene, i
     to->simulation.error_bound = 0;
     to->simulation.error_shares = false;
     to->control.copied = true;
+    return to;
+}
+
+bough_scene *bough_coarser_scene_beside(bough_arena *arena, const bough_simulation *run, int parts) {
+    bough_scene *to = bough_coarser_scene(arena, run->scene, parts);
+    if (run->aero) to->aero.wind.def.box = bough_rotor_wind(bough_aero_link_rotor(run->aero))->box;
     return to;
 }

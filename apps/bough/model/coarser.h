@@ -2,7 +2,7 @@
 #ifndef BOUGH_APPS_SIMULATION_COARSER_H
 #define BOUGH_APPS_SIMULATION_COARSER_H
 
-#include "apps/bough/scene/scene.h"
+#include "apps/bough/model/simulation.h"
 
 // What the copy is coarser in. A set of these.
 enum {
@@ -16,6 +16,9 @@ enum {
 
 // In the arena; it shares what no run changes with the scene. It estimates no error itself.
 bough_scene *bough_coarser_scene(bough_arena *arena, const bough_scene *scene, int parts);
+
+// The same of the scene of a simulation, whose turbulence it shares: neither is generated or read twice.
+bough_scene *bough_coarser_scene_beside(bough_arena *arena, const bough_simulation *run, int parts);
 
 // The part of the difference between solutions of the scene and of such a copy that the scene's solution errs
 // by: a quarter, between an order of 2 and of 3; 0.4 with a coupling, whose error the copy does not share;

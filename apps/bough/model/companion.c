@@ -28,7 +28,7 @@ static void give_up(bough_companion *c, const char *reason) {
 }
 
 static bough_status build(bough_arena *arena, bough_companion *c) {
-    const bough_scene *scene = bough_coarser_scene(arena, c->run->scene, BOUGH_COARSER_ALL);
+    const bough_scene *scene = bough_coarser_scene_beside(arena, c->run, BOUGH_COARSER_ALL);
     bough_status status = bough_simulation_build_on(arena, scene, c->run->pool, &c->coarser);
     c->share = bough_coarser_share(c->run->scene, scene);
     if (bough_is_ok(&status)) {

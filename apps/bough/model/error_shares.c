@@ -30,7 +30,7 @@ typedef struct other_run {
 } other_run;
 
 static bough_status build(bough_arena *arena, const bough_simulation *run, int parts, other_run *r) {
-    const bough_scene *scene = bough_coarser_scene(arena, run->scene, parts);
+    const bough_scene *scene = bough_coarser_scene_beside(arena, run, parts);
     bough_status status = bough_simulation_build_on(arena, scene, run->pool, &r->simulation);
     r->channels = bough_channels_start(arena);
     if (bough_is_ok(&status)) status = bough_simulation_channels(r->simulation, &r->channels);

@@ -287,6 +287,22 @@ static void a_seed_gives_the_same_bits(void **state) {
     assert_memory_not_equal(other.value, e->box[0].value, size);
 }
 
+// A second wind that is given the box of the first one has its turbulence without generating it.
+static void a_box_is_shared(void **state) {
+    (void)state;
+    bough_arena *arena = bough_arena_create();
+    bough_wind_def def = standard(BOUGH_WIND_NTM, 10);
+    def.upflow = 4 * degree;
+    bough_wind first = built(arena, &def);
+    def.box = first.box;
+    bough_wind second = built(arena, &def);
+    assert_ptr_equal(second.box, first.box);
+    const bough_vec3 place = {3, 20, 110};
+    bough_vec3 a = bough_wind_at(&first, place, 31.7), b = bough_wind_at(&second, place, 31.7);
+    assert_memory_equal(&a, &b, sizeof a);
+    bough_arena_destroy(arena);
+}
+
 static void a_box_that_is_written_reads_the_same(void **state) {
     ensemble *e = *state;
     char path[SCRATCH_NAME];
@@ -317,6 +333,7 @@ int main(void) {
         cmocka_unit_test(coherence_is_exponential),
         cmocka_unit_test(deviations_are_those_of_the_standard),
         cmocka_unit_test(a_seed_gives_the_same_bits),
+        cmocka_unit_test(a_box_is_shared),
         cmocka_unit_test(a_box_that_is_written_reads_the_same),
     };
     return cmocka_run_group_tests(tests, make_ensemble, drop_ensemble);
