@@ -65,9 +65,19 @@ static bool counts_now(const bough_companion *c) {
     return m->time >= c->run->scene->simulation.output.from - 1e-6 * m->macro_step;
 }
 
+static double longest_rod(const bough_scene *scene) {
+    double longest = 0;
+    for (int i = 0; i < scene->n_body; i++) {
+        const bough_scene_rod *rod = &scene->body[i].rod;
+        if (rod->node) longest = fmax(longest, bough_scene_arc_length(&rod->structure));
+    }
+    return longest;
+}
+
 bough_status bough_companion_create(bough_arena *arena, bough_simulation *run, const bough_channels *channels,
                                     bough_companion *c) {
     *c = (bough_companion){.run = run, .channels = channels, .status = bough_ok()};
+    c->length = longest_rod(run->scene);
     take(c, arena);
     if (run->scene->simulation.error_estimate != BOUGH_SCENE_COMPANION) {
         give_up(c, "simulation.error_estimate is none");

@@ -47,8 +47,10 @@ double bough_error_relative(const bough_companion *c, int channel, double error)
 
 // -- what counts ----------------------------------------------------------------------------------
 
+static const double least_motion = 1e-12; // [m], [rad], [m/s], [rad/s]: less is rounding wherever it is
+
 // The largest range of the channels of that kind, in SI units.
-static double kind_range(const bough_companion *c, bough_quantity_kind kind) {
+static double own_kind_range(const bough_companion *c, bough_quantity_kind kind) {
     double largest = 0;
     for (int i = 0; i < c->channels->count; i++) {
         const bough_channel *channel = &c->channels->channel[i];
@@ -56,6 +58,15 @@ static double kind_range(const bough_companion *c, bough_quantity_kind kind) {
             largest = fmax(largest, channel->si * own_range(c, i));
     }
     return largest;
+}
+
+// A rod that bends by a length turns its sections by an angle of that over its own length, beside which its
+// twist is judged, too.
+static double kind_range(const bough_companion *c, bough_quantity_kind kind) {
+    double range = own_kind_range(c, kind);
+    bool angle = kind == BOUGH_KIND_ANGLE, rate = kind == BOUGH_KIND_ANGULAR_VELOCITY;
+    if (!(c->length > 0) || !(angle || rate)) return range;
+    return fmax(range, own_kind_range(c, angle ? BOUGH_KIND_LENGTH : BOUGH_KIND_VELOCITY) / c->length);
 }
 
 // Of all motion, whatever its kind: where nothing moves, the ranges are those of rounding.
@@ -73,7 +84,7 @@ static double largest_motion(const bough_companion *c) {
 bool bough_error_counts(const bough_companion *c, int i) {
     const bough_channel *channel = &c->channels->channel[i];
     double moves = channel->si * fmax(bough_error_range(c, i), c->error[i]);
-    bool moving = bough_error_is_motion(channel) ? moves > rounding * largest_motion(c)
+    bool moving = bough_error_is_motion(channel) ? moves > fmax(rounding * largest_motion(c), least_motion)
                                                  : moves > least_share * channel->si * largest_value(c, i);
     return moving && moves >= least_share * kind_range(c, channel->kind);
 }

@@ -203,7 +203,7 @@ typedef struct row {
 static int worst_of(int n, const row *rows) {
     bough_arena *arena = bough_arena_create();
     bough_channels channels = bough_channels_start(arena);
-    bough_companion c = {.channels = &channels, .compared = 1};
+    bough_companion c = {.channels = &channels, .compared = 1, .length = 60};
     bough_arena_each(arena, (size_t)n, &c.low, &c.high, &c.other_low, &c.other_high, &c.error, &c.noticed);
     bough_channels_group(&channels, NULL, NULL);
     for (int i = 0; i < n; i++) {
@@ -224,6 +224,10 @@ static void what_hardly_moves_does_not_count(void **state) {
         worst_of(
             3, (row[]){{"TipDxb1", "m", 4, .01}, {"TwstDefl1", "deg", 2.5e-4, 2e-4}, {"Pos", "deg", 3, .01}}),
         2);
+    assert_int_equal(worst_of(2, (row[]){{"TipDxb1", "m", 4, .01}, {"TwstDefl1", "deg", 2.5e-3, 2e-3}}), 0);
+    assert_int_equal(worst_of(2, (row[]){{"TipDxb1", "m", 4, .01}, {"TwstDefl1", "deg", 5e-3, 4e-3}}), 1);
+    assert_int_equal(worst_of(2, (row[]){{"TipDxb1", "m", 4e-13, 1e-14}, {"TwstDefl1", "deg", 4e-16, 3e-16}}),
+                     -1);
     assert_int_equal(worst_of(2, (row[]){{"one", "m", 1, .01}, {"other", "m", 2e-3, 1e-3}}), 1);
     assert_int_equal(worst_of(2, (row[]){{"one", "m", 1, .01}, {"other", "m", 5e-4, 4e-4}}), 0);
 }
