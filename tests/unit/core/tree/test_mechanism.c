@@ -254,7 +254,7 @@ static void closed_loops_run_under_every_scheme(void **context) {
             char scheme[64];
             snprintf(scheme, sizeof scheme, "simulation.coupling.scheme=%s", schemes[k].scheme);
             const char *sets[] = {
-                scheme, "simulation.macro_step=1 ms",
+                scheme, "simulation.macro_step=1 ms", "simulation.micro.rtol=1e-8",
                 solver == 0 ? "simulation.master.solver=ida" : "simulation.master.solver=radau5", NULL};
             fixture f = start("tests/data/scenes/closed.yaml", sets);
             check_near(channel(&f, "crankVel"), 2 * 180 / acos(-1.0), 1e-12, 0); // the others follow
