@@ -150,6 +150,37 @@ owned_by("^apps/bough/config/text\\.c$" "${include}yaml\\.h" "only apps/bough/co
 
 owned_by("^apps/bough/scene/fmu_description\\.c$" "${include}expat\\.h" "only apps/bough/scene/fmu_description.c uses expat")
 
+# Equations are numbered (1), (2), … in docs/theory.md, each once; sources cite them as "theory (17)" or "theory (17, 18)".
+file(STRINGS ${ROOT}/docs/theory.md lines REGEX "^    \\([0-9]+\\)  " ENCODING UTF-8)
+set(numbers "")
+foreach(line IN LISTS lines)
+  string(REGEX REPLACE "^    \\(([0-9]+)\\).*$" "\\1" number "${line}")
+  if(number IN_LIST numbers)
+    message(NOTICE "docs/theory.md: (${number}) is there twice")
+    math(EXPR found "${found} + 1")
+  endif()
+  list(APPEND numbers ${number})
+endforeach()
+file(GLOB_RECURSE files RELATIVE ${ROOT} ${ROOT}/core/*.[ch] ${ROOT}/flexbody/*.[ch] ${ROOT}/aero/*.[ch]
+  ${ROOT}/cosim/*.[ch] ${ROOT}/apps/*.[ch] ${ROOT}/tests/*.[ch])
+foreach(file IN LISTS files)
+  file(STRINGS ${ROOT}/${file} lines REGEX "theory \\([0-9]" ENCODING UTF-8)
+  foreach(line IN LISTS lines)
+    string(REGEX MATCHALL "theory \\([0-9, ]+\\)" citations "${line}")
+    string(REGEX MATCHALL "[0-9]+" cited "${citations}")
+    foreach(number IN LISTS cited)
+      if(NOT number IN_LIST numbers)
+        message(NOTICE "${file}: docs/theory.md has no equation (${number})")
+        math(EXPR found "${found} + 1")
+      endif()
+    endforeach()
+    if(NOT cited)
+      message(NOTICE "${file}: a citation is theory (17) or theory (17, 18): ${line}")
+      math(EXPR found "${found} + 1")
+    endif()
+  endforeach()
+endforeach()
+
 # A file that grows beyond this holds more than one concept.
 file(GLOB_RECURSE files RELATIVE ${ROOT} ${ROOT}/core/*.[ch] ${ROOT}/flexbody/*.[ch] ${ROOT}/aero/*.[ch]
   ${ROOT}/cosim/*.[ch] ${ROOT}/apps/*.[ch])
