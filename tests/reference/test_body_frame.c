@@ -41,12 +41,12 @@ static int teardown(void **context) {
     return 0;
 }
 
-static void rod_fulfils_the_structural_contract(void **context) {
+TEST_WITH(rod_fulfils_the_structural_contract, setup, teardown) {
     fixture *f = *context;
     structure_check(&f->at);
 }
 
-static void body_frame_of_the_rod_is_exact(void **context) {
+TEST_WITH(body_frame_of_the_rod_is_exact, setup, teardown) {
     fixture *f = *context;
     structure_check_body_frame(&f->at);
 }
@@ -84,7 +84,7 @@ static void load_both(const fixture *f, bough_rod_loads *loads, bough_body_frame
 }
 
 // v̇_E of (12) whatever the given v̇_R, by (14) into rates of u and W: u̇ = ẍ − Ω₀×u.
-static void accelerations_are_those_of_the_rods_right_hand_side(void **context) {
+TEST_WITH(accelerations_are_those_of_the_rods_right_hand_side, setup, teardown) {
     fixture *f = *context;
     bough_rod_loads loads;
     bough_rod_scratch scratch;
@@ -114,7 +114,7 @@ static void accelerations_are_those_of_the_rods_right_hand_side(void **context) 
 }
 
 // The reduced force is the wrench that rod.h hands to the carrier, and the root vertex' own terms.
-static void reduced_force_is_the_root_wrench(void **context) {
+TEST_WITH(reduced_force_is_the_root_wrench, setup, teardown) {
     fixture *f = *context;
     bough_rod_loads loads;
     bough_rod_scratch scratch;
@@ -138,7 +138,7 @@ static void reduced_force_is_the_root_wrench(void **context) {
 }
 
 // The energy in rod.h's own terms is the structure's.
-static void energy_is_that_of_the_rod(void **context) {
+TEST_WITH(energy_is_that_of_the_rod, setup, teardown) {
     fixture *f = *context;
     bough_rod_scratch scratch;
     bough_vertex vertex[STRUCTURE_MAX];
@@ -151,7 +151,7 @@ static void energy_is_that_of_the_rod(void **context) {
     check_near(energy, bough_rod_elastic_energy(f->model, &scratch), 1e-12, 0);
 }
 
-static void relative_coordinates_are_undone(void **context) {
+TEST_WITH(relative_coordinates_are_undone, setup, teardown) {
     fixture *f = *context;
     bough_vertex vertex[STRUCTURE_MAX];
     bough_relative_vertex back[STRUCTURE_MAX];
@@ -161,23 +161,10 @@ static void relative_coordinates_are_undone(void **context) {
     structure_near(back, f->at.relative, 13 * (N + 1), 1e-14, "relative coordinates");
 }
 
-static void overturned_segment_is_refused(void **context) {
+TEST_WITH(overturned_segment_is_refused, setup, teardown) {
     fixture *f = *context;
     bough_body_frame b;
     assert_true(bough_body_frame_init(&b, f->arena, f->structure));
     f->at.relative[4].rotation = (bough_quaternion){0, 1, 0, 0};
     assert_false(bough_body_frame_evaluate(&b, &f->at.motion, f->at.relative));
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test_setup_teardown(rod_fulfils_the_structural_contract, setup, teardown),
-        cmocka_unit_test_setup_teardown(body_frame_of_the_rod_is_exact, setup, teardown),
-        cmocka_unit_test_setup_teardown(accelerations_are_those_of_the_rods_right_hand_side, setup, teardown),
-        cmocka_unit_test_setup_teardown(reduced_force_is_the_root_wrench, setup, teardown),
-        cmocka_unit_test_setup_teardown(energy_is_that_of_the_rod, setup, teardown),
-        cmocka_unit_test_setup_teardown(relative_coordinates_are_undone, setup, teardown),
-        cmocka_unit_test_setup_teardown(overturned_segment_is_refused, setup, teardown),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -52,14 +52,14 @@ static bough_structure *build(fixture *f) {
     return structure;
 }
 
-static void chain_fulfils_the_structural_contract(void **context) {
+TEST_WITH(chain_fulfils_the_structural_contract, setup, teardown) {
     fixture *f = *context;
     structure_case c = structure_case_at(build(f), f->inertia, 0.3);
     structure_check(&c);
 }
 
 // Also with the BRF welded to a vertex within the chain or to its end.
-static void body_frame_of_the_chain_is_exact(void **context) {
+TEST_WITH(body_frame_of_the_chain_is_exact, setup, teardown) {
     fixture *f = *context;
     for (int reference = 0; reference <= N; reference++) {
         f->def.reference = reference;
@@ -83,7 +83,7 @@ static bough_structure *build_pair(fixture *f) {
     return build(f);
 }
 
-static void spring_and_damper_follow_their_laws(void **context) {
+TEST_WITH(spring_and_damper_follow_their_laws, setup, teardown) {
     bough_structure *s = build_pair(*context);
     bough_vertex vertex[2] = {s->rest[0], s->rest[1]};
     bough_wrench force[2];
@@ -99,7 +99,7 @@ static void spring_and_damper_follow_their_laws(void **context) {
     assert_false(s->ops->elastic.force(s->self, (bough_vertex[]){vertex[0], vertex[0]}, force));
 }
 
-static void rotational_spring_and_damper_follow_their_laws(void **context) {
+TEST_WITH(rotational_spring_and_damper_follow_their_laws, setup, teardown) {
     bough_structure *s = build_pair(*context);
     bough_vertex vertex[2] = {s->rest[0], s->rest[1]};
     bough_wrench force[2];
@@ -204,7 +204,7 @@ static bough_vec3 momentum_of(const bough_structure *s, const bough_vertex *vert
     return structure_sum(N + 1, vertex, momentum).force;
 }
 
-static void free_flight_is_one_in_both_formulations(void **context) {
+TEST_WITH(free_flight_is_one_in_both_formulations, setup, teardown) {
     fixture *f = *context;
     f->def.reference = 2;
     flight ride = {.structure = build(f), .gravity = {1, -2, -9}};
@@ -248,7 +248,7 @@ static void refuse(fixture *f, const char *message) {
     assert_null(structure);
 }
 
-static void unusable_definitions_are_refused_by_name(void **context) {
+TEST_WITH(unusable_definitions_are_refused_by_name, setup, teardown) {
     fixture *f = *context;
     fixture good = *f;
     f->link[3].stiffness = 0;
@@ -262,16 +262,4 @@ static void unusable_definitions_are_refused_by_name(void **context) {
     refuse(f, "chain sample: the hooks of link 1 coincide");
     f->def.reference = N + 1;
     refuse(f, "chain sample: 5 links and reference vertex 6; the vertices are 0 to 5");
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test_setup_teardown(chain_fulfils_the_structural_contract, setup, teardown),
-        cmocka_unit_test_setup_teardown(body_frame_of_the_chain_is_exact, setup, teardown),
-        cmocka_unit_test_setup_teardown(spring_and_damper_follow_their_laws, setup, teardown),
-        cmocka_unit_test_setup_teardown(rotational_spring_and_damper_follow_their_laws, setup, teardown),
-        cmocka_unit_test_setup_teardown(free_flight_is_one_in_both_formulations, setup, teardown),
-        cmocka_unit_test_setup_teardown(unusable_definitions_are_refused_by_name, setup, teardown),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,4 +1,9 @@
-// The tests' comparison: cmocka's float assertion passes NaN and has single precision.
+// What every test file includes: cmocka, the declaration of a test, and the comparison of numbers.
+//
+//     TEST(a_sentence_that_holds) { check_near(length, 2, 1e-12, 0); }
+//
+// is a test that check.c runs. TEST_WITH gives it a set-up and a tear-down of its own, which pass it
+// *context; GROUP those of all tests of the file.
 #ifndef BOUGH_TESTS_CHECK_H
 #define BOUGH_TESTS_CHECK_H
 
@@ -11,7 +16,21 @@
 
 #include <cmocka.h>
 
-// |value − expected| <= absolute + relative·|expected|; NaN fails.
+void check_add_test(struct CMUnitTest test);
+void check_set_group(CMFixtureFunction set_up, CMFixtureFunction tear_down);
+
+#define TEST_WITH(name, set_up, tear_down)                                                                   \
+    static void name(void **context);                                                                        \
+    __attribute__((constructor)) static void add_##name(void) {                                              \
+        check_add_test((struct CMUnitTest){#name, name, set_up, tear_down, NULL});                           \
+    }                                                                                                        \
+    static void name(__attribute__((unused)) void **context)
+#define TEST(name) TEST_WITH(name, NULL, NULL)
+#define GROUP(set_up, tear_down)                                                                             \
+    __attribute__((constructor)) static void set_group(void) { check_set_group(set_up, tear_down); }
+
+// cmocka's own comparison passes NaN and has single precision: |value − expected| <= absolute +
+// relative·|expected|; NaN fails.
 #define check_near(value, expected, relative, absolute)                                                      \
     check_near_at((value), (expected), (relative), (absolute), #value, __FILE__, __LINE__)
 

@@ -39,6 +39,9 @@ static inline int scratch_remove(void **state) {
     return result;
 }
 
+// A test that writes files: *context is the path of its folder.
+#define TEST_IN_FOLDER(name) TEST_WITH(name, scratch_make, scratch_remove)
+
 // The whole text of folder/name, to be freed; NULL when there is no such file.
 static inline char *scratch_read(const char *folder, const char *name) {
     char path[512];

@@ -148,8 +148,7 @@ static problem *create(double rtol);
 static const char *solver(void); // as its messages name it
 
 // From a state that was changed outside, as the exact solution of the same modes started there.
-static void restart_takes_up_a_changed_state(void **context) {
-    (void)context;
+TEST(restart_takes_up_a_changed_state) {
     problem *p = create(1e-7);
     double y[N], moved[N];
     exact(0, y);
@@ -174,8 +173,7 @@ static void check_failure(const bough_status *status, const char *time, const ch
     }
 }
 
-static void failure_names_body_time_and_solver(void **context) {
-    (void)context;
+TEST(failure_names_body_time_and_solver) {
     problem *p = create(1e-6);
     double y[N];
     exact(0, y);
@@ -205,8 +203,7 @@ static void failure_names_body_time_and_solver(void **context) {
     destroy(p);
 }
 
-static void statistics_add_up_over_restarts(void **context) {
-    (void)context;
+TEST(statistics_add_up_over_restarts) {
     problem *p = create(1e-6);
     double y[N];
     bough_statistics sum = counts(p);

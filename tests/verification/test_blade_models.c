@@ -29,10 +29,10 @@ static bough_blade_models *read_study(bough_arena *arena, const char *folder, co
 }
 
 // The linear body: the undeformed frequencies of the same mesh, of a cubic deflection error.
-static void blades_are_found_by_their_models(void **state) {
+TEST_IN_FOLDER(blades_are_found_by_their_models) {
     bough_arena *arena = bough_arena_create();
     bough_errors errors = {0};
-    bough_blade_models *study = read_study(arena, *state, models, &errors);
+    bough_blade_models *study = read_study(arena, *context, models, &errors);
     assert_non_null(study);
     bough_model_blade blade[3];
     for (int k = 0; k < 3; k++) {
@@ -52,13 +52,13 @@ static void blades_are_found_by_their_models(void **state) {
     bough_arena_destroy(arena);
 }
 
-static void table_and_file_hold_every_model(void **state) {
+TEST_IN_FOLDER(table_and_file_hold_every_model) {
     char table[4096] = "";
     bough_arena *arena = bough_arena_create();
     bough_errors errors = {0};
-    bough_blade_models *study = read_study(arena, *state, models, &errors);
+    bough_blade_models *study = read_study(arena, *context, models, &errors);
     FILE *stream = fmemopen(table, sizeof table, "w");
-    bough_verification_options options = {.folder = *state, .quiet = true, .stream = stream};
+    bough_verification_options options = {.folder = *context, .quiet = true, .stream = stream};
     bough_status status = bough_blade_models_perform(arena, study, &options);
     fclose(stream);
     assert_int_equal(status.code, BOUGH_OK);
@@ -69,7 +69,7 @@ static void table_and_file_hold_every_model(void **state) {
                            &values[2], &values[3], &values[4], &values[5], &values[6]);
     assert_int_equal(n, 8);
     for (int k = 0; k < 7; k++) check_near(values[k], 0, 0, 0); // it is the reference
-    char *csv = scratch_read(*state, "blade-models.csv");
+    char *csv = scratch_read(*context, "blade-models.csv");
     assert_non_null(csv);
     assert_non_null(strstr(csv, "\ncoarse,156,"));
     assert_non_null(strstr(csv, "\nlinear,52,"));
@@ -77,32 +77,22 @@ static void table_and_file_hold_every_model(void **state) {
     bough_arena_destroy(arena);
 }
 
-static void meshes_must_fit_the_reference(void **state) {
+TEST_IN_FOLDER(meshes_must_fit_the_reference) {
     bough_arena *arena = bough_arena_create();
     bough_errors errors = {0};
     bough_blade_models *study =
-        read_study(arena, *state, "models: [{name: odd, body: [fidelity=rod, rod.segments=7]}]\n", &errors);
-    bough_verification_options options = {.folder = *state, .quiet = true, .stream = stderr};
+        read_study(arena, *context, "models: [{name: odd, body: [fidelity=rod, rod.segments=7]}]\n", &errors);
+    bough_verification_options options = {.folder = *context, .quiet = true, .stream = stderr};
     bough_status status = bough_blade_models_perform(arena, study, &options);
     assert_int_equal(status.code, BOUGH_INVALID);
     assert_non_null(strstr(status.message, "24 segments are no multiple of 7 of 'odd'"));
     bough_arena_destroy(arena);
 }
 
-static void keys_are_checked(void **state) {
+TEST_IN_FOLDER(keys_are_checked) {
     bough_arena *arena = bough_arena_create();
     bough_errors errors = {0};
-    assert_null(read_study(arena, *state, "models: [{name: a, bodies: [x=1]}]\n", &errors));
+    assert_null(read_study(arena, *context, "models: [{name: a, bodies: [x=1]}]\n", &errors));
     assert_int_equal(errors.n, 2); // the unknown key, the missing one
     bough_arena_destroy(arena);
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test_setup_teardown(blades_are_found_by_their_models, scratch_make, scratch_remove),
-        cmocka_unit_test_setup_teardown(table_and_file_hold_every_model, scratch_make, scratch_remove),
-        cmocka_unit_test_setup_teardown(meshes_must_fit_the_reference, scratch_make, scratch_remove),
-        cmocka_unit_test_setup_teardown(keys_are_checked, scratch_make, scratch_remove),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -28,16 +28,6 @@ static void perform(const char *folder, const char *name, const char *csv, int r
     bough_arena_destroy(arena);
 }
 
-static void two_masses(void **state) { perform(*state, "two-mass.yaml", "two-mass.csv", 1 + 54); }
+TEST_IN_FOLDER(two_masses) { perform(*context, "two-mass.yaml", "two-mass.csv", 1 + 54); }
 
-static void added_mass(void **state) {
-    perform(*state, "added-mass.yaml", "added-mass.csv", 1 + 6 * 5 + 10 * 8);
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test_setup_teardown(two_masses, scratch_make, scratch_remove),
-        cmocka_unit_test_setup_teardown(added_mass, scratch_make, scratch_remove),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+TEST_IN_FOLDER(added_mass) { perform(*context, "added-mass.yaml", "added-mass.csv", 1 + 6 * 5 + 10 * 8); }

@@ -61,12 +61,12 @@ static bool says(const char *text, const char *what) {
     return strstr(text, what) != NULL;
 }
 
-static void cases_that_hold_are_a_success(void **state) {
+TEST_IN_FOLDER(cases_that_hold_are_a_success) {
     char table[4096];
-    bough_status status = perform(*state, HEAD ROLL_UP ELASTICA("1e-6"), table);
+    bough_status status = perform(*context, HEAD ROLL_UP ELASTICA("1e-6"), table);
     assert_int_equal(status.code, BOUGH_OK);
     assert_true(says(table, "2 of 2 hold, 2 cases"));
-    char *csv = scratch_read(*state, "verify.csv");
+    char *csv = scratch_read(*context, "verify.csv");
     assert_non_null(csv);
     assert_true(says(csv, "elastica,tip ux,0.81060902488,"));
     assert_true(says(csv, ",relative,pass,"));
@@ -74,38 +74,38 @@ static void cases_that_hold_are_a_success(void **state) {
 }
 
 // The same cases with a tolerance that no mesh reaches.
-static void a_case_that_does_not_hold_is_a_failure(void **state) {
+TEST_IN_FOLDER(a_case_that_does_not_hold_is_a_failure) {
     char table[4096];
-    bough_status status = perform(*state, HEAD ROLL_UP ELASTICA("1e-12"), table);
+    bough_status status = perform(*context, HEAD ROLL_UP ELASTICA("1e-12"), table);
     assert_int_equal(status.code, BOUGH_FAILED);
     assert_string_equal(status.message, "1 of 2 expectations do not hold");
     assert_true(says(table, "FAIL"));
-    char *csv = scratch_read(*state, "verify.csv");
+    char *csv = scratch_read(*context, "verify.csv");
     assert_non_null(csv);
     assert_true(says(csv, ",relative,fail,"));
     free(csv);
 }
 
 // The elastica converges at fourth order.
-static void order_is_observed_over_three_meshes(void **state) {
+TEST_IN_FOLDER(order_is_observed_over_three_meshes) {
     char table[4096];
-    perform(*state, HEAD ELASTICA("1e-6"), table);
+    perform(*context, HEAD ELASTICA("1e-6"), table);
     assert_true(says(table, " 4.0"));
 }
 
-static void a_diagnosis_is_expected_or_missed(void **state) {
+TEST_IN_FOLDER(a_diagnosis_is_expected_or_missed) {
     char table[4096];
-    bough_status status = perform(*state, HEAD TOO_FEW("more segments are needed"), table);
+    bough_status status = perform(*context, HEAD TOO_FEW("more segments are needed"), table);
     assert_int_equal(status.code, BOUGH_OK);
-    status = perform(*state, HEAD TOO_FEW("the moon is full"), table);
+    status = perform(*context, HEAD TOO_FEW("the moon is full"), table);
     assert_int_equal(status.code, BOUGH_FAILED);
     assert_true(says(table, "more segments are needed")); // told in either case
 }
 
-static void free_flight_keeps_energy_and_momenta(void **state) {
+TEST_IN_FOLDER(free_flight_keeps_energy_and_momenta) {
     char table[4096];
     bough_status status =
-        perform(*state,
+        perform(*context,
                 HEAD FLYING "      - {quantity: drift of energy from 2 s, absolute: 1e-6}\n"
                             "      - {quantity: drift of momentum from 2 s, absolute: 1e-7}\n"
                             "      - {quantity: drift of angular momentum from 2 s, "
@@ -113,15 +113,15 @@ static void free_flight_keeps_energy_and_momenta(void **state) {
                 table);
     assert_int_equal(status.code, BOUGH_OK);
     // while the load acts they change
-    status =
-        perform(*state, HEAD FLYING "      - {quantity: drift of momentum from 0 s, absolute: 0.1}\n", table);
+    status = perform(*context, HEAD FLYING "      - {quantity: drift of momentum from 0 s, absolute: 0.1}\n",
+                     table);
     assert_int_equal(status.code, BOUGH_FAILED);
 }
 
 // A run that stops on its way has not kept anything.
 // A rotor at a given speed, whose blade is pitched back and forth once per turn of 4 s: mean and
 // first harmonic of the pitch, and of a speed that does not change.
-static void means_and_amplitudes_of_a_rotor(void **state) {
+TEST_IN_FOLDER(means_and_amplitudes_of_a_rotor) {
     char table[4096];
     static const char text[] =
         HEAD "  - name: rotor\n    scene: " BOUGH_SOURCE_DIR "/apps/turbine/rotor.yaml\n"
@@ -134,14 +134,14 @@ static void means_and_amplitudes_of_a_rotor(void **state) {
              "      - {quantity: amplitude RotSpeed from 4 s, value: 0, absolute: 1e-9}\n"
              "      - {quantity: mean blade1Pos from 4 s, value: 1, absolute: 0.1}\n"
              "      - {quantity: amplitude blade1Pos from 4 s, value: 3, absolute: 0.1}\n";
-    bough_status status = perform(*state, text, table);
+    bough_status status = perform(*context, text, table);
     if (!bough_is_ok(&status)) print_error("%s\n", table);
     assert_int_equal(status.code, BOUGH_OK);
 }
 
-static void a_run_that_fails_has_not_shown_its_values(void **state) {
+TEST_IN_FOLDER(a_run_that_fails_has_not_shown_its_values) {
     char table[4096];
-    bough_status status = perform(*state,
+    bough_status status = perform(*context,
                                   HEAD "  - name: frozen\n    scene: " BEAMS "rubber-bar.yaml\n    do: run\n"
                                        "    set: {simulation.coupling.scheme: frozen}\n    expect:\n"
                                        "      - {quantity: drift of energy from 0 s, absolute: 1e3}\n",
@@ -160,35 +160,19 @@ static void check_error(const char *folder, const char *text, const char *messag
 }
 
 #define CASE(lines) HEAD "  - name: a\n    scene: " BEAMS "elastica.yaml\n" lines
-static void mistakes_are_told_before_the_first_case(void **state) {
-    check_error(*state, CASE("    do: static\n    expect: [{quantity: tip q, absolute: 1}]\n"),
+TEST_IN_FOLDER(mistakes_are_told_before_the_first_case) {
+    check_error(*context, CASE("    do: static\n    expect: [{quantity: tip q, absolute: 1}]\n"),
                 "expected 'tip x|y|z");
-    check_error(*state, CASE("    do: static\n    expect: [{quantity: tip x}]\n"),
+    check_error(*context, CASE("    do: static\n    expect: [{quantity: tip x}]\n"),
                 "one of 'relative' and 'absolute'");
-    check_error(*state, CASE("    do: static\n    expect: [{quantity: frequency 1, absolute: 1}]\n"),
+    check_error(*context, CASE("    do: static\n    expect: [{quantity: frequency 1, absolute: 1}]\n"),
                 "does not come from");
-    check_error(*state,
+    check_error(*context,
                 CASE("    do: static\n    meshes: [5, 10, 40]\n"
                      "    expect: [{quantity: tip x, absolute: 1}]\n"),
                 "constant factor");
-    check_error(*state,
+    check_error(*context,
                 CASE("    do: static\n    set: {simulation.rot: 1}\n"
                      "    expect: [{quantity: tip x, absolute: 1}]\n"),
                 "rot");
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test_setup_teardown(cases_that_hold_are_a_success, scratch_make, scratch_remove),
-        cmocka_unit_test_setup_teardown(a_case_that_does_not_hold_is_a_failure, scratch_make, scratch_remove),
-        cmocka_unit_test_setup_teardown(order_is_observed_over_three_meshes, scratch_make, scratch_remove),
-        cmocka_unit_test_setup_teardown(a_diagnosis_is_expected_or_missed, scratch_make, scratch_remove),
-        cmocka_unit_test_setup_teardown(free_flight_keeps_energy_and_momenta, scratch_make, scratch_remove),
-        cmocka_unit_test_setup_teardown(means_and_amplitudes_of_a_rotor, scratch_make, scratch_remove),
-        cmocka_unit_test_setup_teardown(a_run_that_fails_has_not_shown_its_values, scratch_make,
-                                        scratch_remove),
-        cmocka_unit_test_setup_teardown(mistakes_are_told_before_the_first_case, scratch_make,
-                                        scratch_remove),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -57,8 +57,7 @@ static double thrust(const char *wind) {
 }
 
 // m ẍ + T' ẋ + k x = 0 with T' the slope of the thrust over the wind.
-static void quasi_steady_damping_is_the_slope_of_the_thrust(void **state) {
-    (void)state;
+TEST(quasi_steady_damping_is_the_slope_of_the_thrust) {
     bough_arena *arena = bough_arena_create();
     bough_simulation *s = build(arena, (const char *const[]){"modes.air=quasi-steady", NULL});
     bough_scene_mode m = slide_mode(arena, s);
@@ -89,8 +88,7 @@ static void march(bough_simulation *s, double *growth, double *frequency) {
     *frequency = 1 / (time[2] - time[0]);
 }
 
-static void dynamic_damping_is_that_of_time_marching(void **state) {
-    (void)state;
+TEST(dynamic_damping_is_that_of_time_marching) {
     static const char *const air[3][2] = {{"oye", "none"}, {"equilibrium", "hgm"}, {"oye", "hgm"}};
     for (int k = 0; k < 3; k++) {
         char inflow[64], stall[64];
@@ -114,8 +112,7 @@ static void dynamic_damping_is_that_of_time_marching(void **state) {
 }
 
 // The blades bend; next to no air: the reduced system has the modes of the bodies.
-static void thin_air_leaves_the_modes_as_they_are(void **state) {
-    (void)state;
+TEST(thin_air_leaves_the_modes_as_they_are) {
     const char *sets[] = {"bodies[2].joint.speed=12.1 rpm",
                           "bodies[3-5].rod.segments=10",
                           "aero.air_density=1e-9",
@@ -142,8 +139,7 @@ static void thin_air_leaves_the_modes_as_they_are(void **state) {
 }
 
 // Modes that are not kept follow the air's forces at once: few wanted modes are as exact as the same of many.
-static void modes_do_not_depend_on_how_many_are_wanted(void **state) {
-    (void)state;
+TEST(modes_do_not_depend_on_how_many_are_wanted) {
     enum { FEW = 6, MANY = 30 };
     const char *sets[] = {"bodies[2].joint.speed=12.1 rpm",
                           "bodies[3-5].rod.segments=10",
@@ -188,8 +184,7 @@ static double fastest(bough_simulation *s, const bough_beam *beam, int steps) {
 
 // Blades that do not turn, flat across the wind or nearly, at a rate of the air with four samples a period of
 // their torsion: dynamic stall fades there, and slopes that take it for whole feed that mode.
-static void held_blades_come_to_rest_in_stall(void **state) {
-    (void)state;
+TEST(held_blades_come_to_rest_in_stall) {
     static const char *const pitch[] = {"bodies[3-5].pitch=285 deg", "bodies[3-5].pitch=45 deg",
                                         "bodies[3-5].pitch=20 deg"};
     for (int k = 0; k < 3; k++) {
@@ -237,8 +232,7 @@ static bough_scene_mode fluttering(double speed) {
 // Goland's speed is 137.25 m/s at 70.7 rad/s. Four bending and four torsional shapes in strips with Jones'
 // function and the model's mass terms have theirs at 139.63 m/s and 72.03 rad/s, with Theodorsen's
 // at 137.34 m/s and 69.35 rad/s.
-static void wing_flutters_at_the_speed_of_strip_theory(void **state) {
-    (void)state;
+TEST(wing_flutters_at_the_speed_of_strip_theory) {
     double low = 130, high = 150, omega = 0;
     while (high - low > 0.02) {
         double middle = 0.5 * (low + high);
@@ -277,8 +271,7 @@ static double swings_grow(double speed) {
     return log(last / first) / (to - from);
 }
 
-static void wing_flutters_in_time_as_its_modes_say(void **state) {
-    (void)state;
+TEST(wing_flutters_in_time_as_its_modes_say) {
     static const double speed[] = {136, 138, 141, 143};
     for (int k = 0; k < 4; k++) {
         double modes = fluttering(speed[k]).growth, time = swings_grow(speed[k]);
@@ -307,8 +300,7 @@ static double torque_at(const char *wind, const char *speed) {
 
 // A rotor on pitch joints is seen from rest: gravity on it, at an azimuth that stands still, makes no mode
 // grow. Where its torque grows with the speed, the speed does by that slope over the inertia.
-static void speed_follows_the_slope_of_the_torque(void **state) {
-    (void)state;
+TEST(speed_follows_the_slope_of_the_torque) {
     static const char *const wind[] = {"aero.wind.speed=14 m/s", "aero.wind.speed=18 m/s"};
     const double inertia = 4.378e7, step = 0.04 * BOUGH_PI / 30;
     for (int k = 0; k < 2; k++) {
@@ -329,18 +321,4 @@ static void speed_follows_the_slope_of_the_torque(void **state) {
         assert_true((slope > 0) == (k == 1));
         bough_arena_destroy(arena);
     }
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(quasi_steady_damping_is_the_slope_of_the_thrust),
-        cmocka_unit_test(dynamic_damping_is_that_of_time_marching),
-        cmocka_unit_test(wing_flutters_at_the_speed_of_strip_theory),
-        cmocka_unit_test(wing_flutters_in_time_as_its_modes_say),
-        cmocka_unit_test(speed_follows_the_slope_of_the_torque),
-        cmocka_unit_test(held_blades_come_to_rest_in_stall),
-        cmocka_unit_test(thin_air_leaves_the_modes_as_they_are),
-        cmocka_unit_test(modes_do_not_depend_on_how_many_are_wanted),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

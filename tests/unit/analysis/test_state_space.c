@@ -27,8 +27,7 @@ static int find(const bough_signal_name *list, int n, const char *name) {
 static double entry(const double *a, int rows, int i, int j) { return a[(size_t)j * rows + i]; }
 
 // m l² q̈ = m g l sin q − c q̇ + T at 30° from the horizontal; the marker at −l (cos q, −sin q) in x and z.
-static void pendulum_by_hand(void **state) {
-    (void)state;
+TEST(pendulum_by_hand) {
     bough_arena *arena = bough_arena_create();
     const char *sets[] = {
         "bodies[0].joint={kind: revolute, parent: ground, axis: y, angle: -30 deg, damping: 0.4}",
@@ -58,8 +57,7 @@ static void pendulum_by_hand(void **state) {
 }
 
 // What acts on a driven joint is at once in what drives it: D.
-static void drive_takes_the_load_at_once(void **state) {
-    (void)state;
+TEST(drive_takes_the_load_at_once) {
     bough_arena *arena = bough_arena_create();
     const char *sets[] = {"bodies[0].joint={kind: revolute, parent: ground, axis: y, motion: {angle: 0}}",
                           "loads=[{body: bob, moment: [0, 0, 0], frame: ground, input: push}]", NULL};
@@ -73,8 +71,7 @@ static void drive_takes_the_load_at_once(void **state) {
 }
 
 // (I − γA) x = b for x by the members' own tangents and factors.
-static void rods_beside_exact_tangents(void **state) {
-    (void)state;
+TEST(rods_beside_exact_tangents) {
     bough_arena *arena = bough_arena_create();
     const char *sets[] = {"bodies[3-5].rod.segments=6", "bodies[2].joint.speed=10 rpm",
                           "simulation.initial=equilibrium", "simulation.threads=1", NULL};
@@ -124,8 +121,7 @@ static air air_of(const char *const *sets) {
 }
 
 // A rigid rotor in quasi-steady air: how its speed follows torque, pitch and wind.
-static void rotor_follows_torque_pitch_and_wind(void **state) {
-    (void)state;
+TEST(rotor_follows_torque_pitch_and_wind) {
     static const char rigid[] = "bodies[3-5].fidelity=rigid", ramp[] = "aero.ramp=[0 s, 0 s]",
                       quiet[] = "gravity=[0, 0, 0]";
     bough_arena *arena = bough_arena_create();
@@ -148,14 +144,4 @@ static void rotor_follows_torque_pitch_and_wind(void **state) {
     // the inertia turns with the blades, too
     check_near(inertia * entry(x.b, x.n, speed, pitch), (value[2] - value[3]) / 2e-5, 1e-3, 0);
     bough_arena_destroy(arena);
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(pendulum_by_hand),
-        cmocka_unit_test(drive_takes_the_load_at_once),
-        cmocka_unit_test(rods_beside_exact_tangents),
-        cmocka_unit_test(rotor_follows_torque_pitch_and_wind),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -22,8 +22,7 @@ static found modes_of(const char *path, const char *const *sets, int count) {
 }
 
 // ω² = g/l
-static void pendulum_swings(void **context) {
-    (void)context;
+TEST(pendulum_swings) {
     const char *sets[] = {NULL};
     found f = modes_of(pendulum, sets, 4);
     assert_int_equal(f.v.found, 1);
@@ -34,8 +33,7 @@ static void pendulum_swings(void **context) {
 }
 
 // m l² λ² + c λ + m g l = 0
-static void damper_damps_the_pendulum(void **context) {
-    (void)context;
+TEST(damper_damps_the_pendulum) {
     const char *sets[] = {"bodies[0].joint.damping=2", NULL};
     found f = modes_of(pendulum, sets, 4);
     check_near(f.v.mode[0].frequency, sqrt(9.81) / (2 * BOUGH_PI), 1e-8, 0);
@@ -45,8 +43,7 @@ static void damper_damps_the_pendulum(void **context) {
 }
 
 // On a spherical joint it swings in two planes; its free turn and its quaternion give nothing.
-static void spherical_pendulum_swings_twice(void **context) {
-    (void)context;
+TEST(spherical_pendulum_swings_twice) {
     const char *sets[] = {"bodies[0].joint={kind: spherical, parent: ground}",
                           "bodies[0].inertia=[0.1, 0.1, 0.1]", NULL};
     found f = modes_of(pendulum, sets, 6);
@@ -57,8 +54,7 @@ static void spherical_pendulum_swings_twice(void **context) {
 }
 
 // Two windows of four-bars hang: ω² = g ((N + 1)/2 + N)/((N + 1)/3 + N), and nothing else moves.
-static void closed_loops_swing_as_one(void **context) {
-    (void)context;
+TEST(closed_loops_swing_as_one) {
     const char *sets[] = {"bodies[0].joint.speed=0",
                           "bodies[0].joint.angle=180 deg",
                           "bodies[1].joint.angle=180 deg",
@@ -74,8 +70,7 @@ static void closed_loops_swing_as_one(void **context) {
 
 // Clamped and propped: β² √(EI/ρA)/2πL², β = 3.926602, in both planes; shear and inertia of the
 // sections lower it a little.
-static void propped_beam_vibrates_in_both_planes(void **context) {
-    (void)context;
+TEST(propped_beam_vibrates_in_both_planes) {
     const char *sets[] = {NULL};
     found f = modes_of("tests/data/scenes/prop.yaml", sets, 3);
     double exact = 3.926602 * 3.926602 * sqrt(1e5 / 2) / (2 * BOUGH_PI * 9);
@@ -85,8 +80,7 @@ static void propped_beam_vibrates_in_both_planes(void **context) {
 }
 
 // A disc that spins in two elastic gimbals: A λ² ± i C Ω λ + k = 0.
-static void gyroscope_nutates_and_precesses(void **context) {
-    (void)context;
+TEST(gyroscope_nutates_and_precesses) {
     const char *sets[] = {
         "bodies=[{name: outer, fidelity: rigid, joint: {kind: revolute, parent: ground, axis: x, "
         "stiffness: 50}}, {name: inner, fidelity: rigid, joint: {kind: revolute, parent: outer, "
@@ -104,8 +98,7 @@ static void gyroscope_nutates_and_precesses(void **context) {
 
 // A nearly massless cantilever of length L with a body at its end, its centre a further:
 // flexibility D and mass M of the end's deflection and turn, 1/ω² are the eigenvalues of D M.
-static void body_on_a_rod_swings(void **context) {
-    (void)context;
+TEST(body_on_a_rod_swings) {
     const char *sets[] = {"gravity=[0, 0, 0]", "bodies[0].rod.mass=[1e-6, 0, 0, 1e-9, 1e-9, 0]", NULL};
     found f = modes_of("tests/data/scenes/tip-weight.yaml", sets, 5);
     double l = 2, ei = 1000, ga = 1e5, m = 0.05, a = 0.1, j = 2e-3;
@@ -131,8 +124,7 @@ static void body_on_a_rod_swings(void **context) {
 #define COARSE "bodies[3].rod.segments=8", "bodies[4].rod.segments=8", "bodies[5].rod.segments=8"
 
 // The blades of a locked rotor on a rigid support do not know of each other.
-static void parked_blades_have_their_own_frequencies(void **context) {
-    (void)context;
+TEST(parked_blades_have_their_own_frequencies) {
     const char *sets[] = {HUB("{angle: 0}"), CALM, COARSE, "modes.at=undeformed", NULL};
     found f = modes_of(runup, sets, 9);
     bough_beam *beam = &f.s->beam[0];
@@ -164,8 +156,7 @@ static const bough_scene_mode *mode_with(const found *f, int direction, bough_pa
 
 // On a rigid support an observer at rest sees each blade frequency, and it plus and minus the
 // rotor's, exactly; the equilibrium is stretched by the rotation.
-static void whirl_is_split_by_the_rotation(void **context) {
-    (void)context;
+TEST(whirl_is_split_by_the_rotation) {
     const char *sets[] = {HUB("{speed: 12.1 rpm}"), CALM, COARSE, "aero.air_density=1e-9", NULL};
     found f = modes_of(runup, sets, 6);
     assert_false(f.v.frozen);
@@ -184,8 +175,7 @@ static void whirl_is_split_by_the_rotation(void **context) {
 }
 
 // What gravity does to a blade in a slow revolution averages out: its bending adds no stress.
-static void gravity_averages_out(void **context) {
-    (void)context;
+TEST(gravity_averages_out) {
     const char *with[] = {HUB("{speed: 1e-3 rpm}"),
                           "aero.ramp=[0, 1000]",
                           "aero.wind.speed=0",
@@ -203,8 +193,7 @@ static void gravity_averages_out(void **context) {
 }
 
 // The rows of a shape join: a rod's end and what hangs on it move alike; the largest is real and 1.
-static void shapes_join_the_bodies(void **context) {
-    (void)context;
+TEST(shapes_join_the_bodies) {
     const char *sets[] = {"modes.shapes=true", NULL};
     found f = modes_of("tests/data/scenes/tip-weight.yaml", sets, 2);
     assert_int_equal(f.v.n_row, 5 + 1);
@@ -223,8 +212,7 @@ static void shapes_join_the_bodies(void **context) {
 }
 
 // Reduced to their modes, the blades of a rotor on a rigid support keep patterns and frequencies.
-static void modal_blades_whirl_as_rods_do(void **context) {
-    (void)context;
+TEST(modal_blades_whirl_as_rods_do) {
     const char *rods[] = {HUB("{speed: 6 rpm}"), CALM, COARSE, "aero.air_density=1e-9", NULL};
     const char *modal[] = {HUB("{speed: 6 rpm}"),
                            CALM,
@@ -248,8 +236,7 @@ static void modal_blades_whirl_as_rods_do(void **context) {
 
 // On a support that yaws and rolls the transformed system is the same at any azimuth; that of the
 // blades' own axes is not.
-static void azimuth_does_not_matter(void **context) {
-    (void)context;
+TEST(azimuth_does_not_matter) {
     const char *nacelle =
         "bodies[1].joint={kind: revolute, parent: tower, axis: z, stiffness: 3e8, placement: "
         "[move z 87.6 m]}";
@@ -277,23 +264,4 @@ static void azimuth_does_not_matter(void **context) {
     assert_true(support > 0.01); // the nacelle moves
     bough_arena_destroy(a.arena);
     bough_arena_destroy(b.arena);
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(pendulum_swings),
-        cmocka_unit_test(damper_damps_the_pendulum),
-        cmocka_unit_test(spherical_pendulum_swings_twice),
-        cmocka_unit_test(gyroscope_nutates_and_precesses),
-        cmocka_unit_test(body_on_a_rod_swings),
-        cmocka_unit_test(modal_blades_whirl_as_rods_do),
-        cmocka_unit_test(gravity_averages_out),
-        cmocka_unit_test(shapes_join_the_bodies),
-        cmocka_unit_test(closed_loops_swing_as_one),
-        cmocka_unit_test(propped_beam_vibrates_in_both_planes),
-        cmocka_unit_test(parked_blades_have_their_own_frequencies),
-        cmocka_unit_test(whirl_is_split_by_the_rotation),
-        cmocka_unit_test(azimuth_does_not_matter),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -60,8 +60,7 @@ static bough_case_result sine(bough_arena *arena, const bough_study *set, double
     return r;
 }
 
-static void sums_are_those_by_hand(void **state) {
-    (void)state;
+TEST(sums_are_those_by_hand) {
     bough_arena *arena = bough_arena_create();
     bough_case cases[CASES];
     bough_load_group group[4];
@@ -98,8 +97,7 @@ static void sums_are_those_by_hand(void **state) {
     bough_arena_destroy(arena);
 }
 
-static void what_is_lacking_is_told(void **state) {
-    (void)state;
+TEST(what_is_lacking_is_told) {
     bough_arena *arena = bough_arena_create();
     bough_case cases[CASES];
     bough_load_group group[4];
@@ -121,8 +119,7 @@ static void what_is_lacking_is_told(void **state) {
 }
 
 // Companions of the first two cases: an equivalent load that is larger by its error for each.
-static void errors_are_those_of_companions(void **state) {
-    (void)state;
+TEST(errors_are_those_of_companions) {
     bough_arena *arena = bough_arena_create();
     bough_case cases[CASES];
     bough_load_group group[4];
@@ -168,8 +165,7 @@ static bough_study *read_with(bough_arena *arena, const char *line, bough_errors
 }
 
 // Which cases have a companion depends on their numbers alone.
-static void companions_are_spread_by_number(void **state) {
-    (void)state;
+TEST(companions_are_spread_by_number) {
     static const struct {
         const char *line;
         int every;
@@ -196,8 +192,7 @@ static void companions_are_spread_by_number(void **state) {
 
 // A load of 7 to 13 and one of -13 to -7: what is nearest to zero relieves. A speed of 0 to 160 and what else
 // there is at that moment have no factor.
-static void factors_are_of_loads_and_on_the_safe_side(void **state) {
-    (void)state;
+TEST(factors_are_of_loads_and_on_the_safe_side) {
     bough_arena *arena = bough_arena_create();
     bough_case cases[CASES];
     bough_load_group group[4];
@@ -222,8 +217,7 @@ static void factors_are_of_loads_and_on_the_safe_side(void **state) {
 }
 
 // Shares of the hours: bins half way between the speeds of a Rayleigh distribution.
-static void speeds_weigh_by_weibull(void **state) {
-    (void)state;
+TEST(speeds_weigh_by_weibull) {
     bough_arena *arena = bough_arena_create();
     bough_errors errors = {.arena = arena};
     bough_node *root = bough_text_parse(arena, "set.yaml", text, strlen(text), &errors);
@@ -246,16 +240,4 @@ static void speeds_weigh_by_weibull(void **state) {
     assert_string_equal(set->cases[3].settings, "speed=8, seed=2");
     check_near(set->group[1].favourable, 0.9, 0, 0);
     bough_arena_destroy(arena);
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(sums_are_those_by_hand),
-        cmocka_unit_test(what_is_lacking_is_told),
-        cmocka_unit_test(errors_are_those_of_companions),
-        cmocka_unit_test(companions_are_spread_by_number),
-        cmocka_unit_test(factors_are_of_loads_and_on_the_safe_side),
-        cmocka_unit_test(speeds_weigh_by_weibull),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -19,8 +19,7 @@ static double cycles_of(const bough_rainflow *r, double range) {
 }
 
 // The example of ASTM E1049-85, figure 6: points A to I, and its table of cycles by range.
-static void counts_the_example_of_the_standard(void **state) {
-    (void)state;
+TEST(counts_the_example_of_the_standard) {
     static const double history[] = {-2, 1, -3, 5, -1, 3, -4, 4, -2}, slope[] = {1, 3, 10};
     static const double table[][2] = {{10, 0}, {9, 0.5}, {8, 1},   {7, 0}, {6, 0.5},
                                       {5, 0},  {4, 1.5}, {3, 0.5}, {2, 0}, {1, 0}};
@@ -37,8 +36,7 @@ static void counts_the_example_of_the_standard(void **state) {
 }
 
 // Samples between the turning points and values that stand still change nothing.
-static void only_turning_points_count(void **state) {
-    (void)state;
+TEST(only_turning_points_count) {
     static const double dense[] = {-2, -2, 0, 1, 1, -1, -3, 0, 5, 5, 4,  -1, -1,
                                    1,  3,  2, 2, 0, -4, -4, 0, 4, 3, -2, -2},
                         slope[] = {3};
@@ -48,8 +46,7 @@ static void only_turning_points_count(void **state) {
 
 // n periods of a sine of amplitude a: n cycles of range 2a, so its equivalent load at n cycles is 2a
 // for every slope.
-static void equivalent_load_of_a_sine_is_its_range(void **state) {
-    (void)state;
+TEST(equivalent_load_of_a_sine_is_its_range) {
     enum { PERIODS = 50, PER = 40 };
     static const double slope[] = {3, 4, 10};
     double x[PERIODS * PER + 1];
@@ -61,8 +58,7 @@ static void equivalent_load_of_a_sine_is_its_range(void **state) {
 
 // A converging history holds all its ranges open: more of them than fit are counted early, the
 // smallest, and the sum for a steep slope does not see it.
-static void memory_is_bounded(void **state) {
-    (void)state;
+TEST(memory_is_bounded) {
     static const double slope[] = {1, 10};
     enum { TURNS = 5000 };
     bough_rainflow r = {.n_slope = 2, .slope = {1, 10}};
@@ -94,8 +90,7 @@ static void check_same_levels(const bough_levels *a, const bough_levels *b) {
 }
 
 // Against a count that knows the width from the start, over values that spread while they come.
-static void levels_are_those_of_a_second_count(void **state) {
-    (void)state;
+TEST(levels_are_those_of_a_second_count) {
     enum { N = 20000 };
     static double x[N];
     unsigned seed = 7;
@@ -117,8 +112,7 @@ static void levels_are_those_of_a_second_count(void **state) {
     }
 }
 
-static void parts_add_to_the_whole(void **state) {
-    (void)state;
+TEST(parts_add_to_the_whole) {
     bough_levels whole = {0}, part[3] = {{0}}, sum = {0}, other = {0};
     unsigned seed = 3;
     for (int i = 0; i < 3000; i++) {
@@ -132,8 +126,7 @@ static void parts_add_to_the_whole(void **state) {
     check_same_levels(&whole, &other);
 }
 
-static void constant_and_zero_have_one_level(void **state) {
-    (void)state;
+TEST(constant_and_zero_have_one_level) {
     bough_levels l = {0};
     for (int i = 0; i < 10; i++) bough_levels_follow(&l, 0);
     check_near(bough_levels_inside(&l, 0), 10, 0, 0);
@@ -147,8 +140,7 @@ static void constant_and_zero_have_one_level(void **state) {
 
 // -- a run's counts -------------------------------------------------------------------------------
 
-static void extremes_come_with_all_channels(void **state) {
-    (void)state;
+TEST(extremes_come_with_all_channels) {
     static const double slope[] = {4}, rows[][2] = {{1, 10}, {5, 20}, {-2, 30}, {5, 40}, {0, NAN}};
     bough_arena *arena = bough_arena_create();
     bough_counts c;
@@ -166,8 +158,7 @@ static void extremes_come_with_all_channels(void **state) {
     bough_arena_destroy(arena);
 }
 
-static void statistics_hold_beside_a_large_mean(void **state) {
-    (void)state;
+TEST(statistics_hold_beside_a_large_mean) {
     bough_sample_statistics s = {0};
     assert_true(isnan(bough_sample_statistics_deviation(&s)));
     for (int i = 0; i < 100000; i++) bough_sample_statistics_add(&s, i, 1e9 + (i % 2 ? 0.5 : -0.5));
@@ -175,19 +166,4 @@ static void statistics_hold_beside_a_large_mean(void **state) {
     check_near(bough_sample_statistics_deviation(&s), 0.5, 1e-6, 0);
     check_near(s.least, 1e9 - 0.5, 0, 0);
     check_near(s.most_at, 1, 0, 0);
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(counts_the_example_of_the_standard),
-        cmocka_unit_test(only_turning_points_count),
-        cmocka_unit_test(equivalent_load_of_a_sine_is_its_range),
-        cmocka_unit_test(memory_is_bounded),
-        cmocka_unit_test(levels_are_those_of_a_second_count),
-        cmocka_unit_test(parts_add_to_the_whole),
-        cmocka_unit_test(constant_and_zero_have_one_level),
-        cmocka_unit_test(extremes_come_with_all_channels),
-        cmocka_unit_test(statistics_hold_beside_a_large_mean),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

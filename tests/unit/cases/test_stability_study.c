@@ -85,51 +85,42 @@ static int results_with(const char *folder, const char *what) {
 }
 
 // Every cell has a figure or a diagnosis; a monolithic run differs from the reference of its own model.
-static void every_cell_speaks(void **state) {
+TEST_IN_FOLDER(every_cell_speaks) {
     char shown[8192];
-    bough_status status = perform(*state, 0, 0, 100000, shown);
+    bough_status status = perform(*context, 0, 0, 100000, shown);
     assert_int_equal(status.code, BOUGH_OK);
     assert_non_null(strstr(shown, "6 of 12 held, 6 stopped with a diagnosis, 0 silent"));
-    assert_int_equal(results(*state), CELLS + REFERENCES);
-    assert_int_equal(lines_of(*state, "table.csv"), 1 + 1 + CELLS);
-    char *table = scratch_read(*state, "table.csv");
+    assert_int_equal(results(*context), CELLS + REFERENCES);
+    assert_int_equal(lines_of(*context, "table.csv"), 1 + 1 + CELLS);
+    char *table = scratch_read(*context, "table.csv");
     assert_int_equal(count(table, "grows by a factor of "), 6);
     free(table);
     // the same macro step as the reference gives the same bits; a reference has no companion
-    assert_int_equal(results_with(*state, "errors 0\n"), 2 + REFERENCES);
-    assert_int_equal(results_with(*state, "errors 0\nestimates nan\n"), REFERENCES);
+    assert_int_equal(results_with(*context, "errors 0\n"), 2 + REFERENCES);
+    assert_int_equal(results_with(*context, "errors 0\nestimates nan\n"), REFERENCES);
 }
 
-static void parts_fill_one_folder(void **state) {
+TEST_IN_FOLDER(parts_fill_one_folder) {
     char shown[8192];
     for (int part = 1; part <= 2; part++) {
-        bough_status status = perform(*state, part, 2, 100000, shown);
+        bough_status status = perform(*context, part, 2, 100000, shown);
         assert_int_equal(status.code, BOUGH_OK);
         assert_non_null(
             strstr(shown, part == 1 ? "6 of 12 cells still missing" : "0 of 12 cells still missing"));
-        assert_false(scratch_has(*state, "table.csv"));
-        assert_int_equal(results(*state), part * (CELLS / 2 + 1));
+        assert_false(scratch_has(*context, "table.csv"));
+        assert_int_equal(results(*context), part * (CELLS / 2 + 1));
     }
-    bough_status status = perform(*state, 0, 0, 0, shown); // collects without a step
+    bough_status status = perform(*context, 0, 0, 0, shown); // collects without a step
     assert_int_equal(status.code, BOUGH_OK);
     assert_non_null(strstr(shown, "6 of 12 held"));
-    assert_int_equal(results(*state), CELLS + REFERENCES);
+    assert_int_equal(results(*context), CELLS + REFERENCES);
 }
 
-static void an_interrupted_study_goes_on(void **state) {
+TEST_IN_FOLDER(an_interrupted_study_goes_on) {
     char shown[8192];
-    bough_status status = perform(*state, 0, 0, 45, shown);
+    bough_status status = perform(*context, 0, 0, 45, shown);
     assert_int_equal(status.code, BOUGH_INTERRUPTED);
-    status = perform(*state, 0, 0, 100000, shown);
+    status = perform(*context, 0, 0, 100000, shown);
     assert_int_equal(status.code, BOUGH_OK);
-    assert_int_equal(results(*state), CELLS + REFERENCES);
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test_setup_teardown(every_cell_speaks, scratch_make, scratch_remove),
-        cmocka_unit_test_setup_teardown(parts_fill_one_folder, scratch_make, scratch_remove),
-        cmocka_unit_test_setup_teardown(an_interrupted_study_goes_on, scratch_make, scratch_remove),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
+    assert_int_equal(results(*context), CELLS + REFERENCES);
 }

@@ -98,9 +98,9 @@ static int count_in(const char *folder, const char *name, const char *what) {
 
 // -- reading --------------------------------------------------------------------------------------
 
-static void grid_is_the_product_of_its_values(void **state) {
+TEST_IN_FOLDER(grid_is_the_product_of_its_values) {
     fixture f;
-    open_good(&f, *state);
+    open_good(&f, *context);
     const bough_study *s = f.study;
     assert_int_equal(s->n_case, 4);
     assert_string_equal(s->cases[0].settings, "scheme=monolithic, macro_step=1 ms");
@@ -116,10 +116,10 @@ static void grid_is_the_product_of_its_values(void **state) {
 }
 
 // Keys of the same last part are told apart; a quoted value stays text.
-static void labels_are_unique_and_quotes_are_kept(void **state) {
+TEST_IN_FOLDER(labels_are_unique_and_quotes_are_kept) {
     fixture f;
     bough_status status =
-        open_study(&f, *state,
+        open_study(&f, *context,
                    HEAD REFERENCE "grid: {simulation.master.rtol: [1e-6], simulation.micro.rtol: [1e-5],"
                                   " title: ['it''s: 1']}\n" MEASURES);
     assert_true(bough_is_ok(&status));
@@ -130,10 +130,11 @@ static void labels_are_unique_and_quotes_are_kept(void **state) {
 }
 
 // A cell may replace a whole block of keys at once.
-static void a_mapping_is_a_value(void **state) {
+TEST_IN_FOLDER(a_mapping_is_a_value) {
     fixture f;
-    bough_status status = open_study(
-        &f, *state, HEAD REFERENCE "grid: {simulation.micro: [{solver: rosenbrock, step: 2 ms}]}\n" MEASURES);
+    bough_status status =
+        open_study(&f, *context,
+                   HEAD REFERENCE "grid: {simulation.micro: [{solver: rosenbrock, step: 2 ms}]}\n" MEASURES);
     assert_true(bough_is_ok(&status));
     assert_string_equal(f.study->cases[0].set[0], "simulation.micro={solver: rosenbrock, step: 2 ms}");
     close_study(&f);
@@ -156,8 +157,8 @@ static void check_errors(const char *folder, const char *text, const char *expec
     close_study(&f);
 }
 
-static void bad_keys_are_told_all_at_once(void **state) {
-    check_errors(*state,
+TEST_IN_FOLDER(bad_keys_are_told_all_at_once) {
+    check_errors(*context,
                  "titel: x\nkind: work-precisoin\nscene: [a]\nreference: none\n"
                  "grid: {a.b: 1, c: [{e: [1]}, 2]}\ncommon: {d: {e: {f: 1}}}\nrepeat: 0\n"
                  "measures:\n  - {name: x}\n  - {name: y, channels: [], norm: max}\n"
@@ -167,8 +168,8 @@ static void bad_keys_are_told_all_at_once(void **state) {
                  "10:35 measures[1].norm\n11:5 measures[2].scale\n");
 }
 
-static void replacements_are_checked_where_the_study_gives_them(void **state) {
-    check_errors(*state,
+TEST_IN_FOLDER(replacements_are_checked_where_the_study_gives_them) {
+    check_errors(*context,
                  HEAD "reference: {simulation.coupling.schme: ramp}\n"
                       "grid:\n  simulation.coupling.scheme: [ramp, rmap]\n"
                       "  simulation.macro_step: [1 ms, 1 kg]\n"
@@ -178,33 +179,32 @@ static void replacements_are_checked_where_the_study_gives_them(void **state) {
 }
 
 // A reference of kind stability has values on the model's axes alone.
-static void errors_of_a_reference_with_parameters_are_told(void **state) {
-    check_errors(*state,
+TEST_IN_FOLDER(errors_of_a_reference_with_parameters_are_told) {
+    check_errors(*context,
                  "title: Falling bar\nkind: stability\n" BAR REFERENCE
                  "grid:\n  bodies[0].rod.damping: [x]\n  simulation.macro_step: [1 ms]\n" COMMON MEASURES,
                  "6:27 bodies[0].rod.damping\n");
 }
 
-static void channels_and_their_units_are_checked(void **state) {
-    check_errors(*state,
+TEST_IN_FOLDER(channels_and_their_units_are_checked) {
+    check_errors(*context,
                  HEAD REFERENCE GRID COMMON "measures:\n  - {name: tip, channels: [barTipX, barTipQ]}\n"
                                             "  - {name: angle, channel: barPos, unit: rad}\n",
                  "10:5 measures\n11:5 measures\n");
 }
 
-static void output_times_must_be_common(void **state) {
-    check_errors(*state, HEAD REFERENCE "grid: {simulation.output.interval: [5 ms, 10 ms]}\n" MEASURES,
+TEST_IN_FOLDER(output_times_must_be_common) {
+    check_errors(*context, HEAD REFERENCE "grid: {simulation.output.interval: [5 ms, 10 ms]}\n" MEASURES,
                  "5:7 grid\n");
 }
 
-static void missing_scene_is_told(void **state) {
-    check_errors(*state, "kind: work-precision\nscene: none.yaml\n" REFERENCE GRID MEASURES, "2:8 scene\n");
+TEST_IN_FOLDER(missing_scene_is_told) {
+    check_errors(*context, "kind: work-precision\nscene: none.yaml\n" REFERENCE GRID MEASURES, "2:8 scene\n");
 }
 
 // -- differences ----------------------------------------------------------------------------------
 
-static void differences_are_the_largest_norms(void **state) {
-    (void)state;
+TEST(differences_are_the_largest_norms) {
     bough_study_vector pairs[] = {{2, NULL}, {2, NULL}};
     bough_study_measure measures[] = {{.channels = {2, pairs}, .norm = BOUGH_STUDY_EUCLID, .scale = 10},
                                       {.channels = {1, pairs}, .norm = BOUGH_STUDY_LARGEST, .scale = 1}};
@@ -222,9 +222,9 @@ static void differences_are_the_largest_norms(void **state) {
     check_near(error[1], 2, 1e-15, 0);
 }
 
-static void reference_differs_from_itself_by_nothing(void **state) {
+TEST_IN_FOLDER(reference_differs_from_itself_by_nothing) {
     fixture f;
-    open_good(&f, *state);
+    open_good(&f, *context);
     bough_study_series reference = bough_study_series_take(f.arena, f.study);
     bough_study_series series = bough_study_series_take(f.arena, f.study);
     bough_study_drive drive = {.stop = NULL};
@@ -246,42 +246,42 @@ static void reference_differs_from_itself_by_nothing(void **state) {
 
 // -- results --------------------------------------------------------------------------------------
 
-static void every_run_has_a_row(void **state) {
+TEST_IN_FOLDER(every_run_has_a_row) {
     char table[4096];
-    bough_status status = perform(*state, good_study, ALL, table);
+    bough_status status = perform(*context, good_study, ALL, table);
     assert_true(bough_is_ok(&status));
-    assert_int_equal(count_in(*state, "table.csv", "\n"), 1 + 1 + 4);
-    assert_int_equal(count_results(*state), 1 + 4);
-    assert_int_equal(count_in(*state, "table.csv", ",tip [m],tip estimated [m],angle [rad],"), 1);
-    char *text = scratch_read(*state, "table.txt");
+    assert_int_equal(count_in(*context, "table.csv", "\n"), 1 + 1 + 4);
+    assert_int_equal(count_results(*context), 1 + 4);
+    assert_int_equal(count_in(*context, "table.csv", ",tip [m],tip estimated [m],angle [rad],"), 1);
+    char *text = scratch_read(*context, "table.txt");
     assert_string_equal(text, table);
     free(text);
     assert_int_equal(count(table, "monolithic"), 3);
     assert_int_equal(count(table, "  ok  "), 3);
 }
 
-static void failed_runs_are_told_with_their_diagnosis(void **state) {
+TEST_IN_FOLDER(failed_runs_are_told_with_their_diagnosis) {
     char table[4096];
-    bough_status status = perform(*state, good_study, ALL, table);
+    bough_status status = perform(*context, good_study, ALL, table);
     assert_true(bough_is_ok(&status));
     assert_int_equal(count(table, "failed at t=0.00"), 2);
     assert_int_equal(count(table, "failed: scheme=frozen, macro_step="), 2);
-    assert_int_equal(count_in(*state, "table.csv", ",failed,"), 2);
-    assert_int_equal(count_in(*state, "table.csv", "grows by a factor of "), 2);
-    assert_int_equal(count_in(*state, "plot.svg", "frozen — 1 ms failed at t=0.00"), 1);
-    assert_int_equal(count_in(*state, "plot.svg", "<polyline"), 4);
-    assert_int_equal(count_in(*state, "plot.svg", "</svg>\n"), 1);
+    assert_int_equal(count_in(*context, "table.csv", ",failed,"), 2);
+    assert_int_equal(count_in(*context, "table.csv", "grows by a factor of "), 2);
+    assert_int_equal(count_in(*context, "plot.svg", "frozen — 1 ms failed at t=0.00"), 1);
+    assert_int_equal(count_in(*context, "plot.svg", "<polyline"), 4);
+    assert_int_equal(count_in(*context, "plot.svg", "</svg>\n"), 1);
 }
 
 // The title ends within the picture, its letters being 0.6 times as wide as high.
-static void no_title_is_clipped(void **state) {
+TEST_IN_FOLDER(no_title_is_clipped) {
     static const char title[] = "Falling bar, whose study has a title that is wider than its panels side by "
                                 "side, and wider still, so that the picture must have room for it";
     char table[4096], text[4096];
     snprintf(text, sizeof text, "title: '%s'%s", title, strchr(good_study, '\n'));
-    bough_status status = perform(*state, text, ALL, table);
+    bough_status status = perform(*context, text, ALL, table);
     assert_true(bough_is_ok(&status));
-    char *picture = scratch_read(*state, "plot.svg"), *at = strstr(picture, "font-size=\"15\"");
+    char *picture = scratch_read(*context, "plot.svg"), *at = strstr(picture, "font-size=\"15\"");
     assert_non_null(strstr(at, title));
     while (strncmp(at, "x=\"", 3) != 0) at--;
     double width = strtod(strstr(picture, "width=\"") + 7, NULL);
@@ -289,31 +289,31 @@ static void no_title_is_clipped(void **state) {
     free(picture);
 }
 
-static void failed_reference_ends_the_study(void **state) {
+TEST_IN_FOLDER(failed_reference_ends_the_study) {
     char table[4096];
     bough_status status = perform(
-        *state, HEAD "reference: {simulation.coupling.scheme: frozen}\n" GRID COMMON MEASURES, ALL, table);
+        *context, HEAD "reference: {simulation.coupling.scheme: frozen}\n" GRID COMMON MEASURES, ALL, table);
     assert_int_equal(status.code, BOUGH_FAILED);
     assert_non_null(strstr(status.message, "the reference failed: "));
-    assert_false(scratch_has(*state, "table.csv"));
+    assert_false(scratch_has(*context, "table.csv"));
 }
 
-static void interrupted_study_goes_on(void **state) {
+TEST_IN_FOLDER(interrupted_study_goes_on) {
     char table[4096], again[4096], name[256];
-    bough_status status = perform(*state, good_study, 1, table);
+    bough_status status = perform(*context, good_study, 1, table);
     assert_int_equal(status.code, BOUGH_INTERRUPTED);
     assert_non_null(strstr(status.message, "after 1 of 4 runs"));
-    assert_int_equal(scratch_files(*state, "cases", ".case", name), 1 + 1);
-    assert_false(scratch_has(*state, "table.csv"));
-    char *first = scratch_read(*state, name); // with the run's time, which differs in each
-    status = perform(*state, good_study, ALL, table);
+    assert_int_equal(scratch_files(*context, "cases", ".case", name), 1 + 1);
+    assert_false(scratch_has(*context, "table.csv"));
+    char *first = scratch_read(*context, name); // with the run's time, which differs in each
+    status = perform(*context, good_study, ALL, table);
     assert_true(bough_is_ok(&status));
-    char *kept = scratch_read(*state, name);
+    char *kept = scratch_read(*context, name);
     assert_string_equal(kept, first);
     free(first);
     free(kept);
-    assert_int_equal(count_results(*state), 1 + 4);
-    status = perform(*state, good_study, 0, again);
+    assert_int_equal(count_results(*context), 1 + 4);
+    status = perform(*context, good_study, 0, again);
     assert_true(bough_is_ok(&status));
     assert_int_equal(asked, 0);
     assert_string_equal(again, table);
@@ -321,35 +321,35 @@ static void interrupted_study_goes_on(void **state) {
 
 // What a process that is killed has begun is no result; a result that is cut off is refused by name, and
 // runs again once it is removed.
-static void half_a_result_is_none(void **state) {
+TEST_IN_FOLDER(half_a_result_is_none) {
     char table[4096], name[256], path[512];
-    bough_status status = perform(*state, good_study, 1, table);
-    snprintf(path, sizeof path, "%s/cases/0123.case.partial", (char *)*state);
+    bough_status status = perform(*context, good_study, 1, table);
+    snprintf(path, sizeof path, "%s/cases/0123.case.partial", (char *)*context);
     FILE *file = fopen(path, "w");
     assert_non_null(file);
     fputs("case 0123 finger", file);
     fclose(file);
-    status = perform(*state, good_study, ALL, table);
+    status = perform(*context, good_study, ALL, table);
     assert_true(bough_is_ok(&status));
-    assert_int_equal(scratch_files(*state, "cases", ".case", name), 1 + 4);
-    snprintf(path, sizeof path, "%s/%s", (char *)*state, name);
-    char *text = scratch_read(*state, name);
+    assert_int_equal(scratch_files(*context, "cases", ".case", name), 1 + 4);
+    snprintf(path, sizeof path, "%s/%s", (char *)*context, name);
+    char *text = scratch_read(*context, name);
     assert_int_equal(truncate(path, (off_t)strlen(text) - 6), 0);
     free(text);
-    status = perform(*state, good_study, 0, table);
+    status = perform(*context, good_study, 0, table);
     assert_int_equal(status.code, BOUGH_IO);
     assert_non_null(strstr(status.message, name));
     assert_int_equal(remove(path), 0);
-    status = perform(*state, good_study, ALL, table);
+    status = perform(*context, good_study, ALL, table);
     assert_true(bough_is_ok(&status));
-    assert_int_equal(count_results(*state), 1 + 4);
+    assert_int_equal(count_results(*context), 1 + 4);
 }
 
-static void other_settings_are_run_anew_and_a_grown_grid_is_completed(void **state) {
+TEST_IN_FOLDER(other_settings_are_run_anew_and_a_grown_grid_is_completed) {
     char table[4096];
-    perform(*state, good_study, ALL, table);
+    perform(*context, good_study, ALL, table);
     int whole = asked;
-    bough_status status = perform(*state,
+    bough_status status = perform(*context,
                                   HEAD REFERENCE GRID "common: {simulation.duration: 20 ms,"
                                                       " simulation.output.interval: 20 ms}\n" MEASURES,
                                   0, table);
@@ -357,14 +357,13 @@ static void other_settings_are_run_anew_and_a_grown_grid_is_completed(void **sta
     static const char grown[] =
         HEAD REFERENCE "grid:\n  simulation.coupling.scheme: [monolithic, frozen, gauss-seidel]\n"
                        "  simulation.macro_step: [1 ms, 4 ms]\n" COMMON MEASURES;
-    status = perform(*state, grown, ALL, table);
+    status = perform(*context, grown, ALL, table);
     assert_true(bough_is_ok(&status));
     assert_in_range(asked, 1, whole - 1);
-    assert_int_equal(count_in(*state, "table.csv", "\n"), 1 + 1 + 6);
+    assert_int_equal(count_in(*context, "table.csv", "\n"), 1 + 1 + 6);
 }
 
-static void csv_text_is_quoted_where_needed(void **state) {
-    (void)state;
+TEST(csv_text_is_quoted_where_needed) {
     char text[64] = "";
     FILE *file = tmpfile();
     assert_non_null(file);
@@ -374,31 +373,4 @@ static void csv_text_is_quoted_where_needed(void **state) {
     assert_true(fread(text, 1, sizeof text - 1, file) > 0);
     fclose(file);
     assert_string_equal(text, "plain\"a, \"\"b\"\" c\"");
-}
-
-#define SCRATCH(test) cmocka_unit_test_setup_teardown(test, scratch_make, scratch_remove)
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        SCRATCH(grid_is_the_product_of_its_values),
-        SCRATCH(a_mapping_is_a_value),
-        SCRATCH(labels_are_unique_and_quotes_are_kept),
-        SCRATCH(bad_keys_are_told_all_at_once),
-        SCRATCH(replacements_are_checked_where_the_study_gives_them),
-        SCRATCH(errors_of_a_reference_with_parameters_are_told),
-        SCRATCH(channels_and_their_units_are_checked),
-        SCRATCH(output_times_must_be_common),
-        SCRATCH(missing_scene_is_told),
-        cmocka_unit_test(differences_are_the_largest_norms),
-        SCRATCH(reference_differs_from_itself_by_nothing),
-        SCRATCH(every_run_has_a_row),
-        SCRATCH(failed_runs_are_told_with_their_diagnosis),
-        SCRATCH(no_title_is_clipped),
-        SCRATCH(failed_reference_ends_the_study),
-        SCRATCH(interrupted_study_goes_on),
-        SCRATCH(half_a_result_is_none),
-        SCRATCH(other_settings_are_run_anew_and_a_grown_grid_is_completed),
-        cmocka_unit_test(csv_text_is_quoted_where_needed),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -25,9 +25,9 @@ static void write_study(const char *folder, char path[128]) {
     fclose(file);
 }
 
-static void every_turn_has_every_cell_and_errors_are_told(void **state) {
+TEST_IN_FOLDER(every_turn_has_every_cell_and_errors_are_told) {
     char path[128];
-    const char *folder = *state;
+    const char *folder = *context;
     write_study(folder, path);
     bough_arena *arena = bough_arena_create();
     bough_errors errors = {.arena = arena};
@@ -46,12 +46,4 @@ static void every_turn_has_every_cell_and_errors_are_told(void **state) {
     assert_int_equal(count(table, "0.0e+00"), 2); // the reference's settings
     free(csv), free(table);
     bough_arena_destroy(arena);
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test_setup_teardown(every_turn_has_every_cell_and_errors_are_told, scratch_make,
-                                        scratch_remove),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -60,8 +60,7 @@ static void check_continued(const char *path, const char *const *sets, int until
 static const char bar[] = "apps/beams/rubber-bar.yaml";
 static const char runup[] = "apps/turbine/runup.yaml";
 
-static void every_scheme_goes_on(void **context) {
-    (void)context;
+TEST(every_scheme_goes_on) {
     const char *name;
     for (int k = 0; (name = bough_scheme_name(k)) != NULL; k++) {
         char scheme[64];
@@ -71,8 +70,7 @@ static void every_scheme_goes_on(void **context) {
     }
 }
 
-static void every_solver_goes_on(void **context) {
-    (void)context;
+TEST(every_solver_goes_on) {
     static const char *const solver[] = {
         "simulation.micro.solver=cvode-bdf",     "simulation.micro.solver=generalized-alpha",
         "simulation.micro.solver=arkode-esdirk", "simulation.micro.solver=rosenbrock",
@@ -85,16 +83,14 @@ static void every_solver_goes_on(void **context) {
     }
 }
 
-static void controlled_steps_go_on(void **context) {
-    (void)context;
+TEST(controlled_steps_go_on) {
     static const char *const sets[] = {"simulation.step_control={tolerance: 1e-3}",
                                        "bodies[0].rod.segments=6", NULL};
     check_continued(bar, sets, 64, 40);
 }
 
 // Air with a memory, followers whose tangents age, three rods.
-static void the_turbine_goes_on(void **context) {
-    (void)context;
+TEST(the_turbine_goes_on) {
     static const char *const few = "bodies[3-5].rod.segments=8";
     const char *const plain[] = {few, NULL};
     check_continued(runup, plain, 14, 24);
@@ -102,23 +98,12 @@ static void the_turbine_goes_on(void **context) {
     check_continued(runup, memory, 14, 24);
 }
 
-static void the_controlled_turbine_goes_on(void **context) {
-    (void)context;
+TEST(the_controlled_turbine_goes_on) {
     static const char *const sets[] = {"bodies[3-5].rod.segments=8", NULL};
     check_continued("apps/turbine/power.yaml", sets, 14, 24);
 }
 
-static void modal_bodies_go_on(void **context) {
-    (void)context;
+TEST(modal_bodies_go_on) {
     static const char *const sets[] = {"bodies[3-5].fidelity=modal", NULL};
     check_continued(runup, sets, 14, 24);
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(every_scheme_goes_on),           cmocka_unit_test(every_solver_goes_on),
-        cmocka_unit_test(controlled_steps_go_on),         cmocka_unit_test(the_turbine_goes_on),
-        cmocka_unit_test(the_controlled_turbine_goes_on), cmocka_unit_test(modal_bodies_go_on),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

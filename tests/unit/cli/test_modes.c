@@ -33,8 +33,7 @@ static void find(setup *s, int wanted) {
 }
 
 // det(λ² M + λ C + K) = 0, and the shape's ratio is that of the first row.
-static void coupled_masses_have_their_eigenvalues(void **state) {
-    (void)state;
+TEST(coupled_masses_have_their_eigenvalues) {
     setup s;
     build(&s, bough_two_mass_default());
     find(&s, 2);
@@ -53,8 +52,7 @@ static void coupled_masses_have_their_eigenvalues(void **state) {
 }
 
 // A pattern exp(i 2πhk/n) has that harmonic only.
-static void harmonics_are_told_apart(void **state) {
-    (void)state;
+TEST(harmonics_are_told_apart) {
     enum { PARTS = 5 };
     for (int h = -2; h <= 2; h++) {
         double real[PARTS], imaginary[PARTS], share[2];
@@ -68,12 +66,4 @@ static void harmonics_are_told_apart(void **state) {
             check_near(share[1], 0, 0, 1e-15);
         }
     }
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(coupled_masses_have_their_eigenvalues),
-        cmocka_unit_test(harmonics_are_told_apart),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

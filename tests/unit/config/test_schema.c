@@ -182,8 +182,7 @@ static void refuses(const char *text, const char *lines) {
     stop(&f);
 }
 
-static void every_kind_is_read(void **state) {
-    (void)state;
+TEST(every_kind_is_read) {
     fixture f = read_thing("kind: sliding\nspeed: 36 km/h\ncount: 7\nshare: 0.75\nlabel: a b\n"
                            "on: false\nvector: [1 mm, 2, -3]\nweights: [1 t, 2, 3 g]\n"
                            "tags: [x, '1']\ninner: {length: 5 cm, label: l}\n"
@@ -212,8 +211,7 @@ static void every_kind_is_read(void **state) {
     stop(&f);
 }
 
-static void defaults_are_filled(void **state) {
-    (void)state;
+TEST(defaults_are_filled) {
     fixture f = read_thing("kind: turning\n");
     assert_string_equal(f.printed, "");
     check_near(f.thing.angle, 1.5707963267948966, 1e-15, 0);
@@ -228,8 +226,7 @@ static void defaults_are_filled(void **state) {
     stop(&f);
 }
 
-static void tables_are_read_by_columns(void **state) {
-    (void)state;
+TEST(tables_are_read_by_columns) {
     fixture f = read_thing("kind: fixed\nparts:\n  columns: [label, length cm]\n  rows:\n"
                            "    - [a, 5]\n    - [b, 1 m]\n");
     assert_string_equal(f.printed, "");
@@ -241,8 +238,7 @@ static void tables_are_read_by_columns(void **state) {
     stop(&f);
 }
 
-static void bad_tables_are_refused(void **state) {
-    (void)state;
+TEST(bad_tables_are_refused) {
     refuses("kind: fixed\nparts: {columns: [lable, length kg, label m, 3], rows: []}\n",
             "f:2:19: error: parts.columns: unknown key 'lable' (did you mean 'label'?)\n"
             "f:2:26: error: parts.columns: column 'length': the unit 'kg' does not fit\n"
@@ -267,8 +263,7 @@ static void bad_tables_are_refused(void **state) {
             "f:2:18: error: parts.columns: expected a list of column names, got '3'\n");
 }
 
-static void misspelt_words_get_a_hint(void **state) {
-    (void)state;
+TEST(misspelt_words_get_a_hint) {
     refuses("kind: turnign\n", "f:1:7: error: kind: expected one of turning, sliding, fixed, got "
                                "'turnign' (did you mean 'turning'?)\n");
     refuses("kind: zzz\n", "f:1:7: error: kind: expected one of turning, sliding, fixed, got 'zzz'\n");
@@ -279,8 +274,7 @@ static void misspelt_words_get_a_hint(void **state) {
             "f:4:20: error: inner: unknown key 'lable' (did you mean 'label'?)\n");
 }
 
-static void wrong_types_are_refused(void **state) {
-    (void)state;
+TEST(wrong_types_are_refused) {
     refuses("kind: [fixed]\n", "f:1:7: error: kind: expected one of turning, sliding, fixed, got a list\n");
     refuses("kind: fixed\ncount: 1.5\n", "f:2:8: error: count: expected a whole number, got "
                                          "'1.5'\n");
@@ -316,8 +310,7 @@ static void wrong_types_are_refused(void **state) {
     refuses("- kind\n", "f:1:1: error: expected a thing (a mapping of keys), got a list\n");
 }
 
-static void only_true_and_false_are_booleans(void **state) {
-    (void)state;
+TEST(only_true_and_false_are_booleans) {
     const char *const others[] = {"yes", "no", "on", "off", "True", "FALSE", "1", "0", "y", "~"};
     for (size_t i = 0; i < sizeof others / sizeof others[0]; i++) {
         char text[60], line[80];
@@ -328,16 +321,14 @@ static void only_true_and_false_are_booleans(void **state) {
     refuses("kind: fixed\non: 'true'\n", "f:2:5: error: on: expected true or false, got 'true'\n");
 }
 
-static void missing_keys_are_told_at_the_mapping(void **state) {
-    (void)state;
+TEST(missing_keys_are_told_at_the_mapping) {
     refuses("label: x\n", "f:1:1: error: required key 'kind' is missing\n");
     refuses("kind: fixed\ninner:\n  label: x\nparts:\n  - label: y\n",
             "f:3:3: error: inner: required key 'length' is missing\n"
             "f:5:5: error: parts[0]: required key 'length' is missing\n");
 }
 
-static void ranges_are_checked(void **state) {
-    (void)state;
+TEST(ranges_are_checked) {
     refuses("kind: fixed\ncount: 10\nshare: 0.4\nweights: [1, -2 kg]\ninner: {length: 0}\n",
             "f:2:8: error: count: must be in [0, 9], got '10'\n"
             "f:3:8: error: share: must be in [0.5, 1], got '0.4'\n"
@@ -348,8 +339,7 @@ static void ranges_are_checked(void **state) {
     stop(&f);
 }
 
-static void keys_depend_on_choices(void **state) {
-    (void)state;
+TEST(keys_depend_on_choices) {
     refuses("kind: fixed\nangle: 1\nspeed: 1\n",
             "f:2:1: error: angle: only used with 'kind: turning'\n"
             "f:3:1: error: speed: only used with 'kind: turning/sliding'\n");
@@ -361,14 +351,12 @@ static void keys_depend_on_choices(void **state) {
                                      "fixed, got 'xyz'\n");
 }
 
-static void checks_run_on_clean_mappings_only(void **state) {
-    (void)state;
+TEST(checks_run_on_clean_mappings_only) {
     refuses("kind: fixed\ninner: {length: 100}\n", "f:2:8: error: inner.length: a long part\n");
     refuses("kind: fixed\ninner: {length: 100, x: 1}\n", "f:2:22: error: inner: unknown key 'x'\n");
 }
 
-static void long_values_are_cut(void **state) {
-    (void)state;
+TEST(long_values_are_cut) {
     char text[400] = "kind: fixed\ncount: ", line[200];
     for (int i = 0; i < 100; i++) strcat(text, "é");
     strcpy(line, "f:2:8: error: count: expected a whole number, got '");
@@ -384,8 +372,7 @@ static void quantity_is(const char *text, bough_dimension dimension, double expe
     check_near(value, expected, 1e-15, 0);
 }
 
-static void units_are_converted(void **state) {
-    (void)state;
+TEST(units_are_converted) {
     quantity_is("12.1 rpm", BOUGH_ANGULAR_SPEED, 12.1 * 3.14159265358979323846 / 30);
     quantity_is("5 deg", BOUGH_ANGLE, 5 * 3.14159265358979323846 / 180);
     quantity_is("2 mrad", BOUGH_ANGLE, 2e-3);
@@ -423,8 +410,7 @@ static void quantity_fails(const char *text, bough_dimension dimension, const ch
     assert_string_equal(why, reason);
 }
 
-static void wrong_units_are_refused(void **state) {
-    (void)state;
+TEST(wrong_units_are_refused) {
     quantity_fails("5 kg", BOUGH_LENGTH, "the unit 'kg' does not fit");
     quantity_fails("5 Hz", BOUGH_ANGULAR_SPEED, "the unit 'Hz' does not fit");
     quantity_fails("5 N", BOUGH_MOMENT, "the unit 'N' does not fit");
@@ -440,8 +426,7 @@ static void wrong_units_are_refused(void **state) {
 }
 
 // What is radians to one reader and degrees to the next is no number alone; 0 is the same to both.
-static void angles_need_a_unit(void **state) {
-    (void)state;
+TEST(angles_need_a_unit) {
     quantity_is("0", BOUGH_ANGLE, 0);
     quantity_is("-0.0", BOUGH_ANGULAR_SPEED, 0);
     quantity_is("6.5 rad", BOUGH_ANGLE, 6.5);
@@ -449,8 +434,7 @@ static void angles_need_a_unit(void **state) {
     quantity_fails("2", BOUGH_ANGULAR_SPEED, "2 rad/s is 19.1 rpm; write '2 rpm' or '2 rad/s'");
 }
 
-static void numbers_are_strict(void **state) {
-    (void)state;
+TEST(numbers_are_strict) {
     quantity_is("0", BOUGH_PURE_NUMBER, 0);
     quantity_is("-0.5e-3", BOUGH_PURE_NUMBER, -5e-4);
     quantity_is("+1.E5", BOUGH_PURE_NUMBER, 1e5);
@@ -474,8 +458,7 @@ static void numbers_are_strict(void **state) {
 }
 
 // A library may have set the user's locale, whose decimal point is a comma.
-static void numbers_do_not_depend_on_the_locale(void **state) {
-    (void)state;
+TEST(numbers_do_not_depend_on_the_locale) {
     const char *const names[] = {"de_DE.UTF-8", "de_DE.utf8", "fr_FR.UTF-8", "de_DE"};
     bool set = false;
     for (int i = 0; i < 4 && !set; i++) set = setlocale(LC_NUMERIC, names[i]) != NULL;
@@ -484,8 +467,7 @@ static void numbers_do_not_depend_on_the_locale(void **state) {
     setlocale(LC_NUMERIC, "C");
 }
 
-static void nearest_words_are_found(void **state) {
-    (void)state;
+TEST(nearest_words_are_found) {
     const char *const words[] = {"duration", NULL, "macro_step", "hub", "x"};
     assert_string_equal(bough_nearest("durration", words, 5), "duration");
     assert_string_equal(bough_nearest("makrostep", words, 5), "macro_step");
@@ -506,8 +488,7 @@ static void nearest_words_are_found(void **state) {
 }
 
 // Half a million unknown keys must not cost half a million searches for a near word.
-static void hostile_keys_end_fast(void **state) {
-    (void)state;
+TEST(hostile_keys_end_fast) {
     enum { N = 300000 };
     char *text = malloc(16 * N + 20), *next = text + sprintf(text, "kind: fixed\n");
     for (int i = 0; i < N; i++) next += sprintf(next, "cuont%d: 1\n", i);
@@ -519,8 +500,7 @@ static void hostile_keys_end_fast(void **state) {
     free(text);
 }
 
-static void help_names_every_key(void **state) {
-    (void)state;
+TEST(help_names_every_key) {
     char *text;
     size_t size;
     FILE *stream = open_memstream(&text, &size);
@@ -539,30 +519,4 @@ static void help_names_every_key(void **state) {
         if (strstr(text, lines[i]) == NULL) fail_msg("not in the help: %s", lines[i]);
     }
     free(text);
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(every_kind_is_read),
-        cmocka_unit_test(defaults_are_filled),
-        cmocka_unit_test(tables_are_read_by_columns),
-        cmocka_unit_test(bad_tables_are_refused),
-        cmocka_unit_test(misspelt_words_get_a_hint),
-        cmocka_unit_test(wrong_types_are_refused),
-        cmocka_unit_test(only_true_and_false_are_booleans),
-        cmocka_unit_test(missing_keys_are_told_at_the_mapping),
-        cmocka_unit_test(ranges_are_checked),
-        cmocka_unit_test(keys_depend_on_choices),
-        cmocka_unit_test(checks_run_on_clean_mappings_only),
-        cmocka_unit_test(long_values_are_cut),
-        cmocka_unit_test(units_are_converted),
-        cmocka_unit_test(wrong_units_are_refused),
-        cmocka_unit_test(angles_need_a_unit),
-        cmocka_unit_test(numbers_are_strict),
-        cmocka_unit_test(numbers_do_not_depend_on_the_locale),
-        cmocka_unit_test(nearest_words_are_found),
-        cmocka_unit_test(hostile_keys_end_fast),
-        cmocka_unit_test(help_names_every_key),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -45,8 +45,7 @@ static void refuses(const char *text, const char *lines) { refuses_bytes(text, s
 
 static double seconds_since(clock_t begin) { return (double)(clock() - begin) / CLOCKS_PER_SEC; }
 
-static void nodes_know_their_place(void **state) {
-    (void)state;
+TEST(nodes_know_their_place) {
     fixture f = start();
     const char *text = "\xEF\xBB\xBF# comment\na: 1\nb:\n  - x y\n  - {c: 'q'}\n";
     bough_node *root = bough_text_parse(f.arena, "f", text, strlen(text), &f.errors);
@@ -72,8 +71,7 @@ static void nodes_know_their_place(void **state) {
     stop(&f);
 }
 
-static void aliases_share_nodes(void **state) {
-    (void)state;
+TEST(aliases_share_nodes) {
     fixture f = start();
     const char *text = "a: &x [1, 2]\nb: *x\nc: &x 3\nd: *x\n";
     bough_node *root = bough_text_parse(f.arena, "f", text, strlen(text), &f.errors);
@@ -84,8 +82,7 @@ static void aliases_share_nodes(void **state) {
     stop(&f);
 }
 
-static void syntax_errors_are_readable(void **state) {
-    (void)state;
+TEST(syntax_errors_are_readable) {
     refuses("a:\n\tb: 1\n", "f:2:1: error: unexpected character here (tabs cannot indent; quote "
                             "text that starts with @, `, % or a bracket)\n");
     refuses("a: b: c\n", "f:1:5: error: unexpected ':' (two keys on one line, or a line that is "
@@ -99,8 +96,7 @@ static void syntax_errors_are_readable(void **state) {
                                   "that is indented too far)\n");
 }
 
-static void structure_errors_are_refused(void **state) {
-    (void)state;
+TEST(structure_errors_are_refused) {
     refuses("", "f:1:1: error: the file is empty\n");
     refuses("# only a comment\n", "f:1:1: error: the file is empty\n");
     refuses("a: 1\nb: 2\na: 3\nb: 4\na: 5\n", "f:3:1: error: key 'a' is given twice (first in line 1)\n"
@@ -115,8 +111,7 @@ static void structure_errors_are_refused(void **state) {
     refuses("a: &b [1, *b]\n", "f:1:11: error: this alias contains itself\n");
 }
 
-static void other_encodings_are_refused(void **state) {
-    (void)state;
+TEST(other_encodings_are_refused) {
     refuses("ab: \xFF\n", "f:1:5: error: this is not UTF-8 text\n");
     refuses("a: 1\nb: \xC3(\n", "f:2:5: error: this is not UTF-8 text\n");
     refuses_bytes("\xFF\xFE"
@@ -127,8 +122,7 @@ static void other_encodings_are_refused(void **state) {
     refuses("a: \x1b[31m\n", "f:1:4: error: a control character is not allowed\n");
 }
 
-static void depth_is_limited(void **state) {
-    (void)state;
+TEST(depth_is_limited) {
     char text[140];
     memset(text, '[', 64);
     memset(text + 64, ']', 64);
@@ -139,8 +133,7 @@ static void depth_is_limited(void **state) {
     refuses_bytes(text, 65, "f:1:65: error: nesting is deeper than 64 levels\n");
 }
 
-static void deep_files_end_fast(void **state) {
-    (void)state;
+TEST(deep_files_end_fast) {
     enum { N = 100000 };
     char *text = malloc(2 * N + 1);
     const char *const openings[] = {"[", "{", "- ", "? "};
@@ -157,8 +150,7 @@ static void deep_files_end_fast(void **state) {
     free(text);
 }
 
-static void alias_bombs_end_fast(void **state) {
-    (void)state;
+TEST(alias_bombs_end_fast) {
     char text[2000] = "a0: &a0 [x, x, x, x, x, x, x, x, x, x]\n";
     for (int i = 1; i < 10; i++) {
         char line[160];
@@ -174,8 +166,7 @@ static void alias_bombs_end_fast(void **state) {
 }
 
 // Depth must not grow by aliases of aliases either: whoever walks the tree recurses.
-static void alias_chains_count_as_depth(void **state) {
-    (void)state;
+TEST(alias_chains_count_as_depth) {
     char text[8000] = "a0: &a0 [x]\n";
     for (int i = 1; i < 100; i++) {
         char line[60];
@@ -185,8 +176,7 @@ static void alias_chains_count_as_depth(void **state) {
     refuses(text, "f:64:12: error: nesting is deeper than 64 levels\n");
 }
 
-static void many_values_are_refused(void **state) {
-    (void)state;
+TEST(many_values_are_refused) {
     size_t size = 2100001;
     char *text = malloc(size);
     text[0] = '[';
@@ -197,8 +187,7 @@ static void many_values_are_refused(void **state) {
     free(text);
 }
 
-static void many_duplicate_keys_end_fast(void **state) {
-    (void)state;
+TEST(many_duplicate_keys_end_fast) {
     enum { N = 100000 };
     char *text = malloc(7 * N + 1);
     for (int i = 0; i < N; i++) memcpy(text + 7 * i, "key: 1\n", 7);
@@ -213,8 +202,7 @@ static void many_duplicate_keys_end_fast(void **state) {
     free(text);
 }
 
-static void unreadable_files_are_named(void **state) {
-    (void)state;
+TEST(unreadable_files_are_named) {
     fixture f = start();
     assert_null(bough_text_read(f.arena, "/nonexistent/x.yaml", &f.errors));
     assert_null(bough_text_read(f.arena, "/", &f.errors));
@@ -223,8 +211,7 @@ static void unreadable_files_are_named(void **state) {
     stop(&f);
 }
 
-static void large_files_are_refused(void **state) {
-    (void)state;
+TEST(large_files_are_refused) {
     char path[SCRATCH_NAME];
     int descriptor = mkstemp(scratch_name(path));
     FILE *stream = fdopen(descriptor, "w");
@@ -243,8 +230,7 @@ static void large_files_are_refused(void **state) {
     remove(path);
 }
 
-static void errors_are_sorted_by_place(void **state) {
-    (void)state;
+TEST(errors_are_sorted_by_place) {
     fixture f = start();
     const bough_node places[] = {
         {.file = "b", .line = 1, .column = 1},    {.file = "main", .line = 9, .column = 2},
@@ -259,32 +245,10 @@ static void errors_are_sorted_by_place(void **state) {
     stop(&f);
 }
 
-static void control_characters_are_not_printed(void **state) {
-    (void)state;
+TEST(control_characters_are_not_printed) {
     fixture f = start();
     bough_node where = {.file = "f", .line = 1, .column = 1};
     bough_errors_add(&f.errors, &where, "", "got '%s'", "\x1b[31m\n");
     assert_string_equal(printed(&f), "f:1:1: error: got '?[31m?'\n");
     stop(&f);
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(nodes_know_their_place),
-        cmocka_unit_test(aliases_share_nodes),
-        cmocka_unit_test(syntax_errors_are_readable),
-        cmocka_unit_test(structure_errors_are_refused),
-        cmocka_unit_test(other_encodings_are_refused),
-        cmocka_unit_test(depth_is_limited),
-        cmocka_unit_test(deep_files_end_fast),
-        cmocka_unit_test(alias_bombs_end_fast),
-        cmocka_unit_test(alias_chains_count_as_depth),
-        cmocka_unit_test(many_values_are_refused),
-        cmocka_unit_test(many_duplicate_keys_end_fast),
-        cmocka_unit_test(unreadable_files_are_named),
-        cmocka_unit_test(large_files_are_refused),
-        cmocka_unit_test(errors_are_sorted_by_place),
-        cmocka_unit_test(control_characters_are_not_printed),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -41,8 +41,7 @@ static int evaluations(bough_acceleration kind, problem p) {
 // The published counts. Of several components Aitken's depends on the right side, which was not
 // published, and on rounding: over six right sides it was 23 to 30 and 52 to 147; b = 1 gives 30
 // and 91.
-static void evaluations_are_the_published_ones(void **state) {
-    (void)state;
+TEST(evaluations_are_the_published_ones) {
     static const struct {
         problem p;
         int count[4];
@@ -86,8 +85,7 @@ static int newton_evaluations(jacobian j) {
 }
 
 // Exact: at once. Half as large or twice: its own differences correct it.
-static void newton_needs_one_step_with_the_exact_jacobian(void **state) {
-    (void)state;
+TEST(newton_needs_one_step_with_the_exact_jacobian) {
     const problem p = {6, {.01, .1, 1, 10, 100, 1000}}, one = {1, {1000}};
     assert_int_equal(newton_evaluations((jacobian){p, 1}), 2);
     assert_int_equal(newton_evaluations((jacobian){one, .5}), 3);
@@ -95,8 +93,7 @@ static void newton_needs_one_step_with_the_exact_jacobian(void **state) {
     assert_in_range(newton_evaluations((jacobian){p, .5}), 3, 8);
 }
 
-static void divergence_tells_the_contraction(void **state) {
-    (void)state;
+TEST(divergence_tells_the_contraction) {
     bough_arena *arena = bough_arena_create();
     double u[MOST];
     bough_accelerator *a = create(arena, BOUGH_ACCELERATE_NONE, 1);
@@ -109,14 +106,12 @@ static void divergence_tells_the_contraction(void **state) {
 }
 
 // A component that follows others adds no column, and one at rest does no harm.
-static void dependent_columns_are_dropped(void **state) {
-    (void)state;
+TEST(dependent_columns_are_dropped) {
     assert_int_equal(evaluations(BOUGH_ACCELERATE_IQN_ILS, (problem){6, {4, 4, 4, 4, 4, 4}}), 3);
     assert_int_equal(evaluations(BOUGH_ACCELERATE_IQN_ILS, (problem){4, {4, 4, 30, 30}}), 4);
 }
 
-static void a_solution_at_once_needs_no_iteration(void **state) {
-    (void)state;
+TEST(a_solution_at_once_needs_no_iteration) {
     bough_arena *arena = bough_arena_create();
     const double u[2] = {1, 2};
     for (int kind = 0; kind < 4; kind++) {
@@ -130,15 +125,4 @@ static void a_solution_at_once_needs_no_iteration(void **state) {
         }
     }
     bough_arena_destroy(arena);
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(evaluations_are_the_published_ones),
-        cmocka_unit_test(newton_needs_one_step_with_the_exact_jacobian),
-        cmocka_unit_test(divergence_tells_the_contraction),
-        cmocka_unit_test(dependent_columns_are_dropped),
-        cmocka_unit_test(a_solution_at_once_needs_no_iteration),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -92,8 +92,7 @@ static void start_counting(void) {
 
 static void stop_counting(void) { atomic_store(&counting, false); }
 
-static void every_kind_of_allocation_is_counted(void **context) {
-    (void)context;
+TEST(every_kind_of_allocation_is_counted) {
     if (!CAN_COUNT) skip();
     void *volatile block[5] = {0};
     void *aligned = NULL;
@@ -115,8 +114,7 @@ static void every_kind_of_allocation_is_counted(void **context) {
 }
 
 // A library's own: the C library takes memory for a file.
-static void allocations_of_libraries_are_counted(void **context) {
-    (void)context;
+TEST(allocations_of_libraries_are_counted) {
     if (!CAN_COUNT) skip();
     start_counting();
     FILE *file = fopen(BOUGH_SOURCE_DIR "/CMakeLists.txt", "r");
@@ -185,7 +183,7 @@ static void count_steps(const char *folder, const char *path, int steps, const c
 static const char runup[] = "apps/turbine/runup.yaml";
 
 // Explicit schemes want a small macro step; the aerodynamics are sampled every second one.
-static void every_scheme_and_sub_solver_takes_no_memory(void **context) {
+TEST_IN_FOLDER(every_scheme_and_sub_solver_takes_no_memory) {
     if (!CAN_COUNT) skip();
     static const char *const solver[] = {"cvode-bdf", "arkode-esdirk", "ida", "generalized-alpha",
                                          "rosenbrock"};
@@ -211,7 +209,7 @@ static void every_scheme_and_sub_solver_takes_no_memory(void **context) {
 }
 
 // The tree's integrator, and that of the whole assembly.
-static void every_master_solver_takes_no_memory(void **context) {
+TEST_IN_FOLDER(every_master_solver_takes_no_memory) {
     if (!CAN_COUNT) skip();
     char scheme_set[64], solver_set[64], what[128];
     const char *sets[] = {"simulation.duration=2 s",
@@ -233,7 +231,7 @@ static void every_master_solver_takes_no_memory(void **context) {
     }
 }
 
-static void waveforms_by_newton_take_no_memory(void **context) {
+TEST_IN_FOLDER(waveforms_by_newton_take_no_memory) {
     if (!CAN_COUNT) skip();
     const char *sets[] = {"simulation.duration=2 s",
                           "simulation.threads=1",
@@ -245,7 +243,7 @@ static void waveforms_by_newton_take_no_memory(void **context) {
 }
 
 // On a hub so light that no weight of the ramp holds, its first step decides to repeat steps.
-static void a_scheme_that_changes_its_mind_takes_no_memory(void **context) {
+TEST_IN_FOLDER(a_scheme_that_changes_its_mind_takes_no_memory) {
     if (!CAN_COUNT) skip();
     const char *sets[] = {"simulation.duration=2 s", "simulation.threads=1", "bodies[2].mass=100",
                           "bodies[2].inertia=[514, 260, 260, 0, 0, 0]", NULL};
@@ -253,7 +251,7 @@ static void a_scheme_that_changes_its_mind_takes_no_memory(void **context) {
 }
 
 // Steps are taken back and repeated with shorter ones.
-static void controlled_steps_take_no_memory(void **context) {
+TEST_IN_FOLDER(controlled_steps_take_no_memory) {
     if (!CAN_COUNT) skip();
     const char *sets[] = {"simulation.duration=2 s", "simulation.threads=1",
                           "simulation.step_control.tolerance=1e-4", NULL};
@@ -263,7 +261,7 @@ static void controlled_steps_take_no_memory(void **context) {
 static void do_nothing(void *unused) { (void)unused; }
 
 // Each step opens a region, as in the library, which has opened one before.
-static void regions_again_take_no_memory(void **context) {
+TEST_IN_FOLDER(regions_again_take_no_memory) {
     if (!CAN_COUNT) skip();
     const char *sets[] = {"simulation.duration=2 s", "simulation.threads=2", NULL};
     bough_arena *arena = bough_arena_create();
@@ -275,7 +273,7 @@ static void regions_again_take_no_memory(void **context) {
 }
 
 // The team of threads is the region's, not a step's.
-static void many_threads_take_no_memory(void **context) {
+TEST_IN_FOLDER(many_threads_take_no_memory) {
     if (!CAN_COUNT) skip();
     const char *sets[] = {"simulation.duration=2 s", "simulation.threads=2", NULL};
     const char *modal[] = {"simulation.duration=2 s", "simulation.threads=3",
@@ -284,43 +282,23 @@ static void many_threads_take_no_memory(void **context) {
     count_steps(*context, runup, COUNTED, "modal bodies on three threads", modal);
 }
 
-static void rods_that_carry_take_no_memory(void **context) {
+TEST_IN_FOLDER(rods_that_carry_take_no_memory) {
     if (!CAN_COUNT) skip();
     const char *sets[] = {"simulation.duration=2 s", "simulation.threads=1", NULL};
     count_steps(*context, "apps/turbine/land.yaml", COUNTED, "land turbine", sets);
 }
 
-static void modal_bodies_take_no_memory(void **context) {
+TEST_IN_FOLDER(modal_bodies_take_no_memory) {
     if (!CAN_COUNT) skip();
     const char *sets[] = {"simulation.duration=2 s", "simulation.threads=1", "bodies[3].fidelity=modal",
                           "bodies[4].fidelity=segmented-modal", NULL};
     count_steps(*context, runup, COUNTED, "modal bodies", sets);
 }
 
-static void closed_loops_take_no_memory(void **context) {
+TEST_IN_FOLDER(closed_loops_take_no_memory) {
     if (!CAN_COUNT) skip();
     const char *sets[] = {"simulation.macro_step=1 ms", NULL};
     const char *radau[] = {"simulation.macro_step=1 ms", "simulation.master.solver=radau5", NULL};
     count_steps(*context, "tests/data/scenes/closed.yaml", COUNTED, "closed loop by IDA", sets);
     count_steps(*context, "tests/data/scenes/closed.yaml", COUNTED, "closed loop by Radau", radau);
-}
-
-#define IN_SCRATCH(test) cmocka_unit_test_setup_teardown(test, scratch_make, scratch_remove)
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(every_kind_of_allocation_is_counted),
-        cmocka_unit_test(allocations_of_libraries_are_counted),
-        IN_SCRATCH(every_scheme_and_sub_solver_takes_no_memory),
-        IN_SCRATCH(every_master_solver_takes_no_memory),
-        IN_SCRATCH(waveforms_by_newton_take_no_memory),
-        IN_SCRATCH(a_scheme_that_changes_its_mind_takes_no_memory),
-        IN_SCRATCH(controlled_steps_take_no_memory),
-        IN_SCRATCH(many_threads_take_no_memory),
-        IN_SCRATCH(regions_again_take_no_memory),
-        IN_SCRATCH(modal_bodies_take_no_memory),
-        IN_SCRATCH(closed_loops_take_no_memory),
-        IN_SCRATCH(rods_that_carry_take_no_memory),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

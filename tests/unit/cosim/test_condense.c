@@ -212,14 +212,12 @@ static const plan plans[] = {{.what = "three on a leader of two states, along th
                                                                        {2, 0, 0, 0, 2, false},
                                                                        {3, 0, 0, 2, 1, false}}}};
 
-static void every_shape_solves_the_whole(void **state) {
-    (void)state;
+TEST(every_shape_solves_the_whole) {
     for (size_t k = 0; k < sizeof plans / sizeof *plans; k++) check(&plans[k]);
 }
 
 // The gain of the interface.
-static void radius_is_that_of_the_loop(void **state) {
-    (void)state;
+TEST(radius_is_that_of_the_loop) {
     bough_arena *arena = bough_arena_create();
     member m[2];
     make(&m[0], 2, 3, 3, false, 1);
@@ -248,12 +246,4 @@ static void radius_is_that_of_the_loop(void **state) {
     double radius = square > 0 ? .5 * fabs(trace) + sqrt(square) : sqrt(det);
     check_near(bough_condensed_radius(k), radius, 1e-2, 0);
     bough_arena_destroy(arena);
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(every_shape_solves_the_whole),
-        cmocka_unit_test(radius_is_that_of_the_loop),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

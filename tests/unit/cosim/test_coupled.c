@@ -17,8 +17,7 @@ static void build(bough_two_mass *m, bough_coupled **coupled, int threads) {
 }
 
 // The system is linear: (I − γJ) x = r is x − γ (F(y + x) − F(y)) = r.
-static void solves_the_coupled_system(void **state) {
-    (void)state;
+TEST(solves_the_coupled_system) {
     bough_coupled *coupled;
     bough_two_mass m;
     build(&m, &coupled, 1);
@@ -42,8 +41,7 @@ static void solves_the_coupled_system(void **state) {
 }
 
 // F of two masses on springs, by hand.
-static void rates_are_those_of_the_coupled_masses(void **state) {
-    (void)state;
+TEST(rates_are_those_of_the_coupled_masses) {
     bough_coupled *coupled;
     bough_two_mass m;
     build(&m, &coupled, 2);
@@ -56,12 +54,4 @@ static void rates_are_those_of_the_coupled_masses(void **state) {
     check_near(rate[2], y[3], 0, 0);
     check_near(rate[3], -20 * y[2] - .3 * y[3] - force, 1e-14, 0);
     bough_two_mass_destroy(&m);
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(solves_the_coupled_system),
-        cmocka_unit_test(rates_are_those_of_the_coupled_masses),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -14,8 +14,7 @@ static bough_status run(bough_master *m) {
     return status;
 }
 
-static void steps_end_on_events_and_on_the_duration(void **state) {
-    (void)state;
+TEST(steps_end_on_events_and_on_the_duration) {
     const double event[] = {.45, .3, .3, 7}, expected[] = {.1, .2, .3, .4, .45, .5, .55};
     bough_master_def def = definition(.1, .55);
     def.event = event;
@@ -46,8 +45,7 @@ static bough_status sample(void *self, double t, double t_next, bool *jumped) {
     return bough_ok();
 }
 
-static void loads_are_sampled_at_their_period(void **state) {
-    (void)state;
+TEST(loads_are_sampled_at_their_period) {
     samples taken = {0};
     const double event = .25;
     bough_sampled_load load = {.period = .2, .self = &taken, .sample = sample};
@@ -114,8 +112,7 @@ static star star_run(const char *scheme, double macro_step, int threads) {
     return s;
 }
 
-static void threads_do_not_change_a_bit(void **state) {
-    (void)state;
+TEST(threads_do_not_change_a_bit) {
     const char *name;
     for (int k = 0; (name = bough_scheme_name(k)) != NULL; k++) {
         star one = star_run(name, .02, 1);
@@ -137,8 +134,7 @@ static double star_distance(const star *a, const star *b) {
 }
 
 // Followers with more inputs than the leader has states, rates of motion held, several bodies.
-static void schemes_converge_to_the_monolithic_run(void **state) {
-    (void)state;
+TEST(schemes_converge_to_the_monolithic_run) {
     static const struct {
         const char *name;
         double order, error;
@@ -153,8 +149,7 @@ static void schemes_converge_to_the_monolithic_run(void **state) {
     }
 }
 
-static void algebraic_loops_are_refused(void **state) {
-    (void)state;
+TEST(algebraic_loops_are_refused) {
     bough_oscillator mass[2];
     bough_member member[2];
     bough_assembly_member part[2];
@@ -173,15 +168,4 @@ static void algebraic_loops_are_refused(void **state) {
     assert_int_equal(status.code, BOUGH_INVALID);
     assert_non_null(strstr(status.message, "algebraic loop"));
     bough_arena_destroy(arena);
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(steps_end_on_events_and_on_the_duration),
-        cmocka_unit_test(loads_are_sampled_at_their_period),
-        cmocka_unit_test(threads_do_not_change_a_bit),
-        cmocka_unit_test(schemes_converge_to_the_monolithic_run),
-        cmocka_unit_test(algebraic_loops_are_refused),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -20,16 +20,14 @@ static double error_at(bough_integrator_kind kind, double rtol) {
     return error_with((bough_integrator_options){.kind = kind, .rtol = rtol});
 }
 
-static void error_follows_the_tolerance(void **state) {
-    (void)state;
+TEST(error_follows_the_tolerance) {
     double coarse = error_at(BOUGH_IDA, 1e-6), fine = error_at(BOUGH_IDA, 1e-10);
     check_near(coarse, 0, 0, 1e-4);
     check_near(fine, 0, 0, 2e-8);
     assert_true(fine < 1e-2 * coarse);
 }
 
-static void with_every_integrator(void **state) {
-    (void)state;
+TEST(with_every_integrator) {
     for (int kind = BOUGH_IDA; kind <= BOUGH_ROSENBROCK; kind++) {
         if (kind == BOUGH_GENERALIZED_ALPHA) continue; // has no error control
         double coarse = error_at(kind, 1e-5), fine = error_at(kind, 1e-9);
@@ -40,8 +38,7 @@ static void with_every_integrator(void **state) {
 }
 
 // Equal steps, members coupled at the stages: the method's order for all bodies together.
-static void coupled_stages_keep_the_order(void **state) {
-    (void)state;
+TEST(coupled_stages_keep_the_order) {
     static const struct {
         bough_integrator_kind kind;
         int order;
@@ -53,13 +50,4 @@ static void coupled_stages_keep_the_order(void **state) {
         o.step = .005;
         check_near(log2(coarse / error_with(o)), method[k].order, 0, .2);
     }
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(error_follows_the_tolerance),
-        cmocka_unit_test(with_every_integrator),
-        cmocka_unit_test(coupled_stages_keep_the_order),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -31,8 +31,7 @@ static double line(double t) { return 4 - 3 * (t - 2); }
 
 static double parabola(double t) { return 2 - t + .5 * t * t; }
 
-static void held_values_and_rates(void **state) {
-    (void)state;
+TEST(held_values_and_rates) {
     bough_arena *arena = bough_arena_create();
     bough_signal s = signal_on(arena, 2, 2.5);
     const double value = 4, rate = -3, end = 2.5;
@@ -45,8 +44,7 @@ static void held_values_and_rates(void **state) {
     bough_arena_destroy(arena);
 }
 
-static void hermite_reproduces_a_cubic(void **state) {
-    (void)state;
+TEST(hermite_reproduces_a_cubic) {
     bough_arena *arena = bough_arena_create();
     bough_signal s = signal_on(arena, .5, 1.3);
     const double v0 = cubic(.5), r0 = cubic_rate(.5), v1 = cubic(1.3), r1 = cubic_rate(1.3);
@@ -55,8 +53,7 @@ static void hermite_reproduces_a_cubic(void **state) {
     bough_arena_destroy(arena);
 }
 
-static void polynomials_extrapolate_and_interpolate(void **state) {
-    (void)state;
+TEST(polynomials_extrapolate_and_interpolate) {
     bough_arena *arena = bough_arena_create();
     bough_signal s = signal_on(arena, .5, 1.3);
     const double back[3] = {.5, .2, -.3}, around[4] = {1.3, .5, .2, -.3};
@@ -72,13 +69,4 @@ static void polynomials_extrapolate_and_interpolate(void **state) {
     bough_port_polynomial(&s, 1, 1, 4, around, value);
     check_signal(&s, cubic);
     bough_arena_destroy(arena);
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(held_values_and_rates),
-        cmocka_unit_test(hermite_reproduces_a_cubic),
-        cmocka_unit_test(polynomials_extrapolate_and_interpolate),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

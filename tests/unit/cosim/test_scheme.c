@@ -29,8 +29,7 @@ static void check_errors(bough_master_def def, const double expected[3], double 
     }
 }
 
-static void exact_solution_is_the_published_one(void **state) {
-    (void)state;
+TEST(exact_solution_is_the_published_one) {
     bough_two_mass m = bough_two_mass_default();
     double y[4];
     bough_two_mass_at(&m, 10, y);
@@ -38,8 +37,7 @@ static void exact_solution_is_the_published_one(void **state) {
     check_near(y[2], 0.031641338373202, 0, 1e-13);
 }
 
-static void oscillators_fulfil_the_contract(void **state) {
-    (void)state;
+TEST(oscillators_fulfil_the_contract) {
     bough_two_mass m = bough_two_mass_default();
     bough_two_mass_build(&m, definition("frozen", .1));
     const double y[2] = {.3, -.7}, u[2] = {.4, .2};
@@ -51,8 +49,7 @@ static void oscillators_fulfil_the_contract(void **state) {
     bough_two_mass_destroy(&m);
 }
 
-static void parallel_errors_and_orders(void **state) {
-    (void)state;
+TEST(parallel_errors_and_orders) {
     static const double expected[3][3] = {
         {5.00e-2, 2.47e-2, 1.23e-2}, {8.21e-3, 2.05e-3, 5.10e-4}, {1.89e-3, 2.37e-4, 2.95e-5}};
     bough_master_def def = definition("extrapolated", 0);
@@ -64,8 +61,7 @@ static void parallel_errors_and_orders(void **state) {
     check_errors(definition("frozen", 0), expected[0], .01);
 }
 
-static void sequential_errors_and_orders(void **state) {
-    (void)state;
+TEST(sequential_errors_and_orders) {
     static const double expected[3][3] = {
         {5.98e-2, 2.51e-2, 1.23e-2}, {6.31e-3, 1.57e-3, 3.91e-4}, {1.80e-3, 2.22e-4, 2.76e-5}};
     bough_master_def def = definition("extrapolated", 0);
@@ -99,8 +95,7 @@ static void check_limit(bough_master_def def, double limit) {
     assert_false(stable(def));
 }
 
-static void stability_limits(void **state) {
-    (void)state;
+TEST(stability_limits) {
     static const double parallel[3] = {.2254, .2277, .2501}, first[3] = {.0777, .3175, .2839},
                         last[3] = {.0777, .3069, .2831};
     bough_master_def def = definition("extrapolated", 0);
@@ -118,8 +113,7 @@ static void stability_limits(void **state) {
 }
 
 // Impulses paid back make it 3; they are not where θ is not 1/2 or the interface body is light.
-static void ramp_is_of_order_three_on_a_heavy_body(void **state) {
-    (void)state;
+TEST(ramp_is_of_order_three_on_a_heavy_body) {
     double error[3];
     for (int i = 0; i < 3; i++) {
         error[i] = error_of(bough_two_mass_default(), definition("ramp", .04 / (1 << i)));
@@ -129,8 +123,7 @@ static void ramp_is_of_order_three_on_a_heavy_body(void **state) {
     assert_true(error[0] < 1e-3); // linear extrapolation: 6.31e-3
 }
 
-static void ramp_is_stable_beyond_every_explicit_limit(void **state) {
-    (void)state;
+TEST(ramp_is_stable_beyond_every_explicit_limit) {
     for (double h = .02; h < .6; h *= 1.3) assert_true(stable(definition("ramp", h)));
 }
 
@@ -141,8 +134,7 @@ static bough_two_mass light_case(void) {
     return m;
 }
 
-static void ramp_takes_a_light_interface_body(void **state) {
-    (void)state;
+TEST(ramp_takes_a_light_interface_body) {
     bough_two_mass m = light_case();
     bough_status status = bough_two_mass_build(&m, definition("ramp", .02));
     assert_true(bough_is_ok(&status));
@@ -155,8 +147,7 @@ static void ramp_takes_a_light_interface_body(void **state) {
 
 // A hundred times lighter than what hangs on it by a stiff spring: 1/2 rings by 14 per second, and
 // a held force grows.
-static void ramp_chooses_its_weight(void **state) {
-    (void)state;
+TEST(ramp_chooses_its_weight) {
     bough_two_mass m = bough_two_mass_default();
     m.s1 = (bough_spring_mass){1, 4000, 25};
     m.s2 = (bough_spring_mass){100, 0, 0};
@@ -174,8 +165,7 @@ static void ramp_chooses_its_weight(void **state) {
 
 // Barely damped and 3.4 rad in a macro step, light or half as heavy: every prediction rings, whatever
 // its weight. Steps are repeated there.
-static void ramp_repeats_where_no_weight_holds(void **state) {
-    (void)state;
+TEST(ramp_repeats_where_no_weight_holds) {
     static const double ratio[] = {1.65, 0.33}, mass[] = {.125, .625};
     for (int k = 0; k < 2; k++) {
         for (double theta = 0; theta <= 1; theta += theta > 0 ? .1 : .5) {
@@ -197,8 +187,7 @@ static void ramp_repeats_where_no_weight_holds(void **state) {
     }
 }
 
-static void unstable_run_ends_with_a_diagnosis(void **state) {
-    (void)state;
+TEST(unstable_run_ends_with_a_diagnosis) {
     bough_two_mass m = light_case();
     bough_master_def def = definition("gauss-seidel", .02);
     bough_status status = bough_two_mass_build(&m, def);
@@ -218,8 +207,7 @@ static bough_master_def iterated(bough_acceleration accelerator, double macro_st
     return def;
 }
 
-static void iterated_errors_and_orders(void **state) {
-    (void)state;
+TEST(iterated_errors_and_orders) {
     static const double expected[3][3] = {
         {4.75e-2, 2.41e-2, 1.21e-2}, {1.63e-3, 4.07e-4, 1.02e-4}, {2.09e-4, 2.61e-5, 3.26e-6}};
     bough_master_def def = iterated(BOUGH_ACCELERATE_IQN_ILS, 0);
@@ -230,8 +218,7 @@ static void iterated_errors_and_orders(void **state) {
 }
 
 // What is converged depends neither on how it was found nor on where the sweep begins.
-static void every_accelerator_and_direction_gives_the_same(void **state) {
-    (void)state;
+TEST(every_accelerator_and_direction_gives_the_same) {
     bough_master_def def = iterated(BOUGH_ACCELERATE_IQN_ILS, .04);
     double expected = error_of(bough_two_mass_default(), def);
     for (int kind = 0; kind < 5; kind++) {
@@ -243,8 +230,7 @@ static void every_accelerator_and_direction_gives_the_same(void **state) {
 }
 
 // Cubics through Lobatto points miss what is orthogonal to linear functions: order 6.
-static void waveforms_are_of_order_six(void **state) {
-    (void)state;
+TEST(waveforms_are_of_order_six) {
     double error[3];
     bough_master_def def = iterated(BOUGH_ACCELERATE_NEWTON, 0);
     def.scheme.exchange = BOUGH_EXCHANGE_WAVEFORM;
@@ -266,8 +252,7 @@ static double sweeps_per_step(bough_two_mass m, bough_master_def def) {
 }
 
 // On linear members its Jacobian closes the interface in one correction; differences alone need two.
-static void newton_saves_a_sweep(void **state) {
-    (void)state;
+TEST(newton_saves_a_sweep) {
     bough_two_mass m = bough_two_mass_default();
     m.s1.m = .1;
     m.cut = BOUGH_CUT_DISPLACEMENT_DISPLACEMENT;
@@ -283,8 +268,7 @@ static void newton_saves_a_sweep(void **state) {
 
 // Two undamped masses, 1 and 3 Hz, each holding the coupling spring and told the other's motion. An
 // independent program gives 1.03e-2 for end values, 2.84e-7 for cubics on 4 sub-steps of a window.
-static void waveforms_gain_six_digits_on_end_values(void **state) {
-    (void)state;
+TEST(waveforms_gain_six_digits_on_end_values) {
     const double unit = 39.478417604357434; // 4 pi^2
     bough_two_mass m = {.s1 = {1, unit, 0}, .s2 = {1, unit, 0}, .k = 4 * unit, .y0 = {1, 0, 0, 0}};
     m.cut = BOUGH_CUT_DISPLACEMENT_DISPLACEMENT;
@@ -297,8 +281,7 @@ static void waveforms_gain_six_digits_on_end_values(void **state) {
 
 // A spring of 1.3 rad in a macro step: positions and speeds that belong together instead of both
 // linear in time.
-static void stiff_ends_want_waveforms(void **state) {
-    (void)state;
+TEST(stiff_ends_want_waveforms) {
     bough_two_mass m = bough_two_mass_default();
     m.k = 1000;
     m.c = .6;
@@ -309,8 +292,7 @@ static void stiff_ends_want_waveforms(void **state) {
     assert_true(error_of(m, def) < 1e-5 && linear > .1);
 }
 
-static void iterated_takes_a_light_interface_body(void **state) {
-    (void)state;
+TEST(iterated_takes_a_light_interface_body) {
     for (int order = 0; order < 2; order++) {
         bough_two_mass m = light_case();
         bough_master_def def = iterated(BOUGH_ACCELERATE_IQN_ILS, order == 0 ? .02 : .0025);
@@ -325,8 +307,7 @@ static void iterated_takes_a_light_interface_body(void **state) {
 }
 
 // A force linear in time on a light body at 316 rad/s: stable to 3.46 of its radians.
-static void converged_but_unstable_is_warned_of(void **state) {
-    (void)state;
+TEST(converged_but_unstable_is_warned_of) {
     for (int order = 1; order < 3; order++) {
         bough_two_mass m = light_case();
         bough_master_def def = iterated(BOUGH_ACCELERATE_IQN_ILS, .02);
@@ -338,8 +319,7 @@ static void converged_but_unstable_is_warned_of(void **state) {
     }
 }
 
-static void iteration_that_diverges_says_so(void **state) {
-    (void)state;
+TEST(iteration_that_diverges_says_so) {
     bough_two_mass m = light_case();
     bough_two_mass_build(&m, iterated(BOUGH_ACCELERATE_NONE, .02));
     bough_status status = bough_step(m.master);
@@ -349,30 +329,4 @@ static void iteration_that_diverges_says_so(void **state) {
     assert_non_null(strstr(status.message, "accelerator: iqn-ils"));
     assert_non_null(strstr(status.message, "try macro_step: 0.01 s"));
     bough_two_mass_destroy(&m);
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(exact_solution_is_the_published_one),
-        cmocka_unit_test(oscillators_fulfil_the_contract),
-        cmocka_unit_test(parallel_errors_and_orders),
-        cmocka_unit_test(sequential_errors_and_orders),
-        cmocka_unit_test(stability_limits),
-        cmocka_unit_test(ramp_is_of_order_three_on_a_heavy_body),
-        cmocka_unit_test(ramp_is_stable_beyond_every_explicit_limit),
-        cmocka_unit_test(ramp_takes_a_light_interface_body),
-        cmocka_unit_test(ramp_chooses_its_weight),
-        cmocka_unit_test(ramp_repeats_where_no_weight_holds),
-        cmocka_unit_test(unstable_run_ends_with_a_diagnosis),
-        cmocka_unit_test(iterated_errors_and_orders),
-        cmocka_unit_test(every_accelerator_and_direction_gives_the_same),
-        cmocka_unit_test(waveforms_are_of_order_six),
-        cmocka_unit_test(newton_saves_a_sweep),
-        cmocka_unit_test(waveforms_gain_six_digits_on_end_values),
-        cmocka_unit_test(stiff_ends_want_waveforms),
-        cmocka_unit_test(iterated_takes_a_light_interface_body),
-        cmocka_unit_test(converged_but_unstable_is_warned_of),
-        cmocka_unit_test(iteration_that_diverges_says_so),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

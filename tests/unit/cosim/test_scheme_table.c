@@ -11,8 +11,7 @@ static bough_master_def definition(double macro_step) {
     return def;
 }
 
-static void the_table_lists_it_once(void **state) {
-    (void)state;
+TEST(the_table_lists_it_once) {
     int found = 0, n = 0;
     for (const char *name; (name = bough_scheme_name(n)) != NULL; n++) found += !strcmp(name, "toy");
     assert_int_equal(found, 1);
@@ -22,8 +21,7 @@ static void the_table_lists_it_once(void **state) {
     assert_null(bough_scheme_find("toys"));
 }
 
-static void entries_name_schemes_of_the_table(void **state) {
-    (void)state;
+TEST(entries_name_schemes_of_the_table) {
     const char *name;
     for (int i = 0; (name = bough_scheme_name(i)) != NULL; i++) {
         const bough_scheme *s = bough_scheme_find(name);
@@ -39,8 +37,7 @@ static void entries_name_schemes_of_the_table(void **state) {
     "simulation: {duration: 1, macro_step: 0.1, coupling: {scheme: " scheme "}}\n"                           \
     "bodies:\n" BODY("a", "ground")
 
-static void scenes_name_it(void **state) {
-    (void)state;
+TEST(scenes_name_it) {
     write_file("s.yaml", SCENE("toy"));
     fixture f = read_scene("s.yaml", NULL, 0);
     assert_string_equal(f.printed, "");
@@ -52,8 +49,7 @@ static void scenes_name_it(void **state) {
     stop(&f);
 }
 
-static void it_is_stepped_at_its_order(void **state) {
-    (void)state;
+TEST(it_is_stepped_at_its_order) {
     double error[2];
     for (int k = 0; k < 2; k++) {
         bough_two_mass m = bough_two_mass_default();
@@ -67,8 +63,7 @@ static void it_is_stepped_at_its_order(void **state) {
     check_near(error[0] / error[1], 4, .1, 0);
 }
 
-static void it_is_judged_and_diagnosed(void **state) {
-    (void)state;
+TEST(it_is_judged_and_diagnosed) {
     bough_two_mass m = bough_two_mass_default();
     bough_master_def def = definition(.5);
     def.duration = 1000;
@@ -84,13 +79,4 @@ static void it_is_judged_and_diagnosed(void **state) {
     bough_two_mass_destroy(&m);
 }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(the_table_lists_it_once),
-        cmocka_unit_test(entries_name_schemes_of_the_table),
-        cmocka_unit_test(scenes_name_it),
-        cmocka_unit_test(it_is_stepped_at_its_order),
-        cmocka_unit_test(it_is_judged_and_diagnosed),
-    };
-    return cmocka_run_group_tests(tests, enter, leave);
-}
+GROUP(enter, leave)

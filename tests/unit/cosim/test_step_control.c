@@ -13,8 +13,7 @@ static bough_master_def definition(const char *scheme, double macro_step, double
 
 // No step meets the tolerance: the first ones are taken back three times, and what follows is the run
 // with an eighth of the macro step. So nothing of the steps taken back is left.
-static void steps_taken_back_leave_nothing(void **state) {
-    (void)state;
+TEST(steps_taken_back_leave_nothing) {
     static const char *const schemes[] = {"frozen", "gauss-seidel", "extrapolated", "ramp", "iterated"};
     for (size_t k = 0; k < sizeof schemes / sizeof *schemes; k++) {
         for (int light = 0; light < 2; light++) {
@@ -56,8 +55,7 @@ static double error_with(const char *scheme, double tolerance, long *steps) {
 }
 
 // Gauss–Seidel is unstable at .16 s; under control its error follows the tolerance.
-static void error_follows_the_tolerance(void **state) {
-    (void)state;
+TEST(error_follows_the_tolerance) {
     static const char *const schemes[] = {"gauss-seidel", "extrapolated", "ramp"};
     for (size_t k = 0; k < sizeof schemes / sizeof *schemes; k++) {
         long few, more;
@@ -69,8 +67,7 @@ static void error_follows_the_tolerance(void **state) {
 }
 
 // The motion dies; relative to what the ports have seen the defects do too, and steps grow again.
-static void steps_grow_again_and_meet_events(void **state) {
-    (void)state;
+TEST(steps_grow_again_and_meet_events) {
     static const double event[] = {.333, 2.5};
     bough_two_mass m = bough_two_mass_default();
     bough_master_def def = definition("extrapolated", .16, 3e-3);
@@ -106,8 +103,7 @@ static bough_status fail_to_advance(void *self, double *t, double pause, double 
 }
 
 // A numerical failure is tried again with shorter steps down to the shortest, .02 s; no other is.
-static void only_what_asks_for_it_is_repeated(void **state) {
-    (void)state;
+TEST(only_what_asks_for_it_is_repeated) {
     static const struct {
         bough_code code, told;
         int calls;
@@ -128,14 +124,4 @@ static void only_what_asks_for_it_is_repeated(void **state) {
         assert_int_equal(calls, cases[k].calls);
         bough_two_mass_destroy(&m);
     }
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(steps_taken_back_leave_nothing),
-        cmocka_unit_test(error_follows_the_tolerance),
-        cmocka_unit_test(steps_grow_again_and_meet_events),
-        cmocka_unit_test(only_what_asks_for_it_is_repeated),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

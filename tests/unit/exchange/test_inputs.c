@@ -52,8 +52,7 @@ static void set(bough_session *s, const char *input, const char *value) {
 }
 
 // What is set before the first step is what the scene would say.
-static void constant_inputs_are_loads_of_the_scene(void **state) {
-    (void)state;
+TEST(constant_inputs_are_loads_of_the_scene) {
     static const struct {
         const char *scene, *with[MOST], *without[MOST], *set[6][2];
     } cases[] = {
@@ -89,8 +88,7 @@ static void constant_inputs_are_loads_of_the_scene(void **state) {
 }
 
 // A joint is where it was told at the end of the step, by a cubic that starts and ends with its speeds.
-static void joints_go_where_they_are_told(void **state) {
-    (void)state;
+TEST(joints_go_where_they_are_told) {
     const char *const sets[] = {"simulation.duration=1 s",
                                 "bodies[0].joint.motion={angle: 10 deg, input: turn}", NULL};
     bough_session *s = open_scene(APPS "mechanisms/pendulum.yaml", sets);
@@ -107,8 +105,7 @@ static void joints_go_where_they_are_told(void **state) {
 }
 
 // The law of the library, called here between steps, is the law that the scene has inside.
-static void a_law_outside_is_the_law_inside(void **state) {
-    (void)state;
+TEST(a_law_outside_is_the_law_inside) {
     const char *const inside[] = {"simulation.duration=3 s", "aero.wind={kind: uniform, speed: 14}", NULL};
     const char *const outside[] = {"simulation.duration=3 s", "aero.wind={kind: uniform, speed: 14}",
                                    "control.kind=external", NULL};
@@ -138,8 +135,7 @@ static void a_law_outside_is_the_law_inside(void **state) {
     bough_session_close(b);
 }
 
-static void a_copy_holds_the_inputs(void **state) {
-    (void)state;
+TEST(a_copy_holds_the_inputs) {
     const char *const sets[] = {"simulation.duration=1 s", "loads=[{joint: bob, torque: 0, input: push}]",
                                 NULL};
     bough_session *s = open_scene(APPS "mechanisms/pendulum.yaml", sets);
@@ -159,8 +155,7 @@ static void a_copy_holds_the_inputs(void **state) {
     bough_session_close(s);
 }
 
-static void bad_inputs_are_refused(void **state) {
-    (void)state;
+TEST(bad_inputs_are_refused) {
     const char *const sets[] = {"loads=[{joint: bob, torque: 1, input: push}]", NULL};
     bough_session *s = open_scene(APPS "mechanisms/pendulum.yaml", sets);
     assert_int_equal(bough_session_inputs(s), 1);
@@ -196,15 +191,4 @@ static void bad_inputs_are_refused(void **state) {
         if (!strstr(bough_session_error(s), bad[i][1])) fail_msg("%s", bough_session_error(s));
         bough_session_close(s);
     }
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(constant_inputs_are_loads_of_the_scene),
-        cmocka_unit_test(joints_go_where_they_are_told),
-        cmocka_unit_test(a_law_outside_is_the_law_inside),
-        cmocka_unit_test(a_copy_holds_the_inputs),
-        cmocka_unit_test(bad_inputs_are_refused),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

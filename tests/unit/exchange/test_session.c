@@ -9,8 +9,7 @@
 
 static const char pendulum[] = BOUGH_SOURCE_DIR "/apps/mechanisms/pendulum.yaml";
 
-static void steps_to_the_end_and_reads(void **context) {
-    (void)context;
+TEST(steps_to_the_end_and_reads) {
     const char *const set[] = {"simulation.duration=0.5 s"};
     bough_session *s = bough_session_open(pendulum, set, 1);
     assert_int_equal(bough_session_code(s), BOUGH_SESSION_OK);
@@ -31,8 +30,7 @@ static void steps_to_the_end_and_reads(void **context) {
     bough_session_close(s);
 }
 
-static void errors_are_told(void **context) {
-    (void)context;
+TEST(errors_are_told) {
     const char *const set[] = {"simulation.duration=-1 s", "simulation.macro_step=2 m"};
     bough_session *s = bough_session_open(pendulum, set, 2);
     assert_int_equal(bough_session_code(s), BOUGH_SESSION_INVALID);
@@ -82,8 +80,7 @@ static void check_without_scene(bough_session *s, int code) {
     assert_int_equal(bough_session_code(s), code);
 }
 
-static void what_is_no_session_is_refused_in_every_call(void **context) {
-    (void)context;
+TEST(what_is_no_session_is_refused_in_every_call) {
     check_without_scene(NULL, BOUGH_SESSION_OTHER);
     assert_non_null(strstr(bough_session_error(NULL), "no session"));
     bough_session_close(NULL);
@@ -113,8 +110,7 @@ static void what_is_no_session_is_refused_in_every_call(void **context) {
     bough_session_close(s);
 }
 
-static void an_unknown_name_is_told_with_the_nearest(void **context) {
-    (void)context;
+TEST(an_unknown_name_is_told_with_the_nearest) {
     const char *const set[] = {"loads=[{joint: bob, torque: 0, input: push}]"};
     bough_session *s = bough_session_open(pendulum, set, 1);
     assert_int_equal(bough_session_find(s, "bobPoss"), -1);
@@ -133,8 +129,7 @@ static void an_unknown_name_is_told_with_the_nearest(void **context) {
     bough_session_close(s);
 }
 
-static void sessions_live_side_by_side(void **context) {
-    (void)context;
+TEST(sessions_live_side_by_side) {
     bough_session *a = bough_session_open(pendulum, NULL, 0);
     bough_session *b = bough_session_open(pendulum, NULL, 0);
     for (int k = 0; k < 20; k++) bough_session_step(a);
@@ -169,8 +164,7 @@ static void *run_alone(void *self) {
     return NULL;
 }
 
-static void sessions_run_at_the_same_time(void **context) {
-    (void)context;
+TEST(sessions_run_at_the_same_time) {
     enum { THREADS = 4 };
     application_thread thread[THREADS], alone = {.threads = 1};
     for (int k = 0; k < THREADS; k++) {
@@ -232,8 +226,7 @@ static void check_goes_on(const char *scene, const char *const *set, int n_set) 
     bough_session_close(other);
 }
 
-static void restored_runs_go_on_to_the_same_bits(void **context) {
-    (void)context;
+TEST(restored_runs_go_on_to_the_same_bits) {
     const char *const set[] = {few, "aero.dynamic_stall=hgm", "aero.induction.inflow=oye"};
     check_goes_on(pendulum, NULL, 0);
     check_goes_on(runup, set, 3);
@@ -241,8 +234,7 @@ static void restored_runs_go_on_to_the_same_bits(void **context) {
 }
 
 // From the same moment, one with another wind: nothing differs until the air is sampled again.
-static void another_wind_makes_a_what_if(void **context) {
-    (void)context;
+TEST(another_wind_makes_a_what_if) {
     const char *const set[] = {few, "aero.wind.speed=30 m/s"};
     bough_session *run = bough_session_open(runup, set, 1);
     bough_session *gust = bough_session_open(runup, set, 2);
@@ -261,8 +253,7 @@ static void another_wind_makes_a_what_if(void **context) {
     bough_session_close(gust);
 }
 
-static void a_failed_session_is_restored(void **context) {
-    (void)context;
+TEST(a_failed_session_is_restored) {
     const char *const set[] = {"simulation.coupling.scheme=frozen", few, "bodies[2].mass=1",
                                "bodies[2].inertia=[10, 10, 10, 0, 0, 0]", "aero.wind.input=wind"};
     bough_session *s = bough_session_open(runup, set, 5);
@@ -290,8 +281,7 @@ static void a_failed_session_is_restored(void **context) {
     bough_session_close(s);
 }
 
-static void unfit_copies_are_refused(void **context) {
-    (void)context;
+TEST(unfit_copies_are_refused) {
     const char *const often[] = {few, "simulation.macro_step=5 ms"};
     bough_session *a = bough_session_open(pendulum, NULL, 0);
     bough_session *b = bough_session_open(runup, often, 2);
@@ -309,20 +299,4 @@ static void unfit_copies_are_refused(void **context) {
     free(between);
     bough_session_close(a);
     bough_session_close(b);
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(steps_to_the_end_and_reads),
-        cmocka_unit_test(errors_are_told),
-        cmocka_unit_test(what_is_no_session_is_refused_in_every_call),
-        cmocka_unit_test(an_unknown_name_is_told_with_the_nearest),
-        cmocka_unit_test(sessions_live_side_by_side),
-        cmocka_unit_test(sessions_run_at_the_same_time),
-        cmocka_unit_test(restored_runs_go_on_to_the_same_bits),
-        cmocka_unit_test(another_wind_makes_a_what_if),
-        cmocka_unit_test(a_failed_session_is_restored),
-        cmocka_unit_test(unfit_copies_are_refused),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

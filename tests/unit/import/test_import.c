@@ -7,8 +7,7 @@
 #include "tests/unit/scratch.h"
 
 // A reference line of 5 m along z and 5 m on a slope of 3 to 4; a station at 6.25 m of it.
-static void beamdyn_stations_keep_line_and_matrices(void **context) {
-    (void)context;
+TEST(beamdyn_stations_keep_line_and_matrices) {
     trial t = import(NULL);
     assert_string_equal(t.status.message, "");
     const bough_node *blade = read_file(&t, "blade-structure.yaml");
@@ -32,8 +31,7 @@ static void beamdyn_stations_keep_line_and_matrices(void **context) {
     done(&t);
 }
 
-static void turbine_has_the_decks_values(void **context) {
-    (void)context;
+TEST(turbine_has_the_decks_values) {
     trial t = import(NULL);
     const bough_node *s = read_file(&t, "scene.yaml");
     check_near(number(s, "gravity.2"), -9.81, 1e-9, 0);
@@ -66,8 +64,7 @@ static void turbine_has_the_decks_values(void **context) {
     done(&t);
 }
 
-static void air_tables_follow_their_headers(void **context) {
-    (void)context;
+TEST(air_tables_follow_their_headers) {
     trial t = import(NULL);
     const bough_node *blade = at(read_file(&t, "blade-aero.yaml"), "stations.rows");
     check_near(number(blade, "1.4"), 1.0, 1e-9, 0); // the chord stands behind the airfoil
@@ -81,8 +78,7 @@ static void air_tables_follow_their_headers(void **context) {
 }
 
 // BEM_Mod 1 has Buhl's high thrust; decks that do not say which are told of.
-static void high_thrust_is_the_decks(void **context) {
-    (void)context;
+TEST(high_thrust_is_the_decks) {
     trial t = import_main("v5/main.fst", &(edit){"v5/aero.dat", "2   BEM_Mod", "1   BEM_Mod"}, NULL);
     assert_string_equal(t.status.message, "");
     assert_string_equal(text(read_file(&t, "scene.yaml"), "aero.induction.high_thrust"), "buhl");
@@ -96,8 +92,7 @@ static void high_thrust_is_the_decks(void **context) {
 
 // With the shape x² of a uniform blade ω² = 20 E I/(m l⁴), of the tower, without what it
 // carries, 4 E I/l³/(m l/5).
-static void elastodyn_structure_is_scaled_and_damped(void **context) {
-    (void)context;
+TEST(elastodyn_structure_is_scaled_and_damped) {
     trial t = import(&(edit){"main.fst", "2    CompElast", "1    CompElast"});
     assert_string_equal(t.status.message, "");
     const bough_node *blade = read_file(&t, "blade-structure.yaml");
@@ -114,8 +109,7 @@ static void elastodyn_structure_is_scaled_and_damped(void **context) {
     done(&t);
 }
 
-static void newer_names_are_known(void **context) {
-    (void)context;
+TEST(newer_names_are_known) {
     trial t = import(&(edit){"parts/aero.dat", "2   WakeMod ", "0   Wake_Mod"});
     assert_string_equal(t.status.message, "");
     assert_true(list_says(&t, "WakeMod 0"));
@@ -135,8 +129,7 @@ static void same_file(const trial *a, const trial *b, const char *name) {
 }
 
 // The same turbine in the files of versions 3, 4 and 5, blades by BeamDyn and by ElastoDyn.
-static void versions_three_to_five_give_one_scene(void **context) {
-    (void)context;
+TEST(versions_three_to_five_give_one_scene) {
     static const char *const files[] = {"scene.yaml", "blade-structure.yaml", "airfoils.yaml",
                                         "tower-structure.yaml", "blade-aero.yaml"};
     static const char *const newer[] = {"v4/main.fst", "v5/main.fst"};
@@ -155,8 +148,7 @@ static void versions_three_to_five_give_one_scene(void **context) {
     }
 }
 
-static void what_version_five_adds_is_told(void **context) {
-    (void)context;
+TEST(what_version_five_adds_is_told) {
     const edit modal = {"v5/beam-blade.dat", "1   damp_type", "2   damp_type"};
     const edit bearing = {"v5/elasto.dat", "False         PitchDOF", "True  PitchDOF"};
     trial t = import_main("v5/main.fst", &modal, &bearing);
@@ -181,8 +173,7 @@ static void what_version_five_adds_is_told(void **context) {
 }
 
 // ω = 1.8751² √(E I/(m l⁴)); a wedge of constant width: 5.315 √(E I/(m l⁴)) with the root's values.
-static void frequencies_are_those_of_beams(void **context) {
-    (void)context;
+TEST(frequencies_are_those_of_beams) {
     const double span[] = {0, 3, 6}, same[] = {4, 4, 4}, mass[] = {9, 9, 9};
     check_near(bough_section_frequency(3, span, same, mass), 3.51602 * sqrt(4 / (9 * 1296.0)), 1e-4, 0);
     double x[41], stiffness[41], thin[41];
@@ -208,8 +199,7 @@ static void a_scene_steps(const edit *one, const edit *two) {
     done(&t);
 }
 
-static void scenes_step(void **context) {
-    (void)context;
+TEST(scenes_step) {
     const edit stiff = {"parts/elasto.dat", "True          TwFADOF1", "False         TwFADOF1"};
     a_scene_steps(NULL, NULL);
     a_scene_steps(&stiff, &(edit){"main.fst", "2    CompElast", "1    CompElast"});
@@ -218,8 +208,7 @@ static void scenes_step(void **context) {
     a_scene_steps(&stiff, &(edit){"main.fst", "2    CompAero", "0    CompAero"});
 }
 
-static void controller_libraries_and_wind_files_stay_in_place(void **context) {
-    (void)context;
+TEST(controller_libraries_and_wind_files_stay_in_place) {
     char line[512];
     snprintf(line, sizeof line,
              "5  VSContrl - library\n3  TPCOn\n5  PCMode - library\n\"%s\"  DLL_FileName\n"
@@ -247,8 +236,7 @@ static void put_library(char line[512], const char *input) {
 }
 
 // Each trial is a process of its own, which calls the library from its first call on.
-static void trials_call_the_library(void **context) {
-    (void)context;
+TEST(trials_call_the_library) {
     char line[512];
     const edit library = {"parts/servo.dat", "0   PCMode", line};
     put_library(line, "fifth"); // reports a failure in two trials, to the run and to its companion
@@ -279,8 +267,7 @@ static bough_status try_with(const trial *t, bough_scene *scene, double rtol, do
 }
 
 // Errors fall with the tolerance, so that some bound lies between those of two.
-static void trials_judge_errors(void **context) {
-    (void)context;
+TEST(trials_judge_errors) {
     trial t = import(&(edit){"parts/servo.dat", "5E+07   YawSpr", "0   YawSpr"});
     char path[SCRATCH_PATH];
     snprintf(path, sizeof path, "%s/scene.yaml", t.out);
@@ -300,8 +287,7 @@ static void trials_judge_errors(void **context) {
 }
 
 // As the command does it: what it writes has been tried for 150 steps.
-static void scenes_are_tried(void **context) {
-    (void)context;
+TEST(scenes_are_tried) {
     const edit wind = {"parts/wind.dat", "15    PropagationDir", "-30    PropagationDir"};
     trial t = import_given("main.fst", &wind, NULL, &(bough_import_options){.trial_steps = 150});
     assert_string_equal(t.status.message, "");
@@ -311,8 +297,7 @@ static void scenes_are_tried(void **context) {
 
 // The decks' titles begin as values do, "2 NumBl and 90 m TowerHt": every test here reads past them. Nor is
 // there a value in the list of output channels, and of several numbers before a name the first counts.
-static void lines_have_places_before_names(void **context) {
-    (void)context;
+TEST(lines_have_places_before_names) {
     const edit outputs = {"parts/servo.dat", "5E+07   YawSpr",
                           "5E+07   YawSpr\n1E+05 YawDamp\nOutList - channels\n12 YawNeut\nEND"};
     trial t = import(&outputs);
@@ -327,8 +312,7 @@ static void lines_have_places_before_names(void **context) {
     done(&base);
 }
 
-static void bad_decks_are_told_where(void **context) {
-    (void)context;
+TEST(bad_decks_are_told_where) {
     const struct {
         edit change;
         const char *says;
@@ -379,26 +363,4 @@ static void bad_decks_are_told_where(void **context) {
         assert_int_not_equal(access(t.out, F_OK), 0); // nothing was written
         done(&t);
     }
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(beamdyn_stations_keep_line_and_matrices),
-        cmocka_unit_test(turbine_has_the_decks_values),
-        cmocka_unit_test(air_tables_follow_their_headers),
-        cmocka_unit_test(high_thrust_is_the_decks),
-        cmocka_unit_test(elastodyn_structure_is_scaled_and_damped),
-        cmocka_unit_test(newer_names_are_known),
-        cmocka_unit_test(versions_three_to_five_give_one_scene),
-        cmocka_unit_test(what_version_five_adds_is_told),
-        cmocka_unit_test(frequencies_are_those_of_beams),
-        cmocka_unit_test(scenes_step),
-        cmocka_unit_test(controller_libraries_and_wind_files_stay_in_place),
-        cmocka_unit_test(trials_call_the_library),
-        cmocka_unit_test(trials_judge_errors),
-        cmocka_unit_test(scenes_are_tried),
-        cmocka_unit_test(lines_have_places_before_names),
-        cmocka_unit_test(bad_decks_are_told_where),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -146,8 +146,7 @@ static void again(trial *t, const char *main) {
     t->status = bough_import_openfast(path, t->out, &(bough_import_options){0}, NULL);
 }
 
-static void every_spelling_gives_the_same_scene(void **context) {
-    (void)context;
+TEST(every_spelling_gives_the_same_scene) {
     static const char *const mains[] = {"main.fst", "v4/main.fst", "v5/main.fst"};
     for (int m = 0; m < 3; m++) {
         trial base = import_main(mains[m], NULL, NULL);
@@ -165,8 +164,7 @@ static void every_spelling_gives_the_same_scene(void **context) {
     }
 }
 
-static void order_does_not_matter(void **context) {
-    (void)context;
+TEST(order_does_not_matter) {
     static const char *const plain[] = {"main.fst",       "parts/elasto.dat", "parts/servo.dat",
                                         "parts/wind.dat", "v4/elasto.dat",    "v5/servo.dat"};
     trial base = import_main("main.fst", NULL, NULL), t = import_main("main.fst", NULL, NULL);
@@ -179,8 +177,7 @@ static void order_does_not_matter(void **context) {
 }
 
 // The names of airfoils without their label; every optional entry of AeroDyn as "default".
-static void labels_and_defaults(void **context) {
-    (void)context;
+TEST(labels_and_defaults) {
     trial base = import_main("main.fst", NULL, NULL);
     trial t = import(
         &(edit){"parts/aero.dat", "\"foils/round.dat\"    AFNames  - airfoils", "\"foils/round.dat\""});
@@ -201,13 +198,4 @@ static void labels_and_defaults(void **context) {
     assert_string_equal(text(read_file(&t, "scene.yaml"), "aero.tower.shadow"), "powles");
     done(&t);
     done(&base);
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(every_spelling_gives_the_same_scene),
-        cmocka_unit_test(order_does_not_matter),
-        cmocka_unit_test(labels_and_defaults),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

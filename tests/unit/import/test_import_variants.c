@@ -28,8 +28,7 @@ static const edit by_modes = {"main.fst", "2    CompElast", "1    CompElast"};
 
 // -- what is missing ------------------------------------------------------------------------------
 
-static void missing_controller_leaves_the_speed(void **context) {
-    (void)context;
+TEST(missing_controller_leaves_the_speed) {
     const edit none = {"parts/servo.dat", "1   VSContrl   - simple",
                        "5   VSContrl\n\"none.dll\"  DLL_FileName"};
     trial t = import(&none);
@@ -51,8 +50,7 @@ static void missing_controller_leaves_the_speed(void **context) {
     done(&t);
 }
 
-static void missing_wind_leaves_a_steady_one(void **context) {
-    (void)context;
+TEST(missing_wind_leaves_a_steady_one) {
     const edit none = {"parts/wind.dat", "1    WindType", "3    WindType\n\"none.bts\"  FileName_BTS"};
     trial t = import(&none);
     assert_string_equal(t.status.message, "");
@@ -74,8 +72,7 @@ static void missing_wind_leaves_a_steady_one(void **context) {
     done(&t);
 }
 
-static void old_decks_name_two_files_alike(void **context) {
-    (void)context;
+TEST(old_decks_name_two_files_alike) {
     const edit two = {"parts/wind.dat", "1    WindType",
                       "3    WindType\n"
                       "== Parameters for Uniform wind file ==\n\"none.wnd\"  Filename\n"
@@ -88,8 +85,7 @@ static void old_decks_name_two_files_alike(void **context) {
 }
 
 // Each type's height is that of its own section.
-static void old_decks_name_heights_alike(void **context) {
-    (void)context;
+TEST(old_decks_name_heights_alike) {
     const edit height = {"parts/wind.dat", "   0.2    PLexp          - (-)",
                          "0.2 PLexp\n== Parameters for Uniform wind file ==\n"
                          "\"" BOUGH_SOURCE_DIR
@@ -109,8 +105,7 @@ static void old_decks_name_heights_alike(void **context) {
     done(&t);
 }
 
-static void offshore_turbines_stand_on_their_base(void **context) {
-    (void)context;
+TEST(offshore_turbines_stand_on_their_base) {
     const edit water = {"main.fst", "0    CompHydro", "1    CompHydro"};
     const edit base = {"parts/elasto.dat", "20    TowerHt     - (m)",
                        "20 TowerHt\n 4 TowerBsHt\nTrue  PtfmPDOF"};
@@ -133,8 +128,7 @@ static void offshore_turbines_stand_on_their_base(void **context) {
 
 // -- tables ---------------------------------------------------------------------------------------
 
-static void blade_elements_reach_root_and_tip(void **context) {
-    (void)context;
+TEST(blade_elements_reach_root_and_tip) {
     static const struct {
         const char *from, *to; // of the last row's span
         int rows;
@@ -161,8 +155,7 @@ static void blade_elements_reach_root_and_tip(void **context) {
     done(&t);
 }
 
-static void structures_reach_root_and_tip(void **context) {
-    (void)context;
+TEST(structures_reach_root_and_tip) {
     trial t = import_with(&by_modes, &(edit){"parts/blade.dat", "  1.0      0.25", "  0.9      0.25"});
     assert_string_equal(t.status.message, "");
     const bough_node *rows = at(read_file(&t, "blade-structure.yaml"), "stations.rows");
@@ -191,8 +184,7 @@ static void structures_reach_root_and_tip(void **context) {
 }
 
 // A table that ends before 180 deg, and one whose ends differ, meet in their mean.
-static void polars_go_round(void **context) {
-    (void)context;
+TEST(polars_go_round) {
     trial t = import(&(edit){"parts/foils/flat.dat", "   0.0   180.0   0.02", "   0.2   170.0   0.04"});
     assert_string_equal(t.status.message, "");
     const bough_node *rows = at(read_file(&t, "airfoils.yaml"), "polars.1.table.rows");
@@ -206,8 +198,7 @@ static void polars_go_round(void **context) {
 }
 
 // Nothing damps the modes of such a deck, but ElastoDyn's blade has no shear, stretch and twist to ring.
-static void undamped_blades_are_damped_where_elastodyn_is_rigid(void **context) {
-    (void)context;
+TEST(undamped_blades_are_damped_where_elastodyn_is_rigid) {
     trial t = import_with(&by_modes,
                           &(edit){"parts/blade.dat", "1.5   BldFlDmp(1) - (%)\n   0.5", "0 BldFlDmp(1)\n 0"});
     assert_string_equal(t.status.message, "");
@@ -220,8 +211,7 @@ static void undamped_blades_are_damped_where_elastodyn_is_rigid(void **context) 
 }
 
 // The line below the headings is that of the units, however they are written.
-static void units_may_be_written_anyhow(void **context) {
-    (void)context;
+TEST(units_may_be_written_anyhow) {
     static const edit units[] = {
         {"parts/tower.dat", "  (-)     (kg/m)    (Nm^2)    (Nm^2)", "-  kg/m  Nm^2  Nm^2"},
         {"parts/aero-blade.dat", "   (m)    (m)", "   [m]    [m]"},
@@ -235,8 +225,7 @@ static void units_may_be_written_anyhow(void **context) {
 
 // -- other parts ----------------------------------------------------------------------------------
 
-static void masses_on_tips_and_yaw_bearing(void **context) {
-    (void)context;
+TEST(masses_on_tips_and_yaw_bearing) {
     const edit masses = {"parts/elasto.dat", "8000    NacMass",
                          "8000 NacMass\n2000 YawBrMass\n12 TipMass(1)\n12 TipMass(2)\n12 TipMass(3)"};
     trial t = import_with(&by_modes, &masses);
@@ -250,8 +239,7 @@ static void masses_on_tips_and_yaw_bearing(void **context) {
     done(&t);
 }
 
-static void two_blades_teeter(void **context) {
-    (void)context;
+TEST(two_blades_teeter) {
     const edit blades = {"parts/elasto.dat", "         3    NumBl",
                          "2 NumBl\nTrue TeetDOF\n0.3 UndSling\n5 TeetDefl\n1 TeetMod\n3E4 TeetDmp\n"
                          "20 TeetHStP\n5E6 TeetHSSp"};
@@ -269,8 +257,7 @@ static void two_blades_teeter(void **context) {
     done(&t);
 }
 
-static void any_number_of_blades_is_taken(void **context) {
-    (void)context;
+TEST(any_number_of_blades_is_taken) {
     static const edit number[] = {{"parts/elasto.dat", "         3    NumBl", "         1    NumBl"},
                                   {"parts/elasto.dat", "         3    NumBl",
                                    "5 NumBl\n1 BlPitch(4)\n2 BlPitch(5)\n-3 PreCone(4)\n-2 PreCone(5)"}};
@@ -290,8 +277,7 @@ static void any_number_of_blades_is_taken(void **context) {
 }
 
 // From 600 rpm to 1.5 times 300 N m at 1.5 times 2 %; the line of a circuit beside its formula.
-static void induction_generators_are_lines(void **context) {
-    (void)context;
+TEST(induction_generators_are_lines) {
     const edit none = {"parts/servo.dat", "1   VSContrl", "0   VSContrl"};
     const edit light = {"parts/elasto.dat", "2.0    GenIner", "200    GenIner"};
     trial t = import_with(&none, &light);
@@ -328,8 +314,7 @@ static void induction_generators_are_lines(void **context) {
 }
 
 // On line by time or by speed, off by time or when the power is negative.
-static void generators_are_switched(void **context) {
-    (void)context;
+TEST(generators_are_switched) {
     const edit light = {"parts/elasto.dat", "2.0    GenIner", "200    GenIner"};
     const edit timed = {"parts/servo.dat", "1   VSContrl", "2 TimGenOf\nTrue GenTiStp\n0   VSContrl"};
     const edit fast = {"parts/servo.dat", "1   VSContrl",
@@ -372,8 +357,7 @@ static double way_of(const bough_node *motion, int n) {
 
 // What the bearing's spring is fixed to turns from 2 to -10 deg at 3 deg/s, from 1 s on or from the start; so
 // do blades that no library steers. Without the yaw's freedom nothing turns, as in OpenFAST.
-static void manoeuvres_are_motions_of_joints(void **context) {
-    (void)context;
+TEST(manoeuvres_are_motions_of_joints) {
     for (int begin = 0; begin < 2; begin++) {
         char line[200];
         snprintf(
@@ -408,8 +392,7 @@ static void manoeuvres_are_motions_of_joints(void **context) {
 }
 
 // What makes another load case of the run stands first.
-static void another_load_case_is_said_first(void **context) {
-    (void)context;
+TEST(another_load_case_is_said_first) {
     trial t = import(&(edit){"parts/servo.dat", "1   VSContrl", "1 HSSBrMode\n3 THSSBrDp\n1   VSContrl"});
     assert_string_equal(t.status.message, "");
     char path[SCRATCH_PATH], line[2][200];
@@ -425,8 +408,7 @@ static void another_load_case_is_said_first(void **context) {
 
 // The generator is a body of its own, so that RotTorq is the hub's; no body has an inertia that none can
 // have.
-static void rigid_drive_trains_have_a_generator(void **context) {
-    (void)context;
+TEST(rigid_drive_trains_have_a_generator) {
     const edit rigid = {"parts/elasto.dat", "True          DrTrDOF", "False         DrTrDOF"};
     const edit teeter = {"parts/elasto.dat", "         3    NumBl", "2 NumBl\nTrue TeetDOF"};
     for (int i = 0; i < 2; i++) {
@@ -443,8 +425,7 @@ static void rigid_drive_trains_have_a_generator(void **context) {
     }
 }
 
-static void generators_that_stay_off_have_no_torque(void **context) {
-    (void)context;
+TEST(generators_that_stay_off_have_no_torque) {
     for (int mode = 0; mode <= 1; mode++) {
         char line[32];
         snprintf(line, sizeof line, "%d   VSContrl", mode);
@@ -458,8 +439,7 @@ static void generators_that_stay_off_have_no_torque(void **context) {
 }
 
 // What ServoDyn also steers is on the list.
-static void structural_control_is_on_the_list(void **context) {
-    (void)context;
+TEST(structural_control_is_on_the_list) {
     trial t = import(&(edit){"parts/servo.dat", "1   VSContrl",
                              "2 NumTStC\nTrue CompNTMD\n1 AfCmode\n0 NumBStC\n1   VSContrl"});
     assert_string_equal(t.status.message, "");
@@ -471,8 +451,7 @@ static void structural_control_is_on_the_list(void **context) {
 }
 
 // A line that is as good as vertical becomes the steepest that samples hold.
-static void steep_torque_lines_are_taken(void **context) {
-    (void)context;
+TEST(steep_torque_lines_are_taken) {
     trial t = import(&(edit){"parts/servo.dat", "10   VS_SlPc", "1E-5   VS_SlPc"});
     assert_string_equal(t.status.message, "");
     double slip = number(read_file(&t, "scene.yaml"), "control.law.slip");
@@ -483,8 +462,7 @@ static void steep_torque_lines_are_taken(void **context) {
 }
 
 // A fast small rotor has short steps, by halves of 20 ms.
-static void steps_follow_the_rotor(void **context) {
-    (void)context;
+TEST(steps_follow_the_rotor) {
     trial t = import(&(edit){"parts/elasto.dat", "20    RotSpeed", "188    RotSpeed"});
     assert_string_equal(t.status.message, "");
     const bough_node *s = read_file(&t, "scene.yaml");
@@ -492,32 +470,4 @@ static void steps_follow_the_rotor(void **context) {
     check_near(number(s, "aero.rate"), 400, 1e-9, 0);
     check_near(number(s, "control.rate"), 400, 1e-9, 0);
     done(&t);
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(missing_controller_leaves_the_speed),
-        cmocka_unit_test(missing_wind_leaves_a_steady_one),
-        cmocka_unit_test(old_decks_name_two_files_alike),
-        cmocka_unit_test(old_decks_name_heights_alike),
-        cmocka_unit_test(offshore_turbines_stand_on_their_base),
-        cmocka_unit_test(blade_elements_reach_root_and_tip),
-        cmocka_unit_test(structures_reach_root_and_tip),
-        cmocka_unit_test(polars_go_round),
-        cmocka_unit_test(undamped_blades_are_damped_where_elastodyn_is_rigid),
-        cmocka_unit_test(units_may_be_written_anyhow),
-        cmocka_unit_test(masses_on_tips_and_yaw_bearing),
-        cmocka_unit_test(two_blades_teeter),
-        cmocka_unit_test(any_number_of_blades_is_taken),
-        cmocka_unit_test(induction_generators_are_lines),
-        cmocka_unit_test(generators_are_switched),
-        cmocka_unit_test(manoeuvres_are_motions_of_joints),
-        cmocka_unit_test(another_load_case_is_said_first),
-        cmocka_unit_test(rigid_drive_trains_have_a_generator),
-        cmocka_unit_test(generators_that_stay_off_have_no_torque),
-        cmocka_unit_test(structural_control_is_on_the_list),
-        cmocka_unit_test(steep_torque_lines_are_taken),
-        cmocka_unit_test(steps_follow_the_rotor),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -29,8 +29,7 @@ static bough_rod_def discretised(bough_arena *arena, const bough_section_station
 }
 
 // ρ linear from 3 to 1 over 4 m: M = 8, ∫ρ s = 40/3, ∫ρ s² = 32, each exact on any mesh.
-static void lumped_moments_are_exact_for_linear_tables(void **context) {
-    (void)context;
+TEST(lumped_moments_are_exact_for_linear_tables) {
     const bough_section_station s[2] = {station(0, 3), station(4, 1)};
     for (int segments = 1; segments <= 9; segments += 4) {
         bough_arena *arena = bough_arena_create();
@@ -46,8 +45,7 @@ static void lumped_moments_are_exact_for_linear_tables(void **context) {
 }
 
 // A slender rod whose section inertia cannot balance the end terms: still positive, still exact.
-static void slender_rod_keeps_positive_inertia(void **context) {
-    (void)context;
+TEST(slender_rod_keeps_positive_inertia) {
     bough_arena *arena = bough_arena_create();
     bough_section_station s = station(0, 1);
     memset(s.centre, 0, sizeof s.centre);
@@ -66,8 +64,7 @@ static void slender_rod_keeps_positive_inertia(void **context) {
 
 // A mass centre off the axis, on coarse and fine meshes: accepted, with exact products of inertia
 // for offsets that vary along the rod.
-static void offset_mass_centre_keeps_exact_products(void **context) {
-    (void)context;
+TEST(offset_mass_centre_keeps_exact_products) {
     for (int segments = 1; segments <= 64; segments *= 4) {
         bough_arena *arena = bough_arena_create();
         bough_section_station s[2] = {station(0, 1.5), station(2, 1.5)};
@@ -91,8 +88,7 @@ static void offset_mass_centre_keeps_exact_products(void **context) {
 }
 
 // A uniform segment meets end forces exactly: bending h/EI, shear h/GA + h³/12EI.
-static void segment_is_exact_for_end_forces(void **context) {
-    (void)context;
+TEST(segment_is_exact_for_end_forces) {
     bough_arena *arena = bough_arena_create();
     const bough_section_station s = station(0, 1);
     bough_rod_def def = discretised(arena, &s, 1, 2);
@@ -107,8 +103,7 @@ static void segment_is_exact_for_end_forces(void **context) {
 
 // Damping dissipates what the sections would: under a steadily growing shear force the segment's
 // stress lags as bending (μ₅) and shear (μ₁) share the compliance.
-static void damping_weighs_the_sections(void **context) {
-    (void)context;
+TEST(damping_weighs_the_sections) {
     bough_arena *arena = bough_arena_create();
     const bough_section_station s = station(0, 1);
     bough_rod_def def = discretised(arena, &s, 1, 2);
@@ -120,8 +115,7 @@ static void damping_weighs_the_sections(void **context) {
 }
 
 // Twist turns the section axes by −twist about the tangent and mixes the bending stiffnesses.
-static void twist_turns_sections(void **context) {
-    (void)context;
+TEST(twist_turns_sections) {
     bough_arena *arena = bough_arena_create();
     bough_section_station s[2] = {station(0, 1), station(4, 1)};
     s[0].twist = s[1].twist = 0.3;
@@ -167,8 +161,7 @@ static void draw_table(unsigned *seed, int n, bough_section_station *s) {
 // Whatever physical table: every vertex has a positive inertia, and the totals are those of a fine
 // mesh. Second moments differ a little where the linear inertia between two stations is too small for
 // mass and offset there, and is not taken.
-static void any_physical_table_builds(void **context) {
-    (void)context;
+TEST(any_physical_table_builds) {
     const int segments[] = {1, 2, 3, 7, 24, 48, 61};
     unsigned seed = 1;
     for (int draw = 0; draw < 60; draw++) {
@@ -194,17 +187,4 @@ static void any_physical_table_builds(void **context) {
         }
         bough_arena_destroy(arena);
     }
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(lumped_moments_are_exact_for_linear_tables),
-        cmocka_unit_test(slender_rod_keeps_positive_inertia),
-        cmocka_unit_test(offset_mass_centre_keeps_exact_products),
-        cmocka_unit_test(segment_is_exact_for_end_forces),
-        cmocka_unit_test(damping_weighs_the_sections),
-        cmocka_unit_test(twist_turns_sections),
-        cmocka_unit_test(any_physical_table_builds),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -41,8 +41,7 @@ static section tube(double radius, double cx, double cy, int open) {
 }
 
 // Between radii 1 and 0.99: E A, E I, G J; shear stiffness G A/2 of a thin tube.
-static void tube_has_its_formulas(void **state) {
-    (void)state;
+TEST(tube_has_its_formulas) {
     section s = tube(1, 0, 0, 0);
     double area = BOUGH_PI * (1 - 0.99 * 0.99), second = BOUGH_PI / 4 * (1 - pow(0.99, 4));
     check_near(s.k[14], 200e9 * area, 2e-4, 0);
@@ -58,8 +57,7 @@ static void tube_has_its_formulas(void **state) {
 
 // A square of four walls, centred on lines of length 1: E I = E t (2 · 1/12 + 2 · 1/4), without the walls'
 // own thickness.
-static void box_of_four_walls_has_its_formulas(void **state) {
-    (void)state;
+TEST(box_of_four_walls_has_its_formulas) {
     static const double x[] = {-0.5, 0.5, 0.5, -0.5}, y[] = {-0.5, -0.5, 0.5, 0.5};
     const bough_ply thin = {{200e9, 200e9}, 80e9, 0.25, 7800, 0, 1e-3};
     bough_wall wall[4];
@@ -72,8 +70,7 @@ static void box_of_four_walls_has_its_formulas(void **state) {
 }
 
 // Moved by (0.3, −0.2): first moments and Steiner's terms, in shear and twist as well.
-static void offsets_move_along(void **state) {
-    (void)state;
+TEST(offsets_move_along) {
     section s = tube(1, 0, 0, 0), t = tube(1, 0.3, -0.2, 0);
     check_near(t.k[15], -0.2 * s.k[14], 1e-9, 0);
     check_near(t.k[16], -0.3 * s.k[14], 1e-9, 0);
@@ -87,8 +84,7 @@ static void offsets_move_along(void **state) {
 }
 
 // A slit tube twists freely, and its shear centre lies a diameter from its middle, away from the slit.
-static void slit_tube_has_its_shear_centre_outside(void **state) {
-    (void)state;
+TEST(slit_tube_has_its_shear_centre_outside) {
     section s = tube(1, 0, 0, 1);
     // shear centre: the twist rate under a shear force along y at x vanishes
     double det = s.k[0] * s.k[7] - s.k[1] * s.k[1];
@@ -98,8 +94,7 @@ static void slit_tube_has_its_shear_centre_outside(void **state) {
 
 // Two cells of a by b, walls t: Bredt's equations for torsion; the middle web carries no flow by
 // symmetry, so G J = 4 A² G t/s of the outside.
-static void cells_share_the_torsion(void **state) {
-    (void)state;
+TEST(cells_share_the_torsion) {
     enum { N = 60 };
     double x[3 * N], y[3 * N], a = 1, b = 0.5;
     bough_wall wall[4 * N];
@@ -132,8 +127,7 @@ static void cells_share_the_torsion(void **state) {
 }
 
 // Fibres at ±45 deg shear as a plane laminate does; along them the whole is E1.
-static void plies_turn(void **state) {
-    (void)state;
+TEST(plies_turn) {
     const bough_ply along = {{40e9, 10e9}, 4e9, 0.3, 1900, 0, 5e-3};
     bough_ply turned[2] = {along, along};
     turned[0].angle = BOUGH_PI / 4;
@@ -161,13 +155,4 @@ static void plies_turn(void **state) {
     double q11 = ((40e9 + 10e9) / d + 2 * minor * 40e9 / d) / 4 + 4e9;
     double q12 = ((40e9 + 10e9) / d + 2 * minor * 40e9 / d) / 4 - 4e9;
     check_near(s.k[14], (q11 - q12 * q12 / q11) * 10e-3 * perimeter, 1e-9, 0);
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(tube_has_its_formulas),   cmocka_unit_test(box_of_four_walls_has_its_formulas),
-        cmocka_unit_test(offsets_move_along),      cmocka_unit_test(slit_tube_has_its_shear_centre_outside),
-        cmocka_unit_test(cells_share_the_torsion), cmocka_unit_test(plies_turn),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

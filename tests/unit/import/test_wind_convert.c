@@ -121,8 +121,8 @@ static void check_bladed(place *p, bool turned, double sideways) {
     }
 }
 
-static void bladed_files_are_boxes(void **state) {
-    place *p = *state;
+TEST_WITH(bladed_files_are_boxes, set_up, tear_down) {
+    place *p = *context;
     write_bladed(p, false, "F", "Creating a PERIODIC output file.\n");
     check_bladed(p, false, 1);
     write_bladed(p, false, "True", "");
@@ -131,8 +131,8 @@ static void bladed_files_are_boxes(void **state) {
     check_bladed(p, false, -1);
 }
 
-static void damaged_bladed_files_are_told(void **state) {
-    place *p = *state;
+TEST_WITH(damaged_bladed_files_are_told, set_up, tear_down) {
+    place *p = *context;
     bough_wind_box box;
     bough_status status = bough_wind_bladed_read(p->arena, p->wind, &box);
     assert_non_null(strstr(status.message, "box.wnd: "));
@@ -182,8 +182,8 @@ static void check_hawc(const bough_wind_box *box, double factor, double mean_kep
     }
 }
 
-static void hawc_files_are_boxes(void **state) {
-    place *p = *state;
+TEST_WITH(hawc_files_are_boxes, set_up, tear_down) {
+    place *p = *context;
     char path[3][SCRATCH_PATH];
     const char *const *file;
     write_hawc(p, path, &file);
@@ -218,13 +218,4 @@ static void hawc_files_are_boxes(void **state) {
     d.nx = 1;
     status = bough_wind_hawc_read(p->arena, &d, &box);
     assert_non_null(strstr(status.message, "expected at least 2 points a way"));
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test_setup_teardown(bladed_files_are_boxes, set_up, tear_down),
-        cmocka_unit_test_setup_teardown(damaged_bladed_files_are_told, set_up, tear_down),
-        cmocka_unit_test_setup_teardown(hawc_files_are_boxes, set_up, tear_down),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

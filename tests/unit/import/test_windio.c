@@ -30,8 +30,7 @@ static trial import_with(const char *from, const char *to) {
 }
 
 // The line is 5.0002 m and 5.0160 m long, its stations are those of line, stiffness and inertia.
-static void blade_keeps_line_and_matrices(void **context) {
-    (void)context;
+TEST(blade_keeps_line_and_matrices) {
     trial t = import_of("turbine-1.yaml", NULL);
     assert_string_equal(t.status.message, "");
     const bough_node *blade = read_file(&t, "blade-structure.yaml");
@@ -64,8 +63,7 @@ static void blade_keeps_line_and_matrices(void **context) {
 }
 
 // Rings of 2 m and 1 m; the axis of an element stands at its share of the chord before the centre.
-static void tower_and_elements_are_those_of_the_file(void **context) {
-    (void)context;
+TEST(tower_and_elements_are_those_of_the_file) {
     trial t = import_of("turbine-1.yaml", NULL);
     const bough_node *foot = at(read_file(&t, "tower-structure.yaml"), "stations.rows.0");
     double pi = acos(-1.0), area = pi / 4 * (4 - 1.96 * 1.96), second = pi / 64 * (16 - pow(1.96, 4));
@@ -93,8 +91,7 @@ static void tower_and_elements_are_those_of_the_file(void **context) {
     done(&t);
 }
 
-static void turbine_has_the_files_values(void **context) {
-    (void)context;
+TEST(turbine_has_the_files_values) {
     trial t = import_of("turbine-1.yaml", NULL);
     const bough_node *s = read_file(&t, "scene.yaml");
     char words[40];
@@ -142,8 +139,7 @@ static void same(const bough_node *a, const bough_node *b) {
     assert_string_equal(rest_a, rest_b);
 }
 
-static void both_layouts_give_one_scene(void **context) {
-    (void)context;
+TEST(both_layouts_give_one_scene) {
     trial first = import_of("turbine-1.yaml", NULL), second = import_of("turbine-2.yaml", NULL);
     assert_string_equal(second.status.message, "");
     for (size_t i = 0; i < sizeof files / sizeof *files; i++)
@@ -158,8 +154,7 @@ static void both_layouts_give_one_scene(void **context) {
     done(&first);
 }
 
-static void what_is_not_given_is_told(void **context) {
-    (void)context;
+TEST(what_is_not_given_is_told) {
     trial t =
         import_of("turbine-2.yaml",
                   &(edit){"turbine-2.yaml", "efficiency: 0.95}",
@@ -191,8 +186,7 @@ static void what_is_not_given_is_told(void **context) {
 }
 
 // Masses that the file lacks come from the user, not from other turbines.
-static void missing_masses_are_asked_for(void **context) {
-    (void)context;
+TEST(missing_masses_are_asked_for) {
     const edit hub = {"turbine-1.yaml", "    elastic_properties_mb: {system_mass: 3000",
                       "    other: {a: 3000"};
     const edit nacelle = {"turbine-2.yaml", "    elastic_properties:\n      mass: 8000",
@@ -221,8 +215,7 @@ static void missing_masses_are_asked_for(void **context) {
 }
 
 // Matrices of a blade without shear have zeros for it.
-static void no_shear_is_stiff(void **context) {
-    (void)context;
+TEST(no_shear_is_stiff) {
     trial t =
         import_of("turbine-2.yaml", &(edit){"turbine-2.yaml", "K11: [50000000, 5000000]", "K11: [0, 0]"});
     assert_string_equal(t.status.message, "");
@@ -236,8 +229,7 @@ static void no_shear_is_stiff(void **context) {
 
 // The names of version 1 in a file of version 2, which has degrees and rpm; of two limits of the speed the
 // lower one counts.
-static void units_are_those_of_the_layout(void **context) {
-    (void)context;
+TEST(units_are_those_of_the_layout) {
     trial t = import_of("turbine-2.yaml", &(edit){"turbine-2.yaml", "  rated_rotor_speed: 28.64788975654116",
                                                   "  supervisory: {maxTS: 16}\n  torque: {VS_maxspd: 20}\n"
                                                   "  pitch: {max_pitch: 80, max_pitch_rate: 3}"});
@@ -256,8 +248,7 @@ static void units_are_those_of_the_layout(void **context) {
 }
 
 // The nacelle is what the whole rotor-nacelle assembly weighs beyond hub and blades.
-static void assembly_gives_the_nacelle(void **context) {
-    (void)context;
+TEST(assembly_gives_the_nacelle) {
     trial t = import_with("      elastic_properties_mb:\n        system_mass: 8000\n"
                           "        system_inertia: [4000, 5000, 6000]\n"
                           "        system_center_mass: [0.5, 0, 1]\n        yaw_mass: 1000\n",
@@ -272,8 +263,7 @@ static void assembly_gives_the_nacelle(void **context) {
     done(&t);
 }
 
-static void any_number_of_blades_is_taken(void **context) {
-    (void)context;
+TEST(any_number_of_blades_is_taken) {
     trial t = import_with("number_of_blades: 3", "number_of_blades: 5");
     assert_string_equal(t.status.message, "");
     const bough_node *s = read_file(&t, "scene.yaml");
@@ -282,16 +272,14 @@ static void any_number_of_blades_is_taken(void **context) {
     done(&t);
 }
 
-static void polars_go_round(void **context) {
-    (void)context;
+TEST(polars_go_round) {
     trial t = import_with("[-3.14, -0.5, 0.5, 3.14]", "[-1.5, -0.5, 0.5, 1.5]");
     assert_string_equal(t.status.message, "");
     assert_true(list_says(&t, "from -85.9437 to 85.9437 deg, constant beyond"));
     done(&t);
 }
 
-static void scene_steps(void **context) {
-    (void)context;
+TEST(scene_steps) {
     trial t = import_of("turbine-1.yaml", NULL);
     char path[SCRATCH_PATH];
     snprintf(path, sizeof path, "%s/scene.yaml", t.out);
@@ -304,8 +292,7 @@ static void scene_steps(void **context) {
     done(&t);
 }
 
-static void bad_files_are_told_where(void **context) {
-    (void)context;
+TEST(bad_files_are_told_where) {
     const struct {
         const char *from, *to, *says;
     } bad[] = {
@@ -352,23 +339,4 @@ static void bad_files_are_told_where(void **context) {
         assert_int_not_equal(access(t.out, F_OK), 0); // nothing was written
         done(&t);
     }
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(blade_keeps_line_and_matrices),
-        cmocka_unit_test(tower_and_elements_are_those_of_the_file),
-        cmocka_unit_test(turbine_has_the_files_values),
-        cmocka_unit_test(both_layouts_give_one_scene),
-        cmocka_unit_test(what_is_not_given_is_told),
-        cmocka_unit_test(missing_masses_are_asked_for),
-        cmocka_unit_test(no_shear_is_stiff),
-        cmocka_unit_test(units_are_those_of_the_layout),
-        cmocka_unit_test(assembly_gives_the_nacelle),
-        cmocka_unit_test(any_number_of_blades_is_taken),
-        cmocka_unit_test(polars_go_round),
-        cmocka_unit_test(scene_steps),
-        cmocka_unit_test(bad_files_are_told_where),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

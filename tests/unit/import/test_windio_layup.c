@@ -94,8 +94,7 @@ static double stiffness(const bough_node *row, int diagonal) {
     return strtod(k->value[k->n == 21 ? place[diagonal] : diagonal]->text, NULL);
 }
 
-static void tube_of_one_layer(void **context) {
-    (void)context;
+TEST(tube_of_one_layer) {
     for (int above = 0; above < 2; above++) {
         trial t = import_layers((options){WALL, above});
         assert_string_equal(t.status.message, "");
@@ -125,8 +124,7 @@ static void tube_of_one_layer(void **context) {
 
 // A cap of 0.4 m about the middle of the suction side, 0.1 m behind the axis: one place said in each
 // way. At no twist the arc of the middle follows from sin = 0.1.
-static void arcs_are_said_in_many_ways(void **context) {
-    (void)context;
+TEST(arcs_are_said_in_many_ways) {
     double middle = (pi / 2 - asin(0.1)) / (2 * pi), half = 0.2 / (2 * pi);
     char values[4][400];
     snprintf(values[0], sizeof values[0],
@@ -191,8 +189,7 @@ static void arcs_are_said_in_many_ways(void **context) {
 }
 
 // A plate of 2 m across the tube: half a metre behind the axis it is √3/2 of that.
-static void webs_cross_the_section(void **context) {
-    (void)context;
+TEST(webs_cross_the_section) {
     static const char *const place[] = {
         "offset_y_pa: {grid: [0, 1], values: [0.5, 0.5]}, rotation: {grid: [0, 1], values: [0, 0]}",
         "start_nd_arc: {grid: [0, 1], values: [0.16666667, 0.16666667]}, end_nd_arc: {grid: [0, 1], "
@@ -227,8 +224,7 @@ static void webs_cross_the_section(void **context) {
 }
 
 // Real files have matrices whose inertia misses an entry beside layers that are right.
-static void impossible_matrices_give_way_to_layers(void **context) {
-    (void)context;
+TEST(impossible_matrices_give_way_to_layers) {
     static const char matrix[] =
         "{grid: [0, 1], values: [[1, 0, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, "
         "0, 0, 1], [1, 0, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 0, 1]]}";
@@ -246,8 +242,7 @@ static void impossible_matrices_give_way_to_layers(void **context) {
     done(&t);
 }
 
-static void bad_layers_are_told(void **context) {
-    (void)context;
+TEST(bad_layers_are_told) {
     const struct {
         const char *structure, *says;
     } bad[] = {
@@ -270,13 +265,4 @@ static void bad_layers_are_told(void **context) {
         }
         done(&t);
     }
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(tube_of_one_layer),      cmocka_unit_test(arcs_are_said_in_many_ways),
-        cmocka_unit_test(webs_cross_the_section), cmocka_unit_test(impossible_matrices_give_way_to_layers),
-        cmocka_unit_test(bad_layers_are_told),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -18,8 +18,7 @@ static fixture accepted(const char *text) {
     return f;
 }
 
-static void everything_follows_from_the_default(void **state) {
-    (void)state;
+TEST(everything_follows_from_the_default) {
     fixture f = accepted(BAR(""));
     const bough_scene_simulation *s = &f.scene->simulation;
     check_near(s->accuracy, 0.005, 0, 0);
@@ -35,8 +34,7 @@ static void everything_follows_from_the_default(void **state) {
     stop(&f);
 }
 
-static void everything_scales_with_the_accuracy(void **state) {
-    (void)state;
+TEST(everything_scales_with_the_accuracy) {
     fixture f = accepted(BAR(", accuracy: 0.02"));
     check_near(f.scene->simulation.master.rtol, 2e-4, 1e-12, 0);
     check_near(f.scene->simulation.micro.step, 10e-3, 1e-12, 0);
@@ -53,8 +51,7 @@ static void everything_scales_with_the_accuracy(void **state) {
 }
 
 // A key that is named holds; those beside it still follow.
-static void keys_replace_one_by_one(void **state) {
-    (void)state;
+TEST(keys_replace_one_by_one) {
     fixture f = accepted(BAR(", master: {rtol: 1e-3}"));
     assert_int_equal(f.scene->simulation.master.solver, BOUGH_AUTOMATIC);
     check_near(f.scene->simulation.master.rtol, 1e-3, 1e-12, 0);
@@ -81,8 +78,7 @@ static void keys_replace_one_by_one(void **state) {
     stop(&f);
 }
 
-static void durations_without_a_round_step_are_divided(void **state) {
-    (void)state;
+TEST(durations_without_a_round_step_are_divided) {
     fixture f = accepted("simulation: {duration: 0.777777777}\nbodies:\n" BODY("a", "ground"));
     double count = 0.777777777 / f.scene->simulation.macro_step;
     check_near(count, 100, 1e-9, 0);
@@ -98,8 +94,7 @@ static void durations_without_a_round_step_are_divided(void **state) {
     "aero: {wind: {speed: 8}, blade: aero.yaml, polars: polars.yaml, hub_radius: 3}\n"
 
 // Samples of the air lie 1.55 degrees of a tip at 80 m/s apart, in whole macro steps.
-static void the_rate_of_the_air_follows_the_radius(void **state) {
-    (void)state;
+TEST(the_rate_of_the_air_follows_the_radius) {
     static const struct {
         const char *text;
         double macro_step, rate;
@@ -188,8 +183,7 @@ static void check_errors(const char *path, const char *const *sets) {
     for (int k = 1; k < 3; k++) assert_true(error[k] < fmax(0.7 * error[k - 1], enough));
 }
 
-static void errors_of_a_bar(void **state) {
-    (void)state;
+TEST(errors_of_a_bar) {
     static const char *const sets[] = {"simulation.coupling={}",
                                        "simulation.master={}",
                                        "simulation.micro={}",
@@ -199,15 +193,13 @@ static void errors_of_a_bar(void **state) {
     check_errors("apps/beams/rubber-bar.yaml", sets);
 }
 
-static void errors_of_a_four_bar(void **state) {
-    (void)state;
+TEST(errors_of_a_four_bar) {
     static const char *const sets[] = {"simulation.master={}", "simulation.duration=0.8 s",
                                        "simulation.macro_step=40 ms", NULL}; // before the first pass
     check_errors("apps/mechanisms/four-bar.yaml", sets);
 }
 
-static void errors_of_a_turbine(void **state) {
-    (void)state;
+TEST(errors_of_a_turbine) {
     static const char *const sets[] = {
         "simulation.coupling={}",        "simulation.master={}",          "simulation.micro={}",
         "simulation.duration=4 s",       "bodies[blade1].rod.segments=6", "bodies[blade2].rod.segments=6",
@@ -215,16 +207,4 @@ static void errors_of_a_turbine(void **state) {
     check_errors("apps/turbine/runup.yaml", sets);
 }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(everything_follows_from_the_default),
-        cmocka_unit_test(everything_scales_with_the_accuracy),
-        cmocka_unit_test(keys_replace_one_by_one),
-        cmocka_unit_test(durations_without_a_round_step_are_divided),
-        cmocka_unit_test(the_rate_of_the_air_follows_the_radius),
-        cmocka_unit_test(errors_of_a_bar),
-        cmocka_unit_test(errors_of_a_four_bar),
-        cmocka_unit_test(errors_of_a_turbine),
-    };
-    return cmocka_run_group_tests(tests, enter, leave);
-}
+GROUP(enter, leave)

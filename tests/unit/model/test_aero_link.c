@@ -102,8 +102,7 @@ static void check_vec3(bough_vec3 value, bough_vec3 expected, double tolerance) 
 }
 
 // On the turbine in motion, its flexible blade bent and the rotor turned on.
-static void bodies_receive_what_the_rotor_gives(void **context) {
-    (void)context;
+TEST(bodies_receive_what_the_rotor_gives) {
     static const char *const sets[] = {"aero.hold=constant", "bodies[2].joint.angle=40 deg", NULL};
     fixture f = open_turbine(sets);
     for (int k = 0; k < 80; k++) scene_step(f.s);
@@ -139,8 +138,7 @@ static void bodies_receive_what_the_rotor_gives(void **context) {
 
 // The rotor sees the hub turn and the wind meet it under the shaft's tilt of 5°: at the root of the
 // upright blade the turning comes from the side, the wind, little disturbed, from ahead.
-static void rotor_sees_the_motion_of_the_hub(void **context) {
-    (void)context;
+TEST(rotor_sees_the_motion_of_the_hub) {
     static const char *const sets[] = {"bodies[2].joint.speed=3 rad/s", NULL};
     fixture f = open_turbine(sets);
     sample(&f, 0, period);
@@ -155,8 +153,7 @@ static void rotor_sees_the_motion_of_the_hub(void **context) {
 
 // The blades' mean velocity is the nacelle's: two opposite blades turn about their middle. RtVAvgxh and RtTSR
 // are of the wind relative to it.
-static void rotor_tells_the_wind_relative_to_the_blades(void **context) {
-    (void)context;
+TEST(rotor_tells_the_wind_relative_to_the_blades) {
     static const char *const sets[2][3] = {
         {"bodies[2].joint.speed=3 rad/s", NULL},
         {"bodies[2].joint.speed=3 rad/s",
@@ -179,8 +176,7 @@ static void rotor_tells_the_wind_relative_to_the_blades(void **context) {
 }
 
 // Mean over the stations, which the tower disturbs a little; the 12 m/s of the scene at 50 m.
-static void wind_of_the_scene_reaches_the_rotor(void **context) {
-    (void)context;
+TEST(wind_of_the_scene_reaches_the_rotor) {
     static const char *const sets[][6] = {
         {"aero.wind.direction=90 deg", "aero.wind.vertical=2 m/s", NULL},
         {"aero.wind={table: {times: [0 s, 2 s], speeds: [12, 6]}, kind: power, exponent: 0.5,"
@@ -204,8 +200,7 @@ static void wind_of_the_scene_reaches_the_rotor(void **context) {
 }
 
 // Dynamic inflow begins in equilibrium; after a sudden gust the old induction stays for a while.
-static void wind_of_a_file_reaches_the_rotor(void **context) {
-    (void)context;
+TEST(wind_of_a_file_reaches_the_rotor) {
     char path[SCRATCH_NAME], set[SCRATCH_PATH];
     int file = mkstemp(scratch_name(path));
     assert_true(file >= 0);
@@ -225,8 +220,7 @@ static void wind_of_a_file_reaches_the_rotor(void **context) {
     unlink(path);
 }
 
-static void inflow_of_the_scene_reaches_the_rotor(void **context) {
-    (void)context;
+TEST(inflow_of_the_scene_reaches_the_rotor) {
 #define GUST "aero.wind={table: {times: [0 s, 1 s, 1.02 s], speeds: [12, 12, 15]}}"
 #define SPEED "bodies[2].joint.speed=3 rad/s"
     static const char *const sets[][5] = {
@@ -270,8 +264,7 @@ static void check_share(const signal *now, const signal *whole, double value, do
 }
 
 // The motion stands still, so that loads grow with the ramp: linearly, to its end at sample 25.
-static void linear_hold_is_continuous_and_exact_for_linear_loads(void **context) {
-    (void)context;
+TEST(linear_hold_is_continuous_and_exact_for_linear_loads) {
 #define STILL "bodies[2].joint.speed=0 rad/s"
     static const char *const ramped[] = {STILL, NULL};
     static const char *const full[] = {STILL, "aero.ramp=[0 s, 0 s]", NULL};
@@ -318,8 +311,7 @@ static void whole_load(const fixture *f, double t, double load[2 * SEGMENTS]) {
 }
 
 // In motion the slopes change from sample to sample and the loads do not jump.
-static void loads_that_follow_the_motion_are_continuous(void **context) {
-    (void)context;
+TEST(loads_that_follow_the_motion_are_continuous) {
     static const char *const sets[] = {"bodies[2].joint.speed=1 rad/s", NULL};
     fixture f = open_turbine(sets);
     double before[2 * SEGMENTS], after[2 * SEGMENTS];
@@ -334,8 +326,7 @@ static void loads_that_follow_the_motion_are_continuous(void **context) {
     close_turbine(&f);
 }
 
-static void constant_hold_takes_each_sample_at_once(void **context) {
-    (void)context;
+TEST(constant_hold_takes_each_sample_at_once) {
     static const char *const sets[] = {"aero.hold=constant", NULL};
     fixture f = open_turbine(sets);
     double factor;
@@ -405,15 +396,13 @@ static void check_sampling(const char *fidelity, double most, double falls) {
     assert_true(at50 < most && at50 > falls * at100);
 }
 
-static void sampling_errs_by_the_third_order(void **context) {
-    (void)context;
+TEST(sampling_errs_by_the_third_order) {
     check_sampling("rod", 5e-4, 8);
     check_sampling("modal", 1.05e-3, 4); // whose loads do not follow the motion between samples
 }
 
 // Samples come every fourth macro step, here, and what they leave stays until the next.
-static void loads_are_sampled_at_their_rate(void **context) {
-    (void)context;
+TEST(loads_are_sampled_at_their_rate) {
     static const char *const sets[] = {"simulation.macro_step=5 ms", NULL};
     fixture f = open_turbine(sets);
     for (int k = 0; k < 20; k++) {
@@ -425,8 +414,7 @@ static void loads_are_sampled_at_their_rate(void **context) {
 }
 
 // From the saved row samples repeat to the bit, and at once the loads are those of before.
-static void samples_repeat_from_saved(void **context) {
-    (void)context;
+TEST(samples_repeat_from_saved) {
     static const char *const sets[] = {"aero.dynamic_stall=hgm", "aero.induction.inflow=oye", NULL};
     fixture f = open_turbine(sets);
     for (int k = 0; k < 4; k++) sample(&f, k * period, (k + 1) * period);
@@ -457,8 +445,7 @@ static void samples_repeat_from_saved(void **context) {
 }
 
 // At every time of a sample the results are those of that time, before the loads act.
-static void results_are_of_their_own_time(void **context) {
-    (void)context;
+TEST(results_are_of_their_own_time) {
     static const char *const sets[] = {"bodies[2].joint.speed=1 rad/s", NULL};
     fixture f = open_turbine(sets);
     double factor, before = 0;
@@ -475,8 +462,7 @@ static void results_are_of_their_own_time(void **context) {
     close_turbine(&f);
 }
 
-static void blades_want_one_mesh(void **context) {
-    (void)context;
+TEST(blades_want_one_mesh) {
     static const char *const sets[] = {"bodies[4].rod.segments=10", NULL};
     bough_arena *arena = bough_arena_create();
     bough_simulation *s = NULL;
@@ -487,24 +473,4 @@ static void blades_want_one_mesh(void **context) {
                         " aerodynamics wants the same mesh on all blades");
     assert_null(s);
     bough_arena_destroy(arena);
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(bodies_receive_what_the_rotor_gives),
-        cmocka_unit_test(rotor_sees_the_motion_of_the_hub),
-        cmocka_unit_test(rotor_tells_the_wind_relative_to_the_blades),
-        cmocka_unit_test(wind_of_the_scene_reaches_the_rotor),
-        cmocka_unit_test(wind_of_a_file_reaches_the_rotor),
-        cmocka_unit_test(inflow_of_the_scene_reaches_the_rotor),
-        cmocka_unit_test(linear_hold_is_continuous_and_exact_for_linear_loads),
-        cmocka_unit_test(loads_that_follow_the_motion_are_continuous),
-        cmocka_unit_test(constant_hold_takes_each_sample_at_once),
-        cmocka_unit_test(sampling_errs_by_the_third_order),
-        cmocka_unit_test(loads_are_sampled_at_their_rate),
-        cmocka_unit_test(samples_repeat_from_saved),
-        cmocka_unit_test(results_are_of_their_own_time),
-        cmocka_unit_test(blades_want_one_mesh),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -19,8 +19,7 @@ static void check_vec3(bough_vec3 value, bough_vec3 expected, double tolerance) 
 
 // -- parts ----------------------------------------------------------------------------------------
 
-static void scene_without_aero_samples_nothing(void **context) {
-    (void)context;
+TEST(scene_without_aero_samples_nothing) {
     bough_arena *arena = bough_arena_create();
     bough_simulation *s = scene_build(arena, arms, no_sets);
     assert_null(s->aero);
@@ -37,8 +36,7 @@ static void scene_without_aero_samples_nothing(void **context) {
     bough_arena_destroy(arena);
 }
 
-static void rods_take_ports_in_the_order_of_the_scene(void **context) {
-    (void)context;
+TEST(rods_take_ports_in_the_order_of_the_scene) {
     static const char *const names[] = {"third", "stiff", "first"};
     static const int ports[] = {0, -1, 1}, bodies[] = {0, 2, 3};
     bough_arena *arena = bough_arena_create();
@@ -62,8 +60,7 @@ static void rods_take_ports_in_the_order_of_the_scene(void **context) {
 }
 
 // Each rod is moved by its own root and its wrench returns there.
-static void rods_are_connected_to_their_roots(void **context) {
-    (void)context;
+TEST(rods_are_connected_to_their_roots) {
     bough_arena *arena = bough_arena_create();
     bough_simulation *s = scene_build(arena, arms, no_sets);
     const bough_assembly *a = s->master->assembly;
@@ -86,8 +83,7 @@ static void rods_are_connected_to_their_roots(void **context) {
     bough_arena_destroy(arena);
 }
 
-static void rigid_blades_leave_the_tree_alone(void **context) {
-    (void)context;
+TEST(rigid_blades_leave_the_tree_alone) {
     static const char *const sets[] = {"bodies[3].fidelity=rigid", "bodies[4].fidelity=rigid",
                                        "bodies[5].fidelity=rigid", NULL};
     bough_arena *arena = bough_arena_create();
@@ -106,8 +102,7 @@ static void rigid_blades_leave_the_tree_alone(void **context) {
 }
 
 // Half a second of the run-up: the rotor turns as with rods, the tips bend as theirs.
-static void modal_blades_move_as_rods(void **context) {
-    (void)context;
+TEST(modal_blades_move_as_rods) {
     static const char *const sets[3][4] = {
         {"bodies[3].fidelity=rod", "bodies[4].fidelity=rod", "bodies[5].fidelity=rod", NULL},
         {"bodies[3].fidelity=modal", "bodies[4].fidelity=modal", "bodies[5].fidelity=modal", NULL},
@@ -142,8 +137,7 @@ static bough_transform pose_of(const bough_simulation *s, const char *body) {
 static const char carrying[] = "tests/data/scenes/carrying.yaml";
 
 // From the undeformed end, in the axes of the rod's body whatever the section's twist.
-static void bodies_hang_on_the_end_of_a_rod_bent_or_rigid(void **context) {
-    (void)context;
+TEST(bodies_hang_on_the_end_of_a_rod_bent_or_rigid) {
     static const char *const fidelity[] = {"bodies[0].fidelity=rod", "bodies[0].fidelity=rigid"};
     for (int k = 0; k < 2; k++) {
         const char *const sets[] = {fidelity[k], NULL};
@@ -160,8 +154,7 @@ static void bodies_hang_on_the_end_of_a_rod_bent_or_rigid(void **context) {
     }
 }
 
-static void end_of_a_rod_is_connected_to_its_body(void **context) {
-    (void)context;
+TEST(end_of_a_rod_is_connected_to_its_body) {
     bough_arena *arena = bough_arena_create();
     bough_simulation *s = scene_build(arena, carrying, no_sets);
     const bough_assembly *a = s->master->assembly;
@@ -188,8 +181,7 @@ static bough_twist velocity_of(const bough_simulation *s, const char *body) {
 }
 
 // The hub stands at 90°: what points along z at 0 points along −y.
-static void bodies_start_where_the_scene_puts_them(void **context) {
-    (void)context;
+TEST(bodies_start_where_the_scene_puts_them) {
     bough_arena *arena = bough_arena_create();
     bough_simulation *s = scene_build(arena, arms, no_sets);
     double half = sqrt(3) / 2;
@@ -209,8 +201,7 @@ static void bodies_start_where_the_scene_puts_them(void **context) {
 }
 
 // Vertices of beams, flexible or rigid, lie along their arm and turn with the hub.
-static void beams_move_with_the_hub_at_first(void **context) {
-    (void)context;
+TEST(beams_move_with_the_hub_at_first) {
     static const char *const names[] = {"third", "stiff", "first"};
     bough_vec3 position[5], velocity[5], angular[5], omega = {2, 0, 0}, hub = {0, 0, 10};
     bough_mat3 rotation[5];
@@ -232,8 +223,7 @@ static void beams_move_with_the_hub_at_first(void **context) {
     bough_arena_destroy(arena);
 }
 
-static void a_body_may_have_its_own_sub_solver(void **context) {
-    (void)context;
+TEST(a_body_may_have_its_own_sub_solver) {
     static const char *const sets[] = {"bodies[0].micro.solver=arkode-esdirk",
                                        "simulation.micro.solver=generalized-alpha", NULL};
     bough_arena *arena = bough_arena_create();
@@ -247,8 +237,7 @@ static void a_body_may_have_its_own_sub_solver(void **context) {
     bough_arena_destroy(arena);
 }
 
-static void joint_loads_act_and_their_corners_are_events(void **context) {
-    (void)context;
+TEST(joint_loads_act_and_their_corners_are_events) {
     bough_arena *arena = bough_arena_create();
     bough_simulation *s = scene_build(arena, arms, no_sets);
     assert_int_equal(s->master->n_event, 2);
@@ -311,8 +300,7 @@ static void check_inertia(bough_inertia value, bough_inertia expected, double to
     check_vec3(value.rotational.c3, expected.rotational.c3, size);
 }
 
-static void rigid_blades_have_the_inertia_of_their_table(void **context) {
-    (void)context;
+TEST(rigid_blades_have_the_inertia_of_their_table) {
     static const char *const sets[] = {"bodies[3].fidelity=rigid",
                                        "bodies[4].fidelity=rigid",
                                        "bodies[5].fidelity=rigid",
@@ -335,8 +323,7 @@ static void rigid_blades_have_the_inertia_of_their_table(void **context) {
 }
 
 // Arms of a uniform section, one with its mass beside the axis, in the hub's axes.
-static void rigid_arms_have_their_mass_where_the_section_says(void **context) {
-    (void)context;
+TEST(rigid_arms_have_their_mass_where_the_section_says) {
     static const char *const sets[] = {"bodies[0].fidelity=rigid", "bodies[3].fidelity=rigid", NULL};
     static const double angle[] = {4 * BOUGH_PI / 3, 2 * BOUGH_PI / 3, 0}, radius[] = {3, 2, 1};
     bough_arena *arena = bough_arena_create();
@@ -373,8 +360,7 @@ static bough_inertia moving_inertia(const bough_simulation *s, const bough_beam 
 }
 
 // Of a flexible blade, here a twisted one, the tree carries the root vertex, the rod all others.
-static void flexible_blade_shares_its_inertia_with_the_tree(void **context) {
-    (void)context;
+TEST(flexible_blade_shares_its_inertia_with_the_tree) {
     static const char turbine[] = "tests/data/scenes/example-turbine.yaml";
     static const char *const sets[] = {"bodies[3].fidelity=rigid", NULL};
     bough_arena *arena = bough_arena_create();
@@ -429,58 +415,14 @@ static void threads_do_not_change_a_bit(const char *scheme) {
     }
 }
 
-static void frozen_on_many_threads(void **context) {
-    (void)context;
-    threads_do_not_change_a_bit("frozen");
-}
+TEST(frozen_on_many_threads) { threads_do_not_change_a_bit("frozen"); }
 
-static void gauss_seidel_on_many_threads(void **context) {
-    (void)context;
-    threads_do_not_change_a_bit("gauss-seidel");
-}
+TEST(gauss_seidel_on_many_threads) { threads_do_not_change_a_bit("gauss-seidel"); }
 
-static void extrapolated_on_many_threads(void **context) {
-    (void)context;
-    threads_do_not_change_a_bit("extrapolated");
-}
+TEST(extrapolated_on_many_threads) { threads_do_not_change_a_bit("extrapolated"); }
 
-static void iterated_on_many_threads(void **context) {
-    (void)context;
-    threads_do_not_change_a_bit("iterated");
-}
+TEST(iterated_on_many_threads) { threads_do_not_change_a_bit("iterated"); }
 
-static void ramp_on_many_threads(void **context) {
-    (void)context;
-    threads_do_not_change_a_bit("ramp");
-}
+TEST(ramp_on_many_threads) { threads_do_not_change_a_bit("ramp"); }
 
-static void monolithic_on_many_threads(void **context) {
-    (void)context;
-    threads_do_not_change_a_bit("monolithic");
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(scene_without_aero_samples_nothing),
-        cmocka_unit_test(rods_take_ports_in_the_order_of_the_scene),
-        cmocka_unit_test(rods_are_connected_to_their_roots),
-        cmocka_unit_test(rigid_blades_leave_the_tree_alone),
-        cmocka_unit_test(modal_blades_move_as_rods),
-        cmocka_unit_test(bodies_hang_on_the_end_of_a_rod_bent_or_rigid),
-        cmocka_unit_test(end_of_a_rod_is_connected_to_its_body),
-        cmocka_unit_test(bodies_start_where_the_scene_puts_them),
-        cmocka_unit_test(beams_move_with_the_hub_at_first),
-        cmocka_unit_test(a_body_may_have_its_own_sub_solver),
-        cmocka_unit_test(joint_loads_act_and_their_corners_are_events),
-        cmocka_unit_test(rigid_blades_have_the_inertia_of_their_table),
-        cmocka_unit_test(rigid_arms_have_their_mass_where_the_section_says),
-        cmocka_unit_test(flexible_blade_shares_its_inertia_with_the_tree),
-        cmocka_unit_test(frozen_on_many_threads),
-        cmocka_unit_test(gauss_seidel_on_many_threads),
-        cmocka_unit_test(extrapolated_on_many_threads),
-        cmocka_unit_test(iterated_on_many_threads),
-        cmocka_unit_test(ramp_on_many_threads),
-        cmocka_unit_test(monolithic_on_many_threads),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+TEST(monolithic_on_many_threads) { threads_do_not_change_a_bit("monolithic"); }

@@ -38,8 +38,7 @@ static void flexibility(double f[2][2]) {
     f[1][1] = length / bending;
 }
 
-static void weight_bends_a_cantilever_as_beam_theory_says(void **context) {
-    (void)context;
+TEST(weight_bends_a_cantilever_as_beam_theory_says) {
     double f[2][2], weight = 9.8 * mass, own = 9.8 * 1e-4;
     flexibility(f);
     bough_arena *arena = bough_arena_create();
@@ -75,8 +74,7 @@ static double frequency(bough_simulation *s, int axis, double from) {
 }
 
 // The lower root of det(K − ω²M), M about the end.
-static void weight_swings_on_a_cantilever_as_beam_theory_says(void **context) {
-    (void)context;
+TEST(weight_swings_on_a_cantilever_as_beam_theory_says) {
     double f[2][2];
     flexibility(f);
     double m00 = mass + 33.0 / 140 * 1e-4 * length, m01 = mass * arm;
@@ -94,8 +92,7 @@ static void weight_swings_on_a_cantilever_as_beam_theory_says(void **context) {
 // -- equivalence and conservation -----------------------------------------------------------------
 
 // A wire along z holds the end of a beam by a body without mass: of two springs in a row the force.
-static void spring_takes_hold_of_a_rod(void **context) {
-    (void)context;
+TEST(spring_takes_hold_of_a_rod) {
     const double wire = 1000, slack = 1e-3, own = 9.8 * 1e-4;
     double f[2][2];
     flexibility(f);
@@ -113,8 +110,7 @@ static void spring_takes_hold_of_a_rod(void **context) {
     bough_arena_destroy(arena);
 }
 
-static void rod_that_carries_nothing_heavy_moves_as_a_free_one(void **context) {
-    (void)context;
+TEST(rod_that_carries_nothing_heavy_moves_as_a_free_one) {
 #define SAME                                                                                                 \
     "bodies[1].mass=0", "gravity=[9, -5, 0]", "simulation.duration=0.3 s",                                   \
         "simulation.coupling.scheme=monolithic", "simulation.master.rtol=1e-8"
@@ -136,8 +132,7 @@ static bough_transform pose_of(const bough_simulation *s, int body) {
 }
 
 // Rods in a row, cut between stations, move what they carry as the whole rod on the same mesh does.
-static void rods_in_a_row_are_the_whole(void **context) {
-    (void)context;
+TEST(rods_in_a_row_are_the_whole) {
     static const char path[] = "tests/data/scenes/tower-in-parts.yaml";
     static const char *const whole[] = {"bodies[0].rod.part=[0, 87.6]", "bodies[0].rod.segments=20",
                                         "bodies[1].joint.parent=ground", "bodies[2].joint.parent=lower",
@@ -159,8 +154,7 @@ static void rods_in_a_row_are_the_whole(void **context) {
     bough_arena_destroy(arena);
 }
 
-static void weight_at_an_inner_vertex_bends_the_beam_as_theory_says(void **context) {
-    (void)context;
+TEST(weight_at_an_inner_vertex_bends_the_beam_as_theory_says) {
     const double from = 0.8, weight = 9.8 * mass, own = 9.8 * 1e-4;
     bough_arena *arena = bough_arena_create();
     bough_simulation *s = scene_build(arena, "tests/data/scenes/mid-weight.yaml", no_sets);
@@ -211,8 +205,7 @@ static invariants measure(const bough_simulation *s, bough_rod_scratch *scratch)
     return sum;
 }
 
-static void tumbling_rod_with_an_arm_conserves_momentum_and_energy(void **context) {
-    (void)context;
+TEST(tumbling_rod_with_an_arm_conserves_momentum_and_energy) {
     bough_arena *arena = bough_arena_create();
     bough_simulation *s = scene_build(arena, "tests/data/scenes/tumbling.yaml", no_sets);
     bough_rod_scratch scratch;
@@ -255,8 +248,7 @@ static double distance(const double a[4], const double b[4]) {
     return sqrt(sum);
 }
 
-static void every_scheme_comes_to_the_monolithic_motion(void **context) {
-    (void)context;
+TEST(every_scheme_comes_to_the_monolithic_motion) {
     static const struct {
         const char *scheme;
         double error;
@@ -275,8 +267,7 @@ static void every_scheme_comes_to_the_monolithic_motion(void **context) {
     }
 }
 
-static void ramp_is_of_second_order_on_a_mast(void **context) {
-    (void)context;
+TEST(ramp_is_of_second_order_on_a_mast) {
     double exact[4], coarse[4], fine[4];
     end_of_run("simulation.coupling.scheme=monolithic", "simulation.macro_step=5 ms", exact);
     end_of_run("simulation.coupling.scheme=ramp", "simulation.macro_step=10 ms", coarse);
@@ -290,8 +281,7 @@ static void ramp_is_of_second_order_on_a_mast(void **context) {
 
 // An independent code's first frequencies, MSC.ADAMS: fore-aft 0.3195, side to side 0.3164 Hz.
 // Reference: NREL/TP-500-38060, table 9-1.
-static void parked_turbine_swings_as_published(void **context) {
-    (void)context;
+TEST(parked_turbine_swings_as_published) {
     static const double published[] = {0.3195, 0.3164};
     for (int axis = 0; axis < 2; axis++) {
         bough_arena *arena = bough_arena_create();
@@ -303,8 +293,7 @@ static void parked_turbine_swings_as_published(void **context) {
 
 // Two shapes of the tapered tower, bent by a force and by a moment at its top, by Ritz: 0.3233 and
 // 0.3211 Hz of the same bodies, rigid, without gravity and shear; shear takes 0.4 %.
-static void tower_with_rigid_blades_swings_as_by_ritz(void **context) {
-    (void)context;
+TEST(tower_with_rigid_blades_swings_as_by_ritz) {
     static const char *const sets[] = {"gravity=[0, 0, 0]", "bodies[3].fidelity=rigid",
                                        "bodies[4].fidelity=rigid", "bodies[5].fidelity=rigid", NULL};
     static const double ritz[] = {0.3233 * 0.996, 0.3211 * 0.996};
@@ -318,8 +307,7 @@ static void tower_with_rigid_blades_swings_as_by_ritz(void **context) {
 
 // Gravity falls upon an undeformed tower: 20 ms are coarse for its first axial swings, in which the
 // interface makes more than a hundredth of what it has exchanged by then, but for nothing after.
-static void jolt_at_the_start_does_not_end_a_run(void **context) {
-    (void)context;
+TEST(jolt_at_the_start_does_not_end_a_run) {
     static const char *const sets[] = {"simulation.initial=undeformed", "simulation.duration=3 s",
                                        "bodies[3].fidelity=rigid",      "bodies[4].fidelity=rigid",
                                        "bodies[5].fidelity=rigid",      NULL};
@@ -331,8 +319,7 @@ static void jolt_at_the_start_does_not_end_a_run(void **context) {
     bough_arena_destroy(arena);
 }
 
-static void threads_do_not_change_a_bit(void **context) {
-    (void)context;
+TEST(threads_do_not_change_a_bit) {
     static const char *const threads[] = {"simulation.threads=1", "simulation.threads=2"};
     bough_simulation *s[2];
     bough_arena *arena = bough_arena_create();
@@ -347,23 +334,4 @@ static void threads_do_not_change_a_bit(void **context) {
         assert_memory_equal(a->state, b->state, (size_t)a->system.n_state * sizeof(double));
     }
     bough_arena_destroy(arena);
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(weight_bends_a_cantilever_as_beam_theory_says),
-        cmocka_unit_test(weight_swings_on_a_cantilever_as_beam_theory_says),
-        cmocka_unit_test(spring_takes_hold_of_a_rod),
-        cmocka_unit_test(rod_that_carries_nothing_heavy_moves_as_a_free_one),
-        cmocka_unit_test(rods_in_a_row_are_the_whole),
-        cmocka_unit_test(weight_at_an_inner_vertex_bends_the_beam_as_theory_says),
-        cmocka_unit_test(tumbling_rod_with_an_arm_conserves_momentum_and_energy),
-        cmocka_unit_test(every_scheme_comes_to_the_monolithic_motion),
-        cmocka_unit_test(ramp_is_of_second_order_on_a_mast),
-        cmocka_unit_test(parked_turbine_swings_as_published),
-        cmocka_unit_test(tower_with_rigid_blades_swings_as_by_ritz),
-        cmocka_unit_test(jolt_at_the_start_does_not_end_a_run),
-        cmocka_unit_test(threads_do_not_change_a_bit),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

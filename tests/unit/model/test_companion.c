@@ -53,8 +53,7 @@ static double true_error(const outcome *o, const outcome *truth, int channel, in
 }
 
 // The whole error of motion, by mesh, air, steps and coupling, for two schemes.
-static void the_whole_error_is_told(void **state) {
-    (void)state;
+TEST(the_whole_error_is_told) {
     const char *const truth_sets[] = {"simulation.duration=2 s",
                                       "simulation.coupling={scheme: monolithic}",
                                       "simulation.master={solver: rosenbrock, step: 5 ms, rtol: 1e-6}",
@@ -88,8 +87,7 @@ static void the_whole_error_is_told(void **state) {
 }
 
 // Estimating changes no bit of the run.
-static void a_companion_changes_nothing(void **state) {
-    (void)state;
+TEST(a_companion_changes_nothing) {
     const char *const with[] = {"simulation.duration=1 s", NULL};
     const char *const without[] = {"simulation.duration=1 s", "simulation.error_estimate=none", NULL};
     outcome *a = run_for(example, 50, with), *b = run_for(example, 50, without);
@@ -102,8 +100,7 @@ static void a_companion_changes_nothing(void **state) {
 }
 
 // Every channel has an error, forces, air and control too.
-static void every_channel_has_an_error(void **state) {
-    (void)state;
+TEST(every_channel_has_an_error) {
     const char *const sets[] = {"simulation.duration=1 s", NULL};
     outcome *o = run_for("apps/turbine/power.yaml", 50, sets);
     for (int i = 0; i < o->n; i++) {
@@ -116,8 +113,7 @@ static void every_channel_has_an_error(void **state) {
     "control={kind: bladed, rate: 50, gear_ratio: 97, input: memory, library: " BOUGH_SAMPLE_DISCON "}"
 
 // A library has a memory, and the companion one of its own: the run's values are those without it.
-static void a_library_is_copied(void **state) {
-    (void)state;
+TEST(a_library_is_copied) {
     const char *const with[] = {"simulation.duration=1 s", LIBRARY, NULL};
     const char *const without[] = {"simulation.duration=1 s", LIBRARY, "simulation.error_estimate=none",
                                    NULL};
@@ -131,8 +127,7 @@ static void a_library_is_copied(void **state) {
 
 // -- the coarser scene ----------------------------------------------------------------------------
 
-static void a_scene_is_coarser_in_everything(void **state) {
-    (void)state;
+TEST(a_scene_is_coarser_in_everything) {
     bough_arena *arena = bough_arena_create();
     const char *const sets[] = {NULL};
     bough_scene *scene = scene_read(arena, "apps/turbine/runup-stages.yaml", sets);
@@ -155,8 +150,7 @@ static void a_scene_is_coarser_in_everything(void **state) {
 
 // Rods of few segments get more, all blades as many, and the part of the difference follows; it is the whole
 // one where a coupling is explicit.
-static void meshes_differ_as_far_as_they_can(void **state) {
-    (void)state;
+TEST(meshes_differ_as_far_as_they_can) {
     static const struct {
         const char *segments, *coupling;
         int other;
@@ -180,8 +174,7 @@ static void meshes_differ_as_far_as_they_can(void **state) {
 
 // Another scheme than one system leaves the companion no error of a coupling, but the sub-solvers' steps,
 // twice as long.
-static void a_coupling_has_a_monolithic_companion(void **state) {
-    (void)state;
+TEST(a_coupling_has_a_monolithic_companion) {
     bough_arena *arena = bough_arena_create();
     const char *const sets[] = {NULL};
     bough_scene *scene = scene_read(arena, "apps/turbine/runup.yaml", sets);
@@ -217,8 +210,7 @@ static int worst_of(int n, const row *rows) {
 }
 
 // A twist of rounding or of next to nothing is not judged by itself, beside blades that bend.
-static void what_hardly_moves_does_not_count(void **state) {
-    (void)state;
+TEST(what_hardly_moves_does_not_count) {
     assert_int_equal(worst_of(2, (row[]){{"TipDxb1", "m", 4, .01}, {"TwstDefl1", "deg", 4e-16, 3e-16}}), 0);
     assert_int_equal(
         worst_of(
@@ -230,18 +222,4 @@ static void what_hardly_moves_does_not_count(void **state) {
                      -1);
     assert_int_equal(worst_of(2, (row[]){{"one", "m", 1, .01}, {"other", "m", 2e-3, 1e-3}}), 1);
     assert_int_equal(worst_of(2, (row[]){{"one", "m", 1, .01}, {"other", "m", 5e-4, 4e-4}}), 0);
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(the_whole_error_is_told),
-        cmocka_unit_test(a_companion_changes_nothing),
-        cmocka_unit_test(every_channel_has_an_error),
-        cmocka_unit_test(a_library_is_copied),
-        cmocka_unit_test(a_scene_is_coarser_in_everything),
-        cmocka_unit_test(meshes_differ_as_far_as_they_can),
-        cmocka_unit_test(a_coupling_has_a_monolithic_companion),
-        cmocka_unit_test(what_hardly_moves_does_not_count),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -41,8 +41,7 @@ static double channel(fixture *f, const char *name) {
 
 // Above rated wind the law settles where a rigid rotor gives rated power at rated speed: a pitch of
 // 10.45° gives 2 % less than it.
-static void law_holds_speed_and_power(void **state) {
-    (void)state;
+TEST(law_holds_speed_and_power) {
     static const char *const sets[] = {RIGID,
                                        "aero.wind.speed=15 m/s",
                                        "bodies[3].pitch=8 deg",
@@ -62,8 +61,7 @@ static void law_holds_speed_and_power(void **state) {
 
 // Blades that nobody pitches and that stand beyond power_pitch: from standstill in a light wind the generator
 // has no torque below cut-in, and at 9 rpm that of the best tip-speed ratio.
-static void law_brakes_unsteered_blades_only(void **state) {
-    (void)state;
+TEST(law_brakes_unsteered_blades_only) {
     static const char *const sets[] = {RIGID,
                                        "aero.wind.speed=6 m/s",
                                        "control.pitch=false",
@@ -95,8 +93,7 @@ static void law_brakes_unsteered_blades_only(void **state) {
 
 // The library asks for a pitch of 0.1 + 0.001 t and 100 N m s of torque; both come a sample late,
 // the pitch first at 8°/s.
-static void library_steers_the_turbine(void **state) {
-    (void)state;
+TEST(library_steers_the_turbine) {
     static const char *const sets[] = {RIGID, BLADED, NULL};
     fixture f = open_turbine(sets);
     check_near(channel(&f, "GenSpeed"), 97 * 9.16, 1e-9, 0); // before any sample
@@ -112,8 +109,7 @@ static void library_steers_the_turbine(void **state) {
 }
 
 // Collective pitch reaches every blade, also beyond those that the interface has records for.
-static void library_steers_all_blades(void **state) {
-    (void)state;
+TEST(library_steers_all_blades) {
     static const char *const sets[] = {
         RIGID,
         BLADED,
@@ -130,8 +126,7 @@ static void library_steers_all_blades(void **state) {
 }
 
 // A turbine that looks along x in a wind of 10° across; a tower that bends moves its nacelle.
-static void library_is_told_of_the_nacelle(void **state) {
-    (void)state;
+TEST(library_is_told_of_the_nacelle) {
     static const char *const sets[] = {RIGID, BLADED, "aero.wind.direction=10 deg", NULL};
     static const char *const record[] = {"record 24", "record 37", "record 53", "record 70"};
     for (int i = 0; i < 4; i++) {
@@ -153,8 +148,7 @@ static void library_is_told_of_the_nacelle(void **state) {
     }
 }
 
-static void library_may_pitch_each_blade(void **state) {
-    (void)state;
+TEST(library_may_pitch_each_blade) {
     static const char *const sets[] = {RIGID, BLADED, "control.law={pitch_rate: 1 rad/s}", NULL};
     bough_arena *arena = bough_arena_create();
     bough_scene *scene = scene_read(arena, turbine, sets);
@@ -171,8 +165,7 @@ static void library_may_pitch_each_blade(void **state) {
 }
 
 // What the library reports ends the run with its message.
-static void failing_library_ends_the_run(void **state) {
-    (void)state;
+TEST(failing_library_ends_the_run) {
     static const char *const sets[] = {RIGID, BLADED, NULL};
     bough_arena *arena = bough_arena_create();
     bough_scene *scene = scene_read(arena, turbine, sets);
@@ -187,8 +180,7 @@ static void failing_library_ends_the_run(void **state) {
 }
 
 // A sample taken again from the saved memory steers as before.
-static void memory_is_saved_and_restored(void **state) {
-    (void)state;
+TEST(memory_is_saved_and_restored) {
     static const char *const sets[] = {RIGID, "aero.wind.speed=15 m/s", NULL};
     fixture f = open_turbine(sets);
     run_until(&f, 3);
@@ -214,8 +206,7 @@ static void memory_is_saved_and_restored(void **state) {
     bough_arena_destroy(f.arena);
 }
 
-static void bad_scenes_are_refused(void **state) {
-    (void)state;
+TEST(bad_scenes_are_refused) {
     static const char *const bad[][2] = {
         {"bodies[4].joint={kind: fixed, parent: hub}", "all or none"},
         {"bodies[3].joint.axis=x", "turn about z"},
@@ -238,15 +229,4 @@ static void bad_scenes_are_refused(void **state) {
         assert_non_null(strstr(told, bad[i][1]));
         bough_arena_destroy(arena);
     }
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(law_holds_speed_and_power),      cmocka_unit_test(law_brakes_unsteered_blades_only),
-        cmocka_unit_test(library_steers_the_turbine),     cmocka_unit_test(library_steers_all_blades),
-        cmocka_unit_test(library_is_told_of_the_nacelle), cmocka_unit_test(library_may_pitch_each_blade),
-        cmocka_unit_test(failing_library_ends_the_run),   cmocka_unit_test(memory_is_saved_and_restored),
-        cmocka_unit_test(bad_scenes_are_refused),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

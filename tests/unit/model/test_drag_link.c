@@ -36,8 +36,7 @@ static bough_simulation *sampled(bough_arena *arena, const char *const *sets, do
 static bough_wrench on(const bough_simulation *s, int marker) { return s->tree->external[marker].value; }
 
 // At rest: the sum over the vertices.
-static void tower_drag_is_the_integral(void **state) {
-    (void)state;
+TEST(tower_drag_is_the_integral) {
     static const char *const flexible[] = {FEW, DRAG, NULL};
     bough_arena *arena = bough_arena_create();
     bough_simulation *s = sampled(arena, flexible, 0);
@@ -55,8 +54,7 @@ static void tower_drag_is_the_integral(void **state) {
 }
 
 // On the rotor, in its axes.
-static void hub_drag_blows_downwind(void **state) {
-    (void)state;
+TEST(hub_drag_blows_downwind) {
     static const char *const sets[] = {FEW, "aero.ramp=[0 s, 0 s]", "aero.hub_drag_area=7", NULL};
     bough_arena *arena = bough_arena_create();
     bough_simulation *s = sampled(arena, sets, 0);
@@ -71,8 +69,7 @@ static void hub_drag_blows_downwind(void **state) {
 }
 
 // The run goes on with drag, and samples repeat from the saved row.
-static void drag_runs_and_repeats(void **state) {
-    (void)state;
+TEST(drag_runs_and_repeats) {
     static const char *const sets[] = {FEW, DRAG, "aero.hub_drag_area=7", NULL};
     bough_arena *arena = bough_arena_create();
     bough_simulation *s = scene_build(arena, turbine, sets);
@@ -99,8 +96,7 @@ static void drag_runs_and_repeats(void **state) {
 }
 
 // Held for an equilibrium the drag is constant, and the run's first sample begins anew.
-static void held_drag_is_constant(void **state) {
-    (void)state;
+TEST(held_drag_is_constant) {
     static const char *const sets[] = {FEW, DRAG, NULL};
     bough_arena *arena = bough_arena_create();
     bough_simulation *s = sampled(arena, sets, 0);
@@ -119,8 +115,7 @@ static void held_drag_is_constant(void **state) {
     bough_arena_destroy(arena);
 }
 
-static void bad_bodies_are_refused(void **state) {
-    (void)state;
+TEST(bad_bodies_are_refused) {
     static const char *const bad[][2] = {{"aero.tower.body=nacelle", "must have a rod"},
                                          {"aero.tower.body=blade1", "must have a rod"},
                                          {"aero.tower.body=towr", "tower"}};
@@ -134,13 +129,4 @@ static void bad_bodies_are_refused(void **state) {
         assert_non_null(strstr(errors.item[0].text, bad[i][1]));
         bough_arena_destroy(arena);
     }
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(tower_drag_is_the_integral), cmocka_unit_test(hub_drag_blows_downwind),
-        cmocka_unit_test(drag_runs_and_repeats),      cmocka_unit_test(held_drag_is_constant),
-        cmocka_unit_test(bad_bodies_are_refused),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

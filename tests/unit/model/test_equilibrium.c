@@ -27,8 +27,7 @@ static bough_equilibrium_report find(setup *s, bough_equilibrium_def def, bough_
     return report;
 }
 
-static void coupled_masses_come_to_rest(void **state) {
-    (void)state;
+TEST(coupled_masses_come_to_rest) {
     setup s;
     build(&s);
     find(&s, bough_equilibrium_def_default(), BOUGH_OK);
@@ -37,8 +36,7 @@ static void coupled_masses_come_to_rest(void **state) {
 }
 
 // The first mass held at 0.3: springs of 10 and 20 share it at the second.
-static void held_states_stay(void **state) {
-    (void)state;
+TEST(held_states_stay) {
     const int held[2] = {0, 1};
     setup s;
     build(&s);
@@ -52,8 +50,7 @@ static void held_states_stay(void **state) {
     bough_two_mass_destroy(&s.m);
 }
 
-static void too_few_steps_are_told(void **state) {
-    (void)state;
+TEST(too_few_steps_are_told) {
     setup s;
     build(&s);
     bough_equilibrium_def def = bough_equilibrium_def_default();
@@ -62,13 +59,4 @@ static void too_few_steps_are_told(void **state) {
     assert_int_equal(report.steps, 2);
     assert_true(report.change > 0);
     bough_two_mass_destroy(&s.m);
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(coupled_masses_come_to_rest),
-        cmocka_unit_test(held_states_stay),
-        cmocka_unit_test(too_few_steps_are_told),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -44,8 +44,7 @@ static double channel(fixture *f, const char *name) {
 }
 
 // At 8 deg/s from the sample after 1 s on, at once without torque.
-static void emergency_stop_feathers_without_torque(void **state) {
-    (void)state;
+TEST(emergency_stop_feathers_without_torque) {
     fixture f = open_run("control.events=[{kind: emergency-stop, at: 1 s}]", NULL);
     go_to(&f, 1);
     assert_true(channel(&f, "GenTq") > 10);
@@ -63,8 +62,7 @@ static void emergency_stop_feathers_without_torque(void **state) {
     bough_arena_destroy(f.arena);
 }
 
-static void stop_takes_the_torque_away_in_ten_seconds(void **state) {
-    (void)state;
+TEST(stop_takes_the_torque_away_in_ten_seconds) {
     fixture f = open_run("control.events=[{kind: stop, at: 1 s, angle: 80 deg, rate: 5 deg/s}]", NULL);
     go_to(&f, 1);
     double torque = channel(&f, "GenTq");
@@ -79,8 +77,7 @@ static void stop_takes_the_torque_away_in_ten_seconds(void **state) {
 
 // A brake on the rotor's joint stops it within those ten seconds and would turn it back: a sample after it
 // stands there is no torque.
-static void stop_does_not_drive_a_rotor_that_stands(void **state) {
-    (void)state;
+TEST(stop_does_not_drive_a_rotor_that_stands) {
     fixture f = open_run("control.events=[{kind: stop, at: 1 s}]",
                          "loads=[{joint: hub, torque: -12 MN m, ramp: [1 s, 1 s]}]");
     double least = 0;
@@ -94,8 +91,7 @@ static void stop_does_not_drive_a_rotor_that_stands(void **state) {
     bough_arena_destroy(f.arena);
 }
 
-static void a_stuck_blade_stays_while_the_others_feather(void **state) {
-    (void)state;
+TEST(a_stuck_blade_stays_while_the_others_feather) {
     fixture f = open_run("control.events=[{kind: emergency-stop, at: 2 s}, "
                          "{kind: pitch-stuck, blade: 2, at: 1 s}, "
                          "{kind: pitch-runaway, blade: 3, at: 4 s, angle: -5 deg, rate: 4 deg/s}]",
@@ -116,8 +112,7 @@ static void a_stuck_blade_stays_while_the_others_feather(void **state) {
 
 // A step at the law's rate, then a ramp; the law sets the torque. A stop prevails over both, wherever it
 // stands.
-static void the_pitch_goes_to_given_angles(void **state) {
-    (void)state;
+TEST(the_pitch_goes_to_given_angles) {
     fixture f =
         open_run("control.events=[{kind: emergency-stop, at: 12 s}, {kind: pitch-to, at: 2 s, angle: 4 deg}, "
                  "{kind: pitch-to, at: 6 s, angle: -1 deg, rate: 2 deg/s}]",
@@ -143,8 +138,7 @@ static void the_pitch_goes_to_given_angles(void **state) {
 }
 
 // The rotor speeds up until a threshold takes the load away, then until another stops it.
-static void thresholds_trigger(void **state) {
-    (void)state;
+TEST(thresholds_trigger) {
     fixture f = open_run("control.events=[{kind: grid-loss, channel: RotSpeed, above: 9.5}, "
                          "{kind: emergency-stop, channel: RotSpeed, above: 11, at: 1 s}]",
                          "aero.wind.speed=11");
@@ -163,8 +157,7 @@ static void thresholds_trigger(void **state) {
     bough_arena_destroy(f.arena);
 }
 
-static void before_its_start_the_turbine_idles(void **state) {
-    (void)state;
+TEST(before_its_start_the_turbine_idles) {
     fixture f =
         open_run("control.events=[{kind: start, at: 2 s}]", "bodies[3-5].joint.motion={angle: -90 deg}");
     go_to(&f, 2);
@@ -182,8 +175,7 @@ static void before_its_start_the_turbine_idles(void **state) {
     bough_arena_destroy(f.arena);
 }
 
-static void a_yaw_drive_turns_the_nacelle(void **state) {
-    (void)state;
+TEST(a_yaw_drive_turns_the_nacelle) {
     fixture f = open_run("control.events=[{kind: yaw-runaway, body: nacelle, at: 1 s, angle: 3 deg, "
                          "rate: 1 deg/s}]",
                          "bodies[1].joint={kind: revolute, parent: tower, axis: z, motion: {angle: 0 deg}, "
@@ -198,8 +190,7 @@ static void a_yaw_drive_turns_the_nacelle(void **state) {
 }
 
 // A copy taken before an event goes on through it to the same bits.
-static void events_are_in_the_copy(void **state) {
-    (void)state;
+TEST(events_are_in_the_copy) {
     fixture f =
         open_run("control.events=[{kind: pitch-stuck, blade: 1, at: 0.5 s}, {kind: stop, at: 1 s}]", NULL);
     go_to(&f, 0.8);
@@ -238,8 +229,7 @@ static void refused(const char *set, const char *message) {
     bough_arena_destroy(arena);
 }
 
-static void senseless_events_are_refused(void **state) {
-    (void)state;
+TEST(senseless_events_are_refused) {
     refused("control.events=[{kind: stop}]", "time of the event");
     refused("control.events=[{kind: stop, channel: RotSpeed}]", "needs one of");
     refused("control.events=[{kind: stop, at: 1, above: 3}]", "needs its 'channel'");
@@ -250,20 +240,4 @@ static void senseless_events_are_refused(void **state) {
     refused("control={kind: variable-speed, pitch: false, events: [{kind: stop, at: 1 s}]}",
             "control.pitch: true");
     refused("control.events=[{kind: yaw-runaway, at: 1 s, body: nacelle}]", "has no 'motion'");
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(emergency_stop_feathers_without_torque),
-        cmocka_unit_test(stop_takes_the_torque_away_in_ten_seconds),
-        cmocka_unit_test(stop_does_not_drive_a_rotor_that_stands),
-        cmocka_unit_test(a_stuck_blade_stays_while_the_others_feather),
-        cmocka_unit_test(the_pitch_goes_to_given_angles),
-        cmocka_unit_test(thresholds_trigger),
-        cmocka_unit_test(before_its_start_the_turbine_idles),
-        cmocka_unit_test(a_yaw_drive_turns_the_nacelle),
-        cmocka_unit_test(events_are_in_the_copy),
-        cmocka_unit_test(senseless_events_are_refused),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -32,17 +32,11 @@ static void stop_within(const char *scheme, long left) {
     bough_arena_destroy(arena);
 }
 
-static void a_macro_step_is_left_as_it_began(void **state) {
-    (void)state;
+TEST(a_macro_step_is_left_as_it_began) {
     static const char *const schemes[] = {
         "simulation.coupling.scheme=frozen", "simulation.coupling.scheme=ramp",
         "simulation.coupling.scheme=iterated", "simulation.coupling.scheme=monolithic"};
     for (int k = 0; k < 4; k++) {
         for (long left = 0; left < 20; left += 6) stop_within(schemes[k], left);
     }
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(a_macro_step_is_left_as_it_began)};
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

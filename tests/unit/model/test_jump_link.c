@@ -54,8 +54,7 @@ static void check_parabolas(const char *text, double jump, double tolerance, dou
 
 #define SIMULATE(more) "gravity: [0, 0, 0]\nsimulation: {duration: 1 s, macro_step: 20 ms" more "}\n"
 
-static void a_load_that_jumps_acts_from_its_time_on(void **context) {
-    (void)context;
+TEST(a_load_that_jumps_acts_from_its_time_on) {
     check_parabolas(SIMULATE("") BODIES LOADS("[0.507 s, 0.507 s]"), 0.507, 1e-5, 4e-3);
     check_parabolas(SIMULATE("") BODIES LOADS("[0.5 s, 0.5 s]"), 0.5, 1e-5, 4e-3);
     check_parabolas(SIMULATE(", coupling: {scheme: monolithic}, master: {solver: rosenbrock, rtol: 1e-6}")
@@ -67,8 +66,7 @@ static void a_load_that_jumps_acts_from_its_time_on(void **context) {
 }
 
 // Without a jump there is nothing to do, and a load from time 0 on is none.
-static void loads_without_a_jump_take_no_part(void **context) {
-    (void)context;
+TEST(loads_without_a_jump_take_no_part) {
     bough_arena *arena = bough_arena_create();
     bough_simulation *s;
     load(SIMULATE("") BODIES LOADS("[0 s, 0 s]"), arena, &s);
@@ -78,10 +76,4 @@ static void loads_without_a_jump_take_no_part(void **context) {
     bough_arena_destroy(arena);
 }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_load_that_jumps_acts_from_its_time_on),
-        cmocka_unit_test(loads_without_a_jump_take_no_part),
-    };
-    return cmocka_run_group_tests(tests, enter, leave);
-}
+GROUP(enter, leave)

@@ -25,8 +25,7 @@ static double (*record(const char *speed, int *n))[MOST] {
 }
 
 // The last digit of a start value stays in the last digits: every channel within 1e-6 of its range.
-static void a_last_digit_is_not_amplified(void **state) {
-    (void)state;
+TEST(a_last_digit_is_not_amplified) {
     int n, same;
     double(*a)[MOST] = record("bodies[2].joint.speed=0.5 rad/s", &n);
     double(*b)[MOST] = record("bodies[2].joint.speed=0.5000000000001 rad/s", &same);
@@ -42,9 +41,4 @@ static void a_last_digit_is_not_amplified(void **state) {
             fail_msg("channel %d differs by %.1e of its range", j, largest / (high - low));
         }
     }
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(a_last_digit_is_not_amplified)};
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -30,8 +30,7 @@ static bough_run create(bough_arena *arena) {
 }
 
 // Every 40 ms of 100 in steps of 10, and every 25 ms at the step after it; the end where it is asked for.
-static void records_are_taken_when_due(void **context) {
-    (void)context;
+TEST(records_are_taken_when_due) {
     bough_arena *arena = bough_arena_create();
     bough_run run = create(arena);
     sampled coarse = {0}, between = {0};
@@ -54,8 +53,7 @@ static bough_status stop_at_half(void *self) {
 }
 
 // A stopped run has its last record and goes on to the values of the one that was not stopped.
-static void a_stopped_run_goes_on(void **context) {
-    (void)context;
+TEST(a_stopped_run_goes_on) {
     bough_arena *arena = bough_arena_create();
     bough_run run = create(arena), whole = create(arena);
     sampled rows = {0};
@@ -77,8 +75,7 @@ static void a_stopped_run_goes_on(void **context) {
 }
 
 // A copy holds what is due when: after it the same records follow.
-static void a_copy_goes_on_with_its_records(void **context) {
-    (void)context;
+TEST(a_copy_goes_on_with_its_records) {
     bough_arena *arena = bough_arena_create();
     bough_run run = create(arena), other = create(arena);
     sampled rows = {0}, later = {0};
@@ -107,8 +104,7 @@ static void a_copy_goes_on_with_its_records(void **context) {
 }
 
 // An undamped bar under a scheme that cannot hold it.
-static void a_failed_run_has_no_values(void **context) {
-    (void)context;
+TEST(a_failed_run_has_no_values) {
     static const char *const sets[] = {"simulation.coupling.scheme=frozen", NULL};
     bough_arena *arena = bough_arena_create();
     bough_run run;
@@ -123,14 +119,4 @@ static void a_failed_run_has_no_values(void **context) {
     assert_null(bough_run_values(&run));
     assert_int_equal(rows.n, 1); // none at the end
     bough_arena_destroy(arena);
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(records_are_taken_when_due),
-        cmocka_unit_test(a_stopped_run_goes_on),
-        cmocka_unit_test(a_copy_goes_on_with_its_records),
-        cmocka_unit_test(a_failed_run_has_no_values),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

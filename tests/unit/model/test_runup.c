@@ -137,8 +137,7 @@ static double mean_from(const history *h, const double *value, double t) {
 }
 
 // Aerodynamic torque and the weight's moment less the load torque change the angular momentum.
-static void torque_balances_angular_momentum(void **context) {
-    (void)context;
+TEST(torque_balances_angular_momentum) {
     const history *h = default_run;
     for (int turns = 1; turns <= 2; turns++) {
         int first = last_turns(h, turns), last = h->n - 1;
@@ -155,8 +154,7 @@ static void torque_balances_angular_momentum(void **context) {
     }
 }
 
-static void tips_bend_beyond_a_tenth_of_the_blade(void **context) {
-    (void)context;
+TEST(tips_bend_beyond_a_tenth_of_the_blade) {
     const history *h = default_run;
     for (int k = last_turns(h, 2); k < h->n; k++) assert_true(h->out_of_plane[k] > 0.1 * 61.5);
 }
@@ -195,15 +193,13 @@ static int strongest_harmonic(const history *h, const double *value) {
     return best;
 }
 
-static void tip_moves_once_and_speed_three_times_per_revolution(void **context) {
-    (void)context;
+TEST(tip_moves_once_and_speed_three_times_per_revolution) {
     assert_int_equal(strongest_harmonic(default_run, default_run->out_of_plane), 1);
     assert_int_equal(strongest_harmonic(default_run, default_run->speed), 3);
 }
 
 // OpenFAST 5.0.0 with BeamDyn of order 8, means over 30 to 40 s.
-static void means_are_those_of_the_reference(void **context) {
-    (void)context;
+TEST(means_are_those_of_the_reference) {
     const history *h = default_run;
     check_near(mean_from(h, h->speed, 30) * 30 / BOUGH_PI, 14.250, 0.005, 0);
     check_near(mean_from(h, h->out_of_plane, 30), 6.760, 0.005, 0);
@@ -212,8 +208,7 @@ static void means_are_those_of_the_reference(void **context) {
 }
 
 // The default against all equations in one implicit system at tight tolerance.
-static void default_scheme_is_near_the_monolithic_solution(void **context) {
-    (void)context;
+TEST(default_scheme_is_near_the_monolithic_solution) {
     const char *sets[] = {"simulation.threads=1", "simulation.coupling.scheme=monolithic",
                           "simulation.master={solver: ida, rtol: 1e-7}"};
     history *reference = run(sets, 3);
@@ -231,8 +226,7 @@ static void default_scheme_is_near_the_monolithic_solution(void **context) {
     free(reference);
 }
 
-static void threads_do_not_change_a_bit(void **context) {
-    (void)context;
+TEST(threads_do_not_change_a_bit) {
     const char *sets[] = {"simulation.threads=2"};
     history *two = run(sets, 1);
     assert_int_equal(two->n, default_run->n);
@@ -240,14 +234,4 @@ static void threads_do_not_change_a_bit(void **context) {
     free(two);
 }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(torque_balances_angular_momentum),
-        cmocka_unit_test(tips_bend_beyond_a_tenth_of_the_blade),
-        cmocka_unit_test(tip_moves_once_and_speed_three_times_per_revolution),
-        cmocka_unit_test(means_are_those_of_the_reference),
-        cmocka_unit_test(threads_do_not_change_a_bit),
-        cmocka_unit_test(default_scheme_is_near_the_monolithic_solution),
-    };
-    return cmocka_run_group_tests(tests, run_default, release_default);
-}
+GROUP(run_default, release_default)

@@ -22,8 +22,7 @@ static double joint_angle(const bough_simulation *s, int body) {
 }
 
 // A bob of 1 kg at 1 m from the horizontal on a spring: k θ + m g cos θ = 0.
-static void spring_holds_the_pendulum(void **context) {
-    (void)context;
+TEST(spring_holds_the_pendulum) {
     const char *sets[] = {"bodies[0].joint.stiffness=20", NULL};
     bough_arena *arena = bough_arena_create();
     bough_simulation *s = scene_build(arena, "apps/mechanisms/pendulum.yaml", sets);
@@ -35,8 +34,7 @@ static void spring_holds_the_pendulum(void **context) {
 }
 
 // Started above the hinge: it falls and hangs.
-static void chain_hangs(void **context) {
-    (void)context;
+TEST(chain_hangs) {
     const char *sets[] = {"bodies[0].joint.angle=-45 deg", NULL};
     bough_arena *arena = bough_arena_create();
     bough_simulation *s = scene_build(arena, "apps/mechanisms/chain.yaml", sets);
@@ -76,8 +74,7 @@ static void shoot(double q, double tip[3]) {
 
 // The load acts on the axis, which bends away from the chords of segments: its moment about them counts, else
 // the rod converges at second order only.
-static void dead_line_load_bends_the_rod_at_fourth_order(void **context) {
-    (void)context;
+TEST(dead_line_load_bends_the_rod_at_fourth_order) {
     double exact[3], error[2];
     shoot(20, exact);
     for (int k = 0; k < 2; k++) {
@@ -100,8 +97,7 @@ static void dead_line_load_bends_the_rod_at_fourth_order(void **context) {
 // The elastica under a transverse force F L²/EI = 1 and 10: tip deflections of the exact solution
 // (K. Bisshopp and D. Drucker 1945). Positions alone would let the axial stiffness answer to the square
 // of every turn.
-static void massless_tip_bends_the_elastica(void **context) {
-    (void)context;
+TEST(massless_tip_bends_the_elastica) {
     const struct {
         const char *force;
         double deflection;
@@ -119,8 +115,7 @@ static void massless_tip_bends_the_elastica(void **context) {
 }
 
 // x″ = −k² x with x′(L) = 1, k² = ρA Ω²/EA: the tip of a turning bar is at tan(kL)/k.
-static void turning_bar_stretches(void **context) {
-    (void)context;
+TEST(turning_bar_stretches) {
     const char *sets[] = {"bodies[1].joint.motion={speed: 20 rad/s}", NULL};
     bough_arena *arena = bough_arena_create();
     bough_simulation *s = scene_build(arena, "apps/beams/spin-up.yaml", sets);
@@ -135,8 +130,7 @@ static void turning_bar_stretches(void **context) {
 }
 
 // The rod's own solution, by Newton's method with increments of load.
-static void rod_alone_stands_where_its_own_statics_says(void **context) {
-    (void)context;
+TEST(rod_alone_stands_where_its_own_statics_says) {
     const char *sets[] = {"loads=[{body: blade, at: tip, force: [100 kN, 0, 0]}]", NULL};
     bough_arena *arena = bough_arena_create();
     bough_simulation *s = scene_build(arena, "tests/data/scenes/blade.yaml", sets);
@@ -152,8 +146,7 @@ static void rod_alone_stands_where_its_own_statics_says(void **context) {
 }
 
 // Nothing moves in a run that starts from the equilibrium of the parked turbine in its wind.
-static void parked_turbine_stays_at_rest(void **context) {
-    (void)context;
+TEST(parked_turbine_stays_at_rest) {
     const char *sets[] = {"simulation.initial=equilibrium",
                           "simulation.threads=1",
                           "loads=[]",
@@ -181,8 +174,7 @@ static void parked_turbine_stays_at_rest(void **context) {
 }
 
 // With tower, yaw drive and drive train.
-static void turbine_on_its_tower_stays_at_rest(void **context) {
-    (void)context;
+TEST(turbine_on_its_tower_stays_at_rest) {
     const char *sets[] = {"bodies[0].rod.segments=8", "bodies[4].rod.segments=8", "bodies[5].rod.segments=8",
                           "bodies[6].rod.segments=8", NULL};
     bough_arena *arena = bough_arena_create();
@@ -197,8 +189,7 @@ static void turbine_on_its_tower_stays_at_rest(void **context) {
 }
 
 // At the speed where load and air balance, only the tower excites.
-static void turning_rotor_starts_smoothly(void **context) {
-    (void)context;
+TEST(turning_rotor_starts_smoothly) {
     const char *sets[] = {"simulation.initial=equilibrium",
                           "simulation.threads=1",
                           "bodies[2].joint.speed=1.49 rad/s",
@@ -225,8 +216,7 @@ static void turning_rotor_starts_smoothly(void **context) {
     assert_true(moved[0] < 0.02 * moved[1]);
 }
 
-static void driven_free_rotor_has_none(void **context) {
-    (void)context;
+TEST(driven_free_rotor_has_none) {
     const char *sets[] = {"bodies[2].joint.speed=0", "aero.ramp=[0, 0]", NULL};
     bough_arena *arena = bough_arena_create();
     bough_simulation *s = scene_build(arena, runup, sets);
@@ -236,20 +226,4 @@ static void driven_free_rotor_has_none(void **context) {
     assert_non_null(strstr(status.message, "no equilibrium"));
     assert_non_null(strstr(status.message, "a spring, a speed or a motion"));
     bough_arena_destroy(arena);
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(spring_holds_the_pendulum),
-        cmocka_unit_test(chain_hangs),
-        cmocka_unit_test(dead_line_load_bends_the_rod_at_fourth_order),
-        cmocka_unit_test(massless_tip_bends_the_elastica),
-        cmocka_unit_test(turning_bar_stretches),
-        cmocka_unit_test(rod_alone_stands_where_its_own_statics_says),
-        cmocka_unit_test(parked_turbine_stays_at_rest),
-        cmocka_unit_test(turbine_on_its_tower_stays_at_rest),
-        cmocka_unit_test(turning_rotor_starts_smoothly),
-        cmocka_unit_test(driven_free_rotor_has_none),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -28,8 +28,7 @@ static void run_until(fixture *f, double t) {
 
 // On a rigid shaft the hub accelerates the generator: its inertia times (drive - brake) / (sum of inertias),
 // and carries the brake. So free of the brake, and with a constant speed, which leaves the driving moment.
-static void rigid_shaft_carries_the_generators_inertia(void **state) {
-    (void)state;
+TEST(rigid_shaft_carries_the_generators_inertia) {
     static const char *const braked[] = {NULL}, *const free[] = {"loads[1].torque=0", NULL};
     static const char *const driven[] = {"bodies[generator].joint={kind: revolute, parent: nacelle, axis: x, "
                                          "motion: {speed: 1 rad/s}}",
@@ -52,8 +51,7 @@ static void rigid_shaft_carries_the_generators_inertia(void **state) {
 // Against a spring of k the hub swings about the mean twist: with m the reduced inertia and the generator's
 // and hub's loads, twist = (1 - cos wt) m (drive/hub + brake/generator) / k, w2 = k/m. RotTorq is k times the
 // twist, and the hub's speed is that of the common motion with its part of the twist's rate.
-static void spring_between_hub_and_generator_carries_the_torque(void **state) {
-    (void)state;
+TEST(spring_between_hub_and_generator_carries_the_torque) {
     static const char *const sets[] = {"bodies[hub].joint={kind: revolute, axis: x, parent: generator, "
                                        "stiffness: 1e6}",
                                        NULL};
@@ -73,12 +71,4 @@ static void spring_between_hub_and_generator_carries_the_torque(void **state) {
         check_near(channel(&f, "Azimuth"), fmod(angle * 180 / BOUGH_PI, 360), 1e-5, 1e-3);
     }
     bough_arena_destroy(f.arena);
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(rigid_shaft_carries_the_generators_inertia),
-        cmocka_unit_test(spring_between_hub_and_generator_carries_the_torque),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

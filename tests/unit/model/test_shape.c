@@ -4,8 +4,7 @@
 #include "tests/unit/built_scene.h"
 
 // A bent rod under a force at its tip: every section carries the force and its moment about the section.
-static void tip_force_passes_all_sections(void **context) {
-    (void)context;
+TEST(tip_force_passes_all_sections) {
     const char *sets[] = {"loads[0].force=[10, 0, 0]", "bodies[0].joint.placement=[rotate x 30 deg]", NULL};
     bough_arena *arena = bough_arena_create();
     bough_simulation *s = scene_build(arena, "apps/beams/elastica.yaml", sets);
@@ -39,8 +38,7 @@ static void tip_force_passes_all_sections(void **context) {
 }
 
 // A rigid body has no sections.
-static void rigid_bodies_carry_no_section_loads(void **context) {
-    (void)context;
+TEST(rigid_bodies_carry_no_section_loads) {
     const char *sets[] = {NULL};
     bough_arena *arena = bough_arena_create();
     bough_simulation *s = scene_build(arena, "apps/mechanisms/pendulum.yaml", sets);
@@ -54,12 +52,4 @@ static void rigid_bodies_carry_no_section_loads(void **context) {
         check_near(moment[i], 0, 0, 0);
     }
     bough_arena_destroy(arena);
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(tip_force_passes_all_sections),
-        cmocka_unit_test(rigid_bodies_carry_no_section_loads),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -160,8 +160,7 @@ static void advance_to(bough_simulation *s, double t) {
 
 // -- tests ----------------------------------------------------------------------------------------
 
-static void body_frame_and_absolute_formulation_agree(void **context) {
-    (void)context;
+TEST(body_frame_and_absolute_formulation_agree) {
     bough_arena *arena = bough_arena_create();
     bough_simulation *s = in_the_tree(arena, "bodies[0].rod.segments=16");
     absolute_bar bar = {.model = bough_rod_body_model(s->beam[0].rod)};
@@ -182,8 +181,7 @@ static void body_frame_and_absolute_formulation_agree(void **context) {
 }
 
 // Independent solution, extrapolated over meshes: tip (x, z) of the hinged bar.
-static void motion_is_that_of_an_independent_rod(void **context) {
-    (void)context;
+TEST(motion_is_that_of_an_independent_rod) {
     const double reference[4][2] = {{0.9935974715, -0.04889315378},
                                     {0.9418956619, -0.1981176134},
                                     {0.797987699, -0.424504581},
@@ -197,12 +195,4 @@ static void motion_is_that_of_an_independent_rod(void **context) {
         check_near(tip.z, reference[k][1], 0, 2e-3);
     }
     bough_arena_destroy(arena);
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(body_frame_and_absolute_formulation_agree),
-        cmocka_unit_test(motion_is_that_of_an_independent_rod),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

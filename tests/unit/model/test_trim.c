@@ -51,20 +51,10 @@ static void check_operation(const char *wind, double speed, double pitch) {
     bough_arena_destroy(arena);
 }
 
-static void below_rated_the_speed_is_found(void **state) {
-    (void)state;
+TEST(below_rated_the_speed_is_found) {
     check_operation("aero.wind={kind: uniform, speed: 8 m/s}", 9.16 * rpm, 0);
 }
 
-static void above_rated_the_pitch_is_found(void **state) {
-    (void)state;
+TEST(above_rated_the_pitch_is_found) {
     check_operation("aero.wind={kind: uniform, speed: 18 m/s}", 12.1 * rpm, 14.92 * degree);
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(below_rated_the_speed_is_found),
-        cmocka_unit_test(above_rated_the_pitch_is_found),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -29,8 +29,7 @@ static int passed(const bough_simulation *s) {
     return bits;
 }
 
-static void within_the_limits_nothing_is_told(void **state) {
-    (void)state;
+TEST(within_the_limits_nothing_is_told) {
     static const char *const sets[] = {NULL};
     bough_arena *arena = bough_arena_create();
     assert_int_equal(passed(run(arena, sets, 100)), 0);
@@ -38,8 +37,7 @@ static void within_the_limits_nothing_is_told(void **state) {
 }
 
 // Blades of a few metres on the shaft at 18 rad/s.
-static void a_fast_section_is_told_once(void **state) {
-    (void)state;
+TEST(a_fast_section_is_told_once) {
     static const char *const sets[] = {"bodies[2].joint.speed=18 rad/s", "aero.ramp=[0 s, 0 s]", NULL};
     bough_arena *arena = bough_arena_create();
     bough_simulation *s = run(arena, sets, 4);
@@ -57,8 +55,7 @@ static void a_fast_section_is_told_once(void **state) {
 }
 
 // A cantilever whose tip moment rolls it up to a circle: 60 deg in each of six segments, 30 of twelve.
-static void a_turned_segment_is_told(void **state) {
-    (void)state;
+TEST(a_turned_segment_is_told) {
     static const char *const coarse[] = {"bodies[0].rod.segments=6", "simulation.initial=equilibrium", NULL};
     static const char *const fine[] = {"bodies[0].rod.segments=12", "simulation.initial=equilibrium", NULL};
     bough_arena *arena = bough_arena_create();
@@ -73,8 +70,7 @@ static void a_turned_segment_is_told(void **state) {
 }
 
 // The hub on the tower's axis, without tilt: the hanging blade stands in the tower.
-static void a_blade_in_the_tower_is_told(void **state) {
-    (void)state;
+TEST(a_blade_in_the_tower_is_told) {
     static const char *const sets[] = {"bodies[2].joint.placement=[move z 1.2 m]", NULL};
     bough_arena *arena = bough_arena_create();
     bough_simulation *s = run(arena, sets, 4);
@@ -86,8 +82,7 @@ static void a_blade_in_the_tower_is_told(void **state) {
 }
 
 // Each is seen before the first step; a scene without the defect passes nothing, above.
-static void defects_of_the_model_are_told_at_the_start(void **state) {
-    (void)state;
+TEST(defects_of_the_model_are_told_at_the_start) {
     static const struct {
         const char *scene, *set;
         bough_limit limit;
@@ -117,8 +112,7 @@ static void defects_of_the_model_are_told_at_the_start(void **state) {
 #define IN_PIECES(blade) "bodies[" blade "].fidelity=segmented-modal", "bodies[" blade "].rod.segments=6"
 
 // Vibrations of the pieces grow under air at 10 Hz, and not at 50 Hz.
-static void samples_too_seldom_for_a_modal_blade_are_told(void **state) {
-    (void)state;
+TEST(samples_too_seldom_for_a_modal_blade_are_told) {
     for (int rate = 10; rate <= 50; rate += 40) {
         char chosen[32];
         snprintf(chosen, sizeof chosen, "aero.rate=%d", rate);
@@ -139,8 +133,7 @@ static void samples_too_seldom_for_a_modal_blade_are_told(void **state) {
 
 // Windows of four bars, whose rods all come to lie on one line at 0.75 s; a loop that stays away from such a
 // position.
-static void singular_positions_are_told(void **state) {
-    (void)state;
+TEST(singular_positions_are_told) {
     static const char *const sets[] = {NULL};
     bough_arena *arena = bough_arena_create();
     bough_simulation *s = run_scene(arena, "apps/mechanisms/four-bar.yaml", sets, 75);
@@ -153,8 +146,7 @@ static void singular_positions_are_told(void **state) {
 
 // Two masses on stiff springs without damping, which ring at 16 and 31 kHz; at 160 and 310 Hz the same is
 // cheap.
-static void costly_motions_are_told(void **state) {
-    (void)state;
+TEST(costly_motions_are_told) {
     static const char *const stiff[] = {"springs[0-1].stiffness=1e10", "simulation.master.solver=ida",
                                         "simulation.error_estimate=none", NULL};
     for (int k = 0; k < 2; k++) {
@@ -171,18 +163,4 @@ static void costly_motions_are_told(void **state) {
         assert_true(k == 1 || cost.body == 0 || cost.body == 1);
         bough_arena_destroy(arena);
     }
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(within_the_limits_nothing_is_told),
-        cmocka_unit_test(defects_of_the_model_are_told_at_the_start),
-        cmocka_unit_test(a_fast_section_is_told_once),
-        cmocka_unit_test(a_blade_in_the_tower_is_told),
-        cmocka_unit_test(a_turned_segment_is_told),
-        cmocka_unit_test(singular_positions_are_told),
-        cmocka_unit_test(costly_motions_are_told),
-        cmocka_unit_test(samples_too_seldom_for_a_modal_blade_are_told),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

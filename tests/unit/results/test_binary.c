@@ -97,12 +97,12 @@ static void take_word(bytes *b, int width, const char *expected) {
     b->at += width;
 }
 
-static void values_are_those_of_the_rows(void **state) {
-    fixture f = write_folder(*state, sample);
-    bough_status status = pack(&f, *state);
+TEST_IN_FOLDER(values_are_those_of_the_rows) {
+    fixture f = write_folder(*context, sample);
+    bough_status status = pack(&f, *context);
     assert_string_equal(status.message, "");
-    assert_false(scratch_has(*state, "channels.outb.partial"));
-    bytes b = read_bytes(*state);
+    assert_false(scratch_has(*context, "channels.outb.partial"));
+    bytes b = read_bytes(*context);
     assert_int_equal(take(&b, 2), 4);
     int width = (int)take(&b, 2);
     assert_int_equal(width, strlen("a_name_longer_than_ten"));
@@ -131,34 +131,25 @@ static void values_are_those_of_the_rows(void **state) {
     bough_arena_destroy(f.arena);
 }
 
-static void what_it_cannot_hold_is_refused(void **state) {
-    fixture f = write_folder(*state, sample_endless);
-    bough_status status = pack(&f, *state);
+TEST_IN_FOLDER(what_it_cannot_hold_is_refused) {
+    fixture f = write_folder(*context, sample_endless);
+    bough_status status = pack(&f, *context);
     assert_int_equal(status.code, BOUGH_INVALID);
     assert_non_null(strstr(status.message, "rest = inf at 2 s"));
-    assert_false(scratch_has(*state, "channels.outb"));
+    assert_false(scratch_has(*context, "channels.outb"));
     bough_arena_destroy(f.arena);
 }
 
-static void rows_that_are_gone_are_told(void **state) {
+TEST_IN_FOLDER(rows_that_are_gone_are_told) {
     char path[256];
-    fixture f = write_folder(*state, sample);
-    snprintf(path, sizeof path, "%s/channels.out", (char *)*state);
+    fixture f = write_folder(*context, sample);
+    snprintf(path, sizeof path, "%s/channels.out", (char *)*context);
     assert_int_equal(truncate(path, 1500), 0);
-    bough_status status = pack(&f, *state);
+    bough_status status = pack(&f, *context);
     assert_int_equal(status.code, BOUGH_IO);
-    assert_false(scratch_has(*state, "channels.outb"));
+    assert_false(scratch_has(*context, "channels.outb"));
     remove(path);
-    status = pack(&f, *state);
+    status = pack(&f, *context);
     assert_int_equal(status.code, BOUGH_IO);
     bough_arena_destroy(f.arena);
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test_setup_teardown(values_are_those_of_the_rows, scratch_make, scratch_remove),
-        cmocka_unit_test_setup_teardown(what_it_cannot_hold_is_refused, scratch_make, scratch_remove),
-        cmocka_unit_test_setup_teardown(rows_that_are_gone_are_told, scratch_make, scratch_remove),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

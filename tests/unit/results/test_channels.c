@@ -14,8 +14,7 @@ static void sample_one(void *self, double t, double *value) {
     *value = *(double *)self;
 }
 
-static void groups_fill_their_own_channels(void **state) {
-    (void)state;
+TEST(groups_fill_their_own_channels) {
     bough_arena *arena = bough_arena_create();
     bough_channels list = bough_channels_start(arena);
     double factor[3] = {1, 2, 3}, constant = 7;
@@ -37,8 +36,7 @@ static void groups_fill_their_own_channels(void **state) {
     bough_arena_destroy(arena);
 }
 
-static void an_empty_group_is_not_asked(void **state) {
-    (void)state;
+TEST(an_empty_group_is_not_asked) {
     bough_arena *arena = bough_arena_create();
     bough_channels list = bough_channels_start(arena);
     bough_channels_group(&list, sample_one, NULL);
@@ -46,8 +44,7 @@ static void an_empty_group_is_not_asked(void **state) {
     bough_arena_destroy(arena);
 }
 
-static void list_grows_without_losing_names(void **state) {
-    (void)state;
+TEST(list_grows_without_losing_names) {
     bough_arena *arena = bough_arena_create();
     bough_channels list = bough_channels_start(arena);
     bough_channels_group(&list, sample_one, NULL);
@@ -58,8 +55,7 @@ static void list_grows_without_losing_names(void **state) {
     bough_arena_destroy(arena);
 }
 
-static void names_that_readers_cannot_split_are_refused(void **state) {
-    (void)state;
+TEST(names_that_readers_cannot_split_are_refused) {
     static const char *bad[] = {
         "",     "two words", "tab\tname",
         "Time", "twice",     "a_name_that_is_quite_a_bit_longer_than_forty_seven_characters",
@@ -76,14 +72,4 @@ static void names_that_readers_cannot_split_are_refused(void **state) {
         assert_int_equal(list.count, 1);
     }
     bough_arena_destroy(arena);
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(groups_fill_their_own_channels),
-        cmocka_unit_test(an_empty_group_is_not_asked),
-        cmocka_unit_test(list_grows_without_losing_names),
-        cmocka_unit_test(names_that_readers_cannot_split_are_refused),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

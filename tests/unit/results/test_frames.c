@@ -52,7 +52,7 @@ static void has(const char *text, const char *part) {
     if (strstr(text, part) == NULL) fail_msg("'%s' is missing in\n%s", part, text);
 }
 
-static void frames_are_polylines_with_times(void **context) {
+TEST_IN_FOLDER(frames_are_polylines_with_times) {
     const char *folder = *context;
     write_frames(folder);
     char *list = scratch_read(folder, "frames.pvd");
@@ -72,7 +72,7 @@ static void frames_are_polylines_with_times(void **context) {
 static const char channels[] = "\nbough: a run\nComplete: 2 rows\n\n1 channel\n\n"
                                "  Time\tRotSpeed\n (s)\t(rpm)\n 0.0E+00\t 1.25\n 1.0E-01\t-2.5\n";
 
-static void page_carries_all_data(void **context) {
+TEST_IN_FOLDER(page_carries_all_data) {
     const char *folder = *context;
     write_frames(folder);
     write_text(folder, "channels.out", channels);
@@ -92,7 +92,7 @@ static void page_carries_all_data(void **context) {
     free(page);
 }
 
-static void what_is_not_results_is_refused(void **context) {
+TEST_IN_FOLDER(what_is_not_results_is_refused) {
     const char *folder = *context;
     bough_status status = bough_report_write(1, &folder);
     assert_int_equal(status.code, BOUGH_INVALID);
@@ -104,21 +104,11 @@ static void what_is_not_results_is_refused(void **context) {
     assert_false(scratch_has(folder, "report.html"));
 }
 
-static void a_lost_frame_is_told(void **context) {
+TEST_IN_FOLDER(a_lost_frame_is_told) {
     const char *folder = *context;
     write_frames(folder);
     write_text(folder, "frames/000001.vtp", "<DataArray>\nnothing\n");
     bough_status status = bough_report_write(1, &folder);
     assert_int_equal(status.code, BOUGH_INVALID);
     has(status.message, "frames/000001.vtp");
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test_setup_teardown(frames_are_polylines_with_times, scratch_make, scratch_remove),
-        cmocka_unit_test_setup_teardown(page_carries_all_data, scratch_make, scratch_remove),
-        cmocka_unit_test_setup_teardown(what_is_not_results_is_refused, scratch_make, scratch_remove),
-        cmocka_unit_test_setup_teardown(a_lost_frame_is_told, scratch_make, scratch_remove),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

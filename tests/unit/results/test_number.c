@@ -14,8 +14,7 @@ static void check_same(double x) {
     assert_string_equal(fast, slow);
 }
 
-static void random_numbers_of_all_sizes(void **state) {
-    (void)state;
+TEST(random_numbers_of_all_sizes) {
     unsigned seed = 7;
     for (int k = 0; k < 300000; k++) {
         double size = 40 * sample_random(&seed);
@@ -24,8 +23,7 @@ static void random_numbers_of_all_sizes(void **state) {
 }
 
 // Ties between two last digits, powers of ten and their neighbours, whole numbers.
-static void hard_cases(void **state) {
-    (void)state;
+TEST(hard_cases) {
     for (int e = -30; e <= 30; e++) {
         double x = pow(10, e);
         const double near[] = {
@@ -40,12 +38,4 @@ static void hard_cases(void **state) {
     const double odd[] = {0.0, -0.0, INFINITY, -INFINITY, DBL_MAX, -DBL_MAX, DBL_MIN, 4.9e-324};
     for (size_t k = 0; k < sizeof odd / sizeof *odd; k++) check_same(odd[k]);
     check_same((double)NAN);
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(random_numbers_of_all_sizes),
-        cmocka_unit_test(hard_cases),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -40,20 +40,20 @@ static const char *line_of(const char *text, int number) {
     return text;
 }
 
-static void file_has_the_layout_that_readers_expect(void **state) {
+TEST_IN_FOLDER(file_has_the_layout_that_readers_expect) {
     fixture f;
-    bough_status ok = open_recorder(&f, *state);
+    bough_status ok = open_recorder(&f, *context);
     assert_true(bough_is_ok(&ok));
     f.value[1] = -1e-300;
     bough_recorder_sample(f.recorder, 0);
     f.value[1] = NAN;
     bough_recorder_sample(f.recorder, 0.25);
-    assert_false(scratch_has(*state, "channels.out"));
+    assert_false(scratch_has(*context, "channels.out"));
     ok = bough_recorder_finish(f.recorder, &ok);
     assert_true(bough_is_ok(&ok));
-    assert_false(scratch_has(*state, "channels.out.partial"));
+    assert_false(scratch_has(*context, "channels.out.partial"));
 
-    char *text = scratch_read(*state, "channels.out");
+    char *text = scratch_read(*context, "channels.out");
     assert_non_null(text);
     char word[3][64];
     assert_memory_equal(line_of(text, 3), "Complete: 2 rows ", 17);
@@ -76,14 +76,14 @@ static void file_has_the_layout_that_readers_expect(void **state) {
     bough_arena_destroy(f.arena);
 }
 
-static void failed_run_keeps_its_rows_and_is_marked(void **state) {
+TEST_IN_FOLDER(failed_run_keeps_its_rows_and_is_marked) {
     fixture f;
-    open_recorder(&f, *state);
+    open_recorder(&f, *context);
     for (int i = 0; i < 5; i++) bough_recorder_sample(f.recorder, i);
     bough_status failure = bough_fail(BOUGH_FAILED, "blade1 gave up\nat 4.2 s");
     bough_status status = bough_recorder_finish(f.recorder, &failure);
     assert_true(bough_is_ok(&status));
-    char *text = scratch_read(*state, "channels.out");
+    char *text = scratch_read(*context, "channels.out");
     assert_non_null(text);
     static const char expected[] = "INCOMPLETE: 5 rows, then blade1 gave up at 4.2 s ";
     assert_memory_equal(line_of(text, 3), expected, sizeof expected - 1);
@@ -93,9 +93,9 @@ static void failed_run_keeps_its_rows_and_is_marked(void **state) {
     bough_arena_destroy(f.arena);
 }
 
-static void long_message_is_cut_between_characters(void **state) {
+TEST_IN_FOLDER(long_message_is_cut_between_characters) {
     fixture f;
-    open_recorder(&f, *state);
+    open_recorder(&f, *context);
     char long_message[301] = "";
     for (int i = 0; i < 300; i += 2) {
         long_message[i] = "ω"[0];
@@ -103,7 +103,7 @@ static void long_message_is_cut_between_characters(void **state) {
     }
     bough_status failure = bough_fail(BOUGH_FAILED, "%s", long_message);
     bough_recorder_finish(f.recorder, &failure);
-    char *text = scratch_read(*state, "channels.out");
+    char *text = scratch_read(*context, "channels.out");
     const unsigned char *end = (const unsigned char *)line_of(text, 4) - 2;
     while (*end == ' ') end--;
     assert_int_equal(end[0], 0x89); // "ω" is CF 89
@@ -112,30 +112,30 @@ static void long_message_is_cut_between_characters(void **state) {
     bough_arena_destroy(f.arena);
 }
 
-static void unfinished_recorder_leaves_only_a_partial(void **state) {
+TEST_IN_FOLDER(unfinished_recorder_leaves_only_a_partial) {
     fixture f;
-    open_recorder(&f, *state);
+    open_recorder(&f, *context);
     bough_status ok = bough_ok();
     bough_recorder_finish(f.recorder, &ok);
     bough_arena_destroy(f.arena);
-    assert_true(scratch_has(*state, "channels.out"));
+    assert_true(scratch_has(*context, "channels.out"));
 
-    open_recorder(&f, *state); // the old result stays until a new one can replace it
+    open_recorder(&f, *context); // the old result stays until a new one can replace it
     bough_recorder_sample(f.recorder, 0);
     bough_arena_destroy(f.arena);
-    char *old = scratch_read(*state, "channels.out");
+    char *old = scratch_read(*context, "channels.out");
     assert_non_null(old);
     assert_non_null(strstr(old, "Complete: 0 rows"));
     free(old);
-    char *text = scratch_read(*state, "channels.out.partial");
+    char *text = scratch_read(*context, "channels.out.partial");
     assert_non_null(text);
     assert_non_null(strstr(text, "INCOMPLETE"));
     free(text);
 }
 
-static void missing_folder_is_an_error_of_files(void **state) {
+TEST_IN_FOLDER(missing_folder_is_an_error_of_files) {
     char folder[128];
-    snprintf(folder, sizeof folder, "%s/none", (char *)*state);
+    snprintf(folder, sizeof folder, "%s/none", (char *)*context);
     fixture f;
     bough_status status = open_recorder(&f, folder);
     assert_int_equal(status.code, BOUGH_IO);
@@ -143,19 +143,19 @@ static void missing_folder_is_an_error_of_files(void **state) {
     bough_arena_destroy(f.arena);
 }
 
-static void full_device_is_an_error_of_files(void **state) {
+TEST_IN_FOLDER(full_device_is_an_error_of_files) {
     char partial[128];
-    snprintf(partial, sizeof partial, "%s/channels.out.partial", (char *)*state);
+    snprintf(partial, sizeof partial, "%s/channels.out.partial", (char *)*context);
     assert_int_equal(symlink("/dev/full", partial), 0);
     fixture f;
-    bough_status status = open_recorder(&f, *state);
+    bough_status status = open_recorder(&f, *context);
     assert_int_equal(status.code, BOUGH_IO);
     bough_arena_destroy(f.arena);
 }
 
-static void device_that_fills_up_leaves_whole_rows(void **state) {
+TEST_IN_FOLDER(device_that_fills_up_leaves_whole_rows) {
     fixture f;
-    open_recorder(&f, *state);
+    open_recorder(&f, *context);
     signal(SIGXFSZ, SIG_IGN);
     struct rlimit old, small;
     getrlimit(RLIMIT_FSIZE, &old);
@@ -170,8 +170,8 @@ static void device_that_fills_up_leaves_whole_rows(void **state) {
     bough_status end = bough_recorder_finish(f.recorder, &status);
     setrlimit(RLIMIT_FSIZE, &old);
     assert_int_equal(end.code, BOUGH_IO);
-    assert_false(scratch_has(*state, "channels.out"));
-    char *text = scratch_read(*state, "channels.out.partial");
+    assert_false(scratch_has(*context, "channels.out"));
+    char *text = scratch_read(*context, "channels.out.partial");
     assert_non_null(strstr(text, "INCOMPLETE"));
     assert_true(strlen(text) > 90000);
     assert_int_equal((strlen(text) - (size_t)(line_of(text, 9) - text)) % 55, 0);
@@ -179,20 +179,20 @@ static void device_that_fills_up_leaves_whole_rows(void **state) {
     bough_arena_destroy(f.arena);
 }
 
-static void folder_is_made_with_its_parents(void **state) {
+TEST_IN_FOLDER(folder_is_made_with_its_parents) {
     char path[128], file[160];
-    snprintf(path, sizeof path, "%s/a/b/", (char *)*state);
+    snprintf(path, sizeof path, "%s/a/b/", (char *)*context);
     bough_status status = bough_folder_make(path);
     assert_true(bough_is_ok(&status));
     status = bough_folder_make(path); // again: it exists
     assert_true(bough_is_ok(&status));
 
-    snprintf(file, sizeof file, "%s/taken", (char *)*state);
+    snprintf(file, sizeof file, "%s/taken", (char *)*context);
     fclose(fopen(file, "w"));
     status = bough_folder_make(file);
     assert_int_equal(status.code, BOUGH_IO);
     assert_non_null(strstr(status.message, "is a file"));
-    snprintf(file, sizeof file, "%s/taken/below", (char *)*state);
+    snprintf(file, sizeof file, "%s/taken/below", (char *)*context);
     status = bough_folder_make(file);
     assert_int_equal(status.code, BOUGH_IO);
     status = bough_folder_make("");
@@ -200,19 +200,4 @@ static void folder_is_made_with_its_parents(void **state) {
     status = bough_folder_make("/proc/none/here");
     assert_int_equal(status.code, BOUGH_IO);
     rmdir(path);
-}
-
-int main(void) {
-#define in_scratch(test) cmocka_unit_test_setup_teardown(test, scratch_make, scratch_remove)
-    const struct CMUnitTest tests[] = {
-        in_scratch(file_has_the_layout_that_readers_expect),
-        in_scratch(failed_run_keeps_its_rows_and_is_marked),
-        in_scratch(long_message_is_cut_between_characters),
-        in_scratch(unfinished_recorder_leaves_only_a_partial),
-        in_scratch(missing_folder_is_an_error_of_files),
-        in_scratch(full_device_is_an_error_of_files),
-        in_scratch(device_that_fills_up_leaves_whole_rows),
-        in_scratch(folder_is_made_with_its_parents),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

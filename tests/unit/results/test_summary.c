@@ -3,9 +3,9 @@
 #include "apps/bough/results/progress.h"
 #include "tests/unit/scratch.h"
 
-static void fields_arrays_and_objects_are_nested(void **state) {
+TEST_IN_FOLDER(fields_arrays_and_objects_are_nested) {
     bough_summary s;
-    bough_status status = bough_summary_open(&s, *state, "summary.json");
+    bough_status status = bough_summary_open(&s, *context, "summary.json");
     assert_true(bough_is_ok(&status));
     bough_summary_text(&s, "scheme", "ramp");
     bough_summary_number(&s, "macro_step_s", 0.1);
@@ -17,10 +17,10 @@ static void fields_arrays_and_objects_are_nested(void **state) {
     bough_summary_number(&s, NULL, 1.0 / 3);
     bough_summary_end(&s);
     bough_summary_array(&s, "none"); // left open on purpose
-    assert_false(scratch_has(*state, "summary.json"));
+    assert_false(scratch_has(*context, "summary.json"));
     status = bough_summary_close(&s);
     assert_true(bough_is_ok(&status));
-    char *text = scratch_read(*state, "summary.json");
+    char *text = scratch_read(*context, "summary.json");
     assert_string_equal(text, "{\n"
                               "  \"scheme\": \"ramp\",\n"
                               "  \"macro_step_s\": 0.1,\n"
@@ -34,38 +34,38 @@ static void fields_arrays_and_objects_are_nested(void **state) {
                               "  \"none\": []\n"
                               "}\n");
     free(text);
-    assert_false(scratch_has(*state, "summary.json.partial"));
+    assert_false(scratch_has(*context, "summary.json.partial"));
 }
 
-static void what_json_does_not_know_becomes_null(void **state) {
+TEST_IN_FOLDER(what_json_does_not_know_becomes_null) {
     bough_summary s;
-    bough_summary_open(&s, *state, "summary.json");
+    bough_summary_open(&s, *context, "summary.json");
     bough_summary_number(&s, "a", NAN);
     bough_summary_number(&s, "b", -INFINITY);
     bough_summary_text(&s, "c", NULL);
     bough_summary_close(&s);
-    char *text = scratch_read(*state, "summary.json");
+    char *text = scratch_read(*context, "summary.json");
     assert_string_equal(text, "{\n  \"a\": null,\n  \"b\": null,\n  \"c\": null\n}\n");
     free(text);
 }
 
-static void texts_are_escaped(void **state) {
+TEST_IN_FOLDER(texts_are_escaped) {
     bough_summary s;
-    bough_summary_open(&s, *state, "summary.json");
+    bough_summary_open(&s, *context, "summary.json");
     bough_summary_text(&s, "a", "\"\\\n\t\x01 ω \xFF\xC3");
     bough_summary_close(&s);
-    char *text = scratch_read(*state, "summary.json");
+    char *text = scratch_read(*context, "summary.json");
     assert_string_equal(text, "{\n  \"a\": \"\\\"\\\\\\n\\u0009\\u0001 ω \\ufffd\\ufffd\"\n}\n");
     free(text);
 }
 
-static void numbers_survive_the_round_trip(void **state) {
+TEST_IN_FOLDER(numbers_survive_the_round_trip) {
     static const double numbers[] = {0.0, -1.5e-300, 1e22, 4.9406564584124654e-324, 123.456789012345678};
     bough_summary s;
-    bough_summary_open(&s, *state, "summary.json");
+    bough_summary_open(&s, *context, "summary.json");
     for (int i = 0; i < 5; i++) bough_summary_number(&s, "x", numbers[i]);
     bough_summary_close(&s);
-    char *text = scratch_read(*state, "summary.json");
+    char *text = scratch_read(*context, "summary.json");
     const char *at = text;
     for (int i = 0; i < 5; i++) {
         at = strstr(at, ": ") + 2;
@@ -74,23 +74,22 @@ static void numbers_survive_the_round_trip(void **state) {
     free(text);
 }
 
-static void unwritable_place_is_an_error_of_files(void **state) {
+TEST_IN_FOLDER(unwritable_place_is_an_error_of_files) {
     char partial[128];
     bough_summary s;
     bough_status status = bough_summary_open(&s, "/nowhere/at/all", "summary.json");
     assert_int_equal(status.code, BOUGH_IO);
 
-    snprintf(partial, sizeof partial, "%s/summary.json.partial", (char *)*state);
+    snprintf(partial, sizeof partial, "%s/summary.json.partial", (char *)*context);
     assert_int_equal(symlink("/dev/full", partial), 0);
-    status = bough_summary_open(&s, *state, "summary.json");
+    status = bough_summary_open(&s, *context, "summary.json");
     assert_true(bough_is_ok(&status));
     status = bough_summary_close(&s);
     assert_int_equal(status.code, BOUGH_IO);
-    assert_false(scratch_has(*state, "summary.json"));
+    assert_false(scratch_has(*context, "summary.json"));
 }
 
-static void progress_tells_speed_and_time_left(void **state) {
-    (void)state;
+TEST(progress_tells_speed_and_time_left) {
     bough_progress p = bough_progress_start(10, 40, true);
     assert_false(p.visible);
     char text[128];
@@ -101,17 +100,4 @@ static void progress_tells_speed_and_time_left(void **state) {
     p.label = "scheme=monolithic, macro_step=20 ms";
     bough_progress_text(&p, 20, 5, 39, text, sizeof text);
     assert_string_equal(text, "scheme=monolith    20.00 of 40 s");
-}
-
-int main(void) {
-#define in_scratch(test) cmocka_unit_test_setup_teardown(test, scratch_make, scratch_remove)
-    const struct CMUnitTest tests[] = {
-        in_scratch(fields_arrays_and_objects_are_nested),
-        in_scratch(what_json_does_not_know_becomes_null),
-        in_scratch(texts_are_escaped),
-        in_scratch(numbers_survive_the_round_trip),
-        in_scratch(unwritable_place_is_an_error_of_files),
-        cmocka_unit_test(progress_tells_speed_and_time_left),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -29,8 +29,7 @@ static void check_blade(const bough_scene_body *b) {
     check_near(s->station[0].def.inertia[3], 22, 0, 0); // Ixx + Iyy
 }
 
-static void turbine_is_read(void **state) {
-    (void)state;
+TEST(turbine_is_read) {
     fixture f = read_scene(SCENES "example-turbine.yaml", NULL, 0);
     assert_string_equal(f.printed, "");
     assert_int_equal(f.status.code, BOUGH_OK);
@@ -65,8 +64,7 @@ static void turbine_is_read(void **state) {
     stop(&f);
 }
 
-static void aerodynamics_are_read(void **state) {
-    (void)state;
+TEST(aerodynamics_are_read) {
     fixture f = read_scene(SCENES "example-turbine.yaml", NULL, 0);
     assert_non_null(f.scene);
     const bough_scene_aero *a = &f.scene->aero;
@@ -104,8 +102,7 @@ static void aerodynamics_are_read(void **state) {
     stop(&f);
 }
 
-static void uniform_beam_needs_no_table(void **state) {
-    (void)state;
+TEST(uniform_beam_needs_no_table) {
     fixture f = read_scene(SCENES "example-beam.yaml", NULL, 0);
     assert_string_equal(f.printed, "");
     const bough_scene *s = f.scene;
@@ -127,8 +124,7 @@ static void uniform_beam_needs_no_table(void **state) {
 }
 
 // Every scene that the project ships must be a good one.
-static void shipped_scenes_are_good(void **state) {
-    (void)state;
+TEST(shipped_scenes_are_good) {
     const char *const names[] = {"turbine/runup.yaml", "turbine/runup-rated.yaml", "beams/rubber-bar.yaml"};
     for (int i = 0; i < 3; i++) {
         char path[300];
@@ -140,8 +136,7 @@ static void shipped_scenes_are_good(void **state) {
     }
 }
 
-static void parents_come_first_in_the_order(void **state) {
-    (void)state;
+TEST(parents_come_first_in_the_order) {
     write_file("s.yaml", SIMULATION "bodies:\n"
                                     "  - {name: c, fidelity: rigid, joint: {kind: fixed, parent: b}}\n"
                                     "  - {name: b, fidelity: rigid, joint: {kind: fixed, parent: a}}\n"
@@ -154,8 +149,7 @@ static void parents_come_first_in_the_order(void **state) {
     stop(&f);
 }
 
-static void free_and_sliding_joints_start_moving(void **state) {
-    (void)state;
+TEST(free_and_sliding_joints_start_moving) {
     write_file("s.yaml", SIMULATION
                "bodies:\n"
                "  - name: a\n    fidelity: rigid\n    mass: 1\n    inertia: [1, 2, 3]\n"
@@ -176,8 +170,7 @@ static void free_and_sliding_joints_start_moving(void **state) {
     stop(&f);
 }
 
-static void joints_of_several_axes_are_read(void **state) {
-    (void)state;
+TEST(joints_of_several_axes_are_read) {
     write_file("s.yaml", SIMULATION
                "bodies:\n"
                "  - {name: a, fidelity: rigid, mass: 1, inertia: [1, 2, 3], joint: {kind: universal,\n"
@@ -210,8 +203,7 @@ static void joints_of_several_axes_are_read(void **state) {
             "s.yaml:6:68: error: bodies[0].joint.second_axis: must not be the first axis\n");
 }
 
-static void stops_need_a_stiffness_and_an_order(void **state) {
-    (void)state;
+TEST(stops_need_a_stiffness_and_an_order) {
 #define HINGE(more)                                                                                          \
     SIMULATION "bodies:\n  - name: a\n    fidelity: rigid\n    inertia: [1, 1, 1]\n    joint:\n"             \
                "      {kind: revolute, parent: ground, axis: x, " more "}\n"
@@ -226,8 +218,7 @@ static void stops_need_a_stiffness_and_an_order(void **state) {
 #undef HINGE
 }
 
-static void tables_of_joint_loads_are_checked(void **state) {
-    (void)state;
+TEST(tables_of_joint_loads_are_checked) {
 #define LOADED(more)                                                                                         \
     SIMULATION "bodies:\n  - name: a\n    fidelity: rigid\n    inertia: [1, 1, 1]\n"                         \
                "    joint: {kind: revolute, parent: ground, axis: x}\nloads:\n"                              \
@@ -242,8 +233,7 @@ static void tables_of_joint_loads_are_checked(void **state) {
 #undef LOADED
 }
 
-static void springs_join_two_rigid_bodies(void **state) {
-    (void)state;
+TEST(springs_join_two_rigid_bodies) {
     accepts(ONE_BODY "springs:\n  - {name: s, from: ground, to: a, to_point: [1, 0, 0]}\n");
     refuses(ONE_BODY "springs:\n  - {name: s, from: a, to: a}\n",
             "s.yaml:7:28: error: springs[0].to: must be another body\n");
@@ -251,8 +241,7 @@ static void springs_join_two_rigid_bodies(void **state) {
             "s.yaml:7:21: error: springs[0].from: there is no body 'zzzzz'\n");
 }
 
-static void closures_join_two_rigid_bodies(void **state) {
-    (void)state;
+TEST(closures_join_two_rigid_bodies) {
 #define CLOSED(rest) ONE_BODY "closures:\n  - {name: c, from: ground, to: a, " rest "}\n"
     accepts(CLOSED("kind: spherical"));
     accepts(CLOSED("kind: revolute, axis: y, to_placement: [move x 1 m, rotate z 5 deg]"));
@@ -265,8 +254,7 @@ static void closures_join_two_rigid_bodies(void **state) {
 #undef CLOSED
 }
 
-static void rods_may_be_curved(void **state) {
-    (void)state;
+TEST(rods_may_be_curved) {
     write_file("blade.yaml", "damping: [1 ms, 0, 0, 0, 0, 0]\n"
                              "stations:\n"
                              "  columns: [span, axis, stiffness, mass]\n"
@@ -285,8 +273,7 @@ static void rods_may_be_curved(void **state) {
     stop(&f);
 }
 
-static void rods_may_be_parts_of_a_table(void **state) {
-    (void)state;
+TEST(rods_may_be_parts_of_a_table) {
     write_file("blade.yaml", "stations:\n"
                              "  columns: [span, twist deg, axis, stiffness, mass]\n"
                              "  rows:\n"
@@ -316,8 +303,7 @@ static void rods_may_be_parts_of_a_table(void **state) {
 
 // -- the rest -------------------------------------------------------------------------------------
 
-static void missing_scene_is_told(void **state) {
-    (void)state;
+TEST(missing_scene_is_told) {
     fixture f = read_scene("none.yaml", NULL, 0);
     assert_string_equal(f.printed, "none.yaml: error: cannot be read: No such file or directory\n");
     assert_int_equal(f.status.code, BOUGH_INVALID);
@@ -325,8 +311,7 @@ static void missing_scene_is_told(void **state) {
     stop(&f);
 }
 
-static void hostile_scenes_end_fast(void **state) {
-    (void)state;
+TEST(hostile_scenes_end_fast) {
     FILE *stream = fopen("s.yaml", "w");
     fputs(SIMULATION "bodies:\n", stream);
     for (int i = 0; i < 9000; i++) fprintf(stream, "- {name: n%d, joint: {parent: m%d}}\n", i, i);
@@ -346,8 +331,7 @@ static void hostile_scenes_end_fast(void **state) {
     assert_true((double)(clock() - begin) / CLOCKS_PER_SEC < 10);
 }
 
-static void help_covers_scene_and_files(void **state) {
-    (void)state;
+TEST(help_covers_scene_and_files) {
     char *text;
     size_t size;
     FILE *stream = open_memstream(&text, &size);
@@ -369,24 +353,4 @@ static void help_covers_scene_and_files(void **state) {
     free(text);
 }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(turbine_is_read),
-        cmocka_unit_test(aerodynamics_are_read),
-        cmocka_unit_test(uniform_beam_needs_no_table),
-        cmocka_unit_test(shipped_scenes_are_good),
-        cmocka_unit_test(parents_come_first_in_the_order),
-        cmocka_unit_test(free_and_sliding_joints_start_moving),
-        cmocka_unit_test(joints_of_several_axes_are_read),
-        cmocka_unit_test(stops_need_a_stiffness_and_an_order),
-        cmocka_unit_test(tables_of_joint_loads_are_checked),
-        cmocka_unit_test(springs_join_two_rigid_bodies),
-        cmocka_unit_test(closures_join_two_rigid_bodies),
-        cmocka_unit_test(rods_may_be_curved),
-        cmocka_unit_test(rods_may_be_parts_of_a_table),
-        cmocka_unit_test(missing_scene_is_told),
-        cmocka_unit_test(hostile_scenes_end_fast),
-        cmocka_unit_test(help_covers_scene_and_files),
-    };
-    return cmocka_run_group_tests(tests, enter, leave);
-}
+GROUP(enter, leave)

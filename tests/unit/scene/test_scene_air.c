@@ -1,8 +1,7 @@
 // Bad modes, turbines, winds and polars, each told at its place.
 #include "tests/unit/scene_text.h"
 
-static void modes_name_their_axis(void **state) {
-    (void)state;
+TEST(modes_name_their_axis) {
     refuses(TWO_RODS "  []\nmodes: {about: x, axis: [0, 0, 1]}\n",
             "s.yaml:8:16: error: modes.about: there is no body 'x' (did you mean 'a'?)\n"
             "s.yaml:8:25: error: modes.axis: only used without 'about'\n");
@@ -23,8 +22,7 @@ static void modes_name_their_axis(void **state) {
     "polars:\n- name: p\n  table: {columns: [alpha deg, cl, cd, cm], rows: [[-180, 0, 0, 0], "               \
     "[180, 0, 0, 0]]}\n"
 
-static void turbine_names_are_checked(void **state) {
-    (void)state;
+TEST(turbine_names_are_checked) {
     refuses(ROTOR "turbine: {rotor: hbu, blades: [b1, b3]}\n",
             "s.yaml:7:18: error: turbine.rotor: there is no body 'hbu' (did you mean 'hub'?)\n"
             "s.yaml:7:36: error: turbine.blades[1]: there is no body 'b3' (did you mean 'b1'?)\n");
@@ -36,8 +34,7 @@ static void turbine_names_are_checked(void **state) {
             "s.yaml:7:36: error: turbine.blades[1]: body 'b2' is not carried by the rotor 'hub'\n");
 }
 
-static void aerodynamics_are_consistent(void **state) {
-    (void)state;
+TEST(aerodynamics_are_consistent) {
     write_file("aero.yaml", BLADE);
     write_file("polars.yaml", POLARS);
     accepts(ROTOR "turbine: {rotor: hub, blades: [b1]}\n" AERO);
@@ -78,8 +75,7 @@ static void aerodynamics_are_consistent(void **state) {
           "  hub_radius: 1\n"                                                                                \
           "  wind: {" keys "}\n"
 
-static void wind_is_a_speed_or_a_table(void **state) {
-    (void)state;
+TEST(wind_is_a_speed_or_a_table) {
     write_file("aero.yaml", BLADE);
     write_file("polars.yaml", POLARS);
     accepts(WIND("table: {times: [0, 10 s], speeds: [8, 9]}, direction: 5 deg, vertical: -1"));
@@ -97,8 +93,7 @@ static void wind_is_a_speed_or_a_table(void **state) {
             "2 m, got 1 m\n");
 }
 
-static void polars_cover_the_circle(void **state) {
-    (void)state;
+TEST(polars_cover_the_circle) {
     write_file("aero.yaml", BLADE);
     write_file("polars.yaml", "polars:\n- name: p\n  table:\n    columns: [alpha deg, cl, cd, cm]\n"
                               "    rows:\n    - [-180, 0, 0, 0]\n    - [-180, 0, 0, 0]\n"
@@ -124,11 +119,4 @@ static void polars_cover_the_circle(void **state) {
             "polars.yaml:4:9: error: polars[1].name: polar 'p' is given twice\n");
 }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(modes_name_their_axis),       cmocka_unit_test(turbine_names_are_checked),
-        cmocka_unit_test(aerodynamics_are_consistent), cmocka_unit_test(wind_is_a_speed_or_a_table),
-        cmocka_unit_test(polars_cover_the_circle),
-    };
-    return cmocka_run_group_tests(tests, enter, leave);
-}
+GROUP(enter, leave)

@@ -1,8 +1,7 @@
 // Bad bodies, joints and rods, each told at its place.
 #include "tests/unit/scene_text.h"
 
-static void all_errors_are_shown_in_order(void **state) {
-    (void)state;
+TEST(all_errors_are_shown_in_order) {
     refuses("titel: x\n"
             "simulation:\n"
             "  duration: 1 kg\n"
@@ -25,8 +24,7 @@ static void all_errors_are_shown_in_order(void **state) {
             "s.yaml:11:13: error: loads[0].joint: there is no body 'b' (did you mean 'a'?)\n");
 }
 
-static void missing_parts_are_named(void **state) {
-    (void)state;
+TEST(missing_parts_are_named) {
     refuses("title: x\n", "s.yaml:1:1: error: required key 'simulation' is missing\n"
                           "s.yaml:1:1: error: required key 'bodies' is missing\n");
     refuses(SIMULATION "bodies: []\n", "s.yaml:2:9: error: bodies: expected at least 1 item, got "
@@ -37,8 +35,7 @@ static void missing_parts_are_named(void **state) {
             "s.yaml:3:5: error: bodies[0]: required key 'joint' is missing\n");
 }
 
-static void joint_keys_fit_the_kind(void **state) {
-    (void)state;
+TEST(joint_keys_fit_the_kind) {
     refuses(SIMULATION "bodies:\n  - name: a\n    fidelity: rigid\n    mass: 1\n"
                        "    joint: {kind: fixed, parent: ground, axis: x, angle: 0, speed: 1}\n",
             "s.yaml:6:42: error: bodies[0].joint.axis: only used with 'kind: "
@@ -55,8 +52,7 @@ static void joint_keys_fit_the_kind(void **state) {
             "as '61.5 m'), got '1 deg': the unit 'deg' does not fit\n");
 }
 
-static void bad_placements_are_refused(void **state) {
-    (void)state;
+TEST(bad_placements_are_refused) {
     refuses(SIMULATION "bodies:\n  - name: a\n    fidelity: rigid\n"
                        "    joint:\n      kind: fixed\n      parent: ground\n      placement:\n"
                        "        - shift z 1\n        - move w 1\n        - move z 1 deg\n"
@@ -75,8 +71,7 @@ static void bad_placements_are_refused(void **state) {
             "'rotate x|y|z ANGLE', got a list\n");
 }
 
-static void names_are_checked(void **state) {
-    (void)state;
+TEST(names_are_checked) {
     refuses(SIMULATION "bodies:\n" BODY("a", "ground") BODY("a", "ground") BODY("ground", "a")
                 BODY("a b/c", "a"),
             "s.yaml:4:12: error: bodies[1].name: body 'a' is given twice\n"
@@ -88,8 +83,7 @@ static void names_are_checked(void **state) {
             "'tower'?)\n");
 }
 
-static void loops_of_parents_are_refused(void **state) {
-    (void)state;
+TEST(loops_of_parents_are_refused) {
     refuses(SIMULATION "bodies:\n" BODY("a", "a"),
             "s.yaml:3:61: error: bodies[0].joint.parent: parents form a loop: a -> a\n");
     refuses(SIMULATION "bodies:\n" BODY("z", "c") BODY("b", "c") BODY("c", "d") BODY("d", "b")
@@ -97,8 +91,7 @@ static void loops_of_parents_are_refused(void **state) {
             "s.yaml:4:61: error: bodies[1].joint.parent: parents form a loop: b -> c -> d -> b\n");
 }
 
-static void moving_joints_need_mass(void **state) {
-    (void)state;
+TEST(moving_joints_need_mass) {
     refuses(SIMULATION "bodies:\n  - {name: a, fidelity: rigid, joint: {kind: revolute, parent: "
                        "ground, axis: x}}\n" BODY("b", "a"),
             "s.yaml:3:5: error: bodies[0]: a joint that moves must carry mass: give 'mass' here or "
@@ -108,8 +101,7 @@ static void moving_joints_need_mass(void **state) {
                        "  - {name: b, fidelity: rigid, mass: 1, joint: {kind: fixed, parent: a}}\n");
 }
 
-static void body_keys_fit_the_fidelity(void **state) {
-    (void)state;
+TEST(body_keys_fit_the_fidelity) {
     refuses(ROD_BODY, "s.yaml:3:5: error: bodies[0]: required key 'rod' is missing (with 'fidelity: "
                       "rod')\n");
     refuses(ONE_BODY "    pitch: 1 deg\n", "s.yaml:6:12: error: bodies[0].pitch: only used with a "
@@ -145,8 +137,7 @@ static void body_keys_fit_the_fidelity(void **state) {
             "Ixz, Iyz, got 2 items\n");
 }
 
-static void rods_are_complete(void **state) {
-    (void)state;
+TEST(rods_are_complete) {
     refuses(
         ROD_BODY "    rod: {segments: 4}\n",
         "s.yaml:6:10: error: bodies[0].rod: required keys 'length', 'stiffness', 'mass' are missing (without a "
@@ -168,8 +159,7 @@ static void rods_are_complete(void **state) {
             "s.yaml:6:38: error: bodies[0].rod.length: only used without a table\n");
 }
 
-static void section_matrices_are_checked(void **state) {
-    (void)state;
+TEST(section_matrices_are_checked) {
     refuses(
         ROD_BODY "    rod:\n      length: 1\n"
                  "      stiffness: [1, 0, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 1, 2, 0, 1, 0, "
@@ -212,8 +202,7 @@ static void refuses_spans(const char *length, const char *spans[3], const char *
     refuses(ROD_BODY "    rod: {table: blade.yaml}\n", lines);
 }
 
-static void stations_run_from_zero_to_the_length(void **state) {
-    (void)state;
+TEST(stations_run_from_zero_to_the_length) {
     refuses_spans("", (const char *[3]){"0", "1", "2"}, "");
     refuses_spans("length: 200 cm\n", (const char *[3]){"0", "1", "2"}, "");
     refuses_spans("length: 5\n", (const char *[3]){"0"}, "");
@@ -231,8 +220,7 @@ static void stations_run_from_zero_to_the_length(void **state) {
 }
 
 // Two bodies name the same bad table: its errors are shown once.
-static void errors_of_a_table_are_shown_once(void **state) {
-    (void)state;
+TEST(errors_of_a_table_are_shown_once) {
     write_file("blade.yaml", "lenght: 3\n");
     refuses(ROD_BODY "    rod: {table: blade.yaml}\n"
                      "  - name: b\n    fidelity: rod\n" JOINT "    rod: {table: blade.yaml}\n",
@@ -240,20 +228,4 @@ static void errors_of_a_table_are_shown_once(void **state) {
             "blade.yaml:1:1: error: unknown key 'lenght' (did you mean 'length'?)\n");
 }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(all_errors_are_shown_in_order),
-        cmocka_unit_test(missing_parts_are_named),
-        cmocka_unit_test(joint_keys_fit_the_kind),
-        cmocka_unit_test(bad_placements_are_refused),
-        cmocka_unit_test(names_are_checked),
-        cmocka_unit_test(loops_of_parents_are_refused),
-        cmocka_unit_test(moving_joints_need_mass),
-        cmocka_unit_test(body_keys_fit_the_fidelity),
-        cmocka_unit_test(rods_are_complete),
-        cmocka_unit_test(section_matrices_are_checked),
-        cmocka_unit_test(stations_run_from_zero_to_the_length),
-        cmocka_unit_test(errors_of_a_table_are_shown_once),
-    };
-    return cmocka_run_group_tests(tests, enter, leave);
-}
+GROUP(enter, leave)

@@ -49,13 +49,7 @@ static void check_schema(const bough_schema *schema) {
     }
 }
 
-static void every_key_reads_its_example(void **context) {
-    (void)context;
+TEST(every_key_reads_its_example) {
     check_schema(&bough_scene_schema);
     assert_true(n_example > 150);
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(every_key_reads_its_example)};
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

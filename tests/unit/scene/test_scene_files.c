@@ -64,8 +64,7 @@ static uint64_t fingerprint(const bough_scene *s, bough_arena *arena) {
     return sum;
 }
 
-static void every_key_that_names_a_file_is_in_the_list(void **state) {
-    (void)state;
+TEST(every_key_that_names_a_file_is_in_the_list) {
     fixture f = read_scene("s.yaml", NULL, 0);
     assert_string_equal(f.printed, "");
     bough_scene_files list = bough_scene_list_files(f.arena, f.scene);
@@ -82,8 +81,7 @@ static void every_key_that_names_a_file_is_in_the_list(void **state) {
     stop(&f);
 }
 
-static void the_fingerprint_changes_with_each_file(void **state) {
-    (void)state;
+TEST(the_fingerprint_changes_with_each_file) {
     fixture f = read_scene("s.yaml", NULL, 0);
     assert_non_null(f.scene);
     uint64_t before = fingerprint(f.scene, f.arena);
@@ -100,8 +98,7 @@ static void the_fingerprint_changes_with_each_file(void **state) {
 }
 
 // A sum is taken once for all scenes that share it.
-static void a_shared_file_is_read_once(void **state) {
-    (void)state;
+TEST(a_shared_file_is_read_once) {
     fixture f = read_scene("s.yaml", NULL, 0);
     bough_file_sums sums = {.arena = f.arena};
     uint64_t first = BOUGH_FINGERPRINT_START, second = BOUGH_FINGERPRINT_START;
@@ -114,9 +111,9 @@ static void a_shared_file_is_read_once(void **state) {
     stop(&f);
 }
 
-static void a_path_from_the_root_is_known_as_one(void **state) {
+TEST(a_path_from_the_root_is_known_as_one) {
     char law[600], text[700];
-    snprintf(law, sizeof law, "%s/control/law.so", (const char *)*state);
+    snprintf(law, sizeof law, "%s/control/law.so", (const char *)*context);
     snprintf(text, sizeof text, "control.library=%s", law);
     fixture f = read_scene("s.yaml", (const char *const[]){text}, 1);
     bough_scene_files list = bough_scene_list_files(f.arena, f.scene);
@@ -126,12 +123,4 @@ static void a_path_from_the_root_is_known_as_one(void **state) {
     stop(&f);
 }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(every_key_that_names_a_file_is_in_the_list),
-        cmocka_unit_test(the_fingerprint_changes_with_each_file),
-        cmocka_unit_test(a_shared_file_is_read_once),
-        cmocka_unit_test(a_path_from_the_root_is_known_as_one),
-    };
-    return cmocka_run_group_tests(tests, enter_files, leave_files);
-}
+GROUP(enter_files, leave_files)

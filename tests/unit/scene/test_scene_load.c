@@ -1,8 +1,7 @@
 // Bad times and loads, each told at its place.
 #include "tests/unit/scene_text.h"
 
-static void times_fit_the_macro_step(void **state) {
-    (void)state;
+TEST(times_fit_the_macro_step) {
     refuses("simulation: {duration: 1.005, macro_step: 10 ms, output: {interval: 25 ms}}\n"
             "bodies:\n" BODY("a", "ground"),
             "s.yaml:1:24: error: simulation.duration: 1.005 s is not a multiple of the macro step, "
@@ -16,8 +15,7 @@ static void times_fit_the_macro_step(void **state) {
     accepts("simulation: {duration: 0.3, macro_step: 0.1}\nbodies:\n" BODY("a", "ground"));
 }
 
-static void loads_fit_their_joints(void **state) {
-    (void)state;
+TEST(loads_fit_their_joints) {
     refuses(SIMULATION
             "bodies:\n" BODY("a", "ground") "  - {name: h, mass: 1, fidelity: rigid, joint: {kind: "
                                             "revolute, parent: a, axis: x}}\n"
@@ -43,8 +41,7 @@ static void loads_fit_their_joints(void **state) {
 #define MODAL(fidelity)                                                                                      \
     SIMULATION "bodies:\n  - name: a\n    fidelity: " fidelity "\n" JOINT "    " SMALL_ROD "\n"
 
-static void modal_bodies_are_rods_reduced(void **state) {
-    (void)state;
+TEST(modal_bodies_are_rods_reduced) {
     accepts(MODAL("modal"));
     accepts(MODAL("segmented-modal") "    modal: {modes: 3, statics: false, pieces: 4}\n");
     refuses(MODAL("modal") "    modal: {pieces: 4}\n",
@@ -64,8 +61,7 @@ static void modal_bodies_are_rods_reduced(void **state) {
             "with its sections: make it a rod or give 'frame: body'\n");
 }
 
-static void loads_act_on_rods(void **state) {
-    (void)state;
+TEST(loads_act_on_rods) {
     write_file("s.yaml", TWO_RODS "  - {body: b, at: tip, force: [1 kN, 0, 2]}\n"
                                   "  - {body: c, at: 3, moment: [0, 0, 2 kN m], frame: follower}\n"
                                   "  - {body: b, at: 150 cm, force: [1, 0, 2], ramp: [0, 1]}\n"
@@ -90,8 +86,7 @@ static void loads_act_on_rods(void **state) {
     stop(&f);
 }
 
-static void loads_fit_their_rods(void **state) {
-    (void)state;
+TEST(loads_fit_their_rods) {
     refuses(TWO_RODS "  - {torque: 1}\n"
                      "  - {body: b, joint: c, at: tip, force: [1, 2, 3]}\n"
                      "  - {body: b, force: [1, 2, 3]}\n"
@@ -139,11 +134,4 @@ static void loads_fit_their_rods(void **state) {
     accepts(TWO_RODS "  - {body: a, moment: [1, 2, 3], factor: {times: [0, 1], values: [0, 2]}}\n");
 }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(times_fit_the_macro_step),      cmocka_unit_test(loads_fit_their_joints),
-        cmocka_unit_test(modal_bodies_are_rods_reduced), cmocka_unit_test(loads_act_on_rods),
-        cmocka_unit_test(loads_fit_their_rods),
-    };
-    return cmocka_run_group_tests(tests, enter, leave);
-}
+GROUP(enter, leave)

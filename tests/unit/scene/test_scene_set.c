@@ -1,8 +1,7 @@
 // Values replaced by --set.
 #include "tests/unit/scene_text.h"
 
-static void values_can_be_replaced_and_added(void **state) {
-    (void)state;
+TEST(values_can_be_replaced_and_added) {
     const char *const sets[] = {"simulation.coupling.scheme=extrapolated",
                                 "simulation.coupling.order=2",
                                 "bodies[3].pitch=5 deg",
@@ -22,8 +21,7 @@ static void values_can_be_replaced_and_added(void **state) {
     stop(&f);
 }
 
-static void missing_mappings_are_made(void **state) {
-    (void)state;
+TEST(missing_mappings_are_made) {
     const char *const sets[] = {"simulation.micro.rtol=1e-8", "simulation.threads=3"};
     fixture f = read_scene(SCENES "example-beam.yaml", sets, 2);
     assert_string_equal(f.printed, "");
@@ -33,8 +31,7 @@ static void missing_mappings_are_made(void **state) {
 }
 
 // A rod shared by an alias changes for the named body only.
-static void shared_values_are_copied_first(void **state) {
-    (void)state;
+TEST(shared_values_are_copied_first) {
     write_file("s.yaml", ROTOR);
     const char *const sets[] = {"bodies[1].rod.length=7"};
     fixture f = read_scene("s.yaml", sets, 1);
@@ -44,8 +41,7 @@ static void shared_values_are_copied_first(void **state) {
     stop(&f);
 }
 
-static void bad_replacements_are_refused(void **state) {
-    (void)state;
+TEST(bad_replacements_are_refused) {
     const char *const sets[] = {"abc",
                                 "=1",
                                 "title=",
@@ -84,12 +80,4 @@ static void bad_replacements_are_refused(void **state) {
     stop(&f);
 }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(values_can_be_replaced_and_added),
-        cmocka_unit_test(missing_mappings_are_made),
-        cmocka_unit_test(shared_values_are_copied_first),
-        cmocka_unit_test(bad_replacements_are_refused),
-    };
-    return cmocka_run_group_tests(tests, enter, leave);
-}
+GROUP(enter, leave)

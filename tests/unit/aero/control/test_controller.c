@@ -28,8 +28,7 @@ static bough_controller_def baseline(void) {
 
 // The report derives its gains from a damping ratio of 0.7 and 0.6 rad/s at rated, where a pitch of
 // 1 rad takes 25.52 MW: KP = 2 J Ω ζ ω/(N·25.52e6), KI = J Ω ω²/(N·25.52e6).
-static void gains_are_those_of_the_design(void **state) {
-    (void)state;
+TEST(gains_are_those_of_the_design) {
     bough_controller_def d = baseline();
     double speed = 12.1 * rpm, unit = inertia * speed / (gear * 25.52e6);
     check_near(d.proportional, 2 * 0.7 * 0.6 * unit, 1e-3, 0);
@@ -41,8 +40,7 @@ static void gains_are_those_of_the_design(void **state) {
 }
 
 // Torque of the regions and where they meet: the report's figure 7-1.
-static void torque_follows_the_regions(void **state) {
-    (void)state;
+TEST(torque_follows_the_regions) {
     bough_controller_def d = baseline();
     static const double table[][3] = {{500, 0, 0},        {669.9, 0, 0},           {871, 0, 19403.3},
                                       {1000, 0, 25576.4}, {1161.963, 0, 43528.7},  {1173.7, 0, 43093.5},
@@ -61,8 +59,7 @@ static void torque_follows_the_regions(void **state) {
 
 // From -1 to 1.3 of rated speed, at any pitch: no torque up to cut-in, positive above, without a jump up to
 // where the pitched turbine has constant power.
-static void torque_never_drives(void **state) {
-    (void)state;
+TEST(torque_never_drives) {
     static const double pitches[] = {0, 0.018, 0.3, 1.57};
     for (int k = 0; k < 8; k++) {
         bough_controller_def d = baseline();
@@ -79,8 +76,7 @@ static void torque_never_drives(void **state) {
 
 // From the synchronous speed the line of the slip goes both ways, to the most torque of either sign; GenModel
 // 1 of OpenFAST's ServoDyn.
-static void an_induction_generator_drives_below_its_synchronous_speed(void **state) {
-    (void)state;
+TEST(an_induction_generator_drives_below_its_synchronous_speed) {
     bough_controller_def d = baseline();
     const double most = 450, synchronous = 600 * rpm, slip = 0.03;
     d.motoring = true, d.optimal_gain = 0, d.cut_in = 0, d.optimal_from = 1e-3;
@@ -101,8 +97,7 @@ static void an_induction_generator_drives_below_its_synchronous_speed(void **sta
 }
 
 // A rotor that something else stops and turns back: the filter and the rate of the torque keep none.
-static void a_rotor_that_reverses_has_no_torque(void **state) {
-    (void)state;
+TEST(a_rotor_that_reverses_has_no_torque) {
     bough_controller_def d = baseline();
     bough_controller_state s = {0};
     bough_controller_advance(&d, 110, 0, 0.02, &s);
@@ -114,8 +109,7 @@ static void a_rotor_that_reverses_has_no_torque(void **state) {
 }
 
 // Constant torque instead, and a line that is as good as vertical.
-static void torque_may_stay(void **state) {
-    (void)state;
+TEST(torque_may_stay) {
     bough_controller_def d = baseline();
     d.above_rated = BOUGH_CONSTANT_TORQUE;
     double rated = d.rated_power / d.rated_speed;
@@ -128,8 +122,7 @@ static void torque_may_stay(void **state) {
     check_near(bough_controller_torque(&d, below, 0), d.optimal_gain * below * below, 1e-12, 0);
 }
 
-static void limits_hold(void **state) {
-    (void)state;
+TEST(limits_hold) {
     bough_controller_def d = baseline();
     bough_controller_state s = {0};
     bough_controller_advance(&d, 90, 0.1, 0.02, &s);
@@ -149,8 +142,7 @@ static void limits_hold(void **state) {
 
 // A rotor of that inertia whose power falls with the pitch as the report says comes back to the
 // reference speed after a gust, from either side.
-static void speed_is_regulated(void **state) {
-    (void)state;
+TEST(speed_is_regulated) {
     bough_controller_def d = baseline();
     const double step = 0.0125, rated = 5296610;
     for (int sign = -1; sign <= 1; sign += 2) {
@@ -171,8 +163,7 @@ static void speed_is_regulated(void **state) {
     }
 }
 
-static void senseless_constants_are_refused(void **state) {
-    (void)state;
+TEST(senseless_constants_are_refused) {
     for (int i = 0; i < 6; i++) {
         bough_controller_def d = baseline();
         if (i == 4) d.cut_in = -1;
@@ -187,8 +178,7 @@ static void senseless_constants_are_refused(void **state) {
 }
 
 // The line of a nearly vertical slip meets the parabola at its synchronous speed.
-static void slip_of_nearly_nothing_is_a_vertical_line(void **state) {
-    (void)state;
+TEST(slip_of_nearly_nothing_is_a_vertical_line) {
     bough_controller_def d = baseline();
     d.slip = 1e-7;
     d.optimal_from = 1e-3, d.cut_in = 0;
@@ -196,20 +186,4 @@ static void slip_of_nearly_nothing_is_a_vertical_line(void **state) {
     assert_int_equal(status.code, BOUGH_OK);
     double below = d.rated_speed * (1 - 1e-6);
     check_near(bough_controller_torque(&d, below, 0), d.optimal_gain * below * below, 1e-12, 0);
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(gains_are_those_of_the_design),
-        cmocka_unit_test(torque_follows_the_regions),
-        cmocka_unit_test(torque_never_drives),
-        cmocka_unit_test(a_rotor_that_reverses_has_no_torque),
-        cmocka_unit_test(an_induction_generator_drives_below_its_synchronous_speed),
-        cmocka_unit_test(torque_may_stay),
-        cmocka_unit_test(limits_hold),
-        cmocka_unit_test(speed_is_regulated),
-        cmocka_unit_test(senseless_constants_are_refused),
-        cmocka_unit_test(slip_of_nearly_nothing_is_a_vertical_line),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

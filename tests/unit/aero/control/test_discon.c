@@ -17,8 +17,7 @@ static fixture open_controller(const char *input) {
     return f;
 }
 
-static void demands_come_back(void **state) {
-    (void)state;
+TEST(demands_come_back) {
     for (int individual = 0; individual < 2; individual++) {
         fixture f = open_controller(individual ? "individual" : "");
         bough_discon_sensed sensed = {.time = 2, .step = 0.01, .n_blade = 3, .generator_speed = 120};
@@ -31,8 +30,7 @@ static void demands_come_back(void **state) {
     }
 }
 
-static void more_blades_than_records_have_one_pitch(void **state) {
-    (void)state;
+TEST(more_blades_than_records_have_one_pitch) {
     for (int individual = 0; individual < 2; individual++) {
         fixture f = open_controller(individual ? "individual" : "");
         bough_discon_sensed sensed = {.time = 2, .step = 0.01, .n_blade = 5, .generator_speed = 120};
@@ -46,8 +44,7 @@ static void more_blades_than_records_have_one_pitch(void **state) {
 }
 
 // Every record that the controller is told, by its number in the interface's manual.
-static void records_are_served(void **state) {
-    (void)state;
+TEST(records_are_served) {
     const bough_discon_sensed sensed = {.time = 2,
                                         .step = 0.5,
                                         .n_blade = 3,
@@ -89,8 +86,7 @@ static void records_are_served(void **state) {
 }
 
 // 0 at first, then 1, and −1 at the last call.
-static void status_tells_first_and_last(void **state) {
-    (void)state;
+TEST(status_tells_first_and_last) {
     fixture f = open_controller("count");
     for (int k = 0; k < 4; k++) {
         bough_discon_sensed sensed = {.time = k, .step = 1, .last = k == 3, .n_blade = 3};
@@ -102,8 +98,7 @@ static void status_tells_first_and_last(void **state) {
     bough_arena_destroy(f.arena);
 }
 
-static void failures_are_told(void **state) {
-    (void)state;
+TEST(failures_are_told) {
     static const char *const told[][2] = {{"fail", "too late"}, {"nan", "nan"}, {"warn", NULL}};
     for (int i = 0; i < 3; i++) {
         fixture f = open_controller(told[i][0]);
@@ -119,8 +114,7 @@ static void failures_are_told(void **state) {
     }
 }
 
-static void what_is_no_controller_is_refused(void **state) {
-    (void)state;
+TEST(what_is_no_controller_is_refused) {
     static const char *const bad[][2] = {{"/nowhere/discon.so", "/nowhere/discon.so"},
                                          {BOUGH_SOURCE_DIR "/README.md", "README.md"},
                                          {BOUGH_OTHER_LIBRARY, "no function DISCON"}};
@@ -132,13 +126,4 @@ static void what_is_no_controller_is_refused(void **state) {
         assert_non_null(strstr(status.message, bad[i][1]));
         bough_arena_destroy(arena);
     }
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(demands_come_back),  cmocka_unit_test(more_blades_than_records_have_one_pitch),
-        cmocka_unit_test(records_are_served), cmocka_unit_test(status_tells_first_and_last),
-        cmocka_unit_test(failures_are_told),  cmocka_unit_test(what_is_no_controller_is_refused),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -53,8 +53,8 @@ static bough_element element_of(const bough_polar *polar) {
 }
 
 // Without swirl and loss, thrust from momentum 4a(1 − a) equals thrust from the blade.
-static void thrust_balances_momentum(void **state) {
-    airfoils *foils = *state;
+TEST(thrust_balances_momentum) {
+    airfoils *foils = *context;
     bough_induction_options options = lossless();
     options.tangential = false;
     for (double twist = 0.03; twist < 0.2; twist += 0.01) {
@@ -71,8 +71,8 @@ static void thrust_balances_momentum(void **state) {
 }
 
 // A heavily loaded tip in hardly any wind, a > 1: the induced velocity follows the wind without a jump.
-static void hardly_any_wind_has_one_answer(void **state) {
-    airfoils *foils = *state;
+TEST(hardly_any_wind_has_one_answer) {
+    airfoils *foils = *context;
     const double step = 1e-3;
     for (int skewed = 0; skewed < 2; skewed++) {
         bough_induction_options options = bough_induction_options_default();
@@ -98,8 +98,8 @@ static void hardly_any_wind_has_one_answer(void **state) {
 }
 
 // For small angles, lift 2πα and no twist φ = (1 − a)/λ, and 4a(1 − a) = 2πσλ²φ gives a = πσλ/2.
-static void small_angles_agree_with_closed_form(void **state) {
-    airfoils *foils = *state;
+TEST(small_angles_agree_with_closed_form) {
+    airfoils *foils = *context;
     bough_induction_options options = lossless();
     options.tangential = false;
     bough_element e = element_of(&foils->plate);
@@ -114,8 +114,8 @@ static void small_angles_agree_with_closed_form(void **state) {
 }
 
 // Torque from the blade equals angular momentum 4a'(1 − a) λ_r; ideal rotor without drag.
-static void torque_balances_angular_momentum(void **state) {
-    airfoils *foils = *state;
+TEST(torque_balances_angular_momentum) {
+    airfoils *foils = *context;
     bough_induction_options options = lossless();
     bough_element e = element_of(&foils->plate);
     e.inflow_y = 12;
@@ -138,8 +138,8 @@ static double thrust(const bough_element *e, double axial) {
 }
 
 // Beyond momentum theory the thrust lies on the parabola of the option.
-static void high_thrust_lies_on_parabola(void **state) {
-    airfoils *foils = *state;
+TEST(high_thrust_lies_on_parabola) {
+    airfoils *foils = *context;
     bough_induction_options options = lossless();
     options.tangential = false;
     int seen = 0;
@@ -164,8 +164,8 @@ static void high_thrust_lies_on_parabola(void **state) {
 
 // In a skewed wake thrust and torque balance the momentum of the flow through a disk across the wind,
 // up to a = 0.35/cos χ; beyond, the thrust lies on the parabola that goes on there.
-static void skewed_momentum_is_that_of_glauert(void **state) {
-    airfoils *foils = *state;
+TEST(skewed_momentum_is_that_of_glauert) {
+    airfoils *foils = *context;
     bough_induction_options options = lossless();
     options.skewed_momentum = true;
     int low = 0, high = 0;
@@ -223,8 +223,8 @@ static bough_element random_element(const airfoils *foils, uint64_t *seed) {
     return e;
 }
 
-static void any_state_is_finite_and_repeats(void **state) {
-    airfoils *foils = *state;
+TEST(any_state_is_finite_and_repeats) {
+    airfoils *foils = *context;
     uint64_t seed = 1;
     long evaluations = 0, worst = 0;
     for (int n = 0; n < 100000; n++) {
@@ -247,8 +247,8 @@ static void any_state_is_finite_and_repeats(void **state) {
 
 // Side by side or one by one: the same search. A residual that is close to zero on both sides of a
 // double root may fall out differently; none does here.
-static void lanes_give_what_one_gives(void **state) {
-    airfoils *foils = *state;
+TEST(lanes_give_what_one_gives) {
+    airfoils *foils = *context;
     enum { N = 40, TIMES = 2000 };
     uint64_t seed = 3;
     for (int n = 0; n < TIMES; n++) {
@@ -286,8 +286,8 @@ static void lanes_give_what_one_gives(void **state) {
 }
 
 // A rotor seen from behind, or turning the other way, is the mirrored rotor.
-static void mirrored_flow_gives_same_induction(void **state) {
-    airfoils *foils = *state;
+TEST(mirrored_flow_gives_same_induction) {
+    airfoils *foils = *context;
     bough_induction_options options = bough_induction_options_default();
     uint64_t seed = 7;
     for (int n = 0; n < 1000; n++) {
@@ -302,17 +302,4 @@ static void mirrored_flow_gives_same_induction(void **state) {
     }
 }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(thrust_balances_momentum),
-        cmocka_unit_test(hardly_any_wind_has_one_answer),
-        cmocka_unit_test(small_angles_agree_with_closed_form),
-        cmocka_unit_test(torque_balances_angular_momentum),
-        cmocka_unit_test(high_thrust_lies_on_parabola),
-        cmocka_unit_test(skewed_momentum_is_that_of_glauert),
-        cmocka_unit_test(any_state_is_finite_and_repeats),
-        cmocka_unit_test(lanes_give_what_one_gives),
-        cmocka_unit_test(mirrored_flow_gives_same_induction),
-    };
-    return cmocka_run_group_tests(tests, set_up, tear_down);
-}
+GROUP(set_up, tear_down)

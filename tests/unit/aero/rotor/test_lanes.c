@@ -3,8 +3,7 @@
 #include "tests/unit/check.h"
 
 // Against the mathematical library, whose own error is below one unit in the last place.
-static void functions_agree_with_the_library(void **state) {
-    (void)state;
+TEST(functions_agree_with_the_library) {
     enum { POINTS = 20001 };
     for (int i = 0; i < POINTS; i++) {
         double u = (double)i / (POINTS - 1), x = BOUGH_PI * (2 * u - 1);
@@ -20,8 +19,7 @@ static void functions_agree_with_the_library(void **state) {
     }
 }
 
-static void angles_on_the_axes(void **state) {
-    (void)state;
+TEST(angles_on_the_axes) {
     static const double v[5] = {0, 1, -1, 1e-310, 1e300};
     for (int i = 0; i < 5; i++) {
         for (int j = 0; j < 5; j++) {
@@ -30,12 +28,4 @@ static void angles_on_the_axes(void **state) {
         }
     }
     check_near(lane_angle(0, 0), 0, 0, 0);
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(functions_agree_with_the_library),
-        cmocka_unit_test(angles_on_the_axes),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -12,8 +12,7 @@ static bough_polar build(bough_arena *arena, const bough_polar_def *def) {
     return polar;
 }
 
-static void knots_are_reproduced(void **state) {
-    (void)state;
+TEST(knots_are_reproduced) {
     bough_arena *arena = bough_arena_create();
     for (int p = 0; p < 8; p++) {
         bough_polar polar = build(arena, nrel5mw_polars + p);
@@ -29,8 +28,7 @@ static void knots_are_reproduced(void **state) {
 }
 
 // Against a plain search of the table.
-static void interpolation_is_linear(void **state) {
-    (void)state;
+TEST(interpolation_is_linear) {
     bough_arena *arena = bough_arena_create();
     const bough_polar_def *def = nrel5mw_polars + 7;
     bough_polar polar = build(arena, def);
@@ -47,8 +45,7 @@ static void interpolation_is_linear(void **state) {
     bough_arena_destroy(arena);
 }
 
-static void turns_repeat(void **state) {
-    (void)state;
+TEST(turns_repeat) {
     bough_arena *arena = bough_arena_create();
     bough_polar polar = build(arena, nrel5mw_polars + 3);
     for (double a = -3; a < 3; a += 0.07) {
@@ -63,8 +60,7 @@ static void turns_repeat(void **state) {
 }
 
 // Of states that have run away: no place outside the table is read.
-static void any_angle_has_an_answer(void **state) {
-    (void)state;
+TEST(any_angle_has_an_answer) {
     bough_arena *arena = bough_arena_create();
     bough_polar polar = build(arena, nrel5mw_polars + 3);
     for (double a = 1; a < 1e308; a *= 7) {
@@ -79,8 +75,7 @@ static void any_angle_has_an_answer(void **state) {
 }
 
 // A table of less than a turn goes on from its last row to its first.
-static void gap_is_bridged(void **state) {
-    (void)state;
+TEST(gap_is_bridged) {
     const double row[] = {-90, 1, 0, 0, 90, 3, 0, 0};
     bough_arena *arena = bough_arena_create();
     bough_polar polar = build(arena, &(bough_polar_def){"gap", 2, row});
@@ -92,8 +87,7 @@ static void gap_is_bridged(void **state) {
 
 // Knots stay, slopes are continuous, and nothing overshoots; across the seam of the turn too. A
 // smooth function is met to the third order at least.
-static void smooth_polars_are_monotone_and_smooth(void **state) {
-    (void)state;
+TEST(smooth_polars_are_monotone_and_smooth) {
     bough_arena *arena = bough_arena_create();
     for (int p = 0; p < 8; p++) {
         const bough_polar_def *def = nrel5mw_polars + p;
@@ -133,8 +127,7 @@ static void smooth_polars_are_monotone_and_smooth(void **state) {
 }
 
 // A mixture is the mixture of the coefficients at any angle, whatever the knots.
-static void blends_are_exact(void **state) {
-    (void)state;
+TEST(blends_are_exact) {
     bough_arena *arena = bough_arena_create();
     const double gap[] = {-90, 1, 0.1, 0, 90, 3, 0, 0.2};
     bough_polar a = build(arena, nrel5mw_polars + 2), b = build(arena, nrel5mw_polars + 7), mixed;
@@ -156,8 +149,7 @@ static void blends_are_exact(void **state) {
 
 // A table that ends short of the full turn leaves a gap, unless it only lacks a row; of a mixture
 // both must tell an angle.
-static void gaps_are_known(void **state) {
-    (void)state;
+TEST(gaps_are_known) {
     static const double part[3][4] = {{-20, -1, 0, 0}, {0, 0, 0, 0}, {25, 1, 0, 0}};
     static const double shifted[3][4] = {{-30, -1, 0, 0}, {0, 0, 0, 0}, {15, 1, 0, 0}};
     bough_arena *arena = bough_arena_create();
@@ -180,14 +172,4 @@ static void gaps_are_known(void **state) {
     bough_polar_blend(arena, &a, &whole, 0.5, &mixed);
     check_near(mixed.high, 25 * degree, 1e-12, 0);
     bough_arena_destroy(arena);
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(knots_are_reproduced), cmocka_unit_test(interpolation_is_linear),
-        cmocka_unit_test(turns_repeat),         cmocka_unit_test(any_angle_has_an_answer),
-        cmocka_unit_test(gap_is_bridged),       cmocka_unit_test(smooth_polars_are_monotone_and_smooth),
-        cmocka_unit_test(blends_are_exact),     cmocka_unit_test(gaps_are_known),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

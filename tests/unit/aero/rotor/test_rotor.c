@@ -154,8 +154,7 @@ static rig *create_flat_rig(void) {
 
 // Thrust [kN] and torque [kN m] of the flat rotor: AeroDyn v5, and to six digits an independent
 // solution of the same equations.
-static void flat_rotor_matches_reference(void **state) {
-    (void)state;
+TEST(flat_rotor_matches_reference) {
     static const double table[][5] = {
         {3, 0, 6.972, 77.370925, 54.299714},       {4, 0, 7.183, 120.905807, 246.723471},
         {8, 0, 9.156, 384.414061, 1976.531272},    {10, 0, 11.431, 600.183949, 3091.937526},
@@ -172,8 +171,7 @@ static void flat_rotor_matches_reference(void **state) {
 }
 
 // Switching the corrections off one by one at 8 m/s, and heavy loading at 15 rpm.
-static void switches_match_reference(void **state) {
-    (void)state;
+TEST(switches_match_reference) {
     static const double table[5][2] = {{397.593, 2146.476},
                                        {384.535, 1976.489},
                                        {382.420, 1995.611},
@@ -195,8 +193,7 @@ static void switches_match_reference(void **state) {
 }
 
 // Every station at 8 m/s: inflow x, y, relative speed, φ, α, a, a', Cl, Cd, force x, y. AeroDyn v5.
-static void stations_match_reference(void **state) {
-    (void)state;
+TEST(stations_match_reference) {
     // clang-format off
     static const double table[STATIONS][11] = {
         {8, 1.4382211, 1.4382211, 0, -13.308, 1, 0, 0, 0.5, 0, -2.2437578},
@@ -246,8 +243,7 @@ static void mean_of_revolution(rig *r, double *thrust, double *torque) {
 
 // The whole turbine with rigid blades: tilt 5°, pre-cone 2.5°, tower potential flow, skewed wake.
 // Wind, pitch, speed, mean thrust [kN] and torque [kN m]: OpenFAST v5.
-static void rigid_turbine_matches_reference(void **state) {
-    (void)state;
+TEST(rigid_turbine_matches_reference) {
     static const double table[12][5] = {
         {4, 0, 7.2, 122.637, 260.011},       {6, 0, 7.9, 233.22, 950.717},
         {8, 0, 6, 244.148, 2145.35},         {8, 0, 9.16, 382.103, 1960.59},
@@ -268,8 +264,7 @@ static void rigid_turbine_matches_reference(void **state) {
 
 // In calm air a coned blade meets only its own motion. Where the aerodynamic centre is off the
 // axis, that is not square to the section's normal: the blade turns about its own axis, too.
-static void angle_of_attack_is_in_the_plane_of_the_section(void **state) {
-    (void)state;
+TEST(angle_of_attack_is_in_the_plane_of_the_section) {
     rig *r = create_rig(true);
     r->cone = 20 * degree;
     for (int j = 0; j < STATIONS; j++) r->station[j].centre_y = -2;
@@ -322,8 +317,7 @@ static void integrate_line_load(const rig *r, const bough_vec3 *force, const bou
 }
 
 // The line load is rebuilt from the reported stations; without offsets, with flat blades.
-static void mapping_conserves_force_and_moment(void **state) {
-    (void)state;
+TEST(mapping_conserves_force_and_moment) {
     rig *r = create_rig(true);
     operate(r, 12, 3, 11);
     place(r, 0.7);
@@ -354,8 +348,7 @@ static void mapping_conserves_force_and_moment(void **state) {
 }
 
 // Aerodynamic-centre offsets leave the forces of a station and add offset × force.
-static void offsets_carry_moment(void **state) {
-    (void)state;
+TEST(offsets_carry_moment) {
     rig *r = create_rig(true);
     for (int j = 0; j < STATIONS; j++) r->station[j].centre_y = -0.4;
     r->def.pitching_moment = false;
@@ -383,8 +376,7 @@ static void check_same_loads(const rig *a, const rig *b, const bough_mat3 *turn)
 }
 
 // Structural section axes may include the structural twist, or any other fixed angles.
-static void section_axes_are_arbitrary(void **state) {
-    (void)state;
+TEST(section_axes_are_arbitrary) {
     rig *a = create_rig(false), *b = create_rig(false);
     for (int i = 0; i < VERTICES; i++) b->section[i] = turned(bough_v3(0, 0, -0.01 * (24 - i)));
     operate(a, 9, 1, 10);
@@ -397,8 +389,7 @@ static void section_axes_are_arbitrary(void **state) {
 }
 
 // Moving with the wind of the same speed, or standing elsewhere, changes nothing.
-static void rigid_translation_changes_nothing(void **state) {
-    (void)state;
+TEST(rigid_translation_changes_nothing) {
     rig *a = create_rig(false), *b = create_rig(false);
     a->def.tower.n = b->def.tower.n = 0;
     operate(a, 11, 0, 10);
@@ -421,8 +412,7 @@ static void rigid_translation_changes_nothing(void **state) {
 }
 
 // A third of a turn exchanges the blades.
-static void blades_are_alike(void **state) {
-    (void)state;
+TEST(blades_are_alike) {
     rig *a = create_rig(true), *b = create_rig(true);
     operate(a, 11, 0, 10);
     operate(b, 11, 0, 10);
@@ -435,8 +425,7 @@ static void blades_are_alike(void **state) {
 }
 
 // Nothing is kept between samples, so repeated steps repeat their loads to the bit.
-static void sample_is_a_function_of_motion(void **state) {
-    (void)state;
+TEST(sample_is_a_function_of_motion) {
     rig *a = create_rig(false), *b = create_rig(false);
     operate(a, 20, 6.5, 14);
     operate(b, 20, 6.5, 14);
@@ -505,8 +494,7 @@ static void measure_slopes(rig *r, double off[4]) {
 
 // Slopes are those of the momentum balance without drag and skew: near enough for
 // loads that go on from sample to sample.
-static void loads_follow_the_motion_by_their_slopes(void **state) {
-    (void)state;
+TEST(loads_follow_the_motion_by_their_slopes) {
     static const double wind[3] = {8, 12, 20}, pitch[3] = {0, 3, 6.5}, speed[3] = {9, 12.1, 14};
     for (int k = 0; k < 3; k++) {
         rig *r = create_rig(false);
@@ -520,8 +508,7 @@ static void loads_follow_the_motion_by_their_slopes(void **state) {
     }
 }
 
-static void odd_states_are_finite(void **state) {
-    (void)state;
+TEST(odd_states_are_finite) {
     static const double wind[] = {-15, 0, 1e-9, 8, 60}, pitch[] = {-180, -30, 0, 90};
     static const double speed[] = {-12, 0, 1e-9, 3, 40};
     for (int i = 0; i < 5 * 4 * 5; i++) {
@@ -553,8 +540,7 @@ static void sample_at(rig *r, double t) {
 
 // Thrust [kN] after a step of the pitch from 0 to 3.7° at 20 s: AeroDyn v5, slow time constant 5 s,
 // discrete in steps of 50 ms.
-static void pitch_step_matches_reference(void **state) {
-    (void)state;
+TEST(pitch_step_matches_reference) {
     static const double table[][2] = {{20, 210.3897},  {20.1, 213.48109}, {21, 233.39587}, {22, 245.80637},
                                       {23, 253.38355}, {24, 258.48886},   {25, 262.17411}, {26, 264.95534},
                                       {28, 268.83479}, {30, 271.32461},   {35, 274.45232}, {40, 275.59214}};
@@ -580,8 +566,7 @@ static void move_memory(rig *r, bough_snapshot_move move, double *copy) {
 }
 
 // The memory restored, a step repeats to the bit; a step of any length is stable.
-static void inflow_is_saved_and_restored(void **state) {
-    (void)state;
+TEST(inflow_is_saved_and_restored) {
     rig *r = create_inflow_rig(0);
     int n = bough_rotor_memory_size(r->rotor);
     assert_int_equal(n, 3 + 6 * BLADES * STATIONS);
@@ -602,8 +587,7 @@ static void inflow_is_saved_and_restored(void **state) {
 
 // What a sample told is told again once stored and put back, the blades' distance to the tower included,
 // which differs from blade to blade.
-static void told_is_saved_and_restored(void **state) {
-    (void)state;
+TEST(told_is_saved_and_restored) {
     rig *r = create_rig(false);
     operate(r, 8, 0, 9);
     sample(r, BOUGH_PI); // blade 1 in front of the tower
@@ -631,8 +615,7 @@ static void told_is_saved_and_restored(void **state) {
 }
 
 // The time constant by its formula; one long advance equals many short ones.
-static void inflow_advances_exactly(void **state) {
-    (void)state;
+TEST(inflow_advances_exactly) {
     const bough_inflow_def from_load = {BOUGH_INFLOW_OYE, 0}, fixed = {BOUGH_INFLOW_OYE, 4};
     check_near(bough_inflow_time(&from_load, 0.3, 60, 10), 6.6 / 0.61, 1e-14, 0);
     check_near(bough_inflow_time(&from_load, 0.9, 60, 10), 6.6 / 0.35, 1e-14, 0);
@@ -654,8 +637,7 @@ static void inflow_advances_exactly(void **state) {
 
 // Held still the rotor comes to its static loads; on the way, after a step of pitch into stall, it
 // carries more than them; the memory restored, the step repeats to the bit.
-static void stall_is_late_and_repeats(void **state) {
-    (void)state;
+TEST(stall_is_late_and_repeats) {
     rig *still = create_flat_rig(), *r = create_flat_rig();
     r->def.stall = BOUGH_STALL_HGM;
     r->def.inflow.kind = BOUGH_INFLOW_OYE;
@@ -689,8 +671,7 @@ static void stall_is_late_and_repeats(void **state) {
 
 // The rotor's own turn is no pitch rate of a coned blade's sections: in steady wind they carry the static
 // polars' loads.
-static void stall_keeps_the_loads_of_a_coned_rotor(void **state) {
-    (void)state;
+TEST(stall_keeps_the_loads_of_a_coned_rotor) {
     for (int sign = -1; sign <= 1; sign += 2) {
         rig *still = create_flat_rig(), *r = create_flat_rig();
         still->cone = r->cone = sign * 2.5 * degree;
@@ -706,38 +687,11 @@ static void stall_keeps_the_loads_of_a_coned_rotor(void **state) {
     }
 }
 
-static void station_off_the_blade_is_refused(void **state) {
-    (void)state;
+TEST(station_off_the_blade_is_refused) {
     rig *r = create_rig(true);
     r->station[18].span = 62;
     bough_status status = bough_rotor_build(r->arena, &r->def, &r->rotor);
     assert_int_equal(status.code, BOUGH_INVALID);
     assert_null(r->rotor);
     destroy_rig(r);
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(flat_rotor_matches_reference),
-        cmocka_unit_test(switches_match_reference),
-        cmocka_unit_test(stations_match_reference),
-        cmocka_unit_test(rigid_turbine_matches_reference),
-        cmocka_unit_test(angle_of_attack_is_in_the_plane_of_the_section),
-        cmocka_unit_test(mapping_conserves_force_and_moment),
-        cmocka_unit_test(offsets_carry_moment),
-        cmocka_unit_test(section_axes_are_arbitrary),
-        cmocka_unit_test(rigid_translation_changes_nothing),
-        cmocka_unit_test(blades_are_alike),
-        cmocka_unit_test(sample_is_a_function_of_motion),
-        cmocka_unit_test(loads_follow_the_motion_by_their_slopes),
-        cmocka_unit_test(odd_states_are_finite),
-        cmocka_unit_test(pitch_step_matches_reference),
-        cmocka_unit_test(inflow_is_saved_and_restored),
-        cmocka_unit_test(told_is_saved_and_restored),
-        cmocka_unit_test(inflow_advances_exactly),
-        cmocka_unit_test(stall_is_late_and_repeats),
-        cmocka_unit_test(stall_keeps_the_loads_of_a_coned_rotor),
-        cmocka_unit_test(station_off_the_blade_is_refused),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

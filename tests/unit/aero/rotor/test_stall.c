@@ -48,8 +48,8 @@ static void check_static(const bough_polar *polar, double alpha, bough_coefficie
 
 // Static lift is the mixture of attached and separated, at every angle of every airfoil; f is one
 // somewhere in attached flow and zero in deep stall.
-static void parts_make_the_static_polar(void **state) {
-    foils *a = *state;
+TEST(parts_make_the_static_polar) {
+    foils *a = *context;
     for (int p = 2; p < 8; p++) {
         bough_polar foil = a->polar[p];
         double most = 0, f, separated;
@@ -69,8 +69,8 @@ static void parts_make_the_static_polar(void **state) {
 }
 
 // From wherever it comes, steady flow ends on the static polar, with steps of any length.
-static void steady_limit_is_the_static_polar(void **state) {
-    foils *a = *state;
+TEST(steady_limit_is_the_static_polar) {
+    foils *a = *context;
     for (int p = 0; p < 8; p++) {
         bough_polar foil = a->polar[p];
         for (double angle = -178; angle < 180; angle += 7.3) {
@@ -89,8 +89,8 @@ static void steady_limit_is_the_static_polar(void **state) {
 // In the steps of a run: a section that comes from the angle without lift and stays where it is has the
 // coefficients of its polar within 20 s, to 1e-3 at every angle of operation; of joined straight lines, of
 // cubics, and of mixtures of neighbours.
-static void a_run_settles_on_the_static_polar(void **state) {
-    foils *a = *state;
+TEST(a_run_settles_on_the_static_polar) {
+    foils *a = *context;
     enum { N = 8, STEPS = 1000 };
     bough_polar polar[3 * N - 1];
     memcpy(polar, a->polar, sizeof a->polar);
@@ -120,8 +120,8 @@ static void a_run_settles_on_the_static_polar(void **state) {
 
 // Attached flow: lift at the reduced frequency k is slope·C(k) with Jones' approximation of
 // Theodorsen's function, C = 1 − Σ A ik/(ik + b).
-static void attached_lift_is_indicial(void **state) {
-    foils *a = *state;
+TEST(attached_lift_is_indicial) {
+    foils *a = *context;
     bough_polar foil = a->plate;
     check_near(foil.slope, 2 * BOUGH_PI, 1e-9, 0);
     check_near(foil.zero_lift, degree, 1e-9, 0);
@@ -147,8 +147,8 @@ static void attached_lift_is_indicial(void **state) {
 // A rotation that goes on lifts by the downwash at three quarters of the chord and by the apparent
 // mass: slope·x + πx with x = c·rate/(2U). The circulation's part stands square to the flow there, and
 // the rotation leans it back by x more.
-static void rotation_lifts(void **state) {
-    foils *a = *state;
+TEST(rotation_lifts) {
+    foils *a = *context;
     bough_polar foil = a->plate;
     bough_stall_state s = {0};
     bough_coefficients k = {0};
@@ -162,8 +162,8 @@ static void rotation_lifts(void **state) {
 
 // Right after a step of the angle of attack, attached, half of the step lies between the angle and
 // the effective one: drag (α − α_E) Cl of the circulation.
-static void withheld_lift_leans_back(void **state) {
-    foils *a = *state;
+TEST(withheld_lift_leans_back) {
+    foils *a = *context;
     bough_polar foil = a->plate;
     bough_stall_state s = {0};
     bough_stall_advance(&foil, 2, (bough_stall_inflow){40, 4 * degree, 0}, 0, &s);
@@ -204,8 +204,8 @@ static loop run_loop(const bough_polar *foil, double mean, double amplitude, int
 
 // In stall lift is higher while the angle grows; the loop closes, and halving the step moves it at
 // second order.
-static void stall_loop_is_closed(void **state) {
-    foils *a = *state;
+TEST(stall_loop_is_closed) {
+    foils *a = *context;
     bough_polar foil = a->polar[7];
     loop coarse = run_loop(&foil, 12 * degree, 5 * degree, 6, 200);
     loop middle = run_loop(&foil, 12 * degree, 5 * degree, 6, 400);
@@ -223,8 +223,8 @@ static void stall_loop_is_closed(void **state) {
 
 // The slopes are those of an advance from the same state whose angle or rotation differs, in attached,
 // stalled and partly static flow. A step of a hundredth of a chord leaves the separation as it is.
-static void slopes_are_those_of_an_advance(void **state) {
-    foils *a = *state;
+TEST(slopes_are_those_of_an_advance) {
+    foils *a = *context;
     const double chord = 3, step = 6e-4, d = 1e-3, turning = 0.2;
     static const double angle[] = {4.03, 13.03, 24.03, 43.03, -45.03, 75.03};
     for (int p = 0; p < 8; p++) {
@@ -258,8 +258,8 @@ static void slopes_are_those_of_an_advance(void **state) {
 }
 
 // Any flow, however it jumps, gives finite coefficients.
-static void odd_flow_is_finite(void **state) {
-    foils *a = *state;
+TEST(odd_flow_is_finite) {
+    foils *a = *context;
     uint64_t seed = 3;
     for (int p = 0; p < 8; p++) {
         bough_polar foil = a->polar[p];
@@ -279,17 +279,4 @@ static void odd_flow_is_finite(void **state) {
     }
 }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(parts_make_the_static_polar),
-        cmocka_unit_test(steady_limit_is_the_static_polar),
-        cmocka_unit_test(a_run_settles_on_the_static_polar),
-        cmocka_unit_test(attached_lift_is_indicial),
-        cmocka_unit_test(rotation_lifts),
-        cmocka_unit_test(withheld_lift_leans_back),
-        cmocka_unit_test(stall_loop_is_closed),
-        cmocka_unit_test(slopes_are_those_of_an_advance),
-        cmocka_unit_test(odd_flow_is_finite),
-    };
-    return cmocka_run_group_tests(tests, set_up, tear_down);
-}
+GROUP(set_up, tear_down)

@@ -22,8 +22,7 @@ static bough_vec3 wind_at_blade(const bough_tower *tower, double azimuth, double
 
 // AeroDyn v5, baseline potential flow: azimuth, axial and edgewise wind at 52.75 m, axial at
 // 24.05 m. At 95° the inner point is 0.3 m above the top, where the influence fades.
-static void wind_at_passing_blade_matches_reference(void **state) {
-    (void)state;
+TEST(wind_at_passing_blade_matches_reference) {
     static const double table[][4] = {
         {45, 10, 0, 10},
         {90, 10, 0, 10},
@@ -50,8 +49,7 @@ static void wind_at_passing_blade_matches_reference(void **state) {
 }
 
 // On the cylinder the flow is tangential, twice the wind at its side, at rest in front.
-static void flow_follows_the_wall(void **state) {
-    (void)state;
+TEST(flow_follows_the_wall) {
     bough_arena *arena = bough_arena_create();
     bough_vec3 base = bough_v3(3, -2, 10);
     bough_tower tower = build(arena, base);
@@ -82,8 +80,7 @@ static bough_tower build_kind(bough_arena *arena, bough_tower_influence influenc
 }
 
 // AeroDyn v5 with Bak's correction, drag coefficient 1: axial wind at 52.75 m below the hub.
-static void bak_matches_reference(void **state) {
-    (void)state;
+TEST(bak_matches_reference) {
     bough_arena *arena = bough_arena_create();
     static const double height[] = {0, 87.6}, diameter[] = {6, 3.87}, drag[] = {0, 0};
     bough_tower_def def = {.n = 2, .height = height, .diameter = diameter, .influence = BOUGH_TOWER_BAK};
@@ -98,8 +95,7 @@ static void bak_matches_reference(void **state) {
 }
 
 // Far away from the tower the source spreads drag · radius · speed over the circle around it.
-static void bak_displaces_half_the_drag(void **state) {
-    (void)state;
+TEST(bak_displaces_half_the_drag) {
     enum { POINTS = 360 };
     bough_arena *arena = bough_arena_create();
     static const double drag[] = {0.6, 0.6};
@@ -117,8 +113,7 @@ static void bak_displaces_half_the_drag(void **state) {
 }
 
 // On the wake's axis it takes drag/√x, at x radii, at most half; at |y| = (x² + y²)^¼ it ends.
-static void powles_takes_its_share_behind(void **state) {
-    (void)state;
+TEST(powles_takes_its_share_behind) {
     bough_arena *arena = bough_arena_create();
     static const double drag[] = {0.5, 1.5}; // 0.7 at 20 m
     bough_tower without = build_kind(arena, BOUGH_TOWER_POTENTIAL, BOUGH_TOWER_SHADOW_NONE, drag);
@@ -140,8 +135,7 @@ static void powles_takes_its_share_behind(void **state) {
     bough_arena_destroy(arena);
 }
 
-static void inside_is_finite(void **state) {
-    (void)state;
+TEST(inside_is_finite) {
     bough_arena *arena = bough_arena_create();
     bough_tower tower = build(arena, bough_v3(0, 0, 0));
     for (double x = -1; x <= 1; x += 0.125) {
@@ -152,8 +146,7 @@ static void inside_is_finite(void **state) {
 }
 
 // ½ρ c D V² along the wind across the axis, whatever blows along it.
-static void drag_is_across_the_axis(void **state) {
-    (void)state;
+TEST(drag_is_across_the_axis) {
     bough_arena *arena = bough_arena_create();
     static const double height[] = {0, 100}, diameter[] = {6, 4}, drag[] = {0.5, 1};
     const bough_tower_def def = {
@@ -170,23 +163,8 @@ static void drag_is_across_the_axis(void **state) {
     bough_arena_destroy(arena);
 }
 
-static void no_tower_leaves_the_wind(void **state) {
-    (void)state;
+TEST(no_tower_leaves_the_wind) {
     bough_tower tower;
     bough_tower_build(NULL, &(bough_tower_def){0}, &tower);
     check_near(bough_tower_disturbed(&tower, bough_v3(-1, 0, 5), bough_v3(7, 0, 0)).x, 7, 0, 0);
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(wind_at_passing_blade_matches_reference),
-        cmocka_unit_test(flow_follows_the_wall),
-        cmocka_unit_test(bak_matches_reference),
-        cmocka_unit_test(bak_displaces_half_the_drag),
-        cmocka_unit_test(powles_takes_its_share_behind),
-        cmocka_unit_test(inside_is_finite),
-        cmocka_unit_test(drag_is_across_the_axis),
-        cmocka_unit_test(no_tower_leaves_the_wind),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

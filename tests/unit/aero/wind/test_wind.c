@@ -11,16 +11,14 @@ static bough_wind built(const bough_wind_def *def) {
     return wind;
 }
 
-static void default_is_calm(void **state) {
-    (void)state;
+TEST(default_is_calm) {
     bough_wind_def def = bough_wind_def_default();
     bough_wind wind = built(&def);
     bough_vec3 v = bough_wind_at(&wind, bough_v3(1, 2, 3), 4);
     check_near(bough_norm(v), 0, 0, 0);
 }
 
-static void uniform_wind_blows_along_x_everywhere(void **state) {
-    (void)state;
+TEST(uniform_wind_blows_along_x_everywhere) {
     bough_wind_def def = bough_wind_def_default();
     def.speed = 8;
     bough_wind wind = built(&def);
@@ -31,8 +29,7 @@ static void uniform_wind_blows_along_x_everywhere(void **state) {
     }
 }
 
-static void shear_follows_power_law(void **state) {
-    (void)state;
+TEST(shear_follows_power_law) {
     const bough_wind_def def = {
         .speed = 10, .shear = BOUGH_WIND_POWER, .exponent = 0.2, .reference_height = 90};
     bough_wind wind = built(&def);
@@ -42,8 +39,7 @@ static void shear_follows_power_law(void **state) {
 }
 
 // From height to height the speed grows by the same amount wherever their ratio is the same.
-static void shear_follows_logarithmic_law(void **state) {
-    (void)state;
+TEST(shear_follows_logarithmic_law) {
     const bough_wind_def def = {
         .speed = 10, .shear = BOUGH_WIND_LOG, .roughness = 0.1, .reference_height = 100};
     bough_wind wind = built(&def);
@@ -56,8 +52,7 @@ static void shear_follows_logarithmic_law(void **state) {
 }
 
 // Towards 30° from x and upwards; shear and table change the horizontal part alone.
-static void direction_turns_the_horizontal_part(void **state) {
-    (void)state;
+TEST(direction_turns_the_horizontal_part) {
     const bough_wind_def def = {.speed = 8,
                                 .vertical = -1.5,
                                 .direction = BOUGH_PI / 6,
@@ -72,8 +67,7 @@ static void direction_turns_the_horizontal_part(void **state) {
 }
 
 // A gust between uneven times; the def's tables may be gone after the build.
-static void table_is_linear_between_and_constant_outside(void **state) {
-    (void)state;
+TEST(table_is_linear_between_and_constant_outside) {
     double time[] = {10, 12, 13, 20}, speed[] = {8, 8, 14, 7};
     const bough_wind_def def = {.speed = 99, .n_time = 4, .time = time, .speed_at_time = speed};
     bough_arena *arena = bough_arena_create();
@@ -88,16 +82,4 @@ static void table_is_linear_between_and_constant_outside(void **state) {
         check_near(u, expected[i][1], 1e-14, 0);
     }
     bough_arena_destroy(arena);
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(default_is_calm),
-        cmocka_unit_test(uniform_wind_blows_along_x_everywhere),
-        cmocka_unit_test(shear_follows_power_law),
-        cmocka_unit_test(shear_follows_logarithmic_law),
-        cmocka_unit_test(direction_turns_the_horizontal_part),
-        cmocka_unit_test(table_is_linear_between_and_constant_outside),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -65,8 +65,8 @@ static const char hub_text[] = "! Time Speed Dir Vert HShr PwrShr LinShr Gust\n"
                                "30 10 0 0 0 0 0 0 8\n";
 
 // Rows, between them and outside; direction clockwise, shears per reference length.
-static void hub_rows_are_interpolated(void **state) {
-    place *p = *state;
+TEST_WITH(hub_rows_are_interpolated, set_up, tear_down) {
+    place *p = *context;
     bough_wind wind;
     write_file(p, hub_text, strlen(hub_text));
     bough_status status = build(p, BOUGH_WIND_HUB_FILE, &wind);
@@ -84,8 +84,8 @@ static void hub_rows_are_interpolated(void **state) {
     check_vec(bough_wind_at(&wind, hub, 99), 10 * cos(8 * degree), 0, 10 * sin(8 * degree));
 }
 
-static void bad_hub_files_are_refused(void **state) {
-    place *p = *state;
+TEST_WITH(bad_hub_files_are_refused, set_up, tear_down) {
+    place *p = *context;
     static const char *const bad[][2] = {
         {"! nothing\n\n", "no rows"},
         {"0 8 0 0 0 0 0\n", ":1:"},
@@ -144,8 +144,8 @@ static void check_point(const bough_wind *wind, double x, double y, double z, do
     check_vec(bough_wind_at(wind, bough_v3(x, y, z), t), e.x, e.y, e.z);
 }
 
-static void box_is_interpolated(void **state) {
-    place *p = *state;
+TEST_WITH(box_is_interpolated, set_up, tear_down) {
+    place *p = *context;
     unsigned char bytes[SIZE];
     bough_wind wind;
     fill_box(bytes, 7);
@@ -174,8 +174,8 @@ static void box_is_interpolated(void **state) {
     assert_false(bough_wind_box_lasts(wind.box, 5.6));
 }
 
-static void periodic_box_repeats(void **state) {
-    place *p = *state;
+TEST_WITH(periodic_box_repeats, set_up, tear_down) {
+    place *p = *context;
     unsigned char bytes[SIZE];
     bough_wind wind;
     fill_box(bytes, 8);
@@ -192,8 +192,8 @@ static void periodic_box_repeats(void **state) {
 }
 
 // Every cut, and heads that promise too much, are refused without reading on.
-static void damaged_boxes_are_refused(void **state) {
-    place *p = *state;
+TEST_WITH(damaged_boxes_are_refused, set_up, tear_down) {
+    place *p = *context;
     unsigned char bytes[SIZE + 1] = {0};
     bough_wind wind;
     for (size_t n = 0; n <= SIZE + 1; n += n < 80 ? 1 : 13) {
@@ -233,8 +233,8 @@ static void damaged_boxes_are_refused(void **state) {
 }
 
 // Turned by a right angle the box comes from the other side.
-static void direction_turns_a_file(void **state) {
-    place *p = *state;
+TEST_WITH(direction_turns_a_file, set_up, tear_down) {
+    place *p = *context;
     unsigned char bytes[SIZE];
     bough_wind wind;
     fill_box(bytes, 7);
@@ -248,16 +248,4 @@ static void direction_turns_a_file(void **state) {
     status = bough_wind_build(p->arena, &def, &wind);
     assert_int_equal(status.code, BOUGH_INVALID);
     assert_non_null(strstr(status.message, "too short"));
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test_setup_teardown(hub_rows_are_interpolated, set_up, tear_down),
-        cmocka_unit_test_setup_teardown(bad_hub_files_are_refused, set_up, tear_down),
-        cmocka_unit_test_setup_teardown(box_is_interpolated, set_up, tear_down),
-        cmocka_unit_test_setup_teardown(periodic_box_repeats, set_up, tear_down),
-        cmocka_unit_test_setup_teardown(damaged_boxes_are_refused, set_up, tear_down),
-        cmocka_unit_test_setup_teardown(direction_turns_a_file, set_up, tear_down),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -40,8 +40,7 @@ static bough_wind built(bough_arena *arena, const bough_wind_def *def) {
 
 // -- formulas -------------------------------------------------------------------------------------
 
-static void turbulence_is_that_of_the_class(void **state) {
-    (void)state;
+TEST(turbulence_is_that_of_the_class) {
     bough_wind_iec_def ntm = standard(BOUGH_WIND_NTM, 10).iec, etm = standard(BOUGH_WIND_ETM, 10).iec;
     check_near(bough_wind_iec_deviation(&ntm), 0.16 * (0.75 * 10 + 5.6), 1e-14, 0);
     check_near(bough_wind_iec_deviation(&etm), 2 * 0.16 * (0.072 * 8 * 1 + 10), 1e-14, 0);
@@ -60,8 +59,7 @@ static void turbulence_is_that_of_the_class(void **state) {
 }
 
 // V 25 m/s, class IA, D 126 m, hub at 90 m: σ₁ = 0.16·24.35 = 3.896, D/Λ₁ = 3.
-static void gusts_reach_what_the_formulas_say(void **state) {
-    (void)state;
+TEST(gusts_reach_what_the_formulas_say) {
     bough_arena *arena = bough_arena_create();
     const bough_vec3 hub = {0, 0, 90}, top = {0, 0, 150}, left = {0, 63, 90};
     bough_wind_def eog = standard(BOUGH_WIND_EOG, 25);
@@ -104,8 +102,7 @@ static void gusts_reach_what_the_formulas_say(void **state) {
     bough_arena_destroy(arena);
 }
 
-static void upflow_and_veer_turn_any_wind(void **state) {
-    (void)state;
+TEST(upflow_and_veer_turn_any_wind) {
     bough_arena *arena = bough_arena_create();
     bough_wind_def def = {
         .speed = 10, .vertical = 1, .upflow = 8 * degree, .veer = 0.1 * degree, .reference_height = 90};
@@ -124,8 +121,7 @@ static void upflow_and_veer_turn_any_wind(void **state) {
     bough_arena_destroy(arena);
 }
 
-static void senseless_conditions_are_refused(void **state) {
-    (void)state;
+TEST(senseless_conditions_are_refused) {
     bough_arena *arena = bough_arena_create();
     bough_wind_def bad[5];
     for (int i = 0; i < 5; i++) bad[i] = standard(BOUGH_WIND_NTM, 10);
@@ -213,8 +209,8 @@ static double frequency(const ensemble *e, int wave) { return wave_of(wave) / e-
 
 // The mean of 20 estimates with two degrees of freedom each lies in 24.43/40 … 59.34/40 of the
 // spectrum with 95 % probability: χ² with 40 degrees. What the time step folds is at most 4 % here.
-static void spectra_are_kaimals(void **state) {
-    const ensemble *e = *state;
+TEST(spectra_are_kaimals) {
+    const ensemble *e = *context;
     int inside = 0, counted = 0;
     double mean = 0;
     for (int p = 0; p < 4; p++) {
@@ -231,8 +227,8 @@ static void spectra_are_kaimals(void **state) {
 }
 
 // The estimate's standard deviation is √((1 + γ²)/2/20) of the spectrum at most.
-static void coherence_is_exponential(void **state) {
-    const ensemble *e = *state;
+TEST(coherence_is_exponential) {
+    const ensemble *e = *context;
     static const int pair[3][2] = {{0, 1}, {0, 2}, {1, 2}};
     static const double steps[3] = {1, 3, 2};
     int inside = 0, counted = 0;
@@ -252,8 +248,8 @@ static void coherence_is_exponential(void **state) {
     check_near(sum, expected, 0.1, 0);
 }
 
-static void deviations_are_those_of_the_standard(void **state) {
-    const ensemble *e = *state;
+TEST(deviations_are_those_of_the_standard) {
+    const ensemble *e = *context;
     static const double share[3] = {1, 0.8, 0.5};
     for (int c = 0; c < 3; c++) {
         double variance = 0, middle = 0;
@@ -275,8 +271,8 @@ static void deviations_are_those_of_the_standard(void **state) {
     }
 }
 
-static void a_seed_gives_the_same_bits(void **state) {
-    ensemble *e = *state;
+TEST(a_seed_gives_the_same_bits) {
+    ensemble *e = *context;
     bough_wind_box again, other;
     size_t size = 3 * (size_t)POINTS * TIMES * sizeof *again.value;
     e->def.seed = 100;
@@ -288,8 +284,7 @@ static void a_seed_gives_the_same_bits(void **state) {
 }
 
 // A second wind that is given the box of the first one has its turbulence without generating it.
-static void a_box_is_shared(void **state) {
-    (void)state;
+TEST(a_box_is_shared) {
     bough_arena *arena = bough_arena_create();
     bough_wind_def def = standard(BOUGH_WIND_NTM, 10);
     def.upflow = 4 * degree;
@@ -303,8 +298,8 @@ static void a_box_is_shared(void **state) {
     bough_arena_destroy(arena);
 }
 
-static void a_box_that_is_written_reads_the_same(void **state) {
-    ensemble *e = *state;
+TEST(a_box_that_is_written_reads_the_same) {
+    ensemble *e = *context;
     char path[SCRATCH_NAME];
     int file = mkstemp(scratch_name(path));
     assert_true(file >= 0);
@@ -323,18 +318,4 @@ static void a_box_that_is_written_reads_the_same(void **state) {
     }
 }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(turbulence_is_that_of_the_class),
-        cmocka_unit_test(gusts_reach_what_the_formulas_say),
-        cmocka_unit_test(upflow_and_veer_turn_any_wind),
-        cmocka_unit_test(senseless_conditions_are_refused),
-        cmocka_unit_test(spectra_are_kaimals),
-        cmocka_unit_test(coherence_is_exponential),
-        cmocka_unit_test(deviations_are_those_of_the_standard),
-        cmocka_unit_test(a_seed_gives_the_same_bits),
-        cmocka_unit_test(a_box_is_shared),
-        cmocka_unit_test(a_box_that_is_written_reads_the_same),
-    };
-    return cmocka_run_group_tests(tests, make_ensemble, drop_ensemble);
-}
+GROUP(make_ensemble, drop_ensemble)

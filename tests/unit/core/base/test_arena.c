@@ -5,8 +5,7 @@
 
 #include <string.h>
 
-static void blocks_are_aligned_zeroed_and_apart(void **state) {
-    (void)state;
+TEST(blocks_are_aligned_zeroed_and_apart) {
     bough_arena *arena = bough_arena_create();
     assert_non_null(arena);
     unsigned char *blocks[50];
@@ -25,8 +24,7 @@ static void blocks_are_aligned_zeroed_and_apart(void **state) {
     bough_arena_destroy(arena);
 }
 
-static void strings_are_copied(void **state) {
-    (void)state;
+TEST(strings_are_copied) {
     bough_arena *arena = bough_arena_create();
     char text[] = "hub";
     char *copy = bough_arena_string(arena, text);
@@ -61,8 +59,7 @@ static bough_status guard_both(bough_arena *arena, void *self) {
     return take_too_much(arena, self);
 }
 
-static void work_is_left_where_memory_ends(void **state) {
-    (void)state;
+TEST(work_is_left_where_memory_ends) {
     bool of_child = false, fails = true;
     reached = false;
     assert_int_equal(bough_arena_use(take_too_much, &of_child).code, BOUGH_OUT_OF_MEMORY);
@@ -91,8 +88,7 @@ static void note(void *object) {
     h->into->order[h->into->count++] = h->id;
 }
 
-static void objects_are_released_newest_first(void **state) {
-    (void)state;
+TEST(objects_are_released_newest_first) {
     record r = {0};
     bough_arena *arena = bough_arena_create();
     for (int i = 0; i < 3; i++) {
@@ -106,14 +102,4 @@ static void objects_are_released_newest_first(void **state) {
     assert_int_equal(r.count, 3);
     for (int i = 0; i < 3; i++) assert_int_equal(r.order[i], 2 - i);
     bough_arena_destroy(NULL);
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(blocks_are_aligned_zeroed_and_apart),
-        cmocka_unit_test(strings_are_copied),
-        cmocka_unit_test(work_is_left_where_memory_ends),
-        cmocka_unit_test(objects_are_released_newest_first),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

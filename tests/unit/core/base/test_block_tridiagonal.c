@@ -109,8 +109,7 @@ static void solution_is_that_of_the_dense_matrix(int n, double skewed) {
     bough_arena_destroy(f.arena);
 }
 
-static void solves_as_the_dense_matrix_does(void **context) {
-    (void)context;
+TEST(solves_as_the_dense_matrix_does) {
     static const int sizes[] = {1, 2, 7, MOST};
     for (size_t k = 0; k < sizeof sizes / sizeof *sizes; k++) {
         solution_is_that_of_the_dense_matrix(sizes[k], 0.05); // nearly symmetric
@@ -118,8 +117,7 @@ static void solves_as_the_dense_matrix_does(void **context) {
     }
 }
 
-static void subtract_takes_away_the_product(void **context) {
-    (void)context;
+TEST(subtract_takes_away_the_product) {
     static const int sizes[] = {1, 2, 7, MOST};
     double room[W + W * MOST], *x = room + W, y[W * MOST], start[W * MOST];
     for (int i = 0; i < W; i++) room[i] = 99; // row 0 couples to nothing before it
@@ -151,8 +149,7 @@ static void make_absolute(double *value, size_t count) {
 
 // The solution put back into the matrix gives the right-hand side to the rounding of |A| |x|, here
 // of a rod's stiffness: far apart in magnitude, translations against rotations.
-static void residual_vanishes_for_badly_scaled_rows(void **context) {
-    (void)context;
+TEST(residual_vanishes_for_badly_scaled_rows) {
     double x[W * MOST], residual[W * MOST], size[W * MOST] = {0};
     fixture f = take(MOST), kept = take(MOST);
     fill(&f.m, 0.05);
@@ -193,8 +190,7 @@ static bool factors_with(int n, int block, int entry, double value) {
     return ok;
 }
 
-static void refuses_what_is_not_finite(void **context) {
-    (void)context;
+TEST(refuses_what_is_not_finite) {
     for (int block = 0; block < 3; block++) {
         assert_true(factors_with(3, block, W * 2 + 2, 9));
         for (int entry = 0; entry < 36; entry++) {
@@ -212,8 +208,7 @@ static void refuses_what_is_not_finite(void **context) {
 }
 
 // The first row zero, a block of rank 5 at the end, and a reduced block that vanishes: U = D = L.
-static void refuses_singular_pivots(void **context) {
-    (void)context;
+TEST(refuses_singular_pivots) {
     fixture f = take(2);
     for (int i = 0; i < 6; i++) f.m.diagonal[9 * i] = f.m.diagonal[BOUGH_BLOCK + 9 * i] = 1;
     f.m.diagonal[0] = 0;
@@ -231,8 +226,7 @@ static void refuses_singular_pivots(void **context) {
     bough_arena_destroy(g.arena);
 }
 
-static void single_blocks_multiply(void **context) {
-    (void)context;
+TEST(single_blocks_multiply) {
     unsigned seed = 2;
     double a[BOUGH_BLOCK] = {0}, b[BOUGH_BLOCK] = {0}, c[BOUGH_BLOCK], x[W] = {0}, y[W] = {0};
     fill_block(a, &seed, 1, 0);
@@ -256,16 +250,4 @@ static void single_blocks_multiply(void **context) {
     }
     check_padding(c, 6);
     check_padding(y, 1);
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(solves_as_the_dense_matrix_does),
-        cmocka_unit_test(subtract_takes_away_the_product),
-        cmocka_unit_test(residual_vanishes_for_badly_scaled_rows),
-        cmocka_unit_test(refuses_what_is_not_finite),
-        cmocka_unit_test(refuses_singular_pivots),
-        cmocka_unit_test(single_blocks_multiply),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

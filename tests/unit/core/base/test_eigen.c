@@ -45,8 +45,7 @@ static void solve(chain *c, int wanted) {
 }
 
 // Two directions are equal, two are three times as stiff: 2√k sin((2j − 1)π/(4n + 2)), each twice.
-static void chain_of_masses_has_its_frequencies(void **context) {
-    (void)context;
+TEST(chain_of_masses_has_its_frequencies) {
     const double k[6] = {1, 1, 3, 3, 1000, 1000};
     chain c = springs(N, k);
     solve(&c, WANTED);
@@ -73,8 +72,7 @@ static void chain_of_masses_has_its_frequencies(void **context) {
 }
 
 // (λ²M + λC + K) q = 0 for what is returned, with damping and gyroscopic terms.
-static void pairs_satisfy_the_equation(void **context) {
-    (void)context;
+TEST(pairs_satisfy_the_equation) {
     const double k[6] = {1, 1, 3, 3, 10, 10};
     chain c = springs(N, k), copy = springs(N, k);
     for (int i = 0; i < N; i++) {
@@ -109,8 +107,7 @@ static void pairs_satisfy_the_equation(void **context) {
     bough_arena_destroy(copy.arena);
 }
 
-static void small_system_gives_all_it_has(void **context) {
-    (void)context;
+TEST(small_system_gives_all_it_has) {
     const double k[6] = {1, 4, 9, 16, 25, 36};
     chain c = springs(1, k);
     solve(&c, WANTED);
@@ -121,8 +118,7 @@ static void small_system_gives_all_it_has(void **context) {
 }
 
 // Beyond buckling a real solution grows; an overdamped one decays and is not listed.
-static void growing_solution_is_listed(void **context) {
-    (void)context;
+TEST(growing_solution_is_listed) {
     const double k[6] = {-4, 1, 9, 16, 25, 36};
     chain c = springs(1, k);
     c.damping.diagonal[9] = 50;
@@ -135,21 +131,11 @@ static void growing_solution_is_listed(void **context) {
     bough_arena_destroy(c.arena);
 }
 
-static void singular_stiffness_is_diagnosed(void **context) {
-    (void)context;
+TEST(singular_stiffness_is_diagnosed) {
     const double k[6] = {1, 1, 0, 1, 1, 1};
     chain c = springs(3, k);
     solve(&c, WANTED);
     assert_int_equal(c.status.code, BOUGH_FAILED);
     assert_non_null(strstr(c.status.message, "chain: the stiffness"));
     bough_arena_destroy(c.arena);
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(chain_of_masses_has_its_frequencies), cmocka_unit_test(pairs_satisfy_the_equation),
-        cmocka_unit_test(small_system_gives_all_it_has),       cmocka_unit_test(growing_solution_is_listed),
-        cmocka_unit_test(singular_stiffness_is_diagnosed),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -126,44 +126,34 @@ static void try_all(void **state, const char *path, int stride, const char *cons
     }
 }
 
-static void a_rod_of_every_kind_is_told(void **state) {
+TEST_IN_FOLDER(a_rod_of_every_kind_is_told) {
     static const char *const micro[] = {"rosenbrock", "cvode-bdf", "arkode-esdirk", "generalized-alpha"};
     for (int i = 0; i < 4; i++) {
         char text[80];
         snprintf(text, sizeof text, "simulation.micro.solver=%s", micro[i]);
-        try_all(state, "apps/beams/rubber-bar.yaml", i == 0 ? 1 : 5,
+        try_all(context, "apps/beams/rubber-bar.yaml", i == 0 ? 1 : 5,
                 (const char *const[]){"bodies[0].rod.segments=4", text, NULL});
     }
-    try_all(state, "apps/beams/rubber-bar.yaml", 29,
+    try_all(context, "apps/beams/rubber-bar.yaml", 29,
             (const char *const[]){"bodies[0].rod.segments=4", "bodies[0].fidelity=modal", NULL});
 }
 
-static void every_scheme_is_told(void **state) {
+TEST_IN_FOLDER(every_scheme_is_told) {
     static const char *const scheme[] = {"frozen", "gauss-seidel", "extrapolated", "iterated", "monolithic"};
     for (int i = 0; i < 5; i++) {
         char text[80];
         snprintf(text, sizeof text, "simulation.coupling={scheme: %s}", scheme[i]);
-        try_all(state, "apps/beams/rubber-bar.yaml", 3,
+        try_all(context, "apps/beams/rubber-bar.yaml", 3,
                 (const char *const[]){"bodies[0].rod.segments=1", text, NULL});
     }
 }
 
-static void a_mechanism_is_told(void **state) {
+TEST_IN_FOLDER(a_mechanism_is_told) {
     const char *const none[] = {NULL};
-    try_all(state, "tests/data/scenes/closed.yaml", 3, none);
-    try_all(state, "tests/data/scenes/arms.yaml", 7, none);
+    try_all(context, "tests/data/scenes/closed.yaml", 3, none);
+    try_all(context, "tests/data/scenes/arms.yaml", 7, none);
 }
 
-static void a_turbine_is_told(void **state) {
-    try_all(state, "tests/data/scenes/example-turbine.yaml", 23, (const char *const[]){NULL});
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test_setup_teardown(a_rod_of_every_kind_is_told, scratch_make, scratch_remove),
-        cmocka_unit_test_setup_teardown(every_scheme_is_told, scratch_make, scratch_remove),
-        cmocka_unit_test_setup_teardown(a_mechanism_is_told, scratch_make, scratch_remove),
-        cmocka_unit_test_setup_teardown(a_turbine_is_told, scratch_make, scratch_remove),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
+TEST_IN_FOLDER(a_turbine_is_told) {
+    try_all(context, "tests/data/scenes/example-turbine.yaml", 23, (const char *const[]){NULL});
 }

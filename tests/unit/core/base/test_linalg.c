@@ -6,8 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-static void lu_solves_with_interchanges(void **state) {
-    (void)state;
+TEST(lu_solves_with_interchanges) {
     // column-major; the first pivot is zero
     double a[9] = {0, 2, 1, 1, 0, 1, 3, 1, 0};
     const double x[6] = {1, -2, 3, 0.5, 4, -1};
@@ -24,8 +23,7 @@ static void lu_solves_with_interchanges(void **state) {
 }
 
 // Zeros on the diagonal: rows are exchanged within the band.
-static void band_is_solved_with_interchanges(void **state) {
-    (void)state;
+TEST(band_is_solved_with_interchanges) {
     enum { UNKNOWNS = 12, WIDTH = 2, ROWS = 3 * WIDTH + 1 };
     double a[ROWS * UNKNOWNS] = {0}, b[UNKNOWNS] = {0};
     int pivot[UNKNOWNS];
@@ -44,8 +42,7 @@ static void band_is_solved_with_interchanges(void **state) {
 }
 
 // By hand up to six unknowns, by a library beyond; diagonals are small, so that rows are exchanged.
-static void lu_solves_systems_of_any_size(void **state) {
-    (void)state;
+TEST(lu_solves_systems_of_any_size) {
     for (int n = 1; n <= 9; n++) {
         double a[81], b[9] = {0};
         int pivot[9];
@@ -68,8 +65,7 @@ static void lu_solves_systems_of_any_size(void **state) {
 }
 
 // (2 × 3)(3 × 2), and the transpose of the first.
-static void product_of_matrices(void **state) {
-    (void)state;
+TEST(product_of_matrices) {
     const double a[6] = {1, 2, 3, 4, 5, 6}, b[6] = {1, 0, -1, 2, 1, 0}, at[6] = {1, 3, 5, 2, 4, 6};
     const double expected[4] = {-4, -4, 5, 8};
     double c[4] = {1, 1, 1, 1};
@@ -79,8 +75,7 @@ static void product_of_matrices(void **state) {
     for (int i = 0; i < 4; i++) check_near(c[i], expected[i], 1e-15, 0);
 }
 
-static void lu_refuses_singular_and_nan(void **state) {
-    (void)state;
+TEST(lu_refuses_singular_and_nan) {
     double singular[4] = {1, 2, 2, 4}, nan[4] = {1, 0, NAN, 1};
     int pivot[2];
     assert_false(bough_dense_factor(2, singular, pivot));
@@ -89,8 +84,7 @@ static void lu_refuses_singular_and_nan(void **state) {
     bough_dense_solve(0, 1, NULL, NULL, NULL);
 }
 
-static void complex_lu_solves(void **state) {
-    (void)state;
+TEST(complex_lu_solves) {
     // ((0, 2 + i), (1 − i, 3)) (1 + 2i, −1) = (−2 − i, 0 + i)
     double a[8] = {0, 0, 1, -1, 2, 1, 3, 0}, b[4] = {-2, -1, 0, 1};
     const double x[4] = {1, 2, -1, 0};
@@ -105,8 +99,7 @@ static void complex_lu_solves(void **state) {
 }
 
 // Eigenvalues 1, 2, 4 of Q diag Qᵀ with a Householder reflection Q, and the product again.
-static void symmetric_eigenvectors_rebuild_the_matrix(void **state) {
-    (void)state;
+TEST(symmetric_eigenvectors_rebuild_the_matrix) {
     const double v[3] = {1, 2, -2}, expected[3] = {1, 2, 4};
     double q[3][3], a[9] = {0}, copy[9], value[3], work[24];
     for (int i = 0; i < 3; i++) {
@@ -129,8 +122,7 @@ static void symmetric_eigenvectors_rebuild_the_matrix(void **state) {
 }
 
 // A rotation scaled by 0.5 beside the number 3, seen through a change of basis.
-static void eigenvalues_and_vectors(void **state) {
-    (void)state;
+TEST(eigenvalues_and_vectors) {
     const double a[9] = {0, 0.5, 0, -0.5, 0, 0, 1, 1, 3};
     double copy[9], value[6], v[9], work[24];
     memcpy(copy, a, sizeof a);
@@ -152,8 +144,7 @@ static void eigenvalues_and_vectors(void **state) {
 }
 
 // The second difference matrix: 2 − 2 cos(kπ/(n + 1)), its vectors sines.
-static void smallest_eigenvalues_of_a_symmetric_matrix(void **state) {
-    (void)state;
+TEST(smallest_eigenvalues_of_a_symmetric_matrix) {
     enum { SIZE = 6, COUNT = 3 };
     double a[SIZE * SIZE] = {0}, value[SIZE], vector[SIZE * COUNT], work[26 * SIZE];
     int index[12 * SIZE];
@@ -175,8 +166,7 @@ static void smallest_eigenvalues_of_a_symmetric_matrix(void **state) {
 }
 
 // A = L Lᵀ with L known; only the lower triangle of A is given.
-static void cholesky_finds_the_factor(void **state) {
-    (void)state;
+TEST(cholesky_finds_the_factor) {
     const double l[9] = {2, 0, 0, 1, 3, 0, -1, 0.5, 1.5};
     double a[9], b[3] = {0};
     const double x[3] = {1, 2, -3};
@@ -196,8 +186,7 @@ static void cholesky_finds_the_factor(void **state) {
     for (int i = 0; i < 3; i++) check_near(b[i], x[i], 1e-14, 0);
 }
 
-static void cholesky_refuses_indefinite_and_nearly_singular(void **state) {
-    (void)state;
+TEST(cholesky_refuses_indefinite_and_nearly_singular) {
     double indefinite[4] = {1, 0, 2, 1}, near[4] = {1, 0, 1, 1 + 1e-14}, zero[1] = {0};
     double nan[1] = {NAN}, fine[4] = {1, 0, 1, 1 + 1e-10};
     assert_false(bough_cholesky_factor(2, indefinite));
@@ -205,21 +194,4 @@ static void cholesky_refuses_indefinite_and_nearly_singular(void **state) {
     assert_false(bough_cholesky_factor(1, zero));
     assert_false(bough_cholesky_factor(1, nan));
     assert_true(bough_cholesky_factor(2, fine));
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(lu_solves_with_interchanges),
-        cmocka_unit_test(band_is_solved_with_interchanges),
-        cmocka_unit_test(lu_solves_systems_of_any_size),
-        cmocka_unit_test(product_of_matrices),
-        cmocka_unit_test(lu_refuses_singular_and_nan),
-        cmocka_unit_test(complex_lu_solves),
-        cmocka_unit_test(symmetric_eigenvectors_rebuild_the_matrix),
-        cmocka_unit_test(eigenvalues_and_vectors),
-        cmocka_unit_test(smallest_eigenvalues_of_a_symmetric_matrix),
-        cmocka_unit_test(cholesky_finds_the_factor),
-        cmocka_unit_test(cholesky_refuses_indefinite_and_nearly_singular),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

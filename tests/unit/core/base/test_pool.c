@@ -42,8 +42,7 @@ static void each_size(void *data) {
     }
 }
 
-static void each_task_is_done_once(void **state) {
-    (void)state;
+TEST(each_task_is_done_once) {
     list l;
     for (int threads = 1; threads <= 8; threads *= 2) {
         bough_arena *arena = make(threads, &l);
@@ -68,8 +67,7 @@ static void add_up(void *data) {
     }
 }
 
-static void tasks_wait_for_earlier_ones(void **state) {
-    (void)state;
+TEST(tasks_wait_for_earlier_ones) {
     list l;
     for (int threads = 1; threads <= 8; threads *= 2) {
         bough_arena *arena = make(threads, &l);
@@ -102,8 +100,7 @@ static void take_turns(void *data) {
     }
 }
 
-static void items_that_fill_no_turn_are_halved(void **state) {
-    (void)state;
+TEST(items_that_fill_no_turn_are_halved) {
     list l;
     for (int threads = 1; threads <= 8; threads++) {
         bough_arena *arena = make(threads, &l);
@@ -133,8 +130,7 @@ static void sleep_and_wake(void *data) {
     }
 }
 
-static void sleepers_wake(void **state) {
-    (void)state;
+TEST(sleepers_wake) {
     list l;
     for (int threads = 2; threads <= 8; threads *= 2) {
         bough_arena *arena = make(threads, &l);
@@ -149,8 +145,7 @@ static void follow_at_once(void *data) {
     for (int repeat = 0; repeat < 5000; repeat++) bough_pool_run(l->pool, 3, count, l);
 }
 
-static void lists_follow_at_once(void **state) {
-    (void)state;
+TEST(lists_follow_at_once) {
     list l;
     bough_arena *arena = make(4, &l);
     reset(&l);
@@ -164,8 +159,7 @@ static void one_list(void *data) {
     bough_pool_run(l->pool, 3, count, l);
 }
 
-static void regions_follow_at_once(void **state) {
-    (void)state;
+TEST(regions_follow_at_once) {
     list l;
     bough_arena *arena = make(3, &l);
     reset(&l);
@@ -191,8 +185,7 @@ static void open_all(void *data) {
     bough_pool_region(n->outer.pool, one_list, &n->outer);
 }
 
-static void regions_nest(void **state) {
-    (void)state;
+TEST(regions_nest) {
     static nest n;
     bough_arena *arena[INNER + 1] = {make(2, &n.outer)};
     for (int k = 0; k < INNER; k++) arena[k + 1] = make(3, &n.inner[k]);
@@ -202,25 +195,10 @@ static void regions_nest(void **state) {
     for (int k = 0; k <= INNER; k++) bough_arena_destroy(arena[k]);
 }
 
-static void one_thread_takes_no_memory(void **state) {
-    (void)state;
+TEST(one_thread_takes_no_memory) {
     list l;
     bough_arena *arena = make(1, &l);
     assert_null(l.pool);
     assert_int_equal(bough_arena_bytes(arena), 0);
     bough_arena_destroy(arena);
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(each_task_is_done_once),
-        cmocka_unit_test(tasks_wait_for_earlier_ones),
-        cmocka_unit_test(items_that_fill_no_turn_are_halved),
-        cmocka_unit_test(sleepers_wake),
-        cmocka_unit_test(lists_follow_at_once),
-        cmocka_unit_test(regions_follow_at_once),
-        cmocka_unit_test(regions_nest),
-        cmocka_unit_test(one_thread_takes_no_memory),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -24,8 +24,7 @@ static bough_mat3 rodrigues(bough_vec3 a, double angle) {
 
 static const bough_vec3 axis = {2.0 / 7, 3.0 / 7, -6.0 / 7};
 
-static void exponential_is_rodrigues_formula(void **state) {
-    (void)state;
+TEST(exponential_is_rodrigues_formula) {
     const double angles[] = {0, 1e-9, 0.99e-4, 1.01e-4, 0.3, 2, pi, 5, 2 * pi, 40};
     for (size_t i = 0; i < sizeof angles / sizeof *angles; i++) {
         bough_quaternion p = bough_quaternion_exponential(bough_scale(angles[i], axis));
@@ -34,8 +33,7 @@ static void exponential_is_rodrigues_formula(void **state) {
     }
 }
 
-static void logarithm_inverts_the_exponential(void **state) {
-    (void)state;
+TEST(logarithm_inverts_the_exponential) {
     const double angles[] = {0, 1e-12, 1e-7, 1e-4, 0.3, 2, 3.1, pi - 1e-9};
     for (size_t i = 0; i < sizeof angles / sizeof *angles; i++) {
         bough_quaternion p = bough_quaternion_exponential(bough_scale(angles[i], axis));
@@ -50,8 +48,7 @@ static void logarithm_inverts_the_exponential(void **state) {
                1e-14);
 }
 
-static void product_composes_rotations(void **state) {
-    (void)state;
+TEST(product_composes_rotations) {
     bough_quaternion p = bough_quaternion_exponential(bough_v3(0.4, -1.2, 0.7));
     bough_quaternion q = bough_quaternion_exponential(bough_v3(-2, 0.3, 0.1));
     bough_mat3 both = bough_mat3_product(bough_rotation_matrix(p), bough_rotation_matrix(q));
@@ -62,8 +59,7 @@ static void product_composes_rotations(void **state) {
 }
 
 // Half turns about each axis drive every branch of the inversion.
-static void matrix_gives_the_quaternion_back(void **state) {
-    (void)state;
+TEST(matrix_gives_the_quaternion_back) {
     const bough_vec3 turns[] = {{0, 0, 0},       {pi, 0, 0},     {0, pi, 0},     {0, 0, pi},
                                 {3, 0.2, -0.1},  {-0.3, 3, 0.2}, {0.1, -0.2, 3}, {0.5, 0.6, 0.7},
                                 {2.2, 2.2, 0.1}, {0, 2.2, -2.2}};
@@ -75,8 +71,7 @@ static void matrix_gives_the_quaternion_back(void **state) {
     }
 }
 
-static void normalising_handles_zero(void **state) {
-    (void)state;
+TEST(normalising_handles_zero) {
     bough_quaternion p = bough_quaternion_normalised((bough_quaternion){0, 0, 0, 0});
     check_near(p.w, 1, 0, 0);
     p = bough_quaternion_normalised((bough_quaternion){0, 3, 0, -4});
@@ -86,8 +81,7 @@ static void normalising_handles_zero(void **state) {
 
 // J by differences of exp(ψ + h v) exp(ψ)⁻¹, its change by differences of J, its inverse by β: on both sides
 // of where the factors change from series to formula.
-static void tangents_are_derivatives_and_inverses(void **state) {
-    (void)state;
+TEST(tangents_are_derivatives_and_inverses) {
     const double angles[] = {1e-9, 0.05, 0.0999, 0.1001, 0.2236, 0.2237, 1, 3}, h = 1e-5;
     const bough_vec3 v = {0.3, -0.5, 0.8}, d = {-0.2, 0.7, 0.4};
     for (size_t i = 0; i < sizeof angles / sizeof *angles; i++) {
@@ -116,16 +110,4 @@ static void tangents_are_derivatives_and_inverses(void **state) {
     bough_mat3 about = bough_rotation_about(bough_v3(0.6, 0, 0.8), 2.5);
     bough_quaternion p = bough_quaternion_exponential(bough_v3(1.5, 0, 2));
     check_near(distance(about, bough_rotation_matrix(p)), 0, 0, 1e-15);
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(exponential_is_rodrigues_formula),
-        cmocka_unit_test(logarithm_inverts_the_exponential),
-        cmocka_unit_test(product_composes_rotations),
-        cmocka_unit_test(matrix_gives_the_quaternion_back),
-        cmocka_unit_test(normalising_handles_zero),
-        cmocka_unit_test(tangents_are_derivatives_and_inverses),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -3,8 +3,7 @@
 
 #include "core/base/schedule.h"
 
-static void ramp_grows_between_its_times(void **context) {
-    (void)context;
+TEST(ramp_grows_between_its_times) {
     const bough_schedule ramp = {.start = 1, .end = 3}, always = {.start = 0}, jump = {.start = 2, .end = 2};
     check_near(bough_schedule_at(&always, -1), 1, 0, 0);
     check_near(bough_schedule_at(&jump, 1.999), 0, 0, 0);
@@ -14,8 +13,7 @@ static void ramp_grows_between_its_times(void **context) {
     check_near(bough_schedule_at(&ramp, 4), 1, 0, 0);
 }
 
-static void table_is_linear_and_held_outside(void **context) {
-    (void)context;
+TEST(table_is_linear_and_held_outside) {
     const double times[] = {1, 2, 4, 8, 9}, values[] = {-1, 3, 3, 5, 0};
     const bough_schedule table = {.n = 5, .times = times, .values = values};
     for (int k = 0; k < 5; k++) check_near(bough_schedule_at(&table, times[k]), values[k], 0, 0);
@@ -25,18 +23,8 @@ static void table_is_linear_and_held_outside(void **context) {
     check_near(bough_schedule_at(&table, 10), 0, 0, 0);
 }
 
-static void row_is_the_one_that_holds_the_time(void **context) {
-    (void)context;
+TEST(row_is_the_one_that_holds_the_time) {
     const double rows[][3] = {{0, 7, 7}, {1, 7, 7}, {3, 7, 7}, {4, 7, 7}};
     const double t[] = {0, 0.5, 1, 2.9, 3, 3.5}, row[] = {0, 0, 1, 1, 2, 2};
     for (int k = 0; k < 6; k++) assert_int_equal(bough_table_row(4, rows[0], 3, t[k]), row[k]);
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(ramp_grows_between_its_times),
-        cmocka_unit_test(table_is_linear_and_held_outside),
-        cmocka_unit_test(row_is_the_one_that_holds_the_time),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -4,15 +4,13 @@
 
 #include <string.h>
 
-static void message_is_as_written(void **state) {
-    (void)state;
+TEST(message_is_as_written) {
     bough_status status = bough_fail(BOUGH_INVALID, "rod %s: %d segments", "blade", 3);
     assert_int_equal(status.code, BOUGH_INVALID);
     assert_string_equal(status.message, "rod blade: 3 segments");
 }
 
-static void long_message_ends_after_a_word(void **state) {
-    (void)state;
+TEST(long_message_ends_after_a_word) {
     char words[3 * BOUGH_MESSAGE];
     for (int shift = 0; shift < 12; shift++) {
         memset(words, 'x', sizeof words);
@@ -26,12 +24,4 @@ static void long_message_ends_after_a_word(void **state) {
     memset(words, 'x', 2 * BOUGH_MESSAGE); // no word ends
     bough_status status = bough_fail(BOUGH_FAILED, "%s", words);
     assert_string_equal(status.message + strlen(status.message) - 4, " ...");
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(message_is_as_written),
-        cmocka_unit_test(long_message_ends_after_a_word),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -24,8 +24,7 @@ static void expand(const double a[21], double full[6][6]) {
     }
 }
 
-static void index_runs_through_the_triangle_by_rows(void **context) {
-    (void)context;
+TEST(index_runs_through_the_triangle_by_rows) {
     for (int i = 0, at = 0; i < 6; i++) {
         for (int j = i; j < 6; j++, at++) {
             assert_int_equal(bough_symmetric6_index(i, j), at);
@@ -48,8 +47,7 @@ static void check_inverse(const double a[21], const double inverse[21], double t
     }
 }
 
-static void inverse_times_matrix_is_the_identity(void **context) {
-    (void)context;
+TEST(inverse_times_matrix_is_the_identity) {
     double a[21], inverse[21];
     for (unsigned seed = 1; seed < 20; seed++) {
         random_matrix(seed, 0.5, a);
@@ -58,8 +56,7 @@ static void inverse_times_matrix_is_the_identity(void **context) {
     }
 }
 
-static void inverse_may_be_in_place(void **context) {
-    (void)context;
+TEST(inverse_may_be_in_place) {
     double a[21], kept[21], inverse[21];
     random_matrix(4, 0.5, a);
     memcpy(kept, a, sizeof a);
@@ -69,8 +66,7 @@ static void inverse_may_be_in_place(void **context) {
     assert_memory_equal(a, inverse, sizeof a);
 }
 
-static void inverse_refuses_what_is_not_positive_definite(void **context) {
-    (void)context;
+TEST(inverse_refuses_what_is_not_positive_definite) {
     double a[21], inverse[21];
     for (int k = 0; k < 6; k++) {
         random_matrix(3, 1, a);
@@ -109,8 +105,7 @@ static void turned_explicitly(const double a[21], double angle, double turned[6]
     }
 }
 
-static void turn_is_a_rotation_about_z(void **context) {
-    (void)context;
+TEST(turn_is_a_rotation_about_z) {
     const double angles[] = {0, 0.3, -1.2, BOUGH_PI / 2, 4};
     double a[21], turned[21], back[21], expected[6][6];
     random_matrix(9, 0.1, a);
@@ -125,15 +120,4 @@ static void turn_is_a_rotation_about_z(void **context) {
         bough_symmetric6_turn(turned, -angles[k], turned); // in place
         assert_memory_equal(turned, back, sizeof back);
     }
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(index_runs_through_the_triangle_by_rows),
-        cmocka_unit_test(inverse_times_matrix_is_the_identity),
-        cmocka_unit_test(inverse_may_be_in_place),
-        cmocka_unit_test(inverse_refuses_what_is_not_positive_definite),
-        cmocka_unit_test(turn_is_a_rotation_about_z),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

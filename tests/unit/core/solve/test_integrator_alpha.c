@@ -86,8 +86,7 @@ static double error_with(double step, double rho) {
     return error;
 }
 
-static void order_is_two_for_any_damping(void **context) {
-    (void)context;
+TEST(order_is_two_for_any_damping) {
     for (double rho = 0; rho <= 1; rho += 0.4) {
         double coarse = error_with(0.01, rho), fine = error_with(0.005, rho);
         check_near(coarse / fine, 4, 0.15, 0);
@@ -95,8 +94,7 @@ static void order_is_two_for_any_damping(void **context) {
 }
 
 // A mode far above the step's reach is damped by ρ∞ each step.
-static void highest_frequencies_are_damped_as_asked(void **context) {
-    (void)context;
+TEST(highest_frequencies_are_damped_as_asked) {
     problem p = {0};
     double y[3];
     bough_arena *arena = build(&p, 0.01, 0.5);
@@ -109,8 +107,7 @@ static void highest_frequencies_are_damped_as_asked(void **context) {
     bough_arena_destroy(arena);
 }
 
-static void what_has_no_value_ends_with_a_diagnosis(void **context) {
-    (void)context;
+TEST(what_has_no_value_ends_with_a_diagnosis) {
     problem p = {0};
     double y[3];
     bough_arena *arena = build(&p, 0.01, 0.8);
@@ -124,8 +121,7 @@ static void what_has_no_value_ends_with_a_diagnosis(void **context) {
     bough_arena_destroy(arena);
 }
 
-static void counts_its_work(void **context) {
-    (void)context;
+TEST(counts_its_work) {
     problem p = {0};
     double y[3];
     bough_statistics sum = {0};
@@ -138,14 +134,4 @@ static void counts_its_work(void **context) {
     assert_int_equal(sum.starts, 2);
     assert_int_equal(sum.failed_steps, 0);
     bough_arena_destroy(arena);
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(order_is_two_for_any_damping),
-        cmocka_unit_test(highest_frequencies_are_damped_as_asked),
-        cmocka_unit_test(what_has_no_value_ends_with_a_diagnosis),
-        cmocka_unit_test(counts_its_work),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

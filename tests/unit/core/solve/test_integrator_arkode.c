@@ -16,21 +16,18 @@ static double error_with(double rtol) {
 
 // At many tolerances: with its own settings ARKODE now and then accepts a step that is wrong by
 // its size in the stiffest mode, because it trusts the convergence rate of other factors.
-static void no_tolerance_gives_a_wrong_stiff_state(void **context) {
-    (void)context;
+TEST(no_tolerance_gives_a_wrong_stiff_state) {
     for (double rtol = 1e-3; rtol > 1e-9; rtol *= 0.9) assert_true(error_with(rtol) < 30 * rtol);
 }
 
 // Order 4: the error follows the tolerance.
-static void error_falls_with_the_tolerance(void **context) {
-    (void)context;
+TEST(error_falls_with_the_tolerance) {
     double coarse = error_with(1e-4), fine = error_with(1e-8);
     assert_true(fine < 1e-3 * coarse);
 }
 
 // The tolerance is rtol times the scale of each state.
-static void tolerance_is_relative_to_the_scale(void **context) {
-    (void)context;
+TEST(tolerance_is_relative_to_the_scale) {
     static const double scales[2][N] = {{1, 1, 1}, {1e-3, 1e-3, 1e-3}};
     double y[2][N];
     for (int k = 0; k < 2; k++) {
@@ -43,8 +40,7 @@ static void tolerance_is_relative_to_the_scale(void **context) {
 }
 
 // f has no value beyond the end, and the end is reached though no natural step ends there.
-static void stops_at_the_end_and_looks_no_further(void **context) {
-    (void)context;
+TEST(stops_at_the_end_and_looks_no_further) {
     problem *p = create(1e-6);
     double y[N];
     exact(0, y);
@@ -60,8 +56,7 @@ static void stops_at_the_end_and_looks_no_further(void **context) {
 }
 
 // A jump costs a start, not an order.
-static void restarts_are_nearly_free(void **context) {
-    (void)context;
+TEST(restarts_are_nearly_free) {
     long steps[2];
     for (int restart = 0; restart < 2; restart++) {
         problem *p = create(1e-6);
@@ -76,18 +71,4 @@ static void restarts_are_nearly_free(void **context) {
     }
     print_message("kept %ld, anew %ld steps\n", steps[0], steps[1]);
     assert_true(steps[1] < 3 * steps[0]);
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(no_tolerance_gives_a_wrong_stiff_state),
-        cmocka_unit_test(error_falls_with_the_tolerance),
-        cmocka_unit_test(tolerance_is_relative_to_the_scale),
-        cmocka_unit_test(stops_at_the_end_and_looks_no_further),
-        cmocka_unit_test(restarts_are_nearly_free),
-        cmocka_unit_test(restart_takes_up_a_changed_state),
-        cmocka_unit_test(failure_names_body_time_and_solver),
-        cmocka_unit_test(statistics_add_up_over_restarts),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -75,8 +75,7 @@ static outcome run(bough_integrator_kind kind, double omega, int count) {
     return run_for(kind, omega, count, 0.01);
 }
 
-static void slow_motion_is_the_rosenbrock_methods(void **state) {
-    (void)state;
+TEST(slow_motion_is_the_rosenbrock_methods) {
     outcome own = run(BOUGH_AUTOMATIC, 20, 50), rosenbrock = run(BOUGH_ROSENBROCK, 20, 50);
     assert_int_equal(own.status.code, BOUGH_OK);
     assert_true(own.error == rosenbrock.error && own.error < 1e-3);
@@ -85,8 +84,7 @@ static void slow_motion_is_the_rosenbrock_methods(void **state) {
 }
 
 // 4 kHz, 400 periods.
-static void fast_vibrations_take_a_fifth_of_the_evaluations(void **state) {
-    (void)state;
+TEST(fast_vibrations_take_a_fifth_of_the_evaluations) {
     outcome own = run(BOUGH_AUTOMATIC, 25000, 10), rosenbrock = run(BOUGH_ROSENBROCK, 25000, 10);
     print_message("evaluations %ld, %ld; errors %.2e, %.2e\n", own.work.derivatives,
                   rosenbrock.work.derivatives, own.error, rosenbrock.error);
@@ -97,8 +95,7 @@ static void fast_vibrations_take_a_fifth_of_the_evaluations(void **state) {
 }
 
 // 5 kHz in macro steps of 1 ms, of which none takes the Rosenbrock method more than some hundred steps.
-static void short_macro_steps_leave_fast_vibrations_to_ida(void **state) {
-    (void)state;
+TEST(short_macro_steps_leave_fast_vibrations_to_ida) {
     outcome own = run_for(BOUGH_AUTOMATIC, 30000, 100, 1e-3),
             rosenbrock = run_for(BOUGH_ROSENBROCK, 30000, 100, 1e-3);
     print_message("evaluations %ld, %ld; errors %.2e, %.2e\n", own.work.derivatives,
@@ -108,21 +105,10 @@ static void short_macro_steps_leave_fast_vibrations_to_ida(void **state) {
     assert_true(own.error < rosenbrock.error);
 }
 
-static void what_nobody_would_wait_for_ends_with_its_reason(void **state) {
-    (void)state;
+TEST(what_nobody_would_wait_for_ends_with_its_reason) {
     outcome own = run(BOUGH_AUTOMATIC, 3e6, 10);
     assert_int_equal(own.status.code, BOUGH_FAILED);
     assert_non_null(strstr(own.status.message, "oscillator"));
     assert_non_null(strstr(own.status.message, "follows vibrations that fast"));
     assert_true(own.work.steps < 70000);
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(slow_motion_is_the_rosenbrock_methods),
-        cmocka_unit_test(fast_vibrations_take_a_fifth_of_the_evaluations),
-        cmocka_unit_test(short_macro_steps_leave_fast_vibrations_to_ida),
-        cmocka_unit_test(what_nobody_would_wait_for_ends_with_its_reason),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -101,8 +101,7 @@ static int check_system(bough_arena *arena, const specimen *x) {
     return suit;
 }
 
-static void every_method_integrates_every_system(void **state) {
-    (void)state;
+TEST(every_method_integrates_every_system) {
     bough_arena *arena = bough_arena_create();
     fixture tree = everything(1e-6);
     bough_two_mass assembly;
@@ -128,19 +127,10 @@ static void every_method_integrates_every_system(void **state) {
     bough_arena_destroy(arena);
 }
 
-static void every_system_keeps_the_contract(void **state) {
-    (void)state;
+TEST(every_system_keeps_the_contract) {
     bough_two_mass assembly;
     bough_system s = make_assembly(&assembly);
     const double none[1] = {0};
     contract_check_system(&s, (contract_point){0, s.initial, none, 1e-5}, 0.05);
     bough_two_mass_destroy(&assembly);
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(every_method_integrates_every_system),
-        cmocka_unit_test(every_system_keeps_the_contract),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -4,8 +4,7 @@
 static const char *solver(void) { return "CVODE"; }
 static problem *create(double rtol) { return create_kind(BOUGH_CVODE_BDF, rtol); }
 
-static void error_falls_with_the_tolerance(void **context) {
-    (void)context;
+TEST(error_falls_with_the_tolerance) {
     double last = INFINITY;
     for (double rtol = 1e-3; rtol > 1e-8; rtol *= 1e-2) {
         problem *p = create(rtol);
@@ -21,8 +20,7 @@ static void error_falls_with_the_tolerance(void **context) {
 }
 
 // The tolerance is rtol times the scale of each state.
-static void tolerance_is_relative_to_the_scale(void **context) {
-    (void)context;
+TEST(tolerance_is_relative_to_the_scale) {
     static const double scales[2][N] = {{1, 1, 1}, {1e-3, 1e-3, 1e-3}};
     double y[2][N];
     for (int k = 0; k < 2; k++) {
@@ -35,8 +33,7 @@ static void tolerance_is_relative_to_the_scale(void **context) {
 }
 
 // f has no value beyond the end, and the end is reached though no natural step ends there.
-static void stops_at_the_end_and_looks_no_further(void **context) {
-    (void)context;
+TEST(stops_at_the_end_and_looks_no_further) {
     problem *p = create(1e-6);
     double y[N];
     exact(0, y);
@@ -65,22 +62,8 @@ static long steps_of(bool restart) {
     return s.steps;
 }
 
-static void kept_history_saves_steps(void **context) {
-    (void)context;
+TEST(kept_history_saves_steps) {
     long kept = steps_of(false), anew = steps_of(true);
     assert_true(kept >= 100);
     assert_true(2 * kept < anew);
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(error_falls_with_the_tolerance),
-        cmocka_unit_test(tolerance_is_relative_to_the_scale),
-        cmocka_unit_test(stops_at_the_end_and_looks_no_further),
-        cmocka_unit_test(kept_history_saves_steps),
-        cmocka_unit_test(restart_takes_up_a_changed_state),
-        cmocka_unit_test(failure_names_body_time_and_solver),
-        cmocka_unit_test(statistics_add_up_over_restarts),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

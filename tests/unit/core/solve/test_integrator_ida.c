@@ -88,8 +88,7 @@ static double error_at(double rtol) {
     return worst;
 }
 
-static void error_follows_the_tolerance(void **state) {
-    (void)state;
+TEST(error_follows_the_tolerance) {
     for (double rtol = 1e-4; rtol > 1e-11; rtol *= 1e-2) {
         double error = error_at(rtol);
         print_message("rtol %.0e: error %.2e\n", rtol, error);
@@ -97,8 +96,7 @@ static void error_follows_the_tolerance(void **state) {
     }
 }
 
-static void nothing_is_evaluated_past_the_end(void **state) {
-    (void)state;
+TEST(nothing_is_evaluated_past_the_end) {
     oscillator o = ordinary();
     bough_arena *arena = bough_arena_create();
     bough_integrator ida = create(arena, &o, 1e-6);
@@ -112,8 +110,7 @@ static void nothing_is_evaluated_past_the_end(void **state) {
     bough_arena_destroy(arena);
 }
 
-static void restarting_repeats_bit_by_bit(void **state) {
-    (void)state;
+TEST(restarting_repeats_bit_by_bit) {
     oscillator o = ordinary();
     bough_arena *arena = bough_arena_create();
     bough_integrator ida = create(arena, &o, 1e-6);
@@ -136,8 +133,7 @@ static void restarting_repeats_bit_by_bit(void **state) {
     bough_arena_destroy(arena);
 }
 
-static void failures_name_body_time_and_cure(void **state) {
-    (void)state;
+TEST(failures_name_body_time_and_cure) {
     oscillator o = ordinary();
     o.break_after = 0.5; // NaN from here on
     bough_arena *arena = bough_arena_create();
@@ -156,8 +152,7 @@ static void failures_name_body_time_and_cure(void **state) {
 }
 
 // A rate that has no value makes IDA shorten its step and go on.
-static void refused_rate_is_retried(void **state) {
-    (void)state;
+TEST(refused_rate_is_retried) {
     oscillator o = ordinary();
     o.refuse_after = 0.5, o.refusals = 3;
     bough_arena *arena = bough_arena_create();
@@ -170,13 +165,4 @@ static void refused_rate_is_retried(void **state) {
     ida.ops->statistics(ida.self, &count);
     assert_true(count.failed_steps >= 3);
     bough_arena_destroy(arena);
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(error_follows_the_tolerance),   cmocka_unit_test(nothing_is_evaluated_past_the_end),
-        cmocka_unit_test(restarting_repeats_bit_by_bit), cmocka_unit_test(failures_name_body_time_and_cure),
-        cmocka_unit_test(refused_rate_is_retried),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

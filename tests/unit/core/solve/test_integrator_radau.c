@@ -98,8 +98,7 @@ static double half_period(double y0) {
     return acos(-1.0) / (a * sqrt(9.81));
 }
 
-static void error_follows_the_tolerance_at_order_five(void **state) {
-    (void)state;
+TEST(error_follows_the_tolerance_at_order_five) {
     problem p = make(2, pendulum, 0);
     const double y0[MOST] = {2, 0};
     double error[4], steps[4];
@@ -115,8 +114,7 @@ static void error_follows_the_tolerance_at_order_five(void **state) {
 }
 
 // Order 5 falls to 3 where the problem is stiff, and the error is proportional to 1/λ.
-static void stiff_error_falls_with_order_three(void **state) {
-    (void)state;
+TEST(stiff_error_falls_with_order_three) {
     problem p = make(1, prothero, 1e5), stiffer = p;
     stiffer.stiffness = 1e6;
     const double y0[MOST] = {0};
@@ -129,8 +127,7 @@ static void stiff_error_falls_with_order_three(void **state) {
 }
 
 // The test set's reference at t = 2 (F. Mazzia, C. Magherini, Test Set for IVP Solvers, 2008).
-static void van_der_pol_reaches_its_reference(void **state) {
-    (void)state;
+TEST(van_der_pol_reaches_its_reference) {
     problem p = make(2, van_der_pol, 1e6);
     const double y0[MOST] = {2, 0};
     result r = run(p, 1e-8, y0, 2, 1);
@@ -144,8 +141,7 @@ static void van_der_pol_reaches_its_reference(void **state) {
 
 // -- calls -----------------------------------------------------------------------------------
 
-static void nothing_is_evaluated_past_the_end(void **state) {
-    (void)state;
+TEST(nothing_is_evaluated_past_the_end) {
     problem p = make(2, pendulum, 0);
     bough_arena *arena = bough_arena_create();
     bough_integrator radau = create(arena, &p, 1e-6);
@@ -160,8 +156,7 @@ static void nothing_is_evaluated_past_the_end(void **state) {
 }
 
 // Going on from a copy is the same as having gone on, to the last bit and the last factorisation.
-static void copies_are_complete(void **state) {
-    (void)state;
+TEST(copies_are_complete) {
     problem p = make(2, van_der_pol, 100);
     bough_arena *arena = bough_arena_create();
     bough_integrator radau = create(arena, &p, 1e-7);
@@ -200,8 +195,7 @@ static bool pushed(problem *p, double t, const double *y, double *rate) {
     return true;
 }
 
-static void jumps_are_passed(void **state) {
-    (void)state;
+TEST(jumps_are_passed) {
     problem p = make(2, pushed, 0);
     bough_arena *arena = bough_arena_create();
     bough_integrator radau = create(arena, &p, 1e-8);
@@ -219,8 +213,7 @@ static void jumps_are_passed(void **state) {
     bough_arena_destroy(arena);
 }
 
-static void failures_name_body_time_and_cure(void **state) {
-    (void)state;
+TEST(failures_name_body_time_and_cure) {
     problem p = make(2, pendulum, 0);
     p.break_after = 0.5;
     bough_arena *arena = bough_arena_create();
@@ -238,17 +231,4 @@ static void failures_name_body_time_and_cure(void **state) {
     assert_int_equal(status.code, BOUGH_INVALID); // dense matrices
     assert_non_null(strstr(status.message, "rosenbrock"));
     bough_arena_destroy(arena);
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(error_follows_the_tolerance_at_order_five),
-        cmocka_unit_test(stiff_error_falls_with_order_three),
-        cmocka_unit_test(van_der_pol_reaches_its_reference),
-        cmocka_unit_test(nothing_is_evaluated_past_the_end),
-        cmocka_unit_test(copies_are_complete),
-        cmocka_unit_test(jumps_are_passed),
-        cmocka_unit_test(failures_name_body_time_and_cure),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

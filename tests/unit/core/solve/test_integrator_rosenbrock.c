@@ -99,8 +99,7 @@ static double error_with(double step, double rtol, double skew, long *steps) {
 }
 
 // Exact tangents or half of them.
-static void order_is_three_whatever_the_tangents(void **context) {
-    (void)context;
+TEST(order_is_three_whatever_the_tangents) {
     for (double skew = 1; skew > 0.4; skew -= 0.5) {
         double coarse = error_with(0.01, 1, skew, NULL), fine = error_with(0.005, 1, skew, NULL);
         assert_true(coarse < 1e-4);
@@ -108,8 +107,7 @@ static void order_is_three_whatever_the_tangents(void **context) {
     }
 }
 
-static void error_follows_the_tolerance(void **context) {
-    (void)context;
+TEST(error_follows_the_tolerance) {
     long before = 0;
     for (double rtol = 1e-2; rtol > 1e-9; rtol *= 0.1) {
         long steps;
@@ -121,8 +119,7 @@ static void error_follows_the_tolerance(void **context) {
 }
 
 // A mode far above the step's reach is gone after a few steps.
-static void stiff_mode_is_forgotten(void **context) {
-    (void)context;
+TEST(stiff_mode_is_forgotten) {
     problem p = {.skew = 1, .wall = (double)INFINITY};
     double y[N];
     bough_arena *arena = build(&p, 0.01, 1e3);
@@ -133,8 +130,7 @@ static void stiff_mode_is_forgotten(void **context) {
     bough_arena_destroy(arena);
 }
 
-static void a_restart_gives_the_same_bits(void **context) {
-    (void)context;
+TEST(a_restart_gives_the_same_bits) {
     problem p = {.skew = 1, .wall = (double)INFINITY};
     double once[N], twice[N];
     bough_arena *arena = build(&p, 0.05, 1e-5);
@@ -146,8 +142,7 @@ static void a_restart_gives_the_same_bits(void **context) {
     bough_arena_destroy(arena);
 }
 
-static void a_pause_changes_no_bit(void **context) {
-    (void)context;
+TEST(a_pause_changes_no_bit) {
     problem p = {.skew = 1, .wall = (double)INFINITY};
     double once[N], twice[N], t = 0;
     bough_arena *arena = build(&p, 0.05, 1e-5);
@@ -161,8 +156,7 @@ static void a_pause_changes_no_bit(void **context) {
     bough_arena_destroy(arena);
 }
 
-static void what_has_no_value_ends_with_a_diagnosis(void **context) {
-    (void)context;
+TEST(what_has_no_value_ends_with_a_diagnosis) {
     problem p = {.skew = 1, .wall = (double)INFINITY};
     double y[N];
     bough_arena *arena = build(&p, 0.01, 1e-3);
@@ -174,16 +168,4 @@ static void what_has_no_value_ends_with_a_diagnosis(void **context) {
     assert_non_null(strstr(status.message, "sample"));
     if (strstr(status.message, "0.125 s") == NULL) fail_msg("%s", status.message);
     bough_arena_destroy(arena);
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(order_is_three_whatever_the_tangents),
-        cmocka_unit_test(error_follows_the_tolerance),
-        cmocka_unit_test(stiff_mode_is_forgotten),
-        cmocka_unit_test(a_restart_gives_the_same_bits),
-        cmocka_unit_test(a_pause_changes_no_bit),
-        cmocka_unit_test(what_has_no_value_ends_with_a_diagnosis),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

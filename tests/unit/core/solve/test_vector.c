@@ -57,8 +57,7 @@ static void destroy(fixture *f) {
 
 static double at(N_Vector v, int i) { return bough_vector_data(v)[i]; }
 
-static void data_is_aligned_and_cloned(void **state) {
-    (void)state;
+TEST(data_is_aligned_and_cloned) {
     fixture f;
     for_each_length(f, n) {
         assert_int_equal((uintptr_t)bough_vector_data(f.x) % 64, 0);
@@ -78,8 +77,7 @@ static void data_is_aligned_and_cloned(void **state) {
     }
 }
 
-static void elementwise_operations(void **state) {
-    (void)state;
+TEST(elementwise_operations) {
     fixture f;
     for_each_length(f, n) {
         N_VLinearSum(2, f.x, -3, f.y, f.z);
@@ -104,8 +102,7 @@ static void elementwise_operations(void **state) {
     }
 }
 
-static void reductions(void **state) {
-    (void)state;
+TEST(reductions) {
     fixture f;
     for_each_length(f, n) {
         double dot = 0, most = 0, low = DBL_MAX, l1 = 0, squares = 0, masked = 0, ratio = DBL_MAX;
@@ -132,8 +129,7 @@ static void reductions(void **state) {
     }
 }
 
-static void tests_with_a_verdict(void **state) {
-    (void)state;
+TEST(tests_with_a_verdict) {
     fixture f;
     for_each_length(f, n) {
         assert_true(N_VInvTest(f.x, f.z));
@@ -161,8 +157,7 @@ static void tests_with_a_verdict(void **state) {
     }
 }
 
-static void fused_operations(void **state) {
-    (void)state;
+TEST(fused_operations) {
     fixture f;
     double c[COUNT] = {1, -0.5, 2, 3}, dots[COUNT], norms[COUNT];
     for_each_length(f, n) {
@@ -203,15 +198,4 @@ static void fused_operations(void **state) {
         }
         destroy(&f);
     }
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(data_is_aligned_and_cloned),
-        cmocka_unit_test(elementwise_operations),
-        cmocka_unit_test(reductions),
-        cmocka_unit_test(tests_with_a_verdict),
-        cmocka_unit_test(fused_operations),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

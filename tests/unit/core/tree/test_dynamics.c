@@ -4,8 +4,7 @@
 
 // -- recursions against each other -----------------------------------------------------------
 
-static void inverse_dynamics_inverts_forward_dynamics(void **state) {
-    (void)state;
+TEST(inverse_dynamics_inverts_forward_dynamics) {
     fixture f = everything(1e-6);
     double acceleration[MOST], residual[MOST], bias[MOST], mass[MOST * MOST];
     double zero[MOST] = {0};
@@ -26,8 +25,7 @@ static void inverse_dynamics_inverts_forward_dynamics(void **state) {
     bough_arena_destroy(f.arena);
 }
 
-static void kinetic_energy_is_the_mass_matrix_form(void **state) {
-    (void)state;
+TEST(kinetic_energy_is_the_mass_matrix_form) {
     fixture f = everything(1e-6);
     double mass[MOST * MOST], energy = 0;
     int n = f.tree->n_v;
@@ -42,8 +40,7 @@ static void kinetic_energy_is_the_mass_matrix_form(void **state) {
 }
 
 // Power of the loads = rate of the energy, by differences along the exact motion.
-static void energy_follows_the_power_of_the_loads(void **state) {
-    (void)state;
+TEST(energy_follows_the_power_of_the_loads) {
     fixture f = everything(1e-11);
     f.tree->external[2].active = false;
     f.tree->n_loads = 0;
@@ -63,8 +60,7 @@ static void energy_follows_the_power_of_the_loads(void **state) {
 
 // -- tangents --------------------------------------------------------------------------------
 
-static void output_tangent_is_the_derivative(void **state) {
-    (void)state;
+TEST(output_tangent_is_the_derivative) {
     fixture f = everything(1e-6);
     int n = f.s.n_state, m = f.s.n_output;
     double change[MOST], plus[MOST], minus[MOST], y[MOST], tangent[MOST], h = 1e-6;
@@ -83,8 +79,7 @@ static void output_tangent_is_the_derivative(void **state) {
 }
 
 // Along the motion: the links' accelerations of the forward dynamics, and ġ = −ω×g.
-static void output_tangent_along_the_motion_is_the_acceleration(void **state) {
-    (void)state;
+TEST(output_tangent_along_the_motion_is_the_acceleration) {
     fixture f = everything(1e-6);
     double rate[MOST], tangent[MOST], out[MOST];
     assert_true(f.s.ops->derivative(f.s.self, 0, f.m->state, some_input, rate));
@@ -109,8 +104,7 @@ static void output_tangent_along_the_motion_is_the_acceleration(void **state) {
     bough_arena_destroy(f.arena);
 }
 
-static void input_columns_are_the_derivative(void **state) {
-    (void)state;
+TEST(input_columns_are_the_derivative) {
     fixture f = everything(1e-6);
     int n = f.s.n_state;
     double *columns = calloc((size_t)(n * f.s.n_input), sizeof(double));
@@ -129,8 +123,7 @@ static void input_columns_are_the_derivative(void **state) {
 }
 
 // (I − γJ) x = b with x by solve and J x by a difference of f along x.
-static void solve_inverts_the_linearisation(void **state) {
-    (void)state;
+TEST(solve_inverts_the_linearisation) {
     fixture f = everything(1e-6);
     int n = f.s.n_state;
     double x[MOST], b[MOST], y[MOST], plus[MOST], minus[MOST], gamma = 0.07, h = 1e-6;
@@ -149,17 +142,4 @@ static void solve_inverts_the_linearisation(void **state) {
         check_near(x[i] - gamma * (plus[i] - minus[i]) / (2 * h), b[i], 1e-7, 1e-7);
     }
     bough_arena_destroy(f.arena);
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(inverse_dynamics_inverts_forward_dynamics),
-        cmocka_unit_test(kinetic_energy_is_the_mass_matrix_form),
-        cmocka_unit_test(energy_follows_the_power_of_the_loads),
-        cmocka_unit_test(output_tangent_is_the_derivative),
-        cmocka_unit_test(output_tangent_along_the_motion_is_the_acceleration),
-        cmocka_unit_test(input_columns_are_the_derivative),
-        cmocka_unit_test(solve_inverts_the_linearisation),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -63,8 +63,7 @@ static fixture mounted(double rtol, bool damped) {
 // -- bushings --------------------------------------------------------------------------------
 
 // About one axis and along one axis a bushing is a linear spring and damper at any amplitude.
-static void bushing_is_linear_along_and_about_an_axis(void **state) {
-    (void)state;
+TEST(bushing_is_linear_along_and_about_an_axis) {
     bough_body_def b = bough_body_def_default();
     b.name = "plate", b.kind = BOUGH_JOINT_FREE, b.mass = 2, b.inertia = diagonal(1, 1, 0.5);
     b.coordinates[2] = 0.7, b.coordinates[3] = cos(1.2), b.coordinates[6] = sin(1.2);
@@ -90,8 +89,7 @@ static void bushing_is_linear_along_and_about_an_axis(void **state) {
 }
 
 // Undamped elements keep the energy at large turns about changing axes, with unequal stiffnesses.
-static void elements_conserve(void **state) {
-    (void)state;
+TEST(elements_conserve) {
     fixture f = mounted(1e-10, false);
     bough_tree_kinematics(f.tree, f.m->state, f.data);
     tree_sums before = tree_sum(f.tree, f.data);
@@ -108,8 +106,7 @@ static void elements_conserve(void **state) {
 }
 
 // Action and reaction: the wrenches of an element in the ground about the ground's origin.
-static void elements_act_and_react(void **state) {
-    (void)state;
+TEST(elements_act_and_react) {
     fixture f = mounted(1e-6, true);
     bough_tree_kinematics(f.tree, f.m->state, f.data);
     for (int e = 0; e < bough_tree_n_elements(f.tree); e++) {
@@ -136,8 +133,7 @@ static bough_transform shifted(bough_transform x, bough_twist by) {
 }
 
 // The change along poses and twists against central differences with the links' data changed.
-static void changes_are_derivatives(void **state) {
-    (void)state;
+TEST(changes_are_derivatives) {
     fixture f = mounted(1e-6, true);
     double direction[24], h = 1e-6, t = 0.4;
     for (int i = 0; i < 24; i++) direction[i] = sin(1.3 * i + 0.4);
@@ -189,8 +185,7 @@ static void changes_are_derivatives(void **state) {
     bough_arena_destroy(f.arena);
 }
 
-static void tree_with_forces_fulfils_the_contract(void **state) {
-    (void)state;
+TEST(tree_with_forces_fulfils_the_contract) {
     fixture f = mounted(1e-8, true);
     double y[26], none[1] = {0};
     memcpy(y, f.m->state, sizeof y);
@@ -203,8 +198,7 @@ static void tree_with_forces_fulfils_the_contract(void **state) {
 
 // A force in ground axes at a point of a turning body pushes its mass centre straight; a factor from
 // a table scales it.
-static void wrench_in_ground_axes_pushes_straight(void **state) {
-    (void)state;
+TEST(wrench_in_ground_axes_pushes_straight) {
     const double times[] = {0, 1, 2}, values[] = {0, 1, 0};
     bough_body_def b = bough_body_def_default();
     b.name = "puck", b.kind = BOUGH_JOINT_FREE, b.mass = 2, b.inertia = diagonal(1, 1, 1);
@@ -227,8 +221,7 @@ static void wrench_in_ground_axes_pushes_straight(void **state) {
 
 // A machine on its mounts, turned against the ground, sinks by m g/k; a second body is lifted by
 // exactly its weight; a wheel is spun up by a force that turns with it.
-static void scenes_mount_and_load_bodies(void **state) {
-    (void)state;
+TEST(scenes_mount_and_load_bodies) {
     static const char *const none[] = {NULL};
     bough_arena *arena = bough_arena_create();
     bough_simulation *s = scene_build(arena, "tests/data/scenes/mounts.yaml", none);
@@ -244,17 +237,4 @@ static void scenes_mount_and_load_bodies(void **state) {
     double angle = scene_channel(s, &list, "wheelPos") * acos(-1.0) / 180;
     check_near(angle, 0.6 * (0.5 * 3.85 * 3.85 + 0.01 / 24), 1e-6, 0);
     bough_arena_destroy(arena);
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(bushing_is_linear_along_and_about_an_axis),
-        cmocka_unit_test(elements_conserve),
-        cmocka_unit_test(elements_act_and_react),
-        cmocka_unit_test(changes_are_derivatives),
-        cmocka_unit_test(tree_with_forces_fulfils_the_contract),
-        cmocka_unit_test(wrench_in_ground_axes_pushes_straight),
-        cmocka_unit_test(scenes_mount_and_load_bodies),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

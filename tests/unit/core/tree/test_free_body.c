@@ -3,8 +3,7 @@
 #include "tests/unit/scene_text.h"
 
 // Half a turn a second about its own z, which stays; thrown along x.
-static void free_body_tells_where_it_is_and_how_it_turns(void **state) {
-    (void)state;
+TEST(free_body_tells_where_it_is_and_how_it_turns) {
     write_file("s.yaml", "gravity: [0, 0, 0]\n"
                          "simulation: {duration: 0.5 s, macro_step: 10 ms, master: {rtol: 1e-8}}\n"
                          "bodies:\n"
@@ -35,9 +34,4 @@ static void free_body_tells_where_it_is_and_how_it_turns(void **state) {
     bough_arena_destroy(arena);
 }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(free_body_tells_where_it_is_and_how_it_turns),
-    };
-    return cmocka_run_group_tests(tests, enter, leave);
-}
+GROUP(enter, leave)

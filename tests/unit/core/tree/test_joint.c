@@ -24,8 +24,7 @@ static bough_joint joint_of(bough_joint_kind kind) {
         {0, 1, 0}};
 }
 
-static void sizes_match_the_kinds(void **state) {
-    (void)state;
+TEST(sizes_match_the_kinds) {
     const int nq[] = {0, 1, 1, 4, 7, 2, 3}, nv[] = {0, 1, 1, 3, 6, 2, 3};
     for (int k = 0; k < N_KINDS; k++) {
         assert_int_equal(bough_joint_n_coordinates(kinds[k]), nq[k]);
@@ -37,8 +36,7 @@ static void sizes_match_the_kinds(void **state) {
     assert_int_equal(bough_joint_n_axes(BOUGH_JOINT_CYLINDRICAL), 1);
 }
 
-static void poses_by_hand(void **state) {
-    (void)state;
+TEST(poses_by_hand) {
     bough_joint j = {BOUGH_JOINT_REVOLUTE, bough_transform_identity(), {0, 0, 1}, {1, 0, 0}};
     double quarter = acos(-1.0) / 2;
     bough_transform x = bough_joint_pose(&j, &quarter);
@@ -68,8 +66,7 @@ static void poses_by_hand(void **state) {
 }
 
 // Ẋ of the pose moved along q̇ = N(q) v is the twist S v.
-static void rate_moves_the_pose_by_the_twist(void **state) {
-    (void)state;
+TEST(rate_moves_the_pose_by_the_twist) {
     const double h = 1e-6;
     for (int k = 1; k < N_KINDS; k++) {
         bough_joint j = joint_of(kinds[k]);
@@ -93,8 +90,7 @@ static void rate_moves_the_pose_by_the_twist(void **state) {
     }
 }
 
-static void speed_inverts_the_rate(void **state) {
-    (void)state;
+TEST(speed_inverts_the_rate) {
     for (int k = 0; k < N_KINDS; k++) {
         bough_joint j = joint_of(kinds[k]);
         double rate[7] = {0}, v[6] = {0};
@@ -111,8 +107,7 @@ static void speed_inverts_the_rate(void **state) {
 }
 
 // Sᵀ is the transpose of S: vᵀ(Sᵀ f) = (S v)ᵀ f
-static void force_is_dual_to_the_twist(void **state) {
-    (void)state;
+TEST(force_is_dual_to_the_twist) {
     bough_wrench f = {{1, -2, 3}, {0.5, 4, -1}};
     for (int k = 0; k < N_KINDS; k++) {
         bough_joint j = joint_of(kinds[k]);
@@ -123,8 +118,7 @@ static void force_is_dual_to_the_twist(void **state) {
     }
 }
 
-static void normalising_keeps_the_pose(void **state) {
-    (void)state;
+TEST(normalising_keeps_the_pose) {
     bough_joint j = joint_of(BOUGH_JOINT_FREE);
     double q[7];
     memcpy(q, coordinates[4], sizeof q);
@@ -152,8 +146,7 @@ static const bough_twist some_twist = {{1, -2, 0.5}, {0.3, 0.7, -1}};
 
 static bough_transform some_placement(void) { return joint_of(BOUGH_JOINT_FIXED).placement; }
 
-static void power_does_not_depend_on_the_frame(void **state) {
-    (void)state;
+TEST(power_does_not_depend_on_the_frame) {
     bough_transform x = some_placement();
     bough_wrench f = {{1, -2, 3}, {0.5, 4, -1}};
     check_near(bough_power(bough_twist_to_child(&x, some_twist), f),
@@ -161,8 +154,7 @@ static void power_does_not_depend_on_the_frame(void **state) {
 }
 
 // Kinetic energy of four point masses, directly and by the inertia in another frame.
-static void inertia_moves_with_the_frame(void **state) {
-    (void)state;
+TEST(inertia_moves_with_the_frame) {
     const bough_vec3 at[4] = {{1, 0, 0.5}, {0, 2, -1}, {-0.3, 0.4, 1}, {0.2, 0.1, 0.7}};
     bough_transform x = some_placement();
     bough_inertia child = {0};
@@ -180,25 +172,9 @@ static void inertia_moves_with_the_frame(void **state) {
     check_near(0.5 * bough_power(inside, bough_inertia_mul(&child, inside)), energy, 1e-14, 0);
 }
 
-static void inverse_placement_undoes(void **state) {
-    (void)state;
+TEST(inverse_placement_undoes) {
     bough_transform x = some_placement();
     bough_transform one = bough_transform_compose(bough_transform_inverse(x), x);
     check_near(bough_norm(one.position), 0, 0, 1e-15);
     check_near(one.rotation.c1.x + one.rotation.c2.y + one.rotation.c3.z, 3, 1e-15, 0);
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(sizes_match_the_kinds),
-        cmocka_unit_test(poses_by_hand),
-        cmocka_unit_test(rate_moves_the_pose_by_the_twist),
-        cmocka_unit_test(speed_inverts_the_rate),
-        cmocka_unit_test(force_is_dual_to_the_twist),
-        cmocka_unit_test(normalising_keeps_the_pose),
-        cmocka_unit_test(power_does_not_depend_on_the_frame),
-        cmocka_unit_test(inertia_moves_with_the_frame),
-        cmocka_unit_test(inverse_placement_undoes),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

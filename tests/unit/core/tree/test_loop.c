@@ -56,8 +56,7 @@ static bough_twist rate_of_twist(double t, double seed) {
     return (bough_twist){bough_sub(r, turning), {0, 0, 0}};
 }
 
-static void rates_and_bias_are_the_derivatives(void **state) {
-    (void)state;
+TEST(rates_and_bias_are_the_derivatives) {
     const double t = 0.4, h = 1e-4;
     bough_vec3 axis = bough_v3(0.3, -0.5, 0.8), second = bough_v3(0.9, 0.2, 0.1);
     for (int k = 0; k < KINDS; k++) {
@@ -194,8 +193,7 @@ static void compare_wrenches(fixture *open, fixture *closed) {
     check_near(bough_norm(off.moment) / (1 + bough_norm(joint.moment)), 0, 0, 1e-9);
 }
 
-static void closures_act_as_the_joints_they_replace(void **state) {
-    (void)state;
+TEST(closures_act_as_the_joints_they_replace) {
     for (int k = 0; k < KINDS; k++) {
         for (int solver = BOUGH_IDA; solver <= BOUGH_RADAU5; solver += BOUGH_RADAU5) {
             bough_body_def b[2];
@@ -297,8 +295,7 @@ static double angle_at(int n, double t) {
 }
 
 // Until before the bars come to lie on one line, where the mechanism may branch.
-static void windows_follow_their_one_equation(void **state) {
-    (void)state;
+TEST(windows_follow_their_one_equation) {
     windows w;
     for (int n = 1; n <= WINDOWS; n++) {
         for (int solver = BOUGH_IDA; solver <= BOUGH_RADAU5; solver += BOUGH_RADAU5) {
@@ -321,8 +318,7 @@ static void windows_follow_their_one_equation(void **state) {
 }
 
 // Over the singular position and back again many times: the published state at 10 s.
-static void windows_pass_the_singular_position(void **state) {
-    (void)state;
+TEST(windows_pass_the_singular_position) {
     windows w;
     make_windows(&w, 1, BOUGH_JOINT_REVOLUTE);
     for (int solver = BOUGH_IDA; solver <= BOUGH_RADAU5; solver += BOUGH_RADAU5) {
@@ -338,8 +334,7 @@ static void windows_pass_the_singular_position(void **state) {
 }
 
 // A hinge closed twice over, on the closures and off them.
-static void closed_trees_fulfil_the_contract(void **state) {
-    (void)state;
+TEST(closed_trees_fulfil_the_contract) {
     const bough_port_def port = {.name = "port", .marker = 1};
     const double input[6] = {1, 2, 3, -1, -2, 0.5};
     double y[MOST];
@@ -373,8 +368,7 @@ static void closed_trees_fulfil_the_contract(void **state) {
 
 // A crank turned at 1 rad/s: the kinetic energy is constant, so the drive balances the weight of
 // the uprights at half their height and the coupler, 2 g cos φ.
-static void driven_cranks_take_the_torque_of_the_weights(void **state) {
-    (void)state;
+TEST(driven_cranks_take_the_torque_of_the_weights) {
     windows w;
     make_windows(&w, 1, BOUGH_JOINT_REVOLUTE);
     w.body[0].motion = (bough_motion_def){.given = true, .speed = true, .from = 1, .to = 1};
@@ -396,8 +390,7 @@ static void driven_cranks_take_the_torque_of_the_weights(void **state) {
 }
 
 // Off the closures the state comes back to them within a few time constants.
-static void violations_decay(void **state) {
-    (void)state;
+TEST(violations_decay) {
     windows w;
     double y[MOST];
     make_windows(&w, 1, BOUGH_JOINT_REVOLUTE);
@@ -417,8 +410,7 @@ static void violations_decay(void **state) {
 
 // -- assembly --------------------------------------------------------------------------------
 
-static void loops_are_assembled_from_near(void **state) {
-    (void)state;
+TEST(loops_are_assembled_from_near) {
     windows w;
     make_windows(&w, 1, BOUGH_JOINT_REVOLUTE);
     w.body[0].coordinates[0] = 0.5;
@@ -439,8 +431,7 @@ static void loops_are_assembled_from_near(void **state) {
 
 // A shallow arch of rods whose far end must move by much more than the joints' first step would
 // hit.
-static void arches_are_assembled(void **state) {
-    (void)state;
+TEST(arches_are_assembled) {
     enum { RODS = 8 };
     bough_body_def body[RODS];
     for (int i = 0; i < RODS; i++) {
@@ -484,8 +475,7 @@ static void refused(const bough_tree_def *def, const char *what, const char *als
     bough_arena_destroy(arena);
 }
 
-static void what_cannot_be_closed_is_refused(void **state) {
-    (void)state;
+TEST(what_cannot_be_closed_is_refused) {
     windows w;
     make_windows(&w, 1, BOUGH_JOINT_REVOLUTE);
     w.body[1].coordinates[0] = 0.6; // far
@@ -499,20 +489,4 @@ static void what_cannot_be_closed_is_refused(void **state) {
     make_windows(&w, 1, BOUGH_JOINT_REVOLUTE);
     w.marker[1].body = w.marker[0].body;
     refused(&w.def, "closure 'close'", "nothing to close");
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(rates_and_bias_are_the_derivatives),
-        cmocka_unit_test(closures_act_as_the_joints_they_replace),
-        cmocka_unit_test(windows_follow_their_one_equation),
-        cmocka_unit_test(windows_pass_the_singular_position),
-        cmocka_unit_test(closed_trees_fulfil_the_contract),
-        cmocka_unit_test(driven_cranks_take_the_torque_of_the_weights),
-        cmocka_unit_test(violations_decay),
-        cmocka_unit_test(loops_are_assembled_from_near),
-        cmocka_unit_test(arches_are_assembled),
-        cmocka_unit_test(what_cannot_be_closed_is_refused),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -43,8 +43,7 @@ static void run(fixture *f, int steps) {
     for (int k = 0; k < steps; k++) scene_step(f->s);
 }
 
-static void joints_of_several_axes_start_and_are_recorded(void **context) {
-    (void)context;
+TEST(joints_of_several_axes_start_and_are_recorded) {
     fixture f = start("tests/data/scenes/joints.yaml", no_sets);
     const double degree = acos(-1.0) / 180;
     check_near(channel(&f, "forkAng1Pos"), 90, 1e-14, 0);
@@ -71,8 +70,7 @@ static void joints_of_several_axes_start_and_are_recorded(void **context) {
 }
 
 // The balance from rest at 0 towards 40°, and the slider, which its stop keeps from going further.
-static void sprung_joints_move_by_themselves(void **context) {
-    (void)context;
+TEST(sprung_joints_move_by_themselves) {
     fixture f = start("tests/data/scenes/springs.yaml", no_sets);
     double delta = 0.4, omega = sqrt(16 - delta * delta), furthest = 0, t = 1.5;
     while (f.s->master->time < t - 1e-9) {
@@ -86,8 +84,7 @@ static void sprung_joints_move_by_themselves(void **context) {
 }
 
 // 8 N m until 0.4 s, falling to nothing at 1 s, on 4 kg m²; every time of the table is a step's end.
-static void joint_loads_follow_their_table(void **context) {
-    (void)context;
+TEST(joint_loads_follow_their_table) {
     fixture f = start("tests/data/scenes/springs.yaml", no_sets);
     const double degree = acos(-1.0) / 180;
     assert_int_equal(f.s->master->n_event, 3);
@@ -100,8 +97,7 @@ static void joint_loads_follow_their_table(void **context) {
 }
 
 // The planar joint's normal is y: its first axis is z, its second x.
-static void elastic_pendulum_passes_the_reference(void **context) {
-    (void)context;
+TEST(elastic_pendulum_passes_the_reference) {
     fixture f = start("apps/mechanisms/elastic-pendulum.yaml", no_sets);
     run(&f, 100);
     check_near(channel(&f, "bob2Pos"), -0.9801969361, 0, 1e-6);
@@ -123,8 +119,7 @@ static bough_vec3 point_of(fixture *f, const char *body, bough_vec3 x) {
     return bough_add(pose.position, bough_mat3_mul(pose.rotation, x));
 }
 
-static void pendulum_passes_the_reference(void **context) {
-    (void)context;
+TEST(pendulum_passes_the_reference) {
     static const char *const radau[] = {"simulation.master.solver=radau5", NULL};
     const char *const *const sets[] = {no_sets, radau};
     for (int k = 0; k < 2; k++) {
@@ -139,8 +134,7 @@ static void pendulum_passes_the_reference(void **context) {
 }
 
 // Bodies in a row keep the place of the first in the list and hang one on the other.
-static void bodies_in_a_row_hang_on_each_other(void **context) {
-    (void)context;
+TEST(bodies_in_a_row_hang_on_each_other) {
     static const char *const sets[] = {"bodies[0].repeat=3", "bodies[1].joint.parent=rod3",
                                        "bodies[1].repeat=1", "markers[0].body=link1", NULL};
     bough_arena *arena = bough_arena_create();
@@ -155,8 +149,7 @@ static void bodies_in_a_row_hang_on_each_other(void **context) {
     bough_arena_destroy(arena);
 }
 
-static void chain_passes_the_reference(void **context) {
-    (void)context;
+TEST(chain_passes_the_reference) {
     fixture f = start("apps/mechanisms/chain.yaml", no_sets);
     run(&f, 100);
     check_near(channel(&f, "tipX"), 0.5335694751, 0, 1e-6);
@@ -170,8 +163,7 @@ static void chain_passes_the_reference(void **context) {
 }
 
 // Angles and the forces in the point where all meet, at 30 ms (Test Set for IVP Solvers).
-static void squeezer_passes_the_reference(void **context) {
-    (void)context;
+TEST(squeezer_passes_the_reference) {
     static const char *const ida[] = {"simulation.master.solver=ida", NULL};
     static const char *const names[] = {"K1Pos", "K2Pos", "K3Pos", "K4Pos", "K5Pos", "K6Pos", "K7Pos"};
     static const double angles[] = {15.81077119629904,  -15.75637105984298, .04082224013073101,
@@ -192,8 +184,7 @@ static void squeezer_passes_the_reference(void **context) {
 }
 
 // All rods come to lie on one line at every pass. Of IFToMM's benchmark A02.
-static void windows_pass_their_singular_position_at_every_tolerance(void **context) {
-    (void)context;
+TEST(windows_pass_their_singular_position_at_every_tolerance) {
     static const char *const tolerances[] = {"1e-6", "1e-7", "1e-8", "1e-9", "8e-10", "1e-10"};
     for (int k = 0; k < (int)(sizeof tolerances / sizeof *tolerances); k++) {
         char rtol[64];
@@ -209,8 +200,7 @@ static void windows_pass_their_singular_position_at_every_tolerance(void **conte
 
 // Every method passes the positions in which the loops could branch: at 0.67 s, and about twenty times to 10
 // s.
-static void every_method_passes_singular_positions(void **context) {
-    (void)context;
+TEST(every_method_passes_singular_positions) {
     static const struct {
         const char *solver;
         double allowed; // [m]
@@ -238,8 +228,7 @@ static void check_closed(fixture *f, double allowed) {
 }
 
 // A rod on a closed loop under every scheme and either master, against the monolithic solution.
-static void closed_loops_run_under_every_scheme(void **context) {
-    (void)context;
+TEST(closed_loops_run_under_every_scheme) {
     static const struct {
         const char *scheme;
         double allowed; // of the crank's angle, in degrees
@@ -270,8 +259,7 @@ static void closed_loops_run_under_every_scheme(void **context) {
 }
 
 // A loop through a rod, from its equilibrium: the beam's x is down at the tip.
-static void propped_beams_rest_on_their_closure(void **context) {
-    (void)context;
+TEST(propped_beams_rest_on_their_closure) {
     fixture f = start("tests/data/scenes/prop.yaml", no_sets);
     double prop = 0.375 * 6 * 9.81; // Euler and Bernoulli; shear and 24 segments add 1e-4
     check_near(channel(&f, "propFx"), -prop, 2e-4, 0);
@@ -282,8 +270,7 @@ static void propped_beams_rest_on_their_closure(void **context) {
 }
 
 // Where a closed loop with a rod on it rests is found, and it stays there.
-static void closed_loops_come_to_rest(void **context) {
-    (void)context;
+TEST(closed_loops_come_to_rest) {
     const char *const still[] = {"bodies[0].joint.speed=0", "simulation.initial=equilibrium", NULL};
     fixture f = start("tests/data/scenes/closed.yaml", still);
     check_closed(&f, 1e-9);
@@ -295,8 +282,7 @@ static void closed_loops_come_to_rest(void **context) {
 }
 
 // With a crank, coupler and rocker that weigh little against the rod the frozen coupling grows.
-static void stability_of_closed_loops_is_judged(void **context) {
-    (void)context;
+TEST(stability_of_closed_loops_is_judged) {
     static const char *const names[] = {"frozen", "ramp"};
     const char *const light[] = {"bodies[0].mass=0.003",
                                  "bodies[0].inertia=[1e-4, 1e-4, 2e-5]",
@@ -421,8 +407,7 @@ static void check_turned(const char *path, const char *folder) {
     remove(name);
 }
 
-static void mechanisms_move_alike_in_every_direction(void **context) {
-    (void)context;
+TEST(mechanisms_move_alike_in_every_direction) {
     char folder[SCRATCH_NAME], path[512];
     assert_non_null(mkdtemp(scratch_name(folder)));
     DIR *shipped = opendir(BOUGH_SOURCE_DIR "/apps/mechanisms");
@@ -436,25 +421,4 @@ static void mechanisms_move_alike_in_every_direction(void **context) {
     check_turned("tests/data/scenes/closed.yaml", folder); // assembled from near, with a rod
     check_turned("tests/data/scenes/prop.yaml", folder);   // from an equilibrium
     rmdir(folder);
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(joints_of_several_axes_start_and_are_recorded),
-        cmocka_unit_test(sprung_joints_move_by_themselves),
-        cmocka_unit_test(pendulum_passes_the_reference),
-        cmocka_unit_test(chain_passes_the_reference),
-        cmocka_unit_test(bodies_in_a_row_hang_on_each_other),
-        cmocka_unit_test(elastic_pendulum_passes_the_reference),
-        cmocka_unit_test(joint_loads_follow_their_table),
-        cmocka_unit_test(squeezer_passes_the_reference),
-        cmocka_unit_test(windows_pass_their_singular_position_at_every_tolerance),
-        cmocka_unit_test(every_method_passes_singular_positions),
-        cmocka_unit_test(closed_loops_run_under_every_scheme),
-        cmocka_unit_test(propped_beams_rest_on_their_closure),
-        cmocka_unit_test(closed_loops_come_to_rest),
-        cmocka_unit_test(stability_of_closed_loops_is_judged),
-        cmocka_unit_test(mechanisms_move_alike_in_every_direction),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -16,8 +16,7 @@ static bough_motion *motion_of(bough_arena *arena, bough_motion_def def, double 
 // -- functions of time -----------------------------------------------------------------------
 
 // The hub angle of Simo and Vu-Quoc's spin-up is the ramp of its speed.
-static void ramp_of_speed_is_the_published_one(void **state) {
-    (void)state;
+TEST(ramp_of_speed_is_the_published_one) {
     bough_arena *arena = bough_arena_create();
     bough_motion *m =
         motion_of(arena, (bough_motion_def){.speed = true, .to = 6, .start = 0, .end = 15}, 0.7);
@@ -49,8 +48,7 @@ static void check_derivatives(const bough_motion *m, bool smooth) {
     }
 }
 
-static void speeds_and_accelerations_are_derivatives(void **state) {
-    (void)state;
+TEST(speeds_and_accelerations_are_derivatives) {
     const double times[] = {0.5, 1, 2.5, 4}, values[] = {1, -2, 3, 0.5};
     bough_arena *arena = bough_arena_create();
     bough_motion_def def = {.from = 0.3, .to = -1.2, .start = 1, .end = 4};
@@ -78,8 +76,7 @@ static void speeds_and_accelerations_are_derivatives(void **state) {
 
 // Where values rise, fall or stay, the motion does: plateaus beside a step, steps between ramps, uneven
 // times.
-static void tables_of_positions_do_not_overshoot(void **state) {
-    (void)state;
+TEST(tables_of_positions_do_not_overshoot) {
     static const double times[][8] = {
         {0, 15, 16, 30}, {0, 1, 1.1, 5, 5.01, 9, 9.5, 12}, {0, 1, 2, 3, 4, 5, 6, 7}, {0, 15, 16, 30, 31, 45}};
     static const double values[][8] = {
@@ -105,8 +102,7 @@ static void tables_of_positions_do_not_overshoot(void **state) {
 }
 
 // A sampled sine keeps its accelerations, at the maxima between its samples too.
-static void smooth_tables_stay_smooth(void **state) {
-    (void)state;
+TEST(smooth_tables_stay_smooth) {
     enum { SAMPLES = 41 };
     double times[SAMPLES], values[SAMPLES], w = 1.3;
     for (int i = 0; i < SAMPLES; i++) times[i] = 0.25 * i, values[i] = sin(w * times[i]);
@@ -151,8 +147,7 @@ static fixture satellite(bough_joint_kind base, double rtol) {
 }
 
 // What drives the wheel is an inner torque: momenta stay, and the motion is the given one exactly.
-static void driven_joints_keep_the_momenta(void **state) {
-    (void)state;
+TEST(driven_joints_keep_the_momenta) {
     fixture f = satellite(BOUGH_JOINT_FREE, 1e-10);
     bough_tree_kinematics(f.tree, f.m->state, f.data);
     tree_sums before = tree_sum(f.tree, f.data);
@@ -171,8 +166,7 @@ static void driven_joints_keep_the_momenta(void **state) {
 }
 
 // The drives' power is the rate of the energy.
-static void energy_is_what_the_drives_put_in(void **state) {
-    (void)state;
+TEST(energy_is_what_the_drives_put_in) {
     fixture f = satellite(BOUGH_JOINT_FIXED, 1e-10);
     double work = 0, power = 0, h = 0.01, acceleration[8];
     tree_sums first = {0}, last = {0};
@@ -193,8 +187,7 @@ static void energy_is_what_the_drives_put_in(void **state) {
     bough_arena_destroy(f.arena);
 }
 
-static void recursions_agree_on_driven_joints(void **state) {
-    (void)state;
+TEST(recursions_agree_on_driven_joints) {
     fixture f = satellite(BOUGH_JOINT_FREE, 1e-6);
     double acceleration[MOST], residual[MOST], drive[MOST], u[6] = {1, -2, 0.5, 0.3, 0.8, -0.6};
     double t = 0.4;
@@ -211,8 +204,7 @@ static void recursions_agree_on_driven_joints(void **state) {
     bough_arena_destroy(f.arena);
 }
 
-static void driven_tree_fulfils_the_contract(void **state) {
-    (void)state;
+TEST(driven_tree_fulfils_the_contract) {
     fixture f = satellite(BOUGH_JOINT_FREE, 1e-8);
     double y[MOST], u[6] = {1, -2, 0.5, 0.3, 0.8, -0.6};
     bough_tree_prescribe(f.tree, 0.2, f.tree->initial);
@@ -224,8 +216,7 @@ static void driven_tree_fulfils_the_contract(void **state) {
 }
 
 // A joint held still needs no inertia, and carries the moment of the weight.
-static void locked_joint_reports_its_torque(void **state) {
-    (void)state;
+TEST(locked_joint_reports_its_torque) {
     bough_body_def b = bough_body_def_default();
     b.name = "beam", b.kind = BOUGH_JOINT_REVOLUTE, b.axis = bough_v3(0, 1, 0);
     b.mass = 2, b.mass_centre = bough_v3(1.5, 0, 0);
@@ -244,8 +235,7 @@ static void locked_joint_reports_its_torque(void **state) {
 
 // -- scenes ----------------------------------------------------------------------------------
 
-static void scenes_drive_joints(void **state) {
-    (void)state;
+TEST(scenes_drive_joints) {
     static const char *const none[] = {NULL};
     bough_arena *arena = bough_arena_create();
     bough_simulation *s = scene_build(arena, "tests/data/scenes/motion.yaml", none);
@@ -276,8 +266,7 @@ static void scenes_drive_joints(void **state) {
 
 // Told every tenth of a second where a sine will be, a motion follows it without a jump in speed,
 // to the fourth order; the first span starts at rest from where the motion is.
-static void steered_motion_follows(void **state) {
-    (void)state;
+TEST(steered_motion_follows) {
     bough_arena *arena = bough_arena_create();
     bough_motion *m = motion_of(arena, (bough_motion_def){.from = 0.3, .to = 0.3}, 0);
     double worst = 0;
@@ -292,21 +281,4 @@ static void steered_motion_follows(void **state) {
     }
     assert_true(worst > 1e-8 && worst < 1e-4 / 384 * 1.1); // h⁴/384 of the fourth derivative
     bough_arena_destroy(arena);
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(ramp_of_speed_is_the_published_one),
-        cmocka_unit_test(speeds_and_accelerations_are_derivatives),
-        cmocka_unit_test(tables_of_positions_do_not_overshoot),
-        cmocka_unit_test(smooth_tables_stay_smooth),
-        cmocka_unit_test(driven_joints_keep_the_momenta),
-        cmocka_unit_test(energy_is_what_the_drives_put_in),
-        cmocka_unit_test(recursions_agree_on_driven_joints),
-        cmocka_unit_test(driven_tree_fulfils_the_contract),
-        cmocka_unit_test(locked_joint_reports_its_torque),
-        cmocka_unit_test(scenes_drive_joints),
-        cmocka_unit_test(steered_motion_follows),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -83,19 +83,12 @@ static void check_schemes(bool steered) {
     }
 }
 
-static void tables_and_ramps_under_every_scheme(void **state) {
-    (void)state;
-    check_schemes(false);
-}
+TEST(tables_and_ramps_under_every_scheme) { check_schemes(false); }
 
-static void steered_under_every_scheme(void **state) {
-    (void)state;
-    check_schemes(true);
-}
+TEST(steered_under_every_scheme) { check_schemes(true); }
 
 // All integrators come to one motion, whatever their tangents make of the given states.
-static void monolithic_with_every_integrator(void **state) {
-    (void)state;
+TEST(monolithic_with_every_integrator) {
     for (int steered = 0; steered < 2; steered++) {
         end exact, found;
         run("monolithic", "rosenbrock", "1e-9", steered, &exact);
@@ -107,13 +100,4 @@ static void monolithic_with_every_integrator(void **state) {
             assert_true(error < (strcmp(solvers[k], "generalized-alpha") == 0 ? 0.1 : 2e-4));
         }
     }
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(tables_and_ramps_under_every_scheme),
-        cmocka_unit_test(steered_under_every_scheme),
-        cmocka_unit_test(monolithic_with_every_integrator),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

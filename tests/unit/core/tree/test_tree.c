@@ -5,8 +5,7 @@
 // -- analytic motions ------------------------------------------------------------------------
 
 // A point mass m = 1 on a massless rod l = 1 about the y axis, from (−1, 0) at rest.
-static void pendulum_follows_the_elliptic_solution(void **state) {
-    (void)state;
+TEST(pendulum_follows_the_elliptic_solution) {
     bough_body_def b = bough_body_def_default();
     b.name = "bob", b.kind = BOUGH_JOINT_REVOLUTE, b.axis = bough_v3(0, 1, 0);
     b.mass = 1, b.mass_centre = bough_v3(-1, 0, 0);
@@ -28,8 +27,7 @@ static void pendulum_follows_the_elliptic_solution(void **state) {
 
 // Point masses, l = 1 each, both horizontal and at rest. Absolute angles θ1, θ2 from the vertical
 // start at π/2; the joints turn about y from the horizontal, θ = π/2 − (sum of joint angles).
-static void double_pendulum_reaches_the_known_angles(void **state) {
-    (void)state;
+TEST(double_pendulum_reaches_the_known_angles) {
     bough_body_def b[2] = {bough_body_def_default(), bough_body_def_default()};
     for (int i = 0; i < 2; i++) {
         b[i].name = "bob", b[i].kind = BOUGH_JOINT_REVOLUTE, b[i].axis = bough_v3(0, 1, 0);
@@ -53,8 +51,7 @@ static bough_tree_def free_body_def(bough_body_def *b, bough_mat3 inertia) {
 }
 
 // Ω of a body with moments (A, A, C): Ω3 constant, (Ω1, Ω2) turns at λ = (C − A)/A·Ω3.
-static void axisymmetric_body_precesses(void **state) {
-    (void)state;
+TEST(axisymmetric_body_precesses) {
     bough_body_def b;
     bough_tree_def def = free_body_def(&b, diagonal(0.5, 0.5, 0.9));
     double v[6] = {0.3, -0.2, 0.1, 1.5, 0, 4};
@@ -69,8 +66,7 @@ static void axisymmetric_body_precesses(void **state) {
 }
 
 // The mass centre flies straight, energy and both momenta stay, though the intermediate axis tips.
-static void free_asymmetric_body_conserves(void **state) {
-    (void)state;
+TEST(free_asymmetric_body_conserves) {
     bough_body_def b;
     bough_tree_def def = free_body_def(&b, diagonal(0.5, 0.7, 0.9));
     b.mass_centre = bough_v3(0.1, -0.2, 0.3);
@@ -101,8 +97,7 @@ static void free_asymmetric_body_conserves(void **state) {
 
 // A constant torque M on a revolute joint of inertia J without gravity, ramped over [1, 3] s:
 // ω = M/J·∫ factor.
-static void ramped_joint_load_spins_up(void **state) {
-    (void)state;
+TEST(ramped_joint_load_spins_up) {
     bough_body_def b = bough_body_def_default();
     b.name = "rotor", b.kind = BOUGH_JOINT_REVOLUTE, b.axis = bough_v3(0, 0, 2);
     b.inertia = diagonal(1, 1, 4);
@@ -121,8 +116,7 @@ static void ramped_joint_load_spins_up(void **state) {
 }
 
 // J θ̈ + c θ̇ + k (θ − θ₀) = 0 from rest at θ = 0: θ₀ (1 − e^(−δt) (cos ωt + δ/ω sin ωt)).
-static void sprung_joint_oscillates_and_decays(void **state) {
-    (void)state;
+TEST(sprung_joint_oscillates_and_decays) {
     bough_body_def b = bough_body_def_default();
     b.name = "balance", b.kind = BOUGH_JOINT_REVOLUTE, b.inertia = diagonal(1, 1, 0.5);
     b.spring = (bough_joint_spring){.stiffness = 8, .damping = 0.4, .rest = 0.7};
@@ -142,8 +136,7 @@ static void sprung_joint_oscillates_and_decays(void **state) {
 }
 
 // A slider flies between its stops, gives its energy to the one and comes back as fast.
-static void stops_throw_back_without_loss(void **state) {
-    (void)state;
+TEST(stops_throw_back_without_loss) {
     bough_body_def b = bough_body_def_default();
     b.name = "slider", b.kind = BOUGH_JOINT_PRISMATIC, b.mass = 2;
     b.speeds[0] = 3;
@@ -166,8 +159,7 @@ static void stops_throw_back_without_loss(void **state) {
 }
 
 // Two free masses on a spring: the relative motion has the reduced mass, the sum of momenta stays.
-static void two_bodies_swing_on_a_spring(void **state) {
-    (void)state;
+TEST(two_bodies_swing_on_a_spring) {
     bough_body_def b[2] = {bough_body_def_default(), bough_body_def_default()};
     bough_marker_def markers[2] = {{"a", 0, bough_transform_identity()},
                                    {"b", 1, bough_transform_identity()}};
@@ -189,8 +181,7 @@ static void two_bodies_swing_on_a_spring(void **state) {
 
 // A body thrown along a cylindrical joint and spun about it: h = v t − g cos(α) t²/2, φ = ω t, with
 // the axis z leaned by α about x.
-static void cylindrical_joint_slides_and_spins(void **state) {
-    (void)state;
+TEST(cylindrical_joint_slides_and_spins) {
     bough_body_def b = bough_body_def_default();
     b.name = "screwless", b.kind = BOUGH_JOINT_CYLINDRICAL;
     b.joint.rotation = turned(0.4, 0, 0);
@@ -206,8 +197,7 @@ static void cylindrical_joint_slides_and_spins(void **state) {
 
 // On a plane leaned by α about x: the mass centre, off the body's origin, is thrown on a parabola
 // while the body spins steadily.
-static void planar_joint_throws_on_a_parabola(void **state) {
-    (void)state;
+TEST(planar_joint_throws_on_a_parabola) {
     bough_body_def b = bough_body_def_default();
     b.name = "puck", b.kind = BOUGH_JOINT_PLANAR;
     b.joint.rotation = turned(0.4, 0, 0);
@@ -226,8 +216,7 @@ static void planar_joint_throws_on_a_parabola(void **state) {
 
 // A spherical pendulum on a universal joint (about x, then y) against the same on a spherical one:
 // the bob is a point, so that the spin about the rod does not count.
-static void universal_joint_swings_as_a_spherical_pendulum(void **state) {
-    (void)state;
+TEST(universal_joint_swings_as_a_spherical_pendulum) {
     bough_body_def b = bough_body_def_default();
     b.name = "bob", b.kind = BOUGH_JOINT_UNIVERSAL;
     b.axis = bough_v3(2, 0, 0), b.second_axis = bough_v3(0, 1, 0);
@@ -260,8 +249,7 @@ static void universal_joint_swings_as_a_spherical_pendulum(void **state) {
 }
 
 // 8 N m falling to 0 from 1 s to 3 s, on J = 4.
-static void tabulated_joint_load_spins_up(void **state) {
-    (void)state;
+TEST(tabulated_joint_load_spins_up) {
     const double times[] = {1, 3}, values[] = {8, 0};
     bough_body_def b = bough_body_def_default();
     b.name = "rotor", b.kind = BOUGH_JOINT_REVOLUTE, b.inertia = diagonal(1, 1, 4);
@@ -283,8 +271,7 @@ static void tabulated_joint_load_spins_up(void **state) {
 
 // Pendulum whose mass sits on a body welded to it, hung from a tower and a nacelle welded to the
 // ground, against the same masses in one body.
-static void welded_bodies_move_as_one(void **state) {
-    (void)state;
+TEST(welded_bodies_move_as_one) {
     unsigned seed = 11;
     bough_body_def whole = random_body(&seed, "whole", BOUGH_GROUND, BOUGH_JOINT_SPHERICAL);
     bough_body_def extra = random_body(&seed, "extra", 2, BOUGH_JOINT_FIXED);
@@ -314,8 +301,7 @@ static void welded_bodies_move_as_one(void **state) {
 }
 
 // A port's root inertia is felt as a body welded there.
-static void root_inertia_is_felt_as_a_welded_body(void **state) {
-    (void)state;
+TEST(root_inertia_is_felt_as_a_welded_body) {
     unsigned seed = 21;
     bough_body_def b[2] = {random_body(&seed, "hub", BOUGH_GROUND, BOUGH_JOINT_FREE),
                            random_body(&seed, "root", 0, BOUGH_JOINT_FIXED)};
@@ -339,8 +325,7 @@ static void root_inertia_is_felt_as_a_welded_body(void **state) {
     bough_arena_destroy(g.arena);
 }
 
-static void ground_fixed_tree_has_no_states(void **state) {
-    (void)state;
+TEST(ground_fixed_tree_has_no_states) {
     bough_body_def b = bough_body_def_default();
     b.name = "base", b.joint.position = bough_v3(1, 2, 3);
     b.joint.rotation = turned(0, BOUGH_PI / 2, 0); // x to −z
@@ -388,8 +373,7 @@ static bough_code create_code(const bough_body_def *bodies, int n, const char *w
     return status.code;
 }
 
-static void bad_defs_are_named(void **state) {
-    (void)state;
+TEST(bad_defs_are_named) {
     unsigned seed = 2;
     bough_body_def b[2] = {random_body(&seed, "one", BOUGH_GROUND, BOUGH_JOINT_REVOLUTE),
                            random_body(&seed, "two", 0, BOUGH_JOINT_SPHERICAL)};
@@ -405,26 +389,4 @@ static void bad_defs_are_named(void **state) {
     assert_int_equal(create_code(b, 2, "inertia"), BOUGH_INVALID);
     b[1].kind = BOUGH_JOINT_FREE;
     assert_int_equal(create_code(b, 2, "inertia"), BOUGH_INVALID);
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(pendulum_follows_the_elliptic_solution),
-        cmocka_unit_test(double_pendulum_reaches_the_known_angles),
-        cmocka_unit_test(axisymmetric_body_precesses),
-        cmocka_unit_test(free_asymmetric_body_conserves),
-        cmocka_unit_test(ramped_joint_load_spins_up),
-        cmocka_unit_test(tabulated_joint_load_spins_up),
-        cmocka_unit_test(two_bodies_swing_on_a_spring),
-        cmocka_unit_test(sprung_joint_oscillates_and_decays),
-        cmocka_unit_test(stops_throw_back_without_loss),
-        cmocka_unit_test(cylindrical_joint_slides_and_spins),
-        cmocka_unit_test(planar_joint_throws_on_a_parabola),
-        cmocka_unit_test(universal_joint_swings_as_a_spherical_pendulum),
-        cmocka_unit_test(welded_bodies_move_as_one),
-        cmocka_unit_test(root_inertia_is_felt_as_a_welded_body),
-        cmocka_unit_test(ground_fixed_tree_has_no_states),
-        cmocka_unit_test(bad_defs_are_named),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

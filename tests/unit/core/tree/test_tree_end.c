@@ -73,8 +73,7 @@ static fixture make(void) {
     return f;
 }
 
-static void tree_with_an_end_fulfils_the_contract(void **context) {
-    (void)context;
+TEST(tree_with_an_end_fulfils_the_contract) {
     fixture f = make();
     assert_int_equal(f.s.n_input, INPUTS);
     assert_int_equal(f.s.n_output, OUTPUTS);
@@ -85,8 +84,7 @@ static void tree_with_an_end_fulfils_the_contract(void **context) {
 }
 
 // Position and rotation in the frame of the flexible body, velocity of the same point in its axes.
-static void outputs_are_the_motion_in_the_frame_of_the_flexible_body(void **context) {
-    (void)context;
+TEST(outputs_are_the_motion_in_the_frame_of_the_flexible_body) {
     fixture f = make();
     double out[OUTPUTS];
     f.s.ops->output(f.s.self, 0, f.state, f.input, out);
@@ -111,8 +109,7 @@ static void outputs_are_the_motion_in_the_frame_of_the_flexible_body(void **cont
 }
 
 // v·M Δv̇ = wrench · twist: the six inputs are conjugate to the first six outputs.
-static void wrench_and_twist_are_conjugate(void **context) {
-    (void)context;
+TEST(wrench_and_twist_are_conjugate) {
     fixture f = make();
     double with[MOST], without[MOST], mass[MOST * MOST], out[OUTPUTS], power = 0, expected = 0;
     double none[INPUTS] = {0};
@@ -131,13 +128,4 @@ static void wrench_and_twist_are_conjugate(void **context) {
     for (int k = 0; k < 6; k++) expected += f.input[6 + k] * out[BOUGH_PORT_OUTPUTS + k];
     check_near(power, expected, 1e-12, 1e-12);
     bough_arena_destroy(f.arena);
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(tree_with_an_end_fulfils_the_contract),
-        cmocka_unit_test(outputs_are_the_motion_in_the_frame_of_the_flexible_body),
-        cmocka_unit_test(wrench_and_twist_are_conjugate),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

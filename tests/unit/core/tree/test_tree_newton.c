@@ -122,8 +122,7 @@ static void residual(const fixture *f, double t, const double *y, const double *
 }
 
 // x with ∂F/∂y x + c ∂F/∂ẏ x given by differences along x.
-static void solve_inverts_the_differences(void **state) {
-    (void)state;
+TEST(solve_inverts_the_differences) {
     fixture f = everything();
     int n = f.tree->n_q + f.tree->n_v;
     assert_true(n <= MOST);
@@ -151,8 +150,7 @@ static void solve_inverts_the_differences(void **state) {
 }
 
 // A known change of v̇ adds as the mass matrix times it would on the right.
-static void known_accelerations_are_forces(void **state) {
-    (void)state;
+TEST(known_accelerations_are_forces) {
     fixture f = everything();
     int n_q = f.tree->n_q, n_v = f.tree->n_v;
     double rate[MOST] = {0}, a[MOST], x[MOST] = {0}, y[MOST] = {0}, mass[MOST * MOST];
@@ -174,12 +172,4 @@ static void known_accelerations_are_forces(void **state) {
     bough_tree_newton_solve(f.newton, NULL, y);
     for (int i = 0; i < n_q + n_v; i++) check_near(x[i], y[i], 1e-10, 1e-11);
     bough_arena_destroy(f.arena);
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(solve_inverts_the_differences),
-        cmocka_unit_test(known_accelerations_are_forces),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

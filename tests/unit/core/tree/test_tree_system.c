@@ -3,8 +3,7 @@
 #include "tests/unit/rigid_tree.h"
 #include "tests/unit/tree_measure.h"
 
-static void tree_fulfils_the_contract(void **state) {
-    (void)state;
+TEST(tree_fulfils_the_contract) {
     for (int solver = BOUGH_IDA; solver <= BOUGH_ROSENBROCK; solver++) {
         fixture f = everything_with(solver, 1e-8);
         double y[MOST];
@@ -16,8 +15,7 @@ static void tree_fulfils_the_contract(void **state) {
     }
 }
 
-static void restored_copies_repeat_bit_by_bit(void **state) {
-    (void)state;
+TEST(restored_copies_repeat_bit_by_bit) {
     fixture f = everything(1e-7);
     int n = f.s.n_state;
     double coefficient[48] = {0}, first[MOST], second[MOST];
@@ -42,8 +40,7 @@ static void restored_copies_repeat_bit_by_bit(void **state) {
 }
 
 // Radau is a one-step method: a copy of it lacks nothing.
-static void radau_goes_on_from_a_copy_as_if_nothing_had_been(void **state) {
-    (void)state;
+TEST(radau_goes_on_from_a_copy_as_if_nothing_had_been) {
     fixture f = everything_with(BOUGH_RADAU5, 1e-7), tight = everything(1e-11);
     size_t n = (size_t)f.s.n_state * sizeof(double);
     double coefficient[48] = {0}, first[MOST];
@@ -66,8 +63,7 @@ static void radau_goes_on_from_a_copy_as_if_nothing_had_been(void **state) {
 }
 
 // Kept history over many macro steps agrees with a far tighter run.
-static void kept_history_keeps_the_accuracy(void **state) {
-    (void)state;
+TEST(kept_history_keeps_the_accuracy) {
     fixture f = everything(1e-7), tight = everything(1e-11);
     bough_statistics count;
     double coefficient[48] = {0};
@@ -88,8 +84,7 @@ static void kept_history_keeps_the_accuracy(void **state) {
 }
 
 // A marker's wrench against the same wrench at the port in the same place.
-static void external_wrench_acts_as_a_port_does(void **state) {
-    (void)state;
+TEST(external_wrench_acts_as_a_port_does) {
     fixture f = everything(1e-6);
     double a[MOST], b[MOST], zero[12] = {0}, later[6], rate[6] = {1, 0, -1, 2, 0, 1};
     bough_tree_set_wrench(f.tree, 2, 0, NULL, NULL, NULL);
@@ -104,8 +99,7 @@ static void external_wrench_acts_as_a_port_does(void **state) {
 }
 
 // Velocity queries against differences of poses along the motion.
-static void frame_velocity_is_the_rate_of_the_pose(void **state) {
-    (void)state;
+TEST(frame_velocity_is_the_rate_of_the_pose) {
     fixture f = everything(1e-6);
     const bough_frame *marker = &f.tree->markers[2];
     double rate[MOST], y[MOST], h = 1e-6;
@@ -129,16 +123,4 @@ static void frame_velocity_is_the_rate_of_the_pose(void **state) {
     check_near(rate[q], f.m->state[speed], 0, 0);
     assert_false(bough_tree_joint_rows(f.tree, tree_find_body(f.tree, "e"), &q, &speed));
     bough_arena_destroy(f.arena);
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(tree_fulfils_the_contract),
-        cmocka_unit_test(restored_copies_repeat_bit_by_bit),
-        cmocka_unit_test(radau_goes_on_from_a_copy_as_if_nothing_had_been),
-        cmocka_unit_test(kept_history_keeps_the_accuracy),
-        cmocka_unit_test(external_wrench_acts_as_a_port_does),
-        cmocka_unit_test(frame_velocity_is_the_rate_of_the_pose),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -44,8 +44,7 @@ static double bar_limit(void) {
 }
 
 // Each point is on the exact curve; the limit points are the curve's; the driver turns back on its way.
-static void slides_snap_through_and_back(void **context) {
-    (void)context;
+TEST(slides_snap_through_and_back) {
     const char *sets[] = {NULL};
     bough_arena *arena = bough_arena_create();
     bough_simulation *s = scene_build(arena, "tests/data/scenes/snapping-slide.yaml", sets);
@@ -89,8 +88,7 @@ static bough_status check_reaction(void *self, double time, double share, bool l
 
 // A beam between two walls, pressed along by 300 N on each of its first metre of three: the far wall carries
 // 300 1²/(2 3) of it, at every point of the path.
-static void closures_carry_the_load_of_the_point(void **context) {
-    (void)context;
+TEST(closures_carry_the_load_of_the_point) {
     const char *sets[] = {"loads=[{body: beam, along: [0 m, 1 m], force: [300, 0, 0], ramp: [0 s, 1 s]}]",
                           "gravity=[0, 0, 0]", NULL};
     bough_arena *arena = bough_arena_create();
@@ -106,8 +104,7 @@ static void closures_carry_the_load_of_the_point(void **context) {
 }
 
 // A load below the limit has no limit point.
-static void short_of_the_limit(void **context) {
-    (void)context;
+TEST(short_of_the_limit) {
     const char *sets[] = {"loads[0].force=-4.9", NULL};
     bough_arena *arena = bough_arena_create();
     bough_simulation *s = scene_build(arena, "tests/data/scenes/snapping-slide.yaml", sets);
@@ -120,8 +117,7 @@ static void short_of_the_limit(void **context) {
     bough_arena_destroy(arena);
 }
 
-static void lee_frame(void **context) {
-    (void)context;
+TEST(lee_frame) {
     const char *sets[] = {NULL};
     bough_arena *arena = bough_arena_create();
     bough_simulation *s = scene_build(arena, "apps/beams/lee-frame.yaml", sets);
@@ -148,20 +144,8 @@ static void refuses(const char *scene, const char *set, const char *why) {
     bough_arena_destroy(arena);
 }
 
-static void other_scenes_are_refused(void **context) {
-    (void)context;
+TEST(other_scenes_are_refused) {
     refuses("apps/beams/elastica.yaml", NULL, "loads: expected one that grows");
     refuses("apps/turbine/runup.yaml", NULL, "knows no air");
     refuses("apps/turbine/rotor.yaml", NULL, "body 'hub': a path of equilibria knows no prescribed motions");
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(slides_snap_through_and_back),
-        cmocka_unit_test(short_of_the_limit),
-        cmocka_unit_test(closures_carry_the_load_of_the_point),
-        cmocka_unit_test(lee_frame),
-        cmocka_unit_test(other_scenes_are_refused),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

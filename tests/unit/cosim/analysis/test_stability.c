@@ -25,8 +25,7 @@ static void check_limit(const bough_two_mass *m, const bough_scheme_options *opt
     assert_true(judge(m, options, 1.02 * limit).growth > 0);
 }
 
-static void limits_come_out_of_the_eigenvalues(void **state) {
-    (void)state;
+TEST(limits_come_out_of_the_eigenvalues) {
     static const double parallel[3] = {.2254, .2277, .2501}, first[3] = {.0777, .3175, .2839},
                         last[3] = {.0777, .3069, .2831};
     bough_scheme_options options = bough_scheme_options_default();
@@ -49,8 +48,7 @@ static void limits_come_out_of_the_eigenvalues(void **state) {
 }
 
 // A small macro step shows the slowest mode of the two masses themselves.
-static void growth_and_frequency_are_those_of_the_slowest_mode(void **state) {
-    (void)state;
+TEST(growth_and_frequency_are_those_of_the_slowest_mode) {
     bough_scheme_options options = bough_scheme_options_default();
     bough_two_mass m = bough_two_mass_default();
     build(&m, "ramp", .01);
@@ -68,8 +66,7 @@ static bough_two_mass light_case(void) {
     return m;
 }
 
-static void ramp_holds_on_a_light_interface_body(void **state) {
-    (void)state;
+TEST(ramp_holds_on_a_light_interface_body) {
     bough_scheme_options options = bough_scheme_options_default();
     bough_two_mass m = light_case();
     build(&m, "ramp", .02);
@@ -88,8 +85,7 @@ static void ramp_holds_on_a_light_interface_body(void **state) {
 
 // What the iterated scheme converges to is judged, not what its tolerance leaves; growth as runs of
 // the two masses show it.
-static void iterated_is_judged_as_if_converged(void **state) {
-    (void)state;
+TEST(iterated_is_judged_as_if_converged) {
     bough_scheme_options options = bough_scheme_options_default();
     bough_two_mass m = light_case();
     build(&m, "ramp", .02);
@@ -104,8 +100,7 @@ static void iterated_is_judged_as_if_converged(void **state) {
     bough_two_mass_destroy(&m);
 }
 
-static void the_master_warns_of_an_unstable_coupling(void **state) {
-    (void)state;
+TEST(the_master_warns_of_an_unstable_coupling) {
     bough_two_mass m = bough_two_mass_default();
     build(&m, "gauss-seidel", .25); // the motion interpolated by cubics: holds to .205
     assert_non_null(strstr(m.master->verdict, "gauss-seidel"));
@@ -119,8 +114,7 @@ static void the_master_warns_of_an_unstable_coupling(void **state) {
 }
 
 // A mass pushed away by its wall oscillates with no other: what grows is not the coupling's doing.
-static void growth_of_the_mechanics_is_no_verdict(void **state) {
-    (void)state;
+TEST(growth_of_the_mechanics_is_no_verdict) {
     bough_two_mass m = bough_two_mass_default();
     m.s1.c = m.s2.c = -.2;
     m.c = 0;
@@ -131,8 +125,7 @@ static void growth_of_the_mechanics_is_no_verdict(void **state) {
     bough_two_mass_destroy(&m);
 }
 
-static void judging_changes_nothing(void **state) {
-    (void)state;
+TEST(judging_changes_nothing) {
     bough_scheme_options options = bough_scheme_options_default();
     bough_two_mass m = bough_two_mass_default(), n = bough_two_mass_default();
     build(&m, "ramp", .02);
@@ -148,8 +141,7 @@ static void judging_changes_nothing(void **state) {
     bough_two_mass_destroy(&n);
 }
 
-static void linear_members_fulfil_the_contract(void **state) {
-    (void)state;
+TEST(linear_members_fulfil_the_contract) {
     const double y[2] = {.3, -.7}, u[2] = {.4, .2};
     bough_two_mass m = bough_two_mass_default();
     build(&m, "ramp", .02);
@@ -161,18 +153,4 @@ static void linear_members_fulfil_the_contract(void **state) {
         contract_set_state(&linear_member, at, 1e-4);
     }
     bough_two_mass_destroy(&m);
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(limits_come_out_of_the_eigenvalues),
-        cmocka_unit_test(growth_and_frequency_are_those_of_the_slowest_mode),
-        cmocka_unit_test(ramp_holds_on_a_light_interface_body),
-        cmocka_unit_test(iterated_is_judged_as_if_converged),
-        cmocka_unit_test(the_master_warns_of_an_unstable_coupling),
-        cmocka_unit_test(growth_of_the_mechanics_is_no_verdict),
-        cmocka_unit_test(judging_changes_nothing),
-        cmocka_unit_test(linear_members_fulfil_the_contract),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -36,8 +36,7 @@ static bough_status run(bough_two_mass *m, double macro_step, double start, bool
 
 // Gauss–Seidel holds to 0.205 s; at 0.25 s its error grows as the eigenvalues of the macro step say,
 // whether that was known before the run or is found after it.
-static void a_growing_coupling_is_the_cause(void **state) {
-    (void)state;
+TEST(a_growing_coupling_is_the_cause) {
     for (int judged = 0; judged < 2; judged++) {
         bough_two_mass m;
         bough_status status = run(&m, .25, 0, judged == 1);
@@ -55,19 +54,10 @@ static void a_growing_coupling_is_the_cause(void **state) {
 }
 
 // A stable coupling is not blamed.
-static void a_sound_coupling_is_not(void **state) {
-    (void)state;
+TEST(a_sound_coupling_is_not) {
     bough_two_mass m;
     bough_status status = run(&m, .02, .7, true);
     assert_null(strstr(status.message, "grows"));
     assert_non_null(strstr(status.message, "; try scheme: monolithic"));
     bough_two_mass_destroy(&m);
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_growing_coupling_is_the_cause),
-        cmocka_unit_test(a_sound_coupling_is_not),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -26,8 +26,7 @@ static bough_two_mass lightly_damped(void) {
     return m;
 }
 
-static void slow_growth_is_diagnosed(void **state) {
-    (void)state;
+TEST(slow_growth_is_diagnosed) {
     static const double macro_step[] = {.01, .02, .04, .08, .16}, latest[] = {300, 150, 65, 32, 20};
     double stopped;
     for (int k = 0; k < 5; k++) { // growing by .015, .05, .13, .27 and .51 per second
@@ -40,8 +39,7 @@ static void slow_growth_is_diagnosed(void **state) {
     if (!bough_is_ok(&status)) fail_msg("%s", status.message);
 }
 
-static void stable_runs_raise_no_alarm(void **state) {
-    (void)state;
+TEST(stable_runs_raise_no_alarm) {
     const char *name;
     for (int k = 0; (name = bough_scheme_name(k)) != NULL; k++) {
         for (double h = .005; h < .077; h *= 1.2) {
@@ -52,8 +50,7 @@ static void stable_runs_raise_no_alarm(void **state) {
     }
 }
 
-static void what_is_not_finite_is_told(void **state) {
-    (void)state;
+TEST(what_is_not_finite_is_told) {
     const double values[] = {NAN, (double)INFINITY, -(double)INFINITY, 1e308, -1e308};
     bough_two_mass m = bough_two_mass_default();
     bough_master_def def = bough_master_def_default();
@@ -102,8 +99,7 @@ typedef struct variant {
 
 // Undamped masses and springs of any ratio, 100 to 1000 macro steps of up to several radians. Who
 // does not hold is stopped; 1e4 is what a first step of 13 radians throws the masses by.
-static void no_scheme_blows_up_in_silence(void **state) {
-    (void)state;
+TEST(no_scheme_blows_up_in_silence) {
     static const variant tried[] = {{.scheme = "frozen"},       {.scheme = "gauss-seidel"},
                                     {.scheme = "extrapolated"}, {.scheme = "ramp"},
                                     {.scheme = "iterated"},     {"iterated", BOUGH_EXCHANGE_WAVEFORM}};
@@ -126,8 +122,7 @@ static void no_scheme_blows_up_in_silence(void **state) {
 }
 
 // Members whose equations are not known have no eigenvalues.
-static void unknown_members_do_not_blow_up_in_silence(void **state) {
-    (void)state;
+TEST(unknown_members_do_not_blow_up_in_silence) {
     for (double h = .004; h < .2; h *= 40) {
         bough_two_mass m = lightly_damped();
         bough_master_def def = bough_master_def_default();
@@ -148,8 +143,7 @@ static void unknown_members_do_not_blow_up_in_silence(void **state) {
 }
 
 // A fall and a flutter that the masses bring with them, to a thousand times the start.
-static void growth_of_the_mechanics_goes_on(void **state) {
-    (void)state;
+TEST(growth_of_the_mechanics_goes_on) {
     static const variant tried[] = {
         {.scheme = "ramp"}, {.scheme = "iterated"}, {"iterated", BOUGH_EXCHANGE_WAVEFORM}};
     bough_two_mass falls = bough_two_mass_default(), flutters = bough_two_mass_default();
@@ -159,16 +153,4 @@ static void growth_of_the_mechanics_goes_on(void **state) {
         assert_true(fate(falls, tried[k].scheme, tried[k].exchange, .02) > 1000);
         assert_true(fate(flutters, tried[k].scheme, tried[k].exchange, .02) > 1000);
     }
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(slow_growth_is_diagnosed),
-        cmocka_unit_test(stable_runs_raise_no_alarm),
-        cmocka_unit_test(what_is_not_finite_is_told),
-        cmocka_unit_test(no_scheme_blows_up_in_silence),
-        cmocka_unit_test(unknown_members_do_not_blow_up_in_silence),
-        cmocka_unit_test(growth_of_the_mechanics_goes_on),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

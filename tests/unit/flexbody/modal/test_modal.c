@@ -48,14 +48,12 @@ static void check_contract(int pieces, bough_modal_options options) {
     bough_arena_destroy(arena);
 }
 
-static void operations_of_one_piece_agree(void **context) {
-    (void)context;
+TEST(operations_of_one_piece_agree) {
     check_contract(1, (bough_modal_options){5, true, true});
     check_contract(1, (bough_modal_options){3, false, false});
 }
 
-static void operations_of_a_chain_agree(void **context) {
-    (void)context;
+TEST(operations_of_a_chain_agree) {
     check_contract(3, (bough_modal_options){4, true, true});
     check_contract(7, (bough_modal_options){6, false, true});
 }
@@ -122,8 +120,7 @@ static void check_second_order(int pieces) {
     bough_arena_destroy(p.arena);
 }
 
-static void errors_with_all_shapes_are_of_second_order(void **context) {
-    (void)context;
+TEST(errors_with_all_shapes_are_of_second_order) {
     check_second_order(1);
     check_second_order(2);
     check_second_order(N);
@@ -204,8 +201,7 @@ static void frequencies(bar *b, const double *input, double *rod, double *modal)
 static const double at_rest[BOUGH_ROD_INPUTS] = {0};
 
 // All shapes: those of the same mesh. Twelve: the clamped modes are among the shapes as they are.
-static void frequencies_at_rest_are_the_rods(void **context) {
-    (void)context;
+TEST(frequencies_at_rest_are_the_rods) {
     static const bough_modal_options options[] = {{6 * SEGMENTS, false, true}, {12, true, true}};
     for (int k = 0; k < 2; k++) {
         double rod[WANTED], modal[WANTED];
@@ -217,8 +213,7 @@ static void frequencies_at_rest_are_the_rods(void **context) {
 }
 
 // About the axis x through a point 1.5 m below the root, as in a rotor; Southwell: stiffened.
-static void rotation_stiffens_as_it_does_the_rod(void **context) {
-    (void)context;
+TEST(rotation_stiffens_as_it_does_the_rod) {
     const double omega = 1.6, input[BOUGH_ROD_INPUTS] = {0, -1.5 * 1.6, 0, omega, 0, 0, 0, 0, 0};
     double rest[WANTED], rod[WANTED], modal[WANTED], plain[WANTED], unused[WANTED];
     bar b = make_bar(1, (bough_modal_options){12, true, true});
@@ -249,8 +244,7 @@ static double deflection_error(int pieces, double load, double *rod) {
     return error;
 }
 
-static void linear_statics_err_by_the_cube_of_the_load(void **context) {
-    (void)context;
+TEST(linear_statics_err_by_the_cube_of_the_load) {
     double rod[2], large = deflection_error(1, 8e3, &rod[0]);
     double half = deflection_error(1, 4e3, &rod[1]);
     assert_true(large < 0.01 * rod[0] && large > 1e-4 * rod[0]);
@@ -258,8 +252,7 @@ static void linear_statics_err_by_the_cube_of_the_load(void **context) {
 }
 
 // Deflected by 7 % of the length; second order in the length of the pieces.
-static void pieces_converge_to_the_bent_rod(void **context) {
-    (void)context;
+TEST(pieces_converge_to_the_bent_rod) {
     double rod, error[3];
     for (int k = 0; k < 3; k++) error[k] = deflection_error(2 << k, 1e4, &rod);
     assert_true(rod > 0.07 * 60);
@@ -339,8 +332,7 @@ static void lost(double small, double *force, double *moment) {
 }
 
 // Of force nothing, of moment what is of second order in q, whatever the number of shapes.
-static void few_shapes_keep_momentum(void **context) {
-    (void)context;
+TEST(few_shapes_keep_momentum) {
     double force[2], moment[2];
     lost(1e-2, &force[0], &moment[0]);
     lost(5e-3, &force[1], &moment[1]);
@@ -350,8 +342,7 @@ static void few_shapes_keep_momentum(void **context) {
 
 // Loads that bend over a step act as they are: the tip follows them whether the step is taken in one or in
 // eight.
-static void loads_bend_over_a_step(void **context) {
-    (void)context;
+TEST(loads_bend_over_a_step) {
     const double still[BOUGH_ROD_INPUTS] = {0};
     const int parts[2] = {1, 8};
     double reached[2];
@@ -376,19 +367,4 @@ static void loads_bend_over_a_step(void **context) {
     }
     assert_true(reached[0] > 0);
     check_near(reached[0], reached[1], 1e-4, 0);
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(operations_of_one_piece_agree),
-        cmocka_unit_test(operations_of_a_chain_agree),
-        cmocka_unit_test(errors_with_all_shapes_are_of_second_order),
-        cmocka_unit_test(frequencies_at_rest_are_the_rods),
-        cmocka_unit_test(rotation_stiffens_as_it_does_the_rod),
-        cmocka_unit_test(linear_statics_err_by_the_cube_of_the_load),
-        cmocka_unit_test(pieces_converge_to_the_bent_rod),
-        cmocka_unit_test(few_shapes_keep_momentum),
-        cmocka_unit_test(loads_bend_over_a_step),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

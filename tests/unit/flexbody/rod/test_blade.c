@@ -80,8 +80,7 @@ static void check_tip(const blade *b, const double exact[6], double share, doubl
 }
 
 // References: geometrically exact beam by shooting, 2000 steps, with the same linear tables.
-static void weight_bends_the_blade_as_the_exact_beam(void **context) {
-    (void)context;
+TEST(weight_bends_the_blade_as_the_exact_beam) {
     const double exact[6] = {1.098114, -0.083186, -0.014671, 0.1418, 2.0783, 0.0064};
     for (int segments = 24; segments <= 48; segments += 24) {
         blade b = blade_with(segments);
@@ -91,8 +90,7 @@ static void weight_bends_the_blade_as_the_exact_beam(void **context) {
     }
 }
 
-static void uniform_load_bends_the_blade_as_the_exact_beam(void **context) {
-    (void)context;
+TEST(uniform_load_bends_the_blade_as_the_exact_beam) {
     const double exact[6] = {2.022713, -0.143909, -0.056831, 0.2733, 4.5577, 0.0291};
     for (int segments = 24; segments <= 48; segments += 24) {
         blade b = blade_with(segments);
@@ -167,8 +165,7 @@ static void frequencies(blade *b, double hertz[MODES]) {
 }
 
 // References: rod finite elements converged at 800 elements; BeamDyn of order 12 agrees to 0.1 %.
-static void frequencies_are_those_of_the_exact_beam(void **context) {
-    (void)context;
+TEST(frequencies_are_those_of_the_exact_beam) {
     const double exact[8] = {.68582, 1.08057, 1.94680, 3.73930, 4.38514, 5.57591, 7.47963, 7.95182};
     const double share[8] = {5e-5, 5e-5, 2e-4, 4e-4, 5e-4, 3e-4, 1.3e-3, 1.8e-3};
     for (int segments = 24; segments <= 48; segments += 24) {
@@ -185,8 +182,7 @@ static void frequencies_are_those_of_the_exact_beam(void **context) {
 // The first ten against those extrapolated from 96 and 192 segments: with 48 nine within 0.1 % and the tenth
 // within 0.12 %, with 24 eight within 0.3 %. What is left is the diagonal mass' error of waves of torsion and
 // shear.
-static void ten_frequencies_converge_with_the_mesh(void **context) {
-    (void)context;
+TEST(ten_frequencies_converge_with_the_mesh) {
     static const int segments[4] = {24, 48, 96, 192};
     double hertz[4][MODES];
     for (int k = 0; k < 4; k++) {
@@ -230,8 +226,7 @@ static const bough_rod_mode *modes_at(blade *b, double rpm) {
 // 12 (damping: 8). Its linearisation is in axes at rest, frozen at an instant, which leaves edgewise
 // modes without the spin's softening, −Ω²: checked by leaving it out here as well. Its torsional
 // increment, ten times Ω², has no counterpart and is not compared.
-static void rotation_stiffens_and_spin_softens_the_blade(void **context) {
-    (void)context;
+TEST(rotation_stiffens_and_spin_softens_the_blade) {
     const double reference[5][2] = {
         {.68548, .73673}, {1.08323, 1.10962}, {1.94407, 2.00245}, {3.74204, 3.76835}, {4.38208, 4.43745}};
     const double damping[6] = {.4685e-2, .4737e-2, 1.3021e-2, 1.6114e-2, 2.8268e-2, 3.8585e-2};
@@ -253,8 +248,7 @@ static void rotation_stiffens_and_spin_softens_the_blade(void **context) {
 }
 
 // Integrals of the table, linear between stations: exact on any mesh.
-static void rigid_inertia_is_that_of_the_table(void **context) {
-    (void)context;
+TEST(rigid_inertia_is_that_of_the_table) {
     for (int segments = 5; segments <= 45; segments += 40) {
         blade b = blade_with(segments);
         bough_vertex_inertia whole = bough_section_rigid(b.def);
@@ -263,16 +257,4 @@ static void rigid_inertia_is_that_of_the_table(void **context) {
         check_near(whole.inertia[0] + whole.inertia[1] - whole.inertia[2], 2 * 11188346.6, 1e-6, 0);
         bough_arena_destroy(b.arena);
     }
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(weight_bends_the_blade_as_the_exact_beam),
-        cmocka_unit_test(uniform_load_bends_the_blade_as_the_exact_beam),
-        cmocka_unit_test(rigid_inertia_is_that_of_the_table),
-        cmocka_unit_test(frequencies_are_those_of_the_exact_beam),
-        cmocka_unit_test(ten_frequencies_converge_with_the_mesh),
-        cmocka_unit_test(rotation_stiffens_and_spin_softens_the_blade),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -151,15 +151,7 @@ static void twisting(int n, double length, double s, double q[6]) {
     memcpy(q, values, sizeof values);
 }
 
-static void statics_is_exact_under_uniform_loads_on_segments(void **context) {
-    (void)context;
+TEST(statics_is_exact_under_uniform_loads_on_segments) {
     assert_true(error_of(12, twisting) < 1e-6);
     assert_true(error_of(12, steps) < 1e-6);
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(statics_is_exact_under_uniform_loads_on_segments),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

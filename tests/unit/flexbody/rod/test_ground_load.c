@@ -16,8 +16,7 @@ static void run_to_end(bough_simulation *s) {
 // -- a light, stiff arm turned at a given speed ---------------------------------------------------
 
 // In every scheme the root's wrench is R^T (F, x × F + M).
-static void load_keeps_its_direction_while_the_arm_turns(void **context) {
-    (void)context;
+TEST(load_keeps_its_direction_while_the_arm_turns) {
     const char *const schemes[] = {"monolithic", "ramp", "iterated", "gauss-seidel"};
     const bough_vec3 force = {3, -2, -5}, moment = {0.5, 2, -1};
     for (size_t k = 0; k < sizeof schemes / sizeof *schemes; k++) {
@@ -70,8 +69,7 @@ static void pendulum_swings_as_under_gravity(const char *scheme, const char *bod
     check_near(bough_norm(bough_sub(tip, expected)), 0, 0, 1e-3);
 }
 
-static void load_of_a_weight_moves_a_pendulum_as_the_weight(void **context) {
-    (void)context;
+TEST(load_of_a_weight_moves_a_pendulum_as_the_weight) {
     const char *const rod = "title=rod";
     pendulum_swings_as_under_gravity("simulation.coupling={scheme: monolithic}", rod);
     pendulum_swings_as_under_gravity("simulation.coupling={scheme: ramp}", rod);
@@ -80,8 +78,7 @@ static void load_of_a_weight_moves_a_pendulum_as_the_weight(void **context) {
 }
 
 // A load at the end of a rod that carries a body is a load on that body.
-static void load_at_a_carrying_end_is_one_on_what_it_carries(void **context) {
-    (void)context;
+TEST(load_at_a_carrying_end_is_one_on_what_it_carries) {
     const char *const on_rod[] = {"loads[0]={body: arm, at: tip, force: [1, 2, -3], moment: [0.5, 2, -1]}",
                                   NULL};
     const char *const on_body[] = {"loads[0]={body: bob, force: [1, 2, -3], moment: [0.5, 2, -1]}", NULL};
@@ -103,21 +100,10 @@ static void check_contract(const char *const *sets) {
     bough_arena_destroy(arena);
 }
 
-static void systems_fulfil_the_contract(void **context) {
-    (void)context;
+TEST(systems_fulfil_the_contract) {
     const char *const rod[] = {apart, NULL}, *const carrying[] = {NULL};
     const char *const modal[] = {apart, "bodies[0].fidelity=modal", NULL};
     check_contract(rod);
     check_contract(carrying);
     check_contract(modal);
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(load_keeps_its_direction_while_the_arm_turns),
-        cmocka_unit_test(load_of_a_weight_moves_a_pendulum_as_the_weight),
-        cmocka_unit_test(load_at_a_carrying_end_is_one_on_what_it_carries),
-        cmocka_unit_test(systems_fulfil_the_contract),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

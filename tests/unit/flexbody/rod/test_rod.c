@@ -60,7 +60,7 @@ static void directional(fixture *f, const double *dstate, const double *dinput, 
     for (int k = 0; k < STATES; k++) d[k] = (d[k] - fm[k]) / (2 * eps);
 }
 
-static void undeformed_rod_moving_rigidly_feels_no_stress(void **context) {
+TEST_WITH(undeformed_rod_moving_rigidly_feels_no_stress, setup, teardown) {
     fixture *f = *context;
     double wrench[6];
     memset(f->loads.value, 0, 6 * (size_t)f->model->stride * sizeof(double));
@@ -78,7 +78,7 @@ static void undeformed_rod_moving_rigidly_feels_no_stress(void **context) {
 }
 
 // Without damping the power of the vertex forces is minus the rate of the elastic energy.
-static void forces_are_the_gradient_of_the_energy(void **context) {
+TEST_WITH(forces_are_the_gradient_of_the_energy, setup, teardown) {
     fixture *f = *context;
     bough_rod_model *m = f->model;
     int s = m->stride;
@@ -121,7 +121,7 @@ static void check_newton(fixture *f) {
     }
 }
 
-static void newton_solution_inverts_the_jacobian(void **context) { check_newton(*context); }
+TEST_WITH(newton_solution_inverts_the_jacobian, setup, teardown) { check_newton(*context); }
 
 // A rod of any number of segments, in a strongly deformed state.
 typedef struct sized {
@@ -176,8 +176,7 @@ static void check_sized(int n_segment, bool carries) {
 }
 
 // Segments go by eight: fewer, just as many, one more.
-static void newton_solution_holds_for_any_number_of_segments(void **context) {
-    (void)context;
+TEST(newton_solution_holds_for_any_number_of_segments) {
     const int sizes[] = {1, 2, 7, 8, 9, 16, 17, 25};
     for (int k = 0; k < 8; k++) {
         check_sized(sizes[k], false);
@@ -186,8 +185,7 @@ static void newton_solution_holds_for_any_number_of_segments(void **context) {
 }
 
 // What is left out depends on neither time nor input.
-static void second_evaluation_at_a_state_is_the_same(void **context) {
-    (void)context;
+TEST(second_evaluation_at_a_state_is_the_same) {
     for (int carries = 0; carries < 2; carries++) {
         sized r = build_sized(11, carries);
         int count = BOUGH_ROD_STATES * r.model->n;
@@ -210,7 +208,7 @@ static bough_rod_ramped_load *ramped(fixture *f, bool follower) {
     return l;
 }
 
-static void newton_solution_knows_follower_loads(void **context) {
+TEST_WITH(newton_solution_knows_follower_loads, setup, teardown) {
     fixture *f = *context;
     unsigned seed = 21;
     double *follower = ramped(f, true)->value, *dead = ramped(f, false)->value;
@@ -222,7 +220,7 @@ static void newton_solution_knows_follower_loads(void **context) {
 }
 
 // Loads that follow the vertices' motion, about the rotations of the state.
-static void newton_solution_knows_loads_that_follow_the_motion(void **context) {
+TEST_WITH(newton_solution_knows_loads_that_follow_the_motion, setup, teardown) {
     fixture *f = *context;
     unsigned seed = 27;
     int s = f->model->stride;
@@ -250,13 +248,13 @@ static void lay_along(fixture *f) {
 }
 
 // D q turns in the segments where the loads along them are dead.
-static void newton_solution_knows_loads_along_segments(void **context) {
+TEST_WITH(newton_solution_knows_loads_along_segments, setup, teardown) {
     fixture *f = *context;
     lay_along(f);
     check_newton(f);
 }
 
-static void second_evaluation_knows_loads_along_segments(void **context) {
+TEST_WITH(second_evaluation_knows_loads_along_segments, setup, teardown) {
     fixture *f = *context;
     double first[STATES], again[STATES];
     lay_along(f);
@@ -267,7 +265,7 @@ static void second_evaluation_knows_loads_along_segments(void **context) {
 }
 
 // Between the two the coupled bodies ask for the wrench at the later time.
-static void second_evaluation_is_no_other_after_a_wrench(void **context) {
+TEST_WITH(second_evaluation_is_no_other_after_a_wrench, setup, teardown) {
     fixture *f = *context;
     double first[STATES], again[2][STATES], wrench[6], change = 0;
     unsigned seed = 29;
@@ -289,7 +287,7 @@ static void second_evaluation_is_no_other_after_a_wrench(void **context) {
 }
 
 // A follower load is at every state the dead load that its section's rotation makes of it.
-static void follower_load_turns_with_its_section(void **context) {
+TEST_WITH(follower_load_turns_with_its_section, setup, teardown) {
     fixture *f = *context;
     int s = f->model->stride;
     unsigned seed = 8;
@@ -318,7 +316,7 @@ static void follower_load_turns_with_its_section(void **context) {
     for (int k = 0; k < 6; k++) check_near(wrench[0][k], wrench[1][k], 1e-12, 1e-12);
 }
 
-static void input_columns_match_differences(void **context) {
+TEST_WITH(input_columns_match_differences, setup, teardown) {
     fixture *f = *context;
     double column[BOUGH_ROD_INPUTS * STATES], d[STATES], none[STATES] = {0};
     bough_rod_input_columns(f->model, &f->loads, 0.5, f->state, f->input, &f->scratch, column);
@@ -351,15 +349,15 @@ static void check_wrench_tangent(fixture *f) {
     for (int k = 0; k < 6; k++) check_near(kept[k], d[k], 1e-12, 1e-12);
 }
 
-static void wrench_tangent_matches_differences(void **context) { check_wrench_tangent(*context); }
+TEST_WITH(wrench_tangent_matches_differences, setup, teardown) { check_wrench_tangent(*context); }
 
-static void wrench_tangent_knows_loads_along_segments(void **context) {
+TEST_WITH(wrench_tangent_knows_loads_along_segments, setup, teardown) {
     lay_along(*context);
     check_wrench_tangent(*context);
 }
 
 // p and −p are the same rotation at any vertex.
-static void quaternion_sign_does_not_matter(void **context) {
+TEST_WITH(quaternion_sign_does_not_matter, setup, teardown) {
     fixture *f = *context;
     double a[STATES], b[STATES];
     derivative(f, f->state, f->input, a);
@@ -369,7 +367,7 @@ static void quaternion_sign_does_not_matter(void **context) {
 }
 
 // A rod carried by a turning frame moves as the same rod seen from the frame at rest.
-static void motion_does_not_depend_on_the_frame(void **context) {
+TEST_WITH(motion_does_not_depend_on_the_frame, setup, teardown) {
     fixture *f = *context;
     double rate[STATES], seen[STATES], still[BOUGH_ROD_INPUTS] = {0, 0, 0, 0, 0, 0, 1, -2, -9};
     // the first segment would feel the root's motion: compare the vertices beyond it
@@ -385,34 +383,11 @@ static void motion_does_not_depend_on_the_frame(void **context) {
     }
 }
 
-static void overturned_segment_is_refused(void **context) {
+TEST_WITH(overturned_segment_is_refused, setup, teardown) {
     fixture *f = *context;
     double rate[STATES];
     double half[4] = {0, 1, 0, 0};
     for (int c = 0; c < 4; c++) f->state[(3 + c) * N + 4] = half[c];
     bool ok = bough_rod_derivative(f->model, &f->loads, 0, f->state, f->input, &f->scratch, rate);
     assert_false(ok);
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test_setup_teardown(undeformed_rod_moving_rigidly_feels_no_stress, setup, teardown),
-        cmocka_unit_test_setup_teardown(forces_are_the_gradient_of_the_energy, setup, teardown),
-        cmocka_unit_test_setup_teardown(newton_solution_inverts_the_jacobian, setup, teardown),
-        cmocka_unit_test(newton_solution_holds_for_any_number_of_segments),
-        cmocka_unit_test(second_evaluation_at_a_state_is_the_same),
-        cmocka_unit_test_setup_teardown(newton_solution_knows_follower_loads, setup, teardown),
-        cmocka_unit_test_setup_teardown(newton_solution_knows_loads_along_segments, setup, teardown),
-        cmocka_unit_test_setup_teardown(newton_solution_knows_loads_that_follow_the_motion, setup, teardown),
-        cmocka_unit_test_setup_teardown(second_evaluation_knows_loads_along_segments, setup, teardown),
-        cmocka_unit_test_setup_teardown(second_evaluation_is_no_other_after_a_wrench, setup, teardown),
-        cmocka_unit_test_setup_teardown(wrench_tangent_knows_loads_along_segments, setup, teardown),
-        cmocka_unit_test_setup_teardown(follower_load_turns_with_its_section, setup, teardown),
-        cmocka_unit_test_setup_teardown(input_columns_match_differences, setup, teardown),
-        cmocka_unit_test_setup_teardown(wrench_tangent_matches_differences, setup, teardown),
-        cmocka_unit_test_setup_teardown(quaternion_sign_does_not_matter, setup, teardown),
-        cmocka_unit_test_setup_teardown(motion_does_not_depend_on_the_frame, setup, teardown),
-        cmocka_unit_test_setup_teardown(overturned_segment_is_refused, setup, teardown),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

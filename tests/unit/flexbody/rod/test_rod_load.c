@@ -38,8 +38,7 @@ static bough_rod_ramped_load empty(bough_arena *arena, const bough_rod_model *m,
                                    .line = bough_arena_doubles(arena, 2 * count)};
 }
 
-static void resultant_of_a_point_load_is_the_load(void **context) {
-    (void)context;
+TEST(resultant_of_a_point_load_is_the_load) {
     bough_arena *arena = bough_arena_create();
     const bough_rod_model *m = sample_general(arena, N);
     for (int k = 0; k <= 13; k++) {
@@ -59,8 +58,7 @@ static void resultant_of_a_point_load_is_the_load(void **context) {
     bough_arena_destroy(arena);
 }
 
-static void resultant_of_a_line_load_is_the_load(void **context) {
-    (void)context;
+TEST(resultant_of_a_line_load_is_the_load) {
     const double stiffness[6] = {1, 1, 1, 1, 1, 1}, inertia[4] = {1, 1, 1, 1};
     const bough_rod_reach reach[] = {{0, 6}, {0.3, 0.7}, {1.2, 4.9}, {2, 3}};
     bough_arena *arena = bough_arena_create();
@@ -80,8 +78,7 @@ static void resultant_of_a_line_load_is_the_load(void **context) {
 
 // q h at inner vertices, q h/2 at the ends, q along every segment; a part of a segment makes couples
 // instead.
-static void line_load_goes_to_vertices_and_segments(void **context) {
-    (void)context;
+TEST(line_load_goes_to_vertices_and_segments) {
     const double stiffness[6] = {1, 1, 1, 1, 1, 1}, inertia[4] = {1, 1, 1, 1};
     const double across[6] = {12, 0, 0, 0, 0, 0};
     bough_arena *arena = bough_arena_create();
@@ -101,8 +98,7 @@ static void line_load_goes_to_vertices_and_segments(void **context) {
 }
 
 // Seen in its section, a follower's couple is that of a dead load.
-static void follower_is_lumped_in_section_axes(void **context) {
-    (void)context;
+TEST(follower_is_lumped_in_section_axes) {
     bough_arena *arena = bough_arena_create();
     const bough_rod_model *m = sample_general(arena, N);
     int s = m->stride;
@@ -125,8 +121,7 @@ static void follower_is_lumped_in_section_axes(void **context) {
 
 // What a load along segments does to the undeformed rod, as loads on vertices: no resultant, and the
 // accelerations of the rod at rest are the same, but for squares of the strain.
-static void line_lumped_to_vertices_does_the_same_at_rest(void **context) {
-    (void)context;
+TEST(line_lumped_to_vertices_does_the_same_at_rest) {
     bough_arena *arena = bough_arena_create();
     for (int kind = 0; kind < 2; kind++) {
         bough_rod_model *m = sample_general(arena, N);
@@ -157,15 +152,4 @@ static void line_lumped_to_vertices_does_the_same_at_rest(void **context) {
         }
     }
     bough_arena_destroy(arena);
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(resultant_of_a_point_load_is_the_load),
-        cmocka_unit_test(resultant_of_a_line_load_is_the_load),
-        cmocka_unit_test(line_load_goes_to_vertices_and_segments),
-        cmocka_unit_test(follower_is_lumped_in_section_axes),
-        cmocka_unit_test(line_lumped_to_vertices_does_the_same_at_rest),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

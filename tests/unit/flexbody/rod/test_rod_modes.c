@@ -79,8 +79,7 @@ static const double at_rest[BOUGH_ROD_INPUTS] = {0};
 // -- at rest --------------------------------------------------------------------------------------
 
 // A thin rod of equal bending stiffness has every frequency twice; the block finds both.
-static void thin_rod_has_eulers_frequencies_twice(void **context) {
-    (void)context;
+TEST(thin_rod_has_eulers_frequencies_twice) {
     const double exact[4] = {3.51601527, 22.03449157, 61.69721441, 120.90191606};
     bar b;
     build(&b, (uniform){1e9, 1e9, 1, 1, 1, 1, 1e-9, 0}, 50);
@@ -95,8 +94,7 @@ static void thin_rod_has_eulers_frequencies_twice(void **context) {
 
 // Square section, depth a tenth of the length, ν = 0.3, shear factor 5/6: ratios to Euler's values
 // by Timoshenko's frequency equation. Second order in h: two meshes extrapolate.
-static void thick_rod_has_timoshenkos_frequencies(void **context) {
-    (void)context;
+TEST(thick_rod_has_timoshenkos_frequencies) {
     const double euler[4] = {3.51601527, 22.03449157, 61.69721441, 120.90191606};
     const double ratio[3] = {.99213305, .94882677, .89126195};
     const double e = 12e4, area = 0.01, shear = 5.0 / 6 * e / 2.6 * area;
@@ -115,8 +113,7 @@ static void thick_rod_has_timoshenkos_frequencies(void **context) {
 }
 
 // Axial and torsional waves: (2k − 1)π/2 times the wave speed over the length.
-static void bar_and_shaft_have_their_frequencies(void **context) {
-    (void)context;
+TEST(bar_and_shaft_have_their_frequencies) {
     bar b;
     build(&b, (uniform){1e6, 100, 1e4, 1e4, 0.4, 1, 0.01, 0}, 100);
     solve(&b, at_rest);
@@ -129,8 +126,7 @@ static void bar_and_shaft_have_their_frequencies(void **context) {
 }
 
 // Dissipation in proportion to the stiffness: ζ = μω/2 for every mode.
-static void kelvin_voigt_damping_grows_with_frequency(void **context) {
-    (void)context;
+TEST(kelvin_voigt_damping_grows_with_frequency) {
     const double mu = 2e-3;
     bar b;
     build(&b, (uniform){1e8, 1e8, 1, 3, 1, 1, 1e-6, mu}, 30);
@@ -144,8 +140,7 @@ static void kelvin_voigt_damping_grows_with_frequency(void **context) {
 }
 
 // The first shape of a cantilever: 1 at the tip, φ' = 1.3765 there.
-static void shape_is_scaled_to_its_largest_displacement(void **context) {
-    (void)context;
+TEST(shape_is_scaled_to_its_largest_displacement) {
     bar b;
     build(&b, (uniform){1e9, 1e9, 1, 4, 1, 1, 1e-9, 0}, 50);
     solve(&b, at_rest);
@@ -167,8 +162,7 @@ typedef struct spinning {
 } spinning;
 
 // Rows of Wright et al. (1982), continued to the lag: ω_lag² = ω_flap² − Ω².
-static void rotating_rod_stiffens_as_wrights(void **context) {
-    (void)context;
+TEST(rotating_rod_stiffens_as_wrights) {
     const spinning rows[] = {{1, 0, {3.681647, 22.181011}, {3.543236, 22.158458}},
                              {2, 5, {6.941510, 26.143245}, {6.647146, 26.066632}},
                              {6, 1, {10.443866, 32.027244}, {8.548353, 31.460203}},
@@ -201,8 +195,7 @@ static void press(bar *b, double force) {
 
 // Beck's column in the plane of the softer bending: frequencies approach each other with the
 // tangential force, meet at 20.051 EI/L² and one of the pair then grows.
-static void tangential_force_makes_becks_column_flutter(void **context) {
-    (void)context;
+TEST(tangential_force_makes_becks_column_flutter) {
     const double force[3] = {10, 15, 19};
     const double exact[3][2] = {{5.17576, 18.58679}, {6.62741, 16.25983}, {8.88070, 13.32546}};
     bar b;
@@ -233,8 +226,7 @@ static bool flutters(double force) {
     return grows;
 }
 
-static void becks_load_is_found(void **context) {
-    (void)context;
+TEST(becks_load_is_found) {
     double low = 19, high = 21;
     for (int k = 0; k < 14; k++) {
         double middle = 0.5 * (low + high);
@@ -277,8 +269,7 @@ static double distance(const double *value, int n, double real, double imaginary
 
 // A curved, coupled, damped rod with mass offsets, dead and follower loads, gravity, turning about
 // an oblique axis off its root: every mode is an eigenvalue of the differential equation.
-static void modes_are_eigenvalues_of_the_equation_of_motion(void **context) {
-    (void)context;
+TEST(modes_are_eigenvalues_of_the_equation_of_motion) {
     const double input[BOUGH_ROD_INPUTS] = {0.4, -0.3, 0.7, 0.5, -0.8, 0.6, 1, -2, -0.5};
     const bough_schedule constant = {.start = 0, .end = 0};
     static double matrix[STATES * STATES], vector[STATES * STATES];
@@ -311,19 +302,4 @@ static void modes_are_eigenvalues_of_the_equation_of_motion(void **context) {
         check_near(distance(found, MODES, real, imaginary), 0, 0, 1e-6 * modulus);
     }
     bough_arena_destroy(b.arena);
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(thin_rod_has_eulers_frequencies_twice),
-        cmocka_unit_test(thick_rod_has_timoshenkos_frequencies),
-        cmocka_unit_test(bar_and_shaft_have_their_frequencies),
-        cmocka_unit_test(kelvin_voigt_damping_grows_with_frequency),
-        cmocka_unit_test(shape_is_scaled_to_its_largest_displacement),
-        cmocka_unit_test(rotating_rod_stiffens_as_wrights),
-        cmocka_unit_test(tangential_force_makes_becks_column_flutter),
-        cmocka_unit_test(becks_load_is_found),
-        cmocka_unit_test(modes_are_eigenvalues_of_the_equation_of_motion),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -52,8 +52,7 @@ static pair make_pair(void) {
     return p;
 }
 
-static void operations_agree_on_a_rod_that_carries(void **context) {
-    (void)context;
+TEST(operations_agree_on_a_rod_that_carries) {
     pair p = make_pair();
     bough_system s = bough_rod_body_system(p.carrying_body);
     assert_int_equal(s.n_state, STATES);
@@ -73,8 +72,7 @@ static void operations_agree_on_a_rod_that_carries(void **context) {
 }
 
 // Vertices that both integrate accelerate alike, and the root feels the same.
-static void end_moves_the_rest_as_its_own_vertex_would(void **context) {
-    (void)context;
+TEST(end_moves_the_rest_as_its_own_vertex_would) {
     pair p = make_pair();
     bough_system whole = bough_rod_body_system(p.free_body);
     bough_system part = bough_rod_body_system(p.carrying_body);
@@ -92,8 +90,7 @@ static void end_moves_the_rest_as_its_own_vertex_would(void **context) {
 
 // (11) of the last vertex with the wrench as the only force beside its weight: its acceleration as a
 // part of the whole rod makes the balance hold.
-static void end_wrench_is_what_moves_the_last_vertex(void **context) {
-    (void)context;
+TEST(end_wrench_is_what_moves_the_last_vertex) {
     pair p = make_pair();
     bough_system whole = bough_rod_body_system(p.free_body);
     bough_system part = bough_rod_body_system(p.carrying_body);
@@ -121,8 +118,7 @@ static void end_wrench_is_what_moves_the_last_vertex(void **context) {
     bough_arena_destroy(p.arena);
 }
 
-static void too_short_a_rod_carries_nothing(void **context) {
-    (void)context;
+TEST(too_short_a_rod_carries_nothing) {
     bough_arena *arena = bough_arena_create();
     sample_arrays a = sample_take(arena, 1);
     bough_rod_def def = {.name = "stub", .n_segment = 1, .span = a.span, .carries = true};
@@ -131,14 +127,4 @@ static void too_short_a_rod_carries_nothing(void **context) {
     assert_int_equal(status.code, BOUGH_INVALID);
     assert_non_null(strstr(status.message, "rod stub: 1 segments; a rod that carries bodies"));
     bough_arena_destroy(arena);
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(operations_agree_on_a_rod_that_carries),
-        cmocka_unit_test(end_moves_the_rest_as_its_own_vertex_would),
-        cmocka_unit_test(end_wrench_is_what_moves_the_last_vertex),
-        cmocka_unit_test(too_short_a_rod_carries_nothing),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

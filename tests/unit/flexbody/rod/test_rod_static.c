@@ -41,8 +41,7 @@ static bough_vec3 vertex(const bent *b, int i) {
 // An end moment M bends a straight rod to an arc of curvature M/EI, whatever the mesh: full turns
 // close the circle. Curvature φ/h with φ the logarithm makes every vertex' rotation exact, and
 // chords are those of the arc.
-static void end_moment_bends_rod_to_circle(void **context) {
-    (void)context;
+TEST(end_moment_bends_rod_to_circle) {
     const double stiffness[6] = {1e4, 1e4, 1e4, 100, 100, 100};
     for (int turns = 1; turns <= 10; turns += 9) {
         bough_arena *arena = bough_arena_create();
@@ -66,8 +65,7 @@ static void end_moment_bends_rod_to_circle(void **context) {
 
 // Cantilever under a dead tip force, inextensible and without shear: the elastica by elliptic
 // integrals, P L²/EI = 2 (Mattiasson 1981). Second order in h.
-static void dead_tip_force_gives_the_elastica(void **context) {
-    (void)context;
+TEST(dead_tip_force_gives_the_elastica) {
     const double stiffness[6] = {1e9, 1e9, 1e9, 1, 1, 1};
     double error[2];
     for (int k = 0; k < 2; k++) {
@@ -89,8 +87,7 @@ static void dead_tip_force_gives_the_elastica(void **context) {
 
 // A cantilever under a load per length that falls linearly from q at the root to nothing at `to`, which
 // may lie between vertices: beam theory with shear, to the fourth order of the segments' length.
-static void load_that_falls_along_the_rod_bends_it_as_beam_theory_says(void **context) {
-    (void)context;
+TEST(load_that_falls_along_the_rod_bends_it_as_beam_theory_says) {
     // of shear with what the moment's change along a segment of 0.4 m adds
     const double shear_stiffness = 1 / (1e-4 + 0.4 * 0.4 / 12 / 3), q = 1e-4, length = 2;
     const double stiffness[6] = {shear_stiffness, shear_stiffness, 1e6, 3, 3, 1};
@@ -177,8 +174,7 @@ static double polynomial_error(int n) {
     return worst;
 }
 
-static void polynomial_line_loads_converge_at_fourth_order(void **context) {
-    (void)context;
+TEST(polynomial_line_loads_converge_at_fourth_order) {
     double error[3];
     for (int k = 0; k < 3; k++) error[k] = polynomial_error(4 << k);
     print_message("4, 8, 16 segments: %.2g, %.2g, %.2g of the tip's way\n", error[0], error[1], error[2]);
@@ -216,8 +212,7 @@ static void check_fourth_order(const double error[3]) {
 
 // q L³/EI = 6 and m L²/EI = 2 in a plane, by the elastica integrated from the tip inwards; a load across the
 // plane in which a force at the tip bends the rod, by many segments.
-static void follower_line_loads_converge_at_fourth_order(void **context) {
-    (void)context;
+TEST(follower_line_loads_converge_at_fourth_order) {
     const double length = 1.5, across[6] = {0, 4 * 2 / pow(length, 3)};
     const double plane[6] = {6 * 36 / pow(length, 3), 0, 0, 0, 2 * 36 / pow(length, 2), 0};
     const bough_vec3 none = {0, 0, 0}, force = {3 * 2 / pow(length, 2), 0, 0};
@@ -246,8 +241,7 @@ static double askew_twist(int n, double pretwist) {
     return twist;
 }
 
-static void bending_two_ways_twists(void **context) {
-    (void)context;
+TEST(bending_two_ways_twists) {
     double exact = 0.02 * 0.01 * (1.0 / 2 - 1.0 / 36) * pow(1.5, 4) / (12 * 3);
     check_near(fabs(askew_twist(4, 0)), exact, 1e-3, 0);
     check_near(askew_twist(6, 1), askew_twist(48, 1), 1e-3, 0);
@@ -270,8 +264,7 @@ static void follower_tip(double force, int mesh, double tip[2]) {
 
 // References by shooting; the tip turns beyond 180°, where only small increments converge. Second
 // order in h, so that two meshes extrapolate to 1e-5 of the length.
-static void follower_force_bends_the_rod_beyond_a_half_turn(void **context) {
-    (void)context;
+TEST(follower_force_bends_the_rod_beyond_a_half_turn) {
     const double force[4] = {20e3, 60e3, 100e3, 134e3};
     const double exact[4][2] = {{-92.0292110, 75.3857493},
                                 {-85.7679471, 40.0633388},
@@ -289,8 +282,7 @@ static void follower_force_bends_the_rod_beyond_a_half_turn(void **context) {
 }
 
 // A bar turning about its root stretches: tip by mass Ω² L³/(3 EA) for small strains.
-static void turning_bar_stretches(void **context) {
-    (void)context;
+TEST(turning_bar_stretches) {
     const double stiffness[6] = {1e9, 1e9, 1e9, 100, 100, 100};
     const double input[BOUGH_ROD_INPUTS] = {0, 0, 0, 20, 0, 0, 0, 0, 0};
     bough_arena *arena = bough_arena_create();
@@ -309,8 +301,7 @@ static void turning_bar_stretches(void **context) {
 // A wire that hangs by its weight from a horizontal clamp, q L³/EI = 100, against the exact elastica.
 // Twenty-five thousand times longer than thick it takes hardly more iterations than a short one: its
 // axial stiffness, EA L²/EI = 1e10, must not answer to the square of the turns of a step.
-static void slender_rod_takes_few_iterations(void **context) {
-    (void)context;
+TEST(slender_rod_takes_few_iterations) {
     for (int k = 0; k < 2; k++) {
         double ea = k == 0 ? 1e6 : 1e10;
         double shear = 12 * 200.0 * 200.0; // that stands for the bending of a segment, 12 EI/h²
@@ -346,8 +337,7 @@ static bough_status bend_slender(double slenderness, int n) {
 
 // A slender rod bends as the elastica on every mesh; one for which a double is too short ends with a
 // diagnosis that does not depend on the mesh.
-static void slender_rods_bend_on_every_mesh(void **context) {
-    (void)context;
+TEST(slender_rods_bend_on_every_mesh) {
     const double slenderness[4] = {1e9, 1e10, 1.6e11, 1e12};
     for (int k = 0; k < 4; k++) {
         for (int n = 8; n <= 512; n *= 2) {
@@ -366,8 +356,7 @@ static void slender_rods_bend_on_every_mesh(void **context) {
 }
 
 // What has no equilibrium ends with a diagnosis: a spring-soft rod pushed beyond its length.
-static void hopeless_load_is_diagnosed(void **context) {
-    (void)context;
+TEST(hopeless_load_is_diagnosed) {
     const double stiffness[6] = {1, 1, 1, 1, 1, 1};
     bough_arena *arena = bough_arena_create();
     bent b = straight_rod(arena, 4, 1, stiffness);
@@ -378,21 +367,4 @@ static void hopeless_load_is_diagnosed(void **context) {
     assert_int_equal(s.code, BOUGH_FAILED);
     assert_non_null(strstr(s.message, "sample"));
     bough_arena_destroy(arena);
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(end_moment_bends_rod_to_circle),
-        cmocka_unit_test(dead_tip_force_gives_the_elastica),
-        cmocka_unit_test(load_that_falls_along_the_rod_bends_it_as_beam_theory_says),
-        cmocka_unit_test(polynomial_line_loads_converge_at_fourth_order),
-        cmocka_unit_test(follower_line_loads_converge_at_fourth_order),
-        cmocka_unit_test(bending_two_ways_twists),
-        cmocka_unit_test(follower_force_bends_the_rod_beyond_a_half_turn),
-        cmocka_unit_test(turning_bar_stretches),
-        cmocka_unit_test(slender_rod_takes_few_iterations),
-        cmocka_unit_test(slender_rods_bend_on_every_mesh),
-        cmocka_unit_test(hopeless_load_is_diagnosed),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -59,8 +59,7 @@ static bough_quaternion turn_of(const double *state, int n, int vertex) {
 // -- the contract ---------------------------------------------------------------------------------
 
 // Under loads on vertices, then with loads along the segments that change in time.
-static void operations_agree_on_a_deformed_loaded_rod(void **context) {
-    (void)context;
+TEST(operations_agree_on_a_deformed_loaded_rod) {
     static const double input[BOUGH_ROD_INPUTS] = {0.4, -0.3, 0.7, 0.5, -0.8, 0.6, 1, -2, -9};
     double state[STATES];
     rod r = general(1e-6, input);
@@ -86,8 +85,7 @@ static void operations_agree_on_a_deformed_loaded_rod(void **context) {
     bough_arena_destroy(r.arena);
 }
 
-static void starts_at_rest_relative_to_its_frame(void **context) {
-    (void)context;
+TEST(starts_at_rest_relative_to_its_frame) {
     static const double input[BOUGH_ROD_INPUTS] = {1, 2, 3, 0.5, -0.8, 0.6, 0, 0, 0};
     rod r = general(1e-6, input);
     double expected[STATES];
@@ -103,8 +101,7 @@ static const double swaying[BOUGH_ROD_INPUTS] = {0.4, -0.3, 0.7, 0.5, -0.8, 0.6,
 
 // After a state is set or restored the old history is worth nothing, whether or not the caller says
 // so: bits are those of a rod that never moved otherwise.
-static void set_and_restored_states_start_anew(void **context) {
-    (void)context;
+TEST(set_and_restored_states_start_anew) {
     double state[STATES], unit[STATES];
     rod a = general(1e-6, swaying), b = general(1e-6, swaying);
     sample_state(a.model, swaying, state);
@@ -125,8 +122,7 @@ static void set_and_restored_states_start_anew(void **context) {
     bough_arena_destroy(b.arena);
 }
 
-static void quaternions_leave_a_step_normalised(void **context) {
-    (void)context;
+TEST(quaternions_leave_a_step_normalised) {
     double state[STATES];
     rod r = general(1e-4, swaying);
     sample_state(r.model, swaying, state);
@@ -141,8 +137,7 @@ static void quaternions_leave_a_step_normalised(void **context) {
 }
 
 // Contiguous steps with questions between them are as steps without.
-static void questions_do_not_disturb_the_steps(void **context) {
-    (void)context;
+TEST(questions_do_not_disturb_the_steps) {
     double state[STATES], work[STATES], column[BOUGH_ROD_INPUTS * STATES];
     rod a = general(1e-6, swaying), b = general(1e-6, swaying);
     sample_state(a.model, swaying, state);
@@ -188,8 +183,7 @@ static double stretched(const bough_rod_model *m, double stiffness, double omega
     return tension[0];
 }
 
-static void steady_rotation_stretches_and_stays(void **context) {
-    (void)context;
+TEST(steady_rotation_stretches_and_stays) {
     static const double stiffness[6] = {4e3, 4e3, 1e3, 50, 60, 40};
     static const double inertia[4] = {2, 0.02, 0.03, 0.05};
     static const double input[BOUGH_ROD_INPUTS] = {0, 0, 0, 6};
@@ -217,8 +211,7 @@ static void steady_rotation_stretches_and_stays(void **context) {
 }
 
 // Root and gravity accelerate alike: nothing is strained, whatever the shape of the rod.
-static void free_fall_strains_nothing(void **context) {
-    (void)context;
+TEST(free_fall_strains_nothing) {
     static const double input[BOUGH_ROD_INPUTS] = {0, 0, 0, 0, 0, 0, 1, -2, -9};
     static const double rate[BOUGH_ROD_INPUTS] = {1, -2, -9};
     double start[STATES], wrench[6], end[BOUGH_ROD_INPUTS];
@@ -240,8 +233,7 @@ static void free_fall_strains_nothing(void **context) {
 }
 
 // The same motion in a frame that moves steadily, velocities apart.
-static void steady_translation_changes_nothing(void **context) {
-    (void)context;
+TEST(steady_translation_changes_nothing) {
     static const double moving[BOUGH_ROD_INPUTS] = {3, -1, 2, 0, 0, 0, 0.5, 1, -2};
     static const double still[BOUGH_ROD_INPUTS] = {0, 0, 0, 0, 0, 0, 0.5, 1, -2};
     rod a = general(1e-9, still), b = general(1e-9, moving);
@@ -267,8 +259,7 @@ static const double soft[6] = {1e-12, 1e-12, 1e-12, 1e-12, 1e-12, 1e-12};
 static const double ball[4] = {2, 0.3, 0.3, 0.3};
 
 // Vertices that hardly feel each other move as F = value + rate (t − start) tells.
-static void loads_grow_linearly_from_their_start(void **context) {
-    (void)context;
+TEST(loads_grow_linearly_from_their_start) {
     bough_arena *arena = bough_arena_create();
     rod r = make(arena, sample_uniform(arena, 4, 4, soft, 0, ball), 1e-9, at_rest);
     bough_rod_loads *loads = bough_rod_body_loads(r.body);
@@ -296,8 +287,7 @@ static void loads_grow_linearly_from_their_start(void **context) {
 
 // A moment is given in the frame's axes, whatever way the section points; what is put on the root
 // goes straight to the carrier.
-static void loads_are_in_the_axes_of_the_frame(void **context) {
-    (void)context;
+TEST(loads_are_in_the_axes_of_the_frame) {
     bough_arena *arena = bough_arena_create();
     rod r = make(arena, sample_uniform(arena, 4, 4, soft, 0, ball), 1e-9, at_rest);
     bough_rod_loads *loads = bough_rod_body_loads(r.body);
@@ -381,8 +371,7 @@ static crossing pass(const rod *r, int count) {
     }
 }
 
-static void cantilever_vibrates_at_its_natural_frequency(void **context) {
-    (void)context;
+TEST(cantilever_vibrates_at_its_natural_frequency) {
     rod r = cantilever(2e-3 / natural_frequency()); // as little as damps the stiff modes
     strike(&r, 0.01);
     crossing fifth = pass(&r, 5);
@@ -391,8 +380,7 @@ static void cantilever_vibrates_at_its_natural_frequency(void **context) {
 }
 
 // Stress C(ε + μ ε̇) damps a mode of frequency ω by ζ = μω/2.
-static void viscosity_damps_as_kelvin_and_voigt_say(void **context) {
-    (void)context;
+TEST(viscosity_damps_as_kelvin_and_voigt_say) {
     double zeta = 0.02;
     rod r = cantilever(2 * zeta / natural_frequency());
     strike(&r, 0.01);
@@ -431,8 +419,7 @@ static double energy(const rod *r, const double *input, bough_rod_scratch *scrat
     return sum;
 }
 
-static void energy_is_kept_without_damping_and_falls_with_it(void **context) {
-    (void)context;
+TEST(energy_is_kept_without_damping_and_falls_with_it) {
     for (int damped = 0; damped < 2; damped++) {
         double state[STATES], kept = 0;
         rod r = general(1e-9, field);
@@ -470,8 +457,7 @@ static void swing(const rod *r, double length, double size) {
 }
 
 // Tangents kept over many steps would let it grow, by a damping ratio of −5e-4.
-static void stiff_rod_keeps_its_amplitude_under_the_rosenbrock_method(void **context) {
-    (void)context;
+TEST(stiff_rod_keeps_its_amplitude_under_the_rosenbrock_method) {
     const double length = 10, period = 1;
     const double stiffness[6] = {3e8, 3e8, 1e9, 3.2e4, 3.2e4, 2.5e4}, inertia[4] = {1.002, 1e-4, 1e-4, 2e-4};
     const bough_integrator_options steps = {BOUGH_ROSENBROCK, 3e-4, 0.01, 0, 0, false};
@@ -494,8 +480,7 @@ static void stiff_rod_keeps_its_amplitude_under_the_rosenbrock_method(void **con
 // -- failure --------------------------------------------------------------------------------------
 
 // A moment that winds one segment up beyond what a rotation vector tells.
-static void overturned_rod_is_a_failure_by_name(void **context) {
-    (void)context;
+TEST(overturned_rod_is_a_failure_by_name) {
     bough_arena *arena = bough_arena_create();
     rod r = make(arena, sample_uniform(arena, 2, 2, soft, 0, ball), 1e-6, at_rest);
     bough_rod_body_loads(r.body)->value[3 * r.model->stride + 2] = 10;
@@ -506,25 +491,4 @@ static void overturned_rod_is_a_failure_by_name(void **context) {
     assert_non_null(strstr(status.message, "sample at t = "));
     assert_non_null(strstr(status.message, "120°"));
     bough_arena_destroy(arena);
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(operations_agree_on_a_deformed_loaded_rod),
-        cmocka_unit_test(starts_at_rest_relative_to_its_frame),
-        cmocka_unit_test(set_and_restored_states_start_anew),
-        cmocka_unit_test(quaternions_leave_a_step_normalised),
-        cmocka_unit_test(questions_do_not_disturb_the_steps),
-        cmocka_unit_test(steady_rotation_stretches_and_stays),
-        cmocka_unit_test(free_fall_strains_nothing),
-        cmocka_unit_test(steady_translation_changes_nothing),
-        cmocka_unit_test(loads_grow_linearly_from_their_start),
-        cmocka_unit_test(loads_are_in_the_axes_of_the_frame),
-        cmocka_unit_test(cantilever_vibrates_at_its_natural_frequency),
-        cmocka_unit_test(viscosity_damps_as_kelvin_and_voigt_say),
-        cmocka_unit_test(energy_is_kept_without_damping_and_falls_with_it),
-        cmocka_unit_test(stiff_rod_keeps_its_amplitude_under_the_rosenbrock_method),
-        cmocka_unit_test(overturned_rod_is_a_failure_by_name),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }
