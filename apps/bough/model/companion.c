@@ -121,14 +121,21 @@ static double difference(const bough_channel *channel, double a, double b) {
 // Of the difference between two that hold values for samples, one of them twice as long: order 1.
 static const double share_held = 0.5;
 
+// Of the difference, that the run errs by in a channel; for a sampled one it depends on which of the two
+// holds an earlier sample. The fresh sample of a run differs from one that is held by the companion's age
+// alone.
+static double share_now(const bough_companion *c, bool sampled) {
+    if (!sampled || bough_master_sampled(c->coarser->master)) return c->share;
+    return bough_master_sampled(c->run->master) ? 0 : fmax(c->share, share_held);
+}
+
 static void compare(bough_companion *c) {
-    double held = bough_master_sampled(c->coarser->master) ? c->share : fmax(c->share, share_held);
+    double share[] = {share_now(c, false), share_now(c, true)};
     sample(c);
     c->compared++;
     for (int i = 0; i < c->channels->count; i++) {
         const bough_channel *channel = &c->channels->channel[i];
-        double share = channel->sampled ? held : c->share;
-        double error = share * fabs(difference(channel, c->value[i], c->other[i]));
+        double error = share[channel->sampled] * fabs(difference(channel, c->value[i], c->other[i]));
         if (!(error <= c->error[i])) c->error[i] = error; // a NaN wins
     }
     bough_error_notice(c, c->run->master->time);
