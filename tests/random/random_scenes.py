@@ -1,6 +1,6 @@
 """The promise, tested on random scenes: a run says how large its whole error is, or stops with a diagnosis.
 
-    random_scenes.py BOUGH SOURCE [--hard | --machines] [--seed N] [--count M] [--jobs J] [--only FAMILY] [--advice] [--keep DIR] [--list FILE]
+    random_scenes.py BOUGH SOURCE [--hard | --machines | --variants] [--seed N] [--count M] [--jobs J] [--only FAMILY] [--advice] [--keep DIR] [--list FILE]
 
 Every scene runs as a user runs it, and twice as one system that is finer in everything: with two and four times the
 segments, four and eight times the rate of the air, a half and a quarter of the macro step, by two methods at tight
@@ -46,7 +46,7 @@ GROSS, SMALL, WARNED = 0.05, 1e-3, 0.01
 FLOOR = 1e-3  # of the largest range with that unit: what moves less is not judged; of a speed: its least range
 ROUNDING = 1e-6  # nor what moves less than that of the largest motion, in SI units: as the program's own rule
 SI = {"(deg)": math.radians(1), "(deg/s)": math.radians(1), "(rpm)": math.pi / 30}
-TIMEOUT, REFERENCE_TIMEOUT = 60, 30  # s of CPU
+TIMEOUT = 60  # s of CPU, of a run
 
 
 class Run:
@@ -253,7 +253,7 @@ REFERENCES = ((2, "rosenbrock", 1e-6), (4, "ida", 1e-7))
 
 def one(arguments, index):
     rng = random.Random("%d/%d" % (arguments.seed, index))
-    chosen = settings.HARD if arguments.hard else settings.MACHINES if arguments.machines else settings.FAMILIES
+    chosen = settings.HARD if arguments.hard else settings.MACHINES if arguments.machines else settings.VARIANTS if arguments.variants else settings.FAMILIES
     family = chosen[index % len(chosen)]
     defaults = rng.random() < 1 / 3
     schemes = (arguments.scheme,) if arguments.scheme else SCHEMES
@@ -283,15 +283,20 @@ def one(arguments, index):
             path_finer = os.path.join(folder, "finer%d.yaml" % times)
             with open(path_finer, "w") as file:
                 json.dump(finer(scene, times, solver, rtol), file)
-            reference.append(Run(arguments.bough, path_finer, os.path.join(folder, "reference%d" % k), (), REFERENCE_TIMEOUT))
-        judged = Judgement(run, reference[1], reference[0])
+            reference.append(Run(arguments.bough, path_finer, os.path.join(folder, "reference%d" % k), (), arguments.reference_time))
+            if reference[-1].code != 0:
+                break
+        judged = Judgement(run, reference[-1], reference[0])
         verdict, line = judged.word, judged.line
-        if arguments.advice and run.code == 3 and reference[1].code == 0:
+        if arguments.advice and run.code == 3 and reference[-1].code == 0:
             arguments.followed.update(follow(arguments, path, folder, run.said))
         if arguments.keep:
             kept = os.path.join(arguments.keep, verdict.replace(" ", "-"))
             os.makedirs(kept, exist_ok=True)
-            shutil.copy(path, os.path.join(kept, "%d-%d.yaml" % (arguments.seed, index)))
+            name = os.path.join(kept, "%d-%d-%s.yaml" % (arguments.seed, index, family.__name__))
+            shutil.copy(path, name)
+            for file in files:
+                shutil.copy(os.path.join(folder, file), name + "." + file)
         return index, family.__name__, word, verdict, line, judged.ratio
     finally:
         shutil.rmtree(folder, ignore_errors=True)
@@ -324,11 +329,13 @@ def main():
     parser.add_argument("--only", help="families, with commas between")
     parser.add_argument("--hard", action="store_true", help="of families_hard.py")
     parser.add_argument("--machines", action="store_true", help="of families_machines.py")
+    parser.add_argument("--variants", action="store_true", help="of families_variants.py")
     parser.add_argument("--scheme", help="this one for all scenes")
     parser.add_argument("--defaults", action="store_true", help="only scenes that leave all solver settings out")
     parser.add_argument("--stages", action="store_true", help="with stage-coupled steps among the schemes")
     parser.add_argument("--advice", action="store_true", help="try what the messages of stopped runs name, and count")
     parser.add_argument("--set", action="append", default=[], help="for the runs, not for their references")
+    parser.add_argument("--reference-time", type=int, default=30, help="most CPU time of a reference [s]")
     parser.add_argument("--keep", help="folder for the scenes, by class")
     parser.add_argument("--list", help="file for a line a scene")
     arguments = parser.parse_args()
