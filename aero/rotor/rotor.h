@@ -23,7 +23,7 @@
 typedef struct bough_station_def {
     double span;     // along the reference axis from the root [m]
     double chord;    // [m]
-    double twist;    // positive: leading edge into the wind [rad]
+    double twist;    // about the axis of the structure, positive: leading edge into the wind [rad]
     double centre_x; // aerodynamic centre in blade-root axes, flapwise [m]
     double centre_y; //   and edgewise [m]; its z is that of the reference axis at `span`
     int polar;       // index into the rotor's polars

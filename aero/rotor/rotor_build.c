@@ -34,10 +34,14 @@ static bough_status check_spans(const bough_rotor_def *def) {
     return bough_ok();
 }
 
-// Section axes turned by the aero twist from blade-root axes: leading edge into the wind.
-static bough_mat3 twisted(double twist) {
+// Section axes in blade-root axes: normal to the axis where it leans flapwise with the slope t.x/t.z of its
+// tangent t (prebend), then rotated by the aerodynamic twist, leading edge into the wind. An axis that leans
+// edgewise (sweep) leaves them as they are.
+static bough_mat3 section_axes(bough_vec3 tangent, double twist) {
+    double size = hypot(tangent.x, tangent.z), lean_s = tangent.x / size, lean_c = tangent.z / size;
     double c = cos(twist), s = sin(twist);
-    return (bough_mat3){{c, -s, 0}, {s, c, 0}, {0, 0, 1}};
+    const bough_mat3 lean = {{lean_c, 0, -lean_s}, {0, 1, 0}, {lean_s, 0, lean_c}};
+    return bough_mat3_product(lean, (bough_mat3){{c, -s, 0}, {s, c, 0}, {0, 0, 1}});
 }
 
 static void place_station(const bough_rotor_def *def, const bough_station_def *from, int j,
@@ -50,7 +54,8 @@ static void place_station(const bough_rotor_def *def, const bough_station_def *f
                                             bough_quaternion_of_matrix(def->vertex_rotation[i + 1]), w);
     bough_vec3 axis = bough_between(def->vertex_position[i], def->vertex_position[i + 1], w);
     bough_vec3 arm = bough_v3(from->centre_x - axis.x, from->centre_y - axis.y, 0);
-    bough_mat3 section = bough_mat3_product(bough_mat3_transpose(structure), twisted(from->twist));
+    bough_mat3 section =
+        bough_mat3_product(bough_mat3_transpose(structure), section_axes(structure.c3, from->twist));
     double radius = def->hub_radius + from->span;
     double tip = def->hub_radius + def->station[def->n_station - 1].span;
     station_rows *to = &rotor->station;

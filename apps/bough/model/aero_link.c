@@ -61,6 +61,15 @@ typedef struct tables {
     bough_mat3 *rotation;
 } tables;
 
+// Of the undeformed axis from the root to the height z; z itself for a straight blade.
+static double arc_length(const bough_rod_def *mesh, int n_vertex, double z) {
+    int i = 0;
+    while (i < n_vertex - 2 && z > mesh->position[i + 1].z) i++;
+    double from = mesh->position[i].z, to = mesh->position[i + 1].z;
+    double excess = mesh->span[i] - from, next = mesh->span[i + 1] - to;
+    return z + excess + (next - excess) * bough_clamp((z - from) / (to - from), 0, 1);
+}
+
 static void take_tables(bough_arena *arena, const bough_aero_link *l, tables *t) {
     const bough_scene_aero *aero = &l->simulation->scene->aero;
     t->polar = bough_arena_take(arena, (size_t)aero->polars.n_polar * sizeof *t->polar);
@@ -76,7 +85,10 @@ static void take_tables(bough_arena *arena, const bough_aero_link *l, tables *t)
         }
         t->polar[k] = (bough_polar_def){from->name, from->n_row, row};
     }
-    for (int k = 0; k < aero->blade.n_station; k++) t->station[k] = aero->blade.station[k].def;
+    for (int k = 0; k < aero->blade.n_station; k++) {
+        t->station[k] = aero->blade.station[k].def;
+        t->station[k].span = arc_length(&l->beam[0]->def, l->n_vertex, t->station[k].span);
+    }
     for (int i = 0; i < l->n_vertex; i++) {
         t->rotation[i] = bough_rotation_matrix(l->beam[0]->def.rotation[i]);
     }

@@ -13,7 +13,7 @@ static const bough_key aero_station_keys[] = {
     {NAMED("ac_y", NUMBER), AT(def.centre_y), UNIT(LENGTH), .fallback = "0", .example = "-0.5 m",
      .help = "aerodynamic centre from the pitch axis, blade-root y (edgewise)"},
     {NAMED("twist", NUMBER), AT(def.twist), UNIT(ANGLE), .fallback = "0", .example = "9 deg",
-     .help = "the airfoil is turned by -twist about z, like pitch"},
+     .help = "the airfoil is rotated by -twist about z, like pitch, in the plane normal to the prebent axis of the blade"},
     {NAMED("chord", NUMBER), AT(def.chord), UNIT(LENGTH), .range = "> 0", .required = true, .example = "4.2 m",
      .help = "chord"},
     {NAMED("polar", TEXT), AT(polar_name), .required = true, .example = "DU25",

@@ -283,6 +283,33 @@ TEST(angle_of_attack_is_in_the_plane_of_the_section) {
     destroy_rig(r);
 }
 
+// A blade whose axis leans by prebend from the root on has the loads of a straight blade on a coned root.
+TEST(sections_are_normal_to_a_prebent_axis) {
+    const double lean = 10 * degree;
+    bough_vec3 force[2][VERTICES];
+    for (int k = 0; k < 2; k++) {
+        rig *r = create_rig(true);
+        bough_mat3 leaning = turned(bough_v3(0, -lean, 0));
+        if (k == 0) r->cone = lean;
+        for (int i = 0; k == 1 && i < VERTICES; i++) {
+            bough_vec3 from_hub = bough_mat3_mul(leaning, bough_v3(0, 0, r->span[i] + 1.5));
+            r->axis[i] = bough_sub(from_hub, bough_v3(0, 0, 1.5));
+            r->section[i] = leaning;
+        }
+        for (int j = 0; k == 1 && j < STATIONS; j++) {
+            r->station[j].centre_x += -sin(lean) * (r->station[j].span + 1.5);
+        }
+        operate(r, 12, 0, 11);
+        sample(r, 0.4);
+        memcpy(force[k], r->force, sizeof force[k]);
+        destroy_rig(r);
+    }
+    for (int i = 0; i < VERTICES; i++) {
+        bough_vec3 off = bough_sub(force[1][i], force[0][i]);
+        check_near(bough_norm(off), 0, 0, 1e-9 * bough_norm(force[0][VERTICES / 2]));
+    }
+}
+
 // Bends, twists and moves the placed blades smoothly by some decimetres and degrees.
 static void disturb(rig *r) {
     for (int k = 0; k < BLADES * VERTICES; k++) {
