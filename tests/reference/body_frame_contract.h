@@ -263,14 +263,13 @@ static inline void structure_check_reduced(const structure_case *c, bough_body_f
 
 static inline void structure_check_body_frame(const structure_case *c) {
     bough_body_frame b;
-    bough_arena *arena = bough_arena_create();
+    check_arena(arena);
     assert_true(bough_body_frame_init(&b, arena, c->structure));
     structure_check_transformation(c, &b);
     structure_check_projection(c, &b);
     structure_check_jacobians(c, &b);
     structure_check_equivalence(c, &b);
     structure_check_reduced(c, &b);
-    bough_arena_destroy(arena);
 }
 
 #endif

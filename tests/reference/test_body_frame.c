@@ -21,8 +21,7 @@ static int setup(void **context) {
     fixture *f = calloc(1, sizeof *f);
     f->arena = bough_arena_create();
     f->model = sample_general(f->arena, N);
-    bough_status status = bough_rod_structure_create(f->arena, f->model, &f->structure);
-    assert_int_equal(status.code, BOUGH_OK);
+    check_ok(bough_rod_structure_create(f->arena, f->model, &f->structure));
     for (int i = 0; i <= N; i++) {
         const bough_vertex_inertia *v = &f->model->vertex[i];
         const double *j = v->inertia;

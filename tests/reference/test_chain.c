@@ -46,9 +46,7 @@ static int teardown(void **context) {
 
 static bough_structure *build(fixture *f) {
     bough_structure *structure = NULL;
-    bough_status status = bough_chain_create(f->arena, &f->def, &structure);
-    if (!bough_is_ok(&status)) print_error("%s\n", status.message);
-    assert_int_equal(status.code, BOUGH_OK);
+    check_ok(bough_chain_create(f->arena, &f->def, &structure));
     return structure;
 }
 

@@ -21,17 +21,11 @@ static inline bough_scene *scene_read(bough_arena *arena, const char *path, cons
 
 static inline bough_simulation *scene_build(bough_arena *arena, const char *path, const char *const *sets) {
     bough_simulation *s = NULL;
-    bough_status status = bough_simulation_build(arena, scene_read(arena, path, sets), &s);
-    if (!bough_is_ok(&status)) print_error("%s\n", status.message);
-    assert_int_equal(status.code, BOUGH_OK);
+    check_ok(bough_simulation_build(arena, scene_read(arena, path, sets), &s));
     return s;
 }
 
-static inline void scene_step(bough_simulation *s) {
-    bough_status status = bough_step(s->master);
-    if (!bough_is_ok(&status)) print_error("%s\n", status.message);
-    assert_int_equal(status.code, BOUGH_OK);
-}
+static inline void scene_step(bough_simulation *s) { check_ok(bough_step(s->master)); }
 
 // The value now of a channel of that name, of at most 64.
 static inline double scene_channel(bough_simulation *s, bough_channels *list, const char *name) {

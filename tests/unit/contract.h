@@ -131,7 +131,7 @@ static inline void *contract_factors(const bough_system *s, contract_point at, d
 static inline void contract_newton(const bough_system *s, contract_point at, double gamma) {
     int n = s->n_state;
     double *x = contract_doubles(n), *slope = contract_doubles(n), *solved = contract_doubles(n);
-    bough_arena *arena = bough_arena_create();
+    check_arena(arena);
     void *factors = contract_factors(s, at, 3 * gamma, arena);
     contract_factors(s, at, 7 * gamma, arena); // another's
     for (int seed = 1; seed < 4; seed++) {
@@ -144,7 +144,6 @@ static inline void contract_newton(const bough_system *s, contract_point at, dou
         contract_near(solved, x, n, at.tolerance, "solve");
     }
     free(x), free(slope), free(solved);
-    bough_arena_destroy(arena);
 }
 
 // Two constant pieces of input; `restart` is what the first is told, the second keeps the history.
@@ -154,8 +153,7 @@ static inline void contract_run(bough_member *m, contract_point at, double lengt
     for (int piece = 0; piece < 2; piece++) {
         double t0 = m->time;
         bough_signal input = {m->system.n_input, t0, t0 + length, coefficient};
-        bough_status status = bough_member_advance(m, input.t1, &input, restart && piece == 0);
-        if (!bough_is_ok(&status)) fail_msg("%s", status.message);
+        check_ok(bough_member_advance(m, input.t1, &input, restart && piece == 0));
         check_near(m->time, input.t1, 0, 0);
     }
     free(coefficient);
@@ -167,7 +165,7 @@ static inline void contract_run(bough_member *m, contract_point at, double lengt
 static inline void contract_save_restore(bough_member *m, contract_point at, double length, bool restart) {
     const bough_system *s = &m->system;
     size_t n = (size_t)s->n_state * sizeof(double);
-    bough_arena *arena = bough_arena_create();
+    check_arena(arena);
     double *first = contract_doubles(s->n_state), *work = contract_doubles(s->n_state);
     bough_member_set(m, at.t, at.state);
     contract_run(m, at, length, restart);
@@ -185,7 +183,6 @@ static inline void contract_save_restore(bough_member *m, contract_point at, dou
     contract_run(m, at, length, restart);
     assert_memory_equal(first, m->state, n);
     free(first), free(work);
-    bough_arena_destroy(arena);
 }
 
 // Setting replaces time and state, but for rounding where it is constrained; a short advance then
@@ -201,8 +198,7 @@ static inline void contract_set_state(bough_member *m, contract_point at, double
     for (int i = 0; i < n; i++) check_near(m->state[i], at.state[i], 0, 1e-15);
     contract_evaluate(s, CONTRACT_RATE, at.t, at.state, at.input, rate);
     bough_signal input = {s->n_input, at.t, at.t + length, coefficient};
-    bough_status status = bough_member_advance(m, at.t + length, &input, true);
-    if (!bough_is_ok(&status)) fail_msg("%s", status.message);
+    check_ok(bough_member_advance(m, at.t + length, &input, true));
     for (int i = 0; i < n; i++) moved[i] = (m->state[i] - at.state[i]) / length;
     contract_near(moved, rate, n, 0.05, "advance over a short time / derivative");
     free(rate), free(moved), free(coefficient);
@@ -212,7 +208,7 @@ static inline void contract_set_state(bough_member *m, contract_point at, double
 static inline void contract_pause(bough_member *m, contract_point at, double length) {
     size_t n = (size_t)m->system.n_state * sizeof(double);
     double *whole = contract_doubles(m->system.n_state);
-    bough_arena *arena = bough_arena_create();
+    check_arena(arena);
     bough_member_set(m, at.t, at.state);
     char *copy = member_save(arena, m);
     double *coefficient = contract_doubles(4 * m->system.n_input);
@@ -229,13 +225,12 @@ static inline void contract_pause(bough_member *m, contract_point at, double len
         if (bough_is_ok(&status) && m->time < input.t1) {
             status = bough_member_advance(m, input.t1, &input, run == 0);
         }
-        if (!bough_is_ok(&status)) fail_msg("%s", status.message);
+        check_ok(status);
         check_near(m->time, input.t1, 0, 0);
         if (run == 0) memcpy(whole, m->state, n);
     }
     assert_memory_equal(whole, m->state, n);
     free(whole), free(coefficient);
-    bough_arena_destroy(arena);
 }
 
 // What each operation returns at the point; the solution needs factors.
@@ -279,7 +274,7 @@ static inline void contract_no_memory(const bough_system *s, contract_point at, 
     int most = 1 + s->n_state + s->n_output + s->n_input * s->n_state;
     double *first = contract_doubles(most), *again = contract_doubles(most);
     double *y = contract_doubles(s->n_state), *u = contract_doubles(s->n_input);
-    bough_arena *arena = bough_arena_create();
+    check_arena(arena);
     void *factors = s->ops->factors(s->self, arena), *others = s->ops->factors(s->self, arena);
     contract_direction(s->scale, s->n_state, 5, y);
     contract_direction(NULL, s->n_input, 5, u);
@@ -296,7 +291,6 @@ static inline void contract_no_memory(const bough_system *s, contract_point at, 
         contract_near(again, first, contract_result_size(s, which), 0, contract_results[which]);
     }
     free(first), free(again), free(y), free(u);
-    bough_arena_destroy(arena);
 }
 
 // f and h evaluated together at two times are those of the single calls: at the first time to the bit, at the

@@ -54,8 +54,7 @@ static inline trial import_given(const char *main, const edit *one, const edit *
     assert_non_null(mkdtemp(scratch_name(t.folder)));
     for (int i = 0; i < 3; i++) {
         snprintf(path, sizeof path, "%s/%s", t.folder, folder[i]);
-        bough_status made = bough_folder_make(path);
-        assert_true(bough_is_ok(&made));
+        check_ok(bough_folder_make(path));
     }
     for (int i = 0; i < N_DECK; i++) copy_deck(t.folder, decks[i], one, two);
     write_box(t.folder);

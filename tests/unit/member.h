@@ -10,8 +10,7 @@ static inline bough_member *member_of(bough_arena *arena, const bough_system *sy
                                       bough_integrator_options options) {
     bough_member *m = bough_arena_take(arena, sizeof *m);
     assert_non_null(m);
-    bough_status status = bough_member_create(arena, system, 0, &options, m);
-    if (!bough_is_ok(&status)) fail_msg("%s", status.message);
+    check_ok(bough_member_create(arena, system, 0, &options, m));
     return m;
 }
 

@@ -28,9 +28,7 @@ typedef struct fixture {
 
 static inline fixture build_with(const bough_tree_def *def, bough_integrator_kind solver, double rtol) {
     fixture f = {.arena = bough_arena_create()};
-    bough_status status = bough_tree_create(f.arena, def, &f.tree);
-    if (!bough_is_ok(&status)) print_error("%s\n", status.message);
-    assert_int_equal(status.code, BOUGH_OK);
+    check_ok(bough_tree_create(f.arena, def, &f.tree));
     f.data = bough_tree_data_create(f.arena, f.tree);
     f.s = bough_tree_system_create(f.arena, f.tree, "tree");
     f.m = member_of(f.arena, &f.s, (bough_integrator_options){solver, rtol, 0, 0.8, 0, false});
@@ -43,9 +41,7 @@ static inline fixture build(const bough_tree_def *def, double rtol) {
 }
 
 static inline void advance(fixture *f, double t1, bool restart) {
-    bough_status status = bough_member_advance(f->m, t1, NULL, restart);
-    if (!bough_is_ok(&status)) print_error("%s\n", status.message);
-    assert_int_equal(status.code, BOUGH_OK);
+    check_ok(bough_member_advance(f->m, t1, NULL, restart));
     check_near(f->m->time, t1, 0, 0);
 }
 

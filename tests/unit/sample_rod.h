@@ -46,9 +46,7 @@ static inline bough_rod_def sample_def(int n, sample_arrays a, bool carries) {
 static inline bough_rod_model *sample_build(bough_arena *arena, int n, sample_arrays a, bool carries) {
     bough_rod_def def = sample_def(n, a, carries);
     bough_rod_model *model = NULL;
-    bough_status status = bough_rod_create(arena, &def, &model);
-    if (!bough_is_ok(&status)) print_error("%s\n", status.message);
-    assert_int_equal(status.code, BOUGH_OK);
+    check_ok(bough_rod_create(arena, &def, &model));
     return model;
 }
 

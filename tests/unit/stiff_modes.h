@@ -100,8 +100,7 @@ static problem *create_scaled(bough_integrator_kind kind, const double *scale, d
     p->wall = (double)INFINITY;
     bough_ode ode = {"stiff", N, scale, p, derivative, NULL, linearise, factor, solve, 0};
     bough_integrator_options options = {.kind = kind, .rtol = rtol};
-    bough_status status = bough_integrator_create(p->arena, &ode, &options, &p->micro);
-    assert_int_equal(status.code, BOUGH_OK);
+    check_ok(bough_integrator_create(p->arena, &ode, &options, &p->micro));
     return p;
 }
 
@@ -120,9 +119,7 @@ static bough_status try_advance(problem *p, double t, double t1, bool restart, d
 }
 
 static void advance(problem *p, double t, double t1, bool restart, double *y) {
-    bough_status status = try_advance(p, t, t1, restart, y);
-    if (!bough_is_ok(&status)) print_error("%s\n", status.message);
-    assert_int_equal(status.code, BOUGH_OK);
+    check_ok(try_advance(p, t, t1, restart, y));
 }
 
 static void add_counts(const problem *p, bough_statistics *sum) {

@@ -9,8 +9,7 @@
 
 static inline double two_mass_error(bough_two_mass *m) {
     double worst;
-    bough_status status = bough_two_mass_error(m, &worst);
-    if (!bough_is_ok(&status)) fail_msg("%s", status.message);
+    check_ok(bough_two_mass_error(m, &worst));
     return worst;
 }
 

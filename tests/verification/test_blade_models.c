@@ -30,14 +30,13 @@ static bough_blade_models *read_study(bough_arena *arena, const char *folder, co
 
 // The linear body: the undeformed frequencies of the same mesh, of a cubic deflection error.
 TEST_IN_FOLDER(blades_are_found_by_their_models) {
-    bough_arena *arena = bough_arena_create();
+    check_arena(arena);
     bough_errors errors = {0};
     bough_blade_models *study = read_study(arena, *context, models, &errors);
     assert_non_null(study);
     bough_model_blade blade[3];
     for (int k = 0; k < 3; k++) {
-        bough_status status = bough_model_blade_find(arena, study, &study->model[k], &blade[k]);
-        assert_int_equal(status.code, BOUGH_OK);
+        check_ok(bough_model_blade_find(arena, study, &study->model[k], &blade[k]));
     }
     assert_int_equal(blade[0].n, 24);
     assert_int_equal(blade[1].n, 12);
@@ -49,12 +48,11 @@ TEST_IN_FOLDER(blades_are_found_by_their_models) {
         assert_true(k == 0 || blade[0].rest[k] > blade[0].rest[k - 1]);
     }
     check_near(blade[2].flap[24], blade[0].flap[24], 0.01, 0);
-    bough_arena_destroy(arena);
 }
 
 TEST_IN_FOLDER(table_and_file_hold_every_model) {
     char table[4096] = "";
-    bough_arena *arena = bough_arena_create();
+    check_arena(arena);
     bough_errors errors = {0};
     bough_blade_models *study = read_study(arena, *context, models, &errors);
     FILE *stream = fmemopen(table, sizeof table, "w");
@@ -74,25 +72,21 @@ TEST_IN_FOLDER(table_and_file_hold_every_model) {
     assert_non_null(strstr(csv, "\ncoarse,156,"));
     assert_non_null(strstr(csv, "\nlinear,52,"));
     free(csv);
-    bough_arena_destroy(arena);
 }
 
 TEST_IN_FOLDER(meshes_must_fit_the_reference) {
-    bough_arena *arena = bough_arena_create();
+    check_arena(arena);
     bough_errors errors = {0};
     bough_blade_models *study =
         read_study(arena, *context, "models: [{name: odd, body: [fidelity=rod, rod.segments=7]}]\n", &errors);
     bough_verification_options options = {.folder = *context, .quiet = true, .stream = stderr};
-    bough_status status = bough_blade_models_perform(arena, study, &options);
-    assert_int_equal(status.code, BOUGH_INVALID);
-    assert_non_null(strstr(status.message, "24 segments are no multiple of 7 of 'odd'"));
-    bough_arena_destroy(arena);
+    check_fails(bough_blade_models_perform(arena, study, &options), BOUGH_INVALID,
+                "24 segments are no multiple of 7 of 'odd'");
 }
 
 TEST_IN_FOLDER(keys_are_checked) {
-    bough_arena *arena = bough_arena_create();
+    check_arena(arena);
     bough_errors errors = {0};
     assert_null(read_study(arena, *context, "models: [{name: a, bodies: [x=1]}]\n", &errors));
     assert_int_equal(errors.n, 2); // the unknown key, the missing one
-    bough_arena_destroy(arena);
 }

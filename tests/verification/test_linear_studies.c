@@ -5,7 +5,7 @@
 
 static void perform(const char *folder, const char *name, const char *csv, int rows) {
     char path[512];
-    bough_arena *arena = bough_arena_create();
+    check_arena(arena);
     bough_errors errors = {.arena = arena};
     bough_verification study;
     FILE *stream = tmpfile();
@@ -14,9 +14,7 @@ static void perform(const char *folder, const char *name, const char *csv, int r
     bough_errors_print(&errors, stderr);
     assert_int_equal(status.code, BOUGH_OK);
     bough_verification_options options = {.folder = folder, .quiet = true, .stream = stream};
-    status = bough_verification_perform(arena, &study, &options);
-    if (!bough_is_ok(&status)) print_error("%s\n", status.message);
-    assert_int_equal(status.code, BOUGH_OK);
+    check_ok(bough_verification_perform(arena, &study, &options));
     char *table = scratch_read(folder, csv), *picture = scratch_read(folder, "plot.svg");
     int lines = 0;
     for (const char *c = table; *c; c++) lines += *c == '\n';
@@ -25,7 +23,6 @@ static void perform(const char *folder, const char *name, const char *csv, int r
     free(table);
     free(picture);
     fclose(stream);
-    bough_arena_destroy(arena);
 }
 
 TEST_IN_FOLDER(two_masses) { perform(*context, "two-mass.yaml", "two-mass.csv", 1 + 54); }

@@ -39,33 +39,29 @@ static bough_simulation *build(bough_arena *arena, const char *const *more) {
 
 static bough_scene_mode slide_mode(bough_arena *arena, bough_simulation *s) {
     bough_vibration v;
-    bough_status status = bough_vibration_find(arena, s, 2, &v);
-    if (!bough_is_ok(&status)) print_error("%s\n", status.message);
-    assert_int_equal(status.code, BOUGH_OK);
+    check_ok(bough_vibration_find(arena, s, 2, &v));
     assert_int_equal(v.found, 1);
     return v.mode[0];
 }
 
 static double thrust(const char *wind) {
-    bough_arena *arena = bough_arena_create();
+    check_arena(arena);
     bough_simulation *s = build(arena, (const char *const[]){wind, NULL});
     double factor;
     bough_aero_link_hold(s->aero, 0);
     double value = bough_aero_link_data(s->aero, &factor)->thrust;
-    bough_arena_destroy(arena);
     return value;
 }
 
 // m ẍ + T' ẋ + k x = 0 with T' the slope of the thrust over the wind.
 TEST(quasi_steady_damping_is_the_slope_of_the_thrust) {
-    bough_arena *arena = bough_arena_create();
+    check_arena(arena);
     bough_simulation *s = build(arena, (const char *const[]){"modes.air=quasi-steady", NULL});
     bough_scene_mode m = slide_mode(arena, s);
     double slope = (thrust("aero.wind.speed=9.01 m/s") - thrust("aero.wind.speed=8.99 m/s")) / 0.02;
     double omega = 2 * BOUGH_PI * m.frequency, mass = 1e6 / (omega * omega);
     check_near(mass, 240e3 + 56780 + 3 * 17.7e3, 1e-2, 0); // the blades' to 5 %
     check_near(m.growth, -slope / (2 * mass), 1e-3, 0);
-    bough_arena_destroy(arena);
 }
 
 // Growth [1/s] and frequency [Hz] of the slide's decay after a push, from two swings between a turning
@@ -120,14 +116,12 @@ TEST(thin_air_leaves_the_modes_as_they_are) {
                           "modes.air=frozen",
                           "simulation.threads=1",
                           NULL};
-    bough_arena *arena = bough_arena_create();
+    check_arena(arena);
     bough_vibration v[2];
     for (int k = 0; k < 2; k++) {
         if (k == 1) sets[4] = "modes.air=quasi-steady";
         bough_simulation *s = scene_build(arena, "apps/turbine/runup.yaml", sets);
-        bough_status status = bough_vibration_find(arena, s, 8, &v[k]);
-        if (!bough_is_ok(&status)) print_error("%s\n", status.message);
-        assert_int_equal(status.code, BOUGH_OK);
+        check_ok(bough_vibration_find(arena, s, 8, &v[k]));
         assert_int_equal(v[k].found, 8);
     }
     for (int k = 0; k < 8; k++) {
@@ -135,7 +129,6 @@ TEST(thin_air_leaves_the_modes_as_they_are) {
         check_near(v[1].mode[k].growth, v[0].mode[k].growth, 1e-4, 0);
         assert_int_equal(v[1].mode[k].pattern, v[0].mode[k].pattern);
     }
-    bough_arena_destroy(arena);
 }
 
 // Modes that are not kept follow the air's forces at once: few wanted modes are as exact as the same of many.
@@ -151,12 +144,11 @@ TEST(modes_do_not_depend_on_how_many_are_wanted) {
                           "simulation.threads=1",
                           "loads[0].torque=0",
                           NULL};
-    bough_arena *arena = bough_arena_create();
+    check_arena(arena);
     bough_vibration v[2];
     for (int k = 0; k < 2; k++) {
         bough_simulation *s = scene_build(arena, "apps/turbine/runup.yaml", sets);
-        bough_status status = bough_vibration_find(arena, s, k == 0 ? FEW : MANY, &v[k]);
-        assert_int_equal(status.code, BOUGH_OK);
+        check_ok(bough_vibration_find(arena, s, k == 0 ? FEW : MANY, &v[k]));
     }
     for (int k = 0; k < FEW; k++) {
         print_message("%.5f %.5f Hz, %.5f %.5f 1/s\n", v[0].mode[k].frequency, v[1].mode[k].frequency,
@@ -164,7 +156,6 @@ TEST(modes_do_not_depend_on_how_many_are_wanted) {
         check_near(v[0].mode[k].frequency, v[1].mode[k].frequency, 5e-3, 0);
         check_near(v[0].mode[k].growth, v[1].mode[k].growth, 1e-2, 0);
     }
-    bough_arena_destroy(arena);
 }
 
 // The fastest turning of a tip in the next steps [rad/s].
@@ -217,15 +208,12 @@ static const char wing[] = "tests/data/scenes/goland.yaml";
 static bough_scene_mode fluttering(double speed) {
     char wind[48];
     snprintf(wind, sizeof wind, "aero.wind.speed=%.6f m/s", speed);
-    bough_arena *arena = bough_arena_create();
+    check_arena(arena);
     bough_vibration v;
     bough_simulation *s = scene_build(arena, wing, (const char *const[]){wind, NULL});
-    bough_status status = bough_vibration_find(arena, s, 2, &v);
-    if (!bough_is_ok(&status)) print_error("%s\n", status.message);
-    assert_int_equal(status.code, BOUGH_OK);
+    check_ok(bough_vibration_find(arena, s, 2, &v));
     assert_int_equal(v.found, 2);
     bough_scene_mode mode = v.mode[0].growth > v.mode[1].growth ? v.mode[0] : v.mode[1];
-    bough_arena_destroy(arena);
     return mode;
 }
 
@@ -253,7 +241,7 @@ TEST(wing_flutters_at_the_speed_of_strip_theory) {
 static double swings_grow(double speed) {
     char wind[48];
     snprintf(wind, sizeof wind, "aero.wind.speed=%.6f m/s", speed);
-    bough_arena *arena = bough_arena_create();
+    check_arena(arena);
     bough_simulation *s = scene_build(arena, wing, (const char *const[]){wind, NULL});
     double first = 0, last = 0, from = 0, to = 0, before[2] = {0, 0};
     while (!bough_master_done(s->master)) {
@@ -267,7 +255,6 @@ static double swings_grow(double speed) {
         }
         before[1] = before[0], before[0] = x;
     }
-    bough_arena_destroy(arena);
     return log(last / first) / (to - from);
 }
 
@@ -289,12 +276,11 @@ TEST(wing_flutters_in_time_as_its_modes_say) {
 
 // Of the air in equilibrium at a speed of the rotor.
 static double torque_at(const char *wind, const char *speed) {
-    bough_arena *arena = bough_arena_create();
+    check_arena(arena);
     bough_simulation *s = scene_build(
         arena, "apps/turbine/land-operation.yaml",
         (const char *const[]){OPERATION("12 m/s"), wind, speed, "simulation.initial=equilibrium", NULL});
     double factor, torque = bough_aero_link_data(s->aero, &factor)->torque;
-    bough_arena_destroy(arena);
     return torque;
 }
 
@@ -310,8 +296,7 @@ TEST(speed_follows_the_slope_of_the_torque) {
         bough_simulation *s = scene_build(arena, "apps/turbine/land-operation.yaml",
                                           (const char *const[]){OPERATION("12 m/s"), wind[k], NULL});
         bough_vibration v;
-        bough_status status = bough_vibration_find(arena, s, 4, &v);
-        assert_int_equal(status.code, BOUGH_OK);
+        check_ok(bough_vibration_find(arena, s, 4, &v));
         assert_int_equal(v.n_blade, 3);
         assert_false(v.frozen);
         double growth = v.mode[0].damped_frequency == 0 ? v.mode[0].growth : 0;

@@ -10,9 +10,7 @@
 
 static bough_state_space linear(bough_arena *arena, bough_simulation *s) {
     bough_state_space x;
-    bough_status status = bough_state_space_find(arena, s, 0, &x);
-    if (!bough_is_ok(&status)) print_error("%s\n", status.message);
-    assert_int_equal(status.code, BOUGH_OK);
+    check_ok(bough_state_space_find(arena, s, 0, &x));
     return x;
 }
 
@@ -28,7 +26,7 @@ static double entry(const double *a, int rows, int i, int j) { return a[(size_t)
 
 // m l² q̈ = m g l sin q − c q̇ + T at 30° from the horizontal; the marker at −l (cos q, −sin q) in x and z.
 TEST(pendulum_by_hand) {
-    bough_arena *arena = bough_arena_create();
+    check_arena(arena);
     const char *sets[] = {
         "bodies[0].joint={kind: revolute, parent: ground, axis: y, angle: -30 deg, damping: 0.4}",
         "loads=[{joint: bob, torque: 0.25, input: push}]", NULL};
@@ -53,12 +51,11 @@ TEST(pendulum_by_hand) {
     check_near(entry(x.c, x.n_output, along, 0), sin(q), 1e-8, 0);
     check_near(entry(x.c, x.n_output, up, 0), cos(q), 1e-8, 0);
     check_near(entry(x.c, x.n_output, find(x.output, x.n_output, "bobVel"), 1), 180 / BOUGH_PI, 1e-8, 0);
-    bough_arena_destroy(arena);
 }
 
 // What acts on a driven joint is at once in what drives it: D.
 TEST(drive_takes_the_load_at_once) {
-    bough_arena *arena = bough_arena_create();
+    check_arena(arena);
     const char *sets[] = {"bodies[0].joint={kind: revolute, parent: ground, axis: y, motion: {angle: 0}}",
                           "loads=[{body: bob, moment: [0, 0, 0], frame: ground, input: push}]", NULL};
     bough_simulation *s = scene_build(arena, "apps/mechanisms/pendulum.yaml", sets);
@@ -67,12 +64,11 @@ TEST(drive_takes_the_load_at_once) {
     check_near(
         entry(x.d, x.n_output, find(x.output, x.n_output, "bobTrq"), find(x.input, x.n_input, "pushMy")), -1,
         1e-8, 0);
-    bough_arena_destroy(arena);
 }
 
 // (I − γA) x = b for x by the members' own tangents and factors.
 TEST(rods_beside_exact_tangents) {
-    bough_arena *arena = bough_arena_create();
+    check_arena(arena);
     const char *sets[] = {"bodies[3-5].rod.segments=6", "bodies[2].joint.speed=10 rpm",
                           "simulation.initial=equilibrium", "simulation.threads=1", NULL};
     bough_simulation *s = scene_build(arena, "apps/turbine/runup.yaml", sets);
@@ -84,8 +80,7 @@ TEST(rods_beside_exact_tangents) {
     bough_assembly_states(a, y);
     bough_coupled_inputs(coupled, 0, y);
     const double gamma = 0.01;
-    bough_status status = bough_coupled_setup(coupled, 0, y, coupled->input, gamma);
-    assert_int_equal(status.code, BOUGH_OK);
+    check_ok(bough_coupled_setup(coupled, 0, y, coupled->input, gamma));
     for (int trial = 0; trial < 5; trial++) {
         double *b = bough_arena_doubles(arena, (size_t)x.n), worst = 0;
         for (int k = 0; k < x.n; k++) solution[k] = b[k] = sin(1.7 * k + trial);
@@ -102,7 +97,6 @@ TEST(rods_beside_exact_tangents) {
         print_message("tangents and differences: %.2g\n", worst);
         assert_true(worst < 1e-6);
     }
-    bough_arena_destroy(arena);
 }
 
 typedef struct air {
@@ -110,13 +104,12 @@ typedef struct air {
 } air;
 
 static air air_of(const char *const *sets) {
-    bough_arena *arena = bough_arena_create();
+    check_arena(arena);
     bough_simulation *s = scene_build(arena, "apps/turbine/power.yaml", sets);
     double factor;
     bough_aero_link_hold(s->aero, 0);
     const bough_rotor_data *data = bough_aero_link_data(s->aero, &factor);
     air x = {data->thrust, data->torque};
-    bough_arena_destroy(arena);
     return x;
 }
 
@@ -124,7 +117,7 @@ static air air_of(const char *const *sets) {
 TEST(rotor_follows_torque_pitch_and_wind) {
     static const char rigid[] = "bodies[3-5].fidelity=rigid", ramp[] = "aero.ramp=[0 s, 0 s]",
                       quiet[] = "gravity=[0, 0, 0]";
-    bough_arena *arena = bough_arena_create();
+    check_arena(arena);
     bough_simulation *s =
         scene_build(arena, "apps/turbine/power.yaml",
                     (const char *const[]){rigid, ramp, quiet, "modes.air=quasi-steady", NULL});
@@ -143,5 +136,4 @@ TEST(rotor_follows_torque_pitch_and_wind) {
     check_near(inertia * entry(x.b, x.n, speed, wind), (value[0] - value[1]) / 2e-4, 1e-4, 0);
     // the inertia turns with the blades, too
     check_near(inertia * entry(x.b, x.n, speed, pitch), (value[2] - value[3]) / 2e-5, 1e-3, 0);
-    bough_arena_destroy(arena);
 }

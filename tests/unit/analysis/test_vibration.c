@@ -16,8 +16,7 @@ typedef struct found {
 static found modes_of(const char *path, const char *const *sets, int count) {
     found f = {.arena = bough_arena_create()};
     f.s = scene_build(f.arena, path, sets);
-    bough_status status = bough_vibration_find(f.arena, f.s, count, &f.v);
-    if (!bough_is_ok(&status)) fail_msg("%s", status.message);
+    check_ok(bough_vibration_find(f.arena, f.s, count, &f.v));
     return f;
 }
 
@@ -130,11 +129,9 @@ TEST(parked_blades_have_their_own_frequencies) {
     bough_beam *beam = &f.s->beam[0];
     bough_steady steady;
     bough_turning rest = {0};
-    bough_status status = bough_steady_find(f.arena, f.s, beam, &rest, &steady);
-    assert_true(bough_is_ok(&status));
+    check_ok(bough_steady_find(f.arena, f.s, beam, &rest, &steady));
     bough_rod_mode_list list = {.wanted = 3};
-    status = bough_rod_modes(f.arena, steady.model, &steady.work, steady.input, steady.state, &list);
-    assert_true(bough_is_ok(&status));
+    check_ok(bough_rod_modes(f.arena, steady.model, &steady.work, steady.input, steady.state, &list));
     assert_int_equal(f.v.found, 9);
     for (int k = 0; k < 9; k++) {
         check_near(f.v.mode[k].frequency, list.mode[k / 3].frequency, 1e-7, 0);

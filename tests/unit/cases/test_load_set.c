@@ -61,7 +61,7 @@ static bough_case_result sine(bough_arena *arena, const bough_study *set, double
 }
 
 TEST(sums_are_those_by_hand) {
-    bough_arena *arena = bough_arena_create();
+    check_arena(arena);
     bough_case cases[CASES];
     bough_load_group group[4];
     bough_study set = made(cases, group);
@@ -94,11 +94,10 @@ TEST(sums_are_those_by_hand) {
     check_near(l.channel[0].least.at, 2, 1e-14, 0);
     check_near(l.channel[0].least.row[1], 4, 1e-14, 0); // the other channel then
     check_near(l.lacking, 0, 0, 0);
-    bough_arena_destroy(arena);
 }
 
 TEST(what_is_lacking_is_told) {
-    bough_arena *arena = bough_arena_create();
+    check_arena(arena);
     bough_case cases[CASES];
     bough_load_group group[4];
     bough_study set = made(cases, group);
@@ -115,12 +114,11 @@ TEST(what_is_lacking_is_told) {
     assert_int_equal(l.n_failed, 1);
     assert_int_equal(l.n_missing, 1);
     check_near(l.lacking, 1 - 25. / 200, 1e-12, 0);
-    bough_arena_destroy(arena);
 }
 
 // Companions of the first two cases: an equivalent load that is larger by its error for each.
 TEST(errors_are_those_of_companions) {
-    bough_arena *arena = bough_arena_create();
+    check_arena(arena);
     bough_case cases[CASES];
     bough_load_group group[4];
     bough_study set = made(cases, group);
@@ -154,7 +152,6 @@ TEST(errors_are_those_of_companions) {
     // A channel whose companions show no error has none.
     check_near(bough_lifetime_extreme_error(&l, 1, &l.channel[1].most), 0, 0, 0);
     check_near(bough_lifetime_equivalent_error(&l, 1, 0), 0, 0, 0);
-    bough_arena_destroy(arena);
 }
 
 static bough_study *read_with(bough_arena *arena, const char *line, bough_errors *errors) {
@@ -170,7 +167,7 @@ TEST(companions_are_spread_by_number) {
         const char *line;
         int every;
     } sets[] = {{"", 20}, {"companions: 1 in 3\n", 3}, {"companions: all\n", 1}, {"companions: none\n", 0}};
-    bough_arena *arena = bough_arena_create();
+    check_arena(arena);
     for (size_t i = 0; i < sizeof sets / sizeof *sets; i++) {
         bough_errors errors = {.arena = arena};
         bough_study *set = read_with(arena, sets[i].line, &errors);
@@ -187,13 +184,12 @@ TEST(companions_are_spread_by_number) {
         assert_null(read_with(arena, bad[i], &errors));
         assert_non_null(strstr(errors.item[0].text, "expected '1 in N'"));
     }
-    bough_arena_destroy(arena);
 }
 
 // A load of 7 to 13 and one of -13 to -7: what is nearest to zero relieves. A speed of 0 to 160 and what else
 // there is at that moment have no factor.
 TEST(factors_are_of_loads_and_on_the_safe_side) {
-    bough_arena *arena = bough_arena_create();
+    check_arena(arena);
     bough_case cases[CASES];
     bough_load_group group[4];
     bough_study set = made(cases, group);
@@ -213,12 +209,11 @@ TEST(factors_are_of_loads_and_on_the_safe_side) {
         check_near(speed->most.row[0], 10 * sign + 3, 1e-14, 0);
         check_near(speed->least.factor, 1, 0, 0);
     }
-    bough_arena_destroy(arena);
 }
 
 // Shares of the hours: bins half way between the speeds of a Rayleigh distribution.
 TEST(speeds_weigh_by_weibull) {
-    bough_arena *arena = bough_arena_create();
+    check_arena(arena);
     bough_errors errors = {.arena = arena};
     bough_node *root = bough_text_parse(arena, "set.yaml", text, strlen(text), &errors);
     bough_study *set = bough_study_parse(arena, "set.yaml", root, &errors);
@@ -239,5 +234,4 @@ TEST(speeds_weigh_by_weibull) {
     check_near(bough_case_weight(set, &set->cases[12], 600), 0, 0, 0);
     assert_string_equal(set->cases[3].settings, "speed=8, seed=2");
     check_near(set->group[1].favourable, 0.9, 0, 0);
-    bough_arena_destroy(arena);
 }

@@ -142,7 +142,7 @@ TEST(constant_and_zero_have_one_level) {
 
 TEST(extremes_come_with_all_channels) {
     static const double slope[] = {4}, rows[][2] = {{1, 10}, {5, 20}, {-2, 30}, {5, 40}, {0, NAN}};
-    bough_arena *arena = bough_arena_create();
+    check_arena(arena);
     bough_counts c;
     bough_counts_take(arena, 2, 1, slope, &c);
     for (int i = 0; i < 5; i++) bough_counts_add(&c, 0.5 * i, rows[i]);
@@ -155,7 +155,6 @@ TEST(extremes_come_with_all_channels) {
     check_near(first->statistics.least_at, 1, 0, 0);
     check_near(c.channel[1].at_most[0], 5, 0, 0);
     check_near(c.broken, 1, 0, 0);
-    bough_arena_destroy(arena);
 }
 
 TEST(statistics_hold_beside_a_large_mean) {

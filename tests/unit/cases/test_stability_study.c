@@ -27,7 +27,7 @@ static atomic_int steps_left; // NOLINT(cppcoreguidelines-avoid-non-const-global
 static bool stop(void) { return atomic_fetch_sub(&steps_left, 1) <= 0; }
 
 static bough_status perform(const char *folder, int part, int parts, int steps, char shown[8192]) {
-    bough_arena *arena = bough_arena_create();
+    check_arena(arena);
     bough_errors errors = {.arena = arena};
     bough_study *study;
     char path[128];
@@ -48,7 +48,6 @@ static bough_status perform(const char *folder, int part, int parts, int steps, 
     memset(shown, 0, 8192);
     assert_true(fread(shown, 1, 8191, stream) < 8191);
     fclose(stream);
-    bough_arena_destroy(arena);
     return status;
 }
 
@@ -87,8 +86,7 @@ static int results_with(const char *folder, const char *what) {
 // Every cell has a figure or a diagnosis; a monolithic run differs from the reference of its own model.
 TEST_IN_FOLDER(every_cell_speaks) {
     char shown[8192];
-    bough_status status = perform(*context, 0, 0, 100000, shown);
-    assert_int_equal(status.code, BOUGH_OK);
+    check_ok(perform(*context, 0, 0, 100000, shown));
     assert_non_null(strstr(shown, "6 of 12 held, 6 stopped with a diagnosis, 0 silent"));
     assert_int_equal(results(*context), CELLS + REFERENCES);
     assert_int_equal(lines_of(*context, "table.csv"), 1 + 1 + CELLS);
@@ -103,8 +101,7 @@ TEST_IN_FOLDER(every_cell_speaks) {
 TEST_IN_FOLDER(parts_fill_one_folder) {
     char shown[8192];
     for (int part = 1; part <= 2; part++) {
-        bough_status status = perform(*context, part, 2, 100000, shown);
-        assert_int_equal(status.code, BOUGH_OK);
+        check_ok(perform(*context, part, 2, 100000, shown));
         assert_non_null(
             strstr(shown, part == 1 ? "6 of 12 cells still missing" : "0 of 12 cells still missing"));
         assert_false(scratch_has(*context, "table.csv"));
@@ -120,7 +117,6 @@ TEST_IN_FOLDER(an_interrupted_study_goes_on) {
     char shown[8192];
     bough_status status = perform(*context, 0, 0, 45, shown);
     assert_int_equal(status.code, BOUGH_INTERRUPTED);
-    status = perform(*context, 0, 0, 100000, shown);
-    assert_int_equal(status.code, BOUGH_OK);
+    check_ok(perform(*context, 0, 0, 100000, shown));
     assert_int_equal(results(*context), CELLS + REFERENCES);
 }

@@ -64,8 +64,7 @@ static bool stop(void) {
 // Performs the study of the folder until so many runs are stored; `table` receives what was printed.
 static bough_status perform(const char *folder, const char *text, int runs, char table[4096]) {
     fixture f;
-    bough_status status = open_study(&f, folder, text);
-    assert_true(bough_is_ok(&status));
+    check_ok(open_study(&f, folder, text));
     runs_allowed = runs;
     runs_counted = folder;
     asked = 0;
@@ -73,7 +72,7 @@ static bough_status perform(const char *folder, const char *text, int runs, char
     FILE *stream = tmpfile();
     assert_non_null(stream);
     bough_study_options options = {.folder = folder, .quiet = true, .stop = stop, .stream = stream};
-    status = bough_study_perform(f.arena, f.study, &options);
+    bough_status status = bough_study_perform(f.arena, f.study, &options);
     rewind(stream);
     memset(table, 0, 4096);
     assert_true(fread(table, 1, 4095, stream) < 4095);
@@ -248,8 +247,7 @@ TEST_IN_FOLDER(reference_differs_from_itself_by_nothing) {
 
 TEST_IN_FOLDER(every_run_has_a_row) {
     char table[4096];
-    bough_status status = perform(*context, good_study, ALL, table);
-    assert_true(bough_is_ok(&status));
+    check_ok(perform(*context, good_study, ALL, table));
     assert_int_equal(count_in(*context, "table.csv", "\n"), 1 + 1 + 4);
     assert_int_equal(count_results(*context), 1 + 4);
     assert_int_equal(count_in(*context, "table.csv", ",tip [m],tip estimated [m],angle [rad],"), 1);
@@ -262,8 +260,7 @@ TEST_IN_FOLDER(every_run_has_a_row) {
 
 TEST_IN_FOLDER(failed_runs_are_told_with_their_diagnosis) {
     char table[4096];
-    bough_status status = perform(*context, good_study, ALL, table);
-    assert_true(bough_is_ok(&status));
+    check_ok(perform(*context, good_study, ALL, table));
     assert_int_equal(count(table, "failed at t=0.00"), 2);
     assert_int_equal(count(table, "failed: scheme=frozen, macro_step="), 2);
     assert_int_equal(count_in(*context, "table.csv", ",failed,"), 2);
@@ -279,8 +276,7 @@ TEST_IN_FOLDER(no_title_is_clipped) {
                                 "side, and wider still, so that the picture must have room for it";
     char table[4096], text[4096];
     snprintf(text, sizeof text, "title: '%s'%s", title, strchr(good_study, '\n'));
-    bough_status status = perform(*context, text, ALL, table);
-    assert_true(bough_is_ok(&status));
+    check_ok(perform(*context, text, ALL, table));
     char *picture = scratch_read(*context, "plot.svg"), *at = strstr(picture, "font-size=\"15\"");
     assert_non_null(strstr(at, title));
     while (strncmp(at, "x=\"", 3) != 0) at--;
@@ -291,30 +287,26 @@ TEST_IN_FOLDER(no_title_is_clipped) {
 
 TEST_IN_FOLDER(failed_reference_ends_the_study) {
     char table[4096];
-    bough_status status = perform(
-        *context, HEAD "reference: {simulation.coupling.scheme: frozen}\n" GRID COMMON MEASURES, ALL, table);
-    assert_int_equal(status.code, BOUGH_FAILED);
-    assert_non_null(strstr(status.message, "the reference failed: "));
+    check_fails(perform(*context,
+                        HEAD "reference: {simulation.coupling.scheme: frozen}\n" GRID COMMON MEASURES, ALL,
+                        table),
+                BOUGH_FAILED, "the reference failed: ");
     assert_false(scratch_has(*context, "table.csv"));
 }
 
 TEST_IN_FOLDER(interrupted_study_goes_on) {
     char table[4096], again[4096], name[256];
-    bough_status status = perform(*context, good_study, 1, table);
-    assert_int_equal(status.code, BOUGH_INTERRUPTED);
-    assert_non_null(strstr(status.message, "after 1 of 4 runs"));
+    check_fails(perform(*context, good_study, 1, table), BOUGH_INTERRUPTED, "after 1 of 4 runs");
     assert_int_equal(scratch_files(*context, "cases", ".case", name), 1 + 1);
     assert_false(scratch_has(*context, "table.csv"));
     char *first = scratch_read(*context, name); // with the run's time, which differs in each
-    status = perform(*context, good_study, ALL, table);
-    assert_true(bough_is_ok(&status));
+    check_ok(perform(*context, good_study, ALL, table));
     char *kept = scratch_read(*context, name);
     assert_string_equal(kept, first);
     free(first);
     free(kept);
     assert_int_equal(count_results(*context), 1 + 4);
-    status = perform(*context, good_study, 0, again);
-    assert_true(bough_is_ok(&status));
+    check_ok(perform(*context, good_study, 0, again));
     assert_int_equal(asked, 0);
     assert_string_equal(again, table);
 }
@@ -323,25 +315,21 @@ TEST_IN_FOLDER(interrupted_study_goes_on) {
 // runs again once it is removed.
 TEST_IN_FOLDER(half_a_result_is_none) {
     char table[4096], name[256], path[512];
-    bough_status status = perform(*context, good_study, 1, table);
+    perform(*context, good_study, 1, table);
     snprintf(path, sizeof path, "%s/cases/0123.case.partial", (char *)*context);
     FILE *file = fopen(path, "w");
     assert_non_null(file);
     fputs("case 0123 finger", file);
     fclose(file);
-    status = perform(*context, good_study, ALL, table);
-    assert_true(bough_is_ok(&status));
+    check_ok(perform(*context, good_study, ALL, table));
     assert_int_equal(scratch_files(*context, "cases", ".case", name), 1 + 4);
     snprintf(path, sizeof path, "%s/%s", (char *)*context, name);
     char *text = scratch_read(*context, name);
     assert_int_equal(truncate(path, (off_t)strlen(text) - 6), 0);
     free(text);
-    status = perform(*context, good_study, 0, table);
-    assert_int_equal(status.code, BOUGH_IO);
-    assert_non_null(strstr(status.message, name));
+    check_fails(perform(*context, good_study, 0, table), BOUGH_IO, name);
     assert_int_equal(remove(path), 0);
-    status = perform(*context, good_study, ALL, table);
-    assert_true(bough_is_ok(&status));
+    check_ok(perform(*context, good_study, ALL, table));
     assert_int_equal(count_results(*context), 1 + 4);
 }
 
@@ -357,8 +345,7 @@ TEST_IN_FOLDER(other_settings_are_run_anew_and_a_grown_grid_is_completed) {
     static const char grown[] =
         HEAD REFERENCE "grid:\n  simulation.coupling.scheme: [monolithic, frozen, gauss-seidel]\n"
                        "  simulation.macro_step: [1 ms, 4 ms]\n" COMMON MEASURES;
-    status = perform(*context, grown, ALL, table);
-    assert_true(bough_is_ok(&status));
+    check_ok(perform(*context, grown, ALL, table));
     assert_in_range(asked, 1, whole - 1);
     assert_int_equal(count_in(*context, "table.csv", "\n"), 1 + 1 + 6);
 }

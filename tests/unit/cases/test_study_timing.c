@@ -29,7 +29,7 @@ TEST_IN_FOLDER(every_turn_has_every_cell_and_errors_are_told) {
     char path[128];
     const char *folder = *context;
     write_study(folder, path);
-    bough_arena *arena = bough_arena_create();
+    check_arena(arena);
     bough_errors errors = {.arena = arena};
     bough_study *study;
     bough_status status = bough_study_read(arena, path, 0, &errors, &study);
@@ -37,13 +37,11 @@ TEST_IN_FOLDER(every_turn_has_every_cell_and_errors_are_told) {
     assert_int_equal(status.code, BOUGH_OK);
     FILE *stream = tmpfile();
     bough_study_options options = {.folder = folder, .quiet = true, .stream = stream};
-    status = bough_study_perform(arena, study, &options);
-    assert_int_equal(status.code, BOUGH_OK);
+    check_ok(bough_study_perform(arena, study, &options));
     fclose(stream);
     char *csv = scratch_read(folder, "timing.csv"), *table = scratch_read(folder, "table.txt");
     assert_int_equal(count(csv, "\n"), 1 + 4 * 3);
     assert_int_equal(count(csv, ",1\n"), 2 * 3);  // against itself
     assert_int_equal(count(table, "0.0e+00"), 2); // the reference's settings
     free(csv), free(table);
-    bough_arena_destroy(arena);
 }

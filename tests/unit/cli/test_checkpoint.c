@@ -38,7 +38,7 @@ static void check_same(bough_simulation *a, bough_simulation *b) {
 
 // `until` steps, a copy, `more` steps of this run and of a new one that starts from it.
 static void check_continued(const char *path, const char *const *sets, int until, int more) {
-    bough_arena *arena = bough_arena_create();
+    check_arena(arena);
     bough_simulation *run = scene_build(arena, path, sets);
     bough_simulation *continued = scene_build(arena, path, sets);
     for (int k = 0; k < until; k++) scene_step(run);
@@ -54,7 +54,6 @@ static void check_continued(const char *path, const char *const *sets, int until
     }
     assert_true(run->master->time > start);
     free(c.bytes);
-    bough_arena_destroy(arena);
 }
 
 static const char bar[] = "apps/beams/rubber-bar.yaml";

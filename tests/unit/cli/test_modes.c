@@ -20,7 +20,7 @@ static void build(setup *s, bough_two_mass masses) {
     bough_master_def def = bough_master_def_default();
     def.macro_step = def.duration = .1;
     bough_status status = bough_two_mass_build(&s->m, def);
-    if (!bough_is_ok(&status)) fail_msg("%s", status.message);
+    check_ok(status);
     s->coupled = bough_coupled_create(s->m.arena, s->m.master->assembly, NULL);
     assert_true(bough_is_ok(&status));
     bough_coupled_inputs(s->coupled, 0, s->m.y0);
@@ -28,8 +28,7 @@ static void build(setup *s, bough_two_mass masses) {
 }
 
 static void find(setup *s, int wanted) {
-    bough_status status = bough_modes_find(s->m.arena, s->coupled, &s->def, wanted, s->pair, &s->found);
-    if (!bough_is_ok(&status)) fail_msg("%s", status.message);
+    check_ok(bough_modes_find(s->m.arena, s->coupled, &s->def, wanted, s->pair, &s->found));
 }
 
 // det(λ² M + λ C + K) = 0, and the shape's ratio is that of the first row.

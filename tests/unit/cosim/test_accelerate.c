@@ -30,11 +30,10 @@ static int solve(bough_accelerator *a, problem p, double *u) {
 }
 
 static int evaluations(bough_acceleration kind, problem p) {
-    bough_arena *arena = bough_arena_create();
+    check_arena(arena);
     double u[MOST];
     int count = solve(create(arena, kind, p.n), p, u);
     for (int i = 0; i < p.n && count != DIVERGED; i++) check_near(u[i], 1 / (1 + p.r[i]), 0, 1e-9);
-    bough_arena_destroy(arena);
     return count;
 }
 
@@ -74,13 +73,12 @@ static void close_interface(void *self, double *x) {
 }
 
 static int newton_evaluations(jacobian j) {
-    bough_arena *arena = bough_arena_create();
+    check_arena(arena);
     double u[MOST];
     bough_accelerator_def def = {
         .kind = BOUGH_ACCELERATE_NEWTON, .n = j.p.n, .relaxation = .5, .solve = close_interface, .self = &j};
     bough_accelerator *a = bough_accelerator_create(arena, &def);
     int count = solve(a, j.p, u);
-    bough_arena_destroy(arena);
     return count;
 }
 
@@ -94,7 +92,7 @@ TEST(newton_needs_one_step_with_the_exact_jacobian) {
 }
 
 TEST(divergence_tells_the_contraction) {
-    bough_arena *arena = bough_arena_create();
+    check_arena(arena);
     double u[MOST];
     bough_accelerator *a = create(arena, BOUGH_ACCELERATE_NONE, 1);
     assert_int_equal(solve(a, (problem){1, {2}}, u), DIVERGED);
@@ -102,7 +100,6 @@ TEST(divergence_tells_the_contraction) {
     a = create(arena, BOUGH_ACCELERATE_RELAXATION, 1);
     assert_int_equal(solve(a, (problem){1, {10}}, u), DIVERGED);
     check_near(bough_accelerator_contraction(a), 4.5, 1e-9, 0); // 1 − .5 (1 + 10)
-    bough_arena_destroy(arena);
 }
 
 // A component that follows others adds no column, and one at rest does no harm.
@@ -112,7 +109,7 @@ TEST(dependent_columns_are_dropped) {
 }
 
 TEST(a_solution_at_once_needs_no_iteration) {
-    bough_arena *arena = bough_arena_create();
+    check_arena(arena);
     const double u[2] = {1, 2};
     for (int kind = 0; kind < 4; kind++) {
         bough_accelerator *a = create(arena, (bough_acceleration)kind, 2);
@@ -124,5 +121,4 @@ TEST(a_solution_at_once_needs_no_iteration) {
             check_near(next[1], 2, 0, 0);
         }
     }
-    bough_arena_destroy(arena);
 }

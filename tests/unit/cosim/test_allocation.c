@@ -136,21 +136,18 @@ typedef struct outlet {
 
 static void open_outlet(bough_arena *arena, bough_simulation *s, const char *folder, outlet *o) {
     o->channels = bough_channels_start(arena);
-    bough_status status = bough_simulation_channels(s, &o->channels);
-    assert_int_equal(status.code, BOUGH_OK);
+    check_ok(bough_simulation_channels(s, &o->channels));
     o->value = bough_arena_doubles(arena, (size_t)o->channels.count);
     assert_non_null(o->value);
     bough_recorder_def def = {.folder = folder, .title = "allocation", .channels = &o->channels};
-    status = bough_recorder_open(arena, &def, &o->recorder);
-    assert_int_equal(status.code, BOUGH_OK);
+    check_ok(bough_recorder_open(arena, &def, &o->recorder));
 }
 
 static void take_step(bough_simulation *s, const outlet *o) {
     scene_step(s);
     bough_simulation_update(s);
     bough_channels_sample(&o->channels, s->master->time, o->value);
-    bough_status status = bough_recorder_sample(o->recorder, s->master->time);
-    assert_int_equal(status.code, BOUGH_OK);
+    check_ok(bough_recorder_sample(o->recorder, s->master->time));
 }
 
 typedef struct counted_run {
@@ -173,11 +170,10 @@ static void take_steps(void *self) {
 
 static void count_steps(const char *folder, const char *path, int steps, const char *what,
                         const char *const *sets) {
-    bough_arena *arena = bough_arena_create();
+    check_arena(arena);
     counted_run run = {.simulation = scene_build(arena, path, sets), .steps = steps, .what = what};
     open_outlet(arena, run.simulation, folder, &run.outlet);
     bough_pool_region(run.simulation->pool, take_steps, &run);
-    bough_arena_destroy(arena);
 }
 
 static const char runup[] = "apps/turbine/runup.yaml";
@@ -264,12 +260,11 @@ static void do_nothing(void *unused) { (void)unused; }
 TEST_IN_FOLDER(regions_again_take_no_memory) {
     if (!CAN_COUNT) skip();
     const char *sets[] = {"simulation.duration=2 s", "simulation.threads=2", NULL};
-    bough_arena *arena = bough_arena_create();
+    check_arena(arena);
     counted_run run = {scene_build(arena, runup, sets), .steps = COUNTED, .what = "regions"};
     open_outlet(arena, run.simulation, *context, &run.outlet);
     bough_pool_region(run.simulation->pool, do_nothing, NULL);
     take_steps(&run);
-    bough_arena_destroy(arena);
 }
 
 // The team of threads is the region's, not a step's.

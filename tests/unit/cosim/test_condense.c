@@ -113,7 +113,7 @@ typedef struct plan {
 } plan;
 
 static void check(const plan *p) {
-    bough_arena *arena = bough_arena_create();
+    check_arena(arena);
     member m[MEMBERS];
     bough_assembly_member part[MEMBERS];
     for (int i = 0; i < MEMBERS; i++) {
@@ -135,8 +135,7 @@ static void check(const plan *p) {
     for (int j = 0; j < a->n_input; j++) outside[j] = noise(&seed);
     bough_coupled_rate(coupled, 0, y, before);
     memcpy(input, coupled->input, (size_t)a->n_input * sizeof(double));
-    status = bough_coupled_setup(coupled, 0, y, input, gamma);
-    assert_true(bough_is_ok(&status));
+    check_ok(bough_coupled_setup(coupled, 0, y, input, gamma));
     bough_coupled_solve_driven(coupled, outside, x);
 
     // x = r + γ (A x + B δu) member by member, δu = P (C x + D δu) + outside
@@ -149,7 +148,6 @@ static void check(const plan *p) {
     for (int j = 0; j < a->n_input; j++) change[j] = answer[a->source[j]] + outside[j];
     for (int j = 0; j < a->n_input; j++) check_near(coupled->change[j], change[j], 0, 1e-9);
     for (int k = 0; k < a->n_state; k++) check_near(x[k] - gamma * after[k], r[k], 0, 1e-9);
-    bough_arena_destroy(arena);
 }
 
 // Three followers on one leader.
@@ -218,7 +216,7 @@ TEST(every_shape_solves_the_whole) {
 
 // The gain of the interface.
 TEST(radius_is_that_of_the_loop) {
-    bough_arena *arena = bough_arena_create();
+    check_arena(arena);
     member m[2];
     make(&m[0], 2, 3, 3, false, 1);
     make(&m[1], 4, 3, 3, false, 2);
@@ -228,7 +226,7 @@ TEST(radius_is_that_of_the_loop) {
     bough_assembly *a;
     bough_condensed *k;
     bough_status status = bough_assembly_build(arena, &def, &a);
-    assert_true(bough_is_ok(&status));
+    check_ok(status);
     k = bough_condensed_create(arena, a);
     assert_true(bough_is_ok(&status));
     const double zero[MOST] = {0};
@@ -245,5 +243,4 @@ TEST(radius_is_that_of_the_loop) {
     double square = .25 * trace * trace - det;
     double radius = square > 0 ? .5 * fabs(trace) + sqrt(square) : sqrt(det);
     check_near(bough_condensed_radius(k), radius, 1e-2, 0);
-    bough_arena_destroy(arena);
 }

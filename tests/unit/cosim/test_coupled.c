@@ -9,7 +9,7 @@ static void build(bough_two_mass *m, bough_coupled **coupled, int threads) {
     bough_master_def def = bough_master_def_default();
     def.macro_step = def.duration = .1;
     bough_status status = bough_two_mass_build(m, def);
-    if (!bough_is_ok(&status)) fail_msg("%s", status.message);
+    check_ok(status);
     pool = bough_pool_create(m->arena, threads);
     assert_true(bough_is_ok(&status));
     *coupled = bough_coupled_create(m->arena, m->master->assembly, pool);
@@ -25,14 +25,11 @@ TEST(solves_the_coupled_system) {
     for (size_t g = 0; g < sizeof gammas / sizeof *gammas; g++) {
         double x[N], moved[N], before[N], after[N], gamma = gammas[g];
         memcpy(x, r, sizeof x);
-        bough_status status = bough_coupled_rate(coupled, 0, y, before);
-        assert_true(bough_is_ok(&status));
-        status = bough_coupled_setup(coupled, 0, y, coupled->input, gamma);
-        assert_true(bough_is_ok(&status));
+        check_ok(bough_coupled_rate(coupled, 0, y, before));
+        check_ok(bough_coupled_setup(coupled, 0, y, coupled->input, gamma));
         bough_coupled_solve(coupled, x);
         for (int k = 0; k < N; k++) moved[k] = y[k] + x[k];
-        status = bough_coupled_rate(coupled, 0, moved, after);
-        assert_true(bough_is_ok(&status));
+        check_ok(bough_coupled_rate(coupled, 0, moved, after));
         for (int k = 0; k < N; k++) {
             check_near(x[k] - gamma * (after[k] - before[k]), r[k], 1e-9, 1e-12 * gamma);
         }
@@ -47,8 +44,7 @@ TEST(rates_are_those_of_the_coupled_masses) {
     build(&m, &coupled, 2);
     const double y[N] = {.1, -.2, .5, .3};
     double rate[N], force = m.k * (y[2] - y[0]) + m.c * (y[3] - y[1]);
-    bough_status status = bough_coupled_rate(coupled, 0, y, rate);
-    assert_true(bough_is_ok(&status));
+    check_ok(bough_coupled_rate(coupled, 0, y, rate));
     check_near(rate[0], y[1], 0, 0);
     check_near(rate[1], -10 * y[0] - .2 * y[1] + force, 1e-14, 0);
     check_near(rate[2], y[3], 0, 0);

@@ -24,7 +24,7 @@ TEST(steps_end_on_events_and_on_the_duration) {
     for (int k = 0; k < 7; k++) {
         assert_false(bough_master_done(m.master));
         status = bough_step(m.master);
-        assert_true(bough_is_ok(&status));
+        check_ok(status);
         check_near(m.master->time, expected[k], 0, 1e-15);
         assert_int_equal(m.master->at_event, k == 2 || k == 4);
     }
@@ -55,8 +55,7 @@ TEST(loads_are_sampled_at_their_period) {
     def.n_load = def.n_event = 1;
     bough_two_mass m = bough_two_mass_default();
     bough_two_mass_build(&m, def);
-    bough_status status = run(m.master);
-    assert_true(bough_is_ok(&status));
+    check_ok(run(m.master));
     assert_int_equal(taken.count, 4);
     for (int k = 0; k < 4; k++) {
         check_near(taken.time[k], .2 * k, 0, 1e-15);
@@ -102,13 +101,12 @@ static star star_run(const char *scheme, double macro_step, int threads) {
     bough_master_def def = definition(macro_step, 4);
     def.scheme.name = scheme;
     def.scheme.integrator.rtol = 1e-10;
-    bough_arena *arena = bough_arena_create();
+    check_arena(arena);
     def.pool = bough_pool_create(arena, threads);
     bough_status status = star_build(&s, def);
     if (bough_is_ok(&status)) status = run(s.master);
     if (!bough_is_ok(&status)) fail_msg("%s: %s", scheme, status.message);
     bough_arena_destroy(s.arena);
-    bough_arena_destroy(arena);
     return s;
 }
 
@@ -161,11 +159,8 @@ TEST(algebraic_loops_are_refused) {
         part[i] = (bough_assembly_member){&member[i], i};
         connection[i] = (bough_connection){.from = i, .to = 1 - i, .count = 2};
     }
-    bough_arena *arena = bough_arena_create();
+    check_arena(arena);
     bough_assembly *assembly;
     bough_assembly_def def = {2, part, 2, connection};
-    bough_status status = bough_assembly_build(arena, &def, &assembly);
-    assert_int_equal(status.code, BOUGH_INVALID);
-    assert_non_null(strstr(status.message, "algebraic loop"));
-    bough_arena_destroy(arena);
+    check_fails(bough_assembly_build(arena, &def, &assembly), BOUGH_INVALID, "algebraic loop");
 }

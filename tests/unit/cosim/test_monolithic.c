@@ -7,8 +7,7 @@ static double error_with(bough_integrator_options integrator) {
     def.scheme.integrator = integrator;
     def.macro_step = .1;
     def.duration = 10;
-    bough_status status = bough_two_mass_build(&m, def);
-    if (!bough_is_ok(&status)) fail_msg("%s", status.message);
+    check_ok(bough_two_mass_build(&m, def));
     double error = two_mass_error(&m);
     bough_coupling_report report = bough_monitor_report(m.master->monitor, m.master->coupling);
     check_near(report.defect_max, 0, 0, 1e-12);

@@ -32,7 +32,7 @@ static double line(double t) { return 4 - 3 * (t - 2); }
 static double parabola(double t) { return 2 - t + .5 * t * t; }
 
 TEST(held_values_and_rates) {
-    bough_arena *arena = bough_arena_create();
+    check_arena(arena);
     bough_signal s = signal_on(arena, 2, 2.5);
     const double value = 4, rate = -3, end = 2.5;
     bough_port_hold(&s, 1, 1, &value);
@@ -41,20 +41,18 @@ TEST(held_values_and_rates) {
     check_signal(&s, line);
     bough_port_linear(&s, 1, 1, &value, &end);
     check_signal(&s, line);
-    bough_arena_destroy(arena);
 }
 
 TEST(hermite_reproduces_a_cubic) {
-    bough_arena *arena = bough_arena_create();
+    check_arena(arena);
     bough_signal s = signal_on(arena, .5, 1.3);
     const double v0 = cubic(.5), r0 = cubic_rate(.5), v1 = cubic(1.3), r1 = cubic_rate(1.3);
     bough_port_hermite(&s, 1, 1, (bough_port_end){&v0, &r0}, (bough_port_end){&v1, &r1});
     check_signal(&s, cubic);
-    bough_arena_destroy(arena);
 }
 
 TEST(polynomials_extrapolate_and_interpolate) {
-    bough_arena *arena = bough_arena_create();
+    check_arena(arena);
     bough_signal s = signal_on(arena, .5, 1.3);
     const double back[3] = {.5, .2, -.3}, around[4] = {1.3, .5, .2, -.3};
     double at_back[3], at_around[4];
@@ -68,5 +66,4 @@ TEST(polynomials_extrapolate_and_interpolate) {
     }
     bough_port_polynomial(&s, 1, 1, 4, around, value);
     check_signal(&s, cubic);
-    bough_arena_destroy(arena);
 }

@@ -53,8 +53,7 @@ TEST(it_is_stepped_at_its_order) {
     double error[2];
     for (int k = 0; k < 2; k++) {
         bough_two_mass m = bough_two_mass_default();
-        bough_status status = bough_two_mass_build(&m, definition(.02 / (k + 1)));
-        if (!bough_is_ok(&status)) fail_msg("%s", status.message);
+        check_ok(bough_two_mass_build(&m, definition(.02 / (k + 1))));
         bough_two_mass_history(&m);
         error[k] = two_mass_error(&m);
         assert_string_equal(m.master->verdict, "");
@@ -67,14 +66,12 @@ TEST(it_is_judged_and_diagnosed) {
     bough_two_mass m = bough_two_mass_default();
     bough_master_def def = definition(.5);
     def.duration = 1000;
-    bough_status status = bough_two_mass_build(&m, def);
-    if (!bough_is_ok(&status)) fail_msg("%s", status.message);
+    check_ok(bough_two_mass_build(&m, def));
     assert_non_null(strstr(m.master->verdict, "scheme toy at a macro step of 0.5 s is unstable"));
     assert_non_null(strstr(m.master->verdict, "scheme: ramp holds"));
     double worst;
-    status = bough_two_mass_error(&m, &worst);
-    assert_int_equal(status.code, BOUGH_FAILED);
-    assert_non_null(strstr(status.message, "scheme toy"));
+    bough_status status = bough_two_mass_error(&m, &worst);
+    check_fails(status, BOUGH_FAILED, "scheme toy");
     assert_non_null(strstr(status.message, "or scheme: monolithic"));
     bough_two_mass_destroy(&m);
 }

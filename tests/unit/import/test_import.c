@@ -273,14 +273,12 @@ TEST(trials_judge_errors) {
     snprintf(path, sizeof path, "%s/scene.yaml", t.out);
     bough_errors errors = {.arena = t.arena};
     bough_scene *scene;
-    bough_status status = bough_scene_read(t.arena, path, NULL, 0, &errors, &scene);
-    assert_true(bough_is_ok(&status));
-    status = try_with(&t, scene, 1e-3, 0);
+    check_ok(bough_scene_read(t.arena, path, NULL, 0, &errors, &scene));
+    bough_status status = try_with(&t, scene, 1e-3, 0);
     assert_string_equal(status.message, "");
     double bound = 1;
     while (bound > 1e-9 && (status = try_with(&t, scene, 1e-3, bound), bough_is_ok(&status))) bound /= 4;
-    assert_int_equal(status.code, BOUGH_FAILED);
-    assert_non_null(strstr(status.message, "the error bound"));
+    check_fails(status, BOUGH_FAILED, "the error bound");
     status = try_with(&t, scene, 1e-7, bound);
     assert_string_equal(status.message, "");
     done(&t);

@@ -23,8 +23,7 @@ static bough_rod_def discretised(bough_arena *arena, const bough_section_station
     bough_section_table table = {.name = "test", .n_station = n_station, .station = s, .length = 4};
     for (int i = 0; i < 6; i++) table.damping[i] = 1e-3 * (i + 1);
     bough_rod_def def;
-    bough_status status = bough_section_discretise(arena, &table, segments, &def);
-    assert_int_equal(status.code, BOUGH_OK);
+    check_ok(bough_section_discretise(arena, &table, segments, &def));
     return def;
 }
 
@@ -46,20 +45,18 @@ TEST(lumped_moments_are_exact_for_linear_tables) {
 
 // A slender rod whose section inertia cannot balance the end terms: still positive, still exact.
 TEST(slender_rod_keeps_positive_inertia) {
-    bough_arena *arena = bough_arena_create();
+    check_arena(arena);
     bough_section_station s = station(0, 1);
     memset(s.centre, 0, sizeof s.centre);
     s.inertia[0] = s.inertia[1] = 1e-9;
     s.inertia[3] = 2e-9;
     bough_rod_def def = discretised(arena, &s, 1, 8);
     bough_rod_model *model;
-    bough_status status = bough_rod_create(arena, &def, &model);
-    assert_int_equal(status.code, BOUGH_OK);
+    check_ok(bough_rod_create(arena, &def, &model));
     bough_vertex_inertia whole = bough_section_rigid(&def);
     check_near(whole.mass, 4, 1e-12, 0);
     check_near(whole.moment.z, 8, 1e-12, 0);
     check_near(whole.inertia[0], 64.0 / 3 + 4e-9, 1e-12, 0);
-    bough_arena_destroy(arena);
 }
 
 // A mass centre off the axis, on coarse and fine meshes: accepted, with exact products of inertia
@@ -76,9 +73,7 @@ TEST(offset_mass_centre_keeps_exact_products) {
         }
         bough_rod_def def = discretised(arena, s, 2, segments);
         bough_rod_model *model;
-        bough_status status = bough_rod_create(arena, &def, &model);
-        if (!bough_is_ok(&status)) print_error("%s\n", status.message);
-        assert_int_equal(status.code, BOUGH_OK);
+        check_ok(bough_rod_create(arena, &def, &model));
         bough_vertex_inertia whole = bough_section_rigid(&def);
         check_near(whole.moment.x, 1.5 * 0.15 * 2, 1e-12, 0);
         check_near(whole.inertia[4], -1.5 * 0.15 * 8 / 3, 1e-12, 0); // −∫ρ x z
@@ -89,7 +84,7 @@ TEST(offset_mass_centre_keeps_exact_products) {
 
 // A uniform segment meets end forces exactly: bending h/EI, shear h/GA + h³/12EI.
 TEST(segment_is_exact_for_end_forces) {
-    bough_arena *arena = bough_arena_create();
+    check_arena(arena);
     const bough_section_station s = station(0, 1);
     bough_rod_def def = discretised(arena, &s, 1, 2);
     double compliance[21], h = 2;
@@ -98,25 +93,23 @@ TEST(segment_is_exact_for_end_forces) {
     check_near(compliance[bough_symmetric6_index(0, 0)], 1 / 3e5 + h * h / 12 / 3e4, 1e-12, 0);
     check_near(compliance[bough_symmetric6_index(1, 1)], 1 / 4e5 + h * h / 12 / 2e4, 1e-12, 0);
     check_near(compliance[bough_symmetric6_index(2, 2)], 1 / 5e6, 1e-12, 0);
-    bough_arena_destroy(arena);
 }
 
 // Damping dissipates what the sections would: under a steadily growing shear force the segment's
 // stress lags as bending (μ₅) and shear (μ₁) share the compliance.
 TEST(damping_weighs_the_sections) {
-    bough_arena *arena = bough_arena_create();
+    check_arena(arena);
     const bough_section_station s = station(0, 1);
     bough_rod_def def = discretised(arena, &s, 1, 2);
     double shear = 1 / 3e5, bending = 4.0 / 12 / 3e4, c = 1 / (shear + bending);
     double expected = c * c * (1e-3 * shear + 5e-3 * bending);
     check_near(def.damping[0], expected, 1e-12, 0);
     check_near(def.damping[bough_symmetric6_index(3, 3)], 4e-3 * 2e4, 1e-12, 0);
-    bough_arena_destroy(arena);
 }
 
 // Twist turns the section axes by −twist about the tangent and mixes the bending stiffnesses.
 TEST(twist_turns_sections) {
-    bough_arena *arena = bough_arena_create();
+    check_arena(arena);
     bough_section_station s[2] = {station(0, 1), station(4, 1)};
     s[0].twist = s[1].twist = 0.3;
     bough_rod_def def = discretised(arena, s, 2, 3);
@@ -131,7 +124,6 @@ TEST(twist_turns_sections) {
     assert_true(bough_symmetric6_inverse(turned.stiffness, compliance));
     check_near(compliance[bough_symmetric6_index(3, 3)], tangent * tangent * ((1 - mean) / 2e4 + mean / 3e4),
                1e-12, 0);
-    bough_arena_destroy(arena);
 }
 
 // A number between 10⁻² and 10².
@@ -175,9 +167,7 @@ TEST(any_physical_table_builds) {
             bough_rod_def def = discretised(arena, s, n, segments[k]);
             bough_vertex_inertia sum = bough_section_rigid(&def);
             bough_rod_model *model = NULL;
-            bough_status status = bough_rod_create(arena, &def, &model);
-            if (!bough_is_ok(&status)) print_error("%s\n", status.message);
-            assert_int_equal(status.code, BOUGH_OK);
+            check_ok(bough_rod_create(arena, &def, &model));
             check_near(sum.mass, whole.mass, 1e-10, 0);
             check_near(sum.moment.x, whole.moment.x, 1e-10, 1e-10 * whole.mass);
             check_near(sum.moment.z, whole.moment.z, 1e-10, 0);

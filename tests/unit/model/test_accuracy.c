@@ -131,20 +131,19 @@ static void record(const char *path, const char *const *sets, const char *last, 
     int n = 1;
     for (; *sets; sets++) all[n++] = *sets;
     all[n] = last;
-    bough_arena *arena = bough_arena_create();
+    check_arena(arena);
     bough_run run;
     bough_status status = bough_run_create(arena, scene_read(arena, path, all), &run);
-    assert_int_equal(status.code, BOUGH_OK);
+    check_ok(status);
     r->n_channel = run.channels.count;
     assert_true(r->n_channel <= MOST_CHANNELS);
     bough_run_start(&run);
     for (r->n_row = 0; !bough_run_done(&run); r->n_row++) {
         assert_true(r->n_row < MOST_ROWS);
         status = bough_run_step(&run);
-        assert_int_equal(status.code, BOUGH_OK);
+        check_ok(status);
         memcpy(r->row[r->n_row], bough_run_values(&run), (size_t)r->n_channel * sizeof(double));
     }
-    bough_arena_destroy(arena);
 }
 
 // The largest error of a channel over the range of all that is as large as a thousandth of the largest range.

@@ -32,8 +32,7 @@ static void close_turbine(fixture *f) { bough_arena_destroy(f->arena); }
 
 static bool sample(fixture *f, double t, double t_next) {
     bool jumped = false;
-    bough_status status = f->load.sample(f->load.self, t, t_next, &jumped);
-    assert_int_equal(status.code, BOUGH_OK);
+    check_ok(f->load.sample(f->load.self, t, t_next, &jumped));
     return jumped;
 }
 
@@ -164,8 +163,7 @@ TEST(rotor_tells_the_wind_relative_to_the_blades) {
     for (int i = 0; i < 2; i++) {
         fixture f = open_turbine(sets[i]);
         bough_channels list = bough_channels_start(f.arena);
-        bough_status status = bough_simulation_channels(f.s, &list);
-        assert_int_equal(status.code, BOUGH_OK);
+        check_ok(bough_simulation_channels(f.s, &list));
         sample(&f, 0, period);
         wind[i] = scene_channel(f.s, &list, "RtVAvgxh");
         ratio[i] = scene_channel(f.s, &list, "RtTSR");
@@ -363,7 +361,7 @@ static void start_suddenly(const char *rate, const char *fidelity, double tip[RO
                                 "simulation.micro.step=2.5 ms",
                                 "simulation.threads=1",
                                 NULL};
-    bough_arena *arena = bough_arena_create();
+    check_arena(arena);
     bough_simulation *s = scene_build(arena, "apps/turbine/runup.yaml", sets);
     for (int k = 0; k < ROWS; k++) {
         bough_quaternion p;
@@ -372,7 +370,6 @@ static void start_suddenly(const char *rate, const char *fidelity, double tip[RO
         bough_vec3 x = bough_simulation_beam_tip(s, bough_simulation_beam(s, 3), &p);
         tip[k][0] = x.x, tip[k][1] = x.y, tip[k][2] = x.z;
     }
-    bough_arena_destroy(arena);
 }
 
 static double furthest(double (*a)[3], double (*b)[3]) {
@@ -464,7 +461,7 @@ TEST(results_are_of_their_own_time) {
 
 TEST(blades_want_one_mesh) {
     static const char *const sets[] = {"bodies[4].rod.segments=10", NULL};
-    bough_arena *arena = bough_arena_create();
+    check_arena(arena);
     bough_simulation *s = NULL;
     bough_status status = bough_simulation_build(arena, scene_read(arena, turbine, sets), &s);
     assert_int_equal(status.code, BOUGH_INVALID);
@@ -472,5 +469,4 @@ TEST(blades_want_one_mesh) {
                         "--set: rod.segments: blades blade1 and blade2 have 12 and 10 segments; the"
                         " aerodynamics wants the same mesh on all blades");
     assert_null(s);
-    bough_arena_destroy(arena);
 }

@@ -39,7 +39,7 @@ TEST(scene_without_aero_samples_nothing) {
 TEST(rods_take_ports_in_the_order_of_the_scene) {
     static const char *const names[] = {"third", "stiff", "first"};
     static const int ports[] = {0, -1, 1}, bodies[] = {0, 2, 3};
-    bough_arena *arena = bough_arena_create();
+    check_arena(arena);
     bough_simulation *s = scene_build(arena, arms, no_sets);
     for (int k = 0; k < 3; k++) {
         const bough_beam *beam = &s->beam[k];
@@ -56,12 +56,11 @@ TEST(rods_take_ports_in_the_order_of_the_scene) {
     }
     assert_null(bough_simulation_beam(s, 1));
     assert_ptr_equal(s->master->assembly->member[0], &s->leader);
-    bough_arena_destroy(arena);
 }
 
 // Each rod is moved by its own root and its wrench returns there.
 TEST(rods_are_connected_to_their_roots) {
-    bough_arena *arena = bough_arena_create();
+    check_arena(arena);
     bough_simulation *s = scene_build(arena, arms, no_sets);
     const bough_assembly *a = s->master->assembly;
     static const double radius[] = {3, 1}; // of the ports' roots
@@ -80,13 +79,12 @@ TEST(rods_are_connected_to_their_roots) {
         }
         assert_true(a->kinematic[a->input_offset[p + 1]]);
     }
-    bough_arena_destroy(arena);
 }
 
 TEST(rigid_blades_leave_the_tree_alone) {
     static const char *const sets[] = {"bodies[3].fidelity=rigid", "bodies[4].fidelity=rigid",
                                        "bodies[5].fidelity=rigid", NULL};
-    bough_arena *arena = bough_arena_create();
+    check_arena(arena);
     bough_simulation *s = scene_build(arena, runup, sets);
     assert_int_equal(s->n_rod, 0);
     assert_int_equal(s->n_beam, 3);
@@ -98,7 +96,6 @@ TEST(rigid_blades_leave_the_tree_alone) {
     assert_non_null(s->aero); // which loads them as bodies
     for (int k = 0; k < 10; k++) scene_step(s);
     assert_true(s->leader.state[1] > 0.5);
-    bough_arena_destroy(arena);
 }
 
 // Half a second of the run-up: the rotor turns as with rods, the tips bend as theirs.
@@ -155,7 +152,7 @@ TEST(bodies_hang_on_the_end_of_a_rod_bent_or_rigid) {
 }
 
 TEST(end_of_a_rod_is_connected_to_its_body) {
-    bough_arena *arena = bough_arena_create();
+    check_arena(arena);
     bough_simulation *s = scene_build(arena, carrying, no_sets);
     const bough_assembly *a = s->master->assembly;
     const bough_beam *beam = &s->beam[0];
@@ -173,7 +170,6 @@ TEST(end_of_a_rod_is_connected_to_its_body) {
     bough_quaternion p = beam->def.rotation[4];
     const double expected[BOUGH_ROD_END_INPUTS] = {0, 0, 0, 0, 0, 0, 0, 0, 2, p.w, p.x, p.y, p.z};
     for (int k = 0; k < BOUGH_ROD_END_INPUTS; k++) check_near(end[k], expected[k], 1e-15, 1e-15);
-    bough_arena_destroy(arena);
 }
 
 static bough_twist velocity_of(const bough_simulation *s, const char *body) {
@@ -182,7 +178,7 @@ static bough_twist velocity_of(const bough_simulation *s, const char *body) {
 
 // The hub stands at 90°: what points along z at 0 points along −y.
 TEST(bodies_start_where_the_scene_puts_them) {
-    bough_arena *arena = bough_arena_create();
+    check_arena(arena);
     bough_simulation *s = scene_build(arena, arms, no_sets);
     double half = sqrt(3) / 2;
     check_vec3(pose_of(s, "first").position, bough_v3(0, -1, 10), 1e-14);
@@ -197,7 +193,6 @@ TEST(bodies_start_where_the_scene_puts_them) {
     bough_mat3 r = pose_of(s, "third").rotation;
     check_vec3(r.c3, bough_v3(0, 0.5, half), 1e-14);
     check_vec3(bough_v3(r.c1.x, r.c2.x, r.c3.x), bough_v3(half, 0.5, 0), 1e-14);
-    bough_arena_destroy(arena);
 }
 
 // Vertices of beams, flexible or rigid, lie along their arm and turn with the hub.
@@ -205,7 +200,7 @@ TEST(beams_move_with_the_hub_at_first) {
     static const char *const names[] = {"third", "stiff", "first"};
     bough_vec3 position[5], velocity[5], angular[5], omega = {2, 0, 0}, hub = {0, 0, 10};
     bough_mat3 rotation[5];
-    bough_arena *arena = bough_arena_create();
+    check_arena(arena);
     bough_simulation *s = scene_build(arena, arms, no_sets);
     for (int k = 0; k < 3; k++) {
         bough_transform root = pose_of(s, names[k]);
@@ -220,21 +215,18 @@ TEST(beams_move_with_the_hub_at_first) {
             check_vec3(rotation[i].c3, root.rotation.c3, 1e-14);
         }
     }
-    bough_arena_destroy(arena);
 }
 
 TEST(a_body_may_have_its_own_sub_solver) {
     static const char *const sets[] = {"bodies[0].micro.solver=arkode-esdirk",
                                        "simulation.micro.solver=generalized-alpha", NULL};
-    bough_arena *arena = bough_arena_create();
+    check_arena(arena);
     bough_simulation *s = scene_build(arena, arms, sets);
     assert_string_equal(s->rod[0].solver, "ARKODE ESDIRK");
     assert_string_equal(s->rod[1].solver, "generalised-α");
     for (int k = 0; k < 5; k++) {
-        bough_status status = bough_step(s->master);
-        assert_int_equal(status.code, BOUGH_OK);
+        check_ok(bough_step(s->master));
     }
-    bough_arena_destroy(arena);
 }
 
 TEST(joint_loads_act_and_their_corners_are_events) {
@@ -308,7 +300,7 @@ TEST(rigid_blades_have_the_inertia_of_their_table) {
                                        "bodies[3].rod.segments=12",
                                        "bodies[5].rod.segments=12",
                                        NULL};
-    bough_arena *arena = bough_arena_create();
+    check_arena(arena);
     bough_simulation *s = scene_build(arena, runup, sets);
     bough_mat3 hub = {{5.1414234e6, 0, 0}, {0, 2.6e6, 0}, {0, 0, 2.6e6}};
     bough_inertia expected = {56780, {0, 0, 0}, hub};
@@ -319,14 +311,13 @@ TEST(rigid_blades_have_the_inertia_of_their_table) {
     }
     assert_int_equal(s->tree->n_links, 1);
     check_inertia(s->tree->links[0].inertia, expected, 1e-6);
-    bough_arena_destroy(arena);
 }
 
 // Arms of a uniform section, one with its mass beside the axis, in the hub's axes.
 TEST(rigid_arms_have_their_mass_where_the_section_says) {
     static const char *const sets[] = {"bodies[0].fidelity=rigid", "bodies[3].fidelity=rigid", NULL};
     static const double angle[] = {4 * BOUGH_PI / 3, 2 * BOUGH_PI / 3, 0}, radius[] = {3, 2, 1};
-    bough_arena *arena = bough_arena_create();
+    check_arena(arena);
     bough_simulation *s = scene_build(arena, arms, sets);
     bough_inertia expected = {50, {0, 0, 0}, {{5, 0, 0}, {0, 3, 0}, {0, 0, 3}}};
     for (int k = 0; k < 3; k++) { // 1.5 kg/m from 0 to 2 m
@@ -340,7 +331,6 @@ TEST(rigid_arms_have_their_mass_where_the_section_says) {
     }
     bough_inertia hub = s->tree->links[s->tree->bodies[1].link].inertia;
     check_inertia(hub, expected, 1e-12);
-    bough_arena_destroy(arena);
 }
 
 // A rod's vertices but the root, in the axes of the link that carries it.
@@ -363,13 +353,12 @@ static bough_inertia moving_inertia(const bough_simulation *s, const bough_beam 
 TEST(flexible_blade_shares_its_inertia_with_the_tree) {
     static const char turbine[] = "tests/data/scenes/example-turbine.yaml";
     static const char *const sets[] = {"bodies[3].fidelity=rigid", NULL};
-    bough_arena *arena = bough_arena_create();
+    check_arena(arena);
     bough_simulation *rigid = scene_build(arena, turbine, sets);
     bough_simulation *s = scene_build(arena, turbine, no_sets);
     bough_inertia link = s->tree->links[0].inertia, moving = moving_inertia(s, &s->beam[0]);
     assert_true(moving.mass > 300);
     check_inertia(bough_inertia_add(link, moving), rigid->tree->links[0].inertia, 1e-13);
-    bough_arena_destroy(arena);
 }
 
 // -- threads --------------------------------------------------------------------------------------
@@ -389,7 +378,7 @@ static int final_state(const char *scheme, int threads, double *state) {
                           "bodies[4].rod.segments=12",
                           "bodies[5].rod.segments=12",
                           NULL};
-    bough_arena *arena = bough_arena_create();
+    check_arena(arena);
     bough_simulation *s = scene_build(arena, runup, sets);
     while (!bough_master_done(s->master)) scene_step(s);
     const bough_assembly *a = s->master->assembly;
@@ -400,7 +389,6 @@ static int final_state(const char *scheme, int threads, double *state) {
     }
     memcpy(state + a->n_state, s->master->coupling->output, (size_t)a->n_output * sizeof *state);
     int n = a->n_state + a->n_output;
-    bough_arena_destroy(arena);
     return n;
 }
 

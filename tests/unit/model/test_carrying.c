@@ -41,18 +41,16 @@ static void flexibility(double f[2][2]) {
 TEST(weight_bends_a_cantilever_as_beam_theory_says) {
     double f[2][2], weight = 9.8 * mass, own = 9.8 * 1e-4;
     flexibility(f);
-    bough_arena *arena = bough_arena_create();
+    check_arena(arena);
     bough_simulation *s = scene_build(arena, tip_weight, no_sets);
     bough_equilibrium_work work;
-    bough_status status = bough_simulation_equilibrium(s, s->master->assembly, 0, &work);
-    assert_int_equal(status.code, BOUGH_OK);
+    check_ok(bough_simulation_equilibrium(s, s->master->assembly, 0, &work));
     double expected = weight * (f[0][0] + arm * f[0][1]) + own * pow(length, 4) / (8 * bending);
     check_near(tip_of(s).x, expected, 2e-5, 0); // the body's x points down
     bough_quaternion p;
     bough_simulation_beam_tip(s, &s->beam[0], &p);
     expected = weight * (f[1][0] + arm * f[1][1]) + own * pow(length, 3) / (6 * bending);
     check_near(bough_quaternion_logarithm(p).y, expected, 2e-5, 0);
-    bough_arena_destroy(arena);
 }
 
 // Periods between the turning points of a motion after a time [Hz].
@@ -83,10 +81,9 @@ TEST(weight_swings_on_a_cantilever_as_beam_theory_says) {
     double a = f[0][0] * m00 + f[0][1] * m01, b = f[0][0] * m01 + f[0][1] * m11;
     double c = f[1][0] * m00 + f[1][1] * m01, d = f[1][0] * m01 + f[1][1] * m11;
     double largest = 0.5 * (a + d) + sqrt(0.25 * (a - d) * (a - d) + b * c);
-    bough_arena *arena = bough_arena_create();
+    check_arena(arena);
     bough_simulation *s = scene_build(arena, tip_weight, no_sets);
     check_near(frequency(s, 0, 0.1), 1 / (2 * BOUGH_PI * sqrt(largest)), 1e-3, 0);
-    bough_arena_destroy(arena);
 }
 
 // -- equivalence and conservation -----------------------------------------------------------------
@@ -96,18 +93,16 @@ TEST(spring_takes_hold_of_a_rod) {
     const double wire = 1000, slack = 1e-3, own = 9.8 * 1e-4;
     double f[2][2];
     flexibility(f);
-    bough_arena *arena = bough_arena_create();
+    check_arena(arena);
     bough_simulation *s = scene_build(arena, "tests/data/scenes/wire.yaml", no_sets);
     bough_equilibrium_work work;
-    bough_status status = bough_simulation_equilibrium(s, s->master->assembly, 0, &work);
-    assert_int_equal(status.code, BOUGH_OK);
+    check_ok(bough_simulation_equilibrium(s, s->master->assembly, 0, &work));
     double sag = own * pow(length, 4) / (8 * bending);
     double force = (slack + sag) / (1 / wire + f[0][0]), tension;
     bough_vec3 direction;
     bough_simulation_update(s);
     bough_tree_spring(s->tree, s->view, 0, &tension, &direction);
     check_near(tension, force, 1e-4, 0);
-    bough_arena_destroy(arena);
 }
 
 TEST(rod_that_carries_nothing_heavy_moves_as_a_free_one) {
@@ -116,7 +111,7 @@ TEST(rod_that_carries_nothing_heavy_moves_as_a_free_one) {
         "simulation.coupling.scheme=monolithic", "simulation.master.rtol=1e-8"
     static const char *const hung[] = {SAME, NULL};
     static const char *const apart[] = {SAME, "bodies[1].joint.parent=ground", NULL};
-    bough_arena *arena = bough_arena_create();
+    check_arena(arena);
     bough_simulation *a = scene_build(arena, "tests/data/scenes/carrying.yaml", hung);
     bough_simulation *b = scene_build(arena, "tests/data/scenes/carrying.yaml", apart);
     assert_int_equal(a->master->assembly->n_state, b->master->assembly->n_state);
@@ -124,7 +119,6 @@ TEST(rod_that_carries_nothing_heavy_moves_as_a_free_one) {
     run(b);
     check_near(bough_norm(bough_sub(tip_of(a), tip_of(b))), 0, 0, 1e-6);
     assert_true(fabs(tip_of(a).x) > 5e-3);
-    bough_arena_destroy(arena);
 }
 
 static bough_transform pose_of(const bough_simulation *s, int body) {
@@ -137,7 +131,7 @@ TEST(rods_in_a_row_are_the_whole) {
     static const char *const whole[] = {"bodies[0].rod.part=[0, 87.6]", "bodies[0].rod.segments=20",
                                         "bodies[1].joint.parent=ground", "bodies[2].joint.parent=lower",
                                         NULL};
-    bough_arena *arena = bough_arena_create();
+    check_arena(arena);
     bough_simulation *parts = scene_build(arena, path, no_sets);
     bough_simulation *one = scene_build(arena, path, whole);
     for (int i = 1; i < parts->beam[0].def.n_segment; i++) { // but where it is cut
@@ -151,16 +145,14 @@ TEST(rods_in_a_row_are_the_whole) {
     check_near(bough_norm(bough_sub(a.position, b.position)), 0, 0, 1e-7);
     check_near(bough_norm(bough_sub(a.rotation.c1, b.rotation.c1)), 0, 0, 1e-7);
     assert_true(a.position.x > 0.02);
-    bough_arena_destroy(arena);
 }
 
 TEST(weight_at_an_inner_vertex_bends_the_beam_as_theory_says) {
     const double from = 0.8, weight = 9.8 * mass, own = 9.8 * 1e-4;
-    bough_arena *arena = bough_arena_create();
+    check_arena(arena);
     bough_simulation *s = scene_build(arena, "tests/data/scenes/mid-weight.yaml", no_sets);
     bough_equilibrium_work work;
-    bough_status status = bough_simulation_equilibrium(s, s->master->assembly, 0, &work);
-    assert_int_equal(status.code, BOUGH_OK);
+    check_ok(bough_simulation_equilibrium(s, s->master->assembly, 0, &work));
     double expected = weight * (pow(from, 3) / (3 * bending) + from / shear +
                                 (length - from) * from * from / (2 * bending)) +
                       own * pow(length, 4) / (8 * bending);
@@ -170,7 +162,6 @@ TEST(weight_at_an_inner_vertex_bends_the_beam_as_theory_says) {
     bough_transform frame = pose_of(s, 0);
     tip = bough_add(frame.position, bough_mat3_mul(frame.rotation, tip));
     check_near(-tip.z, expected, 1e-4, 0);
-    bough_arena_destroy(arena);
 }
 
 typedef struct invariants {
@@ -206,7 +197,7 @@ static invariants measure(const bough_simulation *s, bough_rod_scratch *scratch)
 }
 
 TEST(tumbling_rod_with_an_arm_conserves_momentum_and_energy) {
-    bough_arena *arena = bough_arena_create();
+    check_arena(arena);
     bough_simulation *s = scene_build(arena, "tests/data/scenes/tumbling.yaml", no_sets);
     bough_rod_scratch scratch;
     bough_rod_scratch_init(&scratch, arena, bough_rod_body_model(s->beam[0].rod));
@@ -223,7 +214,6 @@ TEST(tumbling_rod_with_an_arm_conserves_momentum_and_energy) {
         bent = fmax(bent, bough_norm(shift));
     }
     assert_true(bent > 0.1);
-    bough_arena_destroy(arena);
 }
 
 // -- schemes --------------------------------------------------------------------------------------
@@ -231,7 +221,7 @@ TEST(tumbling_rod_with_an_arm_conserves_momentum_and_energy) {
 // The mast's top after half a second and the arm's angle.
 static void end_of_run(const char *scheme, const char *macro_step, double end[4]) {
     const char *const sets[] = {scheme, macro_step, "simulation.duration=0.5 s", NULL};
-    bough_arena *arena = bough_arena_create();
+    check_arena(arena);
     bough_simulation *s = scene_build(arena, mast, sets);
     run(s);
     bough_vec3 x = tip_of(s);
@@ -239,7 +229,6 @@ static void end_of_run(const char *scheme, const char *macro_step, double end[4]
     assert_true(bough_tree_joint_rows(s->tree, 2, &q, &v));
     const double values[4] = {x.x, x.y, x.z, s->leader.state[q]};
     memcpy(end, values, sizeof values);
-    bough_arena_destroy(arena);
 }
 
 static double distance(const double a[4], const double b[4]) {
@@ -311,18 +300,17 @@ TEST(jolt_at_the_start_does_not_end_a_run) {
     static const char *const sets[] = {"simulation.initial=undeformed", "simulation.duration=3 s",
                                        "bodies[3].fidelity=rigid",      "bodies[4].fidelity=rigid",
                                        "bodies[5].fidelity=rigid",      NULL};
-    bough_arena *arena = bough_arena_create();
+    check_arena(arena);
     bough_simulation *s = scene_build(arena, parked, sets);
     run(s);
     // weight of the head and of the tapered tower on its axial stiffness
     check_near(tip_of(s).z - 87.6, -4.4e-3, 0.05, 0);
-    bough_arena_destroy(arena);
 }
 
 TEST(threads_do_not_change_a_bit) {
     static const char *const threads[] = {"simulation.threads=1", "simulation.threads=2"};
     bough_simulation *s[2];
-    bough_arena *arena = bough_arena_create();
+    check_arena(arena);
     for (int k = 0; k < 2; k++) {
         const char *const sets[] = {threads[k], "simulation.duration=0.2 s", NULL};
         s[k] = scene_build(arena, parked, sets);
@@ -333,5 +321,4 @@ TEST(threads_do_not_change_a_bit) {
         const bough_member *b = s[1]->master->assembly->member[i];
         assert_memory_equal(a->state, b->state, (size_t)a->system.n_state * sizeof(double));
     }
-    bough_arena_destroy(arena);
 }

@@ -22,17 +22,17 @@ typedef struct outcome {
 
 static outcome *run_for(const char *path, int steps, const char *const *sets) {
     outcome *o = calloc(1, sizeof *o);
-    bough_arena *arena = bough_arena_create();
+    check_arena(arena);
     bough_run r;
     bough_status status = bough_run_create(arena, scene_read(arena, path, sets), &r);
-    if (!bough_is_ok(&status)) fail_msg("%s", status.message);
+    check_ok(status);
     assert_true(r.channels.count <= MOST);
     o->n = r.channels.count;
     for (int i = 0; i < o->n; i++) strcpy(o->name[i], r.channels.channel[i].name);
     for (int k = 0; k < steps; k++) {
         do {
             status = bough_run_step(&r);
-            if (!bough_is_ok(&status)) fail_msg("%s", status.message);
+            check_ok(status);
         } while (r.simulation->master->time < 0.02 * (k + 1) - 1e-9);
         memcpy(o->value[k], bough_run_values(&r), (size_t)o->n * sizeof(double));
         for (int i = 0; i < o->n; i++) o->largest[i] = fmax(o->largest[i], fabs(o->value[k][i]));
@@ -41,7 +41,6 @@ static outcome *run_for(const char *path, int steps, const char *const *sets) {
         o->error[i] = bough_companion_knows(r.companion, i) ? r.companion->error[i] : (double)NAN;
     o->compared = r.companion->compared > 0;
     memcpy(o->reason, r.companion->reason, sizeof o->reason);
-    bough_arena_destroy(arena);
     return o;
 }
 
@@ -143,7 +142,7 @@ TEST(a_library_is_copied) {
 // -- the coarser scene ----------------------------------------------------------------------------
 
 TEST(a_scene_is_coarser_in_everything) {
-    bough_arena *arena = bough_arena_create();
+    check_arena(arena);
     const char *const sets[] = {NULL};
     bough_scene *scene = scene_read(arena, "apps/turbine/runup-stages.yaml", sets);
     const bough_scene *c = bough_coarser_scene(arena, scene, BOUGH_COARSER_ALL);
@@ -160,7 +159,6 @@ TEST(a_scene_is_coarser_in_everything) {
     check_near(c->aero.rate, 50, 1e-15, 0);
     for (int i = 0; i < c->n_body; i++)
         assert_int_equal(c->body[i].rod.n_segment, scene->body[i].rod.n_segment);
-    bough_arena_destroy(arena);
 }
 
 // Rods of few segments get more, all blades as many, and the part of the difference follows; it is the whole
@@ -176,7 +174,7 @@ TEST(meshes_differ_as_far_as_they_can) {
         {"bodies[3-5].rod.segments=8", "simulation.coupling={scheme: ramp}", 16, 1},
         {"bodies[3-5].rod.segments=1", "simulation.coupling={scheme: ramp}", 2, 1},
         {"bodies[3-5].rod.segments=16", "simulation.coupling={scheme: frozen}", 8, 1}};
-    bough_arena *arena = bough_arena_create();
+    check_arena(arena);
     for (size_t k = 0; k < sizeof cases / sizeof *cases; k++) {
         const char *const sets[] = {cases[k].segments, cases[k].coupling, NULL};
         bough_scene *scene = scene_read(arena, "apps/turbine/runup.yaml", sets);
@@ -184,13 +182,12 @@ TEST(meshes_differ_as_far_as_they_can) {
         for (int i = 3; i <= 5; i++) assert_int_equal(c->body[i].rod.n_segment, cases[k].other);
         check_near(bough_coarser_share(scene, c), cases[k].share, 1e-12, 0);
     }
-    bough_arena_destroy(arena);
 }
 
 // Another scheme than one system leaves the companion no error of a coupling, but the sub-solvers' steps,
 // twice as long.
 TEST(a_coupling_has_a_monolithic_companion) {
-    bough_arena *arena = bough_arena_create();
+    check_arena(arena);
     const char *const sets[] = {NULL};
     bough_scene *scene = scene_read(arena, "apps/turbine/runup.yaml", sets);
     const bough_scene *c = bough_coarser_scene(arena, scene, BOUGH_COARSER_ALL);
@@ -198,7 +195,6 @@ TEST(a_coupling_has_a_monolithic_companion) {
     check_near(c->simulation.master.step, 20e-3, 1e-15, 0);
     check_near(c->simulation.master.rtol, 4e-3, 1e-15, 0);
     check_near(bough_coarser_share(scene, c), 0.4, 1e-12, 0);
-    bough_arena_destroy(arena);
 }
 
 // -- what counts ----------------------------------------------------------------------------------
@@ -209,7 +205,7 @@ typedef struct row {
 } row;
 
 static int worst_of(int n, const row *rows) {
-    bough_arena *arena = bough_arena_create();
+    check_arena(arena);
     bough_channels channels = bough_channels_start(arena);
     bough_companion c = {.channels = &channels, .compared = 1, .length = 60};
     bough_arena_each(arena, (size_t)n, &c.low, &c.high, &c.other_low, &c.other_high, &c.error, &c.noticed);
@@ -220,7 +216,6 @@ static int worst_of(int n, const row *rows) {
         c.error[i] = rows[i].error;
     }
     int worst = bough_error_verdict_of(&c, true, c.error).channel;
-    bough_arena_destroy(arena);
     return worst;
 }
 

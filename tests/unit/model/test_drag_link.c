@@ -27,8 +27,7 @@ static bough_simulation *sampled(bough_arena *arena, const char *const *sets, do
     bough_sampled_load aero = bough_aero_link_load(s->aero), drag = bough_drag_link_load(s->drag);
     bool jumped;
     aero.sample(aero.self, t, t + 0.02, &jumped);
-    bough_status status = drag.sample(drag.self, t, t + 0.02, &jumped);
-    assert_int_equal(status.code, BOUGH_OK);
+    check_ok(drag.sample(drag.self, t, t + 0.02, &jumped));
     assert_true(jumped);
     return s;
 }
@@ -38,7 +37,7 @@ static bough_wrench on(const bough_simulation *s, int marker) { return s->tree->
 // At rest: the sum over the vertices.
 TEST(tower_drag_is_the_integral) {
     static const char *const flexible[] = {FEW, DRAG, NULL};
-    bough_arena *arena = bough_arena_create();
+    check_arena(arena);
     bough_simulation *s = sampled(arena, flexible, 0);
     const bough_beam *tower = bough_simulation_beam(s, 0);
     const bough_rod_loads *loads = bough_beam_loads(tower);
@@ -50,13 +49,12 @@ TEST(tower_drag_is_the_integral) {
     check_near(sum, whole_tower(s->scene), 1e-3, 0);
     check_near(across, 0, 0, 1e-9);
     assert_true(sum > 1e4);
-    bough_arena_destroy(arena);
 }
 
 // On the rotor, in its axes.
 TEST(hub_drag_blows_downwind) {
     static const char *const sets[] = {FEW, "aero.ramp=[0 s, 0 s]", "aero.hub_drag_area=7", NULL};
-    bough_arena *arena = bough_arena_create();
+    check_arena(arena);
     bough_simulation *s = sampled(arena, sets, 0);
     int marker = s->tree->n_markers - 1;
     bough_wrench w = on(s, marker);
@@ -65,13 +63,12 @@ TEST(hub_drag_blows_downwind) {
     bough_vec3 ground = bough_mat3_mul(pose.rotation, w.force);
     check_near(ground.x, bough_norm(w.force), 1e-9, 0);
     check_near(bough_norm(w.moment), 0, 0, 0);
-    bough_arena_destroy(arena);
 }
 
 // The run goes on with drag, and samples repeat from the saved row.
 TEST(drag_runs_and_repeats) {
     static const char *const sets[] = {FEW, DRAG, "aero.hub_drag_area=7", NULL};
-    bough_arena *arena = bough_arena_create();
+    check_arena(arena);
     bough_simulation *s = scene_build(arena, turbine, sets);
     while (s->master->time < 0.5 - 1e-9) scene_step(s);
     bough_snapshot room = {BOUGH_SNAPSHOT_MEASURE, NULL, 0};
@@ -92,13 +89,12 @@ TEST(drag_runs_and_repeats) {
     free(saved);
     free(first);
     free(again);
-    bough_arena_destroy(arena);
 }
 
 // Held for an equilibrium the drag is constant, and the run's first sample begins anew.
 TEST(held_drag_is_constant) {
     static const char *const sets[] = {FEW, DRAG, NULL};
-    bough_arena *arena = bough_arena_create();
+    check_arena(arena);
     bough_simulation *s = sampled(arena, sets, 0);
     bough_rod_loads *loads = bough_beam_loads(bough_simulation_beam(s, 0));
     double sum = 0;
@@ -112,7 +108,6 @@ TEST(held_drag_is_constant) {
     bool jumped;
     load.sample(load.self, 0, 0.02, &jumped);
     assert_true(jumped);
-    bough_arena_destroy(arena);
 }
 
 TEST(bad_bodies_are_refused) {

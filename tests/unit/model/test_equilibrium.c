@@ -14,7 +14,7 @@ static void build(setup *s) {
     bough_master_def def = bough_master_def_default();
     def.macro_step = def.duration = .1;
     bough_status status = bough_two_mass_build(&s->m, def);
-    if (!bough_is_ok(&status)) fail_msg("%s", status.message);
+    check_ok(status);
     s->coupled = bough_coupled_create(s->m.arena, s->m.master->assembly, NULL);
     assert_true(bough_is_ok(&status));
     memcpy(s->y, s->m.y0, sizeof s->y);

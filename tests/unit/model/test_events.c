@@ -32,8 +32,7 @@ static fixture open_run(const char *events, const char *more) {
 
 static void go_to(fixture *f, double t) {
     while (f->run.simulation->master->time < t - 1e-9) {
-        bough_status status = bough_run_step(&f->run);
-        assert_int_equal(status.code, BOUGH_OK);
+        check_ok(bough_run_step(&f->run));
     }
 }
 
@@ -210,7 +209,7 @@ TEST(events_are_in_the_copy) {
 }
 
 static void refused(const char *set, const char *message) {
-    bough_arena *arena = bough_arena_create();
+    check_arena(arena);
     bough_errors errors = {.arena = arena};
     bough_scene *read;
     char path[512];
@@ -226,7 +225,6 @@ static void refused(const char *set, const char *message) {
     assert_int_equal(status.code, BOUGH_INVALID);
     if (!told) print_error("no '%s' for %s\n", message, set);
     assert_true(told);
-    bough_arena_destroy(arena);
 }
 
 TEST(senseless_events_are_refused) {

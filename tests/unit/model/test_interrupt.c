@@ -10,7 +10,7 @@ static bool stop(void) { return evaluations-- <= 0; }
 // The request comes after `left` evaluations of the fourth step.
 static void stop_within(const char *scheme, long left) {
     const char *const sets[] = {scheme, "simulation.macro_step=2 ms", "simulation.duration=200 ms", NULL};
-    bough_arena *arena = bough_arena_create();
+    check_arena(arena);
     bough_simulation *s = scene_build(arena, "tests/data/scenes/arms.yaml", sets);
     bough_channels channels = bough_channels_start(arena);
     double before[MOST], after[MOST];
@@ -29,7 +29,6 @@ static void stop_within(const char *scheme, long left) {
     bough_simulation_update(s);
     bough_channels_sample(&channels, time, after);
     for (int i = 0; i < channels.count; i++) check_near(after[i], before[i], 1e-12, 1e-12);
-    bough_arena_destroy(arena);
 }
 
 TEST(a_macro_step_is_left_as_it_began) {

@@ -26,20 +26,18 @@ static void load(const char *text, bough_arena *arena, bough_simulation **s) {
     bough_status status = bough_scene_read(arena, "s.yaml", NULL, 0, &errors, &scene);
     bough_errors_print(&errors, stderr);
     assert_int_equal(status.code, BOUGH_OK);
-    status = bough_simulation_build(arena, scene, s);
-    assert_int_equal(status.code, BOUGH_OK);
+    check_ok(bough_simulation_build(arena, scene, s));
 }
 
 static double after(double t, double jump) { return t > jump ? 1.5 * (t - jump) * (t - jump) : 0; }
 
 // The rod takes part in the coupling, whose error counts.
 static void check_parabolas(const char *text, double jump, double tolerance, double coupled) {
-    bough_arena *arena = bough_arena_create();
+    check_arena(arena);
     bough_simulation *s;
     load(text, arena, &s);
     bough_channels list = {.arena = arena};
-    bough_status status = bough_simulation_channels(s, &list);
-    assert_int_equal(status.code, BOUGH_OK);
+    check_ok(bough_simulation_channels(s, &list));
     assert_non_null(s->jump);
     while (!bough_master_done(s->master)) {
         scene_step(s);
@@ -49,7 +47,6 @@ static void check_parabolas(const char *text, double jump, double tolerance, dou
         check_near(scene_channel(s, &list, "rodTipX"), x, 0, coupled);
     }
     assert_true(after(s->master->time, jump) > 0.1);
-    bough_arena_destroy(arena);
 }
 
 #define SIMULATE(more) "gravity: [0, 0, 0]\nsimulation: {duration: 1 s, macro_step: 20 ms" more "}\n"
@@ -67,13 +64,12 @@ TEST(a_load_that_jumps_acts_from_its_time_on) {
 
 // Without a jump there is nothing to do, and a load from time 0 on is none.
 TEST(loads_without_a_jump_take_no_part) {
-    bough_arena *arena = bough_arena_create();
+    check_arena(arena);
     bough_simulation *s;
     load(SIMULATE("") BODIES LOADS("[0 s, 0 s]"), arena, &s);
     assert_null(s->jump);
     load(SIMULATE("") BODIES LOADS("[0.2 s, 0.5 s]"), arena, &s);
     assert_null(s->jump);
-    bough_arena_destroy(arena);
 }
 
 GROUP(enter, leave)

@@ -8,11 +8,10 @@ static double (*record(const char *speed, int *n))[MOST] {
     static int turn;
     double(*to)[MOST] = rows[turn++ % 2];
     const char *const sets[] = {"simulation.duration=10 s", speed, NULL};
-    bough_arena *arena = bough_arena_create();
+    check_arena(arena);
     bough_simulation *s = scene_build(arena, "apps/turbine/land.yaml", sets);
     bough_channels list = bough_channels_start(arena);
-    bough_status status = bough_simulation_channels(s, &list);
-    assert_int_equal(status.code, BOUGH_OK);
+    check_ok(bough_simulation_channels(s, &list));
     assert_true(list.count <= MOST);
     *n = list.count;
     for (int k = 0; k < ROWS; k++) {
@@ -20,7 +19,6 @@ static double (*record(const char *speed, int *n))[MOST] {
         bough_channels_sample(&list, s->master->time, to[k]);
         if (k < ROWS - 1) scene_step(s);
     }
-    bough_arena_destroy(arena);
     return to;
 }
 

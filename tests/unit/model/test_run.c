@@ -24,14 +24,13 @@ static const char *const short_run[] = {"simulation.duration=0.1 s", "simulation
 static bough_run create(bough_arena *arena) {
     bough_run run;
     bough_scene *scene = scene_read(arena, "apps/mechanisms/pendulum.yaml", short_run);
-    bough_status status = bough_run_create(arena, scene, &run);
-    assert_int_equal(status.code, BOUGH_OK);
+    check_ok(bough_run_create(arena, scene, &run));
     return run;
 }
 
 // Every 40 ms of 100 in steps of 10, and every 25 ms at the step after it; the end where it is asked for.
 TEST(records_are_taken_when_due) {
-    bough_arena *arena = bough_arena_create();
+    check_arena(arena);
     bough_run run = create(arena);
     sampled coarse = {0}, between = {0};
     bough_run_record_at(&run, (bough_run_record){0.04, true, .sample = sample, .self = &coarse});
@@ -44,7 +43,6 @@ TEST(records_are_taken_when_due) {
     for (int k = 0; k < 4; k++) check_near(coarse.time[k], expected[k], 1e-12, 1e-12);
     assert_int_equal(between.n, 5);
     for (int k = 0; k < 5; k++) check_near(between.time[k], after[k], 1e-12, 1e-12);
-    bough_arena_destroy(arena);
 }
 
 static bough_status stop_at_half(void *self) {
@@ -54,7 +52,7 @@ static bough_status stop_at_half(void *self) {
 
 // A stopped run has its last record and goes on to the values of the one that was not stopped.
 TEST(a_stopped_run_goes_on) {
-    bough_arena *arena = bough_arena_create();
+    check_arena(arena);
     bough_run run = create(arena), whole = create(arena);
     sampled rows = {0};
     bough_run_record_at(&run, (bough_run_record){0.04, true, .sample = sample, .self = &rows});
@@ -71,20 +69,18 @@ TEST(a_stopped_run_goes_on) {
     assert_int_equal(run.outcome.code, BOUGH_OK);
     assert_memory_equal(bough_run_values(&run), bough_run_values(&whole),
                         (size_t)run.channels.count * sizeof(double));
-    bough_arena_destroy(arena);
 }
 
 // A copy holds what is due when: after it the same records follow.
 TEST(a_copy_goes_on_with_its_records) {
-    bough_arena *arena = bough_arena_create();
+    check_arena(arena);
     bough_run run = create(arena), other = create(arena);
     sampled rows = {0}, later = {0};
     bough_run_record_at(&run, (bough_run_record){0.04, true, .sample = sample, .self = &rows});
     bough_run_record_at(&other, (bough_run_record){0.04, true, .sample = sample, .self = &later});
     bough_run_start(&run);
     for (int k = 0; k < 5; k++) bough_run_step(&run);
-    bough_status status = bough_run_storable(&run);
-    assert_int_equal(status.code, BOUGH_OK);
+    check_ok(bough_run_storable(&run));
     bough_snapshot measure = {.move = BOUGH_SNAPSHOT_MEASURE};
     bough_run_snapshot(&run, &measure);
     char *copy = malloc(measure.used);
@@ -100,13 +96,12 @@ TEST(a_copy_goes_on_with_its_records) {
     assert_memory_equal(bough_run_values(&run), bough_run_values(&other),
                         (size_t)run.channels.count * sizeof(double));
     assert_int_equal(bough_run_statistics(&run, 0).steps, bough_run_statistics(&other, 0).steps);
-    bough_arena_destroy(arena);
 }
 
 // An undamped bar under a scheme that cannot hold it.
 TEST(a_failed_run_has_no_values) {
     static const char *const sets[] = {"simulation.coupling.scheme=frozen", NULL};
-    bough_arena *arena = bough_arena_create();
+    check_arena(arena);
     bough_run run;
     sampled rows = {0};
     bough_status status =
@@ -118,5 +113,4 @@ TEST(a_failed_run_has_no_values) {
     assert_int_equal(run.outcome.code, BOUGH_FAILED);
     assert_null(bough_run_values(&run));
     assert_int_equal(rows.n, 1); // none at the end
-    bough_arena_destroy(arena);
 }

@@ -31,9 +31,7 @@ static bough_simulation *build(bough_arena *arena, const char *const *sets, int 
         bough_scene_read(arena, BOUGH_SOURCE_DIR "/apps/turbine/runup.yaml", sets, n_set, &errors, &scene);
     bough_errors_print(&errors, stderr);
     assert_int_equal(status.code, BOUGH_OK);
-    status = bough_simulation_build(arena, scene, &s);
-    if (!bough_is_ok(&status)) print_error("%s\n", status.message);
-    assert_int_equal(status.code, BOUGH_OK);
+    check_ok(bough_simulation_build(arena, scene, &s));
     return s;
 }
 
@@ -88,17 +86,14 @@ static void record(bough_simulation *s, history *h) {
 }
 
 static history *run(const char *const *sets, int n_set) {
-    bough_arena *arena = bough_arena_create();
+    check_arena(arena);
     history *h = calloc(1, sizeof *h);
     bough_simulation *s = build(arena, sets, n_set);
     record(s, h);
     while (!bough_master_done(s->master)) {
-        bough_status status = bough_step(s->master);
-        if (!bough_is_ok(&status)) print_error("%s\n", status.message);
-        assert_int_equal(status.code, BOUGH_OK);
+        check_ok(bough_step(s->master));
         record(s, h);
     }
-    bough_arena_destroy(arena);
     return h;
 }
 

@@ -11,7 +11,7 @@ static bough_equilibrium_work equilibrium_of(bough_simulation *s) {
     bough_equilibrium_work work;
     bough_status status =
         bough_simulation_equilibrium(s, s->master->assembly, bough_equilibrium_time(s), &work);
-    if (!bough_is_ok(&status)) fail_msg("%s", status.message);
+    check_ok(status);
     return work;
 }
 
@@ -24,19 +24,18 @@ static double joint_angle(const bough_simulation *s, int body) {
 // A bob of 1 kg at 1 m from the horizontal on a spring: k θ + m g cos θ = 0.
 TEST(spring_holds_the_pendulum) {
     const char *sets[] = {"bodies[0].joint.stiffness=20", NULL};
-    bough_arena *arena = bough_arena_create();
+    check_arena(arena);
     bough_simulation *s = scene_build(arena, "apps/mechanisms/pendulum.yaml", sets);
     equilibrium_of(s);
     double angle = joint_angle(s, 0);
     assert_true(angle < -0.1);
     check_near(20 * angle, -9.81 * cos(angle), 0, 1e-9);
-    bough_arena_destroy(arena);
 }
 
 // Started above the hinge: it falls and hangs.
 TEST(chain_hangs) {
     const char *sets[] = {"bodies[0].joint.angle=-45 deg", NULL};
-    bough_arena *arena = bough_arena_create();
+    check_arena(arena);
     bough_simulation *s = scene_build(arena, "apps/mechanisms/chain.yaml", sets);
     equilibrium_of(s);
     check_near(sin(joint_angle(s, 0)), 1, 0, 1e-9);
@@ -44,7 +43,6 @@ TEST(chain_hangs) {
         check_near(sin(joint_angle(s, body)), 0, 0, 1e-9);
         check_near(cos(joint_angle(s, body)), 1, 0, 1e-9);
     }
-    bough_arena_destroy(arena);
 }
 
 // A cantilever of EI = 1 and L = 1 under a dead load q per length across it, by shooting:
@@ -117,7 +115,7 @@ TEST(massless_tip_bends_the_elastica) {
 // x″ = −k² x with x′(L) = 1, k² = ρA Ω²/EA: the tip of a turning bar is at tan(kL)/k.
 TEST(turning_bar_stretches) {
     const char *sets[] = {"bodies[1].joint.motion={speed: 20 rad/s}", NULL};
-    bough_arena *arena = bough_arena_create();
+    check_arena(arena);
     bough_simulation *s = scene_build(arena, "apps/beams/spin-up.yaml", sets);
     equilibrium_of(s);
     double k = sqrt(1.2 * 20 * 20 / 2.8e7), z = tan(10 * k) / k - 10;
@@ -126,23 +124,20 @@ TEST(turning_bar_stretches) {
     check_near(y[3 * n - 1] - 10, z, 2e-3, 0);
     check_near(y[n - 1], 0, 0, 1e-9);
     check_near(joint_angle(s, 1), 0, 0, 0);
-    bough_arena_destroy(arena);
 }
 
 // The rod's own solution, by Newton's method with increments of load.
 TEST(rod_alone_stands_where_its_own_statics_says) {
     const char *sets[] = {"loads=[{body: blade, at: tip, force: [100 kN, 0, 0]}]", NULL};
-    bough_arena *arena = bough_arena_create();
+    check_arena(arena);
     bough_simulation *s = scene_build(arena, "tests/data/scenes/blade.yaml", sets);
     bough_turning rest = {0};
     bough_steady steady;
-    bough_status status = bough_steady_find(arena, s, &s->beam[0], &rest, &steady);
-    assert_true(bough_is_ok(&status));
+    check_ok(bough_steady_find(arena, s, &s->beam[0], &rest, &steady));
     equilibrium_of(s);
     int n = s->beam[0].def.n_segment;
     const double *y = s->rod[s->beam[0].port].state;
     for (int k = 0; k < 7 * n; k++) check_near(y[k], steady.state[k], 0, 1e-8);
-    bough_arena_destroy(arena);
 }
 
 // Nothing moves in a run that starts from the equilibrium of the parked turbine in its wind.
@@ -157,7 +152,7 @@ TEST(parked_turbine_stays_at_rest) {
                           "bodies[4].rod.segments=24",
                           "bodies[5].rod.segments=24",
                           NULL};
-    bough_arena *arena = bough_arena_create();
+    check_arena(arena);
     bough_simulation *s = scene_build(arena, runup, sets);
     size_t bytes = (size_t)s->rod[0].system.n_state * sizeof(double);
     double *before = bough_arena_take(arena, 3 * bytes);
@@ -170,14 +165,13 @@ TEST(parked_turbine_stays_at_rest) {
             check_near(s->rod[k].state[i], before[k * s->rod[0].system.n_state + i], 0, 1e-6);
         }
     }
-    bough_arena_destroy(arena);
 }
 
 // With tower, yaw drive and drive train.
 TEST(turbine_on_its_tower_stays_at_rest) {
     const char *sets[] = {"bodies[0].rod.segments=8", "bodies[4].rod.segments=8", "bodies[5].rod.segments=8",
                           "bodies[6].rod.segments=8", NULL};
-    bough_arena *arena = bough_arena_create();
+    check_arena(arena);
     bough_simulation *s = scene_build(arena, "apps/turbine/parked.yaml", sets);
     size_t n = (size_t)s->master->assembly->n_state;
     double *before = bough_arena_doubles(arena, 2 * n), *after = before + n;
@@ -185,7 +179,6 @@ TEST(turbine_on_its_tower_stays_at_rest) {
     for (int step = 0; step < 30; step++) scene_step(s);
     bough_assembly_states(s->master->assembly, after);
     for (size_t k = 0; k < n; k++) check_near(after[k], before[k], 0, 1e-6);
-    bough_arena_destroy(arena);
 }
 
 // At the speed where load and air balance, only the tower excites.
@@ -218,12 +211,10 @@ TEST(turning_rotor_starts_smoothly) {
 
 TEST(driven_free_rotor_has_none) {
     const char *sets[] = {"bodies[2].joint.speed=0", "aero.ramp=[0, 0]", NULL};
-    bough_arena *arena = bough_arena_create();
+    check_arena(arena);
     bough_simulation *s = scene_build(arena, runup, sets);
     bough_equilibrium_work work;
     bough_status status = bough_simulation_equilibrium(s, s->master->assembly, 0, &work);
-    assert_int_equal(status.code, BOUGH_FAILED);
-    assert_non_null(strstr(status.message, "no equilibrium"));
+    check_fails(status, BOUGH_FAILED, "no equilibrium");
     assert_non_null(strstr(status.message, "a spring, a speed or a motion"));
-    bough_arena_destroy(arena);
 }

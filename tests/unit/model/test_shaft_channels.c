@@ -15,8 +15,7 @@ static fixture open_shaft(const char *const *sets) {
     fixture f = {.arena = bough_arena_create()};
     f.s = scene_build(f.arena, scene, sets);
     f.list = bough_channels_start(f.arena);
-    bough_status status = bough_simulation_channels(f.s, &f.list);
-    assert_int_equal(status.code, BOUGH_OK);
+    check_ok(bough_simulation_channels(f.s, &f.list));
     return f;
 }
 

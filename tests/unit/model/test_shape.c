@@ -6,16 +6,14 @@
 // A bent rod under a force at its tip: every section carries the force and its moment about the section.
 TEST(tip_force_passes_all_sections) {
     const char *sets[] = {"loads[0].force=[10, 0, 0]", "bodies[0].joint.placement=[rotate x 30 deg]", NULL};
-    bough_arena *arena = bough_arena_create();
+    check_arena(arena);
     bough_simulation *s = scene_build(arena, "apps/beams/elastica.yaml", sets);
     bough_equilibrium_work work;
     double t = bough_equilibrium_time(s);
-    bough_status status = bough_simulation_equilibrium(s, s->master->assembly, t, &work);
-    assert_int_equal(status.code, BOUGH_OK);
+    check_ok(bough_simulation_equilibrium(s, s->master->assembly, t, &work));
     bough_simulation_update(s);
     bough_shape shape;
-    status = bough_shape_create(arena, s, &shape);
-    assert_int_equal(status.code, BOUGH_OK);
+    check_ok(bough_shape_create(arena, s, &shape));
     int n = shape.line[0].n_point;
     double *point = bough_arena_doubles(arena, 9 * (size_t)n);
     double *force = point + 3 * n, *moment = force + 3 * n;
@@ -34,22 +32,19 @@ TEST(tip_force_passes_all_sections) {
         check_near(moment[3 * i + 2], expected.z, 0, 1e-6);
     }
     assert_true(moment[1] > 3); // bent far: 10 N m on the straight rod
-    bough_arena_destroy(arena);
 }
 
 // A rigid body has no sections.
 TEST(rigid_bodies_carry_no_section_loads) {
     const char *sets[] = {NULL};
-    bough_arena *arena = bough_arena_create();
+    check_arena(arena);
     bough_simulation *s = scene_build(arena, "apps/mechanisms/pendulum.yaml", sets);
     bough_shape shape;
-    bough_status status = bough_shape_create(arena, s, &shape);
-    assert_int_equal(status.code, BOUGH_OK);
+    check_ok(bough_shape_create(arena, s, &shape));
     double force[9], moment[9] = {1};
     bough_shape_loads(&shape, 0, force, moment);
     for (int i = 0; i < 9; i++) {
         check_near(force[i], 0, 0, 0);
         check_near(moment[i], 0, 0, 0);
     }
-    bough_arena_destroy(arena);
 }

@@ -135,8 +135,7 @@ static bough_simulation *in_the_tree(bough_arena *arena, const char *segments) {
         bough_scene_read(arena, BOUGH_SOURCE_DIR "/apps/beams/rubber-bar.yaml", sets, 4, &errors, &scene);
     bough_errors_print(&errors, stderr);
     assert_int_equal(status.code, BOUGH_OK);
-    status = bough_simulation_build(arena, scene, &s);
-    assert_int_equal(status.code, BOUGH_OK);
+    check_ok(bough_simulation_build(arena, scene, &s));
     return s;
 }
 
@@ -152,16 +151,14 @@ static bough_vec3 tip_of(bough_simulation *s) {
 
 static void advance_to(bough_simulation *s, double t) {
     while (s->master->time < t - 1e-9) {
-        bough_status status = bough_step(s->master);
-        if (!bough_is_ok(&status)) print_error("%s\n", status.message);
-        assert_int_equal(status.code, BOUGH_OK);
+        check_ok(bough_step(s->master));
     }
 }
 
 // -- tests ----------------------------------------------------------------------------------------
 
 TEST(body_frame_and_absolute_formulation_agree) {
-    bough_arena *arena = bough_arena_create();
+    check_arena(arena);
     bough_simulation *s = in_the_tree(arena, "bodies[0].rod.segments=16");
     absolute_bar bar = {.model = bough_rod_body_model(s->beam[0].rod)};
     double y[UNKNOWNS];
@@ -177,7 +174,6 @@ TEST(body_frame_and_absolute_formulation_agree) {
         check_near(tip.z, y[3 * SEGMENTS - 1], 0, 1e-6);
         check_near(tip.y, 0, 0, 1e-9);
     }
-    bough_arena_destroy(arena);
 }
 
 // Independent solution, extrapolated over meshes: tip (x, z) of the hinged bar.
@@ -186,7 +182,7 @@ TEST(motion_is_that_of_an_independent_rod) {
                                     {0.9418956619, -0.1981176134},
                                     {0.797987699, -0.424504581},
                                     {0.4762209743, -0.8418855077}};
-    bough_arena *arena = bough_arena_create();
+    check_arena(arena);
     bough_simulation *s = in_the_tree(arena, "bodies[0].rod.segments=40");
     for (int k = 0; k < 4; k++) {
         advance_to(s, 0.1 * (k + 1));
@@ -194,5 +190,4 @@ TEST(motion_is_that_of_an_independent_rod) {
         check_near(tip.x, reference[k][0], 0, 2e-3);
         check_near(tip.z, reference[k][1], 0, 2e-3);
     }
-    bough_arena_destroy(arena);
 }

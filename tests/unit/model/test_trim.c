@@ -30,7 +30,7 @@ static double pitch_of(const bough_simulation *s) {
 }
 
 static void check_operation(const char *wind, double speed, double pitch) {
-    bough_arena *arena = bough_arena_create();
+    check_arena(arena);
     bough_simulation *s = operate(arena, wind);
     double factor, start = rotor_speed(s), first = pitch_of(s);
     const bough_controller_def *law = &s->scene->control.law;
@@ -48,7 +48,6 @@ static void check_operation(const char *wind, double speed, double pitch) {
     check_near(low, start, 1e-2, 0);
     check_near(high, start, 1e-2, 0);
     check_near(pitch_of(s), first, 0, 0.4 * degree);
-    bough_arena_destroy(arena);
 }
 
 TEST(below_rated_the_speed_is_found) {

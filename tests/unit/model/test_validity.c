@@ -31,15 +31,14 @@ static int passed(const bough_simulation *s) {
 
 TEST(within_the_limits_nothing_is_told) {
     static const char *const sets[] = {NULL};
-    bough_arena *arena = bough_arena_create();
+    check_arena(arena);
     assert_int_equal(passed(run(arena, sets, 100)), 0);
-    bough_arena_destroy(arena);
 }
 
 // Blades of a few metres on the shaft at 18 rad/s.
 TEST(a_fast_section_is_told_once) {
     static const char *const sets[] = {"bodies[2].joint.speed=18 rad/s", "aero.ramp=[0 s, 0 s]", NULL};
-    bough_arena *arena = bough_arena_create();
+    check_arena(arena);
     bough_simulation *s = run(arena, sets, 4);
     bough_passing first = s->validity->limit[BOUGH_LIMIT_MACH];
     assert_int_equal(passed(s), 1 << BOUGH_LIMIT_MACH);
@@ -51,14 +50,13 @@ TEST(a_fast_section_is_told_once) {
     char text[200];
     bough_validity_describe(s, BOUGH_LIMIT_MACH, text, sizeof text);
     assert_non_null(strstr(text, "blade1 at 0.02 s: a section meets the air at "));
-    bough_arena_destroy(arena);
 }
 
 // A cantilever whose tip moment rolls it up to a circle: 60 deg in each of six segments, 30 of twelve.
 TEST(a_turned_segment_is_told) {
     static const char *const coarse[] = {"bodies[0].rod.segments=6", "simulation.initial=equilibrium", NULL};
     static const char *const fine[] = {"bodies[0].rod.segments=12", "simulation.initial=equilibrium", NULL};
-    bough_arena *arena = bough_arena_create();
+    check_arena(arena);
     bough_simulation *s = scene_build(arena, "apps/beams/roll-up.yaml", fine);
     bough_validity_check(s);
     assert_int_equal(passed(s), 0);
@@ -66,19 +64,17 @@ TEST(a_turned_segment_is_told) {
     bough_validity_check(s);
     assert_int_equal(passed(s), 1 << BOUGH_LIMIT_TURN);
     check_near(s->validity->limit[BOUGH_LIMIT_TURN].value, 60, 1, 0);
-    bough_arena_destroy(arena);
 }
 
 // The hub on the tower's axis, without tilt: the hanging blade stands in the tower.
 TEST(a_blade_in_the_tower_is_told) {
     static const char *const sets[] = {"bodies[2].joint.placement=[move z 1.2 m]", NULL};
-    bough_arena *arena = bough_arena_create();
+    check_arena(arena);
     bough_simulation *s = run(arena, sets, 4);
     bough_passing first = s->validity->limit[BOUGH_LIMIT_TOWER];
     assert_int_equal(passed(s), 1 << BOUGH_LIMIT_TOWER);
     assert_string_equal(s->scene->body[first.body].name, "blade2");
     assert_true(first.value >= 0 && first.value < 1);
-    bough_arena_destroy(arena);
 }
 
 // Each is seen before the first step; a scene without the defect passes nothing, above.
@@ -135,13 +131,12 @@ TEST(samples_too_seldom_for_a_modal_blade_are_told) {
 // position.
 TEST(singular_positions_are_told) {
     static const char *const sets[] = {NULL};
-    bough_arena *arena = bough_arena_create();
+    check_arena(arena);
     bough_simulation *s = run_scene(arena, "apps/mechanisms/four-bar.yaml", sets, 75);
     bough_passing first = s->validity->limit[BOUGH_LIMIT_SINGULAR];
     assert_int_equal(passed(s), 1 << BOUGH_LIMIT_SINGULAR);
     assert_true(first.time > 0.6 && first.value < 0.01);
     assert_int_equal(passed(run_scene(arena, "tests/data/scenes/closed.yaml", sets, 100)), 0);
-    bough_arena_destroy(arena);
 }
 
 // Two masses on stiff springs without damping, which ring at 16 and 31 kHz; at 160 and 310 Hz the same is

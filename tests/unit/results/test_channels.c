@@ -15,7 +15,7 @@ static void sample_one(void *self, double t, double *value) {
 }
 
 TEST(groups_fill_their_own_channels) {
-    bough_arena *arena = bough_arena_create();
+    check_arena(arena);
     bough_channels list = bough_channels_start(arena);
     double factor[3] = {1, 2, 3}, constant = 7;
     bough_channels_group(&list, sample_times, factor);
@@ -33,26 +33,23 @@ TEST(groups_fill_their_own_channels) {
     check_near(value[0], 10, 0, 0);
     check_near(value[2], 30, 0, 0);
     check_near(value[3], 7, 0, 0);
-    bough_arena_destroy(arena);
 }
 
 TEST(an_empty_group_is_not_asked) {
-    bough_arena *arena = bough_arena_create();
+    check_arena(arena);
     bough_channels list = bough_channels_start(arena);
     bough_channels_group(&list, sample_one, NULL);
     bough_channels_sample(&list, 0, NULL);
-    bough_arena_destroy(arena);
 }
 
 TEST(list_grows_without_losing_names) {
-    bough_arena *arena = bough_arena_create();
+    check_arena(arena);
     bough_channels list = bough_channels_start(arena);
     bough_channels_group(&list, sample_one, NULL);
     for (int i = 0; i < 1000; i++) bough_channels_add(&list, "-", "channel%d", i);
     assert_int_equal(list.count, 1000);
     assert_string_equal(list.channel[0].name, "channel0");
     assert_int_equal(bough_channels_find(&list, "channel999"), 999);
-    bough_arena_destroy(arena);
 }
 
 TEST(names_that_readers_cannot_split_are_refused) {
@@ -60,7 +57,7 @@ TEST(names_that_readers_cannot_split_are_refused) {
         "",     "two words", "tab\tname",
         "Time", "twice",     "a_name_that_is_quite_a_bit_longer_than_forty_seven_characters",
     };
-    bough_arena *arena = bough_arena_create();
+    check_arena(arena);
     for (size_t i = 0; i < sizeof bad / sizeof *bad; i++) {
         bough_channels list = bough_channels_start(arena);
         bough_channels_group(&list, sample_one, NULL);
@@ -71,5 +68,4 @@ TEST(names_that_readers_cannot_split_are_refused) {
         bough_channels_add(&list, "m", "after");
         assert_int_equal(list.count, 1);
     }
-    bough_arena_destroy(arena);
 }

@@ -24,19 +24,17 @@ static void loads(void *self, double t, double *force, double *moment) {
 static void write_frames(const char *folder) {
     static const bough_polyline line[] = {{"first", 3}, {"second", 2}};
     double shift = 0;
-    bough_arena *arena = bough_arena_create();
+    check_arena(arena);
     bough_frames_def def = {
         .folder = folder, .n_line = 2, .line = line, .points = points, .loads = loads, .self = &shift};
     bough_frames *frames;
     bough_status status = bough_frames_open(arena, &def, &frames);
-    assert_int_equal(status.code, BOUGH_OK);
+    check_ok(status);
     for (int k = 0; k < 2; k++, shift += 0.25) {
         status = bough_frames_sample(frames, 0.1 * k);
-        assert_int_equal(status.code, BOUGH_OK);
+        check_ok(status);
     }
-    status = bough_frames_finish(frames);
-    assert_int_equal(status.code, BOUGH_OK);
-    bough_arena_destroy(arena);
+    check_ok(bough_frames_finish(frames));
 }
 
 static void write_text(const char *folder, const char *name, const char *text) {
@@ -77,8 +75,7 @@ TEST_IN_FOLDER(page_carries_all_data) {
     write_frames(folder);
     write_text(folder, "channels.out", channels);
     write_text(folder, "summary.json", "{\"title\": \"a </script> trap\"}\n");
-    bough_status status = bough_report_write(1, &folder);
-    if (!bough_is_ok(&status)) fail_msg("%s", status.message);
+    check_ok(bough_report_write(1, &folder));
     char *page = scratch_read(folder, "report.html");
     has(page, "<!DOCTYPE html>");
     has(page, "data.summary = \"{\\\"title\\\": \\\"a \\u003c/script> trap\\\"}\\n\";");

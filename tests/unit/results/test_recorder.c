@@ -42,15 +42,14 @@ static const char *line_of(const char *text, int number) {
 
 TEST_IN_FOLDER(file_has_the_layout_that_readers_expect) {
     fixture f;
-    bough_status ok = open_recorder(&f, *context);
-    assert_true(bough_is_ok(&ok));
+    bough_status ok = bough_ok();
+    check_ok(open_recorder(&f, *context));
     f.value[1] = -1e-300;
     bough_recorder_sample(f.recorder, 0);
     f.value[1] = NAN;
     bough_recorder_sample(f.recorder, 0.25);
     assert_false(scratch_has(*context, "channels.out"));
-    ok = bough_recorder_finish(f.recorder, &ok);
-    assert_true(bough_is_ok(&ok));
+    check_ok(bough_recorder_finish(f.recorder, &ok));
     assert_false(scratch_has(*context, "channels.out.partial"));
 
     char *text = scratch_read(*context, "channels.out");
@@ -81,8 +80,7 @@ TEST_IN_FOLDER(failed_run_keeps_its_rows_and_is_marked) {
     open_recorder(&f, *context);
     for (int i = 0; i < 5; i++) bough_recorder_sample(f.recorder, i);
     bough_status failure = bough_fail(BOUGH_FAILED, "blade1 gave up\nat 4.2 s");
-    bough_status status = bough_recorder_finish(f.recorder, &failure);
-    assert_true(bough_is_ok(&status));
+    check_ok(bough_recorder_finish(f.recorder, &failure));
     char *text = scratch_read(*context, "channels.out");
     assert_non_null(text);
     static const char expected[] = "INCOMPLETE: 5 rows, then blade1 gave up at 4.2 s ";
@@ -137,9 +135,7 @@ TEST_IN_FOLDER(missing_folder_is_an_error_of_files) {
     char folder[128];
     snprintf(folder, sizeof folder, "%s/none", (char *)*context);
     fixture f;
-    bough_status status = open_recorder(&f, folder);
-    assert_int_equal(status.code, BOUGH_IO);
-    assert_non_null(strstr(status.message, "none/channels.out"));
+    check_fails(open_recorder(&f, folder), BOUGH_IO, "none/channels.out");
     bough_arena_destroy(f.arena);
 }
 
@@ -182,16 +178,13 @@ TEST_IN_FOLDER(device_that_fills_up_leaves_whole_rows) {
 TEST_IN_FOLDER(folder_is_made_with_its_parents) {
     char path[128], file[160];
     snprintf(path, sizeof path, "%s/a/b/", (char *)*context);
-    bough_status status = bough_folder_make(path);
-    assert_true(bough_is_ok(&status));
-    status = bough_folder_make(path); // again: it exists
+    check_ok(bough_folder_make(path));
+    bough_status status = bough_folder_make(path); // again: it exists
     assert_true(bough_is_ok(&status));
 
     snprintf(file, sizeof file, "%s/taken", (char *)*context);
     fclose(fopen(file, "w"));
-    status = bough_folder_make(file);
-    assert_int_equal(status.code, BOUGH_IO);
-    assert_non_null(strstr(status.message, "is a file"));
+    check_fails(bough_folder_make(file), BOUGH_IO, "is a file");
     snprintf(file, sizeof file, "%s/taken/below", (char *)*context);
     status = bough_folder_make(file);
     assert_int_equal(status.code, BOUGH_IO);

@@ -5,8 +5,7 @@
 
 TEST_IN_FOLDER(fields_arrays_and_objects_are_nested) {
     bough_summary s;
-    bough_status status = bough_summary_open(&s, *context, "summary.json");
-    assert_true(bough_is_ok(&status));
+    check_ok(bough_summary_open(&s, *context, "summary.json"));
     bough_summary_text(&s, "scheme", "ramp");
     bough_summary_number(&s, "macro_step_s", 0.1);
     bough_summary_integer(&s, "states", 1234567890123);
@@ -18,8 +17,7 @@ TEST_IN_FOLDER(fields_arrays_and_objects_are_nested) {
     bough_summary_end(&s);
     bough_summary_array(&s, "none"); // left open on purpose
     assert_false(scratch_has(*context, "summary.json"));
-    status = bough_summary_close(&s);
-    assert_true(bough_is_ok(&status));
+    check_ok(bough_summary_close(&s));
     char *text = scratch_read(*context, "summary.json");
     assert_string_equal(text, "{\n"
                               "  \"scheme\": \"ramp\",\n"
@@ -82,8 +80,7 @@ TEST_IN_FOLDER(unwritable_place_is_an_error_of_files) {
 
     snprintf(partial, sizeof partial, "%s/summary.json.partial", (char *)*context);
     assert_int_equal(symlink("/dev/full", partial), 0);
-    status = bough_summary_open(&s, *context, "summary.json");
-    assert_true(bough_is_ok(&status));
+    check_ok(bough_summary_open(&s, *context, "summary.json"));
     status = bough_summary_close(&s);
     assert_int_equal(status.code, BOUGH_IO);
     assert_false(scratch_has(*context, "summary.json"));

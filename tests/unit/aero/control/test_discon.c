@@ -11,9 +11,7 @@ typedef struct fixture {
 
 static fixture open_controller(const char *input) {
     fixture f = {.arena = bough_arena_create()};
-    bough_status status = bough_discon_open(f.arena, BOUGH_SAMPLE_DISCON, input, false, &f.discon);
-    if (!bough_is_ok(&status)) print_error("%s\n", status.message);
-    assert_int_equal(status.code, BOUGH_OK);
+    check_ok(bough_discon_open(f.arena, BOUGH_SAMPLE_DISCON, input, false, &f.discon));
     return f;
 }
 
@@ -22,8 +20,7 @@ TEST(demands_come_back) {
         fixture f = open_controller(individual ? "individual" : "");
         bough_discon_sensed sensed = {.time = 2, .step = 0.01, .n_blade = 3, .generator_speed = 120};
         bough_discon_demand demand;
-        bough_status status = bough_discon_call(f.discon, &sensed, &demand);
-        assert_int_equal(status.code, BOUGH_OK);
+        check_ok(bough_discon_call(f.discon, &sensed, &demand));
         check_near(demand.torque, 12000, 1e-6, 0);
         for (int b = 0; b < 3; b++) check_near(demand.pitch[b], individual ? 0.2 + 0.1 * b : 0.102, 1e-6, 0);
         bough_arena_destroy(f.arena);
@@ -76,8 +73,7 @@ TEST(records_are_served) {
         snprintf(input, sizeof input, "record %02d", record[i].number);
         fixture f = open_controller(input);
         bough_discon_demand demand;
-        bough_status status = bough_discon_call(f.discon, &sensed, &demand);
-        assert_int_equal(status.code, BOUGH_OK);
+        check_ok(bough_discon_call(f.discon, &sensed, &demand));
         double wanted = record[i].number == 50 ? (double)strlen(input) : record[i].value;
         check_near(demand.torque, wanted, 1e-6, 1e-6);
         check_near(demand.pitch[2], 0.4, 1e-6, 0); // its own, as it was told
@@ -91,8 +87,7 @@ TEST(status_tells_first_and_last) {
     for (int k = 0; k < 4; k++) {
         bough_discon_sensed sensed = {.time = k, .step = 1, .last = k == 3, .n_blade = 3};
         bough_discon_demand demand;
-        bough_status status = bough_discon_call(f.discon, &sensed, &demand);
-        assert_int_equal(status.code, BOUGH_OK);
+        check_ok(bough_discon_call(f.discon, &sensed, &demand));
         check_near(demand.torque, k == 3 ? -1 : k > 0, 0, 0);
     }
     bough_arena_destroy(f.arena);

@@ -13,7 +13,7 @@ static bough_polar build(bough_arena *arena, const bough_polar_def *def) {
 }
 
 TEST(knots_are_reproduced) {
-    bough_arena *arena = bough_arena_create();
+    check_arena(arena);
     for (int p = 0; p < 8; p++) {
         bough_polar polar = build(arena, nrel5mw_polars + p);
         for (int i = 0; i < nrel5mw_polars[p].n; i++) {
@@ -24,12 +24,11 @@ TEST(knots_are_reproduced) {
             check_near(c.moment, row[3], 1e-11, 1e-11);
         }
     }
-    bough_arena_destroy(arena);
 }
 
 // Against a plain search of the table.
 TEST(interpolation_is_linear) {
-    bough_arena *arena = bough_arena_create();
+    check_arena(arena);
     const bough_polar_def *def = nrel5mw_polars + 7;
     bough_polar polar = build(arena, def);
     for (double a = -179.99; a < 180; a += 0.0371) {
@@ -42,11 +41,10 @@ TEST(interpolation_is_linear) {
         check_near(c.drag, r[2] + w * (r[6] - r[2]), 1e-10, 1e-11);
         check_near(c.moment, r[3] + w * (r[7] - r[3]), 1e-10, 1e-11);
     }
-    bough_arena_destroy(arena);
 }
 
 TEST(turns_repeat) {
-    bough_arena *arena = bough_arena_create();
+    check_arena(arena);
     bough_polar polar = build(arena, nrel5mw_polars + 3);
     for (double a = -3; a < 3; a += 0.07) {
         bough_coefficients here = bough_polar_at(&polar, a);
@@ -56,12 +54,11 @@ TEST(turns_repeat) {
             check_near(there.drag, here.drag, 1e-11, 1e-12);
         }
     }
-    bough_arena_destroy(arena);
 }
 
 // Of states that have run away: no place outside the table is read.
 TEST(any_angle_has_an_answer) {
-    bough_arena *arena = bough_arena_create();
+    check_arena(arena);
     bough_polar polar = build(arena, nrel5mw_polars + 3);
     for (double a = 1; a < 1e308; a *= 7) {
         for (int sign = -1; sign <= 1; sign += 2) {
@@ -71,24 +68,22 @@ TEST(any_angle_has_an_answer) {
     }
     assert_true(isnan(bough_polar_at(&polar, (double)NAN).lift));
     assert_true(isnan(bough_polar_at(&polar, HUGE_VAL).lift));
-    bough_arena_destroy(arena);
 }
 
 // A table of less than a turn goes on from its last row to its first.
 TEST(gap_is_bridged) {
     const double row[] = {-90, 1, 0, 0, 90, 3, 0, 0};
-    bough_arena *arena = bough_arena_create();
+    check_arena(arena);
     bough_polar polar = build(arena, &(bough_polar_def){"gap", 2, row});
     check_near(bough_polar_at(&polar, 180 * degree).lift, 2, 1e-12, 0);
     check_near(bough_polar_at(&polar, -135 * degree).lift, 1.5, 1e-12, 0);
     check_near(bough_polar_at(&polar, 45 * degree).lift, 2.5, 1e-12, 0);
-    bough_arena_destroy(arena);
 }
 
 // Knots stay, slopes are continuous, and nothing overshoots; across the seam of the turn too. A
 // smooth function is met to the third order at least.
 TEST(smooth_polars_are_monotone_and_smooth) {
-    bough_arena *arena = bough_arena_create();
+    check_arena(arena);
     for (int p = 0; p < 8; p++) {
         const bough_polar_def *def = nrel5mw_polars + p;
         bough_polar polar = build(arena, def);
@@ -123,12 +118,11 @@ TEST(smooth_polars_are_monotone_and_smooth) {
             error[fine] = fmax(error[fine], fabs(bough_polar_at(&polar, a).lift - sin(a)));
     }
     assert_true(error[0] < 1e-3 && error[1] < error[0] / 6);
-    bough_arena_destroy(arena);
 }
 
 // A mixture is the mixture of the coefficients at any angle, whatever the knots.
 TEST(blends_are_exact) {
-    bough_arena *arena = bough_arena_create();
+    check_arena(arena);
     const double gap[] = {-90, 1, 0.1, 0, 90, 3, 0, 0.2};
     bough_polar a = build(arena, nrel5mw_polars + 2), b = build(arena, nrel5mw_polars + 7), mixed;
     bough_polar c = build(arena, &(bough_polar_def){"gap", 2, gap});
@@ -144,7 +138,6 @@ TEST(blends_are_exact) {
             check_near(m.moment, (1 - share) * p.moment + share * q.moment, 1e-9, 1e-9);
         }
     }
-    bough_arena_destroy(arena);
 }
 
 // A table that ends short of the full turn leaves a gap, unless it only lacks a row; of a mixture
@@ -152,7 +145,7 @@ TEST(blends_are_exact) {
 TEST(gaps_are_known) {
     static const double part[3][4] = {{-20, -1, 0, 0}, {0, 0, 0, 0}, {25, 1, 0, 0}};
     static const double shifted[3][4] = {{-30, -1, 0, 0}, {0, 0, 0, 0}, {15, 1, 0, 0}};
-    bough_arena *arena = bough_arena_create();
+    check_arena(arena);
     bough_polar a = build(arena, &(bough_polar_def){"a", 3, &part[0][0]});
     bough_polar b = build(arena, &(bough_polar_def){"b", 3, &shifted[0][0]});
     bough_polar whole = build(arena, nrel5mw_polars + 4), mixed;
@@ -171,5 +164,4 @@ TEST(gaps_are_known) {
     check_near(mixed.high, 15 * degree, 1e-12, 0);
     bough_polar_blend(arena, &a, &whole, 0.5, &mixed);
     check_near(mixed.high, 25 * degree, 1e-12, 0);
-    bough_arena_destroy(arena);
 }

@@ -67,9 +67,7 @@ static rig *create_rig(bool flat) {
 }
 
 static void build(rig *r) {
-    bough_status status = bough_rotor_build(r->arena, &r->def, &r->rotor);
-    if (!bough_is_ok(&status)) print_error("%s\n", status.message);
-    assert_int_equal(status.code, BOUGH_OK);
+    check_ok(bough_rotor_build(r->arena, &r->def, &r->rotor));
     bough_rotor_data_build(r->arena, r->rotor, &r->data);
 }
 

@@ -36,7 +36,7 @@ TEST(wind_at_passing_blade_matches_reference) {
         {250, 10.017825, -0.0012474044, 10.068014},
         {280, 10, 0, 10},
     };
-    bough_arena *arena = bough_arena_create();
+    check_arena(arena);
     bough_tower tower = build(arena, bough_v3(0, 0, 0));
     for (size_t i = 0; i < sizeof table / sizeof *table; i++) {
         double azimuth = table[i][0] * degree;
@@ -45,12 +45,11 @@ TEST(wind_at_passing_blade_matches_reference) {
         check_near(outer.y * cos(azimuth), table[i][2], 1e-5, 1e-6);
         check_near(wind_at_blade(&tower, azimuth, 24.05).x, table[i][3], 1e-5, 0);
     }
-    bough_arena_destroy(arena);
 }
 
 // On the cylinder the flow is tangential, twice the wind at its side, at rest in front.
 TEST(flow_follows_the_wall) {
-    bough_arena *arena = bough_arena_create();
+    check_arena(arena);
     bough_vec3 base = bough_v3(3, -2, 10);
     bough_tower tower = build(arena, base);
     for (double a = 0; a < 2 * BOUGH_PI; a += 0.3) {
@@ -61,7 +60,6 @@ TEST(flow_follows_the_wall) {
         check_near(hypot(wind.x, wind.y), 20 * fabs(sin(a - atan2(8, 6))), 1e-12, 1e-12);
         check_near(wind.z, 1, 0, 0);
     }
-    bough_arena_destroy(arena);
 }
 
 static const double six_metres[] = {6, 6}, two_heights[] = {0, 100};
@@ -81,7 +79,7 @@ static bough_tower build_kind(bough_arena *arena, bough_tower_influence influenc
 
 // AeroDyn v5 with Bak's correction, drag coefficient 1: axial wind at 52.75 m below the hub.
 TEST(bak_matches_reference) {
-    bough_arena *arena = bough_arena_create();
+    check_arena(arena);
     static const double height[] = {0, 87.6}, diameter[] = {6, 3.87}, drag[] = {0, 0};
     bough_tower_def def = {.n = 2, .height = height, .diameter = diameter, .influence = BOUGH_TOWER_BAK};
     bough_tower tower;
@@ -91,13 +89,12 @@ TEST(bak_matches_reference) {
     bough_tower_build(arena, &def, &tower);
     double x = -5.0191 / (5.0943 / 2) + 0.1;
     check_near(wind_at_blade(&tower, BOUGH_PI, 52.75).x, 10 * (1 - 1 / (x * x)), 1e-4, 0);
-    bough_arena_destroy(arena);
 }
 
 // Far away from the tower the source spreads drag · radius · speed over the circle around it.
 TEST(bak_displaces_half_the_drag) {
     enum { POINTS = 360 };
-    bough_arena *arena = bough_arena_create();
+    check_arena(arena);
     static const double drag[] = {0.6, 0.6};
     bough_tower tower = build_kind(arena, BOUGH_TOWER_BAK, BOUGH_TOWER_SHADOW_NONE, drag);
     double out = 0, circle = 300;
@@ -109,12 +106,11 @@ TEST(bak_displaces_half_the_drag) {
         out += bough_dot(wind, normal) * circle * 2 * BOUGH_PI / POINTS;
     }
     check_near(out, 0.6 * 3 * 10, 1e-3, 0);
-    bough_arena_destroy(arena);
 }
 
 // On the wake's axis it takes drag/√x, at x radii, at most half; at |y| = (x² + y²)^¼ it ends.
 TEST(powles_takes_its_share_behind) {
-    bough_arena *arena = bough_arena_create();
+    check_arena(arena);
     static const double drag[] = {0.5, 1.5}; // 0.7 at 20 m
     bough_tower without = build_kind(arena, BOUGH_TOWER_POTENTIAL, BOUGH_TOWER_SHADOW_NONE, drag);
     bough_tower with = build_kind(arena, BOUGH_TOWER_POTENTIAL, BOUGH_TOWER_SHADOW_POWLES, drag);
@@ -132,22 +128,20 @@ TEST(powles_takes_its_share_behind) {
         check_near(taken.y, 8 * table[i][2], 0, 1e-5);
         check_near(taken.z, 0, 0, 0);
     }
-    bough_arena_destroy(arena);
 }
 
 TEST(inside_is_finite) {
-    bough_arena *arena = bough_arena_create();
+    check_arena(arena);
     bough_tower tower = build(arena, bough_v3(0, 0, 0));
     for (double x = -1; x <= 1; x += 0.125) {
         bough_vec3 wind = bough_tower_disturbed(&tower, bough_v3(x, 0, 20), bough_v3(10, 0, 0));
         check_near(wind.x, 0, 0, 1e-12);
     }
-    bough_arena_destroy(arena);
 }
 
 // ½ρ c D V² along the wind across the axis, whatever blows along it.
 TEST(drag_is_across_the_axis) {
-    bough_arena *arena = bough_arena_create();
+    check_arena(arena);
     static const double height[] = {0, 100}, diameter[] = {6, 4}, drag[] = {0.5, 1};
     const bough_tower_def def = {
         .n = 2, .height = height, .diameter = diameter, .drag = drag, .base = {0, 0, 10}};
@@ -160,7 +154,6 @@ TEST(drag_is_across_the_axis) {
     check_near(hypot(f.x, f.z), 0, 0, 1e-9);
     f = bough_tower_drag(&tower, 1.2, bough_v3(0, 0, 300), bough_v3(0, 0, 1), bough_v3(3, 4, 0));
     check_near(f.x, 0.5 * 1.2 * 4 * 15, 1e-12, 0); // as at the top
-    bough_arena_destroy(arena);
 }
 
 TEST(no_tower_leaves_the_wind) {

@@ -6,8 +6,7 @@
 // Of a def without a table.
 static bough_wind built(const bough_wind_def *def) {
     bough_wind wind;
-    bough_status status = bough_wind_build(NULL, def, &wind);
-    assert_int_equal(status.code, BOUGH_OK);
+    check_ok(bough_wind_build(NULL, def, &wind));
     return wind;
 }
 
@@ -70,10 +69,9 @@ TEST(direction_turns_the_horizontal_part) {
 TEST(table_is_linear_between_and_constant_outside) {
     double time[] = {10, 12, 13, 20}, speed[] = {8, 8, 14, 7};
     const bough_wind_def def = {.speed = 99, .n_time = 4, .time = time, .speed_at_time = speed};
-    bough_arena *arena = bough_arena_create();
+    check_arena(arena);
     bough_wind wind;
-    bough_status status = bough_wind_build(arena, &def, &wind);
-    assert_int_equal(status.code, BOUGH_OK);
+    check_ok(bough_wind_build(arena, &def, &wind));
     for (int i = 0; i < 4; i++) time[i] = speed[i] = -1;
     static const double expected[][2] = {{-5, 8},  {10, 8},  {11, 8},      {12, 8}, {12.5, 11},
                                          {13, 14}, {15, 12}, {16.5, 10.5}, {20, 7}, {1e6, 7}};
@@ -81,5 +79,4 @@ TEST(table_is_linear_between_and_constant_outside) {
         double u = bough_wind_at(&wind, bough_v3(0, 0, 50), expected[i][0]).x;
         check_near(u, expected[i][1], 1e-14, 0);
     }
-    bough_arena_destroy(arena);
 }

@@ -69,8 +69,7 @@ TEST_WITH(hub_rows_are_interpolated, set_up, tear_down) {
     place *p = *context;
     bough_wind wind;
     write_file(p, hub_text, strlen(hub_text));
-    bough_status status = build(p, BOUGH_WIND_HUB_FILE, &wind);
-    assert_int_equal(status.code, BOUGH_OK);
+    check_ok(build(p, BOUGH_WIND_HUB_FILE, &wind));
     assert_int_equal(wind.hub->n, 4);
     bough_vec3 hub = bough_v3(-5, 0, 90), above = bough_v3(0, 0, 180);
     check_vec(bough_wind_at(&wind, hub, -3), 8, 0, 0);
@@ -150,9 +149,7 @@ TEST_WITH(box_is_interpolated, set_up, tear_down) {
     bough_wind wind;
     fill_box(bytes, 7);
     write_file(p, bytes, SIZE);
-    bough_status status = build(p, BOUGH_WIND_BOX_FILE, &wind);
-    if (!bough_is_ok(&status)) print_error("%s\n", status.message);
-    assert_int_equal(status.code, BOUGH_OK);
+    check_ok(build(p, BOUGH_WIND_BOX_FILE, &wind));
     check_near(wind.box->half_width, 45, 0, 0);
     check_near(wind.box->duration, 10, 0, 0);
     check_point(&wind, 45, 0, 70, 0, 0);
@@ -180,8 +177,7 @@ TEST_WITH(periodic_box_repeats, set_up, tear_down) {
     bough_wind wind;
     fill_box(bytes, 8);
     write_file(p, bytes, SIZE);
-    bough_status status = build(p, BOUGH_WIND_BOX_FILE, &wind);
-    assert_int_equal(status.code, BOUGH_OK);
+    check_ok(build(p, BOUGH_WIND_BOX_FILE, &wind));
     check_near(wind.box->duration, 12, 0, 0);
     assert_true(bough_wind_box_lasts(wind.box, 1e6));
     check_point(&wind, 0, 10, 70, 3.1, 3.1);
@@ -240,12 +236,9 @@ TEST_WITH(direction_turns_a_file, set_up, tear_down) {
     fill_box(bytes, 7);
     write_file(p, bytes, SIZE);
     bough_wind_def def = {.source = BOUGH_WIND_BOX_FILE, .file = p->path, .direction = 90 * degree};
-    bough_status status = bough_wind_build(p->arena, &def, &wind);
-    assert_int_equal(status.code, BOUGH_OK);
+    check_ok(bough_wind_build(p->arena, &def, &wind));
     bough_vec3 e = expected(1, -20, 70), v = bough_wind_at(&wind, bough_v3(20, 45, 70), 1);
     check_vec(v, -e.y, e.x, e.z);
     def.until = 6;
-    status = bough_wind_build(p->arena, &def, &wind);
-    assert_int_equal(status.code, BOUGH_INVALID);
-    assert_non_null(strstr(status.message, "too short"));
+    check_fails(bough_wind_build(p->arena, &def, &wind), BOUGH_INVALID, "too short");
 }

@@ -60,7 +60,7 @@ TEST(turbulence_is_that_of_the_class) {
 
 // V 25 m/s, class IA, D 126 m, hub at 90 m: σ₁ = 0.16·24.35 = 3.896, D/Λ₁ = 3.
 TEST(gusts_reach_what_the_formulas_say) {
-    bough_arena *arena = bough_arena_create();
+    check_arena(arena);
     const bough_vec3 hub = {0, 0, 90}, top = {0, 0, 150}, left = {0, 63, 90};
     bough_wind_def eog = standard(BOUGH_WIND_EOG, 25);
     eog.iec.start = 5;
@@ -99,11 +99,10 @@ TEST(gusts_reach_what_the_formulas_say) {
     ewm.iec.exponent = 0.11;
     w = built(arena, &ewm);
     check_near(bough_wind_at(&w, top, 1).x, 70 * pow(150. / 90, 0.11), 1e-13, 0);
-    bough_arena_destroy(arena);
 }
 
 TEST(upflow_and_veer_turn_any_wind) {
-    bough_arena *arena = bough_arena_create();
+    check_arena(arena);
     bough_wind_def def = {
         .speed = 10, .vertical = 1, .upflow = 8 * degree, .veer = 0.1 * degree, .reference_height = 90};
     bough_wind w = built(arena, &def);
@@ -118,11 +117,10 @@ TEST(upflow_and_veer_turn_any_wind) {
     w = built(arena, &def);
     above = bough_wind_at(&w, bough_v3(0, 0, 140), 0);
     check_near(atan2(above.y, above.x), 25 * degree, 1e-13, 0);
-    bough_arena_destroy(arena);
 }
 
 TEST(senseless_conditions_are_refused) {
-    bough_arena *arena = bough_arena_create();
+    check_arena(arena);
     bough_wind_def bad[5];
     for (int i = 0; i < 5; i++) bad[i] = standard(BOUGH_WIND_NTM, 10);
     bad[0].iec.speed = 0;
@@ -134,7 +132,6 @@ TEST(senseless_conditions_are_refused) {
         bough_wind wind;
         assert_int_equal(bough_wind_build(arena, &bad[i], &wind).code, BOUGH_INVALID);
     }
-    bough_arena_destroy(arena);
 }
 
 // -- turbulence -----------------------------------------------------------------------------------
@@ -181,8 +178,7 @@ static int make_ensemble(void **state) {
     e->arena = bough_arena_create();
     for (int s = 0; s < SEEDS; s++) {
         e->def.seed = 100 + s;
-        bough_status status = bough_turbulence_make(e->arena, &e->def, &e->box[s]);
-        assert_int_equal(status.code, BOUGH_OK);
+        check_ok(bough_turbulence_make(e->arena, &e->def, &e->box[s]));
         assert_int_equal(e->box[s].n_time, TIMES);
         for (int p = 0; p < 4; p++) transform(e, s, p);
     }
@@ -285,7 +281,7 @@ TEST(a_seed_gives_the_same_bits) {
 
 // A second wind that is given the box of the first one has its turbulence without generating it.
 TEST(a_box_is_shared) {
-    bough_arena *arena = bough_arena_create();
+    check_arena(arena);
     bough_wind_def def = standard(BOUGH_WIND_NTM, 10);
     def.upflow = 4 * degree;
     bough_wind first = built(arena, &def);
@@ -295,7 +291,6 @@ TEST(a_box_is_shared) {
     const bough_vec3 place = {3, 20, 110};
     bough_vec3 a = bough_wind_at(&first, place, 31.7), b = bough_wind_at(&second, place, 31.7);
     assert_memory_equal(&a, &b, sizeof a);
-    bough_arena_destroy(arena);
 }
 
 TEST(a_box_that_is_written_reads_the_same) {

@@ -58,7 +58,7 @@ static outcome run_for(bough_integrator_kind kind, double omega, int count, doub
                      .solve = solve};
     bough_integrator_options options = {.kind = kind, .rtol = 1e-5};
     bough_integrator method;
-    bough_arena *arena = bough_arena_create();
+    check_arena(arena);
     outcome r = {.status = bough_integrator_create(arena, &ode, &options, &method)};
     assert_int_equal(r.status.code, BOUGH_OK);
     double y[N] = {0, 1};
@@ -67,7 +67,6 @@ static outcome run_for(bough_integrator_kind kind, double omega, int count, doub
     }
     r.error = hypot(y[0] - sin(omega * count * macro), y[1] - cos(omega * count * macro));
     method.ops->statistics(method.self, &r.work);
-    bough_arena_destroy(arena);
     return r;
 }
 

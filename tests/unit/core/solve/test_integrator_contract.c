@@ -30,8 +30,7 @@ static bough_system make_modal(bough_arena *arena) {
     bough_rod_def def = sample_def(SEGMENTS, sample_general_arrays(arena, SEGMENTS), false);
     bough_modal_model *model = NULL;
     bough_modal_options options = {4, false, false};
-    bough_status status = bough_modal_create(arena, &def, 1, options, &model);
-    assert_true(bough_is_ok(&status));
+    check_ok(bough_modal_create(arena, &def, 1, options, &model));
     return bough_modal_body_system(bough_modal_body_create(arena, model, swaying));
 }
 
@@ -40,8 +39,7 @@ static bough_system make_assembly(bough_two_mass *m) {
     *m = bough_two_mass_default();
     bough_master_def def = bough_master_def_default();
     def.macro_step = def.duration = length;
-    bough_status status = bough_two_mass_build(m, def);
-    assert_true(bough_is_ok(&status));
+    check_ok(bough_two_mass_build(m, def));
     return bough_coupled_system(m->arena, m->master->assembly, NULL, "assembly");
 }
 
@@ -49,8 +47,7 @@ static void run(bough_member *m, const double *input, double t1) {
     double *coefficient = contract_doubles(4 * m->system.n_input);
     memcpy(coefficient, input, (size_t)m->system.n_input * sizeof *coefficient);
     bough_signal signal = {m->system.n_input, m->time, t1, coefficient};
-    bough_status status = bough_member_advance(m, t1, &signal, false);
-    if (!bough_is_ok(&status)) fail_msg("%s", status.message);
+    check_ok(bough_member_advance(m, t1, &signal, false));
     free(coefficient);
 }
 
@@ -102,7 +99,7 @@ static int check_system(bough_arena *arena, const specimen *x) {
 }
 
 TEST(every_method_integrates_every_system) {
-    bough_arena *arena = bough_arena_create();
+    check_arena(arena);
     fixture tree = everything(1e-6);
     bough_two_mass assembly;
     bough_oscillator mass = bough_oscillator_motion_in((bough_spring_mass){1, 20, .3}, 10, .5, .2);
@@ -124,7 +121,6 @@ TEST(every_method_integrates_every_system) {
     }
     bough_two_mass_destroy(&assembly);
     bough_arena_destroy(tree.arena);
-    bough_arena_destroy(arena);
 }
 
 TEST(every_system_keeps_the_contract) {

@@ -50,14 +50,12 @@ static bough_integrator create(bough_arena *arena, oscillator *o, double rtol) {
     bough_ode ode = {"oscillator", 2, unit, o, derivative, NULL, linearise, factor, solve, 0};
     bough_integrator_options options = {.kind = BOUGH_IDA, .rtol = rtol};
     bough_integrator ida;
-    bough_status status = bough_integrator_create(arena, &ode, &options, &ida);
-    assert_int_equal(status.code, BOUGH_OK);
+    check_ok(bough_integrator_create(arena, &ode, &options, &ida));
     return ida;
 }
 
 static void advance(const bough_integrator *ida, double t, double t1, bool restart, double *y) {
-    bough_status status = integrator_advance(ida, t, t1, restart, y);
-    if (!bough_is_ok(&status)) fail_msg("%s", status.message);
+    check_ok(integrator_advance(ida, t, t1, restart, y));
 }
 
 // From y0 = 1 at rest: e^{−dt}(cos ωt + d/ω sin ωt)
@@ -75,7 +73,7 @@ static oscillator ordinary(void) { return (oscillator){.k = 9, .d = 0.4, .latest
 
 static double error_at(double rtol) {
     oscillator o = ordinary();
-    bough_arena *arena = bough_arena_create();
+    check_arena(arena);
     bough_integrator ida = create(arena, &o, rtol);
     double y[2] = {1, 0}, worst = 0;
     for (int k = 1; k <= 20; k++) {
@@ -84,7 +82,6 @@ static double error_at(double rtol) {
         worst = fmax(worst, fabs(y[0] - exact(&o, t)));
         worst = fmax(worst, fabs(y[1] - exact_rate(&o, t)));
     }
-    bough_arena_destroy(arena);
     return worst;
 }
 
@@ -98,7 +95,7 @@ TEST(error_follows_the_tolerance) {
 
 TEST(nothing_is_evaluated_past_the_end) {
     oscillator o = ordinary();
-    bough_arena *arena = bough_arena_create();
+    check_arena(arena);
     bough_integrator ida = create(arena, &o, 1e-6);
     double y[2] = {1, 0};
     for (int k = 1; k <= 300; k++) {
@@ -107,12 +104,11 @@ TEST(nothing_is_evaluated_past_the_end) {
         assert_true(o.latest <= t);
         check_near(y[0], exact(&o, t), 0, 1e-4);
     }
-    bough_arena_destroy(arena);
 }
 
 TEST(restarting_repeats_bit_by_bit) {
     oscillator o = ordinary();
-    bough_arena *arena = bough_arena_create();
+    check_arena(arena);
     bough_integrator ida = create(arena, &o, 1e-6);
     double first[2] = {1, 0}, second[2];
     advance(&ida, 0, 0.7, true, first);
@@ -130,32 +126,29 @@ TEST(restarting_repeats_bit_by_bit) {
     assert_int_equal(after.factorisations, o.setups);
     assert_true(after.jacobians >= 3 &&
                 3 * after.jacobians < o.setups); // steps of other lengths keep tangents
-    bough_arena_destroy(arena);
 }
 
 TEST(failures_name_body_time_and_cure) {
     oscillator o = ordinary();
     o.break_after = 0.5; // NaN from here on
-    bough_arena *arena = bough_arena_create();
+    check_arena(arena);
     bough_integrator ida = create(arena, &o, 1e-6);
     double y[2] = {1, 0};
     bough_status status = integrator_advance(&ida, 0, 1, true, y);
-    assert_int_equal(status.code, BOUGH_FAILED);
-    assert_non_null(strstr(status.message, "oscillator at t = 0.5"));
+    check_fails(status, BOUGH_FAILED, "oscillator at t = 0.5");
     assert_non_null(strstr(status.message, "IDA"));
     assert_null(strstr(status.message, "try")); // the coupling says it, once
     o.break_after = 1e9;                        // a new start is possible after a failure
     y[0] = 1, y[1] = 0;
     advance(&ida, 0, 1, false, y);
     check_near(y[0], exact(&o, 1), 0, 1e-4);
-    bough_arena_destroy(arena);
 }
 
 // A rate that has no value makes IDA shorten its step and go on.
 TEST(refused_rate_is_retried) {
     oscillator o = ordinary();
     o.refuse_after = 0.5, o.refusals = 3;
-    bough_arena *arena = bough_arena_create();
+    check_arena(arena);
     bough_integrator ida = create(arena, &o, 1e-6);
     double y[2] = {1, 0};
     advance(&ida, 0, 1, true, y);
@@ -164,5 +157,4 @@ TEST(refused_rate_is_retried) {
     bough_statistics count = {0};
     ida.ops->statistics(ida.self, &count);
     assert_true(count.failed_steps >= 3);
-    bough_arena_destroy(arena);
 }

@@ -58,14 +58,12 @@ static bough_integrator create(bough_arena *arena, problem *p, double rtol) {
     bough_ode ode = {.name = "test", .n = p->n, .scale = scale, .self = p, .derivative = derivative};
     bough_integrator_options options = {.kind = BOUGH_RADAU5, .rtol = rtol};
     bough_integrator radau;
-    bough_status status = bough_integrator_create(arena, &ode, &options, &radau);
-    assert_int_equal(status.code, BOUGH_OK);
+    check_ok(bough_integrator_create(arena, &ode, &options, &radau));
     return radau;
 }
 
 static void advance(const bough_integrator *radau, double from, double to, double *y) {
-    bough_status status = integrator_advance(radau, from, to, false, y);
-    if (!bough_is_ok(&status)) fail_msg("%s", status.message);
+    check_ok(integrator_advance(radau, from, to, false, y));
 }
 
 typedef struct result {
@@ -76,12 +74,11 @@ typedef struct result {
 // From y0 to t1 in equal calls.
 static result run(problem p, double rtol, const double *y0, double t1, int calls) {
     result r = {{0}, {0}};
-    bough_arena *arena = bough_arena_create();
+    check_arena(arena);
     bough_integrator radau = create(arena, &p, rtol);
     memcpy(r.y, y0, (size_t)p.n * sizeof *y0);
     for (int k = 1; k <= calls; k++) advance(&radau, (k - 1) * t1 / calls, k * t1 / calls, r.y);
     radau.ops->statistics(radau.self, &r.count);
-    bough_arena_destroy(arena);
     return r;
 }
 
@@ -143,7 +140,7 @@ TEST(van_der_pol_reaches_its_reference) {
 
 TEST(nothing_is_evaluated_past_the_end) {
     problem p = make(2, pendulum, 0);
-    bough_arena *arena = bough_arena_create();
+    check_arena(arena);
     bough_integrator radau = create(arena, &p, 1e-6);
     double y[MOST] = {2, 0};
     for (int k = 1; k <= 100; k++) {
@@ -152,13 +149,12 @@ TEST(nothing_is_evaluated_past_the_end) {
         assert_true(p.latest <= t * (1 + 1e-15));
     }
     check_near(y[0], -2, 0, 1e-5);
-    bough_arena_destroy(arena);
 }
 
 // Going on from a copy is the same as having gone on, to the last bit and the last factorisation.
 TEST(copies_are_complete) {
     problem p = make(2, van_der_pol, 100);
-    bough_arena *arena = bough_arena_create();
+    check_arena(arena);
     bough_integrator radau = create(arena, &p, 1e-7);
     bough_snapshot copy = {.move = BOUGH_SNAPSHOT_MEASURE};
     radau.ops->transfer(radau.self, &copy);
@@ -184,7 +180,6 @@ TEST(copies_are_complete) {
         assert_memory_equal(first, start, sizeof first);
     }
     free(memory);
-    bough_arena_destroy(arena);
 }
 
 // A load that jumps at a call's end costs nothing once the integrator is told.
@@ -197,38 +192,32 @@ static bool pushed(problem *p, double t, const double *y, double *rate) {
 
 TEST(jumps_are_passed) {
     problem p = make(2, pushed, 0);
-    bough_arena *arena = bough_arena_create();
+    check_arena(arena);
     bough_integrator radau = create(arena, &p, 1e-8);
     double y[MOST] = {0, 0}, force[3] = {100, 0, 50}, q = 0, v = 0;
     for (int k = 0; k < 3; k++) {
         p.stiffness = force[k];
-        bough_status status = integrator_advance(&radau, 0.5 * k, 0.5 * (k + 1), true, y);
-        assert_int_equal(status.code, BOUGH_OK);
+        check_ok(integrator_advance(&radau, 0.5 * k, 0.5 * (k + 1), true, y));
         double rest = force[k] / 100, c = cos(5), s = sin(5), old = q - rest;
         q = rest + c * old + s * v / 10;
         v = c * v - 10 * s * old;
         check_near(y[0], q, 0, 1e-7);
         check_near(y[1], v, 0, 1e-6);
     }
-    bough_arena_destroy(arena);
 }
 
 TEST(failures_name_body_time_and_cure) {
     problem p = make(2, pendulum, 0);
     p.break_after = 0.5;
-    bough_arena *arena = bough_arena_create();
+    check_arena(arena);
     bough_integrator radau = create(arena, &p, 1e-6);
     double y[MOST] = {2, 0};
     bough_status status = integrator_advance(&radau, 0, 1, false, y);
-    assert_int_equal(status.code, BOUGH_FAILED);
-    assert_non_null(strstr(status.message, "test at t = 0.5 s"));
+    check_fails(status, BOUGH_FAILED, "test at t = 0.5 s");
     assert_non_null(strstr(status.message, "Radau"));
     assert_null(strstr(status.message, "try")); // the coupling says it, once
     bough_ode ode = {.name = "test", .n = 2, .scale = unit, .self = &p, .derivative = derivative};
     bough_integrator_options options = {.kind = BOUGH_RADAU5, .rtol = 1e-6};
     ode.n = 100000;
-    status = bough_integrator_create(arena, &ode, &options, &radau);
-    assert_int_equal(status.code, BOUGH_INVALID); // dense matrices
-    assert_non_null(strstr(status.message, "rosenbrock"));
-    bough_arena_destroy(arena);
+    check_fails(bough_integrator_create(arena, &ode, &options, &radau), BOUGH_INVALID, "rosenbrock");
 }

@@ -223,7 +223,7 @@ TEST(wrench_in_ground_axes_pushes_straight) {
 // exactly its weight; a wheel is spun up by a force that turns with it.
 TEST(scenes_mount_and_load_bodies) {
     static const char *const none[] = {NULL};
-    bough_arena *arena = bough_arena_create();
+    check_arena(arena);
     bough_simulation *s = scene_build(arena, "tests/data/scenes/mounts.yaml", none);
     bough_channels list = bough_channels_start(arena);
     assert_int_equal(bough_simulation_channels(s, &list).code, BOUGH_OK);
@@ -236,5 +236,4 @@ TEST(scenes_mount_and_load_bodies) {
     check_near(scene_channel(s, &list, "liftedPos"), 0, 0, 1e-9);
     double angle = scene_channel(s, &list, "wheelPos") * acos(-1.0) / 180;
     check_near(angle, 0.6 * (0.5 * 3.85 * 3.85 + 0.01 / 24), 1e-6, 0);
-    bough_arena_destroy(arena);
 }

@@ -10,18 +10,16 @@ TEST(free_body_tells_where_it_is_and_how_it_turns) {
                          "  - name: top\n    fidelity: rigid\n    mass: 2\n    inertia: [1, 1, 1.5]\n"
                          "    joint: {kind: free, parent: ground, velocity: [3 m/s, 0, 0],\n"
                          "      angular_velocity: [0, 0, 180 deg/s], placement: [move z 1 m]}\n");
-    bough_arena *arena = bough_arena_create();
+    check_arena(arena);
     bough_errors errors = {.arena = arena};
     bough_scene *scene = NULL;
     bough_simulation *s = NULL;
     bough_status status = bough_scene_read(arena, "s.yaml", NULL, 0, &errors, &scene);
     bough_errors_print(&errors, stderr);
     assert_int_equal(status.code, BOUGH_OK);
-    status = bough_simulation_build(arena, scene, &s);
-    assert_int_equal(status.code, BOUGH_OK);
+    check_ok(bough_simulation_build(arena, scene, &s));
     bough_channels list = {.arena = arena};
-    status = bough_simulation_channels(s, &list);
-    assert_int_equal(status.code, BOUGH_OK);
+    check_ok(bough_simulation_channels(s, &list));
     while (!bough_master_done(s->master)) scene_step(s);
     static const struct {
         const char *name;
@@ -31,7 +29,6 @@ TEST(free_body_tells_where_it_is_and_how_it_turns) {
     for (size_t k = 0; k < sizeof expected / sizeof *expected; k++) {
         check_near(scene_channel(s, &list, expected[k].name), expected[k].value, 1e-5, 1e-5);
     }
-    bough_arena_destroy(arena);
 }
 
 GROUP(enter, leave)

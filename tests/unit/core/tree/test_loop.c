@@ -96,8 +96,7 @@ typedef struct fixture {
 
 static fixture build(const bough_tree_def *def, bough_integrator_kind solver, double rtol) {
     fixture f = {.arena = bough_arena_create()};
-    bough_status status = bough_tree_create(f.arena, def, &f.tree);
-    if (!bough_is_ok(&status)) fail_msg("%s", status.message);
+    check_ok(bough_tree_create(f.arena, def, &f.tree));
     f.data = bough_tree_data_create(f.arena, f.tree);
     f.s = bough_tree_system_create(f.arena, f.tree, "tree");
     f.m = member_of(f.arena, &f.s, (bough_integrator_options){solver, rtol, 0, 0.8, 0, false});
@@ -106,8 +105,7 @@ static fixture build(const bough_tree_def *def, bough_integrator_kind solver, do
 }
 
 static void advance(fixture *f, double t1, bool restart) {
-    bough_status status = bough_member_advance(f->m, t1, NULL, restart);
-    if (!bough_is_ok(&status)) fail_msg("%s", status.message);
+    check_ok(bough_member_advance(f->m, t1, NULL, restart));
     bough_tree_kinematics(f->tree, f->m->state, f->data);
 }
 
@@ -465,14 +463,13 @@ TEST(arches_are_assembled) {
 }
 
 static void refused(const bough_tree_def *def, const char *what, const char *also) {
-    bough_arena *arena = bough_arena_create();
+    check_arena(arena);
     bough_tree *tree;
     bough_status status = bough_tree_create(arena, def, &tree);
     assert_int_equal(status.code, BOUGH_INVALID);
     if (!strstr(status.message, what) || !strstr(status.message, also)) {
         fail_msg("'%s' lacks '%s' or '%s'", status.message, what, also);
     }
-    bough_arena_destroy(arena);
 }
 
 TEST(what_cannot_be_closed_is_refused) {

@@ -24,8 +24,7 @@ static fixture start(const char *path, const char *const *sets) {
     fixture f = {.arena = bough_arena_create()};
     f.s = scene_build(f.arena, path, sets);
     f.channels = bough_channels_start(f.arena);
-    bough_status status = bough_simulation_channels(f.s, &f.channels);
-    assert_int_equal(status.code, BOUGH_OK);
+    check_ok(bough_simulation_channels(f.s, &f.channels));
     assert_true(f.channels.count <= 64);
     return f;
 }
@@ -137,7 +136,7 @@ TEST(pendulum_passes_the_reference) {
 TEST(bodies_in_a_row_hang_on_each_other) {
     static const char *const sets[] = {"bodies[0].repeat=3", "bodies[1].joint.parent=rod3",
                                        "bodies[1].repeat=1", "markers[0].body=link1", NULL};
-    bough_arena *arena = bough_arena_create();
+    check_arena(arena);
     bough_scene *s = scene_read(arena, "apps/mechanisms/chain.yaml", sets);
     static const char *const names[] = {"rod1", "link1", "rod2", "rod3"};
     static const int parents[] = {BOUGH_GROUND, 3, 0, 2};
@@ -146,7 +145,6 @@ TEST(bodies_in_a_row_hang_on_each_other) {
         assert_string_equal(s->body[i].name, names[i]);
         assert_int_equal(s->body[i].joint.parent, parents[i]);
     }
-    bough_arena_destroy(arena);
 }
 
 TEST(chain_passes_the_reference) {
@@ -296,8 +294,7 @@ TEST(stability_of_closed_loops_is_judged) {
         bough_scheme_options options = f.s->master->coupling->options;
         bough_stability stability;
         options.name = names[k];
-        bough_status status = bough_stability_judge(f.s->master->assembly, &options, 5e-3, &stability);
-        assert_int_equal(status.code, BOUGH_OK);
+        check_ok(bough_stability_judge(f.s->master->assembly, &options, 5e-3, &stability));
         print_message("%s: growth %.3g 1/s\n", names[k], stability.growth);
         assert_true((stability.growth > 1) == (k == 0));
         bough_arena_destroy(f.arena);
@@ -354,12 +351,9 @@ static fixture start_file(const char *path) {
     bough_status status = bough_scene_read(f.arena, path, no_sets, 0, &errors, &scene);
     bough_errors_print(&errors, stderr);
     assert_int_equal(status.code, BOUGH_OK);
-    status = bough_simulation_build(f.arena, scene, &f.s);
-    if (!bough_is_ok(&status)) print_error("%s\n", status.message);
-    assert_int_equal(status.code, BOUGH_OK);
+    check_ok(bough_simulation_build(f.arena, scene, &f.s));
     f.channels = bough_channels_start(f.arena);
-    status = bough_simulation_channels(f.s, &f.channels);
-    assert_int_equal(status.code, BOUGH_OK);
+    check_ok(bough_simulation_channels(f.s, &f.channels));
     assert_true(f.channels.count <= 64);
     return f;
 }

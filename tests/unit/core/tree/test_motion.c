@@ -17,7 +17,7 @@ static bough_motion *motion_of(bough_arena *arena, bough_motion_def def, double 
 
 // The hub angle of Simo and Vu-Quoc's spin-up is the ramp of its speed.
 TEST(ramp_of_speed_is_the_published_one) {
-    bough_arena *arena = bough_arena_create();
+    check_arena(arena);
     bough_motion *m =
         motion_of(arena, (bough_motion_def){.speed = true, .to = 6, .start = 0, .end = 15}, 0.7);
     for (int k = 0; k <= 40; k++) {
@@ -26,7 +26,6 @@ TEST(ramp_of_speed_is_the_published_one) {
         check_near(bough_motion_at(m, t).q, 0.7 + angle, 1e-14, 1e-13);
     }
     check_near(bough_motion_at(m, -3).q, 0.7, 0, 0);
-    bough_arena_destroy(arena);
 }
 
 // Speed and acceleration are the derivatives, and continuous where pieces meet.
@@ -50,7 +49,7 @@ static void check_derivatives(const bough_motion *m, bool smooth) {
 
 TEST(speeds_and_accelerations_are_derivatives) {
     const double times[] = {0.5, 1, 2.5, 4}, values[] = {1, -2, 3, 0.5};
-    bough_arena *arena = bough_arena_create();
+    check_arena(arena);
     bough_motion_def def = {.from = 0.3, .to = -1.2, .start = 1, .end = 4};
     check_derivatives(motion_of(arena, def, 0), true);
     def.speed = true;
@@ -71,7 +70,6 @@ TEST(speeds_and_accelerations_are_derivatives) {
     check_near(bough_motion_at(table, 0).q, 0.4, 1e-15, 0);
     check_near(bough_motion_at(table, 5).q - bough_motion_at(table, 2.5).q, 1.75 * 1.5 + 0.5, 1e-14, 0);
     check_near(bough_motion_at(spline, 9).v, 0, 0, 0);
-    bough_arena_destroy(arena);
 }
 
 // Where values rise, fall or stay, the motion does: plateaus beside a step, steps between ramps, uneven
@@ -82,7 +80,7 @@ TEST(tables_of_positions_do_not_overshoot) {
     static const double values[][8] = {
         {0, 0, 5, 5}, {0, 1, 8, 8, -3, -3.1, -3.2, -9}, {0, 1, 4, 4, 3.9, 0, 0, 0}, {0, 0, 5, 5, 0, 0}};
     static const int n[] = {4, 8, 8, 6};
-    bough_arena *arena = bough_arena_create();
+    check_arena(arena);
     for (int k = 0; k < 4; k++) {
         bough_motion_def def = {.n = n[k], .times = times[k], .values = values[k]};
         const bough_motion *m = motion_of(arena, def, 0);
@@ -98,7 +96,6 @@ TEST(tables_of_positions_do_not_overshoot) {
             check_near(bough_motion_at(m, t - 1e-12).v, bough_motion_at(m, t).v, 1e-5, 1e-5);
         }
     }
-    bough_arena_destroy(arena);
 }
 
 // A sampled sine keeps its accelerations, at the maxima between its samples too.
@@ -106,7 +103,7 @@ TEST(smooth_tables_stay_smooth) {
     enum { SAMPLES = 41 };
     double times[SAMPLES], values[SAMPLES], w = 1.3;
     for (int i = 0; i < SAMPLES; i++) times[i] = 0.25 * i, values[i] = sin(w * times[i]);
-    bough_arena *arena = bough_arena_create();
+    check_arena(arena);
     bough_motion_def def = {.n = SAMPLES, .times = times, .values = values};
     const bough_motion *m = motion_of(arena, def, 0);
     for (double t = 2; t < 8; t += 0.03) {
@@ -114,7 +111,6 @@ TEST(smooth_tables_stay_smooth) {
         check_near(bough_motion_at(m, t).v, w * cos(w * t), 0, 2e-3);
         check_near(bough_motion_at(m, t).a, -w * w * sin(w * t), 0, 2e-2);
     }
-    bough_arena_destroy(arena);
 }
 
 // -- the driven tree -------------------------------------------------------------------------
@@ -237,7 +233,7 @@ TEST(locked_joint_reports_its_torque) {
 
 TEST(scenes_drive_joints) {
     static const char *const none[] = {NULL};
-    bough_arena *arena = bough_arena_create();
+    check_arena(arena);
     bough_simulation *s = scene_build(arena, "tests/data/scenes/motion.yaml", none);
     bough_channels list = bough_channels_start(arena);
     assert_int_equal(bough_simulation_channels(s, &list).code, BOUGH_OK);
@@ -261,13 +257,12 @@ TEST(scenes_drive_joints) {
     check_near(scene_channel(s, &list, "liftVel"), 0, 0, 0);
     check_near(scene_channel(s, &list, "liftFrc"), 4 * 9.80665, 1e-12, 0);
     check_near(scene_channel(s, &list, "liftPos"), 0.5 * 0.105 * 2 + 0.5 * 0.295 * 2, 1e-12, 0);
-    bough_arena_destroy(arena);
 }
 
 // Told every tenth of a second where a sine will be, a motion follows it without a jump in speed,
 // to the fourth order; the first span starts at rest from where the motion is.
 TEST(steered_motion_follows) {
-    bough_arena *arena = bough_arena_create();
+    check_arena(arena);
     bough_motion *m = motion_of(arena, (bough_motion_def){.from = 0.3, .to = 0.3}, 0);
     double worst = 0;
     for (int k = 0; k < 40; k++) {
@@ -280,5 +275,4 @@ TEST(steered_motion_follows) {
         check_derivatives(m, true);
     }
     assert_true(worst > 1e-8 && worst < 1e-4 / 384 * 1.1); // h⁴/384 of the fourth derivative
-    bough_arena_destroy(arena);
 }

@@ -33,7 +33,7 @@ static void run(const char *scheme, const char *solver, const char *rtol, bool s
     snprintf(sets[1], sizeof sets[1], "simulation.master.solver=%s", solver);
     snprintf(sets[2], sizeof sets[2], "simulation.master.rtol=%s", rtol);
     const char *const list[] = {sets[0], sets[1], sets[2], NULL};
-    bough_arena *arena = bough_arena_create();
+    check_arena(arena);
     bough_simulation *s = scene_build(arena, scene, list);
     const bough_motion *ramped = s->tree->links[RAMPED].motion;
     const bough_motion *table = s->tree->links[STEERED].motion;
@@ -54,7 +54,6 @@ static void run(const char *scheme, const char *solver, const char *rtol, bool s
         memcpy(at->state + a->state_offset[i], a->member[i]->state,
                (size_t)a->member[i]->system.n_state * sizeof(double));
     }
-    bough_arena_destroy(arena);
 }
 
 static double distance(const end *a, const end *b) {

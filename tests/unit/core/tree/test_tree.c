@@ -343,8 +343,7 @@ TEST(ground_fixed_tree_has_no_states) {
     assert_int_equal(f.s.n_input, 6);
     double out[9], rate[9], u[6] = {1, 2, 3, 4, 5, 6}, coefficient[24] = {0};
     bough_signal signal = {6, 0, 1, coefficient};
-    bough_status status = bough_member_advance(f.m, 1, &signal, true);
-    assert_int_equal(status.code, BOUGH_OK);
+    check_ok(bough_member_advance(f.m, 1, &signal, true));
     check_near(f.m->time, 1, 0, 0);
     f.s.ops->output(f.s.self, 1, f.m->state, u, out);
     f.s.ops->output_tangent(f.s.self, 1, f.m->state, u, f.m->state, NULL, rate);
@@ -364,12 +363,11 @@ TEST(ground_fixed_tree_has_no_states) {
 }
 
 static bough_code create_code(const bough_body_def *bodies, int n, const char *word) {
-    bough_arena *arena = bough_arena_create();
+    check_arena(arena);
     bough_tree *tree;
     bough_tree_def def = {.n_bodies = n, .bodies = bodies};
     bough_status status = bough_tree_create(arena, &def, &tree);
     assert_true(bough_is_ok(&status) || strstr(status.message, word) != NULL);
-    bough_arena_destroy(arena);
     return status.code;
 }
 

@@ -60,8 +60,7 @@ static bough_status create(fixture *f, bough_joint_kind kind) {
 
 static fixture make(void) {
     fixture f = {.arena = bough_arena_create()};
-    bough_status status = create(&f, BOUGH_JOINT_FREE);
-    assert_int_equal(status.code, BOUGH_OK);
+    check_ok(create(&f, BOUGH_JOINT_FREE));
     f.data = bough_tree_data_create(f.arena, f.tree);
     f.s = bough_tree_system_create(f.arena, f.tree, "tree");
     f.m = member_of(f.arena, &f.s, (bough_integrator_options){BOUGH_IDA, 1e-8, 0, 0, 0, false});

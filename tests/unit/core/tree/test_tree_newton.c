@@ -22,9 +22,7 @@ typedef struct fixture {
 
 static fixture build(const bough_tree_def *def) {
     fixture f = {.arena = bough_arena_create()};
-    bough_status status = bough_tree_create(f.arena, def, &f.tree);
-    if (!bough_is_ok(&status)) print_error("%s\n", status.message);
-    assert_int_equal(status.code, BOUGH_OK);
+    check_ok(bough_tree_create(f.arena, def, &f.tree));
     f.data = bough_tree_data_create(f.arena, f.tree);
     f.newton = bough_tree_newton_create(f.arena, f.tree);
     return f;

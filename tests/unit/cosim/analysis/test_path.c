@@ -46,7 +46,7 @@ static double bar_limit(void) {
 // Each point is on the exact curve; the limit points are the curve's; the driver turns back on its way.
 TEST(slides_snap_through_and_back) {
     const char *sets[] = {NULL};
-    bough_arena *arena = bough_arena_create();
+    check_arena(arena);
     bough_simulation *s = scene_build(arena, "tests/data/scenes/snapping-slide.yaml", sets);
     trace *t = bough_arena_take(arena, sizeof *t);
     bough_path_report report;
@@ -65,7 +65,6 @@ TEST(slides_snap_through_and_back) {
     check_near(10 * t->limit[1], -bar_limit(), 1e-6, 0);
     check_near(t->share[t->n - 1], 1, 0, 1e-12);
     assert_true(t->q[t->n - 1][0] < -0.6);
-    bough_arena_destroy(arena);
 }
 
 typedef struct reaction {
@@ -91,22 +90,21 @@ static bough_status check_reaction(void *self, double time, double share, bool l
 TEST(closures_carry_the_load_of_the_point) {
     const char *sets[] = {"loads=[{body: beam, along: [0 m, 1 m], force: [300, 0, 0], ramp: [0 s, 1 s]}]",
                           "gravity=[0, 0, 0]", NULL};
-    bough_arena *arena = bough_arena_create();
+    check_arena(arena);
     reaction r = {scene_build(arena, "tests/data/scenes/prop.yaml", sets), bough_channels_start(arena), 0};
-    bough_status status = bough_simulation_channels(r.simulation, &r.channels);
-    assert_int_equal(status.code, BOUGH_OK);
+    check_ok(bough_simulation_channels(r.simulation, &r.channels));
     bough_path_report report;
     bough_path_listener listener = {&r, check_reaction};
-    status = bough_simulation_path(r.simulation, r.simulation->master->assembly, listener, &report);
+    bough_status status =
+        bough_simulation_path(r.simulation, r.simulation->master->assembly, listener, &report);
     assert_string_equal(status.message, "");
     assert_true(r.n > 3);
-    bough_arena_destroy(arena);
 }
 
 // A load below the limit has no limit point.
 TEST(short_of_the_limit) {
     const char *sets[] = {"loads[0].force=-4.9", NULL};
-    bough_arena *arena = bough_arena_create();
+    check_arena(arena);
     bough_simulation *s = scene_build(arena, "tests/data/scenes/snapping-slide.yaml", sets);
     trace *t = bough_arena_take(arena, sizeof *t);
     bough_path_report report;
@@ -114,12 +112,11 @@ TEST(short_of_the_limit) {
     assert_string_equal(status.message, "");
     assert_int_equal(report.limits, 0);
     check_near(bar_force(-t->q[t->n - 1][0]), 4.9, 0, 1e-5);
-    bough_arena_destroy(arena);
 }
 
 TEST(lee_frame) {
     const char *sets[] = {NULL};
-    bough_arena *arena = bough_arena_create();
+    check_arena(arena);
     bough_simulation *s = scene_build(arena, "apps/beams/lee-frame.yaml", sets);
     trace *t = bough_arena_take(arena, sizeof *t);
     bough_path_report report;
@@ -129,19 +126,15 @@ TEST(lee_frame) {
     check_near(4 * t->limit[0], 1.8552, 5e-4, 0);
     assert_true(t->limit[1] < 0); // it snaps back: held, it is pulled up
     check_near(report.share, 1, 0, 1e-12);
-    bough_arena_destroy(arena);
 }
 
 static void refuses(const char *scene, const char *set, const char *why) {
     const char *sets[] = {set, NULL};
-    bough_arena *arena = bough_arena_create();
+    check_arena(arena);
     bough_simulation *s = scene_build(arena, scene, sets);
     trace *t = bough_arena_take(arena, sizeof *t);
     bough_path_report report;
-    bough_status status = walk(s, t, &report);
-    assert_int_equal(status.code, BOUGH_INVALID);
-    assert_non_null(strstr(status.message, why));
-    bough_arena_destroy(arena);
+    check_fails(walk(s, t, &report), BOUGH_INVALID, why);
 }
 
 TEST(other_scenes_are_refused) {

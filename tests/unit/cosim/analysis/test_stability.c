@@ -9,14 +9,12 @@ static void build(bough_two_mass *m, const char *scheme, double macro_step) {
     def.scheme.name = scheme;
     def.macro_step = macro_step;
     def.duration = 10;
-    bough_status status = bough_two_mass_build(m, def);
-    if (!bough_is_ok(&status)) fail_msg("%s", status.message);
+    check_ok(bough_two_mass_build(m, def));
 }
 
 static bough_stability judge(const bough_two_mass *m, const bough_scheme_options *options, double h) {
     bough_stability result;
-    bough_status status = bough_stability_judge(m->master->assembly, options, h, &result);
-    if (!bough_is_ok(&status)) fail_msg("%s", status.message);
+    check_ok(bough_stability_judge(m->master->assembly, options, h, &result));
     return result;
 }
 

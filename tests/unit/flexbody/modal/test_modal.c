@@ -18,9 +18,7 @@ static const bough_modal_options everything = {6 * N, true, false};
 static bough_modal_model *general(bough_arena *arena, int n, int pieces, bough_modal_options options) {
     bough_rod_def def = sample_def(n, sample_general_arrays(arena, n), false);
     bough_modal_model *m = NULL;
-    bough_status status = bough_modal_create(arena, &def, pieces, options, &m);
-    if (!bough_is_ok(&status)) print_error("%s\n", status.message);
-    assert_int_equal(status.code, BOUGH_OK);
+    check_ok(bough_modal_create(arena, &def, pieces, options, &m));
     return m;
 }
 
@@ -31,7 +29,7 @@ static bough_modal_body *body_of(bough_arena *arena, const bough_modal_model *m,
 // -- the contract ---------------------------------------------------------------------------------
 
 static void check_contract(int pieces, bough_modal_options options) {
-    bough_arena *arena = bough_arena_create();
+    check_arena(arena);
     bough_modal_model *m = general(arena, 7, pieces, options);
     bough_modal_body *body = body_of(arena, m, swaying);
     bough_system s = bough_modal_body_system(body);
@@ -45,7 +43,6 @@ static void check_contract(int pieces, bough_modal_options options) {
         member_of(arena, &s, (bough_integrator_options){.kind = BOUGH_CVODE_BDF, .rtol = 1e-8});
     contract_check(body_member, at, 0.03, 0.01);
     contract_set_state(body_member, at, 1e-5);
-    bough_arena_destroy(arena);
 }
 
 TEST(operations_of_one_piece_agree) {
@@ -138,8 +135,7 @@ static bough_rod_def bar_def(bough_arena *arena) {
         .inertia = {400, 100, 0, 500}};
     bough_section_table table = {.name = "bar", .n_station = 1, .station = &section, .length = 60};
     bough_rod_def def;
-    bough_status s = bough_section_discretise(arena, &table, SEGMENTS, &def);
-    assert_int_equal(s.code, BOUGH_OK);
+    check_ok(bough_section_discretise(arena, &table, SEGMENTS, &def));
     return def;
 }
 
@@ -159,8 +155,7 @@ static bar make_bar(int pieces, bough_modal_options options) {
     b.def = bar_def(b.arena);
     bough_status s = bough_rod_create(b.arena, &b.def, &b.rod);
     if (bough_is_ok(&s)) s = bough_modal_create(b.arena, &b.def, pieces, options, &b.modal);
-    if (!bough_is_ok(&s)) print_error("%s\n", s.message);
-    assert_int_equal(s.code, BOUGH_OK);
+    check_ok(s);
     bough_modal_chain_init(&b.chain, b.arena, b.modal);
     bough_rod_static_init(&b.work, b.arena, b.rod);
     bough_rod_loads_init(&b.loads, b.arena, b.rod);
@@ -172,16 +167,12 @@ static bar make_bar(int pieces, bough_modal_options options) {
 static void rest_rod(bar *b, const double *input) {
     bough_rod_static_options options = bough_rod_static_options_default();
     bough_rod_rest_state(b->rod, input, b->vertices);
-    bough_status s = bough_rod_steady(b->rod, &b->loads, input, &options, &b->work, b->vertices);
-    if (!bough_is_ok(&s)) print_error("%s\n", s.message);
-    assert_int_equal(s.code, BOUGH_OK);
+    check_ok(bough_rod_steady(b->rod, &b->loads, input, &options, &b->work, b->vertices));
 }
 
 static void rest_modal(bar *b, const double *input) {
     bough_modal_rest_state(b->modal, input, b->state);
-    bough_status s = bough_modal_steady(b->modal, &b->loads, 0, input, b->arena, b->state);
-    if (!bough_is_ok(&s)) print_error("%s\n", s.message);
-    assert_int_equal(s.code, BOUGH_OK);
+    check_ok(bough_modal_steady(b->modal, &b->loads, 0, input, b->arena, b->state));
 }
 
 static void frequencies(bar *b, const double *input, double *rod, double *modal) {
@@ -189,10 +180,9 @@ static void frequencies(bar *b, const double *input, double *rod, double *modal)
     int found = 0;
     rest_rod(b, input);
     rest_modal(b, input);
-    bough_status s = bough_rod_modes(b->arena, b->rod, &b->work, input, b->vertices, &list);
-    assert_int_equal(s.code, BOUGH_OK);
-    s = bough_modal_frequencies(b->arena, b->modal, &b->loads, 0, input, b->state, WANTED, modal, &found);
-    assert_int_equal(s.code, BOUGH_OK);
+    check_ok(bough_rod_modes(b->arena, b->rod, &b->work, input, b->vertices, &list));
+    check_ok(
+        bough_modal_frequencies(b->arena, b->modal, &b->loads, 0, input, b->state, WANTED, modal, &found));
     assert_int_equal(list.found, WANTED);
     assert_int_equal(found, WANTED);
     for (int k = 0; k < WANTED; k++) rod[k] = list.mode[k].frequency;
@@ -285,7 +275,7 @@ static void momentum(const bough_rod_model *rod, const double *state, double *to
 // what is lost of force and of moment. Little rotary inertia: of it the linear shapes lose ½ψ×ψ̈.
 static void lost(double small, double *force, double *moment) {
     enum { STATES = BOUGH_ROD_STATES * N };
-    bough_arena *arena = bough_arena_create();
+    check_arena(arena);
     sample_arrays arrays = sample_general_arrays(arena, N);
     for (int i = 0; i <= N; i++) {
         arrays.inertia[i].moment = bough_v3(0, 0, 0);
@@ -293,8 +283,7 @@ static void lost(double small, double *force, double *moment) {
     }
     bough_rod_def def = sample_def(N, arrays, false);
     bough_modal_model *m = NULL;
-    bough_status status = bough_modal_create(arena, &def, 1, (bough_modal_options){4, false, true}, &m);
-    assert_int_equal(status.code, BOUGH_OK);
+    check_ok(bough_modal_create(arena, &def, 1, (bough_modal_options){4, false, true}, &m));
     bough_modal_chain chain;
     bough_rod_loads none;
     bough_modal_chain_init(&chain, arena, m);
@@ -328,7 +317,6 @@ static void lost(double small, double *force, double *moment) {
         double *to = c < 3 ? force : moment;
         *to = fmax(*to, fabs(rest[c] + (p[2][c] - p[0][c]) / (2 * step)));
     }
-    bough_arena_destroy(arena);
 }
 
 // Of force nothing, of moment what is of second order in q, whatever the number of shapes.
@@ -358,8 +346,7 @@ TEST(loads_bend_over_a_step) {
         for (int i = 0; i < parts[k]; i++) {
             input.t0 = 0.02 * i / parts[k];
             input.t1 = 0.02 * (i + 1) / parts[k];
-            bough_status status = bough_member_advance(member, input.t1, &input, i == 0);
-            assert_int_equal(status.code, BOUGH_OK);
+            check_ok(bough_member_advance(member, input.t1, &input, i == 0));
         }
         reached[k] = bough_modal_body_vertices(body, member->state, still, m->rod->n)[m->rod->n - 1] -
                      m->rod->position0[m->rod->n].x;

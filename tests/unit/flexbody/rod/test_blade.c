@@ -32,12 +32,9 @@ static blade blade_with(int segments) {
     bough_errors_print(&errors, stderr);
     assert_int_equal(s.code, BOUGH_OK);
     scene->body[0].rod.n_segment = segments;
-    s = bough_simulation_build(b.arena, scene, &simulation);
-    if (!bough_is_ok(&s)) print_error("%s\n", s.message);
-    assert_int_equal(s.code, BOUGH_OK);
+    check_ok(bough_simulation_build(b.arena, scene, &simulation));
     b.def = &simulation->beam[0].def;
-    s = bough_rod_create(b.arena, b.def, &model);
-    assert_int_equal(s.code, BOUGH_OK);
+    check_ok(bough_rod_create(b.arena, b.def, &model));
     b.model = model;
     b.state = bough_arena_doubles(b.arena, (size_t)BOUGH_ROD_STATES * segments);
     bough_rod_loads_init(&b.loads, b.arena, model);
@@ -49,9 +46,7 @@ static blade blade_with(int segments) {
 static void solve(blade *b, bough_vec3 gravity) {
     bough_rod_static_options options = bough_rod_static_options_default();
     options.tolerance = 1e-9;
-    bough_status s = rod_equilibrium(b->model, &b->loads, gravity, &options, &b->work, b->state);
-    if (!bough_is_ok(&s)) print_error("%s\n", s.message);
-    assert_int_equal(s.code, BOUGH_OK);
+    check_ok(rod_equilibrium(b->model, &b->loads, gravity, &options, &b->work, b->state));
 }
 
 // Tip displacement [m] and rotation vector [deg].
@@ -190,8 +185,7 @@ TEST(ten_frequencies_converge_with_the_mesh) {
         blade b = blade_with(segments[k]);
         bough_rod_mode_list list = {.wanted = MODES};
         bough_rod_rest_state(b.model, at_rest, b.state);
-        bough_status s = bough_rod_modes(b.arena, b.model, &b.work, at_rest, b.state, &list);
-        assert_int_equal(s.code, BOUGH_OK);
+        check_ok(bough_rod_modes(b.arena, b.model, &b.work, at_rest, b.state, &list));
         assert_int_equal(list.found, MODES);
         for (int m = 0; m < MODES; m++) hertz[k][m] = list.mode[m].frequency;
         bough_arena_destroy(b.arena);
@@ -216,8 +210,7 @@ static const bough_rod_mode *modes_at(blade *b, double rpm) {
     if (bough_is_ok(&s)) {
         s = bough_rod_modes(b->arena, b->model, &b->work, input, b->state, &list);
     }
-    if (!bough_is_ok(&s)) print_error("%s\n", s.message);
-    assert_int_equal(s.code, BOUGH_OK);
+    check_ok(s);
     assert_int_equal(list.found, MODES);
     return list.mode;
 }

@@ -31,12 +31,10 @@ static blade blade_with(int segments) {
         bough_scene_read(b.arena, BOUGH_SOURCE_DIR "/tests/data/scenes/blade.yaml", NULL, 0, &errors, &scene);
     assert_int_equal(s.code, BOUGH_OK);
     scene->body[0].rod.n_segment = segments;
-    s = bough_simulation_build(b.arena, scene, &simulation);
-    assert_int_equal(s.code, BOUGH_OK);
+    check_ok(bough_simulation_build(b.arena, scene, &simulation));
     b.table = &scene->body[0].rod.structure;
     b.def = simulation->beam[0].def;
-    s = bough_rod_create(b.arena, &b.def, &b.model);
-    assert_int_equal(s.code, BOUGH_OK);
+    check_ok(bough_rod_create(b.arena, &b.def, &b.model));
     return b;
 }
 
@@ -106,8 +104,7 @@ static void solve(const blade *b, line_load load, double scale, double *found) {
         bough_rod_lump(m, (bough_rod_reach){m->span[k], m->span[k + 1]}, q, NULL, to);
     }
     bough_rod_rest_state(m, at_rest, state);
-    bough_status s = rod_equilibrium(m, &loads, bough_v3(0, 0, 0), &options, &work, state);
-    assert_int_equal(s.code, BOUGH_OK);
+    check_ok(rod_equilibrium(m, &loads, bough_v3(0, 0, 0), &options, &work, state));
     for (int i = 1; i <= n; i++) {
         const double *y = state + i - 1;
         bough_quaternion p = {y[3 * n], y[4 * n], y[5 * n], y[6 * n]};

@@ -50,14 +50,13 @@ TEST(load_keeps_its_direction_while_the_arm_turns) {
 // -- gravity --------------------------------------------------------------------------------------
 
 static bough_vec3 tip_after(const char *const *sets) {
-    bough_arena *arena = bough_arena_create();
+    check_arena(arena);
     bough_simulation *s = scene_build(arena, scene, sets);
     run_to_end(s);
     bough_quaternion rotation;
     bough_vec3 tip = bough_simulation_beam_tip(s, &s->beam[0], &rotation);
     bough_transform pose = bough_tree_frame_pose(s->view, &s->tree->markers[s->beam[0].marker]);
     tip = bough_add(pose.position, bough_mat3_mul(pose.rotation, tip));
-    bough_arena_destroy(arena);
     return tip;
 }
 
@@ -89,7 +88,7 @@ TEST(load_at_a_carrying_end_is_one_on_what_it_carries) {
 // -- the contract ---------------------------------------------------------------------------------
 
 static void check_contract(const char *const *sets) {
-    bough_arena *arena = bough_arena_create();
+    check_arena(arena);
     bough_simulation *s = scene_build(arena, scene, sets);
     for (int k = 0; k < 20; k++) scene_step(s);
     const bough_system *rod = &s->rod[0].system;
@@ -97,7 +96,6 @@ static void check_contract(const char *const *sets) {
     contract_check_system(rod, at, 1e-3);
     contract_point tree = {s->master->time, s->leader.state, s->master->coupling->input, 1e-5};
     contract_check_system(&s->leader.system, tree, 1e-3);
-    bough_arena_destroy(arena);
 }
 
 TEST(systems_fulfil_the_contract) {

@@ -39,7 +39,7 @@ static bough_rod_ramped_load empty(bough_arena *arena, const bough_rod_model *m,
 }
 
 TEST(resultant_of_a_point_load_is_the_load) {
-    bough_arena *arena = bough_arena_create();
+    check_arena(arena);
     const bough_rod_model *m = sample_general(arena, N);
     for (int k = 0; k <= 13; k++) {
         double s = k * m->span[N] / 13;
@@ -55,13 +55,12 @@ TEST(resultant_of_a_point_load_is_the_load) {
         check_vector(sum.force, force);
         check_vector(sum.moment, bough_add(moment, bough_cross(at, force)));
     }
-    bough_arena_destroy(arena);
 }
 
 TEST(resultant_of_a_line_load_is_the_load) {
     const double stiffness[6] = {1, 1, 1, 1, 1, 1}, inertia[4] = {1, 1, 1, 1};
     const bough_rod_reach reach[] = {{0, 6}, {0.3, 0.7}, {1.2, 4.9}, {2, 3}};
-    bough_arena *arena = bough_arena_create();
+    check_arena(arena);
     const bough_rod_model *m = sample_uniform(arena, N, 6, stiffness, 0, inertia);
     for (int k = 0; k < 4; k++) {
         bough_rod_ramped_load load = empty(arena, m, false);
@@ -73,7 +72,6 @@ TEST(resultant_of_a_line_load_is_the_load) {
         check_vector(sum.force, force);
         check_vector(sum.moment, bough_add(moment, bough_cross(bough_v3(0, 0, at), force)));
     }
-    bough_arena_destroy(arena);
 }
 
 // q h at inner vertices, q h/2 at the ends, q along every segment; a part of a segment makes couples
@@ -81,7 +79,7 @@ TEST(resultant_of_a_line_load_is_the_load) {
 TEST(line_load_goes_to_vertices_and_segments) {
     const double stiffness[6] = {1, 1, 1, 1, 1, 1}, inertia[4] = {1, 1, 1, 1};
     const double across[6] = {12, 0, 0, 0, 0, 0};
-    bough_arena *arena = bough_arena_create();
+    check_arena(arena);
     const bough_rod_model *m = sample_uniform(arena, N, 2 * N, stiffness, 0, inertia);
     bough_rod_ramped_load load = empty(arena, m, false), part = empty(arena, m, false);
     bough_rod_lump(m, (bough_rod_reach){0, 2 * N}, across, NULL, &load);
@@ -94,12 +92,11 @@ TEST(line_load_goes_to_vertices_and_segments) {
     bough_rod_lump(m, (bough_rod_reach){0, 1}, across, NULL, &part);
     assert_false(part.along);
     check_near(part.value[4 * m->stride], 2, 1e-12, 0); // 12 ∫ ½ s (1 − s/2) ds over 0..1
-    bough_arena_destroy(arena);
 }
 
 // Seen in its section, a follower's couple is that of a dead load.
 TEST(follower_is_lumped_in_section_axes) {
-    bough_arena *arena = bough_arena_create();
+    check_arena(arena);
     const bough_rod_model *m = sample_general(arena, N);
     int s = m->stride;
     bough_rod_ramped_load dead = empty(arena, m, false), follower = empty(arena, m, true);
@@ -116,13 +113,12 @@ TEST(follower_is_lumped_in_section_axes) {
         const double *v = follower.value + c * s + N, *d = dead.value + c * s + N;
         check_vector(bough_mat3_mul(r, bough_v3(v[0], v[s], v[2 * s])), bough_v3(d[0], d[s], d[2 * s]));
     }
-    bough_arena_destroy(arena);
 }
 
 // What a load along segments does to the undeformed rod, as loads on vertices: no resultant, and the
 // accelerations of the rod at rest are the same, but for squares of the strain.
 TEST(line_lumped_to_vertices_does_the_same_at_rest) {
-    bough_arena *arena = bough_arena_create();
+    check_arena(arena);
     for (int kind = 0; kind < 2; kind++) {
         bough_rod_model *m = sample_general(arena, N);
         const double input[BOUGH_ROD_INPUTS] = {0};
@@ -151,5 +147,4 @@ TEST(line_lumped_to_vertices_does_the_same_at_rest) {
             check_near(rate[0][k], rate[1][k], 1e-11, 1e-11);
         }
     }
-    bough_arena_destroy(arena);
 }

@@ -58,8 +58,7 @@ static void solve(bar *b, const double *input) {
     }
     b->mode = list.mode;
     b->found = list.found;
-    if (!bough_is_ok(&s)) print_error("%s\n", s.message);
-    assert_int_equal(s.code, BOUGH_OK);
+    check_ok(s);
     assert_int_equal(b->found, MODES);
     assert_non_null(b->mode);
 }

@@ -119,12 +119,10 @@ TEST(end_wrench_is_what_moves_the_last_vertex) {
 }
 
 TEST(too_short_a_rod_carries_nothing) {
-    bough_arena *arena = bough_arena_create();
+    check_arena(arena);
     sample_arrays a = sample_take(arena, 1);
     bough_rod_def def = {.name = "stub", .n_segment = 1, .span = a.span, .carries = true};
     bough_rod_model *model = NULL;
-    bough_status status = bough_rod_create(arena, &def, &model);
-    assert_int_equal(status.code, BOUGH_INVALID);
-    assert_non_null(strstr(status.message, "rod stub: 1 segments; a rod that carries bodies"));
-    bough_arena_destroy(arena);
+    check_fails(bough_rod_create(arena, &def, &model), BOUGH_INVALID,
+                "rod stub: 1 segments; a rod that carries bodies");
 }

@@ -41,9 +41,7 @@ static void advance(const rod *r, double t1, const double *value, const double *
         if (rate != NULL) c[BOUGH_ROD_INPUTS + k] = rate[k] * (t1 - t0);
     }
     bough_signal input = {BOUGH_ROD_INPUTS, t0, t1, c};
-    bough_status status = bough_member_advance(r->m, t1, &input, false);
-    if (!bough_is_ok(&status)) print_error("%s\n", status.message);
-    assert_int_equal(status.code, BOUGH_OK);
+    check_ok(bough_member_advance(r->m, t1, &input, false));
 }
 
 static bough_vec3 part(const double *state, int n, int component, int vertex) {
@@ -188,7 +186,7 @@ TEST(steady_rotation_stretches_and_stays) {
     static const double inertia[4] = {2, 0.02, 0.03, 0.05};
     static const double input[BOUGH_ROD_INPUTS] = {0, 0, 0, 6};
     double z[SPUN + 1], state[BOUGH_ROD_STATES * SPUN], rate[BOUGH_ROD_STATES * SPUN], wrench[6];
-    bough_arena *arena = bough_arena_create();
+    check_arena(arena);
     rod r = make(arena, sample_uniform(arena, SPUN, 2, stiffness, 1e-3, inertia), 1e-8, input);
     double tension = stretched(r.model, stiffness[2], input[3], z);
     assert_true(z[SPUN] > 2.1); // a stretch to speak of
@@ -207,7 +205,6 @@ TEST(steady_rotation_stretches_and_stays) {
     for (int k = 0; k < BOUGH_ROD_STATES * SPUN; k++) {
         check_near(r.m->state[k], state[k], 0, 1e-6);
     }
-    bough_arena_destroy(arena);
 }
 
 // Root and gravity accelerate alike: nothing is strained, whatever the shape of the rod.
@@ -260,7 +257,7 @@ static const double ball[4] = {2, 0.3, 0.3, 0.3};
 
 // Vertices that hardly feel each other move as F = value + rate (t − start) tells.
 TEST(loads_grow_linearly_from_their_start) {
-    bough_arena *arena = bough_arena_create();
+    check_arena(arena);
     rod r = make(arena, sample_uniform(arena, 4, 4, soft, 0, ball), 1e-9, at_rest);
     bough_rod_loads *loads = bough_rod_body_loads(r.body);
     int s = r.model->stride, at = 2;
@@ -282,13 +279,12 @@ TEST(loads_grow_linearly_from_their_start) {
     }
     check_near(w.z, 0.4 * (0.2 - 0.3 * (0.5 + 0.2)) / v->inertia[2], 0, 1e-7);
     check_near(bough_norm(part(r.m->state, 4, BOUGH_ROD_U, 1)), 0, 0, 1e-7);
-    bough_arena_destroy(arena);
 }
 
 // A moment is given in the frame's axes, whatever way the section points; what is put on the root
 // goes straight to the carrier.
 TEST(loads_are_in_the_axes_of_the_frame) {
-    bough_arena *arena = bough_arena_create();
+    check_arena(arena);
     rod r = make(arena, sample_uniform(arena, 4, 4, soft, 0, ball), 1e-9, at_rest);
     bough_rod_loads *loads = bough_rod_body_loads(r.body);
     double state[BOUGH_ROD_STATES * 4], rate[BOUGH_ROD_STATES * 4], wrench[6];
@@ -310,7 +306,6 @@ TEST(loads_are_in_the_axes_of_the_frame) {
     check_near(w.x, 0, 0, 1e-9);
     r.s.ops->output(r.s.self, 0.3, r.m->state, at_rest, wrench);
     for (int c = 0; c < 6; c++) check_near(wrench[c], c + 1 + 3, 1e-9, 0);
-    bough_arena_destroy(arena);
 }
 
 // -- vibration ------------------------------------------------------------------------------------
@@ -333,10 +328,8 @@ static rod cantilever(double mu) {
     bough_section_table table = {"cantilever", 1, &station, beam_length, {mu, mu, mu, mu, mu, mu}};
     bough_rod_def def;
     bough_rod_model *model = NULL;
-    bough_status status = bough_section_discretise(arena, &table, BEAM, &def);
-    assert_int_equal(status.code, BOUGH_OK);
-    status = bough_rod_create(arena, &def, &model);
-    assert_int_equal(status.code, BOUGH_OK);
+    check_ok(bough_section_discretise(arena, &table, BEAM, &def));
+    check_ok(bough_rod_create(arena, &def, &model));
     return make(arena, model, 1e-8, at_rest);
 }
 
@@ -461,7 +454,7 @@ TEST(stiff_rod_keeps_its_amplitude_under_the_rosenbrock_method) {
     const double length = 10, period = 1;
     const double stiffness[6] = {3e8, 3e8, 1e9, 3.2e4, 3.2e4, 2.5e4}, inertia[4] = {1.002, 1e-4, 1e-4, 2e-4};
     const bough_integrator_options steps = {BOUGH_ROSENBROCK, 3e-4, 0.01, 0, 0, false};
-    bough_arena *arena = bough_arena_create();
+    check_arena(arena);
     rod r = make(arena, sample_uniform(arena, 24, length, stiffness, 0, inertia), 1e-6, at_rest);
     r.m = member_of(arena, &r.s, steps);
     bough_rod_scratch scratch;
@@ -474,21 +467,18 @@ TEST(stiff_rod_keeps_its_amplitude_under_the_rosenbrock_method) {
     }
     double ratio = log(start / energy(&r, at_rest, &scratch)) / (4 * BOUGH_PI * (to - from) / period);
     check_near(ratio, 0, 0, 5e-5);
-    bough_arena_destroy(arena);
 }
 
 // -- failure --------------------------------------------------------------------------------------
 
 // A moment that winds one segment up beyond what a rotation vector tells.
 TEST(overturned_rod_is_a_failure_by_name) {
-    bough_arena *arena = bough_arena_create();
+    check_arena(arena);
     rod r = make(arena, sample_uniform(arena, 2, 2, soft, 0, ball), 1e-6, at_rest);
     bough_rod_body_loads(r.body)->value[3 * r.model->stride + 2] = 10;
     double c[4 * BOUGH_ROD_INPUTS] = {0};
     bough_signal input = {BOUGH_ROD_INPUTS, 0, 5, c};
     bough_status status = bough_member_advance(r.m, 5, &input, false);
-    assert_int_equal(status.code, BOUGH_FAILED);
-    assert_non_null(strstr(status.message, "sample at t = "));
+    check_fails(status, BOUGH_FAILED, "sample at t = ");
     assert_non_null(strstr(status.message, "120°"));
-    bough_arena_destroy(arena);
 }
