@@ -81,11 +81,13 @@ typedef struct mass_sum {
 
 static void add_mass(void *context, double s, double weight) {
     mass_sum *c = context;
-    bough_section_station x = bough_section_at(c->axis, s);
-    double turn = -(x.twist - c->twist), mass = weight * x.mass;
+    bough_section_place p = bough_section_find(c->axis, s);
+    double turn = -(bough_section_mix(p.share, p.low->twist, p.high->twist) - c->twist);
+    double mass = weight * bough_section_mix(p.share, p.low->mass, p.high->mass);
+    double x = bough_section_mix(p.share, p.low->centre[0], p.high->centre[0]);
+    double y = bough_section_mix(p.share, p.low->centre[1], p.high->centre[1]);
     double cosine = cos(turn), sine = sin(turn);
-    bough_vec3 centre = {cosine * x.centre[0] - sine * x.centre[1], sine * x.centre[0] + cosine * x.centre[1],
-                         0};
+    bough_vec3 centre = {cosine * x - sine * y, sine * x + cosine * y, 0};
     c->mass += mass;
     c->arm += mass * (c->to - s);
     c->offset = bough_axpy(mass, centre, c->offset);

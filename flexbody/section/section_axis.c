@@ -36,15 +36,19 @@ void bough_section_axis_init(bough_section_axis *a, bough_arena *arena, const bo
 
 double bough_section_length(const bough_section_axis *a) { return a->arc[a->n - 1]; }
 
-// The interval that holds s and the share of its upper station.
-static int locate(const bough_section_axis *a, double s, double *share) {
-    int k = 0;
-    while (k < a->n - 2 && s >= a->arc[k + 1]) k++;
-    *share = bough_clamp((s - a->arc[k]) / (a->arc[k + 1] - a->arc[k]), 0, 1);
-    return k;
+bough_section_place bough_section_find(const bough_section_axis *a, double s) {
+    int k = 0, end = a->n - 1;
+    while (end - k > 1) { // the interval is one of k to end − 1
+        int middle = (k + end) / 2;
+        if (s >= a->arc[middle]) {
+            k = middle;
+        } else {
+            end = middle;
+        }
+    }
+    double share = bough_clamp((s - a->arc[k]) / (a->arc[k + 1] - a->arc[k]), 0, 1);
+    return (bough_section_place){&a->station[k], &a->station[k + 1], share};
 }
-
-static double mix(double share, double low, double high) { return low + share * (high - low); }
 
 void bough_section_central(const bough_section_station *x, double central[4]) {
     double cx = x->centre[0], cy = x->centre[1];
@@ -68,32 +72,31 @@ static void mend_inertia(const bough_section_station *low, const bough_section_s
     if (is_positive(central)) return;
     bough_section_central(low, below);
     bough_section_central(high, above);
-    for (int i = 0; i < 4; i++) x->inertia[i] += mix(share, below[i], above[i]) - central[i];
+    for (int i = 0; i < 4; i++) x->inertia[i] += bough_section_mix(share, below[i], above[i]) - central[i];
 }
 
 bough_section_station bough_section_at(const bough_section_axis *a, double s) {
-    double f;
-    int k = locate(a, s, &f);
-    const bough_section_station *l = &a->station[k], *h = l + 1;
+    bough_section_place p = bough_section_find(a, s);
+    const bough_section_station *l = p.low, *h = p.high;
     bough_section_station x;
-    x.position = bough_between(l->position, h->position, f);
-    x.twist = mix(f, l->twist, h->twist);
-    x.mass = mix(f, l->mass, h->mass);
-    for (int i = 0; i < 21; i++) x.stiffness[i] = mix(f, l->stiffness[i], h->stiffness[i]);
-    for (int i = 0; i < 2; i++) x.centre[i] = mix(f, l->centre[i], h->centre[i]);
-    for (int i = 0; i < 4; i++) x.inertia[i] = mix(f, l->inertia[i], h->inertia[i]);
-    mend_inertia(l, h, f, &x);
+    x.position = bough_between(l->position, h->position, p.share);
+    x.twist = bough_section_mix(p.share, l->twist, h->twist);
+    x.mass = bough_section_mix(p.share, l->mass, h->mass);
+    for (int i = 0; i < 21; i++) {
+        x.stiffness[i] = bough_section_mix(p.share, l->stiffness[i], h->stiffness[i]);
+    }
+    for (int i = 0; i < 2; i++) x.centre[i] = bough_section_mix(p.share, l->centre[i], h->centre[i]);
+    for (int i = 0; i < 4; i++) x.inertia[i] = bough_section_mix(p.share, l->inertia[i], h->inertia[i]);
+    mend_inertia(l, h, p.share, &x);
     return x;
 }
 
-// Tangent of the axis at s; at a station the mean of its two sides.
-static bough_vec3 tangent_at(const bough_section_axis *a, double s) {
-    double f;
-    int k = locate(a, s, &f);
-    bough_vec3 t = bough_sub(a->station[k + 1].position, a->station[k].position);
+// Tangent of the axis; at a station the mean of its two sides.
+static bough_vec3 tangent_at(const bough_section_axis *a, bough_section_place p) {
+    bough_vec3 t = bough_sub(p.high->position, p.low->position);
     t = bough_scale(1 / bough_norm(t), t);
-    if (f == 0 && k > 0) {
-        bough_vec3 before = bough_sub(a->station[k].position, a->station[k - 1].position);
+    if (p.share == 0 && p.low > a->station) {
+        bough_vec3 before = bough_sub(p.low->position, p.low[-1].position);
         t = bough_axpy(1 / bough_norm(before), before, t);
         t = bough_scale(1 / bough_norm(t), t);
     }
@@ -102,9 +105,10 @@ static bough_vec3 tangent_at(const bough_section_axis *a, double s) {
 
 // The shortest turn of z onto the tangent, then −twist about it.
 bough_quaternion bough_section_rotation(const bough_section_axis *a, double s) {
-    bough_vec3 t = tangent_at(a, s);
+    bough_section_place p = bough_section_find(a, s);
+    bough_vec3 t = tangent_at(a, p);
     bough_quaternion lean = bough_quaternion_normalised((bough_quaternion){1 + t.z, -t.y, t.x, 0});
-    double half = -0.5 * bough_section_at(a, s).twist;
+    double half = -0.5 * bough_section_mix(p.share, p.low->twist, p.high->twist);
     return bough_quaternion_product(lean, (bough_quaternion){cos(half), 0, 0, sin(half)});
 }
 
@@ -115,14 +119,19 @@ static void integrate_piece(double from, double to, bough_section_visitor visit,
     }
 }
 
+static double stiffness_at(bough_section_place p, int i) {
+    int k = bough_symmetric6_index(i, i);
+    return bough_section_mix(p.share, p.low->stiffness[k], p.high->stiffness[k]);
+}
+
 // How often a stretch is to be halved towards its softer end: compliances, 1/(a + b s), then vary by
 // little more than a factor of two over each piece.
 static int halvings(const bough_section_axis *a, double soft, double stiff) {
-    bough_section_station low = bough_section_at(a, soft), high = bough_section_at(a, stiff);
+    bough_section_place low = bough_section_find(a, soft), high = bough_section_find(a, stiff);
     double ratio = 1;
     for (int i = 0; i < 6; i++) {
-        int k = bough_symmetric6_index(i, i);
-        if (low.stiffness[k] > 0) ratio = fmax(ratio, high.stiffness[k] / low.stiffness[k]);
+        double least = stiffness_at(low, i), most = stiffness_at(high, i);
+        if (least > 0) ratio = fmax(ratio, most / least);
     }
     return (int)fmin(ceil(log2(ratio) - 0.5), MOST_HALVINGS);
 }

@@ -17,6 +17,17 @@ void bough_section_axis_init(bough_section_axis *a, bough_arena *arena, const bo
 
 double bough_section_length(const bough_section_axis *a);
 
+// Where s lies between two stations, and what is linear between them there.
+typedef struct bough_section_place {
+    const bough_section_station *low, *high;
+    double share; // of the upper station
+} bough_section_place;
+bough_section_place bough_section_find(const bough_section_axis *a, double s);
+
+static inline double bough_section_mix(double share, double low, double high) {
+    return low + share * (high - low);
+}
+
 // The section at arc length s, and its axes in the BRF.
 bough_section_station bough_section_at(const bough_section_axis *a, double s);
 bough_quaternion bough_section_rotation(const bough_section_axis *a, double s);

@@ -72,10 +72,10 @@ static void lump(const element *e, double share, double turned, bough_vertex_ine
     add_offsets(v->inertia, mass, arm, arm);
 }
 
-static element element_of(const lumping *c, const bough_section_station *x, double s, double weight,
+// section: its axes in the BRF
+static element element_of(const lumping *c, const bough_section_station *x, bough_mat3 section, double weight,
                           int vertex, bough_vec3 from) {
     bough_mat3 axes = bough_mat3_transpose(bough_rotation_matrix(c->def->rotation[vertex]));
-    bough_mat3 section = bough_rotation_matrix(bough_section_rotation(c->axis, s));
     element e = {.mass = weight * x->mass, .turn = bough_mat3_product(axes, section)};
     double cx = x->centre[0], cy = x->centre[1];
     e.offset = bough_mat3_mul(axes, bough_sub(x->position, from));
@@ -86,13 +86,10 @@ static element element_of(const lumping *c, const bough_section_station *x, doub
     return e;
 }
 
-static double twist_compliance(const bough_section_axis *a, double s) {
-    return 1 / bough_section_at(a, s).stiffness[20];
-}
-
 static void add_twist(void *context, double s, double weight) {
     lumping *c = context;
-    c->twist += weight * twist_compliance(c->axis, s);
+    bough_section_place p = bough_section_find(c->axis, s);
+    c->twist += weight * (1 / bough_section_mix(p.share, p.low->stiffness[20], p.high->stiffness[20]));
 }
 
 // Share of a unit twist over the segment that has come about at s.
@@ -111,15 +108,15 @@ static void add_mass(void *context, double s, double weight) {
     bough_section_station x = bough_section_at(c->axis, s);
     bough_vec3 step = bough_sub(def->position[k + 1], def->position[k]);
     bough_vec3 chord = bough_axpy(share, step, def->position[k]);
+    bough_mat3 section = bough_rotation_matrix(bough_section_rotation(c->axis, s));
     for (int side = 0; side < 2; side++) {
         double hat = side == 0 ? 1 - share : share;
-        element on_chord = element_of(c, &x, s, weight, k + side, chord);
-        element in_place = element_of(c, &x, s, weight, k + side, def->position[k + side]);
+        element on_chord = element_of(c, &x, section, weight, k + side, chord);
+        element in_place = element_of(c, &x, section, weight, k + side, def->position[k + side]);
         lump(&on_chord, hat, side == 0 ? 1 - twisted : twisted, &c->fine[side]);
         lump(&in_place, hat, hat, &c->rigid[side]);
     }
     double bubble = weight * x.mass * (s - a) * (b - s);
-    bough_mat3 section = bough_rotation_matrix(bough_section_rotation(c->axis, s));
     bough_vec3 centre = bough_mat3_mul(section, bough_v3(x.centre[0], x.centre[1], 0));
     c->curvature += bubble;
     c->offset_curvature = bough_axpy(bubble, centre, c->offset_curvature);

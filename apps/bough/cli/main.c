@@ -67,17 +67,9 @@ static bough_status end_output(bough_status status) {
                       errno ? strerror(errno) : "an earlier write failed");
 }
 
-// OpenBLAS starts threads that we never use and that spin at first, unless the environment forbids it
-// before main begins; so where the user has not, the program does and starts itself once more. Not where
-// OpenMP has bound this thread to a place already: the program started would know of no other place.
-static void quiet_threads(char **argv) {
-    static const char *const bound[] = {"OMP_PLACES", "OMP_PROC_BIND", "GOMP_CPU_AFFINITY"};
-    for (size_t i = 0; i < sizeof bound / sizeof *bound; i++) {
-        if (getenv(bound[i])) return;
-    }
-    if (getenv("OPENBLAS_NUM_THREADS") || setenv("OPENBLAS_NUM_THREADS", "1", 1) != 0) return;
-    execv("/proc/self/exe", argv);
-}
+// OpenBLAS starts threads that we never use and that spin at first, unless the environment forbids it. Where
+// the library is part of the program, this is called before it.
+__attribute__((constructor(101))) static void quiet_threads(void) { setenv("OPENBLAS_NUM_THREADS", "1", 0); }
 
 // Opens /dev/null on closed standard streams: a file of results that took the number of one would receive
 // what is printed.
@@ -89,7 +81,6 @@ static void open_streams(void) {
 
 int main(int argc, char **argv) {
     open_streams();
-    quiet_threads(argv);
     signal(SIGXFSZ, SIG_IGN); // a file at its limit is a write that fails, and is told
     if (argc < 2) {
         bough_help_overview(stderr);

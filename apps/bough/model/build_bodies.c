@@ -134,7 +134,34 @@ static void set_mass(const bough_scene_body *from, const bough_beam *beam, bough
 
 // -- beams ----------------------------------------------------------------------------------------
 
+static bool equal_structures(const bough_scene_structure *x, const bough_scene_structure *y) {
+    bool equal = x->n_station == y->n_station && x->length == y->length &&
+                 memcmp(x->damping, y->damping, sizeof x->damping) == 0;
+    for (int k = 0; k < x->n_station && equal; k++) {
+        equal = memcmp(&x->station[k].def, &y->station[k].def, sizeof x->station[k].def) == 0;
+    }
+    return equal;
+}
+
+// Equal beams, such as the blades of a rotor, have one mesh.
+static const bough_beam *equal_beam(const bough_builder *b, const bough_beam *beam) {
+    const bough_scene_rod *rod = &beam->body->rod;
+    for (const bough_beam *other = b->s->beam; other < beam; other++) {
+        const bough_scene_rod *its = &other->body->rod;
+        if (its->n_segment == rod->n_segment && equal_structures(&its->structure, &rod->structure))
+            return other;
+    }
+    return NULL;
+}
+
 static bough_status discretise(bough_builder *b, bough_beam *beam) {
+    const bough_beam *equal = equal_beam(b, beam);
+    if (equal != NULL) {
+        beam->def = equal->def;
+        beam->def.name = beam->body->name;
+        beam->def.carries = false;
+        return bough_ok();
+    }
     const bough_scene_structure *rod = &beam->body->rod.structure;
     size_t count = (size_t)rod->n_station;
     bough_section_station *station = bough_arena_take(b->arena, count * sizeof *station);

@@ -115,11 +115,22 @@ void bough_mix(uint64_t *hash, const void *bytes, size_t n) {
 
 void bough_mix_text(uint64_t *hash, const char *text) { bough_mix(hash, text, strlen(text) + 1); }
 
+// The same eight bytes at a time, for much: the last ones are followed by zeros.
+static void mix_words(uint64_t *hash, const char *bytes, size_t n) {
+    for (size_t i = 0; i < n; i += 8) {
+        uint64_t word = 0;
+        memcpy(&word, bytes + i, n - i < 8 ? n - i : 8);
+        *hash = (*hash ^ word) * UINT64_C(1099511628211);
+        *hash ^= *hash >> 32; // what a product leaves in the upper half only
+    }
+    bough_mix(hash, &n, sizeof n);
+}
+
 void bough_mix_file(uint64_t *hash, const char *path) {
-    char block[4096], why[BOUGH_INPUT_REASON];
+    char block[1 << 16], why[BOUGH_INPUT_REASON];
     FILE *file = bough_input_open(path, BOUGH_INPUT_DATA, why);
     if (!file) return;
-    for (size_t n; (n = fread(block, 1, sizeof block, file)) > 0;) bough_mix(hash, block, n);
+    for (size_t n; (n = fread(block, 1, sizeof block, file)) > 0;) mix_words(hash, block, n);
     fclose(file);
 }
 

@@ -98,6 +98,22 @@ TEST(rigid_blades_leave_the_tree_alone) {
     assert_true(s->leader.state[1] > 0.5);
 }
 
+// The third beam equals the first one, unless a value of its section, its damping or its mesh differs.
+TEST(equal_beams_have_one_mesh) {
+    static const char *const other[] = {NULL, "bodies[first].rod.segments=5",
+                                        "bodies[first].rod.mass=[1.5, 0, 0, 2e-3, 3e-3, 1e-9]",
+                                        "bodies[first].rod.damping=[0, 0, 0, 0, 0, 1e-3]"};
+    for (int k = 0; k < 4; k++) {
+        const char *const sets[] = {other[k], NULL};
+        bough_arena *arena = bough_arena_create();
+        bough_simulation *s = scene_build(arena, arms, sets);
+        assert_ptr_not_equal(s->beam[1].def.stiffness, s->beam[0].def.stiffness);
+        assert_int_equal(s->beam[2].def.stiffness == s->beam[0].def.stiffness, k == 0);
+        assert_string_equal(s->beam[2].def.name, "first");
+        bough_arena_destroy(arena);
+    }
+}
+
 // Half a second of the run-up: the rotor turns as with rods, the tips bend as theirs.
 TEST(modal_blades_move_as_rods) {
     static const char *const sets[3][4] = {
