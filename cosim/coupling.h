@@ -22,12 +22,12 @@ typedef enum bough_exchange {
 
 // The user's choices. A scheme ignores the fields that it does not use.
 typedef struct bough_scheme_options {
-    const char *name;                    // of the scheme, see scheme.h
-    int order;                           // extrapolated, iterated: degree of the polynomial, 0 … 2
-    bool parallel;                       // extrapolated: all stages at once instead of one after the other
-    bool reversed;                       // sequential schemes take the last stage first
-    bough_interpolation interpolation;   // sequential schemes
-    double theta;                        // ramp: 1/2 … 1; 0 chooses by the ratio of interface inertias
+    const char *name;                  // of the scheme, see scheme.h
+    int order;                         // extrapolated, iterated: degree of the polynomial, 0 … 2
+    bool parallel;                     // extrapolated: all stages at once instead of one after the other
+    bool reversed;                     // sequential schemes take the last stage first
+    bough_interpolation interpolation; // sequential schemes
+    double theta; // ramp: 1/2 … 1; 0: 1/2, and a scene on which that is unstable is refused
     bough_integrator_options integrator; // monolithic
     bough_exchange exchange;             // iterated
     bough_acceleration accelerator;      // iterated
@@ -39,16 +39,14 @@ typedef struct bough_scheme_options {
 // Number of past synchronisation points that a scheme may use, and number that is stored.
 enum { BOUGH_HISTORY = 3, BOUGH_PAST = 4 };
 
-typedef struct bough_scheme bough_scheme;       // see scheme.h
-typedef struct bough_iteration bough_iteration; // see iteration.h
+typedef struct bough_scheme bough_scheme; // see scheme.h
 
 typedef struct bough_coupling {
     const bough_assembly *assembly;
     const bough_scheme *scheme; // set by bough_scheme_couple
     bough_scheme_options options;
-    bough_pool *pool;           // NULL: one thread
-    void *scheme_data;          // what the scheme created
-    bough_iteration *iteration; // NULL unless steps are repeated
+    bough_pool *pool;  // NULL: one thread
+    void *scheme_data; // what the scheme created
 
     // the step to take, set by the master
     double t0, t1; // [s]
@@ -81,7 +79,6 @@ typedef struct bough_coupling {
     double *seen, *seen_rate; // (n_input)
 
     // by the ramp scheme, for the summary
-    double theta;           // in use
     double interface_ratio; // spectral radius of the interface's gain about the initial state;
                             // NaN: not known
 

@@ -91,7 +91,7 @@ bough_status bough_master_build(bough_arena *arena, const bough_master_def *def,
     evaluate_loads(m);
     m->coupling->t1 = m->coupling->t0 + m->macro_step;
     *master = m;
-    return scheme->prepare ? scheme->prepare(m->coupling, arena) : status;
+    return scheme->prepare ? scheme->prepare(m->coupling) : status;
 }
 
 bool bough_master_done(const bough_master *m) { return m->time >= m->duration; }
@@ -239,7 +239,6 @@ void bough_master_snapshot(bough_master *m, bough_snapshot *s) {
     bough_coupling_snapshot(c, s);
     bough_snapshot_take(s, &c->t0, sizeof c->t0);
     bough_snapshot_take(s, &c->t1, sizeof c->t1);
-    bough_snapshot_take(s, &c->theta, sizeof c->theta);
     bough_snapshot_take(s, &c->interface_ratio, sizeof c->interface_ratio);
     bough_snapshot_take(s, &c->sweeps, sizeof c->sweeps);
     bough_snapshot_take(s, &c->unfinished, sizeof c->unfinished);

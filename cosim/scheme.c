@@ -80,12 +80,6 @@ int bough_scheme_defect_order(const bough_scheme *s, const bough_scheme_options 
     return s->defect_order ? s->defect_order(options) : 1;
 }
 
-bough_scheme_options bough_scheme_options_in_use(const bough_coupling *c) {
-    bough_scheme_options options = c->options;
-    if (c->scheme->choose) c->scheme->choose(c, &options);
-    return options;
-}
-
 void bough_scheme_describe(const bough_scheme *s, const bough_scheme_options *options,
                            char text[BOUGH_SCHEME_TEXT]) {
     size_t room = BOUGH_SCHEME_TEXT, n = (size_t)snprintf(text, room, "%s", s->name);
@@ -103,6 +97,6 @@ void bough_scheme_describe(const bough_scheme *s, const bough_scheme_options *op
     if (s->reads & BOUGH_READS_THETA && options->theta > 0) {
         snprintf(text + n, room - n, ", theta %.6g", options->theta);
     } else if (s->reads & BOUGH_READS_THETA) {
-        snprintf(text + n, room - n, ", theta auto: chosen at the first step");
+        snprintf(text + n, room - n, ", theta auto: 0.5 where that is stable");
     }
 }

@@ -21,22 +21,21 @@ struct bough_scheme {
     const char *summary;  // one line for help: what is exchanged, order, stability
     unsigned reads;       // BOUGH_READS_… of the options, but of members: see bough_scheme_reads
     bool explicit_forces; // forces are frozen or extrapolated: unstable beyond some macro step
+    bool repeats;         // members return to the start of a step: they must be able to restore their states
     bool judged;          // may be unstable: its eigenvalues are computed before the run
     bool one_system;      // all members are one system: there is no coupling error to judge or estimate
     // Allocates the scheme's memory and checks its options; NULL if it needs neither.
     bough_status (*create)(bough_coupling *c, bough_arena *arena);
-    // Makes the choices that are constant over the run, from the initial state and a first step from t0 to
-    // t1, and allocates their memory; NULL: there are none. A failure that the first step would repeat
-    // is reported by the first step.
-    bough_status (*prepare)(bough_coupling *c, bough_arena *arena);
+    // Prepares the run at the initial state, for a first step from t0 to t1; NULL: nothing to prepare.
+    // BOUGH_INVALID where the scheme does not suit the scene. A failure that the first step would repeat is
+    // reported by the first step.
+    bough_status (*prepare)(bough_coupling *c);
     // Advances all members from t0 to t1.
     bough_status (*step)(bough_coupling *c);
     // The part of its memory that later steps depend on, without factors. NULL: nothing.
     void (*snapshot)(bough_coupling *c, bough_snapshot *s);
     // Order of the interface defects in the macro step; NULL: 1.
     int (*defect_order)(const bough_scheme_options *options);
-    // Replaces options by the scheme's own choices during the run; NULL: it makes none.
-    void (*choose)(const bough_coupling *c, bough_scheme_options *options);
 };
 
 // name "ramp", order 1, sequential, Hermite, theta automatic, IDA to 1e-6; end
@@ -70,9 +69,6 @@ const bough_scheme_key *bough_scheme_key_at(int index);
 
 // Order of the interface defects in the macro step.
 int bough_scheme_defect_order(const bough_scheme *s, const bough_scheme_options *options);
-
-// The options that the scheme actually uses, for a stability analysis.
-bough_scheme_options bough_scheme_options_in_use(const bough_coupling *c);
 
 enum { BOUGH_SCHEME_TEXT = 200 };
 

@@ -23,7 +23,6 @@
 // a hundred times more noise there than at the end of the step.
 #include "cosim/accelerate.h"
 #include "cosim/coupled.h"
-#include "cosim/iteration.h"
 #include "cosim/port.h"
 #include "cosim/scheme.h"
 #include "cosim/sequence.h"
@@ -40,7 +39,7 @@ enum { MOST_AGE = 12 }; // of Newton's Jacobians [steps]: as the ramp keeps its 
 static const double end_point[] = {1};
 static const double lobatto[MOST_NODES] = {0.27639320225002103, 0.72360679774997897, 1};
 
-struct bough_iteration {
+typedef struct iteration {
     bough_accelerator *accelerator;
     // Newton's, one a node: how inputs answer to their own change up to there. Every member answers by one
     // linearly implicit step, (I − γJ) δy = γ B δu, as in the ramp's prediction; γ is the time over which a
@@ -67,11 +66,11 @@ struct bough_iteration {
     double *guess;     // (n_node × n) scaled values prescribed
     double *image;     // (n_node × n) the values obtained
     double *change;    // (n_input) scratch
-};
+} iteration;
 
 // -- building -------------------------------------------------------------------------------------
 
-static void find_feedback(bough_iteration *it, const bough_coupling *c) {
+static void find_feedback(iteration *it, const bough_coupling *c) {
     const bough_assembly *a = c->assembly;
     for (int i = 0; i < a->n_member; i++) {
         for (int j = a->input_offset[i]; j < a->input_offset[i + 1]; j++) {
@@ -84,7 +83,7 @@ static void find_feedback(bough_iteration *it, const bough_coupling *c) {
     }
 }
 
-static void take(bough_iteration *it, const bough_assembly *a, bough_arena *arena) {
+static void take(iteration *it, const bough_assembly *a, bough_arena *arena) {
     size_t n = (size_t)a->n_input, n_node = (size_t)it->n_node;
     it->copy = bough_arena_take(arena, (size_t)a->n_member * sizeof *it->copy);
     it->input = bough_arena_take(arena, n * sizeof *it->input);
@@ -105,7 +104,7 @@ static void take(bough_iteration *it, const bough_assembly *a, bough_arena *aren
 
 static void solve_newton(void *self, double *x);
 
-static void create_accelerator(bough_coupling *c, bough_iteration *it, bough_arena *arena) {
+static void create_accelerator(bough_coupling *c, iteration *it, bough_arena *arena) {
     bough_accelerator_def def = {.kind = c->options.accelerator,
                                  .n = it->n_node * it->n,
                                  .relaxation = c->options.relaxation,
@@ -122,8 +121,8 @@ static void create_accelerator(bough_coupling *c, bough_iteration *it, bough_are
     it->at = bough_arena_doubles(arena, (size_t)c->assembly->n_state);
 }
 
-bough_status bough_iteration_create(bough_coupling *c, bough_arena *arena) {
-    bough_iteration *it = bough_arena_take(arena, sizeof *it);
+static bough_status create(bough_coupling *c, bough_arena *arena) {
+    iteration *it = bough_arena_take(arena, sizeof *it);
     assert(c->options.order >= 0 && c->options.order < BOUGH_HISTORY);
     bool waveform = c->options.exchange == BOUGH_EXCHANGE_WAVEFORM;
     it->n_input = c->assembly->n_input;
@@ -133,7 +132,7 @@ bough_status bough_iteration_create(bough_coupling *c, bough_arena *arena) {
     it->obtained = c->end_output;
     if (waveform) it->obtained = bough_arena_doubles(arena, MOST_NODES * (size_t)c->assembly->n_output);
     find_feedback(it, c);
-    c->iteration = it;
+    c->scheme_data = it;
     create_accelerator(c, it, arena);
     return bough_ok();
 }
@@ -141,7 +140,7 @@ bough_status bough_iteration_create(bough_coupling *c, bough_arena *arena) {
 // -- a sweep --------------------------------------------------------------------------------------
 
 static void transfer(const bough_coupling *c, int member, bough_snapshot_move move) {
-    bough_snapshot copy = {.move = move, .copy = c->iteration->copy[member]};
+    bough_snapshot copy = {.move = move, .copy = ((const iteration *)c->scheme_data)->copy[member]};
     bough_member_snapshot(c->assembly->member[member], &copy);
 }
 
@@ -150,14 +149,14 @@ static void save(bough_coupling *c, int member) { transfer(c, member, BOUGH_SNAP
 static void restore(bough_coupling *c, int member) { transfer(c, member, BOUGH_SNAPSHOT_RESTORE); }
 
 static double node_time(const bough_coupling *c, int k) {
-    const bough_iteration *it = c->iteration;
+    const iteration *it = c->scheme_data;
     return k + 1 < it->n_node ? c->t0 + it->node[k] * (c->t1 - c->t0) : c->t1;
 }
 
 // Input j of the member through its values at the nodes and, of end values, earlier ones.
 static void interpolate(bough_coupling *c, int member, int j) {
     const bough_assembly *a = c->assembly;
-    const bough_iteration *it = c->iteration;
+    const iteration *it = c->scheme_data;
     double time[MOST_NODES + BOUGH_HISTORY];
     const double *value[MOST_NODES + BOUGH_HISTORY];
     int n = it->n_node, earlier = n > 1 ? 1 : c->options.order;
@@ -177,7 +176,7 @@ static void interpolate(bough_coupling *c, int member, int j) {
 static void advance(bough_coupling *c, int member) {
     const bough_assembly *a = c->assembly;
     const bough_system *s = &a->member[member]->system;
-    const bough_iteration *it = c->iteration;
+    const iteration *it = c->scheme_data;
     double *seen = c->seen + a->input_offset[member];
     for (int j = a->input_offset[member]; j < a->input_offset[member + 1]; j++) {
         for (int k = 0; k < it->n_node && !it->is_feedback[j]; k++) {
@@ -210,7 +209,7 @@ static bough_status sweep(bough_coupling *c) {
 // First values: extrapolated from earlier ones, or constant where the loads jump.
 static void predict(bough_coupling *c) {
     const bough_assembly *a = c->assembly;
-    bough_iteration *it = c->iteration;
+    iteration *it = c->scheme_data;
     int degree = c->restart ? 0 : it->n_node > 1 ? BOUGH_HISTORY - 1 : c->options.order;
     for (int i = 0; i < a->n_member; i++) {
         int first = a->input_offset[i];
@@ -227,7 +226,7 @@ static void predict(bough_coupling *c) {
 // Magnitudes of the ports from the first sweep; they are constant over the step.
 static void update_scales(bough_coupling *c) {
     const bough_assembly *a = c->assembly;
-    bough_iteration *it = c->iteration;
+    iteration *it = c->scheme_data;
     const double *obtained = it->obtained + (it->n_node - 1) * a->n_output;
     const double *prescribed = it->prescribed + (it->n_node - 1) * a->n_input;
     double largest = 0;
@@ -250,7 +249,7 @@ static void update_scales(bough_coupling *c) {
 // The residual of the sweep just made [1].
 static double evaluate(bough_coupling *c) {
     const bough_assembly *a = c->assembly;
-    bough_iteration *it = c->iteration;
+    iteration *it = c->scheme_data;
     for (int p = 0; p < it->n_node; p++) {
         const double *prescribed = it->prescribed + p * a->n_input;
         const double *obtained = it->obtained + p * a->n_output;
@@ -264,7 +263,7 @@ static double evaluate(bough_coupling *c) {
 }
 
 static void correct(bough_coupling *c) {
-    bough_iteration *it = c->iteration;
+    iteration *it = c->scheme_data;
     bough_accelerator_next(it->accelerator, it->guess);
     for (int p = 0; p < it->n_node; p++) {
         double *prescribed = it->prescribed + p * c->assembly->n_input;
@@ -276,7 +275,7 @@ static void correct(bough_coupling *c) {
 
 // x (n_node × n), scaled: node by node the change that closes the interface over this residual.
 static void solve_newton(void *self, double *x) {
-    const bough_iteration *it = self;
+    const iteration *it = self;
     for (int p = 0; p < it->n_node; p++, x += it->n) {
         memset(it->change, 0, (size_t)it->n_input * sizeof(double));
         for (int k = 0; k < it->n; k++) it->change[it->input[k]] = it->scale[k] * x[k];
@@ -288,7 +287,7 @@ static void solve_newton(void *self, double *x) {
 // The Jacobians for a step, members being at t0: anew when the macro step changes, loads jump, and every few
 // steps.
 static bough_status renew_jacobians(bough_coupling *c) {
-    bough_iteration *it = c->iteration;
+    iteration *it = c->scheme_data;
     double length = c->t1 - c->t0;
     bool same = !c->restart && fabs(length - it->length) <= 1e-9 * length;
     it->age++;
@@ -305,7 +304,7 @@ static bough_status renew_jacobians(bough_coupling *c) {
 
 static bough_status not_converged(const bough_coupling *c, int sweeps, double residual) {
     const bough_assembly *a = c->assembly;
-    const bough_iteration *it = c->iteration;
+    const iteration *it = c->scheme_data;
     int worst = 0, to = 0, last = (it->n_node - 1) * it->n;
     for (int k = 1; k < it->n; k++) {
         double off = fabs(it->image[last + k] - it->guess[last + k]);
@@ -327,7 +326,7 @@ static bough_status not_converged(const bough_coupling *c, int sweeps, double re
 // The step with the values that left the smallest residual: where the error is measured, it says what they
 // are worth.
 static bough_status go_back(bough_coupling *c) {
-    bough_iteration *it = c->iteration;
+    iteration *it = c->scheme_data;
     bough_status status = bough_coupling_each(c, BOUGH_ALL_STAGES, restore);
     memcpy(it->prescribed, it->best, it->n_prescribed * sizeof(double));
     c->sweeps++;
@@ -335,8 +334,8 @@ static bough_status go_back(bough_coupling *c) {
     return bough_is_ok(&status) ? sweep(c) : status;
 }
 
-bough_status bough_iteration_step(bough_coupling *c) {
-    bough_iteration *it = c->iteration;
+static bough_status step(bough_coupling *c) {
+    iteration *it = c->scheme_data;
     bough_coupling_begin(c);
     bough_status status = bough_coupling_each(c, BOUGH_ALL_STAGES, save);
     bough_accelerator_start(it->accelerator);
@@ -364,8 +363,8 @@ bough_status bough_iteration_step(bough_coupling *c) {
     return status;
 }
 
-void bough_iteration_snapshot(bough_coupling *c, bough_snapshot *s) {
-    bough_iteration *it = c->iteration;
+static void snapshot(bough_coupling *c, bough_snapshot *s) {
+    iteration *it = c->scheme_data;
     bough_snapshot_doubles(s, it->size, it->n);
     if (s->move == BOUGH_SNAPSHOT_RESTORE) it->length = 0; // Jacobians are made anew
 }
@@ -379,9 +378,10 @@ const bough_scheme bough_scheme_iterated = {
     .summary = "the step is repeated until the interface agrees; order 1 to 3 (degree + 1), of "
                "waveforms 6, implicit",
     .reads = BOUGH_READS_ORDER | BOUGH_READS_EXCHANGE | BOUGH_READS_ACCELERATOR,
+    .repeats = true,
     .judged = true,
-    .create = bough_iteration_create,
-    .step = bough_iteration_step,
-    .snapshot = bough_iteration_snapshot,
+    .create = create,
+    .step = step,
+    .snapshot = snapshot,
     .defect_order = defect_order,
 };

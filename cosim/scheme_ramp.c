@@ -11,14 +11,14 @@
 // order without further cost. It is used on heavy interface bodies only, because elsewhere the delayed
 // compensation causes oscillations.
 //
-// θ = 1/2: order 3 with that impulse, 2 without. On an interface body that is lighter than the bodies it
-// carries, or with θ > 1/2, the first step has θ = 1, which is damped and of order 1. If the eigenvalues of
-// the macro step show that the trapezoidal rule is unstable, all steps have the smallest stable θ: slightly
-// above 1/2, of order 1 with an error 2θ − 1 times as large. If no θ is stable, the step is repeated with
-// waveforms (iteration.h). The interface is solved as in condense.h.
+// θ = 1/2: order 3 with that impulse, 2 without. Where the interface body is light, the eigenvalues of the
+// linearised macro step are computed before the run; if they grow, the scheme refuses the scene. On an
+// interface body that is lighter than the bodies it carries the first step has θ = 1, which is damped and of
+// order 1. A scene may name another θ, which is taken as it is: of order 1, with an error 2θ − 1 times as
+// large. The interface is solved as in condense.h.
 #include "cosim/analysis/stability.h"
 #include "cosim/condense.h"
-#include "cosim/iteration.h"
+#include "cosim/coupling.h"
 #include "cosim/port.h"
 #include "cosim/scheme.h"
 
@@ -34,10 +34,9 @@ typedef struct ramp {
     double *change;       // (n_input) changes of the inputs
     double *input;        // (n_input) at the start of the step, as linearised: what was applied to leaders
     double theta;         // of the present step
-    double final;         // after the damped first steps
-    double damped;        // steps that begin before are damped [s]
-    bool chosen;          // θ is final
-    bool repeats;         // no θ holds: waveforms are iterated
+    double damped;        // steps that begin before have θ = 1 [s]
+    bool named;           // the scene names θ
+    bool measured;        // the interface ratio is known
     bool repays;          // impulses
     bool fresh;           // followers are linearised in this step
     int age;              // steps since they were
@@ -54,7 +53,7 @@ static bough_status check_shape(const bough_coupling *c) {
     for (int i = 0; i < a->n_member; i++) {
         if (leads(c, i) && a->feedthrough[i]) {
             return bough_fail(BOUGH_INVALID,
-                              "scheme ramp: %s leads, so its outputs must not depend on its "
+                              "ramp: %s leads, so its outputs must not depend on its "
                               "inputs directly; use another scheme",
                               a->member[i]->system.name);
         }
@@ -62,7 +61,7 @@ static bough_status check_shape(const bough_coupling *c) {
     for (int i = 0; i < a->n_member; i++) {
         for (int j = a->input_offset[i]; j < a->input_offset[i + 1]; j++) {
             if (leads(c, i) != leads(c, a->source_member[j])) continue;
-            return bough_fail(BOUGH_INVALID, "scheme ramp: leaders and followers may only "
+            return bough_fail(BOUGH_INVALID, "ramp: leaders and followers may only "
                                              "be connected with each other; use another scheme");
         }
     }
@@ -79,8 +78,9 @@ static bough_status create(bough_coupling *c, bough_arena *arena) {
     r->output = bough_arena_doubles(arena, (size_t)a->n_output);
     bough_arena_each(arena, (size_t)a->n_input, &r->change, &r->input, &c->deficit);
     r->damped = -HUGE_VAL;
-    r->chosen = c->options.theta > 0;
-    r->theta = r->final = r->chosen ? c->options.theta : 0.5;
+    r->named = c->options.theta > 0;
+    if (!r->named) c->options.theta = 0.5;
+    r->theta = c->options.theta;
     c->scheme_data = r;
     r->interface = bough_condensed_create(arena, a);
     return bough_ok();
@@ -204,110 +204,60 @@ static bough_status predict(bough_coupling *c) {
     return bough_fail(BOUGH_RETRY, "the interface equations are singular at %.6g s", c->t0);
 }
 
-// Above this gain the leaders are lighter than the bodies they carry: the trapezoidal prediction oscillates.
+// Above this ratio the leaders are lighter than the bodies they carry: the start of θ = 1/2 oscillates.
 static const double light_interface = 1;
 
-// Below this gain the delayed compensation of impulses is damped: on two masses of any ratio the macro
-// step becomes unstable at gains of 0.3 to 1.
+// Below this ratio the delayed compensation of impulses is damped: on two masses of any ratio the macro
+// step becomes unstable at ratios of 0.3 to 1.
 static const double heavy_interface = 0.25;
 
-// The weights. Slightly above 1/2 the ramp damps oscillations and loses little accuracy: measured on masses
-// of 3 to 1700 times the one that carries them (10 ms, stiff spring), 0.6 is always stable, 1/2 grows by up
-// to 18 per second between 30 and 500, and 1, a constant force, grows at a low frequency everywhere.
-static const double weights[] = {0.5, 0.55, 0.6, 0.65, 0.7, 0.8};
-enum { WEIGHTS = sizeof weights / sizeof *weights };
 static const double ringing = 0.05; // growth that does not count [1/s]
-static const double rise = 0.1;     // growth in a macro step that no mechanics has
-static const double untamed = 10;   // growth that no outer load damps [1/s]
 
-// Growth of the fastest oscillation with these options [1/s].
-static bough_status growth_of(const bough_coupling *c, bough_scheme_options options,
-                              bough_stability *stability) {
-    // the light body turns by about 2 √ratio in a macro step; four linear member steps a radian
-    double h = c->t1 - c->t0, part = fmin(8 * sqrt(c->interface_ratio), 64);
-    bough_status status = bough_stability_judge_by(c->assembly, &options, h, fmin(h / part, 5e-3), stability);
-    if (!bough_is_ok(&status)) stability->growth = HUGE_VAL;
-    return status;
+// Refuses a scene on which the macro step with θ = 1/2 is unstable.
+static bough_status check_stability(const bough_coupling *c) {
+    // a light body oscillates by about 2 √ratio rad in a macro step; four steps of its linear member a radian
+    double h = c->t1 - c->t0, parts = fmin(8 * sqrt(c->interface_ratio), 64);
+    bough_stability found;
+    bough_status status =
+        bough_stability_judge_by(c->assembly, &c->options, h, fmin(h / parts, 5e-3), &found);
+    if (!bough_is_ok(&status) || found.growth <= ringing) return status;
+    return bough_fail(BOUGH_INVALID,
+                      "under ramp the body that carries %.40s is too light for a macro step of %.6g s: "
+                      "%.3g Hz would grow by %.3g per second (interface ratio %.3g); use scheme: monolithic",
+                      c->assembly->member[found.body]->system.name, h, found.frequency, found.growth,
+                      c->interface_ratio);
 }
 
-static bough_status growth_with(const bough_coupling *c, double theta, double *growth) {
-    bough_scheme_options options = c->options;
-    bough_stability stability;
-    options.theta = theta;
-    bough_status status = growth_of(c, options, &stability);
-    *growth = stability.growth;
-    return status;
-}
-
-// Whether iterated waveforms are stable where no weight is.
-static bool waveforms_hold(const bough_coupling *c) {
-    bough_scheme_options options = c->options;
-    bough_stability stability;
-    options.name = "iterated";
-    options.exchange = BOUGH_EXCHANGE_WAVEFORM;
-    bough_status status = growth_of(c, options, &stability);
-    bool rises = stability.rising * (c->t1 - c->t0) > rise;
-    return bough_is_ok(&status) && stability.suspected <= ringing && !rises;
-}
-
-// The first stable weight. If there is none, no prediction is good enough and steps are repeated with
-// waveforms, if these are stable; else the weight with the smallest growth is taken, which outer loads may
-// damp. A constant force, θ = 1, loses the solution and is the last choice.
-static bough_status choose_weight(bough_coupling *c) {
-    ramp *r = c->scheme_data;
-    double least = HUGE_VAL;
-    bough_status status = bough_ok();
-    for (int k = 0; k < WEIGHTS && least > ringing && bough_is_ok(&status); k++) {
-        double growth;
-        status = growth_with(c, weights[k], &growth);
-        if (!bough_is_ok(&status) || growth >= least) continue;
-        least = growth;
-        r->final = weights[k];
-    }
-    if (least <= ringing || !bough_is_ok(&status)) return status;
-    r->repeats = waveforms_hold(c);
-    if (least > untamed) r->final = 1;
-    return status;
-}
-
-// The trapezoidal rule does not damp the start of a light body, so the first step is damped.
+// θ = 1/2 does not damp the start of a light body, so the first step has θ = 1.
 static bough_status predict_damped(bough_coupling *c) {
     ramp *r = c->scheme_data;
-    r->theta = c->t0 < r->damped ? 1 : r->final;
+    r->theta = c->t0 < r->damped ? 1 : c->options.theta;
     return predict(c);
 }
 
-static bough_status choose_theta(bough_coupling *c) {
+// The first prediction, which gives the interface ratio, and what follows from the ratio.
+static bough_status measure_interface(bough_coupling *c) {
     ramp *r = c->scheme_data;
     bough_status status = predict(c);
     if (!bough_is_ok(&status)) return status;
     c->interface_ratio = bough_condensed_radius(r->interface);
-    if (!r->chosen && c->interface_ratio > heavy_interface) {
-        status = choose_weight(c);
-        if (!bough_is_ok(&status) || r->repeats) return status;
-        if (r->final > 0.5 || c->interface_ratio > light_interface) r->damped = c->t1;
+    if (!r->named && c->interface_ratio > heavy_interface) {
+        status = check_stability(c);
+        if (!bough_is_ok(&status)) return status;
+        if (c->interface_ratio > light_interface) r->damped = c->t1;
         status = predict_damped(c);
     }
-    r->chosen = true;
-    r->repays = r->final == 0.5 && c->interface_ratio < heavy_interface;
-    c->theta = r->final;
+    r->measured = true;
+    r->repays = c->options.theta == 0.5 && c->interface_ratio < heavy_interface;
     return status;
 }
 
-// For repeated steps: their memory, and what they exchange.
-static bough_status prepare_repetition(bough_coupling *c, bough_arena *arena) {
-    c->options.exchange = BOUGH_EXCHANGE_WAVEFORM;
-    return bough_iteration_create(c, arena);
-}
-
 // Members that have no finite rate of change are left to the first step, which names them.
-static bough_status prepare(bough_coupling *c, bough_arena *arena) {
+static bough_status prepare(bough_coupling *c) {
     ramp *r = c->scheme_data;
-    bough_status status = choose_theta(c);
+    bough_status status = measure_interface(c);
     r->span = 0; // loads are sampled before the first step
-    if (status.code == BOUGH_RETRY) return bough_ok();
-    if (!bough_is_ok(&status) || !r->repeats) return status;
-    return prepare_repetition(c, arena);
+    return status.code == BOUGH_RETRY ? bough_ok() : status;
 }
 
 // -- the step -------------------------------------------------------------------------------------
@@ -342,21 +292,16 @@ static void set_ramps(bough_coupling *c, int member) {
     }
 }
 
-static bough_status repeat(bough_coupling *c) {
-    memset(c->deficit, 0, (size_t)c->assembly->n_input * sizeof(double));
-    return bough_iteration_step(c);
-}
-
 static bough_status step(bough_coupling *c) {
     const bough_assembly *a = c->assembly;
-    if (c->iteration) return repeat(c);
+    const ramp *r = c->scheme_data;
     bough_coupling_begin(c);
-    bough_status status = c->theta > 0 ? predict_damped(c) : choose_theta(c);
+    bough_status status = r->measured ? predict_damped(c) : measure_interface(c);
     if (!bough_is_ok(&status)) return status;
     for (int i = 0; i < a->n_member; i++) {
         if (leads(c, i)) set_ramps(c, i);
     }
-    status = bough_coupling_advance_leaders(c, 0, c->restart || held(c->scheme_data));
+    status = bough_coupling_advance_leaders(c, 0, c->restart || held(r));
     if (!bough_is_ok(&status)) return status;
     for (int i = 0; i < a->n_member; i++) {
         if (leads(c, i)) continue;
@@ -375,23 +320,15 @@ static bough_status step(bough_coupling *c) {
 static void snapshot(bough_coupling *c, bough_snapshot *s) {
     ramp *r = c->scheme_data;
     bough_snapshot_take(s, &r->theta, sizeof r->theta);
-    bough_snapshot_take(s, &r->final, sizeof r->final);
     bough_snapshot_take(s, &r->damped, sizeof r->damped);
-    bough_snapshot_take(s, &r->chosen, sizeof r->chosen);
+    bough_snapshot_take(s, &r->measured, sizeof r->measured);
     bough_snapshot_take(s, &r->repays, sizeof r->repays);
     if (s->move == BOUGH_SNAPSHOT_RESTORE) r->span = 0;
-    if (c->iteration) bough_iteration_snapshot(c, s);
 }
 
 static int defect_order(const bough_scheme_options *options) {
     (void)options;
     return 2;
-}
-
-// The weight, or that steps are repeated.
-static void choose(const bough_coupling *c, bough_scheme_options *options) {
-    if (c->theta > 0) options->theta = c->theta;
-    if (c->iteration) options->name = "iterated";
 }
 
 const bough_scheme bough_scheme_ramp = {
@@ -404,5 +341,4 @@ const bough_scheme bough_scheme_ramp = {
     .step = step,
     .snapshot = snapshot,
     .defect_order = defect_order,
-    .choose = choose,
 };

@@ -77,7 +77,7 @@ static bough_status build(map *m, const bough_assembly *a, const bough_scheme_op
     m->n = bough_coupling_n_memory(c);
     m->repeat = (int)fmin(ceil(span / m->macro_step - 1e-6), MOST_REPEATED);
     c->t1 = c->t0 + m->macro_step;
-    if (c->scheme->prepare) status = c->scheme->prepare(c, m->arena);
+    if (c->scheme->prepare) status = c->scheme->prepare(c);
     take(m);
     return status;
 }
@@ -349,7 +349,7 @@ bough_status bough_stability_advise(const bough_assembly *a, const bough_scheme_
     if (!bough_is_ok(&status) || !bough_stability_grows(&advice->now)) return status;
     bough_scheme_options instead = *options;
     instead.name = "ramp";
-    instead.theta = 0;
+    instead.theta = 0.5;
     double least = advice->now.growth;
     advice->ramp_holds = strcmp(options->name, "ramp") != 0 && holds(a, &instead, macro_step, &least);
     for (size_t k = 0; k < sizeof divisor / sizeof *divisor && advice->macro_step == 0; k++) {

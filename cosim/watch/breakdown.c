@@ -42,10 +42,9 @@ void bough_breakdown_undo(const bough_breakdown *b, bough_coupling *c) {
 // Nothing when the judgement fails too: the state may be past judging.
 static bough_stability_advice judge_again(bough_breakdown *b, bough_coupling *c) {
     const bough_assembly *a = b->assembly;
-    bough_scheme_options options = bough_scheme_options_in_use(c);
     bough_stability_advice advice;
     restore_members(b, c);
-    bough_status status = bough_stability_advise(a, &options, c->t1 - c->t0, &advice);
+    bough_status status = bough_stability_advise(a, &c->options, c->t1 - c->t0, &advice);
     return bough_is_ok(&status) ? advice : (bough_stability_advice){0};
 }
 

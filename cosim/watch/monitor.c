@@ -133,7 +133,7 @@ static bool coupling_grows(const bough_coupling *c, const group *g, double defec
     double needed = log(suspicious_growth) / (c->t1 - g->small_time); // for what was seen
     *growth = needed;
     if (c->assembly->opaque) return defect > unrelated * g->magnitude;
-    bough_scheme_options options = bough_scheme_options_in_use(c);
+    bough_scheme_options options = c->options;
     double h = c->t1 - c->t0, own;
     *growth = fastest_growth(c, &options, h);
     own = *growth / 2;
@@ -164,7 +164,7 @@ static bough_status watch_size(const bough_monitor *m, const bough_coupling *c, 
         g->small = fmax(g->small, size);
         g->small_time = c->t1;
     } else if (!g->kinematic && size > suspicious_growth * g->small &&
-               (c->iteration || c->scheme->explicit_forces || defect > agreement * g->magnitude)) {
+               (c->scheme->repeats || c->scheme->explicit_forces || defect > agreement * g->magnitude)) {
         bough_status status = look_into(m, c, g, defect);
         g->small = size;
         g->small_time = c->t1;

@@ -162,7 +162,7 @@ checks() {
     has ../stdout '^body blade3: rigid: no states of its own'
     has ../stdout '^joints: 1 moving, 5 fixed$'
     has ../stdout '^ports: 2,'
-    has ../stdout '^coupling: ramp, theta auto'
+    has ../stdout '^coupling: ramp, theta 0.5'
     has ../stdout '^aero: built, 3 blades of '
     has ../stdout '^rotor: 3 blades, radius 62.94 m, hub height 90 m, tilt 5 deg, overhang 5.0191 m upwind'
     has ../stdout '^blade blade2: pitch 6.5 deg, cone -2.5 deg, root at 1.5 m'

@@ -72,7 +72,7 @@ done
 
 # A straight bar in free fall: what hardly moves does not count, whatever its error relative to nothing.
 cat >fall.yaml <<'END'
-simulation: {duration: 0.5 s, macro_step: 10 ms, coupling: {scheme: ramp}}
+simulation: {duration: 0.5 s, macro_step: 10 ms}
 bodies:
   - {name: carriage, joint: {kind: planar, parent: ground, axis: x}, fidelity: rigid, mass: 2, inertia: [0.01, 0.01, 0.01]}
   - {name: arm, fidelity: rod, joint: {kind: fixed, parent: carriage},

@@ -172,6 +172,7 @@ static bough_master_def definition(const model *m, const variant *v, int degree,
     bough_master_def def = bough_master_def_default();
     def.scheme.name = v->scheme;
     def.scheme.order = degree;
+    def.scheme.theta = 0.5; // also where a scene would be refused
     def.scheme.parallel = v->parallel;
     def.scheme.reversed = v->reversed;
     def.scheme.interpolation = BOUGH_POLYNOMIAL;

@@ -185,8 +185,8 @@ static void write_warnings(bough_summary *s, const bough_run *run) {
     bough_summary_end(s);
 }
 
-// Order and theta are null where the scheme has none: also a ramp that repeats its steps. Sweeps are
-// those of a macro step that is repeated, else 0.
+// Order and theta are null where the scheme has none. Sweeps are those of a macro step that is repeated, else
+// 0.
 static void write_method(bough_summary *s, const bough_run *run) {
     const bough_master *m = run->simulation->master;
     const bough_scene_simulation *sim = &run->simulation->scene->simulation;
@@ -196,7 +196,8 @@ static void write_method(bough_summary *s, const bough_run *run) {
     bough_summary_text(s, "scheme", c->scheme->name);
     const double none = (double)NAN;
     bough_summary_number(s, "order", ordered ? (double)c->options.order : none);
-    bough_summary_number(s, "theta", c->theta > 0 ? c->theta : none);
+    bough_summary_number(s, "theta",
+                         bough_scheme_reads(c->scheme, BOUGH_READS_THETA) ? c->options.theta : none);
     bough_summary_number(s, "interface_ratio", c->interface_ratio);
     bough_summary_number(s, "sweeps_per_step", (double)c->sweeps / steps);
     bough_summary_integer(s, "unfinished_steps", c->unfinished);

@@ -252,7 +252,9 @@ static bough_status build_master(bough_builder *b) {
         bough_status status = find_equilibrium(b->arena, &def.assembly, s);
         if (!bough_is_ok(&status)) return status;
     }
-    return bough_master_build(b->arena, &def, &s->master);
+    bough_status status = bough_master_build(b->arena, &def, &s->master);
+    const bough_node *scheme = sim->coupling.node ? bough_node_find(sim->coupling.node, "scheme") : NULL;
+    return scheme ? bough_scene_blame(scheme, "coupling.scheme", status) : status;
 }
 
 // -- whole ----------------------------------------------------------------------------------------

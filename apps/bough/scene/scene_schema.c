@@ -53,7 +53,9 @@ static const bough_key coupling_keys[] = {
     {NAMED("order", INTEGER), AT(options.order), .range = "[0, 2]", .fallback = "1", .example = "2",
      .help = "of extrapolated and of iterated end values: degree of the polynomial"},
     {NAMED("theta", NUMBER), AT(options.theta), .word = "auto", .range = "[0.5, 1]",
-     .fallback = "auto", .example = "0.6", .help = "of ramp: share of the new value"},
+     .fallback = "auto", .example = "0.6",
+     .help = "of ramp: weight of the predicted rates; auto: 0.5, and a scene on which that is "
+             "unstable is refused"},
     {NAMED("exchange", CHOICE), AT(options.exchange), CHOICES("end-values", "waveform"),
      .fallback = "end-values",
      .help = "of iterated: what the iteration makes agree: values at the end of the macro step, or "

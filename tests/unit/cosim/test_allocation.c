@@ -238,14 +238,6 @@ TEST_IN_FOLDER(waveforms_by_newton_take_no_memory) {
     count_steps(*context, runup, COUNTED, "waveforms by Newton", sets);
 }
 
-// On a hub so light that no weight of the ramp holds, its first step decides to repeat steps.
-TEST_IN_FOLDER(a_scheme_that_changes_its_mind_takes_no_memory) {
-    if (!CAN_COUNT) skip();
-    const char *sets[] = {"simulation.duration=2 s", "simulation.threads=1", "bodies[2].mass=100",
-                          "bodies[2].inertia=[514, 260, 260, 0, 0, 0]", NULL};
-    count_steps(*context, runup, COUNTED, "ramp on a light hub", sets);
-}
-
 // Steps are taken back and repeated with shorter ones.
 TEST_IN_FOLDER(controlled_steps_take_no_memory) {
     if (!CAN_COUNT) skip();
