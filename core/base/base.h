@@ -9,6 +9,9 @@
 
 #define BOUGH_PI 3.14159265358979323846
 
+// A function that loops over vector lanes call: a loop that calls runs lane by lane.
+#define BOUGH_INLINE static inline __attribute__((always_inline))
+
 // Doubles per SIMD lane group; arrays over vertices and segments are padded to a multiple of it.
 enum { BOUGH_LANES = 8 };
 

@@ -27,7 +27,7 @@ void bough_block_tridiagonal_init(bough_block_tridiagonal *m, bough_arena *arena
      (a[4 * W + (i)] * b[4] + a[5 * W + (i)] * b[5]))
 
 // y −= A x; two chains of three fused operations are the shortest way through.
-static inline void subtract_matvec(const double *restrict a, const double *restrict x, double *restrict y) {
+BOUGH_INLINE void subtract_matvec(const double *restrict a, const double *restrict x, double *restrict y) {
 #pragma omp simd
     for (int i = 0; i < W; i++) {
         double rest = a[3 * W + i] * x[3] + a[4 * W + i] * x[4] + a[5 * W + i] * x[5];
@@ -36,14 +36,14 @@ static inline void subtract_matvec(const double *restrict a, const double *restr
 }
 
 // x ← A x
-static inline void multiply_in_place(const double *restrict a, double *restrict x) {
+BOUGH_INLINE void multiply_in_place(const double *restrict a, double *restrict x) {
     const double b[6] = {x[0], x[1], x[2], x[3], x[4], x[5]};
 #pragma omp simd
     for (int i = 0; i < W; i++) x[i] = COLUMN_SUM(a, b, i);
 }
 
 // c = a b
-static inline void product(const double *restrict a, const double *restrict b, double *restrict c) {
+BOUGH_INLINE void product(const double *restrict a, const double *restrict b, double *restrict c) {
     for (int j = 0; j < 6; j++) {
         const double *restrict column = b + W * j;
 #pragma omp simd
@@ -52,14 +52,14 @@ static inline void product(const double *restrict a, const double *restrict b, d
 }
 
 // c −= a b
-static inline void subtract_product(const double *restrict a, const double *restrict b, double *restrict c) {
+BOUGH_INLINE void subtract_product(const double *restrict a, const double *restrict b, double *restrict c) {
     for (int j = 0; j < 6; j++) subtract_matvec(a, b + W * j, c + W * j);
 }
 
 // One pivot of Gauss–Jordan elimination in place, on columns. Whole columns are stored, never single
 // entries: a column loaded after a store to one of its entries would wait for the store to reach the
 // cache.
-static inline bool eliminate_pivot(double *restrict a, int k) {
+BOUGH_INLINE bool eliminate_pivot(double *restrict a, int k) {
     static const double unit[6][W] = {{1},          {0, 1},          {0, 0, 1},
                                       {0, 0, 0, 1}, {0, 0, 0, 0, 1}, {0, 0, 0, 0, 0, 1}};
     double pivot = 1 / a[W * k + k], r[W];
@@ -94,7 +94,7 @@ static bool invert(double *a) {
     return ok;
 }
 
-static inline void copy_block(const double *restrict from, double *restrict to) {
+BOUGH_INLINE void copy_block(const double *restrict from, double *restrict to) {
     for (int j = 0; j < BOUGH_BLOCK; j++) to[j] = from[j];
 }
 
@@ -102,7 +102,7 @@ static double *block(double *blocks, int i) { return blocks + (size_t)i * BOUGH_
 
 // Takes the unknowns of a neighbour, whose D'⁻¹ is `inverse`, out of a row with the diagonal block
 // `diagonal`: `to` couples the row to the neighbour, `back` the neighbour to the row.
-static inline void eliminate(const double *inverse, double *to, double *back, double *diagonal) {
+BOUGH_INLINE void eliminate(const double *inverse, double *to, double *back, double *diagonal) {
     double scratch[BOUGH_BLOCK];
     product(to, inverse, scratch);
     copy_block(scratch, to);

@@ -8,16 +8,16 @@ typedef struct bough_quaternion {
     double w, x, y, z;
 } bough_quaternion;
 
-static inline bough_quaternion bough_quaternion_identity(void) { return (bough_quaternion){1, 0, 0, 0}; }
+BOUGH_INLINE bough_quaternion bough_quaternion_identity(void) { return (bough_quaternion){1, 0, 0, 0}; }
 
 // p ∘ q
-static inline bough_quaternion bough_quaternion_product(bough_quaternion p, bough_quaternion q) {
+BOUGH_INLINE bough_quaternion bough_quaternion_product(bough_quaternion p, bough_quaternion q) {
     return (bough_quaternion){
         p.w * q.w - p.x * q.x - p.y * q.y - p.z * q.z, p.w * q.x + p.x * q.w + p.y * q.z - p.z * q.y,
         p.w * q.y - p.x * q.z + p.y * q.w + p.z * q.x, p.w * q.z + p.x * q.y - p.y * q.x + p.z * q.w};
 }
 
-static inline bough_quaternion bough_quaternion_conjugate(bough_quaternion p) {
+BOUGH_INLINE bough_quaternion bough_quaternion_conjugate(bough_quaternion p) {
     return (bough_quaternion){p.w, -p.x, -p.y, -p.z};
 }
 
@@ -31,7 +31,7 @@ bough_quaternion bough_quaternion_exponential(bough_vec3 phi);
 bough_vec3 bough_quaternion_logarithm(bough_quaternion p);
 
 // theory (3): R(p) = (p₀² − |𝐩|²)E + 2 𝐩𝐩ᵀ + 2 p₀ ξ(𝐩), for |p| = 1.
-static inline bough_mat3 bough_rotation_matrix(bough_quaternion p) {
+BOUGH_INLINE bough_mat3 bough_rotation_matrix(bough_quaternion p) {
     double w = p.w, x = p.x, y = p.y, z = p.z;
     return (bough_mat3){{1 - 2 * (y * y + z * z), 2 * (x * y + w * z), 2 * (x * z - w * y)},
                         {2 * (x * y - w * z), 1 - 2 * (x * x + z * z), 2 * (y * z + w * x)},
@@ -42,7 +42,7 @@ static inline bough_mat3 bough_rotation_matrix(bough_quaternion p) {
 bough_quaternion bough_quaternion_of_matrix(bough_mat3 r);
 
 // The rotation by an angle about a unit axis: cos E + sin ξ(a) + (1 − cos) a aᵀ
-static inline bough_mat3 bough_rotation_about(bough_vec3 a, double angle) {
+BOUGH_INLINE bough_mat3 bough_rotation_about(bough_vec3 a, double angle) {
     double c = cos(angle), s = sin(angle);
     return (bough_mat3){
         bough_axpy((1 - c) * a.x, a, bough_v3(c, s * a.z, -s * a.y)),
@@ -59,7 +59,7 @@ typedef struct bough_exp_factors {
     double b, c, db, dc; // and their derivatives by |ψ|²
 } bough_exp_factors;
 
-static inline bough_exp_factors bough_exp_factors_of(bough_vec3 psi) {
+BOUGH_INLINE bough_exp_factors bough_exp_factors_of(bough_vec3 psi) {
     double t = bough_dot(psi, psi);
     if (t < 0.05) {
         return (bough_exp_factors){1 / 2. - t * (1 / 24. - t * (1 / 720. - t * (1 / 40320. - t / 3628800))),
@@ -72,14 +72,14 @@ static inline bough_exp_factors bough_exp_factors_of(bough_vec3 psi) {
     return (bough_exp_factors){b, c, (sin(angle) / angle - 2 * b) / (2 * t), (b - 3 * c) / (2 * t)};
 }
 
-static inline bough_vec3 bough_exp_tangent(bough_exp_factors j, bough_vec3 psi, bough_vec3 v) {
+BOUGH_INLINE bough_vec3 bough_exp_tangent(bough_exp_factors j, bough_vec3 psi, bough_vec3 v) {
     bough_vec3 once = bough_cross(psi, v);
     return bough_add(v, bough_axpy(j.c, bough_cross(psi, once), bough_scale(j.b, once)));
 }
 
 // Derivative of J(ψ) v along dψ, v held.
-static inline bough_vec3 bough_exp_tangent_change(bough_exp_factors j, bough_vec3 psi, bough_vec3 d,
-                                                  bough_vec3 v) {
+BOUGH_INLINE bough_vec3 bough_exp_tangent_change(bough_exp_factors j, bough_vec3 psi, bough_vec3 d,
+                                                 bough_vec3 v) {
     double dt = 2 * bough_dot(psi, d);
     bough_vec3 once = bough_cross(psi, v), other = bough_cross(d, v);
     bough_vec3 twice = bough_add(bough_cross(d, once), bough_cross(psi, other));
@@ -89,7 +89,7 @@ static inline bough_vec3 bough_exp_tangent_change(bough_exp_factors j, bough_vec
 
 // Of the tangent of the logarithm, the inverse of J, θ̇ = (E − ½ξ(θ) + β ξ(θ)²) ω, |θ| = `angle`:
 // β = (1 − θ/2 cot θ/2)/θ², and β'/θ.
-static inline void bough_log_factors(double angle, double *beta, double *slope) {
+BOUGH_INLINE void bough_log_factors(double angle, double *beta, double *slope) {
     double a2 = angle * angle;
     if (angle < 0.1) {
         *beta = 1.0 / 12 + a2 * (1.0 / 720 + a2 * (1.0 / 30240 + a2 / 1209600));

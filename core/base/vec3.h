@@ -2,6 +2,8 @@
 #ifndef BOUGH_CORE_VEC3_H
 #define BOUGH_CORE_VEC3_H
 
+#include "core/base/base.h"
+
 #include <math.h>
 
 typedef struct bough_vec3 {
@@ -13,54 +15,54 @@ typedef struct bough_mat3 {
     bough_vec3 c1, c2, c3;
 } bough_mat3;
 
-static inline bough_vec3 bough_v3(double x, double y, double z) { return (bough_vec3){x, y, z}; }
-static inline void bough_v3_store(bough_vec3 v, double *out) {
+BOUGH_INLINE bough_vec3 bough_v3(double x, double y, double z) { return (bough_vec3){x, y, z}; }
+BOUGH_INLINE void bough_v3_store(bough_vec3 v, double *out) {
     out[0] = v.x;
     out[1] = v.y;
     out[2] = v.z;
 }
 
 // The unit vector along axis k = 0, 1, 2.
-static inline bough_vec3 bough_unit3(int k) { return (bough_vec3){k == 0, k == 1, k == 2}; }
+BOUGH_INLINE bough_vec3 bough_unit3(int k) { return (bough_vec3){k == 0, k == 1, k == 2}; }
 
-static inline bough_vec3 bough_add(bough_vec3 a, bough_vec3 b) {
+BOUGH_INLINE bough_vec3 bough_add(bough_vec3 a, bough_vec3 b) {
     return (bough_vec3){a.x + b.x, a.y + b.y, a.z + b.z};
 }
-static inline bough_vec3 bough_sub(bough_vec3 a, bough_vec3 b) {
+BOUGH_INLINE bough_vec3 bough_sub(bough_vec3 a, bough_vec3 b) {
     return (bough_vec3){a.x - b.x, a.y - b.y, a.z - b.z};
 }
-static inline bough_vec3 bough_scale(double s, bough_vec3 a) {
+BOUGH_INLINE bough_vec3 bough_scale(double s, bough_vec3 a) {
     return (bough_vec3){s * a.x, s * a.y, s * a.z};
 }
 // a + s b
-static inline bough_vec3 bough_axpy(double s, bough_vec3 b, bough_vec3 a) {
+BOUGH_INLINE bough_vec3 bough_axpy(double s, bough_vec3 b, bough_vec3 a) {
     return (bough_vec3){a.x + s * b.x, a.y + s * b.y, a.z + s * b.z};
 }
 // Part way from a to b.
-static inline bough_vec3 bough_between(bough_vec3 a, bough_vec3 b, double share) {
+BOUGH_INLINE bough_vec3 bough_between(bough_vec3 a, bough_vec3 b, double share) {
     return (bough_vec3){a.x + share * (b.x - a.x), a.y + share * (b.y - a.y), a.z + share * (b.z - a.z)};
 }
-static inline double bough_dot(bough_vec3 a, bough_vec3 b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
-static inline bough_vec3 bough_cross(bough_vec3 a, bough_vec3 b) {
+BOUGH_INLINE double bough_dot(bough_vec3 a, bough_vec3 b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
+BOUGH_INLINE bough_vec3 bough_cross(bough_vec3 a, bough_vec3 b) {
     return (bough_vec3){a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
 }
-static inline double bough_norm(bough_vec3 a) { return sqrt(bough_dot(a, a)); }
+BOUGH_INLINE double bough_norm(bough_vec3 a) { return sqrt(bough_dot(a, a)); }
 
 // A v and Aᵀ v
-static inline bough_vec3 bough_mat3_mul(bough_mat3 a, bough_vec3 v) {
+BOUGH_INLINE bough_vec3 bough_mat3_mul(bough_mat3 a, bough_vec3 v) {
     return (bough_vec3){a.c1.x * v.x + a.c2.x * v.y + a.c3.x * v.z,
                         a.c1.y * v.x + a.c2.y * v.y + a.c3.y * v.z,
                         a.c1.z * v.x + a.c2.z * v.y + a.c3.z * v.z};
 }
-static inline bough_vec3 bough_mat3_tmul(bough_mat3 a, bough_vec3 v) {
+BOUGH_INLINE bough_vec3 bough_mat3_tmul(bough_mat3 a, bough_vec3 v) {
     return (bough_vec3){bough_dot(a.c1, v), bough_dot(a.c2, v), bough_dot(a.c3, v)};
 }
-static inline bough_mat3 bough_mat3_product(bough_mat3 a, bough_mat3 b) {
+BOUGH_INLINE bough_mat3 bough_mat3_product(bough_mat3 a, bough_mat3 b) {
     return (bough_mat3){bough_mat3_mul(a, b.c1), bough_mat3_mul(a, b.c2), bough_mat3_mul(a, b.c3)};
 }
-static inline bough_mat3 bough_mat3_transpose(bough_mat3 a) {
+BOUGH_INLINE bough_mat3 bough_mat3_transpose(bough_mat3 a) {
     return (bough_mat3){{a.c1.x, a.c2.x, a.c3.x}, {a.c1.y, a.c2.y, a.c3.y}, {a.c1.z, a.c2.z, a.c3.z}};
 }
-static inline bough_mat3 bough_mat3_identity(void) { return (bough_mat3){{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}; }
+BOUGH_INLINE bough_mat3 bough_mat3_identity(void) { return (bough_mat3){{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}; }
 
 #endif

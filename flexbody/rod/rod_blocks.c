@@ -25,7 +25,7 @@ static lanes lanes_from(const bough_rod_model *m, int v) {
 
 // A column of eight vertices' blocks, entry i of lane l at [LANES i + l] and two rows of padding, is
 // stored, or added to what is there.
-static inline void put_tile(const tile *t, lanes at, int column, bool added, double *blocks) {
+BOUGH_INLINE void put_tile(const tile *t, lanes at, int column, bool added, double *blocks) {
     tile turned;
     turn_tile(t->entry, turned.entry);
     for (int lane = at.begin; lane < at.end; lane++) {
@@ -40,7 +40,7 @@ static inline void put_tile(const tile *t, lanes at, int column, bool added, dou
 // and by the left end's (`other`); or the same of the left end. A shift counts as Δx of the segment
 // on the left, −Δx of the one on the right; a segment pulls its left vertex by f and its right one
 // by −f; moments are those on either vertex.
-static inline void fill_column(const double *restrict t, int j, bool right_end, tile *own, tile *other) {
+BOUGH_INLINE void fill_column(const double *restrict t, int j, bool right_end, tile *own, tile *other) {
     bool shift = j < 3;
     int left = (shift ? DELTA : LEFT) + j % 3, right = (shift ? DELTA : RIGHT) + j % 3;
     int mine = right_end ? right : left, its = right_end ? left : right;
@@ -58,14 +58,14 @@ static inline void fill_column(const double *restrict t, int j, bool right_end, 
 }
 
 // Adds a vertex' own terms, six rows of one column, stride s.
-static inline void add_own(const double *restrict own, int s, tile *t) {
+BOUGH_INLINE void add_own(const double *restrict own, int s, tile *t) {
     for (int i = 0; i < 6; i++) {
 #pragma omp simd
         for (int lane = 0; lane < LANES; lane++) t->entry[LANES * i + lane] += own[i * s + lane];
     }
 }
 
-static inline void put_mass(const double *mass, lanes at, int j, double *blocks) {
+BOUGH_INLINE void put_mass(const double *mass, lanes at, int j, double *blocks) {
     tile t = {{0}};
     add_own(mass + j * LANES, 6 * LANES, &t);
     put_tile(&t, at, j, false, blocks);
@@ -73,8 +73,8 @@ static inline void put_mass(const double *mass, lanes at, int j, double *blocks)
 
 // Column j from the segments' tangents t, those at whose left and right ends the vertices are; own
 // terms of the latter have stride `own_stride`.
-static inline void put_column(const double *t, int j, lanes left, lanes right, const double *own,
-                              int own_stride, bough_block_tridiagonal *b) {
+BOUGH_INLINE void put_column(const double *t, int j, lanes left, lanes right, const double *own,
+                             int own_stride, bough_block_tridiagonal *b) {
     tile diagonal = {{0}}, beside = {{0}};
     fill_column(t, j, true, &diagonal, &beside);
     if (own != NULL) add_own(own, own_stride, &diagonal);

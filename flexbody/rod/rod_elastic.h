@@ -11,12 +11,12 @@
 
 #include "flexbody/rod/rod_segment.h"
 
-static inline strain add_strain(strain a, strain b) {
+BOUGH_INLINE strain add_strain(strain a, strain b) {
     return (strain){bough_add(a.v, b.v), bough_add(a.u, b.u)};
 }
 
 // L e and G y of segment n, its arrays L by rows and G's upper triangle of the given stride.
-static inline bough_vec3 gradient_linear(const double *restrict gradient, int stride, int n, strain e) {
+BOUGH_INLINE bough_vec3 gradient_linear(const double *restrict gradient, int stride, int n, strain e) {
 #define L(k) gradient[(k)*stride + n]
     return (bough_vec3){
         L(0) * e.v.x + L(1) * e.v.y + L(2) * e.v.z + L(3) * e.u.x + L(4) * e.u.y + L(5) * e.u.z,
@@ -24,20 +24,20 @@ static inline bough_vec3 gradient_linear(const double *restrict gradient, int st
         L(12) * e.v.x + L(13) * e.v.y + L(14) * e.v.z + L(15) * e.u.x + L(16) * e.u.y + L(17) * e.u.z};
 }
 
-static inline bough_vec3 gradient_bend(const double *restrict gradient, int stride, int n, bough_vec3 y) {
+BOUGH_INLINE bough_vec3 gradient_bend(const double *restrict gradient, int stride, int n, bough_vec3 y) {
     return (bough_vec3){L(18) * y.x + L(19) * y.y + L(20) * y.z, L(19) * y.x + L(21) * y.y + L(22) * y.z,
                         L(20) * y.x + L(22) * y.y + L(23) * y.z};
 }
 
 // Lᵀ y
-static inline strain gradient_transposed(const double *restrict gradient, int stride, int n, bough_vec3 y) {
+BOUGH_INLINE strain gradient_transposed(const double *restrict gradient, int stride, int n, bough_vec3 y) {
 #define COLUMN(j) (L(j) * y.x + L(6 + (j)) * y.y + L(12 + (j)) * y.z)
     return (strain){{COLUMN(0), COLUMN(1), COLUMN(2)}, {COLUMN(3), COLUMN(4), COLUMN(5)}};
 #undef COLUMN
 }
 
 // C (0, p)
-static inline strain moment_times(const double *restrict c, int stride, int n, bough_vec3 p) {
+BOUGH_INLINE strain moment_times(const double *restrict c, int stride, int n, bough_vec3 p) {
 #define C(k) c[(k)*stride + n]
     return (strain){{C(3) * p.x + C(4) * p.y + C(5) * p.z, C(8) * p.x + C(9) * p.y + C(10) * p.z,
                      C(12) * p.x + C(13) * p.y + C(14) * p.z},
@@ -57,8 +57,8 @@ typedef struct elastic_state {
 } elastic_state;
 
 // ∂Π/∂e by δΠ = δm·(κ×b) + δκ·(b×m) + y·L δe.
-static inline elastic_state elastic_at(const double *restrict c, const double *restrict gradient, int stride,
-                                       int n, strain e) {
+BOUGH_INLINE elastic_state elastic_at(const double *restrict c, const double *restrict gradient, int stride,
+                                      int n, strain e) {
     elastic_state s = {.stress = symmetric_times(c, stride, n, e), .kappa = e.u};
     bough_vec3 m = s.stress.u, y = bough_cross(m, e.u);
     bough_vec3 linear = gradient_linear(gradient, stride, n, e);
@@ -74,19 +74,19 @@ static inline elastic_state elastic_at(const double *restrict c, const double *r
 }
 
 // The derivative of the energy: C e − χ ∂Π/∂e − Π ∂χ/∂e.
-static inline strain elastic_stress(elastic_state s) {
+BOUGH_INLINE strain elastic_stress(elastic_state s) {
     bough_vec3 u = bough_axpy(-s.limit, s.bent.u, s.stress.u);
     return (strain){bough_axpy(-s.limit, s.bent.v, s.stress.v), bough_axpy(-s.value * s.slope, s.kappa, u)};
 }
 
-static inline strain segment_stress(const double *restrict c, const double *restrict gradient, int stride,
-                                    int n, strain e) {
+BOUGH_INLINE strain segment_stress(const double *restrict c, const double *restrict gradient, int stride,
+                                   int n, strain e) {
     return elastic_stress(elastic_at(c, gradient, stride, n, e));
 }
 
 // Its variation: C δe − δχ ∂Π/∂e − χ δ∂Π/∂e − δ(Π slope) κ − Π slope δκ.
-static inline strain elastic_variation(const double *restrict c, const double *restrict gradient, int stride,
-                                       int n, elastic_state s, strain de) {
+BOUGH_INLINE strain elastic_variation(const double *restrict c, const double *restrict gradient, int stride,
+                                      int n, elastic_state s, strain de) {
     strain stress = symmetric_times(c, stride, n, de);
     bough_vec3 m = s.stress.u, dm = stress.u;
     bough_vec3 dy = bough_add(bough_cross(dm, s.kappa), bough_cross(m, de.u));
@@ -105,8 +105,8 @@ static inline strain elastic_variation(const double *restrict c, const double *r
 }
 
 // Per length [N].
-static inline double segment_energy(const double *restrict c, const double *restrict gradient, int stride,
-                                    int n, strain e) {
+BOUGH_INLINE double segment_energy(const double *restrict c, const double *restrict gradient, int stride,
+                                   int n, strain e) {
     elastic_state s = elastic_at(c, gradient, stride, n, e);
     double straight = 0.5 * (bough_dot(e.v, s.stress.v) + bough_dot(e.u, s.stress.u));
     return straight - s.limit * s.value;

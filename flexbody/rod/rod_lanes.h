@@ -5,29 +5,29 @@
 #include "flexbody/rod/rod.h"
 #include "flexbody/rod/rod_elastic.h"
 
-static inline vertex_state load_vertex(const double *restrict v, int s, int i) {
+BOUGH_INLINE vertex_state load_vertex(const double *restrict v, int s, int i) {
     return (vertex_state){{v[i], v[s + i], v[2 * s + i]},
                           {v[7 * s + i], v[8 * s + i], v[9 * s + i]},
                           {v[10 * s + i], v[11 * s + i], v[12 * s + i]},
                           {v[3 * s + i], v[4 * s + i], v[5 * s + i], v[6 * s + i]}};
 }
 
-static inline bough_vec3 load3(const double *restrict a, int s, int i) {
+BOUGH_INLINE bough_vec3 load3(const double *restrict a, int s, int i) {
     return (bough_vec3){a[i], a[s + i], a[2 * s + i]};
 }
 
-static inline void store3(double *restrict a, int s, int i, bough_vec3 v) {
+BOUGH_INLINE void store3(double *restrict a, int s, int i, bough_vec3 v) {
     a[i] = v.x;
     a[s + i] = v.y;
     a[2 * s + i] = v.z;
 }
 
-static inline bough_mat3 load_matrix(const double *restrict a, int s, int v) {
+BOUGH_INLINE bough_mat3 load_matrix(const double *restrict a, int s, int v) {
     return (bough_mat3){load3(a, s, v), load3(a + 3 * s, s, v), load3(a + 6 * s, s, v)};
 }
 
 // I W for the tensor entries Ixx Iyy Izz Ixy Ixz Iyz.
-static inline bough_vec3 inertia_times(const double *restrict j, int s, int i, bough_vec3 w) {
+BOUGH_INLINE bough_vec3 inertia_times(const double *restrict j, int s, int i, bough_vec3 w) {
     double xx = j[i], yy = j[s + i], zz = j[2 * s + i], xy = j[3 * s + i], xz = j[4 * s + i];
     double yz = j[5 * s + i];
     return (bough_vec3){xx * w.x + xy * w.y + xz * w.z, xy * w.x + yy * w.y + yz * w.z,
@@ -35,14 +35,14 @@ static inline bough_vec3 inertia_times(const double *restrict j, int s, int i, b
 }
 
 // e − e⁰ − D q of a segment, `rest` the strains without stress
-static inline strain elastic_strain(segment_geometry shape, double inverse_h, const double *restrict rest,
-                                    int s, int n) {
+BOUGH_INLINE strain elastic_strain(segment_geometry shape, double inverse_h, const double *restrict rest,
+                                   int s, int n) {
     return (strain){bough_sub(shape.stretch, load3(rest, s, n)),
                     bough_axpy(inverse_h, shape.phi, bough_scale(-1, load3(rest + 3 * s, s, n)))};
 }
 
 // D q of a load per length in the axes of the segment's middle: force, moment, and their slopes
-static inline strain line_strain(const double *restrict line, int s, int n, const bough_vec3 q[4]) {
+BOUGH_INLINE strain line_strain(const double *restrict line, int s, int n, const bough_vec3 q[4]) {
 #define D(part, i, j) line[(36 * (part) + 6 * (i) + (j)) * s + n]
 #define HALF(part, i, f, m)                                                                                  \
     (D(part, i, 0) * (f).x + D(part, i, 1) * (f).y + D(part, i, 2) * (f).z + D(part, i, 3) * (m).x +         \
@@ -55,8 +55,8 @@ static inline strain line_strain(const double *restrict line, int s, int n, cons
 }
 
 // Change of the elastic strain where dead loads `along` the segment turn against its middle.
-static inline strain add_turned(strain change, const double *restrict line, const double *restrict along,
-                                int s, int n, bough_vec3 middle) {
+BOUGH_INLINE strain add_turned(strain change, const double *restrict line, const double *restrict along,
+                               int s, int n, bough_vec3 middle) {
     const bough_vec3 q[4] = {
         bough_cross(load3(along, s, n), middle), bough_cross(load3(along + 3 * s, s, n), middle),
         bough_cross(load3(along + 6 * s, s, n), middle), bough_cross(load3(along + 9 * s, s, n), middle)};
@@ -66,22 +66,22 @@ static inline strain add_turned(strain change, const double *restrict line, cons
 
 // Beside the chord of a bent segment its axis lies by −(h/12) of the tangent's change in the mean, where a
 // load per length acts: its moment on each of the two vertices.
-static inline bough_vec3 chord_moment(double h, bough_vec3 change, bough_vec3 load) {
+BOUGH_INLINE bough_vec3 chord_moment(double h, bough_vec3 change, bough_vec3 load) {
     return bough_scale(-h * h / 24, bough_cross(change, load));
 }
 
 // The same of a load that turns with the sections, in the axes of the middle: the end couples t×q h²/12 that
 // D q stands for turn with it, and leave their differences between segments.
-static inline bough_vec3 following_moment(double h, bough_vec3 bend, bough_vec3 load) {
+BOUGH_INLINE bough_vec3 following_moment(double h, bough_vec3 bend, bough_vec3 load) {
     return bough_scale(-h * h / 24, bough_cross(bend, (bough_vec3){-load.y, load.x, 0}));
 }
 
 // Adds what the turns phi of the sections change in these moments of the loads along segment n, dead ones and
 // followers.
-static inline segment_force add_chord_moments(segment_force f, segment_geometry shape, segment_variation d,
-                                              bough_mat3 rl, bough_mat3 rr, bough_vec3 phi_l,
-                                              bough_vec3 phi_r, bough_vec3 bend0, bough_vec3 turn0,
-                                              bough_vec3 along, bough_vec3 following, double h) {
+BOUGH_INLINE segment_force add_chord_moments(segment_force f, segment_geometry shape, segment_variation d,
+                                             bough_mat3 rl, bough_mat3 rr, bough_vec3 phi_l, bough_vec3 phi_r,
+                                             bough_vec3 bend0, bough_vec3 turn0, bough_vec3 along,
+                                             bough_vec3 following, double h) {
     const bough_vec3 tangent = {0, 0, 1};
     bough_vec3 change = bough_sub(bough_mat3_mul(rr, bough_cross(phi_r, tangent)),
                                   bough_mat3_mul(rl, bough_cross(phi_l, tangent)));
@@ -97,8 +97,8 @@ static inline segment_force add_chord_moments(segment_force f, segment_geometry 
 }
 
 // Derivative of the forces of segment n along variations of its vertices.
-static inline segment_force segment_tangent(const bough_rod_model *m, const bough_rod_scratch *scratch, int n,
-                                            const vertex_variation *dl, const vertex_variation *dr) {
+BOUGH_INLINE segment_force segment_tangent(const bough_rod_model *m, const bough_rod_scratch *scratch, int n,
+                                           const vertex_variation *dl, const vertex_variation *dr) {
     int s = m->stride;
     double h = m->length[n], inverse = m->inverse_length[n];
     vertex_state l = load_vertex(scratch->vertex, s, n), r = load_vertex(scratch->vertex, s, n + 1);

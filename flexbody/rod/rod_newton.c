@@ -7,7 +7,7 @@
 #include <string.h>
 
 // (E + ξ(a))⁻¹ y = (y + a (a·y) − a×y)/(1 + |a|²)
-static inline bough_vec3 solve_cross(bough_vec3 a, bough_vec3 y) {
+BOUGH_INLINE bough_vec3 solve_cross(bough_vec3 a, bough_vec3 y) {
     bough_vec3 sum = bough_axpy(bough_dot(a, y), a, bough_sub(y, bough_cross(a, y)));
     return bough_scale(1 / (1 + bough_dot(a, a)), sum);
 }
@@ -53,9 +53,9 @@ typedef struct elimination {
 } elimination;
 
 // Column j of mass − γ Dᵥ − γ² K A for one block; the mass is NULL off the diagonal.
-static inline void form_column(const elimination *e, int v, int j, const double *position,
-                               const double *velocity, const double *mass, double gamma,
-                               double *restrict out) {
+BOUGH_INLINE void form_column(const elimination *e, int v, int j, const double *position,
+                              const double *velocity, const double *mass, double gamma,
+                              double *restrict out) {
     const double *restrict k = position + (j < 3 ? 0 : W8 * 3);
     double a[3];
     for (int i = 0; i < 3; i++) {
@@ -68,8 +68,8 @@ static inline void form_column(const elimination *e, int v, int j, const double 
     }
 }
 
-static inline void form_block(const elimination *e, int v, const double *position, const double *velocity,
-                              const double *mass, double gamma, double *out) {
+BOUGH_INLINE void form_block(const elimination *e, int v, const double *position, const double *velocity,
+                             const double *mass, double gamma, double *out) {
     for (int j = 0; j < 6; j++) {
         form_column(e, v, j, position, velocity + W8 * j, mass == NULL ? NULL : mass + W8 * j, gamma,
                     out + W8 * j);
@@ -135,7 +135,7 @@ static void eliminate_residual(const bough_rod_model *m, const bough_rod_tangent
 }
 
 // A r_q of the ends of eight segments, a row for each direction of their tangents.
-static inline void gather_directions(const double *restrict q, int s, double *restrict d) {
+BOUGH_INLINE void gather_directions(const double *restrict q, int s, double *restrict d) {
     for (int i = 0; i < 3; i++) {
 #pragma omp simd
         for (int l = 0; l < LANES; l++) {

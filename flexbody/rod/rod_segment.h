@@ -60,72 +60,72 @@ static const double geometry_g[GEOMETRY_DEGREE + 1] = {
     0.006789708601738262,  0.0051402607408433205, -0.000883989726343168, 0.00555548493648075,
     -0.003622265067882274, 0.0022922422065466564};
 
-static inline double geometry_value(double w) {
+BOUGH_INLINE double geometry_value(double w) {
     double z = 1 - w, sum = geometry_g[GEOMETRY_DEGREE];
     for (int k = GEOMETRY_DEGREE - 1; k >= 0; k--) sum = sum * z + geometry_g[k];
     return sum;
 }
 
 // dg/dw
-static inline double geometry_slope(double w) {
+BOUGH_INLINE double geometry_slope(double w) {
     double z = 1 - w, sum = GEOMETRY_DEGREE * geometry_g[GEOMETRY_DEGREE];
     for (int k = GEOMETRY_DEGREE - 1; k >= 1; k--) sum = sum * z + k * geometry_g[k];
     return -sum;
 }
 
-static inline bough_vec3 half_forward(bough_vec3 v, bough_vec3 t, bough_vec3 y) {
+BOUGH_INLINE bough_vec3 half_forward(bough_vec3 v, bough_vec3 t, bough_vec3 y) {
     bough_vec3 z = bough_cross(v, y);
     return bough_add(bough_add(y, z), bough_cross(t, z));
 }
 
-static inline bough_vec3 half_backward(bough_vec3 v, bough_vec3 t, bough_vec3 y) {
+BOUGH_INLINE bough_vec3 half_backward(bough_vec3 v, bough_vec3 t, bough_vec3 y) {
     bough_vec3 z = bough_cross(v, y);
     return bough_add(bough_sub(y, z), bough_cross(t, z));
 }
 
 // H y
-static inline bough_vec3 rotation_tangent(double c, double g, bough_vec3 v, bough_vec3 y) {
+BOUGH_INLINE bough_vec3 rotation_tangent(double c, double g, bough_vec3 v, bough_vec3 y) {
     return bough_axpy(-0.5 * g * bough_dot(v, y), v, bough_scale(0.5 * c, y));
 }
 
 // Of unit quaternions, whose sum has the square 2 (1 + w) = 2/s.
-static inline bough_mat3 mid_frame(bough_quaternion l, bough_quaternion r, double sign, double s) {
+BOUGH_INLINE bough_mat3 mid_frame(bough_quaternion l, bough_quaternion r, double sign, double s) {
     double w = l.w + sign * r.w, x = l.x + sign * r.x, y = l.y + sign * r.y, z = l.z + sign * r.z;
     return (bough_mat3){{1 - s * (y * y + z * z), s * (x * y + w * z), s * (x * z - w * y)},
                         {s * (x * y - w * z), 1 - s * (x * x + z * z), s * (y * z + w * x)},
                         {s * (x * z + w * y), s * (y * z - w * x), 1 - s * (x * x + y * y)}};
 }
 
-static inline bough_mat3 mid_frame_between(bough_quaternion l, bough_quaternion r) {
+BOUGH_INLINE bough_mat3 mid_frame_between(bough_quaternion l, bough_quaternion r) {
     double w = l.w * r.w + l.x * r.x + l.y * r.y + l.z * r.z;
     return mid_frame(l, r, copysign(1.0, w), 1 / (1 + fabs(w)));
 }
 
 // y − v×(v×y)/6, and its variations with y and with v, that with v also as what n works on δv.
-static inline bough_vec3 along_axis(bough_vec3 v, bough_vec3 y) {
+BOUGH_INLINE bough_vec3 along_axis(bough_vec3 v, bough_vec3 y) {
     return bough_axpy(-1. / 6 * bough_dot(v, y), v, bough_scale(1 + 1. / 6 * bough_dot(v, v), y));
 }
 
-static inline bough_vec3 along_axis_turned(bough_vec3 v, bough_vec3 dv, bough_vec3 y) {
+BOUGH_INLINE bough_vec3 along_axis_turned(bough_vec3 v, bough_vec3 dv, bough_vec3 y) {
     bough_vec3 sum = bough_axpy(bough_dot(dv, y), v, bough_scale(bough_dot(v, y), dv));
     return bough_axpy(-1. / 6, sum, bough_scale(1. / 3 * bough_dot(v, dv), y));
 }
 
-static inline bough_vec3 bow_moment(bough_vec3 v, bough_vec3 y, bough_vec3 n) {
+BOUGH_INLINE bough_vec3 bow_moment(bough_vec3 v, bough_vec3 y, bough_vec3 n) {
     bough_vec3 sum = bough_axpy(bough_dot(v, n), y, bough_scale(bough_dot(v, y), n));
     return bough_axpy(-1. / 6, sum, bough_scale(1. / 3 * bough_dot(y, n), v));
 }
 
-static inline bough_vec3 along_axis_variation(bough_vec3 v, bough_vec3 dv, bough_vec3 y, bough_vec3 dy) {
+BOUGH_INLINE bough_vec3 along_axis_variation(bough_vec3 v, bough_vec3 dv, bough_vec3 y, bough_vec3 dy) {
     return bough_add(along_axis(v, dy), along_axis_turned(v, dv, y));
 }
 
 // δv for the rotations of the ends, `turn` their difference b − a.
-static inline bough_vec3 half_turn(bough_vec3 v, bough_vec3 t, bough_vec3 turn) {
+BOUGH_INLINE bough_vec3 half_turn(bough_vec3 v, bough_vec3 t, bough_vec3 turn) {
     return bough_scale(0.5, bough_axpy(-bough_dot(v, turn), t, turn));
 }
 
-static inline segment_geometry segment_shape(vertex_state l, vertex_state r, double inverse_h) {
+BOUGH_INLINE segment_geometry segment_shape(vertex_state l, vertex_state r, double inverse_h) {
     segment_geometry s;
     bough_quaternion d = bough_quaternion_product(bough_quaternion_conjugate(l.p), r.p);
     double sign = copysign(1.0, d.w); // p and −p are the same rotation
@@ -143,7 +143,7 @@ static inline segment_geometry segment_shape(vertex_state l, vertex_state r, dou
     return s;
 }
 
-static inline segment_rate segment_motion(segment_geometry s, vertex_state l, vertex_state r) {
+BOUGH_INLINE segment_rate segment_motion(segment_geometry s, vertex_state l, vertex_state r) {
     segment_rate m;
     bough_vec3 a = half_backward(s.v, s.t, l.w), b = half_forward(s.v, s.t, r.w);
     m.relative = bough_sub(b, a);
@@ -155,12 +155,12 @@ static inline segment_rate segment_motion(segment_geometry s, vertex_state l, ve
 }
 
 // ẏ = (R_midᵀ Δu)/h + y×ω_mid
-static inline bough_vec3 chord_rate(segment_geometry s, segment_rate m, double inverse_h) {
+BOUGH_INLINE bough_vec3 chord_rate(segment_geometry s, segment_rate m, double inverse_h) {
     return bough_axpy(inverse_h, m.du, bough_cross(s.chord, m.middle));
 }
 
 // ė by ẏ and H (b − a)/h; a rigid motion gives zero.
-static inline strain strain_rate(segment_geometry s, segment_rate m, double inverse_h) {
+BOUGH_INLINE strain strain_rate(segment_geometry s, segment_rate m, double inverse_h) {
     bough_vec3 turning = half_turn(s.v, s.t, m.relative);
     bough_vec3 v = along_axis_variation(s.v, turning, s.chord, chord_rate(s, m, inverse_h));
     bough_vec3 u = bough_scale(inverse_h, rotation_tangent(s.c, s.g, s.v, m.relative));
@@ -168,7 +168,7 @@ static inline strain strain_rate(segment_geometry s, segment_rate m, double inve
 }
 
 // C e for the symmetric matrix of segment n, stored as 21 arrays of the given stride.
-static inline strain symmetric_times(const double *c, int stride, int n, strain e) {
+BOUGH_INLINE strain symmetric_times(const double *c, int stride, int n, strain e) {
 #define C(k) c[(k)*stride + n]
     strain y;
     y.v.x = C(0) * e.v.x + C(1) * e.v.y + C(2) * e.v.z + C(3) * e.u.x + C(4) * e.u.y + C(5) * e.u.z;
@@ -182,7 +182,7 @@ static inline strain symmetric_times(const double *c, int stride, int n, strain 
 }
 
 // Vertex forces of the stress (n, m): virtual work n·δ(h V) + m·δφ.
-static inline segment_force stress_force(segment_geometry s, strain stress, double h) {
+BOUGH_INLINE segment_force stress_force(segment_geometry s, strain stress, double h) {
     bough_vec3 n = along_axis(s.v, stress.v);
     bough_vec3 tau = bough_scale(0.5 * h, bough_cross(n, s.chord));
     bough_vec3 bow = bow_moment(s.v, s.chord, stress.v);
@@ -207,31 +207,31 @@ typedef struct segment_variation {
 } segment_variation;
 
 // δ of half_forward(v, t, y) and half_backward with δy given
-static inline bough_vec3 half_forward_variation(segment_geometry s, segment_variation d, bough_vec3 y,
-                                                bough_vec3 dy) {
+BOUGH_INLINE bough_vec3 half_forward_variation(segment_geometry s, segment_variation d, bough_vec3 y,
+                                               bough_vec3 dy) {
     bough_vec3 z = bough_cross(s.v, y);
     bough_vec3 dz = bough_add(bough_cross(d.v, y), bough_cross(s.v, dy));
     return bough_add(bough_add(dy, dz), bough_add(bough_cross(d.t, z), bough_cross(s.t, dz)));
 }
 
-static inline bough_vec3 half_backward_variation(segment_geometry s, segment_variation d, bough_vec3 y,
-                                                 bough_vec3 dy) {
+BOUGH_INLINE bough_vec3 half_backward_variation(segment_geometry s, segment_variation d, bough_vec3 y,
+                                                bough_vec3 dy) {
     bough_vec3 z = bough_cross(s.v, y);
     bough_vec3 dz = bough_add(bough_cross(d.v, y), bough_cross(s.v, dy));
     return bough_add(bough_sub(dy, dz), bough_add(bough_cross(d.t, z), bough_cross(s.t, dz)));
 }
 
 // δ(H y) with δy given
-static inline bough_vec3 tangent_variation(segment_geometry s, segment_variation d, bough_vec3 y,
-                                           bough_vec3 dy) {
+BOUGH_INLINE bough_vec3 tangent_variation(segment_geometry s, segment_variation d, bough_vec3 y,
+                                          bough_vec3 dy) {
     double vy = bough_dot(s.v, y), dvy = bough_dot(d.v, y) + bough_dot(s.v, dy);
     bough_vec3 sum = bough_add(bough_scale(d.c, y), bough_scale(s.c, dy));
     sum = bough_axpy(-d.g * vy - s.g * dvy, s.v, sum);
     return bough_scale(0.5, bough_axpy(-s.g * vy, d.v, sum));
 }
 
-static inline segment_variation shape_variation(segment_geometry s, vertex_variation l, vertex_variation r,
-                                                double inverse_h) {
+BOUGH_INLINE segment_variation shape_variation(segment_geometry s, vertex_variation l, vertex_variation r,
+                                               double inverse_h) {
     segment_variation d;
     bough_vec3 a = half_backward(s.v, s.t, l.phi), b = half_forward(s.v, s.t, r.phi);
     bough_vec3 turn = bough_sub(b, a);
@@ -249,15 +249,15 @@ static inline segment_variation shape_variation(segment_geometry s, vertex_varia
 }
 
 // δ of half_turn, its `turn` varying by dturn
-static inline bough_vec3 half_turn_variation(segment_geometry s, segment_variation d, bough_vec3 turn,
-                                             bough_vec3 dturn) {
+BOUGH_INLINE bough_vec3 half_turn_variation(segment_geometry s, segment_variation d, bough_vec3 turn,
+                                            bough_vec3 dturn) {
     double dot = bough_dot(s.v, turn), change = bough_dot(d.v, turn) + bough_dot(s.v, dturn);
     bough_vec3 sum = bough_axpy(-change, s.t, bough_axpy(-dot, d.t, dturn));
     return bough_scale(0.5, sum);
 }
 
-static inline strain rate_variation(segment_geometry s, segment_rate m, segment_variation d,
-                                    const vertex_variation *l, const vertex_variation *r, double inverse_h) {
+BOUGH_INLINE strain rate_variation(segment_geometry s, segment_rate m, segment_variation d,
+                                   const vertex_variation *l, const vertex_variation *r, double inverse_h) {
     bough_vec3 da = half_backward_variation(s, d, m.wl, l->w);
     bough_vec3 db = half_forward_variation(s, d, m.wr, r->w);
     bough_vec3 relative = bough_sub(db, da);
@@ -277,8 +277,8 @@ static inline strain rate_variation(segment_geometry s, segment_rate m, segment_
 }
 
 // δ of stress_force with δ(stress) given
-static inline segment_force force_variation(segment_geometry s, segment_variation d, strain stress,
-                                            strain dstress, double h) {
+BOUGH_INLINE segment_force force_variation(segment_geometry s, segment_variation d, strain stress,
+                                           strain dstress, double h) {
     bough_vec3 n = along_axis(s.v, stress.v);
     bough_vec3 dn = along_axis_variation(s.v, d.v, stress.v, dstress.v);
     bough_vec3 tau = bough_scale(0.5 * h, bough_cross(n, s.chord));

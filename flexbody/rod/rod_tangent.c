@@ -24,7 +24,7 @@ enum {
     BASE = 56,
 };
 
-static inline void store_shape(double *restrict base, int l, segment_geometry s) {
+BOUGH_INLINE void store_shape(double *restrict base, int l, segment_geometry s) {
     store3(base + LANES * BASE_R, LANES, l, s.r.c1);
     store3(base + LANES * (BASE_R + 3), LANES, l, s.r.c2);
     store3(base + LANES * (BASE_R + 6), LANES, l, s.r.c3);
@@ -36,7 +36,7 @@ static inline void store_shape(double *restrict base, int l, segment_geometry s)
     base[LANES * (BASE_W + 4) + l] = s.slope;
 }
 
-static inline segment_geometry load_shape(const double *restrict base, int l) {
+BOUGH_INLINE segment_geometry load_shape(const double *restrict base, int l) {
     segment_geometry s;
     s.r = load_matrix(base + LANES * BASE_R, LANES, l);
     s.v = load3(base + LANES * BASE_V, LANES, l);
@@ -51,7 +51,7 @@ static inline segment_geometry load_shape(const double *restrict base, int l) {
     return s;
 }
 
-static inline void store_elastic(double *restrict base, int l, elastic_state s) {
+BOUGH_INLINE void store_elastic(double *restrict base, int l, elastic_state s) {
     double *restrict to = base + LANES * BASE_ELASTIC;
     store3(to, LANES, l, s.stress.u);
     store3(to + LANES * 3, LANES, l, s.bent.v);
@@ -61,7 +61,7 @@ static inline void store_elastic(double *restrict base, int l, elastic_state s) 
     store3(to + LANES * 15, LANES, l, (bough_vec3){s.value, s.limit, s.slope});
 }
 
-static inline elastic_state load_elastic(const double *restrict base, int l) {
+BOUGH_INLINE elastic_state load_elastic(const double *restrict base, int l) {
     const double *restrict from = base + LANES * BASE_ELASTIC;
     return (elastic_state){.stress.u = load3(from, LANES, l),
                            .bent = {load3(from + LANES * 3, LANES, l), load3(from + LANES * 6, LANES, l)},
@@ -109,16 +109,16 @@ static void unit_variation(int k, bool velocity, vertex_variation *l, vertex_var
     *part[(velocity ? 3 : 0) + k / 3] = bough_unit3(k % 3);
 }
 
-static inline void store_force(double *restrict column, int l, segment_force f) {
+BOUGH_INLINE void store_force(double *restrict column, int l, segment_force f) {
     store3(column, LANES * DIRECTIONS, l, f.f);
     store3(column + LANES * DIRECTIONS * LL, LANES * DIRECTIONS, l, f.ll);
     store3(column + LANES * DIRECTIONS * LR, LANES * DIRECTIONS, l, f.lr);
 }
 
 // `turning`: D q turns as well, and the moments of loads along the segment beside its chord.
-static inline void position_direction(const bough_rod_model *m, const bough_rod_scratch *scratch,
-                                      bool turning, int first, const double *restrict base,
-                                      vertex_variation dl, vertex_variation dr, double *restrict column) {
+BOUGH_INLINE void position_direction(const bough_rod_model *m, const bough_rod_scratch *scratch, bool turning,
+                                     int first, const double *restrict base, vertex_variation dl,
+                                     vertex_variation dr, double *restrict column) {
     int s = m->stride;
     const double *restrict at = scratch->vertex + first, *restrict along = scratch->along + first;
     const double *restrict line = m->line + first, *restrict bend = m->bend0 + first;
@@ -174,8 +174,8 @@ static void position_variation(const bough_rod_model *m, const bough_rod_scratch
 }
 
 // The shape does not vary, the stress varies by D ė.
-static inline void velocity_direction(const bough_rod_model *m, int first, const double *restrict base,
-                                      vertex_variation dl, vertex_variation dr, double *restrict column) {
+BOUGH_INLINE void velocity_direction(const bough_rod_model *m, int first, const double *restrict base,
+                                     vertex_variation dl, vertex_variation dr, double *restrict column) {
     int s = m->stride;
     const double *restrict damping = m->damping + first, *restrict h = m->length + first;
     const double *restrict inverse = m->inverse_length + first;
@@ -214,7 +214,7 @@ void bough_rod_tangent_init(bough_rod_tangent *k, bough_arena *arena, const boug
 
 // -- a vertex' own terms --------------------------------------------------------------------------
 
-static inline void store_column(double *restrict block, int l, int row, int column, bough_vec3 x) {
+BOUGH_INLINE void store_column(double *restrict block, int l, int row, int column, bough_vec3 x) {
     store3(block + (6 * row + column) * LANES, 6 * LANES, l, x);
 }
 
@@ -283,7 +283,7 @@ typedef struct vertex_load {
 } vertex_load;
 
 // Row j of the loads' slopes.
-static inline vertex_load slope_at(const double *restrict slope, int s, int i, int j, bough_mat3 r) {
+BOUGH_INLINE vertex_load slope_at(const double *restrict slope, int s, int i, int j, bough_mat3 r) {
     const double *restrict row = slope + j * s + i;
     return (vertex_load){{row[0], row[4 * s], 0}, bough_mat3_tmul(r, bough_v3(0, 0, row[8 * s]))};
 }

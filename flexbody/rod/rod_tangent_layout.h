@@ -42,7 +42,7 @@ typedef struct tile {
 } tile;
 
 // Row r + 4 between row r: three of these turn a tile, as each rotates the bits of the index.
-static inline void shuffle_tile(const double *restrict from, double *restrict to) {
+BOUGH_INLINE void shuffle_tile(const double *restrict from, double *restrict to) {
     for (int r = 0; r < LANES / 2; r++) {
         const double *restrict a = from + LANES * r, *restrict b = a + TILE / 2;
         double *restrict pair = to + 2 * LANES * r;
@@ -55,7 +55,7 @@ static inline void shuffle_tile(const double *restrict from, double *restrict to
 }
 
 // to[8 j + i] = from[8 i + j]
-static inline void turn_tile(const double *restrict from, double *restrict to) {
+BOUGH_INLINE void turn_tile(const double *restrict from, double *restrict to) {
     tile once, twice;
     shuffle_tile(from, once.entry);
     shuffle_tile(once.entry, twice.entry);
