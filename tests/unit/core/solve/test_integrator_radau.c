@@ -12,17 +12,14 @@ static const double unit[MOST] = {1, 1, 1, 1};
 static const double wild[MOST] = {1, 1e4, 1, 1}; // van der Pol's speeds reach 1e6
 
 typedef struct problem {
-    double stiffness, latest, break_after;
-    long derivatives;
+    double stiffness;
     int n;
     bool (*f)(struct problem *, double t, const double *y, double *rate);
 } problem;
 
 static bool derivative(void *self, double t, const double *y, double *rate) {
     problem *p = self;
-    p->derivatives++;
-    if (t > p->latest) p->latest = t;
-    return t <= p->break_after && p->f(p, t, y, rate);
+    return p->f(p, t, y, rate);
 }
 
 // -- problems --------------------------------------------------------------------------------
@@ -50,7 +47,7 @@ static bool van_der_pol(problem *p, double t, const double *y, double *rate) {
 }
 
 static problem make(int n, bool (*f)(problem *, double, const double *, double *), double stiffness) {
-    return (problem){.n = n, .f = f, .stiffness = stiffness, .latest = -1, .break_after = 1e9};
+    return (problem){.n = n, .f = f, .stiffness = stiffness};
 }
 
 static bough_integrator create(bough_arena *arena, problem *p, double rtol) {
@@ -138,19 +135,6 @@ TEST(van_der_pol_reaches_its_reference) {
 
 // -- calls -----------------------------------------------------------------------------------
 
-TEST(nothing_is_evaluated_past_the_end) {
-    problem p = make(2, pendulum, 0);
-    check_arena(arena);
-    bough_integrator radau = create(arena, &p, 1e-6);
-    double y[MOST] = {2, 0};
-    for (int k = 1; k <= 100; k++) {
-        double t = k * half_period(2) / 100;
-        advance(&radau, (k - 1) * half_period(2) / 100, t, y);
-        assert_true(p.latest <= t * (1 + 1e-15));
-    }
-    check_near(y[0], -2, 0, 1e-5);
-}
-
 // Going on from a copy is the same as having gone on, to the last bit and the last factorisation.
 TEST(copies_are_complete) {
     problem p = make(2, van_der_pol, 100);
@@ -206,18 +190,11 @@ TEST(jumps_are_passed) {
     }
 }
 
-TEST(failures_name_body_time_and_cure) {
-    problem p = make(2, pendulum, 0);
-    p.break_after = 0.5;
+TEST(systems_too_large_for_dense_matrices_are_refused) {
     check_arena(arena);
-    bough_integrator radau = create(arena, &p, 1e-6);
-    double y[MOST] = {2, 0};
-    bough_status status = integrator_advance(&radau, 0, 1, false, y);
-    check_fails(status, BOUGH_FAILED, "test at t = 0.5 s");
-    assert_non_null(strstr(status.message, "Radau"));
-    assert_null(strstr(status.message, "try")); // the coupling says it, once
-    bough_ode ode = {.name = "test", .n = 2, .scale = unit, .self = &p, .derivative = derivative};
+    problem p = make(2, pendulum, 0);
+    bough_ode ode = {.name = "test", .n = 100000, .scale = unit, .self = &p, .derivative = derivative};
     bough_integrator_options options = {.kind = BOUGH_RADAU5, .rtol = 1e-6};
-    ode.n = 100000;
+    bough_integrator radau;
     check_fails(bough_integrator_create(arena, &ode, &options, &radau), BOUGH_INVALID, "rosenbrock");
 }

@@ -1,0 +1,163 @@
+// The methods of given steps on a damped oscillator beside a stiff mode and a nonlinear equation, forced,
+// with a known solution: orders as rows of a table.
+#include "core/solve/integrator.h"
+
+#include "tests/unit/check.h"
+#include "tests/unit/integrator.h"
+
+// y = (position, speed, stiff, decay): ẍ + 2ζωẋ + ω²x = ω² sin t, ż = −λ(z − cos t) − sin t, ẇ = −w².
+static const double omega = 12, zeta = 0.02, lambda = 4e4;
+enum { N = 4, LINEAR = 3 };
+
+typedef struct method {
+    bough_integrator_kind kind;
+    int n;         // equations
+    double rho;    // of generalised-α
+    double known;  // part of the stiffness that the tangents know
+    double order;  // of the error
+    double linear; // linearisations of equal steps, at most
+    int measured;  // components of y whose error is measured
+} method;
+
+static const method methods[] = {
+    {BOUGH_ROSENBROCK, N, 0, 1, 3, INFINITY, N},        {BOUGH_ROSENBROCK, N, 0, 0.5, 3, INFINITY, N},
+    {BOUGH_GENERALIZED_ALPHA, LINEAR, 0, 1, 2, 1, 1},   {BOUGH_GENERALIZED_ALPHA, LINEAR, 0.4, 1, 2, 1, 1},
+    {BOUGH_GENERALIZED_ALPHA, LINEAR, 0.8, 1, 2, 1, 1},
+};
+
+typedef struct problem {
+    bough_arena *arena;
+    bough_integrator micro;
+    method m;
+    double gamma, decay;
+    long linearisations;
+    bool broken; // f has no value
+} problem;
+
+static bool derivative(void *self, double t, const double *y, double *rate) {
+    const problem *p = self;
+    rate[0] = y[1];
+    rate[1] = omega * omega * (sin(t) - y[0]) - 2 * zeta * omega * y[1];
+    rate[2] = -lambda * (y[2] - cos(t)) - sin(t);
+    if (p->m.n > LINEAR) rate[3] = -y[3] * y[3];
+    return !p->broken;
+}
+
+static bool linearise(void *self, double t, const double *y) {
+    problem *p = self;
+    (void)t;
+    p->linearisations++;
+    if (p->m.n > LINEAR) p->decay = y[3];
+    return true;
+}
+
+static bool factor(void *self, double gamma) {
+    problem *p = self;
+    p->gamma = gamma;
+    return true;
+}
+
+// (I − γJ) x = b, by Cramer's rule for the oscillator
+static void solve(void *self, double *x) {
+    const problem *p = self;
+    double g = p->gamma, a = 1 + 2 * zeta * omega * g, b = p->m.known * omega * omega * g;
+    double determinant = a + g * b, first = x[0];
+    x[0] = (a * first + g * x[1]) / determinant;
+    x[1] = (x[1] - b * first) / determinant;
+    x[2] /= 1 + lambda * g;
+    if (p->m.n > LINEAR) x[3] /= 1 + 2 * p->m.known * g * p->decay;
+}
+
+static double steady(double t, double *speed) {
+    double stiff = omega * omega - 1, damped = 2 * zeta * omega;
+    double scale = omega * omega / (stiff * stiff + damped * damped);
+    *speed = scale * (stiff * cos(t) + damped * sin(t));
+    return scale * (stiff * sin(t) - damped * cos(t));
+}
+
+static void exact(double t, double *y) {
+    y[0] = steady(t, &y[1]);
+    y[2] = cos(t);
+    y[3] = 1 / (1 + t);
+}
+
+// The problem at its initial values y.
+static void build(problem *p, method m, double step, double *y) {
+    static const double scale[N] = {1, 1, 1, 1};
+    *p = (problem){.arena = bough_arena_create(), .m = m};
+    bough_ode ode = {"sample", m.n, scale, p, derivative, NULL, linearise, factor, solve, 0};
+    // Newton's method of generalised-α to rounding; the Rosenbrock method takes all steps that it is given
+    bough_integrator_options options = {m.kind, m.n > LINEAR ? 1e3 : 1e-10, step, m.rho, 0, false};
+    check_ok(bough_integrator_create(p->arena, &ode, &options, &p->micro));
+    exact(0, y);
+}
+
+static double distance(const problem *p, const double *y, double t) {
+    double expected[N], largest = 0;
+    exact(t, expected);
+    for (int k = 0; k < p->m.measured; k++) largest = fmax(largest, fabs(y[k] - expected[k]));
+    return largest;
+}
+
+static double error_with(method m, double step) {
+    problem p;
+    double y[N];
+    build(&p, m, step, y);
+    for (int k = 0; k < 10; k++) check_ok(integrator_advance(&p.micro, 0.2 * k, 0.2 * (k + 1), false, y));
+    assert_true(fabs(y[2] - cos(2)) < 1e-3); // the stiff mode neither rings nor lags
+    assert_true((double)p.linearisations <= m.linear);
+    bough_arena_destroy(p.arena);
+    return distance(&p, y, 2);
+}
+
+TEST(errors_fall_with_the_order_of_the_method) {
+    for (size_t k = 0; k < sizeof methods / sizeof *methods; k++) {
+        double coarse = error_with(methods[k], 0.01), fine = error_with(methods[k], 0.005);
+        print_message("row %zu: errors %.2e, %.2e\n", k, coarse, fine);
+        assert_true(coarse < (methods[k].order > 2 ? 1e-4 : 1));
+        check_near(log2(coarse / fine), methods[k].order, 0, 0.2);
+    }
+}
+
+// A mode far above the step's reach is gone after a few steps of the Rosenbrock method, and damped by ρ∞ in
+// each of generalised-α.
+TEST(highest_frequencies_are_damped_as_asked) {
+    const method alpha = {BOUGH_GENERALIZED_ALPHA, LINEAR, 0.5, 1, 2, 1, 1};
+    const method *const rows[] = {&methods[0], &alpha};
+    const double most[] = {1e-4, 3e-4};
+    for (int k = 0; k < 2; k++) {
+        problem p;
+        double y[N];
+        build(&p, *rows[k], 0.01, y);
+        y[2] += 1;
+        check_ok(integrator_advance(&p.micro, 0, 0.2, false, y));
+        assert_true(fabs(y[2] - cos(0.2)) <= most[k]);
+        bough_arena_destroy(p.arena);
+    }
+}
+
+TEST(what_has_no_value_ends_with_a_diagnosis) {
+    problem p;
+    double y[N];
+    build(&p, methods[4], 0.01, y);
+    check_ok(integrator_advance(&p.micro, 0, 0.1, false, y));
+    p.broken = true;
+    bough_status status = integrator_advance(&p.micro, 0.1, 0.2, false, y);
+    check_fails(status, BOUGH_FAILED, "sample");
+    check_fails(status, BOUGH_FAILED, "0.1 s");
+    bough_arena_destroy(p.arena);
+}
+
+TEST(steps_and_starts_are_counted) {
+    problem p;
+    double y[N];
+    bough_statistics sum = {0};
+    build(&p, methods[4], 0.01, y);
+    check_ok(integrator_advance(&p.micro, 0, 0.1, false, y));
+    check_ok(integrator_advance(&p.micro, 0.1, 0.2, true, y));
+    p.micro.ops->statistics(p.micro.self, &sum);
+    assert_int_equal(sum.steps, 20);
+    assert_int_equal(sum.starts, 2);
+    assert_int_equal(sum.failed_steps, 0);
+    bough_arena_destroy(p.arena);
+}
