@@ -1,10 +1,9 @@
 // A rod, or a piece of one, reduced to shapes about its undeformed form: x̂ᵢ = x̂⁰ᵢ + Φᵢ q in the
-// axes of a floating frame that is welded to its first vertex. docs/theory.md derives the
-// equations.
+// axes of a floating frame that is welded to its first vertex. Equations: theory (34, 35, 36, 37, 38).
 //
 // The shapes are the lowest modes of the clamped piece, the six rigid motions of its vertices
-// against the frame, by choice the static answers to accelerations of the frame, and if another
-// piece follows those to its wrench. The rigid motions put the piece's whole momentum in the span,
+// relative to the frame, by choice the static deflections under accelerations of the frame, and, if
+// another piece follows, under its wrench. The rigid motions put the piece's whole momentum in the span,
 // so that as for a rod (rod.h) absolute velocities, here their modal coordinates η, take no
 // acceleration of the frame as input and the carrier has the inertia of the first vertex only:
 //     q̇ = η − Cᵀv − ω_a G_a q,      v = (u₀, ω) twist of the frame in its axes
@@ -23,7 +22,7 @@ enum {
 
 typedef struct bough_modal_options {
     int modes;       // of the clamped piece, all there are if fewer
-    bool statics;    // static answers to accelerations of the frame among the shapes
+    bool statics;    // static deflections under accelerations of the frame among the shapes
     bool stiffening; // by the axial force of centrifugal force, weight and the following pieces
 } bough_modal_options;
 
@@ -38,21 +37,21 @@ typedef struct bough_modal_piece {
     double mass;                // of the moving vertices [kg]
     double *square;             // Λ: squared angular frequencies (stride) [1/s²]
     double *damping;            // D
-    double *rigid;              // C: shares of unit translations and rotations (6 × stride)
-    double *turn;               // G_a: the shapes turning with the frame, projected (3 ·)
+    double *rigid;              // C: projections of unit translations and rotations (6 × stride)
+    double *rotating;           // G_a: projections of the shapes rotating with the frame (3 ·)
     double *gyroscopic;         // B_a (3 ·)
     double *field;              // N_ab, T_k, F_k (12 ·)
     double *centrifugal;        // r_ab (6 × stride)
     double *shape;              // Φ: displacement and rotation of vertices 1..n in frame axes
                                 // (6 n × stride), row 6 (i − 1) + c
-    double *scale;              // q that moves a vertex by 1 m or turns it by 0.1 rad (stride)
+    double *scale;              // q that moves a vertex by 1 m or rotates it by 0.1 rad (stride)
 } bough_modal_piece;
 
 // Reduces vertices first..last of `def`; the frame is parallel to the body's and sits at `first`.
 bough_status bough_modal_piece_create(bough_arena *arena, const bough_rod_def *def, int first, int last,
                                       bough_modal_options options, bough_modal_piece *piece);
 
-// -- parts of the creation, each in a file of its own ---------------------------------------------
+// -- steps of the creation, each in a file of its own ---------------------------------------------
 
 // Λ, D and the shapes, which go to piece->shape with rotations in frame axes.
 bough_status bough_modal_basis(bough_arena *arena, bough_modal_options options, bough_modal_piece *piece);

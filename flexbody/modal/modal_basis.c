@@ -1,5 +1,6 @@
-// The shapes of a modal piece: clamped modes, rigid motions and static answers, from the rod's own
-// tangents at rest, orthonormalised in the mass and by Rayleigh and Ritz in the stiffness.
+// The shapes of a modal piece: clamped modes, rigid motions and static deflections, from the rod's own
+// tangents at rest, orthonormal in the mass and, by Rayleigh and Ritz, in the stiffness (docs/theory.md,
+// "Modal bodies").
 #include "core/base/base.h"
 #include "core/base/linalg.h"
 #include "core/base/spatial.h"
@@ -10,9 +11,10 @@
 
 enum { W8 = 8, RIGID = 6 };
 
-static const double dependent = 1e-6; // of a shape left by those before: not a shape of its own
+static const double dependent =
+    1e-6; // norm outside the span of earlier shapes, relative to the whole: below it, dependent
 
-// Vectors have 6 entries per moving vertex, displacement in frame axes and turn in section axes.
+// Vectors have 6 entries per moving vertex, displacement in frame axes and rotation in section axes.
 typedef struct basis {
     bough_arena *arena;
     const bough_rod_model *rod;
@@ -65,17 +67,19 @@ static void mass_times(const basis *b, const double *x, double *y) {
     }
 }
 
-// Adds x made orthonormal in the mass to those already there, unless nothing of it is left.
+// Adds x, made orthonormal in the mass to the vectors before it by Gram and Schmidt, unless it depends on
+// them.
 static void add_vector(basis *b, double *x) {
     size_t at = (size_t)b->count * b->size;
     double *p = b->product + at;
     mass_times(b, x, p);
+    // the norm before and after shows dependence
     double before = sqrt(bough_scalar_product(b->size, x, p));
-    for (int sweep = 0; sweep < 2; sweep++) { // twice is enough
+    for (int sweep = 0; sweep < 2; sweep++) { // twice restores what cancellation loses
         for (int k = 0; k < b->count; k++) {
-            double share = bough_scalar_product(b->size, x, b->product + (size_t)k * b->size);
+            double along = bough_scalar_product(b->size, x, b->product + (size_t)k * b->size);
             const double *v = b->vector + (size_t)k * b->size;
-            for (int i = 0; i < b->size; i++) x[i] -= share * v[i];
+            for (int i = 0; i < b->size; i++) x[i] -= along * v[i];
         }
     }
     mass_times(b, x, p);
@@ -132,6 +136,8 @@ static bool factor_mass(const basis *b, double *factor) {
     return true;
 }
 
+// Clamped modes: M = L Lᵀ per vertex turns K φ = ω² M φ into the standard problem of L⁻¹ K L⁻ᵀ, solved by
+// LAPACK.
 static bool add_modes(basis *b, int wanted) {
     size_t n = (size_t)b->size;
     int count = wanted < b->size ? wanted : b->size;
@@ -140,6 +146,7 @@ static bool add_modes(basis *b, int wanted) {
     double *value = bough_arena_doubles(b->arena, n), *work = bough_arena_doubles(b->arena, 26 * n);
     int *index = bough_arena_take(b->arena, 12 * n * sizeof *index);
     double *factor = bough_arena_doubles(b->arena, 36 * (size_t)b->rod->n);
+    // whitened stiffness, its lower triangle
     if (!factor_mass(b, factor)) return false;
     for (int i = 0; i < b->rod->n; i++) {
         const double *diagonal = b->stiffness.diagonal + (size_t)i * BOUGH_BLOCK;
@@ -147,6 +154,7 @@ static bool add_modes(basis *b, int wanted) {
         put_whitened(b, factor, diagonal, i, i, dense);
         if (i > 0) put_whitened(b, factor, lower, i, i - 1, dense);
     }
+    // lowest eigenvectors x, shapes L⁻ᵀ x
     if (!bough_symmetric_smallest(b->size, dense, count, value, vector, work, index)) return false;
     for (int k = 0; k < count; k++) {
         double *x = vector + n * (size_t)k;
@@ -156,7 +164,7 @@ static bool add_modes(basis *b, int wanted) {
     return true;
 }
 
-// -- rigid motions and static answers -------------------------------------------------------------
+// -- rigid motions and static deflections -------------------------------------------------------------
 
 static void rigid_motion(const bough_rod_model *rod, int k, double *x) {
     bough_vec3 e = bough_unit3(k % 3);
@@ -183,6 +191,7 @@ static bool solve(basis *b, double *work, double *x) {
     return true;
 }
 
+// The shapes beside the modes. Rigid motions put momentum in the span; theory (36).
 static bool add_others(basis *b, bool statics, bool inner) {
     double *x = bough_arena_doubles(b->arena, (size_t)b->size);
     double *y = bough_arena_doubles(b->arena, (size_t)b->size);
@@ -191,13 +200,15 @@ static bool add_others(basis *b, bool statics, bool inner) {
         rigid_motion(b->rod, k, x);
         add_vector(b, x);
     }
+    // under accelerations of the frame: K⁻¹ M x
     for (int k = 0; k < RIGID && statics; k++) {
         rigid_motion(b->rod, k, x);
         mass_times(b, x, y);
         if (!solve(b, work, y)) return false;
         add_vector(b, y);
     }
-    for (int k = 0; k < RIGID && inner; k++) { // to a wrench at the last vertex
+    // under a wrench of the next piece at the last vertex
+    for (int k = 0; k < RIGID && inner; k++) {
         memset(y, 0, (size_t)b->size * sizeof *y);
         y[b->size - RIGID + k] = 1;
         if (!solve(b, work, y)) return false;
@@ -208,7 +219,7 @@ static bool add_others(basis *b, bool statics, bool inner) {
 
 // -- Rayleigh and Ritz ----------------------------------------------------------------------------
 
-// Xᵀ A X (count × count) of a tridiagonal A with its sign turned if `negative`.
+// sign · Xᵀ A X (count × count) of a tridiagonal A.
 static void project(const basis *b, const bough_block_tridiagonal *a, double sign, double *work, double *to) {
     for (int l = 0; l < b->count; l++) {
         tridiagonal_times(a, b->vector + (size_t)l * b->size, work);
@@ -219,7 +230,7 @@ static void project(const basis *b, const bough_block_tridiagonal *a, double sig
     }
 }
 
-// The vectors turned to the eigenvectors of their stiffness.
+// Linear combinations of the vectors, the eigenvectors of their stiffness.
 static void rotate(const basis *b, const double *eigen, double *rotated) {
     for (int k = 0; k < b->count; k++) {
         double *x = rotated + (size_t)k * b->size;
@@ -231,6 +242,7 @@ static void rotate(const basis *b, const double *eigen, double *rotated) {
     }
 }
 
+// The shapes by rows, rotations in frame axes, and the q that moves a vertex by 1 m or 0.1 rad.
 static void store(const basis *b, const double *value, const double *damping, bough_modal_piece *piece) {
     int m = b->count, stride = piece->stride;
     for (int k = 0; k < m; k++) {
@@ -268,7 +280,7 @@ static bool find_shapes(basis *b, bough_modal_options options, bool inner) {
     return linearise(b) && add_modes(b, options.modes) && add_others(b, options.statics, inner);
 }
 
-// Diagonalises the stiffness; value (count), damping (count × count).
+// Rayleigh and Ritz: diagonalises the stiffness in the span; value (count), damping (count × count).
 static bool diagonalise(basis *b, const bough_block_tridiagonal *stiffness, double *value, double *damping) {
     size_t m = (size_t)b->count;
     double *reduced = bough_arena_doubles(b->arena, m * m);
@@ -282,6 +294,7 @@ static bool diagonalise(basis *b, const bough_block_tridiagonal *stiffness, doub
     }
     rotate(b, eigen, rotated);
     b->vector = rotated;
+    // damping in the new shapes is full
     project(b, &b->tangent.blocks.velocity, -1, work, damping);
     return true;
 }

@@ -23,9 +23,6 @@ typedef struct bough_modal_model {
 typedef struct bough_modal_chain {
     bough_modal_point *point;         // (n_piece)
     double *load;                     // on the body's vertices at the time of evaluation (6 × rod stride)
-    double *place;                    // state and input of the last slopes (n_state + 9)
-    double *place_load;               // and its loads (6 × rod stride)
-    bool placed;                      // they are those of an evaluation
     bough_modal_frame_change *change; // of each piece's frame and the last tip's (n_piece + 1)
 } bough_modal_chain;
 
@@ -51,7 +48,7 @@ void bough_modal_root_wrench(const bough_modal_model *m, const bough_rod_loads *
                              const double *state, const double *input, bough_modal_chain *chain,
                              double *wrench);
 
-// Evaluates there for the two below; nothing is done where it was done last.
+// Evaluates there, which prepares bough_modal_tangent.
 void bough_modal_chain_slopes(const bough_modal_model *m, const bough_rod_loads *loads, double t,
                               const double *state, const double *input, bough_modal_chain *chain);
 
@@ -65,31 +62,18 @@ void bough_modal_tangent(const bough_modal_model *m, bough_modal_chain *chain, c
 void bough_modal_expand(const bough_modal_model *m, const double *state, const double *input, int first,
                         bough_modal_chain *chain, double *rod_state);
 
-// -- Newton's matrix: dense per piece, pieces eliminated from the tip to the root -----------------
+// -- Newton's matrix of all pieces, dense ---------------------------------------------------------
 
-// Matrices by columns. A piece's state has q and η; d is the change of its frame (12), w that of
-// the outer wrench in the tip's axes (6). Only pieces that have an inner one carry what is by d,
-// only inner ones what is by w and of the tip.
-typedef struct bough_modal_newton_piece {
-    double *by_q, *by_eta;            // of η̇ (m × stride each)
-    double *rate_d;                   // of q̇ and η̇ (2m × 12)
-    double *rate_w;                   // of η̇ (m × 6)
-    double *root_x, *root_d, *root_w; // of the root wrench (6 × 2m), (6 × 12), (6 × 6)
-    double *tip_x, *tip_d;            // of the tip's frame (12 × 2m), (12 × 12)
-    // computed by bough_modal_factor, by_q and so on with the outer pieces' answer
-    double *closed_q, *closed_eta; // (m × stride each)
-    double *turn;                  // of q̇ by q at the linearisation (m × stride)
-    double *matrix;                // of q alone, factored (m × m)
-    int *pivot;                    // (m)
-    double *answer;                // q and η by d (2m × 12)
-    double *wrench_x, *wrench;     // root wrench by q and η (6 × 2m), by d (6 × 12)
-    double *work;                  // (m)
-    double *unit;                  // (2m) zeros between uses
-} bough_modal_newton_piece;
-
+// Matrices by columns.
 typedef struct bough_modal_newton {
-    bough_modal_newton_piece *piece; // (n_piece)
-    double gamma;
+    // computed by bough_modal_linearise
+    double *jacobian; // ∂f/∂y (n_state × n_state)
+    double *input;    // ∂f/∂u (n_state × 9)
+    double *wrench;   // of the root wrench, ∂/∂y and ∂/∂u (6 × (n_state + 9))
+    double *unit;     // (n_state) zeros between uses
+    // computed by bough_modal_factor
+    double *matrix; // I − γ ∂f/∂y, factored (n_state × n_state)
+    int *pivot;     // (n_state)
 } bough_modal_newton;
 
 void bough_modal_newton_init(bough_modal_newton *newton, bough_arena *arena, const bough_modal_model *m);
@@ -99,10 +83,14 @@ bool bough_modal_linearise(const bough_modal_model *m, const bough_rod_loads *lo
                            const double *state, const double *input, bough_modal_chain *chain,
                            bough_modal_newton *newton);
 
+// bough_modal_tangent's root wrench (6) from the last linearisation.
+void bough_modal_kept_tangent(const bough_modal_model *m, const bough_modal_newton *newton,
+                              const double *state_variation, const double *input_variation, double *wrench);
+
 // Factors I − γ ∂f/∂y of the last tangents; false when singular.
 bool bough_modal_factor(const bough_modal_model *m, bough_modal_newton *newton, double gamma);
 
 // Solves with it in place: x (n_state).
-void bough_modal_solve(const bough_modal_model *m, bough_modal_newton *newton, double *x);
+void bough_modal_solve(const bough_modal_model *m, const bough_modal_newton *newton, double *x);
 
 #endif

@@ -1,6 +1,6 @@
 // The constant matrices of a modal piece, by sums over its vertices. A field has six components per
 // vertex, the displacement of its mass centre and its rotation in frame axes: so mass matrices are
-// diagonal in the vertices and turning with the frame is e× on both parts.
+// diagonal in the vertices, and a rotation of the frame is e× on both components.
 #include "flexbody/modal/modal.h"
 
 #include "core/base/spatial.h"
@@ -19,7 +19,7 @@ typedef struct fields {
     vertex_mass *vertex; // (n)
     double *shape;       // the shapes as a field (6 n × stride)
     double *product;     // work (6 n × stride)
-    double *rest[3];     // what of the turning shapes no shape has (6 n × stride)
+    double *rest[3];     // of the rotating shapes, outside the span of the shapes (6 n × stride)
 } fields;
 
 // -- fields ---------------------------------------------------------------------------------------
@@ -36,7 +36,7 @@ static void put(const fields *f, double *field, int i, int k, bough_twist v) {
     for (int c = 0; c < 6; c++) x[c * f->piece->stride] = values[c];
 }
 
-static bough_twist turned(const vertex_mass *v, bough_vec3 e, bough_twist x) {
+static bough_twist rotated(const vertex_mass *v, bough_vec3 e, bough_twist x) {
     (void)v;
     return (bough_twist){bough_cross(e, x.linear), bough_cross(e, x.angular)};
 }
@@ -46,8 +46,8 @@ static bough_twist momentum(const vertex_mass *v, bough_vec3 e, bough_twist x) {
     return (bough_twist){bough_scale(v->mass, x.linear), bough_mat3_mul(v->inertia, x.angular)};
 }
 
-// What a velocity field changes in the rates of momentum when the frame turns: m e×u and, W×IW
-// being quadratic, w×I e + e×I w.
+// Rates of momentum of a velocity field in a frame that rotates about e: m e×u and, from the quadratic W×IW,
+// w×I e + e×I w.
 static bough_twist gyroscopic(const vertex_mass *v, bough_vec3 e, bough_twist x) {
     bough_vec3 spin = bough_cross(x.angular, bough_mat3_mul(v->inertia, e));
     return (bough_twist){bough_scale(v->mass, bough_cross(e, x.linear)),
@@ -77,6 +77,7 @@ static void add_projection(const fields *f, const double *field, double sign, do
 
 // -- matrices -------------------------------------------------------------------------------------
 
+// C: projections of the rigid motions, total momentum per η; theory (37).
 static void set_rigid(const fields *f) {
     bough_modal_piece *p = f->piece;
     for (int i = 0; i < p->n; i++) {
@@ -91,20 +92,23 @@ static void set_rigid(const fields *f) {
     }
 }
 
-// G_a, B_a, and of the turning shapes e×φ what is outside the span.
-static void set_turning(const fields *f, int a) {
+// G_a, B_a of theory (35, 36), and the part of the rotating shapes e×φ outside the span.
+static void set_rotating(const fields *f, int a) {
     bough_modal_piece *p = f->piece;
     int s = p->stride;
-    double *turn = p->turn + (size_t)a * p->m * s, *rest = f->rest[a];
-    map_field(f, turned, bough_unit3(a), f->shape, rest);
+    double *rotating = p->rotating + (size_t)a * p->m * s, *rest = f->rest[a];
+    map_field(f, rotated, bough_unit3(a), f->shape, rest);
+    // G_a: the mass projection of e×φ
     map_field(f, momentum, bough_unit3(a), rest, f->product);
-    add_projection(f, f->product, 1, turn);
+    add_projection(f, f->product, 1, rotating);
+    // B_a
     map_field(f, gyroscopic, bough_unit3(a), f->shape, f->product);
     add_projection(f, f->product, 1, p->gyroscopic + (size_t)a * p->m * s);
+    // e×φ less its projection
     for (int row = 0; row < 6 * p->n; row++) {
         for (int k = 0; k < p->m; k++) {
-            double share = f->shape[(size_t)row * s + k];
-            for (int l = 0; l < p->m; l++) rest[(size_t)row * s + l] -= share * turn[l * s + k];
+            double phi = f->shape[(size_t)row * s + k];
+            for (int l = 0; l < p->m; l++) rest[(size_t)row * s + l] -= phi * rotating[l * s + k];
         }
     }
 }
@@ -115,7 +119,7 @@ static double *field_matrix(const fields *f, int j) {
     return f->piece->field + (size_t)j * f->piece->m * f->piece->stride;
 }
 
-// N_ab but for the stiffening: centrifugal forces by what the span has not of the turning shapes.
+// N_ab without stiffening: centrifugal forces by the part of the rotating shapes outside the span.
 static void set_softening(const fields *f, int j) {
     for (int order = 0; order < 2; order++) {
         int a = square_of[j][order], b = square_of[j][1 - order];
@@ -125,7 +129,7 @@ static void set_softening(const fields *f, int j) {
     }
 }
 
-// r_ab: e_a × I e_b. In W×IW about rigid turning, −ω_a B_a η counts the square of ω twice.
+// r_ab: e_a × I e_b. In W×IW of a rigid rotation, −ω_a B_a η contains the square of ω twice.
 static void set_centrifugal(const fields *f, int j) {
     const bough_modal_piece *p = f->piece;
     for (int i = 0; i < p->n; i++) {
@@ -164,7 +168,8 @@ static bough_vec3 displacement(const bough_modal_piece *p, int i, int k) {
     return bough_v3(x[0], x[p->stride], x[2 * p->stride]);
 }
 
-// The axial force N of a segment stiffens: −N/h (E − t tᵀ) between the displacements of its ends.
+// theory (38): the axial force N of a segment stiffens, −N/h (E − t tᵀ) between the displacements of its
+// ends.
 static void subtract_string(const fields *f, int n, double tension, double *to) {
     const bough_modal_piece *p = f->piece;
     bough_vec3 t = bough_sub(p->rod->position0[n + 1], p->rod->position0[n]);
@@ -180,6 +185,7 @@ static void subtract_string(const fields *f, int n, double tension, double *to) 
     }
 }
 
+// The axial force of each segment by field j, summed from the tip inwards.
 static void set_stiffening(const fields *f, int j) {
     const bough_rod_model *rod = f->piece->rod;
     bough_vec3 outer = {0, 0, 0}; // force on the vertices beyond the segment
@@ -192,6 +198,7 @@ static void set_stiffening(const fields *f, int j) {
 
 // -- whole ----------------------------------------------------------------------------------------
 
+// Inertia of a vertex about its mass centre, by Steiner, in frame axes.
 static vertex_mass mass_of(const bough_rod_model *rod, int i) {
     const bough_vertex_inertia *v = &rod->vertex[i];
     const double *j = v->inertia;
@@ -209,7 +216,7 @@ static void take_memory(bough_arena *arena, bough_arena *work, fields *f) {
     size_t s = (size_t)p->stride, matrix = (size_t)p->m * s, field = 6 * (size_t)p->n * s;
     p->rigid = bough_arena_doubles(arena, 6 * s);
     p->centrifugal = bough_arena_doubles(arena, BOUGH_MODAL_SQUARES * s);
-    p->turn = bough_arena_doubles(arena, 3 * matrix);
+    p->rotating = bough_arena_doubles(arena, 3 * matrix);
     p->gyroscopic = bough_arena_doubles(arena, 3 * matrix);
     p->field = bough_arena_doubles(arena, BOUGH_MODAL_FIELDS * matrix);
     f->vertex = bough_arena_take(work, (size_t)p->n * sizeof *f->vertex);
@@ -220,6 +227,7 @@ static void take_memory(bough_arena *arena, bough_arena *work, fields *f) {
 
 static void set_all(fields *f, bool stiffening) {
     bough_modal_piece *p = f->piece;
+    // shapes as fields: displacements of the mass centres
     for (int i = 0; i < p->n; i++) {
         f->vertex[i] = mass_of(p->rod, i + 1);
         for (int k = 0; k < p->m; k++) {
@@ -229,7 +237,7 @@ static void set_all(fields *f, bool stiffening) {
         }
     }
     set_rigid(f);
-    for (int a = 0; a < 3; a++) set_turning(f, a);
+    for (int a = 0; a < 3; a++) set_rotating(f, a);
     for (int j = 0; j < BOUGH_MODAL_SQUARES; j++) {
         set_softening(f, j);
         set_centrifugal(f, j);

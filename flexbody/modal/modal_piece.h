@@ -16,9 +16,9 @@ typedef struct bough_modal_frame {
     bough_transform pose; // in the body's frame
 } bough_modal_frame;
 
-// A change of the frame; of its pose only the rotation counts, exp(turn) in its own axes.
+// A change of the frame; its pose changes by exp(rotation) in its own axes only.
 typedef struct bough_modal_frame_change {
-    bough_vec3 velocity, spin, gravity, turn;
+    bough_vec3 velocity, spin, gravity, rotation;
 } bough_modal_frame_change;
 
 typedef struct bough_modal_point {
@@ -26,28 +26,28 @@ typedef struct bough_modal_point {
     const double *q, *eta; // (m) where evaluated
     // computed by bough_modal_forward
     bough_modal_frame frame;
-    double *turn_q; // G_a q (3 × stride)
-    double *rate_q; // q̇ (stride)
+    double *rotating_q; // G_a q (3 × stride)
+    double *rate_q;     // q̇ (stride)
     // of a piece that has an inner one
     bough_twist tip_shift, tip_rate; // displacement and rotation vector of the last vertex, their rates
-    bough_mat3 tip_turn;             // exp of that rotation vector
+    bough_mat3 tip_rotation;         // exp of that rotation vector
     bough_modal_frame tip;           // the last vertex': the next piece's frame
     // computed by bough_modal_backward
-    bough_wrench outer;  // on the tip, in the tip's axes
-    double *force;       // Φᵀf of vertex loads and outer wrench (stride)
-    double *coefficient; // of the fields (12)
-    double *rate_eta;    // η̇ (stride)
-    double *turn_rate;   // G_a q̇ (3 × stride)
-    double *rest;        // C_tᵀg − η̇ (stride)
-    bough_wrench root;   // on the carrier, in frame axes
+    bough_wrench outer;    // on the tip, in the tip's axes
+    double *force;         // Φᵀf of vertex loads and outer wrench (stride)
+    double *coefficient;   // of the fields (12)
+    double *rate_eta;      // η̇ (stride)
+    double *rotating_rate; // G_a q̇ (3 × stride)
+    double *rest;          // C_tᵀg − η̇ (stride)
+    bough_wrench root;     // on the carrier, in frame axes
     // computed by bough_modal_slopes
-    double *lever;                     // moment of the forces about the frame's axes per unit of q
-                                       // (3 × stride)
-    double *turn, *gyroscopic, *field; // combined (m × stride each)
-    double *field_q, *gyroscopic_eta;  // of each field (12 × stride), of each axis (3 × stride)
-    double *eta_turn, *rest_turn;      // ηᵀG_a and (C_tᵀg − η̇)ᵀG_a (3 × stride)
-    double *force_turn;                // of force per unit turn of the frame (3 × stride)
-    bough_vec3 moment_turn[3];         // of the loads' moment likewise
+    double *lever;                         // moment of the forces about the frame's axes per unit of q
+                                           // (3 × stride)
+    double *rotating, *gyroscopic, *field; // combined (m × stride each)
+    double *field_q, *gyroscopic_eta;      // of each field (12 × stride), of each axis (3 × stride)
+    double *eta_rotating, *rest_rotating;  // ηᵀG_a and (C_tᵀg − η̇)ᵀG_a (3 × stride)
+    double *force_by_rotation;             // of force per unit rotation of the frame (3 × stride)
+    bough_vec3 moment_by_rotation[3];      // of the loads' moment, likewise
 } bough_modal_point;
 
 void bough_modal_point_init(bough_modal_point *point, bough_arena *arena, const bough_modal_piece *piece);

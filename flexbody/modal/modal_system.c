@@ -1,3 +1,4 @@
+// A modal body behind the contract of core/solve/system.h.
 #include "flexbody/modal/modal_system.h"
 
 #include <string.h>
@@ -10,7 +11,7 @@ struct bough_modal_body {
     double *vertices; // (13 n) computed on request
     double *work;     // rates of a tangent (n_state)
     bough_modal_chain chain;
-    bough_modal_chain slopes; // of tangents
+    bough_modal_chain slopes; // of tangents, beside evaluations
 };
 
 // -- the contract ---------------------------------------------------------------------------------
@@ -35,11 +36,19 @@ static void output_tangent(void *self, double t, const double *state, const doub
 static void input_columns(void *self, double t, const double *state, const double *input, double *column) {
     bough_modal_body *b = self;
     bough_modal_chain_slopes(b->model, &b->loads, t, state, input, &b->slopes);
+    // a column along each unit input
     for (int j = 0; j < BOUGH_ROD_INPUTS; j++) {
         double unit[BOUGH_ROD_INPUTS] = {0}, wrench[BOUGH_ROD_OUTPUTS];
         unit[j] = 1;
         bough_modal_tangent(b->model, &b->slopes, NULL, unit, column + (size_t)j * b->model->n_state, wrench);
     }
+}
+
+static bool kept_tangent(void *self, const void *factors, const double *state_rate, const double *input_rate,
+                         double *rate) {
+    const bough_modal_body *b = self;
+    bough_modal_kept_tangent(b->model, factors, state_rate, input_rate, rate);
+    return true;
 }
 
 static void *factors(void *self, bough_arena *arena) {
@@ -75,6 +84,7 @@ static void take_memory(bough_modal_body *b, bough_arena *arena) {
     bough_modal_chain_init(&b->slopes, arena, b->model);
 }
 
+// q and η have the scale of the displacement that they cause.
 static void set_scale(bough_modal_body *b) {
     for (int k = 0; k < b->model->n_piece; k++) {
         const bough_modal_piece *p = &b->model->piece[k];
@@ -95,7 +105,7 @@ bough_modal_body *bough_modal_body_create(bough_arena *arena, const bough_modal_
 }
 
 bough_system bough_modal_body_system(bough_modal_body *body) {
-    static const bough_system_ops ops = {BOUGH_SYSTEM_REQUIRED};
+    static const bough_system_ops ops = {BOUGH_SYSTEM_REQUIRED, .kept_tangent = kept_tangent};
     return (bough_system){.name = body->model->name,
                           .kind = "modal",
                           .n_state = body->model->n_state,

@@ -56,29 +56,18 @@ static int ascending(const void *a, const void *b) {
     return (x > y) - (x < y);
 }
 
-// ∂f/∂y (n_state × n_state, by columns)
-static void set_jacobian(const bough_modal_model *m, bough_modal_chain *chain, double *unit,
-                         double *jacobian) {
-    double wrench[BOUGH_ROD_OUTPUTS];
-    for (int j = 0; j < m->n_state; j++) {
-        unit[j] = 1;
-        bough_modal_tangent(m, chain, unit, NULL, jacobian + (size_t)j * m->n_state, wrench);
-        unit[j] = 0;
-    }
-}
-
 bough_status bough_modal_frequencies(bough_arena *arena, const bough_modal_model *m,
                                      const bough_rod_loads *loads, double t, const double *input,
                                      const double *state, int wanted, double *frequency, int *found) {
     size_t n = (size_t)m->n_state;
     bough_modal_chain chain;
-    double *jacobian = bough_arena_doubles(arena, n * n), *unit = bough_arena_doubles(arena, n);
+    bough_modal_newton newton;
     double *vector = bough_arena_doubles(arena, n * n), *work = bough_arena_doubles(arena, 8 * n);
     double *value = bough_arena_doubles(arena, 2 * n);
     bough_modal_chain_init(&chain, arena, m);
-    bough_modal_chain_slopes(m, loads, t, state, input, &chain);
-    set_jacobian(m, &chain, unit, jacobian);
-    if (!bough_dense_eigen(m->n_state, jacobian, value, vector, work)) {
+    bough_modal_newton_init(&newton, arena, m);
+    if (!bough_modal_linearise(m, loads, t, state, input, &chain, &newton) ||
+        !bough_dense_eigen(m->n_state, newton.jacobian, value, vector, work)) {
         return bough_fail(BOUGH_FAILED, "%s: its eigenvalues cannot be found", m->name);
     }
     size_t count = 0;
