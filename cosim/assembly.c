@@ -9,7 +9,7 @@ static void take_members(bough_assembly *a, bough_arena *arena, const bough_asse
     size_t n = (size_t)def->n_member;
     a->n_member = def->n_member;
     a->member = bough_arena_take(arena, n * sizeof *a->member);
-    a->stage = bough_arena_take(arena, n * sizeof *a->stage);
+    a->level = bough_arena_take(arena, n * sizeof *a->level);
     a->state_offset = bough_arena_take(arena, (n + 1) * sizeof(int));
     a->input_offset = bough_arena_take(arena, (n + 1) * sizeof(int));
     a->output_offset = bough_arena_take(arena, (n + 1) * sizeof(int));
@@ -19,9 +19,9 @@ static void take_members(bough_assembly *a, bough_arena *arena, const bough_asse
     for (int i = 0; i < def->n_member; i++) {
         a->member[i] = def->member[i].member;
         const bough_system *s = &a->member[i]->system;
-        a->stage[i] = def->member[i].stage;
+        a->level[i] = def->member[i].level;
         a->opaque = a->opaque || a->member[i]->opaque;
-        if (a->stage[i] >= a->n_stage) a->n_stage = a->stage[i] + 1;
+        if (a->level[i] >= a->n_level) a->n_level = a->level[i] + 1;
         a->state_offset[i + 1] = a->state_offset[i] + s->n_state;
         a->input_offset[i + 1] = a->input_offset[i] + s->n_input;
         a->output_offset[i + 1] = a->output_offset[i] + s->n_output;
@@ -77,16 +77,15 @@ static const bough_connection *partner(const bough_assembly_def *def, int forwar
     return NULL;
 }
 
-static void pair_interfaces(bough_assembly *a, const bough_assembly_def *def) {
+static void pair_ports(bough_assembly *a, const bough_assembly_def *def) {
     for (int k = 0; k < def->n_connection; k++) {
         const bough_connection *c = &def->connection[k];
         const bough_connection *back = c->kinematic ? partner(def, k) : NULL;
         if (!back) continue;
-        a->interface[a->n_interface++] =
-            (bough_interface){.body = c->to,
-                              .wrench = a->input_offset[back->to] + back->to_offset,
-                              .twist = a->input_offset[c->to] + c->to_offset,
-                              .count = back->count < c->count ? back->count : c->count};
+        a->pair[a->n_pair++] = (bough_port_pair){.body = c->to,
+                                                 .wrench = a->input_offset[back->to] + back->to_offset,
+                                                 .twist = a->input_offset[c->to] + c->to_offset,
+                                                 .count = back->count < c->count ? back->count : c->count};
     }
 }
 
@@ -117,7 +116,7 @@ static bough_status order_outputs(bough_assembly *a, bool *resolved) {
         int best = -1;
         for (int i = 0; i < a->n_member; i++) {
             if (resolved[i] || !resolvable(a, i, resolved)) continue;
-            if (best < 0 || a->stage[i] < a->stage[best]) best = i;
+            if (best < 0 || a->level[i] < a->level[best]) best = i;
         }
         if (best < 0) {
             return bough_fail(BOUGH_INVALID, "the outputs of the coupled bodies depend on each "
@@ -131,11 +130,11 @@ static bough_status order_outputs(bough_assembly *a, bool *resolved) {
 
 static void find_leaders(bough_assembly *a) {
     a->followers_last = true;
-    for (int i = 0; i < a->n_member; i++) a->leads[i] = a->stage[i] == 0;
+    for (int i = 0; i < a->n_member; i++) a->leads[i] = a->level[i] == 0;
     for (int i = 0; i < a->n_member; i++) {
         for (int j = a->input_offset[i]; j < a->input_offset[i + 1]; j++) {
             int from = a->source_member[j];
-            if (a->stage[i] == 0 || a->stage[from] == 0) continue;
+            if (a->level[i] == 0 || a->level[from] == 0) continue;
             a->leads[i] = a->leads[from] = true;
         }
     }
@@ -155,13 +154,13 @@ bough_status bough_assembly_build(bough_arena *arena, const bough_assembly_def *
     a->source_member = bough_arena_take(arena, n_input * sizeof(int));
     a->kinematic = bough_arena_take(arena, n_input * sizeof(bool));
     a->vector = bough_arena_take(arena, n_input * sizeof(int));
-    a->interface = bough_arena_take(arena, (size_t)def->n_connection * sizeof *a->interface);
+    a->pair = bough_arena_take(arena, (size_t)def->n_connection * sizeof *a->pair);
     bool *resolved = bough_arena_take(arena, (size_t)a->n_member * sizeof(bool));
     double *input = bough_arena_doubles(arena, 2 * n_input);
     double *output = bough_arena_doubles(arena, (size_t)a->n_output);
     connect_all(a, def);
     find_vectors(a);
-    pair_interfaces(a, def);
+    pair_ports(a, def);
     for (int i = 0; i < a->n_member; i++) {
         a->feedthrough[i] = probe_feedthrough(a->member[i], input, output);
     }

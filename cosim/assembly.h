@@ -1,4 +1,4 @@
-// The coupled system: members, the stage in which each advances, and the connections that copy outputs to
+// The coupled system: members, the level in which each advances, and the connections that copy outputs to
 // inputs. It is constant after building. Arrays over all inputs contain input j of member i at
 // input_offset[i] + j; arrays over outputs and states likewise.
 #ifndef BOUGH_COSIM_ASSEMBLY_H
@@ -8,11 +8,11 @@
 #include "core/base/status.h"
 #include "cosim/member.h"
 
-// A member and its stage. Members of one stage advance in parallel; sequential schemes advance the stages
-// in order. The members of stage 0 are the leaders.
+// A member and its level. Members of one level advance in parallel; sequential schemes advance the levels
+// in order. The members of level 0 are the leaders.
 typedef struct bough_assembly_member {
     bough_member *member; // borrowed; outlives the assembly
-    int stage;
+    int level;
 } bough_assembly_member;
 
 // Outputs from_offset … from_offset + count − 1 of one member are inputs to_offset … of another.
@@ -29,18 +29,18 @@ typedef struct bough_assembly_def {
 } bough_assembly_def;
 
 // A pair of ports that exchange power: wrench · twist.
-typedef struct bough_interface {
+typedef struct bough_port_pair {
     int body;   // the member that returns the wrench
     int wrench; // first input of the wrench's receiver, numbered over all inputs
     int twist;  // first input of the body, numbered over all inputs
     int count;  // components of the wrench
-} bough_interface;
+} bough_port_pair;
 
 typedef struct bough_assembly {
-    int n_member, n_stage;
+    int n_member, n_level;
     bough_member **member;          // (n_member)
     bool opaque;                    // one of them is: no tangents of the whole
-    int *stage;                     // (n_member)
+    int *level;                     // (n_member)
     int n_state, n_input, n_output; // sums over the members
     int *state_offset;              // (n_member + 1)
     int *input_offset;              // (n_member + 1)
@@ -51,10 +51,10 @@ typedef struct bough_assembly {
     int *vector;         // (n_input) first of the up to three inputs that form a vector with this one
     bool *feedthrough;   // (n_member) whether outputs depend on inputs directly
     int *order;          // (n_member) outputs evaluated in this order need no iteration
-    bool *leads;         // (n_member) those of stage 0, and others connected with one that is not of it
+    bool *leads;         // (n_member) those of level 0, and others connected with one that is not of it
     bool followers_last; // no outputs of leaders depend on those of followers directly
-    int n_interface;
-    bough_interface *interface; // (n_interface)
+    int n_pair;
+    bough_port_pair *pair; // (n_pair)
 } bough_assembly;
 
 // Builds the assembly in the arena; every input is connected once. BOUGH_INVALID when the outputs

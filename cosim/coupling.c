@@ -1,6 +1,6 @@
 #include "cosim/coupling.h"
 
-#include "cosim/port.h"
+#include "cosim/signal.h"
 
 #include <assert.h>
 #include <math.h>
@@ -46,16 +46,16 @@ bough_coupling *bough_coupling_create(bough_arena *arena, const bough_assembly *
     return c;
 }
 
-static bool in_stage(const bough_coupling *c, int stage, int member) {
-    return stage == BOUGH_ALL_STAGES || c->assembly->stage[member] == stage;
+static bool in_level(const bough_coupling *c, int level, int member) {
+    return level == BOUGH_ALL_LEVELS || c->assembly->level[member] == level;
 }
 
-// Lists the members of a stage in c->turn, and clears failures.
-static int list_stage(bough_coupling *c, int stage) {
+// Lists the members of a level in c->turn, and clears failures.
+static int list_level(bough_coupling *c, int level) {
     int n = 0;
     for (int i = 0; i < c->assembly->n_member; i++) {
         c->status[i].code = BOUGH_OK;
-        if (in_stage(c, stage, i)) c->turn[n++] = i;
+        if (in_level(c, level, i)) c->turn[n++] = i;
     }
     return n;
 }
@@ -79,9 +79,9 @@ static bough_status first_failure(bough_coupling *c) {
     return bough_ok();
 }
 
-bough_status bough_coupling_each(bough_coupling *c, int stage, void (*work)(bough_coupling *c, int member)) {
+bough_status bough_coupling_each(bough_coupling *c, int level, void (*work)(bough_coupling *c, int member)) {
     member_work w = {c, work};
-    bough_pool_run(c->pool, list_stage(c, stage), run_member, &w);
+    bough_pool_run(c->pool, list_level(c, level), run_member, &w);
     return first_failure(c);
 }
 
@@ -112,9 +112,9 @@ static void run_staged(void *data, int k) {
 
 bough_status bough_coupling_each_staged(bough_coupling *c, bough_staged_work work) {
     int n = c->assembly->n_member;
-    staged_list w = {.coupling = c, .work = work, .n_leader = list_stage(c, 0)};
+    staged_list w = {.coupling = c, .work = work, .n_leader = list_level(c, 0)};
     for (int i = 0; i < n; i++) {
-        if (!in_stage(c, 0, i)) c->turn[w.n_leader + w.n_follow++] = i;
+        if (!in_level(c, 0, i)) c->turn[w.n_leader + w.n_follow++] = i;
     }
     if (w.n_follow > 0) w.shift = w.n_leader % w.n_follow;
     bough_pool_run(c->pool, w.n_leader + 2 * w.n_follow, run_staged, &w);
@@ -179,13 +179,13 @@ static void advance_second_half(bough_coupling *c, int member) {
     if (bough_is_ok(&c->status[member]) && !arrived) advance(c, member, false);
 }
 
-typedef struct stage_work {
+typedef struct level_work {
     bough_coupling *coupling;
     bool restart;
-} stage_work;
+} level_work;
 
 static void advance_turn(void *data, int k, bough_part part) {
-    const stage_work *w = data;
+    const level_work *w = data;
     int member = w->coupling->turn[k];
     switch (part) {
     case BOUGH_WHOLE: advance(w->coupling, member, w->restart); break;
@@ -194,9 +194,9 @@ static void advance_turn(void *data, int k, bough_part part) {
     }
 }
 
-bough_status bough_coupling_advance(bough_coupling *c, int stage, bool restart) {
-    stage_work w = {c, restart};
-    bough_pool_run_turns(c->pool, list_stage(c, stage), advance_turn, &w);
+bough_status bough_coupling_advance(bough_coupling *c, int level, bool restart) {
+    level_work w = {c, restart};
+    bough_pool_run_turns(c->pool, list_level(c, level), advance_turn, &w);
     return first_failure(c);
 }
 
@@ -227,9 +227,9 @@ static void advance_leader(bough_coupling *c, int member) {
                    c->end_output + a->output_offset[member]);
 }
 
-bough_status bough_coupling_advance_leaders(bough_coupling *c, int stage, bool restart) {
+bough_status bough_coupling_advance_leaders(bough_coupling *c, int level, bool restart) {
     c->leaders_restart = restart;
-    return bough_coupling_each(c, stage, advance_leader);
+    return bough_coupling_each(c, level, advance_leader);
 }
 
 static void interpolate_polynomial(bough_coupling *c, bough_signal *s, int local, int j) {
@@ -241,7 +241,7 @@ static void interpolate_polynomial(bough_coupling *c, bough_signal *s, int local
         time[p + 1] = c->past_time[p];
         value[p + 1] = c->past[p] + j;
     }
-    bough_port_polynomial(s, local, 1, degree + 1, time, value);
+    bough_signal_polynomial(s, local, 1, degree + 1, time, value);
 }
 
 void bough_coupling_interpolate(bough_coupling *c, int member, int j) {
@@ -252,8 +252,9 @@ void bough_coupling_interpolate(bough_coupling *c, int member, int j) {
         return;
     }
     c->followed[j] = true;
-    bough_port_hermite(&c->signal[member], local, 1, (bough_port_end){c->input + j, c->start_rate + source},
-                       (bough_port_end){c->end_output + source, c->end_rate + source});
+    bough_signal_hermite(&c->signal[member], local, 1,
+                         (bough_signal_end){c->input + j, c->start_rate + source},
+                         (bough_signal_end){c->end_output + source, c->end_rate + source});
 }
 
 double bough_coupling_curvature(const bough_coupling *c, int j, double end) {
@@ -282,7 +283,7 @@ static void apply_obtained(bough_coupling *c) {
     const bough_assembly *a = c->assembly;
     for (int i = 0; i < a->n_member; i++) {
         int first = a->input_offset[i], count = a->member[i]->system.n_input;
-        bough_port_linear(&c->signal[i], 0, count, c->past[0] + first, c->input + first);
+        bough_signal_linear(&c->signal[i], 0, count, c->past[0] + first, c->input + first);
     }
 }
 
@@ -291,7 +292,7 @@ void bough_coupling_exchange(bough_coupling *c) {
     bough_assembly_outputs(a, c->t1, c->output, c->input);
     if (c->whole) apply_obtained(c);
     for (int i = 0; i < a->n_member && c->deficit != NULL; i++) {
-        if (a->stage[i] == 0) add_deficit(c, i);
+        if (a->level[i] == 0) add_deficit(c, i);
     }
     for (int i = 0; i < a->n_member; i++) {
         bough_signal_value(&c->signal[i], c->t1, c->applied + a->input_offset[i]);
@@ -332,7 +333,7 @@ void bough_coupling_load(bough_coupling *c, double h, const double *z) {
     for (int p = 0; p < n; p++) memcpy(row[p], z + a->n_state + p * a->n_input, size);
     for (int i = 0; i < a->n_member && c->deficit != NULL; i++) { // of leaders only
         size_t own = (size_t)a->member[i]->system.n_input * sizeof(double);
-        if (a->stage[i] != 0) memset(c->deficit + a->input_offset[i], 0, own);
+        if (a->level[i] != 0) memset(c->deficit + a->input_offset[i], 0, own);
     }
     bough_assembly_outputs(a, 0, c->output, c->input);
     memcpy(c->past[0], c->input, size);

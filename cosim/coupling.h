@@ -6,9 +6,9 @@
 #include "core/base/snapshot.h"
 #include "core/solve/integrator.h"
 #include "cosim/accelerate.h"
-#include "cosim/condense.h"
+#include "cosim/interface.h"
 
-// How a later stage interpolates the outputs that an earlier stage has already obtained.
+// How a later level interpolates the outputs that an earlier level has already obtained.
 typedef enum bough_interpolation {
     BOUGH_HERMITE,    // cubic from values and rates at both ends
     BOUGH_POLYNOMIAL, // through the new value and `order` earlier ones; order 0 holds the new value
@@ -24,8 +24,8 @@ typedef enum bough_exchange {
 typedef struct bough_scheme_options {
     const char *name;                  // of the scheme, see scheme.h
     int order;                         // extrapolated, iterated: degree of the polynomial, 0 … 2
-    bool parallel;                     // extrapolated: all stages at once instead of one after the other
-    bool reversed;                     // sequential schemes take the last stage first
+    bool parallel;                     // extrapolated: all levels at once instead of one after the other
+    bool reversed;                     // sequential schemes take the last level first
     bough_interpolation interpolation; // sequential schemes
     double theta; // ramp: 1/2 … 1; 0: 1/2, and a scene on which that is unstable is refused
     bough_integrator_options integrator; // monolithic
@@ -69,8 +69,8 @@ typedef struct bough_coupling {
     double *end_output;   // (n_output) outputs at t1, likewise
     double *end_rate;     // (n_output)
     bough_status *status; // (n_member) of the last move
-    int *turn;            // (n_member) the members of the stage in progress
-    bool leaders_restart; // integrators of the stage in progress start anew
+    int *turn;            // (n_member) the members of the level in progress
+    bool leaders_restart; // integrators of the level in progress start anew
     int failed_member;    // −1, or the member whose move failed
 
     // scratch
@@ -97,13 +97,13 @@ bough_coupling *bough_coupling_create(bough_arena *arena, const bough_assembly *
 
 // -- moves --------------------------------------------------------------------------------------
 
-enum { BOUGH_ALL_STAGES = -1 };
+enum { BOUGH_ALL_LEVELS = -1 };
 
-// Runs work(c, member) for every member of a stage, shared out by the pool, and returns the
+// Runs work(c, member) for every member of a level, shared out by the pool, and returns the
 // first failure in member order that the work left in c->status.
-bough_status bough_coupling_each(bough_coupling *c, int stage, void (*work)(bough_coupling *c, int member));
+bough_status bough_coupling_each(bough_coupling *c, int level, void (*work)(bough_coupling *c, int member));
 
-// The same for advance_leader(c, member) of the leaders (stage 0) beside prepare(c, member) of all
+// The same for advance_leader(c, member) of the leaders (level 0) beside prepare(c, member) of all
 // others, and then advance_follower(c, member) of those whose preparation has not failed.
 typedef struct bough_staged_work {
     void (*advance_leader)(bough_coupling *c, int member);
@@ -123,11 +123,11 @@ bool bough_coupling_output_rate(bough_coupling *c, int member, double t, const d
 // Advances a member to t under its signal; c->status[member] is BOUGH_RETRY if its integrator fails.
 void bough_coupling_advance_to(bough_coupling *c, int member, double t, bool restart);
 
-// Advances the members of a stage to t1 under their signals.
-bough_status bough_coupling_advance(bough_coupling *c, int stage, bool restart);
+// Advances the members of a level to t1 under their signals.
+bough_status bough_coupling_advance(bough_coupling *c, int level, bool restart);
 
-// The same, and computes the values that a later stage needs: start_rate, end_output, end_rate.
-bough_status bough_coupling_advance_leaders(bough_coupling *c, int stage, bool restart);
+// The same, and computes the values that a later level needs: start_rate, end_output, end_rate.
+bough_status bough_coupling_advance_leaders(bough_coupling *c, int level, bool restart);
 
 // Fills input j (numbered over all inputs) of its member from the new output that feeds it.
 void bough_coupling_interpolate(bough_coupling *c, int member, int j);

@@ -5,8 +5,8 @@
 #define BOUGH_COSIM_MEMBER_H
 
 #include "core/solve/integrator.h"
-#include "core/solve/signal.h"
 #include "core/solve/system.h"
+#include "cosim/signal.h"
 
 typedef struct bough_member {
     bough_system system;

@@ -20,7 +20,7 @@ static bough_status step_parallel(bough_coupling *c) {
             bough_sequence_extrapolate(c, i, j, c->options.order);
         }
     }
-    return bough_coupling_advance(c, BOUGH_ALL_STAGES, true);
+    return bough_coupling_advance(c, BOUGH_ALL_LEVELS, true);
 }
 
 static bough_status step(bough_coupling *c) {

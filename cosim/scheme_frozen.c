@@ -1,8 +1,8 @@
 // Frozen coupling (Jacobi): all members advance at once under what they knew at T_k; forces are
 // held, motions continue with their rate held. Order 1. Stable only below a macro step that the
 // damping sets: a frozen force is a delay of 3/2 H.
-#include "cosim/port.h"
 #include "cosim/scheme.h"
+#include "cosim/signal.h"
 
 // Rates of the outputs at T_k, where a motion of the member is held by its rate.
 static void find_rates(bough_coupling *c, int member) {
@@ -24,9 +24,9 @@ static void hold(bough_coupling *c, int member) {
     for (int j = 0; j < s->n; j++) {
         int input = a->input_offset[member] + j;
         if (a->kinematic[input]) {
-            bough_port_hold_rate(s, j, 1, c->input + input, c->start_rate + a->source[input]);
+            bough_signal_hold_rate(s, j, 1, c->input + input, c->start_rate + a->source[input]);
         } else {
-            bough_port_hold(s, j, 1, c->input + input);
+            bough_signal_hold(s, j, 1, c->input + input);
         }
     }
 }
@@ -47,10 +47,10 @@ static void advance(bough_coupling *c, int member) {
 
 static bough_status step(bough_coupling *c) {
     bough_coupling_begin(c);
-    bough_status status = bough_coupling_each(c, BOUGH_ALL_STAGES, find_rates);
+    bough_status status = bough_coupling_each(c, BOUGH_ALL_LEVELS, find_rates);
     if (!bough_is_ok(&status)) return status;
     for (int i = 0; i < c->assembly->n_member; i++) hold(c, i);
-    return bough_coupling_each(c, BOUGH_ALL_STAGES, advance);
+    return bough_coupling_each(c, BOUGH_ALL_LEVELS, advance);
 }
 
 const bough_scheme bough_scheme_frozen = {

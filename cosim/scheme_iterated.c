@@ -1,5 +1,5 @@
 // Iterated coupling: the macro step is repeated until the interface agrees. The unknowns are values of the
-// inputs whose source advances in the same stage or later (the feedback), at nodes of the step:
+// inputs whose source advances in the same level or later (the feedback), at nodes of the step:
 //   - end values: at T_{k+1}. The input is a polynomial of degree `order` through this value and earlier
 //     ones. The order is therefore degree + 1, by the interpolation and not by the iteration.
 //   - waveform: also at the Lobatto points, where the sub-solvers stop. The input is the cubic through
@@ -9,7 +9,7 @@
 // through values and rates at both ends would be unstable on a light interface body: measured, a carrier
 // of a hundredth of its inertia fails at 20 ms.
 //
-// A sweep advances the stages in order and gives the resulting feedback; an accelerator computes the next
+// A sweep advances the levels in order and gives the resulting feedback; an accelerator computes the next
 // values from it. Before each sweep the members return to T_k and restart their integrators, so that equal
 // values give equal results.
 //
@@ -22,10 +22,10 @@
 // by the members' own tolerances. An adaptive multistep method that restarts and stops within the step has
 // a hundred times more noise there than at the end of the step.
 #include "cosim/accelerate.h"
-#include "cosim/coupled.h"
-#include "cosim/port.h"
 #include "cosim/scheme.h"
 #include "cosim/sequence.h"
+#include "cosim/signal.h"
+#include "cosim/whole.h"
 
 #include <assert.h>
 #include <math.h>
@@ -44,7 +44,7 @@ typedef struct iteration {
     // Newton's, one a node: how inputs answer to their own change up to there. Every member answers by one
     // linearly implicit step, (I − γJ) δy = γ B δu, as in the ramp's prediction; γ is the time over which a
     // unit change at the node acts, ∫ w dt. NULL: another accelerator.
-    bough_coupled *jacobian[MOST_NODES];
+    bough_whole *jacobian[MOST_NODES];
     double span[MOST_NODES]; // γ over the macro step
     double *at;              // (n_state) where they are made
     double length;           // of the macro step that they are made for [s]; 0: none
@@ -74,7 +74,7 @@ static void find_feedback(iteration *it, const bough_coupling *c) {
     const bough_assembly *a = c->assembly;
     for (int i = 0; i < a->n_member; i++) {
         for (int j = a->input_offset[i]; j < a->input_offset[i + 1]; j++) {
-            if (bough_sequence_before(c, a->stage[a->source_member[j]], a->stage[i])) continue;
+            if (bough_sequence_before(c, a->level[a->source_member[j]], a->level[i])) continue;
             int k = it->n++;
             it->is_feedback[j] = true;
             it->input[k] = j;
@@ -116,7 +116,7 @@ static void create_accelerator(bough_coupling *c, iteration *it, bough_arena *ar
     static const double share[BOUGH_HISTORY] = {1, 1. / 2, 5. / 12}; // ∫ of the end value's weight
     for (int k = 0; k < it->n_node; k++) {
         it->span[k] = it->n_node == 1 ? share[c->options.order] : it->node[k] / 2;
-        it->jacobian[k] = bough_coupled_create(arena, c->assembly, c->pool);
+        it->jacobian[k] = bough_whole_create(arena, c->assembly, c->pool);
     }
     it->at = bough_arena_doubles(arena, (size_t)c->assembly->n_state);
 }
@@ -168,7 +168,7 @@ static void interpolate(bough_coupling *c, int member, int j) {
         time[n] = c->past_time[p];
         value[n] = c->past[p] + j;
     }
-    bough_port_polynomial(&c->signal[member], j - a->input_offset[member], 1, n, time, value);
+    bough_signal_polynomial(&c->signal[member], j - a->input_offset[member], 1, n, time, value);
 }
 
 // Advances a member from node to node, with assumed feedback and obtained other inputs, and evaluates its
@@ -196,7 +196,7 @@ static void advance(bough_coupling *c, int member) {
 }
 
 static bough_status sweep(bough_coupling *c) {
-    int n = c->assembly->n_stage;
+    int n = c->assembly->n_level;
     bough_status status = bough_ok();
     for (int k = 0; k < n && bough_is_ok(&status); k++) {
         status = bough_coupling_each(c, c->options.reversed ? n - 1 - k : k, advance);
@@ -279,7 +279,7 @@ static void solve_newton(void *self, double *x) {
     for (int p = 0; p < it->n_node; p++, x += it->n) {
         memset(it->change, 0, (size_t)it->n_input * sizeof(double));
         for (int k = 0; k < it->n; k++) it->change[it->input[k]] = it->scale[k] * x[k];
-        bough_coupled_close(it->jacobian[p], it->change);
+        bough_whole_close(it->jacobian[p], it->change);
         for (int k = 0; k < it->n; k++) x[k] = it->change[it->input[k]] / it->scale[k];
     }
 }
@@ -297,7 +297,7 @@ static bough_status renew_jacobians(bough_coupling *c) {
     bough_assembly_states(c->assembly, it->at);
     bough_status status = bough_ok();
     for (int k = 0; k < it->n_node && bough_is_ok(&status); k++) {
-        status = bough_coupled_setup(it->jacobian[k], c->t0, it->at, c->input, it->span[k] * length);
+        status = bough_whole_setup(it->jacobian[k], c->t0, it->at, c->input, it->span[k] * length);
     }
     return status;
 }
@@ -327,7 +327,7 @@ static bough_status not_converged(const bough_coupling *c, int sweeps, double re
 // are worth.
 static bough_status go_back(bough_coupling *c) {
     iteration *it = c->scheme_data;
-    bough_status status = bough_coupling_each(c, BOUGH_ALL_STAGES, restore);
+    bough_status status = bough_coupling_each(c, BOUGH_ALL_LEVELS, restore);
     memcpy(it->prescribed, it->best, it->n_prescribed * sizeof(double));
     c->sweeps++;
     c->unfinished++;
@@ -337,7 +337,7 @@ static bough_status go_back(bough_coupling *c) {
 static bough_status step(bough_coupling *c) {
     iteration *it = c->scheme_data;
     bough_coupling_begin(c);
-    bough_status status = bough_coupling_each(c, BOUGH_ALL_STAGES, save);
+    bough_status status = bough_coupling_each(c, BOUGH_ALL_LEVELS, save);
     bough_accelerator_start(it->accelerator);
     predict(c);
     if (bough_is_ok(&status) && it->jacobian[0]) status = renew_jacobians(c);
@@ -358,7 +358,7 @@ static bough_status step(bough_coupling *c) {
             return c->measured && isfinite(best) ? go_back(c) : not_converged(c, k, residual);
         }
         correct(c);
-        status = bough_coupling_each(c, BOUGH_ALL_STAGES, restore);
+        status = bough_coupling_each(c, BOUGH_ALL_LEVELS, restore);
     }
     return status;
 }

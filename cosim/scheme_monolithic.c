@@ -1,10 +1,10 @@
-// All members in one system ẏ = F(t, y), coupled.h, integrated by one method across macro steps: no
+// All members in one system ẏ = F(t, y), whole.h, integrated by one method across macro steps: no
 // coupling error. By the Rosenbrock method the members are coupled at its stages, each of which costs
 // a member what its own sub-solver would; an implicit multistep method at a tight tolerance is the
 // reference of every error figure.
 #include "core/solve/rosenbrock.h"
-#include "cosim/coupled.h"
 #include "cosim/scheme.h"
+#include "cosim/whole.h"
 
 #include <assert.h>
 #include <math.h>
@@ -14,14 +14,14 @@
 typedef struct stages {
     const bough_assembly *assembly;
     const bough_member *whole;
-    bough_coupled *end, *now; // evaluations of F: at the step's end, for ∂F/∂t, and in the stage
-    bough_coupled *coupled;   // the factors of I − γhJ
-    double *square;           // (n_member) sums of squares of the step's error
+    bough_whole *end, *now; // evaluations of F: at the step's end, for ∂F/∂t, and in the stage
+    bough_whole *factors;   // of I − γhJ
+    double *square;         // (n_member) sums of squares of the step's error
 
     // in progress
     bough_rosenbrock_step *step;
     int stage;
-    bough_coupled *evaluation[BOUGH_COUPLED_TIMES]; // `end` where it is asked for, and `now`
+    bough_whole *evaluation[BOUGH_WHOLE_TIMES]; // `end` where it is asked for, and `now`
     int n_evaluation;
 } stages;
 
@@ -30,15 +30,15 @@ typedef struct stages {
 static void set_argument(const stages *s, int i) {
     const int *offset = s->assembly->state_offset + i;
     if (s->stage == 0) return;
-    bough_coupled_respond(s->coupled, i, s->step->u[s->stage - 1]);
+    bough_whole_respond(s->factors, i, s->step->u[s->stage - 1]);
     bough_rosenbrock_argument(s->step, s->stage, offset[0], offset[1]);
 }
 
 // The member's argument unless its outputs have needed that already, its rate and its right side.
 static void find_right_side(const stages *s, int i) {
     const int *offset = s->assembly->state_offset + i;
-    if (!bough_coupled_outputs_first(s->now, i)) set_argument(s, i);
-    bough_coupled_rates_of(s->evaluation, s->n_evaluation, i);
+    if (!bough_whole_outputs_first(s->now, i)) set_argument(s, i);
+    bough_whole_rates_of(s->evaluation, s->n_evaluation, i);
     bough_rosenbrock_right_side(s->step, s->stage, offset[0], offset[1]);
 }
 
@@ -47,24 +47,24 @@ static void find_right_side(const stages *s, int i) {
 // both of two threads.
 static void find_and_solve(void *self, int k) {
     const stages *s = self;
-    const int *order = s->coupled->order, n = s->coupled->n_follower;
+    const int *order = s->factors->order, n = s->factors->n_follower;
     if (k < n) {
         find_right_side(s, order[k]);
     } else if (k < 2 * n) {
-        bough_pool_await(s->coupled->pool, k - n);
-        bough_coupled_solve_of(s->coupled, order[k - n]);
+        bough_pool_await(s->factors->pool, k - n);
+        bough_whole_solve_of(s->factors, order[k - n]);
     } else {
-        for (int j = 0; j < n; j++) bough_pool_await(s->coupled->pool, j);
+        for (int j = 0; j < n; j++) bough_pool_await(s->factors->pool, j);
         find_right_side(s, order[k - n]);
-        bough_coupled_solve_of(s->coupled, order[k - n]);
+        bough_whole_solve_of(s->factors, order[k - n]);
     }
 }
 
 static void finish_member(void *self, int k) {
     const stages *s = self;
-    int i = s->coupled->order[k];
+    int i = s->factors->order[k];
     const int *offset = s->assembly->state_offset + i;
-    bough_coupled_respond(s->coupled, i, s->step->u[BOUGH_ROSENBROCK_STAGES - 1]);
+    bough_whole_respond(s->factors, i, s->step->u[BOUGH_ROSENBROCK_STAGES - 1]);
     s->square[i] = bough_rosenbrock_end(s->step, offset[0], offset[1]);
 }
 
@@ -74,10 +74,10 @@ static void begin_rates(stages *s, const double *state) {
     s->n_evaluation = 0;
     if (s->stage == 0 && step->drifts) {
         s->evaluation[s->n_evaluation++] = s->end;
-        bough_coupled_begin_rates(s->end, step->t + step->h, state, step->drift);
+        bough_whole_begin_rates(s->end, step->t + step->h, state, step->drift);
     }
     s->evaluation[s->n_evaluation++] = s->now;
-    bough_coupled_begin_rates(s->now, bough_rosenbrock_time(step, s->stage), state, step->u[s->stage]);
+    bough_whole_begin_rates(s->now, bough_rosenbrock_time(step, s->stage), state, step->u[s->stage]);
 }
 
 // One stage of all members. False where a rate is not finite.
@@ -86,14 +86,14 @@ static bool take_stage(stages *s) {
     int n_member = s->assembly->n_member;
     // arguments of the members whose outputs the inputs of others need first
     for (int i = 0; i < n_member; i++)
-        if (bough_coupled_outputs_first(s->now, i)) set_argument(s, i);
+        if (bough_whole_outputs_first(s->now, i)) set_argument(s, i);
     begin_rates(s, s->stage == 0 ? step->y : step->at);
     // every member by itself
-    bough_coupled_begin_solution(s->coupled, NULL, step->u[s->stage]);
-    bough_pool_run(s->coupled->pool, n_member + s->coupled->n_follower, find_and_solve, s);
+    bough_whole_begin_solution(s->factors, NULL, step->u[s->stage]);
+    bough_pool_run(s->factors->pool, n_member + s->factors->n_follower, find_and_solve, s);
     // the interface; the members' responses to it follow with the next stage
-    bough_coupled_solve_interface(s->coupled);
-    bough_status status = bough_coupled_failure(s->evaluation[0]);
+    bough_whole_solve_interface(s->factors);
+    bough_status status = bough_whole_failure(s->evaluation[0]);
     return bough_is_ok(&status);
 }
 
@@ -105,7 +105,7 @@ static double find(void *self, bough_rosenbrock_step *step) {
         if (s->whole->stop && s->whole->stop()) return (double)NAN;
         if (!take_stage(s)) return (double)NAN;
     }
-    bough_pool_run(s->coupled->pool, s->assembly->n_member, finish_member, s);
+    bough_pool_run(s->factors->pool, s->assembly->n_member, finish_member, s);
     for (int i = 0; i < s->assembly->n_member; i++) sum += s->square[i];
     return sum;
 }
@@ -115,8 +115,8 @@ static void couple_at_stages(bough_arena *arena, bough_coupling *c) {
     *s = (stages){.assembly = c->assembly,
                   .whole = c->whole,
                   .now = c->whole->system.self,
-                  .end = bough_coupled_create_evaluation(arena, c->assembly, c->pool),
-                  .coupled = c->whole->factors,
+                  .end = bough_whole_create_evaluation(arena, c->assembly, c->pool),
+                  .factors = c->whole->factors,
                   .square = bough_arena_doubles(arena, (size_t)c->assembly->n_member)};
     bough_rosenbrock_find_by(&c->whole->integrator, find, s);
 }
@@ -125,7 +125,7 @@ static void couple_at_stages(bough_arena *arena, bough_coupling *c) {
 
 static bough_status create(bough_coupling *c, bough_arena *arena) {
     bough_member *whole = c->whole = bough_arena_take(arena, sizeof *whole);
-    bough_system system = bough_coupled_system(arena, c->assembly, c->pool, "monolithic system");
+    bough_system system = bough_whole_system(arena, c->assembly, c->pool, "monolithic system");
     bough_status status = bough_member_create(arena, &system, c->t0, &c->options.integrator, whole);
     bool stagewise = c->options.integrator.kind == BOUGH_ROSENBROCK && whole->integrator.ops != NULL;
     if (bough_is_ok(&status) && stagewise) couple_at_stages(arena, c);

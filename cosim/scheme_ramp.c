@@ -2,7 +2,7 @@
 // every member, linearised at T_k,
 //     (I − θH J) Δ = H f(T_k + θH, y, u) + θH B δu,   o^ = h(T_{k+1}, y, u) + C Δ + D δu,
 // the end-of-step port values are found by solving the coupled linear interface equations. The
-// leaders (stage 0) then advance under forces that change linearly from the value applied at the end of the
+// leaders (level 0) then advance under forces that change linearly from the value applied at the end of the
 // last step to the predicted value. The forces are continuous, so integrators keep their history. The other
 // members then advance once with the cubic of the resulting motion.
 //
@@ -15,18 +15,18 @@
 // linearised macro step are computed before the run; if they grow, the scheme refuses the scene. On an
 // interface body that is lighter than the bodies it carries the first step has θ = 1, which is damped and of
 // order 1. A scene may name another θ, which is taken as it is: of order 1, with an error 2θ − 1 times as
-// large. The interface is solved as in condense.h.
+// large. The interface is solved as in interface.h.
 #include "cosim/analysis/stability.h"
-#include "cosim/condense.h"
 #include "cosim/coupling.h"
-#include "cosim/port.h"
+#include "cosim/interface.h"
 #include "cosim/scheme.h"
+#include "cosim/signal.h"
 
 #include <math.h>
 #include <string.h>
 
 typedef struct ramp {
-    bough_condensed *interface;
+    bough_interface *interface;
     double middle, gamma; // where and for what members are linearised [s]
     double *increment;    // (n_state) Δ of each member if the leaders' inputs did not change
     double *base;         // (n_output) h at the start values
@@ -43,7 +43,7 @@ typedef struct ramp {
     double span;          // θH then [s]
 } ramp;
 
-static bool leads(const bough_coupling *c, int member) { return c->assembly->stage[member] == 0; }
+static bool leads(const bough_coupling *c, int member) { return c->assembly->level[member] == 0; }
 
 // -- memory ---------------------------------------------------------------------------------------
 
@@ -82,7 +82,7 @@ static bough_status create(bough_coupling *c, bough_arena *arena) {
     if (!r->named) c->options.theta = 0.5;
     r->theta = c->options.theta;
     c->scheme_data = r;
-    r->interface = bough_condensed_create(arena, a);
+    r->interface = bough_interface_create(arena, a);
     return bough_ok();
 }
 
@@ -127,8 +127,8 @@ static void solve(bough_coupling *c, int member, const double *change) {
     const bough_system *s = &a->member[member]->system;
     const ramp *r = c->scheme_data;
     double *increment = r->increment + a->state_offset[member];
-    if (change) bough_condensed_add_columns(r->interface, member, r->gamma, change, increment);
-    bough_condensed_solve_member(r->interface, member, increment);
+    if (change) bough_interface_add_columns(r->interface, member, r->gamma, change, increment);
+    bough_interface_solve_member(r->interface, member, increment);
     s->ops->output_tangent(s->self, c->t1, a->member[member]->state, r->input + a->input_offset[member],
                            increment, change, r->output + a->output_offset[member]);
 }
@@ -144,8 +144,8 @@ static void predict_leader(bough_coupling *c, int member) {
     const ramp *r = c->scheme_data;
     bough_operating_point at = operating_point(c, member);
     if (s->n_input == 0 && s->n_output == 0) return; // no ports
-    if (!evaluate(c, member) || !bough_condensed_linearise(r->interface, member, &at) ||
-        !bough_condensed_factor_leader(r->interface, member, &at)) {
+    if (!evaluate(c, member) || !bough_interface_linearise(r->interface, member, &at) ||
+        !bough_interface_factor_leader(r->interface, member, &at)) {
         c->status[member] = bough_coupling_not_finite(c, member);
         return;
     }
@@ -159,12 +159,12 @@ static void prepare_follower(bough_coupling *c, int member) {
 static void predict_follower(bough_coupling *c, int member) {
     const ramp *r = c->scheme_data;
     bough_operating_point at = operating_point(c, member);
-    if (r->fresh && !(bough_condensed_linearise(r->interface, member, &at) &&
-                      bough_condensed_factor_follower(r->interface, member, &at))) {
+    if (r->fresh && !(bough_interface_linearise(r->interface, member, &at) &&
+                      bough_interface_factor_follower(r->interface, member, &at))) {
         c->status[member] = bough_coupling_not_finite(c, member);
         return;
     }
-    if (r->fresh) bough_condensed_respond(r->interface, member, &at);
+    if (r->fresh) bough_interface_respond(r->interface, member, &at);
     expect_inputs(c, member);
     solve(c, member, r->change + c->assembly->input_offset[member]);
 }
@@ -197,8 +197,8 @@ static bough_status predict(bough_coupling *c) {
         if (leads(c, i)) expect_inputs(c, i);
     }
     memset(r->interface->coordinate, 0, (size_t)r->interface->n * sizeof(double));
-    if (bough_condensed_close(r->interface)) {
-        bough_condensed_solve(r->interface, r->change);
+    if (bough_interface_close(r->interface)) {
+        bough_interface_solve(r->interface, r->change);
         return bough_ok();
     }
     return bough_fail(BOUGH_RETRY, "the interface equations are singular at %.6g s", c->t0);
@@ -240,7 +240,7 @@ static bough_status measure_interface(bough_coupling *c) {
     ramp *r = c->scheme_data;
     bough_status status = predict(c);
     if (!bough_is_ok(&status)) return status;
-    c->interface_ratio = bough_condensed_radius(r->interface);
+    c->interface_ratio = bough_interface_radius(r->interface);
     if (!r->named && c->interface_ratio > heavy_interface) {
         status = check_stability(c);
         if (!bough_is_ok(&status)) return status;
@@ -272,7 +272,7 @@ static void set_repaying(bough_coupling *c, bough_signal *signal, int local, int
     double middle = 0.5 * (start + end) + 1.5 * impulse / h;
     const double time[] = {c->t0, c->t0 + 0.5 * h, c->t1};
     const double *const value[] = {&start, &middle, &end};
-    bough_port_polynomial(signal, local, 1, 3, time, value);
+    bough_signal_polynomial(signal, local, 1, 3, time, value);
 }
 
 static void set_ramps(bough_coupling *c, int member) {
@@ -283,11 +283,11 @@ static void set_ramps(bough_coupling *c, int member) {
         double start = c->applied[j], end = start + r->change[j];
         if (!r->repays) c->deficit[j] = 0;
         if (held(r)) {
-            bough_port_hold(signal, local, 1, &end);
+            bough_signal_hold(signal, local, 1, &end);
         } else if (r->repays) {
             set_repaying(c, signal, local, j, end);
         } else {
-            bough_port_linear(signal, local, 1, &start, &end);
+            bough_signal_linear(signal, local, 1, &start, &end);
         }
     }
 }
@@ -309,8 +309,8 @@ static bough_status step(bough_coupling *c) {
             bough_coupling_interpolate(c, i, j);
         }
     }
-    for (int stage = 1; stage < a->n_stage; stage++) {
-        status = bough_coupling_advance(c, stage, c->restart);
+    for (int level = 1; level < a->n_level; level++) {
+        status = bough_coupling_advance(c, level, c->restart);
         if (!bough_is_ok(&status)) return status;
     }
     return bough_ok();

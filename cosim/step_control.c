@@ -1,6 +1,6 @@
 #include "cosim/step_control.h"
 
-#include "cosim/port.h"
+#include "cosim/signal.h"
 
 #include <math.h>
 
@@ -16,7 +16,7 @@ bough_step_control *bough_step_control_create(bough_arena *arena, bough_coupling
     bough_coupling_snapshot(c, &size);
     s->copy = bough_arena_take(arena, size.used);
     s->n_point = 1;
-    s->curve = bough_port_signal(arena, c->assembly->n_input);
+    s->curve = bough_signal_create(arena, c->assembly->n_input);
     bough_arena_each(arena, (size_t)c->assembly->n_input, &s->size, &s->obtained, &s->square);
     return s;
 }
@@ -78,7 +78,7 @@ static void reconstruct(bough_step_control *s, const bough_coupling *c) {
     for (int p = 0; p <= past; p++) value[p] = c->past[p];
     s->curve.t0 = c->t0;
     s->curve.t1 = c->t1;
-    bough_port_polynomial(&s->curve, 0, s->curve.n, past + 1, c->past_time, value);
+    bough_signal_polynomial(&s->curve, 0, s->curve.n, past + 1, c->past_time, value);
 }
 
 static double defect_near(bough_step_control *s, const bough_coupling *c, double t) {

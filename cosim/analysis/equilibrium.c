@@ -19,7 +19,7 @@ bough_equilibrium_def bough_equilibrium_def_default(void) {
 }
 
 typedef struct search {
-    bough_coupled *coupled;
+    bough_whole *whole;
     const bough_equilibrium_def *def;
     int n;                                         // states
     double *scale, *rate, *first, *second, *trial; // (n)
@@ -32,7 +32,7 @@ static void take(search *s, bough_arena *arena) {
 }
 
 static bool find_rate(search *s, const double *state) {
-    bough_status status = bough_coupled_rate(s->coupled, s->def->time, state, s->rate);
+    bough_status status = bough_whole_rate(s->whole, s->def->time, state, s->rate);
     return bough_is_ok(&status);
 }
 
@@ -57,27 +57,26 @@ static double move(const search *s, const double *state, const double *change, d
 // is of the first, infinite when the step leads nowhere. s->rate belongs to `state`.
 static double step(search *s, const double *state, bough_equilibrium_report *report) {
     int row = 0;
-    bough_status status = bough_coupled_setup(s->coupled, s->def->time, state, s->coupled->input, s->gamma);
+    bough_status status = bough_whole_setup(s->whole, s->def->time, state, s->whole->input, s->gamma);
     if (!bough_is_ok(&status)) return INFINITY;
     for (int k = 0; k < s->n; k++) s->first[k] = s->gamma * s->rate[k];
-    bough_coupled_solve(s->coupled, s->first);
+    bough_whole_solve(s->whole, s->first);
     report->change = size_of(s, s->first, &report->row);
     report->rate = s->rate[report->row];
     if (!isfinite(report->change)) return INFINITY;
     if (!(move(s, state, s->first, s->trial) < most_turn)) return INFINITY;
     if (!find_rate(s, s->trial)) return INFINITY;
     for (int k = 0; k < s->n; k++) s->second[k] = s->gamma * s->rate[k] - s->first[k];
-    status = bough_coupled_setup(s->coupled, s->def->time, s->trial, s->coupled->input, s->gamma);
+    status = bough_whole_setup(s->whole, s->def->time, s->trial, s->whole->input, s->gamma);
     if (!bough_is_ok(&status)) return INFINITY;
-    bough_coupled_solve(s->coupled, s->second);
+    bough_whole_solve(s->whole, s->second);
     return size_of(s, s->second, &row) / (report->change + DBL_MIN);
 }
 
-bough_status bough_equilibrium_find(bough_arena *arena, bough_coupled *coupled,
-                                    const bough_equilibrium_def *def, double *state,
-                                    bough_equilibrium_report *report) {
-    const bough_assembly *a = coupled->assembly;
-    search s = {.coupled = coupled, .def = def, .n = a->n_state, .gamma = def->step};
+bough_status bough_equilibrium_find(bough_arena *arena, bough_whole *whole, const bough_equilibrium_def *def,
+                                    double *state, bough_equilibrium_report *report) {
+    const bough_assembly *a = whole->assembly;
+    search s = {.whole = whole, .def = def, .n = a->n_state, .gamma = def->step};
     *report = (bough_equilibrium_report){0};
     take(&s, arena);
     bough_assembly_scales(a, s.scale);

@@ -6,7 +6,7 @@
 #ifndef BOUGH_COSIM_EQUILIBRIUM_H
 #define BOUGH_COSIM_EQUILIBRIUM_H
 
-#include "cosim/coupled.h"
+#include "cosim/whole.h"
 
 typedef struct bough_equilibrium_def {
     double time;      // [s]
@@ -36,8 +36,7 @@ typedef struct bough_equilibrium_report {
 
 // Brings `state` (n_state) to equilibrium. BOUGH_FAILED when it is not found: the report tells
 // where it still moves, the state is the last one reached.
-bough_status bough_equilibrium_find(bough_arena *arena, bough_coupled *coupled,
-                                    const bough_equilibrium_def *def, double *state,
-                                    bough_equilibrium_report *report);
+bough_status bough_equilibrium_find(bough_arena *arena, bough_whole *whole, const bough_equilibrium_def *def,
+                                    double *state, bough_equilibrium_report *report);
 
 #endif

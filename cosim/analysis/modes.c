@@ -10,7 +10,7 @@ enum { TERMS = 400 }; // of the series for the spin
 static const double series = 1e-13; // share of a solution below which its terms count for nothing
 
 typedef struct modes {
-    bough_coupled *coupled;
+    bough_whole *whole;
     const bough_modes_def *def;
     double *term, *turned; // (n_state)
     double *rate;          // S (n_part × n_part)
@@ -44,7 +44,7 @@ void bough_modes_rate(const bough_modes_def *def, double *rate) {
 static void turn(const modes *m, const double *x, double *turned) {
     const bough_modes_def *def = m->def;
     int n = def->n_part;
-    memset(turned, 0, (size_t)m->coupled->assembly->n_state * sizeof *turned);
+    memset(turned, 0, (size_t)m->whole->assembly->n_state * sizeof *turned);
     for (int k = 0; k < n; k++) {
         for (int l = 0; l < n; l++) {
             double factor = -m->rate[k * n + l] / def->point;
@@ -63,18 +63,18 @@ static double largest(const double *x, int n) {
 // (I − γ(J − S))⁻¹ z = Σ (−(I − γJ)⁻¹ γS)ᵏ (I − γJ)⁻¹ z
 static void apply(void *self, const double *z, double *image) {
     modes *m = self;
-    int n = m->coupled->assembly->n_state;
+    int n = m->whole->assembly->n_state;
     memcpy(image, z, (size_t)n * sizeof *image);
-    bough_coupled_solve(m->coupled, image);
-    bough_coupled_project(m->coupled, m->def->state, image);
+    bough_whole_solve(m->whole, image);
+    bough_whole_project(m->whole, m->def->state, image);
     if (m->def->spin == 0) return;
     double size = largest(image, n);
     memcpy(m->term, image, (size_t)n * sizeof *image);
     for (int k = 0; k < TERMS; k++) {
         turn(m, m->term, m->turned);
         memcpy(m->term, m->turned, (size_t)n * sizeof *m->term);
-        bough_coupled_solve(m->coupled, m->term);
-        bough_coupled_project(m->coupled, m->def->state, m->term);
+        bough_whole_solve(m->whole, m->term);
+        bough_whole_project(m->whole, m->def->state, m->term);
         for (int i = 0; i < n; i++) image[i] += m->term[i];
         if (largest(m->term, n) <= series * size) return;
     }
@@ -82,7 +82,7 @@ static void apply(void *self, const double *z, double *image) {
 }
 
 static void take(bough_arena *arena, modes *m, bough_eigen_operator *op) {
-    const bough_assembly *a = m->coupled->assembly;
+    const bough_assembly *a = m->whole->assembly;
     size_t n = (size_t)a->n_state, parts = (size_t)m->def->n_part;
     bough_arena_each(arena, n, &m->term, &m->turned, &op->weight);
     m->rate = bough_arena_doubles(arena, parts * parts + 1);
@@ -90,18 +90,18 @@ static void take(bough_arena *arena, modes *m, bough_eigen_operator *op) {
     for (size_t k = 0; k < n; k++) op->weight[k] = 1 / (op->weight[k] * op->weight[k]);
 }
 
-bough_status bough_modes_find(bough_arena *arena, bough_coupled *coupled, const bough_modes_def *def,
-                              int wanted, bough_eigen_pair *pair, int *found) {
-    modes m = {.coupled = coupled, .def = def};
+bough_status bough_modes_find(bough_arena *arena, bough_whole *whole, const bough_modes_def *def, int wanted,
+                              bough_eigen_pair *pair, int *found) {
+    modes m = {.whole = whole, .def = def};
     bough_eigen_operator op = {.name = "whole scene",
-                               .length = coupled->assembly->n_state,
-                               .n_shape = coupled->assembly->n_state,
+                               .length = whole->assembly->n_state,
+                               .n_shape = whole->assembly->n_state,
                                .gamma = 1 / def->point,
                                .self = &m,
                                .apply = apply};
     take(arena, &m, &op);
     if (def->spin != 0) bough_modes_rate(def, m.rate);
-    bough_status status = bough_coupled_setup(coupled, def->time, def->state, def->input, op.gamma);
+    bough_status status = bough_whole_setup(whole, def->time, def->state, def->input, op.gamma);
     if (!bough_is_ok(&status)) return bough_fail(BOUGH_FAILED, "%s", status.message);
     status = bough_eigen_nearest(arena, &op, wanted, pair, found);
     if (m.diverged) {

@@ -12,12 +12,12 @@
 #define BOUGH_COSIM_MODES_H
 
 #include "core/base/eigen.h"
-#include "cosim/coupled.h"
+#include "cosim/whole.h"
 
 typedef struct bough_modes_def {
     double time;         // [s]
     const double *state; // (n_state)
-    const double *input; // (n_input), usually coupled->input
+    const double *input; // (n_input), usually whole->input
     double point;        // 1/γ [1/s]
     double spin;         // Ω [rad/s]; 0: no part turns
     int n_part, n_row;   // parts by growing azimuth; rows of each
@@ -33,7 +33,7 @@ void bough_modes_rate(const bough_modes_def *def, double *rate);
 
 // Finds `wanted` pairs as bough_eigen_nearest does, shapes (n_state). BOUGH_FAILED also where the
 // spin is too fast for the point: it should be several times the largest h Ω.
-bough_status bough_modes_find(bough_arena *arena, bough_coupled *coupled, const bough_modes_def *def,
-                              int wanted, bough_eigen_pair *pair, int *found);
+bough_status bough_modes_find(bough_arena *arena, bough_whole *whole, const bough_modes_def *def, int wanted,
+                              bough_eigen_pair *pair, int *found);
 
 #endif

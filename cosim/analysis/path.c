@@ -27,7 +27,7 @@ typedef struct place {
 } place;
 
 typedef struct path {
-    bough_coupled *coupled;
+    bough_whole *whole;
     const bough_path_def *def;
     int n;                                       // states
     double *scale, *rate, *full, *load, *change; // (n); load: (I − γJ)⁻¹ γ ∂F/∂λ
@@ -78,17 +78,17 @@ static bool add(path *p, place *at, const double *change, double share) {
 // F into p->rate, the factors and p->load at a place.
 static bool linearise(path *p, const place *at) {
     double end = p->def->end, time = fmin(fmax(at->share, 0), 1) * end;
-    bough_status status = bough_coupled_rate(p->coupled, end, at->state, p->full);
-    if (bough_is_ok(&status)) status = bough_coupled_rate(p->coupled, 0, at->state, p->rate);
+    bough_status status = bough_whole_rate(p->whole, end, at->state, p->full);
+    if (bough_is_ok(&status)) status = bough_whole_rate(p->whole, 0, at->state, p->rate);
     if (!bough_is_ok(&status)) return false;
     for (int k = 0; k < p->n; k++) {
         p->load[k] = p->gamma * (p->full[k] - p->rate[k]);
         p->rate[k] += at->share * (p->full[k] - p->rate[k]);
     }
-    bough_coupled_inputs(p->coupled, time, at->state);
-    status = bough_coupled_setup(p->coupled, time, at->state, p->coupled->input, p->gamma);
+    bough_whole_inputs(p->whole, time, at->state);
+    status = bough_whole_setup(p->whole, time, at->state, p->whole->input, p->gamma);
     if (!bough_is_ok(&status)) return false;
-    bough_coupled_solve(p->coupled, p->load);
+    bough_whole_solve(p->whole, p->load);
     return isfinite(largest(p, p->load));
 }
 
@@ -119,7 +119,7 @@ static int correct(path *p, const double *tangent, bool fixed, place *at) {
     for (int i = 1; i <= CORRECTIONS; i++) {
         if (!linearise(p, at)) return 0;
         for (int k = 0; k < p->n; k++) p->change[k] = p->gamma * p->rate[k];
-        bough_coupled_solve(p->coupled, p->change);
+        bough_whole_solve(p->whole, p->change);
         double along = product(p, p->change, 0, tangent, tangent[p->n]);
         double share = fixed ? 0 : -along / product(p, p->load, 1, tangent, tangent[p->n]);
         for (int k = 0; k < p->n; k++) p->change[k] += share * p->load[k];
@@ -248,10 +248,10 @@ static bough_status follow(path *p, bough_path_report *report) {
                       p->here.share, report->steps);
 }
 
-bough_status bough_path_follow(bough_arena *arena, bough_coupled *coupled, const bough_path_def *def,
+bough_status bough_path_follow(bough_arena *arena, bough_whole *whole, const bough_path_def *def,
                                double *state, bough_path_report *report) {
-    const bough_assembly *a = coupled->assembly;
-    path p = {.coupled = coupled, .def = def, .n = a->n_state};
+    const bough_assembly *a = whole->assembly;
+    path p = {.whole = whole, .def = def, .n = a->n_state};
     *report = (bough_path_report){0};
     take(&p, arena);
     bough_assembly_scales(a, p.scale);

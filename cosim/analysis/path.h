@@ -9,7 +9,7 @@
 #ifndef BOUGH_COSIM_PATH_H
 #define BOUGH_COSIM_PATH_H
 
-#include "cosim/coupled.h"
+#include "cosim/whole.h"
 
 typedef struct bough_path_def {
     double end;       // time of the whole loads; the path begins with those at time 0 [s]
@@ -37,7 +37,7 @@ typedef struct bough_path_report {
 // Follows the path from `state` (n_state), an equilibrium under the loads at time 0, to the share 1 or −1.
 // BOUGH_FAILED: the path cannot be followed, or goes on beyond the most steps; the state is that of the
 // last point.
-bough_status bough_path_follow(bough_arena *arena, bough_coupled *coupled, const bough_path_def *def,
+bough_status bough_path_follow(bough_arena *arena, bough_whole *whole, const bough_path_def *def,
                                double *state, bough_path_report *report);
 
 #endif

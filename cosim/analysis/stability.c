@@ -197,8 +197,8 @@ static int largest_body(const map *m, const double *real, const double *imaginar
     const bough_assembly *a = &m->assembly;
     double largest = -1;
     int body = 0;
-    for (int k = 0; k < a->n_interface; k++) {
-        int i = a->interface[k].body, first = a->state_offset[i], count = a->member[i]->system.n_state;
+    for (int k = 0; k < a->n_pair; k++) {
+        int i = a->pair[k].body, first = a->state_offset[i], count = a->member[i]->system.n_state;
         const double *weight = m->arnoldi.weight;
         double part = 0;
         for (int j = first; j < first + count; j++) {

@@ -38,7 +38,7 @@ typedef struct group {
 
 // The error of one interface.
 typedef struct account {
-    bough_interface_energy total, closed; // closed: at the end of the last window
+    bough_pair_energy total, closed; // closed: at the end of the last window
 } account;
 
 struct bough_monitor {
@@ -47,7 +47,7 @@ struct bough_monitor {
     int n_group;
     group *group;
     long steps;
-    account *account;   // (n_interface)
+    account *account;   // (n_pair)
     int window_steps;   // in the open window
     double window_time; // its length so far [s]
     int unbalanced;     // windows in a row that make or lose energy
@@ -77,7 +77,7 @@ bough_monitor *bough_monitor_create(bough_arena *arena, const bough_coupling *co
     m->advice = a->opaque || coupling->scheme->one_system ? "" : " or scheme: monolithic";
     m->group = bough_arena_take(arena, n_input * sizeof *m->group);
     m->start = bough_arena_doubles(arena, n_input);
-    m->account = bough_arena_take(arena, (size_t)a->n_interface * sizeof *m->account);
+    m->account = bough_arena_take(arena, (size_t)a->n_pair * sizeof *m->account);
     make_groups(m, a);
     return m;
 }
@@ -201,8 +201,8 @@ static void keep_accounts(bough_monitor *m, const bough_coupling *c) {
     for (int i = 0; i < a->n_member; i++) {
         bough_signal_value(&c->signal[i], c->t0, m->start + a->input_offset[i]);
     }
-    for (int k = 0; k < a->n_interface; k++) {
-        const bough_interface *f = &a->interface[k];
+    for (int k = 0; k < a->n_pair; k++) {
+        const bough_port_pair *f = &a->pair[k];
         const double *v0 = before + f->twist, *v1 = c->input + f->twist;
         double obtained0 = dot(before + f->wrench, v0, f->count);
         double obtained1 = dot(c->input + f->wrench, v1, f->count);
@@ -222,8 +222,8 @@ static const double most_energy_error = 0.01;
 enum { MOST_UNBALANCED = 2 };
 
 // Error and exchange of all interfaces, over the run or since the last window closed.
-static bough_interface_energy sum_energy(const bough_monitor *m, int n, bool since) {
-    bough_interface_energy sum = {0};
+static bough_pair_energy sum_energy(const bough_monitor *m, int n, bool since) {
+    bough_pair_energy sum = {0};
     for (int k = 0; k < n; k++) {
         const account *x = &m->account[k];
         sum.residual += fabs(x->total.residual - (since ? x->closed.residual : 0));
@@ -238,19 +238,19 @@ static bool holds_forces(const bough_coupling *c) {
 
 static bough_status judge_balance(bough_monitor *m, const bough_coupling *c) {
     const bough_assembly *a = c->assembly;
-    bough_interface_energy all = sum_energy(m, a->n_interface, false);
-    bough_interface_energy last = sum_energy(m, a->n_interface, true);
+    bough_pair_energy all = sum_energy(m, a->n_pair, false);
+    bough_pair_energy last = sum_energy(m, a->n_pair, true);
     bool balanced = all.residual <= most_energy_error * all.exchanged ||
                     last.residual <= most_energy_error * last.exchanged;
     m->unbalanced = balanced ? 0 : m->unbalanced + 1;
     int worst = 0;
-    for (int k = 0; k < a->n_interface; k++) {
+    for (int k = 0; k < a->n_pair; k++) {
         m->account[k].closed = m->account[k].total;
         double residual = fabs(m->account[k].total.residual);
         if (residual > fabs(m->account[worst].total.residual)) worst = k;
     }
     if (holds_forces(c) || m->unbalanced < MOST_UNBALANCED) return bough_ok();
-    int body = a->interface[worst].body;
+    int body = a->pair[worst].body;
     return bough_fail(BOUGH_FAILED,
                       "the coupling of %s has lost the solution at %.6g s (scheme %s, macro step "
                       "%.6g s): the coupling itself adds or removes %.2g of the energy "
@@ -288,7 +288,7 @@ void bough_monitor_snapshot(bough_monitor *m, const bough_coupling *c, bough_sna
     const bough_assembly *a = c->assembly;
     bough_snapshot_take(s, m->group, (size_t)m->n_group * sizeof *m->group);
     bough_snapshot_take(s, &m->steps, sizeof m->steps);
-    bough_snapshot_take(s, m->account, (size_t)a->n_interface * sizeof *m->account);
+    bough_snapshot_take(s, m->account, (size_t)a->n_pair * sizeof *m->account);
     bough_snapshot_take(s, &m->window_steps, sizeof m->window_steps);
     bough_snapshot_take(s, &m->window_time, sizeof m->window_time);
     bough_snapshot_take(s, &m->unbalanced, sizeof m->unbalanced);
@@ -303,13 +303,13 @@ bough_coupling_report bough_monitor_report(const bough_monitor *m, const bough_c
         report.defect_max = fmax(report.defect_max, g->defect_max / g->magnitude);
         report.defect_rms = fmax(report.defect_rms, rms / g->magnitude);
     }
-    for (int k = 0; k < c->assembly->n_interface; k++) {
+    for (int k = 0; k < c->assembly->n_pair; k++) {
         report.energy_residual += fabs(m->account[k].total.residual);
         report.energy_exchanged += m->account[k].total.exchanged;
     }
     return report;
 }
 
-bough_interface_energy bough_monitor_energy(const bough_monitor *m, int interface) {
+bough_pair_energy bough_monitor_energy(const bough_monitor *m, int interface) {
     return m->account[interface].total;
 }

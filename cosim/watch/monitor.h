@@ -31,10 +31,10 @@ void bough_monitor_snapshot(bough_monitor *m, const bough_coupling *c, bough_sna
 bough_coupling_report bough_monitor_report(const bough_monitor *m, const bough_coupling *c);
 
 // Energy at one interface over the run so far [J].
-typedef struct bough_interface_energy {
+typedef struct bough_pair_energy {
     double residual;  // ∫ (obtained − applied wrench) · twist dt
     double exchanged; // ∫ |wrench · twist| dt
-} bough_interface_energy;
-bough_interface_energy bough_monitor_energy(const bough_monitor *m, int interface);
+} bough_pair_energy;
+bough_pair_energy bough_monitor_energy(const bough_monitor *m, int interface);
 
 #endif

@@ -1,8 +1,8 @@
 // A coupling scheme of a user's own, as test_scheme_table adds it: this file and one line of the
 // table. All members advance at once; every input is held at the value of its middle of the step,
 // extrapolated from the last two: order 2, as a held value at the start is of order 1.
-#include "cosim/port.h"
 #include "cosim/scheme.h"
+#include "cosim/signal.h"
 
 static void hold(bough_coupling *c, int member) {
     const bough_assembly *a = c->assembly;
@@ -12,14 +12,14 @@ static void hold(bough_coupling *c, int member) {
             slope = (c->past[0][j] - c->past[1][j]) / (c->past_time[0] - c->past_time[1]);
         }
         double middle = c->past[0][j] + 0.5 * (c->t1 - c->t0) * slope;
-        bough_port_hold(&c->signal[member], local, 1, &middle);
+        bough_signal_hold(&c->signal[member], local, 1, &middle);
     }
 }
 
 static bough_status step(bough_coupling *c) {
     bough_coupling_begin(c);
     for (int i = 0; i < c->assembly->n_member; i++) hold(c, i);
-    return bough_coupling_advance(c, BOUGH_ALL_STAGES, true);
+    return bough_coupling_advance(c, BOUGH_ALL_LEVELS, true);
 }
 
 const bough_scheme bough_scheme_toy = {

@@ -17,7 +17,7 @@ enum { SWEEPS = 12 }; // of the simultaneous iteration, on twice as many vectors
 static const double least_motion = 0.2;
 
 typedef struct work {
-    bough_coupled *coupled;
+    bough_whole *coupled;
     const bough_modes_def *def;
     int n, k;
     double *inverse;                          // P = (I − γJ)⁻¹ (n × n)
@@ -50,8 +50,8 @@ static void invert(work *w) {
         double *column = w->inverse + j * n;
         memset(column, 0, n * sizeof *column);
         column[j] = 1;
-        bough_coupled_solve(w->coupled, column);
-        bough_coupled_project(w->coupled, w->def->state, column);
+        bough_whole_solve(w->coupled, column);
+        bough_whole_project(w->coupled, w->def->state, column);
     }
 }
 
@@ -390,7 +390,7 @@ static void add_air(bough_arena *arena, work *w, const bough_simulation *s, cons
     turn_air(arena, w, s, group, t->n_per_blade, to);
 }
 
-bough_status bough_aeroelastic_reduce(bough_arena *arena, const bough_simulation *s, bough_coupled *coupled,
+bough_status bough_aeroelastic_reduce(bough_arena *arena, const bough_simulation *s, bough_whole *coupled,
                                       const bough_modes_def *def, const bough_blade_group *group,
                                       const bough_air_tangent *tangent, int n_motion,
                                       bough_aeroelastic *reduced) {
@@ -405,7 +405,7 @@ bough_status bough_aeroelastic_reduce(bough_arena *arena, const bough_simulation
                                    .motion = bough_arena_doubles(arena, (size_t)kept * (size_t)kept),
                                    .rate = bough_arena_doubles(arena, all * all)};
     take(arena, &w);
-    bough_status status = bough_coupled_setup(coupled, def->time, def->state, def->input, 1 / def->point);
+    bough_status status = bough_whole_setup(coupled, def->time, def->state, def->input, 1 / def->point);
     if (!bough_is_ok(&status)) return bough_fail(BOUGH_FAILED, "%s", status.message);
     invert(&w);
     bool done = turn(&w, s->tree->n_q);

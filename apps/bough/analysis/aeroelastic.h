@@ -21,7 +21,7 @@ typedef struct bough_aeroelastic {
 } bough_aeroelastic;
 
 // Reduces the system of `def` to n_motion states of motion and those of the tangent's air.
-bough_status bough_aeroelastic_reduce(bough_arena *arena, const bough_simulation *s, bough_coupled *coupled,
+bough_status bough_aeroelastic_reduce(bough_arena *arena, const bough_simulation *s, bough_whole *coupled,
                                       const bough_modes_def *def, const bough_blade_group *group,
                                       const bough_air_tangent *tangent, int n_motion,
                                       bough_aeroelastic *reduced);

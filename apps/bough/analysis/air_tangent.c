@@ -15,7 +15,7 @@ enum { SETTLINGS = 4 };
 
 typedef struct work {
     bough_simulation *simulation;
-    bough_coupled *coupled;
+    bough_whole *coupled;
     double time;
     bool dynamic;
     int n_memory, n_air;
@@ -62,7 +62,7 @@ static bough_status find_rates(work *w, const double *state, double *rate, doubl
         bough_aero_link_hold(s->aero, w->time);
     }
     if (s->drag != NULL) bough_drag_link_hold(s->drag, w->time);
-    return bough_coupled_rate(w->coupled, w->time, state, rate);
+    return bough_whole_rate(w->coupled, w->time, state, rate);
 }
 
 // Brings the air to rest about `state`; what it remembers then, to w->memory.
@@ -149,7 +149,7 @@ static bough_status follow_inputs(work *w, const double *state, const bough_air_
     return bough_ok();
 }
 
-bough_status bough_air_tangent_find(bough_arena *arena, bough_simulation *s, bough_coupled *coupled,
+bough_status bough_air_tangent_find(bough_arena *arena, bough_simulation *s, bough_whole *coupled,
                                     double time, const double *state, bool dynamic,
                                     const bough_air_inputs *inputs, bough_air_tangent *t) {
     const bough_rotor *rotor = bough_aero_link_rotor(s->aero);

@@ -6,7 +6,7 @@
 #define BOUGH_APPS_ANALYSIS_AIR_TANGENT_H
 
 #include "apps/bough/model/blade_group.h"
-#include "cosim/coupled.h"
+#include "cosim/whole.h"
 
 typedef struct bough_air_tangent {
     int n, n_air;        // states of the members, of the air
@@ -29,7 +29,7 @@ typedef struct bough_air_inputs {
 
 // About `state` (n) at `time`; `dynamic`: with the memory that the scene's inflow and stall have; inputs
 // NULL: none. The simulation is left in that state.
-bough_status bough_air_tangent_find(bough_arena *arena, bough_simulation *s, bough_coupled *coupled,
+bough_status bough_air_tangent_find(bough_arena *arena, bough_simulation *s, bough_whole *coupled,
                                     double time, const double *state, bool dynamic,
                                     const bough_air_inputs *inputs, bough_air_tangent *tangent);
 

@@ -24,7 +24,7 @@ typedef struct input {
 
 typedef struct work {
     bough_simulation *s;
-    bough_coupled *coupled;
+    bough_whole *coupled;
     bough_channels channels;
     double time;
     const double *about;        // (n) states of the members
@@ -184,7 +184,7 @@ static void name_outputs(const work *w, bough_state_space *to) {
 static bough_status evaluate(work *w, const double *state, int side) {
     bough_simulation *s = w->s;
     bough_equilibrium_set_state(s, w->coupled->assembly, state);
-    bough_status status = bough_coupled_rate(w->coupled, w->time, state, w->rate[side]);
+    bough_status status = bough_whole_rate(w->coupled, w->time, state, w->rate[side]);
     if (!bough_is_ok(&status)) return status;
     memcpy(s->master->coupling->input, w->coupled->input,
            (size_t)w->coupled->assembly->n_input * sizeof(double));
@@ -267,7 +267,7 @@ static bough_status prepare(bough_arena *arena, work *w) {
     size_t n = (size_t)a->n_state, most = (size_t)s->scene->n_input + 3;
     w->channels = bough_channels_start(arena);
     bough_status status = bough_simulation_channels(s, &w->channels);
-    if (bough_is_ok(&status)) w->coupled = bough_coupled_create_evaluation(arena, a, NULL);
+    if (bough_is_ok(&status)) w->coupled = bough_whole_create_evaluation(arena, a, NULL);
     if (!bough_is_ok(&status)) return status;
     double *about = bough_arena_doubles(arena, n + 1);
     w->state = bough_arena_doubles(arena, n + 1);

@@ -48,7 +48,7 @@ static bool is_frozen(const bough_simulation *s, const bough_blade_group *group)
 
 // What a solution needs.
 typedef struct solution {
-    bough_coupled *coupled;
+    bough_whole *coupled;
     bough_blade_group group;
     double *state; // (n_state)
     double *mean;  // (n_state) work
@@ -62,9 +62,9 @@ static bough_status prepare(bough_arena *arena, bough_simulation *s, solution *x
     x->mean = bough_arena_doubles(arena, (size_t)a->n_state + 1);
     x->held = bough_arena_take(arena, ((size_t)s->leader.system.n_state + 1) * sizeof *x->held);
     bough_assembly_states(a, x->state);
-    x->coupled = bough_coupled_create(arena, a, NULL);
+    x->coupled = bough_whole_create(arena, a, NULL);
     int n_held = bough_equilibrium_held(s->tree, false, x->held);
-    bough_coupled_hold(arena, x->coupled, n_held, x->held);
+    bough_whole_hold(arena, x->coupled, n_held, x->held);
     return bough_blade_group_find(arena, s, a, &x->group);
 }
 
@@ -72,7 +72,7 @@ static bough_status prepare(bough_arena *arena, bough_simulation *s, solution *x
 // the blades bend in their mean.
 static void define(double time, solution *x) {
     const bough_blade_group *g = &x->group;
-    bough_coupled_inputs(x->coupled, time, x->state);
+    bough_whole_inputs(x->coupled, time, x->state);
     x->def = (bough_modes_def){.time = time,
                                .state = x->state,
                                .input = x->coupled->input,

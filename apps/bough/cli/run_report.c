@@ -255,7 +255,7 @@ static void write_accuracy(bough_summary *s, const bough_run *run) {
 // A body whose end carries others has two interfaces, that of its root first.
 static bool is_far_end(const bough_assembly *a, int interface) {
     bool again = false;
-    for (int i = 0; i < interface; i++) again = again || a->interface[i].body == a->interface[interface].body;
+    for (int i = 0; i < interface; i++) again = again || a->pair[i].body == a->pair[interface].body;
     return again;
 }
 
@@ -264,10 +264,10 @@ static void write_interfaces(bough_summary *s, const bough_run *run) {
     const bough_master *m = run->simulation->master;
     const bough_assembly *a = m->assembly;
     bough_summary_array(s, "interfaces");
-    for (int k = 0; k < a->n_interface; k++) {
-        bough_interface_energy energy = bough_monitor_energy(m->monitor, k);
+    for (int k = 0; k < a->n_pair; k++) {
+        bough_pair_energy energy = bough_monitor_energy(m->monitor, k);
         bough_summary_object(s, NULL);
-        bough_summary_text(s, "body", a->member[a->interface[k].body]->system.name);
+        bough_summary_text(s, "body", a->member[a->pair[k].body]->system.name);
         bough_summary_text(s, "place", is_far_end(a, k) ? "end" : "root");
         bough_summary_number(s, "energy_residual", energy.residual);
         bough_summary_number(s, "energy_exchanged", energy.exchanged);
@@ -376,11 +376,11 @@ static void tell_channels(bough_run_command *command, FILE *stream) {
 static void tell_energy(const bough_run *run, FILE *stream) {
     const bough_master *m = run->simulation->master;
     const bough_assembly *a = m->assembly;
-    for (int k = 0; k < a->n_interface; k++) {
-        bough_interface_energy energy = bough_monitor_energy(m->monitor, k);
+    for (int k = 0; k < a->n_pair; k++) {
+        bough_pair_energy energy = bough_monitor_energy(m->monitor, k);
         if (!(energy.exchanged > 0)) continue;
         fprintf(stream, "%s%s_energy_residual: %.2g of what the interface exchanged\n",
-                a->member[a->interface[k].body]->system.name, is_far_end(a, k) ? "_end" : "",
+                a->member[a->pair[k].body]->system.name, is_far_end(a, k) ? "_end" : "",
                 energy.residual / energy.exchanged);
     }
 }

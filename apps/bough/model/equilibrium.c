@@ -68,7 +68,7 @@ static double change_of(const bough_assembly *assembly, const double *a, const d
 }
 
 // The states in equilibrium under the air's forces as sampled last.
-static bough_status balance(bough_arena *arena, bough_simulation *s, bough_coupled *coupled,
+static bough_status balance(bough_arena *arena, bough_simulation *s, bough_whole *coupled,
                             bough_equilibrium_def *def, double *state, bough_equilibrium_work *work) {
     bough_equilibrium_report report;
     bough_status status = bough_equilibrium_find(arena, coupled, def, state, &report);
@@ -79,7 +79,7 @@ static bough_status balance(bough_arena *arena, bough_simulation *s, bough_coupl
     return status;
 }
 
-static bough_status balance_in_air(bough_arena *arena, bough_simulation *s, bough_coupled *coupled,
+static bough_status balance_in_air(bough_arena *arena, bough_simulation *s, bough_whole *coupled,
                                    bough_equilibrium_def *def, double *state, bough_equilibrium_work *work) {
     double *before = bough_arena_doubles(arena, (size_t)coupled->assembly->n_state), change = 0;
     while (work->samples < SAMPLES) {
@@ -102,7 +102,7 @@ static bough_status balance_in_air(bough_arena *arena, bough_simulation *s, boug
 // What is brought to equilibrium.
 typedef struct search {
     bough_simulation *simulation;
-    bough_coupled *coupled;
+    bough_whole *coupled;
     double time;
     double *change; // of one rod's vertices, see rod_static.h
 } search;
@@ -146,7 +146,7 @@ static void bring_to_rest(void *self, double *state) {
         for (int i = 0; i < x->coupled->n_held; i++) held = held || x->coupled->held[i] == k;
         if (!held) state[k] = 0;
     }
-    bough_coupled_inputs(x->coupled, x->time, state);
+    bough_whole_inputs(x->coupled, x->time, state);
     for (int k = 0; k < s->n_beam; k++) {
         const bough_beam *beam = &s->beam[k];
         int member = beam->port + 1;
@@ -155,7 +155,7 @@ static void bring_to_rest(void *self, double *state) {
     }
 }
 
-static bool turns(const bough_coupled *coupled, const bough_tree *tree, const double *state) {
+static bool turns(const bough_whole *coupled, const bough_tree *tree, const double *state) {
     for (int i = 0; i < coupled->n_held; i++) {
         if (coupled->held[i] >= tree->n_q && state[coupled->held[i]] != 0) return true;
     }
@@ -174,7 +174,7 @@ static double *rod_changes(bough_arena *arena, const bough_simulation *s) {
 
 // The system, the states at rest at `time`, and what moves them.
 typedef struct balance_setup {
-    bough_coupled *coupled;
+    bough_whole *coupled;
     double *state; // (n_state)
     search self;
     bool rests; // whether states are brought to rest in between
@@ -184,9 +184,9 @@ static void set_up(bough_arena *arena, bough_simulation *s, const bough_assembly
                    balance_setup *b) {
     b->state = bough_arena_doubles(arena, (size_t)assembly->n_state + 1);
     int *row = bough_arena_take(arena, ((size_t)s->leader.system.n_state + 1) * sizeof *row);
-    b->coupled = bough_coupled_create(arena, assembly, NULL);
+    b->coupled = bough_whole_create(arena, assembly, NULL);
     if (s->jump != NULL) bough_jump_link_begin(s->jump, time);
-    bough_coupled_hold(arena, b->coupled, bough_equilibrium_held(s->tree, true, row), row);
+    bough_whole_hold(arena, b->coupled, bough_equilibrium_held(s->tree, true, row), row);
     bough_assembly_states(assembly, b->state);
     bough_tree_prescribe(s->tree, time, b->state);
     b->self = (search){s, b->coupled, time, rod_changes(arena, s)};
@@ -250,7 +250,7 @@ static bough_status tell_point(void *self, double share, const double *state, bo
     for (int i = 0; i < w->assembly->n_member; i++)
         bough_member_set(w->assembly->member[i], time, state + w->assembly->state_offset[i]);
     bough_simulation_update(w->simulation);
-    bough_coupled_inputs(w->search.coupled, time, state);
+    bough_whole_inputs(w->search.coupled, time, state);
     size_t size = (size_t)w->assembly->n_input * sizeof(double);
     memcpy(w->simulation->master->coupling->input, w->search.coupled->input, size);
     return w->listener.point(w->listener.self, time, share, limit);

@@ -2,7 +2,7 @@
 
 #include "apps/bough/model/aero_link.h"
 #include "core/tree/loop.h"
-#include "cosim/coupled.h"
+#include "cosim/whole.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -256,8 +256,8 @@ static bough_status find_fastest(bough_arena *arena, void *self) {
     bough_arena_each(arena, n, &state, &rate, &scale);
     bough_assembly_states(m->assembly, state);
     bough_assembly_scales(m->assembly, scale);
-    bough_coupled *coupled = bough_coupled_create_evaluation(arena, m->assembly, NULL);
-    bough_status status = bough_coupled_rate(coupled, m->time, state, rate);
+    bough_whole *coupled = bough_whole_create_evaluation(arena, m->assembly, NULL);
+    bough_status status = bough_whole_rate(coupled, m->time, state, rate);
     for (int k = 0; bough_is_ok(&status) && k < (int)n; k++) {
         if (!(fabs(rate[k]) / scale[k] > largest)) continue;
         largest = fabs(rate[k]) / scale[k];

@@ -9,7 +9,7 @@ enum { N = 4 };
 
 typedef struct setup {
     bough_two_mass m;
-    bough_coupled *coupled;
+    bough_whole *coupled;
     bough_modes_def def;
     bough_eigen_pair pair[N];
     int found;
@@ -21,9 +21,9 @@ static void build(setup *s, bough_two_mass masses) {
     def.macro_step = def.duration = .1;
     bough_status status = bough_two_mass_build(&s->m, def);
     check_ok(status);
-    s->coupled = bough_coupled_create(s->m.arena, s->m.master->assembly, NULL);
+    s->coupled = bough_whole_create(s->m.arena, s->m.master->assembly, NULL);
     assert_true(bough_is_ok(&status));
-    bough_coupled_inputs(s->coupled, 0, s->m.y0);
+    bough_whole_inputs(s->coupled, 0, s->m.y0);
     s->def = (bough_modes_def){.state = s->m.y0, .input = s->coupled->input, .point = 1};
 }
 

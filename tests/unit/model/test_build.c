@@ -178,10 +178,10 @@ TEST(end_of_a_rod_is_connected_to_its_body) {
     assert_string_equal(s->tree->ends[0].name, "cable end");
     assert_int_equal(s->leader.system.n_state, 13); // the end is free, the weight welded to it
     assert_int_equal(s->rod[0].system.n_state, 13 * 3);
-    assert_int_equal(a->n_interface, 2);
-    assert_int_equal(a->interface[1].body, 1);
-    assert_int_equal(a->interface[1].twist, a->input_offset[1] + BOUGH_ROD_INPUTS);
-    assert_int_equal(a->interface[1].wrench, BOUGH_PORT_INPUTS);
+    assert_int_equal(a->n_pair, 2);
+    assert_int_equal(a->pair[1].body, 1);
+    assert_int_equal(a->pair[1].twist, a->input_offset[1] + BOUGH_ROD_INPUTS);
+    assert_int_equal(a->pair[1].wrench, BOUGH_PORT_INPUTS);
     const double *end = bough_simulation_rod_input(s, beam) + BOUGH_ROD_INPUTS;
     bough_quaternion p = beam->def.rotation[4];
     const double expected[BOUGH_ROD_END_INPUTS] = {0, 0, 0, 0, 0, 0, 0, 0, 2, p.w, p.x, p.y, p.z};

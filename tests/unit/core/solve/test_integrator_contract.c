@@ -6,7 +6,7 @@
 #include "tests/unit/sample_rod.h"
 #include "tests/unit/two_mass.h"
 
-#include "cosim/coupled.h"
+#include "cosim/whole.h"
 #include "flexbody/modal/modal_system.h"
 #include "flexbody/rod/rod_system.h"
 
@@ -40,7 +40,7 @@ static bough_system make_assembly(bough_two_mass *m) {
     bough_master_def def = bough_master_def_default();
     def.macro_step = def.duration = length;
     check_ok(bough_two_mass_build(m, def));
-    return bough_coupled_system(m->arena, m->master->assembly, NULL, "assembly");
+    return bough_whole_system(m->arena, m->master->assembly, NULL, "assembly");
 }
 
 static void run(bough_member *m, const double *input, double t1) {

@@ -1,7 +1,7 @@
 // Modal bodies against the rod they stand for, and against the laws of conservation.
 #include "tests/unit/check.h"
 
-#include "cosim/port.h"
+#include "cosim/signal.h"
 #include "flexbody/modal/modal_system.h"
 #include "flexbody/rod/rod_modes.h"
 #include "flexbody/rod/rod_system.h"
@@ -342,7 +342,7 @@ TEST(loads_bend_over_a_step) {
         bough_system s = bough_modal_body_system(body);
         bough_member *member =
             member_of(arena, &s, (bough_integrator_options){.kind = BOUGH_ROSENBROCK, .rtol = 1e-9});
-        bough_signal input = bough_port_signal(arena, BOUGH_ROD_INPUTS);
+        bough_signal input = bough_signal_create(arena, BOUGH_ROD_INPUTS);
         for (int i = 0; i < parts[k]; i++) {
             input.t0 = 0.02 * i / parts[k];
             input.t1 = 0.02 * (i + 1) / parts[k];

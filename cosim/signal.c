@@ -1,9 +1,9 @@
-#include "cosim/port.h"
+#include "cosim/signal.h"
 
 #include "core/base/base.h"
 #include "core/base/cubic.h"
 
-bough_signal bough_port_signal(bough_arena *arena, int n) {
+bough_signal bough_signal_create(bough_arena *arena, int n) {
     return (bough_signal){.n = n, .t0 = 0, .t1 = 1, .coefficient = bough_arena_doubles(arena, 4 * (size_t)n)};
 }
 
@@ -15,20 +15,21 @@ static void set(bough_signal *s, int j, double c0, double c1, double c2, double 
     c[3 * s->n] = c3;
 }
 
-void bough_port_hold(bough_signal *s, int first, int count, const double *value) {
+void bough_signal_hold(bough_signal *s, int first, int count, const double *value) {
     for (int j = 0; j < count; j++) set(s, first + j, value[j], 0, 0, 0);
 }
 
-void bough_port_hold_rate(bough_signal *s, int first, int count, const double *value, const double *rate) {
+void bough_signal_hold_rate(bough_signal *s, int first, int count, const double *value, const double *rate) {
     double length = s->t1 - s->t0;
     for (int j = 0; j < count; j++) set(s, first + j, value[j], length * rate[j], 0, 0);
 }
 
-void bough_port_linear(bough_signal *s, int first, int count, const double *start, const double *end) {
+void bough_signal_linear(bough_signal *s, int first, int count, const double *start, const double *end) {
     for (int j = 0; j < count; j++) set(s, first + j, start[j], end[j] - start[j], 0, 0);
 }
 
-void bough_port_hermite(bough_signal *s, int first, int count, bough_port_end start, bough_port_end end) {
+void bough_signal_hermite(bough_signal *s, int first, int count, bough_signal_end start,
+                          bough_signal_end end) {
     double length = s->t1 - s->t0;
     for (int j = 0; j < count; j++) {
         double r0 = length * start.rate[j], r1 = length * end.rate[j], bend[2];
@@ -49,8 +50,8 @@ static void lagrange(int n_point, const double *tau, int p, double c[4]) {
     }
 }
 
-void bough_port_polynomial(bough_signal *s, int first, int count, int n_point, const double *time,
-                           const double *const *value) {
+void bough_signal_polynomial(bough_signal *s, int first, int count, int n_point, const double *time,
+                             const double *const *value) {
     assert(n_point >= 1 && n_point <= 4);
     double tau[4], basis[4][4];
     for (int p = 0; p < n_point; p++) tau[p] = (time[p] - s->t0) / (s->t1 - s->t0);

@@ -8,13 +8,13 @@
 // with the leaders' inputs u, the response Z of their coordinates to them (1 for inputs), and the response
 // K of the inputs to the coordinates through leaders and followers. So many bodies on one leader with two
 // states cost two unknowns, and work in proportion to their number.
-#ifndef BOUGH_COSIM_CONDENSE_H
-#define BOUGH_COSIM_CONDENSE_H
+#ifndef BOUGH_COSIM_INTERFACE_H
+#define BOUGH_COSIM_INTERFACE_H
 
 #include "cosim/assembly.h"
 
 // One member's linearisation, its factors and its response to the interface.
-typedef struct bough_condensed_member {
+typedef struct bough_interface_member {
     bool is_leader;
     bool by_state; // leader: its coordinates are its states, else its inputs
     void *factors; // of its I − γJ
@@ -27,11 +27,11 @@ typedef struct bough_condensed_member {
     double *direction;     // follower: (n × n_input) change of its inputs along each direction
     double *state_change;  // follower: (n × n_state) response of its states to that
     double *output_change; // (n × n_output) of its outputs to each coordinate or direction
-} bough_condensed_member;
+} bough_interface_member;
 
-typedef struct bough_condensed {
+typedef struct bough_interface {
     const bough_assembly *assembly;
-    bough_condensed_member *part; // (n_member)
+    bough_interface_member *part; // (n_member)
     int n_leader_input;           // of all leaders
     int *leader_input;            // (n_leader_input) numbered over all inputs
     int n;                        // coordinates of all leaders
@@ -46,9 +46,9 @@ typedef struct bough_condensed {
     double *right;                // (n_leader_input) scratch
     double *unit;                 // (n_input) scratch of each member
     double *work;                 // (n_state) scratch of each member
-} bough_condensed;
+} bough_interface;
 
-bough_condensed *bough_condensed_create(bough_arena *arena, const bough_assembly *assembly);
+bough_interface *bough_interface_create(bough_arena *arena, const bough_assembly *assembly);
 
 // The point at which a member is linearised.
 typedef struct bough_operating_point {
@@ -58,47 +58,47 @@ typedef struct bough_operating_point {
 } bough_operating_point;
 
 // Linearises a member. False when its tangents are not finite.
-bool bough_condensed_linearise(bough_condensed *k, int member, const bough_operating_point *at);
+bool bough_interface_linearise(bough_interface *k, int member, const bough_operating_point *at);
 
 // Factors a leader at its last linearisation, and computes its columns and responses. False when singular.
-bool bough_condensed_factor_leader(bough_condensed *k, int member, const bough_operating_point *at);
+bool bough_interface_factor_leader(bough_interface *k, int member, const bough_operating_point *at);
 
 // Factors a follower at its last linearisation. False when singular.
-bool bough_condensed_factor_follower(bough_condensed *k, int member, const bough_operating_point *at);
+bool bough_interface_factor_follower(bough_interface *k, int member, const bough_operating_point *at);
 
 // The follower's columns and responses, once its leaders have been factored.
-void bough_condensed_respond(bough_condensed *k, int member, const bough_operating_point *at);
+void bough_interface_respond(bough_interface *k, int member, const bough_operating_point *at);
 
 // Change of a member's outputs with its state and its inputs, where it was last linearised, which is at
 // `at` or near; either change may be NULL.
-void bough_condensed_output_change(const bough_condensed *k, int member, const bough_operating_point *at,
+void bough_interface_output_change(const bough_interface *k, int member, const bough_operating_point *at,
                                    const double *state_change, const double *input_change, double *change);
 
 // Solves (I − γJ) x = b of the member by itself, in place.
-void bough_condensed_solve_member(const bough_condensed *k, int member, double *x);
+void bough_interface_solve_member(const bough_interface *k, int member, double *x);
 
 // K and the factors of I − Z K. False when that is singular.
-bool bough_condensed_close(bough_condensed *k);
+bool bough_interface_close(bough_interface *k);
 
 // Solves the interface. `coordinate` holds the right sides of (I − γJ) x = r of the leaders by states, of
 // others what their coordinates change by themselves; change (n_input) the inputs' changes as far as they
 // come from elsewhere than the leaders' response to their inputs. On return w and changes are complete.
-void bough_condensed_solve(bough_condensed *k, double *change);
+void bough_interface_solve(bough_interface *k, double *change);
 
 // Adds to x (n_state of the member) its response to the coordinates; that of a follower whose directions are
 // its inputs is to their change (n_input of the member) by the leaders.
-void bough_condensed_add_response(const bough_condensed *k, int member, const double *change, double *x);
+void bough_interface_add_response(const bough_interface *k, int member, const double *change, double *x);
 
 // Adds to the outputs' change of such a follower its response to a change of its inputs; a leader that
 // others follow along its states does not change their inputs by itself.
-void bough_condensed_add_output_response(const bough_condensed *k, int member, const double *change,
+void bough_interface_add_output_response(const bough_interface *k, int member, const double *change,
                                          double *output_change);
 
 // sum (n_state of the member) += factor Σ_j weight_j column_j
-void bough_condensed_add_columns(const bough_condensed *k, int member, double factor, const double *weight,
+void bough_interface_add_columns(const bough_interface *k, int member, double factor, const double *weight,
                                  double *sum);
 
 // The spectral radius of Z K, which is overwritten, the gain of the interface.
-double bough_condensed_radius(bough_condensed *k);
+double bough_interface_radius(bough_interface *k);
 
 #endif

@@ -1,16 +1,16 @@
-#include "cosim/condense.h"
+#include "cosim/interface.h"
 
 #include "core/base/linalg.h"
 
 #include <math.h>
 #include <string.h>
 
-static const bough_system *system_of(const bough_condensed *k, int member) {
+static const bough_system *system_of(const bough_interface *k, int member) {
     return &k->assembly->member[member]->system;
 }
 
 // The member that feeds input j, numbered over all inputs, and by which of its outputs.
-static const bough_condensed_member *feeder(const bough_condensed *k, int j, int *output) {
+static const bough_interface_member *feeder(const bough_interface *k, int j, int *output) {
     const bough_assembly *a = k->assembly;
     *output = a->source[j] - a->output_offset[a->source_member[j]];
     return &k->part[a->source_member[j]];
@@ -18,9 +18,9 @@ static const bough_condensed_member *feeder(const bough_condensed *k, int j, int
 
 // -- shape ----------------------------------------------------------------------------------------
 
-static void choose_coordinates(bough_condensed *k, int member) {
+static void choose_coordinates(bough_interface *k, int member) {
     const bough_system *s = system_of(k, member);
-    bough_condensed_member *w = &k->part[member];
+    bough_interface_member *w = &k->part[member];
     w->leader = -1;
     w->is_leader = k->assembly->leads[member];
     w->by_state = w->is_leader && !k->assembly->feedthrough[member] && s->n_state < s->n_input;
@@ -34,23 +34,23 @@ static void choose_coordinates(bough_condensed *k, int member) {
 }
 
 // The directions of a follower that hangs on one leader with few states are these.
-static void choose_directions(bough_condensed *k, int member) {
+static void choose_directions(bough_interface *k, int member) {
     const bough_assembly *a = k->assembly;
-    bough_condensed_member *w = &k->part[member];
+    bough_interface_member *w = &k->part[member];
     int begin = a->input_offset[member], end = a->input_offset[member + 1];
     if (w->is_leader || begin == end) return;
     for (int j = begin; j < end; j++) {
         if (a->source_member[j] != a->source_member[begin]) return;
     }
-    const bough_condensed_member *leader = &k->part[a->source_member[begin]];
+    const bough_interface_member *leader = &k->part[a->source_member[begin]];
     if (!leader->by_state || leader->n >= w->n) return;
     w->leader = a->source_member[begin];
     w->n = leader->n;
 }
 
-static void take_part(bough_condensed *k, bough_arena *arena, int member) {
+static void take_part(bough_interface *k, bough_arena *arena, int member) {
     const bough_system *s = system_of(k, member);
-    bough_condensed_member *w = &k->part[member];
+    bough_interface_member *w = &k->part[member];
     size_t n = (size_t)w->n, n_state = (size_t)s->n_state, n_input = (size_t)s->n_input;
     w->column = bough_arena_doubles(arena, n_input * n_state);
     w->output_change = bough_arena_doubles(arena, n * (size_t)s->n_output);
@@ -61,9 +61,9 @@ static void take_part(bough_condensed *k, bough_arena *arena, int member) {
     w->state_change = bough_arena_doubles(arena, n * n_state);
 }
 
-bough_condensed *bough_condensed_create(bough_arena *arena, const bough_assembly *assembly) {
+bough_interface *bough_interface_create(bough_arena *arena, const bough_assembly *assembly) {
     size_t n_member = (size_t)assembly->n_member;
-    bough_condensed *k = bough_arena_take(arena, sizeof *k);
+    bough_interface *k = bough_arena_take(arena, sizeof *k);
     k->assembly = assembly;
     k->part = bough_arena_take(arena, n_member * sizeof *k->part);
     k->leader_input = bough_arena_take(arena, (size_t)assembly->n_input * sizeof(int));
@@ -85,7 +85,7 @@ bough_condensed *bough_condensed_create(bough_arena *arena, const bough_assembly
 
 // -- members --------------------------------------------------------------------------------------
 
-void bough_condensed_output_change(const bough_condensed *k, int member, const bough_operating_point *at,
+void bough_interface_output_change(const bough_interface *k, int member, const bough_operating_point *at,
                                    const double *state_change, const double *input_change, double *change) {
     const bough_system *s = system_of(k, member);
     bool (*kept)(void *, const void *, const double *, const double *, double *) = s->ops->kept_tangent;
@@ -93,26 +93,26 @@ void bough_condensed_output_change(const bough_condensed *k, int member, const b
     s->ops->output_tangent(s->self, at->time, at->state, at->input, state_change, input_change, change);
 }
 
-static void find_columns(const bough_condensed *k, int member, const bough_operating_point *at) {
+static void find_columns(const bough_interface *k, int member, const bough_operating_point *at) {
     const bough_system *s = system_of(k, member);
     s->ops->input_columns(s->self, at->time, at->state, at->input, k->part[member].column);
 }
 
 // The columns of a follower have no γ in them.
-bool bough_condensed_linearise(bough_condensed *k, int member, const bough_operating_point *at) {
+bool bough_interface_linearise(bough_interface *k, int member, const bough_operating_point *at) {
     const bough_system *s = system_of(k, member);
-    const bough_condensed_member *w = &k->part[member];
+    const bough_interface_member *w = &k->part[member];
     if (!s->ops->linearise(s->self, at->time, at->state, at->input, w->factors)) return false;
     if (!w->is_leader) find_columns(k, member, at);
     return true;
 }
 
-static bool factor(const bough_condensed *k, int member, double gamma) {
+static bool factor(const bough_interface *k, int member, double gamma) {
     const bough_system *s = system_of(k, member);
     return s->ops->factor(s->self, k->part[member].factors, gamma);
 }
 
-void bough_condensed_solve_member(const bough_condensed *k, int member, double *x) {
+void bough_interface_solve_member(const bough_interface *k, int member, double *x) {
     const bough_system *s = system_of(k, member);
     s->ops->solve(s->self, k->part[member].factors, x);
 }
@@ -152,50 +152,50 @@ static void add_columns(int n, int count, const double *column, double factor, c
     add_some(n, share, some, sum);
 }
 
-void bough_condensed_add_columns(const bough_condensed *k, int member, double factor, const double *weight,
+void bough_interface_add_columns(const bough_interface *k, int member, double factor, const double *weight,
                                  double *sum) {
     const bough_system *s = system_of(k, member);
     add_columns(s->n_state, s->n_input, k->part[member].column, factor, weight, sum);
 }
 
-static void find_inverse(const bough_condensed *k, int member) {
-    const bough_condensed_member *w = &k->part[member];
+static void find_inverse(const bough_interface *k, int member) {
+    const bough_interface_member *w = &k->part[member];
     size_t n = (size_t)w->n;
     memset(w->inverse, 0, n * n * sizeof(double));
     for (size_t i = 0; i < n; i++) {
         w->inverse[i * n + i] = 1;
-        bough_condensed_solve_member(k, member, w->inverse + i * n);
+        bough_interface_solve_member(k, member, w->inverse + i * n);
     }
 }
 
 // The outputs' change with each input, through the states and at once.
-static void find_input_responses(const bough_condensed *k, int member, const bough_operating_point *at) {
+static void find_input_responses(const bough_interface *k, int member, const bough_operating_point *at) {
     const bough_system *s = system_of(k, member);
-    const bough_condensed_member *w = &k->part[member];
+    const bough_interface_member *w = &k->part[member];
     double *unit = k->unit + k->assembly->input_offset[member];
     double *column = w->column, *response = w->output_change;
     for (int j = 0; j < s->n_input; j++, column += s->n_state, response += s->n_output) {
-        bough_condensed_solve_member(k, member, column);
+        bough_interface_solve_member(k, member, column);
         unit[j] = 1;
-        bough_condensed_output_change(k, member, at, column, unit, response);
+        bough_interface_output_change(k, member, at, column, unit, response);
         unit[j] = 0;
     }
 }
 
-static void find_state_responses(const bough_condensed *k, int member, const bough_operating_point *at) {
+static void find_state_responses(const bough_interface *k, int member, const bough_operating_point *at) {
     const bough_system *s = system_of(k, member);
     double *state = k->work + k->assembly->state_offset[member];
     double *response = k->part[member].output_change;
     memset(state, 0, (size_t)s->n_state * sizeof(double));
     for (int i = 0; i < s->n_state; i++, response += s->n_output) {
         state[i] = 1;
-        bough_condensed_output_change(k, member, at, state, NULL, response);
+        bough_interface_output_change(k, member, at, state, NULL, response);
         state[i] = 0;
     }
 }
 
-bool bough_condensed_factor_leader(bough_condensed *k, int member, const bough_operating_point *at) {
-    const bough_condensed_member *w = &k->part[member];
+bool bough_interface_factor_leader(bough_interface *k, int member, const bough_operating_point *at) {
+    const bough_interface_member *w = &k->part[member];
     const bough_system *s = system_of(k, member);
     if (!factor(k, member, at->gamma)) return false;
     find_columns(k, member, at);
@@ -210,14 +210,14 @@ bool bough_condensed_factor_leader(bough_condensed *k, int member, const bough_o
 }
 
 // The input changes of a follower along each of its directions.
-static void find_directions(bough_condensed *k, int member) {
+static void find_directions(bough_interface *k, int member) {
     const bough_assembly *a = k->assembly;
-    const bough_condensed_member *w = &k->part[member];
+    const bough_interface_member *w = &k->part[member];
     int n_input = a->member[member]->system.n_input;
     memset(w->direction, 0, (size_t)w->n * (size_t)n_input * sizeof(double));
     for (int j = 0; j < n_input; j++) {
         int p, input = a->input_offset[member] + j;
-        const bough_condensed_member *from = feeder(k, input, &p);
+        const bough_interface_member *from = feeder(k, input, &p);
         int n_output = a->member[a->source_member[input]]->system.n_output;
         if (w->leader < 0) {
             w->direction[j * n_input + j] = 1;
@@ -236,13 +236,13 @@ static bool any(const double *x, int n) {
     return false;
 }
 
-bool bough_condensed_factor_follower(bough_condensed *k, int member, const bough_operating_point *at) {
+bool bough_interface_factor_follower(bough_interface *k, int member, const bough_operating_point *at) {
     return factor(k, member, at->gamma);
 }
 
-void bough_condensed_respond(bough_condensed *k, int member, const bough_operating_point *at) {
+void bough_interface_respond(bough_interface *k, int member, const bough_operating_point *at) {
     const bough_system *s = system_of(k, member);
-    const bough_condensed_member *w = &k->part[member];
+    const bough_interface_member *w = &k->part[member];
     find_directions(k, member);
     for (int d = 0; d < w->n; d++) {
         const double *direction = w->direction + (size_t)d * (size_t)s->n_input;
@@ -251,28 +251,28 @@ void bough_condensed_respond(bough_condensed *k, int member, const bough_operati
         memset(state, 0, (size_t)s->n_state * sizeof(double));
         memset(response, 0, (size_t)s->n_output * sizeof(double));
         if (!any(direction, s->n_input)) continue;
-        bough_condensed_add_columns(k, member, at->gamma, direction, state);
-        bough_condensed_solve_member(k, member, state);
-        bough_condensed_output_change(k, member, at, state, direction, response);
+        bough_interface_add_columns(k, member, at->gamma, direction, state);
+        bough_interface_solve_member(k, member, state);
+        bough_interface_output_change(k, member, at, state, direction, response);
     }
 }
 
 // -- the interface --------------------------------------------------------------------------------
 
 // Adds to row l of K what the leaders' coordinates do to input j through the member that leads.
-static void add_leading(const bough_condensed *k, double factor, int j, int l) {
+static void add_leading(const bough_interface *k, double factor, int j, int l) {
     int p;
-    const bough_condensed_member *w = feeder(k, j, &p);
+    const bough_interface_member *w = feeder(k, j, &p);
     int n_output = system_of(k, k->assembly->source_member[j])->n_output;
     for (int c = 0; c < w->n; c++) {
         k->gain[(w->first + c) * k->n_leader_input + l] += factor * w->output_change[c * n_output + p];
     }
 }
 
-static void find_gain_row(const bough_condensed *k, int l) {
+static void find_gain_row(const bough_interface *k, int l) {
     const bough_assembly *a = k->assembly;
     int p, from = a->source_member[k->leader_input[l]];
-    const bough_condensed_member *w = feeder(k, k->leader_input[l], &p);
+    const bough_interface_member *w = feeder(k, k->leader_input[l], &p);
     if (w->is_leader) {
         add_leading(k, 1, k->leader_input[l], l);
         return;
@@ -289,9 +289,9 @@ static void find_gain_row(const bough_condensed *k, int l) {
 }
 
 // z += u of a leader by inputs, γ ∂f/∂u u of one by states; u (n_leader_input)
-static void add_inputs(const bough_condensed *k, const double *u, double *z) {
+static void add_inputs(const bough_interface *k, const double *u, double *z) {
     for (int i = 0; i < k->assembly->n_member; i++) {
-        const bough_condensed_member *w = &k->part[i];
+        const bough_interface_member *w = &k->part[i];
         int n_input = system_of(k, i)->n_input;
         if (!w->is_leader) continue;
         if (w->by_state) {
@@ -304,9 +304,9 @@ static void add_inputs(const bough_condensed *k, const double *u, double *z) {
 }
 
 // z ← (I − γJ)⁻¹ z of the leaders by states
-static void apply_inverses(const bough_condensed *k, double *z) {
+static void apply_inverses(const bough_interface *k, double *z) {
     for (int i = 0; i < k->assembly->n_member; i++) {
-        const bough_condensed_member *w = &k->part[i];
+        const bough_interface_member *w = &k->part[i];
         if (!w->by_state) continue;
         memcpy(k->sum, z + w->first, (size_t)w->n * sizeof *z);
         memset(z + w->first, 0, (size_t)w->n * sizeof *z);
@@ -314,7 +314,7 @@ static void apply_inverses(const bough_condensed *k, double *z) {
     }
 }
 
-bool bough_condensed_close(bough_condensed *k) {
+bool bough_interface_close(bough_interface *k) {
     size_t n = (size_t)k->n, size = n * n;
     memset(k->gain, 0, n * (size_t)k->n_leader_input * sizeof(double));
     for (int l = 0; l < k->n_leader_input; l++) find_gain_row(k, l);
@@ -328,9 +328,9 @@ bool bough_condensed_close(bough_condensed *k) {
 }
 
 // The leaders' outputs' change with the coordinates.
-static void move_outputs(bough_condensed *k) {
+static void move_outputs(bough_interface *k) {
     for (int i = 0; i < k->assembly->n_member; i++) {
-        const bough_condensed_member *w = &k->part[i];
+        const bough_interface_member *w = &k->part[i];
         if (!w->is_leader) continue;
         int n_output = system_of(k, i)->n_output;
         double *moved = k->moved + k->assembly->output_offset[i];
@@ -339,7 +339,7 @@ static void move_outputs(bough_condensed *k) {
     }
 }
 
-void bough_condensed_solve(bough_condensed *k, double *change) {
+void bough_interface_solve(bough_interface *k, double *change) {
     const bough_assembly *a = k->assembly;
     for (int l = 0; l < k->n_leader_input; l++) k->right[l] = change[k->leader_input[l]];
     add_inputs(k, k->right, k->coordinate);
@@ -354,8 +354,8 @@ void bough_condensed_solve(bough_condensed *k, double *change) {
     }
 }
 
-void bough_condensed_add_response(const bough_condensed *k, int member, const double *change, double *x) {
-    const bough_condensed_member *w = &k->part[member];
+void bough_interface_add_response(const bough_interface *k, int member, const double *change, double *x) {
+    const bough_interface_member *w = &k->part[member];
     int n = system_of(k, member)->n_state;
     if (w->by_state) {
         for (int i = 0; i < n; i++) x[i] += k->coordinate[w->first + i];
@@ -368,9 +368,9 @@ void bough_condensed_add_response(const bough_condensed *k, int member, const do
     }
 }
 
-void bough_condensed_add_output_response(const bough_condensed *k, int member, const double *change,
+void bough_interface_add_output_response(const bough_interface *k, int member, const double *change,
                                          double *output_change) {
-    const bough_condensed_member *w = &k->part[member];
+    const bough_interface_member *w = &k->part[member];
     if (w->leader >= 0) return;
     add_columns(system_of(k, member)->n_output, w->n, w->output_change, 1, change, output_change);
 }
@@ -389,7 +389,7 @@ static void square(int n, const double *a, double *result) {
 }
 
 // As ‖(Z K)ᵖ‖^(1/p) with p = 2¹².
-double bough_condensed_radius(bough_condensed *k) {
+double bough_interface_radius(bough_interface *k) {
     double logarithm = 0, weight = 1;
     int n = k->n;
     for (int doubling = 0; doubling < 12; doubling++) {

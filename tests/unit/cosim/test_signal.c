@@ -1,4 +1,4 @@
-#include "cosim/port.h"
+#include "cosim/signal.h"
 
 #include "tests/unit/check.h"
 
@@ -16,7 +16,7 @@ static void check_signal(const bough_signal *s, double (*expected)(double)) {
 }
 
 static bough_signal signal_on(bough_arena *arena, double t0, double t1) {
-    bough_signal s = bough_port_signal(arena, 2);
+    bough_signal s = bough_signal_create(arena, 2);
     s.t0 = t0;
     s.t1 = t1;
     return s;
@@ -35,11 +35,11 @@ TEST(held_values_and_rates) {
     check_arena(arena);
     bough_signal s = signal_on(arena, 2, 2.5);
     const double value = 4, rate = -3, end = 2.5;
-    bough_port_hold(&s, 1, 1, &value);
+    bough_signal_hold(&s, 1, 1, &value);
     check_signal(&s, constant);
-    bough_port_hold_rate(&s, 1, 1, &value, &rate);
+    bough_signal_hold_rate(&s, 1, 1, &value, &rate);
     check_signal(&s, line);
-    bough_port_linear(&s, 1, 1, &value, &end);
+    bough_signal_linear(&s, 1, 1, &value, &end);
     check_signal(&s, line);
 }
 
@@ -47,7 +47,7 @@ TEST(hermite_reproduces_a_cubic) {
     check_arena(arena);
     bough_signal s = signal_on(arena, .5, 1.3);
     const double v0 = cubic(.5), r0 = cubic_rate(.5), v1 = cubic(1.3), r1 = cubic_rate(1.3);
-    bough_port_hermite(&s, 1, 1, (bough_port_end){&v0, &r0}, (bough_port_end){&v1, &r1});
+    bough_signal_hermite(&s, 1, 1, (bough_signal_end){&v0, &r0}, (bough_signal_end){&v1, &r1});
     check_signal(&s, cubic);
 }
 
@@ -58,12 +58,12 @@ TEST(polynomials_extrapolate_and_interpolate) {
     double at_back[3], at_around[4];
     const double *value[4] = {&at_back[0], &at_back[1], &at_back[2]};
     for (int p = 0; p < 3; p++) at_back[p] = parabola(back[p]);
-    bough_port_polynomial(&s, 1, 1, 3, back, value);
+    bough_signal_polynomial(&s, 1, 1, 3, back, value);
     check_signal(&s, parabola);
     for (int p = 0; p < 4; p++) {
         at_around[p] = cubic(around[p]);
         value[p] = &at_around[p];
     }
-    bough_port_polynomial(&s, 1, 1, 4, around, value);
+    bough_signal_polynomial(&s, 1, 1, 4, around, value);
     check_signal(&s, cubic);
 }

@@ -1,17 +1,17 @@
 // All members of an assembly as one system ẏ = F(t, y), whose inputs follow from the outputs: its rate, and
 // solutions of (I − γ ∂F/∂y) x = r. The matrix is an arrowhead matrix, solved by static condensation,
 //     (I − γJ_i) x_i = r_i + γ B_i δu_i,   δo_i = C_i x_i + D_i δu_i,   δu = P δo.
-// Each member is factored separately, and the interface system is that of condense.h.
-#ifndef BOUGH_COSIM_COUPLED_H
-#define BOUGH_COSIM_COUPLED_H
+// Each member is factored separately, and the interface system is that of interface.h.
+#ifndef BOUGH_COSIM_WHOLE_H
+#define BOUGH_COSIM_WHOLE_H
 
 #include "core/base/pool.h"
-#include "cosim/condense.h"
+#include "cosim/interface.h"
 
-typedef struct bough_coupled {
+typedef struct bough_whole {
     const bough_assembly *assembly;
     bough_pool *pool;       // NULL: one thread
-    double *output, *input; // (n_output), (n_input) of the last bough_coupled_inputs
+    double *output, *input; // (n_output), (n_input) of the last bough_whole_inputs
     bough_status *status;   // (n_member) of the last work on each
     int *order, n_follower; // (n_member) the followers, then the leaders
 
@@ -26,7 +26,7 @@ typedef struct bough_coupled {
     double setup_time;
     double *setup_state; // (n_state) where the matrix was taken
     double *setup_input; // (n_input)
-    bough_condensed *interface;
+    bough_interface *interface;
     const double *outside; // (n_input) of the solution in progress; NULL: 0
     double *change;        // (n_input) of the inputs with the last solution
     double *led;           // (n_input) the same without what comes from outside
@@ -39,79 +39,79 @@ typedef struct bough_coupled {
     double *multiplier; // (n_held × n_held) their held entries, factored
     double *share;      // (n_held)
     int *held_pivot;    // (n_held)
-} bough_coupled;
+} bough_whole;
 
 // Builds the memory in the arena; members are shared out by the pool.
-bough_coupled *bough_coupled_create(bough_arena *arena, const bough_assembly *assembly, bough_pool *pool);
+bough_whole *bough_whole_create(bough_arena *arena, const bough_assembly *assembly, bough_pool *pool);
 
-// The same without factors: for bough_coupled_inputs and the rates only.
-bough_coupled *bough_coupled_create_evaluation(bough_arena *arena, const bough_assembly *assembly,
-                                               bough_pool *pool);
+// The same without factors: for bough_whole_inputs and the rates only.
+bough_whole *bough_whole_create_evaluation(bough_arena *arena, const bough_assembly *assembly,
+                                           bough_pool *pool);
 
 // The assembly as a system without ports, from the members' current states on; `name` is borrowed. Its
-// self is a bough_coupled for evaluations. All members' systems are in use while it is asked.
-bough_system bough_coupled_system(bough_arena *arena, const bough_assembly *assembly, bough_pool *pool,
-                                  const char *name);
+// self is a bough_whole for evaluations. All members' systems are in use while it is asked.
+bough_system bough_whole_system(bough_arena *arena, const bough_assembly *assembly, bough_pool *pool,
+                                const char *name);
 
 // Solutions keep these states from now on (n, borrowed): x is 0 there, by constraint forces.
-void bough_coupled_hold(bough_arena *arena, bough_coupled *coupled, int n, const int *held);
+void bough_whole_hold(bough_arena *arena, bough_whole *whole, int n, const int *held);
 
-// Outputs and inputs at a state (n_state) into coupled->output and coupled->input.
-void bough_coupled_inputs(bough_coupled *coupled, double t, const double *state);
+// Outputs and inputs at a state (n_state) into whole->output and whole->input.
+void bough_whole_inputs(bough_whole *whole, double t, const double *state);
 
 // F: rate (n_state). BOUGH_FAILED names the member whose rate is not finite.
-bough_status bough_coupled_rate(bough_coupled *coupled, double t, const double *state, double *rate);
+bough_status bough_whole_rate(bough_whole *whole, double t, const double *state, double *rate);
 
-// The next factors are those about (t, state, input); input (n_input), usually coupled->input.
-void bough_coupled_linearise(bough_coupled *coupled, double t, const double *state, const double *input);
+// The next factors are those about (t, state, input); input (n_input), usually whole->input.
+void bough_whole_linearise(bough_whole *whole, double t, const double *state, const double *input);
 
 // Factors I − γJ there. BOUGH_RETRY when a tangent is not finite or the matrix singular.
-bough_status bough_coupled_factor(bough_coupled *coupled, double gamma);
+bough_status bough_whole_factor(bough_whole *whole, double gamma);
 
 // Both.
-bough_status bough_coupled_setup(bough_coupled *coupled, double t, const double *state, const double *input,
-                                 double gamma);
+bough_status bough_whole_setup(bough_whole *whole, double t, const double *state, const double *input,
+                               double gamma);
 
-// x ← (I − γJ)⁻¹ x, x (n_state); coupled->change is then the change of the inputs with it.
-void bough_coupled_solve(bough_coupled *coupled, double *x);
+// x ← (I − γJ)⁻¹ x, x (n_state); whole->change is then the change of the inputs with it.
+void bough_whole_solve(bough_whole *whole, double *x);
 
 // Takes changes of quaternions' lengths out of a change x (n_state) of `state`.
-void bough_coupled_project(const bough_coupled *coupled, const double *state, double *x);
+void bough_whole_project(const bough_whole *whole, const double *state, double *x);
 
 // The same with `outside` (n_input) added to the inputs' changes, δu = P δo + outside; NULL: 0.
-void bough_coupled_solve_driven(bough_coupled *coupled, const double *outside, double *x);
+void bough_whole_solve_driven(bough_whole *whole, const double *outside, double *x);
 
 // δu for x = 0 and `outside` (n_input) at the leaders' inputs, in place.
-void bough_coupled_close(bough_coupled *coupled, double *outside);
+void bough_whole_close(bough_whole *whole, double *outside);
 
 // -- member by member, for a scheme that does several of these in one task -----------------------
 
 // Begins F at a state (n_state) for `rate` (n_state): finds the outputs on which the members' inputs wait.
-void bough_coupled_begin_rates(bough_coupled *coupled, double t, const double *state, double *rate);
+void bough_whole_begin_rates(bough_whole *whole, double t, const double *state, double *rate);
 
 // Whether that computes the member's outputs, for which it needs the member's state. The outputs of the other
 // members are computed with their rates.
-bool bough_coupled_outputs_first(const bough_coupled *coupled, int member);
+bool bough_whole_outputs_first(const bough_whole *whole, int member);
 
-enum { BOUGH_COUPLED_TIMES = 2 };
+enum { BOUGH_WHOLE_TIMES = 2 };
 
-// The member's rate in n ≤ BOUGH_COUPLED_TIMES evaluations of one state; leaders after all followers. A
+// The member's rate in n ≤ BOUGH_WHOLE_TIMES evaluations of one state; leaders after all followers. A
 // failure is kept in the status of the first evaluation.
-void bough_coupled_rates_of(bough_coupled *const *evaluation, int n, int member);
+void bough_whole_rates_of(bough_whole *const *evaluation, int n, int member);
 
 // The first failure, followers first: the inputs of leaders mean nothing after one of theirs.
-bough_status bough_coupled_failure(const bough_coupled *coupled);
+bough_status bough_whole_failure(const bough_whole *whole);
 
 // Begins a solution of x (n_state) in place; `outside` as above.
-void bough_coupled_begin_solution(bough_coupled *coupled, const double *outside, double *x);
+void bough_whole_begin_solution(bough_whole *whole, const double *outside, double *x);
 
 // x_i = (I − γJ_i)⁻¹ r_i of one member by itself.
-void bough_coupled_solve_of(bough_coupled *coupled, int member);
+void bough_whole_solve_of(bough_whole *whole, int member);
 
 // The changes of all inputs, once every member is solved by itself.
-void bough_coupled_solve_interface(bough_coupled *coupled);
+void bough_whole_solve_interface(bough_whole *whole);
 
 // Adds the member's response to that, which completes its states in x (n_state).
-void bough_coupled_respond(const bough_coupled *coupled, int member, double *x);
+void bough_whole_respond(const bough_whole *whole, int member, double *x);
 
 #endif

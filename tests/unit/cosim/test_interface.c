@@ -1,6 +1,6 @@
 // Condensed interfaces of random linear members against the system as a whole.
 #include "core/base/linalg.h"
-#include "cosim/coupled.h"
+#include "cosim/whole.h"
 #include "tests/unit/check.h"
 
 #include <math.h>
@@ -122,9 +122,9 @@ static void check(const plan *p) {
     }
     bough_assembly_def def = {MEMBERS, part, p->n_connection, p->connection};
     bough_assembly *a;
-    bough_coupled *coupled = NULL;
+    bough_whole *coupled = NULL;
     bough_status status = bough_assembly_build(arena, &def, &a);
-    if (bough_is_ok(&status)) coupled = bough_coupled_create(arena, a, NULL);
+    if (bough_is_ok(&status)) coupled = bough_whole_create(arena, a, NULL);
     if (!bough_is_ok(&status)) fail_msg("%s: %s", p->what, status.message);
     assert_int_equal(coupled->interface->n, p->unknowns);
 
@@ -133,10 +133,10 @@ static void check(const plan *p) {
     double outside[PORTS], input[PORTS], gamma = .2;
     for (int k = 0; k < a->n_state; k++) y[k] = noise(&seed), r[k] = x[k] = noise(&seed);
     for (int j = 0; j < a->n_input; j++) outside[j] = noise(&seed);
-    bough_coupled_rate(coupled, 0, y, before);
+    bough_whole_rate(coupled, 0, y, before);
     memcpy(input, coupled->input, (size_t)a->n_input * sizeof(double));
-    check_ok(bough_coupled_setup(coupled, 0, y, input, gamma));
-    bough_coupled_solve_driven(coupled, outside, x);
+    check_ok(bough_whole_setup(coupled, 0, y, input, gamma));
+    bough_whole_solve_driven(coupled, outside, x);
 
     // x = r + γ (A x + B δu) member by member, δu = P (C x + D δu) + outside
     double change[PORTS], answer[PORTS];
@@ -224,23 +224,23 @@ TEST(radius_is_that_of_the_loop) {
     const bough_connection connection[] = {{0, 0, 1, 0, 3, true}, {1, 0, 0, 0, 3, false}};
     bough_assembly_def def = {2, part, 2, connection};
     bough_assembly *a;
-    bough_condensed *k;
+    bough_interface *k;
     bough_status status = bough_assembly_build(arena, &def, &a);
     check_ok(status);
-    k = bough_condensed_create(arena, a);
+    k = bough_interface_create(arena, a);
     assert_true(bough_is_ok(&status));
     const double zero[MOST] = {0};
     bough_operating_point at = {.state = zero, .input = zero, .gamma = .4};
-    for (int i = 0; i < 2; i++) assert_true(bough_condensed_linearise(k, i, &at));
-    assert_true(bough_condensed_factor_leader(k, 0, &at));
-    assert_true(bough_condensed_factor_follower(k, 1, &at));
-    bough_condensed_respond(k, 1, &at);
-    assert_true(bough_condensed_close(k));
+    for (int i = 0; i < 2; i++) assert_true(bough_interface_linearise(k, i, &at));
+    assert_true(bough_interface_factor_leader(k, 0, &at));
+    assert_true(bough_interface_factor_follower(k, 1, &at));
+    bough_interface_respond(k, 1, &at);
+    assert_true(bough_interface_close(k));
     // the larger root of the 2 × 2 loop
     assert_true(fabs(k->loop[0]) > 1e-3);
     double trace = k->loop[0] + k->loop[3];
     double det = k->loop[0] * k->loop[3] - k->loop[1] * k->loop[2];
     double square = .25 * trace * trace - det;
     double radius = square > 0 ? .5 * fabs(trace) + sqrt(square) : sqrt(det);
-    check_near(bough_condensed_radius(k), radius, 1e-2, 0);
+    check_near(bough_interface_radius(k), radius, 1e-2, 0);
 }

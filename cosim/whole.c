@@ -1,0 +1,450 @@
+#include "cosim/whole.h"
+
+#include "core/base/linalg.h"
+
+#include <assert.h>
+#include <math.h>
+#include <string.h>
+
+enum { FOLLOWERS, LEADERS, ALL };
+
+typedef struct member_work {
+    bough_whole *whole;
+    const int *member;
+    void (*work)(bough_whole *whole, int member);
+} member_work;
+
+static void run_member(void *data, int k) {
+    const member_work *w = data;
+    int i = w->member[k];
+    w->whole->status[i].code = BOUGH_OK;
+    w->work(w->whole, i);
+}
+
+bough_status bough_whole_failure(const bough_whole *whole) {
+    for (int k = 0; k < whole->assembly->n_member; k++) {
+        const bough_status *status = &whole->status[whole->order[k]];
+        if (!bough_is_ok(status)) return *status;
+    }
+    return bough_ok();
+}
+
+// work(whole, member) for every one of them, in parallel; the first failure.
+static bough_status each(bough_whole *whole, int whom, void (*work)(bough_whole *whole, int member)) {
+    int n_member = whole->assembly->n_member, n_leader = n_member - whole->n_follower;
+    int n = whom == ALL ? n_member : whom == LEADERS ? n_leader : whole->n_follower;
+    member_work w = {whole, whom == LEADERS ? whole->order + whole->n_follower : whole->order, work};
+    bough_pool_run(whole->pool, n, run_member, &w);
+    return bough_whole_failure(whole);
+}
+
+// -- evaluation -----------------------------------------------------------------------------------
+
+static void find_output(bough_whole *whole, int i) {
+    const bough_assembly *a = whole->assembly;
+    const bough_system *s = &a->member[i]->system;
+    s->ops->output(s->self, whole->time, whole->at + a->state_offset[i], whole->input + a->input_offset[i],
+                   whole->output + a->output_offset[i]);
+}
+
+// In an order that needs no iteration: of the leaders only, or of all.
+static void find_outputs(bough_whole *whole, bool all) {
+    const bough_assembly *a = whole->assembly;
+    for (int n = 0; n < a->n_member; n++) {
+        int i = a->order[n];
+        if (!all && !a->leads[i]) continue;
+        bough_assembly_gather(a, i, whole->output, whole->input);
+        find_output(whole, i);
+    }
+}
+
+void bough_whole_inputs(bough_whole *whole, double t, const double *state) {
+    whole->time = t;
+    whole->at = state;
+    find_outputs(whole, true);
+    for (int i = 0; i < whole->assembly->n_member; i++)
+        bough_assembly_gather(whole->assembly, i, whole->output, whole->input);
+}
+
+void bough_whole_begin_rates(bough_whole *whole, double t, const double *state, double *rate) {
+    whole->time = t;
+    whole->at = state;
+    whole->x = rate;
+    find_outputs(whole, !whole->assembly->followers_last);
+}
+
+bool bough_whole_outputs_first(const bough_whole *whole, int i) {
+    return !whole->assembly->followers_last || whole->assembly->leads[i];
+}
+
+// Both by one call where the system has one.
+static bool evaluate_separately(const bough_system *s, const double *state, int n,
+                                const bough_evaluation *at) {
+    for (int k = 0; k < n; k++) {
+        if (!s->ops->derivative(s->self, at[k].t, state, at[k].input, at[k].rate)) return false;
+        if (at[k].output) s->ops->output(s->self, at[k].t, state, at[k].input, at[k].output);
+    }
+    return true;
+}
+
+void bough_whole_rates_of(bough_whole *const *which, int n, int i) {
+    const bough_assembly *a = which[0]->assembly;
+    const bough_member *m = a->member[i];
+    const double *state = which[0]->at + a->state_offset[i];
+    bool waited_for = !bough_whole_outputs_first(which[0], i);
+    bough_evaluation at[BOUGH_WHOLE_TIMES];
+    for (int k = 0; k < n; k++) {
+        bough_whole *c = which[k];
+        bough_assembly_gather(a, i, c->output, c->input);
+        at[k] = (bough_evaluation){c->time, c->input + a->input_offset[i], c->x + a->state_offset[i],
+                                   waited_for ? c->output + a->output_offset[i] : NULL};
+        c->status[i].code = BOUGH_OK;
+    }
+    bool finite = m->system.ops->evaluate ? m->system.ops->evaluate(m->system.self, state, n, at)
+                                          : evaluate_separately(&m->system, state, n, at);
+    if (finite) return;
+    which[0]->status[i] =
+        bough_fail(BOUGH_FAILED, "%s: no finite rate of change at %.6g s", m->system.name, m->time);
+}
+
+static void rate_of(bough_whole *whole, int i) { bough_whole_rates_of(&whole, 1, i); }
+
+bough_status bough_whole_rate(bough_whole *whole, double t, const double *state, double *rate) {
+    bough_whole_begin_rates(whole, t, state, rate);
+    bough_status status = each(whole, FOLLOWERS, rate_of);
+    return bough_is_ok(&status) ? each(whole, LEADERS, rate_of) : status;
+}
+
+// -- factors --------------------------------------------------------------------------------------
+
+static bough_operating_point operating_point(const bough_whole *whole, int i) {
+    const bough_assembly *a = whole->assembly;
+    return (bough_operating_point){whole->setup_time, whole->setup_state + a->state_offset[i],
+                                   whole->setup_input + a->input_offset[i], whole->gamma};
+}
+
+static void check(bough_whole *whole, int i, bool good) {
+    if (good) return;
+    whole->status[i] =
+        bough_fail(BOUGH_RETRY, "%s: singular Newton matrix", whole->assembly->member[i]->system.name);
+}
+
+// Leaders first, whose responses take long; those of followers wait for them.
+static void factor_member(void *self, int place) {
+    bough_whole *whole = self;
+    const bough_assembly *a = whole->assembly;
+    bough_interface *k = whole->interface;
+    int i = whole->order[(place + whole->n_follower) % a->n_member];
+    bough_operating_point at = operating_point(whole, i);
+    whole->status[i].code = BOUGH_OK;
+    bool good = whole->linearised || bough_interface_linearise(k, i, &at);
+    if (a->leads[i]) {
+        check(whole, i, good && bough_interface_factor_leader(k, i, &at));
+    } else {
+        check(whole, i, good && bough_interface_factor_follower(k, i, &at));
+    }
+}
+
+static void respond(bough_whole *whole, int i) {
+    bough_operating_point at = operating_point(whole, i);
+    bough_interface_respond(whole->interface, i, &at);
+}
+
+static bool factor_border(bough_whole *whole);
+
+void bough_whole_linearise(bough_whole *whole, double t, const double *state, const double *input) {
+    const bough_assembly *a = whole->assembly;
+    memcpy(whole->setup_state, state, (size_t)a->n_state * sizeof(double));
+    memcpy(whole->setup_input, input, (size_t)a->n_input * sizeof(double));
+    whole->setup_time = t;
+    whole->linearised = false;
+}
+
+bough_status bough_whole_factor(bough_whole *whole, double gamma) {
+    assert(whole->interface != NULL);
+    whole->gamma = gamma;
+    bough_pool_run(whole->pool, whole->assembly->n_member, factor_member, whole);
+    bough_status status = bough_whole_failure(whole);
+    if (!bough_is_ok(&status)) return status;
+    whole->linearised = true;
+    each(whole, FOLLOWERS, respond);
+    if (bough_interface_close(whole->interface) && factor_border(whole)) return status;
+    return bough_fail(BOUGH_RETRY, "the interface's Newton matrix is singular");
+}
+
+bough_status bough_whole_setup(bough_whole *whole, double t, const double *state, const double *input,
+                               double gamma) {
+    bough_whole_linearise(whole, t, state, input);
+    return bough_whole_factor(whole, gamma);
+}
+
+// -- solution -------------------------------------------------------------------------------------
+
+// The outputs' change with x and the inputs' change δu, which may be NULL.
+static void find_output_change(bough_whole *whole, int i, const double *x, const double *change) {
+    bough_operating_point at = operating_point(whole, i);
+    bough_interface_output_change(whole->interface, i, &at, x, change,
+                                  whole->output_change + whole->assembly->output_offset[i]);
+}
+
+// x_i = (I − γJ_i)⁻¹ r_i and the outputs' change with it, the inputs held; where the states are the
+// coordinates, the interface does that.
+static void solve_leader(bough_whole *whole, int i) {
+    const bough_assembly *a = whole->assembly;
+    const bough_system *s = &a->member[i]->system;
+    const bough_interface_member *w = &whole->interface->part[i];
+    double *x = whole->x + a->state_offset[i];
+    double *coordinate = whole->interface->coordinate + w->first;
+    if (!w->by_state) {
+        memset(coordinate, 0, (size_t)w->n * sizeof(double));
+        bough_interface_solve_member(whole->interface, i, x);
+        find_output_change(whole, i, x, NULL);
+        return;
+    }
+    memcpy(coordinate, x, (size_t)s->n_state * sizeof(double));
+    memset(x, 0, (size_t)s->n_state * sizeof(double));
+    memset(whole->output_change + a->output_offset[i], 0, (size_t)s->n_output * sizeof(double));
+}
+
+// The same of a follower under the changes from outside.
+static void solve_follower(bough_whole *whole, int i) {
+    const bough_assembly *a = whole->assembly;
+    const double *outside = whole->outside ? whole->outside + a->input_offset[i] : NULL;
+    double *x = whole->x + a->state_offset[i];
+    if (outside) bough_interface_add_columns(whole->interface, i, whole->gamma, outside, x);
+    bough_interface_solve_member(whole->interface, i, x);
+    find_output_change(whole, i, x, outside);
+}
+
+void bough_whole_begin_solution(bough_whole *whole, const double *outside, double *x) {
+    whole->x = x;
+    whole->outside = outside;
+}
+
+void bough_whole_solve_of(bough_whole *whole, int i) {
+    if (whole->assembly->leads[i]) {
+        solve_leader(whole, i);
+    } else {
+        solve_follower(whole, i);
+    }
+}
+
+// What the outputs so far change of the inputs.
+static void gather_changes(bough_whole *whole, int i) {
+    const bough_assembly *a = whole->assembly;
+    for (int j = a->input_offset[i]; j < a->input_offset[i + 1]; j++) {
+        whole->led[j] = whole->output_change[a->source[j]];
+        whole->change[j] = whole->led[j] + (whole->outside ? whole->outside[j] : 0);
+    }
+}
+
+// Followers under what the leaders do by themselves, then the leaders.
+static void gather_all_changes(bough_whole *whole) {
+    const bough_assembly *a = whole->assembly;
+    for (int k = 0; k < a->n_member; k++) {
+        int i = whole->order[k];
+        gather_changes(whole, i);
+        if (k >= whole->n_follower) continue;
+        bough_interface_add_output_response(whole->interface, i, whole->led + a->input_offset[i],
+                                            whole->output_change + a->output_offset[i]);
+    }
+}
+
+void bough_whole_solve_interface(bough_whole *whole) {
+    gather_all_changes(whole);
+    bough_interface_solve(whole->interface, whole->change);
+    for (int j = 0; j < whole->assembly->n_input; j++)
+        whole->led[j] = whole->change[j] - (whole->outside ? whole->outside[j] : 0);
+}
+
+void bough_whole_respond(const bough_whole *whole, int i, double *x) {
+    const bough_assembly *a = whole->assembly;
+    bough_interface_add_response(whole->interface, i, whole->led + a->input_offset[i],
+                                 x + a->state_offset[i]);
+}
+
+static void complete(bough_whole *whole, int i) { bough_whole_respond(whole, i, whole->x); }
+
+void bough_whole_solve_driven(bough_whole *whole, const double *outside, double *x) {
+    bough_whole_begin_solution(whole, outside, x);
+    each(whole, ALL, bough_whole_solve_of);
+    bough_whole_solve_interface(whole);
+    each(whole, ALL, complete);
+}
+
+void bough_whole_close(bough_whole *whole, double *outside) {
+    memset(whole->interface->coordinate, 0, (size_t)whole->interface->n * sizeof(double));
+    bough_interface_solve(whole->interface, outside);
+}
+
+void bough_whole_project(const bough_whole *whole, const double *state, double *x) {
+    const bough_assembly *a = whole->assembly;
+    for (int i = 0; i < a->n_member; i++) {
+        const bough_system *s = &a->member[i]->system;
+        int at = a->state_offset[i];
+        if (s->ops->project) s->ops->project(s->self, state + at, x + at);
+    }
+}
+
+// The border's multipliers make the held entries of its solutions vanish.
+static bool factor_border(bough_whole *whole) {
+    int n = whole->assembly->n_state, held = whole->n_held;
+    for (int j = 0; j < held; j++) {
+        double *column = whole->border + (size_t)j * n;
+        memset(column, 0, (size_t)n * sizeof *column);
+        column[whole->held[j]] = 1;
+        bough_whole_solve_driven(whole, NULL, column);
+        for (int i = 0; i < held; i++) {
+            whole->multiplier[j * held + i] = column[whole->held[i]];
+        }
+    }
+    return held == 0 || bough_dense_factor(held, whole->multiplier, whole->held_pivot);
+}
+
+void bough_whole_solve(bough_whole *whole, double *x) {
+    int n = whole->assembly->n_state, held = whole->n_held;
+    bough_whole_solve_driven(whole, NULL, x);
+    if (held == 0) return;
+    for (int i = 0; i < held; i++) whole->share[i] = x[whole->held[i]];
+    bough_dense_solve(held, 1, whole->multiplier, whole->held_pivot, whole->share);
+    for (int j = 0; j < held; j++) {
+        const double *column = whole->border + (size_t)j * n;
+        for (int k = 0; k < n; k++) x[k] -= whole->share[j] * column[k];
+    }
+    for (int i = 0; i < held; i++) x[whole->held[i]] = 0;
+}
+
+// -- memory ---------------------------------------------------------------------------------------
+
+static void take(bough_whole *whole, bough_arena *arena) {
+    const bough_assembly *a = whole->assembly;
+    size_t n_input = (size_t)a->n_input, n_output = (size_t)a->n_output;
+    whole->status = bough_arena_take(arena, (size_t)a->n_member * sizeof *whole->status);
+    whole->order = bough_arena_take(arena, (size_t)a->n_member * sizeof *whole->order);
+    whole->input = bough_arena_doubles(arena, n_input);
+    whole->output = bough_arena_doubles(arena, n_output);
+    for (int i = 0; i < a->n_member; i++) {
+        if (!a->leads[i]) whole->order[whole->n_follower++] = i;
+    }
+    for (int i = 0, n = whole->n_follower; i < a->n_member; i++) {
+        if (a->leads[i]) whole->order[n++] = i;
+    }
+}
+
+static void take_solution(bough_whole *whole, bough_arena *arena) {
+    const bough_assembly *a = whole->assembly;
+    whole->setup_state = bough_arena_doubles(arena, (size_t)a->n_state);
+    bough_arena_each(arena, (size_t)a->n_input, &whole->setup_input, &whole->change, &whole->led);
+    whole->output_change = bough_arena_doubles(arena, (size_t)a->n_output);
+}
+
+bough_whole *bough_whole_create_evaluation(bough_arena *arena, const bough_assembly *assembly,
+                                           bough_pool *pool) {
+    bough_whole *whole = bough_arena_take(arena, sizeof *whole);
+    whole->assembly = assembly;
+    whole->pool = pool;
+    take(whole, arena);
+    return whole;
+}
+
+bough_whole *bough_whole_create(bough_arena *arena, const bough_assembly *assembly, bough_pool *pool) {
+    bough_whole *whole = bough_whole_create_evaluation(arena, assembly, pool);
+    take_solution(whole, arena);
+    whole->interface = bough_interface_create(arena, assembly);
+    return whole;
+}
+
+void bough_whole_hold(bough_arena *arena, bough_whole *whole, int n, const int *held) {
+    size_t count = (size_t)n;
+    whole->n_held = n;
+    whole->held = held;
+    whole->border = bough_arena_doubles(arena, count * (size_t)whole->assembly->n_state);
+    whole->multiplier = bough_arena_doubles(arena, count * count);
+    whole->share = bough_arena_doubles(arena, count);
+    whole->held_pivot = bough_arena_take(arena, (count + 1) * sizeof(int));
+}
+
+// -- as a system without ports (core/solve/system.h) ------------------------------------------------
+
+static bool derivative(void *self, double t, const double *state, const double *input, double *rate) {
+    (void)input;
+    bough_status status = bough_whole_rate(self, t, state, rate);
+    return bough_is_ok(&status);
+}
+
+static void output(void *self, double t, const double *state, const double *input, double *out) {
+    (void)self, (void)t, (void)state, (void)input, (void)out;
+}
+
+// NOLINTNEXTLINE(readability-function-size): the contract fixes the parameters
+static void output_tangent(void *self, double t, const double *state, const double *input,
+                           const double *state_rate, const double *input_rate, double *rate) {
+    (void)self, (void)t, (void)state, (void)input, (void)state_rate, (void)input_rate, (void)rate;
+}
+
+static void input_columns(void *self, double t, const double *state, const double *input, double *column) {
+    (void)self, (void)t, (void)state, (void)input, (void)column;
+}
+
+static void *factors(void *self, bough_arena *arena) {
+    const bough_whole *whole = self;
+    return bough_whole_create(arena, whole->assembly, whole->pool);
+}
+
+static bool linearise(void *self, double t, const double *state, const double *input, void *factors) {
+    (void)self, (void)input;
+    bough_whole *own = factors;
+    bough_whole_inputs(own, t, state);
+    bough_whole_linearise(own, t, state, own->input);
+    return true;
+}
+
+static bool factor(void *self, void *factors, double gamma) {
+    (void)self;
+    bough_status status = bough_whole_factor(factors, gamma);
+    return bough_is_ok(&status);
+}
+
+static void solve(void *self, void *factors, double *x) {
+    (void)self;
+    bough_whole_solve(factors, x);
+}
+
+static bool constrain(void *self, double t, double *state) {
+    const bough_assembly *a = ((const bough_whole *)self)->assembly;
+    bool far = false;
+    for (int i = 0; i < a->n_member; i++) {
+        const bough_system *s = &a->member[i]->system;
+        if (s->ops->constrain == NULL) continue;
+        far = s->ops->constrain(s->self, t, state + a->state_offset[i]) || far;
+    }
+    return far;
+}
+
+static void project(void *self, const double *state, double *x) { bough_whole_project(self, state, x); }
+
+static const bough_system_ops operations = {
+    BOUGH_SYSTEM_REQUIRED,
+    .constrain = constrain,
+    .project = project,
+};
+
+bough_system bough_whole_system(bough_arena *arena, const bough_assembly *a, bough_pool *pool,
+                                const char *name) {
+    bough_whole *evaluation = bough_whole_create_evaluation(arena, a, pool);
+    double *scale = bough_arena_doubles(arena, (size_t)a->n_state);
+    double *initial = bough_arena_doubles(arena, (size_t)a->n_state);
+    bough_assembly_scales(a, scale);
+    bough_assembly_states(a, initial);
+    double elastic_rate = 0;
+    for (int i = 0; i < a->n_member; i++)
+        elastic_rate = fmax(elastic_rate, a->member[i]->system.elastic_rate);
+    return (bough_system){.name = name,
+                          .kind = "assembly",
+                          .n_state = a->n_state,
+                          .scale = scale,
+                          .initial = initial,
+                          .elastic_rate = elastic_rate,
+                          .ops = &operations,
+                          .self = evaluation};
+}
