@@ -6,7 +6,7 @@
 #define BOUGH_AERO_INDUCTION_BALANCE_H
 
 #include "aero/rotor/induction.h"
-#include "aero/rotor/lanes.h"
+#include "core/base/lanes.h"
 
 // Both ends of an interval keep this distance from φ = 0 and π, where no wake exists [rad].
 static const double clearance = 1e-6;

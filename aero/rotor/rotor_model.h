@@ -2,7 +2,7 @@
 #ifndef BOUGH_AERO_ROTOR_MODEL_H
 #define BOUGH_AERO_ROTOR_MODEL_H
 
-#include "aero/rotor/lanes.h"
+#include "core/base/lanes.h"
 #include "aero/rotor/rotor.h"
 #include "core/base/rotation.h"
 

@@ -1,6 +1,7 @@
 #include "aero/wind/wind_turbulence.h"
 
 #include "core/base/base.h"
+#include "core/base/lanes.h"
 #include "core/base/linalg.h"
 
 #include <complex.h>
@@ -62,6 +63,8 @@ static const double *fourier_sum(fourier *f) {
 static const double NEGLIGIBLE = 1e-3;
 enum { ALIASES = 8 };
 
+enum { BATCH = 16 }; // points whose series are stored together, since they lie side by side in the box
+
 // -- spectra --------------------------------------------------------------------------------------
 
 static double deviation_of(const bough_wind_iec_def *d, int component) {
@@ -99,14 +102,17 @@ typedef struct maker {
     int n_point, n_wave; // waves 1 … n_wave
     int n_coherent;      // the slowest of them, whose points are mixed
     double step;         // between frequencies [Hz]
-    double *amplitude;   // (n_wave + 1) of a wave's complex amplitude, half the wave's
+    double *amplitude;   // (3 × (n_wave + 1)) of a wave's complex amplitude, half the wave's
     int *order;          // (n_point) points from the middle outwards
     double *mixed;       // (n_coherent × n_point × 2) complex amplitudes
-    double *factor;      // (n_point × n_point) column-major
-    double *table;       // (points × points) coherence by the distances in steps of the grid
+    double *wave;        // (2 × n_point) one wave of all points in `order`, real parts before imaginary ones
+    float *factor;       // (n_point × n_point) column-major; a box of 16 bits is no finer
+    double *distance;    // (points × points) by the distances in steps of the grid [m]
+    float *table;        // (points × points) coherence, likewise
+    uint16_t *pair;      // (n_point × n_point), lower triangle of columns in `order`: entry of the tables
+    int16_t *series;     // (BATCH × 3 × n_time)
 } maker;
 
-// A number that follows from what it is for, equally distributed over a turn.
 static uint64_t scramble(uint64_t x) {
     // S. Vigna's splitmix64
     x += 0x9E3779B97F4A7C15u;
@@ -115,73 +121,97 @@ static uint64_t scramble(uint64_t x) {
     return x ^ (x >> 31);
 }
 
-static double random_phase(const maker *m, int component, int point, int wave) {
-    uint64_t stream = scramble(scramble((uint64_t)m->def->seed) + (uint64_t)component);
-    uint64_t bits = scramble(stream + ((uint64_t)point << 32) + (uint64_t)wave);
-    return 2 * BOUGH_PI * (double)(bits >> 11) * 0x1p-53;
+static uint64_t random_stream(const maker *m, int component, int point) {
+    return scramble(scramble((uint64_t)m->def->seed) + (uint64_t)component) + ((uint64_t)point << 32);
 }
 
-// Share of the variance in a band about f, and in those that sampling folds onto it.
-static double share_of_band(const maker *m, int wave, double scale) {
-    double half = 0.5 * m->step, f = wave * m->step, rate = 2 * (m->n_wave + 1) * m->step;
-    double low = wave == 1 ? 0 : f - half, high = wave == m->n_wave ? f + m->step : f + half;
-    double share = share_below(high, scale) - share_below(low, scale);
-    double from = wave == 1 ? 0 : wave - 0.5, to = wave == m->n_wave ? wave + 1 : wave + 0.5;
+// e^{iφ} with a phase that follows from what it is for, equally distributed over a turn: 52 bits of a number.
+static inline sine_cosine random_wave(uint64_t stream, int wave) {
+    uint64_t bits = scramble(stream + (uint64_t)wave) >> 12 | UINT64_C(0x3FF) << 52;
+    double one_to_two;
+    memcpy(&one_to_two, &bits, sizeof one_to_two);
+    sine_cosine w = lane_sine_cosine(2 * BOUGH_PI * (one_to_two - 1.5)); // half a turn less
+    return (sine_cosine){-w.sine, -w.cosine};
+}
+
+// Share of the variance up to a wave, and up to where sampling folds higher frequencies onto it.
+static double share_up_to(const maker *m, double wave, double scale) {
+    double rate = 2 * (m->n_wave + 1) * m->step, f = wave * m->step, share = share_below(f, scale);
     for (int k = 1; k <= ALIASES; k++) {
-        double above = k * rate + from * m->step, up = k * rate + to * m->step;
-        double below = k * rate - to * m->step, down = k * rate - from * m->step;
-        share += share_below(up, scale) - share_below(above, scale);
-        share += share_below(down, scale) - share_below(below, scale);
+        share += share_below(k * rate + f, scale) - share_below(k * rate - f, scale);
     }
-    return share + (1 - share_below((ALIASES + 0.5) * rate, scale)) / m->n_wave;
+    return share;
 }
 
+static double *amplitude_of(const maker *m, int component) {
+    return m->amplitude + (size_t)component * ((size_t)m->n_wave + 1);
+}
+
+// A wave has the share of a band about it, and its part of the frequencies beyond the aliases.
 static void set_amplitudes(maker *m, int component) {
     double deviation = deviation_of(m->def, component), scale = time_scale(m->def, component);
-    for (int i = 1; i <= m->n_wave; i++) m->amplitude[i] = deviation * sqrt(0.5 * share_of_band(m, i, scale));
+    double rest = (1 - share_below((2 * ALIASES + 1) * (m->n_wave + 1) * m->step, scale)) / m->n_wave;
+    double below = share_up_to(m, 0, scale);
+    for (int i = 1; i <= m->n_wave; i++) {
+        double above = share_up_to(m, i == m->n_wave ? i + 1 : i + 0.5, scale);
+        amplitude_of(m, component)[i] = deviation * sqrt(0.5 * (above - below + rest));
+        below = above;
+    }
 }
 
 // -- coherence ------------------------------------------------------------------------------------
 
-static void tabulate(maker *m, double f) {
+static void set_distances(maker *m) {
     int n = m->def->points;
-    for (int z = 0; z < n; z++)
-        for (int y = 0; y < n; y++)
-            m->table[z * n + y] =
-                bough_turbulence_coherence(m->def, hypot(z * m->box->dz, y * m->box->dy), f);
+    for (int z = 0; z < n; z++) {
+        for (int y = 0; y < n; y++) m->distance[z * n + y] = hypot(z * m->box->dz, y * m->box->dy);
+    }
+    for (int j = 0; j < m->n_point; j++) {
+        int zj = m->order[j] / n, yj = m->order[j] % n;
+        uint16_t *pair = m->pair + (size_t)j * (size_t)m->n_point;
+        for (int i = j; i < m->n_point; i++) {
+            pair[i] = (uint16_t)(abs(m->order[i] / n - zj) * n + abs(m->order[i] % n - yj));
+        }
+    }
 }
 
 // The lower triangle of the coherence of all points, in `order`.
-static void fill_coherence(maker *m) {
-    int n = m->def->points;
+static void fill_coherence(maker *m, double f) {
+    for (int k = 0; k < m->n_point; k++) {
+        m->table[k] = (float)bough_turbulence_coherence(m->def, m->distance[k], f);
+    }
     for (int j = 0; j < m->n_point; j++) {
-        int zj = m->order[j] / n, yj = m->order[j] % n;
-        double *column = m->factor + (size_t)j * (size_t)m->n_point;
-        for (int i = j; i < m->n_point; i++) {
-            int z = abs(m->order[i] / n - zj), y = abs(m->order[i] % n - yj);
-            column[i] = m->table[z * n + y];
-        }
+        size_t column = (size_t)j * (size_t)m->n_point;
+        for (int i = j; i < m->n_point; i++) m->factor[column + i] = m->table[m->pair[column + i]];
     }
 }
 
 // The amplitudes of all points at one wave: L e^{iφ}.
 static void mix_points(maker *m, int wave) {
-    double *to = m->mixed + 2 * (size_t)m->n_point * (size_t)(wave - 1);
-    for (int j = 0; j < m->n_point; j++) {
-        double phase = random_phase(m, 0, m->order[j], wave);
-        double re = m->amplitude[wave] * cos(phase), im = m->amplitude[wave] * sin(phase);
-        const double *column = m->factor + (size_t)j * (size_t)m->n_point;
-        for (int i = j; i < m->n_point; i++) {
-            to[2 * m->order[i]] += column[i] * re;
-            to[2 * m->order[i] + 1] += column[i] * im;
+    int n = m->n_point;
+    double *restrict real = m->wave, *restrict imaginary = m->wave + n;
+    memset(m->wave, 0, 2 * (size_t)n * sizeof *m->wave);
+    for (int j = 0; j < n; j++) {
+        sine_cosine w = random_wave(random_stream(m, 0, m->order[j]), wave);
+        double re = m->amplitude[wave] * w.cosine, im = m->amplitude[wave] * w.sine;
+        const float *restrict column = m->factor + (size_t)j * (size_t)n;
+        for (int i = j; i < n; i++) {
+            double share = (double)column[i];
+            real[i] += share * re;
+            imaginary[i] += share * im;
         }
+    }
+    double *to = m->mixed + 2 * (size_t)n * (size_t)(wave - 1);
+    for (int i = 0; i < n; i++) {
+        to[2 * m->order[i]] = real[i];
+        to[2 * m->order[i] + 1] = imaginary[i];
     }
 }
 
 static bough_status mix_all(maker *m) {
+    set_distances(m);
     for (int i = 1; i <= m->n_coherent; i++) {
-        tabulate(m, i * m->step);
-        fill_coherence(m);
+        fill_coherence(m, i * m->step);
         if (!bough_cholesky_lower(m->n_point, m->factor)) {
             return bough_fail(BOUGH_FAILED,
                               "Wind: the coherence of %d points at %g Hz has no "
@@ -196,18 +226,21 @@ static bough_status mix_all(maker *m) {
 // -- series ---------------------------------------------------------------------------------------
 
 static void set_waves(maker *m, int component, int point) {
-    double *a = fourier_amplitude(m->fourier);
-    memset(a, 0, 2 * ((size_t)m->n_wave + 2) * sizeof *a);
-    for (int i = 1; i <= m->n_wave; i++) {
-        if (component == 0 && i <= m->n_coherent) {
-            const double *mixed = m->mixed + 2 * ((size_t)m->n_point * (size_t)(i - 1) + (size_t)point);
-            a[2 * i] = mixed[0];
-            a[2 * i + 1] = mixed[1];
-        } else {
-            double phase = random_phase(m, component, point, i);
-            a[2 * i] = m->amplitude[i] * cos(phase);
-            a[2 * i + 1] = m->amplitude[i] * sin(phase);
-        }
+    double *restrict a = fourier_amplitude(m->fourier);
+    const double *restrict amplitude = amplitude_of(m, component);
+    int n = m->n_wave, mixed = component == 0 ? m->n_coherent : 0;
+    a[0] = a[1] = a[2 * n + 2] = a[2 * n + 3] = 0;
+    for (int i = 1; i <= mixed; i++) {
+        const double *from = m->mixed + 2 * ((size_t)m->n_point * (size_t)(i - 1) + (size_t)point);
+        a[2 * i] = from[0];
+        a[2 * i + 1] = from[1];
+    }
+    uint64_t stream = random_stream(m, component, point);
+#pragma omp simd
+    for (int i = mixed + 1; i <= n; i++) {
+        sine_cosine w = random_wave(stream, i);
+        a[2 * i] = amplitude[i] * w.cosine;
+        a[2 * i + 1] = amplitude[i] * w.sine;
     }
 }
 
@@ -215,28 +248,38 @@ static double height_of(const bough_wind_box *box, int point) {
     return box->bottom + box->dz * (point / box->n_y);
 }
 
-static void store(maker *m, int component, int point, const double *series) {
+// A series in the units of the box.
+static void quantise(const maker *m, int component, int point, const double *restrict series,
+                     int16_t *restrict to) {
     const bough_wind_box *box = m->box;
     double mean = component == 0 ? bough_wind_iec_profile(m->def, height_of(box, point)) : 0;
     double slope = 1 / box->scale[component], offset = box->offset[component];
-    int16_t *to = m->value + 3 * point + component;
-    for (int k = 0; k < box->n_time; k++, to += 3 * m->n_point) {
+#pragma omp simd
+    for (int k = 0; k < box->n_time; k++) {
         double units = (mean + series[k]) * slope + offset;
-        *to = (int16_t)lrint(bough_clamp(units, INT16_MIN, INT16_MAX));
+        to[k] = (int16_t)(int)lane_round(lane_clamp(units, INT16_MIN, INT16_MAX));
     }
 }
 
-static bough_status make_component(maker *m, int component) {
-    set_amplitudes(m, component);
-    if (component == 0) {
-        bough_status status = mix_all(m);
-        if (!bough_is_ok(&status)) return status;
+static void store(const maker *m, int first, int count) {
+    size_t n = (size_t)m->box->n_time, stride = 3 * (size_t)m->n_point;
+    for (size_t k = 0; k < n; k++) {
+        int16_t *to = m->value + k * stride + 3 * first;
+        for (int i = 0; i < 3 * count; i++) to[i] = m->series[i * n + k];
     }
-    for (int p = 0; p < m->n_point; p++) {
-        set_waves(m, component, p);
-        store(m, component, p, fourier_sum(m->fourier));
+}
+
+static void make_series(maker *m) {
+    size_t n = (size_t)m->box->n_time;
+    for (int first = 0; first < m->n_point; first += BATCH) {
+        int count = m->n_point - first < BATCH ? m->n_point - first : BATCH;
+        for (int i = 0; i < 3 * count; i++) {
+            int component = i % 3, point = first + i / 3;
+            set_waves(m, component, point);
+            quantise(m, component, point, fourier_sum(m->fourier), m->series + i * n);
+        }
+        store(m, first, count);
     }
-    return bough_ok();
 }
 
 // -- the box --------------------------------------------------------------------------------------
@@ -315,17 +358,22 @@ static bough_status make_in(bough_arena *scratch, maker *m) {
     m->n_wave = m->box->n_time / 2 - 1;
     m->step = 1 / m->box->duration;
     m->n_coherent = count_coherent(m);
-    m->amplitude = bough_arena_doubles(scratch, (size_t)m->n_wave + 1);
+    m->amplitude = bough_arena_doubles(scratch, 3 * ((size_t)m->n_wave + 1));
     m->order = bough_arena_take(scratch, n * sizeof *m->order);
     m->mixed = bough_arena_doubles(scratch, 2 * n * (size_t)m->n_coherent + 1);
-    m->factor = bough_arena_doubles(scratch, n * n);
-    m->table = bough_arena_doubles(scratch, n);
+    m->wave = bough_arena_doubles(scratch, 2 * n);
+    m->factor = bough_arena_take(scratch, n * n * sizeof *m->factor);
+    m->distance = bough_arena_doubles(scratch, n);
+    m->table = bough_arena_take(scratch, n * sizeof *m->table);
+    m->pair = bough_arena_take(scratch, n * n * sizeof *m->pair);
+    m->series = bough_arena_take(scratch, 3 * BATCH * (size_t)m->box->n_time * sizeof *m->series);
     place *places = bough_arena_take(scratch, n * sizeof *places);
     m->fourier = fourier_create(m->box->n_time);
     if (!m->fourier) bough_arena_leave(scratch);
     set_order(m, places);
-    bough_status status = bough_ok();
-    for (int c = 0; c < 3 && bough_is_ok(&status); c++) status = make_component(m, c);
+    for (int c = 0; c < 3; c++) set_amplitudes(m, c);
+    bough_status status = mix_all(m);
+    if (bough_is_ok(&status)) make_series(m);
     return status;
 }
 

@@ -1,4 +1,4 @@
-#include "aero/rotor/lanes.h"
+#include "core/base/lanes.h"
 
 #include "tests/unit/check.h"
 
