@@ -71,6 +71,7 @@ bough_status bough_master_build(bough_arena *arena, const bough_master_def *def,
     assert(def->macro_step > 0 && def->duration > 0 && isfinite(def->duration));
     bough_master *m = bough_arena_take(arena, sizeof *m);
     m->macro_step = def->macro_step;
+    m->halves = def->halves;
     m->duration = def->duration;
     m->at_event = true;
     copy_loads(m, arena, def);
@@ -96,10 +97,18 @@ bough_status bough_master_build(bough_arena *arena, const bough_master_def *def,
 
 bool bough_master_done(const bough_master *m) { return m->time >= m->duration; }
 
-// The next synchronisation point: grid point, event or the end, whichever comes first.
+enum { HALVED_EVERY = 8 }; // macro steps
+
+static double next_on_grid(const bough_master *m) {
+    double half = ((double)m->grid_index + 0.5) * m->macro_step;
+    bool halved = m->halves && (m->at_event || m->grid_index % HALVED_EVERY == 0);
+    return halved && half > m->time + resolution(m) ? half : (double)(m->grid_index + 1) * m->macro_step;
+}
+
+// The next synchronisation point: grid point, half of a step, event or the end, whichever comes first.
 double bough_master_next(const bough_master *m) {
     double eps = resolution(m);
-    double next = (double)(m->grid_index + 1) * m->macro_step;
+    double next = next_on_grid(m);
     for (int i = m->next_event; i < m->n_event; i++) {
         if (m->event[i] <= m->time + eps) continue;
         if (m->event[i] < next - eps) next = m->event[i];

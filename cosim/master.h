@@ -1,5 +1,7 @@
 // The macro loop. Macro times are T_k = k·H, by multiplication; a step is split where an event time
-// falls inside it, and the last one ends exactly on the duration.
+// falls inside it, and the last one ends exactly on the duration. A run that is compared with one of half its
+// macro step takes some steps in halves: what happens within its steps would be seen at no time, or, of a
+// vibration of two of them, at one phase alone.
 #ifndef BOUGH_COSIM_MASTER_H
 #define BOUGH_COSIM_MASTER_H
 
@@ -28,6 +30,7 @@ typedef struct bough_master_def {
     bough_assembly_def assembly;
     bough_scheme_options scheme;
     double macro_step;              // H, the longest [s]
+    bool halves;                    // every eighth step, and those after events, are taken in two halves
     bough_step_control_def control; // shorter ones by error; tolerance 0: none
     double duration;                // [s]; the run starts at time 0
     int n_load;
@@ -42,6 +45,7 @@ bough_master_def bough_master_def_default(void);
 
 typedef struct bough_master {
     double macro_step, duration; // [s]
+    bool halves;                 // see the def
     double time;                 // the current synchronisation point [s]
     long steps;                  // macro steps taken
     bough_assembly *assembly;

@@ -233,6 +233,7 @@ static bough_status build_master(bough_builder *b) {
     def.assembly = (bough_assembly_def){s->n_rod + s->n_fmu + 1, b->member, b->n_connection, b->connection};
     def.scheme = scheme_options(b->scene);
     def.macro_step = sim->macro_step;
+    def.halves = sim->halves;
     def.control = (bough_step_control_def){sim->step_control.tolerance, sim->step_control.min};
     def.duration = sim->duration;
     def.event = b->event;

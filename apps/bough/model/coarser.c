@@ -69,15 +69,21 @@ static int least_of_blades(const bough_scene *scene) {
     return most;
 }
 
+static int other_segments(const bough_scene *scene, int body) {
+    int least = is_blade(scene, body) ? least_of_blades(scene) : least_segments(scene, body);
+    return other_number(scene->body[body].rod.n_segment, least);
+}
+
+static bool gets_finer(const bough_scene *scene, int body) {
+    return has_mesh(&scene->body[body]) && other_segments(scene, body) > scene->body[body].rod.n_segment;
+}
+
 static void change_segments(bough_arena *arena, const bough_scene *scene, bough_scene *to) {
     size_t size = (size_t)scene->n_body * sizeof *to->body;
-    int blades = least_of_blades(scene);
     to->body = bough_arena_take(arena, size);
     memcpy(to->body, scene->body, size);
     for (int i = 0; i < scene->n_body; i++) {
-        if (!scene->body[i].rod.node) continue;
-        int least = is_blade(scene, i) ? blades : least_segments(scene, i);
-        to->body[i].rod.n_segment = other_number(scene->body[i].rod.n_segment, least);
+        if (scene->body[i].rod.node) to->body[i].rod.n_segment = other_segments(scene, i);
     }
 }
 
@@ -101,9 +107,24 @@ double bough_coarser_share(const bough_scene *scene, const bough_scene *other) {
 
 // -- time -----------------------------------------------------------------------------------------
 
-static const double looser = 10, loosest = 0.02; // tolerance over the run's, and at most
+// Tolerance and longest step over the run's.
+typedef struct looser {
+    double rtol, step;
+} looser;
 
-static double loosened(double rtol) { return fmax(rtol, fmin(looser * rtol, loosest)); }
+static const double loosest = 0.02; // tolerance
+
+// Where the whole difference counts, since a coupling is explicit or a mesh is finer, that of the steps is
+// once or twice the run's own error. Else it is a multiple, of which the run errs by a quarter.
+static looser looser_of(const bough_scene *scene) {
+    bool whole = usual_share(scene) == 1;
+    for (int i = 0; i < scene->n_body; i++) whole = whole || gets_finer(scene, i);
+    return whole ? (looser){3, 1.5} : (looser){10, 2};
+}
+
+double bough_coarser_time_share(const bough_scene *scene) {
+    return fmax(usual_share(scene), looser_of(scene).step < 2 ? 0.6 : 0);
+}
 
 static bool samples_fit(double rate, double macro_step) {
     return bough_master_multiple(1 / rate, macro_step) > 0;
@@ -114,7 +135,9 @@ static void lengthen_macro_step(bough_scene *to) {
     double step = 2 * to->simulation.macro_step;
     bool air = !to->aero.node || samples_fit(to->aero.rate, step);
     bool control = !to->control.node || samples_fit(to->control.rate, step);
-    if (to->n_input == 0 && air && control) to->simulation.macro_step = step;
+    if (to->n_input > 0 || !air || !control) return;
+    to->simulation.macro_step = step;
+    to->simulation.halves = true;
 }
 
 // The loosest tolerance and the longest step of the bodies' sub-solvers.
@@ -133,7 +156,7 @@ static bough_scene_solver all_sub_solvers(const bough_scene *scene) {
     return all;
 }
 
-static void lengthen_steps(bough_scene *to) {
+static void lengthen_steps(const bough_scene *scene, bough_scene *to) {
     bough_scene_simulation *x = &to->simulation;
     int monolithic = bough_scheme_index("monolithic");
     if (x->coupling.scheme != monolithic) {
@@ -143,8 +166,9 @@ static void lengthen_steps(bough_scene *to) {
         x->master.step = sub_solvers.step;
         x->coupling.scheme = monolithic;
     }
-    x->master.rtol = loosened(x->master.rtol);
-    x->master.step *= 2;
+    looser by = looser_of(scene);
+    x->master.rtol = fmax(x->master.rtol, fmin(by.rtol * x->master.rtol, loosest));
+    x->master.step *= by.step;
     x->master.coarse = true;
     x->step_control.tolerance = 0;
     lengthen_macro_step(to);
@@ -158,7 +182,7 @@ bough_scene *bough_coarser_scene(bough_arena *arena, const bough_scene *scene, i
     copy_loads(arena, scene, to);
     if (parts & BOUGH_COARSER_MESH) change_segments(arena, scene, to);
     if (parts & BOUGH_COARSER_AIR) to->aero.rate /= 2;
-    if (parts & BOUGH_COARSER_TIME) lengthen_steps(to);
+    if (parts & BOUGH_COARSER_TIME) lengthen_steps(scene, to);
     to->simulation.error_estimate = BOUGH_SCENE_NO_ESTIMATE;
     to->simulation.error_bound = 0;
     to->simulation.error_shares = false;

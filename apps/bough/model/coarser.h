@@ -8,8 +8,8 @@
 enum {
     BOUGH_COARSER_MESH = 1, // half the segments of each rod, or twice as many where it has few
     BOUGH_COARSER_AIR = 2,  // half the aerodynamic sampling rate
-    // Twice the macro step and the longest step, ten times the tolerance; all bodies as one system, whose
-    // steps know no error of a coupling.
+    // Twice the macro step and the longest step, ten times the tolerance (1.5 and 3 times where the whole
+    // difference counts); all bodies as one system, whose steps know no error of a coupling.
     BOUGH_COARSER_TIME = 4,
     BOUGH_COARSER_ALL = 7,
 };
@@ -25,5 +25,8 @@ bough_scene *bough_coarser_scene_beside(bough_arena *arena, const bough_simulati
 // more where meshes differ by less than a factor of two; the whole one where the mesh is finer or the
 // coupling is explicit.
 double bough_coarser_share(const bough_scene *scene, const bough_scene *other);
+
+// The same for a copy that is coarser in time alone.
+double bough_coarser_time_share(const bough_scene *scene);
 
 #endif

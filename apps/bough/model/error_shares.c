@@ -98,7 +98,9 @@ static void build_finer(bough_arena *arena, const finding *x, other_run finer[BO
 static bough_status find(bough_arena *arena, void *self) {
     const finding *x = self;
     const bough_scene *scene = x->companion->run->scene;
-    const double usual = bough_coarser_share(scene, scene); // without a change of the mesh
+    const double part[BOUGH_SHARES] = {[BOUGH_SHARE_MESH] = x->companion->share,
+                                       [BOUGH_SHARE_AIR] = bough_coarser_share(scene, scene),
+                                       [BOUGH_SHARE_TIME] = bough_coarser_time_share(scene)};
     other_run base, finer[BOUGH_SHARES] = {{0}};
     bough_status status = build(arena, x->companion->run, BOUGH_COARSER_ALL, &base);
     if (bough_is_ok(&status)) build_finer(arena, x, finer);
@@ -114,7 +116,7 @@ static bough_status find(bough_arena *arena, void *self) {
             if (!finer[k].simulation || share->unknown[0]) continue;
             bough_status own = advance(&finer[k], base.simulation->master->time);
             if (bough_is_ok(&own))
-                compare(&base, &finer[k], k == BOUGH_SHARE_MESH ? x->companion->share : usual, share);
+                compare(&base, &finer[k], part[k], share);
             else
                 unknown(share, "%.150s", own.message);
         }

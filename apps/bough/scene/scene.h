@@ -71,6 +71,7 @@ typedef struct bough_scene_simulation {
     const bough_node *node;
     double duration;   // [s], a multiple of the macro step
     double macro_step; // [s]
+    bool halves;       // some macro steps are taken in halves, for a companion; not in a file
     double accuracy;   // aimed at, of each channel relative to its range
     bough_scene_step_control step_control;
     int initial; // bough_scene_initial: how the rods and joints start

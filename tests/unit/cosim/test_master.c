@@ -32,6 +32,24 @@ TEST(steps_end_on_events_and_on_the_duration) {
     bough_two_mass_destroy(&m);
 }
 
+// Every eighth, and the one after an event before its middle; at the times of a run of half the steps.
+TEST(some_steps_are_taken_in_halves) {
+    const double event[] = {.62, .48};
+    const int expected[] = {1, 2, 4, 6, 8, -1, 10, 12, -1, 13, 14, 16, 17, 18, 20};
+    bough_master_def def = definition(.1, 1);
+    def.halves = true;
+    def.event = event;
+    def.n_event = 2;
+    bough_two_mass m = bough_two_mass_default();
+    check_ok(bough_two_mass_build(&m, def));
+    for (size_t k = 0; k < sizeof expected / sizeof *expected; k++) {
+        check_ok(bough_step(m.master));
+        if (expected[k] > 0) assert_true(m.master->time == expected[k] * .05);
+    }
+    assert_true(bough_master_done(m.master));
+    bough_two_mass_destroy(&m);
+}
+
 typedef struct samples {
     int count;
     double time[16], next[16];

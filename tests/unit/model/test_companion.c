@@ -153,9 +153,11 @@ TEST(a_scene_is_coarser_in_everything) {
     for (int i = 0; i < c->n_body; i++) {
         if (scene->body[i].rod.node) assert_int_equal(c->body[i].rod.n_segment, 16);
     }
+    assert_true(c->simulation.halves);
     // of the time alone: the air's samples do not let the macro step be longer
     c = bough_coarser_scene(arena, scene, BOUGH_COARSER_TIME);
     check_near(c->simulation.macro_step, 20e-3, 1e-15, 0);
+    assert_false(c->simulation.halves);
     check_near(c->aero.rate, 50, 1e-15, 0);
     for (int i = 0; i < c->n_body; i++)
         assert_int_equal(c->body[i].rod.n_segment, scene->body[i].rod.n_segment);
@@ -182,6 +184,18 @@ TEST(meshes_differ_as_far_as_they_can) {
         for (int i = 3; i <= 5; i++) assert_int_equal(c->body[i].rod.n_segment, cases[k].other);
         check_near(bough_coarser_share(scene, c), cases[k].share, 1e-12, 0);
     }
+}
+
+// The whole difference counts beside a finer mesh: that of the steps is not to be a multiple of their error.
+TEST(steps_beside_a_finer_mesh_are_little_longer) {
+    bough_arena *arena = bough_arena_create();
+    const char *const sets[] = {"bodies[3-5].rod.segments=8", NULL};
+    bough_scene *scene = scene_read(arena, "apps/turbine/runup-stages.yaml", sets);
+    const bough_scene *c = bough_coarser_scene(arena, scene, BOUGH_COARSER_ALL);
+    check_near(c->simulation.master.step, 15e-3, 1e-15, 0);
+    check_near(c->simulation.master.rtol, 9e-4, 1e-15, 0);
+    check_near(bough_coarser_time_share(scene), 0.6, 1e-15, 0);
+    bough_arena_destroy(arena);
 }
 
 // Another scheme than one system leaves the companion no error of a coupling, but the sub-solvers' steps,
