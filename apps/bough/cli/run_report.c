@@ -21,9 +21,9 @@ static void warn_of_force(const bough_run *run, char text[BOUGH_ERROR_WARNING]) 
     bough_error_verdict v = bough_error_verdict_of(c, false, c->error);
     text[0] = '\0';
     if (v.channel < 0 || !(bound_of(run) > 0) || v.relative <= bound_of(run)) return;
-    const bough_channel *channel = &c->channels->channel[v.channel];
-    snprintf(text, BOUGH_ERROR_WARNING, "%s errs by %.2g %s, %.2g of its range", channel->name,
-             c->error[v.channel], channel->unit, v.relative);
+    char error[BOUGH_ERROR_SIZE];
+    bough_error_size(c, v.channel, error);
+    snprintf(text, BOUGH_ERROR_WARNING, "%s errs by %s", c->channels->channel[v.channel].name, error);
 }
 
 // -- summary.json ---------------------------------------------------------------------------------
@@ -111,9 +111,9 @@ void bough_run_tell_error(const bough_run_command *command, FILE *stream) {
         fprintf(stream, "error: none: nothing moves\n");
     }
     for (int k = 0; k < n; k++) {
-        const bough_channel *channel = &c->channels->channel[worst[k]];
-        fprintf(stream, "error: %s %.2g %s, %.2g of its range", channel->name, c->error[worst[k]],
-                channel->unit, bough_error_relative(c, worst[k], c->error[worst[k]]));
+        char error[BOUGH_ERROR_SIZE];
+        bough_error_size(c, worst[k], error);
+        fprintf(stream, "error: %s %s", c->channels->channel[worst[k]].name, error);
         tell_shares(command, worst[k], stream);
         fputc('\n', stream);
     }

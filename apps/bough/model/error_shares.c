@@ -219,9 +219,10 @@ static const char *cause_name(const bough_scene *scene, int kind) {
 }
 
 static int describe(const bough_companion *c, const bough_error_verdict *v, char *text, size_t size) {
-    const bough_channel *channel = &c->channels->channel[v->channel];
-    return snprintf(text, size, "%s errs by %.2g %s, %.2g of its range, noticeably from %.6g s on",
-                    channel->name, c->error[v->channel], channel->unit, v->relative, v->time);
+    char error[BOUGH_ERROR_SIZE];
+    bough_error_size(c, v->channel, error);
+    return snprintf(text, size, "%s errs by %s, noticeably from %.6g s on",
+                    c->channels->channel[v->channel].name, error, v->time);
 }
 
 bool bough_error_exceeds(const bough_companion *c, double bound) {

@@ -1,6 +1,7 @@
 #include "apps/bough/model/error_verdict.h"
 
 #include <math.h>
+#include <stdio.h>
 
 static const double rounding = 1e-6;    // of the largest range of all motion or value up to 1, in SI units
 static const double least_share = 1e-3; // of the largest range of that kind; of a velocity: its least range
@@ -122,6 +123,16 @@ int bough_error_worst(const bough_companion *c, int most, int *channel) {
         if (k < most) channel[k] = i;
     }
     return n;
+}
+
+void bough_error_size(const bough_companion *c, int channel, char text[BOUGH_ERROR_SIZE]) {
+    static const double beyond = 10;
+    double error = c->error[channel], relative = relative_of(c, channel, error);
+    const char *unit = c->channels->channel[channel].unit;
+    if (relative > beyond)
+        snprintf(text, BOUGH_ERROR_SIZE, "%.2g %.40s, more than %.0f times its range", error, unit, beyond);
+    else
+        snprintf(text, BOUGH_ERROR_SIZE, "%.2g %.40s, %.2g of its range", error, unit, relative);
 }
 
 void bough_error_notice(bough_companion *c, double t) {

@@ -4,6 +4,8 @@
 
 #include "apps/bough/model/companion.h"
 
+enum { BOUGH_ERROR_SIZE = 96 };
+
 typedef struct bough_error_verdict {
     int channel;     // with the largest error relative to its range; −1: none counts
     double relative; // that error
@@ -32,6 +34,10 @@ bough_error_verdict bough_error_verdict_of(const bough_companion *c, bool motion
 
 // Up to `most` channels that count, with the largest relative errors first: their number.
 int bough_error_worst(const bough_companion *c, int most, int *channel);
+
+// The error of a channel in words, as "0.2 m, 0.03 of its range". A range of rounding is none to measure by:
+// an error beyond ten ranges is said to be so.
+void bough_error_size(const bough_companion *c, int channel, char text[BOUGH_ERROR_SIZE]);
 
 // Notes which errors are noticeable now, at t [s].
 void bough_error_notice(bough_companion *c, double t);

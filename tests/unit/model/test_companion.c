@@ -218,8 +218,9 @@ typedef struct row {
     double range, error;
 } row;
 
-static int worst_of(int n, const row *rows) {
-    check_arena(arena);
+// Of channels that start at 0: the worst, and the words for its error.
+static int worst_in(int n, const row *rows, char words[BOUGH_ERROR_SIZE]) {
+    bough_arena *arena = bough_arena_create();
     bough_channels channels = bough_channels_start(arena);
     bough_companion c = {.channels = &channels, .compared = 1, .length = 60};
     bough_arena_each(arena, (size_t)n, &c.low, &c.high, &c.other_low, &c.other_high, &c.error, &c.noticed);
@@ -230,7 +231,23 @@ static int worst_of(int n, const row *rows) {
         c.error[i] = rows[i].error;
     }
     int worst = bough_error_verdict_of(&c, true, c.error).channel;
+    if (worst >= 0) bough_error_size(&c, worst, words);
+    bough_arena_destroy(arena);
     return worst;
+}
+
+static int worst_of(int n, const row *rows) {
+    char words[BOUGH_ERROR_SIZE];
+    return worst_in(n, rows, words);
+}
+
+// A range of rounding is none to measure an error by.
+TEST(an_error_far_beyond_its_range_has_no_figure) {
+    char words[BOUGH_ERROR_SIZE];
+    assert_int_equal(worst_in(1, (row[]){{"TipDxb1", "m", 4, .01}}, words), 0);
+    assert_string_equal(words, "0.01 m, 0.0025 of its range");
+    assert_int_equal(worst_in(1, (row[]){{"Pos", "deg", 3e-14, 5}}, words), 0);
+    assert_string_equal(words, "5 deg, more than 10 times its range");
 }
 
 // A twist of rounding or of next to nothing is not judged by itself, beside blades that bend.
