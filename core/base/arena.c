@@ -1,3 +1,4 @@
+// Blocks in a list, each behind an aligned header; destroyed newest first.
 #include "core/base/arena.h"
 
 #include <setjmp.h>
@@ -30,6 +31,7 @@ struct bough_arena {
 bough_arena *bough_arena_create(void) { return calloc(1, sizeof(bough_arena)); }
 
 _Noreturn void bough_arena_leave(bough_arena *arena) {
+    // guards are of the outermost arena
     while (arena->parent) arena = arena->parent;
     if (arena->guard) longjmp(arena->guard->here, 1);
     fputs("bough: error: memory is exhausted\n", stderr);
@@ -45,6 +47,7 @@ bough_arena *bough_arena_child(bough_arena *parent) {
     return child;
 }
 
+// Removes the arena from the list of its parent's children.
 static void leave_parent(bough_arena *arena) {
     bough_arena **at = &arena->parent->child;
     while (*at != arena) at = &(*at)->next;
@@ -53,6 +56,7 @@ static void leave_parent(bough_arena *arena) {
 
 void bough_arena_destroy(bough_arena *arena) {
     if (!arena) return;
+    // children first: what they release may use memory of the parent
     while (arena->child) bough_arena_destroy(arena->child);
     if (arena->parent) leave_parent(arena);
     for (block *b = arena->newest, *next; b; b = next) {
@@ -69,6 +73,7 @@ static bough_status out_of_memory(void) { return bough_fail(BOUGH_OUT_OF_MEMORY,
 
 bough_status bough_arena_guard(bough_arena *arena, bough_status (*work)(bough_arena *arena, void *self),
                                void *self) {
+    // guards nest: the innermost call of bough_arena_guard returns
     guard inner = {.outer = arena->guard};
     arena->guard = &inner;
     bough_status status = setjmp(inner.here) == 0 ? work(arena, self) : out_of_memory();
@@ -87,6 +92,7 @@ bough_status bough_arena_use(bough_status (*work)(bough_arena *arena, void *self
 
 // A block of `size` payload bytes behind an aligned header; NULL when there is none.
 static block *push(bough_arena *arena, size_t size) {
+    // no overflow in the rounding to whole lines
     if (size > (size_t)-1 - 3 * ALIGNMENT) return NULL;
     size_t whole = ALIGNMENT + (size + ALIGNMENT - 1) / ALIGNMENT * ALIGNMENT;
     block *b = aligned_alloc(ALIGNMENT, whole);
@@ -122,6 +128,7 @@ char *bough_arena_string(bough_arena *arena, const char *text) {
 void bough_arena_on_destroy(bough_arena *arena, void (*release)(void *), void *object) {
     block *b = push(arena, 0);
     if (!b) {
+        // the object is released now, as the arena cannot keep it
         release(object);
         bough_arena_leave(arena);
     }

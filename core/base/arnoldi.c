@@ -5,7 +5,7 @@
 #include <math.h>
 #include <string.h>
 
-static const double dependent = 1e-13; // share of a vector that counts as none
+static const double dependent = 1e-13; // norm outside the basis, relative to the whole: below it, dependent
 
 void bough_arnoldi_create(bough_arena *arena, int length, int capacity, bough_arnoldi *a) {
     size_t n = (size_t)length, m = (size_t)capacity;
@@ -22,29 +22,34 @@ void bough_arnoldi_create(bough_arena *arena, int length, int capacity, bough_ar
 
 static double *vector_at(const bough_arnoldi *a, int k) { return a->basis + (size_t)k * (size_t)a->length; }
 
+// The weighted inner product xᵀ W y.
 double bough_arnoldi_product(const bough_arnoldi *a, const double *x, const double *y) {
     double sum = 0;
     for (int i = 0; i < a->length; i++) sum += a->weight[i] * x[i] * y[i];
     return sum;
 }
 
+// Modified Gram–Schmidt, twice: the second pass restores what cancellation loses.
 void bough_arnoldi_append(bough_arnoldi *a, double *x, double *column) {
     double before = sqrt(bough_arnoldi_product(a, x, x));
     for (int pass = 0; pass < 2; pass++) {
         for (int k = 0; k < a->count; k++) {
-            double *v = vector_at(a, k), share = bough_arnoldi_product(a, v, x);
-            for (int i = 0; i < a->length; i++) x[i] -= share * v[i];
-            if (column != NULL) column[k] += share;
+            double *v = vector_at(a, k), along = bough_arnoldi_product(a, v, x);
+            for (int i = 0; i < a->length; i++) x[i] -= along * v[i];
+            if (column != NULL) column[k] += along;
         }
     }
+    // a dependent vector is dropped: the space is invariant in it
     double norm = sqrt(bough_arnoldi_product(a, x, x));
     bool full = a->count == a->capacity || a->count == a->length;
     if (!(norm > dependent * before) || full) return;
+    // normalised, a new vector of the basis
     if (column != NULL) column[a->count] = norm;
     double *v = vector_at(a, a->count++);
     for (int i = 0; i < a->length; i++) v[i] = x[i] / norm;
 }
 
+// A V = V H, a column of H for each vector of the basis.
 bough_status bough_arnoldi_extend(bough_arnoldi *a, int target) {
     while (a->done < a->count && a->done < target) {
         bough_status status = a->apply(a->self, vector_at(a, a->done), a->image);
@@ -55,6 +60,7 @@ bough_status bough_arnoldi_extend(bough_arnoldi *a, int target) {
     return bough_ok();
 }
 
+// Ritz values and vectors: the eigenvalues of the square part of H.
 bool bough_arnoldi_project(bough_arnoldi *a) {
     size_t m = (size_t)a->done;
     for (size_t j = 0; j < m; j++) {
@@ -67,6 +73,7 @@ double bough_arnoldi_modulus(const bough_arnoldi *a, int k) {
     return hypot(a->value[k], a->value[a->done + k]);
 }
 
+// ‖A V y − μ V y‖ is the norm of the rows of H y below the square part.
 double bough_arnoldi_residual(const bough_arnoldi *a, int k) {
     int m = a->done, parts = a->value[m + k] == 0 ? 1 : 2;
     const double *y = a->vector + (size_t)k * (size_t)m;

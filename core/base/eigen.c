@@ -1,3 +1,4 @@
+// Block Arnoldi iteration on the inverse, theory (28, 74).
 #include "core/base/eigen.h"
 
 #include "core/base/arnoldi.h"
@@ -111,6 +112,7 @@ static bool iterate(search *s, int wanted, int *chosen, int *found) {
     int first = 4 * wanted + SPARE;
     double before = -1, sum;
     for (int look = 0; look <= LOOKS; look++) {
+        // a larger space each time, its Ritz values by falling modulus
         bough_arnoldi_extend(a, first + first * look / 2);
         if (!bough_arnoldi_project(a)) return false;
         sort(s);

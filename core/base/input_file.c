@@ -11,6 +11,7 @@
 static bool is_readable(int file, int64_t most, char *reason) {
     struct stat info;
     errno = 0;
+    // a folder, pipe or device opens without error but has no end
     if (fstat(file, &info) != 0) {
         snprintf(reason, BOUGH_INPUT_REASON, "%s", strerror(errno));
     } else if (S_ISDIR(info.st_mode)) {
@@ -36,6 +37,7 @@ FILE *bough_input_open(const char *path, int64_t most, char reason[BOUGH_INPUT_R
     }
     FILE *stream = is_readable(file, most, reason) ? fdopen(file, "rb") : NULL;
     if (stream) return stream;
+    // errno is the caller's reason: closing must not change it
     int error = errno;
     if (error == ENOMEM) snprintf(reason, BOUGH_INPUT_REASON, "memory is exhausted");
     close(file);
@@ -51,6 +53,7 @@ char *bough_input_read(bough_arena *arena, const char *path, int64_t most, size_
     if (!stream) return NULL;
     bough_arena *own = bough_arena_child(arena); // closes the file also where there is no memory
     bough_arena_on_destroy(own, close_file, stream);
+    // the size, and room for one byte more to see that it does not grow
     fseek(stream, 0, SEEK_END);
     long end = ftell(stream);
     size_t expected = end > 0 ? (size_t)end : 0;
@@ -58,6 +61,7 @@ char *bough_input_read(bough_arena *arena, const char *path, int64_t most, size_
     char *bytes = bough_arena_take(arena, expected + 1);
     errno = 0;
     *size = fread(bytes, 1, expected + 1, stream);
+    // exactly the bytes of the file, else it changed meanwhile
     bool whole = end >= 0 && !ferror(stream) && *size <= expected;
     if (!whole)
         snprintf(reason, BOUGH_INPUT_REASON, "%s", errno ? strerror(errno) : "it grows while it is read");

@@ -56,6 +56,7 @@ static bool all_finite(size_t count, const double *a) {
 
 static bool finite_matrix(int n, const double *a) { return all_finite((size_t)n * (size_t)n, a); }
 
+// Up to this size the loops below are faster than a library call.
 enum { SMALL = 32 };
 
 static void swap(double *x, double *y) {
@@ -64,14 +65,17 @@ static void swap(double *x, double *y) {
     *y = kept;
 }
 
+// LU with row interchanges, right-looking.
 static bool factor_small(int n, double *a, int *pivot) {
     for (int k = 0; k < n; k++) {
         int best = k;
         for (int i = k + 1; i < n; i++) {
+            // pivot: the largest entry of the column
             if (fabs(a[k * n + i]) > fabs(a[k * n + best])) best = i;
         }
         pivot[k] = best;
         if (a[k * n + best] == 0) return false;
+        // interchange rows, then subtract multiples of row k
         for (int j = 0; j < n && best != k; j++) swap(&a[j * n + k], &a[j * n + best]);
         for (int i = k + 1; i < n; i++) {
             double factor = a[k * n + i] /= a[k * n + k];
@@ -81,6 +85,7 @@ static bool factor_small(int n, double *a, int *pivot) {
     return true;
 }
 
+// Interchanges, L x = b forwards, U x = b backwards.
 static void solve_small(int n, const double *restrict factor, const int *pivot, double *restrict x) {
     for (int k = 0; k < n; k++) {
         if (pivot[k] != k) swap(&x[k], &x[pivot[k]]);
@@ -95,10 +100,12 @@ static void solve_small(int n, const double *restrict factor, const int *pivot, 
     }
 }
 
-// -- room -----------------------------------------------------------------------------------------
+// -- work arrays of the library
+// -----------------------------------------------------------------------------------------
 
-enum { MOST_ROOMS = 64 }; // one for each call that goes on at the same time
+enum { MOST_ROOMS = 64 }; // one for each concurrent call
 
+// Whether so many work arrays of the library would find addresses: it does not say when one does not.
 static bool has_addresses(int rooms) {
     enum { WORK = 129 << 20 };
     void *volatile block[MOST_ROOMS] = {0};
@@ -111,7 +118,7 @@ static bool has_addresses(int rooms) {
     return room;
 }
 
-// The library keeps rooms once they are taken, and takes one more only when all are in use.
+// The library keeps work arrays once they are taken, and takes one more only when all are in use.
 static void take_rooms(int rooms) {
     void *block[MOST_ROOMS];
     double a = 1;
@@ -123,7 +130,7 @@ static void take_rooms(int rooms) {
     for (int i = 0; i < rooms; i++) blas_memory_free(block[i]);
 }
 
-// The rooms are the process's, and so are these counts.
+// The work arrays belong to the process, and so do these counts.
 static atomic_int users, rooms_taken;
 
 static void leave(void *threads) { atomic_fetch_sub(&users, *(int *)threads); }
@@ -131,6 +138,7 @@ static void leave(void *threads) { atomic_fetch_sub(&users, *(int *)threads); }
 void bough_linalg_room(bough_arena *arena, int threads) {
     int *own = bough_arena_take(arena, sizeof *own);
     *own = threads;
+    // threads of all arenas that live
     int rooms = atomic_fetch_add(&users, threads) + threads;
     bough_arena_on_destroy(arena, leave, own);
     if (rooms > MOST_ROOMS) rooms = MOST_ROOMS;
@@ -152,6 +160,7 @@ bool bough_dense_factor(int n, double *a, int *pivot) {
     return info == 0;
 }
 
+// Banded LU with row interchanges, which need `width` more diagonals above.
 bool bough_band_solve(int n, int width, double *a, int *pivot, double *b) {
     const int rows = 3 * width + 1, one = 1;
     int info;
@@ -171,6 +180,7 @@ void bough_dense_solve(int n, int n_right, const double *factor, const int *pivo
     dgetrs_("N", &n, &n_right, factor, &n, pivot, b, &n, &info, 1);
 }
 
+// Uᵀ forwards, Lᵀ backwards, interchanges in reverse.
 static void solve_small_transposed(int n, const double *factor, const int *pivot, double *x) {
     for (int k = 0; k < n; k++) {
         for (int i = 0; i < k; i++) x[k] -= factor[k * n + i] * x[i];
@@ -197,8 +207,9 @@ void bough_dense_solve_transposed(int n, int n_right, const double *factor, cons
 void bough_dense_product(bough_product p, const double *a, const double *b, double *c) {
     if (p.m == 0 || p.n == 0) return;
     prepare();
+    // leading dimensions are at least 1
     int inner = p.k > 0 ? p.k : 1; // rows of b
-    dgemm_(p.transposed ? "T" : "N", "N", &p.m, &p.n, &p.k, &p.share, a, p.transposed ? &inner : &p.m, b,
+    dgemm_(p.transposed ? "T" : "N", "N", &p.m, &p.n, &p.k, &p.factor, a, p.transposed ? &inner : &p.m, b,
            &inner, &p.keep, c, &p.m, 1, 1);
 }
 
@@ -221,6 +232,7 @@ bool bough_dense_eigen(int n, double *a, double *value, double *vector, double *
     if (n == 0) return true;
     prepare();
     if (!finite_matrix(n, a)) return false;
+    // right eigenvectors only
     int info = 0, one = 1, n_work = 8 * n;
     dgeev_("N", "V", &n, a, &n, value, value + n, NULL, &one, vector, &n, work, &n_work, &info, 1, 1);
     return info == 0;
@@ -230,6 +242,7 @@ bool bough_symmetric_eigen(int n, double *a, double *value, double *work) {
     if (n == 0) return true;
     prepare();
     if (!finite_matrix(n, a)) return false;
+    // LAPACK's upper triangle is the lower one by rows
     int info = 0, n_work = 8 * n;
     dsyev_("V", "U", &n, a, &n, value, work, &n_work, &info, 1, 1);
     return info == 0;
@@ -240,6 +253,7 @@ bool bough_symmetric_smallest(int n, double *a, int count, double *value, double
     if (n == 0 || count == 0) return true;
     prepare();
     if (!finite_matrix(n, a)) return false;
+    // relatively robust representations (dsyevr), eigenvalues 1 … count
     int info = 0, one = 1, found = 0, n_work = 26 * n, n_index = 10 * n;
     double none = 0;
     dsyevr_("V", "I", "L", &n, a, &n, &none, &none, &one, &count, &none, &found, value, vector, &n, index,
@@ -247,6 +261,7 @@ bool bough_symmetric_smallest(int n, double *a, int count, double *value, double
     return info == 0 && found == count;
 }
 
+// Row by row; a pivot that cancels to rounding is not positive.
 bool bough_cholesky_factor(int n, double *a) {
     for (int j = 0; j < n; j++) {
         double diagonal = a[n * j + j], pivot = diagonal;

@@ -7,9 +7,9 @@
 
 #include <stdbool.h>
 
-// Takes the room that the library works in, on so many threads beside those of all arenas that live:
-// when a model is built, so that no step does. OpenBLAS wants 128 MB of
-// addresses a thread and, where it does not get them, tries for ever.
+// Takes the library's work arrays for so many threads beside those of all arenas that live, when a model is
+// built, so that no step does. OpenBLAS needs 128 MB of addresses for each thread and, without them, tries
+// for ever.
 void bough_linalg_room(bough_arena *arena, int threads);
 
 // LU factors of a (n × n, column-major) in place, with row interchanges in pivot (n). False when a
@@ -27,12 +27,12 @@ void bough_dense_solve(int n, int n_right, const double *factor, const int *pivo
 // Solves aᵀ x = b in place with them.
 void bough_dense_solve_transposed(int n, int n_right, const double *factor, const int *pivot, double *b);
 
-// c ← share a b + keep c, all column-major: a (m × k), or its transpose where a is given (k × m), b (k × n),
+// c ← factor a b + keep c, all column-major: a (m × k), or its transpose where a is given (k × m), b (k × n),
 // c (m × n).
 typedef struct bough_product {
     int m, n, k;
     bool transposed; // a
-    double share, keep;
+    double factor, keep;
 } bough_product;
 void bough_dense_product(bough_product p, const double *a, const double *b, double *c);
 

@@ -13,7 +13,7 @@
 // Longer lists are done in portions.
 enum { MOST_TASKS = 256, LINE = 64 };
 
-static const long spin_time = 50000; // looked for before sleep [ns]
+static const long spin_time = 50000; // polling before sleep [ns]
 static const long steal_time = 5000; // before a thread takes what is another's task, or yields [ns]
 
 // Where threads sleep: until there is a list, or until a task is done.
@@ -33,7 +33,7 @@ struct bough_pool {
     bool open;    // a region is
     bool listing; // a list is in progress; the caller's
     bool crowded; // more threads than processors
-    // the list in progress, written before `list` tells of it
+    // the list in progress, written before its number in `list`
     bough_task task;
     void *data;
     int first;                                 // number of its first task
@@ -75,7 +75,7 @@ static long clock_ns(void) {
     return (long)now.tv_sec * 1000000000L + now.tv_nsec;
 }
 
-// Looks for so long; false when it has not come.
+// Polls for the condition; false when it does not hold after the duration [ns].
 static bool look(bough_pool *p, long duration, condition ready, uint64_t argument) {
     enum { LOOKS = 16 }; // between looks at the clock
     if (ready(p, argument)) return true;
@@ -134,7 +134,7 @@ static int owner(const bough_pool *p, int k) {
 // no more than on one thread.
 static long time_to_wait(const bough_pool *p) { return atomic_load(&p->alone) ? 0 : steal_time; }
 
-// A thread's own tasks, then those of threads that do not come.
+// A thread's own tasks, then those of threads that are late.
 static void do_list(bough_pool *p, uint64_t list, int self) {
     for (int k = 0; k < count_of(list); k++) {
         if (owner(p, k) == self) do_task(p, list, k, self);
@@ -160,10 +160,12 @@ static void run_portion(bough_pool *p, int first, int n, bough_task task, void *
     p->data = data;
     p->first = first;
     p->n_alone = 0;
+    // publish the list: its number last
     uint64_t number = number_of(atomic_load(&p->list)) + 1, list = number << 16 | (uint64_t)n;
     atomic_store(&p->list, list);
     wake(p, &p->idle);
     do_list(p, list, 0);
+    // the caller works, then waits for the tasks that others have taken
     for (int k = 0; k < n; k++) wait_until(p, &p->waiting, is_done, (uint64_t)k);
     atomic_store(&p->alone, p->n_alone == n);
 }
@@ -181,16 +183,18 @@ void bough_pool_run(bough_pool *pool, int n, bough_task task, void *data) {
     pool->listing = false;
 }
 
-typedef struct turns {
+// The items in rounds of one for each thread. Of a last round that is not full, each item is divided: its
+// first half joins the first round, its second half ends the list.
+typedef struct rounds {
     bough_pool *pool;
-    int n, rest, before; // before: items in the first turn that are done as a whole
+    int n, rest, before; // rest: items in halves; before: whole items of the first round
     void (*work)(void *data, int item, bough_part part);
     void *data;
-} turns;
+} rounds;
 
-static void take_turn(void *self, int k) {
-    const turns *w = self;
-    int split = w->n - w->rest; // the first item that is
+static void do_item(void *self, int k) {
+    const rounds *w = self;
+    int split = w->n - w->rest; // the first item in halves
     if (k < w->before) {
         w->work(w->data, k, BOUGH_WHOLE);
     } else if (k < w->before + w->rest) {
@@ -206,15 +210,16 @@ static void take_turn(void *self, int k) {
 void bough_pool_run_turns(bough_pool *pool, int n, void (*work)(void *data, int item, bough_part part),
                           void *data) {
     int threads = bough_pool_threads(pool);
-    turns w = {.pool = pool, .n = n, .work = work, .data = data};
+    rounds w = {.pool = pool, .n = n, .work = work, .data = data};
     if (n > threads) w.rest = n % threads;
     if (w.rest > 0) w.before = threads - w.rest;
-    bough_pool_run(pool, n + w.rest, take_turn, &w);
+    bough_pool_run(pool, n + w.rest, do_item, &w);
 }
 
 void bough_pool_await(bough_pool *pool, int earlier) {
     if (!pool || !pool->open || pool->n_thread == 1 || earlier < pool->first) return;
     int k = earlier - pool->first;
+    // the caller of await does the task itself where nobody has begun it
     if (!look(pool, time_to_wait(pool), is_done, (uint64_t)k)) {
         do_task(pool, atomic_load(&pool->list), k, omp_get_thread_num());
     }

@@ -1,4 +1,4 @@
-// Lists of short tasks, a few microseconds each and many lists per step, shared out among the threads
+// Lists of short tasks, a few microseconds each and many lists per step, distributed over the threads
 // of one parallel region of OpenMP. Only core/base/pool.c uses OpenMP.
 //
 // One region contains all steps, because opening and closing a region takes longer than a list. Without a
@@ -35,8 +35,8 @@ bough_pool *bough_pool_create(bough_arena *arena, int threads);
 // one inside a parallel region of the application.
 int bough_pool_threads(const bough_pool *pool);
 
-// work(data) on the caller, whose lists a parallel region's threads share until it returns. Inside a
-// region of the same pool it is a plain call.
+// work(data) on the caller, whose lists are done by the threads of a parallel region until it returns. Inside
+// a region of the same pool it is a plain call.
 void bough_pool_region(bough_pool *pool, void (*work)(void *data), void *data);
 
 // Does task(data, 0 … n − 1) and returns when all are done. One list at a time: no task may call it.
@@ -45,9 +45,10 @@ void bough_pool_run(bough_pool *pool, int n, bough_task task, void *data);
 // Part of an item's work.
 typedef enum bough_part { BOUGH_WHOLE, BOUGH_FIRST_HALF, BOUGH_SECOND_HALF } bough_part;
 
-// Does items 0 … n − 1 of about equal work. The last of them, which fill no whole turn of all
-// threads, are done in two halves: the first ones in the first turn, the second ones last, so that
-// three items keep two threads busy.
+// Does items 0 … n − 1 of about equal work, the n % threads last of them in two halves, so that no thread
+// idles for a whole item. Three items on two threads:
+//     thread 1   item 0          item 1
+//     thread 2   item 2, first   item 2, second half
 void bough_pool_run_turns(bough_pool *pool, int n, void (*work)(void *data, int item, bough_part part),
                           void *data);
 

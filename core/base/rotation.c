@@ -14,6 +14,7 @@ bough_quaternion bough_quaternion_exponential(bough_vec3 phi) {
     return (bough_quaternion){cos(angle / 2), s * phi.x, s * phi.y, s * phi.z};
 }
 
+// 2 atan2(|v|, w) v/|v|; p and −p are the same rotation.
 bough_vec3 bough_quaternion_logarithm(bough_quaternion p) {
     double sign = p.w < 0 ? -1 : 1;
     bough_vec3 v = bough_scale(sign, bough_v3(p.x, p.y, p.z));

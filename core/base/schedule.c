@@ -1,3 +1,4 @@
+// Ramps and tables over time.
 #include "core/base/schedule.h"
 
 #include "core/base/base.h"
@@ -8,7 +9,8 @@ double bough_ramp_factor(double start, double end, double t) {
 }
 
 int bough_table_row(int n, const double *times, int stride, double t) {
-    int low = 0, high = n - 1; // times[low] ≤ t < times[high]
+    // bisection
+    int low = 0, high = n - 1; // invariant: times[low] ≤ t < times[high]
     while (high - low > 1) {
         int middle = (low + high) / 2;
         if (t < times[middle * stride]) {
@@ -21,6 +23,7 @@ int bough_table_row(int n, const double *times, int stride, double t) {
 }
 
 double bough_table_value(int n, const double *times, const double *values, double t) {
+    // held outside, linear inside
     if (t <= times[0]) return values[0];
     if (t >= times[n - 1]) return values[n - 1];
     int k = bough_table_row(n, times, 1, t);

@@ -1,4 +1,4 @@
-// What loads and the air follow over time: a ramp or a table.
+// Factors of loads and of the air over time: a ramp or a table.
 #ifndef BOUGH_CORE_SCHEDULE_H
 #define BOUGH_CORE_SCHEDULE_H
 

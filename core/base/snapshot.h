@@ -1,5 +1,5 @@
-// Memory that is copied out of where it lives and back. A part lists once, in order, what it
-// remembers; the list serves to measure the copy, to save and to restore.
+// Memory that is copied out of where it lives and back. Each module lists once, in order,
+// what it keeps; the list serves to measure the copy, to save and to restore.
 #ifndef BOUGH_CORE_SNAPSHOT_H
 #define BOUGH_CORE_SNAPSHOT_H
 

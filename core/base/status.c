@@ -11,7 +11,7 @@ bough_status bough_ok(void) {
     return status;
 }
 
-// Of a full message.
+// Marks a message that was cut, at a word.
 static void end_after_word(char *message) {
     static const char more[] = " ...";
     char *end = message + BOUGH_MESSAGE - sizeof more;

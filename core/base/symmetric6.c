@@ -2,6 +2,7 @@
 
 #include <math.h>
 
+// A = L Lᵀ; false at a pivot that is not positive.
 static bool cholesky(const double *upper, double l[6][6]) {
     for (int j = 0; j < 6; j++) {
         for (int i = j; i < 6; i++) {
@@ -19,6 +20,7 @@ bool bough_symmetric6_inverse(const double a[21], double inverse[21]) {
     if (!cholesky(a, l)) return false;
     for (int j = 0; j < 6; j++) {
         for (int i = 0; i < 6; i++) {
+            // column j of the inverse: L y = e_j, then Lᵀ x = y
             x[i] = i == j;
             for (int k = 0; k < i; k++) x[i] -= l[i][k] * x[k];
             x[i] /= l[i][i];
@@ -32,27 +34,28 @@ bool bough_symmetric6_inverse(const double a[21], double inverse[21]) {
     return true;
 }
 
-// Rows (or columns) k and k + 1 of a full matrix turned by the angle, k = 0 and 3.
-static void turn_pairs(double full[6][6], double c, double s, bool rows) {
+// Rotates rows (or columns) k and k + 1 of a full matrix, k = 0 and 3.
+static void rotate_pairs(double full[6][6], double c, double s, bool rows) {
     for (int k = 0; k < 6; k += 3) {
         for (int j = 0; j < 6; j++) {
             double *x = rows ? &full[k][j] : &full[j][k];
             double *y = rows ? &full[k + 1][j] : &full[j][k + 1];
-            double turned = c * *x - s * *y;
+            double first = c * *x - s * *y;
             *y = s * *x + c * *y;
-            *x = turned;
+            *x = first;
         }
     }
 }
 
-void bough_symmetric6_turn(const double a[21], double angle, double turned[21]) {
+void bough_symmetric6_rotate(const double a[21], double angle, double rotated[21]) {
     double full[6][6], c = cos(angle), s = sin(angle);
     for (int i = 0; i < 6; i++) {
         for (int j = 0; j < 6; j++) full[i][j] = a[bough_symmetric6_index(i, j)];
     }
-    turn_pairs(full, c, s, true);
-    turn_pairs(full, c, s, false);
+    // Q A Qᵀ: rows, then columns
+    rotate_pairs(full, c, s, true);
+    rotate_pairs(full, c, s, false);
     for (int i = 0; i < 6; i++) {
-        for (int j = i; j < 6; j++) turned[bough_symmetric6_index(i, j)] = full[i][j];
+        for (int j = i; j < 6; j++) rotated[bough_symmetric6_index(i, j)] = full[i][j];
     }
 }

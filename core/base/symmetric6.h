@@ -14,6 +14,6 @@ static inline int bough_symmetric6_index(int i, int j) {
 bool bough_symmetric6_inverse(const double a[21], double inverse[21]);
 
 // Q A Qᵀ with Q = diag(R, R) for the rotation R by `angle` about z.
-void bough_symmetric6_turn(const double a[21], double angle, double turned[21]);
+void bough_symmetric6_rotate(const double a[21], double angle, double rotated[21]);
 
 #endif

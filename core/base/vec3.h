@@ -38,7 +38,7 @@ BOUGH_INLINE bough_vec3 bough_scale(double s, bough_vec3 a) {
 BOUGH_INLINE bough_vec3 bough_axpy(double s, bough_vec3 b, bough_vec3 a) {
     return (bough_vec3){a.x + s * b.x, a.y + s * b.y, a.z + s * b.z};
 }
-// Part way from a to b.
+// The point between a and b at a fraction of the way.
 BOUGH_INLINE bough_vec3 bough_between(bough_vec3 a, bough_vec3 b, double share) {
     return (bough_vec3){a.x + share * (b.x - a.x), a.y + share * (b.y - a.y), a.z + share * (b.z - a.z)};
 }

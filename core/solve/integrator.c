@@ -1,3 +1,4 @@
+// The table of integrators.
 #include "core/solve/integrator.h"
 
 #include <assert.h>
@@ -18,6 +19,7 @@ const char *bough_integrator_name(int index) {
     return index < (int)(sizeof methods / sizeof *methods) ? methods[index]->name : NULL;
 }
 
+// A dense method refuses systems beyond its size.
 bough_status bough_integrator_create(bough_arena *arena, const bough_ode *ode,
                                      const bough_integrator_options *options, bough_integrator *integrator) {
     const bough_integrator_ops *ops = methods[options->kind];

@@ -1,10 +1,6 @@
-// The generalised-α method for first-order systems (Jansen, Whiting, Hulbert 2000):
+// The generalised-α method for first-order systems (Jansen, Whiting, Hulbert 2000), theory (50):
 // second order, unconditionally stable, the highest frequencies damped by ρ∞ per step, equal steps
 // with one factorisation for as long as Newton's method converges with it.
-//
-//     ẏ_m = f(t + α_f h, y_f),  ẏ_m = ẏ₀ + α_m(ẏ₁ − ẏ₀),  y_f = y₀ + α_f(y₁ − y₀),
-//     y₁ = y₀ + h ẏ₀ + γ h(ẏ₁ − ẏ₀)
-//
 // Momentum that is not linear in the states, as that of a spinning body whose velocity is resolved in its own
 // axes, is kept to second order only: docs/coupling.md.
 #include "core/solve/integrator.h"
@@ -14,8 +10,8 @@
 enum { MOST_ITERATIONS = 10, MOST_HALVINGS = 8 };
 
 static const double slow = 0.1;         // contraction beyond which the tangents are renewed
-static const double forget = 0.3;       // share of an earlier step's contraction that a better one keeps
-static const double newton_share = 0.1; // of rtol: what Newton's method may leave
+static const double forget = 0.3;       // of an earlier step's contraction, kept beside a better one
+static const double newton_error = 0.1; // of Newton's method, relative to rtol
 static const double rounding = 1e-9;    // of times and steps that are meant to be equal, relative
 
 typedef struct alpha {
@@ -39,6 +35,7 @@ static void *create(bough_arena *arena, const bough_ode *ode, const bough_integr
     m->ode = *ode;
     m->step = options->step > 0 ? options->step : (double)INFINITY;
     m->rtol = options->rtol;
+    // second order, the damping ρ∞ at infinite frequency
     m->am = 0.5 * (3 - options->rho) / (1 + options->rho);
     m->af = 1 / (1 + options->rho);
     m->gamma = 0.5 + m->am - m->af;
@@ -112,7 +109,7 @@ static double remainder_share(double contraction) {
 // Newton's method for one step: it ends when what is left, by the contraction seen with these
 // factors, is small; so most steps take one iteration. False when it does not converge.
 static bool converge(alpha *m, double t, const double *y, double h) {
-    double limit = newton_share * m->rtol, before = 0;
+    double limit = newton_error * m->rtol, before = 0;
     for (int k = 0; k < MOST_ITERATIONS; k++) {
         m->sum.iterations++;
         if (!balance(m, t, y, h)) return false;
@@ -121,6 +118,7 @@ static bool converge(alpha *m, double t, const double *y, double h) {
         if (!isfinite(size)) return false;
         if (k > 0) {
             double contraction = size / before;
+            // slow convergence renews the tangents before the next step
             if (contraction > 2) return false;
             if (contraction > slow) m->stale = true;
             m->contraction = fmax(forget * m->contraction, contraction);
@@ -175,6 +173,7 @@ static bough_status advance(void *self, double *t, double pause, double t1, bool
     double longest = m->step;
     bool ok = (!restart && m->started) || start(m, *t, y);
     for (int halvings = 0; ok && *t < t1;) {
+        // equal steps to t1; halved where Newton's method fails
         double parts = fmax(1, ceil((t1 - *t) / longest * (1 - rounding)));
         double h = (t1 - *t) / parts;
         if (take_step(m, *t, h, y)) {

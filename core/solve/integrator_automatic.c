@@ -1,8 +1,8 @@
-// What a scene gets that names no method: the Rosenbrock method, and IDA where that takes fewer evaluations.
+// The default method: the Rosenbrock method, and IDA where it takes fewer evaluations.
 // The former's steps are long where motion is slow or stiff and damped. Where stiff members vibrate without
 // damping every method must follow them, and IDA then takes an evaluation a step and order 5: a tenth of the
 // cost at a tenth of the tolerance. So IDA is tried after a macro step of many steps, and stays where it
-// takes fewer evaluations for the same time; what stops the Rosenbrock method is left to IDA as well.
+// takes fewer evaluations for the same time; it also takes over where the Rosenbrock method stops.
 #include "core/solve/integrator.h"
 
 #include <math.h>
@@ -10,7 +10,7 @@
 enum { ROSENBROCK_STEPS = 1000, IDA_STEPS = 60000, LEAST_IDA_STEPS = 5000 }; // most in a macro step
 enum { MANY_STEPS = 100 };           // in a macro step: beside as many the start of IDA costs little
 static const double most_work = 2e7; // of IDA in a macro step: steps times states
-static const double share = 0.1;     // of the tolerance, for IDA: its errors add up over many short steps
+static const double tighter = 0.1;   // tolerance of IDA, relative: its errors add up over many short steps
 
 typedef struct automatic {
     bough_integrator rosenbrock, ida;
@@ -34,7 +34,7 @@ static void *create(bough_arena *arena, const bough_ode *ode, const bough_integr
     m->rosenbrock = make(&bough_integrator_rosenbrock, arena, ode, &own);
     own.kind = BOUGH_IDA;
     own.most_steps = (int)fmax(LEAST_IDA_STEPS, fmin(IDA_STEPS, most_work / ode->n));
-    own.rtol *= share;
+    own.rtol *= tighter;
     m->ida = make(&bough_integrator_ida, arena, ode, &own);
     return m;
 }
@@ -45,7 +45,7 @@ static bough_statistics work_of(const bough_integrator *integrator) {
     return sum;
 }
 
-// From the last good step on; `work` of it.
+// Advances from the last good step on, and counts the work of it.
 static bough_status take(bough_integrator *integrator, double *t, double t1, bool restart, double *y,
                          bough_statistics *work) {
     bough_statistics before = work_of(integrator);
@@ -63,16 +63,20 @@ static bough_status advance(void *self, double *t, double pause, double t1, bool
     bool anew = restart || m->fast;
     if (restart) m->stays = false;
     if (restart) m->work = m->lost = 0;
+    // IDA: it took the last macro step, or the Rosenbrock method took many steps
     if (m->stays || m->work > 2 * m->lost) {
         bough_status status = take(&m->ida, t, t1, !m->stays, y, &work);
         m->fast = bough_is_ok(&status);
         bool left = m->stays && !m->fast;
+        // it stays if it was cheaper; otherwise twice the work is needed before the next trial
         m->stays = m->fast && (m->stays || (double)work.derivatives < m->work * (t1 - begun));
         if (!m->stays) m->lost = m->work;
         if (m->fast || left) return status;
+        // it failed: the macro step is repeated
         *t = begun;
         anew = true;
     }
+    // the Rosenbrock method; where it stops, IDA from there on
     bough_status stopped = take(&m->rosenbrock, t, t1, anew, y, &work);
     m->work = work.steps > MANY_STEPS ? (double)work.derivatives / (t1 - begun) : 0;
     m->fast = m->stays = !bough_is_ok(&stopped);

@@ -1,6 +1,6 @@
 // Radau IIA of order 5. A one-step method: an input that jumps costs it nothing but a Jacobian, and a
 // copy of it is complete. Dense algebra, the Jacobian by differences: for small systems.
-// Method: E. Hairer, G. Wanner, Solving Ordinary Differential Equations II, section IV.8:
+// theory (51). Method: E. Hairer, G. Wanner, Solving Ordinary Differential Equations II, section IV.8:
 // simplified Newton iterations on the stages, transformed to one real and one complex system; step
 // size by the predictive controller; the Jacobian is kept while the iterations converge fast.
 // Notation of Hairer and Wanner: stages z_i = Y_i − y, w = T⁻¹ z, and
@@ -248,7 +248,7 @@ static bool solve_stages(radau *r, double h, double *shrink) {
     guess_stages(r, h);
     for (int k = 1; k <= MOST_ITERATIONS; k++) {
         if (!evaluate_stages(r, past->time, h)) return false;
-        // The stages' values are done with: their place takes the increments.
+        // increments in place of the stages' values, which are not needed any more
         double size = improve(r, h, r->trial);
         r->count.iterations++;
         if (!isfinite(size)) return false;
@@ -404,7 +404,7 @@ static bough_status advance(void *self, double *t, double pause, double t1, bool
     return status;
 }
 
-// The factors are no part of it: the same Jacobian and step size give the same ones.
+// Without the factors, which follow from Jacobian and step size.
 static void transfer(void *self, bough_snapshot *s) {
     radau *r = self;
     bough_snapshot_take(s, r->past, r->bytes);

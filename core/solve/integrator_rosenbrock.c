@@ -1,10 +1,7 @@
 // A linearly implicit Runge–Kutta method, ROS34PW2 (Rang and Angermann 2005): four
 // stages of one evaluation and one solution each, no iteration, order 3 with error control, L-stable,
 // stiffly accurate. It is a W-method: its order needs no exact tangents, so that one linearisation
-// serves many steps.
-//
-//     (I − γhJ) u_i = γh [ f(t + α_i h, y + Σ_j a_ij u_j) + γ_i h ∂f/∂t ] + Σ_j c_ij u_j,   j < i,
-//     y₁ = y + Σ_i m_i u_i,   error ≈ Σ_i e_i u_i
+// serves many steps. theory (52, 53)
 #include "core/solve/rosenbrock.h"
 
 #include <math.h>
@@ -62,7 +59,7 @@ typedef struct rosenbrock {
 
 double bough_rosenbrock_time(const bough_rosenbrock_step *s, int i) { return s->t + alpha[i] * s->h; }
 
-// Σ_j weight_j u_j over the stages before stage i; loops take what does not change out of them.
+// Σ_j weight_j u_j over the stages before stage i; the compiler moves the tests of i out of loops.
 static inline double stages_before(const bough_rosenbrock_step *s, int i, const double weight[3], int k) {
     double sum = weight[0] * s->u[0][k];
     if (i > 1) sum += weight[1] * s->u[1][k];
@@ -193,7 +190,7 @@ static void filter_increment(rosenbrock *m, double *restrict x) {
     m->ode.solve(m->ode.self, x);
 }
 
-// The age from the change of the last step by renewed tangents, which goes with it.
+// The age of tangents at which a step changes by `most_change`: its change is proportional to the age.
 static void choose_age(rosenbrock *m) {
     double change = 0, whole = 0;
     for (int k = 0; k < m->ode.n; k++) {
@@ -207,6 +204,7 @@ static void choose_age(rosenbrock *m) {
 
 static bool renew_tangents(rosenbrock *m, double t, const double *y, double gamma) {
     bool compare = undamped(m, gamma / gamma_h) && m->age == m->most_age && m->factored > 0;
+    // the last increment under old tangents, for comparison with renewed ones
     if (compare) filter_increment(m, m->old);
     m->sum.jacobians++;
     m->sum.factorisations++;
@@ -267,18 +265,19 @@ static double try_step(rosenbrock *m, double t, double h, const double *y) {
 // y ← y₁
 static void accept(rosenbrock *m, double *restrict y) { memcpy(y, m->now.at, (size_t)m->ode.n * sizeof *y); }
 
-// Equal steps over the remaining time, none longer than allowed. A step that fails with old tangents is
-// first repeated with new ones. Returns NULL, or the reason of a failure.
+// All steps to `pause`. Returns NULL, or the reason of a failure.
 static const char *cross(rosenbrock *m, double *t, double pause, double t1, double *y) {
     double begun = *t;
     for (int n = 0; *t < pause; n++) {
         double parts = ceil((t1 - *t) / m->longest * (1 - 1e-12));
+        // equal steps, none longer than allowed
         double h = (t1 - *t) / fmax(parts, 1);
         bool known = n >= m->most_steps / 5;
         if (known && n * (t1 - begun) >= m->most_steps * (*t - begun)) {
             return "too many steps to the end of the macro step: it follows vibrations that fast, which"
                    " damping of rods or a larger rtol would end";
         }
+        // a step that fails with old tangents is repeated with new ones
         double error = try_step(m, *t, h, y);
         if (error > 1 && h < 1e-12 * (fabs(*t) + 1e-3)) {
             return "the error test fails down to the smallest step (a segment that turns by more than"
@@ -294,6 +293,7 @@ static const char *cross(rosenbrock *m, double *t, double pause, double t1, doub
         m->sum.steps++;
         m->age++;
         m->drifted++;
+        // elementary controller of an error of order 3
         double grown = 0.9 * h * fmin(5, cbrt(1 / fmax(error, 1e-6)));
         m->longest = fmin(m->step, fmax(h, grown));
         *t = parts <= 1 ? t1 : *t + h;

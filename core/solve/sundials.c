@@ -1,7 +1,7 @@
 // The integrators of SUNDIALS: CVODE (variable-order BDF), ARKODE (ESDIRK of order 4) and IDA (variable-order
 // BDF of the DASSL family). They take one step a call, and their Newton matrix I − γ ∂f/∂y is the system's:
 // SUNDIALS gets a matrix without content, a call for which the system linearises, and a linear solver whose
-// setup and solution are the system's. The only user of SUNDIALS but for vector.c.
+// setup and solution are the system's. Only this file and vector.c use SUNDIALS.
 #include "core/base/base.h"
 #include "core/solve/integrator.h"
 #include "core/solve/vector.h"
@@ -57,7 +57,7 @@ struct run {
     bool refused;   // f had no value somewhere since this was cleared
     char text[200]; // the integrator's last complaint
     long jacobians, factorisations;
-    struct {           // of the tangents, for IDA, which does not say whether old ones serve
+    struct {           // age of the tangents, for IDA, which does not say whether old ones serve
         bool known;    // there have been tangents since the last start
         double setup;  // time of the last setup [s]
         long step;     // steps when they were found
@@ -66,6 +66,7 @@ struct run {
     bough_statistics past; // of the integrations before the last start
 };
 
+// f; 1 makes the library try a smaller step.
 static int rate(double t, N_Vector y, N_Vector out, void *user) {
     run *r = user;
     bool ok = r->ode.derivative(r->ode.self, t, bough_vector_data(y), bough_vector_data(out));
@@ -73,6 +74,7 @@ static int rate(double t, N_Vector y, N_Vector out, void *user) {
     return ok ? 0 : 1;
 }
 
+// Absolute tolerances: 1/(rtol · scale) whatever the state.
 static int weights(N_Vector y, N_Vector weight, void *user) {
     (void)y;
     N_VScale(1.0, ((const run *)user)->weight, weight);
@@ -85,7 +87,8 @@ static void message(int code, const char *module, const char *function, char *te
     if (code < 0) snprintf(r->text, sizeof r->text, "%s", text);
 }
 
-// Linearises unless `jok` says that the last tangents serve, and notes γ: 0, or 1 without a value.
+// Linearises unless the last tangents serve (`jok`), and keeps γ for the factorisation. 0, or 1 without a
+// value.
 static int set_tangents(run *r, double t, N_Vector y, sunbooleantype jok, sunbooleantype *jcur,
                         double gamma) {
     r->gamma = gamma;
@@ -137,6 +140,7 @@ static int solver_setup(SUNLinearSolver s, SUNMatrix a) {
 static int solver_solve(SUNLinearSolver s, SUNMatrix a, N_Vector x, N_Vector b, sunrealtype tol) {
     (void)a, (void)tol;
     run *r = s->content;
+    // IDA solves (1/γ − ∂f/∂y) x = b
     if (r->library->scaled) {
         N_VScale(r->gamma, b, x);
     } else if (x != b) {
@@ -192,6 +196,7 @@ static bool take(run *r, double rtol) {
 
 static bool configure(run *r) {
     const library *of = r->library;
+    // messages first, so that failures of the other settings have a text
     int bad = of->set_messages(r->memory, message, r);
     bad |= of->set_user(r->memory, r);
     bad |= of->begin_settings(r);
@@ -226,7 +231,7 @@ static bough_status start(run *r, double t) {
 }
 
 static const char *reason(run *r, int flag) {
-    // ever smaller steps towards a state without forces end in several ways
+    // steps that shrink towards a state without forces end with several flags
     if (r->refused) flag = CV_RHSFUNC_FAIL;
     switch (flag) {
     case CV_TOO_MUCH_WORK:
@@ -254,6 +259,7 @@ static const char *reason(run *r, int flag) {
 // may miss a stiff state there.
 static int cross(run *r, double t1, double *reached) {
     int flag = CV_SUCCESS;
+    // one step a call
     for (int k = 0; flag >= 0 && *reached < t1; k++) {
         if (k == r->most_steps) return CV_TOO_MUCH_WORK;
         flag = r->library->step(r, t1, reached);
@@ -272,9 +278,11 @@ static bough_status advance(void *self, double *t, double pause, double t1, bool
     }
     r->refused = false;
     r->text[0] = 0;
+    // no evaluation beyond t1, where inputs are not known
     r->library->stop_at(r->memory, t1);
     int flag = cross(r, t1, &reached);
     if (flag < 0) {
+        // the library may have passed some steps
         r->library->current_time(r->memory, t);
         r->library->count(r->memory, &r->past);
         r->started = false;
@@ -323,6 +331,7 @@ static void cvode_count(void *memory, bough_statistics *sum) {
     long steps, rhs, setups, failed, iterations, convergence;
     int last, next;
     double first, previous, h, now;
+    // failures of the error test and of Newton's method count alike
     CVodeGetIntegratorStats(memory, &steps, &rhs, &setups, &failed, &last, &next, &first, &previous, &h,
                             &now);
     CVodeGetNonlinSolvStats(memory, &iterations, &convergence);
@@ -401,6 +410,7 @@ static bool take_arkode_memory(run *r) {
     bough_ode ode = r->ode;
     trial one = {.n = ode.n};
     double reached;
+    // a system that has a rate only once
     r->ode.self = &one;
     r->ode.derivative = rate_once;
     int flag = arkode_step(r, 1, &reached);
@@ -479,6 +489,7 @@ static void *ida_memory(run *r) {
 static int ida_residual(double t, N_Vector y, N_Vector of, N_Vector out, void *user) {
     run *r = user;
     int n = r->ode.n;
+    // ẏ − f, finite
     const double *rate_of = bough_vector_data(of);
     double *residual = bough_vector_data(out);
     if (rate(t, y, out, r) != 0) return 1;

@@ -36,6 +36,7 @@ static N_Vector clone(N_Vector model) { return with_data(N_VCloneEmpty(model)); 
 
 // -- operations --------------------------------------------------------------------------------
 
+// z = a x + b y
 static void linear_sum(double a, N_Vector vx, double b, N_Vector vy, N_Vector vz) {
     const double *x = bough_vector_data(vx), *y = bough_vector_data(vy);
     double *z = bough_vector_data(vz);
@@ -85,6 +86,7 @@ static double max_norm(N_Vector vx) {
     return most;
 }
 
+// √(Σ (x w)²/n)
 static double wrms_norm(N_Vector vx, N_Vector vw) {
     const double *x = bough_vector_data(vx), *w = bough_vector_data(vw);
     double sum = 0;
@@ -108,6 +110,7 @@ static int linear_combination(int count, double *c, N_Vector *vx, N_Vector vz) {
         scale(c[0], vx[0], vz);
         return 0;
     }
+    // two vectors in each pass over z
     linear_sum(c[0], vx[0], c[1], vx[1], vz);
     for (; k + 1 < count; k += 2)
         add_two(c[k], bough_vector_data(vx[k]), c[k + 1], bough_vector_data(vx[k + 1]), z, n);
@@ -118,6 +121,7 @@ static int linear_combination(int count, double *c, N_Vector *vx, N_Vector vz) {
 N_Vector bough_vector_create(int n, SUNContext context) {
     N_Vector v = with_data(N_VNewEmpty_Serial(n, context));
     if (v == NULL) return NULL;
+    // all other operations are the serial vector's
     v->ops->nvclone = clone;
     v->ops->nvlinearsum = linear_sum;
     v->ops->nvconst = constant;

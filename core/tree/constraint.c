@@ -1,4 +1,4 @@
-// Equations between two frames and their derivatives. Of a vector fixed in b, seen from a,
+// Equations between two frames, theory (44), and their derivatives. Of a vector fixed in b, seen from a,
 //     (E b)˙ = ω × E b,   ω = E Ω_b − Ω_a,   ḋ = E v_b − v_a − Ω_a × d.
 #include "core/tree/constraint.h"
 
@@ -6,7 +6,7 @@
 
 static bough_vec3 unit(bough_vec3 x) { return bough_scale(1 / bough_norm(x), x); }
 
-// A unit vector normal to a unit vector: of the axes the one that is most so, made it.
+// A unit vector normal to a unit vector, by Gram and Schmidt from the axis that is closest to normal.
 static bough_vec3 normal_to(bough_vec3 a) {
     double x = fabs(a.x), y = fabs(a.y), z = fabs(a.z);
     bough_vec3 e = bough_v3(x <= y && x <= z, y < x && y <= z, z < x && z < y);
@@ -25,12 +25,14 @@ bough_constraint bough_constraint_make(bough_joint_kind kind, bough_vec3 axis, b
     bough_constraint c = {0};
     bough_vec3 a = bough_joint_n_axes(kind) > 0 ? unit(axis) : bough_v3(0, 0, 1);
     bough_vec3 p = normal_to(a), r = bough_cross(a, p);
+    // translations across the axis, and along it unless the joint slides
     bool along = kind == BOUGH_JOINT_CYLINDRICAL || kind == BOUGH_JOINT_PRISMATIC;
     if (kind != BOUGH_JOINT_PLANAR) {
         add_translation(&c, p);
         add_translation(&c, r);
     }
     if (!along) add_translation(&c, a);
+    // rotations of the axis, and about it unless the joint spins
     if (kind == BOUGH_JOINT_UNIVERSAL) add_rotation(&c, a, unit(second));
     if (kind == BOUGH_JOINT_UNIVERSAL || kind == BOUGH_JOINT_SPHERICAL) return c;
     add_rotation(&c, p, a);
@@ -39,7 +41,7 @@ bough_constraint bough_constraint_make(bough_joint_kind kind, bough_vec3 axis, b
     return c;
 }
 
-// What the rows share, in axes of the first frame
+// Relative motion, common to all rows, in axes of the first frame
 typedef struct relative {
     bough_mat3 e;           // E
     bough_vec3 d, d_rate;   // [m], [m/s]
@@ -62,6 +64,7 @@ static relative relate(const bough_frame_motion *a, const bough_frame_motion *b)
     return r;
 }
 
+// (e·d)˙ = e·ḋ
 static bough_constraint_row translation(const relative *r, bough_vec3 along) {
     static const bough_vec3 none;
     return (bough_constraint_row){

@@ -1,4 +1,4 @@
-// Recursive dynamics of the rigid tree; the equations stand in dynamics.h.
+// Recursive dynamics of the rigid tree, theory (39, 40, 41).
 #include "core/tree/dynamics.h"
 
 #include "core/base/base.h"
@@ -19,7 +19,7 @@ static bough_twist from_parent(const bough_tree_data *d, const bough_link *links
     return bough_twist_to_child(&d->relative[i], parent < 0 ? ground : quantity[parent]);
 }
 
-// They need coordinates, which only the kinematics see.
+// Springs along joint axes: they depend on coordinates, which only the kinematics read.
 static void joint_springs(const bough_tree *tree, const double *q, const double *v, bough_tree_data *d) {
     d->elastic = 0;
     for (int i = 0; i < tree->n_links; i++) {
@@ -39,7 +39,7 @@ void bough_tree_kinematics(const bough_tree *tree, const double *state, bough_tr
         int up = link->parent;
         d->relative[i] = bough_joint_pose(&link->joint, q + link->first_coordinate);
         d->pose[i] = up < 0 ? d->relative[i] : bough_transform_compose(d->pose[up], d->relative[i]);
-        // V_i = X_i V_λ + S v
+        // theory (39): V_i = X_i V_λ + S v
         d->joint_twist[i] = bough_joint_twist(&link->joint, v + link->first_speed);
         d->twist[i] = bough_twist_add(from_parent(d, tree->links, i, d->twist, no_twist), d->joint_twist[i]);
         d->gravity[i] = bough_mat3_tmul(d->pose[i].rotation, tree->gravity);
@@ -54,12 +54,14 @@ void bough_tree_kinematics(const bough_tree *tree, const double *state, bough_tr
 
 // -- loads -----------------------------------------------------------------------------------
 
+// Subtracts a wrench at a frame from that which its link's joint transmits.
 static void subtract_at(bough_tree_data *d, const bough_frame *frame, bough_wrench wrench) {
     if (frame->link < 0) return;
     bough_wrench *sum = &d->wrench[frame->link];
     *sum = bough_wrench_sub(*sum, bough_wrench_to_parent(&frame->placement, wrench));
 }
 
+// The parabola of a sampled wrench.
 static bough_wrench external_at(const bough_external *e, double t) {
     double dt = t - e->start;
     bough_vec3 force = bough_axpy(dt, e->curve.force, e->rate.force);
@@ -73,7 +75,7 @@ static void element_wrenches(const bough_tree *tree, bough_tree_data *d, int ele
     for (int end = 0; end < 2; end++) subtract_at(d, bough_element_frame(tree, element, end), pair.on[end]);
 }
 
-// At the present multipliers.
+// Gᵀλ of a closure at the present multipliers, theory (46).
 static void closure_wrenches(const bough_tree *tree, bough_tree_data *d, const bough_closure *c) {
     for (int k = c->first_row; k < c->first_row + bough_constraint_n_rows(&c->constraint); k++) {
         double lambda = d->loops->multiplier[k];
@@ -94,7 +96,7 @@ bough_wrench bough_tree_end_wrench(const bough_tree *tree, const bough_tree_data
     return w;
 }
 
-// wrench_i = V ×* I V − I g − f_ext: what resists, without accelerations
+// theory (40) without accelerations: wrench_i = V ×* I V − I g − f_ext
 static void bias_wrenches(const bough_tree *tree, bough_tree_data *d, double t, const double *input) {
     for (int i = 0; i < tree->n_links; i++) {
         const bough_inertia *inertia = &tree->links[i].inertia;
@@ -102,6 +104,7 @@ static void bias_wrenches(const bough_tree *tree, bough_tree_data *d, double t, 
         bough_wrench weight = bough_inertia_mul(inertia, (bough_twist){d->gravity[i], {0, 0, 0}});
         d->wrench[i] = bough_wrench_sub(bough_wrench_cross(d->twist[i], momentum), weight);
     }
+    // external wrenches: ports, ends, samples, springs and bushings, applied loads, closures
     for (int p = 0; input != NULL && p < tree->n_ports; p++) {
         subtract_at(d, &tree->ports[p], bough_wrench_load(input + BOUGH_PORT_INPUTS * p));
     }
@@ -136,6 +139,7 @@ static double prescribed_acceleration(const bough_link *link, double t) {
 
 // -- inverse dynamics ------------------------------------------------------------------------
 
+// theory (39, 40): accelerations outwards, wrenches inwards.
 void bough_tree_inverse_dynamics(const bough_tree *tree, bough_tree_data *d, double t, const double *input,
                                  const double *acceleration, double *residual) {
     bias_wrenches(tree, d, t, input);
@@ -154,7 +158,8 @@ void bough_tree_inverse_dynamics(const bough_tree *tree, bough_tree_data *d, dou
     for (int i = tree->n_links - 1; i >= 0; i--) {
         const bough_link *link = &tree->links[i];
         double *row = residual + link->first_speed;
-        bough_joint_force(&link->joint, d->wrench[i], row); // Sᵀ f_i
+        // residual Sᵀ f_i − τ; of a prescribed joint it is the drive, theory (43)
+        bough_joint_force(&link->joint, d->wrench[i], row);
         for (int k = 0; k < link->n_speeds; k++) row[k] -= d->force[link->first_speed + k];
         if (link->motion != NULL) {
             d->drive[link->first_speed] = row[0];
@@ -195,7 +200,7 @@ static void add_to_parent(const bough_transform *x, const double *a, double *up)
     }
 }
 
-// Whether a column of the motion subspace moves more inertia than rounding leaves behind.
+// Whether a column of the motion subspace moves inertia beyond rounding errors.
 static bool moves_inertia(const double *articulated, bough_twist column, double moved) {
     int first = bough_norm(column.angular) > 0 ? 3 : 0;
     double trace = 0;
@@ -216,7 +221,7 @@ static bool factor_joint(const bough_link *link, const double *articulated, doub
     return bough_cholesky_factor(n, factor);
 }
 
-// Iᵃ = Iᴬ − U D⁻¹ Uᵀ, in place: what the parent feels of the body through its joint
+// Iᵃ = Iᴬ − U D⁻¹ Uᵀ, in place: the inertia that the parent carries through the joint
 static void release_joint(const bough_link *link, const double *gain, const double *factor,
                           double *articulated) {
     int n = link->n_speeds;
@@ -278,7 +283,7 @@ static bough_wrench pass_down(const bough_link *link, bough_tree_data *d, int i,
                             bough_wrench_add(matrix_mul(own, turn), gain_solve(link, gain, factor, u)));
 }
 
-// A = a' + S v̇ with v̇ as given, and what drives the joint
+// theory (43): A = a' + S v̇ with the given v̇, and the drive of the joint
 static void follow(const bough_link *link, bough_tree_data *d, int i, bough_twist arriving, double given) {
     double needed[N];
     d->acceleration[i] = bough_twist_add(arriving, bough_joint_twist(&link->joint, &given));
@@ -287,6 +292,7 @@ static void follow(const bough_link *link, bough_tree_data *d, int i, bough_twis
     d->drive[link->first_speed] = needed[0] - d->force[link->first_speed];
 }
 
+// Articulated bodies, theory (41).
 bool bough_tree_free_dynamics(const bough_tree *tree, bough_tree_data *d, double t, const double *input,
                               double *acceleration) {
     bias_wrenches(tree, d, t, input);
@@ -295,6 +301,7 @@ bool bough_tree_free_dynamics(const bough_tree *tree, bough_tree_data *d, double
     for (int i = 0; i < tree->n_links; i++) {
         rigid_matrix(&tree->links[i].inertia, d->articulated + NN * i);
     }
+    // inwards: articulated inertia and bias wrench of each parent
     for (int i = tree->n_links - 1; i >= 0; i--) {
         const bough_link *link = &tree->links[i];
         double *own = d->articulated + NN * i;
@@ -312,6 +319,7 @@ bool bough_tree_free_dynamics(const bough_tree *tree, bough_tree_data *d, double
         bough_wrench *up = &d->wrench[link->parent];
         *up = bough_wrench_add(*up, bough_wrench_to_parent(&d->relative[i], passed));
     }
+    // outwards: accelerations
     for (int i = 0; i < tree->n_links; i++) {
         const bough_link *link = &tree->links[i];
         bough_twist turn = bough_twist_cross(d->twist[i], d->joint_twist[i]);
@@ -334,7 +342,8 @@ void bough_tree_free_response(const bough_tree *tree, bough_tree_data *d, const 
     memset(d->force, 0, (size_t)tree->n_v * sizeof(double));
     for (int i = 0; i < tree->n_links; i++) d->wrench[i] = no_wrench;
     subtract_at(d, frame, wrench);
-    for (int i = frame->link; i >= 0; i = tree->links[i].parent) { // only ancestors feel it
+    // inwards along the ancestors, the only links with a bias wrench
+    for (int i = frame->link; i >= 0; i = tree->links[i].parent) {
         const bough_link *link = &tree->links[i];
         bough_wrench passed = d->wrench[i];
         if (link->motion == NULL) {
@@ -346,6 +355,7 @@ void bough_tree_free_response(const bough_tree *tree, bough_tree_data *d, const 
         d->wrench[link->parent] = bough_wrench_to_parent(&d->relative[i], passed);
     }
     for (int i = 0; i < tree->n_links; i++) {
+        // outwards over all links, with the factors of the last dynamics
         bough_twist carried = from_parent(d, tree->links, i, d->acceleration, no_twist);
         if (tree->links[i].motion == NULL) {
             accelerate(&tree->links[i], d, i, carried, change);
@@ -378,7 +388,7 @@ void bough_tree_tangent(const bough_tree *tree, const double *state, const doubl
         // δV_i = X δV_λ + (X V_λ) × S δη + S δv
         d->acceleration[i] = bough_twist_add(from_parent(d, tree->links, i, d->acceleration, no_twist),
                                              bough_twist_add(bough_twist_cross(carried, moved), own));
-        bough_vec3 above = link->parent < 0 ? no_twist.linear : d->turn[link->parent];
-        d->turn[i] = bough_add(bough_mat3_tmul(d->relative[i].rotation, above), moved.angular);
+        bough_vec3 above = link->parent < 0 ? no_twist.linear : d->rotation[link->parent];
+        d->rotation[i] = bough_add(bough_mat3_tmul(d->relative[i].rotation, above), moved.angular);
     }
 }

@@ -40,7 +40,7 @@ void bough_tree_free_response(const bough_tree *tree, bough_tree_data *data, con
 void bough_tree_coordinate_rate(const bough_tree *tree, const double *state, double *rate);
 
 // The tangents of the links' twists and rotations along a change (n_q + n_v) of the state, into
-// data->acceleration and data->turn. Along the motion's own rate they are the exact rates.
+// data->acceleration and data->rotation. Along the motion's own rate they are the exact rates.
 void bough_tree_tangent(const bough_tree *tree, const double *state, const double *change,
                         bough_tree_data *data);
 

@@ -1,3 +1,4 @@
+// Springs and bushings between markers, applied wrenches, and their variations; theory (42).
 #include "core/tree/force.h"
 
 #include "core/base/base.h"
@@ -70,6 +71,7 @@ static bough_force_pair spring_change(const bough_tree *tree, const bough_tree_d
         v3 turned = bough_cross(shift[end].angular, x.v[end].linear);
         sped[end] = bough_mat3_mul(x.r[end], bough_add(rate[end].linear, turned));
     }
+    // variations of length, direction, and tension
     v3 dx = bough_sub(moved[1], moved[0]), dv = bough_sub(sped[1], sped[0]);
     double dl = bough_dot(x.n, dx), inverse = x.length > 0 ? 1 / x.length : 0;
     v3 dn = bough_scale(inverse, bough_axpy(-dl, x.n, dx));
@@ -87,7 +89,7 @@ static bough_force_pair spring_change(const bough_tree *tree, const bough_tree_d
 
 // -- bushing, all in the axes of the first marker ------------------------------------------------
 
-// How the second marker stands and moves as the first sees it.
+// Pose and motion of the second marker relative to the first.
 typedef struct relative {
     bough_mat3 r;                 // its axes
     v3 d, d_rate;                 // its origin
@@ -109,7 +111,7 @@ static relative relative_of(const bough_tree *tree, const bough_tree_data *d, co
     return x;
 }
 
-// What the rotation's spring energy ½ θᵀKθ gives as a moment: κ + ½ θ×κ + β θ×(θ×κ), κ = Kθ.
+// theory (42), the gradient of ½ θᵀKθ: κ + ½ θ×κ + β θ×(θ×κ), κ = Kθ.
 static v3 elastic_moment(v3 theta, v3 kappa, double beta) {
     v3 once = bough_cross(theta, kappa);
     return bough_add(kappa, bough_axpy(0.5, once, bough_scale(beta, bough_cross(theta, once))));
@@ -155,23 +157,26 @@ static bough_force_pair bushing_change(const bough_tree *tree, const bough_tree_
     bough_wrench w = on_second(b, &x);
     double beta, slope;
     bough_log_factors(bough_norm(x.theta), &beta, &slope);
-    // how the second marker turns, moves and speeds up as the first sees it
-    v3 turn = bough_sub(bough_mat3_mul(x.r, shift[1].angular), shift[0].angular);
-    v3 once = bough_cross(x.theta, turn);
-    v3 dtheta = bough_axpy(-0.5, once, bough_axpy(beta, bough_cross(x.theta, once), turn));
+    // variations of the relative rotation, position, angular velocity and velocity, in axes of the first
+    // marker
+    v3 eta = bough_sub(bough_mat3_mul(x.r, shift[1].angular), shift[0].angular);
+    v3 once = bough_cross(x.theta, eta);
+    v3 dtheta = bough_axpy(-0.5, once, bough_axpy(beta, bough_cross(x.theta, once), eta));
+    // relative displacement and its rate
     v3 dd = bough_sub(bough_mat3_mul(x.r, shift[1].linear),
                       bough_add(shift[0].linear, bough_cross(shift[0].angular, x.d)));
-    v3 domega = bough_add(bough_cross(turn, x.w_second),
+    v3 domega = bough_add(bough_cross(eta, x.w_second),
                           bough_sub(bough_mat3_mul(x.r, rate[1].angular), rate[0].angular));
-    v3 dv = bough_add(bough_cross(turn, x.v_second), bough_mat3_mul(x.r, rate[1].linear));
+    v3 dv = bough_add(bough_cross(eta, x.v_second), bough_mat3_mul(x.r, rate[1].linear));
     dv = bough_sub(dv, bough_add(rate[0].linear, bough_cross(rate[0].angular, x.d)));
     dv = bough_sub(dv, bough_cross(x.w_own, dd));
     v3 df = bough_scale(-1, bough_add(scaled(b->stiffness, dd), scaled(b->damping, dv)));
     v3 dm = bough_scale(-1, bough_add(moment_change(b, x.theta, dtheta), scaled(b->damping + 3, domega)));
+    // force and moment on both markers
     v3 arm = bough_add(bough_cross(dd, w.force), bough_cross(x.d, df));
     return (bough_force_pair){{{bough_scale(-1, df), bough_scale(-1, bough_add(dm, arm))},
-                               {bough_mat3_tmul(x.r, bough_sub(df, bough_cross(turn, w.force))),
-                                bough_mat3_tmul(x.r, bough_sub(dm, bough_cross(turn, w.moment)))}}};
+                               {bough_mat3_tmul(x.r, bough_sub(df, bough_cross(eta, w.force))),
+                                bough_mat3_tmul(x.r, bough_sub(dm, bough_cross(eta, w.moment)))}}};
 }
 
 // -- elements ------------------------------------------------------------------------------------
@@ -203,6 +208,7 @@ bough_wrench bough_applied_force(const bough_tree *tree, const bough_tree_data *
     const bough_applied_def *a = &tree->applied[k];
     double factor = bough_schedule_at(&a->schedule, t);
     bough_wrench w = {bough_scale(factor, a->wrench.force), bough_scale(factor, a->wrench.moment)};
+    // constant in the ground: resolved in the marker's axes
     if (!a->ground) return w;
     bough_mat3 r = bough_tree_frame_pose(data, &tree->markers[a->marker]).rotation;
     return (bough_wrench){bough_mat3_tmul(r, w.force), bough_mat3_tmul(r, w.moment)};

@@ -1,10 +1,10 @@
-// The kinds of joints. Reference: docs/theory.md, "The tree"; speeds are components in body axes.
+// The kinds of joints: S and N of theory (39, 45). Speeds are components in body axes.
 #include "core/tree/joint.h"
 
 #include "core/base/base.h"
 #include "core/base/rotation.h"
 
-// A joint slides along none, one or two axes or anywhere, and then spins.
+// A joint slides along no, one, two or all axes, and then rotates.
 typedef enum spin { NO_SPIN, ABOUT_AXIS, ALL_WAYS } spin;
 
 static const struct {
@@ -92,8 +92,8 @@ void bough_joint_force(const bough_joint *joint, bough_wrench f, double *force) 
 
 // ṗ = ½ p∘(0,Ω), with p as it stands: |p| keeps its value exactly and only p/|p| is used.
 static void quaternion_rate(const double *p, const double *omega, double *rate) {
-    bough_quaternion turn = {0, omega[0], omega[1], omega[2]};
-    bough_quaternion r = bough_quaternion_product(load(p), turn);
+    bough_quaternion w = {0, omega[0], omega[1], omega[2]};
+    bough_quaternion r = bough_quaternion_product(load(p), w);
     rate[0] = 0.5 * r.w, rate[1] = 0.5 * r.x, rate[2] = 0.5 * r.y, rate[3] = 0.5 * r.z;
 }
 
@@ -104,17 +104,17 @@ static void quaternion_speed(const double *p, const double *change, double *omeg
     bough_v3_store(bough_scale(2 / square, bough_v3(c.x, c.y, c.z)), omega);
 }
 
-// Turns (x, y) by an angle.
-static void turn_plane(double angle, const double *x, double *turned) {
+// Rotates (x, y) by an angle.
+static void rotate_plane(double angle, const double *x, double *rotated) {
     double c = cos(angle), s = sin(angle);
-    turned[0] = c * x[0] - s * x[1];
-    turned[1] = s * x[0] + c * x[1];
+    rotated[0] = c * x[0] - s * x[1];
+    rotated[1] = s * x[0] + c * x[1];
 }
 
 void bough_joint_rate(const bough_joint *joint, const double *q, const double *v, double *rate) {
     int n = slides_of(joint);
     if (n == 1) rate[0] = v[0];
-    if (n == 2) turn_plane(q[2], v, rate);
+    if (n == 2) rotate_plane(q[2], v, rate);
     if (n == 3) bough_v3_store(bough_mat3_mul(rotation_at(q + 3), load3(v)), rate);
     if (spin_of(joint) == ABOUT_AXIS) rate[n] = v[n];
     if (spin_of(joint) == ALL_WAYS) quaternion_rate(q + n, v + n, rate + n);
@@ -123,7 +123,7 @@ void bough_joint_rate(const bough_joint *joint, const double *q, const double *v
 void bough_joint_speed(const bough_joint *joint, const double *q, const double *change, double *v) {
     int n = slides_of(joint);
     if (n == 1) v[0] = change[0];
-    if (n == 2) turn_plane(-q[2], change, v);
+    if (n == 2) rotate_plane(-q[2], change, v);
     if (n == 3) bough_v3_store(bough_mat3_tmul(rotation_at(q + 3), load3(change)), v);
     if (spin_of(joint) == ABOUT_AXIS) v[n] = change[n];
     if (spin_of(joint) == ALL_WAYS) quaternion_speed(q + n, change + n, v + n);
@@ -135,6 +135,7 @@ static void quaternion_change(const double *p, const double *omega, double c, co
     double rate[4], square = 0;
     quaternion_rate(p, omega_change, rate);
     for (int k = 0; k < 3; k++) square += omega[k] * omega[k];
+    // multiply by the inverse of c − ½Ω
     double f = 1 / (c * c + 0.25 * square);
     bough_quaternion side = {r[0] + rate[0], r[1] + rate[1], r[2] + rate[2], r[3] + rate[3]};
     bough_quaternion inverse = {f * c, 0.5 * f * omega[0], 0.5 * f * omega[1], 0.5 * f * omega[2]};
@@ -142,27 +143,28 @@ static void quaternion_change(const double *p, const double *omega, double c, co
     change[0] = d.w, change[1] = d.x, change[2] = d.y, change[3] = d.z;
 }
 
-// c δx − δ(R v) = r with δ(R v) = R (δv + δη × v); `turn` is the change of the quaternion.
+// c δx − δ(R v) = r with δ(R v) = R (δv + δη × v), δη from the change of the quaternion.
 static void free_change(const double *q, const double *v, double c, const double *r,
-                        const double *speed_change, const double *turn, double *change) {
+                        const double *speed_change, const double *quaternion, double *change) {
     double eta[3];
-    quaternion_speed(q + 3, turn, eta);
+    quaternion_speed(q + 3, quaternion, eta);
     bough_vec3 own = bough_add(load3(speed_change), bough_cross(load3(eta), load3(v)));
     bough_vec3 sum = bough_add(load3(r), bough_mat3_mul(rotation_at(q + 3), own));
     bough_v3_store(bough_scale(1 / c, sum), change);
 }
 
-// The same in the plane, where δη × v is the angle's change times v turned by a right angle.
+// The same in the plane, where δη × v is the angle's change times v rotated by a right angle.
 static void planar_change(const double *q, const double *v, double c, const double *r,
-                          const double *speed_change, double turn, double *change) {
-    const double own[2] = {speed_change[0] - turn * v[1], speed_change[1] + turn * v[0]};
-    turn_plane(q[2], own, change);
+                          const double *speed_change, double angle, double *change) {
+    const double own[2] = {speed_change[0] - angle * v[1], speed_change[1] + angle * v[0]};
+    rotate_plane(q[2], own, change);
     for (int k = 0; k < 2; k++) change[k] = (r[k] + change[k]) / c;
 }
 
 void bough_joint_change(const bough_joint *joint, const double *q, const double *v, double c, const double *r,
                         const double *speed_change, double *change) {
     int n = slides_of(joint);
+    // rotations first: displacements in rotated axes depend on their change
     if (spin_of(joint) == ABOUT_AXIS) change[n] = (r[n] + speed_change[n]) / c;
     if (spin_of(joint) == ALL_WAYS) {
         quaternion_change(q + n, v + n, c, r + n, speed_change + n, change + n);
@@ -204,6 +206,7 @@ double bough_joint_spring_force(const bough_joint_spring *spring, double q, doub
     double force = -spring->stiffness * stretch - spring->damping * v;
     *energy = 0.5 * spring->stiffness * stretch * stretch;
     if (k == 0) return force;
+    // stops, whose stiffness grows over a hundredth of the range
     double width = 0.01 * (spring->high - spring->low);
     force += stop_force(k, width, spring->low - q, energy);
     return force - stop_force(k, width, q - spring->high, energy);

@@ -1,4 +1,4 @@
-// Joints: how a body moves against its parent. The body frame coincides with the joint frame where
+// Joints: how a body moves relative to its parent. The body frame coincides with the joint frame where
 // all coordinates are zero (quaternion: one); speeds are components of the relative twist in body
 // axes, so that every motion subspace S is constant there.
 //
@@ -10,12 +10,12 @@
 // free       position in joint axes [m], quat.   velocity, Ω, both in body axes [m/s, rad/s]
 // cylindric. displacement [m], angle [rad]       q̇ [m/s, rad/s]
 // universal  angle about the axis, then about    q̇ [rad/s]
-//            the second axis, which it turns [rad]
+//            the second axis, which rotates with it [rad]
 // planar     displacements along the second axis velocity along both in body axes [m/s],
 //            and axis × second [m], angle [rad]  q̇ of the angle [rad/s]
 //
-// A universal joint's S is not constant: the tree makes two revolute joints of it, and of the
-// functions below only the first four know it.
+// A universal joint's S is not constant: the tree replaces it by two revolute joints, and of the
+// functions below only the first four accept it.
 #ifndef BOUGH_CORE_JOINT_H
 #define BOUGH_CORE_JOINT_H
 
@@ -41,8 +41,8 @@ typedef struct bough_joint {
     bough_vec3 second;         // unit vector normal to it in joint axes; planar
 } bough_joint;
 
-// What acts along the axis of a revolute or prismatic joint by itself: a linear spring and damper,
-// and stops at both ends of its way, elastic and without friction.
+// Forces along the axis of a revolute or prismatic joint: a linear spring and damper, and stops at both ends
+// of its range, elastic and without friction.
 typedef struct bough_joint_spring {
     double stiffness;      // [N m/rad] or [N/m]
     double damping;        // [N m s/rad] or [N s/m]

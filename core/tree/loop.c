@@ -1,3 +1,4 @@
+// Closed loops, theory (45, 46).
 #include "core/tree/loop.h"
 
 #include "core/base/base.h"
@@ -6,16 +7,16 @@
 
 #include <string.h>
 
-// Of the scaled matrix' eigenvalues: below this share of the largest, equations depend on each
-// other. It is the square of the distance from a position in which the loop could branch, relative to its
-// size.
+// Eigenvalues of the scaled matrix below this, relative to the largest, belong to dependent equations. It is
+// the square of the distance from a position in which the loop could branch, relative to the loop's size.
 static const double dependent = 1e-9;
-// The same per opening of the loop relative to its size, up to this share.
+// The same in proportion to the opening of the loop relative to its size, and its maximum.
 static const double per_opening = 30, most_dependent = 1e-7;
-// Of the diagonal's largest entry of the same kind: below this nothing moves.
+// Diagonal entries below this, relative to the largest of the same kind, belong to equations that nothing
+// moves.
 static const double rigid = 1e-13;
-// Of the largest entry of the other kind, both per length: below this the largest entry of a kind is the
-// square of rounding errors. A plane mechanism that lies across the ground's axes has such rotations.
+// Below this, relative to the largest entry of the other kind, both per length, the largest entry of a kind
+// is the square of rounding errors. A plane mechanism oblique to the ground's axes has such rotations.
 static const double rounding = 1e-22;
 
 // -- construction ------------------------------------------------------------------------------
@@ -23,7 +24,7 @@ static const double rounding = 1e-22;
 static bough_status check(const bough_tree *tree, const bough_closure_def *c) {
     if (tree->markers[c->marker[0]].link != tree->markers[c->marker[1]].link) return bough_ok();
     return bough_fail(BOUGH_INVALID,
-                      "closure '%s': its ends cannot move against each other, so there is nothing "
+                      "closure '%s': its ends cannot move relative to each other, so there is nothing "
                       "to close",
                       c->name);
 }
@@ -128,7 +129,7 @@ static bool turns(const bough_tree *tree, int row) {
     return row - c->first_row >= c->constraint.n_translation;
 }
 
-// Of the diagonal, among equations of translation and of rotation; infinite where that is rounding
+// Largest diagonal entries of translations and of rotations; infinite where they are rounding errors
 static void find_largest(const bough_tree *tree, const bough_loops *l, double largest[2]) {
     int m = tree->n_rows;
     double area = tree->closure_size * tree->closure_size;
@@ -143,7 +144,8 @@ static void find_largest(const bough_tree *tree, const bough_loops *l, double la
     if (straight) largest[1] = INFINITY;
 }
 
-// A loop that is open by ε of its size goes on in the other way within a distance of √ε from such a position.
+// The threshold: a loop that is open by ε of its size changes to the other branch within √ε of a branch
+// position.
 static double least_eigenvalue(const bough_tree *tree, const bough_loops *l) {
     double open = 0;
     for (int k = 0; k < tree->n_rows; k++) {
@@ -154,9 +156,8 @@ static double least_eigenvalue(const bough_tree *tree, const bough_loops *l) {
 }
 
 // One scale for the translations of a closure and one for its rotations: its largest entry becomes one. Near
-// a position where equations begin to depend on each other, an entry of its own for each would hide that: the
-// loop's errors then turn the motion aside, with accelerations without bound. Rows that nothing moves drop
-// out.
+// a position where equations begin to depend on each other, separate scales would hide that, and errors of
+// the loop would deflect the motion with unbounded accelerations. Rows that nothing moves are left out.
 static void find_scales(const bough_tree *tree, bough_loops *l) {
     int m = tree->n_rows;
     double largest[2];
@@ -198,13 +199,14 @@ static bool find_mobility(const bough_tree *tree, bough_tree_data *d) {
     return factor(tree, d->loops);
 }
 
-// The least x of all that make G M⁻¹Gᵀ x = x as far as it can be, in place
+// The least x with G M⁻¹Gᵀ x equal to the given x in the least-squares sense, in place
 static void solve(const bough_tree *tree, const bough_loops *l, double *x) {
     int m = tree->n_rows;
     double *part = l->work;
     double least = least_eigenvalue(tree, l);
     for (int i = 0; i < m; i++) {
         part[i] = 0;
+        // by the pseudo-inverse: dependent directions are left out
         if (l->value[i] <= least) continue;
         for (int k = 0; k < m; k++) part[i] += l->matrix[i * m + k] * l->scale[k] * x[k];
         part[i] /= l->value[i];
@@ -234,16 +236,20 @@ bool bough_tree_forward_dynamics(const bough_tree *tree, bough_tree_data *d, dou
     int m = tree->n_rows;
     double *x = l->work + 4 * m;
     memset(l->multiplier, 0, (size_t)m * sizeof(double));
+    // v̇ of the open tree, from which the right side follows
     if (!bough_tree_free_dynamics(tree, d, t, input, acceleration)) return false;
     bough_loops_rows(tree, d);
     find_rates(tree, d, x);
     for (int k = 0; k < m; k++)
+        // theory (46): G v̇ + Ġ v = −G v/T
         l->multiplier[k] = -(x[k] + l->row[k].bias + l->row[k].rate / tree->closure_time);
     if (!find_mobility(tree, d)) return false;
     solve(tree, l, l->multiplier);
+    // theory (45): G M⁻¹Gᵀ μ = g/T
     for (int k = 0; k < m; k++) x[k] = l->row[k].value / tree->closure_time;
     solve(tree, l, x);
     spread(tree, l, x, l->correction);
+    // the dynamics again, under Gᵀλ
     return bough_tree_free_dynamics(tree, d, t, input, acceleration);
 }
 
@@ -306,8 +312,8 @@ bough_wrench bough_loops_wrench(const bough_tree *tree, const bough_tree_data *d
 // -- the initial state: coordinates and speeds that satisfy the closures -----------------------
 
 enum { MOST_ITERATIONS = 60 };
-static const double longest = 0.05;    // step of a coordinate [rad, m]: a shallow arch turns over else
-static const double near_enough = 0.1; // of the mechanism's extent, and in equations of directions
+static const double longest = 0.05;    // step of a coordinate [rad, m]: longer ones snap a shallow arch
+static const double near_enough = 0.1; // relative to the mechanism's extent, and for directions
 static const double satisfied = 1e-10;
 
 // The largest distance from a closure's end to the ground's origin, a link or another closure [m]

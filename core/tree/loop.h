@@ -42,8 +42,8 @@ bough_wrench bough_loops_wrench(const bough_tree *tree, const bough_tree_data *d
 
 // How far the closures are from a singular position, in which the bodies can go on in more than one way: the
 // smallest eigenvalue of G M⁻¹Gᵀ of those that differ from 0 at the start, relative to the largest [1], and
-// the closure with the largest share in it. Translations and rotations are scaled to the same size. After
-// bough_tree_forward_dynamics, whose factors of the closures it overwrites.
+// the closure with the largest component in its vector. Translations and rotations are scaled to the same
+// size. After bough_tree_forward_dynamics, whose factors of the closures it overwrites.
 double bough_loops_margin(const bough_tree *tree, bough_tree_data *data, int *closure);
 
 // Makes the tree's initial state satisfy its closures: coordinates by Newton's method from near,

@@ -1,3 +1,4 @@
+// Given motions of joints: smooth ramps, cubic splines through tables, and cubics that are set during a run.
 #include "core/tree/motion.h"
 
 #include "core/base/base.h"
@@ -127,7 +128,7 @@ static void fit_positions(const bough_motion_def *def, bough_motion *m, double *
 bough_motion *bough_motion_create(bough_arena *arena, const bough_motion_def *def, double initial) {
     size_t n = (size_t)def->n;
     bough_motion *m = bough_arena_take(arena, sizeof *m);
-    size_t room = n > 0 ? n : 1; // what is steered has a break
+    size_t room = n > 0 ? n : 1; // a motion that is set during a run has one break
     double *times = bough_arena_doubles(arena, room);
     double *piece = bough_arena_doubles(arena, 4 * room + 4);
     double *slope = bough_arena_doubles(arena, 2 * n);

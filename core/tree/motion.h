@@ -38,7 +38,7 @@ typedef struct bough_motion_point {
 bough_motion *bough_motion_create(bough_arena *arena, const bough_motion_def *def, double initial);
 
 // From t on goes by a cubic from one point to another `span` [s] later, accelerations aside, and on
-// from there: for motions that are told sample by sample. What was given before is forgotten.
+// from there: for motions that a controller demands sample by sample. The motion given before is lost.
 void bough_motion_steer(bough_motion *motion, double t, double span, bough_motion_point from,
                         bough_motion_point to);
 

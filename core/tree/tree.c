@@ -1,4 +1,4 @@
-// The tree's def by default; queries of poses and twists.
+// Defaults of the tree's def; queries of poses and twists; loads and motions that change during a run.
 #include "core/tree/tree.h"
 
 #include "core/base/base.h"
@@ -9,6 +9,7 @@ bough_body_def bough_body_def_default(void) {
     return def;
 }
 
+// theory (43): q(t) and v(t) of the given motions.
 void bough_tree_prescribe(const bough_tree *tree, double t, double *state) {
     for (int i = 0; i < tree->n_links; i++) {
         const bough_link *link = &tree->links[i];
@@ -41,6 +42,7 @@ void bough_tree_set_wrench(bough_tree *tree, int marker, double start, const dou
 
 bough_transform bough_tree_frame_pose(const bough_tree_data *data, const bough_frame *frame) {
     if (frame->link < 0) return frame->placement;
+    // on a link: the link's pose, then the placement
     return bough_transform_compose(data->pose[frame->link], frame->placement);
 }
 
@@ -50,6 +52,7 @@ bough_twist bough_tree_frame_twist(const bough_tree_data *data, const bough_fram
 }
 
 bough_twist bough_tree_frame_velocity(const bough_tree_data *data, const bough_frame *frame) {
+    // from frame axes to ground axes
     bough_mat3 r = bough_tree_frame_pose(data, frame).rotation;
     bough_twist own = bough_tree_frame_twist(data, frame);
     return (bough_twist){bough_mat3_mul(r, own.linear), bough_mat3_mul(r, own.angular)};
@@ -62,6 +65,7 @@ void bough_tree_steer(bough_tree *tree, int body, double t, double span, bough_m
 
 void bough_tree_steer_load(bough_tree *tree, int load, double t, double span, double from, double to) {
     bough_joint_load_def *l = &tree->loads[load];
+    // a line between two rows
     double *times = (double *)l->schedule.times,
            *values = (double *)l->schedule.values; // the tree's own copies
     times[0] = t;

@@ -253,7 +253,7 @@ typedef struct bough_tree_data {
     double elastic;            // energy in them [J]
     // computed by the recursions of dynamics.h
     bough_twist *acceleration; // rate of the twist's components, or a tangent
-    bough_vec3 *turn;          // tangent of the link's rotation: axes in the ground change by × turn
+    bough_vec3 *rotation;      // tangent of the link's rotation: axes in the ground change by × rotation
     bough_wrench *wrench;      // accumulated
     double *articulated;       // articulated inertia (n_links × 6 × 6, row-major)
     double *joint_gain;        // U = Iᴬ S (n_links × 6 speeds × 6)

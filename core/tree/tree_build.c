@@ -1,3 +1,4 @@
+// Builds the tree from its def: bodies by level from the ground, welded bodies in one link, frames, forces.
 #include "core/tree/tree.h"
 
 #include "core/base/base.h"
@@ -28,7 +29,7 @@ static bough_status check_places(const bough_tree_def *def) {
     return status;
 }
 
-// Levels from 1, 0 where not known yet. Every body is walked over once.
+// Levels from 1, 0 where not known yet. Every body is visited once.
 static void find_level(const bough_tree_def *def, int body, int *level) {
     int steps = 0, top = body;
     for (; top >= 0 && level[top] == 0; top = def->bodies[top].parent) {
@@ -47,6 +48,7 @@ static void order_bodies(const bough_tree_def *def, int *scratch, int *order) {
         find_level(def, b, level);
         first[level[b]]++;
     }
+    // counting sort by level
     for (int k = 1; k <= n; k++) first[k] += first[k - 1];
     for (int b = 0; b < n; b++) order[first[level[b] - 1]++] = b;
 }
@@ -57,6 +59,7 @@ static bough_frame ground_frame(void) {
     return (bough_frame){.link = BOUGH_GROUND, .placement = bough_transform_identity()};
 }
 
+// Steiner: the inertia in the link's frame.
 static void add_inertia(bough_tree *tree, const bough_frame *frame, bough_inertia inertia) {
     if (frame->link < 0) return; // the ground carries it
     bough_inertia *sum = &tree->links[frame->link].inertia;
@@ -83,8 +86,8 @@ static int add_link(bough_tree *tree, int body, int parent, bough_joint joint) {
     return tree->n_links++;
 }
 
-// A universal joint has no constant motion subspace; two revolute ones have. A coordinate is driven
-// that has a link of its own.
+// A universal joint has no constant motion subspace; two revolute ones have. A driven coordinate needs a link
+// of its own.
 static int add_links(bough_tree *tree, const bough_body_def *b, int body, bough_frame parent) {
     bough_joint joint = {b->kind, bough_transform_compose(parent.placement, b->joint), direction(b->axis),
                          direction(b->second_axis)};
@@ -96,6 +99,7 @@ static int add_links(bough_tree *tree, const bough_body_def *b, int body, bough_
         return only;
     }
     joint.kind = universal ? BOUGH_JOINT_REVOLUTE : BOUGH_JOINT_PRISMATIC;
+    // the first link carries no body, the second one the body
     int cross = add_link(tree, body, parent.link, joint);
     joint.kind = BOUGH_JOINT_REVOLUTE;
     joint.placement = bough_transform_identity();
@@ -105,7 +109,7 @@ static int add_links(bough_tree *tree, const bough_body_def *b, int body, bough_
     return link;
 }
 
-// The parent stands already. Fixed joints are welded here.
+// After the parent. A body on a fixed joint belongs to the parent's link.
 static void place_body(bough_tree *tree, const bough_body_def *b, int body) {
     bough_frame parent = b->parent < 0 ? ground_frame() : tree->bodies[b->parent];
     bough_frame *frame = &tree->bodies[body];
@@ -119,6 +123,7 @@ static void place_body(bough_tree *tree, const bough_body_def *b, int body) {
     add_inertia(tree, frame, bough_inertia_of(b->mass, b->mass_centre, b->inertia));
 }
 
+// Markers, ports and ends on their links; the root vertex of a rod adds its inertia to the carrier's link.
 static void place_attachments(bough_tree *tree, const bough_tree_def *def) {
     for (int m = 0; m < def->n_markers; m++) {
         const bough_marker_def *marker = &def->markers[m];
@@ -141,6 +146,7 @@ static void place_attachments(bough_tree *tree, const bough_tree_def *def) {
     for (int k = 0; k < def->n_loads; k++) tree->loads[k].body = tree->bodies[def->loads[k].body].link;
 }
 
+// Given motions belong to links of one coordinate.
 static void create_motions(bough_arena *arena, const bough_tree_def *def, bough_tree *tree) {
     for (int i = 0; i < tree->n_links; i++) {
         bough_link *link = &tree->links[i];
@@ -152,6 +158,7 @@ static void create_motions(bough_arena *arena, const bough_tree_def *def, bough_
     }
 }
 
+// The initial state in the links' order, with given motions in place.
 static void set_initial(bough_tree *tree, const bough_tree_def *def) {
     for (int i = 0; i < tree->n_links; i++) {
         const bough_link *link = &tree->links[i];
@@ -176,7 +183,7 @@ static void copy_table(bough_arena *arena, bough_schedule *s) {
     s->values = copied(arena, s->values, (size_t)s->n * sizeof(double));
 }
 
-// What stands in the tree as in the definition, with tables of its own.
+// Forces as in the definition, with copies of their tables.
 static void copy_forces(bough_arena *arena, const bough_tree_def *def, bough_tree *tree) {
     tree->gravity = def->gravity;
     tree->n_loads = def->n_loads;
@@ -218,6 +225,7 @@ static void take_frames(bough_arena *arena, const bough_tree_def *def, bough_tre
 static bough_status check_dynamics(bough_arena *arena, const bough_tree_def *def, bough_tree *tree) {
     bough_tree_data *data = bough_tree_data_create(arena, tree);
     double *acceleration = bough_arena_doubles(arena, (size_t)tree->n_v);
+    // the dynamics at the initial state find a joint without inertia
     bough_tree_kinematics(tree, tree->initial, data);
     if (bough_tree_free_dynamics(tree, data, 0, NULL, acceleration)) {
         return bough_loops_assemble(tree, data);
@@ -236,6 +244,7 @@ bough_status bough_tree_create(bough_arena *arena, const bough_tree_def *def, bo
     int *scratch = bough_arena_take(arena, (3 * n + 1) * sizeof *scratch), *order = scratch;
     order_bodies(def, scratch + n, order);
     bough_tree *tree = bough_arena_take(arena, sizeof *tree);
+    // memory and forces, then links from the ground, then what is on them
     take_frames(arena, def, tree);
     copy_forces(arena, def, tree);
     for (int k = 0; k < def->n_bodies; k++) place_body(tree, &def->bodies[order[k]], order[k]);
@@ -256,7 +265,7 @@ bough_tree_data *bough_tree_data_create(bough_arena *arena, const bough_tree *tr
     d->twist = bough_arena_take(arena, n * sizeof *d->twist);
     d->gravity = bough_arena_take(arena, n * sizeof *d->gravity);
     d->acceleration = bough_arena_take(arena, n * sizeof *d->acceleration);
-    d->turn = bough_arena_take(arena, n * sizeof *d->turn);
+    d->rotation = bough_arena_take(arena, n * sizeof *d->rotation);
     d->wrench = bough_arena_take(arena, n * sizeof *d->wrench);
     bough_arena_each(arena, 36 * n, &d->articulated, &d->joint_gain, &d->joint_factor);
     bough_arena_each(arena, (size_t)tree->n_v, &d->force, &d->drive, &d->passive);

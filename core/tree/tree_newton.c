@@ -1,3 +1,4 @@
+// Newton's linear systems of an open tree in O(n), theory (47, 48, 49).
 #include "core/tree/tree_newton.h"
 
 #include "core/base/linalg.h"
@@ -15,17 +16,17 @@ typedef struct change {
 
 enum { ROWS = N * Z, BLOCK = 24 * 12 };
 
-// A link's part of the factors, in its own axes
+// The factors of a link, in its own axes
 typedef struct node {
     bough_transform relative;
     bough_twist speed, joint, carried, pulled; // V, S v, X V_λ, X (A_λ − g)
     bough_wrench force;                        // through the joint, F
-    bough_wrench end_force;                    // of an end, which keeps its direction when the link turns
+    bough_wrench end_force;                    // of an end, whose direction does not rotate with the link
     double tau_q, tau_v;                       // −∂τ/∂q, −∂τ/∂v
     double matrix[ROWS];                       // 𝒜 (6 × 18)
     double column[ROWS];                       // Σ, a row per speed
     double back[ROWS];                         // D⁻¹ Sᵀ𝒜, a row per speed
-    double gain[N * N];                        // what x gives the parent, a row per speed
+    double gain[N * N];                        // wrench on the parent by x, a row per speed
     double coordinate[N * N];                  // δη along each speed, a row per speed
     double factor[N * N];                      // D
     int pivot[N];
@@ -98,8 +99,8 @@ static change carry(const node *n, change z) {
     return own;
 }
 
-// ζ by δη of the joint, δv and the change of S v̇ (all in twists): the parent's motion as the link
-// sees it turns with δη.
+// ζ by δη of the joint, δv and the change of S v̇ (all in twists): the parent's motion in link axes rotates
+// with δη.
 static change move(const node *n, twist eta, twist speed, twist acceleration) {
     change z = {.pose = eta};
     z.speed = bough_twist_add(bough_twist_cross(n->carried, eta), speed);
@@ -129,7 +130,7 @@ static void find_columns(const bough_tree_newton *w, const bough_link *link, nod
 
 // -- setup -----------------------------------------------------------------------------------
 
-// What is left of the evaluation at this point.
+// Copies the evaluation at this point.
 static void remember(const bough_tree_newton *w, const bough_tree_data *d, int i) {
     const bough_link *link = &w->tree->links[i];
     node *n = &w->node[i];
@@ -193,19 +194,19 @@ static void add_ends(const bough_tree_newton *w, const bough_tree_data *d, const
     }
 }
 
-// What an end's force gives where the link turns by its own joint: −δ(Rᵀ f) = −f × δη
+// −δ(Rᵀ f) = −f × δη of an end's force by a rotation of the link's own joint
 static wrench turned_end(const node *n, twist eta) {
     return (wrench){bough_cross(eta.angular, n->end_force.force), {0, 0, 0}};
 }
 
-// D = Sᵀ(𝒜Σ + ends) − ∂τ, and what x gives the parent
+// D = Sᵀ(𝒜Σ + ends) − ∂τ, and the wrench on the parent by x
 static bool factor_joint(const bough_link *link, node *n) {
     int m = link->n_speeds;
     for (int k = 0; k < m; k++) {
         twist eta = bough_joint_twist(&link->joint, n->coordinate + N * k);
         wrench by = bough_wrench_add(times(n->matrix, load(n->column + Z * k)), turned_end(n, eta));
         bough_joint_force(&link->joint, by, n->factor + m * k); // column k
-        // the wrench turns with the joint on its way to the parent
+        // transformed to the parent, the wrench rotates with the joint
         bough_wrench_store(bough_wrench_add(by, bough_wrench_cross(eta, n->force)), n->gain + N * k);
     }
     if (m == 1) n->factor[0] += n->tau_q * n->coordinate[0] + n->tau_v;
@@ -257,6 +258,7 @@ static bool factor_tree(const bough_tree_newton *w) {
             if (!factor_joint(link, n)) return false;
             find_back(link, n);
         }
+        // 𝒜 of the parent
         if (link->parent >= 0) pass_matrix(link, n, w->node[link->parent].matrix);
     }
     return true;
@@ -264,7 +266,7 @@ static bool factor_tree(const bough_tree_newton *w) {
 
 // -- solution --------------------------------------------------------------------------------
 
-// ζ⁰ and what it asks of the joint: from r_q, the known v̇ and, of a prescribed joint, r_v
+// ζ⁰ and the joint's change in it: from r_q, the known v̇ and, of a prescribed joint, r_v
 static void find_known(const bough_tree_newton *w, const double *a, const double *x, int i, double eta[N]) {
     const bough_link *link = &w->tree->links[i];
     node *n = &w->node[i];
@@ -292,16 +294,17 @@ static void eliminate(const bough_tree_newton *w, const double *a, const double 
         node *n = &w->node[i];
         double eta[N];
         find_known(w, a, x, i, eta);
-        twist turn = bough_joint_twist(&link->joint, eta);
+        twist angle = bough_joint_twist(&link->joint, eta);
         wrench by = bough_wrench_add(times(n->matrix, n->known), n->load);
-        by = bough_wrench_add(by, turned_end(n, turn));
-        wrench up = bough_wrench_add(by, bough_wrench_cross(turn, n->force));
+        by = bough_wrench_add(by, turned_end(n, angle));
+        wrench up = bough_wrench_add(by, bough_wrench_cross(angle, n->force));
         if (link->motion == NULL) {
             double required[N];
             bough_joint_force(&link->joint, by, required);
             for (int k = 0; k < link->n_speeds; k++)
                 n->speeds[k] = x[w->tree->n_q + link->first_speed + k] - required[k];
             if (link->n_speeds == 1) n->speeds[0] -= n->tau_q * eta[0];
+            // x of the joint, without the parent's motion
             bough_dense_solve(link->n_speeds, 1, n->factor, n->pivot, n->speeds);
             for (int k = 0; k < link->n_speeds; k++) {
                 wrench gain = bough_wrench_load(n->gain + N * k);
@@ -309,6 +312,7 @@ static void eliminate(const bough_tree_newton *w, const double *a, const double 
                 up.moment = bough_axpy(n->speeds[k], gain.moment, up.moment);
             }
         }
+        // p of the parent
         if (link->parent < 0) continue;
         wrench *sum = &w->node[link->parent].load;
         *sum = bough_wrench_add(*sum, bough_wrench_to_parent(&n->relative, up));
@@ -425,7 +429,7 @@ static void solve_coupling(const bough_tree_newton *w) {
 
 // -- the whole -------------------------------------------------------------------------------
 
-// NOLINTNEXTLINE(readability-function-size): a point of the motion has that many parts
+// NOLINTNEXTLINE(readability-function-size): a point of the motion has so many arguments
 bool bough_tree_newton_setup(bough_tree_newton *w, bough_tree_data *data, double t, const double *input,
                              const double *state, const double *acceleration, double c) {
     const bough_tree *tree = w->tree;

@@ -1,4 +1,4 @@
-// The tree as a system.
+// The tree as a system: core/solve/system.h.
 #include "core/tree/tree.h"
 
 #include "core/base/base.h"
@@ -103,18 +103,20 @@ static void axes_outputs(const tree_system *s, double *out) {
     }
 }
 
+// δ(Eᵀ) along the change of the port's rotation
 static void axes_tangents(const tree_system *s, double *out) {
     for (int a = 0; a < s->tree->n_axes; a++, out += BOUGH_AXES_OUTPUTS) {
         const bough_frame *port = &s->tree->ports[s->tree->axes[a]];
         if (port->link < 0) continue;
         bough_mat3 e = axes_at(s, a);
-        bough_vec3 turn = bough_mat3_tmul(port->placement.rotation, s->data->turn[port->link]);
-        bough_v3_store(bough_cross(e.c1, turn), out);
-        bough_v3_store(bough_cross(e.c2, turn), out + 3);
-        bough_v3_store(bough_cross(e.c3, turn), out + 6);
+        bough_vec3 eta = bough_mat3_tmul(port->placement.rotation, s->data->rotation[port->link]);
+        bough_v3_store(bough_cross(e.c1, eta), out);
+        bough_v3_store(bough_cross(e.c2, eta), out + 3);
+        bough_v3_store(bough_cross(e.c3, eta), out + 6);
     }
 }
 
+// Twist and gravity at each port, in its axes; motion of the ends; axes.
 static void output(void *self, double t, const double *state, const double *input, double *out) {
     (void)input;
     tree_system *s = self;
@@ -130,7 +132,7 @@ static void output(void *self, double t, const double *state, const double *inpu
     axes_outputs(s, out + BOUGH_END_OUTPUTS * s->tree->n_ends);
 }
 
-// Of the outputs with a change of the state: out (n_output).
+// δo along a change of the state: out (n_output).
 static void outputs_change(tree_system *s, const double *state, const double *change, double *out) {
     memset(out, 0, (size_t)bough_tree_n_outputs(s->tree) * sizeof(double));
     bough_tree_kinematics(s->tree, state, s->data);
@@ -139,7 +141,7 @@ static void outputs_change(tree_system *s, const double *state, const double *ch
         const bough_frame *port = &s->tree->ports[p];
         if (port->link < 0) continue;
         bough_twist_store(bough_twist_to_child(&port->placement, s->data->acceleration[port->link]), out);
-        bough_vec3 g = bough_cross(s->data->gravity[port->link], s->data->turn[port->link]);
+        bough_vec3 g = bough_cross(s->data->gravity[port->link], s->data->rotation[port->link]);
         bough_v3_store(bough_mat3_tmul(port->placement.rotation, g), out + 6);
     }
     end_tangents(s, state, change, out);
@@ -159,7 +161,7 @@ static void select_states(const tree_system *s, bool given, double *x) {
 // NOLINTNEXTLINE(readability-function-size): the contract fixes the parameters
 static void output_tangent(void *self, double t, const double *state, const double *input,
                            const double *state_rate, const double *input_rate, double *out) {
-    (void)input, (void)input_rate; // a wrench moves nothing at once
+    (void)input, (void)input_rate; // motions do not depend on wrenches directly
     tree_system *s = self;
     if (state_rate == NULL) {
         memset(out, 0, (size_t)bough_tree_n_outputs(s->tree) * sizeof(double));
@@ -184,9 +186,11 @@ static void output_drift(void *self, double t, const double *state, const double
     outputs_change(s, s->placed, s->y, drift);
 }
 
+// M⁻¹ times the unit wrenches at ports and ends.
 static void input_columns(void *self, double t, const double *state, const double *input, double *column) {
     tree_system *s = self;
     const bough_tree *tree = s->tree;
+    // articulated bodies at this state, then one response for each input
     bough_tree_kinematics(tree, place(s, t, state), s->data);
     bough_tree_forward_dynamics(tree, s->data, t, input, s->r); // for its factors
     for (int j = 0; j < bough_tree_n_inputs(tree); j++, column += s->n) {
@@ -251,6 +255,7 @@ static bool linearise(void *self, double t, const double *state, const double *i
     if (input != NULL) {
         memcpy(k->input, input, (size_t)bough_tree_n_inputs(s->tree) * sizeof(double));
     }
+    // with closures a dense Jacobian, else v̇ for the recursion
     if (k->newton == NULL) return find_jacobian(s, k);
     return derivative(s, t, state, k->input, k->rate);
 }
@@ -310,6 +315,7 @@ static bool constrain(void *self, double t, double *state) {
         drifted = drifted || bough_joint_drift(&link->joint, q) > drift_limit;
         bough_joint_normalise(&link->joint, q);
     }
+    // quaternions of length 1, then given motions
     bough_tree_prescribe(s->tree, t, state);
     return drifted;
 }

@@ -176,8 +176,8 @@ static void add_compliance(void *context, double s, double weight) {
     section_damping(c->axis->table->damping, x.stiffness, damping);
     unpack(compliance, f);
     for (int i = 0; i < 9; i++) c->taper[i] += weight * (s - c->middle) * f[3 + i / 3][3 + i % 3];
-    bough_symmetric6_turn(compliance, turn, compliance);
-    bough_symmetric6_turn(damping, turn, damping);
+    bough_symmetric6_rotate(compliance, turn, compliance);
+    bough_symmetric6_rotate(damping, turn, damping);
     unpack(compliance, f);
     unpack(damping, d);
     carry(s - c->middle, t);

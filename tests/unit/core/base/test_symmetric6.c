@@ -110,14 +110,14 @@ TEST(turn_is_a_rotation_about_z) {
     double a[21], turned[21], back[21], expected[6][6];
     random_matrix(9, 0.1, a);
     for (size_t k = 0; k < sizeof angles / sizeof *angles; k++) {
-        bough_symmetric6_turn(a, angles[k], turned);
+        bough_symmetric6_rotate(a, angles[k], turned);
         turned_explicitly(a, angles[k], expected);
         for (int i = 0; i < 36; i++) {
             check_near(turned[bough_symmetric6_index(i / 6, i % 6)], expected[i / 6][i % 6], 1e-14, 1e-14);
         }
-        bough_symmetric6_turn(turned, -angles[k], back);
+        bough_symmetric6_rotate(turned, -angles[k], back);
         for (int i = 0; i < 21; i++) check_near(back[i], a[i], 1e-14, 1e-14);
-        bough_symmetric6_turn(turned, -angles[k], turned); // in place
+        bough_symmetric6_rotate(turned, -angles[k], turned); // in place
         assert_memory_equal(turned, back, sizeof back);
     }
 }

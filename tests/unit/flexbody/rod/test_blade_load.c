@@ -46,7 +46,7 @@ static void compliance_at(const bough_scene_structure *table, double s, double f
     double share = (s - a->position.z) / (b->position.z - a->position.z), upper[21];
     for (int i = 0; i < 21; i++) upper[i] = a->stiffness[i] + share * (b->stiffness[i] - a->stiffness[i]);
     assert_true(bough_symmetric6_inverse(upper, upper));
-    bough_symmetric6_turn(upper, -(a->twist + share * (b->twist - a->twist)), upper);
+    bough_symmetric6_rotate(upper, -(a->twist + share * (b->twist - a->twist)), upper);
     for (int i = 0; i < 36; i++) full[i] = upper[bough_symmetric6_index(i / 6, i % 6)];
 }
 
