@@ -4,8 +4,8 @@
 //
 // J. Jonkman, S. Butterfield, W. Musial, G. Scott, "Definition of a 5-MW Reference Wind Turbine for
 // Offshore System Development", NREL/TP-500-38060 (2009), section 7. All speeds are the generator's.
-#ifndef BOUGH_AERO_CONTROLLER_H
-#define BOUGH_AERO_CONTROLLER_H
+#ifndef BOUGH_AERO_CONTROL_CONTROLLER_H
+#define BOUGH_AERO_CONTROL_CONTROLLER_H
 
 #include "core/base/status.h"
 

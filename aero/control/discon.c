@@ -134,7 +134,7 @@ bough_status bough_discon_open(bough_arena *arena, const char *library, const ch
 
 static void tell(bough_discon *d, const bough_discon_sensed *s) {
     float *r = d->record;
-    r[STATUS] = s->last ? -1 : d->started;
+    r[STATUS] = s->last ? -1.0F : (float)d->started;
     r[TIME] = (float)s->time;
     r[STEP] = (float)s->step;
     r[PITCH] = (float)s->pitch[0];

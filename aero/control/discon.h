@@ -7,8 +7,8 @@
 //
 // The library has its own memory: samples of a run cannot be repeated, and a process can use a library in
 // one run at a time only.
-#ifndef BOUGH_AERO_DISCON_H
-#define BOUGH_AERO_DISCON_H
+#ifndef BOUGH_AERO_CONTROL_DISCON_H
+#define BOUGH_AERO_CONTROL_DISCON_H
 
 #include "core/base/arena.h"
 #include "core/base/status.h"

@@ -9,8 +9,8 @@
 //
 // S. A. Ning, "A simple solution method for the blade element momentum equations with guaranteed
 // convergence", Wind Energy 17 (2014).
-#ifndef BOUGH_AERO_INDUCTION_H
-#define BOUGH_AERO_INDUCTION_H
+#ifndef BOUGH_AERO_ROTOR_INDUCTION_H
+#define BOUGH_AERO_ROTOR_INDUCTION_H
 
 #include "aero/rotor/polar.h"
 

@@ -2,8 +2,8 @@
 //     f(φ) = sin²φ/(1 − a) − |Vx/Vy| (sin φ cos φ − σ ct/(4F)),
 // written for the quadrant of positive inflow, to which mirroring brings every other. Without
 // branches but those of the options, so that it runs in vector lanes; for induction.c only.
-#ifndef BOUGH_AERO_INDUCTION_BALANCE_H
-#define BOUGH_AERO_INDUCTION_BALANCE_H
+#ifndef BOUGH_AERO_ROTOR_INDUCTION_BALANCE_H
+#define BOUGH_AERO_ROTOR_INDUCTION_BALANCE_H
 
 #include "aero/rotor/induction.h"
 #include "core/base/lanes.h"

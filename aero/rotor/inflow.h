@@ -6,8 +6,8 @@
 //
 // S. Øye, in: H. Snel, J. G. Schepers (eds.), Joint investigation of dynamic inflow effects and
 // implementation of an engineering method, ECN-C--94-107 (1995).
-#ifndef BOUGH_AERO_INFLOW_H
-#define BOUGH_AERO_INFLOW_H
+#ifndef BOUGH_AERO_ROTOR_INFLOW_H
+#define BOUGH_AERO_ROTOR_INFLOW_H
 
 #include "aero/rotor/induction.h"
 

@@ -1,7 +1,7 @@
 // Airfoil coefficients: tables over the angle of attack, periodic over a full turn, interpolated
 // linearly as the field's reference codes do, or by monotone cubics.
-#ifndef BOUGH_AERO_POLAR_H
-#define BOUGH_AERO_POLAR_H
+#ifndef BOUGH_AERO_ROTOR_POLAR_H
+#define BOUGH_AERO_ROTOR_POLAR_H
 
 #include "core/base/arena.h"
 #include "core/base/base.h"

@@ -431,7 +431,7 @@ bough_rotor_extremes bough_rotor_look(const bough_rotor *rotor, const bough_roto
 }
 
 void bough_rotor_set_speed(const bough_rotor *rotor, double speed) {
-    ((bough_rotor *)(uintptr_t)rotor)->wind.def.speed = speed; // the one thing that changes in it
+    ((bough_rotor *)rotor)->wind.def.speed = speed; // the one thing that changes in it
 }
 
 bool bough_rotor_in_wind(const bough_rotor *rotor, bough_vec3 hub, double radius) {

@@ -5,8 +5,8 @@
 // pitch), y edgewise (towards the trailing edge). The rotor turns about +shaft (downwind), that
 // is clockwise seen from upwind. The rotor is sampled at one time; holding and ramping the loads
 // between samples is the caller's.
-#ifndef BOUGH_AERO_ROTOR_H
-#define BOUGH_AERO_ROTOR_H
+#ifndef BOUGH_AERO_ROTOR_ROTOR_H
+#define BOUGH_AERO_ROTOR_ROTOR_H
 
 #include "aero/rotor/induction.h"
 #include "aero/rotor/inflow.h"

@@ -1,6 +1,6 @@
 // What a rotor is built into, and where a sample keeps what it finds; for rotor*.c only.
-#ifndef BOUGH_AERO_ROTOR_MODEL_H
-#define BOUGH_AERO_ROTOR_MODEL_H
+#ifndef BOUGH_AERO_ROTOR_ROTOR_MODEL_H
+#define BOUGH_AERO_ROTOR_ROTOR_MODEL_H
 
 #include "core/base/lanes.h"
 #include "aero/rotor/rotor.h"

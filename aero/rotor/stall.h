@@ -5,8 +5,8 @@
 // M. H. Hansen, M. Gaunaa, H. A. Madsen, "A Beddoes–Leishman type dynamic stall model in
 // state-space and indicial formulations", Risø-R-1354 (2004). The centre of pressure stays the
 // static one's. Beyond 40° from the flow the static polar takes over, wholly from 50°.
-#ifndef BOUGH_AERO_STALL_H
-#define BOUGH_AERO_STALL_H
+#ifndef BOUGH_AERO_ROTOR_STALL_H
+#define BOUGH_AERO_ROTOR_STALL_H
 
 #include "aero/rotor/polar.h"
 

@@ -5,8 +5,8 @@
 // dynamics", EWEC 2001: a source in the cylinder adds what the drag displaces.
 // S. R. J. Powles, Wind Engineering 7 (1983): a cosine-squared wake that widens with the root of
 // the distance. Both in the form of the reference code (AeroDyn v5).
-#ifndef BOUGH_AERO_TOWER_H
-#define BOUGH_AERO_TOWER_H
+#ifndef BOUGH_AERO_ROTOR_TOWER_H
+#define BOUGH_AERO_ROTOR_TOWER_H
 
 #include "core/base/arena.h"
 #include "core/base/vec3.h"

@@ -1,8 +1,8 @@
 // Undisturbed wind: one direction everywhere, sheared over the height, its speed constant or a
 // table over time, when the whole field changes speed at once; or a file of the field; or a condition
 // of IEC 61400-1. Any of them may be inclined and turn with the height.
-#ifndef BOUGH_AERO_WIND_H
-#define BOUGH_AERO_WIND_H
+#ifndef BOUGH_AERO_WIND_WIND_H
+#define BOUGH_AERO_WIND_WIND_H
 
 #include "aero/wind/wind_box.h"
 #include "aero/wind/wind_hub.h"

@@ -6,8 +6,8 @@
 // height, height of the lowest point [m], slope and offset of u, v, w; int32 n and n characters;
 // int16 velocities, (value − offset)/slope in m/s: for every time u, v, w at every point of the
 // grid, breadth fastest, then at the tower points from below the grid downwards.
-#ifndef BOUGH_AERO_WIND_BOX_H
-#define BOUGH_AERO_WIND_BOX_H
+#ifndef BOUGH_AERO_WIND_WIND_BOX_H
+#define BOUGH_AERO_WIND_WIND_BOX_H
 
 #include "core/base/arena.h"
 #include "core/base/status.h"

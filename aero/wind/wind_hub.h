@@ -1,7 +1,7 @@
 // Wind from a uniform file of the field (`.wnd`, hub height): a table over time of speed, direction,
 // shears, gust and upflow that holds in the whole space at once.
-#ifndef BOUGH_AERO_WIND_HUB_H
-#define BOUGH_AERO_WIND_HUB_H
+#ifndef BOUGH_AERO_WIND_WIND_HUB_H
+#define BOUGH_AERO_WIND_WIND_HUB_H
 
 #include "core/base/arena.h"
 #include "core/base/status.h"

@@ -3,8 +3,8 @@
 //
 // Axes: x downwind, y to the left, z up from the ground. A positive change of direction is one where
 // the wind comes from further clockwise, seen from above.
-#ifndef BOUGH_AERO_WIND_IEC_H
-#define BOUGH_AERO_WIND_IEC_H
+#ifndef BOUGH_AERO_WIND_WIND_IEC_H
+#define BOUGH_AERO_WIND_WIND_IEC_H
 
 #include "core/base/status.h"
 #include "core/base/vec3.h"

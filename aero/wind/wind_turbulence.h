@@ -7,8 +7,8 @@
 // of all lower frequencies, and frequencies above the Nyquist frequency are aliased as in any sampled
 // process. The standard deviations are therefore those of the standard. The lateral and vertical
 // components have no coherence, because the standard defines none.
-#ifndef BOUGH_AERO_WIND_TURBULENCE_H
-#define BOUGH_AERO_WIND_TURBULENCE_H
+#ifndef BOUGH_AERO_WIND_WIND_TURBULENCE_H
+#define BOUGH_AERO_WIND_WIND_TURBULENCE_H
 
 #include "aero/wind/wind_box.h"
 #include "aero/wind/wind_iec.h"

@@ -4,8 +4,8 @@
 // Where memory ends, work is left at once: the program goes on behind bough_arena_guard, which returns
 // BOUGH_OUT_OF_MEMORY. So code that takes memory always gets it, and neither tests nor reports that. A file
 // or an object of a library that is open meanwhile must belong to the arena (bough_arena_on_destroy).
-#ifndef BOUGH_CORE_ARENA_H
-#define BOUGH_CORE_ARENA_H
+#ifndef BOUGH_CORE_BASE_ARENA_H
+#define BOUGH_CORE_BASE_ARENA_H
 
 #include "core/base/status.h"
 

@@ -1,7 +1,7 @@
 // Arnoldi's method: an orthonormal basis of the space that a linear operator spans from its starting
 // vectors, by modified Gram–Schmidt done twice, and the eigenvalues of the operator projected on it.
-#ifndef BOUGH_CORE_ARNOLDI_H
-#define BOUGH_CORE_ARNOLDI_H
+#ifndef BOUGH_CORE_BASE_ARNOLDI_H
+#define BOUGH_CORE_BASE_ARNOLDI_H
 
 #include "core/base/arena.h"
 #include "core/base/status.h"

@@ -1,6 +1,6 @@
 // Constants and small helpers that every folder uses.
-#ifndef BOUGH_CORE_BASE_H
-#define BOUGH_CORE_BASE_H
+#ifndef BOUGH_CORE_BASE_BASE_H
+#define BOUGH_CORE_BASE_BASE_H
 
 #include <assert.h>
 #include <math.h>

@@ -5,8 +5,8 @@
 // Columns of a block are padded to 8 doubles so that one column is one vector register. A block at
 // `b` has entry (i, j) at b[8 j + i]; rows 6 and 7 are zero. Arrays of blocks have room for a
 // multiple of 8 blocks.
-#ifndef BOUGH_CORE_BLOCK_TRIDIAGONAL_H
-#define BOUGH_CORE_BLOCK_TRIDIAGONAL_H
+#ifndef BOUGH_CORE_BASE_BLOCK_TRIDIAGONAL_H
+#define BOUGH_CORE_BASE_BLOCK_TRIDIAGONAL_H
 
 #include "core/base/arena.h"
 

@@ -1,7 +1,7 @@
 // Eigenvalues nearest to a point, and their vectors, by block Arnoldi on an inverse: the projected
 // matrix is solved densely, and starting with several vectors finds multiple eigenvalues.
-#ifndef BOUGH_CORE_EIGEN_H
-#define BOUGH_CORE_EIGEN_H
+#ifndef BOUGH_CORE_BASE_EIGEN_H
+#define BOUGH_CORE_BASE_EIGEN_H
 
 #include "core/base/block_tridiagonal.h"
 #include "core/base/status.h"

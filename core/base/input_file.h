@@ -1,7 +1,7 @@
 // The one way to open a file that somebody else has written: only a plain file of bounded size is
 // opened, so that no reader waits for a pipe or reads from a device without end.
-#ifndef BOUGH_CORE_INPUT_FILE_H
-#define BOUGH_CORE_INPUT_FILE_H
+#ifndef BOUGH_CORE_BASE_INPUT_FILE_H
+#define BOUGH_CORE_BASE_INPUT_FILE_H
 
 #include "core/base/arena.h"
 

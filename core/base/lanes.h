@@ -1,8 +1,8 @@
 // Elementary functions without branches, so that loops over them run in vector lanes, with
 // errors of a few units in the last place. Polynomials of sine, cosine and arc tangent are those of
 // fdlibm (Sun Microsystems, 1993).
-#ifndef BOUGH_CORE_LANES_H
-#define BOUGH_CORE_LANES_H
+#ifndef BOUGH_CORE_BASE_LANES_H
+#define BOUGH_CORE_BASE_LANES_H
 
 #include "core/base/base.h"
 #include "core/base/vec3.h"

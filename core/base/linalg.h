@@ -1,7 +1,7 @@
 // Dense linear algebra for small systems; the only user of LAPACK, kept to one thread because the
 // callers run in parallel themselves.
-#ifndef BOUGH_CORE_LINALG_H
-#define BOUGH_CORE_LINALG_H
+#ifndef BOUGH_CORE_BASE_LINALG_H
+#define BOUGH_CORE_BASE_LINALG_H
 
 #include "core/base/arena.h"
 

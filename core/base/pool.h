@@ -13,8 +13,8 @@
 //
 // A waiting thread polls for about 50 µs, yielding its processor, and then sleeps. If there are more
 // threads than processors, it sleeps at once.
-#ifndef BOUGH_CORE_POOL_H
-#define BOUGH_CORE_POOL_H
+#ifndef BOUGH_CORE_BASE_POOL_H
+#define BOUGH_CORE_BASE_POOL_H
 
 #include "core/base/arena.h"
 #include "core/base/status.h"

@@ -1,6 +1,6 @@
 // Rotations: unit quaternions p = (w, x, y, z), their matrices, exponential, logarithm and their tangents.
-#ifndef BOUGH_CORE_ROTATION_H
-#define BOUGH_CORE_ROTATION_H
+#ifndef BOUGH_CORE_BASE_ROTATION_H
+#define BOUGH_CORE_BASE_ROTATION_H
 
 #include "core/base/vec3.h"
 

@@ -1,7 +1,7 @@
 // Memory that is copied out of where it lives and back. Each module lists once, in order,
 // what it keeps; the list serves to measure the copy, to save and to restore.
-#ifndef BOUGH_CORE_SNAPSHOT_H
-#define BOUGH_CORE_SNAPSHOT_H
+#ifndef BOUGH_CORE_BASE_SNAPSHOT_H
+#define BOUGH_CORE_BASE_SNAPSHOT_H
 
 #include <stddef.h>
 #include <string.h>

@@ -1,8 +1,8 @@
 // Spatial algebra in six dimensions, linear part first: twists (v, ω), wrenches (force, moment),
 // rigid inertias and the placement of one frame in another. A twist belongs to the body's point
 // at the origin of the frame it is expressed in; so does the moment of a wrench.
-#ifndef BOUGH_CORE_SPATIAL_H
-#define BOUGH_CORE_SPATIAL_H
+#ifndef BOUGH_CORE_BASE_SPATIAL_H
+#define BOUGH_CORE_BASE_SPATIAL_H
 
 #include "core/base/vec3.h"
 

@@ -1,7 +1,7 @@
 // Results of operations that can fail: a code and, when it is not BOUGH_OK, one message written
 // where the failure arose. Asserts are for our own bugs, statuses for the world.
-#ifndef BOUGH_CORE_STATUS_H
-#define BOUGH_CORE_STATUS_H
+#ifndef BOUGH_CORE_BASE_STATUS_H
+#define BOUGH_CORE_BASE_STATUS_H
 
 #include <stdbool.h>
 

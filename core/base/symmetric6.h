@@ -1,6 +1,6 @@
 // Symmetric 6×6 matrices as upper triangles by rows (21): stiffness, mass, compliance.
-#ifndef BOUGH_CORE_SYMMETRIC6_H
-#define BOUGH_CORE_SYMMETRIC6_H
+#ifndef BOUGH_CORE_BASE_SYMMETRIC6_H
+#define BOUGH_CORE_BASE_SYMMETRIC6_H
 
 #include <stdbool.h>
 

@@ -1,6 +1,6 @@
 // Vectors of three components, by value.
-#ifndef BOUGH_CORE_VEC3_H
-#define BOUGH_CORE_VEC3_H
+#ifndef BOUGH_CORE_BASE_VEC3_H
+#define BOUGH_CORE_BASE_VEC3_H
 
 #include "core/base/base.h"
 

@@ -2,8 +2,8 @@
 //
 // A method gets a system under its inputs (a rod, the tree, two masses or a whole assembly) as
 // ẏ = f(t, y), together with solutions of (I − γ ∂f/∂y) x = b.
-#ifndef BOUGH_CORE_INTEGRATOR_H
-#define BOUGH_CORE_INTEGRATOR_H
+#ifndef BOUGH_CORE_SOLVE_INTEGRATOR_H
+#define BOUGH_CORE_SOLVE_INTEGRATOR_H
 
 #include "core/base/arena.h"
 #include "core/base/snapshot.h"

@@ -1,7 +1,7 @@
 // The formulas of a step of the Rosenbrock method (core/solve/integrator_rosenbrock.c) over ranges of states,
 // for a caller that evaluates and solves a system of several members itself.
-#ifndef BOUGH_CORE_ROSENBROCK_H
-#define BOUGH_CORE_ROSENBROCK_H
+#ifndef BOUGH_CORE_SOLVE_ROSENBROCK_H
+#define BOUGH_CORE_SOLVE_ROSENBROCK_H
 
 #include "core/solve/integrator.h"
 

@@ -5,8 +5,8 @@
 // which provides f, h, their tangents and the solution of (I − γ ∂f/∂y) x = b. It has no current time
 // and state, no integrator and no factors: these belong to the caller. The result of a call does not
 // depend on earlier calls.
-#ifndef BOUGH_CORE_SYSTEM_H
-#define BOUGH_CORE_SYSTEM_H
+#ifndef BOUGH_CORE_SOLVE_SYSTEM_H
+#define BOUGH_CORE_SOLVE_SYSTEM_H
 
 #include "core/base/arena.h"
 

@@ -1,7 +1,7 @@
 // Vectors for SUNDIALS: the library's serial one with vectorised operations, as its own cost three
 // quarters of a rod's run. The only place that knows an N_Vector from inside.
-#ifndef BOUGH_CORE_VECTOR_H
-#define BOUGH_CORE_VECTOR_H
+#ifndef BOUGH_CORE_SOLVE_VECTOR_H
+#define BOUGH_CORE_SOLVE_VECTOR_H
 
 #include <sundials/sundials_nvector.h>
 

@@ -1,8 +1,8 @@
 // The constraints of a joint, as equations between two frames a and b, which close a loop of bodies. With d =
 // R_aᵀ(r_b − r_a) and E = R_aᵀR_b an equation is either
 //     e·d = 0   or   a·E b = 0,   e, a fixed in the first frame, b in the second.
-#ifndef BOUGH_CORE_CONSTRAINT_H
-#define BOUGH_CORE_CONSTRAINT_H
+#ifndef BOUGH_CORE_TREE_CONSTRAINT_H
+#define BOUGH_CORE_TREE_CONSTRAINT_H
 
 #include "core/tree/joint.h"
 

@@ -5,8 +5,8 @@
 // λ the parent, j the children, A the rate of V's components. Of a joint with prescribed motion v̇ is
 // given; Sᵀ f_i − τ is then what drives it.
 // Reference: R. Featherstone, Rigid Body Dynamics Algorithms, 2008, chapters 5 to 7.
-#ifndef BOUGH_CORE_DYNAMICS_H
-#define BOUGH_CORE_DYNAMICS_H
+#ifndef BOUGH_CORE_TREE_DYNAMICS_H
+#define BOUGH_CORE_TREE_DYNAMICS_H
 
 #include "core/tree/tree.h"
 

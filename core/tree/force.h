@@ -1,8 +1,8 @@
 // Forces on the rigid tree besides those of joints and ports: springs and bushings between markers,
 // applied wrenches. Wrenches are on the tree at the marker's origin in marker axes; changes are
 // those along small changes of the markers' poses (twists in marker axes) and of their twists.
-#ifndef BOUGH_CORE_FORCE_H
-#define BOUGH_CORE_FORCE_H
+#ifndef BOUGH_CORE_TREE_FORCE_H
+#define BOUGH_CORE_TREE_FORCE_H
 
 #include "core/tree/tree.h"
 

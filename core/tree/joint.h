@@ -16,8 +16,8 @@
 //
 // A universal joint's S is not constant: the tree replaces it by two revolute joints, and of the
 // functions below only the first four accept it.
-#ifndef BOUGH_CORE_JOINT_H
-#define BOUGH_CORE_JOINT_H
+#ifndef BOUGH_CORE_TREE_JOINT_H
+#define BOUGH_CORE_TREE_JOINT_H
 
 #include "core/base/spatial.h"
 

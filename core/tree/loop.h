@@ -9,8 +9,8 @@
 // the least of all that solve them, each measured by what it moves, so that units do not matter.
 // Reference: U. Ascher, H. Chin, L. Petzold, S. Reich, Stabilization of constrained mechanical
 // systems with DAEs and invariant manifolds, Mech. Struct. Mach. 23 (1995).
-#ifndef BOUGH_CORE_LOOP_H
-#define BOUGH_CORE_LOOP_H
+#ifndef BOUGH_CORE_TREE_LOOP_H
+#define BOUGH_CORE_TREE_LOOP_H
 
 #include "core/tree/tree.h"
 

@@ -1,7 +1,7 @@
 // A joint coordinate q(t) that is given: its speed or itself constant, by a smooth ramp or by a
 // table. Every form is a cubic in pieces and one smooth ramp on top of it.
-#ifndef BOUGH_CORE_MOTION_H
-#define BOUGH_CORE_MOTION_H
+#ifndef BOUGH_CORE_TREE_MOTION_H
+#define BOUGH_CORE_TREE_MOTION_H
 
 #include "core/base/arena.h"
 #include "core/base/status.h"

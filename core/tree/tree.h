@@ -2,8 +2,8 @@
 // loads, and the data of one evaluation. Bodies that cannot move relative to each other form one link, so
 // fixed joints cost no states and no work. tree_build.c builds the tree, force.h contains its forces,
 // dynamics.h the recursions, loop.h the closures.
-#ifndef BOUGH_CORE_TREE_H
-#define BOUGH_CORE_TREE_H
+#ifndef BOUGH_CORE_TREE_TREE_H
+#define BOUGH_CORE_TREE_TREE_H
 
 #include "core/base/arena.h"
 #include "core/base/schedule.h"

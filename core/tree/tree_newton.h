@@ -7,8 +7,8 @@
 // an acceleration of the ground, so that it needs no terms of its own. Springs and bushings, which
 // join links that are no neighbours, come in by a system of six unknowns for each of their ends
 // (Woodbury); a tree without them has none.
-#ifndef BOUGH_CORE_TREE_NEWTON_H
-#define BOUGH_CORE_TREE_NEWTON_H
+#ifndef BOUGH_CORE_TREE_TREE_NEWTON_H
+#define BOUGH_CORE_TREE_TREE_NEWTON_H
 
 #include "core/tree/tree.h"
 

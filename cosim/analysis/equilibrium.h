@@ -3,8 +3,8 @@
 // Euler steps of growing length γ, two Newton corrections each, which follow the motion downhill
 // from the initial state until, at the longest, they are Newton's method. An equilibrium near the
 // initial state may be found though it is unstable.
-#ifndef BOUGH_COSIM_EQUILIBRIUM_H
-#define BOUGH_COSIM_EQUILIBRIUM_H
+#ifndef BOUGH_COSIM_ANALYSIS_EQUILIBRIUM_H
+#define BOUGH_COSIM_ANALYSIS_EQUILIBRIUM_H
 
 #include "cosim/whole.h"
 

@@ -4,8 +4,8 @@
 // Its own steps are those of the two-stage SDIRK method with γ = 1 − 1/√2, which keeps the
 // oscillations (their amplitude falls by 0.004 (ωh)⁴ per step h) and damps everything stiff at
 // once; the trapezoidal rule would keep all stiff modes alive and hide the interesting ones.
-#ifndef BOUGH_COSIM_LINEAR_MEMBER_H
-#define BOUGH_COSIM_LINEAR_MEMBER_H
+#ifndef BOUGH_COSIM_ANALYSIS_LINEAR_MEMBER_H
+#define BOUGH_COSIM_ANALYSIS_LINEAR_MEMBER_H
 
 #include "cosim/member.h"
 

@@ -8,8 +8,8 @@
 //     −S,  S_kl = (Ω/n) Σ_h i h exp(i 2πh (k − l)/n),  |h| <= (n − 1)/2,
 // in the parts' own coordinates, at whatever azimuth. If the parts are equal and evenly spaced and
 // what carries them is symmetric, J − S is the constant matrix of the transformed system.
-#ifndef BOUGH_COSIM_MODES_H
-#define BOUGH_COSIM_MODES_H
+#ifndef BOUGH_COSIM_ANALYSIS_MODES_H
+#define BOUGH_COSIM_ANALYSIS_MODES_H
 
 #include "core/base/eigen.h"
 #include "cosim/whole.h"

@@ -6,8 +6,8 @@
 //     J δy + ∂F/∂λ δλ = −F,   ⟨δ, tangent⟩ = 0,
 // by two solutions with the coupled factors, those of the loads at λ end. E. Riks, An incremental approach to
 // the solution of snapping and buckling problems, Int. J. Solids Struct. 15 (1979).
-#ifndef BOUGH_COSIM_PATH_H
-#define BOUGH_COSIM_PATH_H
+#ifndef BOUGH_COSIM_ANALYSIS_PATH_H
+#define BOUGH_COSIM_ANALYSIS_PATH_H
 
 #include "cosim/whole.h"
 

@@ -7,8 +7,8 @@
 // The analysis does not contain loads from outside the members, such as aerodynamic damping (it is
 // conservative), changes of the state during the run, and growth without oscillation, which belongs to
 // the mechanics: a free rotation, an inverted pendulum.
-#ifndef BOUGH_COSIM_STABILITY_H
-#define BOUGH_COSIM_STABILITY_H
+#ifndef BOUGH_COSIM_ANALYSIS_STABILITY_H
+#define BOUGH_COSIM_ANALYSIS_STABILITY_H
 
 #include "cosim/assembly.h"
 #include "cosim/coupling.h"

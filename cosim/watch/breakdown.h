@@ -1,7 +1,7 @@
 // Diagnosis of a member that fails within a macro step: a stability analysis of the coupling about the state
 // at the start of the step shows whether the coupling is the cause, the growth, and a stable scheme.
-#ifndef BOUGH_COSIM_BREAKDOWN_H
-#define BOUGH_COSIM_BREAKDOWN_H
+#ifndef BOUGH_COSIM_WATCH_BREAKDOWN_H
+#define BOUGH_COSIM_WATCH_BREAKDOWN_H
 
 #include "cosim/analysis/stability.h"
 #include "cosim/coupling.h"

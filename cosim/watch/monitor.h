@@ -1,7 +1,7 @@
 // Watches a coupled run: non-finite values, the interface defect and energy residual as estimates of
 // the coupling error, and the growth that tells an unstable explicit coupling.
-#ifndef BOUGH_COSIM_MONITOR_H
-#define BOUGH_COSIM_MONITOR_H
+#ifndef BOUGH_COSIM_WATCH_MONITOR_H
+#define BOUGH_COSIM_WATCH_MONITOR_H
 
 #include "cosim/coupling.h"
 

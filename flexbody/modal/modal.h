@@ -10,8 +10,8 @@
 //     η̇ = −Λ q − D q̇ − ω_a B_a η + (ω_a ω_b N_ab + a_k T_k + f_k F_k) q
 //         + ω_a ω_b r_ab + C_tᵀ g + Φᵀf
 // to first order in q; a = ω×u₀ − g the apparent acceleration, f_k a force at the last vertex.
-#ifndef BOUGH_FLEXBODY_MODAL_H
-#define BOUGH_FLEXBODY_MODAL_H
+#ifndef BOUGH_FLEXBODY_MODAL_MODAL_H
+#define BOUGH_FLEXBODY_MODAL_MODAL_H
 
 #include "flexbody/rod/rod.h"
 

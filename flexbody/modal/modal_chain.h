@@ -5,8 +5,8 @@
 //
 // State: per piece q (m), then η (m). Input, output and loads are as those of a rod (rod.h), but there are no
 // follower loads.
-#ifndef BOUGH_FLEXBODY_MODAL_CHAIN_H
-#define BOUGH_FLEXBODY_MODAL_CHAIN_H
+#ifndef BOUGH_FLEXBODY_MODAL_MODAL_CHAIN_H
+#define BOUGH_FLEXBODY_MODAL_MODAL_CHAIN_H
 
 #include "flexbody/modal/modal_piece.h"
 

@@ -4,8 +4,8 @@
 // The root wrench is the balance of momentum, P = C_tη and L_a = (C_a + G_a q)ᵀη about the frame's
 // origin: external loads at the displaced vertices less the rate of P and L. So momentum is conserved with
 // any number of shapes.
-#ifndef BOUGH_FLEXBODY_MODAL_PIECE_H
-#define BOUGH_FLEXBODY_MODAL_PIECE_H
+#ifndef BOUGH_FLEXBODY_MODAL_MODAL_PIECE_H
+#define BOUGH_FLEXBODY_MODAL_MODAL_PIECE_H
 
 #include "core/base/spatial.h"
 #include "flexbody/modal/modal.h"

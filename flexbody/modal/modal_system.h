@@ -1,7 +1,7 @@
 // A modal body, of one piece or several, behind the contract of core/solve/system.h: kind "modal".
 // Its ports are a rod's (rod_system.h), so are its loads and its vertices' state.
-#ifndef BOUGH_FLEXBODY_MODAL_SYSTEM_H
-#define BOUGH_FLEXBODY_MODAL_SYSTEM_H
+#ifndef BOUGH_FLEXBODY_MODAL_MODAL_SYSTEM_H
+#define BOUGH_FLEXBODY_MODAL_MODAL_SYSTEM_H
 
 #include "core/solve/system.h"
 #include "flexbody/modal/modal_chain.h"

@@ -1,7 +1,7 @@
 // Loads on a rod or a modal body that keep their directions in the ground while the body's frame turns: a
 // system around the body's own, with the ground's axes as nine more inputs.
-#ifndef BOUGH_FLEXBODY_GROUND_LOAD_H
-#define BOUGH_FLEXBODY_GROUND_LOAD_H
+#ifndef BOUGH_FLEXBODY_ROD_GROUND_LOAD_H
+#define BOUGH_FLEXBODY_ROD_GROUND_LOAD_H
 
 #include "core/solve/system.h"
 #include "flexbody/rod/rod_load.h"

@@ -11,8 +11,8 @@
 //     u  absolute velocity, in BRF axes [m/s]                       (11)
 //     W  absolute angular velocity, in section axes [rad/s]         (11)
 // State arrays are component-major: state[c·N + i], c = x₁₋₃ p₀₋₃ u₁₋₃ W₁₋₃, i = vertex − 1.
-#ifndef BOUGH_FLEXBODY_ROD_H
-#define BOUGH_FLEXBODY_ROD_H
+#ifndef BOUGH_FLEXBODY_ROD_ROD_H
+#define BOUGH_FLEXBODY_ROD_ROD_H
 
 #include "core/base/arena.h"
 #include "core/base/base.h"

@@ -6,8 +6,8 @@
 // once twists wrongly by a share of h² (docs/theory.md). χ is 1 up to higher orders and keeps the
 // energy positive whatever the strains: R = h²/12 times at least the ratio of the largest to the least
 // stiffness. Inline, for loops over lanes.
-#ifndef BOUGH_FLEXBODY_ROD_ELASTIC_H
-#define BOUGH_FLEXBODY_ROD_ELASTIC_H
+#ifndef BOUGH_FLEXBODY_ROD_ROD_ELASTIC_H
+#define BOUGH_FLEXBODY_ROD_ROD_ELASTIC_H
 
 #include "flexbody/rod/rod_segment.h"
 

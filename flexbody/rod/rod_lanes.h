@@ -1,6 +1,6 @@
 // Vertices and segments in structures of arrays: loads and stores for loops over vector lanes.
-#ifndef BOUGH_FLEXBODY_ROD_LANES_H
-#define BOUGH_FLEXBODY_ROD_LANES_H
+#ifndef BOUGH_FLEXBODY_ROD_ROD_LANES_H
+#define BOUGH_FLEXBODY_ROD_ROD_LANES_H
 
 #include "flexbody/rod/rod.h"
 #include "flexbody/rod/rod_elastic.h"
@@ -78,6 +78,7 @@ BOUGH_INLINE bough_vec3 following_moment(double h, bough_vec3 bend, bough_vec3 l
 
 // Adds what the turns phi of the sections change in these moments of the loads along segment n, dead ones and
 // followers.
+// NOLINTNEXTLINE(readability-function-size): what the equation names
 BOUGH_INLINE segment_force add_chord_moments(segment_force f, segment_geometry shape, segment_variation d,
                                              bough_mat3 rl, bough_mat3 rr, bough_vec3 phi_l, bough_vec3 phi_r,
                                              bough_vec3 bend0, bough_vec3 turn0, bough_vec3 along,

@@ -4,8 +4,8 @@
 // B = diag(ξ(ω), ξ(Rᵀω)): the variation of u₀ + ω×x and Rᵀω, the velocities of the steady motion, so
 // gyroscopic terms, spin softening and centrifugal stiffening are exact. No quaternion norms, hence
 // no spurious zero eigenvalues.
-#ifndef BOUGH_FLEXBODY_ROD_LINEAR_H
-#define BOUGH_FLEXBODY_ROD_LINEAR_H
+#ifndef BOUGH_FLEXBODY_ROD_ROD_LINEAR_H
+#define BOUGH_FLEXBODY_ROD_ROD_LINEAR_H
 
 #include "flexbody/rod/rod_tangent.h"
 

@@ -1,6 +1,6 @@
 // Forces and moments along a rod as work-equivalent loads on its vertices.
-#ifndef BOUGH_FLEXBODY_ROD_LOAD_H
-#define BOUGH_FLEXBODY_ROD_LOAD_H
+#ifndef BOUGH_FLEXBODY_ROD_ROD_LOAD_H
+#define BOUGH_FLEXBODY_ROD_ROD_LOAD_H
 
 #include "flexbody/rod/rod.h"
 

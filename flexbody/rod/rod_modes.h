@@ -1,6 +1,6 @@
 // Natural modes of a rod, clamped at its root, about its equilibrium at rest or in steady rotation.
-#ifndef BOUGH_FLEXBODY_ROD_MODES_H
-#define BOUGH_FLEXBODY_ROD_MODES_H
+#ifndef BOUGH_FLEXBODY_ROD_ROD_MODES_H
+#define BOUGH_FLEXBODY_ROD_ROD_MODES_H
 
 #include "flexbody/rod/rod_static.h"
 

@@ -10,8 +10,8 @@
 //     δφ = H (b − a),  H = ½ (c E − g v vᵀ),  g = (c − 2)/(1 − w²)
 // The chord y = R_midᵀ Δx/h of a bent segment is shorter than its axis: V = y − v×(v×y)/6, that of
 // constant strains to fourth order in φ. So tension stiffens the bow within a segment.
-#ifndef BOUGH_FLEXBODY_ROD_SEGMENT_H
-#define BOUGH_FLEXBODY_ROD_SEGMENT_H
+#ifndef BOUGH_FLEXBODY_ROD_ROD_SEGMENT_H
+#define BOUGH_FLEXBODY_ROD_ROD_SEGMENT_H
 
 #include "core/base/rotation.h"
 

@@ -1,8 +1,8 @@
 // Equilibrium of a rod whose root is held, at rest or in steady rotation: Newton–Raphson on the
 // analytic tangent, unsymmetric under follower loads, with increments of load, following large
 // rotations.
-#ifndef BOUGH_FLEXBODY_ROD_STATIC_H
-#define BOUGH_FLEXBODY_ROD_STATIC_H
+#ifndef BOUGH_FLEXBODY_ROD_ROD_STATIC_H
+#define BOUGH_FLEXBODY_ROD_ROD_STATIC_H
 
 #include "flexbody/rod/rod.h"
 #include "flexbody/rod/rod_tangent.h"

@@ -1,8 +1,8 @@
 // A rod behind the contract of core/solve/system.h: kind "rod". Inputs are the twist of the body
 // reference frame and gravity, in its axes; outputs the root wrench on the carrier, in its axes. The state is
 // rod.h's. Of a rod that carries bodies the motion of its last vertex and the wrench there follow, see rod.h.
-#ifndef BOUGH_FLEXBODY_ROD_SYSTEM_H
-#define BOUGH_FLEXBODY_ROD_SYSTEM_H
+#ifndef BOUGH_FLEXBODY_ROD_ROD_SYSTEM_H
+#define BOUGH_FLEXBODY_ROD_ROD_SYSTEM_H
 
 #include "core/solve/system.h"
 #include "flexbody/rod/rod.h"

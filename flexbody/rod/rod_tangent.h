@@ -5,8 +5,8 @@
 // K, Dᵥ the tangents of force with respect to configuration and velocity, A the elimination of the
 // configuration increments. Tangents are found per segment and per vertex as structures of arrays and
 // then put into blocks, of which each factorisation forms its matrix.
-#ifndef BOUGH_FLEXBODY_ROD_TANGENT_H
-#define BOUGH_FLEXBODY_ROD_TANGENT_H
+#ifndef BOUGH_FLEXBODY_ROD_ROD_TANGENT_H
+#define BOUGH_FLEXBODY_ROD_ROD_TANGENT_H
 
 #include "core/base/block_tridiagonal.h"
 #include "flexbody/rod/rod.h"

@@ -1,6 +1,6 @@
 // How the arrays of a bough_rod_tangent are laid out: shared by the files that fill and use them.
-#ifndef BOUGH_FLEXBODY_ROD_TANGENT_LAYOUT_H
-#define BOUGH_FLEXBODY_ROD_TANGENT_LAYOUT_H
+#ifndef BOUGH_FLEXBODY_ROD_ROD_TANGENT_LAYOUT_H
+#define BOUGH_FLEXBODY_ROD_ROD_TANGENT_LAYOUT_H
 
 #include "core/base/base.h"
 

@@ -1,7 +1,7 @@
 // Section tables of a rod and their discretisation: stiffness integrated over segments, inertia
 // over the half-segments of each vertex. Between stations everything is linear in arc length.
-#ifndef BOUGH_FLEXBODY_SECTION_H
-#define BOUGH_FLEXBODY_SECTION_H
+#ifndef BOUGH_FLEXBODY_SECTION_SECTION_H
+#define BOUGH_FLEXBODY_SECTION_SECTION_H
 
 #include "flexbody/rod/rod.h"
 

@@ -1,7 +1,7 @@
 // The reference axis of a section table by arc length: sections on it and integrals along it; for
 // section*.c only.
-#ifndef BOUGH_FLEXBODY_SECTION_AXIS_H
-#define BOUGH_FLEXBODY_SECTION_AXIS_H
+#ifndef BOUGH_FLEXBODY_SECTION_SECTION_AXIS_H
+#define BOUGH_FLEXBODY_SECTION_SECTION_AXIS_H
 
 #include "flexbody/section/section.h"
 

@@ -1,6 +1,6 @@
 // A simulation of a scene file with values replaced, for tests that start from a whole scene.
-#ifndef BOUGH_TESTS_BUILT_SCENE_H
-#define BOUGH_TESTS_BUILT_SCENE_H
+#ifndef BOUGH_TESTS_UNIT_BUILT_SCENE_H
+#define BOUGH_TESTS_UNIT_BUILT_SCENE_H
 
 #include "apps/bough/model/build.h"
 #include "tests/unit/check.h"

@@ -4,8 +4,8 @@
 //
 // is a test that check.c runs. TEST_WITH gives it a set-up and a tear-down of its own, which pass it
 // *context; GROUP those of all tests of the file.
-#ifndef BOUGH_TESTS_CHECK_H
-#define BOUGH_TESTS_CHECK_H
+#ifndef BOUGH_TESTS_UNIT_CHECK_H
+#define BOUGH_TESTS_UNIT_CHECK_H
 
 #include <math.h>
 #include <setjmp.h>

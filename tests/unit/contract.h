@@ -1,7 +1,7 @@
 // What every system and every member must fulfil, checked at a time, state and input where f is smooth.
 // `tolerance` is relative to the largest entry of what is compared; 1e-5 suits central differences.
-#ifndef BOUGH_TESTS_CONTRACT_H
-#define BOUGH_TESTS_CONTRACT_H
+#ifndef BOUGH_TESTS_UNIT_CONTRACT_H
+#define BOUGH_TESTS_UNIT_CONTRACT_H
 
 #include "cosim/member.h"
 #include "tests/unit/member.h"

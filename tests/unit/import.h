@@ -1,6 +1,6 @@
 // Importing changed decks, and what comes of it.
-#ifndef BOUGH_TESTS_IMPORT_H
-#define BOUGH_TESTS_IMPORT_H
+#ifndef BOUGH_TESTS_UNIT_IMPORT_H
+#define BOUGH_TESTS_UNIT_IMPORT_H
 
 #include "tests/unit/check.h"
 #include "tests/unit/scratch_name.h"

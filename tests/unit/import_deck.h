@@ -1,6 +1,6 @@
 // The small turbine of tests/data/decks in a scratch folder, changed, and imported.
-#ifndef BOUGH_TESTS_IMPORT_DECK_H
-#define BOUGH_TESTS_IMPORT_DECK_H
+#ifndef BOUGH_TESTS_UNIT_IMPORT_DECK_H
+#define BOUGH_TESTS_UNIT_IMPORT_DECK_H
 
 #include "tests/unit/import.h"
 

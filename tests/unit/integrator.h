@@ -1,6 +1,6 @@
 // An integrator stepped by itself, for tests.
-#ifndef BOUGH_TESTS_INTEGRATOR_H
-#define BOUGH_TESTS_INTEGRATOR_H
+#ifndef BOUGH_TESTS_UNIT_INTEGRATOR_H
+#define BOUGH_TESTS_UNIT_INTEGRATOR_H
 
 #include "core/solve/integrator.h"
 

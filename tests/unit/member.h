@@ -1,6 +1,6 @@
 // Members for tests.
-#ifndef BOUGH_TESTS_MEMBER_H
-#define BOUGH_TESTS_MEMBER_H
+#ifndef BOUGH_TESTS_UNIT_MEMBER_H
+#define BOUGH_TESTS_UNIT_MEMBER_H
 
 #include "cosim/member.h"
 #include "tests/unit/check.h"

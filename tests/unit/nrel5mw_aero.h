@@ -1,7 +1,7 @@
 // The NREL 5 MW reference blade as aerodynamics sees it: stations of J. Jonkman et al., NREL/TP-500-38060
 // (2009), with the aerodynamic centres of its AeroDyn model, and the airfoil tables of apps/turbine/.
-#ifndef BOUGH_TESTS_NREL5MW_AERO_H
-#define BOUGH_TESTS_NREL5MW_AERO_H
+#ifndef BOUGH_TESTS_UNIT_NREL5MW_AERO_H
+#define BOUGH_TESTS_UNIT_NREL5MW_AERO_H
 
 #include "aero/rotor/rotor.h"
 #include "core/base/base.h"

@@ -1,6 +1,6 @@
 // Trees for tests: built as members, and one that holds everything a tree may.
-#ifndef BOUGH_TESTS_RIGID_TREE_H
-#define BOUGH_TESTS_RIGID_TREE_H
+#ifndef BOUGH_TESTS_UNIT_RIGID_TREE_H
+#define BOUGH_TESTS_UNIT_RIGID_TREE_H
 
 #include "tests/unit/check.h"
 #include "tests/unit/member.h"

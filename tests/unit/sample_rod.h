@@ -1,6 +1,6 @@
 // Rods for the tests: a uniform straight one and a curved, twisted, fully coupled one.
-#ifndef BOUGH_TESTS_SAMPLE_ROD_H
-#define BOUGH_TESTS_SAMPLE_ROD_H
+#ifndef BOUGH_TESTS_UNIT_SAMPLE_ROD_H
+#define BOUGH_TESTS_UNIT_SAMPLE_ROD_H
 
 #include "flexbody/rod/rod_static.h"
 

@@ -1,7 +1,7 @@
 // Scenes that tests read: files of the source, and texts written into a directory of their own, so
 // that paths in messages are short.
-#ifndef BOUGH_TESTS_SCENE_TEXT_H
-#define BOUGH_TESTS_SCENE_TEXT_H
+#ifndef BOUGH_TESTS_UNIT_SCENE_TEXT_H
+#define BOUGH_TESTS_UNIT_SCENE_TEXT_H
 
 #include "apps/bough/scene/scene.h"
 #include "tests/unit/check.h"

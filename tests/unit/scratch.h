@@ -1,6 +1,6 @@
 // A folder of its own for a test that writes files, and the files' text.
-#ifndef BOUGH_TESTS_SCRATCH_H
-#define BOUGH_TESTS_SCRATCH_H
+#ifndef BOUGH_TESTS_UNIT_SCRATCH_H
+#define BOUGH_TESTS_UNIT_SCRATCH_H
 
 #include "tests/unit/check.h"
 #include "tests/unit/scratch_name.h"

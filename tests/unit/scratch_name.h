@@ -1,6 +1,6 @@
 // A name for mkdtemp or mkstemp in $TMPDIR, else in /tmp.
-#ifndef BOUGH_TESTS_SCRATCH_NAME_H
-#define BOUGH_TESTS_SCRATCH_NAME_H
+#ifndef BOUGH_TESTS_UNIT_SCRATCH_NAME_H
+#define BOUGH_TESTS_UNIT_SCRATCH_NAME_H
 
 #include <stdio.h>
 #include <stdlib.h>

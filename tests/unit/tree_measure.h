@@ -1,7 +1,7 @@
 // Sums, mass matrix and closures' errors of a tree, for tests. All are taken after
 // bough_tree_kinematics at the same state.
-#ifndef BOUGH_TESTS_TREE_MEASURE_H
-#define BOUGH_TESTS_TREE_MEASURE_H
+#ifndef BOUGH_TESTS_UNIT_TREE_MEASURE_H
+#define BOUGH_TESTS_UNIT_TREE_MEASURE_H
 
 #include "core/tree/loop.h"
 

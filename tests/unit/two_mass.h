@@ -1,6 +1,6 @@
 // The two-mass oscillator for tests: an exact run that must succeed.
-#ifndef BOUGH_TESTS_TWO_MASS_H
-#define BOUGH_TESTS_TWO_MASS_H
+#ifndef BOUGH_TESTS_UNIT_TWO_MASS_H
+#define BOUGH_TESTS_UNIT_TWO_MASS_H
 
 #include "tests/unit/check.h"
 #include "tests/verification/two_mass.h"

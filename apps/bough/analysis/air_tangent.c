@@ -186,6 +186,7 @@ typedef struct blocks {
     const int *to, *from; // (n_part × n_to), (n_part × n_from)
 } blocks;
 
+// NOLINTNEXTLINE(readability-function-size): one sum over six indices
 static void average(const blocks *b, double *a) {
     for (int apart = 0; apart < b->n_part; apart++) {
         for (int j = 0; j < b->n_from; j++) {

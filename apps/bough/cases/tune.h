@@ -4,8 +4,8 @@
 // The runs are guided, not a grid. From the settings that follow from the error, shares of mesh, air and time
 // in the error of a run (apps/bough/model/error_shares.h) say by how much each can be coarser, or must be
 // finer; then each setting alone, and the other scheme, are tried beside the best.
-#ifndef BOUGH_APPS_STUDY_TUNE_H
-#define BOUGH_APPS_STUDY_TUNE_H
+#ifndef BOUGH_APPS_CASES_TUNE_H
+#define BOUGH_APPS_CASES_TUNE_H
 
 #include "apps/bough/scene/scene.h"
 

@@ -1,6 +1,6 @@
 // What the files of bough_tune share.
-#ifndef BOUGH_APPS_STUDY_TUNE_INTERNAL_H
-#define BOUGH_APPS_STUDY_TUNE_INTERNAL_H
+#ifndef BOUGH_APPS_CASES_TUNE_INTERNAL_H
+#define BOUGH_APPS_CASES_TUNE_INTERNAL_H
 
 #include "apps/bough/cases/tune.h"
 

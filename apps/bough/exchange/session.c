@@ -125,7 +125,7 @@ int bough_session_restore(bough_session *s, const void *copy) {
     if (!is_open(s)) return conclude_closed(s, "restore");
     bough_status status = check_copy(s, copy);
     if (!bough_is_ok(&status)) return conclude(s, status);
-    take(s, &(bough_snapshot){BOUGH_SNAPSHOT_RESTORE, (char *)(uintptr_t)copy, 0});
+    take(s, &(bough_snapshot){BOUGH_SNAPSHOT_RESTORE, (char *)copy, 0});
     s->run.sampled = true; // the values are in the copy
     return conclude(s, bough_ok());
 }

@@ -48,7 +48,8 @@ static bool read_number(const char *word, double *value) {
     if (length == 0 || length >= sizeof copy - 1) return false;
     if (strspn(word, "+-.0123456789eEdD") != length) return false;
     for (size_t i = 0; i <= length; i++) {
-        char letter = word[i] && strchr("dDE", word[i]) ? 'e' : word[i];
+        char letter = word[i];
+        if (letter && strchr("dDE", letter)) letter = 'e';
         bool sign = letter == '+' || letter == '-';
         if (sign && last && last != 'e') {
             if (memchr(copy, 'e', n) || n + 2 >= sizeof copy) return false;
@@ -90,7 +91,8 @@ static int mend_line_ends(char *text) {
     int n = 1;
     for (const char *from = text; *from; from++) {
         if (from[0] == '\r' && from[1] == '\n') continue;
-        *to = *from == '\r' ? '\n' : *from;
+        *to = *from;
+        if (*to == '\r') *to = '\n';
         n += *to++ == '\n';
     }
     *to = '\0';

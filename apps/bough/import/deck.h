@@ -4,8 +4,8 @@
 //
 // The first failure is kept in *status, with file:line, name and what was expected; afterwards all
 // reads return 0, so that a reader may check once at its end.
-#ifndef BOUGH_IMPORT_DECK_H
-#define BOUGH_IMPORT_DECK_H
+#ifndef BOUGH_APPS_IMPORT_DECK_H
+#define BOUGH_APPS_IMPORT_DECK_H
 
 #include "core/base/arena.h"
 #include "core/base/status.h"

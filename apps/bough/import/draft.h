@@ -1,7 +1,7 @@
 // The texts of an imported scene's files and of its list. They become files only when the whole model could
 // be read.
-#ifndef BOUGH_IMPORT_DRAFT_H
-#define BOUGH_IMPORT_DRAFT_H
+#ifndef BOUGH_APPS_IMPORT_DRAFT_H
+#define BOUGH_APPS_IMPORT_DRAFT_H
 
 #include "aero/wind/wind_box.h"
 #include "apps/bough/scene/scene.h"

@@ -1,6 +1,6 @@
 // Foreign models as scenes.
-#ifndef BOUGH_IMPORT_H
-#define BOUGH_IMPORT_H
+#ifndef BOUGH_APPS_IMPORT_IMPORT_H
+#define BOUGH_APPS_IMPORT_IMPORT_H
 
 #include "core/base/status.h"
 

@@ -1,7 +1,7 @@
 // What the readers of OpenFAST's modules share. Each reads the decks of its module and writes its
 // part of the scene and of the list.
-#ifndef BOUGH_IMPORT_OPENFAST_H
-#define BOUGH_IMPORT_OPENFAST_H
+#ifndef BOUGH_APPS_IMPORT_OPENFAST_H
+#define BOUGH_APPS_IMPORT_OPENFAST_H
 
 #include "apps/bough/import/deck.h"
 #include "apps/bough/import/draft.h"

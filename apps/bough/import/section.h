@@ -1,6 +1,6 @@
 // Writes sections of slender bodies as rows of a scene's table of structure.
-#ifndef BOUGH_IMPORT_SECTION_H
-#define BOUGH_IMPORT_SECTION_H
+#ifndef BOUGH_APPS_IMPORT_SECTION_H
+#define BOUGH_APPS_IMPORT_SECTION_H
 
 #include "apps/bough/import/draft.h"
 

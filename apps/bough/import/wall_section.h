@@ -5,8 +5,8 @@
 // A. Kollár, G. S. Springer, Mechanics of Composite Structures (Cambridge 2003), chapter 6. Warping u
 // at the nodes and twist rate θ are found from the balance of shear flows q = (G t/L)(Δu + θ h), h
 // twice the area that the wall sees from the origin, as in the theory of Saint-Venant.
-#ifndef BOUGH_IMPORT_WALL_SECTION_H
-#define BOUGH_IMPORT_WALL_SECTION_H
+#ifndef BOUGH_APPS_IMPORT_WALL_SECTION_H
+#define BOUGH_APPS_IMPORT_WALL_SECTION_H
 
 #include "core/base/arena.h"
 #include "core/base/status.h"

@@ -1,7 +1,7 @@
 // Wind of other programs as a box: files in the style of Bladed (.wnd with its .sum), and the three files of
 // HAWC's Mann generator; and how an imported scene names them.
-#ifndef BOUGH_IMPORT_WIND_H
-#define BOUGH_IMPORT_WIND_H
+#ifndef BOUGH_APPS_IMPORT_WIND_H
+#define BOUGH_APPS_IMPORT_WIND_H
 
 #include "aero/wind/wind_box.h"
 #include "apps/bough/import/draft.h"

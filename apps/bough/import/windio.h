@@ -1,8 +1,8 @@
 // What the readers of a WindIO turbine share. Each reads a part of the file, in the layout of
 // version 1 (outer_shape_bem, angles in radians) or 2 (outer_shape, degrees), and writes its part
 // of the scene and of the list.
-#ifndef BOUGH_IMPORT_WINDIO_H
-#define BOUGH_IMPORT_WINDIO_H
+#ifndef BOUGH_APPS_IMPORT_WINDIO_H
+#define BOUGH_APPS_IMPORT_WINDIO_H
 
 #include "apps/bough/config/text.h"
 #include "apps/bough/import/draft.h"

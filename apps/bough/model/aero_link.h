@@ -1,7 +1,7 @@
 // Connects the rotor's aerodynamics with the bodies of a simulation: it gets the motion of the blades'
 // vertices and sets the loads on them, sampled at the scene's rate.
-#ifndef BOUGH_APPS_SIMULATION_AERO_LINK_H
-#define BOUGH_APPS_SIMULATION_AERO_LINK_H
+#ifndef BOUGH_APPS_MODEL_AERO_LINK_H
+#define BOUGH_APPS_MODEL_AERO_LINK_H
 
 #include "aero/rotor/rotor.h"
 #include "apps/bough/model/build.h"

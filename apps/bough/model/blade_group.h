@@ -1,6 +1,6 @@
 // A turbine's blades as equal parts of its rotor, for the multi-blade transform.
-#ifndef BOUGH_APPS_SIMULATION_BLADE_GROUP_H
-#define BOUGH_APPS_SIMULATION_BLADE_GROUP_H
+#ifndef BOUGH_APPS_MODEL_BLADE_GROUP_H
+#define BOUGH_APPS_MODEL_BLADE_GROUP_H
 
 #include "apps/bough/model/simulation.h"
 

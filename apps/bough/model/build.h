@@ -1,6 +1,6 @@
 // The composition root: makes a running simulation of a scene.
-#ifndef BOUGH_APPS_SIMULATION_BUILD_H
-#define BOUGH_APPS_SIMULATION_BUILD_H
+#ifndef BOUGH_APPS_MODEL_BUILD_H
+#define BOUGH_APPS_MODEL_BUILD_H
 
 #include "apps/bough/model/simulation.h"
 

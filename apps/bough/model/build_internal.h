@@ -1,6 +1,6 @@
 // What the files that build a simulation share among themselves.
-#ifndef BOUGH_APPS_SIMULATION_BUILD_INTERNAL_H
-#define BOUGH_APPS_SIMULATION_BUILD_INTERNAL_H
+#ifndef BOUGH_APPS_MODEL_BUILD_INTERNAL_H
+#define BOUGH_APPS_MODEL_BUILD_INTERNAL_H
 
 #include "apps/bough/model/equilibrium.h"
 #include "apps/bough/model/simulation.h"

@@ -1,7 +1,7 @@
 // The one list of all channels: name, unit, meaning, OpenFAST's name beside it. What a run records
 // is registered from it, and the documentation printed.
-#ifndef BOUGH_APPS_SIMULATION_CHANNEL_TABLE_H
-#define BOUGH_APPS_SIMULATION_CHANNEL_TABLE_H
+#ifndef BOUGH_APPS_MODEL_CHANNEL_TABLE_H
+#define BOUGH_APPS_MODEL_CHANNEL_TABLE_H
 
 #include "apps/bough/results/channels.h"
 

@@ -1,6 +1,6 @@
 // A copy of a scene that is coarser by about a factor of two: for the companion of a run (companion.h).
-#ifndef BOUGH_APPS_SIMULATION_COARSER_H
-#define BOUGH_APPS_SIMULATION_COARSER_H
+#ifndef BOUGH_APPS_MODEL_COARSER_H
+#define BOUGH_APPS_MODEL_COARSER_H
 
 #include "apps/bough/model/simulation.h"
 

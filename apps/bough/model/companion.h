@@ -4,8 +4,8 @@
 //
 // If the error falls with order p, a solution with twice the step errs by 2ᵖ times as much, and the run by
 // 1/(2ᵖ − 1) of the difference: a third for order 2 (docs/theory.md).
-#ifndef BOUGH_APPS_SIMULATION_COMPANION_H
-#define BOUGH_APPS_SIMULATION_COMPANION_H
+#ifndef BOUGH_APPS_MODEL_COMPANION_H
+#define BOUGH_APPS_MODEL_COMPANION_H
 
 #include "apps/bough/model/simulation.h"
 

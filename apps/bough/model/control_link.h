@@ -1,8 +1,8 @@
 // Joins a controller to the turbine of a simulation: rotor speed and pitch in, generator torque and
 // pitch out, sampled at the scene's rate. Between samples torque goes linearly to what was demanded,
 // and the blades' pitch joints by cubics without a jump in speed: both arrive one sample late.
-#ifndef BOUGH_APPS_SIMULATION_CONTROL_LINK_H
-#define BOUGH_APPS_SIMULATION_CONTROL_LINK_H
+#ifndef BOUGH_APPS_MODEL_CONTROL_LINK_H
+#define BOUGH_APPS_MODEL_CONTROL_LINK_H
 
 #include "apps/bough/model/simulation.h"
 

@@ -1,7 +1,7 @@
 // Joins the drag of tower and hub to the bodies of a simulation, sampled with the aerodynamics;
 // forces go linearly to what was sampled and arrive one sample late.
-#ifndef BOUGH_APPS_SIMULATION_DRAG_LINK_H
-#define BOUGH_APPS_SIMULATION_DRAG_LINK_H
+#ifndef BOUGH_APPS_MODEL_DRAG_LINK_H
+#define BOUGH_APPS_MODEL_DRAG_LINK_H
 
 #include "apps/bough/model/aero_link.h"
 

@@ -4,8 +4,8 @@
 // A joint of prescribed motion is where it is then; one with an initial speed keeps coordinate and
 // speed. The bodies on them turn steadily at their present azimuth, and gravity keeps its direction in
 // the rotating frame (frozen azimuth). All other joints come to rest.
-#ifndef BOUGH_APPS_SIMULATION_EQUILIBRIUM_H
-#define BOUGH_APPS_SIMULATION_EQUILIBRIUM_H
+#ifndef BOUGH_APPS_MODEL_EQUILIBRIUM_H
+#define BOUGH_APPS_MODEL_EQUILIBRIUM_H
 
 #include "apps/bough/model/simulation.h"
 #include "cosim/analysis/path.h"

@@ -1,8 +1,8 @@
 // Shares of mesh, air and time in the error of a run, and what to do about the largest. The scene is run once
 // more as its companion is, and beside it three times with one of the three as fine as in the run: what lies
 // between is that part's share of what the companion errs by, and part of it the run's.
-#ifndef BOUGH_APPS_SIMULATION_ERROR_SHARES_H
-#define BOUGH_APPS_SIMULATION_ERROR_SHARES_H
+#ifndef BOUGH_APPS_MODEL_ERROR_SHARES_H
+#define BOUGH_APPS_MODEL_ERROR_SHARES_H
 
 #include "apps/bough/model/error_verdict.h"
 

@@ -1,6 +1,6 @@
 // What the errors that a companion tells mean: which of them counts, beside what moves in the scene.
-#ifndef BOUGH_APPS_SIMULATION_ERROR_VERDICT_H
-#define BOUGH_APPS_SIMULATION_ERROR_VERDICT_H
+#ifndef BOUGH_APPS_MODEL_ERROR_VERDICT_H
+#define BOUGH_APPS_MODEL_ERROR_VERDICT_H
 
 #include "apps/bough/model/companion.h"
 

@@ -16,7 +16,7 @@ static bough_motion_point *points(bough_input_link *l) {
     return (bough_motion_point *)(void *)(l->memory + 2 * l->n);
 }
 
-static double *writable(const double *values) { return (double *)(uintptr_t)values; }
+static double *writable(const double *values) { return (double *)values; }
 
 // The two values of a load's table where the model has them: loads on rods read the scene's.
 static double *table_of(const bough_simulation *s, int index) {

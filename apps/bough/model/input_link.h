@@ -1,7 +1,7 @@
 // Hands the inputs of a scene, set between steps by whoever steps it, to the parts of the model. A
 // value holds from the next macro step on; a joint with a prescribed motion gets there within it.
-#ifndef BOUGH_APPS_SIMULATION_INPUT_LINK_H
-#define BOUGH_APPS_SIMULATION_INPUT_LINK_H
+#ifndef BOUGH_APPS_MODEL_INPUT_LINK_H
+#define BOUGH_APPS_MODEL_INPUT_LINK_H
 
 #include "apps/bough/model/simulation.h"
 

@@ -1,7 +1,7 @@
 // Loads that jump at a time: ramps without length. The step that ends at the jump is integrated without the
 // load, the step that begins there with it; a function of time alone could not distinguish the two.
-#ifndef BOUGH_APPS_SIMULATION_JUMP_LINK_H
-#define BOUGH_APPS_SIMULATION_JUMP_LINK_H
+#ifndef BOUGH_APPS_MODEL_JUMP_LINK_H
+#define BOUGH_APPS_MODEL_JUMP_LINK_H
 
 #include "apps/bough/model/simulation.h"
 

@@ -1,6 +1,6 @@
 // Channels that observe.c takes from other files.
-#ifndef BOUGH_APPS_SIMULATION_OBSERVE_H
-#define BOUGH_APPS_SIMULATION_OBSERVE_H
+#ifndef BOUGH_APPS_MODEL_OBSERVE_H
+#define BOUGH_APPS_MODEL_OBSERVE_H
 
 #include "apps/bough/model/simulation.h"
 

@@ -1,7 +1,7 @@
 // One run of a scene: its model, its channels, its steps, the recording of results, and the copy from which
 // it can continue. The command line, the library and the studies use this run.
-#ifndef BOUGH_APPS_SIMULATION_RUN_H
-#define BOUGH_APPS_SIMULATION_RUN_H
+#ifndef BOUGH_APPS_MODEL_RUN_H
+#define BOUGH_APPS_MODEL_RUN_H
 
 #include "apps/bough/model/companion.h"
 #include "apps/bough/results/progress.h"

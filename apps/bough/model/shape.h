@@ -1,7 +1,7 @@
 // The shape of a simulation as polylines in ground axes: the axis of each rod; for a rigid body the line from
 // its parent over its origin to its mass centre.
-#ifndef BOUGH_APPS_SIMULATION_SHAPE_H
-#define BOUGH_APPS_SIMULATION_SHAPE_H
+#ifndef BOUGH_APPS_MODEL_SHAPE_H
+#define BOUGH_APPS_MODEL_SHAPE_H
 
 #include "apps/bough/model/simulation.h"
 #include "apps/bough/results/frames.h"

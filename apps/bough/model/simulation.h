@@ -1,7 +1,7 @@
 // A running simulation of a scene, and queries to it: the tree, the rods, the aerodynamics and the
 // coupling together.
-#ifndef BOUGH_APPS_SIMULATION_SIMULATION_H
-#define BOUGH_APPS_SIMULATION_SIMULATION_H
+#ifndef BOUGH_APPS_MODEL_SIMULATION_H
+#define BOUGH_APPS_MODEL_SIMULATION_H
 
 #include "apps/bough/results/channels.h"
 #include "apps/bough/scene/scene.h"

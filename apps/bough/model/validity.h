@@ -1,6 +1,6 @@
 // Limits of the models' validity: a run reports each limit once, when it first exceeds it.
-#ifndef BOUGH_APPS_SIMULATION_VALIDITY_H
-#define BOUGH_APPS_SIMULATION_VALIDITY_H
+#ifndef BOUGH_APPS_MODEL_VALIDITY_H
+#define BOUGH_APPS_MODEL_VALIDITY_H
 
 #include "apps/bough/model/simulation.h"
 

@@ -1,6 +1,6 @@
 // A ZIP archive whose files are stored as they are (PKWARE's APPNOTE 6.3, without ZIP64: at most 4 GB).
-#ifndef BOUGH_OUTPUT_ARCHIVE_H
-#define BOUGH_OUTPUT_ARCHIVE_H
+#ifndef BOUGH_APPS_RESULTS_ARCHIVE_H
+#define BOUGH_APPS_RESULTS_ARCHIVE_H
 
 #include "core/base/arena.h"
 #include "core/base/status.h"

@@ -5,8 +5,8 @@
 // only one that keeps names longer than ten characters, and all readers know it (the kind with
 // doubles cuts names, and pyDatView cannot read it). A value is off by half of 1/65535 of its
 // channel's range, and by its own rounding to single precision; channels.out has nine digits.
-#ifndef BOUGH_OUTPUT_BINARY_H
-#define BOUGH_OUTPUT_BINARY_H
+#ifndef BOUGH_APPS_RESULTS_BINARY_H
+#define BOUGH_APPS_RESULTS_BINARY_H
 
 #include "apps/bough/results/channels.h"
 #include "core/base/status.h"

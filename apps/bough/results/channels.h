@@ -1,7 +1,7 @@
 // Names and units of what a run records, in groups: whoever computes values registers one group
 // and its channels, and is asked for all of them at once. Building allocates, sampling does not.
-#ifndef BOUGH_OUTPUT_CHANNELS_H
-#define BOUGH_OUTPUT_CHANNELS_H
+#ifndef BOUGH_APPS_RESULTS_CHANNELS_H
+#define BOUGH_APPS_RESULTS_CHANNELS_H
 
 #include "core/base/arena.h"
 #include "core/base/status.h"

@@ -1,7 +1,7 @@
 // The folder that receives a run's results, and files in it that are complete or absent: they are
 // written under another name and renamed at the end.
-#ifndef BOUGH_OUTPUT_FOLDER_H
-#define BOUGH_OUTPUT_FOLDER_H
+#ifndef BOUGH_APPS_RESULTS_FOLDER_H
+#define BOUGH_APPS_RESULTS_FOLDER_H
 
 #include "core/base/arena.h"
 #include "core/base/status.h"

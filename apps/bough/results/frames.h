@@ -1,7 +1,7 @@
 // Shapes over time for ParaView: frames/NNNNNN.vtp, one file of polylines for each frame (VTK XML
 // PolyData, ASCII), and frames.pvd, which gives them their times and appears when the run ends.
-#ifndef BOUGH_OUTPUT_FRAMES_H
-#define BOUGH_OUTPUT_FRAMES_H
+#ifndef BOUGH_APPS_RESULTS_FRAMES_H
+#define BOUGH_APPS_RESULTS_FRAMES_H
 
 #include "apps/bough/results/folder.h"
 #include "core/base/arena.h"

@@ -1,6 +1,6 @@
 // Pictures in SVG that are legible on light and on dark pages: begin, texts, and panels with two axes.
-#ifndef BOUGH_APPS_OUTPUT_PICTURE_H
-#define BOUGH_APPS_OUTPUT_PICTURE_H
+#ifndef BOUGH_APPS_RESULTS_PICTURE_H
+#define BOUGH_APPS_RESULTS_PICTURE_H
 
 #include <stdbool.h>
 #include <stdio.h>

@@ -1,6 +1,6 @@
 // One line on a terminal that tells how far a run is, how fast, and how long it still takes.
-#ifndef BOUGH_OUTPUT_PROGRESS_H
-#define BOUGH_OUTPUT_PROGRESS_H
+#ifndef BOUGH_APPS_RESULTS_PROGRESS_H
+#define BOUGH_APPS_RESULTS_PROGRESS_H
 
 #include <stdbool.h>
 #include <stddef.h>

@@ -4,8 +4,8 @@
 //
 // The file is complete or says so: it grows as channels.out.partial with the word INCOMPLETE in its
 // third line, and receives its name when the run ends. A process that is killed leaves the partial.
-#ifndef BOUGH_OUTPUT_RECORDER_H
-#define BOUGH_OUTPUT_RECORDER_H
+#ifndef BOUGH_APPS_RESULTS_RECORDER_H
+#define BOUGH_APPS_RESULTS_RECORDER_H
 
 #include "apps/bough/results/channels.h"
 #include "apps/bough/results/folder.h"

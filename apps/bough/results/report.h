@@ -1,7 +1,7 @@
 // One page of a results folder: figures, curves, spectra, the moving shape, or a study's table and
 // picture. It carries its data and its program, and needs no network.
-#ifndef BOUGH_APPS_REPORT_REPORT_H
-#define BOUGH_APPS_REPORT_REPORT_H
+#ifndef BOUGH_APPS_RESULTS_REPORT_H
+#define BOUGH_APPS_RESULTS_REPORT_H
 
 #include "core/base/status.h"
 

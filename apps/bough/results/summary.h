@@ -1,7 +1,7 @@
 // A small JSON writer for summary.json. The caller states the fields in order; the file appears
 // under its name only when it is complete.
-#ifndef BOUGH_OUTPUT_SUMMARY_H
-#define BOUGH_OUTPUT_SUMMARY_H
+#ifndef BOUGH_APPS_RESULTS_SUMMARY_H
+#define BOUGH_APPS_RESULTS_SUMMARY_H
 
 #include "core/base/status.h"
 

@@ -73,7 +73,7 @@ static bough_node *put(const replacement *s, const bough_node *node, const char 
 // The index of the item whose key 'name' is the word in brackets; −1 if there is none.
 static int named_item(const bough_node *node, const char *rest, char **end) {
     size_t length = strcspn(rest + 1, "]");
-    *end = (char *)(uintptr_t)rest + 1 + length;
+    *end = (char *)rest + 1 + length;
     for (int i = 0; node != NULL && node->kind == BOUGH_SEQUENCE && i < node->n; i++) {
         const bough_node *name = bough_node_find(node->value[i], "name");
         bool plain = name != NULL && name->kind == BOUGH_SCALAR && strlen(name->text) == length;
