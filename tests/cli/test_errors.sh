@@ -57,6 +57,12 @@ for share in mesh time; do
 done
 run 0 '^error: .*; mesh [0-9.e-]*; time ' coarse.yaml --set simulation.error_shares=true --set simulation.error_bound=0
 
+# Below the bound the warning's segments follow from the estimate, and they meet the accuracy.
+run 0 'for simulation.accuracy 0.005 try rod.segments: [0-9]*$' coarse.yaml --set simulation.error_bound=0
+advised=$(sed -n 's/^warning: .* try rod.segments: \([0-9]*\)$/\1/p' stdout)
+run 0 '^error: ' coarse.yaml --set "bodies[0].rod.segments=$advised"
+! grep -q '^warning' stdout || fail "$advised segments: $(cat stdout)"
+
 # The error belongs to the run: it is the same whatever is recorded, to the last bit.
 turbine=$source/tests/data/scenes/example-turbine.yaml
 errors() {

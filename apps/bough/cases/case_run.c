@@ -179,8 +179,7 @@ static bough_status judge(bough_arena *arena, const case_run *r) {
     bough_error_shares shares = {0};
     char warning[BOUGH_ERROR_WARNING];
     bough_status status = bough_ok();
-    if (bough_error_exceeds(c, bound))
-        status = bough_error_shares_find(arena, c, HUGE_VAL, r->drive->stop, &shares);
+    if (bough_error_exceeds(c, bound)) status = bough_error_shares_find(arena, c, r->drive->stop, &shares);
     return bough_is_ok(&status) ? bough_error_judge(c, &shares, bound, warning) : status;
 }
 

@@ -85,7 +85,7 @@ static bough_status take_errors(const measurement *m, bough_arena *arena, const 
     if (!isfinite(p->error)) return bough_fail(BOUGH_FAILED, "the error of %s has no bound", p->channel);
     if (!m->shares) return bough_ok();
     bough_error_shares shares;
-    bough_status status = bough_error_shares_find(arena, c, HUGE_VAL, m->tune->options->stop, &shares);
+    bough_status status = bough_error_shares_find(arena, c, m->tune->options->stop, &shares);
     for (int k = 0; k < BOUGH_SHARES && bough_is_ok(&status); k++) {
         const double *error = shares.share[k].largest;
         if (!shares.share[k].unknown[0])

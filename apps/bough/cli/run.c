@@ -151,28 +151,16 @@ static bough_status after_step(void *self) {
     return lost ? bough_error_parted(run->companion) : bough_checkpoint_update(command);
 }
 
-// The stretch on which the cause of an error between accuracy and bound is looked for: a short one, if the
-// error shows in it.
-static double stretch_of(const bough_companion *c) {
-    double duration = c->run->master->duration;
-    bough_error_verdict v = bough_error_verdict_of(c, true, c->error);
-    return (v.time < 0.1 * duration ? 0.1 : 0.25) * duration;
-}
-
 // The cause of an error above the bound is looked for by further runs, as the shares are where the scene
 // asks.
 static bough_status judge(bough_run_command *command) {
     const bough_scene_simulation *x = &command->run.simulation->scene->simulation;
     const bough_companion *c = command->run.companion;
     bough_status status = bough_ok();
-    bough_error_shares stretch = {0}, *shares = &command->shares;
-    if (x->error_shares || bough_error_exceeds(c, x->error_bound)) {
-        status = bough_error_shares_find(command->arena, c, HUGE_VAL, bough_stop_requested, shares);
-    } else if (bough_error_exceeds(c, x->accuracy)) {
-        shares = &stretch;
-        status = bough_error_shares_find(command->arena, c, stretch_of(c), bough_stop_requested, shares);
-    }
-    return bough_is_ok(&status) ? bough_error_judge(c, shares, x->error_bound, command->warning) : status;
+    if (x->error_shares || bough_error_exceeds(c, x->error_bound))
+        status = bough_error_shares_find(command->arena, c, bough_stop_requested, &command->shares);
+    if (!bough_is_ok(&status)) return status;
+    return bough_error_judge(c, &command->shares, x->error_bound, command->warning);
 }
 
 static void step_all(bough_run_command *command) {

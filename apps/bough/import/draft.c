@@ -36,7 +36,7 @@ static bough_status take_steps(bough_arena *arena, bough_scene *scene, int steps
     }
     if (!bough_is_ok(&status)) return status;
     if (bough_error_exceeds(run.companion, bound))
-        status = bough_error_shares_find(arena, run.companion, HUGE_VAL, NULL, &shares);
+        status = bough_error_shares_find(arena, run.companion, NULL, &shares);
     return bough_is_ok(&status) ? bough_error_judge(run.companion, &shares, bound, warning) : status;
 }
 

@@ -66,7 +66,6 @@ static void compare(const other_run *base, other_run *finer, double part, bough_
 
 typedef struct finding {
     const bough_companion *companion;
-    double until; // [s]
     bool (*stop)(void);
     bough_error_shares *shares;
 } finding;
@@ -94,7 +93,7 @@ static void build_finer(bough_arena *arena, const finding *x, other_run finer[BO
     }
 }
 
-// From the start to `until`; a run that fails leaves its share unknown.
+// A run that fails leaves its share unknown.
 static bough_status find(bough_arena *arena, void *self) {
     const finding *x = self;
     const bough_scene *scene = x->companion->run->scene;
@@ -104,8 +103,7 @@ static bough_status find(bough_arena *arena, void *self) {
     other_run base, finer[BOUGH_SHARES] = {{0}};
     bough_status status = build(arena, x->companion->run, BOUGH_COARSER_ALL, &base);
     if (bough_is_ok(&status)) build_finer(arena, x, finer);
-    while (bough_is_ok(&status) && !bough_master_done(base.simulation->master) &&
-           base.simulation->master->time < x->until) {
+    while (bough_is_ok(&status) && !bough_master_done(base.simulation->master)) {
         if (x->stop && x->stop())
             return bough_fail(BOUGH_INTERRUPTED, "interrupted while the error's cause was looked for");
         status = bough_step(base.simulation->master);
@@ -130,9 +128,9 @@ static double cpu_clock(void) {
     return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
 }
 
-bough_status bough_error_shares_find(bough_arena *arena, const bough_companion *c, double until,
-                                     bool (*stop)(void), bough_error_shares *shares) {
-    finding x = {c, until, stop, shares};
+bough_status bough_error_shares_find(bough_arena *arena, const bough_companion *c, bool (*stop)(void),
+                                     bough_error_shares *shares) {
+    finding x = {c, stop, shares};
     double cpu = cpu_clock();
     *shares = (bough_error_shares){.found = true, .n_channel = c->channels->count};
     for (int k = 0; k < BOUGH_SHARES; k++)
@@ -156,19 +154,23 @@ bough_status bough_error_shares_find(bough_arena *arena, const bough_companion *
 
 enum { ADVICE = 160 };
 static const double mesh_order = 2, air_order = 2, time_order = 2; // at least
-static const double most_halvings = 6;                             // of the macro step that are worth trying
-static const double margin = 1.1;                                  // of the settings that are proposed
+static const double few_order = 1.5;                               // of a mesh of few segments
+enum { FEW = 9, MOST_TIMES = 10 };     // more than so many times as many segments: the order says nothing
+static const double most_halvings = 6; // of the macro step that are worth trying
+static const double margin = 1.1;      // of the settings that are proposed
 
 // The segments that divide the mesh's error by a factor: their number where all rods have the same.
 static void advise_mesh(const bough_scene *scene, double factor, char text[ADVICE]) {
-    double times = margin * pow(factor, 1 / mesh_order);
-    int n = 0;
+    int n = 0, least = FEW;
     bool equal = true;
     for (int i = 0; i < scene->n_body; i++) {
         if (!scene->body[i].rod.node || scene->body[i].fidelity == BOUGH_SCENE_RIGID) continue;
         equal = equal && (n == 0 || n == scene->body[i].rod.n_segment);
         n = scene->body[i].rod.n_segment;
+        least = n < least ? n : least;
     }
+    double times = margin * pow(factor, 1 / (least < FEW ? few_order : mesh_order));
+    times = fmin(times, MOST_TIMES);
     if (equal) {
         snprintf(text, ADVICE, "rod.segments: %.0f", ceil(times * n));
     } else {
@@ -267,55 +269,44 @@ static bough_status judge_excess(const bough_companion *c, const bough_error_sha
     return failed;
 }
 
-// Of each part: what it may add to the error, over the accuracy. What the scene's settings lead one to
-// expect; and its share on a stretch, where the largest is taken for the error of the run.
-static void find_parts(const bough_companion *c, const bough_error_shares *shares, double factor,
-                       const double expected[BOUGH_SHARES], double part[BOUGH_SHARES]) {
-    double share[BOUGH_SHARES] = {0}, largest = 0;
-    for (int k = 0; k < BOUGH_SHARES && shares->found; k++) {
-        if (shares->share[k].unknown[0]) continue;
-        bough_error_verdict v = bough_error_verdict_of(c, true, shares->share[k].largest);
-        if (v.channel >= 0) share[k] = v.relative;
-        largest = fmax(largest, share[k]);
-    }
-    for (int k = 0; k < BOUGH_SHARES; k++) {
-        part[k] = fmin(expected[k], factor);
-        if (largest > 0) part[k] = fmax(part[k], factor * share[k] / largest);
-    }
+// What each part adds to the error, over the accuracy: the part of which the settings lead one to expect most
+// is taken for the whole, the others in proportion.
+static void find_parts(const bough_scene_expectation *expected, double factor, double part[BOUGH_SHARES]) {
+    double largest = 0;
+    for (int k = 0; k < BOUGH_SHARES; k++) largest = fmax(largest, expected->error[k]);
+    for (int k = 0; k < BOUGH_SHARES; k++) part[k] = factor * expected->error[k] / largest;
 }
 
 // The settings that bring each part to half the accuracy: keys that the scene names, and the accuracy for
 // others.
-static void advise_for_accuracy(const bough_companion *c, const bough_error_shares *shares, double factor,
-                                char *text, size_t size) {
-    const bough_scene *scene = c->run->scene;
-    double expected[BOUGH_SHARES], part[BOUGH_SHARES], accuracy = 1;
+static void advise_for_accuracy(const bough_scene *scene, double factor, char *text, size_t size) {
+    double part[BOUGH_SHARES], accuracy = 1;
     int n = 0;
-    bough_scene_expect_errors(scene, expected);
-    find_parts(c, shares, factor, expected, part);
+    bough_scene_expectation expected = bough_scene_expect_errors(scene);
+    find_parts(&expected, factor, part);
     for (int k = 0; k < BOUGH_SHARES; k++) {
         char remedy[ADVICE];
         if (part[k] <= 0.5) continue;
-        if (expected[k] > 0) {
+        if (expected.named[k]) {
             advise(scene, k, fmax(2 * part[k], 1), remedy);
             n += snprintf(text + n, size - (size_t)n, "%s%s", n > 0 ? " and " : "", remedy);
         } else {
             accuracy = fmin(accuracy, 0.5 / part[k]);
         }
     }
-    if (n > 0 && accuracy == 1) return;
-    if (accuracy == 1) accuracy = 0.5 / factor;
+    if (accuracy == 1) return;
     snprintf(text + n, size - (size_t)n, "%ssimulation.accuracy: %.1g", n > 0 ? " and " : "",
-             accuracy * scene->simulation.accuracy);
+             accuracy / margin * scene->simulation.accuracy);
 }
 
-static void warn_of_error(const bough_companion *c, const bough_error_shares *shares,
-                          const bough_error_verdict *v, char warning[BOUGH_ERROR_WARNING]) {
-    double accuracy = c->run->scene->simulation.accuracy;
+static void warn_of_error(const bough_companion *c, const bough_error_verdict *v,
+                          char warning[BOUGH_ERROR_WARNING]) {
+    const bough_scene *scene = c->run->scene;
+    double accuracy = scene->simulation.accuracy;
     int n = describe(c, v, warning, BOUGH_ERROR_WARNING);
     n += snprintf(warning + n, (size_t)(BOUGH_ERROR_WARNING - n), "; for simulation.accuracy %.3g try ",
                   accuracy);
-    advise_for_accuracy(c, shares, v->relative / accuracy, warning + n, (size_t)(BOUGH_ERROR_WARNING - n));
+    advise_for_accuracy(scene, v->relative / accuracy, warning + n, (size_t)(BOUGH_ERROR_WARNING - n));
 }
 
 static void warn_of_loss(const bough_companion *c, char warning[BOUGH_ERROR_WARNING]) {
@@ -329,7 +320,7 @@ bough_status bough_error_judge(const bough_companion *c, const bough_error_share
     if (c->compared > 0 && c->reason[0]) warn_of_loss(c, warning);
     if (v.channel < 0) return bough_ok();
     if (bound > 0 && v.relative > bound) return judge_excess(c, shares, bound, &v, warning);
-    if (v.relative > c->run->scene->simulation.accuracy && !warning[0]) warn_of_error(c, shares, &v, warning);
+    if (v.relative > c->run->scene->simulation.accuracy && !warning[0]) warn_of_error(c, &v, warning);
     return bough_ok();
 }
 

@@ -27,10 +27,10 @@ typedef struct bough_error_shares {
 
 const char *bough_error_share_name(bough_error_share_kind kind);
 
-// After a complete run: makes the further runs, up to that time [s]. What is not known says why.
-// BOUGH_INTERRUPTED by stop() (NULL: never).
-bough_status bough_error_shares_find(bough_arena *arena, const bough_companion *c, double until,
-                                     bool (*stop)(void), bough_error_shares *shares);
+// After a complete run: makes the further runs. What is not known says why. BOUGH_INTERRUPTED by stop()
+// (NULL: never).
+bough_status bough_error_shares_find(bough_arena *arena, const bough_companion *c, bool (*stop)(void),
+                                     bough_error_shares *shares);
 
 enum { BOUGH_ERROR_WARNING = 600 };
 

@@ -569,9 +569,13 @@ const bough_scene_solver *bough_scene_micro(const bough_scene *scene, const boug
 // Length of a rod's axis, straight between its stations [m].
 double bough_scene_arc_length(const bough_scene_structure *structure);
 
-// The errors that settings which the scene names lead one to expect, over its accuracy: of mesh, air and
-// time; 0 where they follow from the accuracy.
-void bough_scene_expect_errors(const bough_scene *scene, double error[3]);
+// The errors that the scene's settings lead one to expect, over its accuracy.
+typedef struct bough_scene_expectation {
+    double error[3]; // of mesh, air and time; 0: the scene has no such part
+    bool named[3];   // the scene names the setting, which else follows from the accuracy
+} bough_scene_expectation;
+
+bough_scene_expectation bough_scene_expect_errors(const bough_scene *scene);
 
 // Whether the duration and the periods of output, air and control are multiples of the macro step [s].
 bool bough_scene_step_fits(const bough_scene *scene, double macro_step);

@@ -62,7 +62,9 @@ static int usual_segments(const bough_scene *s) {
 static void choose_segments(bough_scene *s) {
     for (int i = 0; i < s->n_body; i++) {
         bough_scene_rod *rod = &s->body[i].rod;
-        if (rod->node && !is_named(rod->node, "segments")) rod->n_segment = usual_segments(s);
+        if (!rod->node || is_named(rod->node, "segments")) continue;
+        int pieces = s->body[i].fidelity == BOUGH_SCENE_SEGMENTED_MODAL ? s->body[i].modal.pieces : 0;
+        rod->n_segment = usual_segments(s) > pieces ? usual_segments(s) : pieces;
     }
 }
 
@@ -141,32 +143,37 @@ static void choose_times(bough_scene *s) {
     }
 }
 
-// -- settings that are named ----------------------------------------------------------------------
+// -- what errors to expect ------------------------------------------------------------------------
 
-static double mesh_error(const bough_scene *s) {
-    double largest = 0;
+static bool has_mesh(const bough_scene_body *b) { return b->rod.node && b->fidelity != BOUGH_SCENE_RIGID; }
+
+static void expect_mesh(const bough_scene *s, bough_scene_expectation *e) {
     for (int i = 0; i < s->n_body; i++) {
         const bough_scene_rod *rod = &s->body[i].rod;
-        if (!is_named(rod->node, "segments") || s->body[i].fidelity == BOUGH_SCENE_RIGID) continue;
+        if (!has_mesh(&s->body[i])) continue;
         double coarser = (double)usual_segments(s) / rod->n_segment;
-        largest = fmax(largest, coarser * coarser);
+        if (coarser * coarser <= e->error[0]) continue;
+        e->error[0] = coarser * coarser;
+        e->named[0] = is_named(rod->node, "segments");
     }
-    return largest;
 }
 
-static double time_error(const bough_scene *s) {
+static void expect_time(const bough_scene *s, bough_scene_expectation *e) {
     const bough_scene_simulation *simulation = &s->simulation;
     bool whole = bough_scheme_find(bough_scheme_name(simulation->coupling.scheme))->one_system;
     const bough_scene_solver *solver = whole ? &simulation->master : &simulation->micro;
-    if (!is_named(solver->node, "rtol")) return 0;
-    return solver->rtol * (whole ? whole_error : rod_error) / simulation->accuracy;
+    e->error[2] = solver->rtol * (whole ? whole_error : rod_error) / simulation->accuracy;
+    e->named[2] = is_named(solver->node, "rtol");
 }
 
-void bough_scene_expect_errors(const bough_scene *s, double error[3]) {
+bough_scene_expectation bough_scene_expect_errors(const bough_scene *s) {
+    bough_scene_expectation e = {0};
     double air = air_period(s);
-    error[0] = mesh_error(s);
-    error[1] = air > 0 && is_named(s->aero.node, "rate") ? pow(1 / (s->aero.rate * air), 3) : 0;
-    error[2] = time_error(s);
+    expect_mesh(s, &e);
+    if (air > 0) e.error[1] = pow(1 / (s->aero.rate * air), 3);
+    e.named[1] = air > 0 && is_named(s->aero.node, "rate");
+    expect_time(s, &e);
+    return e;
 }
 
 void bough_scene_apply_accuracy(bough_scene *s) {

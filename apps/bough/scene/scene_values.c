@@ -484,7 +484,8 @@ static void check_modal(bough_schema_reader *r, const bough_scene_body *b, bool 
     if (b->fidelity == BOUGH_SCENE_MODAL && pieces != NULL) {
         bough_schema_error(r, pieces, "modal.pieces", "only used with 'fidelity: segmented-modal'");
     }
-    if (b->fidelity == BOUGH_SCENE_SEGMENTED_MODAL && has_rod && b->modal.pieces > b->rod.n_segment) {
+    bool named = has_rod && b->rod.n_segment > 0; // else they follow from the accuracy
+    if (b->fidelity == BOUGH_SCENE_SEGMENTED_MODAL && named && b->modal.pieces > b->rod.n_segment) {
         bough_schema_error(r, b->node, "modal.pieces", "%d pieces of %d segments: give the rod more segments",
                            b->modal.pieces, b->rod.n_segment);
     }
