@@ -2,8 +2,8 @@
 #ifndef BOUGH_AERO_ROTOR_ROTOR_MODEL_H
 #define BOUGH_AERO_ROTOR_ROTOR_MODEL_H
 
-#include "core/base/lanes.h"
 #include "aero/rotor/rotor.h"
+#include "core/base/lanes.h"
 #include "core/base/rotation.h"
 
 // Stations of one blade, padded to `stride` by copies of the last; a 3×3 matrix by its columns.
