@@ -34,6 +34,7 @@ static const double e[STAGES] = {0.2777499476479672, -1.4032398951759988, 1.7726
 // −2e-4 for three times as much, which tangents of every step have too.
 static const double least_viscosity = 0.03; // [-]
 static const double most_change = 0.002;    // [-]
+static const double rounding = 1e-9;        // of times and steps that are meant to be equal, relative
 
 typedef struct rosenbrock {
     bough_ode ode;
@@ -210,7 +211,7 @@ static bool renew_tangents(rosenbrock *m, double t, const double *y, double gamm
     m->sum.factorisations++;
     if (!m->ode.linearise(m->ode.self, t, y) || !m->ode.factor(m->ode.self, gamma)) return false;
     if (!undamped(m, gamma / gamma_h)) m->most_age = m->kept;
-    if (compare && fabs(m->factored - gamma) <= 1e-9 * gamma) {
+    if (compare && fabs(m->factored - gamma) <= rounding * gamma) {
         filter_increment(m, m->fresh);
         choose_age(m);
     }
@@ -223,7 +224,7 @@ static bool renew_factors(rosenbrock *m, double t, const double *y, double h) {
     double gamma = gamma_h * h;
     if (m->age >= m->most_age) return renew_tangents(m, t, y, gamma);
     // equal steps differ by rounding of the time
-    if (fabs(m->factored - gamma) <= 1e-9 * gamma) return true;
+    if (fabs(m->factored - gamma) <= rounding * gamma) return true;
     m->sum.factorisations++;
     m->factored = gamma;
     return m->ode.factor(m->ode.self, gamma);
@@ -269,8 +270,8 @@ static void accept(rosenbrock *m, double *restrict y) { memcpy(y, m->now.at, (si
 static const char *cross(rosenbrock *m, double *t, double pause, double t1, double *y) {
     double begun = *t;
     for (int n = 0; *t < pause; n++) {
-        double parts = ceil((t1 - *t) / m->longest * (1 - 1e-12));
-        // equal steps, none longer than allowed
+        // equal steps, none longer than allowed; times are rounded
+        double parts = ceil((t1 - *t) / m->longest * (1 - rounding));
         double h = (t1 - *t) / fmax(parts, 1);
         bool known = n >= m->most_steps / 5;
         if (known && n * (t1 - begun) >= m->most_steps * (*t - begun)) {

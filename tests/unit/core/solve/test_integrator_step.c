@@ -161,3 +161,22 @@ TEST(steps_and_starts_are_counted) {
     assert_int_equal(sum.failed_steps, 0);
     bough_arena_destroy(p.arena);
 }
+
+// After an hour, times and their differences are rounded to 5e-13 s.
+TEST(steps_stay_equal_late_in_a_run) {
+    const size_t rows[] = {0, 4};
+    for (int k = 0; k < 2; k++) {
+        problem p;
+        double y[N];
+        bough_statistics sum = {0};
+        build(&p, methods[rows[k]], 0.02, y);
+        exact(3600, y);
+        for (int i = 0; i < 100; i++) {
+            check_ok(integrator_advance(&p.micro, 3600 + 0.04 * i, 3600 + 0.04 * (i + 1), false, y));
+        }
+        p.micro.ops->statistics(p.micro.self, &sum);
+        assert_int_equal(sum.steps, 200);
+        assert_int_equal(sum.factorisations, sum.jacobians);
+        bough_arena_destroy(p.arena);
+    }
+}
