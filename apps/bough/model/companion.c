@@ -27,10 +27,17 @@ static void give_up(bough_companion *c, const char *reason) {
     c->from = c->run->master->time;
 }
 
+// The oldest sample that the run shows, before it takes the next one, over the time between two.
+static double share_held(const bough_scene *scene) {
+    double rate = scene->aero.node ? scene->aero.rate : scene->control.node ? scene->control.rate : 0;
+    return fmax(1 - rate * scene->simulation.macro_step, 0);
+}
+
 static bough_status build(bough_arena *arena, bough_companion *c) {
     const bough_scene *scene = bough_coarser_scene_beside(arena, c->run, BOUGH_COARSER_ALL);
     bough_status status = bough_simulation_build_on(arena, scene, c->run->pool, &c->coarser);
     c->share = bough_coarser_share(c->run->scene, scene);
+    c->share_held = share_held(c->run->scene);
     if (bough_is_ok(&status)) {
         c->own = bough_channels_start(arena);
         status = bough_simulation_channels(c->coarser, &c->own);
@@ -118,15 +125,10 @@ static double difference(const bough_channel *channel, double a, double b) {
     return channel->turn > 0 ? remainder(a - b, channel->turn) : a - b;
 }
 
-// Of the difference between two that hold values for samples, one of them twice as long: order 1.
-static const double share_held = 0.5;
-
-// Of the difference, that the run errs by in a channel; for a sampled one it depends on which of the two
-// holds an earlier sample. The fresh sample of a run differs from one that is held by the companion's age
-// alone.
+// Of the difference, that the run errs by in a channel. A sampled one that the companion holds, one sample of
+// the run longer than the run does, differs by what happens in that time.
 static double share_now(const bough_companion *c, bool sampled) {
-    if (!sampled || bough_master_sampled(c->coarser->master)) return c->share;
-    return bough_master_sampled(c->run->master) ? 0 : fmax(c->share, share_held);
+    return sampled && !bough_master_sampled(c->coarser->master) ? c->share_held : c->share;
 }
 
 static void compare(bough_companion *c) {

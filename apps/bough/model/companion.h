@@ -18,6 +18,7 @@ typedef struct bough_companion {
     bough_channels own;                  // of the companion: the same ones
     double length;                       // of the longest rod; 0: there is none [m]
     double share;                        // of the difference, that the run errs by
+    double share_held;                   // the same of a channel whose last sample the companion holds
     char reason[BOUGH_COMPANION_REASON]; // why errors are not known, or not any more; "": they are
     double from;                         // when they ceased to be [s]
     long compared;                       // times
