@@ -1,3 +1,4 @@
+// theory (94, 95)
 #include "aero/control/controller.h"
 
 #include "core/base/base.h"
@@ -48,8 +49,10 @@ bough_status bough_controller_check(const bough_controller_def *d) {
 }
 
 double bough_controller_torque(const bough_controller_def *d, double speed, double pitch) {
+    // a pitched rotor runs at constant power below rated speed, too
     bool pitched = pitch >= d->power_pitch;
     double torque;
+    // the regions of the torque, from low to high speed
     if (d->motoring && speed < synchronous(d)) {
         return fmax(slope(d) * (speed - synchronous(d)), -d->most_torque);
     }
@@ -71,6 +74,7 @@ double bough_controller_torque(const bough_controller_def *d, double speed, doub
     return fmin(torque, d->most_torque);
 }
 
+// 1/(1 + θ/θ_K): the gains fall as the rotor's sensitivity to pitch grows.
 static double schedule(const bough_controller_def *d, double pitch) {
     return 1 / (1 + fmax(pitch, 0) / d->halving_pitch);
 }
@@ -90,17 +94,19 @@ void bough_controller_advance(const bough_controller_def *d, double speed, doubl
         start(d, speed, pitch, s);
         return;
     }
+    // filtered speed; the torque follows its law within its rate
     s->speed = speed + (s->speed - speed) * exp(-step * d->corner);
     double most = d->torque_rate * step, torque = bough_controller_torque(d, s->speed, s->pitch);
     s->torque = bough_clamp(torque, s->torque - most, s->torque + most);
     if (speed <= 0 && !d->motoring)
         s->torque = 0; // which the filter and the torque's rate would keep while it reverses
-    double share = schedule(d, s->pitch), error = s->speed - d->reference_speed;
-    // The integral alone must not ask for more than there is.
-    double unit = share * d->integral;
+    // the pitch, then its limits of rate and angle
+    double gain = schedule(d, s->pitch), error = s->speed - d->reference_speed;
+    // no wind-up: the integral alone stays within the range of the pitch
+    double unit = gain * d->integral;
     s->integral = bough_clamp(s->integral + error * step, d->least_pitch / unit, d->most_pitch / unit);
     double sought =
-        bough_clamp(share * d->proportional * error + unit * s->integral, d->least_pitch, d->most_pitch);
+        bough_clamp(gain * d->proportional * error + unit * s->integral, d->least_pitch, d->most_pitch);
     double reach = d->pitch_rate * step;
     double rated = bough_clamp(sought, pitch - reach, pitch + reach);
     s->pitch = bough_clamp(rated, d->least_pitch, d->most_pitch);

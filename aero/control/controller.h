@@ -21,7 +21,7 @@ typedef struct bough_controller_def {
     double rated_speed;  // constant power or torque from here [rad/s]
     int above_rated;     // bough_above_rated: which of the two
     double rated_power;  // mechanical [W]
-    double slip;         // of the line between the two, share of its synchronous speed [-]
+    double slip;         // of the line between the two, relative to its synchronous speed [-]
     double most_torque;  // [N m]
     bool motoring; // an induction generator: below its synchronous speed it drives, down to −most_torque
     double torque_rate;             // the most [N m/s]

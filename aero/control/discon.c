@@ -1,3 +1,4 @@
+// Controllers in Bladed's interface: loads the library, and exchanges records with it.
 #include "aero/control/discon.h"
 
 #include "core/base/base.h"
@@ -8,7 +9,7 @@
 #include <stdio.h>
 #include <string.h>
 
-// Room beyond the records of the interface for what controllers log there.
+// Records of the interface, and more for the values that controllers log.
 enum { RECORDS = 8192, LOGGED = 1000, TEXT = 1024 };
 
 typedef void call(float *swap, int *fail, char *input, char *output, char *message);
@@ -73,16 +74,17 @@ static bool copy_bytes(FILE *from, FILE *to) {
     return !ferror(from) && fflush(to) == 0;
 }
 
-static void let_go(void *self) {
+static void close_copy(void *self) {
     library_copy *c = self;
     if (c->handle) dlclose(c->handle);
     if (c->file) fclose(c->file);
 }
 
+// The file of the copy has no name; the loader opens it by its number.
 static void *load_copy(bough_arena *arena, const char *library) {
     char path[64], why[BOUGH_INPUT_REASON];
     library_copy *c = bough_arena_take(arena, sizeof *c);
-    bough_arena_on_destroy(arena, let_go, c);
+    bough_arena_on_destroy(arena, close_copy, c);
     FILE *from = bough_input_open(library, BOUGH_INPUT_DATA, why);
     c->file = from ? tmpfile() : NULL;
     bool good = c->file && copy_bytes(from, c->file);
@@ -94,6 +96,7 @@ static void *load_copy(bough_arena *arena, const char *library) {
 
 static bough_status find_function(bough_arena *arena, const char *library, bool copy, call **function) {
     char why[BOUGH_INPUT_REASON];
+    // a missing file has its own reason; names without a folder are the loader's
     FILE *file = strchr(library, '/') ? bough_input_open(library, BOUGH_INPUT_DATA, why) : NULL;
     if (!file && strchr(library, '/')) {
         return bough_fail(BOUGH_INVALID, "the controller cannot be loaded: %.200s: %s", library, why);
@@ -105,6 +108,7 @@ static bough_status find_function(bough_arena *arena, const char *library, bool 
         return bough_fail(BOUGH_INVALID, "the controller cannot be loaded: %.200s",
                           reason ? reason : "it cannot be copied");
     }
+    // the one function of the interface
     void *symbol = dlsym(handle, "DISCON");
     if (!symbol) {
         if (!copy) dlclose(handle);
@@ -132,7 +136,8 @@ bough_status bough_discon_open(bough_arena *arena, const char *library, const ch
     return status;
 }
 
-static void tell(bough_discon *d, const bough_discon_sensed *s) {
+// The measured values, into the records.
+static void write_records(bough_discon *d, const bough_discon_sensed *s) {
     float *r = d->record;
     r[STATUS] = s->last ? -1.0F : (float)d->started;
     r[TIME] = (float)s->time;
@@ -156,6 +161,7 @@ static void tell(bough_discon *d, const bough_discon_sensed *s) {
         r[ROOT_MOMENT + b] = (float)s->root_moment[b];
         r[IN_PLANE + b] = (float)s->in_plane[b];
     }
+    // constants of the interface: generator connected, lengths of texts, place for logs
     r[CONTACTOR] = 1;
     r[MESSAGE_SIZE] = TEXT;
     r[INPUT_SIZE] = (float)strlen(d->input);
@@ -170,8 +176,9 @@ static void tell(bough_discon *d, const bough_discon_sensed *s) {
 }
 
 // With collective control all blades follow one record, else each its own.
-static void hear(const bough_discon *d, bough_discon_demand *demand) {
+static void read_demands(const bough_discon *d, bough_discon_demand *demand) {
     const float *r = d->record;
+    // individual demands, or the collective one for all blades
     bool individual = r[PITCH_CONTROL] == 1;
     demand->torque = (double)r[DEMANDED_TORQUE];
     for (int b = 0; b < BOUGH_MOST_BLADES; b++)
@@ -179,6 +186,7 @@ static void hear(const bough_discon *d, bough_discon_demand *demand) {
             (double)r[individual && b < BOUGH_DISCON_BLADES ? DEMANDED_PITCH + b : COLLECTIVE_PITCH];
 }
 
+// Whether torque and pitch are finite and of a possible size.
 static bool is_sound(const bough_discon_demand *d) {
     bool sound = isfinite(d->torque) && fabs(d->torque) < 1e12;
     for (int b = 0; b < BOUGH_MOST_BLADES; b++)
@@ -189,11 +197,13 @@ static bool is_sound(const bough_discon_demand *d) {
 bough_status bough_discon_call(bough_discon *d, const bough_discon_sensed *sensed,
                                bough_discon_demand *demand) {
     int fail = 0;
-    tell(d, sensed);
+    write_records(d, sensed);
+    // Fortran's first record is number 1
     d->function(d->record + 1, &fail, d->input, d->output, d->message);
     d->started = true;
     d->message[TEXT - 1] = '\0';
-    hear(d, demand);
+    read_demands(d, demand);
+    // refusals: by the controller itself, or of demands that cannot be followed
     if (fail < 0) {
         return bough_fail(BOUGH_FAILED, "the controller %.100s fails at %g s: %.200s", d->library,
                           sensed->time, d->message[0] ? d->message : "without a message");

@@ -1,5 +1,5 @@
-// Elements side by side in vector lanes: first all roots next to a guess are sought, then the others,
-// interval by interval.
+// theory (79) for all elements, side by side in vector lanes: first all roots next to a guess, then the
+// others, interval by interval.
 #include "aero/rotor/induction_balance.h"
 
 bough_induction_options bough_induction_options_default(void) {
@@ -19,7 +19,7 @@ typedef struct lanes {
     lane open, here; // 1: no root is known yet; it is taken to be in reach
     // the point last evaluated
     lane phi, s, c, loss, alpha, lift, drag, residual, axial, swirl;
-    // the bracket, and where to go in it: none when the root is found
+    // the bracket and the fraction of the next step in it: 0 when the root is found
     lane a, fa, b, fb, step;
     const bough_induction_options *options;
     const bough_polar *const *polar;
@@ -56,7 +56,7 @@ static inline void enter_flow(int first, lanes *restrict x) {
     }
 }
 
-static inline void ask_polars(int first, lanes *restrict x) {
+static inline void evaluate_polars(int first, lanes *restrict x) {
     for (int i = first; i < first + BOUGH_LANES; i++) {
         bough_coefficients k = bough_polar_at(x->polar[i], x->alpha[i]);
         x->lift[i] = k.lift;
@@ -95,7 +95,7 @@ static inline void weigh_in(bool brake, lanes *restrict x) {
 static void evaluate(lanes *restrict x) {
     x->evaluations++;
     for (int g = 0; g < x->n_live; g++) enter_flow(x->live[g], x);
-    for (int g = 0; g < x->n_live; g++) ask_polars(x->live[g], x);
+    for (int g = 0; g < x->n_live; g++) evaluate_polars(x->live[g], x);
     if (x->brake) {
         weigh_in(true, x);
     } else {
@@ -113,7 +113,7 @@ static void list_live(lanes *x) {
     }
 }
 
-// Poses the problems of the elements from `first` on, and where to begin with them.
+// The problems of the elements from `first` on, and their first guesses.
 static void take(const bough_elements *e, int first, lanes *restrict x) {
     weights o = weights_of(x->options);
     lane zero_lift;
@@ -137,6 +137,7 @@ static void take(const bough_elements *e, int first, lanes *restrict x) {
         x->skew_normal[i] = p.skew_normal;
         x->skew_chord[i] = p.skew_chord;
         x->free_angle[i] = limit;
+        // an element without balance is never open
         x->open[i] = x->here[i] = is_balanced(p, e->inflow_x[first + i], e->inflow_y[first + i]) ? 1 : 0;
         x->attached[i] = phi > 0 ? 1 : 0;
         x->phi[i] = phi > 0 ? phi : limit;
@@ -201,13 +202,16 @@ static void keep_bracketed(lanes *restrict x) {
 
 // Next to the attached angle, whatever other roots there are, or, without it, to that without induction.
 static void surround_guess(lanes *restrict x) {
+    // windmill state
     x->brake = false;
     list_live(x);
     evaluate(x);
+    // the guess is one end, a point beyond the likely root the other
     set_first_end(x);
     go_near(x);
     evaluate(x);
     if (bracket(x) == 0) return;
+    // elements without a bracket: the far end
     go_far(x);
     evaluate(x);
     bracket(x);
@@ -234,6 +238,7 @@ static void surround_interval(int interval, lanes *restrict x) {
         bool had_root = interval == BEYOND && x->here[i] > 0;
         x->here[i] = had_root ? 0 : x->open[i];
     }
+    // both ends of the interval
     x->brake = interval == BRAKE;
     list_live(x);
     go_to_end(interval, 1, x);
@@ -253,6 +258,7 @@ static inline double shrink(int first, lanes *restrict x) {
         double was_open = x->step[i] > 0 ? 1 : 0;
         double a = x->phi[i], fa = x->residual[i], other = x->a[i], fother = x->fa[i];
         double far = x->b[i], ffar = x->fb[i], crossed = differ(fa, fother);
+        // the new point replaces the end of its own sign; the third point serves the interpolation
         double b = crossed > 0 ? other : far, fb = crossed > 0 ? fother : ffar;
         double c = crossed > 0 ? far : other, fc = crossed > 0 ? ffar : fother;
         double width = fabs(b - a), t = root_fraction(a, fa, b, fb, c, fc);
@@ -284,6 +290,7 @@ static void find_roots(lanes *restrict x) {
     for (int k = 0; k < MOST_STEPS && x->n_live > 0; k++) {
         for (int g = 0; g < x->n_live; g++) step(x->live[g], x);
         evaluate(x);
+        // groups whose roots are found are left out
         int left = 0;
         for (int g = 0; g < x->n_live; g++)
             if (shrink(x->live[g], x) > 0) x->live[left++] = x->live[g];
@@ -317,6 +324,7 @@ static void solve_some(const bough_elements *e, int first, lanes *restrict x, do
         axial[i] = bough_induction_is_fixed(x->options, tip, hub) ? 1 : 0;
         tangential[i] = loss[i] = 0;
     }
+    // roots next to the guesses, then interval by interval where one is missing
     take(e, first, x);
     surround_guess(x);
     find_roots(x);

@@ -19,7 +19,8 @@
 // Thrust as a function of a where momentum theory is not valid.
 typedef enum bough_high_thrust {
     // From a = 0.35/cos χ, at most 0.5, a parabola, smooth there, to CT = 2 at a = 1 and beyond; the
-    // swirl fades with the momentum share of the thrust. AeroDyn's newer (polar) formulation does this.
+    // swirl fades with the part of the thrust by momentum theory. AeroDyn's newer (polar) formulation does
+    // this.
     BOUGH_HIGH_THRUST_SMOOTH,
     // From a = 0.4 the parabola of M. L. Buhl, NREL/TP-500-36834 (2005); for a > 1 the propeller
     // brake state of momentum theory. AeroDyn's older formulation does this.
@@ -58,8 +59,8 @@ typedef struct bough_elements {
     const double *cone;                    // cos² of the blade's angle from the rotor plane [-]
     const double *twist;                   // of the chord from y [rad]
     const double *inflow_x, *inflow_y;     // relative to the blade, without induction [m/s]
-    // The section, its twist taken out, stands askew to y: its normal's part along y, and what its
-    // chord's is short of 1. 0 unless the blade leans from the rotor plane and y from its chord.
+    // The untwisted section is oblique to y: component of its normal along y, and 1 less the component of its
+    // chord. 0 unless the blade leans out of the rotor plane and y from its chord.
     const double *skew_normal, *skew_chord;
     double skew; // χ, of the wind and the shaft, of the whole rotor, below 90 degrees [rad]
 } bough_elements;

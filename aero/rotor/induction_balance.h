@@ -12,7 +12,7 @@
 static const double clearance = 1e-6;
 // Of the inflow angle [rad].
 static const double precision = 1e-12;
-// Slower than this there is no wake to speak of [m/s].
+// Slower than this there is no wake [m/s].
 static const double slow = 1e-3;
 // From this exponent on Prandtl's factor is 1 to the last digit.
 static const double no_loss = 40;
@@ -42,16 +42,16 @@ typedef struct problem {
     wake wake;
 } problem;
 
-// Where the polar is asked.
+// The point at which the polar is evaluated.
 typedef struct flow {
     double s, c;  // of the inflow angle
     double loss;  // F
     double alpha; // angle of attack [rad]
 } flow;
 
-// The inflow's direction as the section sees it: turned by the small angle that it stands askew.
+// The inflow's direction in the section's axes, rotated by the small angle of an oblique section.
 typedef struct section_flow {
-    double s, c, turn;
+    double s, c, angle;
 } section_flow;
 
 typedef struct balance {
@@ -102,7 +102,7 @@ static inline bool is_balanced(problem p, double vx, double vy) {
     return least_factor >= 1e-9 && least_speed >= slow;
 }
 
-// (2/π) acos exp(−x)
+// theory (82): (2/π) acos exp(−x)
 static inline double prandtl(double x) {
     double e = lane_exp(-(x < no_loss ? x : no_loss)), near_one = e > 0.5 ? 1 : 0;
     double angle = lane_arc_sine(near_one > 0 ? sqrt((1 - e) / 2) : e);
@@ -127,11 +127,11 @@ static inline section_flow seen_by_section(problem p, double s, double c) {
 static inline flow flow_at(problem p, double phi) {
     sine_cosine k = lane_sine_cosine(phi);
     double angle = p.sign_x * (p.sign_y > 0 ? phi : BOUGH_PI - phi);
-    double turn = seen_by_section(p, p.sign_x * k.sine, p.sign_y * k.cosine).turn;
-    return (flow){k.sine, k.cosine, loss_at(p, fabs(k.sine)), angle + turn - p.twist};
+    double oblique = seen_by_section(p, p.sign_x * k.sine, p.sign_y * k.cosine).angle;
+    return (flow){k.sine, k.cosine, loss_at(p, fabs(k.sine)), angle + oblique - p.twist};
 }
 
-// sin²φ/(1 − a) for the loading c = σ cn/(4F) = k sin²φ by Buhl's parabola beyond k = 2/3, whose
+// theory (80): sin²φ/(1 − a) for the loading c = σ cn/(4F) = k sin²φ by Buhl's parabola beyond k = 2/3, whose
 // root written as 1 − a = 1/(√g₂ + 5/3 − F) has no singular case.
 static inline double axial_buhl(double c, double s, double f, bool brake) {
     double s2 = s * s;
@@ -141,8 +141,8 @@ static inline double axial_buhl(double c, double s, double f, bool brake) {
     return 3 * c <= 2 * s2 ? s2 + c : beyond;
 }
 
-// The same by the parabola CT = d₀ + d₁ x + d₂ x² of x = 1 − a that leaves momentum theory smoothly
-// at a_c. Its other root, a > 1, belongs to φ < 0, at any load.
+// theory (81): the same by the parabola CT = d₀ + d₁ x + d₂ x² of x = 1 − a that leaves momentum theory
+// smoothly at a_c. Its other root, a > 1, belongs to φ < 0, at any load.
 static inline double axial_parabola(const wake w, double c, double s, double f) {
     double xc = 1 - w.critical, s2 = s * s, value = f * w.value, slope = f * w.slope;
     double least = value + slope * xc + 0.001, d0 = w.most > least ? w.most : least;
@@ -152,8 +152,8 @@ static inline double axial_parabola(const wake w, double c, double s, double f) 
     return (s * root - d1 * s2) / (2 * d0);
 }
 
-// Below: k x² = (1 − x) sqrt(x² + tan²χ) by Newton's method, which gains all digits from where there
-// is no skew; of negative loads the slope at a = 0.
+// theory (83), below a_c: k x² = (1 − x) sqrt(x² + tan²χ) by Newton's method, which gains all digits from
+// where there is no skew; of negative loads the slope at a = 0.
 static inline double axial_skewed(const wake w, double c, double s) {
     enum { STEPS = 5 };
     double s2 = s * s, t2 = w.tangent2, k = c / s2;
@@ -179,7 +179,8 @@ static inline bool is_low(bool brake, const wake w, double c, double s, double a
     return c <= w.limit * s * s && (!brake || axial > 0);
 }
 
-// The momentum share of the thrust, a/(k |1 − a|), with which the swirl fades beyond a_c and where a > 1.
+// The part of the thrust by momentum theory, a/(k |1 − a|): the swirl fades with it beyond a_c and where a
+// > 1.
 static inline double swirl_share(bool brake, const wake w, double c, double s, double axial) {
     double s2 = s * s, share = fabs(axial - s2) / c; // a = 1 − sin²φ/axial
     return is_low(brake, w, c, s, axial) ? 1 : share;
@@ -229,9 +230,9 @@ static inline double attached_angle(problem p, double lift_slope, double zero_li
     return windmill * square > 0 && off < 0.2 && phi > 1e-3 && phi < phi0 ? phi : 0;
 }
 
-// Where a bracket's other end is sought, a little beyond the root's likely place: next to the
-// attached angle where Newton's method leads with the slope of the same model, from φ₀ where one
-// step of the plain iteration for the inductions does.
+// The first guess of a bracket's other end, a little beyond the likely root: from the attached angle by a
+// step of Newton's method with the slope of the same model, from φ₀ by a step of the fixed-point iteration
+// for the inductions.
 static inline double nearby(problem p, double attached, double lift_slope, double phi0, double phi, flow w,
                             balance b) {
     const double overshoot = 1.4;
@@ -243,7 +244,7 @@ static inline double nearby(problem p, double attached, double lift_slope, doubl
     return attached > 0 ? bound : iterated;
 }
 
-// Where it is sought if not there.
+// The other end of the search if the first has no root.
 static inline double farther(double attached, double phi0, double phi, double residual) {
     double up = 1.2 * phi < phi0 ? 1.2 * phi : phi0;
     double low = attached > 0 ? 0.8 * phi : clearance, high = attached > 0 ? up : BOUGH_PI / 2;

@@ -20,7 +20,8 @@ void bough_inflow_start(bough_inflow_state *state, const double sought[2]) {
     }
 }
 
-// With z = w − k q the filters are z + τ₁ z' = (1 − k) q and v + τ₂ v' = k q + z. For q = q₀ + s t
+// theory (85). With z = w − k q the filters are z + τ₁ z' = (1 − k) q and v + τ₂ v' = k q + z. For q = q₀ + s
+// t
 //     z = (1 − k)(q₀ + s (t − τ₁)) + C exp(−t/τ₁),
 //     v = q₀ + s (t − (1 − k) τ₁ − τ₂) + C τ₁/(τ₁ − τ₂) exp(−t/τ₁) + D exp(−t/τ₂),
 // C and D from the values at t = 0; τ₂ is between 0.13 and 0.39 τ₁.
@@ -42,7 +43,7 @@ void bough_inflow_advance(bough_inflow_state *state, const double sought[2], dou
     for (int c = 0; c < 2; c++) state->sought[c] = sought[c];
 }
 
-// Slower than this an induced velocity cannot be said as a share of the inflow [m/s].
+// In a slower inflow an induced velocity has no induction factor [m/s].
 static const double slow = 1e-3;
 
 void bough_inflow_follow(const bough_inflow_clock *clock, double step, const double inflow[2], double *axial,

@@ -39,7 +39,7 @@ void bough_inflow_start(bough_inflow_state *state, const double sought[2]);
 void bough_inflow_advance(bough_inflow_state *state, const double sought[2], double step, double tau1,
                           double share);
 
-// What all stations of a rotor share.
+// Common to all stations of a rotor.
 typedef struct bough_inflow_clock {
     bool started; // there was a sample before
     double time;  // of the last sample [s]

@@ -1,3 +1,4 @@
+// Tables of airfoil coefficients: knots in radians around the whole circle, bins for lookups, attached flow.
 #include "aero/rotor/polar.h"
 
 #include "core/base/base.h"
@@ -8,14 +9,14 @@
 
 enum { ROW = BOUGH_POLAR_ROW };
 
-static const double turn = 2 * BOUGH_PI;
+static const double circle = 2 * BOUGH_PI;
 
-// Copies the knots, closes the turn, and prepares the slopes.
+// The knots in radians, with the first one again at the end, and the slopes between them.
 static void fill_rows(const bough_polar_def *def, int n, double *row) {
     for (int i = 0; i < n; i++) {
         const double *from = def->row + 4 * (i % def->n);
         double *to = row + ROW * i;
-        to[0] = from[0] * (BOUGH_PI / 180) + (i < def->n ? 0 : turn);
+        to[0] = from[0] * (BOUGH_PI / 180) + (i < def->n ? 0 : circle);
         for (int c = 1; c < 4; c++) to[c] = from[c];
     }
     for (int i = 0; i + 1 < n; i++) {
@@ -36,7 +37,7 @@ static void fill_bins(bough_polar *polar, int *bin) {
     if (polar->n - 1 - knot > polar->most) polar->most = polar->n - 1 - knot;
 }
 
-// A table that leaves out a few of its own steps at the ends tells the whole turn.
+// The range of the rows; a table whose gap is as wide as two of its own steps covers the circle.
 static void find_range(const bough_polar_def *def, bough_polar *polar) {
     const double degree = BOUGH_PI / 180, gap = 360 - (def->row[4 * (def->n - 1)] - def->row[0]);
     double widest = 0;
@@ -44,7 +45,7 @@ static void find_range(const bough_polar_def *def, bough_polar *polar) {
         widest = fmax(widest, def->row[4 * i] - def->row[4 * (i - 1)]);
     }
     polar->low = def->row[0] * degree;
-    polar->high = gap <= 2 * widest ? polar->low + turn : def->row[4 * (def->n - 1)] * degree;
+    polar->high = gap <= 2 * widest ? polar->low + circle : def->row[4 * (def->n - 1)] * degree;
 }
 
 // -- attached flow --------------------------------------------------------------------------------
@@ -58,6 +59,7 @@ static bool find_zero_lift(const bough_polar *polar, double *zero) {
     for (int k = -80; k < 80; k++) {
         double a = k * step, b = a + step, fa = lift_at(polar, a), fb = lift_at(polar, b);
         if (!(fa <= 0 && fb > 0)) continue;
+        // bisection
         for (int i = 0; i < 50; i++) {
             double middle = (a + b) / 2;
             if (lift_at(polar, middle) > 0) {
@@ -81,7 +83,7 @@ static double steepest(const bough_polar *polar, double zero) {
     double slope = 0;
     for (int k = 0; k < polar->n + 2 * FINE; k++) {
         int j = k - polar->n - FINE;
-        double d = k < polar->n ? remainder(polar->row[ROW * k] - zero, turn) : j * reach / FINE;
+        double d = k < polar->n ? remainder(polar->row[ROW * k] - zero, circle) : j * reach / FINE;
         if (fabs(d) < near_zero || fabs(d) > reach) continue;
         slope = fmax(slope, lift_at(polar, zero + d) / d);
     }
@@ -101,7 +103,7 @@ void bough_polar_build(bough_arena *arena, const bough_polar_def *def, bough_pol
     int *bin = bough_arena_take(arena, N_BIN * sizeof *bin);
     fill_rows(def, n, row);
     row[ROW * n] = INFINITY;
-    *polar = (bough_polar){.n = n, .row = row, .n_bin = N_BIN, .bin_per_rad = N_BIN / turn, .bin = bin};
+    *polar = (bough_polar){.n = n, .row = row, .n_bin = N_BIN, .bin_per_rad = N_BIN / circle, .bin = bin};
     fill_bins(polar, bin);
     find_range(def, polar);
     fit_attached(polar);
@@ -120,9 +122,10 @@ void bough_polar_blend(bough_arena *arena, const bough_polar *a, const bough_pol
     double *angle = bough_arena_doubles(arena, (size_t)most);
     double *row = bough_arena_doubles(arena, 4 * (size_t)most);
     for (int k = 0; k < most; k++)
-        angle[k] = k < a->n ? a->row[ROW * k] : remainder(b->row[ROW * (k - a->n)], turn);
+        angle[k] = k < a->n ? a->row[ROW * k] : remainder(b->row[ROW * (k - a->n)], circle);
+    // knots of both tables within one circle
     qsort(angle, (size_t)most, sizeof *angle, ascending);
-    for (int k = 0; k < most && angle[k] < angle[0] + turn - 1e-9; k++) {
+    for (int k = 0; k < most && angle[k] < angle[0] + circle - 1e-9; k++) {
         if (n > 0 && angle[k] * (180 / BOUGH_PI) - row[4 * (n - 1)] < 1e-9) continue;
         bough_coefficients x = bough_polar_at(a, angle[k]), y = bough_polar_at(b, angle[k]);
         double *to = row + 4 * n++;
@@ -133,7 +136,7 @@ void bough_polar_blend(bough_arena *arena, const bough_polar *a, const bough_pol
     }
     bough_polar_def def = {.name = "blend", .n = n, .row = row};
     bough_polar_build(arena, &def, polar);
-    bool a_whole = a->high - a->low >= turn, b_whole = b->high - b->low >= turn;
+    bool a_whole = a->high - a->low >= circle, b_whole = b->high - b->low >= circle;
     polar->low = a_whole ? b->low : b_whole ? a->low : fmax(a->low, b->low);
     polar->high = a_whole ? b->high : b_whole ? a->high : fmin(a->high, b->high);
 }
@@ -151,7 +154,7 @@ void bough_polar_smoothen(bough_arena *arena, bough_polar *polar) {
     double *curve = bough_arena_doubles(arena, 6 * (size_t)polar->n);
     double *slope = bough_arena_doubles(arena, 3 * (size_t)polar->n);
     for (int k = 0; k <= last; k++) {
-        const double *here = polar->row + ROW * (k % last); // the turn is closed: last is first
+        const double *here = polar->row + ROW * (k % last); // periodic: the last knot is the first
         const double *before = polar->row + ROW * (k % last == 0 ? last - 1 : k % last - 1);
         for (int c = 0; c < 3; c++)
             slope[3 * k + c] =

@@ -1,4 +1,4 @@
-// Airfoil coefficients: tables over the angle of attack, periodic over a full turn, interpolated
+// Airfoil coefficients: tables over the angle of attack, periodic over a full circle, interpolated
 // linearly as the field's reference codes do, or by monotone cubics.
 #ifndef BOUGH_AERO_ROTOR_POLAR_H
 #define BOUGH_AERO_ROTOR_POLAR_H
@@ -9,7 +9,7 @@
 #include <math.h>
 
 // Rows of (α [deg], Cl, Cd, Cm) with α strictly increasing over at most 360°. Between the last
-// row and the first, one turn later, the interpolation goes on.
+// row and the first, 360° later, values are interpolated, too.
 typedef struct bough_polar_def {
     const char *name; // for messages
     int n;
@@ -23,17 +23,17 @@ typedef struct bough_coefficients {
 enum { BOUGH_POLAR_ROW = 8 }; // doubles per knot: one cache line
 
 typedef struct bough_polar {
-    int n;       // knots, both ends of the turn included
+    int n;       // knots, both ends of the circle included
     double *row; // (n + 1 × 8): α [rad], Cl, Cd, Cm, their slopes to the next knot, unused; ∞ ends
     const double *curve; // (n × 6) of each: quadratic and cubic coefficient; NULL: linear
     int n_bin;
     double bin_per_rad;
     const int *bin;   // (n_bin): last knot at or below the bin's start
     int most;         // knots within a bin
-    double low, high; // range of its rows, high at most a turn above low [rad]
-    // Of attached flow; slope 0: no lift to speak of.
+    double low, high; // range of its rows, high at most 2π above low [rad]
+    // Of attached flow; slope 0: the polar has no lift.
     double slope;     // the steepest line through zero lift that touches the polar [1/rad]
-    double zero_lift; // where the lift grows through zero, nearest to no angle [rad]
+    double zero_lift; // where the lift grows through zero, nearest to 0 [rad]
 } bough_polar;
 
 // From rows of finite numbers whose angles increase over 360 degrees at most.
@@ -47,14 +47,14 @@ void bough_polar_blend(bough_arena *arena, const bough_polar *a, const bough_pol
 // F. N. Fritsch, J. Butland, SIAM J. Sci. Stat. Comput. 5 (1984).
 void bough_polar_smoothen(bough_arena *arena, bough_polar *polar);
 
-// The last knot at or below an angle; `alpha` is moved into the table's turn. Besides that move there is no
+// The last knot at or below an angle; `alpha` is moved into the table's range. Besides that move there is no
 // branch, because the processor could not predict it. A NaN remains and takes the first knot.
 static inline int bough_polar_knot(const bough_polar *polar, double *alpha) {
-    const double turn = 2 * BOUGH_PI;
+    const double circle = 2 * BOUGH_PI;
     double x = *alpha - polar->row[0];
-    if (x < 0 || x >= turn) {
-        x = fmod(x, turn); // exact at any size
-        x += x < 0 ? turn : 0;
+    if (x < 0 || x >= circle) {
+        x = fmod(x, circle); // exact at any size
+        x += x < 0 ? circle : 0;
     }
     int j = (int)((x > 0 ? x : 0) * polar->bin_per_rad);
     int knot = polar->bin[j < polar->n_bin ? j : polar->n_bin - 1];
@@ -88,7 +88,7 @@ static inline bough_coefficients bough_polar_slope(const bough_polar *polar, dou
                                 k.moment + d * (2 * c[4] + 3 * d * c[5])};
 }
 
-// Whether an angle of attack lies in the gap that the rows leave to the full turn.
+// Whether an angle of attack lies in the gap between the last row and the first.
 static inline bool bough_polar_outside_table(const bough_polar *polar, double alpha) {
     if (alpha >= polar->low && alpha <= polar->high) return false;
     double above = remainder(alpha - polar->low, 2 * BOUGH_PI);

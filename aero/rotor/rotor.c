@@ -5,7 +5,7 @@
 #include <math.h>
 #include <string.h>
 
-// Everything of a blade is reckoned in its frame's axes, stations side by side in vector lanes; the
+// All vectors of a blade are in its frame's axes, stations side by side in vector lanes; the
 // blade elements are those of rotor_approach.c.
 
 // -- survey ---------------------------------------------------------------------------------------
@@ -34,6 +34,7 @@ void bough_rotor_survey(const bough_rotor *rotor, const bough_rotor_motion *moti
     wind = bough_scale(1. / (rotor->n_blade * rotor->n_station), wind);
     data->disk_wind = wind;
     data->disk_velocity = bough_scale(1. / (rotor->n_blade * rotor->n_station), velocity);
+    // mean wind along and across the shaft
     double axial = bough_dot(wind, motion->shaft);
     bough_vec3 across = bough_axpy(-axial, motion->shaft, wind);
     double size = bough_norm(across);
@@ -45,14 +46,14 @@ void bough_rotor_survey(const bough_rotor *rotor, const bough_rotor_motion *moti
 
 // -- load -----------------------------------------------------------------------------------------
 
-// Pitt and Peters: the wake leans, and the half of the disk it leans over is induced more.
+// theory (84), Pitt and Peters: the wake leans, and induction is larger on the leeward half of the disk.
 // D. M. Pitt, D. A. Peters, Vertica 5 (1981), with the wake angle χ = (1 + 0.6 a) χ₀; faded by
-// the loss factor. `share` is the place on the radius, `leeward` the radial direction's part
-// downwind.
-static inline double skewed(double axial, double loss, double skew, double share, double leeward) {
+// the loss factor. `fraction` is the position on the radius, `leeward` the radial direction's
+// component downwind.
+static inline double skewed(double axial, double loss, double skew, double fraction, double leeward) {
     double angle = (1 + 0.6 * axial) * skew;
     sine_cosine k = lane_sine_cosine(angle < BOUGH_PI / 2 ? angle : BOUGH_PI / 2);
-    double lean = loss * (k.sine / (1 + k.cosine)) * (share < 1 ? share : 1); // tan χ/2
+    double lean = loss * (k.sine / (1 + k.cosine)) * (fraction < 1 ? fraction : 1); // tan χ/2
     return axial * (1 + 15 * BOUGH_PI / 32 * lean * leeward);
 }
 
@@ -70,9 +71,11 @@ static void induce(const bough_rotor *rotor, const bough_rotor_motion *motion, i
 #pragma omp simd
     for (int j = 0; j < s; j++) {
         double leeward = bough_dot(bough_cross(shaft, lane_load(r.y, s, j)), downwind);
+        // induction with skew and wake strength, where the loss factor leaves it free
         double leaning = skewed(r.axial[j], r.loss[j], skew, r.radius[j] / tip, leeward);
         double axial = free[j] > 0 ? wake * leaning : r.axial[j];
         double tangential = free[j] > 0 ? wake * r.tangential[j] : r.tangential[j];
+        // inflow at the section: angle, speed, angle of attack in its own plane
         double u = r.inflow_x[j] * (1 - axial), v = r.inflow_y[j] * (1 + tangential);
         r.axial[j] = axial;
         r.tangential[j] = tangential;
@@ -84,11 +87,11 @@ static void induce(const bough_rotor *rotor, const bough_rotor_motion *motion, i
 }
 
 static bough_stall_inflow stall_inflow(const blade_rows *r, int j) {
-    return (bough_stall_inflow){r->speed[j], r->alpha[j], r->turning[j]};
+    return (bough_stall_inflow){r->speed[j], r->alpha[j], r->pitch_rate[j]};
 }
 
-// Lift, drag and moment coefficients: of the static polars, or what dynamic stall makes of them.
-static void ask_polars(const bough_rotor *rotor, double time, int blade, bough_rotor_data *data) {
+// Lift, drag and moment coefficients: of the static polars, or with dynamic stall.
+static void evaluate_polars(const bough_rotor *rotor, double time, int blade, bough_rotor_data *data) {
     const blade_rows *r = data->scratch->blade + blade;
     for (int j = 0; j < rotor->n_station; j++) {
         bough_coefficients k;
@@ -105,8 +108,8 @@ static void ask_polars(const bough_rotor *rotor, double time, int blade, bough_r
     }
 }
 
-// How the coefficients follow the angle of attack and the section's rotation.
-static void ask_slopes(const bough_rotor *rotor, double time, int blade, bough_rotor_data *data) {
+// Derivatives of the coefficients by the angle of attack and by the section's rotation.
+static void evaluate_slopes(const bough_rotor *rotor, double time, int blade, bough_rotor_data *data) {
     const blade_rows *r = data->scratch->blade + blade;
     for (int j = 0; j < rotor->n_station; j++) {
         bough_stall_slopes k = {.angle = bough_polar_slope(rotor->station.polar[j], r->alpha[j])};
@@ -125,7 +128,7 @@ static void ask_slopes(const bough_rotor *rotor, double time, int blade, bough_r
     }
 }
 
-// Force and moment per length on the reference axis.
+// theory (86): force and moment per length on the reference axis.
 static void load_stations(const bough_rotor *rotor, const blade_rows *rows) {
     const blade_rows r = *rows;
     const double *restrict chord = rotor->station.chord;
@@ -152,8 +155,8 @@ static void load_stations(const bough_rotor *rotor, const blade_rows *rows) {
     }
 }
 
-// How the flow along the shaft follows the wind and the rotor's turning, and the angle of attack the
-// section's rotation, with the induction in balance: 4 F (V − u) u = σ Cn W², W (α + θ) = u = (1 − a) V.
+// theory (92): derivatives of the flow along the shaft by the wind and by the velocity of rotation, and of
+// the angle of attack by the section's rotation, with the induction in balance.
 typedef struct response {
     double flow, across, angle;
 } response;
@@ -173,6 +176,7 @@ static inline response in_balance(const bough_rotor *rotor, blade_rows r, int j,
     sine_cosine phi = lane_sine_cosine(r.phi[j]);
     double decline = rotor->induction.tip_loss ? loss_decline(rotor->station.tip_factor[j], phi) : 0;
     decline += rotor->induction.hub_loss ? loss_decline(rotor->station.hub_factor[j], phi) : 0;
+    // ∂R/∂u of the balance: momentum, loss factor, blade
     double free = 1 - 2 * a + a * (1 - a) * v / (w * loss) * decline;
     double sum = free + share * w * slope, scale = 1 / (sum > 0.3 ? sum : 0.3);
     double across = -share * r.inflow_y[j] * (2 * normal - slope * phi.sine) * scale;
@@ -192,7 +196,7 @@ static inline response section_response(const bough_rotor *rotor, blade_rows r, 
     return k;
 }
 
-// Derivatives of force and pitching moment per length along two directions of the section's plane …
+// Derivatives of force and pitching moment per length along two directions of the section's plane.
 typedef struct plane {
     double normal, chord, moment;
 } plane;
@@ -205,7 +209,8 @@ static inline void store_slope(double *restrict to, plane d, bough_vec3 n, bough
     to[8] = arm.x * force.y - arm.y * force.x + d.moment * z.z;
 }
 
-// … by the velocity of the vertices, and by the section's rotation about its normal and its rate.
+// S of theory (93): derivatives of the loads by the velocity of the vertices, and by the section's rotation
+// about its normal and its rate.
 static void slope_stations(const bough_rotor *rotor, const blade_rows *rows, const bough_rotor_data *data) {
     bool delayed = data->memory.station != NULL;
     double wake = data->scratch->wake;
@@ -218,6 +223,7 @@ static void slope_stations(const bough_rotor *rotor, const blade_rows *rows, con
     for (int j = 0; j < s; j++) {
         double q = 0.5 * density * r.speed[j] * chord[j], nose = pitching * chord[j];
         sine_cosine k = lane_sine_cosine(lane_remainder(r.alpha[j]));
+        // coefficients along normal and chord, and their slopes by the angle of attack
         plane f = {r.lift[j] * k.cosine + r.drag[j] * k.sine, r.drag[j] * k.cosine - r.lift[j] * k.sine,
                    nose * r.moment[j]};
         plane g = {r.lift_slope[j] * k.cosine + r.drag_slope[j] * k.sine + f.chord,
@@ -236,6 +242,7 @@ static void slope_stations(const bough_rotor *rotor, const blade_rows *rows, con
         bough_vec3 arm = lane_load(r.arm, s, j);
         double nx = bough_dot(n, x), ny = bough_dot(n, y) + to.across * nx;
         double cx = bough_dot(c, x), cy = bough_dot(c, y) + to.across * cx;
+        // flow along normal and chord by the velocities
         bough_vec3 un = bough_axpy(to.flow * nx, x, bough_scale(ny, y)); // the flow's parts by the velocity
         bough_vec3 uc = bough_axpy(to.flow * cx, x, bough_scale(cy, y));
         bough_vec3 way = bough_cross(z, arm); // of the centre by the rotation
@@ -249,9 +256,10 @@ static void slope_stations(const bough_rotor *rotor, const blade_rows *rows, con
         by_rate.normal += w * (r.lift_rate[j] * k.cosine + r.drag_rate[j] * k.sine);
         by_rate.chord += w * (r.drag_rate[j] * k.cosine - r.lift_rate[j] * k.sine);
         by_rate.moment += w * nose * r.moment_rate[j];
-        // the force turns with the section: z×n = c, z×c = −n
+        // the force rotates with the section: z×n = c, z×c = −n
         plane by_angle = {w * (to.angle * g.normal - f.chord), w * (to.angle * g.chord + f.normal),
                           w * to.angle * g.moment};
+        // rows of S at the axis
         store_slope(out + SLOPE * j, by_x, n, c, arm, z);
         store_slope(out + SLOPE * j + 1, by_y, n, c, arm, z);
         store_slope(out + SLOPE * j + 2, by_angle, n, c, arm, z);
@@ -259,8 +267,8 @@ static void slope_stations(const bough_rotor *rotor, const blade_rows *rows, con
     }
 }
 
-// What stations have per length (`width` numbers each, whole vectors) by n rows of the mapping, the
-// first `count` of them: on the vertices, or along the segments.
+// Distributes values per length at the stations (`width` each, whole vectors) by n rows of the mapping, the
+// first `count` of them, to the vertices or along the segments.
 static inline void spread(int n, const vertex_row *rows, int width, int count, const double *restrict line,
                           double *restrict load) {
     for (int i = 0; i < n; i++) {
@@ -285,6 +293,7 @@ static void sum_blade(const bough_rotor *rotor, const bough_rotor_motion *motion
     double thrust = 0, torque = 0;
 #pragma omp simd reduction(+ : thrust, torque)
     for (int i = 0; i < n; i++) {
+        // resultants about the hub
         bough_vec3 force = lane_load(load, n, i), arm = bough_sub(lane_load(vertex, n, i), hub);
         bough_vec3 about = bough_add(bough_cross(arm, force), lane_load(load + 3 * n, n, i));
         thrust += bough_dot(force, shaft);
@@ -298,7 +307,7 @@ void bough_rotor_load(const bough_rotor *rotor, const bough_rotor_motion *motion
                       bough_rotor_data *data) {
     const blade_rows *r = data->scratch->blade + blade;
     induce(rotor, motion, blade, data->scratch);
-    ask_polars(rotor, motion->time, blade, data);
+    evaluate_polars(rotor, motion->time, blade, data);
     load_stations(rotor, r);
     int n = rotor->n_vertex;
     spread(n, rotor->row, LOAD, 6, r->load, data->load + 6 * blade * n);
@@ -306,7 +315,7 @@ void bough_rotor_load(const bough_rotor *rotor, const bough_rotor_motion *motion
     spread(n - 1, rotor->mean, LOAD, 6, r->load, line);
     spread(n - 1, rotor->slope, LOAD, 6, r->load, line + 6 * (n - 1));
     if (rotor->slopes) {
-        ask_slopes(rotor, motion->time, blade, data);
+        evaluate_slopes(rotor, motion->time, blade, data);
         slope_stations(rotor, r, data);
         spread(n, rotor->row, SLOPE, BOUGH_SLOPES, r->slope, data->slope + BOUGH_SLOPES * blade * n);
     }
@@ -315,13 +324,14 @@ void bough_rotor_load(const bough_rotor *rotor, const bough_rotor_motion *motion
 
 // -- dynamic inflow of the whole rotor ----------------------------------------------------------
 
-// The equilibrium induction, mean over the disk's area, as a share of the wind along the shaft.
+// The equilibrium induction, mean over the disk's area, relative to the wind along the shaft.
 static double mean_induction(const bough_rotor *rotor, const bough_rotor_data *data, double wind) {
     double induced = 0, area = 0;
     int n = rotor->n_station;
     for (int b = 0; b < rotor->n_blade; b++) {
         for (int j = 1; j + 1 < n; j++) { // at the ends the loss factor leaves no load
             const double *radius = data->scratch->blade[b].radius + j;
+            // annulus of a station
             double share = radius[0] * (radius[1] - radius[-1]);
             induced += share * data->memory.station[b * n + j].state.sought[0];
             area += share;
@@ -382,7 +392,7 @@ bough_station bough_rotor_station(const bough_rotor_data *data, int blade, int s
                            .force_y = r->force_y[j]};
 }
 
-void bough_rotor_told_snapshot(const bough_rotor *rotor, bough_rotor_data *data, bough_snapshot *s) {
+void bough_rotor_result_snapshot(const bough_rotor *rotor, bough_rotor_data *data, bough_snapshot *s) {
     bough_snapshot_doubles(s, &data->thrust, 1);
     bough_snapshot_doubles(s, &data->torque, 1);
     bough_snapshot_take(s, &data->disk_wind, sizeof data->disk_wind);

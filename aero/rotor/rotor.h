@@ -28,7 +28,7 @@ typedef struct bough_station_def {
     double centre_y; //   and edgewise [m]; its z is that of the reference axis at `span`
     int polar;       // index into the rotor's polars
     int second;      // of a second polar …
-    double share;    // … and its share in the coefficients, 0 to 1
+    double share;    // … and its weight in the coefficients, 0 to 1
 } bough_station_def;
 
 typedef struct bough_rotor_def {
@@ -37,7 +37,7 @@ typedef struct bough_rotor_def {
     double hub_radius; // from the shaft axis to the blade roots [m]
     bool pitching_moment;
     bool skew;   // Pitt–Peters correction of the axial induction
-    bool slopes; // loads tell how they follow the vertices' motion
+    bool slopes; // derivatives of the loads by the vertices' motion are computed
     bough_induction_options induction;
     bough_inflow_def inflow;
     bough_stall_kind stall;
@@ -142,10 +142,10 @@ void bough_rotor_sample(const bough_rotor *rotor, const bough_rotor_motion *moti
 
 // The same in stages, each after the one before it for all blades, but induce only after the same
 // blade's approach. Blades are independent within a stage and may be given to different threads.
-//   approach: where the blade's stations are and the wind they meet; reads only what `motion` tells
-//             of the blade, and hub and shaft
+//   approach: where the blade's stations are and the wind they meet; reads only the blade in
+//             `motion`, and hub and shaft
 //   induce:   the induction there, most of the work
-//   survey:   what the whole rotor tells each station
+//   survey:   quantities of the whole rotor for each station
 //   load:     the loads on the blade's vertices
 //   conclude: the rotor's sums, the memory's clock
 void bough_rotor_approach(const bough_rotor *rotor, const bough_rotor_motion *motion, int blade,
@@ -157,11 +157,11 @@ void bough_rotor_load(const bough_rotor *rotor, const bough_rotor_motion *motion
                       bough_rotor_data *data);
 void bough_rotor_conclude(const bough_rotor *rotor, const bough_rotor_motion *motion, bough_rotor_data *data);
 
-// What a station of a blade reports of the last sample.
+// A station's results of the last sample.
 bough_station bough_rotor_station(const bough_rotor_data *data, int blade, int station);
 
 // The results of a sample: those of every station, thrust, torque and wind; not the loads.
-void bough_rotor_told_snapshot(const bough_rotor *rotor, bough_rotor_data *data, bough_snapshot *s);
+void bough_rotor_result_snapshot(const bough_rotor *rotor, bough_rotor_data *data, bough_snapshot *s);
 
 // The extreme values of a blade's last sample, to be compared with the range of tables and model.
 typedef struct bough_rotor_extremes {

@@ -1,4 +1,4 @@
-// Where the stations of a blade are, the wind they meet and the induction there.
+// Stations of a blade: position, wind, induction; the kinematics of theory (86).
 #include "aero/rotor/rotor_model.h"
 
 // The blade elements follow the polar formulation of the reference code (AeroDyn v5): y is
@@ -8,7 +8,7 @@
 // instead gave 0.4 % less thrust on a blade bent by 3 m. Loss factors are those of the undeformed
 // rotor; forces are per length of the reference axis.
 //
-// Everything of a blade is reckoned in its frame's axes, stations side by side in vector lanes.
+// All vectors of a blade are in its frame's axes, stations side by side in vector lanes.
 
 static inline bough_quaternion section_at(const double *restrict vertex, int n, int i) {
     const double *p = vertex + BOUGH_BLADE_ROTATION * n;
@@ -32,7 +32,8 @@ static inline element_axes axes_at(bough_vec3 shaft, bough_vec3 aside, bough_vec
                           bough_axpy(s, shaft, bough_scale(c, radial)), radius};
 }
 
-// Beyond this a section stands askew only where the blade is next to the shaft, or folded.
+// Tangent of the angle between a section's normal and the element's plane; more only beside the shaft or
+// folded.
 static const double most_skew = 0.2;
 
 static bough_vec3 any_normal(bough_vec3 v) {
@@ -40,22 +41,23 @@ static bough_vec3 any_normal(bough_vec3 v) {
     return bough_scale(1 / bough_norm(n), n);
 }
 
-// How the vertices are turned by deformation, and its second difference along the blade. At the ends
-// that of the neighbour.
-static void turn_vertices(const bough_rotor *rotor, const double *restrict vertex, blade_rows *restrict to) {
+// Rotations of the vertices by deformation, and their second differences along the blade; at the ends those
+// of the neighbours.
+static void rotate_vertices(const bough_rotor *rotor, const double *restrict vertex,
+                            blade_rows *restrict to) {
     int n = rotor->n_vertex;
-    double *restrict turn = to->turn, *restrict bend = to->bend;
+    double *restrict rotation = to->rotation, *restrict bend = to->bend;
     const bough_quaternion *restrict undeformed = rotor->undeformed;
 #pragma omp simd
     for (int i = 0; i < n; i++) {
         bough_quaternion d =
             bough_quaternion_product(section_at(vertex, n, i), bough_quaternion_conjugate(undeformed[i]));
-        lane_store(turn, n, i, bough_scale(copysign(2.0, d.w), bough_v3(d.x, d.y, d.z)));
+        lane_store(rotation, n, i, bough_scale(copysign(2.0, d.w), bough_v3(d.x, d.y, d.z)));
     }
 #pragma omp simd
     for (int i = 1; i < n - 1; i++) {
-        bough_vec3 sum = bough_add(lane_load(turn, n, i - 1), lane_load(turn, n, i + 1));
-        lane_store(bend, n, i, bough_axpy(-2, lane_load(turn, n, i), sum));
+        bough_vec3 sum = bough_add(lane_load(rotation, n, i - 1), lane_load(rotation, n, i + 1));
+        lane_store(bend, n, i, bough_axpy(-2, lane_load(rotation, n, i), sum));
     }
     for (int i = 0; i < n; i += n - 1) {
         bough_vec3 second = {0, 0, 0};
@@ -64,13 +66,13 @@ static void turn_vertices(const bough_rotor *rotor, const double *restrict verte
     }
 }
 
-// R turned by the small rotation phi.
-static inline bough_mat3 turned_by(bough_vec3 phi, bough_mat3 r) {
+// R rotated by the small rotation phi.
+static inline bough_mat3 rotated_by(bough_vec3 phi, bough_mat3 r) {
     return (bough_mat3){bough_add(r.c1, bough_cross(phi, r.c1)), bough_add(r.c2, bough_cross(phi, r.c2)),
                         bough_add(r.c3, bough_cross(phi, r.c3))};
 }
 
-// Where the stations of a blade are, how they stand and move.
+// Positions, axes and velocities of the stations of a blade.
 static void move_stations(const bough_rotor *rotor, const bough_rotor_motion *motion, int blade,
                           blade_rows *restrict to) {
     const station_rows m = rotor->station;
@@ -82,7 +84,7 @@ static void move_stations(const bough_rotor *rotor, const bough_rotor_motion *mo
     int n = rotor->n_vertex, s = rotor->stride;
     const double *restrict velocity = vertex + BOUGH_BLADE_VELOCITY * n;
     const double *restrict spin = vertex + BOUGH_BLADE_SPIN * n;
-    turn_vertices(rotor, vertex, to);
+    rotate_vertices(rotor, vertex, to);
     const double *restrict bend = to->bend;
 #pragma omp simd
     for (int j = 0; j < s; j++) {
@@ -91,17 +93,20 @@ static void move_stations(const bough_rotor *rotor, const bough_rotor_motion *mo
         bough_quaternion p = section_at(vertex, n, a), q = section_at(vertex, n, b);
         bough_vec3 second = bough_add(lane_load(bend, n, a), lane_load(bend, n, b));
         bough_vec3 beside = bough_scale(-0.25 * w * (1 - w), second);
-        bough_mat3 structure = turned_by(beside, rotation_between(p, q, w));
+        // structural section at the station: between two vertices, with the second difference
+        bough_mat3 structure = rotated_by(beside, rotation_between(p, q, w));
         bough_mat3 section = bough_mat3_product(structure, load_matrix(m.section, s, j));
         bough_vec3 arm = bough_mat3_mul(structure, lane_load(m.centre, s, j));
         bough_vec3 axis = bough_between(lane_load(vertex, n, a), lane_load(vertex, n, b), w);
+        // aerodynamic centre on the bent axis
         bough_vec3 ends = bough_sub(bough_rotation_matrix(q).c3, bough_rotation_matrix(p).c3);
         ends = bough_sub(ends, bough_mat3_mul(structure, lane_load(m.ends, s, j)));
         bough_vec3 bow = bough_scale(m.bow[j], ends); // of the axis from the chord, by bending
         axis = bough_add(axis, bow);
         bough_vec3 centre = bough_add(axis, arm);
         element_axes e = axes_at(shaft, aside, bough_sub(centre, hub), section.c3);
-        bough_vec3 turning =
+        // velocity of the centre
+        bough_vec3 spinning =
             bough_between(bough_mat3_mul(bough_rotation_matrix(p), lane_load(spin, n, a)),
                           bough_mat3_mul(bough_rotation_matrix(q), lane_load(spin, n, b)), w);
         bough_vec3 moving = bough_between(lane_load(velocity, n, a), lane_load(velocity, n, b), w);
@@ -109,11 +114,13 @@ static void move_stations(const bough_rotor *rotor, const bough_rotor_motion *mo
         lane_store(r.x, s, j, e.x);
         lane_store(r.y, s, j, e.y);
         lane_store(r.z, s, j, e.z);
-        lane_store(r.velocity, s, j, bough_add(moving, bough_cross(turning, bough_add(arm, bow))));
+        lane_store(r.velocity, s, j, bough_add(moving, bough_cross(spinning, bough_add(arm, bow))));
         bough_vec3 place = bough_add(frame.position, bough_mat3_mul(frame.rotation, centre));
         lane_store(r.place, s, j, place);
         r.radius[j] = e.radius;
-        r.turning[j] = bough_dot(turning, bough_cross(shaft, e.y)); // about the radius: no turn of the rotor
+        r.pitch_rate[j] =
+            bough_dot(spinning, bough_cross(shaft, e.y)); // about the radius, normal to the shaft
+        // the section in the element's axes
         double along = bough_dot(section.c1, shaft), across = bough_dot(section.c2, shaft);
         double y1 = bough_dot(section.c1, e.y), y2 = bough_dot(section.c2, e.y);
         double size = sqrt(along * along + across * across), scale = 1 / (size > 1e-9 ? size : 1);
@@ -150,7 +157,7 @@ static bough_vec3 sum_velocity(const bough_rotor *rotor, const bough_mat3 frame,
     return bough_mat3_mul(frame, sum);
 }
 
-// What the momentum balance asks of the stations.
+// Inputs of the momentum balance: inflow, solidity, cone.
 static void meet_wind(const bough_rotor *rotor, const bough_rotor_motion *motion, int blade,
                       blade_rows *restrict to) {
     const blade_rows r = *to;
@@ -173,7 +180,7 @@ static void meet_wind(const bough_rotor *rotor, const bough_rotor_motion *motion
     }
 }
 
-// What dynamic inflow leaves of the induction.
+// theory (85) in place of the induction in equilibrium.
 static void delay(const bough_rotor *rotor, double time, int blade, bough_rotor_data *data) {
     const blade_rows *r = data->scratch->blade + blade;
     const bough_inflow_clock *clock = data->memory.clock;

@@ -22,6 +22,7 @@ bough_rotor_def bough_rotor_def_default(void) {
 
 // -- build ----------------------------------------------------------------------------------------
 
+// Stations must lie on the blade, to rounding of its length.
 static bough_status check_spans(const bough_rotor_def *def) {
     double length = def->vertex_span[def->n_vertex - 1];
     for (int j = 0; j < def->n_station; j++) {
@@ -93,14 +94,14 @@ static void place_stations(const bough_rotor_def *def, const bough_polar *polar,
     }
 }
 
-// What a station's line load N_j of the stations' hat functions gives, dense by rows of n_station.
+// Integrals over the hat function N_j of a station's line load, dense by rows of n_station.
 typedef struct mappings {
     double *vertex; // to each vertex: ∫ hat_i N_j ds [m] (n_vertex)
     double *mean;   // over each segment: ∫ N_j ds/h (n_vertex − 1)
     double *slope;  // the slope of the line that has the same moments: ∫ N_j σ ds 12/h³ [1/m]
 } mappings;
 
-// Adds what [a, b] gives, on which all are linear; by Simpson's rule, exact for products.
+// Adds the integrals over [a, b], where all functions are linear; by Simpson's rule, exact for products.
 static void add_interval(const bough_rotor_def *def, double a, double b, int vertex, int station,
                          const mappings *to) {
     const double *x = def->vertex_span;
@@ -112,6 +113,7 @@ static void add_interval(const bough_rotor_def *def, double a, double b, int ver
         double w = weight[k] * (b - a);
         int at = vertex * def->n_station + station;
         double *here = to->vertex + at, *next = here + def->n_station;
+        // moments of the load about the segment's middle
         double slope = 12 * (hat - 0.5) / (dx * dx);
         here[0] += w * (1 - hat) * (1 - load);
         here[1] += w * (1 - hat) * load;
@@ -124,11 +126,13 @@ static void add_interval(const bough_rotor_def *def, double a, double b, int ver
     }
 }
 
+// All intervals on which hat functions of vertices and of stations are linear.
 static void fill_mappings(const bough_rotor_def *def, const mappings *to) {
     int vertex = 0, last = def->n_vertex - 2;
     for (int j = 0; j + 1 < def->n_station; j++) {
         double a = def->station[j].span, end = def->station[j + 1].span;
         while (a < end) {
+            // intervals between neighbouring points of both meshes
             while (vertex < last && def->vertex_span[vertex + 1] <= a) vertex++;
             double b = vertex < last ? fmin(end, def->vertex_span[vertex + 1]) : end;
             add_interval(def, a, b, vertex, j, to);
@@ -137,7 +141,7 @@ static void fill_mappings(const bough_rotor_def *def, const mappings *to) {
     }
 }
 
-// Keeps of each dense row the stretch from its first to its last entry.
+// Keeps each dense row from its first to its last nonzero entry.
 static void compress_rows(int n, int n_station, const double *dense, vertex_row *row) {
     for (int i = 0; i < n; i++) {
         const double *d = dense + i * n_station;
@@ -158,6 +162,7 @@ static const bough_polar *build_polars(bough_arena *arena, const bough_rotor_def
         if (s->share == 0) continue;
         bough_polar_blend(arena, polar + s->polar, polar + s->second, s->share, polar + def->n_polar + j);
     }
+    // mixtures first: they are exact between linear polars
     for (int i = 0; i < most && def->smooth_polars; i++)
         if (polar[i].n > 0) bough_polar_smoothen(arena, polar + i);
     return polar;
@@ -192,6 +197,7 @@ bough_status bough_rotor_build(bough_arena *arena, const bough_rotor_def *def, c
                            .row = row,
                            .mean = row + n_vertex,
                            .slope = row + 2 * n_vertex - 1};
+    // wind and tower, stations with their polars, mapping to the structural mesh
     take_stations(arena, rotor->stride, &rotor->station);
     status = bough_wind_build(arena, &def->wind, &rotor->wind);
     if (!bough_is_ok(&status)) return status;
@@ -229,7 +235,7 @@ static void take_rows(bough_arena *arena, const bough_rotor *rotor, blade_rows *
     size_t n = (size_t)rotor->stride;
     bough_arena_each(arena, 3 * n, &rows->arm, &rows->x, &rows->y, &rows->z, &rows->velocity, &rows->wind,
                      &rows->place, &rows->normal, &rows->chord);
-    bough_arena_each(arena, n, &rows->radius, &rows->twist, &rows->turning, &rows->solidity, &rows->cone,
+    bough_arena_each(arena, n, &rows->radius, &rows->twist, &rows->pitch_rate, &rows->solidity, &rows->cone,
                      &rows->skew_normal, &rows->skew_chord, &rows->inflow_x, &rows->inflow_y, &rows->axial,
                      &rows->tangential, &rows->loss, &rows->phi, &rows->alpha, &rows->speed, &rows->lift,
                      &rows->drag, &rows->moment, &rows->force_x, &rows->force_y, &rows->lift_slope,
@@ -237,7 +243,7 @@ static void take_rows(bough_arena *arena, const bough_rotor *rotor, blade_rows *
                      &rows->moment_rate, &rows->static_slope);
     rows->load = bough_arena_doubles(arena, LOAD * n);
     rows->slope = bough_arena_doubles(arena, SLOPE * n);
-    rows->turn = bough_arena_doubles(arena, 3 * (size_t)rotor->n_vertex);
+    rows->rotation = bough_arena_doubles(arena, 3 * (size_t)rotor->n_vertex);
     rows->bend = bough_arena_doubles(arena, 3 * (size_t)rotor->n_vertex);
 }
 

@@ -1,4 +1,4 @@
-// What a rotor is built into, and where a sample keeps what it finds; for rotor*.c only.
+// The built rotor, and the rows of a sample; for rotor*.c only.
 #ifndef BOUGH_AERO_ROTOR_ROTOR_MODEL_H
 #define BOUGH_AERO_ROTOR_ROTOR_MODEL_H
 
@@ -44,12 +44,12 @@ enum { SLOPE = 16 }; // BOUGH_SLOPES and four zeros: whole vectors
 
 // Of one blade, in its frame's axes; y is tangential, x normal, z along the blade.
 typedef struct blade_rows {
-    double *arm;                      // (3 × stride) from the reference axis to the centre [m]
-    double *x, *y, *z;                // (3 × stride) axes of the blade element
-    double *velocity, *wind;          // (3 × stride) of the aerodynamic centre and there [m/s]
-    double *place;                    // (3 × stride) the centre, in ground axes [m]
-    double *radius, *twist, *turning; // (stride) [m], [rad], rotation nose up [rad/s]
-    double *normal, *chord;           // (3 × stride) axes of the section, leading to trailing edge
+    double *arm;                         // (3 × stride) from the reference axis to the centre [m]
+    double *x, *y, *z;                   // (3 × stride) axes of the blade element
+    double *velocity, *wind;             // (3 × stride) of the aerodynamic centre and there [m/s]
+    double *place;                       // (3 × stride) the centre, in ground axes [m]
+    double *radius, *twist, *pitch_rate; // (stride) [m], [rad], rotation nose up [rad/s]
+    double *normal, *chord;              // (3 × stride) axes of the section, leading to trailing edge
     double *solidity, *cone, *skew_normal, *skew_chord; // (stride) of the momentum balance
     double *inflow_x, *inflow_y;                        // (stride) without induction [m/s]
     double *axial, *tangential, *loss;                  // (stride)
@@ -60,9 +60,9 @@ typedef struct blade_rows {
     double *static_slope;                               // (stride) of the static lift [1/rad]
     double *force_x, *force_y;                          // (stride) [N/m]
     double *load;                                       // (stride × LOAD) [N/m], [N]
-    double *slope; // (stride × SLOPE) bough_rotor_data.slope, per length
-    double *turn;  // (3 × n_vertex) rotation by deformation, of vertices
-    double *bend;  // (3 × n_vertex) its second difference
+    double *slope;    // (stride × SLOPE) bough_rotor_data.slope, per length
+    double *rotation; // (3 × n_vertex) rotation by deformation, of vertices
+    double *bend;     // (3 × n_vertex) its second difference
 } blade_rows;
 
 struct bough_rotor_scratch {
@@ -70,9 +70,9 @@ struct bough_rotor_scratch {
     bough_vec3 *wind;        // (n_blade) sum over the stations, in ground axes [m/s]
     bough_vec3 *velocity;    // (n_blade) the same of the stations' own motion
     double *thrust, *torque; // (n_blade)
-    // what the whole rotor tells each station
+    // of the whole rotor, for each station
     double skew;         // acute angle of the wind and the shaft [rad]
-    bough_vec3 downwind; // unit vector of the wind's part in the rotor plane, 0 if none
+    bough_vec3 downwind; // unit vector of the wind's component in the rotor plane, 0 if none
     double wake;         // 0: too slow for momentum theory, 1: full induction
 };
 
@@ -92,8 +92,8 @@ static inline bough_quaternion unit_quaternion(double w, double x, double y, dou
     return (bough_quaternion){scale * w, scale * x, scale * y, scale * z};
 }
 
-// The rotation part way from p to q. Within the few degrees between neighbouring vertices the
-// normalised chord is as good as the arc, and like it independent of the frame.
+// The rotation between p and q at a fraction of the way. Within the few degrees between neighbouring vertices
+// the normalised chord is as good as the arc, and like it independent of the frame.
 static inline bough_mat3 rotation_between(bough_quaternion p, bough_quaternion q, double weight) {
     double side = p.w * q.w + p.x * q.x + p.y * q.y + p.z * q.z;
     double wp = 1 - weight, wq = side < 0 ? -weight : weight;

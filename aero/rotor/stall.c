@@ -1,3 +1,4 @@
+// theory (88, 89, 90, 91)
 #include "aero/rotor/stall.h"
 
 #include "core/base/base.h"
@@ -10,12 +11,12 @@ static const double wake_share[2] = {0.165, 0.335}, wake_rate[2] = {0.0455, 0.3}
 static const double pressure_time = 1.7, separation_time = 3.0;
 // The static polar alone from the second angle on, none of it up to the first [rad].
 static const double fading = 40 * BOUGH_PI / 180, faded = 50 * BOUGH_PI / 180;
-// Slower than this there is no wake to speak of [m/s].
+// Slower than this there is no wake [m/s].
 static const double slow = 1e-3;
 
-static const double turn = 2 * BOUGH_PI;
+static const double circle = 2 * BOUGH_PI;
 
-// -- the polar's parts ----------------------------------------------------------------------------
+// -- attached and separated lift ----------------------------------------------------------------------------
 
 // Closer to zero lift than this the ratio of lifts is taken here [rad].
 static const double near_zero = 1e-4;
@@ -25,7 +26,7 @@ static double lift_at(const bough_polar *polar, double alpha) { return bough_pol
 // With r = Cl/(slope·(α − α₀)) Kirchhoff's f = (2√r − 1)² leaves the separated lift
 // slope·(α − α₀)(3√r − 1)/(4√r), which is all of it at f = 0 and half of it at f = 1.
 void bough_stall_split(const bough_polar *polar, double alpha, double *f, double *separated) {
-    double lift = lift_at(polar, alpha), d = remainder(alpha - polar->zero_lift, turn);
+    double lift = lift_at(polar, alpha), d = remainder(alpha - polar->zero_lift, circle);
     *f = 0;
     *separated = lift;
     if (fabs(d) > BOUGH_PI / 2) return;
@@ -49,9 +50,9 @@ static double lagged(double x, double u0, double u1, double h) {
     return u1 + (x - u0) * exp(-h) - (u1 - u0) * mean;
 }
 
-// Moves all angles by a number of turns, so that that of attack stays in [−π, π].
+// Moves all angles by multiples of 2π, so that the angle of attack stays in [−π, π].
 static void unwind(bough_stall_state *s) {
-    double shift = turn * round(s->alpha / turn);
+    double shift = circle * round(s->alpha / circle);
     s->alpha -= shift;
     s->pressure_sought -= shift;
     s->pressure -= shift;
@@ -76,7 +77,7 @@ static void start(const bough_polar *polar, double alpha, double speed, bough_st
                              .separation = f};
 }
 
-// The angle of attack that the wake leaves.
+// α_E of theory (89).
 static double effective(const bough_stall_state *s) {
     double own = 1 - wake_share[0] - wake_share[1];
     return own * s->alpha + (s->wake[0] + s->wake[1]) / s->speed;
@@ -84,7 +85,7 @@ static double effective(const bough_stall_state *s) {
 
 static void advance(const bough_polar *polar, double semi_chords, double alpha, double speed,
                     double mass_angle, bough_stall_state *s) {
-    double next = s->alpha + remainder(alpha - s->alpha, turn);
+    double next = s->alpha + remainder(alpha - s->alpha, circle);
     double before = s->speed * s->alpha, after = speed * next;
     for (int i = 0; i < 2; i++) {
         s->wake[i] =
@@ -92,6 +93,7 @@ static void advance(const bough_polar *polar, double semi_chords, double alpha, 
     }
     s->speed = speed;
     s->alpha = next;
+    // theory (90): lags of pressure and of separation
     double sought = effective(s) + mass_angle;
     s->pressure = lagged(s->pressure, s->pressure_sought, sought, semi_chords / pressure_time);
     s->pressure_sought = sought;
@@ -103,19 +105,19 @@ static void advance(const bough_polar *polar, double semi_chords, double alpha, 
 
 // -- coefficients ---------------------------------------------------------------------------------
 
-// `x`: the lagging f, `angle`: the effective one, `late`: that at three quarters of the chord, `turning`
-// the rotation's part of it. The circulation's lift leans back by what the wake withholds and by the
-// rotation once more.
+// theory (91). `x`: the lagged f, `angle`: α_E, `late`: α at three quarters of the chord, `downwash`: ϑ, the
+// contribution of the rotation to it. The lift of the circulation leans back by the angle that the wake
+// withholds and by ϑ.
 static bough_coefficients dynamic(const bough_polar *polar, double x, double angle, double late,
-                                  double turning) {
+                                  double downwash) {
     double f, separated;
     bough_stall_split(polar, angle, &f, &separated);
     bough_coefficients k = bough_polar_at(polar, angle);
-    double linear = polar->slope * remainder(angle - polar->zero_lift, turn);
-    double lift = x * linear + (1 - x) * separated, mass_lift = BOUGH_PI * turning;
+    double linear = polar->slope * remainder(angle - polar->zero_lift, circle);
+    double lift = x * linear + (1 - x) * separated, mass_lift = BOUGH_PI * downwash;
     double least = bough_polar_at(polar, polar->zero_lift).drag;
     double separating = (sqrt(f) - sqrt(fmax(x, 0))) / 2 - (f - x) / 4;
-    double leaning = remainder(late - angle, turn) + turning;
+    double leaning = remainder(late - angle, circle) + downwash;
     double drag = k.drag + leaning * lift + (k.drag - least) * separating;
     return (bough_coefficients){lift + mass_lift, drag, k.moment - mass_lift / 2};
 }
@@ -127,42 +129,43 @@ static bough_coefficients mixture(bough_coefficients a, bough_coefficients b, do
                                 mixed(a.moment, b.moment, w)};
 }
 
-// How much of the coefficients is dynamic.
+// Weight of the dynamic coefficients against the static polar.
 static double dynamic_share(double alpha) {
     return bough_clamp((faded - fabs(alpha)) / (faded - fading), 0, 1);
 }
 
-// The rotation as the downwash at three quarters of the chord.
-static double downwash(double chord, bough_stall_inflow inflow) {
+// ϑ: downwash at three quarters of the chord by the rotation.
+static double downwash_of(double chord, bough_stall_inflow inflow) {
     return bough_clamp(chord * inflow.rate / (2 * inflow.speed), -0.5, 0.5);
 }
 
 bough_coefficients bough_stall_advance(const bough_polar *polar, double chord, bough_stall_inflow inflow,
                                        double step, bough_stall_state *state) {
-    double alpha = remainder(inflow.alpha, turn), speed = inflow.speed;
+    double alpha = remainder(inflow.alpha, circle), speed = inflow.speed;
     bough_coefficients fixed = bough_polar_at(polar, alpha);
     if (polar->slope == 0 || !(speed > slow)) {
         state->started = 0;
         return fixed;
     }
-    double turning = downwash(chord, inflow), late = alpha + turning;
+    double downwash = downwash_of(chord, inflow), late = alpha + downwash;
     if (state->started == 0) {
         start(polar, late, speed, state);
     } else if (step > 0) {
         double semi_chords = step * (state->speed + speed) / chord;
-        advance(polar, semi_chords, late, speed, BOUGH_PI * turning / polar->slope, state);
+        advance(polar, semi_chords, late, speed, BOUGH_PI * downwash / polar->slope, state);
     }
     double share = dynamic_share(alpha);
     if (share == 0) return fixed;
-    bough_coefficients k = dynamic(polar, state->separation, effective(state), late, turning);
+    bough_coefficients k = dynamic(polar, state->separation, effective(state), late, downwash);
     return mixture(fixed, k, share);
 }
 
 // -- slopes ---------------------------------------------------------------------------------------
 
-// How the effective angle follows that of attack within an advance.
+// ∂α_E/∂α within an advance.
 static double prompt_share(double semi_chords) {
     double share = 1;
+    // theory (89): the shed wake, driven by U α
     for (int i = 0; i < 2; i++) {
         double h = wake_rate[i] * semi_chords;
         share -= wake_share[i] * (h > 1e-6 ? -expm1(-h) / h : 1);
@@ -178,16 +181,16 @@ static bough_coefficients quotient(bough_coefficients a, bough_coefficients b, d
 bough_stall_slopes bough_stall_slopes_of(const bough_polar *polar, double chord, bough_stall_inflow inflow,
                                          double step, const bough_stall_state *state) {
     const double d = 1e-4; // [rad]
-    double alpha = remainder(inflow.alpha, turn), share = dynamic_share(alpha);
+    double alpha = remainder(inflow.alpha, circle), share = dynamic_share(alpha);
     bough_stall_slopes slopes = {.angle = bough_polar_slope(polar, alpha)};
     if (state->started == 0 || share == 0) return slopes;
-    double turning = downwash(chord, inflow), late = alpha + turning, x = state->separation;
+    double downwash = downwash_of(chord, inflow), late = alpha + downwash, x = state->separation;
     double angle = effective(state), prompt = prompt_share(2 * step * inflow.speed / chord);
-    bough_coefficients k = dynamic(polar, x, angle, late, turning);
-    bough_coefficients more = dynamic(polar, x, angle + prompt * d, late + d, turning);
-    bough_coefficients turned = dynamic(polar, x, angle + prompt * d, late + d, turning + d);
+    bough_coefficients k = dynamic(polar, x, angle, late, downwash);
+    bough_coefficients more = dynamic(polar, x, angle + prompt * d, late + d, downwash);
+    bough_coefficients rotated = dynamic(polar, x, angle + prompt * d, late + d, downwash + d);
     slopes.angle = mixture(slopes.angle, quotient(more, k, d), share);
-    if (share < 1) { // the share changes, too
+    if (share < 1) { // the weight depends on the angle, too
         bough_coefficients fixed = bough_polar_at(polar, alpha);
         double fading_rate = -copysign(1 / (faded - fading), alpha);
         bough_coefficients by_share = quotient(k, fixed, 1 / fading_rate);
@@ -195,8 +198,8 @@ bough_stall_slopes bough_stall_slopes_of(const bough_polar *polar, double chord,
         slopes.angle.drag += by_share.drag;
         slopes.angle.moment += by_share.moment;
     }
-    bool limited = fabs(turning) >= 0.5;
+    bool limited = fabs(downwash) >= 0.5;
     double quarter = limited ? 0 : share * chord / (2 * inflow.speed);
-    slopes.rate = mixture((bough_coefficients){0}, quotient(turned, k, d), quarter);
+    slopes.rate = mixture((bough_coefficients){0}, quotient(rotated, k, d), quarter);
     return slopes;
 }

@@ -43,8 +43,8 @@ typedef struct bough_stall_state {
 bough_coefficients bough_stall_advance(const bough_polar *polar, double chord, bough_stall_inflow inflow,
                                        double step, bough_stall_state *state);
 
-// How the coefficients that the last advance by `step` told follow its angle of attack [1/rad] and its
-// rotation [s/rad], with the separation as it is: that follows later.
+// Derivatives of the coefficients of the last advance by `step` by its angle of attack [1/rad] and its
+// rotation [s/rad], with the separation constant: it follows later.
 typedef struct bough_stall_slopes {
     bough_coefficients angle, rate;
 } bough_stall_slopes;

@@ -8,7 +8,7 @@
 // pole inside the cylinder, where only an ill-posed scene puts a blade.
 static const double nearest = 1;
 
-// The wake takes at most this share of the wind.
+// Largest velocity deficit of the wake relative to the wind.
 static const double deepest_shadow = 0.5;
 
 void bough_tower_build(bough_arena *arena, const bough_tower_def *def, bough_tower *tower) {
@@ -56,12 +56,12 @@ static double drag_at(const bough_tower *tower, double height) {
     return tower->drag[i] + fmin(w, 1) * (tower->drag[i + 1] - tower->drag[i]);
 }
 
-// A horizontal wind as shares of the undisturbed one, along and across it.
+// A horizontal wind relative to the undisturbed one, along and across it.
 typedef struct flow {
     double along, across;
 } flow;
 
-// About a cylinder of radius 1, at a place in radii from the axis; x > 0: behind.
+// theory (87) about a cylinder of radius 1, at a position in radii from the axis; x > 0: behind.
 static flow potential(double x, double y, double r2) {
     return (flow){1 + (y * y - x * x) / (r2 * r2), -2 * x * y / (r2 * r2)};
 }
@@ -72,7 +72,7 @@ static flow bak(double drag, double x, double y) {
     return (flow){f.along + source * xs, f.across + source * y};
 }
 
-// What the wake takes of the wind along it.
+// Velocity deficit of the wake.
 static double shadow(double drag, double x, double y) {
     double width = sqrt(hypot(x, y));
     if (x <= 0 || fabs(y) >= width) return 0;

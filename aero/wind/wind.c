@@ -1,3 +1,5 @@
+// The wind at a point: a formula, a hub-height file, a box of turbulence or a condition of IEC 61400-1, then
+// inclined and veered.
 #include "aero/wind/wind.h"
 
 #include "aero/wind/wind_turbulence.h"
@@ -40,6 +42,7 @@ static bough_status make_standard(bough_arena *arena, bough_wind *wind) {
     const bough_wind_iec_def *def = &wind->def.iec;
     bough_status status = bough_wind_iec_check(def);
     if (!bough_is_ok(&status)) return status;
+    // turbulent conditions are a box, deterministic ones a formula
     if (bough_wind_iec_is_turbulent(def->condition)) {
         bough_wind_box *box = bough_arena_take(arena, sizeof *box);
         wind->box = box;
@@ -78,7 +81,8 @@ bough_status bough_wind_build(bough_arena *arena, const bough_wind_def *def, bou
     return status;
 }
 
-static double share_at(const bough_wind *wind, double height) {
+// The profile over height, relative to the reference height.
+static double profile_at(const bough_wind *wind, double height) {
     const bough_wind_def *def = &wind->def;
     switch (def->shear) {
     case BOUGH_WIND_UNIFORM: break;
@@ -100,6 +104,7 @@ static bough_vec3 from_file(const bough_wind *wind, bough_vec3 v) {
                     v.z);
 }
 
+// Formulas are defined everywhere, a box on its grid.
 bool bough_wind_covers(const bough_wind *wind, bough_vec3 centre, double radius) {
     const bough_wind_box *box = wind->box;
     if (!box) return true;
@@ -116,20 +121,23 @@ static bough_vec3 along_at(const bough_wind *wind, bough_vec3 position, double t
     const bough_wind_def *def = &wind->def;
     double speed = def->speed;
     if (def->n_time > 0) speed = bough_table_value(def->n_time, def->time, def->speed_at_time, t);
-    speed *= share_at(wind, position.z);
+    speed *= profile_at(wind, position.z);
     return bough_v3(speed, 0, def->vertical);
 }
 
+// Rotated upwards about the horizontal axis across the wind.
 static bough_vec3 inclined(const bough_wind *wind, bough_vec3 v) {
     return bough_v3(wind->up_x * v.x - wind->up_z * v.z, v.y, wind->up_z * v.x + wind->up_x * v.z);
 }
 
+// Rotated about the vertical in proportion to the height above the reference.
 static bough_vec3 veered(const bough_wind *wind, bough_vec3 v, double height) {
     double angle = wind->def.veer * (height - wind->level), c = cos(angle), s = sin(angle);
     return bough_v3(c * v.x + s * v.y, c * v.y - s * v.x, v.z);
 }
 
 bough_vec3 bough_wind_at(const bough_wind *wind, bough_vec3 position, double t) {
+    // in the file's axes, then in those of the ground
     bough_vec3 v = along_at(wind, position, t);
     if (wind->def.upflow != 0) v = inclined(wind, v);
     if (wind->def.veer != 0) v = veered(wind, v, position.z);

@@ -1,3 +1,5 @@
+// TurbSim's full-field files: read, interpolated linearly in time and space, written. Little-endian whatever
+// the processor.
 #include "aero/wind/wind_box.h"
 
 #include "core/base/base.h"
@@ -32,6 +34,7 @@ static bough_status bad(const char *path, const char *what) {
     return bough_fail(BOUGH_INVALID, "%s is not a TurbSim full-field file: %s.", path, what);
 }
 
+// Kind, then numbers of points in z, y and below the grid, and of times.
 static bough_status read_counts(const char *path, const unsigned char *head, bough_wind_box *box) {
     int64_t count[COUNTS];
     int kind = i16_at(head);
@@ -50,6 +53,7 @@ static bough_status read_counts(const char *path, const unsigned char *head, bou
     return bough_ok();
 }
 
+// Distances, time step, mean speed, heights, then slope and offset of each component.
 static bough_status read_measures(const char *path, const unsigned char *head, bough_wind_box *box) {
     double v[FLOATS];
     for (int i = 0; i < FLOATS; i++) {
@@ -104,6 +108,7 @@ static bough_status read_values(FILE *stream, const char *path, int64_t n, int16
 static bough_status read_all(bough_arena *arena, FILE *stream, const char *path, bough_wind_box *box) {
     unsigned char head[HEAD];
     if (fseek(stream, 0, SEEK_END) != 0) return bad(path, "it is no plain file");
+    // header, then text of unknown length, then values to the end
     int64_t size = ftell(stream), n = 0;
     rewind(stream);
     if (fread(head, 1, HEAD, stream) != HEAD) return bad(path, "it is shorter than a head");
@@ -141,20 +146,23 @@ typedef struct place {
 } place;
 
 static place place_of(double x, int n) {
+    // held outside
     double held = bough_clamp(x, 0, n - 1);
     int low = held < n - 1 ? (int)held : n - 2;
     return (place){low, low + 1, held - low};
 }
 
+// Taylor's hypothesis: the box moves with the mean wind.
 static place time_of(const bough_wind_box *box, double x, double t) {
     double start = box->periodic ? 0 : box->half_width;
     double k = (t + (start - x) / box->mean) / box->dt;
     if (!box->periodic) return place_of(k, box->n_time);
-    k -= box->n_time * floor(k / box->n_time); // rounded, of huge k anything
+    k -= box->n_time * floor(k / box->n_time); // rounding may leave the range
     int low = k >= 0 && k < box->n_time ? (int)k : 0;
     return (place){low, (low + 1) % box->n_time, bough_clamp(k - low, 0, 1)};
 }
 
+// v = (stored − offset)/slope
 static bough_vec3 point_at(const bough_wind_box *box, int time, int64_t point) {
     int64_t points = (int64_t)box->n_z * box->n_y + box->n_tower;
     const int16_t *v = box->value + 3 * (time * points + point);
@@ -162,6 +170,7 @@ static bough_vec3 point_at(const bough_wind_box *box, int time, int64_t point) {
                     (v[2] - box->offset[2]) * box->scale[2]);
 }
 
+// Bilinear between four points of the grid.
 static bough_vec3 grid_at(const bough_wind_box *box, int time, place y, place z) {
     int64_t low = (int64_t)z.low * box->n_y, high = (int64_t)z.high * box->n_y;
     bough_vec3 below =
@@ -185,10 +194,12 @@ static bough_vec3 tower_at(const bough_wind_box *box, int time, double depth) {
 bough_vec3 bough_wind_box_at(const bough_wind_box *box, bough_vec3 position, double t) {
     place time = time_of(box, position.x, t);
     double height = (position.z - box->bottom) / box->dz;
+    // below the grid: the column of tower points
     if (height < 0 && box->n_tower > 0) {
         return bough_between(tower_at(box, time.low, -height), tower_at(box, time.high, -height),
                              time.weight);
     }
+    // held beyond the edges of the grid
     place z = place_of(height, box->n_z);
     place y = place_of((position.y + box->half_width) / box->dy, box->n_y);
     return bough_between(grid_at(box, time.low, y, z), grid_at(box, time.high, y, z), time.weight);
@@ -236,6 +247,7 @@ static void put_head(FILE *f, const bough_wind_box *box, const char *text) {
 
 bool bough_wind_box_write(const bough_wind_box *box, const char *text, FILE *f) {
     int64_t points = (int64_t)box->n_z * box->n_y + box->n_tower;
+    // header, then the stored integers as they are
     put_head(f, box, text);
     for (int64_t k = 0; k < 3 * points * box->n_time; k++) put16(f, box->value[k]);
     return !ferror(f);

@@ -1,3 +1,4 @@
+// Hub-height wind files: rows over time, interpolated linearly.
 #include "aero/wind/wind_hub.h"
 
 #include "core/base/base.h"
@@ -56,6 +57,7 @@ static bough_status scan(FILE *stream, const char *path, int room, int *n, bough
     *n = 0;
     rewind(stream);
     for (int number = 1; fgets(line, LINE, stream); number++) {
+        // a line that does not fit would be read as two
         if (!strchr(line, '\n') && !feof(stream)) {
             return bough_fail(BOUGH_INVALID, "%s:%d: the line is too long.", path, number);
         }
@@ -80,6 +82,7 @@ bough_status bough_wind_hub_read(bough_arena *arena, const char *path, bough_win
         return bough_fail(BOUGH_INVALID, "cannot open the wind file %.220s: %s", path, why);
     }
     bough_wind_hub_row *row = NULL;
+    // one pass counts, the second fills
     bough_status status = scan(stream, path, MOST_ROWS, &hub->n, NULL);
     if (bough_is_ok(&status)) {
         row = bough_arena_take(arena, (size_t)hub->n * sizeof *row);
@@ -105,6 +108,7 @@ static bough_wind_hub_row between(const bough_wind_hub_row *a, const bough_wind_
     };
 }
 
+// Held before the first and after the last row.
 static bough_wind_hub_row row_at(const bough_wind_hub *hub, double t) {
     const bough_wind_hub_row *row = hub->row;
     if (!(t > row[0].time)) return row[0];
@@ -114,8 +118,8 @@ static bough_wind_hub_row row_at(const bough_wind_hub *hub, double t) {
     return between(a, b, (t - a->time) / (b->time - a->time));
 }
 
-// Below ground a power law has no wind.
-static double power_share(double height, double exponent) {
+// Power law; no wind below ground.
+static double power_law(double height, double exponent) {
     if (exponent == 0) return 1;
     return height <= 0 ? 0 : pow(height, exponent);
 }
@@ -123,11 +127,13 @@ static double power_share(double height, double exponent) {
 bough_vec3 bough_wind_hub_at(const bough_wind_hub *hub, bough_vec3 position, double t) {
     bough_wind_hub_row r = row_at(hub, t);
     double c = cos(r.direction), s = sin(r.direction);
+    // shear across the wind and above the hub, relative to the reference length
     double across = position.y * c + position.x * s;
     double above = position.z - hub->reference_height;
-    double share = power_share(position.z / hub->reference_height, r.exponent);
+    double profile = power_law(position.z / hub->reference_height, r.exponent);
     double sheared = r.horizontal_shear * across + r.vertical_shear * above;
-    double speed = r.speed * (share + sheared / hub->reference_length) + r.gust;
+    double speed = r.speed * (profile + sheared / hub->reference_length) + r.gust;
+    // inclined by the upflow, then into ground axes
     double cu = cos(r.upflow), su = sin(r.upflow), along = speed * cu - r.vertical * su;
     return bough_v3(along * c, -along * s, speed * su + r.vertical * cu);
 }

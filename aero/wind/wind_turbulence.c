@@ -1,3 +1,4 @@
+// Veers' method, theory (96, 97, 98), for Kaimal's spectrum.
 #include "aero/wind/wind_turbulence.h"
 
 #include "core/base/base.h"
@@ -69,8 +70,8 @@ enum { BATCH = 16 }; // points whose series are stored together, since they lie 
 // -- spectra --------------------------------------------------------------------------------------
 
 static double deviation_of(const bough_wind_iec_def *d, int component) {
-    static const double share[] = {1, 0.8, 0.5};
-    return share[component] * bough_wind_iec_deviation(d);
+    static const double ratio[] = {1, 0.8, 0.5};
+    return ratio[component] * bough_wind_iec_deviation(d);
 }
 
 // L/U [s]
@@ -126,16 +127,16 @@ static uint64_t random_stream(const maker *m, int component, int point) {
     return scramble(scramble((uint64_t)m->def->seed) + (uint64_t)component) + ((uint64_t)point << 32);
 }
 
-// e^{iφ} with a phase that follows from what it is for, equally distributed over a turn: 52 bits of a number.
+// e^{iφ} with a phase from seed, component, point and wave, equally distributed over [0, 2π): 52 random bits.
 static inline sine_cosine random_wave(uint64_t stream, int wave) {
     uint64_t bits = scramble(stream + (uint64_t)wave) >> 12 | UINT64_C(0x3FF) << 52;
     double one_to_two;
     memcpy(&one_to_two, &bits, sizeof one_to_two);
-    sine_cosine w = lane_sine_cosine(2 * BOUGH_PI * (one_to_two - 1.5)); // half a turn less
+    sine_cosine w = lane_sine_cosine(2 * BOUGH_PI * (one_to_two - 1.5)); // φ − π
     return (sine_cosine){-w.sine, -w.cosine};
 }
 
-// Share of the variance up to a wave, and up to where sampling folds higher frequencies onto it.
+// Fraction of the variance up to a wave, and of the frequencies that sampling folds onto it.
 static double share_up_to(const maker *m, double wave, double scale) {
     double rate = 2 * (m->n_wave + 1) * m->step, f = wave * m->step, share = share_below(f, scale);
     for (int k = 1; k <= ALIASES; k++) {
@@ -148,7 +149,8 @@ static double *amplitude_of(const maker *m, int component) {
     return m->amplitude + (size_t)component * ((size_t)m->n_wave + 1);
 }
 
-// A wave has the share of a band about it, and its part of the frequencies beyond the aliases.
+// theory (98): the variance of a wave is that of the band about it, and of the frequencies beyond the
+// aliases.
 static void set_amplitudes(maker *m, int component) {
     double deviation = deviation_of(m->def, component), scale = time_scale(m->def, component);
     double rest = (1 - share_below((2 * ALIASES + 1) * (m->n_wave + 1) * m->step, scale)) / m->n_wave;
@@ -187,7 +189,7 @@ static void fill_coherence(maker *m, double f) {
     }
 }
 
-// The amplitudes of all points at one wave: L e^{iφ}.
+// theory (96): the amplitudes of all points at one wave, L e^{iφ}.
 static void mix_points(maker *m, int wave) {
     int n = m->n_point;
     double *restrict real = m->wave, *restrict imaginary = m->wave + n;
@@ -197,11 +199,12 @@ static void mix_points(maker *m, int wave) {
         double re = m->amplitude[wave] * w.cosine, im = m->amplitude[wave] * w.sine;
         const float *restrict column = m->factor + (size_t)j * (size_t)n;
         for (int i = j; i < n; i++) {
-            double share = (double)column[i];
-            real[i] += share * re;
-            imaginary[i] += share * im;
+            double entry = (double)column[i];
+            real[i] += entry * re;
+            imaginary[i] += entry * im;
         }
     }
+    // into the order of the grid
     double *to = m->mixed + 2 * (size_t)n * (size_t)(wave - 1);
     for (int i = 0; i < n; i++) {
         to[2 * m->order[i]] = real[i];
@@ -209,6 +212,7 @@ static void mix_points(maker *m, int wave) {
     }
 }
 
+// The coherence matrix of each wave, its Cholesky factor L, the amplitudes.
 static bough_status mix_all(maker *m) {
     set_distances(m);
     for (int i = 1; i <= m->n_coherent; i++) {
@@ -270,6 +274,7 @@ static void store(const maker *m, int first, int count) {
     }
 }
 
+// Inverse Fourier transforms, a batch of points at a time.
 static void make_series(maker *m) {
     size_t n = (size_t)m->box->n_time;
     for (int first = 0; first < m->n_point; first += BATCH) {
@@ -347,6 +352,7 @@ static void set_order(maker *m, place *scratch) {
     for (int i = 0; i < m->n_point; i++) m->order[i] = scratch[i].point;
 }
 
+// Waves in which neighbouring points are coherent; coherence falls with the frequency.
 static int count_coherent(const maker *m) {
     int n = 0;
     while (n < m->n_wave && bough_turbulence_coherence(m->def, m->box->dy, (n + 1) * m->step) > NEGLIGIBLE)

@@ -372,7 +372,7 @@ void bough_aero_link_snapshot(bough_aero_link *link, bough_snapshot *s) {
         int k = i == 0 ? link->shown : 1 - link->shown;
         bough_snapshot_take(s, &link->factor[k], sizeof link->factor[k]);
         bough_snapshot_take(s, &link->time[k], sizeof link->time[k]);
-        bough_rotor_told_snapshot(link->rotor, &link->data[k], s);
+        bough_rotor_result_snapshot(link->rotor, &link->data[k], s);
     }
     for (int b = 0; b < link->n_blade; b++) bough_aero_signal_snapshot(link->signal[b], s);
     bough_aero_motion_snapshot(link->motion, s);

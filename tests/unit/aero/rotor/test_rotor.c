@@ -617,19 +617,19 @@ TEST(told_is_saved_and_restored) {
     operate(r, 8, 0, 9);
     sample(r, BOUGH_PI); // blade 1 in front of the tower
     bough_snapshot told = {.move = BOUGH_SNAPSHOT_MEASURE};
-    bough_rotor_told_snapshot(r->rotor, &r->data, &told);
+    bough_rotor_result_snapshot(r->rotor, &r->data, &told);
     char *copy = test_malloc(told.used);
     bough_rotor_extremes before[BLADES];
     for (int b = 0; b < BLADES; b++) before[b] = bough_rotor_look(r->rotor, &r->data, b);
     assert_true(before[0].distance < 10 && before[1].distance > 2 * before[0].distance);
     double thrust = r->data.thrust;
     told = (bough_snapshot){BOUGH_SNAPSHOT_SAVE, copy, 0};
-    bough_rotor_told_snapshot(r->rotor, &r->data, &told);
+    bough_rotor_result_snapshot(r->rotor, &r->data, &told);
     operate(r, 12, 3, 6);
     sample(r, 1);
     assert_true(bough_rotor_look(r->rotor, &r->data, 0).distance != before[0].distance);
     told = (bough_snapshot){BOUGH_SNAPSHOT_RESTORE, copy, 0};
-    bough_rotor_told_snapshot(r->rotor, &r->data, &told);
+    bough_rotor_result_snapshot(r->rotor, &r->data, &told);
     check_near(r->data.thrust, thrust, 0, 0);
     for (int b = 0; b < BLADES; b++) {
         bough_rotor_extremes after = bough_rotor_look(r->rotor, &r->data, b);
