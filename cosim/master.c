@@ -152,25 +152,18 @@ static void set_time(bough_master *m, double t) {
     m->at_event = pass_events(m);
 }
 
-// One macro step: predict, exchange, advance, correct, as the scheme orders them.
-static bough_status take_step(bough_master *m) {
-    bough_status status = m->coupling->scheme->step(m->coupling);
-    if (bough_is_ok(&status)) bough_coupling_exchange(m->coupling);
-    return status;
-}
-
-// The same under step control: taken back and repeated with shorter steps until it stands. Of the
-// failures only those that ask for it are.
+// A macro step under step control: undone and repeated with shorter steps until it is accepted. Of the
+// failures only those that ask for a retry are repeated.
 static bough_status take_controlled_step(bough_master *m) {
     bough_step_control *control = m->control;
     bough_coupling *c = m->coupling;
     double to = c->t1;
-    bool known = c->measured;
+    bool compared = c->compared;
     bough_step_control_save(control, c);
     for (;;) {
         c->t1 = bough_step_control_end(control, c->t0, to);
-        c->measured = known && bough_step_control_exhausted(control); // shorter steps are tried first
-        bough_status status = take_step(m);
+        c->compared = compared && bough_step_control_exhausted(control); // shorter steps are tried first
+        bough_status status = bough_scheme_step(c);
         bool good = bough_is_ok(&status);
         if (!good && (status.code != BOUGH_RETRY || bough_step_control_exhausted(control))) {
             return status;
@@ -178,7 +171,7 @@ static bough_status take_controlled_step(bough_master *m) {
         double error = good ? bough_step_control_defect(control, c) : HUGE_VAL;
         bool shortest = bough_step_control_exhausted(control);
         if (bough_step_control_accept(control, c, error)) return status;
-        if (shortest) return status; // for the monitor to tell
+        if (shortest) return status; // the monitor finds the cause
         bough_step_control_restore(control, c);
     }
 }
@@ -189,16 +182,19 @@ static bough_status interrupted(const bough_master *m) {
 
 static bough_status macro_step(bough_master *m) {
     bough_coupling *c = m->coupling;
+    // the step
     c->t0 = m->time;
     c->t1 = bough_master_next(m);
     c->restart = m->at_event;
+    // loads from t0 on
     begin_loads(m, c->t0 + resolution(m));
     bough_status status = sample_loads(m, &c->restart);
     if (!bough_is_ok(&status)) return status;
 
+    // advance the members and exchange their values
     bough_breakdown_keep(m->breakdown, c);
-    c->measured = m->compared;
-    status = m->control ? take_controlled_step(m) : take_step(m);
+    c->compared = m->compared;
+    status = m->control ? take_controlled_step(m) : bough_scheme_step(c);
     if (!bough_is_ok(&status) && m->stop && m->stop()) {
         bough_breakdown_undo(m->breakdown, c);
         return interrupted(m);
@@ -207,6 +203,7 @@ static bough_status macro_step(bough_master *m) {
         return bough_breakdown_explain(m->breakdown, c, &m->advice, status);
     }
 
+    // check the result
     bough_monitor_judge(m->monitor, !m->compared);
     status = bough_monitor_step(m->monitor, c);
     if (!bough_is_ok(&status)) return status;
@@ -229,7 +226,8 @@ static void macro_step_in_region(void *self) {
 void bough_master_stop_by(bough_master *m, bool (*stop)(void)) {
     m->stop = stop;
     for (int i = 0; i < m->assembly->n_member; i++) m->assembly->member[i]->stop = stop;
-    if (m->coupling->whole) m->coupling->whole->stop = stop;
+    bough_member *whole = bough_scheme_whole(m->coupling);
+    if (whole) whole->stop = stop;
 }
 
 bough_status bough_step(bough_master *m) {
@@ -245,13 +243,9 @@ void bough_master_snapshot(bough_master *m, bough_snapshot *s) {
     bough_snapshot_take(s, &m->grid_index, sizeof m->grid_index);
     bough_snapshot_take(s, &m->at_event, sizeof m->at_event);
     bough_snapshot_take(s, &m->begun, sizeof m->begun);
-    bough_coupling_snapshot(c, s);
+    bough_scheme_snapshot(c, s);
     bough_snapshot_take(s, &c->t0, sizeof c->t0);
     bough_snapshot_take(s, &c->t1, sizeof c->t1);
-    bough_snapshot_take(s, &c->interface_ratio, sizeof c->interface_ratio);
-    bough_snapshot_take(s, &c->sweeps, sizeof c->sweeps);
-    bough_snapshot_take(s, &c->unfinished, sizeof c->unfinished);
-    if (c->scheme->snapshot) c->scheme->snapshot(c, s);
     bough_monitor_snapshot(m->monitor, c, s);
     if (m->control) bough_step_control_snapshot(m->control, s);
     if (s->move != BOUGH_SNAPSHOT_RESTORE) return;

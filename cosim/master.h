@@ -40,7 +40,7 @@ typedef struct bough_master_def {
     bough_pool *pool;    // borrowed; NULL: one thread
 } bough_master_def;
 
-// ramp, one thread, no loads, no events; assembly, macro_step and duration are the caller's.
+// The default scheme, one thread, no loads, no events; assembly, macro_step and duration are the caller's.
 bough_master_def bough_master_def_default(void);
 
 typedef struct bough_master {

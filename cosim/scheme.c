@@ -1,6 +1,7 @@
 #include "cosim/scheme.h"
 
 #include <assert.h>
+#include <math.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -19,6 +20,7 @@ SCHEMES(DECLARATION)
 static const bough_scheme *const schemes[] = {SCHEMES(ADDRESS)};
 enum { N_SCHEME = sizeof schemes / sizeof *schemes };
 
+// Keys of a scene that have no effect under the other schemes.
 static const bough_scheme_key keys[] = {
     {"coupling.order", BOUGH_READS_ORDER},
     {"coupling.theta", BOUGH_READS_THETA},
@@ -32,9 +34,8 @@ static const bough_scheme_key keys[] = {
 };
 
 bough_scheme_options bough_scheme_options_default(void) {
-    return (bough_scheme_options){.name = "ramp",
+    return (bough_scheme_options){.name = BOUGH_SCHEME_DEFAULT,
                                   .order = 1,
-                                  .interpolation = BOUGH_HERMITE,
                                   .integrator = {.kind = BOUGH_IDA, .rtol = 1e-6},
                                   .accelerator = BOUGH_ACCELERATE_IQN_ILS,
                                   .relaxation = 0.5,
@@ -58,6 +59,12 @@ const char *bough_scheme_name(int index) {
     return index >= 0 && index < N_SCHEME ? schemes[index]->name : NULL;
 }
 
+const bough_scheme *bough_scheme_advised(void) {
+    int i = 0;
+    while (!schemes[i]->advised) i++;
+    return schemes[i];
+}
+
 bool bough_scheme_reads(const bough_scheme *s, unsigned option) {
     return option == BOUGH_READS_MEMBERS ? !s->one_system : (s->reads & option) != 0;
 }
@@ -65,6 +72,27 @@ bool bough_scheme_reads(const bough_scheme *s, unsigned option) {
 const bough_scheme_key *bough_scheme_key_at(int index) {
     return index < (int)(sizeof keys / sizeof *keys) ? &keys[index] : NULL;
 }
+
+void bough_scheme_describe(const bough_scheme *s, const bough_scheme_options *options,
+                           char text[BOUGH_SCHEME_TEXT]) {
+    size_t room = BOUGH_SCHEME_TEXT, n = (size_t)snprintf(text, room, "%s", s->name);
+    bool waveform = options->exchange == BOUGH_EXCHANGE_WAVEFORM;
+    // what is exchanged
+    if (s->reads & BOUGH_READS_EXCHANGE && waveform) {
+        n += (size_t)snprintf(text + n, room - n, ", waveforms");
+    } else if (s->reads & BOUGH_READS_ORDER) {
+        n += (size_t)snprintf(text + n, room - n, ", order %d", options->order);
+    }
+    // how the iteration goes on
+    if (s->reads & BOUGH_READS_ACCELERATOR) {
+        n += (size_t)snprintf(text + n, room - n, ", accelerator %s, tolerance %.6g in at most %d iterations",
+                              bough_acceleration_names[options->accelerator], options->tolerance,
+                              options->iterations);
+    }
+    if (s->reads & BOUGH_READS_THETA) snprintf(text + n, room - n, ", theta %.6g", options->theta);
+}
+
+// -- use ------------------------------------------------------------------------------------------
 
 bough_status bough_scheme_couple(bough_arena *arena, const bough_assembly *assembly,
                                  const bough_scheme_options *options, bough_pool *pool,
@@ -76,27 +104,73 @@ bough_status bough_scheme_couple(bough_arena *arena, const bough_assembly *assem
     return scheme->create ? scheme->create(*coupling, arena) : bough_ok();
 }
 
+bough_status bough_scheme_step(bough_coupling *c) {
+    // members advance as the scheme orders them
+    bough_status status = c->scheme->step(c);
+    if (!bough_is_ok(&status)) return status;
+    // their outputs become inputs
+    bough_coupling_obtain(c);
+    if (c->scheme->obtained) c->scheme->obtained(c);
+    bough_coupling_record(c);
+    return status;
+}
+
+void bough_scheme_snapshot(bough_coupling *c, bough_snapshot *s) {
+    bough_coupling_snapshot(c, s);
+    if (c->scheme->snapshot) c->scheme->snapshot(c, s);
+}
+
 int bough_scheme_defect_order(const bough_scheme *s, const bough_scheme_options *options) {
     return s->defect_order ? s->defect_order(options) : 1;
 }
 
-void bough_scheme_describe(const bough_scheme *s, const bough_scheme_options *options,
-                           char text[BOUGH_SCHEME_TEXT]) {
-    size_t room = BOUGH_SCHEME_TEXT, n = (size_t)snprintf(text, room, "%s", s->name);
-    bool waveform = options->exchange == BOUGH_EXCHANGE_WAVEFORM;
-    if (s->reads & BOUGH_READS_EXCHANGE && waveform) {
-        n += (size_t)snprintf(text + n, room - n, ", waveforms");
-    } else if (s->reads & BOUGH_READS_ORDER) {
-        n += (size_t)snprintf(text + n, room - n, ", order %d", options->order);
-    }
-    if (s->reads & BOUGH_READS_ACCELERATOR) {
-        n += (size_t)snprintf(text + n, room - n, ", accelerator %s, tolerance %.6g in at most %d iterations",
-                              bough_acceleration_names[options->accelerator], options->tolerance,
-                              options->iterations);
-    }
-    if (s->reads & BOUGH_READS_THETA && options->theta > 0) {
-        snprintf(text + n, room - n, ", theta %.6g", options->theta);
-    } else if (s->reads & BOUGH_READS_THETA) {
-        snprintf(text + n, room - n, ", theta auto: 0.5 where that is stable");
+bough_member *bough_scheme_whole(const bough_coupling *c) {
+    return c->scheme->whole ? c->scheme->whole(c) : NULL;
+}
+
+bough_scheme_report bough_scheme_reported(const bough_coupling *c) {
+    bough_scheme_report report = {.interface_ratio = (double)NAN};
+    if (c->scheme->report) c->scheme->report(c, &report);
+    return report;
+}
+
+// -- a macro step as a map ------------------------------------------------------------------------
+
+// The rows of z after the states; their number.
+static int memory_rows(const bough_coupling *c, double *row[4]) {
+    row[0] = c->past.input[1];
+    row[1] = c->past.input[2];
+    row[2] = c->applied;
+    row[3] = c->scheme->impulse ? c->scheme->impulse(c) : NULL;
+    return row[3] != NULL ? 4 : 3;
+}
+
+int bough_scheme_n_memory(const bough_coupling *c) {
+    double *row[4];
+    return c->assembly->n_state + memory_rows(c, row) * c->assembly->n_input;
+}
+
+void bough_scheme_load(bough_coupling *c, double h, const double *z) {
+    const bough_assembly *a = c->assembly;
+    size_t size = (size_t)a->n_input * sizeof(double);
+    double *row[4];
+    int n = memory_rows(c, row);
+    for (int i = 0; i < a->n_member; i++) bough_member_set(a->member[i], 0, z + a->state_offset[i]);
+    for (int p = 0; p < n; p++) memcpy(row[p], z + a->n_state + p * a->n_input, size);
+    // the newest point follows from the states
+    bough_assembly_outputs(a, 0, c->output, c->input);
+    memcpy(c->past.input[0], c->input, size);
+    for (int p = 0; p < BOUGH_HISTORY; p++) c->past.time[p] = -p * h;
+    c->past.n = BOUGH_HISTORY;
+    c->t1 = 0;
+}
+
+void bough_scheme_store(const bough_coupling *c, double *z) {
+    const bough_assembly *a = c->assembly;
+    double *row[4];
+    int n = memory_rows(c, row);
+    bough_assembly_states(a, z);
+    for (int p = 0; p < n; p++) {
+        memcpy(z + a->n_state + p * a->n_input, row[p], (size_t)a->n_input * sizeof(double));
     }
 }

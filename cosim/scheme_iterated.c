@@ -1,9 +1,9 @@
-// Iterated coupling: the macro step is repeated until the interface agrees. The unknowns are values of the
-// inputs whose source advances in the same level or later (the feedback), at nodes of the step:
+// Iterated coupling: the macro step is repeated until the interface agrees (63). The unknowns are values of
+// the inputs whose source advances in the same level or later (the feedback), at nodes of the step:
 //   - end values: at T_{k+1}. The input is a polynomial of degree `order` through this value and earlier
 //     ones. The order is therefore degree + 1, by the interpolation and not by the iteration.
 //   - waveform: also at the Lobatto points, where the sub-solvers stop. The input is the cubic through
-//     all values. Its error is orthogonal to linear functions, so the order is 6.
+//     all values. Its error is orthogonal to linear functions, so the order is 6 (67).
 // Other inputs are the same polynomials through the actual values of their source. With end values a
 // member may get a position and a speed that are not consistent, which disturbs a stiff member. Cubics
 // through values and rates at both ends would be unstable on a light interface body: measured, a carrier
@@ -21,17 +21,14 @@
 // The residual is relative to the largest value of its port so far. It cannot become smaller than the noise
 // by the members' own tolerances. An adaptive multistep method that restarts and stops within the step has
 // a hundred times more noise there than at the end of the step.
-#include "cosim/accelerate.h"
 #include "cosim/scheme.h"
-#include "cosim/sequence.h"
-#include "cosim/signal.h"
 #include "cosim/whole.h"
 
 #include <assert.h>
 #include <math.h>
 #include <string.h>
 
-// Ports below this share of the largest one hold rounding only.
+// Inputs below this part of the largest one contain only rounding.
 static const double least_scale = 1e-6;
 
 enum { MOST_NODES = 3 };
@@ -41,9 +38,9 @@ static const double lobatto[MOST_NODES] = {0.27639320225002103, 0.72360679774997
 
 typedef struct iteration {
     bough_accelerator *accelerator;
-    // Newton's, one a node: how inputs answer to their own change up to there. Every member answers by one
-    // linearly implicit step, (I − γJ) δy = γ B δu, as in the ramp's prediction; γ is the time over which a
-    // unit change at the node acts, ∫ w dt. NULL: another accelerator.
+    // Newton's (66), one for each node: response of the inputs to their own change at the node. Every member
+    // responds by one linearly implicit step (55); γ is the time over which a unit change at the node acts, ∫
+    // w dt. NULL: another accelerator.
     bough_whole *jacobian[MOST_NODES];
     double span[MOST_NODES]; // γ over the macro step
     double *at;              // (n_state) where they are made
@@ -51,8 +48,9 @@ typedef struct iteration {
     int age;                 // steps since
     void **copy;             // (n_member) states at T_k
     int n_node;
-    const double *node;  // (n_node) in (0, 1], the last is 1
-    size_t n_prescribed; // n_node × n_input
+    const double *node;      // (n_node) in (0, 1], the last is 1
+    long sweeps, unfinished; // so far: see bough_scheme_report
+    size_t n_prescribed;     // n_node × n_input
     double *prescribed,
         *best;         // (n_prescribed) values of the inputs in use, and those with the smallest residual
     double *obtained;  // (n_node × n_output) outputs in the last sweep; of end values the coupling's
@@ -70,11 +68,10 @@ typedef struct iteration {
 
 // -- building -------------------------------------------------------------------------------------
 
-static void find_feedback(iteration *it, const bough_coupling *c) {
-    const bough_assembly *a = c->assembly;
+static void find_feedback(iteration *it, const bough_assembly *a) {
     for (int i = 0; i < a->n_member; i++) {
         for (int j = a->input_offset[i]; j < a->input_offset[i + 1]; j++) {
-            if (bough_sequence_before(c, a->level[a->source_member[j]], a->level[i])) continue;
+            if (a->level[a->source_member[j]] < a->level[i]) continue;
             int k = it->n++;
             it->is_feedback[j] = true;
             it->input[k] = j;
@@ -111,11 +108,11 @@ static void create_accelerator(bough_coupling *c, iteration *it, bough_arena *ar
                                  .solve = solve_newton,
                                  .self = it};
     it->accelerator = bough_accelerator_create(arena, &def);
+    // Newton's Jacobians
     if (def.kind != BOUGH_ACCELERATE_NEWTON) return;
-    assert(!c->options.reversed);                                    // it solves for what the leader gets
-    static const double share[BOUGH_HISTORY] = {1, 1. / 2, 5. / 12}; // ∫ of the end value's weight
+    static const double part[BOUGH_HISTORY] = {1, 1. / 2, 5. / 12}; // ∫ of the end value's weight
     for (int k = 0; k < it->n_node; k++) {
-        it->span[k] = it->n_node == 1 ? share[c->options.order] : it->node[k] / 2;
+        it->span[k] = it->n_node == 1 ? part[c->options.order] : it->node[k] / 2;
         it->jacobian[k] = bough_whole_create(arena, c->assembly, c->pool);
     }
     it->at = bough_arena_doubles(arena, (size_t)c->assembly->n_state);
@@ -129,9 +126,9 @@ static bough_status create(bough_coupling *c, bough_arena *arena) {
     it->n_node = waveform ? MOST_NODES : 1;
     it->node = waveform ? lobatto : end_point;
     take(it, c->assembly, arena);
-    it->obtained = c->end_output;
+    it->obtained = c->advanced.value;
     if (waveform) it->obtained = bough_arena_doubles(arena, MOST_NODES * (size_t)c->assembly->n_output);
-    find_feedback(it, c);
+    find_feedback(it, c->assembly);
     c->scheme_data = it;
     create_accelerator(c, it, arena);
     return bough_ok();
@@ -164,9 +161,9 @@ static void interpolate(bough_coupling *c, int member, int j) {
         time[k] = node_time(c, k);
         value[k] = it->prescribed + k * a->n_input + j;
     }
-    for (int p = 0; p < earlier && p < c->n_past; p++, n++) {
-        time[n] = c->past_time[p];
-        value[n] = c->past[p] + j;
+    for (int p = 0; p < earlier && p < c->past.n; p++, n++) {
+        time[n] = c->past.time[p];
+        value[n] = c->past.input[p] + j;
     }
     bough_signal_polynomial(&c->signal[member], j - a->input_offset[member], 1, n, time, value);
 }
@@ -175,9 +172,8 @@ static void interpolate(bough_coupling *c, int member, int j) {
 // outputs.
 static void advance(bough_coupling *c, int member) {
     const bough_assembly *a = c->assembly;
-    const bough_system *s = &a->member[member]->system;
     const iteration *it = c->scheme_data;
-    double *seen = c->seen + a->input_offset[member];
+    // its inputs over the step
     for (int j = a->input_offset[member]; j < a->input_offset[member + 1]; j++) {
         for (int k = 0; k < it->n_node && !it->is_feedback[j]; k++) {
             it->prescribed[k * a->n_input + j] = it->obtained[k * a->n_output + a->source[j]];
@@ -185,13 +181,12 @@ static void advance(bough_coupling *c, int member) {
         interpolate(c, member, j);
         c->followed[j] = it->n_node > 1 && !it->is_feedback[j];
     }
+    // its outputs at the nodes
     for (int k = 0; k < it->n_node; k++) {
         double t = node_time(c, k);
         bough_coupling_advance_to(c, member, t, k == 0);
         if (!bough_is_ok(&c->status[member])) return;
-        bough_signal_value(&c->signal[member], t, seen);
-        s->ops->output(s->self, t, a->member[member]->state, seen,
-                       it->obtained + k * a->n_output + a->output_offset[member]);
+        bough_coupling_outputs(c, member, t, it->obtained + k * a->n_output + a->output_offset[member]);
     }
 }
 
@@ -199,7 +194,7 @@ static bough_status sweep(bough_coupling *c) {
     int n = c->assembly->n_level;
     bough_status status = bough_ok();
     for (int k = 0; k < n && bough_is_ok(&status); k++) {
-        status = bough_coupling_each(c, c->options.reversed ? n - 1 - k : k, advance);
+        status = bough_coupling_each(c, k, advance);
     }
     return status;
 }
@@ -214,7 +209,7 @@ static void predict(bough_coupling *c) {
     for (int i = 0; i < a->n_member; i++) {
         int first = a->input_offset[i];
         for (int j = first; j < a->input_offset[i + 1]; j++) {
-            bough_sequence_extrapolate(c, i, j, degree);
+            bough_coupling_extrapolate(c, i, j, degree);
         }
         for (int k = 0; k < it->n_node; k++) {
             double *prescribed = it->prescribed + k * a->n_input + first;
@@ -230,6 +225,7 @@ static void update_scales(bough_coupling *c) {
     const double *obtained = it->obtained + (it->n_node - 1) * a->n_output;
     const double *prescribed = it->prescribed + (it->n_node - 1) * a->n_input;
     double largest = 0;
+    // norm of each vector, the largest so far
     for (int k = 0; k < it->n;) {
         int first = k;
         double sum = 0;
@@ -240,13 +236,14 @@ static void update_scales(bough_coupling *c) {
         it->size[first] = fmax(it->size[first], sqrt(sum));
         largest = fmax(largest, it->size[first]);
     }
+    // no scale much below the largest
     for (int k = 0; k < it->n; k++) {
         it->scale[k] = fmax(it->size[it->group[k]], least_scale * largest);
         if (!(it->scale[k] > 0)) it->scale[k] = 1;
     }
 }
 
-// The residual of the sweep just made [1].
+// The residual of the last sweep [1], (63).
 static double evaluate(bough_coupling *c) {
     const bough_assembly *a = c->assembly;
     iteration *it = c->scheme_data;
@@ -262,6 +259,7 @@ static double evaluate(bough_coupling *c) {
     return bough_accelerator_take(it->accelerator, it->guess, it->image);
 }
 
+// The values of the next sweep.
 static void correct(bough_coupling *c) {
     iteration *it = c->scheme_data;
     bough_accelerator_next(it->accelerator, it->guess);
@@ -305,12 +303,14 @@ static bough_status renew_jacobians(bough_coupling *c) {
 static bough_status not_converged(const bough_coupling *c, int sweeps, double residual) {
     const bough_assembly *a = c->assembly;
     const iteration *it = c->scheme_data;
+    // the input with the largest residual at t1, and its receiver
     int worst = 0, to = 0, last = (it->n_node - 1) * it->n;
     for (int k = 1; k < it->n; k++) {
         double off = fabs(it->image[last + k] - it->guess[last + k]);
         if (off > fabs(it->image[last + worst] - it->guess[last + worst])) worst = k;
     }
     while (it->input[worst] >= a->input_offset[to + 1]) to++;
+    // what may help
     double contraction = bough_accelerator_contraction(it->accelerator);
     bool learns = c->options.accelerator >= BOUGH_ACCELERATE_IQN_ILS;
     const char *advice = !learns             ? "try accelerator: iqn-ils"
@@ -323,14 +323,14 @@ static bough_status not_converged(const bough_coupling *c, int sweeps, double re
                       c->t1, residual, sweeps, contraction, advice);
 }
 
-// The step with the values that left the smallest residual: where the error is measured, it says what they
-// are worth.
+// Repeats the step with the values of the smallest residual: where another solution shows the error, their
+// error is part of it.
 static bough_status go_back(bough_coupling *c) {
     iteration *it = c->scheme_data;
     bough_status status = bough_coupling_each(c, BOUGH_ALL_LEVELS, restore);
     memcpy(it->prescribed, it->best, it->n_prescribed * sizeof(double));
-    c->sweeps++;
-    c->unfinished++;
+    it->sweeps++;
+    it->unfinished++;
     return bough_is_ok(&status) ? sweep(c) : status;
 }
 
@@ -341,22 +341,24 @@ static bough_status step(bough_coupling *c) {
     bough_accelerator_start(it->accelerator);
     predict(c);
     if (bough_is_ok(&status) && it->jacobian[0]) status = renew_jacobians(c);
+    // sweeps until the residual is small, k of them so far
     double best = HUGE_VAL;
     for (int k = 1; bough_is_ok(&status); k++) {
         status = sweep(c);
-        c->sweeps++;
-        if (!bough_is_ok(&status)) return c->measured && isfinite(best) ? go_back(c) : status;
+        it->sweeps++;
+        if (!bough_is_ok(&status)) return c->compared && isfinite(best) ? go_back(c) : status;
         if (k == 1) update_scales(c);
         double residual = evaluate(c);
-        bool lost = k == 1 && !isfinite(residual); // before iterating: for the monitor to tell
+        bool lost = k == 1 && !isfinite(residual); // before any iteration: the monitor finds the cause
         if (residual <= c->options.tolerance || lost) break;
         if (residual < best) {
             best = residual;
             memcpy(it->best, it->prescribed, it->n_prescribed * sizeof(double));
         }
         if (k == c->options.iterations || bough_accelerator_diverges(it->accelerator)) {
-            return c->measured && isfinite(best) ? go_back(c) : not_converged(c, k, residual);
+            return c->compared && isfinite(best) ? go_back(c) : not_converged(c, k, residual);
         }
+        // back to T_k with better values
         correct(c);
         status = bough_coupling_each(c, BOUGH_ALL_LEVELS, restore);
     }
@@ -366,6 +368,8 @@ static bough_status step(bough_coupling *c) {
 static void snapshot(bough_coupling *c, bough_snapshot *s) {
     iteration *it = c->scheme_data;
     bough_snapshot_doubles(s, it->size, it->n);
+    bough_snapshot_take(s, &it->sweeps, sizeof it->sweeps);
+    bough_snapshot_take(s, &it->unfinished, sizeof it->unfinished);
     if (s->move == BOUGH_SNAPSHOT_RESTORE) it->length = 0; // Jacobians are made anew
 }
 
@@ -373,15 +377,23 @@ static int defect_order(const bough_scheme_options *options) {
     return options->exchange == BOUGH_EXCHANGE_WAVEFORM ? 4 : options->order + 1;
 }
 
+static void report(const bough_coupling *c, bough_scheme_report *to) {
+    const iteration *it = c->scheme_data;
+    to->sweeps = it->sweeps;
+    to->unfinished = it->unfinished;
+}
+
 const bough_scheme bough_scheme_iterated = {
     .name = "iterated",
     .summary = "the step is repeated until the interface agrees; order 1 to 3 (degree + 1), of "
                "waveforms 6, implicit",
     .reads = BOUGH_READS_ORDER | BOUGH_READS_EXCHANGE | BOUGH_READS_ACCELERATOR,
+    .foreign = true,
     .repeats = true,
     .judged = true,
     .create = create,
     .step = step,
     .snapshot = snapshot,
     .defect_order = defect_order,
+    .report = report,
 };

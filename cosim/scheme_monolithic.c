@@ -1,4 +1,4 @@
-// All members in one system ẏ = F(t, y), whole.h, integrated by one method across macro steps: no
+// All members as one system ẏ = F(t, y), (54), integrated by one method across macro steps: no
 // coupling error. By the Rosenbrock method the members are coupled at its stages, each of which costs
 // a member what its own sub-solver would; an implicit multistep method at a tight tolerance is the
 // reference of every error figure.
@@ -110,39 +110,42 @@ static double find(void *self, bough_rosenbrock_step *step) {
     return sum;
 }
 
-static void couple_at_stages(bough_arena *arena, bough_coupling *c) {
+static void couple_at_stages(bough_arena *arena, const bough_coupling *c, bough_member *whole) {
     stages *s = bough_arena_take(arena, sizeof *s);
     *s = (stages){.assembly = c->assembly,
-                  .whole = c->whole,
-                  .now = c->whole->system.self,
+                  .whole = whole,
+                  .now = whole->system.self,
                   .end = bough_whole_create_evaluation(arena, c->assembly, c->pool),
-                  .factors = c->whole->factors,
+                  .factors = whole->factors,
                   .square = bough_arena_doubles(arena, (size_t)c->assembly->n_member)};
-    bough_rosenbrock_find_by(&c->whole->integrator, find, s);
+    bough_rosenbrock_find_by(&whole->integrator, find, s);
 }
 
 // -- the scheme -------------------------------------------------------------------------------------
 
 static bough_status create(bough_coupling *c, bough_arena *arena) {
-    bough_member *whole = c->whole = bough_arena_take(arena, sizeof *whole);
+    bough_member *whole = c->scheme_data = bough_arena_take(arena, sizeof *whole);
     bough_system system = bough_whole_system(arena, c->assembly, c->pool, "monolithic system");
     bough_status status = bough_member_create(arena, &system, c->t0, &c->options.integrator, whole);
     bool stagewise = c->options.integrator.kind == BOUGH_ROSENBROCK && whole->integrator.ops != NULL;
-    if (bough_is_ok(&status) && stagewise) couple_at_stages(arena, c);
+    if (bough_is_ok(&status) && stagewise) couple_at_stages(arena, c, whole);
     return status;
 }
 
 // The members' states are set for queries; only the integrator of the whole system runs.
 static bough_status step(bough_coupling *c) {
     const bough_assembly *a = c->assembly;
-    bough_member *whole = c->whole;
+    bough_member *whole = c->scheme_data;
+    // a start: the members' states are those of the whole
     if (!whole->started) {
         bough_assembly_states(a, whole->state);
         bough_member_set(whole, c->t0, whole->state);
     }
     assert(whole->time == c->t0);
+    // the step
     bough_status status = bough_member_advance(whole, c->t1, NULL, c->restart);
     if (!bough_is_ok(&status)) return status;
+    // the members' states, brought back to their constraints
     for (int i = 0; i < a->n_member; i++) {
         bough_member_set(a->member[i], c->t1, whole->state + a->state_offset[i]);
     }
@@ -151,7 +154,18 @@ static bough_status step(bough_coupling *c) {
     return bough_ok();
 }
 
-static void snapshot(bough_coupling *c, bough_snapshot *s) { bough_member_snapshot(c->whole, s); }
+// The members have exchanged their values at all times: what is applied is what is obtained.
+static void obtained(bough_coupling *c) {
+    const bough_assembly *a = c->assembly;
+    for (int i = 0; i < a->n_member; i++) {
+        int first = a->input_offset[i], count = a->member[i]->system.n_input;
+        bough_signal_linear(&c->signal[i], 0, count, c->past.input[0] + first, c->input + first);
+    }
+}
+
+static void snapshot(bough_coupling *c, bough_snapshot *s) { bough_member_snapshot(c->scheme_data, s); }
+
+static bough_member *whole(const bough_coupling *c) { return c->scheme_data; }
 
 const bough_scheme bough_scheme_monolithic = {
     .name = "monolithic",
@@ -160,5 +174,7 @@ const bough_scheme bough_scheme_monolithic = {
     .one_system = true,
     .create = create,
     .step = step,
+    .obtained = obtained,
     .snapshot = snapshot,
+    .whole = whole,
 };

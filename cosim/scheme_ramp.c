@@ -1,13 +1,11 @@
-// Ramp, linearly implicit. From one linearly implicit θ-step of size H of
-// every member, linearised at T_k,
-//     (I − θH J) Δ = H f(T_k + θH, y, u) + θH B δu,   o^ = h(T_{k+1}, y, u) + C Δ + D δu,
-// the end-of-step port values are found by solving the coupled linear interface equations. The
-// leaders (level 0) then advance under forces that change linearly from the value applied at the end of the
-// last step to the predicted value. The forces are continuous, so integrators keep their history. The other
-// members then advance once with the cubic of the resulting motion.
+// Ramp, linearly implicit. One linearly implicit θ-step of size H of every member, linearised at T_k, (60) of
+// docs/theory.md, predicts the inputs at the end of the step: their coupled linear equations are solved as in
+// interface.h. The leaders then advance under forces that change linearly from the value applied at the end
+// of the last step to the predicted value (61). The forces are continuous, so integrators keep their history.
+// The other members then advance once with the cubic of the resulting motion.
 //
 // A parabola that is zero at both ends is added to the linear force. It contains the impulse of the force's
-// curvature and compensates the impulse deficit of earlier steps, so the exchanged momentum is of third
+// curvature and compensates the impulse deficit of earlier steps (62), so the exchanged momentum is of third
 // order without further cost. It is used on heavy interface bodies only, because elsewhere the delayed
 // compensation causes oscillations.
 //
@@ -15,35 +13,43 @@
 // linearised macro step are computed before the run; if they grow, the scheme refuses the scene. On an
 // interface body that is lighter than the bodies it carries the first step has θ = 1, which is damped and of
 // order 1. A scene may name another θ, which is taken as it is: of order 1, with an error 2θ − 1 times as
-// large. The interface is solved as in interface.h.
+// large.
 #include "cosim/analysis/stability.h"
-#include "cosim/coupling.h"
 #include "cosim/interface.h"
 #include "cosim/scheme.h"
-#include "cosim/signal.h"
 
 #include <math.h>
 #include <string.h>
 
 typedef struct ramp {
+    // constant
+    int *order, n_leader; // (n_member) the leaders, then the followers
+    bool named;           // the scene names θ
+
+    // by the first prediction
+    bool measured; // it has been made
+    double ratio;  // (57)
+    double damped; // steps that begin before have θ = 1 [s]
+    bool repays;   // impulses are compensated
+
+    // by the prediction of a step
     bough_interface *interface;
+    double theta;         // of the step
     double middle, gamma; // where and for what members are linearised [s]
+    bool fresh;           // followers are linearised in this step
+    int age;              // steps since they were
+    double span;          // θH then [s]
     double *increment;    // (n_state) Δ of each member if the leaders' inputs did not change
     double *base;         // (n_output) h at the start values
     double *output;       // (n_output) change of the outputs with that
     double *change;       // (n_input) changes of the inputs
     double *input;        // (n_input) at the start of the step, as linearised: what was applied to leaders
-    double theta;         // of the present step
-    double damped;        // steps that begin before have θ = 1 [s]
-    bool named;           // the scene names θ
-    bool measured;        // the interface ratio is known
-    bool repays;          // impulses
-    bool fresh;           // followers are linearised in this step
-    int age;              // steps since they were
-    double span;          // θH then [s]
+
+    // by the exchange
+    double *deficit; // (n_input) ∫ (obtained − applied value) over all steps, of the leaders' inputs
 } ramp;
 
-static bool leads(const bough_coupling *c, int member) { return c->assembly->level[member] == 0; }
+static bool leads(const bough_coupling *c, int member) { return c->assembly->leads[member]; }
 
 // -- memory ---------------------------------------------------------------------------------------
 
@@ -52,17 +58,18 @@ static bough_status check_shape(const bough_coupling *c) {
     const bough_assembly *a = c->assembly;
     for (int i = 0; i < a->n_member; i++) {
         if (leads(c, i) && a->feedthrough[i]) {
-            return bough_fail(BOUGH_INVALID,
-                              "ramp: %s leads, so its outputs must not depend on its "
-                              "inputs directly; use another scheme",
-                              a->member[i]->system.name);
+            return bough_fail(
+                BOUGH_INVALID,
+                "ramp: %s leads, so its outputs must not depend on its inputs directly; use another scheme",
+                a->member[i]->system.name);
         }
     }
     for (int i = 0; i < a->n_member; i++) {
         for (int j = a->input_offset[i]; j < a->input_offset[i + 1]; j++) {
             if (leads(c, i) != leads(c, a->source_member[j])) continue;
-            return bough_fail(BOUGH_INVALID, "ramp: leaders and followers may only "
-                                             "be connected with each other; use another scheme");
+            return bough_fail(BOUGH_INVALID,
+                              "ramp: leaders and followers may only be connected with each other; use "
+                              "another scheme");
         }
     }
     return bough_ok();
@@ -72,21 +79,25 @@ static bough_status create(bough_coupling *c, bough_arena *arena) {
     const bough_assembly *a = c->assembly;
     bough_status status = check_shape(c);
     if (!bough_is_ok(&status)) return status;
-    ramp *r = bough_arena_take(arena, sizeof *r);
+    ramp *r = c->scheme_data = bough_arena_take(arena, sizeof *r);
+    r->order = bough_arena_take(arena, (size_t)a->n_member * sizeof *r->order);
+    for (int i = 0; i < a->n_member; i++)
+        if (leads(c, i)) r->order[r->n_leader++] = i;
+    for (int i = 0, n = r->n_leader; i < a->n_member; i++)
+        if (!leads(c, i)) r->order[n++] = i;
+    r->interface = bough_interface_create(arena, a);
     r->increment = bough_arena_doubles(arena, (size_t)a->n_state);
-    r->base = bough_arena_doubles(arena, (size_t)a->n_output);
-    r->output = bough_arena_doubles(arena, (size_t)a->n_output);
-    bough_arena_each(arena, (size_t)a->n_input, &r->change, &r->input, &c->deficit);
+    bough_arena_each(arena, (size_t)a->n_output, &r->base, &r->output);
+    bough_arena_each(arena, (size_t)a->n_input, &r->change, &r->input, &r->deficit);
+    r->ratio = (double)NAN;
     r->damped = -HUGE_VAL;
     r->named = c->options.theta > 0;
     if (!r->named) c->options.theta = 0.5;
     r->theta = c->options.theta;
-    c->scheme_data = r;
-    r->interface = bough_interface_create(arena, a);
     return bough_ok();
 }
 
-// -- the θ-step of every member -------------------------------------------------------------------
+// -- the θ-step of every member (60) --------------------------------------------------------------
 
 // Leaders start from the inputs that were applied last: that is where the ramp starts.
 static void choose_inputs(bough_coupling *c) {
@@ -146,14 +157,14 @@ static void predict_leader(bough_coupling *c, int member) {
     if (s->n_input == 0 && s->n_output == 0) return; // no ports
     if (!evaluate(c, member) || !bough_interface_linearise(r->interface, member, &at) ||
         !bough_interface_factor_leader(r->interface, member, &at)) {
-        c->status[member] = bough_coupling_not_finite(c, member);
+        bough_coupling_not_finite(c, member);
         return;
     }
     solve(c, member, NULL);
 }
 
 static void prepare_follower(bough_coupling *c, int member) {
-    if (!evaluate(c, member)) c->status[member] = bough_coupling_not_finite(c, member);
+    if (!evaluate(c, member)) bough_coupling_not_finite(c, member);
 }
 
 static void predict_follower(bough_coupling *c, int member) {
@@ -161,13 +172,15 @@ static void predict_follower(bough_coupling *c, int member) {
     bough_operating_point at = operating_point(c, member);
     if (r->fresh && !(bough_interface_linearise(r->interface, member, &at) &&
                       bough_interface_factor_follower(r->interface, member, &at))) {
-        c->status[member] = bough_coupling_not_finite(c, member);
+        bough_coupling_not_finite(c, member);
         return;
     }
     if (r->fresh) bough_interface_respond(r->interface, member, &at);
     expect_inputs(c, member);
     solve(c, member, r->change + c->assembly->input_offset[member]);
 }
+
+// -- the prediction -------------------------------------------------------------------------------
 
 // With a heavy interface, followers keep their tangents and responses for some steps; the next step detects
 // and compensates the error of such a prediction.
@@ -182,6 +195,27 @@ static void choose_tangents(bough_coupling *c) {
     r->span = span;
 }
 
+// Task k: the leaders; what followers do without them; the followers, which wait for both. The second group
+// begins `shift` followers later, so that with one leader each follower stays on the thread on which it
+// advances.
+static void predict_member(void *data, int k) {
+    bough_coupling *c = data;
+    const ramp *r = c->scheme_data;
+    const int *follower = r->order + r->n_leader;
+    int n_follower = c->assembly->n_member - r->n_leader,
+        shift = n_follower > 0 ? r->n_leader % n_follower : 0;
+    int place = k - r->n_leader, last = place - n_follower;
+    if (place < 0) {
+        predict_leader(c, r->order[k]);
+    } else if (last < 0) {
+        prepare_follower(c, follower[(place + shift) % n_follower]);
+    } else {
+        for (int l = 0; l < r->n_leader; l++) bough_pool_await(c->pool, l);
+        bough_pool_await(c->pool, r->n_leader + (last + n_follower - shift) % n_follower);
+        if (bough_is_ok(&c->status[follower[last]])) predict_follower(c, follower[last]);
+    }
+}
+
 // The increments of the leaders' inputs into `change`.
 static bough_status predict(bough_coupling *c) {
     const bough_assembly *a = c->assembly;
@@ -190,9 +224,12 @@ static bough_status predict(bough_coupling *c) {
     choose_inputs(c);
     r->gamma = r->theta * (c->t1 - c->t0);
     r->middle = c->t0 + r->gamma;
-    bough_staged_work work = {predict_leader, prepare_follower, predict_follower};
-    bough_status status = bough_coupling_each_staged(c, work);
+    // every member with the leaders' inputs held
+    bough_coupling_clear(c);
+    bough_pool_run(c->pool, 2 * a->n_member - r->n_leader, predict_member, c);
+    bough_status status = bough_coupling_failure(c);
     if (!bough_is_ok(&status)) return status;
+    // the interface (56)
     for (int i = 0; i < a->n_member; i++) {
         if (leads(c, i)) expect_inputs(c, i);
     }
@@ -204,6 +241,8 @@ static bough_status predict(bough_coupling *c) {
     return bough_fail(BOUGH_RETRY, "the interface equations are singular at %.6g s", c->t0);
 }
 
+// -- the first prediction -------------------------------------------------------------------------
+
 // Above this ratio the leaders are lighter than the bodies they carry: the start of θ = 1/2 oscillates.
 static const double light_interface = 1;
 
@@ -211,21 +250,21 @@ static const double light_interface = 1;
 // step becomes unstable at ratios of 0.3 to 1.
 static const double heavy_interface = 0.25;
 
-static const double ringing = 0.05; // growth that does not count [1/s]
+static const double negligible_growth = 0.05; // [1/s]
 
 // Refuses a scene on which the macro step with θ = 1/2 is unstable.
-static bough_status check_stability(const bough_coupling *c) {
+static bough_status check_stability(const bough_coupling *c, double ratio) {
     // a light body oscillates by about 2 √ratio rad in a macro step; four steps of its linear member a radian
-    double h = c->t1 - c->t0, parts = fmin(8 * sqrt(c->interface_ratio), 64);
+    double h = c->t1 - c->t0, parts = fmin(8 * sqrt(ratio), 64);
     bough_stability found;
     bough_status status =
         bough_stability_judge_by(c->assembly, &c->options, h, fmin(h / parts, 5e-3), &found);
-    if (!bough_is_ok(&status) || found.growth <= ringing) return status;
+    if (!bough_is_ok(&status) || found.growth <= negligible_growth) return status;
     return bough_fail(BOUGH_INVALID,
                       "under ramp the body that carries %.40s is too light for a macro step of %.6g s: "
-                      "%.3g Hz would grow by %.3g per second (interface ratio %.3g); use scheme: monolithic",
-                      c->assembly->member[found.body]->system.name, h, found.frequency, found.growth,
-                      c->interface_ratio);
+                      "%.3g Hz would grow by %.3g per second (interface ratio %.3g); use "
+                      "scheme: " BOUGH_SCHEME_DEFAULT,
+                      c->assembly->member[found.body]->system.name, h, found.frequency, found.growth, ratio);
 }
 
 // θ = 1/2 does not damp the start of a light body, so the first step has θ = 1.
@@ -240,15 +279,15 @@ static bough_status measure_interface(bough_coupling *c) {
     ramp *r = c->scheme_data;
     bough_status status = predict(c);
     if (!bough_is_ok(&status)) return status;
-    c->interface_ratio = bough_interface_radius(r->interface);
-    if (!r->named && c->interface_ratio > heavy_interface) {
-        status = check_stability(c);
+    r->ratio = bough_interface_radius(r->interface);
+    if (!r->named && r->ratio > heavy_interface) {
+        status = check_stability(c, r->ratio);
         if (!bough_is_ok(&status)) return status;
-        if (c->interface_ratio > light_interface) r->damped = c->t1;
+        if (r->ratio > light_interface) r->damped = c->t1;
         status = predict_damped(c);
     }
     r->measured = true;
-    r->repays = c->options.theta == 0.5 && c->interface_ratio < heavy_interface;
+    r->repays = c->options.theta == 0.5 && r->ratio < heavy_interface;
     return status;
 }
 
@@ -265,29 +304,29 @@ static bough_status prepare(bough_coupling *c) {
 // Constant force for backward Euler: a ramp would restore the oscillations that θ = 1 damps.
 static bool held(const ramp *r) { return r->theta >= 1; }
 
-// The ramp with its parabola.
-static void set_repaying(bough_coupling *c, bough_signal *signal, int local, int j, double end) {
+// The ramp with its parabola, (61) and (62).
+static void set_repaying(bough_coupling *c, int member, int j, double end) {
+    const ramp *r = c->scheme_data;
     double h = c->t1 - c->t0, start = c->applied[j];
-    double impulse = c->deficit[j] - h * h * h / 12 * bough_coupling_curvature(c, j, end);
+    double impulse = r->deficit[j] - h * h * h / 12 * bough_coupling_curvature(c, j, end);
     double middle = 0.5 * (start + end) + 1.5 * impulse / h;
     const double time[] = {c->t0, c->t0 + 0.5 * h, c->t1};
     const double *const value[] = {&start, &middle, &end};
-    bough_signal_polynomial(signal, local, 1, 3, time, value);
+    bough_signal_polynomial(&c->signal[member], j - c->assembly->input_offset[member], 1, 3, time, value);
 }
 
 static void set_ramps(bough_coupling *c, int member) {
     const bough_assembly *a = c->assembly;
     const ramp *r = c->scheme_data;
-    bough_signal *signal = &c->signal[member];
     for (int j = a->input_offset[member], local = 0; j < a->input_offset[member + 1]; j++, local++) {
         double start = c->applied[j], end = start + r->change[j];
-        if (!r->repays) c->deficit[j] = 0;
+        if (!r->repays) r->deficit[j] = 0;
         if (held(r)) {
-            bough_signal_hold(signal, local, 1, &end);
+            bough_signal_hold(&c->signal[member], local, 1, &end);
         } else if (r->repays) {
-            set_repaying(c, signal, local, j, end);
+            set_repaying(c, member, j, end);
         } else {
-            bough_signal_linear(signal, local, 1, &start, &end);
+            bough_signal_linear(&c->signal[member], local, 1, &start, &end);
         }
     }
 }
@@ -296,30 +335,63 @@ static bough_status step(bough_coupling *c) {
     const bough_assembly *a = c->assembly;
     const ramp *r = c->scheme_data;
     bough_coupling_begin(c);
+    // the forces at the end of the step
     bough_status status = r->measured ? predict_damped(c) : measure_interface(c);
     if (!bough_is_ok(&status)) return status;
+    // leaders under ramps
     for (int i = 0; i < a->n_member; i++) {
         if (leads(c, i)) set_ramps(c, i);
     }
     status = bough_coupling_advance_leaders(c, 0, c->restart || held(r));
     if (!bough_is_ok(&status)) return status;
+    // followers under the leaders' motion
     for (int i = 0; i < a->n_member; i++) {
         if (leads(c, i)) continue;
-        for (int j = a->input_offset[i]; j < a->input_offset[i + 1]; j++) {
-            bough_coupling_interpolate(c, i, j);
+        for (int j = a->input_offset[i]; j < a->input_offset[i + 1]; j++) bough_coupling_interpolate(c, i, j);
+    }
+    for (int level = 1; level < a->n_level && bough_is_ok(&status); level++) {
+        status = bough_coupling_advance(c, level, c->restart);
+    }
+    return status;
+}
+
+// (62): integral of the obtained value, by its parabola, minus that of the applied value.
+static void add_deficit(bough_coupling *c, int member) {
+    const bough_assembly *a = c->assembly;
+    const ramp *r = c->scheme_data;
+    const bough_signal *s = &c->signal[member];
+    double h = c->t1 - c->t0;
+    for (int k = 0, n = s->n; k < n; k++) {
+        const double *applied = s->coefficient + k;
+        int j = a->input_offset[member] + k;
+        double curvature = bough_coupling_curvature(c, j, c->input[j]);
+        double obtained = 0.5 * (c->past.input[0][j] + c->input[j]) - h * h / 12 * curvature;
+        r->deficit[j] +=
+            h * (obtained - applied[0] - applied[n] / 2 - applied[2 * n] / 3 - applied[3 * n] / 4);
+    }
+}
+
+static void obtained(bough_coupling *c) {
+    const bough_assembly *a = c->assembly;
+    const ramp *r = c->scheme_data;
+    for (int i = 0; i < a->n_member; i++) {
+        size_t own = (size_t)a->member[i]->system.n_input * sizeof(double);
+        if (leads(c, i)) {
+            add_deficit(c, i);
+        } else {
+            memset(r->deficit + a->input_offset[i], 0, own);
         }
     }
-    for (int level = 1; level < a->n_level; level++) {
-        status = bough_coupling_advance(c, level, c->restart);
-        if (!bough_is_ok(&status)) return status;
-    }
-    return bough_ok();
 }
+
+// -- questions ------------------------------------------------------------------------------------
 
 // After a restore it linearises again.
 static void snapshot(bough_coupling *c, bough_snapshot *s) {
     ramp *r = c->scheme_data;
+    bough_snapshot_doubles(s, r->deficit, c->assembly->n_input);
     bough_snapshot_take(s, &r->theta, sizeof r->theta);
+    bough_snapshot_take(s, &r->ratio, sizeof r->ratio);
     bough_snapshot_take(s, &r->damped, sizeof r->damped);
     bough_snapshot_take(s, &r->measured, sizeof r->measured);
     bough_snapshot_take(s, &r->repays, sizeof r->repays);
@@ -331,14 +403,24 @@ static int defect_order(const bough_scheme_options *options) {
     return 2;
 }
 
+static double *impulse(const bough_coupling *c) { return ((const ramp *)c->scheme_data)->deficit; }
+
+static void report(const bough_coupling *c, bough_scheme_report *to) {
+    to->interface_ratio = ((const ramp *)c->scheme_data)->ratio;
+}
+
 const bough_scheme bough_scheme_ramp = {
     .name = "ramp",
     .summary = "forces change linearly to a linearly implicit prediction; order 3 on heavy "
                "interface bodies, else 2; stable far beyond the explicit limit",
     .reads = BOUGH_READS_THETA,
+    .advised = true,
     .create = create,
     .prepare = prepare,
     .step = step,
+    .obtained = obtained,
     .snapshot = snapshot,
     .defect_order = defect_order,
+    .impulse = impulse,
+    .report = report,
 };

@@ -1,6 +1,6 @@
 #include "cosim/step_control.h"
 
-#include "cosim/signal.h"
+#include "cosim/scheme.h"
 
 #include <math.h>
 
@@ -13,7 +13,7 @@ bough_step_control *bough_step_control_create(bough_arena *arena, bough_coupling
     s->most = def->least > 0 ? (int)floor(log2(macro_step / def->least) + 1e-6) : 0;
     s->shortest = HUGE_VAL;
     bough_snapshot size = {.move = BOUGH_SNAPSHOT_MEASURE};
-    bough_coupling_snapshot(c, &size);
+    bough_scheme_snapshot(c, &size);
     s->copy = bough_arena_take(arena, size.used);
     s->n_point = 1;
     s->curve = bough_signal_create(arena, c->assembly->n_input);
@@ -31,11 +31,11 @@ double bough_step_control_end(bough_step_control *s, double from, double to) {
 // -- copies ---------------------------------------------------------------------------------------
 
 void bough_step_control_save(bough_step_control *s, bough_coupling *c) {
-    bough_coupling_snapshot(c, &(bough_snapshot){BOUGH_SNAPSHOT_SAVE, s->copy, 0});
+    bough_scheme_snapshot(c, &(bough_snapshot){BOUGH_SNAPSHOT_SAVE, s->copy, 0});
 }
 
 void bough_step_control_restore(bough_step_control *s, bough_coupling *c) {
-    bough_coupling_snapshot(c, &(bough_snapshot){BOUGH_SNAPSHOT_RESTORE, s->copy, 0});
+    bough_scheme_snapshot(c, &(bough_snapshot){BOUGH_SNAPSHOT_RESTORE, s->copy, 0});
 }
 
 void bough_step_control_snapshot(bough_step_control *s, bough_snapshot *snapshot) {
@@ -75,10 +75,10 @@ static double worst_relative(bough_step_control *s, const bough_assembly *a, con
 static void reconstruct(bough_step_control *s, const bough_coupling *c) {
     int past = c->restart ? 1 : s->n_point;
     const double *value[BOUGH_PAST];
-    for (int p = 0; p <= past; p++) value[p] = c->past[p];
+    for (int p = 0; p <= past; p++) value[p] = c->past.input[p];
     s->curve.t0 = c->t0;
     s->curve.t1 = c->t1;
-    bough_signal_polynomial(&s->curve, 0, s->curve.n, past + 1, c->past_time, value);
+    bough_signal_polynomial(&s->curve, 0, s->curve.n, past + 1, c->past.time, value);
 }
 
 static double defect_near(bough_step_control *s, const bough_coupling *c, double t) {
@@ -95,7 +95,8 @@ static double defect_near(bough_step_control *s, const bough_coupling *c, double
 // Largest relative change over the step. After a start or a jump no curvature is known yet; a quarter of the
 // change stands in for it.
 static double change_over(bough_step_control *s, const bough_coupling *c) {
-    for (int j = 0; j < s->curve.n; j++) s->obtained[j] = c->followed[j] ? 0 : c->input[j] - c->past[1][j];
+    for (int j = 0; j < s->curve.n; j++)
+        s->obtained[j] = c->followed[j] ? 0 : c->input[j] - c->past.input[1][j];
     return worst_relative(s, c->assembly, s->obtained);
 }
 

@@ -181,6 +181,28 @@ foreach(file IN LISTS files)
   endforeach()
 endforeach()
 
+# A scheme is named in its own file alone; cosim/scheme.h names the default.
+file(GLOB files RELATIVE ${ROOT} ${ROOT}/cosim/scheme_*.c)
+set(schemes "")
+foreach(file IN LISTS files)
+  file(STRINGS ${ROOT}/${file} lines REGEX "^    \\.name = \"" ENCODING UTF-8)
+  foreach(line IN LISTS lines)
+    string(REGEX REPLACE "^.*\"(.*)\".*$" "\\1" name "${line}")
+    list(APPEND schemes ${name})
+  endforeach()
+endforeach()
+if(NOT schemes)
+  message(FATAL_ERROR "cosim/scheme_*.c: no names of schemes")
+endif()
+string(REPLACE ";" "|" schemes "${schemes}")
+file(GLOB_RECURSE files RELATIVE ${ROOT} ${ROOT}/core/*.c ${ROOT}/flexbody/*.c ${ROOT}/aero/*.c ${ROOT}/cosim/*.c
+  ${ROOT}/apps/*.c)
+list(FILTER files EXCLUDE REGEX "^cosim/scheme_[^/]*\\.c$")
+foreach(file IN LISTS files)
+  forbid(${file} "(scheme|name|strcmp)[^\"]*\"(${schemes})\"|scheme: (${schemes})"
+    "asks for a scheme's name, not for what it does")
+endforeach()
+
 # The lines of a file; a list of them would lose the empty ones, and those in brackets.
 function(count_lines file count)
   file(READ ${ROOT}/${file} text)

@@ -17,7 +17,7 @@ static const double sub_step = 5e-3;  // of the linear members at most [s]; a qu
 static const double exact = 1e-4;     // share of an eigenvalue
 static const double threshold = 1e-2; // growth below is rounding or drift [1/s]
 
-// The map z → z after `repeat` macro steps; z is what a step depends on, see bough_coupling_load.
+// The map z → z after `repeat` macro steps; z is what a step depends on, see bough_scheme_load.
 typedef struct map {
     bough_arena *arena;
     const bough_assembly *real;
@@ -74,7 +74,7 @@ static bough_status build(map *m, const bough_assembly *a, const bough_scheme_op
     bough_status status = bough_scheme_couple(m->arena, &m->assembly, &judged, NULL, &c);
     if (!bough_is_ok(&status) || !c) return status;
     m->coupling = c;
-    m->n = bough_coupling_n_memory(c);
+    m->n = bough_scheme_n_memory(c);
     m->repeat = (int)fmin(ceil(span / m->macro_step - 1e-6), MOST_REPEATED);
     c->t1 = c->t0 + m->macro_step;
     if (c->scheme->prepare) status = c->scheme->prepare(c);
@@ -88,14 +88,13 @@ static bough_status build(map *m, const bough_assembly *a, const bough_scheme_op
 static bough_status apply(map *m, int count, const double *z, double *image) {
     bough_coupling *c = m->coupling;
     bough_status status = bough_ok();
-    bough_coupling_load(c, m->macro_step, z);
+    bough_scheme_load(c, m->macro_step, z);
     for (int k = 0; k < count && bough_is_ok(&status); k++) {
         c->t0 = c->t1;
         c->t1 = (k + 1) * m->macro_step;
-        status = c->scheme->step(c);
-        bough_coupling_exchange(c);
+        status = bough_scheme_step(c);
     }
-    bough_coupling_store(c, image);
+    bough_scheme_store(c, image);
     return status;
 }
 
@@ -124,7 +123,7 @@ static void choose_weights(map *m, const double *z) {
         double own = largest > 0 ? sum / a->n_input / (largest * largest) : 1;
         for (int j = first; j < last; j++) {
             for (int p = 0; p < 3; p++) weight[a->n_state + p * a->n_input + j] = own;
-            if (m->coupling->deficit == NULL) continue;
+            if (m->coupling->scheme->impulse == NULL) continue;
             weight[a->n_state + 3 * a->n_input + j] = own / (m->macro_step * m->macro_step);
         }
     }
@@ -348,10 +347,11 @@ bough_status bough_stability_advise(const bough_assembly *a, const bough_scheme_
     bough_status status = bough_stability_judge(a, options, macro_step, &advice->now);
     if (!bough_is_ok(&status) || !bough_stability_grows(&advice->now)) return status;
     bough_scheme_options instead = *options;
-    instead.name = "ramp";
-    instead.theta = 0.5;
+    const bough_scheme *other = bough_scheme_advised();
+    instead.name = other->name;
     double least = advice->now.growth;
-    advice->ramp_holds = strcmp(options->name, "ramp") != 0 && holds(a, &instead, macro_step, &least);
+    bool differs = strcmp(options->name, other->name) != 0;
+    if (differs && holds(a, &instead, macro_step, &least)) advice->scheme = other->name;
     for (size_t k = 0; k < sizeof divisor / sizeof *divisor && advice->macro_step == 0; k++) {
         double smaller = macro_step / divisor[k];
         if (holds(a, options, smaller, &least)) advice->macro_step = smaller;
@@ -374,7 +374,7 @@ void bough_stability_describe(const bough_assembly *a, const bough_stability_adv
         length += snprintf(text + length, (size_t)(BOUGH_VERDICT - length), "; macro_step: %.9g s holds",
                            advice->macro_step);
     }
-    if (advice->ramp_holds) {
-        snprintf(text + length, (size_t)(BOUGH_VERDICT - length), "; scheme: ramp holds");
+    if (advice->scheme) {
+        snprintf(text + length, (size_t)(BOUGH_VERDICT - length), "; scheme: %s holds", advice->scheme);
     }
 }

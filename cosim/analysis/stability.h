@@ -37,7 +37,7 @@ typedef struct bough_stability_advice {
     bough_stability now; // at the given macro step
     bool unstable;       // it grows, and grows less with a smaller macro step or another scheme
     double macro_step;   // the largest fraction of the macro step that is stable [s]; 0: none of those tried
-    bool ramp_holds;     // the scheme ramp is stable at this macro step
+    const char *scheme;  // another scheme that is stable at this macro step; NULL: none of those tried
 } bough_stability_advice;
 
 // Analyses a scheme and, if it is unstable, searches a stable macro step and scheme.

@@ -56,7 +56,7 @@ static void advise(const bough_coupling *c, const bough_stability_advice *advice
         snprintf(text, ADVICE, "; try %s",
                  c->scheme->one_system ? "damping of flexible bodies, more segments or another master.rtol"
                  : c->assembly->opaque ? "a smaller macro step or another micro.rtol"
-                                       : "scheme: monolithic");
+                                       : "scheme: " BOUGH_SCHEME_DEFAULT);
         return;
     }
     int n = snprintf(text, ADVICE, ": the coupling grows by a factor of %.3g in each macro step; try ",
@@ -64,7 +64,7 @@ static void advise(const bough_coupling *c, const bough_stability_advice *advice
     if (advice->macro_step > 0) {
         n += snprintf(text + n, (size_t)(ADVICE - n), "macro_step: %.9g s or ", advice->macro_step);
     }
-    snprintf(text + n, (size_t)(ADVICE - n), "scheme: monolithic");
+    snprintf(text + n, (size_t)(ADVICE - n), "scheme: " BOUGH_SCHEME_DEFAULT);
 }
 
 bough_status bough_breakdown_explain(bough_breakdown *b, bough_coupling *c,

@@ -74,7 +74,7 @@ bough_monitor *bough_monitor_create(bough_arena *arena, const bough_coupling *co
     const bough_assembly *a = coupling->assembly;
     size_t n_input = (size_t)a->n_input;
     bough_monitor *m = bough_arena_take(arena, sizeof *m);
-    m->advice = a->opaque || coupling->scheme->one_system ? "" : " or scheme: monolithic";
+    m->advice = a->opaque || coupling->scheme->one_system ? "" : " or scheme: " BOUGH_SCHEME_DEFAULT;
     m->group = bough_arena_take(arena, n_input * sizeof *m->group);
     m->start = bough_arena_doubles(arena, n_input);
     m->account = bough_arena_take(arena, (size_t)a->n_pair * sizeof *m->account);
@@ -138,7 +138,8 @@ static bool coupling_grows(const bough_coupling *c, const group *g, double defec
     *growth = fastest_growth(c, &options, h);
     own = *growth / 2;
     for (int k = 0; k < 3 && *growth > needed / 2 && own >= *growth / 2; k++) {
-        if (k == 2) options.name = "ramp"; // an explicit scheme may grow at short steps, too, and faster
+        // an explicit scheme may grow at short steps, too, and faster
+        if (k == 2) options.name = bough_scheme_advised()->name;
         own = fastest_growth(c, &options, h / shorter[k]);
     }
     return own < *growth / 2;
@@ -196,7 +197,7 @@ static double dot(const double *x, const double *y, int n) {
 // Trapezoidal work of the obtained wrench, and of its difference to the applied wrench.
 static void keep_accounts(bough_monitor *m, const bough_coupling *c) {
     const bough_assembly *a = c->assembly;
-    const double *before = c->past[1];
+    const double *before = c->past.input[1];
     double half = (c->t1 - c->t0) / 2;
     for (int i = 0; i < a->n_member; i++) {
         bough_signal_value(&c->signal[i], c->t0, m->start + a->input_offset[i]);

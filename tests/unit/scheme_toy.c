@@ -2,16 +2,16 @@
 // table. All members advance at once; every input is held at the value of its middle of the step,
 // extrapolated from the last two: order 2, as a held value at the start is of order 1.
 #include "cosim/scheme.h"
-#include "cosim/signal.h"
 
 static void hold(bough_coupling *c, int member) {
     const bough_assembly *a = c->assembly;
+    const bough_history *past = &c->past;
     for (int j = a->input_offset[member], local = 0; j < a->input_offset[member + 1]; j++, local++) {
         double slope = 0;
-        if (c->n_past > 1) {
-            slope = (c->past[0][j] - c->past[1][j]) / (c->past_time[0] - c->past_time[1]);
+        if (past->n > 1) {
+            slope = (past->input[0][j] - past->input[1][j]) / (past->time[0] - past->time[1]);
         }
-        double middle = c->past[0][j] + 0.5 * (c->t1 - c->t0) * slope;
+        double middle = past->input[0][j] + 0.5 * (c->t1 - c->t0) * slope;
         bough_signal_hold(&c->signal[member], local, 1, &middle);
     }
 }

@@ -26,4 +26,13 @@ static inline void oscillator_widen(bough_oscillator *leader, bough_oscillator *
     follower->n_input = 3;
 }
 
+// Largest stable macro steps of the polynomials of scheme_polynomial.c by degree, from an independent program
+// [s].
+static const struct {
+    const char *scheme;
+    double limit[3];
+} polynomial_limits[] = {{"polynomial", {.0777, .3175, .2839}},
+                         {"polynomial-reversed", {.0777, .3069, .2831}},
+                         {"polynomial-at-once", {.2254, .2277, .2501}}};
+
 #endif

@@ -189,7 +189,8 @@ static void run(const added_mass_study *s, const way *w, double ratio, outcome *
     if (bough_is_ok(&o->status)) o->status = bough_two_mass_error(&m, &o->error);
     if (m.master) {
         o->time = m.master->time;
-        o->sweeps = fmax(1, (double)m.master->coupling->sweeps / fmax(1, (double)m.master->steps));
+        o->sweeps = fmax(1, (double)bough_scheme_reported(m.master->coupling).sweeps /
+                                fmax(1, (double)m.master->steps));
         memcpy(o->verdict, m.master->verdict, sizeof o->verdict);
     }
     bough_two_mass_destroy(&m);

@@ -103,10 +103,10 @@ static void exact_inputs(const bough_two_mass *m, double t, double *input) {
 
 void bough_two_mass_history(bough_two_mass *m) {
     bough_coupling *c = m->master->coupling;
-    c->n_past = BOUGH_HISTORY;
+    c->past.n = BOUGH_HISTORY;
     for (int p = 0; p < BOUGH_HISTORY; p++) {
-        c->past_time[p] = -p * m->master->macro_step;
-        exact_inputs(m, c->past_time[p], c->past[p]);
+        c->past.time[p] = -p * m->master->macro_step;
+        exact_inputs(m, c->past.time[p], c->past.input[p]);
     }
 }
 
@@ -130,17 +130,16 @@ enum { STATES = 4, INPUTS = 6, MOST = STATES + 4 * INPUTS };
 
 static bough_status map_step(bough_two_mass *m, double h, const double *z, double *image) {
     bough_coupling *c = m->master->coupling;
-    bough_coupling_load(c, h, z);
+    bough_scheme_load(c, h, z);
     c->t0 = 0;
     c->t1 = h;
-    bough_status status = c->scheme->step(c);
-    bough_coupling_exchange(c);
-    bough_coupling_store(c, image);
+    bough_status status = bough_scheme_step(c);
+    bough_scheme_store(c, image);
     return status;
 }
 
 bough_status bough_two_mass_radius(bough_two_mass *m, double macro_step, double *radius) {
-    int n = bough_coupling_n_memory(m->master->coupling);
+    int n = bough_scheme_n_memory(m->master->coupling);
     double matrix[MOST * MOST] = {0}, column[MOST], unit[MOST];
     double value[2 * MOST], vector[MOST * MOST], work[8 * MOST];
     for (int k = 0; k < n; k++) {

@@ -17,7 +17,6 @@ typedef struct variant {
     const char *name;
     int cut;            // bough_cut
     const char *scheme; // one of bough_scheme_name
-    bool parallel, reversed;
     int n_degree;
     double *degree; // (n_degree) polynomial degrees; of schemes without one 0
     int n_limit, n_error;
@@ -87,10 +86,6 @@ static const bough_key variant_keys[] = {
      .fallback = "force-displacement", AT(cut), .help = "what mass 1 and mass 2 are told"},
     {.name = "scheme", .kind = BOUGH_KEY_TEXT, .required = true, AT(scheme),
      .help = "coupling scheme"},
-    {.name = "parallel", .kind = BOUGH_KEY_BOOLEAN, .fallback = "false", AT(parallel),
-     .help = "extrapolated: both at once"},
-    {.name = "reversed", .kind = BOUGH_KEY_BOOLEAN, .fallback = "false", AT(reversed),
-     .help = "mass 2 first"},
     {.name = "degrees", .kind = BOUGH_KEY_NUMBERS, .range = "[0, 2]", .count = 1,
      .fallback = "[0, 1, 2]", AT(degree), .count_offset = offsetof(variant, n_degree),
      .help = "of the polynomials"},
@@ -173,9 +168,6 @@ static bough_master_def definition(const model *m, const variant *v, int degree,
     def.scheme.name = v->scheme;
     def.scheme.order = degree;
     def.scheme.theta = 0.5; // also where a scene would be refused
-    def.scheme.parallel = v->parallel;
-    def.scheme.reversed = v->reversed;
-    def.scheme.interpolation = BOUGH_POLYNOMIAL;
     def.scheme.exchange = BOUGH_EXCHANGE_END_VALUES;
     def.scheme.tolerance = 1e-11;
     def.macro_step = macro_step;

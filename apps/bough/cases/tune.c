@@ -172,7 +172,7 @@ static bool vary(const bough_tune_state *t, int variation, bough_tune_settings *
     case SHORTER: set_step(0.5 * step_of(s), s); return true;
     case LOWER_RATE: set_rate(t, 0.8 * s->rate, s); return s->rate > 0;
     default:
-        s->scheme = bough_scheme_index("ramp");
+        s->scheme = bough_scheme_index(bough_scheme_advised()->name);
         s->solver = BOUGH_ROSENBROCK;
         s->step = fmin(step_of(s), 0.5 * s->macro_step);
         return has_rods(&scene) && t->scene->n_closure == 0;
@@ -213,7 +213,7 @@ static bough_tune_settings start_of(const bough_tune_state *t) {
     bough_tune_settings s = settings_of(t->scene);
     s.own = false;
     if (bough_scheme_find(bough_scheme_name(s.scheme))->one_system) return s;
-    s.scheme = bough_scheme_index("monolithic");
+    s.scheme = bough_scheme_index(BOUGH_SCHEME_DEFAULT);
     if (s.solver != BOUGH_ROSENBROCK && s.solver != BOUGH_GENERALIZED_ALPHA) s.step = 0;
     s.solver = BOUGH_AUTOMATIC;
     return s;

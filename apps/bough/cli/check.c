@@ -71,7 +71,7 @@ static double beam_mass(const bough_beam *beam) {
 static void print_rod(const bough_simulation *s, const bough_beam *beam) {
     const bough_member *rod = &s->rod[beam->port];
     printf("; %d segments, %d states", beam->def.n_segment, rod->system.n_state);
-    if (s->master->coupling->whole) return;
+    if (bough_scheme_whole(s->master->coupling)) return;
     printf(", %s, rtol %.6g", rod->solver, bough_scene_micro(s->scene, beam->body)->rtol);
 }
 
@@ -114,7 +114,7 @@ static void print_bodies(const bough_simulation *s) {
     for (int i = 0; i < n; i++) print_body(s, i);
     int moving = bough_simulation_n_joints(s);
     printf("joints: %d moving, %d fixed\n", moving, n - moving);
-    const bough_member *whole = s->master->coupling->whole;
+    const bough_member *whole = bough_scheme_whole(s->master->coupling);
     double rtol = s->scene->simulation.master.rtol;
     printf("tree: %d state%s (%d of position, %d of speed)", tree->n_q + tree->n_v,
            plural(tree->n_q + tree->n_v), tree->n_q, tree->n_v);

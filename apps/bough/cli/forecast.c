@@ -39,15 +39,14 @@ double bough_forecast_points(const bough_shape *shape) {
 
 // Each macro step evaluates every member at least twice; the shortest of some evaluations [s].
 static double least_step_time(const bough_run *run) {
-    const bough_coupling *c = run->simulation->master->coupling;
+    bough_coupling *c = run->simulation->master->coupling;
     const bough_assembly *a = c->assembly;
     double shortest = HUGE_VAL;
     for (int k = 0; k < 5; k++) {
         double began = bough_wall_clock();
         for (int i = 0; i < a->n_member; i++) {
-            const bough_system *s = &a->member[i]->system;
-            s->ops->derivative(s->self, a->member[i]->time, a->member[i]->state,
-                               c->input + a->input_offset[i], c->state_rate + a->state_offset[i]);
+            bough_coupling_output_rate(c, i, a->member[i]->time, c->input + a->input_offset[i], NULL,
+                                       c->advanced.start_rate + a->output_offset[i]);
         }
         shortest = fmin(shortest, bough_wall_clock() - began);
     }

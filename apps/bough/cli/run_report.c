@@ -191,6 +191,7 @@ static void write_method(bough_summary *s, const bough_run *run) {
     const bough_master *m = run->simulation->master;
     const bough_scene_simulation *sim = &run->simulation->scene->simulation;
     const bough_coupling *c = m->coupling;
+    bough_scheme_report report = bough_scheme_reported(c);
     bool ordered = (c->scheme->reads & BOUGH_READS_ORDER) != 0;
     double steps = m->steps > 0 ? (double)m->steps : 1;
     bough_summary_text(s, "scheme", c->scheme->name);
@@ -198,9 +199,9 @@ static void write_method(bough_summary *s, const bough_run *run) {
     bough_summary_number(s, "order", ordered ? (double)c->options.order : none);
     bough_summary_number(s, "theta",
                          bough_scheme_reads(c->scheme, BOUGH_READS_THETA) ? c->options.theta : none);
-    bough_summary_number(s, "interface_ratio", c->interface_ratio);
-    bough_summary_number(s, "sweeps_per_step", (double)c->sweeps / steps);
-    bough_summary_integer(s, "unfinished_steps", c->unfinished);
+    bough_summary_number(s, "interface_ratio", report.interface_ratio);
+    bough_summary_number(s, "sweeps_per_step", (double)report.sweeps / steps);
+    bough_summary_integer(s, "unfinished_steps", report.unfinished);
     bough_summary_number(s, "macro_step", m->macro_step);
     bough_summary_number(s, "master_rtol", sim->master.rtol);
     bough_summary_number(s, "micro_rtol", sim->micro.rtol);
@@ -306,7 +307,7 @@ static void write_work(bough_summary *s, const bough_statistics *done) {
 
 // The integrator of all bodies together, where the scheme has one.
 static void write_whole(bough_summary *s, const bough_run *run) {
-    const bough_member *whole = run->simulation->master->coupling->whole;
+    const bough_member *whole = bough_scheme_whole(run->simulation->master->coupling);
     if (whole == NULL) return;
     bough_statistics done = bough_run_statistics(run, run->simulation->master->assembly->n_member);
     bough_summary_object(s, "whole");
@@ -317,7 +318,7 @@ static void write_whole(bough_summary *s, const bough_run *run) {
 
 static void write_member(bough_summary *s, const bough_run *run, int member) {
     const bough_member *m = run->simulation->master->assembly->member[member];
-    const bough_member *whole = run->simulation->master->coupling->whole;
+    const bough_member *whole = bough_scheme_whole(run->simulation->master->coupling);
     bough_statistics done = bough_run_statistics(run, member);
     bough_summary_object(s, NULL);
     bough_summary_text(s, "name", m->system.name);
@@ -387,12 +388,13 @@ static void tell_energy(const bough_run *run, FILE *stream) {
 
 static void tell_warnings(const bough_run *run, FILE *stream) {
     const bough_master *m = run->simulation->master;
-    if (m->coupling->unfinished > 0) {
+    long unfinished = bough_scheme_reported(m->coupling).unfinished;
+    if (unfinished > 0) {
         fprintf(
             stream,
             "warning: %ld of %ld macro steps went on before they had converged; the error contains what this "
             "changes\n",
-            m->coupling->unfinished, m->steps);
+            unfinished, m->steps);
     }
     bough_validity_print(run->simulation, stream);
 }

@@ -201,7 +201,7 @@ void bough_draft_head(bough_draft *d, const char *title, const char *origin, dou
     fprintf(file,
             "\ngravity: [0, 0, %.10g]\nsimulation:\n  duration: %.10g s\n"
             "  macro_step: %g s\n"
-            "  coupling: {scheme: monolithic} # all bodies coupled at the stages of the steps\n"
+            "  coupling: {scheme: " BOUGH_SCHEME_DEFAULT "} # all bodies coupled at the stages of the steps\n"
             "  master: {solver: rosenbrock, step: %g ms, rtol: ",
             -gravity, steps * step, step, 500 * step);
     d->tolerance_at = ftell(file);

@@ -158,7 +158,7 @@ static bough_scene_solver all_sub_solvers(const bough_scene *scene) {
 
 static void lengthen_steps(const bough_scene *scene, bough_scene *to) {
     bough_scene_simulation *x = &to->simulation;
-    int monolithic = bough_scheme_index("monolithic");
+    int monolithic = bough_scheme_index(BOUGH_SCHEME_DEFAULT);
     if (x->coupling.scheme != monolithic) {
         bough_scene_solver sub_solvers = all_sub_solvers(to);
         x->master.solver = BOUGH_ROSENBROCK;

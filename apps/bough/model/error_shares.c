@@ -193,7 +193,7 @@ static void advise_time(const bough_scene *s, double factor, char text[ADVICE]) 
     if (!scheme->one_system) {
         double halvings =
             ceil(log2(margin * factor) / bough_scheme_defect_order(scheme, &x->coupling.options));
-        int n = snprintf(text, ADVICE, "scheme: monolithic");
+        int n = snprintf(text, ADVICE, "scheme: %s", BOUGH_SCHEME_DEFAULT);
         if (halvings <= most_halvings)
             snprintf(text + n, (size_t)(ADVICE - n), " or macro_step: %.9g s",
                      x->macro_step * exp2(-halvings));

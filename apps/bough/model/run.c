@@ -104,7 +104,8 @@ static double steps_of(const bough_simulation *s) {
     const bough_master *m = s->master;
     bough_statistics sum = {0};
     for (int i = 0; i <= m->assembly->n_member; i++) {
-        const bough_member *member = i < m->assembly->n_member ? m->assembly->member[i] : m->coupling->whole;
+        const bough_member *member =
+            i < m->assembly->n_member ? m->assembly->member[i] : bough_scheme_whole(m->coupling);
         if (member == NULL) continue;
         bough_statistics own = bough_member_statistics(member);
         bough_statistics_add(&sum, &own);
@@ -180,7 +181,7 @@ void bough_run_all(bough_run *run) { bough_pool_region(run->pool, step_all, run)
 
 bough_statistics bough_run_statistics(const bough_run *run, int member) {
     const bough_master *m = run->simulation->master;
-    const bough_member *whole = m->coupling->whole;
+    const bough_member *whole = bough_scheme_whole(m->coupling);
     bough_statistics done = {0};
     if (member < m->assembly->n_member) {
         done = bough_member_statistics(m->assembly->member[member]);

@@ -85,25 +85,40 @@ void bough_scene_check_fmu(bough_schema_reader *r, void *item) {
 
 // -- what it takes part in ------------------------------------------------------------------------
 
-// A scheme that only steps its members; one that repeats steps where the FMU restores its state.
+// The names of the schemes that take the FMU, "A, B or C".
+static const char *list_schemes(const bough_scene_fmu *fmu, char text[BOUGH_SCHEME_TEXT]) {
+    const char *found[BOUGH_SCHEME_TEXT / 2] = {0}, *name;
+    int n = 0, length = 0;
+    for (int i = 0; (name = bough_scheme_name(i)) != NULL; i++) {
+        const bough_scheme *s = bough_scheme_find(name);
+        if (s->foreign && (!s->repeats || fmu->description.restores)) found[n++] = name;
+    }
+    for (int i = 0; i < n; i++) {
+        const char *before = i == 0 ? "" : i < n - 1 ? ", " : " or ";
+        length += snprintf(text + length, (size_t)(BOUGH_SCHEME_TEXT - length), "%s%s", before, found[i]);
+    }
+    return text;
+}
+
+// A scheme that takes members whose equations are not known; one that repeats steps where the FMU restores
+// its state.
 static void check_scheme(bough_schema_reader *r, const bough_scene *s, const bough_scene_body *b) {
     const bough_scene_coupling *coupling = &s->simulation.coupling;
     const bough_node *place =
         coupling->node ? bough_link_value(coupling->node, "scheme") : s->simulation.node;
-    const char *scheme = coupling->scheme < 0 ? "" : bough_scheme_name(coupling->scheme);
-    bool steps = strcmp(scheme, "gauss-seidel") == 0 || strcmp(scheme, "extrapolated") == 0;
-    bool repeats = strcmp(scheme, "iterated") == 0;
-    if (coupling->scheme < 0 || steps) return;
-    if (!repeats) {
+    if (coupling->scheme < 0) return;
+    const bough_scheme *scheme = bough_scheme_find(bough_scheme_name(coupling->scheme));
+    char expected[BOUGH_SCHEME_TEXT];
+    if (!scheme->foreign) {
         bough_schema_error(r, place, "coupling.scheme",
-                           "'%s' is an FMU, whose equations are not known: expected gauss-seidel, "
-                           "extrapolated%s, got %s",
-                           b->name, b->fmu.description.restores ? " or iterated" : "", scheme);
+                           "'%s' is an FMU, whose equations are not known: expected %s, got %s", b->name,
+                           list_schemes(&b->fmu, expected), scheme->name);
+    } else if (!scheme->repeats) {
+        return;
     } else if (!b->fmu.description.restores) {
         bough_schema_error(r, place, "coupling.scheme",
-                           "iterated repeats steps, and the FMU '%s' cannot restore its state: expected "
-                           "gauss-seidel or extrapolated",
-                           b->name);
+                           "%s repeats steps, and the FMU '%s' cannot restore its state: expected %s",
+                           scheme->name, b->name, list_schemes(&b->fmu, expected));
     } else if (coupling->options.accelerator == BOUGH_ACCELERATE_NEWTON) {
         bough_schema_error(r, bough_link_value(coupling->node, "accelerator"), "coupling.accelerator",
                            "interface-newton needs tangents, which the FMU '%s' does not give", b->name);

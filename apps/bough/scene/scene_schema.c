@@ -47,7 +47,7 @@ _Static_assert(sizeof(bough_exchange) == sizeof(int) && sizeof(bough_acceleratio
 // The schemes' own keys are allowed with any scheme, so that --set may change the scheme alone; bough_scene_warn
 // names those that are not used.
 static const bough_key coupling_keys[] = {
-    {KEY(CHOICE, scheme), .fallback = "monolithic", .choice = bough_scheme_name,
+    {KEY(CHOICE, scheme), .fallback = BOUGH_SCHEME_DEFAULT, .choice = bough_scheme_name,
      .help = "how sub-systems exchange their values. The default integrates all bodies as one "
              "system"},
     {NAMED("order", INTEGER), AT(options.order), .range = "[0, 2]", .fallback = "1", .example = "2",

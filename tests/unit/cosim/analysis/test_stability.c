@@ -24,23 +24,16 @@ static void check_limit(const bough_two_mass *m, const bough_scheme_options *opt
 }
 
 TEST(limits_come_out_of_the_eigenvalues) {
-    static const double parallel[3] = {.2254, .2277, .2501}, first[3] = {.0777, .3175, .2839},
-                        last[3] = {.0777, .3069, .2831};
     bough_scheme_options options = bough_scheme_options_default();
     bough_two_mass m = bough_two_mass_default();
     build(&m, "ramp", .01);
     options.name = "frozen";
-    check_limit(&m, &options, parallel[0]);
-    options.name = "extrapolated";
-    options.interpolation = BOUGH_POLYNOMIAL;
-    for (options.order = 0; options.order < 3; options.order++) {
-        options.parallel = true;
-        check_limit(&m, &options, parallel[options.order]);
-        options.parallel = false;
-        check_limit(&m, &options, first[options.order]);
-        options.reversed = true;
-        check_limit(&m, &options, last[options.order]);
-        options.reversed = false;
+    check_limit(&m, &options, polynomial_limits[2].limit[0]);
+    for (int k = 0; k < 3; k++) {
+        options.name = polynomial_limits[k].scheme;
+        for (options.order = 0; options.order < 3; options.order++) {
+            check_limit(&m, &options, polynomial_limits[k].limit[options.order]);
+        }
     }
     bough_two_mass_destroy(&m);
 }
@@ -48,6 +41,7 @@ TEST(limits_come_out_of_the_eigenvalues) {
 // A small macro step shows the slowest mode of the two masses themselves.
 TEST(growth_and_frequency_are_those_of_the_slowest_mode) {
     bough_scheme_options options = bough_scheme_options_default();
+    options.name = "ramp";
     bough_two_mass m = bough_two_mass_default();
     build(&m, "ramp", .01);
     bough_stability slowest = judge(&m, &options, .005);
@@ -66,6 +60,7 @@ static bough_two_mass light_case(void) {
 
 TEST(ramp_holds_on_a_light_interface_body) {
     bough_scheme_options options = bough_scheme_options_default();
+    options.name = "ramp";
     bough_two_mass m = light_case();
     build(&m, "ramp", .02);
     for (int k = 1; k <= 16; k *= 2) assert_true(judge(&m, &options, .005 * k).growth < 0);
@@ -125,6 +120,7 @@ TEST(growth_of_the_mechanics_is_no_verdict) {
 
 TEST(judging_changes_nothing) {
     bough_scheme_options options = bough_scheme_options_default();
+    options.name = "ramp";
     bough_two_mass m = bough_two_mass_default(), n = bough_two_mass_default();
     build(&m, "ramp", .02);
     build(&n, "ramp", .02);
