@@ -10,12 +10,12 @@
 
 // -- building -------------------------------------------------------------------------------------
 
-// Two flexible bodies and more share threads better among themselves.
-static bool fits_side_by_side(const bough_scene *scene) {
+// Of two threads each has a simulation. More have work only where flexible bodies share them.
+static bool fits_side_by_side(const bough_scene *scene, int threads) {
     int n = 0;
     for (int i = 0; i < scene->n_body; i++)
         n += scene->body[i].rod.node && scene->body[i].fidelity != BOUGH_SCENE_RIGID;
-    return scene->simulation.error_estimate == BOUGH_SCENE_COMPANION && n < 2;
+    return scene->simulation.error_estimate == BOUGH_SCENE_COMPANION && (threads == 2 || n < 2);
 }
 
 bough_status bough_run_create(bough_arena *arena, const bough_scene *scene, bough_run *run) {
@@ -23,7 +23,7 @@ bough_status bough_run_create(bough_arena *arena, const bough_scene *scene, boug
     int threads = bough_simulation_threads(scene);
     bough_linalg_room(arena, threads);
     run->pool = bough_pool_create(arena, threads);
-    run->side_by_side = run->pool && fits_side_by_side(scene);
+    run->side_by_side = run->pool && fits_side_by_side(scene, threads);
     bough_pool *own = run->side_by_side ? NULL : run->pool;
     bough_status status = bough_simulation_build_on(arena, scene, own, &run->simulation);
     if (!bough_is_ok(&status)) return status;
