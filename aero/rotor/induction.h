@@ -13,6 +13,7 @@
 #define BOUGH_AERO_ROTOR_INDUCTION_H
 
 #include "aero/rotor/polar.h"
+#include "core/base/level.h"
 
 #include <stdbool.h>
 
@@ -44,8 +45,8 @@ typedef struct bough_induction_options {
 bough_induction_options bough_induction_options_default(void);
 
 // Whether an element is at the very tip or root, where the loss leaves a = 1, a' = 0.
-static inline bool bough_induction_is_fixed(const bough_induction_options *options, double tip_factor,
-                                            double hub_factor) {
+BOUGH_INLINE bool bough_induction_is_fixed(const bough_induction_options *options, double tip_factor,
+                                           double hub_factor) {
     return (options->tip_loss && tip_factor < 1e-9) || (options->hub_loss && hub_factor < 1e-9);
 }
 
@@ -70,5 +71,6 @@ typedef struct bough_elements {
 // Returns how often it evaluated the residuals.
 int bough_induction_solve(const bough_induction_options *options, const bough_elements *elements,
                           double *axial, double *tangential, double *loss);
+BOUGH_DECLARE_LEVELS(bough_induction_solve);
 
 #endif

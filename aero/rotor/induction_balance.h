@@ -1,7 +1,7 @@
 // Ning's residual multiplied by sin φ, in which it has no pole:
 //     f(φ) = sin²φ/(1 − a) − |Vx/Vy| (sin φ cos φ − σ ct/(4F)),
 // written for the quadrant of positive inflow, to which mirroring brings every other. Without
-// branches but those of the options, so that it runs in vector lanes; for induction.c only.
+// branches but those of the options, so that it runs in vector lanes; for induction_kernel.c only.
 #ifndef BOUGH_AERO_ROTOR_INDUCTION_BALANCE_H
 #define BOUGH_AERO_ROTOR_INDUCTION_BALANCE_H
 
@@ -65,11 +65,11 @@ typedef struct weights {
     double tip_loss, hub_loss, axial_drag, tangential_drag, swirl;
 } weights;
 
-static inline weights weights_of(const bough_induction_options *o) {
+BOUGH_INLINE weights weights_of(const bough_induction_options *o) {
     return (weights){o->tip_loss, o->hub_loss, o->axial_drag, o->tangential_drag, o->tangential};
 }
 
-static inline wake wake_of(const bough_induction_options *o, double skew) {
+BOUGH_INLINE wake wake_of(const bough_induction_options *o, double skew) {
     double angle = fmin(fabs(skew), most_skew_angle);
     double a = fmin(critical / cos(angle), most_critical), x = 1 - a;
     double t = o->skewed_momentum ? tan(angle) : 0, root = sqrt(x * x + t * t);
@@ -82,7 +82,7 @@ static inline wake wake_of(const bough_induction_options *o, double skew) {
 }
 
 // Of element i; its wake is the caller's.
-static inline problem problem_of(weights o, const bough_elements *e, int i) {
+BOUGH_INLINE problem problem_of(weights o, const bough_elements *e, int i) {
     return (problem){.sign_x = copysign(1, e->inflow_x[i]),
                      .sign_y = copysign(1, e->inflow_y[i]),
                      .slope = fabs(e->inflow_x[i] / e->inflow_y[i]),
@@ -96,20 +96,20 @@ static inline problem problem_of(weights o, const bough_elements *e, int i) {
 }
 
 // Whether the loss leaves a momentum balance, and the inflow a wake.
-static inline bool is_balanced(problem p, double vx, double vy) {
+BOUGH_INLINE bool is_balanced(problem p, double vx, double vy) {
     double least_factor = p.tip_factor < p.hub_factor ? p.tip_factor : p.hub_factor;
     double least_speed = fabs(vx) < fabs(vy) ? fabs(vx) : fabs(vy);
     return least_factor >= 1e-9 && least_speed >= slow;
 }
 
 // theory (82): (2/π) acos exp(−x)
-static inline double prandtl(double x) {
+BOUGH_INLINE double prandtl(double x) {
     double e = lane_exp(-(x < no_loss ? x : no_loss)), near_one = e > 0.5 ? 1 : 0;
     double angle = lane_arc_sine(near_one > 0 ? sqrt((1 - e) / 2) : e);
     return near_one > 0 ? 4 / BOUGH_PI * angle : 1 - 2 / BOUGH_PI * angle;
 }
 
-static inline double loss_at(problem p, double s) {
+BOUGH_INLINE double loss_at(problem p, double s) {
     double inverse = 1 / s, f = prandtl(p.tip_factor * inverse) * prandtl(p.hub_factor * inverse);
     return f > least_loss ? f : least_loss;
 }
@@ -117,14 +117,14 @@ static inline double loss_at(problem p, double s) {
 // (s, c) is the inflow in the element's axes, along the section's normal s + g c and its chord
 // (1 − h) c: the angle between by its tangent, with series for 1/(1 + e), sine, cosine and angle
 // that are good to 1e-6 up to 0.03.
-static inline section_flow seen_by_section(problem p, double s, double c) {
+BOUGH_INLINE section_flow seen_by_section(problem p, double s, double c) {
     double g = p.skew_normal, h = p.skew_chord;
     double e = c * (s * g - c * h), t = c * (s * h + c * g) * (1 - e + e * e), t2 = t * t;
     double sine = t * (1 - t2 / 2), cosine = 1 - t2 / 2;
     return (section_flow){s * cosine + c * sine, c * cosine - s * sine, t * (1 - t2 / 3)};
 }
 
-static inline flow flow_at(problem p, double phi) {
+BOUGH_INLINE flow flow_at(problem p, double phi) {
     sine_cosine k = lane_sine_cosine(phi);
     double angle = p.sign_x * (p.sign_y > 0 ? phi : BOUGH_PI - phi);
     double oblique = seen_by_section(p, p.sign_x * k.sine, p.sign_y * k.cosine).angle;
@@ -133,7 +133,7 @@ static inline flow flow_at(problem p, double phi) {
 
 // theory (80): sin²φ/(1 − a) for the loading c = σ cn/(4F) = k sin²φ by Buhl's parabola beyond k = 2/3, whose
 // root written as 1 − a = 1/(√g₂ + 5/3 − F) has no singular case.
-static inline double axial_buhl(double c, double s, double f, bool brake) {
+BOUGH_INLINE double axial_buhl(double c, double s, double f, bool brake) {
     double s2 = s * s;
     if (brake) return s2 - c;
     double square = s2 * (2 * f * c - (4. / 3 - f) * f * s2);
@@ -143,7 +143,7 @@ static inline double axial_buhl(double c, double s, double f, bool brake) {
 
 // theory (81): the same by the parabola CT = d₀ + d₁ x + d₂ x² of x = 1 − a that leaves momentum theory
 // smoothly at a_c. Its other root, a > 1, belongs to φ < 0, at any load.
-static inline double axial_parabola(const wake w, double c, double s, double f) {
+BOUGH_INLINE double axial_parabola(const wake w, double c, double s, double f) {
     double xc = 1 - w.critical, s2 = s * s, value = f * w.value, slope = f * w.slope;
     double least = value + slope * xc + 0.001, d0 = w.most > least ? w.most : least;
     double d2 = (d0 - slope * xc - value) * (1 / (xc * xc)), d1 = -slope - 2 * d2 * xc;
@@ -154,7 +154,7 @@ static inline double axial_parabola(const wake w, double c, double s, double f) 
 
 // theory (83), below a_c: k x² = (1 − x) sqrt(x² + tan²χ) by Newton's method, which gains all digits from
 // where there is no skew; of negative loads the slope at a = 0.
-static inline double axial_skewed(const wake w, double c, double s) {
+BOUGH_INLINE double axial_skewed(const wake w, double c, double s) {
     enum { STEPS = 5 };
     double s2 = s * s, t2 = w.tangent2, k = c / s2;
     k = k > 0 ? k : 0;
@@ -168,26 +168,26 @@ static inline double axial_skewed(const wake w, double c, double s) {
     return c > 0 ? s2 / x : s2 + c / sqrt(1 + t2);
 }
 
-static inline double axial_smooth(bool skewed, bool brake, const wake w, double c, double s, double f) {
+BOUGH_INLINE double axial_smooth(bool skewed, bool brake, const wake w, double c, double s, double f) {
     if (brake) return axial_parabola(w, c, s, f);
     double low = skewed ? axial_skewed(w, c, s) : s * s + c;
     return c <= w.limit * s * s ? low : axial_parabola(w, c, s, f);
 }
 
 // Where momentum theory gives the swirl: not where a > 1.
-static inline bool is_low(bool brake, const wake w, double c, double s, double axial) {
+BOUGH_INLINE bool is_low(bool brake, const wake w, double c, double s, double axial) {
     return c <= w.limit * s * s && (!brake || axial > 0);
 }
 
 // The part of the thrust by momentum theory, a/(k |1 − a|): the swirl fades with it beyond a_c and where a
 // > 1.
-static inline double swirl_share(bool brake, const wake w, double c, double s, double axial) {
+BOUGH_INLINE double swirl_share(bool brake, const wake w, double c, double s, double axial) {
     double s2 = s * s, share = fabs(axial - s2) / c; // a = 1 − sin²φ/axial
     return is_low(brake, w, c, s, axial) ? 1 : share;
 }
 
 // The same in a skewed wake, and of the mass flow that it adds.
-static inline double swirl_skewed(bool brake, const wake w, double c, double s, double axial, double f) {
+BOUGH_INLINE double swirl_skewed(bool brake, const wake w, double c, double s, double axial, double f) {
     double s2 = s * s, t2 = w.tangent2, x = s2 / axial, a = 1 - x, x2 = x * x;
     double inverse = 1 / sqrt(x2 + t2), thrust = 4 * f * c / s2 * x2;
     double high = 4 * fabs(a) * f * fabs(x) * sqrt(x2 + t2 * f * f) / sqrt(thrust * thrust + 16 * a * a * t2);
@@ -195,8 +195,8 @@ static inline double swirl_skewed(bool brake, const wake w, double c, double s, 
 }
 
 // `high_thrust`, `brake`, `skewed`: known where this is inlined into a loop.
-static inline balance balance_of(bough_high_thrust high_thrust, bool brake, bool skewed, weights o, problem p,
-                                 flow w, double lift, double drag) {
+BOUGH_INLINE balance balance_of(bough_high_thrust high_thrust, bool brake, bool skewed, weights o, problem p,
+                                flow w, double lift, double drag) {
     section_flow f = seen_by_section(p, p.sign_x * w.s, p.sign_y * w.c);
     double normal = lift * f.c + o.axial_drag * drag * f.s;
     double chordwise = lift * f.s - o.tangential_drag * drag * f.c;
@@ -215,13 +215,13 @@ static inline balance balance_of(bough_high_thrust high_thrust, bool brake, bool
 }
 
 // The inflow angle without induction.
-static inline double free_angle(problem p) {
+BOUGH_INLINE double free_angle(problem p) {
     return lane_clamp(lane_angle(p.slope, 1), 2 * clearance, BOUGH_PI / 2 - clearance);
 }
 
 // Where a windmill element with linear lift, no drag and no swirl would balance: 4F φ (φ₀ − φ) =
 // σ c_lα (φ − θ − α₀) for small angles, φ₀ that without induction; 0 unless attached and in (0, φ₀).
-static inline double attached_angle(problem p, double lift_slope, double zero_lift, double phi0) {
+BOUGH_INLINE double attached_angle(problem p, double lift_slope, double zero_lift, double phi0) {
     double zero = p.twist + zero_lift;
     double k = p.density * p.cone * lift_slope / loss_at(p, lane_sine_cosine(0.7 * phi0).sine);
     double h = (phi0 - k) / 2, square = h * h + k * zero;
@@ -233,8 +233,8 @@ static inline double attached_angle(problem p, double lift_slope, double zero_li
 // The first guess of a bracket's other end, a little beyond the likely root: from the attached angle by a
 // step of Newton's method with the slope of the same model, from φ₀ by a step of the fixed-point iteration
 // for the inductions.
-static inline double nearby(problem p, double attached, double lift_slope, double phi0, double phi, flow w,
-                            balance b) {
+BOUGH_INLINE double nearby(problem p, double attached, double lift_slope, double phi0, double phi, flow w,
+                           balance b) {
     const double overshoot = 1.4;
     double rise = 2 * phi - phi0 + p.density * p.cone * lift_slope / w.loss;
     double newton = lane_clamp(phi - overshoot * b.residual / rise, 0.8 * phi, 1.2 * phi);
@@ -245,7 +245,7 @@ static inline double nearby(problem p, double attached, double lift_slope, doubl
 }
 
 // The other end of the search if the first has no root.
-static inline double farther(double attached, double phi0, double phi, double residual) {
+BOUGH_INLINE double farther(double attached, double phi0, double phi, double residual) {
     double up = 1.2 * phi < phi0 ? 1.2 * phi : phi0;
     double low = attached > 0 ? 0.8 * phi : clearance, high = attached > 0 ? up : BOUGH_PI / 2;
     return residual > 0 ? low : high;
@@ -253,7 +253,7 @@ static inline double farther(double attached, double phi0, double phi, double re
 
 // One step of Chandrupatla's method: inverse quadratic interpolation through (a, fa), (b, fb),
 // (c, fc) where it is known to converge, else bisection; the fraction of the way from a to b.
-static inline double root_fraction(double a, double fa, double b, double fb, double c, double fc) {
+BOUGH_INLINE double root_fraction(double a, double fa, double b, double fb, double c, double fc) {
     double ab = fabs(a - b), cb = fabs(c - b), fab = fa - fb, fca = fc - fa, fcb = fc - fb;
     double low = ab * fcb * fcb - cb * fab * fab, high = (cb - ab) * fcb * fcb - cb * fca * fca;
     double t = fa * fc / (fab * fcb) + (c - a) * fa * fb / ((b - a) * fca * fcb);
@@ -266,7 +266,7 @@ typedef struct induction {
     double axial, tangential;
 } induction;
 
-static inline induction induction_of(weights o, flow w, balance b) {
+BOUGH_INLINE induction induction_of(weights o, flow w, balance b) {
     double safe = b.swirl == 0 ? 1 : b.swirl, swirl = b.swirl == 0 ? -1 : w.s * w.c / safe - 1;
     return (induction){lane_clamp(1 - w.s * w.s / b.axial, -1, 1.5), o.swirl * lane_clamp(swirl, -1, 1)};
 }

@@ -49,7 +49,7 @@ void bough_polar_smoothen(bough_arena *arena, bough_polar *polar);
 
 // The last knot at or below an angle; `alpha` is moved into the table's range. Besides that move there is no
 // branch, because the processor could not predict it. A NaN remains and takes the first knot.
-static inline int bough_polar_knot(const bough_polar *polar, double *alpha) {
+BOUGH_INLINE int bough_polar_knot(const bough_polar *polar, double *alpha) {
     const double circle = 2 * BOUGH_PI;
     double x = *alpha - polar->row[0];
     if (x < 0 || x >= circle) {
@@ -64,7 +64,7 @@ static inline int bough_polar_knot(const bough_polar *polar, double *alpha) {
 }
 
 // The coefficients at any finite angle of attack [rad].
-static inline bough_coefficients bough_polar_at(const bough_polar *polar, double alpha) {
+BOUGH_INLINE bough_coefficients bough_polar_at(const bough_polar *polar, double alpha) {
     int knot = bough_polar_knot(polar, &alpha);
     const double *r = polar->row + BOUGH_POLAR_ROW * knot;
     double d = alpha - r[0];
@@ -76,7 +76,7 @@ static inline bough_coefficients bough_polar_at(const bough_polar *polar, double
 }
 
 // Their derivatives by the angle there [1/rad]; at a knot those of the side above.
-static inline bough_coefficients bough_polar_slope(const bough_polar *polar, double alpha) {
+BOUGH_INLINE bough_coefficients bough_polar_slope(const bough_polar *polar, double alpha) {
     int knot = bough_polar_knot(polar, &alpha);
     const double *r = polar->row + BOUGH_POLAR_ROW * knot;
     bough_coefficients k = {r[4], r[5], r[6]};
@@ -89,7 +89,7 @@ static inline bough_coefficients bough_polar_slope(const bough_polar *polar, dou
 }
 
 // Whether an angle of attack lies in the gap between the last row and the first.
-static inline bool bough_polar_outside_table(const bough_polar *polar, double alpha) {
+BOUGH_INLINE bool bough_polar_outside_table(const bough_polar *polar, double alpha) {
     if (alpha >= polar->low && alpha <= polar->high) return false;
     double above = remainder(alpha - polar->low, 2 * BOUGH_PI);
     return (above < 0 ? above + 2 * BOUGH_PI : above) > polar->high - polar->low;

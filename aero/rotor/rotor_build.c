@@ -182,7 +182,8 @@ bough_status bough_rotor_build(bough_arena *arena, const bough_rotor_def *def, c
     for (size_t i = 0; i < n_vertex; i++) {
         undeformed[i] = bough_quaternion_of_matrix(def->vertex_rotation[i]);
     }
-    *rotor = (bough_rotor){.n_blade = def->n_blade,
+    *rotor = (bough_rotor){.level = bough_level_chosen(),
+                           .n_blade = def->n_blade,
                            .n_station = def->n_station,
                            .n_vertex = def->n_vertex,
                            .stride = bough_padded(def->n_station),

@@ -4,6 +4,7 @@
 
 #include "aero/rotor/rotor.h"
 #include "core/base/lanes.h"
+#include "core/base/level.h"
 #include "core/base/rotation.h"
 
 // Stations of one blade, padded to `stride` by copies of the last; a 3×3 matrix by its columns.
@@ -26,6 +27,7 @@ typedef struct vertex_row {
 } vertex_row;
 
 struct bough_rotor {
+    bough_level level; // of the kernels
     int n_blade, n_station, n_vertex, stride;
     double density;
     bool pitching_moment, skew, slopes, stalls; // stalls: dynamically
@@ -76,25 +78,25 @@ struct bough_rotor_scratch {
     double wake;         // 0: too slow for momentum theory, 1: full induction
 };
 
-static inline bough_mat3 load_matrix(const double *restrict a, int stride, int i) {
+BOUGH_INLINE bough_mat3 load_matrix(const double *restrict a, int stride, int i) {
     return (bough_mat3){lane_load(a, stride, i), lane_load(a + 3 * stride, stride, i),
                         lane_load(a + 6 * stride, stride, i)};
 }
 
-static inline void store_matrix(double *restrict a, int stride, int i, bough_mat3 m) {
+BOUGH_INLINE void store_matrix(double *restrict a, int stride, int i, bough_mat3 m) {
     lane_store(a, stride, i, m.c1);
     lane_store(a + 3 * stride, stride, i, m.c2);
     lane_store(a + 6 * stride, stride, i, m.c3);
 }
 
-static inline bough_quaternion unit_quaternion(double w, double x, double y, double z) {
+BOUGH_INLINE bough_quaternion unit_quaternion(double w, double x, double y, double z) {
     double scale = 1 / sqrt(w * w + x * x + y * y + z * z);
     return (bough_quaternion){scale * w, scale * x, scale * y, scale * z};
 }
 
 // The rotation between p and q at a fraction of the way. Within the few degrees between neighbouring vertices
 // the normalised chord is as good as the arc, and like it independent of the frame.
-static inline bough_mat3 rotation_between(bough_quaternion p, bough_quaternion q, double weight) {
+BOUGH_INLINE bough_mat3 rotation_between(bough_quaternion p, bough_quaternion q, double weight) {
     double side = p.w * q.w + p.x * q.x + p.y * q.y + p.z * q.z;
     double wp = 1 - weight, wq = side < 0 ? -weight : weight;
     return bough_rotation_matrix(

@@ -9,6 +9,7 @@
 #define BOUGH_CORE_BASE_BLOCK_TRIDIAGONAL_H
 
 #include "core/base/arena.h"
+#include "core/base/level.h"
 
 #include <stdbool.h>
 
@@ -16,9 +17,10 @@ enum { BOUGH_BLOCK = 48 }; // doubles of a padded 6×6 block
 
 typedef struct bough_block_tridiagonal {
     int n;
-    double *lower;    // (n × block) row i couples to i − 1; lower[0] unused
-    double *diagonal; // (n × block)
-    double *upper;    // (n × block) row i couples to i + 1; upper[n − 1] unused
+    bough_level level; // of the kernels
+    double *lower;     // (n × block) row i couples to i − 1; lower[0] unused
+    double *diagonal;  // (n × block)
+    double *upper;     // (n × block) row i couples to i + 1; upper[n − 1] unused
 } bough_block_tridiagonal;
 
 // Takes the matrix' memory.
@@ -29,6 +31,10 @@ bool bough_block_tridiagonal_factor(bough_block_tridiagonal *m);
 
 // Solves with the factors, in place: x (n × 8), rows padded to 8, the last two zero.
 void bough_block_tridiagonal_solve(const bough_block_tridiagonal *m, double *x);
+
+// Both at their levels.
+BOUGH_DECLARE_LEVELS(bough_block_tridiagonal_factor);
+BOUGH_DECLARE_LEVELS(bough_block_tridiagonal_solve);
 
 // y −= A x for a matrix that is not factored; lower[0] is not used. x, y (n × 8).
 void bough_block_tridiagonal_subtract(const bough_block_tridiagonal *m, const double *x, double *y);

@@ -11,15 +11,15 @@
 #include <string.h>
 
 // The nearest integer, for |x| < 2⁵¹.
-static inline double lane_round(double x) {
+BOUGH_INLINE double lane_round(double x) {
     const double big = 0x1.8p52;
     return (x + big) - big;
 }
 
 // An angle less whole turns, in [−π, π].
-static inline double lane_remainder(double x) { return x - 2 * BOUGH_PI * lane_round(x / (2 * BOUGH_PI)); }
+BOUGH_INLINE double lane_remainder(double x) { return x - 2 * BOUGH_PI * lane_round(x / (2 * BOUGH_PI)); }
 
-static inline double lane_clamp(double x, double low, double high) {
+BOUGH_INLINE double lane_clamp(double x, double low, double high) {
     x = x > low ? x : low;
     return x < high ? x : high;
 }
@@ -29,7 +29,7 @@ typedef struct sine_cosine {
 } sine_cosine;
 
 // For |x| ≤ π.
-static inline sine_cosine lane_sine_cosine(double x) {
+BOUGH_INLINE sine_cosine lane_sine_cosine(double x) {
     double n = lane_round(x * (2 / BOUGH_PI));
     double r = (x - n * 1.5707963267948966) - n * 6.123233995736766e-17, z = r * r;
     double s = 1.58969099521155010221e-10;
@@ -50,7 +50,7 @@ static inline sine_cosine lane_sine_cosine(double x) {
 }
 
 // For −700 ≤ x ≤ 0.
-static inline double lane_exp(double x) {
+BOUGH_INLINE double lane_exp(double x) {
     const double big = 0x1.8p52;
     double shifted = x * 1.4426950408889634 + big, n = shifted - big;
     double r = (x - n * 6.93147180369123816490e-01) - n * 1.90821492927058770002e-10;
@@ -76,7 +76,7 @@ static inline double lane_exp(double x) {
 }
 
 // For |t| ≤ ½: asin(t)/t by its best polynomial of degree 12 in t².
-static inline double lane_arc_sine(double t) {
+BOUGH_INLINE double lane_arc_sine(double t) {
     double z = t * t, p = 0.028169218060881412899;
     p = -0.010749050339697807562 + z * p;
     p = 0.016035514349148823079 + z * p;
@@ -93,7 +93,7 @@ static inline double lane_arc_sine(double t) {
 }
 
 // atan2(y, x); 0 for both 0.
-static inline double lane_angle(double y, double x) {
+BOUGH_INLINE double lane_angle(double y, double x) {
     double ax = fabs(x), ay = fabs(y);
     double low = ax < ay ? ax : ay, high = ax < ay ? ay : ax;
     double wide = low > 0.4142135623730951 * high ? 1 : 0;
@@ -115,11 +115,11 @@ static inline double lane_angle(double y, double x) {
     return copysign(angle, y);
 }
 
-static inline bough_vec3 lane_load(const double *restrict a, int stride, int i) {
+BOUGH_INLINE bough_vec3 lane_load(const double *restrict a, int stride, int i) {
     return (bough_vec3){a[i], a[stride + i], a[2 * stride + i]};
 }
 
-static inline void lane_store(double *restrict a, int stride, int i, bough_vec3 v) {
+BOUGH_INLINE void lane_store(double *restrict a, int stride, int i, bough_vec3 v) {
     a[i] = v.x;
     a[stride + i] = v.y;
     a[2 * stride + i] = v.z;

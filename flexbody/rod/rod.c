@@ -122,6 +122,7 @@ static bough_status set_vertex(bough_rod_model *m, const bough_rod_def *def, int
 bough_status bough_rod_create(bough_arena *arena, const bough_rod_def *def, bough_rod_model **model) {
     bough_rod_model *m = bough_arena_take(arena, sizeof *m);
     m->name = bough_arena_string(arena, def->name);
+    m->level = bough_level_chosen();
     m->n_segment = def->n_segment;
     m->n = def->carries ? def->n_segment - 1 : def->n_segment;
     if (m->n < 1) {
@@ -203,22 +204,6 @@ bough_rod_ramped_load *bough_rod_loads_ramped(bough_rod_loads *loads, bough_aren
         if (same && l->follower == follower) return l;
     }
     return bough_rod_loads_add(loads, arena, model, follower, schedule);
-}
-
-void bough_rod_line_strain(const bough_rod_model *m, const double *line, double *along) {
-    int s = m->stride, n = m->n_segment;
-    for (int i = 0; i < 6; i++) {
-        const double *restrict d = m->line + 6 * i * s;
-        double *restrict row = along + i * s;
-#pragma omp simd
-        for (int k = 0; k < n; k++) {
-            double sum = 0;
-            for (int j = 0; j < 6; j++) {
-                sum += d[j * s + k] * line[j * n + k] + d[(36 + j) * s + k] * line[(6 + j) * n + k];
-            }
-            row[k] = sum;
-        }
-    }
 }
 
 void bough_rod_loads_along(const bough_rod_model *m, const double *line, const double *rate,

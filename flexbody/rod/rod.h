@@ -16,6 +16,7 @@
 
 #include "core/base/arena.h"
 #include "core/base/base.h"
+#include "core/base/level.h"
 #include "core/base/rotation.h"
 #include "core/base/schedule.h"
 #include "core/base/status.h"
@@ -65,6 +66,7 @@ typedef struct bough_rod_def {
 
 typedef struct bough_rod_model {
     const char *name;
+    bough_level level;            // of the kernels
     int n;                        // moving vertices
     int n_segment;                // N: n, or n + 1 if the rod carries bodies
     int stride;                   // of the arrays over vertices and segments below: padded, more than N + 7

@@ -1,5 +1,6 @@
 #include "flexbody/rod/rod_load.h"
 
+#include "flexbody/rod/rod_kernels.h"
 #include "flexbody/rod/rod_lanes.h"
 
 #include <string.h>
@@ -149,52 +150,11 @@ void bough_rod_lump_line(const bough_rod_model *m, bough_rod_ramped_load *load) 
     load->along = false;
 }
 
-static inline bough_quaternion section_at(int v, const double *restrict rotation, int i) {
-    const double *restrict q = rotation + i;
-    double w = q[0], x = q[v], y = q[2 * v], z = q[3 * v];
-    double scale = 1 / sqrt(w * w + x * x + y * y + z * z);
-    return (bough_quaternion){scale * w, scale * x, scale * y, scale * z};
-}
-
-static inline bough_vec3 tangent_of(bough_quaternion p) {
-    return (bough_vec3){2 * (p.x * p.z + p.w * p.y), 2 * (p.y * p.z - p.w * p.x),
-                        1 - 2 * (p.x * p.x + p.y * p.y)};
-}
-
-// Segments first..first + count − 1: their lines of load turned, and their moments about the chords.
-static inline void turn_line(const bough_rod_model *m, const double *restrict rotation,
-                             const double *restrict line, int first, int count, double *restrict turned,
-                             double *restrict moment) {
-    int n = m->n_segment, v = n + 1, s = m->stride;
-    const double *restrict bend = m->bend0 + first, *restrict h = m->length + first;
-#pragma omp simd
-    for (int l = 0; l < count; l++) {
-        int k = first + l;
-        bough_quaternion p = section_at(v, rotation, k), q = section_at(v, rotation, k + 1);
-        bough_mat3 r = mid_frame_between(p, q);
-        for (int part = 0; part < 4; part++) {
-            store3(turned + 3 * part * n, n, k, bough_mat3_tmul(r, load3(line + 3 * part * n, n, k)));
-        }
-        bough_vec3 turn = bough_sub(tangent_of(q), tangent_of(p));
-        turn = bough_sub(turn, bough_mat3_mul(r, load3(bend, s, l)));
-        store3(moment, BOUGH_LANES, l, chord_moment(h[l], turn, load3(line, n, k)));
-    }
+void bough_rod_line_strain(const bough_rod_model *m, const double *line, double *along) {
+    BOUGH_OF_LEVEL(bough_rod_line_strain, m->level)(m, line, along);
 }
 
 void bough_rod_take_line(const bough_rod_model *m, const double *rotation, const double *line, double *turned,
                          double *load) {
-    int n = m->n_segment, v = n + 1;
-    for (int first = 0; first < n; first += BOUGH_LANES) {
-        int count = n - first < BOUGH_LANES ? n - first : BOUGH_LANES;
-        double moment[3 * BOUGH_LANES];
-        turn_line(m, rotation, line, first, count, turned, moment);
-        for (int c = 0; c < 3; c++) {
-            double *restrict to = load + (3 + c) * v + first;
-            const double *restrict from = moment + c * BOUGH_LANES;
-#pragma omp simd
-            for (int l = 0; l < count; l++) to[l] += from[l];
-#pragma omp simd
-            for (int l = 0; l < count; l++) to[l + 1] += from[l];
-        }
-    }
+    BOUGH_OF_LEVEL(bough_rod_take_line, m->level)(m, rotation, line, turned, load);
 }

@@ -238,6 +238,7 @@ complete_run() {
     has $out/summary.json '"time": 0.022,'
     has $out/summary.json '"macro_steps": 22,'
     has $out/summary.json '"threads": 2,'
+    has $out/summary.json '"kernels": "v'
     has $out/summary.json '"states": 522,'
     for key in scheme order theta macro_step wall_s cpu_s build_s real_time_factor bodies joints \
         peak_memory_bytes model_bytes defect_max defect_rms energy_residual energy_exchanged \
@@ -355,6 +356,10 @@ bad_output() {
     expect 1 run "$bar" --set "$short" --out /proc/no-folder-can-be-made-here
     has ../stderr '^bough: error: cannot create the folder'
     expect 2 run "$bar" --set "$short" --out ''
+    expect 2 run "$bar" --set "$short" --kernels v9
+    has stderr '^bough: error: --kernels expects v2, v3 or v4, on this processor at most v[234], got '"'v9'"'$'
+    expect 0 run "$bar" --set "$short" --kernels v2 --out v2 --quiet
+    has v2/summary.json '"kernels": "v2"'
     mkdir full
     ln -s /dev/full full/summary.json.partial
     expect 1 run "$bar" --set "$short" --out full

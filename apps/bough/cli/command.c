@@ -1,6 +1,7 @@
 #include "apps/bough/cli/command.h"
 
 #include "apps/bough/config/schema.h"
+#include "core/base/level.h"
 
 #include <errno.h>
 #include <getopt.h>
@@ -79,6 +80,17 @@ bough_status bough_option_threads(const char *name, const char *text, void *fiel
     }
     *(int *)field = (int)n;
     return bough_ok();
+}
+
+bough_status bough_option_kernels(const char *name, const char *text, void *field) {
+    (void)field;
+    bough_level level;
+    if (setenv("BOUGH_KERNELS", text, 1) != 0) {
+        return bough_fail(BOUGH_IO, "cannot set the environment: %s", strerror(errno));
+    }
+    if (bough_level_choose(&level)) return bough_ok();
+    return bough_fail(BOUGH_INVALID, "--%s expects v2, v3 or v4, on this processor at most %s, got '%.80s'",
+                      name, bough_level_name(level), text);
 }
 
 // -- reading --------------------------------------------------------------------------------------

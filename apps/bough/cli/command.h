@@ -48,6 +48,7 @@ bough_status bough_option_text(const char *name, const char *text, void *field);
 bough_status bough_option_texts(const char *name, const char *text, void *field);
 bough_status bough_option_flag(const char *name, const char *text, void *field);
 bough_status bough_option_threads(const char *name, const char *text, void *field);
+bough_status bough_option_kernels(const char *name, const char *text, void *field); // sets the environment
 
 // Rows that several commands have.
 #define BOUGH_OPTION_SET                                                                                     \
@@ -64,6 +65,11 @@ bough_status bough_option_threads(const char *name, const char *text, void *fiel
     {                                                                                                        \
         "threads", "N", "1 to 64; replaces the scene's number", bough_option_threads,                        \
             offsetof(bough_options, threads), false                                                          \
+    }
+#define BOUGH_OPTION_KERNELS                                                                                 \
+    {                                                                                                        \
+        "kernels", "LEVEL", "v2, v3 or v4: level of the instruction set, default the processor's highest",   \
+            bough_option_kernels, 0, false                                                                   \
     }
 #define BOUGH_OPTION_QUIET                                                                                   \
     { "quiet", NULL, "no progress line", bough_option_flag, offsetof(bough_options, quiet), false }

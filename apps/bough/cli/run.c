@@ -183,6 +183,7 @@ static const bough_option rows[] = {
     BOUGH_OPTION_SET,
     BOUGH_OPTION_OUT,
     BOUGH_OPTION_THREADS,
+    BOUGH_OPTION_KERNELS,
     {"checkpoint", "TIME", "stores the state of the run at this interval of simulated time",
      bough_option_text, offsetof(bough_run_options, checkpoint), false},
     {"resume", NULL, "continues from the last checkpoint in the results folder", bough_option_flag,

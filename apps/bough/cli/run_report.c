@@ -3,6 +3,7 @@
 #include "apps/bough/model/error_shares.h"
 #include "apps/bough/model/validity.h"
 #include "apps/bough/results/summary.h"
+#include "core/base/level.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -206,6 +207,7 @@ static void write_method(bough_summary *s, const bough_run *run) {
     bough_summary_number(s, "master_rtol", sim->master.rtol);
     bough_summary_number(s, "micro_rtol", sim->micro.rtol);
     bough_summary_integer(s, "threads", bough_pool_threads(run->pool));
+    bough_summary_text(s, "kernels", bough_level_name(bough_level_chosen()));
 }
 
 static void write_cost(bough_summary *s, const bough_run_command *command) {

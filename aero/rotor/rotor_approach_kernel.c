@@ -1,6 +1,9 @@
 // Stations of a blade: position, wind, induction; the kinematics of theory (86).
 #include "aero/rotor/rotor_model.h"
 
+BOUGH_DECLARE_LEVELS(bough_rotor_approach);
+BOUGH_DECLARE_LEVELS(bough_rotor_induce);
+
 // The blade elements follow the polar formulation of the reference code (AeroDyn v5): y is
 // tangential at the element's own place, x normal to the bent but unswept, unpitched, untwisted
 // blade, and momentum is balanced over the element's projection on the rotor plane. Lift and drag
@@ -10,7 +13,7 @@
 //
 // All vectors of a blade are in its frame's axes, stations side by side in vector lanes.
 
-static inline bough_quaternion section_at(const double *restrict vertex, int n, int i) {
+BOUGH_INLINE bough_quaternion section_at(const double *restrict vertex, int n, int i) {
     const double *p = vertex + BOUGH_BLADE_ROTATION * n;
     return unit_quaternion(p[i], p[n + i], p[2 * n + i], p[3 * n + i]);
 }
@@ -23,7 +26,7 @@ typedef struct element_axes {
 
 // y against the rotation, normal to shaft and arm; z as the section's, without sweep. `aside`: any
 // direction normal to the shaft, taken on it.
-static inline element_axes axes_at(bough_vec3 shaft, bough_vec3 aside, bough_vec3 arm, bough_vec3 along) {
+BOUGH_INLINE element_axes axes_at(bough_vec3 shaft, bough_vec3 aside, bough_vec3 arm, bough_vec3 along) {
     bough_vec3 out = bough_axpy(-bough_dot(arm, shaft), shaft, arm);
     double radius = bough_norm(out), off = radius < 1e-9 ? 0 : 1, scale = off / (radius + 1 - off);
     bough_vec3 radial = bough_axpy(1 - off, aside, bough_scale(scale, out));
@@ -67,7 +70,7 @@ static void rotate_vertices(const bough_rotor *rotor, const double *restrict ver
 }
 
 // R rotated by the small rotation phi.
-static inline bough_mat3 rotated_by(bough_vec3 phi, bough_mat3 r) {
+BOUGH_INLINE bough_mat3 rotated_by(bough_vec3 phi, bough_mat3 r) {
     return (bough_mat3){bough_add(r.c1, bough_cross(phi, r.c1)), bough_add(r.c2, bough_cross(phi, r.c2)),
                         bough_add(r.c3, bough_cross(phi, r.c3))};
 }
@@ -192,8 +195,8 @@ static void delay(const bough_rotor *rotor, double time, int blade, bough_rotor_
     }
 }
 
-void bough_rotor_approach(const bough_rotor *rotor, const bough_rotor_motion *motion, int blade,
-                          bough_rotor_data *data) {
+void BOUGH_AT_LEVEL(bough_rotor_approach)(const bough_rotor *rotor, const bough_rotor_motion *motion,
+                                          int blade, bough_rotor_data *data) {
     blade_rows *r = data->scratch->blade + blade;
     move_stations(rotor, motion, blade, r);
     data->scratch->wind[blade] = blow(rotor, motion->time, r);
@@ -208,13 +211,13 @@ static double skew_of(const bough_rotor *rotor, const bough_rotor_motion *motion
     return atan2(bough_norm(bough_axpy(-axial, motion->shaft, wind)), fabs(axial));
 }
 
-void bough_rotor_induce(const bough_rotor *rotor, const bough_rotor_motion *motion, int blade,
-                        bough_rotor_data *data) {
+void BOUGH_AT_LEVEL(bough_rotor_induce)(const bough_rotor *rotor, const bough_rotor_motion *motion, int blade,
+                                        bough_rotor_data *data) {
     const blade_rows *r = data->scratch->blade + blade;
     const station_rows *m = &rotor->station;
     bough_elements elements = {rotor->stride, m->polar,       r->solidity,   m->tip_factor,
                                m->hub_factor, r->cone,        r->twist,      r->inflow_x,
                                r->inflow_y,   r->skew_normal, r->skew_chord, skew_of(rotor, motion)};
-    bough_induction_solve(&rotor->induction, &elements, r->axial, r->tangential, r->loss);
+    BOUGH_AT_LEVEL(bough_induction_solve)(&rotor->induction, &elements, r->axial, r->tangential, r->loss);
     if (data->memory.station) delay(rotor, motion->time, blade, data);
 }

@@ -1,6 +1,5 @@
 // Newton's matrix of the rod: elimination of the kinematic rows, factors, solution.
-#include "flexbody/rod/rod_tangent.h"
-
+#include "flexbody/rod/rod_kernels.h"
 #include "flexbody/rod/rod_lanes.h"
 #include "flexbody/rod/rod_tangent_layout.h"
 
@@ -97,11 +96,11 @@ static void form_matrix(const bough_rod_model *m, bough_rod_tangent *k) {
     }
 }
 
-bool bough_rod_factor(const bough_rod_model *m, bough_rod_tangent *k, double gamma) {
+bool AT(factor)(const bough_rod_model *m, bough_rod_tangent *k, double gamma) {
     k->gamma = gamma;
     eliminate_rotations(m, k);
     form_matrix(m, k);
-    return bough_block_tridiagonal_factor(&k->matrix);
+    return BOUGH_AT_LEVEL(bough_block_tridiagonal_factor)(&k->matrix);
 }
 
 // -- solution -------------------------------------------------------------------------------------
@@ -254,13 +253,13 @@ static void recover(const bough_rod_model *m, const bough_rod_tangent *k, const 
     }
 }
 
-void bough_rod_solve(const bough_rod_model *m, bough_rod_tangent *k, double *x) {
+void AT(solve)(const bough_rod_model *m, bough_rod_tangent *k, double *x) {
     double *velocity = k->work + (size_t)WORK_VELOCITY * m->stride;
     eliminate_residual(m, k, x, k->work);
     segment_residual(m, k, k->work, k->force);
     velocity_residual(m, k, x, k->work);
     pack(m->n, m->stride, velocity, k->packed);
-    bough_block_tridiagonal_solve(&k->matrix, k->packed);
+    BOUGH_AT_LEVEL(bough_block_tridiagonal_solve)(&k->matrix, k->packed);
     unpack(m->n, m->stride, k->packed, velocity);
     recover(m, k, k->work, x);
 }

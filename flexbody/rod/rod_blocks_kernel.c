@@ -1,17 +1,8 @@
 // The tangents of segments and vertices put into blocks, for factors, statics and eigenvalues. In
 // tangents eight segments lie side by side, a block wants its entries together: eight vertices at a
 // time, the entries of a row are gathered in a tile, a vertex to each lane, and the tile is turned.
-#include "flexbody/rod/rod_tangent.h"
-
+#include "flexbody/rod/rod_kernels.h"
 #include "flexbody/rod/rod_tangent_layout.h"
-
-#include <string.h>
-
-void bough_rod_blocks_init(bough_rod_blocks *b, bough_arena *arena, const bough_rod_model *m) {
-    b->mass = bough_arena_doubles(arena, (size_t)bough_padded(m->n) * BOUGH_BLOCK);
-    bough_block_tridiagonal_init(&b->position, arena, m->n);
-    bough_block_tridiagonal_init(&b->velocity, arena, m->n);
-}
 
 // Vertices v, v + 1 … in lanes, of which begin..end − 1 are moving ones.
 typedef struct lanes {
@@ -85,7 +76,7 @@ BOUGH_INLINE void put_column(const double *t, int j, lanes left, lanes right, co
     put_tile(&beside, left, j, false, b->upper);
 }
 
-void bough_rod_form_blocks(const bough_rod_model *m, bough_rod_tangent *k, const bough_rod_eight *eight) {
+void AT(form_blocks)(const bough_rod_model *m, bough_rod_tangent *k, const bough_rod_eight *eight) {
     int s = m->stride, v = eight->first + 1;
     const double *position = k->variation + (size_t)TANGENTS * eight->first;
     lanes left = lanes_from(m, v - 1), right = lanes_from(m, v);

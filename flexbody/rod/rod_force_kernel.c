@@ -1,0 +1,357 @@
+// Right-hand side of the rod: gather, segment forces, vertex balances.
+#include "flexbody/rod/rod_kernels.h"
+#include "flexbody/rod/rod_lanes.h"
+
+#include <string.h>
+
+// Vertices that move as the input says: the root, and the last one of a rod that carries bodies.
+static void gather_input(const bough_rod_model *m, const double *input, bough_rod_scratch *scratch) {
+    int s = m->stride;
+    double *vertex = scratch->vertex;
+    bough_quaternion p0 = m->rotation0[0];
+    bough_vec3 omega = {input[3], input[4], input[5]};
+    bough_vec3 w0 = bough_mat3_tmul(m->root, omega);
+    const double root[BOUGH_ROD_STATES] = {0,        0,        0,        p0.w, p0.x, p0.y, p0.z,
+                                           input[0], input[1], input[2], w0.x, w0.y, w0.z};
+    for (int c = 0; c < BOUGH_ROD_STATES; c++) vertex[c * s] = root[c];
+    if (!bough_rod_carries(m)) return;
+    const double *u = input + BOUGH_ROD_INPUTS, *p = u + 9; // u W x p
+    double scale = 1 / sqrt(p[0] * p[0] + p[1] * p[1] + p[2] * p[2] + p[3] * p[3]);
+    const double end[BOUGH_ROD_STATES] = {u[6],         u[7],         u[8], scale * p[0], scale * p[1],
+                                          scale * p[2], scale * p[3], u[0], u[1],         u[2],
+                                          u[3],         u[4],         u[5]};
+    for (int c = 0; c < BOUGH_ROD_STATES; c++) vertex[c * s + m->n + 1] = end[c];
+}
+
+// Moving vertices first to last.
+static void gather_state(const bough_rod_model *m, const double *restrict state, int first, int last,
+                         double *restrict vertex) {
+    int n = m->n, s = m->stride;
+#pragma omp simd
+    for (int i = first; i <= last; i++) {
+        const double *restrict y = state + i - 1;
+        double w = y[3 * n], x = y[4 * n], v = y[5 * n], z = y[6 * n];
+        double scale = 1 / sqrt(w * w + x * x + v * v + z * z);
+        store3(vertex, s, i, (bough_vec3){y[0], y[n], y[2 * n]});
+        vertex[3 * s + i] = scale * w;
+        store3(vertex + 4 * s, s, i, (bough_vec3){scale * x, scale * v, scale * z});
+        store3(vertex + 7 * s, s, i, (bough_vec3){y[7 * n], y[8 * n], y[9 * n]});
+        store3(vertex + 10 * s, s, i, (bough_vec3){y[10 * n], y[11 * n], y[12 * n]});
+    }
+}
+
+void AT(gather)(const bough_rod_model *m, const double *state, const double *input,
+                bough_rod_scratch *scratch) {
+    gather_input(m, input, scratch);
+    gather_state(m, state, 1, m->n, scratch->vertex);
+}
+
+// The forces, and the least cos θ/2 of the segments.
+static double least_cosine(const bough_rod_model *m, int first, int last, bough_rod_scratch *scratch) {
+    int s = m->stride;
+    const double *restrict vertex = scratch->vertex, *restrict rest = scratch->rest;
+    const double *restrict c = m->stiffness, *restrict d = m->damping;
+    const double *restrict gradient = m->gradient;
+    const double *restrict length = m->length, *restrict inverse = m->inverse_length;
+    double *restrict out = scratch->segment;
+    double least = 1;
+#pragma omp simd reduction(min : least)
+    for (int n = first; n < last; n++) {
+        vertex_state l = load_vertex(vertex, s, n), r = load_vertex(vertex, s, n + 1);
+        segment_geometry shape = segment_shape(l, r, inverse[n]);
+        strain e = elastic_strain(shape, inverse[n], rest, s, n);
+        strain rate = strain_rate(shape, segment_motion(shape, l, r), inverse[n]);
+        strain elastic = segment_stress(c, gradient, s, n, e);
+        strain viscous = symmetric_times(d, s, n, rate);
+        segment_force f = stress_force(shape, add_strain(elastic, viscous), length[n]);
+        store3(out, s, n, f.f);
+        store3(out + 3 * s, s, n, f.ll);
+        store3(out + 6 * s, s, n, f.lr);
+        double w = length[n] > 0 ? shape.w : 1; // beyond the last: no segment
+        least = w < least ? w : least;
+    }
+    return least;
+}
+
+bool AT(forces)(const bough_rod_model *m, int first, int last, bough_rod_scratch *scratch) {
+    return least_cosine(m, first, last, scratch) >= 0.5;
+}
+
+static bough_mat3 middle_of(const bough_rod_model *m, const bough_rod_scratch *scratch, int n) {
+    vertex_state l = load_vertex(scratch->vertex, m->stride, n);
+    vertex_state r = load_vertex(scratch->vertex, m->stride, n + 1);
+    return segment_shape(l, r, m->inverse_length[n]).r;
+}
+
+// Adds the ramped loads; followers are resolved by the sections in scratch->vertex.
+static void add_ramped(const bough_rod_model *m, const bough_rod_loads *loads, double t,
+                       bough_rod_scratch *scratch) {
+    int s = m->stride;
+    bool follow = bough_rod_loads_follow(loads);
+    if (follow) memset(scratch->follower, 0, 6 * (size_t)s * sizeof(double));
+    for (const bough_rod_ramped_load *l = loads->ramped; l != NULL; l = l->next) {
+        double factor = bough_schedule_at(&l->schedule, t);
+        double *to = l->follower ? scratch->follower : scratch->load;
+        for (int k = 0; k < 6 * s; k++) to[k] += factor * l->value[k];
+    }
+    if (!follow) return;
+    for (int i = 0; i <= m->n_segment; i++) {
+        bough_mat3 r = bough_rotation_matrix(load_vertex(scratch->vertex, s, i).p);
+        for (int part = 0; part < 6; part += 3) {
+            double *load = scratch->load + part * s;
+            bough_vec3 f = bough_mat3_mul(r, load3(scratch->follower + part * s, s, i));
+            store3(load, s, i, bough_add(load3(load, s, i), f));
+        }
+    }
+}
+
+static bool loads_lie_along(const bough_rod_loads *loads) {
+    for (const bough_rod_ramped_load *l = loads->ramped; l != NULL; l = l->next) {
+        if (l->along) return true;
+    }
+    return false;
+}
+
+// Adds the moments beside the chord of segment n of the loads per length on its axis.
+static void add_chord_moments_of(const bough_rod_model *m, int n, bough_rod_scratch *scratch) {
+    int s = m->stride;
+    double h = m->length[n];
+    vertex_state l = load_vertex(scratch->vertex, s, n), r = load_vertex(scratch->vertex, s, n + 1);
+    segment_geometry shape = segment_shape(l, r, m->inverse_length[n]);
+    bough_vec3 change = bough_sub(bough_rotation_matrix(r.p).c3, bough_rotation_matrix(l.p).c3);
+    change = bough_sub(change, bough_mat3_mul(shape.r, load3(m->bend0, s, n)));
+    bough_vec3 moment = chord_moment(h, change, bough_mat3_mul(shape.r, load3(scratch->along, s, n)));
+    bough_vec3 bend = bough_axpy(-h, load3(m->strain0 + 3 * s, s, n), shape.phi);
+    bough_vec3 following = following_moment(h, bend, load3(scratch->following, s, n));
+    moment = bough_add(moment, bough_mat3_mul(shape.r, following));
+    double *load = scratch->load + 3 * s + n;
+    for (int side = 0; side < 2; side++, load++) {
+        store3(load, s, 0, bough_add(load3(load, s, 0), moment));
+    }
+}
+
+// Adds D q of the ramped loads along the segments, the dead ones turned into their middles, and the moments
+// beside the chords.
+static void add_along(const bough_rod_model *m, const bough_rod_loads *loads, double t,
+                      bough_rod_scratch *scratch) {
+    int s = m->stride;
+    size_t bytes = 6 * (size_t)s * sizeof(double);
+    if (!loads->moving) memcpy(scratch->own_rest, loads->rest, bytes);
+    memset(scratch->along, 0, 2 * bytes);
+    memset(scratch->following, 0, bytes / 2);
+    scratch->turning = true;
+    scratch->rest = scratch->own_rest;
+    for (const bough_rod_ramped_load *l = loads->ramped; l != NULL; l = l->next) {
+        double factor = bough_schedule_at(&l->schedule, t);
+        if (!l->along) continue;
+        for (int n = 0; n < m->n_segment; n++) {
+            bough_mat3 r = middle_of(m, scratch, n);
+            bough_vec3 q[4];
+            for (int part = 0; part < 4; part++) {
+                double *to = l->follower ? scratch->following : scratch->along + 3 * part * s;
+                q[part] = bough_scale(factor, load3(l->line + 3 * part * s, s, n));
+                if (!l->follower) q[part] = bough_mat3_tmul(r, q[part]);
+                if (l->follower && part > 0) continue;
+                store3(to, s, n, bough_add(load3(to, s, n), q[part]));
+            }
+            double *rest = scratch->own_rest;
+            strain e = line_strain(m->line, s, n, q);
+            store3(rest, s, n, bough_add(load3(rest, s, n), e.v));
+            store3(rest + 3 * s, s, n, bough_add(load3(rest + 3 * s, s, n), e.u));
+        }
+    }
+    for (int n = 0; n < m->n_segment; n++) add_chord_moments_of(m, n, scratch);
+}
+
+static void move_rest(const bough_rod_model *m, const bough_rod_loads *loads, double elapsed,
+                      bough_rod_scratch *scratch) {
+    const double *restrict rest = loads->rest, *restrict rate = loads->rest_rate;
+    double *restrict now = scratch->own_rest;
+    int count = 6 * m->stride;
+#pragma omp simd
+    for (int k = 0; k < count; k++) now[k] = rest[k] + elapsed * rate[k];
+    scratch->rest = now;
+}
+
+// Adds what the own motion of vertices first..last makes of the loads.
+static void add_damping(const bough_rod_model *m, const bough_rod_loads *loads, int first, int last,
+                        bough_rod_scratch *scratch) {
+    int s = m->stride;
+    const double *restrict u = scratch->vertex + BOUGH_ROD_U * s, *restrict slope = loads->slope;
+    const double *restrict p = scratch->vertex + BOUGH_ROD_P * s, *restrict angle = loads->angle;
+    const double *restrict w = scratch->vertex + (BOUGH_ROD_W + 2) * s;
+    double *restrict load = scratch->load;
+#pragma omp simd
+    for (int i = first; i <= last; i++) {
+        double phi = angle[i] * p[i] + angle[s + i] * p[s + i] + angle[2 * s + i] * p[2 * s + i] +
+                     angle[3 * s + i] * p[3 * s + i];
+        double x = u[i], y = u[s + i], z = w[i];
+        const double *restrict fx = slope + i, *restrict fy = fx + 4 * s, *restrict mz = fx + 8 * s;
+        load[i] += fx[0] * x + fx[s] * y + fx[2 * s] * phi + fx[3 * s] * z;
+        load[s + i] += fy[0] * x + fy[s] * y + fy[2 * s] * phi + fy[3 * s] * z;
+        load[5 * s + i] += mz[0] * x + mz[s] * y + mz[2 * s] * phi + mz[3 * s] * z;
+    }
+}
+
+void AT(load)(const bough_rod_model *m, const bough_rod_loads *loads, double t, bough_rod_scratch *scratch) {
+    double elapsed = t - loads->start; // all that bough_rod_vertex_rows took: whole registers
+    const double *restrict value = loads->value, *restrict rate = loads->rate;
+    const double *restrict curve = loads->curve;
+    double *restrict load = scratch->load;
+    int count = 6 * m->stride;
+#pragma omp simd
+    for (int k = 1 - BOUGH_LANES; k <= count; k++) {
+        load[k] = value[k] + elapsed * (rate[k] + elapsed * curve[k]);
+    }
+    if (loads->damped) add_damping(m, loads, 1, m->n_segment, scratch);
+    scratch->rest = loads->rest;
+    scratch->turning = false;
+    if (loads->moving) move_rest(m, loads, elapsed, scratch);
+    if (loads->ramped == NULL) return;
+    add_ramped(m, loads, t, scratch);
+    if (loads_lie_along(loads)) add_along(m, loads, t, scratch);
+}
+
+// The same for one vertex and one segment.
+static void load_end(const bough_rod_model *m, const bough_rod_loads *loads, double t, int vertex,
+                     int segment, bough_rod_scratch *scratch) {
+    if (loads->ramped != NULL) {
+        AT(load)(m, loads, t, scratch);
+        return;
+    }
+    double elapsed = t - loads->start;
+    int s = m->stride;
+    for (int k = vertex; k < 6 * s; k += s) {
+        scratch->load[k] = loads->value[k] + elapsed * (loads->rate[k] + elapsed * loads->curve[k]);
+    }
+    if (loads->damped && vertex > 0) add_damping(m, loads, vertex, vertex, scratch);
+    scratch->rest = loads->moving ? scratch->own_rest : loads->rest;
+    scratch->turning = false;
+    for (int k = segment; k < 6 * s && loads->moving; k += s) {
+        scratch->own_rest[k] = loads->rest[k] + elapsed * loads->rest_rate[k];
+    }
+}
+
+// (11) solved for the accelerations, all vertices: the linear part goes out in BRF axes.
+static void vertex_accelerations(const bough_rod_model *m, const bough_rod_scratch *scratch,
+                                 const double *input, double *restrict rate) {
+    int n = m->n, s = m->stride;
+    const double *restrict v = scratch->vertex, *restrict f = scratch->segment;
+    const double *restrict load = scratch->load, *restrict inverse = m->inverse_mass;
+    const double *restrict first = m->moment, *restrict inertia = m->inertia;
+    bough_vec3 omega = {input[3], input[4], input[5]}, gravity = {input[6], input[7], input[8]};
+#pragma omp simd
+    for (int i = 1; i <= n; i++) {
+        vertex_state a = load_vertex(v, s, i);
+        bough_mat3 r = bough_rotation_matrix(a.p);
+        bough_vec3 force = bough_add(bough_sub(load3(f, s, i), load3(f, s, i - 1)), load3(load, s, i));
+        bough_vec3 moment = bough_add(bough_add(load3(f + 3 * s, s, i), load3(f + 6 * s, s, i - 1)),
+                                      bough_mat3_tmul(r, load3(load + 3 * s, s, i)));
+        bough_vec3 offset = load3(first, s, i - 1);
+        bough_vec3 centrifugal = bough_cross(a.w, bough_cross(a.w, offset));
+        bough_vec3 gyroscopic = bough_cross(a.w, inertia_times(inertia, s, i - 1, a.w));
+        strain h = {bough_sub(bough_mat3_tmul(r, force), centrifugal), bough_sub(moment, gyroscopic)};
+        strain q = symmetric_times(inverse, s, i - 1, h);
+        bough_vec3 acceleration =
+            bough_sub(bough_add(bough_mat3_mul(r, q.v), gravity), bough_cross(omega, a.u));
+        store3(rate + BOUGH_ROD_U * n, n, i - 1, acceleration);
+        store3(rate + BOUGH_ROD_W * n, n, i - 1, q.u);
+    }
+}
+
+// ẋ = u − u₀ − ω×x and ṗ = ½ (p∘(0,W) − (0,ω)∘p) + κ(1 − |p|²)p: the last term takes back what
+// integration errors do to the norm, in about a second, and does not turn the section.
+static void vertex_kinematics(int n, const double *restrict state, const double *input,
+                              double *restrict rate) {
+    bough_vec3 u0 = {input[0], input[1], input[2]}, omega = {input[3], input[4], input[5]};
+#pragma omp simd
+    for (int i = 0; i < n; i++) {
+        bough_vec3 x = load3(state, n, i), u = load3(state + 7 * n, n, i);
+        bough_vec3 w = load3(state + 10 * n, n, i);
+        bough_quaternion p = {state[3 * n + i], state[4 * n + i], state[5 * n + i], state[6 * n + i]};
+        bough_vec3 v = {p.x, p.y, p.z};
+        bough_vec3 difference = bough_sub(w, omega), sum = bough_add(w, omega);
+        bough_vec3 turn = bough_axpy(p.w, difference, bough_cross(v, sum));
+        double restore = BOUGH_ROD_NORM_RATE * (1 - p.w * p.w - bough_dot(v, v));
+        store3(rate, n, i, bough_sub(bough_sub(u, u0), bough_cross(omega, x)));
+        rate[3 * n + i] = -0.5 * bough_dot(v, difference) + restore * p.w;
+        store3(rate + 4 * n, n, i, bough_axpy(restore, v, bough_scale(0.5, turn)));
+    }
+}
+
+// The balances of all vertices under the segments' forces in scratch.
+static bool balance_vertices(const bough_rod_model *m, const double *state, const double *input,
+                             const bough_rod_scratch *scratch, double *restrict rate) {
+    vertex_kinematics(m->n, state, input, rate);
+    vertex_accelerations(m, scratch, input, rate);
+    double sum = 0; // NaN and infinity survive a sum of squares
+    int last = BOUGH_ROD_STATES * m->n;
+#pragma omp simd reduction(+ : sum)
+    for (int k = BOUGH_ROD_U * m->n; k < last; k++) sum += rate[k] * rate[k];
+    return isfinite(sum);
+}
+
+bool AT(derivative)(const bough_rod_model *m, const bough_rod_loads *loads, double t, const double *state,
+                    const double *input, bough_rod_scratch *scratch, double *rate) {
+    AT(gather)(m, state, input, scratch);
+    AT(load)(m, loads, t, scratch);
+    scratch->time = t;
+    // whole registers: segments beyond the last exert nothing
+    if (!AT(forces)(m, 0, bough_padded(m->n_segment), scratch)) return false;
+    return balance_vertices(m, state, input, scratch, rate);
+}
+
+// Adds to the forces of the inner segments what the change Δ of D q does to them where they are:
+// f = −R C Δ, moments ∓h/2 f×V + C Δ, in segments whose own turn is neglected.
+static void add_drift(const bough_rod_model *m, const bough_rod_loads *loads, double elapsed,
+                      bough_rod_scratch *scratch) {
+    int s = m->stride, last = m->n_segment;
+    const double *restrict vertex = scratch->vertex, *restrict rate = loads->rest_rate;
+    const double *restrict c = m->stiffness, *restrict e0 = m->strain0;
+    const double *restrict length = m->length;
+    double *restrict out = scratch->segment;
+#pragma omp simd
+    for (int n = 1; n < last; n++) {
+        bough_quaternion p = load_vertex(vertex, s, n).p, q = load_vertex(vertex, s, n + 1).p;
+        bough_mat3 r = mid_frame_between(p, q);
+        strain e = {bough_scale(elapsed, load3(rate, s, n)), bough_scale(elapsed, load3(rate + 3 * s, s, n))};
+        strain stress = symmetric_times(c, s, n, e);
+        bough_vec3 tau = bough_scale(0.5 * length[n], bough_cross(stress.v, load3(e0, s, n)));
+        store3(out, s, n, bough_sub(load3(out, s, n), bough_mat3_mul(r, stress.v)));
+        store3(out + 3 * s, s, n, bough_add(load3(out + 3 * s, s, n), bough_sub(tau, stress.u)));
+        store3(out + 6 * s, s, n, bough_add(load3(out + 6 * s, s, n), bough_add(tau, stress.u)));
+    }
+}
+
+bool AT(derivative_again)(const bough_rod_model *m, const bough_rod_loads *loads, double t,
+                          const double *state, const double *input, bough_rod_scratch *scratch,
+                          double *rate) {
+    int n = m->n_segment;
+    double before = scratch->time;
+    gather_input(m, input, scratch);
+    AT(load)(m, loads, t, scratch);
+    bool all = loads_lie_along(loads);
+    if (!all && loads->moving) add_drift(m, loads, t - before, scratch);
+    bool ok = AT(forces)(m, 0, all ? bough_padded(n) : 1, scratch);
+    if (bough_rod_carries(m) && !all) ok = AT(forces)(m, n - 1, n, scratch) && ok;
+    return ok && balance_vertices(m, state, input, scratch, rate);
+}
+
+void AT(root_wrench)(const bough_rod_model *m, const bough_rod_loads *loads, double t, const double *state,
+                     const double *input, bough_rod_scratch *scratch, double *wrench) {
+    gather_input(m, input, scratch);
+    gather_state(m, state, 1, 1, scratch->vertex);
+    load_end(m, loads, t, 0, 0, scratch);
+    AT(forces)(m, 0, 1, scratch);
+    bough_rod_present_root_wrench(m, scratch, wrench);
+}
+
+void AT(end_wrench)(const bough_rod_model *m, const bough_rod_loads *loads, double t, const double *state,
+                    const double *input, bough_rod_scratch *scratch, double *wrench) {
+    int end = m->n_segment;
+    gather_input(m, input, scratch);
+    gather_state(m, state, m->n, m->n, scratch->vertex);
+    load_end(m, loads, t, end, end - 1, scratch);
+    AT(forces)(m, end - 1, end, scratch);
+    bough_rod_present_end_wrench(m, scratch, wrench);
+}

@@ -1,0 +1,69 @@
+// Loads along the segments: the strains that they cause, and their axes.
+#include "flexbody/rod/rod_kernels.h"
+#include "flexbody/rod/rod_lanes.h"
+
+void AT(line_strain)(const bough_rod_model *m, const double *line, double *along) {
+    int s = m->stride, n = m->n_segment;
+    for (int i = 0; i < 6; i++) {
+        const double *restrict d = m->line + 6 * i * s;
+        double *restrict row = along + i * s;
+#pragma omp simd
+        for (int k = 0; k < n; k++) {
+            double sum = 0;
+            for (int j = 0; j < 6; j++) {
+                sum += d[j * s + k] * line[j * n + k] + d[(36 + j) * s + k] * line[(6 + j) * n + k];
+            }
+            row[k] = sum;
+        }
+    }
+}
+
+BOUGH_INLINE bough_quaternion section_at(int v, const double *restrict rotation, int i) {
+    const double *restrict q = rotation + i;
+    double w = q[0], x = q[v], y = q[2 * v], z = q[3 * v];
+    double scale = 1 / sqrt(w * w + x * x + y * y + z * z);
+    return (bough_quaternion){scale * w, scale * x, scale * y, scale * z};
+}
+
+BOUGH_INLINE bough_vec3 tangent_of(bough_quaternion p) {
+    return (bough_vec3){2 * (p.x * p.z + p.w * p.y), 2 * (p.y * p.z - p.w * p.x),
+                        1 - 2 * (p.x * p.x + p.y * p.y)};
+}
+
+// Segments first..first + count − 1: their lines of load turned, and their moments about the chords.
+BOUGH_INLINE void turn_line(const bough_rod_model *m, const double *restrict rotation,
+                            const double *restrict line, int first, int count, double *restrict turned,
+                            double *restrict moment) {
+    int n = m->n_segment, v = n + 1, s = m->stride;
+    const double *restrict bend = m->bend0 + first, *restrict h = m->length + first;
+#pragma omp simd
+    for (int l = 0; l < count; l++) {
+        int k = first + l;
+        bough_quaternion p = section_at(v, rotation, k), q = section_at(v, rotation, k + 1);
+        bough_mat3 r = mid_frame_between(p, q);
+        for (int part = 0; part < 4; part++) {
+            store3(turned + 3 * part * n, n, k, bough_mat3_tmul(r, load3(line + 3 * part * n, n, k)));
+        }
+        bough_vec3 turn = bough_sub(tangent_of(q), tangent_of(p));
+        turn = bough_sub(turn, bough_mat3_mul(r, load3(bend, s, l)));
+        store3(moment, BOUGH_LANES, l, chord_moment(h[l], turn, load3(line, n, k)));
+    }
+}
+
+void AT(take_line)(const bough_rod_model *m, const double *rotation, const double *line, double *turned,
+                   double *load) {
+    int n = m->n_segment, v = n + 1;
+    for (int first = 0; first < n; first += BOUGH_LANES) {
+        int count = n - first < BOUGH_LANES ? n - first : BOUGH_LANES;
+        double moment[3 * BOUGH_LANES];
+        turn_line(m, rotation, line, first, count, turned, moment);
+        for (int c = 0; c < 3; c++) {
+            double *restrict to = load + (3 + c) * v + first;
+            const double *restrict from = moment + c * BOUGH_LANES;
+#pragma omp simd
+            for (int l = 0; l < count; l++) to[l] += from[l];
+#pragma omp simd
+            for (int l = 0; l < count; l++) to[l + 1] += from[l];
+        }
+    }
+}
