@@ -2,6 +2,12 @@
 
 #include <math.h>
 
+void bough_symmetric6_unpack(const double a[21], double full[6][6]) {
+    for (int i = 0; i < 6; i++) {
+        for (int j = 0; j < 6; j++) full[i][j] = a[bough_symmetric6_index(i, j)];
+    }
+}
+
 // A = L Lᵀ; false at a pivot that is not positive.
 static bool cholesky(const double *upper, double l[6][6]) {
     for (int j = 0; j < 6; j++) {
@@ -49,9 +55,7 @@ static void rotate_pairs(double full[6][6], double c, double s, bool rows) {
 
 void bough_symmetric6_rotate(const double a[21], double angle, double rotated[21]) {
     double full[6][6], c = cos(angle), s = sin(angle);
-    for (int i = 0; i < 6; i++) {
-        for (int j = 0; j < 6; j++) full[i][j] = a[bough_symmetric6_index(i, j)];
-    }
+    bough_symmetric6_unpack(a, full);
     // Q A Qᵀ: rows, then columns
     rotate_pairs(full, c, s, true);
     rotate_pairs(full, c, s, false);

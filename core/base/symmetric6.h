@@ -10,6 +10,9 @@ static inline int bough_symmetric6_index(int i, int j) {
     return low * 6 - low * (low - 1) / 2 + (high - low);
 }
 
+// The full matrix by rows.
+void bough_symmetric6_unpack(const double a[21], double full[6][6]);
+
 // The inverse by Cholesky's method; false unless a is positive definite. a and inverse may be one.
 bool bough_symmetric6_inverse(const double a[21], double inverse[21]);
 

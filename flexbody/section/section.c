@@ -21,12 +21,6 @@ static void section_damping(const double mu[6], const double *stiffness, double 
     }
 }
 
-static void unpack(const double *upper, matrix6 full) {
-    for (int i = 0; i < 6; i++) {
-        for (int j = 0; j < 6; j++) full[i][j] = upper[bough_symmetric6_index(i, j)];
-    }
-}
-
 // sum += weight·aᵀ b
 static void add_product(double weight, matrix6 a, matrix6 b, matrix6 sum) {
     for (int i = 0; i < 6; i++) {
@@ -59,7 +53,7 @@ static void carry(double distance, matrix6 t) {
 }
 
 // The stress that a load per length adds to the one carried from the middle of a segment of length h,
-// its vertices taking their shares by hat functions. Its moments vanish at both ends.
+// distributed to its vertices by hat functions; theory (31). Its moments vanish at both ends.
 //     uniform load f, m:     n = −f σ,               m = d₃×f (σ² − h²/4)/2 − m σ
 //     load f σ, m σ:         n = f (h²/24 − σ²/2),   m = d₃×f (σ³ − h²σ/4)/6 + m (h²/24 − σ²/2)
 static void line_stress(double sigma, double h, bool slope, matrix6 stress) {
@@ -71,7 +65,7 @@ static void line_stress(double sigma, double h, bool slope, matrix6 stress) {
     stress[4][0] = bend;
 }
 
-// What lies between the left end of a segment and s.
+// Mass between the left end of a segment and s.
 typedef struct mass_sum {
     const bough_section_axis *axis;
     double to, twist;  // s; of the segment's mid frame
@@ -82,26 +76,26 @@ typedef struct mass_sum {
 static void add_mass(void *context, double s, double weight) {
     mass_sum *c = context;
     bough_section_place p = bough_section_find(c->axis, s);
-    double turn = -(bough_section_mix(p.share, p.low->twist, p.high->twist) - c->twist);
-    double mass = weight * bough_section_mix(p.share, p.low->mass, p.high->mass);
-    double x = bough_section_mix(p.share, p.low->centre[0], p.high->centre[0]);
-    double y = bough_section_mix(p.share, p.low->centre[1], p.high->centre[1]);
-    double cosine = cos(turn), sine = sin(turn);
+    double angle = -(bough_section_mix(p.fraction, p.low->twist, p.high->twist) - c->twist);
+    double mass = weight * bough_section_mix(p.fraction, p.low->mass, p.high->mass);
+    double x = bough_section_mix(p.fraction, p.low->centre[0], p.high->centre[0]);
+    double y = bough_section_mix(p.fraction, p.low->centre[1], p.high->centre[1]);
+    double cosine = cos(angle), sine = sin(angle);
     bough_vec3 centre = {cosine * x - sine * y, sine * x + cosine * y, 0};
     c->mass += mass;
     c->arm += mass * (c->to - s);
     c->offset = bough_axpy(mass, centre, c->offset);
 }
 
-// The same with the left vertex' hat function.
-typedef struct share_sum {
+// The same weighted with the left vertex' hat function.
+typedef struct hat_sum {
     mass_sum *whole;
     double length, mass, curvature; // curvature: ∫ρ (s − a)(b − s)
     bough_vec3 moment;
-} share_sum;
+} hat_sum;
 
-static void add_share(void *context, double s, double weight) {
-    share_sum *c = context;
+static void add_hat_mass(void *context, double s, double weight) {
+    hat_sum *c = context;
     mass_sum here = {.axis = c->whole->axis, .to = s, .twist = c->whole->twist};
     double hat = (c->whole->to - s) / c->length;
     add_mass(&here, s, weight);
@@ -111,7 +105,7 @@ static void add_share(void *context, double s, double weight) {
 }
 
 // The stress n = m g, m = s×g of an acceleration g on a mass and first moment, three columns.
-static void share_stress(bough_section_share x, matrix6 stress) {
+static void mass_stress(bough_section_mass x, matrix6 stress) {
     memset(stress, 0, sizeof(matrix6));
     for (int i = 0; i < 3; i++) stress[i][i] = x.mass;
     stress[3][1] = -x.moment.z;
@@ -124,36 +118,36 @@ static void share_stress(bough_section_share x, matrix6 stress) {
 
 typedef struct segment_sum {
     const bough_section_axis *axis;
-    double from, length;      // [m]
-    bough_section_share left; // of the left vertex by hat functions
-    double middle, twist;     // of the segment's mid frame [m, rad]
-    double compliance[21];    // ∫ Tᵀ F T
-    double loss[21];          // ∫ Tᵀ F D F T
-    matrix6 line[2];          // ∫ Tᵀ F S, S of line_stress
-    double taper[9];          // ∫ F (s − s_mid) of bending and twist
-    matrix6 weight;           // the same of weight_stress, three columns
+    double from, length;     // [m]
+    bough_section_mass left; // of the left vertex by hat functions
+    double middle, twist;    // of the segment's mid frame [m, rad]
+    double compliance[21];   // ∫ Tᵀ F T
+    double loss[21];         // ∫ Tᵀ F D F T
+    matrix6 line[2];         // ∫ Tᵀ F S, S of line_stress
+    double taper[9];         // ∫ F (s − s_mid) of bending and twist
+    matrix6 weight;          // the same of weight_stress, three columns
     bool definite;
 } segment_sum;
 
 // The stress by a uniform acceleration g, three columns, beyond the one carried from the middle, if the
-// left vertex takes the given share of mass and first moment:
+// left vertex takes the given mass and first moment, theory (33):
 //     n = (m_left − ∫ρ) g,   m = (s_left − ∫ρ c)×g − d₃×g (m_left (s − a) − ∫ρ (s − s′)).
 static void weight_stress(const segment_sum *c, double s, matrix6 stress) {
     mass_sum below = {.axis = c->axis, .to = s, .twist = c->twist};
     bough_section_integrate(c->axis, c->from, s, add_mass, &below);
     bough_vec3 arm = bough_sub(c->left.moment, below.offset);
     arm.z -= c->left.mass * (s - c->from) - below.arm;
-    share_stress((bough_section_share){c->left.mass - below.mass, arm}, stress);
+    mass_stress((bough_section_mass){c->left.mass - below.mass, arm}, stress);
 }
 
-// Shares by hat functions, with the first moment along the axis by which a bending wave errs least in
-// a uniform segment: ½∫ρ (s − a)(b − s)/h.
-static void share_left(segment_sum *c) {
+// theory (32): lumping by hat functions, with the first moment along the axis that minimises the error of a
+// bending wave in a uniform segment, ½∫ρ (s − a)(b − s)/h.
+static void lump_left(segment_sum *c) {
     double to = c->from + c->length;
     mass_sum whole = {.axis = c->axis, .to = to, .twist = c->twist};
-    share_sum left = {.whole = &whole, .length = c->length};
-    bough_section_integrate(c->axis, c->from, to, add_share, &left);
-    c->left = (bough_section_share){left.mass, left.moment};
+    hat_sum left = {.whole = &whole, .length = c->length};
+    bough_section_integrate(c->axis, c->from, to, add_hat_mass, &left);
+    c->left = (bough_section_mass){left.mass, left.moment};
     c->left.moment.z += 0.5 * left.curvature / c->length;
 }
 
@@ -167,19 +161,19 @@ static double trace(matrix6 a, matrix6 b) {
 static void add_compliance(void *context, double s, double weight) {
     segment_sum *c = context;
     bough_section_station x = bough_section_at(c->axis, s);
-    double compliance[21], damping[21], turn = -(x.twist - c->twist);
+    double compliance[21], damping[21], angle = -(x.twist - c->twist);
     matrix6 t, f, d, line, ft = {{0}};
     if (!bough_symmetric6_inverse(x.stiffness, compliance)) {
         c->definite = false;
         return;
     }
     section_damping(c->axis->table->damping, x.stiffness, damping);
-    unpack(compliance, f);
+    bough_symmetric6_unpack(compliance, f);
     for (int i = 0; i < 9; i++) c->taper[i] += weight * (s - c->middle) * f[3 + i / 3][3 + i % 3];
-    bough_symmetric6_rotate(compliance, turn, compliance);
-    bough_symmetric6_rotate(damping, turn, damping);
-    unpack(compliance, f);
-    unpack(damping, d);
+    bough_symmetric6_rotate(compliance, angle, compliance);
+    bough_symmetric6_rotate(damping, angle, damping);
+    bough_symmetric6_unpack(compliance, f);
+    bough_symmetric6_unpack(damping, d);
     carry(s - c->middle, t);
     add_congruent(weight, t, f, c->compliance);
     add_product(1, f, t, ft);
@@ -192,18 +186,18 @@ static void add_compliance(void *context, double s, double weight) {
     add_product(weight, ft, line, c->weight);
 }
 
-// What the left vertex' share has to gain (the right one's to lose) for the weight to be met with the
-// least strain energy beyond the one of the vertices' shares: normal equations in the shares' stress
-// in the middle, by the compliance there. Linear statics under weight is then exact at the vertices
-// wherever four numbers can make it so, and so are slow waves.
-static bough_section_share best_gain(segment_sum *c) {
+// theory (33): mass and first moment to be moved from the right vertex to the left one, so that the weight
+// causes the least strain energy beyond that of the lumped masses: normal equations in the stress of the
+// lumped masses in the middle, by the compliance there. Linear statics under weight is then exact at the
+// vertices wherever four numbers can make it so, and so are slow waves.
+static bough_section_mass best_gain(segment_sum *c) {
     enum { UNKNOWNS = 4 };
     matrix6 compliance, stress[UNKNOWNS];
     double normal[UNKNOWNS * UNKNOWNS], gain[UNKNOWNS];
-    const bough_section_share unit[UNKNOWNS] = {
+    const bough_section_mass unit[UNKNOWNS] = {
         {1, {0, 0, -0.5 * c->length}}, {0, {1, 0, 0}}, {0, {0, 1, 0}}, {0, {0, 0, 1}}};
-    unpack(c->compliance, compliance);
-    for (int k = 0; k < UNKNOWNS; k++) share_stress(unit[k], stress[k]);
+    bough_symmetric6_unpack(c->compliance, compliance);
+    for (int k = 0; k < UNKNOWNS; k++) mass_stress(unit[k], stress[k]);
     for (int k = 0; k < UNKNOWNS; k++) {
         matrix6 product = {{0}}, whole = {{0}};
         add_product(1, compliance, stress[k], product);
@@ -212,9 +206,9 @@ static bough_section_share best_gain(segment_sum *c) {
         gain[k] = 0;
         for (int j = 0; j < 3; j++) gain[k] -= whole[j][j];
     }
-    if (!bough_cholesky_factor(UNKNOWNS, normal)) return (bough_section_share){0};
+    if (!bough_cholesky_factor(UNKNOWNS, normal)) return (bough_section_mass){0};
     bough_cholesky_solve(UNKNOWNS, normal, gain);
-    return (bough_section_share){gain[0], bough_v3(gain[1], gain[2], gain[3])};
+    return (bough_section_mass){gain[0], bough_v3(gain[1], gain[2], gain[3])};
 }
 
 // The rod's strains by the mean strains of a straight, untwisted segment, e = Q (γ, κ), linearised at
@@ -226,8 +220,8 @@ static void strain_map(segment_geometry shape, double h, matrix6 q) {
     for (int j = 0; j < 3; j++) {
         bough_vec3 own = along_axis(shape.v, bough_unit3(j));
         bough_vec3 chord = bough_cross(shape.chord, bough_cross(bough_unit3(j), shape.t));
-        bough_vec3 turn = half_turn(shape.v, shape.t, bough_unit3(j));
-        bough_vec3 shear = along_axis_variation(shape.v, turn, shape.chord, bough_scale(0.5, chord));
+        bough_vec3 bend_half = half_turn(shape.v, shape.t, bough_unit3(j));
+        bough_vec3 shear = along_axis_variation(shape.v, bend_half, shape.chord, bough_scale(0.5, chord));
         bough_vec3 bend = rotation_tangent(shape.c, shape.g, shape.v, bough_unit3(j));
         const double column[6] = {h * shear.x, h * shear.y, h * shear.z, bend.x, bend.y, bend.z};
         q[0][j] = own.x;
@@ -239,19 +233,19 @@ static void strain_map(segment_geometry shape, double h, matrix6 q) {
 
 // Sums over a segment divided by its length, in the rod's strains.
 static void change_strains(segment_sum *c, matrix6 q) {
-    matrix6 turned, compliance;
+    matrix6 transposed, compliance;
     double f[21] = {0};
-    for (int i = 0; i < 36; i++) turned[i / 6][i % 6] = q[i % 6][i / 6];
-    unpack(c->compliance, compliance);
-    add_congruent(1 / c->length, turned, compliance, f);
+    for (int i = 0; i < 36; i++) transposed[i / 6][i % 6] = q[i % 6][i / 6];
+    bough_symmetric6_unpack(c->compliance, compliance);
+    add_congruent(1 / c->length, transposed, compliance, f);
     memcpy(c->compliance, f, sizeof f);
-    unpack(c->loss, compliance);
+    bough_symmetric6_unpack(c->loss, compliance);
     memset(f, 0, sizeof f);
-    add_congruent(1 / c->length, turned, compliance, f);
+    add_congruent(1 / c->length, transposed, compliance, f);
     memcpy(c->loss, f, sizeof f);
     for (int slope = 0; slope < 2; slope++) {
         matrix6 line = {{0}};
-        add_product(1 / c->length, turned, c->line[slope], line);
+        add_product(1 / c->length, transposed, c->line[slope], line);
         memcpy(c->line[slope], line, sizeof line);
     }
 }
@@ -261,14 +255,13 @@ typedef struct segment_law {
     double *stiffness, *damping; // (21)
     double *line;                // (72): two matrices by rows
     double *taper;               // (9)
-    bough_section_share *gain;
+    bough_section_mass *gain;
 } segment_law;
 
-// Stiffness and damping of a segment whose end forces are met exactly in linear statics: the
-// inverse of the compliance that the stress, constant force and linear moment, meets on its way
-// through the section tables. Bending within the segment appears as compliance in shear
-// (MacNeal's residual bending flexibility). Damping dissipates what the sections would. `line` is the
-// mean strain that a load along the segment makes (docs/theory.md, "Section tables to segments").
+// theory (29, 30): stiffness and damping of a segment that is exact in linear statics under end forces, the
+// inverse of the compliance of the section tables under a constant force and a linear moment. Bending within
+// the segment appears as compliance in shear (MacNeal's residual bending flexibility). Damping dissipates
+// what the sections would. `line` is D, the mean strain by a load along the segment.
 static bool segment_matrices(const bough_section_axis *a, const bough_rod_def *def, int n, segment_law law) {
     double from = def->span[n], to = def->span[n + 1];
     vertex_state left = {.x = def->position[n], .p = def->rotation[n]};
@@ -277,14 +270,14 @@ static bool segment_matrices(const bough_section_axis *a, const bough_rod_def *d
         .axis = a, .from = from, .length = to - from, .middle = 0.5 * (from + to), .definite = true};
     matrix6 q, k, loss;
     c.twist = 0.5 * (bough_section_at(a, from).twist + bough_section_at(a, to).twist);
-    share_left(&c);
+    lump_left(&c);
     bough_section_integrate(a, from, to, add_compliance, &c);
-    *law.gain = c.definite ? best_gain(&c) : (bough_section_share){0};
+    *law.gain = c.definite ? best_gain(&c) : (bough_section_mass){0};
     strain_map(segment_shape(left, right, 1 / c.length), c.length, q);
     change_strains(&c, q);
     if (!c.definite || !bough_symmetric6_inverse(c.compliance, law.stiffness)) return false;
-    unpack(law.stiffness, k);
-    unpack(c.loss, loss);
+    bough_symmetric6_unpack(law.stiffness, k);
+    bough_symmetric6_unpack(c.loss, loss);
     memset(law.damping, 0, 21 * sizeof *law.damping);
     add_congruent(1, k, loss, law.damping);
     memcpy(law.line, c.line, sizeof c.line);
@@ -299,7 +292,7 @@ typedef struct arrays {
     bough_vec3 *position;
     bough_quaternion *rotation;
     bough_vertex_inertia *inertia;
-    bough_section_share *gain;
+    bough_section_mass *gain;
 } arrays;
 
 static arrays take_arrays(bough_arena *arena, int n) {
@@ -309,7 +302,7 @@ static arrays take_arrays(bough_arena *arena, int n) {
                 .damping = bough_arena_doubles(arena, 21 * (size_t)n),
                 .line = bough_arena_doubles(arena, 72 * (size_t)n),
                 .taper = bough_arena_doubles(arena, 9 * (size_t)n),
-                .gain = bough_arena_take(arena, (size_t)n * sizeof(bough_section_share)),
+                .gain = bough_arena_take(arena, (size_t)n * sizeof(bough_section_mass)),
                 .position = bough_arena_take(arena, vertices * sizeof(bough_vec3)),
                 .rotation = bough_arena_take(arena, vertices * sizeof(bough_quaternion)),
                 .inertia = bough_arena_take(arena, vertices * sizeof(bough_vertex_inertia))};

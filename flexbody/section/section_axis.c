@@ -1,12 +1,14 @@
+// Section tables along the axis: interpolation between stations, axes, quadrature.
 #include "flexbody/section/section_axis.h"
 
+#include "core/base/schedule.h"
 #include "core/base/symmetric6.h"
 
 #include <math.h>
 
 enum { MOST_HALVINGS = 40 };
 
-enum { POINTS = 8 }; // of Gauss–Legendre quadrature on each stretch without a station inside
+enum { POINTS = 8 }; // of Gauss–Legendre quadrature on each interval without a station inside
 
 static const double gauss_at[POINTS] = {-0.9602898564975363, -0.7966664774136267, -0.5255324099163290,
                                         -0.1834346424956498, 0.1834346424956498,  0.5255324099163290,
@@ -37,17 +39,9 @@ void bough_section_axis_init(bough_section_axis *a, bough_arena *arena, const bo
 double bough_section_length(const bough_section_axis *a) { return a->arc[a->n - 1]; }
 
 bough_section_place bough_section_find(const bough_section_axis *a, double s) {
-    int k = 0, end = a->n - 1;
-    while (end - k > 1) { // the interval is one of k to end − 1
-        int middle = (k + end) / 2;
-        if (s >= a->arc[middle]) {
-            k = middle;
-        } else {
-            end = middle;
-        }
-    }
-    double share = bough_clamp((s - a->arc[k]) / (a->arc[k + 1] - a->arc[k]), 0, 1);
-    return (bough_section_place){&a->station[k], &a->station[k + 1], share};
+    int k = bough_table_row(a->n, a->arc, 1, s);
+    double fraction = bough_clamp((s - a->arc[k]) / (a->arc[k + 1] - a->arc[k]), 0, 1);
+    return (bough_section_place){&a->station[k], &a->station[k + 1], fraction};
 }
 
 void bough_section_central(const bough_section_station *x, double central[4]) {
@@ -63,31 +57,31 @@ static bool is_positive(const double central[4]) {
            central[0] * central[1] > central[2] * central[2];
 }
 
-// Between stations that lie far apart, mass and offset that are linear may need more inertia than the
-// linear one: there it is linear about the mass centre.
-static void mend_inertia(const bough_section_station *low, const bough_section_station *high, double share,
+// Between distant stations, a linear mass and a linear offset may need more inertia than the linear one
+// gives: there the inertia about the mass centre is linear.
+static void mend_inertia(const bough_section_station *low, const bough_section_station *high, double fraction,
                          bough_section_station *x) {
     double central[4], below[4], above[4];
     bough_section_central(x, central);
     if (is_positive(central)) return;
     bough_section_central(low, below);
     bough_section_central(high, above);
-    for (int i = 0; i < 4; i++) x->inertia[i] += bough_section_mix(share, below[i], above[i]) - central[i];
+    for (int i = 0; i < 4; i++) x->inertia[i] += bough_section_mix(fraction, below[i], above[i]) - central[i];
 }
 
 bough_section_station bough_section_at(const bough_section_axis *a, double s) {
     bough_section_place p = bough_section_find(a, s);
     const bough_section_station *l = p.low, *h = p.high;
     bough_section_station x;
-    x.position = bough_between(l->position, h->position, p.share);
-    x.twist = bough_section_mix(p.share, l->twist, h->twist);
-    x.mass = bough_section_mix(p.share, l->mass, h->mass);
+    x.position = bough_between(l->position, h->position, p.fraction);
+    x.twist = bough_section_mix(p.fraction, l->twist, h->twist);
+    x.mass = bough_section_mix(p.fraction, l->mass, h->mass);
     for (int i = 0; i < 21; i++) {
-        x.stiffness[i] = bough_section_mix(p.share, l->stiffness[i], h->stiffness[i]);
+        x.stiffness[i] = bough_section_mix(p.fraction, l->stiffness[i], h->stiffness[i]);
     }
-    for (int i = 0; i < 2; i++) x.centre[i] = bough_section_mix(p.share, l->centre[i], h->centre[i]);
-    for (int i = 0; i < 4; i++) x.inertia[i] = bough_section_mix(p.share, l->inertia[i], h->inertia[i]);
-    mend_inertia(l, h, p.share, &x);
+    for (int i = 0; i < 2; i++) x.centre[i] = bough_section_mix(p.fraction, l->centre[i], h->centre[i]);
+    for (int i = 0; i < 4; i++) x.inertia[i] = bough_section_mix(p.fraction, l->inertia[i], h->inertia[i]);
+    mend_inertia(l, h, p.fraction, &x);
     return x;
 }
 
@@ -95,7 +89,8 @@ bough_section_station bough_section_at(const bough_section_axis *a, double s) {
 static bough_vec3 tangent_at(const bough_section_axis *a, bough_section_place p) {
     bough_vec3 t = bough_sub(p.high->position, p.low->position);
     t = bough_scale(1 / bough_norm(t), t);
-    if (p.share == 0 && p.low > a->station) {
+    // at a station: the mean direction of both sides
+    if (p.fraction == 0 && p.low > a->station) {
         bough_vec3 before = bough_sub(p.low->position, p.low[-1].position);
         t = bough_axpy(1 / bough_norm(before), before, t);
         t = bough_scale(1 / bough_norm(t), t);
@@ -103,12 +98,12 @@ static bough_vec3 tangent_at(const bough_section_axis *a, bough_section_place p)
     return t;
 }
 
-// The shortest turn of z onto the tangent, then −twist about it.
+// The smallest rotation of z onto the tangent, then −twist about it.
 bough_quaternion bough_section_rotation(const bough_section_axis *a, double s) {
     bough_section_place p = bough_section_find(a, s);
     bough_vec3 t = tangent_at(a, p);
     bough_quaternion lean = bough_quaternion_normalised((bough_quaternion){1 + t.z, -t.y, t.x, 0});
-    double half = -0.5 * bough_section_mix(p.share, p.low->twist, p.high->twist);
+    double half = -0.5 * bough_section_mix(p.fraction, p.low->twist, p.high->twist);
     return bough_quaternion_product(lean, (bough_quaternion){cos(half), 0, 0, sin(half)});
 }
 
@@ -121,11 +116,11 @@ static void integrate_piece(double from, double to, bough_section_visitor visit,
 
 static double stiffness_at(bough_section_place p, int i) {
     int k = bough_symmetric6_index(i, i);
-    return bough_section_mix(p.share, p.low->stiffness[k], p.high->stiffness[k]);
+    return bough_section_mix(p.fraction, p.low->stiffness[k], p.high->stiffness[k]);
 }
 
-// How often a stretch is to be halved towards its softer end: compliances, 1/(a + b s), then vary by
-// little more than a factor of two over each piece.
+// Halvings of an interval towards its softer end, so that compliances, 1/(a + b s), vary by little more than
+// a factor of two over each part.
 static int halvings(const bough_section_axis *a, double soft, double stiff) {
     bough_section_place low = bough_section_find(a, soft), high = bough_section_find(a, stiff);
     double ratio = 1;
@@ -136,7 +131,7 @@ static int halvings(const bough_section_axis *a, double soft, double stiff) {
     return (int)fmin(ceil(log2(ratio) - 0.5), MOST_HALVINGS);
 }
 
-// A stretch without a station inside.
+// An interval without a station inside.
 static void integrate_stretch(const bough_section_axis *a, double from, double to,
                               bough_section_visitor visit, void *context) {
     double middle = 0.5 * (from + to), inside = to - 1e-9 * (to - from); // before a station
@@ -145,6 +140,7 @@ static void integrate_stretch(const bough_section_axis *a, double from, double t
         integrate_piece(from, to, visit, context);
         return;
     }
+    // parts that halve towards both ends
     double low = from + ldexp(middle - from, -below), high = to - ldexp(to - middle, -above);
     integrate_piece(from, low, visit, context);
     for (int k = below - 1; k >= 0; k--) {

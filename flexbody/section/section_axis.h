@@ -20,12 +20,12 @@ double bough_section_length(const bough_section_axis *a);
 // Where s lies between two stations, and what is linear between them there.
 typedef struct bough_section_place {
     const bough_section_station *low, *high;
-    double share; // of the upper station
+    double fraction; // of the way to the upper station
 } bough_section_place;
 bough_section_place bough_section_find(const bough_section_axis *a, double s);
 
-static inline double bough_section_mix(double share, double low, double high) {
-    return low + share * (high - low);
+static inline double bough_section_mix(double fraction, double low, double high) {
+    return low + fraction * (high - low);
 }
 
 // The section at arc length s, and its axes in the BRF.
@@ -41,15 +41,15 @@ typedef void (*bough_section_visitor)(void *context, double s, double weight);
 void bough_section_integrate(const bough_section_axis *a, double from, double to, bough_section_visitor visit,
                              void *context);
 
-// A vertex' share of a segment's mass and first moment, in the axes of the segment's middle.
-typedef struct bough_section_share {
+// Mass and first moment of a segment at one of its vertices, in the axes of the segment's middle.
+typedef struct bough_section_mass {
     double mass;       // [kg]
     bough_vec3 moment; // [kg m]
-} bough_section_share;
+} bough_section_mass;
 
 // Inertia lumped to the vertices of a def that has its mesh (section_inertia.c): vertex (N + 1). Per
-// segment (N), gain is what its left vertex takes beyond its share by hat functions.
+// segment (N), gain is the mass of its left vertex beyond lumping by hat functions.
 void bough_section_lump(bough_arena *arena, const bough_section_axis *a, const bough_rod_def *def,
-                        const bough_section_share *gain, bough_vertex_inertia *vertex);
+                        const bough_section_mass *gain, bough_vertex_inertia *vertex);
 
 #endif

@@ -9,11 +9,11 @@
 //   fine:  by hat functions, where the chord carries it. Their error in the kinetic energy of bending
 //          waves, that of the trapezoidal rule for ρ w², is a difference of end values
 //          (Euler–Maclaurin) and is removed by first moments ±½∫ρ (s − a)(b − s)/h at the two
-//          vertices, so that it errs only at fourth order. Torsional inertia goes by the share of the
-//          twist that it meets in statics.
-//   rigid: by hat functions, where it is: what a vertex gets then is some body's, whatever the table.
-// Fine ones can leave a light vertex beside a heavy segment without a positive inertia; the segments
-// about it are then taken rigid.
+//          vertices, so that it errs only at fourth order. Torsional inertia is distributed in
+//          proportion to the twist in statics.
+//   rigid: by hat functions at its own position, so that the inertia of a vertex is positive for any table.
+// Fine lumping can leave a light vertex beside a heavy segment without a positive inertia; the segments
+// at this vertex are then lumped rigidly.
 
 // Adds weight·(2 (a·b) E − a bᵀ − b aᵀ)/2, the inertia of a product of offsets.
 static void add_offsets(double *j, double weight, bough_vec3 a, bough_vec3 b) {
@@ -27,7 +27,7 @@ static void add_offsets(double *j, double weight, bough_vec3 a, bough_vec3 b) {
 }
 
 // Adds weight·R I Rᵀ for a tensor with the columns given.
-static void add_turned(double *j, double weight, bough_mat3 r, bough_mat3 tensor) {
+static void add_rotated(double *j, double weight, bough_mat3 r, bough_mat3 tensor) {
     const bough_vec3 left[3] = {bough_mat3_mul(r, tensor.c1), bough_mat3_mul(r, tensor.c2),
                                 bough_mat3_mul(r, tensor.c3)};
     const bough_vec3 right[3] = {r.c1, r.c2, r.c3};
@@ -59,15 +59,15 @@ typedef struct lumping {
 typedef struct element {
     double mass;
     bough_vec3 offset, centre; // of the axis from the vertex or the chord, of the mass centre from it
-    bough_mat3 turn;
+    bough_mat3 axes;
     double inertia[4]; // about the mass centre
 } element;
 
-static void lump(const element *e, double share, double turned, bough_vertex_inertia *v) {
-    double mass = share * e->mass;
+static void lump(const element *e, double fraction, double rotated, bough_vertex_inertia *v) {
+    double mass = fraction * e->mass;
     v->mass += mass;
     v->moment = bough_axpy(mass, bough_add(e->offset, e->centre), v->moment);
-    add_turned(v->inertia, turned, e->turn, section_tensor(e->inertia));
+    add_rotated(v->inertia, rotated, e->axes, section_tensor(e->inertia));
     bough_vec3 arm = bough_add(e->offset, e->centre);
     add_offsets(v->inertia, mass, arm, arm);
 }
@@ -76,10 +76,10 @@ static void lump(const element *e, double share, double turned, bough_vertex_ine
 static element element_of(const lumping *c, const bough_section_station *x, bough_mat3 section, double weight,
                           int vertex, bough_vec3 from) {
     bough_mat3 axes = bough_mat3_transpose(bough_rotation_matrix(c->def->rotation[vertex]));
-    element e = {.mass = weight * x->mass, .turn = bough_mat3_product(axes, section)};
+    element e = {.mass = weight * x->mass, .axes = bough_mat3_product(axes, section)};
     double cx = x->centre[0], cy = x->centre[1];
     e.offset = bough_mat3_mul(axes, bough_sub(x->position, from));
-    e.centre = bough_mat3_mul(e.turn, bough_v3(cx, cy, 0));
+    e.centre = bough_mat3_mul(e.axes, bough_v3(cx, cy, 0));
     double central[4];
     bough_section_central(x, central);
     for (int i = 0; i < 4; i++) e.inertia[i] = weight * central[i];
@@ -89,11 +89,11 @@ static element element_of(const lumping *c, const bough_section_station *x, boug
 static void add_twist(void *context, double s, double weight) {
     lumping *c = context;
     bough_section_place p = bough_section_find(c->axis, s);
-    c->twist += weight * (1 / bough_section_mix(p.share, p.low->stiffness[20], p.high->stiffness[20]));
+    c->twist += weight * (1 / bough_section_mix(p.fraction, p.low->stiffness[20], p.high->stiffness[20]));
 }
 
 // Share of a unit twist over the segment that has come about at s.
-static double twist_share(const lumping *c, double s) {
+static double twist_fraction(const lumping *c, double s) {
     lumping below = {.axis = c->axis};
     bough_section_integrate(c->axis, c->def->span[c->segment], s, add_twist, &below);
     return below.twist / c->twist;
@@ -103,14 +103,14 @@ static void add_mass(void *context, double s, double weight) {
     lumping *c = context;
     const bough_rod_def *def = c->def;
     int k = c->segment;
-    double a = def->span[k], b = def->span[k + 1], share = (s - a) / (b - a);
-    double twisted = twist_share(c, s);
+    double a = def->span[k], b = def->span[k + 1], fraction = (s - a) / (b - a);
+    double twisted = twist_fraction(c, s);
     bough_section_station x = bough_section_at(c->axis, s);
     bough_vec3 step = bough_sub(def->position[k + 1], def->position[k]);
-    bough_vec3 chord = bough_axpy(share, step, def->position[k]);
+    bough_vec3 chord = bough_axpy(fraction, step, def->position[k]);
     bough_mat3 section = bough_rotation_matrix(bough_section_rotation(c->axis, s));
     for (int side = 0; side < 2; side++) {
-        double hat = side == 0 ? 1 - share : share;
+        double hat = side == 0 ? 1 - fraction : fraction;
         element on_chord = element_of(c, &x, section, weight, k + side, chord);
         element in_place = element_of(c, &x, section, weight, k + side, def->position[k + side]);
         lump(&on_chord, hat, side == 0 ? 1 - twisted : twisted, &c->fine[side]);
@@ -139,9 +139,9 @@ static void add_end_terms(lumping *c) {
     }
 }
 
-// Moves mass and first moment from the right vertex to the left one, and takes from both what that
-// makes of the second moments.
-static void add_gain(lumping *c, bough_section_share gain) {
+// Moves mass and first moment from the right vertex to the left one, and subtracts their second moments from
+// both.
+static void add_gain(lumping *c, bough_section_mass gain) {
     const bough_rod_def *def = c->def;
     int k = c->segment;
     bough_mat3 middle = mid_frame_between(def->rotation[k], def->rotation[k + 1]);
@@ -160,7 +160,7 @@ static void add_gain(lumping *c, bough_section_share gain) {
     }
 }
 
-// One segment's shares, fine (0) and rigid (1).
+// Inertia of one segment at its vertices, fine (0) and rigid (1).
 typedef struct segment_inertia {
     bough_vertex_inertia side[2][2]; // way, side
     double shift[2];                 // first moments of the fine way along the segment [kg m]
@@ -168,7 +168,7 @@ typedef struct segment_inertia {
 } segment_inertia;
 
 static segment_inertia lump_segment(const bough_section_axis *a, const bough_rod_def *def, int k,
-                                    bough_section_share gain) {
+                                    bough_section_mass gain) {
     lumping c = {.axis = a, .def = def, .segment = k};
     segment_inertia s = {.rigid = false};
     double from = def->span[k], to = def->span[k + 1];
@@ -231,7 +231,7 @@ static bool positive(const bough_vertex_inertia *v) {
     return bough_symmetric6_inverse(upper, inverse);
 }
 
-// The vertices by the way that each segment is to be lumped.
+// Sums over the segments at each vertex, lumped in the way that each segment is.
 static void sum_vertices(const bough_rod_def *def, const segment_inertia *segment,
                          bough_vertex_inertia *vertex) {
     int n = def->n_segment;
@@ -261,7 +261,7 @@ static bool make_rigid(int i, int reach, int n, segment_inertia *segment) {
 }
 
 void bough_section_lump(bough_arena *arena, const bough_section_axis *a, const bough_rod_def *def,
-                        const bough_section_share *gain, bough_vertex_inertia *vertex) {
+                        const bough_section_mass *gain, bough_vertex_inertia *vertex) {
     int n = def->n_segment;
     segment_inertia *segment = bough_arena_take(arena, (size_t)n * sizeof *segment);
     for (int k = 0; k < n; k++) segment[k] = lump_segment(a, def, k, gain[k]);
@@ -270,7 +270,7 @@ void bough_section_lump(bough_arena *arena, const bough_section_axis *a, const b
         sum_vertices(def, segment, vertex);
         for (int i = 0; i <= n; i++) {
             if (positive(&vertex[i])) continue;
-            // what others take from it comes from no further than three segments
+            // add_spread takes mass from vertices up to three segments away
             change = make_rigid(i, 1, n, segment) || make_rigid(i, 3, n, segment) || change;
         }
     }
@@ -284,7 +284,7 @@ bough_vertex_inertia bough_section_rigid(const bough_rod_def *def) {
         bough_vec3 d = def->position[i], moment = bough_mat3_mul(r, v->moment);
         const double *j = v->inertia;
         bough_mat3 tensor = {{j[0], j[3], j[4]}, {j[3], j[1], j[5]}, {j[4], j[5], j[2]}};
-        add_turned(sum.inertia, 1, r, tensor);
+        add_rotated(sum.inertia, 1, r, tensor);
         add_offsets(sum.inertia, v->mass, d, d);
         add_offsets(sum.inertia, 2, d, moment);
         sum.mass += v->mass;
