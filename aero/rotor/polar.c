@@ -103,7 +103,15 @@ void bough_polar_build(bough_arena *arena, const bough_polar_def *def, bough_pol
     int *bin = bough_arena_take(arena, N_BIN * sizeof *bin);
     fill_rows(def, n, row);
     row[ROW * n] = INFINITY;
-    *polar = (bough_polar){.n = n, .row = row, .n_bin = N_BIN, .bin_per_rad = N_BIN / circle, .bin = bin};
+    static const double jones[] = {0.165, 0.335, 0.0455, 0.3};
+    const double *k = def->indicial ? def->indicial : jones;
+    *polar = (bough_polar){.n = n,
+                           .row = row,
+                           .n_bin = N_BIN,
+                           .bin_per_rad = N_BIN / circle,
+                           .bin = bin,
+                           .wake_share = {k[0], k[1]},
+                           .wake_rate = {k[2], k[3]}};
     fill_bins(polar, bin);
     find_range(def, polar);
     fit_attached(polar);
@@ -134,7 +142,12 @@ void bough_polar_blend(bough_arena *arena, const bough_polar *a, const bough_pol
         to[2] = (1 - share) * x.drag + share * y.drag;
         to[3] = (1 - share) * x.moment + share * y.moment;
     }
-    bough_polar_def def = {.name = "blend", .n = n, .row = row};
+    double indicial[4];
+    for (int i = 0; i < 2; i++) {
+        indicial[i] = (1 - share) * a->wake_share[i] + share * b->wake_share[i];
+        indicial[2 + i] = (1 - share) * a->wake_rate[i] + share * b->wake_rate[i];
+    }
+    bough_polar_def def = {.name = "blend", .n = n, .row = row, .indicial = indicial};
     bough_polar_build(arena, &def, polar);
     bool a_whole = a->high - a->low >= circle, b_whole = b->high - b->low >= circle;
     polar->low = a_whole ? b->low : b_whole ? a->low : fmax(a->low, b->low);

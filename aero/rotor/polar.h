@@ -14,6 +14,9 @@ typedef struct bough_polar_def {
     const char *name; // for messages
     int n;
     const double *row; // (n × 4)
+    // A₁, A₂, b₁, b₂ of the indicial lift 1 − Σ A exp(−b s), s in semi-chords; NULL: Jones' values for a flat
+    // plate.
+    const double *indicial; // (4) [-]
 } bough_polar_def;
 
 typedef struct bough_coefficients {
@@ -32,8 +35,9 @@ typedef struct bough_polar {
     int most;         // knots within a bin
     double low, high; // range of its rows, high at most 2π above low [rad]
     // Of attached flow; slope 0: the polar has no lift.
-    double slope;     // the steepest line through zero lift that touches the polar [1/rad]
-    double zero_lift; // where the lift grows through zero, nearest to 0 [rad]
+    double slope;                       // the steepest line through zero lift that touches the polar [1/rad]
+    double zero_lift;                   // where the lift grows through zero, nearest to 0 [rad]
+    double wake_share[2], wake_rate[2]; // A and b of the indicial lift [-]
 } bough_polar;
 
 // From rows of finite numbers whose angles increase over 360 degrees at most.

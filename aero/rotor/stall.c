@@ -5,8 +5,6 @@
 
 #include <math.h>
 
-// Jones' approximation of the indicial lift of a flat plate: 1 − Σ A exp(−b s), s in semi-chords.
-static const double wake_share[2] = {0.165, 0.335}, wake_rate[2] = {0.0455, 0.3};
 // Lags of pressure and separation, in semi-chords.
 static const double pressure_time = 1.7, separation_time = 3.0;
 // The static polar alone from the second angle on, none of it up to the first [rad].
@@ -51,12 +49,12 @@ static double lagged(double x, double u0, double u1, double h) {
 }
 
 // Moves all angles by multiples of 2π, so that the angle of attack stays in [−π, π].
-static void unwind(bough_stall_state *s) {
+static void unwind(const bough_polar *polar, bough_stall_state *s) {
     double shift = circle * round(s->alpha / circle);
     s->alpha -= shift;
     s->pressure_sought -= shift;
     s->pressure -= shift;
-    for (int i = 0; i < 2; i++) s->wake[i] -= wake_share[i] * shift * s->speed;
+    for (int i = 0; i < 2; i++) s->wake[i] -= polar->wake_share[i] * shift * s->speed;
 }
 
 static double separation_at(const bough_polar *polar, double alpha) {
@@ -67,19 +65,20 @@ static double separation_at(const bough_polar *polar, double alpha) {
 
 static void start(const bough_polar *polar, double alpha, double speed, bough_stall_state *s) {
     double f = separation_at(polar, alpha);
-    *s = (bough_stall_state){.started = 1,
-                             .speed = speed,
-                             .alpha = alpha,
-                             .wake = {wake_share[0] * speed * alpha, wake_share[1] * speed * alpha},
-                             .pressure_sought = alpha,
-                             .pressure = alpha,
-                             .separation_sought = f,
-                             .separation = f};
+    *s = (bough_stall_state){
+        .started = 1,
+        .speed = speed,
+        .alpha = alpha,
+        .wake = {polar->wake_share[0] * speed * alpha, polar->wake_share[1] * speed * alpha},
+        .pressure_sought = alpha,
+        .pressure = alpha,
+        .separation_sought = f,
+        .separation = f};
 }
 
 // α_E of theory (89).
-static double effective(const bough_stall_state *s) {
-    double own = 1 - wake_share[0] - wake_share[1];
+static double effective(const bough_polar *polar, const bough_stall_state *s) {
+    double own = 1 - polar->wake_share[0] - polar->wake_share[1];
     return own * s->alpha + (s->wake[0] + s->wake[1]) / s->speed;
 }
 
@@ -88,19 +87,19 @@ static void advance(const bough_polar *polar, double semi_chords, double alpha, 
     double next = s->alpha + remainder(alpha - s->alpha, circle);
     double before = s->speed * s->alpha, after = speed * next;
     for (int i = 0; i < 2; i++) {
-        s->wake[i] =
-            lagged(s->wake[i], wake_share[i] * before, wake_share[i] * after, wake_rate[i] * semi_chords);
+        s->wake[i] = lagged(s->wake[i], polar->wake_share[i] * before, polar->wake_share[i] * after,
+                            polar->wake_rate[i] * semi_chords);
     }
     s->speed = speed;
     s->alpha = next;
     // theory (90): lags of pressure and of separation
-    double sought = effective(s) + mass_angle;
+    double sought = effective(polar, s) + mass_angle;
     s->pressure = lagged(s->pressure, s->pressure_sought, sought, semi_chords / pressure_time);
     s->pressure_sought = sought;
     double f = separation_at(polar, s->pressure);
     s->separation = lagged(s->separation, s->separation_sought, f, semi_chords / separation_time);
     s->separation_sought = f;
-    unwind(s);
+    unwind(polar, s);
 }
 
 // -- coefficients ---------------------------------------------------------------------------------
@@ -156,19 +155,19 @@ bough_coefficients bough_stall_advance(const bough_polar *polar, double chord, b
     }
     double share = dynamic_share(alpha);
     if (share == 0) return fixed;
-    bough_coefficients k = dynamic(polar, state->separation, effective(state), late, downwash);
+    bough_coefficients k = dynamic(polar, state->separation, effective(polar, state), late, downwash);
     return mixture(fixed, k, share);
 }
 
 // -- slopes ---------------------------------------------------------------------------------------
 
 // ∂α_E/∂α within an advance.
-static double prompt_share(double semi_chords) {
+static double prompt_share(const bough_polar *polar, double semi_chords) {
     double share = 1;
     // theory (89): the shed wake, driven by U α
     for (int i = 0; i < 2; i++) {
-        double h = wake_rate[i] * semi_chords;
-        share -= wake_share[i] * (h > 1e-6 ? -expm1(-h) / h : 1);
+        double h = polar->wake_rate[i] * semi_chords;
+        share -= polar->wake_share[i] * (h > 1e-6 ? -expm1(-h) / h : 1);
     }
     return share;
 }
@@ -185,7 +184,7 @@ bough_stall_slopes bough_stall_slopes_of(const bough_polar *polar, double chord,
     bough_stall_slopes slopes = {.angle = bough_polar_slope(polar, alpha)};
     if (state->started == 0 || share == 0) return slopes;
     double downwash = downwash_of(chord, inflow), late = alpha + downwash, x = state->separation;
-    double angle = effective(state), prompt = prompt_share(2 * step * inflow.speed / chord);
+    double angle = effective(polar, state), prompt = prompt_share(polar, 2 * step * inflow.speed / chord);
     bough_coefficients k = dynamic(polar, x, angle, late, downwash);
     bough_coefficients more = dynamic(polar, x, angle + prompt * d, late + d, downwash);
     bough_coefficients rotated = dynamic(polar, x, angle + prompt * d, late + d, downwash + d);

@@ -1,6 +1,6 @@
 // Dynamic stall: lift follows a change of the angle of attack with delay, by the shed wake and by
 // the flow's separation. The Beddoes–Leishman model in the state form of Hansen, Gaunaa and Madsen,
-// whose parameters follow from the static polar and six defaults.
+// whose parameters follow from the static polar, its indicial lift and two defaults.
 //
 // M. H. Hansen, M. Gaunaa, H. A. Madsen, "A Beddoes–Leishman type dynamic stall model in
 // state-space and indicial formulations", Risø-R-1354 (2004). The centre of pressure stays the

@@ -146,7 +146,7 @@ static void put_row(FILE *file, double angle, const double *rest) {
     fputc('\n', file);
 }
 
-void bough_draft_polar(bough_draft *d, const char *name, const double *row, int n) {
+void bough_draft_polar(bough_draft *d, const char *name, const double *row, int n, const double *indicial) {
     const double close = 1e-3; // [deg]
     FILE *file = d->file[BOUGH_IMPORT_POLARS];
     const double *last = row + BOUGH_POLAR_COLUMNS * (n - 1);
@@ -156,7 +156,13 @@ void bough_draft_polar(bough_draft *d, const char *name, const double *row, int 
         gap = fmax(gap, fabs(row[1 + c] - last[1 + c]));
     }
     bool whole = n > 1 && row[0] <= close - 180 && last[0] >= 180 - close;
-    fprintf(file, "  - name: %s\n    table:\n      columns: [alpha deg, cl, cd, cm]\n      rows:\n", name);
+    fprintf(file, "  - name: %s\n", name);
+    if (indicial) {
+        fputs("    indicial: ", file);
+        bough_import_list(file, indicial, 4);
+        fputs("\n", file);
+    }
+    fputs("    table:\n      columns: [alpha deg, cl, cd, cm]\n      rows:\n", file);
     put_row(file, -180, end);
     for (int i = 0; i < n; i++) {
         const double *r = row + BOUGH_POLAR_COLUMNS * i;

@@ -85,8 +85,9 @@ enum { BOUGH_AIRFOIL_NAME = 64, BOUGH_POLAR_COLUMNS = 4 };
 void bough_draft_airfoil_name(const char *text, size_t length, int number, char name[BOUGH_AIRFOIL_NAME]);
 
 // A polar with rows (n × BOUGH_POLAR_COLUMNS) of rising angle [deg], lift, drag and moment, written from -180
-// to 180 deg, where the values are one: the mean of those at the table's ends.
-void bough_draft_polar(bough_draft *d, const char *name, const double *row, int n);
+// to 180 deg, where the values are one: the mean of those at the table's ends. `indicial`: A1, A2, b1, b2 of
+// the polar's dynamic stall (4), NULL: the scene's default.
+void bough_draft_polar(bough_draft *d, const char *name, const double *row, int n, const double *indicial);
 
 // "[1, 2, 3]" in the scene's spelling.
 void bough_import_list(FILE *file, const double *value, int n);

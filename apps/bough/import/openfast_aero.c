@@ -37,11 +37,21 @@ static double *read_polar(bough_openfast *o, const bough_deck *deck, int *n) {
     return bough_is_ok(o->draft.status) ? table : NULL;
 }
 
+static bool dynamic_stall(const bough_deck *aero) {
+    if (bough_deck_line(aero, "UA_Mod") >= 0) return bough_deck_whole_or(aero, "UA_Mod", 0) > 0;
+    return bough_deck_whole_or(aero, "AFAeroMod", 1) == 2;
+}
+
 static void put_polar(bough_openfast *o, const bough_deck *deck, const char *name) {
     int n;
     const double *table = read_polar(o, deck, &n);
     if (!table) return;
-    bough_draft_polar(&o->draft, name, table, n);
+    // The defaults are AeroDyn's.
+    const double indicial[] = {bough_deck_number_or(deck, "A1", 0.3), bough_deck_number_or(deck, "A2", 0.7),
+                               bough_deck_number_or(deck, "b1", 0.14),
+                               bough_deck_number_or(deck, "b2", 0.53)};
+    if (!bough_is_ok(o->draft.status)) return;
+    bough_draft_polar(&o->draft, name, table, n, dynamic_stall(o->aero) ? indicial : NULL);
     if (bough_deck_whole_or(deck, "NumTabs", 1) > 1) {
         bough_draft_note(&o->draft, BOUGH_APPROXIMATED,
                          "%s: the first of its tables is used for all Reynolds numbers", name);
@@ -215,9 +225,8 @@ static void put_induction(bough_openfast *o) {
 
 static void put_stall(bough_openfast *o) {
     const bough_deck *a = o->aero;
-    bool newer = bough_deck_line(a, "UA_Mod") >= 0;
     int model = bough_deck_whole_or(a, "UAMod|UA_Mod", 0);
-    bool on = newer ? model > 0 : bough_deck_whole_or(a, "AFAeroMod", 1) == 2;
+    bool on = dynamic_stall(a);
     FILE *file = o->draft.file[BOUGH_IMPORT_SCENE];
     if (on) fputs("  dynamic_stall: hgm\n", file);
     if (on && model != 4) {

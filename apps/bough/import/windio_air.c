@@ -49,7 +49,7 @@ static void put_polar(bough_windio *w, const bough_curve *c, const char *name) {
         row[POLAR * i] = angle[i];
         for (int k = 0; k < 3; k++) row[POLAR * i + 1 + k] = bough_curve_at(&c[k], angle[i]);
     }
-    bough_draft_polar(&w->draft, name, row, n);
+    bough_draft_polar(&w->draft, name, row, n, NULL);
 }
 
 static void put_airfoil(bough_windio *w, const bough_node *airfoil, int number) {

@@ -344,6 +344,7 @@ typedef struct bough_scene_polar {
     const char *name;
     int n_row;
     bough_scene_polar_row *row; // (n_row), alpha strictly increasing from −π to π
+    double indicial[4];         // A₁, A₂, b₁, b₂ of dynamic stall [-]
 } bough_scene_polar;
 
 typedef struct bough_scene_polars {

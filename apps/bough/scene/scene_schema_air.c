@@ -58,6 +58,10 @@ static const bough_key polar_keys[] = {
     {KEY(TEXT, name), .required = true, .example = "DU25", .help = "unique"},
     {NAMED("table", LIST), AT(row), .of = &polar_row_schema, .count = 2, .required = true,
      COUNT_AT(n_row), .help = "rows from -180 deg to 180 deg, with linear interpolation"},
+    {KEY(VECTOR, indicial), .count = 4, .range = ">= 0", .fallback = "[0.165, 0.335, 0.0455, 0.3]",
+     .example = "[0.3, 0.7, 0.14, 0.53]",
+     .help = "of dynamic stall: A1, A2, b1, b2 of the lift 1 - A1 exp(-b1 s) - A2 exp(-b2 s) after a step of "
+             "the angle of attack, s in half chords; default a flat plate (Jones)"},
 };
 #undef FILLS
 static const bough_schema polar_schema = {SCHEMA("a polar", bough_scene_polar, polar_keys),

@@ -173,6 +173,26 @@ TEST(withheld_lift_leans_back) {
     check_near(k.drag, degree * k.lift, 1e-4, 0);
 }
 
+// After a small step of the angle of attack the attached lift follows the polar's own indicial function.
+TEST(indicial_lift_is_the_polars) {
+    foils *a = *context;
+    static const double k[] = {0.3, 0.7, 0.14, 0.53};
+    const double chord = 2, speed = 40, step = 0.01 * degree;
+    bough_polar_def def = {.name = "plate", .n = 4, .row = &plate_rows[0][0], .indicial = k};
+    bough_polar foil;
+    bough_polar_build(a->arena, &def, &foil);
+    bough_stall_state s = {0};
+    bough_stall_advance(&foil, chord, (bough_stall_inflow){speed, 4 * degree, 0}, 0, &s);
+    double before = bough_polar_at(&foil, 4 * degree).lift;
+    bough_stall_inflow after = {speed, 4 * degree + step, 0};
+    bough_stall_advance(&foil, chord, after, 1e-9, &s);
+    for (int i = 1; i <= 10; i++) {
+        double lift = bough_stall_advance(&foil, chord, after, 0.5 * chord / speed, &s).lift;
+        double expected = 1 - k[0] * exp(-k[2] * i) - k[1] * exp(-k[3] * i);
+        check_near((lift - before) / (foil.slope * step), expected, 0, 1e-6);
+    }
+}
+
 // Lift against angle over one period, after `cycles`.
 typedef struct loop {
     double area;     // ∮ Cl dα, positive: the air does work on the section
