@@ -1,6 +1,8 @@
 // The help text of a schema: nested lists of keys, which are Markdown as they stand.
 #include "apps/bough/config/schema_internal.h"
 
+#include "core/base/quote.h"
+
 #include <string.h>
 
 static const char *const kind_names[] = {
@@ -88,7 +90,7 @@ static void put_choices(const bough_key *key, FILE *stream) {
     fputs("\"enum\": [", stream);
     for (int i = 0; (choice = bough_key_choice(key, i)) != NULL; i++) {
         if (i > 0) fputs(", ", stream);
-        bough_text_quoted(stream, choice);
+        bough_quote(stream, choice);
     }
     fputc(']', stream);
 }
@@ -133,7 +135,7 @@ static void put_description(const bough_key *key, FILE *stream) {
              key->form ? key->form : "", unit[0] ? "; in " : "", unit, key->fallback ? "; default " : "",
              key->fallback ? key->fallback : "", example[0] ? "; e.g. " : "", example);
     fputs("\"description\": ", stream);
-    bough_text_quoted(stream, text);
+    bough_quote(stream, text);
 }
 
 static void put_key(const bough_key *key, FILE *stream) {
@@ -157,7 +159,7 @@ static bool comes_again(const bough_schema *schema, int i, int step) {
 
 // A key that takes another form with another choice of a key before it stands once, with all forms.
 static void put_property(const bough_schema *schema, int first, FILE *stream) {
-    bough_text_quoted(stream, schema->key[first].name);
+    bough_quote(stream, schema->key[first].name);
     fputs(": ", stream);
     if (!comes_again(schema, first, 1)) {
         put_key(&schema->key[first], stream);
@@ -174,7 +176,7 @@ static void put_property(const bough_schema *schema, int first, FILE *stream) {
 
 void bough_schema_json_object(const bough_schema *schema, FILE *stream) {
     fputs("{\"type\": \"object\", \"title\": ", stream);
-    bough_text_quoted(stream, schema->name);
+    bough_quote(stream, schema->name);
     fputs(", \"additionalProperties\": false, \"properties\": {\n", stream);
     for (int i = 0, n = 0; i < schema->n_key; i++) {
         if (comes_again(schema, i, -1)) continue;
@@ -185,14 +187,14 @@ void bough_schema_json_object(const bough_schema *schema, FILE *stream) {
     for (int i = 0, n = 0; i < schema->n_key; i++) {
         if (!schema->key[i].required || schema->key[i].when || comes_again(schema, i, -1)) continue;
         if (n++ > 0) fputs(", ", stream);
-        bough_text_quoted(stream, schema->key[i].name);
+        bough_quote(stream, schema->key[i].name);
     }
     fputs("]}", stream);
 }
 
 void bough_schema_json(const char *title, const bough_schema *const *schema, int n, FILE *stream) {
     fputs("{\"$schema\": \"https://json-schema.org/draft/2020-12/schema\", \"title\": ", stream);
-    bough_text_quoted(stream, title);
+    bough_quote(stream, title);
     fputs(", \"anyOf\": [\n", stream);
     for (int i = 0; i < n; i++) {
         if (i > 0) fputs(",\n", stream);

@@ -429,12 +429,3 @@ bough_node *bough_node_find(const bough_node *node, const char *key) {
     }
     return NULL;
 }
-
-void bough_text_quoted(FILE *stream, const char *text) {
-    fputc('"', stream);
-    for (const char *c = text; *c; c++) {
-        if (*c == '"' || *c == '\\') fputc('\\', stream);
-        if ((unsigned char)*c >= 0x20) fputc(*c, stream);
-    }
-    fputc('"', stream);
-}

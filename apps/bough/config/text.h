@@ -64,9 +64,6 @@ bough_node *bough_text_read(bough_arena *arena, const char *path, bough_errors *
 bough_node *bough_text_parse(bough_arena *arena, const char *file, const char *text, size_t size,
                              bough_errors *errors);
 
-// Writes a text in double quotes, as YAML and JSON read it; control characters are left out.
-void bough_text_quoted(FILE *stream, const char *text);
-
 // The value of a key in a mapping, NULL when there is none or the node is no mapping (or NULL).
 bough_node *bough_node_find(const bough_node *node, const char *key);
 

@@ -42,10 +42,10 @@ static int conclude_closed(bough_session *s, const char *call) {
 }
 
 static int conclude_failed(bough_session *s, const char *call) {
-    return conclude(s, bough_fail(BOUGH_FAILED,
-                                  "%s: a step has failed, and the session can only be restored or closed: "
-                                  "%.300s",
-                                  call, s->run.outcome.message));
+    return conclude(
+        s, bough_fail(BOUGH_FAILED,
+                      "%s: a step has failed, and the session can only be restored or closed: %.300s", call,
+                      s->run.outcome.message));
 }
 
 // All errors of the scene, a line each; as many as there is room for.

@@ -25,6 +25,15 @@ void bough_deck_fail(const bough_deck *deck, int line, const char *format, ...) 
     *deck->status = bough_fail(BOUGH_INVALID, "%.150s:%s %s", deck->path, at, text);
 }
 
+void bough_deck_refuse(const bough_deck *deck, const char *names, const char *format, ...) {
+    char text[300];
+    va_list list;
+    va_start(list, format);
+    vsnprintf(text, sizeof text, format, list);
+    va_end(list);
+    bough_deck_fail(deck, bough_deck_line(deck, names), "%.*s: %s", (int)strcspn(names, "|"), names, text);
+}
+
 // -- words ----------------------------------------------------------------------------------------
 
 // Takes the next word off *at, quotes removed; false at the end of the line.
@@ -208,8 +217,7 @@ int bough_deck_whole(const bough_deck *deck, const char *names, int least, int m
     double value = bough_deck_number(deck, names);
     if (!deck || !bough_is_ok(deck->status)) return 0;
     if (value == floor(value) && value >= least && value <= most) return (int)value;
-    bough_deck_fail(deck, bough_deck_line(deck, names), "%.*s: expected a whole number from %d to %d, got %g",
-                    (int)strcspn(names, "|"), names, least, most, value);
+    bough_deck_refuse(deck, names, "expected a whole number from %d to %d, got %g", least, most, value);
     return 0;
 }
 

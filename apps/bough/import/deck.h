@@ -79,4 +79,8 @@ int bough_deck_find(const bough_deck *deck, const char *words);
 void bough_deck_fail(const bough_deck *deck, int line, const char *format, ...)
     __attribute__((format(printf, 3, 4)));
 
+// The same at the line of that name, which begins the message.
+void bough_deck_refuse(const bough_deck *deck, const char *names, const char *format, ...)
+    __attribute__((format(printf, 3, 4)));
+
 #endif

@@ -5,6 +5,7 @@
 #include "apps/bough/model/run.h"
 #include "apps/bough/results/folder.h"
 #include "apps/bough/scene/scene.h"
+#include "core/base/quote.h"
 
 #include <ctype.h>
 #include <errno.h>
@@ -184,7 +185,7 @@ void bough_import_path(FILE *file, const char *path) {
     char here[BOUGH_PATH_MAX], whole[2 * BOUGH_PATH_MAX];
     bool relative = path[0] != '/' && getcwd(here, sizeof here);
     snprintf(whole, sizeof whole, "%s%s%s", relative ? here : "", relative ? "/" : "", path);
-    bough_text_quoted(file, whole);
+    bough_quote(file, whole);
 }
 
 char bough_import_letter(char letter) {
@@ -203,7 +204,7 @@ void bough_draft_head(bough_draft *d, const char *title, const char *origin, dou
             "# Ground axes: x downwind, z up. The rotor turns positive about the shaft's x.\n"
             "title: ",
             origin);
-    bough_text_quoted(file, title);
+    bough_quote(file, title);
     fprintf(file,
             "\ngravity: [0, 0, %.10g]\nsimulation:\n  duration: %.10g s\n"
             "  macro_step: %g s\n"

@@ -64,6 +64,12 @@ bough_status bough_draft_import(const bough_draft_def *def);
 void bough_draft_note(bough_draft *d, bough_import_note kind, const char *format, ...)
     __attribute__((format(printf, 3, 4)));
 
+// … of the kinds that readers of models use; x->draft is the draft.
+#define bough_taken(x, ...) bough_draft_note(&(x)->draft, BOUGH_TAKEN, __VA_ARGS__)
+#define bough_approximated(x, ...) bough_draft_note(&(x)->draft, BOUGH_APPROXIMATED, __VA_ARGS__)
+#define bough_left_out(x, ...) bough_draft_note(&(x)->draft, BOUGH_LEFT_OUT, __VA_ARGS__)
+#define bough_other_case(x, ...) bough_draft_note(&(x)->draft, BOUGH_OTHER_CASE, __VA_ARGS__)
+
 // Writes the scene's first lines: comment, title, time, solvers. The macro step follows from the rotor's
 // speed [rad/s]; the duration [s] is rounded up to whole macro steps. `origin`: "an OpenFAST model".
 void bough_draft_head(bough_draft *d, const char *title, const char *origin, double gravity, double duration,

@@ -141,8 +141,7 @@ bough_curve bough_curve_of(bough_draft *d, const bough_node *node, const double 
     for (int i = 1; i < n; i++) {
         if (x[i] >= x[i - 1]) continue;
         bough_entry_fail(d, node,
-                         "grid: expected increasing numbers, but number %d is not larger "
-                         "than the one before",
+                         "grid: expected increasing numbers, but number %d is not larger than the one before",
                          i + 1);
         return (bough_curve){0};
     }

@@ -8,7 +8,7 @@
 bough_deck *bough_openfast_open(bough_openfast *o, const bough_deck *from, const char *names) {
     const char *path = bough_deck_file(from, names);
     bough_deck *deck = bough_deck_open(o->draft.arena, path, BOUGH_DECK_HEADING, o->draft.status);
-    if (deck) bough_draft_note(&o->draft, BOUGH_TAKEN, "%.*s: %s", (int)strcspn(names, "|"), names, path);
+    if (deck) bough_taken(o, "%.*s: %s", (int)strcspn(names, "|"), names, path);
     return deck;
 }
 
@@ -17,8 +17,7 @@ void bough_openfast_leave(bough_openfast *o, const bough_deck *deck, const bough
     for (size_t i = 0; i < n; i++) {
         double value = bough_deck_switch_or(deck, rest[i].name, rest[i].neutral);
         if (value == rest[i].neutral) continue;
-        bough_draft_note(&o->draft, BOUGH_LEFT_OUT, "%s%s%s", rest[i].name, rest[i].text ? ": " : "",
-                         rest[i].text ? rest[i].text : "");
+        bough_left_out(o, "%s%s%s", rest[i].name, rest[i].text ? ": " : "", rest[i].text ? rest[i].text : "");
     }
 }
 
@@ -31,26 +30,25 @@ static void leave_water(bough_openfast *o) {
     for (size_t i = 0; i < sizeof part / sizeof *part; i++) {
         if (bough_deck_whole_or(o->main, part[i], 0) == 0) continue;
         if (o->options->clamp_base) {
-            bough_draft_note(&o->draft, BOUGH_LEFT_OUT, "%s: the tower's base is clamped", part[i]);
+            bough_left_out(o, "%s: the tower's base is clamped", part[i]);
             continue;
         }
         bough_deck_fail(o->main, bough_deck_line(o->main, part[i]),
-                        "%s: expected 0, a turbine on land; --clamp-base imports it clamped at "
-                        "the tower's base",
+                        "%s: expected 0, a turbine on land; --clamp-base imports it clamped at the tower's "
+                        "base",
                         part[i]);
     }
     if (bough_deck_whole_or(o->main, "MHK", 0) != 0) {
-        bough_deck_fail(o->main, bough_deck_line(o->main, "MHK"), "MHK: expected 0, a turbine in air");
+        bough_deck_refuse(o->main, "MHK", "expected 0, a turbine in air");
     }
 }
 
 // Since version 5.
 static void refuse_other_rotors(const bough_openfast *o) {
     if (bough_deck_whole_or(o->main, "NRotors", 1) != 1) {
-        bough_deck_fail(o->main, bough_deck_line(o->main, "NRotors"), "NRotors: expected 1");
+        bough_deck_refuse(o->main, "NRotors", "expected 1");
     } else if (bough_deck_flag_or(o->main, "MirrorRotor", false)) {
-        bough_deck_fail(o->main, bough_deck_line(o->main, "MirrorRotor"),
-                        "MirrorRotor: expected False, a rotor that turns clockwise");
+        bough_deck_refuse(o->main, "MirrorRotor", "expected False, a rotor that turns clockwise");
     }
 }
 
@@ -73,9 +71,9 @@ static void open_modules(bough_openfast *o) {
     int elastic = bough_deck_whole(o->main, "CompElast", 1, 3);
     int air = bough_deck_whole(o->main, "CompAero", 0, 3);
     if (elastic == 3) {
-        bough_deck_fail(o->main, bough_deck_line(o->main, "CompElast"),
-                        "CompElast: expected 1 (ElastoDyn) or 2 (with BeamDyn), got 3 (Simplified "
-                        "ElastoDyn), which describes no blades");
+        bough_deck_refuse(o->main, "CompElast",
+                          "expected 1 (ElastoDyn) or 2 (with BeamDyn), got 3 "
+                          "(Simplified ElastoDyn), which describes no blades");
     }
     leave_water(o);
     refuse_other_rotors(o);
@@ -85,10 +83,10 @@ static void open_modules(bough_openfast *o) {
         o->inflow = bough_openfast_open(o, o->main, "InflowFile");
     }
     if (air == 1 || air == 3) {
-        bough_deck_fail(o->main, bough_deck_line(o->main, "CompAero"),
-                        "CompAero: expected 0 or 2 (AeroDyn 15 and later), got %d: AeroDyn 14, AeroDisk and "
-                        "external loads are not supported",
-                        air);
+        bough_deck_refuse(o->main, "CompAero",
+                          "expected 0 or 2 (AeroDyn 15 and later), got %d: AeroDyn 14, "
+                          "AeroDisk and external loads are not supported",
+                          air);
     }
     if (air == 2) o->aero = bough_openfast_open(o, o->main, "AeroFile");
     if (bough_deck_whole_or(o->main, "CompServo", 0) == 1) {
@@ -114,11 +112,10 @@ static void read_shape(bough_openfast *o) {
     o->tower_base = bough_deck_number_or(e, "TowerBsHt", 0);
     if (!bough_is_ok(o->draft.status)) return;
     if (bough_deck_flag_or(e, "Furling", false)) {
-        bough_deck_fail(e, bough_deck_line(e, "Furling"),
-                        "Furling: expected False: tails and rotors that furl are not supported");
+        bough_deck_refuse(e, "Furling", "expected False: tails and rotors that furl are not supported");
     }
     if (!(o->tower_top > o->tower_base)) {
-        bough_deck_fail(e, bough_deck_line(e, "TowerHt"), "TowerHt: expected more than TowerBsHt");
+        bough_deck_refuse(e, "TowerHt", "expected more than TowerBsHt");
     }
     o->rigid_blade = !o->beamdyn && !any(e, blade);
     o->rigid_tower = !any(e, tower);
@@ -130,13 +127,12 @@ static void put_head(bough_openfast *o, const char *path) {
     double g = bough_deck_number_or(o->main, "Gravity", bough_deck_number_or(o->elasto, "Gravity", 9.80665));
     double most = bough_deck_number(o->main, "TMax"), turn = bough_openfast_rotor_speed(o);
     if (!(most >= 0 && most <= 1e6)) {
-        bough_deck_fail(o->main, bough_deck_line(o->main, "TMax"), "TMax: expected a time from 0 to 1e6 s");
+        bough_deck_refuse(o->main, "TMax", "expected a time from 0 to 1e6 s");
     }
     const char *slash = strrchr(path, '/');
     bough_draft_head(&o->draft, slash ? slash + 1 : path, "an OpenFAST model", g, most, turn);
-    bough_draft_note(&o->draft, BOUGH_LEFT_OUT,
-                     "solver settings, output channels, visualisation, "
-                     "linearisation: the scene has its own");
+    bough_left_out(o, "solver settings, output channels, visualisation, linearisation: the scene has its "
+                      "own");
 }
 
 static void note_other_blades(bough_openfast *o, const bough_deck *deck, const char *stem) {
@@ -146,7 +142,7 @@ static void note_other_blades(bough_openfast *o, const bough_deck *deck, const c
         snprintf(name, sizeof name, "%s(%d)|%s%d", stem, k, stem, k);
         if (bough_deck_line(deck, name) < 0) continue;
         if (strcmp(bough_deck_text(deck, name), bough_deck_text(deck, first)) == 0) continue;
-        bough_draft_note(&o->draft, BOUGH_APPROXIMATED, "%s(%d): blade %d is as the first", stem, k, k);
+        bough_approximated(o, "%s(%d): blade %d is as the first", stem, k, k);
     }
 }
 

@@ -53,8 +53,7 @@ static void put_polar(bough_openfast *o, const bough_deck *deck, const char *nam
     if (!bough_is_ok(o->draft.status)) return;
     bough_draft_polar(&o->draft, name, table, n, dynamic_stall(o->aero) ? indicial : NULL);
     if (bough_deck_whole_or(deck, "NumTabs", 1) > 1) {
-        bough_draft_note(&o->draft, BOUGH_APPROXIMATED,
-                         "%s: the first of its tables is used for all Reynolds numbers", name);
+        bough_approximated(o, "%s: the first of its tables is used for all Reynolds numbers", name);
     }
 }
 
@@ -79,7 +78,7 @@ static int put_polars(bough_openfast *o, char (*name)[NAME]) {
         if (!deck) return 0;
         put_polar(o, deck, name[i]);
     }
-    bough_draft_note(&o->draft, BOUGH_TAKEN, "%d airfoils: lift, drag, moment", n);
+    bough_taken(o, "%d airfoils: lift, drag, moment", n);
     return n;
 }
 
@@ -119,10 +118,10 @@ static void put_span(bough_openfast *o, const double *row, int n, char (*name)[N
         put_element(file, row, length, name[(int)row[AIRFOIL] - 1]);
     }
     if (first > close || fabs(last - length) > close) {
-        bough_draft_note(&o->draft, BOUGH_APPROXIMATED,
-                         "blade elements from %g to %g m on a blade of %g m: cut at its tip, or "
-                         "extended with the last element",
-                         first, last, length);
+        bough_approximated(o,
+                           "blade elements from %g to %g m on a blade of %g m: cut at its tip, or "
+                           "extended with the last element",
+                           first, last, length);
     }
 }
 
@@ -143,10 +142,8 @@ static void put_elements(bough_openfast *o, const bough_deck *deck, char (*name)
             bough_deck_fail(deck, line, "BlAFID: row %d: expected an airfoil from 1 to %d, got %g", i + 1,
                             n_name, r[AIRFOIL]);
         } else if (!(r[SPAN] > last)) {
-            bough_deck_fail(deck, line,
-                            "BlSpn: row %d: expected increasing spans from 0, got %g "
-                            "m",
-                            i + 1, r[SPAN]);
+            bough_deck_fail(deck, line, "BlSpn: row %d: expected increasing spans from 0, got %g m", i + 1,
+                            r[SPAN]);
         } else if (!(r[CHORD] > 0)) {
             bough_deck_fail(deck, line, "BlChord: row %d: expected a positive chord, got %g m", i + 1,
                             r[CHORD]);
@@ -156,10 +153,9 @@ static void put_elements(bough_openfast *o, const bough_deck *deck, char (*name)
     }
     if (!row || !bough_is_ok(o->draft.status)) return;
     put_span(o, row, n, name);
-    bough_draft_note(&o->draft, BOUGH_TAKEN, "%d blade elements", n);
+    bough_taken(o, "%d blade elements", n);
     if (angle > 0) {
-        bough_draft_note(&o->draft, BOUGH_LEFT_OUT,
-                         "BlCrvAng, up to %g deg: elements are normal to the structure's axis", angle);
+        bough_left_out(o, "BlCrvAng, up to %g deg: elements are normal to the structure's axis", angle);
     }
 }
 
@@ -198,28 +194,24 @@ static void put_induction(bough_openfast *o) {
     if (time > 0) fprintf(file, ", inflow_time: %.10g s", time);
     fputs("}\n", file);
     if (momentum && balance == 1) {
-        bough_draft_note(&o->draft, BOUGH_LEFT_OUT, "SkewMomCorr is only used with BEM_Mod 2");
+        bough_left_out(o, "SkewMomCorr is only used with BEM_Mod 2");
     }
     if (bough_deck_flag_or(a, "AIDrag", true) != bough_deck_flag_or(a, "TIDrag", true)) {
-        bough_draft_note(&o->draft, BOUGH_APPROXIMATED,
-                         "TIDrag: drag in the tangential induction follows AIDrag");
+        bough_approximated(o, "TIDrag: drag in the tangential induction follows AIDrag");
     }
     if (balance == 1) {
-        bough_draft_note(&o->draft, BOUGH_APPROXIMATED,
-                         "BEM_Mod 1: Buhl's high-thrust correction, and otherwise the momentum "
-                         "balance of BEM_Mod 2");
+        bough_approximated(o, "BEM_Mod 1: Buhl's high-thrust correction, and otherwise the momentum balance "
+                              "of BEM_Mod 2");
     } else if (balance == 0) {
-        bough_draft_note(&o->draft, BOUGH_APPROXIMATED,
-                         "no BEM_Mod: smooth high-thrust correction, in place of Buhl's in "
-                         "AeroDyn before version 4");
+        bough_approximated(o, "no BEM_Mod: smooth high-thrust correction, in place of Buhl's in AeroDyn "
+                              "before version 4");
     }
-    if (wake == 0) bough_draft_note(&o->draft, BOUGH_APPROXIMATED, "WakeMod 0: induction is computed");
+    if (wake == 0) bough_approximated(o, "WakeMod 0: induction is computed");
     if (wake == 3) {
-        bough_draft_note(&o->draft, BOUGH_APPROXIMATED, "OLAF: replaced by blade element momentum theory");
+        bough_approximated(o, "OLAF: replaced by blade element momentum theory");
     }
     if (oye) {
-        bough_draft_note(&o->draft, BOUGH_APPROXIMATED,
-                         "DBEMT_Mod %d: Oye's dynamic inflow, for each element separately", dynamic);
+        bough_approximated(o, "DBEMT_Mod %d: Oye's dynamic inflow, for each element separately", dynamic);
     }
 }
 
@@ -230,13 +222,13 @@ static void put_stall(bough_openfast *o) {
     FILE *file = o->draft.file[BOUGH_IMPORT_SCENE];
     if (on) fputs("  dynamic_stall: hgm\n", file);
     if (on && model != 4) {
-        bough_draft_note(&o->draft, BOUGH_APPROXIMATED,
-                         "UAMod %d: dynamic stall by Hansen, Gaunaa and "
-                         "Madsen's model (4), its constants from the polars",
-                         model);
+        bough_approximated(o,
+                           "UAMod %d: dynamic stall by Hansen, Gaunaa and Madsen's model (4), its "
+                           "constants from the polars",
+                           model);
     }
     if (on && bough_deck_number_or(a, "UAStartRad", 0) > 0) {
-        bough_draft_note(&o->draft, BOUGH_LEFT_OUT, "UAStartRad: dynamic stall acts on all elements");
+        bough_left_out(o, "UAStartRad: dynamic stall acts on all elements");
     }
     if (!bough_deck_flag_or(a, "UseBlCm", true)) fputs("  pitching_moment: false\n", file);
 }
@@ -257,8 +249,8 @@ static const double *above_ground(bough_openfast *o, const double *row, int *n) 
         double height = fmax(r[0], 0);
         if (!(r[1] > 0) || r[2] < 0 || (m > 0 && !(height > kept[3 * (m - 1)]))) {
             bough_deck_fail(o->aero, bough_deck_line(o->aero, "NumTwrNds"),
-                            "TwrElev, TwrDiam, TwrCd: row %d: expected increasing heights, "
-                            "positive diameters, drag not negative",
+                            "TwrElev, TwrDiam, TwrCd: row %d: expected increasing heights, positive "
+                            "diameters, drag not negative",
                             i + 1);
         }
         const double own[] = {height, r[1], r[2]};
@@ -290,17 +282,13 @@ static void put_tower(bough_openfast *o) {
     put_column(file, "height", row, 0, n);
     put_column(file, "diameter", row, 1, n);
     put_column(file, "drag", row, 2, n);
-    bough_draft_note(&o->draft, BOUGH_TAKEN, "the tower's influence on the wind%s",
-                     drag ? " and its drag" : "");
+    bough_taken(o, "the tower's influence on the wind%s", drag ? " and its drag" : "");
     if (potential == 0) {
-        bough_draft_note(&o->draft, BOUGH_APPROXIMATED,
-                         "TwrPotent 0: potential flow about the tower is included with its shadow "
-                         "or drag");
+        bough_approximated(o, "TwrPotent 0: potential flow about the tower is included with its shadow or "
+                              "drag");
     }
     if (shadow == 2) {
-        bough_draft_note(&o->draft, BOUGH_APPROXIMATED,
-                         "TwrShadow 2: Powles' model replaces "
-                         "Eames'");
+        bough_approximated(o, "TwrShadow 2: Powles' model replaces Eames'");
     }
 }
 

@@ -37,15 +37,14 @@ static line_point at_share(const line_point *p, int n, double share) {
 static const line_point *read_line(bough_openfast *o, const bough_deck *deck, int *n) {
     *n = bough_deck_whole(deck, "kp_total", 2, MOST);
     if (bough_deck_whole_or(deck, "member_total", 1) != 1) {
-        bough_draft_note(&o->draft, BOUGH_APPROXIMATED, "BeamDyn's members: joined to one row of points");
+        bough_approximated(o, "BeamDyn's members: joined to one row of points");
     }
     const char *const column[] = {"kp_xr", "kp_yr", "kp_zr", "initial_twist"};
     const line_point *p = (const line_point *)bough_deck_table(deck, column, 4, *n);
     for (int i = 1; p && i < *n; i++) {
         if (p[i].z > p[i - 1].z) continue;
         bough_deck_fail(deck, bough_deck_line(deck, "kp_total"),
-                        "kp_zr: expected increasing values, but number %d is not larger than the "
-                        "one before",
+                        "kp_zr: expected increasing values, but number %d is not larger than the one before",
                         i + 1);
     }
     if (p && fabs(p[0].z) > 1e-9) {
@@ -60,8 +59,7 @@ static void put_station(bough_openfast *o, const bough_deck *deck, const line_po
     const double *k = s + 1, *m = s + 1 + MATRIX;
     if (!bough_section_possible(k, m)) {
         bough_deck_fail(deck, line,
-                        "the station: expected stiffness and inertia of a real section, positive "
-                        "definite");
+                        "the station: expected stiffness and inertia of a real section, positive definite");
     }
     bough_section_matrix_put(o->draft.file[BOUGH_IMPORT_BLADE], p, k, m);
 }
@@ -107,15 +105,10 @@ static void put_stations(bough_openfast *o, const bough_deck *deck, const line_p
         if (i == n - 1 && s[0] < 1) add_station(o, deck, p, n_point, 1, s, start, b);
     }
     if (bough_is_ok(o->draft.status) && (fabs(first) > close_enough || fabs(last - 1) > close_enough)) {
-        bough_draft_note(&o->draft, BOUGH_APPROXIMATED,
-                         "stations from %g to %g of the length: extended with the values at their "
-                         "ends",
-                         first, last);
+        bough_approximated(o, "stations from %g to %g of the length: extended with the values at their ends",
+                           first, last);
     }
-    bough_draft_note(&o->draft, BOUGH_TAKEN,
-                     "%d stations with full stiffness and mass; the blade weighs "
-                     "%.7g kg",
-                     n, o->blade_mass);
+    bough_taken(o, "%d stations with full stiffness and mass; the blade weighs %.7g kg", n, o->blade_mass);
     bough_section_note(&o->draft, strange);
 }
 
@@ -129,10 +122,10 @@ static const double *modal_damping(bough_openfast *o, const bough_deck *deck, co
     double edge = 2 * ratio[n > 1] / bough_section_frequency(b->n, b->span, b->edge, b->mass);
     mu[0] = mu[2] = mu[4] = mu[5] = flap;
     mu[1] = mu[3] = edge;
-    bough_draft_note(&o->draft, BOUGH_APPROXIMATED,
-                     "damp_type 2: damping grows with the frequency from the first flapwise and "
-                     "edgewise mode's zeta %g and %g",
-                     ratio[0], ratio[n > 1]);
+    bough_approximated(o,
+                       "damp_type 2: damping grows with the frequency from the first flapwise and "
+                       "edgewise mode's zeta %g and %g",
+                       ratio[0], ratio[n > 1]);
     return mu;
 }
 

@@ -56,9 +56,9 @@ static void lack(bough_openfast *o, const char *format, ...) {
     va_end(list);
     o->lacks_control = bough_arena_string(o->draft.arena, text);
     o->generator = BOUGH_GENERATOR_DRIVEN;
-    bough_draft_note(&o->draft, BOUGH_OTHER_CASE,
-                     "%s: the generator keeps its initial speed, %g "
-                     "rpm of the rotor, and the pitch is constant",
+    bough_other_case(o,
+                     "%s: the generator keeps its initial speed, %g rpm of the rotor, and the pitch is "
+                     "constant",
                      text, bough_deck_number(o->elasto, "RotSpeed"));
 }
 
@@ -69,11 +69,9 @@ static bool take_library(bough_openfast *o, const char *path, char why[200]) {
     if (!bough_is_ok(&status)) return false;
     o->library = path;
     o->generator = BOUGH_GENERATOR_LIBRARY;
-    bough_draft_note(&o->draft, BOUGH_TAKEN, "controller: %s, by its path", path);
+    bough_taken(o, "controller: %s, by its path", path);
     if (torque_mode(o) != pitch_mode(o)) {
-        bough_draft_note(&o->draft, BOUGH_APPROXIMATED,
-                         "the library controls both torque and "
-                         "pitch");
+        bough_approximated(o, "the library controls both torque and pitch");
     }
     return true;
 }
@@ -91,7 +89,7 @@ static void find_library(bough_openfast *o) {
     if (torque_mode(o) == LIBRARY) {
         lack(o, "a controller, which --controller FILE of the import gives (%s)", why);
     } else {
-        bough_draft_note(&o->draft, BOUGH_OTHER_CASE, "PCMode 5: the pitch is held: %s", why);
+        bough_other_case(o, "PCMode 5: the pitch is held: %s", why);
     }
 }
 
@@ -112,10 +110,9 @@ void bough_openfast_generator(bough_openfast *o) {
     if (!bough_is_ok(o->draft.status)) return;
     if (!bough_deck_flag_or(o->elasto, "GenDOF", true)) {
         o->generator = BOUGH_GENERATOR_DRIVEN;
-        bough_draft_note(&o->draft, BOUGH_TAKEN, "GenDOF False: the rotor turns at %g rpm",
-                         bough_deck_number(o->elasto, "RotSpeed"));
+        bough_taken(o, "GenDOF False: the rotor turns at %g rpm", bough_deck_number(o->elasto, "RotSpeed"));
         if (o->options->controller) {
-            bough_draft_note(&o->draft, BOUGH_LEFT_OUT, "--controller: GenDOF is False");
+            bough_left_out(o, "--controller: GenDOF is False");
         }
         return;
     }
@@ -154,8 +151,8 @@ static torque_line read_variable_speed(const bough_openfast *o) {
     }
     bough_deck_fail(
         s, bough_deck_line(s, "VS_RtGnSp"),
-        "VS_RtGnSp, VS_RtTq, VS_Rgn2K, VS_SlPc: expected positive values, VS_RtTq at most 1e9 N m, "
-        "VS_SlPc at most 100 %%, and VS_Rgn2K VS_RtGnSp^2 at most VS_RtTq");
+        "VS_RtGnSp, VS_RtTq, VS_Rgn2K, VS_SlPc: expected positive values, VS_RtTq at most 1e9 N m, VS_SlPc "
+        "at most 100 %%, and VS_Rgn2K VS_RtGnSp^2 at most VS_RtTq");
     return l;
 }
 
@@ -187,25 +184,24 @@ static torque_line read_thevenin(const bough_openfast *o) {
     l.full_speed = omega * (1 + l.slip);
     if (l.most > 0 && l.slip > 0 && isfinite(l.full_speed) && l.full_speed > 0) return l;
     bough_deck_fail(s, bough_deck_line(s, "TEC_Freq"),
-                    "TEC_Freq, TEC_NPol, TEC_SRes, TEC_RRes, TEC_VLL, TEC_SLR, TEC_RLR, TEC_MR: "
-                    "expected positive values");
+                    "TEC_Freq, TEC_NPol, TEC_SRes, TEC_RRes, TEC_VLL, TEC_SLR, TEC_RLR, TEC_MR: expected "
+                    "positive values");
     return l;
 }
 
 static torque_line read_line(bough_openfast *o) {
     if (torque_mode(o) == SIMPLE) {
-        bough_draft_note(&o->draft, BOUGH_TAKEN, "the generator's torque over its speed");
+        bough_taken(o, "the generator's torque over its speed");
         return read_variable_speed(o);
     }
     int model = bough_deck_whole_or(o->servo, "GenModel", SIMPLE);
     if (model == SIMPLE) {
-        bough_draft_note(&o->draft, BOUGH_TAKEN,
-                         "GenModel 1: the generator's torque over its slip, of both signs");
+        bough_taken(o, "GenModel 1: the generator's torque over its slip, of both signs");
         return read_simple(o);
     }
-    bough_draft_note(&o->draft, BOUGH_APPROXIMATED,
-                     "GenModel 2: torque grows linearly with the slip to the pull-out torque and is then "
-                     "constant, of both signs: far below the synchronous speed the circuit drives less");
+    bough_approximated(o, "GenModel 2: torque grows linearly with the slip to the pull-out torque and is "
+                          "then constant, of both signs: far below the synchronous speed the circuit drives "
+                          "less");
     return read_thevenin(o);
 }
 
@@ -226,10 +222,10 @@ static void put_law(bough_openfast *o) {
     double least = least_slip(o, &l), full = l.full_speed;
     if (!bough_is_ok(o->draft.status)) return;
     if (!(l.slip >= least) && isfinite(least)) {
-        bough_draft_note(&o->draft, BOUGH_APPROXIMATED,
-                         "torque grows to its maximum over %.2g %% of the speed, not %.2g %%, "
-                         "which would be unstable with samples every %g s",
-                         100 * least, 100 * l.slip, o->draft.macro_step);
+        bough_approximated(o,
+                           "torque grows to its maximum over %.2g %% of the speed, not %.2g %%, which "
+                           "would be unstable with samples every %g s",
+                           100 * least, 100 * l.slip, o->draft.macro_step);
         if (l.gain == 0) full *= (1 + least) / (1 + l.slip);
         l.slip = least;
     }
@@ -263,7 +259,7 @@ static void put_switches(bough_openfast *o) {
     bool starts = law && on > 0, by_time = stops && off < end,
          by_power = !stops && law && torque_mode(o) == NONE;
     if (on > 0 && !law) {
-        bough_draft_note(&o->draft, BOUGH_OTHER_CASE, "%s: the library controls the torque from the start",
+        bough_other_case(o, "%s: the library controls the torque from the start",
                          timed ? "TimGenOn" : "SpdGenOn");
     }
     if (!starts && !by_time && !by_power) return;
@@ -272,14 +268,14 @@ static void put_switches(bough_openfast *o) {
     if (starts && !timed) fprintf(file, "    - {kind: start, channel: GenSpeed, above: %.10g}\n", on);
     if (by_time) fprintf(file, "    - {kind: grid-loss, at: %.10g s}\n", off);
     if (by_power) fputs("    - {kind: grid-loss, channel: GenPwr, below: 0}\n", file);
-    bough_draft_note(&o->draft, BOUGH_TAKEN, "the generator's switches: %s%s%s",
-                     !starts ? ""
-                     : timed ? "TimGenOn"
-                             : "SpdGenOn",
-                     starts && (by_time || by_power) ? ", " : "",
-                     by_time    ? "TimGenOf"
-                     : by_power ? "GenTiStp False"
-                                : "");
+    bough_taken(o, "the generator's switches: %s%s%s",
+                !starts ? ""
+                : timed ? "TimGenOn"
+                        : "SpdGenOn",
+                starts && (by_time || by_power) ? ", " : "",
+                by_time    ? "TimGenOf"
+                : by_power ? "GenTiStp False"
+                           : "");
 }
 
 // -- library --------------------------------------------------------------------------------------
@@ -294,14 +290,11 @@ static void put_library(bough_openfast *o) {
         fputs("  individual_pitch: true\n", o->draft.file[BOUGH_IMPORT_SCENE]);
     }
     if (o->servo && bough_deck_number_or(o->servo, "TPCOn", 0) > 0) {
-        bough_draft_note(&o->draft, BOUGH_LEFT_OUT, "TPCOn: the library controls the pitch from the start");
+        bough_left_out(o, "TPCOn: the library controls the pitch from the start");
     }
     double asked = o->servo ? bough_deck_number_or(o->servo, "DLL_DT", step) : step;
     if (fabs(asked - step) > 1e-9) {
-        bough_draft_note(&o->draft, BOUGH_APPROXIMATED,
-                         "DLL_DT %g s: the library is called every "
-                         "%g s",
-                         asked, step);
+        bough_approximated(o, "DLL_DT %g s: the library is called every %g s", asked, step);
     }
 }
 
@@ -311,12 +304,12 @@ static void note_manoeuvres(bough_openfast *o) {
     bool brake = bough_deck_whole_or(o->servo, "HSSBrMode", 1) != 0;
     bool library = o->generator == BOUGH_GENERATOR_LIBRARY;
     if (library && bough_deck_number_or(o->servo, "TPitManS(1)|TPitManS1", end) < end)
-        bough_draft_note(&o->draft, BOUGH_OTHER_CASE, "TPitManS: the pitch manoeuvre");
+        bough_other_case(o, "TPitManS: the pitch manoeuvre");
     if (brake && bough_deck_number_or(o->servo, "THSSBrDp", end) < end)
-        bough_draft_note(&o->draft, BOUGH_OTHER_CASE, "THSSBrDp: the brake");
+        bough_other_case(o, "THSSBrDp: the brake");
     if (!bough_deck_flag_or(o->elasto, "YawDOF", false) &&
         bough_deck_number_or(o->servo, "TYawManS", end) < end)
-        bough_draft_note(&o->draft, BOUGH_TAKEN, "TYawManS: without YawDOF the nacelle does not turn");
+        bough_taken(o, "TYawManS: without YawDOF the nacelle does not turn");
 }
 
 // Tuned masses and dampers are flags before OpenFAST 2.5.
@@ -335,10 +328,10 @@ void bough_openfast_control(bough_openfast *o) {
     if (o->generator == BOUGH_GENERATOR_LIBRARY || o->generator == BOUGH_GENERATOR_LAW) put_switches(o);
     int pitch = pitch_mode(o);
     if (o->generator == BOUGH_GENERATOR_FREE) {
-        bough_draft_note(&o->draft, BOUGH_TAKEN, "TimGenOn: no torque acts on the generator");
+        bough_taken(o, "TimGenOn: no torque acts on the generator");
     }
     if (pitch != NONE && pitch != LIBRARY && o->generator != BOUGH_GENERATOR_LIBRARY)
-        bough_draft_note(&o->draft, BOUGH_OTHER_CASE, "PCMode %d: the pitch is held", pitch);
+        bough_other_case(o, "PCMode %d: the pitch is held", pitch);
     note_manoeuvres(o);
     bough_openfast_leave(o, o->servo, rest, sizeof rest / sizeof *rest);
 }

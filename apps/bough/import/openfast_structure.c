@@ -108,12 +108,11 @@ static void extend(bough_openfast *o, const bough_deck *deck, slender *b, const 
     row[0] = 0;
     row[width * (size_t)(b->n - 1)] = 1;
     if (before || after) {
-        bough_draft_note(&o->draft, BOUGH_APPROXIMATED,
-                         "%s: the table is extended to both ends with its first and last values", count);
+        bough_approximated(o, "%s: the table is extended to both ends with its first and last values", count);
     }
     if (end > 1 + close || first < -close) {
-        bough_deck_fail(deck, bough_deck_line(deck, count),
-                        "%s: expected fractions of the span from 0 to 1, got %g to %g", count, first, end);
+        bough_deck_refuse(deck, count, "expected fractions of the span from 0 to 1, got %g to %g", first,
+                          end);
     }
 }
 
@@ -124,8 +123,8 @@ static void check_rows(const bough_deck *deck, const slender *b, const char *cou
         bool grows = i == 0 || r[0] > r[-b->width];
         if (grows && r[b->mass] > 0 && r[b->bending] > 0 && r[second] > 0) continue;
         bough_deck_fail(deck, line,
-                        "%s: row %d of its table: expected increasing fractions of the span from "
-                        "0 to 1, positive mass and stiffness",
+                        "%s: row %d of its table: expected increasing fractions of the span from 0 to 1, "
+                        "positive mass and stiffness",
                         count, i + 1);
     }
 }
@@ -176,7 +175,7 @@ void bough_openfast_blade(bough_openfast *o) {
     extend(o, deck, &b, "NBlInpSt");
     if (!bough_is_ok(o->draft.status)) return;
     if (!(b.length > 0)) {
-        bough_deck_fail(o->elasto, bough_deck_line(o->elasto, "TipRad"), "TipRad: expected more than HubRad");
+        bough_deck_refuse(o->elasto, "TipRad", "expected more than HubRad");
     }
     check_rows(deck, &b, "NBlInpSt", EDGE);
     put_blade(o, deck, &b, edge);
@@ -186,23 +185,19 @@ void bough_openfast_blade(bough_openfast *o) {
         bough_openfast_weigh(o, (const double[]){r[-b.width] * b.length, r[0] * b.length},
                              (const double[]){r[MASS - b.width] * b.mass_factor, r[MASS] * b.mass_factor});
     }
-    bough_draft_note(&o->draft, BOUGH_TAKEN,
-                     "%d stations, mass times AdjBlMs %g: the blade weighs %.7g "
-                     "kg, without tip mass",
-                     n, b.mass_factor, o->blade_mass);
-    bough_draft_note(&o->draft, BOUGH_APPROXIMATED,
-                     "blade: geometrically exact instead of ElastoDyn's modes; its damping ratio "
-                     "grows with the frequency, from that of the first mode");
+    bough_taken(o, "%d stations, mass times AdjBlMs %g: the blade weighs %.7g kg, without tip mass", n,
+                b.mass_factor, o->blade_mass);
+    bough_approximated(o, "blade: geometrically exact instead of ElastoDyn's modes; its damping ratio grows "
+                          "with the frequency, from that of the first mode");
     if (!(b.row[AXIAL] > 0)) {
-        bough_draft_note(&o->draft, BOUGH_APPROXIMATED,
-                         "blade: axial stiffness is mass x %.3g m2/s2, shear stiffness a tenth of "
-                         "it, rotary inertia as for one material",
-                         laminate);
+        bough_approximated(o,
+                           "blade: axial stiffness is mass x %.3g m2/s2, shear stiffness a tenth of it, "
+                           "rotary inertia as for one material",
+                           laminate);
     }
     if (!(b.row[TORSION] > 0)) {
-        bough_draft_note(&o->draft, BOUGH_APPROXIMATED,
-                         "blade: ElastoDyn has no torsion, so the torsional stiffness is the "
-                         "edgewise one, which is stiff; no offsets of mass and shear centre");
+        bough_approximated(o, "blade: ElastoDyn has no torsion, so the torsional stiffness is the edgewise "
+                              "one, which is stiff; no offsets of mass and shear centre");
     }
 }
 
@@ -243,10 +238,8 @@ void bough_openfast_tower(bough_openfast *o, double top_mass) {
         bough_section s = {r[0] * b.length, 0, mass, axial, axial * ratio / 2, x, y, (x + y) * ratio};
         bough_section_put(file, &s);
     }
-    bough_draft_note(&o->draft, BOUGH_TAKEN, "%d stations of the tower, which weighs %.7g kg", n,
-                     total_mass(&b));
-    bough_draft_note(&o->draft, BOUGH_APPROXIMATED,
-                     "tower: axial, shear and torsional stiffness of a thin steel tube; the "
-                     "damping ratio grows with the frequency, from that of the first mode of "
-                     "the tower without its top");
+    bough_taken(o, "%d stations of the tower, which weighs %.7g kg", n, total_mass(&b));
+    bough_approximated(o, "tower: axial, shear and torsional stiffness of a thin steel tube; the damping "
+                          "ratio grows with the frequency, from that of the first mode of the tower without "
+                          "its top");
 }

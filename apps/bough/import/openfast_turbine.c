@@ -46,8 +46,7 @@ static void put_manoeuvre(bough_openfast *o, const char *key, double way, double
     fprintf(file, "%.10g, %.10g], values: [", start + lasts - half, start + lasts + half);
     if (start > 0) fputs("0 deg/s, ", file);
     fprintf(file, "%.10g deg/s, %.10g deg/s, 0 deg/s]}}", speed, speed);
-    bough_draft_note(&o->draft, BOUGH_TAKEN, "%.*s: turns by %g deg from %g s on", (int)strcspn(key, "|"),
-                     key, fabs(way), start);
+    bough_taken(o, "%.*s: turns by %g deg from %g s on", (int)strcspn(key, "|"), key, fabs(way), start);
 }
 
 // A body that turns what the spring of the yaw bearing is fixed to.
@@ -83,11 +82,9 @@ static void put_yaw(bough_openfast *o) {
         double neutral = neutral_yaw(o);
         fprintf(file, ", angle: %.10g deg, rest: %.10g deg", driven ? yaw - neutral : yaw,
                 driven ? 0 : neutral);
-        bough_draft_note(&o->draft, BOUGH_TAKEN, "yaw bearing with spring and damper");
+        bough_taken(o, "yaw bearing with spring and damper");
     } else if (bough_deck_flag_or(e, "YawDOF", false)) {
-        bough_draft_note(&o->draft, BOUGH_LEFT_OUT,
-                         "YawDOF: without ServoDyn the yaw angle is "
-                         "constant");
+        bough_left_out(o, "YawDOF: without ServoDyn the yaw angle is constant");
     }
     fputs("}\n", file);
 }
@@ -103,9 +100,8 @@ static void put_nacelle(bough_openfast *o) {
     double x = share * bough_deck_number(e, "NacCMxn"), y = share * bough_deck_number(e, "NacCMyn");
     double z = share * bough_deck_number(e, "NacCMzn"), polar = about_yaw - sum * (x * x + y * y);
     if (polar < 0) {
-        bough_draft_note(&o->draft, BOUGH_APPROXIMATED,
-                         "NacYIner is less than the mass times its squared distance: zero inertia "
-                         "about the nacelle's centre of mass");
+        bough_approximated(o, "NacYIner is less than the mass times its squared distance: zero inertia about "
+                              "the nacelle's centre of mass");
         polar = 0;
     }
     if (has_yaw_drive(o)) put_yaw_drive(o);
@@ -113,11 +109,9 @@ static void put_nacelle(bough_openfast *o) {
     put_yaw(o);
     fprintf(file, "    mass: %.10g kg\n    centre_of_mass: [%.10g, %.10g, %.10g]\n", sum, x, y, z);
     fprintf(file, "    inertia: [%.10g, %.10g, %.10g]\n", polar / 2, polar / 2, polar);
-    bough_draft_note(&o->draft, BOUGH_APPROXIMATED,
-                     "nacelle: inertias about its other axes half of that "
-                     "about the yaw axis");
+    bough_approximated(o, "nacelle: inertias about its other axes half of that about the yaw axis");
     if (bearing > 0) {
-        bough_draft_note(&o->draft, BOUGH_TAKEN, "YawBrMass %g kg, with the nacelle", bearing);
+        bough_taken(o, "YawBrMass %g kg, with the nacelle", bearing);
     }
 }
 
@@ -160,8 +154,7 @@ static void put_generator(bough_openfast *o, bool twists) {
     fputs("  - name: generator # on the slow shaft\n    fidelity: rigid\n", file);
     put_main_joint(o);
     fprintf(file, "    inertia: [%.10g, 0, 0]\n", bough_openfast_generator_inertia(o));
-    bough_draft_note(&o->draft, BOUGH_TAKEN, "drive train: %s between hub and generator",
-                     twists ? "spring and damper" : "rigid");
+    bough_taken(o, "drive train: %s between hub and generator", twists ? "spring and damper" : "rigid");
 }
 
 static void put_spring(bough_openfast *o) {
@@ -193,11 +186,10 @@ static void put_teeter(bough_openfast *o, const char *shaft) {
                 stiffness);
     }
     fputs("}\n", file);
-    bough_draft_note(&o->draft, BOUGH_TAKEN, "TeetDOF: the hub teeters, with damper and hard stops");
+    bough_taken(o, "TeetDOF: the hub teeters, with damper and hard stops");
     bool more = bough_deck_number_or(e, "TeetCDmp", 0) != 0 || bough_deck_number_or(e, "TeetSSSp", 0) > 1;
     if (standard && (more || bough_deck_number_or(e, "TeetDmpP", 0) != 0)) {
-        bough_draft_note(&o->draft, BOUGH_LEFT_OUT,
-                         "teeter: Coulomb damping, soft stops, the damper's position");
+        bough_left_out(o, "teeter: Coulomb damping, soft stops, the damper's position");
     }
 }
 
@@ -238,7 +230,7 @@ static void put_hub(bough_openfast *o, bool twists) {
             bough_deck_number_or(e, "HubCM", 0) - undersling(o));
     fprintf(file, "    inertia: [%.10g, %.10g, %.10g]\n", given, given / 2,
             o->n_blade == 2 ? given : given / 2);
-    bough_draft_note(&o->draft, BOUGH_APPROXIMATED, "hub: inertias about its other axes half of HubIner");
+    bough_approximated(o, "hub: inertias about its other axes half of HubIner");
 }
 
 // -- blades ---------------------------------------------------------------------------------------
@@ -249,17 +241,14 @@ static void put_tip(bough_openfast *o, int k) {
     double mass = bough_deck_number_or(o->elasto, name, 0);
     if (mass == 0) return;
     if (o->beamdyn) {
-        bough_draft_note(&o->draft, BOUGH_LEFT_OUT,
-                         "TipMass(%d): only for ElastoDyn's blades, "
-                         "not for BeamDyn's",
-                         k);
+        bough_left_out(o, "TipMass(%d): only for ElastoDyn's blades, not for BeamDyn's", k);
         return;
     }
     fprintf(o->draft.file[BOUGH_IMPORT_SCENE],
             "  - {name: tip%d, fidelity: rigid, joint: {kind: fixed, parent: blade%d}, "
             "mass: %.10g kg}\n",
             k, k, mass);
-    bough_draft_note(&o->draft, BOUGH_TAKEN, "TipMass(%d): %g kg", k, mass);
+    bough_taken(o, "TipMass(%d): %g kg", k, mass);
 }
 
 // The joint of a blade: steered by a library, turned by a manoeuvre, or fixed. Its angle is that of the pitch
@@ -305,9 +294,8 @@ static void put_rotor(bough_openfast *o) {
     bool twists = bough_openfast_shaft_twists(o);
     if (has_generator(o)) put_generator(o, twists);
     if (!twists && bough_deck_flag_or(o->elasto, "DrTrDOF", false)) {
-        bough_draft_note(&o->draft, BOUGH_LEFT_OUT,
-                         "DrTrDOF: the shaft is rigid, because the generator's inertia or the "
-                         "spring is zero");
+        bough_left_out(o, "DrTrDOF: the shaft is rigid, because the generator's inertia or the spring is "
+                          "zero");
     }
     put_hub(o, twists);
     for (int k = 1; k <= o->n_blade; k++) put_blade(o, k);

@@ -59,10 +59,8 @@ static void put_stand_in(bough_openfast *o, const char *why) {
     fprintf(o->draft.file[BOUGH_IMPORT_SCENE],
             "  # This scene lacks its wind, which --wind FILE of the import gives:\n  # %s\n", why);
     put_steady(o, speed);
-    bough_draft_note(&o->draft, BOUGH_LEFT_OUT,
-                     "the wind file is missing (give it by --wind "
-                     "FILE): %s; steady wind of %g m/s instead",
-                     why, speed);
+    bough_left_out(o, "the wind file is missing (give it by --wind FILE): %s; steady wind of %g m/s instead",
+                   why, speed);
 }
 
 // -- files ----------------------------------------------------------------------------------------
@@ -123,7 +121,7 @@ static void put_type(bough_openfast *o, int type) {
     if (type == STEADY) {
         double speed = bough_deck_number(o->inflow, "HWindSpeed");
         put_steady(o, speed);
-        bough_draft_note(&o->draft, BOUGH_TAKEN, "steady wind of %g m/s", speed);
+        bough_taken(o, "steady wind of %g m/s", speed);
         return;
     }
     if (type == NATIVE_BLADED || type == 6) {
@@ -161,7 +159,7 @@ void bough_openfast_wind(bough_openfast *o) {
         put_type(o, bough_deck_whole(o->inflow, "WindType", 1, 7));
     } else if (bough_deck_whole_or(o->main, "CompInflow", 0) == 0) {
         fputs("  wind: {kind: uniform, speed: 0 m/s", file);
-        bough_draft_note(&o->draft, BOUGH_APPROXIMATED, "without InflowWind the air is still");
+        bough_approximated(o, "without InflowWind the air is still");
     } else {
         put_stand_in(o, "CompInflow 2, the wind of another program");
     }

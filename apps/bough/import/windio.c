@@ -32,8 +32,8 @@ static void read_axis(bough_windio *w) {
     for (int i = 1; i < z->n; i++) {
         if (z->y[i] > z->y[i - 1] && z->x[i] > z->x[i - 1]) continue;
         bough_entry_fail(&w->draft, z->node,
-                         "reference_axis.z: expected increasing values, but number %d is not "
-                         "larger than the one before",
+                         "reference_axis.z: expected increasing values, but number %d is not larger than the "
+                         "one before",
                          i + 1);
     }
     if (z->n < 2 || fabs(z->y[0]) > 1e-6 || z->x[0] != 0 || z->x[z->n - 1] != 1) {
@@ -104,19 +104,19 @@ static void choose_start(bough_windio *w) {
     if (!isfinite(w->rated_speed)) {
         bough_entry_fail(
             &w->draft, w->root,
-            "control: expected the rotor's rated speed, 'torque.VS_maxspd' or 'rated_rotor_speed', "
-            "or its largest tip speed, 'supervisory.maxTS' or 'max_allowable_blade_tip_speed'");
+            "control: expected the rotor's rated speed, 'torque.VS_maxspd' or 'rated_rotor_speed', or its "
+            "largest tip speed, 'supervisory.maxTS' or 'max_allowable_blade_tip_speed'");
         return;
     }
     w->speed = 0.75 * w->rated_speed;
     w->wind = ratio > 0 ? w->speed * w->radius / ratio : 8;
     if (!(ratio > 0)) {
-        bough_draft_note(&w->draft, BOUGH_APPROXIMATED, "no optimal tip-speed ratio: wind of 8 m/s assumed");
+        bough_approximated(w, "no optimal tip-speed ratio: wind of 8 m/s assumed");
     }
-    bough_draft_note(&w->draft, BOUGH_APPROXIMATED,
-                     "the file has no load case: wind of %.3g m/s and %.3g rpm, at the optimal "
-                     "tip-speed ratio",
-                     w->wind, w->speed / rpm);
+    bough_approximated(w,
+                       "the file has no load case: wind of %.3g m/s and %.3g rpm, at the optimal "
+                       "tip-speed ratio",
+                       w->wind, w->speed / rpm);
 }
 
 // -- writing --------------------------------------------------------------------------------------
@@ -132,9 +132,9 @@ static void note_left(bough_windio *w) {
     static const char *const part[] = {"monopile", "floating_platform", "mooring", "jacket"};
     for (size_t i = 0; i < sizeof part / sizeof *part; i++) {
         if (!bough_entry(w->parts, part[i])) continue;
-        bough_draft_note(&w->draft, BOUGH_LEFT_OUT, "%s: the tower's foot is held", part[i]);
+        bough_left_out(w, "%s: the tower's foot is held", part[i]);
     }
-    bough_draft_note(&w->draft, BOUGH_LEFT_OUT, "strength, costs, site");
+    bough_left_out(w, "strength, costs, site");
 }
 
 static void convert(void *self, const char *path) {
@@ -145,7 +145,7 @@ static void convert(void *self, const char *path) {
     if (bough_is_ok(w->draft.status)) bough_windio_shape_read(w);
     read_assembly(w);
     if (!bough_is_ok(w->draft.status)) return;
-    bough_draft_note(&w->draft, BOUGH_TAKEN, "%s, in the layout of version %d", path, w->second ? 2 : 1);
+    bough_taken(w, "%s, in the layout of version %d", path, w->second ? 2 : 1);
     choose_start(w);
     if (!bough_is_ok(w->draft.status)) return;
     put_head(w, path);

@@ -31,8 +31,7 @@ static bough_curve read_coefficient(bough_windio *w, const bough_node *from, con
         x[0] = -180;
         x[c.n - 1] = 180;
     } else {
-        bough_draft_note(&w->draft, BOUGH_APPROXIMATED, "line %d: from %g to %g deg, constant beyond",
-                         c.node->line, low, high);
+        bough_approximated(w, "line %d: from %g to %g deg, constant beyond", c.node->line, low, high);
     }
     c.x = x;
     return c;
@@ -72,8 +71,7 @@ static void put_airfoil(bough_windio *w, const bough_node *airfoil, int number) 
                              read_coefficient(w, from, "c_m|cm", false)};
     put_polar(w, c, name);
     if (more) {
-        bough_draft_note(&w->draft, BOUGH_APPROXIMATED,
-                         "%s: the first of its polars is used for all Reynolds numbers", name);
+        bough_approximated(w, "%s: the first of its polars is used for all Reynolds numbers", name);
     }
 }
 
@@ -91,7 +89,7 @@ static void put_airfoils(bough_windio *w, bough_windio_shape *a) {
         a->place[i].number = ++n;
         put_airfoil(w, a->place[i].airfoil, n);
     }
-    bough_draft_note(&w->draft, BOUGH_TAKEN, "%d airfoils: lift, drag, moment", n);
+    bough_taken(w, "%d airfoils: lift, drag, moment", n);
 }
 
 // -- blade elements -------------------------------------------------------------------------------
@@ -133,9 +131,9 @@ static void put_elements(bough_windio *w, const bough_windio_shape *a) {
         n++;
     }
     if (n < 2) bough_entry_fail(&w->draft, a->chord.node, "chord: expected two points from 0 to 1");
-    bough_draft_note(&w->draft, BOUGH_TAKEN, "%d blade elements, at the stations of the chord", n);
-    bough_draft_note(&w->draft, BOUGH_APPROXIMATED, "polars between airfoils: mixed linearly by %s",
-                     a->by_thickness ? "thickness" : "place");
+    bough_taken(w, "%d blade elements, at the stations of the chord", n);
+    bough_approximated(w, "polars between airfoils: mixed linearly by %s",
+                       a->by_thickness ? "thickness" : "place");
 }
 
 void bough_windio_air_tables(bough_windio *w) {

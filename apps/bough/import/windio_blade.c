@@ -140,8 +140,8 @@ static void put_station(bough_windio *w, const matrices *stiffness, const matric
     w->shear_stiff = stiffen_shear(k) || w->shear_stiff;
     if (!bough_section_possible(k, m)) {
         bough_entry_fail(&w->draft, stiffness->node,
-                         "at %.4g of the span: expected stiffness and inertia of a real section, "
-                         "positive definite",
+                         "at %.4g of the span: expected stiffness and inertia of a real section, positive "
+                         "definite",
                          share);
     }
     const bough_section_place at = {bough_curve_at(&w->axis[0], share), bough_curve_at(&w->axis[1], share),
@@ -177,10 +177,8 @@ static void put_damping(bough_windio *w, const bough_node *from) {
     }
     if (!any || mu == usual) {
         mu = usual;
-        bough_draft_note(&w->draft, BOUGH_APPROXIMATED,
-                         "blade: no damping given: damping coefficient of %g s assumed for all "
-                         "strains",
-                         usual_damping);
+        bough_approximated(w, "blade: no damping given: damping coefficient of %g s assumed for all strains",
+                           usual_damping);
     }
     fprintf(file, "length: %.10g\ndamping: ", w->blade_length);
     bough_import_list(file, mu, 6);
@@ -206,14 +204,11 @@ static void put_stations(bough_windio *w, const bough_node *from, const matrices
         w->blade_mass += mass;
         w->inertia += w->n_blade * mass * radius * radius;
     }
-    bough_draft_note(&w->draft, BOUGH_TAKEN,
-                     "%d stations of the blade, %d of them with full stiffness and inertia; it "
-                     "weighs %.7g kg",
-                     n, stiffness->n, w->blade_mass);
+    bough_taken(w, "%d stations of the blade, %d of them with full stiffness and inertia; it weighs %.7g kg",
+                n, stiffness->n, w->blade_mass);
     if (w->shear_stiff) {
-        bough_draft_note(
-            &w->draft, BOUGH_APPROXIMATED,
-            "blade: shear stiffness of zero (K11, K22) is read as no shear: the axial stiffness");
+        bough_approximated(w, "blade: shear stiffness of zero (K11, K22) is read as no shear: the axial "
+                              "stiffness");
     }
     bough_section_note(&w->draft, strange);
 }
@@ -237,9 +232,8 @@ static void read_layup(bough_windio *w, matrices *stiffness, matrices *inertia) 
     if (!bough_is_ok(w->draft.status)) return;
     *stiffness = of_layup(w, &layup, layup.stiffness);
     *inertia = of_layup(w, &layup, layup.mass);
-    bough_draft_note(&w->draft, BOUGH_APPROXIMATED,
-                     "blade: stiffness and inertia of thin walls, from layers and webs: plane sections, "
-                     "shear flow in the cells, no coupling by fibre angles");
+    bough_approximated(w, "blade: stiffness and inertia of thin walls, from layers and webs: plane sections, "
+                          "shear flow in the cells, no coupling by fibre angles");
 }
 
 // The matrices that the file gives; NULL: none.
@@ -273,9 +267,8 @@ void bough_windio_blade(bough_windio *w) {
     matrices stiffness = {0}, inertia = {0};
     if (!from && !bough_windio_has_layers(w)) {
         bough_entry_fail(&w->draft, w->blade,
-                         "expected stiffness and inertia of the blade: "
-                         "'elastic_properties_mb.six_x_six' or 'structure.elastic_properties', or the "
-                         "layers that it is made of");
+                         "expected stiffness and inertia of the blade: 'elastic_properties_mb.six_x_six' or "
+                         "'structure.elastic_properties', or the layers that it is made of");
         return;
     }
     if (from) {
@@ -285,10 +278,8 @@ void bough_windio_blade(bough_windio *w) {
     bool good = from && bough_is_ok(w->draft.status) && are_possible(&stiffness, &inertia);
     if (bough_windio_has_layers(w) && !good) {
         if (from) {
-            bough_draft_note(
-                &w->draft, BOUGH_LEFT_OUT,
-                "blade: the matrices of stiffness and inertia, which no section can have: they are "
-                "not positive definite");
+            bough_left_out(w, "blade: the matrices of stiffness and inertia, which no section can have: they "
+                              "are not positive definite");
         }
         read_layup(w, &stiffness, &inertia);
     }
@@ -300,6 +291,6 @@ void bough_windio_blade(bough_windio *w) {
     put_damping(w, from);
     put_stations(w, from, &stiffness, &inertia);
     if (bough_entry_number_or(&w->draft, w->blade, "internal_structure_2d_fem.joint.mass", 0) > 0) {
-        bough_draft_note(&w->draft, BOUGH_LEFT_OUT, "the mass of the blade's joint");
+        bough_left_out(w, "the mass of the blade's joint");
     }
 }

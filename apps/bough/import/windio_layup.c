@@ -81,8 +81,7 @@ static points read_points(bough_windio *w, const bough_node *airfoil) {
     int edge = leading_edge(&p);
     if (p.n < 5 || edge < 2 || edge > p.n - 3) {
         bough_entry_fail(d, airfoil,
-                         "coordinates: expected points around the airfoil from its "
-                         "trailing edge");
+                         "coordinates: expected points around the airfoil from its trailing edge");
         return (points){0};
     }
     if (mean(p.y, 0, edge) < mean(p.y, edge + 1, p.n)) {

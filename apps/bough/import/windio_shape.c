@@ -53,7 +53,7 @@ static void read_items(bough_windio *w, const bough_node *list, bough_windio_sha
         mixed = mixed || (tags && tags->kind == BOUGH_SEQUENCE && tags->n > 1);
     }
     if (mixed) {
-        bough_draft_note(&w->draft, BOUGH_APPROXIMATED, "airfoils: the first configuration of each is used");
+        bough_approximated(w, "airfoils: the first configuration of each is used");
     }
 }
 

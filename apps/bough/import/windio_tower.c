@@ -43,9 +43,7 @@ static bough_curve read_height(bough_windio *w) {
         bough_entry_fail(&w->draft, z.node, "reference_axis.z: expected increasing heights");
     }
     if (z.n < 2 || z.y[0] < 0) {
-        bough_entry_fail(&w->draft, w->tower,
-                         "reference_axis.z: expected a tower above the "
-                         "ground");
+        bough_entry_fail(&w->draft, w->tower, "reference_axis.z: expected a tower above the ground");
     }
     return z;
 }
@@ -61,7 +59,7 @@ static void read_tube(bough_windio *w, tube *t) {
     for (; layers && t->n < layers->n && bough_is_ok(w->draft.status); t->n++)
         t->layer[t->n] = read_layer(w, layers->value[t->n]);
     if (t->n == 0) {
-        bough_draft_note(&w->draft, BOUGH_APPROXIMATED, "tower: no layers, so it is rigid");
+        bough_approximated(w, "tower: no layers, so it is rigid");
     }
 }
 
@@ -107,14 +105,14 @@ static void put_tube(bough_windio *w, const tube *t) {
         if (i > 0) mass += (s.span - last.span) * (s.mass + last.mass) / 2;
         last = s;
     }
-    bough_draft_note(&w->draft, BOUGH_TAKEN,
-                     "%d stations of the tower, a tube of %d layers with outfitting_factor %g; it "
-                     "weighs %.7g kg",
-                     t->height.n, t->n, t->mass_factor, mass);
-    bough_draft_note(&w->draft, BOUGH_APPROXIMATED,
-                     "tower: wall thickness linear between stations; shear stiffness of a thin "
-                     "tube; damping coefficient of %g s for all strains",
-                     usual_damping);
+    bough_taken(w,
+                "%d stations of the tower, a tube of %d layers with outfitting_factor %g; it weighs %.7g "
+                "kg",
+                t->height.n, t->n, t->mass_factor, mass);
+    bough_approximated(w,
+                       "tower: wall thickness linear between stations; shear stiffness of a thin tube; "
+                       "damping coefficient of %g s for all strains",
+                       usual_damping);
 }
 
 void bough_windio_tower(bough_windio *w) {
@@ -122,7 +120,7 @@ void bough_windio_tower(bough_windio *w) {
     if (!w->tower) {
         w->tower_base = 0;
         w->tower_top = bough_entry_number(&w->draft, w->root, "assembly.hub_height");
-        bough_draft_note(&w->draft, BOUGH_LEFT_OUT, "no tower: the hub is fixed at its height");
+        bough_left_out(w, "no tower: the hub is fixed at its height");
         return;
     }
     tube t = {.height = read_height(w)};
@@ -151,5 +149,5 @@ void bough_windio_tower_air(bough_windio *w) {
     fprintf(w->draft.file[BOUGH_IMPORT_SCENE], "  tower:\n    influence: potential\n");
     put_list(w, "height", &height, &height);
     put_list(w, "diameter", &height, &diameter);
-    bough_draft_note(&w->draft, BOUGH_TAKEN, "the tower's influence on the wind, without its drag");
+    bough_taken(w, "the tower's influence on the wind, without its drag");
 }

@@ -94,7 +94,7 @@ static double given_mass(bough_windio *w, const bough_node *part, const char *na
 // A mass that the file has counts more than the user's.
 static void leave_given(bough_windio *w, const char *name, double given) {
     if (!(given > 0)) return;
-    bough_draft_note(&w->draft, BOUGH_LEFT_OUT, "--%s-mass: the file has the mass of the %s", name, name);
+    bough_left_out(w, "--%s-mass: the file has the mass of the %s", name, name);
 }
 
 static lump hub_lump(bough_windio *w) {
@@ -105,7 +105,7 @@ static lump hub_lump(bough_windio *w) {
     }
     double mass = given_mass(w, w->hub, "hub", w->options->hub_mass);
     double inertia = 2.0 / 3 * mass * w->hub_radius * w->hub_radius;
-    bough_draft_note(&w->draft, BOUGH_APPROXIMATED, "hub: its inertia is that of a shell of its radius");
+    bough_approximated(w, "hub: its inertia is that of a shell of its radius");
     return (lump){mass, {0}, {inertia, inertia, inertia}};
 }
 
@@ -116,9 +116,7 @@ static bool assembly_lump(bough_windio *w, double overhang, double hub, lump *l)
     if (!part || !read_lump(w, part, &all)) return false;
     double head = hub + w->n_blade * w->blade_mass, mass = all.mass - head;
     if (!(mass > 0)) {
-        bough_entry_fail(&w->draft, part,
-                         "mass: %g kg, which is less than the mass of hub and "
-                         "blades, %g kg",
+        bough_entry_fail(&w->draft, part, "mass: %g kg, which is less than the mass of hub and blades, %g kg",
                          all.mass, head);
         return false;
     }
@@ -126,9 +124,8 @@ static bool assembly_lump(bough_windio *w, double overhang, double hub, lump *l)
     const double at[] = {-w->forward * overhang, 0, w->hub_height};
     *l = (lump){.mass = mass, .inertia = {inertia, inertia, inertia}};
     for (int i = 0; i < 3; i++) l->centre[i] = (all.mass * all.centre[i] - head * at[i]) / mass;
-    bough_draft_note(&w->draft, BOUGH_APPROXIMATED,
-                     "nacelle: mass and centre of RNA without hub and blades, its radius of gyration "
-                     "half the overhang");
+    bough_approximated(w, "nacelle: mass and centre of RNA without hub and blades, its radius of gyration "
+                          "half the overhang");
     return true;
 }
 
@@ -150,9 +147,8 @@ static lump nacelle_lump(bough_windio *w, double overhang, double hub) {
     }
     double mass = given_mass(w, w->train, "nacelle", w->options->nacelle_mass);
     double inertia = mass * overhang * overhang / 4;
-    bough_draft_note(&w->draft, BOUGH_APPROXIMATED,
-                     "nacelle: its centre of mass is at half the hub's height above the tower, its radius of "
-                     "gyration half the overhang");
+    bough_approximated(w, "nacelle: its centre of mass is at half the hub's height above the tower, its "
+                          "radius of gyration half the overhang");
     l = (lump){mass, {0, 0, w->hub_height / 2}, {inertia, inertia, inertia}};
     add_yaw(w, &l);
     return l;
@@ -162,7 +158,7 @@ static double generator_inertia(bough_windio *w, double ratio) {
     double inertia[6];
     read_inertia(w, w->train, "generator.elastic_properties.inertia", inertia);
     if (inertia[0] == 0) {
-        bough_draft_note(&w->draft, BOUGH_LEFT_OUT, "inertia of the generator: not given");
+        bough_left_out(w, "inertia of the generator: not given");
     }
     return inertia[0] * ratio * ratio;
 }
@@ -288,8 +284,8 @@ void bough_windio_air(bough_windio *w) {
             "  induction: {high_thrust: smooth, skew: pitt-peters}\n  dynamic_stall: hgm\n",
             bough_import_name[BOUGH_IMPORT_AERO], bough_import_name[BOUGH_IMPORT_POLARS], w->hub_radius);
     bough_draft_note(d, BOUGH_APPROXIMATED,
-                     "dynamic stall by Hansen, Gaunaa and Madsen's model, which also damps the "
-                     "blade's torsion");
+                     "dynamic stall by Hansen, Gaunaa and Madsen's model, which also damps the blade's "
+                     "torsion");
     bough_windio_tower_air(w);
 }
 
@@ -305,11 +301,9 @@ static void put_pitch(bough_windio *w, double ratio) {
             "    reference_speed: %.10g rad/s\n    least_pitch: %.10g rad\n    most_pitch: %.10g rad\n"
             "    pitch_rate: %.10g rad/s\n",
             w->rated_speed * ratio, least, most, rate);
-    bough_draft_note(
-        &w->draft, BOUGH_LEFT_OUT,
-        "pitch control: the file has no gains, so the pitch is held, which is right below rated wind; "
-        "--controller FILE, or control.pitch: true with control.law.proportional, integral and "
-        "halving_pitch");
+    bough_left_out(w, "pitch control: the file has no gains, so the pitch is held, which is right below "
+                      "rated wind; --controller FILE, or control.pitch: true with control.law.proportional, "
+                      "integral and halving_pitch");
 }
 
 static double efficiency_of(bough_windio *w) {
@@ -360,7 +354,7 @@ void bough_windio_law(bough_windio *w) {
     bough_draft_note(d, BOUGH_TAKEN, "rated power %g MW at %.4g rpm of the rotor", w->rated_power / 1e6,
                      w->rated_speed * 30 / BOUGH_PI);
     bough_draft_note(d, BOUGH_APPROXIMATED,
-                     "torque grows with the square of the speed to its rated value, then constant "
-                     "power; no loss in the generator");
+                     "torque grows with the square of the speed to its rated value, then constant power; no "
+                     "loss in the generator");
     put_pitch(w, ratio);
 }

@@ -63,8 +63,7 @@ static bough_status check_value(const packer *p, int k) {
     double x = p->row[1 + k];
     if (fabs(x) <= most_value) return bough_ok();
     return bough_fail(BOUGH_INVALID,
-                      "channels.outb cannot hold %s = %g at %.9g s: leave out "
-                      "simulation.output.binary",
+                      "channels.outb cannot hold %s = %g at %.9g s: leave out simulation.output.binary",
                       p->def->channels->channel[k].name, x, p->row[0]);
 }
 

@@ -98,10 +98,10 @@ void bough_channels_add(bough_channels *list, const char *unit, const char *form
     vsnprintf(name, sizeof name, format, arguments);
     va_end(arguments);
     if (!is_word(name, BOUGH_CHANNEL_NAME) || strcmp(name, "Time") == 0) {
-        list->status = bough_fail(BOUGH_INVALID,
-                                  "'%s' cannot name an output channel: use 1 to %d "
-                                  "characters without blanks, other than 'Time'",
-                                  name, BOUGH_CHANNEL_NAME - 1);
+        list->status = bough_fail(
+            BOUGH_INVALID,
+            "'%s' cannot name an output channel: use 1 to %d characters without blanks, other than 'Time'",
+            name, BOUGH_CHANNEL_NAME - 1);
         return;
     }
     assert(is_word(unit, BOUGH_CHANNEL_UNIT));

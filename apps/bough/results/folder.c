@@ -13,9 +13,7 @@ static bough_status make_one(const char *path) {
     struct stat info;
     if (stat(path, &info) == 0) {
         if (S_ISDIR(info.st_mode)) return bough_ok();
-        return bough_fail(BOUGH_IO,
-                          "'%.200s' is a file; results need a folder: name another "
-                          "with --out",
+        return bough_fail(BOUGH_IO, "'%.200s' is a file; results need a folder: name another with --out",
                           path);
     }
     return bough_fail(BOUGH_IO, "cannot create the folder '%.200s': %s", path, strerror(error));
@@ -96,10 +94,9 @@ bough_status bough_folder_reopen_partial(const char *path, long bytes, FILE **fi
     struct stat info;
     if (stat(partial, &info) != 0 && errno == ENOENT) rename(path, partial);
     if (stat(partial, &info) != 0 || info.st_size < bytes) {
-        return bough_fail(BOUGH_INVALID,
-                          "'%.200s' lacks rows that the checkpoint needs; without --resume the "
-                          "run starts anew",
-                          partial);
+        return bough_fail(
+            BOUGH_INVALID,
+            "'%.200s' lacks rows that the checkpoint needs; without --resume the run starts anew", partial);
     }
     *file = fopen(partial, "r+");
     if (*file && ftruncate(fileno(*file), bytes) == 0 && fseek(*file, bytes, SEEK_SET) == 0) {
@@ -172,10 +169,10 @@ static void release(void *self) {
 static bough_status refuse(const char *folder, int file) {
     struct flock owner = {.l_type = F_WRLCK, .l_whence = SEEK_SET};
     if (fcntl(file, F_GETLK, &owner) == 0 && owner.l_type != F_UNLCK && owner.l_pid > 0) {
-        return bough_fail(BOUGH_IO,
-                          "process %ld is writing results into '%.200s'; wait for it, or name "
-                          "another folder with --out",
-                          (long)owner.l_pid, folder);
+        return bough_fail(
+            BOUGH_IO,
+            "process %ld is writing results into '%.200s'; wait for it, or name another folder with --out",
+            (long)owner.l_pid, folder);
     }
     return bough_fail(BOUGH_IO, "another process is writing results into '%.200s'", folder);
 }

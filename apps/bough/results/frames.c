@@ -55,9 +55,7 @@ bough_status bough_frames_open(bough_arena *arena, const bough_frames_def *def, 
 }
 
 static void write_vectors(const bough_frames *f, const char *name, const double *x, FILE *file) {
-    fprintf(file,
-            "<DataArray type=\"Float32\" Name=\"%s\" NumberOfComponents=\"3\" "
-            "format=\"ascii\">\n",
+    fprintf(file, "<DataArray type=\"Float32\" Name=\"%s\" NumberOfComponents=\"3\" format=\"ascii\">\n",
             name);
     for (int i = 0; i < f->n_point; i++, x += 3) fprintf(file, "%.6g %.6g %.6g\n", x[0], x[1], x[2]);
     fprintf(file, "</DataArray>\n");

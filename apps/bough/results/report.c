@@ -1,7 +1,9 @@
 #include "apps/bough/results/report.h"
 
 #include "apps/bough/results/folder.h"
+#include "core/base/arena.h"
 #include "core/base/input_file.h"
+#include "core/base/quote.h"
 
 #include <errno.h>
 #include <string.h>
@@ -18,38 +20,23 @@ bough_status bough_report_open(const char *folder, const char *name, FILE **file
     return bough_fail(BOUGH_IO, "cannot read '%.200s': %s", path, why);
 }
 
-// A '<' could begin an end tag.
-static void put(int byte, FILE *out) {
-    if (byte == '<') {
-        fputs("\\u003c", out);
-    } else {
-        fputc(byte, out);
-    }
-}
-
-void bough_report_quote(FILE *in, FILE *out) {
-    fputc('"', out);
-    for (int byte; (byte = fgetc(in)) != EOF;) {
-        if (byte == '"' || byte == '\\') fputc('\\', out);
-        if (byte == '\n') {
-            fputs("\\n", out);
-        } else if (byte >= 0x20) {
-            put(byte, out);
-        }
-    }
-    fputc('"', out);
-}
-
 // A file's text as a field of the data: never as a program, whoever has written it.
 static bough_status add_file(const char *folder, const char *name, const char *field, FILE *out, bool *any) {
-    FILE *file;
-    bough_status status = bough_report_open(folder, name, &file);
-    if (!bough_is_ok(&status) || !file) return status;
-    fprintf(out, "data.%s = ", field);
-    bough_report_quote(file, out);
-    fputs(";\n", out);
-    fclose(file);
-    *any = true;
+    char path[BOUGH_PATH_MAX], why[BOUGH_INPUT_REASON];
+    size_t size;
+    bough_status status = bough_folder_path(folder, name, path);
+    if (!bough_is_ok(&status)) return status;
+    bough_arena *arena = bough_arena_create();
+    const char *text = bough_input_read(arena, path, BOUGH_INPUT_DATA, &size, why);
+    if (text) {
+        fprintf(out, "data.%s = ", field);
+        bough_quote(out, text);
+        fputs(";\n", out);
+        *any = true;
+    } else if (errno != ENOENT && errno != ENOTDIR) {
+        status = bough_fail(BOUGH_IO, "cannot read '%.200s': %s", path, why);
+    }
+    bough_arena_destroy(arena);
     return status;
 }
 
@@ -87,31 +74,20 @@ static bough_status add_data(const char *folder, FILE *out) {
     }
     if (bough_is_ok(&status)) status = add_part(folder, "shape", bough_report_frames, out, &any);
     if (!bough_is_ok(&status) || any) return status;
-    return bough_fail(BOUGH_INVALID,
-                      "'%.200s' holds no results: a run leaves summary.json and "
-                      "channels.out, a study a table",
-                      folder);
-}
-
-// A folder's name as a text of the page's script.
-static void put_name(const char *folder, FILE *out) {
-    fputc('"', out);
-    for (const char *c = folder; *c; c++) {
-        if (*c == '"' || *c == '\\') fputc('\\', out);
-        if ((unsigned char)*c >= 0x20) put(*c, out);
-    }
-    fputc('"', out);
+    return bough_fail(
+        BOUGH_INVALID,
+        "'%.200s' holds no results: a run leaves summary.json and channels.out, a study a table", folder);
 }
 
 static bough_status add_others(int n, const char *const *folder, FILE *out) {
     bough_status status = bough_ok();
     fputs("data.name = ", out);
-    put_name(folder[0], out);
+    bough_quote(out, folder[0]);
     fputs(";\ndata.others = [\n", out);
     for (int k = 1; k < n && bough_is_ok(&status); k++) {
         bool found = false;
         fputs("{name: ", out);
-        put_name(folder[k], out);
+        bough_quote(out, folder[k]);
         fputs(", channels: ", out);
         status = bough_report_channels(folder[k], out, &found);
         fputs("},\n", out);

@@ -27,7 +27,4 @@ bough_status bough_report_frames(const char *folder, FILE *out, bool *found);
 // Opens folder/name; NULL when it does not exist.
 bough_status bough_report_open(const char *folder, const char *name, FILE **file);
 
-// Copies text as a string of the page's script, in quotes.
-void bough_report_quote(FILE *in, FILE *out);
-
 #endif

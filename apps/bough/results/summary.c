@@ -1,49 +1,13 @@
 #include "apps/bough/results/summary.h"
 
 #include "apps/bough/results/folder.h"
+#include "core/base/quote.h"
 
 #include <assert.h>
 #include <math.h>
 #include <stdlib.h>
-#include <string.h>
 
 static_assert(sizeof((bough_summary){0}.path) == BOUGH_PATH_MAX, "paths have one length");
-
-// Bytes of the UTF-8 character at `text`, 0 if there is none: names of files may be anything.
-static int character_length(const unsigned char *text) {
-    int length = text[0] < 0x80   ? 1
-                 : text[0] < 0xC2 ? 0
-                 : text[0] < 0xE0 ? 2
-                 : text[0] < 0xF0 ? 3
-                 : text[0] < 0xF5 ? 4
-                                  : 0;
-    for (int i = 1; i < length; i++) {
-        if ((text[i] & 0xC0) != 0x80) return 0;
-    }
-    return length;
-}
-
-static void write_string(FILE *file, const char *text) {
-    const unsigned char *c = (const unsigned char *)text;
-    fputc('"', file);
-    while (*c) {
-        int length = character_length(c);
-        if (length == 0) {
-            fputs("\\ufffd", file);
-            length = 1;
-        } else if (*c == '"' || *c == '\\') {
-            fprintf(file, "\\%c", *c);
-        } else if (*c == '\n') {
-            fputs("\\n", file);
-        } else if (*c < 0x20) {
-            fprintf(file, "\\u%04x", (unsigned)*c);
-        } else {
-            fwrite(c, 1, (size_t)length, file);
-        }
-        c += length;
-    }
-    fputc('"', file);
-}
 
 static void indent(bough_summary *s) { fprintf(s->file, "\n%*s", 2 * s->depth, ""); }
 
@@ -54,7 +18,7 @@ static void begin(bough_summary *s, const char *key) {
     s->first = false;
     indent(s);
     if (!key) return;
-    write_string(s->file, key);
+    bough_quote(s->file, key);
     fputs(": ", s->file);
 }
 
@@ -95,7 +59,7 @@ void bough_summary_integer(bough_summary *s, const char *key, long long value) {
 void bough_summary_text(bough_summary *s, const char *key, const char *text) {
     begin(s, key);
     if (text) {
-        write_string(s->file, text);
+        bough_quote(s->file, text);
     } else {
         fputs("null", s->file);
     }
