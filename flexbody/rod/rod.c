@@ -35,6 +35,7 @@ static void take_arrays(bough_rod_model *m, bough_arena *arena) {
 // G = h²/12 F by m', and R.
 static void set_gradient(bough_rod_model *m, const bough_rod_def *def, int n, const double *compliance) {
     const double *c = def->stiffness + 21 * n, *u = m->strain0 + 3 * m->stride + n;
+    double *gradient = bough_rod_tile(m->gradient, 25, n);
     double h = def->span[n + 1] - def->span[n], part = h * h / 12;
     double x = u[0], y = u[m->stride], z = u[2 * m->stride], stiffest = 0, softest = 0;
     const double turned[3][3] = {{0, z, -y}, {-z, 0, x}, {y, -x, 0}}; // m×κ⁰
@@ -49,15 +50,15 @@ static void set_gradient(bough_rod_model *m, const bough_rod_def *def, int n, co
         for (int j = 0; j < 6; j++) {
             double sum = 0;
             for (int k = 0; k < 6; k++) sum += change[k] * c[bough_symmetric6_index(k, j)];
-            m->gradient[(6 * i + j) * m->stride + n] = part * sum;
+            gradient[(6 * i + j) * BOUGH_LANES] = part * sum;
         }
         for (int j = i; j < 3; j++) {
-            m->gradient[(18 + (i == 0 ? j : i + j + 1)) * m->stride + n] = part * f[j];
+            gradient[(18 + (i == 0 ? j : i + j + 1)) * BOUGH_LANES] = part * f[j];
         }
         stiffest += c[bough_symmetric6_index(3 + i, 3 + i)];
         softest += f[i];
     }
-    m->gradient[24 * m->stride + n] = part * stiffest * softest;
+    gradient[24 * BOUGH_LANES] = part * stiffest * softest;
 }
 
 static bough_status set_segment(bough_rod_model *m, const bough_rod_def *def, int n) {
@@ -75,8 +76,8 @@ static bough_status set_segment(bough_rod_model *m, const bough_rod_def *def, in
     m->length[n] = h;
     m->inverse_length[n] = 1 / h;
     for (int k = 0; k < 21; k++) {
-        m->stiffness[k * s + n] = def->stiffness[21 * n + k];
-        m->damping[k * s + n] = def->damping[21 * n + k];
+        bough_rod_tile(m->stiffness, 21, n)[k * BOUGH_LANES] = def->stiffness[21 * n + k];
+        bough_rod_tile(m->damping, 21, n)[k * BOUGH_LANES] = def->damping[21 * n + k];
     }
     for (int k = 0; k < 72 && def->line != NULL; k++) m->line[k * s + n] = def->line[72 * n + k];
     vertex_state left = {.x = def->position[n], .p = def->rotation[n]};

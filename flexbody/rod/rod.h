@@ -78,17 +78,23 @@ typedef struct bough_rod_model {
     double *inverse_length;       // 1/h (stride) [1/m]
     double *strain0;              // V⁰, U⁰ (6 × stride)
     double *bend0;                // change of the undeformed tangent over a segment (3 × stride)
-    double *stiffness;            // C (21 × stride)
-    double *damping;              // (21 × stride)
+    double *stiffness;            // C (21 × stride), by tiles: bough_rod_tile
+    double *damping;              // (21 × stride), by tiles
     double *line;                 // D (72 × stride), two 6×6 by rows
-    double *gradient;             // L (18 × stride), 3×6 by rows, G (6 × stride) and R (stride):
-                                  // rod_elastic.h
+    double *gradient;             // L (18 × stride), 3×6 by rows, G (6 × stride) and R (stride), by
+                                  // tiles: rod_elastic.h
     double *mass;                 // of moving vertices (stride) [kg]
     double *moment;               // first moment s = mζ of moving vertices (3 × stride) [kg m]
     double *inertia;              // of moving vertices (6 × stride) [kg m²]
     double *inverse_mass;         // of the 6×6 mass in section axes (21 × stride)
     bough_vertex_inertia *vertex; // (N + 1); vertex 0 belongs to the carrier
 } bough_rod_model;
+
+// Row k of segment n is at tile[k · BOUGH_LANES]: eight segments lie side by side, so that a kernel reads the
+// rows of a tile at offsets that the compiler knows.
+static inline double *bough_rod_tile(double *array, int rows, int n) {
+    return array + (size_t)rows * (size_t)(n - n % BOUGH_LANES) + n % BOUGH_LANES;
+}
 
 static inline bool bough_rod_carries(const bough_rod_model *m) { return m->n_segment > m->n; }
 

@@ -18,7 +18,7 @@ static lanes lanes_from(const bough_rod_model *m, int v) {
 // stored, or added to what is there.
 BOUGH_INLINE void put_tile(const tile *t, lanes at, int column, bool added, double *blocks) {
     tile turned;
-    turn_tile(t->entry, turned.entry);
+    turn_tile(t->entry, LANES, turned.entry, W8);
     for (int lane = at.begin; lane < at.end; lane++) {
         double *restrict to = blocks + BOUGH_BLOCK * (at.v - 1 + lane) + W8 * column;
         const double *restrict from = turned.entry + W8 * lane;

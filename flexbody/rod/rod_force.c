@@ -71,7 +71,8 @@ double bough_rod_elastic_energy(const bough_rod_model *m, const bough_rod_scratc
     double energy = 0;
     for (int n = 0; n < m->n_segment; n++) {
         strain e = strain_of(m, scratch, n);
-        energy += m->length[n] * segment_energy(m->stiffness, m->gradient, m->stride, n, e);
+        energy += m->length[n] * segment_energy(bough_rod_tile(m->stiffness, 21, n),
+                                                bough_rod_tile(m->gradient, 25, n), BOUGH_LANES, 0, e);
     }
     return energy;
 }
@@ -83,7 +84,8 @@ void bough_rod_stress(const bough_rod_model *m, const bough_rod_scratch *scratch
     vertex_state r = load_vertex(scratch->vertex, m->stride, n + 1);
     segment_geometry shape = segment_shape(l, r, m->inverse_length[n]);
     strain e = strain_of(m, scratch, n);
-    strain s = segment_stress(m->stiffness, m->gradient, m->stride, n, e);
+    strain s = segment_stress(bough_rod_tile(m->stiffness, 21, n), bough_rod_tile(m->gradient, 25, n),
+                              BOUGH_LANES, 0, e);
     segment_force f = stress_force(shape, s, m->length[n]);
     bough_vec3 half = bough_scale(0.5 * m->length[n], shape.chord);
     bough_vec3 force = along_axis(shape.v, s.v);

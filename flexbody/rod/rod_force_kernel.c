@@ -46,35 +46,45 @@ void AT(gather)(const bough_rod_model *m, const double *state, const double *inp
     gather_state(m, state, 1, m->n, scratch->vertex);
 }
 
-// The forces, and the least cos θ/2 of the segments.
-static double least_cosine(const bough_rod_model *m, int first, int last, bough_rod_scratch *scratch) {
+// The forces of segments first..first + 7 into rows of the given stride, and cos θ/2 of each.
+static void force_eight(const bough_rod_model *m, const bough_rod_scratch *scratch, int first,
+                        double *restrict out, int stride, double *restrict cosine) {
     int s = m->stride;
-    const double *restrict vertex = scratch->vertex, *restrict rest = scratch->rest;
-    const double *restrict c = m->stiffness, *restrict d = m->damping;
-    const double *restrict gradient = m->gradient;
-    const double *restrict length = m->length, *restrict inverse = m->inverse_length;
-    double *restrict out = scratch->segment;
-    double least = 1;
-#pragma omp simd reduction(min : least)
-    for (int n = first; n < last; n++) {
+    const double *restrict vertex = scratch->vertex + first, *restrict rest = scratch->rest + first;
+    const double *restrict c = m->stiffness + 21 * first, *restrict d = m->damping + 21 * first;
+    const double *restrict gradient = m->gradient + 25 * first;
+    const double *restrict length = m->length + first, *restrict inverse = m->inverse_length + first;
+#pragma omp simd
+    for (int n = 0; n < BOUGH_LANES; n++) {
         vertex_state l = load_vertex(vertex, s, n), r = load_vertex(vertex, s, n + 1);
         segment_geometry shape = segment_shape(l, r, inverse[n]);
         strain e = elastic_strain(shape, inverse[n], rest, s, n);
         strain rate = strain_rate(shape, segment_motion(shape, l, r), inverse[n]);
-        strain elastic = segment_stress(c, gradient, s, n, e);
-        strain viscous = symmetric_times(d, s, n, rate);
+        strain elastic = segment_stress(c, gradient, BOUGH_LANES, n, e);
+        strain viscous = symmetric_times(d, BOUGH_LANES, n, rate);
         segment_force f = stress_force(shape, add_strain(elastic, viscous), length[n]);
-        store3(out, s, n, f.f);
-        store3(out + 3 * s, s, n, f.ll);
-        store3(out + 6 * s, s, n, f.lr);
-        double w = length[n] > 0 ? shape.w : 1; // beyond the last: no segment
-        least = w < least ? w : least;
+        store3(out, stride, n, f.f);
+        store3(out + 3 * stride, stride, n, f.ll);
+        store3(out + 6 * stride, stride, n, f.lr);
+        cosine[n] = length[n] > 0 ? shape.w : 1; // beyond the last: no segment
     }
-    return least;
 }
 
 bool AT(forces)(const bough_rod_model *m, int first, int last, bough_rod_scratch *scratch) {
-    return least_cosine(m, first, last, scratch) >= 0.5;
+    int s = m->stride;
+    double least = 1, cosine[BOUGH_LANES], some[9 * BOUGH_LANES];
+    for (int tile = first - first % BOUGH_LANES; tile < last; tile += BOUGH_LANES) {
+        int begin = first > tile ? first - tile : 0,
+            end = last - tile < BOUGH_LANES ? last - tile : BOUGH_LANES;
+        double *out = scratch->segment + tile;
+        bool whole = end - begin == BOUGH_LANES;
+        force_eight(m, scratch, tile, whole ? out : some, whole ? s : BOUGH_LANES, cosine);
+        for (int n = begin; n < end; n++) {
+            least = cosine[n] < least ? cosine[n] : least;
+            for (int k = 0; k < 9 && !whole; k++) out[k * s + n] = some[k * BOUGH_LANES + n];
+        }
+    }
+    return least >= 0.5;
 }
 
 static bough_mat3 middle_of(const bough_rod_model *m, const bough_rod_scratch *scratch, int n) {
@@ -301,25 +311,28 @@ bool AT(derivative)(const bough_rod_model *m, const bough_rod_loads *loads, doub
     return balance_vertices(m, state, input, scratch, rate);
 }
 
-// Adds to the forces of the inner segments what the change Δ of D q does to them where they are:
+// Adds to the forces of the segments what the change Δ of D q does to them where they are:
 // f = −R C Δ, moments ∓h/2 f×V + C Δ, in segments whose own turn is neglected.
 static void add_drift(const bough_rod_model *m, const bough_rod_loads *loads, double elapsed,
                       bough_rod_scratch *scratch) {
-    int s = m->stride, last = m->n_segment;
-    const double *restrict vertex = scratch->vertex, *restrict rate = loads->rest_rate;
-    const double *restrict c = m->stiffness, *restrict e0 = m->strain0;
-    const double *restrict length = m->length;
-    double *restrict out = scratch->segment;
+    int s = m->stride;
+    for (int first = 0; first < m->n_segment; first += BOUGH_LANES) {
+        const double *restrict vertex = scratch->vertex + first, *restrict rate = loads->rest_rate + first;
+        const double *restrict c = m->stiffness + 21 * first, *restrict e0 = m->strain0 + first;
+        const double *restrict length = m->length + first;
+        double *restrict out = scratch->segment + first;
 #pragma omp simd
-    for (int n = 1; n < last; n++) {
-        bough_quaternion p = load_vertex(vertex, s, n).p, q = load_vertex(vertex, s, n + 1).p;
-        bough_mat3 r = mid_frame_between(p, q);
-        strain e = {bough_scale(elapsed, load3(rate, s, n)), bough_scale(elapsed, load3(rate + 3 * s, s, n))};
-        strain stress = symmetric_times(c, s, n, e);
-        bough_vec3 tau = bough_scale(0.5 * length[n], bough_cross(stress.v, load3(e0, s, n)));
-        store3(out, s, n, bough_sub(load3(out, s, n), bough_mat3_mul(r, stress.v)));
-        store3(out + 3 * s, s, n, bough_add(load3(out + 3 * s, s, n), bough_sub(tau, stress.u)));
-        store3(out + 6 * s, s, n, bough_add(load3(out + 6 * s, s, n), bough_add(tau, stress.u)));
+        for (int n = 0; n < BOUGH_LANES; n++) {
+            bough_quaternion p = load_vertex(vertex, s, n).p, q = load_vertex(vertex, s, n + 1).p;
+            bough_mat3 r = mid_frame_between(p, q);
+            strain e = {bough_scale(elapsed, load3(rate, s, n)),
+                        bough_scale(elapsed, load3(rate + 3 * s, s, n))};
+            strain stress = symmetric_times(c, BOUGH_LANES, n, e);
+            bough_vec3 tau = bough_scale(0.5 * length[n], bough_cross(stress.v, load3(e0, s, n)));
+            store3(out, s, n, bough_sub(load3(out, s, n), bough_mat3_mul(r, stress.v)));
+            store3(out + 3 * s, s, n, bough_add(load3(out + 3 * s, s, n), bough_sub(tau, stress.u)));
+            store3(out + 6 * s, s, n, bough_add(load3(out + 6 * s, s, n), bough_add(tau, stress.u)));
+        }
     }
 }
 

@@ -107,14 +107,16 @@ BOUGH_INLINE segment_force segment_tangent(const bough_rod_model *m, const bough
     segment_rate motion = segment_motion(shape, l, r);
     strain e = elastic_strain(shape, inverse, scratch->rest, s, n);
     strain rate = strain_rate(shape, motion, inverse);
-    elastic_state elastic = elastic_at(m->stiffness, m->gradient, s, n, e);
-    strain stress = add_strain(elastic_stress(elastic), symmetric_times(m->damping, s, n, rate));
+    const double *c = bough_rod_tile(m->stiffness, 21, n), *viscous = bough_rod_tile(m->damping, 21, n);
+    const double *gradient = bough_rod_tile(m->gradient, 25, n);
+    elastic_state elastic = elastic_at(c, gradient, BOUGH_LANES, 0, e);
+    strain stress = add_strain(elastic_stress(elastic), symmetric_times(viscous, BOUGH_LANES, 0, rate));
     segment_variation d = shape_variation(shape, *dl, *dr, inverse);
     strain de = {d.stretch, bough_scale(inverse, d.phi)};
     if (scratch->turning) de = add_turned(de, m->line, scratch->along, s, n, d.middle);
     strain drate = rate_variation(shape, motion, d, dl, dr, inverse);
-    strain dstress = add_strain(elastic_variation(m->stiffness, m->gradient, s, n, elastic, de),
-                                symmetric_times(m->damping, s, n, drate));
+    strain dstress = add_strain(elastic_variation(c, gradient, BOUGH_LANES, 0, elastic, de),
+                                symmetric_times(viscous, BOUGH_LANES, 0, drate));
     segment_force f = force_variation(shape, d, stress, dstress, h);
     if (!scratch->turning) return f;
     return add_chord_moments(f, shape, d, bough_rotation_matrix(l.p), bough_rotation_matrix(r.p), dl->phi,

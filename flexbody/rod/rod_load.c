@@ -111,7 +111,7 @@ static void lump_stress(const bough_rod_model *m, int n, strain line, bool follo
     vertex_state r = {.x = m->position0[n + 1], .p = m->rotation0[n + 1]};
     segment_geometry shape = segment_shape(l, r, m->inverse_length[n]);
     strain minus = {bough_scale(-1, line.v), bough_scale(-1, line.u)};
-    strain stress = symmetric_times(m->stiffness, s, n, minus);
+    strain stress = symmetric_times(bough_rod_tile(m->stiffness, 21, n), BOUGH_LANES, 0, minus);
     segment_force f = stress_force(shape, stress, m->length[n]);
     const bough_vec3 force[2] = {f.f, bough_scale(-1, f.f)}, moment[2] = {f.ll, f.lr};
     const bough_quaternion p[2] = {l.p, r.p};

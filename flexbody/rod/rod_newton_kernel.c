@@ -3,8 +3,6 @@
 #include "flexbody/rod/rod_lanes.h"
 #include "flexbody/rod/rod_tangent_layout.h"
 
-#include <string.h>
-
 // (E + ξ(a))⁻¹ y = (y + a (a·y) − a×y)/(1 + |a|²)
 BOUGH_INLINE bough_vec3 solve_cross(bough_vec3 a, bough_vec3 y) {
     bough_vec3 sum = bough_axpy(bough_dot(a, y), a, bough_sub(y, bough_cross(a, y)));
@@ -201,23 +199,11 @@ static void velocity_residual(const bough_rod_model *m, const bough_rod_tangent 
 
 // The block solver's rows, one per vertex, from eight arrays over the vertices, and back.
 static void pack(int n, int s, const double *velocity, double *packed) {
-    for (int v = 1; v <= n; v += LANES) {
-        tile t;
-        for (int i = 0; i < W8; i++) {
-            memcpy(t.entry + LANES * i, velocity + i * s + v, LANES * sizeof(double));
-        }
-        turn_tile(t.entry, packed + W8 * (v - 1));
-    }
+    for (int v = 1; v <= n; v += LANES) turn_tile(velocity + v, s, packed + W8 * (v - 1), W8);
 }
 
 static void unpack(int n, int s, const double *packed, double *velocity) {
-    for (int v = 1; v <= n; v += LANES) {
-        tile t;
-        turn_tile(packed + W8 * (v - 1), t.entry);
-        for (int i = 0; i < 6; i++) {
-            memcpy(velocity + i * s + v, t.entry + LANES * i, LANES * sizeof(double));
-        }
-    }
+    for (int v = 1; v <= n; v += LANES) turn_tile(packed + W8 * (v - 1), W8, velocity + v, s);
 }
 
 // Velocities and the configuration that belongs to them back into the state's layout.

@@ -108,12 +108,11 @@ static const double slender = 1e12;
 
 // EA L²/EI.
 static double slenderness(const bough_rod_model *m) {
-    const double *axial = m->stiffness + 11 * (size_t)m->stride;
-    const double *x = m->stiffness + 15 * (size_t)m->stride;
-    const double *y = m->stiffness + 18 * (size_t)m->stride;
     double largest = 0, length = m->span[m->n];
     for (int n = 0; n < m->n; n++) {
-        largest = fmax(largest, axial[n] * length * length / fmin(x[n], y[n]));
+        const double *c = bough_rod_tile(m->stiffness, 21, n);
+        double softest = fmin(c[15 * BOUGH_LANES], c[18 * BOUGH_LANES]);
+        largest = fmax(largest, c[11 * BOUGH_LANES] * length * length / softest);
     }
     return largest;
 }

@@ -373,8 +373,9 @@ static double elastic_rate(const bough_rod_model *m) {
     double greatest = 0;
     for (int n = 0; n < m->n_segment; n++) {
         for (int i = 0; i < 6; i++) {
-            int k = bough_symmetric6_index(i, i) * m->stride + n;
-            greatest = fmax(greatest, m->damping[k] > 0 ? m->stiffness[k] / m->damping[k] : (double)INFINITY);
+            int k = bough_symmetric6_index(i, i) * BOUGH_LANES;
+            double c = bough_rod_tile(m->stiffness, 21, n)[k], d = bough_rod_tile(m->damping, 21, n)[k];
+            greatest = fmax(greatest, d > 0 ? c / d : (double)INFINITY);
         }
     }
     return greatest;

@@ -74,9 +74,9 @@ BOUGH_INLINE elastic_state load_elastic(const double *restrict base, int l) {
 // base (BASE rows of 8). Segments beyond the last exert nothing.
 static void find_base(const bough_rod_model *m, const bough_rod_scratch *scratch, int first, double *base) {
     int s = m->stride;
-    const double *restrict at = scratch->vertex + first, *restrict c = m->stiffness + first;
-    const double *restrict d = m->damping + first, *restrict rest = scratch->rest + first;
-    const double *restrict inverse = m->inverse_length + first, *restrict gradient = m->gradient + first;
+    const double *restrict at = scratch->vertex + first, *restrict c = m->stiffness + 21 * first;
+    const double *restrict d = m->damping + 21 * first, *restrict rest = scratch->rest + first;
+    const double *restrict inverse = m->inverse_length + first, *restrict gradient = m->gradient + 25 * first;
     double *restrict out = base;
 #pragma omp simd
     for (int l = 0; l < LANES; l++) {
@@ -85,8 +85,8 @@ static void find_base(const bough_rod_model *m, const bough_rod_scratch *scratch
         segment_rate motion = segment_motion(shape, left, right);
         strain e = elastic_strain(shape, inverse[l], rest, s, l);
         strain rate = strain_rate(shape, motion, inverse[l]);
-        elastic_state elastic = elastic_at(c, gradient, s, l, e);
-        strain stress = add_strain(elastic_stress(elastic), symmetric_times(d, s, l, rate));
+        elastic_state elastic = elastic_at(c, gradient, LANES, l, e);
+        strain stress = add_strain(elastic_stress(elastic), symmetric_times(d, LANES, l, rate));
         store_elastic(out, l, elastic);
         store_shape(out, l, shape);
         store3(out + LANES * BASE_RELATIVE, LANES, l, motion.relative);
@@ -122,8 +122,8 @@ BOUGH_INLINE void position_direction(const bough_rod_model *m, const bough_rod_s
     const double *restrict line = m->line + first, *restrict bend = m->bend0 + first;
     const double *restrict turn = m->strain0 + 3 * s + first, *restrict following =
                                                                   scratch->following + first;
-    const double *restrict c = m->stiffness + first, *restrict gradient = m->gradient + first;
-    const double *restrict damping = m->damping + first;
+    const double *restrict c = m->stiffness + 21 * first, *restrict gradient = m->gradient + 25 * first;
+    const double *restrict damping = m->damping + 21 * first;
     const double *restrict inverse = m->inverse_length + first, *restrict h = m->length + first;
 #pragma omp simd
     for (int l = 0; l < LANES; l++) {
@@ -140,8 +140,8 @@ BOUGH_INLINE void position_direction(const bough_rod_model *m, const bough_rod_s
         if (turning) de = add_turned(de, line, along, s, l, d.middle);
         strain drate = rate_variation(shape, motion, d, &dl, &dr, inverse[l]);
         elastic_state elastic = load_elastic(base, l);
-        strain dstress = add_strain(elastic_variation(c, gradient, s, l, elastic, de),
-                                    symmetric_times(damping, s, l, drate));
+        strain dstress = add_strain(elastic_variation(c, gradient, LANES, l, elastic, de),
+                                    symmetric_times(damping, LANES, l, drate));
         segment_force f = force_variation(shape, d, stress, dstress, h[l]);
         if (turning) {
             bough_mat3 rl = bough_rotation_matrix(load_vertex(at, s, l).p);
@@ -174,15 +174,14 @@ static void position_variation(const bough_rod_model *m, const bough_rod_scratch
 // The shape does not vary, the stress varies by D ė.
 BOUGH_INLINE void velocity_direction(const bough_rod_model *m, int first, const double *restrict base,
                                      vertex_variation dl, vertex_variation dr, double *restrict column) {
-    int s = m->stride;
-    const double *restrict damping = m->damping + first, *restrict h = m->length + first;
+    const double *restrict damping = m->damping + 21 * first, *restrict h = m->length + first;
     const double *restrict inverse = m->inverse_length + first;
     vertex_state left = {.u = dl.u, .w = dl.w}, right = {.u = dr.u, .w = dr.w};
 #pragma omp simd
     for (int l = 0; l < LANES; l++) {
         segment_geometry shape = load_shape(base, l);
         strain rate = strain_rate(shape, segment_motion(shape, left, right), inverse[l]);
-        strain stress = symmetric_times(damping, s, l, rate);
+        strain stress = symmetric_times(damping, LANES, l, rate);
         store_force(column, l, stress_force(shape, stress, h[l]));
     }
 }

@@ -41,25 +41,29 @@ typedef struct tile {
     _Alignas(64) double entry[TILE];
 } tile;
 
-// Row r + 4 between row r: three of these turn a tile, as each rotates the bits of the index.
-BOUGH_INLINE void shuffle_tile(const double *restrict from, double *restrict to) {
-    for (int r = 0; r < LANES / 2; r++) {
-        const double *restrict a = from + LANES * r, *restrict b = a + TILE / 2;
-        double *restrict pair = to + 2 * LANES * r;
-#pragma omp simd
-        for (int l = 0; l < LANES; l++) {
-            pair[2 * l] = a[l];
-            pair[2 * l + 1] = b[l];
-        }
-    }
+typedef double four __attribute__((vector_size(4 * sizeof(double)), aligned(sizeof(double))));
+
+// to[to_stride j + i] = from[stride i + j] for i, j < 4
+BOUGH_INLINE void turn_quarter(const double *from, int stride, double *to, int to_stride) {
+    four r0 = *(const four *)from, r1 = *(const four *)(from + stride);
+    four r2 = *(const four *)(from + 2 * stride), r3 = *(const four *)(from + 3 * stride);
+    four even01 = __builtin_shufflevector(r0, r1, 0, 4, 2, 6),
+         odd01 = __builtin_shufflevector(r0, r1, 1, 5, 3, 7);
+    four even23 = __builtin_shufflevector(r2, r3, 0, 4, 2, 6),
+         odd23 = __builtin_shufflevector(r2, r3, 1, 5, 3, 7);
+    *(four *)to = __builtin_shufflevector(even01, even23, 0, 1, 4, 5);
+    *(four *)(to + to_stride) = __builtin_shufflevector(odd01, odd23, 0, 1, 4, 5);
+    *(four *)(to + 2 * to_stride) = __builtin_shufflevector(even01, even23, 2, 3, 6, 7);
+    *(four *)(to + 3 * to_stride) = __builtin_shufflevector(odd01, odd23, 2, 3, 6, 7);
 }
 
-// to[8 j + i] = from[8 i + j]
-BOUGH_INLINE void turn_tile(const double *restrict from, double *restrict to) {
-    tile once, twice;
-    shuffle_tile(from, once.entry);
-    shuffle_tile(once.entry, twice.entry);
-    shuffle_tile(twice.entry, to);
+// to[to_stride j + i] = from[stride i + j] for i, j < 8
+BOUGH_INLINE void turn_tile(const double *from, int stride, double *to, int to_stride) {
+    for (int i = 0; i < LANES; i += 4) {
+        for (int j = 0; j < LANES; j += 4) {
+            turn_quarter(from + stride * i + j, stride, to + to_stride * j + i, to_stride);
+        }
+    }
 }
 
 #endif

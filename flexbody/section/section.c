@@ -325,7 +325,7 @@ bough_status bough_section_discretise(bough_arena *arena, const bough_section_ta
                            .taper = m.taper,
                            .inertia = m.inertia};
     for (int i = 0; i <= n_segment; i++) {
-        m.span[i] = bough_section_length(&a) * i / n_segment;
+        m.span[i] = bough_section_length(&a) * bough_section_graded(table->grading, (double)i / n_segment);
         m.position[i] = bough_section_at(&a, m.span[i]).position;
         m.rotation[i] = bough_section_rotation(&a, m.span[i]);
     }

@@ -21,9 +21,15 @@ typedef struct bough_section_table {
     const bough_section_station *station;
     double length;     // used when n_station is 1 [m]
     double damping[6]; // D = diag(√μ) C diag(√μ), μ per strain component [s]
+    double grading;    // of the segments: see bough_section_graded
 } bough_section_table;
 
-// A definition with `n_segment` equal segments in the arena.
+// Where vertex i of n segments lies, as a share of the length, x = i/n being given: x + g x (1 − x). Segments
+// shorten evenly from the root, the first (1 + g)/(1 − g) times as long as the last, and the vertices of n/2
+// segments are every second one of n.
+static inline double bough_section_graded(double grading, double x) { return x + grading * x * (1 - x); }
+
+// A definition with `n_segment` segments in the arena.
 bough_status bough_section_discretise(bough_arena *arena, const bough_section_table *table, int n_segment,
                                       bough_rod_def *def);
 

@@ -208,17 +208,17 @@ static double lack(const bough_vertex_inertia *v, double shift) {
     return 1.1 * shift * shift / v->mass - central_inertia(&without);
 }
 
-// Gives vertex i an inertia across its axis, and takes its second moment back by masses (ε, −2ε, ε) on
+// Gives vertex i an inertia across its axis, and takes its second moment back by masses on
 // three neighbours, which change neither mass nor first moment.
 static void add_spread(const bough_rod_def *def, int i, double spread, bough_vertex_inertia *vertex) {
     const bough_vec3 along = {0, 0, 1};
     int n = def->n_segment, middle = i == 0 ? 1 : i == n ? n - 1 : i;
     add_offsets(vertex[i].inertia, spread, along, along);
-    double h = 0.5 * (def->span[middle + 1] - def->span[middle - 1]);
-    double mass = 0.5 * spread / (h * h);
-    vertex[middle - 1].mass -= mass;
-    vertex[middle].mass += 2 * mass;
-    vertex[middle + 1].mass -= mass;
+    double left = def->span[middle] - def->span[middle - 1],
+           right = def->span[middle + 1] - def->span[middle];
+    vertex[middle - 1].mass -= spread / (left * (left + right));
+    vertex[middle].mass += spread / (left * right);
+    vertex[middle + 1].mass -= spread / (right * (left + right));
 }
 
 static bool positive(const bough_vertex_inertia *v) {

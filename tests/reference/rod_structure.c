@@ -43,26 +43,27 @@ static strain strain_of(const bough_rod_model *m, const segment *g) {
 
 // Ĉ e of (4) and D̂ ė of (5)
 static strain law_stress(const bough_rod_model *m, const segment *g) {
-    return segment_stress(m->stiffness, m->gradient, m->stride, g->n, strain_of(m, g));
+    return segment_stress(bough_rod_tile(m->stiffness, 21, g->n), bough_rod_tile(m->gradient, 25, g->n),
+                          BOUGH_LANES, 0, strain_of(m, g));
 }
 
 static strain viscous_stress(const bough_rod_model *m, const segment *g) {
     strain rate = strain_rate(g->shape, segment_motion(g->shape, g->left, g->right), g->inverse);
-    return symmetric_times(m->damping, m->stride, g->n, rate);
+    return symmetric_times(bough_rod_tile(m->damping, 21, g->n), BOUGH_LANES, 0, rate);
 }
 
 static strain law_stress_change(const bough_rod_model *m, const segment *g, const segment_variation *d) {
     strain change = {d->stretch, bough_scale(g->inverse, d->phi)};
-    int s = m->stride;
-    elastic_state at = elastic_at(m->stiffness, m->gradient, s, g->n, strain_of(m, g));
-    return elastic_variation(m->stiffness, m->gradient, s, g->n, at, change);
+    const double *c = bough_rod_tile(m->stiffness, 21, g->n), *l = bough_rod_tile(m->gradient, 25, g->n);
+    elastic_state at = elastic_at(c, l, BOUGH_LANES, 0, strain_of(m, g));
+    return elastic_variation(c, l, BOUGH_LANES, 0, at, change);
 }
 
 static strain viscous_stress_change(const bough_rod_model *m, const segment *g, const segment_variation *d,
                                     const vertex_variation *l, const vertex_variation *r) {
     segment_rate motion = segment_motion(g->shape, g->left, g->right);
     strain change = rate_variation(g->shape, motion, *d, l, r, g->inverse);
-    return symmetric_times(m->damping, m->stride, g->n, change);
+    return symmetric_times(bough_rod_tile(m->damping, 21, g->n), BOUGH_LANES, 0, change);
 }
 
 // A segment's forces onto its two vertices; the geometry holds up to 120° of relative rotation.
@@ -139,7 +140,8 @@ static double elastic_energy(void *self, const bough_vertex *vertex) {
     double energy = 0;
     for (int n = 0; n < m->n_segment; n++) { // (4)
         segment g = segment_at(m, vertex, n);
-        energy += g.h * segment_energy(m->stiffness, m->gradient, m->stride, n, strain_of(m, &g));
+        energy += g.h * segment_energy(bough_rod_tile(m->stiffness, 21, n),
+                                       bough_rod_tile(m->gradient, 25, n), BOUGH_LANES, 0, strain_of(m, &g));
     }
     return energy;
 }

@@ -70,7 +70,11 @@ static double beam_mass(const bough_beam *beam) {
 
 static void print_rod(const bough_simulation *s, const bough_beam *beam) {
     const bough_member *rod = &s->rod[beam->port];
-    printf("; %d segments, %d states", beam->def.n_segment, rod->system.n_state);
+    const double *span = beam->def.span;
+    int n = beam->def.n_segment;
+    printf("; %d segments", n);
+    if (beam->body->rod.grading > 0) printf(" of %.4g to %.4g m", span[1] - span[0], span[n] - span[n - 1]);
+    printf(", %d states", rod->system.n_state);
     if (bough_scheme_whole(s->master->coupling)) return;
     printf(", %s, rtol %.6g", rod->solver, bough_scene_micro(s->scene, beam->body)->rtol);
 }

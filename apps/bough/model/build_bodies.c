@@ -148,8 +148,8 @@ static const bough_beam *equal_beam(const bough_builder *b, const bough_beam *be
     const bough_scene_rod *rod = &beam->body->rod;
     for (const bough_beam *other = b->s->beam; other < beam; other++) {
         const bough_scene_rod *its = &other->body->rod;
-        if (its->n_segment == rod->n_segment && equal_structures(&its->structure, &rod->structure))
-            return other;
+        bool equal = its->n_segment == rod->n_segment && its->grading == rod->grading;
+        if (equal && equal_structures(&its->structure, &rod->structure)) return other;
     }
     return NULL;
 }
@@ -166,8 +166,11 @@ static bough_status discretise(bough_builder *b, bough_beam *beam) {
     size_t count = (size_t)rod->n_station;
     bough_section_station *station = bough_arena_take(b->arena, count * sizeof *station);
     for (int k = 0; k < rod->n_station; k++) station[k] = rod->station[k].def;
-    bough_section_table table = {
-        .name = beam->body->name, .n_station = rod->n_station, .station = station, .length = rod->length};
+    bough_section_table table = {.name = beam->body->name,
+                                 .n_station = rod->n_station,
+                                 .station = station,
+                                 .length = rod->length,
+                                 .grading = beam->body->rod.grading};
     memcpy(table.damping, rod->damping, sizeof table.damping);
     return bough_section_discretise(b->arena, &table, beam->body->rod.n_segment, &beam->def);
 }

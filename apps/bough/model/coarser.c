@@ -37,7 +37,8 @@ static void copy_loads(bough_arena *arena, const bough_scene *scene, bough_scene
         const bough_scene_rod *rod = &scene->body[load->body].rod;
         if (!rod->node) continue;
         load->place = BOUGH_SCENE_AT_SPAN;
-        load->span[0] = bough_scene_arc_length(&rod->structure) * load->vertex / rod->n_segment;
+        double share = bough_section_graded(rod->grading, (double)load->vertex / rod->n_segment);
+        load->span[0] = bough_scene_arc_length(&rod->structure) * share;
     }
 }
 

@@ -145,6 +145,7 @@ typedef struct bough_scene_structure {
 typedef struct bough_scene_rod {
     const bough_node *node; // NULL: the body has no rod
     int n_segment;
+    double grading;                  // of their lengths: bough_section_graded
     bough_scene_structure structure; // of the table, or of the one section given in the scene
     // As written in the scene; contained in `structure`:
     double part[2]; // stretch of the table [m]

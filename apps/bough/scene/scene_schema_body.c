@@ -63,7 +63,10 @@ static const bough_key rod_keys[] = {
      .help = "part of the table, from and to along z: several rods in a chain form the whole, and "
              "carry bodies where two of them meet"},
     {NAMED("segments", INTEGER), AT(n_segment), .range = "[1, 10000]", .example = "48",
-     .help = "segments of equal length; default from simulation.accuracy"},
+     .help = "default from simulation.accuracy"},
+    {KEY(NUMBER, grading), .range = "[0, 0.5]", .fallback = "0", .example = "0.2",
+     .help = "g: segments shorten from the root, the first (1 + g)/(1 - g) times as long as the last; "
+             "0: equal ones. With 0.2 a blade needs about two thirds of them"},
     {KEY(VECTOR, damping), .count = 6, UNIT(TIME), .range = ">= 0",
      .example = "[0, 0, 0, 3 ms, 3 ms, 3 ms]", .help = "replaces the damping of the table"},
     {KEY(NUMBER, length), UNIT(LENGTH), .range = "> 0", .example = "2 m",
