@@ -94,6 +94,13 @@ double bough_turbulence_coherence(const bough_wind_iec_def *d, double distance, 
     return exp(-12 * sqrt(waves * waves + lengths * lengths)); // (C.15)
 }
 
+bool bough_turbulence_equal(const bough_wind_iec_def *a, const bough_wind_iec_def *b) {
+    return a->condition == b->condition && a->wind_class == b->wind_class && a->speed == b->speed &&
+           a->intensity == b->intensity && a->height == b->height && a->exponent == b->exponent &&
+           a->yearly == b->yearly && a->seed == b->seed && a->points == b->points && a->width == b->width &&
+           a->time_step == b->time_step && a->period == b->period;
+}
+
 // -- the maker ------------------------------------------------------------------------------------
 
 typedef struct maker {

@@ -19,6 +19,9 @@ double bough_turbulence_spectrum(const bough_wind_iec_def *def, int component, d
 // Coherence of u between points at a distance [m]: the cross spectrum over the spectrum, 0 … 1.
 double bough_turbulence_coherence(const bough_wind_iec_def *def, double distance, double f);
 
+// Whether two definitions make the same box.
+bool bough_turbulence_equal(const bough_wind_iec_def *a, const bough_wind_iec_def *b);
+
 // Makes the box, in which the mean wind by its profile is contained.
 bough_status bough_turbulence_make(bough_arena *arena, const bough_wind_iec_def *def, bough_wind_box *box);
 

@@ -18,6 +18,7 @@ typedef struct case_run {
     bough_study_drive *drive;
     bough_study_series *series; // NULL: counts
     bough_case_result *result;
+    const bough_wind_box *box; // lent; NULL: none
     bough_run run;
     int *column;              // (n_channel) of the study's channels among the run's
     bough_recorder *recorder; // of all channels; NULL: none
@@ -161,6 +162,7 @@ static bough_status build(bough_arena *arena, case_run *r) {
     if (threads > 0) scene->simulation.threads = threads;
     if (is_reference(s, r->chosen)) scene->simulation.error_estimate = BOUGH_SCENE_NO_ESTIMATE;
     if (!r->series) scene->simulation.output.from = s->from;
+    if (r->drive->boxes) scene->aero.wind.def.box = r->box = bough_boxes_lend(r->drive->boxes, scene);
     bough_status built = bough_run_create(arena, scene, &r->run);
     status = same_files(arena, scene, r->chosen->files);
     if (bough_is_ok(&status)) status = built;
@@ -222,6 +224,7 @@ static double cpu_clock(void) {
 static void run_timed(case_run *r) {
     double wall = bough_wall_clock(), cpu = cpu_clock();
     r->result->outcome = bough_arena_use(run_in, r);
+    if (r->drive->boxes) bough_boxes_give_back(r->drive->boxes, r->box);
     r->result->cpu = cpu_clock() - cpu;
     r->result->wall = bough_wall_clock() - wall;
 }

@@ -3,6 +3,7 @@
 #ifndef BOUGH_APPS_CASES_CASE_RUN_H
 #define BOUGH_APPS_CASES_CASE_RUN_H
 
+#include "apps/bough/cases/boxes.h"
 #include "apps/bough/cases/counts.h"
 #include "apps/bough/cases/study.h"
 #include "apps/bough/results/progress.h"
@@ -66,6 +67,7 @@ typedef struct bough_study_drive {
     bool (*stop)(void);      // asked before each step; NULL: never stops
     bough_progress progress; // of the terminal's line, labelled by what runs
     const char *folder;      // where every run writes all its channels; NULL: nowhere
+    bough_boxes *boxes;      // NULL: a run makes its own turbulence
 } bough_study_drive;
 
 // Runs a case `repeat` times, and samples the study's channels into `series`, or NULL: into the result's

@@ -3,7 +3,9 @@
 // the last one may start hours later.
 #include "apps/bough/cases/study_internal.h"
 
+#include "aero/wind/wind_turbulence.h"
 #include "apps/bough/config/schema.h"
+#include "apps/bough/model/aero_link.h"
 #include "apps/bough/model/build.h"
 #include "apps/bough/scene/scene_files.h"
 
@@ -228,9 +230,16 @@ static void check_from(const bough_study *s, const bough_scene *scene, const bou
 
 // -- cases ----------------------------------------------------------------------------------------
 
+typedef struct turbulence {
+    bough_wind_iec_def def;
+    bough_case *last; // with it
+} turbulence;
+
 typedef struct check {
     bough_study *study;
-    uint64_t program; // fingerprint
+    int n_turbulence;
+    turbulence *turbulence; // (n_case) the first n_turbulence
+    uint64_t program;       // fingerprint
     bough_file_sums sums;
     bough_errors *errors;
 } check;
@@ -258,6 +267,20 @@ static void take_fingerprint(check *k, bough_case *c, const bough_scene *scene) 
         mix_statistics(&c->fingerprint, k->study, c);
 }
 
+static void link_turbulence(check *k, bough_case *c, const bough_scene *scene) {
+    bough_wind_iec_def def;
+    if (k->study->is.compared || !bough_aero_link_turbulence(scene, &def)) return;
+    for (int i = 0; i < k->n_turbulence; i++) {
+        turbulence *t = &k->turbulence[i];
+        if (!bough_turbulence_equal(&t->def, &def)) continue;
+        t->last->next = (int)(c - k->study->cases);
+        t->last = c;
+        c->follows = true;
+        return;
+    }
+    k->turbulence[k->n_turbulence++] = (turbulence){def, c};
+}
+
 // The channels are looked up in the first reference's scene, or in that of the first case of each group.
 static bough_status check_case(bough_arena *arena, check *k, bough_case *c, bool channels) {
     bough_study *s = k->study;
@@ -270,6 +293,7 @@ static bough_status check_case(bough_arena *arena, check *k, bough_case *c, bool
     if (status.code == BOUGH_INVALID) status = bough_ok();
     if (scene) {
         take_fingerprint(k, c, scene);
+        link_turbulence(k, c, scene);
         check_duration(k, c, scene);
     }
     if (scene && channels && k->errors->n == 0) status = check_channels(arena, own, s, scene, k->errors);
@@ -279,7 +303,9 @@ static bough_status check_case(bough_arena *arena, check *k, bough_case *c, bool
 
 bough_status bough_study_check(bough_arena *arena, bough_study *s, bough_errors *errors) {
     assert(errors->arena == arena);
-    check k = {s, BOUGH_FINGERPRINT_START, {.arena = arena}, errors};
+    check k = {.study = s, .program = BOUGH_FINGERPRINT_START, .sums = {.arena = arena}, .errors = errors};
+    k.turbulence = bough_arena_take(arena, (size_t)s->n_case * sizeof *k.turbulence);
+    for (int i = 0; i < s->n_case; i++) s->cases[i].next = -1;
     bough_mix_program(&k.program);
     bough_status status = bough_ok();
     for (int i = 0; i < s->n_reference && bough_is_ok(&status) && errors->dropped == 0; i++)

@@ -20,6 +20,7 @@ typedef struct work {
     int claims, threads;
     bough_status worst;
     bough_pool *pool;
+    bough_boxes *boxes;    // of statistics
     pthread_mutex_t mutex; // of worst and what the pieces have in common
 } work;
 
@@ -208,7 +209,7 @@ static bough_status run_case(bough_arena *arena, work *w, int number) {
     const bough_study_options *o = w->results.options;
     char name[48], folder[BOUGH_PATH_MAX];
     bough_case_result result = bough_case_take(arena, s);
-    bough_study_drive drive = {.stop = o->stop, .folder = s->series ? folder : NULL};
+    bough_study_drive drive = {.stop = o->stop, .folder = s->series ? folder : NULL, .boxes = w->boxes};
     snprintf(name, sizeof name, "cases/%06d", number + 1);
     bough_status status = bough_folder_path(o->folder, name, folder);
     if (bough_is_ok(&status)) status = bough_case_run(s, &s->cases[number], 1, &drive, NULL, &result);
@@ -238,13 +239,16 @@ static bough_status check_name(bough_arena *arena, const bough_study *s, const c
                       bough_suggest(only, names, s->n_group).text);
 }
 
+// Those with the same turbulence one after the other.
 static void list_cases(bough_arena *arena, work *w) {
     const bough_study *s = w->results.study;
     const bough_study_options *o = w->results.options;
     w->piece = bough_arena_take(arena, (size_t)s->n_case * sizeof *w->piece);
-    for (int i = 0; i < s->n_case; i++) {
-        bool wanted = !o->only || strcmp(o->only, s->group[s->cases[i].group].name) == 0;
-        if (wanted && is_mine(o, i) && !bough_store_has(o->folder, s, &s->cases[i])) w->piece[w->n++] = i;
+    for (int first = 0; first < s->n_case; first++) {
+        for (int i = s->cases[first].follows ? -1 : first; i >= 0; i = s->cases[i].next) {
+            bool wanted = !o->only || strcmp(o->only, s->group[s->cases[i].group].name) == 0;
+            if (wanted && is_mine(o, i) && !bough_store_has(o->folder, s, &s->cases[i])) w->piece[w->n++] = i;
+        }
     }
     w->to_do = w->n;
 }
@@ -256,6 +260,7 @@ static bough_status run_cases(bough_arena *arena, work *w) {
     list_cases(arena, w);
     if (w->n > 0) status = remove_tables(o->folder);
     if (!bough_is_ok(&status)) return status;
+    w->boxes = bough_boxes_create(arena, threads_of(w));
     w->perform = claim_case;
     w->what = "cases";
     w->counts = !o->quiet;

@@ -115,6 +115,8 @@ typedef struct bough_case {
     const char *settings; // those that tell it from the others, "scheme=ramp, macro_step=5 ms"
     int reference;        // to compare with
     double share;         // of its group's hours or events
+    int next;             // of those with the same turbulence, to be run after it; −1: none
+    bool follows;         // another one with the same turbulence
     uint64_t files;       // fingerprint of the scene's files, which must stay as they are; 0: may change
     uint64_t fingerprint; // of all that its result depends on
 } bough_case;

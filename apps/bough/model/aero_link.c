@@ -111,6 +111,13 @@ static bough_wind_iec_def standard_wind(const bough_scene *scene) {
     return def;
 }
 
+bool bough_aero_link_turbulence(const bough_scene *scene, bough_wind_iec_def *def) {
+    const bough_scene_wind *wind = &scene->aero.wind;
+    if (scene->aero.node == NULL || wind->kind != BOUGH_SCENE_WIND_IEC) return false;
+    *def = standard_wind(scene);
+    return bough_wind_iec_is_turbulent(def->condition);
+}
+
 static bough_wind_def wind_def(const bough_scene *scene) {
     const bough_scene_wind *wind = &scene->aero.wind;
     static const bough_wind_shear shears[BOUGH_SCENE_WIND_IEC + 1] = {

@@ -12,6 +12,9 @@ typedef struct bough_aero_link bough_aero_link;
 // Builds the rotor of the scene's aero block for the simulation's blades.
 bough_status bough_aero_link_build(bough_arena *arena, bough_simulation *simulation, bough_aero_link **link);
 
+// The turbulence by name of a scene's wind, with what the scene leaves to choose. False: it has none.
+bool bough_aero_link_turbulence(const bough_scene *scene, bough_wind_iec_def *def);
+
 // The sampled load for the master's loop.
 bough_sampled_load bough_aero_link_load(bough_aero_link *link);
 
