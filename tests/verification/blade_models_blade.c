@@ -60,7 +60,6 @@ static bough_status find_rod(bough_arena *arena, bough_simulation *s, const boug
 static bough_status find_modal(bough_arena *arena, bough_simulation *s, const bough_beam *beam,
                                double *frequency, bough_model_blade *blade) {
     const bough_modal_model *m = bough_modal_body_model(beam->modal);
-    const bough_rod_loads *loads = bough_beam_loads(beam);
     bough_transform pose = bough_tree_frame_pose(s->view, &s->tree->markers[beam->marker]);
     bough_vec3 g = bough_mat3_tmul(pose.rotation, s->tree->gravity);
     const double input[BOUGH_ROD_INPUTS] = {0, 0, 0, 0, 0, 0, g.x, g.y, g.z};
@@ -68,10 +67,10 @@ static bough_status find_modal(bough_arena *arena, bough_simulation *s, const bo
     int found = 0;
     double *state = bough_arena_doubles(arena, (size_t)m->n_state);
     if (!state) return bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory");
-    bough_status status = bough_modal_steady(m, loads, time, input, arena, state);
+    bough_status status = bough_modal_steady(beam->modal, time, input, arena, state);
     if (bough_is_ok(&status)) {
-        status = bough_modal_frequencies(arena, m, loads, time, input, state, BOUGH_BLADE_MODELS_FREQUENCIES,
-                                         frequency, &found);
+        status = bough_modal_frequencies(arena, beam->modal, time, input, state,
+                                         BOUGH_BLADE_MODELS_FREQUENCIES, frequency, &found);
     }
     if (bough_is_ok(&status)) {
         set_shape(m->rod, bough_modal_body_vertices(beam->modal, state, input, 1), blade);

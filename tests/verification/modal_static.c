@@ -23,20 +23,18 @@ static double size_of(const bough_modal_model *m, const double *change) {
     return largest;
 }
 
-bough_status bough_modal_steady(const bough_modal_model *m, const bough_rod_loads *loads, double t,
-                                const double *input, bough_arena *arena, double *state) {
-    bough_modal_chain chain;
-    bough_modal_newton newton;
+bough_status bough_modal_steady(bough_modal_body *body, double t, const double *input, bough_arena *arena,
+                                double *state) {
+    const bough_modal_model *m = bough_modal_body_model(body);
+    bough_system s = bough_modal_body_system(body);
+    void *factors = s.ops->factors(body, arena);
     double *step = bough_arena_doubles(arena, (size_t)m->n_state), before = HUGE_VAL;
-    bough_modal_chain_init(&chain, arena, m);
-    bough_modal_newton_init(&newton, arena, m);
     for (int iteration = 0; iteration < ITERATIONS; iteration++) {
-        bool ok = bough_modal_linearise(m, loads, t, state, input, &chain, &newton) &&
-                  bough_modal_factor(m, &newton, long_time) &&
-                  bough_modal_derivative(m, loads, t, state, input, &chain, step);
+        bool ok = s.ops->linearise(body, t, state, input, factors) &&
+                  s.ops->factor(body, factors, long_time) && s.ops->derivative(body, t, state, input, step);
         if (!ok) break;
         for (int k = 0; k < m->n_state; k++) step[k] *= long_time;
-        bough_modal_solve(m, &newton, step);
+        s.ops->solve(body, factors, step);
         double size = size_of(m, step);
         if (!isfinite(size)) break;
         double share = size > longest ? longest / size : 1;
@@ -56,19 +54,18 @@ static int ascending(const void *a, const void *b) {
     return (x > y) - (x < y);
 }
 
-bough_status bough_modal_frequencies(bough_arena *arena, const bough_modal_model *m,
-                                     const bough_rod_loads *loads, double t, const double *input,
-                                     const double *state, int wanted, double *frequency, int *found) {
-    size_t n = (size_t)m->n_state;
-    bough_modal_chain chain;
-    bough_modal_newton newton;
+bough_status bough_modal_frequencies(bough_arena *arena, bough_modal_body *body, double t,
+                                     const double *input, const double *state, int wanted, double *frequency,
+                                     int *found) {
+    bough_system s = bough_modal_body_system(body);
+    size_t n = (size_t)s.n_state;
+    void *factors = s.ops->factors(body, arena);
+    double *jacobian = bough_arena_doubles(arena, n * n), *value = bough_arena_doubles(arena, 2 * n);
     double *vector = bough_arena_doubles(arena, n * n), *work = bough_arena_doubles(arena, 8 * n);
-    double *value = bough_arena_doubles(arena, 2 * n);
-    bough_modal_chain_init(&chain, arena, m);
-    bough_modal_newton_init(&newton, arena, m);
-    if (!bough_modal_linearise(m, loads, t, state, input, &chain, &newton) ||
-        !bough_dense_eigen(m->n_state, newton.jacobian, value, vector, work)) {
-        return bough_fail(BOUGH_FAILED, "%s: its eigenvalues cannot be found", m->name);
+    bool ok = s.ops->linearise(body, t, state, input, factors);
+    memcpy(jacobian, bough_modal_jacobian(factors), n * n * sizeof *jacobian);
+    if (!ok || !bough_dense_eigen(s.n_state, jacobian, value, vector, work)) {
+        return bough_fail(BOUGH_FAILED, "%s: its eigenvalues cannot be found", s.name);
     }
     size_t count = 0;
     for (size_t k = 0; k < n; k++) {

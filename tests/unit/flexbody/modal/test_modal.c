@@ -13,6 +13,7 @@
 enum { N = 5 };
 
 static const double swaying[BOUGH_ROD_INPUTS] = {0.4, -0.3, 0.7, 0.5, -0.8, 0.6, 1, -2, -9};
+static const double at_rest[BOUGH_ROD_INPUTS] = {0};
 static const bough_modal_options everything = {6 * N, true, false};
 
 static bough_modal_model *general(bough_arena *arena, int n, int pieces, bough_modal_options options) {
@@ -35,8 +36,7 @@ static void check_contract(int pieces, bough_modal_options options) {
     bough_system s = bough_modal_body_system(body);
     double *state = bough_arena_doubles(arena, (size_t)m->n_state);
     unsigned seed = 3;
-    bough_modal_rest_state(m, swaying, state);
-    for (int k = 0; k < m->n_state; k++) state[k] += 0.1 * s.scale[k] * sample_random(&seed);
+    for (int k = 0; k < m->n_state; k++) state[k] = s.initial[k] + 0.1 * s.scale[k] * sample_random(&seed);
     sample_loads(m->rod, bough_modal_body_loads(body));
     contract_point at = {0.5, state, swaying, 1e-5};
     bough_member *body_member =
@@ -59,18 +59,16 @@ TEST(operations_of_a_chain_agree) {
 
 typedef struct pair {
     bough_arena *arena;
-    bough_modal_model *modal;
+    bough_modal_body *modal;
     bough_rod_model *rod;
-    bough_modal_chain chain;
     bough_rod_scratch scratch;
     bough_rod_loads loads;
 } pair;
 
 static pair make_pair(int pieces) {
     pair p = {.arena = bough_arena_create()};
-    p.modal = general(p.arena, N, pieces, everything);
+    p.modal = body_of(p.arena, general(p.arena, N, pieces, everything), swaying);
     p.rod = sample_general(p.arena, N);
-    bough_modal_chain_init(&p.chain, p.arena, p.modal);
     bough_rod_scratch_init(&p.scratch, p.arena, p.rod);
     bough_rod_loads_init(&p.loads, p.arena, p.rod);
     return p;
@@ -80,29 +78,31 @@ static pair make_pair(int pieces) {
 // to the frame and loads of size `small`.
 static void compare(pair *p, double small, double *rates, double *wrenches) {
     enum { STATES = BOUGH_ROD_STATES * N };
-    double y[200], ahead[200], rate[200], state[STATES], next[STATES], back[STATES];
+    double y[200], ahead[200], rate[200], state[STATES], moved[2][STATES];
     double expected[STATES], wrench[6], other[6];
     const double step = 1e-6;
-    int n = p->modal->n_state;
+    bough_rod_loads *const loads[] = {&p->loads, bough_modal_body_loads(p->modal)};
+    bough_system s = bough_modal_body_system(p->modal);
     unsigned seed = 9;
-    assert_true(n <= 200);
-    sample_loads(p->rod, &p->loads);
-    for (int k = 0; k < 6 * p->rod->stride; k++) p->loads.value[k] *= small;
-    for (int k = 0; k < 6 * p->rod->stride; k++) p->loads.rate[k] *= small;
-    bough_modal_rest_state(p->modal, swaying, y);
-    for (int k = 0; k < n; k++) y[k] += small * sample_random(&seed);
-    bough_modal_derivative(p->modal, &p->loads, 0.5, y, swaying, &p->chain, rate);
-    bough_modal_root_wrench(p->modal, &p->loads, 0.5, y, swaying, &p->chain, wrench);
-    for (int k = 0; k < n; k++) ahead[k] = y[k] + step * rate[k];
-    bough_modal_expand(p->modal, ahead, swaying, 1, &p->chain, next);
-    for (int k = 0; k < n; k++) ahead[k] = y[k] - step * rate[k];
-    bough_modal_expand(p->modal, ahead, swaying, 1, &p->chain, back);
-    bough_modal_expand(p->modal, y, swaying, 1, &p->chain, state);
+    assert_true(s.n_state <= 200);
+    for (int body = 0; body < 2; body++) {
+        sample_loads(p->rod, loads[body]);
+        for (int k = 0; k < 6 * p->rod->stride; k++) loads[body]->value[k] *= small;
+        for (int k = 0; k < 6 * p->rod->stride; k++) loads[body]->rate[k] *= small;
+    }
+    for (int k = 0; k < s.n_state; k++) y[k] = s.initial[k] + small * sample_random(&seed);
+    s.ops->derivative(s.self, 0.5, y, swaying, rate);
+    s.ops->output(s.self, 0.5, y, swaying, wrench);
+    for (int side = 0; side < 2; side++) {
+        for (int k = 0; k < s.n_state; k++) ahead[k] = y[k] + (side == 0 ? step : -step) * rate[k];
+        memcpy(moved[side], bough_modal_body_vertices(p->modal, ahead, swaying, 1), sizeof state);
+    }
+    memcpy(state, bough_modal_body_vertices(p->modal, y, swaying, 1), sizeof state);
     bough_rod_derivative(p->rod, &p->loads, 0.5, state, swaying, &p->scratch, expected);
     bough_rod_root_wrench(p->rod, &p->loads, 0.5, state, swaying, &p->scratch, other);
     *rates = *wrenches = 0;
     for (int k = 0; k < STATES; k++) {
-        *rates = fmax(*rates, fabs((next[k] - back[k]) / (2 * step) - expected[k]));
+        *rates = fmax(*rates, fabs((moved[0][k] - moved[1][k]) / (2 * step) - expected[k]));
     }
     for (int k = 0; k < 6; k++) *wrenches = fmax(*wrenches, fabs(wrench[k] - other[k]));
 }
@@ -143,8 +143,7 @@ typedef struct bar {
     bough_arena *arena;
     bough_rod_def def;
     bough_rod_model *rod;
-    bough_modal_model *modal;
-    bough_modal_chain chain;
+    bough_modal_body *modal;
     bough_rod_static work;
     bough_rod_loads loads;
     double *state, *vertices; // of the modal body, of the rod
@@ -152,14 +151,14 @@ typedef struct bar {
 
 static bar make_bar(int pieces, bough_modal_options options) {
     bar b = {.arena = bough_arena_create()};
+    bough_modal_model *model = NULL;
     b.def = bar_def(b.arena);
-    bough_status s = bough_rod_create(b.arena, &b.def, &b.rod);
-    if (bough_is_ok(&s)) s = bough_modal_create(b.arena, &b.def, pieces, options, &b.modal);
-    check_ok(s);
-    bough_modal_chain_init(&b.chain, b.arena, b.modal);
+    check_ok(bough_rod_create(b.arena, &b.def, &b.rod));
+    check_ok(bough_modal_create(b.arena, &b.def, pieces, options, &model));
+    b.modal = body_of(b.arena, model, at_rest);
     bough_rod_static_init(&b.work, b.arena, b.rod);
     bough_rod_loads_init(&b.loads, b.arena, b.rod);
-    b.state = bough_arena_doubles(b.arena, (size_t)b.modal->n_state);
+    b.state = bough_arena_doubles(b.arena, (size_t)model->n_state);
     b.vertices = bough_arena_doubles(b.arena, (size_t)BOUGH_ROD_STATES * b.rod->n);
     return b;
 }
@@ -171,8 +170,11 @@ static void rest_rod(bar *b, const double *input) {
 }
 
 static void rest_modal(bar *b, const double *input) {
-    bough_modal_rest_state(b->modal, input, b->state);
-    check_ok(bough_modal_steady(b->modal, &b->loads, 0, input, b->arena, b->state));
+    memset(b->state, 0, (size_t)bough_modal_body_model(b->modal)->n_state * sizeof *b->state);
+    memcpy(bough_modal_body_loads(b->modal)->value, b->loads.value,
+           6 * (size_t)b->rod->stride * sizeof(double));
+    bough_modal_body_ride(b->modal, input, b->state);
+    check_ok(bough_modal_steady(b->modal, 0, input, b->arena, b->state));
 }
 
 static void frequencies(bar *b, const double *input, double *rod, double *modal) {
@@ -181,14 +183,11 @@ static void frequencies(bar *b, const double *input, double *rod, double *modal)
     rest_rod(b, input);
     rest_modal(b, input);
     check_ok(bough_rod_modes(b->arena, b->rod, &b->work, input, b->vertices, &list));
-    check_ok(
-        bough_modal_frequencies(b->arena, b->modal, &b->loads, 0, input, b->state, WANTED, modal, &found));
+    check_ok(bough_modal_frequencies(b->arena, b->modal, 0, input, b->state, WANTED, modal, &found));
     assert_int_equal(list.found, WANTED);
     assert_int_equal(found, WANTED);
     for (int k = 0; k < WANTED; k++) rod[k] = list.mode[k].frequency;
 }
-
-static const double at_rest[BOUGH_ROD_INPUTS] = {0};
 
 // All shapes: those of the same mesh. Twelve: the clamped modes are among the shapes as they are.
 TEST(frequencies_at_rest_are_the_rods) {
@@ -221,15 +220,12 @@ TEST(rotation_stiffens_as_it_does_the_rod) {
 
 // The tip's flapwise displacement under a line load: modal less rod.
 static double deflection_error(int pieces, double load, double *rod) {
-    enum { STATES = BOUGH_ROD_STATES * SEGMENTS };
-    double vertices[STATES];
     bar b = make_bar(pieces, (bough_modal_options){6, true, true});
     for (int i = 1; i <= SEGMENTS; i++) b.loads.value[i] = i < SEGMENTS ? load : load / 2;
     rest_rod(&b, at_rest);
     rest_modal(&b, at_rest);
-    bough_modal_expand(b.modal, b.state, at_rest, 1, &b.chain, vertices);
     *rod = b.vertices[SEGMENTS - 1];
-    double error = vertices[SEGMENTS - 1] - *rod;
+    double error = bough_modal_body_vertices(b.modal, b.state, at_rest, 1)[SEGMENTS - 1] - *rod;
     bough_arena_destroy(b.arena);
     return error;
 }
@@ -274,7 +270,6 @@ static void momentum(const bough_rod_model *rod, const double *state, double *to
 // Loads on a body of few shapes in free motion less the rate of its momentum and its root wrench:
 // what is lost of force and of moment. Little rotary inertia: of it the linear shapes lose ½ψ×ψ̈.
 static void lost(double small, double *force, double *moment) {
-    enum { STATES = BOUGH_ROD_STATES * N };
     check_arena(arena);
     sample_arrays arrays = sample_general_arrays(arena, N);
     for (int i = 0; i <= N; i++) {
@@ -284,27 +279,23 @@ static void lost(double small, double *force, double *moment) {
     bough_rod_def def = sample_def(N, arrays, false);
     bough_modal_model *m = NULL;
     check_ok(bough_modal_create(arena, &def, 1, (bough_modal_options){4, false, true}, &m));
-    bough_modal_chain chain;
-    bough_rod_loads none;
-    bough_modal_chain_init(&chain, arena, m);
-    bough_rod_loads_init(&none, arena, m->rod);
-    double y[60], rate[60], moved[60], vertices[STATES], p[3][6], root[6];
+    bough_modal_body *body = body_of(arena, m, swaying);
+    bough_system s = bough_modal_body_system(body);
+    double y[60], rate[60], moved[60], p[3][6], root[6];
     const double step = 1e-6;
     unsigned seed = 2;
     assert_true(m->n_state <= 60);
-    bough_modal_rest_state(m, swaying, y);
-    for (int k = 0; k < m->n_state; k++) y[k] += small * sample_random(&seed);
-    bough_modal_derivative(m, &none, 0, y, swaying, &chain, rate);
-    bough_modal_root_wrench(m, &none, 0, y, swaying, &chain, root);
+    for (int k = 0; k < m->n_state; k++) y[k] = s.initial[k] + small * sample_random(&seed);
+    s.ops->derivative(body, 0, y, swaying, rate);
+    s.ops->output(body, 0, y, swaying, root);
     for (int side = -1; side <= 1; side++) {
         for (int k = 0; k < m->n_state; k++) moved[k] = y[k] + side * step * rate[k];
-        bough_modal_expand(m, moved, swaying, 1, &chain, vertices);
-        momentum(m->rod, vertices, p[side + 1]);
+        momentum(m->rod, bough_modal_body_vertices(body, moved, swaying, 1), p[side + 1]);
     }
     bough_wrench held = bough_wrench_cross(bough_twist_load(swaying), bough_wrench_load(p[1]));
     bough_wrench left = bough_wrench_add(bough_wrench_load(root), held);
     bough_vec3 g = {swaying[6], swaying[7], swaying[8]};
-    bough_modal_expand(m, y, swaying, 1, &chain, vertices);
+    const double *vertices = bough_modal_body_vertices(body, y, swaying, 1);
     for (int i = 0; i < N; i++) {
         bough_vec3 w = bough_scale(m->rod->vertex[i + 1].mass, g);
         bough_vec3 x = {vertices[i], vertices[N + i], vertices[2 * N + i]};
