@@ -1,10 +1,10 @@
-// IQN-ILS (Degroote, Bathe, Vierendeels 2009): with the differences V of the residuals and W of the
-// images so far, newest first, c minimises |V c + r| and the next iterate is H(u) + W c. The QR
-// factorisation of V is made anew by twice Gram–Schmidt in each iteration; a column that hardly
-// differs from the span of newer ones carries noise only and is dropped for good. Columns live
+// IQN-ILS (Degroote, Bathe, Vierendeels 2009), (65) of docs/theory.md: with the differences V of the
+// residuals and W of the images so far, newest first, c minimises |V c + r| and the next iterate is H(u) + W
+// c. The QR factorisation of V is computed by Gram–Schmidt, twice, in each iteration; a column that hardly
+// differs from the span of newer ones contains only noise and is dropped. Columns live
 // within one problem: a step of a nonlinear system is no guide to the next.
 //
-// Newton's method does the same to u + (I − J)⁻¹ r, so that the differences correct the Jacobian.
+// Newton's method does the same to u + (I − J)⁻¹ r (66), so that the differences correct the Jacobian.
 #include "cosim/accelerate.h"
 
 #include "core/base/base.h"
@@ -17,7 +17,7 @@ enum {
     MOST_COLUMNS = 40,
     RECENT = 5, // norms kept for the contraction
 };
-static const double dependent = 1e-10; // share of a column outside the span of newer ones
+static const double dependent = 1e-10; // part of a column outside the span of newer ones
 static const double run_away = 1e10;   // residual against the smallest so far
 
 struct bough_accelerator {
@@ -104,7 +104,7 @@ double bough_accelerator_contraction(const bough_accelerator *a) {
 
 // -- Aitken ---------------------------------------------------------------------------------------
 
-// ω ← −ω rₖ₋₁·Δr / Δr·Δr: the secant method along the last change.
+// (64), the secant method along the last change.
 static void update_factor(bough_accelerator *a) {
     double along = 0, length = 0;
     if (a->evaluations < 2) return;
@@ -118,7 +118,7 @@ static void update_factor(bough_accelerator *a) {
 
 // -- IQN-ILS --------------------------------------------------------------------------------------
 
-// Takes column k out of the list; its memory goes to the end.
+// Removes column k from the list; its memory goes to the end.
 static void drop(bough_accelerator *a, int k) {
     for (a->n_column--; k < a->n_column; k++) {
         swap(&a->v[k], &a->v[k + 1]);

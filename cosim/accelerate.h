@@ -13,7 +13,7 @@ typedef enum bough_acceleration {
     BOUGH_ACCELERATE_RELAXATION, // u + ω r, ω constant
     BOUGH_ACCELERATE_AITKEN,     // u + ω r, ω from the last two residuals
     BOUGH_ACCELERATE_IQN_ILS,    // quasi-Newton: least squares over all differences so far
-    BOUGH_ACCELERATE_NEWTON,     // u + (I − ∂H/∂u)⁻¹ r, corrected likewise
+    BOUGH_ACCELERATE_NEWTON,     // u + (I − ∂H/∂u)⁻¹ r, corrected by the differences, too
 } bough_acceleration;
 
 typedef struct bough_accelerator_def {
@@ -33,7 +33,7 @@ extern const char *const bough_acceleration_names[];
 // Takes all memory from the arena; iterating takes none.
 bough_accelerator *bough_accelerator_create(bough_arena *arena, const bough_accelerator_def *def);
 
-// Forgets everything: a new problem begins.
+// Begins a new problem, without the differences so far.
 void bough_accelerator_start(bough_accelerator *a);
 
 // Takes an evaluation, image = H(u), and returns the norm of its residual.

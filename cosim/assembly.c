@@ -1,3 +1,4 @@
+// The connections of (54) of docs/theory.md, built once.
 #include "cosim/assembly.h"
 
 #include "core/base/base.h"
@@ -5,6 +6,7 @@
 #include <assert.h>
 #include <string.h>
 
+// Members, and where their states, inputs and outputs begin among all.
 static void take_members(bough_assembly *a, bough_arena *arena, const bough_assembly_def *def) {
     size_t n = (size_t)def->n_member;
     a->n_member = def->n_member;
@@ -26,11 +28,13 @@ static void take_members(bough_assembly *a, bough_arena *arena, const bough_asse
         a->input_offset[i + 1] = a->input_offset[i] + s->n_input;
         a->output_offset[i + 1] = a->output_offset[i] + s->n_output;
     }
+    // sums over the members
     a->n_state = a->state_offset[def->n_member];
     a->n_input = a->input_offset[def->n_member];
     a->n_output = a->output_offset[def->n_member];
 }
 
+// One connection: every input has one source.
 static void connect(bough_assembly *a, const bough_connection *c) {
     assert(c->from_offset + c->count <= a->member[c->from]->system.n_output);
     assert(c->to_offset + c->count <= a->member[c->to]->system.n_input);
@@ -43,13 +47,14 @@ static void connect(bough_assembly *a, const bough_connection *c) {
     }
 }
 
+// Every input is connected.
 static void connect_all(bough_assembly *a, const bough_assembly_def *def) {
     for (int j = 0; j < a->n_input; j++) a->source[j] = -1;
     for (int k = 0; k < def->n_connection; k++) connect(a, &def->connection[k]);
     for (int j = 0; j < a->n_input; j++) assert(a->source[j] >= 0);
 }
 
-// Up to three inputs in a row of one connection.
+// A vector is up to three inputs in a row of one connection.
 static void find_vectors(bough_assembly *a) {
     for (int i = 0; i < a->n_member; i++) {
         for (int j = a->input_offset[i]; j < a->input_offset[i + 1]; j++) {
@@ -61,8 +66,8 @@ static void find_vectors(bough_assembly *a) {
     }
 }
 
-// The connection that answers `forward` in the opposite direction: the n-th for the n-th between
-// the same two members.
+// The connection of forces against the n-th connection of motions between two members: the n-th in the
+// opposite direction.
 static const bough_connection *partner(const bough_assembly_def *def, int forward) {
     const bough_connection *c = &def->connection[forward];
     int skip = 0;
@@ -77,6 +82,7 @@ static const bough_connection *partner(const bough_assembly_def *def, int forwar
     return NULL;
 }
 
+// Pairs of ports that exchange power: a motion and the force against it.
 static void pair_ports(bough_assembly *a, const bough_assembly_def *def) {
     for (int k = 0; k < def->n_connection; k++) {
         const bough_connection *c = &def->connection[k];
@@ -89,6 +95,7 @@ static void pair_ports(bough_assembly *a, const bough_assembly_def *def) {
     }
 }
 
+// Whether an output changes with an input at a constant state.
 static bool probe_feedthrough(const bough_member *m, double *input, double *output) {
     const bough_system *s = &m->system;
     bool found = false;
@@ -111,8 +118,10 @@ static bool resolvable(const bough_assembly *a, int i, const bool *resolved) {
     return true;
 }
 
+// An order in which every member comes after those on whose outputs its own depend directly.
 static bough_status order_outputs(bough_assembly *a, bool *resolved) {
     for (int n = 0; n < a->n_member; n++) {
+        // of those that can be evaluated, the one of the lowest level
         int best = -1;
         for (int i = 0; i < a->n_member; i++) {
             if (resolved[i] || !resolvable(a, i, resolved)) continue;
@@ -130,6 +139,7 @@ static bough_status order_outputs(bough_assembly *a, bool *resolved) {
 
 static void find_leaders(bough_assembly *a) {
     a->followers_last = true;
+    // level 0, and members of higher levels that are connected with each other
     for (int i = 0; i < a->n_member; i++) a->leads[i] = a->level[i] == 0;
     for (int i = 0; i < a->n_member; i++) {
         for (int j = a->input_offset[i]; j < a->input_offset[i + 1]; j++) {
@@ -138,6 +148,7 @@ static void find_leaders(bough_assembly *a) {
             a->leads[i] = a->leads[from] = true;
         }
     }
+    // outputs of leaders that depend on those of followers directly
     for (int i = 0; i < a->n_member; i++) {
         for (int j = a->input_offset[i]; j < a->input_offset[i + 1]; j++) {
             if (a->feedthrough[i] && a->leads[i] && !a->leads[a->source_member[j]]) a->followers_last = false;
@@ -158,9 +169,11 @@ bough_status bough_assembly_build(bough_arena *arena, const bough_assembly_def *
     bool *resolved = bough_arena_take(arena, (size_t)a->n_member * sizeof(bool));
     double *input = bough_arena_doubles(arena, 2 * n_input);
     double *output = bough_arena_doubles(arena, (size_t)a->n_output);
+    // connections
     connect_all(a, def);
     find_vectors(a);
     pair_ports(a, def);
+    // which members lead, and in which order outputs are evaluated
     for (int i = 0; i < a->n_member; i++) {
         a->feedthrough[i] = probe_feedthrough(a->member[i], input, output);
     }
@@ -191,6 +204,7 @@ void bough_assembly_gather(const bough_assembly *a, int member, const double *ou
 }
 
 void bough_assembly_outputs(const bough_assembly *a, double t, double *output, double *input) {
+    // (54): o_i = h_i(t, y_i, u_i), u = P o
     for (int n = 0; n < a->n_member; n++) {
         int i = a->order[n];
         const bough_system *s = &a->member[i]->system;

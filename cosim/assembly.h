@@ -1,4 +1,4 @@
-// The coupled system: members, the level in which each advances, and the connections that copy outputs to
+// An assembly: members, the level in which each advances, and the connections that copy outputs to
 // inputs. It is constant after building. Arrays over all inputs contain input j of member i at
 // input_offset[i] + j; arrays over outputs and states likewise.
 #ifndef BOUGH_COSIM_ASSEMBLY_H
@@ -9,7 +9,7 @@
 #include "cosim/member.h"
 
 // A member and its level. Members of one level advance in parallel; sequential schemes advance the levels
-// in order. The members of level 0 are the leaders.
+// in order.
 typedef struct bough_assembly_member {
     bough_member *member; // borrowed; outlives the assembly
     int level;
@@ -39,7 +39,7 @@ typedef struct bough_port_pair {
 typedef struct bough_assembly {
     int n_member, n_level;
     bough_member **member;          // (n_member)
-    bool opaque;                    // one of them is: no tangents of the whole
+    bool opaque;                    // one of them is: the whole has no tangents
     int *level;                     // (n_member)
     int n_state, n_input, n_output; // sums over the members
     int *state_offset;              // (n_member + 1)
@@ -48,10 +48,11 @@ typedef struct bough_assembly {
     int *source;                    // (n_input) the output that feeds each input
     int *source_member;             // (n_input) the member it belongs to
     bool *kinematic;                // (n_input)
-    int *vector;         // (n_input) first of the up to three inputs that form a vector with this one
-    bool *feedthrough;   // (n_member) whether outputs depend on inputs directly
-    int *order;          // (n_member) outputs evaluated in this order need no iteration
-    bool *leads;         // (n_member) those of level 0, and others connected with one that is not of it
+    int *vector;       // (n_input) first of the up to three inputs that form a vector with this one
+    bool *feedthrough; // (n_member) whether outputs depend on inputs directly
+    int *order;        // (n_member) outputs evaluated in this order need no iteration
+    bool *leads; // (n_member) leaders: members of level 0, and others that are connected with each other. The
+                 // other members are followers, which are connected with members of level 0 only
     bool followers_last; // no outputs of leaders depend on those of followers directly
     int n_pair;
     bough_port_pair *pair; // (n_pair)

@@ -1,3 +1,4 @@
+// Moves of members over a macro step, the polynomials (58) and the exchange at its end.
 #include "cosim/coupling.h"
 
 #include <assert.h>
@@ -12,6 +13,7 @@ struct bough_coupling_scratch {
     double *seen, *seen_rate; // (n_input) values and rates of the signals
 };
 
+// A signal for the inputs of each member.
 static bough_signal *create_signals(bough_arena *arena, const bough_assembly *a) {
     bough_signal *signal = bough_arena_take(arena, (size_t)a->n_member * sizeof *signal);
     for (int i = 0; i < a->n_member; i++)
@@ -136,6 +138,7 @@ void bough_coupling_output_rate(bough_coupling *c, int member, double t, const d
     for (int k = 0; k < s->n_output; k++) rate[k] += drift[k];
 }
 
+// The same under its signal, into the place of the member's outputs.
 static void find_output_rate(bough_coupling *c, int member, double t, double *output_rate) {
     const bough_assembly *a = c->assembly;
     double *seen = c->scratch->seen + a->input_offset[member];
@@ -160,6 +163,7 @@ void bough_coupling_advance_to(bough_coupling *c, int member, double t, bool res
     ask_for_retry(&c->status[member]);
 }
 
+// Up to the first own step that ends at or after the middle.
 static void advance_first_half(bough_coupling *c, int member, bool restart) {
     double middle = 0.5 * (c->t0 + c->t1) - 1e-9 * (c->t1 - c->t0);
     c->status[member] =
@@ -189,6 +193,7 @@ bough_status bough_coupling_advance(bough_coupling *c, int level, bool restart) 
     return bough_coupling_failure(c);
 }
 
+// A member that others follow.
 static void advance_leader(bough_coupling *c, int member) {
     const bough_status *status = &c->status[member];
     // rates of the outputs at t0
@@ -232,6 +237,7 @@ void bough_coupling_extrapolate(bough_coupling *c, int member, int j, int degree
 // The second divided difference, twice.
 double bough_coupling_curvature(const bough_coupling *c, int j, double end) {
     if (c->past.n < 2 || c->restart) return 0;
+    // steps and values of the three points
     double h = c->t1 - c->t0, before = c->t0 - c->past.time[1];
     double now = c->past.input[0][j], last = c->past.input[1][j];
     return 2 * ((end - now) / h - (now - last) / before) / (h + before);

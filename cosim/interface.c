@@ -1,3 +1,4 @@
+// Static condensation, (56) and (57) of docs/theory.md. Each member is linearised and factored by itself.
 #include "cosim/interface.h"
 
 #include "core/base/linalg.h"
@@ -18,6 +19,7 @@ static const bough_interface_member *feeder(const bough_interface *k, int j, int
 
 // -- shape ----------------------------------------------------------------------------------------
 
+// A leader's coordinates are its states where these are fewer than its inputs, else its inputs.
 static void choose_coordinates(bough_interface *k, int member) {
     const bough_system *s = system_of(k, member);
     bough_interface_member *w = &k->part[member];
@@ -26,6 +28,7 @@ static void choose_coordinates(bough_interface *k, int member) {
     w->by_state = w->is_leader && !k->assembly->feedthrough[member] && s->n_state < s->n_input;
     w->n = w->by_state ? s->n_state : s->n_input;
     if (!w->is_leader) return;
+    // its place among all coordinates and inputs of leaders
     w->first = k->n;
     k->n += w->n;
     for (int j = 0; j < s->n_input; j++) {
@@ -33,15 +36,17 @@ static void choose_coordinates(bough_interface *k, int member) {
     }
 }
 
-// The directions of a follower that hangs on one leader with few states are these.
+// The directions of a follower whose inputs all come from one leader with few states are these states.
 static void choose_directions(bough_interface *k, int member) {
     const bough_assembly *a = k->assembly;
     bough_interface_member *w = &k->part[member];
     int begin = a->input_offset[member], end = a->input_offset[member + 1];
     if (w->is_leader || begin == end) return;
+    // one leader
     for (int j = begin; j < end; j++) {
         if (a->source_member[j] != a->source_member[begin]) return;
     }
+    // fewer states than inputs
     const bough_interface_member *leader = &k->part[a->source_member[begin]];
     if (!leader->by_state || leader->n >= w->n) return;
     w->leader = a->source_member[begin];
@@ -67,9 +72,11 @@ bough_interface *bough_interface_create(bough_arena *arena, const bough_assembly
     k->assembly = assembly;
     k->part = bough_arena_take(arena, n_member * sizeof *k->part);
     k->leader_input = bough_arena_take(arena, (size_t)assembly->n_input * sizeof(int));
+    // shape: leaders first, because followers refer to them
     for (int i = 0; i < assembly->n_member; i++) choose_coordinates(k, i);
     for (int i = 0; i < assembly->n_member; i++) choose_directions(k, i);
     for (int i = 0; i < assembly->n_member; i++) take_part(k, arena, i);
+    // matrices of the interface
     size_t n = (size_t)k->n;
     k->gain = bough_arena_doubles(arena, (size_t)k->n_leader_input * n);
     bough_arena_each(arena, n * n, &k->loop, &k->matrix, &k->square);
@@ -93,12 +100,13 @@ void bough_interface_output_change(const bough_interface *k, int member, const b
     s->ops->output_tangent(s->self, at->time, at->state, at->input, state_change, input_change, change);
 }
 
+// ∂f/∂u
 static void find_columns(const bough_interface *k, int member, const bough_operating_point *at) {
     const bough_system *s = system_of(k, member);
     s->ops->input_columns(s->self, at->time, at->state, at->input, k->part[member].column);
 }
 
-// The columns of a follower have no γ in them.
+// A follower keeps ∂f/∂u without γ, which changes more often.
 bool bough_interface_linearise(bough_interface *k, int member, const bough_operating_point *at) {
     const bough_system *s = system_of(k, member);
     const bough_interface_member *w = &k->part[member];
@@ -119,15 +127,15 @@ void bough_interface_solve_member(const bough_interface *k, int member, double *
 
 enum { AT_ONCE = 4 };
 
-// sum += Σ_j share_j column_j, in this order
-static void add_some(int n, const double share[AT_ONCE], const double *const column[AT_ONCE],
+// sum += Σ_j weight_j column_j, in this order
+static void add_some(int n, const double weight[AT_ONCE], const double *const column[AT_ONCE],
                      double *restrict sum) {
     const double *restrict c0 = column[0], *restrict c1 = column[1];
     const double *restrict c2 = column[2], *restrict c3 = column[3];
-    double s0 = share[0], s1 = share[1], s2 = share[2], s3 = share[3];
+    double w0 = weight[0], w1 = weight[1], w2 = weight[2], w3 = weight[3];
 #pragma omp simd
     for (int i = 0; i < n; i++) {
-        sum[i] = sum[i] + s0 * c0[i] + s1 * c1[i] + s2 * c2[i] + s3 * c3[i];
+        sum[i] = sum[i] + w0 * c0[i] + w1 * c1[i] + w2 * c2[i] + w3 * c3[i];
     }
 }
 
@@ -135,21 +143,23 @@ static void add_some(int n, const double share[AT_ONCE], const double *const col
 static void add_columns(int n, int count, const double *column, double factor, const double *weight,
                         double *sum) {
     const double *some[AT_ONCE];
-    double share[AT_ONCE];
+    double scaled[AT_ONCE];
     int k = 0;
+    // four columns at a time
     for (int j = 0; j < count; j++, column += n) {
         if (weight[j] == 0) continue;
-        share[k] = factor * weight[j];
+        scaled[k] = factor * weight[j];
         some[k++] = column;
-        if (k == AT_ONCE) add_some(n, share, some, sum);
+        if (k == AT_ONCE) add_some(n, scaled, some, sum);
         k %= AT_ONCE;
     }
     if (k == 0) return;
+    // the rest, filled up with zeros
     for (; k < AT_ONCE; k++) {
-        share[k] = 0;
+        scaled[k] = 0;
         some[k] = some[0];
     }
-    add_some(n, share, some, sum);
+    add_some(n, scaled, some, sum);
 }
 
 void bough_interface_add_columns(const bough_interface *k, int member, double factor, const double *weight,
@@ -158,6 +168,7 @@ void bough_interface_add_columns(const bough_interface *k, int member, double fa
     add_columns(s->n_state, s->n_input, k->part[member].column, factor, weight, sum);
 }
 
+// (I − γJ)⁻¹ column by column.
 static void find_inverse(const bough_interface *k, int member) {
     const bough_interface_member *w = &k->part[member];
     size_t n = (size_t)w->n;
@@ -168,7 +179,7 @@ static void find_inverse(const bough_interface *k, int member) {
     }
 }
 
-// The outputs' change with each input, through the states and at once.
+// The outputs' change with each input: through the states, and by feedthrough.
 static void find_input_responses(const bough_interface *k, int member, const bough_operating_point *at) {
     const bough_system *s = system_of(k, member);
     const bough_interface_member *w = &k->part[member];
@@ -182,6 +193,7 @@ static void find_input_responses(const bough_interface *k, int member, const bou
     }
 }
 
+// The outputs' change with each state.
 static void find_state_responses(const bough_interface *k, int member, const bough_operating_point *at) {
     const bough_system *s = system_of(k, member);
     double *state = k->work + k->assembly->state_offset[member];
@@ -198,8 +210,10 @@ bool bough_interface_factor_leader(bough_interface *k, int member, const bough_o
     const bough_interface_member *w = &k->part[member];
     const bough_system *s = system_of(k, member);
     if (!factor(k, member, at->gamma)) return false;
+    // γ ∂f/∂u
     find_columns(k, member, at);
     for (int i = 0; i < s->n_input * s->n_state; i++) w->column[i] *= at->gamma;
+    // responses to its coordinates
     if (!w->by_state) {
         find_input_responses(k, member, at);
         return true;
@@ -219,7 +233,7 @@ static void find_directions(bough_interface *k, int member) {
         int p, input = a->input_offset[member] + j;
         const bough_interface_member *from = feeder(k, input, &p);
         int n_output = a->member[a->source_member[input]]->system.n_output;
-        if (w->leader < 0) {
+        if (w->leader < 0) { // its own inputs
             w->direction[j * n_input + j] = 1;
             continue;
         }
@@ -251,6 +265,7 @@ void bough_interface_respond(bough_interface *k, int member, const bough_operati
         memset(state, 0, (size_t)s->n_state * sizeof(double));
         memset(response, 0, (size_t)s->n_output * sizeof(double));
         if (!any(direction, s->n_input)) continue;
+        // x = (I − γJ)⁻¹ γ ∂f/∂u δu, then the outputs
         bough_interface_add_columns(k, member, at->gamma, direction, state);
         bough_interface_solve_member(k, member, state);
         bough_interface_output_change(k, member, at, state, direction, response);
@@ -259,7 +274,7 @@ void bough_interface_respond(bough_interface *k, int member, const bough_operati
 
 // -- the interface --------------------------------------------------------------------------------
 
-// Adds to row l of K what the leaders' coordinates do to input j through the member that leads.
+// Adds to row l of K the response of input j to the coordinates of the leader that feeds it.
 static void add_leading(const bough_interface *k, double factor, int j, int l) {
     int p;
     const bough_interface_member *w = feeder(k, j, &p);
@@ -269,14 +284,17 @@ static void add_leading(const bough_interface *k, double factor, int j, int l) {
     }
 }
 
+// Row l of K: the response of a leader's input to all coordinates.
 static void find_gain_row(const bough_interface *k, int l) {
     const bough_assembly *a = k->assembly;
     int p, from = a->source_member[k->leader_input[l]];
     const bough_interface_member *w = feeder(k, k->leader_input[l], &p);
+    // a leader feeds it
     if (w->is_leader) {
         add_leading(k, 1, k->leader_input[l], l);
         return;
     }
+    // a follower feeds it: through its directions
     for (int d = 0; d < w->n; d++) {
         double response = w->output_change[d * a->member[from]->system.n_output + p];
         if (response == 0) continue;
@@ -316,13 +334,16 @@ static void apply_inverses(const bough_interface *k, double *z) {
 
 bool bough_interface_close(bough_interface *k) {
     size_t n = (size_t)k->n, size = n * n;
+    // K
     memset(k->gain, 0, n * (size_t)k->n_leader_input * sizeof(double));
     for (int l = 0; l < k->n_leader_input; l++) find_gain_row(k, l);
+    // Z K, column by column
     memset(k->loop, 0, size * sizeof(double));
     for (size_t c = 0; c < n; c++) {
         add_inputs(k, k->gain + c * (size_t)k->n_leader_input, k->loop + c * n);
         apply_inverses(k, k->loop + c * n);
     }
+    // factors of I − Z K
     for (size_t i = 0; i < size; i++) k->matrix[i] = (i % (n + 1) == 0) - k->loop[i];
     return n == 0 || bough_dense_factor(k->n, k->matrix, k->pivot);
 }
@@ -341,12 +362,15 @@ static void move_outputs(bough_interface *k) {
 
 void bough_interface_solve(bough_interface *k, double *change) {
     const bough_assembly *a = k->assembly;
+    // (I − Z K) w = Z b
     for (int l = 0; l < k->n_leader_input; l++) k->right[l] = change[k->leader_input[l]];
     add_inputs(k, k->right, k->coordinate);
     apply_inverses(k, k->coordinate);
     if (k->n > 0) bough_dense_solve(k->n, 1, k->matrix, k->pivot, k->coordinate);
+    // u = b + K w
     add_columns(k->n_leader_input, k->n, k->gain, 1, k->coordinate, k->right);
     for (int l = 0; l < k->n_leader_input; l++) change[k->leader_input[l]] = k->right[l];
+    // the followers' inputs move with the leaders' outputs
     move_outputs(k);
     for (int i = 0; i < a->n_member; i++) {
         if (k->part[i].is_leader) continue;
@@ -388,7 +412,7 @@ static void square(int n, const double *a, double *result) {
     }
 }
 
-// As ‖(Z K)ᵖ‖^(1/p) with p = 2¹².
+// (57) as ‖(Z K)ᵖ‖^(1/p) with p = 2¹².
 double bough_interface_radius(bough_interface *k) {
     double logarithm = 0, weight = 1;
     int n = k->n;

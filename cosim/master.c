@@ -19,6 +19,7 @@ static int ascending(const void *a, const void *b) {
     return (x > y) - (x < y);
 }
 
+// Loads and events of the def; events in the order of time.
 static void copy_loads(bough_master *m, bough_arena *arena, const bough_master_def *def) {
     m->load = bough_arena_take(arena, (size_t)def->n_load * sizeof *m->load);
     m->load_every = bough_arena_take(arena, (size_t)def->n_load * sizeof *m->load_every);
@@ -34,7 +35,7 @@ static void copy_loads(bough_master *m, bough_arena *arena, const bough_master_d
     if (m->n_event > 0) qsort(m->event, (size_t)m->n_event, sizeof(double), ascending);
 }
 
-// Nothing to say when the judgement fails: the run will show why.
+// The stability before the run; without a verdict where the analysis fails: the run shows the cause.
 static void judge(bough_master *m) {
     const bough_scheme_options *options = &m->coupling->options;
     if (!m->coupling->scheme->judged) return;
@@ -75,18 +76,20 @@ bough_status bough_master_build(bough_arena *arena, const bough_master_def *def,
     m->duration = def->duration;
     m->at_event = true;
     copy_loads(m, arena, def);
+    // the assembly and its coupling
     bough_status status = bough_assembly_build(arena, &def->assembly, &m->assembly);
     if (!bough_is_ok(&status)) return status;
     status = bough_scheme_couple(arena, m->assembly, &def->scheme, def->pool, &m->coupling);
     if (!bough_is_ok(&status)) return status;
+    // what checks and controls the steps
     const bough_scheme *scheme = m->coupling->scheme;
     m->monitor = bough_monitor_create(arena, m->coupling);
-    m->breakdown = bough_breakdown_create(arena, m->assembly);
     bool controlled = def->control.tolerance > 0 && !scheme->one_system;
     if (controlled) {
         int order = bough_scheme_defect_order(scheme, &def->scheme);
         m->control = bough_step_control_create(arena, m->coupling, &def->control, m->macro_step, order);
     }
+    // loads at time 0, and the scheme's preparation with them
     begin_loads(m, 0);
     if (!m->control) judge(m);
     evaluate_loads(m);
@@ -117,6 +120,7 @@ double bough_master_next(const bough_master *m) {
     return next > m->duration - eps ? m->duration : next;
 }
 
+// Samples the loads that are due; whether one of them jumps.
 static bough_status sample_loads(bough_master *m, bool *jumped) {
     for (int i = 0; i < m->n_load; i++) {
         if (!m->load[i].sample || !is_due(m, i)) continue;
@@ -163,6 +167,7 @@ static bough_status take_controlled_step(bough_master *m) {
     for (;;) {
         c->t1 = bough_step_control_end(control, c->t0, to);
         c->compared = compared && bough_step_control_exhausted(control); // shorter steps are tried first
+        // the step, and its defect
         bough_status status = bough_scheme_step(c);
         bool good = bough_is_ok(&status);
         if (!good && (status.code != BOUGH_RETRY || bough_step_control_exhausted(control))) {
@@ -170,6 +175,7 @@ static bough_status take_controlled_step(bough_master *m) {
         }
         double error = good ? bough_step_control_defect(control, c) : HUGE_VAL;
         bool shortest = bough_step_control_exhausted(control);
+        // accepted, or undone
         if (bough_step_control_accept(control, c, error)) return status;
         if (shortest) return status; // the monitor finds the cause
         bough_step_control_restore(control, c);
@@ -192,21 +198,22 @@ static bough_status macro_step(bough_master *m) {
     if (!bough_is_ok(&status)) return status;
 
     // advance the members and exchange their values
-    bough_breakdown_keep(m->breakdown, c);
+    bough_monitor_keep(m->monitor, c);
     c->compared = m->compared;
     status = m->control ? take_controlled_step(m) : bough_scheme_step(c);
     if (!bough_is_ok(&status) && m->stop && m->stop()) {
-        bough_breakdown_undo(m->breakdown, c);
+        bough_monitor_undo(m->monitor, c);
         return interrupted(m);
     }
     if (!bough_is_ok(&status)) {
-        return bough_breakdown_explain(m->breakdown, c, &m->advice, status);
+        return bough_monitor_explain(m->monitor, c, &m->advice, status);
     }
 
     // check the result
     bough_monitor_judge(m->monitor, !m->compared);
     status = bough_monitor_step(m->monitor, c);
     if (!bough_is_ok(&status)) return status;
+    // t1 is the present
     set_time(m, c->t1);
     m->steps++;
     evaluate_loads(m);

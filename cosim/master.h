@@ -8,7 +8,6 @@
 #include "cosim/analysis/stability.h"
 #include "cosim/scheme.h"
 #include "cosim/step_control.h"
-#include "cosim/watch/breakdown.h"
 #include "cosim/watch/monitor.h"
 
 // Loads with a sampling rate of their own: sample() is called at multiples of the period, between steps,
@@ -54,7 +53,6 @@ typedef struct bough_master {
     bough_step_control *control; // NULL: fixed steps
     bool compared; // set by the caller: another solution shows the error, so that growth of forces is not
                    // judged and steps that have not converged go on
-    bough_breakdown *breakdown;
     int n_load;
     bough_sampled_load *load; // (n_load)
     long *load_every;         // (n_load) macro steps per period

@@ -3,7 +3,7 @@
 #include <assert.h>
 #include <string.h>
 
-// -- the system under its inputs, as an integrator sees it ----------------------------------------
+// -- the system under its inputs, as an ODE for its integrator -------------------------------------
 
 // A system without inputs may be advanced without a signal.
 static const double *input_at(const bough_member *m, double t) {
@@ -17,6 +17,7 @@ static bool derivative(void *self, double t, const double *y, double *rate) {
     return m->system.ops->derivative(m->system.self, t, y, input_at(m, t), rate);
 }
 
+// Rates at two times of one state.
 static bool derivative_twice(void *self, const double t[2], const double *y, double *const rate[2]) {
     bough_member *m = self;
     if (m->stop && m->stop()) return false;
@@ -54,6 +55,7 @@ bough_status bough_member_create(bough_arena *arena, const bough_system *system,
                         .factors = system->ops->factors(system->self, arena)};
     bough_member_set(m, start, system->initial);
     if (n == 0) return bough_ok();
+    // the ODE and its integrator
     bool twice = system->ops->evaluate != NULL;
     bough_ode ode = {.name = system->name,
                      .n = system->n_state,
@@ -71,6 +73,7 @@ bough_status bough_member_create(bough_arena *arena, const bough_system *system,
 
 // -- own steps ------------------------------------------------------------------------------------
 
+// Brings the state back to its constraints; true: by so much that the integrator starts anew.
 static bool constrain(const bough_member *m) {
     if (m->system.ops->constrain == NULL) return false;
     return m->system.ops->constrain(m->system.self, m->time, m->state);
@@ -84,6 +87,7 @@ bough_status bough_member_advance_part(bough_member *m, double pause, double t1,
     assert(t <= t1 && pause <= t1 && (input == NULL || input->n == m->system.n_input));
     m->signal = input;
     if (!m->paused) memcpy(m->integrated, m->state, size);
+    // its own steps
     if (m->integrator.ops == NULL) {
         t = t1;
     } else {
@@ -91,10 +95,12 @@ bough_status bough_member_advance_part(bough_member *m, double pause, double t1,
                                             m->integrated);
     }
     m->started = bough_is_ok(&status);
+    // where it stands
     assert(!m->started || (t >= pause && t <= t1));
     m->paused = m->started && t < t1;
     if (!m->started) return status;
     m->time = m->paused ? t : t1;
+    // the integrator keeps its own state; a correction that is large starts it anew
     memcpy(m->state, m->integrated, size);
     if (!m->paused && constrain(m)) m->started = false;
     return status;
@@ -112,6 +118,7 @@ bough_statistics bough_member_statistics(const bough_member *m) {
 
 // -- state ----------------------------------------------------------------------------------------
 
+// Whether the integrator continues; it is not within a macro step.
 static void begin_anew(bough_member *m, bool started) {
     m->started = started;
     m->paused = false;

@@ -23,7 +23,7 @@ typedef struct bough_member {
     double *integrated;         // (n_state) the integrator's state, before `constrain`
     void *factors;              // of its Newton matrix
     bool started;               // the integrator's history belongs to the state
-    bool (*stop)(void); // asked at each evaluation: true ends the step in progress as a failure; NULL: never
+    bool (*stop)(void); // called at each evaluation: true ends the step in progress as a failure; NULL: none
     bool paused;        // within a macro step: it continues from `integrated`
 } bough_member;
 

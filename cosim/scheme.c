@@ -1,3 +1,4 @@
+// The table of schemes, and what all of them have in common.
 #include "cosim/scheme.h"
 
 #include <assert.h>
@@ -75,6 +76,7 @@ const bough_scheme_key *bough_scheme_key_at(int index) {
 
 void bough_scheme_describe(const bough_scheme *s, const bough_scheme_options *options,
                            char text[BOUGH_SCHEME_TEXT]) {
+    // name
     size_t room = BOUGH_SCHEME_TEXT, n = (size_t)snprintf(text, room, "%s", s->name);
     bool waveform = options->exchange == BOUGH_EXCHANGE_WAVEFORM;
     // what is exchanged
@@ -83,7 +85,7 @@ void bough_scheme_describe(const bough_scheme *s, const bough_scheme_options *op
     } else if (s->reads & BOUGH_READS_ORDER) {
         n += (size_t)snprintf(text + n, room - n, ", order %d", options->order);
     }
-    // how the iteration goes on
+    // settings of the iteration
     if (s->reads & BOUGH_READS_ACCELERATOR) {
         n += (size_t)snprintf(text + n, room - n, ", accelerator %s, tolerance %.6g in at most %d iterations",
                               bough_acceleration_names[options->accelerator], options->tolerance,
@@ -97,6 +99,7 @@ void bough_scheme_describe(const bough_scheme *s, const bough_scheme_options *op
 bough_status bough_scheme_couple(bough_arena *arena, const bough_assembly *assembly,
                                  const bough_scheme_options *options, bough_pool *pool,
                                  bough_coupling **coupling) {
+    // the data of all schemes, then its own
     const bough_scheme *scheme = bough_scheme_find(options->name);
     assert(scheme != NULL);
     *coupling = bough_coupling_create(arena, assembly, options, pool);
@@ -155,6 +158,7 @@ void bough_scheme_load(bough_coupling *c, double h, const double *z) {
     size_t size = (size_t)a->n_input * sizeof(double);
     double *row[4];
     int n = memory_rows(c, row);
+    // states, and rows of inputs
     for (int i = 0; i < a->n_member; i++) bough_member_set(a->member[i], 0, z + a->state_offset[i]);
     for (int p = 0; p < n; p++) memcpy(row[p], z + a->n_state + p * a->n_input, size);
     // the newest point follows from the states

@@ -28,7 +28,7 @@ static bough_status step_by(bough_coupling *c, int degree) {
     bough_coupling_begin(c);
     for (int level = 0; level < n && bough_is_ok(&status); level++) {
         bool restart = set_signals(c, level, degree) || c->restart;
-        // nobody follows the last level within the step
+        // the last level has no followers within the step
         status = level < n - 1 ? bough_coupling_advance_leaders(c, level, restart)
                                : bough_coupling_advance(c, level, restart);
     }

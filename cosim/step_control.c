@@ -1,3 +1,4 @@
+// Macro steps by their defects, (68) of docs/theory.md.
 #include "cosim/step_control.h"
 
 #include "cosim/scheme.h"
@@ -9,6 +10,7 @@ bough_step_control *bough_step_control_create(bough_arena *arena, bough_coupling
                                               int order) {
     bough_step_control *s = bough_arena_take(arena, sizeof *s);
     s->tolerance = def->tolerance;
+    // a step twice as long has 2^order times the defect; half of the tolerance for safety
     s->easy = 0.5 * def->tolerance * pow(0.5, order);
     s->most = def->least > 0 ? (int)floor(log2(macro_step / def->least) + 1e-6) : 0;
     s->shortest = HUGE_VAL;
@@ -51,7 +53,7 @@ void bough_step_control_snapshot(bough_step_control *s, bough_snapshot *snapshot
 
 // -- defects --------------------------------------------------------------------------------------
 
-// Squares of the vectors' norms, in a vector's first.
+// Squares of the norms of vectors, each at the place of its first component.
 static void square_norms(bough_step_control *s, const bough_assembly *a, const double *x) {
     for (int j = 0; j < a->n_input; j++) {
         if (a->vector[j] == j) s->square[j] = 0;
@@ -66,7 +68,7 @@ static double worst_relative(bough_step_control *s, const bough_assembly *a, con
     for (int j = 0; j < a->n_input; j++) {
         if (a->vector[j] != j || !(s->square[j] > 0)) continue;
         double relative = sqrt(s->square[j]) / s->size[j];
-        worst = relative <= worst ? worst : relative; // a NaN wins
+        worst = relative <= worst ? worst : relative; // also if it is NaN
     }
     return worst;
 }
@@ -83,7 +85,9 @@ static void reconstruct(bough_step_control *s, const bough_coupling *c) {
 
 static double defect_near(bough_step_control *s, const bough_coupling *c, double t) {
     const bough_assembly *a = c->assembly;
+    // obtained
     bough_signal_value(&s->curve, t, s->obtained);
+    // applied
     for (int i = 0; i < a->n_member; i++) {
         double *applied = s->square + a->input_offset[i];
         bough_signal_value(&c->signal[i], t, applied);
@@ -102,10 +106,12 @@ static double change_over(bough_step_control *s, const bough_coupling *c) {
 
 double bough_step_control_defect(bough_step_control *s, const bough_coupling *c) {
     const bough_assembly *a = c->assembly;
+    // largest norms so far
     square_norms(s, a, c->input);
     for (int j = 0; j < a->n_input; j++) {
         if (a->vector[j] == j) s->size[j] = fmax(s->size[j], sqrt(s->square[j]));
     }
+    // defects at the end and in the middle
     reconstruct(s, c);
     double end = defect_near(s, c, c->t1);
     double middle = defect_near(s, c, 0.5 * (c->t0 + c->t1));
@@ -118,6 +124,7 @@ double bough_step_control_defect(bough_step_control *s, const bough_coupling *c)
 
 bool bough_step_control_exhausted(const bough_step_control *s) { return s->level >= s->most; }
 
+// The span in twice as many steps.
 static void refine(bough_step_control *s) {
     s->level++;
     s->part *= 2;
@@ -131,10 +138,12 @@ bool bough_step_control_accept(bough_step_control *s, const bough_coupling *c, d
         return false;
     }
     if (!isfinite(error)) return false;
+    // what is counted
     s->accepted++;
     s->forced += !good;
     s->shortest = fmin(s->shortest, c->t1 - c->t0);
     s->n_point = c->restart ? 2 : s->n_point + 1 < BOUGH_PAST ? s->n_point + 1 : BOUGH_PAST - 1;
+    // the next step, twice as long where the defects are small and an even number of steps is behind
     s->part++;
     if (s->part == 1 << s->level) s->part = 0;
     if (error < s->easy && s->level > 0 && s->part % 2 == 0) {

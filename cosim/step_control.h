@@ -21,7 +21,7 @@ typedef struct bough_step_control {
     long accepted, rejected;
     long forced;     // accepted above the tolerance, because it was the shortest
     double shortest; // step accepted [s]
-    int n_point;     // synchronisation points before the step that no jump parts from it
+    int n_point;     // synchronisation points before the step with no jump between
     char *copy;      // of the coupling at the start of the step
     double *size;    // (n_input) of a vector's first: its largest norm so far
     // scratch

@@ -1,3 +1,5 @@
+// The arrowhead matrix of (55) of docs/theory.md: members are factored by themselves, the interface closes
+// them.
 #include "cosim/whole.h"
 
 #include "core/base/linalg.h"
@@ -29,7 +31,7 @@ bough_status bough_whole_failure(const bough_whole *whole) {
     return bough_ok();
 }
 
-// work(whole, member) for every one of them, in parallel; the first failure.
+// work(whole, member) for the followers, the leaders or all, in parallel; the first failure.
 static bough_status each(bough_whole *whole, int whom, void (*work)(bough_whole *whole, int member)) {
     int n_member = whole->assembly->n_member, n_leader = n_member - whole->n_follower;
     int n = whom == ALL ? n_member : whom == LEADERS ? n_leader : whole->n_follower;
@@ -40,6 +42,7 @@ static bough_status each(bough_whole *whole, int whom, void (*work)(bough_whole 
 
 // -- evaluation -----------------------------------------------------------------------------------
 
+// o_i = h_i(t, y_i, u_i)
 static void find_output(bough_whole *whole, int i) {
     const bough_assembly *a = whole->assembly;
     const bough_system *s = &a->member[i]->system;
@@ -47,7 +50,7 @@ static void find_output(bough_whole *whole, int i) {
                    whole->output + a->output_offset[i]);
 }
 
-// In an order that needs no iteration: of the leaders only, or of all.
+// Outputs of the leaders only, or of all members, in an order that needs no iteration.
 static void find_outputs(bough_whole *whole, bool all) {
     const bough_assembly *a = whole->assembly;
     for (int n = 0; n < a->n_member; n++) {
@@ -77,7 +80,7 @@ bool bough_whole_outputs_first(const bough_whole *whole, int i) {
     return !whole->assembly->followers_last || whole->assembly->leads[i];
 }
 
-// Both by one call where the system has one.
+// Rates and outputs of a system that has no call for both.
 static bool evaluate_separately(const bough_system *s, const double *state, int n,
                                 const bough_evaluation *at) {
     for (int k = 0; k < n; k++) {
@@ -93,6 +96,7 @@ void bough_whole_rates_of(bough_whole *const *which, int n, int i) {
     const double *state = which[0]->at + a->state_offset[i];
     bool waited_for = !bough_whole_outputs_first(which[0], i);
     bough_evaluation at[BOUGH_WHOLE_TIMES];
+    // its inputs at each time
     for (int k = 0; k < n; k++) {
         bough_whole *c = which[k];
         bough_assembly_gather(a, i, c->output, c->input);
@@ -100,6 +104,7 @@ void bough_whole_rates_of(bough_whole *const *which, int n, int i) {
                                    waited_for ? c->output + a->output_offset[i] : NULL};
         c->status[i].code = BOUGH_OK;
     }
+    // its rates, and its outputs where others wait for them
     bool finite = m->system.ops->evaluate ? m->system.ops->evaluate(m->system.self, state, n, at)
                                           : evaluate_separately(&m->system, state, n, at);
     if (finite) return;
@@ -111,6 +116,7 @@ static void rate_of(bough_whole *whole, int i) { bough_whole_rates_of(&whole, 1,
 
 bough_status bough_whole_rate(bough_whole *whole, double t, const double *state, double *rate) {
     bough_whole_begin_rates(whole, t, state, rate);
+    // the inputs of leaders follow from the outputs of followers
     bough_status status = each(whole, FOLLOWERS, rate_of);
     return bough_is_ok(&status) ? each(whole, LEADERS, rate_of) : status;
 }
@@ -123,13 +129,14 @@ static bough_operating_point operating_point(const bough_whole *whole, int i) {
                                    whole->setup_input + a->input_offset[i], whole->gamma};
 }
 
+// Keeps the failure of a member whose matrix is singular.
 static void check(bough_whole *whole, int i, bool good) {
     if (good) return;
     whole->status[i] =
         bough_fail(BOUGH_RETRY, "%s: singular Newton matrix", whole->assembly->member[i]->system.name);
 }
 
-// Leaders first, whose responses take long; those of followers wait for them.
+// Leaders first: their responses take long, and those of followers follow from them.
 static void factor_member(void *self, int place) {
     bough_whole *whole = self;
     const bough_assembly *a = whole->assembly;
@@ -145,6 +152,7 @@ static void factor_member(void *self, int place) {
     }
 }
 
+// The follower's response to the coordinates of the interface.
 static void respond(bough_whole *whole, int i) {
     bough_operating_point at = operating_point(whole, i);
     bough_interface_respond(whole->interface, i, &at);
@@ -167,6 +175,7 @@ bough_status bough_whole_factor(bough_whole *whole, double gamma) {
     bough_status status = bough_whole_failure(whole);
     if (!bough_is_ok(&status)) return status;
     whole->linearised = true;
+    // responses of the followers to the leaders, then the interface
     each(whole, FOLLOWERS, respond);
     if (bough_interface_close(whole->interface) && factor_border(whole)) return status;
     return bough_fail(BOUGH_RETRY, "the interface's Newton matrix is singular");
@@ -180,7 +189,7 @@ bough_status bough_whole_setup(bough_whole *whole, double t, const double *state
 
 // -- solution -------------------------------------------------------------------------------------
 
-// The outputs' change with x and the inputs' change δu, which may be NULL.
+// The outputs' change with x and the inputs' change δu, NULL for 0.
 static void find_output_change(bough_whole *whole, int i, const double *x, const double *change) {
     bough_operating_point at = operating_point(whole, i);
     bough_interface_output_change(whole->interface, i, &at, x, change,
@@ -229,7 +238,7 @@ void bough_whole_solve_of(bough_whole *whole, int i) {
     }
 }
 
-// What the outputs so far change of the inputs.
+// The inputs' change with the outputs, and with what comes from outside.
 static void gather_changes(bough_whole *whole, int i) {
     const bough_assembly *a = whole->assembly;
     for (int j = a->input_offset[i]; j < a->input_offset[i + 1]; j++) {
@@ -238,7 +247,7 @@ static void gather_changes(bough_whole *whole, int i) {
     }
 }
 
-// Followers under what the leaders do by themselves, then the leaders.
+// The followers' inputs from the leaders' outputs, then the leaders' inputs from the followers' outputs.
 static void gather_all_changes(bough_whole *whole) {
     const bough_assembly *a = whole->assembly;
     for (int k = 0; k < a->n_member; k++) {
@@ -252,6 +261,7 @@ static void gather_all_changes(bough_whole *whole) {
 
 void bough_whole_solve_interface(bough_whole *whole) {
     gather_all_changes(whole);
+    // w and the inputs' change with it
     bough_interface_solve(whole->interface, whole->change);
     for (int j = 0; j < whole->assembly->n_input; j++)
         whole->led[j] = whole->change[j] - (whole->outside ? whole->outside[j] : 0);
@@ -263,10 +273,12 @@ void bough_whole_respond(const bough_whole *whole, int i, double *x) {
                                  x + a->state_offset[i]);
 }
 
+// x_i with the response to the interface.
 static void complete(bough_whole *whole, int i) { bough_whole_respond(whole, i, whole->x); }
 
 void bough_whole_solve_driven(bough_whole *whole, const double *outside, double *x) {
     bough_whole_begin_solution(whole, outside, x);
+    // members by themselves, the interface, members with their response to it
     each(whole, ALL, bough_whole_solve_of);
     bough_whole_solve_interface(whole);
     each(whole, ALL, complete);
@@ -305,17 +317,20 @@ void bough_whole_solve(bough_whole *whole, double *x) {
     int n = whole->assembly->n_state, held = whole->n_held;
     bough_whole_solve_driven(whole, NULL, x);
     if (held == 0) return;
-    for (int i = 0; i < held; i++) whole->share[i] = x[whole->held[i]];
-    bough_dense_solve(held, 1, whole->multiplier, whole->held_pivot, whole->share);
+    // the multipliers that keep the held states
+    for (int i = 0; i < held; i++) whole->held_force[i] = x[whole->held[i]];
+    bough_dense_solve(held, 1, whole->multiplier, whole->held_pivot, whole->held_force);
+    // the solution without what they add
     for (int j = 0; j < held; j++) {
         const double *column = whole->border + (size_t)j * n;
-        for (int k = 0; k < n; k++) x[k] -= whole->share[j] * column[k];
+        for (int k = 0; k < n; k++) x[k] -= whole->held_force[j] * column[k];
     }
     for (int i = 0; i < held; i++) x[whole->held[i]] = 0;
 }
 
 // -- memory ---------------------------------------------------------------------------------------
 
+// Memory of an evaluation.
 static void take(bough_whole *whole, bough_arena *arena) {
     const bough_assembly *a = whole->assembly;
     size_t n_input = (size_t)a->n_input, n_output = (size_t)a->n_output;
@@ -323,6 +338,7 @@ static void take(bough_whole *whole, bough_arena *arena) {
     whole->order = bough_arena_take(arena, (size_t)a->n_member * sizeof *whole->order);
     whole->input = bough_arena_doubles(arena, n_input);
     whole->output = bough_arena_doubles(arena, n_output);
+    // followers, then leaders
     for (int i = 0; i < a->n_member; i++) {
         if (!a->leads[i]) whole->order[whole->n_follower++] = i;
     }
@@ -331,6 +347,7 @@ static void take(bough_whole *whole, bough_arena *arena) {
     }
 }
 
+// Memory of factors and solutions.
 static void take_solution(bough_whole *whole, bough_arena *arena) {
     const bough_assembly *a = whole->assembly;
     whole->setup_state = bough_arena_doubles(arena, (size_t)a->n_state);
@@ -360,7 +377,7 @@ void bough_whole_hold(bough_arena *arena, bough_whole *whole, int n, const int *
     whole->held = held;
     whole->border = bough_arena_doubles(arena, count * (size_t)whole->assembly->n_state);
     whole->multiplier = bough_arena_doubles(arena, count * count);
-    whole->share = bough_arena_doubles(arena, count);
+    whole->held_force = bough_arena_doubles(arena, count);
     whole->held_pivot = bough_arena_take(arena, (count + 1) * sizeof(int));
 }
 
@@ -410,6 +427,7 @@ static void solve(void *self, void *factors, double *x) {
     bough_whole_solve(factors, x);
 }
 
+// Brings every member to its constraints; true where one was far from them.
 static bool constrain(void *self, double t, double *state) {
     const bough_assembly *a = ((const bough_whole *)self)->assembly;
     bool far = false;

@@ -1,7 +1,6 @@
-// All members of an assembly as one system ẏ = F(t, y), whose inputs follow from the outputs: its rate, and
-// solutions of (I − γ ∂F/∂y) x = r. The matrix is an arrowhead matrix, solved by static condensation,
-//     (I − γJ_i) x_i = r_i + γ B_i δu_i,   δo_i = C_i x_i + D_i δu_i,   δu = P δo.
-// Each member is factored separately, and the interface system is that of interface.h.
+// All members of an assembly as one system ẏ = F(t, y), whose inputs follow from the outputs (54): its rate,
+// and solutions of (I − γ ∂F/∂y) x = r. The matrix is an arrowhead matrix (55), solved by static
+// condensation: each member is factored separately, and the interface system is that of interface.h.
 #ifndef BOUGH_COSIM_WHOLE_H
 #define BOUGH_COSIM_WHOLE_H
 
@@ -16,32 +15,36 @@ typedef struct bough_whole {
     int *order, n_follower; // (n_member) the followers, then the leaders
 
     // the evaluation in progress
-    double time;
+    double time;      // [s]
     const double *at; // (n_state)
-    double gamma;
-    double *x;
+    double *x;        // (n_state) its rate, or the solution in progress
 
-    // factors
-    bool linearised; // at the place of setup
-    double setup_time;
-    double *setup_state; // (n_state) where the matrix was taken
+    // by bough_whole_linearise
+    bool linearised;     // by bough_whole_factor: the members are linearised there
+    double setup_time;   // [s]
+    double *setup_state; // (n_state)
     double *setup_input; // (n_input)
+
+    // by bough_whole_factor
+    double gamma; // [s]
     bough_interface *interface;
-    const double *outside; // (n_input) of the solution in progress; NULL: 0
-    double *change;        // (n_input) of the inputs with the last solution
+
+    // by a solution
+    const double *outside; // (n_input) change of the inputs from outside; NULL: 0
+    double *change;        // (n_input) of the inputs
     double *led;           // (n_input) the same without what comes from outside
     double *output_change; // (n_output) of each member by itself
 
-    // states that are held
+    // by bough_whole_hold: states that are held
     int n_held;
     const int *held;    // (n_held)
     double *border;     // (n_held × n_state): (I − γJ)⁻¹ of each held state's unit vector
     double *multiplier; // (n_held × n_held) their held entries, factored
-    double *share;      // (n_held)
+    double *held_force; // (n_held) multipliers of the last solution
     int *held_pivot;    // (n_held)
 } bough_whole;
 
-// Builds the memory in the arena; members are shared out by the pool.
+// Builds the memory in the arena; members are worked on by the pool.
 bough_whole *bough_whole_create(bough_arena *arena, const bough_assembly *assembly, bough_pool *pool);
 
 // The same without factors: for bough_whole_inputs and the rates only.
@@ -99,7 +102,7 @@ enum { BOUGH_WHOLE_TIMES = 2 };
 // failure is kept in the status of the first evaluation.
 void bough_whole_rates_of(bough_whole *const *evaluation, int n, int member);
 
-// The first failure, followers first: the inputs of leaders mean nothing after one of theirs.
+// The first failure, followers first: after the failure of a follower the leaders' inputs are not known.
 bough_status bough_whole_failure(const bough_whole *whole);
 
 // Begins a solution of x (n_state) in place; `outside` as above.

@@ -1,3 +1,4 @@
+// Implicit Euler steps of growing length, (72) of docs/theory.md.
 #include "cosim/analysis/equilibrium.h"
 
 #include <float.h>
@@ -6,8 +7,8 @@
 
 // What the second correction of a step, with tangents of its own, may be of the first, and what it
 // should be: it goes with the square of γ, or worse. With the tangents of the first a slender body
-// that has turned would answer with its axial stiffness. γ grows and shrinks by these factors at most, after
-// a refusal by `cautious`.
+// that has rotated would respond with its axial stiffness. γ grows and shrinks by these factors at most,
+// after a refusal by `cautious`.
 static const double contracting = 0.5, aim = 0.2, growth = 8, shrink = 0.1, cautious = 1.5;
 
 static const double shortest = 1e-9; // γ below which there is no hope [s]
@@ -46,7 +47,7 @@ static double size_of(const search *s, const double *x, int *row) {
     return largest;
 }
 
-// moved ← state after the change, by the caller's rule; the largest turn in it [rad].
+// moved ← state after the change, by the caller's rule; its largest rotation [rad].
 static double move(const search *s, const double *state, const double *change, double *moved) {
     if (s->def->move) return s->def->move(s->def->self, state, change, moved);
     for (int k = 0; k < s->n; k++) moved[k] = state[k] + change[k];

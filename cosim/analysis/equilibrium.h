@@ -1,8 +1,8 @@
-// Equilibrium of the coupled system, F(t, y) = 0 at a fixed time, but for the states that it holds:
-// an angle that goes on turning and its speed, say, whose rates need not vanish. Method: implicit
-// Euler steps of growing length γ, two Newton corrections each, which follow the motion downhill
-// from the initial state until, at the longest, they are Newton's method. An equilibrium near the
-// initial state may be found though it is unstable.
+// Equilibrium of the whole, F(t, y) = 0 at a fixed time, except for the states that it holds, whose rates
+// need not vanish: the angle and the speed of a steady rotation, for instance. Method: implicit Euler steps
+// of growing length γ, two Newton corrections each, which follow the motion downhill from the initial state
+// until, at the longest, they are Newton's method. An equilibrium near the initial state may be found though
+// it is unstable.
 #ifndef BOUGH_COSIM_ANALYSIS_EQUILIBRIUM_H
 #define BOUGH_COSIM_ANALYSIS_EQUILIBRIUM_H
 
@@ -15,7 +15,7 @@ typedef struct bough_equilibrium_def {
     int steps;        // most, refused ones among them
     void *self;
     // moved (n_state) ← state after a finite change, as its rotations and shapes add up; returns
-    // the largest turn in it [rad]. NULL: state + change.
+    // its largest rotation [rad]. NULL: state + change.
     double (*move)(void *self, const double *state, const double *change, double *moved);
     // Takes the motion that is not part of the equilibrium out of a state, after each step; NULL:
     // none.
@@ -34,8 +34,8 @@ typedef struct bough_equilibrium_report {
     double rate;   // its rate of change [units per s]
 } bough_equilibrium_report;
 
-// Brings `state` (n_state) to equilibrium. BOUGH_FAILED when it is not found: the report tells
-// where it still moves, the state is the last one reached.
+// Brings `state` (n_state) to equilibrium. BOUGH_FAILED when it is not found: the report says
+// which state still moves, the state is the last one reached.
 bough_status bough_equilibrium_find(bough_arena *arena, bough_whole *whole, const bough_equilibrium_def *def,
                                     double *state, bough_equilibrium_report *report);
 

@@ -1,4 +1,7 @@
-#include "cosim/analysis/linear_member.h"
+// The linear member of stability.h. Its own steps are those of the two-stage SDIRK method with γ = 1 − 1/√2,
+// which keeps oscillations (their amplitude falls by 0.004 (ωh)⁴ per step h) and damps stiff motions at once;
+// the trapezoidal rule would keep all stiff modes.
+#include "cosim/analysis/stability.h"
 
 #include <math.h>
 #include <string.h>
@@ -24,6 +27,7 @@ typedef struct linear_member {
 
 // -- model exchange -------------------------------------------------------------------------------
 
+// sum += factor B u
 static void add_inputs(const linear_member *s, double factor, const double *input, double *sum) {
     int n = s->real->n_state;
     for (int j = 0; j < s->real->n_input; j++) {
@@ -34,6 +38,7 @@ static void add_inputs(const linear_member *s, double factor, const double *inpu
     }
 }
 
+// f at the state of linearisation plus factor y
 static bool shifted_rate(linear_member *s, double factor, const double *state, double *rate) {
     const bough_system *r = s->real;
     for (int k = 0; k < r->n_state; k++) s->plus[k] = s->at[k] + factor * state[k];
@@ -47,6 +52,7 @@ static bool derivative(void *self, double t, const double *state, const double *
     const bough_system *r = s->real;
     double largest = 0;
     for (int k = 0; k < r->n_state; k++) largest = fmax(largest, fabs(state[k]) / r->scale[k]);
+    // J y
     memset(rate, 0, (size_t)r->n_state * sizeof(double));
     if (largest > 0) {
         double step = 6e-6 / largest; // the cube root of the rounding error
@@ -54,6 +60,7 @@ static bool derivative(void *self, double t, const double *state, const double *
         if (!shifted_rate(s, -step, state, s->minus)) return false;
         for (int k = 0; k < r->n_state; k++) rate[k] = (rate[k] - s->minus[k]) / (2 * step);
     }
+    // B u
     add_inputs(s, 1, input, rate);
     return true;
 }
@@ -117,10 +124,12 @@ static void step(linear_member *s, double t, double h, double *y) {
     const bough_signal *input = s->member->signal;
     int n = s->real->n_state;
     double part = (1 - sdirk_gamma) / sdirk_gamma;
+    // first stage
     memcpy(s->plus, y, (size_t)n * sizeof(double));
     bough_signal_value(input, t + sdirk_gamma * h, s->seen);
     add_inputs(s, s->own->gamma, s->seen, s->plus);
     solve(s, s->own, s->plus);
+    // second stage
     for (int k = 0; k < n; k++) y[k] += part * (s->plus[k] - y[k]);
     bough_signal_value(input, t + h, s->seen);
     add_inputs(s, s->own->gamma, s->seen, y);

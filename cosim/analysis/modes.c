@@ -1,3 +1,4 @@
+// Modes of the whole, (74) to (76) of docs/theory.md.
 #include "cosim/analysis/modes.h"
 
 #include "core/base/base.h"
@@ -7,26 +8,26 @@
 
 enum { TERMS = 400 }; // of the series for the spin
 
-static const double series = 1e-13; // share of a solution below which its terms count for nothing
+static const double series = 1e-13; // of the solution: terms below are left out
 
 typedef struct modes {
     bough_whole *whole;
     const bough_modes_def *def;
-    double *term, *turned; // (n_state)
-    double *rate;          // S (n_part × n_part)
+    double *term, *moved; // (n_state)
+    double *rate;         // S (n_part × n_part)
     bool diverged;
 } modes;
 
-void bough_modes_harmonic(int n, int h, const double *real, const double *imaginary, double share[2]) {
-    share[0] = share[1] = 0;
+void bough_modes_harmonic(int n, int h, const double *real, const double *imaginary, double harmonic[2]) {
+    harmonic[0] = harmonic[1] = 0;
     for (int k = 0; k < n; k++) {
         double angle = -2 * BOUGH_PI * h * k / n, c = cos(angle), s = sin(angle);
-        share[0] += (c * real[k] - s * imaginary[k]) / n;
-        share[1] += (c * imaginary[k] + s * real[k]) / n;
+        harmonic[0] += (c * real[k] - s * imaginary[k]) / n;
+        harmonic[1] += (c * imaginary[k] + s * real[k]) / n;
     }
 }
 
-// The sum over ±h of i h exp(i 2πh (k − l)/n) is −2 h sin(2πh (k − l)/n).
+// (75). The sum over ±h of i h exp(i 2πh (k − l)/n) is −2 h sin(2πh (k − l)/n).
 void bough_modes_rate(const bough_modes_def *def, double *rate) {
     int n = def->n_part;
     for (int k = 0; k < n; k++) {
@@ -40,16 +41,16 @@ void bough_modes_rate(const bough_modes_def *def, double *rate) {
     }
 }
 
-// turned = −γ S x
-static void turn(const modes *m, const double *x, double *turned) {
+// moved = −γ S x
+static void apply_spin(const modes *m, const double *x, double *moved) {
     const bough_modes_def *def = m->def;
     int n = def->n_part;
-    memset(turned, 0, (size_t)m->whole->assembly->n_state * sizeof *turned);
+    memset(moved, 0, (size_t)m->whole->assembly->n_state * sizeof *moved);
     for (int k = 0; k < n; k++) {
         for (int l = 0; l < n; l++) {
             double factor = -m->rate[k * n + l] / def->point;
             const int *to = def->row + k * def->n_row, *from = def->row + l * def->n_row;
-            for (int j = 0; j < def->n_row; j++) turned[to[j]] += factor * x[from[j]];
+            for (int j = 0; j < def->n_row; j++) moved[to[j]] += factor * x[from[j]];
         }
     }
 }
@@ -60,19 +61,21 @@ static double largest(const double *x, int n) {
     return most;
 }
 
-// (I − γ(J − S))⁻¹ z = Σ (−(I − γJ)⁻¹ γS)ᵏ (I − γJ)⁻¹ z
+// (76): (I − γ(J − S))⁻¹ z = Σ (−(I − γJ)⁻¹ γS)ᵏ (I − γJ)⁻¹ z
 static void apply(void *self, const double *z, double *image) {
     modes *m = self;
     int n = m->whole->assembly->n_state;
+    // the first term, without rotation
     memcpy(image, z, (size_t)n * sizeof *image);
     bough_whole_solve(m->whole, image);
     bough_whole_project(m->whole, m->def->state, image);
     if (m->def->spin == 0) return;
+    // further terms until they are negligible
     double size = largest(image, n);
     memcpy(m->term, image, (size_t)n * sizeof *image);
     for (int k = 0; k < TERMS; k++) {
-        turn(m, m->term, m->turned);
-        memcpy(m->term, m->turned, (size_t)n * sizeof *m->term);
+        apply_spin(m, m->term, m->moved);
+        memcpy(m->term, m->moved, (size_t)n * sizeof *m->term);
         bough_whole_solve(m->whole, m->term);
         bough_whole_project(m->whole, m->def->state, m->term);
         for (int i = 0; i < n; i++) image[i] += m->term[i];
@@ -84,9 +87,10 @@ static void apply(void *self, const double *z, double *image) {
 static void take(bough_arena *arena, modes *m, bough_eigen_operator *op) {
     const bough_assembly *a = m->whole->assembly;
     size_t n = (size_t)a->n_state, parts = (size_t)m->def->n_part;
-    bough_arena_each(arena, n, &m->term, &m->turned, &op->weight);
+    bough_arena_each(arena, n, &m->term, &m->moved, &op->weight);
     m->rate = bough_arena_doubles(arena, parts * parts + 1);
     bough_assembly_scales(a, op->weight);
+    // states in units of their scales
     for (size_t k = 0; k < n; k++) op->weight[k] = 1 / (op->weight[k] * op->weight[k]);
 }
 
@@ -101,6 +105,7 @@ bough_status bough_modes_find(bough_arena *arena, bough_whole *whole, const boug
                                .apply = apply};
     take(arena, &m, &op);
     if (def->spin != 0) bough_modes_rate(def, m.rate);
+    // factors of I − γJ, then Arnoldi's method on their solutions
     bough_status status = bough_whole_setup(whole, def->time, def->state, def->input, op.gamma);
     if (!bough_is_ok(&status)) return bough_fail(BOUGH_FAILED, "%s", status.message);
     status = bough_eigen_nearest(arena, &op, wanted, pair, found);

@@ -1,8 +1,8 @@
-// Eigenvalues of the coupled system's Jacobian, λ x = J x, nearest to a point 1/γ of the real axis,
+// Eigenvalues of the Jacobian of the whole, λ x = J x, nearest to a point 1/γ of the real axis,
 // in tangents of the motion: no changes of a quaternion's length. Or, where equal parts of the
-// system turn steadily, of the system that an observer at rest sees.
+// system rotate steadily, of the system in the coordinates of an observer at rest.
 //
-// Let part k of n carry its states b_k in turning axes at the azimuth ψ + 2πk/n. The multi-part
+// Let part k of n carry its states b_k in rotating axes at the azimuth ψ + 2πk/n. The multi-part
 // (Coleman) transform writes them as z₀ + z_c cos ψ_k + z_s sin ψ_k + …; with ψ growing by Ω its
 // rates add to J
 //     −S,  S_kl = (Ω/n) Σ_h i h exp(i 2πh (k − l)/n),  |h| <= (n − 1)/2,
@@ -19,14 +19,14 @@ typedef struct bough_modes_def {
     const double *state; // (n_state)
     const double *input; // (n_input), usually whole->input
     double point;        // 1/γ [1/s]
-    double spin;         // Ω [rad/s]; 0: no part turns
+    double spin;         // Ω [rad/s]; 0: no part rotates
     int n_part, n_row;   // parts by growing azimuth; rows of each
-    const int *row;      // (n_part × n_row) rows of the state that are the same of all parts
+    const int *row;      // (n_part × n_row) corresponding rows of the state
 } bough_modes_def;
 
-// The share of harmonic h in a pattern over n parts, complex: (1/n) Σ_k y_k exp(−i 2πhk/n), y (n)
-// given and share returned as real and imaginary part.
-void bough_modes_harmonic(int n, int h, const double *real, const double *imaginary, double share[2]);
+// Harmonic h of a pattern over n parts, complex: (1/n) Σ_k y_k exp(−i 2πhk/n), y (n) and harmonic as real and
+// imaginary part.
+void bough_modes_harmonic(int n, int h, const double *real, const double *imaginary, double harmonic[2]);
 
 // S of the parts, rate (n_part × n_part), row-major.
 void bough_modes_rate(const bough_modes_def *def, double *rate);

@@ -1,3 +1,4 @@
+// Pseudo-arclength continuation, (73) of docs/theory.md.
 #include "cosim/analysis/path.h"
 
 #include "cosim/analysis/equilibrium.h"
@@ -8,10 +9,10 @@
 
 enum { CORRECTIONS = 30, FEW = 16, PARABOLAS = 5 };
 
-// γ is as long as makes steps of Newton's method of those of implicit Euler: until the answer to the loads
-// changes by no more than this when it is taken four times as long.
+// γ is so long that a step of implicit Euler is one of Newton's method: until the response to the loads
+// changes by no more than this when γ is four times as long.
 static const double shift = 0.03, longer = 4, longest = 1e6; // [-, -, s]
-static const double most_turn = 0.5;                         // of a vertex or body in a correction [rad]
+static const double most_turn = 0.5;  // rotation of a vertex or body in a correction [rad]
 static const double rounding = 1e-5;  // corrections that only rounding keeps from contracting
 static const double smooth = 0.97;    // least cosine between the tangents of neighbouring points
 static const double straight = 0.995; // cosine from which steps grow
@@ -21,9 +22,9 @@ bough_path_def bough_path_def_default(void) {
     return (bough_path_def){.step = 0.02, .tolerance = 1e-8, .steps = 2000};
 }
 
-// A point and the path's direction there: state then share, of norm 1.
+// A point of the path and the direction there: state, then load factor; of norm 1.
 typedef struct place {
-    double share, *state, *tangent; // (n), (n + 1)
+    double factor, *state, *tangent; // (n), (n + 1)
 } place;
 
 typedef struct path {
@@ -48,11 +49,11 @@ static void take(path *p, bough_arena *arena) {
     for (int i = 0; i < 4; i++) take_place(arena, n, places[i]);
 }
 
-// Mean over the states in units of their scales, and shares.
-static double product(const path *p, const double *a, double a_share, const double *b, double b_share) {
+// Scalar product: mean over the states in units of their scales, plus that of the load factors.
+static double product(const path *p, const double *a, double a_factor, const double *b, double b_factor) {
     double sum = 0;
     for (int k = 0; k < p->n; k++) sum += a[k] / p->scale[k] * (b[k] / p->scale[k]);
-    return sum / p->n + a_share * b_share;
+    return sum / p->n + a_factor * b_factor;
 }
 
 static double largest(const path *p, const double *x) {
@@ -61,7 +62,8 @@ static double largest(const path *p, const double *x) {
     return size;
 }
 
-static bool add(path *p, place *at, const double *change, double share) {
+// Moves a place by a change of state and load factor; false: by too large a rotation.
+static bool add(path *p, place *at, const double *change, double factor) {
     double turn = 0;
     if (p->def->move) {
         turn = p->def->move(p->def->self, at->state, change, p->moved);
@@ -70,20 +72,20 @@ static bool add(path *p, place *at, const double *change, double share) {
     }
     if (!(turn < most_turn)) return false;
     memcpy(at->state, p->moved, (size_t)p->n * sizeof *p->moved);
-    at->share += share;
+    at->factor += factor;
     if (p->def->rest) p->def->rest(p->def->self, at->state);
     return true;
 }
 
 // F into p->rate, the factors and p->load at a place.
 static bool linearise(path *p, const place *at) {
-    double end = p->def->end, time = fmin(fmax(at->share, 0), 1) * end;
+    double end = p->def->end, time = fmin(fmax(at->factor, 0), 1) * end;
     bough_status status = bough_whole_rate(p->whole, end, at->state, p->full);
     if (bough_is_ok(&status)) status = bough_whole_rate(p->whole, 0, at->state, p->rate);
     if (!bough_is_ok(&status)) return false;
     for (int k = 0; k < p->n; k++) {
         p->load[k] = p->gamma * (p->full[k] - p->rate[k]);
-        p->rate[k] += at->share * (p->full[k] - p->rate[k]);
+        p->rate[k] += at->factor * (p->full[k] - p->rate[k]);
     }
     bough_whole_inputs(p->whole, time, at->state);
     status = bough_whole_setup(p->whole, time, at->state, p->whole->input, p->gamma);
@@ -104,7 +106,7 @@ static bool choose_gamma(path *p, const place *at) {
     return false;
 }
 
-// The direction at a place from p->load, towards that of `before` (n + 1), or with a growing share.
+// The direction at a place from p->load, towards that of `before` (n + 1), or with a growing load factor.
 static void direct(path *p, const double *before, double *tangent) {
     double norm = sqrt(product(p, p->load, 1, p->load, 1)), sign = 1;
     if (before) sign = copysign(1, product(p, p->load, 1, before, before[p->n]));
@@ -112,19 +114,21 @@ static void direct(path *p, const double *before, double *tangent) {
     tangent[p->n] = sign / norm;
 }
 
-// Corrects a predicted place in the plane normal to `tangent`, or at its share where `fixed`; leaves the
-// factors and p->load of about the place. The number of corrections, 0: none led there.
+// Corrects a predicted place in the plane normal to `tangent`, or at its load factor where `fixed`; leaves
+// the factors and p->load of about the place. The number of corrections, 0: none led there.
 static int correct(path *p, const double *tangent, bool fixed, place *at) {
     double before = INFINITY;
     for (int i = 1; i <= CORRECTIONS; i++) {
+        // the correction at a constant load factor, and its part along the tangent
         if (!linearise(p, at)) return 0;
         for (int k = 0; k < p->n; k++) p->change[k] = p->gamma * p->rate[k];
         bough_whole_solve(p->whole, p->change);
         double along = product(p, p->change, 0, tangent, tangent[p->n]);
-        double share = fixed ? 0 : -along / product(p, p->load, 1, tangent, tangent[p->n]);
-        for (int k = 0; k < p->n; k++) p->change[k] += share * p->load[k];
-        double size = fmax(largest(p, p->change), fabs(share));
-        if (!isfinite(size) || !add(p, at, p->change, share)) return 0;
+        double factor = fixed ? 0 : -along / product(p, p->load, 1, tangent, tangent[p->n]);
+        for (int k = 0; k < p->n; k++) p->change[k] += factor * p->load[k];
+        // applied, until it is small or only rounding is left
+        double size = fmax(largest(p, p->change), fabs(factor));
+        if (!isfinite(size) || !add(p, at, p->change, factor)) return 0;
         if (size < p->def->tolerance || (size < rounding && !(size < 0.5 * before))) return i;
         if (i > 2 && !(size < before)) return 0;
         before = size;
@@ -135,7 +139,7 @@ static int correct(path *p, const double *tangent, bool fixed, place *at) {
 static void copy_place(const path *p, const place *from, place *to) {
     memcpy(to->state, from->state, (size_t)p->n * sizeof *to->state);
     memcpy(to->tangent, from->tangent, (size_t)(p->n + 1) * sizeof *to->tangent);
-    to->share = from->share;
+    to->factor = from->factor;
 }
 
 // From `here` by a step along its tangent to `to`, with the direction there. The corrections, 0: none.
@@ -152,100 +156,105 @@ static double cosine(const path *p, const place *a, const place *b) {
     return product(p, a->tangent, a->tangent[p->n], b->tangent, b->tangent[p->n]);
 }
 
-// Where the parabola through three points (s, share), in order, has its extremum.
-static double extremum(const double s[3], const double share[3]) {
+// Place of the extremum of the parabola through three points (s, load factor), in order.
+static double extremum(const double s[3], const double factor[3]) {
     double left = s[1] - s[0], right = s[2] - s[1];
-    double before = (share[1] - share[0]) / left, after = (share[2] - share[1]) / right;
+    double before = (factor[1] - factor[0]) / left, after = (factor[2] - factor[1]) / right;
     double curvature = (after - before) / (left + right); // half the second derivative
     return s[1] - 0.5 * (before + curvature * left) / curvature;
 }
 
 // The limit point about `here` into p->limit: `before` and `next` lie at s[0] and s[2] from it. Its
-// distance; shares are those of points on the path, so that it does not hang on how exact tangents are.
-static double find_limit(path *p, double s[3], double share[3]) {
+// distance; load factors are those of points on the path, so it does not depend on the error of tangents.
+static double find_limit(path *p, double s[3], double factor[3]) {
     double found = 0;
     copy_place(p, &p->here, &p->limit);
     for (int i = 0; i < PARABOLAS; i++) {
-        double at = extremum(s, share);
+        double at = extremum(s, factor);
         if (!(at > s[0] && at < s[2]) || fabs(at - s[1]) < 1e-4 * (s[2] - s[0])) break;
         if (go(p, at, &p->next_limit) == 0) break;
-        bool better = (p->next_limit.share - share[1]) * (share[1] - share[0]) >= 0;
+        // the new point replaces the middle one or a side
+        bool better = (p->next_limit.factor - factor[1]) * (factor[1] - factor[0]) >= 0;
         int side = at < s[1] ? 0 : 2;
         if (better) {
             place old = p->limit;
             p->limit = p->next_limit;
             p->next_limit = old;
             found = at;
-            s[2 - side] = s[1], share[2 - side] = share[1];
-            s[1] = at, share[1] = p->limit.share;
+            s[2 - side] = s[1], factor[2 - side] = factor[1];
+            s[1] = at, factor[1] = p->limit.factor;
         } else {
-            s[side] = at, share[side] = p->next_limit.share;
+            s[side] = at, factor[side] = p->next_limit.factor;
         }
     }
     return found;
 }
 
-// The last place into p->limit: at this share, between `here` and `next`.
-static bool finish(path *p, double share) {
-    double ahead = share - p->here.share, slope = p->here.tangent[p->n];
+// The last place into p->limit: at this load factor, between `here` and `next`.
+static bool finish(path *p, double factor) {
+    double ahead = factor - p->here.factor, slope = p->here.tangent[p->n];
     copy_place(p, &p->here, &p->limit);
     if (!(ahead * slope > 0)) return ahead == 0;
     for (int k = 0; k < p->n; k++) p->change[k] = ahead / slope * p->here.tangent[k];
     return add(p, &p->limit, p->change, ahead) && correct(p, p->here.tangent, true, &p->limit) > 0;
 }
 
-static bough_status tell(path *p, const place *at, bool limit, bough_path_report *report) {
+// One point for the caller and the report.
+static bough_status report_point(path *p, const place *at, bool limit, bough_path_report *report) {
     report->points++;
     report->limits += limit;
-    report->share = at->share;
-    return p->def->point ? p->def->point(p->def->self, at->share, at->state, limit) : bough_ok();
+    report->factor = at->factor;
+    return p->def->point ? p->def->point(p->def->self, at->factor, at->state, limit) : bough_ok();
 }
 
-// Tells `here`, and the limit point about it if there is one; `back` and `step` are the distances to the
-// points before, whose share was `before`, and behind.
-static bough_status tell_here(path *p, double back, double before, double step, bough_path_report *report) {
-    double s[3] = {-back, 0, step}, share[3] = {before, p->here.share, p->next.share};
-    bool turns = back > 0 && (share[1] - share[0]) * (share[2] - share[1]) < 0;
-    double at = turns ? find_limit(p, s, share) : 0;
+// Reports `here`, and the limit point about it if there is one; `back` and `step` are the distances to the
+// points before, whose load factor was `before`, and after.
+static bough_status report_here(path *p, double back, double before, double step, bough_path_report *report) {
+    double s[3] = {-back, 0, step}, factor[3] = {before, p->here.factor, p->next.factor};
+    bool turns = back > 0 && (factor[1] - factor[0]) * (factor[2] - factor[1]) < 0;
+    double at = turns ? find_limit(p, s, factor) : 0;
     bough_status status = bough_ok();
-    if (turns && at < 0) status = tell(p, &p->limit, true, report);
-    if (bough_is_ok(&status) && (!turns || at != 0)) status = tell(p, &p->here, false, report);
-    if (bough_is_ok(&status) && turns && at >= 0) status = tell(p, &p->limit, true, report);
+    if (turns && at < 0) status = report_point(p, &p->limit, true, report);
+    if (bough_is_ok(&status) && (!turns || at != 0)) status = report_point(p, &p->here, false, report);
+    if (bough_is_ok(&status) && turns && at >= 0) status = report_point(p, &p->limit, true, report);
     return status;
 }
 
-// From `here` on to the share 1 or −1.
+// From `here` to the load factor 1 or −1.
 static bough_status follow(path *p, bough_path_report *report) {
     double step = p->def->step, back = 0, before = 0;
     bough_status status = bough_ok();
     while (bough_is_ok(&status) && report->steps++ < p->def->steps && step > least_step) {
+        // a step, refused if the path turns sharply
         int corrections = go(p, step, &p->next);
         double turned = corrections > 0 ? cosine(p, &p->here, &p->next) : -1;
-        bool over = fabs(p->next.share) >= 1;
-        double last = copysign(1, p->next.share);
+        bool over = fabs(p->next.factor) >= 1;
+        double last = copysign(1, p->next.factor);
         if (corrections == 0 || turned < smooth || (over && !finish(p, last))) {
             if (corrections == 0)
                 p->gamma = fmax(p->gamma / longer, BOUGH_EQUILIBRIUM_LONGEST); // less rounding
             step *= shrink;
             continue;
         }
+        // the end of the loads
         if (over) {
             report->reversed = last < 0;
-            status = tell(p, &p->here, false, report);
+            status = report_point(p, &p->here, false, report);
             copy_place(p, &p->limit, &p->here);
-            return bough_is_ok(&status) ? tell(p, &p->here, false, report) : status;
+            return bough_is_ok(&status) ? report_point(p, &p->here, false, report) : status;
         }
-        status = tell_here(p, back, before, step, report);
+        status = report_here(p, back, before, step, report);
+        // the next point is the present one
         place old = p->here;
-        back = step, before = old.share;
+        back = step, before = old.factor;
         p->here = p->next;
         p->next = old;
         if (corrections <= FEW && turned > straight) step *= growth;
     }
-    if (bough_is_ok(&status)) status = tell(p, &p->here, false, report);
+    if (bough_is_ok(&status)) status = report_point(p, &p->here, false, report);
     if (!bough_is_ok(&status)) return status;
     return bough_fail(BOUGH_FAILED, "the path of equilibria ends at %.6g of the loads after %d steps",
-                      p->here.share, report->steps);
+                      p->here.factor, report->steps);
 }
 
 bough_status bough_path_follow(bough_arena *arena, bough_whole *whole, const bough_path_def *def,

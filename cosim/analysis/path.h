@@ -1,11 +1,11 @@
-// A path of equilibria of the coupled system, F(λ, y) = 0, as the share λ of the loads grows and, past a
-// limit point, shrinks: pseudo-arclength continuation. Loads enter F linearly, so that
+// A path of equilibria of the whole, F(λ, y) = 0, as the load factor λ grows and, past a limit point,
+// shrinks: pseudo-arclength continuation (73). Loads enter F linearly, so that
 //     F(λ, y) = F(0 s, y) + λ (F(end, y) − F(0 s, y)),
-// also for negative shares. Each step predicts along the tangent and corrects by Newton's method in the plane
-// normal to it, state and share together,
+// also for negative load factors. Each step predicts along the tangent and corrects by Newton's method in the
+// plane normal to it, state and load factor together,
 //     J δy + ∂F/∂λ δλ = −F,   ⟨δ, tangent⟩ = 0,
-// by two solutions with the coupled factors, those of the loads at λ end. E. Riks, An incremental approach to
-// the solution of snapping and buckling problems, Int. J. Solids Struct. 15 (1979).
+// by two solutions with the factors of the whole, those of the loads at λ end. E. Riks, An incremental
+// approach to the solution of snapping and buckling problems, Int. J. Solids Struct. 15 (1979).
 #ifndef BOUGH_COSIM_ANALYSIS_PATH_H
 #define BOUGH_COSIM_ANALYSIS_PATH_H
 
@@ -20,9 +20,9 @@ typedef struct bough_path_def {
     // As in equilibrium.h.
     double (*move)(void *self, const double *state, const double *change, double *moved);
     void (*rest)(void *self, double *state);
-    // A point of the path; `limit`: there the share has its largest or smallest value for now. A failure
+    // A point of the path; `limit`: there the load factor has an extremum. A failure
     // ends the path.
-    bough_status (*point)(void *self, double share, const double *state, bool limit);
+    bough_status (*point)(void *self, double factor, const double *state, bool limit);
 } bough_path_def;
 
 // Steps of 0.02 at first, 1e-8, 2000 steps.
@@ -30,12 +30,12 @@ bough_path_def bough_path_def_default(void);
 
 typedef struct bough_path_report {
     int steps, points, limits;
-    bool reversed; // the path ended at the share −1
-    double share;  // of the last point
+    bool reversed; // the path ended at the load factor −1
+    double factor; // load factor of the last point
 } bough_path_report;
 
-// Follows the path from `state` (n_state), an equilibrium under the loads at time 0, to the share 1 or −1.
-// BOUGH_FAILED: the path cannot be followed, or goes on beyond the most steps; the state is that of the
+// Follows the path from `state` (n_state), an equilibrium under the loads at time 0, to the load factor 1 or
+// −1. BOUGH_FAILED: the path cannot be followed, or goes on beyond the most steps; the state is that of the
 // last point.
 bough_status bough_path_follow(bough_arena *arena, bough_whole *whole, const bough_path_def *def,
                                double *state, bough_path_report *report);

@@ -2,7 +2,6 @@
 
 #include "core/base/arnoldi.h"
 #include "core/base/base.h"
-#include "cosim/analysis/linear_member.h"
 #include "cosim/scheme.h"
 
 #include <math.h>
@@ -13,8 +12,8 @@
 enum { DIMENSION = 48, WARM_UP = 2, MOST_REPEATED = 24 };
 static const double span = 0.06;      // this time passes per Arnoldi vector [s]
 static const double sub_step = 5e-3;  // of the linear members at most [s]; a quarter of a macro
-                                      // step, so that their own damping does not hide what rings
-static const double exact = 1e-4;     // share of an eigenvalue
+                                      // step, so that their own damping does not hide oscillations
+static const double exact = 1e-4;     // relative to an eigenvalue
 static const double threshold = 1e-2; // growth below is rounding or drift [1/s]
 
 // The map z → z after `repeat` macro steps; z is what a step depends on, see bough_scheme_load.
@@ -37,6 +36,7 @@ typedef struct map {
 
 // -- building -------------------------------------------------------------------------------------
 
+// The assembly with linear members in place of its own.
 static void build_linear_members(map *m, const bough_assembly *a, const double *input) {
     m->assembly = *a;
     m->linear = bough_arena_take(m->arena, (size_t)a->n_member * sizeof *m->linear);
@@ -70,6 +70,7 @@ static bough_status build(map *m, const bough_assembly *a, const bough_scheme_op
     double *input = bough_arena_doubles(m->arena, (size_t)a->n_input);
     bough_assembly_outputs(a, a->member[0]->time, output, input);
     build_linear_members(m, a, input);
+    // the scheme on the linear members
     bough_coupling *c = NULL;
     bough_status status = bough_scheme_couple(m->arena, &m->assembly, &judged, NULL, &c);
     if (!bough_is_ok(&status) || !c) return status;
@@ -108,6 +109,7 @@ static bough_status apply_repeated(void *self, const double *z, double *image) {
 static void choose_weights(map *m, const double *z) {
     const bough_assembly *a = &m->assembly;
     double *weight = m->arnoldi.weight, sum = 0;
+    // states in units of their scales
     for (int i = 0, k = 0; i < a->n_member; i++) {
         for (int j = 0; j < a->member[i]->system.n_state; j++, k++) {
             weight[k] = 1 / (a->member[i]->system.scale[j] * a->member[i]->system.scale[j]);
@@ -174,7 +176,7 @@ static double moved(const map *m, const ritz *r) {
     return a->done == a->count ? 0 : nearest;
 }
 
-// What its residual leaves open; unfinished values of the many slow modes may exceed 1 by a little.
+// Its uncertainty; values of the many slow modes that have not converged may exceed 1 by a little.
 static double margin(const ritz *r) { return 0.3 * fabs(r->modulus - 1); }
 
 static bool likely(const ritz *r) { return r->residual < margin(r) && r->residual < 0.05; }
@@ -191,7 +193,7 @@ static ritz ritz_value(const map *m, int column) {
                   .residual = bough_arnoldi_residual(a, column)};
 }
 
-// The member of the vector's largest part, of those that hang on an interface.
+// The member with the largest part of the vector, of those with an interface.
 static int largest_body(const map *m, const double *real, const double *imaginary) {
     const bough_assembly *a = &m->assembly;
     double largest = -1;
@@ -258,9 +260,9 @@ static bough_status choose(map *m, bough_stability *result) {
         bough_status status = refine(m, &found[k], &candidate);
         if (!bough_is_ok(&status)) return status;
         bool alternates = candidate.frequency * m->macro_step > 0.25; // no mechanics do within a step
-        bool turns = 2 * BOUGH_PI * candidate.frequency > candidate.growth;
+        bool oscillates = 2 * BOUGH_PI * candidate.frequency > candidate.growth;
         candidate.rising = result->rising;
-        if (!turns && !alternates) {
+        if (!oscillates && !alternates) {
             result->rising = fmax(result->rising, candidate.growth);
             continue;
         }
@@ -273,7 +275,7 @@ static bough_status choose(map *m, bough_stability *result) {
     return bough_ok();
 }
 
-// Whether the largest eigenvalue so far grows fast, turns and is exact: the others do not matter.
+// Whether the largest eigenvalue so far grows fast, oscillates and is exact: the others do not matter.
 static bool decided(const map *m) {
     ritz top = {0};
     for (int k = 0; k < m->arnoldi.done; k++) {
@@ -281,8 +283,8 @@ static bool decided(const map *m) {
         if (r.modulus > top.modulus) top = r;
         if (r.pair) k++;
     }
-    bool turns = top.pair || m->arnoldi.value[top.column] < 0;
-    return turns && top.modulus > 1.2 && top.residual < exact * top.modulus && certain(m, &top);
+    bool oscillates = top.pair || m->arnoldi.value[top.column] < 0;
+    return oscillates && top.modulus > 1.2 && top.residual < exact * top.modulus && certain(m, &top);
 }
 
 static bough_status judge(bough_arena *arena, void *self) {

@@ -1,5 +1,5 @@
 // Stability analysis of a coupling before the run: the fastest growing oscillation of the linearised macro
-// step. The scheme itself runs on linear members (linear_member.h), so one macro step is a linear map of
+// step (69). The scheme itself runs on linear members, so one macro step is a linear map of
 // the perturbations: states, and the earlier inputs that the scheme stores. The largest eigenvalues come
 // from Arnoldi's method (modified Gram–Schmidt, twice), applied to so many macro steps that the stiff
 // modes decay and the slow modes change their phase visibly.
@@ -18,7 +18,7 @@ typedef struct bough_stability {
     double suspected; // the same, including uncertain eigenvalues; at least `growth` [1/s]
     double rising;    // growth of what grows faster than it oscillates, of coupling or mechanics [1/s]
     double frequency; // of the fastest growing oscillation [Hz]
-    int body;         // the member on an interface with the largest share in it
+    int body;         // the member on an interface with the largest part in it
 } bough_stability;
 
 // Analyses a scheme at a macro step about the members' current states. Allocates and releases its own
@@ -46,8 +46,17 @@ bough_status bough_stability_advise(const bough_assembly *a, const bough_scheme_
 
 enum { BOUGH_VERDICT = 320 };
 
-// One sentence: text (BOUGH_VERDICT), empty when there is nothing to warn of.
+// One sentence: text (BOUGH_VERDICT), empty where it is stable.
 void bough_stability_describe(const bough_assembly *a, const bough_stability_advice *advice,
                               const bough_scheme_options *options, double macro_step, char *text);
+
+// The linear member of a member: its system's linearisation about the current state, on which a coupling
+// scheme can be run with small perturbations,
+//     ẏ = J y + B u,   o = C y + D u.
+// Builds it in the arena at the member's current time and state and the input given (n_input), copied. The
+// perturbation starts at 0. `sub_step` is the longest step of its own [s]. The linear member must stay where
+// it is.
+void bough_linear_member_create(bough_arena *arena, const bough_member *real, const double *input,
+                                double sub_step, bough_member *linear);
 
 #endif

@@ -1,20 +1,20 @@
-// Two watches serve where no other solution shows the error; what each finds on random scenes is in
-// docs/verification.md.
+// Two checks serve where no other solution shows the error; docs/verification.md has what each finds on
+// random scenes.
 //
-// A force that has grown by a factor of 100 since its first steps, and that the members do not agree on, is
-// analysed, and again after each further factor of 100: the coupling is the cause if its eigenvalues about
-// the current state explain that growth and those of a shorter macro step, or of ramp there, do not. So
-// growth that belongs to the mechanics, such as a fall or flutter, goes on. Members whose equations are not
-// known have no eigenvalues; of these the coupling is the cause if the force obtained and the force applied
-// have nothing in common.
+// Growth: a force that has grown by a factor of 100 since its first steps, and whose values obtained and
+// applied differ, is analysed, and again after each further factor of 100. The coupling is the cause if its
+// eigenvalues (69) about the current state explain that growth, and those of a shorter macro step, or of
+// another scheme there, do not. Growth that belongs to the mechanics, such as a fall or flutter, does not end
+// the run. A foreign simulator has no eigenvalues; there the coupling is the cause if the forces obtained and
+// applied differ by half their size.
 //
-// The energy that the interfaces add or remove tells an implicit coupling that is stable but wrong.
+// Energy: what the interfaces add or remove (70) shows an implicit coupling that is stable but wrong.
 #include "cosim/watch/monitor.h"
 
-#include "cosim/analysis/stability.h"
 #include "cosim/scheme.h"
 
 #include <math.h>
+#include <stdio.h>
 #include <string.h>
 
 enum { FIRST_STEPS = 8 };
@@ -31,12 +31,12 @@ typedef struct group {
     bool kinematic;
     double defect_max, defect_sum; // Σ of squares over the steps
     double magnitude;              // largest norm of the obtained value so far
-    double small;                  // largest norm of the first steps with one, or when last looked into
+    double small;                  // largest norm of the first steps with one, or when last analysed
     double small_time;             // then [s]
     int first_steps;               // of these so far
 } group;
 
-// The error of one interface.
+// The energy of one pair of ports.
 typedef struct account {
     bough_pair_energy total, closed; // closed: at the end of the last window
 } account;
@@ -52,6 +52,9 @@ struct bough_monitor {
     double window_time; // its length so far [s]
     int unbalanced;     // windows in a row that make or lose energy
     double *start;      // (n_input) scratch
+
+    // by bough_monitor_keep
+    double *state, *input; // (n_state), (n_input) at the start of the step
 };
 
 static int receiver(const bough_assembly *a, int input) {
@@ -76,7 +79,8 @@ bough_monitor *bough_monitor_create(bough_arena *arena, const bough_coupling *co
     bough_monitor *m = bough_arena_take(arena, sizeof *m);
     m->advice = a->opaque || coupling->scheme->one_system ? "" : " or scheme: " BOUGH_SCHEME_DEFAULT;
     m->group = bough_arena_take(arena, n_input * sizeof *m->group);
-    m->start = bough_arena_doubles(arena, n_input);
+    bough_arena_each(arena, n_input, &m->start, &m->input);
+    m->state = bough_arena_doubles(arena, (size_t)a->n_state);
     m->account = bough_arena_take(arena, (size_t)a->n_pair * sizeof *m->account);
     make_groups(m, a);
     return m;
@@ -84,7 +88,7 @@ bough_monitor *bough_monitor_create(bough_arena *arena, const bough_coupling *co
 
 // -- non-finite values ----------------------------------------------------------------------------
 
-// In vector lanes: what is not finite leaves a NaN.
+// x − x is 0 where x is finite, else NaN; without a branch, for vector instructions.
 static bool all_finite(const double *x, int n) {
     double sum = 0;
 #pragma omp simd reduction(+ : sum)
@@ -116,23 +120,26 @@ static double norm(const double *x, int n) {
     return sqrt(sum);
 }
 
-// Growth of whatever grows fastest [1/s], about the current state; negative: nothing, or unknown.
+// Growth of the fastest growing motion about the current state [1/s]; negative: none grows, or it is not
+// known.
 static double fastest_growth(const bough_coupling *c, const bough_scheme_options *options,
                              double macro_step) {
     bough_stability s = {0};
-    double fine = macro_step / 32; // what members ring at within a step counts too
+    double fine = macro_step / 32; // oscillations within a step count, too
     bough_status status = bough_stability_judge_by(c->assembly, options, macro_step, fine, &s);
     return bough_is_ok(&status) ? fmax(s.growth, s.rising) : -1;
 }
 
-// Nothing is known of what a member with unknown equations brings along, so growth alone says nothing.
-static const double unrelated = 0.5; // difference of the forces obtained and applied, of the largest so far
+// Difference of the forces obtained and applied, of the largest so far, from which the coupling of a member
+// with unknown equations is the cause: its growth alone may belong to the member.
+static const double unrelated = 0.5;
 
 static bool coupling_grows(const bough_coupling *c, const group *g, double defect, double *growth) {
     static const int shorter[] = {8, 64, 64};
-    double needed = log(suspicious_growth) / (c->t1 - g->small_time); // for what was seen
+    double needed = log(suspicious_growth) / (c->t1 - g->small_time); // to explain the force
     *growth = needed;
     if (c->assembly->opaque) return defect > unrelated * g->magnitude;
+    // the growth of this coupling, then that of better ones
     bough_scheme_options options = c->options;
     double h = c->t1 - c->t0, own;
     *growth = fastest_growth(c, &options, h);
@@ -145,8 +152,8 @@ static bool coupling_grows(const bough_coupling *c, const group *g, double defec
     return own < *growth / 2;
 }
 
-static bough_status look_into(const bough_monitor *m, const bough_coupling *c, const group *g,
-                              double defect) {
+// Fails if the coupling is the cause of a growing force.
+static bough_status analyse(const bough_monitor *m, const bough_coupling *c, const group *g, double defect) {
     double growth;
     if (!coupling_grows(c, g, defect, &growth)) return bough_ok();
     const bough_assembly *a = c->assembly;
@@ -158,6 +165,7 @@ static bough_status look_into(const bough_monitor *m, const bough_coupling *c, c
                       c->t1 - c->t0, growth, m->advice);
 }
 
+// Compares a force with its size in the first steps.
 static bough_status watch_size(const bough_monitor *m, const bough_coupling *c, group *g, double size,
                                double defect) {
     if (g->first_steps < FIRST_STEPS) {
@@ -166,7 +174,7 @@ static bough_status watch_size(const bough_monitor *m, const bough_coupling *c, 
         g->small_time = c->t1;
     } else if (!g->kinematic && size > suspicious_growth * g->small &&
                (c->scheme->repeats || c->scheme->explicit_forces || defect > agreement * g->magnitude)) {
-        bough_status status = look_into(m, c, g, defect);
+        bough_status status = analyse(m, c, g, defect);
         g->small = size;
         g->small_time = c->t1;
         return status;
@@ -175,11 +183,13 @@ static bough_status watch_size(const bough_monitor *m, const bough_coupling *c, 
 }
 
 static bough_status judge_group(const bough_monitor *m, bough_coupling *c, group *g) {
+    // the defect, (68) at t1
     double difference[3];
     for (int i = 0; i < g->count; i++) {
         difference[i] = c->input[g->first + i] - c->applied[g->first + i];
     }
     double defect = norm(difference, g->count), size = norm(c->input + g->first, g->count);
+    // its statistics
     g->magnitude = fmax(g->magnitude, size);
     g->defect_max = fmax(g->defect_max, defect);
     g->defect_sum += defect * defect;
@@ -215,10 +225,10 @@ static void keep_accounts(bough_monitor *m, const bough_coupling *c) {
     }
 }
 
-// The share of the exchanged energy that the interfaces have added or removed, over the whole run and in the
-// last two windows, so that a sudden start, which no macro step resolves, does not count. Only this
-// detects an implicit coupling that is stable but wrong, such as the damped ramp on a light body; accurate
-// couplings stay a hundred times below. Schemes with constant forces are of first order and exceed it.
+// Largest ratio of the energy that the interfaces add or remove to the energy that they exchange, over the
+// whole run and in the last two windows, so that a sudden start, which no macro step resolves, does not
+// count. Accurate couplings stay a hundred times below. Schemes with constant forces are of first order and
+// exceed it.
 static const double most_energy_error = 0.01;
 enum { MOST_UNBALANCED = 2 };
 
@@ -244,6 +254,7 @@ static bough_status judge_balance(bough_monitor *m, const bough_coupling *c) {
     bool balanced = all.residual <= most_energy_error * all.exchanged ||
                     last.residual <= most_energy_error * last.exchanged;
     m->unbalanced = balanced ? 0 : m->unbalanced + 1;
+    // the window closes; the interface with the largest error
     int worst = 0;
     for (int k = 0; k < a->n_pair; k++) {
         m->account[k].closed = m->account[k].total;
@@ -253,7 +264,7 @@ static bough_status judge_balance(bough_monitor *m, const bough_coupling *c) {
     if (holds_forces(c) || m->unbalanced < MOST_UNBALANCED) return bough_ok();
     int body = a->pair[worst].body;
     return bough_fail(BOUGH_FAILED,
-                      "the coupling of %s has lost the solution at %.6g s (scheme %s, macro step "
+                      "the coupling of %s is not accurate at %.6g s (scheme %s, macro step "
                       "%.6g s): the coupling itself adds or removes %.2g of the energy "
                       "exchanged at the interfaces; try a smaller macro step%s",
                       a->member[body]->system.name, c->t1, c->scheme->name, c->t1 - c->t0,
@@ -313,4 +324,65 @@ bough_coupling_report bough_monitor_report(const bough_monitor *m, const bough_c
 
 bough_pair_energy bough_monitor_energy(const bough_monitor *m, int interface) {
     return m->account[interface].total;
+}
+
+// -- a member that fails --------------------------------------------------------------------------
+
+enum { ADVICE = 240 };
+
+void bough_monitor_keep(bough_monitor *m, const bough_coupling *c) {
+    bough_assembly_states(c->assembly, m->state);
+    memcpy(m->input, c->input, (size_t)c->assembly->n_input * sizeof *m->input);
+}
+
+static void restore_members(const bough_monitor *m, const bough_coupling *c) {
+    const bough_assembly *a = c->assembly;
+    for (int i = 0; i < a->n_member; i++) {
+        bough_member_set(a->member[i], c->t0, m->state + a->state_offset[i]);
+    }
+}
+
+void bough_monitor_undo(const bough_monitor *m, bough_coupling *c) {
+    restore_members(m, c);
+    memcpy(c->input, m->input, (size_t)c->assembly->n_input * sizeof *m->input);
+}
+
+// The stability at the start of the step; empty where the analysis fails, too.
+static bough_stability_advice judge_again(const bough_monitor *m, bough_coupling *c) {
+    const bough_assembly *a = c->assembly;
+    bough_stability_advice advice;
+    restore_members(m, c);
+    bough_status status = bough_stability_advise(a, &c->options, c->t1 - c->t0, &advice);
+    return bough_is_ok(&status) ? advice : (bough_stability_advice){0};
+}
+
+// Under a stable coupling shorter macro steps and other tolerances seldom help a member that fails; one
+// system of all members does. What makes that fail, too, makes every method fail: vibrations without damping,
+// a mesh that is too coarse. An opaque member cannot be part of one system.
+static void advise(const bough_coupling *c, const bough_stability_advice *advice, char *text) {
+    if (!advice->unstable) {
+        snprintf(text, ADVICE, "; try %s",
+                 c->scheme->one_system ? "damping of flexible bodies, more segments or another master.rtol"
+                 : c->assembly->opaque ? "a smaller macro step or another micro.rtol"
+                                       : "scheme: " BOUGH_SCHEME_DEFAULT);
+        return;
+    }
+    int n = snprintf(text, ADVICE, ": the coupling grows by a factor of %.3g in each macro step; try ",
+                     exp(advice->now.growth * (c->t1 - c->t0)));
+    if (advice->macro_step > 0) {
+        n += snprintf(text + n, (size_t)(ADVICE - n), "macro_step: %.9g s or ", advice->macro_step);
+    }
+    snprintf(text + n, (size_t)(ADVICE - n), "scheme: " BOUGH_SCHEME_DEFAULT);
+}
+
+bough_status bough_monitor_explain(const bough_monitor *m, bough_coupling *c,
+                                   const bough_stability_advice *before, bough_status cause) {
+    if (cause.code != BOUGH_FAILED && cause.code != BOUGH_RETRY) return cause;
+    char text[ADVICE];
+    // the part of the coupling in it
+    bough_stability_advice advice = *before;
+    if (!advice.unstable && !c->scheme->one_system) advice = judge_again(m, c);
+    advise(c, &advice, text);
+    return bough_fail(BOUGH_FAILED, "%s (scheme %s, macro step %.6g s from %.6g s)%s", cause.message,
+                      c->scheme->name, c->t1 - c->t0, c->t0, text);
 }

@@ -1,8 +1,9 @@
-// Watches a coupled run: non-finite values, the interface defect and energy residual as estimates of
-// the coupling error, and the growth that tells an unstable explicit coupling.
+// Watches a coupled run: values that are not finite, the interface defect and the energy residual as measures
+// of the coupling error, the growth of an unstable coupling; and finds why a member fails.
 #ifndef BOUGH_COSIM_WATCH_MONITOR_H
 #define BOUGH_COSIM_WATCH_MONITOR_H
 
+#include "cosim/analysis/stability.h"
 #include "cosim/coupling.h"
 
 typedef struct bough_monitor bough_monitor;
@@ -36,5 +37,19 @@ typedef struct bough_pair_energy {
     double exchanged; // ∫ |wrench · twist| dt
 } bough_pair_energy;
 bough_pair_energy bough_monitor_energy(const bough_monitor *m, int interface);
+
+// -- a member that fails within a macro step ------------------------------------------------------
+
+// Keeps the members' states and inputs; a macro step begins.
+void bough_monitor_keep(bough_monitor *m, const bough_coupling *c);
+
+// Members and inputs are again what they were then.
+void bough_monitor_undo(const bough_monitor *m, bough_coupling *c);
+
+// The failure of the present step, with the part of the coupling in it: a stability analysis shows whether
+// the coupling is the cause, its growth, and a stable scheme. `before`: result of the analysis before the
+// run; if that found nothing, the kept states are analysed, because the members' own states are lost.
+bough_status bough_monitor_explain(const bough_monitor *m, bough_coupling *c,
+                                   const bough_stability_advice *before, bough_status cause);
 
 #endif

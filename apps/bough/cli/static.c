@@ -361,7 +361,7 @@ static bough_status write_path_point(void *self, double time, double share, bool
 
 static void print_path_end(const bough_path_report *report) {
     printf("path: %d points, %d limit points, %d steps, ", report->points, report->limits, report->steps);
-    printf("to %.7g of the loads\n", report->share);
+    printf("to %.7g of the loads\n", report->factor);
     puts("mesh error: not estimated along a path");
 }
 

@@ -125,7 +125,7 @@ TEST(lee_frame) {
     assert_int_equal(report.limits, 2);
     check_near(4 * t->limit[0], 1.8552, 5e-4, 0);
     assert_true(t->limit[1] < 0); // it snaps back: held, it is pulled up
-    check_near(report.share, 1, 0, 1e-12);
+    check_near(report.factor, 1, 0, 1e-12);
 }
 
 static void refuses(const char *scene, const char *set, const char *why) {

@@ -1,6 +1,5 @@
 // The verdict on a coupling by its eigenvalues: the limits of the two-mass oscillator, which long
 // runs confirm (test_scheme.c), within 2 %.
-#include "cosim/analysis/linear_member.h"
 #include "tests/unit/contract.h"
 #include "tests/unit/two_mass.h"
 

@@ -1,5 +1,5 @@
 // A member that breaks down within a macro step: two masses, of which the first cannot be moved far.
-#include "cosim/watch/breakdown.h"
+#include "cosim/watch/monitor.h"
 #include "tests/unit/two_mass.h"
 
 #include <stdlib.h>
