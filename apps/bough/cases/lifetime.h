@@ -35,7 +35,7 @@ typedef struct bough_extreme_errors {
 } bough_extreme_errors;
 
 typedef struct bough_lifetime {
-    const bough_study *set;
+    const bough_study *study;
     bough_lifetime_channel *channel; // (n_channel)
     int n_failed, n_missing;         // cases
     double hours;                    // of the life that are in the sums
@@ -46,7 +46,7 @@ typedef struct bough_lifetime {
     bough_extreme_errors *errors;    // (n_group + 1, n_channel) likewise
 } bough_lifetime;
 
-bough_lifetime bough_lifetime_take(bough_arena *arena, const bough_study *set);
+bough_lifetime bough_lifetime_take(bough_arena *arena, const bough_study *study);
 
 // Adds the next case. A result that is not done counts as missing.
 void bough_lifetime_add(bough_lifetime *l, int number, const bough_case_result *result);

@@ -58,12 +58,12 @@ enum { BOUGH_CASE_PANELS = 6 };
 
 // Least, largest and mean of the first channels of every case; NaN where it failed.
 typedef struct bough_case_plot {
-    const bough_study *set;
+    const bough_study *study;
     int n_panel;
     double *value; // (n_case × n_panel × 3)
 } bough_case_plot;
 
-bough_case_plot bough_case_plot_take(bough_arena *arena, const bough_study *set);
+bough_case_plot bough_case_plot_take(bough_arena *arena, const bough_study *study);
 void bough_case_plot_add(bough_case_plot *plot, int number, const bough_case_result *result);
 
 // Either writes folder/plot.svg: of a sweep a channel's mean, least and largest value over the first key of

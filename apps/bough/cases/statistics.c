@@ -9,7 +9,7 @@
 
 // cases.csv, a row a case with its channels' statistics, and costs.csv beside it, row by row.
 typedef struct case_tables {
-    const bough_study *set;
+    const bough_study *study;
     FILE *cases, *costs;
     char cases_path[4096], costs_path[4096];
 } case_tables;
@@ -44,18 +44,18 @@ static void put_channel(const bough_study *s, const bough_case_result *r, int i,
     }
 }
 
-static bough_status open_tables(const char *folder, const bough_study *set, case_tables *t) {
-    *t = (case_tables){.set = set};
+static bough_status open_tables(const char *folder, const bough_study *study, case_tables *t) {
+    *t = (case_tables){.study = study};
     bough_status status = bough_folder_open(folder, "cases.csv", t->cases_path, &t->cases);
     if (bough_is_ok(&status)) status = bough_folder_open(folder, "costs.csv", t->costs_path, &t->costs);
     if (!bough_is_ok(&status)) return status;
-    head_cases(set, t->cases);
+    head_cases(study, t->cases);
     fputs("case,simulated [s],cpu [s],wall [s]\n", t->costs);
     return status;
 }
 
 static void add_row(case_tables *t, int number, const bough_case_result *r) {
-    const bough_study *s = t->set;
+    const bough_study *s = t->study;
     const bough_case *c = &s->cases[number];
     FILE *f = t->cases;
     bool good = r->done && bough_is_ok(&r->outcome);
@@ -98,7 +98,7 @@ static bough_status close_tables(case_tables *t, bool keep) {
 
 static void put_equivalent(const void *self, FILE *f) {
     const bough_lifetime *l = self;
-    const bough_study *s = l->set;
+    const bough_study *s = l->study;
     fputs("channel,unit", f);
     for (int k = 0; k < s->n_slope; k++) fprintf(f, ",DEL(m=%g; %g cycles)", s->slope[k], s->cycles);
     for (int k = 0; k < s->n_slope; k++) fprintf(f, ",error of DEL(m=%g)", s->slope[k]);
@@ -112,7 +112,7 @@ static void put_equivalent(const void *self, FILE *f) {
 }
 
 static void put_extreme(const bough_lifetime *l, int i, const char *what, const bough_extreme *e, FILE *f) {
-    const bough_study *s = l->set;
+    const bough_study *s = l->study;
     if (!e->found) return;
     const bough_case *c = &s->cases[e->number];
     fprintf(f, "%s,%s,%s,%.17g,%g,%.17g,%d", s->channel[i], s->unit[i], what, e->value, e->factor,
@@ -126,7 +126,7 @@ static void put_extreme(const bough_lifetime *l, int i, const char *what, const 
 
 static void put_extremes(const void *self, FILE *f) {
     const bough_lifetime *l = self;
-    const bough_study *s = l->set;
+    const bough_study *s = l->study;
     fputs("channel,unit,extreme,characteristic,safety factor,design,case,load case,settings,time [s],"
           "error,companions of the load case",
           f);
@@ -141,12 +141,12 @@ static void put_extremes(const void *self, FILE *f) {
 static void put_ranges(const void *self, FILE *f) {
     const bough_lifetime *l = self;
     fputs("channel,unit,range from,range to,cycles in the lifetime\n", f);
-    for (int i = 0; i < l->set->n_channel; i++) {
+    for (int i = 0; i < l->study->n_channel; i++) {
         const bough_levels *r = &l->channel[i].ranges;
         double width = bough_levels_width(r);
         for (int64_t k = r->low; r->started && k <= r->high; k++) {
-            fprintf(f, "%s,%s,%.10g,%.10g,%.17g\n", l->set->channel[i], l->set->unit[i], width * (double)k,
-                    width * (double)(k + 1), bough_levels_inside(r, k));
+            fprintf(f, "%s,%s,%.10g,%.10g,%.17g\n", l->study->channel[i], l->study->unit[i],
+                    width * (double)k, width * (double)(k + 1), bough_levels_inside(r, k));
         }
     }
 }
@@ -154,11 +154,11 @@ static void put_ranges(const void *self, FILE *f) {
 static void put_levels(const void *self, FILE *f) {
     const bough_lifetime *l = self;
     fputs("channel,unit,from,to,hours in the lifetime,upward crossings of from\n", f);
-    for (int i = 0; i < l->set->n_channel; i++) {
+    for (int i = 0; i < l->study->n_channel; i++) {
         const bough_levels *r = &l->channel[i].levels;
         double width = bough_levels_width(r);
         for (int64_t k = r->low; r->started && k <= r->high; k++) {
-            fprintf(f, "%s,%s,%.10g,%.10g,%.17g,%.17g\n", l->set->channel[i], l->set->unit[i],
+            fprintf(f, "%s,%s,%.10g,%.10g,%.17g,%.17g\n", l->study->channel[i], l->study->unit[i],
                     width * (double)k, width * (double)(k + 1), bough_levels_inside(r, k),
                     bough_levels_crossed(r, k));
         }
@@ -183,7 +183,7 @@ static void print_error(FILE *f, double error) {
 }
 
 static void print_extreme(const bough_lifetime *l, int i, const bough_extreme *e, FILE *f) {
-    const bough_study *s = l->set;
+    const bough_study *s = l->study;
     if (!e->found) {
         fprintf(f, " %12s %9s %6s %12s %-24s", "-", "", "", "", "");
         return;
@@ -197,7 +197,7 @@ static void print_extreme(const bough_lifetime *l, int i, const bough_extreme *e
 }
 
 static void print_extremes(const bough_lifetime *l, FILE *f) {
-    const bough_study *s = l->set;
+    const bough_study *s = l->study;
     const char *const title[] = {"smallest", "largest"};
     fprintf(
         f,
@@ -216,7 +216,7 @@ static void print_extremes(const bough_lifetime *l, FILE *f) {
 }
 
 static void print_lifetime(const bough_lifetime *l, FILE *f) {
-    const bough_study *s = l->set;
+    const bough_study *s = l->study;
     fprintf(f, "%d cases, %.6g hours of a lifetime of %g years; equivalent loads at %g cycles\n", s->n_case,
             l->hours, s->lifetime, s->cycles);
     if (l->n_failed + l->n_missing > 0) {
@@ -300,7 +300,7 @@ static bough_status read_all(bough_arena *arena, const bough_study_results *x, c
 
 // What the tables are made of.
 typedef struct conclusion {
-    const bough_study *set;
+    const bough_study *study;
     const char *folder;
     const bough_lifetime *lifetime;
     const bough_case_plot *plot;
@@ -309,7 +309,7 @@ typedef struct conclusion {
 
 static void print_table(const void *self, FILE *f) {
     const conclusion *c = self;
-    const bough_study *s = c->set;
+    const bough_study *s = c->study;
     fprintf(f, "%s\n", s->title ? s->title : s->file);
     if (!s->is.weighted) {
         fprintf(f, "%d runs, %d failed; statistics of %d channels from %g s on in cases.csv\n", s->n_case,
@@ -321,7 +321,7 @@ static void print_table(const void *self, FILE *f) {
 }
 
 static bough_status write_all(const conclusion *c) {
-    bool sweep = !c->set->is.weighted;
+    bool sweep = !c->study->is.weighted;
     bough_status status = sweep ? bough_ok() : write_lifetime(c->lifetime, c->folder);
     if (bough_is_ok(&status)) status = bough_folder_write(c->folder, "table.txt", print_table, c);
     if (!bough_is_ok(&status)) return status;

@@ -28,10 +28,10 @@ static void draw_axes(bough_panel *p, const char *channel, const char *unit, con
 
 // -- sweep ----------------------------------------------------------------------------------------
 
-bough_case_plot bough_case_plot_take(bough_arena *arena, const bough_study *set) {
-    int n = set->n_channel < BOUGH_CASE_PANELS ? set->n_channel : BOUGH_CASE_PANELS;
-    size_t room = 3 * (size_t)n * (size_t)set->n_case;
-    return (bough_case_plot){set, n, bough_arena_doubles(arena, room)};
+bough_case_plot bough_case_plot_take(bough_arena *arena, const bough_study *study) {
+    int n = study->n_channel < BOUGH_CASE_PANELS ? study->n_channel : BOUGH_CASE_PANELS;
+    size_t room = 3 * (size_t)n * (size_t)study->n_case;
+    return (bough_case_plot){study, n, bough_arena_doubles(arena, room)};
 }
 
 void bough_case_plot_add(bough_case_plot *plot, int number, const bough_case_result *r) {
@@ -55,7 +55,7 @@ static double across_of(const bough_study *s, int number) {
 }
 
 static void draw_channel(const bough_case_plot *plot, int k, FILE *f) {
-    const bough_study *s = plot->set;
+    const bough_study *s = plot->study;
     bough_panel p = panel_at(f, k, false);
     for (int i = 0; i < s->n_case; i++) {
         bough_axis_include(&p.x, across_of(s, i));
@@ -104,7 +104,7 @@ static void draw_ranges(const bough_lifetime *l, int i, FILE *f) {
         bough_axis_include(&p.x, exceeded(r, k));
         bough_axis_include(&p.y, width * (double)k);
     }
-    draw_axes(&p, l->set->channel[i], l->set->unit[i], "cycles in the lifetime with at least this range");
+    draw_axes(&p, l->study->channel[i], l->study->unit[i], "cycles in the lifetime with at least this range");
     if (!r->started) return;
     fputs("<path fill=\"none\" stroke=\"#0072B2\" stroke-width=\"1.6\" d=\"", f);
     for (int64_t k = r->low; k <= r->high; k++) {
@@ -119,7 +119,7 @@ static void draw_ranges(const bough_lifetime *l, int i, FILE *f) {
 
 static void draw_lifetime(const void *self, FILE *svg) {
     const bough_lifetime *l = self;
-    int n = l->set->n_channel < BOUGH_CASE_PANELS ? l->set->n_channel : BOUGH_CASE_PANELS;
+    int n = l->study->n_channel < BOUGH_CASE_PANELS ? l->study->n_channel : BOUGH_CASE_PANELS;
     bough_picture_begin(svg, WIDE * PER_ROW, height_of(n));
     for (int i = 0; i < n; i++) draw_ranges(l, i, svg);
     fputs("</svg>\n", svg);
