@@ -51,16 +51,18 @@ static bough_status advance(other_run *r, double t) {
     return status;
 }
 
-static void compare(const other_run *base, other_run *finer, double part, bough_error_share *share) {
+// `part`, `held`: of the difference, that the run errs by; of channels whose last sample the base holds.
+static void compare(const other_run *base, other_run *finer, double part, double held,
+                    bough_error_share *share) {
     const bough_master *m = finer->simulation->master;
+    bool holds = !bough_master_sampled(base->simulation->master);
     if (m->time != base->simulation->master->time) return;
     sample(finer);
     for (int i = 0; i < base->channels.count; i++) {
         const bough_channel *channel = &base->channels.channel[i];
-        if (channel->sampled && !bough_master_sampled(base->simulation->master)) continue;
         double apart = base->value[i] - finer->value[i];
         if (channel->turn > 0) apart = remainder(apart, channel->turn);
-        share->largest[i] = fmax(share->largest[i], part * fabs(apart));
+        share->largest[i] = fmax(share->largest[i], (channel->sampled && holds ? held : part) * fabs(apart));
     }
 }
 
@@ -100,6 +102,9 @@ static bough_status find(bough_arena *arena, void *self) {
     const double part[BOUGH_SHARES] = {[BOUGH_SHARE_MESH] = x->companion->share,
                                        [BOUGH_SHARE_AIR] = bough_coarser_share(scene, scene),
                                        [BOUGH_SHARE_TIME] = bough_coarser_time_share(scene)};
+    // what is held longer than in the run is held so in two of the further runs as well
+    const double held[BOUGH_SHARES] = {part[BOUGH_SHARE_MESH], x->companion->share_held,
+                                       part[BOUGH_SHARE_TIME]};
     other_run base, finer[BOUGH_SHARES] = {{0}};
     bough_status status = build(arena, x->companion->run, BOUGH_COARSER_ALL, &base);
     if (bough_is_ok(&status)) build_finer(arena, x, finer);
@@ -114,7 +119,7 @@ static bough_status find(bough_arena *arena, void *self) {
             if (!finer[k].simulation || share->unknown[0]) continue;
             bough_status own = advance(&finer[k], base.simulation->master->time);
             if (bough_is_ok(&own))
-                compare(&base, &finer[k], part[k], share);
+                compare(&base, &finer[k], part[k], held[k], share);
             else
                 unknown(share, "%.150s", own.message);
         }
@@ -269,12 +274,13 @@ static bough_status judge_excess(const bough_companion *c, const bough_error_sha
     return failed;
 }
 
-// What each part adds to the error, over the accuracy: the part of which the settings lead one to expect most
-// is taken for the whole, the others in proportion.
+// What each part may add to the error, over the accuracy: what the settings lead one to expect, at most the
+// whole. Where that is less than the error, all parts are larger in proportion.
 static void find_parts(const bough_scene_expectation *expected, double factor, double part[BOUGH_SHARES]) {
     double largest = 0;
     for (int k = 0; k < BOUGH_SHARES; k++) largest = fmax(largest, expected->error[k]);
-    for (int k = 0; k < BOUGH_SHARES; k++) part[k] = factor * expected->error[k] / largest;
+    for (int k = 0; k < BOUGH_SHARES; k++)
+        part[k] = fmin(factor, expected->error[k] * fmax(1, factor / largest));
 }
 
 // The settings that bring each part to half the accuracy: keys that the scene names, and the accuracy for
