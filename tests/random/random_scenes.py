@@ -62,7 +62,7 @@ class Run:
             self.code, self.said = done.returncode, done.stderr.strip()
         except subprocess.TimeoutExpired:
             self.code, self.said = -24, "timeout"
-        self.hung = self.code in (-24, -9)
+        self.hung = self.code in (-24, -9, 130)  # 130: it ends itself at the limit
         self.names, self.units, self.rows, self.estimate, self.summary = [], [], [], {}, {}
         if self.code in (0, 3):
             self.read(folder)

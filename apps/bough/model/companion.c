@@ -164,7 +164,8 @@ static void watch(bough_companion *c) {
         if (!bough_error_is_motion(&c->channels->channel[i])) continue;
         double own = range_of(c, i, c->low, c->high), other = range_of(c, i, c->other_low, c->other_high);
         double apart = fabs(difference(&c->channels->channel[i], c->value[i], c->other[i]));
-        if (!(apart > several * fmin(own, other)) || !bough_error_counts(c, i)) continue;
+        double range = fmax(fmin(own, other), c->rest / c->channels->channel[i].si);
+        if (!(apart > several * range) || !bough_error_counts(c, i)) continue;
         run = run || own > several * other;
         companion = companion || other > several * own;
     }

@@ -21,7 +21,8 @@ typedef struct bough_companion {
     double share_held;                   // the same of a channel whose last sample the companion holds
     char reason[BOUGH_COMPANION_REASON]; // why errors are not known, or not any more; "": they are
     double from;                         // when they ceased to be [s]
-    long compared;                       // times
+    double rest;                    // largest value, up to 1, of a scene at rest, in SI units; 0: it moves
+    long compared;                  // times
     double *value, *other;          // (channels->count) at the last of them, of the run and of the companion
     double *error;                  // (channels->count) largest so far, in the channels' units
     double *low, *high;             // (channels->count) range of the run

@@ -38,7 +38,8 @@ double bough_error_range(const bough_companion *c, int channel) {
         range = fmax(range, own_range(c, i));
         value = fmax(value, largest_value(c, i));
     }
-    return is_velocity(&list[channel]) ? fmax(range, least_share * value) : range;
+    if (is_velocity(&list[channel])) range = fmax(range, least_share * value);
+    return bough_error_is_motion(&list[channel]) ? fmax(range, c->rest / list[channel].si) : range;
 }
 
 double bough_error_relative(const bough_companion *c, int channel, double error) {
@@ -80,6 +81,16 @@ static double largest_motion(const bough_companion *c) {
         largest = fmax(largest, fmax(value, channel->si * own_range(c, i)));
     }
     return largest;
+}
+
+// Of a scene in which nothing moves by more than rounding, so that errors have no range: its values.
+static double size_at_rest(const bough_companion *c) {
+    double size = largest_motion(c);
+    for (int i = 0; i < c->channels->count; i++) {
+        const bough_channel *channel = &c->channels->channel[i];
+        if (bough_error_is_motion(channel) && channel->si * own_range(c, i) > rounding * size) return 0;
+    }
+    return size;
 }
 
 bool bough_error_counts(const bough_companion *c, int i) {
@@ -137,6 +148,7 @@ void bough_error_size(const bough_companion *c, int channel, char text[BOUGH_ERR
 
 void bough_error_notice(bough_companion *c, double t) {
     double accuracy = c->run->scene->simulation.accuracy;
+    c->rest = size_at_rest(c);
     for (int i = 0; i < c->channels->count; i++) {
         if (c->noticed[i] < 0 && !(c->error[i] <= accuracy * bough_error_range(c, i))) c->noticed[i] = t;
     }

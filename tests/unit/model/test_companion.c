@@ -249,6 +249,34 @@ static int worst_of(int n, const row *rows) {
     return worst_in(n, rows, words);
 }
 
+// A scene that stays in equilibrium has no range: an error of a hundred-thousandth of its size is small.
+TEST(errors_of_a_scene_at_rest_are_judged_by_its_size) {
+    bough_arena *arena = bough_arena_create();
+    bough_channels channels = bough_channels_start(arena);
+    bough_scene scene = {.simulation.accuracy = 0.005};
+    bough_simulation run = {.scene = &scene};
+    double low[] = {0.9, 0}, high[] = {0.9 + 1.2e-5, 3e-9}, noticed[] = {-1, -1};
+    double other_low[] = {0.9, 0}, other_high[] = {0.9, 1e-13}, error[] = {1.2e-5, 3e-9};
+    bough_companion c = {.run = &run,
+                         .channels = &channels,
+                         .compared = 1,
+                         .low = low,
+                         .high = high,
+                         .other_low = other_low,
+                         .other_high = other_high,
+                         .error = error,
+                         .noticed = noticed};
+    bough_channels_group(&channels, NULL, NULL);
+    bough_channels_add(&channels, "m", "TipZ");
+    bough_channels_add(&channels, "deg", "Pos");
+    bough_error_notice(&c, 1);
+    check_near(bough_error_verdict_of(&c, true, c.error).relative, 1.2e-5 / 0.9, 1e-5, 0);
+    other_high[0] = high[0]; // now both move
+    bough_error_notice(&c, 2);
+    check_near(bough_error_verdict_of(&c, true, c.error).relative, 1, 1e-9, 0);
+    bough_arena_destroy(arena);
+}
+
 // A range of rounding is none to measure an error by.
 TEST(an_error_far_beyond_its_range_has_no_figure) {
     char words[BOUGH_ERROR_SIZE];
