@@ -36,16 +36,17 @@ bough_status bough_store_open(const char *folder) {
 
 // -- rows -----------------------------------------------------------------------------------------
 
+// A file of rows that is written, or read in the same order.
+typedef struct rows {
+    FILE *file;
+    bool reads;
+    bool good; // all rows so far are there
+} rows;
+
 // A row of a word and a text, in one line.
 static void put_text(FILE *stream, const char *word, const char *text) {
     fprintf(stream, "%s ", word);
     for (const char *c = text; *c; c++) fputc(*c == '\n' || *c == '\r' ? ' ' : *c, stream);
-    fputc('\n', stream);
-}
-
-static void put(FILE *stream, const char *word, int n, const double *x) {
-    fputs(word, stream);
-    for (int i = 0; i < n; i++) fprintf(stream, " %.17g", x[i]);
     fputc('\n', stream);
 }
 
@@ -54,150 +55,116 @@ static bool take_word(FILE *stream, const char *word) {
     return fscanf(stream, "%31s", found) == 1 && strcmp(found, word) == 0;
 }
 
-static bool take(FILE *stream, const char *word, int n, double *x) {
-    if (!take_word(stream, word)) return false;
-    for (int i = 0; i < n; i++)
-        if (fscanf(stream, "%lf", &x[i]) != 1) return false;
-    return true;
+// A row of a word and n numbers.
+static void move(rows *r, const char *word, int n, double *x) {
+    if (!r->reads) {
+        fputs(word, r->file);
+        for (int i = 0; i < n; i++) fprintf(r->file, " %.17g", x[i]);
+        fputc('\n', r->file);
+        return;
+    }
+    r->good = r->good && take_word(r->file, word);
+    for (int i = 0; i < n && r->good; i++) r->good = fscanf(r->file, "%lf", &x[i]) == 1;
 }
-
-// The place of a bin in the counts.
-static int slot(int64_t bin) { return (int)(((bin % BOUGH_LEVELS) + BOUGH_LEVELS) % BOUGH_LEVELS); }
 
 // -- compared runs --------------------------------------------------------------------------------
 
-static void put_comparison(FILE *f, const bough_study *s, const bough_case *c, const bough_case_result *r) {
-    const bough_coupling_report *k = &r->coupling;
-    const double run[] = {r->time, r->wall, r->cpu, r->warned};
-    const double coupling[] = {k->defect_max, k->defect_rms, k->energy_residual, k->energy_exchanged};
-    put_text(f, "settings", c->settings);
-    put(f, "run", 4, run);
-    put(f, "coupling", 4, coupling);
-    put(f, "errors", s->n_measure, r->error);
-    put(f, "estimates", s->n_measure, r->estimate);
+// The settings are for people.
+static void move_settings(rows *r, const char *settings) {
+    if (!r->reads) put_text(r->file, "settings", settings);
+    for (int byte = 0; r->reads && byte != '\n' && byte != EOF;) byte = fgetc(r->file);
 }
 
-static bool take_comparison(FILE *f, const bough_study *s, bough_case_result *r) {
-    double run[4], c[4];
-    for (int byte = 0; byte != '\n';) // the settings are for people
-        if ((byte = fgetc(f)) == EOF) return false;
-    bool good = take(f, "run", 4, run) && take(f, "coupling", 4, c) &&
-                take(f, "errors", s->n_measure, r->error) && take(f, "estimates", s->n_measure, r->estimate);
-    if (!good) return false;
-    r->time = run[0];
-    r->wall = run[1];
-    r->cpu = run[2];
-    r->warned = run[3] > 0;
-    r->coupling = (bough_coupling_report){c[0], c[1], c[2], c[3]};
-    return true;
+static void move_comparison(rows *r, const bough_study *s, const bough_case *c, bough_case_result *x) {
+    bough_coupling_report *k = &x->coupling;
+    double run[] = {x->time, x->wall, x->cpu, x->warned};
+    double coupling[] = {k->defect_max, k->defect_rms, k->energy_residual, k->energy_exchanged};
+    move_settings(r, c->settings);
+    move(r, "run", 4, run);
+    move(r, "coupling", 4, coupling);
+    move(r, "errors", s->n_measure, x->error);
+    move(r, "estimates", s->n_measure, x->estimate);
+    x->time = run[0], x->wall = run[1], x->cpu = run[2], x->warned = run[3] > 0;
+    *k = (bough_coupling_report){coupling[0], coupling[1], coupling[2], coupling[3]};
 }
 
 // -- statistics -----------------------------------------------------------------------------------
 
-static void put_levels(FILE *f, const char *name, const bough_levels *l) {
-    const double range[] = {l->started, l->exponent, (double)l->low, (double)l->high};
+// The place of a bin in the counts.
+static int slot(int64_t bin) { return (int)(((bin % BOUGH_LEVELS) + BOUGH_LEVELS) % BOUGH_LEVELS); }
+
+// A range of bins from a file that may be damaged.
+static bool take_range(const double range[4], bough_levels *l) {
+    for (int i = 0; i < 4; i++)
+        if (!(fabs(range[i]) < 1e15)) return false;
+    *l = (bough_levels){.started = range[0] > 0,
+                        .exponent = (int)fmax(-9999, fmin(range[1], 9999)),
+                        .low = (int64_t)range[2],
+                        .high = (int64_t)range[3]};
+    return !l->started || (l->high >= l->low && l->high - l->low < BOUGH_LEVELS);
+}
+
+static void move_levels(rows *r, const char *name, bough_levels *l) {
+    double range[] = {l->started, l->exponent, (double)l->low, (double)l->high};
     double inside[BOUGH_LEVELS], crossed[BOUGH_LEVELS];
-    int n = l->started ? (int)(l->high - l->low) + 1 : 0;
+    move(r, name, 4, range);
+    if (r->reads) r->good = r->good && take_range(range, l);
+    int n = r->good && l->started ? (int)(l->high - l->low) + 1 : 0;
     for (int i = 0; i < n; i++) {
         inside[i] = bough_levels_inside(l, l->low + i);
         crossed[i] = bough_levels_crossed(l, l->low + i);
     }
-    put(f, name, 4, range);
-    put(f, "inside", n, inside);
-    put(f, "crossed", n, crossed);
-}
-
-static void put_channel(FILE *f, const bough_study *s, const bough_channel_counts *c) {
-    const bough_sample_statistics *x = &c->statistics;
-    const double statistics[] = {x->n, x->mean, x->squares, x->least, x->most, x->least_at, x->most_at};
-    const double cycles[] = {c->rainflow.cycles, c->rainflow.forced};
-    put(f, "statistics", 7, statistics);
-    if (!s->is.weighted) return;
-    put(f, "cycles", 2, cycles);
-    put(f, "damage", s->n_slope, c->rainflow.damage);
-    put_levels(f, "ranges", &c->rainflow.ranges);
-    put_levels(f, "levels", &c->levels);
-    put(f, "least", s->n_channel, c->at_least);
-    put(f, "most", s->n_channel, c->at_most);
-}
-
-static void put_error(FILE *f, const bough_study *s, const bough_load_error *e) {
-    const double extremes[] = {e->least, e->most};
-    put(f, "error", 2, extremes);
-    put(f, "damage", s->n_slope, e->damage);
-    put(f, "larger", s->n_slope, e->larger);
-}
-
-static void put_statistics(FILE *f, const bough_study *s, const bough_case_result *r) {
-    const double run[] = {r->time, r->counted, r->cpu, r->wall, r->counts.broken, r->has_companion};
-    put(f, "run", 6, run);
-    for (int i = 0; bough_is_ok(&r->outcome) && i < s->n_channel; i++) {
-        put_channel(f, s, &r->counts.channel[i]);
-        if (r->has_companion) put_error(f, s, &r->load_error[i]);
-    }
-}
-
-static bool take_levels(FILE *f, const char *name, bough_levels *l) {
-    double range[4], inside[BOUGH_LEVELS], crossed[BOUGH_LEVELS];
-    memset(l, 0, sizeof *l);
-    if (!take(f, name, 4, range)) return false;
-    for (int i = 0; i < 4; i++)
-        if (!(fabs(range[i]) < 1e15)) return false;
-    l->started = range[0] > 0;
-    l->exponent = (int)fmax(-9999, fmin(range[1], 9999));
-    l->low = (int64_t)range[2];
-    l->high = (int64_t)range[3];
-    if (l->started && (l->high < l->low || l->high - l->low >= BOUGH_LEVELS)) return false;
-    int n = l->started ? (int)(l->high - l->low) + 1 : 0;
-    if (!take(f, "inside", n, inside) || !take(f, "crossed", n, crossed)) return false;
-    for (int i = 0; i < n; i++) {
+    move(r, "inside", n, inside);
+    move(r, "crossed", n, crossed);
+    for (int i = 0; i < n && r->reads; i++) {
         l->inside[slot(l->low + i)] = inside[i];
         l->crossed[slot(l->low + i)] = crossed[i];
     }
-    return true;
 }
 
-static bool take_channel(FILE *f, const bough_study *s, bough_channel_counts *c) {
-    double x[7], cycles[2];
-    if (!take(f, "statistics", 7, x)) return false;
-    c->statistics = (bough_sample_statistics){x[0], x[1], x[2], x[3], x[4], x[5], x[6]};
-    if (!s->is.weighted) return true;
-    if (!take(f, "cycles", 2, cycles)) return false;
-    c->rainflow.cycles = cycles[0];
-    c->rainflow.forced = cycles[1];
-    return take(f, "damage", s->n_slope, c->rainflow.damage) &&
-           take_levels(f, "ranges", &c->rainflow.ranges) && take_levels(f, "levels", &c->levels) &&
-           take(f, "least", s->n_channel, c->at_least) && take(f, "most", s->n_channel, c->at_most);
+static void move_channel(rows *r, const bough_study *s, bough_channel_counts *c) {
+    double cycles[] = {c->rainflow.cycles, c->rainflow.forced};
+    move(r, "statistics", sizeof c->statistics / sizeof(double), &c->statistics.n); // numbers only
+    if (!s->is.weighted) return;
+    move(r, "cycles", 2, cycles);
+    c->rainflow.cycles = cycles[0], c->rainflow.forced = cycles[1];
+    move(r, "damage", s->n_slope, c->rainflow.damage);
+    move_levels(r, "ranges", &c->rainflow.ranges);
+    move_levels(r, "levels", &c->levels);
+    move(r, "least", s->n_channel, c->at_least);
+    move(r, "most", s->n_channel, c->at_most);
 }
 
-static bool take_error(FILE *f, const bough_study *s, bough_load_error *e) {
-    double extremes[2];
-    if (!take(f, "error", 2, extremes)) return false;
-    e->least = extremes[0];
-    e->most = extremes[1];
-    return take(f, "damage", s->n_slope, e->damage) && take(f, "larger", s->n_slope, e->larger);
+static void move_error(rows *r, const bough_study *s, bough_load_error *e) {
+    double extremes[] = {e->least, e->most};
+    move(r, "error", 2, extremes);
+    e->least = extremes[0], e->most = extremes[1];
+    move(r, "damage", s->n_slope, e->damage);
+    move(r, "larger", s->n_slope, e->larger);
 }
 
-static bool take_statistics(FILE *f, const bough_study *s, bough_case_result *r) {
-    double run[6];
-    if (!take(f, "run", 6, run)) return false;
-    r->time = run[0];
-    r->counted = run[1];
-    r->cpu = run[2];
-    r->wall = run[3];
-    r->counts.broken = run[4];
-    r->has_companion = run[5] > 0;
-    for (int i = 0; bough_is_ok(&r->outcome) && i < s->n_channel; i++) {
-        if (!take_channel(f, s, &r->counts.channel[i])) return false;
-        if (r->has_companion && !take_error(f, s, &r->load_error[i])) return false;
+static void move_statistics(rows *r, const bough_study *s, bough_case_result *x) {
+    double run[] = {x->time, x->counted, x->cpu, x->wall, x->counts.broken, x->has_companion};
+    move(r, "run", 6, run);
+    x->time = run[0], x->counted = run[1], x->cpu = run[2], x->wall = run[3];
+    x->counts.broken = run[4], x->has_companion = run[5] > 0;
+    for (int i = 0; bough_is_ok(&x->outcome) && i < s->n_channel && r->good; i++) {
+        move_channel(r, s, &x->counts.channel[i]);
+        if (x->has_companion) move_error(r, s, &x->load_error[i]);
     }
-    return true;
+}
+
+static void move_result(rows *r, const bough_study *s, const bough_case *c, bough_case_result *x) {
+    if (s->is.compared)
+        move_comparison(r, s, c, x);
+    else
+        move_statistics(r, s, x);
 }
 
 // -- files ----------------------------------------------------------------------------------------
 
 bough_status bough_store_write(const char *folder, const bough_study *s, const bough_case *c,
-                               const bough_case_result *r) {
+                               bough_case_result *r) {
     case_name name;
     char path[BOUGH_PATH_MAX], code[12];
     FILE *f;
@@ -208,10 +175,7 @@ bough_status bough_store_write(const char *folder, const bough_study *s, const b
     fprintf(f, "case %s fingerprint %016" PRIx64 "\noutcome ", name, c->fingerprint);
     snprintf(code, sizeof code, "%d", (int)r->outcome.code);
     put_text(f, code, bough_is_ok(&r->outcome) ? "" : r->outcome.message);
-    if (s->is.compared)
-        put_comparison(f, s, c, r);
-    else
-        put_statistics(f, s, r);
+    move_result(&(rows){.file = f, .good = true}, s, c, r);
     fputs("end\n", f);
     return bough_folder_commit(path, f);
 }
@@ -252,7 +216,9 @@ bough_status bough_store_read(const char *folder, const bough_study *s, const bo
     bough_status status = open_case(folder, name, c, &r->outcome, &f);
     r->done = false;
     if (!f) return status;
-    r->done = (s->is.compared ? take_comparison(f, s, r) : take_statistics(f, s, r)) && take_word(f, "end");
+    rows file = {f, true, true};
+    move_result(&file, s, c, r);
+    r->done = file.good && take_word(f, "end");
     fclose(f);
     if (r->done) return status;
     return bough_fail(BOUGH_IO,

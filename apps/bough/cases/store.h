@@ -15,7 +15,7 @@
 bough_status bough_store_open(const char *folder);
 
 bough_status bough_store_write(const char *folder, const bough_study *study, const bough_case *c,
-                               const bough_case_result *result);
+                               bough_case_result *result);
 
 // Reads a result, with statistics into memory of bough_case_take. result->done is false when there is none or
 // it is of other input; BOUGH_IO when the file is damaged.
