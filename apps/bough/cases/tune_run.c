@@ -23,12 +23,15 @@ static bool is_kept(const bough_scene *scene, int body) {
     return false;
 }
 
+// Fewer save little, and errors do not fall with the order of the mesh.
+enum { FEW_SEGMENTS = 10 };
+
 int bough_tune_segments(const bough_scene *scene, int body, const bough_tune_settings *settings) {
     const bough_scene_body *b = &scene->body[body];
     if (!has_mesh(b)) return 0;
     if (settings->own || is_kept(scene, body)) return b->rod.n_segment;
     double n = settings->mesh * b->rod.n_segment, lanes = n > 12 ? 4 : 2; // segments are worked on in lanes
-    return (int)fmax(lanes * round(n / lanes), 2);
+    return (int)fmax(lanes * round(n / lanes), fmin(b->rod.n_segment, FEW_SEGMENTS));
 }
 
 static void apply(const bough_tune_state *t, const bough_tune_settings *s, bough_scene *scene) {
