@@ -181,9 +181,9 @@ BOUGH_INLINE bool is_low(bool brake, const wake w, double c, double s, double ax
 
 // The part of the thrust by momentum theory, a/(k |1 − a|): the swirl fades with it beyond a_c and where a
 // > 1.
-BOUGH_INLINE double swirl_share(bool brake, const wake w, double c, double s, double axial) {
-    double s2 = s * s, share = fabs(axial - s2) / c; // a = 1 − sin²φ/axial
-    return is_low(brake, w, c, s, axial) ? 1 : share;
+BOUGH_INLINE double swirl_fraction(bool brake, const wake w, double c, double s, double axial) {
+    double s2 = s * s, fraction = fabs(axial - s2) / c; // a = 1 − sin²φ/axial
+    return is_low(brake, w, c, s, axial) ? 1 : fraction;
 }
 
 // The same in a skewed wake, and of the mass flow that it adds.
@@ -208,7 +208,7 @@ BOUGH_INLINE balance balance_of(bough_high_thrust high_thrust, bool brake, bool 
     } else {
         axial = axial_smooth(skewed, brake, p.wake, loading, w.s, w.loss);
         swirl *= skewed ? swirl_skewed(brake, p.wake, loading, w.s, axial, w.loss)
-                        : swirl_share(brake, p.wake, loading, w.s, axial);
+                        : swirl_fraction(brake, p.wake, loading, w.s, axial);
     }
     double left = w.s * w.c - swirl;
     return (balance){axial - p.slope * left, axial, left};

@@ -26,9 +26,9 @@ void bough_inflow_start(bough_inflow_state *state, const double sought[2]) {
 //     v = q₀ + s (t − (1 − k) τ₁ − τ₂) + C τ₁/(τ₁ − τ₂) exp(−t/τ₁) + D exp(−t/τ₂),
 // C and D from the values at t = 0; τ₂ is between 0.13 and 0.39 τ₁.
 void bough_inflow_advance(bough_inflow_state *state, const double sought[2], double step, double tau1,
-                          double share) {
+                          double fraction) {
     if (step > 0) {
-        double s = bough_clamp(share, 0, 1), tau2 = (0.39 - 0.26 * s * s) * tau1;
+        double s = bough_clamp(fraction, 0, 1), tau2 = (0.39 - 0.26 * s * s) * tau1;
         double slow_left = exp(-step / tau1), fast_left = exp(-step / tau2);
         for (int c = 0; c < 2; c++) {
             double rate = (sought[c] - state->sought[c]) / step;
@@ -54,7 +54,7 @@ void bough_inflow_follow(const bough_inflow_clock *clock, double step, const dou
         bough_inflow_start(state, sought);
         return;
     }
-    bough_inflow_advance(state, sought, step, clock->tau, station->share);
+    bough_inflow_advance(state, sought, step, clock->tau, station->fraction);
     *axial = fabs(inflow[0]) < slow ? 0 : bough_clamp(state->reached[0] / inflow[0], -1, 1.5);
     *tangential = fabs(inflow[1]) < slow ? 0 : bough_clamp(state->reached[1] / inflow[1], -1, 1);
 }

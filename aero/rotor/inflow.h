@@ -35,9 +35,9 @@ double bough_inflow_time(const bough_inflow_def *def, double axial, double radiu
 void bough_inflow_start(bough_inflow_state *state, const double sought[2]);
 
 // Advances by `step` [s], during which q changes linearly to `sought`: the exact solution for any step.
-// `share`: the station's radius divided by the rotor's, which gives τ₂ from τ₁.
+// `fraction`: the station's radius divided by the rotor's, which gives τ₂ from τ₁.
 void bough_inflow_advance(bough_inflow_state *state, const double sought[2], double step, double tau1,
-                          double share);
+                          double fraction);
 
 // Common to all stations of a rotor.
 typedef struct bough_inflow_clock {
@@ -48,7 +48,7 @@ typedef struct bough_inflow_clock {
 
 typedef struct bough_inflow_station {
     bough_inflow_state state;
-    double share; // radius over the rotor's
+    double fraction; // radius over the rotor's
 } bough_inflow_station;
 
 // Replaces the inductions of the momentum balance by the delayed ones, a `step` [s] after the last sample;

@@ -110,7 +110,7 @@ void bough_polar_build(bough_arena *arena, const bough_polar_def *def, bough_pol
                            .n_bin = N_BIN,
                            .bin_per_rad = N_BIN / circle,
                            .bin = bin,
-                           .wake_share = {k[0], k[1]},
+                           .wake_weight = {k[0], k[1]},
                            .wake_rate = {k[2], k[3]}};
     fill_bins(polar, bin);
     find_range(def, polar);
@@ -124,7 +124,7 @@ static int ascending(const void *a, const void *b) {
     return (x > y) - (x < y);
 }
 
-void bough_polar_blend(bough_arena *arena, const bough_polar *a, const bough_polar *b, double share,
+void bough_polar_blend(bough_arena *arena, const bough_polar *a, const bough_polar *b, double weight,
                        bough_polar *polar) {
     int most = a->n + b->n, n = 0;
     double *angle = bough_arena_doubles(arena, (size_t)most);
@@ -138,14 +138,14 @@ void bough_polar_blend(bough_arena *arena, const bough_polar *a, const bough_pol
         bough_coefficients x = bough_polar_at(a, angle[k]), y = bough_polar_at(b, angle[k]);
         double *to = row + 4 * n++;
         to[0] = angle[k] * (180 / BOUGH_PI);
-        to[1] = (1 - share) * x.lift + share * y.lift;
-        to[2] = (1 - share) * x.drag + share * y.drag;
-        to[3] = (1 - share) * x.moment + share * y.moment;
+        to[1] = (1 - weight) * x.lift + weight * y.lift;
+        to[2] = (1 - weight) * x.drag + weight * y.drag;
+        to[3] = (1 - weight) * x.moment + weight * y.moment;
     }
     double indicial[4];
     for (int i = 0; i < 2; i++) {
-        indicial[i] = (1 - share) * a->wake_share[i] + share * b->wake_share[i];
-        indicial[2 + i] = (1 - share) * a->wake_rate[i] + share * b->wake_rate[i];
+        indicial[i] = (1 - weight) * a->wake_weight[i] + weight * b->wake_weight[i];
+        indicial[2 + i] = (1 - weight) * a->wake_rate[i] + weight * b->wake_rate[i];
     }
     bough_polar_def def = {.name = "blend", .n = n, .row = row, .indicial = indicial};
     bough_polar_build(arena, &def, polar);

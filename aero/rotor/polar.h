@@ -35,16 +35,16 @@ typedef struct bough_polar {
     int most;         // knots within a bin
     double low, high; // range of its rows, high at most 2π above low [rad]
     // Of attached flow; slope 0: the polar has no lift.
-    double slope;                       // the steepest line through zero lift that touches the polar [1/rad]
-    double zero_lift;                   // where the lift grows through zero, nearest to 0 [rad]
-    double wake_share[2], wake_rate[2]; // A and b of the indicial lift [-]
+    double slope;                        // the steepest line through zero lift that touches the polar [1/rad]
+    double zero_lift;                    // where the lift grows through zero, nearest to 0 [rad]
+    double wake_weight[2], wake_rate[2]; // A and b of the indicial lift [-]
 } bough_polar;
 
 // From rows of finite numbers whose angles increase over 360 degrees at most.
 void bough_polar_build(bough_arena *arena, const bough_polar_def *def, bough_polar *polar);
 
-// The mixture (1 − share)·a + share·b of two linear polars, exactly: with the knots of both.
-void bough_polar_blend(bough_arena *arena, const bough_polar *a, const bough_polar *b, double share,
+// The mixture (1 − weight)·a + weight·b of two linear polars, exactly: with the knots of both.
+void bough_polar_blend(bough_arena *arena, const bough_polar *a, const bough_polar *b, double weight,
                        bough_polar *polar);
 
 // Makes a linear polar smooth: continuous slopes, between knots as monotone as the knots are.

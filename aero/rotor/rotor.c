@@ -75,9 +75,9 @@ static double mean_induction(const bough_rotor *rotor, const bough_rotor_data *d
         for (int j = 1; j + 1 < n; j++) { // at the ends the loss factor leaves no load
             const double *radius = data->scratch->blade[b].radius + j;
             // annulus of a station
-            double share = radius[0] * (radius[1] - radius[-1]);
-            induced += share * data->memory.station[b * n + j].state.sought[0];
-            area += share;
+            double annulus = radius[0] * (radius[1] - radius[-1]);
+            induced += annulus * data->memory.station[b * n + j].state.sought[0];
+            area += annulus;
         }
     }
     return area > 0 && fabs(wind) > 1e-3 ? induced / area / wind : 0;

@@ -2,7 +2,7 @@
 // the aero stations, mapped to the vertices of the structural mesh conserving force and moment.
 //
 // Axes. Ground: x downwind, z up. Blade root: z along the span, x flapwise (downwind at zero
-// pitch), y edgewise (towards the trailing edge). The rotor turns about +shaft (downwind), that
+// pitch), y edgewise (towards the trailing edge). The rotor rotates about +shaft (downwind), that
 // is clockwise seen from upwind. The rotor is sampled at one time; holding and ramping the loads
 // between samples is the caller's.
 #ifndef BOUGH_AERO_ROTOR_ROTOR_H

@@ -218,8 +218,8 @@ static void take_inflow(bough_arena *arena, const bough_rotor *rotor, bough_roto
     memory->station = bough_arena_take(arena, (size_t)n * sizeof *memory->station);
     for (int k = 0; k < n; k++) {
         double tip_factor = rotor->station.tip_factor[k % rotor->n_station];
-        double share = 1 / (1 + 2 * tip_factor / rotor->n_blade); // of B (R − r)/(2 r)
-        memory->station[k] = (bough_inflow_station){.share = share};
+        double fraction = 1 / (1 + 2 * tip_factor / rotor->n_blade); // of B (R − r)/(2 r)
+        memory->station[k] = (bough_inflow_station){.fraction = fraction};
     }
 }
 

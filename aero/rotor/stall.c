@@ -54,7 +54,7 @@ static void unwind(const bough_polar *polar, bough_stall_state *s) {
     s->alpha -= shift;
     s->pressure_sought -= shift;
     s->pressure -= shift;
-    for (int i = 0; i < 2; i++) s->wake[i] -= polar->wake_share[i] * shift * s->speed;
+    for (int i = 0; i < 2; i++) s->wake[i] -= polar->wake_weight[i] * shift * s->speed;
 }
 
 static double separation_at(const bough_polar *polar, double alpha) {
@@ -69,7 +69,7 @@ static void start(const bough_polar *polar, double alpha, double speed, bough_st
         .started = 1,
         .speed = speed,
         .alpha = alpha,
-        .wake = {polar->wake_share[0] * speed * alpha, polar->wake_share[1] * speed * alpha},
+        .wake = {polar->wake_weight[0] * speed * alpha, polar->wake_weight[1] * speed * alpha},
         .pressure_sought = alpha,
         .pressure = alpha,
         .separation_sought = f,
@@ -78,7 +78,7 @@ static void start(const bough_polar *polar, double alpha, double speed, bough_st
 
 // α_E of theory (89).
 static double effective(const bough_polar *polar, const bough_stall_state *s) {
-    double own = 1 - polar->wake_share[0] - polar->wake_share[1];
+    double own = 1 - polar->wake_weight[0] - polar->wake_weight[1];
     return own * s->alpha + (s->wake[0] + s->wake[1]) / s->speed;
 }
 
@@ -87,7 +87,7 @@ static void advance(const bough_polar *polar, double semi_chords, double alpha, 
     double next = s->alpha + remainder(alpha - s->alpha, circle);
     double before = s->speed * s->alpha, after = speed * next;
     for (int i = 0; i < 2; i++) {
-        s->wake[i] = lagged(s->wake[i], polar->wake_share[i] * before, polar->wake_share[i] * after,
+        s->wake[i] = lagged(s->wake[i], polar->wake_weight[i] * before, polar->wake_weight[i] * after,
                             polar->wake_rate[i] * semi_chords);
     }
     s->speed = speed;
@@ -129,7 +129,7 @@ static bough_coefficients mixture(bough_coefficients a, bough_coefficients b, do
 }
 
 // Weight of the dynamic coefficients against the static polar.
-static double dynamic_share(double alpha) {
+static double dynamic_weight(double alpha) {
     return bough_clamp((faded - fabs(alpha)) / (faded - fading), 0, 1);
 }
 
@@ -153,23 +153,23 @@ bough_coefficients bough_stall_advance(const bough_polar *polar, double chord, b
         double semi_chords = step * (state->speed + speed) / chord;
         advance(polar, semi_chords, late, speed, BOUGH_PI * downwash / polar->slope, state);
     }
-    double share = dynamic_share(alpha);
-    if (share == 0) return fixed;
+    double weight = dynamic_weight(alpha);
+    if (weight == 0) return fixed;
     bough_coefficients k = dynamic(polar, state->separation, effective(polar, state), late, downwash);
-    return mixture(fixed, k, share);
+    return mixture(fixed, k, weight);
 }
 
 // -- slopes ---------------------------------------------------------------------------------------
 
 // ∂α_E/∂α within an advance.
-static double prompt_share(const bough_polar *polar, double semi_chords) {
-    double share = 1;
+static double prompt_fraction(const bough_polar *polar, double semi_chords) {
+    double fraction = 1;
     // theory (89): the shed wake, driven by U α
     for (int i = 0; i < 2; i++) {
         double h = polar->wake_rate[i] * semi_chords;
-        share -= polar->wake_share[i] * (h > 1e-6 ? -expm1(-h) / h : 1);
+        fraction -= polar->wake_weight[i] * (h > 1e-6 ? -expm1(-h) / h : 1);
     }
-    return share;
+    return fraction;
 }
 
 static bough_coefficients quotient(bough_coefficients a, bough_coefficients b, double step) {
@@ -180,25 +180,25 @@ static bough_coefficients quotient(bough_coefficients a, bough_coefficients b, d
 bough_stall_slopes bough_stall_slopes_of(const bough_polar *polar, double chord, bough_stall_inflow inflow,
                                          double step, const bough_stall_state *state) {
     const double d = 1e-4; // [rad]
-    double alpha = remainder(inflow.alpha, circle), share = dynamic_share(alpha);
+    double alpha = remainder(inflow.alpha, circle), weight = dynamic_weight(alpha);
     bough_stall_slopes slopes = {.angle = bough_polar_slope(polar, alpha)};
-    if (state->started == 0 || share == 0) return slopes;
+    if (state->started == 0 || weight == 0) return slopes;
     double downwash = downwash_of(chord, inflow), late = alpha + downwash, x = state->separation;
-    double angle = effective(polar, state), prompt = prompt_share(polar, 2 * step * inflow.speed / chord);
+    double angle = effective(polar, state), prompt = prompt_fraction(polar, 2 * step * inflow.speed / chord);
     bough_coefficients k = dynamic(polar, x, angle, late, downwash);
     bough_coefficients more = dynamic(polar, x, angle + prompt * d, late + d, downwash);
     bough_coefficients rotated = dynamic(polar, x, angle + prompt * d, late + d, downwash + d);
-    slopes.angle = mixture(slopes.angle, quotient(more, k, d), share);
-    if (share < 1) { // the weight depends on the angle, too
+    slopes.angle = mixture(slopes.angle, quotient(more, k, d), weight);
+    if (weight < 1) { // the weight depends on the angle, too
         bough_coefficients fixed = bough_polar_at(polar, alpha);
         double fading_rate = -copysign(1 / (faded - fading), alpha);
-        bough_coefficients by_share = quotient(k, fixed, 1 / fading_rate);
-        slopes.angle.lift += by_share.lift;
-        slopes.angle.drag += by_share.drag;
-        slopes.angle.moment += by_share.moment;
+        bough_coefficients by_weight = quotient(k, fixed, 1 / fading_rate);
+        slopes.angle.lift += by_weight.lift;
+        slopes.angle.drag += by_weight.drag;
+        slopes.angle.moment += by_weight.moment;
     }
     bool limited = fabs(downwash) >= 0.5;
-    double quarter = limited ? 0 : share * chord / (2 * inflow.speed);
+    double quarter = limited ? 0 : weight * chord / (2 * inflow.speed);
     slopes.rate = mixture((bough_coefficients){0}, quotient(rotated, k, d), quarter);
     return slopes;
 }

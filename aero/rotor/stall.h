@@ -17,7 +17,7 @@ typedef enum bough_stall_kind {
 
 // Trailing-edge separation point in [0, 1], 1 attached, and the lift of fully separated flow, of
 // which the static lift is made: Cl = f·slope·(α − α₀) + (1 − f)·separated. A polar of slope 0
-// has no lift to speak of and is always static.
+// has no lift and is always static.
 void bough_stall_split(const bough_polar *polar, double alpha, double *f, double *separated);
 
 // The flow at a section.

@@ -1,6 +1,6 @@
 // Undisturbed wind: one direction everywhere, sheared over the height, its speed constant or a
 // table over time, when the whole field changes speed at once; or a file of the field; or a condition
-// of IEC 61400-1. Any of them may be inclined and turn with the height.
+// of IEC 61400-1. Any of them may be inclined and veer with the height.
 #ifndef BOUGH_AERO_WIND_WIND_H
 #define BOUGH_AERO_WIND_WIND_H
 
@@ -37,14 +37,14 @@ typedef struct bough_wind_def {
     int n_time;
     const double *time;          // (n_time) increasing [s]
     const double *speed_at_time; // (n_time) at the reference height [m/s]
-    // In place of all but the direction, about which the file's wind is turned.
+    // In place of all but the direction, about which the wind of the file is rotated.
     bough_wind_source source;
     const char *file;
     double reference_length;   // of the linear shears of a hub file [m]
     double until;              // how long a box must last [s]
     bough_wind_iec_def iec;    // source STANDARD
     const bough_wind_box *box; // of another wind of the same definition, shared; NULL: one of its own
-    // Of any source: the whole wind inclined upwards, and turned about the vertical with the height,
+    // Of any source: the whole wind inclined upwards, and rotated about the vertical with the height,
     // clockwise seen from above, about that of the reference or of a box's hub.
     double upflow; // [rad]
     double veer;   // [rad/m]

@@ -68,7 +68,7 @@ double bough_wind_iec_deviation(const bough_wind_iec_def *def);
 // Longitudinal turbulence scale Λ₁ at a height [m].
 double bough_wind_iec_scale(double height);
 
-// A condition without turbulence, ready to be asked.
+// A condition without turbulence, at its start.
 typedef struct bough_wind_iec {
     bough_wind_iec_def def;
     double speed;  // at hub height [m/s]

@@ -86,7 +86,7 @@ double bough_turbulence_spectrum(const bough_wind_iec_def *d, int component, dou
 }
 
 // Variance below f, over all variance: the integral of the spectrum.
-static double share_below(double f, double scale) { return 1 - pow(1 + 6 * f * scale, -2. / 3); }
+static double fraction_below(double f, double scale) { return 1 - pow(1 + 6 * f * scale, -2. / 3); }
 
 double bough_turbulence_coherence(const bough_wind_iec_def *d, double distance, double f) {
     double waves = f * distance / bough_wind_iec_speed(d);
@@ -144,12 +144,12 @@ static inline sine_cosine random_wave(uint64_t stream, int wave) {
 }
 
 // Fraction of the variance up to a wave, and of the frequencies that sampling folds onto it.
-static double share_up_to(const maker *m, double wave, double scale) {
-    double rate = 2 * (m->n_wave + 1) * m->step, f = wave * m->step, share = share_below(f, scale);
+static double fraction_up_to(const maker *m, double wave, double scale) {
+    double rate = 2 * (m->n_wave + 1) * m->step, f = wave * m->step, fraction = fraction_below(f, scale);
     for (int k = 1; k <= ALIASES; k++) {
-        share += share_below(k * rate + f, scale) - share_below(k * rate - f, scale);
+        fraction += fraction_below(k * rate + f, scale) - fraction_below(k * rate - f, scale);
     }
-    return share;
+    return fraction;
 }
 
 static double *amplitude_of(const maker *m, int component) {
@@ -160,10 +160,10 @@ static double *amplitude_of(const maker *m, int component) {
 // aliases.
 static void set_amplitudes(maker *m, int component) {
     double deviation = deviation_of(m->def, component), scale = time_scale(m->def, component);
-    double rest = (1 - share_below((2 * ALIASES + 1) * (m->n_wave + 1) * m->step, scale)) / m->n_wave;
-    double below = share_up_to(m, 0, scale);
+    double rest = (1 - fraction_below((2 * ALIASES + 1) * (m->n_wave + 1) * m->step, scale)) / m->n_wave;
+    double below = fraction_up_to(m, 0, scale);
     for (int i = 1; i <= m->n_wave; i++) {
-        double above = share_up_to(m, i == m->n_wave ? i + 1 : i + 0.5, scale);
+        double above = fraction_up_to(m, i == m->n_wave ? i + 1 : i + 0.5, scale);
         amplitude_of(m, component)[i] = deviation * sqrt(0.5 * (above - below + rest));
         below = above;
     }

@@ -16,7 +16,7 @@ BOUGH_INLINE double lane_round(double x) {
     return (x + big) - big;
 }
 
-// An angle less whole turns, in [−π, π].
+// An angle less multiples of 2π, in [−π, π].
 BOUGH_INLINE double lane_remainder(double x) { return x - 2 * BOUGH_PI * lane_round(x / (2 * BOUGH_PI)); }
 
 BOUGH_INLINE double lane_clamp(double x, double low, double high) {

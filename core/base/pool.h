@@ -31,7 +31,7 @@ int bough_pool_default(int otherwise);
 // tasks of a list are then done one after the other, without memory or cost.
 bough_pool *bough_pool_create(bough_arena *arena, int threads);
 
-// The caller included: as asked for, and after a region as many as OpenMP has given it, for instance
+// The caller included: as many as requested, and after a region as many as OpenMP has given it, for instance
 // one inside a parallel region of the application.
 int bough_pool_threads(const bough_pool *pool);
 

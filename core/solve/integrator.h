@@ -89,7 +89,7 @@ typedef struct bough_integrator_ops {
     // was changed, or f jumps at *t.
     bough_status (*advance)(void *self, double *t, double pause, double t1, bool restart, double *y);
     void (*statistics)(const void *self, bough_statistics *sum); // added to sum
-    // The memory that the next step depends on, apart from t and y. NULL: the method restarts.
+    // The memory that the next step depends on, besides t and y. NULL: the method restarts.
     void (*transfer)(void *self, bough_snapshot *s);
 } bough_integrator_ops;
 

@@ -106,7 +106,7 @@ static double remainder_share(double contraction) {
     return contraction < 0.5 ? contraction / (1 - contraction) : 1;
 }
 
-// Newton's method for one step: it ends when what is left, by the contraction seen with these
+// Newton's method for one step: it ends when the remaining error, by the contraction seen with these
 // factors, is small; so most steps take one iteration. False when it does not converge.
 static bool converge(alpha *m, double t, const double *y, double h) {
     double limit = newton_error * m->rtol, before = 0;

@@ -297,7 +297,7 @@ static double estimate_error(radau *r, double h) {
 
 // -- step sizes ------------------------------------------------------------------------------
 
-// Of the two controllers the one that asks for less: the elementary one, and the one that predicts
+// The shorter step of two controllers: the elementary one, and the one that predicts
 // the error from how it changed over the last two steps.
 static double next_step(radau *r, double h, double error, double effort) {
     history *past = r->past;

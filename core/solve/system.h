@@ -17,7 +17,7 @@ typedef struct bough_evaluation {
     double t;            // [s]
     const double *input; // (n_input)
     double *rate;        // (n_state) f
-    double *output;      // (n_output) h; NULL: not asked for
+    double *output;      // (n_output) h; NULL: not needed
 } bough_evaluation;
 
 typedef struct bough_system_ops {

@@ -1,5 +1,5 @@
 // Vectors for SUNDIALS: the library's serial one with vectorised operations, as its own cost three
-// quarters of a rod's run. The only place that knows an N_Vector from inside.
+// quarters of a rod's run. Only this file accesses the content of an N_Vector.
 #ifndef BOUGH_CORE_SOLVE_VECTOR_H
 #define BOUGH_CORE_SOLVE_VECTOR_H
 

@@ -24,7 +24,7 @@ typedef struct bough_section_table {
     double grading;    // of the segments: see bough_section_graded
 } bough_section_table;
 
-// Where vertex i of n segments lies, as a share of the length, x = i/n being given: x + g x (1 − x). Segments
+// Where vertex i of n segments lies, relative to the length: x + g x (1 − x) with x = i/n. Segments
 // shorten evenly from the root, the first (1 + g)/(1 − g) times as long as the last, and the vertices of n/2
 // segments are every second one of n.
 static inline double bough_section_graded(double grading, double x) { return x + grading * x * (1 - x); }

@@ -92,7 +92,7 @@ static void add_twist(void *context, double s, double weight) {
     c->twist += weight * (1 / bough_section_mix(p.fraction, p.low->stiffness[20], p.high->stiffness[20]));
 }
 
-// Share of a unit twist over the segment that has come about at s.
+// Twist at s for a unit twist over the segment.
 static double twist_fraction(const lumping *c, double s) {
     lumping below = {.axis = c->axis};
     bough_section_integrate(c->axis, c->def->span[c->segment], s, add_twist, &below);
