@@ -65,6 +65,7 @@ typedef struct library_copy {
     void *handle;
 } library_copy;
 
+// False when the file cannot be read or the disk is full.
 static bool copy_bytes(FILE *from, FILE *to) {
     char part[1 << 14];
     size_t n;
@@ -94,6 +95,7 @@ static void *load_copy(bough_arena *arena, const char *library) {
     return c->handle = dlopen(path, RTLD_NOW | RTLD_LOCAL);
 }
 
+// Loads the library, or a copy of it with variables of its own, and finds its function.
 static bough_status find_function(bough_arena *arena, const char *library, bool copy, call **function) {
     char why[BOUGH_INPUT_REASON];
     // a missing file has its own reason; names without a folder are the loader's

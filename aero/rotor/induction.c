@@ -1,3 +1,4 @@
+// The solver of theory (79), compiled for several processors: induction_kernel.c.
 #include "aero/rotor/induction.h"
 
 bough_induction_options bough_induction_options_default(void) {

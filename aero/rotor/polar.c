@@ -102,7 +102,9 @@ void bough_polar_build(bough_arena *arena, const bough_polar_def *def, bough_pol
     double *row = bough_arena_doubles(arena, (size_t)(ROW * (n + 1)));
     int *bin = bough_arena_take(arena, N_BIN * sizeof *bin);
     fill_rows(def, n, row);
+    // ends the search for a knot at any angle
     row[ROW * n] = INFINITY;
+    // indicial lift of a flat plate after R. T. Jones
     static const double jones[] = {0.165, 0.335, 0.0455, 0.3};
     const double *k = def->indicial ? def->indicial : jones;
     *polar = (bough_polar){.n = n,

@@ -14,6 +14,7 @@
 // the second value on, full induction.
 static const double wakeless_ratio = 1, full_wake_ratio = 2;
 
+// Fades the induction between both ratios.
 static double wake_strength(const bough_rotor *rotor, const bough_rotor_data *data, double axial) {
     double tip = 0;
     for (int b = 0; b < rotor->n_blade; b++)
@@ -108,6 +109,7 @@ void bough_rotor_conclude(const bough_rotor *rotor, const bough_rotor_motion *mo
     if (data->memory.clock) remember(rotor, motion, data);
 }
 
+// The stages one after another on one thread.
 void bough_rotor_sample(const bough_rotor *rotor, const bough_rotor_motion *motion, bough_rotor_data *data) {
     for (int b = 0; b < rotor->n_blade; b++) {
         bough_rotor_approach(rotor, motion, b, data);
@@ -167,6 +169,7 @@ void bough_rotor_result_snapshot(const bough_rotor *rotor, bough_rotor_data *dat
 // Slower than this the angle of attack does not matter [m/s].
 static const double slow = 1;
 
+// Only stations with enough inflow count for the angle of attack.
 bough_rotor_extremes bough_rotor_look(const bough_rotor *rotor, const bough_rotor_data *data, int blade) {
     const blade_rows *r = data->scratch->blade + blade;
     bough_rotor_extremes x = {.distance = HUGE_VAL};
@@ -199,6 +202,7 @@ bough_vec3 bough_rotor_tower_drag(const bough_rotor *rotor, bough_vec3 position,
     return bough_tower_drag(&rotor->tower, rotor->density, position, axis, inflow);
 }
 
+// ½ρ A |v| v of the wind relative to the hub.
 bough_vec3 bough_rotor_hub_drag(const bough_rotor *rotor, double area, bough_vec3 position,
                                 bough_vec3 velocity, double t) {
     bough_vec3 inflow = bough_sub(bough_wind_at(&rotor->wind, position, t), velocity);

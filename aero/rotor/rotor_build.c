@@ -85,6 +85,7 @@ static void take_stations(bough_arena *arena, int stride, station_rows *rows) {
     rows->ends = bough_arena_doubles(arena, 3 * n);
 }
 
+// Padding repeats the last station.
 static void place_stations(const bough_rotor_def *def, const bough_polar *polar, bough_rotor *rotor) {
     for (int j = 0; j < rotor->stride; j++) {
         int k = j < def->n_station ? j : def->n_station - 1;

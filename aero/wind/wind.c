@@ -27,6 +27,7 @@ static bough_status read_hub(bough_arena *arena, bough_wind *wind) {
     return bough_wind_hub_read(arena, wind->def.file, hub);
 }
 
+// A box that is not periodic must last until the end of the run.
 static bough_status read_box(bough_arena *arena, bough_wind *wind) {
     bough_wind_box *box = bough_arena_take(arena, sizeof *box);
     wind->box = box;

@@ -11,6 +11,7 @@
 
 enum { HEAD = 70, COUNTS = 4, FLOATS = 12, MOST_TEXT = 10000, PIECE = 4096 };
 
+// Little-endian numbers from bytes.
 static uint16_t u16_at(const unsigned char *b) { return (uint16_t)(b[0] | b[1] << 8); }
 
 static int16_t i16_at(const unsigned char *b) {
@@ -95,6 +96,7 @@ static bough_status count_values(const char *path, const bough_wind_box *box, in
                       path, (long long)size, box->n_time, box->n_z, box->n_y, box->n_tower);
 }
 
+// Little-endian integers in portions.
 static bough_status read_values(FILE *stream, const char *path, int64_t n, int16_t *value) {
     unsigned char piece[2 * PIECE];
     for (int64_t k = 0; k < n; k += PIECE) {
@@ -209,6 +211,7 @@ bough_vec3 bough_wind_box_at(const bough_wind_box *box, bough_vec3 position, dou
 
 enum { TEXT = 100 };
 
+// Little-endian numbers into a file.
 static void put16(FILE *f, int value) {
     unsigned u = (unsigned)value;
     putc((int)(u & 0xFF), f);

@@ -34,6 +34,7 @@ static bough_wind_hub_row row_of(const double *v) {
     return (bough_wind_hub_row){v[0], v[1], v[2] * degree, v[3], v[4], v[5], v[6], v[7], v[8] * degree};
 }
 
+// Times must increase; the ninth number, the upflow, may be missing.
 static bough_status read_row(const char *path, const char *line, int number, const bough_wind_hub_row *before,
                              bough_wind_hub_row *row) {
     double value[MOST] = {0};

@@ -40,6 +40,7 @@ static double extreme_deviation(const bough_wind_iec_def *d) {
     return c * reference_intensity(d) * (0.072 * (average / c + 3) * (d->speed / c - 4) + 10); // (19)
 }
 
+// Longitudinal standard deviation of the turbulence.
 double bough_wind_iec_deviation(const bough_wind_iec_def *d) {
     // given, of the extreme wind speed model, or of the turbulence models
     if (d->intensity > 0) return d->intensity * bough_wind_iec_speed(d);
@@ -107,6 +108,7 @@ bough_wind_iec bough_wind_iec_start(const bough_wind_iec_def *def) {
     return w;
 }
 
+// Power law; uniform with exponent 0.
 double bough_wind_iec_profile(const bough_wind_iec_def *def, double height) {
     double speed = bough_wind_iec_speed(def);
     if (def->exponent == 0) return speed;

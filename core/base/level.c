@@ -1,3 +1,4 @@
+// Instruction sets of x86-64 for which kernels are compiled, and the choice at the start of the program.
 #include "core/base/level.h"
 
 #include <stdlib.h>
@@ -23,12 +24,14 @@ bool bough_level_runs(bough_level level) {
 }
 
 bool bough_level_choose(bough_level *level) {
+    // the highest level that the processor runs
     *level = BOUGH_LEVEL_V4;
     while (!bough_level_runs(*level)) --*level;
-    const char *asked = getenv("BOUGH_KERNELS");
-    if (asked == NULL) return true;
+    const char *wanted = getenv("BOUGH_KERNELS");
+    // BOUGH_KERNELS names another one, for comparisons; it must run, too
+    if (wanted == NULL) return true;
     for (int i = 0; i < BOUGH_LEVEL_COUNT; i++) {
-        if (strcmp(asked, bough_level_name(i)) != 0 || !bough_level_runs(i)) continue;
+        if (strcmp(wanted, bough_level_name(i)) != 0 || !bough_level_runs(i)) continue;
         *level = i;
         return true;
     }

@@ -289,6 +289,7 @@ bool bough_cholesky_lower(int n, float *a) {
     return info == 0;
 }
 
+// L y = b forwards, Lᵀ x = y backwards.
 void bough_cholesky_solve(int n, const double *factor, double *b) {
     for (int i = 0; i < n; i++) {
         for (int k = 0; k < i; k++) b[i] -= factor[n * i + k] * b[k];

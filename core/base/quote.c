@@ -1,3 +1,4 @@
+// Texts as JSON strings, valid UTF-8 whatever they contain.
 #include "core/base/quote.h"
 
 // Bytes of the UTF-8 character at `text`, 0 if there is none: names of files may be anything.

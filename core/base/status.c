@@ -29,6 +29,7 @@ bough_status bough_fail(bough_code code, const char *format, ...) {
     return status;
 }
 
+// 2: bad input; 3: numerical failure; 130: interrupted; 1: files or memory.
 int bough_exit_code(bough_code code) {
     switch (code) {
     case BOUGH_OK: return 0;

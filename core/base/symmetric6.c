@@ -1,3 +1,4 @@
+// Symmetric 6×6 matrices: inverse and rotation.
 #include "core/base/symmetric6.h"
 
 #include <math.h>

@@ -194,6 +194,7 @@ static bool take(run *r, double rtol) {
     return r->memory != NULL;
 }
 
+// Settings in an order that all three libraries accept.
 static bool configure(run *r) {
     const library *of = r->library;
     // messages first, so that failures of the other settings have a text
@@ -219,6 +220,7 @@ static run *create(bough_arena *arena, const bough_ode *ode, const bough_integra
 
 // -- steps -----------------------------------------------------------------------------------------
 
+// A start of the method from order 1; statistics of the run before are kept.
 static bough_status start(run *r, double t) {
     if (r->started) r->library->count(r->memory, &r->past); // counters restart from zero
     r->started = r->library->restart(r, t) == CV_SUCCESS;

@@ -61,6 +61,7 @@ static bough_force_pair spring_force(const bough_tree *tree, const bough_tree_da
     return (bough_force_pair){{pull(&x, 0, f), pull(&x, 1, f)}};
 }
 
+// δT n + T δn, resolved in the axes of each end.
 static bough_force_pair spring_change(const bough_tree *tree, const bough_tree_data *d, int spring,
                                       const bough_twist shift[2], const bough_twist rate[2]) {
     const bough_spring_def *s = &tree->springs[spring];

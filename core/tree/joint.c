@@ -75,6 +75,7 @@ bough_twist bough_joint_twist(const bough_joint *joint, const double *v) {
     return t;
 }
 
+// Sᵀ f, component by component.
 void bough_joint_force(const bough_joint *joint, bough_wrench f, double *force) {
     switch (slides_of(joint)) {
     case 1: force[0] = bough_dot(joint->axis, f.force); break;

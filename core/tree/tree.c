@@ -20,6 +20,7 @@ void bough_tree_prescribe(const bough_tree *tree, double t, double *state) {
     }
 }
 
+// A universal joint has two links, whose rows are neighbours.
 bool bough_tree_joint_rows(const bough_tree *tree, int body, int *coordinate, int *speed) {
     int link = tree->bodies[body].link;
     if (link < 0 || tree->links[link].body != body) return false;

@@ -332,6 +332,7 @@ static void project(void *self, const double *state, double *x) {
     }
 }
 
+// Without kept_tangent: tangents of the outputs need the kinematics only.
 static const bough_system_ops operations = {
     BOUGH_SYSTEM_REQUIRED,
     .output_drift = output_drift,
