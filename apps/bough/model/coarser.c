@@ -115,12 +115,13 @@ typedef struct looser {
 
 static const double loosest = 0.02; // tolerance
 
-// Where the whole difference counts, since a coupling is explicit or a mesh is finer, that of the steps is
-// once or twice the run's own error. Else it is a multiple, of which the run errs by a quarter.
+// Where the whole difference counts, that of the steps is to be small: once or twice the run's own error
+// beside an explicit coupling; a few times beside a finer mesh, whose companion would else cost as much as
+// the run. Else it is a multiple, of which the run errs by a quarter.
 static looser looser_of(const bough_scene *scene) {
-    bool whole = usual_share(scene) == 1;
-    for (int i = 0; i < scene->n_body; i++) whole = whole || gets_finer(scene, i);
-    return whole ? (looser){3, 1.5} : (looser){10, 2};
+    bool finer = false;
+    for (int i = 0; i < scene->n_body; i++) finer = finer || gets_finer(scene, i);
+    return finer ? (looser){6, 2} : usual_share(scene) == 1 ? (looser){3, 1.5} : (looser){10, 2};
 }
 
 double bough_coarser_time_share(const bough_scene *scene) {

@@ -8,8 +8,9 @@
 enum {
     BOUGH_COARSER_MESH = 1, // half the segments of each rod, or twice as many where it has few
     BOUGH_COARSER_AIR = 2,  // half the aerodynamic sampling rate
-    // Twice the macro step and the longest step, ten times the tolerance (1.5 and 3 times where the whole
-    // difference counts); all bodies as one system, whose steps know no error of a coupling.
+    // Twice the macro step and the longest step, ten times the tolerance (six beside a finer mesh; 1.5 and
+    // 3 times beside an explicit coupling); all bodies as one system, whose steps know no error of a
+    // coupling.
     BOUGH_COARSER_TIME = 4,
     BOUGH_COARSER_ALL = 7,
 };
