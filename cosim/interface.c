@@ -61,7 +61,7 @@ static void take_part(bough_interface *k, bough_arena *arena, int member) {
     w->output_change = bough_arena_doubles(arena, n * (size_t)s->n_output);
     if (w->by_state) w->inverse = bough_arena_doubles(arena, n_state * n_state);
     w->factors = s->ops->factors(s->self, arena);
-    if (w->is_leader) return;
+    if (w->by_state) return;
     w->direction = bough_arena_doubles(arena, n * n_input);
     w->state_change = bough_arena_doubles(arena, n * n_state);
 }
@@ -85,7 +85,6 @@ bough_interface *bough_interface_create(bough_arena *arena, const bough_assembly
     k->sum = bough_arena_doubles(arena, n);
     k->moved = bough_arena_doubles(arena, (size_t)assembly->n_output);
     k->right = bough_arena_doubles(arena, (size_t)k->n_leader_input);
-    k->unit = bough_arena_doubles(arena, (size_t)assembly->n_input);
     k->work = bough_arena_doubles(arena, (size_t)assembly->n_state);
     return k;
 }
@@ -106,12 +105,12 @@ static void find_columns(const bough_interface *k, int member, const bough_opera
     s->ops->input_columns(s->self, at->time, at->state, at->input, k->part[member].column);
 }
 
-// A follower keeps ∂f/∂u without γ, which changes more often.
+// Columns without γ, which changes more often; those of a leader by states have γ.
 bool bough_interface_linearise(bough_interface *k, int member, const bough_operating_point *at) {
     const bough_system *s = system_of(k, member);
     const bough_interface_member *w = &k->part[member];
     if (!s->ops->linearise(s->self, at->time, at->state, at->input, w->factors)) return false;
-    if (!w->is_leader) find_columns(k, member, at);
+    if (!w->by_state) find_columns(k, member, at);
     return true;
 }
 
@@ -179,20 +178,6 @@ static void find_inverse(const bough_interface *k, int member) {
     }
 }
 
-// The outputs' change with each input: through the states, and by feedthrough.
-static void find_input_responses(const bough_interface *k, int member, const bough_operating_point *at) {
-    const bough_system *s = system_of(k, member);
-    const bough_interface_member *w = &k->part[member];
-    double *unit = k->unit + k->assembly->input_offset[member];
-    double *column = w->column, *response = w->output_change;
-    for (int j = 0; j < s->n_input; j++, column += s->n_state, response += s->n_output) {
-        bough_interface_solve_member(k, member, column);
-        unit[j] = 1;
-        bough_interface_output_change(k, member, at, column, unit, response);
-        unit[j] = 0;
-    }
-}
-
 // The outputs' change with each state.
 static void find_state_responses(const bough_interface *k, int member, const bough_operating_point *at) {
     const bough_system *s = system_of(k, member);
@@ -206,24 +191,7 @@ static void find_state_responses(const bough_interface *k, int member, const bou
     }
 }
 
-bool bough_interface_factor_leader(bough_interface *k, int member, const bough_operating_point *at) {
-    const bough_interface_member *w = &k->part[member];
-    const bough_system *s = system_of(k, member);
-    if (!factor(k, member, at->gamma)) return false;
-    // γ ∂f/∂u
-    find_columns(k, member, at);
-    for (int i = 0; i < s->n_input * s->n_state; i++) w->column[i] *= at->gamma;
-    // responses to its coordinates
-    if (!w->by_state) {
-        find_input_responses(k, member, at);
-        return true;
-    }
-    find_inverse(k, member);
-    find_state_responses(k, member, at);
-    return true;
-}
-
-// The input changes of a follower along each of its directions.
+// The input changes of a member along each of its directions.
 static void find_directions(bough_interface *k, int member) {
     const bough_assembly *a = k->assembly;
     const bough_interface_member *w = &k->part[member];
@@ -270,6 +238,22 @@ void bough_interface_respond(bough_interface *k, int member, const bough_operati
         bough_interface_solve_member(k, member, state);
         bough_interface_output_change(k, member, at, state, direction, response);
     }
+}
+
+bool bough_interface_factor_leader(bough_interface *k, int member, const bough_operating_point *at) {
+    const bough_interface_member *w = &k->part[member];
+    const bough_system *s = system_of(k, member);
+    if (!factor(k, member, at->gamma)) return false;
+    if (!w->by_state) {
+        bough_interface_respond(k, member, at);
+        return true;
+    }
+    // γ ∂f/∂u, and the responses to its states
+    find_columns(k, member, at);
+    for (int i = 0; i < s->n_input * s->n_state; i++) w->column[i] *= at->gamma;
+    find_inverse(k, member);
+    find_state_responses(k, member, at);
+    return true;
 }
 
 // -- the interface --------------------------------------------------------------------------------
@@ -384,7 +368,7 @@ void bough_interface_add_response(const bough_interface *k, int member, const do
     if (w->by_state) {
         for (int i = 0; i < n; i++) x[i] += k->coordinate[w->first + i];
     } else if (w->is_leader) {
-        add_columns(n, w->n, w->column, 1, k->coordinate + w->first, x);
+        add_columns(n, w->n, w->state_change, 1, k->coordinate + w->first, x);
     } else if (w->leader >= 0) {
         add_columns(n, w->n, w->state_change, 1, k->coordinate + k->part[w->leader].first, x);
     } else {

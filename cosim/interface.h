@@ -15,37 +15,43 @@
 
 // One member's linearisation, its factors and its response to the interface.
 typedef struct bough_interface_member {
+    // constant
     bool is_leader;
     bool by_state; // leader: its coordinates are its states, else its inputs
-    void *factors; // of its I − γJ
     int leader;    // follower: its directions are the coordinates of that member; −1: its own inputs
     int first;     // leader: its coordinates begin there among all
-    int n;         // coordinates of a leader, directions of a follower
-    double *column; // (n_input × n_state) ∂f/∂u of a follower, γ ∂f/∂u of a leader by states, (I − γJ)⁻¹ γ
-                    // ∂f/∂u of one by inputs
+    int n;         // coordinates of a leader, directions of a follower; those of a leader by inputs are both
+
+    // by linearising, factoring and responding
+    void *factors;         // of its I − γJ
+    double *column;        // (n_input × n_state) ∂f/∂u; of a leader by states γ ∂f/∂u
     double *inverse;       // leader by states: (n_state × n_state) (I − γJ)⁻¹ by columns
-    double *direction;     // follower: (n × n_input) change of its inputs along each direction
-    double *state_change;  // follower: (n × n_state) response of its states to that
+    double *direction;     // others: (n × n_input) change of its inputs along each direction
+    double *state_change;  // others: (n × n_state) response of its states to that
     double *output_change; // (n × n_output) of its outputs to each coordinate or direction
 } bough_interface_member;
 
 typedef struct bough_interface {
+    // constant
     const bough_assembly *assembly;
     bough_interface_member *part; // (n_member)
     int n_leader_input;           // of all leaders
     int *leader_input;            // (n_leader_input) numbered over all inputs
     int n;                        // coordinates of all leaders
-    double *gain;                 // (n_leader_input × n, column-major, as the next) K
-    double *loop;                 // (n × n) Z K
-    double *matrix;               // (n × n) I − Z K, factored
-    double *square;               // (n × n) scratch
-    int *pivot;                   // (n)
-    double *coordinate;           // (n) w
-    double *sum;                  // (n) scratch
-    double *moved;                // (n_output) the leaders' outputs' change with it
-    double *right;                // (n_leader_input) scratch
-    double *unit;                 // (n_input) scratch of each member
-    double *work;                 // (n_state) scratch of each member
+
+    // by bough_interface_close
+    double *gain;   // (n_leader_input × n, column-major, as the next) K
+    double *loop;   // (n × n) Z K
+    double *matrix; // (n × n) I − Z K, factored
+    int *pivot;     // (n)
+
+    // by bough_interface_solve
+    double *coordinate; // (n) w
+    double *moved;      // (n_output) the leaders' outputs' change with it
+
+    // scratch
+    double *square, *sum, *right; // (n × n), (n), (n_leader_input)
+    double *work;                 // (n_state) of each member
 } bough_interface;
 
 bough_interface *bough_interface_create(bough_arena *arena, const bough_assembly *assembly);

@@ -43,28 +43,34 @@ typedef struct bough_master_def {
 bough_master_def bough_master_def_default(void);
 
 typedef struct bough_master {
+    // constant once built
     double macro_step, duration; // [s]
     bool halves;                 // see the def
-    double time;                 // the current synchronisation point [s]
-    long steps;                  // macro steps taken
     bough_assembly *assembly;
+    int n_load, n_event;
+    bough_sampled_load *load; // (n_load)
+    long *load_every;         // (n_load) macro steps per period
+    double *event;            // (n_event) ascending [s]
+
+    // about the initial state, by building
+    bough_stability_advice advice; // empty when not judged
+    char verdict[BOUGH_VERDICT];   // a warning that the coupling is unstable; may be empty
+
+    // by the caller
+    bool compared; // another solution shows the error, so that growth of forces is not judged and steps that
+                   // have not converged go on
+    bool (*stop)(void); // NULL: never
+
+    // by each step
     bough_coupling *coupling;
     bough_monitor *monitor;
     bough_step_control *control; // NULL: fixed steps
-    bool compared; // set by the caller: another solution shows the error, so that growth of forces is not
-                   // judged and steps that have not converged go on
-    int n_load;
-    bough_sampled_load *load; // (n_load)
-    long *load_every;         // (n_load) macro steps per period
-    int n_event;
-    double *event;                 // (n_event) ascending
-    int next_event;                // first event after `time`
-    long grid_index;               // k of the last grid point at or before `time`
-    bool at_event;                 // `time` is an event
-    double begun;                  // start of the last macro step [s]
-    bough_stability_advice advice; // about the initial state; empty when not judged
-    bool (*stop)(void);            // NULL: never
-    char verdict[BOUGH_VERDICT];   // a warning that the coupling is unstable; may be empty
+    double time;                 // the current synchronisation point [s]
+    long steps;                  // macro steps taken
+    long grid_index;             // k of the last grid point at or before `time`
+    int next_event;              // first event after `time`
+    bool at_event;               // `time` is an event
+    double begun;                // start of the last macro step [s]
 } bough_master;
 
 // Whether a period is an integer multiple of the macro step within 1e-9: the multiple, 0 if not.

@@ -14,16 +14,19 @@ typedef struct bough_step_control_def {
 } bough_step_control_def;
 
 typedef struct bough_step_control {
+    // constant
     double tolerance, easy; // below `easy` the steps may be twice as long
     int most;               // levels
-    int level, part;        // the next step is the part-th of 2^level of the span
-    double from, to;        // the span [s]
+    // by each decision
+    int level, part; // the next step is the part-th of 2^level of the span
+    double from, to; // the span [s]
     long accepted, rejected;
     long forced;     // accepted above the tolerance, because it was the shortest
     double shortest; // step accepted [s]
     int n_point;     // synchronisation points before the step with no jump between
-    char *copy;      // of the coupling at the start of the step
-    double *size;    // (n_input) of a vector's first: its largest norm so far
+    // by each step
+    char *copy;   // of the coupling at the start of the step
+    double *size; // (n_input) of a vector's first: its largest norm so far
     // scratch
     bough_signal curve;        // (n_input) through these points and the step's end
     double *obtained, *square; // (n_input)
