@@ -354,6 +354,9 @@ bough_status bough_stability_advise(const bough_assembly *a, const bough_scheme_
     double least = advice->now.growth;
     bool differs = strcmp(options->name, other->name) != 0;
     if (differs && holds(a, &instead, macro_step, &least)) advice->scheme = other->name;
+    // its fully implicit form adds least by itself
+    instead.theta = 1;
+    holds(a, &instead, macro_step, &least);
     for (size_t k = 0; k < sizeof divisor / sizeof *divisor && advice->macro_step == 0; k++) {
         double smaller = macro_step / divisor[k];
         if (holds(a, options, smaller, &least)) advice->macro_step = smaller;

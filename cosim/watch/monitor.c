@@ -146,7 +146,10 @@ static bool coupling_grows(const bough_coupling *c, const group *g, double defec
     own = *growth / 2;
     for (int k = 0; k < 3 && *growth > needed / 2 && own >= *growth / 2; k++) {
         // an explicit scheme may grow at short steps, too, and faster
-        if (k == 2) options.name = bough_scheme_advised()->name;
+        if (k == 2) {
+            options.name = bough_scheme_advised()->name;
+            options.theta = 1;
+        }
         own = fastest_growth(c, &options, h / shorter[k]);
     }
     return own < *growth / 2;
