@@ -34,42 +34,23 @@ typedef struct bough_study_results {
 // there, else what is missing.
 typedef bough_status bough_study_conclude(bough_arena *arena, const bough_study_results *results);
 
-// table.txt, table.csv and the work-precision diagram plot.svg.
+// table.txt, table.csv and the work-precision diagram plot.svg: cost against error on logarithmic axes, a
+// panel for each measure, a line for each combination of the settings before the last, which runs along the
+// line; runs that failed have no point, the legend names them.
 bough_study_conclude bough_precision_conclude;
 
 // table.csv, and a table over the macro step and parameters of the model. BOUGH_FAILED when a run is silent:
 // it held with a large error, without a warning before the run, and its own estimate is far below the error.
 bough_study_conclude bough_stability_conclude;
 
-// cases.csv, costs.csv and table.txt; of a load set also equivalent.csv, extremes.csv, ranges.csv and
-// levels.csv. All but costs.csv follow from the cases' results alone. BOUGH_FAILED when cases have failed.
+// cases.csv, costs.csv, table.txt and plot.svg; of a load set also equivalent.csv, extremes.csv, ranges.csv
+// and levels.csv. All but costs.csv follow from the cases' results alone. BOUGH_FAILED when cases have
+// failed.
 bough_study_conclude bough_statistics_conclude;
 
 // Runs all cases of a study of kind timing in turns, so that other load of the machine affects all alike;
 // ratios of times are computed within a turn. Writes timing.csv and table.txt.
 bough_study_conclude bough_timing_conclude;
-
-// plot.svg of compared runs: cost against error on logarithmic axes, a panel for each measure, a line for
-// each combination of the settings before the last, which runs along the line; runs that failed have no
-// point, the legend names them.
-bough_status bough_precision_plot(const bough_study_results *results, const char *folder);
-
-enum { BOUGH_CASE_PANELS = 6 };
-
-// Least, largest and mean of the first channels of every case; NaN where it failed.
-typedef struct bough_case_plot {
-    const bough_study *study;
-    int n_panel;
-    double *value; // (n_case × n_panel × 3)
-} bough_case_plot;
-
-bough_case_plot bough_case_plot_take(bough_arena *arena, const bough_study *study);
-void bough_case_plot_add(bough_case_plot *plot, int number, const bough_case_result *result);
-
-// Either writes folder/plot.svg: of a sweep a channel's mean, least and largest value over the first key of
-// the grid; of a load set its ranges over how often they are exceeded in the lifetime.
-bough_status bough_case_plot_write(const bough_case_plot *plot, const char *folder);
-bough_status bough_lifetime_plot(const bough_lifetime *l, const char *folder);
 
 // table.txt and table.csv of compared runs.
 bough_status bough_precision_tables(const bough_study_results *results, const char *folder);

@@ -1,9 +1,11 @@
 #include "apps/bough/cases/perform.h"
 
 #include "apps/bough/results/folder.h"
+#include "apps/bough/results/picture.h"
 
 #include <math.h>
 #include <stdarg.h>
+#include <stdlib.h>
 #include <string.h>
 
 enum { COLUMNS = BOUGH_STUDY_AXES + 2 * BOUGH_STUDY_MEASURES + 8, WIDTH = 48, SHORT = 100 };
@@ -234,11 +236,69 @@ bough_status bough_precision_tables(const bough_study_results *results, const ch
     return bough_is_ok(&status) ? bough_folder_write(folder, "table.csv", write_csv, results) : status;
 }
 
+// -- plot.svg: cost against error -----------------------------------------------------------------
+
+static int along(const bough_study *s) { return s->grid.axis[s->grid.n - 1].value.n; }
+
+static double cost(const bough_case_result *r) { return r->cpu / r->time; }
+
+// A run that equals the reference has no place on a logarithmic axis.
+static bool has_point(const bough_case_result *r, int measure) {
+    return r->done && bough_is_ok(&r->outcome) && r->error[measure] > 0 && cost(r) > 0;
+}
+
+// The settings that tell a line from the others, and the runs of it that have no point.
+static const char *line_name(bough_arena *arena, const bough_study_results *results, int curve) {
+    const bough_study *s = results->study;
+    int n = along(s), first = curve * n, last = s->grid.n - 1;
+    char *text = NULL;
+    size_t size = 0;
+    FILE *f = open_memstream(&text, &size);
+    if (!f) bough_arena_leave(arena);
+    for (int i = 0; i < last; i++) {
+        if (s->grid.axis[i].value.n > 1)
+            fprintf(f, "%s%s", ftell(f) > 0 ? ", " : "", bough_study_value(s, &s->cases[first], i));
+    }
+    if (ftell(f) == 0) fputs(s->grid.axis[last].label, f);
+    for (int i = first, missing = 0; i < first + n; i++) {
+        char status[40];
+        if (has_point(&results->result[i], 0)) continue;
+        bough_case_status(&results->result[i], status);
+        fprintf(f, "%s%s %s", missing++ ? "; " : " — ", bough_study_value(s, &s->cases[i], last),
+                strcmp(status, "ok") == 0 ? "equals the reference" : status);
+    }
+    fclose(f);
+    const char *name = bough_arena_string(arena, text);
+    free(text);
+    return name;
+}
+
+static bough_status plot(bough_arena *arena, const bough_study_results *results) {
+    const bough_study *s = results->study;
+    bough_chart chart = bough_chart_start(arena, s->title ? s->title : s->file, 2);
+    for (int m = 0; m < s->n_measure; m++) {
+        char across[200];
+        snprintf(across, sizeof across, "largest difference: %.120s [%.40s]", s->measure[m].name,
+                 s->measure[m].unit);
+        bough_chart_add_panel(&chart, "CPU time per simulated second [s]", bough_arena_string(arena, across),
+                              true, true);
+        for (int i = 0; i < s->n_case; i++) {
+            const bough_case_result *r = &results->result[i];
+            int curve = i / along(s);
+            const char *name = i % along(s) == 0 ? line_name(arena, results, curve) : NULL;
+            if (name) bough_chart_add_line(&chart, (bough_chart_line){name, curve, true, true, 0});
+            if (!has_point(r, m)) continue;
+            const char *value = bough_study_value(s, &s->cases[i], s->grid.n - 1);
+            bough_chart_add(&chart, (bough_chart_point){.x = r->error[m], .y = cost(r), .label = value});
+        }
+    }
+    return bough_folder_write(results->options->folder, "plot.svg", bough_chart_write, &chart);
+}
+
 bough_status bough_precision_conclude(bough_arena *arena, const bough_study_results *results) {
     const bough_study_options *o = results->options;
-    (void)arena;
     bough_status status = bough_precision_tables(results, o->folder);
-    if (bough_is_ok(&status)) status = bough_precision_plot(results, o->folder);
+    if (bough_is_ok(&status)) status = plot(arena, results);
     if (bough_is_ok(&status)) print(results, o->stream);
     return status;
 }

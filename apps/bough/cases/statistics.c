@@ -2,6 +2,7 @@
 
 #include "apps/bough/cases/store.h"
 #include "apps/bough/results/folder.h"
+#include "apps/bough/results/picture.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -243,6 +244,60 @@ static void print_lifetime(const bough_lifetime *l, FILE *f) {
     print_extremes(l, f);
 }
 
+// -- plot.svg -------------------------------------------------------------------------------------
+
+enum { PANELS = 6, VALUES = 3 }; // channels shown; least, largest and mean of each
+
+// The value of the grid's first key as a number; its place in the list where it is none.
+static double across_of(const bough_study *s, int number) {
+    const bough_study_axis *axis = &s->grid.axis[0];
+    int i = s->cases[number].index[0];
+    char *end;
+    double x = strtod(axis->value.item[i].value, &end);
+    return end == axis->value.item[i].value ? i : x;
+}
+
+static void add_panel(bough_chart *chart, const bough_study *s, int i, const char *across, bool logarithmic) {
+    char heading[BOUGH_CHANNEL_NAME + BOUGH_CHANNEL_UNIT + 4];
+    snprintf(heading, sizeof heading, "%s [%s]", s->channel[i], s->unit[i]);
+    bough_chart_add_panel(chart, bough_arena_string(chart->arena, heading), across, logarithmic, false);
+}
+
+// Of a sweep a channel's mean, least and largest value over the first key of the grid: value (n_case × PANELS
+// × VALUES), NaN where a case failed.
+static void plot_sweep(bough_chart *chart, const bough_study *s, const double *value) {
+    for (int k = 0; k < s->n_channel && k < PANELS; k++) {
+        add_panel(chart, s, k, s->grid.axis[0].label, false);
+        bough_chart_add_line(chart, (bough_chart_line){.marked = true});
+        for (int i = 0; i < s->n_case; i++) {
+            const double *v = value + (i * PANELS + k) * VALUES;
+            char hint[200];
+            if (!isfinite(v[2])) continue;
+            snprintf(hint, sizeof hint, "%.100s: %.5g (%.5g to %.5g)", s->cases[i].settings, v[2], v[0],
+                     v[1]);
+            bough_chart_add(chart, (bough_chart_point){.x = across_of(s, i),
+                                                       .y = v[2],
+                                                       .bar = {v[0], v[1]},
+                                                       .hint = bough_arena_string(chart->arena, hint)});
+        }
+    }
+}
+
+// Of a load set a channel's ranges over how often they are exceeded in the lifetime.
+static void plot_ranges(bough_chart *chart, const bough_lifetime *l) {
+    for (int i = 0; i < l->study->n_channel && i < PANELS; i++) {
+        const bough_levels *r = &l->channel[i].ranges;
+        add_panel(chart, l->study, i, "cycles in the lifetime with at least this range", true);
+        bough_chart_add_line(chart, (bough_chart_line){.joined = true});
+        double exceeded = 0;
+        for (int64_t k = r->high; r->started && k >= r->low; k--) {
+            exceeded += bough_levels_inside(r, k);
+            bough_chart_add(chart,
+                            (bough_chart_point){.x = exceeded, .y = bough_levels_width(r) * (double)k});
+        }
+    }
+}
+
 // -- failures ---------------------------------------------------------------------------------------
 
 // A piece of text, quoted for a shell where it must be.
@@ -281,15 +336,24 @@ void bough_case_failed(const bough_study *s, int number, const bough_status *out
 
 // -- conclusion -----------------------------------------------------------------------------------
 
+static void note_shown(const bough_study *s, const bough_case_result *r, double *shown) {
+    bool good = r->done && bough_is_ok(&r->outcome);
+    for (int k = 0; k < s->n_channel && k < PANELS; k++, shown += VALUES) {
+        const bough_sample_statistics *x = &r->counts.channel[k].statistics;
+        const double values[VALUES] = {x->least, x->most, good ? x->mean : (double)NAN};
+        memcpy(shown, values, sizeof values);
+    }
+}
+
 // Reads the results one after the other: their number costs no memory.
 static bough_status read_all(bough_arena *arena, const bough_study_results *x, case_tables *tables,
-                             bough_case_plot *plot, bough_lifetime *lifetime, FILE *failures) {
+                             double *shown, bough_lifetime *lifetime, FILE *failures) {
     bough_case_result result = bough_case_take(arena, x->study);
     for (int i = 0; i < x->study->n_case; i++) {
         bough_status status = bough_store_read(x->options->folder, x->study, &x->study->cases[i], &result);
         if (!bough_is_ok(&status)) return status;
         add_row(tables, i, &result);
-        bough_case_plot_add(plot, i, &result);
+        note_shown(x->study, &result, shown + (size_t)i * PANELS * VALUES);
         bough_lifetime_add(lifetime, i, &result);
         if (result.done && !bough_is_ok(&result.outcome)) {
             bough_case_failed(x->study, i, &result.outcome, failures);
@@ -303,7 +367,7 @@ typedef struct conclusion {
     const bough_study *study;
     const char *folder;
     const bough_lifetime *lifetime;
-    const bough_case_plot *plot;
+    const bough_chart *chart;
     char *failures; // a text
 } conclusion;
 
@@ -324,8 +388,8 @@ static bough_status write_all(const conclusion *c) {
     bool sweep = !c->study->is.weighted;
     bough_status status = sweep ? bough_ok() : write_lifetime(c->lifetime, c->folder);
     if (bough_is_ok(&status)) status = bough_folder_write(c->folder, "table.txt", print_table, c);
-    if (!bough_is_ok(&status)) return status;
-    return sweep ? bough_case_plot_write(c->plot, c->folder) : bough_lifetime_plot(c->lifetime, c->folder);
+    return bough_is_ok(&status) ? bough_folder_write(c->folder, "plot.svg", bough_chart_write, c->chart)
+                                : status;
 }
 
 static bough_status judge(const bough_study_results *x, const bough_lifetime *l) {
@@ -341,17 +405,22 @@ static bough_status judge(const bough_study_results *x, const bough_lifetime *l)
 
 static bough_status conclude_in(bough_arena *arena, const bough_study_results *x) {
     bough_lifetime lifetime = bough_lifetime_take(arena, x->study);
-    bough_case_plot plot = bough_case_plot_take(arena, x->study);
+    bough_chart chart = bough_chart_start(arena, NULL, 2);
+    double *shown = bough_arena_doubles(arena, (size_t)x->study->n_case * PANELS * VALUES);
     case_tables tables;
-    conclusion all = {x->study, x->options->folder, &lifetime, &plot, NULL};
+    conclusion all = {x->study, x->options->folder, &lifetime, &chart, NULL};
     size_t size = 0;
     FILE *stream = open_memstream(&all.failures, &size);
     if (!stream) bough_arena_leave(arena);
     bough_status status = open_tables(x->options->folder, x->study, &tables);
-    if (bough_is_ok(&status)) status = read_all(arena, x, &tables, &plot, &lifetime, stream);
+    if (bough_is_ok(&status)) status = read_all(arena, x, &tables, shown, &lifetime, stream);
     bough_status end = close_tables(&tables, bough_is_ok(&status));
     if (bough_is_ok(&status)) status = end;
     fclose(stream);
+    if (x->study->is.weighted)
+        plot_ranges(&chart, &lifetime);
+    else
+        plot_sweep(&chart, x->study, shown);
     if (bough_is_ok(&status)) status = write_all(&all);
     if (bough_is_ok(&status)) print_table(&all, x->options->stream);
     if (bough_is_ok(&status)) status = judge(x, &lifetime);

@@ -37,6 +37,6 @@ void bough_tune_print(const bough_tune_state *t, int k, FILE *stream);
 // The settings of the chosen point as a scene has them, and as words of a command line.
 void bough_tune_print_settings(const bough_tune_state *t, FILE *stream);
 
-bough_status bough_tune_write(const bough_tune_state *t);
+bough_status bough_tune_write(bough_tune_state *t);
 
 #endif

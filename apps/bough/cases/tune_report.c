@@ -76,63 +76,52 @@ static void write_table(const void *self, FILE *file) {
 
 // -- picture --------------------------------------------------------------------------------------
 
-enum { WIDTH = 620, HEIGHT = 480, LEFT = 76, RIGHT = 44, TOP = 72, BOTTOM = 56 };
-
-static bool has_place(const bough_tune_point *p) { return bough_tune_ended(p) && p->error > 0; }
-
 // The front, from its fastest run to its most accurate.
-static void draw_front(const bough_tune_state *t, const bough_panel *at) {
-    double after = 0;
-    fprintf(at->svg, "<polyline fill=\"none\" stroke-width=\"1.6\" stroke=\"%s\" points=\"",
-            bough_picture_colour(0));
-    for (;;) {
-        const bough_tune_point *next = NULL;
+static void add_front(bough_chart *chart, const bough_tune_state *t) {
+    const bough_tune_point *next = NULL;
+    bough_chart_add_line(chart, (bough_chart_line){.joined = true});
+    for (double after = 0;; after = next->cpu) {
+        next = NULL;
         for (int k = 0; k < t->n; k++) {
             const bough_tune_point *p = &t->point[k];
-            if (p->best && has_place(p) && p->cpu > after && (!next || p->cpu < next->cpu)) next = p;
+            if (p->best && bough_tune_ended(p) && p->cpu > after && (!next || p->cpu < next->cpu)) next = p;
         }
-        if (!next) break;
-        fprintf(at->svg, "%.1f,%.1f ", bough_axis_place(&at->x, next->error),
-                bough_axis_place(&at->y, next->cpu));
-        after = next->cpu;
+        if (!next) return;
+        bough_chart_add(chart, (bough_chart_point){.x = next->error, .y = next->cpu});
     }
-    fputs("\"/>\n", at->svg);
 }
 
-static void draw_points(const bough_tune_state *t, const bough_panel *at) {
+// Each run with its number, and a line at the error to be met.
+static void add_runs(bough_chart *chart, const bough_tune_state *t) {
+    double least = HUGE_VAL, most = 0;
     for (int k = 0; k < t->n; k++) {
         const bough_tune_point *p = &t->point[k];
-        if (!has_place(p)) continue;
-        double x = bough_axis_place(&at->x, p->error), y = bough_axis_place(&at->y, p->cpu);
-        fprintf(at->svg, "<circle cx=\"%.1f\" cy=\"%.1f\" r=\"%.1f\" fill=\"%s\"/>\n", x, y,
-                k == t->chosen ? 6.5 : 4, bough_picture_colour(p->best ? 0 : 1));
-        fprintf(at->svg, "<text class=\"weak\" font-size=\"10\" x=\"%.1f\" y=\"%.1f\">%d%s</text>\n", x + 8,
-                y - 5, k + 1, p->settings.own ? " (as written)" : "");
+        char label[32];
+        if (!bough_tune_ended(p)) continue;
+        snprintf(label, sizeof label, "%d%s", k + 1, p->settings.own ? " (as written)" : "");
+        bough_chart_add_line(chart, (bough_chart_line){.colour = !p->best, .marked = true});
+        bough_chart_add(chart, (bough_chart_point){.x = p->error,
+                                                   .y = p->cpu,
+                                                   .label = bough_arena_string(chart->arena, label),
+                                                   .size = k == t->chosen ? 1.5 : 1});
+        least = fmin(least, p->cpu);
+        most = fmax(most, p->cpu);
     }
+    bough_chart_add_line(chart, (bough_chart_line){.colour = -1, .joined = true});
+    bough_chart_add(chart, (bough_chart_point){.x = t->error, .y = least});
+    bough_chart_add(chart, (bough_chart_point){.x = t->error, .y = most});
 }
 
-static void draw(const void *self, FILE *svg) {
+static bough_status draw(bough_arena *arena, void *self) {
     const bough_tune_state *t = self;
-    bough_panel at = {svg, bough_axis_between(LEFT, WIDTH - RIGHT, true),
-                      bough_axis_between(HEIGHT - BOTTOM, TOP, true)};
-    char title[64];
-    for (int k = 0; k < t->n; k++) {
-        if (!has_place(&t->point[k])) continue;
-        bough_axis_include(&at.x, t->point[k].error);
-        bough_axis_include(&at.y, t->point[k].cpu);
-    }
-    bough_axis_include(&at.x, t->error);
-    bough_axis_widen(&at.x, 0.08);
-    bough_axis_widen(&at.y, 0.08);
-    bough_picture_begin(svg, WIDTH, HEIGHT);
-    bough_picture_title(svg, LEFT, t->scene->title ? t->scene->title : t->options->scene);
-    snprintf(title, sizeof title, "CPU time of %.4g s [s]", t->options->span);
-    bough_panel_axes(&at, title, "whole error over the range (forces and moments: a quarter)");
-    fprintf(svg, "<path class=\"axis\" stroke-dasharray=\"4 4\" d=\"M%.1f %dV%d\"/>\n",
-            bough_axis_place(&at.x, t->error), TOP, HEIGHT - BOTTOM);
-    draw_front(t, &at);
-    draw_points(t, &at);
-    fputs("</svg>\n", svg);
+    char heading[64];
+    snprintf(heading, sizeof heading, "CPU time of %.4g s [s]", t->options->span);
+    bough_chart chart = bough_chart_start(arena, t->scene->title ? t->scene->title : t->options->scene, 1);
+    bough_chart_add_panel(&chart, heading, "whole error over the range (forces and moments: a quarter)", true,
+                          true);
+    add_front(&chart, t);
+    add_runs(&chart, t);
+    return bough_folder_write(t->options->folder, "tune.svg", bough_chart_write, &chart);
 }
 
 // -- settings -------------------------------------------------------------------------------------
@@ -212,10 +201,10 @@ void bough_tune_print_settings(const bough_tune_state *t, FILE *stream) {
 
 static void write_settings(const void *self, FILE *file) { bough_tune_print_settings(self, file); }
 
-bough_status bough_tune_write(const bough_tune_state *t) {
+bough_status bough_tune_write(bough_tune_state *t) {
     const char *folder = t->options->folder;
     bough_status status = bough_folder_make(folder);
     if (bough_is_ok(&status)) status = bough_folder_write(folder, "tune.csv", write_table, t);
-    if (bough_is_ok(&status)) status = bough_folder_write(folder, "tune.svg", draw, t);
+    if (bough_is_ok(&status)) status = bough_arena_use(draw, t);
     return bough_is_ok(&status) ? bough_folder_write(folder, "tune.yaml", write_settings, t) : status;
 }

@@ -1,6 +1,8 @@
-// Pictures in SVG that are legible on light and on dark pages: begin, texts, and panels with two axes.
+// Pictures in SVG that are legible on light and on dark pages: texts, and charts of panels with two axes.
 #ifndef BOUGH_APPS_RESULTS_PICTURE_H
 #define BOUGH_APPS_RESULTS_PICTURE_H
+
+#include "core/base/arena.h"
 
 #include <stdbool.h>
 #include <stdio.h>
@@ -15,12 +17,7 @@ void bough_picture_title(FILE *svg, int left, const char *title);
 // A text within an element or an attribute: the characters that XML reserves are replaced.
 void bough_picture_text(FILE *svg, const char *text);
 
-// Number of characters of a text in UTF-8.
-int bough_picture_letters(const char *text);
-
-// The k-th colour of a line, told apart by colour-blind readers; there are BOUGH_PICTURE_COLOURS.
-enum { BOUGH_PICTURE_COLOURS = 7 };
-const char *bough_picture_colour(int k);
+// -- charts ---------------------------------------------------------------------------------------
 
 typedef struct bough_axis {
     double low, high; // values at its ends, of a logarithmic one their logarithms to base 10
@@ -28,24 +25,47 @@ typedef struct bough_axis {
     bool logarithmic;
 } bough_axis;
 
-// An axis without values.
-bough_axis bough_axis_between(double from, double to, bool logarithmic);
+typedef struct bough_chart_point {
+    double x, y;       // not drawn where it has no place on an axis
+    double bar[2];     // ends of a vertical bar through it, unless equal
+    const char *label; // beside it; NULL: none
+    const char *hint;  // what a viewer shows for it; NULL: none
+    double size;       // of its mark over the usual one; 0: usual
+} bough_chart_point;
 
-// Extends the axis to a value; values that have no place on it are left out.
-void bough_axis_include(bough_axis *axis, double value);
+typedef struct bough_chart_line {
+    const char *name;    // in the legend; NULL: not there
+    int colour;          // each has its own mark; −1: grey, dashed, without marks
+    bool joined, marked; // its points are joined; each has a mark
+    int end;             // of its points in the chart
+} bough_chart_line;
 
-// Adds a margin of this share of its length at both ends; a logarithmic axis covers at least a factor of ten.
-void bough_axis_widen(bough_axis *axis, double share);
+typedef struct bough_chart_panel {
+    const char *heading, *across; // above it; below it, what x is
+    bough_axis x, y;              // begin with the range that includes every point
+    int end;                      // of its lines in the chart
+} bough_chart_panel;
 
-// Where a value is [px].
-double bough_axis_place(const bough_axis *axis, double value);
+// Panels of one size in rows, below them a legend of the first panel's lines. Filled in order: a line belongs
+// to the panel added last, a point to the line added last. Texts must stay.
+typedef struct bough_chart {
+    bough_arena *arena;
+    const char *title; // NULL: none
+    int per_row;       // panels side by side
+    int right;         // room for labels beside a panel [px]
+    int n_panel, n_line, n_point, room[3];
+    bough_chart_panel *panel; // (n_panel)
+    bough_chart_line *line;   // (n_line)
+    bough_chart_point *point; // (n_point)
+} bough_chart;
 
-typedef struct bough_panel {
-    FILE *svg;
-    bough_axis x, y;
-} bough_panel;
+bough_chart bough_chart_start(bough_arena *arena, const char *title, int per_row);
+void bough_chart_add_panel(bough_chart *chart, const char *heading, const char *across, bool log_x,
+                           bool log_y);
+void bough_chart_add_line(bough_chart *chart, bough_chart_line line);
+void bough_chart_add(bough_chart *chart, bough_chart_point point);
 
-// Draws grid, numbers and lines of both axes, a title above the panel and what x is below it (NULL: nothing).
-void bough_panel_axes(const bough_panel *panel, const char *title, const char *across);
+// Writes the picture; `chart`: a bough_chart.
+void bough_chart_write(const void *chart, FILE *svg);
 
 #endif
