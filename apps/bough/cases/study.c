@@ -1,7 +1,7 @@
 // The keys of a study and their reading.
 #include "apps/bough/cases/study.h"
 
-#include "apps/bough/cases/rainflow.h"
+#include "apps/bough/cases/counts.h"
 #include "apps/bough/cases/study_internal.h"
 #include "apps/bough/config/schema_keys.h"
 #include "core/base/input_file.h"
@@ -66,7 +66,9 @@ static const bough_key measure_keys[] = {
     {KEY(TEXT, channel), .help = "name of a channel"},
     {KEY(CUSTOM, channels), .read = read_channels, .form = channels_form,
      .help = "components of a vector; of several vectors the largest difference counts"},
-    {KEY(CHOICE, norm), CHOICES("euclid", "largest"), .fallback = "euclid",
+    {KEY(CHOICE, norm),
+     CHOICES([BOUGH_STUDY_EUCLID] = "euclid", [BOUGH_STUDY_LARGEST] = "largest"),
+     .fallback = "euclid",
      .help = "norm of a vector"},
     {KEY(NUMBER, scale), .range = "> 0", .fallback = "1",
      .help = "factor from the channels' unit to 'unit'"},
@@ -262,10 +264,7 @@ void bough_study_json_schema(FILE *stream) {
 const char *bough_study_path(bough_arena *arena, const char *study, const char *scene) {
     const char *slash = scene[0] == '/' ? NULL : strrchr(study, '/');
     int length = slash ? (int)(slash - study) + 1 : 0;
-    size_t size = (size_t)length + strlen(scene) + 1;
-    char *path = bough_arena_take(arena, size);
-    if (path) snprintf(path, size, "%.*s%s", length, study, scene);
-    return path;
+    return bough_arena_print(arena, "%.*s%s", length, study, scene);
 }
 
 static bool find_scene(bough_arena *arena, bough_study *s, bough_errors *errors) {
@@ -281,14 +280,7 @@ static bool find_scene(bough_arena *arena, bough_study *s, bough_errors *errors)
     return true;
 }
 
-static bough_status finish(const char *path, bough_errors *errors) {
-    int n = errors->n + errors->dropped;
-    if (n == 0) return bough_ok();
-    bough_errors_sort(errors, path);
-    return bough_fail(BOUGH_INVALID, "%s: %d error%s in the study", path, n, n == 1 ? "" : "s");
-}
-
-// A scene is told as such, in place of an error for each of its keys.
+// One error for a scene that is read as a study, in place of one for each of its keys.
 static bool is_scene(const char *path, const bough_node *root, bough_errors *errors) {
     const bough_node *bodies = bough_node_find(root, "bodies");
     if (!bodies || bough_node_find(root, "kind")) return false;
@@ -350,11 +342,11 @@ bough_status bough_study_read(bough_arena *arena, const char *path, int threads,
     bough_study *s = NULL;
     bough_node *root = bough_text_read(arena, path, errors);
     if (root && !is_scene(path, root, errors)) s = bough_study_parse(arena, path, root, errors);
-    bough_status status = finish(path, errors);
+    bough_status status = bough_errors_status(errors, path, "study");
     if (!bough_is_ok(&status)) return status;
     s->threads = threads;
     status = bough_study_check(arena, s, errors);
-    if (bough_is_ok(&status)) status = finish(path, errors);
+    if (bough_is_ok(&status)) status = bough_errors_status(errors, path, "study");
     if (bough_is_ok(&status)) *study = s;
     return status;
 }

@@ -14,6 +14,7 @@
 #define NAMED(text, of) .name = text, .kind = BOUGH_KEY_##of
 
 #define UNIT(quantity) .dimension = BOUGH_##quantity
+// Words at the places of their values: [BOUGH_SCENE_X] = "x", ...
 #define CHOICES(...)                                                                                         \
     .choices = (const char *const[]) { __VA_ARGS__, NULL }
 #define WHEN(key, values) .when_key = key, .when = values

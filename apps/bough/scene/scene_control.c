@@ -19,7 +19,9 @@ static const bough_key law_keys[] = {
     LAW(optimal_gain, PURE_NUMBER, "2.332287", "2.4", "optimal gain, in N m s^2/rad^2"),
     LAW(rated_speed, ANGULAR_SPEED, "121.6805 rad/s", "1162 rpm",
         "generator speed from which power or torque is constant"),
-    {KEY(CHOICE, above_rated), CHOICES("power", "torque"), .fallback = "power", .example = "torque",
+    {KEY(CHOICE, above_rated),
+     CHOICES([BOUGH_CONSTANT_POWER] = "power", [BOUGH_CONSTANT_TORQUE] = "torque"),
+     .fallback = "power", .example = "torque",
      .help = "quantity that is constant above rated speed"},
     LAW(rated_power, PURE_NUMBER, "5296610", "5.3e6", "rated mechanical power, in W"),
     LAW(slip, PURE_NUMBER, "0.1", "0.05",
@@ -52,8 +54,11 @@ static const bough_schema law_schema = {
 #define FILLS bough_scene_event
 static const bough_key event_keys[] = {
     {KEY(CHOICE, kind),
-     CHOICES("start", "stop", "emergency-stop", "grid-loss", "pitch-stuck", "pitch-runaway",
-             "pitch-to", "yaw-runaway"),
+     CHOICES([BOUGH_SCENE_START] = "start", [BOUGH_SCENE_STOP] = "stop",
+             [BOUGH_SCENE_EMERGENCY_STOP] = "emergency-stop",
+             [BOUGH_SCENE_GRID_LOSS] = "grid-loss", [BOUGH_SCENE_PITCH_STUCK] = "pitch-stuck",
+             [BOUGH_SCENE_PITCH_RUNAWAY] = "pitch-runaway", [BOUGH_SCENE_PITCH_TO] = "pitch-to",
+             [BOUGH_SCENE_YAW_RUNAWAY] = "yaw-runaway"),
      .required = true,
      .help = "start: until then the turbine idles, without torque, with the pitch of its joints; stop: pitch to "
              "feather, torque to zero in 10 s and as the rotor stops; emergency-stop: pitch to feather at the largest "
@@ -106,7 +111,9 @@ static const bough_schema event_schema = {
 
 #define FILLS bough_scene_control
 static const bough_key control_keys[] = {
-    {KEY(CHOICE, kind), CHOICES("variable-speed", "bladed", "external"), .required = true,
+    {KEY(CHOICE, kind),
+     CHOICES([BOUGH_SCENE_VARIABLE_SPEED] = "variable-speed", [BOUGH_SCENE_BLADED] = "bladed",
+             [BOUGH_SCENE_EXTERNAL] = "external"), .required = true,
      .help = "variable-speed: the baseline law of the NREL 5 MW turbine; bladed: a shared library "
              "with Bladed's interface (function DISCON); external: another program, by the inputs "
              "GenTqCom (torque on the fast shaft) and BlPitchCom1, 2 ..."},

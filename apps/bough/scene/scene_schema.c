@@ -56,7 +56,8 @@ static const bough_key coupling_keys[] = {
      .fallback = "auto", .example = "0.6",
      .help = "of ramp: weight of the predicted rates; auto: 0.5, and a scene on which that is "
              "unstable is refused"},
-    {NAMED("exchange", CHOICE), AT(options.exchange), CHOICES("end-values", "waveform"),
+    {NAMED("exchange", CHOICE), AT(options.exchange),
+     CHOICES([BOUGH_EXCHANGE_END_VALUES] = "end-values", [BOUGH_EXCHANGE_WAVEFORM] = "waveform"),
      .fallback = "end-values",
      .help = "of iterated: what the iteration makes agree: values at the end of the macro step, or "
              "cubics through values within it"},
@@ -123,7 +124,10 @@ static const bough_key simulation_keys[] = {
              "the periods of output, air and control are multiples"},
     {KEY(MAPPING, step_control), .of = &step_control_schema,
      .help = "bisection of the macro step where the coupling error is too large"},
-    {KEY(CHOICE, initial), CHOICES("undeformed", "equilibrium", "operation"),
+    {KEY(CHOICE, initial),
+     CHOICES([BOUGH_SCENE_UNDEFORMED] = "undeformed",
+             [BOUGH_SCENE_IN_EQUILIBRIUM] = "equilibrium",
+             [BOUGH_SCENE_IN_OPERATION] = "operation"),
      .fallback = "undeformed",
      .help = "undeformed: as the scene says; equilibrium: with the loads at time 0, joints with a "
              "speed keep it; operation: equilibrium at the rotor speed and pitch at which the "
@@ -135,7 +139,8 @@ static const bough_key simulation_keys[] = {
     {KEY(NUMBER, error_bound), .range = "[0, 1]", .fallback = "0.05", .example = "0.02",
      .help = "largest estimated error of a channel of motion, relative to the channel's range; a run with a larger "
              "error ends with exit code 3 and names the cause, or warns if the mesh alone is the cause; 0: no bound"},
-    {KEY(CHOICE, error_estimate), .fallback = "companion", CHOICES("companion", "none"),
+    {KEY(CHOICE, error_estimate), .fallback = "companion",
+     CHOICES([BOUGH_SCENE_COMPANION] = "companion", [BOUGH_SCENE_NO_ESTIMATE] = "none"),
      .help = "companion: a second solution beside the run that is coarser (half the segments, twice the "
              "steps, half the sampling rate of the air) gives the whole error of every channel, for a third to a half "
              "of the run's cost; a rod of up to eight segments has twice as many there, which costs up to nine tenths"},
@@ -156,10 +161,14 @@ static const bough_schema simulation_schema = {
 static const bough_key modes_keys[] = {
     {KEY(INTEGER, count), .range = "[1, 60]", .fallback = "12", .example = "20",
      .help = "number of modes of each rod or of the scene, from the lowest frequency"},
-    {KEY(CHOICE, of), CHOICES("auto", "rods", "scene"), .fallback = "auto",
+    {KEY(CHOICE, of),
+     CHOICES([BOUGH_SCENE_MODES_AUTO] = "auto", [BOUGH_SCENE_MODES_RODS] = "rods",
+             [BOUGH_SCENE_MODES_SCENE] = "scene"), .fallback = "auto",
      .help = "rods: each rod with its root held; scene: the whole scene; auto: rods if no joint "
              "moves, or if a speed or an axis is given"},
-    {KEY(CHOICE, at), CHOICES("undeformed", "equilibrium"), .fallback = "equilibrium",
+    {KEY(CHOICE, at),
+     CHOICES([BOUGH_SCENE_UNDEFORMED] = "undeformed",
+             [BOUGH_SCENE_IN_EQUILIBRIUM] = "equilibrium"), .fallback = "equilibrium",
      .help = "state of the whole scene about which modes are computed; in equilibrium, joints with "
              "a speed keep it"},
     {KEY(NUMBER, speed), UNIT(ANGULAR_SPEED), .fallback = "0", .example = "12.1 rpm",
@@ -172,7 +181,9 @@ static const bough_key modes_keys[] = {
      .help = "direction of the axis of rotation in ground axes; replaces 'about'"},
     {KEY(VECTOR, centre), .count = 3, UNIT(LENGTH), .fallback = ZERO3, .example = "[0, 0, 90 m]",
      .help = "a point of 'axis', ground axes"},
-    {KEY(CHOICE, air), CHOICES("frozen", "quasi-steady", "dynamic"), .fallback = "frozen",
+    {KEY(CHOICE, air),
+     CHOICES([BOUGH_SCENE_AIR_FROZEN] = "frozen", [BOUGH_SCENE_AIR_QUASI_STEADY] = "quasi-steady",
+             [BOUGH_SCENE_AIR_DYNAMIC] = "dynamic"), .fallback = "frozen",
      .help = "of the whole scene: frozen: the aerodynamic forces are those of the equilibrium; "
              "quasi-steady: they follow the motion immediately; dynamic: with the scene's dynamic "
              "inflow and stall"},

@@ -94,20 +94,29 @@ static const bough_schema wind_table_schema = {
 #define FILLS bough_scene_wind
 #define DEF(member) NAMED(#member, NUMBER), AT(def.member)
 static const bough_key wind_keys[] = {
-    {KEY(CHOICE, kind), CHOICES("uniform", "power", "log", "wnd", "bts", "iec"),
+    {KEY(CHOICE, kind),
+     CHOICES([BOUGH_SCENE_WIND_UNIFORM] = "uniform", [BOUGH_SCENE_WIND_POWER] = "power",
+             [BOUGH_SCENE_WIND_LOG] = "log", [BOUGH_SCENE_WIND_WND] = "wnd",
+             [BOUGH_SCENE_WIND_BTS] = "bts", [BOUGH_SCENE_WIND_IEC] = "iec"),
      .fallback = "uniform",
      .help = "uniform: the same speed at all heights; power, log: by a power or a logarithmic law; "
              "wnd: uniform wind file (hub height); bts: TurbSim's box; iec: condition of IEC "
              "61400-1"},
     {NAMED("condition", CHOICE), AT(def.iec.condition),
-     CHOICES("ntm", "etm", "ewm", "ewm-steady", "nwp", "eog", "edc", "ecd", "ews"),
+     CHOICES([BOUGH_WIND_NTM] = "ntm", [BOUGH_WIND_ETM] = "etm", [BOUGH_WIND_EWM] = "ewm",
+             [BOUGH_WIND_EWM_STEADY] = "ewm-steady", [BOUGH_WIND_NWP] = "nwp",
+             [BOUGH_WIND_EOG] = "eog", [BOUGH_WIND_EDC] = "edc", [BOUGH_WIND_ECD] = "ecd",
+             [BOUGH_WIND_EWS] = "ews"),
      .required = true, WHEN("kind", "iec"),
      .help = "ntm: normal turbulence; etm: extreme turbulence; ewm: extreme wind with turbulence; "
              "ewm-steady: steady extreme wind; nwp: normal profile; eog: extreme operating gust; "
              "edc: extreme change of direction; ecd: coherent gust with change of direction; ews: "
              "extreme shear"},
     {NAMED("class", CHOICE), AT(def.iec.wind_class),
-     CHOICES("IA+", "IA", "IB", "IC", "IIA+", "IIA", "IIB", "IIC", "IIIA+", "IIIA", "IIIB", "IIIC"),
+     CHOICES([BOUGH_WIND_IA_PLUS] = "IA+", [BOUGH_WIND_IA] = "IA", [BOUGH_WIND_IB] = "IB",
+             [BOUGH_WIND_IC] = "IC", [BOUGH_WIND_IIA_PLUS] = "IIA+", [BOUGH_WIND_IIA] = "IIA",
+             [BOUGH_WIND_IIB] = "IIB", [BOUGH_WIND_IIC] = "IIC", [BOUGH_WIND_IIIA_PLUS] = "IIIA+",
+             [BOUGH_WIND_IIIA] = "IIIA", [BOUGH_WIND_IIIB] = "IIIB", [BOUGH_WIND_IIIC] = "IIIC"),
      .fallback = "IB", WHEN("kind", "iec"),
      .help = "reference wind speed (I to III) and turbulence (A+ to C)"},
     {NAMED("intensity", NUMBER), AT(def.iec.intensity), .range = "> 0", .word = "class",
@@ -185,7 +194,8 @@ static const bough_key induction_keys[] = {
     SWITCH(hub_loss, "Prandtl's loss factor at the hub"),
     SWITCH(tangential, "tangential induction"),
     {KEY(BOOLEAN, drag), .fallback = "true", .help = "includes drag in the induction"},
-    {NAMED("high_thrust", CHOICE), AT(options.high_thrust), CHOICES("smooth", "buhl"),
+    {NAMED("high_thrust", CHOICE), AT(options.high_thrust),
+     CHOICES([BOUGH_HIGH_THRUST_SMOOTH] = "smooth", [BOUGH_HIGH_THRUST_BUHL] = "buhl"),
      .fallback = "smooth",
      .help = "thrust beyond the validity of momentum theory: by AeroDyn's newer formulation, or by "
              "Buhl's parabola"},
@@ -195,7 +205,8 @@ static const bough_key induction_keys[] = {
      WHEN("high_thrust", "smooth"), .example = "true",
      .help = "momentum theory of a disk at an angle to the wind, by Glauert: AeroDyn's "
              "SkewMomCorr"},
-    {NAMED("inflow", CHOICE), AT(inflow.kind), CHOICES("equilibrium", "oye"),
+    {NAMED("inflow", CHOICE), AT(inflow.kind),
+     CHOICES([BOUGH_INFLOW_EQUILIBRIUM] = "equilibrium", [BOUGH_INFLOW_OYE] = "oye"),
      .fallback = "equilibrium",
      .help = "reaction of the induction to a change of load: immediate, or by Oye's dynamic "
              "inflow"},
@@ -209,10 +220,14 @@ static const bough_schema induction_schema = {
 
 #define FILLS bough_scene_tower
 static const bough_key tower_keys[] = {
-    {NAMED("influence", CHOICE), AT(def.influence), CHOICES("potential", "bak"), .fallback = "potential",
+    {NAMED("influence", CHOICE), AT(def.influence),
+     CHOICES([BOUGH_TOWER_POTENTIAL] = "potential", [BOUGH_TOWER_BAK] = "bak"),
+     .fallback = "potential",
      .help = "wind in front of the tower: potential flow about a cylinder, or with Bak's "
              "correction for its drag"},
-    {NAMED("shadow", CHOICE), AT(def.shadow), CHOICES("none", "powles"), .fallback = "none",
+    {NAMED("shadow", CHOICE), AT(def.shadow),
+     CHOICES([BOUGH_TOWER_SHADOW_NONE] = "none", [BOUGH_TOWER_SHADOW_POWLES] = "powles"),
+     .fallback = "none",
      .help = "wake behind the tower"},
     {NAMED("height", NUMBERS), AT(def.height), UNIT(LENGTH), .range = ">= 0", .count = 2, .required = true,
      COUNT_AT(def.n), .example = "[0, 45 m, 87.6 m]", .help = "above the ground's origin"},
@@ -238,7 +253,9 @@ static const bough_key aero_keys[] = {
      .help = "density of the air"},
     {KEY(MAPPING, wind), .of = &wind_schema, .required = true, .help = "the undisturbed wind"},
     RAMP,
-    {KEY(CHOICE, hold), CHOICES("linear", "constant"), .fallback = "linear",
+    {KEY(CHOICE, hold),
+     CHOICES([BOUGH_SCENE_LINEAR] = "linear", [BOUGH_SCENE_CONSTANT] = "constant"),
+     .fallback = "linear",
      .help = "continuation of the loads between samples"},
     {KEY(FILE, blade), .of = &aero_blade_schema, .required = true, .example = "blade-aero.yaml",
      .help = "file with the blade elements, relative to the scene"},
@@ -252,10 +269,13 @@ static const bough_key aero_keys[] = {
      .help = "from the rotor axis to the blade roots"},
     {KEY(NUMBER, hub_drag_area), .range = ">= 0", .fallback = "0", .example = "5",
      .help = "drag coefficient times area of the hub, in m2; drag on the rotor"},
-    {KEY(CHOICE, dynamic_stall), CHOICES("none", "hgm"), .fallback = "none",
+    {KEY(CHOICE, dynamic_stall),
+     CHOICES([BOUGH_STALL_NONE] = "none", [BOUGH_STALL_HGM] = "hgm"), .fallback = "none",
      .help = "reaction of the lift to the angle of attack: immediate, or by the Beddoes-Leishman "
              "model of Hansen, Gaunaa and Madsen"},
-    {KEY(CHOICE, interpolation), CHOICES("linear", "monotone-cubic"), .fallback = "linear",
+    {KEY(CHOICE, interpolation),
+     CHOICES([BOUGH_SCENE_POLARS_LINEAR] = "linear",
+             [BOUGH_SCENE_POLARS_SMOOTH] = "monotone-cubic"), .fallback = "linear",
      .help = "interpolation between the rows of the polars"},
     {KEY(BOOLEAN, pitching_moment), .fallback = "true",
      .help = "includes the moment coefficients of the sections"},

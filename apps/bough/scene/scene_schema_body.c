@@ -88,8 +88,10 @@ static const bough_schema rod_schema = {SCHEMA("a rod", bough_scene_rod, rod_key
 #define FILLS bough_scene_joint
 static const bough_key joint_keys[] = {
     {KEY(CHOICE, kind), .required = true,
-     CHOICES("fixed", "revolute", "prismatic", "spherical", "free", "cylindrical", "universal",
-             "planar"),
+     CHOICES([BOUGH_JOINT_FIXED] = "fixed", [BOUGH_JOINT_REVOLUTE] = "revolute",
+             [BOUGH_JOINT_PRISMATIC] = "prismatic", [BOUGH_JOINT_SPHERICAL] = "spherical",
+             [BOUGH_JOINT_FREE] = "free", [BOUGH_JOINT_CYLINDRICAL] = "cylindrical",
+             [BOUGH_JOINT_UNIVERSAL] = "universal", [BOUGH_JOINT_PLANAR] = "planar"),
      .help = "kind of joint"},
     {NAMED("parent", TEXT), AT(parent_name), .required = true, .example = "hub",
      .help = "name of a body, or ground; a parent with a rod carries this body at the rod's end"},
@@ -97,11 +99,13 @@ static const bough_key joint_keys[] = {
      .example = "[rotate x 120 deg, move z 1.5 m]",
      .help = "from the parent's frame to the joint's frame; each step is in the frame that the "
              "previous steps give"},
-    {KEY(CHOICE, axis), CHOICES("x", "y", "z"), .required = true,
+    {KEY(CHOICE, axis),
+     CHOICES([BOUGH_SCENE_X] = "x", [BOUGH_SCENE_Y] = "y", [BOUGH_SCENE_Z] = "z"), .required = true,
      WHEN("kind", "revolute|prismatic|cylindrical|universal|planar"),
      .help = "axis of the motion; of a universal joint the first axis, fixed in the parent; of a "
              "planar joint the normal of the plane"},
-    {KEY(CHOICE, second_axis), CHOICES("x", "y", "z"), .required = true, WHEN("kind", "universal"),
+    {KEY(CHOICE, second_axis),
+     CHOICES([BOUGH_SCENE_X] = "x", [BOUGH_SCENE_Y] = "y", [BOUGH_SCENE_Z] = "z"), .required = true, WHEN("kind", "universal"),
      .help = "second axis, which rotates about the first"},
     {NAMED("angle", NUMBER), AT(position), UNIT(ANGLE), .fallback = "0", WHEN("kind", "revolute"),
      .example = "90 deg", .help = "initial angle"},
@@ -197,7 +201,9 @@ static const bough_key fmu_keys[] = {
      .help = "names of its outputs for the force [N] and the moment [N m] about the frame's origin "
              "that act on the body that carries the FMU, x, y and z in body axes; none: zero; "
              "default [Fx, Fy, Fz, Mx, My, Mz]"},
-    {NAMED("inputs", CHOICE), AT(hold), CHOICES("held", "reached"), .fallback = "held",
+    {NAMED("inputs", CHOICE), AT(hold),
+     CHOICES([BOUGH_SCENE_FMU_HELD] = "held", [BOUGH_SCENE_FMU_REACHED] = "reached"),
+     .fallback = "held",
      .help = "what the FMU does with its inputs in a communication step: it keeps them, and gets "
              "the motion in the middle of the step; or they are reached at the end of the step"},
     {KEY(INTEGER, steps), .range = "[1, 100000]", .fallback = "1", .example = "10",
@@ -215,7 +221,9 @@ static const bough_key body_keys[] = {
      .help = "number of such bodies in a chain, each carried by the previous one on the same "
              "joint; their names end with numbers from 1"},
     {KEY(CHOICE, fidelity), .required = true,
-     CHOICES("rigid", "rod", "modal", "segmented-modal", "fmu"),
+     CHOICES([BOUGH_SCENE_RIGID] = "rigid", [BOUGH_SCENE_ROD] = "rod",
+             [BOUGH_SCENE_MODAL] = "modal", [BOUGH_SCENE_SEGMENTED_MODAL] = "segmented-modal",
+             [BOUGH_SCENE_FMU] = "fmu"),
      .help = "model of the body: rigid, a geometrically exact rod, the rod's linear modes in one "
              "frame or in pieces, or a model of another program (FMU)"},
     {KEY(MAPPING, joint), .of = &joint_schema, .required = true,

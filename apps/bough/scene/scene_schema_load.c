@@ -38,7 +38,9 @@ static const bough_key load_keys[] = {
      .form = "{times: [...], values: [...]}", .example = "{times: [0, 1, 2], values: [0, 1, 0]}",
      .help = "on a body: factor of the load over time, linear between the times and constant "
              "outside; replaces 'ramp'"},
-    {KEY(CHOICE, frame), CHOICES("ground", "body", "follower"), .fallback = "ground",
+    {KEY(CHOICE, frame),
+     CHOICES([BOUGH_SCENE_LOAD_GROUND] = "ground", [BOUGH_SCENE_LOAD_BODY] = "body",
+             [BOUGH_SCENE_LOAD_FOLLOWER] = "follower"), .fallback = "ground",
      .help = "axes of the load on a body: ground, body, or follower: the section axes of a rod, so "
              "that the load rotates with the section"},
     RAMP,
@@ -119,10 +121,12 @@ static const bough_key closure_keys[] = {
      .help = "placement of the joint's frame in that body's frame; the two frames must almost "
              "coincide at the start: small motions of all joints close the rest, and joints "
              "without a speed follow"},
-    {KEY(CHOICE, axis), CHOICES("x", "y", "z"), .required = true,
+    {KEY(CHOICE, axis),
+     CHOICES([BOUGH_SCENE_X] = "x", [BOUGH_SCENE_Y] = "y", [BOUGH_SCENE_Z] = "z"), .required = true,
      WHEN("kind", "revolute|prismatic|cylindrical|universal|planar"),
      .help = "axis of the motion, as of a joint; of a universal joint in the frame of 'from'"},
-    {KEY(CHOICE, second_axis), CHOICES("x", "y", "z"), .required = true, WHEN("kind", "universal"),
+    {KEY(CHOICE, second_axis),
+     CHOICES([BOUGH_SCENE_X] = "x", [BOUGH_SCENE_Y] = "y", [BOUGH_SCENE_Z] = "z"), .required = true, WHEN("kind", "universal"),
      .help = "normal to the axis, in the frame of 'to'"},
 };
 #undef FILLS
