@@ -1,10 +1,26 @@
-// bough modes: frequencies, damping and shapes of the whole scene (modes_whole.c), or of each rod,
-// clamped at its root, about equilibrium at rest or in steady rotation.
-#include "apps/bough/cli/modes.h"
+// bough modes: frequencies, damping and shapes of the whole scene, or of each rod, clamped at its root, about
+// equilibrium at rest or in steady rotation.
+#include "apps/bough/analysis/state_space.h"
 #include "apps/bough/analysis/steady.h"
-#include "apps/bough/analysis/vibration.h"
+#include "apps/bough/cli/modes_internal.h"
 #include "apps/bough/results/folder.h"
 #include "flexbody/rod/rod_modes.h"
+
+static const double unstable = 1e-6; // growth relative to |λ| above it is no rounding
+
+static const char *const blade_shapes[BOUGH_ROD_DIRECTIONS] = {
+    [BOUGH_ROD_FLAP] = "flap",
+    [BOUGH_ROD_EDGE] = "edge",
+    [BOUGH_ROD_AXIAL] = "axial",
+    [BOUGH_ROD_TORSION] = "torsion",
+};
+
+// Of shapes.csv, behind the name of the body.
+static const char shape_columns[] =
+    "mode,span (m),ux (m),uy (m),uz (m),rx (rad),ry (rad),rz (rad),imaginary ux (m),imaginary uy (m),"
+    "imaginary uz (m),imaginary rx (rad),imaginary ry (rad),imaginary rz (rad)\n";
+
+// -- each rod, clamped at its root ----------------------------------------------------------------
 
 // One rod and what was found.
 typedef struct rod_modes {
@@ -13,18 +29,14 @@ typedef struct rod_modes {
     bough_rod_mode_list list;
 } rod_modes;
 
-static const char *const directions[BOUGH_ROD_DIRECTIONS] = {
-    [BOUGH_ROD_FLAP] = "flap",
-    [BOUGH_ROD_EDGE] = "edge",
-    [BOUGH_ROD_AXIAL] = "axial",
-    [BOUGH_ROD_TORSION] = "torsion",
-};
-
-static const double unstable = -1e-6; // damping ratios below it are no rounding
+typedef struct rod_list {
+    int n;
+    rod_modes *rod; // (n)
+} rod_list;
 
 // -- table ----------------------------------------------------------------------------------------
 
-static void print_head(const rod_modes *x) {
+static void print_rod_head(const rod_modes *x) {
     const bough_rod_model *m = x->steady.model;
     printf("rod %s: %d segments, %.9g m, root held", m->name, m->n, m->span[m->n]);
     if (x->turning.speed != 0) {
@@ -39,35 +51,33 @@ static void print_head(const rod_modes *x) {
 }
 
 static void print_rod(const rod_modes *x) {
-    print_head(x);
+    print_rod_head(x);
     for (int k = 0; k < x->list.found; k++) {
         const bough_rod_mode *m = &x->list.mode[k];
         printf("%4d %12.6g %12.6g %11.5f  %-8s", k + 1, m->frequency, m->damped_frequency, 100 * m->damping,
-               directions[m->dominant]);
+               blade_shapes[m->dominant]);
         for (int c = 0; c < BOUGH_ROD_DIRECTIONS; c++) printf(" %7.4f", m->share[c]);
         putchar('\n');
     }
     for (int k = 0; k < x->list.found; k++) {
         const bough_rod_mode *m = &x->list.mode[k];
-        if (m->damping >= unstable) continue;
+        if (m->damping >= -unstable) continue;
         printf("unstable %s: mode %d grows at %.6g /s\n", x->steady.model->name, k + 1,
                -m->damping * m->frequency * 2 * BOUGH_PI);
     }
 }
 
-// -- files ----------------------------------------------------------------------------------------
-
-static void write_modes(FILE *file, const rod_modes *x) {
+static void write_rod_modes(FILE *file, const rod_modes *x) {
     for (int k = 0; k < x->list.found; k++) {
         const bough_rod_mode *m = &x->list.mode[k];
         fprintf(file, "%s,%d,%.10g,%.10g,%.10g,%s", x->steady.model->name, k + 1, m->frequency,
-                m->damped_frequency, m->damping, directions[m->dominant]);
+                m->damped_frequency, m->damping, blade_shapes[m->dominant]);
         for (int c = 0; c < BOUGH_ROD_DIRECTIONS; c++) fprintf(file, ",%.6g", m->share[c]);
         fputc('\n', file);
     }
 }
 
-static void write_shapes(FILE *file, const rod_modes *x) {
+static void write_rod_shapes(FILE *file, const rod_modes *x) {
     const bough_rod_model *m = x->steady.model;
     for (int k = 0; k < x->list.found; k++) {
         const bough_rod_mode *mode = &x->list.mode[k];
@@ -83,36 +93,22 @@ static void write_shapes(FILE *file, const rod_modes *x) {
     }
 }
 
-typedef struct table {
-    const char *name, *header;
-    void (*write)(FILE *file, const rod_modes *x);
-} table;
-
-static const table tables[] = {
-    {"modes.csv",
-     "rod,mode,frequency (Hz),damped frequency (Hz),damping ratio (-),shape,flap x (-),edge y (-),"
-     "axial z (-),torsion (-)\n",
-     write_modes},
-    {"shapes.csv",
-     "rod,mode,span (m),ux (m),uy (m),uz (m),rx (rad),ry (rad),rz (rad),imaginary ux (m),"
-     "imaginary uy (m),imaginary uz (m),imaginary rx (rad),imaginary ry (rad),imaginary rz (rad)\n",
-     write_shapes},
-};
-
-static bough_status write_table(const table *t, const char *folder, const rod_modes *rods, int n) {
-    char path[BOUGH_PATH_MAX];
-    FILE *file = NULL;
-    bough_status status = bough_folder_open(folder, t->name, path, &file);
-    if (!bough_is_ok(&status)) return status;
-    fputs(t->header, file);
-    for (int k = 0; k < n; k++) t->write(file, &rods[k]);
-    return bough_folder_commit(path, file);
+static void write_all_modes(const void *self, FILE *file) {
+    const rod_list *rods = self;
+    fputs("rod,mode,frequency (Hz),damped frequency (Hz),damping ratio (-),shape,flap x (-),edge y (-),"
+          "axial z (-),torsion (-)\n",
+          file);
+    for (int k = 0; k < rods->n; k++) write_rod_modes(file, &rods->rod[k]);
 }
 
-// -- the command ----------------------------------------------------------------------------------
+static void write_all_shapes(const void *self, FILE *file) {
+    const rod_list *rods = self;
+    fprintf(file, "rod,%s", shape_columns);
+    for (int k = 0; k < rods->n; k++) write_rod_shapes(file, &rods->rod[k]);
+}
 
-static bough_status solve(bough_arena *arena, const bough_simulation *s, const bough_beam *beam,
-                          rod_modes *x) {
+static bough_status solve_rod(bough_arena *arena, const bough_simulation *s, const bough_beam *beam,
+                              rod_modes *x) {
     x->list.wanted = s->scene->modes.count;
     bough_status status = bough_steady_turning(s, beam, &x->turning);
     if (bough_is_ok(&status)) {
@@ -123,16 +119,206 @@ static bough_status solve(bough_arena *arena, const bough_simulation *s, const b
                            &x->list);
 }
 
-static bough_status solve_all(bough_arena *arena, const bough_simulation *s, rod_modes *rods) {
+static bough_status solve_rods(bough_arena *arena, const bough_simulation *s, rod_modes *rods) {
     int n = 0;
     for (int k = 0; k < s->n_beam; k++) {
         if (s->beam[k].rod == NULL) continue;
-        bough_status status = solve(arena, s, &s->beam[k], &rods[n]);
+        bough_status status = solve_rod(arena, s, &s->beam[k], &rods[n]);
         if (!bough_is_ok(&status)) return status;
         print_rod(&rods[n++]);
     }
     return bough_ok();
 }
+
+// -- the whole scene ------------------------------------------------------------------------------
+
+// Rods that are no blades bend along their axes, rigid bodies move along the ground's.
+const char *bough_modes_shape(const bough_simulation *s, const bough_scene_mode *mode) {
+    static const char *const rod[] = {"x", "y", "z", "torsion"};
+    static const char *const rigid[] = {"x", "y", "z", "turn"};
+    const bough_beam *beam = bough_simulation_beam(s, mode->body);
+    if (beam == NULL || beam->port < 0) return rigid[mode->direction];
+    bool is_blade = mode->blades || bough_scene_blade(s->scene, mode->body) >= 0;
+    return (is_blade ? blade_shapes : rod)[mode->direction];
+}
+
+const char *bough_modes_body(const bough_simulation *s, const bough_scene_mode *mode) {
+    return mode->blades ? "blades" : s->scene->body[mode->body].name;
+}
+
+// Whether nothing but inertia holds the rotor's joint.
+static bool rotor_is_free(const bough_simulation *s) {
+    if (s->scene->turbine.node == NULL) return false;
+    const bough_scene_joint *joint = &s->scene->body[s->scene->turbine.rotor].joint;
+    return joint->spring.stiffness == 0 && joint->motion.node == NULL;
+}
+
+// All blades swing alike in their plane, or what they hang on turns: against each other where the
+// rotor is free, else against what holds it.
+static bool turns_rotor(const bough_scene_mode *mode) {
+    enum { TURN = 3 };
+    if (mode->pattern != BOUGH_PATTERN_COLLECTIVE) return false;
+    return mode->direction == (mode->blades ? BOUGH_ROD_EDGE : TURN);
+}
+
+// -- table ----------------------------------------------------------------------------------------
+
+static void print_head(const bough_simulation *s, const bough_vibration *v) {
+    printf("whole scene: %d states, about %s", s->master->assembly->n_state,
+           s->scene->modes.at == BOUGH_SCENE_IN_EQUILIBRIUM ? "equilibrium" : "its initial state");
+    if (v->spin != 0) printf(", rotor at %.6g rpm", v->spin * 30 / BOUGH_PI);
+    if (v->frozen) printf(", azimuth frozen: blades as seen from the rotating frame");
+    if (v->spin != 0 && v->n_blade > 0) printf(", seen by an observer at rest");
+    if (rotor_is_free(s)) printf(", rotor free to turn");
+    static const char *const air[] = {"do not follow", "follow at once", "follow in time"};
+    if (s->aero) printf("; the air's forces %s", air[s->scene->modes.air]);
+    printf("\n%4s %12s %12s %11s  %-12s %-8s %-12s %8s %8s %8s\n", "mode", "frequency", "damped", "damping",
+           "body", "shape", "pattern", "collect.", "forward", "backward");
+    printf("%4s %12s %12s %11s\n", "", "(Hz)", "(Hz)", "(%)");
+}
+
+static void print_modes(const bough_simulation *s, const bough_vibration *v) {
+    print_head(s, v);
+    for (int k = 0; k < v->found; k++) {
+        const bough_scene_mode *m = &v->mode[k];
+        printf("%4d %12.6g %12.6g %11.5f  %-12s %-8s %-12s", k + 1, m->frequency, m->damped_frequency,
+               100 * m->damping, bough_modes_body(s, m), bough_modes_shape(s, m),
+               bough_pattern_names[m->pattern]);
+        for (int c = 0; v->n_blade > 0 && c < 3; c++) printf(" %8.4f", m->whirl[c]);
+        if (rotor_is_free(s) && turns_rotor(m)) printf("  free rotor");
+        putchar('\n');
+    }
+    if (v->found < s->scene->modes.count) printf("no more modes found\n");
+    for (int k = 0; k < v->found; k++) {
+        const bough_scene_mode *m = &v->mode[k];
+        if (m->growth <= unstable * 2 * BOUGH_PI * m->frequency) continue;
+        printf(
+            "unstable: mode %d grows at %.6g /s%s\n", k + 1, m->growth,
+            m->damped_frequency == 0 && s->aero && rotor_is_free(s)
+                ? " without swinging: the speed of the rotor, if the air's torque grows with it or, at a frozen "
+                  "azimuth, by its weight; the generator's torque and the pitch are held"
+                : "");
+    }
+}
+
+// -- files ----------------------------------------------------------------------------------------
+
+typedef struct solution {
+    const bough_simulation *simulation;
+    const bough_vibration *found;
+} solution;
+
+static void write_modes(const void *self, FILE *file) {
+    const solution *x = self;
+    const bough_simulation *s = x->simulation;
+    const bough_vibration *v = x->found;
+    int n_body = s->scene->n_body;
+    fputs("mode,frequency (Hz),damped frequency (Hz),damping ratio (-),body,shape,pattern,"
+          "collective (-),forward (-),backward (-)",
+          file);
+    for (int i = 0; i < n_body; i++) fprintf(file, ",%s (-)", s->scene->body[i].name);
+    fputc('\n', file);
+    for (int k = 0; k < v->found; k++) {
+        const bough_scene_mode *m = &v->mode[k];
+        fprintf(file, "%d,%.10g,%.10g,%.10g,%s,%s,%s", k + 1, m->frequency, m->damped_frequency, m->damping,
+                bough_modes_body(s, m), bough_modes_shape(s, m), bough_pattern_names[m->pattern]);
+        for (int c = 0; c < 3; c++) fprintf(file, ",%.6g", m->whirl[c]);
+        for (int i = 0; i < n_body; i++) fprintf(file, ",%.6g", m->share[i]);
+        fputc('\n', file);
+    }
+}
+
+static void write_shapes(const void *self, FILE *file) {
+    const solution *x = self;
+    const bough_simulation *s = x->simulation;
+    const bough_vibration *v = x->found;
+    fprintf(file, "body,%s", shape_columns);
+    for (int k = 0; k < v->found; k++) {
+        for (int i = 0; i < v->n_row; i++) {
+            const bough_shape_row *row = &v->mode[k].shape[i];
+            fprintf(file, "%s,%d,%.10g", s->scene->body[row->body].name, k + 1, row->span);
+            for (int c = 0; c < 12; c++) fprintf(file, ",%.10g", row->motion[c / 6][c % 6]);
+            fputc('\n', file);
+        }
+    }
+}
+
+// -- the linear state space -----------------------------------------------------------------------
+
+// Either a matrix or a list of names.
+typedef struct content {
+    const char *name;
+    int rows, columns;
+    const double *matrix;
+    const bough_signal_name *list; // (rows)
+} content;
+
+static void write_matrix(const void *self, FILE *file) {
+    const content *x = self;
+    long entries = 0, all = (long)x->rows * x->columns;
+    for (long k = 0; k < all; k++) entries += x->matrix[k] != 0;
+    fprintf(file, "%%%%MatrixMarket matrix coordinate real general\n%d %d %ld\n", x->rows, x->columns,
+            entries);
+    for (long k = 0; k < all; k++) {
+        if (x->matrix[k] == 0) continue;
+        fprintf(file, "%ld %ld %.12g\n", k % x->rows + 1, k / x->rows + 1, x->matrix[k]);
+    }
+}
+
+static void write_list(const void *self, FILE *file) {
+    const content *x = self;
+    fputs("number,name,unit,value\n", file);
+    for (int k = 0; k < x->rows; k++)
+        fprintf(file, "%d,\"%s\",%s,%.12g\n", k + 1, x->list[k].name, x->list[k].unit, x->list[k].value);
+}
+
+// Writes A.mtx to D.mtx (Matrix Market, coordinates of the entries that are not 0) and states.csv,
+// inputs.csv and outputs.csv, row k of which names row or column k of the matrices.
+static bough_status write_linear(bough_arena *arena, bough_simulation *s, double time, const char *folder) {
+    bough_state_space x;
+    bough_status status = bough_state_space_find(arena, s, time, &x);
+    const content contents[] = {
+        {"A.mtx", x.n, x.n, x.a, NULL},
+        {"B.mtx", x.n, x.n_input, x.b, NULL},
+        {"C.mtx", x.n_output, x.n, x.c, NULL},
+        {"D.mtx", x.n_output, x.n_input, x.d, NULL},
+        {"states.csv", x.n, 1, NULL, x.state},
+        {"inputs.csv", x.n_input, 1, NULL, x.input},
+        {"outputs.csv", x.n_output, 1, NULL, x.output},
+    };
+    for (int k = 0; k < 7 && bough_is_ok(&status); k++) {
+        const content *c = &contents[k];
+        status = bough_folder_write(folder, c->name, c->matrix ? write_matrix : write_list, c);
+    }
+    if (bough_is_ok(&status))
+        printf("linear system: %d states, %d inputs, %d outputs\n", x.n, x.n_input, x.n_output);
+    return status;
+}
+
+static bough_status find_whole(bough_arena *arena, const bough_options *options, bough_simulation *s) {
+    bough_vibration v;
+    const char *folder = bough_out_folder(arena, options);
+    if (s->master->assembly->n_state == 0) {
+        return bough_fail(BOUGH_INVALID, "%.200s: no body of the scene can move or bend", s->scene->file);
+    }
+    bough_status status = bough_vibration_find(arena, s, s->scene->modes.count, &v);
+    if (!bough_is_ok(&status)) return status;
+    const solution x = {s, &v};
+    print_modes(s, &v);
+    status = bough_folder_make(folder);
+    if (bough_is_ok(&status)) status = bough_folder_write(folder, "modes.csv", write_modes, &x);
+    if (bough_is_ok(&status) && s->scene->modes.shapes) {
+        status = bough_folder_write(folder, "shapes.csv", write_shapes, &x);
+    }
+    bool balanced = s->scene->modes.at == BOUGH_SCENE_IN_EQUILIBRIUM;
+    if (bough_is_ok(&status) && s->scene->modes.linear) {
+        status = write_linear(arena, s, balanced ? bough_equilibrium_time(s) : 0, folder);
+    }
+    if (bough_is_ok(&status)) printf("out: %s\n", folder);
+    return status;
+}
+
+// -- the command ----------------------------------------------------------------------------------
 
 typedef struct modes_options {
     bough_options common;
@@ -155,17 +341,17 @@ static bough_status find(bough_arena *arena, const void *given) {
     bough_status status = bough_open(arena, options, &s);
     if (bough_is_ok(&status)) status = bough_simulation_known(s, "it has no modes");
     if (!bough_is_ok(&status)) return status;
-    if (bough_vibration_wanted(s)) return bough_modes_whole(arena, options, s);
+    if (bough_vibration_wanted(s)) return find_whole(arena, options, s);
     if (bough_steady_rods(s) == 0) {
         return bough_fail(BOUGH_INVALID, "%.200s: no body has fidelity rod", s->scene->file);
     }
     const char *folder = bough_out_folder(arena, options);
-    rod_modes *rods = bough_arena_take(arena, (size_t)s->n_rod * sizeof *rods);
-    status = solve_all(arena, s, rods);
+    rod_list rods = {bough_steady_rods(s), bough_arena_take(arena, (size_t)s->n_rod * sizeof *rods.rod)};
+    status = solve_rods(arena, s, rods.rod);
     if (bough_is_ok(&status)) status = bough_folder_make(folder);
-    for (int k = 0; k <= (s->scene->modes.shapes ? 1 : 0) && bough_is_ok(&status); k++) {
-        status = write_table(&tables[k], folder, rods, bough_steady_rods(s));
-    }
+    if (bough_is_ok(&status)) status = bough_folder_write(folder, "modes.csv", write_all_modes, &rods);
+    if (bough_is_ok(&status) && s->scene->modes.shapes)
+        status = bough_folder_write(folder, "shapes.csv", write_all_shapes, &rods);
     if (bough_is_ok(&status)) printf("out: %s\n", folder);
     return status;
 }

@@ -1,7 +1,7 @@
 // bough modes --sweep: the modes of the whole scene over a list of operating points, as a table and a
 // Campbell diagram.
 #include "apps/bough/analysis/vibration.h"
-#include "apps/bough/cli/modes.h"
+#include "apps/bough/cli/modes_internal.h"
 #include "apps/bough/results/folder.h"
 #include "apps/bough/results/picture.h"
 
@@ -51,9 +51,7 @@ static const char *next_value(bough_arena *arena, const char **rest) {
         depth += (from[n] == '[' || from[n] == '{') - (from[n] == ']' || from[n] == '}');
     }
     *rest = from + n + (from[n] == ',');
-    char *value = bough_arena_take(arena, n + 1);
-    if (value) snprintf(value, n + 1, "%.*s", (int)n, from);
-    return value;
+    return bough_arena_print(arena, "%.*s", (int)n, from);
 }
 
 static int count_values(bough_arena *arena, const char *list) {
@@ -81,9 +79,7 @@ static bough_status read_points(bough_arena *arena, const bough_texts *sweeps, s
         }
         s->n_point = n;
         if (k == 0) s->value = bough_arena_take(arena, (size_t)s->n_key * (size_t)n * sizeof *s->value);
-        char *key = bough_arena_take(arena, (size_t)(list - text) + 1);
-        snprintf(key, (size_t)(list - text) + 1, "%s", text);
-        s->key[k] = key;
+        s->key[k] = bough_arena_print(arena, "%.*s", (int)(list - text), text);
         list++;
         for (int i = 0; i < n; i++) s->value[k * n + i] = next_value(arena, &list);
     }
@@ -98,11 +94,8 @@ static bough_status set_point(bough_arena *arena, const bough_options *options, 
     at->set.text = bough_arena_take(arena, (size_t)(options->set.n + s->n_key) * sizeof(char *));
     for (int k = 0; k < options->set.n; k++) at->set.text[k] = options->set.text[k];
     for (int k = 0; k < s->n_key; k++) {
-        const char *value = s->value[k * s->n_point + point];
-        size_t size = strlen(s->key[k]) + strlen(value) + 2;
-        char *text = bough_arena_take(arena, size);
-        snprintf(text, size, "%s=%s", s->key[k], value);
-        at->set.text[at->set.n++] = text;
+        at->set.text[at->set.n++] =
+            bough_arena_print(arena, "%s=%s", s->key[k], s->value[k * s->n_point + point]);
     }
     return bough_ok();
 }
@@ -272,18 +265,16 @@ static void add_multiples(diagram *d, double frequency) {
 static void add_line(diagram *d, int line) {
     const sweep *s = d->sweep;
     const sweep_mode *last = NULL;
-    char label[100];
     for (int i = 0; i < s->n_mode; i++)
         if (s->mode[i].line == line && !(d->damping && s->mode[i].damped == 0)) last = &s->mode[i];
     bough_chart_add_line(&d->chart, (bough_chart_line){.colour = line, .joined = true, .marked = true});
     for (const sweep_mode *m = s->mode; last && m <= last; m++) {
         if (m->line != line || (d->damping && m->damped == 0)) continue;
-        snprintf(label, sizeof label, "%d %s %s %s", line + 1, m->body, m->shape, m->pattern);
-        bough_chart_add(
-            &d->chart,
-            (bough_chart_point){.x = x_of(d, m->point),
-                                .y = d->damping ? 100 * m->damping : m->frequency,
-                                .label = m == last ? bough_arena_string(d->chart.arena, label) : NULL});
+        const char *label =
+            bough_arena_print(d->chart.arena, "%d %s %s %s", line + 1, m->body, m->shape, m->pattern);
+        bough_chart_add(&d->chart, (bough_chart_point){.x = x_of(d, m->point),
+                                                       .y = d->damping ? 100 * m->damping : m->frequency,
+                                                       .label = m == last ? label : NULL});
     }
 }
 

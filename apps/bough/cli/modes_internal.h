@@ -1,0 +1,15 @@
+// What the files of `bough modes` share.
+#ifndef BOUGH_APPS_CLI_MODES_INTERNAL_H
+#define BOUGH_APPS_CLI_MODES_INTERNAL_H
+
+#include "apps/bough/analysis/vibration.h"
+#include "apps/bough/cli/command.h"
+
+// Solves every point of --sweep and writes campbell.csv and campbell.svg.
+bough_status bough_modes_sweep(bough_arena *arena, const bough_options *options, const bough_texts *sweeps);
+
+// What moves most in a mode, and how.
+const char *bough_modes_body(const bough_simulation *s, const bough_scene_mode *mode);
+const char *bough_modes_shape(const bough_simulation *s, const bough_scene_mode *mode);
+
+#endif
