@@ -2,6 +2,7 @@
 #include "core/base/arena.h"
 
 #include <setjmp.h>
+#include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -123,6 +124,18 @@ char *bough_arena_string(bough_arena *arena, const char *text) {
     if (!text) return NULL;
     size_t size = strlen(text) + 1;
     return memcpy(bough_arena_take(arena, size), text, size);
+}
+
+char *bough_arena_print(bough_arena *arena, const char *format, ...) {
+    va_list arguments, again;
+    va_start(arguments, format);
+    va_copy(again, arguments);
+    size_t size = (size_t)vsnprintf(NULL, 0, format, arguments) + 1;
+    char *text = bough_arena_take(arena, size);
+    vsnprintf(text, size, format, again);
+    va_end(again);
+    va_end(arguments);
+    return text;
 }
 
 void bough_arena_on_destroy(bough_arena *arena, void (*release)(void *), void *object) {

@@ -45,6 +45,9 @@ void bough_arena_arrays(bough_arena *arena, size_t count, double **const *array)
 // A copy of the string, NULL for NULL.
 char *bough_arena_string(bough_arena *arena, const char *text);
 
+// A text as printf makes it.
+char *bough_arena_print(bough_arena *arena, const char *format, ...) __attribute__((format(printf, 2, 3)));
+
 // Calls `release(object)` when the arena is destroyed, newest first: for handles of libraries.
 // Exhausted memory releases the object at once.
 void bough_arena_on_destroy(bough_arena *arena, void (*release)(void *), void *object);

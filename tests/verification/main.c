@@ -7,17 +7,13 @@ static bough_status verify(bough_arena *arena, const void *given) {
     bough_errors errors = {.arena = arena};
     bough_verification verification;
     bough_status status = bough_verification_read(arena, options->operand, &errors, &verification);
-    if (errors.n > 0 && status.code == BOUGH_INVALID) {
-        bough_errors_print(&errors, stderr);
-        status.message[0] = '\0';
-    }
+    bough_errors_tell(&errors, &status);
     if (!bough_is_ok(&status)) return status;
     bough_verification_options how = {.folder = bough_out_folder(arena, options),
                                       .threads = options->threads,
                                       .quiet = options->quiet,
                                       .stop = bough_stop_requested,
                                       .stream = stdout};
-    if (!how.folder) return bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory");
     bough_stop_listen();
     status = bough_verification_perform(arena, &verification, &how);
     if (bough_is_ok(&status)) printf("out: %s\n", how.folder);

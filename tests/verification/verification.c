@@ -35,10 +35,7 @@ bough_status bough_verification_read(bough_arena *arena, const char *path, bough
     if (verification->kind) {
         verification->study = verification->kind->read(arena, path, root, errors);
     }
-    int n = errors->n + errors->dropped;
-    if (n == 0) return bough_ok();
-    bough_errors_sort(errors, path);
-    return bough_fail(BOUGH_INVALID, "%s: %d error%s in the study", path, n, n == 1 ? "" : "s");
+    return bough_errors_status(errors, path, "study");
 }
 
 bough_status bough_verification_perform(bough_arena *arena, const bough_verification *verification,

@@ -6,40 +6,29 @@
 #include <stdlib.h>
 #include <string.h>
 
-// Of a mode's residual, relative; what is worse belongs to the rest of the basis.
-static const double converged = 1e-3;
-// Real eigenvalues closer than this, relative, are one twice.
-static const double twins = 1e-4;
+static const double converged = 1e-3; // largest relative residual of a mode that is kept
+static const double same = 1e-4;      // relative distance of two real eigenvalues that count as a double one
 
 enum { SWEEPS = 12 }; // of the simultaneous iteration, on twice as many vectors as are kept
 
-// Of a mode's participation; below it is one of the air, in which the bodies hardly take part.
-static const double least_motion = 0.2;
+static const double least_motion = 0.2; // participation of the bodies; modes with less are the air's
 
 typedef struct work {
     bough_whole *coupled;
     const bough_modes_def *def;
     int n, k;
-    double *inverse;                          // P = (I − γJ)⁻¹ (n × n)
-    double *turned;                           // I + γ P S, factored (n × n)
-    int *pivot;                               // (n)
-    double *right, *left;                     // bases (n × k)
-    double *image, *small;                    // (n × k), (k × k)
-    double *turned_basis, *mode, *mode_image; // (n × k)
+    double *inverse;                   // P = (I − γJ)⁻¹ (n × n)
+    double *turned;                    // I + γ P S, factored (n × n)
+    int *pivot;                        // (n)
+    double *right, *left;              // bases (n × k)
+    double *image, *mode, *mode_image; // (n × k)
 } work;
 
 static void take(bough_arena *arena, work *w) {
     size_t n = (size_t)w->n, k = (size_t)w->k;
-    w->inverse = bough_arena_doubles(arena, n * n);
-    w->turned = bough_arena_doubles(arena, n * n);
     w->pivot = bough_arena_take(arena, (n + k) * sizeof *w->pivot);
-    w->right = bough_arena_doubles(arena, n * k);
-    w->left = bough_arena_doubles(arena, n * k);
-    w->image = bough_arena_doubles(arena, n * k);
-    w->small = bough_arena_doubles(arena, k * k);
-    w->turned_basis = bough_arena_doubles(arena, n * k);
-    w->mode = bough_arena_doubles(arena, n * k);
-    w->mode_image = bough_arena_doubles(arena, n * k);
+    bough_arena_each(arena, n * n, &w->inverse, &w->turned);
+    bough_arena_each(arena, n * k, &w->right, &w->left, &w->image, &w->mode, &w->mode_image);
 }
 
 // -- the inverse ----------------------------------------------------------------------------------
@@ -152,9 +141,8 @@ typedef struct ritz {
 
 static void take_ritz(bough_arena *arena, int k, ritz *r) {
     size_t n = (size_t)k;
-    r->matrix = bough_arena_doubles(arena, n * n);
+    bough_arena_each(arena, n * n, &r->matrix, &r->vector);
     r->value = bough_arena_doubles(arena, 2 * n);
-    r->vector = bough_arena_doubles(arena, n * n);
     r->room = bough_arena_doubles(arena, 8 * n);
     r->order = bough_arena_take(arena, n * sizeof *r->order);
     r->good = bough_arena_take(arena, n * sizeof *r->good);
@@ -232,9 +220,9 @@ static int keep(work *w, const ritz *right, ritz *left, int most, int *block) {
         if (other < 0) continue;
         left->taken[other] = true;
         double value = right->value[at];
-        bool twin = size == 1 && fabs(value - last) < twins * fabs(value);
-        block[twin ? kept - 1 : kept] = twin ? 2 : size;
-        last = size == 1 && !twin ? value : 0;
+        bool is_double = size == 1 && fabs(value - last) < same * fabs(value);
+        block[is_double ? kept - 1 : kept] = is_double ? 2 : size;
+        last = size == 1 && !is_double ? value : 0;
         for (int c = 0; c < size; c++, kept++) {
             memcpy(w->mode + (size_t)kept * n, w->right + (size_t)(at + c) * n, bytes);
             memcpy(w->mode_image + (size_t)kept * n, w->left + (size_t)(other + c) * n, bytes);
@@ -295,8 +283,8 @@ static bool set_motion(bough_arena *arena, work *w, bough_aeroelastic *to) {
     int *size = bough_arena_take(arena, (size_t)w->k * sizeof *size);
     apply(w, w->right, w->image);
     if (!find_ritz(w, w->right, &right)) return false;
-    memcpy(w->turned_basis, w->left, (size_t)w->n * (size_t)w->k * sizeof(double));
-    apply_transposed(w, w->turned_basis, w->image);
+    memcpy(w->mode, w->left, (size_t)w->n * (size_t)w->k * sizeof(double));
+    apply_transposed(w, w->mode, w->image);
     if (!find_ritz(w, w->left, &left)) return false;
     to->n_motion = keep(w, &right, &left, to->n_motion, size);
     for (int i = 0; i < to->n_motion; i += size[i]) {
@@ -360,8 +348,8 @@ static void add_followed(const bough_air_tangent *t, int columns, const double *
 static void add_response(bough_arena *arena, work *w, const bough_air_tangent *t, bough_aeroelastic *to) {
     int n = w->n, k = to->n_motion, m = t->n_air;
     size_t most = (size_t)(k > m ? k : m);
-    double *force = bough_arena_doubles(arena, (size_t)n * most),
-           *moved = bough_arena_doubles(arena, (size_t)n * most);
+    double *force, *moved;
+    bough_arena_each(arena, (size_t)n * most, &force, &moved);
     double *block = bough_arena_doubles(arena, most * most);
     bough_dense_product((bough_product){n, k, n, false, 1, 0}, t->motion, to->shape, force);
     follow(w, to, k, force, block, moved);

@@ -7,11 +7,12 @@
 #include <math.h>
 #include <string.h>
 
-// Differences, in units of the states' scales; of the air's states, absolute; over so long a time a rate of
-// the air's states is taken [s], and so long they come to rest.
-static const double difference = 1e-5, air_difference = 1e-6, moment = 1e-5, long_while = 1e4;
+static const double difference = 1e-5;     // of a state of the bodies, in units of its scale
+static const double air_difference = 1e-6; // of a state of the air
+static const double rate_time = 1e-5;      // over which the rate of a state of the air is taken [s]
+static const double rest_time = 1e4;       // of one of the steps in which the air comes to rest [s]
 
-enum { SETTLINGS = 4 };
+enum { REST_STEPS = 4 };
 
 typedef struct work {
     bough_simulation *simulation;
@@ -20,7 +21,7 @@ typedef struct work {
     bool dynamic;
     int n_memory, n_air;
     int *row;                        // (n_air) of the memory
-    double *memory, *before, *after; // (n_memory): at rest, around a moment
+    double *memory, *before, *after; // (n_memory): at rest; at both ends of rate_time
     double *state;                   // (n)
     double *rate[2], *air_rate[2];   // (n), (n_air) on either side
 } work;
@@ -28,35 +29,29 @@ typedef struct work {
 static void take(bough_arena *arena, work *w) {
     size_t n = (size_t)w->coupled->assembly->n_state, m = (size_t)w->n_memory + 1;
     w->row = bough_arena_take(arena, m * sizeof *w->row);
-    w->memory = bough_arena_doubles(arena, m);
-    w->before = bough_arena_doubles(arena, m);
-    w->after = bough_arena_doubles(arena, m);
-    w->state = bough_arena_doubles(arena, n);
-    for (int side = 0; side < 2; side++) {
-        w->rate[side] = bough_arena_doubles(arena, n);
-        w->air_rate[side] = bough_arena_doubles(arena, m);
-    }
+    bough_arena_each(arena, m, &w->memory, &w->before, &w->after, &w->air_rate[0], &w->air_rate[1]);
+    bough_arena_each(arena, n, &w->state, &w->rate[0], &w->rate[1]);
 }
 
-// Lets the air go on for `step` from the memory in `from`, which is changed, to `to`.
-static void go_on(work *w, double step, double *from, double *to) {
+// Advances the air's states by `step` from `from`, which is changed, to `to`.
+static void advance_air(work *w, double step, double *from, double *to) {
     from[0] = w->time - step;
     bough_aero_link_memory(w->simulation->aero, BOUGH_SNAPSHOT_RESTORE, from);
-    bough_aero_link_go_on(w->simulation->aero, w->time);
+    bough_aero_link_continue(w->simulation->aero, w->time);
     bough_aero_link_memory(w->simulation->aero, BOUGH_SNAPSHOT_SAVE, to);
 }
 
 // Rates of all states at `state` under the loads that the air has for w->state and the memory in
-// w->before. The first moment makes the air's inputs those of this state.
+// w->before. The first of two short steps makes the air's inputs those of this state.
 static bough_status find_rates(work *w, const double *state, double *rate, double *air_rate) {
     bough_simulation *s = w->simulation;
     bough_equilibrium_set_state(s, w->coupled->assembly, w->state);
     if (w->dynamic) {
-        go_on(w, moment, w->before, w->after);
+        advance_air(w, rate_time, w->before, w->after);
         memcpy(w->before, w->after, (size_t)w->n_memory * sizeof *w->before);
-        go_on(w, moment, w->before, w->after);
+        advance_air(w, rate_time, w->before, w->after);
         for (int k = 0; k < w->n_air; k++) {
-            air_rate[k] = (w->after[w->row[k]] - w->before[w->row[k]]) / moment;
+            air_rate[k] = (w->after[w->row[k]] - w->before[w->row[k]]) / rate_time;
         }
     } else {
         bough_aero_link_hold(s->aero, w->time);
@@ -72,10 +67,10 @@ static void settle(work *w, const double *state) {
     bough_aero_link_hold(s->aero, w->time);
     if (s->drag != NULL) bough_drag_link_hold(s->drag, w->time);
     if (!w->dynamic) return;
-    bough_aero_link_go_on(s->aero, w->time);
+    bough_aero_link_continue(s->aero, w->time);
     bough_aero_link_memory(s->aero, BOUGH_SNAPSHOT_SAVE, w->before);
-    for (int k = 0; k < SETTLINGS; k++) {
-        go_on(w, long_while, w->before, w->memory);
+    for (int k = 0; k < REST_STEPS; k++) {
+        advance_air(w, rest_time, w->before, w->memory);
         memcpy(w->before, w->memory, (size_t)w->n_memory * sizeof *w->before);
     }
 }
@@ -188,13 +183,13 @@ typedef struct blocks {
 
 // NOLINTNEXTLINE(readability-function-size): one sum over six indices
 static void average(const blocks *b, double *a) {
-    for (int apart = 0; apart < b->n_part; apart++) {
+    for (int between = 0; between < b->n_part; between++) {
         for (int j = 0; j < b->n_from; j++) {
             for (int i = 0; i < b->n_to; i++) {
                 double sum = 0;
                 for (int pass = 0; pass < 2; pass++) {
                     for (int k = 0; k < b->n_part; k++) {
-                        int l = (k + apart) % b->n_part;
+                        int l = (k + between) % b->n_part;
                         size_t column = (size_t)b->from[l * b->n_from + j] * (size_t)b->rows;
                         double *entry = a + column + (size_t)b->to[k * b->n_to + i];
                         if (pass == 0) sum += *entry / b->n_part;

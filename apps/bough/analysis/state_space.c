@@ -90,7 +90,7 @@ static void find_inputs(work *w, bough_state_space *to) {
         if (bough_control_link_pitches(s->control))
             add_input(w, COLLECTIVE_PITCH, 0, pitch, "collective pitch", "rad", to);
     }
-    if (in_air(s) && wind->kind <= BOUGH_SCENE_WIND_LOG && wind->table.node == NULL)
+    if (in_air(s) && bough_scene_wind_is_steady(wind))
         add_input(w, WIND_SPEED, 0, bough_rotor_wind(bough_aero_link_rotor(s->aero))->def.speed, "wind speed",
                   "m/s", to);
 }
@@ -201,7 +201,8 @@ static void put_rates(const work *w, double size, double *column) {
 static void put_outputs(const work *w, int n_output, double size, double *column) {
     for (int k = 0; k < n_output; k++) {
         double change = w->value[1][k] - w->value[0][k];
-        if (strcmp(w->channels.channel[k].unit, "deg") == 0) change = remainder(change, 360);
+        double turn = w->channels.channel[k].turn;
+        if (turn > 0) change = remainder(change, turn);
         column[k] = change / (2 * size);
     }
 }
@@ -269,14 +270,11 @@ static bough_status prepare(bough_arena *arena, work *w) {
     bough_status status = bough_simulation_channels(s, &w->channels);
     if (bough_is_ok(&status)) w->coupled = bough_whole_create_evaluation(arena, a, NULL);
     if (!bough_is_ok(&status)) return status;
-    double *about = bough_arena_doubles(arena, n + 1);
-    w->state = bough_arena_doubles(arena, n + 1);
+    double *about;
     w->input = bough_arena_take(arena, most * sizeof *w->input);
     w->size = bough_arena_doubles(arena, most);
-    for (int side = 0; side < 2; side++) {
-        w->rate[side] = bough_arena_doubles(arena, n + 1);
-        w->value[side] = bough_arena_doubles(arena, (size_t)w->channels.count + 1);
-    }
+    bough_arena_each(arena, n + 1, &about, &w->state, &w->rate[0], &w->rate[1]);
+    bough_arena_each(arena, (size_t)w->channels.count + 1, &w->value[0], &w->value[1]);
     bough_assembly_states(a, about);
     w->about = about;
     return bough_ok();

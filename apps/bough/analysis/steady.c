@@ -8,18 +8,11 @@ int bough_steady_rods(const bough_simulation *s) {
     return n;
 }
 
-static bool carries(const bough_scene *scene, int ancestor, const bough_scene_body *body) {
-    for (; body != &scene->body[ancestor]; body = &scene->body[body->joint.parent]) {
-        if (body->joint.parent == BOUGH_GROUND) return false;
-    }
-    return true;
-}
-
 // The named body, or the nearest on a revolute joint below the rod; NULL when there is none.
 static const bough_scene_body *pivot_of(const bough_scene *scene, const bough_beam *beam) {
     const bough_scene_body *body = beam->body;
     if (scene->modes.about_name != NULL) {
-        bool good = carries(scene, scene->modes.about, body);
+        bool good = bough_scene_carries(scene, scene->modes.about, (int)(body - scene->body));
         return good ? &scene->body[scene->modes.about] : NULL;
     }
     while (body->joint.kind != BOUGH_JOINT_REVOLUTE) {
@@ -57,16 +50,12 @@ bough_status bough_steady_turning(const bough_simulation *s, const bough_beam *b
 
 // What hangs on a rod would pull at it; that is not known here.
 static bough_status check_carries_none(const bough_simulation *s, const bough_beam *beam) {
-    for (int i = 0; i < s->scene->n_body; i++) {
-        const bough_scene_body *body = &s->scene->body[i];
-        int parent = body->joint.parent;
-        if (parent < 0 || &s->scene->body[parent] != beam->body) continue;
-        return bough_fail(BOUGH_INVALID,
-                          "rod %s carries the body %s; there is no equilibrium in "
-                          "steady rotation for rods that carry bodies",
-                          beam->body->name, body->name);
-    }
-    return bough_ok();
+    int carried = bough_scene_carried_by(s->scene, (int)(beam->body - s->scene->body));
+    if (carried < 0) return bough_ok();
+    return bough_fail(BOUGH_INVALID,
+                      "rod %s carries the body %s; there is no equilibrium in "
+                      "steady rotation for rods that carry bodies",
+                      beam->body->name, s->scene->body[carried].name);
 }
 
 // Twist and gravity of the body's frame.

@@ -58,8 +58,7 @@ typedef struct solution {
 
 static bough_status prepare(bough_arena *arena, bough_simulation *s, solution *x) {
     const bough_assembly *a = s->master->assembly;
-    x->state = bough_arena_doubles(arena, (size_t)a->n_state + 1);
-    x->mean = bough_arena_doubles(arena, (size_t)a->n_state + 1);
+    bough_arena_each(arena, (size_t)a->n_state + 1, &x->state, &x->mean);
     x->held = bough_arena_take(arena, ((size_t)s->leader.system.n_state + 1) * sizeof *x->held);
     bough_assembly_states(a, x->state);
     x->coupled = bough_whole_create(arena, a, NULL);
@@ -172,8 +171,8 @@ bool bough_vibration_wanted(const bough_simulation *s) {
     const bough_scene_modes *modes = &s->scene->modes;
     if (modes->of != BOUGH_SCENE_MODES_AUTO) return modes->of == BOUGH_SCENE_MODES_SCENE;
     bool axis = modes->axis[0] != 0 || modes->axis[1] != 0 || modes->axis[2] != 0;
-    bool reduced = bough_steady_rods(s) < s->n_rod; // what is no rod has no modes by itself
-    return (!bough_equilibrium_apart(s) || reduced) && modes->speed == 0 && !axis;
+    bool reduced = bough_steady_rods(s) < s->n_rod; // a modal body has modes in the whole scene only
+    return (!bough_rods_are_independent(s) || reduced) && modes->speed == 0 && !axis;
 }
 
 bough_status bough_vibration_find(bough_arena *arena, bough_simulation *s, int count,

@@ -25,7 +25,7 @@ typedef struct bough_vibration {
 // Whether the scene's modes block, or the scene without it, asks for modes of the whole.
 bool bough_vibration_wanted(const bough_simulation *s);
 
-// The `count` lowest modes, or fewer if there are not so many that can be told to 1e-9; free
+// The `count` lowest modes, or fewer if not so many converge to 1e-9; free
 // motions, whose eigenvalue is 0, are left out. The simulation is left in the state they are about.
 bough_status bough_vibration_find(bough_arena *arena, bough_simulation *s, int count,
                                   bough_vibration *vibration);

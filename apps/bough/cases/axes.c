@@ -54,10 +54,7 @@ static void read_setting(bough_schema_reader *r, const char *key, const bough_no
         bough_schema_error(r, value, key, "expected one value, got %s", bough_node_shown(value, shown));
         return;
     }
-    size_t size = strlen(key) + strlen(flow) + 2;
-    char *set = bough_arena_take(r->arena, size);
-    snprintf(set, size, "%s=%s", key, flow);
-    *setting = (bough_study_setting){value, key, text, set};
+    *setting = (bough_study_setting){value, key, text, bough_arena_print(r->arena, "%s=%s", key, flow)};
 }
 
 static bool is_mapping(bough_schema_reader *r, const bough_node *node, const char *what) {
@@ -151,12 +148,9 @@ void bough_grid_place(const bough_study_grid *grid, int number, int *index) {
 }
 
 const char *bough_grid_settings(bough_arena *arena, const bough_study_grid *grid, const int *index) {
-    size_t size = 1, used = 0;
-    for (int i = 0; i < grid->n; i++)
-        size += strlen(grid->axis[i].label) + strlen(grid->axis[i].value.item[index[i]].value) + 3;
-    char *text = bough_arena_take(arena, size);
+    const char *text = "";
     for (int i = 0; i < grid->n; i++) {
-        used += (size_t)snprintf(text + used, size - used, "%s%s=%s", i ? ", " : "", grid->axis[i].label,
+        text = bough_arena_print(arena, "%s%s%s=%s", text, i ? ", " : "", grid->axis[i].label,
                                  grid->axis[i].value.item[index[i]].value);
     }
     return text;

@@ -120,8 +120,7 @@ static const bough_node *origin(const bough_study *s, const bough_case *c, const
 
 static void add_unknown(const bough_channels *channels, const char *name, const bough_node *node,
                         const char *key, bough_errors *errors) {
-    const char **names = bough_arena_take(errors->arena, (size_t)(channels->count + 1) * sizeof *names);
-    for (int i = 0; i < channels->count; i++) names[i] = channels->channel[i].name;
+    const char *const *names = bough_channels_names(channels, errors->arena);
     bough_errors_add(errors, node, key, "the scene has no channel '%.80s'%s", name,
                      bough_suggest(name, names, channels->count).text);
 }
@@ -169,7 +168,7 @@ static void keep_channels(bough_arena *arena, bough_study *s, const bough_channe
     s->n_channel = all ? channels->count : s->n_wanted;
     s->channel = bough_arena_take(arena, (size_t)s->n_channel * sizeof *s->channel);
     s->unit = bough_arena_take(arena, (size_t)s->n_channel * sizeof *s->unit);
-    for (int i = 0; i < s->n_channel && s->channel && s->unit; i++) {
+    for (int i = 0; i < s->n_channel; i++) {
         int k = all ? i : bough_channels_find(channels, s->wanted[i]);
         s->channel[i] = bough_arena_string(arena, channels->channel[k].name);
         s->unit[i] = bough_arena_string(arena, channels->channel[k].unit);

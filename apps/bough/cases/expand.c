@@ -138,14 +138,14 @@ static int reference_of(const bough_study *s, const bough_case *cell) {
 
 // "reference", or with the parameters "reference: damping=1e-3"
 static const char *name_reference(bough_arena *arena, const bough_study *s, const bough_case *cell) {
-    char text[1024] = "reference";
+    const char *text = "reference", *between = ":";
     for (int i = 0; i < s->grid.n; i++) {
-        size_t used = strlen(text);
         if (!is_model(s, i)) continue;
-        snprintf(text + used, sizeof text - used, "%s %s=%s", used > 9 ? "," : ":", s->grid.axis[i].label,
-                 bough_study_value(s, cell, i));
+        text = bough_arena_print(arena, "%s%s %s=%s", text, between, s->grid.axis[i].label,
+                                 bough_study_value(s, cell, i));
+        between = ",";
     }
-    return bough_arena_string(arena, text);
+    return text;
 }
 
 static void make_reference(bough_arena *arena, const bough_study *s, int number, bough_case *cell) {

@@ -1,4 +1,4 @@
-#include "apps/bough/cases/levels.h"
+#include "apps/bough/cases/counts.h"
 
 #include <math.h>
 #include <string.h>

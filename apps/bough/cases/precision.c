@@ -5,7 +5,6 @@
 
 #include <math.h>
 #include <stdarg.h>
-#include <stdlib.h>
 #include <string.h>
 
 enum { COLUMNS = BOUGH_STUDY_AXES + 2 * BOUGH_STUDY_MEASURES + 8, WIDTH = 48, SHORT = 100 };
@@ -251,25 +250,21 @@ static bool has_point(const bough_case_result *r, int measure) {
 static const char *line_name(bough_arena *arena, const bough_study_results *results, int curve) {
     const bough_study *s = results->study;
     int n = along(s), first = curve * n, last = s->grid.n - 1;
-    char *text = NULL;
-    size_t size = 0;
-    FILE *f = open_memstream(&text, &size);
-    if (!f) bough_arena_leave(arena);
+    const char *name = "", *between = " — ";
     for (int i = 0; i < last; i++) {
-        if (s->grid.axis[i].value.n > 1)
-            fprintf(f, "%s%s", ftell(f) > 0 ? ", " : "", bough_study_value(s, &s->cases[first], i));
+        if (s->grid.axis[i].value.n < 2) continue;
+        const char *value = bough_study_value(s, &s->cases[first], i);
+        name = bough_arena_print(arena, "%s%s%s", name, name[0] ? ", " : "", value);
     }
-    if (ftell(f) == 0) fputs(s->grid.axis[last].label, f);
-    for (int i = first, missing = 0; i < first + n; i++) {
+    if (!name[0]) name = s->grid.axis[last].label;
+    for (int i = first; i < first + n; i++) {
         char status[40];
         if (has_point(&results->result[i], 0)) continue;
         bough_case_status(&results->result[i], status);
-        fprintf(f, "%s%s %s", missing++ ? "; " : " — ", bough_study_value(s, &s->cases[i], last),
-                strcmp(status, "ok") == 0 ? "equals the reference" : status);
+        name = bough_arena_print(arena, "%s%s%s %s", name, between, bough_study_value(s, &s->cases[i], last),
+                                 strcmp(status, "ok") == 0 ? "equals the reference" : status);
+        between = "; ";
     }
-    fclose(f);
-    const char *name = bough_arena_string(arena, text);
-    free(text);
     return name;
 }
 
@@ -277,11 +272,9 @@ static bough_status plot(bough_arena *arena, const bough_study_results *results)
     const bough_study *s = results->study;
     bough_chart chart = bough_chart_start(arena, s->title ? s->title : s->file, 2);
     for (int m = 0; m < s->n_measure; m++) {
-        char across[200];
-        snprintf(across, sizeof across, "largest difference: %.120s [%.40s]", s->measure[m].name,
-                 s->measure[m].unit);
-        bough_chart_add_panel(&chart, "CPU time per simulated second [s]", bough_arena_string(arena, across),
-                              true, true);
+        const char *across =
+            bough_arena_print(arena, "largest difference: %s [%s]", s->measure[m].name, s->measure[m].unit);
+        bough_chart_add_panel(&chart, "CPU time per simulated second [s]", across, true, true);
         for (int i = 0; i < s->n_case; i++) {
             const bough_case_result *r = &results->result[i];
             int curve = i / along(s);

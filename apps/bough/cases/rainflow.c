@@ -1,4 +1,4 @@
-#include "apps/bough/cases/rainflow.h"
+#include "apps/bough/cases/counts.h"
 
 #include <math.h>
 #include <string.h>

@@ -258,9 +258,8 @@ static double across_of(const bough_study *s, int number) {
 }
 
 static void add_panel(bough_chart *chart, const bough_study *s, int i, const char *across, bool logarithmic) {
-    char heading[BOUGH_CHANNEL_NAME + BOUGH_CHANNEL_UNIT + 4];
-    snprintf(heading, sizeof heading, "%s [%s]", s->channel[i], s->unit[i]);
-    bough_chart_add_panel(chart, bough_arena_string(chart->arena, heading), across, logarithmic, false);
+    const char *heading = bough_arena_print(chart->arena, "%s [%s]", s->channel[i], s->unit[i]);
+    bough_chart_add_panel(chart, heading, across, logarithmic, false);
 }
 
 // Of a sweep a channel's mean, least and largest value over the first key of the grid: value (n_case × PANELS
@@ -271,14 +270,11 @@ static void plot_sweep(bough_chart *chart, const bough_study *s, const double *v
         bough_chart_add_line(chart, (bough_chart_line){.marked = true});
         for (int i = 0; i < s->n_case; i++) {
             const double *v = value + (i * PANELS + k) * VALUES;
-            char hint[200];
             if (!isfinite(v[2])) continue;
-            snprintf(hint, sizeof hint, "%.100s: %.5g (%.5g to %.5g)", s->cases[i].settings, v[2], v[0],
-                     v[1]);
-            bough_chart_add(chart, (bough_chart_point){.x = across_of(s, i),
-                                                       .y = v[2],
-                                                       .bar = {v[0], v[1]},
-                                                       .hint = bough_arena_string(chart->arena, hint)});
+            const char *hint = bough_arena_print(chart->arena, "%s: %.5g (%.5g to %.5g)",
+                                                 s->cases[i].settings, v[2], v[0], v[1]);
+            bough_chart_add(chart, (bough_chart_point){
+                                       .x = across_of(s, i), .y = v[2], .bar = {v[0], v[1]}, .hint = hint});
         }
     }
 }

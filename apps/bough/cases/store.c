@@ -245,7 +245,7 @@ bough_status bough_claims_open(bough_arena *arena, const char *folder, int *clai
     char path[BOUGH_PATH_MAX];
     int *file = bough_arena_take(arena, sizeof *file);
     bough_status status = bough_folder_path(folder, "cases/claims", path);
-    if (!bough_is_ok(&status) || !file) return status;
+    if (!bough_is_ok(&status)) return status;
     *claims = *file = open(path, O_RDWR | O_CREAT | O_NONBLOCK | O_CLOEXEC, 0666);
     if (*file < 0) return bough_fail(BOUGH_IO, "cannot write '%.200s': %s", path, strerror(errno));
     bough_arena_on_destroy(arena, release, file);

@@ -1,6 +1,6 @@
 // The result of each case as a file of the study's folder, cases/NAME.case: text, complete or absent. Its
 // head says of which input it is and how the run ended; then rows of a word and numbers, which keep all their
-// digits. An interrupted study goes on where it was, and a grid may grow.
+// digits. An interrupted study continues where it was, and a grid may grow.
 //
 // Claims say which process runs which case: each case has a record lock of fcntl(2) on one file of the
 // study's folder. The operating system releases the lock when the process ends in any way, also on another

@@ -153,7 +153,7 @@ enum { COARSER_MESH, LOOSER, LONGER, SHORTER, LOWER_RATE, RAMP, VARIATIONS };
 
 static bool has_rods(const bough_scene *scene) {
     for (int i = 0; i < scene->n_body; i++) {
-        if (scene->body[i].rod.node && scene->body[i].fidelity != BOUGH_SCENE_RIGID) return true;
+        if (bough_scene_has_mesh(&scene->body[i])) return true;
     }
     return false;
 }

@@ -96,14 +96,13 @@ static void add_runs(bough_chart *chart, const bough_tune_state *t) {
     double least = HUGE_VAL, most = 0;
     for (int k = 0; k < t->n; k++) {
         const bough_tune_point *p = &t->point[k];
-        char label[32];
         if (!bough_tune_ended(p)) continue;
-        snprintf(label, sizeof label, "%d%s", k + 1, p->settings.own ? " (as written)" : "");
+        const char *label =
+            bough_arena_print(chart->arena, "%d%s", k + 1, p->settings.own ? " (as written)" : "");
         bough_chart_add_line(chart, (bough_chart_line){.colour = !p->best, .marked = true});
-        bough_chart_add(chart, (bough_chart_point){.x = p->error,
-                                                   .y = p->cpu,
-                                                   .label = bough_arena_string(chart->arena, label),
-                                                   .size = k == t->chosen ? 1.5 : 1});
+        bough_chart_add(chart,
+                        (bough_chart_point){
+                            .x = p->error, .y = p->cpu, .label = label, .size = k == t->chosen ? 1.5 : 1});
         least = fmin(least, p->cpu);
         most = fmax(most, p->cpu);
     }
@@ -114,8 +113,7 @@ static void add_runs(bough_chart *chart, const bough_tune_state *t) {
 
 static bough_status draw(bough_arena *arena, void *self) {
     const bough_tune_state *t = self;
-    char heading[64];
-    snprintf(heading, sizeof heading, "CPU time of %.4g s [s]", t->options->span);
+    const char *heading = bough_arena_print(arena, "CPU time of %.4g s [s]", t->options->span);
     bough_chart chart = bough_chart_start(arena, t->scene->title ? t->scene->title : t->options->scene, 1);
     bough_chart_add_panel(&chart, heading, "whole error over the range (forces and moments: a quarter)", true,
                           true);

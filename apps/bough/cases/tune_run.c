@@ -9,10 +9,6 @@
 
 // -- the scene ------------------------------------------------------------------------------------
 
-static bool has_mesh(const bough_scene_body *body) {
-    return body->rod.node && body->fidelity != BOUGH_SCENE_RIGID;
-}
-
 // A load at a vertex, the pieces of a modal body: the number of segments is then the scene's.
 static bool is_kept(const bough_scene *scene, int body) {
     if (scene->body[body].fidelity == BOUGH_SCENE_SEGMENTED_MODAL) return true;
@@ -28,7 +24,7 @@ enum { FEW_SEGMENTS = 10 };
 
 int bough_tune_segments(const bough_scene *scene, int body, const bough_tune_settings *settings) {
     const bough_scene_body *b = &scene->body[body];
-    if (!has_mesh(b)) return 0;
+    if (!bough_scene_has_mesh(b)) return 0;
     if (settings->own || is_kept(scene, body)) return b->rod.n_segment;
     double n = settings->mesh * b->rod.n_segment, lanes = n > 12 ? 4 : 2; // segments are worked on in lanes
     return (int)fmax(lanes * round(n / lanes), fmin(b->rod.n_segment, FEW_SEGMENTS));

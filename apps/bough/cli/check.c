@@ -243,8 +243,6 @@ static bough_status print_cost(const bough_simulation *s, bough_arena *arena) {
 
 // -- turbine: its geometry, its wind, its control -------------------------------------------------
 
-static const double degree = BOUGH_PI / 180;
-
 // -- geometry -------------------------------------------------------------------------------------
 
 // The vertical from which the overhang counts: that of the tower's top, else of the ground's origin.
@@ -260,7 +258,7 @@ static void print_rotor(const bough_simulation *s, const bough_rotor_place *r, F
     double level = hypot(r->axis.x, r->axis.y);
     fprintf(stream, "rotor: %d blade%s, radius %.6g m, hub height %.6g m, tilt %.6g deg, ",
             s->scene->turbine.n_blade, s->scene->turbine.n_blade == 1 ? "" : "s", r->radius, r->hub.z,
-            atan2(-r->axis.z, level) / degree);
+            atan2(-r->axis.z, level) / BOUGH_DEGREE);
     if (level > 1e-6) {
         double along = (from.x * r->axis.x + from.y * r->axis.y) / (level * level);
         fprintf(stream, "overhang %.6g m %s", fabs(along), along < 0 ? "upwind" : "downwind");
@@ -276,7 +274,7 @@ static void print_blades(const bough_simulation *s, const bough_rotor_place *r, 
         bough_vec3 offset = bough_sub(root.position, r->hub);
         double cone = asin(fmax(-1, fmin(1, bough_dot(z, r->axis))));
         fprintf(stream, "blade %s: pitch %.6g deg, cone %.6g deg, root at %.6g m\n", blade->body->name,
-                bough_simulation_pitch(s, blade) / degree, cone / degree, bough_dot(offset, z));
+                bough_simulation_pitch(s, blade) / BOUGH_DEGREE, cone / BOUGH_DEGREE, bough_dot(offset, z));
     }
 }
 
@@ -325,7 +323,7 @@ static void print_wind(const bough_simulation *s, const bough_rotor_place *r, FI
     }
     if (wind->box) print_box(s, wind->box, r, stream);
     if (wind->hub) print_hub_file(s, wind->hub, stream);
-    fprintf(stream, ", to %.6g deg from x, %.6g m/s upwards", given->def.direction / degree,
+    fprintf(stream, ", to %.6g deg from x, %.6g m/s upwards", given->def.direction / BOUGH_DEGREE,
             given->def.vertical);
     bough_vec3 hub = bough_aero_link_hub_wind(s->aero, 0);
     fprintf(stream, "; at the hub at 0 s [%.6g, %.6g, %.6g] m/s\n", hub.x, hub.y, hub.z);

@@ -32,13 +32,6 @@ export;
 
 // -- files ----------------------------------------------------------------------------------------
 
-static const char *print(bough_arena *arena, const char *a, const char *b, const char *c) {
-    size_t size = strlen(a) + strlen(b) + strlen(c) + 1;
-    char *text = bough_arena_take(arena, size);
-    if (text) snprintf(text, size, "%s%s%s", a, b, c);
-    return text ? text : "";
-}
-
 // "ctrl/./../../air/polars.yaml" as "../air/polars.yaml": so many folders up, then none.
 static const char *tidy(bough_arena *arena, const char *path) {
     char *text = bough_arena_take(arena, strlen(path) + 1);
@@ -83,8 +76,8 @@ static bough_status place_files(export *x) {
         const char *name = x->name[k], *folder = "";
         int down = depth;
         for (; strncmp(name, "../", 3) == 0; name += 3) down--;
-        for (; down > 0; down--) folder = print(x->arena, folder, "scene/", "");
-        x->name[k] = print(x->arena, "resources/", folder, name);
+        for (; down > 0; down--) folder = bough_arena_print(x->arena, "%sscene/", folder);
+        x->name[k] = bough_arena_print(x->arena, "resources/%s%s", folder, name);
     }
     x->scene = x->name[0] + strlen("resources/");
     return bough_ok();

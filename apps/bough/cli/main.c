@@ -81,7 +81,7 @@ static void open_streams(void) {
 
 int main(int argc, char **argv) {
     open_streams();
-    signal(SIGXFSZ, SIG_IGN); // a file at its limit is a write that fails, and is told
+    signal(SIGXFSZ, SIG_IGN); // a file at its limit is then a write that fails, which is reported
     if (argc < 2) {
         bough_help_overview(stderr);
         return bough_exit_code(BOUGH_INVALID);

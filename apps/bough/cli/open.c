@@ -8,10 +8,7 @@ bough_status bough_open_scene(bough_arena *arena, const bough_options *options, 
     bough_errors errors = {.arena = arena};
     bough_status status =
         bough_scene_read(arena, options->operand, options->set.text, options->set.n, &errors, scene);
-    if (errors.n > 0 && status.code == BOUGH_INVALID) {
-        bough_errors_print(&errors, stderr);
-        status.message[0] = '\0';
-    }
+    bough_errors_tell(&errors, &status);
     if (!bough_is_ok(&status)) return status;
     bough_scene_warn(*scene, stderr);
     if (options->threads > 0) (*scene)->simulation.threads = options->threads;
@@ -27,8 +24,7 @@ bough_status bough_open(bough_arena *arena, const bough_options *options, bough_
 
 // The failure of a name or a pattern of simulation.output.channels that no channel matches.
 static bough_status no_channel(const bough_scene_output *output, const bough_channels *all, int k) {
-    const char **names = bough_arena_take(all->arena, ((size_t)all->count + 1) * sizeof *names);
-    for (int i = 0; i < all->count; i++) names[i] = all->channel[i].name;
+    const char *const *names = bough_channels_names(all, all->arena);
     char key[48];
     snprintf(key, sizeof key, "simulation.output.channels[%d]", k);
     bough_status status =
@@ -55,7 +51,5 @@ const char *bough_out_folder(bough_arena *arena, const bough_options *options) {
     const char *name = slash ? slash + 1 : options->operand;
     const char *dot = strrchr(name, '.');
     size_t length = dot && dot > name ? (size_t)(dot - name) : strlen(name);
-    char *folder = bough_arena_take(arena, length + 5);
-    if (folder) snprintf(folder, length + 5, "out/%.*s", (int)length, name);
-    return folder;
+    return bough_arena_print(arena, "out/%.*s", (int)length, name);
 }

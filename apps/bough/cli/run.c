@@ -107,7 +107,7 @@ static bough_status write_binary(const bough_run_command *command) {
                                                   .interval = output->interval});
 }
 
-// Ends the files; the first thing that went wrong is the outcome that they tell. An older summary
+// Ends the files; their outcome is the first failure. An older summary
 // must not stand beside the new channels, nor a new one beside older channels.
 static bough_status close_results(bough_run_command *command) {
     bough_status status = bough_recorder_finish(command->recorder, &command->run.outcome);

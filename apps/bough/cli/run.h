@@ -44,7 +44,7 @@ typedef struct bough_run_command {
 } bough_run_command;
 
 // Reads and builds the scene of the options, with what the run records and estimates. Errors in the
-// scene are told as by bough_open_scene.
+// scene are reported as by bough_open_scene.
 bough_status bough_run_command_build(bough_run_command *command);
 
 // Writes summary.json into the command's folder.
@@ -64,7 +64,7 @@ void bough_run_report(bough_run_command *command, FILE *stream);
 // damaged or of another program, scene or setting.
 bough_status bough_checkpoint_open(bough_run_command *command);
 
-// After a step of a bough_run_command: writes a checkpoint where one is due and goes on from it.
+// After a step of a bough_run_command: writes a checkpoint where one is due and continues from it.
 bough_status bough_checkpoint_update(void *command);
 
 // Removes that of an earlier run, or of one that is complete.

@@ -13,11 +13,9 @@
 
 enum { MOTION = 6 }; // displacement and rotation, or force and moment
 
-static const double degree = BOUGH_PI / 180;
-
 typedef struct equilibrium {
     bough_simulation *simulation;
-    bool apart;                  // each rod by itself: no channels
+    bool independent;            // each rod has its own equilibrium: no channels
     double time;                 // of the loads of the whole scene [s]
     bough_equilibrium_work work; // of the whole scene
     int n;
@@ -39,9 +37,9 @@ typedef struct mesh_error {
     double *largest;   // (channels.count) of each channel, in its unit
 } mesh_error;
 
-// -- the equilibrium, each rod by itself or all together, and the error of its mesh ---------------
+// -- the equilibrium of each rod or of the whole scene, and the error of its mesh -----------------
 
-static bough_status find_apart(bough_arena *arena, equilibrium *x) {
+static bough_status find_rods(bough_arena *arena, equilibrium *x) {
     const bough_simulation *s = x->simulation;
     const bough_turning rest = {0};
     for (int k = 0; k < s->n_beam; k++) {
@@ -74,8 +72,8 @@ static bough_status find_equilibrium(bough_arena *arena, bough_simulation *s, eq
     *x = (equilibrium){.simulation = s, .channels = bough_channels_start(arena)};
     x->rod = bough_arena_take(arena, ((size_t)s->n_rod + 1) * sizeof *x->rod);
     // a modal body only with the whole
-    x->apart = bough_equilibrium_apart(s) && bough_steady_rods(s) == s->n_rod;
-    return x->apart ? find_apart(arena, x) : find_whole(arena, x);
+    x->independent = bough_rods_are_independent(s) && bough_steady_rods(s) == s->n_rod;
+    return x->independent ? find_rods(arena, x) : find_whole(arena, x);
 }
 
 // Displacement and rotation of the tip, force and moment at the root.
@@ -108,7 +106,7 @@ static void compare(const comparison *c, equilibrium *fine) {
             c->error[STATIC_RESULTS * k + i] = part * bough_norm(bough_sub(here[i], there[i]));
         }
     }
-    for (int i = 0; !fine->apart && i < fine->simulation->n_motion_channel; i++) {
+    for (int i = 0; !fine->independent && i < fine->simulation->n_motion_channel; i++) {
         c->mesh->largest[i] = part * fabs(c->coarse->value[i] - fine->value[i]);
     }
 }
@@ -133,14 +131,14 @@ static void follow_vertices(bough_arena *arena, bough_scene *scene) {
     scene->load = load;
 }
 
-// False, with the reason, where no finer mesh tells the error.
+// False, with the reason, where a finer mesh gives no error.
 static bool refine(bough_arena *arena, bough_scene *scene, mesh_error *mesh) {
     size_t n = (size_t)scene->n_body;
     bough_scene_body *body = bough_arena_take(arena, n * sizeof *body);
     bool any = false;
     memcpy(body, scene->body, n * sizeof *body);
     for (size_t i = 0; i < n; i++) {
-        if (!body[i].rod.node || body[i].fidelity == BOUGH_SCENE_RIGID) continue;
+        if (!bough_scene_has_mesh(&body[i])) continue;
         if (body[i].fidelity != BOUGH_SCENE_ROD) {
             snprintf(mesh->unknown, sizeof mesh->unknown,
                      "%.60s is a modal body, whose shapes have errors of their own", body[i].name);
@@ -189,9 +187,9 @@ static double *find_mesh_error(bough_arena *arena, equilibrium *x, mesh_error *m
 static void motion_of(const bough_steady *x, int i, double value[MOTION]) {
     bough_vec3 shift, turn;
     bough_steady_displacement(x, i, &shift, &turn);
-    const double values[MOTION] = {shift.x,         shift.y,         shift.z,
-                                   turn.x / degree, turn.y / degree, turn.z / degree};
-    for (int c = 0; c < MOTION; c++) value[c] = values[c];
+    bough_v3_store(shift, value);
+    bough_v3_store(turn, value + 3);
+    for (int c = 3; c < MOTION; c++) value[c] /= BOUGH_DEGREE;
 }
 
 static double middle_of(const bough_steady *x, int n) {
@@ -237,7 +235,7 @@ static void print_rod(bough_steady *x) {
     find_results(x, result);
     printf("tip %s:", m->name);
     print_three(" u", result[STATIC_DISPLACEMENT], "m,");
-    print_three(" r", bough_scale(1 / degree, result[STATIC_ROTATION]), "deg\n");
+    print_three(" r", bough_scale(1 / BOUGH_DEGREE, result[STATIC_ROTATION]), "deg\n");
     printf("root %s:", m->name);
     print_three(" force", result[STATIC_FORCE], "N,");
     print_three(" moment", result[STATIC_MOMENT], "N m\n");
@@ -245,7 +243,7 @@ static void print_rod(bough_steady *x) {
 
 static void print_mesh_error(const bough_steady *x, const double error[STATIC_RESULTS]) {
     printf("mesh error %s: tip u %.2g m, r %.2g deg, root force %.2g N, moment %.2g N m\n", x->model->name,
-           error[STATIC_DISPLACEMENT], error[STATIC_ROTATION] / degree, error[STATIC_FORCE],
+           error[STATIC_DISPLACEMENT], error[STATIC_ROTATION] / BOUGH_DEGREE, error[STATIC_FORCE],
            error[STATIC_MOMENT]);
 }
 
@@ -257,7 +255,7 @@ static void print_joints(const bough_simulation *s) {
         const double *v = s->leader.state + s->tree->n_q + link->first_speed;
         printf("joint %s: %s", s->tree->bodies[link->body].name, bough_joint_name(link->joint.kind));
         if (link->joint.kind == BOUGH_JOINT_REVOLUTE) {
-            printf(" %.7g deg", q[0] / degree);
+            printf(" %.7g deg", q[0] / BOUGH_DEGREE);
         } else {
             for (int k = 0; k < link->n_coordinates; k++) printf(" %.7g", q[k]);
         }
@@ -315,11 +313,11 @@ static bough_status write_channels(const equilibrium *x, const mesh_error *mesh,
     fputs("channel,unit,value,mesh error\n", file);
     for (int i = 0; i < x->channels.count; i++) {
         const bough_channel *c = &x->channels.channel[i];
-        bool told = mesh->unknown[0] == '\0' && i < x->simulation->n_motion_channel;
+        bool known = mesh->unknown[0] == '\0' && i < x->simulation->n_motion_channel;
         printf("%s: %.7g %s", c->name, x->value[i], c->unit);
         fprintf(file, "%s,%s,%.10g,", c->name, c->unit, x->value[i]);
-        if (told) printf(", mesh error %.2g", mesh->largest[i]);
-        if (told) fprintf(file, "%.3g", mesh->largest[i]);
+        if (known) printf(", mesh error %.2g", mesh->largest[i]);
+        if (known) fprintf(file, "%.3g", mesh->largest[i]);
         putchar('\n');
         fputc('\n', file);
     }
@@ -400,11 +398,8 @@ static void print_modal(bough_simulation *s) {
     for (int k = 0; k < s->n_beam; k++) {
         const bough_beam *beam = &s->beam[k];
         if (beam->modal == NULL) continue;
-        int n = beam->def.n_segment;
-        bough_quaternion p, undeformed = bough_quaternion_conjugate(beam->def.rotation[n]);
-        bough_vec3 x = bough_simulation_beam_tip(s, beam, &p);
-        bough_vec3 u = bough_sub(x, beam->def.position[n]);
-        bough_vec3 r = bough_quaternion_logarithm(bough_quaternion_product(p, undeformed));
+        bough_vec3 u, r;
+        bough_simulation_tip_shift(s, beam, &u, &r);
         r = bough_scale(180 / BOUGH_PI, r);
         printf("modal %s: tip moved by %.9g %.9g %.9g m, turned by %.9g %.9g %.9g deg\n", beam->body->name,
                u.x, u.y, u.z, r.x, r.y, r.z);
@@ -441,7 +436,7 @@ static bough_status find(bough_arena *arena, const void *given) {
     status = find_equilibrium(arena, s, &x);
     if (!bough_is_ok(&status)) return status;
     const double *error = find_mesh_error(arena, &x, &mesh);
-    if (!x.apart) print_whole(&x);
+    if (!x.independent) print_whole(&x);
     for (int k = 0; k < x.n; k++) {
         print_rod(&x.rod[k]);
         if (mesh.unknown[0] == '\0') print_mesh_error(&x.rod[k], error + STATIC_RESULTS * k);
@@ -450,7 +445,7 @@ static bough_status find(bough_arena *arena, const void *given) {
     if (mesh.unknown[0]) printf("mesh error: not estimated: %s\n", mesh.unknown);
     status = bough_folder_make(folder);
     if (bough_is_ok(&status)) status = bough_folder_write(folder, "static.csv", write_rods, &x);
-    if (bough_is_ok(&status) && !x.apart) status = write_channels(&x, &mesh, folder);
+    if (bough_is_ok(&status) && !x.independent) status = write_channels(&x, &mesh, folder);
     if (bough_is_ok(&status)) printf("out: %s\n", folder);
     return status;
 }

@@ -38,10 +38,7 @@ static bough_status perform(bough_arena *arena, const void *given) {
     bough_errors errors = {.arena = arena};
     bough_study *study;
     bough_status status = bough_study_read(arena, options->operand, options->threads, &errors, &study);
-    if (errors.n > 0 && status.code == BOUGH_INVALID) {
-        bough_errors_print(&errors, stderr);
-        status.message[0] = '\0';
-    }
+    bough_errors_tell(&errors, &status);
     if (!bough_is_ok(&status)) return status;
     bough_study_options how = {.folder = bough_out_folder(arena, options),
                                .part = own->part.k,

@@ -186,9 +186,7 @@ static void add_file(bough_schema_reader *r, bough_schema_file added) {
 }
 
 const char *bough_schema_path(bough_schema_reader *r, const char *key, const char *name) {
-    size_t size = strlen(r->directory) + strlen(name) + 1;
-    char *path = bough_arena_take(r->arena, size);
-    snprintf(path, size, "%s%s", name[0] == '/' ? "" : r->directory, name);
+    const char *path = bough_arena_print(r->arena, "%s%s", name[0] == '/' ? "" : r->directory, name);
     const bough_schema_file *known = find_file(r, path, NULL);
     if (known != NULL) return known->path;
     size_t length = key[0] == '\0' ? strlen(r->path) : bough_schema_push_key(r, key);
@@ -291,16 +289,16 @@ static relevance applies(const bough_schema *schema, const bough_key *key, void 
     return is_among(bough_key_choice(by, choice), key->when) ? APPLIES : APPLIES_NOT;
 }
 
-// Says where a key that is given would apply, unless a twin of the same name applies here.
+// Says where a key that is given would apply, unless another key of that name applies here.
 static void refuse_key(bough_schema_reader *r, const bough_schema *schema, const bough_key *key,
                        const bough_node *at, void *item) {
     char where[120] = "";
     for (int i = 0; i < schema->n_key; i++) {
-        const bough_key *twin = &schema->key[i];
-        if (strcmp(twin->name, key->name) != 0) continue;
-        if (twin < key || applies(schema, twin, item) != APPLIES_NOT) return;
+        const bough_key *other = &schema->key[i];
+        if (strcmp(other->name, key->name) != 0) continue;
+        if (other < key || applies(schema, other, item) != APPLIES_NOT) return;
         size_t used = strlen(where);
-        snprintf(where + used, sizeof where - used, "%s%s", used == 0 ? "" : "|", twin->when);
+        snprintf(where + used, sizeof where - used, "%s%s", used == 0 ? "" : "|", other->when);
     }
     for (char *c = strchr(where, '|'); c != NULL; c = strchr(c, '|')) *c = '/';
     bough_schema_error(r, at, key->name, "only used with '%s: %s'", key->when_key, where);

@@ -105,6 +105,13 @@ void bough_errors_sort(bough_errors *errors, const char *first) {
     }
 }
 
+bough_status bough_errors_status(bough_errors *errors, const char *file, const char *what) {
+    int n = errors->n + errors->dropped;
+    if (n == 0) return bough_ok();
+    bough_errors_sort(errors, file);
+    return bough_fail(BOUGH_INVALID, "%s: %d error%s in the %s", file, n, n == 1 ? "" : "s", what);
+}
+
 // Control characters of a hostile file must not reach a terminal.
 static void print_plain(const char *text, FILE *stream) {
     for (const char *c = text; *c != '\0'; c++) {
@@ -125,6 +132,12 @@ void bough_errors_print(const bough_errors *errors, FILE *stream) {
         fputc('\n', stream);
     }
     if (errors->dropped > 0) fprintf(stream, "%d more errors\n", errors->dropped);
+}
+
+void bough_errors_tell(const bough_errors *errors, bough_status *status) {
+    if (errors->n == 0 || status->code != BOUGH_INVALID) return;
+    bough_errors_print(errors, stderr);
+    status->message[0] = '\0';
 }
 
 // -- memory ---------------------------------------------------------------------------------------

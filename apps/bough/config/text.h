@@ -54,8 +54,15 @@ void bough_errors_add(bough_errors *errors, const bough_node *where, const char 
 // and column within a file.
 void bough_errors_sort(bough_errors *errors, const char *first);
 
+// BOUGH_INVALID with their number where there are any, which are then in order: "FILE: 2 errors in the
+// scene".
+bough_status bough_errors_status(bough_errors *errors, const char *file, const char *what);
+
 // Writes one line each: "file:line:col: error: path: text".
 void bough_errors_print(const bough_errors *errors, FILE *stream);
+
+// The same on stderr, which then says all: the status loses its message.
+void bough_errors_tell(const bough_errors *errors, bough_status *status);
 
 // The tree of a file; NULL after adding to `errors` why not.
 bough_node *bough_text_read(bough_arena *arena, const char *path, bough_errors *errors);

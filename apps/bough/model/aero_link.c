@@ -15,10 +15,10 @@ struct bough_aero_link {
     bough_aero_motion *motion;
     // Two evaluations: of the last sample, and of the one ahead. Both have the first one's memory.
     bough_rotor_data data[2];
-    double time[2];   // what they are of [s]; NAN: of nothing
-    double factor[2]; // of the ramp there
-    int shown;        // which is of the last sample
-    int found;        // which is in hand
+    double time[2];   // of each evaluation [s]; NAN: none yet
+    double factor[2]; // of the ramp at that time
+    int shown;        // the evaluation of the last sample
+    int found;        // the evaluation just made; −1: none
     bough_vec3 hub;   // at the start, ground axes [m]
     bool started;
 };
@@ -333,7 +333,7 @@ static void begin_anew(bough_aero_link *link) {
     bough_aero_link_renew(link);
 }
 
-void bough_aero_link_go_on(bough_aero_link *link, double t) {
+void bough_aero_link_continue(bough_aero_link *link, double t) {
     begin_anew(link);
     hold(link, t);
     begin_anew(link);
@@ -341,7 +341,7 @@ void bough_aero_link_go_on(bough_aero_link *link, double t) {
 
 void bough_aero_link_hold(bough_aero_link *link, double t) {
     bough_rotor_forget(link->rotor, &link->data[0]);
-    bough_aero_link_go_on(link, t);
+    bough_aero_link_continue(link, t);
     bough_rotor_forget(link->rotor, &link->data[0]);
 }
 
@@ -370,8 +370,7 @@ bough_vec3 bough_aero_link_hub_wind(const bough_aero_link *link, double t) {
 
 // -- saving ---------------------------------------------------------------------------------------
 
-// Of the evaluations only what they tell is stored: the shown one and the one at the sample ahead; of the
-// loads nothing.
+// Stores the results of the evaluations, that of the last sample and the one ahead, but not the loads.
 void bough_aero_link_snapshot(bough_aero_link *link, bough_snapshot *s) {
     if (s->move == BOUGH_SNAPSHOT_RESTORE) link->shown = 0, link->found = -1;
     bough_snapshot_take(s, &link->started, sizeof link->started);

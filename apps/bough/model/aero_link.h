@@ -23,7 +23,7 @@ bough_sampled_load bough_aero_link_load(bough_aero_link *link);
 void bough_aero_link_hold(bough_aero_link *link, double t);
 
 // The same, but dynamic inflow and stall continue from the last sample, and the next sample from this one.
-void bough_aero_link_go_on(bough_aero_link *link, double t);
+void bough_aero_link_continue(bough_aero_link *link, double t);
 
 // Saves or restores dynamic inflow and stall: memory (bough_rotor_memory_size).
 void bough_aero_link_memory(bough_aero_link *link, bough_snapshot_move move, double *memory);

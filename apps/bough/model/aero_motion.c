@@ -5,7 +5,7 @@
 #include <math.h>
 #include <string.h>
 
-enum { CALLS = 3 }; // remembered: the motion goes on along a parabola
+enum { CALLS = 3 }; // remembered: the motion is extrapolated by a parabola
 
 // A blade's state: its rows, velocity and angular velocity of its frame, hub and shaft in the frame (of
 // the first blade only).

@@ -6,14 +6,13 @@
 #include <math.h>
 #include <string.h>
 
-// How a signal goes on. Its loads F at the next sample are those on the motion expected there, and
+// How a signal continues. Its loads F at the next sample are those on the motion expected there, and
 // with them come their slopes by the vertices' motion, S. Between the samples F − S·motion runs along
 // the parabola through its last three values and the rod adds S·motion as it moves. So damping and
-// stiffness of the air act at once, and what the motion was expected wrongly by is in the loads of the
-// same sample.
+// stiffness of the air act at once, and the error of the expected motion is in the loads of the same sample.
 //
-// Modal and rigid bodies have no such loads: theirs run to F, with 3 Δ τ(1 − τ) more for what the sample
-// before has left out, Δ = S·(motion − expected motion), which is Adams' formula of third order.
+// Modal and rigid bodies have no such loads: theirs run to F, plus 3 Δ τ(1 − τ) for the error of the
+// sample before, Δ = S·(motion − expected motion): Adams' formula of third order.
 
 struct bough_aero_signal {
     bough_simulation *simulation;
@@ -21,7 +20,7 @@ struct bough_aero_signal {
     int n, n_vertex;
     double start, span;           // [s]
     double damped;                // 1: the body adds S·motion
-    double missed;                // mean square of what the loads have missed, of that of the loads
+    double missed;                // mean square error of the loads, relative to that of the loads
     double *sampled;              // (n) whole loads at the sample before
     double *reached;              // (n) whole loads that the signal goes to, on the expected motion
     double *value, *rate, *curve; // (n) of the signal since `start`
@@ -45,20 +44,16 @@ static void take(bough_arena *arena, bough_aero_signal *s) {
     size_t n = (size_t)s->n, vertices = (size_t)s->n_vertex, segments = vertices - 1;
     double *row = s->row = bough_arena_doubles(arena, (size_t)stored(s));
     double **const part[] = {&s->sampled, &s->reached, &s->value, &s->rate, &s->curve};
-    for (int i = 0; i < 5 && row; i++, row += n) *part[i] = row;
+    for (int i = 0; i < 5; i++, row += n) *part[i] = row;
     s->slope = row;
     s->angle = row + BOUGH_SLOPES * vertices;
     s->expected = s->angle + 4 * vertices;
-    s->fresh = bough_arena_doubles(arena, n);
-    s->whole = bough_arena_doubles(arena, n);
-    s->last = bough_arena_doubles(arena, n);
-    s->now = bough_arena_doubles(arena, 3 * vertices);
-    s->before = bough_arena_doubles(arena, 3 * vertices);
+    bough_arena_each(arena, n, &s->fresh, &s->whole, &s->last);
+    bough_arena_each(arena, 3 * vertices, &s->now, &s->before);
     if (s->beam->port >= 0) s->along = bough_arena_doubles(arena, 12 * segments);
     if (s->beam->modal == NULL) return;
     size_t stride = (size_t)bough_beam_mesh(s->beam)->stride;
-    s->strain = bough_arena_doubles(arena, 6 * stride);
-    s->lumped = bough_arena_doubles(arena, 6 * stride);
+    bough_arena_each(arena, 6 * stride, &s->strain, &s->lumped);
 }
 
 bough_status bough_aero_signal_build(bough_arena *arena, bough_simulation *simulation, const bough_beam *beam,

@@ -4,7 +4,6 @@
 #include "core/base/rotation.h"
 #include "flexbody/section/section.h"
 
-#include <stdio.h>
 #include <string.h>
 
 // -- placements and axes --------------------------------------------------------------------------
@@ -185,21 +184,12 @@ static bough_inertia root_inertia(const bough_rod_def *def) {
     return bough_inertia_to_parent(&x, vertex_inertia(&def->inertia[0]));
 }
 
-static bool carries_bodies(const bough_scene *scene, int body) {
-    for (int i = 0; i < scene->n_body; i++) {
-        if (scene->body[i].joint.parent == body) return true;
-    }
-    return false;
-}
-
 // The last vertex becomes a body of the tree, free against the rod's frame; what the rod carries
 // hangs on it.
 static bough_status add_end(bough_builder *b, bough_beam *beam, int index) {
     const bough_rod_def *def = &beam->def;
     int n = def->n_segment, body = b->scene->n_body + b->s->n_end;
-    size_t length = strlen(beam->body->name) + sizeof " end";
-    char *name = bough_arena_take(b->arena, length);
-    snprintf(name, length, "%s end", beam->body->name);
+    const char *name = bough_arena_print(b->arena, "%s end", beam->body->name);
     bough_quaternion p = def->rotation[n];
     bough_vec3 x = def->position[n];
     const double q[BOUGH_JOINT_COORDINATES] = {x.x, x.y, x.z, p.w, p.x, p.y, p.z};
@@ -238,7 +228,7 @@ static bough_status add_beam(bough_builder *b, int index) {
     beam->in_ground = moves_under_ground_loads(b->scene, index);
     b->port[s->n_rod++] =
         (bough_port_def){beam->body->name, beam->marker, root_inertia(&beam->def), beam->in_ground};
-    return carries_bodies(b->scene, index) ? add_end(b, beam, index) : bough_ok();
+    return bough_scene_carried_by(b->scene, index) >= 0 ? add_end(b, beam, index) : bough_ok();
 }
 
 // Its marker and port come after those of all beams.

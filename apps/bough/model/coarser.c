@@ -10,17 +10,10 @@
 // -- mesh -----------------------------------------------------------------------------------------
 
 // A rod that carries bodies has an inner vertex.
-static bool carries(const bough_scene *scene, int body) {
-    for (int i = 0; i < scene->n_body; i++) {
-        if (scene->body[i].joint.parent == body) return true;
-    }
-    return false;
-}
-
 static int least_segments(const bough_scene *scene, int body) {
     const bough_scene_body *b = &scene->body[body];
     if (b->fidelity == BOUGH_SCENE_SEGMENTED_MODAL) return b->modal.pieces;
-    return carries(scene, body) ? 2 : 1;
+    return bough_scene_carried_by(scene, body) >= 0 ? 2 : 1;
 }
 
 // Loads on vertices stay where they are. Values of tables, which inputs change, are the copy's own.
@@ -44,20 +37,11 @@ static void copy_loads(bough_arena *arena, const bough_scene *scene, bough_scene
 
 enum { FEW_SEGMENTS = 9 }; // fewer: errors of half of them do not fall with their order
 
-static bool has_mesh(const bough_scene_body *b) { return b->rod.node && b->fidelity != BOUGH_SCENE_RIGID; }
-
 // About half of n segments. A rod of few segments, or that cannot have much fewer, gets twice as many: what
 // lies between tells the error, too.
 static int other_number(int n, int least) {
     int half = (n + 1) / 2, fewer = half > least ? half : least;
     return n >= FEW_SEGMENTS && 4 * fewer <= 3 * n ? fewer : 2 * n;
-}
-
-static bool is_blade(const bough_scene *scene, int body) {
-    for (int k = 0; scene->turbine.node && k < scene->turbine.n_blade; k++) {
-        if (scene->turbine.blade[k] == body) return true;
-    }
-    return false;
 }
 
 // All blades keep one number of segments, which the air needs.
@@ -71,12 +55,13 @@ static int least_of_blades(const bough_scene *scene) {
 }
 
 static int other_segments(const bough_scene *scene, int body) {
-    int least = is_blade(scene, body) ? least_of_blades(scene) : least_segments(scene, body);
+    int least = bough_scene_blade(scene, body) >= 0 ? least_of_blades(scene) : least_segments(scene, body);
     return other_number(scene->body[body].rod.n_segment, least);
 }
 
 static bool gets_finer(const bough_scene *scene, int body) {
-    return has_mesh(&scene->body[body]) && other_segments(scene, body) > scene->body[body].rod.n_segment;
+    return bough_scene_has_mesh(&scene->body[body]) &&
+           other_segments(scene, body) > scene->body[body].rod.n_segment;
 }
 
 static void change_segments(bough_arena *arena, const bough_scene *scene, bough_scene *to) {
@@ -99,7 +84,7 @@ static double usual_share(const bough_scene *scene) {
 double bough_coarser_share(const bough_scene *scene, const bough_scene *other) {
     double share = usual_share(scene);
     for (int i = 0; i < scene->n_body; i++) {
-        if (!has_mesh(&scene->body[i])) continue;
+        if (!bough_scene_has_mesh(&scene->body[i])) continue;
         double r = (double)scene->body[i].rod.n_segment / other->body[i].rod.n_segment;
         if (r != 1) share = fmax(share, 0.75 / fabs(r * r - 1));
     }
@@ -147,7 +132,7 @@ static bough_scene_solver all_sub_solvers(const bough_scene *scene) {
     bough_scene_solver all = {.solver = BOUGH_ROSENBROCK};
     bool limited = true;
     for (int i = 0; i < scene->n_body; i++) {
-        if (!has_mesh(&scene->body[i])) continue;
+        if (!bough_scene_has_mesh(&scene->body[i])) continue;
         const bough_scene_solver *micro = bough_scene_micro(scene, &scene->body[i]);
         limited = limited && micro->step > 0;
         all.rtol = fmax(all.rtol, micro->rtol);

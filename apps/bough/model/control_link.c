@@ -45,13 +45,11 @@ static bough_status find_channel(bough_arena *arena, bough_events *e, int i) {
     const char *name = e->event[i].channel;
     e->column[i] = name ? bough_channels_find(&e->channels, name) : -1;
     if (!name || e->column[i] >= 0) return bough_ok();
-    int n = e->channels.count;
-    const char **names = bough_arena_take(arena, (size_t)(n + 1) * sizeof *names);
-    for (int k = 0; k < n; k++) names[k] = e->channels.channel[k].name;
+    const char *const *names = bough_channels_names(&e->channels, arena);
     char key[40];
     snprintf(key, sizeof key, "control.events[%d].channel", i);
     bough_status status = bough_fail(BOUGH_INVALID, "the scene has no channel '%.80s'%s", name,
-                                     bough_suggest(name, names, n).text);
+                                     bough_suggest(name, names, e->channels.count).text);
     return bough_scene_blame(bough_node_find(e->event[i].node, "channel"), key, status);
 }
 

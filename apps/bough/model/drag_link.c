@@ -72,8 +72,8 @@ static void blow_tower(bough_drag_link *l, double t, double factor) {
             l->fresh[i] = f.x, l->fresh[n + i] = f.y, l->fresh[2 * n + i] = f.z;
             continue;
         }
-        bough_vec3 m = bough_cross(l->tower->def.position[i], f);
-        const double values[6] = {f.x, f.y, f.z, m.x, m.y, m.z};
+        double values[6];
+        bough_wrench_store((bough_wrench){f, bough_cross(l->tower->def.position[i], f)}, values);
         for (int c = 0; c < 6; c++) l->fresh[c] += values[c];
     }
 }
@@ -85,8 +85,7 @@ static void blow_hub(bough_drag_link *l, double t, double factor) {
     bough_vec3 velocity = bough_tree_frame_velocity(s->view, frame).linear;
     bough_vec3 f = bough_rotor_hub_drag(l->rotor, s->scene->aero.hub_drag_area, pose.position, velocity, t);
     f = bough_mat3_tmul(pose.rotation, bough_scale(factor, f));
-    const double values[6] = {f.x, f.y, f.z};
-    memcpy(l->fresh + l->n_tower, values, sizeof values);
+    bough_wrench_store((bough_wrench){f, {0, 0, 0}}, l->fresh + l->n_tower);
 }
 
 // Hands the signals to the bodies.

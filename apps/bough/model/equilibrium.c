@@ -14,7 +14,7 @@ enum { SAMPLES = 60 }; // of the air, most
 // Changes between samples of the air below it are none, in units of the states' scales.
 static const double still = 1e-8;
 
-bool bough_equilibrium_apart(const bough_simulation *s) { return s->tree->n_v == 0 && s->aero == NULL; }
+bool bough_rods_are_independent(const bough_simulation *s) { return s->tree->n_v == 0 && s->aero == NULL; }
 
 double bough_equilibrium_time(const bough_simulation *s) {
     double last = 0;

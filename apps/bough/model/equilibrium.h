@@ -21,7 +21,7 @@ int bough_equilibrium_held(const bough_tree *tree, bool turning, int *row);
 
 // Whether the rods are independent: each is held by the ground, without air. Then each has its own
 // equilibrium and modes.
-bool bough_equilibrium_apart(const bough_simulation *s);
+bool bough_rods_are_independent(const bough_simulation *s);
 
 // The time after which no load grows any more [s].
 double bough_equilibrium_time(const bough_simulation *s);

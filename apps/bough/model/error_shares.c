@@ -76,7 +76,7 @@ static bool has_part(const bough_scene *scene, int kind) {
     if (kind == BOUGH_SHARE_TIME) return true;
     if (kind == BOUGH_SHARE_AIR) return scene->aero.node != NULL;
     for (int i = 0; i < scene->n_body; i++) {
-        if (scene->body[i].rod.node && scene->body[i].fidelity != BOUGH_SCENE_RIGID) return true;
+        if (bough_scene_has_mesh(&scene->body[i])) return true;
     }
     return false;
 }
@@ -169,7 +169,7 @@ static void advise_mesh(const bough_scene *scene, double factor, char text[ADVIC
     int n = 0, least = FEW;
     bool equal = true;
     for (int i = 0; i < scene->n_body; i++) {
-        if (!scene->body[i].rod.node || scene->body[i].fidelity == BOUGH_SCENE_RIGID) continue;
+        if (!bough_scene_has_mesh(&scene->body[i])) continue;
         equal = equal && (n == 0 || n == scene->body[i].rod.n_segment);
         n = scene->body[i].rod.n_segment;
         least = n < least ? n : least;

@@ -25,8 +25,7 @@ static void resolve(const bough_simulation *s, const bough_beam *beam, const bou
         force = bough_mat3_tmul(r, force);
         moment = bough_mat3_tmul(r, moment);
     }
-    const double values[6] = {force.x, force.y, force.z, moment.x, moment.y, moment.z};
-    memcpy(wrench, values, sizeof values);
+    bough_wrench_store((bough_wrench){force, moment}, wrench);
 }
 
 static void add_ground(bough_arena *arena, const bough_beam *beam, const bough_scene_load *load) {

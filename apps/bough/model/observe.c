@@ -12,9 +12,6 @@
 #include <stdio.h>
 #include <string.h>
 
-#define DEGREE (BOUGH_PI / 180)
-#define RPM (BOUGH_PI / 30)
-
 // -- joints ---------------------------------------------------------------------------------------
 
 static void joint_state(const bough_simulation *s, int body, double *coordinate, double *speed) {
@@ -70,8 +67,8 @@ static void sample_joints(void *self, double t, double *value) {
         joint_rates(s, i, q, rate);
         for (int k = 0; k < n; k++, value += 2) {
             bool angle = joint_channels[s->scene->body[i].joint.kind].angle[k];
-            value[0] = q[k] / (angle ? DEGREE : 1);
-            value[1] = rate[k] / (angle ? DEGREE : 1);
+            value[0] = q[k] / (angle ? BOUGH_DEGREE : 1);
+            value[1] = rate[k] / (angle ? BOUGH_DEGREE : 1);
         }
     }
 }
@@ -107,7 +104,7 @@ static void sample_free_bodies(void *self, double t, double *value) {
         }
         value = bough_observe_vector(pose.rotation.c1, 1, value);
         value = bough_observe_vector(pose.rotation.c3, 1, value);
-        value = bough_observe_vector(velocity.angular, DEGREE, value);
+        value = bough_observe_vector(velocity.angular, BOUGH_DEGREE, value);
     }
 }
 
@@ -223,17 +220,6 @@ static void add_markers(bough_simulation *s, bough_channels *list) {
 
 // -- beams ----------------------------------------------------------------------------------------
 
-// Displacement of the tip and rotation vector of its section against the undeformed one, in the
-// body's axes.
-static void tip(const bough_simulation *s, const bough_beam *beam, bough_vec3 *displacement,
-                bough_vec3 *rotation) {
-    int n = beam->def.n_segment;
-    bough_quaternion p, undeformed = bough_quaternion_conjugate(beam->def.rotation[n]);
-    bough_vec3 x = bough_simulation_beam_tip(s, beam, &p);
-    *displacement = bough_sub(x, beam->def.position[n]);
-    *rotation = bough_quaternion_logarithm(bough_quaternion_product(p, undeformed));
-}
-
 // The channels of a part with a number in place of {a}.
 static void add_numbered(bough_channels *list, bough_channel_part part, int number) {
     char text[12];
@@ -252,11 +238,11 @@ static void sample_blades(void *self, double t, double *value) {
         double pitch = bough_simulation_pitch(s, beam), c = cos(pitch), sine = sin(pitch);
         double root[BOUGH_ROD_MOST_OUTPUTS];
         bough_vec3 d, turn;
-        tip(s, beam, &d, &turn);
+        bough_simulation_tip_shift(s, beam, &d, &turn);
         bough_simulation_root(s, beam, t, root);
         const double values[BLADE_CHANNELS] = {d.x * c + d.y * sine,
                                                d.y * c - d.x * sine,
-                                               turn.z / DEGREE,
+                                               turn.z / BOUGH_DEGREE,
                                                d.x,
                                                d.y,
                                                d.z,
@@ -309,7 +295,7 @@ static void sample_tower(void *self, double t, double *value) {
     bough_vec3 d = bough_sub(top.position, s->tower_rest.position);
     bough_mat3 turned = bough_mat3_product(top.rotation, bough_mat3_transpose(s->tower_rest.rotation));
     bough_vec3 turn = bough_quaternion_logarithm(bough_quaternion_of_matrix(turned));
-    value = bough_observe_vector(turn, DEGREE, bough_observe_vector(d, 1, value));
+    value = bough_observe_vector(turn, BOUGH_DEGREE, bough_observe_vector(d, 1, value));
     bough_simulation_root(s, s->tower_foot, t, root);
     for (int k = 0; k < 6; k++) value[k] = root[k] / 1e3;
 }
@@ -326,10 +312,7 @@ static void add_tower(bough_simulation *s, bough_channels *list) {
 }
 
 static bool is_blade(const bough_scene *scene, const bough_scene_body *body) {
-    for (int b = 0; scene->turbine.node != NULL && b < scene->turbine.n_blade; b++) {
-        if (&scene->body[scene->turbine.blade[b]] == body) return true;
-    }
-    return false;
+    return bough_scene_blade(scene, (int)(body - scene->body)) >= 0;
 }
 
 // Where the tip of a rod that is no blade is, in ground axes.
@@ -341,7 +324,7 @@ static void sample_tips(void *self, double t, double *value) {
         if (is_blade(s->scene, beam->body)) continue;
         bough_transform pose = bough_tree_frame_pose(s->view, &s->tree->markers[beam->marker]);
         bough_vec3 d, turn;
-        tip(s, beam, &d, &turn);
+        bough_simulation_tip_shift(s, beam, &d, &turn);
         bough_vec3 x = bough_add(beam->def.position[beam->def.n_segment], d);
         x = bough_add(pose.position, bough_mat3_mul(pose.rotation, x));
         value = bough_observe_vector(x, 1, value);
@@ -409,8 +392,8 @@ static void sample_nodes(void *self, double t, double *value) {
         int node = (int)aero->nodes[k % aero->n_node] - 1;
         bough_station x = bough_rotor_station(data, k / aero->n_node, node);
         const double values[NODE_CHANNELS] = {x.speed,
-                                              x.alpha / DEGREE,
-                                              x.phi / DEGREE,
+                                              x.alpha / BOUGH_DEGREE,
+                                              x.phi / BOUGH_DEGREE,
                                               x.axial,
                                               x.tangential,
                                               x.coefficients.lift,
@@ -465,12 +448,12 @@ static void sample_control(void *self, double t, double *value) {
     double angle, speed, torque, power;
     bough_control_link_generator(s->control, &speed, &torque, &power);
     joint_state(s, s->scene->turbine.rotor, &angle, &speed);
-    value[0] = s->scene->control.gear_ratio * speed / RPM;
+    value[0] = s->scene->control.gear_ratio * speed / BOUGH_RPM;
     value[1] = torque / 1e3;
     value[2] = power / 1e3;
     for (int b = 0; b < s->scene->turbine.n_blade; b++) {
         const bough_beam *blade = bough_simulation_beam(s, s->scene->turbine.blade[b]);
-        value[3 + b] = bough_simulation_pitch(s, blade) / DEGREE;
+        value[3 + b] = bough_simulation_pitch(s, blade) / BOUGH_DEGREE;
     }
 }
 
@@ -480,7 +463,7 @@ static void add_control(bough_simulation *s, bough_channels *list) {
     for (int b = 0; b < s->scene->turbine.n_blade; b++) add_numbered(list, BOUGH_CHANNELS_PITCH, b + 1);
 }
 
-// What a control law outside is told.
+// The measurements of a control law outside.
 static void sample_law(void *self, double t, double *value) {
     (void)t;
     const bough_simulation *s = self;

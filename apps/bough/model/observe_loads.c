@@ -6,8 +6,6 @@
 
 #include <stdio.h>
 
-static const double degree = BOUGH_PI / 180;
-
 // -- sections -------------------------------------------------------------------------------------
 
 // A place on a rod: within a segment, at a share of its length.
@@ -63,7 +61,7 @@ static void sample_place(const sensor *x, place at, double *value) {
     bough_mat3 axes = axes_between(vertex_rotation(x, left), vertex_rotation(x, right), at.share);
     bough_vec3 force = bough_mat3_tmul(axes, load.force);
     bough_vec3 moment = bough_mat3_tmul(axes, load.moment);
-    value = bough_observe_vector(turn, degree, bough_observe_vector(shift, 1, value));
+    value = bough_observe_vector(turn, BOUGH_DEGREE, bough_observe_vector(shift, 1, value));
     bough_observe_vector(moment, 1e3, bough_observe_vector(force, 1e3, value));
 }
 
@@ -84,13 +82,11 @@ static place find_place(const bough_rod_def *def, double span) {
 
 // Blades and a tower of one rod have OpenFAST's names.
 static void add_place(const bough_simulation *s, const bough_beam *beam, int number, bough_channels *list) {
-    const bough_scene_turbine *turbine = &s->scene->turbine;
-    int body = (int)(beam->body - s->scene->body);
+    int blade = bough_scene_blade(s->scene, (int)(beam->body - s->scene->body));
     char b[12], a[12];
     snprintf(b, sizeof b, "%d", number);
-    for (int k = 0; turbine->node != NULL && k < turbine->n_blade; k++) {
-        if (turbine->blade[k] != body) continue;
-        snprintf(a, sizeof a, "%d", k + 1);
+    if (blade >= 0) {
+        snprintf(a, sizeof a, "%d", blade + 1);
         bough_channel_family_add(list, BOUGH_CHANNELS_BLADE_SECTION, a, b);
         return;
     }

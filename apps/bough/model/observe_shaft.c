@@ -1,9 +1,8 @@
 // The rotor's shaft: how the hub turns, and the torque between hub and drive train.
+#include "apps/bough/model/build_internal.h"
 #include "apps/bough/model/channel_table.h"
 #include "apps/bough/model/observe.h"
 #include "core/tree/loop.h"
-
-static const double degree = BOUGH_PI / 180, rpm = BOUGH_PI / 30;
 
 typedef struct shaft {
     const bough_simulation *simulation;
@@ -15,24 +14,19 @@ typedef struct shaft {
 
 static int parent_of(const bough_scene *scene, int body) { return scene->body[body].joint.parent; }
 
-static bool carries(const bough_scene *scene, int body, int descendant) {
-    while (descendant >= 0 && descendant != body) descendant = parent_of(scene, descendant);
-    return descendant == body;
-}
-
 // The outermost body that carries all blades.
 static int find_hub(const bough_scene *scene) {
     const bough_scene_turbine *turbine = &scene->turbine;
     int hub = parent_of(scene, turbine->blade[0]);
     for (int b = 1; b < turbine->n_blade; b++) {
-        while (hub != turbine->rotor && !carries(scene, hub, turbine->blade[b])) hub = parent_of(scene, hub);
+        while (hub != turbine->rotor && !bough_scene_carries(scene, hub, turbine->blade[b]))
+            hub = parent_of(scene, hub);
     }
     return hub;
 }
 
 static bough_vec3 axis_of(const bough_scene *scene, int body) {
-    int axis = scene->body[body].joint.axis;
-    return bough_v3(axis == BOUGH_SCENE_X, axis == BOUGH_SCENE_Y, axis == BOUGH_SCENE_Z);
+    return bough_placement_axis(scene->body[body].joint.axis);
 }
 
 // A joint's own angle leaves its axis where it is.
@@ -85,8 +79,8 @@ static void sample_turn(void *self, double t, double *value) {
     (void)t;
     double angle, speed;
     bough_simulation_hub_turn(self, &angle, &speed);
-    double turn = fmod(angle / degree, 360);
-    value[0] = speed / rpm;
+    double turn = fmod(angle / BOUGH_DEGREE, 360);
+    value[0] = speed / BOUGH_RPM;
     value[1] = turn < 0 ? turn + 360 : turn;
 }
 

@@ -122,6 +122,14 @@ bough_vec3 bough_simulation_beam_tip(const bough_simulation *s, const bough_beam
     return bough_v3(x[0], x[stride], x[2 * stride]);
 }
 
+void bough_simulation_tip_shift(const bough_simulation *s, const bough_beam *beam, bough_vec3 *shift,
+                                bough_vec3 *turn) {
+    int n = beam->def.n_segment;
+    bough_quaternion p, undeformed = bough_quaternion_conjugate(beam->def.rotation[n]);
+    *shift = bough_sub(bough_simulation_beam_tip(s, beam, &p), beam->def.position[n]);
+    *turn = bough_quaternion_logarithm(bough_quaternion_product(p, undeformed));
+}
+
 const double *bough_simulation_rod_input(const bough_simulation *s, const bough_beam *beam) {
     const bough_coupling *c = s->master->coupling;
     return c->input + c->assembly->input_offset[beam->port + 1];

@@ -13,8 +13,7 @@
 // Of two threads each has a simulation. More have work only where flexible bodies share them.
 static bool fits_side_by_side(const bough_scene *scene, int threads) {
     int n = 0;
-    for (int i = 0; i < scene->n_body; i++)
-        n += scene->body[i].rod.node && scene->body[i].fidelity != BOUGH_SCENE_RIGID;
+    for (int i = 0; i < scene->n_body; i++) n += bough_scene_has_mesh(&scene->body[i]);
     return scene->simulation.error_estimate == BOUGH_SCENE_COMPANION && (threads == 2 || n < 2);
 }
 

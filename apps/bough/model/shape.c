@@ -107,13 +107,9 @@ void bough_shape_points(void *self, double *point) {
         } else {
             rigid_line(s, i, x);
         }
-        for (int k = 0; k < shape->line[i].n_point; k++, point += 3) {
-            point[0] = x[k].x, point[1] = x[k].y, point[2] = x[k].z;
-        }
+        for (int k = 0; k < shape->line[i].n_point; k++, point += 3) bough_v3_store(x[k], point);
     }
 }
-
-static void store(bough_vec3 x, double *to) { to[0] = x.x, to[1] = x.y, to[2] = x.z; }
 
 static void rod_loads(const bough_shape *shape, int body, double t, double *force, double *moment) {
     const bough_simulation *s = shape->simulation;
@@ -123,8 +119,8 @@ static void rod_loads(const bough_shape *shape, int body, double t, double *forc
     if (!bough_section_evaluate(s, beam, t, scratch)) return;
     for (int k = 0; k < shape->line[body].n_point; k++) {
         bough_section_load load = bough_section_at_vertex(beam, scratch, k);
-        store(bough_mat3_mul(axes, load.force), force + 3 * k);
-        store(bough_mat3_mul(axes, load.moment), moment + 3 * k);
+        bough_v3_store(bough_mat3_mul(axes, load.force), force + 3 * k);
+        bough_v3_store(bough_mat3_mul(axes, load.moment), moment + 3 * k);
     }
 }
 

@@ -87,6 +87,11 @@ bough_motion_point bough_simulation_joint_point(const bough_simulation *s, int b
 bough_vec3 bough_simulation_beam_tip(const bough_simulation *s, const bough_beam *beam,
                                      bough_quaternion *rotation);
 
+// Displacement of its last vertex [m] and rotation vector of the section there [rad] from the undeformed
+// beam, in the body's axes.
+void bough_simulation_tip_shift(const bough_simulation *s, const bough_beam *beam, bough_vec3 *shift,
+                                bough_vec3 *turn);
+
 // Builds the flexible body of a beam, a rod or a modal body, in a frame that moves with `input` (9)
 // at the start.
 bough_status bough_beam_build(bough_arena *arena, bough_beam *beam, bough_integrator_options micro,

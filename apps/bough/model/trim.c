@@ -8,11 +8,10 @@
 
 enum { MOST_TRIES = 60 };
 
-// Of the rated torque, what may be left.
-static const double tolerance = 1e-5;
-// Steps in which the speed and the pitch are bracketed; slower than that share of its reference the
-// rotor stands still.
-static const double slower = 0.85, faster = 1.1, steeper = 4 * BOUGH_PI / 180, standing = 0.1;
+static const double tolerance = 1e-5;             // of the torque's balance, relative to the rated torque
+static const double slower = 0.85, faster = 1.1;  // factors by which the speed is bracketed
+static const double steeper = 4 * BOUGH_PI / 180; // steps by which the pitch is bracketed [rad]
+static const double standing = 0.1;               // of its reference speed: a slower rotor stands still
 
 typedef struct search {
     bough_simulation *simulation;

@@ -129,6 +129,12 @@ int bough_channels_find(const bough_channels *list, const char *name) {
     return list->capacity > 0 ? *slot_of(list, name) - 1 : -1;
 }
 
+const char *const *bough_channels_names(const bough_channels *list, bough_arena *arena) {
+    const char **names = bough_arena_take(arena, ((size_t)list->count + 1) * sizeof *names);
+    for (int i = 0; i < list->count; i++) names[i] = list->channel[i].name;
+    return names;
+}
+
 // -- choice ---------------------------------------------------------------------------------------
 
 typedef struct choice {

@@ -69,6 +69,9 @@ void bough_channels_describe(bough_channels *list, int component, bool sampled);
 // The index of the channel with this name, −1 if there is none.
 int bough_channels_find(const bough_channels *list, const char *name);
 
+// The names (count), in the arena.
+const char *const *bough_channels_names(const bough_channels *list, bough_arena *arena);
+
 // Whether the name of a channel matches the shell pattern ("Root*").
 bool bough_channels_match(const bough_channels *list, const char *pattern);
 

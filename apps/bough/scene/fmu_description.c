@@ -1,4 +1,6 @@
-#include "apps/bough/scene/fmu_description.h"
+// The description of an FMU, modelDescription.xml, as far as an importer of real inputs and outputs needs
+// it: FMI 3.0 (https://fmi-standard.org), co-simulation.
+#include "apps/bough/scene/scene_internal.h"
 
 #include "core/base/input_file.h"
 

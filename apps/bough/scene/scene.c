@@ -5,6 +5,29 @@
 #include <stdio.h>
 #include <string.h>
 
+// -- bodies ---------------------------------------------------------------------------------------
+
+bool bough_scene_carries(const bough_scene *s, int carrier, int body) {
+    for (int steps = 0; body >= 0 && steps <= s->n_body; steps++) {
+        if (body == carrier) return true;
+        body = s->body[body].joint.parent;
+    }
+    return false;
+}
+
+int bough_scene_carried_by(const bough_scene *s, int body) {
+    for (int i = 0; i < s->n_body; i++) {
+        if (s->body[i].joint.parent == body) return i;
+    }
+    return -1;
+}
+
+int bough_scene_blade(const bough_scene *s, int body) {
+    int k = s->turbine.blade ? s->turbine.n_blade - 1 : -1;
+    while (k >= 0 && s->turbine.blade[k] != body) k--;
+    return k;
+}
+
 // -- bodies in a row: `repeat: n` -----------------------------------------------------------------
 
 // Bodies in a row: a body with `repeat: n` becomes n, each hung on the one before by the same
@@ -12,12 +35,6 @@
 // places in the text keep their index.
 
 enum { MOST_BODIES = 10000, MOST_SEGMENTS = 1000000 };
-
-static const char *numbered(bough_arena *arena, const char *name, int number) {
-    char text[160];
-    snprintf(text, sizeof text, "%.140s%d", name, number);
-    return bough_arena_string(arena, text);
-}
 
 // Bodies after repetition; 0 after an error: a few lines must not ask for any amount of memory.
 static size_t count_bodies(bough_schema_reader *r, const bough_scene *s) {
@@ -47,11 +64,11 @@ void bough_scene_repeat(bough_schema_reader *r, bough_scene *s) {
     for (int i = 0; i < n; i++) {
         if (bough_node_find(body[i].node, "repeat") == NULL) continue;
         const char *name = body[i].name, *before;
-        before = body[i].name = numbered(arena, name, 1);
+        before = body[i].name = bough_arena_print(arena, "%.140s1", name);
         for (int k = 2; k <= body[i].repeat; k++, next++) {
             body[next] = body[i];
             body[next].joint.parent_name = before;
-            before = body[next].name = numbered(arena, name, k);
+            before = body[next].name = bough_arena_print(arena, "%.140s%d", name, k);
         }
     }
     s->body = body;
@@ -103,7 +120,7 @@ static void cut(bough_scene_structure *s, const double part[2], bough_scene_stat
 void bough_scene_take_part(bough_schema_reader *r, const bough_node *given, const double part[2],
                            bough_scene_structure *s) {
     bool good = part[0] >= 0 && part[0] < part[1] && part[1] <= s->length * (1 + 1e-9);
-    if (s->n_station < 1 || !isfinite(s->length)) return; // told already
+    if (s->n_station < 1 || !isfinite(s->length)) return; // reported already
     if (!good) {
         bough_schema_error(r, given, "part",
                            "must be a stretch of the table, which is %g m long, got [%g m, %g m]", s->length,
@@ -134,14 +151,7 @@ static bough_node *replace(bough_arena *arena, bough_node *root, const char *con
     return root;
 }
 
-static bough_status finish(const char *path, bough_errors *errors) {
-    int n = errors->n + errors->dropped;
-    if (n == 0) return bough_ok();
-    bough_errors_sort(errors, path);
-    return bough_fail(BOUGH_INVALID, "%s: %d error%s in the scene", path, n, n == 1 ? "" : "s");
-}
-
-// A study is told as such, in place of an error for each of its keys.
+// One error for a study that is read as a scene, in place of one for each of its keys.
 static bool is_study(const char *path, const bough_node *root, bough_errors *errors) {
     const bough_node *kind = bough_node_find(root, "kind");
     if (kind == NULL || bough_node_find(root, "bodies") != NULL) return false;
@@ -155,8 +165,8 @@ bough_status bough_scene_read(bough_arena *arena, const char *path, const char *
     *scene = NULL;
     bough_scene *s = bough_arena_take(arena, sizeof *s);
     bough_node *root = bough_text_read(arena, path, errors);
-    if (root == NULL) return finish(path, errors);
-    if (is_study(path, root, errors)) return finish(path, errors);
+    if (root == NULL) return bough_errors_status(errors, path, "scene");
+    if (is_study(path, root, errors)) return bough_errors_status(errors, path, "scene");
     root = replace(arena, root, sets, n_set, errors);
     bough_schema_reader reader = {.arena = arena, .errors = errors, .directory = directory_of(arena, path)};
     s->file = bough_arena_string(arena, path);
@@ -165,7 +175,7 @@ bough_status bough_scene_read(bough_arena *arena, const char *path, const char *
     if (s->node != NULL && errors->n == 0) bough_scene_repeat(&reader, s);
     if (s->node != NULL) bough_scene_link(&reader, s);
     s->named = reader.files;
-    bough_status status = finish(path, errors);
+    bough_status status = bough_errors_status(errors, path, "scene");
     if (bough_is_ok(&status)) *scene = s;
     return status;
 }
@@ -191,7 +201,7 @@ const bough_scene_solver *bough_scene_micro(const bough_scene *scene, const boug
 
 bool bough_scene_moves(const bough_scene *scene, int body) {
     for (int steps = 0; body >= 0 && steps <= scene->n_body; steps++) {
-        if (scene->body[body].joint.kind > BOUGH_JOINT_FIXED) return true;
+        if (scene->body[body].joint.kind != BOUGH_JOINT_FIXED) return true;
         body = scene->body[body].joint.parent;
         if (body >= 0 && scene->body[body].fidelity == BOUGH_SCENE_ROD) return true;
     }

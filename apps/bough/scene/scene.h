@@ -12,10 +12,8 @@
 #define BOUGH_APPS_SCENE_SCENE_H
 
 #include "aero/control/controller.h"
-#include "aero/rotor/rotor.h"
-#include "aero/wind/wind_iec.h"
 #include "apps/bough/config/text.h"
-#include "apps/bough/scene/fmu_description.h"
+#include "apps/bough/scene/scene_air.h"
 #include "core/base/arena.h"
 #include "core/base/status.h"
 #include "core/tree/tree.h"
@@ -23,7 +21,11 @@
 #include "flexbody/section/section.h"
 
 #include <stdbool.h>
+#include <stdint.h>
 #include <stdio.h>
+
+#define BOUGH_DEGREE (BOUGH_PI / 180) // [rad]
+#define BOUGH_RPM (BOUGH_PI / 30)     // [rad/s]
 
 typedef struct bough_scene_coupling {
     const bough_node *node;
@@ -172,6 +174,32 @@ typedef enum bough_scene_fidelity {
 
 enum { BOUGH_SCENE_MOTION = 9, BOUGH_SCENE_WRENCH = 6 };
 
+typedef enum bough_fmu_causality {
+    BOUGH_FMU_INPUT,
+    BOUGH_FMU_OUTPUT,
+    BOUGH_FMU_LOCAL, // any other
+} bough_fmu_causality;
+
+// A variable of type Float64.
+typedef struct bough_fmu_variable {
+    const char *name;
+    uint32_t reference;
+    bough_fmu_causality causality;
+    bool array;       // it has dimensions
+    const char *unit; // as written; NULL: none
+} bough_fmu_variable;
+
+typedef struct bough_fmu_description {
+    const char *identifier; // of the library
+    const char *token;
+    bool restores; // its state can be stored and restored
+    bool once;     // only one instance in a process
+    int n_variable;
+    bough_fmu_variable *variable; // (n_variable)
+    int n_scaled;
+    const char **scaled; // (n_scaled) names of units that are not SI: with a factor or an offset
+} bough_fmu_description;
+
 // A model of another program behind a body's frame: a co-simulation FMU of FMI 3.0, unpacked. Its inputs are
 // velocity, angular velocity and gravity of the frame in body axes, its outputs force and moment on the
 // frame's carrier about the frame's origin in body axes; SI.
@@ -213,6 +241,11 @@ typedef struct bough_scene_body {
 static inline bool bough_scene_is_flexible(const bough_scene_body *body) {
     return body->fidelity == BOUGH_SCENE_ROD || body->fidelity == BOUGH_SCENE_MODAL ||
            body->fidelity == BOUGH_SCENE_SEGMENTED_MODAL || body->fidelity == BOUGH_SCENE_FMU;
+}
+
+// Whether it has a mesh: rod, modal.
+static inline bool bough_scene_has_mesh(const bough_scene_body *body) {
+    return body->rod.node != NULL && body->fidelity != BOUGH_SCENE_RIGID;
 }
 
 typedef enum bough_scene_load_frame {
@@ -321,108 +354,6 @@ typedef struct bough_scene_turbine {
     int *blade;              // (n_blade) indices of bodies with a rod
 } bough_scene_turbine;
 
-typedef struct bough_scene_aero_station {
-    const bough_node *node;
-    bough_station_def def;
-    const char *polar_name, *second_name; // NULL second: the polar alone
-} bough_scene_aero_station;
-
-typedef struct bough_scene_aero_blade {
-    const bough_node *node;
-    const char *source;
-    int n_station;
-    bough_scene_aero_station *station; // (n_station), spans strictly increasing from 0
-} bough_scene_aero_blade;
-
-typedef struct bough_scene_polar_row {
-    const bough_node *node;
-    double alpha; // [rad]
-    double cl, cd, cm;
-} bough_scene_polar_row;
-
-typedef struct bough_scene_polar {
-    const bough_node *node;
-    const char *name;
-    int n_row;
-    bough_scene_polar_row *row; // (n_row), alpha strictly increasing from −π to π
-    double indicial[4];         // A₁, A₂, b₁, b₂ of dynamic stall [-]
-} bough_scene_polar;
-
-typedef struct bough_scene_polars {
-    const bough_node *node;
-    const char *source;
-    int n_polar;
-    bough_scene_polar *polar; // (n_polar), at least two rows each
-} bough_scene_polars;
-
-typedef enum bough_scene_hold { BOUGH_SCENE_LINEAR, BOUGH_SCENE_CONSTANT } bough_scene_hold;
-typedef enum bough_scene_interpolation {
-    BOUGH_SCENE_POLARS_LINEAR,
-    BOUGH_SCENE_POLARS_SMOOTH,
-} bough_scene_interpolation;
-typedef enum bough_scene_wind_kind {
-    BOUGH_SCENE_WIND_UNIFORM,
-    BOUGH_SCENE_WIND_POWER,
-    BOUGH_SCENE_WIND_LOG,
-    BOUGH_SCENE_WIND_WND,
-    BOUGH_SCENE_WIND_BTS,
-    BOUGH_SCENE_WIND_IEC,
-} bough_scene_wind_kind;
-// Linear between, constant before and after.
-typedef struct bough_scene_wind_table {
-    const bough_node *node; // NULL: the speed is constant
-    int n_time, n_speed;    // equal
-    double *time;           // (n_time) strictly increasing [s]
-    double *speed;          // (n_time) [m/s]
-} bough_scene_wind_table;
-
-typedef struct bough_scene_wind {
-    const bough_node *node;
-    int kind;                     // bough_scene_wind_kind
-    bough_scene_wind_table table; // in place of the speed
-    const char *input;            // in place of the speed; NULL: none
-    // But for the kind and the table. The veer is over 100 m of height [rad]; once checked `file` is its
-    // path; of kind iec 0 is chosen ("auto"), and speed, exponent and reference height are those of the def.
-    bough_wind_def def;
-} bough_scene_wind;
-
-typedef struct bough_scene_induction {
-    const bough_node *node;
-    bough_induction_options options; // but for drag
-    bool drag;                       // in the axial and the tangential induction
-    int skew;                        // 1: corrected by Pitt and Peters
-    bough_inflow_def inflow;         // time 0: from induction and wind ("auto")
-} bough_scene_induction;
-
-// Vertical along ground z from the origin.
-typedef struct bough_scene_tower {
-    const bough_node *node; // NULL: no tower influence
-    bough_tower_def def;    // its drag (def.n) once checked
-    int n_diameter, n_drag; // def.n, 1 or def.n
-    const char *body_name;  // NULL: no drag on the tower
-    int body;               // index of a body with a rod
-} bough_scene_tower;
-
-typedef struct bough_scene_aero {
-    const bough_node *node; // NULL: no aerodynamics
-    double rate;            // samples per second [Hz]; the period is a multiple of the macro step
-    double air_density;     // [kg/m³]
-    bough_scene_wind wind;
-    double ramp[2]; // [s] as in bough_scene_load
-    int hold;       // bough_scene_hold: how loads go between samples
-    bough_scene_aero_blade blade;
-    bough_scene_polars polars;
-    bough_scene_induction induction;
-    bough_scene_tower tower;
-    double hub_radius;    // [m]
-    double hub_drag_area; // drag coefficient times area [m²]
-    int dynamic_stall;    // bough_stall_kind
-    int interpolation;    // bough_scene_interpolation
-    int n_node;           // blade elements whose channels are recorded, of every blade
-    double *nodes;        // (n_node) numbers from 1
-    bool pitching_moment;
-} bough_scene_aero;
-
 typedef enum bough_scene_controller {
     BOUGH_SCENE_VARIABLE_SPEED,
     BOUGH_SCENE_BLADED,
@@ -473,7 +404,7 @@ typedef struct bough_scene_control {
 } bough_scene_control;
 
 typedef enum bough_scene_modes_of {
-    BOUGH_SCENE_MODES_AUTO, // of the rods where they are apart or `speed` or `axis` is given
+    BOUGH_SCENE_MODES_AUTO, // of the rods where they are independent, or `speed` or `axis` is given
     BOUGH_SCENE_MODES_RODS,
     BOUGH_SCENE_MODES_SCENE,
 } bough_scene_modes_of;
@@ -567,6 +498,15 @@ void bough_scene_warn(const bough_scene *scene, FILE *stream);
 
 // The sub-solver of a flexible body: its own or the simulation's.
 const bough_scene_solver *bough_scene_micro(const bough_scene *scene, const bough_scene_body *body);
+
+// Whether `carrier` is a body or carries it, by any number of joints; false in a loop of parents.
+bool bough_scene_carries(const bough_scene *scene, int carrier, int body);
+
+// The first body whose joint hangs on `body`; −1: none.
+int bough_scene_carried_by(const bough_scene *scene, int body);
+
+// The place of a body among the turbine's blades; −1: it is none.
+int bough_scene_blade(const bough_scene *scene, int body);
 
 // Length of a rod's axis, straight between its stations [m].
 double bough_scene_arc_length(const bough_scene_structure *structure);

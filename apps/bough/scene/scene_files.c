@@ -28,13 +28,6 @@ static bool is_folder(const char *path) {
     return stat(path, &about) == 0 && S_ISDIR(about.st_mode);
 }
 
-static const char *join(bough_arena *arena, const char *folder, const char *name) {
-    size_t size = strlen(folder) + strlen(name) + 2;
-    char *path = bough_arena_take(arena, size);
-    snprintf(path, size, "%s/%s", folder, name);
-    return path;
-}
-
 static void add(list *l, bough_scene_file file) {
     bough_scene_files *f = &l->files;
     for (int k = 0; k < f->n; k++) {
@@ -56,7 +49,8 @@ static void add_folder(list *l, const bough_scene_file *folder, int depth) {
     for (int k = 0; k < n; k++) {
         const char *name = entry[k]->d_name;
         bool dots = strcmp(name, ".") == 0 || strcmp(name, "..") == 0;
-        bough_scene_file inner = {folder->key, join(l->arena, folder->path, name), folder->absolute};
+        bough_scene_file inner = {folder->key, bough_arena_print(l->arena, "%s/%s", folder->path, name),
+                                  folder->absolute};
         if (is_file(inner.path)) add(l, inner);
         if (!dots && is_folder(inner.path)) add_folder(l, &inner, depth + 1);
         free(entry[k]);

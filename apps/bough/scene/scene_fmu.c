@@ -136,7 +136,7 @@ static void check_simulation(bough_schema_reader *r, const bough_scene *s, const
         bough_schema_error(r, bough_link_value(x->step_control.node, "tolerance"), "step_control.tolerance",
                            "not with an FMU ('%s'): expected fixed steps", b->name);
     }
-    if (x->initial > BOUGH_SCENE_UNDEFORMED) {
+    if (x->initial == BOUGH_SCENE_IN_EQUILIBRIUM || x->initial == BOUGH_SCENE_IN_OPERATION) {
         bough_schema_error(r, bough_node_find(x->node, "initial"), "initial",
                            "the equilibrium of the FMU '%s' is not known: expected undeformed", b->name);
     }

@@ -1,14 +1,7 @@
 // Inputs: what the scene leaves to whoever steps it, by name.
 #include "apps/bough/scene/scene_internal.h"
 
-#include <stdio.h>
 #include <string.h>
-
-static const char *joined(bough_arena *arena, const char *name, const char *end) {
-    char text[160];
-    snprintf(text, sizeof text, "%.120s%s", name, end);
-    return bough_arena_string(arena, text);
-}
 
 static bough_scene_input *add(bough_scene *s, const bough_node *node, const char *name,
                               bough_scene_input_kind kind) {
@@ -50,7 +43,7 @@ static void add_component(bough_arena *arena, bough_scene *s, const bough_scene_
     *(force ? &to->force[c] : &to->moment[c - 3]) = 1;
     memcpy(to->end_force, to->force, sizeof to->force);
     memcpy(to->end_moment, to->moment, sizeof to->moment);
-    to->input = joined(arena, from->input, ends[c]);
+    to->input = bough_arena_print(arena, "%.120s%s", from->input, ends[c]);
     bough_scene_input *input = add(s, from->node, to->input, BOUGH_INPUT_LOAD);
     input->dimension =
         force ? (along ? BOUGH_LINE_FORCE : BOUGH_FORCE) : (along ? BOUGH_LINE_MOMENT : BOUGH_MOMENT);
@@ -94,9 +87,8 @@ static void add_control(bough_arena *arena, bough_scene *s) {
     if (control->node == NULL || control->kind != BOUGH_SCENE_EXTERNAL) return;
     add(s, control->node, "GenTqCom", BOUGH_INPUT_TORQUE)->dimension = BOUGH_MOMENT;
     for (int b = 0; control->pitch && b < s->turbine.n_blade; b++) {
-        char end[12];
-        snprintf(end, sizeof end, "%d", b + 1);
-        bough_scene_input *input = add(s, control->node, joined(arena, "BlPitchCom", end), BOUGH_INPUT_PITCH);
+        const char *name = bough_arena_print(arena, "BlPitchCom%d", b + 1);
+        bough_scene_input *input = add(s, control->node, name, BOUGH_INPUT_PITCH);
         input->dimension = BOUGH_ANGLE;
         input->index = b;
         if (s->turbine.blade[b] >= 0) input->initial = s->body[s->turbine.blade[b]].pitch;
@@ -110,7 +102,7 @@ static void add_wind(bough_schema_reader *r, bough_scene *s) {
     input->dimension = BOUGH_SPEED;
     input->range = WIND_SPEED_RANGE;
     input->initial = wind->def.speed;
-    if (wind->kind <= BOUGH_SCENE_WIND_LOG && wind->table.node == NULL) return;
+    if (bough_scene_wind_is_steady(wind)) return;
     bough_link_at(r, "aero.wind");
     bough_schema_error(r, bough_node_find(wind->node, "input"), "input",
                        "only of a uniform wind or one sheared by a law, with a 'speed'");
@@ -132,7 +124,6 @@ void bough_link_inputs(bough_schema_reader *r, bough_scene *s) {
     size_t most = 6 * loads + (size_t)s->n_body + 5;
     s->input = bough_arena_take(r->arena, most * sizeof *s->input);
     bough_scene_load *load = bough_arena_take(r->arena, ((size_t)s->n_load + 5 * loads + 1) * sizeof *load);
-    if (s->input == NULL || load == NULL) return;
     if (s->n_load > 0) memcpy(load, s->load, (size_t)s->n_load * sizeof *load);
     s->load = load;
     add_loads(r->arena, s);

@@ -112,6 +112,18 @@ void bough_link_inputs(bough_schema_reader *r, bough_scene *s);
 // error. Nodes that an alias shares are copied before they change.
 bough_node *bough_scene_set(bough_arena *arena, bough_node *root, const char *set, bough_errors *errors);
 
+// -- modelDescription.xml of an FMU of FMI 3.0 (fmu_description.c) --------------------------------
+
+// Reads FOLDER/modelDescription.xml of an unpacked FMU. BOUGH_INVALID: the file is missing or is no XML, the
+// version is not 3, there is no co-simulation.
+bough_status bough_fmu_describe(bough_arena *arena, const char *folder, bough_fmu_description *description);
+
+// The variable of that name; NULL: there is none.
+const bough_fmu_variable *bough_fmu_find(const bough_fmu_description *d, const char *name);
+
+// Whether a variable's unit is declared with a factor other than 1 or with an offset.
+bool bough_fmu_scaled(const bough_fmu_description *d, const bough_fmu_variable *variable);
+
 // -- words of the tables of keys ------------------------------------------------------------------
 
 // clang-format off

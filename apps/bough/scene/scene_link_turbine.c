@@ -7,15 +7,6 @@
 
 // -- turbine --------------------------------------------------------------------------------------
 
-// Whether `ancestor` carries body i; false in a loop or where a name is unknown.
-static bool hangs_on(const bough_scene *s, int i, int ancestor) {
-    for (int steps = 0; i >= 0 && steps <= s->n_body; steps++) {
-        if (i == ancestor) return true;
-        i = s->body[i].joint.parent;
-    }
-    return false;
-}
-
 static bool is_listed_before(const bough_scene_turbine *t, int k) {
     for (int i = 0; i < k; i++) {
         if (t->blade[i] == t->blade[k]) return true;
@@ -34,7 +25,7 @@ static void link_blade(bough_schema_reader *r, bough_scene *s, int k) {
         bough_schema_error(r, node, "", "blade '%s' is given twice", name);
     } else if (bough_node_find(s->body[t->blade[k]].node, "rod") == NULL) {
         bough_schema_error(r, node, "", "body '%s' has no rod, so it cannot be a blade", name);
-    } else if (t->rotor >= 0 && !hangs_on(s, t->blade[k], t->rotor)) {
+    } else if (t->rotor >= 0 && !bough_scene_carries(s, t->rotor, t->blade[k])) {
         bough_schema_error(r, node, "", "body '%s' is not carried by the rotor '%s'", name, t->rotor_name);
     }
 }
@@ -118,9 +109,7 @@ static void link_tower(bough_schema_reader *r, bough_scene *s) {
     const bough_node *node = bough_link_value(tower->node, "body");
     tower->body = bough_link_body(r, s, node, "tower.body", tower->body_name);
     if (tower->body < 0) return;
-    bool blade = false;
-    for (int k = 0; k < s->turbine.n_blade; k++) blade = blade || s->turbine.blade[k] == tower->body;
-    if (blade || bough_node_find(s->body[tower->body].node, "rod") == NULL) {
+    if (bough_scene_blade(s, tower->body) >= 0 || bough_node_find(s->body[tower->body].node, "rod") == NULL) {
         bough_schema_error(r, node, "tower.body", "'%s' must have a rod and must not be a blade",
                            tower->body_name);
     }
@@ -146,7 +135,7 @@ void bough_link_aero(bough_schema_reader *r, bough_scene *s) {
 
 // -- control --------------------------------------------------------------------------------------
 
-// A blade that is pitched turns about its own z by a joint that is told how.
+// A blade is pitched by a revolute joint about its own z with a prescribed motion.
 static bool has_pitch_joint(const bough_scene_body *b) {
     return b->joint.kind == BOUGH_JOINT_REVOLUTE && b->joint.motion.node != NULL;
 }

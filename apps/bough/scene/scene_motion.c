@@ -195,9 +195,9 @@ void bough_scene_check_motion(bough_schema_reader *r, const bough_scene_joint *j
     static const char why[] = "follows from the joint's motion";
     const bough_scene_motion *first = &joint->motion, *second = &joint->second_motion;
     bool placed = first->node != NULL && !first->def.speed;
-    bool apart = joint->kind == BOUGH_JOINT_CYLINDRICAL; // its angle is the second motion's
+    bool cylindrical = joint->kind == BOUGH_JOINT_CYLINDRICAL; // its angle is the second motion's
     if (first->node != NULL) bough_scene_refuse(r, joint->node, "speed", why);
-    if (placed) bough_scene_refuse(r, joint->node, apart ? "position" : "position|angle", why);
-    if (!apart || second->node == NULL) return;
+    if (placed) bough_scene_refuse(r, joint->node, cylindrical ? "position" : "position|angle", why);
+    if (!cylindrical || second->node == NULL) return;
     bough_scene_refuse(r, joint->node, second->def.speed ? "angular_speed" : "angular_speed|angle", why);
 }

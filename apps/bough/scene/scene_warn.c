@@ -35,7 +35,7 @@ static bool has_distribution(const double v[6]) {
 static bool is_about_one_axis(const double v[6]) { return (v[0] != 0) + (v[1] != 0) + (v[2] != 0) == 1; }
 
 static void warn_inertia(const bough_scene_body *b, FILE *stream) {
-    if (b->fidelity == BOUGH_SCENE_FMU) return; // what is left to the carrier is no body by itself
+    if (b->fidelity == BOUGH_SCENE_FMU) return; // the mass that its carrier takes over is no body
     const double *v = b->inertia;
     if (has_distribution(v) || is_about_one_axis(v)) return;
     warn(
