@@ -125,19 +125,23 @@ static double difference(const bough_channel *channel, double a, double b) {
     return channel->turn > 0 ? remainder(a - b, channel->turn) : a - b;
 }
 
+// A force answers accelerations, whose errors are of a lower order.
+static const double least_share_of_force = 0.4;
+
 // Of the difference, that the run errs by in a channel. A sampled one that the companion holds, one sample of
 // the run longer than the run does, differs by what happens in that time.
-static double share_now(const bough_companion *c, bool sampled) {
-    return sampled && !bough_master_sampled(c->coarser->master) ? c->share_held : c->share;
+static double share_now(const bough_companion *c, const bough_channel *channel, bool held) {
+    if (channel->sampled) return held ? c->share_held : c->share;
+    return channel->kind == BOUGH_KIND_FORCE ? fmax(c->share, least_share_of_force) : c->share;
 }
 
 static void compare(bough_companion *c) {
-    double share[] = {share_now(c, false), share_now(c, true)};
+    bool held = !bough_master_sampled(c->coarser->master);
     sample(c);
     c->compared++;
     for (int i = 0; i < c->channels->count; i++) {
         const bough_channel *channel = &c->channels->channel[i];
-        double error = share[channel->sampled] * fabs(difference(channel, c->value[i], c->other[i]));
+        double error = share_now(c, channel, held) * fabs(difference(channel, c->value[i], c->other[i]));
         if (!(error <= c->error[i])) c->error[i] = error; // a NaN wins
     }
     bough_error_notice(c, c->run->master->time);

@@ -65,8 +65,8 @@ TEST(the_whole_error_is_told) {
     assert_false(truth->compared);
     static const char *const coupling[] = {"simulation.coupling={scheme: ramp, theta: auto}",
                                            "simulation.coupling={scheme: monolithic}"};
-    static const char *const watched[] = {"RotSpeed",  "TipDxb1",  "TipDyb1",
-                                          "TwstDefl1", "RootMyb1", "RootMxb1"};
+    static const char *const watched[] = {"RotSpeed", "TipDxb1",  "TipDyb1",  "TwstDefl1",
+                                          "RootMyb1", "RootMxb1", "RootFyb1", "RootFzb1"};
     for (int c = 0; c < 2; c++) {
         const char *const sets[] = {"simulation.duration=2 s", coupling[c],
                                     "simulation.master={solver: rosenbrock, step: 10 ms, rtol: 3e-4}", NULL};
@@ -78,7 +78,8 @@ TEST(the_whole_error_is_told) {
             double error = true_error(o, truth, i, STEPS);
             print_message("%s: true %.2g, told %.2g: %.2f\n", watched[w], error, o->error[i],
                           o->error[i] / error);
-            assert_true(o->error[i] > error / 3 && o->error[i] < 5 * error);
+            bool force = strncmp(watched[w], "RootF", 5) == 0 && c == 1;
+            assert_true(o->error[i] > error / (force ? 2 : 3) && o->error[i] < 5 * error);
         }
         free(o);
     }
