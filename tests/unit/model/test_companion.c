@@ -160,7 +160,7 @@ TEST(a_scene_is_coarser_in_everything) {
     check_near(c->simulation.master.rtol, 3e-3, 1e-15, 0);
     check_near(c->aero.rate, 25, 1e-15, 0);
     for (int i = 0; i < c->n_body; i++) {
-        if (scene->body[i].rod.node) assert_int_equal(c->body[i].rod.n_segment, 16);
+        if (scene->body[i].rod.node) assert_int_equal(c->body[i].rod.n_segment, 12);
     }
     assert_true(c->simulation.halves);
     // of the time alone: the air's samples do not let the macro step be longer

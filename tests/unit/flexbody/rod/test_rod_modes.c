@@ -27,7 +27,7 @@ typedef struct bar {
     int found;
 } bar;
 
-static void build(bar *b, uniform u, int segments) {
+static void build_graded(bar *b, uniform u, double grading, int segments) {
     b->arena = bough_arena_create();
     bough_section_station section = {.stiffness = {[0] = u.shear,
                                                    [6] = u.shear,
@@ -37,7 +37,8 @@ static void build(bar *b, uniform u, int segments) {
                                                    [20] = u.torsion},
                                      .mass = u.mass,
                                      .inertia = {u.inertia, u.inertia, 0, 2 * u.inertia}};
-    bough_section_table table = {.name = "bar", .n_station = 1, .station = &section, .length = 1};
+    bough_section_table table = {
+        .name = "bar", .n_station = 1, .station = &section, .length = 1, .grading = grading};
     for (int c = 0; c < 6; c++) table.damping[c] = u.damping;
     bough_rod_def def;
     bough_status s = bough_section_discretise(b->arena, &table, segments, &def);
@@ -47,6 +48,8 @@ static void build(bar *b, uniform u, int segments) {
     bough_rod_loads_init(&b->loads, b->arena, b->model);
     bough_rod_static_init(&b->work, b->arena, b->model);
 }
+
+static void build(bar *b, uniform u, int segments) { build_graded(b, u, 0, segments); }
 
 static void solve(bar *b, const double *input) {
     bough_rod_static_options options = bough_rod_static_options_default();
@@ -89,6 +92,35 @@ TEST(thin_rod_has_eulers_frequencies_twice) {
         check_near(b.mode[k].damped_frequency, b.mode[k].frequency, 1e-12, 0);
     }
     bough_arena_destroy(b.arena);
+}
+
+// Segments that shorten from the root: their lengths, their mass, and frequencies of second order at least.
+// The vertices of half as many segments are every second one.
+TEST(graded_mesh_converges_to_eulers_frequencies) {
+    const double exact[3] = {3.51601527, 22.03449157, 61.69721441};
+    double error[2][3];
+    bar b[2];
+    for (int mesh = 0; mesh < 2; mesh++) {
+        int n = 12 << mesh;
+        build_graded(&b[mesh], (uniform){1e9, 1e9, 1, 1, 1, 1, 1e-9, 0}, 0.2, n);
+        const bough_rod_model *m = b[mesh].model;
+        double mass = 0;
+        for (int i = 0; i <= n; i++) mass += m->vertex[i].mass;
+        check_near(mass, 1, 1e-12, 0);
+        check_near(m->length[0], (1 + 0.2 * (1 - 1.0 / n)) / n, 1e-12, 0);
+        check_near(m->length[n - 1], (1 - 0.2 * (1 - 1.0 / n)) / n, 1e-12, 0);
+        solve(&b[mesh], at_rest);
+        for (int k = 0; k < 3; k++) {
+            error[mesh][k] = fabs(b[mesh].mode[2 * k].frequency * 2 * BOUGH_PI / exact[k] - 1);
+        }
+    }
+    for (int i = 0; i <= 12; i++) check_near(b[0].model->span[i], b[1].model->span[2 * i], 1e-14, 1e-14);
+    for (int k = 0; k < 3; k++) {
+        assert_true(error[0][k] < 2e-3);
+        assert_true(error[1][k] < error[0][k] / 3.5);
+    }
+    bough_arena_destroy(b[0].arena);
+    bough_arena_destroy(b[1].arena);
 }
 
 // Square section, depth a tenth of the length, ν = 0.3, shear factor 5/6: ratios to Euler's values
