@@ -51,7 +51,7 @@ static const way ways[] = {
     {"iterated, interface-newton", "iterated", BOUGH_ACCELERATE_NEWTON, ENDS, true},
     {"waveform, iqn-ils", "iterated", BOUGH_ACCELERATE_IQN_ILS, WAVE, true},
     {"waveform, interface-newton", "iterated", BOUGH_ACCELERATE_NEWTON, WAVE, true},
-    {"ramp", "ramp", BOUGH_ACCELERATE_NONE, ENDS, true},
+    {"ramp", "ramp", BOUGH_ACCELERATE_NONE, ENDS, false},
     {"monolithic", "monolithic", BOUGH_ACCELERATE_NONE, ENDS, true},
 };
 #undef ENDS
