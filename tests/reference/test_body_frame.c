@@ -19,7 +19,7 @@ typedef struct fixture {
 
 static int setup(void **context) {
     fixture *f = calloc(1, sizeof *f);
-    f->arena = bough_arena_create();
+    f->arena = check_memory();
     f->model = sample_general(f->arena, N);
     check_ok(bough_rod_structure_create(f->arena, f->model, &f->structure));
     for (int i = 0; i <= N; i++) {

@@ -41,6 +41,9 @@ void check_set_group(CMFixtureFunction set_up, CMFixtureFunction tear_down);
 #define check_fails(call, expected, text)                                                                    \
     check_fails_at((call), (expected), (text), #call, __FILE__, __LINE__)
 
+// Memory for fixtures: a new arena, which ends with the program unless it is destroyed before.
+bough_arena *check_memory(void);
+
 // Memory until the end of the block.
 #define check_arena(name) __attribute__((cleanup(check_end_arena))) bough_arena *name = bough_arena_create()
 

@@ -48,11 +48,18 @@ static inline void copy_deck(const char *folder, const char *name, const edit *o
     fclose(out);
 }
 
-static inline void done(trial *t) {
+static inline void remove_folder(void *folder) {
     char command[SCRATCH_PATH];
-    bough_arena_destroy(t->arena);
-    snprintf(command, sizeof command, "rm -rf %s", t->folder);
+    snprintf(command, sizeof command, "rm -rf %s", (const char *)folder);
     assert_int_equal(system(command), 0);
+}
+
+// A trial with its folder, which goes with its memory.
+static inline trial begin_trial(void) {
+    trial t = {.arena = check_memory()};
+    assert_non_null(mkdtemp(scratch_name(t.folder)));
+    bough_arena_on_destroy(t.arena, remove_folder, (void *)bough_arena_string(t.arena, t.folder));
+    return t;
 }
 
 static inline const bough_node *read_file(trial *t, const char *name) {

@@ -49,9 +49,8 @@ static inline void write_box(const char *folder) {
 static inline trial import_given(const char *main, const edit *one, const edit *two,
                                  const bough_import_options *options) {
     static const char *const folder[] = {"parts/foils", "v4", "v5"};
-    trial t = {.arena = bough_arena_create()};
+    trial t = begin_trial();
     char path[SCRATCH_PATH];
-    assert_non_null(mkdtemp(scratch_name(t.folder)));
     for (int i = 0; i < 3; i++) {
         snprintf(path, sizeof path, "%s/%s", t.folder, folder[i]);
         check_ok(bough_folder_make(path));

@@ -27,7 +27,7 @@ typedef struct fixture {
 } fixture;
 
 static inline fixture build_with(const bough_tree_def *def, bough_integrator_kind solver, double rtol) {
-    fixture f = {.arena = bough_arena_create()};
+    fixture f = {.arena = check_memory()};
     check_ok(bough_tree_create(f.arena, def, &f.tree));
     f.data = bough_tree_data_create(f.arena, f.tree);
     f.s = bough_tree_system_create(f.arena, f.tree, "tree");

@@ -5,6 +5,7 @@
 
 #include "apps/bough/scene/scene.h"
 #include "tests/unit/check.h"
+#include "tests/unit/printed.h"
 #include "tests/unit/scratch_name.h"
 
 #include <stdlib.h>
@@ -20,23 +21,15 @@ typedef struct fixture {
     bough_errors errors;
     bough_scene *scene;
     bough_status status;
-    char *printed;
+    const char *printed;
 } fixture;
 
 static inline fixture read_scene(const char *path, const char *const *sets, int n_set) {
-    fixture f = {.arena = bough_arena_create()};
+    fixture f = {.arena = check_memory()};
     f.errors.arena = f.arena;
     f.status = bough_scene_read(f.arena, path, sets, n_set, &f.errors, &f.scene);
-    size_t size;
-    FILE *stream = open_memstream(&f.printed, &size);
-    bough_errors_print(&f.errors, stream);
-    fclose(stream);
+    f.printed = printed_errors(&f.errors);
     return f;
-}
-
-static inline void stop(fixture *f) {
-    bough_arena_destroy(f->arena);
-    free(f->printed);
 }
 
 static inline void write_file(const char *name, const char *text) {
@@ -68,7 +61,6 @@ static inline void refuses(const char *text, const char *lines) {
     assert_string_equal(f.printed, lines);
     assert_int_equal(f.status.code, lines[0] == '\0' ? BOUGH_OK : BOUGH_INVALID);
     if (lines[0] != '\0') assert_null(f.scene);
-    stop(&f);
 }
 
 static inline void accepts(const char *text) { refuses(text, ""); }

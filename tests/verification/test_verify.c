@@ -28,7 +28,7 @@ typedef struct fixture {
 
 static bough_status open_study(fixture *f, const char *folder, const char *text) {
     char path[128];
-    *f = (fixture){.arena = bough_arena_create()};
+    *f = (fixture){.arena = check_memory()};
     f->errors.arena = f->arena;
     snprintf(path, sizeof path, "%s/study.yaml", folder);
     FILE *file = fopen(path, "w");

@@ -90,7 +90,7 @@ TEST(dynamic_damping_is_that_of_time_marching) {
         char inflow[64], stall[64];
         snprintf(inflow, sizeof inflow, "aero.induction.inflow=%s", air[k][0]);
         snprintf(stall, sizeof stall, "aero.dynamic_stall=%s", air[k][1]);
-        bough_arena *arena = bough_arena_create();
+        check_arena(arena);
         bough_simulation *s = build(arena, (const char *const[]){inflow, stall, "modes.air=dynamic", NULL});
         bough_scene_mode m = slide_mode(arena, s);
         bough_simulation *run =
@@ -103,7 +103,6 @@ TEST(dynamic_damping_is_that_of_time_marching) {
         march(run, &growth, &frequency);
         check_near(m.growth, growth, 2e-3, 0);
         check_near(m.damped_frequency, frequency, 1e-3, 0);
-        bough_arena_destroy(arena);
     }
 }
 
@@ -179,7 +178,7 @@ TEST(held_blades_come_to_rest_in_stall) {
     static const char *const pitch[] = {"bodies[3-5].pitch=285 deg", "bodies[3-5].pitch=45 deg",
                                         "bodies[3-5].pitch=20 deg"};
     for (int k = 0; k < 3; k++) {
-        bough_arena *arena = bough_arena_create();
+        check_arena(arena);
         bough_simulation *s =
             scene_build(arena, "apps/turbine/runup.yaml",
                         (const char *const[]){
@@ -196,7 +195,6 @@ TEST(held_blades_come_to_rest_in_stall) {
         double late = fastest(s, &s->beam[0], 50);
         print_message("%s: %.2g rad/s, 6 s later %.2g\n", pitch[k], early, late);
         assert_true(late < 0.7 * early);
-        bough_arena_destroy(arena);
     }
 }
 
@@ -292,7 +290,7 @@ TEST(speed_follows_the_slope_of_the_torque) {
     for (int k = 0; k < 2; k++) {
         double slope = torque_at(wind[k], "bodies[2].joint.speed=12.02 rpm") -
                        torque_at(wind[k], "bodies[2].joint.speed=11.98 rpm");
-        bough_arena *arena = bough_arena_create();
+        check_arena(arena);
         bough_simulation *s = scene_build(arena, "apps/turbine/land-operation.yaml",
                                           (const char *const[]){OPERATION("12 m/s"), wind[k], NULL});
         bough_vibration v;
@@ -304,6 +302,5 @@ TEST(speed_follows_the_slope_of_the_torque) {
         if (slope < 0) check_near(growth, 0, 0, 0);
         if (slope > 0) check_near(growth, slope / step / inertia, 0.04, 0);
         assert_true((slope > 0) == (k == 1));
-        bough_arena_destroy(arena);
     }
 }

@@ -14,7 +14,7 @@ typedef struct found {
 } found;
 
 static found modes_of(const char *path, const char *const *sets, int count) {
-    found f = {.arena = bough_arena_create()};
+    found f = {.arena = check_memory()};
     f.s = scene_build(f.arena, path, sets);
     check_ok(bough_vibration_find(f.arena, f.s, count, &f.v));
     return f;
@@ -28,7 +28,6 @@ TEST(pendulum_swings) {
     check_near(f.v.mode[0].frequency, sqrt(9.81) / (2 * BOUGH_PI), 1e-8, 0);
     check_near(f.v.mode[0].damping, 0, 0, 1e-9);
     check_near(f.v.mode[0].share[0], 1, 1e-12, 0);
-    bough_arena_destroy(f.arena);
 }
 
 // m l² λ² + c λ + m g l = 0
@@ -38,7 +37,6 @@ TEST(damper_damps_the_pendulum) {
     check_near(f.v.mode[0].frequency, sqrt(9.81) / (2 * BOUGH_PI), 1e-8, 0);
     check_near(f.v.mode[0].damping, 1 / sqrt(9.81), 1e-8, 0);
     check_near(f.v.mode[0].damped_frequency, sqrt(9.81 - 1) / (2 * BOUGH_PI), 1e-8, 0);
-    bough_arena_destroy(f.arena);
 }
 
 // On a spherical joint it swings in two planes; its free turn and its quaternion give nothing.
@@ -49,7 +47,6 @@ TEST(spherical_pendulum_swings_twice) {
     double expected = sqrt(9.81 / 1.1) / (2 * BOUGH_PI);
     assert_int_equal(f.v.found, 2);
     for (int k = 0; k < 2; k++) check_near(f.v.mode[k].frequency, expected, 1e-7, 0);
-    bough_arena_destroy(f.arena);
 }
 
 // Two windows of four-bars hang: ω² = g ((N + 1)/2 + N)/((N + 1)/3 + N), and nothing else moves.
@@ -64,7 +61,6 @@ TEST(closed_loops_swing_as_one) {
     found f = modes_of("apps/mechanisms/four-bar.yaml", sets, 6);
     assert_int_equal(f.v.found, 1);
     check_near(f.v.mode[0].frequency, sqrt(9.81 * 3.5 / 3) / (2 * BOUGH_PI), 1e-6, 0);
-    bough_arena_destroy(f.arena);
 }
 
 // Clamped and propped: β² √(EI/ρA)/2πL², β = 3.926602, in both planes; shear and inertia of the
@@ -75,7 +71,6 @@ TEST(propped_beam_vibrates_in_both_planes) {
     double exact = 3.926602 * 3.926602 * sqrt(1e5 / 2) / (2 * BOUGH_PI * 9);
     for (int k = 0; k < 2; k++) check_near(f.v.mode[k].frequency, exact, 3e-3, 0);
     assert_true(f.v.mode[2].frequency > 2 * exact);
-    bough_arena_destroy(f.arena);
 }
 
 // A disc that spins in two elastic gimbals: A λ² ± i C Ω λ + k = 0.
@@ -92,7 +87,6 @@ TEST(gyroscope_nutates_and_precesses) {
     check_near(f.v.mode[0].frequency, (root - half) / (2 * BOUGH_PI), 1e-8, 0);
     check_near(f.v.mode[1].frequency, (root + half) / (2 * BOUGH_PI), 1e-8, 0);
     assert_true(f.v.frozen); // it is no turbine's rotor
-    bough_arena_destroy(f.arena);
 }
 
 // A nearly massless cantilever of length L with a body at its end, its centre a further:
@@ -113,7 +107,6 @@ TEST(body_on_a_rod_swings) {
         check_near(f.v.mode[k].frequency, 1 / (2 * BOUGH_PI * sqrt(square)), 1e-4, 0);
         assert_true(f.v.mode[k].share[1] > 0.99);
     }
-    bough_arena_destroy(f.arena);
 }
 
 #define HUB(motion)                                                                                          \
@@ -139,7 +132,6 @@ TEST(parked_blades_have_their_own_frequencies) {
         assert_true(f.v.mode[k].blades);
         assert_int_equal(f.v.mode[k].direction, list.mode[k / 3].dominant);
     }
-    bough_arena_destroy(f.arena);
 }
 
 static const bough_scene_mode *mode_with(const found *f, int direction, bough_pattern pattern) {
@@ -168,7 +160,6 @@ TEST(whirl_is_split_by_the_rotation) {
         check_near(backward->whirl[2], 1, 0, 1e-6);
         check_near(mean->whirl[0], 1, 0, 1e-6);
     }
-    bough_arena_destroy(f.arena);
 }
 
 // What gravity does to a blade in a slow revolution averages out: its bending adds no stress.
@@ -186,7 +177,6 @@ TEST(gravity_averages_out) {
         check_near(a.v.mode[k].frequency, b.v.mode[k].frequency, 1e-4, 0);
     }
     bough_arena_destroy(a.arena);
-    bough_arena_destroy(b.arena);
 }
 
 // The rows of a shape join: a rod's end and what hangs on it move alike; the largest is real and 1.
@@ -205,7 +195,6 @@ TEST(shapes_join_the_bodies) {
     }
     check_near(most, 1, 0, 1e-9);
     check_near(end->span, 2, 1e-12, 0);
-    bough_arena_destroy(f.arena);
 }
 
 // Reduced to their modes, the blades of a rotor on a rigid support keep patterns and frequencies.
@@ -228,7 +217,6 @@ TEST(modal_blades_whirl_as_rods_do) {
         check_near(reduced->share[3], rod->share[3], 1e-2, 0);
     }
     bough_arena_destroy(a.arena);
-    bough_arena_destroy(b.arena);
 }
 
 // On a support that yaws and rolls the transformed system is the same at any azimuth; that of the
@@ -260,5 +248,4 @@ TEST(azimuth_does_not_matter) {
     }
     assert_true(support > 0.01); // the nacelle moves
     bough_arena_destroy(a.arena);
-    bough_arena_destroy(b.arena);
 }

@@ -24,7 +24,7 @@ typedef struct fixture {
 } fixture;
 
 static bough_status open_study(fixture *f, const char *folder, const char *text) {
-    *f = (fixture){.arena = bough_arena_create()};
+    *f = (fixture){.arena = check_memory()};
     f->errors.arena = f->arena;
     snprintf(f->path, sizeof f->path, "%s/study.yaml", folder);
     FILE *file = fopen(f->path, "w");

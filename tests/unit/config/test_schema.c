@@ -1,6 +1,7 @@
 #include "apps/bough/config/schema.h"
 
 #include "tests/unit/check.h"
+#include "tests/unit/printed.h"
 
 #include <locale.h>
 #include <stdlib.h>
@@ -153,33 +154,24 @@ typedef struct fixture {
     bough_arena *arena;
     bough_errors errors;
     thing thing;
-    char *printed;
+    const char *printed;
 } fixture;
 
 static fixture read_thing(const char *text) {
-    fixture f = {.arena = bough_arena_create()};
+    fixture f = {.arena = check_memory()};
     f.errors.arena = f.arena;
     bough_node *root = bough_text_parse(f.arena, "f", text, strlen(text), &f.errors);
     assert_non_null(root);
     bough_schema_reader reader = {.arena = f.arena, .errors = &f.errors, .directory = ""};
     bough_schema_read(&reader, &thing_schema, root, &f.thing);
     bough_errors_sort(&f.errors, "f");
-    size_t size;
-    FILE *stream = open_memstream(&f.printed, &size);
-    bough_errors_print(&f.errors, stream);
-    fclose(stream);
+    f.printed = printed_errors(&f.errors);
     return f;
-}
-
-static void stop(fixture *f) {
-    bough_arena_destroy(f->arena);
-    free(f->printed);
 }
 
 static void refuses(const char *text, const char *lines) {
     fixture f = read_thing(text);
     assert_string_equal(f.printed, lines);
-    stop(&f);
 }
 
 TEST(every_kind_is_read) {
@@ -208,7 +200,6 @@ TEST(every_kind_is_read) {
     check_near(t->part[1].length, 2, 0, 0);
     assert_int_equal(t->part[1].node->line, 13);
     assert_int_equal(t->sum, 6);
-    stop(&f);
 }
 
 TEST(defaults_are_filled) {
@@ -223,7 +214,6 @@ TEST(defaults_are_filled) {
     assert_string_equal(f.thing.inner.label, "none");
     assert_int_equal(f.thing.n_part, 0);
     assert_null(f.thing.label);
-    stop(&f);
 }
 
 TEST(tables_are_read_by_columns) {
@@ -235,7 +225,6 @@ TEST(tables_are_read_by_columns) {
     check_near(f.thing.part[1].length, 1, 0, 0);
     assert_string_equal(f.thing.part[1].label, "b");
     assert_int_equal(f.thing.part[1].node->line, 6);
-    stop(&f);
 }
 
 TEST(bad_tables_are_refused) {
@@ -336,7 +325,6 @@ TEST(ranges_are_checked) {
             "f:5:17: error: inner.length: must be > 0 m, got '0'\n");
     fixture f = read_thing("kind: fixed\ncount: 9\nshare: 0.5\nweights: [0, 1]\n");
     assert_string_equal(f.printed, "");
-    stop(&f);
 }
 
 TEST(keys_depend_on_choices) {
@@ -496,7 +484,6 @@ TEST(hostile_keys_end_fast) {
     fixture f = read_thing(text);
     assert_int_equal(f.errors.n + f.errors.dropped, N);
     assert_true((double)(clock() - begin) / CLOCKS_PER_SEC < 10);
-    stop(&f);
     free(text);
 }
 

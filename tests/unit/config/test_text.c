@@ -1,6 +1,7 @@
 #include "apps/bough/config/text.h"
 
 #include "tests/unit/check.h"
+#include "tests/unit/printed.h"
 #include "tests/unit/scratch_name.h"
 
 #include <stdlib.h>
@@ -10,35 +11,19 @@
 typedef struct fixture {
     bough_arena *arena;
     bough_errors errors;
-    char *printed;
 } fixture;
 
 static fixture start(void) {
-    fixture f = {.arena = bough_arena_create()};
+    fixture f = {.arena = check_memory()};
     f.errors.arena = f.arena;
     return f;
-}
-
-static void stop(fixture *f) {
-    bough_arena_destroy(f->arena);
-    free(f->printed);
-}
-
-static const char *printed(fixture *f) {
-    size_t size;
-    free(f->printed);
-    FILE *stream = open_memstream(&f->printed, &size);
-    bough_errors_print(&f->errors, stream);
-    fclose(stream);
-    return f->printed;
 }
 
 // Parsing the bytes must fail with exactly these lines.
 static void refuses_bytes(const char *text, size_t size, const char *lines) {
     fixture f = start();
     assert_null(bough_text_parse(f.arena, "f", text, size, &f.errors));
-    assert_string_equal(printed(&f), lines);
-    stop(&f);
+    assert_string_equal(printed_errors(&f.errors), lines);
 }
 
 static void refuses(const char *text, const char *lines) { refuses_bytes(text, strlen(text), lines); }
@@ -68,7 +53,6 @@ TEST(nodes_know_their_place) {
     assert_null(bough_node_find(root, "z"));
     assert_null(bough_node_find(NULL, "z"));
     assert_null(bough_node_find(list, "z"));
-    stop(&f);
 }
 
 TEST(aliases_share_nodes) {
@@ -79,7 +63,6 @@ TEST(aliases_share_nodes) {
     assert_ptr_equal(bough_node_find(root, "a"), bough_node_find(root, "b"));
     assert_string_equal(bough_node_find(root, "d")->text, "3"); // the newest anchor counts
     assert_int_equal(root->weight, 1 + 3 + 3 + 1 + 1);
-    stop(&f);
 }
 
 TEST(syntax_errors_are_readable) {
@@ -128,7 +111,6 @@ TEST(depth_is_limited) {
     memset(text + 64, ']', 64);
     fixture f = start();
     assert_non_null(bough_text_parse(f.arena, "f", text, 128, &f.errors));
-    stop(&f);
     memset(text, '[', 65);
     refuses_bytes(text, 65, "f:1:65: error: nesting is deeper than 64 levels\n");
 }
@@ -144,7 +126,6 @@ TEST(deep_files_end_fast) {
         fixture f = start();
         assert_null(bough_text_parse(f.arena, "f", text, width * N, &f.errors));
         assert_int_equal(f.errors.n, 1);
-        stop(&f);
         assert_true(seconds_since(begin) < 2);
     }
     free(text);
@@ -195,9 +176,9 @@ TEST(many_duplicate_keys_end_fast) {
     fixture f = start();
     assert_null(bough_text_parse(f.arena, "f", text, 7 * N, &f.errors));
     assert_int_equal(f.errors.n, 100);
-    assert_non_null(strstr(printed(&f), "f:101:1: error: key 'key' is given twice (first in line "
-                                        "100)\n99899 more errors\n"));
-    stop(&f);
+    assert_non_null(strstr(printed_errors(&f.errors),
+                           "f:101:1: error: key 'key' is given twice (first in line "
+                           "100)\n99899 more errors\n"));
     assert_true(seconds_since(begin) < 5);
     free(text);
 }
@@ -206,9 +187,9 @@ TEST(unreadable_files_are_named) {
     fixture f = start();
     assert_null(bough_text_read(f.arena, "/nonexistent/x.yaml", &f.errors));
     assert_null(bough_text_read(f.arena, "/", &f.errors));
-    assert_string_equal(printed(&f), "/nonexistent/x.yaml: error: cannot be read: No such file or directory\n"
-                                     "/: error: cannot be read: Is a directory\n");
-    stop(&f);
+    assert_string_equal(printed_errors(&f.errors),
+                        "/nonexistent/x.yaml: error: cannot be read: No such file or directory\n"
+                        "/: error: cannot be read: Is a directory\n");
 }
 
 TEST(large_files_are_refused) {
@@ -224,9 +205,8 @@ TEST(large_files_are_refused) {
     fixture f = start();
     clock_t begin = clock();
     assert_null(bough_text_read(f.arena, path, &f.errors));
-    assert_string_equal(printed(&f), expected);
+    assert_string_equal(printed_errors(&f.errors), expected);
     assert_true(seconds_since(begin) < 1);
-    stop(&f);
     remove(path);
 }
 
@@ -239,16 +219,15 @@ TEST(errors_are_sorted_by_place) {
         {.file = "main", .line = 2, .column = 5}};
     for (int i = 0; i < 7; i++) bough_errors_add(&f.errors, &places[i], i == 1 ? "p" : "", "%d", i);
     bough_errors_sort(&f.errors, "main");
-    assert_string_equal(printed(&f), "--set: error: 5\nmain:2:5: error: 4\nmain:2:5: error: 6\n"
-                                     "main:9:1: error: 2\nmain:9:2: error: p: 1\na:7:1: error: 3\n"
-                                     "b:1:1: error: 0\n");
-    stop(&f);
+    assert_string_equal(printed_errors(&f.errors),
+                        "--set: error: 5\nmain:2:5: error: 4\nmain:2:5: error: 6\n"
+                        "main:9:1: error: 2\nmain:9:2: error: p: 1\na:7:1: error: 3\n"
+                        "b:1:1: error: 0\n");
 }
 
 TEST(control_characters_are_not_printed) {
     fixture f = start();
     bough_node where = {.file = "f", .line = 1, .column = 1};
     bough_errors_add(&f.errors, &where, "", "got '%s'", "\x1b[31m\n");
-    assert_string_equal(printed(&f), "f:1:1: error: got '?[31m?'\n");
-    stop(&f);
+    assert_string_equal(printed_errors(&f.errors), "f:1:1: error: got '?[31m?'\n");
 }

@@ -110,7 +110,7 @@ static bough_status star_build(star *s, bough_master_def def) {
     }
     def.assembly = (bough_assembly_def){
         .n_member = 1 + N_FOLLOWER, .member = part, .n_connection = 2 * N_FOLLOWER, .connection = connection};
-    s->arena = bough_arena_create();
+    s->arena = check_memory();
     return bough_master_build(s->arena, &def, &s->master);
 }
 

@@ -42,11 +42,9 @@ TEST(scenes_name_it) {
     fixture f = read_scene("s.yaml", NULL, 0);
     assert_string_equal(f.printed, "");
     assert_string_equal(bough_scheme_name(f.scene->simulation.coupling.scheme), "toy");
-    stop(&f);
     write_file("s.yaml", SCENE("toi"));
     f = read_scene("s.yaml", NULL, 0);
     assert_non_null(strstr(f.printed, "(did you mean 'toy'?)"));
-    stop(&f);
 }
 
 TEST(it_is_stepped_at_its_order) {

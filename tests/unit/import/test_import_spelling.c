@@ -159,8 +159,6 @@ TEST(every_spelling_gives_the_same_scene) {
             if (!bough_is_ok(&t.status)) fail_msg("seed %d: %s", seed, t.status.message);
             same_results(&base, &t);
         }
-        done(&base);
-        done(&t);
     }
 }
 
@@ -172,8 +170,6 @@ TEST(order_does_not_matter) {
     again(&t, "main.fst");
     assert_string_equal(t.status.message, "");
     same_results(&base, &t);
-    done(&base);
-    done(&t);
 }
 
 // The names of airfoils without their label; every optional entry of AeroDyn as "default".
@@ -183,7 +179,6 @@ TEST(labels_and_defaults) {
         &(edit){"parts/aero.dat", "\"foils/round.dat\"    AFNames  - airfoils", "\"foils/round.dat\""});
     assert_string_equal(t.status.message, "");
     same_results(&base, &t);
-    done(&t);
     static const char *const optional[] = {"          2   WakeMod",    "          2   SkewMod",
                                            "True          TipLoss",    "          4   UAMod",
                                            "        2.5   tau1_const", "          1   DBEMT_Mod"};
@@ -192,10 +187,7 @@ TEST(labels_and_defaults) {
         snprintf(to, sizeof to, "\"DEFAULT\"   %s", optional[i] + 14);
         t = import(&(edit){"parts/aero.dat", optional[i], to});
         assert_string_equal(t.status.message, "");
-        done(&t);
     }
     t = import(&(edit){"parts/aero.dat", "          0   TwrShadow", "TRUE   TwrShadow"});
     assert_string_equal(text(read_file(&t, "scene.yaml"), "aero.tower.shadow"), "powles");
-    done(&t);
-    done(&base);
 }

@@ -31,7 +31,7 @@ static bough_rod_def discretised(bough_arena *arena, const bough_section_station
 TEST(lumped_moments_are_exact_for_linear_tables) {
     const bough_section_station s[2] = {station(0, 3), station(4, 1)};
     for (int segments = 1; segments <= 9; segments += 4) {
-        bough_arena *arena = bough_arena_create();
+        check_arena(arena);
         bough_rod_def def = discretised(arena, s, 2, segments);
         bough_vertex_inertia whole = bough_section_rigid(&def);
         check_near(whole.mass, 8, 1e-12, 0);
@@ -39,7 +39,6 @@ TEST(lumped_moments_are_exact_for_linear_tables) {
         check_near(whole.moment.x, 0.8, 1e-12, 0);
         check_near(whole.inertia[0], 32 + 0.02 * 8, 1e-12, 0);
         check_near(whole.inertia[2], 0.07 * 8, 1e-12, 0);
-        bough_arena_destroy(arena);
     }
 }
 
@@ -63,7 +62,7 @@ TEST(slender_rod_keeps_positive_inertia) {
 // for offsets that vary along the rod.
 TEST(offset_mass_centre_keeps_exact_products) {
     for (int segments = 1; segments <= 64; segments *= 4) {
-        bough_arena *arena = bough_arena_create();
+        check_arena(arena);
         bough_section_station s[2] = {station(0, 1.5), station(2, 1.5)};
         for (int k = 0; k < 2; k++) {
             s[k].centre[0] = 0.3 * k; // c = 0.15 s
@@ -78,7 +77,6 @@ TEST(offset_mass_centre_keeps_exact_products) {
         check_near(whole.moment.x, 1.5 * 0.15 * 2, 1e-12, 0);
         check_near(whole.inertia[4], -1.5 * 0.15 * 8 / 3, 1e-12, 0); // −∫ρ x z
         if (segments > 1) check_near(whole.inertia[0], 1.5 * 8 / 3 + 4e-3, 1e-12, 0);
-        bough_arena_destroy(arena);
     }
 }
 
@@ -158,7 +156,7 @@ TEST(any_physical_table_builds) {
     unsigned seed = 1;
     for (int draw = 0; draw < 60; draw++) {
         bough_section_station s[12];
-        bough_arena *arena = bough_arena_create();
+        check_arena(arena);
         int n = 2 + draw % 11;
         draw_table(&seed, n, s);
         bough_rod_def fine = discretised(arena, s, n, 200);
@@ -175,6 +173,5 @@ TEST(any_physical_table_builds) {
                 check_near(sum.inertia[i], whole.inertia[i], 2e-3, 2e-3 * whole.inertia[0]);
             }
         }
-        bough_arena_destroy(arena);
     }
 }

@@ -21,7 +21,7 @@ static int set_up(void **state) {
     assert_non_null(mkdtemp(scratch_name(p->folder)));
     snprintf(p->wind, sizeof p->wind, "%s/box.wnd", p->folder);
     snprintf(p->sum, sizeof p->sum, "%s/box.sum", p->folder);
-    p->arena = bough_arena_create();
+    p->arena = check_memory();
     *state = p;
     return 0;
 }

@@ -11,9 +11,8 @@ static const char *const files[] = {"scene.yaml", "blade-structure.yaml", "tower
 
 // Imports a deck with a text replaced (NULL: none).
 static trial import_given(const char *deck, const edit *change, const bough_import_options *options) {
-    trial t = {.arena = bough_arena_create()};
+    trial t = begin_trial();
     char path[SCRATCH_PATH];
-    assert_non_null(mkdtemp(scratch_name(t.folder)));
     copy_deck(t.folder, deck, change, NULL);
     snprintf(path, sizeof path, "%s/%s", t.folder, deck);
     snprintf(t.out, sizeof t.out, "%s/out", t.folder);
@@ -59,7 +58,6 @@ TEST(blade_keeps_line_and_matrices) {
     char words[40];
     snprintf(words, sizeof words, "it weighs %.7g kg", 50 * half + 25 * end);
     assert_true(list_says(&t, words));
-    done(&t);
 }
 
 // Rings of 2 m and 1 m; the axis of an element stands at its share of the chord before the centre.
@@ -88,7 +86,6 @@ TEST(tower_and_elements_are_those_of_the_file) {
     check_near(number(rows, "2.1"), 0, 1e-9, 1e-9);
     check_near(number(rows, "2.2"), 0.01, 1e-9, 0);
     check_near(number(rows, "2.3"), 0.02, 1e-9, 0);
-    done(&t);
 }
 
 TEST(turbine_has_the_files_values) {
@@ -116,15 +113,12 @@ TEST(turbine_has_the_files_values) {
     check_near(number(s, "control.law.most_pitch"), 1.5, 1e-9, 0);
     check_near(number(s, "control.law.pitch_rate"), 0.1, 1e-9, 0);
     assert_string_equal(text(s, "bodies.3.joint.kind"), "revolute");
-    done(&t);
     t = import_with("control:", "environment: {air_density: 1.1, shear_exp: 0.1}\ncontrol:");
     s = read_file(&t, "scene.yaml");
     check_near(number(s, "aero.air_density"), 1.1, 1e-9, 0);
     assert_string_equal(text(s, "aero.wind.reference_height"), "21.5 m");
-    done(&t);
     t = import_with("rotor_orientation: Upwind", "rotor_orientation: Downwind");
     assert_string_equal(text(read_file(&t, "scene.yaml"), "bodies.2.joint.placement.1"), "move x 2 m");
-    done(&t);
 }
 
 // Words and numbers side by side.
@@ -145,13 +139,10 @@ TEST(both_layouts_give_one_scene) {
     for (size_t i = 0; i < sizeof files / sizeof *files; i++)
         same(read_file(&first, files[i]), read_file(&second, files[i]));
     assert_true(list_says(&second, "the layout of version 2"));
-    done(&second);
     // the nacelle's inertia about its own centre and about the tower's top
     second = import_of("turbine-2.yaml", &(edit){"turbine-2.yaml", "[12000, 15000, 8000, 0, -4000, 0]",
                                                  "[4000, 5000, 6000]\n      inertia_tt: [12000]"});
     same(read_file(&first, "scene.yaml"), read_file(&second, "scene.yaml"));
-    done(&second);
-    done(&first);
 }
 
 TEST(what_is_not_given_is_told) {
@@ -164,25 +155,20 @@ TEST(what_is_not_given_is_told) {
     assert_string_equal(text(s, "bodies.3.joint.parent"), "generator");
     check_near(number(s, "bodies.2.inertia.0"), 3 * 100, 1e-9, 0);
     check_near(number(s, "bodies.3.inertia.0"), 900, 1e-9, 0);
-    done(&t);
     t = import_with("      layers:", "      other:");
     assert_true(list_says(&t, "no layers, so it is rigid"));
     assert_string_equal(text(read_file(&t, "scene.yaml"), "bodies.0.name"), "nacelle");
     assert_string_equal(text(read_file(&t, "scene.yaml"), "bodies.0.joint.placement.0"), "move z 20 m");
-    done(&t);
     t = import_with("  rated_power", "  other");
     assert_true(list_says(&t, "no rated_power: no torque"));
     assert_null(bough_node_find(read_file(&t, "scene.yaml"), "control"));
     assert_string_equal(text(read_file(&t, "scene.yaml"), "bodies.3.joint.kind"), "fixed");
-    done(&t);
     t = import_with("values: [0.02, 0.02]", "values: [0.02, -0.01]");
     assert_true(list_says(&t, "deg; the value at 180 deg is the mean of its ends"));
     check_near(number(read_file(&t, "airfoils.yaml"), "polars.1.table.rows.0.3"), 5e-3, 1e-9, 0);
-    done(&t);
     t = import_of("turbine-2.yaml",
                   &(edit){"turbine-2.yaml", "mu: [0, 0, 0, 0, 0, 0]", "mu: [1.e-3, 0, 0, 0, 4.e-3, 0]"});
     check_near(number(read_file(&t, "blade-structure.yaml"), "damping.4"), 4e-3, 1e-9, 0);
-    done(&t);
 }
 
 // Masses that the file lacks come from the user, not from other turbines.
@@ -194,24 +180,19 @@ TEST(missing_masses_are_asked_for) {
     trial t = import_of("turbine-1.yaml", &hub);
     assert_non_null(
         strstr(t.status.message, ": expected the mass of the hub, 'elastic_properties.mass'; --hub-mass KG"));
-    done(&t);
     t = import_given("turbine-1.yaml", &hub, &(bough_import_options){.hub_mass = 2500});
     assert_string_equal(t.status.message, "");
     check_near(number(read_file(&t, "scene.yaml"), "bodies.2.mass"), 2500, 1e-9, 0);
     check_near(number(read_file(&t, "scene.yaml"), "bodies.2.inertia.0"), 2. / 3 * 2500, 1e-9, 0);
-    done(&t);
     t = import_of("turbine-2.yaml", &nacelle);
     assert_non_null(strstr(t.status.message, ": expected the mass of the nacelle"));
-    done(&t);
     t = import_given("turbine-1.yaml", NULL, &(bough_import_options){.hub_mass = 2500, .nacelle_mass = 9000});
     check_near(number(read_file(&t, "scene.yaml"), "bodies.2.mass"), 3000, 1e-9, 0);
     assert_true(list_says(&t, "--hub-mass: the file has the mass of the hub"));
     assert_true(list_says(&t, "--nacelle-mass: the file has the mass of the nacelle"));
-    done(&t);
     t = import_given("turbine-2.yaml", &nacelle, &(bough_import_options){.nacelle_mass = 9000});
     assert_string_equal(t.status.message, "");
     check_near(number(read_file(&t, "scene.yaml"), "bodies.1.mass"), 9000 + 1000, 1e-9, 0);
-    done(&t);
 }
 
 // Matrices of a blade without shear have zeros for it.
@@ -224,7 +205,6 @@ TEST(no_shear_is_stiff) {
     check_near(number(rows, "0.3.0"), 4e8, 1e-9, 0);
     check_near(number(rows, "0.3.6"), 6e7, 1e-9, 0);
     check_near(number(rows, "2.3.0"), 4e7, 1e-9, 0);
-    done(&t);
 }
 
 // The names of version 1 in a file of version 2, which has degrees and rpm; of two limits of the speed the
@@ -239,12 +219,10 @@ TEST(units_are_those_of_the_layout) {
     check_near(number(s, "control.law.reference_speed"), 10 * 16 / radius, 1e-9, 0);
     check_near(number(s, "control.law.most_pitch"), 80 * degree, 1e-9, 0);
     check_near(number(s, "control.law.pitch_rate"), 3 * degree, 1e-9, 0);
-    done(&t);
     t = import_of("turbine-2.yaml", &(edit){"turbine-2.yaml", "  rated_rotor_speed: 28.64788975654116",
                                             "  torque: {VS_maxspd: 20}"});
     check_near(number(read_file(&t, "scene.yaml"), "control.law.reference_speed"), 10 * 120 * degree, 1e-9,
                0);
-    done(&t);
 }
 
 // The nacelle is what the whole rotor-nacelle assembly weighs beyond hub and blades.
@@ -260,7 +238,6 @@ TEST(assembly_gives_the_nacelle) {
     check_near(number(nacelle, "centre_of_mass.0"), (-0.5 * 20000 + 2 * head) / mass, 1e-8, 0);
     check_near(number(nacelle, "centre_of_mass.2"), (1.2 * 20000 - 1.5 * head) / mass, 1e-8, 0);
     check_near(number(nacelle, "inertia.0"), mass * 4 / 4, 1e-9, 0);
-    done(&t);
 }
 
 TEST(any_number_of_blades_is_taken) {
@@ -269,14 +246,12 @@ TEST(any_number_of_blades_is_taken) {
     const bough_node *s = read_file(&t, "scene.yaml");
     assert_string_equal(text(s, "turbine.blades.4"), "blade5");
     assert_string_equal(text(s, "bodies.7.joint.placement.0"), "rotate x 288 deg");
-    done(&t);
 }
 
 TEST(polars_go_round) {
     trial t = import_with("[-3.14, -0.5, 0.5, 3.14]", "[-1.5, -0.5, 0.5, 1.5]");
     assert_string_equal(t.status.message, "");
     assert_true(list_says(&t, "from -85.9437 to 85.9437 deg, constant beyond"));
-    done(&t);
 }
 
 TEST(scene_steps) {
@@ -289,7 +264,6 @@ TEST(scene_steps) {
     check_near(bough_session_read(s, bough_session_find(s, "RotSpeed")), 67.5 / acos(-1.0), 0.05,
                0); // torque acts before there is wind
     bough_session_close(s);
-    done(&t);
 }
 
 TEST(bad_files_are_told_where) {
@@ -337,6 +311,5 @@ TEST(bad_files_are_told_where) {
             fail_msg("said '%s', not '%s'", t.status.message, bad[i].says);
         }
         assert_int_not_equal(access(t.out, F_OK), 0); // nothing was written
-        done(&t);
     }
 }

@@ -49,10 +49,9 @@ typedef struct options {
 // The small turbine with layers in place of matrices and round airfoils of constant chord.
 static trial import_layers(options o) {
     enum { SIZE = 65536 };
-    trial t = {.arena = bough_arena_create()};
+    trial t = begin_trial();
     char path[SCRATCH_PATH], *text = malloc(SIZE), shape[16384], *body;
     assert_non_null(text);
-    assert_non_null(mkdtemp(scratch_name(t.folder)));
     snprintf(path, sizeof path, "%s/tests/data/decks/turbine-1.yaml", BOUGH_SOURCE_DIR);
     FILE *in = fopen(path, "r");
     assert_non_null(in);
@@ -118,7 +117,6 @@ TEST(tube_of_one_layer) {
         assert_string_equal(bough_session_error(s), "");
         assert_int_equal(bough_session_step(s), BOUGH_SESSION_OK);
         bough_session_close(s);
-        done(&t);
     }
 }
 
@@ -184,7 +182,6 @@ TEST(arcs_are_said_in_many_ways) {
             if (i == 0) first[c] = centre[c];
             check_near(centre[c], first[c], 5e-3, 0);
         }
-        done(&t);
     }
 }
 
@@ -206,7 +203,6 @@ TEST(webs_cross_the_section) {
                  place[i]);
         trial t = import_layers((options){structure, false});
         assert_non_null(strstr(t.status.message, "ply_t")); // steel has none here
-        done(&t);
         snprintf(structure, sizeof structure,
                  "      webs:\n        - {name: plate, %s}\n" WALL
                  "        - {name: skin, web: plate, material: steel, thickness: {grid: [0, 1], values: "
@@ -219,7 +215,6 @@ TEST(webs_cross_the_section) {
         double plate = 0.02 * sqrt(3.0), tube = pi * (1 - 0.99 * 0.99);
         check_near(number(tip, "4.0"), 8000 * (tube + plate), 1e-2, 0);
         check_near(number(tip, "4.2"), 0.5 * plate / (tube + plate), 2e-2, 0);
-        done(&t);
     }
 }
 
@@ -239,7 +234,6 @@ TEST(impossible_matrices_give_way_to_layers) {
     assert_true(list_says(&t, "blade: the matrices of stiffness and inertia, which no section can have"));
     const bough_node *rows = at(read_file(&t, "blade-structure.yaml"), "stations.rows");
     check_near(number(rows, "0.4.0"), 8000 * pi * (1 - 0.99 * 0.99), 2e-3, 0);
-    done(&t);
 }
 
 TEST(bad_layers_are_told) {
@@ -263,6 +257,5 @@ TEST(bad_layers_are_told) {
         if (t.status.code != BOUGH_INVALID || !strstr(t.status.message, bad[i].says)) {
             fail_msg("said '%s', not '%s'", t.status.message, bad[i].says);
         }
-        done(&t);
     }
 }

@@ -31,7 +31,6 @@ TEST(everything_follows_from_the_default) {
     check_near(s->macro_step, 0.01, 1e-12, 0); // at least a hundred, of which the duration is a multiple
     check_near(s->output.interval, s->macro_step, 0, 0);
     assert_int_equal(f.scene->body[0].rod.n_segment, 32);
-    stop(&f);
 }
 
 TEST(everything_scales_with_the_accuracy) {
@@ -39,15 +38,12 @@ TEST(everything_scales_with_the_accuracy) {
     check_near(f.scene->simulation.master.rtol, 2e-4, 1e-12, 0);
     check_near(f.scene->simulation.micro.step, 10e-3, 1e-12, 0);
     assert_int_equal(f.scene->body[0].rod.n_segment, 16);
-    stop(&f);
     f = accepted(BAR(", accuracy: 0.001, macro_step: 20 ms"));
     check_near(f.scene->simulation.master.rtol, 1e-5, 1e-12, 0);
     assert_int_equal(f.scene->body[0].rod.n_segment, 72);
-    stop(&f);
     f = accepted(BAR(", accuracy: 5e-6"));
     check_near(f.scene->simulation.master.rtol, 5e-8, 1e-12, 0);
     assert_int_equal(f.scene->simulation.master.solver, BOUGH_IDA); // as with that rtol named
-    stop(&f);
 }
 
 // A key that is named holds; those beside it still follow.
@@ -56,33 +52,26 @@ TEST(keys_replace_one_by_one) {
     assert_int_equal(f.scene->simulation.master.solver, BOUGH_AUTOMATIC);
     check_near(f.scene->simulation.master.rtol, 1e-3, 1e-12, 0);
     check_near(f.scene->simulation.micro.rtol, 1e-4, 1e-12, 0);
-    stop(&f);
     f = accepted(BAR(", master: {solver: radau5}"));
     assert_int_equal(f.scene->simulation.master.solver, BOUGH_RADAU5);
     check_near(f.scene->simulation.master.rtol, 5e-5, 1e-12, 0);
-    stop(&f);
     f = accepted(BAR(", coupling: {scheme: monolithic}"));
     assert_int_equal(f.scene->simulation.master.solver, BOUGH_AUTOMATIC);
-    stop(&f);
     f = accepted(BAR(", coupling: {scheme: ramp}, micro: {solver: rosenbrock}"));
     assert_int_equal(f.scene->simulation.master.solver, BOUGH_IDA);
     check_near(f.scene->simulation.master.rtol, 1e-6, 1e-12, 0);
     check_near(f.scene->simulation.micro.rtol, 1e-4, 1e-12, 0);
     check_near(f.scene->simulation.micro.step, 5e-3, 1e-12, 0);
-    stop(&f);
     f = accepted(BAR(", macro_step: 40 ms"));
     check_near(f.scene->simulation.macro_step, 0.04, 1e-12, 0);
-    stop(&f);
     f = accepted(BAR(", output: {interval: 15 ms}"));
     check_near(f.scene->simulation.macro_step, 0.005, 1e-12, 0); // 15 ms and 1.2 s are multiples
-    stop(&f);
 }
 
 TEST(durations_without_a_round_step_are_divided) {
     fixture f = accepted("simulation: {duration: 0.777777777}\nbodies:\n" BODY("a", "ground"));
     double count = 0.777777777 / f.scene->simulation.macro_step;
     check_near(count, 100, 1e-9, 0);
-    stop(&f);
 }
 
 #define TURBINE(keys)                                                                                        \
@@ -113,7 +102,6 @@ TEST(the_rate_of_the_air_follows_the_radius) {
         fixture f = accepted(cases[k].text);
         check_near(f.scene->simulation.macro_step, cases[k].macro_step, 1e-12, 0);
         check_near(f.scene->aero.rate, cases[k].rate, 1e-9, 0);
-        stop(&f);
     }
 }
 

@@ -22,7 +22,7 @@ typedef struct fixture {
 } fixture;
 
 static fixture open_turbine(const char *const *sets) {
-    fixture f = {.arena = bough_arena_create()};
+    fixture f = {.arena = check_memory()};
     f.s = scene_build(f.arena, turbine, sets);
     f.load = bough_aero_link_load(f.s->aero);
     return f;

@@ -105,12 +105,11 @@ TEST(equal_beams_have_one_mesh) {
                                         "bodies[first].rod.damping=[0, 0, 0, 0, 0, 1e-3]"};
     for (int k = 0; k < 4; k++) {
         const char *const sets[] = {other[k], NULL};
-        bough_arena *arena = bough_arena_create();
+        check_arena(arena);
         bough_simulation *s = scene_build(arena, arms, sets);
         assert_ptr_not_equal(s->beam[1].def.stiffness, s->beam[0].def.stiffness);
         assert_int_equal(s->beam[2].def.stiffness == s->beam[0].def.stiffness, k == 0);
         assert_string_equal(s->beam[2].def.name, "first");
-        bough_arena_destroy(arena);
     }
 }
 
@@ -123,7 +122,7 @@ TEST(modal_blades_move_as_rods) {
          "bodies[5].fidelity=segmented-modal", NULL}};
     double speed[3], tip[3];
     for (int k = 0; k < 3; k++) {
-        bough_arena *arena = bough_arena_create();
+        check_arena(arena);
         bough_quaternion turn;
         bough_simulation *s = scene_build(arena, runup, sets[k]);
         assert_int_equal(s->n_rod, 3);
@@ -133,7 +132,6 @@ TEST(modal_blades_move_as_rods) {
         speed[k] = s->leader.state[1];
         tip[k] = bough_simulation_beam_tip(s, &s->beam[0], &turn).x -
                  s->beam[0].def.position[s->beam[0].def.n_segment].x;
-        bough_arena_destroy(arena);
     }
     for (int k = 1; k < 3; k++) {
         check_near(speed[k], speed[0], 2e-3, 0);
@@ -154,7 +152,7 @@ TEST(bodies_hang_on_the_end_of_a_rod_bent_or_rigid) {
     static const char *const fidelity[] = {"bodies[0].fidelity=rod", "bodies[0].fidelity=rigid"};
     for (int k = 0; k < 2; k++) {
         const char *const sets[] = {fidelity[k], NULL};
-        bough_arena *arena = bough_arena_create();
+        check_arena(arena);
         bough_simulation *s = scene_build(arena, carrying, sets);
         bough_transform pose = pose_of(s, "weight");
         check_near(pose.position.x, 1, 1e-14, 0);
@@ -163,7 +161,6 @@ TEST(bodies_hang_on_the_end_of_a_rod_bent_or_rigid) {
         check_near(pose.rotation.c1.x, 0, 0, 1e-15);
         check_near(pose.rotation.c1.y, 1, 1e-14, 0);
         check_near(pose.rotation.c3.z, 1, 1e-14, 0);
-        bough_arena_destroy(arena);
     }
 }
 

@@ -18,7 +18,7 @@ typedef struct fixture {
 } fixture;
 
 static fixture open_turbine(const char *const *sets) {
-    fixture f = {.arena = bough_arena_create()};
+    fixture f = {.arena = check_memory()};
     f.s = scene_build(f.arena, turbine, sets);
     f.channels = bough_channels_start(f.arena);
     check_ok(bough_simulation_channels(f.s, &f.channels));
@@ -55,7 +55,6 @@ TEST(law_holds_speed_and_power) {
     check_near(channel(&f, "BldPitch3"), channel(&f, "BldPitch1"), 1e-12, 0);
     check_near(channel(&f, "GenPwr"), 0.944 * 5296.61, 1e-3, 0);
     check_near(channel(&f, "RtAeroPwr"), 5296610, 2e-2, 0); // blade 1 is near the tower
-    bough_arena_destroy(f.arena);
 }
 
 // Blades that nobody pitches and that stand beyond power_pitch: from standstill in a light wind the generator
@@ -87,7 +86,6 @@ TEST(law_brakes_unsteered_blades_only) {
     run_until(&f, 0.04);
     double speed = channel(&f, "GenSpeed") * BOUGH_PI / 30;
     check_near(1e3 * channel(&f, "GenTq"), 2.332287 * speed * speed, 1e-2, 0);
-    bough_arena_destroy(f.arena);
 }
 
 // The library asks for a pitch of 0.1 + 0.001 t and 100 N m s of torque; both come a sample late,
@@ -104,7 +102,6 @@ TEST(library_steers_the_turbine) {
     run_until(&f, 2);
     check_near(channel(&f, "BldPitch2") * BOUGH_PI / 180, 0.10198, 1e-6, 0);
     check_near(channel(&f, "GenTq"), 0.1 * speed, 1e-6, 0);
-    bough_arena_destroy(f.arena);
 }
 
 // Collective pitch reaches every blade, also beyond those that the interface has records for.
@@ -121,7 +118,6 @@ TEST(library_steers_all_blades) {
     fixture f = open_turbine(sets);
     run_until(&f, 0.5);
     check_near(channel(&f, "BldPitch4"), 8 * 0.5, 1e-6, 0);
-    bough_arena_destroy(f.arena);
 }
 
 // A turbine that looks along x in a wind of 10° across; a tower that bends moves its nacelle.
@@ -129,7 +125,7 @@ TEST(library_is_told_of_the_nacelle) {
     static const char *const sets[] = {RIGID, BLADED, "aero.wind.direction=10 deg", NULL};
     static const char *const record[] = {"record 24", "record 37", "record 53", "record 70"};
     for (int i = 0; i < 4; i++) {
-        fixture f = {.arena = bough_arena_create()};
+        fixture f = {.arena = check_memory()};
         bough_scene *scene = scene_read(f.arena, turbine, sets);
         scene->control.input = record[i];
         check_ok(bough_simulation_build(f.arena, scene, &f.s));
@@ -195,7 +191,6 @@ TEST(memory_is_saved_and_restored) {
     }
     check_near(torque[1], torque[0], 0, 0);
     check_near(power[1], power[0], 0, 0);
-    bough_arena_destroy(f.arena);
 }
 
 TEST(bad_scenes_are_refused) {
@@ -208,7 +203,7 @@ TEST(bad_scenes_are_refused) {
         {"control={kind: bladed, library: nowhere.so}", "cannot be loaded"},
     };
     for (size_t i = 0; i < sizeof bad / sizeof *bad; i++) {
-        bough_arena *arena = bough_arena_create();
+        check_arena(arena);
         bough_errors errors = {.arena = arena};
         bough_scene *scene;
         bough_simulation *s;
@@ -219,6 +214,5 @@ TEST(bad_scenes_are_refused) {
         const char *told = errors.n > 0 ? errors.item[0].text : status.message;
         if (!strstr(told, bad[i][1])) print_error("%s\n", told);
         assert_non_null(strstr(told, bad[i][1]));
-        bough_arena_destroy(arena);
     }
 }

@@ -115,13 +115,12 @@ TEST(bad_bodies_are_refused) {
                                          {"aero.tower.body=blade1", "must have a rod"},
                                          {"aero.tower.body=towr", "tower"}};
     for (int i = 0; i < 3; i++) {
-        bough_arena *arena = bough_arena_create();
+        check_arena(arena);
         bough_errors errors = {.arena = arena};
         bough_scene *scene;
         bough_status status =
             bough_scene_read(arena, BOUGH_SOURCE_DIR "/apps/turbine/land.yaml", bad[i], 1, &errors, &scene);
         assert_int_equal(status.code, BOUGH_INVALID);
         assert_non_null(strstr(errors.item[0].text, bad[i][1]));
-        bough_arena_destroy(arena);
     }
 }

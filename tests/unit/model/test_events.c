@@ -15,7 +15,7 @@ typedef struct fixture {
 } fixture;
 
 static fixture open_run(const char *events, const char *more) {
-    fixture f = {.arena = bough_arena_create()};
+    fixture f = {.arena = check_memory()};
     const char *sets[] = {rigid, sample, "simulation.duration=30 s", events, more, NULL};
     bough_errors errors = {.arena = f.arena};
     bough_scene *read;
@@ -58,7 +58,6 @@ TEST(emergency_stop_feathers_without_torque) {
     go_to(&f, 16);
     check_near(channel(&f, "BldPitch2"), 90, 1e-9, 0);
     assert_true(channel(&f, "RotSpeed") < 4);
-    bough_arena_destroy(f.arena);
 }
 
 TEST(stop_takes_the_torque_away_in_ten_seconds) {
@@ -71,7 +70,6 @@ TEST(stop_takes_the_torque_away_in_ten_seconds) {
     go_to(&f, 20);
     check_near(channel(&f, "GenTq"), 0, 0, 1e-12);
     check_near(channel(&f, "BldPitch1"), 80, 1e-9, 0);
-    bough_arena_destroy(f.arena);
 }
 
 // A brake on the rotor's joint stops it within those ten seconds and would turn it back: a sample after it
@@ -87,7 +85,6 @@ TEST(stop_does_not_drive_a_rotor_that_stands) {
         if (before < 0) check_near(channel(&f, "GenTq"), 0, 0, 1e-9);
     }
     assert_true(least < -0.1);
-    bough_arena_destroy(f.arena);
 }
 
 TEST(a_stuck_blade_stays_while_the_others_feather) {
@@ -106,7 +103,6 @@ TEST(a_stuck_blade_stays_while_the_others_feather) {
     check_near(channel(&f, "BldPitch1"), 32, 0.02, 0);
     go_to(&f, 12);
     check_near(channel(&f, "BldPitch3"), -5, 1e-9, 0);
-    bough_arena_destroy(f.arena);
 }
 
 // A step at the law's rate, then a ramp; the law sets the torque. A stop prevails over both, wherever it
@@ -133,7 +129,6 @@ TEST(the_pitch_goes_to_given_angles) {
     check_near(channel(&f, "BldPitch3"), -1, 1e-9, 0);
     go_to(&f, 14);
     check_near(channel(&f, "BldPitch3"), 15, 0.02, 0);
-    bough_arena_destroy(f.arena);
 }
 
 // The rotor speeds up until a threshold takes the load away, then until another stops it.
@@ -153,7 +148,6 @@ TEST(thresholds_trigger) {
     }
     assert_true(lost > 0 && stopped > lost);
     assert_true(channel(&f, "BldPitch1") > 30);
-    bough_arena_destroy(f.arena);
 }
 
 TEST(before_its_start_the_turbine_idles) {
@@ -171,7 +165,6 @@ TEST(before_its_start_the_turbine_idles) {
     }
     assert_true(slowest > 0); // no torque turns it backwards
     assert_true(channel(&f, "BldPitch1") < 30);
-    bough_arena_destroy(f.arena);
 }
 
 TEST(a_yaw_drive_turns_the_nacelle) {
@@ -185,7 +178,6 @@ TEST(a_yaw_drive_turns_the_nacelle) {
     check_near(channel(&f, "nacellePos"), 2, 1e-6, 0);
     go_to(&f, 6);
     check_near(channel(&f, "nacellePos"), 3, 1e-6, 0);
-    bough_arena_destroy(f.arena);
 }
 
 // A copy taken before an event goes on through it to the same bits.
@@ -205,7 +197,6 @@ TEST(events_are_in_the_copy) {
     check_near(channel(&f, "BldPitch2"), pitch, 0, 0);
     check_near(channel(&f, "BldPitch1"), stuck, 0, 0);
     assert_true(pitch > stuck + 6);
-    bough_arena_destroy(f.arena);
 }
 
 static void refused(const char *set, const char *message) {

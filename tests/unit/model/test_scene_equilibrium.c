@@ -79,13 +79,12 @@ TEST(dead_line_load_bends_the_rod_at_fourth_order) {
         const char *sets[] = {k == 0 ? "bodies[0].rod.segments=8" : "bodies[0].rod.segments=16",
                               "loads=[{body: beam, along: [0 m, 1 m], force: [20, 0, 0], frame: body}]",
                               NULL};
-        bough_arena *arena = bough_arena_create();
+        check_arena(arena);
         bough_simulation *s = scene_build(arena, "apps/beams/elastica.yaml", sets);
         equilibrium_of(s);
         bough_quaternion p;
         bough_vec3 tip = bough_simulation_beam_tip(s, &s->beam[0], &p);
         error[k] = hypot(tip.x - exact[0], tip.z - exact[1]);
-        bough_arena_destroy(arena);
     }
     print_message("dead line load, tip off by %.2g and %.2g m\n", error[0], error[1]);
     assert_true(error[1] < 1e-5);
@@ -102,13 +101,12 @@ TEST(massless_tip_bends_the_elastica) {
     } cases[] = {{"loads[0].force=[1, 0, 0]", 0.30172}, {"loads[0].force=[10, 0, 0]", 0.81061}};
     for (int k = 0; k < 2; k++) {
         const char *sets[] = {cases[k].force, NULL};
-        bough_arena *arena = bough_arena_create();
+        check_arena(arena);
         bough_simulation *s = scene_build(arena, "tests/data/scenes/elastica-tip.yaml", sets);
         bough_equilibrium_work work = equilibrium_of(s);
         assert_in_range(work.steps, 1, 30);
         bough_quaternion p;
         check_near(bough_simulation_beam_tip(s, &s->beam[0], &p).x, cases[k].deflection, 2e-4, 0);
-        bough_arena_destroy(arena);
     }
 }
 
@@ -195,7 +193,7 @@ TEST(turning_rotor_starts_smoothly) {
                                 "gravity=[0, 0, 0]",    NULL};
     double moved[2] = {0, 0};
     for (int k = 0; k < 2; k++) {
-        bough_arena *arena = bough_arena_create();
+        check_arena(arena);
         bough_simulation *s = scene_build(arena, runup, k == 0 ? sets : undeformed);
         int n = s->rod[0].system.n_state / BOUGH_ROD_STATES;
         double start = s->rod[1].state[n - 1]; // the tip of a blade away from the tower
@@ -203,7 +201,6 @@ TEST(turning_rotor_starts_smoothly) {
             scene_step(s);
             moved[k] = fmax(moved[k], fabs(s->rod[1].state[n - 1] - start));
         }
-        bough_arena_destroy(arena);
     }
     printf("tip moves by %.3g m, from undeformed by %.3g m\n", moved[0], moved[1]);
     assert_true(moved[0] < 0.02 * moved[1]);

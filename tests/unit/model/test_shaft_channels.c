@@ -12,7 +12,7 @@ typedef struct fixture {
 } fixture;
 
 static fixture open_shaft(const char *const *sets) {
-    fixture f = {.arena = bough_arena_create()};
+    fixture f = {.arena = check_memory()};
     f.s = scene_build(f.arena, scene, sets);
     f.list = bough_channels_start(f.arena);
     check_ok(bough_simulation_channels(f.s, &f.list));
@@ -44,7 +44,6 @@ TEST(rigid_shaft_carries_the_generators_inertia) {
     fixture f = open_shaft(driven);
     run_until(&f, 0.1);
     check_near(1e3 * channel(&f, "RotTorq"), drive, 1e-6, 0);
-    bough_arena_destroy(f.arena);
 }
 
 // Against a spring of k the hub swings about the mean twist: with m the reduced inertia and the generator's
@@ -69,5 +68,4 @@ TEST(spring_between_hub_and_generator_carries_the_torque) {
             t + (drive - brake) / (generator + hub) * t * t / 2 + generator / (generator + hub) * twist;
         check_near(channel(&f, "Azimuth"), fmod(angle * 180 / BOUGH_PI, 360), 1e-5, 1e-3);
     }
-    bough_arena_destroy(f.arena);
 }

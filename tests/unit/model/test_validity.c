@@ -94,14 +94,13 @@ TEST(defects_of_the_model_are_told_at_the_start) {
     };
     for (int i = 0; i < 3; i++) {
         const char *const sets[] = {model[i].set, NULL};
-        bough_arena *arena = bough_arena_create();
+        check_arena(arena);
         bough_simulation *s = scene_build(arena, model[i].scene, sets);
         char text[400];
         assert_int_equal(passed(s), 1 << model[i].limit);
         check_near(s->validity->limit[model[i].limit].value, model[i].value, 1e-6, 0);
         bough_validity_describe(s, model[i].limit, text, sizeof text);
         assert_memory_equal(text, model[i].text, strlen(model[i].text));
-        bough_arena_destroy(arena);
     }
 }
 
@@ -120,10 +119,9 @@ TEST(samples_too_seldom_for_a_modal_blade_are_told) {
                                     "simulation.coupling.scheme=monolithic",
                                     "bodies[hub].joint.speed=1.2 rad/s",
                                     NULL};
-        bough_arena *arena = bough_arena_create();
+        check_arena(arena);
         bough_simulation *s = run_scene(arena, "apps/turbine/runup.yaml", sets, 30);
         assert_int_equal(s->validity->limit[BOUGH_LIMIT_SAMPLES].passed, rate == 10);
-        bough_arena_destroy(arena);
     }
 }
 
@@ -145,7 +143,7 @@ TEST(costly_motions_are_told) {
     static const char *const stiff[] = {"springs[0-1].stiffness=1e10", "simulation.master.solver=ida",
                                         "simulation.error_estimate=none", NULL};
     for (int k = 0; k < 2; k++) {
-        bough_arena *arena = bough_arena_create();
+        check_arena(arena);
         bough_run run;
         const bough_scene *scene =
             scene_read(arena, "apps/mechanisms/elastic-double-pendulum.yaml", stiff + k);
@@ -156,6 +154,5 @@ TEST(costly_motions_are_told) {
         assert_int_equal(passed(run.simulation), k == 0 ? 1 << BOUGH_LIMIT_STEPS : 0);
         assert_true(k == 1 || (cost.time > 0.005 && cost.time < 0.295 && cost.value > 1000));
         assert_true(k == 1 || cost.body == 0 || cost.body == 1);
-        bough_arena_destroy(arena);
     }
 }

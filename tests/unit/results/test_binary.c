@@ -30,7 +30,7 @@ static void sample_endless(void *self, double t, double *value) {
 
 // Rows at 2 s and every 50 ms from there, then one 20 ms later, and the file from them.
 static fixture write_folder(const char *folder, bough_channel_sample *source) {
-    fixture f = {.arena = bough_arena_create()};
+    fixture f = {.arena = check_memory()};
     bough_recorder *recorder;
     f.channels = bough_channels_start(f.arena);
     bough_channels_group(&f.channels, source, NULL);
@@ -128,14 +128,12 @@ TEST_IN_FOLDER(values_are_those_of_the_rows) {
         }
     }
     assert_int_equal(b.at, b.n);
-    bough_arena_destroy(f.arena);
 }
 
 TEST_IN_FOLDER(what_it_cannot_hold_is_refused) {
     fixture f = write_folder(*context, sample_endless);
     check_fails(pack(&f, *context), BOUGH_INVALID, "rest = inf at 2 s");
     assert_false(scratch_has(*context, "channels.outb"));
-    bough_arena_destroy(f.arena);
 }
 
 TEST_IN_FOLDER(rows_that_are_gone_are_told) {
@@ -149,5 +147,4 @@ TEST_IN_FOLDER(rows_that_are_gone_are_told) {
     remove(path);
     status = pack(&f, *context);
     assert_int_equal(status.code, BOUGH_IO);
-    bough_arena_destroy(f.arena);
 }

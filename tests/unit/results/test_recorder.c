@@ -22,7 +22,7 @@ static void sample(void *self, double t, double *value) {
 }
 
 static bough_status open_recorder(fixture *f, const char *folder) {
-    *f = (fixture){.arena = bough_arena_create(), .value = {1, -2}};
+    *f = (fixture){.arena = check_memory(), .value = {1, -2}};
     f->channels = bough_channels_start(f->arena);
     bough_channels_group(&f->channels, sample, f);
     bough_channels_add(&f->channels, "rpm", "RotSpeed");
@@ -72,7 +72,6 @@ TEST_IN_FOLDER(file_has_the_layout_that_readers_expect) {
     assert_true(isnan(value[2]));
     assert_int_equal(strlen(line_of(text, 11)), 0);
     free(text);
-    bough_arena_destroy(f.arena);
 }
 
 TEST_IN_FOLDER(failed_run_keeps_its_rows_and_is_marked) {
@@ -88,7 +87,6 @@ TEST_IN_FOLDER(failed_run_keeps_its_rows_and_is_marked) {
     assert_memory_equal(line_of(text, 7) + 14, "Time", 4);
     assert_int_equal(strlen(line_of(text, 14)), 0);
     free(text);
-    bough_arena_destroy(f.arena);
 }
 
 TEST_IN_FOLDER(long_message_is_cut_between_characters) {
@@ -107,7 +105,6 @@ TEST_IN_FOLDER(long_message_is_cut_between_characters) {
     assert_int_equal(end[0], 0x89); // "ω" is CF 89
     assert_int_equal(end[-1], 0xCF);
     free(text);
-    bough_arena_destroy(f.arena);
 }
 
 TEST_IN_FOLDER(unfinished_recorder_leaves_only_a_partial) {
@@ -136,7 +133,6 @@ TEST_IN_FOLDER(missing_folder_is_an_error_of_files) {
     snprintf(folder, sizeof folder, "%s/none", (char *)*context);
     fixture f;
     check_fails(open_recorder(&f, folder), BOUGH_IO, "none/channels.out");
-    bough_arena_destroy(f.arena);
 }
 
 TEST_IN_FOLDER(full_device_is_an_error_of_files) {
@@ -146,7 +142,6 @@ TEST_IN_FOLDER(full_device_is_an_error_of_files) {
     fixture f;
     bough_status status = open_recorder(&f, *context);
     assert_int_equal(status.code, BOUGH_IO);
-    bough_arena_destroy(f.arena);
 }
 
 TEST_IN_FOLDER(device_that_fills_up_leaves_whole_rows) {
@@ -172,7 +167,6 @@ TEST_IN_FOLDER(device_that_fills_up_leaves_whole_rows) {
     assert_true(strlen(text) > 90000);
     assert_int_equal((strlen(text) - (size_t)(line_of(text, 9) - text)) % 55, 0);
     free(text);
-    bough_arena_destroy(f.arena);
 }
 
 TEST_IN_FOLDER(folder_is_made_with_its_parents) {

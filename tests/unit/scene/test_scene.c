@@ -61,7 +61,6 @@ TEST(turbine_is_read) {
     assert_int_equal(s->body[0].joint.parent, BOUGH_GROUND);
     check_blade(&s->body[3]);
     assert_ptr_equal(s->body[3].rod.structure.station, s->body[4].rod.structure.station);
-    stop(&f);
 }
 
 TEST(aerodynamics_are_read) {
@@ -99,7 +98,6 @@ TEST(aerodynamics_are_read) {
     assert_int_equal(a->polars.polar[1].n_row, 6);
     check_near(a->polars.polar[1].row[3].alpha, 10 * degree, 1e-15, 0);
     check_near(a->polars.polar[1].row[4].cm, -0.2, 0, 0);
-    stop(&f);
 }
 
 TEST(uniform_beam_needs_no_table) {
@@ -120,7 +118,6 @@ TEST(uniform_beam_needs_no_table) {
     assert_null(s->aero.node);
     assert_null(s->turbine.node);
     check_near(s->gravity[2], -9.80665, 0, 0);
-    stop(&f);
 }
 
 // Every scene that the project ships must be a good one.
@@ -132,7 +129,6 @@ TEST(shipped_scenes_are_good) {
         if (access(path, R_OK) != 0) continue;
         fixture f = read_scene(path, NULL, 0);
         assert_string_equal(f.printed, "");
-        stop(&f);
     }
 }
 
@@ -146,7 +142,6 @@ TEST(parents_come_first_in_the_order) {
     assert_int_equal(f.scene->order[0], 2);
     assert_int_equal(f.scene->order[1], 1);
     assert_int_equal(f.scene->order[2], 0);
-    stop(&f);
 }
 
 TEST(free_and_sliding_joints_start_moving) {
@@ -167,7 +162,6 @@ TEST(free_and_sliding_joints_start_moving) {
     assert_int_equal(b->axis, BOUGH_SCENE_Y);
     check_near(f.scene->body[0].inertia[2], 3, 0, 0);
     check_near(f.scene->body[0].inertia[3], 0, 0, 0);
-    stop(&f);
 }
 
 TEST(joints_of_several_axes_are_read) {
@@ -197,7 +191,6 @@ TEST(joints_of_several_axes_are_read) {
     check_near(c->angle, 90 * degree, 1e-15, 0);
     check_near(c->speed, 3, 0, 0);
     check_near(c->angular_speed, 6 * degree, 1e-15, 0);
-    stop(&f);
     refuses(SIMULATION "bodies:\n  - name: a\n    fidelity: rigid\n    mass: 1\n"
                        "    joint: {kind: universal, parent: ground, axis: x, second_axis: x}\n",
             "s.yaml:6:68: error: bodies[0].joint.second_axis: must not be the first axis\n");
@@ -270,7 +263,6 @@ TEST(rods_may_be_curved) {
     check_near(s->station[1].def.position.y, -0.2, 0, 0);
     check_near(s->damping[0], 0, 0, 0); // the scene's, not the table's
     check_near(s->damping[5], 2e-3, 1e-15, 0);
-    stop(&f);
 }
 
 TEST(rods_may_be_parts_of_a_table) {
@@ -295,7 +287,6 @@ TEST(rods_may_be_parts_of_a_table) {
         check_near(s->station[k].def.twist, twist[k] * degree, 1e-15, 0);
         check_near(s->station[k].def.stiffness[bough_symmetric6_index(2, 2)], axial[k], 1e-15, 0);
     }
-    stop(&f);
     refuses(ROD_BODY "    rod: {table: blade.yaml, part: [1, 4]}\n",
             "s.yaml:6:36: error: bodies[0].rod.part: must be a stretch of the table, which is 3 m "
             "long, got [1 m, 4 m]\n");
@@ -308,7 +299,6 @@ TEST(missing_scene_is_told) {
     assert_string_equal(f.printed, "none.yaml: error: cannot be read: No such file or directory\n");
     assert_int_equal(f.status.code, BOUGH_INVALID);
     assert_string_equal(f.status.message, "none.yaml: 1 error in the scene");
-    stop(&f);
 }
 
 TEST(hostile_scenes_end_fast) {
@@ -319,7 +309,6 @@ TEST(hostile_scenes_end_fast) {
     clock_t begin = clock();
     fixture f = read_scene("s.yaml", NULL, 0);
     assert_int_equal(f.errors.n, 100);
-    stop(&f);
     stream = fopen("s.yaml", "w");
     fputs(SIMULATION "bodies:\n", stream);
     for (int i = 0; i < 10001; i++) fputs("- {}\n", stream);
@@ -327,7 +316,6 @@ TEST(hostile_scenes_end_fast) {
     f = read_scene("s.yaml", NULL, 0);
     assert_string_equal(f.printed, "s.yaml:3:1: error: bodies: expected at most 10000 items, got "
                                    "10001\n");
-    stop(&f);
     assert_true((double)(clock() - begin) / CLOCKS_PER_SEC < 10);
 }
 

@@ -78,7 +78,6 @@ TEST(every_key_that_names_a_file_is_in_the_list) {
         assert_false(list.item[i].absolute);
     }
     assert_string_equal(list.item[0].path, "s.yaml");
-    stop(&f);
 }
 
 TEST(the_fingerprint_changes_with_each_file) {
@@ -94,7 +93,6 @@ TEST(the_fingerprint_changes_with_each_file) {
         write_file(files[k].path, files[k].text);
         assert_true(fingerprint(f.scene, f.arena) == before);
     }
-    stop(&f);
 }
 
 // A sum is taken once for all scenes that share it.
@@ -108,7 +106,6 @@ TEST(a_shared_file_is_read_once) {
     assert_true(first == second);
     assert_true(first != fingerprint(f.scene, f.arena));
     write_file("wind.bts", "gusts\n");
-    stop(&f);
 }
 
 TEST(a_path_from_the_root_is_known_as_one) {
@@ -120,7 +117,6 @@ TEST(a_path_from_the_root_is_known_as_one) {
     int absolute = 0;
     for (int k = 0; k < list.n; k++) absolute += list.item[k].absolute && strcmp(list.item[k].path, law) == 0;
     assert_int_equal(absolute, 1);
-    stop(&f);
 }
 
 GROUP(enter_files, leave_files)

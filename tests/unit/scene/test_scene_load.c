@@ -83,7 +83,6 @@ TEST(loads_act_on_rods) {
     assert_int_equal(load[3].place, BOUGH_SCENE_ALONG);
     check_near(load[3].force[1], 3000, 1e-15, 0);
     check_near(load[3].moment[2], 3, 1e-15, 0);
-    stop(&f);
 }
 
 TEST(loads_fit_their_rods) {

@@ -10,7 +10,6 @@ TEST(values_can_be_replaced_and_added) {
                                 "turbine.blades[1]=blade2"};
     fixture f = read_scene(SCENES "example-turbine.yaml", sets, 6);
     assert_string_equal(f.printed, "--set: error: title: expected text, got a mapping\n");
-    stop(&f);
     f = read_scene(SCENES "example-turbine.yaml", sets, 4);
     assert_string_equal(f.printed, "");
     assert_string_equal(bough_scheme_name(f.scene->simulation.coupling.scheme), "extrapolated");
@@ -18,7 +17,6 @@ TEST(values_can_be_replaced_and_added) {
     check_near(f.scene->body[3].pitch, 5 * degree, 1e-15, 0);
     check_near(f.scene->body[4].pitch, 6.5 * degree, 1e-15, 0);
     check_near(f.scene->aero.wind.def.speed, 9, 0, 0);
-    stop(&f);
 }
 
 TEST(missing_mappings_are_made) {
@@ -27,7 +25,6 @@ TEST(missing_mappings_are_made) {
     assert_string_equal(f.printed, "");
     check_near(f.scene->simulation.micro.rtol, 1e-8, 0, 0);
     assert_int_equal(f.scene->simulation.threads, 3);
-    stop(&f);
 }
 
 // A rod shared by an alias changes for the named body only.
@@ -38,7 +35,6 @@ TEST(shared_values_are_copied_first) {
     assert_string_equal(f.printed, "");
     check_near(f.scene->body[1].rod.structure.length, 7, 0, 0);
     check_near(f.scene->body[2].rod.structure.length, 5, 0, 0);
-    stop(&f);
 }
 
 TEST(bad_replacements_are_refused) {
@@ -77,7 +73,6 @@ TEST(bad_replacements_are_refused) {
                    "got '5 kg': the unit 'kg' does not fit\n");
     assert_int_equal(f.status.code, BOUGH_INVALID);
     assert_null(f.scene);
-    stop(&f);
 }
 
 GROUP(enter, leave)

@@ -10,7 +10,7 @@ typedef struct fixture {
 } fixture;
 
 static fixture open_controller(const char *input) {
-    fixture f = {.arena = bough_arena_create()};
+    fixture f = {.arena = check_memory()};
     check_ok(bough_discon_open(f.arena, BOUGH_SAMPLE_DISCON, input, false, &f.discon));
     return f;
 }
@@ -90,7 +90,6 @@ TEST(status_tells_first_and_last) {
         check_ok(bough_discon_call(f.discon, &sensed, &demand));
         check_near(demand.torque, k == 3 ? -1 : k > 0, 0, 0);
     }
-    bough_arena_destroy(f.arena);
 }
 
 TEST(failures_are_told) {
@@ -114,11 +113,10 @@ TEST(what_is_no_controller_is_refused) {
                                          {BOUGH_SOURCE_DIR "/README.md", "README.md"},
                                          {BOUGH_OTHER_LIBRARY, "no function DISCON"}};
     for (int i = 0; i < 3; i++) {
-        bough_arena *arena = bough_arena_create();
+        check_arena(arena);
         bough_discon *discon;
         bough_status status = bough_discon_open(arena, bad[i][0], "", false, &discon);
         assert_int_equal(status.code, BOUGH_INVALID);
         assert_non_null(strstr(status.message, bad[i][1]));
-        bough_arena_destroy(arena);
     }
 }

@@ -14,7 +14,7 @@ static double plate_row[PLATE][4];
 
 static int set_up(void **state) {
     airfoils *a = test_malloc(sizeof *a);
-    a->arena = bough_arena_create();
+    a->arena = check_memory();
     for (int i = 0; i < 8; i++) {
         bough_polar_build(a->arena, nrel5mw_polars + i, a->polar + i);
     }

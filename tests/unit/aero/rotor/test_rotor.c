@@ -38,7 +38,7 @@ static bough_mat3 turned(bough_vec3 rotation_vector) {
 
 static rig *create_rig(bool flat) {
     rig *r = calloc(1, sizeof *r);
-    r->arena = bough_arena_create();
+    r->arena = check_memory();
     r->def = bough_rotor_def_default();
     nrel5mw_stations(r->station, flat);
     for (int i = 0; i < VERTICES; i++) {

@@ -22,7 +22,7 @@ static const double plate_rows[4][4] = {{-180, 0, 0, 0},
 
 static int set_up(void **state) {
     foils *a = test_malloc(sizeof *a);
-    a->arena = bough_arena_create();
+    a->arena = check_memory();
     bough_polar_def plate = {.name = "plate", .n = 4, .row = &plate_rows[0][0]};
     bough_polar_build(a->arena, &plate, &a->plate);
     for (int i = 0; i < 8; i++) {

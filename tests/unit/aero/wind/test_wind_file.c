@@ -17,7 +17,7 @@ typedef struct place {
 
 static int set_up(void **state) {
     place *p = test_malloc(sizeof *p);
-    p->arena = bough_arena_create();
+    p->arena = check_memory();
     int file = mkstemp(scratch_name(p->path));
     assert_true(file >= 0);
     close(file);

@@ -175,7 +175,7 @@ static void transform(ensemble *e, int seed, int place) {
 static int make_ensemble(void **state) {
     ensemble *e = test_calloc(1, sizeof *e);
     e->def = standard(BOUGH_WIND_NTM, 12).iec;
-    e->arena = bough_arena_create();
+    e->arena = check_memory();
     for (int s = 0; s < SEEDS; s++) {
         e->def.seed = 100 + s;
         check_ok(bough_turbulence_make(e->arena, &e->def, &e->box[s]));

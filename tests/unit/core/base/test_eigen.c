@@ -18,7 +18,7 @@ typedef struct chain {
 } chain;
 
 static chain empty_chain(int n) {
-    chain c = {.arena = bough_arena_create()};
+    chain c = {.arena = check_memory()};
     c.mass = bough_arena_doubles(c.arena, (size_t)n * BOUGH_BLOCK);
     bough_block_tridiagonal_init(&c.damping, c.arena, n);
     bough_block_tridiagonal_init(&c.stiffness, c.arena, n);
@@ -68,7 +68,6 @@ TEST(chain_of_masses_has_its_frequencies) {
         }
         last = expected;
     }
-    bough_arena_destroy(c.arena);
 }
 
 // (λ²M + λC + K) q = 0 for what is returned, with damping and gyroscopic terms.
@@ -104,7 +103,6 @@ TEST(pairs_satisfy_the_equation) {
         assert_true(s < 0);
     }
     bough_arena_destroy(c.arena);
-    bough_arena_destroy(copy.arena);
 }
 
 TEST(small_system_gives_all_it_has) {
@@ -114,7 +112,6 @@ TEST(small_system_gives_all_it_has) {
     assert_int_equal(c.status.code, BOUGH_OK);
     assert_int_equal(c.found, 6);
     for (int i = 0; i < 6; i++) check_near(c.pair[i].imaginary, i + 1, 1e-10, 0);
-    bough_arena_destroy(c.arena);
 }
 
 // Beyond buckling a real solution grows; an overdamped one decays and is not listed.
@@ -128,7 +125,6 @@ TEST(growing_solution_is_listed) {
     check_near(c.pair[0].real, 2, 1e-10, 0);
     check_near(c.pair[0].imaginary, 0, 0, 0);
     check_near(c.pair[1].imaginary, 3, 1e-10, 0);
-    bough_arena_destroy(c.arena);
 }
 
 TEST(singular_stiffness_is_diagnosed) {
@@ -137,5 +133,4 @@ TEST(singular_stiffness_is_diagnosed) {
     solve(&c, WANTED);
     assert_int_equal(c.status.code, BOUGH_FAILED);
     assert_non_null(strstr(c.status.message, "chain: the stiffness"));
-    bough_arena_destroy(c.arena);
 }

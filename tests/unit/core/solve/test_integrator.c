@@ -127,7 +127,7 @@ static void exact(double t, double *y) {
 static problem *create_scaled(const method *m, const double *scale, double rtol) {
     problem *p = calloc(1, sizeof *p);
     assert_non_null(p);
-    p->arena = bough_arena_create();
+    p->arena = check_memory();
     p->wall = (double)INFINITY;
     bough_ode ode = {"stiff", N, scale, p, derivative, NULL, linearise, factor, solve, 0};
     bough_integrator_options options = {.kind = m->kind, .rtol = rtol};

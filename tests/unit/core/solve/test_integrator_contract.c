@@ -120,7 +120,6 @@ TEST(every_method_integrates_every_system) {
         assert_int_equal(check_system(arena, &x), x.system.n_state == MOST_STATES ? 6 : 7);
     }
     bough_two_mass_destroy(&assembly);
-    bough_arena_destroy(tree.arena);
 }
 
 TEST(every_system_keeps_the_contract) {

@@ -84,7 +84,7 @@ static void exact(double t, double *y) {
 // The problem at its initial values y.
 static void build(problem *p, method m, double step, double *y) {
     static const double scale[N] = {1, 1, 1, 1};
-    *p = (problem){.arena = bough_arena_create(), .m = m};
+    *p = (problem){.arena = check_memory(), .m = m};
     bough_ode ode = {"sample", m.n, scale, p, derivative, NULL, linearise, factor, solve, 0};
     // Newton's method of generalised-α to rounding; the Rosenbrock method takes all steps that it is given
     bough_integrator_options options = {m.kind, m.n > LINEAR ? 1e3 : 1e-10, step, m.rho, 0, false};
@@ -145,7 +145,6 @@ TEST(what_has_no_value_ends_with_a_diagnosis) {
     bough_status status = integrator_advance(&p.micro, 0.1, 0.2, false, y);
     check_fails(status, BOUGH_FAILED, "sample");
     check_fails(status, BOUGH_FAILED, "0.1 s");
-    bough_arena_destroy(p.arena);
 }
 
 TEST(steps_and_starts_are_counted) {
@@ -159,7 +158,6 @@ TEST(steps_and_starts_are_counted) {
     assert_int_equal(sum.steps, 20);
     assert_int_equal(sum.starts, 2);
     assert_int_equal(sum.failed_steps, 0);
-    bough_arena_destroy(p.arena);
 }
 
 // After an hour, times and their differences are rounded to 5e-13 s.

@@ -22,7 +22,6 @@ TEST(inverse_dynamics_inverts_forward_dynamics) {
         check_near(sum, 0, 0, 1e-11);
         assert_true(fabs(bias[i]) > 1e-6);
     }
-    bough_arena_destroy(f.arena);
 }
 
 TEST(kinetic_energy_is_the_mass_matrix_form) {
@@ -36,7 +35,6 @@ TEST(kinetic_energy_is_the_mass_matrix_form) {
         for (int j = 0; j < n; j++) energy += 0.5 * v[i] * mass[n * i + j] * v[j];
     }
     check_near(tree_sum(f.tree, f.data).kinetic, energy, 1e-12, 0);
-    bough_arena_destroy(f.arena);
 }
 
 // Power of the loads = rate of the energy, by differences along the exact motion.
@@ -55,7 +53,6 @@ TEST(energy_follows_the_power_of_the_loads) {
     assert_true(after.elastic > 0 && after.elastic != before.elastic);
     check_near(after.kinetic + after.potential + after.elastic,
                before.kinetic + before.potential + before.elastic, 1e-7, 1e-7);
-    bough_arena_destroy(f.arena);
 }
 
 // -- tangents --------------------------------------------------------------------------------
@@ -75,7 +72,6 @@ TEST(output_tangent_is_the_derivative) {
         check_near(tangent[i], (plus[i] - minus[i]) / (2 * h), 1e-8, 1e-8);
         assert_true(fabs(tangent[i]) > 1e-4);
     }
-    bough_arena_destroy(f.arena);
 }
 
 // Along the motion: the links' accelerations of the forward dynamics, and ġ = −ω×g.
@@ -101,7 +97,6 @@ TEST(output_tangent_along_the_motion_is_the_acceleration) {
         check_near(tangent[9 * p + 8], gdot.z, 1e-12, 1e-12);
         check_near(bough_norm(g), bough_norm(f.tree->gravity), 1e-14, 0);
     }
-    bough_arena_destroy(f.arena);
 }
 
 TEST(input_columns_are_the_derivative) {
@@ -119,7 +114,6 @@ TEST(input_columns_are_the_derivative) {
         for (int i = 0; i < n; i++) check_near(columns[n * j + i], plus[i] - minus[i], 1e-9, 1e-11);
     }
     free(columns);
-    bough_arena_destroy(f.arena);
 }
 
 // (I − γJ) x = b with x by solve and J x by a difference of f along x.
@@ -141,5 +135,4 @@ TEST(solve_inverts_the_linearisation) {
     for (int i = 0; i < n; i++) {
         check_near(x[i] - gamma * (plus[i] - minus[i]) / (2 * h), b[i], 1e-7, 1e-7);
     }
-    bough_arena_destroy(f.arena);
 }

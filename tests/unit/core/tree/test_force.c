@@ -85,7 +85,6 @@ TEST(bushing_is_linear_along_and_about_an_axis) {
         (bough_quaternion){f.m->state[3], f.m->state[4], f.m->state[5], f.m->state[6]});
     check_near(turn.z, 2.4 * exp(-delta * t) * (cos(w * t) + delta / w * sin(w * t)), 0, 1e-8);
     check_near(f.m->state[0], 0, 0, 1e-12);
-    bough_arena_destroy(f.arena);
 }
 
 // Undamped elements keep the energy at large turns about changing axes, with unequal stiffnesses.
@@ -102,7 +101,6 @@ TEST(elements_conserve) {
         largest = fmax(largest, fabs(now.elastic - before.elastic));
     }
     assert_true(largest > 3);
-    bough_arena_destroy(f.arena);
 }
 
 // Action and reaction: the wrenches of an element in the ground about the ground's origin.
@@ -122,7 +120,6 @@ TEST(elements_act_and_react) {
         for (int i = 0; i < 6; i++) check_near(sum[i], 0, 0, 1e-13 * size);
         assert_true(size > 1 && energy > 0);
     }
-    bough_arena_destroy(f.arena);
 }
 
 static bough_twist moved(const double *change) { return bough_twist_load(change); }
@@ -182,7 +179,6 @@ TEST(changes_are_derivatives) {
             check_near(expected[i], (value[0][i] - value[1][i]) / (2 * h), 1e-7, 1e-7);
         }
     }
-    bough_arena_destroy(f.arena);
 }
 
 TEST(tree_with_forces_fulfils_the_contract) {
@@ -191,7 +187,6 @@ TEST(tree_with_forces_fulfils_the_contract) {
     memcpy(y, f.m->state, sizeof y);
     contract_point at = {0.2, y, none, 1e-5};
     contract_check(f.m, at, 0.07, 0.05);
-    bough_arena_destroy(f.arena);
 }
 
 // -- applied wrenches ------------------------------------------------------------------------
@@ -214,7 +209,6 @@ TEST(wrench_in_ground_axes_pushes_straight) {
     check_near(f.m->state[1], 0, 0, 1e-8);
     go_to(&f, 2);
     check_near(f.m->state[0], 0.5 + 1.5 + 1.5 - 0.5, 1e-7, 0);
-    bough_arena_destroy(f.arena);
 }
 
 // -- scenes ----------------------------------------------------------------------------------

@@ -95,7 +95,7 @@ typedef struct fixture {
 } fixture;
 
 static fixture build(const bough_tree_def *def, bough_integrator_kind solver, double rtol) {
-    fixture f = {.arena = bough_arena_create()};
+    fixture f = {.arena = check_memory()};
     check_ok(bough_tree_create(f.arena, def, &f.tree));
     f.data = bough_tree_data_create(f.arena, f.tree);
     f.s = bough_tree_system_create(f.arena, f.tree, "tree");
@@ -403,7 +403,6 @@ TEST(violations_decay) {
     advance(&f, 0.05, true); // five of them
     tree_closure_error(f.tree, f.data, 0, &after, &rate);
     check_near(after / before, exp(-5), 0.5, 0);
-    bough_arena_destroy(f.arena);
 }
 
 // -- assembly --------------------------------------------------------------------------------
@@ -424,7 +423,6 @@ TEST(loops_are_assembled_from_near) {
     check_near(f.m->state[3], 1, 0, 0); // given
     check_near(f.m->state[4], 1, 1e-9, 0);
     check_near(f.m->state[5], -1, 1e-9, 0);
-    bough_arena_destroy(f.arena);
 }
 
 // A shallow arch of rods whose far end must move by much more than the joints' first step would
@@ -459,7 +457,6 @@ TEST(arches_are_assembled) {
     check_closed(&f, 1e-6);
     tree_sums end = tree_sum(f.tree, f.data);
     check_near(end.kinetic + end.potential, start.kinetic + start.potential, 0, 1e-5);
-    bough_arena_destroy(f.arena);
 }
 
 static void refused(const bough_tree_def *def, const char *what, const char *also) {

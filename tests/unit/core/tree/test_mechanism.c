@@ -21,7 +21,7 @@ typedef struct fixture {
 } fixture;
 
 static fixture start(const char *path, const char *const *sets) {
-    fixture f = {.arena = bough_arena_create()};
+    fixture f = {.arena = check_memory()};
     f.s = scene_build(f.arena, path, sets);
     f.channels = bough_channels_start(f.arena);
     check_ok(bough_simulation_channels(f.s, &f.channels));
@@ -65,7 +65,6 @@ TEST(joints_of_several_axes_start_and_are_recorded) {
     check_near(channel(&f, "puck2Pos"), 2 + 4 * t - 0.5 * g * t * t, 1e-6, 0);
     check_near(channel(&f, "puck2Vel"), 4 - g * t, 1e-6, 0);
     check_near(channel(&f, "puckAngPos"), 90 + 5 * t / degree, 1e-6, 0);
-    bough_arena_destroy(f.arena);
 }
 
 // The balance from rest at 0 towards 40°, and the slider, which its stop keeps from going further.
@@ -79,7 +78,6 @@ TEST(sprung_joints_move_by_themselves) {
     double turn = cos(omega * t) + delta / omega * sin(omega * t);
     check_near(channel(&f, "balancePos"), 40 * (1 - exp(-delta * t) * turn), 1e-6, 0);
     assert_true(furthest > 0.155 && furthest < 0.17); // 0.195 without the stop
-    bough_arena_destroy(f.arena);
 }
 
 // 8 N m until 0.4 s, falling to nothing at 1 s, on 4 kg m²; every time of the table is a step's end.
@@ -92,7 +90,6 @@ TEST(joint_loads_follow_their_table) {
     check_near(channel(&f, "wheelVel") * degree, 2 * 0.4, 1e-6, 0);
     while (f.s->master->time < 1.5) run(&f, 1);
     check_near(channel(&f, "wheelVel") * degree, 2 * 0.4 + 2 * 0.3, 1e-6, 0);
-    bough_arena_destroy(f.arena);
 }
 
 // The planar joint's normal is y: its first axis is z, its second x.
@@ -107,7 +104,6 @@ TEST(elastic_pendulum_passes_the_reference) {
     double length = hypot(-0.1744689353, -1.209469319);
     check_near(channel(&f, "cordLen"), length, 0, 1e-6);
     check_near(channel(&f, "cordFrc"), 100 * (length - 1), 0, 1e-4);
-    bough_arena_destroy(f.arena);
 }
 
 // A point of a body in the ground.
@@ -157,7 +153,6 @@ TEST(chain_passes_the_reference) {
     check_near(channel(&f, "tipZ"), -0.7560764306, 0, 1e-4);
     bough_vec3 x = point_of(&f, "link4", bough_v3(1, 0, 0));
     check_near(channel(&f, "tipX"), x.x, 0, 0);
-    bough_arena_destroy(f.arena);
 }
 
 // Angles and the forces in the point where all meet, at 30 ms (Test Set for IVP Solvers).
@@ -264,7 +259,6 @@ TEST(propped_beams_rest_on_their_closure) {
     run(&f, 50);
     check_near(channel(&f, "propFx"), -prop, 2e-4, 0);
     check_closed(&f, 1e-9);
-    bough_arena_destroy(f.arena);
 }
 
 // Where a closed loop with a rod on it rests is found, and it stays there.
@@ -276,7 +270,6 @@ TEST(closed_loops_come_to_rest) {
     assert_true(fabs(angle - 20) > 90); // it has swung through
     run(&f, 20);
     check_near(channel(&f, "crankPos"), angle, 0, 1e-7);
-    bough_arena_destroy(f.arena);
 }
 
 // With a crank, coupler and rocker that weigh little against the rod the frozen coupling grows.
@@ -345,7 +338,7 @@ static void write_turned(const char *path, const double *turn, const char *name)
 }
 
 static fixture start_file(const char *path) {
-    fixture f = {.arena = bough_arena_create()};
+    fixture f = {.arena = check_memory()};
     bough_errors errors = {.arena = f.arena};
     bough_scene *scene = NULL;
     bough_status status = bough_scene_read(f.arena, path, no_sets, 0, &errors, &scene);

@@ -158,7 +158,6 @@ TEST(driven_joints_keep_the_momenta) {
     check_near(f.m->state[7], 0.3 + 5 * (0.5 + 0.5), 1e-15, 0);
     check_near(f.m->state[8], 0.9, 1e-15, 0);
     check_near(f.m->state[f.tree->n_q + 6], 5, 1e-15, 0);
-    bough_arena_destroy(f.arena);
 }
 
 // The drives' power is the rate of the energy.
@@ -180,7 +179,6 @@ TEST(energy_is_what_the_drives_put_in) {
         last.kinetic + last.potential + last.elastic - first.kinetic - first.potential - first.elastic;
     assert_true(fabs(gained) > 1);
     check_near(work, gained, 1e-5, 0);
-    bough_arena_destroy(f.arena);
 }
 
 TEST(recursions_agree_on_driven_joints) {
@@ -197,7 +195,6 @@ TEST(recursions_agree_on_driven_joints) {
         check_near(f.data->drive[i], drive[i], 1e-12, 1e-12);
     }
     assert_true(fabs(drive[6]) > 0.1 && fabs(drive[7]) > 0.1);
-    bough_arena_destroy(f.arena);
 }
 
 TEST(driven_tree_fulfils_the_contract) {
@@ -208,7 +205,6 @@ TEST(driven_tree_fulfils_the_contract) {
     contract_point at = {0.2, y, u, 1e-5};
     contract_check(f.m, at, 0.07, 0.05);
     contract_set_state(f.m, at, 1e-4);
-    bough_arena_destroy(f.arena);
 }
 
 // A joint held still needs no inertia, and carries the moment of the weight.
@@ -226,7 +222,6 @@ TEST(locked_joint_reports_its_torque) {
     assert_true(bough_tree_forward_dynamics(f.tree, f.data, 3, NULL, &acceleration));
     check_near(acceleration, 0, 0, 0);
     check_near(f.data->drive[0], -2 * 9.81 * 1.5, 1e-14, 0); // y points away from the turn
-    bough_arena_destroy(f.arena);
 }
 
 // -- scenes ----------------------------------------------------------------------------------

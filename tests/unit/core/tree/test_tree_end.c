@@ -59,7 +59,7 @@ static bough_status create(fixture *f, bough_joint_kind kind) {
 }
 
 static fixture make(void) {
-    fixture f = {.arena = bough_arena_create()};
+    fixture f = {.arena = check_memory()};
     check_ok(create(&f, BOUGH_JOINT_FREE));
     f.data = bough_tree_data_create(f.arena, f.tree);
     f.s = bough_tree_system_create(f.arena, f.tree, "tree");
@@ -79,7 +79,6 @@ TEST(tree_with_an_end_fulfils_the_contract) {
     contract_point at = {0.2, f.state, f.input, 1e-5};
     contract_check(f.m, at, 0.07, 0.05);
     contract_set_state(f.m, at, 1e-4);
-    bough_arena_destroy(f.arena);
 }
 
 // Position and rotation in the frame of the flexible body, velocity of the same point in its axes.
@@ -104,7 +103,6 @@ TEST(outputs_are_the_motion_in_the_frame_of_the_flexible_body) {
     for (int k = 0; k < 9; k++) check_near(end[k], expected[k], 1e-13, 1e-13);
     check_near(bough_norm(bough_sub(r.c1, local.rotation.c1)), 0, 0, 1e-13);
     check_near(bough_norm(bough_sub(r.c2, local.rotation.c2)), 0, 0, 1e-13);
-    bough_arena_destroy(f.arena);
 }
 
 // v·M Δv̇ = wrench · twist: the six inputs are conjugate to the first six outputs.
@@ -126,5 +124,4 @@ TEST(wrench_and_twist_are_conjugate) {
     }
     for (int k = 0; k < 6; k++) expected += f.input[6 + k] * out[BOUGH_PORT_OUTPUTS + k];
     check_near(power, expected, 1e-12, 1e-12);
-    bough_arena_destroy(f.arena);
 }

@@ -21,7 +21,7 @@ typedef struct fixture {
 } fixture;
 
 static fixture build(const bough_tree_def *def) {
-    fixture f = {.arena = bough_arena_create()};
+    fixture f = {.arena = check_memory()};
     check_ok(bough_tree_create(f.arena, def, &f.tree));
     f.data = bough_tree_data_create(f.arena, f.tree);
     f.newton = bough_tree_newton_create(f.arena, f.tree);
@@ -144,7 +144,6 @@ TEST(solve_inverts_the_differences) {
         bough_tree_newton_solve(f.newton, NULL, r[0]);
         for (int i = 0; i < n; i++) check_near(r[0][i], x[i], 0, 1e-7);
     }
-    bough_arena_destroy(f.arena);
 }
 
 // A known change of v̇ adds as the mass matrix times it would on the right.
@@ -169,5 +168,4 @@ TEST(known_accelerations_are_forces) {
     bough_tree_newton_solve(f.newton, a, x);
     bough_tree_newton_solve(f.newton, NULL, y);
     for (int i = 0; i < n_q + n_v; i++) check_near(x[i], y[i], 1e-10, 1e-11);
-    bough_arena_destroy(f.arena);
 }

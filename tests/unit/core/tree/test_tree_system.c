@@ -36,7 +36,6 @@ TEST(restored_copies_repeat_bit_by_bit) {
         if (run == 0) bough_member_advance(f.m, 0.9, &signal, false);
     }
     assert_memory_equal(first, second, (size_t)n * sizeof(double));
-    bough_arena_destroy(f.arena);
 }
 
 // Radau is a one-step method: a copy of it lacks nothing.
@@ -59,7 +58,6 @@ TEST(radau_goes_on_from_a_copy_as_if_nothing_had_been) {
     bough_member_advance(tight.m, 0.5, &signal, true);
     for (int i = 0; i < f.s.n_state; i++) check_near(f.m->state[i], tight.m->state[i], 1e-6, 1e-6);
     bough_arena_destroy(f.arena);
-    bough_arena_destroy(tight.arena);
 }
 
 // Kept history over many macro steps agrees with a far tighter run.
@@ -79,7 +77,6 @@ TEST(kept_history_keeps_the_accuracy) {
     assert_int_equal(count.starts, 1);
     assert_true(count.steps > 0 && count.jacobians > 0 && count.derivatives > count.steps);
     bough_arena_destroy(f.arena);
-    bough_arena_destroy(tight.arena);
 }
 
 // A marker's wrench against the same wrench at the port in the same place.
@@ -94,7 +91,6 @@ TEST(external_wrench_acts_as_a_port_does) {
     }
     f.s.ops->derivative(f.s.self, 0.4, f.m->state, zero, b);
     for (int i = 0; i < f.s.n_state; i++) check_near(b[i], a[i], 1e-11, 1e-11);
-    bough_arena_destroy(f.arena);
 }
 
 // Velocity queries against differences of poses along the motion.
@@ -121,5 +117,4 @@ TEST(frame_velocity_is_the_rate_of_the_pose) {
     assert_true(bough_tree_joint_rows(f.tree, tree_find_body(f.tree, "d"), &q, &speed));
     check_near(rate[q], f.m->state[speed], 0, 0);
     assert_false(bough_tree_joint_rows(f.tree, tree_find_body(f.tree, "e"), &q, &speed));
-    bough_arena_destroy(f.arena);
 }

@@ -22,7 +22,7 @@ typedef struct blade {
 
 static blade blade_with(int segments) {
     const double at_rest[BOUGH_ROD_INPUTS] = {0};
-    blade b = {.arena = bough_arena_create()};
+    blade b = {.arena = check_memory()};
     bough_errors errors = {.arena = b.arena};
     bough_scene *scene = NULL;
     bough_simulation *simulation = NULL;
@@ -237,7 +237,6 @@ TEST(rotation_stiffens_and_spin_softens_the_blade) {
     }
     for (int k = 0; k < 6; k++) check_near(rest[k].damping, damping[k], 0.012, 0);
     assert_int_equal(turning[5].dominant, BOUGH_ROD_TORSION);
-    bough_arena_destroy(b.arena);
 }
 
 // Integrals of the table, linear between stations: exact on any mesh.

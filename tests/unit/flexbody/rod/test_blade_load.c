@@ -23,7 +23,7 @@ typedef struct blade {
 } blade;
 
 static blade blade_with(int segments) {
-    blade b = {.arena = bough_arena_create()};
+    blade b = {.arena = check_memory()};
     bough_errors errors = {.arena = b.arena};
     bough_scene *scene = NULL;
     bough_simulation *simulation = NULL;

@@ -32,7 +32,7 @@ TEST(load_keeps_its_direction_while_the_arm_turns) {
             "bodies[0].rod.stiffness=[1e9, 1e9, 1e9, 1e7, 1e7, 1e7]",
             "loads[0]={body: arm, at: tip, force: [3, -2, -5], moment: [0.5, 2, -1]}",
             NULL};
-        bough_arena *arena = bough_arena_create();
+        check_arena(arena);
         bough_simulation *s = scene_build(arena, scene, sets);
         run_to_end(s);
         const bough_beam *arm = &s->beam[0];
@@ -43,7 +43,6 @@ TEST(load_keeps_its_direction_while_the_arm_turns) {
         double root[BOUGH_ROD_MOST_OUTPUTS];
         bough_simulation_root(s, arm, 1, root);
         for (int c = 0; c < 6; c++) check_near(root[c], expected[c], 0, 0.02);
-        bough_arena_destroy(arena);
     }
 }
 

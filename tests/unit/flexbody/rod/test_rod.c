@@ -20,7 +20,7 @@ typedef struct fixture {
 static int setup(void **context) {
     static const double input[BOUGH_ROD_INPUTS] = {0.4, -0.3, 0.7, 0.5, -0.8, 0.6, 1, -2, -9};
     fixture *f = calloc(1, sizeof *f);
-    f->arena = bough_arena_create();
+    f->arena = check_memory();
     f->model = sample_general(f->arena, N);
     bough_rod_scratch_init(&f->scratch, f->arena, f->model);
     bough_rod_loads_init(&f->loads, f->arena, f->model);
@@ -135,7 +135,7 @@ typedef struct sized {
 } sized;
 
 static sized build_sized(int n_segment, bool carries) {
-    sized r = {.arena = bough_arena_create(), .input = {0.4, -0.3, 0.7, 0.5, -0.8, 0.6, 1, -2, -9}};
+    sized r = {.arena = check_memory(), .input = {0.4, -0.3, 0.7, 0.5, -0.8, 0.6, 1, -2, -9}};
     r.model = sample_general_as(r.arena, n_segment, carries);
     bough_rod_scratch_init(&r.scratch, r.arena, r.model);
     bough_rod_loads_init(&r.loads, r.arena, r.model);

@@ -41,7 +41,7 @@ static void split(pair *p) {
 
 static pair make_pair(void) {
     static const double input[BOUGH_ROD_INPUTS] = {0.4, -0.3, 0.7, 0.5, -0.8, 0.6, 1, -2, -9};
-    pair p = {.arena = bough_arena_create()};
+    pair p = {.arena = check_memory()};
     memcpy(p.input, input, sizeof input);
     p.free = sample_general(p.arena, N);
     p.carrying = sample_general_as(p.arena, N, true);
@@ -68,7 +68,6 @@ TEST(operations_agree_on_a_rod_that_carries) {
     contract_check(m, at, 0.03, 0.01);
     loads->ramped = NULL; // the strains without stress still move
     contract_check(m, at, 0.03, 0.01);
-    bough_arena_destroy(p.arena);
 }
 
 // Vertices that both integrate accelerate alike, and the root feels the same.
@@ -85,7 +84,6 @@ TEST(end_moves_the_rest_as_its_own_vertex_would) {
         for (int i = 0; i < N - 1; i++) check_near(b[c * (N - 1) + i], a[c * N + i], 1e-13, 1e-13);
     }
     for (int k = 0; k < 6; k++) check_near(wrenches[k], wrench[k], 1e-13, 1e-13);
-    bough_arena_destroy(p.arena);
 }
 
 // (11) of the last vertex with the wrench as the only force beside its weight: its acceleration as a
@@ -115,7 +113,6 @@ TEST(end_wrench_is_what_moves_the_last_vertex) {
     force = bough_mat3_mul(r, force);
     const double expected[6] = {force.x, force.y, force.z, moment.x, moment.y, moment.z};
     for (int k = 0; k < 6; k++) check_near(wrench[6 + k], expected[k], 1e-11, 1e-11);
-    bough_arena_destroy(p.arena);
 }
 
 TEST(too_short_a_rod_carries_nothing) {

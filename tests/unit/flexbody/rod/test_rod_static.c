@@ -42,7 +42,7 @@ static bough_vec3 vertex(const bent *b, int i) {
 TEST(end_moment_bends_rod_to_circle) {
     const double stiffness[6] = {1e4, 1e4, 1e4, 100, 100, 100};
     for (int turns = 1; turns <= 10; turns += 9) {
-        bough_arena *arena = bough_arena_create();
+        check_arena(arena);
         int n = 12 * turns;
         bent b = straight_rod(arena, n, 10, stiffness);
         b.loads.value[3 * b.model->stride + n] = turns * 2 * BOUGH_PI * 100 / 10; // about x
@@ -57,7 +57,6 @@ TEST(end_moment_bends_rod_to_circle) {
         double radius = 10 / (2 * BOUGH_PI * turns);
         check_near(quarter.y, -radius, 4e-4, 0);
         check_near(quarter.z, radius, 4e-4, 0);
-        bough_arena_destroy(arena);
     }
 }
 
@@ -67,7 +66,7 @@ TEST(dead_tip_force_gives_the_elastica) {
     const double stiffness[6] = {1e9, 1e9, 1e9, 1, 1, 1};
     double error[2];
     for (int k = 0; k < 2; k++) {
-        bough_arena *arena = bough_arena_create();
+        check_arena(arena);
         int n = 20 << k;
         bent b = straight_rod(arena, n, 1, stiffness);
         b.loads.value[n] = 2;
@@ -77,7 +76,6 @@ TEST(dead_tip_force_gives_the_elastica) {
         bough_vec3 tip = vertex(&b, n);
         check_near(1 - tip.z, 0.160641721, 0, 2e-3);
         error[k] = tip.x - 0.493457480;
-        bough_arena_destroy(arena);
     }
     check_near(error[1], 0, 0, 3e-4);
     check_near(error[0] / error[1], 4, 0, 0.2);
@@ -93,7 +91,7 @@ TEST(load_that_falls_along_the_rod_bends_it_as_beam_theory_says) {
     const bough_schedule always = {.start = 0};
     for (int k = 0; k < 2; k++) {
         double to = k == 0 ? length : 1.1;
-        bough_arena *arena = bough_arena_create();
+        check_arena(arena);
         bent b = straight_rod(arena, 5, length, stiffness);
         for (int n = 0; n < 5; n++) { // D of a uniform segment: d₃×f (σ² − h²/4)/2 over EI in the mean
             double mean = 0.4 * 0.4 / 12 / 3;
@@ -106,7 +104,6 @@ TEST(load_that_falls_along_the_rod_bends_it_as_beam_theory_says) {
         double bending = q * pow(to, 4) / 30 / 3, turn = q * pow(to, 3) / 24 / 3;
         double shear = q * to * to / 6 / 1e4;
         check_near(vertex(&b, 5).x, bending + turn * (length - to) + shear, 5e-4, 0);
-        bough_arena_destroy(arena);
     }
 }
 
@@ -296,7 +293,7 @@ TEST(slender_rod_takes_few_iterations) {
         double ea = k == 0 ? 1e6 : 1e10;
         double shear = 12 * 200.0 * 200.0; // that stands for the bending of a segment, 12 EI/h²
         const double stiffness[6] = {shear, shear, ea, 1, 1, 1};
-        bough_arena *arena = bough_arena_create();
+        check_arena(arena);
         bent b = straight_rod(arena, 200, 1, stiffness);
         bough_rod_static_options options = bough_rod_static_options_default();
         bough_vec3 weight = {100, 0, 0}; // of 1 kg/m
@@ -304,7 +301,6 @@ TEST(slender_rod_takes_few_iterations) {
         assert_in_range(b.work.iterations, 2, 15);
         check_near(vertex(&b, 200).x, 0.9375239354, 0, 2e-4);
         check_near(vertex(&b, 200).z, 0.1592233826, 0, 2e-4);
-        bough_arena_destroy(arena);
     }
 }
 

@@ -80,7 +80,6 @@ TEST(operations_agree_on_a_deformed_loaded_rod) {
     contract_check(r.m, at, 0.03, 0.01);
     loads->ramped = NULL; // the strains without stress still move
     contract_check(r.m, at, 0.03, 0.01);
-    bough_arena_destroy(r.arena);
 }
 
 TEST(starts_at_rest_relative_to_its_frame) {
@@ -92,7 +91,6 @@ TEST(starts_at_rest_relative_to_its_frame) {
     assert_ptr_equal(r.model, bough_rod_body_model(r.body));
     assert_int_equal(r.s.n_state, STATES);
     check_near(r.m->time, 0, 0, 0);
-    bough_arena_destroy(r.arena);
 }
 
 static const double swaying[BOUGH_ROD_INPUTS] = {0.4, -0.3, 0.7, 0.5, -0.8, 0.6, 1, -2, -9};
@@ -117,7 +115,6 @@ TEST(set_and_restored_states_start_anew) {
     advance(&a, 1.1, swaying, NULL);
     assert_memory_equal(a.m->state, b.m->state, sizeof state);
     bough_arena_destroy(a.arena);
-    bough_arena_destroy(b.arena);
 }
 
 TEST(quaternions_leave_a_step_normalised) {
@@ -131,7 +128,6 @@ TEST(quaternions_leave_a_step_normalised) {
         for (int c = 0; c < 4; c++) square += pow(r.m->state[(BOUGH_ROD_P + c) * N + i], 2);
         check_near(square, 1, 1e-14, 0);
     }
-    bough_arena_destroy(r.arena);
 }
 
 // Contiguous steps with questions between them are as steps without.
@@ -157,7 +153,6 @@ TEST(questions_do_not_disturb_the_steps) {
     done = bough_member_statistics(b.m);
     assert_int_equal(done.starts, 1);
     bough_arena_destroy(a.arena);
-    bough_arena_destroy(b.arena);
 }
 
 // -- steady and free motion -----------------------------------------------------------------------
@@ -226,7 +221,6 @@ TEST(free_fall_strains_nothing) {
     for (int k = 0; k < BOUGH_ROD_INPUTS; k++) end[k] = input[k] + 0.7 * rate[k];
     r.s.ops->output(r.s.self, 0.7, r.m->state, end, wrench);
     for (int k = 0; k < 6; k++) check_near(wrench[k], 0, 0, 2e-5);
-    bough_arena_destroy(r.arena);
 }
 
 // The same motion in a frame that moves steadily, velocities apart.
@@ -247,7 +241,6 @@ TEST(steady_translation_changes_nothing) {
     for (int k = BOUGH_ROD_U * N; k < STATES; k++) travelled = fmax(travelled, fabs(a.m->state[k]));
     assert_true(travelled > 0.05);
     bough_arena_destroy(a.arena);
-    bough_arena_destroy(b.arena);
 }
 
 // -- loads ----------------------------------------------------------------------------------------
@@ -369,7 +362,6 @@ TEST(cantilever_vibrates_at_its_natural_frequency) {
     strike(&r, 0.01);
     crossing fifth = pass(&r, 5);
     check_near(5 * 2 * BOUGH_PI / fifth.time, natural_frequency(), 1e-4, 0);
-    bough_arena_destroy(r.arena);
 }
 
 // Stress C(ε + μ ε̇) damps a mode of frequency ω by ζ = μω/2.
@@ -383,7 +375,6 @@ TEST(viscosity_damps_as_kelvin_and_voigt_say) {
     double decrement = log(first.speed / last.speed);
     double measured = decrement / (natural_frequency() * (last.time - start));
     check_near(measured, zeta, 2e-3, 0);
-    bough_arena_destroy(r.arena);
 }
 
 // -- energy ---------------------------------------------------------------------------------------
