@@ -106,7 +106,7 @@ static void orthonormalise(const work *w, double *x) {
     }
 }
 
-// The same numbers in every run.
+// Start vectors, the same in every run.
 static void start(const work *w, double *x) {
     uint64_t seed = 1;
     for (size_t i = 0; i < (size_t)w->n * (size_t)w->k; i++) {
@@ -164,7 +164,7 @@ static void sort_ritz(int k, ritz *r) {
     }
 }
 
-// What is left of M v − μ v, of the first of a pair or a real one, against μ v; image (n × k) is M v.
+// |M v − μ v| / |μ v| of a real mode or of a pair, by its first; images (n × k): M v.
 static double residual(const work *w, const ritz *r, int at, const double *modes, const double *images) {
     size_t n = (size_t)w->n;
     const double *v = modes + (size_t)at * n, *image = images + (size_t)at * n;
@@ -233,9 +233,9 @@ static int keep(work *w, const ritz *right, ritz *left, int most, int *block) {
     return kept;
 }
 
-// Two columns (n) made orthonormal: of the double eigenvalue 0 of a rotor that turns freely the modes are
-// next to parallel, and what is not is the second motion.
-static void part(size_t n, double *a) {
+// Makes two columns (n) orthonormal. The modes of the double eigenvalue 0 of a rotor that turns freely are
+// almost parallel; their difference is the second motion.
+static void separate(size_t n, double *a) {
     double *b = a + n, aa = 0, ab = 0, bb = 0;
     for (size_t i = 0; i < n; i++) aa += a[i] * a[i];
     for (size_t i = 0; i < n; i++) ab += a[i] * b[i];
@@ -244,13 +244,13 @@ static void part(size_t n, double *a) {
     for (size_t i = 0; i < n; i++) a[i] /= sqrt(aa), b[i] /= sqrt(bb);
 }
 
-// Of the block of `size` modes from `first` on: (Wᵀ U)⁻¹ Wᵀ, and the motion in it,
+// For the block of `size` modes from `first` on: (Wᵀ U)⁻¹ Wᵀ, and the motion in it,
 // (E − (L (I − γ(J − S))⁻¹ U)⁻¹)/γ. Left and right modes of different blocks are orthogonal.
 static bool set_block(work *w, int first, int size, bough_aeroelastic *to) {
     size_t n = (size_t)w->n, k = (size_t)to->n_motion, at = (size_t)first;
     double *right = w->right + at * n, *left = w->left + at * n, small[4], row[2], image[4];
     int pivot[2];
-    if (size == 2) part(n, right), part(n, left);
+    if (size == 2) separate(n, right), separate(n, left);
     bough_dense_product((bough_product){size, size, w->n, true, 1, 0}, left, right, small);
     if (!bough_dense_factor(size, small, pivot)) return false;
     for (size_t i = 0; i < n; i++) {
@@ -322,8 +322,8 @@ static void turn_air(bough_arena *arena, const work *w, const bough_simulation *
     }
 }
 
-// What forces (n × columns) move beyond the kept motion, which they lose: γ (I − γ(J − S))⁻¹ (E − U L), the
-// static response of the modes left out. `share` (n_motion × columns) is work.
+// The static response of the modes left out to forces (n × columns), γ (I − γ(J − S))⁻¹ (E − U L); the forces
+// lose their part in the modes kept. `share` (n_motion × columns) is work.
 static void follow(work *w, const bough_aeroelastic *to, int columns, double *force, double *share,
                    double *moved) {
     int n = w->n, k = to->n_motion;
@@ -414,8 +414,8 @@ static int slower(const void *a, const void *b) {
     return (first > second) - (first < second);
 }
 
-// Of mode j (and j + 1 of a pair) the motion's share of the participation |left × right|, whatever the
-// units of the states; `inverse` of the eigenvectors' matrix.
+// Participation of the motion in mode j (and j + 1 of a pair), Σ |left × right| over its states relative to
+// that over all, which is independent of units; `inverse`: of the matrix of eigenvectors.
 static double motion_share(const bough_aeroelastic *r, const double *vector, const double *inverse, size_t j,
                            bool pair) {
     size_t m = (size_t)r->n_all;

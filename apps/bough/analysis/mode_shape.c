@@ -38,7 +38,7 @@ static void expand(const bough_mode_shape *x, const bough_beam *beam, int part, 
            (size_t)BOUGH_ROD_STATES * bough_beam_mesh(beam)->n * sizeof *to);
 }
 
-// By central differences, of steps that move nothing by more than a millionth.
+// Central differences with steps that change no state by more than a millionth.
 static void set_modal(const bough_mode_shape *x, const bough_beam *beam, bough_beam_shape *b) {
     size_t n = (size_t)BOUGH_ROD_STATES * bough_beam_mesh(beam)->n;
     for (int part = 0; part < 2; part++) {
@@ -285,7 +285,7 @@ static void add_direction(const bough_mode_shape *x, const bough_beam *beam, dou
     }
 }
 
-// Of a rigid body: energy of its mass centre's motion along the ground's axes, and of its turn.
+// Kinetic energy of a rigid body: of its mass centre along the ground's axes, and of its rotation.
 static void add_motion(const bough_mode_shape *x, int body, int part, double *sum) {
     const bough_simulation *s = x->simulation;
     int link = s->tree->bodies[body].link;

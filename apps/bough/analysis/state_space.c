@@ -248,7 +248,7 @@ static void add_block(const double *from, size_t rows, size_t columns, double *t
     }
 }
 
-// What the air adds: to the rates of the bodies, and rates of its own.
+// Adds the air: its part of the rates of the bodies, and its own rates.
 static void add_air(const work *w, const bough_air_tangent *t, bough_state_space *to) {
     size_t n = (size_t)t->n, m = (size_t)t->n_air, all = n + m, u = (size_t)w->n_input;
     add_block(t->motion, n, n, to->a, all);

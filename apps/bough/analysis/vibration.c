@@ -46,7 +46,7 @@ static bool is_frozen(const bough_simulation *s, const bough_blade_group *group)
     return false;
 }
 
-// What a solution needs.
+// Data of a solution.
 typedef struct solution {
     bough_whole *coupled;
     bough_blade_group group;
@@ -121,7 +121,7 @@ static void drop_other_motions(const bough_tree *tree, double point, int count, 
     v->found = kept;
 }
 
-// Of the bodies alone.
+// Modes of the bodies; the forces of the air do not follow.
 static bough_status solve_bodies(bough_arena *arena, const bough_simulation *s, const solution *x, int count,
                                  bough_vibration *v) {
     int wanted = count + FREE_MOTIONS + 2 * s->tree->closure_rank;
@@ -134,7 +134,7 @@ static bough_status solve_bodies(bough_arena *arena, const bough_simulation *s, 
     return status;
 }
 
-// In the air that follows their motion.
+// Modes in the air whose forces follow the bodies' motion.
 static bough_status solve_in_air(bough_arena *arena, bough_simulation *s, const solution *x, int count,
                                  bough_vibration *v) {
     bough_air_tangent air;

@@ -67,7 +67,7 @@ static bough_status sample(void *self, double t) {
     return status;
 }
 
-// Of each measure: the norm of the largest errors of its channels, which may have been at different times.
+// Estimate of each measure: norm of the largest errors of its channels, although at different times.
 static void gather_estimates(case_run *r) {
     const bough_companion *c = r->run.companion;
     for (int i = 0; i < r->study->n_channel; i++) {
@@ -220,7 +220,7 @@ static double cpu_clock(void) {
     return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
 }
 
-// With the building.
+// The times include the building.
 static void run_timed(case_run *r) {
     double wall = bough_wall_clock(), cpu = cpu_clock();
     r->result->outcome = bough_arena_use(run_in, r);

@@ -243,7 +243,7 @@ typedef struct check {
     bough_errors *errors;
 } check;
 
-// Of the references the first says the times.
+// The first reference gives duration and interval.
 static void check_duration(const check *k, const bough_case *c, const bough_scene *scene) {
     bough_study *s = k->study;
     if (c == s->reference_case) {

@@ -13,7 +13,7 @@ bough_study_series bough_study_series_take(bough_arena *arena, const bough_study
 // The larger of the two; a NaN wins and stays.
 static double larger(double a, double b) { return isnan(b) || b > a ? b : a; }
 
-// Of n components in one row; without b of a alone.
+// Norm of a − b (n); of a where b is NULL.
 static double difference(const double *a, const double *b, int n, int norm) {
     double sum = 0, largest = 0;
     for (int i = 0; i < n; i++) {
@@ -24,7 +24,7 @@ static double difference(const double *a, const double *b, int n, int norm) {
     return norm == BOUGH_STUDY_EUCLID ? sqrt(sum) : largest;
 }
 
-// Of the vectors of a measure in one row the largest.
+// The largest norm of the vectors of a measure in a row.
 static double measured(const bough_study_measure *m, const double *a, const double *b) {
     double largest = 0;
     for (int k = 0, first = 0; k < m->channels.n; first += m->channels.item[k++].n) {

@@ -1,5 +1,4 @@
-// From the grids of a study to its cases, with the share that each has of its load case, and to the
-// references.
+// Makes the cases of a study from its grids, with their fractions of the load case, and the references.
 #include "apps/bough/cases/study_internal.h"
 #include "apps/bough/config/schema.h"
 
@@ -23,7 +22,7 @@ static double share_below(const bough_load_wind *wind, double speed) {
     return speed > 0 ? 1 - exp(-pow(speed / scale, wind->shape)) : 0;
 }
 
-// Of the speeds nearest to value i of the axis: the bin's edges are half way to its neighbours.
+// Share of the hours of the bin of value i, whose edges are half way to its neighbours.
 static double share_of_speed(const bough_load_wind *wind, const bough_study_axis *axis, int i) {
     int n = axis->value.n;
     double here = speed_of(axis, i);
@@ -115,7 +114,7 @@ static void make_case(bough_arena *arena, bough_study *s, int group, int number,
 
 // -- references -----------------------------------------------------------------------------------
 
-// What is no setting of the simulation is a parameter of the model.
+// Keys outside simulation are parameters of the model.
 static bool is_model(const bough_study *s, int axis) {
     return s->is.compared && s->is.parallel &&
            strncmp(s->grid.axis[axis].key, "simulation.", strlen("simulation.")) != 0;

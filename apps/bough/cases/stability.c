@@ -4,7 +4,7 @@
 #include <math.h>
 #include <string.h>
 
-// By the first measure: errors below this may be the sub-solvers' own, which nobody estimates.
+// Errors of the first measure below this may be those of the sub-solvers, which are not estimated.
 static const double large = 0.05;
 
 static bool is_silent(const bough_case_result *r) {

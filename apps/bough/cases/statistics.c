@@ -262,8 +262,8 @@ static void add_panel(bough_chart *chart, const bough_study *s, int i, const cha
     bough_chart_add_panel(chart, heading, across, logarithmic, false);
 }
 
-// Of a sweep a channel's mean, least and largest value over the first key of the grid: value (n_case × PANELS
-// × VALUES), NaN where a case failed.
+// Sweeps: mean, least and largest value of channels over the first key of the grid; value (n_case × PANELS ×
+// VALUES), NaN where a case failed.
 static void plot_sweep(bough_chart *chart, const bough_study *s, const double *value) {
     for (int k = 0; k < s->n_channel && k < PANELS; k++) {
         add_panel(chart, s, k, s->grid.axis[0].label, false);
@@ -279,7 +279,7 @@ static void plot_sweep(bough_chart *chart, const bough_study *s, const double *v
     }
 }
 
-// Of a load set a channel's ranges over how often they are exceeded in the lifetime.
+// Load sets: ranges of channels over how often they are exceeded in the lifetime.
 static void plot_ranges(bough_chart *chart, const bough_lifetime *l) {
     for (int i = 0; i < l->study->n_channel && i < PANELS; i++) {
         const bough_levels *r = &l->channel[i].ranges;
@@ -312,7 +312,7 @@ static void quote(FILE *f, const char *text) {
     fputc('\'', f);
 }
 
-// That runs the case alone.
+// The command that runs the case alone.
 static void put_command(FILE *f, const bough_case *c) {
     fputs("bough run ", f);
     quote(f, c->scene);
@@ -358,7 +358,7 @@ static bough_status read_all(bough_arena *arena, const bough_study_results *x, c
     return bough_ok();
 }
 
-// What the tables are made of.
+// The content of table.txt and plot.svg.
 typedef struct conclusion {
     const bough_study *study;
     const char *folder;

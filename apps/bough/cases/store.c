@@ -14,7 +14,7 @@
 
 typedef char case_name[24];
 
-// Of compared runs by what the result depends on, since the place in the grid may change; else by the number.
+// Compared runs are named by their fingerprint, since a grid may grow; other cases by their number.
 static void name_of(const bough_study *s, const bough_case *c, case_name name) {
     if (s->is.compared)
         snprintf(name, sizeof(case_name), "%016" PRIx64, c->fingerprint);

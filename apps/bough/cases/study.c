@@ -58,7 +58,7 @@ static void check_measure(bough_schema_reader *r, void *item) {
 
 // -- keys -----------------------------------------------------------------------------------------
 
-// One line a key would become one line a field:
+// clang-format would give each field of a key a line of its own:
 // clang-format off
 #define FILLS bough_study_measure
 static const bough_key measure_keys[] = {

@@ -20,7 +20,7 @@ static bool is_rod(const bough_scene *scene, int body) {
     return body != BOUGH_GROUND && scene->body[body].fidelity == BOUGH_SCENE_ROD;
 }
 
-// What a fixed body moves with: the first body below it whose joint moves, a rod, or the ground.
+// The carrier of a fixed body: the first below it with a joint that moves, a rod, or the ground.
 static int carrier(const bough_scene *scene, int body) {
     do {
         body = scene->body[body].joint.parent;

@@ -12,7 +12,7 @@
 
 static const char name[] = "checkpoint.bin";
 
-// What the file begins with; the copy follows.
+// The head of the file; the copy follows.
 typedef struct head {
     char magic[16];
     uint64_t program, input; // fingerprints

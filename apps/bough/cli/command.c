@@ -34,7 +34,7 @@ static bough_status unknown_long(const bough_command *command, const char *word)
                       near ? " (did you mean '--" : "", near ? near : "", near ? "'?)" : "");
 }
 
-// What getopt_long did not accept; `word` is the argument it stopped at.
+// The error of an option that getopt_long refused; `word` is its argument.
 static bough_status refuse(const bough_command *command, const char *word) {
     if (optopt >= FIRST) {
         return bough_fail(BOUGH_INVALID, "option --%s takes no value", command->option[optopt - FIRST].name);

@@ -212,7 +212,7 @@ static bough_status list_variables(export *x) {
     return list_scene(x, &channels);
 }
 
-// What a session opens: the token, the scene, the settings, a line each.
+// The file that a session of the FMU reads: token, scene and settings, a line each.
 static void put_settings(const export *x, FILE *out) {
     fprintf(out, "%s\n%s\nsimulation.threads=1\n", x->token, x->scene);
     for (int k = 0; k < x->options->set.n; k++) fprintf(out, "%s\n", x->options->set.text[k]);

@@ -15,14 +15,14 @@ static const char *const blade_shapes[BOUGH_ROD_DIRECTIONS] = {
     [BOUGH_ROD_TORSION] = "torsion",
 };
 
-// Of shapes.csv, behind the name of the body.
+// Head of shapes.csv after the first column.
 static const char shape_columns[] =
     "mode,span (m),ux (m),uy (m),uz (m),rx (rad),ry (rad),rz (rad),imaginary ux (m),imaginary uy (m),"
     "imaginary uz (m),imaginary rx (rad),imaginary ry (rad),imaginary rz (rad)\n";
 
 // -- each rod, clamped at its root ----------------------------------------------------------------
 
-// One rod and what was found.
+// A rod in its steady state, and its modes.
 typedef struct rod_modes {
     bough_steady steady;
     bough_turning turning;

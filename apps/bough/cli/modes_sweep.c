@@ -14,7 +14,7 @@ enum { MOST_POINTS = 500 };
 // Shapes less alike than this (0 to 1) are not the same mode.
 static const double least_alike = 0.3;
 
-// One mode at one point.
+// A mode at an operating point.
 typedef struct sweep_mode {
     int point, line; // a line joins what is the same mode of neighbouring points
     double frequency, damped, damping;
@@ -261,7 +261,7 @@ static void add_multiples(diagram *d, double frequency) {
     }
 }
 
-// One that does not oscillate has no damping ratio.
+// A mode that does not oscillate has no point in the diagram of damping ratios.
 static void add_line(diagram *d, int line) {
     const sweep *s = d->sweep;
     const sweep_mode *last = NULL;

@@ -52,7 +52,7 @@ static const char *title(const bough_run_command *command) {
     return scene->title ? scene->title : scene->file;
 }
 
-// What a run that was killed has left half-written; to resume, its rows are needed.
+// Removes the partial files of a run that was killed; its rows stay where it is resumed.
 static bough_status clean(const bough_run_command *command) {
     char frames[BOUGH_PATH_MAX];
     bough_status status = bough_folder_path(command->folder, "frames", frames);
@@ -62,7 +62,7 @@ static bough_status clean(const bough_run_command *command) {
     return status;
 }
 
-// What an earlier run has left stays until this one can replace it; of its checkpoint nothing does.
+// Results of an earlier run stay until this one replaces them, except its checkpoint.
 static bough_status open_results(bough_run_command *command) {
     command->folder = bough_out_folder(command->arena, &command->options->common);
     bough_status status = bough_checkpoint_open(command);
@@ -131,7 +131,7 @@ static bough_status close_results(bough_run_command *command) {
     return bough_is_ok(&command->run.outcome) ? status : command->run.outcome;
 }
 
-// What makes a run slow is known while it runs.
+// Warns during the run where solver steps make it slow.
 static void warn_of_work(bough_run_command *command) {
     const bough_simulation *s = command->run.simulation;
     if (command->warned || !s->validity->limit[BOUGH_LIMIT_STEPS].passed) return;

@@ -1,4 +1,4 @@
-// What is said about a run: summary.json and the closing lines.
+// The report of a run: summary.json and the closing lines.
 #include "apps/bough/cli/run.h"
 #include "apps/bough/model/error_shares.h"
 #include "apps/bough/model/validity.h"
@@ -279,7 +279,7 @@ static void write_interfaces(bough_summary *s, const bough_run *run) {
     bough_summary_end(s);
 }
 
-// Of the channels' rows from simulation.output.from on.
+// Statistics of the rows from simulation.output.from on.
 static void write_statistics(bough_summary *s, const bough_run_command *command) {
     bough_summary_number(s, "statistics_from", command->run.simulation->scene->simulation.output.from);
     bough_summary_object(s, "statistics");

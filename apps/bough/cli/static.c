@@ -167,9 +167,9 @@ static bough_status find_finer(bough_arena *arena, void *self) {
     return status;
 }
 
-// What the mesh errs by: part of the difference to four times the segments. Of each rod (n ×
-// STATIC_RESULTS, norms), in arrays from the arena; of the channels in mesh->largest. Where it is not
-// known, mesh->unknown says why.
+// Error of the mesh: a fraction of the difference to four times the segments. Returns norms for each rod (n ×
+// STATIC_RESULTS), from the arena; mesh->largest has the channels'. Where it is not known, mesh->unknown has
+// the reason.
 static double *find_mesh_error(bough_arena *arena, equilibrium *x, mesh_error *mesh) {
     *mesh = (mesh_error){.largest = bough_arena_doubles(arena, (size_t)x->channels.count + 1)};
     comparison c = {x, mesh, bough_arena_doubles(arena, STATIC_RESULTS * ((size_t)x->n + 1))};
@@ -304,7 +304,7 @@ static void write_rod(FILE *file, const bough_steady *x) {
     }
 }
 
-// What the run's channels are in the equilibrium: joints, drives, closures, markers, roots, rotor.
+// Writes and prints the values of the run's channels in the equilibrium.
 static bough_status write_channels(const equilibrium *x, const mesh_error *mesh, const char *folder) {
     char path[BOUGH_PATH_MAX];
     FILE *file = NULL;

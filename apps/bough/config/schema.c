@@ -170,7 +170,7 @@ static void read_table(bough_schema_reader *r, const bough_key *key, const bough
 
 // -- files ----------------------------------------------------------------------------------------
 
-// What a schema has read of the file, or without a schema its name alone; NULL: not so far.
+// The record of a file that a schema has read, or without a schema of its name; NULL: none yet.
 static const bough_schema_file *find_file(const bough_schema_reader *r, const char *path,
                                           const bough_schema *schema) {
     const bough_schema_file *f = r->files;

@@ -315,7 +315,7 @@ static int same_beginning(const char *a, const char *b) {
     return n;
 }
 
-// Of equally near words the one that begins alike: slips are rare at the beginning.
+// Among equally near words, the one with the longest common beginning: slips are rare there.
 const char *bough_nearest(const char *word, const char *const *candidates, int n) {
     size_t length = strlen(word);
     if (length >= WORD) return NULL;

@@ -93,7 +93,7 @@ static bool comes_before(const bough_error *a, const bough_error *b, const char 
     return a->column < b->column;
 }
 
-// By insertion: the list is short and errors at one place must keep their order.
+// Insertion sort: the list is short and errors at one place must keep their order.
 void bough_errors_sort(bough_errors *errors, const char *first) {
     for (int i = 1; i < errors->n; i++) {
         bough_error e = errors->item[i];
@@ -173,7 +173,7 @@ static bool refuse(reader *r, yaml_mark_t at, const char *text) {
     return false;
 }
 
-// What libyaml's terse problems mean to the writer of a file.
+// libyaml's terse messages in words for the writer of a file.
 static const char *readable(const char *problem) {
     static const struct {
         const char *problem, *readable;
@@ -312,7 +312,7 @@ static bool open_node(reader *r, const yaml_event_t *e, bough_node_kind kind) {
     return true;
 }
 
-// By name, then by place.
+// Sorts by name, then by place.
 static int compare_keys(const void *a, const void *b) {
     const bough_node *x = *(bough_node *const *)a, *y = *(bough_node *const *)b;
     int names = strcmp(x->text, y->text);

@@ -98,7 +98,7 @@ static double rotor_radius(const bough_scene_aero *aero) {
     return aero->hub_radius + aero->blade.station[aero->blade.n_station - 1].def.span;
 }
 
-// What the scene leaves to choose.
+// Defaults of the standard wind that the scene does not give.
 static bough_wind_iec_def standard_wind(const bough_scene *scene) {
     const bough_wind_def *wind = &scene->aero.wind.def;
     bough_wind_iec_def def = wind->iec;
@@ -205,7 +205,7 @@ bough_status bough_aero_link_build(bough_arena *arena, bough_simulation *simulat
 
 // -- sample ---------------------------------------------------------------------------------------
 
-// Of the ramp at t; a jump is followed by a sample at its time, up to rounding.
+// Factor of the ramp at t. A jump is sampled at its time, up to rounding.
 static double ramp_factor(const double ramp[2], double t) {
     bool jump = ramp[1] <= ramp[0];
     return bough_ramp_factor(ramp[0], ramp[1], jump ? t * (1 + 1e-12) : t);
@@ -258,7 +258,7 @@ static void load_blade(void *self, int b, bough_part part) {
     bough_aero_signal_follow(l->signal[b], fresh_loads(l, b), course_of(l, b), e->next->start, e->next->span);
 }
 
-// Of the motion that was found for the rotor; `move` finds it for a blade.
+// Evaluates the rotor with the motion found for it; `move` finds that of a blade.
 static void evaluate_rotor(bough_aero_link *l, int to, void (*move)(bough_aero_motion *, int),
                            const interval *next) {
     bough_pool *pool = l->simulation->pool;

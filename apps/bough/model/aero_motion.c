@@ -107,7 +107,8 @@ static void enter(bough_aero_motion *m, int b) {
     store(bough_mat3_tmul(pose.rotation, m->found.shaft), frame + SHAFT);
 }
 
-// Of the last calls, by how many are known: extrapolation to the next, and the mean up to it.
+// Weights of the last calls, by their number: of the extrapolation to the next call, and of the mean until
+// it.
 static const double to_next[CALLS][3] = {{1, 0, 0}, {2, -1, 0}, {3, -3, 1}};
 static const double mean[CALLS][3] = {{1, 0, 0}, {1.5, -0.5, 0}, {23. / 12, -16. / 12, 5. / 12}};
 

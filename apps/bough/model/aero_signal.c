@@ -241,7 +241,7 @@ static void bend(bough_aero_signal *s, const double *from, const double *next, c
     }
 }
 
-// Of some ten samples, forces across the blade of a modal body alone: now against expected motion.
+// Error of the expected motion in the forces across the blade of a modal body, mean of about ten samples.
 static void note_missed(bough_aero_signal *s) {
     double missed = 0, size = 0;
     for (int k = 0; k < 2 * s->n_vertex; k++) {

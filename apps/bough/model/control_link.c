@@ -156,8 +156,8 @@ static void run_up(const bough_events *e, const bough_discon_sensed *sensed, bou
     demand->torque = fmin(demand->torque, bough_controller_torque(law, sensed->generator_speed, 0));
 }
 
-// In ten seconds to none, below half the speed of the start also with the speed: a torque that stayed would
-// turn a rotor that has stopped backwards.
+// Falls to zero within ten seconds, and below half the speed at the start of the stop also with the speed: a
+// constant torque would turn a rotor backwards that has stopped.
 static double stopping_torque(const bough_event_state *state, double gone, double speed) {
     const double ramp = 10; // [s]
     double left = fmax(0, 1 - gone / ramp), turning = state->speed > 0 ? 2 * speed / state->speed : 0;

@@ -99,7 +99,7 @@ static bough_status balance_in_air(bough_arena *arena, bough_simulation *s, boug
                       change, work->samples);
 }
 
-// What is brought to equilibrium.
+// The system whose equilibrium is sought.
 typedef struct search {
     bough_simulation *simulation;
     bough_whole *coupled;
@@ -203,7 +203,7 @@ static bough_equilibrium_def equilibrium_def(balance_setup *b) {
     return def;
 }
 
-// What bough_arena_use passes on.
+// The arguments of a search within bough_arena_use.
 typedef struct task {
     bough_simulation *simulation;
     const bough_assembly *assembly;

@@ -52,7 +52,7 @@ static void add(bough_arena *arena, const bough_simulation *s, const bough_beam 
     if (beam->modal != NULL) bough_rod_lump_line(m, to);
 }
 
-// Those that turn in the body come last: others of the same ramp are summed, as these must not be.
+// Loads in ground axes on a body that moves come last: loads of the same ramp in body axes are summed before.
 bough_status bough_load_link_build(bough_arena *arena, bough_simulation *s) {
     for (int pass = 0; pass < 2; pass++) {
         for (int k = 0; k < s->scene->n_load; k++) {

@@ -25,7 +25,7 @@ static bool is_rotor(const bough_scene *scene, int body) {
     return scene->turbine.node != NULL && scene->turbine.rotor == body;
 }
 
-// What is recorded of a joint with axes: each coordinate and its rate.
+// The channels of a joint with axes: each coordinate and its rate.
 static const struct {
     int n;
     bool angle[3];
@@ -124,7 +124,7 @@ static bool is_driven(const bough_scene_joint *joint, int k) {
     return (k == 0 ? &joint->motion : &joint->second_motion)->node != NULL;
 }
 
-// What the joints with prescribed motion take, under the rods' present forces.
+// Forces and torques of prescribed motions under the rods' present forces.
 static void sample_drives(void *self, double t, double *value) {
     const bough_simulation *s = self;
     bough_tree_forward_dynamics(s->tree, s->view, t, s->master->coupling->input, s->acceleration);
@@ -189,7 +189,7 @@ static void add_bushings(bough_simulation *s, bough_channels *list) {
         bough_channel_family_add(list, BOUGH_CHANNELS_BUSHING, s->scene->bushing[k].name, "");
 }
 
-// What closures carry, under the rods' present forces.
+// Forces and moments of closures under the rods' present forces.
 static void sample_closures(void *self, double t, double *value) {
     const bough_simulation *s = self;
     bough_tree_forward_dynamics(s->tree, s->view, t, s->master->coupling->input, s->acceleration);

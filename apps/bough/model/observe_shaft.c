@@ -84,7 +84,7 @@ static void sample_turn(void *self, double t, double *value) {
     value[1] = turn < 0 ? turn + 360 : turn;
 }
 
-// What the joint nearest to the hub does to what it carries: its spring, loads, the motion that drives it.
+// Torque of the joint nearest to the hub on the hub's side: spring, loads, prescribed motion.
 static double joint_torque(const bough_simulation *s, int body, double t) {
     const bough_tree *tree = s->tree;
     int q, v;

@@ -1,4 +1,4 @@
-// What is asked of a simulation between steps: poses, motions of beams, wrenches at their roots.
+// Queries between steps: poses, motions of beams, wrenches at their roots.
 #include "apps/bough/model/simulation.h"
 
 #include "aero/rotor/rotor.h"

@@ -98,7 +98,7 @@ const double *bough_run_values(bough_run *run) {
 
 // -- stepping -------------------------------------------------------------------------------------
 
-// Of all solvers, with those that failed
+// Steps of all solvers, failed ones included.
 static double steps_of(const bough_simulation *s) {
     const bough_master *m = s->master;
     bough_statistics sum = {0};

@@ -11,12 +11,13 @@
 // Incompressible polars err by a seventh in the slope of lift there.
 static const double most_mach = 0.5, speed_of_sound = 340;
 static const double most_over_rated = 2;
-// Of the loads: up to a tenth where samples serve, towards 1 where vibrations grow by their delay.
+// Error of the loads relative to the loads: up to 0.1 at a sufficient rate, near 1 where their delay feeds
+// vibrations.
 static const double most_missed = 0.3;
-// A segment has one strain: what turns by more is a coarse picture of it, and there is none beyond 120°.
+// A segment has one strain, a coarse approximation beyond this angle; there is none beyond 120°.
 static const double most_turn = 0.25 * BOUGH_PI;
-// Of bough_loops_margin, also relative to the largest so far: on random linkages it stays above 0.02 or above
-// 0.03 of the largest, and falls to 1e-5 to 3e-3 where the links come to lie on one line.
+// Limits of bough_loops_margin, absolute and relative to the largest so far: on random linkages it stays
+// above 0.02 or above 0.03 of the largest, and falls to 1e-5 to 3e-3 where the links come to lie on one line.
 static const double least_margin = 0.01, least_share = 0.1;
 static const double most_uneven = BOUGH_PI / 180; // of the gap between two blades
 // Cosine of the angle between axis and wind, 60°: beyond every yaw error of operation.

@@ -42,7 +42,7 @@ static void add(list *l, bough_scene_file file) {
     f->item[f->n++] = file;
 }
 
-// In the order of names, which is the same wherever the folder is copied to.
+// Sorted by name, so that a copy of the folder gives the same list.
 static void add_folder(list *l, const bough_scene_file *folder, int depth) {
     struct dirent **entry;
     int n = depth < MOST_DEPTH ? scandir(folder->path, &entry, NULL, alphasort) : -1;

@@ -81,7 +81,7 @@ static void add_motions(bough_scene *s) {
     }
 }
 
-// What a control law demands.
+// Inputs by which an external control law gives its demands.
 static void add_control(bough_arena *arena, bough_scene *s) {
     const bough_scene_control *control = &s->control;
     if (control->node == NULL || control->kind != BOUGH_SCENE_EXTERNAL) return;

@@ -117,7 +117,7 @@ static const bough_key cylindrical_keys[] = {
 #undef FILLS
 // clang-format on
 
-// One of a pair of keys at most, the speed first.
+// At most one of two keys may be given: the speed or the place.
 static void check_one(bough_schema_reader *r, const bough_node *node, const char *speed, const char *place,
                       bough_scene_motion *motion) {
     bool of_speed = bough_node_find(node, speed) != NULL;

@@ -1,7 +1,7 @@
 // The keys of a scene: simulation, modes, the whole. Its parts are in scene_schema_NAME.c.
 #include "apps/bough/scene/scene_internal.h"
 
-// One line a key would become one line a field:
+// clang-format would give each field of a key a line of its own:
 // clang-format off
 
 // -- solvers ------------------------------------------------------------------------------------

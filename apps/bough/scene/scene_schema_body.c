@@ -1,7 +1,7 @@
 // The keys of bodies: rods, joints, modal bodies.
 #include "apps/bough/scene/scene_internal.h"
 
-// One line a key would become one line a field:
+// clang-format would give each field of a key a line of its own:
 // clang-format off
 
 static const char zero6[] = "[0, 0, 0, 0, 0, 0]";

@@ -1,7 +1,7 @@
 // The keys of loads, of what joins bodies beside the tree, and of the turbine's names.
 #include "apps/bough/scene/scene_internal.h"
 
-// One line a key would become one line a field:
+// clang-format would give each field of a key a line of its own:
 // clang-format off
 
 #define FILLS bough_scene_load

@@ -154,7 +154,7 @@ static bough_node *put_key(const replacement *s, const bough_node *node, const c
     return copy;
 }
 
-// What stands in place of `node` (NULL: nothing yet) when `rest` of the path leads to the value.
+// The replacement of `node` (NULL: there is none yet), below which the rest of the path leads to the value.
 static bough_node *put(const replacement *s, const bough_node *node, const char *rest, int depth) {
     if (*rest == '\0') return s->value;
     if (depth > MAX_STEPS) return refuse(s, "the path is too deep");

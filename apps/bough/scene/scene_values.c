@@ -179,8 +179,8 @@ void bough_scene_read_section_mass(bough_schema_reader *r, const bough_node *nod
     }
 }
 
-// What is negative of the symmetric matrix xx yy zz xy xz yz: an entry of its diagonal, or its determinant
-// in a plane or in space; NULL: nothing.
+// The negative quantity of the symmetric matrix xx yy zz xy xz yz: an entry of its diagonal, or its
+// determinant in a plane or in space; NULL: none.
 static const char *negative_part(const double v[6]) {
     static const char *const parts[] = {
         "Ixx", "Iyy", "Izz", "Ixx Iyy - Ixy^2", "Ixx Izz - Ixz^2", "Iyy Izz - Iyz^2", "the determinant"};
@@ -239,7 +239,7 @@ static size_t push_row(bough_schema_reader *r, const bough_node *owner, const ch
     return length;
 }
 
-// What a row's value must satisfy after its predecessor (NAN: it is the first and must be `first`).
+// A column whose values increase from row to row and begin with `first`.
 typedef struct sequence {
     const char *list, *key; // "stations", "span"
     double first;

@@ -1,4 +1,4 @@
-// What a scene may say but seldom means.
+// Warnings: values that are valid but probably an error.
 #include "apps/bough/scene/scene_internal.h"
 
 #include "core/solve/integrator.h"
