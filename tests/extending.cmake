@@ -1,6 +1,6 @@
 # The recipes of docs/extending.md are true: cmake -D ROOT=<source folder> -P extending.cmake. Every file that a recipe
 # names exists and holds what the recipe says of it, and no other file has a table or a switch over the kind of part.
-# (A scheme is built by its recipe in tests/unit/scheme_toy.c.)
+# (tests/unit/scheme_toy.c and test_recipes.c build a scheme, a joint and a channel by their recipes.)
 cmake_minimum_required(VERSION 3.20)
 
 file(READ ${ROOT}/docs/extending.md page)
