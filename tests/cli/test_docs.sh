@@ -1,5 +1,5 @@
 #!/bin/sh
-# What the documents name is there: every `ctest -R PATTERN` a test, every file a file. test_docs.sh BUILD SOURCE
+# What the documents name is there: every `ctest -R PATTERN` a test, every file a file, every anchor a heading. test_docs.sh BUILD SOURCE
 set -u
 scratch=$(mktemp -d)
 trap 'rm -rf "$scratch"' EXIT
@@ -56,6 +56,28 @@ for page in README.md docs/*.md docs/*/*.md; do
         echo "FAILED: $page names $name, which does not exist"
         failures=$((failures + 1))
     done <"$scratch/named"
+done
+# Anchors, as GitHub makes them of headings: lower case, without punctuation, blanks as hyphens. Pictures of HTML.
+anchors() { # PAGE
+    sed -n '/^```/,/^```/d; s/^##* //p' "$1" | LC_ALL=C.UTF-8 sed 's/.*/\L&/; s/[^[:alnum:] _-]//g; s/ /-/g'
+}
+for page in README.md docs/*.md docs/*/*.md; do
+    grep -o '](\([^):]*#[^)]*\))' "$page" | sed 's/^](//; s/)$//' >"$scratch/links"
+    while read -r link; do
+        n=$((n + 1))
+        target=${link%%#*}
+        target=${target:+$(dirname "$page")/$target}
+        anchors "${target:-$page}" | grep -q -x -F -e "${link#*#}" && continue
+        echo "FAILED: $page links to $link, but no heading gives this anchor"
+        failures=$((failures + 1))
+    done <"$scratch/links"
+    grep -oE '(src|srcset|href)="[^"#:]+"' "$page" | sed 's/.*="//; s/"$//' >"$scratch/links"
+    while read -r link; do
+        n=$((n + 1))
+        [ -e "$(dirname "$page")/$link" ] && continue
+        echo "FAILED: $page shows $link, which does not exist"
+        failures=$((failures + 1))
+    done <"$scratch/links"
 done
 [ $n -ge 100 ] || { echo "FAILED: only $n files were found"; failures=1; }
 [ $failures -eq 0 ]
