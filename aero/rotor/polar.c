@@ -92,6 +92,7 @@ static double steepest(const bough_polar *polar, double zero) {
 
 static void fit_attached(bough_polar *polar) {
     if (find_zero_lift(polar, &polar->zero_lift)) polar->slope = steepest(polar, polar->zero_lift);
+    polar->least_drag = bough_polar_at(polar, polar->zero_lift).drag;
 }
 
 void bough_polar_build(bough_arena *arena, const bough_polar_def *def, bough_polar *polar) {

@@ -37,6 +37,7 @@ typedef struct bough_polar {
     // Of attached flow; slope 0: the polar has no lift.
     double slope;                        // the steepest line through zero lift that touches the polar [1/rad]
     double zero_lift;                    // where the lift grows through zero, nearest to 0 [rad]
+    double least_drag;                   // there [-]
     double wake_weight[2], wake_rate[2]; // A and b of the indicial lift [-]
 } bough_polar;
 

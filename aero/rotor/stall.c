@@ -2,6 +2,7 @@
 #include "aero/rotor/stall.h"
 
 #include "core/base/base.h"
+#include "core/base/lanes.h"
 
 #include <math.h>
 
@@ -23,8 +24,8 @@ static double lift_at(const bough_polar *polar, double alpha) { return bough_pol
 
 // With r = Cl/(slope·(α − α₀)) Kirchhoff's f = (2√r − 1)² leaves the separated lift
 // slope·(α − α₀)(3√r − 1)/(4√r), which is all of it at f = 0 and half of it at f = 1.
-void bough_stall_split(const bough_polar *polar, double alpha, double *f, double *separated) {
-    double lift = lift_at(polar, alpha), d = remainder(alpha - polar->zero_lift, circle);
+static void split(const bough_polar *polar, double alpha, double lift, double *f, double *separated) {
+    double d = lane_remainder(alpha - polar->zero_lift);
     *f = 0;
     *separated = lift;
     if (fabs(d) > BOUGH_PI / 2) return;
@@ -39,13 +40,17 @@ void bough_stall_split(const bough_polar *polar, double alpha, double *f, double
     *separated = linear * (3 * q - 1) / (4 * q);
 }
 
+void bough_stall_split(const bough_polar *polar, double alpha, double *f, double *separated) {
+    split(polar, alpha, lift_at(polar, alpha), f, separated);
+}
+
 // -- states ---------------------------------------------------------------------------------------
 
 // x' = (u − x)/T over a step of h = Δt/T, in which u goes linearly from u0 to u1.
 static double lagged(double x, double u0, double u1, double h) {
     if (!(h > 0)) return x;
-    double mean = -expm1(-h) / h; // of exp(−t) over the step
-    return u1 + (x - u0) * exp(-h) - (u1 - u0) * mean;
+    double decayed = expm1(-h); // exp(−h) − 1
+    return u1 + (x - u0) * (1 + decayed) + (u1 - u0) * decayed / h;
 }
 
 // Moves all angles by multiples of 2π, so that the angle of attack stays in [−π, π].
@@ -84,7 +89,7 @@ static double effective(const bough_polar *polar, const bough_stall_state *s) {
 
 static void advance(const bough_polar *polar, double semi_chords, double alpha, double speed,
                     double mass_angle, bough_stall_state *s) {
-    double next = s->alpha + remainder(alpha - s->alpha, circle);
+    double next = s->alpha + lane_remainder(alpha - s->alpha);
     double before = s->speed * s->alpha, after = speed * next;
     for (int i = 0; i < 2; i++) {
         s->wake[i] = lagged(s->wake[i], polar->wake_weight[i] * before, polar->wake_weight[i] * after,
@@ -104,21 +109,30 @@ static void advance(const bough_polar *polar, double semi_chords, double alpha, 
 
 // -- coefficients ---------------------------------------------------------------------------------
 
-// theory (91). `x`: the lagged f, `angle`: α_E, `late`: α at three quarters of the chord, `downwash`: ϑ, the
-// contribution of the rotation to it. The lift of the circulation leans back by the angle that the wake
-// withholds and by ϑ.
-static bough_coefficients dynamic(const bough_polar *polar, double x, double angle, double late,
+// What the static polar says of the effective angle.
+typedef struct static_part {
+    double angle, f, separated, linear; // α_E; point of separation; lift of separated and of attached flow
+    bough_coefficients k;
+} static_part;
+
+static static_part static_at(const bough_polar *polar, double angle) {
+    static_part p = {.angle = angle,
+                     .linear = polar->slope * lane_remainder(angle - polar->zero_lift),
+                     .k = bough_polar_at(polar, angle)};
+    split(polar, angle, p.k.lift, &p.f, &p.separated);
+    return p;
+}
+
+// theory (91). `x`: the lagged f, `late`: α at three quarters of the chord, `downwash`: ϑ, the contribution
+// of the rotation to it. The lift of the circulation leans back by the angle that the wake withholds and by
+// ϑ.
+static bough_coefficients dynamic(const bough_polar *polar, static_part p, double x, double late,
                                   double downwash) {
-    double f, separated;
-    bough_stall_split(polar, angle, &f, &separated);
-    bough_coefficients k = bough_polar_at(polar, angle);
-    double linear = polar->slope * remainder(angle - polar->zero_lift, circle);
-    double lift = x * linear + (1 - x) * separated, mass_lift = BOUGH_PI * downwash;
-    double least = bough_polar_at(polar, polar->zero_lift).drag;
-    double separating = (sqrt(f) - sqrt(fmax(x, 0))) / 2 - (f - x) / 4;
-    double leaning = remainder(late - angle, circle) + downwash;
-    double drag = k.drag + leaning * lift + (k.drag - least) * separating;
-    return (bough_coefficients){lift + mass_lift, drag, k.moment - mass_lift / 2};
+    double lift = x * p.linear + (1 - x) * p.separated, mass_lift = BOUGH_PI * downwash;
+    double separating = (sqrt(p.f) - sqrt(fmax(x, 0))) / 2 - (p.f - x) / 4;
+    double leaning = lane_remainder(late - p.angle) + downwash;
+    double drag = p.k.drag + leaning * lift + (p.k.drag - polar->least_drag) * separating;
+    return (bough_coefficients){lift + mass_lift, drag, p.k.moment - mass_lift / 2};
 }
 
 static double mixed(double a, double b, double w) { return a + w * (b - a); }
@@ -140,7 +154,7 @@ static double downwash_of(double chord, bough_stall_inflow inflow) {
 
 bough_coefficients bough_stall_advance(const bough_polar *polar, double chord, bough_stall_inflow inflow,
                                        double step, bough_stall_state *state) {
-    double alpha = remainder(inflow.alpha, circle), speed = inflow.speed;
+    double alpha = lane_remainder(inflow.alpha), speed = inflow.speed;
     bough_coefficients fixed = bough_polar_at(polar, alpha);
     if (polar->slope == 0 || !(speed > slow)) {
         state->started = 0;
@@ -155,7 +169,8 @@ bough_coefficients bough_stall_advance(const bough_polar *polar, double chord, b
     }
     double weight = dynamic_weight(alpha);
     if (weight == 0) return fixed;
-    bough_coefficients k = dynamic(polar, state->separation, effective(polar, state), late, downwash);
+    static_part p = static_at(polar, effective(polar, state));
+    bough_coefficients k = dynamic(polar, p, state->separation, late, downwash);
     return mixture(fixed, k, weight);
 }
 
@@ -180,14 +195,15 @@ static bough_coefficients quotient(bough_coefficients a, bough_coefficients b, d
 bough_stall_slopes bough_stall_slopes_of(const bough_polar *polar, double chord, bough_stall_inflow inflow,
                                          double step, const bough_stall_state *state) {
     const double d = 1e-4; // [rad]
-    double alpha = remainder(inflow.alpha, circle), weight = dynamic_weight(alpha);
+    double alpha = lane_remainder(inflow.alpha), weight = dynamic_weight(alpha);
     bough_stall_slopes slopes = {.angle = bough_polar_slope(polar, alpha)};
     if (state->started == 0 || weight == 0) return slopes;
     double downwash = downwash_of(chord, inflow), late = alpha + downwash, x = state->separation;
     double angle = effective(polar, state), prompt = prompt_fraction(polar, 2 * step * inflow.speed / chord);
-    bough_coefficients k = dynamic(polar, x, angle, late, downwash);
-    bough_coefficients more = dynamic(polar, x, angle + prompt * d, late + d, downwash);
-    bough_coefficients rotated = dynamic(polar, x, angle + prompt * d, late + d, downwash + d);
+    static_part moved = static_at(polar, angle + prompt * d);
+    bough_coefficients k = dynamic(polar, static_at(polar, angle), x, late, downwash);
+    bough_coefficients more = dynamic(polar, moved, x, late + d, downwash);
+    bough_coefficients rotated = dynamic(polar, moved, x, late + d, downwash + d);
     slopes.angle = mixture(slopes.angle, quotient(more, k, d), weight);
     if (weight < 1) { // the weight depends on the angle, too
         bough_coefficients fixed = bough_polar_at(polar, alpha);
