@@ -183,8 +183,8 @@ static bough_wrench matrix_mul(const double *a, bough_twist v) {
     return bough_wrench_load(y);
 }
 
-// The 6×6 matrix of a rigid inertia; symmetric, so rows are columns.
-static void rigid_matrix(const bough_inertia *inertia, double *a) {
+// Symmetric, so rows are columns.
+void bough_tree_rigid_matrix(const bough_inertia *inertia, double a[36]) {
     for (int k = 0; k < N; k++) {
         bough_wrench_store(bough_inertia_mul(inertia, bough_twist_unit(k)), a + N * k);
     }
@@ -221,10 +221,15 @@ static bool factor_joint(const bough_link *link, const double *articulated, doub
     return bough_cholesky_factor(n, factor);
 }
 
-// Iᵃ = Iᴬ − U D⁻¹ Uᵀ, in place: the inertia that the parent carries through the joint
+// Iᵃ = Iᴬ − U D⁻¹ Uᵀ, in place: the inertia that the parent carries through the joint, none through a free
+// one
 static void release_joint(const bough_link *link, const double *gain, const double *factor,
                           double *articulated) {
     int n = link->n_speeds;
+    if (n == N) {
+        memset(articulated, 0, NN * sizeof *articulated);
+        return;
+    }
     for (int c = 0; c < N; c++) {
         double x[N];
         for (int k = 0; k < n; k++) x[k] = gain[N * k + c];
@@ -299,7 +304,7 @@ bool bough_tree_free_dynamics(const bough_tree *tree, bough_tree_data *d, double
     joint_loads(tree, d, t);
     d->singular = -1;
     for (int i = 0; i < tree->n_links; i++) {
-        rigid_matrix(&tree->links[i].inertia, d->articulated + NN * i);
+        memcpy(d->articulated + NN * i, tree->links[i].matrix, sizeof tree->links[i].matrix);
     }
     // inwards: articulated inertia and bias wrench of each parent
     for (int i = tree->n_links - 1; i >= 0; i--) {
@@ -315,7 +320,7 @@ bool bough_tree_free_dynamics(const bough_tree *tree, bough_tree_data *d, double
             continue;
         }
         bough_wrench passed = pass_down(link, d, i, t);
-        add_to_parent(&d->relative[i], own, d->articulated + NN * link->parent);
+        if (link->n_speeds < N) add_to_parent(&d->relative[i], own, d->articulated + NN * link->parent);
         bough_wrench *up = &d->wrench[link->parent];
         *up = bough_wrench_add(*up, bough_wrench_to_parent(&d->relative[i], passed));
     }

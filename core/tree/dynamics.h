@@ -21,6 +21,9 @@ void bough_tree_kinematics(const bough_tree *tree, const double *state, bough_tr
 void bough_tree_inverse_dynamics(const bough_tree *tree, bough_tree_data *data, double t, const double *input,
                                  const double *acceleration, double *residual);
 
+// A rigid inertia as the matrix from a twist to a wrench.
+void bough_tree_rigid_matrix(const bough_inertia *inertia, double a[36]);
+
 // acceleration v̇ (n_v) that makes the residual zero, by articulated bodies, as if all closures were
 // cut open and the tree moved under their wrenches, whose multipliers stand in data->loops. False
 // when a joint moves no inertia. Leaves the links' accelerations, the factors and `drive` in data.

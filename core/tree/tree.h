@@ -147,6 +147,7 @@ typedef struct bough_link {
     int first_coordinate, n_coordinates; // its rows of q
     int first_speed, n_speeds;           // its rows of v
     bough_inertia inertia;               // of everything welded, in the link frame
+    double matrix[36];                   // the same as a symmetric 6×6 matrix
 } bough_link;
 
 // A frame on a link (or on the ground), for bodies, markers and ports.

@@ -249,6 +249,9 @@ bough_status bough_tree_create(bough_arena *arena, const bough_tree_def *def, bo
     copy_forces(arena, def, tree);
     for (int k = 0; k < def->n_bodies; k++) place_body(tree, &def->bodies[order[k]], order[k]);
     place_attachments(tree, def);
+    for (int i = 0; i < tree->n_links; i++) {
+        bough_tree_rigid_matrix(&tree->links[i].inertia, tree->links[i].matrix);
+    }
     create_motions(arena, def, tree);
     set_initial(tree, def);
     *out = tree;
