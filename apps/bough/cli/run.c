@@ -171,6 +171,7 @@ static void step_all(bough_run_command *command) {
     run->progress = &progress;
     run->stop = bough_stop_requested;
     run->after = after_step;
+    run->steps_together = !(command->checkpoint.interval > 0);
     run->self = command;
     bough_run_all(run);
     bough_progress_clear(&progress);

@@ -112,15 +112,31 @@ static double steps_of(const bough_simulation *s) {
     return (double)sum.steps + (double)sum.failed_steps;
 }
 
+static void finish_step(bough_run *run) {
+    run->sampled = false;
+    bough_validity_check(run->simulation);
+    if (bough_is_ok(&run->outcome)) bough_validity_check_work(run->simulation, steps_of(run->simulation));
+    if (bough_is_ok(&run->outcome)) run->outcome = record_due(run);
+}
+
+// Up to `until`, at least one; the last is not finished, since the companion's results come first.
+static void step_own(bough_run *run) {
+    const bough_master *m = run->simulation->master;
+    run->outcome = bough_step(run->simulation->master);
+    while (bough_is_ok(&run->outcome) && m->time < run->until) {
+        finish_step(run);
+        if (bough_is_ok(&run->outcome)) run->outcome = bough_step(run->simulation->master);
+    }
+}
+
 // 0: of the run, 1: of the companion; neither touches the other.
 static void step_one(void *self, int which) {
     bough_run *run = self;
-    if (which == 0) run->outcome = bough_step(run->simulation->master);
+    if (which == 0) step_own(run);
     if (which == 1) bough_companion_step(run->companion);
 }
 
 bough_status bough_run_step(bough_run *run) {
-    run->sampled = false;
     bool due = bough_companion_due(run->companion);
     if (due && run->side_by_side) {
         bough_pool_run(run->pool, 2, step_one, run);
@@ -128,9 +144,7 @@ bough_status bough_run_step(bough_run *run) {
         for (int k = 0; k <= due; k++) step_one(run, k);
     }
     if (bough_is_ok(&run->outcome)) bough_companion_compare(run->companion);
-    bough_validity_check(run->simulation);
-    if (bough_is_ok(&run->outcome)) bough_validity_check_work(run->simulation, steps_of(run->simulation));
-    if (bough_is_ok(&run->outcome)) run->outcome = record_due(run);
+    finish_step(run);
     return run->outcome;
 }
 
@@ -155,6 +169,9 @@ static bough_status step(bough_run *run) {
     if (run->stop && run->stop()) {
         return bough_fail(BOUGH_INTERRUPTED, "interrupted at %.9g s of %.9g s", m->time, m->duration);
     }
+    // a thread that waits for half of the steps sleeps
+    bool together = run->side_by_side && run->steps_together && bough_companion_due(run->companion);
+    run->until = together ? bough_master_next(run->companion->coarser->master) : 0;
     bough_status status = bough_run_step(run);
     return bough_is_ok(&status) && run->after ? run->after(run->self) : status;
 }

@@ -33,11 +33,13 @@ typedef struct bough_run {
                                 // that of the integrator of all members together
     double wall_from, cpu_from; // of the clocks, counted below so far [s]
     double wall_s, cpu_s;       // of the stepping: wall time, CPU time of all threads [s]
+    double until;               // [s] where the present steps end; 0: after one
     bough_status outcome;       // how the last step ended
 
     // by the caller, before the first step
     bool beside;                       // others run at the same time: CPU time of the calling thread
     bool (*stop)(void);                // asked before each step; NULL: nobody stops the run
+    bool steps_together;               // `stop` and `after` may wait for a step of the companion
     bough_status (*after)(void *self); // called after each step; NULL: nobody is
     void *self;                        // for `after`
     bough_progress *progress;          // the terminal's line; NULL: none
