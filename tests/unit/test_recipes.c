@@ -33,7 +33,6 @@ TEST(a_joint_and_a_channel_are_rows) {
     assert_true(height >= 0 && z >= 0);
     check_near(value[z], -9.80665 / 2, 1e-6, 0);
     check_near(value[height], value[z], 0, 0);
-    stop(&f);
 }
 
 GROUP(enter, leave)
