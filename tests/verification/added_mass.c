@@ -185,7 +185,7 @@ static void run(const added_mass_study *s, const way *w, double ratio, outcome *
     def.scheme.iterations = 200;
     def.macro_step = s->macro_step;
     def.duration = s->steps * s->macro_step;
-    o->status = bough_two_mass_build(&m, def);
+    o->status = bough_two_mass_build(bough_arena_create(), &m, def);
     if (bough_is_ok(&o->status)) o->status = bough_two_mass_error(&m, &o->error);
     if (m.master) {
         o->time = m.master->time;
@@ -193,7 +193,7 @@ static void run(const added_mass_study *s, const way *w, double ratio, outcome *
                                 fmax(1, (double)m.master->steps));
         memcpy(o->verdict, m.master->verdict, sizeof o->verdict);
     }
-    bough_two_mass_destroy(&m);
+    bough_arena_destroy(m.arena);
 }
 
 // A run that errs by more than the motion itself, without a word, is silent.

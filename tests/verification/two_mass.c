@@ -58,7 +58,7 @@ static void make_masses(bough_two_mass *m) {
     }
 }
 
-bough_status bough_two_mass_build(bough_two_mass *m, bough_master_def def) {
+bough_status bough_two_mass_build(bough_arena *arena, bough_two_mass *m, bough_master_def def) {
     bool kin = m->kinematic;
     make_masses(m);
     bough_assembly_member member[3] = {{&m->member[0], 0}, {&m->member[1], 1}, {&m->member[2], 0}};
@@ -77,14 +77,8 @@ bough_status bough_two_mass_build(bough_two_mass *m, bough_master_def def) {
                                         .member = member,
                                         .n_connection = three ? 4 : 2,
                                         .connection = connection[m->cut]};
-    m->arena = bough_arena_create();
-    if (!m->arena) return bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory");
-    return bough_master_build(m->arena, &def, &m->master);
-}
-
-void bough_two_mass_destroy(bough_two_mass *m) {
-    bough_arena_destroy(m->arena);
-    m->arena = NULL;
+    m->arena = arena;
+    return bough_master_build(arena, &def, &m->master);
 }
 
 // -- running --------------------------------------------------------------------------------------

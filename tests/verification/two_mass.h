@@ -33,11 +33,8 @@ void bough_two_mass_at(const bough_two_mass *m, double t, double y[4]);
 // Takes y (4) on by a duration.
 void bough_two_mass_exact(const bough_two_mass *m, double duration, double y[4]);
 
-// Builds the coupled run; def's assembly is ignored. The model must stay where it is.
-bough_status bough_two_mass_build(bough_two_mass *m, bough_master_def def);
-
-// Releases what was built; also after a failed build.
-void bough_two_mass_destroy(bough_two_mass *m);
+// Builds the coupled run in the arena; def's assembly is ignored. The model must stay where it is.
+bough_status bough_two_mass_build(bough_arena *arena, bough_two_mass *m, bough_master_def def);
 
 // Replaces the start-up by exact history.
 void bough_two_mass_history(bough_two_mass *m);

@@ -184,7 +184,8 @@ static bough_status scan(const model *m, const variant *v, int degree, result *r
     double factor = pow(m->scan[1] / m->scan[0], 1.0 / (n - 1)), before = 0;
     bool once = bough_scheme_find(v->scheme)->judged;
     bough_two_mass x = two_masses(m, v);
-    bough_status status = bough_two_mass_build(&x, definition(m, v, degree, m->scan[0]));
+    bough_status status =
+        bough_two_mass_build(bough_arena_create(), &x, definition(m, v, degree, m->scan[0]));
     for (int k = 0; k < n && bough_is_ok(&status); k++) {
         double h = m->scan[0] * pow(factor, k), radius;
         bough_status step = bough_two_mass_radius(&x, h, &radius);
@@ -196,23 +197,24 @@ static bough_status scan(const model *m, const variant *v, int degree, result *r
         }
         before = radius;
         if (once || k == n - 1) continue;
-        bough_two_mass_destroy(&x);
-        status = bough_two_mass_build(&x, definition(m, v, degree, h * factor));
+        bough_arena_destroy(x.arena);
+        status = bough_two_mass_build(bough_arena_create(), &x, definition(m, v, degree, h * factor));
     }
-    bough_two_mass_destroy(&x);
+    bough_arena_destroy(x.arena);
     return status;
 }
 
 static void run(const model *m, const variant *v, int degree, int step, result *r) {
     bough_two_mass x = two_masses(m, v);
     r->error[step] = (double)NAN;
-    bough_status status = bough_two_mass_build(&x, definition(m, v, degree, m->macro_step[step]));
+    bough_status status =
+        bough_two_mass_build(bough_arena_create(), &x, definition(m, v, degree, m->macro_step[step]));
     if (bough_is_ok(&status)) {
         bough_two_mass_history(&x);
         status = bough_two_mass_error(&x, &r->error[step]);
     }
     if (!bough_is_ok(&status)) r->error[step] = (double)NAN;
-    bough_two_mass_destroy(&x);
+    bough_arena_destroy(x.arena);
 }
 
 static bool near(double value, double expected, double tolerance) {

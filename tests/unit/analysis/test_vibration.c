@@ -176,7 +176,6 @@ TEST(gravity_averages_out) {
     for (int k = 0; k < 6; k++) {
         check_near(a.v.mode[k].frequency, b.v.mode[k].frequency, 1e-4, 0);
     }
-    bough_arena_destroy(a.arena);
 }
 
 // The rows of a shape join: a rod's end and what hangs on it move alike; the largest is real and 1.
@@ -216,7 +215,6 @@ TEST(modal_blades_whirl_as_rods_do) {
         assert_int_equal(reduced->direction, rod->direction);
         check_near(reduced->share[3], rod->share[3], 1e-2, 0);
     }
-    bough_arena_destroy(a.arena);
 }
 
 // On a support that yaws and rolls the transformed system is the same at any azimuth; that of the
@@ -247,5 +245,4 @@ TEST(azimuth_does_not_matter) {
         support = fmax(support, a.v.mode[k].share[1]);
     }
     assert_true(support > 0.01); // the nacelle moves
-    bough_arena_destroy(a.arena);
 }

@@ -19,7 +19,7 @@ static void build(setup *s, bough_two_mass masses) {
     s->m = masses;
     bough_master_def def = bough_master_def_default();
     def.macro_step = def.duration = .1;
-    bough_status status = bough_two_mass_build(&s->m, def);
+    bough_status status = bough_two_mass_build(check_memory(), &s->m, def);
     check_ok(status);
     s->coupled = bough_whole_create(s->m.arena, s->m.master->assembly, NULL);
     assert_true(bough_is_ok(&status));
@@ -47,7 +47,6 @@ TEST(coupled_masses_have_their_eigenvalues) {
         assert_true(cabs(first * x1 - link * x2) < 1e-6 * cabs(link * x2));
         assert_true(p->real < 0 && p->imaginary > 0);
     }
-    bough_two_mass_destroy(&s.m);
 }
 
 // A pattern exp(i 2πhk/n) has that harmonic only.

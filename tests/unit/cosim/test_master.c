@@ -20,7 +20,7 @@ TEST(steps_end_on_events_and_on_the_duration) {
     def.event = event;
     def.n_event = 4;
     bough_two_mass m = bough_two_mass_default();
-    bough_status status = bough_two_mass_build(&m, def);
+    bough_status status = bough_two_mass_build(check_memory(), &m, def);
     for (int k = 0; k < 7; k++) {
         assert_false(bough_master_done(m.master));
         status = bough_step(m.master);
@@ -29,7 +29,6 @@ TEST(steps_end_on_events_and_on_the_duration) {
         assert_int_equal(m.master->at_event, k == 2 || k == 4);
     }
     assert_true(bough_master_done(m.master));
-    bough_two_mass_destroy(&m);
 }
 
 // Every eighth, and the one after an event before its middle; at the times of a run of half the steps.
@@ -41,13 +40,12 @@ TEST(some_steps_are_taken_in_halves) {
     def.event = event;
     def.n_event = 2;
     bough_two_mass m = bough_two_mass_default();
-    check_ok(bough_two_mass_build(&m, def));
+    check_ok(bough_two_mass_build(check_memory(), &m, def));
     for (size_t k = 0; k < sizeof expected / sizeof *expected; k++) {
         check_ok(bough_step(m.master));
         if (expected[k] > 0) assert_true(m.master->time == expected[k] * .05);
     }
     assert_true(bough_master_done(m.master));
-    bough_two_mass_destroy(&m);
 }
 
 typedef struct samples {
@@ -72,14 +70,13 @@ TEST(loads_are_sampled_at_their_period) {
     def.event = &event;
     def.n_load = def.n_event = 1;
     bough_two_mass m = bough_two_mass_default();
-    bough_two_mass_build(&m, def);
+    bough_two_mass_build(check_memory(), &m, def);
     check_ok(run(m.master));
     assert_int_equal(taken.count, 4);
     for (int k = 0; k < 4; k++) {
         check_near(taken.time[k], .2 * k, 0, 1e-15);
         check_near(taken.next[k], .2 * (k + 1), 0, 1e-15);
     }
-    bough_two_mass_destroy(&m);
 }
 
 // -- one leader, three followers ------------------------------------------------------------------

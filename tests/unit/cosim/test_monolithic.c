@@ -7,11 +7,10 @@ static double error_with(bough_integrator_options integrator) {
     def.scheme.integrator = integrator;
     def.macro_step = .1;
     def.duration = 10;
-    check_ok(bough_two_mass_build(&m, def));
+    check_ok(bough_two_mass_build(check_memory(), &m, def));
     double error = two_mass_error(&m);
     bough_coupling_report report = bough_monitor_report(m.master->monitor, m.master->coupling);
     check_near(report.defect_max, 0, 0, 1e-12);
-    bough_two_mass_destroy(&m);
     return error;
 }
 

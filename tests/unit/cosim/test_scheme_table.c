@@ -51,11 +51,10 @@ TEST(it_is_stepped_at_its_order) {
     double error[2];
     for (int k = 0; k < 2; k++) {
         bough_two_mass m = bough_two_mass_default();
-        check_ok(bough_two_mass_build(&m, definition(.02 / (k + 1))));
+        check_ok(bough_two_mass_build(check_memory(), &m, definition(.02 / (k + 1))));
         bough_two_mass_history(&m);
         error[k] = two_mass_error(&m);
         assert_string_equal(m.master->verdict, "");
-        bough_two_mass_destroy(&m);
     }
     check_near(error[0] / error[1], 4, .1, 0);
 }
@@ -64,14 +63,13 @@ TEST(it_is_judged_and_diagnosed) {
     bough_two_mass m = bough_two_mass_default();
     bough_master_def def = definition(.5);
     def.duration = 1000;
-    check_ok(bough_two_mass_build(&m, def));
+    check_ok(bough_two_mass_build(check_memory(), &m, def));
     assert_non_null(strstr(m.master->verdict, "scheme toy at a macro step of 0.5 s is unstable"));
     assert_non_null(strstr(m.master->verdict, "scheme: ramp holds"));
     double worst;
     bough_status status = bough_two_mass_error(&m, &worst);
     check_fails(status, BOUGH_FAILED, "scheme toy");
     assert_non_null(strstr(status.message, "or scheme: monolithic"));
-    bough_two_mass_destroy(&m);
 }
 
 GROUP(enter, leave)

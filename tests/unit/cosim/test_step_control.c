@@ -19,8 +19,9 @@ TEST(steps_taken_back_leave_nothing) {
         for (int light = 0; light < 2; light++) {
             bough_two_mass m = bough_two_mass_default(), fixed = bough_two_mass_default();
             if (light) m.s1 = fixed.s1 = (bough_spring_mass){.4, 1, .1};
-            check_ok(bough_two_mass_build(&m, definition(schemes[k], .08, 1e-14)));
-            bough_status status = bough_two_mass_build(&fixed, definition(schemes[k], .01, 0));
+            check_ok(bough_two_mass_build(check_memory(), &m, definition(schemes[k], .08, 1e-14)));
+            bough_status status =
+                bough_two_mass_build(check_memory(), &fixed, definition(schemes[k], .01, 0));
             check_ok(status);
             while (!bough_master_done(m.master)) {
                 status = bough_step(m.master);
@@ -35,8 +36,6 @@ TEST(steps_taken_back_leave_nothing) {
             assert_int_equal(m.master->control->rejected, 3);
             assert_int_equal(m.master->control->forced, m.master->steps);
             assert_int_equal(m.master->control->accepted, m.master->steps);
-            bough_two_mass_destroy(&m);
-            bough_two_mass_destroy(&fixed);
         }
     }
 }
@@ -45,10 +44,9 @@ static double error_with(const char *scheme, double tolerance, long *steps) {
     bough_two_mass m = bough_two_mass_default();
     bough_master_def def = definition(scheme, .16, tolerance);
     def.control.least = .16 / 1024;
-    check_ok(bough_two_mass_build(&m, def));
+    check_ok(bough_two_mass_build(check_memory(), &m, def));
     double error = two_mass_error(&m);
     *steps = m.master->steps;
-    bough_two_mass_destroy(&m);
     return error;
 }
 
@@ -72,7 +70,7 @@ TEST(steps_grow_again_and_meet_events) {
     def.duration = 20;
     def.event = event;
     def.n_event = 2;
-    bough_two_mass_build(&m, def);
+    bough_two_mass_build(check_memory(), &m, def);
     double longest = 0, shortest = 1;
     int met = 0;
     while (!bough_master_done(m.master)) {
@@ -86,7 +84,6 @@ TEST(steps_grow_again_and_meet_events) {
     assert_int_equal(met, 2);
     check_near(longest, .16, 1e-9, 0);
     assert_true(shortest <= .021);
-    bough_two_mass_destroy(&m);
 }
 
 static bough_integrator_ops failing; // NOLINT(cppcoreguidelines-avoid-non-const-global-variables)
@@ -109,7 +106,7 @@ TEST(only_what_asks_for_it_is_repeated) {
                  {BOUGH_OUT_OF_MEMORY, BOUGH_OUT_OF_MEMORY, 1}};
     for (size_t k = 0; k < sizeof cases / sizeof *cases; k++) {
         bough_two_mass m = bough_two_mass_default();
-        check_ok(bough_two_mass_build(&m, definition("gauss-seidel", .16, 1e-3)));
+        check_ok(bough_two_mass_build(check_memory(), &m, definition("gauss-seidel", .16, 1e-3)));
         failing = *m.member[0].integrator.ops;
         failing.advance = fail_to_advance;
         m.member[0].integrator.ops = &failing;
@@ -118,6 +115,5 @@ TEST(only_what_asks_for_it_is_repeated) {
         bough_status status = bough_step(m.master);
         assert_int_equal(status.code, cases[k].told);
         assert_int_equal(calls, cases[k].calls);
-        bough_two_mass_destroy(&m);
     }
 }

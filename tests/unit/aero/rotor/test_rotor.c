@@ -37,8 +37,9 @@ static bough_mat3 turned(bough_vec3 rotation_vector) {
 }
 
 static rig *create_rig(bool flat) {
-    rig *r = calloc(1, sizeof *r);
-    r->arena = check_memory();
+    bough_arena *arena = check_memory();
+    rig *r = bough_arena_take(arena, sizeof *r);
+    r->arena = arena;
     r->def = bough_rotor_def_default();
     nrel5mw_stations(r->station, flat);
     for (int i = 0; i < VERTICES; i++) {
@@ -69,11 +70,6 @@ static rig *create_rig(bool flat) {
 static void build(rig *r) {
     check_ok(bough_rotor_build(r->arena, &r->def, &r->rotor));
     bough_rotor_data_build(r->arena, r->rotor, &r->data);
-}
-
-static void destroy_rig(rig *r) {
-    bough_arena_destroy(r->arena);
-    free(r);
 }
 
 // Places the rigid rotor at an azimuth of blade 1 (0: up).
@@ -164,7 +160,6 @@ TEST(flat_rotor_matches_reference) {
         sample(r, 0.4);
         check_near(r->data.thrust, 1e3 * table[i][3], 1e-5, 0);
         check_near(r->data.torque, 1e3 * table[i][4], 1e-5, 0);
-        destroy_rig(r);
     }
 }
 
@@ -186,7 +181,6 @@ TEST(switches_match_reference) {
         sample(r, 0);
         check_near(r->data.thrust, 1e3 * table[i][0], 1e-4, 0);
         check_near(r->data.torque, 1e3 * table[i][1], 1e-4, 0);
-        destroy_rig(r);
     }
 }
 
@@ -226,7 +220,6 @@ TEST(stations_match_reference) {
                                   s.coefficients.drag, s.force_x,  s.force_y};
         for (int c = 0; c < 11; c++) check_near(value[c], t[c], 1e-5, 2e-6);
     }
-    destroy_rig(r);
 }
 
 static void mean_of_revolution(rig *r, double *thrust, double *torque) {
@@ -256,7 +249,6 @@ TEST(rigid_turbine_matches_reference) {
         mean_of_revolution(r, &thrust, &torque);
         check_near(thrust, 1e3 * table[i][3], 2e-3, 0);
         check_near(torque, 1e3 * table[i][4], 2e-3, 0);
-        destroy_rig(r);
     }
 }
 
@@ -278,7 +270,6 @@ TEST(angle_of_attack_is_in_the_plane_of_the_section) {
         check_near(s.alpha, atan2(normal, chord) - r->station[j].twist, 0, 1e-9);
         assert_true(fabs(s.alpha - (s.phi - s.twist)) > 0.01 / s.radius);
     }
-    destroy_rig(r);
 }
 
 // A blade whose axis leans by prebend from the root on has the loads of a straight blade on a coned root.
@@ -300,7 +291,6 @@ TEST(sections_are_normal_to_a_prebent_axis) {
         operate(r, 12, 0, 11);
         sample(r, 0.4);
         memcpy(force[k], r->force, sizeof force[k]);
-        destroy_rig(r);
     }
     for (int i = 0; i < VERTICES; i++) {
         bough_vec3 off = bough_sub(force[1][i], force[0][i]);
@@ -369,7 +359,6 @@ TEST(mapping_conserves_force_and_moment) {
     }
     check_near(bough_norm(total), 0, 0, 1e-3); // of 2e5 N: the error of the summation
     check_near(bough_norm(about), 0, 0, 2e-1); // of 2e7 N m
-    destroy_rig(r);
 }
 
 // Aerodynamic-centre offsets leave the forces of a station and add offset × force.
@@ -388,7 +377,6 @@ TEST(offsets_carry_moment) {
     bough_vec3 expected = bough_cross(bough_scale(-0.4, blade.c2), force);
     check_near(bough_norm(bough_sub(moment, expected)), 0, 0, 1e-9 * bough_norm(expected));
     assert_true(bough_norm(expected) > 1e4);
-    destroy_rig(r);
 }
 
 static void check_same_loads(const rig *a, const rig *b, const bough_mat3 *turn) {
@@ -409,8 +397,6 @@ TEST(section_axes_are_arbitrary) {
     sample(a, 2);
     sample(b, 2);
     check_same_loads(a, b, NULL);
-    destroy_rig(a);
-    destroy_rig(b);
 }
 
 // Moving with the wind of the same speed, or standing elsewhere, changes nothing.
@@ -432,8 +418,6 @@ TEST(rigid_translation_changes_nothing) {
     sample_as_placed(a);
     sample_as_placed(b);
     check_same_loads(a, b, NULL);
-    destroy_rig(a);
-    destroy_rig(b);
 }
 
 // A third of a turn exchanges the blades.
@@ -445,8 +429,6 @@ TEST(blades_are_alike) {
     sample(b, 0.3 + 0.5);
     bough_mat3 turn = turned(bough_v3(0.5, 0, 0));
     check_same_loads(a, b, &turn);
-    destroy_rig(a);
-    destroy_rig(b);
 }
 
 // Nothing is kept between samples, so repeated steps repeat their loads to the bit.
@@ -466,8 +448,6 @@ TEST(sample_is_a_function_of_motion) {
     size_t size = BLADES * VERTICES * sizeof *a->force;
     assert_memory_equal(a->force, b->force, size);
     assert_memory_equal(a->moment, b->moment, size);
-    destroy_rig(a);
-    destroy_rig(b);
 }
 
 // Calm, locked, feathered, turning backwards, overspeeding, blown from behind.
@@ -529,7 +509,6 @@ TEST(loads_follow_the_motion_by_their_slopes) {
         measure_slopes(r, off);
         print_message("wind %g m/s: %.2f %.2f %.2f %.2f\n", wind[k], off[0], off[1], off[2], off[3]);
         for (int j = 0; j < 4; j++) assert_true(off[j] < (j == 2 ? 0.2 : 0.12));
-        destroy_rig(r);
     }
 }
 
@@ -545,7 +524,6 @@ TEST(odd_states_are_finite) {
             assert_true(isfinite(bough_norm(r->force[k])));
             assert_true(isfinite(bough_norm(r->moment[k])));
         }
-        destroy_rig(r);
     }
 }
 
@@ -583,7 +561,6 @@ TEST(pitch_step_matches_reference) {
     sample_at(r, 4000);
     sample_at(r, 8000);
     check_near(r->data.thrust, 276.2547e3, 1e-5, 0);
-    destroy_rig(r);
 }
 
 static void move_memory(rig *r, bough_snapshot_move move, double *copy) {
@@ -607,7 +584,6 @@ TEST(inflow_is_saved_and_restored) {
     sample_at(r, 2);
     check_near(r->data.thrust, thrust, 0, 0);
     free(memory);
-    destroy_rig(r);
 }
 
 // What a sample told is told again once stored and put back, the blades' distance to the tower included,
@@ -636,7 +612,6 @@ TEST(told_is_saved_and_restored) {
         assert_true(after.distance == before[b].distance && after.speed == before[b].speed);
     }
     test_free(copy);
-    destroy_rig(r);
 }
 
 // The time constant by its formula; one long advance equals many short ones.
@@ -690,8 +665,6 @@ TEST(stall_is_late_and_repeats) {
     check_near(r->data.thrust, still->data.thrust, 1e-6, 0);
     check_near(r->data.torque, still->data.torque, 1e-6, 0);
     free(memory);
-    destroy_rig(still);
-    destroy_rig(r);
 }
 
 // The rotor's own turn is no pitch rate of a coned blade's sections: in steady wind they carry the static
@@ -707,8 +680,6 @@ TEST(stall_keeps_the_loads_of_a_coned_rotor) {
         for (int k = 0; k < 3; k++) sample_at(r, 1e3 * k);
         check_near(r->data.torque, still->data.torque, 1e-9, 0);
         check_near(r->data.thrust, still->data.thrust, 1e-9, 0);
-        destroy_rig(still);
-        destroy_rig(r);
     }
 }
 
@@ -718,5 +689,4 @@ TEST(station_off_the_blade_is_refused) {
     bough_status status = bough_rotor_build(r->arena, &r->def, &r->rotor);
     assert_int_equal(status.code, BOUGH_INVALID);
     assert_null(r->rotor);
-    destroy_rig(r);
 }

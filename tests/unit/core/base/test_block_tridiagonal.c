@@ -177,7 +177,6 @@ TEST(residual_vanishes_for_badly_scaled_rows) {
     make_absolute(x, W * MOST);
     bough_block_tridiagonal_subtract(&kept.m, x, size);
     for (int k = 0; k < W * MOST; k++) check_near(residual[k], 0, 0, 1e-13 * fabs(size[k]));
-    bough_arena_destroy(f.arena);
 }
 
 static bool factors_with(int n, int block, int entry, double value) {
@@ -221,7 +220,6 @@ TEST(refuses_singular_pivots) {
         for (int k = 0; k < 4; k++) entries[k][9 * i] = 2;
     }
     assert_false(bough_block_tridiagonal_factor(&g.m));
-    bough_arena_destroy(f.arena);
 }
 
 TEST(single_blocks_multiply) {

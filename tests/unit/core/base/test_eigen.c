@@ -102,7 +102,6 @@ TEST(pairs_satisfy_the_equation) {
         check_near(sqrt(sum), 0, 0, 1e-8 * (s * s + w * w) * sqrt(size));
         assert_true(s < 0);
     }
-    bough_arena_destroy(c.arena);
 }
 
 TEST(small_system_gives_all_it_has) {

@@ -234,7 +234,6 @@ TEST(universal_joint_swings_as_a_spherical_pendulum) {
     assert_true(bough_tree_joint_rows(f.tree, 0, &q, &v));
     assert_int_equal(q, 0);
     assert_int_equal(v, 2);
-    bough_arena_destroy(f.arena);
 }
 
 // 8 N m falling to 0 from 1 s to 3 s, on J = 4.
@@ -284,7 +283,6 @@ TEST(welded_bodies_move_as_one) {
     advance(&b, 1, true);
     for (int i = 0; i < 7; i++) check_near(b.m->state[i], a.m->state[i], 0, 1e-6);
     assert_true(fabs(a.m->state[1] - a.tree->initial[1]) > 1e-2);
-    bough_arena_destroy(a.arena);
 }
 
 // A port's root inertia is felt as a body welded there.
@@ -308,7 +306,6 @@ TEST(root_inertia_is_felt_as_a_welded_body) {
     f.s.ops->derivative(f.s.self, 0, f.m->state, NULL, a);
     g.s.ops->derivative(g.s.self, 0, g.m->state, zero, c);
     for (int i = 0; i < f.s.n_state; i++) check_near(c[i], a[i], 1e-12, 1e-12);
-    bough_arena_destroy(f.arena);
 }
 
 TEST(ground_fixed_tree_has_no_states) {

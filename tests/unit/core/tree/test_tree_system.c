@@ -57,7 +57,6 @@ TEST(radau_goes_on_from_a_copy_as_if_nothing_had_been) {
     bough_member_advance(tight.m, 0.3, &signal, true);
     bough_member_advance(tight.m, 0.5, &signal, true);
     for (int i = 0; i < f.s.n_state; i++) check_near(f.m->state[i], tight.m->state[i], 1e-6, 1e-6);
-    bough_arena_destroy(f.arena);
 }
 
 // Kept history over many macro steps agrees with a far tighter run.
@@ -76,7 +75,6 @@ TEST(kept_history_keeps_the_accuracy) {
     count = bough_member_statistics(f.m);
     assert_int_equal(count.starts, 1);
     assert_true(count.steps > 0 && count.jacobians > 0 && count.derivatives > count.steps);
-    bough_arena_destroy(f.arena);
 }
 
 // A marker's wrench against the same wrench at the port in the same place.

@@ -9,10 +9,9 @@ static bough_status run(bough_two_mass m, const char *scheme, double macro_step,
     def.scheme.name = scheme;
     def.macro_step = macro_step;
     def.duration = duration;
-    bough_status status = bough_two_mass_build(&m, def);
+    bough_status status = bough_two_mass_build(check_memory(), &m, def);
     while (bough_is_ok(&status) && !bough_master_done(m.master)) status = bough_step(m.master);
     *stopped = m.master->time;
-    bough_two_mass_destroy(&m);
     return status;
 }
 
@@ -53,7 +52,7 @@ TEST(what_is_not_finite_is_told) {
     bough_master_def def = bough_master_def_default();
     def.macro_step = .01;
     def.duration = 1;
-    bough_status status = bough_two_mass_build(&m, def);
+    bough_status status = bough_two_mass_build(check_memory(), &m, def);
     if (bough_is_ok(&status)) status = bough_step(m.master);
     assert_true(bough_is_ok(&status));
     bough_coupling *c = m.master->coupling;
@@ -64,7 +63,6 @@ TEST(what_is_not_finite_is_told) {
         if (bough_is_ok(&status)) continue;
         assert_non_null(strstr(status.message, "no finite state or output"));
     }
-    bough_two_mass_destroy(&m);
 }
 
 // The fate of a run of 20 s: −1 stopped, else its largest motion relative to the start.
@@ -74,13 +72,12 @@ static double fate(bough_two_mass m, const char *scheme, bough_exchange exchange
     def.scheme.exchange = exchange;
     def.macro_step = macro_step;
     def.duration = 20;
-    bough_status status = bough_two_mass_build(&m, def);
+    bough_status status = bough_two_mass_build(check_memory(), &m, def);
     double largest = 0;
     while (bough_is_ok(&status) && !bough_master_done(m.master)) {
         status = bough_step(m.master);
         largest = fmax(largest, fmax(fabs(m.mass[0].y[0]), fabs(m.mass[1].y[0])));
     }
-    bough_two_mass_destroy(&m);
     return bough_is_ok(&status) ? largest : -1;
 }
 
@@ -126,7 +123,7 @@ TEST(unknown_members_do_not_blow_up_in_silence) {
         def.scheme.name = "gauss-seidel";
         def.macro_step = h;
         def.duration = 100;
-        bough_status status = bough_two_mass_build(&m, def);
+        bough_status status = bough_two_mass_build(check_memory(), &m, def);
         m.master->assembly->opaque = true;
         double largest = 0;
         while (bough_is_ok(&status) && !bough_master_done(m.master)) {
@@ -135,7 +132,6 @@ TEST(unknown_members_do_not_blow_up_in_silence) {
         }
         assert_int_equal(bough_is_ok(&status), h < .1); // at .16 s it grows by .51 per second
         assert_true(largest < 1e4);
-        bough_two_mass_destroy(&m);
     }
 }
 

@@ -66,7 +66,7 @@ typedef struct pair {
 } pair;
 
 static pair make_pair(int pieces) {
-    pair p = {.arena = bough_arena_create()};
+    pair p = {.arena = check_memory()};
     p.modal = body_of(p.arena, general(p.arena, N, pieces, everything), swaying);
     p.rod = sample_general(p.arena, N);
     bough_rod_scratch_init(&p.scratch, p.arena, p.rod);
@@ -150,7 +150,7 @@ typedef struct bar {
 } bar;
 
 static bar make_bar(int pieces, bough_modal_options options) {
-    bar b = {.arena = bough_arena_create()};
+    bar b = {.arena = check_memory()};
     bough_modal_model *model = NULL;
     b.def = bar_def(b.arena);
     check_ok(bough_rod_create(b.arena, &b.def, &b.rod));
@@ -212,8 +212,6 @@ TEST(rotation_stiffens_as_it_does_the_rod) {
     frequencies(&c, input, unused, plain);
     for (int i = 0; i < WANTED; i++) check_near(modal[i], rod[i], 1e-3, 0);
     assert_true(rod[0] > 1.1 * rest[0] && plain[0] < 1.001 * rest[0]);
-    bough_arena_destroy(b.arena);
-    bough_arena_destroy(c.arena);
 }
 
 // -- statics --------------------------------------------------------------------------------------

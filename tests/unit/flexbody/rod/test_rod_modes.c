@@ -28,7 +28,7 @@ typedef struct bar {
 } bar;
 
 static void build_graded(bar *b, uniform u, double grading, int segments) {
-    b->arena = bough_arena_create();
+    b->arena = check_memory();
     bough_section_station section = {.stiffness = {[0] = u.shear,
                                                    [6] = u.shear,
                                                    [11] = u.axial,
@@ -91,7 +91,6 @@ TEST(thin_rod_has_eulers_frequencies_twice) {
         check_near(b.mode[k].damping, 0, 0, 1e-9);
         check_near(b.mode[k].damped_frequency, b.mode[k].frequency, 1e-12, 0);
     }
-    bough_arena_destroy(b.arena);
 }
 
 // Segments that shorten from the root: their lengths, their mass, and frequencies of second order at least.
@@ -119,8 +118,6 @@ TEST(graded_mesh_converges_to_eulers_frequencies) {
         assert_true(error[0][k] < 2e-3);
         assert_true(error[1][k] < error[0][k] / 3.5);
     }
-    bough_arena_destroy(b[0].arena);
-    bough_arena_destroy(b[1].arena);
 }
 
 // Square section, depth a tenth of the length, ν = 0.3, shear factor 5/6: ratios to Euler's values
@@ -153,7 +150,6 @@ TEST(bar_and_shaft_have_their_frequencies) {
         check_near(omega(&b, BOUGH_ROD_AXIAL, k), 10 * wave, 1e-3, 0);
         check_near(omega(&b, BOUGH_ROD_TORSION, k), sqrt(20) * wave, 1e-3, 0);
     }
-    bough_arena_destroy(b.arena);
 }
 
 // Dissipation in proportion to the stiffness: ζ = μω/2 for every mode.
@@ -167,7 +163,6 @@ TEST(kelvin_voigt_damping_grows_with_frequency) {
         check_near(m->damping, mu * m->frequency * BOUGH_PI, 1e-8, 0);
         check_near(m->damped_frequency, m->frequency * sqrt(1 - m->damping * m->damping), 1e-9, 0);
     }
-    bough_arena_destroy(b.arena);
 }
 
 // The first shape of a cantilever: 1 at the tip, φ' = 1.3765 there.
@@ -182,7 +177,6 @@ TEST(shape_is_scaled_to_its_largest_displacement) {
     check_near(m->imaginary[50 + 49], 0, 0, 1e-12);
     check_near(m->real[50 + 24], 0.33952, 1e-3, 0);
     check_near(m->real[3 * 50 + 49], -1.37651, 1e-3, 0);
-    bough_arena_destroy(b.arena);
 }
 
 // -- rotating -------------------------------------------------------------------------------------
@@ -245,7 +239,6 @@ TEST(tangential_force_makes_becks_column_flutter) {
     }
     check_near(growth, 3.05491, 5e-3, 0);
     check_near(frequency, 10.85588, 1e-3, 0);
-    bough_arena_destroy(b.arena);
 }
 
 static bool flutters(double force) {
@@ -306,7 +299,7 @@ TEST(modes_are_eigenvalues_of_the_equation_of_motion) {
     static double matrix[STATES * STATES], vector[STATES * STATES];
     double value[2 * STATES], work[8 * STATES];
     unsigned seed = 4;
-    bar b = {.arena = bough_arena_create()};
+    bar b = {.arena = check_memory()};
     b.model = sample_general(b.arena, N);
     b.state = bough_arena_doubles(b.arena, STATES);
     bough_rod_loads_init(&b.loads, b.arena, b.model);
@@ -332,5 +325,4 @@ TEST(modes_are_eigenvalues_of_the_equation_of_motion) {
         if (imaginary < 1e-3 || modulus > last * (1 + 1e-6)) continue;
         check_near(distance(found, MODES, real, imaginary), 0, 0, 1e-6 * modulus);
     }
-    bough_arena_destroy(b.arena);
 }

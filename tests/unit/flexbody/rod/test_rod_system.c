@@ -114,7 +114,6 @@ TEST(set_and_restored_states_start_anew) {
     assert_memory_equal(a.m->state, unit, sizeof unit);
     advance(&a, 1.1, swaying, NULL);
     assert_memory_equal(a.m->state, b.m->state, sizeof state);
-    bough_arena_destroy(a.arena);
 }
 
 TEST(quaternions_leave_a_step_normalised) {
@@ -152,7 +151,6 @@ TEST(questions_do_not_disturb_the_steps) {
     bough_statistics done = {0};
     done = bough_member_statistics(b.m);
     assert_int_equal(done.starts, 1);
-    bough_arena_destroy(a.arena);
 }
 
 // -- steady and free motion -----------------------------------------------------------------------
@@ -240,7 +238,6 @@ TEST(steady_translation_changes_nothing) {
     }
     for (int k = BOUGH_ROD_U * N; k < STATES; k++) travelled = fmax(travelled, fabs(a.m->state[k]));
     assert_true(travelled > 0.05);
-    bough_arena_destroy(a.arena);
 }
 
 // -- loads ----------------------------------------------------------------------------------------
