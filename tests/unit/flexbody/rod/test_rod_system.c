@@ -315,7 +315,7 @@ static rod cantilever(double mu) {
     bough_section_station station = {.mass = line_mass, .inertia = {1e-5, 1e-5, 0, 2e-5}};
     const double diagonal[6] = {1e5, 1e5, 1e5, bending, bending, bending};
     for (int k = 0; k < 6; k++) station.stiffness[bough_symmetric6_index(k, k)] = diagonal[k];
-    bough_section_table table = {"cantilever", 1, &station, beam_length, {mu, mu, mu, mu, mu, mu}};
+    bough_section_table table = {"cantilever", 1, &station, beam_length, {mu, mu, mu, mu, mu, mu}, 0};
     bough_rod_def def;
     bough_rod_model *model = NULL;
     check_ok(bough_section_discretise(arena, &table, BEAM, &def));
