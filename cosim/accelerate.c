@@ -1,10 +1,11 @@
-// IQN-ILS (Degroote, Bathe, Vierendeels 2009), (65) of docs/theory.md: with the differences V of the
+// IQN-ILS (Degroote, Bathe, Vierendeels 2009), theory (65): with the differences V of the
 // residuals and W of the images so far, newest first, c minimises |V c + r| and the next iterate is H(u) + W
 // c. The QR factorisation of V is computed by Gram–Schmidt, twice, in each iteration; a column that hardly
 // differs from the span of newer ones contains only noise and is dropped. Columns live
 // within one problem: a step of a nonlinear system is no guide to the next.
 //
-// Newton's method does the same to u + (I − J)⁻¹ r (66), so that the differences correct the Jacobian.
+// Newton's method does the same to u + (I − J)⁻¹ r, theory (66), so that the differences correct the
+// Jacobian.
 #include "cosim/accelerate.h"
 
 #include "core/base/base.h"
@@ -104,7 +105,7 @@ double bough_accelerator_contraction(const bough_accelerator *a) {
 
 // -- Aitken ---------------------------------------------------------------------------------------
 
-// (64), the secant method along the last change.
+// theory (64), the secant method along the last change.
 static void update_factor(bough_accelerator *a) {
     double along = 0, length = 0;
     if (a->evaluations < 2) return;

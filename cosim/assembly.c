@@ -1,4 +1,4 @@
-// The connections of (54) of docs/theory.md, built once.
+// The connections of theory (54), built once.
 #include "cosim/assembly.h"
 
 #include "core/base/base.h"
@@ -204,7 +204,7 @@ void bough_assembly_gather(const bough_assembly *a, int member, const double *ou
 }
 
 void bough_assembly_outputs(const bough_assembly *a, double t, double *output, double *input) {
-    // (54): o_i = h_i(t, y_i, u_i), u = P o
+    // theory (54): o_i = h_i(t, y_i, u_i), u = P o
     for (int n = 0; n < a->n_member; n++) {
         int i = a->order[n];
         const bough_system *s = &a->member[i]->system;

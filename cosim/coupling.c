@@ -1,4 +1,4 @@
-// Moves of members over a macro step, the polynomials (58) and the exchange at its end.
+// Moves of members over a macro step, the polynomials of theory (58), and the exchange at its end.
 #include "cosim/coupling.h"
 
 #include <assert.h>
@@ -224,7 +224,7 @@ void bough_coupling_interpolate(bough_coupling *c, int member, int j) {
                          (bough_signal_end){from->value + source, from->end_rate + source});
 }
 
-// (58)
+// theory (58)
 void bough_coupling_extrapolate(bough_coupling *c, int member, int j, int degree) {
     assert(degree >= 0 && degree < BOUGH_HISTORY);
     int n_point = degree < c->past.n ? degree + 1 : c->past.n;

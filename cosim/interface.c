@@ -1,4 +1,4 @@
-// Static condensation, (56) and (57) of docs/theory.md. Each member is linearised and factored by itself.
+// Static condensation, theory (56, 57). Each member is linearised and factored by itself.
 #include "cosim/interface.h"
 
 #include "core/base/linalg.h"
@@ -396,7 +396,7 @@ static void square(int n, const double *a, double *result) {
     }
 }
 
-// (57) as ‖(Z K)ᵖ‖^(1/p) with p = 2¹².
+// theory (57) as ‖(Z K)ᵖ‖^(1/p) with p = 2¹².
 double bough_interface_radius(bough_interface *k) {
     double logarithm = 0, weight = 1;
     int n = k->n;

@@ -3,7 +3,7 @@
 //
 // A leader's outputs change by Σ w_c ∂o/∂w_c. Its coordinates w are its states if these are fewer than its
 // inputs and its outputs depend on states only, else its inputs. A follower is connected with leaders only.
-// After its elimination the equations of all leaders are (56)
+// After its elimination the equations of all leaders are theory (56):
 //     w = Z u,   u = b + K w,   hence   (I − Z K) w = Z b
 // with the leaders' inputs u, the response Z of their coordinates to them (1 for inputs), and the response
 // K of the inputs to the coordinates through leaders and followers. So many bodies on one leader with two

@@ -20,7 +20,7 @@ enum {
 
 // What a scheme reports of a run.
 typedef struct bough_scheme_report {
-    double interface_ratio; // (57) about the initial state; NaN: not known
+    double interface_ratio; // theory (57) about the initial state; NaN: not known
     long sweeps;            // advances of all members over a macro step that is repeated; 0: none is repeated
     long unfinished;        // macro steps that went on before they had converged
 } bough_scheme_report;

@@ -1,7 +1,7 @@
 // Extrapolated coupling: the levels advance one after the other. Inputs whose source has advanced follow it,
 // forces of members that advance later are extrapolated by a polynomial of degree 0, 1 or 2 through the last
-// synchronisation points (58), fewer at the start; order degree + 1. Stable only below some macro step.
-// Degree 0 has a name of its own: Gauss–Seidel, under held forces, a delay of 1/2 H (59).
+// synchronisation points, theory (58), fewer at the start; order degree + 1. Stable only below some macro
+// step. Degree 0 has a name of its own: Gauss–Seidel, under held forces, a delay of 1/2 H, theory (59).
 #include "cosim/scheme.h"
 
 // Sets the signals of a level. True when one of them jumps from step to step.

@@ -1,6 +1,6 @@
 // Frozen coupling (Jacobi): all members advance at once under what they knew at T_k; forces are
 // constant, motions continue with a constant rate. Order 1. Stable only below a macro step that the
-// damping sets: a constant force is a delay of 3/2 H (59).
+// damping sets: a constant force is a delay of 3/2 H, theory (59).
 #include "cosim/scheme.h"
 
 // Rates of the outputs at T_k of a member whose motion others get.

@@ -1,9 +1,9 @@
-// Iterated coupling: the macro step is repeated until the interface agrees (63). The unknowns are values of
-// the inputs whose source advances in the same level or later (the feedback), at nodes of the step:
+// Iterated coupling: the macro step is repeated until the interface agrees, theory (63). The unknowns are
+// values of the inputs whose source advances in the same level or later (the feedback), at nodes of the step:
 //   - end values: at T_{k+1}. The input is a polynomial of degree `order` through this value and earlier
 //     ones. The order is therefore degree + 1, by the interpolation and not by the iteration.
 //   - waveform: also at the Lobatto points, where the sub-solvers stop. The input is the cubic through
-//     all values. Its error is orthogonal to linear functions, so the order is 6 (67).
+//     all values. Its error is orthogonal to linear functions, so the order is 6, theory (67).
 // Other inputs are the same polynomials through the actual values of their source. With end values a
 // member may get a position and a speed that are not consistent, which disturbs a stiff member. Cubics
 // through values and rates at both ends would be unstable on a light interface body: measured, a carrier
@@ -38,9 +38,9 @@ static const double lobatto[MOST_NODES] = {0.27639320225002103, 0.72360679774997
 
 typedef struct iteration {
     bough_accelerator *accelerator;
-    // Newton's (66), one for each node: response of the inputs to their own change at the node. Every member
-    // responds by one linearly implicit step (55); γ is the time over which a unit change at the node acts, ∫
-    // w dt. NULL: another accelerator.
+    // Newton's, theory (66), one for each node: response of the inputs to their own change at the node. Every
+    // member responds by one linearly implicit step, theory (55); γ is the time over which a unit change at
+    // the node acts, ∫ w dt. NULL: another accelerator.
     bough_whole *jacobian[MOST_NODES];
     double span[MOST_NODES]; // γ over the macro step
     double *at;              // (n_state) where they are made
@@ -243,7 +243,7 @@ static void update_scales(bough_coupling *c) {
     }
 }
 
-// The residual of the last sweep [1], (63).
+// The residual of the last sweep [1], theory (63).
 static double evaluate(bough_coupling *c) {
     const bough_assembly *a = c->assembly;
     iteration *it = c->scheme_data;

@@ -1,4 +1,4 @@
-// All members as one system ẏ = F(t, y), (54), integrated by one method across macro steps: no
+// All members as one system ẏ = F(t, y), theory (54), integrated by one method across macro steps: no
 // coupling error. By the Rosenbrock method the members are coupled at its stages, each of which costs
 // a member what its own sub-solver would; an implicit multistep method at a tight tolerance is the
 // reference of every error figure.

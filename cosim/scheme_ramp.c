@@ -1,13 +1,13 @@
-// Ramp, linearly implicit. One linearly implicit θ-step of size H of every member, linearised at T_k, (60) of
-// docs/theory.md, predicts the inputs at the end of the step: their coupled linear equations are solved as in
+// Ramp, linearly implicit. One linearly implicit θ-step of size H of every member, linearised at T_k,
+// theory (60), predicts the inputs at the end of the step: their coupled linear equations are solved as in
 // interface.h. The leaders then advance under forces that change linearly from the value applied at the end
-// of the last step to the predicted value (61). The forces are continuous, so integrators keep their history.
-// The other members then advance once with the cubic of the resulting motion.
+// of the last step to the predicted value, theory (61). The forces are continuous, so integrators keep their
+// history. The other members then advance once with the cubic of the resulting motion.
 //
 // A parabola that is zero at both ends is added to the linear force. It contains the impulse of the force's
-// curvature and compensates the impulse deficit of earlier steps (62), so the exchanged momentum is of third
-// order without further cost. It is used on heavy interface bodies only, because elsewhere the delayed
-// compensation causes oscillations.
+// curvature and compensates the impulse deficit of earlier steps, theory (62), so the exchanged momentum is
+// of third order without further cost. It is used on heavy interface bodies only, because elsewhere the
+// delayed compensation causes oscillations.
 //
 // θ = 1/2: order 3 with that impulse, 2 without. Where the interface body is light, the eigenvalues of the
 // linearised macro step are computed before the run; if they grow, the scheme refuses the scene. On an
@@ -28,7 +28,7 @@ typedef struct ramp {
 
     // by the first prediction
     bool measured; // it has been made
-    double ratio;  // (57)
+    double ratio;  // theory (57)
     double damped; // steps that begin before have θ = 1 [s]
     bool repays;   // impulses are compensated
 
@@ -97,7 +97,7 @@ static bough_status create(bough_coupling *c, bough_arena *arena) {
     return bough_ok();
 }
 
-// -- the θ-step of every member (60) --------------------------------------------------------------
+// -- the θ-step of every member: theory (60) --------------------------------------------------------------
 
 // Leaders start from the inputs that were applied last: that is where the ramp starts.
 static void choose_inputs(bough_coupling *c) {
@@ -229,7 +229,7 @@ static bough_status predict(bough_coupling *c) {
     bough_pool_run(c->pool, 2 * a->n_member - r->n_leader, predict_member, c);
     bough_status status = bough_coupling_failure(c);
     if (!bough_is_ok(&status)) return status;
-    // the interface (56)
+    // the interface, theory (56)
     for (int i = 0; i < a->n_member; i++) {
         if (leads(c, i)) expect_inputs(c, i);
     }
@@ -304,7 +304,7 @@ static bough_status prepare(bough_coupling *c) {
 // Constant force for backward Euler: a ramp would restore the oscillations that θ = 1 damps.
 static bool held(const ramp *r) { return r->theta >= 1; }
 
-// The ramp with its parabola, (61) and (62).
+// The ramp with its parabola, theory (61, 62).
 static void set_repaying(bough_coupling *c, int member, int j, double end) {
     const ramp *r = c->scheme_data;
     double h = c->t1 - c->t0, start = c->applied[j];
@@ -355,7 +355,7 @@ static bough_status step(bough_coupling *c) {
     return status;
 }
 
-// (62): integral of the obtained value, by its parabola, minus that of the applied value.
+// theory (62): integral of the obtained value, by its parabola, minus that of the applied value.
 static void add_deficit(bough_coupling *c, int member) {
     const bough_assembly *a = c->assembly;
     const ramp *r = c->scheme_data;

@@ -1,4 +1,4 @@
-// Macro steps by their defects, (68) of docs/theory.md.
+// Macro steps by their defects, theory (68).
 #include "cosim/step_control.h"
 
 #include "cosim/scheme.h"

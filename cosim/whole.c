@@ -1,4 +1,4 @@
-// The arrowhead matrix of (55) of docs/theory.md: members are factored by themselves, the interface closes
+// The arrowhead matrix of theory (55): members are factored by themselves, the interface closes
 // them.
 #include "cosim/whole.h"
 

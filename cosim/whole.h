@@ -1,6 +1,6 @@
-// All members of an assembly as one system ẏ = F(t, y), whose inputs follow from the outputs (54): its rate,
-// and solutions of (I − γ ∂F/∂y) x = r. The matrix is an arrowhead matrix (55), solved by static
-// condensation: each member is factored separately, and the interface system is that of interface.h.
+// All members of an assembly as one system ẏ = F(t, y), whose inputs follow from the outputs, theory (54):
+// its rate, and solutions of (I − γ ∂F/∂y) x = r. The matrix is an arrowhead matrix, theory (55), solved by
+// static condensation: each member is factored separately, and the interface system is that of interface.h.
 #ifndef BOUGH_COSIM_WHOLE_H
 #define BOUGH_COSIM_WHOLE_H
 

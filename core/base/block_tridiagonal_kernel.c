@@ -1,5 +1,5 @@
-// Block Gaussian elimination from both ends towards row n/2, so that two chains of dependent blocks
-// run side by side. After factoring, with D' the reduced diagonal blocks,
+// Block Gaussian elimination, theory (26), from both ends towards row n/2, so that two chains of dependent
+// blocks run side by side. After factoring, with D' the reduced diagonal blocks,
 //                  rows up to n/2             rows after it
 //   lower    holds  L D'⁻¹ of the row above    D'⁻¹ L
 //   diagonal holds  D'⁻¹                       D'⁻¹

@@ -1,4 +1,4 @@
-// Implicit Euler steps of growing length, (72) of docs/theory.md.
+// Implicit Euler steps of growing length, theory (72).
 #include "cosim/analysis/equilibrium.h"
 
 #include <float.h>

@@ -1,4 +1,4 @@
-// Modes of the whole, (74) to (76) of docs/theory.md.
+// Modes of the whole, theory (74, 75, 76).
 #include "cosim/analysis/modes.h"
 
 #include "core/base/base.h"
@@ -27,7 +27,7 @@ void bough_modes_harmonic(int n, int h, const double *real, const double *imagin
     }
 }
 
-// (75). The sum over ±h of i h exp(i 2πh (k − l)/n) is −2 h sin(2πh (k − l)/n).
+// theory (75). The sum over ±h of i h exp(i 2πh (k − l)/n) is −2 h sin(2πh (k − l)/n).
 void bough_modes_rate(const bough_modes_def *def, double *rate) {
     int n = def->n_part;
     for (int k = 0; k < n; k++) {
@@ -61,7 +61,7 @@ static double largest(const double *x, int n) {
     return most;
 }
 
-// (76): (I − γ(J − S))⁻¹ z = Σ (−(I − γJ)⁻¹ γS)ᵏ (I − γJ)⁻¹ z
+// theory (76): (I − γ(J − S))⁻¹ z = Σ (−(I − γJ)⁻¹ γS)ᵏ (I − γJ)⁻¹ z
 static void apply(void *self, const double *z, double *image) {
     modes *m = self;
     int n = m->whole->assembly->n_state;

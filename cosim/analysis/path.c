@@ -1,4 +1,4 @@
-// Pseudo-arclength continuation, (73) of docs/theory.md.
+// Pseudo-arclength continuation, theory (73).
 #include "cosim/analysis/path.h"
 
 #include "cosim/analysis/equilibrium.h"

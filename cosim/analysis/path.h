@@ -1,5 +1,5 @@
 // A path of equilibria of the whole, F(λ, y) = 0, as the load factor λ grows and, past a limit point,
-// shrinks: pseudo-arclength continuation (73). Loads enter F linearly, so that
+// shrinks: pseudo-arclength continuation, theory (73). Loads enter F linearly, so that
 //     F(λ, y) = F(0 s, y) + λ (F(end, y) − F(0 s, y)),
 // also for negative load factors. Each step predicts along the tangent and corrects by Newton's method in the
 // plane normal to it, state and load factor together,

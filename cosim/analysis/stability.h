@@ -1,5 +1,5 @@
 // Stability analysis of a coupling before the run: the fastest growing oscillation of the linearised macro
-// step (69). The scheme itself runs on linear members, so one macro step is a linear map of
+// step, theory (69). The scheme itself runs on linear members, so one macro step is a linear map of
 // the perturbations: states, and the earlier inputs that the scheme stores. The largest eigenvalues come
 // from Arnoldi's method (modified Gram–Schmidt, twice), applied to so many macro steps that the stiff
 // modes decay and the slow modes change their phase visibly.

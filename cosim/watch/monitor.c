@@ -3,12 +3,13 @@
 //
 // Growth: a force that has grown by a factor of 100 since its first steps, and whose values obtained and
 // applied differ, is analysed, and again after each further factor of 100. The coupling is the cause if its
-// eigenvalues (69) about the current state explain that growth, and those of a shorter macro step, or of
-// another scheme there, do not. Growth that belongs to the mechanics, such as a fall or flutter, does not end
-// the run. A foreign simulator has no eigenvalues; there the coupling is the cause if the forces obtained and
-// applied differ by half their size.
+// eigenvalues, theory (69), about the current state explain that growth, and those of a shorter macro step,
+// or of another scheme there, do not. Growth that belongs to the mechanics, such as a fall or flutter, does
+// not end the run. A foreign simulator has no eigenvalues; there the coupling is the cause if the forces
+// obtained and applied differ by half their size.
 //
-// Energy: what the interfaces add or remove (70) shows an implicit coupling that is stable but wrong.
+// Energy: what the interfaces add or remove, theory (70), shows an implicit coupling that is stable but
+// wrong.
 #include "cosim/watch/monitor.h"
 
 #include "cosim/scheme.h"
@@ -186,7 +187,7 @@ static bough_status watch_size(const bough_monitor *m, const bough_coupling *c, 
 }
 
 static bough_status judge_group(const bough_monitor *m, bough_coupling *c, group *g) {
-    // the defect, (68) at t1
+    // the defect, theory (68), at t1
     double difference[3];
     for (int i = 0; i < g->count; i++) {
         difference[i] = c->input[g->first + i] - c->applied[g->first + i];

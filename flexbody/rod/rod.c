@@ -6,7 +6,7 @@
 
 #include <string.h>
 
-// The upper triangle of (11)'s mass in section axes: [mE, −ξ(s); ξ(s), I].
+// The upper triangle of the mass of theory (11) in section axes: [mE, −ξ(s); ξ(s), I].
 static void mass_matrix(const bough_vertex_inertia *v, double *upper) {
     const double *j = v->inertia;
     bough_vec3 s = v->moment;

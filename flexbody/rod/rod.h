@@ -8,8 +8,8 @@
 // acceleration:
 //     x  position relative to the BRF, in BRF axes [m]              ẋ = u − u₀ − ω×x
 //     p  rotation BRF ← section, quaternion      ṗ = ½ (p∘(0,W) − (0,ω)∘p) + κ(1 − |p|²)p
-//     u  absolute velocity, in BRF axes [m/s]                       (11)
-//     W  absolute angular velocity, in section axes [rad/s]         (11)
+//     u  absolute velocity, in BRF axes [m/s]                       theory (11)
+//     W  absolute angular velocity, in section axes [rad/s]         theory (11)
 // State arrays are component-major: state[c·N + i], c = x₁₋₃ p₀₋₃ u₁₋₃ W₁₋₃, i = vertex − 1.
 #ifndef BOUGH_FLEXBODY_ROD_ROD_H
 #define BOUGH_FLEXBODY_ROD_ROD_H
@@ -113,7 +113,7 @@ static inline int bough_rod_n_outputs(const bough_rod_model *m) {
     return bough_rod_carries(m) ? BOUGH_ROD_MOST_OUTPUTS : BOUGH_ROD_OUTPUTS;
 }
 
-// A load along the rod acts in two ways (docs/theory.md, "Bow within a segment"). It is lumped to the
+// A load along the rod acts in two ways (docs/theory.md, "Loads along a segment"). It is lumped to the
 // vertices by hat functions: these forces are in the balances of the vertices. And it gives each segment
 // the strain D q, so that the elastic law, stress = C (e − e⁰ − D q), is that of the loaded segment; q are
 // the mean and the slope of the load over the segment. Linear statics is then exact at the vertices for
@@ -209,7 +209,7 @@ void bough_rod_gather(const bough_rod_model *m, const double *state, const doubl
 // scratch->segment. False when a segment's relative rotation exceeds 120° (mesh too coarse).
 bool bough_rod_forces(const bough_rod_model *m, int first, int last, bough_rod_scratch *scratch);
 
-// (8, 9, 11): rate (13 n). False when a value is not finite or a segment over-rotates.
+// theory (11, 16): rate (13 n). False when a value is not finite or a segment over-rotates.
 bool bough_rod_derivative(const bough_rod_model *m, const bough_rod_loads *loads, double t,
                           const double *state, const double *input, bough_rod_scratch *scratch, double *rate);
 

@@ -3,7 +3,7 @@
 // m' = m×(κ⁰ + κ) − t×n, adds
 //     −χΠ,  Π = y·L e + ½ y·G y,  y = m×κ,  (n, m) = C e,  χ = 1/(1 + R κ·κ),
 // Π the part of h²/24 m'·F m' that is beyond linear statics: without it a rod that bends two ways at
-// once twists wrongly by a share of h² (docs/theory.md). χ is 1 up to higher orders and keeps the
+// once twists wrongly in proportion to h², theory (21). χ is 1 up to higher orders and keeps the
 // energy positive whatever the strains: R = h²/12 times at least the ratio of the largest to the least
 // stiffness. Inline, for loops over lanes.
 #ifndef BOUGH_FLEXBODY_ROD_ROD_ELASTIC_H

@@ -242,7 +242,7 @@ static void load_end(const bough_rod_model *m, const bough_rod_loads *loads, dou
     }
 }
 
-// (11) solved for the accelerations, all vertices: the linear part goes out in BRF axes.
+// theory (11) solved for the accelerations, all vertices: the linear part goes out in BRF axes.
 static void vertex_accelerations(const bough_rod_model *m, const bough_rod_scratch *scratch,
                                  const double *input, double *restrict rate) {
     int n = m->n, s = m->stride;
@@ -269,7 +269,7 @@ static void vertex_accelerations(const bough_rod_model *m, const bough_rod_scrat
     }
 }
 
-// ẋ = u − u₀ − ω×x and ṗ = ½ (p∘(0,W) − (0,ω)∘p) + κ(1 − |p|²)p: the last term takes back what
+// theory (16): ẋ = u − u₀ − ω×x and ṗ = ½ (p∘(0,W) − (0,ω)∘p) + κ(1 − |p|²)p: the last term takes back what
 // integration errors do to the norm, in about a second, and does not turn the section.
 static void vertex_kinematics(int n, const double *restrict state, const double *input,
                               double *restrict rate) {

@@ -70,8 +70,8 @@ BOUGH_INLINE bough_vec3 chord_moment(double h, bough_vec3 change, bough_vec3 loa
     return bough_scale(-h * h / 24, bough_cross(change, load));
 }
 
-// The same of a load that turns with the sections, in the axes of the middle: the end couples t×q h²/12 that
-// D q stands for turn with it, and leave their differences between segments.
+// theory (23): the same of a load that rotates with the sections, in the axes of the middle: the end couples
+// t×q h²/12 that D q represents rotate with it, and their differences between segments remain.
 BOUGH_INLINE bough_vec3 following_moment(double h, bough_vec3 bend, bough_vec3 load) {
     return bough_scale(-h * h / 24, bough_cross(bend, (bough_vec3){-load.y, load.x, 0}));
 }

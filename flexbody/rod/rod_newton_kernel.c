@@ -11,7 +11,7 @@ BOUGH_INLINE bough_vec3 solve_cross(bough_vec3 a, bough_vec3 y) {
 
 // -- elimination and factorisation ----------------------------------------------------------------
 
-// A_φ = (eE + ξ(a) + qqᵀ/f)⁻¹ of every vertex, a = ½γ(W + Rᵀω), q = ½γ(W − Rᵀω), by
+// theory (25): A_φ = (eE + ξ(a) + qqᵀ/f)⁻¹ of every vertex, a = ½γ(W + Rᵀω), q = ½γ(W − Rᵀω), by
 // Sherman–Morrison; e and f are 1 but for the norm's restoring κ(1 − |p|²)p, linearised.
 static void eliminate_rotations(const bough_rod_model *m, bough_rod_tangent *k) {
     int n = m->n, s = m->stride;

@@ -1,5 +1,5 @@
 // The kernel of one rod segment: strains, strain rates and the forces that are the exact gradient
-// of its energy (docs/theory.md, "Segments"), with their directional derivative. Inline, so that
+// of its energy, theory (17, 18, 19, 20), with their directional derivative. Inline, so that
 // loops over segments vectorise.
 //
 // Everything rotational is resolved in the segment's mid frame R_mid = Rₙ exp(φ/2), φ = log(RₙᵀRₙ₊₁).

@@ -1,4 +1,4 @@
-// The rod's Newton matrix (docs/theory.md, "Newton matrix"): analytic tangents, elimination of the
+// The rod's Newton matrix, theory (24): analytic tangents, elimination of the
 // kinematic rows, and solution of (I − γ ∂f/∂y) x = b through the 6×6 block-tridiagonal system in the
 // velocities
 //     (M − γ(Dᵥ + γ K A)) δv = M r_v + γ K A r_q,
@@ -53,7 +53,7 @@ bool bough_rod_linearise(const bough_rod_model *m, const bough_rod_loads *loads,
 typedef struct bough_rod_eight {
     int first;                                // segment
     _Alignas(64) double velocity[81 * 8];     // of segment forces, by velocities: as `variation`
-    _Alignas(64) double mass[36 * 8];         // of (11) with force in BRF axes
+    _Alignas(64) double mass[36 * 8];         // of theory (11) with force in BRF axes
     _Alignas(64) double own_velocity[36 * 8]; // tangents of a vertex' own terms, by u, W
 } bough_rod_eight;
 

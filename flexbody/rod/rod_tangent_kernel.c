@@ -219,7 +219,7 @@ static void keep_vertices(const bough_rod_model *m, const double *restrict state
     }
 }
 
-// The mass of (11), force in BRF axes: [mE, −Rξ(s); ξ(s)Rᵀ, Î], column j of each half, of eight
+// The mass of theory (11), force in BRF axes: [mE, −Rξ(s); ξ(s)Rᵀ, Î], column j of each half, of eight
 // vertices.
 static void mass_columns(const bough_rod_model *m, const bough_rod_tangent *k, int first, int j,
                          double *restrict mass) {
@@ -238,7 +238,7 @@ static void mass_columns(const bough_rod_model *m, const bough_rod_tangent *k, i
     }
 }
 
-// What the velocities change in (11) beyond the segments' forces.
+// Derivatives of theory (11) by the velocities, beyond those of the segments' forces.
 static void velocity_columns(const bough_rod_model *m, const bough_rod_tangent *k, int first, int j,
                              double *restrict out) {
     int s = m->stride;
