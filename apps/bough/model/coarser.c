@@ -73,11 +73,24 @@ static void change_segments(bough_arena *arena, const bough_scene *scene, bough_
     }
 }
 
+// Whether a body's own integrator takes fixed steps, whose error the companion's steps by tolerance do not
+// share.
+static bool has_fixed_sub_steps(const bough_scene *scene) {
+    for (int i = 0; i < scene->n_body; i++) {
+        const bough_scene_body *b = &scene->body[i];
+        if (bough_scene_has_mesh(b) && bough_scene_micro(scene, b)->solver == BOUGH_GENERALIZED_ALPHA)
+            return true;
+    }
+    return false;
+}
+
 // A quarter, of an order between 2 and 3. What a coupling errs by is the whole difference to a solution
-// without one: all of it by an explicit coupling; 0.4 otherwise, where steps and mesh take part.
+// without one: all of it by an explicit coupling, or fixed steps of sub-solvers; 0.4 otherwise, where steps
+// and mesh take part.
 static double usual_share(const bough_scene *scene) {
     const bough_scheme *scheme = bough_scheme_find(bough_scheme_name(scene->simulation.coupling.scheme));
-    return scheme->one_system ? 0.25 : scheme->explicit_forces ? 1 : 0.4;
+    if (scheme->one_system) return 0.25;
+    return scheme->explicit_forces || has_fixed_sub_steps(scene) ? 1 : 0.4;
 }
 
 // At order 2 the error of n segments is 1/|r² − 1| of the difference to n/r segments.
