@@ -141,10 +141,6 @@ static bough_status same_files(bough_arena *arena, const bough_scene *scene, uin
     return now == files ? bough_ok() : changed(scene->file, "");
 }
 
-static bool is_reference(const bough_study *s, const bough_case *c) {
-    return c >= s->reference_case && c < s->reference_case + s->n_reference;
-}
-
 static bough_status open_recorder(bough_arena *arena, case_run *r) {
     bough_recorder_def def = {
         .folder = r->drive->folder, .title = r->chosen->settings, .channels = &r->run.channels};
@@ -160,7 +156,7 @@ static bough_status build(bough_arena *arena, case_run *r) {
     if (!bough_is_ok(&status)) return status;
     int threads = s->is.parallel ? 1 : s->threads;
     if (threads > 0) scene->simulation.threads = threads;
-    if (is_reference(s, r->chosen)) scene->simulation.error_estimate = BOUGH_SCENE_NO_ESTIMATE;
+    if (bough_is_reference(s, r->chosen)) scene->simulation.error_estimate = BOUGH_SCENE_NO_ESTIMATE;
     if (!r->series) scene->simulation.output.from = s->from;
     if (r->drive->boxes) scene->aero.wind.def.box = r->box = bough_boxes_lend(r->drive->boxes, scene);
     bough_status built = bough_run_create(arena, scene, &r->run);

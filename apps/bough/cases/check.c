@@ -100,14 +100,10 @@ static void report(const bough_error *e, const char *scene, const bough_node *or
     if (!is_reported(errors, &where, e)) bough_errors_add(errors, &where, e->path, "%s", e->text);
 }
 
-static bool is_reference(const bough_study *s, const bough_case *c) {
-    return c >= s->reference_case && c < s->reference_case + s->n_reference;
-}
-
 // Where the study says what the error in the case's scene is about.
 static const bough_node *origin(const bough_study *s, const bough_case *c, const bough_error *e) {
     const bough_load_group *g = &s->group[c->group];
-    bool reference = is_reference(s, c);
+    bool reference = bough_is_reference(s, c);
     const bough_study_setting *found = concerned_value(&g->grid, c->index, e);
     if (!found && reference) found = concerned(&s->reference, e);
     if (!found) found = concerned(&g->set, e);
@@ -251,7 +247,7 @@ static void check_duration(const check *k, const bough_case *c, const bough_scen
         s->interval = scene->simulation.output.interval;
     } else if (!s->is.compared) {
         check_from(s, scene, c, k->errors);
-    } else if (s->duration > 0 && !is_reference(s, c)) {
+    } else if (s->duration > 0 && !bough_is_reference(s, c)) {
         check_times(s, c, &scene->simulation, k->errors);
     }
 }

@@ -8,12 +8,23 @@
 #include <stdlib.h>
 #include <string.h>
 
-// cases.csv, a row a case with its channels' statistics, and costs.csv beside it, row by row.
-typedef struct case_tables {
+enum { PANELS = 6, VALUES = 3 }; // channels in plot.svg; least, largest and mean of each
+
+// What is kept of each case for costs.csv and plot.svg; NaN in the mean where it failed.
+typedef struct note {
+    double simulated, cpu, wall; // [s]
+    double shown[PANELS][VALUES];
+} note;
+
+// The tables and what they are made of.
+typedef struct conclusion {
     const bough_study *study;
-    FILE *cases, *costs;
-    char cases_path[4096], costs_path[4096];
-} case_tables;
+    const char *folder;
+    bough_lifetime lifetime;
+    bough_chart chart;
+    note *note;     // (n_case)
+    char *failures; // a text
+} conclusion;
 
 // -- cases ----------------------------------------------------------------------------------------
 
@@ -45,20 +56,8 @@ static void put_channel(const bough_study *s, const bough_case_result *r, int i,
     }
 }
 
-static bough_status open_tables(const char *folder, const bough_study *study, case_tables *t) {
-    *t = (case_tables){.study = study};
-    bough_status status = bough_folder_open(folder, "cases.csv", t->cases_path, &t->cases);
-    if (bough_is_ok(&status)) status = bough_folder_open(folder, "costs.csv", t->costs_path, &t->costs);
-    if (!bough_is_ok(&status)) return status;
-    head_cases(study, t->cases);
-    fputs("case,simulated [s],cpu [s],wall [s]\n", t->costs);
-    return status;
-}
-
-static void add_row(case_tables *t, int number, const bough_case_result *r) {
-    const bough_study *s = t->study;
+static void put_case(const bough_study *s, int number, const bough_case_result *r, FILE *f) {
     const bough_case *c = &s->cases[number];
-    FILE *f = t->cases;
     bool good = r->done && bough_is_ok(&r->outcome);
     fprintf(f, "%d", number + 1);
     for (int i = 0; i < s->grid.n; i++) bough_csv_next(f, bough_study_value(s, c, i));
@@ -75,24 +74,6 @@ static void add_row(case_tables *t, int number, const bough_case_result *r) {
             for (int k = 0; k < 4 + s->n_slope; k++) fputs(",nan", f);
     }
     fputc('\n', f);
-    fprintf(t->costs, "%d,%.9g,%.6g,%.6g\n", number + 1, r->done ? r->time : 0, r->cpu, r->wall);
-}
-
-// Gives the files their names, or with `keep` false removes them.
-static bough_status close_tables(case_tables *t, bool keep) {
-    bough_status status = bough_ok();
-    FILE *const file[] = {t->cases, t->costs};
-    const char *const path[] = {t->cases_path, t->costs_path};
-    for (int i = 0; i < 2; i++) {
-        if (!file[i]) continue;
-        if (!keep) {
-            bough_folder_discard(path[i], file[i]);
-            continue;
-        }
-        bough_status end = bough_folder_commit(path[i], file[i]);
-        if (bough_is_ok(&status)) status = end;
-    }
-    return status;
 }
 
 // -- lifetime -------------------------------------------------------------------------------------
@@ -246,8 +227,6 @@ static void print_lifetime(const bough_lifetime *l, FILE *f) {
 
 // -- plot.svg -------------------------------------------------------------------------------------
 
-enum { PANELS = 6, VALUES = 3 }; // channels shown; least, largest and mean of each
-
 // The value of the grid's first key as a number; its place in the list where it is none.
 static double across_of(const bough_study *s, int number) {
     const bough_study_axis *axis = &s->grid.axis[0];
@@ -262,14 +241,13 @@ static void add_panel(bough_chart *chart, const bough_study *s, int i, const cha
     bough_chart_add_panel(chart, heading, across, logarithmic, false);
 }
 
-// Sweeps: mean, least and largest value of channels over the first key of the grid; value (n_case × PANELS ×
-// VALUES), NaN where a case failed.
-static void plot_sweep(bough_chart *chart, const bough_study *s, const double *value) {
+// Sweeps: mean, least and largest value of channels over the first key of the grid.
+static void plot_sweep(bough_chart *chart, const bough_study *s, const note *notes) {
     for (int k = 0; k < s->n_channel && k < PANELS; k++) {
         add_panel(chart, s, k, s->grid.axis[0].label, false);
         bough_chart_add_line(chart, (bough_chart_line){.marked = true});
         for (int i = 0; i < s->n_case; i++) {
-            const double *v = value + (i * PANELS + k) * VALUES;
+            const double *v = notes[i].shown[k];
             if (!isfinite(v[2])) continue;
             const char *hint = bough_arena_print(chart->arena, "%s: %.5g (%.5g to %.5g)",
                                                  s->cases[i].settings, v[2], v[0], v[1]);
@@ -332,40 +310,47 @@ void bough_case_failed(const bough_study *s, int number, const bough_status *out
 
 // -- conclusion -----------------------------------------------------------------------------------
 
-static void note_shown(const bough_study *s, const bough_case_result *r, double *shown) {
+static void keep(const bough_study *s, const bough_case_result *r, note *to) {
     bool good = r->done && bough_is_ok(&r->outcome);
-    for (int k = 0; k < s->n_channel && k < PANELS; k++, shown += VALUES) {
+    to->simulated = r->done ? r->time : 0;
+    to->cpu = r->cpu;
+    to->wall = r->wall;
+    for (int k = 0; k < s->n_channel && k < PANELS; k++) {
         const bough_sample_statistics *x = &r->counts.channel[k].statistics;
         const double values[VALUES] = {x->least, x->most, good ? x->mean : (double)NAN};
-        memcpy(shown, values, sizeof values);
+        memcpy(to->shown[k], values, sizeof values);
     }
 }
 
-// Reads the results one after the other: their number costs no memory.
-static bough_status read_all(bough_arena *arena, const bough_study_results *x, case_tables *tables,
-                             double *shown, bough_lifetime *lifetime, FILE *failures) {
-    bough_case_result result = bough_case_take(arena, x->study);
-    for (int i = 0; i < x->study->n_case; i++) {
-        bough_status status = bough_store_read(x->options->folder, x->study, &x->study->cases[i], &result);
-        if (!bough_is_ok(&status)) return status;
-        add_row(tables, i, &result);
-        note_shown(x->study, &result, shown + (size_t)i * PANELS * VALUES);
-        bough_lifetime_add(lifetime, i, &result);
-        if (result.done && !bough_is_ok(&result.outcome)) {
-            bough_case_failed(x->study, i, &result.outcome, failures);
+// Reads the results one after the other into cases.csv and the conclusion: their number costs little memory.
+static bough_status read_all(bough_arena *arena, conclusion *c, FILE *failures) {
+    const bough_study *s = c->study;
+    bough_case_result result = bough_case_take(arena, s);
+    char path[BOUGH_PATH_MAX];
+    FILE *file;
+    bough_status status = bough_folder_open(c->folder, "cases.csv", path, &file);
+    if (!bough_is_ok(&status)) return status;
+    head_cases(s, file);
+    for (int i = 0; i < s->n_case; i++) {
+        status = bough_store_read(c->folder, s, &s->cases[i], &result);
+        if (!bough_is_ok(&status)) {
+            bough_folder_discard(path, file);
+            return status;
         }
+        put_case(s, i, &result, file);
+        keep(s, &result, &c->note[i]);
+        bough_lifetime_add(&c->lifetime, i, &result);
+        if (result.done && !bough_is_ok(&result.outcome)) bough_case_failed(s, i, &result.outcome, failures);
     }
-    return bough_ok();
+    return bough_folder_commit(path, file);
 }
 
-// The content of table.txt and plot.svg.
-typedef struct conclusion {
-    const bough_study *study;
-    const char *folder;
-    const bough_lifetime *lifetime;
-    const bough_chart *chart;
-    char *failures; // a text
-} conclusion;
+static void put_costs(const void *self, FILE *f) {
+    const conclusion *c = self;
+    fputs("case,simulated [s],cpu [s],wall [s]\n", f);
+    for (int i = 0; i < c->study->n_case; i++)
+        fprintf(f, "%d,%.9g,%.6g,%.6g\n", i + 1, c->note[i].simulated, c->note[i].cpu, c->note[i].wall);
+}
 
 static void print_table(const void *self, FILE *f) {
     const conclusion *c = self;
@@ -373,19 +358,25 @@ static void print_table(const void *self, FILE *f) {
     fprintf(f, "%s\n", s->title ? s->title : s->file);
     if (!s->is.weighted) {
         fprintf(f, "%d runs, %d failed; statistics of %d channels from %g s on in cases.csv\n", s->n_case,
-                c->lifetime->n_failed, s->n_channel, s->from);
+                c->lifetime.n_failed, s->n_channel, s->from);
     } else {
-        print_lifetime(c->lifetime, f);
+        print_lifetime(&c->lifetime, f);
     }
     fputs(c->failures, f);
 }
 
-static bough_status write_all(const conclusion *c) {
-    bool sweep = !c->study->is.weighted;
-    bough_status status = sweep ? bough_ok() : write_lifetime(c->lifetime, c->folder);
+static bough_status write_all(conclusion *c) {
+    bool weighted = c->study->is.weighted;
+    if (weighted)
+        plot_ranges(&c->chart, &c->lifetime);
+    else
+        plot_sweep(&c->chart, c->study, c->note);
+    bough_status status = bough_folder_write(c->folder, "costs.csv", put_costs, c);
+    if (bough_is_ok(&status) && weighted) status = write_lifetime(&c->lifetime, c->folder);
     if (bough_is_ok(&status)) status = bough_folder_write(c->folder, "table.txt", print_table, c);
-    return bough_is_ok(&status) ? bough_folder_write(c->folder, "plot.svg", bough_chart_write, c->chart)
-                                : status;
+    if (bough_is_ok(&status))
+        status = bough_folder_write(c->folder, "plot.svg", bough_chart_write, &c->chart);
+    return status;
 }
 
 static bough_status judge(const bough_study_results *x, const bough_lifetime *l) {
@@ -400,27 +391,21 @@ static bough_status judge(const bough_study_results *x, const bough_lifetime *l)
 }
 
 static bough_status conclude_in(bough_arena *arena, const bough_study_results *x) {
-    bough_lifetime lifetime = bough_lifetime_take(arena, x->study);
-    bough_chart chart = bough_chart_start(arena, NULL, 2);
-    double *shown = bough_arena_doubles(arena, (size_t)x->study->n_case * PANELS * VALUES);
-    case_tables tables;
-    conclusion all = {x->study, x->options->folder, &lifetime, &chart, NULL};
+    const bough_study *study = x->study;
+    conclusion c = {.study = study,
+                    .folder = x->options->folder,
+                    .lifetime = bough_lifetime_take(arena, study),
+                    .chart = bough_chart_start(arena, NULL, 2),
+                    .note = bough_arena_take(arena, (size_t)study->n_case * sizeof *c.note)};
     size_t size = 0;
-    FILE *stream = open_memstream(&all.failures, &size);
+    FILE *stream = open_memstream(&c.failures, &size);
     if (!stream) bough_arena_leave(arena);
-    bough_status status = open_tables(x->options->folder, x->study, &tables);
-    if (bough_is_ok(&status)) status = read_all(arena, x, &tables, shown, &lifetime, stream);
-    bough_status end = close_tables(&tables, bough_is_ok(&status));
-    if (bough_is_ok(&status)) status = end;
+    bough_status status = read_all(arena, &c, stream);
     fclose(stream);
-    if (x->study->is.weighted)
-        plot_ranges(&chart, &lifetime);
-    else
-        plot_sweep(&chart, x->study, shown);
-    if (bough_is_ok(&status)) status = write_all(&all);
-    if (bough_is_ok(&status)) print_table(&all, x->options->stream);
-    if (bough_is_ok(&status)) status = judge(x, &lifetime);
-    free(all.failures);
+    if (bough_is_ok(&status)) status = write_all(&c);
+    if (bough_is_ok(&status)) print_table(&c, x->options->stream);
+    if (bough_is_ok(&status)) status = judge(x, &c.lifetime);
+    free(c.failures);
     return status;
 }
 

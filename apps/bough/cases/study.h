@@ -182,6 +182,11 @@ const char *bough_study_path(bough_arena *arena, const char *study, const char *
 // The value of a grid key in a case; for the reference what its replacements say, "" if nothing.
 const char *bough_study_value(const bough_study *study, const bough_case *c, int axis);
 
+// Whether a case is a reference of the study.
+static inline bool bough_is_reference(const bough_study *study, const bough_case *c) {
+    return c >= study->reference_case && c < study->reference_case + study->n_reference;
+}
+
 // How many times the case's run occurs in the lifetime, of which `counted` seconds were counted;
 // 0: no fatigue.
 double bough_case_weight(const bough_study *study, const bough_case *c, double counted);

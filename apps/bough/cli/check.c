@@ -208,26 +208,11 @@ static bough_status print_results(bough_arena *arena, bough_simulation *s, const
     bough_shape shape;
     bough_status status = bough_shape_create(arena, s, &shape);
     if (!bough_is_ok(&status)) return status;
-    bough_forecast_print(bough_run_results(s, channels, bough_forecast_points(&shape)), channels, stdout);
+    bough_forecast_print(bough_run_results(s, channels, &shape), channels, stdout);
     return status;
 }
 
 // -- cost -----------------------------------------------------------------------------------------
-
-// Wall time of one evaluation of a member's derivative, the shortest of many [s].
-static double derivative_time(const bough_coupling *c, int member, double *rate) {
-    const bough_assembly *a = c->assembly;
-    const bough_member *m = a->member[member];
-    const bough_system *s = &m->system;
-    const double *input = c->input + a->input_offset[member];
-    double shortest = HUGE_VAL;
-    for (int i = 0; i < 200; i++) {
-        double began = bough_wall_clock();
-        s->ops->derivative(s->self, m->time, m->state, input, rate);
-        shortest = fmin(shortest, bough_wall_clock() - began);
-    }
-    return shortest;
-}
 
 static bough_status print_cost(const bough_simulation *s, bough_arena *arena) {
     const bough_assembly *a = s->master->assembly;
@@ -235,7 +220,7 @@ static bough_status print_cost(const bough_simulation *s, bough_arena *arena) {
     double *rate = bough_arena_doubles(arena, (size_t)a->n_state + 1);
     for (int i = 0; i < a->n_member; i++) {
         if (a->member[i]->opaque) continue;
-        double time = derivative_time(s->master->coupling, i, rate);
+        double time = bough_forecast_derivative(s->master->coupling, i, 200, rate);
         printf("derivative_us %s: %.3g\n", a->member[i]->system.name, 1e6 * time);
     }
     return bough_ok();

@@ -17,9 +17,10 @@ static double samples(double duration, double interval) {
 }
 
 bough_forecast bough_run_results(const bough_simulation *simulation, const bough_channels *channels,
-                                 double n_point) {
+                                 const bough_shape *shape) {
     const bough_scene_output *output = &simulation->scene->simulation.output;
-    double duration = simulation->master->duration;
+    double duration = simulation->master->duration, n_point = 0;
+    for (int k = 0; k < shape->n_line; k++) n_point += shape->line[k].n_point;
     double row = COLUMN * (channels->count + 1.0) + 1 + (output->binary ? 2 * channels->count : 0);
     double rows = 1 + ceil(duration / output->interval - 1e-9); // the end is recorded too
     return (bough_forecast){rows, row * rows + (frame_head + frame_point * n_point) *
@@ -31,33 +32,31 @@ void bough_forecast_print(bough_forecast f, const bough_channels *channels, FILE
             1e-6 * f.bytes);
 }
 
-double bough_forecast_points(const bough_shape *shape) {
-    double n = 0;
-    for (int k = 0; k < shape->n_line; k++) n += shape->line[k].n_point;
-    return n;
-}
-
-// Each macro step evaluates every member at least twice; the shortest of some evaluations [s].
-static double least_step_time(const bough_run *run) {
-    bough_coupling *c = run->simulation->master->coupling;
+double bough_forecast_derivative(const bough_coupling *c, int member, int tries, double *rate) {
     const bough_assembly *a = c->assembly;
+    const bough_member *m = a->member[member];
+    const bough_system *s = &m->system;
     double shortest = HUGE_VAL;
-    for (int k = 0; k < 5; k++) {
+    for (int k = 0; k < tries; k++) {
         double began = bough_wall_clock();
-        for (int i = 0; i < a->n_member; i++) {
-            bough_coupling_output_rate(c, i, a->member[i]->time, c->input + a->input_offset[i], NULL,
-                                       c->advanced.start_rate + a->output_offset[i]);
-        }
+        s->ops->derivative(s->self, m->time, m->state, c->input + a->input_offset[member], rate);
         shortest = fmin(shortest, bough_wall_clock() - began);
     }
-    return 2 * shortest;
+    return shortest;
+}
+
+// Each macro step evaluates every member at least twice [s].
+static double least_step_time(const bough_run_command *command) {
+    const bough_coupling *c = command->run.simulation->master->coupling;
+    double sum = 0, *rate = bough_arena_doubles(command->arena, (size_t)c->assembly->n_state + 1);
+    for (int i = 0; i < c->assembly->n_member; i++) sum += bough_forecast_derivative(c, i, 5, rate);
+    return 2 * sum;
 }
 
 bough_status bough_run_forecast(const bough_run_command *command, FILE *stream) {
     const bough_run *run = &command->run;
     const bough_master *m = run->simulation->master;
-    bough_forecast results =
-        bough_run_results(run->simulation, &command->recorded, bough_forecast_points(&command->shape));
+    bough_forecast results = bough_run_results(run->simulation, &command->recorded, &command->shape);
     double steps = m->duration / m->macro_step, bytes = results.bytes;
     struct statvfs disk;
     double room =
@@ -72,6 +71,6 @@ bough_status bough_run_forecast(const bough_run_command *command, FILE *stream) 
     fflush(stream);
     if (steps <= long_run && bytes <= much_data) return bough_ok();
     fprintf(stderr, "bough: %.3g macro steps, more than %.2g hours\n", steps,
-            steps * least_step_time(run) / 3600);
+            steps * least_step_time(command) / 3600);
     return bough_ok();
 }

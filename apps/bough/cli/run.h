@@ -78,12 +78,12 @@ typedef struct bough_forecast {
     double bytes; // of all files
 } bough_forecast;
 
-// Points of all lines of a shape.
-double bough_forecast_points(const bough_shape *shape);
-
-// Of the simulation with its channels and a shape of so many points.
+// Of the simulation with its channels and the shape that is stored.
 bough_forecast bough_run_results(const bough_simulation *simulation, const bough_channels *channels,
-                                 double n_point);
+                                 const bough_shape *shape);
+
+// Wall time of one evaluation of a member's derivative, the shortest of `tries` [s]; rate: of its states.
+double bough_forecast_derivative(const bough_coupling *c, int member, int tries, double *rate);
 
 // Writes "results: 101 rows of 6 columns, 0.012 MB".
 void bough_forecast_print(bough_forecast forecast, const bough_channels *channels, FILE *stream);
