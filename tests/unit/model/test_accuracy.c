@@ -68,6 +68,33 @@ TEST(keys_replace_one_by_one) {
     check_near(f.scene->simulation.macro_step, 0.005, 1e-12, 0); // 15 ms and 1.2 s are multiples
 }
 
+// Settings that follow lead one to expect the accuracy; those that are named, what their orders say.
+TEST(settings_let_errors_be_expected) {
+    fixture f = accepted(BAR(""));
+    bough_scene_expectation e = bough_scene_expect_errors(f.scene);
+    for (int k = 0; k < 3; k++) {
+        check_near(e.error[k], k == 1 ? 0 : 1, 1e-12, 0); // no air
+        assert_false(e.named[k]);
+    }
+    f = accepted(BAR(", master: {rtol: 2e-4}"));
+    e = bough_scene_expect_errors(f.scene);
+    check_near(e.error[2], 4, 1e-12, 0);
+    assert_true(e.named[2] && !e.named[0]);
+    f.scene->body[0].rod.n_segment = 8;
+    check_near(bough_scene_expect_errors(f.scene).error[0], 16, 1e-12, 0);
+    f.scene->body[0].fidelity = BOUGH_SCENE_RIGID;
+    check_near(bough_scene_expect_errors(f.scene).error[0], 0, 0, 0);
+}
+
+// A modal body has a segment for each piece at least.
+TEST(pieces_have_segments) {
+    fixture f = accepted("simulation: {duration: 1.2 s}\nbodies:\n"
+                         "  - {name: b, fidelity: segmented-modal, joint: {kind: fixed, parent: ground},\n"
+                         "     modal: {modes: 2, pieces: 40}, rod: {length: 2,\n"
+                         "     stiffness: [1, 1, 1, 1, 1, 1], mass: [1, 0, 0, 1, 1, 0]}}\n");
+    assert_int_equal(f.scene->body[0].rod.n_segment, 40);
+}
+
 TEST(durations_without_a_round_step_are_divided) {
     fixture f = accepted("simulation: {duration: 0.777777777}\nbodies:\n" BODY("a", "ground"));
     double count = 0.777777777 / f.scene->simulation.macro_step;
