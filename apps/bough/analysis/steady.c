@@ -40,11 +40,9 @@ bough_status bough_steady_turning(const bough_simulation *s, const bough_beam *b
                           beam->body->name, modes->about_name == NULL ? "" : " of ",
                           modes->about_name == NULL ? "" : modes->about_name);
     }
-    const bough_frame *frame = &s->tree->bodies[pivot - s->scene->body];
-    bough_transform pose = bough_tree_frame_pose(s->view, frame);
-    const bough_vec3 axes[3] = {pose.rotation.c1, pose.rotation.c2, pose.rotation.c3};
-    turning->axis = axes[pivot->joint.axis];
-    turning->centre = pose.position;
+    int body = (int)(pivot - s->scene->body);
+    turning->axis = bough_simulation_joint_axis(s, body);
+    turning->centre = bough_tree_frame_pose(s->view, &s->tree->bodies[body]).position;
     return bough_ok();
 }
 

@@ -65,10 +65,9 @@ void bough_aero_motion_rotor(bough_aero_motion *m, double t) {
     const bough_scene_turbine *turbine = &s->scene->turbine;
     bough_simulation_update(s);
     bough_transform rotor = bough_tree_frame_pose(s->view, &s->tree->bodies[turbine->rotor]);
-    const bough_vec3 axes[3] = {rotor.rotation.c1, rotor.rotation.c2, rotor.rotation.c3};
     m->found.time = t;
     m->found.hub = rotor.position;
-    m->found.shaft = axes[s->scene->body[turbine->rotor].joint.axis];
+    m->found.shaft = bough_simulation_joint_axis(s, turbine->rotor);
 }
 
 void bough_aero_motion_blade(bough_aero_motion *m, int b) {

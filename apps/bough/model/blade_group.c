@@ -17,10 +17,7 @@ static bool same_structure(const bough_rod_def *a, const bough_rod_def *b) {
 // Angle of a blade's span about the shaft from the upright, or from the ground's x where the shaft
 // is upright, in [0, 2π).
 static double azimuth_of(const bough_simulation *s, const bough_beam *blade) {
-    int rotor = s->scene->turbine.rotor;
-    bough_mat3 r = bough_tree_frame_pose(s->view, &s->tree->bodies[rotor]).rotation;
-    const bough_vec3 axes[3] = {r.c1, r.c2, r.c3};
-    bough_vec3 shaft = axes[s->scene->body[rotor].joint.axis], zero = bough_v3(0, 0, 1);
+    bough_vec3 shaft = bough_simulation_joint_axis(s, s->scene->turbine.rotor), zero = bough_v3(0, 0, 1);
     if (fabs(shaft.z) > 0.9) zero = bough_v3(1, 0, 0);
     zero = bough_axpy(-bough_dot(zero, shaft), shaft, zero);
     bough_vec3 span = bough_tree_frame_pose(s->view, &s->tree->markers[blade->marker]).rotation.c3;
@@ -54,10 +51,7 @@ static bool hangs_on(const bough_tree *tree, int link, int rotor) {
 // How far the blade's pitch is from the first one's: of x and y of its frame about the span.
 static double pitch_between(const bough_simulation *s, const bough_beam *first, const bough_beam *blade,
                             double angle) {
-    int rotor = s->scene->turbine.rotor;
-    bough_mat3 r = bough_tree_frame_pose(s->view, &s->tree->bodies[rotor]).rotation;
-    const bough_vec3 axes[3] = {r.c1, r.c2, r.c3};
-    bough_vec3 turn = bough_scale(angle, axes[s->scene->body[rotor].joint.axis]);
+    bough_vec3 turn = bough_scale(angle, bough_simulation_joint_axis(s, s->scene->turbine.rotor));
     bough_mat3 p = bough_tree_frame_pose(s->view, &s->tree->markers[first->marker]).rotation;
     bough_mat3 q = bough_tree_frame_pose(s->view, &s->tree->markers[blade->marker]).rotation;
     bough_mat3 moved = bough_rotation_matrix(bough_quaternion_exponential(turn));

@@ -25,17 +25,10 @@ static int find_hub(const bough_scene *scene) {
     return hub;
 }
 
-static bough_vec3 axis_of(const bough_scene *scene, int body) {
-    return bough_placement_axis(scene->body[body].joint.axis);
-}
-
-// A joint's own angle leaves its axis where it is.
 static bool turns_about_rotor_axis(const bough_simulation *s, int body) {
-    const bough_scene *scene = s->scene;
-    if (scene->body[body].joint.kind != BOUGH_JOINT_REVOLUTE) return false;
-    bough_transform pose = bough_tree_frame_pose(s->view, &s->tree->bodies[body]);
-    bough_vec3 axis = bough_mat3_mul(pose.rotation, axis_of(scene, body));
-    return bough_dot(axis, bough_simulation_rotor(s).axis) > 1 - 1e-9;
+    if (s->scene->body[body].joint.kind != BOUGH_JOINT_REVOLUTE) return false;
+    bough_vec3 rotor = bough_simulation_joint_axis(s, s->scene->turbine.rotor);
+    return bough_dot(bough_simulation_joint_axis(s, body), rotor) > 1 - 1e-9;
 }
 
 static bough_inertia inertia_of(const bough_scene_body *b) {
@@ -108,7 +101,7 @@ static double inertial_torque(const shaft *x) {
     a.linear = bough_sub(a.linear, fall.linear);
     bough_wrench spun = bough_wrench_cross(d->twist[link], bough_inertia_mul(&x->inertia, d->twist[link]));
     bough_wrench w = bough_wrench_add(bough_inertia_mul(&x->inertia, a), spun);
-    return bough_dot(w.moment, axis_of(s->scene, x->body));
+    return bough_dot(w.moment, bough_placement_axis(s->scene->body[x->body].joint.axis));
 }
 
 static bool has_inertia(const bough_inertia *i) {

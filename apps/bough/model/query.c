@@ -39,14 +39,21 @@ double bough_simulation_pitch(const bough_simulation *s, const bough_beam *beam)
     return beam->body->pitch - s->leader.state[coordinate];
 }
 
+bough_vec3 bough_simulation_joint_axis(const bough_simulation *s, int body) {
+    bough_mat3 r = bough_tree_frame_pose(s->view, &s->tree->bodies[body]).rotation;
+    const bough_vec3 axes[] = {
+        [BOUGH_SCENE_X] = r.c1,
+        [BOUGH_SCENE_Y] = r.c2,
+        [BOUGH_SCENE_Z] = r.c3,
+    };
+    return axes[s->scene->body[body].joint.axis];
+}
+
 bough_rotor_place bough_simulation_rotor(const bough_simulation *s) {
     const bough_scene *scene = s->scene;
     int body = scene->turbine.rotor;
     bough_transform hub = bough_tree_frame_pose(s->view, &s->tree->bodies[body]);
-    double along[3] = {0};
-    along[scene->body[body].joint.axis] = 1; // unchanged by the joint's own turn
-    bough_rotor_place r = {hub.position, bough_mat3_mul(hub.rotation, bough_v3(along[0], along[1], along[2])),
-                           0};
+    bough_rotor_place r = {hub.position, bough_simulation_joint_axis(s, body), 0};
     for (int k = 0; k < scene->turbine.n_blade; k++) {
         const bough_beam *blade = bough_simulation_beam(s, scene->turbine.blade[k]);
         bough_transform root = bough_tree_frame_pose(s->view, &s->tree->markers[blade->marker]);

@@ -107,6 +107,10 @@ const double *bough_beam_state(const bough_simulation *s, const bough_beam *beam
 // in `input`.
 void bough_beam_ride(const bough_beam *beam, const double *input, double *state);
 
+// The axis of a body's joint in `view`, a unit vector in ground axes; the joint's own angle leaves it where
+// it is.
+bough_vec3 bough_simulation_joint_axis(const bough_simulation *s, int body);
+
 // The turbine's rotor in `view`: hub and axis of its joint in ground axes, and the largest distance of the
 // blades' undeformed tips from that axis.
 typedef struct bough_rotor_place {
