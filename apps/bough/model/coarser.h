@@ -22,7 +22,7 @@ bough_scene *bough_coarser_scene(bough_arena *arena, const bough_scene *scene, i
 bough_scene *bough_coarser_scene_beside(bough_arena *arena, const bough_simulation *run, int parts);
 
 // The part of the difference between solutions of the scene and of such a copy that the scene's solution errs
-// by: a quarter, between an order of 2 and of 3; 0.4 with a coupling, whose error the copy does not share;
+// by: a quarter, between an order of 2 and of 3; half with a coupling, whose error the copy does not share;
 // more where meshes differ by less than a factor of two; the whole one where the mesh is finer or the
 // coupling is explicit.
 double bough_coarser_share(const bough_scene *scene, const bough_scene *other);
