@@ -21,7 +21,9 @@ typedef enum bough_level {
 #define BOUGH_OF_LEVEL(name, level)                                                                          \
     ((level) == BOUGH_LEVEL_V4 ? name##_v4 : (level) == BOUGH_LEVEL_V3 ? name##_v3 : name##_v2)
 
-// Its name in the file of kernels that defines it: BOUGH_LEVEL is what the file is compiled for.
+// Its name in the file of kernels that defines it: BOUGH_LEVEL is what the file is compiled for. BOUGH_WIDTH
+// is how many doubles a vector of the level has: a loop over as many is one vector and no loop, and the rows
+// that it reads lie at offsets from few pointers.
 #define BOUGH_AT_LEVEL(name) BOUGH_JOIN_LEVEL(name, BOUGH_LEVEL)
 #define BOUGH_JOIN_LEVEL(name, level) BOUGH_JOIN_NAMES(name, level)
 #define BOUGH_JOIN_NAMES(name, level) name##_##level

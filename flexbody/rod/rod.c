@@ -111,7 +111,7 @@ static bough_status set_vertex(bough_rod_model *m, const bough_rod_def *def, int
                           " definite",
                           m->name, i);
     }
-    for (int k = 0; k < 21; k++) m->inverse_mass[k * s + i - 1] = inverse[k];
+    for (int k = 0; k < 21; k++) bough_rod_tile(m->inverse_mass, 21, i - 1)[k * BOUGH_LANES] = inverse[k];
     for (int k = 0; k < 6; k++) m->inertia[k * s + i - 1] = v->inertia[k];
     m->mass[i - 1] = v->mass;
     m->moment[i - 1] = v->moment.x;

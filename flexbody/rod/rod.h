@@ -86,7 +86,7 @@ typedef struct bough_rod_model {
     double *mass;                 // of moving vertices (stride) [kg]
     double *moment;               // first moment s = mζ of moving vertices (3 × stride) [kg m]
     double *inertia;              // of moving vertices (6 × stride) [kg m²]
-    double *inverse_mass;         // of the 6×6 mass in section axes (21 × stride)
+    double *inverse_mass;         // of the 6×6 mass in section axes (21 × stride), by tiles
     bough_vertex_inertia *vertex; // (N + 1); vertex 0 belongs to the carrier
 } bough_rod_model;
 

@@ -23,12 +23,12 @@ static void gather_input(const bough_rod_model *m, const double *input, bough_ro
     for (int c = 0; c < BOUGH_ROD_STATES; c++) vertex[c * s + m->n + 1] = end[c];
 }
 
-// Moving vertices first to last.
-static void gather_state(const bough_rod_model *m, const double *restrict state, int first, int last,
-                         double *restrict vertex) {
+// `count` moving vertices from the first on.
+BOUGH_INLINE void gather_some(const bough_rod_model *m, const double *restrict state, int first, int count,
+                              double *restrict vertex) {
     int n = m->n, s = m->stride;
 #pragma omp simd
-    for (int i = first; i <= last; i++) {
+    for (int i = first; i < first + count; i++) {
         const double *restrict y = state + i - 1;
         double w = y[3 * n], x = y[4 * n], v = y[5 * n], z = y[6 * n];
         double scale = 1 / sqrt(w * w + x * x + v * v + z * z);
@@ -40,22 +40,32 @@ static void gather_state(const bough_rod_model *m, const double *restrict state,
     }
 }
 
+// Moving vertices first to last.
+static void gather_state(const bough_rod_model *m, const double *state, int first, int last, double *vertex) {
+    int i = first;
+    for (; i + BOUGH_WIDTH <= last + 1; i += BOUGH_WIDTH) gather_some(m, state, i, BOUGH_WIDTH, vertex);
+    for (; i <= last; i++) gather_some(m, state, i, 1, vertex);
+}
+
 void AT(gather)(const bough_rod_model *m, const double *state, const double *input,
                 bough_rod_scratch *scratch) {
     gather_input(m, input, scratch);
     gather_state(m, state, 1, m->n, scratch->vertex);
 }
 
-// The forces of segments first..first + 7 into rows of the given stride, and cos θ/2 of each.
-static void force_eight(const bough_rod_model *m, const bough_rod_scratch *scratch, int first,
-                        double *restrict out, int stride, double *restrict cosine) {
+// The forces of as many segments as a vector has lanes into rows of the given stride, and cos θ/2 of each.
+// Inlined into the loop over vectors, the pointers to all rows would be carried through it, in memory.
+static __attribute__((noinline)) void find_forces(const bough_rod_model *m, const bough_rod_scratch *scratch,
+                                                  int first, double *restrict out, int stride,
+                                                  double *restrict cosine) {
     int s = m->stride;
     const double *restrict vertex = scratch->vertex + first, *restrict rest = scratch->rest + first;
-    const double *restrict c = m->stiffness + 21 * first, *restrict d = m->damping + 21 * first;
-    const double *restrict gradient = m->gradient + 25 * first;
+    const double *restrict c = bough_rod_tile(m->stiffness, 21, first);
+    const double *restrict d = bough_rod_tile(m->damping, 21, first);
+    const double *restrict gradient = bough_rod_tile(m->gradient, 25, first);
     const double *restrict length = m->length + first, *restrict inverse = m->inverse_length + first;
 #pragma omp simd
-    for (int n = 0; n < BOUGH_LANES; n++) {
+    for (int n = 0; n < BOUGH_WIDTH; n++) {
         vertex_state l = load_vertex(vertex, s, n), r = load_vertex(vertex, s, n + 1);
         segment_geometry shape = segment_shape(l, r, inverse[n]);
         strain e = elastic_strain(shape, inverse[n], rest, s, n);
@@ -72,16 +82,15 @@ static void force_eight(const bough_rod_model *m, const bough_rod_scratch *scrat
 
 bool AT(forces)(const bough_rod_model *m, int first, int last, bough_rod_scratch *scratch) {
     int s = m->stride;
-    double least = 1, cosine[BOUGH_LANES], some[9 * BOUGH_LANES];
-    for (int tile = first - first % BOUGH_LANES; tile < last; tile += BOUGH_LANES) {
-        int begin = first > tile ? first - tile : 0,
-            end = last - tile < BOUGH_LANES ? last - tile : BOUGH_LANES;
-        double *out = scratch->segment + tile;
-        bool whole = end - begin == BOUGH_LANES;
-        force_eight(m, scratch, tile, whole ? out : some, whole ? s : BOUGH_LANES, cosine);
+    double least = 1, cosine[BOUGH_WIDTH], some[9 * BOUGH_WIDTH];
+    for (int at = first - first % BOUGH_WIDTH; at < last; at += BOUGH_WIDTH) {
+        int begin = first > at ? first - at : 0, end = last - at < BOUGH_WIDTH ? last - at : BOUGH_WIDTH;
+        bool whole = end - begin == BOUGH_WIDTH;
+        double *out = scratch->segment + at;
+        find_forces(m, scratch, at, whole ? out : some, whole ? s : BOUGH_WIDTH, cosine);
         for (int n = begin; n < end; n++) {
             least = cosine[n] < least ? cosine[n] : least;
-            for (int k = 0; k < 9 && !whole; k++) out[k * s + n] = some[k * BOUGH_LANES + n];
+            for (int k = 0; k < 9 && !whole; k++) out[k * s + n] = some[k * BOUGH_WIDTH + n];
         }
     }
     return least >= 0.5;
@@ -242,16 +251,18 @@ static void load_end(const bough_rod_model *m, const bough_rod_loads *loads, dou
     }
 }
 
-// theory (11) solved for the accelerations, all vertices: the linear part goes out in BRF axes.
-static void vertex_accelerations(const bough_rod_model *m, const bough_rod_scratch *scratch,
-                                 const double *input, double *restrict rate) {
+// theory (11) solved for the accelerations, `count` vertices from the first on: the linear part goes out in
+// BRF axes.
+BOUGH_INLINE void vertex_accelerations(const bough_rod_model *m, const bough_rod_scratch *scratch,
+                                       const double *input, int from, int count, double *restrict rate) {
     int n = m->n, s = m->stride;
     const double *restrict v = scratch->vertex, *restrict f = scratch->segment;
-    const double *restrict load = scratch->load, *restrict inverse = m->inverse_mass;
+    const double *restrict load = scratch->load;
+    const double *restrict inverse = bough_rod_tile(m->inverse_mass, 21, from - 1);
     const double *restrict first = m->moment, *restrict inertia = m->inertia;
     bough_vec3 omega = {input[3], input[4], input[5]}, gravity = {input[6], input[7], input[8]};
 #pragma omp simd
-    for (int i = 1; i <= n; i++) {
+    for (int i = from; i < from + count; i++) {
         vertex_state a = load_vertex(v, s, i);
         bough_mat3 r = bough_rotation_matrix(a.p);
         bough_vec3 force = bough_add(bough_sub(load3(f, s, i), load3(f, s, i - 1)), load3(load, s, i));
@@ -261,7 +272,7 @@ static void vertex_accelerations(const bough_rod_model *m, const bough_rod_scrat
         bough_vec3 centrifugal = bough_cross(a.w, bough_cross(a.w, offset));
         bough_vec3 gyroscopic = bough_cross(a.w, inertia_times(inertia, s, i - 1, a.w));
         strain h = {bough_sub(bough_mat3_tmul(r, force), centrifugal), bough_sub(moment, gyroscopic)};
-        strain q = symmetric_times(inverse, s, i - 1, h);
+        strain q = symmetric_times(inverse, BOUGH_LANES, i - from, h);
         bough_vec3 acceleration =
             bough_sub(bough_add(bough_mat3_mul(r, q.v), gravity), bough_cross(omega, a.u));
         store3(rate + BOUGH_ROD_U * n, n, i - 1, acceleration);
@@ -271,11 +282,11 @@ static void vertex_accelerations(const bough_rod_model *m, const bough_rod_scrat
 
 // theory (16): ẋ = u − u₀ − ω×x and ṗ = ½ (p∘(0,W) − (0,ω)∘p) + κ(1 − |p|²)p: the last term takes back what
 // integration errors do to the norm, in about a second, and does not turn the section.
-static void vertex_kinematics(int n, const double *restrict state, const double *input,
-                              double *restrict rate) {
+BOUGH_INLINE void vertex_kinematics(int n, const double *restrict state, const double *input, int from,
+                                    int count, double *restrict rate) {
     bough_vec3 u0 = {input[0], input[1], input[2]}, omega = {input[3], input[4], input[5]};
 #pragma omp simd
-    for (int i = 0; i < n; i++) {
+    for (int i = from - 1; i < from - 1 + count; i++) {
         bough_vec3 x = load3(state, n, i), u = load3(state + 7 * n, n, i);
         bough_vec3 w = load3(state + 10 * n, n, i);
         bough_quaternion p = {state[3 * n + i], state[4 * n + i], state[5 * n + i], state[6 * n + i]};
@@ -292,8 +303,15 @@ static void vertex_kinematics(int n, const double *restrict state, const double 
 // The balances of all vertices under the segments' forces in scratch.
 static bool balance_vertices(const bough_rod_model *m, const double *state, const double *input,
                              const bough_rod_scratch *scratch, double *restrict rate) {
-    vertex_kinematics(m->n, state, input, rate);
-    vertex_accelerations(m, scratch, input, rate);
+    int i = 1;
+    for (; i + BOUGH_WIDTH <= m->n + 1; i += BOUGH_WIDTH) {
+        vertex_kinematics(m->n, state, input, i, BOUGH_WIDTH, rate);
+        vertex_accelerations(m, scratch, input, i, BOUGH_WIDTH, rate);
+    }
+    for (; i <= m->n; i++) {
+        vertex_kinematics(m->n, state, input, i, 1, rate);
+        vertex_accelerations(m, scratch, input, i, 1, rate);
+    }
     double sum = 0; // NaN and infinity survive a sum of squares
     int last = BOUGH_ROD_STATES * m->n;
 #pragma omp simd reduction(+ : sum)

@@ -103,15 +103,15 @@ bool AT(factor)(const bough_rod_model *m, bough_rod_tangent *k, double gamma) {
 
 // -- solution -------------------------------------------------------------------------------------
 
-// A r_q of every vertex and the scalar part of the quaternion residual p⁻¹∘r.
-static void eliminate_residual(const bough_rod_model *m, const bough_rod_tangent *k, const double *restrict x,
-                               double *restrict q) {
+// A r_q of `count` vertices from the first on and the scalar part of the quaternion residual p⁻¹∘r.
+BOUGH_INLINE void eliminate_residual(const bough_rod_model *m, const bough_rod_tangent *k,
+                                     const double *restrict x, int from, int count, double *restrict q) {
     int n = m->n, s = m->stride;
     const double *restrict kept = k->vertex, *restrict turn = kept + KEPT_TURN * s;
     bough_vec3 g = bough_scale(k->gamma, k->omega);
     double gamma = k->gamma, gg = 1 / (1 + bough_dot(g, g));
 #pragma omp simd
-    for (int v = 1; v <= n; v++) {
+    for (int v = from; v < from + count; v++) {
         bough_vec3 rx = load3(x, n, v - 1), rp = load3(x + 4 * n, n, v - 1);
         bough_vec3 p = load3(kept + (KEPT_P + 1) * s, s, v);
         double rw = x[3 * n + v - 1], pw = kept[KEPT_P * s + v];
@@ -166,9 +166,9 @@ static void segment_residual(const bough_rod_model *m, const bough_rod_tangent *
     }
 }
 
-// M r_v + γ K A r_q of every vertex; M as in the tangent, but from its few numbers.
-static void velocity_residual(const bough_rod_model *m, const bough_rod_tangent *k, const double *restrict x,
-                              double *restrict work) {
+// M r_v + γ K A r_q of `count` vertices; M as in the tangent, but from its few numbers.
+BOUGH_INLINE void velocity_residual(const bough_rod_model *m, const bough_rod_tangent *k,
+                                    const double *restrict x, int from, int count, double *restrict work) {
     int n = m->n, s = m->stride;
     const double *restrict kept = k->vertex, *restrict own = k->local_position;
     const double *restrict mass = m->mass, *restrict first = m->moment;
@@ -176,7 +176,7 @@ static void velocity_residual(const bough_rod_model *m, const bough_rod_tangent 
     double *restrict out = work + WORK_VELOCITY * s;
     double gamma = k->gamma;
 #pragma omp simd
-    for (int v = 1; v <= n; v++) {
+    for (int v = from; v < from + count; v++) {
         bough_mat3 r = load_matrix(kept + KEPT_R * s, s, v);
         bough_vec3 ru = load3(x + 7 * n, n, v - 1), rw = load3(x + 10 * n, n, v - 1);
         bough_vec3 offset = load3(first, s, v - 1), phi = load3(work + (WORK_Q + 3) * s, s, v);
@@ -207,16 +207,16 @@ static void unpack(int n, int s, const double *packed, double *velocity) {
 }
 
 // Velocities and the configuration that belongs to them back into the state's layout.
-static void recover(const bough_rod_model *m, const bough_rod_tangent *k, const double *restrict q,
-                    double *restrict x) {
+BOUGH_INLINE void recover(const bough_rod_model *m, const bough_rod_tangent *k, const double *restrict q,
+                          int from, int count, double *restrict x) {
     int n = m->n, s = m->stride;
     const double *restrict velocity = q + WORK_VELOCITY * s;
     const double *restrict kept = k->vertex, *restrict turn = kept + KEPT_TURN * s;
     bough_vec3 g = bough_scale(k->gamma, k->omega);
     double gamma = k->gamma, gg = 1 / (1 + bough_dot(g, g));
 #pragma omp simd
-    for (int i = 0; i < n; i++) {
-        int v = i + 1;
+    for (int v = from; v < from + count; v++) {
+        int i = v - 1;
         bough_vec3 du = load3(velocity, s, v), rate = load3(velocity + 3 * s, s, v);
         bough_vec3 dw = bough_scale(gamma, rate);
         bough_vec3 gu = bough_scale(gamma, du);
@@ -241,11 +241,15 @@ static void recover(const bough_rod_model *m, const bough_rod_tangent *k, const 
 
 void AT(solve)(const bough_rod_model *m, bough_rod_tangent *k, double *x) {
     double *velocity = k->work + (size_t)WORK_VELOCITY * m->stride;
-    eliminate_residual(m, k, x, k->work);
+    int n = m->n, whole = n - n % BOUGH_WIDTH;
+    for (int v = 1; v <= whole; v += BOUGH_WIDTH) eliminate_residual(m, k, x, v, BOUGH_WIDTH, k->work);
+    for (int v = whole + 1; v <= n; v++) eliminate_residual(m, k, x, v, 1, k->work);
     segment_residual(m, k, k->work, k->force);
-    velocity_residual(m, k, x, k->work);
+    for (int v = 1; v <= whole; v += BOUGH_WIDTH) velocity_residual(m, k, x, v, BOUGH_WIDTH, k->work);
+    for (int v = whole + 1; v <= n; v++) velocity_residual(m, k, x, v, 1, k->work);
     pack(m->n, m->stride, velocity, k->packed);
     BOUGH_AT_LEVEL(bough_block_tridiagonal_solve)(&k->matrix, k->packed);
     unpack(m->n, m->stride, k->packed, velocity);
-    recover(m, k, k->work, x);
+    for (int v = 1; v <= whole; v += BOUGH_WIDTH) recover(m, k, k->work, v, BOUGH_WIDTH, x);
+    for (int v = whole + 1; v <= n; v++) recover(m, k, k->work, v, 1, x);
 }

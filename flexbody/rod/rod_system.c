@@ -166,7 +166,7 @@ static void vertex_response(const bough_rod_model *m, const bough_rod_scratch *s
     int n = m->n;
     bough_mat3 r = bough_rotation_matrix(load_vertex(scratch->vertex, m->stride, i + 1).p);
     strain h = {bough_mat3_tmul(r, force), moment};
-    strain q = symmetric_times(m->inverse_mass, m->stride, i, h);
+    strain q = symmetric_times(bough_rod_tile(m->inverse_mass, 21, i), BOUGH_LANES, 0, h);
     bough_vec3 u = bough_mat3_mul(r, q.v);
     const double values[6] = {u.x, u.y, u.z, q.u.x, q.u.y, q.u.z};
     for (int c = 0; c < 6; c++) column[(BOUGH_ROD_U + c) * n + i] += values[c];
