@@ -1,8 +1,8 @@
 // IQN-ILS (Degroote, Bathe, Vierendeels 2009), theory (65): with the differences V of the
 // residuals and W of the images so far, newest first, c minimises |V c + r| and the next iterate is H(u) + W
 // c. The QR factorisation of V is computed by Gram–Schmidt, twice, in each iteration; a column that hardly
-// differs from the span of newer ones contains only noise and is dropped. Columns live
-// within one problem: a step of a nonlinear system is no guide to the next.
+// differs from the span of newer ones contains only noise and is dropped. Columns
+// belong to one problem: those of one step of a nonlinear system do not help in the next.
 //
 // Newton's method does the same to u + (I − J)⁻¹ r, theory (66), so that the differences correct the
 // Jacobian.
@@ -127,7 +127,7 @@ static void drop(bough_accelerator *a, int k) {
     }
 }
 
-// The newest differences in front; the oldest leave when there is no room.
+// The newest differences in front, in place of the oldest where there is no room.
 static void insert_column(bough_accelerator *a) {
     if (a->n_column < a->capacity) a->n_column++;
     for (int k = a->n_column - 1; k > 0; k--) {

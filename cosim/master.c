@@ -35,7 +35,7 @@ static void copy_loads(bough_master *m, bough_arena *arena, const bough_master_d
     if (m->n_event > 0) qsort(m->event, (size_t)m->n_event, sizeof(double), ascending);
 }
 
-// The stability before the run; without a verdict where the analysis fails: the run shows the cause.
+// The stability before the run. No verdict where the analysis fails: the run shows the cause.
 static void judge(bough_master *m) {
     const bough_scheme_options *options = &m->coupling->options;
     if (!m->coupling->scheme->judged) return;
@@ -175,7 +175,6 @@ static bough_status take_controlled_step(bough_master *m) {
         }
         double error = good ? bough_step_control_defect(control, c) : HUGE_VAL;
         bool shortest = bough_step_control_exhausted(control);
-        // accepted, or undone
         if (bough_step_control_accept(control, c, error)) return status;
         if (shortest) return status; // the monitor finds the cause
         bough_step_control_restore(control, c);

@@ -95,7 +95,7 @@ bough_status bough_member_advance_part(bough_member *m, double pause, double t1,
                                             m->integrated);
     }
     m->started = bough_is_ok(&status);
-    // where it stands
+    // its time: t1, or a pause before
     assert(!m->started || (t >= pause && t <= t1));
     m->paused = m->started && t < t1;
     if (!m->started) return status;

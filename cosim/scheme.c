@@ -66,6 +66,14 @@ const bough_scheme *bough_scheme_advised(void) {
     return schemes[i];
 }
 
+bough_scheme_options bough_scheme_damped(const bough_scheme_options *options) {
+    const bough_scheme *advised = bough_scheme_advised();
+    bough_scheme_options damped = *options;
+    damped.name = advised->name;
+    if (advised->damp) advised->damp(&damped);
+    return damped;
+}
+
 bool bough_scheme_reads(const bough_scheme *s, unsigned option) {
     return option == BOUGH_READS_MEMBERS ? !s->one_system : (s->reads & option) != 0;
 }

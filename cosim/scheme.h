@@ -57,6 +57,9 @@ struct bough_scheme {
     void (*snapshot)(bough_coupling *c, bough_snapshot *s);
 
     // questions
+    // Its most damped form, for the growth of the mechanics without that of a coupling; NULL: as the options
+    // are.
+    void (*damp)(bough_scheme_options *options);
     // Order of the interface defects in the macro step; NULL: 1.
     int (*defect_order)(const bough_scheme_options *options);
     // The impulses of the inputs (n_input) that the next step compensates, in units of the inputs times s;
@@ -83,6 +86,9 @@ int bough_scheme_index(const char *name); // −1: there is none
 
 // The scheme that is `advised`.
 const bough_scheme *bough_scheme_advised(void);
+
+// The options with the advised scheme in its most damped form.
+bough_scheme_options bough_scheme_damped(const bough_scheme_options *options);
 
 // Whether the scheme reads an option, one of BOUGH_READS_….
 bool bough_scheme_reads(const bough_scheme *s, unsigned option);

@@ -403,6 +403,9 @@ static int defect_order(const bough_scheme_options *options) {
     return 2;
 }
 
+// Backward Euler.
+static void damp(bough_scheme_options *options) { options->theta = 1; }
+
 static double *impulse(const bough_coupling *c) { return ((const ramp *)c->scheme_data)->deficit; }
 
 static void report(const bough_coupling *c, bough_scheme_report *to) {
@@ -420,6 +423,7 @@ const bough_scheme bough_scheme_ramp = {
     .step = step,
     .obtained = obtained,
     .snapshot = snapshot,
+    .damp = damp,
     .defect_order = defect_order,
     .impulse = impulse,
     .report = report,

@@ -96,8 +96,8 @@ static double defect_near(bough_step_control *s, const bough_coupling *c, double
     return worst_relative(s, a, s->obtained);
 }
 
-// Largest relative change over the step. After a start or a jump no curvature is known yet; a quarter of the
-// change stands in for it.
+// Largest relative change over the step. After a start or a jump the curvature is not known; a quarter of the
+// change is taken for the defect.
 static double change_over(bough_step_control *s, const bough_coupling *c) {
     for (int j = 0; j < s->curve.n; j++)
         s->obtained[j] = c->followed[j] ? 0 : c->input[j] - c->past.input[1][j];
@@ -138,7 +138,7 @@ bool bough_step_control_accept(bough_step_control *s, const bough_coupling *c, d
         return false;
     }
     if (!isfinite(error)) return false;
-    // what is counted
+    // counts
     s->accepted++;
     s->forced += !good;
     s->shortest = fmin(s->shortest, c->t1 - c->t0);

@@ -136,7 +136,7 @@ static void check(bough_whole *whole, int i, bool good) {
         bough_fail(BOUGH_RETRY, "%s: singular Newton matrix", whole->assembly->member[i]->system.name);
 }
 
-// Leaders first: their responses take long, and those of followers follow from them.
+// Leaders first: their responses take long, and those of followers need them.
 static void factor_member(void *self, int place) {
     bough_whole *whole = self;
     const bough_assembly *a = whole->assembly;

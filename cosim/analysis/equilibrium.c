@@ -5,13 +5,13 @@
 #include <math.h>
 #include <string.h>
 
-// What the second correction of a step, with tangents of its own, may be of the first, and what it
-// should be: it goes with the square of γ, or worse. With the tangents of the first a slender body
-// that has rotated would respond with its axial stiffness. γ grows and shrinks by these factors at most,
+// Largest ratio of the second correction of a step to the first, and the ratio aimed at; it grows with the
+// square of γ, or faster. The second correction has tangents of its own: with those of the first a slender
+// body that has rotated would respond with its axial stiffness. γ grows and shrinks by these factors at most,
 // after a refusal by `cautious`.
 static const double contracting = 0.5, aim = 0.2, growth = 8, shrink = 0.1, cautious = 1.5;
 
-static const double shortest = 1e-9; // γ below which there is no hope [s]
+static const double shortest = 1e-9; // γ below which the search ends [s]
 static const double rounding = 1e-6; // changes that only rounding keeps from contracting
 static const double most_turn = 1;   // of a vertex or body in a correction [rad]
 
@@ -54,8 +54,8 @@ static double move(const search *s, const double *state, const double *change, d
     return 0;
 }
 
-// Two corrections of one implicit Euler step from `state`, into first and second; what the second
-// is of the first, infinite when the step leads nowhere. s->rate belongs to `state`.
+// Two corrections of one implicit Euler step from `state`, into first and second; the ratio of the second to
+// the first, infinite where the step fails. s->rate belongs to `state`.
 static double step(search *s, const double *state, bough_equilibrium_report *report) {
     int row = 0;
     bough_status status = bough_whole_setup(s->whole, s->def->time, state, s->whole->input, s->gamma);
@@ -89,7 +89,7 @@ bough_status bough_equilibrium_find(bough_arena *arena, bough_whole *whole, cons
         if (last && report->change < def->tolerance) return bough_ok();
         if (last && near && !(report->change < contracting * before)) return bough_ok();
         before = last && near ? report->change : (double)INFINITY;
-        if (near) contraction = 0; // but for rounding
+        if (near) contraction = 0; // apart from rounding
         bool refused = !(contraction < contracting);
         most = refused ? cautious : fmin(growth, most * cautious);
         s.gamma *= fmin(most, fmax(shrink, sqrt(aim / (contraction + DBL_MIN))));

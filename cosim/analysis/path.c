@@ -115,7 +115,7 @@ static void direct(path *p, const double *before, double *tangent) {
 }
 
 // Corrects a predicted place in the plane normal to `tangent`, or at its load factor where `fixed`; leaves
-// the factors and p->load of about the place. The number of corrections, 0: none led there.
+// the factors and p->load of nearly that place. The number of corrections, 0: they failed.
 static int correct(path *p, const double *tangent, bool fixed, place *at) {
     double before = INFINITY;
     for (int i = 1; i <= CORRECTIONS; i++) {
@@ -142,7 +142,8 @@ static void copy_place(const path *p, const place *from, place *to) {
     to->factor = from->factor;
 }
 
-// From `here` by a step along its tangent to `to`, with the direction there. The corrections, 0: none.
+// From `here` by a step along its tangent to `to`, with the direction there. The number of corrections, 0:
+// they failed.
 static int go(path *p, double step, place *to) {
     copy_place(p, &p->here, to);
     for (int k = 0; k < p->n; k++) p->change[k] = step * p->here.tangent[k];

@@ -104,8 +104,8 @@ static bough_status apply_repeated(void *self, const double *z, double *image) {
     return apply(m, m->repeat, z, image);
 }
 
-// Squares of what makes the components comparable. Inputs weigh what they do to the whole against the
-// states: each member's as its largest.
+// Squares of the weights that make components comparable. The inputs of a member together weigh as much as
+// all states.
 static void choose_weights(map *m, const double *z) {
     const bough_assembly *a = &m->assembly;
     double *weight = m->arnoldi.weight, sum = 0;
@@ -157,7 +157,7 @@ static bough_status start(map *m) {
 
 // -- verdict --------------------------------------------------------------------------------------
 
-// An eigenvalue of the Hessenberg matrix: first column of its vector and how well it is found.
+// An eigenvalue of the Hessenberg matrix: first column of its vector, and its residual.
 typedef struct ritz {
     int column;
     bool pair;
@@ -212,7 +212,7 @@ static int largest_body(const map *m, const double *real, const double *imaginar
     return body;
 }
 
-// One macro step of the vector x: λ = xᴴ M x / xᴴ x, whose angle is not folded over.
+// One macro step of the vector x: λ = xᴴ M x / xᴴ x, whose angle is that of one step.
 static bough_status refine(map *m, const ritz *r, bough_stability *result) {
     const bough_arnoldi *basis = &m->arnoldi;
     double *real = m->pair, *imaginary = m->pair + m->n, *image = m->arnoldi.image;
@@ -259,7 +259,7 @@ static bough_status choose(map *m, bough_stability *result) {
         bough_stability candidate;
         bough_status status = refine(m, &found[k], &candidate);
         if (!bough_is_ok(&status)) return status;
-        bool alternates = candidate.frequency * m->macro_step > 0.25; // no mechanics do within a step
+        bool alternates = candidate.frequency * m->macro_step > 0.25; // the mechanics are slower
         bool oscillates = 2 * BOUGH_PI * candidate.frequency > candidate.growth;
         candidate.rising = result->rising;
         if (!oscillates && !alternates) {
@@ -354,8 +354,8 @@ bough_status bough_stability_advise(const bough_assembly *a, const bough_scheme_
     double least = advice->now.growth;
     bool differs = strcmp(options->name, other->name) != 0;
     if (differs && holds(a, &instead, macro_step, &least)) advice->scheme = other->name;
-    // its fully implicit form adds least by itself
-    instead.theta = 1;
+    // the growth of the mechanics
+    instead = bough_scheme_damped(options);
     holds(a, &instead, macro_step, &least);
     for (size_t k = 0; k < sizeof divisor / sizeof *divisor && advice->macro_step == 0; k++) {
         double smaller = macro_step / divisor[k];

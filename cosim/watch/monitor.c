@@ -51,7 +51,7 @@ struct bough_monitor {
     account *account;   // (n_pair)
     int window_steps;   // in the open window
     double window_time; // its length so far [s]
-    int unbalanced;     // windows in a row that make or lose energy
+    int unbalanced;     // windows in a row in which the interfaces add or remove energy
     double *start;      // (n_input) scratch
 
     // by bough_monitor_keep
@@ -147,10 +147,7 @@ static bool coupling_grows(const bough_coupling *c, const group *g, double defec
     own = *growth / 2;
     for (int k = 0; k < 3 && *growth > needed / 2 && own >= *growth / 2; k++) {
         // an explicit scheme may grow at short steps, too, and faster
-        if (k == 2) {
-            options.name = bough_scheme_advised()->name;
-            options.theta = 1;
-        }
+        if (k == 2) options = bough_scheme_damped(&options);
         own = fastest_growth(c, &options, h / shorter[k]);
     }
     return own < *growth / 2;
