@@ -4,7 +4,7 @@
 set -eu
 cd "$1"
 find . -path '*/CMakeFiles/bough_*.dir/*' -name '*.c.gcno' ! -path './tests/*' | sort | while read -r notes; do
-    gcov -n "${notes%.gcno}" 2> /dev/null | awk -v file="${notes#*.dir/}" '
+    gcov -n "$notes" 2> /dev/null | awk -v file="${notes#*.dir/}" '
         BEGIN { sub(/\.gcno$/, "", file) }
         /^File/ { own = index($0, "/" file "\x27") > 0 }
         /^Lines executed/ && own { split($0, part, /[:% ]+/); print file, part[3], part[5]; exit }'
