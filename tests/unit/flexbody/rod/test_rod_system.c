@@ -29,7 +29,7 @@ static rod make(bough_arena *arena, bough_rod_model *model, double rtol, const d
 }
 
 static rod general(double rtol, const double *input) {
-    bough_arena *arena = bough_arena_create();
+    bough_arena *arena = check_memory();
     return make(arena, sample_general(arena, N), rtol, input);
 }
 
