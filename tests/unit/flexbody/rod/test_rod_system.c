@@ -311,7 +311,7 @@ static double natural_frequency(void) {
 
 // A slender uniform cantilever along z, stiff against shear and stretch.
 static rod cantilever(double mu) {
-    bough_arena *arena = bough_arena_create();
+    bough_arena *arena = check_memory();
     bough_section_station station = {.mass = line_mass, .inertia = {1e-5, 1e-5, 0, 2e-5}};
     const double diagonal[6] = {1e5, 1e5, 1e5, bending, bending, bending};
     for (int k = 0; k < 6; k++) station.stiffness[bough_symmetric6_index(k, k)] = diagonal[k];
