@@ -54,9 +54,9 @@ void bough_rod_present_end_wrench(const bough_rod_model *m, const bough_rod_scra
     int s = m->stride, end = m->n_segment;
     bough_mat3 r = bough_rotation_matrix(load_vertex(scratch->vertex, s, end).p);
     const double *f = scratch->segment + end - 1, *load = scratch->load + end;
-    bough_vec3 moment = bough_mat3_tmul(r, load3(load + 3 * s, s, 0));
-    store3(wrench, 1, 0, bough_sub(load3(load, s, 0), load3(f, s, 0)));
-    store3(wrench + 3, 1, 0, bough_add(moment, load3(f + 6 * s, s, 0)));
+    bough_vec3 moment = bough_mat3_tmul(r, lane_load(load + 3 * s, s, 0));
+    lane_store(wrench, 1, 0, bough_sub(lane_load(load, s, 0), lane_load(f, s, 0)));
+    lane_store(wrench + 3, 1, 0, bough_add(moment, lane_load(f + 6 * s, s, 0)));
 }
 
 static strain strain_of(const bough_rod_model *m, const bough_rod_scratch *scratch, int n) {
@@ -90,6 +90,6 @@ void bough_rod_stress(const bough_rod_model *m, const bough_rod_scratch *scratch
     bough_vec3 half = bough_scale(0.5 * m->length[n], shape.chord);
     bough_vec3 force = along_axis(shape.v, s.v);
     bough_vec3 moment = bough_sub(half_backward(shape.v, shape.t, f.ll), bough_cross(half, force));
-    store3(stress, 1, 0, s.v);
-    store3(stress + 3, 1, 0, moment);
+    lane_store(stress, 1, 0, s.v);
+    lane_store(stress + 3, 1, 0, moment);
 }

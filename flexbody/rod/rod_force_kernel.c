@@ -32,11 +32,11 @@ BOUGH_INLINE void gather_some(const bough_rod_model *m, const double *restrict s
         const double *restrict y = state + i - 1;
         double w = y[3 * n], x = y[4 * n], v = y[5 * n], z = y[6 * n];
         double scale = 1 / sqrt(w * w + x * x + v * v + z * z);
-        store3(vertex, s, i, (bough_vec3){y[0], y[n], y[2 * n]});
+        lane_store(vertex, s, i, (bough_vec3){y[0], y[n], y[2 * n]});
         vertex[3 * s + i] = scale * w;
-        store3(vertex + 4 * s, s, i, (bough_vec3){scale * x, scale * v, scale * z});
-        store3(vertex + 7 * s, s, i, (bough_vec3){y[7 * n], y[8 * n], y[9 * n]});
-        store3(vertex + 10 * s, s, i, (bough_vec3){y[10 * n], y[11 * n], y[12 * n]});
+        lane_store(vertex + 4 * s, s, i, (bough_vec3){scale * x, scale * v, scale * z});
+        lane_store(vertex + 7 * s, s, i, (bough_vec3){y[7 * n], y[8 * n], y[9 * n]});
+        lane_store(vertex + 10 * s, s, i, (bough_vec3){y[10 * n], y[11 * n], y[12 * n]});
     }
 }
 
@@ -73,9 +73,9 @@ static __attribute__((noinline)) void find_forces(const bough_rod_model *m, cons
         strain elastic = segment_stress(c, gradient, BOUGH_LANES, n, e);
         strain viscous = symmetric_times(d, BOUGH_LANES, n, rate);
         segment_force f = stress_force(shape, add_strain(elastic, viscous), length[n]);
-        store3(out, stride, n, f.f);
-        store3(out + 3 * stride, stride, n, f.ll);
-        store3(out + 6 * stride, stride, n, f.lr);
+        lane_store(out, stride, n, f.f);
+        lane_store(out + 3 * stride, stride, n, f.ll);
+        lane_store(out + 6 * stride, stride, n, f.lr);
         cosine[n] = length[n] > 0 ? shape.w : 1; // beyond the last: no segment
     }
 }
@@ -118,8 +118,8 @@ static void add_ramped(const bough_rod_model *m, const bough_rod_loads *loads, d
         bough_mat3 r = bough_rotation_matrix(load_vertex(scratch->vertex, s, i).p);
         for (int part = 0; part < 6; part += 3) {
             double *load = scratch->load + part * s;
-            bough_vec3 f = bough_mat3_mul(r, load3(scratch->follower + part * s, s, i));
-            store3(load, s, i, bough_add(load3(load, s, i), f));
+            bough_vec3 f = bough_mat3_mul(r, lane_load(scratch->follower + part * s, s, i));
+            lane_store(load, s, i, bough_add(lane_load(load, s, i), f));
         }
     }
 }
@@ -138,14 +138,14 @@ static void add_chord_moments_of(const bough_rod_model *m, int n, bough_rod_scra
     vertex_state l = load_vertex(scratch->vertex, s, n), r = load_vertex(scratch->vertex, s, n + 1);
     segment_geometry shape = segment_shape(l, r, m->inverse_length[n]);
     bough_vec3 change = bough_sub(bough_rotation_matrix(r.p).c3, bough_rotation_matrix(l.p).c3);
-    change = bough_sub(change, bough_mat3_mul(shape.r, load3(m->bend0, s, n)));
-    bough_vec3 moment = chord_moment(h, change, bough_mat3_mul(shape.r, load3(scratch->along, s, n)));
-    bough_vec3 bend = bough_axpy(-h, load3(m->strain0 + 3 * s, s, n), shape.phi);
-    bough_vec3 following = following_moment(h, bend, load3(scratch->following, s, n));
+    change = bough_sub(change, bough_mat3_mul(shape.r, lane_load(m->bend0, s, n)));
+    bough_vec3 moment = chord_moment(h, change, bough_mat3_mul(shape.r, lane_load(scratch->along, s, n)));
+    bough_vec3 bend = bough_axpy(-h, lane_load(m->strain0 + 3 * s, s, n), shape.phi);
+    bough_vec3 following = following_moment(h, bend, lane_load(scratch->following, s, n));
     moment = bough_add(moment, bough_mat3_mul(shape.r, following));
     double *load = scratch->load + 3 * s + n;
     for (int side = 0; side < 2; side++, load++) {
-        store3(load, s, 0, bough_add(load3(load, s, 0), moment));
+        lane_store(load, s, 0, bough_add(lane_load(load, s, 0), moment));
     }
 }
 
@@ -168,15 +168,15 @@ static void add_along(const bough_rod_model *m, const bough_rod_loads *loads, do
             bough_vec3 q[4];
             for (int part = 0; part < 4; part++) {
                 double *to = l->follower ? scratch->following : scratch->along + 3 * part * s;
-                q[part] = bough_scale(factor, load3(l->line + 3 * part * s, s, n));
+                q[part] = bough_scale(factor, lane_load(l->line + 3 * part * s, s, n));
                 if (!l->follower) q[part] = bough_mat3_tmul(r, q[part]);
                 if (l->follower && part > 0) continue;
-                store3(to, s, n, bough_add(load3(to, s, n), q[part]));
+                lane_store(to, s, n, bough_add(lane_load(to, s, n), q[part]));
             }
             double *rest = scratch->own_rest;
             strain e = line_strain(m->line, s, n, q);
-            store3(rest, s, n, bough_add(load3(rest, s, n), e.v));
-            store3(rest + 3 * s, s, n, bough_add(load3(rest + 3 * s, s, n), e.u));
+            lane_store(rest, s, n, bough_add(lane_load(rest, s, n), e.v));
+            lane_store(rest + 3 * s, s, n, bough_add(lane_load(rest + 3 * s, s, n), e.u));
         }
     }
     for (int n = 0; n < m->n_segment; n++) add_chord_moments_of(m, n, scratch);
@@ -265,18 +265,19 @@ BOUGH_INLINE void vertex_accelerations(const bough_rod_model *m, const bough_rod
     for (int i = from; i < from + count; i++) {
         vertex_state a = load_vertex(v, s, i);
         bough_mat3 r = bough_rotation_matrix(a.p);
-        bough_vec3 force = bough_add(bough_sub(load3(f, s, i), load3(f, s, i - 1)), load3(load, s, i));
-        bough_vec3 moment = bough_add(bough_add(load3(f + 3 * s, s, i), load3(f + 6 * s, s, i - 1)),
-                                      bough_mat3_tmul(r, load3(load + 3 * s, s, i)));
-        bough_vec3 offset = load3(first, s, i - 1);
+        bough_vec3 force =
+            bough_add(bough_sub(lane_load(f, s, i), lane_load(f, s, i - 1)), lane_load(load, s, i));
+        bough_vec3 moment = bough_add(bough_add(lane_load(f + 3 * s, s, i), lane_load(f + 6 * s, s, i - 1)),
+                                      bough_mat3_tmul(r, lane_load(load + 3 * s, s, i)));
+        bough_vec3 offset = lane_load(first, s, i - 1);
         bough_vec3 centrifugal = bough_cross(a.w, bough_cross(a.w, offset));
         bough_vec3 gyroscopic = bough_cross(a.w, inertia_times(inertia, s, i - 1, a.w));
         strain h = {bough_sub(bough_mat3_tmul(r, force), centrifugal), bough_sub(moment, gyroscopic)};
         strain q = symmetric_times(inverse, BOUGH_LANES, i - from, h);
         bough_vec3 acceleration =
             bough_sub(bough_add(bough_mat3_mul(r, q.v), gravity), bough_cross(omega, a.u));
-        store3(rate + BOUGH_ROD_U * n, n, i - 1, acceleration);
-        store3(rate + BOUGH_ROD_W * n, n, i - 1, q.u);
+        lane_store(rate + BOUGH_ROD_U * n, n, i - 1, acceleration);
+        lane_store(rate + BOUGH_ROD_W * n, n, i - 1, q.u);
     }
 }
 
@@ -287,16 +288,16 @@ BOUGH_INLINE void vertex_kinematics(int n, const double *restrict state, const d
     bough_vec3 u0 = {input[0], input[1], input[2]}, omega = {input[3], input[4], input[5]};
 #pragma omp simd
     for (int i = from - 1; i < from - 1 + count; i++) {
-        bough_vec3 x = load3(state, n, i), u = load3(state + 7 * n, n, i);
-        bough_vec3 w = load3(state + 10 * n, n, i);
+        bough_vec3 x = lane_load(state, n, i), u = lane_load(state + 7 * n, n, i);
+        bough_vec3 w = lane_load(state + 10 * n, n, i);
         bough_quaternion p = {state[3 * n + i], state[4 * n + i], state[5 * n + i], state[6 * n + i]};
         bough_vec3 v = {p.x, p.y, p.z};
         bough_vec3 difference = bough_sub(w, omega), sum = bough_add(w, omega);
         bough_vec3 turn = bough_axpy(p.w, difference, bough_cross(v, sum));
         double restore = BOUGH_ROD_NORM_RATE * (1 - p.w * p.w - bough_dot(v, v));
-        store3(rate, n, i, bough_sub(bough_sub(u, u0), bough_cross(omega, x)));
+        lane_store(rate, n, i, bough_sub(bough_sub(u, u0), bough_cross(omega, x)));
         rate[3 * n + i] = -0.5 * bough_dot(v, difference) + restore * p.w;
-        store3(rate + 4 * n, n, i, bough_axpy(restore, v, bough_scale(0.5, turn)));
+        lane_store(rate + 4 * n, n, i, bough_axpy(restore, v, bough_scale(0.5, turn)));
     }
 }
 
@@ -343,13 +344,13 @@ static void add_drift(const bough_rod_model *m, const bough_rod_loads *loads, do
         for (int n = 0; n < BOUGH_LANES; n++) {
             bough_quaternion p = load_vertex(vertex, s, n).p, q = load_vertex(vertex, s, n + 1).p;
             bough_mat3 r = mid_frame_between(p, q);
-            strain e = {bough_scale(elapsed, load3(rate, s, n)),
-                        bough_scale(elapsed, load3(rate + 3 * s, s, n))};
+            strain e = {bough_scale(elapsed, lane_load(rate, s, n)),
+                        bough_scale(elapsed, lane_load(rate + 3 * s, s, n))};
             strain stress = symmetric_times(c, BOUGH_LANES, n, e);
-            bough_vec3 tau = bough_scale(0.5 * length[n], bough_cross(stress.v, load3(e0, s, n)));
-            store3(out, s, n, bough_sub(load3(out, s, n), bough_mat3_mul(r, stress.v)));
-            store3(out + 3 * s, s, n, bough_add(load3(out + 3 * s, s, n), bough_sub(tau, stress.u)));
-            store3(out + 6 * s, s, n, bough_add(load3(out + 6 * s, s, n), bough_add(tau, stress.u)));
+            bough_vec3 tau = bough_scale(0.5 * length[n], bough_cross(stress.v, lane_load(e0, s, n)));
+            lane_store(out, s, n, bough_sub(lane_load(out, s, n), bough_mat3_mul(r, stress.v)));
+            lane_store(out + 3 * s, s, n, bough_add(lane_load(out + 3 * s, s, n), bough_sub(tau, stress.u)));
+            lane_store(out + 6 * s, s, n, bough_add(lane_load(out + 6 * s, s, n), bough_add(tau, stress.u)));
         }
     }
 }

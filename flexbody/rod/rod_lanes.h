@@ -2,6 +2,7 @@
 #ifndef BOUGH_FLEXBODY_ROD_ROD_LANES_H
 #define BOUGH_FLEXBODY_ROD_ROD_LANES_H
 
+#include "core/base/lanes.h"
 #include "flexbody/rod/rod.h"
 #include "flexbody/rod/rod_elastic.h"
 
@@ -12,18 +13,8 @@ BOUGH_INLINE vertex_state load_vertex(const double *restrict v, int s, int i) {
                           {v[3 * s + i], v[4 * s + i], v[5 * s + i], v[6 * s + i]}};
 }
 
-BOUGH_INLINE bough_vec3 load3(const double *restrict a, int s, int i) {
-    return (bough_vec3){a[i], a[s + i], a[2 * s + i]};
-}
-
-BOUGH_INLINE void store3(double *restrict a, int s, int i, bough_vec3 v) {
-    a[i] = v.x;
-    a[s + i] = v.y;
-    a[2 * s + i] = v.z;
-}
-
 BOUGH_INLINE bough_mat3 load_matrix(const double *restrict a, int s, int v) {
-    return (bough_mat3){load3(a, s, v), load3(a + 3 * s, s, v), load3(a + 6 * s, s, v)};
+    return (bough_mat3){lane_load(a, s, v), lane_load(a + 3 * s, s, v), lane_load(a + 6 * s, s, v)};
 }
 
 // I W for the tensor entries Ixx Iyy Izz Ixy Ixz Iyz.
@@ -37,8 +28,8 @@ BOUGH_INLINE bough_vec3 inertia_times(const double *restrict j, int s, int i, bo
 // e − e⁰ − D q of a segment, `rest` the strains without stress
 BOUGH_INLINE strain elastic_strain(segment_geometry shape, double inverse_h, const double *restrict rest,
                                    int s, int n) {
-    return (strain){bough_sub(shape.stretch, load3(rest, s, n)),
-                    bough_axpy(inverse_h, shape.phi, bough_scale(-1, load3(rest + 3 * s, s, n)))};
+    return (strain){bough_sub(shape.stretch, lane_load(rest, s, n)),
+                    bough_axpy(inverse_h, shape.phi, bough_scale(-1, lane_load(rest + 3 * s, s, n)))};
 }
 
 // D q of a load per length in the axes of the segment's middle: force, moment, and their slopes
@@ -57,9 +48,10 @@ BOUGH_INLINE strain line_strain(const double *restrict line, int s, int n, const
 // Change of the elastic strain where dead loads `along` the segment turn against its middle.
 BOUGH_INLINE strain add_turned(strain change, const double *restrict line, const double *restrict along,
                                int s, int n, bough_vec3 middle) {
-    const bough_vec3 q[4] = {
-        bough_cross(load3(along, s, n), middle), bough_cross(load3(along + 3 * s, s, n), middle),
-        bough_cross(load3(along + 6 * s, s, n), middle), bough_cross(load3(along + 9 * s, s, n), middle)};
+    const bough_vec3 q[4] = {bough_cross(lane_load(along, s, n), middle),
+                             bough_cross(lane_load(along + 3 * s, s, n), middle),
+                             bough_cross(lane_load(along + 6 * s, s, n), middle),
+                             bough_cross(lane_load(along + 9 * s, s, n), middle)};
     strain e = line_strain(line, s, n, q);
     return (strain){bough_sub(change.v, e.v), bough_sub(change.u, e.u)};
 }
@@ -120,8 +112,8 @@ BOUGH_INLINE segment_force segment_tangent(const bough_rod_model *m, const bough
     segment_force f = force_variation(shape, d, stress, dstress, h);
     if (!scratch->turning) return f;
     return add_chord_moments(f, shape, d, bough_rotation_matrix(l.p), bough_rotation_matrix(r.p), dl->phi,
-                             dr->phi, load3(m->bend0, s, n), load3(m->strain0 + 3 * s, s, n),
-                             load3(scratch->along, s, n), load3(scratch->following, s, n), h);
+                             dr->phi, lane_load(m->bend0, s, n), lane_load(m->strain0 + 3 * s, s, n),
+                             lane_load(scratch->along, s, n), lane_load(scratch->following, s, n), h);
 }
 
 #endif

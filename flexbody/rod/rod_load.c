@@ -120,15 +120,15 @@ static void lump_stress(const bough_rod_model *m, int n, strain line, bool follo
         double *to = value + n + side;
         bough_vec3 pull = follower ? bough_mat3_tmul(axes, force[side]) : force[side];
         bough_vec3 turn = follower ? moment[side] : bough_mat3_mul(axes, moment[side]);
-        store3(to, s, 0, bough_add(load3(to, s, 0), pull));
-        store3(to + 3 * s, s, 0, bough_add(load3(to + 3 * s, s, 0), turn));
+        lane_store(to, s, 0, bough_add(lane_load(to, s, 0), pull));
+        lane_store(to + 3 * s, s, 0, bough_add(lane_load(to + 3 * s, s, 0), turn));
     }
 }
 
 void bough_rod_lump_strain(const bough_rod_model *m, const double *line_strain, double *value) {
     int s = m->stride;
     for (int n = 0; n < m->n_segment; n++) {
-        strain line = {load3(line_strain, s, n), load3(line_strain + 3 * s, s, n)};
+        strain line = {lane_load(line_strain, s, n), lane_load(line_strain + 3 * s, s, n)};
         lump_stress(m, n, line, false, value);
     }
 }
@@ -141,7 +141,7 @@ void bough_rod_lump_line(const bough_rod_model *m, bough_rod_ramped_load *load) 
         bough_mat3 middle = segment_shape(l, r, m->inverse_length[n]).r;
         bough_vec3 q[4];
         for (int part = 0; part < 4; part++) {
-            q[part] = load3(load->line + 3 * part * s, s, n);
+            q[part] = lane_load(load->line + 3 * part * s, s, n);
             if (!load->follower) q[part] = bough_mat3_tmul(middle, q[part]);
         }
         lump_stress(m, n, line_strain(m->line, s, n, q), load->follower, load->value);

@@ -42,11 +42,11 @@ BOUGH_INLINE void turn_line(const bough_rod_model *m, const double *restrict rot
         bough_quaternion p = section_at(v, rotation, k), q = section_at(v, rotation, k + 1);
         bough_mat3 r = mid_frame_between(p, q);
         for (int part = 0; part < 4; part++) {
-            store3(turned + 3 * part * n, n, k, bough_mat3_tmul(r, load3(line + 3 * part * n, n, k)));
+            lane_store(turned + 3 * part * n, n, k, bough_mat3_tmul(r, lane_load(line + 3 * part * n, n, k)));
         }
         bough_vec3 turn = bough_sub(tangent_of(q), tangent_of(p));
-        turn = bough_sub(turn, bough_mat3_mul(r, load3(bend, s, l)));
-        store3(moment, BOUGH_LANES, l, chord_moment(h[l], turn, load3(line, n, k)));
+        turn = bough_sub(turn, bough_mat3_mul(r, lane_load(bend, s, l)));
+        lane_store(moment, BOUGH_LANES, l, chord_moment(h[l], turn, lane_load(line, n, k)));
     }
 }
 

@@ -19,8 +19,8 @@ static void eliminate_rotations(const bough_rod_model *m, bough_rod_tangent *k) 
     double *restrict kept = k->vertex;
 #pragma omp simd
     for (int v = 1; v <= n; v++) {
-        bough_vec3 w = load3(kept + KEPT_W * s, s, v), o = load3(kept + KEPT_OMEGA * s, s, v);
-        bough_vec3 vector = load3(kept + (KEPT_P + 1) * s, s, v);
+        bough_vec3 w = lane_load(kept + KEPT_W * s, s, v), o = lane_load(kept + KEPT_OMEGA * s, s, v);
+        bough_vec3 vector = lane_load(kept + (KEPT_P + 1) * s, s, v);
         double scalar = kept[KEPT_P * s + v];
         double square = scalar * scalar + bough_dot(vector, vector);
         double e = 1 - gamma * BOUGH_ROD_NORM_RATE * (1 - square);
@@ -112,17 +112,18 @@ BOUGH_INLINE void eliminate_residual(const bough_rod_model *m, const bough_rod_t
     double gamma = k->gamma, gg = 1 / (1 + bough_dot(g, g));
 #pragma omp simd
     for (int v = from; v < from + count; v++) {
-        bough_vec3 rx = load3(x, n, v - 1), rp = load3(x + 4 * n, n, v - 1);
-        bough_vec3 p = load3(kept + (KEPT_P + 1) * s, s, v);
+        bough_vec3 rx = lane_load(x, n, v - 1), rp = lane_load(x + 4 * n, n, v - 1);
+        bough_vec3 p = lane_load(kept + (KEPT_P + 1) * s, s, v);
         double rw = x[3 * n + v - 1], pw = kept[KEPT_P * s + v];
         double inverse = 1 / (pw * pw + bough_dot(p, p));
         double scalar = inverse * (pw * rw + bough_dot(p, rp));
         bough_vec3 rho = bough_axpy(pw, rp, bough_axpy(-rw, p, bough_cross(rp, p)));
         rho = bough_scale(2 * inverse, rho);
-        bough_vec3 slip = bough_sub(load3(kept + KEPT_W * s, s, v), load3(kept + KEPT_OMEGA * s, s, v));
+        bough_vec3 slip =
+            bough_sub(lane_load(kept + KEPT_W * s, s, v), lane_load(kept + KEPT_OMEGA * s, s, v));
         rho = bough_axpy(gamma * scalar * kept[KEPT_SCALE * s + v], slip, rho);
         bough_vec3 shift = bough_axpy(bough_dot(g, rx), g, bough_sub(rx, bough_cross(g, rx)));
-        store3(q, s, v, bough_scale(gg, shift));
+        lane_store(q, s, v, bough_scale(gg, shift));
         for (int i = 0; i < 3; i++) {
             q[(3 + i) * s + v] = turn[3 * i * s + v] * rho.x + turn[(3 * i + 1) * s + v] * rho.y +
                                  turn[(3 * i + 2) * s + v] * rho.z;
@@ -178,22 +179,22 @@ BOUGH_INLINE void velocity_residual(const bough_rod_model *m, const bough_rod_ta
 #pragma omp simd
     for (int v = from; v < from + count; v++) {
         bough_mat3 r = load_matrix(kept + KEPT_R * s, s, v);
-        bough_vec3 ru = load3(x + 7 * n, n, v - 1), rw = load3(x + 10 * n, n, v - 1);
-        bough_vec3 offset = load3(first, s, v - 1), phi = load3(work + (WORK_Q + 3) * s, s, v);
+        bough_vec3 ru = lane_load(x + 7 * n, n, v - 1), rw = lane_load(x + 10 * n, n, v - 1);
+        bough_vec3 offset = lane_load(first, s, v - 1), phi = lane_load(work + (WORK_Q + 3) * s, s, v);
         phi = bough_scale(gamma, phi);
         bough_vec3 f = bough_axpy(mass[v - 1], ru, bough_mat3_mul(r, bough_cross(rw, offset)));
         bough_vec3 l =
             bough_add(bough_cross(offset, bough_mat3_tmul(r, ru)), inertia_times(inertia, s, v - 1, rw));
-        bough_vec3 pull = bough_sub(load3(force, s, v), load3(force, s, v - 1));
-        bough_vec3 turn = bough_add(load3(force + 3 * s, s, v), load3(force + 6 * s, s, v - 1));
-        f = bough_add(f, bough_axpy(phi.x, load3(own, s, v), pull));
-        f = bough_axpy(phi.y, load3(own + 6 * s, s, v), f);
-        f = bough_axpy(phi.z, load3(own + 12 * s, s, v), f);
-        l = bough_add(l, bough_axpy(phi.x, load3(own + 3 * s, s, v), turn));
-        l = bough_axpy(phi.y, load3(own + 9 * s, s, v), l);
-        l = bough_axpy(phi.z, load3(own + 15 * s, s, v), l);
-        store3(out, s, v, f);
-        store3(out + 3 * s, s, v, l);
+        bough_vec3 pull = bough_sub(lane_load(force, s, v), lane_load(force, s, v - 1));
+        bough_vec3 turn = bough_add(lane_load(force + 3 * s, s, v), lane_load(force + 6 * s, s, v - 1));
+        f = bough_add(f, bough_axpy(phi.x, lane_load(own, s, v), pull));
+        f = bough_axpy(phi.y, lane_load(own + 6 * s, s, v), f);
+        f = bough_axpy(phi.z, lane_load(own + 12 * s, s, v), f);
+        l = bough_add(l, bough_axpy(phi.x, lane_load(own + 3 * s, s, v), turn));
+        l = bough_axpy(phi.y, lane_load(own + 9 * s, s, v), l);
+        l = bough_axpy(phi.z, lane_load(own + 15 * s, s, v), l);
+        lane_store(out, s, v, f);
+        lane_store(out + 3 * s, s, v, l);
     }
 }
 
@@ -217,25 +218,26 @@ BOUGH_INLINE void recover(const bough_rod_model *m, const bough_rod_tangent *k, 
 #pragma omp simd
     for (int v = from; v < from + count; v++) {
         int i = v - 1;
-        bough_vec3 du = load3(velocity, s, v), rate = load3(velocity + 3 * s, s, v);
+        bough_vec3 du = lane_load(velocity, s, v), rate = lane_load(velocity + 3 * s, s, v);
         bough_vec3 dw = bough_scale(gamma, rate);
         bough_vec3 gu = bough_scale(gamma, du);
         bough_vec3 shift = bough_axpy(bough_dot(g, gu), g, bough_sub(gu, bough_cross(g, gu)));
-        store3(x, n, i, bough_axpy(gg, shift, load3(q, s, v)));
+        lane_store(x, n, i, bough_axpy(gg, shift, lane_load(q, s, v)));
         bough_vec3 phi = {turn[v] * dw.x + turn[s + v] * dw.y + turn[2 * s + v] * dw.z,
                           turn[3 * s + v] * dw.x + turn[4 * s + v] * dw.y + turn[5 * s + v] * dw.z,
                           turn[6 * s + v] * dw.x + turn[7 * s + v] * dw.y + turn[8 * s + v] * dw.z};
-        phi = bough_add(phi, load3(q + 3 * s, s, v));
-        bough_vec3 slip = bough_sub(load3(kept + KEPT_W * s, s, v), load3(kept + KEPT_OMEGA * s, s, v));
+        phi = bough_add(phi, lane_load(q + 3 * s, s, v));
+        bough_vec3 slip =
+            bough_sub(lane_load(kept + KEPT_W * s, s, v), lane_load(kept + KEPT_OMEGA * s, s, v));
         double scalar = q[WORK_SCALAR * s + v] - 0.25 * gamma * bough_dot(slip, phi);
         scalar *= kept[KEPT_SCALE * s + v];
-        bough_vec3 p = load3(kept + (KEPT_P + 1) * s, s, v), half = bough_scale(0.5, phi);
+        bough_vec3 p = lane_load(kept + (KEPT_P + 1) * s, s, v), half = bough_scale(0.5, phi);
         double pw = kept[KEPT_P * s + v];
         x[3 * n + i] = pw * scalar - bough_dot(p, half);
         bough_vec3 vector = bough_axpy(pw, half, bough_axpy(scalar, p, bough_cross(p, half)));
-        store3(x + 4 * n, n, i, vector);
-        store3(x + 7 * n, n, i, du);
-        store3(x + 10 * n, n, i, rate);
+        lane_store(x + 4 * n, n, i, vector);
+        lane_store(x + 7 * n, n, i, du);
+        lane_store(x + 10 * n, n, i, rate);
     }
 }
 

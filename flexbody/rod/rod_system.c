@@ -31,10 +31,10 @@ static vertex_variation root_variation(const bough_rod_model *m, const double *d
 static vertex_variation state_variation(const bough_rod_model *m, const double *p, int stride,
                                         const double *d, int i) {
     int n = m->n;
-    return (vertex_variation){.x = load3(d, n, i),
+    return (vertex_variation){.x = lane_load(d, n, i),
                               .phi = turn_of(p, stride, d + 3 * n + i, n),
-                              .u = load3(d + (size_t)BOUGH_ROD_U * n, n, i),
-                              .w = load3(d + (size_t)BOUGH_ROD_W * n, n, i)};
+                              .u = lane_load(d + (size_t)BOUGH_ROD_U * n, n, i),
+                              .w = lane_load(d + (size_t)BOUGH_ROD_W * n, n, i)};
 }
 
 // Of the first and the last one, by the quaternions in a state.
@@ -68,8 +68,8 @@ void bough_rod_wrench_tangent(const bough_rod_model *m, const bough_rod_loads *l
     if (at->input_rate != NULL) l = root_variation(m, at->input_rate);
     if (at->state_rate != NULL) r = first_variation(m, at->state, at->state_rate);
     segment_force f = segment_tangent(m, scratch, 0, &l, &r);
-    store3(wrench, 1, 0, f.f);
-    store3(wrench + 3, 1, 0, bough_mat3_mul(m->root, f.ll));
+    lane_store(wrench, 1, 0, f.f);
+    lane_store(wrench + 3, 1, 0, bough_mat3_mul(m->root, f.ll));
 }
 
 // What turning the last vertex by phi changes in the loads on it: in section axes a dead moment
@@ -78,12 +78,12 @@ static segment_force load_variation(const bough_rod_model *m, const bough_rod_lo
                                     const bough_rod_scratch *scratch, bough_vec3 phi) {
     int s = m->stride, end = m->n_segment;
     bough_mat3 r = bough_rotation_matrix(load_vertex(scratch->vertex, s, end).p);
-    bough_vec3 moment = bough_mat3_tmul(r, load3(scratch->load + 3 * s, s, end));
+    bough_vec3 moment = bough_mat3_tmul(r, lane_load(scratch->load + 3 * s, s, end));
     segment_force d = {.f = {0, 0, 0}};
     if (bough_rod_loads_follow(loads)) {
-        bough_vec3 force = load3(scratch->follower, s, end);
+        bough_vec3 force = lane_load(scratch->follower, s, end);
         d.f = bough_mat3_mul(r, bough_cross(phi, force));
-        moment = bough_sub(moment, load3(scratch->follower + 3 * s, s, end));
+        moment = bough_sub(moment, lane_load(scratch->follower + 3 * s, s, end));
     }
     d.lr = bough_cross(moment, phi);
     return d;
@@ -94,8 +94,8 @@ void bough_rod_keep_end(const bough_rod_model *m, const bough_rod_loads *loads, 
     memcpy(k->end_rotation, end + 9, 4 * sizeof(double));
     for (int j = 0; j < 3; j++) {
         segment_force load = load_variation(m, loads, scratch, bough_unit3(j));
-        store3(k->end_load + 3 * j, 1, 0, load.f);
-        store3(k->end_load + 9 + 3 * j, 1, 0, load.lr);
+        lane_store(k->end_load + 3 * j, 1, 0, load.f);
+        lane_store(k->end_load + 9 + 3 * j, 1, 0, load.lr);
     }
 }
 
@@ -103,12 +103,12 @@ void bough_rod_keep_end(const bough_rod_model *m, const bough_rod_loads *loads, 
 static segment_force kept_force(const double *position, const double *velocity, vertex_variation l,
                                 vertex_variation r) {
     double q[DIRECTIONS], v[DIRECTIONS], force[FORCES];
-    store3(q + DELTA, 1, 0, bough_sub(r.x, l.x));
-    store3(q + LEFT, 1, 0, l.phi);
-    store3(q + RIGHT, 1, 0, r.phi);
-    store3(v + DELTA, 1, 0, bough_sub(r.u, l.u));
-    store3(v + LEFT, 1, 0, l.w);
-    store3(v + RIGHT, 1, 0, r.w);
+    lane_store(q + DELTA, 1, 0, bough_sub(r.x, l.x));
+    lane_store(q + LEFT, 1, 0, l.phi);
+    lane_store(q + RIGHT, 1, 0, r.phi);
+    lane_store(v + DELTA, 1, 0, bough_sub(r.u, l.u));
+    lane_store(v + LEFT, 1, 0, l.w);
+    lane_store(v + RIGHT, 1, 0, r.w);
     for (int f = 0; f < FORCES; f++, position += LANES * DIRECTIONS, velocity += DIRECTIONS) {
         force[f] = 0;
         for (int d = 0; d < DIRECTIONS; d++) {
@@ -127,8 +127,8 @@ static void kept_end_tangent(const bough_rod_model *m, const bough_rod_tangent *
     if (input_rate != NULL) r = end_variation(k->end_rotation, input_rate + BOUGH_ROD_INPUTS);
     segment_force f = kept_force(position, k->end, l, r);
     bough_mat3 pull = load_matrix(k->end_load, 1, 0), turn = load_matrix(k->end_load + 9, 1, 0);
-    store3(wrench, 1, 0, bough_sub(bough_mat3_mul(pull, r.phi), f.f));
-    store3(wrench + 3, 1, 0, bough_add(bough_mat3_mul(turn, r.phi), f.lr));
+    lane_store(wrench, 1, 0, bough_sub(bough_mat3_mul(pull, r.phi), f.f));
+    lane_store(wrench + 3, 1, 0, bough_add(bough_mat3_mul(turn, r.phi), f.lr));
 }
 
 void bough_rod_kept_wrench_tangent(const bough_rod_model *m, const bough_rod_tangent *k,
@@ -137,8 +137,8 @@ void bough_rod_kept_wrench_tangent(const bough_rod_model *m, const bough_rod_tan
     if (input_rate != NULL) l = root_variation(m, input_rate);
     if (state_rate != NULL) r = kept_variation(m, k, state_rate, 0);
     segment_force f = kept_force(k->variation, k->root, l, r);
-    store3(wrench, 1, 0, f.f);
-    store3(wrench + 3, 1, 0, bough_mat3_mul(m->root, f.ll));
+    lane_store(wrench, 1, 0, f.f);
+    lane_store(wrench + 3, 1, 0, bough_mat3_mul(m->root, f.ll));
     if (!bough_rod_carries(m)) return;
     kept_end_tangent(m, k, state_rate, input_rate, wrench + BOUGH_ROD_OUTPUTS);
 }
@@ -154,8 +154,8 @@ void bough_rod_end_tangent(const bough_rod_model *m, const bough_rod_loads *load
     }
     segment_force f = segment_tangent(m, scratch, m->n, &l, &r);
     segment_force load = load_variation(m, loads, scratch, r.phi);
-    store3(wrench, 1, 0, bough_sub(load.f, f.f));
-    store3(wrench + 3, 1, 0, bough_add(load.lr, f.lr));
+    lane_store(wrench, 1, 0, bough_sub(load.f, f.f));
+    lane_store(wrench + 3, 1, 0, bough_add(load.lr, f.lr));
 }
 
 // -- the rate -------------------------------------------------------------------------------------
@@ -177,16 +177,16 @@ static void frame_column(const bough_rod_model *m, const double *state, int kind
                          double *column) {
     int n = m->n;
     for (int i = 0; i < n; i++) {
-        bough_vec3 x = load3(state, n, i), u = load3(state + (size_t)BOUGH_ROD_U * n, n, i);
+        bough_vec3 x = lane_load(state, n, i), u = lane_load(state + (size_t)BOUGH_ROD_U * n, n, i);
         bough_quaternion p = {state[3 * n + i], state[4 * n + i], state[5 * n + i], state[6 * n + i]};
-        if (kind == 0) store3(column, n, i, bough_scale(-1, e));
-        if (kind == 2) store3(column + (size_t)BOUGH_ROD_U * n, n, i, e);
+        if (kind == 0) lane_store(column, n, i, bough_scale(-1, e));
+        if (kind == 2) lane_store(column + (size_t)BOUGH_ROD_U * n, n, i, e);
         if (kind != 1) continue;
         bough_quaternion turn = bough_quaternion_product((bough_quaternion){0, e.x, e.y, e.z}, p);
-        store3(column, n, i, bough_cross(x, e));
+        lane_store(column, n, i, bough_cross(x, e));
         column[3 * n + i] = -0.5 * turn.w;
-        store3(column + (size_t)4 * n, n, i, bough_scale(-0.5, bough_v3(turn.x, turn.y, turn.z)));
-        store3(column + (size_t)BOUGH_ROD_U * n, n, i, bough_cross(u, e));
+        lane_store(column + (size_t)4 * n, n, i, bough_scale(-0.5, bough_v3(turn.x, turn.y, turn.z)));
+        lane_store(column + (size_t)BOUGH_ROD_U * n, n, i, bough_cross(u, e));
     }
 }
 

@@ -23,13 +23,13 @@ enum {
 };
 
 BOUGH_INLINE void store_shape(double *restrict base, int l, segment_geometry s) {
-    store3(base + LANES * BASE_R, LANES, l, s.r.c1);
-    store3(base + LANES * (BASE_R + 3), LANES, l, s.r.c2);
-    store3(base + LANES * (BASE_R + 6), LANES, l, s.r.c3);
-    store3(base + LANES * BASE_V, LANES, l, s.v);
-    store3(base + LANES * BASE_T, LANES, l, s.t);
-    store3(base + LANES * BASE_CHORD, LANES, l, s.chord);
-    store3(base + LANES * BASE_W, LANES, l, (bough_vec3){s.w, s.c, s.g});
+    lane_store(base + LANES * BASE_R, LANES, l, s.r.c1);
+    lane_store(base + LANES * (BASE_R + 3), LANES, l, s.r.c2);
+    lane_store(base + LANES * (BASE_R + 6), LANES, l, s.r.c3);
+    lane_store(base + LANES * BASE_V, LANES, l, s.v);
+    lane_store(base + LANES * BASE_T, LANES, l, s.t);
+    lane_store(base + LANES * BASE_CHORD, LANES, l, s.chord);
+    lane_store(base + LANES * BASE_W, LANES, l, (bough_vec3){s.w, s.c, s.g});
     base[LANES * (BASE_W + 3) + l] = s.e;
     base[LANES * (BASE_W + 4) + l] = s.slope;
 }
@@ -37,9 +37,9 @@ BOUGH_INLINE void store_shape(double *restrict base, int l, segment_geometry s) 
 BOUGH_INLINE segment_geometry load_shape(const double *restrict base, int l) {
     segment_geometry s;
     s.r = load_matrix(base + LANES * BASE_R, LANES, l);
-    s.v = load3(base + LANES * BASE_V, LANES, l);
-    s.t = load3(base + LANES * BASE_T, LANES, l);
-    s.chord = load3(base + LANES * BASE_CHORD, LANES, l);
+    s.v = lane_load(base + LANES * BASE_V, LANES, l);
+    s.t = lane_load(base + LANES * BASE_T, LANES, l);
+    s.chord = lane_load(base + LANES * BASE_CHORD, LANES, l);
     s.w = base[LANES * BASE_W + l];
     s.c = base[LANES * (BASE_W + 1) + l];
     s.g = base[LANES * (BASE_W + 2) + l];
@@ -51,23 +51,24 @@ BOUGH_INLINE segment_geometry load_shape(const double *restrict base, int l) {
 
 BOUGH_INLINE void store_elastic(double *restrict base, int l, elastic_state s) {
     double *restrict to = base + LANES * BASE_ELASTIC;
-    store3(to, LANES, l, s.stress.u);
-    store3(to + LANES * 3, LANES, l, s.bent.v);
-    store3(to + LANES * 6, LANES, l, s.bent.u);
-    store3(to + LANES * 9, LANES, l, s.kappa);
-    store3(to + LANES * 12, LANES, l, s.b);
-    store3(to + LANES * 15, LANES, l, (bough_vec3){s.value, s.limit, s.slope});
+    lane_store(to, LANES, l, s.stress.u);
+    lane_store(to + LANES * 3, LANES, l, s.bent.v);
+    lane_store(to + LANES * 6, LANES, l, s.bent.u);
+    lane_store(to + LANES * 9, LANES, l, s.kappa);
+    lane_store(to + LANES * 12, LANES, l, s.b);
+    lane_store(to + LANES * 15, LANES, l, (bough_vec3){s.value, s.limit, s.slope});
 }
 
 BOUGH_INLINE elastic_state load_elastic(const double *restrict base, int l) {
     const double *restrict from = base + LANES * BASE_ELASTIC;
-    return (elastic_state){.stress.u = load3(from, LANES, l),
-                           .bent = {load3(from + LANES * 3, LANES, l), load3(from + LANES * 6, LANES, l)},
-                           .kappa = load3(from + LANES * 9, LANES, l),
-                           .b = load3(from + LANES * 12, LANES, l),
-                           .value = from[LANES * 15 + l],
-                           .limit = from[LANES * 16 + l],
-                           .slope = from[LANES * 17 + l]};
+    return (elastic_state){
+        .stress.u = lane_load(from, LANES, l),
+        .bent = {lane_load(from + LANES * 3, LANES, l), lane_load(from + LANES * 6, LANES, l)},
+        .kappa = lane_load(from + LANES * 9, LANES, l),
+        .b = lane_load(from + LANES * 12, LANES, l),
+        .value = from[LANES * 15 + l],
+        .limit = from[LANES * 16 + l],
+        .slope = from[LANES * 17 + l]};
 }
 
 // Shape, motion and stress of segments first..first + 7, from vertices and loads in `scratch`, into
@@ -89,11 +90,11 @@ static void find_base(const bough_rod_model *m, const bough_rod_scratch *scratch
         strain stress = add_strain(elastic_stress(elastic), symmetric_times(d, LANES, l, rate));
         store_elastic(out, l, elastic);
         store_shape(out, l, shape);
-        store3(out + LANES * BASE_RELATIVE, LANES, l, motion.relative);
-        store3(out + LANES * BASE_MIDDLE, LANES, l, motion.middle);
-        store3(out + LANES * BASE_DU, LANES, l, motion.du);
-        store3(out + LANES * BASE_STRESS, LANES, l, stress.v);
-        store3(out + LANES * (BASE_STRESS + 3), LANES, l, stress.u);
+        lane_store(out + LANES * BASE_RELATIVE, LANES, l, motion.relative);
+        lane_store(out + LANES * BASE_MIDDLE, LANES, l, motion.middle);
+        lane_store(out + LANES * BASE_DU, LANES, l, motion.du);
+        lane_store(out + LANES * BASE_STRESS, LANES, l, stress.v);
+        lane_store(out + LANES * (BASE_STRESS + 3), LANES, l, stress.u);
     }
 }
 
@@ -108,9 +109,9 @@ static void unit_variation(int k, bool velocity, vertex_variation *l, vertex_var
 }
 
 BOUGH_INLINE void store_force(double *restrict column, int l, segment_force f) {
-    store3(column, LANES * DIRECTIONS, l, f.f);
-    store3(column + LANES * DIRECTIONS * LL, LANES * DIRECTIONS, l, f.ll);
-    store3(column + LANES * DIRECTIONS * LR, LANES * DIRECTIONS, l, f.lr);
+    lane_store(column, LANES * DIRECTIONS, l, f.f);
+    lane_store(column + LANES * DIRECTIONS * LL, LANES * DIRECTIONS, l, f.ll);
+    lane_store(column + LANES * DIRECTIONS * LR, LANES * DIRECTIONS, l, f.lr);
 }
 
 // `turning`: D q turns as well, and the moments of loads along the segment beside its chord.
@@ -128,13 +129,13 @@ BOUGH_INLINE void position_direction(const bough_rod_model *m, const bough_rod_s
 #pragma omp simd
     for (int l = 0; l < LANES; l++) {
         segment_geometry shape = load_shape(base, l);
-        segment_rate motion = {.du = load3(base + LANES * BASE_DU, LANES, l),
-                               .middle = load3(base + LANES * BASE_MIDDLE, LANES, l),
-                               .relative = load3(base + LANES * BASE_RELATIVE, LANES, l),
-                               .wl = load3(at + BOUGH_ROD_W * s, s, l),
-                               .wr = load3(at + BOUGH_ROD_W * s, s, l + 1)};
-        strain stress = {load3(base + LANES * BASE_STRESS, LANES, l),
-                         load3(base + LANES * (BASE_STRESS + 3), LANES, l)};
+        segment_rate motion = {.du = lane_load(base + LANES * BASE_DU, LANES, l),
+                               .middle = lane_load(base + LANES * BASE_MIDDLE, LANES, l),
+                               .relative = lane_load(base + LANES * BASE_RELATIVE, LANES, l),
+                               .wl = lane_load(at + BOUGH_ROD_W * s, s, l),
+                               .wr = lane_load(at + BOUGH_ROD_W * s, s, l + 1)};
+        strain stress = {lane_load(base + LANES * BASE_STRESS, LANES, l),
+                         lane_load(base + LANES * (BASE_STRESS + 3), LANES, l)};
         segment_variation d = shape_variation(shape, dl, dr, inverse[l]);
         strain de = {d.stretch, bough_scale(inverse[l], d.phi)};
         if (turning) de = add_turned(de, line, along, s, l, d.middle);
@@ -146,8 +147,9 @@ BOUGH_INLINE void position_direction(const bough_rod_model *m, const bough_rod_s
         if (turning) {
             bough_mat3 rl = bough_rotation_matrix(load_vertex(at, s, l).p);
             bough_mat3 rr = bough_rotation_matrix(load_vertex(at, s, l + 1).p);
-            f = add_chord_moments(f, shape, d, rl, rr, dl.phi, dr.phi, load3(bend, s, l), load3(turn, s, l),
-                                  load3(along, s, l), load3(following, s, l), h[l]);
+            f = add_chord_moments(f, shape, d, rl, rr, dl.phi, dr.phi, lane_load(bend, s, l),
+                                  lane_load(turn, s, l), lane_load(along, s, l), lane_load(following, s, l),
+                                  h[l]);
         }
         store_force(column, l, f);
     }
@@ -197,7 +199,7 @@ static void velocity_variation(const bough_rod_model *m, int first, const double
 // -- a vertex' own terms --------------------------------------------------------------------------
 
 BOUGH_INLINE void store_column(double *restrict block, int l, int row, int column, bough_vec3 x) {
-    store3(block + (6 * row + column) * LANES, 6 * LANES, l, x);
+    lane_store(block + (6 * row + column) * LANES, 6 * LANES, l, x);
 }
 
 static void keep_vertices(const bough_rod_model *m, const double *restrict state,
@@ -210,12 +212,12 @@ static void keep_vertices(const bough_rod_model *m, const double *restrict state
         vertex_state a = load_vertex(vertex, s, v);
         bough_mat3 r = bough_rotation_matrix(a.p);
         kept[KEPT_P * s + v] = state[3 * n + v - 1];
-        store3(kept + (KEPT_P + 1) * s, s, v, load3(state + 4 * n, n, v - 1));
-        store3(kept + KEPT_W * s, s, v, a.w);
-        store3(kept + KEPT_OMEGA * s, s, v, bough_mat3_tmul(r, omega));
-        store3(kept + KEPT_R * s, s, v, r.c1);
-        store3(kept + (KEPT_R + 3) * s, s, v, r.c2);
-        store3(kept + (KEPT_R + 6) * s, s, v, r.c3);
+        lane_store(kept + (KEPT_P + 1) * s, s, v, lane_load(state + 4 * n, n, v - 1));
+        lane_store(kept + KEPT_W * s, s, v, a.w);
+        lane_store(kept + KEPT_OMEGA * s, s, v, bough_mat3_tmul(r, omega));
+        lane_store(kept + KEPT_R * s, s, v, r.c1);
+        lane_store(kept + (KEPT_R + 3) * s, s, v, r.c2);
+        lane_store(kept + (KEPT_R + 6) * s, s, v, r.c3);
     }
 }
 
@@ -230,7 +232,7 @@ static void mass_columns(const bough_rod_model *m, const bough_rod_tangent *k, i
 #pragma omp simd
     for (int l = 0; l < LANES; l++) {
         bough_mat3 r = load_matrix(kept + KEPT_R * s, s, l);
-        bough_vec3 offset = load3(moment, s, l);
+        bough_vec3 offset = lane_load(moment, s, l);
         store_column(mass, l, 0, j, bough_scale(weight[l], e));
         store_column(mass, l, 3, j, bough_cross(offset, bough_mat3_tmul(r, e)));
         store_column(mass, l, 0, 3 + j, bough_mat3_mul(r, bough_cross(e, offset)));
@@ -248,7 +250,7 @@ static void velocity_columns(const bough_rod_model *m, const bough_rod_tangent *
 #pragma omp simd
     for (int l = 0; l < LANES; l++) {
         bough_mat3 r = load_matrix(kept + KEPT_R * s, s, l);
-        bough_vec3 offset = load3(moment, s, l), w = load3(kept + KEPT_W * s, s, l);
+        bough_vec3 offset = lane_load(moment, s, l), w = lane_load(kept + KEPT_W * s, s, l);
         bough_vec3 centrifugal =
             bough_add(bough_cross(e, bough_cross(w, offset)), bough_cross(w, bough_cross(e, offset)));
         bough_vec3 gyroscopic = bough_add(bough_cross(e, inertia_times(inertia, s, l, w)),
@@ -303,19 +305,19 @@ static void rotation_columns(const bough_rod_model *m, const double *restrict ra
 #pragma omp simd
     for (int v = 1; v <= n; v++) {
         bough_mat3 r = load_matrix(kept + KEPT_R * s, s, v);
-        bough_vec3 offset = load3(first, s, v - 1), w = load3(kept + KEPT_W * s, s, v);
-        bough_vec3 u = load3(vertex + BOUGH_ROD_U * s, s, v);
-        bough_vec3 udot = load3(rate, n, v - 1), wdot = load3(rate + 3 * n, n, v - 1);
+        bough_vec3 offset = lane_load(first, s, v - 1), w = lane_load(kept + KEPT_W * s, s, v);
+        bough_vec3 u = lane_load(vertex + BOUGH_ROD_U * s, s, v);
+        bough_vec3 udot = lane_load(rate, n, v - 1), wdot = lane_load(rate + 3 * n, n, v - 1);
         bough_vec3 felt = bough_sub(bough_add(udot, bough_cross(omega, u)), gravity);
         bough_vec3 c = bough_mat3_tmul(r, felt);
-        bough_vec3 moment = bough_mat3_tmul(r, load3(load + 3 * s, s, v));
+        bough_vec3 moment = bough_mat3_tmul(r, lane_load(load + 3 * s, s, v));
         bough_vec3 shift = bough_add(bough_cross(wdot, offset), bough_cross(w, bough_cross(w, offset)));
         for (int j = 0; j < 3; j++) {
             bough_vec3 e = bough_unit3(j);
             bough_vec3 force = bough_mat3_mul(r, bough_cross(shift, e));
             bough_vec3 turned = bough_sub(bough_cross(moment, e), bough_cross(offset, bough_cross(c, e)));
-            store3(out + 6 * j * s, s, v, force);
-            store3(out + (6 * j + 3) * s, s, v, turned);
+            lane_store(out + 6 * j * s, s, v, force);
+            lane_store(out + (6 * j + 3) * s, s, v, turned);
         }
     }
 }
@@ -327,15 +329,15 @@ static void add_followers(const bough_rod_model *m, const bough_rod_scratch *scr
     double *out = k->local_position;
     for (int v = 1; v <= m->n; v++) {
         bough_mat3 r = load_matrix(k->vertex + (size_t)KEPT_R * s, s, v);
-        bough_vec3 force = load3(scratch->follower, s, v);
-        bough_vec3 moment = load3(scratch->follower + 3 * s, s, v);
+        bough_vec3 force = lane_load(scratch->follower, s, v);
+        bough_vec3 moment = lane_load(scratch->follower + 3 * s, s, v);
         for (int j = 0; j < 3; j++) {
             bough_vec3 pull = bough_mat3_mul(r, bough_cross(bough_unit3(j), force));
             bough_vec3 turn = bough_cross(bough_unit3(j), moment);
-            bough_vec3 old_pull = load3(out + 6 * j * s, s, v);
-            bough_vec3 old_turn = load3(out + (6 * j + 3) * s, s, v);
-            store3(out + 6 * j * s, s, v, bough_add(old_pull, pull));
-            store3(out + (6 * j + 3) * s, s, v, bough_add(old_turn, turn));
+            bough_vec3 old_pull = lane_load(out + 6 * j * s, s, v);
+            bough_vec3 old_turn = lane_load(out + (6 * j + 3) * s, s, v);
+            lane_store(out + 6 * j * s, s, v, bough_add(old_pull, pull));
+            lane_store(out + (6 * j + 3) * s, s, v, bough_add(old_turn, turn));
         }
     }
 }
@@ -348,8 +350,8 @@ static void add_turning(const bough_rod_model *m, const bough_rod_loads *loads, 
 #pragma omp simd
     for (int v = 1; v <= m->n; v++) {
         vertex_load f = slope_at(slope, s, v, 2, load_matrix(kept + KEPT_R * s, s, v));
-        store3(out, s, v, bough_add(load3(out, s, v), f.f));
-        store3(out + 3 * s, s, v, bough_add(load3(out + 3 * s, s, v), f.l));
+        lane_store(out, s, v, bough_add(lane_load(out, s, v), f.f));
+        lane_store(out + 3 * s, s, v, bough_add(lane_load(out + 3 * s, s, v), f.l));
     }
 }
 
