@@ -135,6 +135,10 @@ int bough_scheme_defect_order(const bough_scheme *s, const bough_scheme_options 
     return s->defect_order ? s->defect_order(options) : 1;
 }
 
+int bough_scheme_error_order(const bough_scheme *s, const bough_scheme_options *options) {
+    return s->error_order ? s->error_order(options) : bough_scheme_defect_order(s, options);
+}
+
 bough_member *bough_scheme_whole(const bough_coupling *c) {
     return c->scheme->whole ? c->scheme->whole(c) : NULL;
 }

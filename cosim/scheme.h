@@ -62,6 +62,8 @@ struct bough_scheme {
     void (*damp)(bough_scheme_options *options);
     // Order of the interface defects in the macro step; NULL: 1.
     int (*defect_order)(const bough_scheme_options *options);
+    // Order of the coupling error in the macro step; NULL: that of the defects.
+    int (*error_order)(const bough_scheme_options *options);
     // The impulses of the inputs (n_input) that the next step compensates, in units of the inputs times s;
     // NULL: none.
     double *(*impulse)(const bough_coupling *c);
@@ -124,6 +126,7 @@ void bough_scheme_snapshot(bough_coupling *c, bough_snapshot *s);
 
 // The entry's answers, or those of an entry that leaves the question out.
 int bough_scheme_defect_order(const bough_scheme *s, const bough_scheme_options *options);
+int bough_scheme_error_order(const bough_scheme *s, const bough_scheme_options *options);
 bough_member *bough_scheme_whole(const bough_coupling *c);
 bough_scheme_report bough_scheme_reported(const bough_coupling *c);
 

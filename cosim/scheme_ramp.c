@@ -403,6 +403,11 @@ static int defect_order(const bough_scheme_options *options) {
     return 2;
 }
 
+// The ramp itself is of order 2 for any θ; its end value is so for θ = 1/2 alone. 0: the scheme chooses that.
+static int error_order(const bough_scheme_options *options) {
+    return options->theta > 0 && options->theta != 0.5 ? 1 : 2;
+}
+
 // Backward Euler.
 static void damp(bough_scheme_options *options) { options->theta = 1; }
 
@@ -425,6 +430,7 @@ const bough_scheme bough_scheme_ramp = {
     .snapshot = snapshot,
     .damp = damp,
     .defect_order = defect_order,
+    .error_order = error_order,
     .impulse = impulse,
     .report = report,
 };

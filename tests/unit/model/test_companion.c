@@ -232,6 +232,12 @@ TEST(a_coupling_has_a_monolithic_companion) {
     scene = scene_read(arena, "apps/turbine/runup.yaml", fixed);
     c = bough_coarser_scene(arena, scene, BOUGH_COARSER_ALL);
     check_near(bough_coarser_share(scene, c), 1, 1e-12, 0);
+    // a weight other than 1/2 makes the coupling's error one of first order: the whole difference
+    scene->simulation.micro.solver = BOUGH_ROSENBROCK;
+    scene->simulation.coupling.options.theta = 0.5;
+    check_near(bough_coarser_share(scene, c), 0.5, 1e-12, 0);
+    scene->simulation.coupling.options.theta = 0.89;
+    check_near(bough_coarser_share(scene, c), 1, 1e-12, 0);
 }
 
 // -- what counts ----------------------------------------------------------------------------------
