@@ -1,6 +1,7 @@
 // bough check: what a scene builds, and why. Nothing is run or written.
 #include "apps/bough/cli/command.h"
 #include "apps/bough/cli/run.h"
+#include "apps/bough/config/base.h"
 #include "apps/bough/model/aero_link.h"
 #include "apps/bough/model/validity.h"
 #include "apps/bough/results/progress.h"
@@ -374,9 +375,41 @@ static void print_turbine(bough_simulation *s, FILE *stream) {
 
 // -- the command ----------------------------------------------------------------------------------
 
-static const bough_option rows[] = {BOUGH_OPTION_SET, {0}};
+typedef struct check_options {
+    bough_options common;
+    bool full;
+} check_options;
+
+static const bough_option rows[] = {
+    BOUGH_OPTION_SET,
+    {"full", NULL, "prints the scene with base and --set merged into it, as a scene that runs",
+     bough_option_flag, offsetof(check_options, full), false},
+    {0},
+};
+
+// A scalar as a scene in the same directory has it: files that a base names are relative to the base.
+static const char *written(void *self, const bough_node *scalar) {
+    const bough_scene *scene = self;
+    const char *slash = strrchr(scene->file, '/');
+    size_t length = slash ? (size_t)(slash + 1 - scene->file) : 0;
+    const bough_schema_base *base = scene->bases;
+    while (base && strcmp(base->path, scalar->file) != 0) base = base->next;
+    size_t inner = base ? strlen(base->directory) : 0;
+    for (const bough_schema_file *f = scene->named; base && f; f = f->next) {
+        bool same =
+            strncmp(f->path, base->directory, inner) == 0 && strcmp(f->path + inner, scalar->text) == 0;
+        if (same) return f->path + (base->absolute ? 0 : length);
+    }
+    return scalar->text;
+}
 
 static bough_status check(bough_arena *arena, const void *options) {
+    if (((const check_options *)options)->full) {
+        bough_scene *scene;
+        bough_status status = bough_open_scene(arena, options, &scene);
+        if (bough_is_ok(&status)) bough_node_write(scene->node, written, scene, stdout);
+        return status;
+    }
     bough_simulation *s;
     bough_status status = bough_open(arena, options, &s);
     if (!bough_is_ok(&status)) return status;
@@ -405,6 +438,6 @@ const bough_command bough_command_check = {
     .operand = BOUGH_OPERAND_REQUIRED,
     .operand_name = "SCENE",
     .option = rows,
-    .size = sizeof(bough_options),
+    .size = sizeof(check_options),
     .run = check,
 };

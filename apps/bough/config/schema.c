@@ -185,13 +185,23 @@ static void add_file(bough_schema_reader *r, bough_schema_file added) {
     r->files = file;
 }
 
-const char *bough_schema_path(bough_schema_reader *r, const char *key, const char *name) {
-    const char *path = bough_arena_print(r->arena, "%s%s", name[0] == '/' ? "" : r->directory, name);
+void bough_schema_add_file(bough_schema_reader *r, const char *key, const char *path, bool absolute) {
+    add_file(r, (bough_schema_file){.key = key, .path = path, .absolute = absolute});
+}
+
+const char *bough_schema_path(bough_schema_reader *r, const bough_node *node, const char *key,
+                              const char *name) {
+    const bough_node *written = key[0] == '\0' ? node : bough_node_find(node, key);
+    const bough_schema_base *base = written != NULL ? r->bases : NULL;
+    while (base != NULL && strcmp(base->path, written->file) != 0) base = base->next;
+    const char *directory = name[0] == '/' ? "" : base != NULL ? base->directory : r->directory;
+    const char *path = bough_arena_print(r->arena, "%s%s", directory, name);
     const bough_schema_file *known = find_file(r, path, NULL);
     if (known != NULL) return known->path;
     size_t length = key[0] == '\0' ? strlen(r->path) : bough_schema_push_key(r, key);
-    add_file(r, (bough_schema_file){
-                    .key = bough_arena_string(r->arena, r->path), .path = path, .absolute = name[0] == '/'});
+    add_file(r, (bough_schema_file){.key = bough_arena_string(r->arena, r->path),
+                                    .path = path,
+                                    .absolute = name[0] == '/' || (base != NULL && base->absolute)});
     bough_schema_pop(r, length);
     return path;
 }
@@ -216,7 +226,7 @@ static void read_file(bough_schema_reader *r, const bough_schema *schema, const 
         bough_schema_expected(r, node, "the name of a file");
         return;
     }
-    const char *path = bough_schema_path(r, "", node->text);
+    const char *path = bough_schema_path(r, node, "", node->text);
     const bough_schema_file *known = find_file(r, path, schema); // bodies that name it share its tables
     if (known != NULL) {
         memcpy(field, known->item, schema->size);

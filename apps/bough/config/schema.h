@@ -86,15 +86,24 @@ typedef struct bough_schema_file {
     void *item;
 } bough_schema_file;
 
+// A file on which the scene builds: see config/base.h.
+typedef struct bough_schema_base {
+    struct bough_schema_base *next; // the base of this one, NULL: it has none
+    const char *path;               // as it is opened, and as its nodes name it
+    const char *directory;          // of the paths in it, with its last slash; "" for the current one
+    bool absolute;                  // so is its name, or that of a file between it and the first one
+} bough_schema_base;
+
 // Reads a file named `path` relative to the directory of the scene; see BOUGH_KEY_FILE.
 struct bough_schema_reader {
     bough_arena *arena;
     bough_errors *errors;
-    const char *directory;    // with its last slash, "" for the current one
-    const char *unit;         // of plain numbers, from the head of a column; NULL: SI
-    char path[256];           // of the value being read
-    const bough_key *key;     // whose value `read` of the key is called for
-    bough_schema_file *files; // named so far, once each without a schema, once with each that read it
+    const char *directory;          // with its last slash, "" for the current one
+    const bough_schema_base *bases; // of the scene, whose values name files from directories of their own
+    const char *unit;               // of plain numbers, from the head of a column; NULL: SI
+    char path[256];                 // of the value being read
+    const bough_key *key;           // whose value `read` of the key is called for
+    bough_schema_file *files;       // named so far, once each without a schema, once with each that read it
 };
 
 // Fills `item` (zeroed, of the schema's size) from a mapping; NULL fills the defaults.
@@ -105,9 +114,14 @@ void bough_schema_read(bough_schema_reader *reader, const bough_schema *schema, 
 void bough_schema_error(bough_schema_reader *reader, const bough_node *node, const char *key,
                         const char *format, ...) __attribute__((format(printf, 4, 5)));
 
-// The path of a file that the scene names by the value being read or, unless key is "", by its `.key`:
-// relative to the scene's directory. Every name of a file comes by here and is then in reader->files.
-const char *bough_schema_path(bough_schema_reader *reader, const char *key, const char *name);
+// The path of a file that the scene names by the value `node` being read or, unless key is "", by its `.key`:
+// relative to the directory of the scene, or of the base in which the name stands. Every name of a file comes
+// by here and is then in reader->files.
+const char *bough_schema_path(bough_schema_reader *reader, const bough_node *node, const char *key,
+                              const char *name);
+
+// Records a file that the scene is made of and that no value of it names.
+void bough_schema_add_file(bough_schema_reader *reader, const char *key, const char *path, bool absolute);
 
 // Reads a number with or without a unit; NaN after adding an error.
 double bough_schema_number(bough_schema_reader *reader, const bough_node *node, bough_dimension dimension);

@@ -192,6 +192,23 @@ void bough_schema_json_object(const bough_schema *schema, FILE *stream) {
     fputs("]}", stream);
 }
 
+// A file on a base has any part of the keys, with what differs below them.
+static void put_on_base(const bough_schema *schema, FILE *stream) {
+    fputs(",\n{\"type\": \"object\", \"additionalProperties\": false, \"properties\": {", stream);
+    for (int i = 0; i < schema->n_key; i++) {
+        if (i > 0) fputs(", ", stream);
+        bough_quote(stream, schema->key[i].name);
+        fputs(strcmp(schema->key[i].name, "base") == 0 ? ": {\"type\": \"string\"}" : ": {}", stream);
+    }
+    fputs("}, \"required\": [\"base\"]}", stream);
+}
+
+static bool has_base(const bough_schema *schema) {
+    bool has = false;
+    for (int i = 0; i < schema->n_key; i++) has = has || strcmp(schema->key[i].name, "base") == 0;
+    return has;
+}
+
 void bough_schema_json(const char *title, const bough_schema *const *schema, int n, FILE *stream) {
     fputs("{\"$schema\": \"https://json-schema.org/draft/2020-12/schema\", \"title\": ", stream);
     bough_quote(stream, title);
@@ -199,6 +216,7 @@ void bough_schema_json(const char *title, const bough_schema *const *schema, int
     for (int i = 0; i < n; i++) {
         if (i > 0) fputs(",\n", stream);
         bough_schema_json_object(schema[i], stream);
+        if (has_base(schema[i])) put_on_base(schema[i], stream);
     }
     fputs("\n]}\n", stream);
 }

@@ -1,4 +1,5 @@
 // Reading a scene: text, replacements, tables, links. All errors are collected before it gives up.
+#include "apps/bough/config/base.h"
 #include "apps/bough/scene/scene_internal.h"
 
 #include <math.h>
@@ -133,14 +134,6 @@ void bough_scene_take_part(bough_schema_reader *r, const bough_node *given, cons
     cut(s, part, to);
 }
 
-// The directory of a path, with its slash; "" for the current one.
-static const char *directory_of(bough_arena *arena, const char *path) {
-    char *copy = bough_arena_string(arena, path);
-    char *slash = strrchr(copy, '/');
-    copy[slash == NULL ? 0 : slash - copy + 1] = '\0';
-    return copy;
-}
-
 // Applies every replacement that is good; the others leave an error.
 static bough_node *replace(bough_arena *arena, bough_node *root, const char *const *sets, int n_set,
                            bough_errors *errors) {
@@ -164,17 +157,22 @@ bough_status bough_scene_read(bough_arena *arena, const char *path, const char *
                               bough_errors *errors, bough_scene **scene) {
     *scene = NULL;
     bough_scene *s = bough_arena_take(arena, sizeof *s);
-    bough_node *root = bough_text_read(arena, path, errors);
+    bough_schema_base *bases;
+    bough_node *root = bough_base_read(arena, path, errors, &bases);
     if (root == NULL) return bough_errors_status(errors, path, "scene");
     if (is_study(path, root, errors)) return bough_errors_status(errors, path, "scene");
     root = replace(arena, root, sets, n_set, errors);
-    bough_schema_reader reader = {.arena = arena, .errors = errors, .directory = directory_of(arena, path)};
+    const char *directory = bough_directory_of(arena, path);
+    bough_schema_reader reader = {.arena = arena, .errors = errors, .directory = directory, .bases = bases};
+    for (const bough_schema_base *base = bases; base != NULL; base = base->next)
+        bough_schema_add_file(&reader, "base", base->path, base->absolute);
     s->file = bough_arena_string(arena, path);
     bough_schema_read(&reader, &bough_scene_schema, root, s);
     bough_scene_apply_accuracy(s);
     if (s->node != NULL && errors->n == 0) bough_scene_repeat(&reader, s);
     if (s->node != NULL) bough_scene_link(&reader, s);
     s->named = reader.files;
+    s->bases = bases;
     bough_status status = bough_errors_status(errors, path, "scene");
     if (bough_is_ok(&status)) *scene = s;
     return status;

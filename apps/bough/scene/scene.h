@@ -454,6 +454,8 @@ typedef struct bough_scene {
     const bough_node *node;
     const char *file;                      // path of the scene
     const struct bough_schema_file *named; // the files that its keys name, last first: see scene_files.h
+    const struct bough_schema_base *bases; // the files on which it builds
+    const char *base;                      // file on which the scene builds, as written; NULL: none
     const char *title;
     double gravity[3]; // [m/s²] ground axes
     bough_scene_simulation simulation;

@@ -147,8 +147,8 @@ static void check_control(bough_schema_reader *r, void *item) {
     bough_scene_control *c = item;
     if (!c->pitch) c->law.power_pitch = INFINITY; // a pitch that nobody controls says nothing of the power
     if (c->kind != BOUGH_SCENE_BLADED) return;
-    if (c->library) c->library = bough_schema_path(r, "library", c->library);
-    c->input = c->input && c->input[0] ? bough_schema_path(r, "input", c->input) : "";
+    if (c->library) c->library = bough_schema_path(r, c->node, "library", c->library);
+    c->input = c->input && c->input[0] ? bough_schema_path(r, c->node, "input", c->input) : "";
 }
 
 const bough_schema bough_scene_control_schema = {SCHEMA("the control", bough_scene_control, control_keys),

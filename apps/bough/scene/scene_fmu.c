@@ -65,7 +65,7 @@ void bough_scene_check_fmu(bough_schema_reader *r, void *item) {
                            fmu->folder);
         return;
     }
-    fmu->folder = bough_schema_path(r, "folder", fmu->folder);
+    fmu->folder = bough_schema_path(r, fmu->node, "folder", fmu->folder);
     bough_status status = bough_fmu_describe(r->arena, fmu->folder, &fmu->description);
     if (!bough_is_ok(&status)) {
         bough_schema_error(r, folder, "folder", "%s", status.message);

@@ -199,6 +199,8 @@ static const bough_schema modes_schema = {SCHEMA("the modes", bough_scene_modes,
 
 #define FILLS bough_scene
 static const bough_key scene_keys[] = {
+    {KEY(TEXT, base), .example = "runup.yaml",
+     .help = "scene on which this one builds: the file has only what differs"},
     {KEY(TEXT, title), .example = "A bar that swings", .help = "what the scene shows"},
     {KEY(VECTOR, gravity), .count = 3, UNIT(ACCELERATION), .fallback = "[0, 0, -9.80665]",
      .example = "[0, 0, -9.81 m/s^2]", .help = "ground axes, z up"},
@@ -262,6 +264,17 @@ void bough_scene_help(FILE *stream) {
           "        - [0, 13.3, 3.5]\n"
           "        - [10, 11.5, 4.6]\n",
           stream);
+    fputs(
+        "\n## On another scene\n\n"
+        "`base: FILE` names a scene on which this one builds; the file has only what differs. A mapping changes the keys\n"
+        "that it has. A list of mappings with names changes the items of those names and appends others; a mapping in\n"
+        "its place has the names as keys. `null` removes a key or an item, in `--set` too. Any other value replaces the\n"
+        "base's. Paths are relative to the file in which they stand. `bough check --full SCENE` prints the whole scene.\n\n"
+        "    base: runup.yaml\n"
+        "    simulation: {coupling: {scheme: monolithic, theta: null}, micro: null}\n"
+        "    bodies: {blade1: {pitch: 3 deg}, blade2: {pitch: 3 deg}, blade3: {pitch: 3 deg}}\n"
+        "    aero: {wind: {speed: 12 m/s}}\n",
+        stream);
     fputs("\n## An example\n\n", stream);
     fputs(example, stream);
     fputs("\n## Keys\n\n", stream);

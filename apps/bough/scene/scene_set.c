@@ -1,6 +1,6 @@
 // Replacements from the command line: "bodies[2].pitch=5 deg". They change the tree of the text
 // before it is read, so that they are checked like everything else.
-#include "apps/bough/config/schema.h"
+#include "apps/bough/config/base.h"
 #include "apps/bough/scene/scene_internal.h"
 
 #include <math.h>
@@ -93,6 +93,20 @@ static bough_suggestion suggest_item(const replacement *s, const bough_node *nod
     return bough_suggest(name, names, node->n);
 }
 
+// The container without the value at index i.
+static void remove_value(bough_node *copy, int i) {
+    copy->n--;
+    for (; i < copy->n; i++) {
+        copy->value[i] = copy->value[i + 1];
+        if (copy->key != NULL) copy->key[i] = copy->key[i + 1];
+    }
+}
+
+// Whether the rest of the path ends here and the value is null, which removes what is there.
+static bool removes(const replacement *s, const char *rest) {
+    return *rest == '\0' && bough_node_is_null(s->value);
+}
+
 // "[2]…" or "[blade1]…": an item that exists; "[2-4]…": several.
 static bough_node *put_item(const replacement *s, const bough_node *node, const char *rest, int depth) {
     char *end, text[200];
@@ -124,6 +138,7 @@ static bough_node *put_item(const replacement *s, const bough_node *node, const 
         return refuse(s, text);
     }
     bough_node *copy = copy_container(s, node);
+    for (; removes(s, end + 1) && index <= last; last--) remove_value(copy, (int)index);
     for (; index <= last; index++) {
         copy->value[index] = put(s, node->value[index], end + 1, depth + 1);
         if (copy->value[index] == NULL) return NULL;
@@ -131,7 +146,7 @@ static bough_node *put_item(const replacement *s, const bough_node *node, const 
     return copy;
 }
 
-// "key…": replaced or added; `node` NULL makes a new mapping.
+// "key…": replaced or added, or removed by null; `node` NULL makes a new mapping.
 static bough_node *put_key(const replacement *s, const bough_node *node, const char *rest, int depth) {
     size_t length = strcspn(rest, ".[");
     char name[PATH], text[PATH + 80], shown[64];
@@ -145,6 +160,10 @@ static bough_node *put_key(const replacement *s, const bough_node *node, const c
     bough_node *copy = copy_container(s, node == NULL ? &empty : node);
     int i = 0;
     while (i < copy->n && strcmp(copy->key[i]->text, name) != 0) i++;
+    if (removes(s, rest + length)) {
+        if (i < copy->n) remove_value(copy, i);
+        return copy;
+    }
     bough_node *value = put(s, i < copy->n ? copy->value[i] : NULL, rest + length, depth + 1);
     bough_node *key = new_node(s, BOUGH_SCALAR, bough_arena_string(s->arena, name));
     if (value == NULL) return NULL;

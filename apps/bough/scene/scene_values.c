@@ -376,7 +376,7 @@ void bough_scene_check_wind_table(bough_schema_reader *r, void *item) {
 // The wind of a file is all in it; its path becomes relative to where the program runs.
 static void check_wind_file(bough_schema_reader *r, bough_scene_wind *w) {
     bough_scene_refuse(r, w->node, "speed|table|vertical", "only used without a file");
-    if (w->def.file != NULL) w->def.file = bough_schema_path(r, "file", w->def.file);
+    if (w->def.file != NULL) w->def.file = bough_schema_path(r, w->node, "file", w->def.file);
 }
 
 // A condition of the standard gives the speed over time, the extreme wind its mean too.

@@ -1,0 +1,29 @@
+// A file that builds on another one. Its key `base` names that file, relative to itself; the rest is what
+// differs:
+//   - a mapping changes the keys that it has and keeps the base's others; null removes a key;
+//   - a list of mappings with names changes the items of those names and appends others; a mapping in its
+//   place
+//     has these names as keys, and null removes an item;
+//   - any other value replaces the base's.
+#ifndef BOUGH_APPS_CONFIG_BASE_H
+#define BOUGH_APPS_CONFIG_BASE_H
+
+#include "apps/bough/config/schema.h"
+
+// The tree of a file, merged with those of its bases, which are then in *bases; NULL after adding to `errors`
+// why not. Each node keeps the place where it stands.
+bough_node *bough_base_read(bough_arena *arena, const char *path, bough_errors *errors,
+                            bough_schema_base **bases);
+
+// Whether the value is a plain null or ~, which removes a key.
+bool bough_node_is_null(const bough_node *node);
+
+// The directory of a path, with its slash; "" for the current one.
+const char *bough_directory_of(bough_arena *arena, const char *path);
+
+// Writes a tree as a file that reads as the same tree, without `base`, whose values are in it. `text` gives
+// what is written for a scalar.
+void bough_node_write(const bough_node *node, const char *(*text)(void *self, const bough_node *scalar),
+                      void *self, FILE *stream);
+
+#endif
