@@ -35,13 +35,16 @@ static void copy_loads(bough_arena *arena, const bough_scene *scene, bough_scene
     }
 }
 
-enum { FEW_SEGMENTS = 9 }; // fewer: errors of half of them do not fall with their order
+enum { FEW_SEGMENTS = 9 };   // fewer: errors of half of them do not fall with their order
+enum { LEAST_SEGMENTS = 8 }; // of a finer rod: one or two cost as much time
 
-// About half of n segments. A rod of few segments, or that cannot have much fewer, gets twice as many: what
-// lies between tells the error, too.
+static int finer_number(int n) { return 2 * n > LEAST_SEGMENTS ? 2 * n : LEAST_SEGMENTS; }
+
+// About half of n segments. A rod of few segments, or that cannot have much fewer, gets twice as many and
+// more: what lies between tells the error, too.
 static int other_number(int n, int least) {
     int half = (n + 1) / 2, fewer = half > least ? half : least;
-    return n >= FEW_SEGMENTS && 4 * fewer <= 3 * n ? fewer : 2 * n;
+    return n >= FEW_SEGMENTS && 4 * fewer <= 3 * n ? fewer : finer_number(n);
 }
 
 // All blades keep one number of segments, which the air needs.
@@ -54,9 +57,23 @@ static int least_of_blades(const bough_scene *scene) {
     return most;
 }
 
+// The states of a modal body are its modes, so that its mesh costs nothing; few segments have too few modes.
+static bool is_modal(const bough_scene *scene, int body) {
+    return scene->body[body].fidelity != BOUGH_SCENE_ROD;
+}
+
+static bool has_modal_blades(const bough_scene *scene) {
+    bool modal = false;
+    for (int k = 0; k < scene->turbine.n_blade; k++)
+        modal = modal || is_modal(scene, scene->turbine.blade[k]);
+    return modal;
+}
+
 static int other_segments(const bough_scene *scene, int body) {
-    int least = bough_scene_blade(scene, body) >= 0 ? least_of_blades(scene) : least_segments(scene, body);
-    return other_number(scene->body[body].rod.n_segment, least);
+    int n = scene->body[body].rod.n_segment;
+    bool blade = bough_scene_blade(scene, body) >= 0;
+    if (blade ? has_modal_blades(scene) : is_modal(scene, body)) return finer_number(n);
+    return other_number(n, blade ? least_of_blades(scene) : least_segments(scene, body));
 }
 
 static bool gets_finer(const bough_scene *scene, int body) {
@@ -95,13 +112,14 @@ static double usual_share(const bough_scene *scene) {
     return whole || has_fixed_sub_steps(scene) ? 1 : 0.5;
 }
 
-// At order 2 the error of n segments is 1/|r² − 1| of the difference to n/r segments.
+// At order 2 the error of n segments is 1/(r² − 1) of the difference to n/r segments; beside a finer mesh it
+// is the whole difference.
 double bough_coarser_share(const bough_scene *scene, const bough_scene *other) {
     double share = usual_share(scene);
     for (int i = 0; i < scene->n_body; i++) {
         if (!bough_scene_has_mesh(&scene->body[i])) continue;
         double r = (double)scene->body[i].rod.n_segment / other->body[i].rod.n_segment;
-        if (r != 1) share = fmax(share, 0.75 / fabs(r * r - 1));
+        if (r != 1) share = fmax(share, r < 1 ? 1 : 0.75 / (r * r - 1));
     }
     return share;
 }

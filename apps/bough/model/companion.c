@@ -13,7 +13,7 @@
 
 static void take(bough_companion *c, bough_arena *arena) {
     size_t n = (size_t)c->channels->count + 1;
-    bough_arena_each(arena, n, &c->value, &c->other, &c->error, &c->low, &c->high, &c->other_low,
+    bough_arena_each(arena, n, &c->value, &c->other, &c->before, &c->error, &c->low, &c->high, &c->other_low,
                      &c->other_high, &c->noticed);
     for (size_t i = 0; i < n; i++) {
         c->low[i] = c->other_low[i] = HUGE_VAL;
@@ -135,13 +135,23 @@ static double share_now(const bough_companion *c, const bough_channel *channel, 
     return channel->kind == BOUGH_KIND_FORCE ? fmax(c->share, least_share_of_force) : c->share;
 }
 
+// What a sampled channel errs by just before the next sample: both solutions may hold through the same
+// change. Where both agree to the bit the value follows from the time alone and is not held.
+static double stale(const bough_companion *c, int i) {
+    const bough_channel *channel = &c->channels->channel[i];
+    bool held = channel->sampled && c->compared > 1 && c->value[i] != c->other[i];
+    return held ? c->share_held * fabs(difference(channel, c->value[i], c->before[i])) : 0;
+}
+
 static void compare(bough_companion *c) {
     bool held = !bough_master_sampled(c->coarser->master);
+    memcpy(c->before, c->value, (size_t)c->channels->count * sizeof(double));
     sample(c);
     c->compared++;
     for (int i = 0; i < c->channels->count; i++) {
         const bough_channel *channel = &c->channels->channel[i];
         double error = share_now(c, channel, held) * fabs(difference(channel, c->value[i], c->other[i]));
+        error = fmax(error, stale(c, i));
         if (!(error <= c->error[i])) c->error[i] = error; // a NaN wins
     }
     bough_error_notice(c, c->run->master->time);
@@ -168,10 +178,10 @@ static void watch(bough_companion *c) {
         if (!bough_error_is_motion(&c->channels->channel[i])) continue;
         double own = range_of(c, i, c->low, c->high), other = range_of(c, i, c->other_low, c->other_high);
         double apart = fabs(difference(&c->channels->channel[i], c->value[i], c->other[i]));
-        double range = fmax(fmin(own, other), c->rest / c->channels->channel[i].si);
+        double range = bough_error_range(c, i);
         if (!(apart > several * range) || !bough_error_counts(c, i)) continue;
-        run = run || own > several * other;
-        companion = companion || other > several * own;
+        run = run || own > several * fmax(other, range);
+        companion = companion || other > several * fmax(own, range);
     }
     c->parted_for = run ? c->parted_for + 1 : 0;
     c->astray_for = companion && !run ? c->astray_for + 1 : 0;
@@ -216,7 +226,7 @@ void bough_companion_snapshot(bough_companion *c, bough_snapshot *s) {
     if (!c->coarser) return;
     int n = c->channels->count;
     bough_simulation_snapshot(c->coarser, s);
-    double *const rows[] = {c->error, c->low, c->high, c->other_low, c->other_high, c->noticed};
+    double *const rows[] = {c->value, c->error, c->low, c->high, c->other_low, c->other_high, c->noticed};
     for (size_t k = 0; k < sizeof rows / sizeof *rows; k++) bough_snapshot_doubles(s, rows[k], n);
     bough_snapshot_take(s, &c->compared, sizeof c->compared);
     bough_snapshot_take(s, &c->parted_for, sizeof c->parted_for);

@@ -24,6 +24,7 @@ typedef struct bough_companion {
     double rest;                    // largest value, up to 1, of a scene at rest, in SI units; 0: it moves
     long compared;                  // times
     double *value, *other;          // (channels->count) at the last of them, of the run and of the companion
+    double *before;                 // (channels->count) of the run at the comparison before
     double *error;                  // (channels->count) largest so far, in the channels' units
     double *low, *high;             // (channels->count) range of the run
     double *other_low, *other_high; // (channels->count) of the companion

@@ -271,7 +271,7 @@ void bough_scene_help(FILE *stream) {
         "its place has the names as keys. `null` removes a key or an item, in `--set` too. Any other value replaces the\n"
         "base's. Paths are relative to the file in which they stand. `bough check --full SCENE` prints the whole scene.\n\n"
         "    base: runup.yaml\n"
-        "    simulation: {coupling: {scheme: monolithic, theta: null}, micro: null}\n"
+        "    simulation: {macro_step: 10 ms, micro: null}\n"
         "    bodies: {blade1: {pitch: 3 deg}, blade2: {pitch: 3 deg}, blade3: {pitch: 3 deg}}\n"
         "    aero: {wind: {speed: 12 m/s}}\n",
         stream);
