@@ -226,9 +226,13 @@ complete_run() {
     out=out/rubber-bar
     has ../stdout '^results: 6 rows of 6 columns, 0.000654 MB$'
     has ../stdout '^status: complete$'
-    has ../stdout '^real_time_factor: [0-9]'
-    has ../stdout '^peak_memory_mb: [0-9]'
+    has ../stdout '^run: 0.022 s of .*rubber-bar.yaml, simulation.duration=22 ms, simulation.output.interval=5 ms$'
+    has ../stdout '^speed: [0-9.]* s, [0-9.]* times real time, [0-9]* MB$'
+    has ../stdout '^channel  *unit  *mean  *min  *max  *end  *error$'
+    has ../stdout '^barTipY  *m  *0  *0  *0  *0 '
+    has ../stdout '^largest errors: bar[A-Za-z]* [0-9].* of its range$'
     has ../stdout "^out: $out\$"
+    has ../stdout "^next: bough report $out\$"
     empty ../stderr
     json $out/summary.json
     has $out/summary.json '"bough_version": "'"$version"'"'
@@ -520,10 +524,23 @@ shown() {
     expect 0 report out
     has ../stdout '^report: out/report.html$'
     has out/report.html 'data.summary = '
+    has ../stdout '^picture: out/shape.svg, shape-dark.svg$'
+    has out/shape-dark.svg '^<text .*>0.02 s, to scale'
+    expect 0 report out --at '9 ms'
+    has out/shape.svg '^<text .*>0.01 s, to scale' # the nearest
+    expect 0 report out --at 0s
+    # the bar is still straight: the dashed line ends where the bar does
+    sed -n 's/.*stroke-dasharray.*L\(.*\)".*/\1/p' out/shape.svg >../straight
+    sed -n 's/.*stroke-width.* d="M.*L\(.*\)".*/\1/p' out/shape.svg | tail -n 1 | cmp -s - ../straight ||
+        fail "$said: the end of the bar: $(cat ../straight)"
+    [ "$(grep -c '<path stroke-width' out/shape.svg)" -eq 40 ] || fail "$said: a line for each segment"
+    expect 2 report out --at '1 kg'
+    has ../stderr "--at expects a time such as 12.5s, got '1 kg'"
     touch out/frames/mine.vtp
     expect 0 run "$bar" --set 'simulation.duration=20 ms' --set 'simulation.output.frames=10 ms' --out out
     [ "$(find out/frames | wc -l)" -eq 5 ] || fail "$said: three frames and what is not ours"
     missing out/report.html # of the run before
+    missing out/shape.svg
     rm out/frames/mine.vtp
     expect 0 run "$bar" --set 'simulation.duration=10 ms' --out other
     expect 0 report out other

@@ -33,14 +33,14 @@ grep -q '"status": "complete"' out/summary.json || fail 'results beyond the boun
 grep -q '"diagnosis": "the error bound' out/summary.json || fail 'the diagnosis of a run beyond its bound'
 grep -q '^Complete' out/channels.out || fail 'the rows of a run beyond its bound'
 coupled='simulation.coupling={scheme: monolithic}'
-run 0 '^error: ' four-bar.yaml --set "$coupled" --set 'simulation.master={solver: rosenbrock, rtol: 1e-5}'
+run 0 '^largest errors: ' four-bar.yaml --set "$coupled" --set 'simulation.master={solver: rosenbrock, rtol: 1e-5}'
 run 0 '^status: complete' four-bar.yaml --set simulation.error_bound=0
 
 # Generalised-alpha errs by the length of its steps, however small its rtol, which is that of Newton's method.
 alpha='generalized-alpha, rtol: 1e-8'
 run 3 'errs by .*; try master.step: .* s or master.solver: rosenbrock' four-bar.yaml --set "$coupled" \
     --set "simulation.master={solver: $alpha}" --set simulation.error_bound=0.01
-run 0 '^error: ' four-bar.yaml --set "$coupled" --set "simulation.master={solver: $alpha, step: 0.2 ms}"
+run 0 '^largest errors: ' four-bar.yaml --set "$coupled" --set "simulation.master={solver: $alpha, step: 0.2 ms}"
 
 # A mesh that is too coarse is the user's choice: a warning with the number of segments, and the shares.
 cat >coarse.yaml <<'END'
@@ -55,12 +55,12 @@ run 0 'warning: .*; cause: the mesh; try rod.segments: [0-9]*$' coarse.yaml --se
 for share in mesh time; do
     grep -q "\"$share\": {" out/summary.json || fail "the share of the $share"
 done
-run 0 '^error: .*; mesh [0-9.e-]*; time ' coarse.yaml --set simulation.error_shares=true --set simulation.error_bound=0
+run 0 '^largest errors: .*; mesh [0-9.e-]*; time ' coarse.yaml --set simulation.error_shares=true --set simulation.error_bound=0
 
 # Below the bound the warning's segments follow from the estimate, and they meet the accuracy.
 run 0 'for simulation.accuracy 0.005 try rod.segments: [0-9]*$' coarse.yaml --set simulation.error_bound=0
 advised=$(sed -n 's/^warning: .* try rod.segments: \([0-9]*\)$/\1/p' stdout)
-run 0 '^error: ' coarse.yaml --set "bodies[0].rod.segments=$advised"
+run 0 '^largest errors: ' coarse.yaml --set "bodies[0].rod.segments=$advised"
 ! grep -q '^warning' stdout || fail "$advised segments: $(cat stdout)"
 
 # The error belongs to the run: it is the same whatever is recorded, to the last bit.
@@ -111,7 +111,7 @@ bodies:
      joint: {kind: revolute, axis: y, parent: ground, placement: [move x 1], angle: 40 deg}}
 closures: [{name: pin, kind: spherical, from: coupler, from_placement: [move x 1], to: rocker, to_placement: [move z 0.5]}]
 END
-run 0 '^error: [a-zA-Z]* [0-9.e-]* [a-z/]*, [0-9.e-]* of its range' parallelogram.yaml
+run 0 '^largest errors: [a-zA-Z]* [0-9.e-]* [a-z/]*, [0-9.e-]* of its range' parallelogram.yaml
 
 # A whip without damping that is jerked up: against 32 segments and tight tolerances it errs by 0.060 m.
 cat >whip.yaml <<'END'
@@ -126,10 +126,10 @@ run 0 'whipTipZ errs by 0\.06[0-9]* m' whip.yaml
 grep -q '"source": "companion"' out/summary.json || fail 'the companion of the whip'
 
 # What precedes simulation.output.from does not count.
-run 0 '^error: ' whip.yaml --set simulation.output.from='0.5 s'
+run 0 '^largest errors: ' whip.yaml --set simulation.output.from='0.5 s'
 
 # Without a companion nothing is told, and the run says so.
-run 0 '^error: not estimated: simulation.error_estimate is none' fall.yaml --set simulation.error_estimate=none
+run 0 '^errors: not estimated: simulation.error_estimate is none' fall.yaml --set simulation.error_estimate=none
 grep -q '"relative": null' out/summary.json || fail 'an unknown error is null'
 
 # The estimates of earlier versions are refused with what to write instead.

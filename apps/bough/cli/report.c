@@ -2,24 +2,53 @@
 #include "apps/bough/results/report.h"
 
 #include "apps/bough/cli/command.h"
+#include "apps/bough/config/schema.h"
 
-static const bough_option rows[] = {{0}};
+#include <math.h>
+
+typedef struct report_options {
+    bough_options common;
+    struct moment {
+        bool given;  // false: the last frame
+        double time; // [s]
+    } at;
+} report_options;
+
+static bough_status read_time(const char *name, const char *text, void *field) {
+    char why[160];
+    struct moment *at = field;
+    at->given = true;
+    if (bough_quantity(text, BOUGH_TIME, &at->time, why)) return bough_ok();
+    return bough_fail(BOUGH_INVALID, "--%s expects a time such as 12.5s, got '%.80s'", name, text);
+}
+
+static const bough_option rows[] = {
+    {"at", "TIME", "of the stored frame that shape.svg shows; default the last", read_time,
+     offsetof(report_options, at), false},
+    {0},
+};
 
 static bough_status report(bough_arena *arena, const void *given) {
     (void)arena;
-    const bough_options *options = given;
+    const report_options *own = given;
+    const bough_options *options = &own->common;
     bough_status status = bough_report_write(options->n_operand, options->operands);
-    if (bough_is_ok(&status)) printf("report: %s/report.html\n", options->operand);
+    bool drawn = false;
+    if (bough_is_ok(&status)) {
+        printf("report: %s/report.html\n", options->operand);
+        status = bough_report_shape(options->operand, own->at.given ? own->at.time : HUGE_VAL, &drawn);
+    }
+    if (drawn) printf("picture: %s/shape.svg, shape-dark.svg\n", options->operand);
     return status;
 }
 
 const bough_command bough_command_report = {
     .name = "report",
     .summary = "makes one page of the results of a run or a study, or of several runs side by side: "
-               "DIR/report.html",
+               "DIR/report.html; of stored frames also a picture, DIR/shape.svg",
     .operand = BOUGH_OPERAND_SOME,
     .operand_name = "DIR",
     .option = rows,
-    .size = sizeof(bough_options),
+    .size = sizeof(report_options),
     .run = report,
 };

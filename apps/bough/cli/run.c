@@ -115,9 +115,10 @@ static bough_status close_results(bough_run_command *command) {
         if (bough_is_ok(&command->run.outcome)) command->run.outcome = status;
         return command->run.outcome;
     }
-    status = bough_folder_remove(command->folder, "summary.json");
-    if (bough_is_ok(&status)) status = bough_folder_remove(command->folder, "channels.outb");
-    if (bough_is_ok(&status)) status = bough_folder_remove(command->folder, "report.html");
+    static const char *const older[] = {"summary.json", "channels.outb", "report.html", "shape.svg",
+                                        "shape-dark.svg"};
+    for (size_t i = 0; i < sizeof older / sizeof *older && bough_is_ok(&status); i++)
+        status = bough_folder_remove(command->folder, older[i]);
     if (bough_is_ok(&status)) {
         status =
             command->frames ? bough_frames_finish(command->frames) : bough_frames_remove(command->folder);

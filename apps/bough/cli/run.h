@@ -54,7 +54,7 @@ bough_status bough_run_summarise(const bough_run_command *command);
 void bough_run_write_error(bough_summary *s, const bough_run_command *command);
 void bough_run_tell_error(const bough_run_command *command, FILE *stream);
 
-// Tells the user how it went: a few lines "key: value".
+// Tells the user how it went: what was run, how fast, what came out, how wrong at most, what to do next.
 void bough_run_report(bough_run_command *command, FILE *stream);
 
 // -- checkpoints (checkpoint.c) -------------------------------------------------------------------

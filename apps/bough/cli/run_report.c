@@ -106,15 +106,16 @@ void bough_run_tell_error(const bough_run_command *command, FILE *stream) {
     char warning[BOUGH_ERROR_WARNING];
     int worst[WORST], n = bough_error_worst(c, WORST, worst);
     if (c->compared == 0) {
-        fprintf(stream, "error: not estimated: %s\n",
+        fprintf(stream, "errors: not estimated: %s\n",
                 c->reason[0] ? c->reason : "the run has not reached the companion's first step");
     } else if (n == 0) {
-        fprintf(stream, "error: none: nothing moves\n");
+        fprintf(stream, "errors: none: nothing moves\n");
     }
     for (int k = 0; k < n; k++) {
         char error[BOUGH_ERROR_SIZE];
         bough_error_size(c, worst[k], error);
-        fprintf(stream, "error: %s %s", c->channels->channel[worst[k]].name, error);
+        fprintf(stream, "%s %s %s", k == 0 ? "largest errors:" : "               ",
+                c->channels->channel[worst[k]].name, error);
         tell_shares(command, worst[k], stream);
         fputc('\n', stream);
     }
@@ -356,36 +357,59 @@ bough_status bough_run_summarise(const bough_run_command *command) {
 
 // -- closing lines --------------------------------------------------------------------------------
 
-// Channels worth a line: the turbine's main ones, or else the first few.
-static void tell_channels(bough_run_command *command, FILE *stream) {
-    static const char *const main_channels[] = {"RotSpeed",  "RtAeroFxh", "RtAeroMxh",
-                                                "RtAeroPwr", "OoPDefl1",  "IPDefl1"};
-    enum { MAIN = sizeof main_channels / sizeof *main_channels, FIRST_FEW = 4 };
-    bough_run *run = &command->run;
-    const bough_channels *c = &run->channels;
-    const double *value = bough_run_values(run);
-    if (!value) return; // after a failure the state means nothing
-    bool turbine = run->simulation->scene->turbine.node != NULL;
-    for (int i = 0; i < (turbine ? MAIN : FIRST_FEW); i++) {
-        int k = turbine ? bough_channels_find(c, main_channels[i]) : i;
-        if (k < 0 || k >= c->count) continue;
-        fprintf(stream, "%s: %.6g %s\n", c->channel[k].name, value[k], c->channel[k].unit);
-        if (!bough_companion_knows(run->companion, k)) continue;
-        fprintf(stream, "%s_error: %.2g %s\n", c->channel[k].name, run->companion->error[k],
-                c->channel[k].unit);
+enum { MOST_LINES = 12, FIRST_FEW = 6, LEAST_DIGITS = 3, MOST_DIGITS = 6 };
+
+// Channels worth a line: the turbine's main ones, or else the first few. Their number.
+static int main_channels(const bough_run_command *command, int list[MOST_LINES]) {
+    static const char *const main_names[] = {"RotSpeed", "GenPwr",  "RtAeroPwr", "RtAeroFxh", "BldPitch1",
+                                             "OoPDefl1", "IPDefl1", "RootMyb1",  "TwrBsMyt"};
+    enum { MAIN = sizeof main_names / sizeof *main_names };
+    const bough_channels *c = &command->recorded;
+    int n = 0;
+    for (int i = 0; i < MAIN && command->run.simulation->scene->turbine.node; i++) {
+        int k = bough_channels_find(c, main_names[i]);
+        if (k >= 0) list[n++] = k;
     }
+    if (n == 0) {
+        while (n < FIRST_FEW && n < c->count) list[n] = n, n++;
+    }
+    return n;
 }
 
-static void tell_energy(const bough_run *run, FILE *stream) {
-    const bough_master *m = run->simulation->master;
-    const bough_assembly *a = m->assembly;
-    for (int k = 0; k < a->n_pair; k++) {
-        bough_pair_energy energy = bough_monitor_energy(m->monitor, k);
-        if (!(energy.exchanged > 0)) continue;
-        fprintf(stream, "%s%s_energy_residual: %.2g of what the interface exchanged\n",
-                a->member[a->pair[k].body]->system.name, is_far_end(a, k) ? "_end" : "",
-                energy.residual / energy.exchanged);
-    }
+// Digits down to the first one that the error reaches.
+static int digits(double largest, double error) {
+    if (!(error > 0) || !(largest > 0)) return MOST_DIGITS;
+    double n = floor(log10(largest)) - floor(log10(error)) + 1;
+    return (int)fmin(fmax(n, LEAST_DIGITS), MOST_DIGITS);
+}
+
+static void tell_channel(bough_run_command *command, int k, FILE *stream) {
+    bough_run *run = &command->run;
+    const bough_channel *channel = &command->recorded.channel[k];
+    const bough_sample_statistics *x = &command->statistics[k];
+    int of_run = bough_channels_find(&run->channels, channel->name);
+    bool known = bough_companion_knows(run->companion, of_run);
+    double error = known ? run->companion->error[of_run] : 0;
+    const double value[] = {x->mean, x->least, x->most, bough_run_values(run)[of_run]};
+    double largest = fmax(fabs(x->least), fabs(x->most)), rounding = 1e-9 * largest;
+    int n = digits(largest, error);
+    fprintf(stream, "%-12s %-6s", channel->name, channel->unit);
+    for (int i = 0; i < 4; i++) fprintf(stream, " %11.*g", n, fabs(value[i]) > rounding ? value[i] : 0);
+    if (known)
+        fprintf(stream, " %9.2g\n", error);
+    else
+        fprintf(stream, " %9s\n", "unknown");
+}
+
+// What came out: nothing after a failure, when the state means nothing.
+static void tell_channels(bough_run_command *command, FILE *stream) {
+    const bough_scene_output *output = &command->run.simulation->scene->simulation.output;
+    int list[MOST_LINES], n = main_channels(command, list);
+    if (!bough_run_values(&command->run) || n == 0 || !(command->statistics[list[0]].n > 0)) return;
+    if (output->from > 0) fprintf(stream, "from %.9g s on:\n", output->from);
+    fprintf(stream, "%-12s %-6s %11s %11s %11s %11s %9s\n", "channel", "unit", "mean", "min", "max", "end",
+            "error");
+    for (int i = 0; i < n; i++) tell_channel(command, list[i], stream);
 }
 
 static void tell_warnings(const bough_run *run, FILE *stream) {
@@ -401,18 +425,33 @@ static void tell_warnings(const bough_run *run, FILE *stream) {
     bough_validity_print(run->simulation, stream);
 }
 
-void bough_run_report(bough_run_command *command, FILE *stream) {
-    bough_run *run = &command->run;
+// What was run, and how fast.
+static void tell_run(const bough_run_command *command, FILE *stream) {
+    const bough_run *run = &command->run;
+    double factor = real_time_factor(run);
     fprintf(stream, "status: %s\n", outcome_name(run));
-    fprintf(stream, "time: %.9g s\n", run->simulation->master->time);
+    fprintf(stream, "run: %.9g s of %s", run->simulation->master->time, run->simulation->scene->file);
+    for (int i = 0; i < command->options->common.set.n; i++)
+        fprintf(stream, ", %s", command->options->common.set.text[i]);
+    fprintf(stream, "\nspeed: %.3g s, %.*f times real time, %.0f MB\n", run->wall_s, factor < 10 ? 2 : 0,
+            factor, (double)bough_peak_memory() / 1e6);
     if (!bough_is_ok(&run->outcome))
         fprintf(stream, "recorded: %ld rows\n", bough_recorder_rows(command->recorder));
-    fprintf(stream, "real_time_factor: %.3g\n", real_time_factor(run));
-    fprintf(stream, "wall_s: %.3g\n", run->wall_s);
-    fprintf(stream, "peak_memory_mb: %.1f\n", (double)bough_peak_memory() / 1e6);
+}
+
+static void tell_next(const bough_run_command *command, FILE *stream) {
+    bool resumes = command->checkpoint.interval > 0 && !bough_is_ok(&command->run.outcome);
+    fprintf(stream, "out: %s\n", command->folder);
+    if (resumes)
+        fprintf(stream, "next: the same command with --resume goes on from the last checkpoint\n");
+    else
+        fprintf(stream, "next: bough report %s\n", command->folder);
+}
+
+void bough_run_report(bough_run_command *command, FILE *stream) {
+    tell_run(command, stream);
     tell_channels(command, stream);
     bough_run_tell_error(command, stream);
-    tell_energy(run, stream);
-    tell_warnings(run, stream);
-    fprintf(stream, "out: %s\n", command->folder);
+    tell_warnings(&command->run, stream);
+    tell_next(command, stream);
 }

@@ -3,6 +3,7 @@
 #ifndef BOUGH_APPS_RESULTS_REPORT_H
 #define BOUGH_APPS_RESULTS_REPORT_H
 
+#include "core/base/arena.h"
 #include "core/base/status.h"
 
 #include <stdbool.h>
@@ -21,8 +22,28 @@ bough_status bough_report_write(int n, const char *const *folder);
 // {names, units, rows} of channels.out; of very many rows every n-th.
 bough_status bough_report_channels(const char *folder, FILE *out, bool *found);
 
-// {lines, frames: [[t, x, y, z, …], …]} of frames.pvd and what it lists.
+// {ends, frames: [[t, x, y, z, …], …]} of frames.pvd and what it lists.
 bough_status bough_report_frames(const char *folder, FILE *out, bool *found);
+
+// -- the shape at one time ------------------------------------------------------------------------
+
+// A frame as apps/bough/results/frames.c has written it.
+typedef struct bough_stored_frame {
+    double time; // [s]
+    int n_point, n_line;
+    double *point;  // (n_point × 3) in ground axes [m]
+    double *moment; // (n_point × 3) section moments in ground axes, 0 for bodies other than rods [N m]
+    int *end;       // (n_line) behind each line's last point
+} bough_stored_frame;
+
+// The stored frame that is nearest to this time [s], the last one for HUGE_VAL; n_line is 0 where a run has
+// stored none.
+bough_status bough_report_frame(bough_arena *arena, const char *folder, double time,
+                                bough_stored_frame *frame);
+
+// Draws it to scale, coloured by the section moment: shape.svg for light pages and shape-dark.svg in the
+// folder. Nothing is drawn where there is no frame.
+bough_status bough_report_shape(const char *folder, double time, bool *drawn);
 
 // Opens folder/name; NULL when it does not exist.
 bough_status bough_report_open(const char *folder, const char *name, FILE **file);

@@ -1,0 +1,189 @@
+// The shape of one stored frame as a picture: parallel projection, true to scale, lines coloured by the
+// section moment, with the straight line from the root of each rod beside it.
+#include "apps/bough/results/report.h"
+
+#include "apps/bough/results/folder.h"
+#include "apps/bough/results/picture.h"
+#include "core/base/vec3.h"
+
+#include <math.h>
+
+enum { WIDTH = 640, TOP = 46, SIDE = 34, BOTTOM = 62, TALLEST = 560, RIGID = 3 };
+
+typedef struct drawing {
+    const bough_stored_frame *frame;
+    bough_vec3 across, up; // axes of the picture in the ground's
+    double low[2], high[2];
+    double scale, left, bottom; // [px/m], [px]
+    FILE *svg;
+} drawing;
+
+static const double pi = 3.14159265358979323846;
+
+static bough_vec3 row(const double *x, int i) { return bough_v3(x[3 * i], x[3 * i + 1], x[3 * i + 2]); }
+
+static bough_vec3 point(const drawing *d, int i) { return row(d->frame->point, i); }
+
+static double moment(const drawing *d, int i) { return bough_norm(row(d->frame->moment, i)); }
+
+// The rod from point `at` to `end`, straight on from its first segment.
+static bough_vec3 straight_end(const drawing *d, int at, int end) {
+    double length = 0;
+    for (int i = at + 1; i < end; i++) length += bough_norm(bough_sub(point(d, i), point(d, i - 1)));
+    bough_vec3 first = bough_sub(point(d, at + 1), point(d, at));
+    return bough_add(point(d, at), bough_scale(length / fmax(bough_norm(first), 1e-300), first));
+}
+
+static void include(drawing *d, bough_vec3 x) {
+    const double at[2] = {bough_dot(d->across, x), bough_dot(d->up, x)};
+    for (int k = 0; k < 2; k++) {
+        d->low[k] = fmin(d->low[k], at[k]);
+        d->high[k] = fmax(d->high[k], at[k]);
+    }
+}
+
+// Seen from upwind and aside, 10 degrees from above.
+static void look(drawing *d) {
+    const double azimuth = 62 * pi / 180, height = 10 * pi / 180;
+    bough_vec3 deep = bough_v3(cos(azimuth), sin(azimuth), 0);
+    d->across = bough_v3(sin(azimuth), -cos(azimuth), 0);
+    d->up = bough_add(bough_v3(0, 0, cos(height)), bough_scale(sin(height), deep));
+}
+
+// The picture's height [px].
+static double fit(drawing *d) {
+    double size[2];
+    for (int k = 0; k < 2; k++) {
+        d->low[k] = HUGE_VAL;
+        d->high[k] = -HUGE_VAL;
+    }
+    for (int k = 0, at = 0; k < d->frame->n_line; at = d->frame->end[k++]) {
+        for (int i = at; i < d->frame->end[k]; i++) include(d, point(d, i));
+        if (d->frame->end[k] - at > RIGID) include(d, straight_end(d, at, d->frame->end[k]));
+    }
+    for (int k = 0; k < 2; k++) size[k] = d->high[k] - d->low[k];
+    double widest = fmax(fmax(size[0], size[1]), 1e-300);
+    d->scale =
+        fmin((WIDTH - 2 * SIDE) / fmax(size[0], 0.01 * widest), TALLEST / fmax(size[1], 0.01 * widest));
+    d->left = 0.5 * (WIDTH - d->scale * size[0]);
+    d->bottom = TOP + d->scale * size[1];
+    return d->bottom + BOTTOM;
+}
+
+static void put(const drawing *d, char command, bough_vec3 x) {
+    fprintf(d->svg, "%c%.1f %.1f", command, d->left + d->scale * (bough_dot(d->across, x) - d->low[0]),
+            d->bottom - d->scale * (bough_dot(d->up, x) - d->low[1]));
+}
+
+// From blue at 0 to red.
+static void put_colour(double share, FILE *svg) {
+    static const double colour[3][3] = {{86, 140, 200}, {230, 159, 0}, {213, 60, 30}};
+    int k = share < 0.5 ? 0 : 1;
+    double f = 2 * share - k;
+    int c[3];
+    for (int i = 0; i < 3; i++) c[i] = (int)lround((1 - f) * colour[k][i] + f * colour[k + 1][i]);
+    fprintf(svg, "#%02x%02x%02x", c[0], c[1], c[2]);
+}
+
+// Thinner towards the end, which shows where the root is.
+static void draw_rod(const drawing *d, int at, int end) {
+    double most = 1e-300;
+    for (int i = at; i < end; i++) most = fmax(most, moment(d, i));
+    fputs("<path class=\"weak-line\" stroke-dasharray=\"5 4\" d=\"", d->svg);
+    put(d, 'M', point(d, at));
+    put(d, 'L', straight_end(d, at, end));
+    fputs("\"/>\n", d->svg);
+    for (int i = at; i + 1 < end; i++) {
+        double thick = 10 - 7 * (double)(i - at) / (end - at);
+        fprintf(d->svg, "<path stroke-width=\"%.1f\" stroke=\"", thick);
+        put_colour(0.5 * (moment(d, i) + moment(d, i + 1)) / most, d->svg);
+        fputs("\" d=\"", d->svg);
+        put(d, 'M', point(d, i));
+        put(d, 'L', point(d, i + 1));
+        fputs("\"/>\n", d->svg);
+    }
+}
+
+static void draw_rigid(const drawing *d, int at, int end) {
+    fputs("<path class=\"rigid\" d=\"", d->svg);
+    for (int i = at; i < end; i++) put(d, i > at ? 'L' : 'M', point(d, i));
+    fputs("\"/>\n", d->svg);
+}
+
+static void draw_lines(const drawing *d, bool rods) {
+    for (int k = 0, at = 0; k < d->frame->n_line; at = d->frame->end[k++]) {
+        bool rod = d->frame->end[k] - at > RIGID;
+        if (rod == rods) (rod ? draw_rod : draw_rigid)(d, at, d->frame->end[k]);
+    }
+}
+
+// A round length of about a fifth of the picture's width.
+static double bar_length(const drawing *d) {
+    double most = WIDTH / 5.0 / d->scale, power = pow(10, floor(log10(most)));
+    return power * (most >= 5 * power ? 5 : most >= 2 * power ? 2 : 1);
+}
+
+// The ground's axes: arrows of 30 px, shorter where they point away from the eye.
+static void draw_axes(const drawing *d, double x, double y) {
+    for (int k = 0; k < 3; k++) {
+        double right = 30 * bough_dot(d->across, bough_unit3(k)), up = 30 * bough_dot(d->up, bough_unit3(k));
+        fprintf(d->svg, "<path class=\"axis\" d=\"M%.1f %.1fl%.1f %.1f\"/>\n", x, y, right, -up);
+        fprintf(d->svg, "<text x=\"%.1f\" y=\"%.1f\" text-anchor=\"middle\">%c</text>\n", x + 1.35 * right,
+                y - 1.35 * up + 4, 'x' + k);
+    }
+}
+
+static void draw_legend(const drawing *d, double height) {
+    double bar = bar_length(d), y = height - 22, end = WIDTH - SIDE;
+    fprintf(d->svg, "<path class=\"axis\" d=\"M%d %.1fv-5v5h%.1fv-5\"/>\n", SIDE, y, bar * d->scale);
+    fprintf(d->svg, "<text x=\"%d\" y=\"%.1f\">%g m</text>\n", SIDE, y - 10, bar);
+    for (int k = 0; k < 40; k++) {
+        fprintf(d->svg, "<rect x=\"%.1f\" y=\"%.1f\" width=\"4.5\" height=\"8\" fill=\"", end - 160 + 4 * k,
+                y - 8);
+        put_colour(k / 39.0, d->svg);
+        fputs("\"/>\n", d->svg);
+    }
+    fprintf(d->svg,
+            "<text x=\"%.1f\" y=\"%.1f\" text-anchor=\"end\">section moment, of the rod's largest</text>\n",
+            end, y - 14);
+}
+
+static void draw(drawing *d, bool dark) {
+    look(d);
+    double height = fit(d);
+    fprintf(d->svg,
+            "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"%d\" height=\"%.0f\" viewBox=\"0 0 %d %.0f\" "
+            "font-family=\"sans-serif\" font-size=\"13\" fill=\"%s\">\n"
+            "<style>.paper{fill:%s}.axis{stroke:%s;stroke-width:1.5;fill:none}.weak-line{stroke:#8a939c}"
+            ".rigid{stroke:#8a939c;stroke-width:7;fill:none}path{stroke-linecap:round;stroke-linejoin:round}"
+            "</style>\n<rect class=\"paper\" width=\"100%%\" height=\"100%%\"/>\n",
+            WIDTH, height, WIDTH, height, dark ? "#e6e6e6" : "#222", dark ? "#0d1117" : "#fff",
+            dark ? "#e6e6e6" : "#222");
+    fprintf(d->svg, "<text x=\"%d\" y=\"26\">%.6g s, to scale; dashed: straight</text>\n", SIDE,
+            d->frame->time);
+    draw_lines(d, false);
+    draw_lines(d, true);
+    draw_axes(d, SIDE + 22, height - 90);
+    draw_legend(d, height);
+    fputs("</svg>\n", d->svg);
+}
+
+static bough_status write_picture(const char *folder, const bough_stored_frame *frame, bool dark) {
+    drawing d = {.frame = frame};
+    char path[BOUGH_PATH_MAX];
+    bough_status status = bough_folder_open(folder, dark ? "shape-dark.svg" : "shape.svg", path, &d.svg);
+    if (!bough_is_ok(&status)) return status;
+    draw(&d, dark);
+    return bough_folder_commit(path, d.svg);
+}
+
+bough_status bough_report_shape(const char *folder, double time, bool *drawn) {
+    bough_arena *arena = bough_arena_create();
+    bough_stored_frame frame;
+    bough_status status = bough_report_frame(arena, folder, time, &frame);
+    for (int dark = 0; dark < 2 && bough_is_ok(&status) && frame.n_line > 0; dark++)
+        status = write_picture(folder, &frame, dark);
+    *drawn = bough_is_ok(&status) && frame.n_line > 0;
+    bough_arena_destroy(arena);
+    return status;
+}
