@@ -82,11 +82,11 @@ static void eigenvalue(const search *s, int k, double *real, double *imaginary) 
     *imaginary = y / square / (gamma > 0 ? gamma : 1); // of μ or of its partner
 }
 
-// Whether it belongs to what is listed: the first of a pair, or growing.
+// Whether it belongs to what is listed: the first of a pair, or growing, or any real one.
 static bool is_listed(const search *s, int k) {
     double real, imaginary;
     eigenvalue(s, k, &real, &imaginary);
-    return imaginary > 0 || (imaginary == 0 && real > 0);
+    return imaginary > 0 || (imaginary == 0 && (real > 0 || s->op->decaying));
 }
 
 // The first listed ones that are accurate; *sum of their moduli. The rest wander from look to look:

@@ -16,12 +16,14 @@ typedef struct bough_eigen_operator {
     double *weight;   // of the entries in the inner product (length); 0: unused entry
     bool balance;     // the second half is the rate of the first: scales the weights of the first
                       // so that both count alike
+    bool decaying;    // real decaying solutions are listed too
     void *self;
     void (*apply)(void *self, const double *z, double *image);
 } bough_eigen_operator;
 
 // One of each conjugate pair (λ with positive imaginary part), and growing real solutions; decaying
-// real ones, which do not oscillate, are left out. In the order of their distance from the point.
+// real ones, which do not oscillate, are left out unless they are asked for. In the order of their distance
+// from the point.
 typedef struct bough_eigen_pair {
     double real, imaginary;          // λ [rad/s]
     double *shape_real, *shape_imag; // (n_shape), of any length and phase

@@ -12,6 +12,9 @@ extern void dgetrs_(const char *trans, const int *n, const int *nrhs, const doub
                     const int *pivot, double *b, const int *ldb, int *info, size_t trans_length);
 extern void dgbsv_(const int *n, const int *below, const int *above, const int *nrhs, double *a,
                    const int *lda, int *pivot, double *b, const int *ldb, int *info);
+extern void dgemv_(const char *trans, const int *m, const int *n, const double *alpha, const double *a,
+                   const int *lda, const double *x, const int *incx, const double *beta, double *y,
+                   const int *incy, size_t l_trans);
 extern void dgemm_(const char *transa, const char *transb, const int *m, const int *n, const int *k,
                    const double *alpha, const double *a, const int *lda, const double *b, const int *ldb,
                    const double *beta, double *c, const int *ldc, size_t transa_length, size_t transb_length);
@@ -209,6 +212,11 @@ void bough_dense_product(bough_product p, const double *a, const double *b, doub
     prepare();
     // leading dimensions are at least 1
     int inner = p.k > 0 ? p.k : 1; // rows of b
+    if (p.n == 1 && p.k > 0) {
+        int rows = p.transposed ? p.k : p.m, columns = p.transposed ? p.m : p.k, one = 1;
+        dgemv_(p.transposed ? "T" : "N", &rows, &columns, &p.factor, a, &rows, b, &one, &p.keep, c, &one, 1);
+        return;
+    }
     dgemm_(p.transposed ? "T" : "N", "N", &p.m, &p.n, &p.k, &p.factor, a, p.transposed ? &inner : &p.m, b,
            &inner, &p.keep, c, &p.m, 1, 1);
 }

@@ -1,3 +1,6 @@
+// theory (77). The matrix is dense where the air couples states, the members' own part of its inverse is not:
+// vectors are first solved by the members' factors, then by the dense factors of what the air and the
+// rotation add.
 #include "apps/bough/analysis/aeroelastic.h"
 
 #include "core/base/linalg.h"
@@ -6,407 +9,169 @@
 #include <stdlib.h>
 #include <string.h>
 
-static const double converged = 1e-3; // largest relative residual of a mode that is kept
-static const double same = 1e-4;      // relative distance of two real eigenvalues that count as a double one
-
-enum { SWEEPS = 12 }; // of the simultaneous iteration, on twice as many vectors as are kept
-
+static const double same = 1e-6;        // relative distance of an eigenvalue on both sides
 static const double least_motion = 0.2; // participation of the bodies; modes with less are the air's
 
-typedef struct work {
-    bough_whole *coupled;
-    const bough_modes_def *def;
-    int n, k;
-    double *inverse;                   // P = (I − γJ)⁻¹ (n × n)
-    double *turned;                    // I + γ P S, factored (n × n)
-    int *pivot;                        // (n)
-    double *right, *left;              // bases (n × k)
-    double *image, *mode, *mode_image; // (n × k)
-} work;
-
-static void take(bough_arena *arena, work *w) {
-    size_t n = (size_t)w->n, k = (size_t)w->k;
-    w->pivot = bough_arena_take(arena, (n + k) * sizeof *w->pivot);
-    bough_arena_each(arena, n * n, &w->inverse, &w->turned);
-    bough_arena_each(arena, n * k, &w->right, &w->left, &w->image, &w->mode, &w->mode_image);
-}
-
-// -- the inverse ----------------------------------------------------------------------------------
-
-static void invert(work *w) {
-    size_t n = (size_t)w->n;
-    for (size_t j = 0; j < n; j++) {
-        double *column = w->inverse + j * n;
-        memset(column, 0, n * sizeof *column);
-        column[j] = 1;
-        bough_whole_solve(w->coupled, column);
-        bough_whole_project(w->coupled, w->def->state, column);
-    }
-}
+enum { CHUNK = 64 }; // columns of a product
 
 // A joint that nothing holds moves on at its speed: the eigenvalue 0 twice, with one vector. Joints'
 // coordinates that go back this slowly, against the point, have two.
 static const double going_back = 1e-6;
 
-// I + γ P S
-static bool turn(work *w, int n_coordinate) {
-    const bough_modes_def *def = w->def;
-    size_t n = (size_t)w->n;
-    int parts = def->n_part;
-    double *rate = w->image; // (parts × parts)
-    memset(w->turned, 0, n * n * sizeof *w->turned);
-    for (size_t j = 0; j < n; j++) w->turned[j * n + j] = 1;
-    for (size_t j = 0; j < (size_t)n_coordinate; j++) {
-        for (size_t i = 0; i < n; i++) w->turned[j * n + i] += going_back * w->inverse[j * n + i];
+typedef struct work {
+    const bough_aeroelastic *system;
+    int n, m;            // states of the members, those of the air that change
+    int *air, *place;    // (m) rows of the air's tangents; (n_air) places of these rows in m, −1: none
+    double *inverse;     // P = (I − γJ)⁻¹ (n × n), column-major as all
+    double *factor;      // T (n × n), theory (77), factored
+    int *pivot;          // (n)
+    double *rate;        // S (n_part × n_part), row-major
+    int n_row, *row;     // (n) rows of the members' rates that the air changes
+    double *inverse_row; // (n × n_row) columns of P for them
+    double *moved;       // (n)
+} work;
+
+static void take(bough_arena *arena, work *w) {
+    size_t n = (size_t)w->n, parts = (size_t)w->system->def->n_part;
+    w->row = bough_arena_take(arena, n * sizeof *w->row);
+    w->pivot = bough_arena_take(arena, n * sizeof *w->pivot);
+    bough_arena_each(arena, n * n, &w->inverse, &w->factor);
+    w->moved = bough_arena_doubles(arena, n);
+    w->rate = bough_arena_doubles(arena, parts * parts + 1);
+}
+
+// The states of the air that change: a model that is not in use leaves its own at rest.
+static void find_air(bough_arena *arena, work *w) {
+    const bough_air_tangent *air = w->system->air;
+    size_t n_air = (size_t)air->n_air;
+    w->air = bough_arena_take(arena, (n_air + 1) * sizeof *w->air);
+    w->place = bough_arena_take(arena, (n_air + 1) * sizeof *w->place);
+    for (size_t i = 0; i < n_air; i++) {
+        bool changes = false;
+        for (size_t j = 0; j < (size_t)w->n && !changes; j++) changes = air->drive[j * n_air + i] != 0;
+        for (size_t j = 0; j < n_air && !changes; j++) changes = air->lag[j * n_air + i] != 0;
+        w->place[i] = changes ? w->m : -1;
+        if (changes) w->air[w->m++] = (int)i;
     }
-    if (def->spin == 0) return bough_dense_factor(w->n, w->turned, w->pivot);
-    bough_modes_rate(def, rate);
-    for (int l = 0; l < parts; l++) {
-        for (int k = 0; k < parts; k++) {
-            double factor = rate[k * parts + l] / def->point;
-            for (int j = 0; j < def->n_row && factor != 0; j++) {
-                size_t to = (size_t)def->row[l * def->n_row + j];
-                size_t from = (size_t)def->row[k * def->n_row + j];
-                const double *column = w->inverse + from * n;
-                for (size_t i = 0; i < n; i++) w->turned[to * n + i] += factor * column[i];
-            }
+}
+
+static void solve_members(const work *w, double *x) {
+    bough_whole_solve(w->system->whole, x);
+    bough_whole_project(w->system->whole, w->system->def->state, x);
+}
+
+static void invert(work *w) {
+    size_t n = (size_t)w->n;
+    for (size_t j = 0; j < n; j++) {
+        w->inverse[j * n + j] = 1;
+        solve_members(w, w->inverse + j * n);
+    }
+}
+
+// Column `to` += factor P e_from
+static void add_column(work *w, size_t to, size_t from, double factor) {
+    const double *restrict column = w->inverse + from * (size_t)w->n;
+    double *restrict sum = w->factor + to * (size_t)w->n;
+    for (int i = 0; i < w->n; i++) sum[i] += factor * column[i];
+}
+
+// γ P S of the members
+static void add_spin(work *w) {
+    const bough_modes_def *def = w->system->def;
+    for (int k = 0; k < def->n_part; k++) {
+        for (int l = 0; l < def->n_part; l++) {
+            double factor = w->rate[k * def->n_part + l] / def->point;
+            for (int j = 0; j < def->n_row && factor != 0; j++)
+                add_column(w, (size_t)def->row[l * def->n_row + j], (size_t)def->row[k * def->n_row + j],
+                           factor);
         }
     }
-    return bough_dense_factor(w->n, w->turned, w->pivot);
 }
 
-static void apply(const work *w, const double *x, double *image) {
-    bough_dense_product((bough_product){w->n, w->k, w->n, false, 1, 0}, w->inverse, x, image);
-    bough_dense_solve(w->n, w->k, w->turned, w->pivot, image);
-}
-
-// x is changed.
-static void apply_transposed(const work *w, double *x, double *image) {
-    bough_dense_solve_transposed(w->n, w->k, w->turned, w->pivot, x);
-    bough_dense_product((bough_product){w->n, w->k, w->n, true, 1, 0}, w->inverse, x, image);
-}
-
-// -- subspaces ------------------------------------------------------------------------------------
-
-static void orthonormalise(const work *w, double *x) {
+// The rows of a (n × columns) that are not 0, and the columns of P for them.
+static void find_rows(bough_arena *arena, work *w, int columns, const double *a) {
     size_t n = (size_t)w->n;
-    for (int twice = 0; twice < 2; twice++) { // for rounding
-        for (int j = 0; j < w->k; j++) {
-            double *column = x + (size_t)j * n, norm = 0;
-            for (int i = 0; i < j; i++) {
-                const double *other = x + (size_t)i * n;
-                double product = 0;
-                for (size_t r = 0; r < n; r++) product += column[r] * other[r];
-                for (size_t r = 0; r < n; r++) column[r] -= product * other[r];
-            }
-            for (size_t r = 0; r < n; r++) norm += column[r] * column[r];
-            norm = 1 / sqrt(norm);
-            for (size_t r = 0; r < n; r++) column[r] *= norm;
-        }
-    }
-}
-
-// Start vectors, the same in every run.
-static void start(const work *w, double *x) {
-    uint64_t seed = 1;
-    for (size_t i = 0; i < (size_t)w->n * (size_t)w->k; i++) {
-        seed = seed * 6364136223846793005u + 1442695040888963407u;
-        x[i] = (double)(seed >> 11) / 4503599627370496. - 1;
-    }
-    orthonormalise(w, x);
-}
-
-static void find_subspaces(work *w) {
-    size_t bytes = (size_t)w->n * (size_t)w->k * sizeof(double);
-    start(w, w->right);
-    memcpy(w->left, w->right, bytes);
-    for (int sweep = 0; sweep < SWEEPS; sweep++) {
-        apply(w, w->right, w->image);
-        memcpy(w->right, w->image, bytes);
-        orthonormalise(w, w->right);
-        apply_transposed(w, w->left, w->image);
-        memcpy(w->left, w->image, bytes);
-        orthonormalise(w, w->left);
-    }
-}
-
-// -- the reduced system ---------------------------------------------------------------------------
-
-// The modes of a basis that is twice as large as needed: the others have not converged.
-typedef struct ritz {
-    double *matrix, *value, *vector, *room; // (k × k), (2 × k), (k × k), (8 k)
-    int *order;                             // (k) by the size of the inverse's eigenvalue
-    bool *good, *taken;                     // (k) converged, and in use
-} ritz;
-
-static void take_ritz(bough_arena *arena, int k, ritz *r) {
-    size_t n = (size_t)k;
-    bough_arena_each(arena, n * n, &r->matrix, &r->vector);
-    r->value = bough_arena_doubles(arena, 2 * n);
-    r->room = bough_arena_doubles(arena, 8 * n);
-    r->order = bough_arena_take(arena, n * sizeof *r->order);
-    r->good = bough_arena_take(arena, n * sizeof *r->good);
-    r->taken = bough_arena_take(arena, n * sizeof *r->taken);
-}
-
-// Pairs stay together, as they are equal in size.
-static void sort_ritz(int k, ritz *r) {
-    for (int i = 0; i < k; i++) r->order[i] = i;
-    for (int i = 1; i < k; i++) {
-        int own = r->order[i], at = i;
-        double size = hypot(r->value[own], r->value[k + own]);
-        for (; at > 0; at--) {
-            int other = r->order[at - 1];
-            if (hypot(r->value[other], r->value[k + other]) >= size) break;
-            r->order[at] = other;
-        }
-        r->order[at] = own;
-    }
-}
-
-// |M v − μ v| / |μ v| of a real mode or of a pair, by its first; images (n × k): M v.
-static double residual(const work *w, const ritz *r, int at, const double *modes, const double *images) {
-    size_t n = (size_t)w->n;
-    const double *v = modes + (size_t)at * n, *image = images + (size_t)at * n;
-    double re = r->value[at], im = r->value[w->k + at], defect = 0, size = 0;
-    const double *other = im > 0 ? v + n : v; // its imaginary part
+    w->n_row = 0;
     for (size_t i = 0; i < n; i++) {
-        double expected = re * v[i] - (im > 0 ? im * other[i] : 0), off = image[i] - expected;
-        defect += off * off;
-        size += (re * re + im * im) * (v[i] * v[i] + (im > 0 ? other[i] * other[i] : 0));
+        bool used = false;
+        for (size_t j = 0; j < (size_t)columns && !used; j++) used = a[j * n + i] != 0;
+        if (used) w->row[w->n_row++] = (int)i;
     }
-    return sqrt(defect / size);
+    w->inverse_row = bough_arena_doubles(arena, n * (size_t)w->n_row);
+    for (size_t k = 0; k < (size_t)w->n_row; k++)
+        memcpy(w->inverse_row + k * n, w->inverse + (size_t)w->row[k] * n, n * sizeof *w->inverse);
 }
 
-// Puts the modes of a basis (n × k) in its place; its image under the inverse or its transpose is in
-// w->image.
-static bool find_ritz(work *w, double *basis, ritz *r) {
-    int n = w->n, k = w->k;
-    bough_dense_product((bough_product){k, k, n, true, 1, 0}, basis, w->image, r->matrix);
-    if (!bough_dense_eigen(k, r->matrix, r->value, r->vector, r->room)) return false;
-    bough_dense_product((bough_product){n, k, k, false, 1, 0}, basis, r->vector, w->mode);
-    bough_dense_product((bough_product){n, k, k, false, 1, 0}, w->image, r->vector, w->mode_image);
-    sort_ritz(k, r);
-    for (int i = 0; i < k; i++) {
-        r->good[i] = residual(w, r, i, w->mode, w->mode_image) < converged;
-    }
-    memcpy(basis, w->mode, (size_t)n * (size_t)k * sizeof *basis);
-    return true;
-}
-
-// The left mode of the same eigenvalue, −1: none has converged.
-static int partner(int k, const ritz *right, int at, const ritz *left) {
-    double re = right->value[at], im = right->value[k + at], nearest = converged * hypot(re, im);
-    int found = -1;
-    for (int i = 0; i < k; i++) {
-        double off = hypot(left->value[i] - re, left->value[k + i] - im);
-        if (!left->good[i] || left->taken[i] || off > nearest) continue;
-        nearest = off;
-        found = i;
-    }
-    return found;
-}
-
-// Keeps the modes that have converged on both sides, largest eigenvalues first, no pair in part: their
-// number. block[i]: size of the block of modes that begins at i, a pair or a double real one.
-static int keep(work *w, const ritz *right, ritz *left, int most, int *block) {
-    size_t n = (size_t)w->n, bytes = n * sizeof(double);
-    int kept = 0;
-    double last = 0; // eigenvalue of a real mode alone before
-    for (int i = 0; i < w->k; i++) {
-        int at = right->order[i], size = right->value[w->k + at] > 0 ? 2 : 1;
-        if (right->value[w->k + at] < 0 || kept + size > most || !right->good[at]) continue;
-        int other = partner(w->k, right, at, left);
-        if (other < 0) continue;
-        left->taken[other] = true;
-        double value = right->value[at];
-        bool is_double = size == 1 && fabs(value - last) < same * fabs(value);
-        block[is_double ? kept - 1 : kept] = is_double ? 2 : size;
-        last = size == 1 && !is_double ? value : 0;
-        for (int c = 0; c < size; c++, kept++) {
-            memcpy(w->mode + (size_t)kept * n, w->right + (size_t)(at + c) * n, bytes);
-            memcpy(w->mode_image + (size_t)kept * n, w->left + (size_t)(other + c) * n, bytes);
+// −= γ P A, some columns at a time.
+static void subtract_forces(bough_arena *arena, work *w, const double *a) {
+    size_t n = (size_t)w->n;
+    find_rows(arena, w, w->n, a);
+    size_t rows = (size_t)w->n_row;
+    double *force = bough_arena_doubles(arena, rows * CHUNK),
+           *product = bough_arena_doubles(arena, n * CHUNK);
+    for (int begin = 0; begin < w->n; begin += CHUNK) {
+        int width = w->n - begin < CHUNK ? w->n - begin : CHUNK;
+        for (size_t j = 0; j < (size_t)width; j++) {
+            const double *column = a + ((size_t)begin + j) * n;
+            for (size_t i = 0; i < rows; i++) force[j * rows + i] = column[w->row[i]];
         }
-    }
-    memcpy(w->right, w->mode, (size_t)kept * bytes);
-    memcpy(w->left, w->mode_image, (size_t)kept * bytes);
-    return kept;
-}
-
-// Makes two columns (n) orthonormal. The modes of the double eigenvalue 0 of a rotor that turns freely are
-// almost parallel; their difference is the second motion.
-static void separate(size_t n, double *a) {
-    double *b = a + n, aa = 0, ab = 0, bb = 0;
-    for (size_t i = 0; i < n; i++) aa += a[i] * a[i];
-    for (size_t i = 0; i < n; i++) ab += a[i] * b[i];
-    for (size_t i = 0; i < n; i++) b[i] -= ab / aa * a[i];
-    for (size_t i = 0; i < n; i++) bb += b[i] * b[i];
-    for (size_t i = 0; i < n; i++) a[i] /= sqrt(aa), b[i] /= sqrt(bb);
-}
-
-// For the block of `size` modes from `first` on: (Wᵀ U)⁻¹ Wᵀ, and the motion in it,
-// (E − (L (I − γ(J − S))⁻¹ U)⁻¹)/γ. Left and right modes of different blocks are orthogonal.
-static bool set_block(work *w, int first, int size, bough_aeroelastic *to) {
-    size_t n = (size_t)w->n, k = (size_t)to->n_motion, at = (size_t)first;
-    double *right = w->right + at * n, *left = w->left + at * n, small[4], row[2], image[4];
-    int pivot[2];
-    if (size == 2) separate(n, right), separate(n, left);
-    bough_dense_product((bough_product){size, size, w->n, true, 1, 0}, left, right, small);
-    if (!bough_dense_factor(size, small, pivot)) return false;
-    for (size_t i = 0; i < n; i++) {
-        for (int c = 0; c < size; c++) row[c] = left[(size_t)c * n + i];
-        bough_dense_solve(size, 1, small, pivot, row);
-        for (int c = 0; c < size; c++) to->left[i * k + at + (size_t)c] = row[c];
-    }
-    memcpy(w->mode, right, (size_t)size * n * sizeof *right);
-    w->k = size;
-    apply(w, w->mode, w->mode_image);
-    bough_dense_product((bough_product){size, size, w->n, true, 1, 0}, left, w->mode_image, image);
-    bough_dense_solve(size, size, small, pivot, image);
-    if (!bough_dense_factor(size, image, pivot)) return false;
-    for (int j = 0; j < size; j++) {
-        row[0] = row[1] = 0;
-        row[j] = 1;
-        bough_dense_solve(size, 1, image, pivot, row);
-        for (int i = 0; i < size; i++) {
-            to->motion[(at + (size_t)j) * k + at + (size_t)i] = w->def->point * ((i == j) - row[i]);
-        }
-    }
-    return true;
-}
-
-// Modes on both sides, and the motion in them.
-static bool set_motion(bough_arena *arena, work *w, bough_aeroelastic *to) {
-    ritz right, left;
-    take_ritz(arena, w->k, &right);
-    take_ritz(arena, w->k, &left);
-    int *size = bough_arena_take(arena, (size_t)w->k * sizeof *size);
-    apply(w, w->right, w->image);
-    if (!find_ritz(w, w->right, &right)) return false;
-    memcpy(w->mode, w->left, (size_t)w->n * (size_t)w->k * sizeof(double));
-    apply_transposed(w, w->mode, w->image);
-    if (!find_ritz(w, w->left, &left)) return false;
-    to->n_motion = keep(w, &right, &left, to->n_motion, size);
-    for (int i = 0; i < to->n_motion; i += size[i]) {
-        if (!set_block(w, i, size[i], to)) return false;
-    }
-    memcpy(to->shape, w->right, (size_t)w->n * (size_t)to->n_motion * sizeof(double));
-    return to->n_motion > 0;
-}
-
-static void add_block(const double *block, int rows, int columns, int first_row, int first_column,
-                      bough_aeroelastic *to) {
-    for (int j = 0; j < columns; j++) {
-        double *column = to->rate + (size_t)(first_column + j) * (size_t)to->n_all + first_row;
-        for (int i = 0; i < rows; i++) column[i] += block[(size_t)j * (size_t)rows + (size_t)i];
+        bough_product p = {w->n, width, w->n_row, false, -1 / w->system->def->point, 0};
+        bough_dense_product(p, w->inverse_row, force, product);
+        double *to = w->factor + (size_t)begin * n;
+        for (size_t i = 0; i < n * (size_t)width; i++) to[i] += product[i];
     }
 }
 
-// The air's own rates turn with the blades.
-static void turn_air(bough_arena *arena, const work *w, const bough_simulation *s,
-                     const bough_blade_group *group, int per_blade, bough_aeroelastic *to) {
-    const bough_modes_def *def = w->def;
-    if (def->spin == 0 || per_blade == 0) return;
-    int n = def->n_part, *row = bough_arena_take(arena, (size_t)(n * per_blade) * sizeof *row);
-    double *rate = bough_arena_doubles(arena, (size_t)n * (size_t)n);
-    bough_modes_rate(def, rate);
-    bough_air_tangent_rows(s, group, per_blade, row);
-    for (int k = 0; k < n; k++) {
-        for (int l = 0; l < n; l++) {
-            for (int j = 0; j < per_blade; j++) {
-                size_t column = (size_t)(to->n_motion + row[l * per_blade + j]);
-                size_t at = (size_t)(to->n_motion + row[k * per_blade + j]);
-                to->rate[column * (size_t)to->n_all + at] -= rate[k * n + l];
-            }
-        }
+static bool factor(bough_arena *arena, work *w) {
+    const bough_aeroelastic *x = w->system;
+    size_t n = (size_t)w->n;
+    for (size_t j = 0; j < n; j++) w->factor[j * n + j] = 1;
+    for (size_t j = 0; j < (size_t)x->simulation->tree->n_q; j++) add_column(w, j, j, going_back);
+    if (x->def->spin != 0) {
+        bough_modes_rate(x->def, w->rate);
+        add_spin(w);
     }
+    subtract_forces(arena, w, x->air->motion);
+    return bough_dense_factor(w->n, w->factor, w->pivot);
 }
 
-// The static response of the modes left out to forces (n × columns), γ (I − γ(J − S))⁻¹ (E − U L); the forces
-// lose their part in the modes kept. `share` (n_motion × columns) is work.
-static void follow(work *w, const bough_aeroelastic *to, int columns, double *force, double *share,
-                   double *moved) {
-    int n = w->n, k = to->n_motion;
-    bough_dense_product((bough_product){k, columns, n, false, 1, 0}, to->left, force, share);
-    bough_dense_product((bough_product){n, columns, k, false, -1, 1}, to->shape, share, force);
-    w->k = columns;
-    apply(w, force, moved);
-    for (size_t i = 0; i < (size_t)n * (size_t)columns; i++) moved[i] /= w->def->point;
+// -- its eigenvalues ------------------------------------------------------------------------------
+
+static void apply(void *self, const double *z, double *image) {
+    const work *w = self;
+    memcpy(image, z, (size_t)w->n * sizeof *image);
+    solve_members(w, image);
+    bough_dense_solve(w->n, 1, w->factor, w->pivot, image);
 }
 
-// The air's forces by that response of theirs, `moved` (n × columns), on the motion and on the air's states.
-static void add_followed(const bough_air_tangent *t, int columns, const double *moved, int first_column,
-                         double *image, double *block, bough_aeroelastic *to) {
-    int n = to->n, k = to->n_motion, m = t->n_air;
-    bough_dense_product((bough_product){n, columns, n, false, 1, 0}, t->motion, moved, image);
-    bough_dense_product((bough_product){k, columns, n, false, 1, 0}, to->left, image, block);
-    add_block(block, k, columns, 0, first_column, to);
-    bough_dense_product((bough_product){m, columns, n, false, 1, 0}, t->drive, moved, block);
-    add_block(block, m, columns, k, first_column, to);
+static void apply_transposed(void *self, const double *z, double *image) {
+    const work *w = self;
+    memcpy(w->moved, z, (size_t)w->n * sizeof *image);
+    bough_dense_solve_transposed(w->n, 1, w->factor, w->pivot, w->moved);
+    bough_dense_product((bough_product){w->n, 1, w->n, true, 1, 0}, w->inverse, w->moved, image);
 }
 
-static void add_response(bough_arena *arena, work *w, const bough_air_tangent *t, bough_aeroelastic *to) {
-    int n = w->n, k = to->n_motion, m = t->n_air;
-    size_t most = (size_t)(k > m ? k : m);
-    double *force, *moved;
-    bough_arena_each(arena, (size_t)n * most, &force, &moved);
-    double *block = bough_arena_doubles(arena, most * most);
-    bough_dense_product((bough_product){n, k, n, false, 1, 0}, t->motion, to->shape, force);
-    follow(w, to, k, force, block, moved);
-    add_followed(t, k, moved, 0, force, block, to);
-    if (m == 0) return;
-    memcpy(force, t->lift, (size_t)n * (size_t)m * sizeof *force);
-    follow(w, to, m, force, block, moved);
-    add_followed(t, m, moved, k, force, block, to);
+// Pairs nearest to the point, right or left, without the memory of the air; fewer where the highest are
+// beyond rounding.
+static bough_status find_pairs(bough_arena *arena, work *w, bool left, bool decaying, int wanted,
+                               bough_eigen_pair *pair, int *found) {
+    bough_eigen_operator op = {.name = "whole scene in the air",
+                               .length = w->n,
+                               .n_shape = w->n,
+                               .gamma = 1 / w->system->def->point,
+                               .weight = bough_arena_doubles(arena, (size_t)w->n),
+                               .decaying = decaying,
+                               .self = w,
+                               .apply = left ? apply_transposed : apply};
+    bough_assembly_scales(w->system->whole->assembly, op.weight);
+    for (int k = 0; k < w->n; k++) op.weight[k] = pow(op.weight[k], left ? 2 : -2);
+    bough_status status;
+    do {
+        status = bough_eigen_nearest(arena, &op, wanted, pair, found);
+        wanted /= 2;
+    } while (status.code == BOUGH_FAILED && wanted > 0);
+    return status;
 }
-
-static void add_air(bough_arena *arena, work *w, const bough_simulation *s, const bough_blade_group *group,
-                    const bough_air_tangent *t, bough_aeroelastic *to) {
-    int n = w->n, k = to->n_motion, m = t->n_air;
-    size_t most = (size_t)(k > m ? k : m);
-    double *block = bough_arena_doubles(arena, most * most + (size_t)k * (size_t)k);
-    add_block(to->motion, k, k, 0, 0, to);
-    bough_dense_product((bough_product){n, k, n, false, 1, 0}, t->motion, to->shape, w->image);
-    bough_dense_product((bough_product){k, k, n, false, 1, 0}, to->left, w->image, block);
-    add_block(block, k, k, 0, 0, to);
-    bough_dense_product((bough_product){k, m, n, false, 1, 0}, to->left, t->lift, block);
-    add_block(block, k, m, 0, k, to);
-    bough_dense_product((bough_product){m, k, n, false, 1, 0}, t->drive, to->shape, block);
-    add_block(block, m, k, k, 0, to);
-    add_block(t->lag, m, m, k, k, to);
-    add_response(arena, w, t, to);
-    turn_air(arena, w, s, group, t->n_per_blade, to);
-}
-
-bough_status bough_aeroelastic_reduce(bough_arena *arena, const bough_simulation *s, bough_whole *coupled,
-                                      const bough_modes_def *def, const bough_blade_group *group,
-                                      const bough_air_tangent *tangent, int n_motion,
-                                      bough_aeroelastic *reduced) {
-    int n = coupled->assembly->n_state, kept = n_motion < n ? n_motion : n;
-    work w = {.coupled = coupled, .def = def, .n = n, .k = 2 * kept < n ? 2 * kept : n};
-    size_t all = (size_t)(kept + tangent->n_air);
-    *reduced = (bough_aeroelastic){.n = n,
-                                   .n_motion = kept,
-                                   .n_air = tangent->n_air,
-                                   .shape = bough_arena_doubles(arena, (size_t)n * (size_t)kept),
-                                   .left = bough_arena_doubles(arena, (size_t)n * (size_t)kept),
-                                   .motion = bough_arena_doubles(arena, (size_t)kept * (size_t)kept),
-                                   .rate = bough_arena_doubles(arena, all * all)};
-    take(arena, &w);
-    bough_status status = bough_whole_setup(coupled, def->time, def->state, def->input, 1 / def->point);
-    if (!bough_is_ok(&status)) return bough_fail(BOUGH_FAILED, "%s", status.message);
-    invert(&w);
-    bool done = turn(&w, s->tree->n_q);
-    if (done) find_subspaces(&w);
-    if (!done || !set_motion(arena, &w, reduced)) {
-        return bough_fail(BOUGH_FAILED, "the motion in the air cannot be reduced to %d states", kept);
-    }
-    reduced->n_all = reduced->n_motion + reduced->n_air;
-    add_air(arena, &w, s, group, tangent, reduced);
-    return bough_ok();
-}
-
-// -- its modes ------------------------------------------------------------------------------------
 
 static int slower(const void *a, const void *b) {
     const bough_eigen_pair *x = a, *y = b;
@@ -414,59 +179,217 @@ static int slower(const void *a, const void *b) {
     return (first > second) - (first < second);
 }
 
-// Participation of the motion in mode j (and j + 1 of a pair), Σ |left × right| over its states relative to
-// that over all, which is independent of units; `inverse`: of the matrix of eigenvectors.
-static double motion_share(const bough_aeroelastic *r, const double *vector, const double *inverse, size_t j,
-                           bool pair) {
-    size_t m = (size_t)r->n_all;
-    double motion = 0, all = 0;
-    for (size_t i = 0; i < m; i++) {
-        double re = vector[j * m + i], im = pair ? vector[(j + 1) * m + i] : 0;
-        double left = inverse[i * m + j], other = pair ? inverse[i * m + j + 1] : 0;
-        double part = hypot(re, im) * hypot(left, other);
-        all += part;
-        if (i < (size_t)r->n_motion) motion += part;
+// -- the memory of the air ------------------------------------------------------------------------
+
+// The members in the subspace of their modes, and all states of the air: theory (100).
+typedef struct reduced {
+    int r, all;                       // modes as real columns; with the states of the air
+    double *right, *left;             // U (n × r), L (r × n), L U = E
+    double *matrix;                   // (all × all)
+    double *value, *vector, *inverse; // (2 × all), (all × all): of the matrix of its vectors
+} reduced;
+
+static const bough_eigen_pair *partner(const bough_eigen_pair *of, int n, const bough_eigen_pair *left) {
+    const bough_eigen_pair *nearest = NULL;
+    double least = HUGE_VAL;
+    for (int i = 0; i < n; i++) {
+        double off = hypot(left[i].real - of->real, left[i].imaginary - of->imaginary);
+        if (off < least) least = off, nearest = &left[i];
     }
-    return all > 0 ? motion / all : 0;
+    return least < same * hypot(of->real, of->imaginary) + same ? nearest : NULL;
 }
 
-static void invert_vectors(bough_arena *arena, size_t m, const double *vector, double *inverse) {
-    double *factor = bough_arena_doubles(arena, m * m);
-    int *pivot = bough_arena_take(arena, (m + 1) * sizeof *pivot);
-    memcpy(factor, vector, m * m * sizeof *factor);
-    for (size_t i = 0; i < m; i++) inverse[i * m + i] = 1;
-    if (bough_dense_factor((int)m, factor, pivot)) {
-        bough_dense_solve((int)m, (int)m, factor, pivot, inverse);
-    }
-}
-
-bough_status bough_aeroelastic_modes(bough_arena *arena, const bough_aeroelastic *reduced,
-                                     bough_eigen_pair *pair, int *found) {
-    size_t m = (size_t)reduced->n_all, n = (size_t)reduced->n;
-    int k = reduced->n_motion;
-    double *a = bough_arena_doubles(arena, m * m), *vector = bough_arena_doubles(arena, m * m);
-    double *value = bough_arena_doubles(arena, 2 * m), *room = bough_arena_doubles(arena, 8 * m);
-    double *inverse = bough_arena_doubles(arena, m * m);
-    *found = 0;
-    memcpy(a, reduced->rate, m * m * sizeof *a);
-    if (!bough_dense_eigen((int)m, a, value, vector, room)) {
-        return bough_fail(BOUGH_FAILED, "the eigenvalues of the motion in the air do not converge");
-    }
-    invert_vectors(arena, m, vector, inverse);
-    for (size_t j = 0; j < m; j++) {
-        bool oscillates = value[m + j] > 0;
-        if (!oscillates && (value[m + j] < 0 || value[j] <= 0)) continue;
-        if (motion_share(reduced, vector, inverse, j, oscillates) < least_motion) continue;
-        bough_eigen_pair *p = &pair[*found];
-        *p = (bough_eigen_pair){value[j], value[m + j], bough_arena_doubles(arena, n),
-                                bough_arena_doubles(arena, n)};
-        bough_product shape = {(int)n, 1, k, false, 1, 0};
-        bough_dense_product(shape, reduced->shape, vector + j * m, p->shape_real);
-        if (oscillates) {
-            bough_dense_product(shape, reduced->shape, vector + (j + 1) * m, p->shape_imag);
+// Real and imaginary parts of the modes that are found on both sides, as columns.
+static void collect(const work *w, int n_right, const bough_eigen_pair *right, int n_left,
+                    const bough_eigen_pair *left, double *of_left, reduced *x) {
+    size_t n = (size_t)w->n, bytes = n * sizeof(double);
+    for (int i = 0; i < n_right; i++) {
+        const bough_eigen_pair *other = partner(&right[i], n_left, left);
+        if (other == NULL) continue;
+        for (int part = 0; part < 1 + (right[i].imaginary > 0); part++) {
+            size_t at = (size_t)x->r++ * n;
+            memcpy(x->right + at, part == 0 ? right[i].shape_real : right[i].shape_imag, bytes);
+            memcpy(of_left + at, part == 0 ? other->shape_real : other->shape_imag, bytes);
         }
-        ++*found;
     }
+}
+
+// L = (Wᵀ U)⁻¹ Wᵀ
+static bool orthogonalise(bough_arena *arena, const work *w, const double *of_left, reduced *x) {
+    size_t n = (size_t)w->n, r = (size_t)x->r;
+    double *small = bough_arena_doubles(arena, r * r);
+    int *pivot = bough_arena_take(arena, r * sizeof *pivot);
+    bough_dense_product((bough_product){x->r, x->r, w->n, true, 1, 0}, of_left, x->right, small);
+    for (size_t j = 0; j < n; j++) {
+        for (size_t i = 0; i < r; i++) x->left[j * r + i] = of_left[i * n + j];
+    }
+    if (!bough_dense_factor(x->r, small, pivot)) return false;
+    bough_dense_solve(x->r, w->n, small, pivot, x->left);
+    return true;
+}
+
+// The first block: γ⁻¹ (E − (L T⁻¹ P U)⁻¹)
+static bool set_motion(bough_arena *arena, work *w, reduced *x) {
+    size_t n = (size_t)w->n, r = (size_t)x->r;
+    double *image = bough_arena_doubles(arena, n * r), *small = bough_arena_doubles(arena, r * r);
+    double *column = bough_arena_doubles(arena, r);
+    int *pivot = bough_arena_take(arena, r * sizeof *pivot);
+    for (size_t j = 0; j < r; j++) apply(w, x->right + j * n, image + j * n);
+    bough_dense_product((bough_product){x->r, x->r, w->n, false, 1, 0}, x->left, image, small);
+    if (!bough_dense_factor(x->r, small, pivot)) return false;
+    for (size_t j = 0; j < r; j++) {
+        memset(column, 0, r * sizeof *column);
+        column[j] = 1;
+        bough_dense_solve(x->r, 1, small, pivot, column);
+        double *to = x->matrix + j * (size_t)x->all;
+        for (size_t i = 0; i < r; i++) to[i] = w->system->def->point * ((i == j) - column[i]);
+    }
+    return true;
+}
+
+// The static response of the modes left out to forces (n × columns), γ T⁻¹ P (E − U L), in their place;
+// force: their L.
+static void follow(work *w, const reduced *x, int columns, const double *force, double *rest) {
+    size_t n = (size_t)w->n;
+    bough_dense_product((bough_product){w->n, columns, x->r, false, -1, 1}, x->right, force, rest);
+    for (size_t j = 0; j < (size_t)columns; j++) solve_members(w, rest + j * n);
+    bough_dense_solve(w->n, columns, w->factor, w->pivot, rest);
+}
+
+// Blocks of the air: L R, G U, H − S, and G by the modes left out, which follow R at once.
+static void set_air(bough_arena *arena, work *w, reduced *x) {
+    const bough_air_tangent *air = w->system->air;
+    int a = air->n_air;
+    size_t n = (size_t)w->n, r = (size_t)x->r, m = (size_t)w->m, all = (size_t)x->all, n_air = (size_t)a;
+    double *lift = bough_arena_doubles(arena, n * m), *force = bough_arena_doubles(arena, r * m);
+    double *drive = bough_arena_doubles(arena, n_air * (r + m));
+    // forces of the air's states, on the modes and on what is left out
+    for (size_t j = 0; j < m; j++) memcpy(lift + j * n, air->lift + (size_t)w->air[j] * n, n * sizeof *lift);
+    bough_dense_product((bough_product){x->r, w->m, w->n, false, 1, 0}, x->left, lift, force);
+    follow(w, x, w->m, force, lift);
+    // rates of the air by both
+    bough_dense_product((bough_product){a, x->r, w->n, false, 1, 0}, air->drive, x->right, drive);
+    bough_product by_rest = {a, w->m, w->n, false, 1 / w->system->def->point, 0};
+    bough_dense_product(by_rest, air->drive, lift, drive + n_air * r);
+    for (size_t j = 0; j < r + m; j++) {
+        const double *lag = j < r ? NULL : air->lag + (size_t)w->air[j - r] * n_air;
+        double *to = x->matrix + j * all;
+        if (j >= r) memcpy(to, force + (j - r) * r, r * sizeof *to);
+        for (size_t i = 0; i < m; i++)
+            to[r + i] = drive[j * n_air + (size_t)w->air[i]] + (lag ? lag[w->air[i]] : 0);
+    }
+}
+
+// The air's own rates turn with the blades.
+static void turn_air(bough_arena *arena, const work *w, reduced *x) {
+    int parts = w->system->def->n_part, per_blade = w->system->air->n_per_blade;
+    int *row = bough_arena_take(arena, (size_t)(parts * per_blade) * sizeof *row);
+    bough_air_tangent_rows(w->system->simulation, w->system->group, per_blade, row);
+    for (int k = 0; k < parts; k++) {
+        for (int l = 0; l < parts; l++) {
+            for (int j = 0; j < per_blade; j++) {
+                int to = w->place[row[k * per_blade + j]], from = w->place[row[l * per_blade + j]];
+                if (to < 0 || from < 0) continue;
+                x->matrix[(size_t)(x->r + from) * (size_t)x->all + (size_t)(x->r + to)] -=
+                    w->rate[k * parts + l];
+            }
+        }
+    }
+}
+
+static bool reduce(bough_arena *arena, work *w, int n_right, const bough_eigen_pair *right, int n_left,
+                   const bough_eigen_pair *left, reduced *x) {
+    size_t columns = 2 * (size_t)n_right + 1;
+    x->right = bough_arena_doubles(arena, (size_t)w->n * columns);
+    double *of_left = bough_arena_doubles(arena, (size_t)w->n * columns);
+    collect(w, n_right, right, n_left, left, of_left, x);
+    x->left = bough_arena_doubles(arena, (size_t)w->n * (size_t)x->r);
+    x->all = x->r + w->m;
+    size_t all = (size_t)x->all;
+    bough_arena_each(arena, all * all, &x->matrix, &x->vector, &x->inverse);
+    x->value = bough_arena_doubles(arena, 2 * all);
+    if (!orthogonalise(arena, w, of_left, x) || !set_motion(arena, w, x)) return false;
+    set_air(arena, w, x);
+    if (w->system->def->spin != 0) turn_air(arena, w, x);
+    return true;
+}
+
+static bool find_vectors(bough_arena *arena, reduced *x) {
+    size_t all = (size_t)x->all;
+    double *factor = bough_arena_doubles(arena, all * all);
+    int *pivot = bough_arena_take(arena, all * sizeof *pivot);
+    if (!bough_dense_eigen(x->all, x->matrix, x->value, x->vector, bough_arena_doubles(arena, 8 * all)))
+        return false;
+    memcpy(factor, x->vector, all * all * sizeof *factor);
+    for (size_t i = 0; i < all; i++) x->inverse[i * all + i] = 1;
+    if (!bough_dense_factor(x->all, factor, pivot)) return false;
+    bough_dense_solve(x->all, x->all, factor, pivot, x->inverse);
+    return true;
+}
+
+// Participation of the members in mode j (and j + 1 of a pair), Σ |left × right| over their states relative
+// to that over all, which is independent of units.
+static double participation(const reduced *x, size_t j, bool pair) {
+    size_t all = (size_t)x->all;
+    double motion = 0, whole = 0;
+    for (size_t i = 0; i < all; i++) {
+        double right = hypot(x->vector[j * all + i], pair ? x->vector[(j + 1) * all + i] : 0);
+        double part = right * hypot(x->inverse[i * all + j], pair ? x->inverse[i * all + j + 1] : 0);
+        whole += part;
+        if (i < (size_t)x->r) motion += part;
+    }
+    return whole > 0 ? motion / whole : 0;
+}
+
+static void list_modes(bough_arena *arena, const work *w, const reduced *x, int most, bough_eigen_pair *pair,
+                       int *found) {
+    size_t all = (size_t)x->all, n = (size_t)w->n;
+    bough_product shape = {w->n, 1, x->r, false, 1, 0};
+    *found = 0;
+    for (size_t j = 0; j < all && *found < most; j++) {
+        double growth = x->value[j], frequency = x->value[all + j];
+        if (frequency < 0 || (frequency == 0 && growth <= 0)) continue;
+        if (participation(x, j, frequency > 0) < least_motion) continue;
+        bough_eigen_pair *p = &pair[(*found)++];
+        *p = (bough_eigen_pair){growth, frequency, bough_arena_doubles(arena, n),
+                                bough_arena_doubles(arena, n)};
+        bough_dense_product(shape, x->right, x->vector + j * all, p->shape_real);
+        if (frequency > 0) bough_dense_product(shape, x->right, x->vector + (j + 1) * all, p->shape_imag);
+    }
+}
+
+static bough_status follow_memory(bough_arena *arena, work *w, int wanted, bough_eigen_pair *pair,
+                                  int *found) {
+    int basis = wanted + wanted / 2, n_right, n_left;
+    bough_eigen_pair *right = bough_arena_take(arena, (size_t)basis * sizeof *right);
+    bough_eigen_pair *left = bough_arena_take(arena, (size_t)basis * sizeof *left);
+    reduced x = {0};
+    bough_status status = find_pairs(arena, w, false, true, basis, right, &n_right);
+    if (bough_is_ok(&status)) status = find_pairs(arena, w, true, true, basis, left, &n_left);
+    if (!bough_is_ok(&status)) return status;
+    if (!reduce(arena, w, n_right, right, n_left, left, &x) || !find_vectors(arena, &x))
+        return bough_fail(BOUGH_FAILED, "the motion in the air cannot be reduced to %d modes", n_right);
+    bough_eigen_pair *all = bough_arena_take(arena, (size_t)x.all * sizeof *all);
+    list_modes(arena, w, &x, x.all, all, found);
+    qsort(all, (size_t)*found, sizeof *all, slower);
+    if (*found > wanted) *found = wanted;
+    memcpy(pair, all, (size_t)*found * sizeof *all);
+    return status;
+}
+
+bough_status bough_aeroelastic_modes(bough_arena *arena, const bough_aeroelastic *system, int wanted,
+                                     bough_eigen_pair *pair, int *found) {
+    const bough_modes_def *def = system->def;
+    work w = {.system = system, .n = system->air->n};
+    find_air(arena, &w);
+    take(arena, &w);
+    bough_status status = bough_whole_setup(system->whole, def->time, def->state, def->input, 1 / def->point);
+    if (!bough_is_ok(&status)) return bough_fail(BOUGH_FAILED, "%s", status.message);
+    invert(&w);
+    if (!factor(arena, &w))
+        return bough_fail(BOUGH_FAILED, "the motion in the air is singular about %g /s", def->point);
+    if (w.m > 0) return follow_memory(arena, &w, wanted, pair, found);
+    status = find_pairs(arena, &w, false, false, wanted, pair, found);
     qsort(pair, (size_t)*found, sizeof *pair, slower);
-    return bough_ok();
+    return status;
 }

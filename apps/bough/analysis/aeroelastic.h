@@ -1,10 +1,6 @@
-// The whole scene and its air as one small linear system about a steady state, as an observer at rest
-// sees it where a rotor turns (cosim/analysis/modes.h):
-//     ż = a z ,   z = (u, m) ,   y = U u ,
-// u the motion in the invariant subspace of the bodies' lowest modes, m the states of the air, whose
-// forces couple all (air_tangent.h). Right and left subspace by simultaneous iteration on
-// (I − γ(J − S))⁻¹, so that forces are shared out to the modes as the full system does; modes left out
-// follow the air's forces at once.
+// Modes of the whole scene and its air about a steady state, as an observer at rest sees them where a rotor
+// turns (cosim/analysis/modes.h): eigenvalues of the full linear system of the members' states and those of
+// the air, whose forces couple all (air_tangent.h), theory (77, 100).
 #ifndef BOUGH_APPS_ANALYSIS_AEROELASTIC_H
 #define BOUGH_APPS_ANALYSIS_AEROELASTIC_H
 
@@ -12,23 +8,23 @@
 #include "apps/bough/model/blade_group.h"
 #include "cosim/analysis/modes.h"
 
+// What the modes are of; all borrowed, all about one state.
 typedef struct bough_aeroelastic {
-    int n, n_motion, n_air, n_all; // states of the members, of u, of m, of both
-    double *shape;                 // U (n × n_motion), column-major as all
-    double *left;                  // (n_motion × n): of a rate of y what drives u
-    double *motion;                // (n_motion × n_motion): the rates of u without the air
-    double *rate;                  // a (n_all × n_all)
+    const bough_simulation *simulation;
+    bough_whole *whole;             // its factors are replaced
+    const bough_modes_def *def;     // state, inputs, point on the real axis, and how the blades turn
+    const bough_blade_group *group; // the equal blades, whose air turns with them
+    const bough_air_tangent *air;   // how loads and air follow the motion
 } bough_aeroelastic;
 
-// Reduces the system of `def` to n_motion states of motion and those of the tangent's air.
-bough_status bough_aeroelastic_reduce(bough_arena *arena, const bough_simulation *s, bough_whole *coupled,
-                                      const bough_modes_def *def, const bough_blade_group *group,
-                                      const bough_air_tangent *tangent, int n_motion,
-                                      bough_aeroelastic *reduced);
-
-// Its oscillations and growing motions in which the bodies take part, by |λ|: pairs (room for n_all),
-// shapes (n).
-bough_status bough_aeroelastic_modes(bough_arena *arena, const bough_aeroelastic *reduced,
+// Finds up to `wanted` oscillations and growing motions in which the bodies take part.
+//   wanted  room for as many pairs
+//   pair    by |λ|; their shapes (n_state), of any length and phase, are the arena's
+//   found   how many there are
+// The cost is that of factoring a dense matrix of n_state rows, and with memory of the air that of all
+// eigenvalues of one of its states and of three for each mode. BOUGH_FAILED where the eigenvalues do not
+// converge or the system is singular about the point.
+bough_status bough_aeroelastic_modes(bough_arena *arena, const bough_aeroelastic *system, int wanted,
                                      bough_eigen_pair *pair, int *found);
 
 #endif

@@ -15,7 +15,6 @@ static const double least_point = 1, spins = 4;
 static const double free_motion = 1e-3;
 
 enum { FREE_MOTIONS = 8 }; // that may be found before the modes
-enum { PER_MODE = 5 };     // states of motion kept for each mode in the air that is wanted
 
 static const double rounding = 1e-10; // damping ratios below it are none
 
@@ -142,13 +141,11 @@ static bough_status solve_in_air(bough_arena *arena, bough_simulation *s, const 
     bough_status status =
         bough_air_tangent_find(arena, s, x->coupled, x->def.time, x->state, dynamic, NULL, &air);
     if (!bough_is_ok(&status)) return status;
-    v->reduced = bough_arena_take(arena, sizeof *v->reduced);
     bough_air_tangent_average(arena, s, &x->group, &air);
-    status = bough_aeroelastic_reduce(arena, s, x->coupled, &x->def, &x->group, &air,
-                                      PER_MODE * (count + FREE_MOTIONS), v->reduced);
-    if (!bough_is_ok(&status)) return status;
-    v->pair = bough_arena_take(arena, (size_t)v->reduced->n_all * sizeof *v->pair);
-    return bough_aeroelastic_modes(arena, v->reduced, v->pair, &v->found);
+    bough_aeroelastic system = {s, x->coupled, &x->def, &x->group, &air};
+    int wanted = count + FREE_MOTIONS;
+    v->pair = bough_arena_take(arena, (size_t)wanted * sizeof *v->pair);
+    return bough_aeroelastic_modes(arena, &system, wanted, v->pair, &v->found);
 }
 
 static bough_status solve(bough_arena *arena, bough_simulation *s, double time, int count,

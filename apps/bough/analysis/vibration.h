@@ -17,9 +17,8 @@ typedef struct bough_vibration {
     int n_blade;                 // compared; 0: none
     int n_row;                   // of a shape
     int found;
-    bough_scene_mode *mode;            // (found) by the distance of λ from a point near 0
-    bough_eigen_pair *pair;            // (found)
-    struct bough_aeroelastic *reduced; // in the air that follows: what they are the modes of; or NULL
+    bough_scene_mode *mode; // (found) by the distance of λ from a point near 0
+    bough_eigen_pair *pair; // (found)
 } bough_vibration;
 
 // Whether the scene's modes block, or the scene without it, asks for modes of the whole.
