@@ -1,6 +1,7 @@
 // Static condensation, theory (56, 57). Each member is linearised and factored by itself.
 #include "cosim/interface.h"
 
+#include "core/base/columns.h"
 #include "core/base/linalg.h"
 
 #include <math.h>
@@ -70,6 +71,7 @@ bough_interface *bough_interface_create(bough_arena *arena, const bough_assembly
     size_t n_member = (size_t)assembly->n_member;
     bough_interface *k = bough_arena_take(arena, sizeof *k);
     k->assembly = assembly;
+    k->level = bough_level_chosen();
     k->part = bough_arena_take(arena, n_member * sizeof *k->part);
     k->leader_input = bough_arena_take(arena, (size_t)assembly->n_input * sizeof(int));
     // shape: leaders first, because followers refer to them
@@ -79,7 +81,7 @@ bough_interface *bough_interface_create(bough_arena *arena, const bough_assembly
     // matrices of the interface
     size_t n = (size_t)k->n;
     k->gain = bough_arena_doubles(arena, (size_t)k->n_leader_input * n);
-    bough_arena_each(arena, n * n, &k->loop, &k->matrix, &k->square);
+    bough_arena_each(arena, n * n, &k->loop, &k->matrix, &k->solution, &k->square);
     k->pivot = bough_arena_take(arena, n * sizeof(int));
     k->coordinate = bough_arena_doubles(arena, n);
     k->sum = bough_arena_doubles(arena, n);
@@ -124,47 +126,16 @@ void bough_interface_solve_member(const bough_interface *k, int member, double *
     s->ops->solve(s->self, k->part[member].factors, x);
 }
 
-enum { AT_ONCE = 4 };
-
-// sum += Σ_j weight_j column_j, in this order
-static void add_some(int n, const double weight[AT_ONCE], const double *const column[AT_ONCE],
-                     double *restrict sum) {
-    const double *restrict c0 = column[0], *restrict c1 = column[1];
-    const double *restrict c2 = column[2], *restrict c3 = column[3];
-    double w0 = weight[0], w1 = weight[1], w2 = weight[2], w3 = weight[3];
-#pragma omp simd
-    for (int i = 0; i < n; i++) {
-        sum[i] = sum[i] + w0 * c0[i] + w1 * c1[i] + w2 * c2[i] + w3 * c3[i];
-    }
-}
-
 // sum (n) += factor Σ_j weight_j column_j, the columns (count × n) one after the other
-static void add_columns(int n, int count, const double *column, double factor, const double *weight,
-                        double *sum) {
-    const double *some[AT_ONCE];
-    double scaled[AT_ONCE];
-    int k = 0;
-    // four columns at a time
-    for (int j = 0; j < count; j++, column += n) {
-        if (weight[j] == 0) continue;
-        scaled[k] = factor * weight[j];
-        some[k++] = column;
-        if (k == AT_ONCE) add_some(n, scaled, some, sum);
-        k %= AT_ONCE;
-    }
-    if (k == 0) return;
-    // the rest, filled up with zeros
-    for (; k < AT_ONCE; k++) {
-        scaled[k] = 0;
-        some[k] = some[0];
-    }
-    add_some(n, scaled, some, sum);
+static void add_columns(const bough_interface *k, int n, int count, const double *column, double factor,
+                        const double *weight, double *sum) {
+    BOUGH_OF_LEVEL(bough_add_columns, k->level)(n, count, column, factor, weight, sum);
 }
 
 void bough_interface_add_columns(const bough_interface *k, int member, double factor, const double *weight,
                                  double *sum) {
     const bough_system *s = system_of(k, member);
-    add_columns(s->n_state, s->n_input, k->part[member].column, factor, weight, sum);
+    add_columns(k, s->n_state, s->n_input, k->part[member].column, factor, weight, sum);
 }
 
 // (I − γJ)⁻¹ column by column.
@@ -297,7 +268,7 @@ static void add_inputs(const bough_interface *k, const double *u, double *z) {
         int n_input = system_of(k, i)->n_input;
         if (!w->is_leader) continue;
         if (w->by_state) {
-            add_columns(w->n, n_input, w->column, 1, u, z + w->first);
+            add_columns(k, w->n, n_input, w->column, 1, u, z + w->first);
         } else {
             for (int j = 0; j < n_input; j++) z[w->first + j] += u[j];
         }
@@ -312,7 +283,7 @@ static void apply_inverses(const bough_interface *k, double *z) {
         if (!w->by_state) continue;
         memcpy(k->sum, z + w->first, (size_t)w->n * sizeof *z);
         memset(z + w->first, 0, (size_t)w->n * sizeof *z);
-        add_columns(w->n, w->n, w->inverse, 1, k->sum, z + w->first);
+        add_columns(k, w->n, w->n, w->inverse, 1, k->sum, z + w->first);
     }
 }
 
@@ -327,9 +298,16 @@ bool bough_interface_close(bough_interface *k) {
         add_inputs(k, k->gain + c * (size_t)k->n_leader_input, k->loop + c * n);
         apply_inverses(k, k->loop + c * n);
     }
-    // factors of I − Z K
-    for (size_t i = 0; i < size; i++) k->matrix[i] = (i % (n + 1) == 0) - k->loop[i];
-    return n == 0 || bough_dense_factor(k->n, k->matrix, k->pivot);
+    if (n == 0) return true;
+    // (I − Z K)⁻¹ on the leaders' own solutions
+    for (size_t i = 0; i < size; i++) {
+        k->matrix[i] = (i % (n + 1) == 0) - k->loop[i];
+        k->solution[i] = i % (n + 1) == 0;
+    }
+    for (size_t c = 0; c < n; c++) apply_inverses(k, k->solution + c * n);
+    if (!bough_dense_factor(k->n, k->matrix, k->pivot)) return false;
+    bough_dense_solve(k->n, k->n, k->matrix, k->pivot, k->solution);
+    return true;
 }
 
 // The leaders' outputs' change with the coordinates.
@@ -340,7 +318,7 @@ static void move_outputs(bough_interface *k) {
         int n_output = system_of(k, i)->n_output;
         double *moved = k->moved + k->assembly->output_offset[i];
         memset(moved, 0, (size_t)n_output * sizeof *moved);
-        add_columns(n_output, w->n, w->output_change, 1, k->coordinate + w->first, moved);
+        add_columns(k, n_output, w->n, w->output_change, 1, k->coordinate + w->first, moved);
     }
 }
 
@@ -349,10 +327,11 @@ void bough_interface_solve(bough_interface *k, double *change) {
     // (I − Z K) w = Z b
     for (int l = 0; l < k->n_leader_input; l++) k->right[l] = change[k->leader_input[l]];
     add_inputs(k, k->right, k->coordinate);
-    apply_inverses(k, k->coordinate);
-    if (k->n > 0) bough_dense_solve(k->n, 1, k->matrix, k->pivot, k->coordinate);
+    memcpy(k->sum, k->coordinate, (size_t)k->n * sizeof(double));
+    memset(k->coordinate, 0, (size_t)k->n * sizeof(double));
+    add_columns(k, k->n, k->n, k->solution, 1, k->sum, k->coordinate);
     // u = b + K w
-    add_columns(k->n_leader_input, k->n, k->gain, 1, k->coordinate, k->right);
+    add_columns(k, k->n_leader_input, k->n, k->gain, 1, k->coordinate, k->right);
     for (int l = 0; l < k->n_leader_input; l++) change[k->leader_input[l]] = k->right[l];
     // the followers' inputs move with the leaders' outputs
     move_outputs(k);
@@ -368,11 +347,11 @@ void bough_interface_add_response(const bough_interface *k, int member, const do
     if (w->by_state) {
         for (int i = 0; i < n; i++) x[i] += k->coordinate[w->first + i];
     } else if (w->is_leader) {
-        add_columns(n, w->n, w->state_change, 1, k->coordinate + w->first, x);
+        add_columns(k, n, w->n, w->state_change, 1, k->coordinate + w->first, x);
     } else if (w->leader >= 0) {
-        add_columns(n, w->n, w->state_change, 1, k->coordinate + k->part[w->leader].first, x);
+        add_columns(k, n, w->n, w->state_change, 1, k->coordinate + k->part[w->leader].first, x);
     } else {
-        add_columns(n, w->n, w->state_change, 1, change, x);
+        add_columns(k, n, w->n, w->state_change, 1, change, x);
     }
 }
 
@@ -380,7 +359,7 @@ void bough_interface_add_output_response(const bough_interface *k, int member, c
                                          double *output_change) {
     const bough_interface_member *w = &k->part[member];
     if (w->leader >= 0) return;
-    add_columns(system_of(k, member)->n_output, w->n, w->output_change, 1, change, output_change);
+    add_columns(k, system_of(k, member)->n_output, w->n, w->output_change, 1, change, output_change);
 }
 
 // -- gain of the interface ------------------------------------------------------------------------

@@ -11,6 +11,7 @@
 #ifndef BOUGH_COSIM_INTERFACE_H
 #define BOUGH_COSIM_INTERFACE_H
 
+#include "core/base/level.h"
 #include "cosim/assembly.h"
 
 // One member's linearisation, its factors and its response to the interface.
@@ -34,6 +35,7 @@ typedef struct bough_interface_member {
 typedef struct bough_interface {
     // constant
     const bough_assembly *assembly;
+    bough_level level;            // of the kernels
     bough_interface_member *part; // (n_member)
     int n_leader_input;           // of all leaders
     int *leader_input;            // (n_leader_input) numbered over all inputs
@@ -44,6 +46,7 @@ typedef struct bough_interface {
     double *loop;   // (n × n) Z K
     double *matrix; // (n × n) I − Z K, factored
     int *pivot;     // (n)
+    double *solution; // (n × n) (I − Z K)⁻¹ times the leaders' own solutions: (I − γJ)⁻¹ of those by states
 
     // by bough_interface_solve
     double *coordinate; // (n) w

@@ -13,20 +13,8 @@ enum { MOST_DRIFTED = 4 }; // the same of ∂f/∂t, and anew in every macro ste
 enum { MOST_AGE = 24 };    // steps with the same tangents; on a blade, up to 64 cost no accuracy
 enum { UNDAMPED_AGE = 2 }; // the same at the start, without damping
 
-// The published coefficients α, Γ, b, b̂ in the form that needs no product with J: a = A Γ⁻¹,
-// c = E − γ Γ⁻¹, m = bᵀ Γ⁻¹, e = (b − b̂)ᵀ Γ⁻¹. The last row of a is m without its last entry, 1.
-static const double gamma_h = 0.4358665215084590;
+static const double gamma_h = 0.4358665215084590; // γ
 static const double alpha[STAGES] = {0, 0.8717330430169180, 0.7315799577888524, 1};
-static const double slope[STAGES] = {0.4358665215084590, -0.4358665215084590, -0.4133333762338865, 0};
-static const double a[STAGES][3] = {{0, 0, 0},
-                                    {2, 0, 0},
-                                    {1.4192173174557647, -0.2592322116729697, 0},
-                                    {4.1847604823191600, -0.2851920173554959, 2.2942803602790420}};
-static const double c[STAGES][3] = {{0, 0, 0},
-                                    {-2, 0, 0},
-                                    {-1.8239969947745136, 0.1243056525667201, 0},
-                                    {-2.7756761163024684, -2.9619836625547890, 1.2509798950560604}};
-static const double e[STAGES] = {0.2777499476479672, -1.4032398951759988, 1.7726301276675507, 0.5};
 
 // Old tangents let vibrations of stiff bodies grow, by damping ratios down to −9e-4. A viscosity, as a time,
 // of more than `least_viscosity` steps covers that. With less, the age of the tangents is chosen so that
@@ -60,74 +48,16 @@ typedef struct rosenbrock {
 
 double bough_rosenbrock_time(const bough_rosenbrock_step *s, int i) { return s->t + alpha[i] * s->h; }
 
-// Σ_j weight_j u_j over the stages before stage i; the compiler moves the tests of i out of loops.
-static inline double stages_before(const bough_rosenbrock_step *s, int i, const double weight[3], int k) {
-    double sum = weight[0] * s->u[0][k];
-    if (i > 1) sum += weight[1] * s->u[1][k];
-    if (i > 2) sum += weight[2] * s->u[2][k];
-    return sum;
-}
-
-// at = y + Σ_j a_ij u_j
-static inline void set_argument(bough_rosenbrock_step *s, int i, int first, int last) {
-    double *restrict at = s->at;
-    const double *restrict y = s->y;
-#pragma omp simd
-    for (int k = first; k < last; k++) at[k] = y[k] + stages_before(s, i, a[i], k);
-}
-
-// Inlined with the stage known, each has a loop of its own.
 void bough_rosenbrock_argument(bough_rosenbrock_step *s, int i, int first, int last) {
-    switch (i) {
-    case 1: set_argument(s, 1, first, last); break;
-    case 2: set_argument(s, 2, first, last); break;
-    default: set_argument(s, 3, first, last);
-    }
-}
-
-// u_0 = γh [f + γ₁h ∂f/∂t], f standing in u_0
-static void set_first_right_side(bough_rosenbrock_step *s, int first, int last) {
-    double *restrict u = s->u[0], *restrict drift = s->drift;
-    double h = s->h, f = gamma_h * h, d = slope[0] * h;
-    if (s->drifts) { // f at the step's end stands in it
-#pragma omp simd
-        for (int k = first; k < last; k++) drift[k] = (drift[k] - u[k]) / h;
-    }
-#pragma omp simd
-    for (int k = first; k < last; k++) u[k] = f * (u[k] + d * drift[k]);
-}
-
-// u_i = γh [f + γ_i h ∂f/∂t] + Σ_j c_ij u_j, f standing in u_i
-static inline void set_right_side(bough_rosenbrock_step *s, int i, int first, int last) {
-    double *restrict u = s->u[i], h = s->h;
-    const double *restrict drift = s->drift;
-    double f = gamma_h * h, d = gamma_h * h * slope[i] * h;
-#pragma omp simd
-    for (int k = first; k < last; k++) u[k] = f * u[k] + d * drift[k] + stages_before(s, i, c[i], k);
+    BOUGH_OF_LEVEL(bough_rosenbrock_argument, s->level)(s, i, first, last);
 }
 
 void bough_rosenbrock_right_side(bough_rosenbrock_step *s, int i, int first, int last) {
-    switch (i) {
-    case 0: set_first_right_side(s, first, last); break;
-    case 1: set_right_side(s, 1, first, last); break;
-    case 2: set_right_side(s, 2, first, last); break;
-    default: set_right_side(s, 3, first, last);
-    }
+    BOUGH_OF_LEVEL(bough_rosenbrock_right_side, s->level)(s, i, first, last);
 }
 
-// y₁ into `at`, whose last argument lacks the last stage only.
 double bough_rosenbrock_end(bough_rosenbrock_step *s, int first, int last) {
-    double *restrict at = s->at;
-    const double *restrict u0 = s->u[0], *restrict u1 = s->u[1], *restrict u2 = s->u[2];
-    const double *restrict u3 = s->u[3], *restrict weight = s->weight;
-    double sum = 0;
-#pragma omp simd reduction(+ : sum)
-    for (int k = first; k < last; k++) {
-        at[k] += u3[k];
-        double error = e[0] * u0[k] + e[1] * u1[k] + e[2] * u2[k] + e[3] * u3[k];
-        sum += (weight[k] * error) * (weight[k] * error);
-    }
-    return sum;
+    return BOUGH_OF_LEVEL(bough_rosenbrock_end, s->level)(s, first, last);
 }
 
 // -- one step of one system -----------------------------------------------------------------------
@@ -177,6 +107,7 @@ static void *create(bough_arena *arena, const bough_ode *ode, const bough_integr
     for (int i = 0; i < STAGES; i++) m->now.u[i] = bough_arena_doubles(arena, n);
     for (size_t k = 0; k < n; k++) m->weight[k] = 1 / (options->rtol * ode->scale[k]);
     m->now.weight = m->weight;
+    m->now.level = bough_level_chosen();
     return m;
 }
 
@@ -185,9 +116,8 @@ static void *create(bough_arena *arena, const bough_ode *ode, const bough_integr
 static bool undamped(const rosenbrock *m, double h) { return m->ode.elastic_rate * h * least_viscosity > 1; }
 
 // (I − γhJ)⁻¹ (y₁ − y₀) of the last step
-static void filter_increment(rosenbrock *m, double *restrict x) {
-#pragma omp simd
-    for (int k = 0; k < m->ode.n; k++) x[k] = stages_before(&m->now, 3, a[3], k) + m->now.u[3][k];
+static void filter_increment(rosenbrock *m, double *x) {
+    BOUGH_OF_LEVEL(bough_rosenbrock_increment, m->now.level)(&m->now, m->ode.n, x);
     m->ode.solve(m->ode.self, x);
 }
 
@@ -235,11 +165,9 @@ static bool renew_factors(rosenbrock *m, double t, const double *y, double h) {
 static double filter(rosenbrock *m) {
     double *restrict error = m->error;
     const bough_rosenbrock_step *s = &m->now;
-    const double *restrict u0 = s->u[0], *restrict u1 = s->u[1], *restrict u2 = s->u[2];
-    const double *restrict u3 = s->u[3], *restrict weight = m->weight;
+    const double *restrict weight = m->weight;
     double sum = 0;
-#pragma omp simd
-    for (int k = 0; k < m->ode.n; k++) error[k] = e[0] * u0[k] + e[1] * u1[k] + e[2] * u2[k] + e[3] * u3[k];
+    BOUGH_OF_LEVEL(bough_rosenbrock_error, s->level)(s, m->ode.n, error);
     m->ode.solve(m->ode.self, error);
 #pragma omp simd reduction(+ : sum)
     for (int k = 0; k < m->ode.n; k++) sum += (weight[k] * error[k]) * (weight[k] * error[k]);
@@ -251,7 +179,7 @@ static double filter(rosenbrock *m) {
 static double try_step(rosenbrock *m, double t, double h, const double *y) {
     bough_rosenbrock_step *s = &m->now;
     if (!renew_factors(m, t, y, h)) return (double)INFINITY;
-    s->t = t, s->h = h, s->y = y;
+    s->t = t, s->h = h, s->gamma = gamma_h * h, s->y = y;
     s->drifts = m->drifted >= MOST_DRIFTED;
     m->sum.derivatives += STAGES + s->drifts;
     double error = sqrt(m->find(m->finder, s) / m->ode.n);

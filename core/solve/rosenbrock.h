@@ -3,13 +3,15 @@
 #ifndef BOUGH_CORE_SOLVE_ROSENBROCK_H
 #define BOUGH_CORE_SOLVE_ROSENBROCK_H
 
+#include "core/base/level.h"
 #include "core/solve/integrator.h"
 
 enum { BOUGH_ROSENBROCK_STAGES = 4 };
 
 // The step in progress. A bough_rosenbrock_find fills u, drift and at.
 typedef struct bough_rosenbrock_step {
-    double t, h;                        // [s]
+    bough_level level;                  // of the kernels
+    double t, h, gamma;                 // its start, its length, and γh [s]
     const double *y;                    // (n) at t
     bool drifts;                        // ∂f/∂t is to be found: from f at t + h, in `drift`, and f at t
     double *drift;                      // (n) ∂f/∂t
@@ -36,5 +38,15 @@ void bough_rosenbrock_right_side(bough_rosenbrock_step *step, int i, int first, 
 
 // y₁ from all stages; returns the error's sum of squares.
 double bough_rosenbrock_end(bough_rosenbrock_step *step, int first, int last);
+
+// For all n states: the error of y₁ by the embedded method, and y₁ − y.
+void bough_rosenbrock_error(const bough_rosenbrock_step *step, int n, double *error);
+void bough_rosenbrock_increment(const bough_rosenbrock_step *step, int n, double *increment);
+
+BOUGH_DECLARE_LEVELS(bough_rosenbrock_argument);
+BOUGH_DECLARE_LEVELS(bough_rosenbrock_right_side);
+BOUGH_DECLARE_LEVELS(bough_rosenbrock_end);
+BOUGH_DECLARE_LEVELS(bough_rosenbrock_error);
+BOUGH_DECLARE_LEVELS(bough_rosenbrock_increment);
 
 #endif

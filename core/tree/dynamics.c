@@ -173,12 +173,12 @@ void bough_tree_inverse_dynamics(const bough_tree *tree, bough_tree_data *d, dou
 
 // -- forward dynamics by articulated bodies ------------------------------------------------------
 
-static bough_wrench matrix_mul(const double *a, bough_twist v) {
-    double x[N], y[N];
+// Of a symmetric matrix, whose rows are its columns.
+static bough_wrench matrix_mul(const double *restrict a, bough_twist v) {
+    double x[N], y[N] = {0};
     bough_twist_store(v, x);
-    for (int r = 0; r < N; r++) {
-        y[r] = 0;
-        for (int c = 0; c < N; c++) y[r] += a[N * r + c] * x[c];
+    for (int c = 0; c < N; c++) {
+        for (int r = 0; r < N; r++) y[r] += a[N * c + r] * x[c];
     }
     return bough_wrench_load(y);
 }
@@ -190,14 +190,52 @@ void bough_tree_rigid_matrix(const bough_inertia *inertia, double a[36]) {
     }
 }
 
-// up += Xᵀ a X
-static void add_to_parent(const bough_transform *x, const double *a, double *up) {
-    for (int k = 0; k < N; k++) {
-        double column[N];
-        bough_wrench w = matrix_mul(a, bough_twist_to_child(x, bough_twist_unit(k)));
-        bough_wrench_store(bough_wrench_to_parent(x, w), column);
-        for (int r = 0; r < N; r++) up[N * k + r] += column[r];
+// Block (row, column) of 3×3 of a 6×6 matrix.
+static bough_mat3 block_of(const double *a, int row, int column) {
+    const double *from = a + N * row + column;
+    return (bough_mat3){{from[0], from[N], from[2 * N]},
+                        {from[1], from[N + 1], from[2 * N + 1]},
+                        {from[2], from[N + 2], from[2 * N + 2]}};
+}
+
+static void add_block(bough_mat3 b, int row, int column, double *a) {
+    double *to = a + N * row + column;
+    const bough_vec3 columns[3] = {b.c1, b.c2, b.c3};
+    for (int c = 0; c < 3; c++) {
+        to[c] += columns[c].x;
+        to[N + c] += columns[c].y;
+        to[2 * N + c] += columns[c].z;
     }
+}
+
+static bough_mat3 rotated(bough_mat3 r, bough_mat3 a) {
+    return bough_mat3_product(bough_mat3_product(r, a), bough_mat3_transpose(r));
+}
+
+// a ξ(p) and ξ(p) a with ξ(p) v = p×v
+static bough_mat3 times_cross(bough_mat3 a, bough_vec3 p) {
+    return (bough_mat3){bough_axpy(p.z, a.c2, bough_scale(-p.y, a.c3)),
+                        bough_axpy(p.x, a.c3, bough_scale(-p.z, a.c1)),
+                        bough_axpy(p.y, a.c1, bough_scale(-p.x, a.c2))};
+}
+
+static bough_mat3 cross_times(bough_vec3 p, bough_mat3 a) {
+    return (bough_mat3){bough_cross(p, a.c1), bough_cross(p, a.c2), bough_cross(p, a.c3)};
+}
+
+// up += Xᵀ a X of a symmetric a: its blocks rotated, then shifted by p.
+static void add_to_parent(const bough_transform *x, const double *a, double *up) {
+    bough_mat3 mass = rotated(x->rotation, block_of(a, 0, 0));
+    bough_mat3 coupling = rotated(x->rotation, block_of(a, 0, 3));
+    bough_mat3 inertia = rotated(x->rotation, block_of(a, 3, 3)), back = bough_mat3_transpose(coupling);
+    bough_vec3 to_child = bough_scale(-1, x->position);
+    coupling = bough_mat3_add(coupling, times_cross(mass, to_child));
+    inertia = bough_mat3_add(inertia, times_cross(back, to_child));
+    inertia = bough_mat3_add(inertia, cross_times(x->position, coupling));
+    add_block(mass, 0, 0, up);
+    add_block(coupling, 0, 3, up);
+    add_block(bough_mat3_transpose(coupling), 3, 0, up);
+    add_block(inertia, 3, 3, up);
 }
 
 // Whether a column of the motion subspace moves inertia beyond rounding errors.
@@ -223,19 +261,19 @@ static bool factor_joint(const bough_link *link, const double *articulated, doub
 
 // Iᵃ = Iᴬ − U D⁻¹ Uᵀ, in place: the inertia that the parent carries through the joint, none through a free
 // one
-static void release_joint(const bough_link *link, const double *gain, const double *factor,
-                          double *articulated) {
+static void release_joint(const bough_link *link, const double *restrict gain, const double *factor,
+                          double *restrict articulated) {
     int n = link->n_speeds;
     if (n == N) {
         memset(articulated, 0, NN * sizeof *articulated);
         return;
     }
-    for (int c = 0; c < N; c++) {
+    for (int r = 0; r < N; r++) {
         double x[N];
-        for (int k = 0; k < n; k++) x[k] = gain[N * k + c];
+        for (int k = 0; k < n; k++) x[k] = gain[N * k + r];
         bough_cholesky_solve(n, factor, x);
         for (int k = 0; k < n; k++) {
-            for (int r = 0; r < N; r++) articulated[N * r + c] -= gain[N * k + r] * x[k];
+            for (int c = 0; c < N; c++) articulated[N * r + c] -= x[k] * gain[N * k + c];
         }
     }
 }

@@ -20,6 +20,8 @@ typedef struct tree_system {
     bough_tree_data *data;
     int n;                        // n_q + n_v
     bool prescribed;              // some joints' motions are given
+    bool moved;                   // the kinematics in the data are those of
+    double *at;                   // (n) this state
     double *initial, *scale;      // (n)
     double *placed;               // (n) a state with the given motions in place
     double *r, *plus, *minus, *y; // (n) scratch
@@ -45,10 +47,19 @@ static const double *place(tree_system *s, double t, const double *state) {
     return s->placed;
 }
 
+// The kinematics at a state. f is often asked for where h has just been.
+static void move_to(tree_system *s, const double *state) {
+    size_t bytes = (size_t)s->n * sizeof(double);
+    if (s->moved && memcmp(s->at, state, bytes) == 0) return;
+    bough_tree_kinematics(s->tree, state, s->data);
+    memcpy(s->at, state, bytes);
+    s->moved = true;
+}
+
 static bool derivative(void *self, double t, const double *state, const double *input, double *rate) {
     tree_system *s = self;
     state = place(s, t, state);
-    bough_tree_kinematics(s->tree, state, s->data);
+    move_to(s, state);
     bough_tree_coordinate_rate(s->tree, state, rate); // q̇ = N(q) v
     bool ok = bough_tree_forward_dynamics(s->tree, s->data, t, input, rate + s->tree->n_q);
     if (ok && s->data->loops != NULL) bough_loops_correct(s->tree, s->data, state, rate);
@@ -121,7 +132,7 @@ static void output(void *self, double t, const double *state, const double *inpu
     (void)input;
     tree_system *s = self;
     state = place(s, t, state);
-    bough_tree_kinematics(s->tree, state, s->data);
+    move_to(s, state);
     for (int p = 0; p < s->tree->n_ports; p++, out += BOUGH_PORT_OUTPUTS) {
         const bough_frame *port = &s->tree->ports[p];
         bough_vec3 g = port->link < 0 ? s->tree->gravity : s->data->gravity[port->link];
@@ -135,7 +146,7 @@ static void output(void *self, double t, const double *state, const double *inpu
 // δo along a change of the state: out (n_output).
 static void outputs_change(tree_system *s, const double *state, const double *change, double *out) {
     memset(out, 0, (size_t)bough_tree_n_outputs(s->tree) * sizeof(double));
-    bough_tree_kinematics(s->tree, state, s->data);
+    move_to(s, state);
     bough_tree_tangent(s->tree, state, change, s->data);
     for (int p = 0; p < s->tree->n_ports; p++, out += BOUGH_PORT_OUTPUTS) {
         const bough_frame *port = &s->tree->ports[p];
@@ -191,7 +202,7 @@ static void input_columns(void *self, double t, const double *state, const doubl
     tree_system *s = self;
     const bough_tree *tree = s->tree;
     // articulated bodies at this state, then one response for each input
-    bough_tree_kinematics(tree, place(s, t, state), s->data);
+    move_to(s, place(s, t, state));
     bough_tree_forward_dynamics(tree, s->data, t, input, s->r); // for its factors
     for (int j = 0; j < bough_tree_n_inputs(tree); j++, column += s->n) {
         double unit[BOUGH_PORT_INPUTS] = {0};
@@ -266,6 +277,7 @@ static bool factor(void *self, void *factors, double gamma) {
     int n = s->n;
     k->gamma = gamma;
     if (k->newton != NULL) {
+        s->moved = false; // the recursion moves the data
         return bough_tree_newton_setup(k->newton, s->data, k->time, k->input, place(s, k->time, k->state),
                                        k->rate + s->tree->n_q, 1 / gamma);
     }
@@ -348,7 +360,7 @@ bough_system bough_tree_system_create(bough_arena *arena, bough_tree *tree, cons
     s->n = tree->n_q + tree->n_v;
     for (int i = 0; i < tree->n_links; i++) s->prescribed = s->prescribed || tree->links[i].motion != NULL;
     s->data = bough_tree_data_create(arena, tree);
-    bough_arena_each(arena, (size_t)s->n, &s->initial, &s->scale, &s->placed, &s->y, &s->r, &s->plus,
+    bough_arena_each(arena, (size_t)s->n, &s->at, &s->initial, &s->scale, &s->placed, &s->y, &s->r, &s->plus,
                      &s->minus);
     for (int i = 0; i < s->n; i++) s->scale[i] = 1;
     memcpy(s->initial, tree->initial, (size_t)s->n * sizeof(double));

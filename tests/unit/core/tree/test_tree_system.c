@@ -77,6 +77,28 @@ TEST(kept_history_keeps_the_accuracy) {
     assert_true(count.steps > 0 && count.jacobians > 0 && count.derivatives > count.steps);
 }
 
+// f at one state, after whatever else moved the data.
+TEST(rates_do_not_depend_on_earlier_calls) {
+    fixture f = everything(1e-7);
+    const bough_system_ops *ops = f.s.ops;
+    void *factors = ops->factors(f.s.self, f.arena);
+    double here[MOST], there[MOST], fresh[MOST], rate[MOST], out[MOST];
+    size_t bytes = (size_t)f.s.n_state * sizeof(double);
+    memcpy(here, f.m->state, bytes);
+    memcpy(there, f.m->state, bytes);
+    for (int i = 0; i < f.s.n_state; i++) there[i] += 0.05 * sin(i);
+    assert_true(ops->derivative(f.s.self, 0.2, here, some_input, fresh));
+    ops->output(f.s.self, 0.2, there, some_input, out);
+    assert_true(ops->derivative(f.s.self, 0.2, here, some_input, rate));
+    assert_memory_equal(rate, fresh, bytes);
+    // linearised elsewhere
+    assert_true(ops->linearise(f.s.self, 0.2, there, some_input, factors));
+    assert_true(ops->derivative(f.s.self, 0.2, here, some_input, rate));
+    assert_true(ops->factor(f.s.self, factors, 1e-2));
+    assert_true(ops->derivative(f.s.self, 0.2, here, some_input, rate));
+    assert_memory_equal(rate, fresh, bytes);
+}
+
 // A marker's wrench against the same wrench at the port in the same place.
 TEST(external_wrench_acts_as_a_port_does) {
     fixture f = everything(1e-6);
