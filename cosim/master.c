@@ -100,11 +100,12 @@ bough_status bough_master_build(bough_arena *arena, const bough_master_def *def,
 
 bool bough_master_done(const bough_master *m) { return m->time >= m->duration; }
 
-enum { HALVED_EVERY = 8 }; // macro steps
+enum { HALVED_EVERY = 8, HALVED_FIRST = 64 }; // macro steps
 
 static double next_on_grid(const bough_master *m) {
     double half = ((double)m->grid_index + 0.5) * m->macro_step;
-    bool halved = m->halves && (m->at_event || m->grid_index % HALVED_EVERY == 0);
+    bool often = m->grid_index < HALVED_FIRST || m->grid_index % HALVED_EVERY == 0;
+    bool halved = m->halves && (m->at_event || often);
     return halved && half > m->time + resolution(m) ? half : (double)(m->grid_index + 1) * m->macro_step;
 }
 

@@ -81,6 +81,12 @@ static bool gets_finer(const bough_scene *scene, int body) {
            other_segments(scene, body) > scene->body[body].rod.n_segment;
 }
 
+static bool some_finer(const bough_scene *scene) {
+    bool finer = false;
+    for (int i = 0; i < scene->n_body; i++) finer = finer || gets_finer(scene, i);
+    return finer;
+}
+
 static void change_segments(bough_arena *arena, const bough_scene *scene, bough_scene *to) {
     size_t size = (size_t)scene->n_body * sizeof *to->body;
     to->body = bough_arena_take(arena, size);
@@ -137,9 +143,7 @@ static const double loosest = 0.02; // tolerance
 // beside an explicit coupling; a few times beside a finer mesh, whose companion would else cost as much as
 // the run. Else it is a multiple, of which the run errs by a quarter.
 static looser looser_of(const bough_scene *scene) {
-    bool finer = false;
-    for (int i = 0; i < scene->n_body; i++) finer = finer || gets_finer(scene, i);
-    return finer ? (looser){6, 2} : usual_share(scene) == 1 ? (looser){3, 1.5} : (looser){10, 2};
+    return some_finer(scene) ? (looser){6, 2} : usual_share(scene) == 1 ? (looser){3, 1.5} : (looser){10, 2};
 }
 
 double bough_coarser_time_share(const bough_scene *scene) {
@@ -148,6 +152,14 @@ double bough_coarser_time_share(const bough_scene *scene) {
 
 static bool samples_fit(double rate, double macro_step) {
     return bough_master_multiple(1 / rate, macro_step) > 0;
+}
+
+// Half the rate; beside a finer mesh twice the rate where macro steps allow it, else the same: a coarser one
+// could hide in the difference what the mesh shows.
+static double other_rate(const bough_scene *scene, bool finer) {
+    double rate = scene->aero.rate;
+    if (!finer) return rate / 2;
+    return samples_fit(2 * rate, scene->simulation.macro_step) ? 2 * rate : rate;
 }
 
 // Inputs are set for one macro step of the run, and the rate of a controller is its own.
@@ -201,7 +213,8 @@ bough_scene *bough_coarser_scene(bough_arena *arena, const bough_scene *scene, i
     *to = *scene;
     copy_loads(arena, scene, to);
     if (parts & BOUGH_COARSER_MESH) change_segments(arena, scene, to);
-    if (parts & BOUGH_COARSER_AIR) to->aero.rate /= 2;
+    if (parts & BOUGH_COARSER_AIR)
+        to->aero.rate = other_rate(scene, parts & BOUGH_COARSER_MESH && some_finer(scene));
     if (parts & BOUGH_COARSER_TIME) lengthen_steps(scene, to);
     to->simulation.error_estimate = BOUGH_SCENE_NO_ESTIMATE;
     to->simulation.error_bound = 0;

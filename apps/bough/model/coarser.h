@@ -6,7 +6,7 @@
 
 // What the copy is coarser in. A set of these.
 enum {
-    BOUGH_COARSER_MESH = 1, // half the segments of each rod, or twice as many where it has few
+    BOUGH_COARSER_MESH = 1, // half the segments of each rod, or more where it has few
     BOUGH_COARSER_AIR = 2,  // half the aerodynamic sampling rate
     // Twice the macro step and the longest step, ten times the tolerance (six beside a finer mesh; 1.5 and
     // 3 times beside an explicit coupling); all bodies as one system, whose steps know no error of a

@@ -144,7 +144,8 @@ static double stale(const bough_companion *c, int i) {
 }
 
 static void compare(bough_companion *c) {
-    bool held = !bough_master_sampled(c->coarser->master);
+    bool rarer = c->coarser->scene->aero.rate <= c->run->scene->aero.rate;
+    bool held = rarer && !bough_master_sampled(c->coarser->master);
     memcpy(c->before, c->value, (size_t)c->channels->count * sizeof(double));
     sample(c);
     c->compared++;

@@ -210,6 +210,22 @@ TEST(meshes_differ_as_far_as_they_can) {
     }
 }
 
+// With a finer mesh the air is not rarer: errors of one sign would cancel in the difference.
+TEST(beside_a_finer_mesh_the_air_is_no_rarer) {
+    static const struct {
+        const char *segments, *macro_step;
+        double rate; // of 50 Hz
+    } cases[] = {{"bodies[3-5].rod.segments=24", "simulation.macro_step=20 ms", 25},
+                 {"bodies[3-5].rod.segments=4", "simulation.macro_step=20 ms", 50},
+                 {"bodies[3-5].rod.segments=4", "simulation.macro_step=10 ms", 100}};
+    check_arena(arena);
+    for (size_t k = 0; k < sizeof cases / sizeof *cases; k++) {
+        const char *const sets[] = {cases[k].segments, cases[k].macro_step, NULL};
+        bough_scene *scene = scene_read(arena, "apps/turbine/runup-stages.yaml", sets);
+        check_near(bough_coarser_scene(arena, scene, BOUGH_COARSER_ALL)->aero.rate, cases[k].rate, 0, 1e-12);
+    }
+}
+
 // The whole difference counts beside a finer mesh and an explicit coupling: that of the steps is to be small.
 TEST(steps_are_little_longer_where_the_whole_difference_counts) {
     static const struct {
