@@ -230,7 +230,7 @@ complete_run() {
     has ../stdout '^speed: [0-9.]* s, [0-9.]* times real time, [0-9]* MB$'
     has ../stdout '^channel  *unit  *mean  *min  *max  *end  *error$'
     has ../stdout '^barTipY  *m  *0  *0  *0  *0 '
-    has ../stdout '^largest errors: bar[A-Za-z]* [0-9].* of its range$'
+    has ../stdout '^largest errors: bar[A-Za-z]* [0-9].* of its range'
     has ../stdout "^out: $out\$"
     has ../stdout "^next: bough report $out\$"
     empty ../stderr
