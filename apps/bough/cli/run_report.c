@@ -289,6 +289,7 @@ static void write_statistics(bough_summary *s, const bough_run_command *command)
         if (!(x->n > 0)) continue;
         bough_summary_object(s, command->recorded.channel[k].name);
         bough_summary_text(s, "unit", command->recorded.channel[k].unit);
+        bough_summary_text(s, "description", command->recorded.channel[k].meaning);
         bough_summary_number(s, "min", x->least);
         bough_summary_number(s, "max", x->most);
         bough_summary_number(s, "mean", x->mean);

@@ -240,7 +240,7 @@ void bough_channel_family_add(bough_channels *list, bough_channel_part part, con
         char name[2 * BOUGH_CHANNEL_NAME];
         fill(family->row[k].name, a, b, name, sizeof name);
         bough_channels_add(list, family->row[k].unit, "%s", name);
-        bough_channels_describe(list, family->row[k].component, family->sampled);
+        bough_channels_describe(list, family->row[k].meaning, family->row[k].component, family->sampled);
     }
 }
 

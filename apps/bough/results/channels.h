@@ -25,10 +25,11 @@ typedef struct bough_channel {
     char name[BOUGH_CHANNEL_NAME]; // OpenFAST's name where the quantity is the same
     char unit[BOUGH_CHANNEL_UNIT]; // without parentheses: "m", "kN-m", "rpm", "-"
     bough_quantity_kind kind;
-    double si;    // what one unit is in SI units
-    double turn;  // of an angle: a whole turn in its unit; else 0
-    int vector;   // the first channel of the vector that it is a component of; its own index: a scalar
-    bool sampled; // known at the samples of the air or the control only
+    const char *meaning; // one line; NULL: none
+    double si;           // what one unit is in SI units
+    double turn;         // of an angle: a whole turn in its unit; else 0
+    int vector;          // the first channel of the vector that it is a component of; its own index: a scalar
+    bool sampled;        // known at the samples of the air or the control only
 } bough_channel;
 
 // Writes the group's values at time t [s], each in its channel's unit.
@@ -62,9 +63,10 @@ void bough_channels_group(bough_channels *list, bough_channel_sample *sample, vo
 void bough_channels_add(bough_channels *list, const char *unit, const char *format, ...)
     __attribute__((format(printf, 3, 4)));
 
-// Of the channel added last: the component of a vector that it is (1, 2, 3; 0: a scalar), and whether its
-// values belong to the last sample of the air or the control; such a channel of motion is one of the air.
-void bough_channels_describe(bough_channels *list, int component, bool sampled);
+// Of the channel added last: what it means (the text must stay), the component of a vector that it is (1, 2,
+// 3; 0: a scalar), and whether its values belong to the last sample of the air or the control; such a channel
+// of motion is one of the air.
+void bough_channels_describe(bough_channels *list, const char *meaning, int component, bool sampled);
 
 // The index of the channel with this name, −1 if there is none.
 int bough_channels_find(const bough_channels *list, const char *name);

@@ -50,9 +50,10 @@ static bough_status add_part(const char *folder, const char *field,
     return status;
 }
 
-// The rows of a study that leaves no table.txt.
+// The rows of a command that leaves no table.txt.
 static bough_status add_rows(const char *folder, FILE *out, bool *any) {
-    static const char *const names[] = {"verify.csv", "blade-models.csv", "two-mass.csv", "added-mass.csv"};
+    static const char *const names[] = {"verify.csv", "blade-models.csv", "two-mass.csv", "added-mass.csv",
+                                        "tune.csv",   "campbell.csv",     "modes.csv",    "static.csv"};
     bough_status status = bough_ok();
     for (size_t i = 0; i < sizeof names / sizeof *names && !*any && bough_is_ok(&status); i++) {
         status = add_file(folder, names[i], "rows", out, any);
@@ -68,7 +69,9 @@ static bough_status add_data(const char *folder, FILE *out) {
     if (bough_is_ok(&status)) status = add_rows(folder, out, &any);
     if (bough_is_ok(&status)) status = add_file(folder, "cases.csv", "cases", out, &any);
     if (bough_is_ok(&status)) status = add_file(folder, "extremes.csv", "extremes", out, &any);
-    if (bough_is_ok(&status)) status = add_file(folder, "plot.svg", "plot", out, &any);
+    static const char *const plots[] = {"plot.svg", "campbell.svg", "tune.svg"};
+    for (size_t i = 0; i < sizeof plots / sizeof *plots && bough_is_ok(&status); i++)
+        status = add_file(folder, plots[i], "plot", out, &any);
     if (bough_is_ok(&status)) {
         status = add_part(folder, "channels", bough_report_channels, out, &any);
     }
