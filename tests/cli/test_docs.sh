@@ -79,5 +79,19 @@ for page in README.md docs/*.md docs/*/*.md; do
         failures=$((failures + 1))
     done <"$scratch/links"
 done
+# A cell of a table is read at a glance: what is longer is a sentence below the table.
+for page in README.md docs/*.md docs/*/*.md; do
+    awk -v page="$page" '
+        /^```/ {code = !code}
+        /^\|/ && !code {
+            gsub(/\\[|]/, "/")
+            n = split($0, cell, "|")
+            for (i = 2; i < n; i++) {
+                gsub(/^ +| +$/, "", cell[i])
+                if (length(cell[i]) > 200) {print "FAILED: " page ":" FNR ": a cell of " length(cell[i]) " characters"; bad = 1}
+            }
+        }
+        END {exit bad}' "$page" || failures=$((failures + 1))
+done
 [ $n -ge 100 ] || { echo "FAILED: only $n files were found"; failures=1; }
 [ $failures -eq 0 ]

@@ -128,7 +128,7 @@ static const bough_channel_row tower_section[] = {SECTION("TwHt{b}", "t", SAME_X
 static const bough_channel_row section[] = {SECTION("{a}Spn{b}", "", XYZ, OURS_OF)};
 #undef SECTION
 static const bough_channel_row shaft[] = {
-    SAME("RotTorq", "kN-m", "torque of the hub on the shaft, positive when the shaft brakes a rotor that turns forward: that of the spring between generator and hub, or on a rigid shaft that of the generator and what accelerates the bodies between the rotor's joint and the hub"),
+    SAME("RotTorq", "kN-m", "torque of the hub on the shaft, positive when it brakes: of the spring between generator and hub, on a rigid shaft of the generator and what accelerates the bodies up to the hub"),
     SAME("RotPwr", "kW", "RotTorq times RotSpeed"),
 };
 static const bough_channel_row yaw_bearing[] = {
