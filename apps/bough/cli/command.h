@@ -95,8 +95,16 @@ typedef struct bough_command {
 } bough_command;
 
 extern const bough_command bough_command_run, bough_command_check, bough_command_static, bough_command_modes,
-    bough_command_study, bough_command_tune, bough_command_wind, bough_command_report, bough_command_import,
-    bough_command_export, bough_command_help;
+    bough_command_study, bough_command_tune, bough_command_wind, bough_command_report, bough_command_diff,
+    bough_command_new, bough_command_import, bough_command_export, bough_command_help;
+
+// A file of the scenes that `bough new` writes.
+typedef struct bough_template {
+    const char *name; // "beam/scene.yaml"
+    const char *text;
+} bough_template;
+
+extern const bough_template bough_templates[]; // ended by a row without a name; made by templates.cmake
 
 // All commands, ended by NULL (main.c).
 extern const bough_command *const bough_commands[];
@@ -122,6 +130,10 @@ void bough_help_command(const bough_command *command, FILE *stream);
 bough_status bough_unknown_word(const char *what, const char *word, const char *const *more);
 
 // -- from the command line to a built scene (open.c) ----------------------------------------------
+
+// Where the operand is a directory: the one scene in it, the one called scene.yaml or the one that is called
+// like the directory, in its place. BOUGH_INVALID lists the candidates otherwise.
+bough_status bough_find_scene(bough_arena *arena, bough_options *options);
 
 // Reads the scene with the options' replacements and threads. Errors in it are written to stderr, one
 // a line, and the status then has no message.

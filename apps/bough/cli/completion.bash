@@ -9,6 +9,8 @@ _bough() {
             /^topics/,/^$/s/^  \([^ ]*\).*/\1/p') files=
     elif [ "$command" = import ] && [ "$COMP_CWORD" -eq 2 ]; then
         words=$("$1" help import | grep -o "'[a-z]*" | tr -d "'") files=
+    elif [ "$command" = new ] && [ "$COMP_CWORD" -eq 2 ]; then
+        words='beam mechanism turbine' files=
     elif [ "${word#-}" != "$word" ]; then
         words=$("$1" help "$command" 2>/dev/null | sed -n 's/^  \(-h, \)\{0,1\}\(--[a-z-]*\).*/\2/p') files=
     fi

@@ -13,9 +13,13 @@
 enum { MOST_WORDS = 32 };
 
 const bough_command *const bough_commands[] = {
-    &bough_command_run,    &bough_command_check,  &bough_command_static, &bough_command_modes,
-    &bough_command_study,  &bough_command_tune,   &bough_command_wind,   &bough_command_report,
-    &bough_command_import, &bough_command_export, &bough_command_help,   NULL,
+    &bough_command_run,    &bough_command_check,
+    &bough_command_static, &bough_command_modes,
+    &bough_command_study,  &bough_command_tune,
+    &bough_command_wind,   &bough_command_report,
+    &bough_command_diff,   &bough_command_new,
+    &bough_command_import, &bough_command_export,
+    &bough_command_help,   NULL,
 };
 
 const bough_command *bough_command_find(const char *name) {
@@ -53,6 +57,9 @@ static bough_status call(bough_arena *arena, void *self) {
     if (!command) return bough_unknown_word("command", argv[0], NULL);
     bough_options *options;
     bough_status status = bough_options_read(arena, argc, argv, command, &options);
+    if (!bough_is_ok(&status)) return status;
+    bool scene = command->operand == BOUGH_OPERAND_REQUIRED && strcmp(command->operand_name, "SCENE") == 0;
+    if (scene && !options->help) status = bough_find_scene(arena, options);
     if (!bough_is_ok(&status)) return status;
     if (!options->help) return command->run(arena, options);
     bough_help_command(command, stdout);

@@ -2,7 +2,70 @@
 
 #include "apps/bough/config/schema.h"
 
+#include <dirent.h>
+#include <stdlib.h>
 #include <string.h>
+
+// -- the scene of a directory ---------------------------------------------------------------------
+
+enum { SHOWN = 8, LINE = 4096 };
+
+// Whether a line begins with `bodies:` or `base:`, as a scene's does and a table's or a study's does not.
+static bool is_scene(const char *path) {
+    char line[LINE];
+    bool found = false;
+    FILE *file = fopen(path, "r");
+    while (file && !found && fgets(line, sizeof line, file))
+        found = strncmp(line, "bodies:", 7) == 0 || strncmp(line, "base:", 5) == 0;
+    if (file) fclose(file);
+    return found;
+}
+
+static bool ends_with(const char *name, const char *ending) {
+    size_t length = strlen(name), end = strlen(ending);
+    return length > end && strcmp(name + length - end, ending) == 0;
+}
+
+// Whether a file has the name that a directory's own scene has.
+static bool is_first(const char *file, const char *folder, size_t length) {
+    const char *name = folder + length;
+    while (name > folder && name[-1] != '/') name--;
+    size_t own = (size_t)(folder + length - name);
+    bool like = strncmp(file, name, own) == 0 && (strcmp(file + own, ".yaml") == 0);
+    return like || strcmp(file, "scene.yaml") == 0;
+}
+
+bough_status bough_find_scene(bough_arena *arena, bough_options *options) {
+    struct dirent **entry;
+    const char *folder = options->operand, *only = NULL, *first = NULL;
+    size_t length = strlen(folder);
+    while (length > 1 && folder[length - 1] == '/') length--;
+    int n = scandir(folder, &entry, NULL, alphasort), found = 0;
+    char list[400] = "";
+    for (int k = 0; k < n; k++) {
+        const char *name = entry[k]->d_name;
+        const char *path = bough_arena_print(arena, "%.*s/%s", (int)length, folder, name);
+        bool named = ends_with(name, ".yaml") || ends_with(name, ".yml");
+        if (named && is_scene(path)) {
+            only = path;
+            if (is_first(name, folder, length)) first = path;
+            size_t used = strlen(list);
+            if (found++ < SHOWN)
+                snprintf(list + used, sizeof list - used, "%s%.40s", used > 0 ? ", " : "", name);
+        }
+        free(entry[k]);
+    }
+    if (n < 0) return bough_ok(); // no directory
+    free(entry);
+    if (found == 0) return bough_fail(BOUGH_INVALID, "'%.200s' holds no scene", folder);
+    if (found > 1 && !first)
+        return bough_fail(BOUGH_INVALID, "'%.200s' holds %d scenes; name one of them: %s%s", folder, found,
+                          list, found > SHOWN ? ", ..." : "");
+    options->operand = first ? first : only;
+    return bough_ok();
+}
+
+// -- a scene --------------------------------------------------------------------------------------
 
 bough_status bough_open_scene(bough_arena *arena, const bough_options *options, bough_scene **scene) {
     bough_errors errors = {.arena = arena};
@@ -51,5 +114,11 @@ const char *bough_out_folder(bough_arena *arena, const bough_options *options) {
     const char *name = slash ? slash + 1 : options->operand;
     const char *dot = strrchr(name, '.');
     size_t length = dot && dot > name ? (size_t)(dot - name) : strlen(name);
+    if (slash && slash > options->operand && strcmp(name, "scene.yaml") == 0) { // its directory has the name
+        const char *end = slash;
+        for (name = end; name > options->operand && name[-1] != '/'; name--) {
+        }
+        length = (size_t)(end - name);
+    }
     return bough_arena_print(arena, "out/%.*s", (int)length, name);
 }

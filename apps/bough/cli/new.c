@@ -1,0 +1,67 @@
+// bough new: a commented scene that runs, with its tables, from those that the program carries.
+#include "apps/bough/cli/command.h"
+#include "apps/bough/config/schema.h"
+
+#include <dirent.h>
+#include <errno.h>
+#include <string.h>
+#include <sys/stat.h>
+
+static const char *const kinds[] = {"beam", "mechanism", "turbine", NULL};
+
+static bool belongs(const bough_template *t, const char *kind) {
+    size_t length = strlen(kind);
+    return strncmp(t->name, kind, length) == 0 && t->name[length] == '/';
+}
+
+// The directory is made, or is there and empty.
+static bough_status open_directory(const char *path) {
+    if (mkdir(path, 0777) == 0) return bough_ok();
+    if (errno != EEXIST) return bough_fail(BOUGH_IO, "cannot make '%.200s': %s", path, strerror(errno));
+    DIR *folder = opendir(path);
+    if (!folder) return bough_fail(BOUGH_INVALID, "'%.200s' is no directory: %s", path, strerror(errno));
+    bool empty = true;
+    for (struct dirent *entry; (entry = readdir(folder)) != NULL;)
+        empty = empty && (strcmp(entry->d_name, ".") == 0 || strcmp(entry->d_name, "..") == 0);
+    closedir(folder);
+    return empty ? bough_ok()
+                 : bough_fail(BOUGH_INVALID, "'%.200s' is not empty; name a new directory", path);
+}
+
+static bough_status write_file(bough_arena *arena, const char *folder, const bough_template *t) {
+    const char *path = bough_arena_print(arena, "%s%s", folder, strchr(t->name, '/'));
+    FILE *file = fopen(path, "w");
+    bool written = file && fputs(t->text, file) >= 0;
+    if (file && fclose(file) != 0) written = false;
+    return written ? bough_ok() : bough_fail(BOUGH_IO, "cannot write '%.200s': %s", path, strerror(errno));
+}
+
+static bough_status new (bough_arena *arena, const void *given) {
+    const bough_options *options = given;
+    bool known = false;
+    for (const char *const *kind = kinds; *kind; kind++)
+        known = known || strcmp(*kind, options->operand) == 0;
+    if (!known)
+        return bough_fail(BOUGH_INVALID, "new: unknown kind '%.80s'%s; known: beam, mechanism, turbine",
+                          options->operand, bough_suggest(options->operand, kinds, 3).text);
+    bough_status status = open_directory(options->second);
+    for (const bough_template *t = bough_templates; t->name && bough_is_ok(&status); t++) {
+        if (belongs(t, options->operand)) status = write_file(arena, options->second, t);
+    }
+    if (bough_is_ok(&status))
+        printf("scene: %s/scene.yaml\nnext: bough run %s\n", options->second, options->second);
+    return status;
+}
+
+static const bough_option rows[] = {{0}};
+
+const bough_command bough_command_new = {
+    .name = "new",
+    .summary =
+        "writes a commented scene that runs, of a beam, a mechanism or a turbine, into a new directory",
+    .operand = BOUGH_OPERAND_TWO,
+    .operand_name = "KIND DIR",
+    .option = rows,
+    .size = sizeof(bough_options),
+    .run = new,
+};
