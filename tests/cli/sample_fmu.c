@@ -6,11 +6,11 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { VELOCITY = 10, FORCE = 20 };
-static const double stiffness = 8, damping = 0.4;
+enum { VELOCITY = 10, FORCE = 20, STIFFNESS = 30, DAMPING = 31 };
 
 typedef struct sample {
-    double x, v, time;
+    double x, v, time, stiffness, damping;
+    bool entered; // the initialization
     const char *fault;
     void *environment;
     fmi3_log *log;
@@ -32,7 +32,7 @@ fmi3_instance fmi3InstantiateCoSimulation(fmi3_string name, fmi3_string token, f
     if (resources[0] != '/' || resources[strlen(resources) - 1] != '/') return NULL;
     sample *s = calloc(1, sizeof *s);
     if (!s) return NULL;
-    *s = (sample){.fault = "", .environment = environment, .log = log};
+    *s = (sample){.stiffness = 8, .damping = 0.4, .fault = "", .environment = environment, .log = log};
     for (size_t k = 0; k < sizeof faults / sizeof *faults; k++) {
         if (strcmp(token, faults[k]) == 0) s->fault = faults[k];
     }
@@ -43,7 +43,8 @@ void fmi3FreeInstance(fmi3_instance instance) { free(instance); }
 
 fmi3_status fmi3EnterInitializationMode(fmi3_instance instance, bool has_tolerance, double tolerance,
                                         double start, bool has_stop, double stop) {
-    (void)instance, (void)has_tolerance, (void)tolerance;
+    (void)has_tolerance, (void)tolerance;
+    ((sample *)instance)->entered = true;
     return start == 0 && has_stop && stop > 0 ? FMI3_OK : FMI3_ERROR;
 }
 
@@ -55,7 +56,7 @@ fmi3_status fmi3GetFloat64(fmi3_instance instance, const fmi3_reference *referen
                            size_t n_value) {
     const sample *s = instance;
     if (n != 1 || n_value != 1 || reference[0] != FORCE) return FMI3_ERROR;
-    value[0] = -stiffness * s->x - damping * s->v;
+    value[0] = -s->stiffness * s->x - s->damping * s->v;
     if (strcmp(s->fault, "infinite") == 0 && s->time > 0.5) value[0] = 1 / (s->v - s->v);
     return FMI3_OK;
 }
@@ -63,9 +64,14 @@ fmi3_status fmi3GetFloat64(fmi3_instance instance, const fmi3_reference *referen
 fmi3_status fmi3SetFloat64(fmi3_instance instance, const fmi3_reference *reference, size_t n,
                            const double *value, size_t n_value) {
     sample *s = instance;
-    if (n != 1 || n_value != 1 || reference[0] != VELOCITY) return FMI3_ERROR;
-    s->v = value[0];
-    return FMI3_OK;
+    for (size_t k = 0; k < n && n == n_value; k++) {
+        bool parameter = reference[k] == STIFFNESS || reference[k] == DAMPING;
+        if (parameter == s->entered) return FMI3_ERROR; // parameters are set before, inputs after that
+        if (reference[k] == VELOCITY) s->v = value[k];
+        if (reference[k] == STIFFNESS) s->stiffness = value[k];
+        if (reference[k] == DAMPING) s->damping = value[k];
+    }
+    return n == n_value ? FMI3_OK : FMI3_ERROR;
 }
 
 #ifndef LACKS_STEP

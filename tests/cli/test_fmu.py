@@ -69,8 +69,8 @@ class Instance:
             b"one", token, resources, False, True, False, False, None, SIZE(0), None, self.log, None)
         self.pointer = self.pointer and ctypes.c_void_p(self.pointer)
 
-    def start(self, stop=None):
-        return (library.fmi3EnterInitializationMode(self.pointer, False, REAL(0), REAL(0),
+    def start(self, stop=None, start=0):
+        return (library.fmi3EnterInitializationMode(self.pointer, False, REAL(0), REAL(start),
                                                     stop is not None, REAL(stop or 0)),
                 library.fmi3ExitInitializationMode(self.pointer))
 
@@ -190,6 +190,9 @@ class Fmu(unittest.TestCase):
             self.assertEqual(v.get("variability"), "continuous")
             self.assertEqual(v.get("start") is not None, v.get("causality") == "input")
             self.assertIn(v.get("unit"), units)
+            self.assertNotIn("{", v.get("description", "time"))
+        described = {v.get("name"): v.get("description") for v in every}
+        self.assertEqual(described["wind"], "speed of the wind")
         self.assertEqual(list(variables("independent")), ["time"])
         outputs = set(variables("output").values())
         structure = root.find("ModelStructure")
@@ -230,6 +233,21 @@ class Fmu(unittest.TestCase):
                 self.assertEqual(fmu.get([0]), [own.time])
         self.assertEqual(library.fmi3Terminate(fmu.pointer), OK)
         fmu.free()
+
+    def test_a_run_that_starts_later_is_the_same(self):
+        early, late = Instance(), Instance()
+        self.assertEqual(early.start(), (OK, OK))
+        self.assertEqual(late.start(stop=1050, start=1000), (OK, OK), late.messages)
+        every = sorted(variables("output").values())
+        for k in range(5):
+            self.assertEqual(early.step(0.2 * k, 0.2), (OK, early.get([0])[0]))
+            self.assertEqual(late.step(1000 + 0.2 * k, 0.2)[0], OK, late.messages)
+            self.assertAlmostEqual(late.get([0])[0], 1000.2 + 0.2 * k)
+            self.assertEqual(late.get(every), early.get(every))
+        self.assertEqual(late.step(0, 0.2)[0], ERROR)
+        early.free()
+        late.free()
+        self.assertEqual(Instance().start(stop=3, start=5)[0], ERROR)
 
     def test_a_state_is_gone_back_to(self):
         fmu, place = Instance(), ctypes.c_void_p()

@@ -7,6 +7,7 @@ import subprocess
 import sys
 import tempfile
 import unittest
+import zipfile
 
 import bough
 
@@ -22,6 +23,8 @@ DESCRIPTION = """<?xml version="1.0" encoding="UTF-8"?>
   </UnitDefinitions>
   <ModelVariables>
     <Float64 name="v" valueReference="10" causality="input" variability="continuous" start="0"/>
+    <Float64 name="k" valueReference="30" causality="parameter" variability="fixed" start="8"/>
+    <Float64 name="c" valueReference="31" causality="parameter" variability="fixed" start="0.4"/>
     <Float64 name="f" valueReference="20" causality="output" variability="continuous" unit="N"/>
     <Float64 name="f_kN" valueReference="21" causality="output" variability="continuous" unit="kN"/>
     <Float64 name="all" valueReference="22" causality="output" variability="continuous">
@@ -115,6 +118,54 @@ class Member(unittest.TestCase):
         finer = self.error(named, "bodies[damper].fmu.steps=20")
         self.assertLess(finer, 0.6 * self.error(named))
 
+    def archive(self, compression=zipfile.ZIP_DEFLATED, **more):
+        """The sample as sample.fmu, with further files of these names."""
+        with zipfile.ZipFile(self.folder + "/sample.fmu", "w", compression) as archive:
+            for above, _, names in os.walk(self.folder + "/sample"):
+                for name in names:
+                    path = os.path.join(above, name)
+                    archive.write(path, os.path.relpath(path, self.folder + "/sample"))
+            for name, text in more.items():
+                archive.writestr(name, text)
+
+    def test_an_archive_runs_as_its_folder_does(self):
+        named, temporary = "bodies[damper].fmu.folder=sample.fmu", self.folder + "/temporary"
+        os.mkdir(temporary)
+        os.environ["TMPDIR"] = temporary
+        self.addCleanup(os.environ.pop, "TMPDIR")
+        with bough.Session(self.scene) as run:
+            expected = bytes(run.advance()["massPos"])
+        for compression in zipfile.ZIP_STORED, zipfile.ZIP_DEFLATED:
+            self.archive(compression)
+            with bough.Session(self.scene, named) as run:
+                self.assertEqual(len(os.listdir(temporary)), 1)
+                self.assertEqual(bytes(run.advance()["massPos"]), expected)
+            self.assertEqual(os.listdir(temporary), [])
+        self.archive(**{"../outside": "no"})
+        self.refused("the name of a file leads out of the archive", named)
+        self.archive()
+        with open(self.folder + "/sample.fmu", "rb") as file:
+            whole = file.read()
+        for k in range(0, len(whole), len(whole) // 40):  # one wrong byte: an error or, in a date, nothing
+            with open(self.folder + "/sample.fmu", "wb") as file:
+                file.write(whole[:k] + bytes([whole[k] ^ 0xff]) + whole[k + 1:])
+            said = self.program("run", "scene.yaml", "--set", named)
+            self.assertIn(said.returncode, (0, 2), said.stderr)
+        for size in 0, 10, len(whole) // 2, len(whole) - 1:
+            with open(self.folder + "/sample.fmu", "wb") as file:
+                file.write(whole[:size])
+            self.refused("no ZIP archive", named)
+        self.assertEqual(os.listdir(temporary), [])
+
+    def test_parameters_are_those_of_the_scene(self):
+        global STIFFNESS, DAMPING
+        before = STIFFNESS, DAMPING
+        STIFFNESS, DAMPING = 2, 0.1
+        try:
+            self.assertLess(self.error("bodies[damper].fmu.parameters={k: 2, c: 0.1}"), 2e-3)
+        finally:
+            STIFFNESS, DAMPING = before
+
     def test_inputs_at_the_end_of_the_step_are_early_by_half_a_step(self):
         reached = "bodies[damper].fmu.inputs=reached"
         errors = [self.error(reached, "simulation.macro_step=%g ms" % h, force_within=0.1) for h in (10, 5, 2.5)]
@@ -156,7 +207,10 @@ class Member(unittest.TestCase):
         self.refused("'all' is an array", wrench % "all")
         self.refused("expected 6 names", "bodies[damper].fmu.wrench=[f]")
         self.refused("cannot read", "bodies[damper].fmu.folder=another")
-        self.refused("unzip sample.fmu", "bodies[damper].fmu.folder=sample.fmu")
+        self.refused("parameters: the FMU has no variable 'kk' of type Float64 (did you mean 'k'?)",
+                     "bodies[damper].fmu.parameters={kk: 1}")
+        self.refused("the variable 'v' is no parameter", "bodies[damper].fmu.parameters={v: 1}")
+        self.refused("expected a mapping of names and numbers", "bodies[damper].fmu.parameters=8")
         self.refused("has no modes", command="modes")
         self.refused("has no equilibrium", command="static")
         told = self.program("export", "fmu", "scene.yaml")

@@ -20,6 +20,7 @@ typedef enum mode { INSTANTIATED, INITIALIZATION, STEP, TERMINATED } mode;
 
 typedef struct instance {
     bough_session *session;
+    double start; // time of the importer at the session's time 0 [s]
     mode mode;
     char *scene;
     char *set[MOST_SETTINGS + 1]; // with room for another duration
@@ -31,7 +32,6 @@ typedef struct instance {
 
 typedef struct state {
     size_t size;
-    double time;
     char *copy;
 } state;
 
@@ -68,6 +68,9 @@ fmi3_status fmi3SetDebugLogging(fmi3_instance self, bool on, size_t n, const fmi
     ((instance *)self)->logging = on;
     return FMI3_OK;
 }
+
+// The importer's time [s].
+static double now(const instance *x) { return x->start + bough_session_time(x->session); }
 
 // -- life -----------------------------------------------------------------------------------------
 
@@ -161,12 +164,13 @@ fmi3_status fmi3EnterInitializationMode(fmi3_instance self, bool has_tolerance, 
     (void)has_tolerance;
     (void)tolerance; // the scene's solvers have theirs
     if (x->mode != INSTANTIATED) return misplaced(x, "fmi3EnterInitializationMode");
-    if (start != 0) return tell(x, FMI3_ERROR, "a run starts at 0 s, not at %g s", start);
-    if (has_stop && !(stop > 0 && isfinite(stop)))
-        return tell(x, FMI3_ERROR, "a run cannot stop at %g s", stop);
+    if (!isfinite(start)) return tell(x, FMI3_ERROR, "a run cannot start at %g s", start);
+    if (has_stop && !(stop > start && isfinite(stop)))
+        return tell(x, FMI3_ERROR, "a run from %g s cannot stop at %g s", start, stop);
     x->mode = INITIALIZATION;
-    bool longer = has_stop && stop > bough_session_duration(x->session) * (1 + 1e-12);
-    return longer ? prolong(x, stop) : FMI3_OK;
+    x->start = start;
+    bool longer = has_stop && stop - start > bough_session_duration(x->session) * (1 + 1e-12);
+    return longer ? prolong(x, stop - start) : FMI3_OK;
 }
 
 fmi3_status fmi3ExitInitializationMode(fmi3_instance self) {
@@ -203,7 +207,7 @@ fmi3_status fmi3GetFloat64(fmi3_instance self, const fmi3_reference *reference, 
         if (at > inputs + count || (at > inputs && !channel)) {
             return tell(x, FMI3_ERROR, "fmi3GetFloat64: no value of reference %zu", at);
         }
-        value[k] = at == 0        ? bough_session_time(x->session)
+        value[k] = at == 0        ? now(x)
                    : at <= inputs ? bough_session_input_value(x->session, (int)at - 1)
                                   : channel[at - inputs - 1];
     }
@@ -276,7 +280,7 @@ fmi3_status fmi3DoStep(fmi3_instance self, double time, double step, bool no_ret
     instance *x = self;
     (void)no_return;
     *event = *terminate = *early = false;
-    *reached = bough_session_time(x->session);
+    *reached = now(x);
     if (x->mode != STEP) return misplaced(x, "fmi3DoStep");
     double end = time + step;
     if (!near(time, *reached) || !(step > 0)) {
@@ -285,7 +289,7 @@ fmi3_status fmi3DoStep(fmi3_instance self, double time, double step, bool no_ret
     }
     while (*reached < end && !near(*reached, end)) {
         int code = bough_session_step(x->session);
-        *reached = bough_session_time(x->session);
+        *reached = now(x);
         if (code == BOUGH_SESSION_DONE) {
             *terminate = true;
             return tell(x, FMI3_ERROR, "fmi3DoStep: the run ends at %g s", *reached);

@@ -1,6 +1,7 @@
 #include "apps/bough/model/build_internal.h"
 
 #include "apps/bough/model/fmi3.h"
+#include "apps/bough/scene/fmu_archive.h"
 
 #include <dlfcn.h>
 #include <limits.h>
@@ -21,6 +22,7 @@ enum { MESSAGE = 200, MOST_STATES = 8 };
 typedef struct fmu_member {
     const bough_scene_body *body;
     const bough_member *member;
+    const char *folder; // where it is unpacked
     void *library;
     fmi3_instance instance;
     bool started;
@@ -95,8 +97,13 @@ static bough_status open_library(fmu_member *x, bough_arena *arena) {
     const bough_fmu_description *d = &fmu->description;
     char path[PATH_MAX];
     const char *missing = NULL;
-    snprintf(path, sizeof path, "%s%s/binaries/" PLATFORM "/%s.so", strchr(fmu->folder, '/') ? "" : "./",
-             fmu->folder, d->identifier);
+    x->folder = fmu->folder;
+    if (bough_fmu_is_archive(fmu->folder)) {
+        bough_status status = bough_fmu_archive_unpack(arena, fmu->folder, &x->folder);
+        if (!bough_is_ok(&status)) return status;
+    }
+    snprintf(path, sizeof path, "%s%s/binaries/" PLATFORM "/%s.so", strchr(x->folder, '/') ? "" : "./",
+             x->folder, d->identifier);
     x->library = dlopen(path, RTLD_NOW | RTLD_LOCAL);
     if (!x->library) return misfit(x->body, "cannot be loaded:", dlerror());
     bough_arena_on_destroy(arena, let_go, x);
@@ -272,14 +279,17 @@ static const bough_system_ops operations = {BOUGH_SYSTEM_REQUIRED};
 static bough_status instantiate(fmu_member *x) {
     const bough_scene_fmu *fmu = &x->body->fmu;
     char here[PATH_MAX] = "", resources[2 * PATH_MAX + 16];
-    bool absolute = fmu->folder[0] == '/';
+    bool absolute = x->folder[0] == '/';
     if (!absolute && !getcwd(here, sizeof here)) {
         return bough_fail(BOUGH_IO, "the name of the current folder is not known");
     }
-    snprintf(resources, sizeof resources, "%s%s%s/resources/", here, absolute ? "" : "/", fmu->folder);
+    snprintf(resources, sizeof resources, "%s%s%s/resources/", here, absolute ? "" : "/", x->folder);
     x->instance = x->instantiate(x->body->name, fmu->description.token, resources, false, true, false, false,
                                  NULL, 0, x, hear, NULL);
-    return x->instance ? bough_ok() : refused(x, "fmi3InstantiateCoSimulation", 0, FMI3_ERROR);
+    if (!x->instance) return refused(x, "fmi3InstantiateCoSimulation", 0, FMI3_ERROR);
+    size_t n = (size_t)fmu->parameters.n;
+    fmi3_status answer = n > 0 ? x->set(x->instance, fmu->reference, n, fmu->parameters.value, n) : FMI3_OK;
+    return is_good(answer) ? bough_ok() : refused(x, "fmi3SetFloat64", 0, answer);
 }
 
 static bough_status initialise(fmu_member *x, const double *motion, double duration) {

@@ -3,21 +3,10 @@
 #include "core/base/input_file.h"
 
 #include <string.h>
+#include <zlib.h>
 
 enum { LOCAL = 0x04034b50, CENTRAL = 0x02014b50, END = 0x06054b50 };
 enum { DAY = 1 << 5 | 1, VERSION = 20, UTF8 = 1 << 11 }; // 1 January 1980: the same scene, the same file
-
-// The cyclic redundancy check of ISO 3309, bit by bit from a table of bytes.
-static uint32_t checksum(const unsigned char *bytes, size_t size) {
-    uint32_t table[256], sum = 0xffffffffu;
-    for (uint32_t i = 0; i < 256; i++) {
-        uint32_t x = i;
-        for (int k = 0; k < 8; k++) x = x & 1 ? 0xedb88320u ^ x >> 1 : x >> 1;
-        table[i] = x;
-    }
-    for (size_t i = 0; i < size; i++) sum = table[(sum ^ bytes[i]) & 0xff] ^ sum >> 8;
-    return ~sum;
-}
 
 static void put(FILE *file, uint32_t value, int bytes) {
     for (int i = 0; i < bytes; i++) fputc((int)(value >> 8 * i & 0xff), file);
@@ -53,7 +42,7 @@ bough_status bough_archive_add(bough_archive *a, const char *name, const void *b
         return bough_fail(BOUGH_INVALID, "the archive has no room for '%.200s'", name);
     }
     bough_archive_entry *entry = next_entry(a);
-    *entry = (bough_archive_entry){name, checksum(bytes, size), (uint32_t)size, (uint32_t)at};
+    *entry = (bough_archive_entry){name, (uint32_t)crc32_z(0, bytes, size), (uint32_t)size, (uint32_t)at};
     put(a->file, LOCAL, 4);
     put_entry(a->file, entry);
     fputs(name, a->file);

@@ -1,11 +1,11 @@
-// The description of an FMU, modelDescription.xml, as far as an importer of real inputs and outputs needs
-// it: FMI 3.0 (https://fmi-standard.org), co-simulation.
+// The description of an FMU, modelDescription.xml, as far as an importer of real inputs, outputs and
+// parameters needs it: FMI 3.0 (https://fmi-standard.org), co-simulation.
+#include "apps/bough/scene/fmu_archive.h"
 #include "apps/bough/scene/scene_internal.h"
 
 #include "core/base/input_file.h"
 
 #include <expat.h>
-#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -46,17 +46,23 @@ static void *grown(bough_arena *arena, void *items, int n, int *room, size_t siz
     return more;
 }
 
+static bough_fmu_causality causality(const char **attributes) {
+    static const char *const names[] = {
+        [BOUGH_FMU_INPUT] = "input", [BOUGH_FMU_OUTPUT] = "output", [BOUGH_FMU_PARAMETER] = "parameter"};
+    const char *name = attribute(attributes, "causality");
+    int k = 0;
+    while (k < BOUGH_FMU_LOCAL && !(name && strcmp(name, names[k]) == 0)) k++;
+    return (bough_fmu_causality)k;
+}
+
 static void add_variable(reader *r, const char **attributes) {
     bough_fmu_description *d = r->d;
-    const char *causality = attribute(attributes, "causality");
     const char *reference = attribute(attributes, "valueReference");
     d->variable = grown(r->arena, d->variable, d->n_variable, &r->room, sizeof *d->variable);
     d->variable[d->n_variable++] =
         (bough_fmu_variable){.name = kept(r, attributes, "name"),
                              .reference = reference ? (uint32_t)strtoul(reference, NULL, 10) : 0,
-                             .causality = causality && strcmp(causality, "input") == 0    ? BOUGH_FMU_INPUT
-                                          : causality && strcmp(causality, "output") == 0 ? BOUGH_FMU_OUTPUT
-                                                                                          : BOUGH_FMU_LOCAL,
+                             .causality = causality(attributes),
                              .unit = kept(r, attributes, "unit")};
 }
 
@@ -102,19 +108,24 @@ static void end(void *self, const char *element) {
 
 // -- the file -------------------------------------------------------------------------------------
 
-static bough_status parse(XML_Parser parser, FILE *file, const char *path) {
-    char block[4096];
-    for (size_t n = sizeof block; n == sizeof block;) {
-        n = fread(block, 1, sizeof block, file);
-        if (XML_Parse(parser, block, (int)n, n < sizeof block) != XML_STATUS_ERROR) continue;
-        return bough_fail(BOUGH_INVALID, "%.200s:%lu: %s", path,
-                          (unsigned long)XML_GetCurrentLineNumber(parser),
-                          XML_ErrorString(XML_GetErrorCode(parser)));
+// The text of the description in an archive or an unpacked folder.
+static bough_status read_text(bough_arena *arena, const char *fmu, const char *path, char **text,
+                              size_t *size) {
+    char why[BOUGH_INPUT_REASON];
+    if (bough_fmu_is_archive(fmu)) {
+        bough_status status = bough_fmu_archive_read(arena, fmu, "modelDescription.xml", text, size);
+        bool small = !bough_is_ok(&status) || *size <= BOUGH_INPUT_TEXT;
+        return small ? status : bough_fail(BOUGH_INVALID, "%.200s is too large", path);
     }
-    return bough_ok();
+    *text = bough_input_read(arena, path, BOUGH_INPUT_TEXT, size, why);
+    return *text ? bough_ok() : bough_fail(BOUGH_INVALID, "cannot read %.200s: %s", path, why);
 }
 
-static void close_file(void *file) { fclose(file); }
+static bough_status parse(XML_Parser parser, const char *text, size_t size, const char *path) {
+    if (XML_Parse(parser, text, (int)size, true) != XML_STATUS_ERROR) return bough_ok();
+    return bough_fail(BOUGH_INVALID, "%.200s:%lu: %s", path, (unsigned long)XML_GetCurrentLineNumber(parser),
+                      XML_ErrorString(XML_GetErrorCode(parser)));
+}
 
 static void free_parser(void *parser) { XML_ParserFree(parser); }
 
@@ -133,22 +144,22 @@ static bough_status check(const reader *r, const char *path) {
     return bough_ok();
 }
 
-bough_status bough_fmu_describe(bough_arena *arena, const char *folder, bough_fmu_description *description) {
-    char path[4096], why[BOUGH_INPUT_REASON];
+bough_status bough_fmu_describe(bough_arena *arena, const char *fmu, bough_fmu_description *description) {
     reader r = {.arena = arena, .d = description};
+    char *text;
+    size_t size;
     *description = (bough_fmu_description){0};
-    int length = snprintf(path, sizeof path, "%s/modelDescription.xml", folder);
-    if (length >= (int)sizeof path) return bough_fail(BOUGH_INVALID, "the folder's name is too long");
-    FILE *file = bough_input_open(path, BOUGH_INPUT_TEXT, why);
-    if (!file) return bough_fail(BOUGH_INVALID, "cannot read %.200s: %s", path, why);
     bough_arena *own = bough_arena_child(arena);
-    bough_arena_on_destroy(own, close_file, file);
-    XML_Parser parser = XML_ParserCreate(NULL);
-    if (!parser) bough_arena_leave(arena);
-    bough_arena_on_destroy(own, free_parser, parser);
-    XML_SetUserData(parser, &r);
-    XML_SetElementHandler(parser, start, end);
-    bough_status status = parse(parser, file, path);
+    const char *path = bough_arena_print(arena, "%s/modelDescription.xml", fmu);
+    bough_status status = read_text(own, fmu, path, &text, &size);
+    if (bough_is_ok(&status)) {
+        XML_Parser parser = XML_ParserCreate(NULL);
+        if (!parser) bough_arena_leave(arena);
+        bough_arena_on_destroy(own, free_parser, parser);
+        XML_SetUserData(parser, &r);
+        XML_SetElementHandler(parser, start, end);
+        status = parse(parser, text, size, path);
+    }
     bough_arena_destroy(own);
     return bough_is_ok(&status) ? check(&r, path) : status;
 }

@@ -177,6 +177,7 @@ enum { BOUGH_SCENE_MOTION = 9, BOUGH_SCENE_WRENCH = 6 };
 typedef enum bough_fmu_causality {
     BOUGH_FMU_INPUT,
     BOUGH_FMU_OUTPUT,
+    BOUGH_FMU_PARAMETER,
     BOUGH_FMU_LOCAL, // any other
 } bough_fmu_causality;
 
@@ -200,18 +201,28 @@ typedef struct bough_fmu_description {
     const char **scaled; // (n_scaled) names of units that are not SI: with a factor or an offset
 } bough_fmu_description;
 
-// A model of another program behind a body's frame: a co-simulation FMU of FMI 3.0, unpacked. Its inputs are
+// Numbers by names that are not the scene's.
+typedef struct bough_scene_values {
+    int n;
+    const char **name;              // (n)
+    double *value;                  // (n) in the unit that the owner of the name gives it
+    const struct bough_node **node; // (n)
+} bough_scene_values;
+
+// A model of another program behind a body's frame: a co-simulation FMU of FMI 3.0. Its inputs are
 // velocity, angular velocity and gravity of the frame in body axes, its outputs force and moment on the
 // frame's carrier about the frame's origin in body axes; SI.
 typedef struct bough_scene_fmu {
     const bough_node *node;
-    const char *folder; // its path once it is checked
+    const char *folder; // path of its archive, or of the folder where it is unpacked, once it is checked
+    bough_scene_values parameters;
     int n_motion, n_wrench;
     const char **motion, **wrench; // names of its variables, "none" where it has none; 0: the usual ones
     int hold;                      // bough_scene_fmu_hold
     int steps;                     // communication steps per macro step
     bough_fmu_description description;
     const bough_fmu_variable *input[BOUGH_SCENE_MOTION], *output[BOUGH_SCENE_WRENCH]; // NULL: none
+    uint32_t *reference; // (parameters.n) of the parameters
 } bough_scene_fmu;
 
 // What an FMU does with its inputs over a communication step.

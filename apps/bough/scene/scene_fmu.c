@@ -19,20 +19,21 @@ static void unknown(bough_schema_reader *r, const bough_fmu_description *d, cons
 }
 
 // The variable of that name; NULL for "none" and after an error.
-static const bough_fmu_variable *find(bough_schema_reader *r, const bough_scene_fmu *fmu, const char *key,
-                                      const char *name, bough_fmu_causality causality) {
+static const bough_fmu_variable *find(bough_schema_reader *r, const bough_scene_fmu *fmu,
+                                      const bough_node *node, const char *key, const char *name,
+                                      bough_fmu_causality causality) {
+    static const char *const kinds[] = {
+        [BOUGH_FMU_INPUT] = "input", [BOUGH_FMU_OUTPUT] = "output", [BOUGH_FMU_PARAMETER] = "parameter"};
     const bough_fmu_description *d = &fmu->description;
-    const bough_node *node = bough_link_value(fmu->node, key);
     if (!name || strcmp(name, "none") == 0) return NULL;
     const bough_fmu_variable *v = bough_fmu_find(d, name);
-    const char *kind = causality == BOUGH_FMU_INPUT ? "input" : "output";
     if (!v) {
         unknown(r, d, node, key, name);
     } else if (v->causality != causality) {
-        bough_schema_error(r, node, key, "the variable '%.60s' is no %s", name, kind);
+        bough_schema_error(r, node, key, "the variable '%.60s' is no %s", name, kinds[causality]);
     } else if (v->array) {
         bough_schema_error(r, node, key, "the variable '%.60s' is an array", name);
-    } else if (bough_fmu_scaled(d, v)) {
+    } else if (causality != BOUGH_FMU_PARAMETER && bough_fmu_scaled(d, v)) {
         bough_schema_error(r, node, key, "the variable '%.60s' is in %.20s; expected SI units", name,
                            v->unit);
     } else {
@@ -49,22 +50,30 @@ static bool is_count(bough_schema_reader *r, const bough_scene_fmu *fmu, const c
     return false;
 }
 
-static bool is_archive(const char *name) {
-    size_t length = strlen(name);
-    return length > 4 && strcmp(name + length - 4, ".fmu") == 0;
+// field: bough_scene_values
+void bough_scene_read_values(bough_schema_reader *r, const bough_node *node, void *field) {
+    bough_scene_values *values = field;
+    if (node->kind != BOUGH_MAPPING) {
+        bough_schema_error(r, node, "",
+                           "expected a mapping of names and numbers, {stiffness: 8, damping: 0.4}");
+        return;
+    }
+    size_t n = (size_t)node->n;
+    *values = (bough_scene_values){.n = node->n,
+                                   .name = bough_arena_take(r->arena, (n + 1) * sizeof *values->name),
+                                   .value = bough_arena_doubles(r->arena, node->n + 1),
+                                   .node = bough_arena_take(r->arena, (n + 1) * sizeof *values->node)};
+    for (int k = 0; k < node->n; k++) {
+        values->name[k] = node->key[k]->text;
+        values->node[k] = node->value[k];
+        values->value[k] = bough_schema_number(r, node->value[k], BOUGH_PURE_NUMBER);
+    }
 }
 
 void bough_scene_check_fmu(bough_schema_reader *r, void *item) {
     bough_scene_fmu *fmu = item;
     const bough_node *folder = bough_link_value(fmu->node, "folder");
     if (!fmu->node || !fmu->folder) return;
-    if (is_archive(fmu->folder)) {
-        bough_schema_error(r, folder, "folder",
-                           "expected the folder of the unpacked FMU: 'unzip %.80s "
-                           "-d FOLDER'",
-                           fmu->folder);
-        return;
-    }
     fmu->folder = bough_schema_path(r, fmu->node, "folder", fmu->folder);
     bough_status status = bough_fmu_describe(r->arena, fmu->folder, &fmu->description);
     if (!bough_is_ok(&status)) {
@@ -73,13 +82,21 @@ void bough_scene_check_fmu(bough_schema_reader *r, void *item) {
     }
     bool counts = is_count(r, fmu, "motion", fmu->n_motion, BOUGH_SCENE_MOTION);
     if (!is_count(r, fmu, "wrench", fmu->n_wrench, BOUGH_SCENE_WRENCH) || !counts) return;
+    const bough_node *motion = bough_link_value(fmu->node, "motion");
+    const bough_node *wrench = bough_link_value(fmu->node, "wrench");
     for (int k = 0; k < BOUGH_SCENE_MOTION; k++) {
         const char *name = fmu->n_motion > 0 ? fmu->motion[k] : usual_motion[k];
-        fmu->input[k] = find(r, fmu, "motion", name, BOUGH_FMU_INPUT);
+        fmu->input[k] = find(r, fmu, motion, "motion", name, BOUGH_FMU_INPUT);
     }
     for (int k = 0; k < BOUGH_SCENE_WRENCH; k++) {
         const char *name = fmu->n_wrench > 0 ? fmu->wrench[k] : usual_wrench[k];
-        fmu->output[k] = find(r, fmu, "wrench", name, BOUGH_FMU_OUTPUT);
+        fmu->output[k] = find(r, fmu, wrench, "wrench", name, BOUGH_FMU_OUTPUT);
+    }
+    const bough_scene_values *p = &fmu->parameters;
+    fmu->reference = bough_arena_take(r->arena, (size_t)(p->n + 1) * sizeof *fmu->reference);
+    for (int k = 0; k < p->n; k++) {
+        const bough_fmu_variable *v = find(r, fmu, p->node[k], "parameters", p->name[k], BOUGH_FMU_PARAMETER);
+        if (v) fmu->reference[k] = v->reference;
     }
 }
 

@@ -69,6 +69,7 @@ void bough_scene_check_wind(bough_schema_reader *r, void *item);
 void bough_scene_check_tower(bough_schema_reader *r, void *item);
 void bough_scene_check_joint(bough_schema_reader *r, void *item);
 void bough_scene_check_fmu(bough_schema_reader *r, void *item);
+void bough_scene_read_values(bough_schema_reader *r, const bough_node *node, void *field);
 void bough_scene_check_motion(bough_schema_reader *r, const bough_scene_joint *joint);
 void bough_scene_check_load(bough_schema_reader *r, void *item);
 void bough_scene_check_ramp(bough_schema_reader *r, const bough_node *node, const double ramp[2]);
@@ -114,9 +115,9 @@ bough_node *bough_scene_set(bough_arena *arena, bough_node *root, const char *se
 
 // -- modelDescription.xml of an FMU of FMI 3.0 (fmu_description.c) --------------------------------
 
-// Reads FOLDER/modelDescription.xml of an unpacked FMU. BOUGH_INVALID: the file is missing or is no XML, the
-// version is not 3, there is no co-simulation.
-bough_status bough_fmu_describe(bough_arena *arena, const char *folder, bough_fmu_description *description);
+// Reads modelDescription.xml of an FMU, an archive or the folder where it is unpacked. BOUGH_INVALID: the
+// file is missing or is no XML, the version is not 3, there is no co-simulation.
+bough_status bough_fmu_describe(bough_arena *arena, const char *fmu, bough_fmu_description *description);
 
 // The variable of that name; NULL: there is none.
 const bough_fmu_variable *bough_fmu_find(const bough_fmu_description *d, const char *name);
