@@ -33,6 +33,14 @@ for file in $(find "$folder/usr/share/bough" -name '*.yaml'); do
     fi
 done
 [ $scenes -gt 40 ]
+# The pages find each other and their pictures; what they name beside docs/ is in the sources only.
+doc=$(dirname "$(find "$folder/usr" -name CONTRIBUTING.md)")
+for page in "$doc"/*.md "$doc"/docs/*.md; do
+    for link in $(grep -Eo '(\]\(|src="|srcset=")[^)"#]+\.(md|svg|png)' "$page" | sed 's/.*[("]//'); do
+        case $link in http*|*apps/*|*tests/*) continue ;; esac
+        [ -e "$(dirname "$page")/$link" ] || { echo "$page: no $link"; exit 1; }
+    done
+done
 grep -q '^\.SS study' "$folder/usr/share/man/man1/bough.1"
 completed=$(bash -c '. "$1/usr/share/bash-completion/completions/bough"
     complete_words() { COMP_WORDS=("$@") COMP_CWORD=$(($# - 1)); _bough "$bough"; echo "${COMPREPLY[*]}"; }

@@ -13,7 +13,7 @@
 #include <unistd.h>
 
 typedef struct variable {
-    const char *name, *unit;
+    const char *name, *unit, *meaning;
     double start; // of an input, SI
 } variable;
 
@@ -133,6 +133,11 @@ static void put_variable(const variable *v, int reference, bool input, FILE *out
     fprintf(out, "\" valueReference=\"%d\" causality=\"%s\" variability=\"continuous\"", reference,
             input ? "input" : "output");
     if (input) fprintf(out, " start=\"%.17g\"", v->start);
+    if (v->meaning) {
+        fputs(" description=\"", out);
+        bough_picture_text(out, v->meaning);
+        fputc('"', out);
+    }
     if (v->unit[0]) {
         fputs(" unit=\"", out);
         bough_picture_text(out, v->unit);
@@ -185,16 +190,25 @@ static void put_description(const export *x, FILE *out) {
 
 // -- the command ----------------------------------------------------------------------------------
 
+static const char *const input_meanings[] = {
+    [BOUGH_INPUT_LOAD] = "load",
+    [BOUGH_INPUT_MOTION] = "position of the joint, reached at the end of the step",
+    [BOUGH_INPUT_WIND] = "speed of the wind",
+    [BOUGH_INPUT_TORQUE] = "torque demanded of the generator, on the fast shaft",
+    [BOUGH_INPUT_PITCH] = "pitch demanded of the blade, positive towards feather",
+};
+
 static bough_status list_scene(export *x, const bough_channels *channels) {
     const bough_scene *scene = x->simulation->scene;
     x->n_input = scene->n_input;
     x->n_output = channels->count;
     for (int k = 0; k < x->n_output; k++)
-        x->output[k] = (variable){channels->channel[k].name, channels->channel[k].unit, 0};
+        x->output[k] =
+            (variable){channels->channel[k].name, channels->channel[k].unit, channels->channel[k].meaning, 0};
     for (int k = 0; k < x->n_input; k++) {
         const bough_scene_input *from = &scene->input[k];
-        x->input[k] =
-            (variable){from->name, bough_dimension_unit((bough_dimension)from->dimension), from->initial};
+        x->input[k] = (variable){from->name, bough_dimension_unit((bough_dimension)from->dimension),
+                                 input_meanings[from->kind], from->initial};
         if (strcmp(from->name, "time") != 0 && bough_channels_find(channels, from->name) < 0) continue;
         return bough_fail(BOUGH_INVALID, "the input '%.80s' has the name of an output: rename it",
                           from->name);

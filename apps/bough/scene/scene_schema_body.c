@@ -193,7 +193,7 @@ static const bough_key fmu_keys[] = {
      .help = "FMU of FMI 3.0 for co-simulation, its archive or the folder where it is unpacked, relative to "
              "the scene"},
     {KEY(CUSTOM, parameters), .read = bough_scene_read_values, .form = "{NAME: NUMBER, ...}",
-     .fallback = "{}", .example = "{stiffness: 8, damping: 0.4}",
+     .example = "{stiffness: 8, damping: 0.4}",
      .help = "values of its parameters, each in the unit that the FMU declares; the others keep theirs"},
     {KEY(TEXTS, motion), .count = 1, COUNT_AT(n_motion),
      .example = "[none, none, v, none, none, none, none, none, none]",
