@@ -506,6 +506,17 @@ modes() {
     refused 'no revolute joint carries it' modes "$blade" --set 'modes.speed=1 rad/s'
     refused "'b=1' has 1 values, the first 2" modes "$turbine" --sweep 'a=1, 2' --sweep 'b=1'
     refused "expects KEY=V1, V2" modes "$turbine" --sweep 'gravity'
+    refused "needs a --sweep" modes "$turbine" --until unstable
+    refused "expects unstable, got 'stable'" modes "$turbine" --sweep 'a=1' --until stable
+    # Goland's wing: 139.63 m/s and 72.03 rad/s by strips with the model's mass terms
+    expect 0 modes "$scenes/goland.yaml" --out flutter --until unstable \
+        --sweep 'aero.wind.speed=120 m/s, 130 m/s, 150 m/s, 170 m/s'
+    has ../stdout '^unstable from aero.wind.speed=139.[567][0-9]* m/s on, mesh +- 0.1[0-9]*: line 2, 11.4[0-9]* Hz'
+    [ "$(wc -l <flutter/campbell.csv)" -eq 7 ] || fail "$said: campbell.csv has not 7 lines"
+    expect 0 modes "$scenes/goland.yaml" --out flutter --until unstable \
+        --sweep 'aero.wind.speed=100 m/s, 120 m/s'
+    has ../stdout '^no oscillation grows up to aero.wind.speed=120 m/s'
+    rm -r flutter
     refused "modes.about: the joint of 'nacelle' must be revolute" modes "$turbine" \
         --set 'modes.about=nacelle'
     refused "modes.speed: only used with 'of: rods'" modes "$turbine" \

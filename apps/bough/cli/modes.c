@@ -323,11 +323,20 @@ static bough_status find_whole(bough_arena *arena, const bough_options *options,
 typedef struct modes_options {
     bough_options common;
     bough_texts sweep; // "key=value, value, ..."
+    bool until;        // unstable
 } modes_options;
+
+static bough_status read_until(const char *name, const char *text, void *field) {
+    *(bool *)field = true;
+    if (strcmp(text, "unstable") == 0) return bough_ok();
+    return bough_fail(BOUGH_INVALID, "--%s expects unstable, got '%.80s'", name, text);
+}
 
 static const bough_option rows[] = {
     BOUGH_OPTION_SET,
     BOUGH_OPTION_OUT,
+    {"until", "unstable", "ends the sweep where an oscillation begins to grow, and finds that place",
+     read_until, offsetof(modes_options, until), false},
     {"sweep", "KEY=V1, V2, ...", "modes over operating points; the values of several --sweep vary together",
      bough_option_texts, offsetof(modes_options, sweep), true},
     {0},
@@ -336,7 +345,8 @@ static const bough_option rows[] = {
 static bough_status find(bough_arena *arena, const void *given) {
     const modes_options *own = given;
     const bough_options *options = &own->common;
-    if (own->sweep.n > 0) return bough_modes_sweep(arena, options, &own->sweep);
+    if (own->sweep.n > 0) return bough_modes_sweep(arena, options, &own->sweep, own->until);
+    if (own->until) return bough_fail(BOUGH_INVALID, "--until unstable needs a --sweep");
     bough_simulation *s;
     bough_status status = bough_open(arena, options, &s);
     if (bough_is_ok(&status)) status = bough_simulation_known(s, "it has no modes");

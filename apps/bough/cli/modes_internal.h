@@ -5,8 +5,11 @@
 #include "apps/bough/analysis/vibration.h"
 #include "apps/bough/cli/command.h"
 
-// Solves every point of --sweep and writes campbell.csv and campbell.svg.
-bough_status bough_modes_sweep(bough_arena *arena, const bough_options *options, const bough_texts *sweeps);
+// Solves every point of --sweep and writes campbell.csv and campbell.svg. `until_unstable`: the points up to
+// the first at which an oscillation grows, then the place between it and the one before from which on it
+// does.
+bough_status bough_modes_sweep(bough_arena *arena, const bough_options *options, const bough_texts *sweeps,
+                               bool until_unstable);
 
 // What moves most in a mode, and how.
 const char *bough_modes_body(const bough_simulation *s, const bough_scene_mode *mode);

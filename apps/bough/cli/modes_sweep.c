@@ -2,6 +2,7 @@
 // Campbell diagram.
 #include "apps/bough/analysis/vibration.h"
 #include "apps/bough/cli/modes_internal.h"
+#include "apps/bough/model/coarser.h"
 #include "apps/bough/results/folder.h"
 #include "apps/bough/results/picture.h"
 
@@ -23,6 +24,7 @@ typedef struct sweep_mode {
 
 typedef struct sweep {
     int n_key, n_point;
+    int n_solved;       // points, the first ones
     const char **key;   // (n_key)
     const char **value; // (n_key × n_point) as written
     double *x, *speed;  // (n_point) of the first key, else its place in the list;
@@ -247,7 +249,7 @@ static void add_multiples(diagram *d, double frequency) {
         const char *label;
     } multiples[] = {{1, "1P"}, {2, "2P"}, {3, "3P"}, {6, "6P"}, {9, "9P"}};
     double low = HUGE_VAL, high = 0;
-    for (int i = 0; i < d->sweep->n_point; i++) {
+    for (int i = 0; i < d->sweep->n_solved; i++) {
         low = fmin(low, d->sweep->speed[i]);
         high = fmax(high, d->sweep->speed[i]);
     }
@@ -282,7 +284,7 @@ static bough_status draw(bough_arena *arena, const sweep *s, const char *folder)
     diagram d = {.sweep = s, .chart = bough_chart_start(arena, NULL, 1)};
     double frequency = 0;
     d.chart.right = 190;
-    for (int i = 1; i < s->n_point; i++) d.by_speed = d.by_speed || s->speed[i] != s->speed[0];
+    for (int i = 1; i < s->n_solved; i++) d.by_speed = d.by_speed || s->speed[i] != s->speed[0];
     for (int i = 0; i < s->n_mode; i++) frequency = fmax(frequency, s->mode[i].frequency);
     bough_chart_add_panel(&d.chart, "frequency [Hz]", NULL, false, false);
     add_multiples(&d, frequency);
@@ -294,9 +296,115 @@ static bough_status draw(bough_arena *arena, const sweep *s, const char *folder)
     return bough_folder_write(folder, "campbell.svg", bough_chart_write, &d.chart);
 }
 
+// -- the boundary of stability --------------------------------------------------------------------
+
+enum { MOST_TRIALS = 40 };
+
+static const double accurate = 1e-5; // of the boundary, relative to the first key's values
+
+// Growth of the oscillation that grows most, or decays least [1/s].
+static double growth_of(const sweep_mode *m) { return -2 * BOUGH_PI * m->frequency * m->damping; }
+
+static const sweep_mode *most_growing(const sweep *s, int point) {
+    const sweep_mode *most = NULL;
+    for (int i = 0; i < s->n_mode; i++) {
+        const sweep_mode *m = &s->mode[i];
+        if (m->point == point && m->damped > 0 && (!most || growth_of(m) > growth_of(most))) most = m;
+    }
+    return most;
+}
+
+// The value between those of a point and the next, "139.6 m/s"; NULL where they are no numbers with one unit.
+static const char *between(bough_arena *arena, const char *a, const char *b, double part) {
+    char *unit_a, *unit_b;
+    double first = strtod(a, &unit_a), second = strtod(b, &unit_b);
+    bool numbers = unit_a != a && unit_b != b && strcmp(unit_a, unit_b) == 0;
+    return numbers ? bough_arena_print(arena, "%.8g%s", first + part * (second - first), unit_a) : NULL;
+}
+
+// Growth at a place behind the point, with the scene's mesh or another one; *share: of their difference, that
+// the mesh errs by.
+static bough_status grow(bough_arena *keep, const bough_options *options, const sweep *s, int point,
+                         double part, double *share, double *growth, double *frequency) {
+    bough_arena *arena = bough_arena_child(keep);
+    sweep one = {.n_key = s->n_key, .n_point = 1, .key = s->key};
+    one.value = bough_arena_take(arena, (size_t)s->n_key * sizeof *one.value);
+    for (int k = 0; k < s->n_key; k++) {
+        const char *const *value = s->value + k * s->n_point + point;
+        one.value[k] = between(arena, value[0], value[1], part);
+        if (!one.value[k])
+            return bough_fail(BOUGH_INVALID, "--until needs numbers with one unit, got %s=%s, %s", s->key[k],
+                              value[0], value[1]);
+    }
+    bough_options at;
+    bough_scene *scene;
+    bough_simulation *sim;
+    bough_vibration v;
+    bough_status status = set_point(arena, options, &one, 0, &at);
+    if (bough_is_ok(&status)) status = bough_open_scene(arena, &at, &scene);
+    if (bough_is_ok(&status) && share) {
+        bough_scene *other = bough_coarser_scene(arena, scene, BOUGH_COARSER_MESH);
+        *share = bough_coarser_share(scene, other);
+        scene = other;
+    }
+    if (bough_is_ok(&status)) status = bough_simulation_build(arena, scene, &sim);
+    if (bough_is_ok(&status)) status = bough_vibration_find(arena, sim, scene->modes.count, &v);
+    *growth = -HUGE_VAL;
+    for (int k = 0; bough_is_ok(&status) && k < v.found; k++)
+        if (v.mode[k].damped_frequency > 0 && v.mode[k].growth > *growth)
+            *growth = v.mode[k].growth, *frequency = v.mode[k].damped_frequency;
+    bough_arena_destroy(arena);
+    return status;
+}
+
+// Between a stable point and the next one, by the Illinois rule: the part of the way, and the slope of the
+// growth.
+static bough_status find_root(bough_arena *arena, const bough_options *options, const sweep *s, int point,
+                              double low, double high, double *part, double *slope, double *frequency) {
+    double a = 0, b = 1;
+    double width =
+        accurate * fmax(fabs(s->x[point]), fabs(s->x[point + 1])) / fabs(s->x[point + 1] - s->x[point]);
+    bough_status status = bough_ok();
+    for (int trial = 0; trial < MOST_TRIALS && b - a > width && bough_is_ok(&status); trial++) {
+        double growth, x = trial % 4 == 3 ? (a + b) / 2 : a + (b - a) * low / (low - high);
+        x = fmin(fmax(x, a + width / 4), b - width / 4);
+        status = grow(arena, options, s, point, x, NULL, &growth, frequency);
+        *slope = (growth - (growth > 0 ? low : high)) / (x - (growth > 0 ? a : b));
+        if (growth > 0)
+            b = x, high = growth, low /= 2;
+        else
+            a = x, low = growth, high /= 2;
+    }
+    *part = (a + b) / 2;
+    return status;
+}
+
+// Says from where on an oscillation grows, and by how much the mesh moves that place.
+static bough_status print_boundary(bough_arena *arena, const bough_options *options, const sweep *s,
+                                   int last) {
+    const sweep_mode *m = most_growing(s, last), *before = last > 0 ? most_growing(s, last - 1) : NULL;
+    if (!m || growth_of(m) <= 0 || !before) {
+        printf(m && growth_of(m) > 0 ? "unstable at the first point: %s=%s\n"
+                                     : "no oscillation grows up to %s=%s\n",
+               s->key[0], s->value[last]);
+        return bough_ok();
+    }
+    double part = 0, slope = 0, share = 0, other = 0, frequency = 0, of_other = 0;
+    double low = growth_of(before), high = growth_of(m);
+    bough_status status = find_root(arena, options, s, last - 1, low, high, &part, &slope, &frequency);
+    if (bough_is_ok(&status)) status = grow(arena, options, s, last - 1, part, &share, &other, &of_other);
+    if (!bough_is_ok(&status)) return status;
+    double step = s->x[last] - s->x[last - 1], error = fabs(share * other / slope * step);
+    printf("unstable from %s=%s on, mesh +- %.2g: line %d, %.6g Hz, %s %s\n", s->key[0],
+           between(arena, s->value[last - 1], s->value[last], part), error, m->line + 1, frequency, m->body,
+           m->shape);
+    return status;
+}
+
 // -- the sweep ------------------------------------------------------------------------------------
 
-bough_status bough_modes_sweep(bough_arena *arena, const bough_options *options, const bough_texts *sweeps) {
+bough_status bough_modes_sweep(bough_arena *arena, const bough_options *options, const bough_texts *sweeps,
+                               bool until_unstable) {
     sweep s = {0};
     tracks track[2] = {{0}};
     const char *folder = bough_out_folder(arena, options);
@@ -307,7 +415,14 @@ bough_status bough_modes_sweep(bough_arena *arena, const bough_options *options,
     for (int i = 0; i < s.n_point && bough_is_ok(&status); i++) {
         int first = s.n_mode;
         status = solve_point(arena, options, i, track, &s);
-        if (bough_is_ok(&status)) print_point(&s, i, first);
+        if (!bough_is_ok(&status)) break;
+        s.n_solved = i + 1;
+        print_point(&s, i, first);
+        const sweep_mode *m = most_growing(&s, i);
+        bool ends = m && growth_of(m) > 0;
+        if (!until_unstable || (!ends && i + 1 < s.n_point)) continue;
+        status = print_boundary(arena, options, &s, i);
+        break;
     }
     if (bough_is_ok(&status)) status = bough_folder_make(folder);
     if (bough_is_ok(&status)) status = bough_folder_write(folder, "campbell.csv", write_table, &s);
