@@ -100,13 +100,19 @@ bough_status bough_master_build(bough_arena *arena, const bough_master_def *def,
 
 bool bough_master_done(const bough_master *m) { return m->time >= m->duration; }
 
-enum { HALVED_EVERY = 8, HALVED_FIRST = 64 }; // macro steps
+enum { HALVED_EVERY = 8, FIRST = 64 }; // macro steps
+
+// Halves of all the first steps would be the steps of the run that is compared, theory (71).
+static bool taken_in_halves(const bough_master *m) {
+    if (!m->halves) return false;
+    bool often = m->grid_index < FIRST ? m->grid_index % 2 == 0 : m->grid_index % HALVED_EVERY == 0;
+    return m->at_event || often;
+}
 
 static double next_on_grid(const bough_master *m) {
     double half = ((double)m->grid_index + 0.5) * m->macro_step;
-    bool often = m->grid_index < HALVED_FIRST || m->grid_index % HALVED_EVERY == 0;
-    bool halved = m->halves && (m->at_event || often);
-    return halved && half > m->time + resolution(m) ? half : (double)(m->grid_index + 1) * m->macro_step;
+    return taken_in_halves(m) && half > m->time + resolution(m) ? half
+                                                                : (double)(m->grid_index + 1) * m->macro_step;
 }
 
 // The next synchronisation point: grid point, half of a step, event or the end, whichever comes first.

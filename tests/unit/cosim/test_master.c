@@ -31,11 +31,11 @@ TEST(steps_end_on_events_and_on_the_duration) {
     assert_true(bough_master_done(m.master));
 }
 
-// The first 64, every eighth, and the one after an event before its middle; at the times of a run of half the
-// steps.
+// Every second of the first 64, every eighth later, and the one after an event before its middle; at the
+// times of a run of half the steps.
 TEST(some_steps_are_taken_in_halves) {
     const double event[] = {.703};
-    const int odd[] = {129, 141, 145, 161, 177, 193}; // after the first 128 halves
+    const int later[] = {129, 141, 145, 161, 177, 193}; // after the first 128 halves
     bough_master_def def = definition(.01, 1);
     def.halves = true;
     def.event = event;
@@ -43,6 +43,7 @@ TEST(some_steps_are_taken_in_halves) {
     bough_two_mass m = bough_two_mass_default();
     check_ok(bough_two_mass_build(check_memory(), &m, def));
     for (int k = 1; k <= 128; k++) {
+        if (k % 4 == 3) continue;
         check_ok(bough_step(m.master));
         assert_true(m.master->time == k * .005);
     }
@@ -52,10 +53,10 @@ TEST(some_steps_are_taken_in_halves) {
         double half = m.master->time / .005;
         bool whole = fabs(half / 2 - round(half / 2)) < 1e-9, at_event = fabs(m.master->time - .703) < 1e-9;
         if (whole || at_event) continue;
-        assert_true(next < sizeof odd / sizeof *odd);
-        assert_true(m.master->time == odd[next++] * .005);
+        assert_true(next < sizeof later / sizeof *later);
+        assert_true(m.master->time == later[next++] * .005);
     }
-    assert_int_equal(next, sizeof odd / sizeof *odd);
+    assert_int_equal(next, sizeof later / sizeof *later);
 }
 
 typedef struct samples {

@@ -86,6 +86,26 @@ TEST(the_whole_error_is_told) {
     free(truth);
 }
 
+// A short run whose steps are as long as its macro step: half of them would be the companion's own steps.
+TEST(steps_of_a_macro_step_have_an_error) {
+    const char *const truth_sets[] = {"simulation.macro_step=20 ms", "simulation.error_estimate=none", NULL};
+    outcome *truth = run_for("apps/mechanisms/pendulum.yaml", STEPS, truth_sets);
+    static const char *const solver[] = {
+        "simulation.master={solver: generalized-alpha, step: 20 ms, rtol: 1e-4}",
+        "simulation.master={solver: rosenbrock, step: 20 ms, rtol: 3e-3}"};
+    for (int k = 0; k < 2; k++) {
+        const char *const sets[] = {"simulation.macro_step=20 ms", solver[k], NULL};
+        outcome *o = run_for("apps/mechanisms/pendulum.yaml", STEPS, sets);
+        for (int i = 0; i < 2; i++) {
+            double error = true_error(o, truth, i, STEPS);
+            print_message("%s: true %.2g, estimate %.2g\n", o->name[i], error, o->error[i]);
+            assert_true(o->error[i] > error / 2 && o->error[i] < 4 * error);
+        }
+        free(o);
+    }
+    free(truth);
+}
+
 // Estimating changes no bit of the run.
 TEST(a_companion_changes_nothing) {
     const char *const with[] = {"simulation.duration=1 s", NULL};
