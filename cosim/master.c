@@ -133,8 +133,7 @@ static bough_status sample_loads(bough_master *m, bool *jumped) {
         if (!m->load[i].sample || !is_due(m, i)) continue;
         double next = (double)(m->grid_index + m->load_every[i]) * m->macro_step;
         bool jump = false;
-        bough_status status = m->load[i].sample(m->load[i].self, m->time, next, &jump);
-        if (!bough_is_ok(&status)) return status;
+        BOUGH_TRY(m->load[i].sample(m->load[i].self, m->time, next, &jump));
         *jumped = *jumped || jump;
     }
     return bough_ok();
@@ -200,13 +199,12 @@ static bough_status macro_step(bough_master *m) {
     c->restart = m->at_event;
     // loads from t0 on
     begin_loads(m, c->t0 + resolution(m));
-    bough_status status = sample_loads(m, &c->restart);
-    if (!bough_is_ok(&status)) return status;
+    BOUGH_TRY(sample_loads(m, &c->restart));
 
     // advance the members and exchange their values
     bough_monitor_keep(m->monitor, c);
     c->compared = m->compared;
-    status = m->control ? take_controlled_step(m) : bough_scheme_step(c);
+    bough_status status = m->control ? take_controlled_step(m) : bough_scheme_step(c);
     if (!bough_is_ok(&status) && m->stop && m->stop()) {
         bough_monitor_undo(m->monitor, c);
         return interrupted(m);
@@ -217,8 +215,7 @@ static bough_status macro_step(bough_master *m) {
 
     // check the result
     bough_monitor_judge(m->monitor, !m->compared);
-    status = bough_monitor_step(m->monitor, c);
-    if (!bough_is_ok(&status)) return status;
+    BOUGH_TRY(bough_monitor_step(m->monitor, c));
     // t1 is the present
     set_time(m, c->t1);
     m->steps++;

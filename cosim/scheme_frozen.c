@@ -45,8 +45,7 @@ static void advance(bough_coupling *c, int member) {
 static bough_status step(bough_coupling *c) {
     bough_coupling_begin(c);
     // signals from the values and rates at T_k
-    bough_status status = bough_coupling_each(c, BOUGH_ALL_LEVELS, find_rates);
-    if (!bough_is_ok(&status)) return status;
+    BOUGH_TRY(bough_coupling_each(c, BOUGH_ALL_LEVELS, find_rates));
     for (int i = 0; i < c->assembly->n_member; i++) hold(c, i);
     // all members at once
     return bough_coupling_each(c, BOUGH_ALL_LEVELS, advance);

@@ -143,8 +143,7 @@ static bough_status step(bough_coupling *c) {
     }
     assert(whole->time == c->t0);
     // the step
-    bough_status status = bough_member_advance(whole, c->t1, NULL, c->restart);
-    if (!bough_is_ok(&status)) return status;
+    BOUGH_TRY(bough_member_advance(whole, c->t1, NULL, c->restart));
     // the members' states, brought back to their constraints
     for (int i = 0; i < a->n_member; i++) {
         bough_member_set(a->member[i], c->t1, whole->state + a->state_offset[i]);

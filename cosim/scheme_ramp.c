@@ -77,8 +77,7 @@ static bough_status check_shape(const bough_coupling *c) {
 
 static bough_status create(bough_coupling *c, bough_arena *arena) {
     const bough_assembly *a = c->assembly;
-    bough_status status = check_shape(c);
-    if (!bough_is_ok(&status)) return status;
+    BOUGH_TRY(check_shape(c));
     ramp *r = c->scheme_data = bough_arena_take(arena, sizeof *r);
     r->order = bough_arena_take(arena, (size_t)a->n_member * sizeof *r->order);
     for (int i = 0; i < a->n_member; i++)
@@ -227,8 +226,7 @@ static bough_status predict(bough_coupling *c) {
     // every member with the leaders' inputs held
     bough_coupling_clear(c);
     bough_pool_run(c->pool, 2 * a->n_member - r->n_leader, predict_member, c);
-    bough_status status = bough_coupling_failure(c);
-    if (!bough_is_ok(&status)) return status;
+    BOUGH_TRY(bough_coupling_failure(c));
     // the interface, theory (56)
     for (int i = 0; i < a->n_member; i++) {
         if (leads(c, i)) expect_inputs(c, i);

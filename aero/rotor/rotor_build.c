@@ -171,8 +171,7 @@ static const bough_polar *build_polars(bough_arena *arena, const bough_rotor_def
 
 bough_status bough_rotor_build(bough_arena *arena, const bough_rotor_def *def, const bough_rotor **result) {
     *result = NULL;
-    bough_status status = check_spans(def);
-    if (!bough_is_ok(&status)) return status;
+    BOUGH_TRY(check_spans(def));
     size_t n_station = (size_t)def->n_station, n_vertex = (size_t)def->n_vertex;
     bough_rotor *rotor = bough_arena_take(arena, sizeof *rotor);
     vertex_row *row = bough_arena_take(arena, (3 * n_vertex - 2) * sizeof *row);
@@ -201,8 +200,7 @@ bough_status bough_rotor_build(bough_arena *arena, const bough_rotor_def *def, c
                            .slope = row + 2 * n_vertex - 1};
     // wind and tower, stations with their polars, mapping to the structural mesh
     take_stations(arena, rotor->stride, &rotor->station);
-    status = bough_wind_build(arena, &def->wind, &rotor->wind);
-    if (!bough_is_ok(&status)) return status;
+    BOUGH_TRY(bough_wind_build(arena, &def->wind, &rotor->wind));
     bough_tower_build(arena, &def->tower, &rotor->tower);
     place_stations(def, build_polars(arena, def), rotor);
     fill_mappings(def, &map);

@@ -118,7 +118,7 @@ static bough_status read_all(bough_arena *arena, FILE *stream, const char *path,
     if (bough_is_ok(&status)) status = read_measures(path, head, box);
     int64_t text = i32_at(head + HEAD - 4);
     if (bough_is_ok(&status)) status = count_values(path, box, text, size, &n);
-    if (!bough_is_ok(&status)) return status;
+    BOUGH_TRY(status);
     int16_t *value = bough_arena_take(arena, (size_t)n * sizeof *value);
     box->value = value;
     if (fseek(stream, (long)(HEAD + text), SEEK_SET) != 0) return bad(path, "it is no plain file");

@@ -66,10 +66,7 @@ static bough_status scan(FILE *stream, const char *path, int room, int *n, bough
         if (*n == room) {
             return bough_fail(BOUGH_INVALID, "%s:%d: more than %d rows.", path, number, room);
         }
-        if (row) {
-            bough_status status = read_row(path, line, number, *n > 0 ? row + *n - 1 : NULL, row + *n);
-            if (!bough_is_ok(&status)) return status;
-        }
+        if (row) BOUGH_TRY(read_row(path, line, number, *n > 0 ? row + *n - 1 : NULL, row + *n));
         ++*n;
     }
     if (*n == 0) return bough_fail(BOUGH_INVALID, "%s: has no rows.", path);

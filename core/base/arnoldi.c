@@ -52,8 +52,7 @@ void bough_arnoldi_append(bough_arnoldi *a, double *x, double *column) {
 // A V = V H, a column of H for each vector of the basis.
 bough_status bough_arnoldi_extend(bough_arnoldi *a, int target) {
     while (a->done < a->count && a->done < target) {
-        bough_status status = a->apply(a->self, vector_at(a, a->done), a->image);
-        if (!bough_is_ok(&status)) return status;
+        BOUGH_TRY(a->apply(a->self, vector_at(a, a->done), a->image));
         bough_arnoldi_append(a, a->image, a->h + (size_t)a->done * (size_t)a->capacity);
         a->done++;
     }

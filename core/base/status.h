@@ -31,6 +31,13 @@ bough_status bough_fail(bough_code code, const char *format, ...) __attribute__(
 
 static inline bool bough_is_ok(const bough_status *status) { return status->code == BOUGH_OK; }
 
+// Returns the status of `call` from the calling function unless it is BOUGH_OK.
+#define BOUGH_TRY(call)                                                                                      \
+    do {                                                                                                     \
+        bough_status failed_ = (call);                                                                       \
+        if (failed_.code != BOUGH_OK) return failed_;                                                        \
+    } while (0)
+
 // The exit code of the process for a final status.
 int bough_exit_code(bough_code code);
 

@@ -274,10 +274,7 @@ static bough_status advance(void *self, double *t, double pause, double t1, bool
     run *r = self;
     double *own = bough_vector_data(r->y), reached = *t;
     memcpy(own, y, (size_t)r->ode.n * sizeof *own);
-    if (restart || !r->started) {
-        bough_status status = start(r, *t);
-        if (!bough_is_ok(&status)) return status;
-    }
+    if (restart || !r->started) BOUGH_TRY(start(r, *t));
     r->refused = false;
     r->text[0] = 0;
     // no evaluation beyond t1, where inputs are not known

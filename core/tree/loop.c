@@ -36,8 +36,7 @@ bough_status bough_loops_place(bough_arena *arena, const bough_tree_def *def, bo
     for (int k = 0; k < def->n_closures; k++) {
         const bough_closure_def *from = &def->closures[k];
         bough_closure *to = &tree->closures[k];
-        bough_status status = check(tree, from);
-        if (!bough_is_ok(&status)) return status;
+        BOUGH_TRY(check(tree, from));
         to->name = bough_arena_string(arena, from->name);
         to->marker[0] = from->marker[0], to->marker[1] = from->marker[1];
         to->constraint = bough_constraint_make(from->kind, from->axis, from->second_axis);

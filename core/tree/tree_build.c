@@ -238,8 +238,7 @@ static bough_status check_dynamics(bough_arena *arena, const bough_tree_def *def
 }
 
 bough_status bough_tree_create(bough_arena *arena, const bough_tree_def *def, bough_tree **out) {
-    bough_status status = check_places(def);
-    if (!bough_is_ok(&status)) return status;
+    BOUGH_TRY(check_places(def));
     size_t n = (size_t)def->n_bodies;
     int *scratch = bough_arena_take(arena, (3 * n + 1) * sizeof *scratch), *order = scratch;
     order_bodies(def, scratch + n, order);
@@ -255,7 +254,7 @@ bough_status bough_tree_create(bough_arena *arena, const bough_tree_def *def, bo
     create_motions(arena, def, tree);
     set_initial(tree, def);
     *out = tree;
-    status = bough_loops_place(arena, def, tree);
+    bough_status status = bough_loops_place(arena, def, tree);
     return bough_is_ok(&status) ? check_dynamics(arena, def, tree) : status;
 }
 

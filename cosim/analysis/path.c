@@ -253,7 +253,7 @@ static bough_status follow(path *p, bough_path_report *report) {
         if (corrections <= FEW && turned > straight) step *= growth;
     }
     if (bough_is_ok(&status)) status = report_point(p, &p->here, false, report);
-    if (!bough_is_ok(&status)) return status;
+    BOUGH_TRY(status);
     return bough_fail(BOUGH_FAILED, "the path of equilibria ends at %.6g of the loads after %d steps",
                       p->here.factor, report->steps);
 }

@@ -143,8 +143,7 @@ static bough_status start(map *m) {
         }
     }
     for (int k = 0; k < WARM_UP; k++) {
-        bough_status status = apply(m, m->repeat, x, image);
-        if (!bough_is_ok(&status)) return status;
+        BOUGH_TRY(apply(m, m->repeat, x, image));
         double length = sqrt(bough_scalar_product(a->n_state, image, image));
         for (int i = 0; i < m->n; i++) x[i] = image[i] / length;
     }
@@ -219,12 +218,10 @@ static bough_status refine(map *m, const ritz *r, bough_stability *result) {
     memset(m->pair, 0, 2 * (size_t)m->n * sizeof(double));
     bough_arnoldi_combine(basis, r->column, m->n, real);
     if (r->pair) bough_arnoldi_combine(basis, r->column + 1, m->n, imaginary);
-    bough_status status = apply(m, 1, real, image);
-    if (!bough_is_ok(&status)) return status;
+    BOUGH_TRY(apply(m, 1, real, image));
     double a = bough_arnoldi_product(basis, real, image);
     double b = -bough_arnoldi_product(basis, imaginary, image);
-    if (r->pair) status = apply(m, 1, imaginary, image);
-    if (!bough_is_ok(&status)) return status;
+    if (r->pair) BOUGH_TRY(apply(m, 1, imaginary, image));
     if (r->pair) {
         a += bough_arnoldi_product(basis, imaginary, image);
         b += bough_arnoldi_product(basis, real, image);

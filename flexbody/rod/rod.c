@@ -139,9 +139,8 @@ bough_status bough_rod_create(bough_arena *arena, const bough_rod_def *def, boug
     m->root = bough_rotation_matrix(m->rotation0[0]);
     memcpy(m->vertex, def->inertia, vertices * sizeof *m->vertex);
     for (int n = 0; n < m->n_segment; n++) {
-        bough_status status = set_segment(m, def, n);
-        if (bough_is_ok(&status)) status = set_vertex(m, def, n + 1);
-        if (!bough_is_ok(&status)) return status;
+        BOUGH_TRY(set_segment(m, def, n));
+        BOUGH_TRY(set_vertex(m, def, n + 1));
     }
     *model = m;
     return bough_ok();

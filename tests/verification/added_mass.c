@@ -230,8 +230,7 @@ static bough_status perform_maps(const added_mass_study *s, report *out) {
         bool good = true;
         for (int kind = 0; kind < ACCELERATORS; kind++) {
             int count = DIVERGED;
-            bough_status status = evaluate(m, (bough_acceleration)kind, &count);
-            if (!bough_is_ok(&status)) return status;
+            BOUGH_TRY(evaluate(m, (bough_acceleration)kind, &count));
             good = good && as_expected(m, kind, count);
             fprintf(out->csv, "map %s,%s,%d,", name, bough_acceleration_names[kind], count);
             if (m->n_expected > 0) fprintf(out->csv, "%g", m->expected[kind]);
@@ -321,13 +320,12 @@ bough_status bough_added_mass_perform(bough_arena *arena, const void *study,
                                       const bough_verification_options *options) {
     char path[BOUGH_PATH_MAX];
     report out = {.options = options};
-    bough_status status = take_picture(arena, study, &out.picture);
-    if (bough_is_ok(&status)) status = bough_folder_make(options->folder);
-    if (bough_is_ok(&status)) status = bough_folder_path(options->folder, "added-mass.csv", path);
-    if (bough_is_ok(&status)) status = bough_folder_open_partial(path, &out.csv);
-    if (!bough_is_ok(&status)) return status;
+    BOUGH_TRY(take_picture(arena, study, &out.picture));
+    BOUGH_TRY(bough_folder_make(options->folder));
+    BOUGH_TRY(bough_folder_path(options->folder, "added-mass.csv", path));
+    BOUGH_TRY(bough_folder_open_partial(path, &out.csv));
     fputs("problem,way,evaluations or sweeps,expected,error [1],verdict,diagnosis\n", out.csv);
-    status = perform_maps(study, &out);
+    bough_status status = perform_maps(study, &out);
     if (bough_is_ok(&status)) status = perform_runs(arena, study, &out);
     bough_status written = bough_folder_commit(path, out.csv);
     if (!bough_is_ok(&status)) return status;

@@ -254,9 +254,8 @@ static void write_rows(const comparison *c, FILE *f) {
 static bough_status write_file(const comparison *c, const char *folder) {
     char path[BOUGH_PATH_MAX];
     FILE *file = NULL;
-    bough_status status = bough_folder_path(folder, "blade-models.csv", path);
-    if (bough_is_ok(&status)) status = bough_folder_open_partial(path, &file);
-    if (!bough_is_ok(&status)) return status;
+    BOUGH_TRY(bough_folder_path(folder, "blade-models.csv", path));
+    BOUGH_TRY(bough_folder_open_partial(path, &file));
     write_rows(c, file);
     return bough_folder_commit(path, file);
 }
@@ -264,16 +263,15 @@ static bough_status write_file(const comparison *c, const char *folder) {
 bough_status bough_blade_models_perform(bough_arena *arena, const void *study,
                                         const bough_verification_options *options) {
     comparison c = {.study = study};
-    bough_status status = make_run(arena, c.study, &c.run);
-    if (bough_is_ok(&status)) status = bough_folder_make(options->folder);
-    if (!bough_is_ok(&status)) return status;
+    BOUGH_TRY(make_run(arena, c.study, &c.run));
+    BOUGH_TRY(bough_folder_make(options->folder));
     c.run.threads = options->threads;
     c.drive.stop = options->stop;
     c.drive.progress = bough_progress_start(0, c.run.duration, options->quiet);
     c.reference = bough_study_series_take(arena, &c.run);
     c.series = bough_study_series_take(arena, &c.run);
     c.outcome = bough_arena_take(arena, (size_t)c.study->n * sizeof *c.outcome);
-    status = measure_all(arena, &c);
+    bough_status status = measure_all(arena, &c);
     bough_progress_clear(&c.drive.progress);
     if (bough_is_ok(&status)) status = write_file(&c, options->folder);
     if (bough_is_ok(&status)) print_table(&c, options->stream);

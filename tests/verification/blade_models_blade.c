@@ -10,8 +10,7 @@ bough_status bough_model_scene_sets(bough_arena *arena, const char *scene, const
                                     const bough_blade_model *model, bough_model_sets *sets) {
     bough_errors errors = {.arena = arena};
     bough_scene *read;
-    bough_status status = bough_scene_read(arena, scene, given->item, given->n, &errors, &read);
-    if (!bough_is_ok(&status)) return status;
+    BOUGH_TRY(bough_scene_read(arena, scene, given->item, given->n, &errors, &read));
     int most = given->n + model->set.n * read->n_body;
     sets->n = given->n;
     sets->item = bough_arena_take(arena, (size_t)(most + 1) * sizeof *sets->item);
@@ -91,7 +90,7 @@ static bough_status find(bough_arena *arena, const char *path, const bough_model
     }
     if (errors.n > 0) bough_errors_print(&errors, stderr);
     if (bough_is_ok(&status)) status = bough_simulation_build(arena, scene, &s);
-    if (!bough_is_ok(&status)) return status;
+    BOUGH_TRY(status);
     if (s->n_rod == 0) return bough_fail(BOUGH_INVALID, "%.200s: nothing in it bends", path);
     const bough_beam *beam = s->beam;
     while (beam->port < 0) beam++;
@@ -108,7 +107,6 @@ static bough_status find(bough_arena *arena, const char *path, const bough_model
 bough_status bough_model_blade_find(bough_arena *arena, const bough_blade_models *study,
                                     const bough_blade_model *model, bough_model_blade *blade) {
     const bough_model_sets none = {0, NULL};
-    bough_status status = find(arena, study->blade, &none, model, blade->rest, blade);
-    if (!bough_is_ok(&status)) return status;
+    BOUGH_TRY(find(arena, study->blade, &none, model, blade->rest, blade));
     return find(arena, study->blade, &study->load, model, blade->bent, blade);
 }

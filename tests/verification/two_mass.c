@@ -110,8 +110,7 @@ bough_status bough_two_mass_error(bough_two_mass *m, double *worst) {
     *worst = 0;
     while (!bough_master_done(m->master)) {
         double t = m->master->time;
-        bough_status status = bough_step(m->master);
-        if (!bough_is_ok(&status)) return status;
+        BOUGH_TRY(bough_step(m->master));
         bough_two_mass_exact(m, m->master->time - t, y);
         *worst = fmax(*worst, fmax(fabs(m->mass[0].y[0] - y[0]), fabs(m->mass[1].y[0] - y[2])));
     }
@@ -139,8 +138,7 @@ bough_status bough_two_mass_radius(bough_two_mass *m, double macro_step, double 
     for (int k = 0; k < n; k++) {
         memset(unit, 0, sizeof unit);
         unit[k] = 1;
-        bough_status status = map_step(m, macro_step, unit, column);
-        if (!bough_is_ok(&status)) return status;
+        BOUGH_TRY(map_step(m, macro_step, unit, column));
         memcpy(matrix + k * n, column, (size_t)n * sizeof(double));
     }
     if (!bough_dense_eigen(n, matrix, value, vector, work)) {

@@ -343,11 +343,10 @@ bough_status bough_two_mass_perform(bough_arena *arena, const void *study,
                                     const bough_verification_options *options) {
     char path[BOUGH_PATH_MAX];
     report out = {.options = options};
-    bough_status status = bough_folder_make(options->folder);
-    if (bough_is_ok(&status)) status = bough_folder_path(options->folder, "two-mass.csv", path);
-    if (bough_is_ok(&status)) status = bough_folder_open_partial(path, &out.csv);
-    if (!bough_is_ok(&status)) return status;
-    status = perform_all(arena, study, &out);
+    BOUGH_TRY(bough_folder_make(options->folder));
+    BOUGH_TRY(bough_folder_path(options->folder, "two-mass.csv", path));
+    BOUGH_TRY(bough_folder_open_partial(path, &out.csv));
+    bough_status status = perform_all(arena, study, &out);
     bough_status written = bough_folder_commit(path, out.csv);
     if (!bough_is_ok(&status)) return status;
     if (!bough_is_ok(&written) || out.failed == 0) return written;

@@ -26,8 +26,7 @@ static bough_status open_scene(bough_arena *arena, const bough_verify_case *x, i
         bough_verify_mesh(x, k, mesh);
         set[n++] = mesh;
     }
-    bough_status status = bough_scene_read(arena, x->scene, set, n, &errors, &scene);
-    if (!bough_is_ok(&status)) return status;
+    BOUGH_TRY(bough_scene_read(arena, x->scene, set, n, &errors, &scene));
     return bough_run_create(arena, scene, run);
 }
 
@@ -61,8 +60,7 @@ static bough_status steady(bough_arena *arena, bough_simulation *s, bough_steady
         bough_status status = bough_simulation_equilibrium(s, s->master->assembly, time, &work);
         return bough_is_ok(&status) ? bough_steady_equilibrium(arena, s, rod, time, found) : status;
     }
-    bough_status status = bough_steady_turning(s, rod, &turning);
-    if (!bough_is_ok(&status)) return status;
+    BOUGH_TRY(bough_steady_turning(s, rod, &turning));
     return bough_steady_find(arena, s, rod, &turning, found);
 }
 
@@ -334,8 +332,7 @@ static void count_work(case_run *r) {
 static bough_status do_run(bough_arena *arena, const bough_verify_case *x, bough_run *run, bool (*stop)(void),
                            double *value) {
     case_run r = {.x = x, .run = run, .value = value};
-    bough_status status = prepare(arena, &r);
-    if (!bough_is_ok(&status)) return status;
+    BOUGH_TRY(prepare(arena, &r));
     look(&r);
     run->stop = stop;
     run->after = look;

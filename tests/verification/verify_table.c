@@ -140,8 +140,8 @@ static bough_status perform_all(bough_arena *arena, const bough_verify *v, repor
     double began = bough_wall_clock();
     print_head(r->options->stream);
     fputs("case,quantity,reference,result,error,order,tolerance,kind,verdict,case wall (s)\n", r->csv);
-    for (int i = 0; i < v->n_case && bough_is_ok(&status); i++) status = perform_case(arena, &v->cases[i], r);
-    if (!bough_is_ok(&status)) return status;
+    for (int i = 0; i < v->n_case && bough_is_ok(&status); i++)
+        BOUGH_TRY(perform_case(arena, &v->cases[i], r));
     fprintf(r->options->stream, "%d of %d hold, %d cases in %.1f s\n", r->n - r->failed, r->n, v->n_case,
             bough_wall_clock() - began);
     return status;
@@ -151,11 +151,10 @@ bough_status bough_verify_perform(bough_arena *arena, const void *study,
                                   const bough_verification_options *options) {
     char path[BOUGH_PATH_MAX];
     report r = {.options = options};
-    bough_status status = bough_folder_make(options->folder);
-    if (bough_is_ok(&status)) status = bough_folder_path(options->folder, "verify.csv", path);
-    if (bough_is_ok(&status)) status = bough_folder_open_partial(path, &r.csv);
-    if (!bough_is_ok(&status)) return status;
-    status = perform_all(arena, study, &r);
+    BOUGH_TRY(bough_folder_make(options->folder));
+    BOUGH_TRY(bough_folder_path(options->folder, "verify.csv", path));
+    BOUGH_TRY(bough_folder_open_partial(path, &r.csv));
+    bough_status status = perform_all(arena, study, &r);
     bough_status written = bough_folder_commit(path, r.csv);
     if (!bough_is_ok(&status)) return status;
     if (!bough_is_ok(&written)) return written;

@@ -364,9 +364,8 @@ static bough_status follow_memory(bough_arena *arena, work *w, int wanted, bough
     bough_eigen_pair *right = bough_arena_take(arena, (size_t)basis * sizeof *right);
     bough_eigen_pair *left = bough_arena_take(arena, (size_t)basis * sizeof *left);
     reduced x = {0};
-    bough_status status = find_pairs(arena, w, false, true, basis, right, &n_right);
-    if (bough_is_ok(&status)) status = find_pairs(arena, w, true, true, basis, left, &n_left);
-    if (!bough_is_ok(&status)) return status;
+    BOUGH_TRY(find_pairs(arena, w, false, true, basis, right, &n_right));
+    BOUGH_TRY(find_pairs(arena, w, true, true, basis, left, &n_left));
     if (!reduce(arena, w, n_right, right, n_left, left, &x) || !find_vectors(arena, &x))
         return bough_fail(BOUGH_FAILED, "the motion in the air cannot be reduced to %d modes", n_right);
     bough_eigen_pair *all = bough_arena_take(arena, (size_t)x.all * sizeof *all);
@@ -374,7 +373,7 @@ static bough_status follow_memory(bough_arena *arena, work *w, int wanted, bough
     qsort(all, (size_t)*found, sizeof *all, slower);
     if (*found > wanted) *found = wanted;
     memcpy(pair, all, (size_t)*found * sizeof *all);
-    return status;
+    return bough_ok();
 }
 
 bough_status bough_aeroelastic_modes(bough_arena *arena, const bough_aeroelastic *system, int wanted,

@@ -103,8 +103,7 @@ static bough_status follow_motion(work *w, const double *state, bough_air_tangen
                 memcpy(w->state, state, (size_t)a->n_state * sizeof *state);
                 memcpy(w->before, w->memory, (size_t)w->n_memory * sizeof *w->before);
                 w->state[at] += (2 * side - 1) * size;
-                bough_status status = find_rates(w, state, w->rate[side], w->air_rate[side]);
-                if (!bough_is_ok(&status)) return status;
+                BOUGH_TRY(find_rates(w, state, w->rate[side], w->air_rate[side]));
             }
             set_column(w, size, t->motion + (size_t)at * a->n_state, t->drive + (size_t)at * t->n_air);
         }
@@ -119,8 +118,7 @@ static bough_status follow_memory(work *w, const double *state, bough_air_tangen
             memcpy(w->state, state, (size_t)a->n_state * sizeof *state);
             memcpy(w->before, w->memory, (size_t)w->n_memory * sizeof *w->before);
             w->before[w->row[k]] += (2 * side - 1) * air_difference;
-            bough_status status = find_rates(w, state, w->rate[side], w->air_rate[side]);
-            if (!bough_is_ok(&status)) return status;
+            BOUGH_TRY(find_rates(w, state, w->rate[side], w->air_rate[side]));
         }
         set_column(w, air_difference, t->lift + (size_t)k * a->n_state, t->lag + (size_t)k * t->n_air);
     }

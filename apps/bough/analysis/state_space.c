@@ -215,8 +215,7 @@ static bough_status by_states(work *w, bough_state_space *to) {
             for (int side = 0; side < 2; side++) {
                 memcpy(w->state, w->about, (size_t)a->n_state * sizeof *w->state);
                 w->state[j] += (2 * side - 1) * size;
-                bough_status status = evaluate(w, w->state, side);
-                if (!bough_is_ok(&status)) return status;
+                BOUGH_TRY(evaluate(w, w->state, side));
             }
             put_rates(w, size, to->a + (size_t)j * (size_t)to->n);
             put_outputs(w, to->n_output, size, to->c + (size_t)j * (size_t)to->n_output);
@@ -297,22 +296,19 @@ bough_status bough_state_space_find(bough_arena *arena, bough_simulation *s, dou
                                     bough_state_space *space) {
     work w = {.s = s, .time = time};
     bough_air_tangent air = {0};
-    bough_status status = prepare(arena, &w);
-    if (!bough_is_ok(&status)) return status;
+    BOUGH_TRY(prepare(arena, &w));
     *space = (bough_state_space){
         .input = bough_arena_take(arena, ((size_t)s->scene->n_input + 3) * sizeof *space->input)};
     find_inputs(&w, space);
     if (in_air(s)) {
         bough_air_inputs inputs = {w.n_input, w.size, &w, set_input};
         bool dynamic = s->scene->modes.air == BOUGH_SCENE_AIR_DYNAMIC;
-        status = bough_air_tangent_find(arena, s, w.coupled, time, w.about, dynamic, &inputs, &air);
-        if (!bough_is_ok(&status)) return status;
+        BOUGH_TRY(bough_air_tangent_find(arena, s, w.coupled, time, w.about, dynamic, &inputs, &air));
     }
     take(arena, air.n_air, &w, space);
-    status = by_states(&w, space);
-    if (bough_is_ok(&status)) status = by_inputs(&w, space);
-    if (bough_is_ok(&status)) status = evaluate(&w, w.about, 0);
-    if (!bough_is_ok(&status)) return status;
+    BOUGH_TRY(by_states(&w, space));
+    BOUGH_TRY(by_inputs(&w, space));
+    BOUGH_TRY(evaluate(&w, w.about, 0));
     if (in_air(s)) add_air(&w, &air, space);
     name_states(&w, space);
     name_outputs(&w, space);

@@ -73,8 +73,7 @@ static void set_input(const bough_simulation *s, const bough_turning *turning, b
 
 bough_status bough_steady_find(bough_arena *arena, const bough_simulation *s, const bough_beam *beam,
                                const bough_turning *turning, bough_steady *steady) {
-    bough_status status = check_carries_none(s, beam);
-    if (!bough_is_ok(&status)) return status;
+    BOUGH_TRY(check_carries_none(s, beam));
     steady->beam = beam;
     steady->model = bough_rod_body_model(beam->rod);
     steady->state = bough_arena_doubles(arena, (size_t)BOUGH_ROD_STATES * steady->model->n);

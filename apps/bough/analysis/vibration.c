@@ -138,9 +138,7 @@ static bough_status solve_in_air(bough_arena *arena, bough_simulation *s, const 
                                  bough_vibration *v) {
     bough_air_tangent air;
     bool dynamic = s->scene->modes.air == BOUGH_SCENE_AIR_DYNAMIC;
-    bough_status status =
-        bough_air_tangent_find(arena, s, x->coupled, x->def.time, x->state, dynamic, NULL, &air);
-    if (!bough_is_ok(&status)) return status;
+    BOUGH_TRY(bough_air_tangent_find(arena, s, x->coupled, x->def.time, x->state, dynamic, NULL, &air));
     bough_air_tangent_average(arena, s, &x->group, &air);
     bough_aeroelastic system = {s, x->coupled, &x->def, &x->group, &air};
     int wanted = count + FREE_MOTIONS;
@@ -152,14 +150,14 @@ static bough_status solve(bough_arena *arena, bough_simulation *s, double time, 
                           bough_vibration *v) {
     solution x = {0};
     v->mode = bough_arena_take(arena, (size_t)count * sizeof *v->mode);
-    bough_status status = prepare(arena, s, &x);
-    if (!bough_is_ok(&status)) return status;
+    BOUGH_TRY(prepare(arena, s, &x));
     define(time, &x);
     v->n_blade = x.group.n;
     v->spin = fabs(x.group.speed) < at_rest ? 0 : x.group.speed;
     v->frozen = is_frozen(s, &x.group);
     bool in_air = s->aero && s->scene->modes.air != BOUGH_SCENE_AIR_FROZEN;
-    status = in_air ? solve_in_air(arena, s, &x, count, v) : solve_bodies(arena, s, &x, count, v);
+    bough_status status =
+        in_air ? solve_in_air(arena, s, &x, count, v) : solve_bodies(arena, s, &x, count, v);
     drop_other_motions(s->tree, x.def.point, count, v);
     return bough_is_ok(&status) ? describe(arena, s, &x, v) : status;
 }

@@ -152,15 +152,14 @@ static bough_status open_recorder(bough_arena *arena, case_run *r) {
 static bough_status build(bough_arena *arena, case_run *r) {
     const bough_study *s = r->study;
     bough_scene *scene;
-    bough_status status = read_scene(arena, r->chosen, &scene);
-    if (!bough_is_ok(&status)) return status;
+    BOUGH_TRY(read_scene(arena, r->chosen, &scene));
     int threads = s->is.parallel ? 1 : s->threads;
     if (threads > 0) scene->simulation.threads = threads;
     if (bough_is_reference(s, r->chosen)) scene->simulation.error_estimate = BOUGH_SCENE_NO_ESTIMATE;
     if (!r->series) scene->simulation.output.from = s->from;
     if (r->drive->boxes) scene->aero.wind.def.box = r->box = bough_boxes_lend(r->drive->boxes, scene);
     bough_status built = bough_run_create(arena, scene, &r->run);
-    status = same_files(arena, scene, r->chosen->files);
+    bough_status status = same_files(arena, scene, r->chosen->files);
     if (bough_is_ok(&status)) status = built;
     if (bough_is_ok(&status)) status = find_columns(arena, r);
     r->value = bough_arena_doubles(arena, (size_t)s->n_channel);

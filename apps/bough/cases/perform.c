@@ -145,11 +145,10 @@ static bough_status run_cell(work *w, int i, bough_study_drive *drive, const bou
     char label[96];
     snprintf(label, sizeof label, "run %d of %d: %.50s", i + 1, s->n_case, cell->settings);
     drive->progress.label = label;
-    bough_status status = bough_case_run(s, cell, s->repeat, drive, series, r);
-    if (!bough_is_ok(&status)) return status;
+    BOUGH_TRY(bough_case_run(s, cell, s->repeat, drive, series, r));
     bool both = bough_is_ok(&r->outcome) && bough_is_ok(&w->results.reference[cell->reference].outcome);
     if (both) bough_study_compare(s, series, reference, r->error);
-    status = bough_store_write(w->results.options->folder, s, cell, r);
+    bough_status status = bough_store_write(w->results.options->folder, s, cell, r);
     count_run(w, i, r);
     return status;
 }
@@ -186,9 +185,8 @@ static bough_status run_groups(bough_arena *arena, work *w) {
     x->reference = bough_arena_take(arena, (size_t)s->n_reference * sizeof *x->reference);
     x->result = bough_arena_take(arena, (size_t)s->n_case * sizeof *x->result);
     w->piece = bough_arena_take(arena, (size_t)s->n_reference * sizeof *w->piece);
-    bough_status status = remove_tables(x->options->folder);
-    if (bough_is_ok(&status)) status = read_results(x);
-    if (!bough_is_ok(&status)) return status;
+    BOUGH_TRY(remove_tables(x->options->folder));
+    BOUGH_TRY(read_results(x));
     for (int g = 0; g < s->n_reference; g++) {
         int missing = count_missing(x, g);
         bool needed = missing > 0 || (!s->is.parallel && !x->reference[g].done);
@@ -255,17 +253,15 @@ static void list_cases(bough_arena *arena, work *w) {
 
 static bough_status run_cases(bough_arena *arena, work *w) {
     const bough_study_options *o = w->results.options;
-    bough_status status = bough_claims_open(arena, o->folder, &w->claims);
-    if (!bough_is_ok(&status)) return status;
+    BOUGH_TRY(bough_claims_open(arena, o->folder, &w->claims));
     list_cases(arena, w);
-    if (w->n > 0) status = remove_tables(o->folder);
-    if (!bough_is_ok(&status)) return status;
+    if (w->n > 0) BOUGH_TRY(remove_tables(o->folder));
     w->boxes = bough_boxes_create(arena, threads_of(w));
     w->perform = claim_case;
     w->what = "cases";
     w->counts = !o->quiet;
     double began = bough_wall_clock();
-    status = perform_all(arena, w);
+    bough_status status = perform_all(arena, w);
     if (w->results.ran > 0) {
         fprintf(o->stream,
                 "ran %d cases, %.4g simulated hours in %.4g s on %d threads: %.4g simulated hours per "

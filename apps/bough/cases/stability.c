@@ -80,8 +80,7 @@ bough_status bough_stability_conclude(bough_arena *arena, const bough_study_resu
                 x->ran, missing, n);
         return bough_ok();
     }
-    bough_status status = bough_precision_tables(x, o->folder);
-    if (!bough_is_ok(&status)) return status;
+    BOUGH_TRY(bough_precision_tables(x, o->folder));
     print(x, o->stream);
     return conclude(x, o->stream);
 }

@@ -169,9 +169,8 @@ bough_status bough_store_write(const char *folder, const bough_study *s, const b
     char path[BOUGH_PATH_MAX], code[12];
     FILE *f;
     name_of(s, c, name);
-    bough_status status = path_of(folder, name, path);
-    if (bough_is_ok(&status)) status = bough_folder_open_partial(path, &f);
-    if (!bough_is_ok(&status)) return status;
+    BOUGH_TRY(path_of(folder, name, path));
+    BOUGH_TRY(bough_folder_open_partial(path, &f));
     fprintf(f, "case %s fingerprint %016" PRIx64 "\noutcome ", name, c->fingerprint);
     snprintf(code, sizeof code, "%d", (int)r->outcome.code);
     put_text(f, code, bough_is_ok(&r->outcome) ? "" : r->outcome.message);

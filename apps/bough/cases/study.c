@@ -342,10 +342,9 @@ bough_status bough_study_read(bough_arena *arena, const char *path, int threads,
     bough_study *s = NULL;
     bough_node *root = bough_text_read(arena, path, errors);
     if (root && !is_scene(path, root, errors)) s = bough_study_parse(arena, path, root, errors);
-    bough_status status = bough_errors_status(errors, path, "study");
-    if (!bough_is_ok(&status)) return status;
+    BOUGH_TRY(bough_errors_status(errors, path, "study"));
     s->threads = threads;
-    status = bough_study_check(arena, s, errors);
+    bough_status status = bough_study_check(arena, s, errors);
     if (bough_is_ok(&status)) status = bough_errors_status(errors, path, "study");
     if (bough_is_ok(&status)) *study = s;
     return status;

@@ -38,8 +38,7 @@ static bough_status take_turn(timing *t, int turn) {
     bough_study_drive drive = {.stop = t->options->stop, .folder = t->options->folder};
     for (int i = 0; i < t->study->n_case; i++) {
         bough_case_result result;
-        bough_status status = run(t, &t->study->cases[i], &drive, &t->series, &result);
-        if (!bough_is_ok(&status)) return status;
+        BOUGH_TRY(run(t, &t->study->cases[i], &drive, &t->series, &result));
         t->cell[i].wall[turn] = result.wall;
         t->cell[i].cpu[turn] = result.cpu;
         if (turn == 0) bough_study_compare(t->study, &t->series, &t->reference, t->cell[i].error);

@@ -186,8 +186,7 @@ static bough_status vary_best(bough_tune_state *t) {
         if (s.own && t->n > 1) s = t->point[1].settings;
         s.own = false;
         int at;
-        bough_status status = vary(t, k, &s) ? try(t, &s, false, &at) : bough_ok();
-        if (!bough_is_ok(&status)) return status;
+        BOUGH_TRY(vary(t, k, &s) ? try(t, &s, false, &at) : bough_ok());
     }
     return bough_ok();
 }
@@ -227,8 +226,7 @@ static bough_status time_again(bough_tune_state *t) {
             if (!p->best && !p->settings.own &&
                 !(bough_tune_meets(t, p) && p->cpu < 1.3 * t->point[t->chosen].cpu))
                 continue;
-            bough_status status = bough_tune_time(t, p);
-            if (!bough_is_ok(&status)) return status;
+            BOUGH_TRY(bough_tune_time(t, p));
         }
     }
     bough_tune_choose(t);
@@ -278,8 +276,7 @@ bough_status bough_tune(bough_arena *arena, const bough_tune_options *options) {
     *t = (bough_tune_state){.options = options, .scene = scene, .chosen = -1};
     t->error = options->error > 0 ? options->error : scene->simulation.accuracy;
     bough_tune_print(t, -1, options->stream);
-    status = search(t);
-    if (!bough_is_ok(&status)) return status;
+    BOUGH_TRY(search(t));
     if (t->chosen >= 0) status = bough_tune_write(t);
     return bough_is_ok(&status) ? conclude(t) : status;
 }

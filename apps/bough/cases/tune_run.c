@@ -100,12 +100,10 @@ static bough_status run_in(bough_arena *arena, void *self) {
     bough_errors errors = {.arena = arena};
     bough_scene *scene;
     bough_run run;
-    bough_status status = bough_scene_read(arena, o->scene, o->set, o->n_set, &errors, &scene);
-    if (!bough_is_ok(&status)) return status;
+    BOUGH_TRY(bough_scene_read(arena, o->scene, o->set, o->n_set, &errors, &scene));
     apply(m->tune, &m->point->settings, scene);
     scene->simulation.error_estimate = m->estimate ? BOUGH_SCENE_COMPANION : BOUGH_SCENE_NO_ESTIMATE;
-    status = bough_run_create(arena, scene, &run);
-    if (!bough_is_ok(&status)) return status;
+    BOUGH_TRY(bough_run_create(arena, scene, &run));
     run.stop = o->stop;
     run.beside = true;
     bough_run_all(&run);

@@ -411,14 +411,12 @@ static bough_status check(bough_arena *arena, const void *options) {
         return status;
     }
     bough_simulation *s;
-    bough_status status = bough_open(arena, options, &s);
-    if (!bough_is_ok(&status)) return status;
+    BOUGH_TRY(bough_open(arena, options, &s));
     bough_channels channels = bough_channels_start(arena);
     const bough_scene_output *output = &s->scene->simulation.output;
     bough_channels recorded;
-    status = bough_simulation_channels(s, &channels);
-    if (bough_is_ok(&status)) status = bough_open_channels(s->scene, &channels, &recorded);
-    if (!bough_is_ok(&status)) return status;
+    BOUGH_TRY(bough_simulation_channels(s, &channels));
+    BOUGH_TRY(bough_open_channels(s->scene, &channels, &recorded));
     printf("scene: %s\n", s->scene->file);
     printf("title: %s\n", s->scene->title ? s->scene->title : "");
     print_bodies(s);
@@ -427,8 +425,7 @@ static bough_status check(bough_arena *arena, const void *options) {
     print_loads(s);
     bough_validity_print(s, stdout);
     printf("channels: %d every %.9g s\n", recorded.count, output->interval);
-    status = print_results(arena, s, &recorded);
-    if (!bough_is_ok(&status)) return status;
+    BOUGH_TRY(print_results(arena, s, &recorded));
     return print_cost(s, arena);
 }
 

@@ -70,8 +70,7 @@ static bough_status check_samples(const bough_master *m, const char *of, double 
 // Between samples a load has a past that is not in the copy.
 static bough_status check_interval(const bough_run_command *command, double interval) {
     const bough_master *m = command->run.simulation->master;
-    bough_status status = bough_simulation_storable(command->run.simulation);
-    if (!bough_is_ok(&status)) return status;
+    BOUGH_TRY(bough_simulation_storable(command->run.simulation));
     if (interval > m->duration) {
         return bough_fail(BOUGH_INVALID,
                           "--checkpoint %.9g s is longer than the run, %.9g s: "
@@ -82,7 +81,7 @@ static bough_status check_interval(const bough_run_command *command, double inte
         return bough_fail(BOUGH_INVALID, "--checkpoint %.9g s is not a multiple of the macro step %.9g s",
                           interval, m->macro_step);
     }
-    status = check_samples(m, "", interval);
+    bough_status status = check_samples(m, "", interval);
     const bough_simulation *companion = command->run.companion->coarser;
     return bough_is_ok(&status) && companion ? check_samples(companion->master, " of the companion", interval)
                                              : status;
@@ -147,8 +146,7 @@ static bough_status read_copy(bough_run_command *command, const char *path, FILE
 
 static bough_status resume(bough_run_command *command) {
     char path[BOUGH_PATH_MAX];
-    bough_status status = bough_folder_path(command->folder, name, path);
-    if (!bough_is_ok(&status)) return status;
+    BOUGH_TRY(bough_folder_path(command->folder, name, path));
     char why[BOUGH_INPUT_REASON];
     FILE *file = bough_input_open(path, BOUGH_INPUT_DATA, why);
     if (!file && errno == ENOENT) {
@@ -160,7 +158,7 @@ static bough_status resume(bough_run_command *command) {
     if (!file) {
         return bough_fail(BOUGH_IO, "cannot read '%.200s': %s", path, why);
     }
-    status = read_copy(command, path, file);
+    bough_status status = read_copy(command, path, file);
     fclose(file);
     if (bough_is_ok(&status)) status = check_interval(command, command->checkpoint.interval);
     if (bough_is_ok(&status)) move(command, BOUGH_SNAPSHOT_RESTORE);
@@ -173,7 +171,7 @@ bough_status bough_checkpoint_open(bough_run_command *command) {
     if (!o->checkpoint && !o->resume) return bough_ok();
     bough_status status = o->checkpoint ? read_interval(o->checkpoint, &c->interval) : bough_ok();
     if (bough_is_ok(&status) && o->checkpoint) status = check_interval(command, c->interval);
-    if (!bough_is_ok(&status)) return status;
+    BOUGH_TRY(status);
     take_memory(command);
     find_fingerprints(command);
     return o->resume ? resume(command) : status;
@@ -188,13 +186,12 @@ static bough_status write_copy(const bough_run_command *command) {
     head h = {.program = c->program, .input = c->input, .interval = c->interval, .size = c->size};
     memcpy(h.magic, magic, sizeof magic);
     h.sum = sum_of(&h, c->copy);
-    bough_status status = bough_folder_open(command->folder, name, path, &file);
-    if (!bough_is_ok(&status)) return status;
+    BOUGH_TRY(bough_folder_open(command->folder, name, path, &file));
     errno = 0;
     bool good = fwrite(&h, sizeof h, 1, file) == 1 && fwrite(c->copy, 1, c->size, file) == c->size &&
                 fflush(file) == 0 && fsync(fileno(file)) == 0;
     if (good) return bough_folder_commit(path, file);
-    status = bough_fail(BOUGH_IO, "cannot write '%.200s': %s", path, strerror(errno));
+    bough_status status = bough_fail(BOUGH_IO, "cannot write '%.200s': %s", path, strerror(errno));
     bough_folder_discard(path, file);
     return status;
 }

@@ -218,8 +218,7 @@ static bough_status list_scene(export *x, const bough_channels *channels) {
 
 static bough_status list_variables(export *x) {
     bough_channels channels = bough_channels_start(x->arena);
-    bough_status status = bough_simulation_channels(x->simulation, &channels);
-    if (!bough_is_ok(&status)) return status;
+    BOUGH_TRY(bough_simulation_channels(x->simulation, &channels));
     size_t inputs = (size_t)x->simulation->scene->n_input, outputs = (size_t)channels.count;
     x->input = bough_arena_take(x->arena, (inputs + 1) * sizeof *x->input);
     x->output = bough_arena_take(x->arena, (outputs + 1) * sizeof *x->output);
@@ -265,10 +264,9 @@ static bough_status add_library(bough_archive *archive) {
 
 static bough_status write_archive(export *x, const char *path) {
     FILE *file;
-    bough_status status = bough_folder_open_partial(path, &file);
-    if (!bough_is_ok(&status)) return status;
+    BOUGH_TRY(bough_folder_open_partial(path, &file));
     bough_archive archive = {.arena = x->arena, .file = file};
-    status = add_text(x, "modelDescription.xml", put_description, &archive);
+    bough_status status = add_text(x, "modelDescription.xml", put_description, &archive);
     if (bough_is_ok(&status)) status = add_library(&archive);
     if (bough_is_ok(&status)) status = add_text(x, "resources/scene.txt", put_settings, &archive);
     for (int k = 0; k < x->files.n && bough_is_ok(&status); k++) {
@@ -307,12 +305,12 @@ static bough_status export_scene(bough_arena *arena, const void *given) {
     named.operand = options->second;
     export x = {.arena = arena, .options = &named};
     bough_simulation *simulation;
-    bough_status status = bough_open(arena, &named, &simulation);
-    if (!bough_is_ok(&status)) return status;
+    BOUGH_TRY(bough_open(arena, &named, &simulation));
     x.simulation = simulation;
-    status = bough_simulation_known(simulation, "it has files of its own, which are not exported");
+    bough_status status =
+        bough_simulation_known(simulation, "it has files of its own, which are not exported");
     if (bough_is_ok(&status)) status = list_variables(&x);
-    if (!bough_is_ok(&status)) return status;
+    BOUGH_TRY(status);
     x.files = bough_scene_list_files(arena, simulation->scene);
     status = place_files(&x);
     make_token(&x);
@@ -321,7 +319,7 @@ static bough_status export_scene(bough_arena *arena, const void *given) {
     if (bough_is_ok(&status)) status = bough_folder_make(folder);
     if (bough_is_ok(&status)) status = bough_folder_path(folder, "bough.fmu", path);
     if (bough_is_ok(&status)) status = write_archive(&x, path);
-    if (!bough_is_ok(&status)) return status;
+    BOUGH_TRY(status);
     printf("inputs: %d\noutputs: %d\nfmu: %s\n", x.n_input, x.n_output, path);
     return status;
 }

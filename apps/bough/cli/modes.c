@@ -123,8 +123,7 @@ static bough_status solve_rods(bough_arena *arena, const bough_simulation *s, ro
     int n = 0;
     for (int k = 0; k < s->n_beam; k++) {
         if (s->beam[k].rod == NULL) continue;
-        bough_status status = solve_rod(arena, s, &s->beam[k], &rods[n]);
-        if (!bough_is_ok(&status)) return status;
+        BOUGH_TRY(solve_rod(arena, s, &s->beam[k], &rods[n]));
         print_rod(&rods[n++]);
     }
     return bough_ok();
@@ -301,11 +300,10 @@ static bough_status find_whole(bough_arena *arena, const bough_options *options,
     if (s->master->assembly->n_state == 0) {
         return bough_fail(BOUGH_INVALID, "%.200s: no body of the scene can move or bend", s->scene->file);
     }
-    bough_status status = bough_vibration_find(arena, s, s->scene->modes.count, &v);
-    if (!bough_is_ok(&status)) return status;
+    BOUGH_TRY(bough_vibration_find(arena, s, s->scene->modes.count, &v));
     const solution x = {s, &v};
     print_modes(s, &v);
-    status = bough_folder_make(folder);
+    bough_status status = bough_folder_make(folder);
     if (bough_is_ok(&status)) status = bough_folder_write(folder, "modes.csv", write_modes, &x);
     if (bough_is_ok(&status) && s->scene->modes.shapes) {
         status = bough_folder_write(folder, "shapes.csv", write_shapes, &x);
@@ -348,22 +346,20 @@ static bough_status find(bough_arena *arena, const void *given) {
     if (own->sweep.n > 0) return bough_modes_sweep(arena, options, &own->sweep, own->until);
     if (own->until) return bough_fail(BOUGH_INVALID, "--until unstable needs a --sweep");
     bough_simulation *s;
-    bough_status status = bough_open(arena, options, &s);
-    if (bough_is_ok(&status)) status = bough_simulation_known(s, "it has no modes");
-    if (!bough_is_ok(&status)) return status;
+    BOUGH_TRY(bough_open(arena, options, &s));
+    BOUGH_TRY(bough_simulation_known(s, "it has no modes"));
     if (bough_vibration_wanted(s)) return find_whole(arena, options, s);
     if (bough_steady_rods(s) == 0) {
         return bough_fail(BOUGH_INVALID, "%.200s: no body has fidelity rod", s->scene->file);
     }
     const char *folder = bough_out_folder(arena, options);
     rod_list rods = {bough_steady_rods(s), bough_arena_take(arena, (size_t)s->n_rod * sizeof *rods.rod)};
-    status = solve_rods(arena, s, rods.rod);
-    if (bough_is_ok(&status)) status = bough_folder_make(folder);
-    if (bough_is_ok(&status)) status = bough_folder_write(folder, "modes.csv", write_all_modes, &rods);
-    if (bough_is_ok(&status) && s->scene->modes.shapes)
-        status = bough_folder_write(folder, "shapes.csv", write_all_shapes, &rods);
-    if (bough_is_ok(&status)) printf("out: %s\n", folder);
-    return status;
+    BOUGH_TRY(solve_rods(arena, s, rods.rod));
+    BOUGH_TRY(bough_folder_make(folder));
+    BOUGH_TRY(bough_folder_write(folder, "modes.csv", write_all_modes, &rods));
+    if (s->scene->modes.shapes) BOUGH_TRY(bough_folder_write(folder, "shapes.csv", write_all_shapes, &rods));
+    printf("out: %s\n", folder);
+    return bough_ok();
 }
 
 const bough_command bough_command_modes = {

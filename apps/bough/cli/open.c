@@ -80,8 +80,7 @@ bough_status bough_open_scene(bough_arena *arena, const bough_options *options, 
 
 bough_status bough_open(bough_arena *arena, const bough_options *options, bough_simulation **simulation) {
     bough_scene *scene;
-    bough_status status = bough_open_scene(arena, options, &scene);
-    if (!bough_is_ok(&status)) return status;
+    BOUGH_TRY(bough_open_scene(arena, options, &scene));
     return bough_simulation_build(arena, scene, simulation);
 }
 

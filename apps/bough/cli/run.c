@@ -35,8 +35,7 @@ static void record(bough_run_command *command) {
 static bough_status open_frames(bough_run_command *command) {
     const bough_scene_output *output = &command->run.simulation->scene->simulation.output;
     if (!(output->frames > 0)) return bough_ok();
-    bough_status status = bough_shape_create(command->arena, command->run.simulation, &command->shape);
-    if (!bough_is_ok(&status)) return status;
+    BOUGH_TRY(bough_shape_create(command->arena, command->run.simulation, &command->shape));
     bough_frames_def def = {.folder = command->folder,
                             .n_line = command->shape.n_line,
                             .line = command->shape.line,
@@ -86,16 +85,14 @@ static bough_status open_results(bough_run_command *command) {
 bough_status bough_run_command_build(bough_run_command *command) {
     double began = bough_wall_clock();
     bough_scene *scene;
-    bough_status status = bough_open_scene(command->arena, &command->options->common, &scene);
-    if (bough_is_ok(&status)) status = bough_run_create(command->arena, scene, &command->run);
-    if (!bough_is_ok(&status)) return status;
-    status = bough_open_channels(scene, &command->run.channels, &command->recorded);
-    if (!bough_is_ok(&status)) return status;
+    BOUGH_TRY(bough_open_scene(command->arena, &command->options->common, &scene));
+    BOUGH_TRY(bough_run_create(command->arena, scene, &command->run));
+    BOUGH_TRY(bough_open_channels(scene, &command->run.channels, &command->recorded));
     record(command);
     size_t n = (size_t)command->recorded.count;
     command->statistics = bough_arena_take(command->arena, (n + 1) * sizeof *command->statistics);
     command->build_s = bough_wall_clock() - began;
-    return status;
+    return bough_ok();
 }
 
 static bough_status write_binary(const bough_run_command *command) {
@@ -157,10 +154,8 @@ static bough_status after_step(void *self) {
 static bough_status judge(bough_run_command *command) {
     const bough_scene_simulation *x = &command->run.simulation->scene->simulation;
     const bough_companion *c = command->run.companion;
-    bough_status status = bough_ok();
     if (x->error_shares || bough_error_exceeds(c, x->error_bound))
-        status = bough_error_shares_find(command->arena, c, bough_stop_requested, &command->shares);
-    if (!bough_is_ok(&status)) return status;
+        BOUGH_TRY(bough_error_shares_find(command->arena, c, bough_stop_requested, &command->shares));
     return bough_error_judge(c, &command->shares, x->error_bound, command->warning);
 }
 
@@ -196,14 +191,12 @@ static const bough_option rows[] = {
 
 static bough_status run(bough_arena *arena, const void *options) {
     bough_run_command command = {.options = options, .arena = arena, .verdict = bough_ok()};
-    bough_status status = bough_run_command_build(&command);
-    if (!bough_is_ok(&status)) return status;
+    BOUGH_TRY(bough_run_command_build(&command));
     bough_stop_listen();
-    status = open_results(&command);
-    if (!bough_is_ok(&status)) return status;
+    BOUGH_TRY(open_results(&command));
     step_all(&command);
     if (bough_is_ok(&command.run.outcome)) command.verdict = judge(&command);
-    status = close_results(&command);
+    bough_status status = close_results(&command);
     bough_run_report(&command, stdout);
     return bough_is_ok(&status) ? command.verdict : status;
 }

@@ -336,8 +336,7 @@ static void write_member(bough_summary *s, const bough_run *run, int member) {
 bough_status bough_run_summarise(const bough_run_command *command) {
     const bough_run *run = &command->run;
     bough_summary s;
-    bough_status status = bough_summary_open(&s, command->folder, "summary.json");
-    if (!bough_is_ok(&status)) return status;
+    BOUGH_TRY(bough_summary_open(&s, command->folder, "summary.json"));
     write_input(&s, command);
     write_warnings(&s, run);
     write_method(&s, run);

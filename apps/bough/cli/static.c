@@ -44,8 +44,7 @@ static bough_status find_rods(bough_arena *arena, equilibrium *x) {
     const bough_turning rest = {0};
     for (int k = 0; k < s->n_beam; k++) {
         if (s->beam[k].rod == NULL) continue;
-        bough_status status = bough_steady_find(arena, s, &s->beam[k], &rest, &x->rod[x->n++]);
-        if (!bough_is_ok(&status)) return status;
+        BOUGH_TRY(bough_steady_find(arena, s, &s->beam[k], &rest, &x->rod[x->n++]));
     }
     return bough_ok();
 }
@@ -60,7 +59,7 @@ static bough_status find_whole(bough_arena *arena, equilibrium *x) {
         status = bough_steady_equilibrium(arena, s, &s->beam[k], x->time, &x->rod[x->n++]);
     }
     if (bough_is_ok(&status)) status = bough_simulation_channels(s, &x->channels);
-    if (!bough_is_ok(&status)) return status;
+    BOUGH_TRY(status);
     x->value = bough_arena_doubles(arena, (size_t)x->channels.count + 1);
     bough_simulation_update(s);
     bough_channels_sample(&x->channels, x->time, x->value);
@@ -159,10 +158,9 @@ static bough_status find_finer(bough_arena *arena, void *self) {
     bough_simulation *s;
     equilibrium fine;
     if (!refine(arena, &scene, c->mesh)) return bough_ok();
-    bough_status status = bough_simulation_build(arena, &scene, &s);
-    if (!bough_is_ok(&status)) return status;
+    BOUGH_TRY(bough_simulation_build(arena, &scene, &s));
     start_near(c->coarse->simulation, s);
-    status = find_equilibrium(arena, s, &fine);
+    bough_status status = find_equilibrium(arena, s, &fine);
     if (bough_is_ok(&status)) compare(c, &fine);
     return status;
 }
@@ -308,8 +306,7 @@ static void write_rod(FILE *file, const bough_steady *x) {
 static bough_status write_channels(const equilibrium *x, const mesh_error *mesh, const char *folder) {
     char path[BOUGH_PATH_MAX];
     FILE *file = NULL;
-    bough_status status = bough_folder_open(folder, "static-channels.csv", path, &file);
-    if (!bough_is_ok(&status)) return status;
+    BOUGH_TRY(bough_folder_open(folder, "static-channels.csv", path, &file));
     fputs("channel,unit,value,mesh error\n", file);
     for (int i = 0; i < x->channels.count; i++) {
         const bough_channel *c = &x->channels.channel[i];
@@ -370,13 +367,11 @@ static bough_status follow_path(bough_arena *arena, bough_simulation *s, const c
     char path[BOUGH_PATH_MAX];
     bough_path_report report;
     bough_channels channels = bough_channels_start(arena);
-    bough_status status = bough_simulation_channels(s, &channels);
-    if (!bough_is_ok(&status)) return status;
+    BOUGH_TRY(bough_simulation_channels(s, &channels));
     path_table t = {.channels = &channels};
     t.value = bough_arena_doubles(arena, (size_t)channels.count + 1);
-    status = bough_folder_make(folder);
-    if (bough_is_ok(&status)) status = bough_folder_open(folder, "static-path.csv", path, &t.file);
-    if (!bough_is_ok(&status)) return status;
+    BOUGH_TRY(bough_folder_make(folder));
+    BOUGH_TRY(bough_folder_open(folder, "static-path.csv", path, &t.file));
     write_path_head(&t);
     bough_status followed =
         bough_simulation_path(s, s->master->assembly, (bough_path_listener){&t, write_path_point}, &report);
@@ -385,9 +380,9 @@ static bough_status follow_path(bough_arena *arena, bough_simulation *s, const c
         return followed;
     }
     print_path_end(&report);
-    status = bough_folder_commit(path, t.file);
-    if (bough_is_ok(&status)) printf("out: %s\n", path);
-    return bough_is_ok(&followed) ? status : followed;
+    BOUGH_TRY(bough_folder_commit(path, t.file));
+    printf("out: %s\n", path);
+    return followed;
 }
 
 // -- the command ----------------------------------------------------------------------------------
@@ -423,9 +418,8 @@ static bough_status find(bough_arena *arena, const void *given) {
     const static_options *own = given;
     const bough_options *options = &own->common;
     bough_simulation *s;
-    bough_status status = bough_open(arena, options, &s);
-    if (bough_is_ok(&status)) status = bough_simulation_known(s, "it has no equilibrium");
-    if (!bough_is_ok(&status)) return status;
+    BOUGH_TRY(bough_open(arena, options, &s));
+    BOUGH_TRY(bough_simulation_known(s, "it has no equilibrium"));
     if (s->n_rod == 0 && s->tree->n_v == 0) {
         return bough_fail(BOUGH_INVALID, "%.200s: no body of the scene can move or bend", s->scene->file);
     }
@@ -433,8 +427,7 @@ static bough_status find(bough_arena *arena, const void *given) {
     if (own->path) return follow_path(arena, s, folder);
     equilibrium x;
     mesh_error mesh;
-    status = find_equilibrium(arena, s, &x);
-    if (!bough_is_ok(&status)) return status;
+    BOUGH_TRY(find_equilibrium(arena, s, &x));
     const double *error = find_mesh_error(arena, &x, &mesh);
     if (!x.independent) print_whole(&x);
     for (int k = 0; k < x.n; k++) {
@@ -443,11 +436,11 @@ static bough_status find(bough_arena *arena, const void *given) {
     }
     print_modal(s);
     if (mesh.unknown[0]) printf("mesh error: not estimated: %s\n", mesh.unknown);
-    status = bough_folder_make(folder);
-    if (bough_is_ok(&status)) status = bough_folder_write(folder, "static.csv", write_rods, &x);
-    if (bough_is_ok(&status) && !x.independent) status = write_channels(&x, &mesh, folder);
-    if (bough_is_ok(&status)) printf("out: %s\n", folder);
-    return status;
+    BOUGH_TRY(bough_folder_make(folder));
+    BOUGH_TRY(bough_folder_write(folder, "static.csv", write_rods, &x));
+    if (!x.independent) BOUGH_TRY(write_channels(&x, &mesh, folder));
+    printf("out: %s\n", folder);
+    return bough_ok();
 }
 
 const bough_command bough_command_static = {

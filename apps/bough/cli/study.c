@@ -48,9 +48,8 @@ static bough_status perform(bough_arena *arena, const void *given) {
                                .stop = bough_stop_requested,
                                .stream = stdout};
     if (!(own->part.n > 0) && study->is.compared) { // parts and load sets share a folder
-        status = bough_folder_make(how.folder);
-        if (bough_is_ok(&status)) status = bough_lock_folder(arena, how.folder);
-        if (!bough_is_ok(&status)) return status;
+        BOUGH_TRY(bough_folder_make(how.folder));
+        BOUGH_TRY(bough_lock_folder(arena, how.folder));
         bough_folder_clean(how.folder);
     }
     bough_stop_listen();

@@ -43,8 +43,7 @@ static bough_status perform(bough_arena *arena, const void *given) {
     const tune_options *own = given;
     const bough_options *options = &own->common;
     bough_scene *scene;
-    bough_status status = bough_open_scene(arena, options, &scene);
-    if (!bough_is_ok(&status)) return status;
+    BOUGH_TRY(bough_open_scene(arena, options, &scene));
     double span = own->span > 0 ? own->span : usual_span;
     bough_tune_options how = {.scene = options->operand,
                               .n_set = options->set.n,
@@ -55,7 +54,7 @@ static bough_status perform(bough_arena *arena, const void *given) {
                               .stop = bough_stop_requested,
                               .stream = stdout};
     bough_stop_listen();
-    status = bough_tune(arena, &how);
+    bough_status status = bough_tune(arena, &how);
     if (bough_is_ok(&status)) printf("out: %s: tune.csv, tune.svg, tune.yaml\n", how.folder);
     return status;
 }

@@ -6,24 +6,22 @@
 static bough_status write_box(const bough_wind_box *box, const char *title, const char *folder) {
     char path[BOUGH_PATH_MAX];
     FILE *file;
-    bough_status status = bough_folder_make(folder);
-    if (bough_is_ok(&status)) status = bough_folder_open(folder, "wind.bts", path, &file);
-    if (!bough_is_ok(&status)) return status;
+    BOUGH_TRY(bough_folder_make(folder));
+    BOUGH_TRY(bough_folder_open(folder, "wind.bts", path, &file));
     if (!bough_wind_box_write(box, title, file)) {
         bough_folder_discard(path, file);
         return bough_fail(BOUGH_IO, "cannot write '%.200s'", path);
     }
-    status = bough_folder_commit(path, file);
-    if (bough_is_ok(&status)) printf("wind: %s\n", path);
-    return status;
+    BOUGH_TRY(bough_folder_commit(path, file));
+    printf("wind: %s\n", path);
+    return bough_ok();
 }
 
 static const bough_option rows[] = {BOUGH_OPTION_SET, BOUGH_OPTION_OUT, {0}};
 
 static bough_status wind(bough_arena *arena, const void *options) {
     bough_simulation *s;
-    bough_status status = bough_open(arena, options, &s);
-    if (!bough_is_ok(&status)) return status;
+    BOUGH_TRY(bough_open(arena, options, &s));
     const bough_wind *field = s->aero ? bough_rotor_wind(bough_aero_link_rotor(s->aero)) : NULL;
     if (!field || !field->box) {
         return bough_fail(BOUGH_INVALID,

@@ -168,8 +168,7 @@ static bough_status build(bough_arena *arena, void *self) {
     // nobody sees the errors unless the scene asks for them
     if (!bough_node_find(scene->simulation.node, "error_estimate"))
         scene->simulation.error_estimate = BOUGH_SCENE_NO_ESTIMATE;
-    status = bough_run_create(arena, scene, &s->run);
-    if (!bough_is_ok(&status)) return status;
+    BOUGH_TRY(bough_run_create(arena, scene, &s->run));
     bough_pool_region(s->run.pool, start_threads, NULL);
     describe_copy(s);
     s->open = true;

@@ -234,8 +234,7 @@ static void put_text(const void *text, FILE *file) { fputs(text, file); }
 static bough_status write_box(const char *folder, const bough_wind_box *box) {
     char path[BOUGH_PATH_MAX];
     FILE *file;
-    bough_status status = bough_folder_open(folder, BOUGH_IMPORT_BOX, path, &file);
-    if (!bough_is_ok(&status)) return status;
+    BOUGH_TRY(bough_folder_open(folder, BOUGH_IMPORT_BOX, path, &file));
     if (bough_wind_box_write(box, "imported", file)) return bough_folder_commit(path, file);
     bough_folder_discard(path, file);
     return bough_fail(BOUGH_IO, "cannot write '%.200s'", path);
@@ -346,9 +345,8 @@ static bough_status write_list(bough_draft *d, const char *folder) {
 static bough_status publish(bough_draft *d, const char *folder) {
     char draft[BOUGH_PATH_MAX];
     bool present = access(folder, F_OK) == 0;
-    bough_status status = bough_folder_path(folder, "import.partial", draft);
-    if (!bough_is_ok(&status)) return status;
-    status = write_files(draft, d);
+    BOUGH_TRY(bough_folder_path(folder, "import.partial", draft));
+    bough_status status = write_files(draft, d);
     if (bough_is_ok(&status)) status = check_scene(d, draft);
     if (bough_is_ok(&status)) status = write_list(d, draft);
     bough_status finished = finish_files(draft, folder, bough_is_ok(&status));

@@ -232,9 +232,8 @@ bough_status bough_wind_bladed_read(bough_arena *arena, const char *path, bough_
     snprintf(wind, sizeof wind, "%s%s", path, ends ? "" : ".wnd");
     FILE *file;
     summary s;
-    bough_status status = open_data(wind, &file);
-    if (!bough_is_ok(&status)) return status;
-    status = read_summary(sum, &s);
+    BOUGH_TRY(open_data(wind, &file));
+    bough_status status = read_summary(sum, &s);
     if (bough_is_ok(&status)) status = read_bladed(arena, file, wind, &s, box);
     fclose(file);
     return status;
@@ -340,8 +339,7 @@ bough_status bough_wind_hawc_read(bough_arena *arena, const bough_hawc_def *def,
     bough_status status = bough_ok();
     for (int c = 0; c < 3 && bough_is_ok(&status); c++) {
         double *from;
-        status = read_component(arena, def->file[c], n, &from);
-        if (!bough_is_ok(&status)) return status;
+        BOUGH_TRY(read_component(arena, def->file[c], n, &from));
         shape(def, c, box->bottom, from);
         store(box, c, from, n, &box->scale[c], &box->offset[c], value);
     }

@@ -185,11 +185,10 @@ bough_status bough_aero_link_build(bough_arena *arena, bough_simulation *simulat
     bough_aero_link *l = bough_arena_take(arena, sizeof *l);
     tables t;
     l->simulation = simulation;
-    bough_status status = take_blades(arena, l);
-    if (!bough_is_ok(&status)) return status;
+    BOUGH_TRY(take_blades(arena, l));
     take_tables(arena, l, &t);
     bough_rotor_def def = rotor_def(l, &t);
-    status = bough_rotor_build(arena, &def, &l->rotor);
+    bough_status status = bough_rotor_build(arena, &def, &l->rotor);
     if (bough_is_ok(&status)) status = check_reach(l);
     const bough_scene_aero *aero = &simulation->scene->aero;
     const bough_node *file = bough_node_find(aero->wind.node, "file");

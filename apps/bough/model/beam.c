@@ -29,9 +29,7 @@ bough_status bough_beam_build(bough_arena *arena, bough_beam *beam, bough_integr
                               const double *input, bough_member *member) {
     bool rod = beam->body->fidelity == BOUGH_SCENE_ROD;
     bough_system system = {0};
-    bough_status status =
-        rod ? build_rod(arena, beam, input, &system) : build_modal(arena, beam, input, &system);
-    if (!bough_is_ok(&status)) return status;
+    BOUGH_TRY(rod ? build_rod(arena, beam, input, &system) : build_modal(arena, beam, input, &system));
     if (beam->in_ground) {
         beam->ground =
             bough_ground_body_create(arena, &system, bough_beam_mesh(beam), bough_beam_loads(beam));

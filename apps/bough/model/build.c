@@ -114,8 +114,7 @@ static bough_status build_tree(bough_builder *b) {
                           .n_closures = scene->n_closure,
                           .closures = b->force.closure,
                           .closure_time = scene->simulation.macro_step};
-    bough_status status = bough_tree_create(b->arena, &def, &s->tree);
-    if (!bough_is_ok(&status)) return status;
+    BOUGH_TRY(bough_tree_create(b->arena, &def, &s->tree));
     s->view = bough_tree_data_create(b->arena, s->tree);
     s->acceleration = bough_arena_doubles(b->arena, s->tree->n_v);
     if (scene->n_bushing > 0) {
@@ -137,17 +136,13 @@ static bough_status build_rods(bough_builder *b) {
     for (int k = 0; k < s->n_beam; k++) {
         bough_beam *beam = &s->beam[k];
         if (beam->port < 0) continue;
-        bough_status status =
-            bough_beam_build(b->arena, beam, solver_options(bough_scene_micro(b->scene, beam->body)),
-                             motion + BOUGH_PORT_OUTPUTS * beam->port, &s->rod[beam->port]);
-        if (!bough_is_ok(&status)) return status;
+        BOUGH_TRY(bough_beam_build(b->arena, beam, solver_options(bough_scene_micro(b->scene, beam->body)),
+                                   motion + BOUGH_PORT_OUTPUTS * beam->port, &s->rod[beam->port]));
     }
     for (int k = s->n_rod, i = 0; k < s->n_rod + s->n_fmu; i++) {
         if (b->scene->body[i].fidelity != BOUGH_SCENE_FMU) continue;
-        bough_status status =
-            bough_fmu_member_create(b->arena, &b->scene->body[i], motion + BOUGH_PORT_OUTPUTS * k,
-                                    b->scene->simulation.duration, &s->rod[k]);
-        if (!bough_is_ok(&status)) return status;
+        BOUGH_TRY(bough_fmu_member_create(b->arena, &b->scene->body[i], motion + BOUGH_PORT_OUTPUTS * k,
+                                          b->scene->simulation.duration, &s->rod[k]));
         k++;
     }
     return bough_ok();
@@ -249,10 +244,7 @@ static bough_status build_master(bough_builder *b) {
     if (s->control != NULL) load[def.n_load++] = bough_control_link_load(s->control);
     if (s->jump != NULL) load[def.n_load++] = bough_jump_link_load(s->jump, sim->macro_step);
     def.load = load;
-    if (sim->initial != BOUGH_SCENE_UNDEFORMED) {
-        bough_status status = find_equilibrium(b->arena, &def.assembly, s);
-        if (!bough_is_ok(&status)) return status;
-    }
+    if (sim->initial != BOUGH_SCENE_UNDEFORMED) BOUGH_TRY(find_equilibrium(b->arena, &def.assembly, s));
     bough_status status = bough_master_build(b->arena, &def, &s->master);
     const bough_node *scheme = sim->coupling.node ? bough_node_find(sim->coupling.node, "scheme") : NULL;
     return scheme ? bough_scene_blame(scheme, "coupling.scheme", status) : status;

@@ -220,8 +220,7 @@ static bough_status add_beam(bough_builder *b, int index) {
     beam->body = &b->scene->body[index];
     beam->marker = s->n_beam;
     beam->port = beam->end = -1;
-    bough_status status = discretise(b, beam);
-    if (!bough_is_ok(&status)) return status;
+    BOUGH_TRY(discretise(b, beam));
     b->force.marker[s->n_beam++] = (bough_marker_def){beam->body->name, index, bough_transform_identity()};
     if (beam->body->fidelity == BOUGH_SCENE_RIGID) return bough_ok();
     beam->port = s->n_rod;
@@ -242,8 +241,7 @@ static void add_fmu(bough_builder *b, int index) {
 bough_status bough_build_bodies(bough_builder *b) {
     for (int i = 0; i < b->scene->n_body; i++) { // bodies hang on beams that stand already
         if (b->scene->body[i].rod.node == NULL) continue;
-        bough_status status = add_beam(b, i);
-        if (!bough_is_ok(&status)) return status;
+        BOUGH_TRY(add_beam(b, i));
     }
     for (int i = 0; i < b->scene->n_body; i++) {
         if (b->scene->body[i].fidelity == BOUGH_SCENE_FMU) add_fmu(b, i);

@@ -425,8 +425,7 @@ static bough_status sample(void *self, double t, double t_next, bool *jumped) {
     if (l->events) {
         bough_events_look(l->events, &sensed, l->event);
     }
-    bough_status status = decide(l, &sensed, &demand);
-    if (!bough_is_ok(&status)) return status;
+    BOUGH_TRY(decide(l, &sensed, &demand));
     if (l->events) {
         bough_events_change(l->events, &sensed, l->event, &demand);
     }

@@ -284,8 +284,7 @@ static bough_status walk_path(bough_arena *arena, void *data) {
     bough_equilibrium_work work = {0};
     set_up(arena, s, x->assembly, 0, &b);
     bough_equilibrium_def start = equilibrium_def(&b);
-    bough_status status = balance(arena, s, b.coupled, &start, b.state, &work);
-    if (!bough_is_ok(&status)) return status;
+    BOUGH_TRY(balance(arena, s, b.coupled, &start, b.state, &work));
     walk w = {b.self, x->assembly, s, x->listener};
     def.end = bough_equilibrium_time(s);
     def.self = &w;

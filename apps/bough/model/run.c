@@ -24,11 +24,9 @@ bough_status bough_run_create(bough_arena *arena, const bough_scene *scene, boug
     run->pool = bough_pool_create(arena, threads);
     run->side_by_side = run->pool && fits_side_by_side(scene, threads);
     bough_pool *own = run->side_by_side ? NULL : run->pool;
-    bough_status status = bough_simulation_build_on(arena, scene, own, &run->simulation);
-    if (!bough_is_ok(&status)) return status;
+    BOUGH_TRY(bough_simulation_build_on(arena, scene, own, &run->simulation));
     run->channels = bough_channels_start(arena);
-    status = bough_simulation_channels(run->simulation, &run->channels);
-    if (!bough_is_ok(&status)) return status;
+    BOUGH_TRY(bough_simulation_channels(run->simulation, &run->channels));
     size_t n = (size_t)run->simulation->master->assembly->n_member;
     run->value = bough_arena_doubles(arena, (size_t)run->channels.count + 1);
     run->earlier = bough_arena_take(arena, (n + 1) * sizeof *run->earlier);

@@ -171,10 +171,9 @@ static bough_status put_rows(packer *p, FILE *out) {
 static bough_status write_file(packer *p) {
     char path[BOUGH_PATH_MAX];
     FILE *out;
-    bough_status status = bough_folder_open(p->def->folder, "channels.outb", path, &out);
-    if (!bough_is_ok(&status)) return status;
+    BOUGH_TRY(bough_folder_open(p->def->folder, "channels.outb", path, &out));
     put_head(p, out);
-    status = put_rows(p, out);
+    bough_status status = put_rows(p, out);
     if (bough_is_ok(&status)) return bough_folder_commit(path, out);
     bough_folder_discard(path, out);
     return status;

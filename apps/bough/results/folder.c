@@ -28,12 +28,10 @@ bough_status bough_folder_make(const char *path) {
     for (size_t i = 1; i < length; i++) {
         if (part[i] != '/') continue;
         part[i] = '\0';
-        bough_status status = make_one(part);
-        if (!bough_is_ok(&status)) return status;
+        BOUGH_TRY(make_one(part));
         part[i] = '/';
     }
-    bough_status status = make_one(part);
-    if (!bough_is_ok(&status)) return status;
+    BOUGH_TRY(make_one(part));
     if (access(path, W_OK | X_OK) == 0) return bough_ok();
     return bough_fail(BOUGH_IO, "cannot write into the folder '%.200s': %s", path, strerror(errno));
 }
@@ -72,8 +70,7 @@ bough_status bough_folder_write(const char *folder, const char *name,
                                 void (*write)(const void *self, FILE *file), const void *self) {
     char path[BOUGH_PATH_MAX];
     FILE *file = NULL;
-    bough_status status = bough_folder_open(folder, name, path, &file);
-    if (!bough_is_ok(&status)) return status;
+    BOUGH_TRY(bough_folder_open(folder, name, path, &file));
     write(self, file);
     return bough_folder_commit(path, file);
 }

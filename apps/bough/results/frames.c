@@ -44,14 +44,13 @@ bough_status bough_frames_open(bough_arena *arena, const bough_frames_def *def, 
     f->force = f->point + 3 * f->n_point;
     f->moment = f->force + 3 * f->n_point;
     char folder[BOUGH_PATH_MAX];
-    bough_status status = bough_folder_path(def->folder, "frames", folder);
-    if (bough_is_ok(&status)) status = bough_folder_make(folder);
-    if (bough_is_ok(&status)) status = bough_folder_path(def->folder, "frames.pvd", f->list_path);
-    if (!bough_is_ok(&status)) return status;
+    BOUGH_TRY(bough_folder_path(def->folder, "frames", folder));
+    BOUGH_TRY(bough_folder_make(folder));
+    BOUGH_TRY(bough_folder_path(def->folder, "frames.pvd", f->list_path));
     bough_arena_on_destroy(arena, release, f);
-    status = def->kept.count > 0 ? reopen(f) : create(f);
+    BOUGH_TRY(def->kept.count > 0 ? reopen(f) : create(f));
     *frames = f;
-    return status;
+    return bough_ok();
 }
 
 static void write_vectors(const bough_frames *f, const char *name, const double *x, FILE *file) {
@@ -144,8 +143,7 @@ bough_status bough_frames_remove(const char *folder) {
 }
 
 bough_status bough_frames_finish(bough_frames *f) {
-    bough_status status = remove_from(f->def.folder, f->n_frame);
-    if (!bough_is_ok(&status)) return status;
+    BOUGH_TRY(remove_from(f->def.folder, f->n_frame));
     fprintf(f->list, "</Collection>\n</VTKFile>\n");
     FILE *list = f->list;
     f->list = NULL;

@@ -162,10 +162,9 @@ static bough_status write_head(bough_recorder *r, const char *title) {
 
 // The head is written again, for its outcome; the rows stay.
 static bough_status reopen(bough_recorder *r, const bough_recorder_def *def) {
-    bough_status status = bough_folder_reopen_partial(r->path, def->kept.bytes, &r->file);
-    if (!bough_is_ok(&status)) return status;
+    BOUGH_TRY(bough_folder_reopen_partial(r->path, def->kept.bytes, &r->file));
     rewind(r->file);
-    status = write_head(r, def->title);
+    bough_status status = write_head(r, def->title);
     r->rows = def->kept.count;
     if (!bough_is_ok(&status)) return status;
     bool same = r->rows_at + r->rows * r->row_length == def->kept.bytes;
@@ -174,8 +173,7 @@ static bough_status reopen(bough_recorder *r, const bough_recorder_def *def) {
 }
 
 static bough_status create(bough_recorder *r, const bough_recorder_def *def) {
-    bough_status status = bough_folder_open_partial(r->path, &r->file);
-    if (!bough_is_ok(&status)) return status;
+    BOUGH_TRY(bough_folder_open_partial(r->path, &r->file));
     setvbuf(r->file, r->buffer, _IOFBF, BUFFER);
     return write_head(r, def->title);
 }
@@ -191,8 +189,7 @@ static void take_memory(bough_recorder *r, bough_arena *arena) {
 bough_status bough_recorder_open(bough_arena *arena, const bough_recorder_def *def,
                                  bough_recorder **recorder) {
     char path[BOUGH_PATH_MAX];
-    bough_status status = bough_folder_path(def->folder, "channels.out", path);
-    if (!bough_is_ok(&status)) return status;
+    BOUGH_TRY(bough_folder_path(def->folder, "channels.out", path));
     bough_recorder *r = bough_arena_take(arena, sizeof *r);
     r->channels = def->channels;
     r->path = bough_arena_string(arena, path);

@@ -12,8 +12,7 @@
 bough_status bough_report_open(const char *folder, const char *name, FILE **file) {
     char path[BOUGH_PATH_MAX];
     *file = NULL;
-    bough_status status = bough_folder_path(folder, name, path);
-    if (!bough_is_ok(&status)) return status;
+    BOUGH_TRY(bough_folder_path(folder, name, path));
     char why[BOUGH_INPUT_REASON];
     *file = bough_input_open(path, BOUGH_INPUT_DATA, why);
     if (*file || errno == ENOENT || errno == ENOTDIR) return bough_ok();
@@ -106,16 +105,14 @@ bough_status bough_report_write(int n, const char *const *folder) {
     const char *page = (const char *)bough_report_page, *data = strstr(page, mark);
     char path[BOUGH_PATH_MAX];
     FILE *out;
-    bough_status status = bough_folder_path(folder[0], "report.html", path);
-    if (!bough_is_ok(&status)) return status;
+    BOUGH_TRY(bough_folder_path(folder[0], "report.html", path));
     struct stat there;
     if (stat(folder[0], &there) != 0) {
         return bough_fail(BOUGH_INVALID, "there is no folder '%.200s'", folder[0]);
     }
-    status = bough_folder_open_partial(path, &out);
-    if (!bough_is_ok(&status)) return status;
+    BOUGH_TRY(bough_folder_open_partial(path, &out));
     fwrite(page, 1, (size_t)(data - page), out);
-    status = add_data(folder[0], out);
+    bough_status status = add_data(folder[0], out);
     if (bough_is_ok(&status)) status = add_others(n, folder, out);
     if (!bough_is_ok(&status)) {
         bough_folder_discard(path, out);

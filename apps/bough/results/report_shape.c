@@ -171,8 +171,7 @@ static void draw(drawing *d, bool dark) {
 static bough_status write_picture(const char *folder, const bough_stored_frame *frame, bool dark) {
     drawing d = {.frame = frame};
     char path[BOUGH_PATH_MAX];
-    bough_status status = bough_folder_open(folder, dark ? "shape-dark.svg" : "shape.svg", path, &d.svg);
-    if (!bough_is_ok(&status)) return status;
+    BOUGH_TRY(bough_folder_open(folder, dark ? "shape-dark.svg" : "shape.svg", path, &d.svg));
     draw(&d, dark);
     return bough_folder_commit(path, d.svg);
 }
