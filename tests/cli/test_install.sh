@@ -10,9 +10,19 @@ library=$(find "$folder/usr" -name 'libbough.so.0')
 declared=$(grep -o 'bough_session_[a-z_]*(' "$source/apps/bough/exchange/bough.h" | tr -d '(' | sort -u)
 [ "$(nm -D --defined-only "$library" | sed 's/.* //' | sort)" = "$declared" ]
 if python=$(command -v python3) && "$python" -c "import ctypes" 2>/dev/null; then
-    PYTHONPATH=$(dirname "$(find "$folder/usr" -name bough.py)") PYTHONDONTWRITEBYTECODE=1 "$python" -c "
+    PYTHONPATH=$(dirname "$(dirname "$(find "$folder/usr" -name py.typed)")") PYTHONDONTWRITEBYTECODE=1 "$python" -c "
 import bough
 print('python:', len(bough.Session('$source/apps/mechanisms/pendulum.yaml').names), 'channels')"
+fi
+# The wheel, of what is built here, offline.
+if "$python" -m pip --version >/dev/null 2>&1; then
+    BOUGH_BUILD=$build PIP_NO_INDEX=1 "$python" -m pip install -q --no-deps --prefix "$folder/wheel" "$source" 2>"$folder/said" ||
+        { cat "$folder/said"; exit 1; }
+    cd "$folder"
+    PYTHONPATH=$(dirname "$(dirname "$(find "$folder/wheel" -name py.typed)")") "$python" -c "
+import bough
+print('wheel:', len(bough.run('$source/apps/mechanisms/pendulum.yaml', 'simulation.duration=0.1 s')), 'columns')"
+    cd - >/dev/null
 fi
 # Every scene that is installed can be built, every study read with the scenes of its runs; what is neither
 # is data that one of them names.

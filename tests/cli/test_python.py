@@ -1,5 +1,6 @@
 """The Python module against the program: test_python.py BOUGH SOURCE."""
 import os
+import struct
 import subprocess
 import sys
 import tempfile
@@ -11,6 +12,76 @@ PROGRAM, SOURCE = sys.argv[1:3]
 PENDULUM = SOURCE + "/apps/mechanisms/pendulum.yaml"
 RUNUP = SOURCE + "/apps/turbine/runup.yaml"
 FEW = ["bodies[3-5].rod.segments=8", "simulation.threads=1"]
+
+
+def numpy_python():
+    """A Python that has NumPy; None: there is none."""
+    for python in sys.executable, "/usr/bin/python3":
+        if subprocess.run([python, "-c", "import numpy"], capture_output=True).returncode == 0:
+            return python
+
+
+class Results(unittest.TestCase):
+    def setUp(self):
+        temporary = tempfile.TemporaryDirectory()
+        self.addCleanup(temporary.cleanup)
+        self.folder = temporary.name
+
+    def test_a_run_is_read_as_it_was_stepped(self):
+        settings = ["simulation.duration=0.5 s", "simulation.output.binary=true"]
+        rows = bough.run(PENDULUM, *settings, out=self.folder)
+        with bough.Session(PENDULUM, *settings) as session:
+            stepped = session.advance()
+        self.assertEqual(rows.names, stepped.names)
+        self.assertEqual(rows.units, stepped.units)
+        self.assertEqual(rows.units["Time"], "s")
+        self.assertEqual(rows.summary["status"], "complete")
+        self.assertEqual(bough.read(self.folder + "/channels.out").names, rows.names)
+        packed = bough.read(self.folder + "/channels.outb")
+        self.assertEqual(packed.units, rows.units)
+        every = (len(stepped.time) - 1) // (len(rows.time) - 1)
+        for name in rows:
+            span = max(rows[name]) - min(rows[name])
+            for k, value in enumerate(rows[name]):
+                self.assertAlmostEqual(value, stepped[name][k * every], delta=1e-8 * abs(value) + 1e-15, msg=name)
+                self.assertAlmostEqual(packed[name][k], value, delta=2e-5 * span + 1e-6 * abs(value), msg=name)
+        with self.assertRaises(KeyError):
+            rows["bobPoss"]
+
+    def test_every_kind_of_openfasts_binary_output_is_read(self):
+        head = struct.pack("<i5s", 5, b"title") + b"".join(w.ljust(10).encode() for w in (
+            "Time", "A", "B", "(s)", "(m)", "(kN)"))
+        scales = struct.pack("<2f2f", 2, 4, 1, -1)  # packed = scale value + offset
+        packed, rows = struct.pack("<6h", 3, 3, 5, 7, 7, 11), ([1, 2, 3], [1, 2, 3])
+        kinds = {1: struct.pack("<ii2d", 2, 3, 10, 5) + scales + head + struct.pack("<3i", 5, 15, 25) + packed,
+                 2: struct.pack("<ii2d", 2, 3, 0, 1) + scales + head + packed,
+                 3: struct.pack("<ii2d", 2, 3, 0, 1) + head + struct.pack("<6d", 1, 1, 2, 2, 3, 3),
+                 4: struct.pack("<hii2d", 10, 2, 3, 0, 1) + scales + head + packed}
+        for kind, data in kinds.items():
+            path = "%s/%d.outb" % (self.folder, kind)
+            with open(path, "wb") as file:
+                file.write(struct.pack("<h", kind) + data)
+            table = bough.read(path)
+            self.assertEqual((table.title, table.units), ("title", {"Time": "s", "A": "m", "B": "kN"}))
+            self.assertEqual([list(table[name]) for name in table], [[0, 1, 2], *rows], kind)
+            for size in 1, 20, len(data):
+                with open(path, "wb") as file:
+                    file.write((struct.pack("<h", kind) + data)[:size])
+                with self.assertRaises(bough.Error):
+                    bough.read(path)
+
+    def test_modes_and_statics_are_tables(self):
+        modes = bough.modes(PENDULUM)
+        self.assertEqual(modes.units["frequency"], "Hz")
+        self.assertGreater(modes["frequency"][0], 0)
+        beam = bough.static(SOURCE + "/apps/beams/elastica.yaml")
+        self.assertEqual(set(beam["rod"]), {"beam"})
+        self.assertAlmostEqual(beam["uz"][-1], -0.555, 3)
+        with self.assertRaisesRegex(bough.Error, "did you mean 'duration'"):
+            bough.run(PENDULUM, "simulation.duratoin=1")
+        for wrong in "results.txt", self.folder:
+            with self.assertRaises((bough.Error, OSError)):
+                bough.read(wrong)
 
 
 class Module(unittest.TestCase):
@@ -126,7 +197,10 @@ class Module(unittest.TestCase):
 
     def test_the_example_of_the_documents_runs(self):
         with open(SOURCE + "/docs/programs.md") as file:
-            code = file.read().split("## Python")[1].split("```")[1]
+            results, code = file.read().split("## Python")[1].split("```")[1:4:2]
+        if numpy_python():
+            said = subprocess.run([numpy_python(), "-c", results], check=True, cwd=SOURCE, capture_output=True, text=True)
+            self.assertRegex(said.stdout, r"rpm \+- .*\nmean of the last second: .* kN-m\n(.* Hz .*\n){12}tip: ")
         shorter = code.replace('"aero.wind.input=wind"', '"aero.wind.input=wind", "simulation.duration=0.1 s"')
         self.assertNotEqual(code, shorter)
         ran = subprocess.run([sys.executable, "-c", shorter], check=True, cwd=SOURCE, stdout=subprocess.PIPE)

@@ -1,18 +1,31 @@
-"""bough from Python: opens a scene, steps it, sets inputs, reads channels, stores copies of its state.
+"""bough from Python: runs scenes, reads results, steps a scene, sets inputs, stores copies of its state.
 
     import bough
+    rows = bough.read("out/runup")                 # the results of a run
+    print(rows.units["RotSpeed"], rows["RotSpeed"][-1])
     with bough.Session("runup.yaml", "simulation.duration=5 s") as run:
-        rows = run.advance(2.0, ["RotSpeed"])
-    print(rows["Time"][-1], rows["RotSpeed"][-1])
+        rows = run.advance(2.0, ["RotSpeed"])      # stepped here
 
-The module needs Python 3.8 and nothing else. If numpy is installed, values and rows are numpy arrays on
-the same memory. BOUGH_LIBRARY may name the library; otherwise the module searches for it where
-`cmake --install` puts it, one or two folders above this file, and then where the system searches.
+The module needs Python 3.8 and nothing else. If numpy is installed, columns and values are numpy arrays.
+BOUGH_LIBRARY may name the library; otherwise the module searches for it where pip and `cmake --install` put it,
+beside this file or up to three folders above, and then where the system searches.
 """
+from __future__ import annotations
+
 import array
+import collections.abc
+import csv
 import ctypes
 import glob
+import json
 import os
+import re
+import shutil
+import struct
+import subprocess
+import sys
+import tempfile
+from typing import Any, Dict, Iterator, List, Optional, Sequence, Union
 
 try:
     import numpy
@@ -39,11 +52,12 @@ class UnknownName(Error, KeyError):
 
 def _load():
     here = os.path.dirname(os.path.abspath(__file__))
-    above = [os.path.join(here, *[".."] * up, "libbough.so.0") for up in (1, 2)]
-    above += glob.glob(os.path.join(here, "..", "..", "*", "libbough.so.0"))
+    above = [os.path.join(here, *[".."] * up, "libbough.so.0") for up in range(4)]
+    above += glob.glob(os.path.join(here, *[".."] * 3, "*", "libbough.so.0"))
     found = [path for path in above if os.path.exists(path)]
     path = os.environ.get("BOUGH_LIBRARY") or (found[0] if found else "libbough.so.0")
     library = ctypes.CDLL(path)
+    library.path = path
     session, text, real = ctypes.c_void_p, ctypes.c_char_p, ctypes.c_double
     for name, result, *arguments in (
         ("open", session, text, ctypes.POINTER(text), ctypes.c_int),
@@ -83,6 +97,172 @@ def _view(doubles):
     return numpy.frombuffer(doubles) if numpy else doubles
 
 
+# -- results --------------------------------------------------------------------------------------
+
+
+class Table(collections.abc.Mapping):
+    """Columns by name: table["RotSpeed"], an array with one value for each row.
+
+    names    names of the columns, in order
+    units    unit of each name, "" where there is none
+    title    of the file, or ""
+    summary  what summary.json beside the file says: status, cost, estimated errors; {} where there is none
+    """
+
+    def __init__(self, names: List[str], units: List[str], columns: list, title: str = "") -> None:
+        self.names, self.units, self.title = names, dict(zip(names, units)), title
+        self.summary: Dict[str, Any] = {}
+        self._column = dict(zip(names, columns))
+
+    @property
+    def time(self) -> Any:
+        """The time of each row [s]."""
+        return self["Time"]
+
+    def __getitem__(self, name: str) -> Any:
+        """The column of that name."""
+        if name in self._column:
+            return self._column[name]
+        raise UnknownName(INVALID, "no column %r; there are: %s" % (name, ", ".join(self.names)))
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self.names)
+
+    def __len__(self) -> int:
+        return len(self.names)
+
+    def __repr__(self) -> str:
+        return "<%d columns: %s>" % (len(self), ", ".join(self.names[:4] + ["..."] * (len(self) > 4)))
+
+
+def _column(values: Sequence[Any]) -> Any:
+    """An array of numbers, or the words as they are."""
+    try:
+        return _view(array.array("d", map(float, values)))
+    except ValueError:
+        return list(values)
+
+
+def _read_text(path: str) -> Table:
+    """OpenFAST's text: a title in the lines before the names, the units, rows."""
+    with open(path, encoding="utf-8", errors="replace") as file:
+        lines = file.read().splitlines()
+    head = next((i for i, line in enumerate(lines[:-1]) if line.split()[:1] == ["Time"]), None)
+    if head is None:
+        raise Error(INVALID, "%s: no line that begins with 'Time'" % path)
+    names, rows = lines[head].split(), [line.split() for line in lines[head + 2:] if line.strip()]
+    for i, row in enumerate(rows):
+        if len(row) != len(names):
+            raise Error(INVALID, "%s:%d: expected %d values, got %d" % (path, head + 3 + i, len(names), len(row)))
+    units = [unit.strip("()") for unit in lines[head + 1].split()]
+    title = " ".join(line.strip() for line in lines[:head] if line.strip())
+    columns = zip(*rows) if rows else [()] * len(names)
+    return Table(names, units, [_column(c) for c in columns], title)
+
+
+def _read_binary(path: str) -> Table:
+    """OpenFAST's binary output, all four kinds: https://github.com/OpenFAST/openfast, NWTC_IO."""
+    with open(path, "rb") as file:
+        data = file.read()
+    at = 0
+
+    def take(form: str) -> tuple:
+        nonlocal at
+        values = struct.unpack_from("<" + form, data, at)
+        at += struct.calcsize("<" + form)
+        return values
+
+    try:
+        kind, = take("h")
+        if kind not in (1, 2, 3, 4):
+            raise Error(INVALID, "%s: not of OpenFAST's binary output" % path)
+        width = take("h")[0] if kind == 4 else 10
+        n, rows = take("ii")
+        first, second = take("dd")
+        scale, offset = (take("%df" % n), take("%df" % n)) if kind != 3 else ((1.0,) * n, (0.0,) * n)
+        title = take("%ds" % take("i"))[0].decode("utf-8", "replace").strip()
+        words = [take("%ds" % width)[0].decode("utf-8", "replace").strip() for _ in range(2 * n + 2)]
+        time = [(t - second) / first for t in take("%di" % rows)] if kind == 1 else \
+            [first + second * i for i in range(rows)]
+        packed = array.array("d" if kind == 3 else "h")
+        packed.frombytes(data[at:at + n * rows * packed.itemsize])
+        if len(packed) != n * rows:
+            raise Error(INVALID, "%s: the file is cut" % path)
+    except (struct.error, ValueError):
+        raise Error(INVALID, "%s: the file is cut" % path) from None
+    if sys.byteorder == "big":
+        packed.byteswap()
+    columns = [_column([(v - offset[k]) / scale[k] for v in packed[k::n]]) for k in range(n)]
+    return Table(words[:n + 1], [u.strip("()") for u in words[n + 1:]], [_column(time), *columns], title)
+
+
+def _read_csv(path: str) -> Table:
+    """A table of bough: names with units in parentheses, then rows."""
+    with open(path, encoding="utf-8", newline="") as file:
+        rows = list(csv.reader(file))
+    if not rows:
+        raise Error(INVALID, "%s: the file is empty" % path)
+    heads = [re.fullmatch(r"(.*?)(?: \(([^()]*)\))?", head) for head in rows[0]]
+    names, units = [h.group(1) for h in heads if h], [h.group(2) or "" for h in heads if h]
+    columns = zip(*rows[1:]) if rows[1:] else [()] * len(names)
+    return Table(names, units, [_column(c) for c in columns])
+
+
+def read(path: Union[str, os.PathLike]) -> Table:
+    """Results as a Table: the folder of a run, a file .out or .outb of bough or OpenFAST, or a .csv of bough."""
+    path = os.fspath(path)
+    folder = path if os.path.isdir(path) else os.path.dirname(path)
+    if os.path.isdir(path):
+        path = os.path.join(path, "channels.out")
+    kinds = {".out": _read_text, ".outb": _read_binary, ".csv": _read_csv}
+    kind = os.path.splitext(path)[1]
+    if kind not in kinds:
+        raise Error(INVALID, "%s: expected a folder of results, or a file %s" % (path, ", ".join(kinds)))
+    table = kinds[kind](path)
+    summary = os.path.join(folder, "summary.json")
+    if os.path.basename(path).startswith("channels.") and os.path.exists(summary):
+        with open(summary, encoding="utf-8") as file:
+            table.summary = json.load(file)
+    return table
+
+
+def _command(command: str, file: str, scene: Union[str, os.PathLike], settings: Sequence[str],
+             out: Union[None, str, os.PathLike]) -> Table:
+    """Runs a command of the program, which lies by the library, into a folder and reads a file of it."""
+    here = os.path.dirname(os.path.abspath(_library.path)) if os.path.dirname(_library.path) else ""
+    beside = [os.path.join(here, *place, "bough") for place in ((), *((*[".."] * up, "bin") for up in (1, 2, 4)))]
+    program = next((p for p in beside if here and os.path.isfile(p)), None) or shutil.which("bough")
+    if not program:
+        raise Error(OTHER, "the program bough is neither by the library nor in the PATH")
+    with tempfile.TemporaryDirectory() as scratch:
+        folder = os.fspath(out) if out is not None else scratch
+        words = [program, command, os.fspath(scene), "--out", folder]
+        for setting in settings:
+            words += ["--set", setting]
+        ran = subprocess.run(words, capture_output=True, text=True)
+        if ran.returncode != 0:
+            raise Error(ran.returncode, ran.stderr.strip())
+        return read(os.path.join(folder, file))
+
+
+def run(scene: Union[str, os.PathLike], *settings: str, out: Union[None, str, os.PathLike] = None) -> Table:
+    """Runs a scene to its end, errors estimated, and returns its channels; `out` keeps the folder of the results."""
+    return _command("run", "channels.out", scene, settings, out)
+
+
+def modes(scene: Union[str, os.PathLike], *settings: str, out: Union[None, str, os.PathLike] = None) -> Table:
+    """Frequencies, damping ratios and patterns of a scene's modes, a row each (`bough help modes`)."""
+    return _command("modes", "modes.csv", scene, settings, out)
+
+
+def static(scene: Union[str, os.PathLike], *settings: str, out: Union[None, str, os.PathLike] = None) -> Table:
+    """The equilibrium of the rods: displacements and section forces, a row for each vertex (`bough help static`)."""
+    return _command("static", "static.csv", scene, settings, out)
+
+
+# -- sessions -------------------------------------------------------------------------------------
+
+
 class _Handle:
     """The session in C: lives as long as its session in Python or a view of its values."""
 
@@ -98,9 +278,15 @@ class _Handle:
 
 
 class Session:
-    """A scene that runs: Session("runup.yaml", "aero.wind.speed=12 m/s", ...)."""
+    """A scene that runs: Session("runup.yaml", "aero.wind.speed=12 m/s", ...).
 
-    def __init__(self, scene, *settings):
+    names, units    names and units of its channels, in order
+    """
+
+    names: List[str]
+    units: List[str]
+
+    def __init__(self, scene: Union[str, os.PathLike], *settings: str) -> None:
         self._handle = _Handle(scene, settings)
         self._check(self._call("code"))
         text = {"names": "name", "units": "unit"}
@@ -111,13 +297,14 @@ class Session:
         inputs = range(self._call("inputs"))
         self._input = {self._call("input_name", i).decode(): i for i in inputs}
 
-    def __enter__(self):
+    def __enter__(self) -> Session:
         return self
 
-    def __exit__(self, *_):
+    def __exit__(self, *_: object) -> None:
         self.close()
 
-    def close(self):
+    def close(self) -> None:
+        """Releases the session; views of its values stay valid."""
         self._handle = None
 
     def _call(self, name, *arguments):
@@ -143,26 +330,26 @@ class Session:
         raise UnknownName(INVALID, self._error())
 
     @property
-    def time(self):
+    def time(self) -> float:
         """The current time [s]."""
         return self._call("time")
 
     @property
-    def duration(self):
+    def duration(self) -> float:
         """The time at which the scene ends [s]."""
         return self._call("duration")
 
     @property
-    def warning(self):
+    def warning(self) -> str:
         """A warning that the coupling is unstable, or ""."""
         return self._call("warning").decode()
 
-    def step(self):
+    def step(self) -> bool:
         """Takes one macro step; returns False at the end of the scene, without a step."""
         return self._check(self._call("step")) == OK
 
     @property
-    def values(self):
+    def values(self) -> Any:
         """Current values of all channels in the order of `names`: a read-only view, which later reads update."""
         address = self._call("values")
         if not address:
@@ -171,18 +358,18 @@ class Session:
         doubles.handle = self._handle
         return _view(memoryview(doubles).cast("B").cast("d").toreadonly())
 
-    def __getitem__(self, name):
+    def __getitem__(self, name: str) -> float:
         """Current value of a channel, session["RotSpeed"], or of an input as it was last set (SI)."""
         if name in self._input and name not in self._index:
             return self._call("input_value", self._input[name])
         return float(self.values[self._find(self._index, "find", name)])
 
     @property
-    def inputs(self):
+    def inputs(self) -> Dict[str, str]:
         """The inputs that the scene declares: a dictionary of names and units (SI)."""
         return {name: self._call("input_unit", i).decode() for name, i in self._input.items()}
 
-    def __setitem__(self, name, value):
+    def __setitem__(self, name: str, value: Union[float, str]) -> None:
         """Sets an input from the next step on: a number in SI, or a text with a unit, "5 kN m"."""
         i = self._find(self._input, "input", name)
         if isinstance(value, str):
@@ -190,9 +377,10 @@ class Session:
         else:
             self._check(self._call("set", i, float(value)))
 
-    def advance(self, until=None, channels=None):
-        """Steps to a time [s], or to the end. Returns a dictionary of columns, "Time" and the channels (None:
-        all, or names), with one row for the start and one for each step."""
+    def advance(self, until: Optional[float] = None,
+                channels: Union[None, str, Sequence[str]] = None) -> Table:
+        """Steps to a time [s], or to the end. Returns a Table of "Time" and the channels (None: all, or names),
+        with one row for the start and one for each step."""
         until = self.duration if until is None else float(until)
         if until != until:
             raise ValueError("expected a time to advance to, got nan")
@@ -205,15 +393,16 @@ class Session:
             for name, i in zip(names, index):
                 columns[name].append(values[i])
             if now >= until - 1e-9 or not self.step():
-                return {name: _view(column) for name, column in columns.items()}
+                units = ["s", *(self.units[i] for i in index)]
+                return Table(list(columns), units, [_view(column) for column in columns.values()])
 
-    def save(self):
+    def save(self) -> ctypes.Array:
         """A copy of all that the run goes on from. See bough.h for what restores where."""
         copy = (ctypes.c_double * (self._call("size") // 8))()
         self._check(self._call("save", ctypes.addressof(copy)))
         return copy
 
-    def restore(self, copy):
+    def restore(self, copy: ctypes.Array) -> None:
         """Takes the session to where the copy was made, be it of this or of a like session."""
         if not isinstance(copy, ctypes.Array) or ctypes.sizeof(copy) != self._call("size"):
             raise Error(INVALID, "the copy is of a scene with other parts, coupling or steps")
