@@ -81,7 +81,7 @@ bough_interface *bough_interface_create(bough_arena *arena, const bough_assembly
     // matrices of the interface
     size_t n = (size_t)k->n;
     k->gain = bough_arena_doubles(arena, (size_t)k->n_leader_input * n);
-    bough_arena_each(arena, n * n, &k->loop, &k->matrix, &k->solution, &k->square);
+    bough_arena_each(arena, n * n, &k->loop, &k->matrix, &k->square);
     k->pivot = bough_arena_take(arena, n * sizeof(int));
     k->coordinate = bough_arena_doubles(arena, n);
     k->sum = bough_arena_doubles(arena, n);
@@ -298,16 +298,9 @@ bool bough_interface_close(bough_interface *k) {
         add_inputs(k, k->gain + c * (size_t)k->n_leader_input, k->loop + c * n);
         apply_inverses(k, k->loop + c * n);
     }
-    if (n == 0) return true;
-    // (I − Z K)⁻¹ on the leaders' own solutions
-    for (size_t i = 0; i < size; i++) {
-        k->matrix[i] = (i % (n + 1) == 0) - k->loop[i];
-        k->solution[i] = i % (n + 1) == 0;
-    }
-    for (size_t c = 0; c < n; c++) apply_inverses(k, k->solution + c * n);
-    if (!bough_dense_factor(k->n, k->matrix, k->pivot)) return false;
-    bough_dense_solve(k->n, k->n, k->matrix, k->pivot, k->solution);
-    return true;
+    // factors of I − Z K
+    for (size_t i = 0; i < size; i++) k->matrix[i] = (i % (n + 1) == 0) - k->loop[i];
+    return n == 0 || bough_dense_factor(k->n, k->matrix, k->pivot);
 }
 
 // The leaders' outputs' change with the coordinates.
@@ -327,9 +320,8 @@ void bough_interface_solve(bough_interface *k, double *change) {
     // (I − Z K) w = Z b
     for (int l = 0; l < k->n_leader_input; l++) k->right[l] = change[k->leader_input[l]];
     add_inputs(k, k->right, k->coordinate);
-    memcpy(k->sum, k->coordinate, (size_t)k->n * sizeof(double));
-    memset(k->coordinate, 0, (size_t)k->n * sizeof(double));
-    add_columns(k, k->n, k->n, k->solution, 1, k->sum, k->coordinate);
+    apply_inverses(k, k->coordinate);
+    if (k->n > 0) bough_dense_solve(k->n, 1, k->matrix, k->pivot, k->coordinate);
     // u = b + K w
     add_columns(k, k->n_leader_input, k->n, k->gain, 1, k->coordinate, k->right);
     for (int l = 0; l < k->n_leader_input; l++) change[k->leader_input[l]] = k->right[l];

@@ -46,7 +46,6 @@ typedef struct bough_interface {
     double *loop;   // (n × n) Z K
     double *matrix; // (n × n) I − Z K, factored
     int *pivot;     // (n)
-    double *solution; // (n × n) (I − Z K)⁻¹ times the leaders' own solutions: (I − γJ)⁻¹ of those by states
 
     // by bough_interface_solve
     double *coordinate; // (n) w
