@@ -25,6 +25,7 @@ typedef struct sweep_mode {
 typedef struct sweep {
     int n_key, n_point;
     int n_solved;       // points, the first ones
+    int n_blade;        // of the turbine; 0: none
     const char **key;   // (n_key)
     const char **value; // (n_key × n_point) as written
     double *x, *speed;  // (n_point) of the first key, else its place in the list;
@@ -189,6 +190,7 @@ static bough_status solve_point(bough_arena *keep, const bough_options *options,
         }
         if (bough_is_ok(&status)) add_modes(sim, &v, point, before, now, s);
         s->speed[point] = fabs(v.spin) * 30 / BOUGH_PI;
+        s->n_blade = sim->scene->turbine.n_blade;
         char *end;
         s->x[point] = strtod(s->value[point], &end);
         if (end == s->value[point]) s->x[point] = point + 1;
@@ -242,24 +244,22 @@ static double x_of(const diagram *d, int point) {
     return d->by_speed ? d->sweep->speed[point] : d->sweep->x[point];
 }
 
-// n Ω for n = 1, 3, 6, … over the rotor's speed, up to the highest frequency.
+// n Ω for n = 1 and multiples of the number of blades over the rotor's speed, up to the highest frequency.
 static void add_multiples(diagram *d, double frequency) {
-    static const struct {
-        int n;
-        const char *label;
-    } multiples[] = {{1, "1P"}, {2, "2P"}, {3, "3P"}, {6, "6P"}, {9, "9P"}};
     double low = HUGE_VAL, high = 0;
+    int blades = d->sweep->n_blade > 1 ? d->sweep->n_blade : 2;
     for (int i = 0; i < d->sweep->n_solved; i++) {
         low = fmin(low, d->sweep->speed[i]);
         high = fmax(high, d->sweep->speed[i]);
     }
-    for (size_t k = 0; d->by_speed && k < sizeof multiples / sizeof *multiples; k++) {
-        double slope = multiples[k].n / 60., end = fmin(high, frequency / slope);
+    for (int k = 0; d->by_speed && k <= 3; k++) {
+        int n = k == 0 ? 1 : k * blades;
+        double slope = n / 60., end = fmin(high, frequency / slope);
         if (end <= low) continue;
+        const char *label = bough_arena_print(d->chart.arena, "%dP", n);
         bough_chart_add_line(&d->chart, (bough_chart_line){.colour = -1, .joined = true});
         bough_chart_add(&d->chart, (bough_chart_point){.x = low, .y = slope * low});
-        bough_chart_add(&d->chart,
-                        (bough_chart_point){.x = end, .y = slope * end, .label = multiples[k].label});
+        bough_chart_add(&d->chart, (bough_chart_point){.x = end, .y = slope * end, .label = label});
     }
 }
 

@@ -157,6 +157,13 @@ static void draw_axes(const bough_chart_panel *p, FILE *svg) {
 // [px]
 enum { WIDTH = 416, ALONE = 640, HEIGHT = 380, LEFT = 76, TOP = 28, BOTTOM = 56, TITLE = 34, LEGEND = 20 };
 enum { LETTER = 7 }; // of a label, rather wide; of the title a third more
+enum { SPACING = 11, MOST_LABELS = 100 };
+
+// Where labels of a panel stand [px].
+typedef struct labels {
+    int n;
+    double left[MOST_LABELS], right[MOST_LABELS], y[MOST_LABELS]; // of the text's base line
+} labels;
 
 bough_chart bough_chart_start(bough_arena *arena, const char *title, int per_row) {
     return (bough_chart){.arena = arena, .title = title, .per_row = per_row, .right = 44};
@@ -203,18 +210,39 @@ static void draw_mark(FILE *svg, double x, double y, int colour, double size) {
             colour_of(colour), x, y, size > 0 ? size : 1, shapes[colour % 4]);
 }
 
-// Right of the point, or left of it where there is no room.
-static void draw_label(const bough_chart *c, const bough_chart_panel *p, double x, double y, int colour,
-                       const char *label, FILE *svg) {
-    bool before = x + 7 + letters(label) * LETTER > p->x.to + c->right;
+// The nearest place above or below y [px] where no label of the panel is yet, and notes it.
+static double free_place(labels *used, double left, double right, double y) {
+    double at = y;
+    for (int tried = 0; tried < 2 * MOST_LABELS; tried++) {
+        at = y + (tried % 2 ? -1 : 1) * (tried + 1) / 2 * SPACING / 2.0;
+        bool taken = false;
+        for (int k = 0; k < used->n && !taken; k++) {
+            bool beside = left > used->right[k] || right < used->left[k];
+            taken = !beside && fabs(at - used->y[k]) < SPACING;
+        }
+        if (!taken) break;
+    }
+    if (used->n < MOST_LABELS) {
+        used->left[used->n] = left, used->right[used->n] = right;
+        used->y[used->n++] = at;
+    }
+    return at;
+}
+
+// Right of the point, or left of it where there is no room, and beside no other label.
+static void draw_label(const bough_chart *c, const bough_chart_panel *p, labels *used, double x, double y,
+                       int colour, const char *label, FILE *svg) {
+    double width = letters(label) * LETTER;
+    bool before = x + 7 + width > p->x.to + c->right;
+    double left = before ? x - 7 - width : x + 7, at = free_place(used, left, left + width, y - 5);
     fprintf(svg, "<text fill=\"%s\" font-size=\"10\" x=\"%.1f\" y=\"%.1f\"%s>", colour_of(colour),
-            before ? x - 7 : x + 7, y - 5, before ? " text-anchor=\"end\"" : "");
+            before ? x - 7 : x + 7, at, before ? " text-anchor=\"end\"" : "");
     bough_picture_text(svg, label);
     fputs("</text>\n", svg);
 }
 
-static void draw_point(const bough_chart *c, const bough_chart_panel *p, const bough_chart_line *l,
-                       const bough_chart_point *at, FILE *svg) {
+static void draw_point(const bough_chart *c, const bough_chart_panel *p, labels *used,
+                       const bough_chart_line *l, const bough_chart_point *at, FILE *svg) {
     double x = place_of(&p->x, at->x), y = place_of(&p->y, at->y);
     if (at->bar[0] != at->bar[1])
         fprintf(svg, "<path d=\"M%.1f %.1fV%.1f\" stroke=\"#56B4E9\" stroke-width=\"2\"/>", x,
@@ -224,10 +252,10 @@ static void draw_point(const bough_chart *c, const bough_chart_panel *p, const b
         if (at->hint) fputs("<title>", svg), bough_picture_text(svg, at->hint), fputs("</title>", svg);
         fputs("</path>\n", svg);
     }
-    if (at->label) draw_label(c, p, x, y, l->colour, at->label, svg);
+    if (at->label) draw_label(c, p, used, x, y, l->colour, at->label, svg);
 }
 
-static void draw_line(const bough_chart *c, const bough_chart_panel *p, int line, FILE *svg) {
+static void draw_line(const bough_chart *c, const bough_chart_panel *p, labels *used, int line, FILE *svg) {
     const bough_chart_line *l = &c->line[line];
     int first = line > 0 ? l[-1].end : 0;
     if (l->joined)
@@ -238,7 +266,7 @@ static void draw_line(const bough_chart *c, const bough_chart_panel *p, int line
             const bough_chart_point *at = &c->point[i];
             if (!has_place(&p->x, at->x) || !has_place(&p->y, at->y)) continue;
             if (pass == 0) fprintf(svg, "%.1f,%.1f ", place_of(&p->x, at->x), place_of(&p->y, at->y));
-            if (pass == 1) draw_point(c, p, l, at, svg);
+            if (pass == 1) draw_point(c, p, used, l, at, svg);
         }
         if (pass == 0) fputs("\"/>\n", svg);
     }
@@ -255,7 +283,8 @@ static void draw_panel(const bough_chart *c, int k, FILE *svg) {
     widen(&p.x);
     widen(&p.y);
     draw_axes(&p, svg);
-    for (int i = k > 0 ? c->panel[k - 1].end : 0; i < p.end; i++) draw_line(c, &p, i, svg);
+    labels used = {0};
+    for (int i = k > 0 ? c->panel[k - 1].end : 0; i < p.end; i++) draw_line(c, &p, &used, i, svg);
 }
 
 // Lines of the first panel that have a name: their number.
