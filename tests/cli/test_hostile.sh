@@ -86,12 +86,18 @@ mkdir folder
 mkfifo pipe
 ln -s /dev/zero zero
 for input in pipe zero folder; do
-    yaml 'cannot be read' $input
+    yaml 'cannot be read\|holds no scene' $input
     refused 'cannot open the wind file\|cannot be read' check example-turbine.yaml --set "aero.wind={kind: bts, file: $input}"
     refused 'cannot open the wind file\|cannot be read' check example-turbine.yaml --set "aero.wind={kind: wnd, file: $input, reference_height: 90, reference_length: 126}"
     refused 'cannot read' import openfast $input --out imported
     refused 'cannot be loaded' check "$source/apps/turbine/power.yaml" --set "control={kind: bladed, library: $PWD/$input}"
 done
+# A directory whose scenes are none, one of them a pipe that nobody writes to.
+mkdir many
+mkfifo many/pipe.yaml
+refused "'many' holds no scene" check many
+printf 'base: ../pipe\n' >many/scene.yaml
+refused 'no file to build on' check many/scene.yaml
 mkdir ends
 for own in channels.out checkpoint.bin channels.out.partial; do
     ln -s ../pipe "ends/$own"

@@ -1,6 +1,7 @@
 #include "apps/bough/cli/command.h"
 
 #include "apps/bough/config/schema.h"
+#include "core/base/input_file.h"
 
 #include <dirent.h>
 #include <stdlib.h>
@@ -12,9 +13,9 @@ enum { SHOWN = 8, LINE = 4096 };
 
 // Whether a line begins with `bodies:` or `base:`, as a scene's does and a table's or a study's does not.
 static bool is_scene(const char *path) {
-    char line[LINE];
+    char line[LINE], why[BOUGH_INPUT_REASON];
     bool found = false;
-    FILE *file = fopen(path, "r");
+    FILE *file = bough_input_open(path, BOUGH_INPUT_TEXT, why);
     while (file && !found && fgets(line, sizeof line, file))
         found = strncmp(line, "bodies:", 7) == 0 || strncmp(line, "base:", 5) == 0;
     if (file) fclose(file);
