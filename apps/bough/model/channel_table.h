@@ -22,7 +22,7 @@ typedef struct bough_channel_family {
     const char *parts; // what {a} and {b} are; NULL: none
     int n;
     const bough_channel_row *row; // (n), in the order of the values
-    bool sampled;                 // the values belong to the last sample of the air or the control
+    bough_sampling sampled;       // of all its values
 } bough_channel_family;
 
 typedef enum bough_channel_part {

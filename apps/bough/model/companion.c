@@ -139,7 +139,7 @@ static double share_now(const bough_companion *c, const bough_channel *channel, 
 // change. Where both agree to the bit the value follows from the time alone and is not held.
 static double stale(const bough_companion *c, int i) {
     const bough_channel *channel = &c->channels->channel[i];
-    bool held = channel->sampled && c->compared > 1 && c->value[i] != c->other[i];
+    bool held = channel->sampled == BOUGH_BY_AIR && c->compared > 1 && c->value[i] != c->other[i];
     return held ? c->share_held * fabs(difference(channel, c->value[i], c->before[i])) : 0;
 }
 

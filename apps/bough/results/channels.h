@@ -21,6 +21,10 @@ typedef enum bough_quantity_kind {
     BOUGH_KIND_MOMENT,
 } bough_quantity_kind;
 
+// Whose samples the values of a channel are. Those of the air approximate what is continuous; those of a
+// controller are what it does.
+typedef enum bough_sampling { BOUGH_CONTINUOUS, BOUGH_BY_AIR, BOUGH_BY_CONTROL } bough_sampling;
+
 typedef struct bough_channel {
     char name[BOUGH_CHANNEL_NAME]; // OpenFAST's name where the quantity is the same
     char unit[BOUGH_CHANNEL_UNIT]; // without parentheses: "m", "kN-m", "rpm", "-"
@@ -29,7 +33,7 @@ typedef struct bough_channel {
     double si;           // what one unit is in SI units
     double turn;         // of an angle: a whole turn in its unit; else 0
     int vector;          // the first channel of the vector that it is a component of; its own index: a scalar
-    bool sampled;        // known at the samples of the air or the control only
+    bough_sampling sampled; // by what; where the values are known at samples only
 } bough_channel;
 
 // Writes the group's values at time t [s], each in its channel's unit.
@@ -66,7 +70,8 @@ void bough_channels_add(bough_channels *list, const char *unit, const char *form
 // Of the channel added last: what it means (the text must stay), the component of a vector that it is (1, 2,
 // 3; 0: a scalar), and whether its values belong to the last sample of the air or the control; such a channel
 // of motion is one of the air.
-void bough_channels_describe(bough_channels *list, const char *meaning, int component, bool sampled);
+void bough_channels_describe(bough_channels *list, const char *meaning, int component,
+                             bough_sampling sampled);
 
 // The index of the channel with this name, −1 if there is none.
 int bough_channels_find(const bough_channels *list, const char *name);
