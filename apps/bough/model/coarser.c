@@ -154,12 +154,11 @@ static bool samples_fit(double rate, double macro_step) {
     return bough_master_multiple(1 / rate, macro_step) > 0;
 }
 
-// Half the rate; beside a finer mesh twice the rate where macro steps allow it, else the same: a coarser one
-// could hide in the difference what the mesh shows.
+// Half the rate; beside a finer mesh twice the rate where macro steps allow it: a coarser one can hide in the
+// difference what the mesh shows.
 static double other_rate(const bough_scene *scene, bool finer) {
     double rate = scene->aero.rate;
-    if (!finer) return rate / 2;
-    return samples_fit(2 * rate, scene->simulation.macro_step) ? 2 * rate : rate;
+    return finer && samples_fit(2 * rate, scene->simulation.macro_step) ? 2 * rate : rate / 2;
 }
 
 // Inputs are set for one macro step of the run, and the rate of a controller is its own.
