@@ -15,6 +15,8 @@ enum { MOST_POINTS = 500 };
 // Shapes less alike than this (0 to 1) are not the same mode.
 static const double least_alike = 0.3;
 
+static const double rounding = 1e-6; // damping ratios below it are none
+
 // A mode at an operating point.
 typedef struct sweep_mode {
     int point, line; // a line joins what is the same mode of neighbouring points
@@ -209,7 +211,7 @@ static void print_point(const sweep *s, int point, int first) {
     for (int k = first; k < s->n_mode; k++) {
         const sweep_mode *m = &s->mode[k];
         printf("%4d %12.6g %12.6g %11.5f  %-12s %-8s %s%s\n", m->line + 1, m->frequency, m->damped,
-               100 * m->damping, m->body, m->shape, m->pattern, m->damping < -1e-6 ? "  unstable" : "");
+               100 * m->damping, m->body, m->shape, m->pattern, m->damping < -rounding ? "  unstable" : "");
     }
 }
 
@@ -314,6 +316,9 @@ static const sweep_mode *most_growing(const sweep *s, int point) {
     return most;
 }
 
+// Beyond rounding.
+static bool grows(const sweep_mode *m) { return m && m->damping < -rounding; }
+
 // The value between those of a point and the next, "139.6 m/s"; NULL where they are no numbers with one unit.
 static const char *between(bough_arena *arena, const char *a, const char *b, double part) {
     char *unit_a, *unit_b;
@@ -383,9 +388,8 @@ static bough_status find_root(bough_arena *arena, const bough_options *options, 
 static bough_status print_boundary(bough_arena *arena, const bough_options *options, const sweep *s,
                                    int last) {
     const sweep_mode *m = most_growing(s, last), *before = last > 0 ? most_growing(s, last - 1) : NULL;
-    if (!m || growth_of(m) <= 0 || !before) {
-        printf(m && growth_of(m) > 0 ? "unstable at the first point: %s=%s\n"
-                                     : "no oscillation grows up to %s=%s\n",
+    if (!grows(m) || !before) {
+        printf(grows(m) ? "unstable at the first point: %s=%s\n" : "no oscillation grows up to %s=%s\n",
                s->key[0], s->value[last]);
         return bough_ok();
     }
@@ -418,9 +422,8 @@ bough_status bough_modes_sweep(bough_arena *arena, const bough_options *options,
         if (!bough_is_ok(&status)) break;
         s.n_solved = i + 1;
         print_point(&s, i, first);
-        const sweep_mode *m = most_growing(&s, i);
-        bool ends = m && growth_of(m) > 0;
-        if (!until_unstable || (!ends && i + 1 < s.n_point)) continue;
+        bool ends = grows(most_growing(&s, i)) || i + 1 == s.n_point;
+        if (!until_unstable || !ends) continue;
         status = print_boundary(arena, options, &s, i);
         break;
     }
