@@ -362,25 +362,30 @@ static bough_status grow(bough_arena *keep, const bough_options *options, const 
     return status;
 }
 
-// Between a stable point and the next one, by the Illinois rule: the part of the way, and the slope of the
-// growth.
-static bough_status find_root(bough_arena *arena, const bough_options *options, const sweep *s, int point,
-                              double low, double high, double *part, double *slope, double *frequency) {
-    double a = 0, b = 1;
-    double width =
-        accurate * fmax(fabs(s->x[point]), fabs(s->x[point + 1])) / fabs(s->x[point + 1] - s->x[point]);
+typedef struct boundary {
+    double part;      // of the way from the point before it to the next
+    double slope;     // of the growth over that part [1/s]
+    double frequency; // of the oscillation there, damped [Hz]
+} boundary;
+
+// Between a stable point and the next one, where growths are low and high, by the Illinois rule.
+static bough_status find_boundary(bough_arena *arena, const bough_options *options, const sweep *s, int point,
+                                  double low, double high, boundary *to) {
+    double a = 0, b = 1, first = s->x[point], second = s->x[point + 1];
+    double width = accurate * fmax(fabs(first), fabs(second)) / fabs(second - first);
     bough_status status = bough_ok();
     for (int trial = 0; trial < MOST_TRIALS && b - a > width && bough_is_ok(&status); trial++) {
         double growth, x = trial % 4 == 3 ? (a + b) / 2 : a + (b - a) * low / (low - high);
         x = fmin(fmax(x, a + width / 4), b - width / 4);
-        status = grow(arena, options, s, point, x, NULL, &growth, frequency);
-        *slope = (growth - (growth > 0 ? low : high)) / (x - (growth > 0 ? a : b));
-        if (growth > 0)
+        status = grow(arena, options, s, point, x, NULL, &growth, &to->frequency);
+        to->slope = (growth - (growth > 0 ? low : high)) / (x - (growth > 0 ? a : b));
+        if (growth > 0) {
             b = x, high = growth, low /= 2;
-        else
+        } else {
             a = x, low = growth, high /= 2;
+        }
     }
-    *part = (a + b) / 2;
+    to->part = (a + b) / 2;
     return status;
 }
 
@@ -393,15 +398,15 @@ static bough_status print_boundary(bough_arena *arena, const bough_options *opti
                s->key[0], s->value[last]);
         return bough_ok();
     }
-    double part = 0, slope = 0, share = 0, other = 0, frequency = 0, of_other = 0;
-    double low = growth_of(before), high = growth_of(m);
-    bough_status status = find_root(arena, options, s, last - 1, low, high, &part, &slope, &frequency);
-    if (bough_is_ok(&status)) status = grow(arena, options, s, last - 1, part, &share, &other, &of_other);
+    boundary at = {0};
+    double share = 0, other = 0, of_other = 0;
+    bough_status status = find_boundary(arena, options, s, last - 1, growth_of(before), growth_of(m), &at);
+    if (bough_is_ok(&status)) status = grow(arena, options, s, last - 1, at.part, &share, &other, &of_other);
     if (!bough_is_ok(&status)) return status;
-    double step = s->x[last] - s->x[last - 1], error = fabs(share * other / slope * step);
-    printf("unstable from %s=%s on, mesh +- %.2g: line %d, %.6g Hz, %s %s\n", s->key[0],
-           between(arena, s->value[last - 1], s->value[last], part), error, m->line + 1, frequency, m->body,
-           m->shape);
+    double step = s->x[last] - s->x[last - 1], error = fabs(share * other / at.slope * step);
+    const char *value = between(arena, s->value[last - 1], s->value[last], at.part);
+    printf("unstable from %s=%s on, mesh +- %.2g: line %d, %.6g Hz, %s %s\n", s->key[0], value, error,
+           m->line + 1, at.frequency, m->body, m->shape);
     return status;
 }
 
