@@ -11,13 +11,15 @@
 
 enum { SHOWN = 8, LINE = 4096 };
 
-// Whether a line begins with `bodies:` or `base:`, as a scene's does and a table's or a study's does not.
+// Whether a line begins with one of these keys, as a scene's does and a table's or a study's does not.
 static bool is_scene(const char *path) {
+    static const char *const keys[] = {"bodies:", "turbine:", "base:"};
     char line[LINE], why[BOUGH_INPUT_REASON];
     bool found = false;
     FILE *file = bough_input_open(path, BOUGH_INPUT_TEXT, why);
-    while (file && !found && fgets(line, sizeof line, file))
-        found = strncmp(line, "bodies:", 7) == 0 || strncmp(line, "base:", 5) == 0;
+    while (file && !found && fgets(line, sizeof line, file)) {
+        for (int k = 0; k < 3; k++) found = found || strncmp(line, keys[k], strlen(keys[k])) == 0;
+    }
     if (file) fclose(file);
     return found;
 }

@@ -42,7 +42,7 @@ static bough_node *start(const merger *m, const bough_node *base, int more) {
     return node;
 }
 
-static void append(bough_node *node, bough_node *key, bough_node *value) {
+void bough_node_append(bough_node *node, bough_node *key, bough_node *value) {
     if (node->key != NULL) node->key[node->n] = key;
     node->value[node->n++] = value;
     node->weight += value->weight;
@@ -95,14 +95,14 @@ static bough_node *merge_mappings(merger *m, const bough_node *base, const bough
     for (int i = 0; i < base->n; i++) {
         bough_node *other = bough_node_find(over, base->key[i]->text), *value = base->value[i];
         if (other != NULL) value = merge_at(m, m->path[0] ? "." : "", base->key[i]->text, "", value, other);
-        if (value != NULL) append(merged, base->key[i], value);
+        if (value != NULL) bough_node_append(merged, base->key[i], value);
     }
     for (int i = 0; i < over->n; i++) {
         if (bough_node_find(base, over->key[i]->text) != NULL) continue;
         if (bough_node_is_null(over->value[i])) {
             nothing_to_remove(m, over->key[i], over->key[i]->text, keys_of(m, base), base->n);
         } else {
-            append(merged, over->key[i], over->value[i]);
+            bough_node_append(merged, over->key[i], over->value[i]);
         }
     }
     return merged;
@@ -124,7 +124,7 @@ static bough_node *merge_lists(merger *m, const bough_node *base, const bough_no
         const char *name = name_of(base->value[i]);
         bough_node *other = named(over, name), *value = base->value[i];
         if (other != NULL) value = merge_at(m, "[", name, "]", value, other);
-        if (value != NULL) append(merged, NULL, value);
+        if (value != NULL) bough_node_append(merged, NULL, value);
     }
     for (int i = 0; i < over->n; i++) {
         bool by_key = over->kind == BOUGH_MAPPING;
@@ -133,7 +133,7 @@ static bough_node *merge_lists(merger *m, const bough_node *base, const bough_no
         if (by_key) {
             nothing_to_remove(m, over->key[i], name, keys_of(m, base), base->n);
         } else {
-            append(merged, NULL, over->value[i]);
+            bough_node_append(merged, NULL, over->value[i]);
         }
     }
     return merged;
@@ -146,6 +146,13 @@ static bough_node *merge(merger *m, bough_node *base, bough_node *over) {
     bool table = bough_node_find(over, "columns") != NULL; // a list in another form
     bool by_name = has_names(over) || (over->kind == BOUGH_MAPPING && !table);
     return has_names(base) && by_name ? merge_lists(m, base, over) : over;
+}
+
+bough_node *bough_node_merge(bough_arena *arena, bough_errors *errors, const char *path, bough_node *base,
+                             bough_node *over) {
+    merger m = {.arena = arena, .errors = errors};
+    snprintf(m.path, sizeof m.path, "%s", path);
+    return merge(&m, base, over);
 }
 
 // -- reading --------------------------------------------------------------------------------------

@@ -15,6 +15,14 @@
 bough_node *bough_base_read(bough_arena *arena, const char *path, bough_errors *errors,
                             bough_schema_base **bases);
 
+// The value of a base as another one changes it, by the same rules; NULL: it is removed. `path` is that of
+// the value in messages.
+bough_node *bough_node_merge(bough_arena *arena, bough_errors *errors, const char *path, bough_node *base,
+                             bough_node *over);
+
+// Appends to a container that has room; `key` NULL in a sequence.
+void bough_node_append(bough_node *node, bough_node *key, bough_node *value);
+
 // Whether the value is a plain null or ~, which removes a key.
 bool bough_node_is_null(const bough_node *node);
 

@@ -139,7 +139,7 @@ static void put_description(const bough_key *key, FILE *stream) {
 }
 
 static void put_key(const bough_key *key, FILE *stream) {
-    if (key->kind == BOUGH_KEY_MAPPING) {
+    if (key->of != NULL && (key->kind == BOUGH_KEY_MAPPING || key->kind == BOUGH_KEY_CUSTOM)) {
         bough_schema_json_object(key->of, stream);
         return;
     }

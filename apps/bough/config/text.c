@@ -93,6 +93,22 @@ static bool comes_before(const bough_error *a, const bough_error *b, const char 
     return a->column < b->column;
 }
 
+// A value that several places of the tree share has its error once.
+static void drop_repetitions(bough_errors *errors) {
+    int n = 0;
+    for (int i = 0; i < errors->n; i++) {
+        const bough_error *e = &errors->item[i];
+        bool again = false;
+        for (int k = n - 1; k >= 0 && !again && e->line > 0; k--) {
+            const bough_error *kept = &errors->item[k];
+            if (kept->line != e->line || kept->column != e->column || strcmp(kept->file, e->file) != 0) break;
+            again = strcmp(kept->text, e->text) == 0;
+        }
+        if (!again) errors->item[n++] = *e;
+    }
+    errors->n = n;
+}
+
 // Insertion sort: the list is short and errors at one place must keep their order.
 void bough_errors_sort(bough_errors *errors, const char *first) {
     for (int i = 1; i < errors->n; i++) {
@@ -103,12 +119,13 @@ void bough_errors_sort(bough_errors *errors, const char *first) {
         }
         errors->item[k] = e;
     }
+    drop_repetitions(errors);
 }
 
 bough_status bough_errors_status(bough_errors *errors, const char *file, const char *what) {
+    bough_errors_sort(errors, file);
     int n = errors->n + errors->dropped;
     if (n == 0) return bough_ok();
-    bough_errors_sort(errors, file);
     return bough_fail(BOUGH_INVALID, "%s: %d error%s in the %s", file, n, n == 1 ? "" : "s", what);
 }
 

@@ -51,7 +51,7 @@ void bough_errors_add(bough_errors *errors, const bough_node *where, const char 
                       ...) __attribute__((format(printf, 4, 5)));
 
 // Orders them: without position first, then the file `first`, then other files by name; by line
-// and column within a file.
+// and column within a file. Of equal errors at one place, which several values share, the first stays.
 void bough_errors_sort(bough_errors *errors, const char *first);
 
 // BOUGH_INVALID with their number where there are any, which are then in order: "FILE: 2 errors in the

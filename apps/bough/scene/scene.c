@@ -134,10 +134,21 @@ void bough_scene_take_part(bough_schema_reader *r, const bough_node *given, cons
     cut(s, part, to);
 }
 
-// Applies every replacement that is good; the others leave an error.
+static bool begins(const char *text, const char *with) { return strncmp(text, with, strlen(with)) == 0; }
+
+// Whether a replacement is of a turbine in one block, not of the names of its bodies.
+static bool is_of_block(const char *set) {
+    static const char *const names[] = {"turbine.rotor", "turbine.blades[", "turbine.blades=["};
+    bool of_names = false;
+    for (int i = 0; i < 3; i++) of_names = of_names || begins(set, names[i]);
+    return (begins(set, "turbine.") || begins(set, "turbine=")) && !of_names;
+}
+
+// Applies every good replacement, of the block or of the rest; the others leave an error.
 static bough_node *replace(bough_arena *arena, bough_node *root, const char *const *sets, int n_set,
-                           bough_errors *errors) {
+                           bool of_block, bough_errors *errors) {
     for (int i = 0; i < n_set; i++) {
+        if (is_of_block(sets[i]) != of_block) continue;
         bough_node *changed = bough_scene_set(arena, root, sets[i], errors);
         if (changed != NULL) root = changed;
     }
@@ -161,13 +172,17 @@ bough_status bough_scene_read(bough_arena *arena, const char *path, const char *
     bough_node *root = bough_base_read(arena, path, errors, &bases);
     if (root == NULL) return bough_errors_status(errors, path, "scene");
     if (is_study(path, root, errors)) return bough_errors_status(errors, path, "scene");
-    root = replace(arena, root, sets, n_set, errors);
     const char *directory = bough_directory_of(arena, path);
     bough_schema_reader reader = {.arena = arena, .errors = errors, .directory = directory, .bases = bases};
+    root = bough_scene_expand(&reader, replace(arena, root, sets, n_set, true, errors));
+    if (root == NULL) return bough_errors_status(errors, path, "scene");
+    root = replace(arena, root, sets, n_set, false, errors);
     for (const bough_schema_base *base = bases; base != NULL; base = base->next)
         bough_schema_add_file(&reader, "base", base->path, base->absolute);
     s->file = bough_arena_string(arena, path);
     bough_schema_read(&reader, &bough_scene_schema, root, s);
+    if (root->kind == BOUGH_MAPPING && bough_node_find(root, "bodies") == NULL)
+        bough_schema_error(&reader, root, "", "required key 'bodies' is missing");
     bough_scene_apply_accuracy(s);
     if (s->node != NULL && errors->n == 0) bough_scene_repeat(&reader, s);
     if (s->node != NULL) bough_scene_link(&reader, s);

@@ -12,8 +12,8 @@ extern const bough_schema bough_scene_schema;
 // Those of its parts.
 extern const bough_schema bough_scene_micro_schema, bough_scene_body_schema, bough_scene_load_schema,
     bough_scene_spring_schema, bough_scene_bushing_schema, bough_scene_closure_schema,
-    bough_scene_marker_schema, bough_scene_sensor_schema, bough_scene_turbine_schema, bough_scene_aero_schema,
-    bough_scene_control_schema;
+    bough_scene_marker_schema, bough_scene_sensor_schema, bough_scene_turbine_schema,
+    bough_scene_block_schema, bough_scene_aero_schema, bough_scene_control_schema;
 
 // Readers of values that are lists of their own kind. `field` is named in the body.
 void bough_scene_read_placement(bough_schema_reader *r, const bough_node *node, void *field);
@@ -77,6 +77,10 @@ void bough_scene_check_ramp(bough_schema_reader *r, const bough_node *node, cons
 // Checks a load against the body, load->body, that it acts on.
 void bough_scene_check_body_load(bough_schema_reader *r, const bough_scene *scene,
                                  const bough_scene_load *load);
+
+// The tree of a scene whose `turbine`, when it is one block (`blades` is a number), has become bodies; else
+// `root`. NULL after an error in the block.
+bough_node *bough_scene_expand(bough_schema_reader *reader, bough_node *root);
 
 // Makes single bodies of those in a row.
 void bough_scene_repeat(bough_schema_reader *reader, bough_scene *scene);

@@ -197,6 +197,10 @@ static const bough_schema modes_schema = {SCHEMA("the modes", bough_scene_modes,
 
 // -- the scene ------------------------------------------------------------------------------------
 
+static void already_expanded(bough_schema_reader *r, const bough_node *node, void *field) {
+    (void)r, (void)node, (void)field;
+}
+
 #define FILLS bough_scene
 static const bough_key scene_keys[] = {
     {KEY(TEXT, base), .example = "runup.yaml",
@@ -206,8 +210,8 @@ static const bough_key scene_keys[] = {
      .example = "[0, 0, -9.81 m/s^2]", .help = "ground axes, z up"},
     {KEY(MAPPING, simulation), .of = &simulation_schema, .required = true,
      .help = "time, coupling and solvers"},
-    {NAMED("bodies", LIST), AT(body), .of = &bough_scene_body_schema, .count = 1, .required = true,
-     COUNT_AT(n_body), .help = "the tree of bodies"},
+    {NAMED("bodies", LIST), AT(body), .of = &bough_scene_body_schema, .count = 1,
+     COUNT_AT(n_body), .help = "the tree of bodies; required unless the turbine is one block"},
     {NAMED("loads", LIST), AT(load), .of = &bough_scene_load_schema, COUNT_AT(n_load),
      .help = "loads on joints and bodies"},
     {NAMED("springs", LIST), AT(spring), .of = &bough_scene_spring_schema, COUNT_AT(n_spring),
@@ -222,6 +226,9 @@ static const bough_key scene_keys[] = {
      .help = "places on rods whose motion and section loads are recorded"},
     {KEY(MAPPING, turbine), .of = &bough_scene_turbine_schema,
      .help = "bodies of the turbine that channels and aerodynamics need"},
+    {NAMED("turbine", CUSTOM), .of = &bough_scene_block_schema, .read = already_expanded, .form = "or one block",
+     .example = "{blades: 3, hub_radius: 1.5 m, cone: 2.5 deg, blade: {rod: {table: blade.yaml}}}",
+     .help = "with a number of blades: tower, nacelle, hub and equal blades, which become bodies of these names"},
     {KEY(MAPPING, aero), .of = &bough_scene_aero_schema,
      .help = "aerodynamics; needs the key 'turbine'; default none"},
     {KEY(MAPPING, control), .of = &bough_scene_control_schema,
@@ -274,6 +281,26 @@ void bough_scene_help(FILE *stream) {
         "    simulation: {macro_step: 10 ms, micro: null}\n"
         "    bodies: {blade1: {pitch: 3 deg}, blade2: {pitch: 3 deg}, blade3: {pitch: 3 deg}}\n"
         "    aero: {wind: {speed: 12 m/s}}\n",
+        stream);
+    fputs(
+        "\n## A turbine in one block\n\n"
+        "`turbine` with a number of blades stands for the bodies `tower`, `nacelle`, `hub`, `blade1`, `blade2`, ... and\n"
+        "their joints. What it says of a part changes or adds keys of that body; `bodies` changes one of them by its\n"
+        "name and adds others; `--set 'turbine.cone=3 deg'` and `--set 'bodies[blade2].pitch=1 deg'` both work.\n"
+        "`bough check --full SCENE` prints the bodies.\n\n"
+        "    turbine:\n"
+        "      blades: 3\n"
+        "      tower_height: 87.6 m\n"
+        "      shaft_height: 1.96256 m\n"
+        "      tilt: 5 deg\n"
+        "      overhang: 5.0191 m\n"
+        "      cone: 2.5 deg\n"
+        "      hub_radius: 1.5 m\n"
+        "      pitch: 6.5 deg\n"
+        "      speed: 0.5 rad/s\n"
+        "      nacelle: {mass: 240 t, centre_of_mass: [1.9, 0, 1.75]}\n"
+        "      hub: {mass: 56780 kg, inertia: [5.1414234e6, 2.6e6, 2.6e6]}\n"
+        "      blade: {rod: {table: blade-structure.yaml, segments: 24}}\n",
         stream);
     fputs("\n## An example\n\n", stream);
     fputs(example, stream);
