@@ -110,11 +110,11 @@ enum { MOST_ROOMS = 64 }; // one for each concurrent call
 
 // Whether so many work arrays of the library would find addresses: it does not say when one does not.
 static bool has_addresses(int rooms) {
-    enum { WORK = 129 << 20 };
+    enum { WORK = 129 << 20, ALIGNMENT = 64 };
     void *volatile block[MOST_ROOMS] = {0};
     bool room = true;
     for (int i = 0; i < rooms && room; i++) {
-        block[i] = malloc(WORK);
+        block[i] = aligned_alloc(ALIGNMENT, WORK);
         room = block[i] != NULL;
     }
     for (int i = 0; i < rooms; i++) free(block[i]);

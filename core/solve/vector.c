@@ -137,7 +137,7 @@ N_Vector bough_vector_create(int n, SUNContext context) {
 bool bough_vector_room(int n) {
     enum { VECTORS = 40, OBJECTS = 1 << 18 };
     size_t size = VECTORS * (ALIGNMENT + (size_t)bough_padded(n) * sizeof(double)) + OBJECTS;
-    void *volatile block = malloc(size); // else a compiler may leave both calls out
+    void *volatile block = aligned_alloc(ALIGNMENT, size); // else a compiler may leave both calls out
     bool room = block != NULL;
     free(block);
     return room;

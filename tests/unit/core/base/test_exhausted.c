@@ -16,16 +16,14 @@ static bool armed, once; // once: a single allocation is refused, the next ones 
 static long left;        // allocations before that
 static int spared;       // allocations to come that are not counted
 
-// The linker puts these in place of the functions that our own code calls.
-void *__real_malloc(size_t size);
+// The linker puts these in place of the functions by which our own code takes memory: aligned_alloc, and
+// calloc for single objects. SUNDIALS, where it is linked statically, takes its own by malloc and by calloc
+// for arrays, and does not always look whether it got any.
 void *__real_calloc(size_t count, size_t size);
-void *__real_realloc(void *block, size_t size);
 void *__real_aligned_alloc(size_t alignment, size_t size);
 N_Vector __real_N_VCloneEmpty(N_Vector model);
 N_Vector __wrap_N_VCloneEmpty(N_Vector model);
-void *__wrap_malloc(size_t size);
 void *__wrap_calloc(size_t count, size_t size);
-void *__wrap_realloc(void *block, size_t size);
 void *__wrap_aligned_alloc(size_t alignment, size_t size);
 
 static bool refuse(void) {
@@ -35,11 +33,9 @@ static bool refuse(void) {
     return once ? left == -1 : left < 0;
 }
 
-void *__wrap_malloc(size_t size) { return refuse() ? NULL : __real_malloc(size); }
-
-void *__wrap_calloc(size_t count, size_t size) { return refuse() ? NULL : __real_calloc(count, size); }
-
-void *__wrap_realloc(void *block, size_t size) { return refuse() ? NULL : __real_realloc(block, size); }
+void *__wrap_calloc(size_t count, size_t size) {
+    return count == 1 && refuse() ? NULL : __real_calloc(count, size);
+}
 
 void *__wrap_aligned_alloc(size_t alignment, size_t size) {
     return refuse() ? NULL : __real_aligned_alloc(alignment, size);
