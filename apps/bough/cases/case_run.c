@@ -171,7 +171,7 @@ static bough_status build(bough_arena *arena, case_run *r) {
 // -- one run --------------------------------------------------------------------------------------
 
 static bough_status judge(bough_arena *arena, const case_run *r) {
-    const bough_companion *c = r->run.companion;
+    bough_companion *c = r->run.companion;
     double bound = r->run.simulation->scene->simulation.error_bound;
     bough_error_shares shares = {0};
     char warning[BOUGH_ERROR_WARNING];

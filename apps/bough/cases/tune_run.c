@@ -75,7 +75,7 @@ static double worst(const bough_companion *c, bool motion, const double *error, 
 // Forces and moments contain vibrations that hardly move anything: four times the error of motions.
 static double together(double motion, double force) { return fmax(motion, 0.25 * force); }
 
-static bough_status take_errors(const measurement *m, bough_arena *arena, const bough_companion *c) {
+static bough_status take_errors(const measurement *m, bough_arena *arena, bough_companion *c) {
     bough_tune_point *p = m->point;
     if (c->compared == 0 || c->reason[0]) return bough_fail(BOUGH_FAILED, "no error is known: %s", c->reason);
     p->motion = worst(c, true, c->error, p->channel);

@@ -153,7 +153,7 @@ static bough_status after_step(void *self) {
 // asks.
 static bough_status judge(bough_run_command *command) {
     const bough_scene_simulation *x = &command->run.simulation->scene->simulation;
-    const bough_companion *c = command->run.companion;
+    bough_companion *c = command->run.companion;
     if (x->error_shares || bough_error_exceeds(c, x->error_bound))
         BOUGH_TRY(bough_error_shares_find(command->arena, c, bough_stop_requested, &command->shares));
     return bough_error_judge(c, &command->shares, x->error_bound, command->warning);

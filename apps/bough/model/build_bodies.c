@@ -201,7 +201,8 @@ static bough_status add_end(bough_builder *b, bough_beam *beam, int index) {
     memcpy(to->coordinates, q, sizeof q);
     beam->end = b->s->n_end++;
     beam->def.carries = true;
-    b->end[beam->end] = (bough_end_def){name, body, vertex_inertia(&def->inertia[n])};
+    beam->vertex[1] = vertex_inertia(&def->inertia[n]);
+    b->end[beam->end] = (bough_end_def){name, body, beam->vertex[1]};
     return bough_ok();
 }
 
@@ -224,9 +225,9 @@ static bough_status add_beam(bough_builder *b, int index) {
     b->force.marker[s->n_beam++] = (bough_marker_def){beam->body->name, index, bough_transform_identity()};
     if (beam->body->fidelity == BOUGH_SCENE_RIGID) return bough_ok();
     beam->port = s->n_rod;
+    beam->vertex[0] = root_inertia(&beam->def);
     beam->in_ground = moves_under_ground_loads(b->scene, index);
-    b->port[s->n_rod++] =
-        (bough_port_def){beam->body->name, beam->marker, root_inertia(&beam->def), beam->in_ground};
+    b->port[s->n_rod++] = (bough_port_def){beam->body->name, beam->marker, beam->vertex[0], beam->in_ground};
     return bough_scene_carried_by(b->scene, index) >= 0 ? add_end(b, beam, index) : bough_ok();
 }
 

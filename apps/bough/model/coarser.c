@@ -37,6 +37,9 @@ static void copy_loads(bough_arena *arena, const bough_scene *scene, bough_scene
 
 enum { FEW_SEGMENTS = 9 };   // fewer: errors of half of them do not fall with their order
 enum { LEAST_SEGMENTS = 8 }; // of a finer rod: one or two cost as much time
+// A blade of eight segments in air at half the rate can be unstable. Of fewer segments than SOME there is no
+// fewer number that differs by enough.
+enum { LEAST_IN_AIR = 10, SOME_SEGMENTS = 14 };
 
 static int finer_number(int n) { return 2 * n > LEAST_SEGMENTS ? 2 * n : LEAST_SEGMENTS; }
 
@@ -73,7 +76,8 @@ static int other_segments(const bough_scene *scene, int body) {
     int n = scene->body[body].rod.n_segment;
     bool blade = bough_scene_blade(scene, body) >= 0;
     if (blade ? has_modal_blades(scene) : is_modal(scene, body)) return finer_number(n);
-    return other_number(n, blade ? least_of_blades(scene) : least_segments(scene, body));
+    int least = blade ? least_of_blades(scene) : least_segments(scene, body);
+    return other_number(n, blade && n >= SOME_SEGMENTS && least < LEAST_IN_AIR ? LEAST_IN_AIR : least);
 }
 
 static bool gets_finer(const bough_scene *scene, int body) {

@@ -369,11 +369,12 @@ static bough_discon_sensed sense(bough_control_link *l, double t, double step, d
                              .electrical_power = electrical_power(l->control, speed, l->now.torque),
                              .wind = hub_wind(s),
                              .azimuth = azimuth - 2 * BOUGH_PI * floor(azimuth / 2 / BOUGH_PI)};
-    for (int b = 0; b < l->n_blade; b++) {
+    for (int b = 0; b < l->n_blade; b++)
         x.pitch[b] = bough_simulation_pitch(s, bough_simulation_beam(s, blade_body(l, b)));
-        root_moments(l, b, t, &x.root_moment[b], &x.in_plane[b]);
-    }
-    if (l->discon) sense_nacelle(l, t, &x);
+    if (l->discon == NULL) return x;
+    bough_simulation_accelerate(s, t);
+    for (int b = 0; b < l->n_blade; b++) root_moments(l, b, t, &x.root_moment[b], &x.in_plane[b]);
+    sense_nacelle(l, t, &x);
     return x;
 }
 

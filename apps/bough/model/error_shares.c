@@ -51,23 +51,23 @@ static bough_status advance(other_run *r, double t) {
     return status;
 }
 
-// `part`, `held`: of the difference, that the run errs by; of channels whose last sample the base holds.
-static void compare(const other_run *base, other_run *finer, double part, double held,
-                    bough_error_share *share) {
-    const bough_master *m = finer->simulation->master;
+// `part`, `held`: of the difference, that the run errs by; of channels whose last sample the base holds. Both
+// runs are sampled.
+static void compare(const other_run *base, const other_run *other, double part, double held,
+                    double *largest) {
     bool holds = !bough_master_sampled(base->simulation->master);
-    if (m->time != base->simulation->master->time) return;
-    sample(finer);
+    if (other->simulation->master->time != base->simulation->master->time) return;
     for (int i = 0; i < base->channels.count; i++) {
         const bough_channel *channel = &base->channels.channel[i];
-        double apart = base->value[i] - finer->value[i];
-        if (channel->turn > 0) apart = remainder(apart, channel->turn);
-        share->largest[i] = fmax(share->largest[i], (channel->sampled && holds ? held : part) * fabs(apart));
+        double difference = base->value[i] - other->value[i];
+        if (channel->turn > 0) difference = remainder(difference, channel->turn);
+        largest[i] = fmax(largest[i], (channel->sampled && holds ? held : part) * fabs(difference));
     }
 }
 
 typedef struct finding {
-    const bough_companion *companion;
+    bough_companion *companion;
+    bool lost; // the error is above the bound
     bool (*stop)(void);
     bough_error_shares *shares;
 } finding;
@@ -95,6 +95,22 @@ static void build_finer(bough_arena *arena, const finding *x, other_run finer[BO
     }
 }
 
+// One macro step of the base, and as far with a run that is finer in part k.
+static void advance_finer(const finding *x, int k, const other_run *base, const other_run *again,
+                          other_run *finer, double part, double held) {
+    bough_error_share *share = &x->shares->share[k];
+    const bough_companion *c = x->companion;
+    if (!finer->simulation || share->unknown[0]) return;
+    bough_status own = advance(finer, base->simulation->master->time);
+    if (!bough_is_ok(&own)) {
+        unknown(share, "%.150s", own.message);
+        return;
+    }
+    sample(finer);
+    compare(base, finer, part, held, share->largest);
+    if (again->simulation) compare(finer, again, c->share, c->share_held, share->others);
+}
+
 // A run that fails leaves its share unknown.
 static bough_status find(bough_arena *arena, void *self) {
     const finding *x = self;
@@ -105,26 +121,56 @@ static bough_status find(bough_arena *arena, void *self) {
     // what is held longer than in the run is held so in two of the further runs as well
     const double held[BOUGH_SHARES] = {part[BOUGH_SHARE_MESH], x->companion->share_held,
                                        part[BOUGH_SHARE_TIME]};
-    other_run base, finer[BOUGH_SHARES] = {{0}};
+    other_run base, again = {0}, finer[BOUGH_SHARES] = {{0}};
     bough_status status = build(arena, x->companion->run, BOUGH_COARSER_ALL, &base);
     if (bough_is_ok(&status)) build_finer(arena, x, finer);
+    if (bough_is_ok(&status) && x->lost) status = build(arena, x->companion->run, 0, &again);
     while (bough_is_ok(&status) && !bough_master_done(base.simulation->master)) {
         if (x->stop && x->stop())
             return bough_fail(BOUGH_INTERRUPTED, "interrupted while the error's cause was looked for");
         status = bough_step(base.simulation->master);
         if (!bough_is_ok(&status)) break;
         sample(&base);
-        for (int k = 0; k < BOUGH_SHARES; k++) {
-            bough_error_share *share = &x->shares->share[k];
-            if (!finer[k].simulation || share->unknown[0]) continue;
-            bough_status own = advance(&finer[k], base.simulation->master->time);
-            if (bough_is_ok(&own))
-                compare(&base, &finer[k], part[k], held[k], share);
-            else
-                unknown(share, "%.150s", own.message);
-        }
+        if (again.simulation) status = advance(&again, base.simulation->master->time);
+        if (!bough_is_ok(&status)) break;
+        if (again.simulation) sample(&again);
+        for (int k = 0; k < BOUGH_SHARES; k++)
+            advance_finer(x, k, &base, &again, &finer[k], part[k], held[k]);
     }
     return status;
+}
+
+// -- a companion that has lost the solution -------------------------------------------------------
+
+static const double much_less = 0.5; // of what the companion shows
+
+// The two runs that differ least from the run itself; false: fewer are known.
+static bool find_nearest(const bough_companion *c, const bough_error_shares *shares, int nearest[2],
+                         double *relative) {
+    double own[2] = {HUGE_VAL, HUGE_VAL};
+    for (int k = 0; k < BOUGH_SHARES; k++) {
+        if (shares->share[k].unknown[0]) continue;
+        bough_error_verdict v = bough_error_verdict_of(c, true, shares->share[k].others);
+        double next = v.channel < 0 ? 0 : v.relative;
+        int place = next < own[0] ? 0 : 1;
+        if (next >= own[1]) continue;
+        if (place == 0) own[1] = own[0], nearest[1] = nearest[0];
+        own[place] = next, nearest[place] = k;
+    }
+    *relative = own[0] + own[1];
+    return isfinite(*relative);
+}
+
+static void lower_errors(bough_companion *c, bough_error_shares *shares) {
+    int nearest[2] = {0};
+    double relative, whole = bough_error_verdict_of(c, true, c->error).relative;
+    if (!find_nearest(c, shares, nearest, &relative) || relative > much_less * whole) return;
+    for (int i = 0; i < c->channels->count; i++) {
+        double sum = shares->share[nearest[0]].others[i] + shares->share[nearest[1]].others[i];
+        c->error[i] = fmin(c->error[i], sum);
+        for (int k = 0; k < BOUGH_SHARES; k++)
+            shares->share[k].largest[i] = fmin(shares->share[k].largest[i], sum);
+    }
 }
 
 static double cpu_clock(void) {
@@ -133,13 +179,14 @@ static double cpu_clock(void) {
     return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
 }
 
-bough_status bough_error_shares_find(bough_arena *arena, const bough_companion *c, bool (*stop)(void),
+bough_status bough_error_shares_find(bough_arena *arena, bough_companion *c, bool (*stop)(void),
                                      bough_error_shares *shares) {
-    finding x = {c, stop, shares};
+    finding x = {c, bough_error_exceeds(c, c->run->scene->simulation.error_bound), stop, shares};
     double cpu = cpu_clock();
     *shares = (bough_error_shares){.found = true, .n_channel = c->channels->count};
     for (int k = 0; k < BOUGH_SHARES; k++)
-        shares->share[k].largest = bough_arena_doubles(arena, (size_t)c->channels->count + 1);
+        bough_arena_each(arena, (size_t)c->channels->count + 1, &shares->share[k].largest,
+                         &shares->share[k].others);
     bough_status status = bough_ok();
     if (!c->coarser) {
         status = bough_fail(BOUGH_FAILED, "%s", c->reason);
@@ -150,6 +197,7 @@ bough_status bough_error_shares_find(bough_arena *arena, const bough_companion *
     }
     shares->cpu_s = cpu_clock() - cpu;
     if (status.code == BOUGH_INTERRUPTED) return status;
+    if (bough_is_ok(&status) && x.lost) lower_errors(c, shares);
     for (int k = 0; k < BOUGH_SHARES && !bough_is_ok(&status); k++)
         unknown(&shares->share[k], "%.150s", status.message);
     return bough_ok();

@@ -1,6 +1,9 @@
 // Shares of mesh, air and time in the error of a run, and what to do about the largest. The scene is run once
 // more as its companion is, and beside it three times with one of the three as fine as in the run: what lies
-// between is that part's share of what the companion errs by, and part of it the run's.
+// between is that part's share of what the companion errs by, and part of it the run's. Coarser in all parts
+// at once, a companion can lose the solution that it keeps with any one of them as in the run. Then two of
+// these three runs, which together are coarser in every part, give the error: the sum of what the run differs
+// by from either.
 #ifndef BOUGH_APPS_MODEL_ERROR_SHARES_H
 #define BOUGH_APPS_MODEL_ERROR_SHARES_H
 
@@ -16,6 +19,7 @@ typedef enum bough_error_share_kind {
 typedef struct bough_error_share {
     char unknown[160]; // why it is not known; "": it is
     double *largest;   // (n_channel) largest error of each channel in the run, in its unit
+    double *others;    // (n_channel) the same of all other parts, where the error is above the bound
 } bough_error_share;
 
 typedef struct bough_error_shares {
@@ -27,9 +31,9 @@ typedef struct bough_error_shares {
 
 const char *bough_error_share_name(bough_error_share_kind kind);
 
-// After a complete run: makes the further runs. What is not known says why. BOUGH_INTERRUPTED by stop()
-// (NULL: never).
-bough_status bough_error_shares_find(bough_arena *arena, const bough_companion *c, bool (*stop)(void),
+// After a complete run: makes the further runs. What is not known says why. Lowers the errors of a companion
+// that has lost the solution. BOUGH_INTERRUPTED by stop() (NULL: never).
+bough_status bough_error_shares_find(bough_arena *arena, bough_companion *c, bool (*stop)(void),
                                      bough_error_shares *shares);
 
 enum { BOUGH_ERROR_WARNING = 600 };

@@ -127,7 +127,7 @@ static bool is_driven(const bough_scene_joint *joint, int k) {
 // Forces and torques of prescribed motions under the rods' present forces.
 static void sample_drives(void *self, double t, double *value) {
     const bough_simulation *s = self;
-    bough_tree_forward_dynamics(s->tree, s->view, t, s->master->coupling->input, s->acceleration);
+    bough_simulation_accelerate(s, t);
     for (int i = 0; i < s->scene->n_body; i++) {
         for (int k = 0, q, v; k < 2; k++) {
             if (!is_driven(&s->scene->body[i].joint, k)) continue;
@@ -192,7 +192,7 @@ static void add_bushings(bough_simulation *s, bough_channels *list) {
 // Forces and moments of closures under the rods' present forces.
 static void sample_closures(void *self, double t, double *value) {
     const bough_simulation *s = self;
-    bough_tree_forward_dynamics(s->tree, s->view, t, s->master->coupling->input, s->acceleration);
+    bough_simulation_accelerate(s, t);
     for (int k = 0; k < s->tree->n_closures; k++, value += 6)
         bough_wrench_store(bough_loops_wrench(s->tree, s->view, k), value);
 }
@@ -233,6 +233,7 @@ enum { BLADE_CHANNELS = 12 };
 // displacement along the axes before the pitch.
 static void sample_blades(void *self, double t, double *value) {
     const bough_simulation *s = self;
+    bough_simulation_accelerate(s, t);
     for (int b = 0; b < s->scene->turbine.n_blade; b++, value += BLADE_CHANNELS) {
         const bough_beam *beam = bough_simulation_beam(s, s->scene->turbine.blade[b]);
         double pitch = bough_simulation_pitch(s, beam), c = cos(pitch), sine = sin(pitch);
@@ -296,6 +297,7 @@ static void sample_tower(void *self, double t, double *value) {
     bough_mat3 turned = bough_mat3_product(top.rotation, bough_mat3_transpose(s->tower_rest.rotation));
     bough_vec3 turn = bough_quaternion_logarithm(bough_quaternion_of_matrix(turned));
     value = bough_observe_vector(turn, BOUGH_DEGREE, bough_observe_vector(d, 1, value));
+    bough_simulation_accelerate(s, t);
     bough_simulation_root(s, s->tower_foot, t, root);
     for (int k = 0; k < 6; k++) value[k] = root[k] / 1e3;
 }

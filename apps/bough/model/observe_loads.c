@@ -51,13 +51,50 @@ static bough_mat3 axes_between(bough_quaternion p, bough_quaternion q, double sh
     return bough_rotation_matrix(bough_quaternion_product(p, part));
 }
 
-static void sample_place(const sensor *x, place at, double *value) {
+// Loads of the sections at both ends, in the body's axes.
+typedef struct end_loads {
+    bough_section_load root, end; // end: of a rod that carries bodies
+} end_loads;
+
+static end_loads loads_at_ends(const sensor *x, double t) {
+    const bough_beam *beam = x->beam;
+    int n = beam->def.n_segment;
+    double w[BOUGH_ROD_MOST_OUTPUTS];
+    bough_simulation_accelerate(x->simulation, t);
+    bough_simulation_root(x->simulation, beam, t, w);
+    bough_vec3 root = bough_v3(w[0], w[1], w[2]), arm = bough_cross(beam->def.position[0], root);
+    bough_mat3 section = bough_rotation_matrix(vertex_rotation(x, n));
+    return (end_loads){
+        {root, bough_sub(bough_v3(w[3], w[4], w[5]), arm)},
+        {bough_v3(-w[6], -w[7], -w[8]), bough_mat3_mul(section, bough_v3(-w[9], -w[10], -w[11]))}};
+}
+
+static bough_section_load blend_loads(bough_section_load a, bough_section_load b, double share) {
+    return (bough_section_load){bough_blend(a.force, b.force, share), bough_blend(a.moment, b.moment, share)};
+}
+
+// A segment's loads are those of its middle. From there to the root, and to an end that carries bodies, they
+// go linearly to what the rod does there.
+static bough_section_load load_at(const sensor *x, const end_loads *ends, place at) {
+    const bough_beam *beam = x->beam;
+    bough_section_load load = bough_section_in_segment(beam, &x->scratch, at.segment, at.share);
+    if (at.segment == 0 && at.share < 0.5) {
+        bough_section_load middle = bough_section_in_segment(beam, &x->scratch, 0, 0.5);
+        load = blend_loads(ends->root, middle, 2 * at.share);
+    } else if (at.segment == beam->def.n_segment - 1 && at.share > 0.5 && beam->end >= 0) {
+        bough_section_load middle = bough_section_in_segment(beam, &x->scratch, at.segment, 0.5);
+        load = blend_loads(middle, ends->end, 2 * at.share - 1);
+    }
+    return load;
+}
+
+static void sample_place(const sensor *x, const end_loads *ends, place at, double *value) {
     int left = at.segment, right = left + 1;
     const bough_rod_def *def = &x->beam->def;
     bough_vec3 shift = bough_blend(bough_sub(vertex_position(x, left), def->position[left]),
                                    bough_sub(vertex_position(x, right), def->position[right]), at.share);
     bough_vec3 turn = bough_blend(vertex_turn(x, left), vertex_turn(x, right), at.share);
-    bough_section_load load = bough_section_in_segment(x->beam, &x->scratch, left, at.share);
+    bough_section_load load = load_at(x, ends, at);
     bough_mat3 axes = axes_between(vertex_rotation(x, left), vertex_rotation(x, right), at.share);
     bough_vec3 force = bough_mat3_tmul(axes, load.force);
     bough_vec3 moment = bough_mat3_tmul(axes, load.moment);
@@ -68,8 +105,9 @@ static void sample_place(const sensor *x, place at, double *value) {
 static void sample_sections(void *self, double t, double *value) {
     sensor *x = self;
     bool good = bough_section_evaluate(x->simulation, x->beam, t, &x->scratch);
+    end_loads ends = loads_at_ends(x, t);
     for (int k = 0; k < x->n; k++, value += PLACE_CHANNELS) {
-        sample_place(x, x->place[k], value);
+        sample_place(x, &ends, x->place[k], value);
         for (int c = 6; c < PLACE_CHANNELS && !good; c++) value[c] = (double)NAN;
     }
 }
@@ -114,13 +152,14 @@ void bough_observe_sections(bough_simulation *s, bough_channels *list) {
 
 // -- yaw bearing ----------------------------------------------------------------------------------
 
-// The opposite of what the tower's last segment and the loads there do to what it carries, from the
-// body's and the section's axes into those of the body that turn with the section.
+// The opposite of what the tower's end does to the bodies that it carries, from the body's and the
+// section's axes into those of the body that turn with the section.
 static void sample_yaw_bearing(void *self, double t, double *value) {
     const bough_simulation *s = self;
     const bough_beam *top = s->tower_top;
     double w[BOUGH_ROD_MOST_OUTPUTS];
     bough_quaternion p;
+    bough_simulation_accelerate(s, t);
     bough_simulation_root(s, top, t, w);
     bough_simulation_beam_tip(s, top, &p);
     bough_vec3 force = bough_v3(-w[6], -w[7], -w[8]);

@@ -114,8 +114,7 @@ static void sample_torque(void *self, double t, double *value) {
     const bough_simulation *s = x->simulation;
     double angle, speed, torque = 0;
     bool heavy = has_inertia(&x->inertia);
-    if (heavy || s->scene->body[x->body].joint.motion.node != NULL)
-        bough_tree_forward_dynamics(s->tree, s->view, t, s->master->coupling->input, s->acceleration);
+    if (heavy || s->scene->body[x->body].joint.motion.node != NULL) bough_simulation_accelerate(s, t);
     if (heavy) torque = inertial_torque(x);
     torque -= joint_torque(s, x->body, t);
     bough_simulation_hub_turn(s, &angle, &speed);

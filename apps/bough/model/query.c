@@ -3,6 +3,7 @@
 
 #include "aero/rotor/rotor.h"
 #include "core/tree/dynamics.h"
+#include "core/tree/loop.h"
 
 #include <string.h>
 
@@ -65,12 +66,49 @@ bough_rotor_place bough_simulation_rotor(const bough_simulation *s) {
     return r;
 }
 
+bool bough_simulation_accelerate(const bough_simulation *s, double t) {
+    return bough_tree_forward_dynamics(s->tree, s->view, t, s->master->coupling->input, s->acceleration);
+}
+
+// A - g in the axes of a frame, which may stand on the ground.
+static bough_twist less_gravity(const bough_simulation *s, const bough_frame *frame) {
+    bool moves = frame->link >= 0;
+    bough_twist a = moves ? s->view->acceleration[frame->link] : (bough_twist){0};
+    a.linear = bough_sub(a.linear, moves ? s->view->gravity[frame->link] : s->tree->gravity);
+    return bough_twist_to_child(&frame->placement, a);
+}
+
+// I (A - g) + V x* I V in the axes of a frame.
+static bough_wrench inertial_wrench(const bough_simulation *s, const bough_frame *frame,
+                                    const bough_inertia *inertia) {
+    bough_twist v = bough_tree_frame_twist(s->view, frame);
+    bough_wrench w = bough_inertia_mul(inertia, less_gravity(s, frame));
+    return bough_wrench_add(w, bough_wrench_cross(v, bough_inertia_mul(inertia, v)));
+}
+
+// Adds what the vertex does, unless the rod is not strained yet, as at the start: then nothing of its motion
+// has passed on to the vertex.
+static void add_vertex(bough_wrench inertial, double *wrench) {
+    double force = bough_norm(inertial.force), strain = bough_norm(bough_v3(wrench[0], wrench[1], wrench[2]));
+    double values[6];
+    if (strain <= 1e-9 * force) return;
+    bough_wrench_store(inertial, values);
+    for (int k = 0; k < 6; k++) wrench[k] -= values[k];
+}
+
 void bough_simulation_root(const bough_simulation *s, const bough_beam *beam, double t,
                            double root[BOUGH_ROD_MOST_OUTPUTS]) {
     memset(root, 0, BOUGH_ROD_MOST_OUTPUTS * sizeof *root);
     if (beam->port < 0) return;
     const bough_member *rod = &s->rod[beam->port];
     rod->system.ops->output(rod->system.self, t, rod->state, bough_simulation_rod_input(s, beam), root);
+    add_vertex(inertial_wrench(s, &s->tree->markers[beam->marker], &beam->vertex[0]), root);
+    if (beam->end < 0) return;
+    bough_quaternion p;
+    bough_simulation_beam_tip(s, beam, &p);
+    bough_wrench w = inertial_wrench(s, &s->tree->ends[beam->end], &beam->vertex[1]);
+    w.force = bough_mat3_mul(bough_rotation_matrix(p), w.force);
+    add_vertex(w, root + 6);
 }
 
 // A vertex in the body's frame: of a rod from its state, else undeformed and carried along.

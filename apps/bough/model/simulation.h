@@ -21,13 +21,15 @@ struct bough_validity;
 // sub-solver.
 typedef struct bough_beam {
     const bough_scene_body *body;
-    bough_rod_def def;         // the undeformed mesh in the body's frame
-    int marker;                // of the tree, the body's frame
-    int port;                  // of the tree; −1 when rigid
-    bool in_ground;            // it moves under loads in ground axes
-    int end;                   // of the tree, where bodies hang on the rod; −1 when it carries none
-    bough_rod_body *rod;       // NULL unless a rod
-    bough_modal_body *modal;   // NULL unless modal
+    bough_rod_def def;       // the undeformed mesh in the body's frame
+    int marker;              // of the tree, the body's frame
+    int port;                // of the tree; −1 when rigid
+    bool in_ground;          // it moves under loads in ground axes
+    int end;                 // of the tree, where bodies hang on the rod; −1 when it carries none
+    bough_inertia vertex[2]; // of the vertices that belong to the tree: the root's in the body's frame, that
+                             // of the end in its section's
+    bough_rod_body *rod;     // NULL unless a rod
+    bough_modal_body *modal; // NULL unless modal
     bough_ground_body *ground; // around either, NULL unless in_ground
 } bough_beam;
 
@@ -129,7 +131,14 @@ const char *bough_simulation_body_of(const bough_simulation *s, const bough_asse
 // The pitch of a blade: its body's, and what its pitch joint adds, positive by −z [rad].
 double bough_simulation_pitch(const bough_simulation *s, const bough_beam *beam);
 
-// The wrench of a rod on its carrier, in the body's axes [N, N m]; zero for a rigid body.
+// Accelerations of the tree's links under the rods' present forces, into s->view; false as
+// bough_tree_forward_dynamics.
+bool bough_simulation_accelerate(const bough_simulation *s, double t);
+
+// The wrench of a rod on its carrier, in the body's axes at its origin, and behind it the wrench of its end
+// on the bodies that it carries, force in the body's axes and moment in the section's [N, N m]; zero for a
+// rigid body. Weight and inertia of the vertices there, which the tree carries, are those of the rod. Reads
+// the accelerations of bough_simulation_accelerate. Theory (99).
 void bough_simulation_root(const bough_simulation *s, const bough_beam *beam, double t,
                            double root[BOUGH_ROD_MOST_OUTPUTS]);
 

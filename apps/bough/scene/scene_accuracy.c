@@ -55,8 +55,25 @@ static void choose_master(bough_scene *scene) {
 // Lanes of eight are full at multiples of eight. The force at a rod's root has order 2.
 static const double usual_lanes = 4;
 
-static int usual_segments(const bough_scene *s) {
-    return 8 * (int)ceil(usual_lanes * sqrt(usual / s->simulation.accuracy) - 1e-9);
+// A blade bends in shorter waves where it is slender: graded segments do with three quarters of their number.
+static const double slender = 0.1, blade_grading = 0.2, blade_lanes = 3;
+
+// Whether the bending stiffness over the outer quarter is small against that at the root.
+static bool is_blade(const bough_scene_rod *rod) {
+    const bough_scene_structure *s = &rod->structure;
+    double outer = 0, root = 0;
+    for (int i = 0; i < s->n_station; i++) {
+        const double *stiffness = s->station[i].def.stiffness;
+        double bending = fmin(stiffness[15], stiffness[18]); // about x and y
+        if (i == 0) root = bending;
+        if (s->station[i].def.position.z >= 0.75 * s->length) outer = fmax(outer, bending);
+    }
+    return s->n_station > 1 && outer < slender * root;
+}
+
+static int usual_segments(const bough_scene *s, bool graded) {
+    double lanes = graded ? blade_lanes : usual_lanes;
+    return 8 * (int)ceil(lanes * sqrt(usual / s->simulation.accuracy) - 1e-9);
 }
 
 static void choose_segments(bough_scene *s) {
@@ -64,7 +81,9 @@ static void choose_segments(bough_scene *s) {
         bough_scene_rod *rod = &s->body[i].rod;
         if (!rod->node || is_named(rod->node, "segments")) continue;
         int pieces = s->body[i].fidelity == BOUGH_SCENE_SEGMENTED_MODAL ? s->body[i].modal.pieces : 0;
-        rod->n_segment = usual_segments(s) > pieces ? usual_segments(s) : pieces;
+        if (!is_named(rod->node, "grading") && pieces == 0 && is_blade(rod)) rod->grading = blade_grading;
+        int usual_number = usual_segments(s, rod->grading > 0);
+        rod->n_segment = usual_number > pieces ? usual_number : pieces;
     }
 }
 
@@ -73,7 +92,7 @@ static void choose_segments(bough_scene *s) {
 static const double usual_macro_step = 20e-3; // [s]
 static const double fewest_steps = 100;       // of a run
 static const double tip_speed = 80;           // of any turbine at rated power [m/s]
-static const double usual_arc = 0.027; // of a blade between two samples of the air, at that speed [rad]
+static const double usual_arc = 0.022; // of a blade between two samples of the air, at that speed [rad]
 
 // The error of a step or of a sample has order 3.
 static double scale_of_time(const bough_scene *s) { return cbrt(s->simulation.accuracy / usual); }
@@ -106,10 +125,13 @@ bool bough_scene_step_fits(const bough_scene *s, double macro_step) {
     return true;
 }
 
-// 1, 2 or 5 times a power of ten, at most `limit`.
+// 1, 1.25, 2, 2.5 or 5 times a power of ten, at most `limit`.
 static double round_step(double limit) {
-    double unit = pow(10, floor(log10(limit) + 1e-9)), share = limit / unit * (1 + 1e-9);
-    return (share >= 5 ? 5 : share >= 2 ? 2 : 1) * unit;
+    static const double round[] = {5, 2.5, 2, 1.25, 1};
+    double unit = pow(10, floor(log10(limit) + 1e-9)), multiple = limit / unit * (1 + 1e-9);
+    int i = 0;
+    while (i < 4 && multiple < round[i]) i++;
+    return round[i] * unit;
 }
 
 // The longest macro step up to `limit` that fits: a round one, else a part of the shortest period.
@@ -151,7 +173,7 @@ static void expect_mesh(const bough_scene *s, bough_scene_expectation *e) {
     for (int i = 0; i < s->n_body; i++) {
         const bough_scene_rod *rod = &s->body[i].rod;
         if (!has_mesh(&s->body[i])) continue;
-        double coarser = (double)usual_segments(s) / rod->n_segment;
+        double coarser = (double)usual_segments(s, rod->grading > 0) / rod->n_segment;
         if (coarser * coarser <= e->error[0]) continue;
         e->error[0] = coarser * coarser;
         e->named[0] = is_named(rod->node, "segments");

@@ -1,0 +1,78 @@
+// Forces and moments at the ends of rods, with weight and inertia of the vertices that the tree carries.
+#include "tests/unit/built_scene.h"
+#include "tests/unit/scratch.h"
+
+#include <math.h>
+#include <stdio.h>
+
+static const double g = 9.80665;
+
+// A channel at the start of a scene of this text.
+static double at_start(const char *folder, const char *text, const char *name) {
+    check_arena(arena);
+    char path[300];
+    snprintf(path, sizeof path, "%s/s.yaml", folder);
+    FILE *stream = fopen(path, "w");
+    assert_non_null(stream);
+    fputs(text, stream);
+    fclose(stream);
+    bough_errors errors = {.arena = arena};
+    bough_scene *scene;
+    bough_simulation *s;
+    check_ok(bough_scene_read(arena, path, NULL, 0, &errors, &scene));
+    check_ok(bough_simulation_build(arena, scene, &s));
+    bough_channels list = bough_channels_start(arena);
+    check_ok(bough_simulation_channels(s, &list));
+    double value = scene_channel(s, &list, name);
+    remove(path);
+    return value;
+}
+
+// 20 kg of rod, of n segments that shorten, and a head of 5 kg at its end.
+static double column(const char *folder, int n, const char *channel) {
+    char text[800];
+    snprintf(
+        text, sizeof text,
+        "simulation: {duration: 1 s, macro_step: 10 ms, initial: equilibrium}\nbodies:\n"
+        "  - {name: a, fidelity: rod, joint: {kind: fixed, parent: ground, placement: [rotate y 20 deg]},\n"
+        "     rod: {length: 2, segments: %d, grading: 0.3, stiffness: [1e6, 1e6, 1e7, 1e5, 1e5, 1e5],\n"
+        "           mass: [10, 0, 0, 0.1, 0.1, 0]}}\n"
+        "  - {name: head, fidelity: rigid, mass: 5, inertia: [1, 1, 1], joint: {kind: fixed, parent: a}}\n"
+        "sensors:\n  - {body: a, at: [0, 2]}\n",
+        n);
+    return at_start(folder, text, channel);
+}
+
+// Whatever the mesh, the root carries the whole weight and the end the head's.
+TEST_IN_FOLDER(the_root_carries_the_whole_weight) {
+    static const int segments[] = {2, 3, 10};
+    for (int k = 0; k < 3; k++) {
+        double x = column(*context, segments[k], "aSpn1FLx"), z = column(*context, segments[k], "aSpn1FLz");
+        check_near(hypot(x, z), 25 * g / 1e3, 0, 1e-7);
+        x = column(*context, segments[k], "aSpn2FLx"), z = column(*context, segments[k], "aSpn2FLz");
+        check_near(hypot(x, z), 5 * g / 1e3, 0, 1e-7);
+    }
+}
+
+// The tension at the root of a rod that rotates about x at 10 rad/s, of 10 kg/m from 1 to 3 m: ∫ μ Ω² r dr.
+static double rotor(const char *folder, int n) {
+    char text[800];
+    snprintf(text, sizeof text,
+             "gravity: [0, 0, 0]\n"
+             "simulation: {duration: 1 s, macro_step: 10 ms, initial: equilibrium}\nbodies:\n"
+             "  - {name: hub, fidelity: rigid, mass: 5, inertia: [1, 1, 1],\n"
+             "     joint: {kind: revolute, axis: x, parent: ground, motion: {speed: 10 rad/s}}}\n"
+             "  - {name: a, fidelity: rod, joint: {kind: fixed, parent: hub, placement: [move z 1 m]},\n"
+             "     rod: {length: 2, segments: %d, stiffness: [1e9, 1e9, 1e10, 1e8, 1e8, 1e8],\n"
+             "           mass: [10, 0, 0, 0.1, 0.1, 0]}}\n"
+             "sensors:\n  - {body: a, at: [0]}\n",
+             n);
+    return at_start(folder, text, "aSpn1FLz");
+}
+
+TEST_IN_FOLDER(the_tension_of_a_rotor_is_the_integral) {
+    double exact = 10 * 100 * (9 - 1) / 2.0 / 1e3;
+    check_near(rotor(*context, 2), exact, 0,
+               1e-6); // lumped at the vertices' own centres: exact but for the stretch
+    check_near(rotor(*context, 9), exact, 0, 1e-6);
+}
