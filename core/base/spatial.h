@@ -94,6 +94,12 @@ static inline bough_wrench bough_inertia_mul(const bough_inertia *i, bough_twist
         bough_add(bough_mat3_mul(i->rotational, v.angular), bough_cross(i->first, v.linear))};
 }
 
+// I A + V ×* I V: the wrench that gives a body moving with V the rate A of V's components; with A − g in
+// place of A, against its weight.
+static inline bough_wrench bough_inertia_wrench(const bough_inertia *i, bough_twist a, bough_twist v) {
+    return bough_wrench_add(bough_inertia_mul(i, a), bough_wrench_cross(v, bough_inertia_mul(i, v)));
+}
+
 // 2 (a·b) E − a bᵀ − b aᵀ; with a = b = x/√2 the inertia |x|²E − xxᵀ of a unit mass at x.
 static inline bough_mat3 bough_steiner(bough_vec3 a, bough_vec3 b) {
     double d = 2 * bough_dot(a, b), xy = -a.x * b.y - b.x * a.y, yz = -a.y * b.z - b.y * a.z,

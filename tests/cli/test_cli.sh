@@ -462,7 +462,7 @@ statics() {
     has turning/static-channels.csv '^RtAeroMxh,N-m,[0-9]'
     rm -r turning
     expect 3 static "$turbine" --set bodies[2].joint.speed=0 --out failed
-    has ../stderr 'no equilibrium found in .* a free joint needs a spring, a speed or a motion'
+    has ../stderr 'no equilibrium found in .* nothing but loads holds the joint of .hub.: it needs a spring, a speed or a motion'
     refused "'x' is not\|there is no body 'x'" static "$blade" \
         --set 'loads=[{body: x, at: tip, force: [1, 0, 0]}]'
     expect 3 static "$blade" --set 'bodies[0].rod.segments=4' --out failed \

@@ -99,8 +99,7 @@ static double inertial_torque(const shaft *x) {
     int link = s->tree->bodies[x->body].link;
     bough_twist fall = {d->gravity[link], {0, 0, 0}}, a = d->acceleration[link];
     a.linear = bough_sub(a.linear, fall.linear);
-    bough_wrench spun = bough_wrench_cross(d->twist[link], bough_inertia_mul(&x->inertia, d->twist[link]));
-    bough_wrench w = bough_wrench_add(bough_inertia_mul(&x->inertia, a), spun);
+    bough_wrench w = bough_inertia_wrench(&x->inertia, a, d->twist[link]);
     return bough_dot(w.moment, bough_placement_axis(s->scene->body[x->body].joint.axis));
 }
 

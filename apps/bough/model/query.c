@@ -81,9 +81,7 @@ static bough_twist less_gravity(const bough_simulation *s, const bough_frame *fr
 // I (A - g) + V x* I V in the axes of a frame.
 static bough_wrench inertial_wrench(const bough_simulation *s, const bough_frame *frame,
                                     const bough_inertia *inertia) {
-    bough_twist v = bough_tree_frame_twist(s->view, frame);
-    bough_wrench w = bough_inertia_mul(inertia, less_gravity(s, frame));
-    return bough_wrench_add(w, bough_wrench_cross(v, bough_inertia_mul(inertia, v)));
+    return bough_inertia_wrench(inertia, less_gravity(s, frame), bough_tree_frame_twist(s->view, frame));
 }
 
 // Adds what the vertex does, unless the rod is not strained yet, as at the start: then nothing of its motion
@@ -132,6 +130,18 @@ static vertex rod_vertex(const bough_beam *beam, const double *state, int i) {
     return (vertex){{y[0], y[n], y[2 * n]}, {y[7 * n], y[8 * n], y[9 * n]}, bough_mat3_mul(r, w), r};
 }
 
+bough_quaternion bough_simulation_vertex_rotation(const bough_simulation *s, const bough_beam *beam, int i) {
+    const bough_member *rod = &s->rod[beam->port];
+    int n = bough_beam_mesh(beam)->n;
+    const double *y = rod->state + i - 1;
+    bough_quaternion p;
+    if (i == beam->def.n_segment && beam->end >= 0) {
+        bough_simulation_beam_tip(s, beam, &p);
+        return p;
+    }
+    return bough_quaternion_normalised((bough_quaternion){y[3 * n], y[4 * n], y[5 * n], y[6 * n]});
+}
+
 // The last vertex of a rod that carries bodies; its velocity is resolved in its own axes.
 static vertex end_vertex(const bough_simulation *s, const bough_beam *beam) {
     bough_quaternion p;
@@ -139,6 +149,24 @@ static vertex end_vertex(const bough_simulation *s, const bough_beam *beam) {
     bough_mat3 r = bough_rotation_matrix(p);
     bough_twist twist = s->view->twist[s->tree->ends[beam->end].link];
     return (vertex){x, bough_mat3_mul(r, twist.linear), bough_mat3_mul(r, twist.angular), r};
+}
+
+double bough_simulation_chord_angle(const bough_simulation *s, const bough_beam *beam, int *place) {
+    double largest = 0;
+    bough_vec3 position = beam->def.position[0];
+    bough_vec3 normal = bough_rotation_matrix(beam->def.rotation[0]).c3;
+    for (int i = 1; i <= beam->def.n_segment; i++) {
+        bool end = i == beam->def.n_segment && beam->end >= 0;
+        vertex next = end ? end_vertex(s, beam) : rod_vertex(beam, s->rod[beam->port].state, i);
+        bough_vec3 chord = bough_sub(next.position, position), middle = bough_add(normal, next.rotation.c3);
+        double cosine = bough_dot(chord, middle) / (bough_norm(chord) * bough_norm(middle));
+        double angle = acos(fmax(-1, fmin(cosine, 1)));
+        if (angle > largest) *place = i - 1;
+        largest = fmax(largest, angle);
+        position = next.position;
+        normal = next.rotation.c3;
+    }
+    return largest;
 }
 
 // state: of the vertices, NULL of a rigid body.

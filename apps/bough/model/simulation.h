@@ -25,6 +25,7 @@ typedef struct bough_beam {
     int marker;              // of the tree, the body's frame
     int port;                // of the tree; −1 when rigid
     bool in_ground;          // it moves under loads in ground axes
+    bool cable;              // a rod whose segments may deflect across their sections under tension
     int end;                 // of the tree, where bodies hang on the rod; −1 when it carries none
     bough_inertia vertex[2]; // of the vertices that belong to the tree: the root's in the body's frame, that
                              // of the end in its section's
@@ -130,6 +131,14 @@ const char *bough_simulation_body_of(const bough_simulation *s, const bough_asse
 
 // The pitch of a blade: its body's, and what its pitch joint adds, positive by −z [rad].
 double bough_simulation_pitch(const bough_simulation *s, const bough_beam *beam);
+
+// The largest angle between the chord of a rod's segment and the normals of its sections, of that from
+// *vertex to the next [rad]. A segment's shear stiffness contains its own bending, 12 EI/h²: beside a tension
+// of that size it deflects across its sections, and its model does not hold.
+double bough_simulation_chord_angle(const bough_simulation *s, const bough_beam *beam, int *vertex);
+
+// The rotation of section i, from 1, of a rod in its body's frame.
+bough_quaternion bough_simulation_vertex_rotation(const bough_simulation *s, const bough_beam *beam, int i);
 
 // Accelerations of the tree's links under the rods' present forces, into s->view; false as
 // bough_tree_forward_dynamics.

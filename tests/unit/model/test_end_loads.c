@@ -7,9 +7,9 @@
 
 static const double g = 9.80665;
 
-// A channel at the start of a scene of this text.
-static double at_start(const char *folder, const char *text, const char *name) {
-    check_arena(arena);
+// A simulation of a scene of this text.
+static bough_status build_text(bough_arena *arena, const char *folder, const char *text,
+                               bough_simulation **s) {
     char path[300];
     snprintf(path, sizeof path, "%s/s.yaml", folder);
     FILE *stream = fopen(path, "w");
@@ -18,14 +18,19 @@ static double at_start(const char *folder, const char *text, const char *name) {
     fclose(stream);
     bough_errors errors = {.arena = arena};
     bough_scene *scene;
-    bough_simulation *s;
     check_ok(bough_scene_read(arena, path, NULL, 0, &errors, &scene));
-    check_ok(bough_simulation_build(arena, scene, &s));
+    remove(path);
+    return bough_simulation_build(arena, scene, s);
+}
+
+// A channel at the start.
+static double at_start(const char *folder, const char *text, const char *name) {
+    check_arena(arena);
+    bough_simulation *s;
+    check_ok(build_text(arena, folder, text, &s));
     bough_channels list = bough_channels_start(arena);
     check_ok(bough_simulation_channels(s, &list));
-    double value = scene_channel(s, &list, name);
-    remove(path);
-    return value;
+    return scene_channel(s, &list, name);
 }
 
 // 20 kg of rod, of n segments that shorten, and a head of 5 kg at its end.
@@ -75,4 +80,21 @@ TEST_IN_FOLDER(the_tension_of_a_rotor_is_the_integral) {
     check_near(rotor(*context, 2), exact, 0,
                1e-6); // lumped at the vertices' own centres: exact but for the stretch
     check_near(rotor(*context, 9), exact, 0, 1e-6);
+}
+
+// A hinged chain under a force at its end: beside the tension a segment's own bending stiffness is nothing.
+TEST_IN_FOLDER(a_cable_of_long_segments_is_named) {
+    static const char text[] =
+        "simulation: {duration: 1 s, macro_step: 10 ms, initial: equilibrium}\nbodies:\n"
+        "  - {name: anchor, fidelity: rigid, mass: 1, inertia: [1, 1, 1],\n"
+        "     joint: {kind: revolute, axis: y, parent: ground, placement: [rotate y 90 deg]}}\n"
+        "  - {name: line, fidelity: rod, joint: {kind: fixed, parent: anchor},\n"
+        "     rod: {length: 10, segments: 6, stiffness: [1e7, 1e7, 3e7, 1, 1, 1], mass: [10, 0, 0, 0.01, 0.01, 0]}}\n"
+        "  - {name: top, fidelity: rigid, mass: 1, inertia: [1, 1, 1], joint: {kind: fixed, parent: line}}\n"
+        "loads:\n  - {body: top, force: [800, 0, 1000]}\n";
+    check_arena(arena);
+    bough_simulation *s;
+    bough_status status = build_text(arena, *context, text, &s);
+    check_fails(status, BOUGH_FAILED, "line: no equilibrium found");
+    assert_non_null(strstr(status.message, "deflects across its sections"));
 }
