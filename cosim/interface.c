@@ -1,7 +1,6 @@
 // Static condensation, theory (56, 57). Each member is linearised and factored by itself.
 #include "cosim/interface.h"
 
-#include "core/base/columns.h"
 #include "core/base/linalg.h"
 
 #include <math.h>

@@ -148,7 +148,7 @@ owned_by("^none$" "pthread_create|thrd_create" "threads are OpenMP's")
 owned_by("^aero/wind/wind_turbulence\\.c$" "${include}fftw3\\.h" "only aero/wind/wind_turbulence.c uses FFTW")
 owned_by("^apps/bough/config/text\\.c$" "${include}yaml\\.h" "only apps/bough/config/text.c uses libyaml")
 
-owned_by("^apps/bough/(scene/fmu_archive|results/archive)\\.c$" "${include}zlib\\.h" "only readers and writers of archives use zlib")
+owned_by("^apps/bough/(scene/fmu_archive|cli/export)\\.c$" "${include}zlib\\.h" "only readers and writers of archives use zlib")
 owned_by("^apps/bough/scene/fmu_description\\.c$" "${include}expat\\.h" "only apps/bough/scene/fmu_description.c uses expat")
 
 # Equations are numbered (1), (2), … in docs/theory.md, each once; sources cite them as "theory (17)" or "theory (17, 18)".

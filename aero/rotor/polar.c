@@ -2,7 +2,6 @@
 #include "aero/rotor/polar.h"
 
 #include "core/base/base.h"
-#include "core/base/cubic.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -9,7 +9,6 @@
 #define BOUGH_AERO_ROTOR_ROTOR_H
 
 #include "aero/rotor/induction.h"
-#include "aero/rotor/inflow.h"
 #include "aero/rotor/polar.h"
 #include "aero/rotor/stall.h"
 #include "aero/rotor/tower.h"

@@ -1,6 +1,6 @@
 // As many columns at a time as there are registers for their weights: the sum is read and written once for
 // all of them.
-#include "core/base/columns.h"
+#include "core/base/linalg.h"
 
 #include "core/base/base.h"
 

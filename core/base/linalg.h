@@ -4,6 +4,7 @@
 #define BOUGH_CORE_BASE_LINALG_H
 
 #include "core/base/arena.h"
+#include "core/base/level.h"
 
 #include <stdbool.h>
 
@@ -68,5 +69,33 @@ bool bough_cholesky_lower(int n, float *a);
 
 // Solves L Lᵀ x = b in place.
 void bough_cholesky_solve(int n, const double *factor, double *b);
+
+// Products with matrices stored by columns, for vectors of some hundred entries.
+
+// sum (n) += factor Σ_j weight_j column_j in this order; column (count × n), weight (count). A column whose
+// weight is 0 is not read.
+void bough_add_columns(int n, int count, const double *column, double factor, const double *weight,
+                       double *sum);
+
+BOUGH_DECLARE_LEVELS(bough_add_columns);
+
+// -- symmetric 6x6 --------------------------------------------------------------------------------
+
+// Symmetric 6×6 matrices as upper triangles by rows (21): stiffness, mass, compliance.
+
+// Index of entry (i, j) in the triangle.
+static inline int bough_symmetric6_index(int i, int j) {
+    int low = i <= j ? i : j, high = i <= j ? j : i;
+    return low * 6 - low * (low - 1) / 2 + (high - low);
+}
+
+// The full matrix by rows.
+void bough_symmetric6_unpack(const double a[21], double full[6][6]);
+
+// The inverse by Cholesky's method; false unless a is positive definite. a and inverse may be one.
+bool bough_symmetric6_inverse(const double a[21], double inverse[21]);
+
+// Q A Qᵀ with Q = diag(R, R) for the rotation R by `angle` about z.
+void bough_symmetric6_rotate(const double a[21], double angle, double rotated[21]);
 
 #endif

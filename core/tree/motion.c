@@ -2,7 +2,6 @@
 #include "core/tree/motion.h"
 
 #include "core/base/base.h"
-#include "core/base/cubic.h"
 
 #include <math.h>
 #include <string.h>

@@ -5,7 +5,7 @@
 #include "core/base/linalg.h"
 #include "core/base/spatial.h"
 #include "flexbody/modal/modal.h"
-#include "flexbody/rod/rod_linear.h"
+#include "flexbody/rod/rod_tangent.h"
 
 #include <string.h>
 

@@ -1,4 +1,4 @@
-#include "flexbody/modal/modal_piece.h"
+#include "flexbody/modal/modal_system.h"
 
 #include <string.h>
 

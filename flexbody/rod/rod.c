@@ -1,7 +1,7 @@
 // Builds the constant rod model from its discretised definition.
 #include "flexbody/rod/rod.h"
 
-#include "core/base/symmetric6.h"
+#include "core/base/linalg.h"
 #include "flexbody/rod/rod_segment.h"
 
 #include <string.h>

@@ -1,7 +1,7 @@
 #include "flexbody/rod/rod_modes.h"
 
 #include "core/base/eigen.h"
-#include "flexbody/rod/rod_linear.h"
+#include "flexbody/rod/rod_tangent.h"
 
 enum { W8 = 8 };
 

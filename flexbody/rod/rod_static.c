@@ -1,8 +1,8 @@
 #include "flexbody/rod/rod_static.h"
 
 #include "core/base/linalg.h"
-#include "flexbody/rod/rod_linear.h"
 #include "flexbody/rod/rod_segment.h"
+#include "flexbody/rod/rod_tangent.h"
 
 #include <math.h>
 #include <string.h>

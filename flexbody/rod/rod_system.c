@@ -2,7 +2,7 @@
 // to them.
 #include "flexbody/rod/rod_system.h"
 
-#include "core/base/symmetric6.h"
+#include "core/base/linalg.h"
 #include "flexbody/rod/rod_lanes.h"
 #include "flexbody/rod/rod_tangent.h"
 #include "flexbody/rod/rod_tangent_layout.h"

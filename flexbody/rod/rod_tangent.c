@@ -1,6 +1,10 @@
 // Memory of a linearisation, and the kernels of the model's level.
+#include "flexbody/rod/rod_tangent.h"
+
 #include "flexbody/rod/rod_kernels.h"
 #include "flexbody/rod/rod_tangent_layout.h"
+
+#include <string.h>
 
 void bough_rod_blocks_init(bough_rod_blocks *b, bough_arena *arena, const bough_rod_model *m) {
     b->mass = bough_arena_doubles(arena, (size_t)bough_padded(m->n) * BOUGH_BLOCK);
@@ -35,4 +39,78 @@ bool bough_rod_factor(const bough_rod_model *m, bough_rod_tangent *k, double gam
 
 void bough_rod_solve(const bough_rod_model *m, bough_rod_tangent *k, double *x) {
     BOUGH_OF_LEVEL(bough_rod_solve, m->level)(m, k, x);
+}
+
+// -- about a steady motion ------------------------------------------------------------------------
+
+void bough_rod_ride(const bough_rod_model *m, const double *input, double *state) {
+    int n = m->n;
+    bough_vec3 u0 = {input[0], input[1], input[2]}, omega = {input[3], input[4], input[5]};
+    for (int i = 0; i < n; i++) {
+        bough_vec3 x = {state[i], state[n + i], state[2 * n + i]};
+        bough_vec3 u = bough_add(u0, bough_cross(omega, x));
+        bough_vec3 w = bough_mat3_tmul(bough_rod_rotation(state, n, i), omega);
+        const double values[6] = {u.x, u.y, u.z, w.x, w.y, w.z};
+        for (int c = 0; c < 6; c++) state[(BOUGH_ROD_U + c) * n + i] = values[c];
+    }
+}
+
+static void put_cross(bough_vec3 a, double *block, int at) {
+    block[W8 * at + at + 1] = a.z;
+    block[W8 * at + at + 2] = -a.y;
+    block[W8 * (at + 1) + at] = -a.z;
+    block[W8 * (at + 1) + at + 2] = a.x;
+    block[W8 * (at + 2) + at] = a.y;
+    block[W8 * (at + 2) + at + 1] = -a.x;
+}
+
+// B of vertex i + 1
+static void slide(const double *input, const double *state, int n, int i, double *block) {
+    bough_vec3 omega = {input[3], input[4], input[5]};
+    bough_mat3 r = bough_rod_rotation(state, n, i);
+    memset(block, 0, BOUGH_BLOCK * sizeof *block);
+    put_cross(omega, block, 0);
+    put_cross(bough_mat3_tmul(r, omega), block, 3);
+}
+
+// to = −(position + velocity B) for one block of B's column
+static void stiffness_block(const double *position, const double *velocity, const double *b, double *to) {
+    double product[BOUGH_BLOCK];
+    bough_block_product(velocity, b, product);
+    for (int j = 0; j < BOUGH_BLOCK; j++) to[j] = -(position[j] + product[j]);
+}
+
+void bough_rod_linear_stiffness(const bough_rod_model *m, const bough_rod_blocks *blocks, const double *input,
+                                const double *state, bough_block_tridiagonal *stiffness) {
+    const bough_block_tridiagonal *p = &blocks->position, *v = &blocks->velocity;
+    for (int i = 0; i < m->n; i++) {
+        double b[BOUGH_BLOCK];
+        size_t at = (size_t)i * BOUGH_BLOCK, before = at - BOUGH_BLOCK, after = at + BOUGH_BLOCK;
+        slide(input, state, m->n, i, b);
+        stiffness_block(p->diagonal + at, v->diagonal + at, b, stiffness->diagonal + at);
+        if (i > 0) {
+            stiffness_block(p->upper + before, v->upper + before, b, stiffness->upper + before);
+        }
+        if (i < m->n - 1) {
+            stiffness_block(p->lower + after, v->lower + after, b, stiffness->lower + after);
+        }
+    }
+}
+
+void bough_rod_linear_damping(const bough_rod_model *m, const bough_rod_blocks *blocks, const double *input,
+                              const double *state, bough_block_tridiagonal *damping) {
+    size_t count = (size_t)m->n * BOUGH_BLOCK;
+    for (size_t j = 0; j < count; j++) {
+        damping->lower[j] = -blocks->velocity.lower[j];
+        damping->upper[j] = -blocks->velocity.upper[j];
+    }
+    for (int i = 0; i < m->n; i++) {
+        double b[BOUGH_BLOCK], product[BOUGH_BLOCK];
+        size_t at = (size_t)i * BOUGH_BLOCK;
+        slide(input, state, m->n, i, b);
+        bough_block_product(blocks->mass + at, b, product);
+        for (int j = 0; j < BOUGH_BLOCK; j++) {
+            damping->diagonal[at + j] = product[j] - blocks->velocity.diagonal[at + j];
+        }
+    }
 }

@@ -1,7 +1,6 @@
 #include "flexbody/section/section.h"
 
 #include "core/base/linalg.h"
-#include "core/base/symmetric6.h"
 #include "flexbody/rod/rod_segment.h"
 #include "flexbody/section/section_axis.h"
 

@@ -1,8 +1,8 @@
 // Section tables along the axis: interpolation between stations, axes, quadrature.
 #include "flexbody/section/section_axis.h"
 
+#include "core/base/linalg.h"
 #include "core/base/schedule.h"
-#include "core/base/symmetric6.h"
 
 #include <math.h>
 

@@ -1,5 +1,5 @@
 // Inertia of a section table lumped to vertices.
-#include "core/base/symmetric6.h"
+#include "core/base/linalg.h"
 #include "flexbody/rod/rod_segment.h"
 #include "flexbody/section/section_axis.h"
 

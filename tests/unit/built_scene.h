@@ -2,7 +2,7 @@
 #ifndef BOUGH_TESTS_UNIT_BUILT_SCENE_H
 #define BOUGH_TESTS_UNIT_BUILT_SCENE_H
 
-#include "apps/bough/model/build.h"
+#include "apps/bough/model/simulation.h"
 #include "tests/unit/check.h"
 
 // Reads the scene at `path` within the sources; `sets` ends with NULL.

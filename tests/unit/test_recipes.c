@@ -2,7 +2,7 @@
 // joint `hinge`, which moves as a revolute joint does, and the channel {a}Height of free bodies in copies of
 // the files that the recipes name. All other files are those of the program. (tests/unit/scheme_toy.c is the
 // recipe for a scheme.)
-#include "apps/bough/model/build.h"
+#include "apps/bough/model/simulation.h"
 #include "core/tree/joint.h"
 #include "tests/unit/scene_text.h"
 

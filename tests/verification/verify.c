@@ -3,7 +3,7 @@
 
 #include "apps/bough/cases/study.h"
 #include "apps/bough/config/schema.h"
-#include "apps/bough/model/build.h"
+#include "apps/bough/model/simulation.h"
 
 #include <math.h>
 #include <string.h>

@@ -1,7 +1,6 @@
 #include "apps/bough/analysis/air_tangent.h"
 
 #include "apps/bough/model/aero_link.h"
-#include "apps/bough/model/drag_link.h"
 #include "apps/bough/model/equilibrium.h"
 
 #include <math.h>

@@ -3,7 +3,7 @@
 #ifndef BOUGH_APPS_ANALYSIS_STEADY_H
 #define BOUGH_APPS_ANALYSIS_STEADY_H
 
-#include "apps/bough/model/build.h"
+#include "apps/bough/model/simulation.h"
 #include "flexbody/rod/rod_static.h"
 
 typedef struct bough_steady {

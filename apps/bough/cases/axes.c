@@ -1,5 +1,5 @@
 // Replaced keys of a scene, and the axes of a grid: their reading and their combinations.
-#include "apps/bough/cases/study_internal.h"
+#include "apps/bough/cases/study.h"
 
 #include <assert.h>
 #include <stdio.h>

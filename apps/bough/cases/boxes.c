@@ -1,4 +1,4 @@
-#include "apps/bough/cases/boxes.h"
+#include "apps/bough/cases/case_run.h"
 
 #include "aero/wind/wind_turbulence.h"
 #include "apps/bough/model/aero_link.h"

@@ -1,6 +1,6 @@
 #include "apps/bough/cases/case_run.h"
 
-#include "apps/bough/model/error_shares.h"
+#include "apps/bough/model/error_verdict.h"
 #include "apps/bough/model/run.h"
 #include "apps/bough/results/folder.h"
 #include "apps/bough/results/recorder.h"

@@ -3,11 +3,27 @@
 #ifndef BOUGH_APPS_CASES_CASE_RUN_H
 #define BOUGH_APPS_CASES_CASE_RUN_H
 
-#include "apps/bough/cases/boxes.h"
 #include "apps/bough/cases/counts.h"
 #include "apps/bough/cases/study.h"
 #include "apps/bough/results/progress.h"
+#include "apps/bough/scene/scene.h"
+#include "core/base/arena.h"
 #include "cosim/watch/monitor.h"
+
+// -- boxes of turbulence (boxes.c) ----------------------------------------------------------------
+
+// Boxes of turbulence that the runs of a study share: one of 600 s takes as long to make as a dozen seconds
+// of a turbine's run, and more memory than all else of it.
+
+typedef struct bough_boxes bough_boxes;
+
+// For so many runs at the same time; keeps as many boxes.
+bough_boxes *bough_boxes_create(bough_arena *arena, int runs);
+
+// The box of the scene's turbulence, made unless it is there, for a run until it gives it back. NULL: the
+// scene has none, or it cannot be made, as its own run will report.
+const bough_wind_box *bough_boxes_lend(bough_boxes *boxes, const bough_scene *scene);
+void bough_boxes_give_back(bough_boxes *boxes, const bough_wind_box *box);
 
 // Values of the study's channels at the common output times 0, interval, 2 interval, …
 typedef struct bough_study_series {

@@ -1,12 +1,12 @@
 // What cannot be seen in the text of a study alone: whether every scene takes its replacements and has the
 // channels, and whether runs that are compared have common output times. Found before the first run, since
 // the last one may start hours later.
-#include "apps/bough/cases/study_internal.h"
+#include "apps/bough/cases/study.h"
 
 #include "aero/wind/wind_turbulence.h"
 #include "apps/bough/config/schema.h"
 #include "apps/bough/model/aero_link.h"
-#include "apps/bough/model/build.h"
+#include "apps/bough/model/simulation.h"
 #include "apps/bough/scene/scene_files.h"
 
 #include <assert.h>

@@ -3,6 +3,177 @@
 #include <math.h>
 #include <string.h>
 
+// -- levels ---------------------------------------------------------------------------------------
+
+// Bits of the first value that the finest bins resolve, and those of a whole double.
+enum { FINEST = 40, MOST_SHIFT = 62 };
+
+static int slot(int64_t bin) { return (int)(((bin % BOUGH_LEVELS) + BOUGH_LEVELS) % BOUGH_LEVELS); }
+
+static double bin_of(double x, int exponent) { return floor(ldexp(x, -exponent)); }
+
+// Rounded down, also below zero.
+static int64_t halved(int64_t bin, int shift) {
+    if (shift > MOST_SHIFT) return bin < 0 ? -1 : 0;
+    int64_t unit = (int64_t)1 << shift;
+    return bin >= 0 ? bin / unit : -((-bin - 1) / unit) - 1;
+}
+
+static bool is_multiple(int64_t bin, int shift) {
+    return shift > MOST_SHIFT ? bin == 0 : bin % ((int64_t)1 << shift) == 0;
+}
+
+// Wider bins; of the edges only the common ones remain.
+static void coarsen(bough_levels *l, int exponent) {
+    int shift = exponent - l->exponent;
+    if (shift <= 0) return;
+    bough_levels old = *l;
+    memset(l->inside, 0, sizeof l->inside);
+    memset(l->crossed, 0, sizeof l->crossed);
+    for (int64_t k = old.low; k <= old.high; k++) {
+        int64_t wide = halved(k, shift);
+        l->inside[slot(wide)] += old.inside[slot(k)];
+        if (is_multiple(k, shift)) l->crossed[slot(wide)] = old.crossed[slot(k)];
+    }
+    l->low = halved(old.low, shift);
+    l->high = halved(old.high, shift);
+    l->exponent = exponent;
+}
+
+static void start(bough_levels *l, int exponent, int64_t bin) {
+    l->started = true;
+    l->exponent = exponent;
+    l->low = l->high = bin;
+}
+
+// The least exponent from `exponent` on whose bins hold both.
+static int fitting(double least, double most, int exponent) {
+    while (bin_of(most, exponent) - bin_of(least, exponent) + 1 > BOUGH_LEVELS) exponent++;
+    return exponent;
+}
+
+// Brings x into the bins in use; x is finite.
+static int64_t reach(bough_levels *l, double x) {
+    int first;
+    if (!l->started) {
+        frexp(x, &first);
+        start(l, first - FINEST, (int64_t)bin_of(x, first - FINEST));
+    }
+    double least = ldexp((double)l->low, l->exponent), most = ldexp((double)l->high, l->exponent);
+    coarsen(l, fitting(fmin(x, least), fmax(x, most), l->exponent));
+    int64_t bin = (int64_t)bin_of(x, l->exponent);
+    if (bin < l->low) l->low = bin;
+    if (bin > l->high) l->high = bin;
+    return bin;
+}
+
+void bough_levels_add(bough_levels *levels, double x, double count) {
+    if (!isfinite(x)) return;
+    levels->inside[slot(reach(levels, x))] += count;
+    levels->last = x;
+}
+
+void bough_levels_follow(bough_levels *levels, double x) {
+    if (!isfinite(x)) return;
+    bool first = !levels->started;
+    int64_t to = reach(levels, x);
+    int64_t from = first ? to : (int64_t)bin_of(levels->last, levels->exponent);
+    for (int64_t k = from + 1; k <= to; k++) levels->crossed[slot(k)]++;
+    levels->inside[slot(to)]++;
+    levels->last = x;
+}
+
+void bough_levels_merge(bough_levels *levels, const bough_levels *part, double inside, double crossed) {
+    if (!part->started) return;
+    double least = ldexp((double)part->low, part->exponent);
+    double most = ldexp((double)part->high, part->exponent);
+    if (!levels->started) start(levels, part->exponent, part->low);
+    if (part->exponent > levels->exponent) coarsen(levels, part->exponent);
+    reach(levels, least);
+    reach(levels, most);
+    bough_levels same = *part;
+    coarsen(&same, levels->exponent);
+    for (int64_t k = same.low; k <= same.high; k++) {
+        levels->inside[slot(k)] += inside * same.inside[slot(k)];
+        levels->crossed[slot(k)] += crossed * same.crossed[slot(k)];
+    }
+}
+
+double bough_levels_width(const bough_levels *levels) { return ldexp(1, levels->exponent); }
+
+static bool is_used(const bough_levels *l, int64_t bin) {
+    return l->started && bin >= l->low && bin <= l->high;
+}
+
+double bough_levels_inside(const bough_levels *levels, int64_t bin) {
+    return is_used(levels, bin) ? levels->inside[slot(bin)] : 0;
+}
+
+double bough_levels_crossed(const bough_levels *levels, int64_t bin) {
+    return is_used(levels, bin) ? levels->crossed[slot(bin)] : 0;
+}
+
+// -- rainflow -------------------------------------------------------------------------------------
+
+static void count(bough_rainflow *r, double range, double cycles) {
+    for (int i = 0; i < r->n_slope; i++) r->damage[i] += cycles * pow(range, r->slope[i]);
+    r->cycles += cycles;
+    bough_levels_add(&r->ranges, range, cycles);
+}
+
+static double range_before(const bough_rainflow *r, int back) {
+    return fabs(r->point[r->n - back] - r->point[r->n - back - 1]);
+}
+
+// Step 5: half a cycle, whose first point goes.
+static void count_start(bough_rainflow *r) {
+    count(r, range_before(r, 2), 0.5);
+    memmove(r->point, r->point + 1, (size_t)--r->n * sizeof *r->point);
+}
+
+// Step 4: a whole cycle, whose two points go.
+static void count_inside(bough_rainflow *r) {
+    count(r, range_before(r, 2), 1);
+    r->point[r->n - 3] = r->point[r->n - 1];
+    r->n -= 2;
+}
+
+static void turn(bough_rainflow *r, double point) {
+    r->point[r->n++] = point;
+    while (r->n >= 3 && range_before(r, 1) >= range_before(r, 2)) {
+        if (r->n == 3)
+            count_start(r);
+        else
+            count_inside(r);
+    }
+    if (r->n < BOUGH_RAINFLOW_OPEN) return;
+    count(r, range_before(r, 1), 1);
+    r->forced++;
+    r->n -= 2;
+}
+
+void bough_rainflow_add(bough_rainflow *r, double x) {
+    if (!r->started) {
+        r->started = true;
+        r->point[r->n++] = r->last = x;
+        return;
+    }
+    int direction = (x > r->last) - (x < r->last);
+    if (direction == 0) return;
+    if (r->direction != 0 && direction != r->direction) turn(r, r->last);
+    r->direction = direction;
+    r->last = x;
+}
+
+void bough_rainflow_finish(bough_rainflow *r) {
+    if (r->direction != 0) turn(r, r->last);
+    for (; r->n > 1; r->n--) count(r, range_before(r, 1), 0.5);
+}
+
+double bough_equivalent_load(double sum, double slope, double cycles) { return pow(sum / cycles, 1 / slope); }
+
+// -- all counts of a run --------------------------------------------------------------------------
+
 void bough_counts_take(bough_arena *arena, int n_channel, int n_slope, const double *slope,
                        bough_counts *counts) {
     size_t n = (size_t)n_channel;

@@ -9,7 +9,7 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-// -- levels (levels.c) ----------------------------------------------------------------------------
+// -- levels ---------------------------------------------------------------------------------------
 
 // How long a quantity stays between levels and how often it crosses each upwards, and how many
 // cycles have which range: bins whose width is a power of two and whose edges are its multiples. As
@@ -41,7 +41,7 @@ double bough_levels_width(const bough_levels *levels);
 double bough_levels_inside(const bough_levels *levels, int64_t bin);
 double bough_levels_crossed(const bough_levels *levels, int64_t bin);
 
-// -- rainflow (rainflow.c) ------------------------------------------------------------------------
+// -- rainflow -------------------------------------------------------------------------------------
 
 // Rainflow counting, sample by sample: ASTM E1049-85 (2017), 5.4.4, "Rules for rainflow counting".
 //
@@ -74,7 +74,7 @@ void bough_rainflow_finish(bough_rainflow *r);
 // The range that, `cycles` times repeated, does the damage `sum` = Σ n Sᵐ: (sum/cycles)^(1/m).
 double bough_equivalent_load(double sum, double slope, double cycles);
 
-// -- a run (counts.c) -----------------------------------------------------------------------------
+// -- a run ----------------------------------------------------------------------------------------
 
 // Of one channel. The two rows hold the extremes in the channel's own place.
 typedef struct bough_channel_counts {

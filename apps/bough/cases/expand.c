@@ -1,5 +1,5 @@
 // Makes the cases of a study from its grids, with their fractions of the load case, and the references.
-#include "apps/bough/cases/study_internal.h"
+#include "apps/bough/cases/study.h"
 #include "apps/bough/config/schema.h"
 
 #include <math.h>

@@ -1,7 +1,6 @@
 // Runs of a study, some at a time, until all are done or one of them ends the study.
 #include "apps/bough/cases/perform.h"
 
-#include "apps/bough/cases/store.h"
 #include "apps/bough/config/schema.h"
 #include "apps/bough/results/folder.h"
 #include "core/base/pool.h"

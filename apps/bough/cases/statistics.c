@@ -1,6 +1,5 @@
 #include "apps/bough/cases/perform.h"
 
-#include "apps/bough/cases/store.h"
 #include "apps/bough/results/folder.h"
 #include "apps/bough/results/picture.h"
 

@@ -1,4 +1,4 @@
-#include "apps/bough/cases/store.h"
+#include "apps/bough/cases/perform.h"
 
 #include "apps/bough/results/folder.h"
 #include "core/base/input_file.h"

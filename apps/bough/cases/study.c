@@ -2,7 +2,6 @@
 #include "apps/bough/cases/study.h"
 
 #include "apps/bough/cases/counts.h"
-#include "apps/bough/cases/study_internal.h"
 #include "apps/bough/config/schema_keys.h"
 #include "core/base/input_file.h"
 

@@ -2,7 +2,7 @@
 // a given error is proposed.
 //
 // The runs are guided, not a grid. From the settings that follow from the error, shares of mesh, air and time
-// in the error of a run (apps/bough/model/error_shares.h) say by how much each can be coarser, or must be
+// in the error of a run (apps/bough/model/error_verdict.h) say by how much each can be coarser, or must be
 // finer; then each setting alone, and the other scheme, are tried beside the best.
 #ifndef BOUGH_APPS_CASES_TUNE_H
 #define BOUGH_APPS_CASES_TUNE_H
@@ -50,5 +50,42 @@ typedef struct bough_tune_options {
 // Runs the stretches and writes tune.csv, tune.svg and tune.yaml. BOUGH_FAILED when no settings meet the
 // error: the files are then written for those that err least. The scene must be valid.
 bough_status bough_tune(bough_arena *arena, const bough_tune_options *options);
+
+// -- what tune.c and tune_report.c share ----------------------------------------------------------
+
+typedef struct bough_tune {
+    const bough_tune_options *options;
+    const bough_scene *scene; // as it is written
+    double error;             // to be met
+    int n;
+    bough_tune_point point[BOUGH_TUNE_POINTS];
+    int chosen; // the cheapest that meets the error, else the one that errs least; −1: none ended
+} bough_tune_state;
+
+// Runs the stretch with the point's settings: its errors, with `shares` their shares, and its CPU time.
+// BOUGH_INTERRUPTED by the options' stop; a run that fails is an outcome of the point.
+bough_status bough_tune_measure(const bough_tune_state *t, bool shares, bough_tune_point *point);
+
+// Runs it again, without an estimate of the error, and takes the lesser CPU time.
+bough_status bough_tune_time(const bough_tune_state *t, bough_tune_point *point);
+
+// Segments of a body's rod; 0 without one.
+int bough_tune_segments(const bough_scene *scene, int body, const bough_tune_settings *settings);
+
+bool bough_tune_meets(const bough_tune_state *t, const bough_tune_point *point);
+
+// Whether run, motion and forces of the point are known.
+bool bough_tune_ended(const bough_tune_point *point);
+
+// Notes the front and the chosen point.
+void bough_tune_choose(bough_tune_state *t);
+
+// One line of the table; k −1: its head.
+void bough_tune_print(const bough_tune_state *t, int k, FILE *stream);
+
+// The settings of the chosen point as a scene has them, and as words of a command line.
+void bough_tune_print_settings(const bough_tune_state *t, FILE *stream);
+
+bough_status bough_tune_write(bough_tune_state *t);
 
 #endif

@@ -1,5 +1,5 @@
 // What a tuned scene's user gets: the table, the picture and the settings.
-#include "apps/bough/cases/tune_internal.h"
+#include "apps/bough/cases/tune.h"
 
 #include "apps/bough/results/folder.h"
 #include "apps/bough/results/picture.h"

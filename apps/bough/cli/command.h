@@ -3,7 +3,7 @@
 #ifndef BOUGH_APPS_CLI_COMMAND_H
 #define BOUGH_APPS_CLI_COMMAND_H
 
-#include "apps/bough/model/build.h"
+#include "apps/bough/model/simulation.h"
 #include "core/base/arena.h"
 #include "core/base/status.h"
 
@@ -151,7 +151,7 @@ bough_status bough_open_channels(const bough_scene *scene, const bough_channels 
 // extension.
 const char *bough_out_folder(bough_arena *arena, const bough_options *options);
 
-// -- SIGINT, SIGTERM, SIGHUP and SIGXCPU as a wish to stop after the current step (stop.c) --------
+// -- SIGINT, SIGTERM, SIGHUP and SIGXCPU as a wish to stop after the current step (command.c) -----
 
 // From now on the first of these signals is remembered; a second one ends the process at once, except
 // SIGXCPU. A reader of the output that ends does not end the process.

@@ -2,15 +2,116 @@
 // and channels, the library that runs it, the scene's files.
 #include "apps/bough/cli/command.h"
 #include "apps/bough/config/schema.h"
-#include "apps/bough/results/archive.h"
 #include "apps/bough/results/folder.h"
 #include "apps/bough/results/picture.h"
 #include "apps/bough/scene/scene_files.h"
+#include "core/base/input_file.h"
 
 #include <inttypes.h>
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
+#include <zlib.h>
+
+// -- the archive ----------------------------------------------------------------------------------
+
+// A ZIP archive whose files are stored as they are (PKWARE's APPNOTE 6.3, without ZIP64: at most 4 GB).
+
+typedef struct zip_entry {
+    const char *name; // "resources/scene.yaml"; borrowed until the end
+    uint32_t sum, size, at;
+} zip_entry;
+
+typedef struct zip {
+    bough_arena *arena; // of copies and entries
+    FILE *file;         // open for writing, at its start
+    int n, room;
+    zip_entry *entry; // (room), n of them filled
+} zip;
+
+enum { LOCAL = 0x04034b50, CENTRAL = 0x02014b50, END = 0x06054b50 };
+enum { DAY = 1 << 5 | 1, VERSION = 20, UTF8 = 1 << 11 }; // 1 January 1980: the same scene, the same file
+
+static void put_number(FILE *file, uint32_t value, int bytes) {
+    for (int i = 0; i < bytes; i++) fputc((int)(value >> 8 * i & 0xff), file);
+}
+
+// What the head of a file and its line in the directory share.
+static void put_entry(FILE *file, const zip_entry *entry) {
+    put_number(file, VERSION, 2);
+    put_number(file, UTF8, 2);
+    put_number(file, 0, 2); // stored
+    put_number(file, 0, 2); // midnight
+    put_number(file, DAY, 2);
+    put_number(file, entry->sum, 4);
+    put_number(file, entry->size, 4);
+    put_number(file, entry->size, 4);
+    put_number(file, (uint32_t)strlen(entry->name), 2);
+    put_number(file, 0, 2);
+}
+
+static zip_entry *next_entry(zip *z) {
+    if (z->n == z->room) {
+        zip_entry *old = z->entry;
+        z->room = 2 * z->room + 16;
+        z->entry = bough_arena_take(z->arena, (size_t)z->room * sizeof *z->entry);
+        if (z->n > 0) memcpy(z->entry, old, (size_t)z->n * sizeof *old);
+    }
+    return &z->entry[z->n++];
+}
+
+// Appends a file of `size` bytes. BOUGH_INVALID when it does not fit: 4 GB or 65535 files.
+static bough_status zip_add(zip *z, const char *name, const void *bytes, size_t size) {
+    long at = ftell(z->file);
+    if (z->n == UINT16_MAX || at < 0 || size + (size_t)at > UINT32_MAX - (1u << 20)) {
+        return bough_fail(BOUGH_INVALID, "the archive has no room for '%.200s'", name);
+    }
+    zip_entry *entry = next_entry(z);
+    *entry = (zip_entry){name, (uint32_t)crc32_z(0, bytes, size), (uint32_t)size, (uint32_t)at};
+    put_number(z->file, LOCAL, 4);
+    put_entry(z->file, entry);
+    fputs(name, z->file);
+    fwrite(bytes, 1, size, z->file);
+    return bough_ok();
+}
+
+// Appends a copy of the file at `path`. BOUGH_IO when it cannot be read.
+static bough_status zip_copy(zip *z, const char *name, const char *path) {
+    char why[BOUGH_INPUT_REASON];
+    size_t size;
+    bough_arena *own = bough_arena_child(z->arena);
+    const char *bytes = bough_input_read(own, path, BOUGH_INPUT_DATA, &size, why);
+    bough_status status =
+        bytes ? zip_add(z, name, bytes, size) : bough_fail(BOUGH_IO, "cannot read '%.200s': %s", path, why);
+    bough_arena_destroy(own);
+    return status;
+}
+
+// Writes the directory that ends the archive; the stream is the caller's to close.
+static void zip_end(zip *z) {
+    uint32_t at = (uint32_t)ftell(z->file);
+    for (int k = 0; k < z->n; k++) {
+        put_number(z->file, CENTRAL, 4);
+        put_number(z->file, VERSION, 2);
+        put_entry(z->file, &z->entry[k]);
+        put_number(z->file, 0, 2); // comment
+        put_number(z->file, 0, 2);
+        put_number(z->file, 0, 2);
+        put_number(z->file, 0, 4);
+        put_number(z->file, z->entry[k].at, 4);
+        fputs(z->entry[k].name, z->file);
+    }
+    uint32_t size = (uint32_t)ftell(z->file) - at;
+    put_number(z->file, END, 4);
+    put_number(z->file, 0, 4);
+    put_number(z->file, (uint32_t)z->n, 2);
+    put_number(z->file, (uint32_t)z->n, 2);
+    put_number(z->file, size, 4);
+    put_number(z->file, at, 4);
+    put_number(z->file, 0, 2);
+}
+
+// -- the FMU --------------------------------------------------------------------------------------
 
 typedef struct variable {
     const char *name, *unit, *meaning;
@@ -232,20 +333,20 @@ static void put_settings(const export *x, FILE *out) {
 }
 
 static bough_status add_text(const export *x, const char *name, void (*put)(const export *x, FILE *out),
-                             bough_archive *archive) {
+                             zip *archive) {
     char *text = NULL;
     size_t size = 0;
     FILE *out = open_memstream(&text, &size);
     if (!out) return bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory");
     put(x, out);
     fclose(out);
-    bough_status status = bough_archive_add(archive, name, text, size);
+    bough_status status = zip_add(archive, name, text, size);
     free(text);
     return status;
 }
 
 // The FMU's library lies beside the program where it was built, below ../LIBDIR where installed.
-static bough_status add_library(bough_archive *archive) {
+static bough_status add_library(zip *archive) {
     static const char *const places[] = {"bough-fmu.so", "../" BOUGH_LIBDIR "/bough/bough-fmu.so"};
     char program[BOUGH_PATH_MAX], path[2 * BOUGH_PATH_MAX];
     ssize_t length = readlink("/proc/self/exe", program, sizeof program - 1);
@@ -255,7 +356,7 @@ static bough_status add_library(bough_archive *archive) {
     for (size_t k = 0; k < sizeof places / sizeof *places; k++) {
         snprintf(path, sizeof path, "%s/%s", program, places[k]);
         if (access(path, R_OK) != 0) continue;
-        return bough_archive_copy(archive, "binaries/x86_64-linux/bough.so", path);
+        return zip_copy(archive, "binaries/x86_64-linux/bough.so", path);
     }
     return bough_fail(BOUGH_INVALID, "this program was built without the FMU's library, "
                                      "bough-fmu.so, which needs the static libraries of SUNDIALS, "
@@ -265,20 +366,20 @@ static bough_status add_library(bough_archive *archive) {
 static bough_status write_archive(export *x, const char *path) {
     FILE *file;
     BOUGH_TRY(bough_folder_open_partial(path, &file));
-    bough_archive archive = {.arena = x->arena, .file = file};
+    zip archive = {.arena = x->arena, .file = file};
     bough_status status = add_text(x, "modelDescription.xml", put_description, &archive);
     if (bough_is_ok(&status)) status = add_library(&archive);
     if (bough_is_ok(&status)) status = add_text(x, "resources/scene.txt", put_settings, &archive);
     for (int k = 0; k < x->files.n && bough_is_ok(&status); k++) {
         bool there = false; // by another spelling of its path
         for (int i = 0; i < k && !there; i++) there = strcmp(x->name[i], x->name[k]) == 0;
-        if (!there) status = bough_archive_copy(&archive, x->name[k], x->files.item[k].path);
+        if (!there) status = zip_copy(&archive, x->name[k], x->files.item[k].path);
     }
     if (!bough_is_ok(&status)) {
         bough_folder_discard(path, file);
         return status;
     }
-    bough_archive_end(&archive);
+    zip_end(&archive);
     return bough_folder_commit(path, file);
 }
 

@@ -2,7 +2,7 @@
 // Campbell diagram.
 #include "apps/bough/analysis/vibration.h"
 #include "apps/bough/cli/modes_internal.h"
-#include "apps/bough/model/coarser.h"
+#include "apps/bough/model/companion.h"
 #include "apps/bough/results/folder.h"
 #include "apps/bough/results/picture.h"
 

@@ -3,7 +3,7 @@
 #define BOUGH_APPS_CLI_RUN_H
 
 #include "apps/bough/cli/command.h"
-#include "apps/bough/model/error_shares.h"
+#include "apps/bough/model/error_verdict.h"
 #include "apps/bough/model/run.h"
 #include "apps/bough/model/shape.h"
 #include "apps/bough/results/recorder.h"
@@ -70,7 +70,7 @@ bough_status bough_checkpoint_update(void *command);
 // Removes that of an earlier run, or of one that is complete.
 bough_status bough_checkpoint_remove(const char *folder);
 
-// -- what a run will take, before it starts (forecast.c) ------------------------------------------
+// -- what a run will take, before it starts (run.c) -----------------------------------------------
 
 // What a run records.
 typedef struct bough_forecast {

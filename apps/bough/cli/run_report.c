@@ -1,6 +1,6 @@
 // The report of a run: summary.json and the closing lines.
 #include "apps/bough/cli/run.h"
-#include "apps/bough/model/error_shares.h"
+#include "apps/bough/model/error_verdict.h"
 #include "apps/bough/model/validity.h"
 #include "apps/bough/results/summary.h"
 #include "core/base/level.h"

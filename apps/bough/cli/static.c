@@ -3,7 +3,7 @@
 #include "apps/bough/analysis/steady.h"
 #include "apps/bough/cli/command.h"
 #include "apps/bough/model/equilibrium.h"
-#include "apps/bough/model/error_shares.h"
+#include "apps/bough/model/error_verdict.h"
 #include "apps/bough/results/channels.h"
 #include "apps/bough/results/folder.h"
 

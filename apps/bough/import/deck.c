@@ -1,4 +1,4 @@
-#include "apps/bough/import/deck.h"
+#include "apps/bough/import/openfast.h"
 
 #include "apps/bough/results/folder.h"
 #include "core/base/input_file.h"

@@ -1,7 +1,7 @@
 #include "apps/bough/import/draft.h"
 
 #include "apps/bough/config/text.h"
-#include "apps/bough/model/error_shares.h"
+#include "apps/bough/model/error_verdict.h"
 #include "apps/bough/model/run.h"
 #include "apps/bough/results/folder.h"
 #include "apps/bough/scene/scene.h"

@@ -1,4 +1,4 @@
-#include "apps/bough/import/wall_section.h"
+#include "apps/bough/import/section.h"
 
 #include "core/base/linalg.h"
 

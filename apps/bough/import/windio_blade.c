@@ -3,7 +3,7 @@
 // edgewise, turned by the twist; both matrices about the reference line: those of the scene.
 #include "apps/bough/import/section.h"
 #include "apps/bough/import/windio.h"
-#include "core/base/symmetric6.h"
+#include "core/base/linalg.h"
 
 #include <math.h>
 

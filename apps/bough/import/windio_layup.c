@@ -1,5 +1,5 @@
 
-#include "apps/bough/import/wall_section.h"
+#include "apps/bough/import/section.h"
 #include "apps/bough/import/windio.h"
 #include "core/base/base.h"
 

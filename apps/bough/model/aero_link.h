@@ -4,7 +4,6 @@
 #define BOUGH_APPS_MODEL_AERO_LINK_H
 
 #include "aero/rotor/rotor.h"
-#include "apps/bough/model/build.h"
 #include "apps/bough/model/simulation.h"
 
 typedef struct bough_aero_link bough_aero_link;
@@ -127,5 +126,28 @@ double bough_aero_signal_missed(const bough_aero_signal *s);
 
 // All that the signal depends on; restoring gives it to the body.
 void bough_aero_signal_snapshot(bough_aero_signal *s, bough_snapshot *snapshot);
+
+// -- drag of tower and hub (drag_link.c) ----------------------------------------------------------
+
+// Joins the drag of tower and hub to the bodies of a simulation, sampled with the aerodynamics;
+// forces go linearly to what was sampled and arrive one sample late.
+
+typedef struct bough_drag_link bough_drag_link;
+
+// Whether the scene has such drag.
+bool bough_drag_link_wanted(const bough_scene *scene);
+
+// After the aerodynamics. `hub_marker` of the tree, on the rotor; −1: no drag of the hub.
+bough_status bough_drag_link_build(bough_arena *arena, bough_simulation *simulation, int hub_marker,
+                                   bough_drag_link **link);
+
+// The sampled load for the master's loop.
+bough_sampled_load bough_drag_link_load(bough_drag_link *link);
+
+// Sets the drag of the present motion, constant, as bough_aero_link_hold does the rotor's loads.
+void bough_drag_link_hold(bough_drag_link *link, double t);
+
+// The memory, as bough_aero_link_snapshot.
+void bough_drag_link_snapshot(bough_drag_link *link, bough_snapshot *snapshot);
 
 #endif

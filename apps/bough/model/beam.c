@@ -1,6 +1,6 @@
 // The flexible body of a beam: its rod or the rod reduced to modes, and what both have in common.
 #include "apps/bough/model/simulation.h"
-#include "flexbody/rod/rod_linear.h"
+#include "flexbody/rod/rod_tangent.h"
 
 // Whether a segment's shear stiffness, which contains its bending, is small beside its axial one.
 static bool is_cable(const bough_rod_def *def) {

@@ -1,10 +1,8 @@
 // The whole of a simulation, part by part: tree, rods, ports, loads, master.
-#include "apps/bough/model/build.h"
 
 #include "apps/bough/model/aero_link.h"
 #include "apps/bough/model/build_internal.h"
 #include "apps/bough/model/control_link.h"
-#include "apps/bough/model/drag_link.h"
 #include "apps/bough/model/equilibrium.h"
 #include "apps/bough/model/input_link.h"
 #include "apps/bough/model/jump_link.h"

@@ -1,4 +1,4 @@
-#include "apps/bough/model/coarser.h"
+#include "apps/bough/model/companion.h"
 
 #include "apps/bough/model/aero_link.h"
 #include "cosim/master.h"

@@ -1,9 +1,8 @@
 #include "apps/bough/model/companion.h"
 
-#include "apps/bough/model/build.h"
-#include "apps/bough/model/coarser.h"
 #include "apps/bough/model/error_verdict.h"
 #include "apps/bough/model/input_link.h"
+#include "apps/bough/model/simulation.h"
 
 #include <math.h>
 #include <stdio.h>

@@ -1,4 +1,4 @@
-#include "apps/bough/model/drag_link.h"
+#include "apps/bough/model/aero_link.h"
 
 #include <string.h>
 

@@ -1,7 +1,6 @@
 #include "apps/bough/model/equilibrium.h"
 
 #include "apps/bough/model/aero_link.h"
-#include "apps/bough/model/drag_link.h"
 #include "apps/bough/model/jump_link.h"
 #include "cosim/analysis/equilibrium.h"
 #include "flexbody/rod/rod_static.h"

@@ -1,7 +1,7 @@
-#include "apps/bough/model/error_shares.h"
+#include "apps/bough/model/error_verdict.h"
 
-#include "apps/bough/model/build.h"
-#include "apps/bough/model/coarser.h"
+#include "apps/bough/model/companion.h"
+#include "apps/bough/model/simulation.h"
 
 #include <math.h>
 #include <stdarg.h>

@@ -1,6 +1,6 @@
 #include "apps/bough/model/run.h"
 
-#include "apps/bough/model/build.h"
+#include "apps/bough/model/simulation.h"
 #include "apps/bough/model/validity.h"
 #include "core/base/linalg.h"
 

@@ -163,4 +163,19 @@ void bough_simulation_beam_motion(const bough_simulation *s, const bough_beam *b
 // The same in the body's axes, as rows of n_segment + 1 numbers that a blade's motion has: see rotor.h.
 void bough_simulation_beam_rows(const bough_simulation *s, const bough_beam *beam, double *rows);
 
+// -- building (build.c) ---------------------------------------------------------------------------
+
+// The composition root: makes a running simulation of a scene.
+
+// Number of threads that the scene asks for, or the environment.
+int bough_simulation_threads(const bough_scene *scene);
+
+// Builds everything the scene names, and nothing else, in the arena.
+bough_status bough_simulation_build(bough_arena *arena, const bough_scene *scene,
+                                    bough_simulation **simulation);
+
+// The same with the threads of a pool (NULL: one thread), which several simulations may share.
+bough_status bough_simulation_build_on(bough_arena *arena, const bough_scene *scene, bough_pool *pool,
+                                       bough_simulation **simulation);
+
 #endif

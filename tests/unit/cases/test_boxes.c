@@ -1,5 +1,5 @@
 // Turbulence that runs share: one box for each wind, the same as a run's own.
-#include "apps/bough/cases/boxes.h"
+#include "apps/bough/cases/case_run.h"
 
 #include "aero/wind/wind_turbulence.h"
 #include "apps/bough/model/aero_link.h"

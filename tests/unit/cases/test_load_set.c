@@ -1,7 +1,7 @@
 // Weights of a load set's cases and what their sums are, beside formulas by hand.
 #include "apps/bough/cases/lifetime.h"
 
-#include "apps/bough/cases/study_internal.h"
+#include "apps/bough/cases/study.h"
 #include "tests/unit/check.h"
 
 #include <math.h>

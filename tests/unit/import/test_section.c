@@ -1,7 +1,7 @@
 // Section tables integrated into segments and vertices.
 #include "tests/unit/check.h"
 
-#include "core/base/symmetric6.h"
+#include "core/base/linalg.h"
 #include "flexbody/section/section.h"
 
 #include <string.h>

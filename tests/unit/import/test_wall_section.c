@@ -1,5 +1,5 @@
 // Thin-walled sections against formulas: tubes, boxes with one and two cells, a slit tube, laminates.
-#include "apps/bough/import/wall_section.h"
+#include "apps/bough/import/section.h"
 
 #include "core/base/base.h"
 #include "tests/unit/check.h"

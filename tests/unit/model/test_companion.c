@@ -1,6 +1,6 @@
 // The companion of a run: what it tells against solutions that are finer in mesh, air and time.
-#include "apps/bough/model/coarser.h"
-#include "apps/bough/model/error_shares.h"
+#include "apps/bough/model/companion.h"
+#include "apps/bough/model/error_verdict.h"
 #include "apps/bough/model/run.h"
 #include "tests/unit/built_scene.h"
 

@@ -1,7 +1,7 @@
 // Drag of tower and hub on the bodies of a simulation.
 #include "tests/unit/built_scene.h"
 
-#include "apps/bough/model/drag_link.h"
+#include "apps/bough/model/aero_link.h"
 
 #include <stdlib.h>
 #include <string.h>

@@ -4,7 +4,7 @@
 #include "tests/unit/check.h"
 
 #include "apps/bough/model/aero_link.h"
-#include "apps/bough/model/build.h"
+#include "apps/bough/model/simulation.h"
 
 #include <stdlib.h>
 #include <string.h>

@@ -4,7 +4,7 @@
 // beside an independent solution.
 #include "tests/unit/check.h"
 
-#include "apps/bough/model/build.h"
+#include "apps/bough/model/simulation.h"
 
 #include <stdlib.h>
 #include <string.h>

@@ -1,5 +1,4 @@
 // channels.outb read byte by byte, as its readers do.
-#include "apps/bough/results/binary.h"
 #include "apps/bough/results/recorder.h"
 #include "tests/unit/scratch.h"
 

@@ -1,5 +1,5 @@
 // What a good scene is read as, and what the program says of scenes.
-#include "core/base/symmetric6.h"
+#include "core/base/linalg.h"
 #include "tests/unit/scene_text.h"
 
 #include <sys/stat.h>

@@ -1,7 +1,7 @@
 // Sums of weighted columns at every level of the kernels that the processor runs.
 #include "tests/unit/check.h"
 
-#include "core/base/columns.h"
+#include "core/base/linalg.h"
 #include "tests/unit/sample_rod.h"
 
 #include <math.h>

@@ -1,7 +1,7 @@
 // Memory that ends anywhere while a run is set up: it is told, nothing leaks, nothing crashes.
-#include "apps/bough/model/build.h"
 #include "apps/bough/model/companion.h"
 #include "apps/bough/model/shape.h"
+#include "apps/bough/model/simulation.h"
 #include "apps/bough/results/folder.h"
 #include "apps/bough/results/frames.h"
 #include "apps/bough/results/recorder.h"

@@ -1,7 +1,7 @@
 // Symmetric 6×6 matrices kept as triangles.
 #include "tests/unit/check.h"
 
-#include "core/base/symmetric6.h"
+#include "core/base/linalg.h"
 #include "tests/unit/sample_rod.h"
 
 #include <string.h>

@@ -3,7 +3,7 @@
 #include "tests/unit/check.h"
 #include "tests/unit/sample_rod.h"
 
-#include "apps/bough/model/build.h"
+#include "apps/bough/model/simulation.h"
 #include "flexbody/rod/rod_modes.h"
 #include "flexbody/rod/rod_static.h"
 #include "flexbody/section/section.h"

@@ -3,8 +3,8 @@
 #include "tests/unit/check.h"
 #include "tests/unit/sample_rod.h"
 
-#include "apps/bough/model/build.h"
-#include "core/base/symmetric6.h"
+#include "apps/bough/model/simulation.h"
+#include "core/base/linalg.h"
 #include "flexbody/rod/rod_load.h"
 #include "flexbody/rod/rod_static.h"
 

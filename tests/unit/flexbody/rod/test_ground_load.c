@@ -1,6 +1,6 @@
 // Loads in ground axes on bodies that move: their resolution against statics on a turning arm, the motion
 // they make against that under gravity, and the contract of the system.
-#include "apps/bough/model/build.h"
+#include "apps/bough/model/simulation.h"
 #include "tests/unit/built_scene.h"
 #include "tests/unit/contract.h"
 

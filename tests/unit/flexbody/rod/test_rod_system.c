@@ -2,7 +2,7 @@
 // against beam theory and the laws of conservation.
 #include "tests/unit/check.h"
 
-#include "core/base/symmetric6.h"
+#include "core/base/linalg.h"
 #include "flexbody/rod/rod_system.h"
 #include "flexbody/section/section.h"
 #include "tests/unit/contract.h"
