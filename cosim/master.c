@@ -77,9 +77,8 @@ bough_status bough_master_build(bough_arena *arena, const bough_master_def *def,
     m->at_event = true;
     copy_loads(m, arena, def);
     // the assembly and its coupling
-    bough_status status = bough_assembly_build(arena, &def->assembly, &m->assembly);
-    if (!bough_is_ok(&status)) return status;
-    status = bough_scheme_couple(arena, m->assembly, &def->scheme, def->pool, &m->coupling);
+    BOUGH_TRY(bough_assembly_build(arena, &def->assembly, &m->assembly));
+    bough_status status = bough_scheme_couple(arena, m->assembly, &def->scheme, def->pool, &m->coupling);
     if (!bough_is_ok(&status)) return status;
     // what checks and controls the steps
     const bough_scheme *scheme = m->coupling->scheme;

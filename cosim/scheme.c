@@ -117,13 +117,12 @@ bough_status bough_scheme_couple(bough_arena *arena, const bough_assembly *assem
 
 bough_status bough_scheme_step(bough_coupling *c) {
     // members advance as the scheme orders them
-    bough_status status = c->scheme->step(c);
-    if (!bough_is_ok(&status)) return status;
+    BOUGH_TRY(c->scheme->step(c));
     // their outputs become inputs
     bough_coupling_obtain(c);
     if (c->scheme->obtained) c->scheme->obtained(c);
     bough_coupling_record(c);
-    return status;
+    return bough_ok();
 }
 
 void bough_scheme_snapshot(bough_coupling *c, bough_snapshot *s) {

@@ -334,13 +334,12 @@ static bough_status step(bough_coupling *c) {
     const ramp *r = c->scheme_data;
     bough_coupling_begin(c);
     // the forces at the end of the step
-    bough_status status = r->measured ? predict_damped(c) : measure_interface(c);
-    if (!bough_is_ok(&status)) return status;
+    BOUGH_TRY(r->measured ? predict_damped(c) : measure_interface(c));
     // leaders under ramps
     for (int i = 0; i < a->n_member; i++) {
         if (leads(c, i)) set_ramps(c, i);
     }
-    status = bough_coupling_advance_leaders(c, 0, c->restart || held(r));
+    bough_status status = bough_coupling_advance_leaders(c, 0, c->restart || held(r));
     if (!bough_is_ok(&status)) return status;
     // followers under the leaders' motion
     for (int i = 0; i < a->n_member; i++) {

@@ -117,8 +117,8 @@ static void rate_of(bough_whole *whole, int i) { bough_whole_rates_of(&whole, 1,
 bough_status bough_whole_rate(bough_whole *whole, double t, const double *state, double *rate) {
     bough_whole_begin_rates(whole, t, state, rate);
     // the inputs of leaders follow from the outputs of followers
-    bough_status status = each(whole, FOLLOWERS, rate_of);
-    return bough_is_ok(&status) ? each(whole, LEADERS, rate_of) : status;
+    BOUGH_TRY(each(whole, FOLLOWERS, rate_of));
+    return each(whole, LEADERS, rate_of);
 }
 
 // -- factors --------------------------------------------------------------------------------------

@@ -41,8 +41,7 @@ static bough_status read_box(bough_arena *arena, bough_wind *wind) {
 
 static bough_status make_standard(bough_arena *arena, bough_wind *wind) {
     const bough_wind_iec_def *def = &wind->def.iec;
-    bough_status status = bough_wind_iec_check(def);
-    if (!bough_is_ok(&status)) return status;
+    BOUGH_TRY(bough_wind_iec_check(def));
     // turbulent conditions are a box, deterministic ones a formula
     if (bough_wind_iec_is_turbulent(def->condition)) {
         bough_wind_box *box = bough_arena_take(arena, sizeof *box);
@@ -52,7 +51,7 @@ static bough_status make_standard(bough_arena *arena, bough_wind *wind) {
     bough_wind_iec *iec = bough_arena_take(arena, sizeof *iec);
     *iec = bough_wind_iec_start(def);
     wind->iec = iec;
-    return status;
+    return bough_ok();
 }
 
 static bough_status build(bough_arena *arena, const bough_wind_def *def, bough_wind *wind) {

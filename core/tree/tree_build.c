@@ -254,8 +254,8 @@ bough_status bough_tree_create(bough_arena *arena, const bough_tree_def *def, bo
     create_motions(arena, def, tree);
     set_initial(tree, def);
     *out = tree;
-    bough_status status = bough_loops_place(arena, def, tree);
-    return bough_is_ok(&status) ? check_dynamics(arena, def, tree) : status;
+    BOUGH_TRY(bough_loops_place(arena, def, tree));
+    return check_dynamics(arena, def, tree);
 }
 
 bough_tree_data *bough_tree_data_create(bough_arena *arena, const bough_tree *tree) {

@@ -95,13 +95,11 @@ bough_status bough_rod_modes(bough_arena *arena, const bough_rod_model *m, bough
     bough_eigen_pair *pair = bough_arena_take(arena, wanted * sizeof *pair);
     list->mode = bough_arena_take(arena, wanted * sizeof *list->mode);
     bough_block_tridiagonal_init(&damping, arena, m->n);
-    bough_status status = linearise(m, work, input, state, &damping);
-    if (!bough_is_ok(&status)) return status;
+    BOUGH_TRY(linearise(m, work, input, state, &damping));
     bough_eigen_problem problem = {m->name, work->tangent.blocks.mass, &damping, &work->tangent.matrix};
-    status = bough_eigen_smallest(arena, &problem, list->wanted, pair, &list->found);
-    if (!bough_is_ok(&status)) return status;
+    BOUGH_TRY(bough_eigen_smallest(arena, &problem, list->wanted, pair, &list->found));
     for (int k = 0; k < list->found; k++) {
         fill_mode(arena, m, &pair[k], state, &list->mode[k]);
     }
-    return status;
+    return bough_ok();
 }

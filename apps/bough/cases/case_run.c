@@ -55,8 +55,7 @@ static void count_all(case_run *r, double t, const double *value) {
 static bough_status sample(void *self, double t) {
     case_run *r = self;
     bough_study_series *s = r->series;
-    bough_status status = r->recorder ? bough_recorder_sample(r->recorder, t) : bough_ok();
-    if (!bough_is_ok(&status)) return status;
+    BOUGH_TRY(r->recorder ? bough_recorder_sample(r->recorder, t) : bough_ok());
     const double *value = r->recorder ? bough_recorder_values(r->recorder) : bough_run_values(&r->run);
     if (s) {
         assert(s->filled < s->n_row);
@@ -64,7 +63,7 @@ static bough_status sample(void *self, double t) {
     } else if (t >= r->study->from - 1e-6 * r->run.simulation->master->macro_step) {
         count_all(r, t, value);
     }
-    return status;
+    return bough_ok();
 }
 
 // Estimate of each measure: norm of the largest errors of its channels, although at different times.
@@ -145,8 +144,8 @@ static bough_status open_recorder(bough_arena *arena, case_run *r) {
     bough_recorder_def def = {
         .folder = r->drive->folder, .title = r->chosen->settings, .channels = &r->run.channels};
     if (!def.folder) return bough_ok();
-    bough_status status = bough_folder_make(def.folder);
-    return bough_is_ok(&status) ? bough_recorder_open(arena, &def, &r->recorder) : status;
+    BOUGH_TRY(bough_folder_make(def.folder));
+    return bough_recorder_open(arena, &def, &r->recorder);
 }
 
 static bough_status build(bough_arena *arena, case_run *r) {

@@ -184,16 +184,14 @@ static void check_wanted(bough_arena *arena, bough_study *s, const bough_channel
 static bough_status check_channels(bough_arena *arena, bough_arena *own, bough_study *s,
                                    const bough_scene *scene, bough_errors *errors) {
     bough_simulation *simulation;
-    bough_status status = bough_simulation_build(own, scene, &simulation);
-    if (!bough_is_ok(&status)) return status;
+    BOUGH_TRY(bough_simulation_build(own, scene, &simulation));
     bough_channels channels = bough_channels_start(own);
-    status = bough_simulation_channels(simulation, &channels);
-    if (!bough_is_ok(&status)) return status;
+    BOUGH_TRY(bough_simulation_channels(simulation, &channels));
     if (s->is.compared)
         check_measures(arena, s, &channels, errors);
     else
         check_wanted(arena, s, &channels, errors);
-    return status;
+    return bough_ok();
 }
 
 // -- times ----------------------------------------------------------------------------------------

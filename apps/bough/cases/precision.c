@@ -291,8 +291,8 @@ static void write_csv(const void *self, FILE *f) {
 static void write_text(const void *self, FILE *f) { print(self, f); }
 
 bough_status bough_precision_tables(const bough_study_results *results, const char *folder) {
-    bough_status status = bough_folder_write(folder, "table.txt", write_text, results);
-    return bough_is_ok(&status) ? bough_folder_write(folder, "table.csv", write_csv, results) : status;
+    BOUGH_TRY(bough_folder_write(folder, "table.txt", write_text, results));
+    return bough_folder_write(folder, "table.csv", write_csv, results);
 }
 
 // -- plot.svg: cost against error -----------------------------------------------------------------

@@ -147,10 +147,10 @@ static void put_levels(const void *self, FILE *f) {
 }
 
 static bough_status write_lifetime(const bough_lifetime *l, const char *folder) {
-    bough_status status = bough_folder_write(folder, "equivalent.csv", put_equivalent, l);
-    if (bough_is_ok(&status)) status = bough_folder_write(folder, "extremes.csv", put_extremes, l);
-    if (bough_is_ok(&status)) status = bough_folder_write(folder, "ranges.csv", put_ranges, l);
-    return bough_is_ok(&status) ? bough_folder_write(folder, "levels.csv", put_levels, l) : status;
+    BOUGH_TRY(bough_folder_write(folder, "equivalent.csv", put_equivalent, l));
+    BOUGH_TRY(bough_folder_write(folder, "extremes.csv", put_extremes, l));
+    BOUGH_TRY(bough_folder_write(folder, "ranges.csv", put_ranges, l));
+    return bough_folder_write(folder, "levels.csv", put_levels, l);
 }
 
 // -- table.txt -----------------------------------------------------------------------------------

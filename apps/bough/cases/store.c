@@ -30,8 +30,8 @@ static bough_status path_of(const char *folder, const case_name name, char path[
 
 bough_status bough_store_open(const char *folder) {
     char path[BOUGH_PATH_MAX];
-    bough_status status = bough_folder_path(folder, "cases", path);
-    return bough_is_ok(&status) ? bough_folder_make(path) : status;
+    BOUGH_TRY(bough_folder_path(folder, "cases", path));
+    return bough_folder_make(path);
 }
 
 // -- rows -----------------------------------------------------------------------------------------
@@ -195,8 +195,7 @@ static bough_status open_case(const char *folder, const case_name name, const bo
                               bough_status *outcome, FILE **file) {
     char path[BOUGH_PATH_MAX], why[BOUGH_INPUT_REASON];
     *file = NULL;
-    bough_status status = path_of(folder, name, path);
-    if (!bough_is_ok(&status)) return status;
+    BOUGH_TRY(path_of(folder, name, path));
     errno = 0;
     FILE *found = bough_input_open(path, BOUGH_INPUT_DATA, why);
     if (!found && errno != ENOENT) return bough_fail(BOUGH_IO, "cannot read '%.200s': %s", path, why);
@@ -204,7 +203,7 @@ static bough_status open_case(const char *folder, const case_name name, const bo
         *file = found;
     else if (found)
         fclose(found);
-    return status;
+    return bough_ok();
 }
 
 bough_status bough_store_read(const char *folder, const bough_study *s, const bough_case *c,
@@ -243,12 +242,11 @@ static void release(void *self) { close(*(int *)self); }
 bough_status bough_claims_open(bough_arena *arena, const char *folder, int *claims) {
     char path[BOUGH_PATH_MAX];
     int *file = bough_arena_take(arena, sizeof *file);
-    bough_status status = bough_folder_path(folder, "cases/claims", path);
-    if (!bough_is_ok(&status)) return status;
+    BOUGH_TRY(bough_folder_path(folder, "cases/claims", path));
     *claims = *file = open(path, O_RDWR | O_CREAT | O_NONBLOCK | O_CLOEXEC, 0666);
     if (*file < 0) return bough_fail(BOUGH_IO, "cannot write '%.200s': %s", path, strerror(errno));
     bough_arena_on_destroy(arena, release, file);
-    return status;
+    return bough_ok();
 }
 
 static bool set_lock(int claims, int number, short type) {

@@ -28,8 +28,8 @@ static int partner(const bough_study *s, int cell) {
 
 static bough_status run(timing *t, const bough_case *cell, bough_study_drive *drive,
                         bough_study_series *series, bough_case_result *result) {
-    bough_status status = bough_case_run(t->study, cell, 1, drive, series, result);
-    return bough_is_ok(&status) ? result->outcome : status;
+    BOUGH_TRY(bough_case_run(t->study, cell, 1, drive, series, result));
+    return result->outcome;
 }
 
 // Every run writes all channels, as `bough run` does. Errors do not depend on the turn: the bits of all turns

@@ -369,10 +369,10 @@ static bough_status time_again(bough_tune_state *t) {
 static bough_status search(bough_tune_state *t) {
     bough_tune_settings own = settings_of(t->scene), s = start_of(t);
     int at;
-    bough_status status = try(t, &own, bough_scheme_find(bough_scheme_name(own.scheme))->one_system, &at);
-    if (bough_is_ok(&status)) status = descend(t, &s);
-    if (bough_is_ok(&status)) status = vary_best(t);
-    return bough_is_ok(&status) ? time_again(t) : status;
+    BOUGH_TRY(try(t, &own, bough_scheme_find(bough_scheme_name(own.scheme))->one_system, &at));
+    BOUGH_TRY(descend(t, &s));
+    BOUGH_TRY(vary_best(t));
+    return time_again(t);
 }
 
 // What the scene's own error costs.

@@ -201,8 +201,8 @@ static void write_settings(const void *self, FILE *file) { bough_tune_print_sett
 
 bough_status bough_tune_write(bough_tune_state *t) {
     const char *folder = t->options->folder;
-    bough_status status = bough_folder_make(folder);
-    if (bough_is_ok(&status)) status = bough_folder_write(folder, "tune.csv", write_table, t);
-    if (bough_is_ok(&status)) status = bough_arena_use(draw, t);
-    return bough_is_ok(&status) ? bough_folder_write(folder, "tune.yaml", write_settings, t) : status;
+    BOUGH_TRY(bough_folder_make(folder));
+    BOUGH_TRY(bough_folder_write(folder, "tune.csv", write_table, t));
+    BOUGH_TRY(bough_arena_use(draw, t));
+    return bough_folder_write(folder, "tune.yaml", write_settings, t);
 }

@@ -207,10 +207,9 @@ static void print_loads(const bough_simulation *s) {
 
 static bough_status print_results(bough_arena *arena, bough_simulation *s, const bough_channels *channels) {
     bough_shape shape;
-    bough_status status = bough_shape_create(arena, s, &shape);
-    if (!bough_is_ok(&status)) return status;
+    BOUGH_TRY(bough_shape_create(arena, s, &shape));
     bough_forecast_print(bough_run_results(s, channels, &shape), channels, stdout);
-    return status;
+    return bough_ok();
 }
 
 // -- cost -----------------------------------------------------------------------------------------

@@ -54,8 +54,7 @@ static int split(char *line, char (*word)[NAME]) {
 
 static bough_status open_reading(bough_arena *arena, const char *folder, reading *r) {
     *r = (reading){.folder = folder};
-    bough_status status = bough_report_open(folder, "channels.out", &r->file);
-    if (!bough_is_ok(&status)) return status;
+    BOUGH_TRY(bough_report_open(folder, "channels.out", &r->file));
     if (!r->file)
         return bough_fail(BOUGH_INVALID, "'%.200s' holds no run's results: no channels.out", folder);
     bough_arena_on_destroy(arena, close_reading, r);

@@ -130,11 +130,10 @@ static const char *title(const bough_run_command *command) {
 // Removes the partial files of a run that was killed; its rows stay where it is resumed.
 static bough_status clean(const bough_run_command *command) {
     char frames[BOUGH_PATH_MAX];
-    bough_status status = bough_folder_path(command->folder, "frames", frames);
-    if (!bough_is_ok(&status)) return status;
+    BOUGH_TRY(bough_folder_path(command->folder, "frames", frames));
     if (!command->options->resume) bough_folder_clean(command->folder);
     bough_folder_clean(frames);
-    return status;
+    return bough_ok();
 }
 
 // Results of an earlier run stay until this one replaces them, except its checkpoint.

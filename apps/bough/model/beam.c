@@ -16,12 +16,11 @@ static bool is_cable(const bough_rod_def *def) {
 static bough_status build_rod(bough_arena *arena, bough_beam *beam, const double *input,
                               bough_system *system) {
     bough_rod_model *model = NULL;
-    bough_status status = bough_rod_create(arena, &beam->def, &model);
-    if (!bough_is_ok(&status)) return status;
+    BOUGH_TRY(bough_rod_create(arena, &beam->def, &model));
     beam->cable = is_cable(&beam->def);
     beam->rod = bough_rod_body_create(arena, model, input);
     *system = bough_rod_body_system(beam->rod);
-    return status;
+    return bough_ok();
 }
 
 static bough_status build_modal(bough_arena *arena, bough_beam *beam, const double *input,
@@ -30,11 +29,10 @@ static bough_status build_modal(bough_arena *arena, bough_beam *beam, const doub
     int pieces = beam->body->fidelity == BOUGH_SCENE_MODAL ? 1 : modal->pieces;
     bough_modal_options options = {modal->modes, modal->statics, modal->stiffening};
     bough_modal_model *model = NULL;
-    bough_status status = bough_modal_create(arena, &beam->def, pieces, options, &model);
-    if (!bough_is_ok(&status)) return status;
+    BOUGH_TRY(bough_modal_create(arena, &beam->def, pieces, options, &model));
     beam->modal = bough_modal_body_create(arena, model, input);
     *system = bough_modal_body_system(beam->modal);
-    return status;
+    return bough_ok();
 }
 
 bough_status bough_beam_build(bough_arena *arena, bough_beam *beam, bough_integrator_options micro,

@@ -375,6 +375,6 @@ bough_status bough_simulation_path(bough_simulation *s, const bough_assembly *as
                                    bough_path_listener listener, bough_path_report *report) {
     task x = {.simulation = s, .assembly = assembly, .listener = listener, .report = report};
     *report = (bough_path_report){0};
-    bough_status status = refuse_path(s);
-    return bough_is_ok(&status) ? bough_arena_use(walk_path, &x) : status;
+    BOUGH_TRY(refuse_path(s));
+    return bough_arena_use(walk_path, &x);
 }

@@ -62,8 +62,8 @@ bough_status bough_folder_open_partial(const char *path, FILE **file) {
 }
 
 bough_status bough_folder_open(const char *folder, const char *name, char *path, FILE **file) {
-    bough_status status = bough_folder_path(folder, name, path);
-    return bough_is_ok(&status) ? bough_folder_open_partial(path, file) : status;
+    BOUGH_TRY(bough_folder_path(folder, name, path));
+    return bough_folder_open_partial(path, file);
 }
 
 bough_status bough_folder_write(const char *folder, const char *name,
@@ -203,6 +203,6 @@ bough_status bough_lock_folder(bough_arena *arena, const char *folder) {
     lock *l = bough_arena_take(arena, sizeof *l);
     l->file = -1;
     bough_arena_on_destroy(arena, release, l);
-    bough_status status = bough_folder_path(folder, "running.lock", l->path);
-    return bough_is_ok(&status) ? take(l, folder) : status;
+    BOUGH_TRY(bough_folder_path(folder, "running.lock", l->path));
+    return take(l, folder);
 }

@@ -29,11 +29,10 @@ static bough_status create(bough_frames *f) {
     if (unlink(f->list_path) != 0 && errno != ENOENT) {
         return bough_fail(BOUGH_IO, "cannot replace '%.200s': %s", f->list_path, strerror(errno));
     }
-    bough_status status = bough_folder_open_partial(f->list_path, &f->list);
-    if (!bough_is_ok(&status)) return status;
+    BOUGH_TRY(bough_folder_open_partial(f->list_path, &f->list));
     fprintf(f->list, "<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"0.1\">\n"
                      "<Collection>\n");
-    return status;
+    return bough_ok();
 }
 
 bough_status bough_frames_open(bough_arena *arena, const bough_frames_def *def, bough_frames **frames) {
@@ -96,8 +95,7 @@ bough_status bough_frames_sample(bough_frames *f, double t) {
     char path[BOUGH_PATH_MAX], name[32];
     FILE *file;
     snprintf(name, sizeof name, "frames/%06d.vtp", f->n_frame);
-    bough_status status = bough_folder_open(f->def.folder, name, path, &file);
-    if (!bough_is_ok(&status)) return status;
+    BOUGH_TRY(bough_folder_open(f->def.folder, name, path, &file));
     f->def.points(f->def.self, f->point);
     f->def.loads(f->def.self, t, f->force, f->moment);
     fprintf(file,
@@ -109,11 +107,10 @@ bough_status bough_frames_sample(bough_frames *f, double t) {
     write_loads(f, file);
     write_bodies(f, file);
     fprintf(file, "</Piece>\n</PolyData>\n</VTKFile>\n");
-    status = bough_folder_commit(path, file);
-    if (!bough_is_ok(&status)) return status;
+    BOUGH_TRY(bough_folder_commit(path, file));
     fprintf(f->list, "<DataSet timestep=\"%.9g\" file=\"%s\"/>\n", t, name);
     f->n_frame++;
-    return status;
+    return bough_ok();
 }
 
 bough_status bough_frames_keep(bough_frames *f, bough_kept *kept) {
@@ -138,8 +135,8 @@ static bough_status remove_from(const char *folder, int n) {
 }
 
 bough_status bough_frames_remove(const char *folder) {
-    bough_status status = bough_folder_remove(folder, "frames.pvd");
-    return bough_is_ok(&status) ? remove_from(folder, 0) : status;
+    BOUGH_TRY(bough_folder_remove(folder, "frames.pvd"));
+    return remove_from(folder, 0);
 }
 
 bough_status bough_frames_finish(bough_frames *f) {

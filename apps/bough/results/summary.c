@@ -31,10 +31,9 @@ static void open_bracket(bough_summary *s, char opening, char closing) {
 
 bough_status bough_summary_open(bough_summary *s, const char *folder, const char *name) {
     *s = (bough_summary){.file = NULL};
-    bough_status status = bough_folder_open(folder, name, s->path, &s->file);
-    if (!bough_is_ok(&status)) return status;
+    BOUGH_TRY(bough_folder_open(folder, name, s->path, &s->file));
     open_bracket(s, '{', '}');
-    return status;
+    return bough_ok();
 }
 
 void bough_summary_number(bough_summary *s, const char *key, double value) {

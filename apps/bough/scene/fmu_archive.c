@@ -170,12 +170,11 @@ static bough_status write_file(char *path, size_t inside, const char *bytes, siz
 static bough_status unpack_entry(bough_arena *arena, archive *a, const char *folder) {
     entry e;
     char *bytes;
-    bough_status status = next_entry(a, &e);
-    if (!bough_is_ok(&status)) return status;
+    BOUGH_TRY(next_entry(a, &e));
     if (!stays_inside(e.name)) return damaged(a, "the name of a file leads out of the archive");
     bough_arena *own = bough_arena_child(arena);
     char *path = bough_arena_print(own, "%s/%s", folder, e.name);
-    status = extract(own, a, &e, &bytes);
+    bough_status status = extract(own, a, &e, &bytes);
     if (bough_is_ok(&status)) status = write_file(path, strlen(folder) + 1, bytes, e.size);
     bough_arena_destroy(own);
     return status;
