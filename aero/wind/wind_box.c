@@ -3,6 +3,7 @@
 #include "aero/wind/wind_box.h"
 
 #include "core/base/base.h"
+#include "core/base/bytes.h"
 #include "core/base/input_file.h"
 
 #include <math.h>
@@ -11,26 +12,6 @@
 
 enum { HEAD = 70, COUNTS = 4, FLOATS = 12, MOST_TEXT = 10000, PIECE = 4096 };
 
-// Little-endian numbers from bytes.
-static uint16_t u16_at(const unsigned char *b) { return (uint16_t)(b[0] | b[1] << 8); }
-
-static int16_t i16_at(const unsigned char *b) {
-    uint16_t u = u16_at(b);
-    return (int16_t)(u < 0x8000 ? u : (int)u - 0x10000);
-}
-
-static int64_t i32_at(const unsigned char *b) {
-    int64_t u = (int64_t)u16_at(b) + ((int64_t)u16_at(b + 2) << 16);
-    return u < 0x80000000 ? u : u - 0x100000000;
-}
-
-static double f32_at(const unsigned char *b) {
-    uint32_t bits = u16_at(b) + ((uint32_t)u16_at(b + 2) << 16);
-    float value;
-    memcpy(&value, &bits, sizeof value);
-    return (double)value;
-}
-
 static bough_status bad(const char *path, const char *what) {
     return bough_fail(BOUGH_INVALID, "%s is not a TurbSim full-field file: %s.", path, what);
 }
@@ -38,11 +19,11 @@ static bough_status bad(const char *path, const char *what) {
 // Kind, then numbers of points in z, y and below the grid, and of times.
 static bough_status read_counts(const char *path, const unsigned char *head, bough_wind_box *box) {
     int64_t count[COUNTS];
-    int kind = i16_at(head);
+    int kind = bough_bytes_int16(head);
     if (kind != 7 && kind != 8) return bad(path, "it must begin with 7 or 8");
     box->periodic = kind == 8;
     for (int i = 0; i < COUNTS; i++) {
-        count[i] = i32_at(head + 2 + 4 * i);
+        count[i] = bough_bytes_int32(head + 2 + 4 * i);
         if (count[i] < (i == 2 ? 0 : 2) || count[i] > 100000000) {
             return bad(path, "a number of points or times is out of range");
         }
@@ -58,7 +39,7 @@ static bough_status read_counts(const char *path, const unsigned char *head, bou
 static bough_status read_measures(const char *path, const unsigned char *head, bough_wind_box *box) {
     double v[FLOATS];
     for (int i = 0; i < FLOATS; i++) {
-        v[i] = f32_at(head + 2 + 4 * (COUNTS + i));
+        v[i] = bough_bytes_float(head + 2 + 4 * (COUNTS + i));
         if (!isfinite(v[i])) return bad(path, "a number in its head is not finite");
     }
     if (!(v[0] > 0 && v[1] > 0 && v[2] > 0 && v[3] > 0)) {
@@ -102,7 +83,7 @@ static bough_status read_values(FILE *stream, const char *path, int64_t n, int16
     for (int64_t k = 0; k < n; k += PIECE) {
         size_t many = (size_t)(n - k < PIECE ? n - k : PIECE);
         if (fread(piece, 2, many, stream) != many) return bad(path, "it cannot be read to its end");
-        for (size_t i = 0; i < many; i++) value[k + (int64_t)i] = i16_at(piece + 2 * i);
+        for (size_t i = 0; i < many; i++) value[k + (int64_t)i] = bough_bytes_int16(piece + 2 * i);
     }
     return bough_ok();
 }
@@ -116,7 +97,7 @@ static bough_status read_all(bough_arena *arena, FILE *stream, const char *path,
     if (fread(head, 1, HEAD, stream) != HEAD) return bad(path, "it is shorter than a head");
     bough_status status = read_counts(path, head, box);
     if (bough_is_ok(&status)) status = read_measures(path, head, box);
-    int64_t text = i32_at(head + HEAD - 4);
+    int64_t text = bough_bytes_int32(head + HEAD - 4);
     if (bough_is_ok(&status)) status = count_values(path, box, text, size, &n);
     BOUGH_TRY(status);
     int16_t *value = bough_arena_take(arena, (size_t)n * sizeof *value);
@@ -211,40 +192,20 @@ bough_vec3 bough_wind_box_at(const bough_wind_box *box, bough_vec3 position, dou
 
 enum { TEXT = 100 };
 
-// Little-endian numbers into a file.
-static void put16(FILE *f, int value) {
-    unsigned u = (unsigned)value;
-    putc((int)(u & 0xFF), f);
-    putc((int)(u >> 8 & 0xFF), f);
-}
-
-static void put32(FILE *f, int32_t value) {
-    uint32_t u = (uint32_t)value;
-    put16(f, (int)(u & 0xFFFF));
-    put16(f, (int)(u >> 16));
-}
-
-static void put_float(FILE *f, double value) {
-    float x = (float)value;
-    int32_t bits;
-    memcpy(&bits, &x, sizeof bits);
-    put32(f, bits);
-}
-
 static void put_head(FILE *f, const bough_wind_box *box, const char *text) {
     const double measures[] = {box->dz, box->dy, box->dt, box->mean, box->hub, box->bottom};
     int length = (int)strnlen(text, TEXT);
-    put16(f, box->periodic ? 8 : 7);
-    put32(f, box->n_z);
-    put32(f, box->n_y);
-    put32(f, box->n_tower);
-    put32(f, box->n_time);
-    for (int i = 0; i < 6; i++) put_float(f, measures[i]);
+    bough_put_bytes(f, box->periodic ? 8 : 7, 2);
+    bough_put_bytes(f, (uint64_t)box->n_z, 4);
+    bough_put_bytes(f, (uint64_t)box->n_y, 4);
+    bough_put_bytes(f, (uint64_t)box->n_tower, 4);
+    bough_put_bytes(f, (uint64_t)box->n_time, 4);
+    for (int i = 0; i < 6; i++) bough_put_float(f, (float)measures[i]);
     for (int c = 0; c < 3; c++) {
-        put_float(f, 1 / box->scale[c]);
-        put_float(f, box->offset[c]);
+        bough_put_float(f, (float)(1 / box->scale[c]));
+        bough_put_float(f, (float)box->offset[c]);
     }
-    put32(f, length);
+    bough_put_bytes(f, (uint64_t)length, 4);
     fwrite(text, 1, (size_t)length, f);
 }
 
@@ -252,6 +213,6 @@ bool bough_wind_box_write(const bough_wind_box *box, const char *text, FILE *f) 
     int64_t points = (int64_t)box->n_z * box->n_y + box->n_tower;
     // header, then the stored integers as they are
     put_head(f, box, text);
-    for (int64_t k = 0; k < 3 * points * box->n_time; k++) put16(f, box->value[k]);
+    for (int64_t k = 0; k < 3 * points * box->n_time; k++) bough_put_bytes(f, (uint64_t)box->value[k], 2);
     return !ferror(f);
 }

@@ -5,6 +5,7 @@
 #include "apps/bough/results/folder.h"
 #include "apps/bough/results/picture.h"
 #include "apps/bough/scene/scene_files.h"
+#include "core/base/bytes.h"
 #include "core/base/input_file.h"
 
 #include <inttypes.h>
@@ -32,22 +33,18 @@ typedef struct zip {
 enum { LOCAL = 0x04034b50, CENTRAL = 0x02014b50, END = 0x06054b50 };
 enum { DAY = 1 << 5 | 1, VERSION = 20, UTF8 = 1 << 11 }; // 1 January 1980: the same scene, the same file
 
-static void put_number(FILE *file, uint32_t value, int bytes) {
-    for (int i = 0; i < bytes; i++) fputc((int)(value >> 8 * i & 0xff), file);
-}
-
 // What the head of a file and its line in the directory share.
 static void put_entry(FILE *file, const zip_entry *entry) {
-    put_number(file, VERSION, 2);
-    put_number(file, UTF8, 2);
-    put_number(file, 0, 2); // stored
-    put_number(file, 0, 2); // midnight
-    put_number(file, DAY, 2);
-    put_number(file, entry->sum, 4);
-    put_number(file, entry->size, 4);
-    put_number(file, entry->size, 4);
-    put_number(file, (uint32_t)strlen(entry->name), 2);
-    put_number(file, 0, 2);
+    bough_put_bytes(file, VERSION, 2);
+    bough_put_bytes(file, UTF8, 2);
+    bough_put_bytes(file, 0, 2); // stored
+    bough_put_bytes(file, 0, 2); // midnight
+    bough_put_bytes(file, DAY, 2);
+    bough_put_bytes(file, entry->sum, 4);
+    bough_put_bytes(file, entry->size, 4);
+    bough_put_bytes(file, entry->size, 4);
+    bough_put_bytes(file, (uint32_t)strlen(entry->name), 2);
+    bough_put_bytes(file, 0, 2);
 }
 
 static zip_entry *next_entry(zip *z) {
@@ -68,7 +65,7 @@ static bough_status zip_add(zip *z, const char *name, const void *bytes, size_t 
     }
     zip_entry *entry = next_entry(z);
     *entry = (zip_entry){name, (uint32_t)crc32_z(0, bytes, size), (uint32_t)size, (uint32_t)at};
-    put_number(z->file, LOCAL, 4);
+    bough_put_bytes(z->file, LOCAL, 4);
     put_entry(z->file, entry);
     fputs(name, z->file);
     fwrite(bytes, 1, size, z->file);
@@ -91,24 +88,24 @@ static bough_status zip_copy(zip *z, const char *name, const char *path) {
 static void zip_end(zip *z) {
     uint32_t at = (uint32_t)ftell(z->file);
     for (int k = 0; k < z->n; k++) {
-        put_number(z->file, CENTRAL, 4);
-        put_number(z->file, VERSION, 2);
+        bough_put_bytes(z->file, CENTRAL, 4);
+        bough_put_bytes(z->file, VERSION, 2);
         put_entry(z->file, &z->entry[k]);
-        put_number(z->file, 0, 2); // comment
-        put_number(z->file, 0, 2);
-        put_number(z->file, 0, 2);
-        put_number(z->file, 0, 4);
-        put_number(z->file, z->entry[k].at, 4);
+        bough_put_bytes(z->file, 0, 2); // comment
+        bough_put_bytes(z->file, 0, 2);
+        bough_put_bytes(z->file, 0, 2);
+        bough_put_bytes(z->file, 0, 4);
+        bough_put_bytes(z->file, z->entry[k].at, 4);
         fputs(z->entry[k].name, z->file);
     }
     uint32_t size = (uint32_t)ftell(z->file) - at;
-    put_number(z->file, END, 4);
-    put_number(z->file, 0, 4);
-    put_number(z->file, (uint32_t)z->n, 2);
-    put_number(z->file, (uint32_t)z->n, 2);
-    put_number(z->file, size, 4);
-    put_number(z->file, at, 4);
-    put_number(z->file, 0, 2);
+    bough_put_bytes(z->file, END, 4);
+    bough_put_bytes(z->file, 0, 4);
+    bough_put_bytes(z->file, (uint32_t)z->n, 2);
+    bough_put_bytes(z->file, (uint32_t)z->n, 2);
+    bough_put_bytes(z->file, size, 4);
+    bough_put_bytes(z->file, at, 4);
+    bough_put_bytes(z->file, 0, 2);
 }
 
 // -- the FMU --------------------------------------------------------------------------------------

@@ -2,6 +2,7 @@
 
 #include "aero/wind/wind_hub.h"
 #include "core/base/base.h"
+#include "core/base/bytes.h"
 #include "core/base/input_file.h"
 
 #include <ctype.h>
@@ -104,24 +105,14 @@ static bough_status read_summary(const char *path, summary *s) {
 static bool read_int16(FILE *file, int *value) {
     unsigned char b[2];
     if (fread(b, 1, 2, file) != 2) return false;
-    int u = b[0] | b[1] << 8;
-    *value = u < 0x8000 ? u : u - 0x10000;
+    *value = bough_bytes_int16(b);
     return true;
 }
 
-static bool read_words(FILE *file, uint32_t *word, int n) {
-    unsigned char b[4];
-    for (int i = 0; i < n; i++) {
-        if (fread(b, 1, 4, file) != 4) return false;
-        word[i] = (uint32_t)b[0] | (uint32_t)b[1] << 8 | (uint32_t)b[2] << 16 | (uint32_t)b[3] << 24;
-    }
-    return true;
-}
+typedef unsigned char word[4];
 
-static double real_of(uint32_t word) {
-    float value;
-    memcpy(&value, &word, sizeof value);
-    return (double)value;
+static bool read_words(FILE *file, word *to, int n) {
+    return fread(to, sizeof *to, (size_t)n, file) == (size_t)n;
 }
 
 typedef struct bladed_head {
@@ -147,27 +138,28 @@ static bool read_old_head(FILE *file, int first, bladed_head *h) {
 // What depends on the turbulence model comes before and behind the common part.
 static bool read_new_head(FILE *file, bladed_head *h) {
     int model;
-    uint32_t own[7], common[12], rest[12];
+    word own[7], common[12], rest[12];
     *h = (bladed_head){.components = 3};
     if (!read_int16(file, &model)) return false;
     if (model == 1 || model == 2) h->components = 1;
     if (model == 4) {
         if (!read_words(file, own, 7)) return false;
-        h->components = (int)own[0];
-        for (int c = 0; c < 3; c++) h->intensity[c] = real_of(own[4 + c]);
+        h->components = bough_bytes_int32(own[0]);
+        for (int c = 0; c < 3; c++) h->intensity[c] = bough_bytes_float(own[4 + c]);
     }
     if (model == 7 || model == 8) {
         if (!read_words(file, own, 2)) return false;
-        h->components = (int)own[1];
+        h->components = bough_bytes_int32(own[1]);
     }
     if (!read_words(file, common, 12)) return false;
-    h->dz = real_of(common[0]);
-    h->dy = real_of(common[1]);
-    h->dx = real_of(common[2]);
-    h->n_time = common[3] < MOST_POINTS ? 2 * (int)common[3] : 0;
-    h->mean = real_of(common[4]);
-    h->n_z = common[10] < MOST_GRID ? (int)common[10] : 0;
-    h->n_y = common[11] < MOST_GRID ? (int)common[11] : 0;
+    h->dz = bough_bytes_float(common[0]);
+    h->dy = bough_bytes_float(common[1]);
+    h->dx = bough_bytes_float(common[2]);
+    int half = bough_bytes_int32(common[3]);
+    h->n_time = half > 0 && half < MOST_POINTS ? 2 * half : 0;
+    h->mean = bough_bytes_float(common[4]);
+    h->n_z = bough_bytes_int32(common[10]);
+    h->n_y = bough_bytes_int32(common[11]);
     if (h->components == 3 && !read_words(file, rest, 6)) return false;
     if (model == 7 && !read_words(file, rest, 2)) return false;
     return model != 8 || (read_words(file, rest, 8) && read_words(file, rest, 8));
@@ -256,10 +248,10 @@ static bough_status read_component(bough_arena *arena, const char *path, size_t 
     bough_status status = open_data(path, &file);
     if (!bough_is_ok(&status)) return status;
     *value = bough_arena_doubles(arena, n);
-    uint32_t word = 0;
+    word read = {0};
     for (size_t i = 0; i < n && bough_is_ok(&status); i++) {
-        if (!read_words(file, &word, 1)) status = bad(path, "it ends before its last velocity");
-        (*value)[i] = real_of(word);
+        if (!read_words(file, &read, 1)) status = bad(path, "it ends before its last velocity");
+        (*value)[i] = bough_bytes_float(read);
         if (!isfinite((*value)[i])) status = bad(path, "a velocity is no number");
     }
     fclose(file);

@@ -12,6 +12,9 @@
 #include "core/base/arena.h"
 #include "core/base/status.h"
 
+#include <stdbool.h>
+#include <stdio.h>
+
 typedef struct bough_recorder bough_recorder;
 
 typedef struct bough_recorder_def {
@@ -68,7 +71,34 @@ void bough_sample_statistics_add(bough_sample_statistics *s, double t, double x)
 // The standard deviation of the samples about their mean, √(Σ (x − mean)²/n); NaN without samples.
 double bough_sample_statistics_deviation(const bough_sample_statistics *s);
 
-// -- channels.outb --------------------------------------------------------------------------------
+// -- channels.out read back (rows.c) --------------------------------------------------------------
+
+typedef struct bough_rows {
+    const char *folder;
+    FILE *file;
+    char *line; // the present one
+    size_t room;
+    long at;                   // lines read
+    long n_row;                // complete rows
+    int n;                     // columns, the time first
+    const char **name, **unit; // (n); units in brackets
+    double *value;             // (n) of the row read last
+} bough_rows;
+
+// Opens a folder's channels.out before its first row. *rows is NULL when there is none; BOUGH_INVALID when
+// its head is damaged. The arena closes it.
+bough_status bough_rows_open(bough_arena *arena, const char *folder, bough_rows **rows);
+
+// Goes to the next line; false behind the last.
+bool bough_rows_line(bough_rows *rows);
+
+// Reads the values of the present line. BOUGH_INVALID when it is no row.
+bough_status bough_rows_read(bough_rows *rows);
+
+// The failure of the present line.
+bough_status bough_rows_damaged(const bough_rows *rows);
+
+// -- channels.outb (rows.c) -----------------------------------------------------------------------
 
 // The rows of channels.out as `channels.outb`, OpenFAST's binary output, which the field's viewers
 // open many times faster than text.
