@@ -109,17 +109,6 @@ void bough_rotor_conclude(const bough_rotor *rotor, const bough_rotor_motion *mo
     if (data->memory.clock) remember(rotor, motion, data);
 }
 
-// The stages one after another on one thread.
-void bough_rotor_sample(const bough_rotor *rotor, const bough_rotor_motion *motion, bough_rotor_data *data) {
-    for (int b = 0; b < rotor->n_blade; b++) {
-        bough_rotor_approach(rotor, motion, b, data);
-        bough_rotor_induce(rotor, motion, b, data);
-    }
-    bough_rotor_survey(rotor, motion, data);
-    for (int b = 0; b < rotor->n_blade; b++) bough_rotor_load(rotor, motion, b, data);
-    bough_rotor_conclude(rotor, motion, data);
-}
-
 bough_station bough_rotor_station(const bough_rotor_data *data, int blade, int station) {
     const blade_rows *r = data->scratch->blade + blade;
     int j = station;

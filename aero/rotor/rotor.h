@@ -109,8 +109,8 @@ typedef struct bough_rotor_memory {
 } bough_rotor_memory;
 
 typedef struct bough_rotor_data {
-    bough_rotor_memory memory; // advanced by bough_rotor_sample
-    // computed by bough_rotor_sample
+    bough_rotor_memory memory; // advanced by bough_rotor_conclude
+    // computed by the stages of a sample
     double *load;  // (n_blade × 6 × n_vertex) force on each vertex, moment about it, in the axes of
                    // the blade's frame [N, N m]
     double *line;  // (n_blade × 12 × (n_vertex − 1)) the same loads per length, their mean over each
@@ -136,10 +136,7 @@ void bough_rotor_data_build(bough_arena *arena, const bough_rotor *rotor, bough_
 // Evaluates the loads at the given motion. In equilibrium inflow and with static polars they are a
 // pure function of it: nothing is kept from sample to sample. Else the memory goes on from the last
 // sample's time to this one's, with the inflow's time constant of the last. Finite for any finite
-// motion.
-void bough_rotor_sample(const bough_rotor *rotor, const bough_rotor_motion *motion, bough_rotor_data *data);
-
-// The same in stages, each after the one before it for all blades, but induce only after the same
+// motion. In stages, each after the one before it for all blades, but induce only after the same
 // blade's approach. Blades are independent within a stage and may be given to different threads.
 //   approach: where the blade's stations are and the wind they meet; reads only the blade in
 //             `motion`, and hub and shaft

@@ -80,12 +80,7 @@ static double time_scale(const bough_wind_iec_def *d, int component) {
     return length[component] * bough_wind_iec_scale(d->height) / bough_wind_iec_speed(d);
 }
 
-double bough_turbulence_spectrum(const bough_wind_iec_def *d, int component, double f) {
-    double deviation = deviation_of(d, component), scale = time_scale(d, component);
-    return deviation * deviation * 4 * scale / pow(1 + 6 * f * scale, 5. / 3); // (C.14)
-}
-
-// Variance below f, over all variance: the integral of the spectrum.
+// Variance below f, over all variance: the integral of the spectrum (C.14).
 static double fraction_below(double f, double scale) { return 1 - pow(1 + 6 * f * scale, -2. / 3); }
 
 double bough_turbulence_coherence(const bough_wind_iec_def *d, double distance, double f) {

@@ -13,9 +13,6 @@
 #include "aero/wind/wind_box.h"
 #include "aero/wind/wind_iec.h"
 
-// Spectral density of a component (0: u, 1: v, 2: w) at hub height, one-sided, at f [Hz] in m²/s.
-double bough_turbulence_spectrum(const bough_wind_iec_def *def, int component, double f);
-
 // Coherence of u between points at a distance [m]: the cross spectrum over the spectrum, 0 … 1.
 double bough_turbulence_coherence(const bough_wind_iec_def *def, double distance, double f);
 

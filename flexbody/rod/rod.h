@@ -241,9 +241,6 @@ void bough_rod_present_end_wrench(const bough_rod_model *m, const bough_rod_scra
 void bough_rod_load(const bough_rod_model *m, const bough_rod_loads *loads, double t,
                     bough_rod_scratch *scratch);
 
-// Elastic energy [J] of the configuration in scratch->vertex, under the loads that scratch had last.
-double bough_rod_elastic_energy(const bough_rod_model *m, const bough_rod_scratch *scratch);
-
 // Elastic force and moment (6) in the middle of segment n, in section axes there, of the
 // configuration in scratch->vertex, under the loads that scratch had last [N, N m].
 void bough_rod_stress(const bough_rod_model *m, const bough_rod_scratch *scratch, int n, double stress[6]);

@@ -104,14 +104,6 @@ BOUGH_INLINE strain elastic_variation(const double *restrict c, const double *re
                     bough_axpy(-dlimit, s.bent.u, bough_axpy(-s.limit, bent.u, u))};
 }
 
-// Per length [N].
-BOUGH_INLINE double segment_energy(const double *restrict c, const double *restrict gradient, int stride,
-                                   int n, strain e) {
-    elastic_state s = elastic_at(c, gradient, stride, n, e);
-    double straight = 0.5 * (bough_dot(e.v, s.stress.v) + bough_dot(e.u, s.stress.u));
-    return straight - s.limit * s.value;
-}
-
 #undef L
 
 #endif

@@ -1,4 +1,4 @@
-// Wrenches, stresses and energy of a rod, and its right-hand side by the kernels of the model's level.
+// Wrenches and stresses of a rod, and its right-hand side by the kernels of the model's level.
 #include "flexbody/rod/rod_kernels.h"
 #include "flexbody/rod/rod_lanes.h"
 
@@ -65,16 +65,6 @@ static strain strain_of(const bough_rod_model *m, const bough_rod_scratch *scrat
     vertex_state r = load_vertex(scratch->vertex, s, n + 1);
     segment_geometry shape = segment_shape(l, r, m->inverse_length[n]);
     return elastic_strain(shape, m->inverse_length[n], scratch->rest, s, n);
-}
-
-double bough_rod_elastic_energy(const bough_rod_model *m, const bough_rod_scratch *scratch) {
-    double energy = 0;
-    for (int n = 0; n < m->n_segment; n++) {
-        strain e = strain_of(m, scratch, n);
-        energy += m->length[n] * segment_energy(bough_rod_tile(m->stiffness, 21, n),
-                                                bough_rod_tile(m->gradient, 25, n), BOUGH_LANES, 0, e);
-    }
-    return energy;
 }
 
 // By the balance of the segment's left half: pretwist and curvature make it differ a little from what

@@ -2,6 +2,7 @@
 
 #include "flexbody/rod/rod_elastic.h"
 #include "tests/reference/lumped.h"
+#include "tests/reference/rod_energy.h"
 
 #include <string.h>
 

@@ -3,6 +3,7 @@
 #include "apps/bough/model/equilibrium.h"
 #include "core/base/base.h"
 #include "core/tree/force.h"
+#include "tests/reference/rod_energy.h"
 #include "tests/unit/built_scene.h"
 #include "tests/unit/tree_measure.h"
 
@@ -192,7 +193,7 @@ static invariants measure(const bough_simulation *s, bough_rod_scratch *scratch)
             bough_add(sum.angular, bough_add(bough_mat3_mul(r[i], p.moment), bough_cross(x[i], linear)));
     }
     bough_rod_gather(m, s->rod[beam->port].state, bough_simulation_rod_input(s, beam), scratch);
-    sum.energy += bough_rod_elastic_energy(m, scratch);
+    sum.energy += rod_elastic_energy(m, scratch);
     return sum;
 }
 

@@ -128,9 +128,20 @@ static void fetch_loads(rig *r) {
     }
 }
 
+// The stages one after another.
+static void evaluate(rig *r) {
+    for (int b = 0; b < BLADES; b++) {
+        bough_rotor_approach(r->rotor, &r->motion, b, &r->data);
+        bough_rotor_induce(r->rotor, &r->motion, b, &r->data);
+    }
+    bough_rotor_survey(r->rotor, &r->motion, &r->data);
+    for (int b = 0; b < BLADES; b++) bough_rotor_load(r->rotor, &r->motion, b, &r->data);
+    bough_rotor_conclude(r->rotor, &r->motion, &r->data);
+}
+
 static void sample_as_placed(rig *r) {
     send_motion(r);
-    bough_rotor_sample(r->rotor, &r->motion, &r->data);
+    evaluate(r);
     fetch_loads(r);
 }
 
@@ -481,7 +492,7 @@ static void measure_slopes(rig *r, double off[4]) {
                 p[2 * VERTICES] = y - d / 2 * x;
                 p[3 * VERTICES] = z + d / 2 * w;
             }
-            bough_rotor_sample(r->rotor, &r->motion, &r->data);
+            evaluate(r);
             fetch_rows(r, side == 0 ? before : after);
         }
         sample(r, 0.7);
