@@ -2,7 +2,6 @@
 #include "cosim/coupling.h"
 
 #include <assert.h>
-#include <math.h>
 #include <string.h>
 
 struct bough_coupling_scratch {

@@ -1,4 +1,5 @@
 #include "cosim/master.h"
+#include "core/base/base.h"
 
 #include <assert.h>
 #include <math.h>
@@ -14,11 +15,6 @@ long bough_master_multiple(double period, double macro_step) {
     return whole >= 1 && fabs(ratio - whole) <= 1e-9 * whole ? (long)whole : 0;
 }
 
-static int ascending(const void *a, const void *b) {
-    double x = *(const double *)a, y = *(const double *)b;
-    return (x > y) - (x < y);
-}
-
 // Loads and events of the def; events in the order of time.
 static void copy_loads(bough_master *m, bough_arena *arena, const bough_master_def *def) {
     m->load = bough_arena_take(arena, (size_t)def->n_load * sizeof *m->load);
@@ -32,7 +28,7 @@ static void copy_loads(bough_master *m, bough_arena *arena, const bough_master_d
     }
     m->n_event = def->n_event;
     for (int i = 0; i < def->n_event; i++) m->event[i] = def->event[i];
-    if (m->n_event > 0) qsort(m->event, (size_t)m->n_event, sizeof(double), ascending);
+    if (m->n_event > 0) qsort(m->event, (size_t)m->n_event, sizeof(double), bough_ascending);
 }
 
 // The stability before the run. No verdict where the analysis fails: the run shows the cause.

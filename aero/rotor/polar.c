@@ -121,11 +121,6 @@ void bough_polar_build(bough_arena *arena, const bough_polar_def *def, bough_pol
 
 // -- blending and smoothing -----------------------------------------------------------------------
 
-static int ascending(const void *a, const void *b) {
-    double x = *(const double *)a, y = *(const double *)b;
-    return (x > y) - (x < y);
-}
-
 void bough_polar_blend(bough_arena *arena, const bough_polar *a, const bough_polar *b, double weight,
                        bough_polar *polar) {
     int most = a->n + b->n, n = 0;
@@ -134,7 +129,7 @@ void bough_polar_blend(bough_arena *arena, const bough_polar *a, const bough_pol
     for (int k = 0; k < most; k++)
         angle[k] = k < a->n ? a->row[ROW * k] : remainder(b->row[ROW * (k - a->n)], circle);
     // knots of both tables within one circle
-    qsort(angle, (size_t)most, sizeof *angle, ascending);
+    qsort(angle, (size_t)most, sizeof *angle, bough_ascending);
     for (int k = 0; k < most && angle[k] < angle[0] + circle - 1e-9; k++) {
         if (n > 0 && angle[k] * (180 / BOUGH_PI) - row[4 * (n - 1)] < 1e-9) continue;
         bough_coefficients x = bough_polar_at(a, angle[k]), y = bough_polar_at(b, angle[k]);

@@ -34,6 +34,12 @@ static inline double bough_clamp(double x, double low, double high) {
     return x < low ? low : x > high ? high : x;
 }
 
+// For qsort: doubles in rising order.
+static inline int bough_ascending(const void *a, const void *b) {
+    double x = *(const double *)a, y = *(const double *)b;
+    return (x > y) - (x < y);
+}
+
 // -- cubics ---------------------------------------------------------------------------------------
 
 // The cubic q(x) = c₀ + c₁ x + c₂ x² + c₃ x³ over a length d that has given values and slopes at its ends

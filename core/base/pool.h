@@ -17,7 +17,6 @@
 #define BOUGH_CORE_BASE_POOL_H
 
 #include "core/base/arena.h"
-#include "core/base/status.h"
 
 typedef struct bough_pool bough_pool;
 

@@ -4,7 +4,6 @@
 #define BOUGH_CORE_TREE_MOTION_H
 
 #include "core/base/arena.h"
-#include "core/base/status.h"
 
 #include <stdbool.h>
 

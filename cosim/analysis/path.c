@@ -3,7 +3,6 @@
 
 #include "cosim/analysis/equilibrium.h"
 
-#include <float.h>
 #include <math.h>
 #include <string.h>
 

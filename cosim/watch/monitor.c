@@ -12,6 +12,7 @@
 // wrong.
 #include "cosim/watch/monitor.h"
 
+#include "core/base/base.h"
 #include "cosim/scheme.h"
 
 #include <math.h>
@@ -199,12 +200,6 @@ static bough_status judge_group(const bough_monitor *m, bough_coupling *c, group
 
 // -- energy ---------------------------------------------------------------------------------------
 
-static double dot(const double *x, const double *y, int n) {
-    double sum = 0;
-    for (int i = 0; i < n; i++) sum += x[i] * y[i];
-    return sum;
-}
-
 // Trapezoidal work of the obtained wrench, and of its difference to the applied wrench.
 static void keep_accounts(bough_monitor *m, const bough_coupling *c) {
     const bough_assembly *a = c->assembly;
@@ -216,9 +211,10 @@ static void keep_accounts(bough_monitor *m, const bough_coupling *c) {
     for (int k = 0; k < a->n_pair; k++) {
         const bough_port_pair *f = &a->pair[k];
         const double *v0 = before + f->twist, *v1 = c->input + f->twist;
-        double obtained0 = dot(before + f->wrench, v0, f->count);
-        double obtained1 = dot(c->input + f->wrench, v1, f->count);
-        double applied = dot(m->start + f->wrench, v0, f->count) + dot(c->applied + f->wrench, v1, f->count);
+        double obtained0 = bough_scalar_product(f->count, before + f->wrench, v0);
+        double obtained1 = bough_scalar_product(f->count, c->input + f->wrench, v1);
+        double applied = bough_scalar_product(f->count, m->start + f->wrench, v0) +
+                         bough_scalar_product(f->count, c->applied + f->wrench, v1);
         double residual = half * (obtained0 + obtained1 - applied);
         double exchanged = half * (fabs(obtained0) + fabs(obtained1));
         m->account[k].total.residual += residual;

@@ -58,9 +58,8 @@ static void read_setting(bough_schema_reader *r, const char *key, const bough_no
 }
 
 static bool is_mapping(bough_schema_reader *r, const bough_node *node, const char *what) {
-    char shown[64];
     if (node->kind == BOUGH_MAPPING && node->n > 0) return true;
-    bough_schema_error(r, node, "", "expected %s, got %s", what, bough_node_shown(node, shown));
+    bough_schema_expected(r, node, what);
     return false;
 }
 

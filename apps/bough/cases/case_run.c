@@ -5,12 +5,12 @@
 #include "apps/bough/results/folder.h"
 #include "apps/bough/results/recorder.h"
 #include "apps/bough/scene/scene_files.h"
+#include "core/base/base.h"
 
 #include <assert.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
-#include <time.h>
 
 typedef struct case_run {
     const bough_study *study;
@@ -208,37 +208,25 @@ static bough_status run_in(bough_arena *arena, void *self) {
     return bough_is_ok(&run->outcome) ? status : run->outcome;
 }
 
-static double cpu_clock(void) {
-    struct timespec now;
-    clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
-    return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
-}
-
 // The times include the building.
 static void run_timed(case_run *r) {
-    double wall = bough_wall_clock(), cpu = cpu_clock();
+    double wall = bough_wall_clock(), cpu = bough_cpu_clock(true);
     r->result->outcome = bough_arena_use(run_in, r);
     if (r->drive->boxes) bough_boxes_give_back(r->drive->boxes, r->box);
-    r->result->cpu = cpu_clock() - cpu;
+    r->result->cpu = bough_cpu_clock(true) - cpu;
     r->result->wall = bough_wall_clock() - wall;
 }
 
 // -- repeats --------------------------------------------------------------------------------------
 
-static int compare_numbers(const void *a, const void *b) {
-    double x = *(const double *)a, y = *(const double *)b;
-    return (x > y) - (x < y);
-}
-
 bough_spread bough_spread_of(const double *values, int n) {
     double sorted[BOUGH_STUDY_REPEATS];
     memcpy(sorted, values, (size_t)n * sizeof *values);
-    qsort(sorted, (size_t)n, sizeof *sorted, compare_numbers);
+    qsort(sorted, (size_t)n, sizeof *sorted, bough_ascending);
     return (bough_spread){0.5 * (sorted[(n - 1) / 2] + sorted[n / 2]), sorted[n / 4], sorted[n - 1 - n / 4]};
 }
 
-// A run that fails says something about its settings, memory, files and interrupts do not.
-static bool ends_study(bough_code code) {
+bool bough_ends_study(bough_code code) {
     return code == BOUGH_INTERRUPTED || code == BOUGH_OUT_OF_MEMORY || code == BOUGH_IO;
 }
 
@@ -270,7 +258,7 @@ bough_status bough_case_run(const bough_study *study, const bough_case *c, int r
         run_repeatedly(&r, repeat);
     else
         run_timed(&r);
-    if (ends_study(result->outcome.code)) return result->outcome;
+    if (bough_ends_study(result->outcome.code)) return result->outcome;
     result->done = true;
     return bough_ok();
 }

@@ -78,6 +78,10 @@ typedef struct bough_spread {
 } bough_spread;
 bough_spread bough_spread_of(const double *values, int n);
 
+// Whether a run with this outcome ends the whole study: a run that fails says something about its settings,
+// memory, files and interrupts do not.
+bool bough_ends_study(bough_code code);
+
 // How the runs are driven.
 typedef struct bough_study_drive {
     bool (*stop)(void);      // asked before each step; NULL: never stops

@@ -8,8 +8,6 @@
 // Bits of the first value that the finest bins resolve, and those of a whole double.
 enum { FINEST = 40, MOST_SHIFT = 62 };
 
-static int slot(int64_t bin) { return (int)(((bin % BOUGH_LEVELS) + BOUGH_LEVELS) % BOUGH_LEVELS); }
-
 static double bin_of(double x, int exponent) { return floor(ldexp(x, -exponent)); }
 
 // Rounded down, also below zero.
@@ -32,8 +30,8 @@ static void coarsen(bough_levels *l, int exponent) {
     memset(l->crossed, 0, sizeof l->crossed);
     for (int64_t k = old.low; k <= old.high; k++) {
         int64_t wide = halved(k, shift);
-        l->inside[slot(wide)] += old.inside[slot(k)];
-        if (is_multiple(k, shift)) l->crossed[slot(wide)] = old.crossed[slot(k)];
+        l->inside[bough_levels_slot(wide)] += old.inside[bough_levels_slot(k)];
+        if (is_multiple(k, shift)) l->crossed[bough_levels_slot(wide)] = old.crossed[bough_levels_slot(k)];
     }
     l->low = halved(old.low, shift);
     l->high = halved(old.high, shift);
@@ -69,7 +67,7 @@ static int64_t reach(bough_levels *l, double x) {
 
 void bough_levels_add(bough_levels *levels, double x, double count) {
     if (!isfinite(x)) return;
-    levels->inside[slot(reach(levels, x))] += count;
+    levels->inside[bough_levels_slot(reach(levels, x))] += count;
     levels->last = x;
 }
 
@@ -78,8 +76,8 @@ void bough_levels_follow(bough_levels *levels, double x) {
     bool first = !levels->started;
     int64_t to = reach(levels, x);
     int64_t from = first ? to : (int64_t)bin_of(levels->last, levels->exponent);
-    for (int64_t k = from + 1; k <= to; k++) levels->crossed[slot(k)]++;
-    levels->inside[slot(to)]++;
+    for (int64_t k = from + 1; k <= to; k++) levels->crossed[bough_levels_slot(k)]++;
+    levels->inside[bough_levels_slot(to)]++;
     levels->last = x;
 }
 
@@ -94,8 +92,8 @@ void bough_levels_merge(bough_levels *levels, const bough_levels *part, double i
     bough_levels same = *part;
     coarsen(&same, levels->exponent);
     for (int64_t k = same.low; k <= same.high; k++) {
-        levels->inside[slot(k)] += inside * same.inside[slot(k)];
-        levels->crossed[slot(k)] += crossed * same.crossed[slot(k)];
+        levels->inside[bough_levels_slot(k)] += inside * same.inside[bough_levels_slot(k)];
+        levels->crossed[bough_levels_slot(k)] += crossed * same.crossed[bough_levels_slot(k)];
     }
 }
 
@@ -106,11 +104,11 @@ static bool is_used(const bough_levels *l, int64_t bin) {
 }
 
 double bough_levels_inside(const bough_levels *levels, int64_t bin) {
-    return is_used(levels, bin) ? levels->inside[slot(bin)] : 0;
+    return is_used(levels, bin) ? levels->inside[bough_levels_slot(bin)] : 0;
 }
 
 double bough_levels_crossed(const bough_levels *levels, int64_t bin) {
-    return is_used(levels, bin) ? levels->crossed[slot(bin)] : 0;
+    return is_used(levels, bin) ? levels->crossed[bough_levels_slot(bin)] : 0;
 }
 
 // -- rainflow -------------------------------------------------------------------------------------

@@ -28,6 +28,11 @@ typedef struct bough_levels {
     double last;                  // the value before
 } bough_levels;
 
+// The place of a bin in the counts.
+static inline int bough_levels_slot(int64_t bin) {
+    return (int)(((bin % BOUGH_LEVELS) + BOUGH_LEVELS) % BOUGH_LEVELS);
+}
+
 // Adds `count` in the bin of x, and no crossing.
 void bough_levels_add(bough_levels *levels, double x, double count);
 

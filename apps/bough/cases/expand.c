@@ -3,7 +3,6 @@
 #include "apps/bough/config/schema.h"
 
 #include <math.h>
-#include <stdio.h>
 #include <string.h>
 
 static const char speed_key[] = "aero.wind.speed", scene_key[] = "scene";

@@ -157,16 +157,9 @@ static void put_row(line *l, const bough_study_results *results, int row) {
     put_number(l, r->done && exchanged > 0, r->coupling.energy_residual / exchanged);
 }
 
-// Characters, not bytes.
-static int shown_width(const char *text) {
-    int n = 0;
-    for (; *text; text++) n += ((unsigned char)*text & 0xC0) != 0x80;
-    return n;
-}
-
 static void widen(const line *l, int width[COLUMNS]) {
     for (int i = 0; i < l->n; i++) {
-        int w = shown_width(l->field[i]);
+        int w = bough_picture_letters(l->field[i]);
         if (w > width[i]) width[i] = w;
     }
 }
@@ -174,7 +167,7 @@ static void widen(const line *l, int width[COLUMNS]) {
 // The settings and the status stand left, numbers right.
 static void print_line(const line *l, const int width[COLUMNS], int n_left, FILE *stream) {
     for (int i = 0; i < l->n; i++) {
-        int pad = width[i] - shown_width(l->field[i]);
+        int pad = width[i] - bough_picture_letters(l->field[i]);
         bool left = i < n_left;
         fprintf(stream, "%s%*s%s", i ? "  " : "", left ? 0 : pad, "", l->field[i]);
         if (left && i + 1 < l->n) fprintf(stream, "%*s", pad, "");

@@ -90,9 +90,6 @@ static void move_comparison(rows *r, const bough_study *s, const bough_case *c, 
 
 // -- statistics -----------------------------------------------------------------------------------
 
-// The place of a bin in the counts.
-static int slot(int64_t bin) { return (int)(((bin % BOUGH_LEVELS) + BOUGH_LEVELS) % BOUGH_LEVELS); }
-
 // A range of bins from a file that may be damaged.
 static bool take_range(const double range[4], bough_levels *l) {
     for (int i = 0; i < 4; i++)
@@ -117,8 +114,8 @@ static void move_levels(rows *r, const char *name, bough_levels *l) {
     move(r, "inside", n, inside);
     move(r, "crossed", n, crossed);
     for (int i = 0; i < n && r->reads; i++) {
-        l->inside[slot(l->low + i)] = inside[i];
-        l->crossed[slot(l->low + i)] = crossed[i];
+        l->inside[bough_levels_slot(l->low + i)] = inside[i];
+        l->crossed[bough_levels_slot(l->low + i)] = crossed[i];
     }
 }
 

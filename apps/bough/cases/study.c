@@ -13,10 +13,8 @@
 static const char channels_form[] = "[A, B, C], or several such lists";
 
 static void read_vector(bough_schema_reader *r, const bough_node *node, bough_study_vector *vector) {
-    char shown[64];
     if (node->kind != BOUGH_SEQUENCE || node->n == 0) {
-        bough_schema_error(r, node, "", "expected %s, got %s", channels_form,
-                           node->kind == BOUGH_SEQUENCE ? "an empty list" : bough_node_shown(node, shown));
+        bough_schema_expected(r, node, channels_form);
         return;
     }
     vector->channel = bough_arena_take(r->arena, (size_t)node->n * sizeof *vector->channel);
@@ -25,7 +23,7 @@ static void read_vector(bough_schema_reader *r, const bough_node *node, bough_st
         const bough_node *name = node->value[i];
         vector->channel[i] = name->kind == BOUGH_SCALAR ? name->text : "";
         if (vector->channel[i][0] != '\0') continue;
-        bough_schema_error(r, name, "", "expected a channel's name, got %s", bough_node_shown(name, shown));
+        bough_schema_expected(r, name, "a channel's name");
     }
 }
 
@@ -115,15 +113,13 @@ static const bough_schema study_schema = {
 
 static void read_companions(bough_schema_reader *r, const bough_node *node, void *field) {
     const char *text = node->kind == BOUGH_SCALAR ? node->text : "";
-    char shown[64];
     int *every = field;
     if (strcmp(text, "none") == 0) {
         *every = 0;
     } else if (strcmp(text, "all") == 0) {
         *every = 1;
     } else if (strncmp(text, "1 in ", 5) != 0 || !bough_whole_number(text + 5, every) || *every < 1) {
-        bough_schema_error(r, node, "", "expected '1 in N' with a whole number N, 'all' or 'none', got %s",
-                           bough_node_shown(node, shown));
+        bough_schema_expected(r, node, "'1 in N' with a whole number N, 'all' or 'none'");
     }
 }
 

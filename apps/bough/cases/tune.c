@@ -1,6 +1,7 @@
 // Which settings are tried, and which of them are chosen.
 #include "apps/bough/cases/tune.h"
 
+#include "apps/bough/cases/case_run.h"
 #include "apps/bough/model/error_verdict.h"
 #include "apps/bough/model/run.h"
 #include "apps/bough/results/folder.h"
@@ -118,13 +119,9 @@ static bough_status run_in(bough_arena *arena, void *self) {
     return bough_ok();
 }
 
-static bool ends(bough_code code) {
-    return code == BOUGH_INTERRUPTED || code == BOUGH_OUT_OF_MEMORY || code == BOUGH_IO;
-}
-
 static bough_status perform(measurement *m) {
     m->point->outcome = bough_arena_use(run_in, m);
-    return ends(m->point->outcome.code) ? m->point->outcome : bough_ok();
+    return bough_ends_study(m->point->outcome.code) ? m->point->outcome : bough_ok();
 }
 
 bough_status bough_tune_time(const bough_tune_state *t, bough_tune_point *point) {
@@ -193,10 +190,6 @@ static void set_rate(const bough_tune_state *t, double rate, bough_tune_settings
     if (rate > 0) s->rate = 1 / period_up_to(t->scene, fmin(1 / rate, longest_period), &s->macro_step);
 }
 
-static double step_of(const bough_tune_settings *s) {
-    return s->step > 0 ? fmin(s->step, s->macro_step) : s->macro_step;
-}
-
 // A part of the macro step, at most `step`: steps end where it does.
 static void set_step(double step, bough_tune_settings *s) {
     double parts = ceil(s->macro_step / step - 0.1);
@@ -206,7 +199,8 @@ static void set_step(double step, bough_tune_settings *s) {
 static bool near(double a, double b, double share) { return fabs(a - b) <= share * fmax(a, b); }
 
 static bool same(const bough_tune_state *t, const bough_tune_settings *a, const bough_tune_settings *b) {
-    bool equal = a->scheme == b->scheme && a->solver == b->solver && near(step_of(a), step_of(b), 0.05) &&
+    bool equal = a->scheme == b->scheme && a->solver == b->solver &&
+                 near(bough_tune_step(a), bough_tune_step(b), 0.05) &&
                  near(a->macro_step, b->macro_step, 1e-9) && near(a->rate, b->rate, 1e-9) &&
                  near(a->rtol, b->rtol, 0.1);
     for (int i = 0; i < t->scene->n_body && equal; i++)
@@ -255,7 +249,7 @@ static void follow_shares(const bough_tune_state *t, const bough_tune_point *p, 
         double finer = share[k] > 0 ? pow(share[k] / aim, 1 / order[k]) : 1;
         factor[k] = fmax(1 / most[k], fmin(finer, most[k]));
     }
-    double step = step_of(s);
+    double step = bough_tune_step(s);
     s->mesh *= factor[MESH];
     s->rtol = fmin(s->rtol / factor[TIME], loosest);
     set_rate(t, s->rate * factor[AIR], s);
@@ -302,12 +296,12 @@ static bool vary(const bough_tune_state *t, int variation, bough_tune_settings *
         if (!(s->step > 0)) s->macro_step *= 2;
         s->step = 0;
         return bough_scene_step_fits(&scene, s->macro_step);
-    case SHORTER: set_step(0.5 * step_of(s), s); return true;
+    case SHORTER: set_step(0.5 * bough_tune_step(s), s); return true;
     case LOWER_RATE: set_rate(t, 0.8 * s->rate, s); return s->rate > 0;
     default:
         s->scheme = bough_scheme_index(bough_scheme_advised()->name);
         s->solver = BOUGH_ROSENBROCK;
-        s->step = fmin(step_of(s), 0.5 * s->macro_step);
+        s->step = fmin(bough_tune_step(s), 0.5 * s->macro_step);
         return has_rods(&scene) && t->scene->n_closure == 0;
     }
 }

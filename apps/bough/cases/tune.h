@@ -72,6 +72,11 @@ bough_status bough_tune_time(const bough_tune_state *t, bough_tune_point *point)
 // Segments of a body's rod; 0 without one.
 int bough_tune_segments(const bough_scene *scene, int body, const bough_tune_settings *settings);
 
+// The longest step of the solver [s].
+static inline double bough_tune_step(const bough_tune_settings *s) {
+    return s->step > 0 && s->step < s->macro_step ? s->step : s->macro_step;
+}
+
 bool bough_tune_meets(const bough_tune_state *t, const bough_tune_point *point);
 
 // Whether run, motion and forces of the point are known.

@@ -19,10 +19,6 @@ static int segments_of(const bough_tune_state *t, const bough_tune_settings *s) 
     return most;
 }
 
-static double longest_step(const bough_tune_settings *s) {
-    return s->step > 0 ? fmin(s->step, s->macro_step) : s->macro_step;
-}
-
 static void print_share(const bough_tune_point *p, int k, FILE *stream) {
     if (p->shared && p->share[k] > 0) {
         fprintf(stream, "  %7.1e", p->share[k]);
@@ -43,8 +39,8 @@ void bough_tune_print(const bough_tune_state *t, int k, FILE *stream) {
     const bough_tune_point *p = &t->point[k];
     const bough_tune_settings *s = &p->settings;
     fprintf(stream, "%3d  %-12s %-10.10s %8d %9.4g %8.4g %7.1e %8.4g ", k + 1, bough_scheme_name(s->scheme),
-            bough_integrator_name(s->solver), segments_of(t, s), 1e3 * s->macro_step, 1e3 * longest_step(s),
-            s->rtol, s->rate);
+            bough_integrator_name(s->solver), segments_of(t, s), 1e3 * s->macro_step,
+            1e3 * bough_tune_step(s), s->rtol, s->rate);
     if (bough_tune_ended(p)) {
         fprintf(stream, "%8.3g  %8.1e  %8.1e", p->cpu, p->motion, p->force);
         for (int i = 0; i < 3; i++) print_share(p, i, stream);
@@ -64,8 +60,8 @@ static void write_table(const void *self, FILE *file) {
         const bough_tune_point *p = &t->point[k];
         const bough_tune_settings *s = &p->settings;
         fprintf(file, "%d,%s,%s,%d,%.9g,%.9g,%.3g,%.9g,", k + 1, bough_scheme_name(s->scheme),
-                bough_integrator_name(s->solver), segments_of(t, s), s->macro_step, longest_step(s), s->rtol,
-                s->rate);
+                bough_integrator_name(s->solver), segments_of(t, s), s->macro_step, bough_tune_step(s),
+                s->rtol, s->rate);
         if (bough_tune_ended(p))
             fprintf(file, "%.6g,%.3g,%.3g,%s,", p->cpu, p->motion, p->force, p->channel);
         else

@@ -4,7 +4,6 @@
 #include "apps/bough/config/base.h"
 #include "apps/bough/model/aero_link.h"
 #include "apps/bough/model/validity.h"
-#include "apps/bough/results/progress.h"
 
 #include <math.h>
 #include <string.h>

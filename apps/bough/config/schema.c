@@ -5,7 +5,6 @@
 #include "apps/bough/config/schema_internal.h"
 #include "core/base/input_file.h"
 
-#include <errno.h>
 #include <string.h>
 
 static void read_value(bough_schema_reader *r, const bough_key *key, const bough_node *node, void *item);

@@ -114,6 +114,15 @@ void bough_schema_read(bough_schema_reader *reader, const bough_schema *schema, 
 void bough_schema_error(bough_schema_reader *reader, const bough_node *node, const char *key,
                         const char *format, ...) __attribute__((format(printf, 4, 5)));
 
+// Appends to the path of errors, a key or what is printed; the length before, for pop.
+size_t bough_schema_push(bough_schema_reader *r, const char *format, ...)
+    __attribute__((format(printf, 2, 3)));
+size_t bough_schema_push_key(bough_schema_reader *r, const char *name);
+void bough_schema_pop(bough_schema_reader *r, size_t length);
+
+// An error at the node: it is not `what`.
+void bough_schema_expected(bough_schema_reader *r, const bough_node *node, const char *what);
+
 // The path of a file that the scene names by the value `node` being read or, unless key is "", by its `.key`:
 // relative to the directory of the scene, or of the base in which the name stands. Every name of a file comes
 // by here and is then in reader->files.

@@ -10,15 +10,6 @@ void bough_dimension_expected(bough_dimension dimension, char text[96]);
 // Whether the text is a unit of the dimension; `why` then says why not.
 bool bough_unit_fits(const char *text, bough_dimension dimension, char why[160]);
 
-// Appends to the path of errors, a key or what is printed; the length before, for pop.
-size_t bough_schema_push(bough_schema_reader *r, const char *format, ...)
-    __attribute__((format(printf, 2, 3)));
-size_t bough_schema_push_key(bough_schema_reader *r, const char *name);
-void bough_schema_pop(bough_schema_reader *r, size_t length);
-
-// An error at the node: it is not `what`.
-void bough_schema_expected(bough_schema_reader *r, const bough_node *node, const char *what);
-
 // Memory for the items of a list; NULL (and an error) when the node is not one long enough.
 void *bough_schema_items(bough_schema_reader *r, const bough_key *key, const bough_node *node, size_t size);
 

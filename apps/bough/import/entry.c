@@ -1,6 +1,7 @@
 #include "apps/bough/import/windio.h"
 
 #include "apps/bough/config/schema.h"
+#include "core/base/base.h"
 
 #include <math.h>
 #include <stdarg.h>
@@ -166,11 +167,6 @@ double bough_curve_at(const bough_curve *c, double x) {
     return c->y[i - 1] + s * (c->y[i] - c->y[i - 1]);
 }
 
-static int compare(const void *a, const void *b) {
-    double x = *(const double *)a, y = *(const double *)b;
-    return (x > y) - (x < y);
-}
-
 int bough_curve_places(bough_draft *d, const bough_curve *const *curve, int n_curve, double least,
                        double **place) {
     int n = 0, kept = 0;
@@ -180,7 +176,7 @@ int bough_curve_places(bough_draft *d, const bough_curve *const *curve, int n_cu
     for (int c = 0; c < n_curve; c++) {
         for (int i = 0; i < curve[c]->n; i++) x[n++] = curve[c]->x[i];
     }
-    qsort(x, (size_t)n, sizeof *x, compare);
+    qsort(x, (size_t)n, sizeof *x, bough_ascending);
     for (int i = 0; i < n; i++)
         if (kept == 0 || x[i] >= x[kept - 1] + least) x[kept++] = x[i];
     return kept;

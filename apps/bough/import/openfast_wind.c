@@ -3,7 +3,6 @@
 #include "apps/bough/import/wind.h"
 
 #include <math.h>
-#include <string.h>
 
 enum { STEADY = 1, UNIFORM, TURBSIM, BLADED, HAWC, NATIVE_BLADED = 7 };
 

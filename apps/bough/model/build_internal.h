@@ -5,7 +5,6 @@
 #include "apps/bough/model/equilibrium.h"
 #include "apps/bough/model/simulation.h"
 #include "apps/bough/scene/scene.h"
-#include "core/tree/joint.h"
 #include "core/tree/tree.h"
 #include "cosim/member.h"
 

@@ -1,6 +1,5 @@
 #include "apps/bough/model/channel_table.h"
 
-#include <assert.h>
 #include <string.h>
 
 // clang-format off

@@ -5,7 +5,6 @@
 
 #include "apps/bough/results/channels.h"
 
-#include <stdbool.h>
 #include <stdio.h>
 
 typedef struct bough_channel_row {

@@ -8,7 +8,6 @@
 #include "core/base/base.h"
 
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 // -- events ---------------------------------------------------------------------------------------

@@ -2,12 +2,12 @@
 
 #include "apps/bough/model/companion.h"
 #include "apps/bough/model/simulation.h"
+#include "apps/bough/results/progress.h"
 
 #include <math.h>
 #include <stdarg.h>
 #include <stdio.h>
 #include <string.h>
-#include <time.h>
 
 const char *bough_error_share_name(bough_error_share_kind kind) {
     static const char *const names[BOUGH_SHARES] = {"mesh", "air", "time"};
@@ -173,16 +173,10 @@ static void lower_errors(bough_companion *c, bough_error_shares *shares) {
     }
 }
 
-static double cpu_clock(void) {
-    struct timespec now;
-    clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
-    return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
-}
-
 bough_status bough_error_shares_find(bough_arena *arena, bough_companion *c, bool (*stop)(void),
                                      bough_error_shares *shares) {
     finding x = {c, bough_error_exceeds(c, c->run->scene->simulation.error_bound), stop, shares};
-    double cpu = cpu_clock();
+    double cpu = bough_cpu_clock(false);
     *shares = (bough_error_shares){.found = true, .n_channel = c->channels->count};
     for (int k = 0; k < BOUGH_SHARES; k++)
         bough_arena_each(arena, (size_t)c->channels->count + 1, &shares->share[k].largest,
@@ -195,7 +189,7 @@ bough_status bough_error_shares_find(bough_arena *arena, bough_companion *c, boo
     } else {
         status = bough_arena_use(find, &x);
     }
-    shares->cpu_s = cpu_clock() - cpu;
+    shares->cpu_s = bough_cpu_clock(false) - cpu;
     if (status.code == BOUGH_INTERRUPTED) return status;
     if (bough_is_ok(&status) && x.lost) lower_errors(c, shares);
     for (int k = 0; k < BOUGH_SHARES && !bough_is_ok(&status); k++)

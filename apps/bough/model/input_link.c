@@ -2,7 +2,6 @@
 
 #include "apps/bough/model/aero_link.h"
 
-#include <stdint.h>
 #include <string.h>
 
 struct bough_input_link {

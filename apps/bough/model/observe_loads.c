@@ -2,7 +2,6 @@
 #include "apps/bough/model/channel_table.h"
 #include "apps/bough/model/observe.h"
 #include "apps/bough/model/shape.h"
-#include "core/tree/force.h"
 
 #include <stdio.h>
 

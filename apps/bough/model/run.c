@@ -2,11 +2,11 @@
 
 #include "apps/bough/model/simulation.h"
 #include "apps/bough/model/validity.h"
+#include "apps/bough/results/progress.h"
 #include "core/base/linalg.h"
 
 #include <assert.h>
 #include <math.h>
-#include <time.h>
 
 // -- building -------------------------------------------------------------------------------------
 
@@ -148,14 +148,8 @@ bough_status bough_run_step(bough_run *run) {
 
 bool bough_run_done(const bough_run *run) { return bough_master_done(run->simulation->master); }
 
-static double cpu_clock(const bough_run *run) {
-    struct timespec now;
-    clock_gettime(run->beside ? CLOCK_THREAD_CPUTIME_ID : CLOCK_PROCESS_CPUTIME_ID, &now);
-    return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
-}
-
 void bough_run_update_clock(bough_run *run) {
-    double wall = bough_wall_clock(), cpu = cpu_clock(run);
+    double wall = bough_wall_clock(), cpu = bough_cpu_clock(run->beside);
     run->wall_s += wall - run->wall_from;
     run->cpu_s += cpu - run->cpu_from;
     run->wall_from = wall;
@@ -177,7 +171,7 @@ static bough_status step(bough_run *run) {
 static void step_all(void *self) {
     bough_run *run = self;
     run->wall_from = bough_wall_clock();
-    run->cpu_from = cpu_clock(run);
+    run->cpu_from = bough_cpu_clock(run->beside);
     bough_master_stop_by(run->simulation->master, run->stop);
     bough_companion_stop_by(run->companion, run->stop);
     bough_status status = bough_run_start(run);

@@ -35,7 +35,7 @@ void bough_picture_text(FILE *svg, const char *text) {
 }
 
 // Characters in UTF-8.
-static int letters(const char *text) {
+int bough_picture_letters(const char *text) {
     int n = 0;
     for (; *text; text++) n += ((unsigned char)*text & 0xC0) != 0x80;
     return n;
@@ -232,7 +232,7 @@ static double free_place(labels *used, double left, double right, double y) {
 // Right of the point, or left of it where there is no room, and beside no other label.
 static void draw_label(const bough_chart *c, const bough_chart_panel *p, labels *used, double x, double y,
                        int colour, const char *label, FILE *svg) {
-    double width = letters(label) * LETTER;
+    double width = bough_picture_letters(label) * LETTER;
     bool before = x + 7 + width > p->x.to + c->right;
     double left = before ? x - 7 - width : x + 7, at = free_place(used, left, left + width, y - 5);
     fprintf(svg, "<text fill=\"%s\" font-size=\"10\" x=\"%.1f\" y=\"%.1f\"%s>", colour_of(colour),
@@ -312,10 +312,11 @@ static void draw_legend(const bough_chart *c, double y, FILE *svg) {
 static int width_of(const bough_chart *c) {
     int columns = c->n_panel < c->per_row ? c->n_panel : c->per_row;
     int width = columns * panel_width(c);
-    int title = c->title ? LEFT + letters(c->title) * LETTER * 4 / 3 + c->right : 0;
+    int title = c->title ? LEFT + bough_picture_letters(c->title) * LETTER * 4 / 3 + c->right : 0;
     if (title > width) width = title;
     for (int i = 0; c->n_panel > 0 && i < c->panel[0].end; i++) {
-        int needed = c->line[i].name ? LEFT + 36 + letters(c->line[i].name) * LETTER + c->right : 0;
+        int needed =
+            c->line[i].name ? LEFT + 36 + bough_picture_letters(c->line[i].name) * LETTER + c->right : 0;
         if (needed > width) width = needed;
     }
     return width;

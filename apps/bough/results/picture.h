@@ -17,6 +17,9 @@ void bough_picture_title(FILE *svg, int left, const char *title);
 // A text within an element or an attribute: the characters that XML reserves are replaced.
 void bough_picture_text(FILE *svg, const char *text);
 
+// Characters of a text, not bytes.
+int bough_picture_letters(const char *text);
+
 // -- charts ---------------------------------------------------------------------------------------
 
 typedef struct bough_axis {

@@ -5,10 +5,16 @@
 #include <time.h>
 #include <unistd.h>
 
-double bough_wall_clock(void) {
+static double read_clock(clockid_t clock) {
     struct timespec now;
-    clock_gettime(CLOCK_MONOTONIC, &now);
+    clock_gettime(clock, &now);
     return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
+}
+
+double bough_wall_clock(void) { return read_clock(CLOCK_MONOTONIC); }
+
+double bough_cpu_clock(bool thread) {
+    return read_clock(thread ? CLOCK_THREAD_CPUTIME_ID : CLOCK_PROCESS_CPUTIME_ID);
 }
 
 bough_progress bough_progress_start(double t, double t_end, bool quiet) {

@@ -24,6 +24,9 @@ void bough_progress_clear(const bough_progress *p);
 // and the time that is left, or the label, shortened to leave room for the time.
 void bough_progress_text(const bough_progress *p, double t, double wall, int room, char *text, size_t size);
 
+// CPU time of the process, or of the calling thread alone [s].
+double bough_cpu_clock(bool thread);
+
 // Monotonic wall clock [s], from an arbitrary origin.
 double bough_wall_clock(void);
 

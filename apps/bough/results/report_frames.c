@@ -4,7 +4,6 @@
 #include "apps/bough/results/folder.h"
 
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 static bough_status damaged(const char *folder, const char *name) {

@@ -3,7 +3,6 @@
 #define BOUGH_APPS_SCENE_SCENE_AIR_H
 
 #include "aero/rotor/rotor.h"
-#include "aero/wind/wind_iec.h"
 #include "apps/bough/config/text.h"
 
 typedef struct bough_scene_aero_station {

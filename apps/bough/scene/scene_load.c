@@ -1,7 +1,6 @@
 // Loads of a scene: on a joint's axis, on a rod at a place or along a stretch, on a rigid body.
 #include "apps/bough/scene/scene_internal.h"
 
-#include <math.h>
 #include <string.h>
 
 // -- reading --------------------------------------------------------------------------------------
@@ -10,7 +9,7 @@
 void bough_scene_read_load_place(bough_schema_reader *r, const bough_node *node, void *field) {
     bough_scene_load *load = field;
     const char *text = node->kind == BOUGH_SCALAR ? node->text : "";
-    char shown[64], why[160] = "";
+    char why[160] = "";
     double plain;
     load->place = BOUGH_SCENE_AT_TIP;
     if (strcmp(text, "tip") == 0) return;
@@ -19,10 +18,7 @@ void bough_scene_read_load_place(bough_schema_reader *r, const bough_node *node,
     load->place = BOUGH_SCENE_AT_SPAN;
     bool unit = !bough_quantity(text, BOUGH_PURE_NUMBER, &plain, why);
     if (unit && bough_quantity(text, BOUGH_LENGTH, &load->span[0], why)) return;
-    bough_schema_error(r, node, "",
-                       "expected 'tip', the number of a vertex or a length with its "
-                       "unit, as '30 m', got %s",
-                       bough_node_shown(node, shown));
+    bough_schema_expected(r, node, "'tip', the number of a vertex or a length with its unit, as '30 m'");
 }
 
 static bool is_spread(const bough_scene_load *load) { return bough_node_find(load->node, "along") != NULL; }
@@ -30,17 +26,14 @@ static bool is_spread(const bough_scene_load *load) { return bough_node_find(loa
 // Three numbers, with or without a unit.
 static void read_three(bough_schema_reader *r, const bough_node *node, bough_dimension dimension,
                        double *values) {
-    char shown[64];
-    size_t length = strlen(r->path);
     if (node->kind != BOUGH_SEQUENCE || node->n != 3) {
-        bough_schema_error(r, node, "", "expected a list of 3 numbers, got %s",
-                           bough_node_shown(node, shown));
+        bough_schema_expected(r, node, "a list of 3 numbers");
         return;
     }
     for (int i = 0; i < 3; i++) {
-        snprintf(r->path + length, sizeof r->path - length, "[%d]", i);
+        size_t length = bough_schema_push(r, "[%d]", i);
         values[i] = bough_schema_number(r, node->value[i], dimension);
-        r->path[length] = '\0';
+        bough_schema_pop(r, length);
     }
 }
 

@@ -1,7 +1,6 @@
 // The prescribed motion of a joint: its speed or itself, constant, by a ramp or by a table.
 #include "apps/bough/scene/scene_internal.h"
 
-#include <math.h>
 #include <string.h>
 
 // A cylindrical joint's, whose schema begins with the node of the first

@@ -4,7 +4,6 @@
 #include "apps/bough/scene/scene_internal.h"
 
 #include <math.h>
-#include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
 

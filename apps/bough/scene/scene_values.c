@@ -30,27 +30,19 @@ static bool parse_step(bough_schema_reader *r, const bough_node *node, bough_sce
     return false;
 }
 
-// Puts `[index]` behind the path for one error.
-static size_t push_index(bough_schema_reader *r, int index) {
-    size_t length = strlen(r->path);
-    snprintf(r->path + length, sizeof r->path - length, "[%d]", index);
-    return length;
-}
-
 // field: bough_scene_placement
 void bough_scene_read_steps(bough_schema_reader *r, const bough_node *node, void *field) {
     bough_scene_placement *placement = field;
-    char shown[64];
     if (node->kind != BOUGH_SEQUENCE) {
-        bough_schema_error(r, node, "", "expected a list of steps, got %s", bough_node_shown(node, shown));
+        bough_schema_expected(r, node, "a list of steps");
         return;
     }
     placement->step = bough_arena_take(r->arena, (size_t)node->n * sizeof *placement->step);
     placement->n = node->n;
     for (int i = 0; i < node->n; i++) {
-        size_t length = push_index(r, i);
+        size_t length = bough_schema_push(r, "[%d]", i);
         parse_step(r, node->value[i], &placement->step[i]);
-        r->path[length] = '\0';
+        bough_schema_pop(r, length);
     }
 }
 
@@ -134,9 +126,9 @@ void bough_scene_read_stiffness(bough_schema_reader *r, const bough_node *node, 
     int row = row_without_pivot(matrix, 6);
     if (row == 6) return;
     int entry = n == 6 ? row : 6 * row - row * (row - 1) / 2;
-    size_t length = push_index(r, entry);
+    size_t length = bough_schema_push(r, "[%d]", entry);
     refuse_row(r, node->value[entry], "the stiffness matrix", strains[row], matrix[7 * row]);
-    r->path[length] = '\0';
+    bough_schema_pop(r, length);
 }
 
 // The inertia about the mass centre, parallel axes removed, must be positive definite.
@@ -233,10 +225,7 @@ void bough_scene_read_axis_offset(bough_schema_reader *r, const bough_node *node
 static size_t push_row(bough_schema_reader *r, const bough_node *owner, const char *list, int i) {
     const bough_node *node = bough_node_find(owner, list);
     bool compact = node != NULL && node->kind == BOUGH_MAPPING;
-    size_t length = strlen(r->path);
-    snprintf(r->path + length, sizeof r->path - length, "%s%s%s[%d]", length == 0 ? "" : ".", list,
-             compact ? ".rows" : "", i);
-    return length;
+    return bough_schema_push(r, "%s%s%s[%d]", r->path[0] == '\0' ? "" : ".", list, compact ? ".rows" : "", i);
 }
 
 // A column whose values increase from row to row and begin with `first`.
@@ -262,7 +251,7 @@ static bool check_next(bough_schema_reader *r, const sequence *s, const bough_no
         bough_schema_error(r, at, s->key, "must be more than the %g %s before it, got %g %s", before / unit,
                            s->unit_name, value / unit, s->unit_name);
     }
-    r->path[length] = '\0';
+    bough_schema_pop(r, length);
     return false;
 }
 
@@ -314,7 +303,7 @@ static void check_turn(bough_schema_reader *r, const bough_scene_polar *p) {
         size_t length = push_row(r, p->node, "table", p->n_row - 1);
         bough_schema_error(r, b->node, names[c], "at 180 deg must be as at -180 deg, %g, got %g", first[c],
                            last[c]);
-        r->path[length] = '\0';
+        bough_schema_pop(r, length);
     }
 }
 
@@ -332,7 +321,7 @@ void bough_scene_check_polar(bough_schema_reader *r, void *item) {
     size_t length = push_row(r, p->node, "table", p->n_row - 1);
     bough_schema_error(r, bough_node_find(p->row[p->n_row - 1].node, "alpha"), "alpha",
                        "the last must be 180 deg, got %g deg", before * 180 / BOUGH_PI);
-    r->path[length] = '\0';
+    bough_schema_pop(r, length);
 }
 
 void bough_scene_check_polars(bough_schema_reader *r, void *item) {
@@ -343,7 +332,7 @@ void bough_scene_check_polars(bough_schema_reader *r, void *item) {
             size_t length = push_row(r, p->node, "polars", i);
             bough_schema_error(r, bough_node_find(p->polar[i].node, "name"), "name",
                                "polar '%s' is given twice", p->polar[i].name);
-            r->path[length] = '\0';
+            bough_schema_pop(r, length);
             break;
         }
     }

@@ -4,7 +4,6 @@
 #include "core/solve/integrator.h"
 #include "cosim/scheme.h"
 
-#include <math.h>
 #include <stdarg.h>
 #include <string.h>
 
