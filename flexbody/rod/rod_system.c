@@ -10,6 +10,14 @@
 #include <math.h>
 #include <string.h>
 
+struct bough_rod_body {
+    const bough_rod_model *model;
+    bough_rod_loads loads;
+    double *initial; // (13 n)
+    double *scale;   // (13 n)
+    bough_rod_scratch scratch;
+};
+
 static bough_vec3 vector_at(const double *x) { return bough_v3(x[0], x[1], x[2]); }
 
 // p⁻¹∘r: the rotation 2·vector of a quaternion's variation r, any |p|
@@ -60,10 +68,17 @@ static vertex_variation end_variation(const double *p, const double *d) {
 
 // -- the wrenches ---------------------------------------------------------------------------------
 
-void bough_rod_wrench_tangent(const bough_rod_model *m, const bough_rod_loads *loads, double t,
-                              const bough_rod_variation *at, bough_rod_scratch *scratch, double *wrench) {
+// Where and along what a wrench is differentiated; either rate may be NULL for zero.
+typedef struct variation {
+    const double *state, *input, *state_rate, *input_rate;
+} variation;
+
+// Derivative of the root wrench (6) at time t.
+static void root_tangent(bough_rod_body *b, double t, const variation *at, double *wrench) {
+    const bough_rod_model *m = b->model;
+    bough_rod_scratch *scratch = &b->scratch;
     double now[BOUGH_ROD_OUTPUTS]; // leaves vertices and loads in scratch
-    bough_rod_root_wrench(m, loads, t, at->state, at->input, scratch, now);
+    bough_rod_root_wrench(m, &b->loads, t, at->state, at->input, scratch, now);
     vertex_variation l = {0}, r = {0};
     if (at->input_rate != NULL) l = root_variation(m, at->input_rate);
     if (at->state_rate != NULL) r = first_variation(m, at->state, at->state_rate);
@@ -131,29 +146,34 @@ static void kept_end_tangent(const bough_rod_model *m, const bough_rod_tangent *
     lane_store(wrench + 3, 1, 0, bough_add(bough_mat3_mul(turn, r.phi), f.lr));
 }
 
-void bough_rod_kept_wrench_tangent(const bough_rod_model *m, const bough_rod_tangent *k,
-                                   const double *state_rate, const double *input_rate, double *wrench) {
+// Both wrenches where the factors were linearised, from their tangents.
+static bool kept_tangent(void *self, const void *factors, const double *state_rate, const double *input_rate,
+                         double *wrench) {
+    const bough_rod_model *m = ((const bough_rod_body *)self)->model;
+    const bough_rod_tangent *k = factors;
     vertex_variation l = {0}, r = {0};
     if (input_rate != NULL) l = root_variation(m, input_rate);
     if (state_rate != NULL) r = kept_variation(m, k, state_rate, 0);
     segment_force f = kept_force(k->variation, k->root, l, r);
     lane_store(wrench, 1, 0, f.f);
     lane_store(wrench + 3, 1, 0, bough_mat3_mul(m->root, f.ll));
-    if (!bough_rod_carries(m)) return;
-    kept_end_tangent(m, k, state_rate, input_rate, wrench + BOUGH_ROD_OUTPUTS);
+    if (bough_rod_carries(m)) kept_end_tangent(m, k, state_rate, input_rate, wrench + BOUGH_ROD_OUTPUTS);
+    return true;
 }
 
-void bough_rod_end_tangent(const bough_rod_model *m, const bough_rod_loads *loads, double t,
-                           const bough_rod_variation *at, bough_rod_scratch *scratch, double *wrench) {
+// The same of the wrench at the end.
+static void end_tangent(bough_rod_body *b, double t, const variation *at, double *wrench) {
+    const bough_rod_model *m = b->model;
+    bough_rod_scratch *scratch = &b->scratch;
     double now[BOUGH_ROD_END_OUTPUTS]; // leaves vertices and loads in scratch
-    bough_rod_end_wrench(m, loads, t, at->state, at->input, scratch, now);
+    bough_rod_end_wrench(m, &b->loads, t, at->state, at->input, scratch, now);
     vertex_variation l = {0}, r = {0};
     if (at->state_rate != NULL) l = last_variation(m, at->state, at->state_rate);
     if (at->input_rate != NULL) {
         r = end_variation(at->input + BOUGH_ROD_INPUTS + 9, at->input_rate + BOUGH_ROD_INPUTS);
     }
     segment_force f = segment_tangent(m, scratch, m->n, &l, &r);
-    segment_force load = load_variation(m, loads, scratch, r.phi);
+    segment_force load = load_variation(m, &b->loads, scratch, r.phi);
     lane_store(wrench, 1, 0, bough_sub(load.f, f.f));
     lane_store(wrench + 3, 1, 0, bough_add(load.lr, f.lr));
 }
@@ -216,27 +236,18 @@ static void end_columns(const bough_rod_model *m, const double *end, const bough
     }
 }
 
-void bough_rod_input_columns(const bough_rod_model *m, const bough_rod_loads *loads, double t,
-                             const double *state, const double *input, bough_rod_scratch *scratch,
-                             double *column) {
+static void input_columns(void *self, double t, const double *state, const double *input, double *column) {
+    bough_rod_body *b = self;
+    const bough_rod_model *m = b->model;
+    bough_rod_scratch *scratch = &b->scratch;
     size_t size = (size_t)BOUGH_ROD_STATES * m->n, inputs = (size_t)bough_rod_n_inputs(m);
     bough_rod_gather(m, state, input, scratch);
-    bough_rod_load(m, loads, t, scratch);
+    bough_rod_load(m, &b->loads, t, scratch);
     memset(column, 0, inputs * size * sizeof *column);
     root_columns(m, state, scratch, column);
     if (!bough_rod_carries(m)) return;
     end_columns(m, input + BOUGH_ROD_INPUTS, scratch, column + BOUGH_ROD_INPUTS * size);
 }
-
-// -- the system --------------------------------------------------------------------------------
-
-struct bough_rod_body {
-    const bough_rod_model *model;
-    bough_rod_loads loads;
-    double *initial; // (13 n)
-    double *scale;   // (13 n)
-    bough_rod_scratch scratch;
-};
 
 // -- the contract -----------------------------------------------------------------------------------
 
@@ -272,22 +283,9 @@ static bool evaluate(void *self, const double *state, int n, const bough_evaluat
 static void output_tangent(void *self, double t, const double *state, const double *input,
                            const double *state_rate, const double *input_rate, double *rate) {
     bough_rod_body *b = self;
-    bough_rod_variation at = {state, input, state_rate, input_rate};
-    bough_rod_wrench_tangent(b->model, &b->loads, t, &at, &b->scratch, rate);
-    if (!bough_rod_carries(b->model)) return;
-    bough_rod_end_tangent(b->model, &b->loads, t, &at, &b->scratch, rate + BOUGH_ROD_OUTPUTS);
-}
-
-static bool kept_tangent(void *self, const void *factors, const double *state_rate, const double *input_rate,
-                         double *rate) {
-    const bough_rod_body *b = self;
-    bough_rod_kept_wrench_tangent(b->model, factors, state_rate, input_rate, rate);
-    return true;
-}
-
-static void input_columns(void *self, double t, const double *state, const double *input, double *column) {
-    bough_rod_body *b = self;
-    bough_rod_input_columns(b->model, &b->loads, t, state, input, &b->scratch, column);
+    variation at = {state, input, state_rate, input_rate};
+    root_tangent(b, t, &at, rate);
+    if (bough_rod_carries(b->model)) end_tangent(b, t, &at, rate + BOUGH_ROD_OUTPUTS);
 }
 
 static void *factors(void *self, bough_arena *arena) {

@@ -66,32 +66,10 @@ bool bough_rod_factor(const bough_rod_model *m, bough_rod_tangent *k, double gam
 // Solves (I − γ ∂f/∂y) x = b in place (13 n).
 void bough_rod_solve(const bough_rod_model *m, bough_rod_tangent *k, double *x);
 
-// ∂f/∂input at a time and state: (n_inputs × 13 n), row j for input j.
-void bough_rod_input_columns(const bough_rod_model *m, const bough_rod_loads *loads, double t,
-                             const double *state, const double *input, bough_rod_scratch *scratch,
-                             double *column);
-
-// Where and along what a wrench is differentiated; either rate may be NULL for zero.
-typedef struct bough_rod_variation {
-    const double *state, *input, *state_rate, *input_rate;
-} bough_rod_variation;
-
-// Derivative of the root wrench (6) at time t.
-void bough_rod_wrench_tangent(const bough_rod_model *m, const bough_rod_loads *loads, double t,
-                              const bough_rod_variation *at, bough_rod_scratch *scratch, double *wrench);
-
-// The same of bough_rod_end_wrench.
-void bough_rod_end_tangent(const bough_rod_model *m, const bough_rod_loads *loads, double t,
-                           const bough_rod_variation *at, bough_rod_scratch *scratch, double *wrench);
-
 // Into a linearisation of a rod that carries bodies: what the turn of the last vertex, whose motion is
 // `end`, changes in the loads in scratch.
 void bough_rod_keep_end(const bough_rod_model *m, const bough_rod_loads *loads, const double *end,
                         const bough_rod_scratch *scratch, bough_rod_tangent *k);
-
-// Derivatives of both wrenches where `k` was linearised, from its tangents.
-void bough_rod_kept_wrench_tangent(const bough_rod_model *m, const bough_rod_tangent *k,
-                                   const double *state_rate, const double *input_rate, double *wrench);
 
 // -- about a steady motion ------------------------------------------------------------------------
 

@@ -119,31 +119,28 @@ static void put_extremes(const void *self, FILE *f) {
     }
 }
 
-static void put_ranges(const void *self, FILE *f) {
-    const bough_lifetime *l = self;
-    fputs("channel,unit,range from,range to,cycles in the lifetime\n", f);
+// A row for each bin: cycles by range, or hours and crossings by level.
+static void put_bins(const bough_lifetime *l, bool by_level, FILE *f) {
     for (int i = 0; i < l->study->n_channel; i++) {
-        const bough_levels *r = &l->channel[i].ranges;
+        const bough_levels *r = by_level ? &l->channel[i].levels : &l->channel[i].ranges;
         double width = bough_levels_width(r);
         for (int64_t k = r->low; r->started && k <= r->high; k++) {
-            fprintf(f, "%s,%s,%.10g,%.10g,%.17g\n", l->study->channel[i], l->study->unit[i],
-                    width * (double)k, width * (double)(k + 1), bough_levels_inside(r, k));
+            fprintf(f, "%s,%s,%.10g,%.10g,%.17g", l->study->channel[i], l->study->unit[i], width * (double)k,
+                    width * (double)(k + 1), bough_levels_inside(r, k));
+            if (by_level) fprintf(f, ",%.17g", bough_levels_crossed(r, k));
+            fputc('\n', f);
         }
     }
 }
 
+static void put_ranges(const void *self, FILE *f) {
+    fputs("channel,unit,range from,range to,cycles in the lifetime\n", f);
+    put_bins(self, false, f);
+}
+
 static void put_levels(const void *self, FILE *f) {
-    const bough_lifetime *l = self;
     fputs("channel,unit,from,to,hours in the lifetime,upward crossings of from\n", f);
-    for (int i = 0; i < l->study->n_channel; i++) {
-        const bough_levels *r = &l->channel[i].levels;
-        double width = bough_levels_width(r);
-        for (int64_t k = r->low; r->started && k <= r->high; k++) {
-            fprintf(f, "%s,%s,%.10g,%.10g,%.17g,%.17g\n", l->study->channel[i], l->study->unit[i],
-                    width * (double)k, width * (double)(k + 1), bough_levels_inside(r, k),
-                    bough_levels_crossed(r, k));
-        }
-    }
+    put_bins(self, true, f);
 }
 
 static bough_status write_lifetime(const bough_lifetime *l, const char *folder) {

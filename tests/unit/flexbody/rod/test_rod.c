@@ -1,6 +1,7 @@
 // The rod's forces, balances and tangents.
 #include "tests/unit/check.h"
 
+#include "flexbody/rod/rod_system.h"
 #include "flexbody/rod/rod_tangent.h"
 #include "tests/reference/rod_energy.h"
 #include "tests/unit/sample_rod.h"
@@ -317,10 +318,18 @@ TEST_WITH(follower_load_turns_with_its_section, setup, teardown) {
     for (int k = 0; k < 6; k++) check_near(wrench[0][k], wrench[1][k], 1e-12, 1e-12);
 }
 
+// The fixture's rod under its loads.
+static bough_system system_of(const fixture *f) {
+    bough_rod_body *body = bough_rod_body_create(f->arena, f->model, f->input);
+    *bough_rod_body_loads(body) = f->loads;
+    return bough_rod_body_system(body);
+}
+
 TEST_WITH(input_columns_match_differences, setup, teardown) {
     fixture *f = *context;
     double column[BOUGH_ROD_INPUTS * STATES], d[STATES], none[STATES] = {0};
-    bough_rod_input_columns(f->model, &f->loads, 0.5, f->state, f->input, &f->scratch, column);
+    bough_system rod = system_of(f);
+    rod.ops->input_columns(rod.self, 0.5, f->state, f->input, column);
     for (int j = 0; j < BOUGH_ROD_INPUTS; j++) {
         double unit[BOUGH_ROD_INPUTS] = {0};
         unit[j] = 1;
@@ -341,12 +350,12 @@ static void check_wrench_tangent(fixture *f) {
         for (int k = 0; k < BOUGH_ROD_INPUTS; k++) u[k] = f->input[k] + step * du[k];
         bough_rod_root_wrench(f->model, &f->loads, 0.5, y, u, &f->scratch, side[s]);
     }
-    bough_rod_variation at = {f->state, f->input, ds, du};
-    bough_rod_wrench_tangent(f->model, &f->loads, 0.5, &at, &f->scratch, d);
+    bough_system rod = system_of(f);
+    rod.ops->output_tangent(rod.self, 0.5, f->state, f->input, ds, du, d);
     for (int k = 0; k < 6; k++) check_near(d[k], (side[1][k] - side[0][k]) / (2 * eps), 1e-7, 1e-7);
     double kept[6];
     assert_true(bough_rod_linearise(f->model, &f->loads, 0.5, f->state, f->input, &f->scratch, &f->tangent));
-    bough_rod_kept_wrench_tangent(f->model, &f->tangent, ds, du, kept);
+    assert_true(rod.ops->kept_tangent(rod.self, &f->tangent, ds, du, kept));
     for (int k = 0; k < 6; k++) check_near(kept[k], d[k], 1e-12, 1e-12);
 }
 
