@@ -56,7 +56,4 @@ bough_status bough_modal_piece_create(bough_arena *arena, const bough_rod_def *d
 // Λ, D and the shapes, which go to piece->shape with rotations in frame axes.
 bough_status bough_modal_basis(bough_arena *arena, bough_modal_options options, bough_modal_piece *piece);
 
-// All other matrices from the shapes.
-void bough_modal_matrices(bough_arena *arena, bough_modal_options options, bough_modal_piece *piece);
-
 #endif

@@ -245,7 +245,8 @@ static void set_all(fields *f, bool stiffening) {
     for (int j = 0; j < BOUGH_MODAL_FIELDS && stiffening; j++) set_stiffening(f, j);
 }
 
-void bough_modal_matrices(bough_arena *arena, bough_modal_options options, bough_modal_piece *piece) {
+// All other matrices from the shapes.
+static void modal_matrices(bough_arena *arena, bough_modal_options options, bough_modal_piece *piece) {
     fields f = {.piece = piece};
     bough_arena *work = bough_arena_child(arena);
     take_memory(arena, work, &f);
@@ -277,6 +278,6 @@ bough_status bough_modal_piece_create(bough_arena *arena, const bough_rod_def *d
     *piece =
         (bough_modal_piece){.rod = rod, .first = first, .n = last - first, .inner = last < def->n_segment};
     if (bough_is_ok(&status)) status = bough_modal_basis(arena, options, piece);
-    if (bough_is_ok(&status)) bough_modal_matrices(arena, options, piece);
+    if (bough_is_ok(&status)) modal_matrices(arena, options, piece);
     return status;
 }

@@ -6,7 +6,7 @@
 
 #include <string.h>
 
-void bough_rod_blocks_init(bough_rod_blocks *b, bough_arena *arena, const bough_rod_model *m) {
+static void blocks_init(bough_rod_blocks *b, bough_arena *arena, const bough_rod_model *m) {
     b->mass = bough_arena_doubles(arena, (size_t)bough_padded(m->n) * BOUGH_BLOCK);
     bough_block_tridiagonal_init(&b->position, arena, m->n);
     bough_block_tridiagonal_init(&b->velocity, arena, m->n);
@@ -24,7 +24,7 @@ void bough_rod_tangent_init(bough_rod_tangent *k, bough_arena *arena, const boug
     k->force = bough_arena_doubles(arena, FORCES * s);
     k->packed = bough_arena_doubles(arena, (size_t)bough_padded(m->n) * W8);
     bough_block_tridiagonal_init(&k->matrix, arena, m->n);
-    bough_rod_blocks_init(&k->blocks, arena, m);
+    blocks_init(&k->blocks, arena, m);
 }
 
 bool bough_rod_linearise(const bough_rod_model *m, const bough_rod_loads *loads, double t,

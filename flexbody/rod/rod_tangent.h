@@ -42,7 +42,6 @@ typedef struct bough_rod_tangent {
 } bough_rod_tangent;
 
 void bough_rod_tangent_init(bough_rod_tangent *k, bough_arena *arena, const bough_rod_model *m);
-void bough_rod_blocks_init(bough_rod_blocks *b, bough_arena *arena, const bough_rod_model *m);
 
 // Tangents at a state. False when they are not finite there.
 bool bough_rod_linearise(const bough_rod_model *m, const bough_rod_loads *loads, double t,

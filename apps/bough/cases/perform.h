@@ -89,9 +89,6 @@ bough_study_conclude bough_timing_conclude;
 // table.txt and table.csv of compared runs.
 bough_status bough_precision_tables(const bough_study_results *results, const char *folder);
 
-// "ok", "failed at t=12.3 s", "not run"
-void bough_case_status(const bough_case_result *result, char text[40]);
-
 // Writes a field of a CSV file, in quotes where it needs them; line ends become blanks.
 void bough_csv_text(FILE *file, const char *text);
 

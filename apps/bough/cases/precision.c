@@ -69,7 +69,8 @@ void bough_study_compare(const bough_study *study, const bough_study_series *ser
 
 enum { COLUMNS = BOUGH_STUDY_AXES + 2 * BOUGH_STUDY_MEASURES + 8, WIDTH = 48, SHORT = 100 };
 
-void bough_case_status(const bough_case_result *result, char text[40]) {
+// "ok", "failed at t=12.3 s", "not run"
+static void case_status(const bough_case_result *result, char text[40]) {
     if (!result->done) {
         snprintf(text, 40, "not run");
     } else if (bough_is_ok(&result->outcome)) {
@@ -134,7 +135,7 @@ static void put_row(line *l, const bough_study_results *results, int row) {
     const bough_case_result *r = result_of(results, row);
     char status[40];
     bool good = r->done && bough_is_ok(&r->outcome);
-    bough_case_status(r, status);
+    case_status(r, status);
     l->n = 0;
     if (row < 0)
         put(l, "reference");
@@ -313,7 +314,7 @@ static const char *line_name(bough_arena *arena, const bough_study_results *resu
     for (int i = first; i < first + n; i++) {
         char status[40];
         if (has_point(&results->result[i], 0)) continue;
-        bough_case_status(&results->result[i], status);
+        case_status(&results->result[i], status);
         name = bough_arena_print(arena, "%s%s%s %s", name, between, bough_study_value(s, &s->cases[i], last),
                                  strcmp(status, "ok") == 0 ? "equals the reference" : status);
         between = "; ";

@@ -124,33 +124,37 @@ static bough_status perform(measurement *m) {
     return bough_ends_study(m->point->outcome.code) ? m->point->outcome : bough_ok();
 }
 
-bough_status bough_tune_time(const bough_tune_state *t, bough_tune_point *point) {
+// Runs it again, without an estimate of the error, and takes the lesser CPU time.
+static bough_status tune_time(const bough_tune_state *t, bough_tune_point *point) {
     measurement m = {t, point, false, false};
     return perform(&m);
 }
 
-bough_status bough_tune_measure(const bough_tune_state *t, bool shares, bough_tune_point *point) {
+// Runs the stretch with the point's settings: its errors, with `shares` their shares, and its CPU time.
+// BOUGH_INTERRUPTED by the options' stop; a run that fails is an outcome of the point.
+static bough_status tune_measure(const bough_tune_state *t, bool shares, bough_tune_point *point) {
     measurement m = {t, point, true, shares};
     bough_status status = perform(&m);
     if (!bough_is_ok(&status) || !bough_is_ok(&point->outcome)) return status;
-    return bough_tune_time(t, point);
+    return tune_time(t, point);
 }
 
 // -- the front ------------------------------------------------------------------------------------
 
 bool bough_tune_ended(const bough_tune_point *p) { return bough_is_ok(&p->outcome) && p->cpu > 0; }
 
-bool bough_tune_meets(const bough_tune_state *t, const bough_tune_point *p) {
+static bool tune_meets(const bough_tune_state *t, const bough_tune_point *p) {
     return bough_tune_ended(p) && p->error <= t->error;
 }
 
 static bool beats(const bough_tune_state *t, const bough_tune_point *a, const bough_tune_point *b) {
-    bool meets = bough_tune_meets(t, a), other = bough_tune_meets(t, b);
+    bool meets = tune_meets(t, a), other = tune_meets(t, b);
     if (meets != other) return meets;
     return meets ? a->cpu < b->cpu : a->error < b->error;
 }
 
-void bough_tune_choose(bough_tune_state *t) {
+// Notes the front and the chosen point.
+static void tune_choose(bough_tune_state *t) {
     t->chosen = -1;
     for (int i = 0; i < t->n; i++) {
         bough_tune_point *p = &t->point[i];
@@ -219,8 +223,8 @@ static bough_status try(bough_tune_state *t, const bough_tune_settings *s, bool 
     if (*at >= 0 || t->n == BOUGH_TUNE_POINTS) return bough_ok();
     *at = t->n++;
     t->point[*at] = (bough_tune_point){.settings = *s, .outcome = bough_ok()};
-    bough_status status = bough_tune_measure(t, shares, &t->point[*at]);
-    bough_tune_choose(t);
+    bough_status status = tune_measure(t, shares, &t->point[*at]);
+    tune_choose(t);
     if (bough_is_ok(&status)) bough_tune_print(t, *at, t->options->stream);
     return status;
 }
@@ -265,7 +269,7 @@ static bough_status descend(bough_tune_state *t, bough_tune_settings *s) {
         bough_status status = try(t, s, true, &at);
         if (!bough_is_ok(&status) || at < 0) return status;
         const bough_tune_point *p = &t->point[at];
-        bool meets = bough_tune_meets(t, p);
+        bool meets = tune_meets(t, p);
         if (!bough_tune_ended(p) || !p->shared || (k > 0 && t->n == n)) break;
         if (meets ? p->error > close_to * t->error : !(p->error < before)) break;
         before = p->error;
@@ -350,13 +354,12 @@ static bough_status time_again(bough_tune_state *t) {
     for (int k = 0; k < 2; k++) {
         for (int i = 0; i < t->n; i++) {
             bough_tune_point *p = &t->point[i];
-            if (!p->best && !p->settings.own &&
-                !(bough_tune_meets(t, p) && p->cpu < 1.3 * t->point[t->chosen].cpu))
+            if (!p->best && !p->settings.own && !(tune_meets(t, p) && p->cpu < 1.3 * t->point[t->chosen].cpu))
                 continue;
-            BOUGH_TRY(bough_tune_time(t, p));
+            BOUGH_TRY(tune_time(t, p));
         }
     }
-    bough_tune_choose(t);
+    tune_choose(t);
     return bough_ok();
 }
 
@@ -388,7 +391,7 @@ static bough_status conclude(const bough_tune_state *t) {
     fprintf(t->options->stream, "\n");
     bough_tune_print_settings(t, t->options->stream);
     print_equal(t);
-    if (bough_tune_meets(t, p)) return bough_ok();
+    if (tune_meets(t, p)) return bough_ok();
     return bough_fail(BOUGH_FAILED, "no settings meet the error %.3g: the least is %.2g, with those above",
                       t->error, p->error);
 }

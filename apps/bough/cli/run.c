@@ -59,7 +59,9 @@ static double least_step_time(const bough_run_command *command) {
     return 2 * sum;
 }
 
-bough_status bough_run_forecast(const bough_run_command *command, FILE *stream) {
+// Tells what the command records, and of a long run (more than a million macro steps or a gigabyte)
+// steps and time on stderr. BOUGH_INVALID where the results cannot fit on the disk of its folder.
+static bough_status run_forecast(const bough_run_command *command, FILE *stream) {
     const bough_run *run = &command->run;
     const bough_master *m = run->simulation->master;
     bough_forecast results = bough_run_results(run->simulation, &command->recorded, &command->shape);
@@ -154,7 +156,7 @@ static bough_status open_results(bough_run_command *command) {
                               .kept = command->rows};
     status = bough_recorder_open(command->arena, &def, &command->recorder);
     if (bough_is_ok(&status)) status = open_frames(command);
-    return bough_is_ok(&status) ? bough_run_forecast(command, stdout) : status;
+    return bough_is_ok(&status) ? run_forecast(command, stdout) : status;
 }
 
 bough_status bough_run_command_build(bough_run_command *command) {

@@ -50,10 +50,6 @@ bough_status bough_run_command_build(bough_run_command *command);
 // Writes summary.json into the command's folder.
 bough_status bough_run_summarise(const bough_run_command *command);
 
-// What the run errs by (run_error.c): into the summary, and in the closing lines.
-void bough_run_write_error(bough_summary *s, const bough_run_command *command);
-void bough_run_tell_error(const bough_run_command *command, FILE *stream);
-
 // Tells the user how it went: what was run, how fast, what came out, how wrong at most, what to do next.
 void bough_run_report(bough_run_command *command, FILE *stream);
 
@@ -87,9 +83,5 @@ double bough_forecast_derivative(const bough_coupling *c, int member, int tries,
 
 // Writes "results: 101 rows of 6 columns, 0.012 MB".
 void bough_forecast_print(bough_forecast forecast, const bough_channels *channels, FILE *stream);
-
-// Tells what the command records, and of a long run (more than a million macro steps or a gigabyte)
-// steps and time on stderr. BOUGH_INVALID where the results cannot fit on the disk of its folder.
-bough_status bough_run_forecast(const bough_run_command *command, FILE *stream);
 
 #endif

@@ -84,7 +84,8 @@ static void write_shares(bough_summary *s, const bough_run_command *command) {
     bough_summary_end(s);
 }
 
-void bough_run_write_error(bough_summary *s, const bough_run_command *command) {
+// What the run errs by (run_error.c): into the summary, and in the closing lines.
+static void run_write_error(bough_summary *s, const bough_run_command *command) {
     write_verdict(s, command);
     write_channels(s, &command->run, "error_estimate", command->run.companion->error);
     write_shares(s, command);
@@ -101,7 +102,7 @@ static void tell_shares(const bough_run_command *command, int channel, FILE *str
     }
 }
 
-void bough_run_tell_error(const bough_run_command *command, FILE *stream) {
+static void run_tell_error(const bough_run_command *command, FILE *stream) {
     const bough_companion *c = command->run.companion;
     char warning[BOUGH_ERROR_WARNING];
     int worst[WORST], n = bough_error_worst(c, WORST, worst);
@@ -345,7 +346,7 @@ bough_status bough_run_summarise(const bough_run_command *command) {
     write_control(&s, run);
     write_accuracy(&s, run);
     write_interfaces(&s, run);
-    bough_run_write_error(&s, command);
+    run_write_error(&s, command);
     write_statistics(&s, command);
     write_whole(&s, run);
     const bough_assembly *assembly = run->simulation->master->assembly;
@@ -451,7 +452,7 @@ static void tell_next(const bough_run_command *command, FILE *stream) {
 void bough_run_report(bough_run_command *command, FILE *stream) {
     tell_run(command, stream);
     tell_channels(command, stream);
-    bough_run_tell_error(command, stream);
+    run_tell_error(command, stream);
     tell_warnings(&command->run, stream);
     tell_next(command, stream);
 }

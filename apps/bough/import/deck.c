@@ -221,7 +221,7 @@ int bough_deck_whole(const bough_deck *deck, const char *names, int least, int m
     return 0;
 }
 
-bool bough_deck_flag(const bough_deck *deck, const char *names) {
+static bool deck_flag(const bough_deck *deck, const char *names) {
     char word[WORD];
     int line = value_of(deck, names, "True", word);
     if (line < 0) return false;
@@ -249,15 +249,14 @@ int bough_deck_whole_or(const bough_deck *deck, const char *names, int fallback)
 }
 
 bool bough_deck_flag_or(const bough_deck *deck, const char *names, bool fallback) {
-    return is_default(deck, names) ? fallback : bough_deck_flag(deck, names);
+    return is_default(deck, names) ? fallback : deck_flag(deck, names);
 }
 
 // A switch was a flag in some versions and is a number in others.
 double bough_deck_switch_or(const bough_deck *deck, const char *names, double fallback) {
     if (is_default(deck, names)) return fallback;
     const char *text = bough_deck_text(deck, names);
-    return strchr("tTfF", text[text[0] == '.']) ? bough_deck_flag(deck, names)
-                                                : bough_deck_number(deck, names);
+    return strchr("tTfF", text[text[0] == '.']) ? deck_flag(deck, names) : bough_deck_number(deck, names);
 }
 
 // -- files ----------------------------------------------------------------------------------------

@@ -47,7 +47,6 @@ bough_deck bough_deck_part(const bough_deck *deck, const char *words);
 // The value of that name.
 double bough_deck_number(const bough_deck *deck, const char *names);
 int bough_deck_whole(const bough_deck *deck, const char *names, int least, int most);
-bool bough_deck_flag(const bough_deck *deck, const char *names);
 const char *bough_deck_text(const bough_deck *deck, const char *names);
 
 // The same, `fallback` where there is no such line or it says "default".

@@ -12,7 +12,8 @@ bough_vec3 bough_placement_axis(int axis) {
     return bough_v3(axis == BOUGH_SCENE_X, axis == BOUGH_SCENE_Y, axis == BOUGH_SCENE_Z);
 }
 
-bough_mat3 bough_placement_turn(int axis, double angle) {
+// The rotation by an angle [rad] about one of the axes.
+static bough_mat3 placement_turn(int axis, double angle) {
     bough_vec3 turn = bough_scale(angle, bough_placement_axis(axis));
     return bough_rotation_matrix(bough_quaternion_exponential(turn));
 }
@@ -22,7 +23,7 @@ bough_transform bough_placement(int n, const bough_scene_step *step) {
     for (int k = 0; k < n; k++) {
         bough_transform move = bough_transform_identity();
         if (step[k].rotate) {
-            move.rotation = bough_placement_turn(step[k].axis, step[k].amount);
+            move.rotation = placement_turn(step[k].axis, step[k].amount);
         } else {
             move.position = bough_scale(step[k].amount, bough_placement_axis(step[k].axis));
         }
@@ -37,7 +38,7 @@ static bough_transform placement(const bough_scene_body *body, bough_transform x
     x = bough_transform_compose(x, bough_placement(body->joint.n_placement, body->joint.placement));
     if (body->pitch != 0) {
         bough_transform pitch = bough_transform_identity();
-        pitch.rotation = bough_placement_turn(BOUGH_SCENE_Z, -body->pitch);
+        pitch.rotation = placement_turn(BOUGH_SCENE_Z, -body->pitch);
         x = bough_transform_compose(x, pitch);
     }
     return x;

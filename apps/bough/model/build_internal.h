@@ -43,9 +43,6 @@ bough_status bough_load_link_build(bough_arena *arena, bough_simulation *s);
 // The unit vector of a bough_scene_axis.
 bough_vec3 bough_placement_axis(int axis);
 
-// The rotation by an angle [rad] about one of the axes.
-bough_mat3 bough_placement_turn(int axis, double angle);
-
 // The frame after n steps, in the frame they start from.
 bough_transform bough_placement(int n, const bough_scene_step *step);
 

@@ -37,8 +37,10 @@ bough_section_load bough_section_in_segment(const bough_beam *beam, const bough_
                                 .moment = bough_blend(first, bough_scale(-1, last), share)};
 }
 
-bough_section_load bough_section_at_vertex(const bough_beam *beam, const bough_rod_scratch *scratch,
-                                           int vertex) {
+// Load at a vertex, from 0 to n_segment: the mean of both segments, whose loads differ by the load that
+// acts on the vertex; at the ends that of the only segment.
+static bough_section_load section_at_vertex(const bough_beam *beam, const bough_rod_scratch *scratch,
+                                            int vertex) {
     int n = bough_beam_mesh(beam)->n_segment;
     int inner = vertex > 0 ? vertex - 1 : 0, outer = vertex < n ? vertex : n - 1;
     bough_section_load a = bough_section_in_segment(beam, scratch, inner, vertex - inner);
@@ -118,7 +120,7 @@ static void rod_loads(const bough_shape *shape, int body, double t, double *forc
     bough_mat3 axes = bough_tree_frame_pose(s->view, &s->tree->markers[beam->marker]).rotation;
     if (!bough_section_evaluate(s, beam, t, scratch)) return;
     for (int k = 0; k < shape->line[body].n_point; k++) {
-        bough_section_load load = bough_section_at_vertex(beam, scratch, k);
+        bough_section_load load = section_at_vertex(beam, scratch, k);
         bough_v3_store(bough_mat3_mul(axes, load.force), force + 3 * k);
         bough_v3_store(bough_mat3_mul(axes, load.moment), moment + 3 * k);
     }

@@ -44,9 +44,4 @@ bool bough_section_evaluate(const bough_simulation *s, const bough_beam *beam, d
 bough_section_load bough_section_in_segment(const bough_beam *beam, const bough_rod_scratch *scratch,
                                             int segment, double share);
 
-// Load at a vertex, from 0 to n_segment: the mean of both segments, whose loads differ by the load that
-// acts on the vertex; at the ends that of the only segment.
-bough_section_load bough_section_at_vertex(const bough_beam *beam, const bough_rod_scratch *scratch,
-                                           int vertex);
-
 #endif

@@ -69,7 +69,8 @@ static const struct {
 
 const char *bough_limit_name(bough_limit limit) { return limits[limit].name; }
 
-void bough_validity_pass(bough_validity *v, bough_limit limit, int body, double time, double value) {
+// Notes that a limit is passed, if it is the first time.
+static void validity_pass(bough_validity *v, bough_limit limit, int body, double time, double value) {
     if (v->limit[limit].passed) return;
     v->limit[limit] = (bough_passing){true, body, time, value};
 }
@@ -84,15 +85,15 @@ static void check_air(bough_simulation *s) {
         bough_rotor_extremes x = bough_rotor_look(rotor, data, b);
         int body = s->scene->turbine.blade[b];
         if (x.outside_table) {
-            bough_validity_pass(s->validity, BOUGH_LIMIT_ATTACK, body, time, x.alpha * (180 / BOUGH_PI));
+            validity_pass(s->validity, BOUGH_LIMIT_ATTACK, body, time, x.alpha * (180 / BOUGH_PI));
         }
         if (x.speed > most_mach * speed_of_sound) {
-            bough_validity_pass(s->validity, BOUGH_LIMIT_MACH, body, time, x.speed);
+            validity_pass(s->validity, BOUGH_LIMIT_MACH, body, time, x.speed);
         }
         double missed = bough_aero_link_missed(s->aero, b);
-        if (missed > most_missed) bough_validity_pass(s->validity, BOUGH_LIMIT_SAMPLES, body, time, missed);
+        if (missed > most_missed) validity_pass(s->validity, BOUGH_LIMIT_SAMPLES, body, time, missed);
         if (x.distance < 1) {
-            bough_validity_pass(s->validity, BOUGH_LIMIT_TOWER, body, time, x.distance);
+            validity_pass(s->validity, BOUGH_LIMIT_TOWER, body, time, x.distance);
         }
     }
 }
@@ -104,8 +105,7 @@ static void check_speed(bough_simulation *s) {
     bough_tree_joint_rows(s->tree, rotor, &q, &v);
     double speed = s->leader.state[v], rated = control->law.rated_speed / control->gear_ratio;
     if (fabs(speed) <= most_over_rated * fabs(rated)) return;
-    bough_validity_pass(s->validity, BOUGH_LIMIT_ROTOR_SPEED, rotor, s->master->time,
-                        speed * (30 / BOUGH_PI));
+    validity_pass(s->validity, BOUGH_LIMIT_ROTOR_SPEED, rotor, s->master->time, speed * (30 / BOUGH_PI));
 }
 
 static double dot(bough_quaternion p, bough_quaternion q) {
@@ -164,8 +164,8 @@ static void check_turns(bough_simulation *s) {
         for (int k = 0; k < m->n; k++) {
             double turn = turn_of(m, p, k);
             if (turn <= most_turn) continue;
-            bough_validity_pass(s->validity, BOUGH_LIMIT_TURN, (int)(beam->body - s->scene->body),
-                                s->master->time, turn * (180 / BOUGH_PI));
+            validity_pass(s->validity, BOUGH_LIMIT_TURN, (int)(beam->body - s->scene->body), s->master->time,
+                          turn * (180 / BOUGH_PI));
             break;
         }
     }
@@ -183,7 +183,7 @@ static void check_closures(bough_simulation *s) {
     v->margin = fmax(v->margin, margin);
     if (!(margin <= least_margin && margin <= least_share * v->margin)) return;
     const int *body = s->scene->closure[closure].body;
-    bough_validity_pass(v, BOUGH_LIMIT_SINGULAR, body[body[0] == BOUGH_GROUND], t, margin);
+    validity_pass(v, BOUGH_LIMIT_SINGULAR, body[body[0] == BOUGH_GROUND], t, margin);
 }
 
 // -- at the start ---------------------------------------------------------------------------------
@@ -216,14 +216,14 @@ static void check_rotor(bough_simulation *s) {
     bough_rotor_place r = bough_simulation_rotor(s);
     double gap = narrowest_gap(s, &r);
     if (gap < 2 * BOUGH_PI / n - most_uneven) {
-        bough_validity_pass(s->validity, BOUGH_LIMIT_SPACING, body, 0, gap * (180 / BOUGH_PI));
+        validity_pass(s->validity, BOUGH_LIMIT_SPACING, body, 0, gap * (180 / BOUGH_PI));
     }
     if (!s->aero) return;
     bough_vec3 wind = bough_aero_link_hub_wind(s->aero, 0);
     double speed = sqrt(bough_dot(wind, wind)), along = bough_dot(wind, r.axis);
     if (along >= least_along * speed) return;
     double angle = acos(fmax(-1, along / speed));
-    bough_validity_pass(s->validity, BOUGH_LIMIT_ACROSS, body, 0, angle * (180 / BOUGH_PI));
+    validity_pass(s->validity, BOUGH_LIMIT_ACROSS, body, 0, angle * (180 / BOUGH_PI));
 }
 
 // Rods in a row are one rod: only a single one is coarse.
@@ -233,7 +233,7 @@ static void check_mesh(bough_simulation *s) {
         int parent = beam->body->joint.parent;
         bool in_row = beam->end >= 0 || (parent >= 0 && s->scene->body[parent].fidelity == BOUGH_SCENE_ROD);
         if (beam->port < 0 || in_row || beam->def.n_segment > 1) continue;
-        bough_validity_pass(s->validity, BOUGH_LIMIT_MESH, (int)(beam->body - s->scene->body), 0, 1);
+        validity_pass(s->validity, BOUGH_LIMIT_MESH, (int)(beam->body - s->scene->body), 0, 1);
     }
 }
 
@@ -296,7 +296,7 @@ void bough_validity_check_work(bough_simulation *s, double steps) {
     fastest f = {s, 0};
     bough_status status = bough_arena_use(find_fastest, &f);
     (void)status; // no rate: the first body stands for the scene
-    bough_validity_pass(v, BOUGH_LIMIT_STEPS, f.body, s->master->time, taken);
+    validity_pass(v, BOUGH_LIMIT_STEPS, f.body, s->master->time, taken);
 }
 
 void bough_validity_describe(const bough_simulation *s, bough_limit limit, char *text, size_t size) {

@@ -36,9 +36,6 @@ typedef struct bough_validity {
     double work;   // steps in macro steps of very many steps, times states
 } bough_validity;
 
-// Notes that a limit is passed, if it is the first time.
-void bough_validity_pass(bough_validity *v, bough_limit limit, int body, double time, double value);
-
 // Checks the model at the start, with `view` up to date.
 void bough_validity_start(bough_simulation *s);
 

@@ -55,7 +55,8 @@ static size_t count_bodies(bough_schema_reader *r, const bough_scene *s) {
     return bodies;
 }
 
-void bough_scene_repeat(bough_schema_reader *r, bough_scene *s) {
+// Makes single bodies of those in a row.
+static void scene_repeat(bough_schema_reader *r, bough_scene *s) {
     bough_arena *arena = r->arena;
     int n = s->n_body, next = n;
     size_t total = count_bodies(r, s);
@@ -184,7 +185,7 @@ bough_status bough_scene_read(bough_arena *arena, const char *path, const char *
     if (root->kind == BOUGH_MAPPING && bough_node_find(root, "bodies") == NULL)
         bough_schema_error(&reader, root, "", "required key 'bodies' is missing");
     bough_scene_apply_accuracy(s);
-    if (s->node != NULL && errors->n == 0) bough_scene_repeat(&reader, s);
+    if (s->node != NULL && errors->n == 0) scene_repeat(&reader, s);
     if (s->node != NULL) bough_scene_link(&reader, s);
     s->named = reader.files;
     s->bases = bases;

@@ -120,7 +120,8 @@ static void mix_words(uint64_t *hash, const char *bytes, size_t n) {
     bough_mix(hash, &n, sizeof n);
 }
 
-void bough_mix_file(uint64_t *hash, const char *path) {
+// What the file holds; nothing of one that cannot be read.
+static void mix_file(uint64_t *hash, const char *path) {
     char block[1 << 16], why[BOUGH_INPUT_REASON];
     FILE *file = bough_input_open(path, BOUGH_INPUT_DATA, why);
     if (!file) return;
@@ -140,7 +141,7 @@ static uint64_t sum_of(bough_file_sums *sums, const char *path) {
     }
     struct bough_file_sum *s = bough_arena_take(sums->arena, sizeof *s);
     *s = (struct bough_file_sum){sums->known, bough_arena_string(sums->arena, path), BOUGH_FINGERPRINT_START};
-    bough_mix_file(&s->sum, path);
+    mix_file(&s->sum, path);
     sums->known = s;
     return s->sum;
 }
@@ -156,4 +157,4 @@ void bough_mix_scene(uint64_t *hash, bough_file_sums *sums, const bough_scene *s
     bough_arena_destroy(own);
 }
 
-void bough_mix_program(uint64_t *hash) { bough_mix_file(hash, "/proc/self/exe"); }
+void bough_mix_program(uint64_t *hash) { mix_file(hash, "/proc/self/exe"); }

@@ -29,9 +29,6 @@ bough_scene_files bough_scene_list_files(bough_arena *arena, const bough_scene *
 void bough_mix(uint64_t *hash, const void *bytes, size_t n);
 void bough_mix_text(uint64_t *hash, const char *text);
 
-// What the file holds; nothing of one that cannot be read.
-void bough_mix_file(uint64_t *hash, const char *path);
-
 // Sums of files, so that each is read once for scenes that share it.
 typedef struct bough_file_sums {
     bough_arena *arena;

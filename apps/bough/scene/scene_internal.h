@@ -82,9 +82,6 @@ void bough_scene_check_body_load(bough_schema_reader *r, const bough_scene *scen
 // `root`. NULL after an error in the block.
 bough_node *bough_scene_expand(bough_schema_reader *reader, bough_node *root);
 
-// Makes single bodies of those in a row.
-void bough_scene_repeat(bough_schema_reader *reader, bough_scene *scene);
-
 // Gives settings that are not named what follows from simulation.accuracy; scene_accuracy.c has the laws.
 void bough_scene_apply_accuracy(bough_scene *scene);
 
