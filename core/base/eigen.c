@@ -124,14 +124,40 @@ static bool iterate(search *s, int wanted, int *chosen, int *found) {
     return false;
 }
 
-// Of 1/μ it is μ's conjugate partner that has the positive imaginary part.
-static void fill_pair(const search *s, int k, bough_eigen_pair *pair) {
-    int n = s->op->n_shape;
+// theory (101): A y is (y − x)/γ, or x without γ.
+double bough_eigen_residual(const bough_eigen_operator *op, double real, double imaginary, const double *x,
+                            const double *y) {
+    double sum = 0, size = 0;
+    int n = op->length;
+    for (int part = 0; part < 2; part++) {
+        double other = part == 0 ? -imaginary : imaginary;
+        for (int i = 0; i < n; i++) {
+            double own = y[part * n + i], image = x[part * n + i];
+            if (op->gamma > 0) image = (own - image) / op->gamma;
+            double left = image - real * own - other * y[(1 - part) * n + i];
+            sum += op->weight[i] * left * left;
+            size += op->weight[i] * own * own;
+        }
+    }
+    return sqrt(sum / size) / hypot(real, imaginary);
+}
+
+// Of 1/μ it is μ's conjugate partner that has the positive imaginary part. x, y (2 × length): work.
+static void fill_pair(const search *s, int k, double *x, double *y, bough_eigen_pair *pair) {
+    const bough_eigen_operator *op = s->op;
+    size_t n = (size_t)op->length, bytes = (size_t)op->n_shape * sizeof(double);
     eigenvalue(s, k, &pair->real, &pair->imaginary);
-    bough_arnoldi_combine(&s->basis, k, n, pair->shape_real);
-    if (s->basis.value[s->basis.done + k] == 0) return;
-    bough_arnoldi_combine(&s->basis, k + 1, n, pair->shape_imag);
-    for (int i = 0; i < n && s->op->gamma == 0; i++) pair->shape_imag[i] *= -1;
+    memset(x, 0, 2 * n * sizeof *x);
+    memset(y, 0, 2 * n * sizeof *y);
+    bool oscillates = s->basis.value[s->basis.done + k] != 0;
+    for (int part = 0; part <= oscillates; part++) {
+        double *own = x + (size_t)part * n;
+        bough_arnoldi_combine(&s->basis, k + part, op->length, own);
+        for (size_t i = 0; i < n && part == 1 && op->gamma == 0; i++) own[i] *= -1;
+        op->apply(op->self, own, y + (size_t)part * n);
+        memcpy(part == 0 ? pair->shape_real : pair->shape_imag, own, bytes);
+    }
+    pair->residual = bough_eigen_residual(op, pair->real, pair->imaginary, x, y);
 }
 
 // -- whole ----------------------------------------------------------------------------------------
@@ -143,8 +169,8 @@ static void take_shapes(bough_arena *arena, int n, bough_eigen_pair *pair, int c
     }
 }
 
-bough_status bough_eigen_nearest(bough_arena *arena, const bough_eigen_operator *op, int wanted,
-                                 bough_eigen_pair *pair, int *found) {
+static bough_status find(bough_arena *arena, const bough_eigen_operator *op, int wanted,
+                         bough_eigen_pair *pair, int *found) {
     int first = 4 * wanted + SPARE, capacity = first + first * LOOKS / 2 + BLOCK_SIZE;
     search s = {.op = op, .basis = {.apply = apply, .self = &s}};
     s.order = bough_arena_take(arena, (size_t)(capacity + wanted) * sizeof *s.order);
@@ -159,8 +185,21 @@ bough_status bough_eigen_nearest(bough_arena *arena, const bough_eigen_operator 
                           op->name, wanted, accuracy);
     }
     take_shapes(arena, op->n_shape, pair, *found);
-    for (int i = 0; i < *found; i++) fill_pair(&s, chosen[i], &pair[i]);
+    double *x = bough_arena_doubles(arena, 4 * (size_t)op->length), *y = x + 2 * (size_t)op->length;
+    for (int i = 0; i < *found; i++) fill_pair(&s, chosen[i], x, y, &pair[i]);
     return bough_ok();
+}
+
+// The highest may be beyond rounding: then half as many.
+bough_status bough_eigen_nearest(bough_arena *arena, const bough_eigen_operator *op, bough_eigen_pair *pair,
+                                 bough_eigen_count *count) {
+    bough_status status;
+    count->converged = 2 * count->wanted;
+    do {
+        count->converged /= 2;
+        status = find(arena, op, count->converged, pair, &count->found);
+    } while (status.code == BOUGH_FAILED && count->converged > 1);
+    return status;
 }
 
 // -- second order ---------------------------------------------------------------------------------
@@ -205,5 +244,5 @@ bough_status bough_eigen_smallest(bough_arena *arena, const bough_eigen_problem 
         const double *mass = problem->mass + (size_t)(i / W8) * BOUGH_BLOCK;
         op.weight[i] = op.weight[half + i] = c < 6 ? fabs(mass[W8 * c + c]) : 0;
     }
-    return bough_eigen_nearest(arena, &op, wanted, pair, found);
+    return find(arena, &op, wanted, pair, found);
 }

@@ -26,13 +26,26 @@ typedef struct bough_eigen_operator {
 // from the point.
 typedef struct bough_eigen_pair {
     double real, imaginary;          // λ [rad/s]
+    double residual;                 // bough_eigen_residual of it
     double *shape_real, *shape_imag; // (n_shape), of any length and phase
 } bough_eigen_pair;
 
-// Finds `wanted` pairs, or all if there are fewer (*found), each with a residual below 1e-9 of the
-// inverse's eigenvalue. BOUGH_FAILED when the iteration does not converge.
-bough_status bough_eigen_nearest(bough_arena *arena, const bough_eigen_operator *op, int wanted,
-                                 bough_eigen_pair *pair, int *found);
+// How many pairs a search has found.
+typedef struct bough_eigen_count {
+    int wanted;    // room for them
+    int converged; // for so many the iteration converges: `wanted`, halved until it does
+    int found;     // fewer than that: there are no more
+} bough_eigen_count;
+
+// Finds the pairs, count->wanted of them or as many as converge, each with a residual below 1e-9 of the
+// inverse's eigenvalue. BOUGH_FAILED when the iteration does not converge even for one.
+bough_status bough_eigen_nearest(bough_arena *arena, const bough_eigen_operator *op, bough_eigen_pair *pair,
+                                 bough_eigen_count *count);
+
+// ‖A y − λ y‖/(|λ| ‖y‖) in the operator's inner product, y the operator's image of a vector x near the
+// eigenvector, by theory (101). Both are complex, real before imaginary part (2 × length).
+double bough_eigen_residual(const bough_eigen_operator *op, double real, double imaginary, const double *x,
+                            const double *y);
 
 // A damped, possibly gyroscopic or unsymmetric system
 //     (λ² M + λ C + K) q = 0

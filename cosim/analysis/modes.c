@@ -69,7 +69,7 @@ static void apply(void *self, const double *z, double *image) {
     memcpy(image, z, (size_t)n * sizeof *image);
     bough_whole_solve(m->whole, image);
     bough_whole_project(m->whole, m->def->state, image);
-    if (m->def->spin == 0) return;
+    if (m->def->spin == 0 || m->diverged) return;
     // further terms until they are negligible
     double size = largest(image, n);
     memcpy(m->term, image, (size_t)n * sizeof *image);
@@ -94,8 +94,8 @@ static void take(bough_arena *arena, modes *m, bough_eigen_operator *op) {
     for (size_t k = 0; k < n; k++) op->weight[k] = 1 / (op->weight[k] * op->weight[k]);
 }
 
-bough_status bough_modes_find(bough_arena *arena, bough_whole *whole, const bough_modes_def *def, int wanted,
-                              bough_eigen_pair *pair, int *found) {
+bough_status bough_modes_find(bough_arena *arena, bough_whole *whole, const bough_modes_def *def,
+                              bough_eigen_pair *pair, bough_eigen_count *count) {
     modes m = {.whole = whole, .def = def};
     bough_eigen_operator op = {.name = "whole scene",
                                .length = whole->assembly->n_state,
@@ -108,7 +108,7 @@ bough_status bough_modes_find(bough_arena *arena, bough_whole *whole, const boug
     // factors of I − γJ, then Arnoldi's method on their solutions
     bough_status status = bough_whole_setup(whole, def->time, def->state, def->input, op.gamma);
     if (!bough_is_ok(&status)) return bough_fail(BOUGH_FAILED, "%s", status.message);
-    status = bough_eigen_nearest(arena, &op, wanted, pair, found);
+    status = bough_eigen_nearest(arena, &op, pair, count);
     if (m.diverged) {
         return bough_fail(BOUGH_FAILED,
                           "the rotation is too fast for the transform's"

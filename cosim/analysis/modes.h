@@ -31,9 +31,9 @@ void bough_modes_harmonic(int n, int h, const double *real, const double *imagin
 // S of the parts, rate (n_part × n_part), row-major.
 void bough_modes_rate(const bough_modes_def *def, double *rate);
 
-// Finds `wanted` pairs as bough_eigen_nearest does, shapes (n_state). BOUGH_FAILED also where the
+// Finds pairs as bough_eigen_nearest does, shapes (n_state). BOUGH_FAILED also where the
 // spin is too fast for the point: it should be several times the largest h Ω.
-bough_status bough_modes_find(bough_arena *arena, bough_whole *whole, const bough_modes_def *def, int wanted,
-                              bough_eigen_pair *pair, int *found);
+bough_status bough_modes_find(bough_arena *arena, bough_whole *whole, const bough_modes_def *def,
+                              bough_eigen_pair *pair, bough_eigen_count *count);
 
 #endif

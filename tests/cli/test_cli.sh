@@ -496,9 +496,11 @@ modes() {
     expect 0 modes "$turbine" --set 'modes={count: 3, at: undeformed, shapes: true}' --out whole
     has ../stdout '^whole scene: .*, rotor at 4.77465 rpm, seen by an observer at rest, rotor free to turn; the air'
     has ../stdout '^ *1 .* blades .* flap .* backward '
+    has ../stdout '^largest residual of a mode: [0-9.]*e-1[0-9] of its eigenvalue'
+    has whole/modes.json '"eigenvalues_converged": 11'
     has whole/shapes.csv '^body,mode,span (m),ux (m),'
     [ "$(wc -l <whole/shapes.csv)" -eq 235 ] || fail "$said: shapes.csv has not 235 lines"
-    has whole/modes.csv '^mode,frequency (Hz),.*,pattern,collective (-),forward (-),backward (-),tower'
+    has whole/modes.csv '^mode,frequency (Hz),.*,decrement (-),residual (-),.*,pattern,collective (-),forward (-),backward (-),tower'
     rm -r whole
     expect 0 modes "$beam" --set 'loads=[{body: beam, at: tip, force: [0, 0, -3 kN], frame: follower}]'
     has ../stdout '^unstable beam: mode [23] grows at '

@@ -151,26 +151,27 @@ static void apply_transposed(void *self, const double *z, double *image) {
     bough_dense_product((bough_product){w->n, 1, w->n, true, 1, 0}, w->inverse, w->moved, image);
 }
 
-// Pairs nearest to the point, right or left, without the memory of the air; fewer where the highest are
-// beyond rounding.
-static bough_status find_pairs(bough_arena *arena, work *w, bool left, bool decaying, int wanted,
-                               bough_eigen_pair *pair, int *found) {
-    bough_eigen_operator op = {.name = "whole scene in the air",
-                               .length = w->n,
-                               .n_shape = w->n,
-                               .gamma = 1 / w->system->def->point,
-                               .weight = bough_arena_doubles(arena, (size_t)w->n),
-                               .decaying = decaying,
-                               .self = w,
-                               .apply = left ? apply_transposed : apply};
-    bough_assembly_scales(w->system->whole->assembly, op.weight);
-    for (int k = 0; k < w->n; k++) op.weight[k] = pow(op.weight[k], left ? 2 : -2);
-    bough_status status;
-    do {
-        status = bough_eigen_nearest(arena, &op, wanted, pair, found);
-        wanted /= 2;
-    } while (status.code == BOUGH_FAILED && wanted > 0);
-    return status;
+// Products in which states of the members count in units of their scales (power −2), those of the air as they
+// are; of left vectors the inverse.
+static double *product_weights(bough_arena *arena, const work *w, double power) {
+    double *weight = bough_arena_doubles(arena, (size_t)(w->n + w->m));
+    bough_assembly_scales(w->system->whole->assembly, weight);
+    for (int k = 0; k < w->n + w->m; k++) weight[k] = k < w->n ? pow(weight[k], power) : 1;
+    return weight;
+}
+
+// Pairs nearest to the point, right or left, without the memory of the air.
+static bough_status find_pairs(bough_arena *arena, work *w, bool left, bool decaying, bough_eigen_pair *pair,
+                               bough_eigen_count *count) {
+    const bough_eigen_operator op = {.name = "whole scene in the air",
+                                     .length = w->n,
+                                     .n_shape = w->n,
+                                     .gamma = 1 / w->system->def->point,
+                                     .weight = product_weights(arena, w, left ? 2 : -2),
+                                     .decaying = decaying,
+                                     .self = w,
+                                     .apply = left ? apply_transposed : apply};
+    return bough_eigen_nearest(arena, &op, pair, count);
 }
 
 static int slower(const void *a, const void *b) {
@@ -183,9 +184,13 @@ static int slower(const void *a, const void *b) {
 
 // The members in the subspace of their modes, and all states of the air: theory (100).
 typedef struct reduced {
-    int r, all;                       // modes as real columns; with the states of the air
-    double *right, *left;             // U (n × r), L (r × n), L U = E
-    double *matrix;                   // (all × all)
+    int r, all;           // modes as real columns; with the states of the air
+    int unpaired;         // modes that were found on one side only
+    double *right, *left; // U (n × r), L (r × n), L U = E
+    double *matrix;       // (all × all)
+    double *rest;         // (n × m) γ T⁻¹ P (E − U L) R: the modes left out by the air's states
+    double *factor;       // (all × all) of E − γ matrix
+    int *pivot;           // (all)
     double *value, *vector, *inverse; // (2 × all), (all × all): of the matrix of its vectors
 } reduced;
 
@@ -205,7 +210,10 @@ static void collect(const work *w, int n_right, const bough_eigen_pair *right, i
     size_t n = (size_t)w->n, bytes = n * sizeof(double);
     for (int i = 0; i < n_right; i++) {
         const bough_eigen_pair *other = partner(&right[i], n_left, left);
-        if (other == NULL) continue;
+        if (other == NULL) {
+            x->unpaired++;
+            continue;
+        }
         for (int part = 0; part < 1 + (right[i].imaginary > 0); part++) {
             size_t at = (size_t)x->r++ * n;
             memcpy(x->right + at, part == 0 ? right[i].shape_real : right[i].shape_imag, bytes);
@@ -261,7 +269,7 @@ static void set_air(bough_arena *arena, work *w, reduced *x) {
     const bough_air_tangent *air = w->system->air;
     int a = air->n_air;
     size_t n = (size_t)w->n, r = (size_t)x->r, m = (size_t)w->m, all = (size_t)x->all, n_air = (size_t)a;
-    double *lift = bough_arena_doubles(arena, n * m), *force = bough_arena_doubles(arena, r * m);
+    double *lift = x->rest = bough_arena_doubles(arena, n * m), *force = bough_arena_doubles(arena, r * m);
     double *drive = bough_arena_doubles(arena, n_air * (r + m));
     // forces of the air's states, on the modes and on what is left out
     for (size_t j = 0; j < m; j++) memcpy(lift + j * n, air->lift + (size_t)w->air[j] * n, n * sizeof *lift);
@@ -341,45 +349,123 @@ static double participation(const reduced *x, size_t j, bool pair) {
     return whole > 0 ? motion / whole : 0;
 }
 
-static void list_modes(bough_arena *arena, const work *w, const reduced *x, int most, bough_eigen_pair *pair,
-                       int *found) {
-    size_t all = (size_t)x->all, n = (size_t)w->n;
-    bough_product shape = {w->n, 1, x->r, false, 1, 0};
+// -- the whole system -----------------------------------------------------------------------------
+
+// The inverse (E − γ ·)⁻¹ of members and air together, (n + m) rows: theory (102).
+typedef struct whole_inverse {
+    work *w;
+    const reduced *x;
+    double *other; // (n) what is outside the subspace
+    double *part;  // (all)
+} whole_inverse;
+
+static bool factor_reduced(bough_arena *arena, const work *w, reduced *x) {
+    size_t all = (size_t)x->all;
+    x->factor = bough_arena_doubles(arena, all * all);
+    x->pivot = bough_arena_take(arena, all * sizeof *x->pivot);
+    for (size_t k = 0; k < all * all; k++) x->factor[k] = -x->matrix[k] / w->system->def->point;
+    for (size_t k = 0; k < all; k++) x->factor[k * all + k] += 1;
+    return bough_dense_factor(x->all, x->factor, x->pivot);
+}
+
+// += γ G y
+static void add_drive(const work *w, const double *y, double *air) {
+    const bough_air_tangent *t = w->system->air;
+    for (int j = 0; j < w->n; j++) {
+        const double *column = t->drive + (size_t)j * (size_t)t->n_air;
+        for (int i = 0; i < w->m; i++) air[i] += column[w->air[i]] * y[j] / w->system->def->point;
+    }
+}
+
+static void apply_whole(void *self, const double *z, double *image) {
+    const whole_inverse *s = self;
+    const reduced *x = s->x;
+    const work *w = s->w;
+    size_t r = (size_t)x->r;
+    // what is outside the subspace, by itself
+    bough_dense_product((bough_product){x->r, 1, w->n, false, 1, 0}, x->left, z, s->part);
+    memcpy(s->other, z, (size_t)w->n * sizeof *z);
+    bough_dense_product((bough_product){w->n, 1, x->r, false, -1, 1}, x->right, s->part, s->other);
+    apply(s->w, s->other, image);
+    // the subspace and the air, which it drives
+    memcpy(s->part + r, z + w->n, (size_t)w->m * sizeof *z);
+    add_drive(w, image, s->part + r);
+    bough_dense_solve(x->all, 1, x->factor, x->pivot, s->part);
+    bough_dense_product((bough_product){w->n, 1, x->r, false, 1, 1}, x->right, s->part, image);
+    bough_dense_product((bough_product){w->n, 1, w->m, false, 1 / w->system->def->point, 1}, x->rest,
+                        s->part + r, image);
+    memcpy(image + w->n, s->part + r, (size_t)w->m * sizeof *image);
+}
+
+// A mode of the reduced system as one of the whole, after one step of inverse iteration.
+static void expand(const bough_eigen_operator *op, size_t j, double *from, double *to, bough_eigen_pair *p) {
+    const whole_inverse *s = op->self;
+    const work *w = s->w;
+    const reduced *x = s->x;
+    size_t n = (size_t)op->length;
+    memset(from, 0, 2 * n * sizeof *from);
+    memset(to, 0, 2 * n * sizeof *to);
+    for (size_t part = 0; part < 1 + (size_t)(p->imaginary > 0); part++) {
+        const double *vector = x->vector + (j + part) * (size_t)x->all;
+        double *z = from + part * n;
+        bough_dense_product((bough_product){w->n, 1, x->r, false, 1, 0}, x->right, vector, z);
+        bough_dense_product((bough_product){w->n, 1, w->m, false, 1 / w->system->def->point, 1}, x->rest,
+                            vector + x->r, z);
+        memcpy(z + w->n, vector + x->r, (size_t)w->m * sizeof *z);
+        op->apply(op->self, z, to + part * n);
+        memcpy(part == 0 ? p->shape_real : p->shape_imag, to + part * n, (size_t)w->n * sizeof *to);
+    }
+    p->residual = bough_eigen_residual(op, p->real, p->imaginary, from, to);
+}
+
+static void list_modes(bough_arena *arena, work *w, const reduced *x, bough_eigen_pair *pair, int *found) {
+    size_t all = (size_t)x->all, n = (size_t)w->n, length = n + (size_t)w->m;
+    whole_inverse self = {w, x, bough_arena_doubles(arena, n), bough_arena_doubles(arena, all)};
+    const bough_eigen_operator op = {.length = (int)length,
+                                     .gamma = 1 / w->system->def->point,
+                                     .weight = product_weights(arena, w, -2),
+                                     .self = &self,
+                                     .apply = apply_whole};
+    double *from = bough_arena_doubles(arena, 4 * length);
     *found = 0;
-    for (size_t j = 0; j < all && *found < most; j++) {
+    for (size_t j = 0; j < all; j++) {
         double growth = x->value[j], frequency = x->value[all + j];
         if (frequency < 0 || (frequency == 0 && growth <= 0)) continue;
         if (participation(x, j, frequency > 0) < least_motion) continue;
         bough_eigen_pair *p = &pair[(*found)++];
-        *p = (bough_eigen_pair){growth, frequency, bough_arena_doubles(arena, n),
+        *p = (bough_eigen_pair){growth, frequency, 0, bough_arena_doubles(arena, n),
                                 bough_arena_doubles(arena, n)};
-        bough_dense_product(shape, x->right, x->vector + j * all, p->shape_real);
-        if (frequency > 0) bough_dense_product(shape, x->right, x->vector + (j + 1) * all, p->shape_imag);
+        expand(&op, j, from, from + 2 * length, p);
     }
 }
 
-static bough_status follow_memory(bough_arena *arena, work *w, int wanted, bough_eigen_pair *pair,
-                                  int *found) {
-    int basis = wanted + wanted / 2, n_right, n_left;
+static bough_status follow_memory(bough_arena *arena, work *w, bough_eigen_pair *pair,
+                                  bough_eigen_count *count, int *unpaired) {
+    int basis = count->wanted + count->wanted / 2;
     bough_eigen_pair *right = bough_arena_take(arena, (size_t)basis * sizeof *right);
     bough_eigen_pair *left = bough_arena_take(arena, (size_t)basis * sizeof *left);
+    bough_eigen_count n_right = {.wanted = basis}, n_left = {.wanted = basis};
     reduced x = {0};
-    BOUGH_TRY(find_pairs(arena, w, false, true, basis, right, &n_right));
-    BOUGH_TRY(find_pairs(arena, w, true, true, basis, left, &n_left));
-    if (!reduce(arena, w, n_right, right, n_left, left, &x) || !find_vectors(arena, &x))
-        return bough_fail(BOUGH_FAILED, "the motion in the air cannot be reduced to %d modes", n_right);
+    BOUGH_TRY(find_pairs(arena, w, false, true, right, &n_right));
+    BOUGH_TRY(find_pairs(arena, w, true, true, left, &n_left));
+    if (!reduce(arena, w, n_right.found, right, n_left.found, left, &x) || !factor_reduced(arena, w, &x) ||
+        !find_vectors(arena, &x))
+        return bough_fail(BOUGH_FAILED, "the motion in the air cannot be reduced to %d modes", n_right.found);
+    *unpaired = x.unpaired + (n_left.found > n_right.found ? n_left.found - n_right.found : 0);
+    count->converged = n_right.converged < n_left.converged ? n_right.converged : n_left.converged;
     bough_eigen_pair *all = bough_arena_take(arena, (size_t)x.all * sizeof *all);
-    list_modes(arena, w, &x, x.all, all, found);
-    qsort(all, (size_t)*found, sizeof *all, slower);
-    if (*found > wanted) *found = wanted;
-    memcpy(pair, all, (size_t)*found * sizeof *all);
+    list_modes(arena, w, &x, all, &count->found);
+    qsort(all, (size_t)count->found, sizeof *all, slower);
+    if (count->found > count->wanted) count->found = count->wanted;
+    memcpy(pair, all, (size_t)count->found * sizeof *all);
     return bough_ok();
 }
 
-bough_status bough_aeroelastic_modes(bough_arena *arena, const bough_aeroelastic *system, int wanted,
-                                     bough_eigen_pair *pair, int *found) {
+bough_status bough_aeroelastic_modes(bough_arena *arena, const bough_aeroelastic *system,
+                                     bough_eigen_pair *pair, bough_eigen_count *count, int *unpaired) {
     const bough_modes_def *def = system->def;
     work w = {.system = system, .n = system->air->n};
+    *unpaired = 0;
     find_air(arena, &w);
     take(arena, &w);
     bough_status status = bough_whole_setup(system->whole, def->time, def->state, def->input, 1 / def->point);
@@ -387,8 +473,8 @@ bough_status bough_aeroelastic_modes(bough_arena *arena, const bough_aeroelastic
     invert(&w);
     if (!factor(arena, &w))
         return bough_fail(BOUGH_FAILED, "the motion in the air is singular about %g /s", def->point);
-    if (w.m > 0) return follow_memory(arena, &w, wanted, pair, found);
-    status = find_pairs(arena, &w, false, false, wanted, pair, found);
-    qsort(pair, (size_t)*found, sizeof *pair, slower);
+    if (w.m > 0) return follow_memory(arena, &w, pair, count, unpaired);
+    status = find_pairs(arena, &w, false, false, pair, count);
+    qsort(pair, (size_t)count->found, sizeof *pair, slower);
     return status;
 }

@@ -18,13 +18,15 @@ typedef struct bough_aeroelastic {
 } bough_aeroelastic;
 
 // Finds up to `wanted` oscillations and growing motions in which the bodies take part.
-//   wanted  room for as many pairs
-//   pair    by |λ|; their shapes (n_state), of any length and phase, are the arena's
-//   found   how many there are
+//   pair      by |λ|, room for count->wanted; their shapes (n_state), of any length and phase, are the
+//   arena's count     how many there are; with memory of the air `converged` is that of the subspace's basis,
+//   half as
+//             many again
+//   unpaired  eigenvectors that the subspace leaves out: on the other side, left or right, none converged
 // The cost is that of factoring a dense matrix of n_state rows, and with memory of the air that of all
 // eigenvalues of one of its states and of three for each mode. BOUGH_FAILED where the eigenvalues do not
 // converge or the system is singular about the point.
-bough_status bough_aeroelastic_modes(bough_arena *arena, const bough_aeroelastic *system, int wanted,
-                                     bough_eigen_pair *pair, int *found);
+bough_status bough_aeroelastic_modes(bough_arena *arena, const bough_aeroelastic *system,
+                                     bough_eigen_pair *pair, bough_eigen_count *count, int *unpaired);
 
 #endif

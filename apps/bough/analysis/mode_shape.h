@@ -71,6 +71,7 @@ typedef struct bough_scene_mode {
     double damped_frequency; // Im λ/2π [Hz]; 0: it grows without oscillating
     double damping;          // ratio −Re λ/|λ|; negative: it grows
     double growth;           // Re λ [1/s]
+    double residual;         // of its eigenvector: bough_eigen_residual
     double *share;           // of the kinetic energy per body of the scene, sum 1
     int body;                // the body of the largest, or a blade when all blades' together is
     bool blades;             // it is

@@ -25,6 +25,7 @@ static void set_value(const bough_eigen_pair *pair, bough_scene_mode *mode) {
     mode->frequency = modulus / (2 * BOUGH_PI);
     mode->damped_frequency = pair->imaginary / (2 * BOUGH_PI);
     mode->damping = fabs(ratio) > rounding ? ratio : 0;
+    mode->residual = pair->residual;
 }
 
 static const double at_rest = 1e-9; // [rad/s]
@@ -112,7 +113,7 @@ static bool is_closure(const bough_tree *tree, const bough_eigen_pair *pair) {
 
 static void drop_other_motions(const bough_tree *tree, double point, int count, bough_vibration *v) {
     int kept = 0;
-    for (int k = 0; k < v->found && kept < count; k++) {
+    for (int k = 0; k < v->count.found && kept < count; k++) {
         double modulus = hypot(v->pair[k].real, v->pair[k].imaginary);
         bool moves = modulus > free_motion * point && !is_closure(tree, &v->pair[k]);
         if (moves) v->pair[kept++] = v->pair[k];
@@ -123,14 +124,9 @@ static void drop_other_motions(const bough_tree *tree, double point, int count, 
 // Modes of the bodies; the forces of the air do not follow.
 static bough_status solve_bodies(bough_arena *arena, const bough_simulation *s, const solution *x, int count,
                                  bough_vibration *v) {
-    int wanted = count + FREE_MOTIONS + 2 * s->tree->closure_rank;
-    v->pair = bough_arena_take(arena, (size_t)wanted * sizeof *v->pair);
-    bough_status status = bough_modes_find(arena, x->coupled, &x->def, wanted, v->pair, &v->found);
-    while (status.code == BOUGH_FAILED && wanted > 1) { // the highest may be beyond rounding
-        wanted /= 2;
-        status = bough_modes_find(arena, x->coupled, &x->def, wanted, v->pair, &v->found);
-    }
-    return status;
+    v->count.wanted = count + FREE_MOTIONS + 2 * s->tree->closure_rank;
+    v->pair = bough_arena_take(arena, (size_t)v->count.wanted * sizeof *v->pair);
+    return bough_modes_find(arena, x->coupled, &x->def, v->pair, &v->count);
 }
 
 // Modes in the air whose forces follow the bodies' motion.
@@ -141,9 +137,9 @@ static bough_status solve_in_air(bough_arena *arena, bough_simulation *s, const 
     BOUGH_TRY(bough_air_tangent_find(arena, s, x->coupled, x->def.time, x->state, dynamic, NULL, &air));
     bough_air_tangent_average(arena, s, &x->group, &air);
     bough_aeroelastic system = {s, x->coupled, &x->def, &x->group, &air};
-    int wanted = count + FREE_MOTIONS;
-    v->pair = bough_arena_take(arena, (size_t)wanted * sizeof *v->pair);
-    return bough_aeroelastic_modes(arena, &system, wanted, v->pair, &v->found);
+    v->count.wanted = count + FREE_MOTIONS;
+    v->pair = bough_arena_take(arena, (size_t)v->count.wanted * sizeof *v->pair);
+    return bough_aeroelastic_modes(arena, &system, v->pair, &v->count, &v->unpaired);
 }
 
 static bough_status solve(bough_arena *arena, bough_simulation *s, double time, int count,
@@ -158,8 +154,9 @@ static bough_status solve(bough_arena *arena, bough_simulation *s, double time, 
     bool in_air = s->aero && s->scene->modes.air != BOUGH_SCENE_AIR_FROZEN;
     bough_status status =
         in_air ? solve_in_air(arena, s, &x, count, v) : solve_bodies(arena, s, &x, count, v);
+    if (!bough_is_ok(&status)) return status;
     drop_other_motions(s->tree, x.def.point, count, v);
-    return bough_is_ok(&status) ? describe(arena, s, &x, v) : status;
+    return describe(arena, s, &x, v);
 }
 
 bool bough_vibration_wanted(const bough_simulation *s) {
@@ -174,7 +171,7 @@ bough_status bough_vibration_find(bough_arena *arena, bough_simulation *s, int c
                                   bough_vibration *vibration) {
     bool balanced = s->scene->modes.at == BOUGH_SCENE_IN_EQUILIBRIUM;
     double time = balanced ? bough_equilibrium_time(s) : 0;
-    *vibration = (bough_vibration){0};
+    *vibration = (bough_vibration){.asked = count};
     bough_status status = bough_ok();
     if (balanced) status = bough_simulation_equilibrium(s, s->master->assembly, time, &vibration->work);
     return bough_is_ok(&status) ? solve(arena, s, time, count, vibration) : status;

@@ -16,6 +16,9 @@ typedef struct bough_vibration {
     bool frozen;                 // it turns, but the blades allow no transform
     int n_blade;                 // compared; 0: none
     int n_row;                   // of a shape
+    int asked;                   // modes
+    bough_eigen_count count;     // of the eigenvalues among which they are sought
+    int unpaired;                // of these, left out of the air's system: see aeroelastic.h
     int found;
     bough_scene_mode *mode; // (found) by the distance of λ from a point near 0
     bough_eigen_pair *pair; // (found)

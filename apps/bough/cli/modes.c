@@ -4,6 +4,7 @@
 #include "apps/bough/analysis/steady.h"
 #include "apps/bough/cli/modes_internal.h"
 #include "apps/bough/results/folder.h"
+#include "apps/bough/results/summary.h"
 #include "flexbody/rod/rod_modes.h"
 
 static const double unstable = 1e-6; // growth relative to |λ| above it is no rounding
@@ -36,6 +37,10 @@ typedef struct rod_list {
 
 // -- table ----------------------------------------------------------------------------------------
 
+double bough_modes_decrement(double frequency, double damped_frequency, double damping) {
+    return damped_frequency > 0 ? 2 * BOUGH_PI * frequency * damping / damped_frequency : (double)NAN;
+}
+
 static void print_rod_head(const rod_modes *x) {
     const bough_rod_model *m = x->steady.model;
     printf("rod %s: %d segments, %.9g m, root held", m->name, m->n, m->span[m->n]);
@@ -45,16 +50,18 @@ static void print_rod_head(const rod_modes *x) {
                "in the mean of a turn",
                x->turning.speed * 30 / BOUGH_PI, a.x, a.y, a.z);
     }
-    printf("\n%4s %12s %12s %11s  %-8s %7s %7s %7s %7s\n", "mode", "frequency", "damped", "damping", "shape",
-           "flap", "edge", "axial", "torsion");
-    printf("%4s %12s %12s %11s  %-8s %7s %7s %7s\n", "", "(Hz)", "(Hz)", "(%)", "", "x", "y", "z");
+    printf("\n%4s %12s %12s %11s %11s  %-8s %7s %7s %7s %7s\n", "mode", "frequency", "damped", "damping",
+           "decrement", "shape", "flap", "edge", "axial", "torsion");
+    printf("%4s %12s %12s %11s %11s  %-8s %7s %7s %7s\n", "", "(Hz)", "(Hz)", "(%)", "(-)", "", "x", "y",
+           "z");
 }
 
 static void print_rod(const rod_modes *x) {
     print_rod_head(x);
     for (int k = 0; k < x->list.found; k++) {
         const bough_rod_mode *m = &x->list.mode[k];
-        printf("%4d %12.6g %12.6g %11.5f  %-8s", k + 1, m->frequency, m->damped_frequency, 100 * m->damping,
+        printf("%4d %12.6g %12.6g %11.5f %11.5f  %-8s", k + 1, m->frequency, m->damped_frequency,
+               100 * m->damping, bough_modes_decrement(m->frequency, m->damped_frequency, m->damping),
                blade_shapes[m->dominant]);
         for (int c = 0; c < BOUGH_ROD_DIRECTIONS; c++) printf(" %7.4f", m->share[c]);
         putchar('\n');
@@ -70,8 +77,10 @@ static void print_rod(const rod_modes *x) {
 static void write_rod_modes(FILE *file, const rod_modes *x) {
     for (int k = 0; k < x->list.found; k++) {
         const bough_rod_mode *m = &x->list.mode[k];
-        fprintf(file, "%s,%d,%.10g,%.10g,%.10g,%s", x->steady.model->name, k + 1, m->frequency,
-                m->damped_frequency, m->damping, blade_shapes[m->dominant]);
+        fprintf(file, "%s,%d,%.10g,%.10g,%.10g,%.10g,%s", x->steady.model->name, k + 1, m->frequency,
+                m->damped_frequency, m->damping,
+                bough_modes_decrement(m->frequency, m->damped_frequency, m->damping),
+                blade_shapes[m->dominant]);
         for (int c = 0; c < BOUGH_ROD_DIRECTIONS; c++) fprintf(file, ",%.6g", m->share[c]);
         fputc('\n', file);
     }
@@ -95,9 +104,10 @@ static void write_rod_shapes(FILE *file, const rod_modes *x) {
 
 static void write_all_modes(const void *self, FILE *file) {
     const rod_list *rods = self;
-    fputs("rod,mode,frequency (Hz),damped frequency (Hz),damping ratio (-),shape,flap x (-),edge y (-),"
-          "axial z (-),torsion (-)\n",
-          file);
+    fputs(
+        "rod,mode,frequency (Hz),damped frequency (Hz),damping ratio (-),decrement (-),shape,flap x (-),edge y (-),"
+        "axial z (-),torsion (-)\n",
+        file);
     for (int k = 0; k < rods->n; k++) write_rod_modes(file, &rods->rod[k]);
 }
 
@@ -171,23 +181,47 @@ static void print_head(const bough_simulation *s, const bough_vibration *v) {
     if (rotor_is_free(s)) printf(", rotor free to turn");
     static const char *const air[] = {"do not follow", "follow at once", "follow in time"};
     if (s->aero) printf("; the air's forces %s", air[s->scene->modes.air]);
-    printf("\n%4s %12s %12s %11s  %-12s %-8s %-12s %8s %8s %8s\n", "mode", "frequency", "damped", "damping",
-           "body", "shape", "pattern", "collect.", "forward", "backward");
-    printf("%4s %12s %12s %11s\n", "", "(Hz)", "(Hz)", "(%)");
+    printf("\n%4s %12s %12s %11s %11s  %-12s %-8s %-12s %8s %8s %8s\n", "mode", "frequency", "damped",
+           "damping", "decrement", "body", "shape", "pattern", "collect.", "forward", "backward");
+    printf("%4s %12s %12s %11s %11s\n", "", "(Hz)", "(Hz)", "(%)", "(-)");
+}
+
+static double largest_residual(const bough_vibration *v) {
+    double largest = 0;
+    for (int k = 0; k < v->found; k++) largest = fmax(largest, v->mode[k].residual);
+    return largest;
+}
+
+// What of the modes asked for is missing, and why; and how exact those found are.
+static void print_search(const bough_vibration *v) {
+    bool converged = v->count.converged >= v->count.wanted;
+    if (v->found < v->asked && converged)
+        printf("there are no more than %d of the %d modes asked for\n", v->found, v->asked);
+    if (v->found < v->asked && !converged)
+        printf("%d of the %d modes asked for: the iteration converges for no more than %d eigenvalues\n",
+               v->found, v->asked, v->count.converged);
+    if (v->found == v->asked && !converged && v->count.converged < v->asked)
+        printf("the highest modes are less exact: the iteration converges for no more than %d eigenvalues\n",
+               v->count.converged);
+    if (v->unpaired > 0)
+        printf("%d eigenvectors are left out of the motion in the air: their left or right partner did not "
+               "converge\n",
+               v->unpaired);
+    printf("largest residual of a mode: %.2g of its eigenvalue\n", largest_residual(v));
 }
 
 static void print_modes(const bough_simulation *s, const bough_vibration *v) {
     print_head(s, v);
     for (int k = 0; k < v->found; k++) {
         const bough_scene_mode *m = &v->mode[k];
-        printf("%4d %12.6g %12.6g %11.5f  %-12s %-8s %-12s", k + 1, m->frequency, m->damped_frequency,
-               100 * m->damping, bough_modes_body(s, m), bough_modes_shape(s, m),
-               bough_pattern_names[m->pattern]);
+        printf("%4d %12.6g %12.6g %11.5f %11.5f  %-12s %-8s %-12s", k + 1, m->frequency, m->damped_frequency,
+               100 * m->damping, bough_modes_decrement(m->frequency, m->damped_frequency, m->damping),
+               bough_modes_body(s, m), bough_modes_shape(s, m), bough_pattern_names[m->pattern]);
         for (int c = 0; v->n_blade > 0 && c < 3; c++) printf(" %8.4f", m->whirl[c]);
         if (rotor_is_free(s) && turns_rotor(m)) printf("  free rotor");
         putchar('\n');
     }
-    if (v->found < s->scene->modes.count) printf("no more modes found\n");
+    print_search(v);
     for (int k = 0; k < v->found; k++) {
         const bough_scene_mode *m = &v->mode[k];
         if (m->growth <= unstable * 2 * BOUGH_PI * m->frequency) continue;
@@ -212,14 +246,15 @@ static void write_modes(const void *self, FILE *file) {
     const bough_simulation *s = x->simulation;
     const bough_vibration *v = x->found;
     int n_body = s->scene->n_body;
-    fputs("mode,frequency (Hz),damped frequency (Hz),damping ratio (-),body,shape,pattern,"
-          "collective (-),forward (-),backward (-)",
+    fputs("mode,frequency (Hz),damped frequency (Hz),damping ratio (-),decrement (-),residual (-),body,shape,"
+          "pattern,collective (-),forward (-),backward (-)",
           file);
     for (int i = 0; i < n_body; i++) fprintf(file, ",%s (-)", s->scene->body[i].name);
     fputc('\n', file);
     for (int k = 0; k < v->found; k++) {
         const bough_scene_mode *m = &v->mode[k];
-        fprintf(file, "%d,%.10g,%.10g,%.10g,%s,%s,%s", k + 1, m->frequency, m->damped_frequency, m->damping,
+        fprintf(file, "%d,%.10g,%.10g,%.10g,%.10g,%.2g,%s,%s,%s", k + 1, m->frequency, m->damped_frequency,
+                m->damping, bough_modes_decrement(m->frequency, m->damped_frequency, m->damping), m->residual,
                 bough_modes_body(s, m), bough_modes_shape(s, m), bough_pattern_names[m->pattern]);
         for (int c = 0; c < 3; c++) fprintf(file, ",%.6g", m->whirl[c]);
         for (int i = 0; i < n_body; i++) fprintf(file, ",%.6g", m->share[i]);
@@ -240,6 +275,18 @@ static void write_shapes(const void *self, FILE *file) {
             fputc('\n', file);
         }
     }
+}
+
+static bough_status write_search(const bough_vibration *v, const char *folder) {
+    bough_summary s;
+    BOUGH_TRY(bough_summary_open(&s, folder, "modes.json"));
+    bough_summary_integer(&s, "modes_asked", v->asked);
+    bough_summary_integer(&s, "modes_found", v->found);
+    bough_summary_integer(&s, "eigenvalues_sought", v->count.wanted);
+    bough_summary_integer(&s, "eigenvalues_converged", v->count.converged);
+    bough_summary_integer(&s, "eigenvectors_unpaired", v->unpaired);
+    bough_summary_number(&s, "largest_residual", largest_residual(v));
+    return bough_summary_close(&s);
 }
 
 // -- the linear state space -----------------------------------------------------------------------
@@ -305,6 +352,7 @@ static bough_status find_whole(bough_arena *arena, const bough_options *options,
     print_modes(s, &v);
     bough_status status = bough_folder_make(folder);
     if (bough_is_ok(&status)) status = bough_folder_write(folder, "modes.csv", write_modes, &x);
+    if (bough_is_ok(&status)) status = write_search(&v, folder);
     if (bough_is_ok(&status) && s->scene->modes.shapes) {
         status = bough_folder_write(folder, "shapes.csv", write_shapes, &x);
     }

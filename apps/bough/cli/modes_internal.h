@@ -15,4 +15,8 @@ bough_status bough_modes_sweep(bough_arena *arena, const bough_options *options,
 const char *bough_modes_body(const bough_simulation *s, const bough_scene_mode *mode);
 const char *bough_modes_shape(const bough_simulation *s, const bough_scene_mode *mode);
 
+// The logarithmic decrement of an oscillation, −Re λ over its damped frequency; NaN of one that does not
+// oscillate.
+double bough_modes_decrement(double frequency, double damped_frequency, double damping);
+
 #endif

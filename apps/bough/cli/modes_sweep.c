@@ -210,8 +210,9 @@ static void print_point(const sweep *s, int point, int first) {
     putchar('\n');
     for (int k = first; k < s->n_mode; k++) {
         const sweep_mode *m = &s->mode[k];
-        printf("%4d %12.6g %12.6g %11.5f  %-12s %-8s %s%s\n", m->line + 1, m->frequency, m->damped,
-               100 * m->damping, m->body, m->shape, m->pattern, m->damping < -rounding ? "  unstable" : "");
+        printf("%4d %12.6g %12.6g %11.5f %11.5f  %-12s %-8s %s%s\n", m->line + 1, m->frequency, m->damped,
+               100 * m->damping, bough_modes_decrement(m->frequency, m->damped, m->damping), m->body,
+               m->shape, m->pattern, m->damping < -rounding ? "  unstable" : "");
     }
 }
 
@@ -219,8 +220,8 @@ static void write_table(const void *self, FILE *file) {
     const sweep *s = self;
     fputs("point", file);
     for (int k = 0; k < s->n_key; k++) fprintf(file, ",%s", s->key[k]);
-    fputs(",rotor speed (rpm),line,frequency (Hz),damped frequency (Hz),damping ratio (-),body,shape,"
-          "pattern\n",
+    fputs(",rotor speed (rpm),line,frequency (Hz),damped frequency (Hz),damping ratio (-),decrement (-),body,"
+          "shape,pattern\n",
           file);
     for (int i = 0; i < s->n_mode; i++) {
         const sweep_mode *m = &s->mode[i];
@@ -228,8 +229,9 @@ static void write_table(const void *self, FILE *file) {
         for (int k = 0; k < s->n_key; k++) {
             fprintf(file, ",\"%s\"", s->value[k * s->n_point + m->point]);
         }
-        fprintf(file, ",%.10g,%d,%.10g,%.10g,%.10g,%s,%s,%s\n", s->speed[m->point], m->line + 1, m->frequency,
-                m->damped, m->damping, m->body, m->shape, m->pattern);
+        fprintf(file, ",%.10g,%d,%.10g,%.10g,%.10g,%.10g,%s,%s,%s\n", s->speed[m->point], m->line + 1,
+                m->frequency, m->damped, m->damping,
+                bough_modes_decrement(m->frequency, m->damped, m->damping), m->body, m->shape, m->pattern);
     }
 }
 
@@ -419,8 +421,8 @@ bough_status bough_modes_sweep(bough_arena *arena, const bough_options *options,
     const char *folder = bough_out_folder(arena, options);
     bough_status status = read_points(arena, sweeps, &s);
     if (!bough_is_ok(&status)) return status;
-    printf("%4s %12s %12s %11s  %-12s %-8s pattern\n", "line", "frequency", "damped", "damping", "body",
-           "shape");
+    printf("%4s %12s %12s %11s %11s  %-12s %-8s pattern\n", "line", "frequency", "damped", "damping",
+           "decrement", "body", "shape");
     for (int i = 0; i < s.n_point && bough_is_ok(&status); i++) {
         int first = s.n_mode;
         status = solve_point(arena, options, i, track, &s);

@@ -1,7 +1,9 @@
 // Modes in the air: damping of a rigid rotor on a slide beside its thrust's slope and beside time
 // marching; without density the modes of the bodies alone. And a blade that the air brings to rest.
+#include "apps/bough/analysis/state_space.h"
 #include "apps/bough/analysis/vibration.h"
 #include "apps/bough/model/aero_link.h"
+#include "core/base/linalg.h"
 #include "tests/unit/built_scene.h"
 
 #include <string.h>
@@ -233,6 +235,30 @@ TEST(wing_flutters_at_the_speed_of_strip_theory) {
     check_near(low, 139.63, 2e-3, 0);
     check_near(omega, 72.03, 2e-3, 0);
     check_near(low, 137.25, 2e-2, 0);
+}
+
+// The reduced system's eigenvalues are within their residuals of those of the whole one, dense, by
+// differences.
+TEST(modes_are_within_their_residuals) {
+    check_arena(arena);
+    bough_vibration v;
+    bough_state_space x;
+    bough_simulation *s = scene_build(arena, wing, (const char *const[]){NULL});
+    check_ok(bough_vibration_find(arena, s, 2, &v));
+    check_ok(bough_state_space_find(arena, s, 0, &x));
+    size_t n = (size_t)x.n;
+    double *value = bough_arena_doubles(arena, 2 * n), *vector = bough_arena_doubles(arena, n * n);
+    assert_true(bough_dense_eigen(x.n, x.a, value, vector, bough_arena_doubles(arena, 8 * n)));
+    assert_int_equal(v.found, 2);
+    for (int k = 0; k < v.found; k++) {
+        double nearest = HUGE_VAL, real = v.pair[k].real, imaginary = v.pair[k].imaginary;
+        for (size_t j = 0; j < n; j++)
+            nearest = fmin(nearest, hypot(value[j] - real, value[n + j] - imaginary));
+        double off = nearest / hypot(real, imaginary);
+        print_message("residual %.2g, eigenvalue off by %.2g\n", v.mode[k].residual, off);
+        assert_true(v.mode[k].residual < 1e-4);
+        assert_true(off < 10 * v.mode[k].residual);
+    }
 }
 
 // Growth [1/s] of the tip's swings in the chord's normal, over their turning points from 1 s on.

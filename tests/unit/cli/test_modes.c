@@ -12,7 +12,7 @@ typedef struct setup {
     bough_whole *coupled;
     bough_modes_def def;
     bough_eigen_pair pair[N];
-    int found;
+    bough_eigen_count count;
 } setup;
 
 static void build(setup *s, bough_two_mass masses) {
@@ -28,7 +28,8 @@ static void build(setup *s, bough_two_mass masses) {
 }
 
 static void find(setup *s, int wanted) {
-    check_ok(bough_modes_find(s->m.arena, s->coupled, &s->def, wanted, s->pair, &s->found));
+    s->count.wanted = wanted;
+    check_ok(bough_modes_find(s->m.arena, s->coupled, &s->def, s->pair, &s->count));
 }
 
 // det(λ² M + λ C + K) = 0, and the shape's ratio is that of the first row.
@@ -36,7 +37,7 @@ TEST(coupled_masses_have_their_eigenvalues) {
     setup s;
     build(&s, bough_two_mass_default());
     find(&s, 2);
-    assert_int_equal(s.found, 2);
+    assert_int_equal(s.count.found, 2);
     for (int k = 0; k < 2; k++) {
         const bough_eigen_pair *p = &s.pair[k];
         double complex l = p->real + p->imaginary * (double complex)I, link = .5 * l + 10;

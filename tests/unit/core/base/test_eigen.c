@@ -133,3 +133,47 @@ TEST(singular_stiffness_is_diagnosed) {
     assert_int_equal(c.status.code, BOUGH_FAILED);
     assert_non_null(strstr(c.status.message, "chain: the stiffness"));
 }
+
+// Of A⁻¹, diagonal in its first entries, the others are moved by one place in a circle: eigenvalues of equal
+// modulus, of which Arnoldi's method finds none.
+enum { SLOW = 12, ALL = 1000 };
+static void shift(void *self, const double *z, double *image) {
+    const double *circle = self;
+    for (int i = 0; i < SLOW; i++) image[i] = z[i] / (1 + i);
+    for (int i = SLOW; i < ALL; i++) image[i] = *circle * z[i + 1 < ALL ? i + 1 : SLOW];
+}
+
+TEST(as_many_as_converge_are_found) {
+    check_arena(arena);
+    double circle = 1e-3;
+    bough_eigen_operator op = {.name = "circle",
+                               .length = ALL,
+                               .n_shape = ALL,
+                               .weight = bough_arena_doubles(arena, ALL),
+                               .self = &circle,
+                               .apply = shift};
+    bough_eigen_pair pair[20];
+    bough_eigen_count count = {.wanted = 20};
+    for (int i = 0; i < ALL; i++) op.weight[i] = 1;
+    check_ok(bough_eigen_nearest(arena, &op, pair, &count));
+    assert_int_equal(count.wanted, 20);
+    assert_int_equal(count.converged, 10);
+    assert_int_equal(count.found, 10);
+    for (int k = 0; k < 10; k++) {
+        check_near(pair[k].real, 1 + k, 1e-10, 0);
+        assert_true(pair[k].residual < 1e-8);
+    }
+}
+
+// Of x that misses an eigenvector by ε of another, y = A⁻¹ x misses it by ε λ/λ′: the residual is ε (1 −
+// λ/λ′).
+TEST(residual_is_the_distance_from_an_eigenvector) {
+    check_arena(arena);
+    double circle = 1e-3, x[2 * ALL] = {[1] = 1, [3] = 1e-3}, y[2 * ALL] = {0};
+    bough_eigen_operator op = {.length = ALL, .weight = bough_arena_doubles(arena, ALL)};
+    for (int i = 0; i < ALL; i++) op.weight[i] = 1;
+    shift(&circle, x, y);
+    check_near(bough_eigen_residual(&op, 2, 0, x, y), 1e-3 * (1 - 2. / 4), 1e-6, 0);
+    op.gamma = 0.5; // of (1 − 1/ν)/γ they are −2 and −6
+    check_near(bough_eigen_residual(&op, -2, 0, x, y), 1e-3 * (6 - 2) / 4 / (2 * 0.5), 1e-6, 0);
+}
