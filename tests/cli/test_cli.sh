@@ -496,6 +496,7 @@ modes() {
     expect 0 modes "$turbine" --set 'modes={count: 3, at: undeformed, shapes: true}' --out whole
     has ../stdout '^whole scene: .*, rotor at 4.77465 rpm, seen by an observer at rest, rotor free to turn; the air'
     has ../stdout '^ *1 .* blades .* flap .* backward '
+    has ../stdout '^half the segments move no mode by more than 0.0'
     has ../stdout '^largest residual of a mode: [0-9.]*e-1[0-9] of its eigenvalue'
     has whole/modes.json '"eigenvalues_converged": 11'
     has whole/shapes.csv '^body,mode,span (m),ux (m),'
@@ -508,6 +509,10 @@ modes() {
     refused 'no revolute joint carries it' modes "$blade" --set 'modes.speed=1 rad/s'
     refused "'b=1' has 1 values, the first 2" modes "$turbine" --sweep 'a=1, 2' --sweep 'b=1'
     refused "expects KEY=V1, V2" modes "$turbine" --sweep 'gravity'
+    refused 'the linear system changes as the bodies turn' modes "$turbine" --set 'bodies[blade1].pitch=7 deg'
+    expect 0 modes "$blade" --set 'modes={of: scene, count: 9}' --set 'bodies[0].rod.segments=6' --out mesh
+    has ../stdout '^warning: modes that half the segments move by more than 1 %: [2-9]'
+    rm -r mesh
     refused "needs a --sweep" modes "$turbine" --until unstable
     refused "expects unstable, got 'stable'" modes "$turbine" --sweep 'a=1' --until stable
     # Goland's wing: 139.63 m/s and 72.03 rad/s by strips with the model's mass terms

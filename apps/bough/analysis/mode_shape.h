@@ -72,6 +72,7 @@ typedef struct bough_scene_mode {
     double damping;          // ratio −Re λ/|λ|; negative: it grows
     double growth;           // Re λ [1/s]
     double residual;         // of its eigenvector: bough_eigen_residual
+    double moved;            // by another mesh, |λ − λ'|/|λ|; NaN: not compared, or no such mode there
     double *share;           // of the kinetic energy per body of the scene, sum 1
     int body;                // the body of the largest, or a blade when all blades' together is
     bool blades;             // it is

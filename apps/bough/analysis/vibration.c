@@ -3,6 +3,9 @@
 #include "apps/bough/analysis/aeroelastic.h"
 #include "apps/bough/analysis/mode_shape.h"
 #include "apps/bough/analysis/steady.h"
+#include "apps/bough/model/build.h"
+#include "apps/bough/model/coarser.h"
+#include "core/tree/dynamics.h"
 #include "cosim/analysis/modes.h"
 
 #include <string.h>
@@ -26,6 +29,7 @@ static void set_value(const bough_eigen_pair *pair, bough_scene_mode *mode) {
     mode->damped_frequency = pair->imaginary / (2 * BOUGH_PI);
     mode->damping = fabs(ratio) > rounding ? ratio : 0;
     mode->residual = pair->residual;
+    mode->moved = (double)NAN;
 }
 
 static const double at_rest = 1e-9; // [rad/s]
@@ -45,6 +49,11 @@ static bool is_frozen(const bough_simulation *s, const bough_blade_group *group)
     }
     return false;
 }
+
+// -- periodic systems -----------------------------------------------------------------------------
+
+// A change of the solutions of the linear system above it, relative, is none of rounding.
+static const double constant = 1e-5;
 
 // Data of a solution.
 typedef struct solution {
@@ -84,6 +93,87 @@ static void define(double time, solution *x) {
     x->def.spin = g->speed;
     x->def.point = fmax(least_point, spins * ((g->n - 1) / 2) * fabs(g->speed));
 }
+
+// Turns all joints on at their own speeds, the fastest by `angle`.
+static void turn_on(const bough_tree *tree, double fastest, double angle, double *rate, double *state) {
+    enum { STEPS = 200 };
+    for (int step = 0; step < STEPS; step++) {
+        bough_tree_coordinate_rate(tree, state, rate);
+        for (int k = 0; k < tree->n_q; k++) state[k] += angle / fastest / STEPS * rate[k];
+        for (int i = 0; i < tree->n_links; i++)
+            bough_joint_normalise(&tree->links[i].joint, state + tree->links[i].first_coordinate);
+    }
+}
+
+// The tree's part of a change of the state: its coordinates from, or to, the speeds that belong to them,
+// which turn with the bodies. In place, by `work` (n_q).
+static void convert(const bough_tree *tree, const double *state, bool to_speeds, double *work, double *x) {
+    memset(work, 0, (size_t)tree->n_q * sizeof *work);
+    for (int i = 0; i < tree->n_links; i++) {
+        const bough_link *link = &tree->links[i];
+        int at = link->first_coordinate;
+        if (to_speeds)
+            bough_joint_speed(&link->joint, state + at, x + at, work + at);
+        else
+            bough_joint_rate(&link->joint, state + at, x + at, work + at);
+    }
+    memcpy(x, work, (size_t)tree->n_q * sizeof *x);
+}
+
+// (I − γJ)⁻¹ of a vector with all motions in it.
+static bough_status respond(const bough_simulation *s, const solution *x, double time, const double *state,
+                            double *work, double *response) {
+    const bough_assembly *a = s->master->assembly;
+    bough_assembly_scales(a, response);
+    for (int k = 0; k < a->n_state; k++) response[k] *= 1 + 0.5 * sin(k);
+    convert(s->tree, state, false, work, response);
+    bough_whole_project(x->coupled, state, response);
+    bough_whole_inputs(x->coupled, time, state);
+    BOUGH_TRY(bough_whole_setup(x->coupled, time, state, x->coupled->input, 1 / x->def.point));
+    bough_whole_solve(x->coupled, response);
+    bough_whole_project(x->coupled, state, response);
+    convert(s->tree, state, true, work, response);
+    return bough_ok();
+}
+
+// The tangent where all that turns has turned on by an angle, beside that of the present state: not the same
+// where a rotor of two blades, or one out of balance, is on a support that can move.
+static bough_status check_constant(bough_arena *arena, const bough_simulation *s, const solution *x) {
+    static const double angles[] = {1, 2.3};
+    size_t n = (size_t)s->master->assembly->n_state;
+    double *state, *work, *present, *turned, *scale, fastest = 0;
+    bough_arena_each(arena, n + 1, &state, &work, &present, &turned, &scale);
+    bough_assembly_scales(s->master->assembly, scale);
+    bool driven = false; // by given motions, which turn on with time
+    for (int i = 0; i < s->tree->n_links; i++) {
+        double speed = bough_norm(s->view->joint_twist[i].angular);
+        fastest = fmax(fastest, speed);
+        driven = driven || (s->tree->links[i].motion != NULL && speed > at_rest);
+    }
+    BOUGH_TRY(respond(s, x, x->def.time, x->state, work, present));
+    for (int k = 0; k < 2; k++) {
+        double change = 0, size = 0;
+        memcpy(state, x->state, n * sizeof *state);
+        turn_on(s->tree, fastest, angles[k], work, state);
+        BOUGH_TRY(respond(s, x, x->def.time + (driven ? angles[k] / fastest : 0), state, work, turned));
+        for (size_t i = 0; i < n; i++) {
+            change = fmax(change, fabs(turned[i] - present[i]) / scale[i]);
+            size = fmax(size, fabs(present[i]) / scale[i]);
+        }
+        if (change > constant * size)
+            return bough_fail(
+                BOUGH_INVALID,
+                "%.200s: the linear system changes as the bodies turn, by %.2g of itself: a rotor of "
+                "two or of unequal blades, or out of balance, has no modes but periodic "
+                "solutions (Floquet), which are not computed; stop it, or take 'modes.linear: true' "
+                "for the system at the present azimuth",
+                s->scene->file, change / size);
+    }
+    bough_whole_inputs(x->coupled, x->def.time, x->state);
+    return bough_ok();
+}
+
+// -- solution -------------------------------------------------------------------------------------
 
 static bough_status describe(bough_arena *arena, const bough_simulation *s, const solution *x,
                              bough_vibration *v) {
@@ -151,6 +241,7 @@ static bough_status solve(bough_arena *arena, bough_simulation *s, double time, 
     v->n_blade = x.group.n;
     v->spin = fabs(x.group.speed) < at_rest ? 0 : x.group.speed;
     v->frozen = is_frozen(s, &x.group);
+    if (v->frozen && !s->scene->modes.linear) BOUGH_TRY(check_constant(arena, s, &x));
     bool in_air = s->aero && s->scene->modes.air != BOUGH_SCENE_AIR_FROZEN;
     bough_status status =
         in_air ? solve_in_air(arena, s, &x, count, v) : solve_bodies(arena, s, &x, count, v);
@@ -175,4 +266,65 @@ bough_status bough_vibration_find(bough_arena *arena, bough_simulation *s, int c
     bough_status status = bough_ok();
     if (balanced) status = bough_simulation_equilibrium(s, s->master->assembly, time, &vibration->work);
     return bough_is_ok(&status) ? solve(arena, s, time, count, vibration) : status;
+}
+
+// -- another mesh ---------------------------------------------------------------------------------
+
+// Modes beyond those compared, among which the partners of the highest may be.
+enum { MODES_BEYOND = 6 };
+
+static bool has_other_mesh(const bough_scene *scene, const bough_scene *other) {
+    for (int i = 0; i < scene->n_body; i++) {
+        bool meshed = bough_scene_has_mesh(&scene->body[i]);
+        if (meshed && scene->body[i].rod.n_segment != other->body[i].rod.n_segment) return true;
+    }
+    return false;
+}
+
+// Motions that decay without swinging, which crowd at the rates of the damping, are not compared, nor is what
+// is no eigenvector.
+static bool is_compared(const bough_scene_mode *mode) {
+    bool swings = mode->damped_frequency > 0.01 * mode->frequency;
+    return (swings || mode->growth > 0) && mode->residual < 0.01;
+}
+
+// Distance of the eigenvalues relative to that of a.
+static double distance(const bough_scene_mode *a, const bough_scene_mode *b) {
+    double apart = hypot(a->growth - b->growth, 2 * BOUGH_PI * (a->damped_frequency - b->damped_frequency));
+    return apart / (2 * BOUGH_PI * a->frequency);
+}
+
+// The least distance first. Modes of other bodies and directions are farther: but in round sections, and
+// where two modes nearly have one frequency, the direction means little.
+static void pair_modes(const bough_vibration *v, const bough_vibration *other, bool *taken) {
+    static const double unlike = 4;
+    for (int pair = 0; pair < v->found && pair < other->found; pair++) {
+        double least = HUGE_VAL;
+        int first = -1, second = -1;
+        for (int i = 0; i < v->found; i++) {
+            const bough_scene_mode *a = &v->mode[i];
+            for (int j = 0; j < other->found && isnan(a->moved) && is_compared(a); j++) {
+                const bough_scene_mode *b = &other->mode[j];
+                bool alike = a->body == b->body && a->blades == b->blades && a->direction == b->direction;
+                double cost = distance(a, b) * (alike ? 1 : unlike);
+                if (!taken[j] && is_compared(b) && cost < least) least = cost, first = i, second = j;
+            }
+        }
+        if (first < 0) return;
+        taken[second] = true;
+        v->mode[first].moved = distance(&v->mode[first], &other->mode[second]);
+    }
+}
+
+bough_status bough_vibration_compare(bough_arena *arena, const bough_simulation *s, bough_vibration *v,
+                                     bool *compared) {
+    const bough_scene *other = bough_coarser_scene_beside(arena, s, BOUGH_COARSER_MESH);
+    bough_simulation *companion;
+    bough_vibration of_other;
+    *compared = has_other_mesh(s->scene, other);
+    if (!*compared) return bough_ok();
+    BOUGH_TRY(bough_simulation_build(arena, other, &companion));
+    BOUGH_TRY(bough_vibration_find(arena, companion, v->found + MODES_BEYOND, &of_other));
+    pair_modes(v, &of_other, bough_arena_take(arena, ((size_t)of_other.found + 1) * sizeof(bool)));
+    return bough_ok();
 }

@@ -3,7 +3,8 @@
 //
 // Where the turbine's rotor turns, its blades are equal and evenly spaced and at least three, the
 // frequencies are those an observer at rest sees: the multi-blade transform of cosim/analysis/modes.h, about
-// the mean of the blades' shapes. In any other rotation they are those of the frozen azimuth.
+// the mean of the blades' shapes. In any other rotation they are those of the present azimuth, which is
+// refused where the linear system changes with it: its motions are then no modes.
 #ifndef BOUGH_APPS_ANALYSIS_VIBRATION_H
 #define BOUGH_APPS_ANALYSIS_VIBRATION_H
 
@@ -13,7 +14,7 @@
 typedef struct bough_vibration {
     bough_equilibrium_work work; // how the equilibrium was found; 0 steps: none was sought
     double spin;                 // of the rotor [rad/s]
-    bool frozen;                 // it turns, but the blades allow no transform
+    bool frozen;                 // something turns otherwise than a rotor whose blades allow the transform
     int n_blade;                 // compared; 0: none
     int n_row;                   // of a shape
     int asked;                   // modes
@@ -29,7 +30,13 @@ bool bough_vibration_wanted(const bough_simulation *s);
 
 // The `count` lowest modes, or fewer if not so many converge to 1e-9; free
 // motions, whose eigenvalue is 0, are left out. The simulation is left in the state they are about.
+// BOUGH_INVALID where the linear system is periodic, unless the scene asks for it as it is (modes.linear).
 bough_status bough_vibration_find(bough_arena *arena, bough_simulation *s, int count,
                                   bough_vibration *vibration);
+
+// Sets each mode's `moved` from the modes of the same scene with about half the segments, of modal bodies
+// twice (coarser.h); *compared: false, and nothing is set, where no body has segments.
+bough_status bough_vibration_compare(bough_arena *arena, const bough_simulation *s,
+                                     bough_vibration *vibration, bool *compared);
 
 #endif

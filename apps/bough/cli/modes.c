@@ -8,6 +8,7 @@
 #include "flexbody/rod/rod_modes.h"
 
 static const double unstable = 1e-6; // growth relative to |λ| above it is no rounding
+static const double fine = 0.01;     // residuals and changes by another mesh up to it need no warning
 
 static const char *const blade_shapes[BOUGH_ROD_DIRECTIONS] = {
     [BOUGH_ROD_FLAP] = "flap",
@@ -176,7 +177,7 @@ static void print_head(const bough_simulation *s, const bough_vibration *v) {
     printf("whole scene: %d states, about %s", s->master->assembly->n_state,
            s->scene->modes.at == BOUGH_SCENE_IN_EQUILIBRIUM ? "equilibrium" : "its initial state");
     if (v->spin != 0) printf(", rotor at %.6g rpm", v->spin * 30 / BOUGH_PI);
-    if (v->frozen) printf(", azimuth frozen: blades as seen from the rotating frame");
+    if (v->frozen) printf(", at the present azimuth: blades as seen from the rotating frame");
     if (v->spin != 0 && v->n_blade > 0) printf(", seen by an observer at rest");
     if (rotor_is_free(s)) printf(", rotor free to turn");
     static const char *const air[] = {"do not follow", "follow at once", "follow in time"};
@@ -190,6 +191,19 @@ static double largest_residual(const bough_vibration *v) {
     double largest = 0;
     for (int k = 0; k < v->found; k++) largest = fmax(largest, v->mode[k].residual);
     return largest;
+}
+
+// Numbers of modes: whether one is among them.
+typedef bool mode_choice(const bough_scene_mode *mode);
+static bool is_inexact(const bough_scene_mode *mode) { return mode->residual > fine; }
+static bool is_moved(const bough_scene_mode *mode) { return mode->moved > fine; }
+
+static bool print_numbers(const char *head, const bough_vibration *v, mode_choice *chosen) {
+    int n = 0;
+    for (int k = 0; k < v->found; k++)
+        if (chosen(&v->mode[k])) printf("%s %d", n++ == 0 ? head : ",", k + 1);
+    if (n > 0) printf("\n");
+    return n > 0;
 }
 
 // What of the modes asked for is missing, and why; and how exact those found are.
@@ -208,6 +222,14 @@ static void print_search(const bough_vibration *v) {
                "converge\n",
                v->unpaired);
     printf("largest residual of a mode: %.2g of its eigenvalue\n", largest_residual(v));
+    print_numbers("warning: modes with a residual above 1 %, which are not exact:", v, is_inexact);
+}
+
+static void print_mesh(const bough_vibration *v) {
+    double most = 0;
+    for (int k = 0; k < v->found; k++) most = fmax(most, v->mode[k].moved);
+    if (!print_numbers("warning: modes that half the segments move by more than 1 %:", v, is_moved))
+        printf("half the segments move no mode by more than %.2g %%\n", 100 * most);
 }
 
 static void print_modes(const bough_simulation *s, const bough_vibration *v) {
@@ -228,7 +250,7 @@ static void print_modes(const bough_simulation *s, const bough_vibration *v) {
         printf(
             "unstable: mode %d grows at %.6g /s%s\n", k + 1, m->growth,
             m->damped_frequency == 0 && s->aero && rotor_is_free(s)
-                ? " without swinging: the speed of the rotor, if the air's torque grows with it or, at a frozen "
+                ? " without swinging: the speed of the rotor, if the air's torque grows with it or, at one "
                   "azimuth, by its weight; the generator's torque and the pitch are held"
                 : "");
     }
@@ -246,15 +268,16 @@ static void write_modes(const void *self, FILE *file) {
     const bough_simulation *s = x->simulation;
     const bough_vibration *v = x->found;
     int n_body = s->scene->n_body;
-    fputs("mode,frequency (Hz),damped frequency (Hz),damping ratio (-),decrement (-),residual (-),body,shape,"
-          "pattern,collective (-),forward (-),backward (-)",
+    fputs("mode,frequency (Hz),damped frequency (Hz),damping ratio (-),decrement (-),residual (-),change by "
+          "mesh (-),body,shape,pattern,collective (-),forward (-),backward (-)",
           file);
     for (int i = 0; i < n_body; i++) fprintf(file, ",%s (-)", s->scene->body[i].name);
     fputc('\n', file);
     for (int k = 0; k < v->found; k++) {
         const bough_scene_mode *m = &v->mode[k];
-        fprintf(file, "%d,%.10g,%.10g,%.10g,%.10g,%.2g,%s,%s,%s", k + 1, m->frequency, m->damped_frequency,
-                m->damping, bough_modes_decrement(m->frequency, m->damped_frequency, m->damping), m->residual,
+        fprintf(file, "%d,%.10g,%.10g,%.10g,%.10g,%.2g,%.2g,%s,%s,%s", k + 1, m->frequency,
+                m->damped_frequency, m->damping,
+                bough_modes_decrement(m->frequency, m->damped_frequency, m->damping), m->residual, m->moved,
                 bough_modes_body(s, m), bough_modes_shape(s, m), bough_pattern_names[m->pattern]);
         for (int c = 0; c < 3; c++) fprintf(file, ",%.6g", m->whirl[c]);
         for (int i = 0; i < n_body; i++) fprintf(file, ",%.6g", m->share[i]);
@@ -350,7 +373,11 @@ static bough_status find_whole(bough_arena *arena, const bough_options *options,
     BOUGH_TRY(bough_vibration_find(arena, s, s->scene->modes.count, &v));
     const solution x = {s, &v};
     print_modes(s, &v);
-    bough_status status = bough_folder_make(folder);
+    bool compared;
+    bough_status status = bough_vibration_compare(arena, s, &v, &compared);
+    if (!bough_is_ok(&status)) printf("no modes of another mesh: %s\n", status.message);
+    if (bough_is_ok(&status) && compared) print_mesh(&v);
+    status = bough_folder_make(folder);
     if (bough_is_ok(&status)) status = bough_folder_write(folder, "modes.csv", write_modes, &x);
     if (bough_is_ok(&status)) status = write_search(&v, folder);
     if (bough_is_ok(&status) && s->scene->modes.shapes) {

@@ -7,6 +7,9 @@
 
 static const char pendulum[] = "apps/mechanisms/pendulum.yaml", runup[] = "apps/turbine/runup.yaml";
 
+#define COARSE_LAND                                                                                          \
+    "bodies[blade1].rod.segments=6", "bodies[blade2].rod.segments=6", "bodies[blade3].rod.segments=6"
+
 typedef struct found {
     bough_arena *arena;
     bough_simulation *s;
@@ -87,6 +90,27 @@ TEST(gyroscope_nutates_and_precesses) {
     check_near(f.v.mode[0].frequency, (root - half) / (2 * BOUGH_PI), 1e-8, 0);
     check_near(f.v.mode[1].frequency, (root + half) / (2 * BOUGH_PI), 1e-8, 0);
     assert_true(f.v.frozen); // it is no turbine's rotor
+}
+
+// The same out of balance, whose linear system changes with the disc's azimuth, and a turbine of unequal
+// blades.
+TEST(periodic_systems_are_refused) {
+    const char *disc[] = {
+        "bodies=[{name: outer, fidelity: rigid, joint: {kind: revolute, parent: ground, axis: x, "
+        "stiffness: 50}}, {name: disc, fidelity: rigid, inertia: [1, 1.01, 1.6], "
+        "joint: {kind: revolute, parent: outer, axis: z, motion: {speed: 10 rad/s}}}]",
+        "markers=[]", NULL};
+    const char *blades[] = {"bodies[blade1].pitch=7 deg", COARSE_LAND, NULL};
+    const char *known[] = {"bodies[blade1].pitch=7 deg", COARSE_LAND, "modes.linear=true", NULL};
+    check_arena(arena);
+    bough_vibration v;
+    bough_simulation *s = scene_build(arena, pendulum, disc);
+    check_fails(bough_vibration_find(arena, s, 4, &v), BOUGH_INVALID, "changes as the bodies turn");
+    s = scene_build(arena, "apps/turbine/land.yaml", blades);
+    check_fails(bough_vibration_find(arena, s, 4, &v), BOUGH_INVALID, "changes as the bodies turn");
+    s = scene_build(arena, "apps/turbine/land.yaml", known);
+    check_ok(bough_vibration_find(arena, s, 4, &v));
+    assert_true(v.frozen);
 }
 
 // A nearly massless cantilever of length L with a body at its end, its centre a further:
@@ -176,6 +200,27 @@ TEST(gravity_averages_out) {
     for (int k = 0; k < 6; k++) {
         check_near(a.v.mode[k].frequency, b.v.mode[k].frequency, 1e-4, 0);
     }
+}
+
+// The change is that to the modes of half the segments, and a rigid body has no mesh.
+TEST(another_mesh_moves_the_modes_as_it_should) {
+    const char *sets[] = {"bodies[0].rod.segments=12", NULL};
+    const char *coarse[] = {"bodies[0].rod.segments=6", NULL};
+    found a = modes_of("tests/data/scenes/prop.yaml", sets, 2),
+          b = modes_of("tests/data/scenes/prop.yaml", coarse, 2);
+    bool compared;
+    check_ok(bough_vibration_compare(a.arena, a.s, &a.v, &compared));
+    assert_true(compared);
+    for (int k = 0; k < 2; k++) {
+        double growth = a.v.mode[k].growth - b.v.mode[k].growth;
+        double frequency = 2 * BOUGH_PI * (a.v.mode[k].damped_frequency - b.v.mode[k].damped_frequency);
+        double apart = hypot(growth, frequency) / (2 * BOUGH_PI * a.v.mode[k].frequency);
+        assert_true(apart > 1e-4);
+        check_near(a.v.mode[k].moved, apart, 1e-3, 0);
+    }
+    found rigid = modes_of(pendulum, (const char *const[]){NULL}, 1);
+    check_ok(bough_vibration_compare(rigid.arena, rigid.s, &rigid.v, &compared));
+    assert_false(compared);
 }
 
 // The rows of a shape join: a rod's end and what hangs on it move alike; the largest is real and 1.
