@@ -3,8 +3,7 @@
 #include "apps/bough/analysis/aeroelastic.h"
 #include "apps/bough/analysis/mode_shape.h"
 #include "apps/bough/analysis/steady.h"
-#include "apps/bough/model/build.h"
-#include "apps/bough/model/coarser.h"
+#include "apps/bough/model/companion.h"
 #include "core/tree/dynamics.h"
 #include "cosim/analysis/modes.h"
 

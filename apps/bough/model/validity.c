@@ -149,8 +149,8 @@ static void check_chords(bough_simulation *s) {
         if (!beam->cable || s->validity->limit[BOUGH_LIMIT_CHORD].passed) continue;
         double angle = bough_simulation_chord_angle(s, beam, &vertex);
         if (angle > most_across)
-            bough_validity_pass(s->validity, BOUGH_LIMIT_CHORD, (int)(beam->body - s->scene->body),
-                                s->master->time, angle * (180 / BOUGH_PI));
+            validity_pass(s->validity, BOUGH_LIMIT_CHORD, (int)(beam->body - s->scene->body), s->master->time,
+                          angle * (180 / BOUGH_PI));
     }
 }
 
