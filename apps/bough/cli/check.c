@@ -345,17 +345,22 @@ static bool is_pitched(const bough_scene *scene) {
 }
 
 static void print_control(const bough_simulation *s, FILE *stream) {
+    static const char *const kind[] = {[BOUGH_SCENE_VARIABLE_SPEED] = "variable-speed law",
+                                       [BOUGH_SCENE_BLADED] = "library ",
+                                       [BOUGH_SCENE_EXTERNAL] = "by inputs from outside",
+                                       [BOUGH_SCENE_CONTROL_FMU] = "FMU "};
     const bough_scene_control *c = &s->scene->control;
     if (c->node == NULL) {
         fprintf(stream, "control: not built: no control block\n");
         return;
     }
     fprintf(stream, "control: built, %s%s, %.6g Hz, gear ratio %.6g, generator torque%s, %d event%s\n",
-            c->kind == BOUGH_SCENE_BLADED     ? "library "
-            : c->kind == BOUGH_SCENE_EXTERNAL ? "by inputs from outside"
-                                              : "variable-speed law",
-            c->kind == BOUGH_SCENE_BLADED ? c->library : "", c->rate, c->gear_ratio,
-            is_pitched(s->scene) ? " and pitch" : " only", c->n_event, c->n_event == 1 ? "" : "s");
+            kind[c->kind],
+            c->kind == BOUGH_SCENE_BLADED        ? c->library
+            : c->kind == BOUGH_SCENE_CONTROL_FMU ? c->fmu.model.folder
+                                                 : "",
+            c->rate, c->gear_ratio, is_pitched(s->scene) ? " and pitch" : " only", c->n_event,
+            c->n_event == 1 ? "" : "s");
 }
 
 static void print_turbine(bough_simulation *s, FILE *stream) {

@@ -261,8 +261,7 @@ static void put_variables(const export *x, FILE *out) {
 
 static void put_description(const export *x, FILE *out) {
     const bough_scene *scene = x->simulation->scene;
-    const bough_scene_control *control = &scene->control;
-    bool copies = !control->node || control->kind != BOUGH_SCENE_BLADED;
+    bool copies = !bough_scene_control_is_foreign(&scene->control);
     fputs("<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<fmiModelDescription fmiVersion=\"3.0\" "
           "modelName=\"",
           out);

@@ -337,8 +337,9 @@ bough_status bough_simulation_storable(const bough_simulation *s) {
                           s->rod[s->n_rod].system.name);
     }
     const bough_scene_control *control = &s->scene->control;
-    if (!control->node || control->kind != BOUGH_SCENE_BLADED) return bough_ok();
+    if (!bough_scene_control_is_foreign(control)) return bough_ok();
+    bool fmu = control->kind == BOUGH_SCENE_CONTROL_FMU;
     return bough_fail(BOUGH_INVALID,
                       "the controller %.200s keeps a memory of its own, which cannot be stored",
-                      control->library);
+                      fmu ? control->fmu.model.folder : control->library);
 }

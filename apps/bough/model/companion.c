@@ -87,7 +87,7 @@ bough_status bough_companion_create(bough_arena *arena, bough_simulation *run, c
     take(c, arena);
     if (run->scene->simulation.error_estimate != BOUGH_SCENE_COMPANION) {
         give_up(c, "simulation.error_estimate is none");
-    } else if (run->n_fmu > 0) {
+    } else if (run->n_fmu > 0 || run->scene->control.fmu.model.description.once) {
         give_up(c, "an FMU keeps a memory of its own, and there is no second one for the companion");
     } else {
         bough_status status = build(arena, c);

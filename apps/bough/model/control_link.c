@@ -3,6 +3,7 @@
 #include "aero/control/discon.h"
 #include "apps/bough/config/schema.h"
 #include "apps/bough/model/aero_link.h"
+#include "apps/bough/model/fmu_instance.h"
 #include "apps/bough/model/input_link.h"
 #include "apps/bough/model/simulation.h"
 #include "core/base/base.h"
@@ -239,7 +240,9 @@ typedef struct memory {
 struct bough_control_link {
     bough_simulation *simulation;
     const bough_scene_control *control;
-    bough_discon *discon; // NULL: the law
+    bough_discon *discon;                // NULL: none
+    bough_fmu_instance *fmu;             // NULL: none
+    bough_fmu_values measured, demanded; // of the FMU
     int load, n_blade;
     bool steers;                                // the blades are pitched
     bough_events *events;                       // NULL: none
@@ -264,6 +267,10 @@ bough_status bough_control_link_build(bough_arena *arena, bough_simulation *simu
     if (l->control->kind == BOUGH_SCENE_EXTERNAL) return bough_ok();
     if (l->control->kind == BOUGH_SCENE_VARIABLE_SPEED) {
         return bough_scene_blame(l->control->node, "control", bough_controller_check(&l->control->law));
+    }
+    if (l->control->kind == BOUGH_SCENE_CONTROL_FMU) {
+        l->fmu = bough_arena_take(arena, sizeof *l->fmu);
+        return bough_fmu_open(arena, &l->control->fmu.model, "control", l->fmu);
     }
     bough_status status =
         bough_discon_open(arena, l->control->library, l->control->input, l->control->copied, &l->discon);
@@ -388,9 +395,58 @@ static bough_status take_inputs(const bough_control_link *l, bough_discon_demand
     return bough_ok();
 }
 
+// The FMU's terminals in order, with their values of `all`, one for each quantity and blade.
+static void list_terminals(const bough_scene_terminals *from, const double *all, bough_fmu_values *values) {
+    values->n = 0;
+    for (int k = 0; k < BOUGH_SCENE_SENSED + BOUGH_MOST_BLADES; k++) {
+        if (!from->variable[k]) continue;
+        values->reference[values->n] = from->variable[k]->reference;
+        values->value[values->n++] = all[k];
+    }
+}
+
+// One output of a pitch is for all blades; without one they keep theirs.
+static void take_demands(const bough_scene_terminals *from, const bough_fmu_values *values,
+                         const bough_discon_sensed *x, bough_discon_demand *demand) {
+    double all[BOUGH_SCENE_SENSED + BOUGH_MOST_BLADES] = {0}, *pitch = all + BOUGH_SCENE_SENSED;
+    for (int k = 0, i = 0; i < values->n; k++) {
+        if (from->variable[k]) all[k] = values->value[i++];
+    }
+    demand->torque = all[BOUGH_SENSED_TORQUE];
+    for (int b = 0; b < x->n_blade; b++)
+        demand->pitch[b] = from->n_pitch == 0 ? x->pitch[b] : pitch[from->n_pitch == 1 ? 0 : b];
+}
+
+// A communication step over the sample, whose end the demands are for.
+static bough_status step_fmu(bough_control_link *l, const bough_discon_sensed *x,
+                             bough_discon_demand *demand) {
+    const bough_scene_control_fmu *fmu = &l->control->fmu;
+    double all[BOUGH_SCENE_SENSED + BOUGH_MOST_BLADES] = {[BOUGH_SENSED_TIME] = x->time,
+                                                          [BOUGH_SENSED_GENERATOR_SPEED] = x->generator_speed,
+                                                          [BOUGH_SENSED_ROTOR_SPEED] = x->rotor_speed,
+                                                          [BOUGH_SENSED_TORQUE] = x->torque,
+                                                          [BOUGH_SENSED_POWER] = x->electrical_power,
+                                                          [BOUGH_SENSED_WIND] = x->wind,
+                                                          [BOUGH_SENSED_AZIMUTH] = x->azimuth,
+                                                          [BOUGH_SENSED_YAW_ERROR] = x->yaw_error};
+    memcpy(all + BOUGH_SCENE_SENSED, x->pitch, sizeof x->pitch);
+    list_terminals(&fmu->inputs, all, &l->measured);
+    list_terminals(&fmu->outputs, all, &l->demanded);
+    if (l->fmu->started) {
+        BOUGH_TRY(bough_fmu_set(l->fmu, x->time, &l->measured));
+    } else {
+        BOUGH_TRY(bough_fmu_initialise(l->fmu, x->time, l->simulation->master->duration, &l->measured));
+    }
+    BOUGH_TRY(bough_fmu_step(l->fmu, x->time, x->step));
+    BOUGH_TRY(bough_fmu_get(l->fmu, x->time + x->step, &l->demanded));
+    take_demands(&fmu->outputs, &l->demanded, x, demand);
+    return bough_ok();
+}
+
 static bough_status decide(bough_control_link *l, const bough_discon_sensed *x, bough_discon_demand *demand) {
     if (l->events && bough_events_idle(l->events, l->event)) return bough_ok();
     if (l->discon) return bough_discon_call(l->discon, x, demand);
+    if (l->fmu) return step_fmu(l, x, demand);
     if (l->control->kind == BOUGH_SCENE_EXTERNAL) return take_inputs(l, demand);
     bough_controller_state *law = &l->now.law;
     bough_controller_advance(&l->control->law, x->generator_speed, x->pitch[0], x->step, law);

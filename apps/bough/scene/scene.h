@@ -12,6 +12,7 @@
 #define BOUGH_APPS_SCENE_SCENE_H
 
 #include "aero/control/controller.h"
+#include "aero/control/discon.h"
 #include "apps/bough/config/text.h"
 #include "apps/bough/scene/scene_air.h"
 #include "core/base/arena.h"
@@ -209,20 +210,24 @@ typedef struct bough_scene_values {
     const struct bough_node **node; // (n)
 } bough_scene_values;
 
-// A model of another program behind a body's frame: a co-simulation FMU of FMI 3.0. Its inputs are
-// velocity, angular velocity and gravity of the frame in body axes, its outputs force and moment on the
-// frame's carrier about the frame's origin in body axes; SI.
-typedef struct bough_scene_fmu {
+// A model of another program: a co-simulation FMU of FMI 3.0.
+typedef struct bough_scene_fmu_model {
     const bough_node *node;
     const char *folder; // path of its archive, or of the folder where it is unpacked, once it is checked
     bough_scene_values parameters;
+    uint32_t *reference; // (parameters.n) of the parameters
+    bough_fmu_description description;
+} bough_scene_fmu_model;
+
+// One behind a body's frame. Its inputs are velocity, angular velocity and gravity of the frame in body axes,
+// its outputs force and moment on the frame's carrier about the frame's origin in body axes; SI.
+typedef struct bough_scene_fmu {
+    bough_scene_fmu_model model;
     int n_motion, n_wrench;
     const char **motion, **wrench; // names of its variables, "none" where it has none; 0: the usual ones
     int hold;                      // bough_scene_fmu_hold
     int steps;                     // communication steps per macro step
-    bough_fmu_description description;
     const bough_fmu_variable *input[BOUGH_SCENE_MOTION], *output[BOUGH_SCENE_WRENCH]; // NULL: none
-    uint32_t *reference; // (parameters.n) of the parameters
 } bough_scene_fmu;
 
 // What an FMU does with its inputs over a communication step.
@@ -369,7 +374,35 @@ typedef enum bough_scene_controller {
     BOUGH_SCENE_VARIABLE_SPEED,
     BOUGH_SCENE_BLADED,
     BOUGH_SCENE_EXTERNAL, // whoever steps the scene
+    BOUGH_SCENE_CONTROL_FMU,
 } bough_scene_controller;
+
+// What a controller that is an FMU gets, besides each blade's pitch [rad]; SI.
+typedef enum bough_scene_sensed {
+    BOUGH_SENSED_TIME,
+    BOUGH_SENSED_GENERATOR_SPEED,
+    BOUGH_SENSED_ROTOR_SPEED,
+    BOUGH_SENSED_TORQUE, // of the generator
+    BOUGH_SENSED_POWER,  // electrical
+    BOUGH_SENSED_WIND,   // at the hub, along the shaft
+    BOUGH_SENSED_AZIMUTH,
+    BOUGH_SENSED_YAW_ERROR,
+    BOUGH_SCENE_SENSED,
+} bough_scene_sensed;
+
+// Names of an FMU's variables for quantities of the turbine.
+typedef struct bough_scene_terminals {
+    const bough_node *node;
+    const char *name[BOUGH_SCENE_SENSED]; // NULL: none; of outputs only the torque
+    int n_pitch;
+    const char **pitch; // (n_pitch) of blade 1, 2 …; of one output: of all blades
+    const bough_fmu_variable *variable[BOUGH_SCENE_SENSED + BOUGH_MOST_BLADES]; // the same; NULL: none
+} bough_scene_terminals;
+
+typedef struct bough_scene_control_fmu {
+    bough_scene_fmu_model model;
+    bough_scene_terminals inputs, outputs;
+} bough_scene_control_fmu;
 
 typedef enum bough_scene_event_kind {
     BOUGH_SCENE_START,
@@ -409,10 +442,16 @@ typedef struct bough_scene_control {
     bool individual;             // BLADED: each blade follows its own demand
     const char *library, *input; // BLADED: paths; no input: ""
     bool copied;                 // BLADED: the library is loaded as a copy, for a second model; not in a file
+    bough_scene_control_fmu fmu; // CONTROL_FMU
     int n_event;
     bough_scene_event *event; // (n_event)
-    bough_controller_def law; // BLADED: only the pitch rate is used
+    bough_controller_def law; // BLADED, CONTROL_FMU: only the pitch rate is used
 } bough_scene_control;
+
+// Whether the controller is a program of others, which keeps a memory of its own.
+static inline bool bough_scene_control_is_foreign(const bough_scene_control *control) {
+    return control->node && (control->kind == BOUGH_SCENE_BLADED || control->kind == BOUGH_SCENE_CONTROL_FMU);
+}
 
 typedef enum bough_scene_modes_of {
     BOUGH_SCENE_MODES_AUTO, // of the rods where they are independent, or `speed` or `axis` is given

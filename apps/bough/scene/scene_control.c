@@ -109,14 +109,53 @@ static void check_event(bough_schema_reader *r, void *item) {
 static const bough_schema event_schema = {
     SCHEMA("an event", bough_scene_event, event_keys), .check = check_event};
 
+#define FILLS bough_scene_terminals
+#define SENSED(key, place, shown, what)                                                            \
+    {NAMED(key, TEXT), AT(name[BOUGH_SENSED_##place]), .example = shown, .help = what}
+static const bough_key input_keys[] = {
+    SENSED("time", TIME, "t", "time [s]"),
+    SENSED("generator_speed", GENERATOR_SPEED, "omega", "of the fast shaft [rad/s]"),
+    SENSED("rotor_speed", ROTOR_SPEED, "omega_rotor", "of the hub [rad/s]"),
+    SENSED("torque", TORQUE, "T", "of the generator, on the fast shaft [N m]"),
+    SENSED("power", POWER, "P", "electrical [W]"),
+    SENSED("wind", WIND, "v", "at the hub, along the shaft [m/s]"),
+    SENSED("azimuth", AZIMUTH, "psi", "of blade 1 [rad]"),
+    SENSED("yaw_error", YAW_ERROR, "gamma", "direction of the wind less the nacelle's [rad]"),
+    {KEY(TEXTS, pitch), .count = 1, COUNT_AT(n_pitch), .example = "[beta1, beta2, beta3]",
+     .help = "of each blade [rad]; none: no input"},
+};
+static const bough_key output_keys[] = {
+    {NAMED("torque", TEXT), AT(name[BOUGH_SENSED_TORQUE]), .required = true, .example = "T_demand",
+     .help = "of the generator, on the fast shaft [N m]"},
+    {KEY(TEXTS, pitch), .count = 1, COUNT_AT(n_pitch), .example = "[beta_demand]",
+     .help = "of all blades, or of each [rad]; default: the blades keep their pitch"},
+};
+#undef FILLS
+static const bough_schema input_schema = {
+    SCHEMA("the inputs", bough_scene_terminals, input_keys)};
+static const bough_schema output_schema = {
+    SCHEMA("the outputs", bough_scene_terminals, output_keys)};
+
+#define FILLS bough_scene_control_fmu
+static const bough_key fmu_keys[] = {
+    BOUGH_FMU_KEYS("controller.fmu", "{gain: 100}"),
+    {KEY(MAPPING, inputs), .of = &input_schema, .required = true,
+     .help = "names of its inputs for what is measured at the beginning of each sample"},
+    {KEY(MAPPING, outputs), .of = &output_schema, .required = true,
+     .help = "names of its outputs for what it demands by the end of the sample"},
+};
+#undef FILLS
+static const bough_schema fmu_schema = {
+    SCHEMA("an FMU", bough_scene_control_fmu, fmu_keys), .check = bough_scene_check_control_fmu};
+
 #define FILLS bough_scene_control
 static const bough_key control_keys[] = {
     {KEY(CHOICE, kind),
      CHOICES([BOUGH_SCENE_VARIABLE_SPEED] = "variable-speed", [BOUGH_SCENE_BLADED] = "bladed",
-             [BOUGH_SCENE_EXTERNAL] = "external"), .required = true,
+             [BOUGH_SCENE_EXTERNAL] = "external", [BOUGH_SCENE_CONTROL_FMU] = "fmu"), .required = true,
      .help = "variable-speed: the baseline law of the NREL 5 MW turbine; bladed: a shared library "
              "with Bladed's interface (function DISCON); external: another program, by the inputs "
-             "GenTqCom (torque on the fast shaft) and BlPitchCom1, 2 ..."},
+             "GenTqCom (torque on the fast shaft) and BlPitchCom1, 2 ...; fmu: an FMU"},
     {KEY(NUMBER, rate), UNIT(FREQUENCY), .range = "> 0", .fallback = "50", .example = "80 Hz",
      .help = "sampling rate; the period is a multiple of the macro step"},
     {KEY(NUMBER, gear_ratio), .range = "> 0", .fallback = "97", .example = "105",
@@ -135,6 +174,8 @@ static const bough_key control_keys[] = {
      .help = "file relative to the scene"},
     {KEY(TEXT, input), WHEN("kind", "bladed"), .example = "DISCON.IN",
      .help = "the controller's own input file, relative to the scene"},
+    {KEY(MAPPING, fmu), .of = &fmu_schema, .required = true, WHEN("kind", "fmu"),
+     .help = "model of another program, which takes a communication step in each sample"},
     {KEY(MAPPING, law), .of = &law_schema,
      .help = "constants of the control law; the defaults are those of the NREL 5 MW turbine"},
     {NAMED("events", LIST), AT(event), .of = &event_schema, COUNT_AT(n_event),

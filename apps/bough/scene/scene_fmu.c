@@ -19,7 +19,7 @@ static void unknown(bough_schema_reader *r, const bough_fmu_description *d, cons
 }
 
 // The variable of that name; NULL for "none" and after an error.
-static const bough_fmu_variable *find(bough_schema_reader *r, const bough_scene_fmu *fmu,
+static const bough_fmu_variable *find(bough_schema_reader *r, const bough_scene_fmu_model *fmu,
                                       const bough_node *node, const char *key, const char *name,
                                       bough_fmu_causality causality) {
     static const char *const kinds[] = {
@@ -45,7 +45,7 @@ static const bough_fmu_variable *find(bough_schema_reader *r, const bough_scene_
 static bool is_count(bough_schema_reader *r, const bough_scene_fmu *fmu, const char *key, int n,
                      int expected) {
     if (n == 0 || n == expected) return true;
-    bough_schema_error(r, bough_link_value(fmu->node, key), key,
+    bough_schema_error(r, bough_link_value(fmu->model.node, key), key,
                        "expected %d names, 'none' for those that the FMU does not have, got %d", expected, n);
     return false;
 }
@@ -70,34 +70,61 @@ void bough_scene_read_values(bough_schema_reader *r, const bough_node *node, voi
     }
 }
 
+// Reads the FMU's description and finds its parameters; false after an error.
+static bool describe(bough_schema_reader *r, bough_scene_fmu_model *m) {
+    const bough_scene_values *p = &m->parameters;
+    if (!m->node || !m->folder) return false;
+    m->folder = bough_schema_path(r, m->node, "folder", m->folder);
+    bough_status status = bough_fmu_describe(r->arena, m->folder, &m->description);
+    if (!bough_is_ok(&status)) {
+        bough_schema_error(r, bough_link_value(m->node, "folder"), "folder", "%s", status.message);
+        return false;
+    }
+    m->reference = bough_arena_take(r->arena, (size_t)(p->n + 1) * sizeof *m->reference);
+    for (int k = 0; k < p->n; k++) {
+        const bough_fmu_variable *v = find(r, m, p->node[k], "parameters", p->name[k], BOUGH_FMU_PARAMETER);
+        if (v) m->reference[k] = v->reference;
+    }
+    return true;
+}
+
 void bough_scene_check_fmu(bough_schema_reader *r, void *item) {
     bough_scene_fmu *fmu = item;
-    const bough_node *folder = bough_link_value(fmu->node, "folder");
-    if (!fmu->node || !fmu->folder) return;
-    fmu->folder = bough_schema_path(r, fmu->node, "folder", fmu->folder);
-    bough_status status = bough_fmu_describe(r->arena, fmu->folder, &fmu->description);
-    if (!bough_is_ok(&status)) {
-        bough_schema_error(r, folder, "folder", "%s", status.message);
-        return;
-    }
+    if (!describe(r, &fmu->model)) return;
     bool counts = is_count(r, fmu, "motion", fmu->n_motion, BOUGH_SCENE_MOTION);
     if (!is_count(r, fmu, "wrench", fmu->n_wrench, BOUGH_SCENE_WRENCH) || !counts) return;
-    const bough_node *motion = bough_link_value(fmu->node, "motion");
-    const bough_node *wrench = bough_link_value(fmu->node, "wrench");
+    const bough_node *motion = bough_link_value(fmu->model.node, "motion");
+    const bough_node *wrench = bough_link_value(fmu->model.node, "wrench");
     for (int k = 0; k < BOUGH_SCENE_MOTION; k++) {
         const char *name = fmu->n_motion > 0 ? fmu->motion[k] : usual_motion[k];
-        fmu->input[k] = find(r, fmu, motion, "motion", name, BOUGH_FMU_INPUT);
+        fmu->input[k] = find(r, &fmu->model, motion, "motion", name, BOUGH_FMU_INPUT);
     }
     for (int k = 0; k < BOUGH_SCENE_WRENCH; k++) {
         const char *name = fmu->n_wrench > 0 ? fmu->wrench[k] : usual_wrench[k];
-        fmu->output[k] = find(r, fmu, wrench, "wrench", name, BOUGH_FMU_OUTPUT);
+        fmu->output[k] = find(r, &fmu->model, wrench, "wrench", name, BOUGH_FMU_OUTPUT);
     }
-    const bough_scene_values *p = &fmu->parameters;
-    fmu->reference = bough_arena_take(r->arena, (size_t)(p->n + 1) * sizeof *fmu->reference);
-    for (int k = 0; k < p->n; k++) {
-        const bough_fmu_variable *v = find(r, fmu, p->node[k], "parameters", p->name[k], BOUGH_FMU_PARAMETER);
-        if (v) fmu->reference[k] = v->reference;
+}
+
+static void find_terminals(bough_schema_reader *r, const bough_scene_fmu_model *m, const char *key,
+                           bough_fmu_causality causality, bough_scene_terminals *to) {
+    for (int k = 0; k < BOUGH_SCENE_SENSED; k++) {
+        const bough_node *place = to->node;
+        for (int i = 0; i < to->node->n && to->name[k]; i++) {
+            const char *text = to->node->value[i]->text;
+            if (text && strcmp(text, to->name[k]) == 0) place = to->node->value[i];
+        }
+        to->variable[k] = find(r, m, place, key, to->name[k], causality);
     }
+    const bough_node *pitch = bough_link_value(to->node, "pitch");
+    for (int b = 0; b < to->n_pitch && b < BOUGH_MOST_BLADES; b++)
+        to->variable[BOUGH_SCENE_SENSED + b] = find(r, m, pitch, key, to->pitch[b], causality);
+}
+
+void bough_scene_check_control_fmu(bough_schema_reader *r, void *item) {
+    bough_scene_control_fmu *fmu = item;
+    if (!describe(r, &fmu->model) || !fmu->inputs.node || !fmu->outputs.node) return;
+    find_terminals(r, &fmu->model, "inputs", BOUGH_FMU_INPUT, &fmu->inputs);
+    find_terminals(r, &fmu->model, "outputs", BOUGH_FMU_OUTPUT, &fmu->outputs);
 }
 
 // -- what it takes part in ------------------------------------------------------------------------
@@ -108,7 +135,7 @@ static const char *list_schemes(const bough_scene_fmu *fmu, char text[BOUGH_SCHE
     int n = 0, length = 0;
     for (int i = 0; (name = bough_scheme_name(i)) != NULL; i++) {
         const bough_scheme *s = bough_scheme_find(name);
-        if (s->foreign && (!s->repeats || fmu->description.restores)) found[n++] = name;
+        if (s->foreign && (!s->repeats || fmu->model.description.restores)) found[n++] = name;
     }
     for (int i = 0; i < n; i++) {
         const char *before = i == 0 ? "" : i < n - 1 ? ", " : " or ";
@@ -132,7 +159,7 @@ static void check_scheme(bough_schema_reader *r, const bough_scene *s, const bou
                            list_schemes(&b->fmu, expected), scheme->name);
     } else if (!scheme->repeats) {
         return;
-    } else if (!b->fmu.description.restores) {
+    } else if (!b->fmu.model.description.restores) {
         bough_schema_error(r, place, "coupling.scheme",
                            "%s repeats steps, and the FMU '%s' cannot restore its state: expected %s",
                            scheme->name, b->name, list_schemes(&b->fmu, expected));
@@ -160,7 +187,7 @@ static void check_simulation(bough_schema_reader *r, const bough_scene *s, const
 }
 
 static bool same_library(const bough_scene_fmu *a, const bough_scene_fmu *b) {
-    return a->folder && b->folder && strcmp(a->folder, b->folder) == 0;
+    return a->model.folder && b->model.folder && strcmp(a->model.folder, b->model.folder) == 0;
 }
 
 // The first FMU, but one that cannot restore its state where there is one; NULL: no FMU.
@@ -169,7 +196,8 @@ static const bough_scene_body *hardest(const bough_scene *s) {
     for (int i = 0; i < s->n_body; i++) {
         const bough_scene_body *b = &s->body[i];
         if (b->fidelity != BOUGH_SCENE_FMU || !b->name) continue;
-        if (!found || (found->fmu.description.restores && !b->fmu.description.restores)) found = b;
+        if (!found || (found->fmu.model.description.restores && !b->fmu.model.description.restores))
+            found = b;
     }
     return found;
 }
@@ -179,17 +207,32 @@ static void check_once(bough_schema_reader *r, const bough_scene *s, int i) {
     for (int k = 0; k < i; k++) {
         if (s->body[k].fidelity != BOUGH_SCENE_FMU || !same_library(&s->body[k].fmu, fmu)) continue;
         bough_link_at(r, "bodies[%d].fmu", i);
-        bough_schema_error(r, bough_link_value(fmu->node, "folder"), "folder",
+        bough_schema_error(r, bough_link_value(fmu->model.node, "folder"), "folder",
                            "only one body can use this FMU, and '%s' does", s->body[k].name);
         return;
     }
 }
 
+static void check_pitch(bough_schema_reader *r, const bough_scene *s, const bough_scene_terminals *x,
+                        const char *key, bool common) {
+    int n = s->turbine.n_blade;
+    if (!x->node || x->n_pitch == 0 || x->n_pitch == n || (common && x->n_pitch == 1)) return;
+    bough_schema_error(r, bough_link_value(x->node, "pitch"), key,
+                       "expected %sa name for each of the %d blades, got %d",
+                       common ? "one name for all blades, or " : "", n, x->n_pitch);
+}
+
 void bough_link_fmus(bough_schema_reader *r, bough_scene *s) {
+    if (s->control.node && s->control.kind == BOUGH_SCENE_CONTROL_FMU) {
+        bough_link_at(r, "control.fmu");
+        check_pitch(r, s, &s->control.fmu.inputs, "inputs.pitch", false);
+        check_pitch(r, s, &s->control.fmu.outputs, "outputs.pitch", true);
+    }
     const bough_scene_body *b = hardest(s);
     if (!b) return;
     check_simulation(r, s, b);
     for (int i = 0; i < s->n_body; i++) {
-        if (s->body[i].fidelity == BOUGH_SCENE_FMU && s->body[i].fmu.description.once) check_once(r, s, i);
+        if (s->body[i].fidelity == BOUGH_SCENE_FMU && s->body[i].fmu.model.description.once)
+            check_once(r, s, i);
     }
 }

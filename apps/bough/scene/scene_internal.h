@@ -69,6 +69,7 @@ void bough_scene_check_wind(bough_schema_reader *r, void *item);
 void bough_scene_check_tower(bough_schema_reader *r, void *item);
 void bough_scene_check_joint(bough_schema_reader *r, void *item);
 void bough_scene_check_fmu(bough_schema_reader *r, void *item);
+void bough_scene_check_control_fmu(bough_schema_reader *r, void *item);
 void bough_scene_read_values(bough_schema_reader *r, const bough_node *node, void *field);
 void bough_scene_check_motion(bough_schema_reader *r, const bough_scene_joint *joint);
 void bough_scene_check_load(bough_schema_reader *r, void *item);
@@ -113,6 +114,20 @@ void bough_link_inputs(bough_schema_reader *r, bough_scene *s);
 // Replaces or adds the value that "path.to[2].key=value" names; the new root, or NULL after an
 // error. Nodes that an alias shares are copied before they change.
 bough_node *bough_scene_set(bough_arena *arena, bough_node *root, const char *set, bough_errors *errors);
+
+// -- an FMU ---------------------------------------------------------------------------------------
+
+// The keys of every FMU, in a struct FILLS that has it as `model`.
+#define BOUGH_FMU_KEYS(file, values)                                                                         \
+    {NAMED("folder", TEXT), AT(model.folder), .required = true, .example = file,                             \
+     .help = "FMU of FMI 3.0 for co-simulation, its archive or the folder where it is unpacked, relative "   \
+             "to the scene"},                                                                                \
+    {                                                                                                        \
+        NAMED("parameters", CUSTOM), AT(model.parameters),                                                   \
+            .read = bough_scene_read_values, .form = "{NAME: NUMBER, ...}", .example = values,               \
+            .help =                                                                                          \
+                "values of its parameters, each in the unit that the FMU declares; the others keep theirs"   \
+    }
 
 // -- modelDescription.xml of an FMU of FMI 3.0 (fmu_description.c) --------------------------------
 

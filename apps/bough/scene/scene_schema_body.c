@@ -190,12 +190,7 @@ static const bough_schema modal_schema = {
 
 #define FILLS bough_scene_fmu
 static const bough_key fmu_keys[] = {
-    {KEY(TEXT, folder), .required = true, .example = "damper.fmu",
-     .help = "FMU of FMI 3.0 for co-simulation, its archive or the folder where it is unpacked, relative to "
-             "the scene"},
-    {KEY(CUSTOM, parameters), .read = bough_scene_read_values, .form = "{NAME: NUMBER, ...}",
-     .example = "{stiffness: 8, damping: 0.4}",
-     .help = "values of its parameters, each in the unit that the FMU declares; the others keep theirs"},
+    BOUGH_FMU_KEYS("damper.fmu", "{stiffness: 8, damping: 0.4}"),
     {KEY(TEXTS, motion), .count = 1, COUNT_AT(n_motion),
      .example = "[none, none, v, none, none, none, none, none, none]",
      .help = "names of its inputs for the frame's velocity [m/s], angular velocity [rad/s] and "

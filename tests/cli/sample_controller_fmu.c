@@ -1,0 +1,91 @@
+// The library's law of variable speed as an FMU for tests: inputs generator speed and pitch, outputs torque,
+// pitch, and a pitch for each blade.
+#include "aero/control/controller.h"
+#include "apps/bough/model/fmi3.h"
+
+#include <stdlib.h>
+
+enum { SPEED = 1, PITCH, GAIN, TORQUE, DEMAND, TIME };
+
+typedef struct sample {
+    bough_controller_def law;
+    bough_controller_state state;
+    double speed, pitch, time, time_input;
+} sample;
+
+// Of the NREL 5 MW turbine: the defaults of a scene.
+static const bough_controller_def nrel5mw = {.corner = 1.570796,
+                                             .cut_in = 70.16224,
+                                             .optimal_from = 91.21091,
+                                             .optimal_gain = 2.332287,
+                                             .rated_speed = 121.6805,
+                                             .rated_power = 5296610,
+                                             .slip = 0.1,
+                                             .most_torque = 47402.91,
+                                             .torque_rate = 15000,
+                                             .power_pitch = 0.01745329,
+                                             .reference_speed = 122.9096,
+                                             .proportional = 0.01882681,
+                                             .integral = 0.008068634,
+                                             .halving_pitch = 0.1099965,
+                                             .most_pitch = 1.570796,
+                                             .pitch_rate = 0.1396263};
+
+fmi3_instance fmi3InstantiateCoSimulation(fmi3_string name, fmi3_string token, fmi3_string resources,
+                                          bool visible, bool logging, bool event_mode, bool early_return,
+                                          const fmi3_reference *intermediate, size_t n_intermediate,
+                                          fmi3_environment environment, fmi3_log *log,
+                                          fmi3_intermediate *update) {
+    (void)name, (void)token, (void)resources, (void)visible, (void)logging, (void)event_mode;
+    (void)early_return, (void)intermediate, (void)n_intermediate, (void)environment, (void)log, (void)update;
+    sample *s = calloc(1, sizeof *s);
+    if (s) s->law = nrel5mw;
+    return s;
+}
+
+void fmi3FreeInstance(fmi3_instance instance) { free(instance); }
+
+fmi3_status fmi3EnterInitializationMode(fmi3_instance instance, bool has_tolerance, double tolerance,
+                                        double start, bool has_stop, double stop) {
+    (void)has_tolerance, (void)tolerance;
+    ((sample *)instance)->time = start;
+    return has_stop && stop > start ? FMI3_OK : FMI3_ERROR;
+}
+
+fmi3_status fmi3ExitInitializationMode(fmi3_instance instance) { return instance ? FMI3_OK : FMI3_ERROR; }
+
+fmi3_status fmi3Terminate(fmi3_instance instance) { return instance ? FMI3_OK : FMI3_ERROR; }
+
+fmi3_status fmi3GetFloat64(fmi3_instance instance, const fmi3_reference *reference, size_t n, double *value,
+                           size_t n_value) {
+    const sample *s = instance;
+    for (size_t k = 0; k < n && n == n_value; k++) {
+        if (reference[k] != TORQUE && reference[k] != DEMAND) return FMI3_ERROR;
+        value[k] = reference[k] == TORQUE ? s->state.torque : s->state.pitch;
+    }
+    return n == n_value ? FMI3_OK : FMI3_ERROR;
+}
+
+fmi3_status fmi3SetFloat64(fmi3_instance instance, const fmi3_reference *reference, size_t n,
+                           const double *value, size_t n_value) {
+    sample *s = instance;
+    for (size_t k = 0; k < n && n == n_value; k++) {
+        if (reference[k] == SPEED) s->speed = value[k];
+        if (reference[k] == PITCH) s->pitch = value[k];
+        if (reference[k] == TIME) s->time_input = value[k];
+        if (reference[k] == GAIN) s->law.optimal_gain = value[k];
+    }
+    return n == n_value ? FMI3_OK : FMI3_ERROR;
+}
+
+// Communication points follow each other, and the time at the input is theirs.
+fmi3_status fmi3DoStep(fmi3_instance instance, double time, double step, bool no_return, bool *event,
+                       bool *terminate, bool *early, double *reached) {
+    sample *s = instance;
+    (void)no_return, (void)event, (void)terminate;
+    if (time - s->time > 1e-9 || s->time - time > 1e-9 || s->time_input != time) return FMI3_ERROR;
+    bough_controller_advance(&s->law, s->speed, s->pitch, step, &s->state);
+    *early = false;
+    s->time = *reached = time + step;
+    return FMI3_OK;
+}
