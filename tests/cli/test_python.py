@@ -1,4 +1,5 @@
 """The Python module against the program: test_python.py BOUGH SOURCE."""
+import math
 import os
 import struct
 import subprocess
@@ -19,6 +20,10 @@ def numpy_python():
     for python in sys.executable, "/usr/bin/python3":
         if subprocess.run([python, "-c", "import numpy"], capture_output=True).returncode == 0:
             return python
+
+
+def determinant(m):
+    return sum(m[0][i] * (m[1][i - 2] * m[2][i - 1] - m[1][i - 1] * m[2][i - 2]) for i in range(3))
 
 
 class Results(unittest.TestCase):
@@ -195,12 +200,46 @@ class Module(unittest.TestCase):
         del session
         self.assertEqual(len(list(values)), len(before))
 
+    def test_poses_are_those_of_the_scene(self):
+        with bough.Session(RUNUP, *FEW, "simulation.duration=1 s") as run:
+            run.advance(0.5)
+            values = list(run.values)
+            hub, blade, angle = run.poses["hub"], run.poses["blade1"], math.radians(run["Azimuth"])
+            self.assertEqual(values, list(run.values))
+            self.assertEqual((len(hub.position), len(blade.position)), (1, 9))
+            for pose in run.poses.values():
+                for matrix in pose.rotation:
+                    self.assertAlmostEqual(determinant(matrix), 1, delta=1e-12)
+            x, y, z = (row[1] for row in hub.rotation[0])  # the hub's y axis; the shaft is tilted about y
+            self.assertAlmostEqual(y, math.cos(angle), delta=1e-9)
+            self.assertAlmostEqual(math.hypot(x, z), abs(math.sin(angle)), delta=1e-9)
+            self.assertLess(math.dist(hub.position[0], blade.position[0]), 3)
+            self.assertGreater(math.dist(hub.position[0], blade.position[-1]), 60)
+            run.close()
+            with self.assertRaises(ValueError):
+                run.poses
+
+    def test_the_pose_of_a_pendulum_is_its_angle(self):
+        with bough.Session(PENDULUM) as run:
+            run.advance(0.5)
+            position, rotation = run.poses["bob"]
+            turn = math.radians(run["bobPos"])  # about y
+            place = run["bobX"], run["bobY"], run["bobZ"]
+        self.assertEqual([list(x) for x in position], [[0, 0, 0]])
+        exact = [[math.cos(turn), 0, math.sin(turn)], [0, 1, 0], [-math.sin(turn), 0, math.cos(turn)]]
+        for row, expected, x in zip(rotation[0], exact, place):
+            for entry, value in zip(row, expected):
+                self.assertAlmostEqual(entry, value, delta=1e-12)
+            self.assertAlmostEqual(-row[0], x, delta=1e-12)  # the bob is at (-1, 0, 0) of its body
+
     def test_the_example_of_the_documents_runs(self):
         with open(SOURCE + "/docs/programs.md") as file:
-            results, code = file.read().split("## Python")[1].split("```")[1:4:2]
+            results, code, poses = file.read().split("## Python")[1].split("```")[1:6:2]
         if numpy_python():
             said = subprocess.run([numpy_python(), "-c", results], check=True, cwd=SOURCE, capture_output=True, text=True)
             self.assertRegex(said.stdout, r"rpm \+- .*\nmean of the last second: .* kN-m\n(.* Hz .*\n){12}tip: ")
+            said = subprocess.run([numpy_python(), "-c", poses], check=True, cwd=SOURCE, capture_output=True, text=True)
+            self.assertRegex(said.stdout, r"\((\d+), 3\) \(\1, 3, 3\)\ntip: \[.*\] m, along the span: \[.*\]\n")
         shorter = code.replace('"aero.wind.input=wind"', '"aero.wind.input=wind", "simulation.duration=0.1 s"')
         self.assertNotEqual(code, shorter)
         ran = subprocess.run([sys.executable, "-c", shorter], check=True, cwd=SOURCE, stdout=subprocess.PIPE)

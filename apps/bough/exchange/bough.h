@@ -76,6 +76,17 @@ BOUGH_API const double *bough_session_values(bough_session *session);
    'simulation.error_estimate: companion'; NaN: not known. */
 BOUGH_API double bough_session_estimate(const bough_session *session, int channel);
 
+/* Poses: number of bodies, in the scene's order, name of one ("": no such body), number of its stations (0:
+   no such body): the vertices of a rod from its root to its end, of any other body its origin alone. */
+BOUGH_API int bough_session_bodies(const bough_session *session);
+BOUGH_API const char *bough_session_body_name(const bough_session *session, int body);
+BOUGH_API int bough_session_stations(const bough_session *session, int body);
+
+/* Where a body is now: position (stations × 3) [m] and rotation matrix, row by row (stations × 3 × 3), of
+   each station in ground axes; the matrix takes components in the axes of body or section to those in ground
+   axes. BOUGH_SESSION_INVALID: no such body; BOUGH_SESSION_FAILED: a step has failed. */
+BOUGH_API int bough_session_poses(bough_session *session, int body, double *position, double *rotation);
+
 /* Inputs, which the scene declares ('input: NAME' of a load, of a joint's motion, of the wind;
    'control: {kind: external}'): number of inputs, name, unit (SI), index of a name (-1: no such input; the
    message names the nearest), current value (NaN: no such input). */

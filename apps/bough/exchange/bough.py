@@ -25,7 +25,7 @@ import struct
 import subprocess
 import sys
 import tempfile
-from typing import Any, Dict, Iterator, List, Optional, Sequence, Union
+from typing import Any, Dict, Iterator, List, NamedTuple, Optional, Sequence, Union
 
 try:
     import numpy
@@ -72,6 +72,10 @@ def _load():
         ("unit", text, session, ctypes.c_int),
         ("find", ctypes.c_int, session, text),
         ("values", ctypes.c_void_p, session),
+        ("bodies", ctypes.c_int, session),
+        ("body_name", text, session, ctypes.c_int),
+        ("stations", ctypes.c_int, session, ctypes.c_int),
+        ("poses", ctypes.c_int, session, ctypes.c_int, ctypes.c_void_p, ctypes.c_void_p),
         ("inputs", ctypes.c_int, session),
         ("input_name", text, session, ctypes.c_int),
         ("input_unit", text, session, ctypes.c_int),
@@ -277,6 +281,27 @@ class _Handle:
             _library.bough_session_close(self.pointer)
 
 
+class Pose(NamedTuple):
+    """Where the stations of a body are: the vertices of a rod from its root to its end, else the body's origin alone.
+
+    position    (stations, 3) in ground axes [m]
+    rotation    (stations, 3, 3) matrices, which take components in the axes of body or section to those in ground axes
+    """
+
+    position: Any
+    rotation: Any
+
+
+def _shaped(values: array.array, *shape: int) -> Any:
+    """numpy's array of that shape; lists in lists where there is no numpy."""
+    if numpy:
+        return numpy.frombuffer(values).reshape(shape)
+    rows = list(values)
+    for n in reversed(shape[1:]):
+        rows = [rows[k:k + n] for k in range(0, len(rows), n)]
+    return rows
+
+
 class Session:
     """A scene that runs: Session("runup.yaml", "aero.wind.speed=12 m/s", ...).
 
@@ -363,6 +388,18 @@ class Session:
         if name in self._input and name not in self._index:
             return self._call("input_value", self._input[name])
         return float(self.values[self._find(self._index, "find", name)])
+
+    @property
+    def poses(self) -> Dict[str, Pose]:
+        """The present poses of all bodies by name: run.poses["blade1"].position[-1] is the tip [m]."""
+        poses = {}
+        for body in range(self._call("bodies")):
+            n = self._call("stations", body)
+            position, rotation = (array.array("d", bytes(8 * size * n)) for size in (3, 9))
+            self._check(self._call("poses", body, position.buffer_info()[0], rotation.buffer_info()[0]))
+            name = self._call("body_name", body).decode()
+            poses[name] = Pose(_shaped(position, n, 3), _shaped(rotation, n, 3, 3))
+        return poses
 
     @property
     def inputs(self) -> Dict[str, str]:

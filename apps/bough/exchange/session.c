@@ -15,10 +15,11 @@ struct bough_session {
     bough_arena *arena;
     bool open; // the run is there
     bough_run run;
-    uint64_t kind; // fingerprint of what its copies hold
-    size_t size;   // of a copy [bytes]
-    int opening;   // code of the opening
-    int code;      // of the last call that has one
+    uint64_t kind;            // fingerprint of what its copies hold
+    size_t size;              // of a copy [bytes]
+    bough_beam_motion motion; // scratch of the longest beam
+    int opening;              // code of the opening
+    int code;                 // of the last call that has one
     char error[ERROR_TEXT];
 };
 
@@ -135,6 +136,17 @@ int bough_session_restore(bough_session *s, const void *copy) {
 // The first region of a thread starts its team; later ones find it.
 static void start_threads(void *unused) { (void)unused; }
 
+static bough_beam_motion motion_room(bough_arena *arena, const bough_simulation *s) {
+    size_t n = 1;
+    for (int k = 0; k < s->n_beam; k++) {
+        size_t points = (size_t)s->beam[k].def.n_segment + 1;
+        if (points > n) n = points;
+    }
+    bough_vec3 *vectors = bough_arena_take(arena, 3 * n * sizeof *vectors);
+    bough_mat3 *matrices = bough_arena_take(arena, n * sizeof *matrices);
+    return (bough_beam_motion){vectors, vectors + n, vectors + 2 * n, matrices};
+}
+
 typedef struct opening {
     bough_session *session;
     const char *path, *const *set;
@@ -171,6 +183,7 @@ static bough_status build(bough_arena *arena, void *self) {
     BOUGH_TRY(bough_run_create(arena, scene, &s->run));
     bough_pool_region(s->run.pool, start_threads, NULL);
     describe_copy(s);
+    s->motion = motion_room(arena, s->run.simulation);
     s->open = true;
     return status;
 }
@@ -263,6 +276,48 @@ double bough_session_read(bough_session *s, int channel) {
 double bough_session_estimate(const bough_session *s, int channel) {
     bool there = s->open && known(s, channel) && bough_companion_knows(s->run.companion, channel);
     return there ? s->run.companion->error[channel] : (double)NAN;
+}
+
+// -- poses ----------------------------------------------------------------------------------------
+
+int bough_session_bodies(const bough_session *s) { return is_open(s) ? s->run.simulation->scene->n_body : 0; }
+
+static bool is_body(const bough_session *s, int body) { return body >= 0 && body < bough_session_bodies(s); }
+
+const char *bough_session_body_name(const bough_session *s, int body) {
+    return is_body(s, body) ? s->run.simulation->scene->body[body].name : "";
+}
+
+int bough_session_stations(const bough_session *s, int body) {
+    if (!is_body(s, body)) return 0;
+    const bough_beam *beam = bough_simulation_beam(s->run.simulation, body);
+    return beam ? beam->def.n_segment + 1 : 1;
+}
+
+int bough_session_poses(bough_session *s, int body, double *position, double *rotation) {
+    if (!is_open(s)) return conclude_closed(s, "poses");
+    if (failed(s)) return conclude_failed(s, "poses");
+    if (!is_body(s, body) || !position || !rotation)
+        return conclude(
+            s, bough_fail(BOUGH_INVALID, "poses: no body of index %d, or no memory is given (NULL)", body));
+    bough_simulation *x = s->run.simulation;
+    const bough_beam *beam = bough_simulation_beam(x, body);
+    bough_simulation_update(x);
+    if (beam) {
+        bough_simulation_beam_motion(x, beam, s->motion);
+    } else {
+        bough_transform pose = bough_tree_frame_pose(x->view, &x->tree->bodies[body]);
+        s->motion.position[0] = pose.position;
+        s->motion.rotation[0] = pose.rotation;
+    }
+    for (int k = 0; k < bough_session_stations(s, body); k++) {
+        bough_mat3 rows = bough_mat3_transpose(s->motion.rotation[k]);
+        bough_v3_store(s->motion.position[k], position + 3 * k);
+        bough_v3_store(rows.c1, rotation + 9 * k);
+        bough_v3_store(rows.c2, rotation + 9 * k + 3);
+        bough_v3_store(rows.c3, rotation + 9 * k + 6);
+    }
+    return conclude(s, bough_ok());
 }
 
 // -- inputs ---------------------------------------------------------------------------------------

@@ -52,15 +52,17 @@ TEST(errors_are_told) {
 // Every function of a session whose opening gave that code, for NULL too.
 static void check_without_scene(bough_session *s, int code) {
     char copy[64];
-    const char *const nothing[] = {bough_session_warning(s), bough_session_name(s, 0),
-                                   bough_session_unit(s, 0), bough_session_input_name(s, 0),
-                                   bough_session_input_unit(s, 0)};
+    double pose[9];
+    const char *const nothing[] = {bough_session_warning(s),       bough_session_name(s, 0),
+                                   bough_session_unit(s, 0),       bough_session_input_name(s, 0),
+                                   bough_session_input_unit(s, 0), bough_session_body_name(s, 0)};
     const double none[] = {bough_session_time(s), bough_session_duration(s), bough_session_read(s, 0),
                            bough_session_input_value(s, 0)};
-    for (int k = 0; k < 5; k++) assert_string_equal(nothing[k], "");
+    for (int k = 0; k < 6; k++) assert_string_equal(nothing[k], "");
     for (int k = 0; k < 4; k++) assert_true(isnan(none[k]));
     assert_null(bough_session_values(s));
     assert_int_equal(bough_session_count(s) + bough_session_inputs(s), 0);
+    assert_int_equal(bough_session_bodies(s) + bough_session_stations(s, 0), 0);
     assert_int_equal(bough_session_size(s), 0);
     const struct {
         const char *name;
@@ -70,10 +72,11 @@ static void check_without_scene(bough_session *s, int code) {
                  {"save", bough_session_save(s, NULL)},
                  {"restore", bough_session_restore(s, copy)},
                  {"restore", bough_session_restore(s, NULL)},
+                 {"poses", bough_session_poses(s, 0, pose, pose)},
                  {"set", bough_session_set(s, 0, 1)},
                  {"set", bough_session_set_text(s, 0, "1 m/s")},
                  {"set", bough_session_set_text(s, -1, NULL)}};
-    for (int k = 0; k < 8; k++) assert_int_equal(calls[k].code, code);
+    for (int k = 0; k < 9; k++) assert_int_equal(calls[k].code, code);
     assert_int_equal(bough_session_find(s, "any"), -1);
     assert_int_equal(bough_session_find(s, NULL), -1);
     assert_int_equal(bough_session_input(s, "any"), -1);
@@ -119,6 +122,12 @@ TEST(an_unknown_name_is_told_with_the_nearest) {
     assert_int_equal(bough_session_input(s, "psuh"), -1);
     assert_string_equal(bough_session_error(s), "the scene has no input 'psuh' (did you mean 'push'?)");
     assert_int_equal(bough_session_input(s, NULL), -1);
+    double pose[9];
+    assert_int_equal(bough_session_bodies(s), 1);
+    assert_int_equal(bough_session_stations(s, 0), 1);
+    assert_int_equal(bough_session_poses(s, 0, pose, pose), BOUGH_SESSION_OK);
+    assert_int_equal(bough_session_poses(s, 1, pose, pose), BOUGH_SESSION_INVALID);
+    assert_int_equal(bough_session_poses(s, 0, pose, NULL), BOUGH_SESSION_INVALID);
     assert_int_equal(bough_session_step(s), BOUGH_SESSION_OK);
     assert_string_equal(bough_session_error(s), "");
     assert_int_equal(bough_session_save(s, NULL), BOUGH_SESSION_INVALID);
