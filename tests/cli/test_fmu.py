@@ -234,6 +234,20 @@ class Fmu(unittest.TestCase):
         self.assertEqual(library.fmi3Terminate(fmu.pointer), OK)
         fmu.free()
 
+    @unittest.skipUnless(shutil.which("fmusim"), "no fmusim of the Reference FMUs in the PATH")
+    def test_a_public_client_runs_it_as_bough_does(self):
+        table = folder.name + "/fmusim.csv"
+        said = subprocess.run(["fmusim", "--interface-type", "cs", "--stop-time", "0.4", "--output-interval", "0.1",
+                               "--output-file", table, folder.name + "/bough.fmu"], capture_output=True, text=True)
+        self.assertEqual(said.returncode, 0, said.stderr)
+        rows = bough.read(table)
+        with bough.Session(TURBINE, *SETTINGS) as own:
+            for k in range(5):
+                own.advance(0.1 * k)
+                for name in own.names:
+                    # the client writes 16 digits
+                    self.assertAlmostEqual(rows[name][k], own[name], delta=1e-15 * abs(own[name]), msg=(k, name))
+
     def test_a_run_that_starts_later_is_the_same(self):
         early, late = Instance(), Instance()
         self.assertEqual(early.start(), (OK, OK))

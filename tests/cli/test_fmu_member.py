@@ -183,6 +183,23 @@ class Member(unittest.TestCase):
         self.assertLess(max(abs(rows["massPos"][-1]), abs(rows["damperFz"][-1])), 100)
         self.assertGreater(max(map(abs, rows["damperFz"])), 1)
 
+    @unittest.skipUnless(os.environ.get("BOUGH_REFERENCE_FMUS"), "BOUGH_REFERENCE_FMUS names no folder of them")
+    def test_the_reference_fmus_are_parts_of_a_scene(self):
+        scene = SCENE.replace("[none, none, v, none", "[none, none, %s, none").replace("none, none, f,", "none, none, %s,")
+        for name, given, force in (
+                ("BouncingBall", "none", "h"), ("Dahlquist", "none", "x"), ("VanDerPol", "none", "x0"),
+                ("Feedthrough", "Float64_continuous_input", "Float64_continuous_output"), ("Stair", "none", "none"),
+                ("StateSpace", "none", "none"), ("Resource", "none", "none"), ("Roberts", "none", "y1")):
+            write(self.scene, (scene % (given, force)).replace("folder: sample", "folder: %s/%s.fmu" % (
+                os.environ["BOUGH_REFERENCE_FMUS"], name)))
+            with bough.Session(self.scene) as run:
+                rows = run.advance()
+            end = rows["damperFz"][-1]
+            if name == "Dahlquist":  # x' = -x by explicit Euler with its own step of 0.1 s
+                self.assertAlmostEqual(end / 0.9 ** 50, 1, delta=1e-6)
+            if name == "Feedthrough":  # v' = v / m
+                self.assertAlmostEqual(end / math.exp(5 / MASS), 1, delta=1e-2)
+
     def test_threads_do_not_change_the_bits(self):
         rows = []
         for threads in 1, 2:
