@@ -509,6 +509,14 @@ modes() {
     refused 'no revolute joint carries it' modes "$blade" --set 'modes.speed=1 rad/s'
     refused "'b=1' has 1 values, the first 2" modes "$turbine" --sweep 'a=1, 2' --sweep 'b=1'
     refused "expects KEY=V1, V2" modes "$turbine" --sweep 'gravity'
+    # two sliders whose frequencies cross: each is one branch, on a line of its own
+    expect 0 modes "$2/apps/mechanisms/pendulum.yaml" --set 'markers=[]' --out crossing --set 'modes.count=2' \
+        --set 'bodies=[{name: a, fidelity: rigid, mass: 1, joint: {kind: prismatic, parent: ground, axis: z, stiffness: 50}},
+        {name: b, fidelity: rigid, mass: 1, joint: {kind: prismatic, parent: ground, axis: z, stiffness: 100}}]' \
+        --sweep 'bodies[a].joint.stiffness=60, 90, 99, 101, 140'
+    [ "$(grep -c ',1,a z,.*,a,z,' crossing/campbell.csv)" -eq 5 ] || fail "$said: a is not line 1 at all points"
+    [ "$(grep -c ',2,b z,.*,b,z,' crossing/campbell.csv)" -eq 5 ] || fail "$said: b is not line 2 at all points"
+    rm -r crossing
     refused 'the linear system changes as the bodies turn' modes "$turbine" --set 'bodies[blade1].pitch=7 deg'
     expect 0 modes "$blade" --set 'modes={of: scene, count: 9}' --set 'bodies[0].rod.segments=6' --out mesh
     has ../stdout '^warning: modes that half the segments move by more than 1 %: [2-9]'

@@ -5,6 +5,7 @@
 #include "apps/bough/model/companion.h"
 #include "apps/bough/results/folder.h"
 #include "apps/bough/results/picture.h"
+#include "core/base/linalg.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -33,15 +34,16 @@ typedef struct sweep {
     double *x, *speed;  // (n_point) of the first key, else its place in the list;
                         // of the rotor [rpm]
     int n_mode, n_line;
-    sweep_mode *mode; // (n_mode) point after point
+    sweep_mode *mode;         // (n_mode) point after point
+    const sweep_mode **named; // (n_line) a mode called what most of the line's are
 } sweep;
 
 // The modes of the point before, for finding them again.
 typedef struct tracks {
     int n, n_state;
-    int *line;     // (n)
-    bool *taken;   // (n)
-    double *shape; // (n × 2 × n_state)
+    int *line;      // (n)
+    double *shape;  // (n × 2 × n_state)
+    double *weight; // (n_state) W of products: states count in units of their scales
 } tracks;
 
 // -- operating points -----------------------------------------------------------------------------
@@ -107,53 +109,93 @@ static bough_status set_point(bough_arena *arena, const bough_options *options, 
 
 // -- lines ----------------------------------------------------------------------------------------
 
-// |aᴴ b|²/(|a|² |b|²) of complex vectors, real before imaginary part (2 × n).
-static double alikeness(int n, const double *a, const double *b) {
-    double re = 0, im = 0, aa = 0, bb = 0;
+// aᴴ W b of complex vectors, real before imaginary part (2 × n).
+static void product(const tracks *t, const double *a, const double *b, double value[2]) {
+    int n = t->n_state;
+    value[0] = value[1] = 0;
     for (int i = 0; i < n; i++) {
-        double ar = a[i], ai = a[n + i], br = b[i], bi = b[n + i];
-        re += ar * br + ai * bi;
-        im += ar * bi - ai * br;
-        aa += ar * ar + ai * ai;
-        bb += br * br + bi * bi;
+        value[0] += t->weight[i] * (a[i] * b[i] + a[n + i] * b[n + i]);
+        value[1] += t->weight[i] * (a[i] * b[n + i] - a[n + i] * b[i]);
     }
-    return (re * re + im * im) / (aa * bb);
 }
 
-// The line of the mode most like this one and not far in frequency, or a new one.
-static int find_line(tracks *t, const double *shape, sweep *s) {
-    int best = -1;
-    double most = least_alike;
-    for (int k = 0; k < t->n; k++) {
-        if (t->taken[k]) continue;
-        double alike = alikeness(t->n_state, t->shape + (size_t)k * 2 * (size_t)t->n_state, shape);
-        if (alike > most) most = alike, best = k;
+static const double *shape_of(const tracks *t, int k) {
+    return t->shape + (size_t)k * 2 * (size_t)t->n_state;
+}
+
+// How much of each mode of `now` is each mode of `before`, theory (103): alike (before × now), 0 to 1. Where
+// shapes are far from orthogonal, as near flutter, each is like several by their product alone.
+static void compare(bough_arena *arena, const tracks *before, const tracks *now, double *alike) {
+    size_t n = (size_t)before->n;
+    double *matrix = bough_arena_doubles(arena, 2 * n * n + 1), *part = bough_arena_doubles(arena, 2 * n + 1);
+    int *pivot = bough_arena_take(arena, (n + 1) * sizeof *pivot);
+    double *size = bough_arena_doubles(arena, n + 1);
+    for (size_t k = 0; k < n; k++) {
+        for (size_t i = 0; i < n; i++)
+            product(before, shape_of(before, (int)i), shape_of(before, (int)k), matrix + 2 * (k * n + i));
+        size[k] = matrix[2 * (k * n + k)];
     }
-    if (best < 0) return s->n_line++;
-    t->taken[best] = true;
-    return t->line[best];
+    bool independent = bough_complex_factor(before->n, matrix, pivot);
+    for (int j = 0; j < now->n; j++) {
+        double sum = 0, *to = alike + (size_t)j * n;
+        for (size_t k = 0; k < n; k++)
+            product(before, shape_of(before, (int)k), shape_of(now, j), part + 2 * k);
+        if (independent) bough_complex_solve(before->n, matrix, pivot, part);
+        for (size_t k = 0; k < n; k++) {
+            double square = part[2 * k] * part[2 * k] + part[2 * k + 1] * part[2 * k + 1];
+            sum += to[k] = independent ? square * size[k] : square / size[k];
+        }
+        for (size_t k = 0; k < n; k++) to[k] /= sum;
+    }
+}
+
+// The modes go on the lines of those that they are most like, the most alike first; the others begin new
+// lines.
+static void find_lines(bough_arena *arena, const tracks *before, tracks *now, sweep *s) {
+    size_t n = (size_t)before->n;
+    double *alike = bough_arena_doubles(arena, n * (size_t)now->n + 1);
+    bool *taken = bough_arena_take(arena, n + 1);
+    compare(arena, before, now, alike);
+    for (int j = 0; j < now->n; j++) now->line[j] = -1;
+    for (;;) {
+        double most = least_alike;
+        int from = -1, to = -1;
+        for (int j = 0; j < now->n; j++) {
+            for (size_t k = 0; k < n && now->line[j] < 0; k++)
+                if (!taken[k] && alike[(size_t)j * n + k] > most)
+                    most = alike[(size_t)j * n + k], from = (int)k, to = j;
+        }
+        if (from < 0) break;
+        taken[from] = true;
+        now->line[to] = before->line[from];
+    }
+    for (int j = 0; j < now->n; j++)
+        if (now->line[j] < 0) now->line[j] = s->n_line++;
 }
 
 static tracks take_tracks(bough_arena *arena, int count, int n_state) {
     size_t n = (size_t)count;
     return (tracks){.n_state = n_state,
                     .line = bough_arena_take(arena, n * sizeof(int)),
-                    .taken = bough_arena_take(arena, n * sizeof(bool)),
+                    .weight = bough_arena_doubles(arena, (size_t)n_state),
                     .shape = bough_arena_doubles(arena, 2 * n * (size_t)n_state)};
 }
 
 // The point's modes into the sweep, and its shapes to `now`.
-static void add_modes(const bough_simulation *sim, const bough_vibration *v, int point, tracks *before,
-                      tracks *now, sweep *s) {
+static void add_modes(bough_arena *arena, const bough_simulation *sim, const bough_vibration *v, int point,
+                      const tracks *before, tracks *now, sweep *s) {
     size_t n = (size_t)now->n_state;
     now->n = v->found;
-    for (int k = 0; k < before->n; k++) before->taken[k] = false;
+    bough_assembly_scales(sim->master->assembly, now->weight);
+    for (size_t i = 0; i < n; i++) now->weight[i] = 1 / (now->weight[i] * now->weight[i]);
     for (int k = 0; k < v->found; k++) {
-        const bough_scene_mode *m = &v->mode[k];
         double *shape = now->shape + (size_t)k * 2 * n;
         memcpy(shape, v->pair[k].shape_real, n * sizeof *shape);
         memcpy(shape + n, v->pair[k].shape_imag, n * sizeof *shape);
-        now->line[k] = find_line(before, shape, s);
+    }
+    find_lines(arena, before, now, s);
+    for (int k = 0; k < v->found; k++) {
+        const bough_scene_mode *m = &v->mode[k];
         sweep_mode *to = &s->mode[s->n_mode++];
         *to = (sweep_mode){.point = point,
                            .line = now->line[k],
@@ -190,7 +232,7 @@ static bough_status solve_point(bough_arena *keep, const bough_options *options,
             status = bough_fail(BOUGH_INVALID, "--sweep cannot change the bodies, their mesh or the "
                                                "count of modes");
         }
-        if (bough_is_ok(&status)) add_modes(sim, &v, point, before, now, s);
+        if (bough_is_ok(&status)) add_modes(arena, sim, &v, point, before, now, s);
         s->speed[point] = fabs(v.spin) * 30 / BOUGH_PI;
         s->n_blade = sim->scene->turbine.n_blade;
         char *end;
@@ -216,20 +258,44 @@ static void print_point(const sweep *s, int point, int first) {
     }
 }
 
+static bool has_name(const sweep_mode *a, const sweep_mode *b) {
+    return a->line == b->line && strcmp(a->body, b->body) == 0 && strcmp(a->shape, b->shape) == 0 &&
+           strcmp(a->pattern, b->pattern) == 0;
+}
+
+// Names each line after most of its modes: where modes come near each other, they exchange what they are
+// called by.
+static void name_lines(bough_arena *arena, sweep *s) {
+    s->named = bough_arena_take(arena, ((size_t)s->n_line + 1) * sizeof *s->named);
+    int *most = bough_arena_take(arena, ((size_t)s->n_line + 1) * sizeof *most);
+    for (int i = 0; i < s->n_mode; i++) {
+        int alike = 0, line = s->mode[i].line;
+        for (int k = 0; k < s->n_mode; k++) alike += has_name(&s->mode[i], &s->mode[k]);
+        if (alike > most[line]) most[line] = alike, s->named[line] = &s->mode[i];
+    }
+}
+
+static const char *name_of(bough_arena *arena, const sweep *s, int line) {
+    const sweep_mode *m = s->named[line];
+    return bough_arena_print(arena, "%s %s%s%s", m->body, m->shape, m->pattern[0] ? " " : "", m->pattern);
+}
+
 static void write_table(const void *self, FILE *file) {
     const sweep *s = self;
     fputs("point", file);
     for (int k = 0; k < s->n_key; k++) fprintf(file, ",%s", s->key[k]);
-    fputs(",rotor speed (rpm),line,frequency (Hz),damped frequency (Hz),damping ratio (-),decrement (-),body,"
-          "shape,pattern\n",
-          file);
+    fputs(
+        ",rotor speed (rpm),line,branch,frequency (Hz),damped frequency (Hz),damping ratio (-),decrement (-),body,"
+        "shape,pattern\n",
+        file);
     for (int i = 0; i < s->n_mode; i++) {
-        const sweep_mode *m = &s->mode[i];
+        const sweep_mode *m = &s->mode[i], *name = s->named[m->line];
         fprintf(file, "%d", m->point + 1);
         for (int k = 0; k < s->n_key; k++) {
             fprintf(file, ",\"%s\"", s->value[k * s->n_point + m->point]);
         }
-        fprintf(file, ",%.10g,%d,%.10g,%.10g,%.10g,%.10g,%s,%s,%s\n", s->speed[m->point], m->line + 1,
+        fprintf(file, ",%.10g,%d,%s %s%s%s,%.10g,%.10g,%.10g,%.10g,%s,%s,%s\n", s->speed[m->point],
+                m->line + 1, name->body, name->shape, name->pattern[0] ? " " : "", name->pattern,
                 m->frequency, m->damped, m->damping,
                 bough_modes_decrement(m->frequency, m->damped, m->damping), m->body, m->shape, m->pattern);
     }
@@ -277,7 +343,7 @@ static void add_line(diagram *d, int line) {
     for (const sweep_mode *m = s->mode; last && m <= last; m++) {
         if (m->line != line || (d->damping && m->damped == 0)) continue;
         const char *label =
-            bough_arena_print(d->chart.arena, "%d %s %s %s", line + 1, m->body, m->shape, m->pattern);
+            bough_arena_print(d->chart.arena, "%d %s", line + 1, name_of(d->chart.arena, s, line));
         bough_chart_add(&d->chart, (bough_chart_point){.x = x_of(d, m->point),
                                                        .y = d->damping ? 100 * m->damping : m->frequency,
                                                        .label = m == last ? label : NULL});
@@ -434,6 +500,7 @@ bough_status bough_modes_sweep(bough_arena *arena, const bough_options *options,
         status = print_boundary(arena, options, &s, i);
         break;
     }
+    name_lines(arena, &s);
     if (bough_is_ok(&status)) status = bough_folder_make(folder);
     if (bough_is_ok(&status)) status = bough_folder_write(folder, "campbell.csv", write_table, &s);
     if (bough_is_ok(&status)) status = draw(arena, &s, folder);
