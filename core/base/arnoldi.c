@@ -7,14 +7,15 @@
 
 static const double dependent = 1e-13; // norm outside the basis, relative to the whole: below it, dependent
 
-void bough_arnoldi_create(bough_arena *arena, int length, int capacity, bough_arnoldi *a) {
+void bough_arnoldi_create(bough_arena *arena, int length, int capacity, int at_once, bough_arnoldi *a) {
     size_t n = (size_t)length, m = (size_t)capacity;
     a->length = length;
     a->capacity = capacity;
     a->basis = bough_arena_doubles(arena, m * n);
     bough_arena_each(arena, m * m, &a->h, &a->vector, &a->matrix);
     a->weight = bough_arena_doubles(arena, n);
-    a->image = bough_arena_doubles(arena, n);
+    a->at_once = at_once;
+    a->image = bough_arena_doubles(arena, n * (size_t)at_once);
     a->value = bough_arena_doubles(arena, 2 * m);
     a->work = bough_arena_doubles(arena, 8 * m);
     for (int i = 0; i < length; i++) a->weight[i] = 1;
@@ -25,6 +26,7 @@ static double *vector_at(const bough_arnoldi *a, int k) { return a->basis + (siz
 // The weighted inner product xᵀ W y.
 double bough_arnoldi_product(const bough_arnoldi *a, const double *x, const double *y) {
     double sum = 0;
+#pragma omp simd reduction(+ : sum)
     for (int i = 0; i < a->length; i++) sum += a->weight[i] * x[i] * y[i];
     return sum;
 }
@@ -52,9 +54,13 @@ void bough_arnoldi_append(bough_arnoldi *a, double *x, double *column) {
 // A V = V H, a column of H for each vector of the basis.
 bough_status bough_arnoldi_extend(bough_arnoldi *a, int target) {
     while (a->done < a->count && a->done < target) {
-        BOUGH_TRY(a->apply(a->self, vector_at(a, a->done), a->image));
-        bough_arnoldi_append(a, a->image, a->h + (size_t)a->done * (size_t)a->capacity);
-        a->done++;
+        int left = (a->count < target ? a->count : target) - a->done,
+            n = left < a->at_once ? left : a->at_once;
+        BOUGH_TRY(a->apply(a->self, n, vector_at(a, a->done), a->image));
+        for (int k = 0; k < n; k++) {
+            double *column = a->h + (size_t)a->done++ * (size_t)a->capacity;
+            bough_arnoldi_append(a, a->image + (size_t)k * (size_t)a->length, column);
+        }
     }
     return bough_ok();
 }

@@ -16,18 +16,19 @@ typedef struct bough_arnoldi {
     double *basis;   // (capacity × length)
     double *h;       // operator in the basis (capacity × capacity), column j of vector j
     double *weight;  // of the inner product (length)
-    double *image;   // (length) scratch
+    int at_once;     // vectors to which the operator is applied together
+    double *image;   // (at_once × length) scratch
     // by bough_arnoldi_project: eigenvalues of the first `done` rows and columns of h
     double *value;         // real parts (done), then imaginary parts
     double *vector;        // (done × done) column by column; of a complex pair real, then imaginary part
     double *matrix, *work; // scratch
-    // The operator: image = A z.
-    bough_status (*apply)(void *self, const double *z, double *image);
+    // The operator: image = A z, of n ≤ at_once vectors.
+    bough_status (*apply)(void *self, int n, const double *z, double *image);
     void *self;
 } bough_arnoldi;
 
 // Takes the memory for vectors of that length, the weights all 1.
-void bough_arnoldi_create(bough_arena *arena, int length, int capacity, bough_arnoldi *a);
+void bough_arnoldi_create(bough_arena *arena, int length, int capacity, int at_once, bough_arnoldi *a);
 
 double bough_arnoldi_product(const bough_arnoldi *a, const double *x, const double *y);
 

@@ -8,9 +8,9 @@
 
 enum {
     W8 = 8,
-    BLOCK_SIZE = 4, // starting vectors: multiplicities up to this are found
-    SPARE = 60,     // vectors beyond those wanted before the first look
-    LOOKS = 4,      // after the first, each with half as many vectors more
+    BLOCK_SIZE = BOUGH_EIGEN_AT_ONCE, // starting vectors: multiplicities up to this are found
+    SPARE = 60,                       // vectors beyond those wanted before the first look
+    LOOKS = 4,                        // after the first, each with half as many vectors more
 };
 
 static const double accuracy = 1e-9;
@@ -22,9 +22,9 @@ typedef struct search {
     int *order; // of the projected eigenvalues, by falling modulus
 } search;
 
-static bough_status apply(void *self, const double *z, double *image) {
+static bough_status apply(void *self, int n, const double *z, double *image) {
     const bough_eigen_operator *op = ((const search *)self)->op;
-    op->apply(op->self, z, image);
+    op->apply(op->self, n, z, image);
     return bough_ok();
 }
 
@@ -50,7 +50,7 @@ static void start(search *s) {
             random[i] = a->weight[i] > 0 ? (double)(seed >> 8) / 8388608.0 - 1 : 0;
         }
         for (int twice = 0; twice < 2; twice++) {
-            apply(s, random, a->image);
+            apply(s, 1, random, a->image);
             memcpy(random, a->image, (size_t)a->length * sizeof *random);
         }
         if (k == 0 && s->op->balance) balance(a, random);
@@ -154,9 +154,9 @@ static void fill_pair(const search *s, int k, double *x, double *y, bough_eigen_
         double *own = x + (size_t)part * n;
         bough_arnoldi_combine(&s->basis, k + part, op->length, own);
         for (size_t i = 0; i < n && part == 1 && op->gamma == 0; i++) own[i] *= -1;
-        op->apply(op->self, own, y + (size_t)part * n);
         memcpy(part == 0 ? pair->shape_real : pair->shape_imag, own, bytes);
     }
+    op->apply(op->self, 1 + oscillates, x, y);
     pair->residual = bough_eigen_residual(op, pair->real, pair->imaginary, x, y);
 }
 
@@ -174,7 +174,7 @@ static bough_status find(bough_arena *arena, const bough_eigen_operator *op, int
     int first = 4 * wanted + SPARE, capacity = first + first * LOOKS / 2 + BLOCK_SIZE;
     search s = {.op = op, .basis = {.apply = apply, .self = &s}};
     s.order = bough_arena_take(arena, (size_t)(capacity + wanted) * sizeof *s.order);
-    bough_arnoldi_create(arena, op->length, capacity, &s.basis);
+    bough_arnoldi_create(arena, op->length, capacity, BLOCK_SIZE, &s.basis);
     memcpy(s.basis.weight, op->weight, (size_t)op->length * sizeof(double));
     int *chosen = s.order + capacity;
     start(&s);
@@ -212,14 +212,19 @@ static void subtract_mass(const bough_eigen_problem *problem, const double *x, d
 }
 
 // Vectors are (q, λq), 16 n long: (q, v) → (−K⁻¹(C q + M v), q), its eigenvalues are 1/λ.
-static void apply_inverse(void *self, const double *z, double *image) {
-    const bough_eigen_problem *problem = self;
+static void solve_one(const bough_eigen_problem *problem, const double *z, double *image) {
     size_t half = (size_t)W8 * (size_t)problem->stiffness->n;
     memset(image, 0, half * sizeof *image);
     bough_block_tridiagonal_subtract(problem->damping, z, image);
     subtract_mass(problem, z + half, image);
     bough_block_tridiagonal_solve(problem->stiffness, image);
     memcpy(image + half, z, half * sizeof *image);
+}
+
+static void apply_inverse(void *self, int n, const double *z, double *image) {
+    const bough_eigen_problem *problem = self;
+    size_t length = 2 * (size_t)W8 * (size_t)problem->stiffness->n;
+    for (int k = 0; k < n; k++) solve_one(problem, z + (size_t)k * length, image + (size_t)k * length);
 }
 
 bough_status bough_eigen_smallest(bough_arena *arena, const bough_eigen_problem *problem, int wanted,

@@ -6,6 +6,8 @@
 #include "core/base/block_tridiagonal.h"
 #include "core/base/status.h"
 
+enum { BOUGH_EIGEN_AT_ONCE = 4 };
+
 // λ are the eigenvalues of a real matrix A, given by the action of its inverse about a point: z ←
 // A⁻¹z, or, with γ > 0, (I − γA)⁻¹z, whose point is 1/γ.
 typedef struct bough_eigen_operator {
@@ -18,7 +20,8 @@ typedef struct bough_eigen_operator {
                       // so that both count alike
     bool decaying;    // real decaying solutions are listed too
     void *self;
-    void (*apply)(void *self, const double *z, double *image);
+    // Images of n ≤ BOUGH_EIGEN_AT_ONCE vectors, one after the other.
+    void (*apply)(void *self, int n, const double *z, double *image);
 } bough_eigen_operator;
 
 // One of each conjugate pair (λ with positive imaginary part), and growing real solutions; decaying

@@ -62,8 +62,7 @@ static double largest(const double *x, int n) {
 }
 
 // theory (76): (I − γ(J − S))⁻¹ z = Σ (−(I − γJ)⁻¹ γS)ᵏ (I − γJ)⁻¹ z
-static void apply(void *self, const double *z, double *image) {
-    modes *m = self;
+static void apply_once(modes *m, const double *z, double *image) {
     int n = m->whole->assembly->n_state;
     // the first term, without rotation
     memcpy(image, z, (size_t)n * sizeof *image);
@@ -82,6 +81,12 @@ static void apply(void *self, const double *z, double *image) {
         if (largest(m->term, n) <= series * size) return;
     }
     m->diverged = true;
+}
+
+static void apply(void *self, int n, const double *z, double *image) {
+    modes *m = self;
+    size_t length = (size_t)m->whole->assembly->n_state;
+    for (int k = 0; k < n; k++) apply_once(m, z + (size_t)k * length, image + (size_t)k * length);
 }
 
 static void take(bough_arena *arena, modes *m, bough_eigen_operator *op) {

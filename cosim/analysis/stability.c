@@ -51,7 +51,7 @@ static void build_linear_members(map *m, const bough_assembly *a, const double *
 static void take(map *m) {
     m->earlier = bough_arena_doubles(m->arena, 2 * (size_t)DIMENSION);
     m->pair = bough_arena_doubles(m->arena, 2 * (size_t)m->n);
-    bough_arnoldi_create(m->arena, m->n, DIMENSION + 1, &m->arnoldi);
+    bough_arnoldi_create(m->arena, m->n, DIMENSION + 1, 1, &m->arnoldi);
 }
 
 // The analysis uses the converged solution of the iterated scheme, because the residual of its tolerance
@@ -99,7 +99,9 @@ static bough_status apply(map *m, int count, const double *z, double *image) {
     return status;
 }
 
-static bough_status apply_repeated(void *self, const double *z, double *image) {
+// One vector at a time.
+static bough_status apply_repeated(void *self, __attribute__((unused)) int n, const double *z,
+                                   double *image) {
     map *m = self;
     return apply(m, m->repeat, z, image);
 }

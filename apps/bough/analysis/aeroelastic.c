@@ -1,5 +1,5 @@
 // theory (77). The matrix is dense where the air couples states, the members' own part of its inverse is not:
-// vectors are first solved by the members' factors, then by the dense factors of what the air and the
+// that is found by the members' factors, then the whole one by the dense factors of what the air and the
 // rotation add.
 #include "apps/bough/analysis/aeroelastic.h"
 
@@ -22,13 +22,12 @@ typedef struct work {
     const bough_aeroelastic *system;
     int n, m;            // states of the members, those of the air that change
     int *air, *place;    // (m) rows of the air's tangents; (n_air) places of these rows in m, −1: none
-    double *inverse;     // P = (I − γJ)⁻¹ (n × n), column-major as all
+    double *inverse;     // P = (I − γJ)⁻¹ (n × n), column-major as all; then T⁻¹ P
     double *factor;      // T (n × n), theory (77), factored
     int *pivot;          // (n)
     double *rate;        // S (n_part × n_part), row-major
     int n_row, *row;     // (n) rows of the members' rates that the air changes
     double *inverse_row; // (n × n_row) columns of P for them
-    double *moved;       // (n)
 } work;
 
 static void take(bough_arena *arena, work *w) {
@@ -36,7 +35,6 @@ static void take(bough_arena *arena, work *w) {
     w->row = bough_arena_take(arena, n * sizeof *w->row);
     w->pivot = bough_arena_take(arena, n * sizeof *w->pivot);
     bough_arena_each(arena, n * n, &w->inverse, &w->factor);
-    w->moved = bough_arena_doubles(arena, n);
     w->rate = bough_arena_doubles(arena, parts * parts + 1);
 }
 
@@ -122,7 +120,7 @@ static void subtract_forces(bough_arena *arena, work *w, const double *a) {
     }
 }
 
-static bool factor(bough_arena *arena, work *w) {
+static bool solve(bough_arena *arena, work *w) {
     const bough_aeroelastic *x = w->system;
     size_t n = (size_t)w->n;
     for (size_t j = 0; j < n; j++) w->factor[j * n + j] = 1;
@@ -132,23 +130,21 @@ static bool factor(bough_arena *arena, work *w) {
         add_spin(w);
     }
     subtract_forces(arena, w, x->air->motion);
-    return bough_dense_factor(w->n, w->factor, w->pivot);
+    if (!bough_dense_factor(w->n, w->factor, w->pivot)) return false;
+    bough_dense_solve(w->n, w->n, w->factor, w->pivot, w->inverse);
+    return true;
 }
 
 // -- its eigenvalues ------------------------------------------------------------------------------
 
-static void apply(void *self, const double *z, double *image) {
+static void apply(void *self, int n, const double *z, double *image) {
     const work *w = self;
-    memcpy(image, z, (size_t)w->n * sizeof *image);
-    solve_members(w, image);
-    bough_dense_solve(w->n, 1, w->factor, w->pivot, image);
+    bough_dense_product((bough_product){w->n, n, w->n, false, 1, 0}, w->inverse, z, image);
 }
 
-static void apply_transposed(void *self, const double *z, double *image) {
+static void apply_transposed(void *self, int n, const double *z, double *image) {
     const work *w = self;
-    memcpy(w->moved, z, (size_t)w->n * sizeof *image);
-    bough_dense_solve_transposed(w->n, 1, w->factor, w->pivot, w->moved);
-    bough_dense_product((bough_product){w->n, 1, w->n, true, 1, 0}, w->inverse, w->moved, image);
+    bough_dense_product((bough_product){w->n, n, w->n, true, 1, 0}, w->inverse, z, image);
 }
 
 // Products in which states of the members count in units of their scales (power −2), those of the air as they
@@ -174,6 +170,7 @@ static bough_status find_pairs(bough_arena *arena, work *w, bool left, bool deca
     return bough_eigen_nearest(arena, &op, pair, count);
 }
 
+// Of pairs, or of what begins with one.
 static int slower(const void *a, const void *b) {
     const bough_eigen_pair *x = a, *y = b;
     double first = hypot(x->real, x->imaginary), second = hypot(y->real, y->imaginary);
@@ -242,7 +239,7 @@ static bool set_motion(bough_arena *arena, work *w, reduced *x) {
     double *image = bough_arena_doubles(arena, n * r), *small = bough_arena_doubles(arena, r * r);
     double *column = bough_arena_doubles(arena, r);
     int *pivot = bough_arena_take(arena, r * sizeof *pivot);
-    for (size_t j = 0; j < r; j++) apply(w, x->right + j * n, image + j * n);
+    apply(w, x->r, x->right, image);
     bough_dense_product((bough_product){x->r, x->r, w->n, false, 1, 0}, x->left, image, small);
     if (!bough_dense_factor(x->r, small, pivot)) return false;
     for (size_t j = 0; j < r; j++) {
@@ -255,13 +252,15 @@ static bool set_motion(bough_arena *arena, work *w, reduced *x) {
     return true;
 }
 
-// The static response of the modes left out to forces (n × columns), γ T⁻¹ P (E − U L), in their place;
-// force: their L.
-static void follow(work *w, const reduced *x, int columns, const double *force, double *rest) {
-    size_t n = (size_t)w->n;
-    bough_dense_product((bough_product){w->n, columns, x->r, false, -1, 1}, x->right, force, rest);
-    for (size_t j = 0; j < (size_t)columns; j++) solve_members(w, rest + j * n);
-    bough_dense_solve(w->n, columns, w->factor, w->pivot, rest);
+// The static response of the modes left out to forces R (n × columns), γ T⁻¹ P (E − U L) R, in place of R;
+// force: L R.
+static void follow(bough_arena *arena, work *w, const reduced *x, int columns, const double *force,
+                   double *rest) {
+    size_t size = (size_t)w->n * (size_t)columns;
+    double *left = bough_arena_doubles(arena, size);
+    memcpy(left, rest, size * sizeof *left);
+    bough_dense_product((bough_product){w->n, columns, x->r, false, -1, 1}, x->right, force, left);
+    apply(w, columns, left, rest);
 }
 
 // Blocks of the air: L R, G U, H − S, and G by the modes left out, which follow R at once.
@@ -274,7 +273,7 @@ static void set_air(bough_arena *arena, work *w, reduced *x) {
     // forces of the air's states, on the modes and on what is left out
     for (size_t j = 0; j < m; j++) memcpy(lift + j * n, air->lift + (size_t)w->air[j] * n, n * sizeof *lift);
     bough_dense_product((bough_product){x->r, w->m, w->n, false, 1, 0}, x->left, lift, force);
-    follow(w, x, w->m, force, lift);
+    follow(arena, w, x, w->m, force, lift);
     // rates of the air by both
     bough_dense_product((bough_product){a, x->r, w->n, false, 1, 0}, air->drive, x->right, drive);
     bough_product by_rest = {a, w->m, w->n, false, 1 / w->system->def->point, 0};
@@ -377,8 +376,7 @@ static void add_drive(const work *w, const double *y, double *air) {
     }
 }
 
-static void apply_whole(void *self, const double *z, double *image) {
-    const whole_inverse *s = self;
+static void apply_whole(const whole_inverse *s, const double *z, double *image) {
     const reduced *x = s->x;
     const work *w = s->w;
     size_t r = (size_t)x->r;
@@ -386,7 +384,7 @@ static void apply_whole(void *self, const double *z, double *image) {
     bough_dense_product((bough_product){x->r, 1, w->n, false, 1, 0}, x->left, z, s->part);
     memcpy(s->other, z, (size_t)w->n * sizeof *z);
     bough_dense_product((bough_product){w->n, 1, x->r, false, -1, 1}, x->right, s->part, s->other);
-    apply(s->w, s->other, image);
+    apply(s->w, 1, s->other, image);
     // the subspace and the air, which it drives
     memcpy(s->part + r, z + w->n, (size_t)w->m * sizeof *z);
     add_drive(w, image, s->part + r);
@@ -397,45 +395,65 @@ static void apply_whole(void *self, const double *z, double *image) {
     memcpy(image + w->n, s->part + r, (size_t)w->m * sizeof *image);
 }
 
-// A mode of the reduced system as one of the whole, after one step of inverse iteration.
-static void expand(const bough_eigen_operator *op, size_t j, double *from, double *to, bough_eigen_pair *p) {
+// Where a mode is among the vectors of the reduced system.
+typedef struct listed {
+    bough_eigen_pair pair; // without shape
+    size_t column;
+} listed;
+
+// The mode as one of the whole, after one step of inverse iteration. from, to (2 × length): work.
+static void expand(const bough_eigen_operator *op, const listed *mode, double *from, double *to,
+                   bough_eigen_pair *p) {
     const whole_inverse *s = op->self;
     const work *w = s->w;
     const reduced *x = s->x;
-    size_t n = (size_t)op->length;
-    memset(from, 0, 2 * n * sizeof *from);
-    memset(to, 0, 2 * n * sizeof *to);
+    size_t length = (size_t)op->length;
+    memset(from, 0, 2 * length * sizeof *from);
+    memset(to, 0, 2 * length * sizeof *to);
     for (size_t part = 0; part < 1 + (size_t)(p->imaginary > 0); part++) {
-        const double *vector = x->vector + (j + part) * (size_t)x->all;
-        double *z = from + part * n;
+        const double *vector = x->vector + (mode->column + part) * (size_t)x->all;
+        double *z = from + part * length;
         bough_dense_product((bough_product){w->n, 1, x->r, false, 1, 0}, x->right, vector, z);
         bough_dense_product((bough_product){w->n, 1, w->m, false, 1 / w->system->def->point, 1}, x->rest,
                             vector + x->r, z);
         memcpy(z + w->n, vector + x->r, (size_t)w->m * sizeof *z);
-        op->apply(op->self, z, to + part * n);
-        memcpy(part == 0 ? p->shape_real : p->shape_imag, to + part * n, (size_t)w->n * sizeof *to);
+        apply_whole(s, z, to + part * length);
+        memcpy(part == 0 ? p->shape_real : p->shape_imag, to + part * length, (size_t)w->n * sizeof *to);
     }
     p->residual = bough_eigen_residual(op, p->real, p->imaginary, from, to);
 }
 
-static void list_modes(bough_arena *arena, work *w, const reduced *x, bough_eigen_pair *pair, int *found) {
-    size_t all = (size_t)x->all, n = (size_t)w->n, length = n + (size_t)w->m;
-    whole_inverse self = {w, x, bough_arena_doubles(arena, n), bough_arena_doubles(arena, all)};
-    const bough_eigen_operator op = {.length = (int)length,
-                                     .gamma = 1 / w->system->def->point,
-                                     .weight = product_weights(arena, w, -2),
-                                     .self = &self,
-                                     .apply = apply_whole};
-    double *from = bough_arena_doubles(arena, 4 * length);
-    *found = 0;
+// The modes in which the bodies take part; returns their number.
+static int choose_modes(const reduced *x, listed *mode) {
+    size_t all = (size_t)x->all;
+    int found = 0;
     for (size_t j = 0; j < all; j++) {
         double growth = x->value[j], frequency = x->value[all + j];
         if (frequency < 0 || (frequency == 0 && growth <= 0)) continue;
         if (participation(x, j, frequency > 0) < least_motion) continue;
-        bough_eigen_pair *p = &pair[(*found)++];
-        *p = (bough_eigen_pair){growth, frequency, 0, bough_arena_doubles(arena, n),
-                                bough_arena_doubles(arena, n)};
-        expand(&op, j, from, from + 2 * length, p);
+        mode[found++] = (listed){.pair = {.real = growth, .imaginary = frequency}, .column = j};
+    }
+    return found;
+}
+
+static void list_modes(bough_arena *arena, work *w, const reduced *x, bough_eigen_pair *pair,
+                       bough_eigen_count *count) {
+    size_t n = (size_t)w->n, length = n + (size_t)w->m;
+    whole_inverse self = {w, x, bough_arena_doubles(arena, n), bough_arena_doubles(arena, (size_t)x->all)};
+    const bough_eigen_operator op = {.length = (int)length,
+                                     .gamma = 1 / w->system->def->point,
+                                     .weight = product_weights(arena, w, -2),
+                                     .self = &self};
+    double *from = bough_arena_doubles(arena, 4 * length);
+    listed *mode = bough_arena_take(arena, (size_t)x->all * sizeof *mode);
+    count->found = choose_modes(x, mode);
+    qsort(mode, (size_t)count->found, sizeof *mode, slower);
+    if (count->found > count->wanted) count->found = count->wanted;
+    for (int k = 0; k < count->found; k++) {
+        pair[k] = mode[k].pair;
+        pair[k].shape_real = bough_arena_doubles(arena, n);
+        pair[k].shape_imag = bough_arena_doubles(arena, n);
+        expand(&op, &mode[k], from, from + 2 * length, &pair[k]);
     }
 }
 
@@ -453,11 +471,7 @@ static bough_status follow_memory(bough_arena *arena, work *w, bough_eigen_pair 
         return bough_fail(BOUGH_FAILED, "the motion in the air cannot be reduced to %d modes", n_right.found);
     *unpaired = x.unpaired + (n_left.found > n_right.found ? n_left.found - n_right.found : 0);
     count->converged = n_right.converged < n_left.converged ? n_right.converged : n_left.converged;
-    bough_eigen_pair *all = bough_arena_take(arena, (size_t)x.all * sizeof *all);
-    list_modes(arena, w, &x, all, &count->found);
-    qsort(all, (size_t)count->found, sizeof *all, slower);
-    if (count->found > count->wanted) count->found = count->wanted;
-    memcpy(pair, all, (size_t)count->found * sizeof *all);
+    list_modes(arena, w, &x, pair, count);
     return bough_ok();
 }
 
@@ -471,7 +485,7 @@ bough_status bough_aeroelastic_modes(bough_arena *arena, const bough_aeroelastic
     bough_status status = bough_whole_setup(system->whole, def->time, def->state, def->input, 1 / def->point);
     if (!bough_is_ok(&status)) return bough_fail(BOUGH_FAILED, "%s", status.message);
     invert(&w);
-    if (!factor(arena, &w))
+    if (!solve(arena, &w))
         return bough_fail(BOUGH_FAILED, "the motion in the air is singular about %g /s", def->point);
     if (w.m > 0) return follow_memory(arena, &w, pair, count, unpaired);
     status = find_pairs(arena, &w, false, false, pair, count);

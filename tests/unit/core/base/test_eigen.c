@@ -137,10 +137,14 @@ TEST(singular_stiffness_is_diagnosed) {
 // Of A⁻¹, diagonal in its first entries, the others are moved by one place in a circle: eigenvalues of equal
 // modulus, of which Arnoldi's method finds none.
 enum { SLOW = 12, ALL = 1000 };
-static void shift(void *self, const double *z, double *image) {
-    const double *circle = self;
+static void shift_one(double circle, const double *z, double *image) {
     for (int i = 0; i < SLOW; i++) image[i] = z[i] / (1 + i);
-    for (int i = SLOW; i < ALL; i++) image[i] = *circle * z[i + 1 < ALL ? i + 1 : SLOW];
+    for (int i = SLOW; i < ALL; i++) image[i] = circle * z[i + 1 < ALL ? i + 1 : SLOW];
+}
+
+static void shift(void *self, int n, const double *z, double *image) {
+    const double *circle = self;
+    for (int k = 0; k < n; k++) shift_one(*circle, z + k * ALL, image + k * ALL);
 }
 
 TEST(as_many_as_converge_are_found) {
@@ -172,7 +176,7 @@ TEST(residual_is_the_distance_from_an_eigenvector) {
     double circle = 1e-3, x[2 * ALL] = {[1] = 1, [3] = 1e-3}, y[2 * ALL] = {0};
     bough_eigen_operator op = {.length = ALL, .weight = bough_arena_doubles(arena, ALL)};
     for (int i = 0; i < ALL; i++) op.weight[i] = 1;
-    shift(&circle, x, y);
+    shift_one(circle, x, y);
     check_near(bough_eigen_residual(&op, 2, 0, x, y), 1e-3 * (1 - 2. / 4), 1e-6, 0);
     op.gamma = 0.5; // of (1 − 1/ν)/γ they are −2 and −6
     check_near(bough_eigen_residual(&op, -2, 0, x, y), 1e-3 * (6 - 2) / 4 / (2 * 0.5), 1e-6, 0);
