@@ -11,12 +11,11 @@
 // after a refusal by `cautious`.
 static const double contracting = 0.5, aim = 0.2, growth = 8, shrink = 0.1, cautious = 1.5;
 
-static const double shortest = 1e-9; // γ below which the search ends [s]
 static const double rounding = 1e-6; // changes that only rounding keeps from contracting
 static const double most_turn = 1;   // of a vertex or body in a correction [rad]
 
 bough_equilibrium_def bough_equilibrium_def_default(void) {
-    return (bough_equilibrium_def){.step = 0.1, .tolerance = 1e-10, .steps = 1000};
+    return (bough_equilibrium_def){.step = 0.1, .least = 1e-9, .tolerance = 1e-10, .steps = 1000};
 }
 
 typedef struct search {
@@ -82,7 +81,7 @@ bough_status bough_equilibrium_find(bough_arena *arena, bough_whole *whole, cons
     take(&s, arena);
     bough_assembly_scales(a, s.scale);
     double most = growth, before = INFINITY;
-    while (report->steps < def->steps && s.gamma > shortest && find_rate(&s, state)) {
+    while (report->steps < def->steps && s.gamma > def->least && find_rate(&s, state)) {
         double contraction = step(&s, state, report);
         bool last = s.gamma >= BOUGH_EQUILIBRIUM_LONGEST, near = report->change < rounding;
         report->steps++;

@@ -11,6 +11,7 @@
 typedef struct bough_equilibrium_def {
     double time;      // [s]
     double step;      // the first γ [s]
+    double least;     // γ below which the search ends [s]
     double tolerance; // of the last step, in units of the members' scales
     int steps;        // most, refused ones among them
     void *self;
@@ -22,7 +23,7 @@ typedef struct bough_equilibrium_def {
     void (*rest)(void *self, double *state);
 } bough_equilibrium_def;
 
-// Time 0, 0.1 s, 1e-10, 1000 steps.
+// Time 0, 0.1 s, 1e-9 s, 1e-10, 1000 steps.
 bough_equilibrium_def bough_equilibrium_def_default(void);
 
 enum { BOUGH_EQUILIBRIUM_LONGEST = 30 }; // γ of the last steps [s]; beyond, rounding grows

@@ -18,6 +18,7 @@ typedef struct equilibrium {
     bool independent;            // each rod has its own equilibrium: no channels
     double time;                 // of the loads of the whole scene [s]
     bough_equilibrium_work work; // of the whole scene
+    double growth;               // of motions from it [1/s]; 0: it is stable
     int n;
     bough_steady *rod;       // (n)
     bough_channels channels; // of the whole scene
@@ -53,7 +54,7 @@ static bough_status find_rods(bough_arena *arena, equilibrium *x) {
 static bough_status find_whole(bough_arena *arena, equilibrium *x) {
     bough_simulation *s = x->simulation;
     x->time = bough_equilibrium_time(s);
-    bough_status status = bough_simulation_equilibrium(s, s->master->assembly, x->time, &x->work);
+    bough_status status = bough_simulation_any_equilibrium(s, s->master->assembly, x->time, &x->work);
     for (int k = 0; k < s->n_beam && bough_is_ok(&status); k++) {
         if (s->beam[k].rod == NULL) continue;
         status = bough_steady_equilibrium(arena, s, &s->beam[k], x->time, &x->rod[x->n++]);
@@ -275,6 +276,10 @@ static void print_whole(const equilibrium *x) {
     if (x->work.samples > 0) printf(", %d samples of the air", x->work.samples);
     if (x->time > 0) printf(", loads at %.6g s", x->time);
     putchar('\n');
+    if (x->growth > 0) {
+        fprintf(stderr, "bough: warning: the equilibrium is unstable: motions from it grow at %.3g 1/s\n",
+                x->growth);
+    }
     print_joints(x->simulation);
 }
 
@@ -433,6 +438,7 @@ static bough_status find(bough_arena *arena, const void *given) {
     equilibrium x;
     mesh_error mesh;
     BOUGH_TRY(find_equilibrium(arena, s, &x));
+    if (!x.independent) bough_simulation_growth(s, s->master->assembly, x.time, &x.growth);
     const double *error = find_mesh_error(arena, &x, &mesh);
     if (!x.independent) print_whole(&x);
     for (int k = 0; k < x.n; k++) {

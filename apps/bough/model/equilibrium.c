@@ -3,6 +3,7 @@
 #include "apps/bough/model/aero_link.h"
 #include "apps/bough/model/jump_link.h"
 #include "cosim/analysis/equilibrium.h"
+#include "cosim/analysis/modes.h"
 #include "flexbody/rod/rod_static.h"
 
 #include <math.h>
@@ -285,8 +286,10 @@ typedef struct task {
     bough_simulation *simulation;
     const bough_assembly *assembly;
     double time;
-    bough_equilibrium_work *work; // of an equilibrium
-    bough_path_listener listener; // of a path
+    double *growth;                      // of a state
+    const bough_equilibrium_def *limits; // step, least, tolerance and steps of an equilibrium
+    bough_equilibrium_work *work;        // of an equilibrium
+    bough_path_listener listener;        // of a path
     bough_path_report *report;
 } task;
 
@@ -296,15 +299,221 @@ static bough_status balance_members(bough_arena *arena, void *data) {
     balance_setup b;
     set_up(arena, s, x->assembly, x->time, &b);
     bough_equilibrium_def def = equilibrium_def(&b);
+    def.step = x->limits->step;
+    def.least = x->limits->least;
+    def.steps = x->limits->steps;
+    def.tolerance = x->limits->tolerance;
     return s->aero ? balance_in_air(arena, s, b.coupled, &def, b.state, x->work)
                    : balance(arena, s, b.coupled, &def, b.state, x->work);
 }
 
+static bough_status search_within(const bough_equilibrium_def *limits, bough_simulation *s,
+                                  const bough_assembly *assembly, double time, bough_equilibrium_work *work) {
+    task x = {.simulation = s, .assembly = assembly, .time = time, .limits = limits, .work = work};
+    return bough_arena_use(balance_members, &x);
+}
+
+// -- stability ------------------------------------------------------------------------------------
+
+// Where a growing real eigenvalue of the Jacobian is looked for [1/s], how many values nearest to each, and
+// the part of it that is growth rather than rounding.
+static const double point[] = {1, 50};
+enum { POINTS = 2, NEAREST = 4 };
+static const double rounded = 1e-3;
+
+static bough_status find_growth(bough_arena *arena, void *data) {
+    const task *x = data;
+    balance_setup b;
+    set_up(arena, x->simulation, x->assembly, x->time, &b);
+    bough_whole_inputs(b.coupled, x->time, b.state);
+    bough_eigen_pair pair[NEAREST];
+    for (int i = 0; i < POINTS; i++) {
+        bough_modes_def def = {
+            .time = x->time, .state = b.state, .input = b.coupled->input, .point = point[i]};
+        bough_eigen_count count = {.wanted = NEAREST};
+        BOUGH_TRY(bough_modes_find(arena, b.coupled, &def, pair, &count));
+        for (int k = 0; k < count.found; k++) {
+            if (pair[k].imaginary == 0 && pair[k].real > rounded * point[i])
+                *x->growth = fmax(*x->growth, pair[k].real);
+        }
+    }
+    return bough_ok();
+}
+
+bough_status bough_simulation_growth(bough_simulation *s, const bough_assembly *assembly, double time,
+                                     double *growth) {
+    task x = {.simulation = s, .assembly = assembly, .time = time, .growth = growth};
+    *growth = 0;
+    return bough_arena_use(find_growth, &x);
+}
+
+// -- continuation in the stiffness of rods --------------------------------------------------------
+
+// EI/(EA L²) of a bar that is as stiff as any: of eight times its thickness in length.
+static const double thick = 1e-3;
+
+enum { AXIAL = 11, STRAINS = 6, FIRST_BENDING = 3 };
+static const int diagonal[STRAINS] = {0, 6, 11, 15, 18, 20}; // in the upper triangle by rows
+
+// Theory (104). C ← S C S, S = diag(1, 1, 1, s₄, s₅, s₆): positive as before.
+static void stiffen_section(double length, double exponent, double *stiffness) {
+    double least = thick * stiffness[AXIAL] * length * length, factor[STRAINS];
+    for (int i = 0; i < STRAINS; i++) {
+        bool soft = i >= FIRST_BENDING && stiffness[diagonal[i]] < least;
+        factor[i] = soft ? pow(least / stiffness[diagonal[i]], exponent / 2) : 1;
+    }
+    for (int i = 0; i < STRAINS; i++) {
+        for (int j = i; j < STRAINS; j++) *stiffness++ *= factor[i] * factor[j];
+    }
+}
+
+static void stiffen(bough_arena *arena, double exponent, bough_scene_structure *structure) {
+    size_t n = (size_t)structure->n_station;
+    bough_scene_station *station = bough_arena_take(arena, n * sizeof *station);
+    memcpy(station, structure->station, n * sizeof *station);
+    for (size_t i = 0; i < n; i++) stiffen_section(structure->length, exponent, station[i].def.stiffness);
+    structure->station = station;
+}
+
+// The scene, undeformed, with rods of the stiffness at this exponent: 1, of thick bars, to 0, their own.
+static bough_status build_stiffened(bough_arena *arena, const bough_scene *given, double exponent,
+                                    bough_simulation **simulation) {
+    bough_scene *scene = bough_arena_take(arena, sizeof *scene);
+    size_t n = (size_t)given->n_body;
+    *scene = *given;
+    scene->simulation.initial = BOUGH_SCENE_UNDEFORMED;
+    scene->body = bough_arena_take(arena, n * sizeof *scene->body);
+    memcpy(scene->body, given->body, n * sizeof *scene->body);
+    for (size_t i = 0; i < n; i++) {
+        bough_scene_body *body = &scene->body[i];
+        if (body->fidelity == BOUGH_SCENE_ROD) stiffen(arena, exponent, &body->rod.structure);
+    }
+    return bough_simulation_build(arena, scene, simulation);
+}
+
+// A search that takes more steps, or shorter ones, may follow a slack rod into folds: stiff rods come first.
+static const double least_step = 5e-3; // [s]
+enum { PATIENCE = 60 };
+
+// From an equilibrium of stiffer rods on, Newton's method: its steps, its shortest γ, and the tolerance while
+// the rods are not the scene's.
+enum { NEAR_STEPS = 30 };
+static const double near_least = 0.03, near_tolerance = 1e-2; // [s], [-]
+
+// Changes of the exponent: the first, the least, and by how much they grow and shrink.
+static const double first_part = 0.5, least_part = 0.004, easier = 1.6, harder = 0.5;
+
+typedef struct continuation {
+    bough_simulation *simulation;
+    const bough_assembly *assembly;
+    double time, exponent;
+    bough_equilibrium_work *work;
+    double *state; // (n_state) of the equilibrium found last
+    bool started;
+    bool unstable; // an unstable equilibrium is better than none
+} continuation;
+
+// The equilibrium of rods of the present exponent, from the one found last.
+static bough_status find_stiffened(bough_arena *arena, void *data) {
+    continuation *c = data;
+    bough_equilibrium_def limits = bough_equilibrium_def_default();
+    bough_simulation *s = c->simulation;
+    const bough_assembly *a = c->assembly;
+    limits.steps = PATIENCE;
+    if (c->exponent > 0) {
+        BOUGH_TRY(build_stiffened(arena, c->simulation->scene, c->exponent, &s));
+        a = s->master->assembly;
+    }
+    if (c->exponent > 0) limits.tolerance = near_tolerance;
+    if (c->started) {
+        bough_equilibrium_set_state(s, a, c->state);
+        limits.step = BOUGH_EQUILIBRIUM_LONGEST;
+        limits.least = near_least;
+        limits.steps = NEAR_STEPS;
+    }
+    BOUGH_TRY(search_within(&limits, s, a, c->time, c->work));
+    bough_assembly_states(a, c->state);
+    c->started = true;
+    return bough_ok();
+}
+
+// Theory (104): each equilibrium starts the next, of softer rods.
+static bough_status soften(continuation *c) {
+    double part = first_part, found = 1;
+    c->exponent = found;
+    bough_status status = bough_arena_use(find_stiffened, c);
+    if (!bough_is_ok(&status)) return status;
+    while (found > 0) {
+        c->exponent = fmax(0, found - part);
+        status = bough_arena_use(find_stiffened, c);
+        bool good = bough_is_ok(&status);
+        if (good) found = c->exponent;
+        part *= good ? easier : harder;
+        if (part < least_part) return status;
+    }
+    return status;
+}
+
+// Whether the simulation is as its scene says, and has rods that stiffer ones could stand for.
+static bool may_soften(const bough_simulation *s) {
+    return s->n_rod > 0 && s->scene->simulation.initial != BOUGH_SCENE_IN_OPERATION;
+}
+
+// By stiffer rods from `start` on: a stable equilibrium; or an unstable one, unless the way downhill ends in
+// a stable one.
+static bough_status find_slack(continuation *c, const double *start) {
+    bough_simulation *s = c->simulation;
+    const bough_assembly *a = c->assembly;
+    bough_equilibrium_def whole = bough_equilibrium_def_default();
+    double growth = 0, fallen = 0;
+    bough_equilibrium_set_state(s, a, start);
+    bough_status softened = soften(c);
+    bough_equilibrium_work work = *c->work;
+    if (bough_is_ok(&softened)) bough_simulation_growth(s, a, c->time, &growth);
+    if (bough_is_ok(&softened) && growth == 0) return softened;
+    // downhill, however long it takes
+    bough_equilibrium_set_state(s, a, start);
+    *c->work = (bough_equilibrium_work){0};
+    bough_status status = search_within(&whole, s, a, c->time, c->work);
+    if (!bough_is_ok(&softened) || !c->unstable) return status;
+    if (bough_is_ok(&status)) bough_simulation_growth(s, a, c->time, &fallen);
+    if (bough_is_ok(&status) && fallen == 0) return status;
+    bough_equilibrium_set_state(s, a, c->state);
+    *c->work = work;
+    return softened;
+}
+
+static bough_status find_equilibrium(bough_arena *arena, void *data) {
+    continuation *c = data;
+    bough_simulation *s = c->simulation;
+    const bough_assembly *a = c->assembly;
+    bough_equilibrium_def limits = bough_equilibrium_def_default();
+    if (!may_soften(s)) return search_within(&limits, s, a, c->time, c->work);
+    double *start = bough_arena_doubles(arena, (size_t)a->n_state + 1);
+    c->state = bough_arena_doubles(arena, (size_t)a->n_state + 1);
+    bough_assembly_states(a, start);
+    limits.least = least_step;
+    limits.steps = PATIENCE;
+    bough_status status = search_within(&limits, s, a, c->time, c->work);
+    return status.code == BOUGH_FAILED ? find_slack(c, start) : status;
+}
+
+static bough_status find_any(bool unstable, bough_simulation *s, const bough_assembly *assembly, double time,
+                             bough_equilibrium_work *work) {
+    continuation c = {
+        .simulation = s, .assembly = assembly, .time = time, .work = work, .unstable = unstable};
+    *work = (bough_equilibrium_work){0};
+    return bough_arena_use(find_equilibrium, &c);
+}
+
 bough_status bough_simulation_equilibrium(bough_simulation *s, const bough_assembly *assembly, double time,
                                           bough_equilibrium_work *work) {
-    task x = {.simulation = s, .assembly = assembly, .time = time, .work = work};
-    *work = (bough_equilibrium_work){0};
-    return bough_arena_use(balance_members, &x);
+    return find_any(false, s, assembly, time, work);
+}
+
+bough_status bough_simulation_any_equilibrium(bough_simulation *s, const bough_assembly *assembly,
+                                              double time, bough_equilibrium_work *work) {
+    return find_any(true, s, assembly, time, work);
 }
 
 // -- paths ----------------------------------------------------------------------------------------

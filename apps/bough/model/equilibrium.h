@@ -31,6 +31,15 @@ double bough_equilibrium_time(const bough_simulation *s);
 bough_status bough_simulation_equilibrium(bough_simulation *s, const bough_assembly *assembly, double time,
                                           bough_equilibrium_work *work);
 
+// The same, where an unstable equilibrium is better than none.
+bough_status bough_simulation_any_equilibrium(bough_simulation *s, const bough_assembly *assembly,
+                                              double time, bough_equilibrium_work *work);
+
+// The largest rate [1/s] at which the tangents let a motion from the equilibrium of the assembly grow without
+// oscillating; 0: none grows. The air's forces are constant.
+bough_status bough_simulation_growth(bough_simulation *s, const bough_assembly *assembly, double time,
+                                     double *growth);
+
 // Called at each point of a path, where the members, their inputs and the simulation's view then are; `time`:
 // when the loads are those of the point [s]. `limit`: they have a local maximum or minimum there. A failure
 // ends the path.

@@ -3,6 +3,7 @@
 #include "apps/bough/model/equilibrium.h"
 #include "tests/unit/built_scene.h"
 
+#include <stdio.h>
 #include <string.h>
 
 static const char runup[] = "apps/turbine/runup.yaml";
@@ -214,4 +215,41 @@ TEST(driven_free_rotor_has_none) {
     bough_status status = bough_simulation_equilibrium(s, s->master->assembly, 0, &work);
     check_fails(status, BOUGH_FAILED, "no equilibrium");
     assert_non_null(strstr(status.message, "a spring, a speed or a motion"));
+}
+
+// A slack chain is found by way of stiff rods. The elastic catenary, from the force at its top down.
+TEST(chain_hangs_in_a_catenary) {
+    static const char *const bending[] = {"1e4", "1e2", "1"};
+    const double w = 700 * 8.5, length = 850, axial = 3.2e9, h = 2.4e6, top = 3e6, foot = top - w * length;
+    double x = h / w * (asinh(top / h) - asinh(foot / h)) + h * length / axial;
+    double z = (hypot(h, top) - hypot(h, foot)) / w + (top - w * length / 2) * length / axial;
+    for (int k = 0; k < 3; k++) {
+        char set[160];
+        const char *sets[] = {set, NULL};
+        const char *b = bending[k];
+        snprintf(set, sizeof set, "bodies[1].rod.stiffness=[1.2e9, 1.2e9, 3.2e9, %s, %s, %s]", b, b, b);
+        check_arena(arena);
+        bough_simulation *s = scene_build(arena, "tests/data/scenes/mooring.yaml", sets);
+        bough_equilibrium_work work;
+        check_ok(bough_simulation_any_equilibrium(s, s->master->assembly, 0, &work));
+        bough_channels list = bough_channels_start(arena);
+        check_ok(bough_simulation_channels(s, &list));
+        printf("EI %s N m2: %d steps\n", b, work.steps);
+        check_near(scene_channel(s, &list, "lineTipX"), x, 0, 1e-4 * length);
+        check_near(scene_channel(s, &list, "lineTipZ"), z, 0, 1e-4 * length);
+    }
+}
+
+// A bob of 1 kg at 1 m above its hinge, and below.
+TEST(standing_pendulum_is_unstable) {
+    static const char *const angle[] = {"bodies[0].joint.angle=90 deg", "bodies[0].joint.angle=-90 deg"};
+    for (int k = 0; k < 2; k++) {
+        const char *sets[] = {angle[k], NULL};
+        double growth;
+        check_arena(arena);
+        bough_simulation *s = scene_build(arena, "apps/mechanisms/pendulum.yaml", sets);
+        equilibrium_of(s);
+        check_ok(bough_simulation_growth(s, s->master->assembly, 0, &growth));
+        check_near(growth, k == 0 ? sqrt(9.81) : 0, 0, 1e-6);
+    }
 }
