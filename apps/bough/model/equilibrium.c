@@ -317,8 +317,8 @@ static bough_status search_within(const bough_equilibrium_def *limits, bough_sim
 
 // Where a growing real eigenvalue of the Jacobian is looked for [1/s], how many values nearest to each, and
 // the part of it that is growth rather than rounding.
-static const double point[] = {1, 50};
-enum { POINTS = 2, NEAREST = 4 };
+static const double point[] = {1, 50, 1000};
+enum { POINTS = 3, NEAREST = 4 };
 static const double rounded = 1e-3;
 
 static bough_status find_growth(bough_arena *arena, void *data) {

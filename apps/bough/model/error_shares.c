@@ -67,7 +67,7 @@ static void compare(const other_run *base, const other_run *other, double part, 
 
 typedef struct finding {
     bough_companion *companion;
-    bool lost; // the error is above the bound
+    bool lost; // the companion may have lost the solution
     bool (*stop)(void);
     bough_error_shares *shares;
 } finding;
@@ -142,6 +142,7 @@ static bough_status find(bough_arena *arena, void *self) {
 
 // -- a companion that has lost the solution -------------------------------------------------------
 
+static const double lost = 0.25;     // of the range, which a companion errs by that has lost the solution
 static const double much_less = 0.5; // of what the companion shows
 
 // The two runs that differ least from the run itself; false: fewer are known.
@@ -173,9 +174,15 @@ static void lower_errors(bough_companion *c, bough_error_shares *shares) {
     }
 }
 
+// An error of a part of the range, above the bound: the companion may have lost the solution.
+static bool has_lost(const bough_companion *c) {
+    double bound = c->run->scene->simulation.error_bound;
+    return bound > 0 && bough_error_exceeds(c, fmax(bound, lost));
+}
+
 bough_status bough_error_shares_find(bough_arena *arena, bough_companion *c, bool (*stop)(void),
                                      bough_error_shares *shares) {
-    finding x = {c, bough_error_exceeds(c, c->run->scene->simulation.error_bound), stop, shares};
+    finding x = {c, has_lost(c), stop, shares};
     double cpu = bough_cpu_clock(false);
     *shares = (bough_error_shares){.found = true, .n_channel = c->channels->count};
     for (int k = 0; k < BOUGH_SHARES; k++)
