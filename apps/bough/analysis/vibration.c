@@ -162,10 +162,10 @@ static bough_status check_constant(bough_arena *arena, const bough_simulation *s
         if (change > constant * size)
             return bough_fail(
                 BOUGH_INVALID,
-                "%.200s: the linear system changes as the bodies turn, by %.2g of itself: a rotor of "
-                "two or of unequal blades, or out of balance, has no modes but periodic "
-                "solutions (Floquet), which are not computed; stop it, or take 'modes.linear: true' "
-                "for the system at the present azimuth",
+                "%.200s: the linear system changes as the bodies turn, by %.2g of itself, as that of a "
+                "rotor of two or of unequal blades or out of balance does: it has no modes but periodic "
+                "solutions (Floquet), which are not computed; take 'modes.linear: true' "
+                "for the system at the present azimuth, or modes at rest",
                 s->scene->file, change / size);
     }
     bough_whole_inputs(x->coupled, x->def.time, x->state);
