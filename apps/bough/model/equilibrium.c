@@ -47,54 +47,34 @@ int bough_equilibrium_held(const bough_tree *tree, bool turning, int *row) {
 
 // -- why there is none ----------------------------------------------------------------------------
 
-static const double folded = 2; // between neighbouring sections: what lies beyond has no direction [rad]
-
-// The largest rotation between neighbouring sections of a rod, from the one at *vertex to the next, up to 2 π
-// [rad].
-static double sharpest_bend(const bough_simulation *s, const bough_beam *beam, int *vertex) {
-    double largest = 0;
-    bough_quaternion before = beam->def.rotation[0];
-    for (int i = 1; i <= beam->def.n_segment; i++) {
-        bough_quaternion next = bough_simulation_vertex_rotation(s, beam, i);
-        bough_quaternion between = bough_quaternion_product(bough_quaternion_conjugate(before), next);
-        double bend = 2 * acos(fmax(-1, fmin(between.w, 1)));
-        if (bend > largest) *vertex = i - 1;
-        largest = fmax(largest, bend);
-        before = next;
-    }
-    return largest;
-}
-
+static const double folded = 2;   // between neighbouring sections: what lies beyond has no direction [rad]
 static const double across = 0.3; // between a segment's chord and the normals of its sections [rad]
 
-static bough_status explain_cable(const bough_simulation *s, int steps) {
-    for (int k = 0; k < s->n_beam; k++) {
-        const bough_beam *beam = &s->beam[k];
-        int vertex = 0;
-        if (!beam->cable || bough_simulation_chord_angle(s, beam, &vertex) < across) continue;
+// What is found beyond these angles is no equilibrium of a rod.
+static bough_status explain_rod(const bough_simulation *s, const bough_beam *beam, int steps) {
+    const double *span = beam->def.span;
+    bough_sharpest bend, chord;
+    bough_simulation_bends(s, beam, &bend, &chord);
+    if (beam->cable && chord.angle >= across)
         return bough_fail(
             BOUGH_FAILED,
             "%s: no equilibrium found in %d steps: under its tension the rod deflects across its sections "
             "between %.3g and %.3g m; its segments are too long for its bending stiffness: "
             "take more of them, or a bending stiffness EI of at least the tension times h^2/12",
-            beam->body->name, steps, beam->def.span[vertex], beam->def.span[vertex + 1]);
-    }
-    return bough_ok();
-}
-
-// What is found beyond it is no equilibrium of a rod.
-static bough_status explain_fold(const bough_simulation *s, int steps) {
-    for (int k = 0; k < s->n_beam; k++) {
-        const bough_beam *beam = &s->beam[k];
-        int vertex = 0;
-        double bend = beam->rod ? sharpest_bend(s, beam, &vertex) : 0;
-        if (bend < folded) continue;
+            beam->body->name, steps, span[chord.segment], span[chord.segment + 1]);
+    if (bend.angle >= folded)
         return bough_fail(
             BOUGH_FAILED,
             "%s: no equilibrium found in %d steps: the rod folds, by %.0f deg between %.3g and %.3g m; "
             "its segments are too long for its load: try rod.segments: %d",
-            beam->body->name, steps, bend / BOUGH_DEGREE, beam->def.span[vertex], beam->def.span[vertex + 1],
+            beam->body->name, steps, bend.angle / BOUGH_DEGREE, span[bend.segment], span[bend.segment + 1],
             4 * beam->def.n_segment);
+    return bough_ok();
+}
+
+static bough_status explain_rods(const bough_simulation *s, int steps) {
+    for (int k = 0; k < s->n_beam; k++) {
+        if (s->beam[k].rod) BOUGH_TRY(explain_rod(s, &s->beam[k], steps));
     }
     return bough_ok();
 }
@@ -114,8 +94,7 @@ static bough_status explain(const bough_simulation *s, const bough_assembly *ass
                             const bough_equilibrium_report *report) {
     char joint[200] = "";
     const char *loose = loose_joint(s->scene);
-    BOUGH_TRY(explain_cable(s, report->steps));
-    BOUGH_TRY(explain_fold(s, report->steps));
+    BOUGH_TRY(explain_rods(s, report->steps));
     if (loose)
         snprintf(joint, sizeof joint,
                  "nothing but loads holds the joint of '%.80s': it needs a spring, a speed or a motion; or ",
@@ -151,8 +130,7 @@ static bough_status balance(bough_arena *arena, bough_simulation *s, bough_whole
     work->steps += report.steps;
     bough_equilibrium_set_state(s, coupled->assembly, state);
     if (status.code == BOUGH_FAILED) return explain(s, coupled->assembly, &report);
-    if (bough_is_ok(&status)) status = explain_cable(s, report.steps);
-    if (bough_is_ok(&status)) status = explain_fold(s, report.steps);
+    if (bough_is_ok(&status)) status = explain_rods(s, report.steps);
     def->step = BOUGH_EQUILIBRIUM_LONGEST; // near it now
     return status;
 }

@@ -130,18 +130,6 @@ static vertex rod_vertex(const bough_beam *beam, const double *state, int i) {
     return (vertex){{y[0], y[n], y[2 * n]}, {y[7 * n], y[8 * n], y[9 * n]}, bough_mat3_mul(r, w), r};
 }
 
-bough_quaternion bough_simulation_vertex_rotation(const bough_simulation *s, const bough_beam *beam, int i) {
-    const bough_member *rod = &s->rod[beam->port];
-    int n = bough_beam_mesh(beam)->n;
-    const double *y = rod->state + i - 1;
-    bough_quaternion p;
-    if (i == beam->def.n_segment && beam->end >= 0) {
-        bough_simulation_beam_tip(s, beam, &p);
-        return p;
-    }
-    return bough_quaternion_normalised((bough_quaternion){y[3 * n], y[4 * n], y[5 * n], y[6 * n]});
-}
-
 // The last vertex of a rod that carries bodies; its velocity is resolved in its own axes.
 static vertex end_vertex(const bough_simulation *s, const bough_beam *beam) {
     bough_quaternion p;
@@ -151,22 +139,36 @@ static vertex end_vertex(const bough_simulation *s, const bough_beam *beam) {
     return (vertex){x, bough_mat3_mul(r, twist.linear), bough_mat3_mul(r, twist.angular), r};
 }
 
-double bough_simulation_chord_angle(const bough_simulation *s, const bough_beam *beam, int *place) {
-    double largest = 0;
+// Vertex i of a rod, from 1.
+static vertex moving_vertex(const bough_simulation *s, const bough_beam *beam, int i) {
+    bool end = i == beam->def.n_segment && beam->end >= 0;
+    return end ? end_vertex(s, beam) : rod_vertex(beam, s->rod[beam->port].state, i);
+}
+
+static double angle_of(double cosine) { return acos(fmax(-1, fmin(cosine, 1))); }
+
+// Keeps the larger angle, and the segment that has it.
+static void keep_largest(double angle, int segment, bough_sharpest *x) {
+    if (angle > x->angle) *x = (bough_sharpest){angle, segment};
+}
+
+void bough_simulation_bends(const bough_simulation *s, const bough_beam *beam, bough_sharpest *bend,
+                            bough_sharpest *chord) {
     bough_vec3 position = beam->def.position[0];
-    bough_vec3 normal = bough_rotation_matrix(beam->def.rotation[0]).c3;
+    bough_mat3 section = bough_rotation_matrix(beam->def.rotation[0]);
+    *bend = *chord = (bough_sharpest){0};
     for (int i = 1; i <= beam->def.n_segment; i++) {
-        bool end = i == beam->def.n_segment && beam->end >= 0;
-        vertex next = end ? end_vertex(s, beam) : rod_vertex(beam, s->rod[beam->port].state, i);
-        bough_vec3 chord = bough_sub(next.position, position), middle = bough_add(normal, next.rotation.c3);
-        double cosine = bough_dot(chord, middle) / (bough_norm(chord) * bough_norm(middle));
-        double angle = acos(fmax(-1, fmin(cosine, 1)));
-        if (angle > largest) *place = i - 1;
-        largest = fmax(largest, angle);
+        vertex next = moving_vertex(s, beam, i);
+        bough_vec3 along = bough_sub(next.position, position),
+                   normal = bough_add(section.c3, next.rotation.c3);
+        double trace = bough_dot(section.c1, next.rotation.c1) + bough_dot(section.c2, next.rotation.c2) +
+                       bough_dot(section.c3, next.rotation.c3);
+        double cosine = bough_dot(along, normal) / (bough_norm(along) * bough_norm(normal));
+        keep_largest(angle_of(0.5 * (trace - 1)), i - 1, bend);
+        keep_largest(angle_of(cosine), i - 1, chord);
         position = next.position;
-        normal = next.rotation.c3;
+        section = next.rotation;
     }
-    return largest;
 }
 
 // state: of the vertices, NULL of a rigid body.

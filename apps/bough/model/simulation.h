@@ -132,13 +132,17 @@ const char *bough_simulation_body_of(const bough_simulation *s, const bough_asse
 // The pitch of a blade: its body's, and what its pitch joint adds, positive by −z [rad].
 double bough_simulation_pitch(const bough_simulation *s, const bough_beam *beam);
 
-// The largest angle between the chord of a rod's segment and the normals of its sections, of that from
-// *vertex to the next [rad]. A segment's shear stiffness contains its own bending, 12 EI/h²: beside a tension
-// of that size it deflects across its sections, and its model does not hold.
-double bough_simulation_chord_angle(const bough_simulation *s, const bough_beam *beam, int *vertex);
+// An angle [rad], and the segment that has it.
+typedef struct bough_sharpest {
+    double angle;
+    int segment;
+} bough_sharpest;
 
-// The rotation of section i, from 1, of a rod in its body's frame.
-bough_quaternion bough_simulation_vertex_rotation(const bough_simulation *s, const bough_beam *beam, int i);
+// Of a rod the largest rotation between the sections at both ends of a segment, and the largest angle between
+// a segment's chord and the normals of its sections. A segment's shear stiffness contains its own bending, 12
+// EI/h²: beside a tension of that size it deflects across its sections, and its model does not hold.
+void bough_simulation_bends(const bough_simulation *s, const bough_beam *beam, bough_sharpest *bend,
+                            bough_sharpest *chord);
 
 // Accelerations of the tree's links under the rods' present forces, into s->view; false as
 // bough_tree_forward_dynamics.

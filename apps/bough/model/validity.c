@@ -145,12 +145,12 @@ static double turn_of(const bough_rod_model *m, const double *p, int k) {
 static void check_chords(bough_simulation *s) {
     for (int i = 0; i < s->n_beam; i++) {
         const bough_beam *beam = &s->beam[i];
-        int vertex = 0;
+        bough_sharpest bend, chord;
         if (!beam->cable || s->validity->limit[BOUGH_LIMIT_CHORD].passed) continue;
-        double angle = bough_simulation_chord_angle(s, beam, &vertex);
-        if (angle > most_across)
+        bough_simulation_bends(s, beam, &bend, &chord);
+        if (chord.angle > most_across)
             validity_pass(s->validity, BOUGH_LIMIT_CHORD, (int)(beam->body - s->scene->body), s->master->time,
-                          angle * (180 / BOUGH_PI));
+                          chord.angle * (180 / BOUGH_PI));
     }
 }
 

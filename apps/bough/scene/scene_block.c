@@ -89,7 +89,7 @@ static const char *angle(bough_arena *arena, double value) {
 static const char *support_text(bough_arena *arena, const block *b) {
     bool rod = bough_node_find(b->tower, "rod") != NULL;
     const char *top = rod ? "" : bough_arena_print(arena, "move z %s", length(arena, b->height));
-    const char *turning =
+    const char *speed =
         bough_arena_print(arena, ", speed: %s", written(arena, b->speed, 1, "rad/s", BOUGH_ANGULAR_SPEED));
     return bough_arena_print(
         arena,
@@ -98,7 +98,7 @@ static const char *support_text(bough_arena *arena, const block *b) {
         "- {name: hub, fidelity: rigid, joint: {kind: revolute, parent: nacelle, axis: x, placement: "
         "[move z %s, rotate y %s, move x %s]%s}}\n",
         rod ? "rod" : "rigid", top, length(arena, b->shaft_height), angle(arena, b->tilt),
-        length(arena, -b->overhang), bough_node_find(b->node, "speed") ? turning : "");
+        length(arena, -b->overhang), bough_node_find(b->node, "speed") ? speed : "");
 }
 
 static const char *blade_text(bough_arena *arena, const block *b, int k) {
@@ -127,7 +127,7 @@ static void place(bough_node *node, const bough_node *at) {
 
 // -- the tree -------------------------------------------------------------------------------------
 
-static void differ(bough_schema_reader *r, const block *b, bough_node *list) {
+static void merge_parts(bough_schema_reader *r, const block *b, bough_node *list) {
     for (int i = 0; i < list->n; i++) {
         bough_node *const part[] = {b->tower, b->nacelle, b->hub, b->blade};
         bough_node *differs = part[i < 3 ? i : 3];
@@ -149,7 +149,7 @@ static bough_node *generate(bough_schema_reader *r, const block *b) {
     bough_node *tree = bough_text_parse(r->arena, "turbine", text, strlen(text), r->errors);
     if (tree == NULL) return NULL;
     place(tree, b->node);
-    differ(r, b, bough_node_find(tree, "bodies"));
+    merge_parts(r, b, bough_node_find(tree, "bodies"));
     return tree;
 }
 
