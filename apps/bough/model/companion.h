@@ -51,8 +51,9 @@ typedef struct bough_companion {
     double share_held;                   // the same of a channel whose last sample the companion holds
     char reason[BOUGH_COMPANION_REASON]; // why errors are not known, or not any more; "": they are
     double from;                         // when they ceased to be [s]
-    double rest;                    // largest value, up to 1, of a scene at rest, in SI units; 0: it moves
-    long compared;                  // times
+    double motion;                       // largest range of all motion, or value up to 1, in SI units
+    double rest;                         // motion of a scene at rest; 0: it moves
+    long compared;                       // times
     double *value, *other;          // (channels->count) at the last of them, of the run and of the companion
     double *before;                 // (channels->count) of the run at the comparison before
     double *error;                  // (channels->count) largest so far, in the channels' units

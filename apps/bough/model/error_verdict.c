@@ -30,16 +30,29 @@ static double largest_value(const bough_companion *c, int i) {
     return fmin(run, fmax(fabs(c->other_high[i]), fabs(c->other_low[i])));
 }
 
+// Neither of the two simulations moves the vector that the channel is a component of by more than rounding.
+static bool at_rest(const bough_companion *c, int channel) {
+    const bough_channel *list = c->channels->channel;
+    double range = 0;
+    for (int i = list[channel].vector; i < c->channels->count && list[i].vector == list[channel].vector; i++)
+        range = fmax(range, fmax(c->high[i] - c->low[i], c->other_high[i] - c->other_low[i]));
+    return list[channel].si * range <= rounding * c->motion;
+}
+
+// What stays where it is while other parts move, the deflection of a blade in steady operation, has no range:
+// its value counts, up to 1 in SI units.
 double bough_error_range(const bough_companion *c, int channel) {
     const bough_channel *list = c->channels->channel;
-    double range = 0, value = 0;
+    double range = 0, value = 0, si = list[channel].si;
     for (int i = list[channel].vector; i < c->channels->count && list[i].vector == list[channel].vector;
          i++) {
         range = fmax(range, own_range(c, i));
         value = fmax(value, largest_value(c, i));
     }
     if (is_velocity(&list[channel])) range = fmax(range, least_share * value);
-    return bough_error_is_motion(&list[channel]) ? fmax(range, c->rest / list[channel].si) : range;
+    if (!bough_error_is_motion(&list[channel])) return range;
+    if (at_rest(c, channel)) range = fmax(range, fmin(value, 1 / si));
+    return fmax(range, c->rest / si);
 }
 
 double bough_error_relative(const bough_companion *c, int channel, double error) {
@@ -85,7 +98,7 @@ static double largest_motion(const bough_companion *c) {
 
 // Of a scene in which nothing moves by more than rounding, so that errors have no range: its values.
 static double size_at_rest(const bough_companion *c) {
-    double size = largest_motion(c);
+    double size = c->motion;
     for (int i = 0; i < c->channels->count; i++) {
         const bough_channel *channel = &c->channels->channel[i];
         if (bough_error_is_motion(channel) && channel->si * own_range(c, i) > rounding * size) return 0;
@@ -96,7 +109,7 @@ static double size_at_rest(const bough_companion *c) {
 bool bough_error_counts(const bough_companion *c, int i) {
     const bough_channel *channel = &c->channels->channel[i];
     double moves = channel->si * fmax(bough_error_range(c, i), c->error[i]);
-    bool moving = bough_error_is_motion(channel) ? moves > fmax(rounding * largest_motion(c), least_motion)
+    bool moving = bough_error_is_motion(channel) ? moves > fmax(rounding * c->motion, least_motion)
                                                  : moves > least_share * channel->si * largest_value(c, i);
     return moving && moves >= least_share * kind_range(c, channel->kind);
 }
@@ -148,6 +161,7 @@ void bough_error_size(const bough_companion *c, int channel, char text[BOUGH_ERR
 
 void bough_error_notice(bough_companion *c, double t) {
     double accuracy = c->run->scene->simulation.accuracy;
+    c->motion = largest_motion(c);
     c->rest = size_at_rest(c);
     for (int i = 0; i < c->channels->count; i++) {
         if (c->noticed[i] < 0 && !(c->error[i] <= accuracy * bough_error_range(c, i))) c->noticed[i] = t;

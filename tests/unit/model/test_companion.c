@@ -370,6 +370,35 @@ TEST(errors_of_a_scene_at_rest_are_judged_by_its_size) {
     bough_arena_destroy(arena);
 }
 
+// The deflection of a rotor in steady operation has none either: its error is judged by its value, up to 1 m,
+// unless one of the two solutions moves.
+TEST(errors_of_what_stays_are_judged_by_its_value) {
+    bough_arena *arena = bough_arena_create();
+    bough_channels channels = bough_channels_start(arena);
+    bough_scene scene = {.simulation.accuracy = 0.005};
+    bough_simulation run = {.scene = &scene};
+    double low[] = {0, 16.5}, high[] = {300, 16.5 + 2e-8}, noticed[] = {-1, -1};
+    double other_low[] = {0, 16.5}, other_high[] = {300, 16.5 + 1e-8}, error[] = {0, 1.7e-4};
+    bough_companion c = {.run = &run,
+                         .channels = &channels,
+                         .compared = 1,
+                         .low = low,
+                         .high = high,
+                         .other_low = other_low,
+                         .other_high = other_high,
+                         .error = error,
+                         .noticed = noticed};
+    bough_channels_group(&channels, NULL, NULL);
+    bough_channels_add(&channels, "deg", "Azimuth");
+    bough_channels_add(&channels, "m", "OoPDefl1");
+    bough_error_notice(&c, 1);
+    check_near(bough_error_verdict_of(&c, true, c.error).relative, 1.7e-4, 1e-9, 0);
+    other_high[1] = 16.6;
+    bough_error_notice(&c, 2);
+    check_near(bough_error_verdict_of(&c, true, c.error).relative, 1.7e-4 / 2e-8, 1e-5, 0);
+    bough_arena_destroy(arena);
+}
+
 // A range of rounding is none to measure an error by.
 TEST(an_error_far_beyond_its_range_has_no_figure) {
     char words[BOUGH_ERROR_SIZE];
