@@ -25,7 +25,7 @@ try() {
 }
 
 for scene in apps/*/*.yaml; do
-    grep -q '^bodies:' "$scene" || continue
+    grep -qE '^(base|bodies|turbine):' "$scene" || continue
     scenes=$((scenes + 1))
     case $scene in
     # Their loads begin at once on the straight beam, whose steps are then microseconds.
