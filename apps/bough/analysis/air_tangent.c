@@ -141,15 +141,20 @@ static bough_status follow_inputs(work *w, const double *state, const bough_air_
     return bough_ok();
 }
 
-bough_status bough_air_tangent_find(bough_arena *arena, bough_simulation *s, bough_whole *coupled,
-                                    double time, const double *state, bool dynamic,
-                                    const bough_air_inputs *inputs, bough_air_tangent *t) {
+static work start(bough_arena *arena, bough_simulation *s, bough_whole *coupled, double time, bool dynamic) {
     const bough_rotor *rotor = bough_aero_link_rotor(s->aero);
     int n_memory = dynamic ? bough_rotor_memory_size(rotor) : 0;
     work w = {
         .simulation = s, .coupled = coupled, .time = time, .n_memory = n_memory, .dynamic = n_memory > 0};
     take(arena, &w);
     if (w.dynamic) w.n_air = bough_rotor_memory_states(rotor, w.row);
+    return w;
+}
+
+bough_status bough_air_tangent_find(bough_arena *arena, bough_simulation *s, bough_whole *coupled,
+                                    double time, const double *state, bool dynamic,
+                                    const bough_air_inputs *inputs, bough_air_tangent *t) {
+    work w = start(arena, s, coupled, time, dynamic);
     size_t n = (size_t)coupled->assembly->n_state, m = (size_t)w.n_air;
     size_t n_input = inputs ? (size_t)inputs->n : 0;
     *t = (bough_air_tangent){.n = (int)n,
@@ -167,6 +172,36 @@ bough_status bough_air_tangent_find(bough_arena *arena, bough_simulation *s, bou
     if (bough_is_ok(&status) && inputs) status = follow_inputs(&w, state, inputs, t);
     settle(&w, state);
     return status;
+}
+
+// -- one change -----------------------------------------------------------------------------------
+
+struct bough_air_change {
+    work w;
+    const double *about;
+};
+
+bough_air_change *bough_air_change_create(bough_arena *arena, bough_simulation *s, bough_whole *coupled,
+                                          double time, const double *state, bool dynamic, int *n_air) {
+    bough_air_change *x = bough_arena_take(arena, sizeof *x);
+    *x = (bough_air_change){start(arena, s, coupled, time, dynamic), state};
+    settle(&x->w, state);
+    *n_air = x->w.n_air;
+    return x;
+}
+
+bough_status bough_air_change_follow(bough_air_change *x, double size, const double *change, double *image) {
+    work *w = &x->w;
+    int n = w->coupled->assembly->n_state;
+    for (int side = 0; side < 2; side++) {
+        double factor = (2 * side - 1) * size;
+        for (int k = 0; k < n; k++) w->state[k] = x->about[k] + factor * change[k];
+        memcpy(w->before, w->memory, (size_t)w->n_memory * sizeof *w->before);
+        for (int k = 0; k < w->n_air; k++) w->before[w->row[k]] += factor * change[n + k];
+        BOUGH_TRY(find_rates(w, x->about, w->rate[side], w->air_rate[side]));
+    }
+    set_column(w, size, image, image + n);
+    return bough_ok();
 }
 
 // -- mean over azimuths ---------------------------------------------------------------------------

@@ -33,6 +33,17 @@ bough_status bough_air_tangent_find(bough_arena *arena, bough_simulation *s, bou
                                     double time, const double *state, bool dynamic,
                                     const bough_air_inputs *inputs, bough_air_tangent *tangent);
 
+// The same for one change of bodies and air at once: the products that the matrices have with it.
+typedef struct bough_air_change bough_air_change;
+
+// Brings the air to rest about `state` (n), which is borrowed; *n_air: its states.
+bough_air_change *bough_air_change_create(bough_arena *arena, bough_simulation *s, bough_whole *coupled,
+                                          double time, const double *state, bool dynamic, int *n_air);
+
+// A y + R m and G y + H m into image (n + n_air), of change = y, m (n + n_air), by differences of `size`
+// times it.
+bough_status bough_air_change_follow(bough_air_change *x, double size, const double *change, double *image);
+
 // Rows of the air's states of the group's blades (n × n_per_blade).
 void bough_air_tangent_rows(const bough_simulation *s, const bough_blade_group *group, int n_per_blade,
                             int *row);

@@ -54,30 +54,20 @@ static bool is_frozen(const bough_simulation *s, const bough_blade_group *group)
 // A change of the solutions of the linear system above it, relative, is none of rounding.
 static const double constant = 1e-5;
 
-// Data of a solution.
-typedef struct solution {
-    bough_whole *coupled;
-    bough_blade_group group;
-    double *state; // (n_state)
-    double *mean;  // (n_state) work
-    int *held;     // rows of prescribed joints
-    bough_modes_def def;
-} solution;
-
-static bough_status prepare(bough_arena *arena, bough_simulation *s, solution *x) {
+static bough_status prepare(bough_arena *arena, bough_simulation *s, bough_vibration_point *x) {
     const bough_assembly *a = s->master->assembly;
     bough_arena_each(arena, (size_t)a->n_state + 1, &x->state, &x->mean);
     x->held = bough_arena_take(arena, ((size_t)s->leader.system.n_state + 1) * sizeof *x->held);
     bough_assembly_states(a, x->state);
     x->coupled = bough_whole_create(arena, a, NULL);
-    int n_held = bough_equilibrium_held(s->tree, false, x->held);
-    bough_whole_hold(arena, x->coupled, n_held, x->held);
+    x->n_held = bough_equilibrium_held(s->tree, false, x->held);
+    bough_whole_hold(arena, x->coupled, x->n_held, x->held);
     return bough_blade_group_find(arena, s, a, &x->group);
 }
 
 // Inputs of the equilibrium as it is, so that the rotor's whole weight and thrust are on the tree;
 // the blades bend in their mean.
-static void define(double time, solution *x) {
+static void define(double time, bough_vibration_point *x) {
     const bough_blade_group *g = &x->group;
     bough_whole_inputs(x->coupled, time, x->state);
     x->def = (bough_modes_def){.time = time,
@@ -91,6 +81,14 @@ static void define(double time, solution *x) {
     bough_blade_group_average(g, x->coupled->input, x->mean, x->state);
     x->def.spin = g->speed;
     x->def.point = fmax(least_point, spins * ((g->n - 1) / 2) * fabs(g->speed));
+}
+
+bough_status bough_vibration_point_find(bough_arena *arena, bough_simulation *s, double time,
+                                        bough_vibration_point *point) {
+    *point = (bough_vibration_point){0};
+    BOUGH_TRY(prepare(arena, s, point));
+    define(time, point);
+    return bough_ok();
 }
 
 // Turns all joints on at their own speeds, the fastest by `angle`.
@@ -120,8 +118,8 @@ static void convert(const bough_tree *tree, const double *state, bool to_speeds,
 }
 
 // (I − γJ)⁻¹ of a vector with all motions in it.
-static bough_status respond(const bough_simulation *s, const solution *x, double time, const double *state,
-                            double *work, double *response) {
+static bough_status respond(const bough_simulation *s, const bough_vibration_point *x, double time,
+                            const double *state, double *work, double *response) {
     const bough_assembly *a = s->master->assembly;
     bough_assembly_scales(a, response);
     for (int k = 0; k < a->n_state; k++) response[k] *= 1 + 0.5 * sin(k);
@@ -137,7 +135,8 @@ static bough_status respond(const bough_simulation *s, const solution *x, double
 
 // The tangent where all that turns has turned on by an angle, beside that of the present state: not the same
 // where a rotor of two blades, or one out of balance, is on a support that can move.
-static bough_status check_constant(bough_arena *arena, const bough_simulation *s, const solution *x) {
+static bough_status check_constant(bough_arena *arena, const bough_simulation *s,
+                                   const bough_vibration_point *x) {
     static const double angles[] = {1, 2.3};
     size_t n = (size_t)s->master->assembly->n_state;
     double *state, *work, *present, *turned, *scale, fastest = 0;
@@ -174,7 +173,7 @@ static bough_status check_constant(bough_arena *arena, const bough_simulation *s
 
 // -- solution -------------------------------------------------------------------------------------
 
-static bough_status describe(bough_arena *arena, const bough_simulation *s, const solution *x,
+static bough_status describe(bough_arena *arena, const bough_simulation *s, const bough_vibration_point *x,
                              bough_vibration *v) {
     bough_mode_shape one = {
         .simulation = s, .assembly = s->master->assembly, .group = &x->group, .state = x->state};
@@ -211,16 +210,16 @@ static void drop_other_motions(const bough_tree *tree, double point, int count, 
 }
 
 // Modes of the bodies; the forces of the air do not follow.
-static bough_status solve_bodies(bough_arena *arena, const bough_simulation *s, const solution *x, int count,
-                                 bough_vibration *v) {
+static bough_status solve_bodies(bough_arena *arena, const bough_simulation *s,
+                                 const bough_vibration_point *x, int count, bough_vibration *v) {
     v->count.wanted = count + FREE_MOTIONS + 2 * s->tree->closure_rank;
     v->pair = bough_arena_take(arena, (size_t)v->count.wanted * sizeof *v->pair);
     return bough_modes_find(arena, x->coupled, &x->def, v->pair, &v->count);
 }
 
 // Modes in the air whose forces follow the bodies' motion.
-static bough_status solve_in_air(bough_arena *arena, bough_simulation *s, const solution *x, int count,
-                                 bough_vibration *v) {
+static bough_status solve_in_air(bough_arena *arena, bough_simulation *s, const bough_vibration_point *x,
+                                 int count, bough_vibration *v) {
     bough_air_tangent air;
     bool dynamic = s->scene->modes.air == BOUGH_SCENE_AIR_DYNAMIC;
     BOUGH_TRY(bough_air_tangent_find(arena, s, x->coupled, x->def.time, x->state, dynamic, NULL, &air));
@@ -233,10 +232,9 @@ static bough_status solve_in_air(bough_arena *arena, bough_simulation *s, const 
 
 static bough_status solve(bough_arena *arena, bough_simulation *s, double time, int count,
                           bough_vibration *v) {
-    solution x = {0};
+    bough_vibration_point x;
     v->mode = bough_arena_take(arena, (size_t)count * sizeof *v->mode);
-    BOUGH_TRY(prepare(arena, s, &x));
-    define(time, &x);
+    BOUGH_TRY(bough_vibration_point_find(arena, s, time, &x));
     v->n_blade = x.group.n;
     v->spin = fabs(x.group.speed) < at_rest ? 0 : x.group.speed;
     v->frozen = is_frozen(s, &x.group);

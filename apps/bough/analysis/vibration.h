@@ -10,6 +10,7 @@
 
 #include "apps/bough/analysis/mode_shape.h"
 #include "apps/bough/model/equilibrium.h"
+#include "cosim/analysis/modes.h"
 
 typedef struct bough_vibration {
     bough_equilibrium_work work; // how the equilibrium was found; 0 steps: none was sought
@@ -24,6 +25,19 @@ typedef struct bough_vibration {
     bough_scene_mode *mode; // (found) by the distance of λ from a point near 0
     bough_eigen_pair *pair; // (found)
 } bough_vibration;
+
+// What modes are about: the simulation's present state, the blades in their mean.
+typedef struct bough_vibration_point {
+    bough_whole *coupled;
+    bough_blade_group group;
+    double *state;     // (n_state)
+    double *mean;      // (n_state) work
+    int n_held, *held; // rows of prescribed joints
+    bough_modes_def def;
+} bough_vibration_point;
+
+bough_status bough_vibration_point_find(bough_arena *arena, bough_simulation *s, double time,
+                                        bough_vibration_point *point);
 
 // Whether the scene's modes block, or the scene without it, asks for modes of the whole.
 bool bough_vibration_wanted(const bough_simulation *s);

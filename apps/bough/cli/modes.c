@@ -364,7 +364,8 @@ static bough_status write_linear(bough_arena *arena, bough_simulation *s, double
     return status;
 }
 
-static bough_status find_whole(bough_arena *arena, const bough_options *options, bough_simulation *s) {
+static bough_status find_whole(bough_arena *arena, const bough_options *options, bough_simulation *s,
+                               const char *sensitivity) {
     bough_vibration v;
     const char *folder = bough_out_folder(arena, options);
     if (s->master->assembly->n_state == 0) {
@@ -387,6 +388,9 @@ static bough_status find_whole(bough_arena *arena, const bough_options *options,
     if (bough_is_ok(&status) && s->scene->modes.linear) {
         status = write_linear(arena, s, balanced ? bough_equilibrium_time(s) : 0, folder);
     }
+    if (bough_is_ok(&status) && sensitivity) {
+        status = bough_modes_sensitivity(arena, s, &v, sensitivity, folder);
+    }
     if (bough_is_ok(&status)) printf("out: %s\n", folder);
     return status;
 }
@@ -395,8 +399,9 @@ static bough_status find_whole(bough_arena *arena, const bough_options *options,
 
 typedef struct modes_options {
     bough_options common;
-    bough_texts sweep; // "key=value, value, ..."
-    bool until;        // unstable
+    bough_texts sweep;       // "key=value, value, ..."
+    bool until;              // unstable
+    const char *sensitivity; // of this mode; NULL: of none
 } modes_options;
 
 static bough_status read_until(const char *name, const char *text, void *field) {
@@ -412,18 +417,24 @@ static const bough_option rows[] = {
      read_until, offsetof(modes_options, until), false},
     {"sweep", "KEY=V1, V2, ...", "modes over operating points; the values of several --sweep vary together",
      bough_option_texts, offsetof(modes_options, sweep), true},
+    {"sensitivity", "MODE", "what a mode, its number or words of its row as 'edge forward', depends on most",
+     bough_option_text, offsetof(modes_options, sensitivity), false},
     {0},
 };
 
 static bough_status find(bough_arena *arena, const void *given) {
     const modes_options *own = given;
     const bough_options *options = &own->common;
+    if (own->sweep.n > 0 && own->sensitivity)
+        return bough_fail(BOUGH_INVALID, "--sensitivity is of one operating point, without --sweep");
     if (own->sweep.n > 0) return bough_modes_sweep(arena, options, &own->sweep, own->until);
     if (own->until) return bough_fail(BOUGH_INVALID, "--until unstable needs a --sweep");
     bough_simulation *s;
     BOUGH_TRY(bough_open(arena, options, &s));
     BOUGH_TRY(bough_simulation_known(s, "it has no modes"));
-    if (bough_vibration_wanted(s)) return find_whole(arena, options, s);
+    if (bough_vibration_wanted(s)) return find_whole(arena, options, s, own->sensitivity);
+    if (own->sensitivity)
+        return bough_fail(BOUGH_INVALID, "--sensitivity needs modes of the whole scene: modes.of: scene");
     if (bough_steady_rods(s) == 0) {
         return bough_fail(BOUGH_INVALID, "%.200s: no body has fidelity rod", s->scene->file);
     }

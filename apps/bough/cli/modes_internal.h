@@ -11,6 +11,11 @@
 bough_status bough_modes_sweep(bough_arena *arena, const bough_options *options, const bough_texts *sweeps,
                                bool until_unstable);
 
+// Prints and writes what a mode depends on: `wanted` is its number, or words of its row, then perhaps a
+// number among those that have them.
+bough_status bough_modes_sensitivity(bough_arena *arena, bough_simulation *s, const bough_vibration *v,
+                                     const char *wanted, const char *folder);
+
 // What moves most in a mode, and how.
 const char *bough_modes_body(const bough_simulation *s, const bough_scene_mode *mode);
 const char *bough_modes_shape(const bough_simulation *s, const bough_scene_mode *mode);
