@@ -9,8 +9,14 @@
 
 #define BOUGH_PI 3.14159265358979323846
 
-// A function that loops over vector lanes call: a loop that calls runs lane by lane.
+// A function that loops over vector lanes call: a loop that calls runs lane by lane. clang splits structures
+// that are arguments of static functions into their members, and the new calls are not known to be without
+// dependences, so that the loop is not vectorised.
+#ifdef __clang__
+#define BOUGH_INLINE extern inline __attribute__((always_inline, gnu_inline))
+#else
 #define BOUGH_INLINE static inline __attribute__((always_inline))
+#endif
 
 // Doubles per SIMD lane group; arrays over vertices and segments are padded to a multiple of it.
 enum { BOUGH_LANES = 8 };

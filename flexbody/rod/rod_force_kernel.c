@@ -42,9 +42,9 @@ BOUGH_INLINE void gather_some(const bough_rod_model *m, const double *restrict s
 
 // Moving vertices first to last.
 static void gather_state(const bough_rod_model *m, const double *state, int first, int last, double *vertex) {
-    int i = first;
-    for (; i + BOUGH_WIDTH <= last + 1; i += BOUGH_WIDTH) gather_some(m, state, i, BOUGH_WIDTH, vertex);
-    for (; i <= last; i++) gather_some(m, state, i, 1, vertex);
+    int n = last + 1 - first, end = first + n - n % BOUGH_WIDTH;
+    for (int i = first; i < end; i += BOUGH_WIDTH) gather_some(m, state, i, BOUGH_WIDTH, vertex);
+    for (int i = end; i <= last; i++) gather_some(m, state, i, 1, vertex);
 }
 
 void AT(gather)(const bough_rod_model *m, const double *state, const double *input,
@@ -304,19 +304,16 @@ BOUGH_INLINE void vertex_kinematics(int n, const double *restrict state, const d
 // The balances of all vertices under the segments' forces in scratch.
 static bool balance_vertices(const bough_rod_model *m, const double *state, const double *input,
                              const bough_rod_scratch *scratch, double *restrict rate) {
-    int i = 1;
-    for (; i + BOUGH_WIDTH <= m->n + 1; i += BOUGH_WIDTH) {
-        vertex_kinematics(m->n, state, input, i, BOUGH_WIDTH, rate);
+    int n = m->n, whole = n - n % BOUGH_WIDTH;
+    for (int i = 1; i <= whole; i += BOUGH_WIDTH) vertex_kinematics(n, state, input, i, BOUGH_WIDTH, rate);
+    for (int i = whole + 1; i <= n; i++) vertex_kinematics(n, state, input, i, 1, rate);
+    for (int i = 1; i <= whole; i += BOUGH_WIDTH)
         vertex_accelerations(m, scratch, input, i, BOUGH_WIDTH, rate);
-    }
-    for (; i <= m->n; i++) {
-        vertex_kinematics(m->n, state, input, i, 1, rate);
-        vertex_accelerations(m, scratch, input, i, 1, rate);
-    }
+    for (int i = whole + 1; i <= n; i++) vertex_accelerations(m, scratch, input, i, 1, rate);
     double sum = 0; // NaN and infinity survive a sum of squares
-    int last = BOUGH_ROD_STATES * m->n;
+    int last = BOUGH_ROD_STATES * n;
 #pragma omp simd reduction(+ : sum)
-    for (int k = BOUGH_ROD_U * m->n; k < last; k++) sum += rate[k] * rate[k];
+    for (int k = BOUGH_ROD_U * n; k < last; k++) sum += rate[k] * rate[k];
     return isfinite(sum);
 }
 
