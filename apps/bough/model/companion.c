@@ -134,12 +134,30 @@ static double share_now(const bough_companion *c, const bough_channel *channel, 
     return channel->kind == BOUGH_KIND_FORCE ? fmax(c->share, least_share_of_force) : c->share;
 }
 
+// The length of the vector that the channel is a component of.
+static double length_of(const bough_companion *c, int i, const double *value) {
+    const bough_channel *list = c->channels->channel;
+    double square = 0;
+    for (int k = list[i].vector; k < c->channels->count && list[k].vector == list[i].vector; k++)
+        square += value[k] * value[k];
+    return sqrt(square);
+}
+
+// Since the last comparison. The components of a vector in axes that turn change without a new sample: no
+// more than its length does counts.
+static double change_of(const bough_companion *c, int i) {
+    const bough_channel *list = c->channels->channel;
+    double change = fabs(difference(&list[i], c->value[i], c->before[i]));
+    bool component = list[i].vector != i || (i + 1 < c->channels->count && list[i + 1].vector == i);
+    return component ? fmin(change, fabs(length_of(c, i, c->value) - length_of(c, i, c->before))) : change;
+}
+
 // What a sampled channel errs by just before the next sample: both solutions may hold through the same
 // change. Where both agree to the bit the value follows from the time alone and is not held.
 static double stale(const bough_companion *c, int i) {
     const bough_channel *channel = &c->channels->channel[i];
     bool held = channel->sampled == BOUGH_BY_AIR && c->compared > 1 && c->value[i] != c->other[i];
-    return held ? c->share_held * fabs(difference(channel, c->value[i], c->before[i])) : 0;
+    return held ? c->share_held * change_of(c, i) : 0;
 }
 
 static void compare(bough_companion *c) {

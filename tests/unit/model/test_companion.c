@@ -250,6 +250,30 @@ TEST(meshes_differ_as_far_as_they_can) {
     }
 }
 
+// The delay of loads that are held between samples is of first order.
+TEST(half_of_the_difference_counts_where_loads_are_held) {
+    check_arena(arena);
+    const char *const sets[] = {"aero.hold=constant", "simulation.coupling={scheme: monolithic}", NULL};
+    bough_scene *scene = scene_read(arena, "apps/turbine/runup.yaml", sets);
+    check_near(bough_coarser_share(scene, bough_coarser_scene(arena, scene, BOUGH_COARSER_ALL)), 0.5, 1e-12,
+               0);
+}
+
+// The vector of the wind over a rotor in axes that turn with it changes without a new sample, which is no
+// error.
+TEST(turning_axes_are_no_age) {
+    const char *const sets[] = {"simulation.duration=1.02 s", "simulation.macro_step=5 ms", "aero.tower=null",
+                                NULL};
+    outcome *o = run_for("apps/turbine/rotor.yaml", 51, sets);
+    int i = 0;
+    while (strcmp(o->name[i], "RtVAvgyh") != 0) i++;
+    double moves = 0;
+    for (int k = 1; k < 51; k++) moves = fmax(moves, fabs(o->value[k][i] - o->value[k - 1][i]));
+    print_message("error %.2g m/s, change in a step %.2g\n", o->error[i], moves);
+    assert_true(o->error[i] < 0.2 * moves);
+    free(o);
+}
+
 // With a finer mesh the air is finer too where macro steps allow it: errors of one sign would cancel in the
 // difference.
 TEST(beside_a_finer_mesh_the_air_is_finer_where_it_can_be) {
