@@ -22,7 +22,11 @@ static const double alpha[STAGES] = {0, 0.8717330430169180, 0.7315799577888524, 
 // −2e-4 for three times as much, which tangents of every step have too.
 static const double least_viscosity = 0.03; // [-]
 static const double most_change = 0.002;    // [-]
-static const double rounding = 1e-9;        // of times and steps that are meant to be equal, relative
+// A step whose error is greater than this multiple of what it was under tangents of its own, by the third
+// power of its length, fails because they are old: a member that turns fast changes them within a few steps.
+static const double too_old = 3;
+static const double slower = 1.1;    // longer kept at each renewal, until a step fails again
+static const double rounding = 1e-9; // of times and steps that are meant to be equal, relative
 
 typedef struct rosenbrock {
     bough_ode ode;
@@ -34,6 +38,8 @@ typedef struct rosenbrock {
     double longest;             // step allowed next [s]
     double factored;            // γh of the factors; 0: none
     int kept;                   // steps with the same tangents at most
+    double useful;              // the same as far as steps have failed since
+    double own_error;           // of the last step with tangents of its own, over h³ [s⁻³]
     int age, most_age;          // steps since the tangents were found, and after which they are renewed
     bool started;
     int drifted;               // steps since ∂f/∂t was found
@@ -194,6 +200,26 @@ static double try_step(rosenbrock *m, double t, double h, const double *y) {
 // y ← y₁
 static void accept(rosenbrock *m, double *restrict y) { memcpy(y, m->now.at, (size_t)m->ode.n * sizeof *y); }
 
+// After a failed step of length h: new tangents where the old ones are the cause, else a shorter step.
+static void shorten(rosenbrock *m, double h, double error) {
+    double own = m->age > 0 ? m->own_error * h * h * h : error;
+    bool old = isfinite(error) && error > too_old * own;
+    m->sum.failed_steps++;
+    m->longest = h * fmax(0.1, fmin(1, 0.9 * cbrt(1 / (old ? own : error))));
+    if (old) m->useful = m->age;
+    if (old || m->age > YOUNG || !isfinite(error)) m->age = MOST_AGE;
+}
+
+// After a step of length h: the age of the tangents, and whether they are to be renewed.
+static void grow_older(rosenbrock *m, double h, double error) {
+    if (m->age == 0) m->own_error = error / (h * h * h);
+    m->age++;
+    m->drifted++;
+    if (m->age < floor(m->useful)) return;
+    m->useful = fmin(slower * m->useful, m->kept);
+    m->age = MOST_AGE;
+}
+
 // All steps to `pause`. Returns NULL, or the reason of a failure.
 static const char *cross(rosenbrock *m, double *t, double pause, double t1, double *y) {
     double begun = *t;
@@ -213,15 +239,12 @@ static const char *cross(rosenbrock *m, double *t, double pause, double t1, doub
                    " 120°, or a value that overflows)";
         }
         if (error > 1) {
-            m->sum.failed_steps++;
-            m->longest = h * fmax(0.1, 0.9 * cbrt(1 / error));
-            if (m->age > YOUNG || !isfinite(error)) m->age = MOST_AGE;
+            shorten(m, h, error);
             continue;
         }
         accept(m, y);
         m->sum.steps++;
-        m->age++;
-        m->drifted++;
+        grow_older(m, h, error);
         // elementary controller of an error of order 3
         double grown = 0.9 * h * fmin(5, cbrt(1 / fmax(error, 1e-6)));
         m->longest = fmin(m->step, fmax(h, grown));
@@ -237,6 +260,7 @@ static bough_status advance(void *self, double *t, double pause, double t1, bool
         m->started = true;
         m->age = MOST_AGE;
         m->most_age = UNDAMPED_AGE;
+        m->useful = m->kept;
         m->drifted = MOST_DRIFTED;
         m->longest = m->step;
     }

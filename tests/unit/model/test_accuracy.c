@@ -222,3 +222,16 @@ TEST(errors_of_a_turbine) {
 }
 
 GROUP(enter, leave)
+
+// A rod that carries a weight around: its tangents change within few steps, and are renewed before steps
+// fail.
+TEST(tangents_of_what_turns_are_renewed_in_time) {
+    check_arena(arena);
+    const char *const sets[] = {"simulation.duration=3 s", "simulation.error_estimate=none", NULL};
+    bough_run r;
+    check_ok(bough_run_create(arena, scene_read(arena, "apps/templates/mechanism/scene.yaml", sets), &r));
+    while (!bough_run_done(&r)) check_ok(bough_run_step(&r));
+    bough_statistics sum = bough_run_statistics(&r, r.simulation->master->assembly->n_member);
+    print_message("%ld steps, %ld failed\n", (long)sum.steps, (long)sum.failed_steps);
+    assert_true(sum.steps < 2500 && 4 * sum.failed_steps < sum.steps);
+}
