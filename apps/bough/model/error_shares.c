@@ -69,6 +69,7 @@ typedef struct finding {
     bough_companion *companion;
     bool lost; // the companion may have lost the solution
     bool (*stop)(void);
+    double end; // of the run, less half a macro step [s]
     bough_error_shares *shares;
 } finding;
 
@@ -95,47 +96,60 @@ static void build_finer(bough_arena *arena, const finding *x, other_run finer[BO
     }
 }
 
-// One macro step of the base, and as far with a run that is finer in part k.
-static void advance_finer(const finding *x, int k, const other_run *base, const other_run *again,
+// As far as the base, with a run that is finer in part k.
+static void advance_finer(const finding *x, int k, double t, const other_run *base, const other_run *again,
                           other_run *finer, double part, double held) {
     bough_error_share *share = &x->shares->share[k];
     const bough_companion *c = x->companion;
     if (!finer->simulation || share->unknown[0]) return;
-    bough_status own = advance(finer, base->simulation->master->time);
+    bough_status own = advance(finer, fmin(t, x->end));
     if (!bough_is_ok(&own)) {
         unknown(share, "%.150s", own.message);
         return;
     }
+    if (t < c->run->scene->simulation.output.from - 1e-6 * c->run->master->macro_step) return;
     sample(finer);
-    compare(base, finer, part, held, share->largest);
+    if (base->simulation) compare(base, finer, part, held, share->largest);
     if (again->simulation) compare(finer, again, c->share, c->share_held, share->others);
+}
+
+// Where the companion is lost, its failure ends no more than the comparison with it.
+static bough_status step_base(const finding *x, other_run *base, double *t) {
+    const bough_simulation *s = base->simulation;
+    bough_status status = s == NULL ? bough_ok() : bough_step(s->master);
+    if (s != NULL && bough_is_ok(&status)) {
+        *t = s->master->time;
+        sample(base);
+        return status;
+    }
+    *t += 2 * x->companion->run->master->macro_step;
+    base->simulation = NULL;
+    return x->lost ? bough_ok() : status;
 }
 
 // A run that fails leaves its share unknown.
 static bough_status find(bough_arena *arena, void *self) {
     const finding *x = self;
-    const bough_scene *scene = x->companion->run->scene;
+    const bough_simulation *run = x->companion->run;
     const double part[BOUGH_SHARES] = {[BOUGH_SHARE_MESH] = x->companion->share,
-                                       [BOUGH_SHARE_AIR] = bough_coarser_share(scene, scene),
-                                       [BOUGH_SHARE_TIME] = bough_coarser_time_share(scene)};
+                                       [BOUGH_SHARE_AIR] = bough_coarser_share(run->scene, run->scene),
+                                       [BOUGH_SHARE_TIME] = bough_coarser_time_share(run->scene)};
     // what is held longer than in the run is held so in two of the further runs as well
     const double held[BOUGH_SHARES] = {part[BOUGH_SHARE_MESH], x->companion->share_held,
                                        part[BOUGH_SHARE_TIME]};
     other_run base, again = {0}, finer[BOUGH_SHARES] = {{0}};
-    bough_status status = build(arena, x->companion->run, BOUGH_COARSER_ALL, &base);
+    bough_status status = build(arena, run, BOUGH_COARSER_ALL, &base);
     if (bough_is_ok(&status)) build_finer(arena, x, finer);
-    if (bough_is_ok(&status) && x->lost) status = build(arena, x->companion->run, 0, &again);
-    while (bough_is_ok(&status) && !bough_master_done(base.simulation->master)) {
+    if (bough_is_ok(&status) && x->lost) status = build(arena, run, 0, &again);
+    double t = 0;
+    while (bough_is_ok(&status) && t < x->end) {
         if (x->stop && x->stop())
             return bough_fail(BOUGH_INTERRUPTED, "interrupted while the error's cause was looked for");
-        status = bough_step(base.simulation->master);
-        if (!bough_is_ok(&status)) break;
-        sample(&base);
-        if (again.simulation) status = advance(&again, base.simulation->master->time);
-        if (!bough_is_ok(&status)) break;
-        if (again.simulation) sample(&again);
-        for (int k = 0; k < BOUGH_SHARES; k++)
-            advance_finer(x, k, &base, &again, &finer[k], part[k], held[k]);
+        status = step_base(x, &base, &t);
+        if (bough_is_ok(&status) && again.simulation) status = advance(&again, fmin(t, x->end));
+        if (bough_is_ok(&status) && again.simulation) sample(&again);
+        for (int k = 0; k < BOUGH_SHARES && bough_is_ok(&status); k++)
+            advance_finer(x, k, t, &base, &again, &finer[k], part[k], held[k]);
     }
     return status;
 }
@@ -166,12 +180,15 @@ static void lower_errors(bough_companion *c, bough_error_shares *shares) {
     int nearest[2] = {0};
     double relative, whole = bough_error_verdict_of(c, true, c->error).relative;
     if (!find_nearest(c, shares, nearest, &relative) || relative > much_less * whole) return;
+    // a companion that ended knows nothing of what came later, the two others do
+    bool ended = c->reason[0];
     for (int i = 0; i < c->channels->count; i++) {
         double sum = shares->share[nearest[0]].others[i] + shares->share[nearest[1]].others[i];
-        c->error[i] = fmin(c->error[i], sum);
+        c->error[i] = ended ? sum : fmin(c->error[i], sum);
         for (int k = 0; k < BOUGH_SHARES; k++)
             shares->share[k].largest[i] = fmin(shares->share[k].largest[i], sum);
     }
+    c->reason[0] = 0;
 }
 
 // An error of a part of the range, above the bound: the companion may have lost the solution.
@@ -182,7 +199,8 @@ static bool has_lost(const bough_companion *c) {
 
 bough_status bough_error_shares_find(bough_arena *arena, bough_companion *c, bool (*stop)(void),
                                      bough_error_shares *shares) {
-    finding x = {c, has_lost(c), stop, shares};
+    double end = c->run->scene->simulation.duration - 0.5 * c->run->master->macro_step;
+    finding x = {c, has_lost(c), stop, end, shares};
     double cpu = bough_cpu_clock(false);
     *shares = (bough_error_shares){.found = true, .n_channel = c->channels->count};
     for (int k = 0; k < BOUGH_SHARES; k++)
