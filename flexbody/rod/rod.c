@@ -124,6 +124,7 @@ bough_status bough_rod_create(bough_arena *arena, const bough_rod_def *def, boug
     bough_rod_model *m = bough_arena_take(arena, sizeof *m);
     m->name = bough_arena_string(arena, def->name);
     m->level = bough_level_chosen();
+    m->sections = def->sections;
     m->n_segment = def->n_segment;
     m->n = def->carries ? def->n_segment - 1 : def->n_segment;
     if (m->n < 1) {

@@ -45,6 +45,23 @@ typedef struct bough_vertex_inertia {
     double inertia[6]; // Ixx Iyy Izz Ixy Ixz Iyz, tensor entries [kg m²]
 } bough_vertex_inertia;
 
+// A wrench (force, moment) on segment n, from one arc length to another: per length, linear between, or at
+// one point, in the axes of the segment's middle.
+typedef struct bough_rod_part {
+    double from, to;           // [m]
+    double start[6], slope[6]; // at `from` [N/m, N or N, N m], and over the length [N/m², N/m]
+} bough_rod_part;
+
+// What knows the sections between the vertices: `strain` gives the mean strain (6) of segment n, in the axes
+// of its middle, that such a wrench adds to what its forces and moments on the vertices by hat functions
+// cause.
+typedef struct bough_rod_model bough_rod_model;
+typedef struct bough_rod_sections {
+    void (*strain)(const void *axis, const bough_rod_model *m, int n, const bough_rod_part *part,
+                   double strain[6]);
+    const void *axis;
+} bough_rod_sections;
+
 // What is discretised: filled by bough_section_discretise or by hand.
 typedef struct bough_rod_def {
     const char *name;
@@ -61,10 +78,11 @@ typedef struct bough_rod_def {
                                          // [1/N, 1/N m …]; NULL: none
     const double *taper;                 // per segment, how the sections' compliance in bending and
                                          // twist changes along it (N × 9) [1/(N m³)]; NULL: not
+    bough_rod_sections sections;         // NULL: uniform within each segment
     bool carries; // bodies at its end: the last vertex belongs to them as the root to the carrier
 } bough_rod_def;
 
-typedef struct bough_rod_model {
+struct bough_rod_model {
     const char *name;
     bough_level level;            // of the kernels
     int n;                        // moving vertices
@@ -88,7 +106,8 @@ typedef struct bough_rod_model {
     double *inertia;              // of moving vertices (6 × stride) [kg m²]
     double *inverse_mass;         // of the 6×6 mass in section axes (21 × stride), by tiles
     bough_vertex_inertia *vertex; // (N + 1); vertex 0 belongs to the carrier
-} bough_rod_model;
+    bough_rod_sections sections;  // of loads on parts of segments
+};
 
 // Row k of segment n is at tile[k · BOUGH_LANES]: eight segments lie side by side, so that a kernel reads the
 // rows of a tile at offsets that the compiler knows.
@@ -116,9 +135,9 @@ static inline int bough_rod_n_outputs(const bough_rod_model *m) {
 // A load along the rod acts in two ways (docs/theory.md, "Loads along a segment"). It is lumped to the
 // vertices by hat functions: these forces are in the balances of the vertices. And it gives each segment
 // the strain D q, so that the elastic law, stress = C (e − e⁰ − D q), is that of the loaded segment; q are
-// the mean and the slope of the load over the segment. Linear statics is then exact at the vertices for
-// loads that are linear over each segment. Weight and slow inertia forces need no such strain: the mass and
-// first moment of the vertices account for them (section.c).
+// the mean and the slope of the load over the segment, those that bend it as the load does where it is not
+// linear. Linear statics is then exact at the vertices. Weight and slow inertia forces need no such strain:
+// the mass and first moment of the vertices account for them (section.c).
 
 // Loads that change over time: value × factor. Dead ones are resolved in BRF axes, followers in the section
 // axes of each vertex and segment, with which they turn.
@@ -127,8 +146,8 @@ typedef struct bough_rod_ramped_load {
     bough_schedule schedule; // of the factor
     bool follower;
     double *value; // on vertices: force then moment (6 × stride), vertex 0 included [N, N m]
-    double *line;  // the part of `value` that is spread along whole segments, per length: force then
-                   // moment, and their slopes (12 × stride) [N/m, N, N/m², N/m]
+    double *line;  // what of it acts between vertices, as a load linear over each segment, per length: force
+                   // then moment, and their slopes (12 × stride) [N/m, N, N/m², N/m]
     bool along;    // there is such a part
 } bough_rod_ramped_load;
 

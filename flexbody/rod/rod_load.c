@@ -3,125 +3,117 @@
 #include "flexbody/rod/rod_kernels.h"
 #include "flexbody/rod/rod_lanes.h"
 
+#include <math.h>
 #include <string.h>
 
-// What the two vertices of a segment take of a load on it.
-typedef struct shares {
-    double left, right; // of force and moment
-    double couple;      // arm of the equal and opposite moments [m]
-} shares;
+// Points of Gauss–Legendre quadrature over a part of a segment, exact to degree 5.
+enum { POINTS = 3 };
+static const double gauss_at[POINTS] = {-0.7745966692414834, 0, 0.7745966692414834};
+static const double gauss_weight[POINTS] = {5. / 18, 4. / 9, 5. / 18};
 
-// At ξ = (s − s_left)/h: 1 − ξ, ξ and ½ h ξ (1 − ξ), the shape of linked interpolation
-// w = (1 − ξ) w_left + ξ w_right + ½ h ξ (1 − ξ)(θ_left − θ_right).
-static shares point_shares(double h, double xi) { return (shares){1 - xi, xi, 0.5 * h * xi * (1 - xi)}; }
+// What of a load acts on one segment.
+typedef struct segment_load {
+    double left[6], right[6]; // on its vertices
+    double line[12];          // the linear load that bends a uniform segment equally: mean, slope
+} segment_load;
 
-// Their integrals over s from ξ = 0.
-static shares line_shares(double h, double xi) {
-    double square = xi * xi;
-    return (shares){h * (xi - 0.5 * square), 0.5 * h * square,
-                    0.5 * h * h * (0.5 * square - square * xi / 3)};
-}
-
-static void add_to_vertex(const bough_rod_model *m, int i, double share, bough_vec3 couple,
-                          const double *wrench, double *value) {
-    const double moment[3] = {couple.x, couple.y, couple.z};
-    for (int c = 0; c < 3; c++) {
-        value[c * m->stride + i] += share * wrench[c];
-        value[(3 + c) * m->stride + i] += share * wrench[3 + c] + moment[c];
+// theory (105): adds a wrench at ξ = (s − s_left)/h.
+static void add_point(double h, double xi, double weight, const double *wrench, segment_load *to) {
+    double bow = xi * (1 - xi), mean = 6 * bow / h, slope = 120 * bow * (xi - 0.5) / (h * h);
+    for (int c = 0; c < 6; c++) {
+        double value = weight * wrench[c];
+        to->left[c] += (1 - xi) * value;
+        to->right[c] += xi * value;
+        to->line[c] += mean * value;
+        to->line[6 + c] += slope * value;
     }
 }
 
-// The moment arm × force of a couple about vertex i's end of segment n.
-static bough_vec3 couple_at(const bough_rod_model *m, int n, int i, double arm, const double *wrench,
-                            bool follower) {
-    bough_vec3 along = bough_sub(m->position0[n + 1], m->position0[n]);
-    along = bough_scale(arm / bough_norm(along), along);
-    if (follower) along = bough_mat3_tmul(bough_rotation_matrix(m->rotation0[i]), along);
-    return bough_cross(along, bough_v3(wrench[0], wrench[1], wrench[2]));
-}
-
-static void add_to_segment(const bough_rod_model *m, int n, shares s, const double *wrench,
-                           bough_rod_ramped_load *load) {
-    bough_vec3 left = couple_at(m, n, n, s.couple, wrench, load->follower);
-    bough_vec3 right = couple_at(m, n, n + 1, -s.couple, wrench, load->follower);
-    add_to_vertex(m, n, s.left, left, wrench, load->value);
-    add_to_vertex(m, n + 1, s.right, right, wrench, load->value);
-}
-
-static void lump_point(const bough_rod_model *m, double at, const double *wrench,
-                       bough_rod_ramped_load *load) {
-    int n = 0;
-    while (n < m->n_segment - 1 && at >= m->span[n + 1]) n++;
-    double h = m->span[n + 1] - m->span[n];
-    double xi = bough_clamp((at - m->span[n]) / h, 0, 1);
-    add_to_segment(m, n, point_shares(h, xi), wrench, load);
-}
-
-// The same weighted by ξ − ½.
-static shares slope_shares(double h, double xi) {
-    double square = xi * xi, cube = square * xi;
-    double first = 0.5 * h * square, second = h * cube / 3;
-    double couple = 0.5 * h * h * (cube / 3 - 0.25 * square * square);
-    shares even = line_shares(h, xi);
-    return (shares){first - second - 0.5 * even.left, second - 0.5 * even.right, couple - 0.5 * even.couple};
-}
-
-// What a line from `from` to `to` in the segment has; the whole of it has no couples.
-static shares between(shares high, shares low, bool whole) {
-    return (shares){high.left - low.left, high.right - low.right, whole ? 0 : high.couple - low.couple};
-}
-
-void bough_rod_lump(const bough_rod_model *m, bough_rod_reach reach, const double *wrench, const double *end,
-                    bough_rod_ramped_load *load) {
-    if (reach.to == reach.from) {
-        lump_point(m, reach.from, wrench, load);
-        return;
+static void add_part(const bough_rod_model *m, int n, const bough_rod_part *part, segment_load *to) {
+    double h = m->span[n + 1] - m->span[n], length = part->to - part->from;
+    if (length == 0) add_point(h, (part->from - m->span[n]) / h, 1, part->start, to);
+    for (int p = 0; p < POINTS && length > 0; p++) {
+        double at = (0.5 + 0.5 * gauss_at[p]) * length, wrench[6];
+        for (int c = 0; c < 6; c++) wrench[c] = part->start[c] + at * part->slope[c];
+        add_point(h, (part->from + at - m->span[n]) / h, gauss_weight[p] * length, wrench, to);
     }
-    for (int n = 0; n < m->n_segment; n++) {
-        double h = m->span[n + 1] - m->span[n];
-        double from = bough_clamp((reach.from - m->span[n]) / h, 0, 1);
-        double to = bough_clamp((reach.to - m->span[n]) / h, 0, 1);
-        if (to <= from) continue;
-        bool whole = from == 0 && to == 1;
-        double middle[6], slope[6]; // at ξ = ½, and over the segment
-        for (int c = 0; c < 6; c++) {
-            double change = end ? (end[c] - wrench[c]) / (reach.to - reach.from) : 0;
-            middle[c] = wrench[c] + change * (m->span[n] + 0.5 * h - reach.from);
-            slope[c] = change * h;
-        }
-        add_to_segment(m, n, between(line_shares(h, to), line_shares(h, from), whole), middle, load);
-        if (end) {
-            shares s = between(slope_shares(h, to), slope_shares(h, from), whole);
-            add_to_segment(m, n, s, slope, load);
-        }
-        if (!whole) continue;
-        load->along = true;
-        for (int c = 0; c < 6; c++) {
-            load->line[c * m->stride + n] += middle[c];
-            load->line[(6 + c) * m->stride + n] += slope[c] / h;
-        }
-    }
+}
+
+// The axes of the middle of segment n, undeformed.
+static segment_geometry undeformed(const bough_rod_model *m, int n) {
+    vertex_state l = {.x = m->position0[n], .p = m->rotation0[n]};
+    vertex_state r = {.x = m->position0[n + 1], .p = m->rotation0[n + 1]};
+    return segment_shape(l, r, m->inverse_length[n]);
 }
 
 // The stress −C D q of segment n on its two vertices, in BRF or, of a follower, in section axes, added
 // to value.
 static void lump_stress(const bough_rod_model *m, int n, strain line, bool follower, double *value) {
     int s = m->stride;
-    vertex_state l = {.x = m->position0[n], .p = m->rotation0[n]};
-    vertex_state r = {.x = m->position0[n + 1], .p = m->rotation0[n + 1]};
-    segment_geometry shape = segment_shape(l, r, m->inverse_length[n]);
+    segment_geometry shape = undeformed(m, n);
     strain minus = {bough_scale(-1, line.v), bough_scale(-1, line.u)};
     strain stress = symmetric_times(bough_rod_tile(m->stiffness, 21, n), BOUGH_LANES, 0, minus);
     segment_force f = stress_force(shape, stress, m->length[n]);
     const bough_vec3 force[2] = {f.f, bough_scale(-1, f.f)}, moment[2] = {f.ll, f.lr};
-    const bough_quaternion p[2] = {l.p, r.p};
     for (int side = 0; side < 2; side++) {
-        bough_mat3 axes = bough_rotation_matrix(p[side]);
+        bough_mat3 axes = bough_rotation_matrix(m->rotation0[n + side]);
         double *to = value + n + side;
         bough_vec3 pull = follower ? bough_mat3_tmul(axes, force[side]) : force[side];
         bough_vec3 turn = follower ? moment[side] : bough_mat3_mul(axes, moment[side]);
         lane_store(to, s, 0, bough_add(lane_load(to, s, 0), pull));
         lane_store(to + 3 * s, s, 0, bough_add(lane_load(to + 3 * s, s, 0), turn));
+    }
+}
+
+// The strain of a part of segment n beyond that of load->line of it, which is what varying sections add.
+static void add_variation(const bough_rod_model *m, int n, bough_rod_part part, bough_rod_ramped_load *load) {
+    bough_mat3 middle = undeformed(m, n).r;
+    segment_load own = {{0}, {0}, {0}};
+    bough_vec3 q[4];
+    double strain_of[6];
+    double *const vectors[4] = {part.start, part.start + 3, part.slope, part.slope + 3};
+    for (int k = 0; k < 4 && !load->follower; k++) {
+        bough_vec3 turned = bough_mat3_tmul(middle, lane_load(vectors[k], 1, 0));
+        lane_store(vectors[k], 1, 0, turned);
+    }
+    add_part(m, n, &part, &own);
+    for (int k = 0; k < 4; k++) q[k] = lane_load(own.line + 3 * k, 1, 0);
+    m->sections.strain(m->sections.axis, m, n, &part, strain_of);
+    strain line = line_strain(m->line, m->stride, n, q);
+    line.v = bough_sub(lane_load(strain_of, 1, 0), line.v);
+    line.u = bough_sub(lane_load(strain_of + 3, 1, 0), line.u);
+    lump_stress(m, n, line, load->follower, load->value);
+}
+
+static void add_to_segment(const bough_rod_model *m, int n, const bough_rod_part *part,
+                           bough_rod_ramped_load *load) {
+    int s = m->stride;
+    segment_load own = {{0}, {0}, {0}};
+    add_part(m, n, part, &own);
+    for (int c = 0; c < 6; c++) {
+        load->value[c * s + n] += own.left[c];
+        load->value[c * s + n + 1] += own.right[c];
+    }
+    bool at_vertex = part->from == part->to && (part->from == m->span[n] || part->from == m->span[n + 1]);
+    bool whole = part->from == m->span[n] && part->to == m->span[n + 1];
+    if (at_vertex) return;
+    load->along = true;
+    for (int c = 0; c < 12; c++) load->line[c * s + n] += own.line[c];
+    if (!whole && m->sections.strain != NULL) add_variation(m, n, *part, load);
+}
+
+void bough_rod_lump(const bough_rod_model *m, bough_rod_reach reach, const double *wrench, const double *end,
+                    bough_rod_ramped_load *load) {
+    for (int n = 0; n < m->n_segment; n++) {
+        bool last = n == m->n_segment - 1;
+        bough_rod_part part = {.from = fmax(reach.from, m->span[n]), .to = fmin(reach.to, m->span[n + 1])};
+        bool point = reach.from == reach.to && (last || reach.to < m->span[n + 1]);
+        if (part.to < part.from || (part.to == part.from && !point)) continue;
+        for (int c = 0; c < 6; c++) {
+            if (end != NULL) part.slope[c] = (end[c] - wrench[c]) / (reach.to - reach.from);
+            part.start[c] = wrench[c] + part.slope[c] * (part.from - reach.from);
+        }
+        add_to_segment(m, n, &part, load);
     }
 }
 
@@ -136,9 +128,7 @@ void bough_rod_lump_strain(const bough_rod_model *m, const double *line_strain, 
 void bough_rod_lump_line(const bough_rod_model *m, bough_rod_ramped_load *load) {
     int s = m->stride;
     for (int n = 0; n < m->n_segment && load->along; n++) {
-        vertex_state l = {.x = m->position0[n], .p = m->rotation0[n]};
-        vertex_state r = {.x = m->position0[n + 1], .p = m->rotation0[n + 1]};
-        bough_mat3 middle = segment_shape(l, r, m->inverse_length[n]).r;
+        bough_mat3 middle = undeformed(m, n).r;
         bough_vec3 q[4];
         for (int part = 0; part < 4; part++) {
             q[part] = lane_load(load->line + 3 * part * s, s, n);

@@ -11,10 +11,9 @@ typedef struct bough_rod_reach {
 
 // Adds to the load a wrench (force, moment) [N, N m], in the load's axes. Along a stretch `wrench` is per
 // length [N/m, N m/m] at its start and `end` at its end, linear between; NULL: the same. Vertices share it by
-// hat functions. What covers whole segments goes to load->line as well, exact for any section tables. Of a
-// force that acts at a place in a segment or on a part of it, the equal and opposite moments of a linear
-// element on the two vertices account for its bending there, exact for uniform sections; their direction is
-// that of the undeformed rod.
+// hat functions. Between them it goes to load->line as well: a part of a segment, or a point in it, as the
+// linear load that bends a uniform segment equally. What a segment of varying sections bends otherwise are
+// forces and moments on its vertices that cancel, for the axes of the undeformed rod.
 void bough_rod_lump(const bough_rod_model *m, bough_rod_reach reach, const double *wrench, const double *end,
                     bough_rod_ramped_load *load);
 

@@ -166,7 +166,7 @@ static void add_compliance(void *context, double s, double weight) {
         c->definite = false;
         return;
     }
-    section_damping(c->axis->table->damping, x.stiffness, damping);
+    section_damping(c->axis->damping, x.stiffness, damping);
     bough_symmetric6_unpack(compliance, f);
     for (int i = 0; i < 9; i++) c->taper[i] += weight * (s - c->middle) * f[3 + i / 3][3 + i % 3];
     bough_symmetric6_rotate(compliance, angle, compliance);
@@ -284,6 +284,72 @@ static bool segment_matrices(const bough_section_axis *a, const bough_rod_def *d
     return true;
 }
 
+// -- loads on parts of segments -------------------------------------------------------------------
+
+typedef struct part_sum {
+    const bough_section_axis *axis;
+    const bough_rod_part *part;
+    double middle, twist; // of the segment's mid frame [m, rad]
+    double from;          // its left end [m]
+    double left[6];       // what its left vertex takes
+    double strain[6];     // ∫ Tᵀ F S
+} part_sum;
+
+// theory (106): S at s of a load on a part of the segment.
+static void part_stress(const part_sum *c, double s, double stress[6]) {
+    double length = c->part->to - c->part->from, past = s - c->part->from;
+    double x = bough_clamp(past, 0, length), force[6], arm[6]; // ∫q, ∫q (s − s′) up to s
+    for (int i = 0; i < 6; i++) {
+        double start = c->part->start[i], slope = c->part->slope[i];
+        force[i] = x * (start + 0.5 * x * slope);
+        arm[i] = x * x * (start / 2 + x * slope / 6) + (past - x) * force[i];
+        if (length == 0) {
+            force[i] = past > 0 ? start : 0;
+            arm[i] = past * force[i];
+        }
+        stress[i] = c->left[i] - force[i];
+    }
+    stress[3] += c->left[1] * (s - c->from) - arm[1];
+    stress[4] -= c->left[0] * (s - c->from) - arm[0];
+}
+
+static void add_part_strain(void *context, double s, double weight) {
+    part_sum *c = context;
+    bough_section_station x = bough_section_at(c->axis, s);
+    double compliance[21], stress[6], own[6] = {0};
+    matrix6 f;
+    bough_symmetric6_inverse(x.stiffness, compliance); // bough_section_discretise has done so
+    bough_symmetric6_rotate(compliance, c->twist - x.twist, compliance);
+    bough_symmetric6_unpack(compliance, f);
+    part_stress(c, s, stress);
+    for (int i = 0; i < 36; i++) own[i / 6] += f[i / 6][i % 6] * stress[i % 6];
+    own[1] += (s - c->middle) * own[3];
+    own[0] -= (s - c->middle) * own[4];
+    for (int i = 0; i < 6; i++) c->strain[i] += weight * own[i];
+}
+
+static void part_strain(const void *axis, const bough_rod_model *m, int n, const bough_rod_part *part,
+                        double mean[6]) {
+    const bough_section_axis *a = axis;
+    double from = m->span[n], to = m->span[n + 1], h = to - from, length = part->to - part->from;
+    vertex_state left = {.x = m->position0[n], .p = m->rotation0[n]};
+    vertex_state right = {.x = m->position0[n + 1], .p = m->rotation0[n + 1]};
+    part_sum c = {.axis = a, .part = part, .middle = 0.5 * (from + to), .from = from};
+    c.twist = 0.5 * (bough_section_at(a, from).twist + bough_section_at(a, to).twist);
+    for (int i = 0; i < 6; i++) {
+        double start = part->start[i], slope = part->slope[i];
+        double whole = length > 0 ? length * (start + 0.5 * length * slope) : start;
+        double moment = length * length * (start / 2 + length * slope / 6); // about its end
+        c.left[i] = (whole * (to - part->to) + moment) / h;
+    }
+    const double at[4] = {from, part->from, part->to, to}; // S is smooth between
+    for (int k = 0; k < 3; k++) bough_section_integrate(a, at[k], at[k + 1], add_part_strain, &c);
+    matrix6 q;
+    strain_map(segment_shape(left, right, 1 / h), h, q);
+    memset(mean, 0, 6 * sizeof *mean);
+    for (int i = 0; i < 36; i++) mean[i / 6] += q[i / 6][i % 6] * c.strain[i % 6] / h;
+}
+
 // -- whole ----------------------------------------------------------------------------------------
 
 typedef struct arrays {
@@ -310,8 +376,8 @@ static arrays take_arrays(bough_arena *arena, int n) {
 
 bough_status bough_section_discretise(bough_arena *arena, const bough_section_table *table, int n_segment,
                                       bough_rod_def *def) {
-    bough_section_axis a;
-    bough_section_axis_init(&a, arena, table);
+    bough_section_axis *a = bough_arena_take(arena, sizeof *a);
+    bough_section_axis_init(a, arena, table);
     arrays m = take_arrays(arena, n_segment);
     *def = (bough_rod_def){.name = table->name,
                            .n_segment = n_segment,
@@ -322,22 +388,23 @@ bough_status bough_section_discretise(bough_arena *arena, const bough_section_ta
                            .damping = m.damping,
                            .line = m.line,
                            .taper = m.taper,
-                           .inertia = m.inertia};
+                           .inertia = m.inertia,
+                           .sections = {part_strain, a}};
     for (int i = 0; i <= n_segment; i++) {
-        m.span[i] = bough_section_length(&a) * bough_section_graded(table->grading, (double)i / n_segment);
-        m.position[i] = bough_section_at(&a, m.span[i]).position;
-        m.rotation[i] = bough_section_rotation(&a, m.span[i]);
+        m.span[i] = bough_section_length(a) * bough_section_graded(table->grading, (double)i / n_segment);
+        m.position[i] = bough_section_at(a, m.span[i]).position;
+        m.rotation[i] = bough_section_rotation(a, m.span[i]);
     }
     for (int k = 0; k < n_segment; k++) {
         segment_law law = {m.stiffness + 21 * (size_t)k, m.damping + 21 * (size_t)k, m.line + 72 * (size_t)k,
                            m.taper + 9 * (size_t)k, m.gain + k};
-        if (!segment_matrices(&a, def, k, law)) {
+        if (!segment_matrices(a, def, k, law)) {
             return bough_fail(BOUGH_INVALID,
                               "rod %s: the stiffness between %g m and %g m is not"
                               " positive definite",
                               table->name, m.span[k], m.span[k + 1]);
         }
     }
-    bough_section_lump(arena, &a, def, m.gain, m.inertia);
+    bough_section_lump(arena, a, def, m.gain, m.inertia);
     return bough_ok();
 }

@@ -5,6 +5,7 @@
 #include "core/base/schedule.h"
 
 #include <math.h>
+#include <string.h>
 
 enum { MOST_HALVINGS = 40 };
 
@@ -18,17 +19,17 @@ static const double gauss_weight[POINTS] = {0.1012285362903763, 0.22238103445337
                                             0.2223810344533745, 0.1012285362903763};
 
 void bough_section_axis_init(bough_section_axis *a, bough_arena *arena, const bough_section_table *table) {
-    a->table = table;
-    a->n = table->n_station;
-    a->station = table->station;
-    if (table->n_station == 1) { // a uniform rod is two equal stations
-        bough_section_station *two = bough_arena_take(arena, 2 * sizeof *two);
-        two[0] = two[1] = table->station[0];
-        two[0].position = bough_v3(0, 0, 0);
-        two[1].position = bough_v3(0, 0, table->length);
-        a->station = two;
-        a->n = 2;
+    size_t given = (size_t)table->n_station;
+    a->n = table->n_station == 1 ? 2 : table->n_station; // a uniform rod is two equal stations
+    bough_section_station *station = bough_arena_take(arena, (size_t)a->n * sizeof *station);
+    memcpy(station, table->station, given * sizeof *station);
+    if (given == 1) {
+        station[1] = station[0];
+        station[0].position = bough_v3(0, 0, 0);
+        station[1].position = bough_v3(0, 0, table->length);
     }
+    a->station = station;
+    memcpy(a->damping, table->damping, sizeof a->damping);
     a->arc = bough_arena_doubles(arena, (size_t)a->n);
     for (int k = 1; k < a->n; k++) {
         bough_vec3 step = bough_sub(a->station[k].position, a->station[k - 1].position);

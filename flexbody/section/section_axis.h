@@ -5,12 +5,12 @@
 
 #include "flexbody/section/section.h"
 
-// The table with the arc length of each station.
+// The stations of a table with the arc length of each, its own copy.
 typedef struct bough_section_axis {
-    const bough_section_table *table;
     int n; // stations, 2 or more
     const bough_section_station *station;
-    double *arc; // (n) [m]
+    double *arc;       // (n) [m]
+    double damping[6]; // of the table [s]
 } bough_section_axis;
 
 void bough_section_axis_init(bough_section_axis *a, bough_arena *arena, const bough_section_table *table);

@@ -8,12 +8,24 @@
 #include "flexbody/rod/rod_load.h"
 #include "flexbody/rod/rod_static.h"
 
+#include <math.h>
 #include <string.h>
 
 enum { STEPS = 123000 }; // of the integrals along the blade, half a millimetre each
 
-// A load per length along the blade, in its axes.
-typedef void (*line_load)(int n_segment, double length, double s, double q[6]);
+// A load per length along the blade, in its axes, constant between n + 1 places from root to tip (of the
+// length).
+typedef struct line_load {
+    int n;
+    double at[16];
+    void (*value)(int k, double q[6]); // between places k and k + 1
+} line_load;
+
+static void load_at(const line_load *load, double s, double q[6]) {
+    int k = 0;
+    while (k < load->n - 1 && s >= load->at[k + 1]) k++;
+    load->value(k, q);
+}
 
 typedef struct blade {
     bough_arena *arena;
@@ -54,7 +66,7 @@ static bough_vec3 vec(const double *x) { return bough_v3(x[0], x[1], x[2]); }
 
 // Displacement and rotation at the vertices (6 × (n + 1)) by the midpoint rule: the stress from the
 // tip inwards, then the strains from the root outwards.
-static void integrate(const blade *b, line_load load, double *exact) {
+static void integrate(const blade *b, const line_load *load, double *exact) {
     const bough_vec3 along = {0, 0, 1};
     int n = b->def.n_segment;
     double length = b->table->length, h = length / STEPS;
@@ -63,7 +75,7 @@ static void integrate(const blade *b, line_load load, double *exact) {
     for (int k = STEPS - 1; k >= 0; k--) { // to the middle of each step, then past it
         for (int half = 0; half < 2; half++) {
             double q[6];
-            load(n, length, h * (k + (half == 0 ? 0.75 : 0.25)), q);
+            load_at(load, (k + (half == 0 ? 0.75 : 0.25)) / STEPS, q);
             bough_vec3 df = bough_scale(0.5 * h, vec(q)), mean = bough_axpy(0.5, df, f);
             m = bough_axpy(0.5 * h, bough_add(vec(q + 3), bough_cross(along, mean)), m);
             f = bough_add(f, df);
@@ -85,7 +97,7 @@ static void integrate(const blade *b, line_load load, double *exact) {
 }
 
 // The same of the rod: loads so small that it is linear.
-static void solve(const blade *b, line_load load, double scale, double *found) {
+static void solve(const blade *b, const line_load *load, double scale, double *found) {
     const bough_rod_model *m = b->model;
     const double at_rest[BOUGH_ROD_INPUTS] = {0};
     const bough_schedule always = {.start = 0};
@@ -97,11 +109,11 @@ static void solve(const blade *b, line_load load, double scale, double *found) {
     bough_rod_loads_init(&loads, b->arena, m);
     bough_rod_static_init(&work, b->arena, m);
     bough_rod_ramped_load *to = bough_rod_loads_ramped(&loads, b->arena, m, false, &always);
-    for (int k = 0; k < n; k++) {
-        double q[6];
-        load(n, b->table->length, 0.5 * (m->span[k] + m->span[k + 1]), q);
+    for (int k = 0; k < load->n; k++) {
+        double q[6], length = m->span[n];
+        load->value(k, q);
         for (int c = 0; c < 6; c++) q[c] *= scale;
-        bough_rod_lump(m, (bough_rod_reach){m->span[k], m->span[k + 1]}, q, NULL, to);
+        bough_rod_lump(m, (bough_rod_reach){load->at[k] * length, load->at[k + 1] * length}, q, NULL, to);
     }
     bough_rod_rest_state(m, at_rest, state);
     check_ok(rod_equilibrium(m, &loads, bough_v3(0, 0, 0), &options, &work, state));
@@ -117,7 +129,7 @@ static void solve(const blade *b, line_load load, double scale, double *found) {
 }
 
 // The largest error of displacements and of rotations, each against the largest.
-static double error_of(int segments, line_load load) {
+static double error_of(int segments, const line_load *load) {
     const double scale = 1e-4;
     blade b = blade_with(segments);
     double *exact = bough_arena_doubles(b.arena, 6 * ((size_t)segments + 1));
@@ -134,21 +146,74 @@ static double error_of(int segments, line_load load) {
     return fmax(error[0] / size[0], error[1] / size[1]);
 }
 
-// Another force and moment along each segment.
-static void steps(int n, double length, double s, double q[6]) {
+static void steps(int k, double q[6]) {
     static const double force[3] = {1, -0.5, 0.3}, moment[3] = {0.4, 0.7, 2};
-    int k = (int)bough_clamp(s * n / length, 0, n - 1);
     for (int c = 0; c < 3; c++) q[c] = force[c] * cos(1 + k * (c + 1));
     for (int c = 0; c < 3; c++) q[3 + c] = moment[c] * cos(2 + k * (c + 2));
 }
 
-static void twisting(int n, double length, double s, double q[6]) {
-    (void)n, (void)length, (void)s;
-    const double values[6] = {0, 0, 0, 0, 0, 1};
+static void near_tip(int k, double q[6]) {
+    const double values[6] = {k == 1, 0.2 * (k == 1), 0, 0, 0, 0};
+    memcpy(q, values, sizeof values);
+}
+
+static void twisting(int k, double q[6]) {
+    const double values[6] = {0, 0, 0, 0, 0, k >= 0};
     memcpy(q, values, sizeof values);
 }
 
 TEST(statics_is_exact_under_uniform_loads_on_segments) {
-    assert_true(error_of(12, twisting) < 1e-6);
-    assert_true(error_of(12, steps) < 1e-6);
+    line_load each = {.n = 12, .value = steps}, whole = {.n = 1, .at = {0, 1}, .value = twisting};
+    for (int k = 0; k <= 12; k++) each.at[k] = k / 12.;
+    assert_true(error_of(12, &whole) < 1e-6);
+    assert_true(error_of(12, &each) < 1e-6);
+}
+
+// 61 to 61.5 m is a part of the last segment, whose stiffness falls by a factor.
+TEST(statics_is_exact_under_loads_on_parts_of_segments) {
+    const line_load parts = {.n = 7, .at = {0, 0.137, 0.4, 0.41, 0.531, 0.985, 0.996, 1}, .value = steps};
+    const line_load tip = {.n = 2, .at = {0, 61 / 61.5, 1}, .value = near_tip};
+    assert_true(error_of(12, &parts) < 1e-6);
+    assert_true(error_of(40, &tip) < 1e-6);
+}
+
+// A linear load is the same load in pieces, and a force at a point that on a short piece.
+static void check_pieces(const blade *b, bool follower, double piece, const bough_rod_reach *reach) {
+    static const double start[6] = {1, -0.5, 0.3, 0.4, 0.7, 2}, end[6] = {-2, 1, 0.7, 0.2, -1, 0.5};
+    const bough_rod_model *m = b->model;
+    const bough_schedule always = {.start = 0};
+    int pieces = (int)ceil((reach->to - reach->from) / piece);
+    bough_rod_loads loads;
+    bough_rod_loads_init(&loads, b->arena, m);
+    bough_rod_ramped_load *whole = bough_rod_loads_add(&loads, b->arena, m, follower, &always);
+    bough_rod_ramped_load *sum = bough_rod_loads_add(&loads, b->arena, m, follower, &always);
+    bough_rod_lump(m, *reach, start, end, whole);
+    for (int k = 0; k < pieces; k++) {
+        double low[6], high[6], x = 1. * k / pieces, y = 1. * (k + 1) / pieces;
+        for (int c = 0; c < 6; c++) {
+            low[c] = start[c] + x * (end[c] - start[c]);
+            high[c] = start[c] + y * (end[c] - start[c]);
+        }
+        double length = reach->to - reach->from;
+        bough_rod_reach at = {reach->from + x * length, reach->from + y * length};
+        bough_rod_lump(m, at, low, high, sum);
+    }
+    for (int c = 0; c < 6; c++) {
+        for (int i = 0; i <= m->n; i++) {
+            int k = c * m->stride + i;
+            check_near(sum->value[k], whole->value[k], 1e-6, 1e-6);
+            check_near(sum->line[k], whole->line[k], 1e-9, 1e-9);
+            check_near(sum->line[6 * m->stride + k], whole->line[6 * m->stride + k], 1e-9, 1e-9);
+        }
+    }
+}
+
+TEST(a_linear_load_is_that_load_in_pieces) {
+    const blade b = blade_with(12);
+    const bough_rod_reach all = {0, 61.5}, part = {3.1, 60.7};
+    for (int follower = 0; follower < 2; follower++) {
+        check_pieces(&b, follower == 1, 0.5, &all);
+        check_pieces(&b, follower == 1, 0.7, &part);
+    }
+    bough_arena_destroy(b.arena);
 }

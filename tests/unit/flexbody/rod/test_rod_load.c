@@ -46,7 +46,6 @@ TEST(resultant_of_a_point_load_is_the_load) {
         bough_rod_ramped_load load = empty(arena, m, false);
         bough_rod_lump(m, (bough_rod_reach){s, s}, wrench, NULL, &load);
         sums sum = resultant(m, load.value);
-        assert_false(load.along);
         int n = 0;
         while (n < N - 1 && s >= m->span[n + 1]) n++;
         double xi = (s - m->span[n]) / (m->span[n + 1] - m->span[n]);
@@ -74,8 +73,8 @@ TEST(resultant_of_a_line_load_is_the_load) {
     }
 }
 
-// q h at inner vertices, q h/2 at the ends, q along every segment; a part of a segment makes couples
-// instead.
+// q h at inner vertices, q h/2 at the ends, q along every segment; on a part of a segment the linear load
+// with the same ∫ξ(1 − ξ)q and ∫ξ(1 − ξ)(ξ − ½)q.
 TEST(line_load_goes_to_vertices_and_segments) {
     const double stiffness[6] = {1, 1, 1, 1, 1, 1}, inertia[4] = {1, 1, 1, 1};
     const double across[6] = {12, 0, 0, 0, 0, 0};
@@ -90,11 +89,12 @@ TEST(line_load_goes_to_vertices_and_segments) {
         check_near(load.line[i], i < N ? 12 : 0, 1e-12, 0);
     }
     bough_rod_lump(m, (bough_rod_reach){0, 1}, across, NULL, &part);
-    assert_false(part.along);
-    check_near(part.value[4 * m->stride], 2, 1e-12, 0); // 12 ∫ ½ s (1 − s/2) ds over 0..1
+    assert_true(part.along);
+    check_near(part.line[0], 6, 1e-12, 0);
+    check_near(part.line[6 * m->stride], -120 * 12 / 64. / 2, 1e-12, 0);
 }
 
-// Seen in its section, a follower's couple is that of a dead load.
+// Seen in its section, a follower is a dead load.
 TEST(follower_is_lumped_in_section_axes) {
     check_arena(arena);
     const bough_rod_model *m = sample_general(arena, N);
