@@ -273,6 +273,7 @@ bough_status bough_modal_piece_create(bough_arena *arena, const bough_rod_def *d
     part.stiffness += 21 * first;
     part.damping += 21 * first;
     part.inertia += first;
+    part.bow = NULL;
     part.line = NULL; // the whole body's loads are lumped
     bough_status status = bough_rod_create(arena, &part, &rod);
     *piece =

@@ -28,14 +28,14 @@ static void take_arrays(bough_rod_model *m, bough_arena *arena) {
     m->moment = bough_arena_doubles(arena, 3 * s);
     bough_arena_each(arena, 21 * s, &m->stiffness, &m->damping, &m->inverse_mass);
     m->line = bough_arena_doubles(arena, 72 * s);
-    m->gradient = bough_arena_doubles(arena, 25 * s);
+    m->gradient = bough_arena_doubles(arena, 35 * s);
 }
 
 // h²/12 times the change of curvature along a segment, F m' + F' m (rod_elastic.h): L by the strains,
 // G = h²/12 F by m', and R.
 static void set_gradient(bough_rod_model *m, const bough_rod_def *def, int n, const double *compliance) {
     const double *c = def->stiffness + 21 * n, *u = m->strain0 + 3 * m->stride + n;
-    double *gradient = bough_rod_tile(m->gradient, 25, n);
+    double *gradient = bough_rod_tile(m->gradient, 35, n);
     double h = def->span[n + 1] - def->span[n], part = h * h / 12;
     double x = u[0], y = u[m->stride], z = u[2 * m->stride], stiffest = 0, softest = 0;
     const double turned[3][3] = {{0, z, -y}, {-z, 0, x}, {y, -x, 0}}; // m×κ⁰
@@ -59,6 +59,7 @@ static void set_gradient(bough_rod_model *m, const bough_rod_def *def, int n, co
         softest += f[i];
     }
     gradient[24 * BOUGH_LANES] = part * stiffest * softest;
+    for (int k = 0; k < 10 && def->bow != NULL; k++) gradient[(25 + k) * BOUGH_LANES] = def->bow[10 * n + k];
 }
 
 static bough_status set_segment(bough_rod_model *m, const bough_rod_def *def, int n) {

@@ -79,6 +79,8 @@ typedef struct bough_rod_def {
     const double *taper;                 // per segment, how the sections' compliance in bending and
                                          // twist changes along it (N × 9) [1/(N m³)]; NULL: not
     bough_rod_sections sections;         // NULL: uniform within each segment
+    const double *bow;                   // B per segment, symmetric 4×4, upper triangle by columns (N × 10)
+                                         // [1, m, m²]: rod_elastic.h; NULL: 0
     bool carries; // bodies at its end: the last vertex belongs to them as the root to the carrier
 } bough_rod_def;
 
@@ -99,8 +101,8 @@ struct bough_rod_model {
     double *stiffness;            // C (21 × stride), by tiles: bough_rod_tile
     double *damping;              // (21 × stride), by tiles
     double *line;                 // D (72 × stride), two 6×6 by rows
-    double *gradient;             // L (18 × stride), 3×6 by rows, G (6 × stride) and R (stride), by
-                                  // tiles: rod_elastic.h
+    double *gradient;             // L (18 × stride), 3×6 by rows, G (6 × stride), R (stride) and B
+                                  // (10 × stride), by tiles: rod_elastic.h
     double *mass;                 // of moving vertices (stride) [kg]
     double *moment;               // first moment s = mζ of moving vertices (3 × stride) [kg m]
     double *inertia;              // of moving vertices (6 × stride) [kg m²]

@@ -5,7 +5,9 @@
 // Π the part of h²/24 m'·F m' that is beyond linear statics: without it a rod that bends two ways at
 // once twists wrongly in proportion to h², theory (21). χ is 1 up to higher orders and keeps the
 // energy positive whatever the strains: R = h²/12 times at least the ratio of the largest to the least
-// stiffness. Inline, for loops over lanes.
+// stiffness. The sections lean against the segment's middle where it bends, so that its axis is longer than
+// the strains of the middle say: e₃ is larger by ½ q·B q, q shear and bending of the segment, theory (107).
+// Inline, for loops over lanes.
 #ifndef BOUGH_FLEXBODY_ROD_ROD_ELASTIC_H
 #define BOUGH_FLEXBODY_ROD_ROD_ELASTIC_H
 
@@ -46,6 +48,11 @@ BOUGH_INLINE strain moment_times(const double *restrict c, int stride, int n, bo
 #undef C
 }
 
+// q: shear and bending.
+typedef struct bow_strain {
+    double x, y, a, b;
+} bow_strain;
+
 // The law at one strain.
 typedef struct elastic_state {
     strain stress;       // C e, its moment m
@@ -54,12 +61,35 @@ typedef struct elastic_state {
     double value;        // Π
     double limit;        // χ
     double slope;        // ∂χ/∂κ = slope κ
+    bow_strain pull;     // B q
+    double tension;      // ∂/∂e₃ of the energy
 } elastic_state;
+
+// B q, the upper triangle of B by columns behind L, G and R.
+BOUGH_INLINE bow_strain bow_times(const double *restrict gradient, int stride, int n, bow_strain q) {
+    return (bow_strain){L(25) * q.x + L(26) * q.y + L(28) * q.a + L(31) * q.b,
+                        L(26) * q.x + L(27) * q.y + L(29) * q.a + L(32) * q.b,
+                        L(28) * q.x + L(29) * q.y + L(30) * q.a + L(33) * q.b,
+                        L(31) * q.x + L(32) * q.y + L(33) * q.a + L(34) * q.b};
+}
+
+BOUGH_INLINE double bow_dot(bow_strain p, strain e) {
+    return p.x * e.v.x + p.y * e.v.y + p.a * e.u.x + p.b * e.u.y;
+}
+
+BOUGH_INLINE bow_strain bow_of(strain e) { return (bow_strain){e.v.x, e.v.y, e.u.x, e.u.y}; }
+
+BOUGH_INLINE strain add_bow(double tension, bow_strain p, strain e) {
+    return (strain){{e.v.x + tension * p.x, e.v.y + tension * p.y, e.v.z},
+                    {e.u.x + tension * p.a, e.u.y + tension * p.b, e.u.z}};
+}
 
 // ∂Π/∂e by δΠ = δm·(κ×b) + δκ·(b×m) + y·L δe.
 BOUGH_INLINE elastic_state elastic_at(const double *restrict c, const double *restrict gradient, int stride,
                                       int n, strain e) {
-    elastic_state s = {.stress = symmetric_times(c, stride, n, e), .kappa = e.u};
+    bow_strain pull = bow_times(gradient, stride, n, bow_of(e));
+    e.v.z += 0.5 * bow_dot(pull, e);
+    elastic_state s = {.stress = symmetric_times(c, stride, n, e), .kappa = e.u, .pull = pull};
     bough_vec3 m = s.stress.u, y = bough_cross(m, e.u);
     bough_vec3 linear = gradient_linear(gradient, stride, n, e);
     bough_vec3 bend = gradient_bend(gradient, stride, n, y);
@@ -70,13 +100,15 @@ BOUGH_INLINE elastic_state elastic_at(const double *restrict c, const double *re
     s.value = bough_dot(y, bough_axpy(0.5, bend, linear));
     s.limit = 1 / (1 + L(24) * bough_dot(e.u, e.u));
     s.slope = -2 * L(24) * s.limit * s.limit;
+    s.tension = s.stress.v.z - s.limit * s.bent.v.z;
     return s;
 }
 
 // The derivative of the energy: C e − χ ∂Π/∂e − Π ∂χ/∂e.
 BOUGH_INLINE strain elastic_stress(elastic_state s) {
     bough_vec3 u = bough_axpy(-s.limit, s.bent.u, s.stress.u);
-    return (strain){bough_axpy(-s.limit, s.bent.v, s.stress.v), bough_axpy(-s.value * s.slope, s.kappa, u)};
+    strain stress = {bough_axpy(-s.limit, s.bent.v, s.stress.v), bough_axpy(-s.value * s.slope, s.kappa, u)};
+    return add_bow(s.tension, s.pull, stress);
 }
 
 BOUGH_INLINE strain segment_stress(const double *restrict c, const double *restrict gradient, int stride,
@@ -87,6 +119,8 @@ BOUGH_INLINE strain segment_stress(const double *restrict c, const double *restr
 // Its variation: C δe − δχ ∂Π/∂e − χ δ∂Π/∂e − δ(Π slope) κ − Π slope δκ.
 BOUGH_INLINE strain elastic_variation(const double *restrict c, const double *restrict gradient, int stride,
                                       int n, elastic_state s, strain de) {
+    bow_strain dpull = bow_times(gradient, stride, n, bow_of(de));
+    de.v.z += bow_dot(s.pull, de);
     strain stress = symmetric_times(c, stride, n, de);
     bough_vec3 m = s.stress.u, dm = stress.u;
     bough_vec3 dy = bough_add(bough_cross(dm, s.kappa), bough_cross(m, de.u));
@@ -100,8 +134,9 @@ BOUGH_INLINE strain elastic_variation(const double *restrict c, const double *re
     double dslope = -4 * L(24) * s.limit * dlimit;
     bough_vec3 u = bough_axpy(-(dvalue * s.slope + s.value * dslope), s.kappa, stress.u);
     u = bough_axpy(-s.value * s.slope, de.u, u);
-    return (strain){bough_axpy(-dlimit, s.bent.v, bough_axpy(-s.limit, bent.v, stress.v)),
-                    bough_axpy(-dlimit, s.bent.u, bough_axpy(-s.limit, bent.u, u))};
+    strain sum = {bough_axpy(-dlimit, s.bent.v, bough_axpy(-s.limit, bent.v, stress.v)),
+                  bough_axpy(-dlimit, s.bent.u, bough_axpy(-s.limit, bent.u, u))};
+    return add_bow(sum.v.z, s.pull, add_bow(s.tension, dpull, sum));
 }
 
 #undef L

@@ -74,7 +74,7 @@ void bough_rod_stress(const bough_rod_model *m, const bough_rod_scratch *scratch
     vertex_state r = load_vertex(scratch->vertex, m->stride, n + 1);
     segment_geometry shape = segment_shape(l, r, m->inverse_length[n]);
     strain e = strain_of(m, scratch, n);
-    strain s = segment_stress(bough_rod_tile(m->stiffness, 21, n), bough_rod_tile(m->gradient, 25, n),
+    strain s = segment_stress(bough_rod_tile(m->stiffness, 21, n), bough_rod_tile(m->gradient, 35, n),
                               BOUGH_LANES, 0, e);
     segment_force f = stress_force(shape, s, m->length[n]);
     bough_vec3 half = bough_scale(0.5 * m->length[n], shape.chord);

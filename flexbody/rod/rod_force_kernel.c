@@ -62,7 +62,7 @@ static __attribute__((noinline)) void find_forces(const bough_rod_model *m, cons
     const double *restrict vertex = scratch->vertex + first, *restrict rest = scratch->rest + first;
     const double *restrict c = bough_rod_tile(m->stiffness, 21, first);
     const double *restrict d = bough_rod_tile(m->damping, 21, first);
-    const double *restrict gradient = bough_rod_tile(m->gradient, 25, first);
+    const double *restrict gradient = bough_rod_tile(m->gradient, 35, first);
     const double *restrict length = m->length + first, *restrict inverse = m->inverse_length + first;
 #pragma omp simd
     for (int n = 0; n < BOUGH_WIDTH; n++) {

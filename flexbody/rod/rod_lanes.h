@@ -100,7 +100,7 @@ BOUGH_INLINE segment_force segment_tangent(const bough_rod_model *m, const bough
     strain e = elastic_strain(shape, inverse, scratch->rest, s, n);
     strain rate = strain_rate(shape, motion, inverse);
     const double *c = bough_rod_tile(m->stiffness, 21, n), *viscous = bough_rod_tile(m->damping, 21, n);
-    const double *gradient = bough_rod_tile(m->gradient, 25, n);
+    const double *gradient = bough_rod_tile(m->gradient, 35, n);
     elastic_state elastic = elastic_at(c, gradient, BOUGH_LANES, 0, e);
     strain stress = add_strain(elastic_stress(elastic), symmetric_times(viscous, BOUGH_LANES, 0, rate));
     segment_variation d = shape_variation(shape, *dl, *dr, inverse);

@@ -19,7 +19,7 @@ enum {
     BASE_STRESS = 27,
     BASE_W = 33,       // then c, g, 1/(1 + w), dg/dw
     BASE_ELASTIC = 38, // the elastic law's state
-    BASE = 56,
+    BASE = 61,
 };
 
 BOUGH_INLINE void store_shape(double *restrict base, int l, segment_geometry s) {
@@ -57,6 +57,9 @@ BOUGH_INLINE void store_elastic(double *restrict base, int l, elastic_state s) {
     lane_store(to + LANES * 9, LANES, l, s.kappa);
     lane_store(to + LANES * 12, LANES, l, s.b);
     lane_store(to + LANES * 15, LANES, l, (bough_vec3){s.value, s.limit, s.slope});
+    lane_store(to + LANES * 18, LANES, l, (bough_vec3){s.pull.x, s.pull.y, s.pull.a});
+    to[LANES * 21 + l] = s.pull.b;
+    to[LANES * 22 + l] = s.tension;
 }
 
 BOUGH_INLINE elastic_state load_elastic(const double *restrict base, int l) {
@@ -68,7 +71,9 @@ BOUGH_INLINE elastic_state load_elastic(const double *restrict base, int l) {
         .b = lane_load(from + LANES * 12, LANES, l),
         .value = from[LANES * 15 + l],
         .limit = from[LANES * 16 + l],
-        .slope = from[LANES * 17 + l]};
+        .slope = from[LANES * 17 + l],
+        .pull = {from[LANES * 18 + l], from[LANES * 19 + l], from[LANES * 20 + l], from[LANES * 21 + l]},
+        .tension = from[LANES * 22 + l]};
 }
 
 // Shape, motion and stress of segments first..first + 7, from vertices and loads in `scratch`, into
@@ -77,7 +82,7 @@ static void find_base(const bough_rod_model *m, const bough_rod_scratch *scratch
     int s = m->stride;
     const double *restrict at = scratch->vertex + first, *restrict c = m->stiffness + 21 * first;
     const double *restrict d = m->damping + 21 * first, *restrict rest = scratch->rest + first;
-    const double *restrict inverse = m->inverse_length + first, *restrict gradient = m->gradient + 25 * first;
+    const double *restrict inverse = m->inverse_length + first, *restrict gradient = m->gradient + 35 * first;
     double *restrict out = base;
 #pragma omp simd
     for (int l = 0; l < LANES; l++) {
@@ -123,7 +128,7 @@ BOUGH_INLINE void position_direction(const bough_rod_model *m, const bough_rod_s
     const double *restrict line = m->line + first, *restrict bend = m->bend0 + first;
     const double *restrict turn = m->strain0 + 3 * s + first, *restrict following =
                                                                   scratch->following + first;
-    const double *restrict c = m->stiffness + 21 * first, *restrict gradient = m->gradient + 25 * first;
+    const double *restrict c = m->stiffness + 21 * first, *restrict gradient = m->gradient + 35 * first;
     const double *restrict damping = m->damping + 21 * first;
     const double *restrict inverse = m->inverse_length + first, *restrict h = m->length + first;
 #pragma omp simd

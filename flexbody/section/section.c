@@ -115,6 +115,8 @@ static void mass_stress(bough_section_mass x, matrix6 stress) {
     stress[5][1] = x.moment.x;
 }
 
+enum { BOW = 6 }; // degree of the polynomials of the bow within a segment
+
 typedef struct segment_sum {
     const bough_section_axis *axis;
     double from, length;     // [m]
@@ -124,6 +126,7 @@ typedef struct segment_sum {
     double loss[21];         // ∫ Tᵀ F D F T
     matrix6 line[2];         // ∫ Tᵀ F S, S of line_stress
     double taper[9];         // ∫ F (s − s_mid) of bending and twist
+    matrix6 local[BOW + 1];  // ∫ P F T, P Legendre's polynomials over the segment
     matrix6 weight;          // the same of weight_stress, three columns
     bool definite;
 } segment_sum;
@@ -177,6 +180,13 @@ static void add_compliance(void *context, double s, double weight) {
     add_congruent(weight, t, f, c->compliance);
     add_product(1, f, t, ft);
     add_congruent(weight, ft, d, c->loss);
+    double x1 = 2 * (s - c->middle) / c->length, value[2] = {1, 0}; // of P of degree l and l − 1
+    for (int l = 0; l <= BOW; l++) {
+        for (int i = 0; i < 36; i++) c->local[l][i / 6][i % 6] += weight * value[0] * ft[i / 6][i % 6];
+        double next = ((2 * l + 1) * x1 * value[0] - l * value[1]) / (l + 1);
+        value[1] = value[0];
+        value[0] = next;
+    }
     for (int slope = 0; slope < 2; slope++) {
         line_stress(s - c->middle, c->length, slope == 1, line);
         add_product(weight, ft, line, c->line[slope]);
@@ -249,11 +259,53 @@ static void change_strains(segment_sum *c, matrix6 q) {
     }
 }
 
+// Rotations of the sections against the middle and shear strains, both lateral, by Legendre's polynomials
+// over the segment, under a unit of one of the rod's strains.
+typedef struct bow_shape {
+    double turn[BOW][2], shear[BOW][2];
+} bow_shape;
+
+static bow_shape bow_shape_of(const segment_sum *c, const double stress[6]) {
+    double local[BOW + 1][6]; // ∫ P e ds of the sections' strains e
+    bow_shape x;
+    for (int i = 0; i < 6 * (BOW + 1); i++) {
+        local[i / 6][i % 6] = 0;
+        for (int j = 0; j < 6; j++) local[i / 6][i % 6] += c->local[i / 6][i % 6][j] * stress[j];
+    }
+    for (int i = 0; i < 2 * BOW; i++) {
+        int l = i / 2, a = i % 2;
+        x.turn[l][a] = 0.5 * ((l > 0 ? local[l - 1][3 + a] : 0) - local[l + 1][3 + a]);
+        x.shear[l][a] = (2 * l + 1) / c->length * local[l][a];
+    }
+    return x;
+}
+
+// theory (107): B of a segment with the stiffness k of the rod's strains Q (γ, κ).
+static void bow_matrix(const segment_sum *c, matrix6 q, matrix6 k, double bow[10]) {
+    static const int strains[4] = {0, 1, 3, 4};
+    bow_shape shape[4];
+    for (int j = 0, entry = 0; j < 4; j++) {
+        double stress[6] = {0};
+        for (int i = 0; i < 36; i++) stress[i / 6] += q[i % 6][i / 6] * k[i % 6][strains[j]];
+        shape[j] = bow_shape_of(c, stress);
+        for (int i = 0; i <= j; i++, entry++) {
+            bow[entry] = i == j && i > 1 ? -c->length * c->length / 12 : 0;
+            for (int l = 0; l < BOW; l++) {
+                const double *a = shape[i].turn[l], *b = shape[j].turn[l];
+                const double *x = shape[i].shear[l], *y = shape[j].shear[l];
+                double mixed = a[1] * y[0] - a[0] * y[1] + b[1] * x[0] - b[0] * x[1];
+                bow[entry] += (a[0] * b[0] + a[1] * b[1] + mixed) / (2 * l + 1);
+            }
+        }
+    }
+}
+
 // What a segment is discretised to.
 typedef struct segment_law {
     double *stiffness, *damping; // (21)
     double *line;                // (72): two matrices by rows
     double *taper;               // (9)
+    double *bow;                 // (10)
     bough_section_mass *gain;
 } segment_law;
 
@@ -280,6 +332,7 @@ static bool segment_matrices(const bough_section_axis *a, const bough_rod_def *d
     memset(law.damping, 0, 21 * sizeof *law.damping);
     add_congruent(1, k, loss, law.damping);
     memcpy(law.line, c.line, sizeof c.line);
+    bow_matrix(&c, q, k, law.bow);
     for (int i = 0; i < 9; i++) law.taper[i] = 12 / (c.length * c.length * c.length) * c.taper[i];
     return true;
 }
@@ -353,7 +406,7 @@ static void part_strain(const void *axis, const bough_rod_model *m, int n, const
 // -- whole ----------------------------------------------------------------------------------------
 
 typedef struct arrays {
-    double *span, *stiffness, *damping, *line, *taper;
+    double *span, *stiffness, *damping, *line, *taper, *bow;
     bough_vec3 *position;
     bough_quaternion *rotation;
     bough_vertex_inertia *inertia;
@@ -367,6 +420,7 @@ static arrays take_arrays(bough_arena *arena, int n) {
                 .damping = bough_arena_doubles(arena, 21 * (size_t)n),
                 .line = bough_arena_doubles(arena, 72 * (size_t)n),
                 .taper = bough_arena_doubles(arena, 9 * (size_t)n),
+                .bow = bough_arena_doubles(arena, 10 * (size_t)n),
                 .gain = bough_arena_take(arena, (size_t)n * sizeof(bough_section_mass)),
                 .position = bough_arena_take(arena, vertices * sizeof(bough_vec3)),
                 .rotation = bough_arena_take(arena, vertices * sizeof(bough_quaternion)),
@@ -388,6 +442,7 @@ bough_status bough_section_discretise(bough_arena *arena, const bough_section_ta
                            .damping = m.damping,
                            .line = m.line,
                            .taper = m.taper,
+                           .bow = m.bow,
                            .inertia = m.inertia,
                            .sections = {part_strain, a}};
     for (int i = 0; i <= n_segment; i++) {
@@ -397,7 +452,7 @@ bough_status bough_section_discretise(bough_arena *arena, const bough_section_ta
     }
     for (int k = 0; k < n_segment; k++) {
         segment_law law = {m.stiffness + 21 * (size_t)k, m.damping + 21 * (size_t)k, m.line + 72 * (size_t)k,
-                           m.taper + 9 * (size_t)k, m.gain + k};
+                           m.taper + 9 * (size_t)k,      m.bow + 10 * (size_t)k,     m.gain + k};
         if (!segment_matrices(a, def, k, law)) {
             return bough_fail(BOUGH_INVALID,
                               "rod %s: the stiffness between %g m and %g m is not"

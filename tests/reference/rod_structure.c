@@ -44,7 +44,7 @@ static strain strain_of(const bough_rod_model *m, const segment *g) {
 
 // Ĉ e of (4) and D̂ ė of (5)
 static strain law_stress(const bough_rod_model *m, const segment *g) {
-    return segment_stress(bough_rod_tile(m->stiffness, 21, g->n), bough_rod_tile(m->gradient, 25, g->n),
+    return segment_stress(bough_rod_tile(m->stiffness, 21, g->n), bough_rod_tile(m->gradient, 35, g->n),
                           BOUGH_LANES, 0, strain_of(m, g));
 }
 
@@ -55,7 +55,7 @@ static strain viscous_stress(const bough_rod_model *m, const segment *g) {
 
 static strain law_stress_change(const bough_rod_model *m, const segment *g, const segment_variation *d) {
     strain change = {d->stretch, bough_scale(g->inverse, d->phi)};
-    const double *c = bough_rod_tile(m->stiffness, 21, g->n), *l = bough_rod_tile(m->gradient, 25, g->n);
+    const double *c = bough_rod_tile(m->stiffness, 21, g->n), *l = bough_rod_tile(m->gradient, 35, g->n);
     elastic_state at = elastic_at(c, l, BOUGH_LANES, 0, strain_of(m, g));
     return elastic_variation(c, l, BOUGH_LANES, 0, at, change);
 }
@@ -142,7 +142,7 @@ static double elastic_energy(void *self, const bough_vertex *vertex) {
     for (int n = 0; n < m->n_segment; n++) { // (4)
         segment g = segment_at(m, vertex, n);
         energy += g.h * segment_energy(bough_rod_tile(m->stiffness, 21, n),
-                                       bough_rod_tile(m->gradient, 25, n), BOUGH_LANES, 0, strain_of(m, &g));
+                                       bough_rod_tile(m->gradient, 35, n), BOUGH_LANES, 0, strain_of(m, &g));
     }
     return energy;
 }

@@ -2,22 +2,10 @@
 #include "apps/bough/model/simulation.h"
 #include "flexbody/rod/rod_tangent.h"
 
-// Whether a segment's shear stiffness, which contains its bending, is small beside its axial one.
-static bool is_cable(const bough_rod_def *def) {
-    static const double soft = 1e-3;
-    bool cable = false;
-    for (int n = 0; n < def->n_segment; n++) {
-        const double *c = def->stiffness + 21 * n; // shear x and y: 0 and 6; axial: 11
-        cable = cable || fmin(c[0], c[6]) < soft * c[11];
-    }
-    return cable;
-}
-
 static bough_status build_rod(bough_arena *arena, bough_beam *beam, const double *input,
                               bough_system *system) {
     bough_rod_model *model = NULL;
     BOUGH_TRY(bough_rod_create(arena, &beam->def, &model));
-    beam->cable = is_cable(&beam->def);
     beam->rod = bough_rod_body_create(arena, model, input);
     *system = bough_rod_body_system(beam->rod);
     return bough_ok();

@@ -47,21 +47,12 @@ int bough_equilibrium_held(const bough_tree *tree, bool turning, int *row) {
 
 // -- why there is none ----------------------------------------------------------------------------
 
-static const double folded = 2;   // between neighbouring sections: what lies beyond has no direction [rad]
-static const double across = 0.3; // between a segment's chord and the normals of its sections [rad]
+static const double folded = 2; // between neighbouring sections: what lies beyond has no direction [rad]
 
-// What is found beyond these angles is no equilibrium of a rod.
+// What is found beyond this angle is no equilibrium of a rod.
 static bough_status explain_rod(const bough_simulation *s, const bough_beam *beam, int steps) {
     const double *span = beam->def.span;
-    bough_sharpest bend, chord;
-    bough_simulation_bends(s, beam, &bend, &chord);
-    if (beam->cable && chord.angle >= across)
-        return bough_fail(
-            BOUGH_FAILED,
-            "%s: no equilibrium found in %d steps: under its tension the rod deflects across its sections "
-            "between %.3g and %.3g m; its segments are too long for its bending stiffness: "
-            "take more of them, or a bending stiffness EI of at least the tension times h^2/12",
-            beam->body->name, steps, span[chord.segment], span[chord.segment + 1]);
+    bough_sharpest bend = bough_simulation_bend(s, beam);
     if (bend.angle >= folded)
         return bough_fail(
             BOUGH_FAILED,

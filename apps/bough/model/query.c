@@ -145,30 +145,18 @@ static vertex moving_vertex(const bough_simulation *s, const bough_beam *beam, i
     return end ? end_vertex(s, beam) : rod_vertex(beam, s->rod[beam->port].state, i);
 }
 
-static double angle_of(double cosine) { return acos(fmax(-1, fmin(cosine, 1))); }
-
-// Keeps the larger angle, and the segment that has it.
-static void keep_largest(double angle, int segment, bough_sharpest *x) {
-    if (angle > x->angle) *x = (bough_sharpest){angle, segment};
-}
-
-void bough_simulation_bends(const bough_simulation *s, const bough_beam *beam, bough_sharpest *bend,
-                            bough_sharpest *chord) {
-    bough_vec3 position = beam->def.position[0];
+bough_sharpest bough_simulation_bend(const bough_simulation *s, const bough_beam *beam) {
     bough_mat3 section = bough_rotation_matrix(beam->def.rotation[0]);
-    *bend = *chord = (bough_sharpest){0};
+    bough_sharpest bend = {0};
     for (int i = 1; i <= beam->def.n_segment; i++) {
-        vertex next = moving_vertex(s, beam, i);
-        bough_vec3 along = bough_sub(next.position, position),
-                   normal = bough_add(section.c3, next.rotation.c3);
-        double trace = bough_dot(section.c1, next.rotation.c1) + bough_dot(section.c2, next.rotation.c2) +
-                       bough_dot(section.c3, next.rotation.c3);
-        double cosine = bough_dot(along, normal) / (bough_norm(along) * bough_norm(normal));
-        keep_largest(angle_of(0.5 * (trace - 1)), i - 1, bend);
-        keep_largest(angle_of(cosine), i - 1, chord);
-        position = next.position;
-        section = next.rotation;
+        bough_mat3 next = moving_vertex(s, beam, i).rotation;
+        double trace =
+            bough_dot(section.c1, next.c1) + bough_dot(section.c2, next.c2) + bough_dot(section.c3, next.c3);
+        double angle = acos(fmax(-1, fmin(0.5 * (trace - 1), 1)));
+        if (angle > bend.angle) bend = (bough_sharpest){angle, i - 1};
+        section = next;
     }
+    return bend;
 }
 
 // state: of the vertices, NULL of a rigid body.

@@ -25,7 +25,6 @@ typedef struct bough_beam {
     int marker;              // of the tree, the body's frame
     int port;                // of the tree; −1 when rigid
     bool in_ground;          // it moves under loads in ground axes
-    bool cable;              // a rod whose segments may deflect across their sections under tension
     int end;                 // of the tree, where bodies hang on the rod; −1 when it carries none
     bough_inertia vertex[2]; // of the vertices that belong to the tree: the root's in the body's frame, that
                              // of the end in its section's
@@ -138,11 +137,8 @@ typedef struct bough_sharpest {
     int segment;
 } bough_sharpest;
 
-// Of a rod the largest rotation between the sections at both ends of a segment, and the largest angle between
-// a segment's chord and the normals of its sections. A segment's shear stiffness contains its own bending, 12
-// EI/h²: beside a tension of that size it deflects across its sections, and its model does not hold.
-void bough_simulation_bends(const bough_simulation *s, const bough_beam *beam, bough_sharpest *bend,
-                            bough_sharpest *chord);
+// Of a rod the largest rotation between the sections at both ends of a segment.
+bough_sharpest bough_simulation_bend(const bough_simulation *s, const bough_beam *beam);
 
 // Accelerations of the tree's links under the rods' present forces, into s->view; false as
 // bough_tree_forward_dynamics.

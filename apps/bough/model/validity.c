@@ -26,7 +26,6 @@ static const double least_along = 0.5;
 // count at least: some seconds.
 static const double many_steps = 100, most_work = 3e6;
 static const int least_states = 100;
-static const double most_across = 0.3; // between a segment's chord and the normals of its sections [rad]
 static const double small_turn = 0.98; // cosine of a quarter of most_turn
 
 // Each sentence ends with the value in its unit.
@@ -45,10 +44,6 @@ static const struct {
                                             " between two samples: take a higher aero.rate, or fidelity rod"},
     [BOUGH_LIMIT_TURN] = {"segment_turn", "a segment turns its ends against each other by %.3g deg, more"
                                           " than 45 deg: take more segments"},
-    [BOUGH_LIMIT_CHORD] = {"segment_chord",
-                           "under tension a segment deflects across its sections, by %.3g deg: it is too"
-                           " long for the bending stiffness EI; take more segments, or an EI of at"
-                           " least the tension times h^2/12"},
     [BOUGH_LIMIT_SPACING] = {"blade_spacing",
                              "the blades are not evenly spaced about its axis: between two of them are"
                              " %.4g deg"},
@@ -140,18 +135,6 @@ static double turn_of(const bough_rod_model *m, const double *p, int k) {
     bough_quaternion now = bough_quaternion_product(left, section(m, p, k + 1));
     bough_quaternion rest = bough_quaternion_product(left0, m->rotation0[k + 1]);
     return 2 * acos(fmin(fabs(dot(now, rest)), 1));
-}
-
-static void check_chords(bough_simulation *s) {
-    for (int i = 0; i < s->n_beam; i++) {
-        const bough_beam *beam = &s->beam[i];
-        bough_sharpest bend, chord;
-        if (!beam->cable || s->validity->limit[BOUGH_LIMIT_CHORD].passed) continue;
-        bough_simulation_bends(s, beam, &bend, &chord);
-        if (chord.angle > most_across)
-            validity_pass(s->validity, BOUGH_LIMIT_CHORD, (int)(beam->body - s->scene->body), s->master->time,
-                          chord.angle * (180 / BOUGH_PI));
-    }
 }
 
 static void check_turns(bough_simulation *s) {
@@ -248,7 +231,6 @@ void bough_validity_check(bough_simulation *s) {
     if (s->tree->n_closures > 0) check_closures(s);
     if (s->aero) check_air(s);
     check_turns(s);
-    check_chords(s);
     check_speed(s);
 }
 

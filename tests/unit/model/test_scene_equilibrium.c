@@ -77,7 +77,7 @@ TEST(dead_line_load_bends_the_rod_at_fourth_order) {
     double exact[3], error[2];
     shoot(20, exact);
     for (int k = 0; k < 2; k++) {
-        const char *sets[] = {k == 0 ? "bodies[0].rod.segments=8" : "bodies[0].rod.segments=16",
+        const char *sets[] = {k == 0 ? "bodies[0].rod.segments=16" : "bodies[0].rod.segments=32",
                               "loads=[{body: beam, along: [0 m, 1 m], force: [20, 0, 0], frame: body}]",
                               NULL};
         check_arena(arena);

@@ -174,6 +174,23 @@ TEST(polynomial_line_loads_converge_at_fourth_order) {
     assert_true(error[2] < 1e-5);
 }
 
+// A cantilever whose tension N is more than 12 EI/h²: P/N (L − tanh(kL)/k), k² = N/EI.
+TEST(tension_stiffens_the_deflection_within_a_segment) {
+    const double length = 1.5, tension = 1000, across = 1e-2, k = sqrt(tension / 2);
+    double exact = across / tension * (length - tanh(k * length) / k), error[3];
+    for (int i = 0; i < 3; i++) {
+        check_arena(arena);
+        int n = 8 << i;
+        bent b = strip_of(arena, n, 0);
+        b.loads.value[b.model->stride + n] = across;
+        b.loads.value[2 * b.model->stride + n] = tension;
+        solve(&b, bough_rod_static_options_default());
+        error[i] = fabs(vertex(&b, n).y / exact - 1);
+    }
+    print_message("8, 16, 32 segments: %.2g, %.2g, %.2g\n", error[0], error[1], error[2]);
+    assert_true(error[0] < 3e-3 && error[0] / error[1] > 7 && error[1] / error[2] > 14);
+}
+
 // The tip of a cantilever under force and moment per length that stay in its sections' axes and a force at
 // the tip that does not, EI 2 and `edge`, in lengths.
 static bough_vec3 followed_tip(int n, double edge, const double line[6], bough_vec3 force) {
