@@ -97,11 +97,24 @@ bool bough_master_done(const bough_master *m) { return m->time >= m->duration; }
 
 enum { HALVED_EVERY = 8, FIRST = 64 }; // macro steps
 
-// Halves of all the first steps would be the steps of the run that is compared, theory (71).
+// Whether some member takes several steps of its own in a macro step, which halves of it do not shorten.
+static bool steps_are_short(const bough_master *m) {
+    enum { SEVERAL = 4 };
+    for (int i = 0; i <= m->assembly->n_member; i++) {
+        const bough_member *member =
+            i < m->assembly->n_member ? m->assembly->member[i] : bough_scheme_whole(m->coupling);
+        if (member == NULL || m->steps == 0) continue;
+        if (bough_member_statistics(member).steps >= SEVERAL * m->steps) return true;
+    }
+    return false;
+}
+
+// Halves of all the first steps would be the steps of the run that is compared, theory (71), where these are
+// as long as its macro steps.
 static bool taken_in_halves(const bough_master *m) {
     if (!m->halves) return false;
-    bool often = m->grid_index < FIRST ? m->grid_index % 2 == 0 : m->grid_index % HALVED_EVERY == 0;
-    return m->at_event || often;
+    if (m->grid_index >= FIRST) return m->at_event || m->grid_index % HALVED_EVERY == 0;
+    return m->at_event || m->grid_index % 2 == 0 || steps_are_short(m);
 }
 
 static double next_on_grid(const bough_master *m) {

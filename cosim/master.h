@@ -29,7 +29,9 @@ typedef struct bough_master_def {
     bough_assembly_def assembly;
     bough_scheme_options scheme;
     double macro_step; // H, the longest [s]
-    bool halves; // every second of the first 64 steps, every eighth later, and those after events in halves
+    // every second of the first 64 steps, or all where members take several of their own in each, every
+    // eighth later, and those after events are taken in halves
+    bool halves;
     bough_step_control_def control; // shorter ones by error; tolerance 0: none
     double duration;                // [s]; the run starts at time 0
     int n_load;

@@ -1,4 +1,4 @@
-// How a mode of the whole scene changes with its parameters, theory (105), from its left and right
+// How a mode of the whole scene changes with its parameters, theory (108), from its left and right
 // eigenvectors: a parameter costs two equilibria and four products, no search for eigenvalues. The
 // equilibrium changes with the parameter.
 #ifndef BOUGH_APPS_ANALYSIS_SENSITIVITY_H
