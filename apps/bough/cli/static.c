@@ -18,7 +18,7 @@ typedef struct equilibrium {
     bool independent;            // each rod has its own equilibrium: no channels
     double time;                 // of the loads of the whole scene [s]
     bough_equilibrium_work work; // of the whole scene
-    double growth;               // of motions from it [1/s]; 0: it is stable
+    bough_growth growth;         // of motions from it
     int n;
     bough_steady *rod;       // (n)
     bough_channels channels; // of the whole scene
@@ -65,6 +65,22 @@ static bough_status find_whole(bough_arena *arena, equilibrium *x) {
     bough_simulation_update(s);
     bough_channels_sample(&x->channels, x->time, x->value);
     return status;
+}
+
+// What grows from the equilibrium. Rods that were found alone are put into the whole.
+static void find_growth(bough_arena *arena, equilibrium *x) {
+    bough_simulation *s = x->simulation;
+    const bough_assembly *a = s->master->assembly;
+    double *state = bough_arena_doubles(arena, (size_t)a->n_state + 1);
+    bough_assembly_states(a, state);
+    for (int k = 0; k < x->n && x->independent; k++) {
+        const bough_steady *rod = &x->rod[k];
+        size_t size = BOUGH_ROD_STATES * (size_t)rod->model->n;
+        memcpy(state + a->state_offset[rod->beam->port + 1], rod->state, size * sizeof *state);
+        x->time = fmax(x->time, rod->time);
+    }
+    if (x->independent) bough_equilibrium_set_state(s, a, state);
+    bough_simulation_growth(s, a, x->time, &x->growth);
 }
 
 // The equilibrium of the simulation, as built.
@@ -271,15 +287,19 @@ static void print_joints(const bough_simulation *s) {
     }
 }
 
+static void warn_of_growth(const bough_growth *growth) {
+    static const char unstable[] = "bough: warning: the equilibrium is unstable:";
+    if (growth->rate > 0) fprintf(stderr, "%s motions from it grow at %.3g 1/s\n", unstable, growth->rate);
+    if (growth->oscillation > 0)
+        fprintf(stderr, "%s oscillations of %.4g Hz grow at %.3g 1/s\n", unstable, growth->frequency,
+                growth->oscillation);
+}
+
 static void print_whole(const equilibrium *x) {
     printf("whole scene: %d steps", x->work.steps);
     if (x->work.samples > 0) printf(", %d samples of the air", x->work.samples);
     if (x->time > 0) printf(", loads at %.6g s", x->time);
     putchar('\n');
-    if (x->growth > 0) {
-        fprintf(stderr, "bough: warning: the equilibrium is unstable: motions from it grow at %.3g 1/s\n",
-                x->growth);
-    }
     print_joints(x->simulation);
 }
 
@@ -438,7 +458,8 @@ static bough_status find(bough_arena *arena, const void *given) {
     equilibrium x;
     mesh_error mesh;
     BOUGH_TRY(find_equilibrium(arena, s, &x));
-    if (!x.independent) bough_simulation_growth(s, s->master->assembly, x.time, &x.growth);
+    find_growth(arena, &x);
+    warn_of_growth(&x.growth);
     const double *error = find_mesh_error(arena, &x, &mesh);
     if (!x.independent) print_whole(&x);
     for (int k = 0; k < x.n; k++) {

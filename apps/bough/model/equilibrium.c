@@ -255,7 +255,7 @@ typedef struct task {
     bough_simulation *simulation;
     const bough_assembly *assembly;
     double time;
-    double *growth;                      // of a state
+    bough_growth *growth;                // of a state
     const bough_equilibrium_def *limits; // step, least, tolerance and steps of an equilibrium
     bough_equilibrium_work *work;        // of an equilibrium
     bough_path_listener listener;        // of a path
@@ -284,11 +284,52 @@ static bough_status search_within(const bough_equilibrium_def *limits, bough_sim
 
 // -- stability ------------------------------------------------------------------------------------
 
-// Where a growing real eigenvalue of the Jacobian is looked for [1/s], how many values nearest to each, and
-// the part of it that is growth rather than rounding.
+// Where growing eigenvalues of the Jacobian are looked for [1/s], how many values nearest to each, and the
+// part of it that is growth rather than rounding: oscillations that grow are among the slowest ones.
 static const double point[] = {1, 50, 1000};
-enum { POINTS = 3, NEAREST = 4 };
+static const int nearest[] = {12, 4, 4};
+enum { POINTS = 3, NEAREST = 12 };
 static const double rounded = 1e-3;
+
+// An oscillation grows by this part of its value at least, equally from both points to this part of it.
+static const double rounded_oscillation = 1e-5, again = 2.7, equal = 0.01;
+
+static bool oscillates(const bough_eigen_pair *pair) {
+    return fabs(pair->imaginary) > rounded * fabs(pair->real);
+}
+
+// The pairs nearest to a point.
+static bough_status find_near(bough_arena *arena, const balance_setup *b, double at, bough_eigen_pair *pair,
+                              bough_eigen_count *count) {
+    bough_modes_def def = {.time = b->self.time, .state = b->state, .input = b->coupled->input, .point = at};
+    return bough_modes_find(arena, b->coupled, &def, pair, count);
+}
+
+// The oscillation among the pairs that grows most, by parts of its value; NULL: none.
+static const bough_eigen_pair *growing_oscillation(const bough_eigen_pair *pair, int n) {
+    const bough_eigen_pair *most = NULL;
+    for (int k = 0; k < n; k++) {
+        double size = hypot(pair[k].real, pair[k].imaginary);
+        bool grows = oscillates(&pair[k]) && size > rounded && pair[k].real > rounded_oscillation * size;
+        if (grows && (most == NULL || pair[k].real > most->real)) most = &pair[k];
+    }
+    return most;
+}
+
+// Rounding lets a value grow, too, but otherwise from another point.
+static bough_status confirm_oscillation(bough_arena *arena, const balance_setup *b,
+                                        const bough_eigen_pair *found, bough_growth *growth) {
+    bough_eigen_pair pair[NEAREST];
+    bough_eigen_count count = {.wanted = NEAREST};
+    BOUGH_TRY(find_near(arena, b, again, pair, &count));
+    for (int k = 0; k < count.found; k++) {
+        double off = hypot(pair[k].real - found->real, fabs(pair[k].imaginary) - fabs(found->imaginary));
+        if (off > equal * found->real) continue;
+        growth->oscillation = found->real;
+        growth->frequency = fabs(found->imaginary) / (2 * BOUGH_PI);
+    }
+    return bough_ok();
+}
 
 static bough_status find_growth(bough_arena *arena, void *data) {
     const task *x = data;
@@ -297,22 +338,23 @@ static bough_status find_growth(bough_arena *arena, void *data) {
     bough_whole_inputs(b.coupled, x->time, b.state);
     bough_eigen_pair pair[NEAREST];
     for (int i = 0; i < POINTS; i++) {
-        bough_modes_def def = {
-            .time = x->time, .state = b.state, .input = b.coupled->input, .point = point[i]};
-        bough_eigen_count count = {.wanted = NEAREST};
-        BOUGH_TRY(bough_modes_find(arena, b.coupled, &def, pair, &count));
+        bough_eigen_count count = {.wanted = nearest[i]};
+        BOUGH_TRY(find_near(arena, &b, point[i], pair, &count));
         for (int k = 0; k < count.found; k++) {
-            if (pair[k].imaginary == 0 && pair[k].real > rounded * point[i])
-                *x->growth = fmax(*x->growth, pair[k].real);
+            if (!oscillates(&pair[k]) && pair[k].real > rounded * point[i])
+                x->growth->rate = fmax(x->growth->rate, pair[k].real);
         }
+        const bough_eigen_pair *found = growing_oscillation(pair, count.found);
+        if (i > 0 || found == NULL || turns(b.coupled, x->simulation->tree, b.state)) continue;
+        BOUGH_TRY(confirm_oscillation(arena, &b, found, x->growth));
     }
     return bough_ok();
 }
 
 bough_status bough_simulation_growth(bough_simulation *s, const bough_assembly *assembly, double time,
-                                     double *growth) {
+                                     bough_growth *growth) {
     task x = {.simulation = s, .assembly = assembly, .time = time, .growth = growth};
-    *growth = 0;
+    *growth = (bough_growth){0};
     return bough_arena_use(find_growth, &x);
 }
 
@@ -434,19 +476,19 @@ static bough_status find_slack(continuation *c, const double *start) {
     bough_simulation *s = c->simulation;
     const bough_assembly *a = c->assembly;
     bough_equilibrium_def whole = bough_equilibrium_def_default();
-    double growth = 0, fallen = 0;
+    bough_growth growth = {0}, fallen = {0};
     bough_equilibrium_set_state(s, a, start);
     bough_status softened = soften(c);
     bough_equilibrium_work work = *c->work;
     if (bough_is_ok(&softened)) bough_simulation_growth(s, a, c->time, &growth);
-    if (bough_is_ok(&softened) && growth == 0) return softened;
+    if (bough_is_ok(&softened) && growth.rate == 0) return softened;
     // downhill, however long it takes
     bough_equilibrium_set_state(s, a, start);
     *c->work = (bough_equilibrium_work){0};
     bough_status status = search_within(&whole, s, a, c->time, c->work);
     if (!bough_is_ok(&softened) || !c->unstable) return status;
     if (bough_is_ok(&status)) bough_simulation_growth(s, a, c->time, &fallen);
-    if (bough_is_ok(&status) && fallen == 0) return status;
+    if (bough_is_ok(&status) && fallen.rate == 0) return status;
     bough_equilibrium_set_state(s, a, c->state);
     *c->work = work;
     return softened;

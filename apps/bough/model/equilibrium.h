@@ -35,10 +35,17 @@ bough_status bough_simulation_equilibrium(bough_simulation *s, const bough_assem
 bough_status bough_simulation_any_equilibrium(bough_simulation *s, const bough_assembly *assembly,
                                               double time, bough_equilibrium_work *work);
 
-// The largest rate [1/s] at which the tangents let a motion from the equilibrium of the assembly grow without
-// oscillating; 0: none grows. The air's forces are constant.
+// What grows from an equilibrium by the tangents, the air's forces constant. Where something turns, the
+// tangents of one azimuth say nothing about oscillations: none is given.
+typedef struct bough_growth {
+    double rate;        // the largest of a motion that does not oscillate [1/s]; 0: none grows
+    double oscillation; // the largest of an oscillation, such as flutter [1/s]; 0: none grows
+    double frequency;   // of that one [Hz]
+} bough_growth;
+
+// Of the states of the assembly.
 bough_status bough_simulation_growth(bough_simulation *s, const bough_assembly *assembly, double time,
-                                     double *growth);
+                                     bough_growth *growth);
 
 // Called at each point of a path, where the members, their inputs and the simulation's view then are; `time`:
 // when the loads are those of the point [s]. `limit`: they have a local maximum or minimum there. A failure

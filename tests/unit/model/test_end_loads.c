@@ -96,14 +96,15 @@ TEST_IN_FOLDER(a_cable_of_long_segments_hangs_in_a_catenary) {
         "loads:\n  - {body: top, force: [800, 0, 1000]}\n";
     const double w = 100, length = 10, axial = 3e7, h = 800, top = 1000, foot = top - w * length;
     double x = h / w * (asinh(top / h) - asinh(foot / h)) + h * length / axial;
-    double z = (hypot(h, top) - hypot(h, foot)) / w + (top - w * length / 2) * length / axial, growth;
+    double z = (hypot(h, top) - hypot(h, foot)) / w + (top - w * length / 2) * length / axial;
     check_arena(arena);
     bough_simulation *s;
     check_ok(build_text(arena, *context, text, &s));
+    bough_growth growth;
     bough_channels list = bough_channels_start(arena);
     check_ok(bough_simulation_channels(s, &list));
     check_near(scene_channel(s, &list, "lineTipX"), x, 0, 1e-4 * length);
     check_near(scene_channel(s, &list, "lineTipZ"), z, 0, 1e-4 * length);
     check_ok(bough_simulation_growth(s, s->master->assembly, 0, &growth));
-    check_near(growth, 0, 0, 1e-6);
+    check_near(growth.rate, 0, 0, 0);
 }

@@ -245,11 +245,27 @@ TEST(standing_pendulum_is_unstable) {
     static const char *const angle[] = {"bodies[0].joint.angle=90 deg", "bodies[0].joint.angle=-90 deg"};
     for (int k = 0; k < 2; k++) {
         const char *sets[] = {angle[k], NULL};
-        double growth;
+        bough_growth growth;
         check_arena(arena);
         bough_simulation *s = scene_build(arena, "apps/mechanisms/pendulum.yaml", sets);
         equilibrium_of(s);
         check_ok(bough_simulation_growth(s, s->master->assembly, 0, &growth));
-        check_near(growth, k == 0 ? sqrt(9.81) : 0, 0, 1e-6);
+        check_near(growth.rate, k == 0 ? sqrt(9.81) : 0, 0, 1e-6);
+        check_near(growth.oscillation, 0, 0, 0);
+    }
+}
+
+// Beck's column flutters beyond a follower force of 20.05: growth and frequency at 22, none at 19.
+TEST(follower_force_makes_a_column_flutter) {
+    static const char *const force[] = {"loads[0].force=[0, 0, -22]", "loads[0].force=[0, 0, -19]"};
+    for (int k = 0; k < 2; k++) {
+        const char *sets[] = {force[k], "bodies[0].rod.segments=20", NULL};
+        bough_growth growth;
+        check_arena(arena);
+        bough_simulation *s = scene_build(arena, "apps/beams/beck.yaml", sets);
+        equilibrium_of(s);
+        check_ok(bough_simulation_growth(s, s->master->assembly, 0, &growth));
+        check_near(growth.oscillation, k == 0 ? 3.05491 : 0, 5e-3, 1e-6);
+        check_near(growth.rate, 0, 0, 0);
     }
 }
