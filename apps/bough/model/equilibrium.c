@@ -285,11 +285,10 @@ static bough_status search_within(const bough_equilibrium_def *limits, bough_sim
 // -- stability ------------------------------------------------------------------------------------
 
 // Where growing eigenvalues of the Jacobian are looked for [1/s], how many values nearest to each, and the
-// part of it that is growth rather than rounding: oscillations that grow are among the slowest ones.
-static const double point[] = {1, 50, 1000};
-static const int nearest[] = {12, 4, 4};
+// part of a point that is rounding; far beyond it lie values that a small system does not have.
+static const double point[] = {1, 50, 1000}, rounded = 1e-3;
 enum { POINTS = 3, NEAREST = 12 };
-static const double rounded = 1e-3;
+static const int nearest[] = {NEAREST, 4, 4};
 
 // An oscillation grows by this part of its value at least, equally from both points to this part of it.
 static const double rounded_oscillation = 1e-5, again = 2.7, equal = 0.01;
@@ -310,7 +309,8 @@ static const bough_eigen_pair *growing_oscillation(const bough_eigen_pair *pair,
     const bough_eigen_pair *most = NULL;
     for (int k = 0; k < n; k++) {
         double size = hypot(pair[k].real, pair[k].imaginary);
-        bool grows = oscillates(&pair[k]) && size > rounded && pair[k].real > rounded_oscillation * size;
+        bool grows = oscillates(&pair[k]) && size > rounded && size < 1 / rounded &&
+                     pair[k].real > rounded_oscillation * size;
         if (grows && (most == NULL || pair[k].real > most->real)) most = &pair[k];
     }
     return most;
@@ -341,8 +341,8 @@ static bough_status find_growth(bough_arena *arena, void *data) {
         bough_eigen_count count = {.wanted = nearest[i]};
         BOUGH_TRY(find_near(arena, &b, point[i], pair, &count));
         for (int k = 0; k < count.found; k++) {
-            if (!oscillates(&pair[k]) && pair[k].real > rounded * point[i])
-                x->growth->rate = fmax(x->growth->rate, pair[k].real);
+            bool known = pair[k].real > rounded * point[i] && pair[k].real < point[i] / rounded;
+            if (!oscillates(&pair[k]) && known) x->growth->rate = fmax(x->growth->rate, pair[k].real);
         }
         const bough_eigen_pair *found = growing_oscillation(pair, count.found);
         if (i > 0 || found == NULL || turns(b.coupled, x->simulation->tree, b.state)) continue;
