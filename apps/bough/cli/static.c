@@ -68,7 +68,7 @@ static bough_status find_whole(bough_arena *arena, equilibrium *x) {
 }
 
 // What grows from the equilibrium. Rods that were found alone are put into the whole.
-static void find_growth(bough_arena *arena, equilibrium *x) {
+static bough_status find_growth(bough_arena *arena, equilibrium *x) {
     bough_simulation *s = x->simulation;
     const bough_assembly *a = s->master->assembly;
     double *state = bough_arena_doubles(arena, (size_t)a->n_state + 1);
@@ -80,7 +80,7 @@ static void find_growth(bough_arena *arena, equilibrium *x) {
         x->time = fmax(x->time, rod->time);
     }
     if (x->independent) bough_equilibrium_set_state(s, a, state);
-    bough_simulation_growth(s, a, x->time, &x->growth);
+    return bough_simulation_growth(s, a, x->time, &x->growth);
 }
 
 // The equilibrium of the simulation, as built.
@@ -287,8 +287,11 @@ static void print_joints(const bough_simulation *s) {
     }
 }
 
-static void warn_of_growth(const bough_growth *growth) {
+static void warn_of_growth(const bough_status *found, const bough_growth *growth) {
     static const char unstable[] = "bough: warning: the equilibrium is unstable:";
+    if (!bough_is_ok(found))
+        fprintf(stderr, "bough: warning: whether the equilibrium is stable was not found: %s\n",
+                found->message);
     if (growth->rate > 0) fprintf(stderr, "%s motions from it grow at %.3g 1/s\n", unstable, growth->rate);
     if (growth->oscillation > 0)
         fprintf(stderr, "%s oscillations of %.4g Hz grow at %.3g 1/s\n", unstable, growth->frequency,
@@ -458,8 +461,8 @@ static bough_status find(bough_arena *arena, const void *given) {
     equilibrium x;
     mesh_error mesh;
     BOUGH_TRY(find_equilibrium(arena, s, &x));
-    find_growth(arena, &x);
-    warn_of_growth(&x.growth);
+    bough_status stability = find_growth(arena, &x);
+    warn_of_growth(&stability, &x.growth);
     const double *error = find_mesh_error(arena, &x, &mesh);
     if (!x.independent) print_whole(&x);
     for (int k = 0; k < x.n; k++) {

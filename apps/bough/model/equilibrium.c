@@ -287,8 +287,7 @@ static bough_status search_within(const bough_equilibrium_def *limits, bough_sim
 // Where growing eigenvalues of the Jacobian are looked for [1/s], how many values nearest to each, and the
 // part of a point that is rounding; far beyond it lie values that a small system does not have.
 static const double point[] = {1, 50, 1000}, rounded = 1e-3;
-enum { POINTS = 3, NEAREST = 12 };
-static const int nearest[] = {NEAREST, 4, 4};
+enum { POINTS = 3, NEAREST = 12 }; // the latter at the first, 4 at the others
 
 // An oscillation grows by this part of its value at least, equally from both points to this part of it.
 static const double rounded_oscillation = 1e-5, again = 2.7, equal = 0.01;
@@ -297,7 +296,6 @@ static bool oscillates(const bough_eigen_pair *pair) {
     return fabs(pair->imaginary) > rounded * fabs(pair->real);
 }
 
-// The pairs nearest to a point.
 static bough_status find_near(bough_arena *arena, const balance_setup *b, double at, bough_eigen_pair *pair,
                               bough_eigen_count *count) {
     bough_modes_def def = {.time = b->self.time, .state = b->state, .input = b->coupled->input, .point = at};
@@ -309,14 +307,14 @@ static const bough_eigen_pair *growing_oscillation(const bough_eigen_pair *pair,
     const bough_eigen_pair *most = NULL;
     for (int k = 0; k < n; k++) {
         double size = hypot(pair[k].real, pair[k].imaginary);
-        bool grows = oscillates(&pair[k]) && size > rounded && size < 1 / rounded &&
-                     pair[k].real > rounded_oscillation * size;
-        if (grows && (most == NULL || pair[k].real > most->real)) most = &pair[k];
+        bool slow = size > rounded && size < 1 / rounded && oscillates(&pair[k]);
+        if (slow && pair[k].real > rounded_oscillation * size && (most == NULL || pair[k].real > most->real))
+            most = &pair[k];
     }
     return most;
 }
 
-// Rounding lets a value grow, too, but otherwise from another point.
+// Rounding lets values grow otherwise from another point.
 static bough_status confirm_oscillation(bough_arena *arena, const balance_setup *b,
                                         const bough_eigen_pair *found, bough_growth *growth) {
     bough_eigen_pair pair[NEAREST];
@@ -336,10 +334,12 @@ static bough_status find_growth(bough_arena *arena, void *data) {
     balance_setup b;
     set_up(arena, x->simulation, x->assembly, x->time, &b);
     bough_whole_inputs(b.coupled, x->time, b.state);
-    bough_eigen_pair pair[NEAREST];
     for (int i = 0; i < POINTS; i++) {
-        bough_eigen_count count = {.wanted = nearest[i]};
-        BOUGH_TRY(find_near(arena, &b, point[i], pair, &count));
+        bough_eigen_pair pair[NEAREST];
+        bough_eigen_count count = {.wanted = i == 0 ? NEAREST : 4};
+        bough_status status = find_near(arena, &b, point[i], pair, &count);
+        if (!bough_is_ok(&status) && i > 0) continue; // none is distinctly nearest: no growth near this point
+        BOUGH_TRY(status);
         for (int k = 0; k < count.found; k++) {
             bool known = pair[k].real > rounded * point[i] && pair[k].real < point[i] / rounded;
             if (!oscillates(&pair[k]) && known) x->growth->rate = fmax(x->growth->rate, pair[k].real);
