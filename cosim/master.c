@@ -97,24 +97,12 @@ bool bough_master_done(const bough_master *m) { return m->time >= m->duration; }
 
 enum { HALVED_EVERY = 8, FIRST = 64 }; // macro steps
 
-// Whether some member takes several steps of its own in a macro step, which halves of it do not shorten.
-static bool steps_are_short(const bough_master *m) {
-    enum { SEVERAL = 4 };
-    for (int i = 0; i <= m->assembly->n_member; i++) {
-        const bough_member *member =
-            i < m->assembly->n_member ? m->assembly->member[i] : bough_scheme_whole(m->coupling);
-        if (member == NULL || m->steps == 0) continue;
-        if (bough_member_statistics(member).steps >= SEVERAL * m->steps) return true;
-    }
-    return false;
-}
-
 // Halves of all the first steps would be the steps of the run that is compared, theory (71), where these are
 // as long as its macro steps.
 static bool taken_in_halves(const bough_master *m) {
     if (!m->halves) return false;
     if (m->grid_index >= FIRST) return m->at_event || m->grid_index % HALVED_EVERY == 0;
-    return m->at_event || m->grid_index % 2 == 0 || steps_are_short(m);
+    return m->at_event || m->grid_index % 2 == 0 || m->many_steps;
 }
 
 static double next_on_grid(const bough_master *m) {
@@ -248,9 +236,26 @@ void bough_master_stop_by(bough_master *m, bool (*stop)(void)) {
     if (whole) whole->stop = stop;
 }
 
+// Steps of the members' own, of each in the mean.
+static double own_steps(const bough_master *m) {
+    double sum = 0;
+    int n = 0;
+    for (int i = 0; i <= m->assembly->n_member; i++) {
+        const bough_member *member =
+            i < m->assembly->n_member ? m->assembly->member[i] : bough_scheme_whole(m->coupling);
+        long steps = member == NULL ? 0 : bough_member_statistics(member).steps;
+        sum += (double)steps;
+        n += steps > 0;
+    }
+    return sum / (n > 0 ? n : 1);
+}
+
 bough_status bough_step(bough_master *m) {
+    enum { SEVERAL = 4 };
     stepping w = {.master = m};
+    double before = m->halves ? own_steps(m) : 0;
     bough_pool_region(m->coupling->pool, macro_step_in_region, &w);
+    if (m->halves) m->many_steps = own_steps(m) - before >= SEVERAL * (m->time - m->begun) / m->macro_step;
     return w.status;
 }
 
@@ -261,6 +266,7 @@ void bough_master_snapshot(bough_master *m, bough_snapshot *s) {
     bough_snapshot_take(s, &m->grid_index, sizeof m->grid_index);
     bough_snapshot_take(s, &m->at_event, sizeof m->at_event);
     bough_snapshot_take(s, &m->begun, sizeof m->begun);
+    bough_snapshot_take(s, &m->many_steps, sizeof m->many_steps);
     bough_scheme_snapshot(c, s);
     bough_snapshot_take(s, &c->t0, sizeof c->t0);
     bough_snapshot_take(s, &c->t1, sizeof c->t1);

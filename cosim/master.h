@@ -73,6 +73,7 @@ typedef struct bough_master {
     int next_event;              // first event after `time`
     bool at_event;               // `time` is an event
     double begun;                // start of the last macro step [s]
+    bool many_steps;             // members took several steps of their own in it; where halves are taken
 } bough_master;
 
 // Whether a period is an integer multiple of the macro step within 1e-9: the multiple, 0 if not.
