@@ -235,12 +235,14 @@ enum { MESH, AIR, TIME, PARTS, ROUNDS = 5 };
 // Order of each part's error, and how many times finer or coarser it may become in one round.
 static const double order[PARTS] = {2, 3, 1}, most[PARTS] = {1.6, 2, 20};
 static const double order_of_step = 3;
-static const double margin = 0.85;  // of the error that is aimed at
-static const double close_to = 0.7; // of it: no further round is needed
+static const double margin = 0.85;                      // of the error that is aimed at
+static const double close_to = 0.7;                     // of it: no further round is needed
+static const double hardly_less = 0.9, much_more = 1.5; // than the round before
 
 // Each part's factor: what brings its share to an equal part of the error. Shares belong to channels of their
 // own, and to a coarser run, so their sum is more than the error.
-static void follow_shares(const bough_tune_state *t, const bough_tune_point *p, bough_tune_settings *s) {
+static void follow_shares(const bough_tune_state *t, const bough_tune_point *p, double aimed,
+                          bough_tune_settings *s) {
     double factor[PARTS], share[PARTS], sum = 0;
     int parts = 0;
     for (int k = 0; k < PARTS; k++) {
@@ -249,7 +251,7 @@ static void follow_shares(const bough_tune_state *t, const bough_tune_point *p, 
         sum += share[k];
     }
     for (int k = 0; k < PARTS; k++) {
-        double aim = margin * t->error * fmax(sum / p->error, 1) / fmax(parts, 1);
+        double aim = aimed * t->error * fmax(sum / p->error, 1) / fmax(parts, 1);
         double finer = share[k] > 0 ? pow(share[k] / aim, 1 / order[k]) : 1;
         factor[k] = fmax(1 / most[k], fmin(finer, most[k]));
     }
@@ -260,10 +262,10 @@ static void follow_shares(const bough_tune_state *t, const bough_tune_point *p, 
     set_step(step / pow(factor[TIME], 1 / order_of_step), s);
 }
 
-// Until the error is close below what is to be met; a round that errs too much and more than the one before
-// is the last.
+// Until the error is close below what is to be met. After a round that errs too much and hardly less than the
+// one before, less is aimed at; one that errs by much more is the last.
 static bough_status descend(bough_tune_state *t, bough_tune_settings *s) {
-    double before = HUGE_VAL;
+    double before = HUGE_VAL, aimed = margin;
     for (int k = 0; k < ROUNDS; k++) {
         int n = t->n, at;
         bough_status status = try(t, s, true, &at);
@@ -271,9 +273,10 @@ static bough_status descend(bough_tune_state *t, bough_tune_settings *s) {
         const bough_tune_point *p = &t->point[at];
         bool meets = tune_meets(t, p);
         if (!bough_tune_ended(p) || !p->shared || (k > 0 && t->n == n)) break;
-        if (meets ? p->error > close_to * t->error : !(p->error < before)) break;
+        if (meets ? p->error > close_to * t->error : !(p->error < much_more * before)) break;
+        if (!meets && p->error > hardly_less * before) aimed *= 0.6;
         before = p->error;
-        follow_shares(t, p, s);
+        follow_shares(t, p, aimed, s);
     }
     return bough_ok();
 }
