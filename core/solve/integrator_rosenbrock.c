@@ -22,10 +22,10 @@ static const double alpha[STAGES] = {0, 0.8717330430169180, 0.7315799577888524, 
 // −2e-4 for three times as much, which tangents of every step have too.
 static const double least_viscosity = 0.03; // [-]
 static const double most_change = 0.002;    // [-]
-// A step whose error is greater than this multiple of what it was under tangents of its own, by the third
+// A step whose error is greater than this multiple of that of the last step with new tangents, by the third
 // power of its length, fails because they are old: a member that turns fast changes them within a few steps.
 static const double too_old = 3;
-static const double slower = 1.1;    // longer kept at each renewal, until a step fails again
+static const double older = 1.1;     // they may grow at each renewal, until a step fails again
 static const double rounding = 1e-9; // of times and steps that are meant to be equal, relative
 
 typedef struct rosenbrock {
@@ -38,8 +38,8 @@ typedef struct rosenbrock {
     double longest;             // step allowed next [s]
     double factored;            // γh of the factors; 0: none
     int kept;                   // steps with the same tangents at most
-    double useful;              // the same as far as steps have failed since
-    double own_error;           // of the last step with tangents of its own, over h³ [s⁻³]
+    double useful;              // the same, less where steps have failed by the age of the tangents
+    double new_error;           // of the last step with new tangents, over h³ [s⁻³]
     int age, most_age;          // steps since the tangents were found, and after which they are renewed
     bool started;
     int drifted;               // steps since ∂f/∂t was found
@@ -139,8 +139,12 @@ static void choose_age(rosenbrock *m) {
     m->most_age = (int)fmax(1, fmin(fmin(m->kept, m->age + 1), wanted));
 }
 
+// The age at which tangents are renewed though no step has failed.
+static int oldest(const rosenbrock *m) { return (int)fmin(m->most_age, m->useful); }
+
 static bool renew_tangents(rosenbrock *m, double t, const double *y, double gamma) {
-    bool compare = undamped(m, gamma / gamma_h) && m->age == m->most_age && m->factored > 0;
+    bool due = m->age == oldest(m), compare = undamped(m, gamma / gamma_h) && due && m->factored > 0;
+    if (due) m->useful = fmin(older * m->useful, m->kept);
     // the last increment under old tangents, for comparison with renewed ones
     if (compare) filter_increment(m, m->old);
     m->sum.jacobians++;
@@ -158,7 +162,7 @@ static bool renew_tangents(rosenbrock *m, double t, const double *y, double gamm
 
 static bool renew_factors(rosenbrock *m, double t, const double *y, double h) {
     double gamma = gamma_h * h;
-    if (m->age >= m->most_age) return renew_tangents(m, t, y, gamma);
+    if (m->age >= oldest(m)) return renew_tangents(m, t, y, gamma);
     // equal steps differ by rounding of the time
     if (fabs(m->factored - gamma) <= rounding * gamma) return true;
     m->sum.factorisations++;
@@ -202,22 +206,12 @@ static void accept(rosenbrock *m, double *restrict y) { memcpy(y, m->now.at, (si
 
 // After a failed step of length h: new tangents where the old ones are the cause, else a shorter step.
 static void shorten(rosenbrock *m, double h, double error) {
-    double own = m->age > 0 ? m->own_error * h * h * h : error;
-    bool old = isfinite(error) && error > too_old * own;
+    double by_new = m->age > 0 ? m->new_error * h * h * h : error;
+    bool old = isfinite(error) && error > too_old * by_new;
     m->sum.failed_steps++;
-    m->longest = h * fmax(0.1, fmin(1, 0.9 * cbrt(1 / (old ? own : error))));
+    m->longest = h * fmax(0.1, fmin(1, 0.9 * cbrt(1 / (old ? by_new : error))));
     if (old) m->useful = m->age;
     if (old || m->age > YOUNG || !isfinite(error)) m->age = MOST_AGE;
-}
-
-// After a step of length h: the age of the tangents, and whether they are to be renewed.
-static void grow_older(rosenbrock *m, double h, double error) {
-    if (m->age == 0) m->own_error = error / (h * h * h);
-    m->age++;
-    m->drifted++;
-    if (m->age < floor(m->useful)) return;
-    m->useful = fmin(slower * m->useful, m->kept);
-    m->age = MOST_AGE;
 }
 
 // All steps to `pause`. Returns NULL, or the reason of a failure.
@@ -244,7 +238,9 @@ static const char *cross(rosenbrock *m, double *t, double pause, double t1, doub
         }
         accept(m, y);
         m->sum.steps++;
-        grow_older(m, h, error);
+        if (m->age == 0) m->new_error = error / (h * h * h);
+        m->age++;
+        m->drifted++;
         // elementary controller of an error of order 3
         double grown = 0.9 * h * fmin(5, cbrt(1 / fmax(error, 1e-6)));
         m->longest = fmin(m->step, fmax(h, grown));
