@@ -236,26 +236,27 @@ void bough_master_stop_by(bough_master *m, bool (*stop)(void)) {
     if (whole) whole->stop = stop;
 }
 
-// Steps of the members' own, of each in the mean.
-static double own_steps(const bough_master *m) {
-    double sum = 0;
-    int n = 0;
+bough_statistics bough_master_statistics(const bough_master *m) {
+    bough_statistics sum = {0};
     for (int i = 0; i <= m->assembly->n_member; i++) {
         const bough_member *member =
             i < m->assembly->n_member ? m->assembly->member[i] : bough_scheme_whole(m->coupling);
-        long steps = member == NULL ? 0 : bough_member_statistics(member).steps;
-        sum += (double)steps;
-        n += steps > 0;
+        if (member == NULL) continue;
+        bough_statistics own = bough_member_statistics(member);
+        bough_statistics_add(&sum, &own);
     }
-    return sum / (n > 0 ? n : 1);
+    return sum;
 }
 
 bough_status bough_step(bough_master *m) {
     enum { SEVERAL = 4 };
     stepping w = {.master = m};
-    double before = m->halves ? own_steps(m) : 0;
+    long before = m->halves ? bough_master_statistics(m).steps : 0;
     bough_pool_region(m->coupling->pool, macro_step_in_region, &w);
-    if (m->halves) m->many_steps = own_steps(m) - before >= SEVERAL * (m->time - m->begun) / m->macro_step;
+    if (m->halves) {
+        long own = bough_master_statistics(m).steps - before;
+        m->many_steps = (double)own >= SEVERAL * (m->time - m->begun) / m->macro_step;
+    }
     return w.status;
 }
 

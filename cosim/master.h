@@ -29,8 +29,8 @@ typedef struct bough_master_def {
     bough_assembly_def assembly;
     bough_scheme_options scheme;
     double macro_step; // H, the longest [s]
-    // every second of the first 64 steps, or all where members take several of their own in each, every
-    // eighth later, and those after events are taken in halves
+    // of a system that is integrated as one: every second of the first 64 steps, or all where its integrator
+    // takes several in each, every eighth later, and those after events are taken in halves
     bool halves;
     bough_step_control_def control; // shorter ones by error; tolerance 0: none
     double duration;                // [s]; the run starts at time 0
@@ -73,7 +73,7 @@ typedef struct bough_master {
     int next_event;              // first event after `time`
     bool at_event;               // `time` is an event
     double begun;                // start of the last macro step [s]
-    bool many_steps;             // members took several steps of their own in it; where halves are taken
+    bool many_steps;             // integrators took several steps in it; known where halves are taken
 } bough_master;
 
 // Whether a period is an integer multiple of the macro step within 1e-9: the multiple, 0 if not.
@@ -90,6 +90,9 @@ bough_status bough_step(bough_master *m);
 // Steps ask stop() at each evaluation and, once it is true, end with BOUGH_INTERRUPTED and with time and
 // states of the start of the macro step in progress. They must not go on then. NULL: never.
 void bough_master_stop_by(bough_master *m, bool (*stop)(void));
+
+// Work of all members' integrators since they were built.
+bough_statistics bough_master_statistics(const bough_master *m);
 
 // The memory that later steps and the reports depend on, without that of the loads, at a time when all
 // loads are sampled. After a restore, integrators restart and Newton matrices are computed again. A run

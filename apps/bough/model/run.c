@@ -98,15 +98,7 @@ const double *bough_run_values(bough_run *run) {
 
 // Steps of all solvers, failed ones included.
 static double steps_of(const bough_simulation *s) {
-    const bough_master *m = s->master;
-    bough_statistics sum = {0};
-    for (int i = 0; i <= m->assembly->n_member; i++) {
-        const bough_member *member =
-            i < m->assembly->n_member ? m->assembly->member[i] : bough_scheme_whole(m->coupling);
-        if (member == NULL) continue;
-        bough_statistics own = bough_member_statistics(member);
-        bough_statistics_add(&sum, &own);
-    }
+    bough_statistics sum = bough_master_statistics(s->master);
     return (double)sum.steps + (double)sum.failed_steps;
 }
 
