@@ -347,7 +347,7 @@ def main():
         for result in pool.map(lambda i: one(arguments, i), range(arguments.first, arguments.first + arguments.count)):
             if result:
                 results.append(result)
-                file.write("%d\t%s\t%s\t%s\t%s\n" % result[:5])
+                file.write("\t".join(" ".join(str(field).split()) for field in result[:5]) + "\n")
                 file.flush()
     table(results, 1)
     table(results, 2)

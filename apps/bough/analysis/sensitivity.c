@@ -3,6 +3,7 @@
 #include "apps/bough/analysis/air_tangent.h"
 #include "core/base/linalg.h"
 
+#include <complex.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -11,6 +12,7 @@ static const double difference = 1e-4; // of the largest entry of a vector in un
 static const double step = 0.1;        // of a parameter, in units of its change: polars have corners
 static const double least = 1e-9;      // changes of λ relative to it are rounding
 static const double exact = 1e-6;      // residual of an eigenvector
+static const double complex imaginary = (double complex)I;
 
 enum { ITERATIONS = 4 }; // of inverse iteration about an eigenvalue that is known to some digits
 
@@ -109,43 +111,32 @@ static bough_status multiply(linear *x, const double *y, double *image) {
 
 // -- eigenvectors ---------------------------------------------------------------------------------
 
-// A mode of the linear system; complex numbers are pairs, real before imaginary part.
+// A mode of the linear system. LAPACK's complex numbers are C's.
 typedef struct mode {
     int all;
-    double value[2];      // λ
-    double *right, *left; // (all × 2)
+    double complex value;         // λ
+    double complex *right, *left; // (all)
     double residual;
 } mode;
 
-static void multiply_by(const double a[2], const double b[2], double c[2]) {
-    double real = a[0] * b[0] - a[1] * b[1], imaginary = a[0] * b[1] + a[1] * b[0];
-    c[0] = real;
-    c[1] = imaginary;
+static double complex *take_complex(bough_arena *arena, size_t n) {
+    return bough_arena_take(arena, n * sizeof(double complex));
 }
 
 // Σ a b, not conjugated.
-static void product(int n, const double *a, const double *b, double sum[2]) {
-    sum[0] = sum[1] = 0;
-    for (int i = 0; i < n; i++) {
-        double term[2];
-        multiply_by(a + 2 * i, b + 2 * i, term);
-        sum[0] += term[0];
-        sum[1] += term[1];
-    }
+static double complex product(int n, const double complex *a, const double complex *b) {
+    double complex sum = 0;
+    for (int i = 0; i < n; i++) sum += a[i] * b[i];
+    return sum;
 }
 
-static void divide(const double a[2], const double b[2], double c[2]) {
-    double square = b[0] * b[0] + b[1] * b[1], over[2] = {b[0] / square, -b[1] / square};
-    multiply_by(a, over, c);
-}
-
-static double length_of(int n, const double *a) {
+static double length_of(int n, const double complex *a) {
     double sum = 0;
-    for (int i = 0; i < 2 * n; i++) sum += a[i] * a[i];
+    for (int i = 0; i < n; i++) sum += creal(a[i] * conj(a[i]));
     return sqrt(sum);
 }
 
-// Real columns of the system, some of the air's states of which never change: those rows and columns are 0.
+// The matrix by its columns. Rows of states of the air that never change are 0.
 static bough_status fill(bough_arena *arena, linear *x, double *matrix) {
     size_t all = (size_t)(x->n + x->m);
     double *unit = bough_arena_doubles(arena, all);
@@ -160,81 +151,55 @@ static bough_status fill(bough_arena *arena, linear *x, double *matrix) {
 }
 
 // Eigenvectors of the matrix, or of its transposed one, about λ by inverse iteration from those given: vector
-// (count × n × 2).
-static bool iterate(bough_arena *arena, int n, const double *matrix, bool transposed, const double value[2],
-                    int count, double *vector) {
+// (count × n).
+static bool iterate(bough_arena *arena, int n, const double *matrix, bool transposed, double complex value,
+                    int count, double complex *vector) {
     size_t all = (size_t)n;
-    double *factor = bough_arena_doubles(arena, 2 * all * all);
+    double complex *factor = take_complex(arena, all * all);
     int *pivot = bough_arena_take(arena, all * sizeof *pivot);
     for (size_t j = 0; j < all; j++)
         for (size_t i = 0; i < all; i++)
-            factor[2 * (j * all + i)] = transposed ? matrix[i * all + j] : matrix[j * all + i];
-    for (size_t i = 0; i < all; i++) {
-        factor[2 * (i * all + i)] -= value[0];
-        factor[2 * (i * all + i) + 1] -= value[1];
-    }
-    if (!bough_complex_factor(n, factor, pivot)) return false;
+            factor[j * all + i] = transposed ? matrix[i * all + j] : matrix[j * all + i];
+    for (size_t i = 0; i < all; i++) factor[i * all + i] -= value;
+    if (!bough_complex_factor(n, (double *)factor, pivot)) return false;
     for (int k = 0; k < ITERATIONS * count; k++) {
-        double *x = vector + (size_t)(k % count) * 2 * all;
-        bough_complex_solve(n, factor, pivot, x);
+        double complex *x = vector + (size_t)(k % count) * all;
+        bough_complex_solve(n, (double *)factor, pivot, (double *)x);
         double size = length_of(n, x);
         if (!isfinite(size)) return false;
-        for (size_t i = 0; i < 2 * all; i++) x[i] /= size;
+        for (size_t i = 0; i < all; i++) x[i] /= size;
     }
     return true;
 }
 
-static void start(int n, int seed, double *vector) {
-    for (int i = 0; i < 2 * n; i++) vector[i] = sin((double)(seed + 7 * i)) + 0.1;
-}
-
-// (real matrix) × complex vector
-static void apply(bough_arena *arena, int n, const double *matrix, const double *y, double *image) {
-    size_t all = (size_t)n;
-    double *parts = bough_arena_doubles(arena, 4 * all);
-    for (size_t i = 0; i < all; i++) {
-        parts[i] = y[2 * i];
-        parts[all + i] = y[2 * i + 1];
-    }
-    bough_dense_product((bough_product){n, 2, n, false, 1, 0}, matrix, parts, parts + 2 * all);
-    for (size_t i = 0; i < all; i++) {
-        image[2 * i] = parts[2 * all + i];
-        image[2 * i + 1] = parts[3 * all + i];
-    }
+static void start(int n, int seed, double complex *vector) {
+    for (int i = 0; i < n; i++) vector[i] = 1.1 + sin(seed + 7 * i) + imaginary * cos(seed + 5 * i);
 }
 
 // The same eigenvalue with another vector.
-static bool has_twin(int n, const double *a, const double *b) {
-    double real = 0, imaginary = 0;
-    for (int i = 0; i < n; i++) {
-        real += a[2 * i] * b[2 * i] + a[2 * i + 1] * b[2 * i + 1];
-        imaginary += a[2 * i] * b[2 * i + 1] - a[2 * i + 1] * b[2 * i];
-    }
-    return hypot(real, imaginary) < 0.99;
+static bool has_twin(int n, const double complex *a, const double complex *b) {
+    double complex sum = 0;
+    for (int i = 0; i < n; i++) sum += conj(a[i]) * b[i];
+    return cabs(sum) < 0.99;
 }
 
 // λ by the quotient of both vectors, and its residual.
 static void improve(bough_arena *arena, const double *matrix, mode *x) {
-    double *image = bough_arena_doubles(arena, 2 * (size_t)x->all), above[2], below[2];
-    apply(arena, x->all, matrix, x->right, image);
-    product(x->all, x->left, image, above);
-    product(x->all, x->left, x->right, below);
-    divide(above, below, x->value);
-    for (int i = 0; i < x->all; i++) {
-        double term[2];
-        multiply_by(x->value, x->right + 2 * i, term);
-        image[2 * i] -= term[0];
-        image[2 * i + 1] -= term[1];
-    }
-    x->residual = length_of(x->all, image) / hypot(x->value[0], x->value[1]);
+    size_t all = (size_t)x->all;
+    double complex *image = take_complex(arena, all);
+    for (size_t j = 0; j < all; j++)
+        for (size_t i = 0; i < all; i++) image[i] += matrix[j * all + i] * x->right[j];
+    x->value = product(x->all, x->left, image) / product(x->all, x->left, x->right);
+    for (size_t i = 0; i < all; i++) image[i] -= x->value * x->right[i];
+    x->residual = length_of(x->all, image) / cabs(x->value);
 }
 
 static bough_status find_vectors(bough_arena *arena, linear *system, mode *x) {
     size_t all = (size_t)x->all;
     double *matrix = bough_arena_doubles(arena, all * all);
-    x->right = bough_arena_doubles(arena, 4 * all);
-    x->left = bough_arena_doubles(arena, 2 * all);
-    double *twin = x->right + 2 * all;
+    x->right = take_complex(arena, 2 * all);
+    x->left = take_complex(arena, all);
+    double complex *twin = x->right + all;
     BOUGH_TRY(fill(arena, system, matrix));
     start(x->all, 1, x->right);
     start(x->all, 3, twin);
@@ -254,7 +219,8 @@ static bough_status find_vectors(bough_arena *arena, linear *system, mode *x) {
 
 // yᵀ (J − S + A) x of a scene with the vectors of another.
 static bough_status quotient(bough_arena *arena, bough_scene *scene, double time, const mode *of,
-                             double value[2]) {
+                             double complex *value) {
+    static const double complex unit[] = {1, (double complex)I};
     bough_simulation *s;
     bough_equilibrium_work work;
     linear x;
@@ -262,46 +228,42 @@ static bough_status quotient(bough_arena *arena, bough_scene *scene, double time
     if (scene->modes.at == BOUGH_SCENE_IN_EQUILIBRIUM)
         BOUGH_TRY(bough_simulation_equilibrium(s, s->master->assembly, time, &work));
     BOUGH_TRY(prepare(arena, s, time, &x));
-    size_t all = (size_t)of->all;
-    double *part, *image, *both = bough_arena_doubles(arena, 2 * all);
-    bough_arena_each(arena, all, &part, &image);
-    for (size_t k = 0; k < 2; k++) {
-        for (size_t i = 0; i < all; i++) part[i] = of->right[2 * i + k];
+    double *part, *image;
+    bough_arena_each(arena, (size_t)of->all, &part, &image);
+    *value = 0;
+    for (int k = 0; k < 2; k++) {
+        for (int i = 0; i < of->all; i++) part[i] = k == 0 ? creal(of->right[i]) : cimag(of->right[i]);
         BOUGH_TRY(multiply(&x, part, image));
-        for (size_t i = 0; i < all; i++) both[2 * i + k] = image[i];
+        for (int i = 0; i < of->all; i++) *value += unit[k] * of->left[i] * image[i];
     }
-    product(of->all, of->left, both, value);
     return bough_ok();
 }
 
-// dλ = yᵀ dA x/(yᵀ x), by the difference of scenes in which the parameter is greater and smaller.
+// theory (108), by the difference of scenes in which the parameter is greater and smaller.
 static bough_status change_of(const bough_scene *scene, double time, const mode *of, const bough_parameter *p,
-                              double change[2]) {
-    double more[2] = {0, 0}, less[2] = {0, 0}, below[2];
+                              double complex *change) {
+    double complex value[2] = {0, 0};
     for (int side = 0; side < 2; side++) {
         bough_arena *own = bough_arena_create();
-        bough_status status = quotient(own, bough_parameter_change(own, scene, p, (1 - 2 * side) * step),
-                                       time, of, side == 0 ? more : less);
+        bough_scene *other = bough_parameter_change(own, scene, p, (1 - 2 * side) * step);
+        bough_status status = quotient(own, other, time, of, &value[side]);
         bough_arena_destroy(own);
         if (!bough_is_ok(&status))
             return bough_fail(status.code, "%s changed: %.300s", p->name, status.message);
     }
-    product(of->all, of->left, of->right, below);
-    const double half[2] = {0.5 * (more[0] - less[0]) / step, 0.5 * (more[1] - less[1]) / step};
-    divide(half, below, change);
+    *change = (value[0] - value[1]) / (2 * step * product(of->all, of->left, of->right));
     return bough_ok();
 }
 
 // Of |λ| and of the damping ratio −Re λ/|λ|.
-static bough_sensitivity sensitivity_of(const double value[2], const double change[2],
+static bough_sensitivity sensitivity_of(double complex value, double complex change,
                                         const bough_parameter *p) {
-    double modulus = hypot(value[0], value[1]);
-    double longer = (value[0] * change[0] + value[1] * change[1]) / (modulus * modulus);
+    double modulus = cabs(value), longer = creal(change / value);
     return (bough_sensitivity){.name = p->name,
                                .by = p->by,
                                .frequency = longer,
-                               .damping = (value[0] * longer - change[0]) / modulus,
-                               .eigenvalue = hypot(change[0], change[1]) / modulus};
+                               .damping = (creal(value) * longer - creal(change)) / modulus,
+                               .eigenvalue = cabs(change) / modulus};
 }
 
 static int larger(const void *a, const void *b) {
@@ -315,14 +277,15 @@ bough_status bough_sensitivity_find(bough_arena *arena, bough_simulation *s, dou
     int n_parameter;
     const bough_parameter *parameter = bough_parameters_of(arena, s->scene, &n_parameter);
     BOUGH_TRY(prepare(arena, s, time, &system));
-    mode x = {.all = system.n + system.m, .value = {of->growth, 2 * BOUGH_PI * of->damped_frequency}};
+    mode x = {.all = system.n + system.m,
+              .value = of->growth + 2 * BOUGH_PI * imaginary * of->damped_frequency};
     BOUGH_TRY(find_vectors(arena, &system, &x));
     *found = (bough_sensitivities){
         .residual = x.residual,
         .list = bough_arena_take(arena, ((size_t)n_parameter + 1) * sizeof *found->list)};
     for (int k = 0; k < n_parameter; k++) {
-        double change[2] = {0, 0};
-        BOUGH_TRY(change_of(s->scene, time, &x, &parameter[k], change));
+        double complex change = 0;
+        BOUGH_TRY(change_of(s->scene, time, &x, &parameter[k], &change));
         bough_sensitivity one = sensitivity_of(x.value, change, &parameter[k]);
         if (one.eigenvalue > least) found->list[found->n++] = one;
     }

@@ -143,8 +143,8 @@ static double length_of(const bough_companion *c, int i, const double *value) {
     return sqrt(square);
 }
 
-// Since the last comparison. The components of a vector in axes that turn change without a new sample: no
-// more than its length does counts.
+// Since the last comparison. In axes that turn, the components of a vector change without a new sample; they
+// count as far as the vector's length changes.
 static double change_of(const bough_companion *c, int i) {
     const bough_channel *list = c->channels->channel;
     double change = fabs(difference(&list[i], c->value[i], c->before[i]));

@@ -366,61 +366,62 @@ static int worst_of(int n, const row *rows) {
     return worst_in(n, rows, words);
 }
 
-// A scene that stays in equilibrium has no range: an error of a hundred-thousandth of its size is small.
-TEST(errors_of_a_scene_at_rest_are_judged_by_its_size) {
+// Two channels of a run and its companion: the least and the largest value of each, and the error.
+typedef struct {
+    double low[2], high[2], other_low[2], other_high[2], error[2];
+    const char *unit[2], *name[2];
+} two_channels;
+
+// The verdict's relative error before and after the companion's largest value of `channel` becomes `high`.
+static void check_verdicts(two_channels *v, int channel, double high, double before, double after) {
     bough_arena *arena = bough_arena_create();
     bough_channels channels = bough_channels_start(arena);
     bough_scene scene = {.simulation.accuracy = 0.005};
     bough_simulation run = {.scene = &scene};
-    double low[] = {0.9, 0}, high[] = {0.9 + 1.2e-5, 3e-9}, noticed[] = {-1, -1};
-    double other_low[] = {0.9, 0}, other_high[] = {0.9, 1e-13}, error[] = {1.2e-5, 3e-9};
+    double noticed[] = {-1, -1};
     bough_companion c = {.run = &run,
                          .channels = &channels,
                          .compared = 1,
-                         .low = low,
-                         .high = high,
-                         .other_low = other_low,
-                         .other_high = other_high,
-                         .error = error,
+                         .low = v->low,
+                         .high = v->high,
+                         .other_low = v->other_low,
+                         .other_high = v->other_high,
+                         .error = v->error,
                          .noticed = noticed};
     bough_channels_group(&channels, NULL, NULL);
-    bough_channels_add(&channels, "m", "TipZ");
-    bough_channels_add(&channels, "deg", "Pos");
+    for (int k = 0; k < 2; k++) bough_channels_add(&channels, v->unit[k], v->name[k]);
     bough_error_notice(&c, 1);
-    check_near(bough_error_verdict_of(&c, true, c.error).relative, 1.2e-5 / 0.9, 1e-5, 0);
-    other_high[0] = high[0]; // now both move
+    check_near(bough_error_verdict_of(&c, true, c.error).relative, before, 1e-5, 0);
+    v->other_high[channel] = high;
     bough_error_notice(&c, 2);
-    check_near(bough_error_verdict_of(&c, true, c.error).relative, 1, 1e-9, 0);
+    check_near(bough_error_verdict_of(&c, true, c.error).relative, after, 1e-5, 0);
     bough_arena_destroy(arena);
+}
+
+// A scene that stays in equilibrium has no range: an error of a hundred-thousandth of its size is small,
+// until both solutions move.
+TEST(errors_of_a_scene_at_rest_are_judged_by_its_size) {
+    two_channels v = {.low = {0.9, 0},
+                      .high = {0.9 + 1.2e-5, 3e-9},
+                      .other_low = {0.9, 0},
+                      .other_high = {0.9, 1e-13},
+                      .error = {1.2e-5, 3e-9},
+                      .unit = {"m", "deg"},
+                      .name = {"TipZ", "Pos"}};
+    check_verdicts(&v, 0, v.high[0], 1.2e-5 / 0.9, 1);
 }
 
 // The deflection of a rotor in steady operation has none either: its error is judged by its value, up to 1 m,
 // unless one of the two solutions moves.
 TEST(errors_of_what_stays_are_judged_by_its_value) {
-    bough_arena *arena = bough_arena_create();
-    bough_channels channels = bough_channels_start(arena);
-    bough_scene scene = {.simulation.accuracy = 0.005};
-    bough_simulation run = {.scene = &scene};
-    double low[] = {0, 16.5}, high[] = {300, 16.5 + 2e-8}, noticed[] = {-1, -1};
-    double other_low[] = {0, 16.5}, other_high[] = {300, 16.5 + 1e-8}, error[] = {0, 1.7e-4};
-    bough_companion c = {.run = &run,
-                         .channels = &channels,
-                         .compared = 1,
-                         .low = low,
-                         .high = high,
-                         .other_low = other_low,
-                         .other_high = other_high,
-                         .error = error,
-                         .noticed = noticed};
-    bough_channels_group(&channels, NULL, NULL);
-    bough_channels_add(&channels, "deg", "Azimuth");
-    bough_channels_add(&channels, "m", "OoPDefl1");
-    bough_error_notice(&c, 1);
-    check_near(bough_error_verdict_of(&c, true, c.error).relative, 1.7e-4, 1e-9, 0);
-    other_high[1] = 16.6;
-    bough_error_notice(&c, 2);
-    check_near(bough_error_verdict_of(&c, true, c.error).relative, 1.7e-4 / 2e-8, 1e-5, 0);
-    bough_arena_destroy(arena);
+    two_channels v = {.low = {0, 16.5},
+                      .high = {300, 16.5 + 2e-8},
+                      .other_low = {0, 16.5},
+                      .other_high = {300, 16.5 + 1e-8},
+                      .error = {0, 1.7e-4},
+                      .unit = {"deg", "m"},
+                      .name = {"Azimuth", "OoPDefl1"}};
+    check_verdicts(&v, 1, 16.6, 1.7e-4, 1.7e-4 / 2e-8);
 }
 
 // A range of rounding is none to measure an error by.
