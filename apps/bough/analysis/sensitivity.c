@@ -220,7 +220,6 @@ static bough_status find_vectors(bough_arena *arena, linear *system, mode *x) {
 // yᵀ (J − S + A) x of a scene with the vectors of another.
 static bough_status quotient(bough_arena *arena, bough_scene *scene, double time, const mode *of,
                              double complex *value) {
-    static const double complex unit[] = {1, (double complex)I};
     bough_simulation *s;
     bough_equilibrium_work work;
     linear x;
@@ -234,7 +233,7 @@ static bough_status quotient(bough_arena *arena, bough_scene *scene, double time
     for (int k = 0; k < 2; k++) {
         for (int i = 0; i < of->all; i++) part[i] = k == 0 ? creal(of->right[i]) : cimag(of->right[i]);
         BOUGH_TRY(multiply(&x, part, image));
-        for (int i = 0; i < of->all; i++) *value += unit[k] * of->left[i] * image[i];
+        for (int i = 0; i < of->all; i++) *value += (k == 0 ? 1 : imaginary) * of->left[i] * image[i];
     }
     return bough_ok();
 }
