@@ -178,3 +178,82 @@ TEST(steps_stay_equal_late_in_a_run) {
         bough_arena_destroy(p.arena);
     }
 }
+
+// -- the age of tangents --------------------------------------------------------------------------
+
+// A mass on an undamped spring, 1000 rad/s along its axis, whose length follows 1 + sin(t)/10: y = (x, ẋ) in
+// the plane. Its tangents change as it turns about the origin.
+typedef struct spring {
+    double gamma, tangent[2][2]; // ∂ẍ/∂x
+    double inverse[2][2];        // of 1 − γ² ∂ẍ/∂x
+} spring;
+
+static const double stiffness = 1e6; // over the mass [1/s²]
+
+static double stretch(double t, const double *y) { return 1 - (1 + 0.1 * sin(t)) / hypot(y[0], y[1]); }
+
+static bool spring_derivative(void *self, double t, const double *y, double *rate) {
+    (void)self;
+    for (int i = 0; i < 2; i++) rate[i] = y[2 + i], rate[2 + i] = -stiffness * stretch(t, y) * y[i];
+    return true;
+}
+
+static bool spring_linearise(void *self, double t, const double *y) {
+    spring *p = self;
+    double square = y[0] * y[0] + y[1] * y[1], e = stretch(t, y);
+    for (int i = 0; i < 2; i++)
+        for (int j = 0; j < 2; j++)
+            p->tangent[i][j] = -stiffness * (e * (i == j) + (1 - e) * y[i] * y[j] / square);
+    return true;
+}
+
+static bool spring_factor(void *self, double gamma) {
+    spring *p = self;
+    double a = 1 - gamma * gamma * p->tangent[0][0], b = -gamma * gamma * p->tangent[0][1];
+    double d = 1 - gamma * gamma * p->tangent[1][1], determinant = a * d - b * b;
+    p->gamma = gamma;
+    p->inverse[0][0] = d / determinant, p->inverse[1][1] = a / determinant;
+    p->inverse[0][1] = p->inverse[1][0] = -b / determinant;
+    return true;
+}
+
+static void spring_solve(void *self, double *x) {
+    const spring *p = self;
+    double b[2] = {x[0] + p->gamma * x[2], x[1] + p->gamma * x[3]};
+    for (int i = 0; i < 2; i++) x[i] = p->inverse[i][0] * b[0] + p->inverse[i][1] * b[1];
+    for (int i = 0; i < 2; i++) x[2 + i] += p->gamma * (p->tangent[i][0] * x[0] + p->tangent[i][1] * x[1]);
+}
+
+// Steps for each linearisation in one second of steps of 10 ms.
+static double age_of_tangents(const bough_integrator *micro, double t, double *y) {
+    bough_statistics before = {0}, after = {0};
+    micro->ops->statistics(micro->self, &before);
+    check_ok(integrator_advance(micro, t, t + 1, false, y));
+    micro->ops->statistics(micro->self, &after);
+    return (double)(after.steps - before.steps) / (double)(after.jacobians - before.jacobians);
+}
+
+// Without damping, tangents are kept as long as they hardly change, and no longer once they do.
+TEST(undamped_systems_keep_tangents_that_hardly_change) {
+    static const double scale[4] = {1, 1, 1, 1};
+    for (int coarse = 0; coarse < 2; coarse++) {
+        spring p;
+        bough_arena *arena = check_memory();
+        bough_ode ode = {
+            "spring",     4,       scale, &p, spring_derivative, NULL, spring_linearise, spring_factor,
+            spring_solve, INFINITY};
+        bough_integrator_options options = {BOUGH_ROSENBROCK, 1e3, 0.01, 0, 0, coarse};
+        bough_integrator micro;
+        double y[4] = {1, 0, 0.1, 0};
+        check_ok(bough_integrator_create(arena, &ode, &options, &micro));
+        age_of_tangents(&micro, 0, y);
+        age_of_tangents(&micro, 1, y);
+        double straight = age_of_tangents(&micro, 2, y);
+        y[3] = 2 * y[0];
+        double turning = age_of_tangents(&micro, 3, y);
+        print_message("%g steps for each linearisation, %g turning at 2 rad/s\n", straight, turning);
+        assert_true(straight > (coarse ? 8 : 15));
+        assert_true(turning < 4);
+        bough_arena_destroy(arena);
+    }
+}
