@@ -1,5 +1,5 @@
-// The rod's kernels at their levels (core/base/level.h): what each does is told where the function without a
-// level is declared.
+// The rod's kernels at their levels (core/base/level.h): what each does is described where the function
+// without a level is declared.
 #ifndef BOUGH_FLEXBODY_ROD_ROD_KERNELS_H
 #define BOUGH_FLEXBODY_ROD_ROD_KERNELS_H
 

@@ -154,7 +154,7 @@ killed "$turbine" 40ms --set 'simulation.duration=1 s' --set simulation.error_sh
 wrong_checkpoints
 wrong_intervals
 other_ends
-# Two runs into one folder: the second is told who has it. What a killed run leaves half-written goes
+# Two runs into one folder: the second names the process that has it. What a killed run leaves half-written goes
 # with the next.
 mkdir busy
 "$bough" run "$bar" --out busy --quiet --set simulation.duration=2000 >stdout 2>stderr </dev/null &

@@ -19,7 +19,7 @@ exists() { [ -e "$1" ] || fail "$said: no $1"; }
 missing() { [ ! -e "$1" ] || fail "$said: $1 should not exist"; }
 nothing_written() { [ -z "$(ls -A .)" ] || fail "$said: wrote $(ls -A .)"; }
 
-# refused MESSAGE ARGUMENT...: a usage error, told on stderr, and nothing done.
+# refused MESSAGE ARGUMENT...: a usage error on stderr, and nothing done.
 refused() {
     message=$1
     shift
@@ -584,7 +584,7 @@ shown() {
     refused "there is no folder 'nowhere'" report nowhere
 }
 
-# A foreign model as a scene, and what is told of a bad one.
+# A foreign model as a scene, and the message for a bad one.
 imported() {
     expect 0 import openfast "$folder/tests/data/decks/main.fst" --out out
     has ../stdout '^scene: out/scene.yaml$'

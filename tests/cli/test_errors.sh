@@ -128,7 +128,7 @@ grep -q '"source": "companion"' out/summary.json || fail 'the companion of the w
 # What precedes simulation.output.from does not count.
 run 0 '^largest errors: ' whip.yaml --set simulation.output.from='0.5 s'
 
-# Without a companion nothing is told, and the run says so.
+# Without a companion there is no estimate, and the run says so.
 run 0 '^errors: not estimated: simulation.error_estimate is none' fall.yaml --set simulation.error_estimate=none
 grep -q '"relative": null' out/summary.json || fail 'an unknown error is null'
 

@@ -282,7 +282,7 @@ class Fmu(unittest.TestCase):
         self.assertEqual(fmu.get([0]), [0])
         fmu.free()
 
-    def test_what_is_wrong_is_told(self):
+    def test_what_is_wrong_is_reported(self):
         self.assertIsNone(Instance("another").pointer)
         fmu = Instance()
         self.assertEqual(fmu.step(0, 0.02)[0], ERROR)  # not initialised

@@ -91,9 +91,9 @@ class Member(unittest.TestCase):
 
     def refused(self, expected, *sets, code=2, command="run"):
         words = [word for s in sets for word in ("--set", s)]
-        told = self.program(command, "scene.yaml", *words)
-        self.assertIn(expected, told.stderr)
-        self.assertEqual(told.returncode, code)
+        done = self.program(command, "scene.yaml", *words)
+        self.assertIn(expected, done.stderr)
+        self.assertEqual(done.returncode, code)
 
     def error(self, *sets, force_within=2e-2):
         """Of the displacement at the end, from the damped oscillation."""
@@ -207,7 +207,7 @@ class Member(unittest.TestCase):
                 rows.append(bytes(run.advance()["massPos"]))
         self.assertEqual(*rows)
 
-    def test_what_does_not_fit_is_told_with_its_place(self):
+    def test_what_does_not_fit_is_reported_with_its_place(self):
         write(self.scene, SCENE.replace("scheme: extrapolated", "scheme: ramp"))
         self.refused("scene.yaml:7:22: error: simulation.coupling.scheme: 'damper' is an FMU")
         write(self.scene, SCENE)
@@ -231,9 +231,9 @@ class Member(unittest.TestCase):
         self.refused("expected a mapping of names and numbers", "bodies[damper].fmu.parameters=8")
         self.refused("has no modes", command="modes")
         self.refused("has no equilibrium", command="static")
-        told = self.program("export", "fmu", "scene.yaml")
-        self.assertIn("'damper' is an FMU, whose equations are not known", told.stderr)
-        self.assertEqual(told.returncode, 2)
+        done = self.program("export", "fmu", "scene.yaml")
+        self.assertIn("'damper' is an FMU, whose equations are not known", done.stderr)
+        self.assertEqual(done.returncode, 2)
 
     def test_the_folder_is_judged_before_the_run(self):
         self.unpack(version="2.0")
@@ -251,7 +251,7 @@ class Member(unittest.TestCase):
         write(self.scene, SCENE + SCENE[SCENE.index("  - name: damper"):].replace("name: damper", "name: b"))
         self.refused("only one body can use this FMU, and 'damper' does")
 
-    def test_its_failure_is_told_with_body_and_time(self):
+    def test_its_failure_is_reported_with_body_and_time(self):
         self.unpack(token="refuses")
         self.refused("damper: the FMU's fmi3InstantiateCoSimulation at 0 s: error: no licence", code=3)
         self.unpack(token="late")

@@ -64,7 +64,7 @@ END
 study 0 '4 runs, 0 failed' sweep.yaml --out sweep
 head -n 1 sweep/cases.csv | grep -q '^case,aero.wind.speed,aero.air_density,outcome,RotSpeed min \[rpm\]' ||
     fail "head of cases.csv: $(head -n 1 sweep/cases.csv)"
-# What is told decides here, too.
+# The estimate decides here, too.
 sed 's/duration: 3 s/duration: 1.5 s, simulation.error_bound: 1e-9/' sweep.yaml >beyond.yaml
 study 3 '4 of 4 runs failed' beyond.yaml --out beyond
 grep -q 'error bound 1e-09 is exceeded' log || fail "cases beyond their error bound: $(cat log)"
@@ -132,7 +132,7 @@ loads() { cut -d, -f1-4,7 "$1/equivalent.csv"; }
 [ "$(awk -F, 'NR > 1 && $5 == "nan" && $6 == "nan"' unknown/equivalent.csv | wc -l)" -eq 3 ] ||
     fail "errors without companions: $(cat unknown/equivalent.csv)"
 
-# Errors of equivalent loads, told by companions of all cases, beside a solution with a third of the segments' length,
+# Errors of equivalent loads, estimated by companions of all cases, beside a solution with a third of the segments' length,
 # a quarter of the step and half the sampling time.
 errors_of() {
     cat <<END
@@ -159,7 +159,7 @@ study 0 '' fine.yaml --out fine
 paste -d, coarse/equivalent.csv fine/equivalent.csv | awk -F, '
     NR > 1 { for (k = 3; k <= 4; k++) {
         true = $k - $(k + 7); if (true < 0) true = -true
-        if (!($(k + 2) > true / 3 && $(k + 2) < 5 * true)) { bad = 1; print $1, "told", $(k + 2), "true", true > "/dev/stderr" } } }
+        if (!($(k + 2) > true / 3 && $(k + 2) < 5 * true)) { bad = 1; print $1, "estimate", $(k + 2), "true", true > "/dev/stderr" } } }
     END { exit bad }' || fail "errors of equivalent loads"
 
 # -- what a file says decides, not its name --------------------------------------------------------
@@ -225,18 +225,18 @@ ran=$(sed -n 's/^ran \([0-9]*\) cases.*/\1/p' log)
 [ "$ran" -le 8 ] || fail "a killed worker's cases were run again: $ran"
 same whole killed
 
-# A damaged result is told, not taken for a missing one.
+# A damaged result is reported, not taken for a missing one.
 cp -r whole damaged && head -n 5 whole/cases/000003.case >damaged/cases/000003.case
 study 1 'cases/000003.case.*is damaged: remove it' set.yaml --out damaged
 rm damaged/cases/000003.case
 study 0 'ran 1 cases' set.yaml --out damaged
 same whole damaged
 
-# A case that fails is told, the others go on, and the result says what it lacks.
+# A case that fails is reported, the others go on, and the result says what it lacks.
 sed 's/speed: \[8, 16\]/speed: [8], simulation.error_bound: [0, 1e-12]/;s/^from/companions: all\n&/' set.yaml >failing.yaml
 study 3 'case 8 failed (DLC1.3, speed=8, error_bound=1e-12)' failing.yaml --out failing
 grep -q "bough run .*--set aero.wind.speed=8 --set simulation.error_bound=1e-12" log || fail "no command line of the failed case: $(cat log)"
-grep -q '1 of 10 cases failed: the lifetime result is incomplete' log || fail "not told incomplete: $(cat log)"
+grep -q '1 of 10 cases failed: the lifetime result is incomplete' log || fail "not called incomplete: $(cat log)"
 grep -q '^INCOMPLETE: 1 cases failed' failing/table.txt || fail "table: $(head -n 4 failing/table.txt)"
 [ "$(grep -c ',ok,' failing/cases.csv)" -eq 9 ] || fail "the other cases were not run"
 

@@ -124,7 +124,7 @@ class Module(unittest.TestCase):
                 for name in first:
                     self.assertEqual(bytes(again[name]), bytes(first[name]), name)
 
-    def test_a_step_is_told_until_the_end(self):
+    def test_a_step_is_reported_until_the_end(self):
         with bough.Session(PENDULUM, "simulation.duration=0.1 s") as session:
             steps = 0
             while session.step():

@@ -18,9 +18,9 @@ failures=0 scenes=0
 
 # try WORD...: the program's arguments
 try() {
-    "$bough" "$@" --out "$scratch/out" >"$scratch/told" 2>&1 && return
+    "$bough" "$@" --out "$scratch/out" >"$scratch/log" 2>&1 && return
     echo "FAILED: exit code $?: bough $*"
-    head -n 40 "$scratch/told"
+    head -n 40 "$scratch/log"
     failures=$((failures + 1))
 }
 

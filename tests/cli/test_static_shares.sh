@@ -6,27 +6,27 @@ set -e
 bough=$1 source=$2
 out=$(mktemp -d)
 trap 'rm -rf "$out"' EXIT
-check() { # what, told, value, value of the fine mesh (three numbers each, or one)
+check() { # what, estimate, value, value of the fine mesh (three numbers each, or one)
     echo "$1: $2: $3: $4" | awk -F ': ' -v exact=1e-7 '{
         n = split($3, a, " ")
         split($4, b, " ")
         for (i = 1; i <= n; i++) { sum += (a[i] - b[i]) ^ 2; size += b[i] ^ 2 }
-        print $1 ": told " $2 ", found " sqrt(sum)
+        print $1 ": estimate " $2 ", found " sqrt(sum)
         if ($2 < exact * sqrt(size) && sqrt(sum) < exact * sqrt(size)) exit 0 # as the moment of the weight
         exit !($2 > sqrt(sum) / 3 && $2 < 3 * sqrt(sum))
     }'
 }
 tip() { tail -n 1 "$out/$1/static.csv" | cut -d, -f3-5 | tr , ' '; }
 moment() { sed -n 's/^root .* moment \(.*\) N m$/\1/p' "$out/$1.log"; }
-told() { sed -n "s/^mesh error .*$2 \([^ ]*\) $3.*/\1/p" "$out/$1.log"; }
+estimate() { sed -n "s/^mesh error .*$2 \([^ ]*\) $3.*/\1/p" "$out/$1.log"; }
 rod() { # name, scene, checks the moment, too?, settings
     name=$1 scene=$2 full=$3
     shift 3
     for n in 384 12 48; do
         "$bough" static "$source/apps/beams/$scene.yaml" --out "$out/$n" --set "bodies[0].rod.segments=$n" "$@" >"$out/$n.log"
         [ "$n" = 384 ] && continue
-        check "$name, tip, $n" "$(told "$n" u m,)" "$(tip "$n")" "$(tip 384)"
-        [ "$full" = no ] || check "$name, moment, $n" "$(told "$n" moment 'N m')" "$(moment "$n")" "$(moment 384)"
+        check "$name, tip, $n" "$(estimate "$n" u m,)" "$(tip "$n")" "$(tip 384)"
+        [ "$full" = no ] || check "$name, moment, $n" "$(estimate "$n" moment 'N m')" "$(moment "$n")" "$(moment 384)"
     done
 }
 rod 'blade, tip force' blade yes --set 'loads[0].force=[50 kN, 0, 0]'

@@ -30,7 +30,7 @@ same() {
     for n in 1 2 3 8; do
         run out$n "$scene" --threads $n --set "simulation.duration=$duration" \
             --set simulation.error_bound=0 "$@"
-        grep -q "\"threads\": $n," out$n/summary.json || fail "$n threads are not told"
+        grep -q "\"threads\": $n," out$n/summary.json || fail "$n threads are not in the summary"
         cmp out1/channels.out out$n/channels.out || fail "1 and $n threads differ: $scene $*"
         for out in out1 out$n; do sed -n '/"error": {/,/"statistics_from"/p' $out/summary.json >$out/errors; done
         cmp out1/errors out$n/errors || fail "errors by 1 and $n threads differ: $scene $*"

@@ -59,7 +59,7 @@ earlier() {
     says 0 '' report old-report
 }
 
-# A disk that is full from some byte on: a limit of a file's size, told as the device would.
+# A disk that is full from some byte on: a limit of a file's size, with the device's message.
 full() {
     for name in "${!verb[@]}"; do
         for blocks in 1 4 8; do
@@ -73,7 +73,7 @@ full() {
             [ $code -eq 0 ] && break # the results are smaller
             [ $code -eq 1 ] || fail "$name, $blocks kB: exit code $code, expected 1"
             grep -q 'File too large' stderr || fail "$name, $blocks kB: $(head -c 300 stderr)"
-            # These write besides the rows, and end them: so the rows of now are told.
+            # These write besides the rows, and end them: so the rows of now are named.
             [ "$name" = checkpoint ] || [ "$name" = frames ] && continue
             # Tables are written anew from the runs, which are kept.
             [ "$name" = study ] && cp kept/table.* kept/plot.svg out

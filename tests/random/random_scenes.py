@@ -115,7 +115,7 @@ def error_of(run, truth, estimate):
     n = min(len(run.rows), len(truth.rows))
     errors = {}
     for vector, columns in channels.items():
-        error = told = span = size = 0.0
+        error = estimated = span = size = 0.0
         for mine, other, name, unit in columns:
             whole = [row[other + 1] for row in truth.rows]
             off = [run.rows[i][mine + 1] - whole[i] for i in range(n)]
@@ -125,17 +125,17 @@ def error_of(run, truth, estimate):
             span = max(span, max(whole) - min(whole))
             size = max(size, max(map(abs, whole)))
             value = estimate.get(name)
-            told = math.nan if value is None else max(told, value) if told == told else told
+            estimated = math.nan if value is None else max(estimated, value) if estimated == estimated else estimated
         unit = columns[0][3]
         if "/s" in unit or "rpm" in unit:
             span = max(span, FLOOR * size)
-        errors[vector] = (error, told, span, size, unit)
+        errors[vector] = (error, estimated, span, size, unit)
     largest = collections.defaultdict(float)
-    for error, told, span, size, unit in errors.values():
+    for error, estimated, span, size, unit in errors.values():
         largest[unit] = max(largest[unit], span)
     most = max([SI.get(unit, 1) * max(span, min(size, 1 / SI.get(unit, 1)))
                 for _, _, span, size, unit in errors.values()], default=0)
-    return {vector: (error / span, told / span) for vector, (error, told, span, size, unit) in errors.items()
+    return {vector: (error / span, estimated / span) for vector, (error, estimated, span, size, unit) in errors.items()
             if span > FLOOR * largest[unit] and span > FLOOR * (0 if is_motion(unit) else size)
             and SI.get(unit, 1) * span > ROUNDING * most}
 
@@ -311,8 +311,8 @@ def table(results, column):
                 shares[name].append(result[5])
     print("%-13s %5s " % ("", "runs") + " ".join("%10s" % c for c in CLASSES) + "   estimate/error, within 1/3 to 4")
     for name in [n for n in rows if n != "all"] + ["all"]:
-        told = shares[name]
-        good = "%.2f to %.2f, %d of %d" % (min(told), max(told), sum(1 / 3 <= x <= 4 for x in told), len(told)) if told else "."
+        estimated = shares[name]
+        good = "%.2f to %.2f, %d of %d" % (min(estimated), max(estimated), sum(1 / 3 <= x <= 4 for x in estimated), len(estimated)) if estimated else "."
         print("%-13s %5d " % (name, sum(rows[name].values())) + " ".join("%10s" % (rows[name][c] or ".") for c in CLASSES) +
               "   " + good)
     print()

@@ -146,7 +146,7 @@ static inline void contract_newton(const bough_system *s, contract_point at, dou
     free(x), free(slope), free(solved);
 }
 
-// Two constant pieces of input; `restart` is what the first is told, the second keeps the history.
+// Two constant pieces of input; `restart` is of the first, the second keeps the history.
 static inline void contract_run(bough_member *m, contract_point at, double length, bool restart) {
     double *coefficient = contract_doubles(4 * m->system.n_input);
     memcpy(coefficient, at.input, (size_t)m->system.n_input * sizeof(double));

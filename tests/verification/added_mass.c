@@ -255,8 +255,8 @@ static void paint(const outcome *o, bough_map_cell *cell, bough_arena *arena) {
     } else {
         snprintf(cell->text, sizeof cell->text, "%.3g s", o->time);
     }
-    const char *told = bough_is_ok(&o->status) ? o->verdict : o->status.message;
-    cell->hint = told[0] ? bough_arena_string(arena, told) : NULL;
+    const char *text = bough_is_ok(&o->status) ? o->verdict : o->status.message;
+    cell->hint = text[0] ? bough_arena_string(arena, text) : NULL;
 }
 
 static void perform_run(bough_arena *arena, const added_mass_study *s, int i, int k, report *out) {

@@ -24,16 +24,16 @@ typedef struct bough_spring_mass {
     double m, k, c; // mass [kg], stiffness [N/m] and damping [N s/m] to the wall
 } bough_spring_mass;
 
-// Told the force on it, times `sign`; tells (v, x). At x, at rest.
+// Input: the force on it, times `sign`; output: (v, x). At x, at rest.
 bough_oscillator bough_oscillator_force_in(bough_spring_mass s, double sign, double x);
 
-// Told the other's (v, x), holds the coupling spring (k, c); tells the force on the other.
+// Input: the other's (v, x). It has the coupling spring (k, c); output: the force on the other.
 bough_oscillator bough_oscillator_motion_in(bough_spring_mass s, double k, double c, double x);
 
 // The same, but tells its own (v, x).
 bough_oscillator bough_oscillator_motion_in_and_out(bough_spring_mass s, double k, double c, double x);
 
-// The coupling spring alone: told (v, x) of the first mass and of the second, tells the force on the
+// The coupling spring alone. Input: (v, x) of the first mass and of the second; output: the force on the
 // first.
 bough_oscillator bough_oscillator_link(double k, double c);
 

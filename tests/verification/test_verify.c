@@ -1,4 +1,4 @@
-// Studies of kind verify: what is read, judged and told.
+// Studies of kind verify: what is read, judged and reported.
 #include "tests/unit/scratch.h"
 #include "tests/verification/verify.h"
 
@@ -97,7 +97,7 @@ TEST_IN_FOLDER(a_diagnosis_is_expected_or_missed) {
     check_ok(perform(*context, HEAD TOO_FEW("more segments are needed"), table));
     bough_status status = perform(*context, HEAD TOO_FEW("the moon is full"), table);
     assert_int_equal(status.code, BOUGH_FAILED);
-    assert_true(says(table, "more segments are needed")); // told in either case
+    assert_true(says(table, "more segments are needed")); // reported in either case
 }
 
 TEST_IN_FOLDER(free_flight_keeps_energy_and_momenta) {
@@ -158,7 +158,7 @@ static void check_error(const char *folder, const char *text, const char *messag
 }
 
 #define CASE(lines) HEAD "  - name: a\n    scene: " BEAMS "elastica.yaml\n" lines
-TEST_IN_FOLDER(mistakes_are_told_before_the_first_case) {
+TEST_IN_FOLDER(mistakes_are_reported_before_the_first_case) {
     check_error(*context, CASE("    do: static\n    expect: [{quantity: tip q, absolute: 1}]\n"),
                 "expected 'tip x|y|z");
     check_error(*context, CASE("    do: static\n    expect: [{quantity: tip x}]\n"),

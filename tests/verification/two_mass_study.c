@@ -83,7 +83,7 @@ static const bough_key variant_keys[] = {
     {.name = "name", .kind = BOUGH_KEY_TEXT, .required = true, AT(name), .help = "heads its lines"},
     {.name = "cut", .kind = BOUGH_KEY_CHOICE,
      .choices = CHOICES("force-displacement", "displacement-displacement", "force-force"),
-     .fallback = "force-displacement", AT(cut), .help = "what mass 1 and mass 2 are told"},
+     .fallback = "force-displacement", AT(cut), .help = "what mass 1 and mass 2 receive"},
     {.name = "scheme", .kind = BOUGH_KEY_TEXT, .required = true, AT(scheme),
      .help = "coupling scheme"},
     {.name = "degrees", .kind = BOUGH_KEY_NUMBERS, .range = "[0, 2]", .count = 1,

@@ -301,7 +301,7 @@ static void set_mesh(bough_arena *arena, bough_verify_case *x) {
     }
 }
 
-// The scene with its replacements on the first mesh; what is wrong there is told at the case.
+// The scene with its replacements on the first mesh; what is wrong there is reported at the case.
 static void check_scene(bough_arena *arena, bough_verify_case *x, bough_errors *errors) {
     bough_arena *own = bough_arena_create();
     if (!own) return;

@@ -96,7 +96,7 @@ TEST(sums_are_those_by_hand) {
     check_near(l.lacking, 0, 0, 0);
 }
 
-TEST(what_is_lacking_is_told) {
+TEST(what_is_lacking_is_reported) {
     check_arena(arena);
     bough_case cases[CASES];
     bough_load_group group[4];

@@ -114,7 +114,7 @@ TEST_IN_FOLDER(grid_is_the_product_of_its_values) {
     close_study(&f);
 }
 
-// Keys of the same last part are told apart; a quoted value stays text.
+// Keys of the same last part are distinguished; a quoted value stays text.
 TEST_IN_FOLDER(labels_are_unique_and_quotes_are_kept) {
     fixture f;
     bough_status status =
@@ -142,21 +142,21 @@ TEST_IN_FOLDER(a_mapping_is_a_value) {
 // "line:column path" of every error, one a line.
 static void check_errors(const char *folder, const char *text, const char *expected) {
     fixture f;
-    char told[2048] = "";
+    char found[2048] = "";
     bough_status status = open_study(&f, folder, text);
     assert_int_equal(status.code, BOUGH_INVALID);
     assert_null(f.study);
     for (int i = 0; i < f.errors.n; i++) {
-        size_t used = strlen(told);
+        size_t used = strlen(found);
         const bough_error *e = &f.errors.item[i];
         assert_string_equal(e->file, f.path);
-        snprintf(told + used, sizeof told - used, "%d:%d %s\n", e->line, e->column, e->path);
+        snprintf(found + used, sizeof found - used, "%d:%d %s\n", e->line, e->column, e->path);
     }
-    assert_string_equal(told, expected);
+    assert_string_equal(found, expected);
     close_study(&f);
 }
 
-TEST_IN_FOLDER(bad_keys_are_told_all_at_once) {
+TEST_IN_FOLDER(bad_keys_are_reported_all_at_once) {
     check_errors(*context,
                  "titel: x\nkind: work-precisoin\nscene: [a]\nreference: none\n"
                  "grid: {a.b: 1, c: [{e: [1]}, 2]}\ncommon: {d: {e: {f: 1}}}\nrepeat: 0\n"
@@ -178,7 +178,7 @@ TEST_IN_FOLDER(replacements_are_checked_where_the_study_gives_them) {
 }
 
 // A reference of kind stability has values on the model's axes alone.
-TEST_IN_FOLDER(errors_of_a_reference_with_parameters_are_told) {
+TEST_IN_FOLDER(errors_of_a_reference_with_parameters_are_reported) {
     check_errors(*context,
                  "title: Falling bar\nkind: stability\n" BAR REFERENCE
                  "grid:\n  bodies[0].rod.damping: [x]\n  simulation.macro_step: [1 ms]\n" COMMON MEASURES,
@@ -197,7 +197,7 @@ TEST_IN_FOLDER(output_times_must_be_common) {
                  "5:7 grid\n");
 }
 
-TEST_IN_FOLDER(missing_scene_is_told) {
+TEST_IN_FOLDER(missing_scene_is_reported) {
     check_errors(*context, "kind: work-precision\nscene: none.yaml\n" REFERENCE GRID MEASURES, "2:8 scene\n");
 }
 
@@ -258,7 +258,7 @@ TEST_IN_FOLDER(every_run_has_a_row) {
     assert_int_equal(count(table, "  ok  "), 3);
 }
 
-TEST_IN_FOLDER(failed_runs_are_told_with_their_diagnosis) {
+TEST_IN_FOLDER(failed_runs_are_reported_with_their_diagnosis) {
     char table[4096];
     check_ok(perform(*context, good_study, ALL, table));
     assert_int_equal(count(table, "failed at t=0.00"), 2);

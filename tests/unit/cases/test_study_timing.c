@@ -25,7 +25,7 @@ static void write_study(const char *folder, char path[128]) {
     fclose(file);
 }
 
-TEST_IN_FOLDER(every_turn_has_every_cell_and_errors_are_told) {
+TEST_IN_FOLDER(every_round_has_every_cell_and_errors_are_reported) {
     char path[128];
     const char *folder = *context;
     write_study(folder, path);

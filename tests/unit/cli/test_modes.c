@@ -51,7 +51,7 @@ TEST(coupled_masses_have_their_eigenvalues) {
 }
 
 // A pattern exp(i 2πhk/n) has that harmonic only.
-TEST(harmonics_are_told_apart) {
+TEST(harmonics_are_distinguished) {
     enum { PARTS = 5 };
     for (int h = -2; h <= 2; h++) {
         double real[PARTS], imaginary[PARTS], share[2];

@@ -310,7 +310,7 @@ TEST(only_true_and_false_are_booleans) {
     refuses("kind: fixed\non: 'true'\n", "f:2:5: error: on: expected true or false, got 'true'\n");
 }
 
-TEST(missing_keys_are_told_at_the_mapping) {
+TEST(missing_keys_are_reported_at_the_mapping) {
     refuses("label: x\n", "f:1:1: error: required key 'kind' is missing\n");
     refuses("kind: fixed\ninner:\n  label: x\nparts:\n  - label: y\n",
             "f:3:3: error: inner: required key 'length' is missing\n"

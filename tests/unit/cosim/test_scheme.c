@@ -231,7 +231,7 @@ TEST(newton_saves_a_sweep) {
     }
 }
 
-// Two undamped masses, 1 and 3 Hz, each holding the coupling spring and told the other's motion. An
+// Two undamped masses, 1 and 3 Hz, each with the coupling spring, its input the other's motion. An
 // independent program gives 1.03e-2 for end values, 2.84e-7 for cubics on 4 sub-steps of a window.
 TEST(waveforms_gain_six_digits_on_end_values) {
     const double unit = 39.478417604357434; // 4 pi^2

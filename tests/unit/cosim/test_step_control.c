@@ -99,7 +99,7 @@ static bough_status fail_to_advance(void *self, double *t, double pause, double 
 // A numerical failure is tried again with shorter steps down to the shortest, .02 s; no other is.
 TEST(only_what_asks_for_it_is_repeated) {
     static const struct {
-        bough_code code, told;
+        bough_code code, expected;
         int calls;
     } cases[] = {{BOUGH_FAILED, BOUGH_FAILED, 4}, // .16, .08, .04, .02 s
                  {BOUGH_IO, BOUGH_IO, 1},
@@ -113,7 +113,7 @@ TEST(only_what_asks_for_it_is_repeated) {
         failure = cases[k].code;
         calls = 0;
         bough_status status = bough_step(m.master);
-        assert_int_equal(status.code, cases[k].told);
+        assert_int_equal(status.code, cases[k].expected);
         assert_int_equal(calls, cases[k].calls);
     }
 }

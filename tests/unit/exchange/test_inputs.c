@@ -87,8 +87,8 @@ TEST(constant_inputs_are_loads_of_the_scene) {
     }
 }
 
-// A joint is where it was told at the end of the step, by a cubic that starts and ends with its speeds.
-TEST(joints_go_where_they_are_told) {
+// At the end of the step a joint is where the input says, by a cubic that starts and ends with its speeds.
+TEST(joints_go_where_the_input_says) {
     const char *const sets[] = {"simulation.duration=1 s",
                                 "bodies[0].joint.motion={angle: 10 deg, input: turn}", NULL};
     bough_session *s = open_scene(APPS "mechanisms/pendulum.yaml", sets);

@@ -30,7 +30,7 @@ TEST(steps_to_the_end_and_reads) {
     bough_session_close(s);
 }
 
-TEST(errors_are_told) {
+TEST(errors_are_reported) {
     const char *const set[] = {"simulation.duration=-1 s", "simulation.macro_step=2 m"};
     bough_session *s = bough_session_open(pendulum, set, 2);
     assert_int_equal(bough_session_code(s), BOUGH_SESSION_INVALID);
@@ -113,7 +113,7 @@ TEST(what_is_no_session_is_refused_in_every_call) {
     bough_session_close(s);
 }
 
-TEST(an_unknown_name_is_told_with_the_nearest) {
+TEST(an_unknown_name_is_reported_with_the_nearest) {
     const char *const set[] = {"loads=[{joint: bob, torque: 0, input: push}]"};
     bough_session *s = bough_session_open(pendulum, set, 1);
     assert_int_equal(bough_session_find(s, "bobPoss"), -1);

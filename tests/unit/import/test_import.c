@@ -1,4 +1,4 @@
-// Decks of OpenFAST as scenes: the numbers, by hand; what bad decks are told; that a scene runs.
+// Decks of OpenFAST as scenes: the numbers, by hand; the messages for bad decks; that a scene runs.
 #include "tests/unit/import_deck.h"
 
 #include "apps/bough/exchange/bough.h"
@@ -74,7 +74,7 @@ TEST(air_tables_follow_their_headers) {
     check_near(number(polars, "1.table.rows.2.1"), -0.9, 1e-9, 0);
 }
 
-// BEM_Mod 1 has Buhl's high thrust; decks that do not say which are told of.
+// BEM_Mod 1 has Buhl's high thrust; decks that do not say which get a note.
 TEST(high_thrust_is_the_decks) {
     trial t = import_main("v5/main.fst", &(edit){"v5/aero.dat", "2   BEM_Mod", "1   BEM_Mod"}, NULL);
     assert_string_equal(t.status.message, "");
@@ -138,7 +138,7 @@ TEST(versions_three_to_five_give_one_scene) {
     }
 }
 
-TEST(what_version_five_adds_is_told) {
+TEST(what_version_five_adds_is_noted) {
     const edit modal = {"v5/beam-blade.dat", "1   damp_type", "2   damp_type"};
     const edit bearing = {"v5/elasto.dat", "False         PitchDOF", "True  PitchDOF"};
     trial t = import_main("v5/main.fst", &modal, &bearing);
@@ -286,7 +286,7 @@ TEST(lines_have_places_before_names) {
     same_file(&base, &t, "scene.yaml");
 }
 
-TEST(bad_decks_are_told_where) {
+TEST(bad_decks_are_reported_with_their_place) {
     const struct {
         edit change;
         const char *says;

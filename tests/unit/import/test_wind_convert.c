@@ -131,7 +131,7 @@ TEST_WITH(bladed_files_are_boxes, set_up, tear_down) {
     check_bladed(p, false, -1);
 }
 
-TEST_WITH(damaged_bladed_files_are_told, set_up, tear_down) {
+TEST_WITH(damaged_bladed_files_are_reported, set_up, tear_down) {
     place *p = *context;
     bough_wind_box box;
     bough_status status = bough_wind_bladed_read(p->arena, p->wind, &box);

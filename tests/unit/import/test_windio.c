@@ -1,5 +1,5 @@
 // Turbines of the WindIO ontology as scenes: the numbers, by hand; both layouts the same scene;
-// what bad files are told; that a scene runs.
+// the messages for bad files; that a scene runs.
 #include "tests/unit/import.h"
 
 #include "apps/bough/exchange/bough.h"
@@ -145,7 +145,7 @@ TEST(both_layouts_give_one_scene) {
     same(read_file(&first, "scene.yaml"), read_file(&second, "scene.yaml"));
 }
 
-TEST(what_is_not_given_is_told) {
+TEST(what_is_not_given_is_noted) {
     trial t =
         import_of("turbine-2.yaml",
                   &(edit){"turbine-2.yaml", "efficiency: 0.95}",
@@ -266,7 +266,7 @@ TEST(scene_steps) {
     bough_session_close(s);
 }
 
-TEST(bad_files_are_told_where) {
+TEST(bad_files_are_reported_with_their_place) {
     const struct {
         const char *from, *to, *says;
     } bad[] = {

@@ -236,7 +236,7 @@ TEST(impossible_matrices_give_way_to_layers) {
     check_near(number(rows, "0.4.0"), 8000 * pi * (1 - 0.99 * 0.99), 2e-3, 0);
 }
 
-TEST(bad_layers_are_told) {
+TEST(bad_layers_are_reported) {
     const struct {
         const char *structure, *says;
     } bad[] = {

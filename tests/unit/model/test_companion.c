@@ -14,7 +14,7 @@ typedef struct outcome {
     int n; // channels
     char name[MOST][BOUGH_CHANNEL_NAME];
     double value[STEPS][MOST]; // at multiples of 20 ms
-    double error[MOST];        // told
+    double error[MOST];        // estimate
     double largest[MOST];      // value
     bool compared;
     char reason[BOUGH_COMPANION_REASON];
@@ -52,7 +52,7 @@ static double true_error(const outcome *o, const outcome *truth, int channel, in
 }
 
 // The whole error of motion, by mesh, air, steps and coupling, for two schemes.
-TEST(the_whole_error_is_told) {
+TEST(the_whole_error_is_estimated) {
     const char *const truth_sets[] = {"simulation.duration=2 s",
                                       "simulation.coupling={scheme: monolithic}",
                                       "simulation.master={solver: rosenbrock, step: 5 ms, rtol: 1e-6}",
@@ -76,7 +76,7 @@ TEST(the_whole_error_is_told) {
             int i = 0;
             while (strcmp(o->name[i], watched[w]) != 0) i++;
             double error = true_error(o, truth, i, STEPS);
-            print_message("%s: true %.2g, told %.2g: %.2f\n", watched[w], error, o->error[i],
+            print_message("%s: true %.2g, estimate %.2g: %.2f\n", watched[w], error, o->error[i],
                           o->error[i] / error);
             bool force = strncmp(watched[w], "RootF", 5) == 0 && c == 1;
             assert_true(o->error[i] > error / (force ? 2 : 3) && o->error[i] < 5 * error);

@@ -121,7 +121,7 @@ TEST(library_steers_all_blades) {
 }
 
 // A turbine that looks along x in a wind of 10° across; a tower that bends moves its nacelle.
-TEST(library_is_told_of_the_nacelle) {
+TEST(library_receives_the_nacelle) {
     static const char *const sets[] = {RIGID, BLADED, "aero.wind.direction=10 deg", NULL};
     static const char *const record[] = {"record 24", "record 37", "record 53", "record 70"};
     for (int i = 0; i < 4; i++) {
@@ -132,11 +132,11 @@ TEST(library_is_told_of_the_nacelle) {
         f.channels = bough_channels_start(f.arena);
         check_ok(bough_simulation_channels(f.s, &f.channels));
         run_until(&f, 1);
-        double told = 1000 * channel(&f, "GenTq"); // kN m
-        if (i == 0) check_near(told, 10 * BOUGH_PI / 180, 0, 5e-3);
-        if (i == 1) check_near(told, 0, 0, 5e-3);
-        if (i == 2) assert_true(fabs(told) < 2);
-        if (i == 3) check_near(told, 0, 0, 0); // rigid blades have no root moments
+        double found = 1000 * channel(&f, "GenTq"); // kN m
+        if (i == 0) check_near(found, 10 * BOUGH_PI / 180, 0, 5e-3);
+        if (i == 1) check_near(found, 0, 0, 5e-3);
+        if (i == 2) assert_true(fabs(found) < 2);
+        if (i == 3) check_near(found, 0, 0, 0); // rigid blades have no root moments
         bough_arena_destroy(f.arena);
     }
 }
@@ -211,8 +211,8 @@ TEST(bad_scenes_are_refused) {
             bough_scene_read(arena, BOUGH_SOURCE_DIR "/apps/turbine/power.yaml", bad[i], 1, &errors, &scene);
         if (bough_is_ok(&status)) status = bough_simulation_build(arena, scene, &s);
         assert_int_equal(status.code, BOUGH_INVALID);
-        const char *told = errors.n > 0 ? errors.item[0].text : status.message;
-        if (!strstr(told, bad[i][1])) print_error("%s\n", told);
-        assert_non_null(strstr(told, bad[i][1]));
+        const char *found = errors.n > 0 ? errors.item[0].text : status.message;
+        if (!strstr(found, bad[i][1])) print_error("%s\n", found);
+        assert_non_null(strstr(found, bad[i][1]));
     }
 }

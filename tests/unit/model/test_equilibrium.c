@@ -48,7 +48,7 @@ TEST(held_states_stay) {
     check_near(s.y[3], 0, 0, 1e-9);
 }
 
-TEST(too_few_steps_are_told) {
+TEST(too_few_steps_are_reported) {
     setup s;
     build(&s);
     bough_equilibrium_def def = bough_equilibrium_def_default();

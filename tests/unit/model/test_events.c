@@ -206,16 +206,16 @@ static void refused(const char *set, const char *message) {
     char path[512];
     snprintf(path, sizeof path, "%s/%s", BOUGH_SOURCE_DIR, scene);
     bough_status status = bough_scene_read(arena, path, &set, 1, &errors, &read);
-    bool told = false;
-    for (int i = 0; i < errors.n; i++) told = told || strstr(errors.item[i].text, message);
+    bool found = false;
+    for (int i = 0; i < errors.n; i++) found = found || strstr(errors.item[i].text, message);
     if (bough_is_ok(&status)) {
         bough_run run;
         status = bough_run_create(arena, read, &run);
-        told = strstr(status.message, message) != NULL;
+        found = strstr(status.message, message) != NULL;
     }
     assert_int_equal(status.code, BOUGH_INVALID);
-    if (!told) print_error("no '%s' for %s\n", message, set);
-    assert_true(told);
+    if (!found) print_error("no '%s' for %s\n", message, set);
+    assert_true(found);
 }
 
 TEST(senseless_events_are_refused) {

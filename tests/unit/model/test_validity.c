@@ -1,4 +1,4 @@
-// Limits of the models: each is told once, with time and body.
+// Limits of the models: each is reported once, with time and body.
 #include "apps/bough/model/run.h"
 #include "apps/bough/model/validity.h"
 
@@ -29,14 +29,14 @@ static int passed(const bough_simulation *s) {
     return bits;
 }
 
-TEST(within_the_limits_nothing_is_told) {
+TEST(within_the_limits_there_is_no_warning) {
     static const char *const sets[] = {NULL};
     check_arena(arena);
     assert_int_equal(passed(run(arena, sets, 100)), 0);
 }
 
 // Blades of a few metres on the shaft at 18 rad/s.
-TEST(a_fast_section_is_told_once) {
+TEST(a_fast_section_is_warned_of_once) {
     static const char *const sets[] = {"bodies[2].joint.speed=18 rad/s", "aero.ramp=[0 s, 0 s]", NULL};
     check_arena(arena);
     bough_simulation *s = run(arena, sets, 4);
@@ -53,7 +53,7 @@ TEST(a_fast_section_is_told_once) {
 }
 
 // A cantilever whose tip moment rolls it up to a circle: 60 deg in each of six segments, 30 of twelve.
-TEST(a_turned_segment_is_told) {
+TEST(a_turned_segment_is_reported) {
     static const char *const coarse[] = {"bodies[0].rod.segments=6", "simulation.initial=equilibrium", NULL};
     static const char *const fine[] = {"bodies[0].rod.segments=12", "simulation.initial=equilibrium", NULL};
     check_arena(arena);
@@ -67,7 +67,7 @@ TEST(a_turned_segment_is_told) {
 }
 
 // The hub on the tower's axis, without tilt: the hanging blade stands in the tower.
-TEST(a_blade_in_the_tower_is_told) {
+TEST(a_blade_in_the_tower_is_reported) {
     static const char *const sets[] = {"bodies[2].joint.placement=[move z 1.2 m]", NULL};
     check_arena(arena);
     bough_simulation *s = run(arena, sets, 4);
@@ -78,7 +78,7 @@ TEST(a_blade_in_the_tower_is_told) {
 }
 
 // Each is seen before the first step; a scene without the defect passes nothing, above.
-TEST(defects_of_the_model_are_told_at_the_start) {
+TEST(defects_of_the_model_are_reported_at_the_start) {
     static const struct {
         const char *scene, *set;
         bough_limit limit;
@@ -107,7 +107,7 @@ TEST(defects_of_the_model_are_told_at_the_start) {
 #define IN_PIECES(blade) "bodies[" blade "].fidelity=segmented-modal", "bodies[" blade "].rod.segments=6"
 
 // Vibrations of the pieces grow under air at 10 Hz, and not at 50 Hz.
-TEST(samples_too_seldom_for_a_modal_blade_are_told) {
+TEST(samples_too_seldom_for_a_modal_blade_are_reported) {
     for (int rate = 10; rate <= 50; rate += 40) {
         char chosen[32];
         snprintf(chosen, sizeof chosen, "aero.rate=%d", rate);
@@ -127,7 +127,7 @@ TEST(samples_too_seldom_for_a_modal_blade_are_told) {
 
 // Windows of four bars, whose rods all come to lie on one line at 0.75 s; a loop that stays away from such a
 // position.
-TEST(singular_positions_are_told) {
+TEST(singular_positions_are_reported) {
     static const char *const sets[] = {NULL};
     check_arena(arena);
     bough_simulation *s = run_scene(arena, "apps/mechanisms/four-bar.yaml", sets, 75);
@@ -139,7 +139,7 @@ TEST(singular_positions_are_told) {
 
 // Two masses on stiff springs without damping, which ring at 16 and 31 kHz; at 160 and 310 Hz the same is
 // cheap.
-TEST(costly_motions_are_told) {
+TEST(costly_motions_are_reported) {
     static const char *const stiff[] = {"springs[0-1].stiffness=1e10", "simulation.master.solver=ida",
                                         "simulation.error_estimate=none", NULL};
     for (int k = 0; k < 2; k++) {

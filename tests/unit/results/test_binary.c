@@ -135,7 +135,7 @@ TEST_IN_FOLDER(what_it_cannot_hold_is_refused) {
     assert_false(scratch_has(*context, "channels.outb"));
 }
 
-TEST_IN_FOLDER(rows_that_are_gone_are_told) {
+TEST_IN_FOLDER(rows_that_are_gone_are_reported) {
     char path[256];
     fixture f = write_folder(*context, sample);
     snprintf(path, sizeof path, "%s/channels.out", (char *)*context);

@@ -101,7 +101,7 @@ TEST_IN_FOLDER(what_is_not_results_is_refused) {
     assert_false(scratch_has(folder, "report.html"));
 }
 
-TEST_IN_FOLDER(a_lost_frame_is_told) {
+TEST_IN_FOLDER(a_lost_frame_is_reported) {
     const char *folder = *context;
     write_frames(folder);
     write_text(folder, "frames/000001.vtp", "<DataArray>\nnothing\n");

@@ -294,7 +294,7 @@ TEST(rods_may_be_parts_of_a_table) {
 
 // -- the rest -------------------------------------------------------------------------------------
 
-TEST(missing_scene_is_told) {
+TEST(missing_scene_is_reported) {
     fixture f = read_scene("none.yaml", NULL, 0);
     assert_string_equal(f.printed, "none.yaml: error: cannot be read: No such file or directory\n");
     assert_int_equal(f.status.code, BOUGH_INVALID);

@@ -1,4 +1,4 @@
-// Bad modes, turbines, winds and polars, each told at its place.
+// Bad modes, turbines, winds and polars, each reported at its place.
 #include "tests/unit/scene_text.h"
 
 TEST(modes_name_their_axis) {

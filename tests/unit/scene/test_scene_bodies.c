@@ -1,4 +1,4 @@
-// Bad bodies, joints and rods, each told at its place.
+// Bad bodies, joints and rods, each reported at its place.
 #include "tests/unit/scene_text.h"
 
 TEST(all_errors_are_shown_in_order) {

@@ -1,4 +1,4 @@
-// Bad times and loads, each told at its place.
+// Bad times and loads, each reported at its place.
 #include "tests/unit/scene_text.h"
 
 TEST(times_fit_the_macro_step) {

@@ -40,7 +40,7 @@ TEST(more_blades_than_records_have_one_pitch) {
     }
 }
 
-// Every record that the controller is told, by its number in the interface's manual.
+// Every record that the controller receives, by its number in the interface's manual.
 TEST(records_are_served) {
     const bough_discon_sensed sensed = {.time = 2,
                                         .step = 0.5,
@@ -76,7 +76,7 @@ TEST(records_are_served) {
         check_ok(bough_discon_call(f.discon, &sensed, &demand));
         double wanted = record[i].number == 50 ? (double)strlen(input) : record[i].value;
         check_near(demand.torque, wanted, 1e-6, 1e-6);
-        check_near(demand.pitch[2], 0.4, 1e-6, 0); // its own, as it was told
+        check_near(demand.pitch[2], 0.4, 1e-6, 0); // its own demand
         bough_arena_destroy(f.arena);
     }
 }
@@ -92,16 +92,16 @@ TEST(status_tells_first_and_last) {
     }
 }
 
-TEST(failures_are_told) {
-    static const char *const told[][2] = {{"fail", "too late"}, {"nan", "nan"}, {"warn", NULL}};
+TEST(failures_are_reported) {
+    static const char *const answer[][2] = {{"fail", "too late"}, {"nan", "nan"}, {"warn", NULL}};
     for (int i = 0; i < 3; i++) {
-        fixture f = open_controller(told[i][0]);
+        fixture f = open_controller(answer[i][0]);
         bough_discon_sensed sensed = {.time = 1, .step = 1, .n_blade = 3, .generator_speed = 1};
         bough_discon_demand demand;
         bough_status status = bough_discon_call(f.discon, &sensed, &demand);
-        assert_int_equal(status.code, told[i][1] ? BOUGH_FAILED : BOUGH_OK);
-        if (told[i][1]) {
-            assert_non_null(strstr(status.message, told[i][1]));
+        assert_int_equal(status.code, answer[i][1] ? BOUGH_FAILED : BOUGH_OK);
+        if (answer[i][1]) {
+            assert_non_null(strstr(status.message, answer[i][1]));
             assert_non_null(strstr(status.message, "1 s"));
         }
         bough_arena_destroy(f.arena);

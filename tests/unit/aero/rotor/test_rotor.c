@@ -597,26 +597,26 @@ TEST(inflow_is_saved_and_restored) {
     free(memory);
 }
 
-// What a sample told is told again once stored and put back, the blades' distance to the tower included,
+// A sample's results are the same once stored and put back, the blades' distance to the tower included,
 // which differs from blade to blade.
-TEST(told_is_saved_and_restored) {
+TEST(results_are_saved_and_restored) {
     rig *r = create_rig(false);
     operate(r, 8, 0, 9);
     sample(r, BOUGH_PI); // blade 1 in front of the tower
-    bough_snapshot told = {.move = BOUGH_SNAPSHOT_MEASURE};
-    bough_rotor_result_snapshot(r->rotor, &r->data, &told);
-    char *copy = test_malloc(told.used);
+    bough_snapshot snapshot = {.move = BOUGH_SNAPSHOT_MEASURE};
+    bough_rotor_result_snapshot(r->rotor, &r->data, &snapshot);
+    char *copy = test_malloc(snapshot.used);
     bough_rotor_extremes before[BLADES];
     for (int b = 0; b < BLADES; b++) before[b] = bough_rotor_look(r->rotor, &r->data, b);
     assert_true(before[0].distance < 10 && before[1].distance > 2 * before[0].distance);
     double thrust = r->data.thrust;
-    told = (bough_snapshot){BOUGH_SNAPSHOT_SAVE, copy, 0};
-    bough_rotor_result_snapshot(r->rotor, &r->data, &told);
+    snapshot = (bough_snapshot){BOUGH_SNAPSHOT_SAVE, copy, 0};
+    bough_rotor_result_snapshot(r->rotor, &r->data, &snapshot);
     operate(r, 12, 3, 6);
     sample(r, 1);
     assert_true(bough_rotor_look(r->rotor, &r->data, 0).distance != before[0].distance);
-    told = (bough_snapshot){BOUGH_SNAPSHOT_RESTORE, copy, 0};
-    bough_rotor_result_snapshot(r->rotor, &r->data, &told);
+    snapshot = (bough_snapshot){BOUGH_SNAPSHOT_RESTORE, copy, 0};
+    bough_rotor_result_snapshot(r->rotor, &r->data, &snapshot);
     check_near(r->data.thrust, thrust, 0, 0);
     for (int b = 0; b < BLADES; b++) {
         bough_rotor_extremes after = bough_rotor_look(r->rotor, &r->data, b);

@@ -265,12 +265,12 @@ TEST(slopes_are_those_of_an_advance) {
             inflow = (bough_stall_inflow){50, alpha, turning};
             bough_stall_advance(&foil, chord, inflow, step, &s);
             bough_stall_slopes k = bough_stall_slopes_of(&foil, chord, inflow, step, &s);
-            const bough_coefficients told[2] = {k.angle, k.rate};
+            const bough_coefficients slope[2] = {k.angle, k.rate};
             for (int j = 0; j < 2; j++) {
                 double by = j == 0 ? d : 20 * d, whole = j == 0 ? 1 : chord / 100;
-                check_near(told[j].lift, (change[j][1].lift - change[j][0].lift) / by, 1e-2, 2e-2 * whole);
-                check_near(told[j].drag, (change[j][1].drag - change[j][0].drag) / by, 1e-2, 2e-2 * whole);
-                check_near(told[j].moment, (change[j][1].moment - change[j][0].moment) / by, 1e-2,
+                check_near(slope[j].lift, (change[j][1].lift - change[j][0].lift) / by, 1e-2, 2e-2 * whole);
+                check_near(slope[j].drag, (change[j][1].drag - change[j][0].drag) / by, 1e-2, 2e-2 * whole);
+                check_near(slope[j].moment, (change[j][1].moment - change[j][0].moment) / by, 1e-2,
                            2e-2 * whole);
             }
         }

@@ -1,4 +1,4 @@
-// Memory that ends anywhere while a run is set up: it is told, nothing leaks, nothing crashes.
+// Memory that ends anywhere while a run is set up: it is reported, nothing leaks, nothing crashes.
 #include "apps/bough/model/companion.h"
 #include "apps/bough/model/shape.h"
 #include "apps/bough/model/simulation.h"
@@ -122,7 +122,7 @@ static void try_all(void **state, const char *path, int stride, const char *cons
     }
 }
 
-TEST_IN_FOLDER(a_rod_of_every_kind_is_told) {
+TEST_IN_FOLDER(a_rod_of_every_kind_is_reported) {
     static const char *const micro[] = {"rosenbrock", "cvode-bdf", "arkode-esdirk", "generalized-alpha"};
     for (int i = 0; i < 4; i++) {
         char text[80];
@@ -134,7 +134,7 @@ TEST_IN_FOLDER(a_rod_of_every_kind_is_told) {
             (const char *const[]){"bodies[0].rod.segments=4", "bodies[0].fidelity=modal", NULL});
 }
 
-TEST_IN_FOLDER(every_scheme_is_told) {
+TEST_IN_FOLDER(every_scheme_is_reported) {
     static const char *const scheme[] = {"frozen", "gauss-seidel", "extrapolated", "iterated", "monolithic"};
     for (int i = 0; i < 5; i++) {
         char text[80];
@@ -144,12 +144,12 @@ TEST_IN_FOLDER(every_scheme_is_told) {
     }
 }
 
-TEST_IN_FOLDER(a_mechanism_is_told) {
+TEST_IN_FOLDER(a_mechanism_is_reported) {
     const char *const none[] = {NULL};
     try_all(context, "tests/data/scenes/closed.yaml", 3, none);
     try_all(context, "tests/data/scenes/arms.yaml", 7, none);
 }
 
-TEST_IN_FOLDER(a_turbine_is_told) {
+TEST_IN_FOLDER(a_turbine_is_reported) {
     try_all(context, "tests/data/scenes/example-turbine.yaml", 23, (const char *const[]){NULL});
 }

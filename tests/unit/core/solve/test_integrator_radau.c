@@ -166,7 +166,7 @@ TEST(copies_are_complete) {
     free(memory);
 }
 
-// A load that jumps at a call's end costs nothing once the integrator is told.
+// A load that jumps at a call's end costs nothing once the integrator knows.
 static bool pushed(problem *p, double t, const double *y, double *rate) {
     (void)t;
     rate[0] = y[1];

@@ -254,7 +254,7 @@ TEST(scenes_drive_joints) {
     check_near(scene_channel(s, &list, "liftPos"), 0.5 * 0.105 * 2 + 0.5 * 0.295 * 2, 1e-12, 0);
 }
 
-// Told every tenth of a second where a sine will be, a motion follows it without a jump in speed,
+// Given every tenth of a second where a sine will be, a motion follows it without a jump in speed,
 // to the fourth order; the first span starts at rest from where the motion is.
 TEST(steered_motion_follows) {
     check_arena(arena);

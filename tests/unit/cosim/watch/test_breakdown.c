@@ -41,13 +41,13 @@ TEST(a_growing_coupling_is_the_cause) {
         bough_status status = run(&m, .25, 0, judged == 1);
         const char *at = strstr(status.message, "grows by a factor of ");
         assert_non_null(at);
-        double told = strtod(at + strlen("grows by a factor of "), NULL), radius;
+        double factor = strtod(at + strlen("grows by a factor of "), NULL), radius;
         assert_non_null(strstr(at, "try macro_step: 0.125 s or scheme: monolithic"));
         assert_non_null(strstr(status.message, "(scheme gauss-seidel, macro step 0.25 s from "));
         fragile.advance = whole;
         status = bough_two_mass_radius(&m, .25, &radius);
         check_ok(status);
-        check_near(told, radius, 1e-2, 0);
+        check_near(factor, radius, 1e-2, 0);
     }
 }
 

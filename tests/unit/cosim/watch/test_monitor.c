@@ -46,7 +46,7 @@ TEST(stable_runs_raise_no_alarm) {
     }
 }
 
-TEST(what_is_not_finite_is_told) {
+TEST(what_is_not_finite_is_reported) {
     const double values[] = {NAN, (double)INFINITY, -(double)INFINITY, 1e308, -1e308};
     bough_two_mass m = bough_two_mass_default();
     bough_master_def def = bough_master_def_default();
