@@ -17,6 +17,8 @@ static const double tree_error = 5000; // the tree beside them: it is cheap, and
 static const double fine_rtol = 1e-6;  // below it BDF's high orders serve better
 static const double usual_step = 5e-3; // longest one of a rod's own method [s]; order 2
 
+static bool has_mesh(const bough_scene_body *b) { return b->rod.node && b->fidelity != BOUGH_SCENE_RIGID; }
+
 static bool is_named(const bough_node *map, const char *key) { return map && bough_node_find(map, key); }
 
 static void choose_micro(double accuracy, bough_scene_solver *micro) {
@@ -165,9 +167,44 @@ static void choose_times(bough_scene *s) {
     }
 }
 
-// -- what errors to expect ------------------------------------------------------------------------
+// -- steps ----------------------------------------------------------------------------------------
 
-static bool has_mesh(const bough_scene_body *b) { return b->rod.node && b->fidelity != BOUGH_SCENE_RIGID; }
+// What tolerances do not see: vibrations that are small against the size of a rod. Steps that are longer than
+// a part of their period lose them in the run and in its companion alike.
+static const double second_wave = 4.694; // wave number of a clamped rod's second bending over its length
+static const double parts_of_period = 10;
+
+// Means over the span, of the softer direction of bending.
+static double second_period(const bough_scene_rod *rod) {
+    const bough_scene_structure *s = &rod->structure;
+    double bending = 0, mass = 0;
+    for (int i = 0; i < s->n_station; i++) {
+        const bough_section_station *d = &s->station[i].def;
+        double from = s->station[i > 0 ? i - 1 : 0].def.position.z;
+        double to = s->station[i + 1 < s->n_station ? i + 1 : i].def.position.z;
+        double part = s->n_station == 1 ? 1 : 0.5 * (to - from) / s->length;
+        bending += part * fmin(d->stiffness[15], d->stiffness[18]);
+        mass += part * d->mass;
+    }
+    double wave = second_wave / s->length;
+    return 2 * BOUGH_PI / (wave * wave) * sqrt(mass / bending);
+}
+
+// Of all bodies as one system, not shorter than of a rod by itself.
+static void limit_step(bough_scene *s) {
+    bough_scene_solver *master = &s->simulation.master;
+    bool limited = master->solver == BOUGH_ROSENBROCK || master->solver == BOUGH_AUTOMATIC;
+    if (!limited || is_named(master->node, "step")) return;
+    double step = (double)INFINITY, least = usual_step * sqrt(s->simulation.accuracy / usual);
+    for (int i = 0; i < s->n_body; i++) {
+        if (!has_mesh(&s->body[i])) continue;
+        double part = second_period(&s->body[i].rod) / parts_of_period * scale_of_time(s);
+        step = fmin(step, fmax(part, least));
+    }
+    if (step < s->simulation.macro_step) master->step = step;
+}
+
+// -- what errors to expect ------------------------------------------------------------------------
 
 static void expect_mesh(const bough_scene *s, bough_scene_expectation *e) {
     for (int i = 0; i < s->n_body; i++) {
@@ -207,4 +244,5 @@ void bough_scene_apply_accuracy(bough_scene *s) {
     }
     choose_segments(s);
     choose_times(s);
+    limit_step(s);
 }

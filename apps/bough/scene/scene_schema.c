@@ -24,7 +24,8 @@ static const bough_key master_keys[] = {
     RTOL,
     {KEY(NUMBER, step), UNIT(TIME), .range = "[1e-7, 10]", .example = "10 ms",
      .help = "of generalized-alpha, rosenbrock and automatic: longest step; default the macro "
-             "step"},
+             "step, and of the last two, with a scheme for all bodies together, from simulation.accuracy "
+             "and the rods"},
     RHO,
 };
 static const bough_key micro_keys[] = {

@@ -46,6 +46,26 @@ TEST(everything_scales_with_the_accuracy) {
     assert_int_equal(f.scene->simulation.master.solver, BOUGH_IDA); // as with that rtol named
 }
 
+// A tenth of the period of a rod's second bending, f₂ = (4.694/l)² √(EI/m)/2π, of the softer direction.
+TEST(a_longest_step_follows_a_second_mode) {
+    static const struct {
+        const char *stiffness;
+        double step;                                   // [s]; 0: the macro step
+    } cases[] = {{"[1, 1, 1, 83.2, 500, 1]", 12.5e-3}, // 8 Hz
+                 {"[1, 1, 1, 1e6, 1e6, 1]", 5e-3},     // as of a rod by itself
+                 {"[1, 1, 1, 1, 1, 1]", 0}};
+    for (size_t k = 0; k < sizeof cases / sizeof *cases; k++) {
+        char stiffness[64];
+        snprintf(stiffness, sizeof stiffness, "bodies[b].rod.stiffness=%s", cases[k].stiffness);
+        const char *const sets[] = {stiffness, "simulation.macro_step=40 ms", "simulation.master.step=3 ms"};
+        write_file("s.yaml", BAR(""));
+        fixture f = read_scene("s.yaml", sets, 2);
+        check_near(f.scene->simulation.master.step, cases[k].step, 1e-3, 0);
+        f = read_scene("s.yaml", sets, 3);
+        check_near(f.scene->simulation.master.step, 3e-3, 1e-12, 0);
+    }
+}
+
 // A key that is named holds; those beside it still follow.
 TEST(keys_replace_one_by_one) {
     fixture f = accepted(BAR(", master: {rtol: 1e-3}"));
@@ -219,6 +239,20 @@ TEST(errors_of_a_turbine) {
         "simulation.duration=4 s",       "bodies[blade1].rod.segments=6", "bodies[blade2].rod.segments=6",
         "bodies[blade3].rod.segments=6", "aero.ramp=[0 s, 1 s]",          NULL};
     check_errors("apps/turbine/runup.yaml", sets);
+}
+
+// Without the limit of the longest step, run and companion lose the second mode.
+TEST(errors_of_small_vibrations) {
+    static const char beam[] = "tests/data/scenes/small-vibration.yaml";
+    static const char *const sets[] = {NULL};
+    static recorded run, truth;
+    record(beam, sets, "simulation.master={solver: ida, rtol: 1e-9}", &truth);
+    record(beam, sets, "simulation.accuracy=0.005", &run);
+    double error = error_of(&run, &truth);
+    record(beam, sets, "simulation.master.step=20 ms", &run);
+    print_message("%.2g, with the macro step %.2g\n", error, error_of(&run, &truth));
+    assert_true(error < 0.005);
+    assert_true(error_of(&run, &truth) > 2 * error);
 }
 
 GROUP(enter, leave)
