@@ -197,7 +197,8 @@ static void watch(bough_companion *c) {
         double own = range_of(c, i, c->low, c->high), other = range_of(c, i, c->other_low, c->other_high);
         double apart = fabs(difference(&c->channels->channel[i], c->value[i], c->other[i]));
         double range = bough_error_range(c, i);
-        if (!(apart > several * range) || !bough_error_counts(c, i)) continue;
+        if (!(apart > several * range) || !bough_error_counts(c, i) || !bough_error_shows(c, i, apart))
+            continue;
         run = run || own > several * fmax(other, range);
         companion = companion || other > several * fmax(own, range);
     }

@@ -114,6 +114,16 @@ bool bough_error_counts(const bough_companion *c, int i) {
     return moving && moves >= least_share * kind_range(c, channel->kind);
 }
 
+bool bough_error_shows(const bough_companion *c, int channel, double difference) {
+    const bough_channel *list = c->channels->channel;
+    double largest = 0;
+    for (int i = 0; i < c->channels->count; i++) {
+        if (list[i].kind == list[channel].kind && !list[i].sampled)
+            largest = fmax(largest, list[i].si * largest_value(c, i));
+    }
+    return list[channel].si * difference > least_share * largest;
+}
+
 // -- the verdict ----------------------------------------------------------------------------------
 
 static double relative_of(const bough_companion *c, int i, double error) {
