@@ -69,7 +69,7 @@ typedef struct finding {
     bough_companion *companion;
     bool lost; // the companion may have lost the solution
     bool (*stop)(void);
-    double end; // of the run, less half a macro step [s]
+    double end; // of the run, less rounding [s]
     bough_error_shares *shares;
 } finding;
 
@@ -199,7 +199,7 @@ static bool has_lost(const bough_companion *c) {
 
 bough_status bough_error_shares_find(bough_arena *arena, bough_companion *c, bool (*stop)(void),
                                      bough_error_shares *shares) {
-    double end = c->run->scene->simulation.duration - 0.5 * c->run->master->macro_step;
+    double end = c->run->scene->simulation.duration - 1e-6 * c->run->master->macro_step;
     finding x = {c, has_lost(c), stop, end, shares};
     double cpu = bough_cpu_clock(false);
     *shares = (bough_error_shares){.found = true, .n_channel = c->channels->count};

@@ -105,6 +105,23 @@ TEST(a_companion_that_loses_the_solution_is_replaced) {
     assert_true(relative > 2e-3 && relative < 0.15);
 }
 
+// A load that comes in the second half of the last macro step, of which the further runs know, too.
+TEST(the_last_half_step_has_shares) {
+    const char *const sets[] = {"simulation.coupling.scheme=frozen", "bodies[arm].rod.segments=10",
+                                "loads[0].factor={times: [0.795, 0.7951], values: [0, 1]}", NULL};
+    check_arena(arena);
+    bough_run r;
+    bough_error_shares shares;
+    check_ok(bough_run_create(arena, scene_read(arena, "tests/data/scenes/small-vibration.yaml", sets), &r));
+    while (!bough_run_done(&r)) check_ok(bough_run_step(&r));
+    int tip = bough_channels_find(&r.channels, "armTipX");
+    double error = r.companion->error[tip];
+    assert_true(error > 0);
+    check_ok(bough_error_shares_find(arena, r.companion, NULL, &shares));
+    check_near(r.companion->error[tip], error, 0.5, 0);
+    assert_true(shares.share[BOUGH_SHARE_TIME].largest[tip] > 0.1 * error);
+}
+
 // A short run whose steps are as long as its macro step: half of them would be the companion's own steps.
 TEST(steps_of_a_macro_step_have_an_error) {
     const char *const truth_sets[] = {"simulation.macro_step=20 ms", "simulation.error_estimate=none", NULL};
