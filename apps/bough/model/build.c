@@ -64,6 +64,10 @@ static size_t count_corners(const bough_scene *scene) {
 
 // -- parts ----------------------------------------------------------------------------------------
 
+enum {
+    MOST_TREE_STEPS = 20000
+}; // in a macro step: a tree between rods that takes more follows wrenches that run away
+
 static bough_integrator_options solver_options(const bough_scene_solver *solver) {
     return (bough_integrator_options){.kind = (bough_integrator_kind)solver->solver,
                                       .rtol = solver->rtol,
@@ -120,6 +124,7 @@ static bough_status build_tree(bough_builder *b) {
         bough_force_link_rest(scene, s->view, s->tree);
     }
     bough_integrator_options master = solver_options(&scene->simulation.master);
+    master.most_steps = MOST_TREE_STEPS;
     // the tree's own method is never asked, and the scheme's may not suit it
     if (bough_scheme_find(scheme_options(scene).name)->one_system) master.kind = BOUGH_ROSENBROCK;
     bough_system tree = bough_tree_system_create(b->arena, s->tree, "tree");

@@ -427,3 +427,15 @@ TEST(iterated_on_many_threads) { threads_do_not_change_a_bit("iterated"); }
 TEST(ramp_on_many_threads) { threads_do_not_change_a_bit("ramp"); }
 
 TEST(monolithic_on_many_threads) { threads_do_not_change_a_bit("monolithic"); }
+
+// A base of 0.9 MHz beside a rod, which the tree's integrator cannot follow through a macro step.
+TEST(a_tree_that_takes_too_many_steps_says_so) {
+    const char *const sets[] = {
+        "simulation.coupling.scheme=frozen", "simulation.error_estimate=none",
+        "bodies[base].joint={kind: prismatic, axis: x, parent: ground, speed: 1 m/s, stiffness: 1e14}", NULL};
+    check_arena(arena);
+    bough_simulation *s = scene_build(arena, "tests/data/scenes/small-vibration.yaml", sets);
+    bough_status status = bough_step(s->master);
+    assert_int_equal(status.code, BOUGH_FAILED);
+    assert_non_null(strstr(status.message, "20000 steps do not reach the end of the macro step"));
+}
