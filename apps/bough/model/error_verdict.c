@@ -114,6 +114,9 @@ bool bough_error_counts(const bough_companion *c, int i) {
     return moving && moves >= least_share * kind_range(c, channel->kind);
 }
 
+static const double much =
+    0.1; // of the largest value of its kind, which a run differs by that has left its companion
+
 bool bough_error_shows(const bough_companion *c, int channel, double difference) {
     const bough_channel *list = c->channels->channel;
     double largest = 0;
@@ -121,7 +124,7 @@ bool bough_error_shows(const bough_companion *c, int channel, double difference)
         if (list[i].kind == list[channel].kind && !list[i].sampled)
             largest = fmax(largest, list[i].si * largest_value(c, i));
     }
-    return list[channel].si * difference > least_share * largest;
+    return list[channel].si * difference > much * largest;
 }
 
 // -- the verdict ----------------------------------------------------------------------------------

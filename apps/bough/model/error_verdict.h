@@ -28,7 +28,7 @@ double bough_error_relative(const bough_companion *c, int channel, double error)
 // kind, and those whose motion is rounding do not.
 bool bough_error_counts(const bough_companion *c, int channel);
 
-// Whether a difference in the channel, in its unit, is more than a thousandth of the largest value of its
+// Whether a difference in the channel, in its unit, is more than a tenth of the largest value of its
 // kind: ranges are small early in a run, and a difference may be many of them.
 bool bough_error_shows(const bough_companion *c, int channel, double difference);
 

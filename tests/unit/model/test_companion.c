@@ -437,8 +437,8 @@ TEST(a_difference_shows_beside_the_values_of_its_kind) {
     bough_error_notice(c, 1);
     assert_true(bough_error_relative(c, 1, v.error[1]) > 10);
     assert_false(bough_error_shows(c, 1, v.error[1]));
-    assert_false(bough_error_shows(c, 1, 0.69));
-    assert_true(bough_error_shows(c, 1, 0.71));
+    assert_false(bough_error_shows(c, 1, 69));
+    assert_true(bough_error_shows(c, 1, 71));
 }
 
 // A scene that stays in equilibrium has no range: an error of a hundred-thousandth of its size is small,
