@@ -1,6 +1,6 @@
 """The promise, tested on random scenes: a run says how large its whole error is, or stops with a diagnosis.
 
-    random_scenes.py BOUGH SOURCE [--hard | --machines | --variants] [--seed N] [--count M] [--jobs J] [--only FAMILY] [--advice] [--keep DIR] [--list FILE]
+    random_scenes.py BOUGH SOURCE [--hard | --loads | --machines | --variants] [--seed N] [--count M] [--jobs J] [--only FAMILY] [--advice] [--keep DIR] [--list FILE]
 
 Every scene runs as a user runs it, and twice as one system that is finer in everything: with two and four times the
 segments, four and eight times the rate of the air, a half and a quarter of the macro step, by two methods at tight
@@ -248,12 +248,13 @@ def finer(scene, times, solver, rtol):
     return scene
 
 
+KINDS = ("hard", "loads", "machines", "variants")  # of families
 REFERENCES = ((2, "rosenbrock", 1e-6), (4, "ida", 1e-7))
 
 
 def one(arguments, index):
     rng = random.Random("%d/%d" % (arguments.seed, index))
-    chosen = settings.HARD if arguments.hard else settings.MACHINES if arguments.machines else settings.VARIANTS if arguments.variants else settings.FAMILIES
+    chosen = next((getattr(settings, kind.upper()) for kind in KINDS if getattr(arguments, kind)), settings.FAMILIES)
     family = chosen[index % len(chosen)]
     defaults = rng.random() < 1 / 3
     schemes = (arguments.scheme,) if arguments.scheme else SCHEMES
@@ -327,9 +328,8 @@ def main():
     parser.add_argument("--first", type=int, default=0)
     parser.add_argument("--jobs", type=int, default=1)
     parser.add_argument("--only", help="families, with commas between")
-    parser.add_argument("--hard", action="store_true", help="of families_hard.py")
-    parser.add_argument("--machines", action="store_true", help="of families_machines.py")
-    parser.add_argument("--variants", action="store_true", help="of families_variants.py")
+    for kind in KINDS:
+        parser.add_argument("--" + kind, action="store_true", help="of families_%s.py" % kind)
     parser.add_argument("--scheme", help="this one for all scenes")
     parser.add_argument("--defaults", action="store_true", help="only scenes that leave all solver settings out")
     parser.add_argument("--stages", action="store_true", help="with stage-coupled steps among the schemes")

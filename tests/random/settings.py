@@ -1,15 +1,16 @@
 """The settings of a random scene, and its text."""
 import families
 import families_hard
+import families_loads
 import families_machines
 import families_variants
 from families import decades, digits
 
 FAMILIES, HARD, MACHINES = families.FAMILIES, families_hard.FAMILIES, families_machines.FAMILIES
-VARIANTS = families_variants.FAMILIES
+VARIANTS, LOADS = families_variants.FAMILIES, families_loads.FAMILIES
 # with loads sampled at 50 or 100 Hz, which the macro step must divide
-AERODYNAMIC = (families.turbine, families.gale) + families_hard.AERODYNAMIC + families_variants.AERODYNAMIC
-STEADY = (families.driven, families.spin_up, families_hard.rods_loop) + families_variants.STEADY + AERODYNAMIC  # not from equilibrium
+AERODYNAMIC = (families.turbine, families.gale) + families_hard.AERODYNAMIC + families_loads.AERODYNAMIC + families_variants.AERODYNAMIC
+STEADY = (families.driven, families.spin_up, families_hard.rods_loop) + families_loads.STEADY + families_variants.STEADY + AERODYNAMIC  # not from equilibrium
 
 
 def micro(rng):
