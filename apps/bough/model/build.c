@@ -64,9 +64,8 @@ static size_t count_corners(const bough_scene *scene) {
 
 // -- parts ----------------------------------------------------------------------------------------
 
-enum {
-    MOST_TREE_STEPS = 20000
-}; // in a macro step: a tree between rods that takes more follows wrenches that run away
+// In a macro step. A tree between rods that takes more follows wrenches that run away.
+enum { MOST_TREE_STEPS = 20000 };
 
 static bough_integrator_options solver_options(const bough_scene_solver *solver) {
     return (bough_integrator_options){.kind = (bough_integrator_kind)solver->solver,

@@ -114,8 +114,8 @@ bool bough_error_counts(const bough_companion *c, int i) {
     return moving && moves >= least_share * kind_range(c, channel->kind);
 }
 
-static const double much =
-    0.1; // of the largest value of its kind, which a run differs by that has left its companion
+// Of the largest value of its kind: a run that differs by more has left its companion.
+static const double much = 0.1;
 
 bool bough_error_shows(const bough_companion *c, int channel, double difference) {
     const bough_channel *list = c->channels->channel;

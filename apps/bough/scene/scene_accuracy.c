@@ -39,11 +39,16 @@ static bool is_linkage(const bough_scene *s) {
     return s->n_closure > 0 && states <= bough_integrator_find(BOUGH_RADAU5)->most_states;
 }
 
+// Whether the scheme integrates all bodies together; a word that is no scheme is reported.
+static bool is_whole(const bough_scene *s) {
+    const char *scheme = bough_scheme_name(s->simulation.coupling.scheme);
+    return scheme && bough_scheme_find(scheme)->one_system;
+}
+
 static void choose_master(bough_scene *scene) {
     bough_scene_simulation *s = &scene->simulation;
     bough_scene_solver *master = &s->master;
-    const char *scheme = bough_scheme_name(s->coupling.scheme);
-    bool whole = scheme && bough_scheme_find(scheme)->one_system;
+    bool whole = is_whole(scene);
     if (!is_named(master->node, "rtol")) master->rtol = s->accuracy / (whole ? whole_error : tree_error);
     if (whole && !is_named(master->node, "solver")) {
         master->solver = is_linkage(scene)          ? BOUGH_RADAU5
@@ -193,8 +198,8 @@ static double second_period(const bough_scene_rod *rod) {
 // Of all bodies as one system, not shorter than of a rod by itself.
 static void limit_step(bough_scene *s) {
     bough_scene_solver *master = &s->simulation.master;
-    bool limited = master->solver == BOUGH_ROSENBROCK || master->solver == BOUGH_AUTOMATIC;
-    if (!limited || is_named(master->node, "step")) return;
+    bool reads_step = master->solver == BOUGH_ROSENBROCK || master->solver == BOUGH_AUTOMATIC;
+    if (!is_whole(s) || !reads_step || is_named(master->node, "step")) return;
     double step = (double)INFINITY, least = usual_step * sqrt(s->simulation.accuracy / usual);
     for (int i = 0; i < s->n_body; i++) {
         if (!has_mesh(&s->body[i])) continue;
@@ -219,7 +224,7 @@ static void expect_mesh(const bough_scene *s, bough_scene_expectation *e) {
 
 static void expect_time(const bough_scene *s, bough_scene_expectation *e) {
     const bough_scene_simulation *simulation = &s->simulation;
-    bool whole = bough_scheme_find(bough_scheme_name(simulation->coupling.scheme))->one_system;
+    bool whole = is_whole(s);
     const bough_scene_solver *solver = whole ? &simulation->master : &simulation->micro;
     e->error[2] = solver->rtol * (whole ? whole_error : rod_error) / simulation->accuracy;
     e->named[2] = is_named(solver->node, "rtol");

@@ -64,6 +64,11 @@ TEST(a_longest_step_follows_a_second_mode) {
         f = read_scene("s.yaml", sets, 3);
         check_near(f.scene->simulation.master.step, 3e-3, 1e-12, 0);
     }
+    const char *const of_tree[] = {"bodies[b].rod.stiffness=[1, 1, 1, 1e6, 1e6, 1]",
+                                   "simulation.macro_step=40 ms", "simulation.coupling.scheme=ramp",
+                                   "simulation.master.solver=rosenbrock"};
+    fixture f = read_scene("s.yaml", of_tree, 4);
+    check_near(f.scene->simulation.master.step, 0, 0, 0);
 }
 
 // A key that is named holds; those beside it still follow.
