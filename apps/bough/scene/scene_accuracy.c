@@ -174,8 +174,8 @@ static void choose_times(bough_scene *s) {
 
 // -- steps ----------------------------------------------------------------------------------------
 
-// What tolerances do not see: vibrations that are small against the size of a rod. Steps that are longer than
-// a part of their period lose them in the run and in its companion alike.
+// Tolerances do not see vibrations that are small against the size of a rod. Where steps are longer than a
+// part of their period, the run and its companion lose them alike.
 static const double second_wave = 4.694; // wave number of a clamped rod's second bending over its length
 static const double parts_of_period = 10;
 
@@ -195,7 +195,7 @@ static double second_period(const bough_scene_rod *rod) {
     return 2 * BOUGH_PI / (wave * wave) * sqrt(mass / bending);
 }
 
-// Of all bodies as one system, not shorter than of a rod by itself.
+// The longest step of all bodies as one system. It is never shorter than the usual one of a rod's own method.
 static void limit_step(bough_scene *s) {
     bough_scene_solver *master = &s->simulation.master;
     bool reads_step = master->solver == BOUGH_ROSENBROCK || master->solver == BOUGH_AUTOMATIC;
