@@ -82,6 +82,14 @@ paste -d' ' of-sweep of-run |
     fail "statistics: $(cat of-sweep) in the sweep, $(cat of-run) alone"
 cmp sweep/cases/000004/channels.out alone/channels.out >/dev/null
 tail -n 1 sweep/cases/000004/channels.out >a && tail -n 1 alone/channels.out >b && cmp a b || fail "series differ"
+# A binary series stands in place of the text and has the same rows.
+sed 's/duration: 3 s/duration: 3 s, simulation.output.binary: true/; s/\[8, 10 m/[10 m/; s/\[1.1, /[/' sweep.yaml >binary.yaml
+study 0 '1 runs, 0 failed' binary.yaml --out binary
+[ ! -e binary/cases/000001/channels.out ] || fail "a binary series leaves the text"
+"$bough" run "$power" --set simulation.duration="3 s" --set aero.wind.speed=10 --set aero.air_density=1.225 \
+    --set simulation.output.binary=true --threads 1 --out alone --quiet >log || fail "binary alone: $(cat log)"
+tail -c 4096 binary/cases/000001/channels.outb >a && tail -c 4096 alone/channels.outb >b && cmp a b ||
+    fail "binary series differ"
 "$bough" report sweep >log || fail "report of a sweep: $(cat log)"
 
 cat >set.yaml <<END

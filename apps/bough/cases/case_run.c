@@ -167,6 +167,19 @@ static bough_status build(bough_arena *arena, case_run *r) {
     return bough_is_ok(&status) ? open_recorder(arena, r) : status;
 }
 
+// Ends the series; a binary one stands in place of the text, ten times as large.
+static bough_status finish_series(case_run *r) {
+    const bough_scene_output *output = &r->run.simulation->scene->simulation.output;
+    const bough_binary_def def = {.folder = r->drive->folder,
+                                  .title = r->chosen->settings,
+                                  .channels = &r->run.channels,
+                                  .interval = output->interval};
+    BOUGH_TRY(bough_recorder_finish(r->recorder, &r->run.outcome));
+    if (!r->study->series || !output->binary || !bough_is_ok(&r->run.outcome)) return bough_ok();
+    BOUGH_TRY(bough_binary_write(&def));
+    return bough_folder_remove(def.folder, "channels.out");
+}
+
 // -- one run --------------------------------------------------------------------------------------
 
 static bough_status judge(bough_arena *arena, const case_run *r) {
@@ -204,7 +217,7 @@ static bough_status run_in(bough_arena *arena, void *self) {
     result->counted = m->time - r->study->from;
     result->warned = m->verdict[0] != '\0';
     result->coupling = bough_monitor_report(m->monitor, m->coupling);
-    if (r->recorder) status = bough_recorder_finish(r->recorder, &run->outcome);
+    if (r->recorder) status = finish_series(r);
     return bough_is_ok(&run->outcome) ? status : run->outcome;
 }
 

@@ -178,7 +178,9 @@ static const bough_schema wind_schema = {
      .help = "start of the statistics"},                                                           \
     {NAMED("channels", TEXTS), AT(wanted), .count = 1, COUNT_AT(n_wanted),                         \
      .example = "[RotSpeed, RootMyb1]", .help = "channels that are kept; default all"},            \
-    {KEY(BOOLEAN, series), .fallback = "false", .help = "every case keeps its channels.out"}
+    {KEY(BOOLEAN, series), .fallback = "false",                                                    \
+     .help = "every case keeps its channels.out; with 'simulation.output.binary: true' in "        \
+             "'common' channels.outb in its place"}
 
 static const bough_key sweep_keys[] = {
     HEAD("sweep"),
