@@ -83,7 +83,8 @@ bough_study_conclude bough_stability_conclude;
 bough_study_conclude bough_statistics_conclude;
 
 // Runs all cases of a study of kind timing in turns, so that other load of the machine affects all alike;
-// ratios of times are computed within a turn. Writes timing.csv and table.txt.
+// ratios of times are computed within a turn. Writes timing.csv, table.txt and, where an axis of the grid has
+// numbers, plot.svg: CPU time over these.
 bough_study_conclude bough_timing_conclude;
 
 // table.txt and table.csv of compared runs.

@@ -1,7 +1,10 @@
 #include "apps/bough/cases/perform.h"
 
 #include "apps/bough/results/folder.h"
+#include "apps/bough/results/picture.h"
 
+#include <math.h>
+#include <stdlib.h>
 #include <string.h>
 
 typedef struct cell_times {
@@ -101,6 +104,75 @@ static void write_csv(const void *self, FILE *f) {
     }
 }
 
+// -- plot.svg: CPU time over the numbers of each axis -----------------------------------------------
+
+// 0: none, or one with a unit.
+static double number_of(const bough_study *s, int cell, int axis) {
+    char *end;
+    double number = strtod(bough_study_value(s, &s->cases[cell], axis), &end);
+    return *end == '\0' ? number : 0;
+}
+
+// Cells from one value of the axis to the next.
+static int stride_of(const bough_study *s, int axis) {
+    int stride = 1;
+    for (int k = axis + 1; k < s->grid.n; k++) stride *= s->grid.axis[k].value.n;
+    return stride;
+}
+
+static bool is_of_numbers(const bough_study *s, int axis) {
+    int n = s->grid.axis[axis].value.n, stride = stride_of(s, axis);
+    for (int k = 0; k < n; k++) {
+        if (!(number_of(s, k * stride, axis) > 0)) return false;
+    }
+    return n > 1;
+}
+
+static double cpu_of(const timing *t, int cell) {
+    return bough_spread_of(t->cell[cell].cpu, t->study->repeat).median;
+}
+
+// The line from a cell along the axis; at its end the values of the other axes, and the exponent between its
+// ends.
+static void add_growth(bough_arena *arena, const timing *t, int first, int axis, int colour,
+                       bough_chart *chart) {
+    const bough_study *s = t->study;
+    int last = s->grid.axis[axis].value.n - 1, stride = stride_of(s, axis), end = first + last * stride;
+    const char *name = "";
+    for (int k = 0; k < s->grid.n; k++) {
+        if (k == axis || s->grid.axis[k].value.n < 2) continue;
+        name = bough_arena_print(arena, "%s%s%s", name, name[0] ? ", " : "",
+                                 bough_study_value(s, &s->cases[first], k));
+    }
+    double exponent =
+        log(cpu_of(t, end) / cpu_of(t, first)) / log(number_of(s, end, axis) / number_of(s, first, axis));
+    name = bough_arena_print(arena, "%s%sexponent %.2f", name, name[0] ? ": " : "", exponent);
+    bough_chart_add_line(chart, (bough_chart_line){NULL, colour, true, true, 0});
+    for (int k = 0; k <= last; k++) {
+        int cell = first + k * stride;
+        bough_chart_add(chart, (bough_chart_point){.x = number_of(s, cell, axis),
+                                                   .y = cpu_of(t, cell) / s->duration,
+                                                   .label = k == last ? name : NULL});
+    }
+}
+
+static bough_status plot(bough_arena *arena, const timing *t) {
+    const bough_study *s = t->study;
+    bough_chart chart = bough_chart_start(arena, s->title ? s->title : s->file, 2);
+    chart.right = 130;
+    for (int axis = 0; axis < s->grid.n; axis++) {
+        if (!is_of_numbers(s, axis)) continue;
+        int colour = 0;
+        bough_chart_add_panel(&chart, "CPU time per simulated second [s]", s->grid.axis[axis].label, true,
+                              true);
+        for (int i = 0; i < s->n_case; i++) {
+            if (s->cases[i].index[axis] == 0) add_growth(arena, t, i, axis, colour++, &chart);
+        }
+    }
+    if (chart.n_panel == 0) return bough_ok();
+    return bough_folder_write(t->options->folder, "plot.svg", bough_chart_write, &chart);
+}
+
 bough_status bough_timing_conclude(bough_arena *arena, const bough_study_results *results) {
     const bough_study *study = results->study;
     const bough_study_options *options = results->options;
@@ -114,6 +186,7 @@ bough_status bough_timing_conclude(bough_arena *arena, const bough_study_results
     if (bough_is_ok(&status)) status = run_all(&t);
     if (bough_is_ok(&status)) status = bough_folder_write(options->folder, "timing.csv", write_csv, &t);
     if (bough_is_ok(&status)) status = bough_folder_write(options->folder, "table.txt", print_times, &t);
+    if (bough_is_ok(&status)) status = plot(arena, &t);
     if (bough_is_ok(&status)) print_times(&t, options->stream);
     return status;
 }

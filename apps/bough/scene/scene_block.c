@@ -30,7 +30,7 @@ static void keep(bough_schema_reader *r, const bough_node *node, void *field) {
 #define PART .form = "mapping with keys of a body", .read = keep
 #define FILLS block
 static const bough_key keys[] = {
-    {NAMED("blades", INTEGER), AT(n_blade), .range = "[1, 12]", .required = true, .example = "3",
+    {NAMED("blades", INTEGER), AT(n_blade), .range = "[1, 48]", .required = true, .example = "3",
      .help = "their number; they are equal and evenly spaced, blade1 points up"},
     {KEY(NUMBER, hub_radius), UNIT(LENGTH), .range = "> 0", .required = true, .example = "1.5 m",
      .help = "from the shaft's axis to the blade roots; aero.hub_radius too where that is not given"},

@@ -43,5 +43,10 @@ TEST_IN_FOLDER(every_round_has_every_cell_and_errors_are_reported) {
     assert_int_equal(count(csv, "\n"), 1 + 4 * 3);
     assert_int_equal(count(csv, ",1\n"), 2 * 3);  // against itself
     assert_int_equal(count(table, "0.0e+00"), 2); // the reference's settings
-    free(csv), free(table);
+    // one panel, over rtol: a line for each macro step, which is no number
+    char *plot = scratch_read(folder, "plot.svg");
+    assert_int_equal(count(plot, "exponent"), 2);
+    assert_int_equal(count(plot, "4 ms: exponent"), 1);
+    assert_int_equal(count(plot, "CPU time per simulated second"), 1);
+    free(csv), free(table), free(plot);
 }
