@@ -71,35 +71,6 @@ static bool counts_now(const bough_companion *c) {
     return m->time >= c->run->scene->simulation.output.from - 1e-6 * m->macro_step;
 }
 
-static double longest_rod(const bough_scene *scene) {
-    double longest = 0;
-    for (int i = 0; i < scene->n_body; i++) {
-        const bough_scene_rod *rod = &scene->body[i].rod;
-        if (rod->node) longest = fmax(longest, bough_scene_arc_length(&rod->structure));
-    }
-    return longest;
-}
-
-bough_status bough_companion_create(bough_arena *arena, bough_simulation *run, const bough_channels *channels,
-                                    bough_companion *c) {
-    *c = (bough_companion){.run = run, .channels = channels, .status = bough_ok()};
-    c->length = longest_rod(run->scene);
-    take(c, arena);
-    if (run->scene->simulation.error_estimate != BOUGH_SCENE_COMPANION) {
-        give_up(c, "simulation.error_estimate is none");
-    } else if (run->n_fmu > 0 || run->scene->control.fmu.model.description.once) {
-        give_up(c, "an FMU keeps a memory of its own, and there is no second one for the companion");
-    } else {
-        bough_status status = build(arena, c);
-        if (status.code == BOUGH_IO) return status;
-        if (!bough_is_ok(&status)) give_up(c, status.message);
-    }
-    if (!c->coarser) return bough_ok();
-    run->master->compared = true;
-    if (counts_now(c)) sample(c);
-    return bough_ok();
-}
-
 // -- stepping -------------------------------------------------------------------------------------
 
 static bool alive(const bough_companion *c) { return c->coarser && !c->reason[0]; }
@@ -173,6 +144,39 @@ static void compare(bough_companion *c) {
         if (!(error <= c->error[i])) c->error[i] = error; // a NaN wins
     }
     bough_error_notice(c, c->run->master->time);
+}
+
+// -- the start -------------------------------------------------------------------------------------
+
+static double longest_rod(const bough_scene *scene) {
+    double longest = 0;
+    for (int i = 0; i < scene->n_body; i++) {
+        const bough_scene_rod *rod = &scene->body[i].rod;
+        if (rod->node) longest = fmax(longest, bough_scene_arc_length(&rod->structure));
+    }
+    return longest;
+}
+
+bough_status bough_companion_create(bough_arena *arena, bough_simulation *run, const bough_channels *channels,
+                                    bough_companion *c) {
+    *c = (bough_companion){.run = run, .channels = channels, .status = bough_ok()};
+    c->length = longest_rod(run->scene);
+    take(c, arena);
+    if (run->scene->simulation.error_estimate != BOUGH_SCENE_COMPANION) {
+        give_up(c, "simulation.error_estimate is none");
+    } else if (run->n_fmu > 0 || run->scene->control.fmu.model.description.once) {
+        give_up(c, "an FMU keeps a memory of its own, and there is no second one for the companion");
+    } else {
+        bough_status status = build(arena, c);
+        if (status.code == BOUGH_IO) return status;
+        if (!bough_is_ok(&status)) give_up(c, status.message);
+    }
+    if (!c->coarser) return bough_ok();
+    run->master->compared = true;
+    if (!counts_now(c)) return bough_ok();
+    compare(c);
+    c->compared = 0; // one that ends in its first step knows no error
+    return bough_ok();
 }
 
 // -- which of the two has left --------------------------------------------------------------------

@@ -141,15 +141,17 @@ static bough_status find(bough_arena *arena, void *self) {
     bough_status status = build(arena, run, BOUGH_COARSER_ALL, &base);
     if (bough_is_ok(&status)) build_finer(arena, x, finer);
     if (bough_is_ok(&status) && x->lost) status = build(arena, run, 0, &again);
-    double t = 0;
-    while (bough_is_ok(&status) && t < x->end) {
+    if (bough_is_ok(&status)) sample(&base);
+    if (bough_is_ok(&status) && again.simulation) sample(&again);
+    for (double t = 0; bough_is_ok(&status);) {
+        for (int k = 0; k < BOUGH_SHARES; k++)
+            advance_finer(x, k, t, &base, &again, &finer[k], part[k], held[k]);
+        if (t >= x->end) break;
         if (x->stop && x->stop())
             return bough_fail(BOUGH_INTERRUPTED, "interrupted while the error's cause was looked for");
         status = step_base(x, &base, &t);
         if (bough_is_ok(&status) && again.simulation) status = advance(&again, fmin(t, x->end));
         if (bough_is_ok(&status) && again.simulation) sample(&again);
-        for (int k = 0; k < BOUGH_SHARES && bough_is_ok(&status); k++)
-            advance_finer(x, k, t, &base, &again, &finer[k], part[k], held[k]);
     }
     return status;
 }

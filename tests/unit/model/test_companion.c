@@ -165,6 +165,18 @@ TEST(every_channel_has_an_error) {
     free(o);
 }
 
+// What the mesh changes before the first step is an error, too: here of the forces of the air.
+TEST(the_start_is_compared) {
+    static const char *const none[] = {NULL};
+    check_arena(arena);
+    bough_run r;
+    check_ok(bough_run_create(arena, scene_read(arena, example, none), &r));
+    double most = 0;
+    for (int i = 0; i < r.channels.count; i++) most = fmax(most, r.companion->error[i]);
+    assert_true(most > 0);
+    assert_false(bough_companion_knows(r.companion, 0));
+}
+
 // What a sampled channel errs by is what happens while the run holds it: nothing where it is sampled at every
 // macro step, though the companion holds it at the end of an odd number of them.
 TEST(a_held_sample_errs_by_its_age) {
