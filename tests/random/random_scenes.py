@@ -199,8 +199,8 @@ class Judgement:
         if run.bound_stop:
             v = max(errors, key=lambda v: errors[v][1] if errors[v][1] == errors[v][1] else 0, default=None)
             small = v is not None and errors[v][0] < 0.1 * errors[v][1] and errors[v][0] < 0.1 * GROSS
-        else:
-            small = error < SMALL
+        else:  # what grows may move no channel yet
+            small = error < SMALL and "is unstable without the damping" not in run.said
         return ("false stop" if small else "diagnosed"), line
 
 
