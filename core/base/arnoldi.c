@@ -16,6 +16,8 @@ void bough_arnoldi_create(bough_arena *arena, int length, int capacity, int at_o
     a->weight = bough_arena_doubles(arena, n);
     a->at_once = at_once;
     a->image = bough_arena_doubles(arena, n * (size_t)at_once);
+    a->weighted = bough_arena_doubles(arena, n);
+    a->along = bough_arena_doubles(arena, m);
     a->value = bough_arena_doubles(arena, 2 * m);
     a->work = bough_arena_doubles(arena, 8 * m);
     for (int i = 0; i < length; i++) a->weight[i] = 1;
@@ -31,15 +33,16 @@ double bough_arnoldi_product(const bough_arnoldi *a, const double *x, const doub
     return sum;
 }
 
-// Modified Gram–Schmidt, twice: the second pass restores what cancellation loses.
+// Gram–Schmidt, twice: the second pass restores what cancellation loses.
 void bough_arnoldi_append(bough_arnoldi *a, double *x, double *column) {
     double before = sqrt(bough_arnoldi_product(a, x, x));
     for (int pass = 0; pass < 2; pass++) {
-        for (int k = 0; k < a->count; k++) {
-            double *v = vector_at(a, k), along = bough_arnoldi_product(a, v, x);
-            for (int i = 0; i < a->length; i++) x[i] -= along * v[i];
-            if (column != NULL) column[k] += along;
-        }
+        // coefficients h = Vᵀ W x, then x −= V h
+        for (int i = 0; i < a->length; i++) a->weighted[i] = a->weight[i] * x[i];
+        bough_dense_product((bough_product){a->count, 1, a->length, true, 1, 0}, a->basis, a->weighted,
+                            a->along);
+        bough_dense_product((bough_product){a->length, 1, a->count, false, -1, 1}, a->basis, a->along, x);
+        for (int k = 0; k < a->count && column != NULL; k++) column[k] += a->along[k];
     }
     // a dependent vector is dropped: the space is invariant in it
     double norm = sqrt(bough_arnoldi_product(a, x, x));

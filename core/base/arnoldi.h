@@ -1,5 +1,5 @@
 // Arnoldi's method: an orthonormal basis of the space that a linear operator spans from its starting
-// vectors, by modified Gram–Schmidt done twice, and the eigenvalues of the operator projected on it.
+// vectors, by Gram–Schmidt done twice, and the eigenvalues of the operator projected on it.
 #ifndef BOUGH_CORE_BASE_ARNOLDI_H
 #define BOUGH_CORE_BASE_ARNOLDI_H
 
@@ -9,15 +9,16 @@
 #include <stdbool.h>
 
 typedef struct bough_arnoldi {
-    int length;      // of a vector
-    int capacity;    // most vectors
-    int count, done; // vectors in the basis; those to which the operator was applied. Equal: the
-                     // basis holds all there is
-    double *basis;   // (capacity × length)
-    double *h;       // operator in the basis (capacity × capacity), column j of vector j
-    double *weight;  // of the inner product (length)
-    int at_once;     // vectors to which the operator is applied together
-    double *image;   // (at_once × length) scratch
+    int length;               // of a vector
+    int capacity;             // most vectors
+    int count, done;          // vectors in the basis; those to which the operator was applied. Equal: the
+                              // basis holds all there is
+    double *basis;            // (capacity × length)
+    double *h;                // operator in the basis (capacity × capacity), column j of vector j
+    double *weight;           // of the inner product (length)
+    int at_once;              // vectors to which the operator is applied together
+    double *image;            // (at_once × length) scratch
+    double *weighted, *along; // (length), (capacity) scratch
     // by bough_arnoldi_project: eigenvalues of the first `done` rows and columns of h
     double *value;         // real parts (done), then imaginary parts
     double *vector;        // (done × done) column by column; of a complex pair real, then imaginary part

@@ -5,6 +5,7 @@
 #include <stdatomic.h>
 #include <stddef.h>
 #include <stdlib.h>
+#include <string.h>
 #include <threads.h>
 
 extern void dgetrf_(const int *m, const int *n, double *a, const int *lda, int *pivot, int *info);
@@ -38,6 +39,9 @@ extern void spotrf_(const char *triangle, const int *n, float *a, const int *lda
 extern void openblas_set_num_threads(int n) __attribute__((weak));
 extern void *blas_memory_alloc(int unused) __attribute__((weak));
 extern void blas_memory_free(void *block) __attribute__((weak));
+extern char *gotoblas_corename(void) __attribute__((weak));
+extern void gotoblas_dynamic_quit(void) __attribute__((weak));
+extern void gotoblas_dynamic_init(void) __attribute__((weak));
 
 static void one_thread(void) {
     if (openblas_set_num_threads) openblas_set_num_threads(1);
@@ -47,6 +51,17 @@ static void prepare(void) {
     // the library's thread count is the process's, and so is this
     static once_flag prepared = ONCE_FLAG_INIT;
     call_once(&prepared, one_thread);
+}
+
+void bough_linalg_choose_kernels(void) {
+    const char *fitting = bough_level_runs(BOUGH_LEVEL_V4)   ? "SkylakeX"
+                          : bough_level_runs(BOUGH_LEVEL_V3) ? "Haswell"
+                                                             : NULL;
+    bool chooses = gotoblas_corename && gotoblas_dynamic_quit && gotoblas_dynamic_init;
+    if (!fitting || !chooses || strcmp(gotoblas_corename(), "Prescott") != 0) return;
+    gotoblas_dynamic_quit();
+    setenv("OPENBLAS_CORETYPE", fitting, 0);
+    gotoblas_dynamic_init();
 }
 
 // A NaN may pass LAPACK's pivot search.
@@ -207,16 +222,31 @@ void bough_dense_solve_transposed(int n, int n_right, const double *factor, cons
     dgetrs_("T", &n, &n_right, factor, &n, pivot, b, &n, &info, 1);
 }
 
+enum { FEW = 8, TILE = 16 };
+
+// Products with few columns b are bound by the reading of a: some of its columns at a time serve all of b.
+static void multiply_few(const bough_product *p, const double *a, const double *b, double *c) {
+    int rows = p->transposed ? p->k : p->m, columns = p->transposed ? p->m : p->k, one = 1;
+    for (int begin = 0; begin < columns; begin += TILE) {
+        int width = columns - begin < TILE ? columns - begin : TILE;
+        for (int j = 0; j < p->n; j++) {
+            const double *x = b + (size_t)j * (size_t)p->k + (p->transposed ? 0 : begin);
+            double *y = c + (size_t)j * (size_t)p->m + (p->transposed ? begin : 0);
+            double keep = p->transposed || begin == 0 ? p->keep : 1;
+            dgemv_(p->transposed ? "T" : "N", &rows, &width, &p->factor, a + (size_t)begin * (size_t)rows,
+                   &rows, x, &one, &keep, y, &one, 1);
+        }
+    }
+}
+
 void bough_dense_product(bough_product p, const double *a, const double *b, double *c) {
     if (p.m == 0 || p.n == 0) return;
     prepare();
-    // leading dimensions are at least 1
-    int inner = p.k > 0 ? p.k : 1; // rows of b
-    if (p.n == 1 && p.k > 0) {
-        int rows = p.transposed ? p.k : p.m, columns = p.transposed ? p.m : p.k, one = 1;
-        dgemv_(p.transposed ? "T" : "N", &rows, &columns, &p.factor, a, &rows, b, &one, &p.keep, c, &one, 1);
+    if (p.n <= FEW && p.k > 0) {
+        multiply_few(&p, a, b, c);
         return;
     }
+    int inner = p.k > 0 ? p.k : 1; // leading dimensions are at least 1
     dgemm_(p.transposed ? "T" : "N", "N", &p.m, &p.n, &p.k, &p.factor, a, p.transposed ? &inner : &p.m, b,
            &inner, &p.keep, c, &p.m, 1, 1);
 }

@@ -8,6 +8,11 @@
 
 #include <stdbool.h>
 
+// For a program, before its first thread: OpenBLAS takes its slowest kernels, those for Prescott, on a
+// processor that is newer than itself. Names it the ones for this processor's level, unless OPENBLAS_CORETYPE
+// does.
+void bough_linalg_choose_kernels(void);
+
 // Takes the library's work arrays for so many threads beside those of all arenas that live, when a model is
 // built, so that no step does. OpenBLAS needs 128 MB of addresses for each thread and, without them, tries
 // for ever.

@@ -1,6 +1,6 @@
 // theory (77). The matrix is dense where the air couples states, the members' own part of its inverse is not:
-// that is found by the members' factors, then the whole one by the dense factors of what the air and the
-// rotation add.
+// a solution is one by the members' factors, then one by the dense factors of what the air and the rotation
+// add.
 #include "apps/bough/analysis/aeroelastic.h"
 
 #include "core/base/linalg.h"
@@ -20,21 +20,20 @@ static const double going_back = 1e-6;
 
 typedef struct work {
     const bough_aeroelastic *system;
-    int n, m;            // states of the members, those of the air that change
-    int *air, *place;    // (m) rows of the air's tangents; (n_air) places of these rows in m, −1: none
-    double *inverse;     // P = (I − γJ)⁻¹ (n × n), column-major as all; then T⁻¹ P
-    double *factor;      // T (n × n), theory (77), factored
-    int *pivot;          // (n)
-    double *rate;        // S (n_part × n_part), row-major
-    int n_row, *row;     // (n) rows of the members' rates that the air changes
-    double *inverse_row; // (n × n_row) columns of P for them
+    int n, m;           // states of the members, those of the air that change
+    int *air, *place;   // (m) rows of the air's tangents; (n_air) places of these rows in m, −1: none
+    double *inverse;    // P = (I − γJ)⁻¹ (n × n), column-major as all
+    double *factor;     // T (n × n), theory (77), factored
+    int *pivot;         // (n)
+    double *rate;       // S (n_part × n_part), row-major
+    double *transposed; // (n × BOUGH_EIGEN_AT_ONCE) T⁻ᵀ z
 } work;
 
 static void take(bough_arena *arena, work *w) {
     size_t n = (size_t)w->n, parts = (size_t)w->system->def->n_part;
-    w->row = bough_arena_take(arena, n * sizeof *w->row);
     w->pivot = bough_arena_take(arena, n * sizeof *w->pivot);
     bough_arena_each(arena, n * n, &w->inverse, &w->factor);
+    w->transposed = bough_arena_doubles(arena, n * BOUGH_EIGEN_AT_ONCE);
     w->rate = bough_arena_doubles(arena, parts * parts + 1);
 }
 
@@ -86,41 +85,33 @@ static void add_spin(work *w) {
     }
 }
 
-// The rows of a (n × columns) that are not 0, and the columns of P for them.
-static void find_rows(bough_arena *arena, work *w, int columns, const double *a) {
-    size_t n = (size_t)w->n;
-    w->n_row = 0;
-    for (size_t i = 0; i < n; i++) {
-        bool used = false;
-        for (size_t j = 0; j < (size_t)columns && !used; j++) used = a[j * n + i] != 0;
-        if (used) w->row[w->n_row++] = (int)i;
-    }
-    w->inverse_row = bough_arena_doubles(arena, n * (size_t)w->n_row);
-    for (size_t k = 0; k < (size_t)w->n_row; k++)
-        memcpy(w->inverse_row + k * n, w->inverse + (size_t)w->row[k] * n, n * sizeof *w->inverse);
-}
-
-// −= γ P A, some columns at a time.
+// −= γ P A, some columns at a time: the rows of these that are not 0, and the columns of P for them.
 static void subtract_forces(bough_arena *arena, work *w, const double *a) {
     size_t n = (size_t)w->n;
-    find_rows(arena, w, w->n, a);
-    size_t rows = (size_t)w->n_row;
-    double *force = bough_arena_doubles(arena, rows * CHUNK),
+    int *row = bough_arena_take(arena, n * sizeof *row);
+    double *inverse = bough_arena_doubles(arena, n * n), *force = bough_arena_doubles(arena, n * CHUNK),
            *product = bough_arena_doubles(arena, n * CHUNK);
     for (int begin = 0; begin < w->n; begin += CHUNK) {
-        int width = w->n - begin < CHUNK ? w->n - begin : CHUNK;
-        for (size_t j = 0; j < (size_t)width; j++) {
-            const double *column = a + ((size_t)begin + j) * n;
-            for (size_t i = 0; i < rows; i++) force[j * rows + i] = column[w->row[i]];
+        int width = w->n - begin < CHUNK ? w->n - begin : CHUNK, rows = 0;
+        const double *column = a + (size_t)begin * n;
+        for (size_t i = 0; i < n; i++) {
+            bool used = false;
+            for (size_t j = 0; j < (size_t)width && !used; j++) used = column[j * n + i] != 0;
+            if (used) row[rows++] = (int)i;
         }
-        bough_product p = {w->n, width, w->n_row, false, -1 / w->system->def->point, 0};
-        bough_dense_product(p, w->inverse_row, force, product);
+        for (size_t k = 0; k < (size_t)rows; k++) {
+            memcpy(inverse + k * n, w->inverse + (size_t)row[k] * n, n * sizeof *inverse);
+            for (size_t j = 0; j < (size_t)width; j++)
+                force[j * (size_t)rows + k] = column[j * n + (size_t)row[k]];
+        }
+        bough_product p = {w->n, width, rows, false, -1 / w->system->def->point, 0};
+        bough_dense_product(p, inverse, force, product);
         double *to = w->factor + (size_t)begin * n;
         for (size_t i = 0; i < n * (size_t)width; i++) to[i] += product[i];
     }
 }
 
-static bool solve(bough_arena *arena, work *w) {
+static bool factor(bough_arena *arena, work *w) {
     const bough_aeroelastic *x = w->system;
     size_t n = (size_t)w->n;
     for (size_t j = 0; j < n; j++) w->factor[j * n + j] = 1;
@@ -130,21 +121,27 @@ static bool solve(bough_arena *arena, work *w) {
         add_spin(w);
     }
     subtract_forces(arena, w, x->air->motion);
-    if (!bough_dense_factor(w->n, w->factor, w->pivot)) return false;
-    bough_dense_solve(w->n, w->n, w->factor, w->pivot, w->inverse);
-    return true;
+    return bough_dense_factor(w->n, w->factor, w->pivot);
 }
 
 // -- its eigenvalues ------------------------------------------------------------------------------
 
+// T⁻¹ P z
 static void apply(void *self, int n, const double *z, double *image) {
     const work *w = self;
-    bough_dense_product((bough_product){w->n, n, w->n, false, 1, 0}, w->inverse, z, image);
+    size_t length = (size_t)w->n;
+    memcpy(image, z, length * (size_t)n * sizeof *image);
+    for (size_t k = 0; k < (size_t)n; k++) solve_members(w, image + k * length);
+    bough_dense_solve(w->n, n, w->factor, w->pivot, image);
 }
 
+// Pᵀ T⁻ᵀ z
 static void apply_transposed(void *self, int n, const double *z, double *image) {
     const work *w = self;
-    bough_dense_product((bough_product){w->n, n, w->n, true, 1, 0}, w->inverse, z, image);
+    memcpy(w->transposed, z, (size_t)w->n * (size_t)n * sizeof *z);
+    for (size_t k = 0; k < (size_t)n; k++) // one by one, which takes LAPACK less time than all at once
+        bough_dense_solve_transposed(w->n, 1, w->factor, w->pivot, w->transposed + k * (size_t)w->n);
+    bough_dense_product((bough_product){w->n, n, w->n, true, 1, 0}, w->inverse, w->transposed, image);
 }
 
 // Products in which states of the members count in units of their scales (power −2), those of the air as they
@@ -156,15 +153,17 @@ static double *product_weights(bough_arena *arena, const work *w, double power) 
     return weight;
 }
 
-// Pairs nearest to the point, right or left, without the memory of the air.
-static bough_status find_pairs(bough_arena *arena, work *w, bool left, bool decaying, bough_eigen_pair *pair,
-                               bough_eigen_count *count) {
+// Pairs nearest to the point, right or left, without the memory of the air; `known`: the other side tells
+// whether some are missing.
+static bough_status find_pairs(bough_arena *arena, work *w, bool left, bool decaying, bool known,
+                               bough_eigen_pair *pair, bough_eigen_count *count) {
     const bough_eigen_operator op = {.name = "whole scene in the air",
                                      .length = w->n,
                                      .n_shape = w->n,
                                      .gamma = 1 / w->system->def->point,
                                      .weight = product_weights(arena, w, left ? 2 : -2),
                                      .decaying = decaying,
+                                     .known = known,
                                      .self = w,
                                      .apply = left ? apply_transposed : apply};
     return bough_eigen_nearest(arena, &op, pair, count);
@@ -182,7 +181,6 @@ static int slower(const void *a, const void *b) {
 // The members in the subspace of their modes, and all states of the air: theory (100).
 typedef struct reduced {
     int r, all;           // modes as real columns; with the states of the air
-    int unpaired;         // modes that were found on one side only
     double *right, *left; // U (n × r), L (r × n), L U = E
     double *matrix;       // (all × all)
     double *rest;         // (n × m) γ T⁻¹ P (E − U L) R: the modes left out by the air's states
@@ -207,10 +205,7 @@ static void collect(const work *w, int n_right, const bough_eigen_pair *right, i
     size_t n = (size_t)w->n, bytes = n * sizeof(double);
     for (int i = 0; i < n_right; i++) {
         const bough_eigen_pair *other = partner(&right[i], n_left, left);
-        if (other == NULL) {
-            x->unpaired++;
-            continue;
-        }
+        if (other == NULL) continue;
         for (int part = 0; part < 1 + (right[i].imaginary > 0); part++) {
             size_t at = (size_t)x->r++ * n;
             memcpy(x->right + at, part == 0 ? right[i].shape_real : right[i].shape_imag, bytes);
@@ -457,6 +452,28 @@ static void list_modes(bough_arena *arena, work *w, const reduced *x, bough_eige
     }
 }
 
+// Eigenvectors of one side without a partner on the other.
+static int count_unpaired(int n_right, const bough_eigen_pair *right, int n_left,
+                          const bough_eigen_pair *left) {
+    int unpaired = n_left > n_right ? n_left - n_right : 0;
+    for (int i = 0; i < n_right; i++) unpaired += partner(&right[i], n_left, left) == NULL;
+    return unpaired;
+}
+
+// Right and left eigenvectors, a basis of each. Searches that begin with other vectors confirm each other;
+// where they do not, both look for more.
+static bough_status find_both(bough_arena *arena, work *w, bough_eigen_pair *right,
+                              bough_eigen_count *n_right, bough_eigen_pair *left, bough_eigen_count *n_left,
+                              int *unpaired) {
+    for (int known = 1; known >= 0; known--) {
+        BOUGH_TRY(find_pairs(arena, w, false, true, known, right, n_right));
+        BOUGH_TRY(find_pairs(arena, w, true, true, known, left, n_left));
+        *unpaired = count_unpaired(n_right->found, right, n_left->found, left);
+        if (*unpaired == 0) break;
+    }
+    return bough_ok();
+}
+
 static bough_status follow_memory(bough_arena *arena, work *w, bough_eigen_pair *pair,
                                   bough_eigen_count *count, int *unpaired) {
     int basis = count->wanted + count->wanted / 2;
@@ -464,12 +481,10 @@ static bough_status follow_memory(bough_arena *arena, work *w, bough_eigen_pair 
     bough_eigen_pair *left = bough_arena_take(arena, (size_t)basis * sizeof *left);
     bough_eigen_count n_right = {.wanted = basis}, n_left = {.wanted = basis};
     reduced x = {0};
-    BOUGH_TRY(find_pairs(arena, w, false, true, right, &n_right));
-    BOUGH_TRY(find_pairs(arena, w, true, true, left, &n_left));
+    BOUGH_TRY(find_both(arena, w, right, &n_right, left, &n_left, unpaired));
     if (!reduce(arena, w, n_right.found, right, n_left.found, left, &x) || !factor_reduced(arena, w, &x) ||
         !find_vectors(arena, &x))
         return bough_fail(BOUGH_FAILED, "the motion in the air cannot be reduced to %d modes", n_right.found);
-    *unpaired = x.unpaired + (n_left.found > n_right.found ? n_left.found - n_right.found : 0);
     count->converged = n_right.converged < n_left.converged ? n_right.converged : n_left.converged;
     list_modes(arena, w, &x, pair, count);
     return bough_ok();
@@ -485,10 +500,10 @@ bough_status bough_aeroelastic_modes(bough_arena *arena, const bough_aeroelastic
     bough_status status = bough_whole_setup(system->whole, def->time, def->state, def->input, 1 / def->point);
     if (!bough_is_ok(&status)) return bough_fail(BOUGH_FAILED, "%s", status.message);
     invert(&w);
-    if (!solve(arena, &w))
+    if (!factor(arena, &w))
         return bough_fail(BOUGH_FAILED, "the motion in the air is singular about %g /s", def->point);
     if (w.m > 0) return follow_memory(arena, &w, pair, count, unpaired);
-    status = find_pairs(arena, &w, false, false, pair, count);
+    status = find_pairs(arena, &w, false, false, false, pair, count);
     qsort(pair, (size_t)count->found, sizeof *pair, slower);
     return status;
 }

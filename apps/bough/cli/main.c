@@ -1,6 +1,7 @@
 // bough: flexible multibody dynamics on the command line.
 #include "apps/bough/cli/command.h"
 #include "apps/bough/config/schema.h"
+#include "core/base/linalg.h"
 
 #include <errno.h>
 #include <fcntl.h>
@@ -88,6 +89,7 @@ static void open_streams(void) {
 
 int main(int argc, char **argv) {
     open_streams();
+    bough_linalg_choose_kernels();
     signal(SIGXFSZ, SIG_IGN); // a file at its limit is then a write that fails, which is reported
     if (argc < 2) {
         bough_help_overview(stderr);

@@ -222,13 +222,13 @@ static void print_search(const bough_vibration *v) {
                "converge\n",
                v->unpaired);
     printf("largest residual of a mode: %.2g of its eigenvalue\n", largest_residual(v));
-    print_numbers("warning: modes with a residual above 1 %, which are not exact:", v, is_inexact);
+    print_numbers("warning: not exact, with a residual above 1 %: mode", v, is_inexact);
 }
 
 static void print_mesh(const bough_vibration *v) {
     double most = 0;
     for (int k = 0; k < v->found; k++) most = fmax(most, v->mode[k].moved);
-    if (!print_numbers("warning: modes that half the segments move by more than 1 %:", v, is_moved))
+    if (!print_numbers("warning: half the segments move by more than 1 %: mode", v, is_moved))
         printf("half the segments move no mode by more than %.2g %%\n", 100 * most);
 }
 

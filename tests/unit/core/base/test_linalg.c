@@ -75,6 +75,46 @@ TEST(product_of_matrices) {
     for (int i = 0; i < 4; i++) check_near(c[i], expected[i], 1e-15, 0);
 }
 
+// As many columns of the result as are multiplied some columns of the matrix at a time, and more.
+TEST(products_with_few_columns_are_products) {
+    enum { M = 37, K = 45, N = 9 };
+    static double a[M * K], b[K * N], c[M * N], bt[M * N], ct[K * N];
+    for (int i = 0; i < M * K; i++) a[i] = sin(i);
+    for (int i = 0; i < K * N; i++) b[i] = cos(3 * i);
+    for (int i = 0; i < M * N; i++) bt[i] = cos(2 * i);
+    for (int n = 1; n <= N; n++) {
+        for (int i = 0; i < M * N; i++) c[i] = 1;
+        for (int i = 0; i < K * N; i++) ct[i] = 1;
+        bough_dense_product((bough_product){M, n, K, false, 2, -3}, a, b, c);
+        bough_dense_product((bough_product){K, n, M, true, 2, -3}, a, bt, ct);
+        for (int j = 0; j < n; j++) {
+            for (int i = 0; i < M; i++) {
+                double sum = -3;
+                for (int k = 0; k < K; k++) sum += 2 * a[k * M + i] * b[j * K + k];
+                check_near(c[j * M + i], sum, 0, 1e-12);
+            }
+            for (int k = 0; k < K; k++) {
+                double sum = -3;
+                for (int i = 0; i < M; i++) sum += 2 * a[k * M + i] * bt[j * M + i];
+                check_near(ct[j * K + k], sum, 0, 1e-12);
+            }
+        }
+    }
+}
+
+extern char *gotoblas_corename(void) __attribute__((weak));
+
+// That OpenBLAS does not know the processor shows only on one that is newer.
+TEST(no_old_kernels_on_a_new_processor) {
+    if (!gotoblas_corename || getenv("OPENBLAS_CORETYPE") || !bough_level_runs(BOUGH_LEVEL_V3)) skip();
+    bough_linalg_choose_kernels();
+    assert_string_not_equal(gotoblas_corename(), "Prescott");
+    const double a[4] = {1, 2, 3, 4};
+    double b[4];
+    bough_dense_product((bough_product){2, 2, 2, false, 1, 0}, a, a, b);
+    check_near(b[3], 22, 1e-15, 0);
+}
+
 TEST(lu_refuses_singular_and_nan) {
     double singular[4] = {1, 2, 2, 4}, nan[4] = {1, 0, NAN, 1};
     int pivot[2];
