@@ -268,6 +268,8 @@ TEST(meshes_differ_as_far_as_they_can) {
         {"bodies[3-5].rod.segments=8", "simulation.coupling={scheme: ramp}", 16, 1},
         {"bodies[3-5].rod.segments=1", "simulation.coupling={scheme: ramp}", 8, 1},
         {"bodies[3-5].fidelity=modal", "simulation.coupling={scheme: monolithic}", 48, 1},
+        {"bodies[3-5].rod.segments=16", "simulation.coupling={scheme: ramp}", 10, 0.5},
+        {"bodies[3-5].rod.segments=16", "simulation.coupling={scheme: iterated}", 10, 1},
         {"bodies[3-5].rod.segments=16", "simulation.coupling={scheme: frozen}", 10, 1}};
     check_arena(arena);
     for (size_t k = 0; k < sizeof cases / sizeof *cases; k++) {
