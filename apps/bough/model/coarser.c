@@ -111,15 +111,16 @@ static bool has_fixed_sub_steps(const bough_scene *scene) {
     return false;
 }
 
-// A quarter, of an order between 2 and 3; half where loads of the air are held constant between samples,
-// which is of order 1. What a coupling errs by is the whole difference to a solution without one: all of it
-// by a coupling that is explicit, of order 1 or repeats steps, or fixed steps of sub-solvers; half otherwise,
-// where steps and mesh take part.
+// A quarter, of an order between 2 and 3, in air whose loads follow the motion; two fifths without air, where
+// vibrations stay whose phases and amplitudes err at a lower order; half where loads of the air are held
+// constant between samples, which is of order 1. What a coupling errs by is the whole difference to a
+// solution without one: all of it by a coupling that is explicit, of order 1 or repeats steps, or fixed steps
+// of sub-solvers; half otherwise, where steps and mesh take part.
 static double usual_share(const bough_scene *scene) {
     const bough_scene_coupling *x = &scene->simulation.coupling;
     const bough_scheme *scheme = bough_scheme_find(bough_scheme_name(x->scheme));
-    bool held = scene->aero.node != NULL && scene->aero.hold == BOUGH_SCENE_CONSTANT;
-    if (scheme->one_system) return held ? 0.5 : 0.25;
+    bool air = scene->aero.node != NULL, held = air && scene->aero.hold == BOUGH_SCENE_CONSTANT;
+    if (scheme->one_system) return held ? 0.5 : air ? 0.25 : 0.4;
     bool whole = scheme->explicit_forces || scheme->repeats || has_fixed_sub_steps(scene) ||
                  bough_scheme_error_order(scheme, &x->options) == 1;
     return whole ? 1 : 0.5;

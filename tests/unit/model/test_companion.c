@@ -290,6 +290,15 @@ TEST(half_of_the_difference_counts_where_loads_are_held) {
                0);
 }
 
+// Vibrations that no air damps err at a lower order.
+TEST(two_fifths_of_the_difference_count_without_air) {
+    check_arena(arena);
+    const char *const sets[] = {"simulation.coupling={scheme: monolithic}", "simulation.micro=null", NULL};
+    bough_scene *scene = scene_read(arena, "apps/beams/spin-up.yaml", sets);
+    check_near(bough_coarser_share(scene, bough_coarser_scene(arena, scene, BOUGH_COARSER_ALL)), 0.4, 1e-12,
+               0);
+}
+
 // The vector of the wind over a rotor in axes that turn with it changes without a new sample, which is no
 // error.
 TEST(turning_axes_are_no_age) {
