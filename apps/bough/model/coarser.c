@@ -72,8 +72,43 @@ static bool has_modal_blades(const bough_scene *scene) {
     return modal;
 }
 
+// What a wave along a rod takes through one of its segments, the longest [s].
+static double segment_time(const bough_scene *scene) {
+    double longest = 0;
+    for (int i = 0; i < scene->n_body; i++) {
+        const bough_scene_rod *rod = &scene->body[i].rod;
+        if (!bough_scene_has_mesh(&scene->body[i])) continue;
+        const bough_section_station *root = &rod->structure.station[0].def;
+        double speed = sqrt(root->stiffness[11] / root->mass);
+        longest = fmax(longest, bough_scene_arc_length(&rod->structure) / rod->n_segment / speed);
+    }
+    return longest;
+}
+
+// Whether a load goes up and down, or down and up, in less than a time.
+static bool has_pulse(const bough_scene_load *load, double time) {
+    double began[2] = {-HUGE_VAL, -HUGE_VAL}; // the last fall and the last rise
+    for (int k = 1; k < load->n_time; k++) {
+        double change = load->values[k] - load->values[k - 1];
+        if (change == 0) continue;
+        bool rises = change > 0;
+        if (load->times[k] - began[!rises] < time) return true;
+        began[rises] = load->times[k - 1];
+    }
+    return false;
+}
+
+// A pulse that is shorter than that excites waves of which half as many segments know nothing.
+static bool has_short_pulses(const bough_scene *scene) {
+    double time = segment_time(scene);
+    bool found = false;
+    for (int k = 0; k < scene->n_load; k++) found = found || has_pulse(&scene->load[k], time);
+    return found;
+}
+
 static int other_segments(const bough_scene *scene, int body) {
     int n = scene->body[body].rod.n_segment;
+    if (has_short_pulses(scene)) return finer_number(n);
     bool blade = bough_scene_blade(scene, body) >= 0;
     if (blade ? has_modal_blades(scene) : is_modal(scene, body)) return finer_number(n);
     int least = blade ? least_of_blades(scene) : least_segments(scene, body);

@@ -281,6 +281,27 @@ TEST(meshes_differ_as_far_as_they_can) {
     }
 }
 
+// A wave takes 0.1 ms through a segment.
+TEST(short_pulses_have_a_finer_companion) {
+    static const struct {
+        const char *loads;
+        int other;
+    } cases[] = {
+        {"loads=[{body: arm, at: tip, force: [0, 0, 1], factor: {times: [0, 10 us, 40 us, 50 us], values: [0, 1, 1, 0]}}]",
+         40},
+        {"loads=[{body: arm, at: tip, force: [0, 0, 1], factor: {times: [0, 10 us, 140 us, 150 us], values: [0, 1, 1, 0]}}]",
+         10},
+        {"loads=[{body: arm, at: tip, force: [0, 0, 1], factor: {times: [0, 10 us, 40 us, 50 us], values: [0, 1, 1, 2]}}]",
+         10}};
+    check_arena(arena);
+    for (size_t k = 0; k < sizeof cases / sizeof *cases; k++) {
+        const char *const sets[] = {cases[k].loads, NULL};
+        bough_scene *scene = scene_read(arena, "apps/beams/spin-up.yaml", sets);
+        assert_int_equal(bough_coarser_scene(arena, scene, BOUGH_COARSER_ALL)->body[0].rod.n_segment,
+                         cases[k].other);
+    }
+}
+
 // The delay of loads that are held between samples is of first order.
 TEST(half_of_the_difference_counts_where_loads_are_held) {
     check_arena(arena);
