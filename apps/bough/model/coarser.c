@@ -146,6 +146,23 @@ static bool has_fixed_sub_steps(const bough_scene *scene) {
     return false;
 }
 
+// Whether a load changes in less than a macro step, not at the start.
+static bool has_jump(const bough_scene *scene, const bough_scene_load *load) {
+    double step = scene->simulation.macro_step;
+    bool jumps = load->ramp[0] > 0 && load->ramp[1] - load->ramp[0] < step;
+    for (int k = 1; k < load->n_time; k++) {
+        bool changes = load->values[k] != load->values[k - 1] && load->times[k - 1] > 0;
+        jumps = jumps || (changes && load->times[k] - load->times[k - 1] < step);
+    }
+    return jumps;
+}
+
+static bool has_jumps(const bough_scene *scene) {
+    bool found = false;
+    for (int k = 0; k < scene->n_load; k++) found = found || has_jump(scene, &scene->load[k]);
+    return found;
+}
+
 // A quarter, of an order between 2 and 3, in air whose loads follow the motion; two fifths without air, where
 // vibrations stay whose phases and amplitudes err at a lower order; half where loads of the air are held
 // constant between samples, which is of order 1. What a coupling errs by is the whole difference to a
@@ -156,8 +173,8 @@ static double usual_share(const bough_scene *scene) {
     const bough_scheme *scheme = bough_scheme_find(bough_scheme_name(x->scheme));
     bool air = scene->aero.node != NULL, held = air && scene->aero.hold == BOUGH_SCENE_CONSTANT;
     if (scheme->one_system) return held ? 0.5 : air ? 0.25 : 0.4;
-    bool whole = scheme->explicit_forces || scheme->repeats || has_fixed_sub_steps(scene) ||
-                 bough_scheme_error_order(scheme, &x->options) == 1;
+    bool whole = scheme->explicit_forces || scheme->repeats || has_jumps(scene) ||
+                 has_fixed_sub_steps(scene) || bough_scheme_error_order(scheme, &x->options) == 1;
     return whole ? 1 : 0.5;
 }
 

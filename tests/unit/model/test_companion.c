@@ -302,6 +302,24 @@ TEST(short_pulses_have_a_finer_companion) {
     }
 }
 
+// A jump within a macro step makes a coupling one of first order: the whole difference counts.
+TEST(jumps_of_loads_count_in_a_coupling) {
+    static const struct {
+        const char *loads;
+        double share;
+    } cases[] = {{"loads=[{joint: hub, torque: 1 MN m, ramp: [1 s, 1.01 s]}]", 1},
+                 {"loads=[{joint: hub, torque: 1 MN m, ramp: [1 s, 2 s]}]", 0.5},
+                 {"loads=[{joint: hub, torque: {times: [0, 5 s, 5.01 s], values: [0, 1 MN m, 2 MN m]}}]", 1},
+                 {"loads=[{joint: hub, torque: 1 MN m}]", 0.5}};
+    check_arena(arena);
+    for (size_t k = 0; k < sizeof cases / sizeof *cases; k++) {
+        const char *const sets[] = {cases[k].loads, NULL};
+        bough_scene *scene = scene_read(arena, "apps/turbine/runup.yaml", sets);
+        check_near(bough_coarser_share(scene, bough_coarser_scene(arena, scene, BOUGH_COARSER_ALL)),
+                   cases[k].share, 1e-12, 0);
+    }
+}
+
 // The delay of loads that are held between samples is of first order.
 TEST(half_of_the_difference_counts_where_loads_are_held) {
     check_arena(arena);
