@@ -153,7 +153,7 @@ static double *product_weights(bough_arena *arena, const work *w, double power) 
     return weight;
 }
 
-// Pairs nearest to the point, right or left, without the memory of the air; `known`: the other side tells
+// Pairs nearest to the point, right or left, without the memory of the air; `known`: the other side shows
 // whether some are missing.
 static bough_status find_pairs(bough_arena *arena, work *w, bool left, bool decaying, bool known,
                                bough_eigen_pair *pair, bough_eigen_count *count) {

@@ -166,8 +166,9 @@ static bool has_jumps(const bough_scene *scene) {
 // A quarter, of an order between 2 and 3, in air whose loads follow the motion; two fifths without air, where
 // vibrations stay whose phases and amplitudes err at a lower order; half where loads of the air are held
 // constant between samples, which is of order 1. What a coupling errs by is the whole difference to a
-// solution without one: all of it by a coupling that is explicit, of order 1 or repeats steps, or fixed steps
-// of sub-solvers; half otherwise, where steps and mesh take part.
+// solution without one: all of it by a coupling that is explicit, repeats steps or is of order 1, as any is
+// across a jump within a macro step, or fixed steps of sub-solvers; half otherwise, where steps and mesh take
+// part.
 static double usual_share(const bough_scene *scene) {
     const bough_scene_coupling *x = &scene->simulation.coupling;
     const bough_scheme *scheme = bough_scheme_find(bough_scheme_name(x->scheme));
