@@ -248,22 +248,38 @@ static bough_scene_solver all_sub_solvers(const bough_scene *scene) {
     return all;
 }
 
-static void lengthen_steps(const bough_scene *scene, bough_scene *to) {
+static void make_one_system(bough_scene *to) {
     bough_scene_simulation *x = &to->simulation;
     int monolithic = bough_scheme_index(BOUGH_SCHEME_DEFAULT);
-    if (x->coupling.scheme != monolithic) {
-        bough_scene_solver sub_solvers = all_sub_solvers(to);
-        x->master.solver = BOUGH_ROSENBROCK;
-        x->master.rtol = sub_solvers.rtol;
-        x->master.step = sub_solvers.step;
-        x->coupling.scheme = monolithic;
-    }
+    x->step_control.tolerance = 0;
+    if (x->coupling.scheme == monolithic) return;
+    bough_scene_solver sub_solvers = all_sub_solvers(to);
+    x->master.solver = BOUGH_ROSENBROCK;
+    x->master.rtol = sub_solvers.rtol;
+    x->master.step = sub_solvers.step;
+    x->coupling.scheme = monolithic;
+}
+
+static void lengthen_steps(const bough_scene *scene, bough_scene *to) {
+    bough_scene_simulation *x = &to->simulation;
+    make_one_system(to);
     looser by = looser_of(scene);
     x->master.rtol = fmax(x->master.rtol, fmin(by.rtol * x->master.rtol, loosest));
     x->master.step *= by.step;
     x->master.coarse = true;
-    x->step_control.tolerance = 0;
     lengthen_macro_step(to);
+}
+
+static const double largest_rtol = 1e-4; // of steps by which a run's own are judged
+
+// A run whose tolerance allows longer steps takes one in a macro step.
+static void shorten_steps(bough_scene *to) {
+    bough_scene_solver *master = &to->simulation.master;
+    double macro_step = to->simulation.macro_step;
+    make_one_system(to);
+    if (master->solver == BOUGH_GENERALIZED_ALPHA) master->solver = BOUGH_ROSENBROCK;
+    master->rtol = fmin(0.1 * master->rtol, largest_rtol);
+    master->step = 0.5 * (master->step > 0 ? fmin(master->step, macro_step) : macro_step);
 }
 
 // -- all ------------------------------------------------------------------------------------------
@@ -276,6 +292,7 @@ bough_scene *bough_coarser_scene(bough_arena *arena, const bough_scene *scene, i
     if (parts & BOUGH_COARSER_AIR)
         to->aero.rate = other_rate(scene, parts & BOUGH_COARSER_MESH && some_finer(scene));
     if (parts & BOUGH_COARSER_TIME) lengthen_steps(scene, to);
+    if (parts & BOUGH_FINER_TIME) shorten_steps(to);
     to->simulation.error_estimate = BOUGH_SCENE_NO_ESTIMATE;
     to->simulation.error_bound = 0;
     to->simulation.error_shares = false;

@@ -193,10 +193,94 @@ static void lower_errors(bough_companion *c, bough_error_shares *shares) {
     c->reason[0] = 0;
 }
 
+// -- steps that a companion finds too long ---------------------------------------------------------
+
+typedef struct proof {
+    const bough_companion *companion;
+    bool (*stop)(void);
+    double end;            // of the run, less rounding [s]
+    double *time, *others; // (n_channel) largest errors: of the steps; of mesh and air
+} proof;
+
+static const double half_steps = 4 / 3.0; // of the difference to them is the error of the run, of order 2
+
+// The run once more, beside one with finer steps and one that is coarser in mesh and air alone.
+static bough_status prove(bough_arena *arena, void *self) {
+    const proof *x = self;
+    const bough_companion *c = x->companion;
+    const bough_simulation *run = c->run;
+    static const int parts[] = {0, BOUGH_FINER_TIME, BOUGH_COARSER_ALL & ~BOUGH_COARSER_TIME};
+    double from = run->scene->simulation.output.from - 1e-6 * run->master->macro_step;
+    other_run r[3] = {{0}};
+    bough_status status = bough_ok();
+    for (int k = 0; k < 3 && bough_is_ok(&status); k++) status = build(arena, run, parts[k], &r[k]);
+    for (double t = 0; bough_is_ok(&status); t = r[0].simulation->master->time) {
+        for (int k = 0; k < 3 && bough_is_ok(&status); k++) {
+            status = advance(&r[k], t);
+            if (bough_is_ok(&status)) sample(&r[k]);
+        }
+        if (!bough_is_ok(&status)) break;
+        if (t >= from) compare(&r[0], &r[1], half_steps, half_steps, x->time);
+        if (t >= from) compare(&r[2], &r[0], c->share, c->share_held, x->others);
+        if (t >= x->end) break;
+        if (x->stop && x->stop())
+            return bough_fail(BOUGH_INTERRUPTED, "interrupted while the error's cause was looked for");
+        status = bough_step(r[0].simulation->master);
+    }
+    return status;
+}
+
+// A companion's longer steps can err by far more than the share of the difference that is the run's. Before
+// the run fails by its steps, finer ones are to show that they err. BOUGH_INTERRUPTED by stop().
+static bough_status prove_time(bough_arena *arena, const finding *x) {
+    bough_companion *c = x->companion;
+    size_t n = (size_t)c->channels->count;
+    proof p = {c, x->stop, x->end, .time = NULL};
+    bough_arena_each(arena, n + 1, &p.time, &p.others);
+    bough_status status = bough_arena_use(prove, &p);
+    if (status.code == BOUGH_INTERRUPTED) return status;
+    double *time = x->shares->share[BOUGH_SHARE_TIME].largest;
+    for (size_t i = 0; i < n && bough_is_ok(&status); i++) {
+        time[i] = fmin(time[i], p.time[i]);
+        c->error[i] = fmin(c->error[i], p.time[i] + p.others[i]);
+    }
+    return bough_ok();
+}
+
+// -- causes ---------------------------------------------------------------------------------------
+
+bool bough_error_exceeds(const bough_companion *c, double bound) {
+    bough_error_verdict v = bough_error_verdict_of(c, true, c->error);
+    return bound > 0 && v.channel >= 0 && v.relative > bound;
+}
+
+// The largest share; the mesh only if time and air alone stay below the bound.
+static int cause_of(const bough_companion *c, const bough_error_shares *shares, double bound,
+                    double *relative) {
+    int cause = -1;
+    *relative = 0;
+    for (int k = 0; k < BOUGH_SHARES; k++) {
+        const bough_error_share *share = &shares->share[k];
+        if (share->unknown[0]) continue;
+        bough_error_verdict v = bough_error_verdict_of(c, true, share->largest);
+        double own = v.channel < 0 ? 0 : v.relative;
+        bool before = cause == BOUGH_SHARE_MESH && own > bound;
+        if (!before && own <= *relative) continue;
+        cause = k;
+        *relative = own;
+    }
+    return cause;
+}
+
 // An error of a part of the range, above the bound: the companion may have lost the solution.
 static bool has_lost(const bough_companion *c) {
     double bound = c->run->scene->simulation.error_bound;
     return bound > 0 && bough_error_exceeds(c, fmax(bound, lost));
+}
+
+static bool fails_by_time(const bough_companion *c, const bough_error_shares *shares) {
+    double relative, bound = c->run->scene->simulation.error_bound;
+    return bough_error_exceeds(c, bound) && cause_of(c, shares, bound, &relative) == BOUGH_SHARE_TIME;
 }
 
 bough_status bough_error_shares_find(bough_arena *arena, bough_companion *c, bool (*stop)(void),
@@ -216,15 +300,16 @@ bough_status bough_error_shares_find(bough_arena *arena, bough_companion *c, boo
     } else {
         status = bough_arena_use(find, &x);
     }
-    shares->cpu_s = bough_cpu_clock(false) - cpu;
     if (status.code == BOUGH_INTERRUPTED) return status;
     if (bough_is_ok(&status) && x.lost) lower_errors(c, shares);
+    if (bough_is_ok(&status) && fails_by_time(c, shares)) BOUGH_TRY(prove_time(arena, &x));
+    shares->cpu_s = bough_cpu_clock(false) - cpu;
     for (int k = 0; k < BOUGH_SHARES && !bough_is_ok(&status); k++)
         unknown(&shares->share[k], "%.150s", status.message);
     return bough_ok();
 }
 
-// -- cause and remedy -----------------------------------------------------------------------------
+// -- remedies -------------------------------------------------------------------------------------
 
 enum { ADVICE = 160 };
 static const double mesh_order = 2, air_order = 2, time_order = 2; // at least
@@ -299,29 +384,6 @@ static int describe(const bough_companion *c, const bough_error_verdict *v, char
     bough_error_size(c, v->channel, error);
     return snprintf(text, size, "%s errs by %s, noticeably from %.6g s on",
                     c->channels->channel[v->channel].name, error, v->time);
-}
-
-bool bough_error_exceeds(const bough_companion *c, double bound) {
-    bough_error_verdict v = bough_error_verdict_of(c, true, c->error);
-    return bound > 0 && v.channel >= 0 && v.relative > bound;
-}
-
-// The largest share; the mesh only if time and air alone stay below the bound.
-static int cause_of(const bough_companion *c, const bough_error_shares *shares, double bound,
-                    double *relative) {
-    int cause = -1;
-    *relative = 0;
-    for (int k = 0; k < BOUGH_SHARES; k++) {
-        const bough_error_share *share = &shares->share[k];
-        if (share->unknown[0]) continue;
-        bough_error_verdict v = bough_error_verdict_of(c, true, share->largest);
-        double own = v.channel < 0 ? 0 : v.relative;
-        bool before = cause == BOUGH_SHARE_MESH && own > bound;
-        if (!before && own <= *relative) continue;
-        cause = k;
-        *relative = own;
-    }
-    return cause;
 }
 
 static bough_status judge_excess(const bough_companion *c, const bough_error_shares *shares, double bound,

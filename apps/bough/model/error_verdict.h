@@ -78,7 +78,8 @@ typedef struct bough_error_shares {
 const char *bough_error_share_name(bough_error_share_kind kind);
 
 // After a complete run: makes the further runs. What is not known says why. Lowers the errors of a companion
-// that has lost the solution. BOUGH_INTERRUPTED by stop() (NULL: never).
+// that has lost the solution, or whose steps would end a run that finer ones confirm. BOUGH_INTERRUPTED by
+// stop() (NULL: never).
 bough_status bough_error_shares_find(bough_arena *arena, bough_companion *c, bool (*stop)(void),
                                      bough_error_shares *shares);
 

@@ -142,6 +142,32 @@ TEST(steps_of_a_macro_step_have_an_error) {
     free(truth);
 }
 
+// Before a run fails by its steps, finer ones say what these err by: more closely than the companion does.
+TEST(finer_steps_prove_an_error_in_time) {
+    static const char scene[] = "apps/mechanisms/pendulum.yaml";
+    const char *const truth_sets[] = {"simulation.macro_step=20 ms", "simulation.error_estimate=none", NULL};
+    const char *const sets[] = {"simulation.duration=2 s", "simulation.macro_step=20 ms",
+                                "simulation.error_bound=1e-6",
+                                "simulation.master={solver: rosenbrock, rtol: 1e-2}", NULL};
+    outcome *truth = run_for(scene, STEPS, truth_sets), *o = run_for(scene, STEPS, sets);
+    check_arena(arena);
+    bough_run r;
+    bough_error_shares shares;
+    check_ok(bough_run_create(arena, scene_read(arena, scene, sets), &r));
+    for (int k = 0; k < STEPS; k++) check_ok(bough_run_step(&r));
+    check_ok(bough_error_shares_find(arena, r.companion, NULL, &shares));
+    for (int i = 0; i < 2; i++) {
+        double error = true_error(o, truth, i, STEPS), proved = r.companion->error[i];
+        print_message("%s: true %.3g, companion %.3g, finer steps %.3g\n", o->name[i], error, o->error[i],
+                      proved);
+        assert_true(o->error[i] > 1.05 * proved);
+        check_near(proved, error, 0.2, 0);
+        check_near(shares.share[BOUGH_SHARE_TIME].largest[i], proved, 1e-9, 0);
+    }
+    free(o);
+    free(truth);
+}
+
 // Estimating changes no bit of the run.
 TEST(a_companion_changes_nothing) {
     const char *const with[] = {"simulation.duration=1 s", NULL};
