@@ -9,8 +9,8 @@
 enum {
     W8 = 8,
     BLOCK_SIZE = BOUGH_EIGEN_AT_ONCE, // starting vectors: multiplicities up to this are found
-    SPARE = 60,                       // vectors beyond those wanted before the first look
-    LOOKS = 8,                        // after the first, each with a quarter as many vectors more
+    SPARE = 40,                       // vectors beyond those wanted before the first look
+    LOOKS = 10,                       // after the first, each with a quarter as many vectors more
 };
 
 static const double accuracy = 1e-9;
@@ -109,7 +109,7 @@ static int select(const search *s, int wanted, int *chosen, double *sum) {
 // has found no other among them.
 static bool iterate(search *s, int wanted, int *chosen, int *found) {
     bough_arnoldi *a = &s->basis;
-    int first = 4 * wanted + SPARE;
+    int first = 3 * wanted + SPARE;
     double before = -1, sum;
     for (int look = 0; look <= LOOKS; look++) {
         // a larger space each time, its Ritz values by falling modulus
@@ -156,6 +156,7 @@ static void fill_pair(const search *s, int k, double *x, double *y, bough_eigen_
         for (size_t i = 0; i < n && part == 1 && op->gamma == 0; i++) own[i] *= -1;
         memcpy(part == 0 ? pair->shape_real : pair->shape_imag, own, bytes);
     }
+    if (op->known) return;
     op->apply(op->self, 1 + oscillates, x, y);
     pair->residual = bough_eigen_residual(op, pair->real, pair->imaginary, x, y);
 }
@@ -171,7 +172,7 @@ static void take_shapes(bough_arena *arena, int n, bough_eigen_pair *pair, int c
 
 static bough_status find(bough_arena *arena, const bough_eigen_operator *op, int wanted,
                          bough_eigen_pair *pair, int *found) {
-    int first = 4 * wanted + SPARE, capacity = first + first * LOOKS / 4 + BLOCK_SIZE;
+    int first = 3 * wanted + SPARE, capacity = first + first * LOOKS / 4 + BLOCK_SIZE;
     search s = {.op = op, .basis = {.apply = apply, .self = &s}};
     s.order = bough_arena_take(arena, (size_t)(capacity + wanted) * sizeof *s.order);
     bough_arnoldi_create(arena, op->length, capacity, BLOCK_SIZE, &s.basis);

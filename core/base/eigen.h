@@ -19,7 +19,8 @@ typedef struct bough_eigen_operator {
     bool balance;     // the second half is the rate of the first: scales the weights of the first
                       // so that both count alike
     bool decaying;    // real decaying solutions are listed too
-    bool known;       // the caller finds out whether some are missing: no second look for them
+    bool known; // the caller finds out whether some are missing, and how exact they are: no second look,
+                // no residuals
     void *self;
     // Images of n ≤ BOUGH_EIGEN_AT_ONCE vectors, one after the other.
     void (*apply)(void *self, int n, const double *z, double *image);

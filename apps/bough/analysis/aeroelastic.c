@@ -139,8 +139,7 @@ static void apply(void *self, int n, const double *z, double *image) {
 static void apply_transposed(void *self, int n, const double *z, double *image) {
     const work *w = self;
     memcpy(w->transposed, z, (size_t)w->n * (size_t)n * sizeof *z);
-    for (size_t k = 0; k < (size_t)n; k++) // one by one, which takes LAPACK less time than all at once
-        bough_dense_solve_transposed(w->n, 1, w->factor, w->pivot, w->transposed + k * (size_t)w->n);
+    bough_dense_solve_transposed(w->n, n, w->factor, w->pivot, w->transposed);
     bough_dense_product((bough_product){w->n, n, w->n, true, 1, 0}, w->inverse, w->transposed, image);
 }
 
@@ -345,13 +344,43 @@ static double participation(const reduced *x, size_t j, bool pair) {
 
 // -- the whole system -----------------------------------------------------------------------------
 
-// The inverse (E − γ ·)⁻¹ of members and air together, (n + m) rows: theory (102).
-typedef struct whole_inverse {
-    work *w;
-    const reduced *x;
-    double *other; // (n) what is outside the subspace
-    double *part;  // (all)
-} whole_inverse;
+// Vectors of members and air, and their coordinates in the subspace of the modes.
+typedef struct vectors {
+    int columns;
+    double *members, *air; // (n × columns), (m × columns)
+    double *modes;         // (r × columns)
+    double *joined;        // (all × columns) coordinates, then air
+} vectors;
+
+static vectors take_vectors(bough_arena *arena, const work *w, const reduced *x, int columns) {
+    size_t k = (size_t)columns + 1;
+    return (vectors){
+        columns, bough_arena_doubles(arena, (size_t)w->n * k), bough_arena_doubles(arena, (size_t)w->m * k),
+        bough_arena_doubles(arena, (size_t)x->r * k), bough_arena_doubles(arena, (size_t)x->all * k)};
+}
+
+static void join(const reduced *x, vectors *v) {
+    size_t r = (size_t)x->r, all = (size_t)x->all, m = all - r;
+    for (size_t k = 0; k < (size_t)v->columns; k++) {
+        memcpy(v->joined + k * all, v->modes + k * r, r * sizeof(double));
+        memcpy(v->joined + k * all + r, v->air + k * m, m * sizeof(double));
+    }
+}
+
+static void split(const reduced *x, vectors *v) {
+    size_t r = (size_t)x->r, all = (size_t)x->all, m = all - r;
+    for (size_t k = 0; k < (size_t)v->columns; k++) {
+        memcpy(v->modes + k * r, v->joined + k * all, r * sizeof(double));
+        memcpy(v->air + k * m, v->joined + k * all + r, m * sizeof(double));
+    }
+}
+
+// Members += U modes + γ rest air
+static void add_coordinates(const work *w, const reduced *x, vectors *v) {
+    bough_dense_product((bough_product){w->n, v->columns, x->r, false, 1, 1}, x->right, v->modes, v->members);
+    bough_dense_product((bough_product){w->n, v->columns, w->m, false, 1 / w->system->def->point, 1}, x->rest,
+                        v->air, v->members);
+}
 
 static bool factor_reduced(bough_arena *arena, const work *w, reduced *x) {
     size_t all = (size_t)x->all;
@@ -362,32 +391,38 @@ static bool factor_reduced(bough_arena *arena, const work *w, reduced *x) {
     return bough_dense_factor(x->all, x->factor, x->pivot);
 }
 
-// += γ G y
-static void add_drive(const work *w, const double *y, double *air) {
+// Air += γ G members
+static void add_drive(bough_arena *arena, const work *w, vectors *v) {
     const bough_air_tangent *t = w->system->air;
-    for (int j = 0; j < w->n; j++) {
-        const double *column = t->drive + (size_t)j * (size_t)t->n_air;
-        for (int i = 0; i < w->m; i++) air[i] += column[w->air[i]] * y[j] / w->system->def->point;
+    size_t n_air = (size_t)t->n_air;
+    double *rate = bough_arena_doubles(arena, n_air * (size_t)v->columns + 1);
+    bough_dense_product((bough_product){t->n_air, v->columns, w->n, false, 1 / w->system->def->point, 0},
+                        t->drive, v->members, rate);
+    for (size_t k = 0; k < (size_t)v->columns; k++) {
+        for (size_t i = 0; i < (size_t)w->m; i++)
+            v->air[k * (size_t)w->m + i] += rate[k * n_air + (size_t)w->air[i]];
     }
 }
 
-static void apply_whole(const whole_inverse *s, const double *z, double *image) {
-    const reduced *x = s->x;
-    const work *w = s->w;
-    size_t r = (size_t)x->r;
+// The inverse (E − γ ·)⁻¹ of members and air together: theory (102).
+static vectors apply_whole(bough_arena *arena, work *w, const reduced *x, const vectors *z) {
+    vectors image = take_vectors(arena, w, x, z->columns);
+    size_t size = (size_t)w->n * (size_t)z->columns;
     // what is outside the subspace, by itself
-    bough_dense_product((bough_product){x->r, 1, w->n, false, 1, 0}, x->left, z, s->part);
-    memcpy(s->other, z, (size_t)w->n * sizeof *z);
-    bough_dense_product((bough_product){w->n, 1, x->r, false, -1, 1}, x->right, s->part, s->other);
-    apply(s->w, 1, s->other, image);
+    double *other = bough_arena_doubles(arena, size + 1);
+    memcpy(other, z->members, size * sizeof *other);
+    bough_dense_product((bough_product){x->r, z->columns, w->n, false, 1, 0}, x->left, z->members,
+                        image.modes);
+    bough_dense_product((bough_product){w->n, z->columns, x->r, false, -1, 1}, x->right, image.modes, other);
+    apply(w, z->columns, other, image.members);
     // the subspace and the air, which it drives
-    memcpy(s->part + r, z + w->n, (size_t)w->m * sizeof *z);
-    add_drive(w, image, s->part + r);
-    bough_dense_solve(x->all, 1, x->factor, x->pivot, s->part);
-    bough_dense_product((bough_product){w->n, 1, x->r, false, 1, 1}, x->right, s->part, image);
-    bough_dense_product((bough_product){w->n, 1, w->m, false, 1 / w->system->def->point, 1}, x->rest,
-                        s->part + r, image);
-    memcpy(image + w->n, s->part + r, (size_t)w->m * sizeof *image);
+    memcpy(image.air, z->air, (size_t)w->m * (size_t)z->columns * sizeof *image.air);
+    add_drive(arena, w, &image);
+    join(x, &image);
+    bough_dense_solve(x->all, z->columns, x->factor, x->pivot, image.joined);
+    split(x, &image);
+    add_coordinates(w, x, &image);
+    return image;
 }
 
 // Where a mode is among the vectors of the reduced system.
@@ -396,26 +431,47 @@ typedef struct listed {
     size_t column;
 } listed;
 
-// The mode as one of the whole, after one step of inverse iteration. from, to (2 × length): work.
-static void expand(const bough_eigen_operator *op, const listed *mode, double *from, double *to,
-                   bough_eigen_pair *p) {
-    const whole_inverse *s = op->self;
-    const work *w = s->w;
-    const reduced *x = s->x;
-    size_t length = (size_t)op->length;
-    memset(from, 0, 2 * length * sizeof *from);
-    memset(to, 0, 2 * length * sizeof *to);
-    for (size_t part = 0; part < 1 + (size_t)(p->imaginary > 0); part++) {
-        const double *vector = x->vector + (mode->column + part) * (size_t)x->all;
-        double *z = from + part * length;
-        bough_dense_product((bough_product){w->n, 1, x->r, false, 1, 0}, x->right, vector, z);
-        bough_dense_product((bough_product){w->n, 1, w->m, false, 1 / w->system->def->point, 1}, x->rest,
-                            vector + x->r, z);
-        memcpy(z + w->n, vector + x->r, (size_t)w->m * sizeof *z);
-        apply_whole(s, z, to + part * length);
-        memcpy(part == 0 ? p->shape_real : p->shape_imag, to + part * length, (size_t)w->n * sizeof *to);
+static int parts_of(const bough_eigen_pair *pair) { return 1 + (pair->imaginary > 0); }
+
+// Real and imaginary part of a vector of the whole, one after the other (2 × length).
+static void collect_parts(const work *w, const vectors *v, size_t column, int parts, double *to) {
+    size_t n = (size_t)w->n, m = (size_t)w->m;
+    memset(to, 0, 2 * (n + m) * sizeof *to);
+    for (size_t part = 0; part < (size_t)parts; part++, to += n + m) {
+        memcpy(to, v->members + (column + part) * n, n * sizeof *to);
+        memcpy(to + n, v->air + (column + part) * m, m * sizeof *to);
     }
-    p->residual = bough_eigen_residual(op, p->real, p->imaginary, from, to);
+}
+
+// Modes as those of the whole, after one step of inverse iteration, with their residuals.
+static void expand(bough_arena *arena, work *w, const reduced *x, int count, const listed *mode,
+                   bough_eigen_pair *pair) {
+    size_t n = (size_t)w->n, length = n + (size_t)w->m, all = (size_t)x->all, column = 0;
+    const bough_eigen_operator op = {
+        .length = (int)length, .gamma = 1 / w->system->def->point, .weight = product_weights(arena, w, -2)};
+    double *from = bough_arena_doubles(arena, 4 * length), *to = from + 2 * length;
+    int columns = 0;
+    for (int k = 0; k < count; k++) columns += parts_of(&mode[k].pair);
+    // all vectors of the reduced system, as states
+    vectors z = take_vectors(arena, w, x, columns);
+    for (int k = 0; k < count; k++) {
+        size_t parts = (size_t)parts_of(&mode[k].pair);
+        memcpy(z.joined + column * all, x->vector + mode[k].column * all, parts * all * sizeof *z.joined);
+        column += parts;
+    }
+    split(x, &z);
+    add_coordinates(w, x, &z);
+    vectors image = apply_whole(arena, w, x, &z);
+    column = 0;
+    for (int k = 0; k < count; k++) {
+        int parts = parts_of(&mode[k].pair);
+        collect_parts(w, &z, column, parts, from);
+        collect_parts(w, &image, column, parts, to);
+        memcpy(pair[k].shape_real, to, n * sizeof *to);
+        memcpy(pair[k].shape_imag, to + length, n * sizeof *to);
+        pair[k].residual = bough_eigen_residual(&op, pair[k].real, pair[k].imaginary, from, to);
+        column += (size_t)parts;
+    }
 }
 
 // The modes in which the bodies take part; returns their number.
@@ -433,23 +489,16 @@ static int choose_modes(const reduced *x, listed *mode) {
 
 static void list_modes(bough_arena *arena, work *w, const reduced *x, bough_eigen_pair *pair,
                        bough_eigen_count *count) {
-    size_t n = (size_t)w->n, length = n + (size_t)w->m;
-    whole_inverse self = {w, x, bough_arena_doubles(arena, n), bough_arena_doubles(arena, (size_t)x->all)};
-    const bough_eigen_operator op = {.length = (int)length,
-                                     .gamma = 1 / w->system->def->point,
-                                     .weight = product_weights(arena, w, -2),
-                                     .self = &self};
-    double *from = bough_arena_doubles(arena, 4 * length);
+    size_t n = (size_t)w->n;
     listed *mode = bough_arena_take(arena, (size_t)x->all * sizeof *mode);
     count->found = choose_modes(x, mode);
     qsort(mode, (size_t)count->found, sizeof *mode, slower);
     if (count->found > count->wanted) count->found = count->wanted;
     for (int k = 0; k < count->found; k++) {
         pair[k] = mode[k].pair;
-        pair[k].shape_real = bough_arena_doubles(arena, n);
-        pair[k].shape_imag = bough_arena_doubles(arena, n);
-        expand(&op, &mode[k], from, from + 2 * length, &pair[k]);
+        bough_arena_each(arena, n, &pair[k].shape_real, &pair[k].shape_imag);
     }
+    expand(arena, w, x, count->found, mode, pair);
 }
 
 // Eigenvectors of one side without a partner on the other.

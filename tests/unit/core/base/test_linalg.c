@@ -64,6 +64,23 @@ TEST(lu_solves_systems_of_any_size) {
     }
 }
 
+// As many right sides as are solved for together, and more; rows in several tiles.
+TEST(transposed_systems_with_several_right_sides) {
+    enum { N = 53, MOST = 9 };
+    double a[N * N], b[N * MOST];
+    int pivot[N];
+    for (int n_right = 1; n_right <= MOST; n_right += 4) {
+        memset(b, 0, sizeof b);
+        for (int k = 0; k < N * N; k++) a[k] = sin(1.7 * k * k + 1) - (k % (N + 1) == 0 ? 0.9 : 0);
+        for (int j = 0; j < n_right; j++) {
+            for (int k = 0; k < N * N; k++) b[j * N + k / N] += a[k] * (k % N - 2.5 * j);
+        }
+        assert_true(bough_dense_factor(N, a, pivot));
+        bough_dense_solve_transposed(N, n_right, a, pivot, b);
+        for (int i = 0; i < N * n_right; i++) check_near(b[i], i % N - 2.5 * (i / N), 0, 1e-9);
+    }
+}
+
 // (2 × 3)(3 × 2), and the transpose of the first.
 TEST(product_of_matrices) {
     const double a[6] = {1, 2, 3, 4, 5, 6}, b[6] = {1, 0, -1, 2, 1, 0}, at[6] = {1, 3, 5, 2, 4, 6};
