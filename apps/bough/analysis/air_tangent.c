@@ -75,12 +75,18 @@ static void settle(work *w, const double *state) {
 }
 
 // Both sides of a difference are in the work: their slopes, of the bodies' rates and of the air's.
-static void set_column(const work *w, double size, double *column, double *air_column) {
+static void set_column(const work *w, double between, double *column, double *air_column) {
     int n = w->coupled->assembly->n_state;
-    for (int k = 0; k < n; k++) column[k] = (w->rate[1][k] - w->rate[0][k]) / (2 * size);
+    for (int k = 0; k < n; k++) column[k] = (w->rate[1][k] - w->rate[0][k]) / between;
     for (int k = 0; k < w->n_air; k++) {
-        air_column[k] = (w->air_rate[1][k] - w->air_rate[0][k]) / (2 * size);
+        air_column[k] = (w->air_rate[1][k] - w->air_rate[0][k]) / between;
     }
+}
+
+// The state and the air at rest about it, to be changed.
+static void begin_change(work *w, const double *state) {
+    memcpy(w->state, state, (size_t)w->coupled->assembly->n_state * sizeof *state);
+    memcpy(w->before, w->memory, (size_t)w->n_memory * sizeof *w->before);
 }
 
 static bool meets_air(const bough_simulation *s, int member) {
@@ -91,6 +97,8 @@ static bool meets_air(const bough_simulation *s, int member) {
     return false;
 }
 
+// To one side: there are thousands of states, and the curvature of the loads within the difference is 1e-5 of
+// their slope.
 static bough_status follow_motion(work *w, const double *state, bough_air_tangent *t) {
     const bough_assembly *a = w->coupled->assembly;
     for (int i = 0; i < a->n_member; i++) {
@@ -98,12 +106,9 @@ static bough_status follow_motion(work *w, const double *state, bough_air_tangen
         for (int k = 0; k < a->member[i]->system.n_state; k++) {
             int at = a->state_offset[i] + k;
             double size = difference * a->member[i]->system.scale[k];
-            for (int side = 0; side < 2; side++) {
-                memcpy(w->state, state, (size_t)a->n_state * sizeof *state);
-                memcpy(w->before, w->memory, (size_t)w->n_memory * sizeof *w->before);
-                w->state[at] += (2 * side - 1) * size;
-                BOUGH_TRY(find_rates(w, state, w->rate[side], w->air_rate[side]));
-            }
+            begin_change(w, state);
+            w->state[at] += size;
+            BOUGH_TRY(find_rates(w, state, w->rate[1], w->air_rate[1]));
             set_column(w, size, t->motion + (size_t)at * a->n_state, t->drive + (size_t)at * t->n_air);
         }
     }
@@ -111,15 +116,12 @@ static bough_status follow_motion(work *w, const double *state, bough_air_tangen
 }
 
 static bough_status follow_memory(work *w, const double *state, bough_air_tangent *t) {
-    const bough_assembly *a = w->coupled->assembly;
+    size_t n = (size_t)w->coupled->assembly->n_state;
     for (int k = 0; k < w->n_air; k++) {
-        for (int side = 0; side < 2; side++) {
-            memcpy(w->state, state, (size_t)a->n_state * sizeof *state);
-            memcpy(w->before, w->memory, (size_t)w->n_memory * sizeof *w->before);
-            w->before[w->row[k]] += (2 * side - 1) * air_difference;
-            BOUGH_TRY(find_rates(w, state, w->rate[side], w->air_rate[side]));
-        }
-        set_column(w, air_difference, t->lift + (size_t)k * a->n_state, t->lag + (size_t)k * t->n_air);
+        begin_change(w, state);
+        w->before[w->row[k]] += air_difference;
+        BOUGH_TRY(find_rates(w, state, w->rate[1], w->air_rate[1]));
+        set_column(w, air_difference, t->lift + (size_t)k * n, t->lag + (size_t)k * t->n_air);
     }
     return bough_ok();
 }
@@ -129,14 +131,13 @@ static bough_status follow_inputs(work *w, const double *state, const bough_air_
     size_t n = (size_t)w->coupled->assembly->n_state;
     for (int k = 0; k < inputs->n; k++) {
         for (int side = 0; side < 2; side++) {
-            memcpy(w->state, state, n * sizeof *state);
-            memcpy(w->before, w->memory, (size_t)w->n_memory * sizeof *w->before);
+            begin_change(w, state);
             inputs->set(inputs->self, k, (2 * side - 1) * inputs->size[k], w->state);
             bough_status status = find_rates(w, w->state, w->rate[side], w->air_rate[side]);
             inputs->set(inputs->self, k, 0, w->state);
             if (!bough_is_ok(&status)) return status;
         }
-        set_column(w, inputs->size[k], t->input + (size_t)k * n, t->input_drive + (size_t)k * t->n_air);
+        set_column(w, 2 * inputs->size[k], t->input + (size_t)k * n, t->input_drive + (size_t)k * t->n_air);
     }
     return bough_ok();
 }
@@ -167,7 +168,9 @@ bough_status bough_air_tangent_find(bough_arena *arena, bough_simulation *s, bou
                              .input = bough_arena_doubles(arena, n * n_input + 1),
                              .input_drive = bough_arena_doubles(arena, m * n_input + 1)};
     settle(&w, state);
-    bough_status status = follow_motion(&w, state, t);
+    begin_change(&w, state);
+    bough_status status = find_rates(&w, state, w.rate[0], w.air_rate[0]);
+    if (bough_is_ok(&status)) status = follow_motion(&w, state, t);
     if (bough_is_ok(&status)) status = follow_memory(&w, state, t);
     if (bough_is_ok(&status) && inputs) status = follow_inputs(&w, state, inputs, t);
     settle(&w, state);
@@ -200,7 +203,7 @@ bough_status bough_air_change_follow(bough_air_change *x, double size, const dou
         for (int k = 0; k < w->n_air; k++) w->before[w->row[k]] += factor * change[n + k];
         BOUGH_TRY(find_rates(w, x->about, w->rate[side], w->air_rate[side]));
     }
-    set_column(w, size, image, image + n);
+    set_column(w, 2 * size, image, image + n);
     return bough_ok();
 }
 
