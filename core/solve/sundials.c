@@ -207,13 +207,15 @@ static bool configure(run *r) {
     return bad == 0;
 }
 
-static run *create(bough_arena *arena, const bough_ode *ode, const bough_integrator_options *options,
-                   const library *of) {
+static const library *library_of(bough_integrator_kind kind);
+
+static void *create(bough_arena *arena, const bough_ode *ode, const bough_integrator_options *options) {
     run *r = bough_arena_take(arena, sizeof *r);
     bough_arena_on_destroy(arena, destroy, r);
-    r->library = of;
+    r->library = library_of(options->kind);
     r->ode = *ode;
-    r->most_steps = of->most_steps;
+    bool limited = options->kind == BOUGH_IDA && options->most_steps > 0;
+    r->most_steps = limited ? options->most_steps : r->library->most_steps;
     if (!take(r, options->rtol) || !configure(r)) bough_arena_leave(arena);
     return r;
 }
@@ -295,7 +297,7 @@ static bough_status advance(void *self, double *t, double pause, double t1, bool
 
 static void statistics(const void *self, bough_statistics *sum) {
     const run *r = self;
-    bough_statistics_add(sum, &r->past);
+    bough_statistics_add(sum, 1, &r->past);
     sum->jacobians += r->jacobians;
     sum->factorisations += r->factorisations;
     if (r->started) r->library->count(r->memory, sum);
@@ -357,18 +359,6 @@ static const library cvode = {
     .step = cvode_step,
     .current_time = CVodeGetCurrentTime,
     .count = cvode_count,
-};
-
-static void *cvode_create(bough_arena *arena, const bough_ode *ode, const bough_integrator_options *options) {
-    return create(arena, ode, options, &cvode);
-}
-
-const bough_integrator_ops bough_integrator_cvode = {
-    .name = "cvode-bdf",
-    .title = "CVODE BDF",
-    .create = cvode_create,
-    .advance = advance,
-    .statistics = statistics,
 };
 
 // -- ARKODE ----------------------------------------------------------------------------------------
@@ -460,19 +450,6 @@ static const library arkode = {
     .step = arkode_step,
     .current_time = ARKStepGetCurrentTime,
     .count = arkode_count,
-};
-
-static void *arkode_create(bough_arena *arena, const bough_ode *ode,
-                           const bough_integrator_options *options) {
-    return create(arena, ode, options, &arkode);
-}
-
-const bough_integrator_ops bough_integrator_arkode = {
-    .name = "arkode-esdirk",
-    .title = "ARKODE ESDIRK",
-    .create = arkode_create,
-    .advance = advance,
-    .statistics = statistics,
 };
 
 // -- IDA -------------------------------------------------------------------------------------------
@@ -574,16 +551,32 @@ static const library ida = {
     .count = ida_count,
 };
 
-static void *ida_create(bough_arena *arena, const bough_ode *ode, const bough_integrator_options *options) {
-    run *r = create(arena, ode, options, &ida);
-    if (options->most_steps > 0) r->most_steps = options->most_steps;
-    return r;
+// -- the table ----------------------------------------------------------------------------------------
+
+static const library *library_of(bough_integrator_kind kind) {
+    return kind == BOUGH_IDA ? &ida : kind == BOUGH_CVODE_BDF ? &cvode : &arkode;
 }
 
 const bough_integrator_ops bough_integrator_ida = {
     .name = "ida",
     .title = "IDA",
-    .create = ida_create,
+    .create = create,
+    .advance = advance,
+    .statistics = statistics,
+};
+
+const bough_integrator_ops bough_integrator_cvode = {
+    .name = "cvode-bdf",
+    .title = "CVODE BDF",
+    .create = create,
+    .advance = advance,
+    .statistics = statistics,
+};
+
+const bough_integrator_ops bough_integrator_arkode = {
+    .name = "arkode-esdirk",
+    .title = "ARKODE ESDIRK",
+    .create = create,
     .advance = advance,
     .statistics = statistics,
 };
