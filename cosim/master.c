@@ -243,7 +243,7 @@ bough_statistics bough_master_statistics(const bough_master *m) {
             i < m->assembly->n_member ? m->assembly->member[i] : bough_scheme_whole(m->coupling);
         if (member == NULL) continue;
         bough_statistics own = bough_member_statistics(member);
-        bough_statistics_add(&sum, &own);
+        bough_statistics_add(&sum, 1, &own);
     }
     return sum;
 }

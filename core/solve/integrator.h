@@ -18,24 +18,15 @@ typedef struct bough_statistics {
     long starts; // the first, those after jumps of the input or the state, and at every checkpoint
 } bough_statistics;
 
-static inline void bough_statistics_add(bough_statistics *sum, const bough_statistics *part) {
-    sum->steps += part->steps;
-    sum->failed_steps += part->failed_steps;
-    sum->derivatives += part->derivatives;
-    sum->jacobians += part->jacobians;
-    sum->factorisations += part->factorisations;
-    sum->iterations += part->iterations;
-    sum->starts += part->starts;
-}
-
-static inline void bough_statistics_subtract(bough_statistics *from, const bough_statistics *part) {
-    from->steps -= part->steps;
-    from->failed_steps -= part->failed_steps;
-    from->derivatives -= part->derivatives;
-    from->jacobians -= part->jacobians;
-    from->factorisations -= part->factorisations;
-    from->iterations -= part->iterations;
-    from->starts -= part->starts;
+// sum += factor part
+static inline void bough_statistics_add(bough_statistics *sum, long factor, const bough_statistics *part) {
+    sum->steps += factor * part->steps;
+    sum->failed_steps += factor * part->failed_steps;
+    sum->derivatives += factor * part->derivatives;
+    sum->jacobians += factor * part->jacobians;
+    sum->factorisations += factor * part->factorisations;
+    sum->iterations += factor * part->iterations;
+    sum->starts += factor * part->starts;
 }
 
 // ẏ = f(t, y). Callbacks return false where there is no finite value.

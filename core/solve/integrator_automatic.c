@@ -51,7 +51,7 @@ static bough_status take(bough_integrator *integrator, double *t, double t1, boo
     bough_statistics before = work_of(integrator);
     bough_status status = integrator->ops->advance(integrator->self, t, t1, t1, restart, y);
     *work = work_of(integrator);
-    bough_statistics_subtract(work, &before);
+    bough_statistics_add(work, -1, &before);
     return status;
 }
 

@@ -413,7 +413,7 @@ static void transfer(void *self, bough_snapshot *s) {
 
 static void statistics(const void *self, bough_statistics *sum) {
     const radau *r = self;
-    bough_statistics_add(sum, &r->count);
+    bough_statistics_add(sum, 1, &r->count);
 }
 
 const bough_integrator_ops bough_integrator_radau = {

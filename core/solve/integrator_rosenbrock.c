@@ -271,7 +271,7 @@ static bough_status advance(void *self, double *t, double pause, double t1, bool
 
 static void statistics(const void *self, bough_statistics *sum) {
     const rosenbrock *m = self;
-    bough_statistics_add(sum, &m->sum);
+    bough_statistics_add(sum, 1, &m->sum);
 }
 
 const bough_integrator_ops bough_integrator_rosenbrock = {

@@ -322,7 +322,7 @@ static bough_status look(void *self) {
 static void count_work(case_run *r) {
     bough_statistics work = bough_run_statistics(r->run, 0);
     bough_statistics whole = bough_run_statistics(r->run, r->run->simulation->master->assembly->n_member);
-    bough_statistics_add(&work, &whole);
+    bough_statistics_add(&work, 1, &whole);
     for (int i = 0; i < r->x->n_expect; i++) {
         const bough_verify_expect *e = &r->x->expect[i];
         if (e->diagnosis || e->quantity.what != BOUGH_VERIFY_WORK || work.steps == 0) continue;

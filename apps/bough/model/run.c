@@ -188,7 +188,7 @@ bough_statistics bough_run_statistics(const bough_run *run, int member) {
     } else if (whole) {
         done = bough_member_statistics(whole);
     }
-    bough_statistics_add(&done, &run->earlier[member]);
+    bough_statistics_add(&done, 1, &run->earlier[member]);
     return done;
 }
 
@@ -198,9 +198,9 @@ static void take_statistics(bough_run *run, bough_snapshot *s) {
     for (int i = 0; i <= a->n_member; i++) {
         bough_statistics *earlier = &run->earlier[i];
         bough_statistics total = bough_run_statistics(run, i), now = total;
-        bough_statistics_subtract(&now, earlier);
+        bough_statistics_add(&now, -1, earlier);
         bough_snapshot_take(s, &total, sizeof total);
-        bough_statistics_subtract(&total, &now);
+        bough_statistics_add(&total, -1, &now);
         *earlier = total;
     }
 }
