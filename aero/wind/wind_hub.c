@@ -91,29 +91,18 @@ bough_status bough_wind_hub_read(bough_arena *arena, const char *path, bough_win
     return status;
 }
 
-// All columns between two rows.
-static bough_wind_hub_row between(const bough_wind_hub_row *a, const bough_wind_hub_row *b, double w) {
-    const double v = 1 - w;
-    return (bough_wind_hub_row){
-        .speed = v * a->speed + w * b->speed,
-        .direction = v * a->direction + w * b->direction,
-        .vertical = v * a->vertical + w * b->vertical,
-        .horizontal_shear = v * a->horizontal_shear + w * b->horizontal_shear,
-        .exponent = v * a->exponent + w * b->exponent,
-        .vertical_shear = v * a->vertical_shear + w * b->vertical_shear,
-        .gust = v * a->gust + w * b->gust,
-        .upflow = v * a->upflow + w * b->upflow,
-    };
-}
-
 // Held before the first and after the last row.
 static bough_wind_hub_row row_at(const bough_wind_hub *hub, double t) {
     const bough_wind_hub_row *row = hub->row;
     if (!(t > row[0].time)) return row[0];
     if (t >= row[hub->n - 1].time) return row[hub->n - 1];
-    const bough_wind_hub_row *a = row + bough_table_row(hub->n, &row->time, sizeof *row / sizeof(double), t),
-                             *b = a + 1;
-    return between(a, b, (t - a->time) / (b->time - a->time));
+    // a row is MOST doubles, the first its time
+    const double *a = &row->time + MOST * bough_table_row(hub->n, &row->time, MOST, t), *b = a + MOST;
+    double w = (t - a[0]) / (b[0] - a[0]), between[MOST];
+    for (int i = 0; i < MOST; i++) between[i] = (1 - w) * a[i] + w * b[i];
+    bough_wind_hub_row x;
+    memcpy(&x, between, sizeof x);
+    return x;
 }
 
 // Power law; no wind below ground.

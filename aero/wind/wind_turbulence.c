@@ -12,53 +12,14 @@
 #include <stdlib.h>
 #include <string.h>
 
-// The sum of n waves, by FFTW.
-typedef struct fourier {
-    fftw_complex *amplitude; // (n/2 + 1)
-    double *sum;             // (n)
-    fftw_plan plan;
-} fourier;
-
 // The library's planner is one for the process.
 // NOLINTNEXTLINE(cppcoreguidelines-avoid-non-const-global-variables)
 static pthread_mutex_t planner = PTHREAD_MUTEX_INITIALIZER;
 
-static void fourier_destroy(fourier *f) {
-    if (!f) return;
+static void destroy_plan(void *plan) {
     pthread_mutex_lock(&planner);
-    if (f->plan) fftw_destroy_plan(f->plan);
+    fftw_destroy_plan(plan);
     pthread_mutex_unlock(&planner);
-    fftw_free(f->amplitude);
-    fftw_free(f->sum);
-    free(f);
-}
-
-// For n times, even; NULL without memory. The plan is chosen without measuring, so that the same n
-// always gives the same bits.
-static fourier *fourier_create(int n) {
-    fourier *f = calloc(1, sizeof *f);
-    if (!f) return NULL;
-    f->amplitude = fftw_malloc(((size_t)n / 2 + 1) * sizeof *f->amplitude);
-    f->sum = fftw_malloc((size_t)n * sizeof *f->sum);
-    if (f->amplitude && f->sum) {
-        pthread_mutex_lock(&planner);
-        f->plan = fftw_plan_dft_c2r_1d(n, f->amplitude, f->sum, FFTW_ESTIMATE);
-        pthread_mutex_unlock(&planner);
-    }
-    if (f->plan) return f;
-    fourier_destroy(f);
-    return NULL;
-}
-
-// Complex amplitudes of the waves 0 … n/2, real and imaginary part next to each other: set them
-// before each sum, which overwrites them.
-static double *fourier_amplitude(fourier *f) { return (double *)f->amplitude; }
-
-// x_k = A₀ + Σ 2 Re(A_m e^{2πi m k/n}) over m = 1 … n/2 − 1, with the amplitude n/2 once; x (n) is
-// valid until the next sum.
-static const double *fourier_sum(fourier *f) {
-    fftw_execute(f->plan);
-    return f->sum;
 }
 
 // Below NEGLIGIBLE, points next to each other are taken as not coherent.
@@ -101,8 +62,7 @@ bool bough_turbulence_equal(const bough_wind_iec_def *a, const bough_wind_iec_de
 typedef struct maker {
     const bough_wind_iec_def *def;
     bough_wind_box *box;
-    int16_t *value; // of the box
-    fourier *fourier;
+    int16_t *value;      // of the box
     int n_point, n_wave; // waves 1 … n_wave
     int n_coherent;      // the slowest of them, whose points are mixed
     double step;         // between frequencies [Hz]
@@ -115,6 +75,10 @@ typedef struct maker {
     float *table;        // (points × points) coherence, likewise
     uint16_t *pair;      // (n_point × n_point), lower triangle of columns in `order`: entry of the tables
     int16_t *series;     // (BATCH × 3 × n_time)
+    // x_k = A₀ + Σ 2 Re(A_m e^{2πi m k/n}) over m = 1 … n/2 − 1, with the amplitude n/2 once, by FFTW:
+    double *waves; // (n_time/2 + 1) A_m, real and imaginary part next to each other; a sum overwrites them
+    double *sum;   // (n_time) x
+    fftw_plan plan;
 } maker;
 
 static uint64_t scramble(uint64_t x) {
@@ -232,8 +196,20 @@ static bough_status mix_all(maker *m) {
 
 // -- series ---------------------------------------------------------------------------------------
 
+// The plan is chosen without measuring, so that the same number of times always gives the same bits.
+static void make_plan(bough_arena *arena, maker *m) {
+    size_t n = (size_t)m->box->n_time;
+    m->waves = bough_arena_doubles(arena, n + 2);
+    m->sum = bough_arena_doubles(arena, n);
+    pthread_mutex_lock(&planner);
+    m->plan = fftw_plan_dft_c2r_1d(m->box->n_time, (fftw_complex *)m->waves, m->sum, FFTW_ESTIMATE);
+    pthread_mutex_unlock(&planner);
+    if (!m->plan) bough_arena_leave(arena);
+    bough_arena_on_destroy(arena, destroy_plan, m->plan);
+}
+
 static void set_waves(maker *m, int component, int point) {
-    double *restrict a = fourier_amplitude(m->fourier);
+    double *restrict a = m->waves;
     const double *restrict amplitude = amplitude_of(m, component);
     int n = m->n_wave, mixed = component == 0 ? m->n_coherent : 0;
     a[0] = a[1] = a[2 * n + 2] = a[2 * n + 3] = 0;
@@ -284,7 +260,8 @@ static void make_series(maker *m) {
         for (int i = 0; i < 3 * count; i++) {
             int component = i % 3, point = first + i / 3;
             set_waves(m, component, point);
-            quantise(m, component, point, fourier_sum(m->fourier), m->series + i * n);
+            fftw_execute(m->plan);
+            quantise(m, component, point, m->sum, m->series + i * n);
         }
         store(m, first, count);
     }
@@ -377,8 +354,7 @@ static bough_status make_in(bough_arena *scratch, maker *m) {
     m->pair = bough_arena_take(scratch, n * n * sizeof *m->pair);
     m->series = bough_arena_take(scratch, 3 * BATCH * (size_t)m->box->n_time * sizeof *m->series);
     place *places = bough_arena_take(scratch, n * sizeof *places);
-    m->fourier = fourier_create(m->box->n_time);
-    if (!m->fourier) bough_arena_leave(scratch);
+    make_plan(scratch, m);
     set_order(m, places);
     for (int c = 0; c < 3; c++) set_amplitudes(m, c);
     bough_status status = mix_all(m);
@@ -399,7 +375,6 @@ bough_status bough_turbulence_make(bough_arena *arena, const bough_wind_iec_def 
     box->value = m.value = bough_arena_take(arena, values * sizeof *m.value);
     bough_arena *scratch = bough_arena_child(arena);
     bough_status status = make_in(scratch, &m);
-    fourier_destroy(m.fourier);
     bough_arena_destroy(scratch);
     return status;
 }
