@@ -14,8 +14,7 @@ BOUGH_DECLARE_LEVELS(bough_rotor_induce);
 // All vectors of a blade are in its frame's axes, stations side by side in vector lanes.
 
 BOUGH_INLINE bough_quaternion section_at(const double *restrict vertex, int n, int i) {
-    const double *p = vertex + BOUGH_BLADE_ROTATION * n;
-    return unit_quaternion(p[i], p[n + i], p[2 * n + i], p[3 * n + i]);
+    return bough_quaternion_unit(lane_load_quaternion(vertex + BOUGH_BLADE_ROTATION * n, n, i));
 }
 
 // The axes of a blade element at `arm` from the hub.
@@ -98,7 +97,7 @@ static void move_stations(const bough_rotor *rotor, const bough_rotor_motion *mo
         bough_vec3 beside = bough_scale(-0.25 * w * (1 - w), second);
         // structural section at the station: between two vertices, with the second difference
         bough_mat3 structure = rotated_by(beside, rotation_between(p, q, w));
-        bough_mat3 section = bough_mat3_product(structure, load_matrix(m.section, s, j));
+        bough_mat3 section = bough_mat3_product(structure, lane_load_matrix(m.section, s, j));
         bough_vec3 arm = bough_mat3_mul(structure, lane_load(m.centre, s, j));
         bough_vec3 axis = bough_between(lane_load(vertex, n, a), lane_load(vertex, n, b), w);
         // aerodynamic centre on the bent axis

@@ -62,7 +62,7 @@ static void place_station(const bough_rotor_def *def, const bough_station_def *f
     station_rows *to = &rotor->station;
     to->vertex[j] = i;
     to->weight[j] = w;
-    store_matrix(to->section, rotor->stride, j, section);
+    lane_store_matrix(to->section, rotor->stride, j, section);
     lane_store(to->centre, rotor->stride, j, bough_mat3_tmul(structure, arm));
     bough_vec3 ends = bough_sub(def->vertex_rotation[i + 1].c3, def->vertex_rotation[i].c3);
     lane_store(to->ends, rotor->stride, j, bough_mat3_tmul(structure, ends));

@@ -78,29 +78,14 @@ struct bough_rotor_scratch {
     double wake;         // 0: too slow for momentum theory, 1: full induction
 };
 
-BOUGH_INLINE bough_mat3 load_matrix(const double *restrict a, int stride, int i) {
-    return (bough_mat3){lane_load(a, stride, i), lane_load(a + 3 * stride, stride, i),
-                        lane_load(a + 6 * stride, stride, i)};
-}
-
-BOUGH_INLINE void store_matrix(double *restrict a, int stride, int i, bough_mat3 m) {
-    lane_store(a, stride, i, m.c1);
-    lane_store(a + 3 * stride, stride, i, m.c2);
-    lane_store(a + 6 * stride, stride, i, m.c3);
-}
-
-BOUGH_INLINE bough_quaternion unit_quaternion(double w, double x, double y, double z) {
-    double scale = 1 / sqrt(w * w + x * x + y * y + z * z);
-    return (bough_quaternion){scale * w, scale * x, scale * y, scale * z};
-}
-
 // The rotation between p and q at a fraction of the way. Within the few degrees between neighbouring vertices
 // the normalised chord is as good as the arc, and like it independent of the frame.
 BOUGH_INLINE bough_mat3 rotation_between(bough_quaternion p, bough_quaternion q, double weight) {
     double side = p.w * q.w + p.x * q.x + p.y * q.y + p.z * q.z;
     double wp = 1 - weight, wq = side < 0 ? -weight : weight;
-    return bough_rotation_matrix(
-        unit_quaternion(wp * p.w + wq * q.w, wp * p.x + wq * q.x, wp * p.y + wq * q.y, wp * p.z + wq * q.z));
+    bough_quaternion sum = {wp * p.w + wq * q.w, wp * p.x + wq * q.x, wp * p.y + wq * q.y,
+                            wp * p.z + wq * q.z};
+    return bough_rotation_matrix(bough_quaternion_unit(sum));
 }
 
 #endif

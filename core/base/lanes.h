@@ -5,7 +5,7 @@
 #define BOUGH_CORE_BASE_LANES_H
 
 #include "core/base/base.h"
-#include "core/base/vec3.h"
+#include "core/base/rotation.h"
 
 #include <stdint.h>
 #include <string.h>
@@ -123,6 +123,26 @@ BOUGH_INLINE void lane_store(double *restrict a, int stride, int i, bough_vec3 v
     a[i] = v.x;
     a[stride + i] = v.y;
     a[2 * stride + i] = v.z;
+}
+
+BOUGH_INLINE void lane_add(double *restrict a, int stride, int i, bough_vec3 v) {
+    lane_store(a, stride, i, bough_add(lane_load(a, stride, i), v));
+}
+
+BOUGH_INLINE bough_quaternion lane_load_quaternion(const double *restrict a, int stride, int i) {
+    return (bough_quaternion){a[i], a[stride + i], a[2 * stride + i], a[3 * stride + i]};
+}
+
+// A matrix by its columns.
+BOUGH_INLINE bough_mat3 lane_load_matrix(const double *restrict a, int stride, int i) {
+    return (bough_mat3){lane_load(a, stride, i), lane_load(a + 3 * stride, stride, i),
+                        lane_load(a + 6 * stride, stride, i)};
+}
+
+BOUGH_INLINE void lane_store_matrix(double *restrict a, int stride, int i, bough_mat3 m) {
+    lane_store(a, stride, i, m.c1);
+    lane_store(a + 3 * stride, stride, i, m.c2);
+    lane_store(a + 6 * stride, stride, i, m.c3);
 }
 
 #endif

@@ -24,6 +24,12 @@ BOUGH_INLINE bough_quaternion bough_quaternion_conjugate(bough_quaternion p) {
 // p / |p|; the identity for the zero quaternion.
 bough_quaternion bough_quaternion_normalised(bough_quaternion p);
 
+// The same of one that is not zero, in vector lanes.
+BOUGH_INLINE bough_quaternion bough_quaternion_unit(bough_quaternion p) {
+    double scale = 1 / sqrt(p.w * p.w + p.x * p.x + p.y * p.y + p.z * p.z);
+    return (bough_quaternion){scale * p.w, scale * p.x, scale * p.y, scale * p.z};
+}
+
 // The rotation by the vector `phi` [rad], any angle.
 bough_quaternion bough_quaternion_exponential(bough_vec3 phi);
 

@@ -22,6 +22,8 @@ BOUGH_INLINE void bough_v3_store(bough_vec3 v, double *out) {
     out[2] = v.z;
 }
 
+BOUGH_INLINE bough_vec3 bough_v3_load(const double *x) { return (bough_vec3){x[0], x[1], x[2]}; }
+
 // The unit vector along axis k = 0, 1, 2.
 BOUGH_INLINE bough_vec3 bough_unit3(int k) { return (bough_vec3){k == 0, k == 1, k == 2}; }
 

@@ -42,8 +42,6 @@ static int quaternion_row(const bough_joint *joint) {
 
 static bough_quaternion load(const double *p) { return (bough_quaternion){p[0], p[1], p[2], p[3]}; }
 
-static bough_vec3 load3(const double *x) { return bough_v3(x[0], x[1], x[2]); }
-
 static bough_mat3 rotation_at(const double *p) {
     return bough_rotation_matrix(bough_quaternion_normalised(load(p)));
 }
@@ -54,7 +52,7 @@ static bough_vec3 slide(const bough_joint *joint, const double *x) {
     case 1: return bough_scale(x[0], joint->axis);
     case 2:
         return bough_axpy(x[0], joint->second, bough_scale(x[1], bough_cross(joint->axis, joint->second)));
-    case 3: return load3(x);
+    case 3: return bough_v3_load(x);
     default: return bough_v3(0, 0, 0);
     }
 }
@@ -71,7 +69,7 @@ bough_twist bough_joint_twist(const bough_joint *joint, const double *v) {
     bough_twist t = {slide(joint, v), {0, 0, 0}};
     v += slides_of(joint);
     if (spin_of(joint) == ABOUT_AXIS) t.angular = bough_scale(v[0], joint->axis);
-    if (spin_of(joint) == ALL_WAYS) t.angular = load3(v);
+    if (spin_of(joint) == ALL_WAYS) t.angular = bough_v3_load(v);
     return t;
 }
 
@@ -116,7 +114,7 @@ void bough_joint_rate(const bough_joint *joint, const double *q, const double *v
     int n = slides_of(joint);
     if (n == 1) rate[0] = v[0];
     if (n == 2) rotate_plane(q[2], v, rate);
-    if (n == 3) bough_v3_store(bough_mat3_mul(rotation_at(q + 3), load3(v)), rate);
+    if (n == 3) bough_v3_store(bough_mat3_mul(rotation_at(q + 3), bough_v3_load(v)), rate);
     if (spin_of(joint) == ABOUT_AXIS) rate[n] = v[n];
     if (spin_of(joint) == ALL_WAYS) quaternion_rate(q + n, v + n, rate + n);
 }
@@ -125,7 +123,7 @@ void bough_joint_speed(const bough_joint *joint, const double *q, const double *
     int n = slides_of(joint);
     if (n == 1) v[0] = change[0];
     if (n == 2) rotate_plane(-q[2], change, v);
-    if (n == 3) bough_v3_store(bough_mat3_tmul(rotation_at(q + 3), load3(change)), v);
+    if (n == 3) bough_v3_store(bough_mat3_tmul(rotation_at(q + 3), bough_v3_load(change)), v);
     if (spin_of(joint) == ABOUT_AXIS) v[n] = change[n];
     if (spin_of(joint) == ALL_WAYS) quaternion_speed(q + n, change + n, v + n);
 }
@@ -149,8 +147,9 @@ static void free_change(const double *q, const double *v, double c, const double
                         const double *speed_change, const double *quaternion, double *change) {
     double eta[3];
     quaternion_speed(q + 3, quaternion, eta);
-    bough_vec3 own = bough_add(load3(speed_change), bough_cross(load3(eta), load3(v)));
-    bough_vec3 sum = bough_add(load3(r), bough_mat3_mul(rotation_at(q + 3), own));
+    bough_vec3 own =
+        bough_add(bough_v3_load(speed_change), bough_cross(bough_v3_load(eta), bough_v3_load(v)));
+    bough_vec3 sum = bough_add(bough_v3_load(r), bough_mat3_mul(rotation_at(q + 3), own));
     bough_v3_store(bough_scale(1 / c, sum), change);
 }
 

@@ -81,16 +81,15 @@ static bough_status set_segment(bough_rod_model *m, const bough_rod_def *def, in
         bough_rod_tile(m->damping, 21, n)[k * BOUGH_LANES] = def->damping[21 * n + k];
     }
     for (int k = 0; k < 72 && def->line != NULL; k++) m->line[k * s + n] = def->line[72 * n + k];
-    vertex_state left = {.x = def->position[n], .p = def->rotation[n]};
-    vertex_state right = {.x = def->position[n + 1], .p = def->rotation[n + 1]};
-    segment_geometry shape = segment_shape(left, right, 1 / h);
+    const bough_quaternion *p = def->rotation + n;
+    segment_geometry shape = shape_between(def->position + n, p, 1 / h);
     if (shape.w < 0.5) {
         return bough_fail(BOUGH_INVALID,
                           "rod %s: the undeformed section turns by more than 120°"
                           " over segment %d; use more segments",
                           m->name, n + 1);
     }
-    bough_vec3 bend = bough_sub(bough_rotation_matrix(right.p).c3, bough_rotation_matrix(left.p).c3);
+    bough_vec3 bend = bough_sub(bough_rotation_matrix(p[1]).c3, bough_rotation_matrix(p[0]).c3);
     bend = bough_mat3_tmul(shape.r, bend);
     const double bend0[3] = {bend.x, bend.y, bend.z};
     for (int k = 0; k < 3; k++) m->bend0[k * s + n] = bend0[k];

@@ -59,21 +59,11 @@ void bough_rod_present_end_wrench(const bough_rod_model *m, const bough_rod_scra
     lane_store(wrench + 3, 1, 0, bough_add(moment, lane_load(f + 6 * s, s, 0)));
 }
 
-static strain strain_of(const bough_rod_model *m, const bough_rod_scratch *scratch, int n) {
-    int s = m->stride;
-    vertex_state l = load_vertex(scratch->vertex, s, n);
-    vertex_state r = load_vertex(scratch->vertex, s, n + 1);
-    segment_geometry shape = segment_shape(l, r, m->inverse_length[n]);
-    return elastic_strain(shape, m->inverse_length[n], scratch->rest, s, n);
-}
-
 // By the balance of the segment's left half: pretwist and curvature make it differ a little from what
 // the strains are conjugate to.
 void bough_rod_stress(const bough_rod_model *m, const bough_rod_scratch *scratch, int n, double stress[6]) {
-    vertex_state l = load_vertex(scratch->vertex, m->stride, n);
-    vertex_state r = load_vertex(scratch->vertex, m->stride, n + 1);
-    segment_geometry shape = segment_shape(l, r, m->inverse_length[n]);
-    strain e = strain_of(m, scratch, n);
+    segment_geometry shape = shape_at(m, scratch, n);
+    strain e = elastic_strain(shape, m->inverse_length[n], scratch->rest, m->stride, n);
     strain s = segment_stress(bough_rod_tile(m->stiffness, 21, n), bough_rod_tile(m->gradient, 35, n),
                               BOUGH_LANES, 0, e);
     segment_force f = stress_force(shape, s, m->length[n]);

@@ -30,13 +30,12 @@ BOUGH_INLINE void gather_some(const bough_rod_model *m, const double *restrict s
 #pragma omp simd
     for (int i = first; i < first + count; i++) {
         const double *restrict y = state + i - 1;
-        double w = y[3 * n], x = y[4 * n], v = y[5 * n], z = y[6 * n];
-        double scale = 1 / sqrt(w * w + x * x + v * v + z * z);
-        lane_store(vertex, s, i, (bough_vec3){y[0], y[n], y[2 * n]});
-        vertex[3 * s + i] = scale * w;
-        lane_store(vertex + 4 * s, s, i, (bough_vec3){scale * x, scale * v, scale * z});
-        lane_store(vertex + 7 * s, s, i, (bough_vec3){y[7 * n], y[8 * n], y[9 * n]});
-        lane_store(vertex + 10 * s, s, i, (bough_vec3){y[10 * n], y[11 * n], y[12 * n]});
+        bough_quaternion p = bough_quaternion_unit(lane_load_quaternion(y + 3 * n, n, 0));
+        lane_store(vertex, s, i, lane_load(y, n, 0));
+        vertex[3 * s + i] = p.w;
+        lane_store(vertex + 4 * s, s, i, (bough_vec3){p.x, p.y, p.z});
+        lane_store(vertex + 7 * s, s, i, lane_load(y + 7 * n, n, 0));
+        lane_store(vertex + 10 * s, s, i, lane_load(y + 10 * n, n, 0));
     }
 }
 
@@ -96,12 +95,6 @@ bool AT(forces)(const bough_rod_model *m, int first, int last, bough_rod_scratch
     return least >= 0.5;
 }
 
-static bough_mat3 middle_of(const bough_rod_model *m, const bough_rod_scratch *scratch, int n) {
-    vertex_state l = load_vertex(scratch->vertex, m->stride, n);
-    vertex_state r = load_vertex(scratch->vertex, m->stride, n + 1);
-    return segment_shape(l, r, m->inverse_length[n]).r;
-}
-
 // Adds the ramped loads; followers are resolved by the sections in scratch->vertex.
 static void add_ramped(const bough_rod_model *m, const bough_rod_loads *loads, double t,
                        bough_rod_scratch *scratch) {
@@ -117,9 +110,8 @@ static void add_ramped(const bough_rod_model *m, const bough_rod_loads *loads, d
     for (int i = 0; i <= m->n_segment; i++) {
         bough_mat3 r = bough_rotation_matrix(load_vertex(scratch->vertex, s, i).p);
         for (int part = 0; part < 6; part += 3) {
-            double *load = scratch->load + part * s;
             bough_vec3 f = bough_mat3_mul(r, lane_load(scratch->follower + part * s, s, i));
-            lane_store(load, s, i, bough_add(lane_load(load, s, i), f));
+            lane_add(scratch->load + part * s, s, i, f);
         }
     }
 }
@@ -136,17 +128,14 @@ static void add_chord_moments_of(const bough_rod_model *m, int n, bough_rod_scra
     int s = m->stride;
     double h = m->length[n];
     vertex_state l = load_vertex(scratch->vertex, s, n), r = load_vertex(scratch->vertex, s, n + 1);
-    segment_geometry shape = segment_shape(l, r, m->inverse_length[n]);
+    segment_geometry shape = shape_at(m, scratch, n);
     bough_vec3 change = bough_sub(bough_rotation_matrix(r.p).c3, bough_rotation_matrix(l.p).c3);
     change = bough_sub(change, bough_mat3_mul(shape.r, lane_load(m->bend0, s, n)));
     bough_vec3 moment = chord_moment(h, change, bough_mat3_mul(shape.r, lane_load(scratch->along, s, n)));
     bough_vec3 bend = bough_axpy(-h, lane_load(m->strain0 + 3 * s, s, n), shape.phi);
     bough_vec3 following = following_moment(h, bend, lane_load(scratch->following, s, n));
     moment = bough_add(moment, bough_mat3_mul(shape.r, following));
-    double *load = scratch->load + 3 * s + n;
-    for (int side = 0; side < 2; side++, load++) {
-        lane_store(load, s, 0, bough_add(lane_load(load, s, 0), moment));
-    }
+    for (int side = 0; side < 2; side++) lane_add(scratch->load + 3 * s, s, n + side, moment);
 }
 
 // Adds D q of the ramped loads along the segments, the dead ones turned into their middles, and the moments
@@ -164,19 +153,18 @@ static void add_along(const bough_rod_model *m, const bough_rod_loads *loads, do
         double factor = bough_schedule_at(&l->schedule, t);
         if (!l->along) continue;
         for (int n = 0; n < m->n_segment; n++) {
-            bough_mat3 r = middle_of(m, scratch, n);
+            bough_mat3 r = shape_at(m, scratch, n).r;
             bough_vec3 q[4];
             for (int part = 0; part < 4; part++) {
                 double *to = l->follower ? scratch->following : scratch->along + 3 * part * s;
                 q[part] = bough_scale(factor, lane_load(l->line + 3 * part * s, s, n));
                 if (!l->follower) q[part] = bough_mat3_tmul(r, q[part]);
                 if (l->follower && part > 0) continue;
-                lane_store(to, s, n, bough_add(lane_load(to, s, n), q[part]));
+                lane_add(to, s, n, q[part]);
             }
-            double *rest = scratch->own_rest;
             strain e = line_strain(m->line, s, n, q);
-            lane_store(rest, s, n, bough_add(lane_load(rest, s, n), e.v));
-            lane_store(rest + 3 * s, s, n, bough_add(lane_load(rest + 3 * s, s, n), e.u));
+            lane_add(scratch->own_rest, s, n, e.v);
+            lane_add(scratch->own_rest + 3 * s, s, n, e.u);
         }
     }
     for (int n = 0; n < m->n_segment; n++) add_chord_moments_of(m, n, scratch);
@@ -290,7 +278,7 @@ BOUGH_INLINE void vertex_kinematics(int n, const double *restrict state, const d
     for (int i = from - 1; i < from - 1 + count; i++) {
         bough_vec3 x = lane_load(state, n, i), u = lane_load(state + 7 * n, n, i);
         bough_vec3 w = lane_load(state + 10 * n, n, i);
-        bough_quaternion p = {state[3 * n + i], state[4 * n + i], state[5 * n + i], state[6 * n + i]};
+        bough_quaternion p = lane_load_quaternion(state + 3 * n, n, i);
         bough_vec3 v = {p.x, p.y, p.z};
         bough_vec3 difference = bough_sub(w, omega), sum = bough_add(w, omega);
         bough_vec3 turn = bough_axpy(p.w, difference, bough_cross(v, sum));
@@ -345,9 +333,9 @@ static void add_drift(const bough_rod_model *m, const bough_rod_loads *loads, do
                         bough_scale(elapsed, lane_load(rate + 3 * s, s, n))};
             strain stress = symmetric_times(c, BOUGH_LANES, n, e);
             bough_vec3 tau = bough_scale(0.5 * length[n], bough_cross(stress.v, lane_load(e0, s, n)));
-            lane_store(out, s, n, bough_sub(lane_load(out, s, n), bough_mat3_mul(r, stress.v)));
-            lane_store(out + 3 * s, s, n, bough_add(lane_load(out + 3 * s, s, n), bough_sub(tau, stress.u)));
-            lane_store(out + 6 * s, s, n, bough_add(lane_load(out + 6 * s, s, n), bough_add(tau, stress.u)));
+            lane_add(out, s, n, bough_scale(-1, bough_mat3_mul(r, stress.v)));
+            lane_add(out + 3 * s, s, n, bough_sub(tau, stress.u));
+            lane_add(out + 6 * s, s, n, bough_add(tau, stress.u));
         }
     }
 }

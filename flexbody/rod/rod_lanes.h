@@ -7,14 +7,14 @@
 #include "flexbody/rod/rod_elastic.h"
 
 BOUGH_INLINE vertex_state load_vertex(const double *restrict v, int s, int i) {
-    return (vertex_state){{v[i], v[s + i], v[2 * s + i]},
-                          {v[7 * s + i], v[8 * s + i], v[9 * s + i]},
-                          {v[10 * s + i], v[11 * s + i], v[12 * s + i]},
-                          {v[3 * s + i], v[4 * s + i], v[5 * s + i], v[6 * s + i]}};
+    return (vertex_state){lane_load(v, s, i), lane_load(v + 7 * s, s, i), lane_load(v + 10 * s, s, i),
+                          lane_load_quaternion(v + 3 * s, s, i)};
 }
 
-BOUGH_INLINE bough_mat3 load_matrix(const double *restrict a, int s, int v) {
-    return (bough_mat3){lane_load(a, s, v), lane_load(a + 3 * s, s, v), lane_load(a + 6 * s, s, v)};
+// The shape of segment n in the configuration in scratch->vertex.
+BOUGH_INLINE segment_geometry shape_at(const bough_rod_model *m, const bough_rod_scratch *scratch, int n) {
+    return segment_shape(load_vertex(scratch->vertex, m->stride, n),
+                         load_vertex(scratch->vertex, m->stride, n + 1), m->inverse_length[n]);
 }
 
 // I W for the tensor entries Ixx Iyy Izz Ixy Ixz Iyz.

@@ -41,9 +41,7 @@ static void add_part(const bough_rod_model *m, int n, const bough_rod_part *part
 
 // The axes of the middle of segment n, undeformed.
 static segment_geometry undeformed(const bough_rod_model *m, int n) {
-    vertex_state l = {.x = m->position0[n], .p = m->rotation0[n]};
-    vertex_state r = {.x = m->position0[n + 1], .p = m->rotation0[n + 1]};
-    return segment_shape(l, r, m->inverse_length[n]);
+    return shape_between(m->position0 + n, m->rotation0 + n, m->inverse_length[n]);
 }
 
 // The stress −C D q of segment n on its two vertices, in BRF or, of a follower, in section axes, added
@@ -60,8 +58,8 @@ static void lump_stress(const bough_rod_model *m, int n, strain line, bool follo
         double *to = value + n + side;
         bough_vec3 pull = follower ? bough_mat3_tmul(axes, force[side]) : force[side];
         bough_vec3 turn = follower ? moment[side] : bough_mat3_mul(axes, moment[side]);
-        lane_store(to, s, 0, bough_add(lane_load(to, s, 0), pull));
-        lane_store(to + 3 * s, s, 0, bough_add(lane_load(to + 3 * s, s, 0), turn));
+        lane_add(to, s, 0, pull);
+        lane_add(to + 3 * s, s, 0, turn);
     }
 }
 

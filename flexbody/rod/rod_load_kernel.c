@@ -18,13 +18,6 @@ void AT(line_strain)(const bough_rod_model *m, const double *line, double *along
     }
 }
 
-BOUGH_INLINE bough_quaternion section_at(int v, const double *restrict rotation, int i) {
-    const double *restrict q = rotation + i;
-    double w = q[0], x = q[v], y = q[2 * v], z = q[3 * v];
-    double scale = 1 / sqrt(w * w + x * x + y * y + z * z);
-    return (bough_quaternion){scale * w, scale * x, scale * y, scale * z};
-}
-
 BOUGH_INLINE bough_vec3 tangent_of(bough_quaternion p) {
     return (bough_vec3){2 * (p.x * p.z + p.w * p.y), 2 * (p.y * p.z - p.w * p.x),
                         1 - 2 * (p.x * p.x + p.y * p.y)};
@@ -39,7 +32,8 @@ BOUGH_INLINE void turn_line(const bough_rod_model *m, const double *restrict rot
 #pragma omp simd
     for (int l = 0; l < count; l++) {
         int k = first + l;
-        bough_quaternion p = section_at(v, rotation, k), q = section_at(v, rotation, k + 1);
+        bough_quaternion p = bough_quaternion_unit(lane_load_quaternion(rotation, v, k));
+        bough_quaternion q = bough_quaternion_unit(lane_load_quaternion(rotation, v, k + 1));
         bough_mat3 r = mid_frame_between(p, q);
         for (int part = 0; part < 4; part++) {
             lane_store(turned + 3 * part * n, n, k, bough_mat3_tmul(r, lane_load(line + 3 * part * n, n, k)));

@@ -178,7 +178,7 @@ BOUGH_INLINE void velocity_residual(const bough_rod_model *m, const bough_rod_ta
     double gamma = k->gamma;
 #pragma omp simd
     for (int v = from; v < from + count; v++) {
-        bough_mat3 r = load_matrix(kept + KEPT_R * s, s, v);
+        bough_mat3 r = lane_load_matrix(kept + KEPT_R * s, s, v);
         bough_vec3 ru = lane_load(x + 7 * n, n, v - 1), rw = lane_load(x + 10 * n, n, v - 1);
         bough_vec3 offset = lane_load(first, s, v - 1), phi = lane_load(work + (WORK_Q + 3) * s, s, v);
         phi = bough_scale(gamma, phi);

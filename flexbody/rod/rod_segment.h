@@ -143,6 +143,13 @@ BOUGH_INLINE segment_geometry segment_shape(vertex_state l, vertex_state r, doub
     return s;
 }
 
+// That of a segment between two vertices at rest.
+BOUGH_INLINE segment_geometry shape_between(const bough_vec3 x[2], const bough_quaternion p[2],
+                                            double inverse_h) {
+    return segment_shape((vertex_state){.x = x[0], .p = p[0]}, (vertex_state){.x = x[1], .p = p[1]},
+                         inverse_h);
+}
+
 BOUGH_INLINE segment_rate segment_motion(segment_geometry s, vertex_state l, vertex_state r) {
     segment_rate m;
     bough_vec3 a = half_backward(s.v, s.t, l.w), b = half_forward(s.v, s.t, r.w);

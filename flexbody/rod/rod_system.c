@@ -18,12 +18,9 @@ struct bough_rod_body {
     bough_rod_scratch scratch;
 };
 
-static bough_vec3 vector_at(const double *x) { return bough_v3(x[0], x[1], x[2]); }
-
 // p⁻¹∘r: the rotation 2·vector of a quaternion's variation r, any |p|
 static bough_vec3 turn_of(const double *p, int p_stride, const double *r, int stride) {
-    bough_quaternion q = {p[0], p[p_stride], p[2 * p_stride], p[3 * p_stride]};
-    bough_quaternion dq = {r[0], r[stride], r[2 * stride], r[3 * stride]};
+    bough_quaternion q = lane_load_quaternion(p, p_stride, 0), dq = lane_load_quaternion(r, stride, 0);
     bough_quaternion d = bough_quaternion_product(bough_quaternion_conjugate(q), dq);
     double inverse = 1 / (q.w * q.w + q.x * q.x + q.y * q.y + q.z * q.z);
     return bough_scale(2 * inverse, bough_v3(d.x, d.y, d.z));
@@ -32,7 +29,7 @@ static bough_vec3 turn_of(const double *p, int p_stride, const double *r, int st
 // -- variations of vertices -----------------------------------------------------------------------
 
 static vertex_variation root_variation(const bough_rod_model *m, const double *d) {
-    return (vertex_variation){.u = vector_at(d), .w = bough_mat3_tmul(m->root, vector_at(d + 3))};
+    return (vertex_variation){.u = bough_v3_load(d), .w = bough_mat3_tmul(m->root, bough_v3_load(d + 3))};
 }
 
 // Of the moving vertex i + 1, whose quaternion is p, along the variation d of the state.
@@ -62,8 +59,10 @@ static vertex_variation kept_variation(const bough_rod_model *m, const bough_rod
 
 // Of the last vertex, whose quaternion is p; its motion: u, W, x, p.
 static vertex_variation end_variation(const double *p, const double *d) {
-    return (vertex_variation){
-        .u = vector_at(d), .w = vector_at(d + 3), .x = vector_at(d + 6), .phi = turn_of(p, 1, d + 9, 1)};
+    return (vertex_variation){.u = bough_v3_load(d),
+                              .w = bough_v3_load(d + 3),
+                              .x = bough_v3_load(d + 6),
+                              .phi = turn_of(p, 1, d + 9, 1)};
 }
 
 // -- the wrenches ---------------------------------------------------------------------------------
@@ -130,7 +129,7 @@ static segment_force kept_force(const double *position, const double *velocity, 
             force[f] += position[LANES * d] * q[d] + velocity[d] * v[d];
         }
     }
-    return (segment_force){vector_at(force + F), vector_at(force + LL), vector_at(force + LR)};
+    return (segment_force){bough_v3_load(force + F), bough_v3_load(force + LL), bough_v3_load(force + LR)};
 }
 
 static void kept_end_tangent(const bough_rod_model *m, const bough_rod_tangent *k, const double *state_rate,
@@ -141,7 +140,7 @@ static void kept_end_tangent(const bough_rod_model *m, const bough_rod_tangent *
     if (state_rate != NULL) l = kept_variation(m, k, state_rate, m->n - 1);
     if (input_rate != NULL) r = end_variation(k->end_rotation, input_rate + BOUGH_ROD_INPUTS);
     segment_force f = kept_force(position, k->end, l, r);
-    bough_mat3 pull = load_matrix(k->end_load, 1, 0), turn = load_matrix(k->end_load + 9, 1, 0);
+    bough_mat3 pull = lane_load_matrix(k->end_load, 1, 0), turn = lane_load_matrix(k->end_load + 9, 1, 0);
     lane_store(wrench, 1, 0, bough_sub(bough_mat3_mul(pull, r.phi), f.f));
     lane_store(wrench + 3, 1, 0, bough_add(bough_mat3_mul(turn, r.phi), f.lr));
 }
@@ -198,7 +197,7 @@ static void frame_column(const bough_rod_model *m, const double *state, int kind
     int n = m->n;
     for (int i = 0; i < n; i++) {
         bough_vec3 x = lane_load(state, n, i), u = lane_load(state + (size_t)BOUGH_ROD_U * n, n, i);
-        bough_quaternion p = {state[3 * n + i], state[4 * n + i], state[5 * n + i], state[6 * n + i]};
+        bough_quaternion p = lane_load_quaternion(state + (size_t)BOUGH_ROD_P * n, n, i);
         if (kind == 0) lane_store(column, n, i, bough_scale(-1, e));
         if (kind == 2) lane_store(column + (size_t)BOUGH_ROD_U * n, n, i, e);
         if (kind != 1) continue;

@@ -23,9 +23,7 @@ enum {
 };
 
 BOUGH_INLINE void store_shape(double *restrict base, int l, segment_geometry s) {
-    lane_store(base + LANES * BASE_R, LANES, l, s.r.c1);
-    lane_store(base + LANES * (BASE_R + 3), LANES, l, s.r.c2);
-    lane_store(base + LANES * (BASE_R + 6), LANES, l, s.r.c3);
+    lane_store_matrix(base + LANES * BASE_R, LANES, l, s.r);
     lane_store(base + LANES * BASE_V, LANES, l, s.v);
     lane_store(base + LANES * BASE_T, LANES, l, s.t);
     lane_store(base + LANES * BASE_CHORD, LANES, l, s.chord);
@@ -36,7 +34,7 @@ BOUGH_INLINE void store_shape(double *restrict base, int l, segment_geometry s) 
 
 BOUGH_INLINE segment_geometry load_shape(const double *restrict base, int l) {
     segment_geometry s;
-    s.r = load_matrix(base + LANES * BASE_R, LANES, l);
+    s.r = lane_load_matrix(base + LANES * BASE_R, LANES, l);
     s.v = lane_load(base + LANES * BASE_V, LANES, l);
     s.t = lane_load(base + LANES * BASE_T, LANES, l);
     s.chord = lane_load(base + LANES * BASE_CHORD, LANES, l);
@@ -160,8 +158,6 @@ BOUGH_INLINE void position_direction(const bough_rod_model *m, const bough_rod_s
     }
 }
 
-// Their tangents, a row of 8 for force f along direction d at 9 f + d (rod_tangent_layout.h): along
-// configurations, and along velocities.
 // Tangents of segments first..first + 7, a row of 8 for force f along direction d at 9 f + d
 // (rod_tangent_layout.h): along configurations, and along velocities.
 static void position_variation(const bough_rod_model *m, const bough_rod_scratch *scratch, int first,
@@ -220,9 +216,7 @@ static void keep_vertices(const bough_rod_model *m, const double *restrict state
         lane_store(kept + (KEPT_P + 1) * s, s, v, lane_load(state + 4 * n, n, v - 1));
         lane_store(kept + KEPT_W * s, s, v, a.w);
         lane_store(kept + KEPT_OMEGA * s, s, v, bough_mat3_tmul(r, omega));
-        lane_store(kept + KEPT_R * s, s, v, r.c1);
-        lane_store(kept + (KEPT_R + 3) * s, s, v, r.c2);
-        lane_store(kept + (KEPT_R + 6) * s, s, v, r.c3);
+        lane_store_matrix(kept + KEPT_R * s, s, v, r);
     }
 }
 
@@ -236,7 +230,7 @@ static void mass_columns(const bough_rod_model *m, const bough_rod_tangent *k, i
     bough_vec3 e = bough_unit3(j);
 #pragma omp simd
     for (int l = 0; l < LANES; l++) {
-        bough_mat3 r = load_matrix(kept + KEPT_R * s, s, l);
+        bough_mat3 r = lane_load_matrix(kept + KEPT_R * s, s, l);
         bough_vec3 offset = lane_load(moment, s, l);
         store_column(mass, l, 0, j, bough_scale(weight[l], e));
         store_column(mass, l, 3, j, bough_cross(offset, bough_mat3_tmul(r, e)));
@@ -254,7 +248,7 @@ static void velocity_columns(const bough_rod_model *m, const bough_rod_tangent *
     bough_vec3 e = bough_unit3(j), turn = bough_cross(k->omega, e);
 #pragma omp simd
     for (int l = 0; l < LANES; l++) {
-        bough_mat3 r = load_matrix(kept + KEPT_R * s, s, l);
+        bough_mat3 r = lane_load_matrix(kept + KEPT_R * s, s, l);
         bough_vec3 offset = lane_load(moment, s, l), w = lane_load(kept + KEPT_W * s, s, l);
         bough_vec3 centrifugal =
             bough_add(bough_cross(e, bough_cross(w, offset)), bough_cross(w, bough_cross(e, offset)));
@@ -288,7 +282,7 @@ static void damping_columns(const bough_rod_model *m, const bough_rod_loads *loa
         int from = row[j];
 #pragma omp simd
         for (int l = 0; l < LANES; l++) {
-            vertex_load f = slope_at(slope, s, l, from, load_matrix(kept + KEPT_R * s, s, l));
+            vertex_load f = slope_at(slope, s, l, from, lane_load_matrix(kept + KEPT_R * s, s, l));
             to[l] += f.f.x;
             to[6 * LANES + l] += f.f.y;
             to[18 * LANES + l] += f.l.x;
@@ -309,7 +303,7 @@ static void rotation_columns(const bough_rod_model *m, const double *restrict ra
     bough_vec3 omega = k->omega, gravity = {input[6], input[7], input[8]};
 #pragma omp simd
     for (int v = 1; v <= n; v++) {
-        bough_mat3 r = load_matrix(kept + KEPT_R * s, s, v);
+        bough_mat3 r = lane_load_matrix(kept + KEPT_R * s, s, v);
         bough_vec3 offset = lane_load(first, s, v - 1), w = lane_load(kept + KEPT_W * s, s, v);
         bough_vec3 u = lane_load(vertex + BOUGH_ROD_U * s, s, v);
         bough_vec3 udot = lane_load(rate, n, v - 1), wdot = lane_load(rate + 3 * n, n, v - 1);
@@ -333,16 +327,12 @@ static void add_followers(const bough_rod_model *m, const bough_rod_scratch *scr
     int s = m->stride;
     double *out = k->local_position;
     for (int v = 1; v <= m->n; v++) {
-        bough_mat3 r = load_matrix(k->vertex + (size_t)KEPT_R * s, s, v);
+        bough_mat3 r = lane_load_matrix(k->vertex + (size_t)KEPT_R * s, s, v);
         bough_vec3 force = lane_load(scratch->follower, s, v);
         bough_vec3 moment = lane_load(scratch->follower + 3 * s, s, v);
         for (int j = 0; j < 3; j++) {
-            bough_vec3 pull = bough_mat3_mul(r, bough_cross(bough_unit3(j), force));
-            bough_vec3 turn = bough_cross(bough_unit3(j), moment);
-            bough_vec3 old_pull = lane_load(out + 6 * j * s, s, v);
-            bough_vec3 old_turn = lane_load(out + (6 * j + 3) * s, s, v);
-            lane_store(out + 6 * j * s, s, v, bough_add(old_pull, pull));
-            lane_store(out + (6 * j + 3) * s, s, v, bough_add(old_turn, turn));
+            lane_add(out + 6 * j * s, s, v, bough_mat3_mul(r, bough_cross(bough_unit3(j), force)));
+            lane_add(out + (6 * j + 3) * s, s, v, bough_cross(bough_unit3(j), moment));
         }
     }
 }
@@ -354,9 +344,9 @@ static void add_turning(const bough_rod_model *m, const bough_rod_loads *loads, 
     double *restrict out = k->local_position + 12 * s;
 #pragma omp simd
     for (int v = 1; v <= m->n; v++) {
-        vertex_load f = slope_at(slope, s, v, 2, load_matrix(kept + KEPT_R * s, s, v));
-        lane_store(out, s, v, bough_add(lane_load(out, s, v), f.f));
-        lane_store(out + 3 * s, s, v, bough_add(lane_load(out + 3 * s, s, v), f.l));
+        vertex_load f = slope_at(slope, s, v, 2, lane_load_matrix(kept + KEPT_R * s, s, v));
+        lane_add(out, s, v, f.f);
+        lane_add(out + 3 * s, s, v, f.l);
     }
 }
 

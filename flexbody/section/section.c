@@ -315,8 +315,6 @@ typedef struct segment_law {
 // what the sections would. `line` is D, the mean strain by a load along the segment.
 static bool segment_matrices(const bough_section_axis *a, const bough_rod_def *def, int n, segment_law law) {
     double from = def->span[n], to = def->span[n + 1];
-    vertex_state left = {.x = def->position[n], .p = def->rotation[n]};
-    vertex_state right = {.x = def->position[n + 1], .p = def->rotation[n + 1]};
     segment_sum c = {
         .axis = a, .from = from, .length = to - from, .middle = 0.5 * (from + to), .definite = true};
     matrix6 q, k, loss;
@@ -324,7 +322,7 @@ static bool segment_matrices(const bough_section_axis *a, const bough_rod_def *d
     lump_left(&c);
     bough_section_integrate(a, from, to, add_compliance, &c);
     *law.gain = c.definite ? best_gain(&c) : (bough_section_mass){0};
-    strain_map(segment_shape(left, right, 1 / c.length), c.length, q);
+    strain_map(shape_between(def->position + n, def->rotation + n, 1 / c.length), c.length, q);
     change_strains(&c, q);
     if (!c.definite || !bough_symmetric6_inverse(c.compliance, law.stiffness)) return false;
     bough_symmetric6_unpack(law.stiffness, k);
@@ -385,8 +383,6 @@ static void part_strain(const void *axis, const bough_rod_model *m, int n, const
                         double mean[6]) {
     const bough_section_axis *a = axis;
     double from = m->span[n], to = m->span[n + 1], h = to - from, length = part->to - part->from;
-    vertex_state left = {.x = m->position0[n], .p = m->rotation0[n]};
-    vertex_state right = {.x = m->position0[n + 1], .p = m->rotation0[n + 1]};
     part_sum c = {.axis = a, .part = part, .middle = 0.5 * (from + to), .from = from};
     c.twist = 0.5 * (bough_section_at(a, from).twist + bough_section_at(a, to).twist);
     for (int i = 0; i < 6; i++) {
@@ -398,7 +394,7 @@ static void part_strain(const void *axis, const bough_rod_model *m, int n, const
     const double at[4] = {from, part->from, part->to, to}; // S is smooth between
     for (int k = 0; k < 3; k++) bough_section_integrate(a, at[k], at[k + 1], add_part_strain, &c);
     matrix6 q;
-    strain_map(segment_shape(left, right, 1 / h), h, q);
+    strain_map(shape_between(m->position0 + n, m->rotation0 + n, 1 / h), h, q);
     memset(mean, 0, 6 * sizeof *mean);
     for (int i = 0; i < 36; i++) mean[i / 6] += q[i / 6][i % 6] * c.strain[i % 6] / h;
 }
