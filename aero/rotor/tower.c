@@ -12,28 +12,21 @@ static const double nearest = 1;
 static const double deepest_shadow = 0.5;
 
 void bough_tower_build(bough_arena *arena, const bough_tower_def *def, bough_tower *tower) {
-    *tower =
-        (bough_tower){.base = def->base, .n = def->n, .influence = def->influence, .shadow = def->shadow};
+    size_t size = (size_t)def->n * sizeof(double);
+    *tower = *def;
     if (def->n == 0) return;
     assert(def->n >= 2);
-    double *height = bough_arena_doubles(arena, (size_t)def->n);
-    double *radius = bough_arena_doubles(arena, (size_t)def->n);
-    double *drag = bough_arena_doubles(arena, (size_t)def->n);
-    for (int i = 0; i < def->n; i++) {
-        height[i] = def->height[i];
-        radius[i] = def->diameter[i] / 2;
-        drag[i] = def->drag ? def->drag[i] : 1;
-    }
-    tower->height = height;
-    tower->radius = radius;
-    tower->drag = drag;
+    tower->height = bough_arena_copy(arena, def->height, size);
+    tower->diameter = bough_arena_copy(arena, def->diameter, size);
+    if (def->drag) tower->drag = bough_arena_copy(arena, def->drag, size);
 }
 
-// The section at or below a height, at most the last but one.
-static int section_at(const bough_tower *tower, double height) {
-    int i = 1;
-    while (i < tower->n - 1 && height > tower->height[i]) i++;
-    return i - 1;
+// A table's value at a height above the base; above the top that of the top.
+static double value_at(const bough_tower *tower, const double *value, double height) {
+    int i = 0;
+    while (i < tower->n - 2 && height > tower->height[i + 1]) i++;
+    double w = (height - tower->height[i]) / (tower->height[i + 1] - tower->height[i]);
+    return value[i] + fmin(w, 1) * (value[i + 1] - value[i]);
 }
 
 // The radius at a height above the base, 0 where there is no tower. Above the top it fades over
@@ -41,19 +34,14 @@ static int section_at(const bough_tower *tower, double height) {
 static double radius_at(const bough_tower *tower, double height) {
     int n = tower->n;
     if (n == 0 || height < tower->height[0]) return 0;
-    double top = tower->radius[n - 1], above = height - tower->height[n - 1];
+    double top = tower->diameter[n - 1] / 2, above = height - tower->height[n - 1];
     if (above >= top) return 0;
     if (above > 0) return top * cos(BOUGH_PI / 2 * above / top);
-    int i = section_at(tower, height) + 1;
-    double w = (height - tower->height[i - 1]) / (tower->height[i] - tower->height[i - 1]);
-    return tower->radius[i - 1] + w * (tower->radius[i] - tower->radius[i - 1]);
+    return value_at(tower, tower->diameter, height) / 2;
 }
 
-// The drag coefficient at a height above the base; above the top that of the top.
 static double drag_at(const bough_tower *tower, double height) {
-    int i = section_at(tower, height);
-    double w = (height - tower->height[i]) / (tower->height[i + 1] - tower->height[i]);
-    return tower->drag[i] + fmin(w, 1) * (tower->drag[i + 1] - tower->drag[i]);
+    return tower->drag ? value_at(tower, tower->drag, height) : 1;
 }
 
 // A horizontal wind relative to the undisturbed one, along and across it.

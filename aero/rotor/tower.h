@@ -34,13 +34,8 @@ typedef struct bough_tower_def {
     bough_tower_shadow shadow;
 } bough_tower_def;
 
-typedef struct bough_tower {
-    bough_vec3 base;
-    int n;
-    const double *height, *radius, *drag; // (n) [m], [m], [-]
-    bough_tower_influence influence;
-    bough_tower_shadow shadow;
-} bough_tower;
+// As built: its tables are its own.
+typedef bough_tower_def bough_tower;
 
 // From heights that increase; n 0: there is no tower.
 void bough_tower_build(bough_arena *arena, const bough_tower_def *def, bough_tower *tower);
@@ -53,7 +48,7 @@ bough_vec3 bough_tower_drag(const bough_tower *tower, double density, bough_vec3
 // Whether a point is low enough for the tower to matter.
 static inline bool bough_tower_reaches(const bough_tower *tower, bough_vec3 position) {
     int n = tower->n;
-    return n > 0 && position.z - tower->base.z < tower->height[n - 1] + tower->radius[n - 1];
+    return n > 0 && position.z - tower->base.z < tower->height[n - 1] + tower->diameter[n - 1] / 2;
 }
 
 // How far a point is from the axis, in radii there [-]; infinite where there is no tower.

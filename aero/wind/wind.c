@@ -7,16 +7,9 @@
 #include "core/base/schedule.h"
 
 #include <assert.h>
-#include <string.h>
 
 bough_wind_def bough_wind_def_default(void) {
     return (bough_wind_def){.exponent = 0.2, .roughness = 0.03, .reference_height = 90};
-}
-
-static const double *copied(bough_arena *arena, const double *from, int n) {
-    double *to = bough_arena_doubles(arena, (size_t)n);
-    if (to) memcpy(to, from, (size_t)n * sizeof *to);
-    return to;
 }
 
 static bough_status read_hub(bough_arena *arena, bough_wind *wind) {
@@ -65,8 +58,9 @@ static bough_status build(bough_arena *arena, const bough_wind_def *def, bough_w
         wind->shear_scale = 1 / log(def->reference_height / def->roughness);
     }
     if (def->n_time == 0) return bough_ok();
-    wind->def.time = copied(arena, def->time, def->n_time);
-    wind->def.speed_at_time = copied(arena, def->speed_at_time, def->n_time);
+    size_t size = (size_t)def->n_time * sizeof *def->time;
+    wind->def.time = bough_arena_copy(arena, def->time, size);
+    wind->def.speed_at_time = bough_arena_copy(arena, def->speed_at_time, size);
     return bough_ok();
 }
 

@@ -122,8 +122,13 @@ void bough_arena_arrays(bough_arena *arena, size_t count, double **const *array)
 
 char *bough_arena_string(bough_arena *arena, const char *text) {
     if (!text) return NULL;
-    size_t size = strlen(text) + 1;
-    return memcpy(bough_arena_take(arena, size), text, size);
+    return bough_arena_copy(arena, text, strlen(text) + 1);
+}
+
+void *bough_arena_copy(bough_arena *arena, const void *from, size_t size) {
+    void *to = bough_arena_take(arena, size);
+    if (size > 0) memcpy(to, from, size); // `from` may be NULL
+    return to;
 }
 
 char *bough_arena_print(bough_arena *arena, const char *format, ...) {

@@ -45,6 +45,9 @@ void bough_arena_arrays(bough_arena *arena, size_t count, double **const *array)
 // A copy of the string, NULL for NULL.
 char *bough_arena_string(bough_arena *arena, const char *text);
 
+// A copy of `size` bytes.
+void *bough_arena_copy(bough_arena *arena, const void *from, size_t size);
+
 // A text as printf makes it.
 char *bough_arena_print(bough_arena *arena, const char *format, ...) __attribute__((format(printf, 2, 3)));
 

@@ -17,16 +17,15 @@ static bough_status check_place(const char *what, const char *name, bough_vec3 x
 }
 
 static bough_status check_places(const bough_tree_def *def) {
-    bough_status status = bough_ok();
-    for (int b = 0; b < def->n_bodies && bough_is_ok(&status); b++) {
+    for (int b = 0; b < def->n_bodies; b++) {
         const bough_body_def *body = &def->bodies[b];
-        status = check_place("joint of body", body->name, body->joint.position);
+        BOUGH_TRY(check_place("joint of body", body->name, body->joint.position));
     }
-    for (int m = 0; m < def->n_markers && bough_is_ok(&status); m++) {
+    for (int m = 0; m < def->n_markers; m++) {
         const bough_marker_def *marker = &def->markers[m];
-        status = check_place("marker", marker->name, marker->placement.position);
+        BOUGH_TRY(check_place("marker", marker->name, marker->placement.position));
     }
-    return status;
+    return bough_ok();
 }
 
 // Levels from 1, 0 where not known yet. Every body is visited once.
@@ -172,15 +171,9 @@ static void set_initial(bough_tree *tree, const bough_tree_def *def) {
     bough_tree_prescribe(tree, 0, tree->initial);
 }
 
-static void *copied(bough_arena *arena, const void *from, size_t size) {
-    void *to = bough_arena_take(arena, size);
-    if (size > 0) memcpy(to, from, size);
-    return to;
-}
-
 static void copy_table(bough_arena *arena, bough_schedule *s) {
-    s->times = copied(arena, s->times, (size_t)s->n * sizeof(double));
-    s->values = copied(arena, s->values, (size_t)s->n * sizeof(double));
+    s->times = bough_arena_copy(arena, s->times, (size_t)s->n * sizeof(double));
+    s->values = bough_arena_copy(arena, s->values, (size_t)s->n * sizeof(double));
 }
 
 // Forces as in the definition, with copies of their tables.
@@ -190,10 +183,10 @@ static void copy_forces(bough_arena *arena, const bough_tree_def *def, bough_tre
     tree->n_springs = def->n_springs;
     tree->n_bushings = def->n_bushings;
     tree->n_applied = def->n_applied;
-    tree->loads = copied(arena, def->loads, (size_t)def->n_loads * sizeof *def->loads);
-    tree->springs = copied(arena, def->springs, (size_t)def->n_springs * sizeof *def->springs);
-    tree->bushings = copied(arena, def->bushings, (size_t)def->n_bushings * sizeof *def->bushings);
-    tree->applied = copied(arena, def->applied, (size_t)def->n_applied * sizeof *def->applied);
+    tree->loads = bough_arena_copy(arena, def->loads, (size_t)def->n_loads * sizeof *def->loads);
+    tree->springs = bough_arena_copy(arena, def->springs, (size_t)def->n_springs * sizeof *def->springs);
+    tree->bushings = bough_arena_copy(arena, def->bushings, (size_t)def->n_bushings * sizeof *def->bushings);
+    tree->applied = bough_arena_copy(arena, def->applied, (size_t)def->n_applied * sizeof *def->applied);
     for (int k = 0; k < def->n_loads; k++) copy_table(arena, &tree->loads[k].schedule);
     for (int k = 0; k < def->n_applied; k++) copy_table(arena, &tree->applied[k].schedule);
 }
@@ -216,9 +209,6 @@ static void take_frames(bough_arena *arena, const bough_tree_def *def, bough_tre
         tree->bodies[b].name = bough_arena_string(arena, def->bodies[b].name);
     for (int m = 0; m < def->n_markers; m++)
         tree->markers[m].name = bough_arena_string(arena, def->markers[m].name);
-    for (int p = 0; p < def->n_ports; p++)
-        tree->ports[p].name = bough_arena_string(arena, def->ports[p].name);
-    for (int e = 0; e < def->n_ends; e++) tree->ends[e].name = bough_arena_string(arena, def->ends[e].name);
 }
 
 // A joint that moves no inertia has no acceleration; loops must close.
