@@ -131,28 +131,8 @@ void bough_rotor_result_snapshot(const bough_rotor *rotor, bough_rotor_data *dat
     bough_snapshot_doubles(s, &data->torque, 1);
     bough_snapshot_take(s, &data->disk_wind, sizeof data->disk_wind);
     bough_snapshot_take(s, &data->disk_velocity, sizeof data->disk_velocity);
-    for (int b = 0; b < rotor->n_blade; b++) {
-        const blade_rows *r = data->scratch->blade + b;
-        double *const row[] = {r->radius,
-                               r->inflow_x,
-                               r->inflow_y,
-                               r->axial,
-                               r->tangential,
-                               r->alpha,
-                               r->phi,
-                               r->twist,
-                               r->speed,
-                               r->lift,
-                               r->drag,
-                               r->moment,
-                               r->force_x,
-                               r->force_y,
-                               r->place,
-                               r->place + rotor->stride,
-                               r->place + 2 * rotor->stride};
-        for (size_t k = 0; k < sizeof row / sizeof *row; k++)
-            bough_snapshot_doubles(s, row[k], rotor->n_station);
-    }
+    for (int b = 0; b < rotor->n_blade; b++)
+        bough_snapshot_doubles(s, data->scratch->blade[b].results, RESULTS * rotor->stride);
 }
 
 // Slower than this the angle of attack does not matter [m/s].
@@ -177,10 +157,6 @@ bough_rotor_extremes bough_rotor_look(const bough_rotor *rotor, const bough_roto
 
 void bough_rotor_set_speed(const bough_rotor *rotor, double speed) {
     ((bough_rotor *)rotor)->wind.def.speed = speed; // the one thing that changes in it
-}
-
-bool bough_rotor_in_wind(const bough_rotor *rotor, bough_vec3 hub, double radius) {
-    return bough_wind_covers(&rotor->wind, hub, radius);
 }
 
 const bough_wind *bough_rotor_wind(const bough_rotor *rotor) { return &rotor->wind; }

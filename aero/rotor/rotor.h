@@ -194,7 +194,4 @@ const bough_wind *bough_rotor_wind(const bough_rotor *rotor);
 // Changes the speed of a wind by a formula [m/s]; the next sample meets it.
 void bough_rotor_set_speed(const bough_rotor *rotor, double speed);
 
-// Whether the wind is known all over a disk: bough_wind_covers.
-bool bough_rotor_in_wind(const bough_rotor *rotor, bough_vec3 hub, double radius);
-
 #endif

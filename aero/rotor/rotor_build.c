@@ -234,17 +234,21 @@ static void take_memory(bough_arena *arena, const bough_rotor *rotor, bough_roto
 static void take_rows(bough_arena *arena, const bough_rotor *rotor, blade_rows *rows) {
     size_t n = (size_t)rotor->stride;
     bough_arena_each(arena, 3 * n, &rows->arm, &rows->x, &rows->y, &rows->z, &rows->velocity, &rows->wind,
-                     &rows->place, &rows->normal, &rows->chord);
-    bough_arena_each(arena, n, &rows->radius, &rows->twist, &rows->pitch_rate, &rows->solidity, &rows->cone,
-                     &rows->skew_normal, &rows->skew_chord, &rows->inflow_x, &rows->inflow_y, &rows->axial,
-                     &rows->tangential, &rows->loss, &rows->phi, &rows->alpha, &rows->speed, &rows->lift,
-                     &rows->drag, &rows->moment, &rows->force_x, &rows->force_y, &rows->lift_slope,
-                     &rows->drag_slope, &rows->moment_slope, &rows->lift_rate, &rows->drag_rate,
-                     &rows->moment_rate, &rows->static_slope);
+                     &rows->normal, &rows->chord);
+    bough_arena_each(arena, n, &rows->pitch_rate, &rows->solidity, &rows->cone, &rows->skew_normal,
+                     &rows->skew_chord, &rows->loss, &rows->lift_slope, &rows->drag_slope,
+                     &rows->moment_slope, &rows->lift_rate, &rows->drag_rate, &rows->moment_rate,
+                     &rows->static_slope);
     rows->load = bough_arena_doubles(arena, LOAD * n);
     rows->slope = bough_arena_doubles(arena, SLOPE * n);
     rows->rotation = bough_arena_doubles(arena, 3 * (size_t)rotor->n_vertex);
     rows->bend = bough_arena_doubles(arena, 3 * (size_t)rotor->n_vertex);
+    rows->place = rows->results = bough_arena_doubles(arena, RESULTS * n);
+    double **const reported[RESULTS - 3] = {
+        &rows->radius,     &rows->twist,  &rows->inflow_x, &rows->inflow_y, &rows->axial,
+        &rows->tangential, &rows->phi,    &rows->alpha,    &rows->speed,    &rows->lift,
+        &rows->drag,       &rows->moment, &rows->force_x,  &rows->force_y};
+    for (int k = 0; k < RESULTS - 3; k++) *reported[k] = rows->results + (size_t)(3 + k) * n;
 }
 
 void bough_rotor_data_build(bough_arena *arena, const bough_rotor *rotor, bough_rotor_data *data) {

@@ -44,27 +44,33 @@ struct bough_rotor {
 enum { LOAD = 8 };   // force, moment per length and two zeros: one vector
 enum { SLOPE = 16 }; // BOUGH_SLOPES and four zeros: whole vectors
 
+enum { RESULTS = 17 }; // rows of a blade's results
+
 // Of one blade, in its frame's axes; y is tangential, x normal, z along the blade.
 typedef struct blade_rows {
-    double *arm;                         // (3 × stride) from the reference axis to the centre [m]
-    double *x, *y, *z;                   // (3 × stride) axes of the blade element
-    double *velocity, *wind;             // (3 × stride) of the aerodynamic centre and there [m/s]
-    double *place;                       // (3 × stride) the centre, in ground axes [m]
-    double *radius, *twist, *pitch_rate; // (stride) [m], [rad], rotation nose up [rad/s]
-    double *normal, *chord;              // (3 × stride) axes of the section, leading to trailing edge
+    double *arm;             // (3 × stride) from the reference axis to the centre [m]
+    double *x, *y, *z;       // (3 × stride) axes of the blade element
+    double *velocity, *wind; // (3 × stride) of the aerodynamic centre and there [m/s]
+    double *pitch_rate;      // (stride) rotation nose up [rad/s]
+    double *normal, *chord;  // (3 × stride) axes of the section, leading to trailing edge
     double *solidity, *cone, *skew_normal, *skew_chord; // (stride) of the momentum balance
-    double *inflow_x, *inflow_y;                        // (stride) without induction [m/s]
-    double *axial, *tangential, *loss;                  // (stride)
-    double *phi, *alpha, *speed;                        // (stride) [rad], [rad], [m/s]
-    double *lift, *drag, *moment;                       // (stride) coefficients
+    double *loss;                                       // (stride)
     double *lift_slope, *drag_slope, *moment_slope;     // (stride) by the angle [1/rad]
     double *lift_rate, *drag_rate, *moment_rate;        // (stride) by the rotation nose up [s/rad]
     double *static_slope;                               // (stride) of the static lift [1/rad]
-    double *force_x, *force_y;                          // (stride) [N/m]
     double *load;                                       // (stride × LOAD) [N/m], [N]
     double *slope;    // (stride × SLOPE) bough_rotor_data.slope, per length
     double *rotation; // (3 × n_vertex) rotation by deformation, of vertices
     double *bend;     // (3 × n_vertex) its second difference
+    // what a sample reports, one row after the other in `results` (RESULTS × stride), in this order
+    double *results;
+    double *place;                // (3 × stride) the centre, in ground axes [m]
+    double *radius, *twist;       // (stride) [m], [rad]
+    double *inflow_x, *inflow_y;  // (stride) without induction [m/s]
+    double *axial, *tangential;   // (stride)
+    double *phi, *alpha, *speed;  // (stride) [rad], [rad], [m/s]
+    double *lift, *drag, *moment; // (stride) coefficients
+    double *force_x, *force_y;    // (stride) [N/m]
 } blade_rows;
 
 struct bough_rotor_scratch {

@@ -267,7 +267,7 @@ static void print_blades(const bough_simulation *s, const bough_rotor_place *r, 
 static void print_box(const bough_simulation *s, const bough_wind_box *box, const bough_rotor_place *r,
                       FILE *stream) {
     const bough_rotor *air = bough_aero_link_rotor(s->aero);
-    bool covered = bough_rotor_in_wind(air, r->hub, r->radius);
+    bool covered = bough_wind_covers(bough_rotor_wind(air), r->hub, r->radius);
     bool lasts = bough_wind_box_lasts(box, s->master->duration);
     fprintf(stream, ", mean %.6g m/s, %.6g s%s, heights %.6g to %.6g m, width %.6g m: %s the rotor%s",
             box->mean, box->duration, box->periodic ? " and repeats" : "", box->bottom,

@@ -176,7 +176,7 @@ static bough_status check_reach(bough_aero_link *l) {
     const bough_frame *rotor = &l->simulation->tree->bodies[scene->turbine.rotor];
     bough_vec3 hub = l->hub = bough_tree_frame_pose(l->simulation->view, rotor).position;
     double radius = rotor_radius(&scene->aero);
-    if (bough_rotor_in_wind(l->rotor, hub, radius)) return bough_ok();
+    if (bough_wind_covers(bough_rotor_wind(l->rotor), hub, radius)) return bough_ok();
     return bough_fail(BOUGH_INVALID, "the box of %s is too small for a rotor of %g m radius at %g m",
                       scene->aero.wind.def.file ? scene->aero.wind.def.file : "turbulence", radius, hub.z);
 }
