@@ -6,21 +6,8 @@
 
 #include <string.h>
 
-// The upper triangle of the mass of theory (11) in section axes: [mE, −ξ(s); ξ(s), I].
-static void mass_matrix(const bough_vertex_inertia *v, double *upper) {
-    const double *j = v->inertia;
-    bough_vec3 s = v->moment;
-    const double rows[21] = {v->mass, 0,   0,    0, s.z,  -s.y, v->mass, 0,    -s.z, 0,   s.x,
-                             v->mass, s.y, -s.x, 0, j[0], j[3], j[4],    j[1], j[5], j[2]};
-    memcpy(upper, rows, sizeof rows);
-}
-
 static void take_arrays(bough_rod_model *m, bough_arena *arena) {
-    size_t s = (size_t)m->stride, vertices = (size_t)m->n_segment + 1;
-    m->span = bough_arena_doubles(arena, vertices);
-    m->position0 = bough_arena_take(arena, vertices * sizeof *m->position0);
-    m->rotation0 = bough_arena_take(arena, vertices * sizeof *m->rotation0);
-    m->vertex = bough_arena_take(arena, vertices * sizeof *m->vertex);
+    size_t s = (size_t)m->stride;
     bough_arena_each(arena, s, &m->length, &m->inverse_length, &m->mass);
     m->strain0 = bough_arena_doubles(arena, 6 * s);
     m->inertia = bough_arena_doubles(arena, 6 * s);
@@ -100,11 +87,19 @@ static bough_status set_segment(bough_rod_model *m, const bough_rod_def *def, in
     return bough_ok();
 }
 
+void bough_vertex_mass(const bough_vertex_inertia *v, double upper[21]) {
+    const double *j = v->inertia;
+    bough_vec3 s = v->moment;
+    const double rows[21] = {v->mass, 0,   0,    0, s.z,  -s.y, v->mass, 0,    -s.z, 0,   s.x,
+                             v->mass, s.y, -s.x, 0, j[0], j[3], j[4],    j[1], j[5], j[2]};
+    memcpy(upper, rows, sizeof rows);
+}
+
 static bough_status set_vertex(bough_rod_model *m, const bough_rod_def *def, int i) {
     int s = m->stride;
     const bough_vertex_inertia *v = &def->inertia[i];
     double mass[21], inverse[21];
-    mass_matrix(v, mass);
+    bough_vertex_mass(v, mass);
     if (!bough_symmetric6_inverse(mass, inverse)) {
         return bough_fail(BOUGH_INVALID,
                           "rod %s: the inertia of vertex %d is not positive"
@@ -134,11 +129,11 @@ bough_status bough_rod_create(bough_arena *arena, const bough_rod_def *def, boug
     m->stride = bough_padded(m->n_segment + BOUGH_LANES); // vertices go by lanes from 1 on
     take_arrays(m, arena);
     size_t vertices = (size_t)m->n_segment + 1;
-    memcpy(m->span, def->span, vertices * sizeof *m->span);
-    memcpy(m->position0, def->position, vertices * sizeof *m->position0);
-    memcpy(m->rotation0, def->rotation, vertices * sizeof *m->rotation0);
+    m->span = bough_arena_copy(arena, def->span, vertices * sizeof *m->span);
+    m->position0 = bough_arena_copy(arena, def->position, vertices * sizeof *m->position0);
+    m->rotation0 = bough_arena_copy(arena, def->rotation, vertices * sizeof *m->rotation0);
     m->root = bough_rotation_matrix(m->rotation0[0]);
-    memcpy(m->vertex, def->inertia, vertices * sizeof *m->vertex);
+    m->vertex = bough_arena_copy(arena, def->inertia, vertices * sizeof *m->vertex);
     for (int n = 0; n < m->n_segment; n++) {
         BOUGH_TRY(set_segment(m, def, n));
         BOUGH_TRY(set_vertex(m, def, n + 1));

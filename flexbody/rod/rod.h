@@ -45,6 +45,9 @@ typedef struct bough_vertex_inertia {
     double inertia[6]; // Ixx Iyy Izz Ixy Ixz Iyz, tensor entries [kg m²]
 } bough_vertex_inertia;
 
+// The upper triangle of the mass of theory (11) in section axes: [mE, −ξ(s); ξ(s), I].
+void bough_vertex_mass(const bough_vertex_inertia *v, double upper[21]);
+
 // A wrench (force, moment) on segment n, from one arc length to another: per length, linear between, or at
 // one point, in the axes of the segment's middle.
 typedef struct bough_rod_part {

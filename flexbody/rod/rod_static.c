@@ -117,13 +117,9 @@ static double slenderness(const bough_rod_model *m) {
     return largest;
 }
 
-static void take_ramped(bough_arena *arena, const bough_rod_model *m, bough_rod_ramped_load *load) {
-    load->value = bough_arena_doubles(arena, 6 * (size_t)m->stride);
-    load->line = bough_arena_doubles(arena, 12 * (size_t)m->stride);
-}
-
 void bough_rod_static_init(bough_rod_static *work, bough_arena *arena, const bough_rod_model *m) {
     size_t states = (size_t)BOUGH_ROD_STATES * m->n;
+    const bough_schedule always = {0};
     bough_rod_scratch_init(&work->scratch, arena, m);
     bough_rod_tangent_init(&work->tangent, arena, m);
     bough_rod_loads_init(&work->scaled, arena, m);
@@ -133,10 +129,8 @@ void bough_rod_static_init(bough_rod_static *work, bough_arena *arena, const bou
     work->force = bough_arena_doubles(arena, (size_t)6 * m->n);
     work->band = bough_arena_doubles(arena, (size_t)BAND_ROWS * 6 * m->n);
     work->pivot = bough_arena_take(arena, (size_t)6 * m->n * sizeof *work->pivot);
-    work->follower = (bough_rod_ramped_load){.follower = true};
-    work->dead = (bough_rod_ramped_load){.follower = false};
-    take_ramped(arena, m, &work->follower);
-    take_ramped(arena, m, &work->dead);
+    work->follower = bough_rod_loads_add(&work->scaled, arena, m, true, &always);
+    work->dead = bough_rod_loads_add(&work->scaled, arena, m, false, &always);
 }
 
 // Residual forces M v̇ of all vertices into step (n × 8); returns the largest component, forces and
@@ -261,7 +255,7 @@ static void scale_loads(const bough_rod_model *m, const bough_rod_loads *loads, 
         w->scaled.rest[k] = m->strain0[k] + share * (loads->rest[k] - m->strain0[k]);
     }
     w->scaled.ramped = NULL;
-    bough_rod_ramped_load *const kinds[2] = {&w->follower, &w->dead};
+    bough_rod_ramped_load *const kinds[2] = {w->follower, w->dead};
     for (int k = 0; k < 2; k++) {
         if (!sum_ramped(m, loads, share, kinds[k])) continue;
         kinds[k]->next = w->scaled.ramped;

@@ -23,14 +23,14 @@ bough_rod_static_options bough_rod_static_options_default(void);
 typedef struct bough_rod_static {
     bough_rod_scratch scratch;
     bough_rod_tangent tangent;
-    bough_rod_loads scaled;               // the loads of the present increment
-    bough_rod_ramped_load follower, dead; // its ramped ones
-    double *rate;                         // (13 n)
-    double *step;                         // (n × 8)
-    double *trial;                        // (13 n)
-    double *force, *band;                 // (6 n), (34 × 6 n) K in LAPACK's band storage
-    int *pivot;                           // (6 n)
-    int iterations;                       // of the last solution, all increments together
+    bough_rod_loads scaled;                 // the loads of the present increment
+    bough_rod_ramped_load *follower, *dead; // its ramped ones
+    double *rate;                           // (13 n)
+    double *step;                           // (n × 8)
+    double *trial;                          // (13 n)
+    double *force, *band;                   // (6 n), (34 × 6 n) K in LAPACK's band storage
+    int *pivot;                             // (6 n)
+    int iterations;                         // of the last solution, all increments together
 } bough_rod_static;
 
 void bough_rod_static_init(bough_rod_static *work, bough_arena *arena, const bough_rod_model *m);

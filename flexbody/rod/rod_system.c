@@ -42,21 +42,6 @@ static vertex_variation state_variation(const bough_rod_model *m, const double *
                               .w = lane_load(d + (size_t)BOUGH_ROD_W * n, n, i)};
 }
 
-// Of the first and the last one, by the quaternions in a state.
-static vertex_variation first_variation(const bough_rod_model *m, const double *state, const double *d) {
-    return state_variation(m, state + 3 * m->n, m->n, d, 0);
-}
-
-static vertex_variation last_variation(const bough_rod_model *m, const double *state, const double *d) {
-    return state_variation(m, state + 4 * m->n - 1, m->n, d, m->n - 1);
-}
-
-// The same where k was linearised.
-static vertex_variation kept_variation(const bough_rod_model *m, const bough_rod_tangent *k, const double *d,
-                                       int i) {
-    return state_variation(m, k->vertex + (size_t)KEPT_P * m->stride + i + 1, m->stride, d, i);
-}
-
 // Of the last vertex, whose quaternion is p; its motion: u, W, x, p.
 static vertex_variation end_variation(const double *p, const double *d) {
     return (vertex_variation){.u = bough_v3_load(d),
@@ -65,25 +50,35 @@ static vertex_variation end_variation(const double *p, const double *d) {
                               .phi = turn_of(p, 1, d + 9, 1)};
 }
 
+// Of the vertices of the first segment, and of the last one of a rod that carries bodies.
+typedef struct variations {
+    vertex_variation left[2], right[2];
+} variations;
+
+// p: the quaternions of the moving vertices; end: that of the last vertex. Either rate may be NULL for zero.
+static variations variations_along(const bough_rod_model *m, const double *p, int stride, const double *end,
+                                   const double *state_rate, const double *input_rate) {
+    variations v = {0};
+    bool carries = bough_rod_carries(m);
+    int last = m->n - 1;
+    if (input_rate != NULL) v.left[0] = root_variation(m, input_rate);
+    if (state_rate != NULL) v.right[0] = state_variation(m, p, stride, state_rate, 0);
+    if (state_rate != NULL && carries) v.left[1] = state_variation(m, p + last, stride, state_rate, last);
+    if (input_rate != NULL && carries) v.right[1] = end_variation(end, input_rate + BOUGH_ROD_INPUTS);
+    return v;
+}
+
 // -- the wrenches ---------------------------------------------------------------------------------
 
-// Where and along what a wrench is differentiated; either rate may be NULL for zero.
-typedef struct variation {
-    const double *state, *input, *state_rate, *input_rate;
-} variation;
+static void put_root(const bough_rod_model *m, segment_force f, double *wrench) {
+    bough_v3_store(f.f, wrench);
+    bough_v3_store(bough_mat3_mul(m->root, f.ll), wrench + 3);
+}
 
-// Derivative of the root wrench (6) at time t.
-static void root_tangent(bough_rod_body *b, double t, const variation *at, double *wrench) {
-    const bough_rod_model *m = b->model;
-    bough_rod_scratch *scratch = &b->scratch;
-    double now[BOUGH_ROD_OUTPUTS]; // leaves vertices and loads in scratch
-    bough_rod_root_wrench(m, &b->loads, t, at->state, at->input, scratch, now);
-    vertex_variation l = {0}, r = {0};
-    if (at->input_rate != NULL) l = root_variation(m, at->input_rate);
-    if (at->state_rate != NULL) r = first_variation(m, at->state, at->state_rate);
-    segment_force f = segment_tangent(m, scratch, 0, &l, &r);
-    lane_store(wrench, 1, 0, f.f);
-    lane_store(wrench + 3, 1, 0, bough_mat3_mul(m->root, f.ll));
+// `load`: what the turn of the vertex changes in the loads on it.
+static void put_end(segment_force load, segment_force f, double *wrench) {
+    bough_v3_store(bough_sub(load.f, f.f), wrench);
+    bough_v3_store(bough_add(load.lr, f.lr), wrench + 3);
 }
 
 // What turning the last vertex by phi changes in the loads on it: in section axes a dead moment
@@ -132,49 +127,22 @@ static segment_force kept_force(const double *position, const double *velocity, 
     return (segment_force){bough_v3_load(force + F), bough_v3_load(force + LL), bough_v3_load(force + LR)};
 }
 
-static void kept_end_tangent(const bough_rod_model *m, const bough_rod_tangent *k, const double *state_rate,
-                             const double *input_rate, double *wrench) {
-    int lane = m->n % LANES;
-    const double *position = k->variation + (size_t)TANGENTS * (m->n - lane) + lane;
-    vertex_variation l = {0}, r = {0};
-    if (state_rate != NULL) l = kept_variation(m, k, state_rate, m->n - 1);
-    if (input_rate != NULL) r = end_variation(k->end_rotation, input_rate + BOUGH_ROD_INPUTS);
-    segment_force f = kept_force(position, k->end, l, r);
-    bough_mat3 pull = lane_load_matrix(k->end_load, 1, 0), turn = lane_load_matrix(k->end_load + 9, 1, 0);
-    lane_store(wrench, 1, 0, bough_sub(bough_mat3_mul(pull, r.phi), f.f));
-    lane_store(wrench + 3, 1, 0, bough_add(bough_mat3_mul(turn, r.phi), f.lr));
-}
-
 // Both wrenches where the factors were linearised, from their tangents.
 static bool kept_tangent(void *self, const void *factors, const double *state_rate, const double *input_rate,
                          double *wrench) {
     const bough_rod_model *m = ((const bough_rod_body *)self)->model;
     const bough_rod_tangent *k = factors;
-    vertex_variation l = {0}, r = {0};
-    if (input_rate != NULL) l = root_variation(m, input_rate);
-    if (state_rate != NULL) r = kept_variation(m, k, state_rate, 0);
-    segment_force f = kept_force(k->variation, k->root, l, r);
-    lane_store(wrench, 1, 0, f.f);
-    lane_store(wrench + 3, 1, 0, bough_mat3_mul(m->root, f.ll));
-    if (bough_rod_carries(m)) kept_end_tangent(m, k, state_rate, input_rate, wrench + BOUGH_ROD_OUTPUTS);
+    int s = m->stride, lane = m->n % LANES;
+    variations v =
+        variations_along(m, k->vertex + (size_t)KEPT_P * s + 1, s, k->end_rotation, state_rate, input_rate);
+    put_root(m, kept_force(k->variation, k->root, v.left[0], v.right[0]), wrench);
+    if (!bough_rod_carries(m)) return true;
+    const double *position = k->variation + (size_t)TANGENTS * (m->n - lane) + lane;
+    bough_vec3 phi = v.right[1].phi;
+    segment_force load = {.f = bough_mat3_mul(lane_load_matrix(k->end_load, 1, 0), phi),
+                          .lr = bough_mat3_mul(lane_load_matrix(k->end_load + 9, 1, 0), phi)};
+    put_end(load, kept_force(position, k->end, v.left[1], v.right[1]), wrench + BOUGH_ROD_OUTPUTS);
     return true;
-}
-
-// The same of the wrench at the end.
-static void end_tangent(bough_rod_body *b, double t, const variation *at, double *wrench) {
-    const bough_rod_model *m = b->model;
-    bough_rod_scratch *scratch = &b->scratch;
-    double now[BOUGH_ROD_END_OUTPUTS]; // leaves vertices and loads in scratch
-    bough_rod_end_wrench(m, &b->loads, t, at->state, at->input, scratch, now);
-    vertex_variation l = {0}, r = {0};
-    if (at->state_rate != NULL) l = last_variation(m, at->state, at->state_rate);
-    if (at->input_rate != NULL) {
-        r = end_variation(at->input + BOUGH_ROD_INPUTS + 9, at->input_rate + BOUGH_ROD_INPUTS);
-    }
-    segment_force f = segment_tangent(m, scratch, m->n, &l, &r);
-    segment_force load = load_variation(m, &b->loads, scratch, r.phi);
-    lane_store(wrench, 1, 0, bough_sub(load.f, f.f));
-    lane_store(wrench + 3, 1, 0, bough_add(load.lr, f.lr));
 }
 
 // -- the rate -------------------------------------------------------------------------------------
@@ -282,9 +250,16 @@ static bool evaluate(void *self, const double *state, int n, const bough_evaluat
 static void output_tangent(void *self, double t, const double *state, const double *input,
                            const double *state_rate, const double *input_rate, double *rate) {
     bough_rod_body *b = self;
-    variation at = {state, input, state_rate, input_rate};
-    root_tangent(b, t, &at, rate);
-    if (bough_rod_carries(b->model)) end_tangent(b, t, &at, rate + BOUGH_ROD_OUTPUTS);
+    const bough_rod_model *m = b->model;
+    bool carries = bough_rod_carries(m);
+    double now[BOUGH_ROD_MOST_OUTPUTS]; // leaves vertices and loads in scratch
+    output(b, t, state, input, now);
+    variations v = variations_along(m, state + (size_t)BOUGH_ROD_P * m->n, m->n,
+                                    carries ? input + BOUGH_ROD_INPUTS + 9 : NULL, state_rate, input_rate);
+    put_root(m, segment_tangent(m, &b->scratch, 0, &v.left[0], &v.right[0]), rate);
+    if (!carries) return;
+    put_end(load_variation(m, &b->loads, &b->scratch, v.right[1].phi),
+            segment_tangent(m, &b->scratch, m->n, &v.left[1], &v.right[1]), rate + BOUGH_ROD_OUTPUTS);
 }
 
 static void *factors(void *self, bough_arena *arena) {

@@ -223,12 +223,11 @@ static void add_spread(const bough_rod_def *def, int i, double spread, bough_ver
 
 static bool positive(const bough_vertex_inertia *v) {
     const double most = 1.03; // of the first moment
-    bough_vec3 s = bough_scale(most, v->moment);
-    const double *j = v->inertia;
-    const double upper[21] = {v->mass, 0,   0,    0, s.z,  -s.y, v->mass, 0,    -s.z, 0,   s.x,
-                              v->mass, s.y, -s.x, 0, j[0], j[3], j[4],    j[1], j[5], j[2]};
-    double inverse[21];
-    return bough_symmetric6_inverse(upper, inverse);
+    bough_vertex_inertia more = *v;
+    double upper[21];
+    more.moment = bough_scale(most, v->moment);
+    bough_vertex_mass(&more, upper);
+    return bough_symmetric6_inverse(upper, upper);
 }
 
 // Sums over the segments at each vertex, lumped in the way that each segment is.
