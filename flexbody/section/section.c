@@ -300,38 +300,39 @@ static void bow_matrix(const segment_sum *c, matrix6 q, matrix6 k, double bow[10
     }
 }
 
-// What a segment is discretised to.
-typedef struct segment_law {
-    double *stiffness, *damping; // (21)
-    double *line;                // (72): two matrices by rows
-    double *taper;               // (9)
-    double *bow;                 // (10)
-    bough_section_mass *gain;
-} segment_law;
+// What the segments are discretised to.
+typedef struct segment_laws {
+    double *stiffness, *damping; // (21 n)
+    double *line;                // (72 n): two matrices by rows each
+    double *taper;               // (9 n)
+    double *bow;                 // (10 n)
+    bough_section_mass *gain;    // (n)
+} segment_laws;
 
 // theory (29, 30): stiffness and damping of a segment that is exact in linear statics under end forces, the
 // inverse of the compliance of the section tables under a constant force and a linear moment. Bending within
 // the segment appears as compliance in shear (MacNeal's residual bending flexibility). Damping dissipates
 // what the sections would. `line` is D, the mean strain by a load along the segment.
-static bool segment_matrices(const bough_section_axis *a, const bough_rod_def *def, int n, segment_law law) {
+static bool segment_matrices(const bough_section_axis *a, const bough_rod_def *def, int n,
+                             const segment_laws *laws) {
     double from = def->span[n], to = def->span[n + 1];
+    double *stiffness = laws->stiffness + 21 * n, *damping = laws->damping + 21 * n;
     segment_sum c = {
         .axis = a, .from = from, .length = to - from, .middle = 0.5 * (from + to), .definite = true};
     matrix6 q, k, loss;
     c.twist = 0.5 * (bough_section_at(a, from).twist + bough_section_at(a, to).twist);
     lump_left(&c);
     bough_section_integrate(a, from, to, add_compliance, &c);
-    *law.gain = c.definite ? best_gain(&c) : (bough_section_mass){0};
+    laws->gain[n] = c.definite ? best_gain(&c) : (bough_section_mass){0};
     strain_map(shape_between(def->position + n, def->rotation + n, 1 / c.length), c.length, q);
     change_strains(&c, q);
-    if (!c.definite || !bough_symmetric6_inverse(c.compliance, law.stiffness)) return false;
-    bough_symmetric6_unpack(law.stiffness, k);
+    if (!c.definite || !bough_symmetric6_inverse(c.compliance, stiffness)) return false;
+    bough_symmetric6_unpack(stiffness, k);
     bough_symmetric6_unpack(c.loss, loss);
-    memset(law.damping, 0, 21 * sizeof *law.damping);
-    add_congruent(1, k, loss, law.damping);
-    memcpy(law.line, c.line, sizeof c.line);
-    bow_matrix(&c, q, k, law.bow);
-    for (int i = 0; i < 9; i++) law.taper[i] = 12 / (c.length * c.length * c.length) * c.taper[i];
+    add_congruent(1, k, loss, damping);
+    memcpy(laws->line + 72 * n, c.line, sizeof c.line);
+    bow_matrix(&c, q, k, laws->bow + 10 * n);
+    for (int i = 0; i < 9; i++) laws->taper[9 * n + i] = 12 / (c.length * c.length * c.length) * c.taper[i];
     return true;
 }
 
@@ -401,61 +402,43 @@ static void part_strain(const void *axis, const bough_rod_model *m, int n, const
 
 // -- whole ----------------------------------------------------------------------------------------
 
-typedef struct arrays {
-    double *span, *stiffness, *damping, *line, *taper, *bow;
-    bough_vec3 *position;
-    bough_quaternion *rotation;
-    bough_vertex_inertia *inertia;
-    bough_section_mass *gain;
-} arrays;
-
-static arrays take_arrays(bough_arena *arena, int n) {
-    size_t vertices = (size_t)n + 1;
-    arrays a = {.span = bough_arena_doubles(arena, vertices),
-                .stiffness = bough_arena_doubles(arena, 21 * (size_t)n),
-                .damping = bough_arena_doubles(arena, 21 * (size_t)n),
-                .line = bough_arena_doubles(arena, 72 * (size_t)n),
-                .taper = bough_arena_doubles(arena, 9 * (size_t)n),
-                .bow = bough_arena_doubles(arena, 10 * (size_t)n),
-                .gain = bough_arena_take(arena, (size_t)n * sizeof(bough_section_mass)),
-                .position = bough_arena_take(arena, vertices * sizeof(bough_vec3)),
-                .rotation = bough_arena_take(arena, vertices * sizeof(bough_quaternion)),
-                .inertia = bough_arena_take(arena, vertices * sizeof(bough_vertex_inertia))};
-    return a;
-}
-
 bough_status bough_section_discretise(bough_arena *arena, const bough_section_table *table, int n_segment,
                                       bough_rod_def *def) {
     bough_section_axis *a = bough_arena_take(arena, sizeof *a);
     bough_section_axis_init(a, arena, table);
-    arrays m = take_arrays(arena, n_segment);
+    size_t n = (size_t)n_segment;
+    double *span = bough_arena_doubles(arena, n + 1);
+    bough_vec3 *position = bough_arena_take(arena, (n + 1) * sizeof *position);
+    bough_quaternion *rotation = bough_arena_take(arena, (n + 1) * sizeof *rotation);
+    bough_vertex_inertia *inertia = bough_arena_take(arena, (n + 1) * sizeof *inertia);
+    segment_laws laws = {.gain = bough_arena_take(arena, n * sizeof *laws.gain)};
+    bough_arena_each(arena, 21 * n, &laws.stiffness, &laws.damping);
+    laws.line = bough_arena_doubles(arena, 72 * n);
+    laws.taper = bough_arena_doubles(arena, 9 * n);
+    laws.bow = bough_arena_doubles(arena, 10 * n);
     *def = (bough_rod_def){.name = table->name,
                            .n_segment = n_segment,
-                           .span = m.span,
-                           .position = m.position,
-                           .rotation = m.rotation,
-                           .stiffness = m.stiffness,
-                           .damping = m.damping,
-                           .line = m.line,
-                           .taper = m.taper,
-                           .bow = m.bow,
-                           .inertia = m.inertia,
+                           .span = span,
+                           .position = position,
+                           .rotation = rotation,
+                           .stiffness = laws.stiffness,
+                           .damping = laws.damping,
+                           .line = laws.line,
+                           .taper = laws.taper,
+                           .bow = laws.bow,
+                           .inertia = inertia,
                            .sections = {part_strain, a}};
     for (int i = 0; i <= n_segment; i++) {
-        m.span[i] = bough_section_length(a) * bough_section_graded(table->grading, (double)i / n_segment);
-        m.position[i] = bough_section_at(a, m.span[i]).position;
-        m.rotation[i] = bough_section_rotation(a, m.span[i]);
+        span[i] = bough_section_length(a) * bough_section_graded(table->grading, (double)i / n_segment);
+        position[i] = bough_section_at(a, span[i]).position;
+        rotation[i] = bough_section_rotation(a, span[i]);
     }
     for (int k = 0; k < n_segment; k++) {
-        segment_law law = {m.stiffness + 21 * (size_t)k, m.damping + 21 * (size_t)k, m.line + 72 * (size_t)k,
-                           m.taper + 9 * (size_t)k,      m.bow + 10 * (size_t)k,     m.gain + k};
-        if (!segment_matrices(a, def, k, law)) {
-            return bough_fail(BOUGH_INVALID,
-                              "rod %s: the stiffness between %g m and %g m is not"
-                              " positive definite",
-                              table->name, m.span[k], m.span[k + 1]);
-        }
+        if (segment_matrices(a, def, k, &laws)) continue;
+        return bough_fail(BOUGH_INVALID,
+                          "rod %s: the stiffness between %g m and %g m is not positive definite", table->name,
+                          span[k], span[k + 1]);
     }
-    bough_section_lump(arena, a, def, m.gain, m.inertia);
+    bough_section_lump(arena, a, def, laws.gain, inertia);
     return bough_ok();
 }
