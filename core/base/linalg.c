@@ -121,8 +121,7 @@ static void solve_small(int n, const double *restrict factor, const int *pivot, 
     }
 }
 
-// -- work arrays of the library
-// -----------------------------------------------------------------------------------------
+// -- work arrays of the library -------------------------------------------------------------------
 
 enum { MOST_ROOMS = 64 }; // one for each concurrent call
 

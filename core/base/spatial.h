@@ -57,6 +57,10 @@ static inline bough_wrench bough_wrench_sub(bough_wrench a, bough_wrench b) {
     return (bough_wrench){bough_sub(a.force, b.force), bough_sub(a.moment, b.moment)};
 }
 
+static inline bough_wrench bough_wrench_scale(double factor, bough_wrench f) {
+    return (bough_wrench){bough_scale(factor, f.force), bough_scale(factor, f.moment)};
+}
+
 // X V: the parent frame's twist expressed in the child frame, at the child's origin.
 static inline bough_twist bough_twist_to_child(const bough_transform *x, bough_twist t) {
     bough_vec3 at = bough_add(t.linear, bough_cross(t.angular, x->position));

@@ -12,11 +12,11 @@ enum { N = 6, NN = N * N };
 static const bough_twist no_twist;
 static const bough_wrench no_wrench;
 
-// X_i V_λ for a quantity that is `ground` on the ground
+// X_i V_λ for a quantity that is zero on the ground
 static bough_twist from_parent(const bough_tree_data *d, const bough_link *links, int i,
-                               const bough_twist *quantity, bough_twist ground) {
+                               const bough_twist *quantity) {
     int parent = links[i].parent;
-    return bough_twist_to_child(&d->relative[i], parent < 0 ? ground : quantity[parent]);
+    return bough_twist_to_child(&d->relative[i], parent < 0 ? no_twist : quantity[parent]);
 }
 
 // Springs along joint axes: they depend on coordinates, which only the kinematics read.
@@ -41,7 +41,7 @@ void bough_tree_kinematics(const bough_tree *tree, const double *state, bough_tr
         d->pose[i] = up < 0 ? d->relative[i] : bough_transform_compose(d->pose[up], d->relative[i]);
         // theory (39): V_i = X_i V_λ + S v
         d->joint_twist[i] = bough_joint_twist(&link->joint, v + link->first_speed);
-        d->twist[i] = bough_twist_add(from_parent(d, tree->links, i, d->twist, no_twist), d->joint_twist[i]);
+        d->twist[i] = bough_twist_add(from_parent(d, tree->links, i, d->twist), d->joint_twist[i]);
         d->gravity[i] = bough_mat3_tmul(d->pose[i].rotation, tree->gravity);
     }
     joint_springs(tree, q, v, d);
@@ -81,8 +81,7 @@ static void closure_wrenches(const bough_tree *tree, bough_tree_data *d, const b
         double lambda = d->loops->multiplier[k];
         for (int end = 0; end < 2 && lambda != 0; end++) {
             bough_wrench w = d->loops->row[k].wrench[end];
-            w = (bough_wrench){bough_scale(lambda, w.force), bough_scale(lambda, w.moment)};
-            subtract_at(d, &tree->markers[c->marker[end]], w);
+            subtract_at(d, &tree->markers[c->marker[end]], bough_wrench_scale(lambda, w));
         }
     }
 }
@@ -151,8 +150,8 @@ void bough_tree_inverse_dynamics(const bough_tree *tree, bough_tree_data *d, dou
         double given = link->motion == NULL ? 0 : prescribed_acceleration(link, t);
         bough_twist own = bough_joint_twist(&link->joint, link->motion == NULL ? rate : &given);
         bough_twist turn = bough_twist_cross(d->twist[i], d->joint_twist[i]);
-        d->acceleration[i] = bough_twist_add(from_parent(d, tree->links, i, d->acceleration, no_twist),
-                                             bough_twist_add(turn, own));
+        d->acceleration[i] =
+            bough_twist_add(from_parent(d, tree->links, i, d->acceleration), bough_twist_add(turn, own));
         d->wrench[i] = bough_wrench_add(d->wrench[i], bough_inertia_mul(&link->inertia, d->acceleration[i]));
     }
     for (int i = tree->n_links - 1; i >= 0; i--) {
@@ -366,7 +365,7 @@ bool bough_tree_free_dynamics(const bough_tree *tree, bough_tree_data *d, double
     for (int i = 0; i < tree->n_links; i++) {
         const bough_link *link = &tree->links[i];
         bough_twist turn = bough_twist_cross(d->twist[i], d->joint_twist[i]);
-        bough_twist carried = from_parent(d, tree->links, i, d->acceleration, no_twist);
+        bough_twist carried = from_parent(d, tree->links, i, d->acceleration);
         bough_twist arriving = bough_twist_add(carried, turn);
         if (link->motion == NULL) {
             accelerate(link, d, i, arriving, acceleration);
@@ -399,7 +398,7 @@ void bough_tree_free_response(const bough_tree *tree, bough_tree_data *d, const 
     }
     for (int i = 0; i < tree->n_links; i++) {
         // outwards over all links, with the factors of the last dynamics
-        bough_twist carried = from_parent(d, tree->links, i, d->acceleration, no_twist);
+        bough_twist carried = from_parent(d, tree->links, i, d->acceleration);
         if (tree->links[i].motion == NULL) {
             accelerate(&tree->links[i], d, i, carried, change);
         } else {
@@ -427,9 +426,9 @@ void bough_tree_tangent(const bough_tree *tree, const double *state, const doubl
         bough_joint_speed(&link->joint, state + link->first_coordinate, change + link->first_coordinate, eta);
         bough_twist moved = bough_joint_twist(&link->joint, eta);
         bough_twist own = bough_joint_twist(&link->joint, dv + link->first_speed);
-        bough_twist carried = from_parent(d, tree->links, i, d->twist, no_twist);
+        bough_twist carried = from_parent(d, tree->links, i, d->twist);
         // δV_i = X δV_λ + (X V_λ) × S δη + S δv
-        d->acceleration[i] = bough_twist_add(from_parent(d, tree->links, i, d->acceleration, no_twist),
+        d->acceleration[i] = bough_twist_add(from_parent(d, tree->links, i, d->acceleration),
                                              bough_twist_add(bough_twist_cross(carried, moved), own));
         bough_vec3 above = link->parent < 0 ? no_twist.linear : d->rotation[link->parent];
         d->rotation[i] = bough_add(bough_mat3_tmul(d->relative[i].rotation, above), moved.angular);

@@ -207,8 +207,7 @@ bough_force_pair bough_element_change(const bough_tree *tree, const bough_tree_d
 
 bough_wrench bough_applied_force(const bough_tree *tree, const bough_tree_data *data, int k, double t) {
     const bough_applied_def *a = &tree->applied[k];
-    double factor = bough_schedule_at(&a->schedule, t);
-    bough_wrench w = {bough_scale(factor, a->wrench.force), bough_scale(factor, a->wrench.moment)};
+    bough_wrench w = bough_wrench_scale(bough_schedule_at(&a->schedule, t), a->wrench);
     // constant in the ground: resolved in the marker's axes
     if (!a->ground) return w;
     bough_mat3 r = bough_tree_frame_pose(data, &tree->markers[a->marker]).rotation;

@@ -301,9 +301,8 @@ bough_wrench bough_loops_wrench(const bough_tree *tree, const bough_tree_data *d
     bough_wrench sum = {{0, 0, 0}, {0, 0, 0}};
     const bough_closure *c = &tree->closures[closure];
     for (int k = c->first_row; k < c->first_row + bough_constraint_n_rows(&c->constraint); k++) {
-        bough_wrench w = d->loops->row[k].wrench[1];
-        sum.force = bough_axpy(d->loops->multiplier[k], w.force, sum.force);
-        sum.moment = bough_axpy(d->loops->multiplier[k], w.moment, sum.moment);
+        bough_wrench w = bough_wrench_scale(d->loops->multiplier[k], d->loops->row[k].wrench[1]);
+        sum = bough_wrench_add(sum, w);
     }
     return sum;
 }
@@ -334,10 +333,9 @@ static int worst_row(const bough_tree *tree, const bough_tree_data *d, bool of_r
     int worst = 0;
     *violation = 0;
     for (int k = 0; k < tree->n_rows; k++) {
-        const bough_closure *c = &tree->closures[closure_of(tree, k)];
         const bough_constraint_row *row = &d->loops->row[k];
         double x = fabs(of_rate ? row->rate : row->value);
-        if (k - c->first_row < c->constraint.n_translation) x /= size;
+        if (!turns(tree, k)) x /= size;
         if (x <= *violation) continue;
         *violation = x;
         worst = k;
@@ -346,18 +344,18 @@ static int worst_row(const bough_tree *tree, const bough_tree_data *d, bool of_r
 }
 
 static bough_status refuse(const bough_tree *tree, const bough_tree_data *d, int row, bool of_rate) {
-    const bough_closure *c = &tree->closures[closure_of(tree, row)];
-    bool turns = row - c->first_row >= c->constraint.n_translation;
+    const char *name = tree->closures[closure_of(tree, row)].name;
+    bool turning = turns(tree, row);
     if (of_rate) {
         return bough_fail(BOUGH_INVALID,
                           "closure '%s': with the initial speeds its ends move apart at %.4g %s; "
                           "leave out the speeds that should follow the others",
-                          c->name, fabs(d->loops->row[row].rate), turns ? "rad/s" : "m/s");
+                          name, fabs(d->loops->row[row].rate), turning ? "rad/s" : "m/s");
     }
     return bough_fail(BOUGH_INVALID,
                       "closure '%s': its ends are %.4g %s apart, from where it cannot be assembled; "
                       "correct the joints' initial positions, the closure's placements or its axis",
-                      c->name, fabs(d->loops->row[row].value), turns ? "(sine of an angle)" : "m");
+                      name, fabs(d->loops->row[row].value), turning ? "(sine of an angle)" : "m");
 }
 
 // One step of Newton's method, the least in the measure of the inertias.
@@ -464,10 +462,7 @@ bough_status bough_loops_assemble(bough_tree *tree, bough_tree_data *d) {
     if (d->loops == NULL) return bough_ok();
     bough_tree_kinematics(tree, tree->initial, d);
     double size = tree->closure_size = extent(tree, d);
-    bough_status status = assemble_positions(tree, d, size);
-    if (bough_is_ok(&status)) {
-        tree->closure_rank = d->loops->rank;
-        status = assemble_speeds(tree, d, size);
-    }
-    return status;
+    BOUGH_TRY(assemble_positions(tree, d, size));
+    tree->closure_rank = d->loops->rank;
+    return assemble_speeds(tree, d, size);
 }

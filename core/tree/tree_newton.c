@@ -358,8 +358,6 @@ static void sweep(const bough_tree_newton *w, const double *coupling, const doub
 // The changes c of the wrenches at their ends are J ζ, and ζ those of the tree without them under c:
 // (E − J T⁻¹ Eᵀ) c = J T⁻¹ r.
 
-static const twist no_twist;
-
 // Lists the ends of springs and bushings, which sets n_ends and n_rows.
 static void list_ends(bough_tree_newton *w) {
     for (int e = 0; e < bough_tree_n_elements(w->tree); e++) {
