@@ -95,11 +95,10 @@ static bough_status read_all(bough_arena *arena, FILE *stream, const char *path,
     int64_t size = ftell(stream), n = 0;
     rewind(stream);
     if (fread(head, 1, HEAD, stream) != HEAD) return bad(path, "it is shorter than a head");
-    bough_status status = read_counts(path, head, box);
-    if (bough_is_ok(&status)) status = read_measures(path, head, box);
+    BOUGH_TRY(read_counts(path, head, box));
+    BOUGH_TRY(read_measures(path, head, box));
     int64_t text = bough_bytes_int32(head + HEAD - 4);
-    if (bough_is_ok(&status)) status = count_values(path, box, text, size, &n);
-    BOUGH_TRY(status);
+    BOUGH_TRY(count_values(path, box, text, size, &n));
     int16_t *value = bough_arena_take(arena, (size_t)n * sizeof *value);
     box->value = value;
     if (fseek(stream, (long)(HEAD + text), SEEK_SET) != 0) return bad(path, "it is no plain file");

@@ -219,13 +219,12 @@ static bool add_others(basis *b, bool statics, bool inner) {
 
 // -- Rayleigh and Ritz ----------------------------------------------------------------------------
 
-// sign · Xᵀ A X (count × count) of a tridiagonal A.
-static void project(const basis *b, const bough_block_tridiagonal *a, double sign, double *work, double *to) {
+// −Xᵀ A X (count × count) of a tridiagonal A.
+static void project(const basis *b, const bough_block_tridiagonal *a, double *work, double *to) {
     for (int l = 0; l < b->count; l++) {
         tridiagonal_times(a, b->vector + (size_t)l * b->size, work);
         for (int k = 0; k < b->count; k++) {
-            to[l * b->count + k] =
-                sign * bough_scalar_product(b->size, b->vector + (size_t)k * b->size, work);
+            to[l * b->count + k] = -bough_scalar_product(b->size, b->vector + (size_t)k * b->size, work);
         }
     }
 }
@@ -288,14 +287,14 @@ static bool diagonalise(basis *b, const bough_block_tridiagonal *stiffness, doub
     double *work = bough_arena_doubles(b->arena, (size_t)b->size + 26 * m);
     double *rotated = bough_arena_doubles(b->arena, m * (size_t)b->size);
     int *index = bough_arena_take(b->arena, 12 * m * sizeof *index);
-    project(b, stiffness, -1, work, reduced);
+    project(b, stiffness, work, reduced);
     if (!bough_symmetric_smallest(b->count, reduced, b->count, value, eigen, work, index)) {
         return false;
     }
     rotate(b, eigen, rotated);
     b->vector = rotated;
     // damping in the new shapes is full
-    project(b, &b->tangent.blocks.velocity, -1, work, damping);
+    project(b, &b->tangent.blocks.velocity, work, damping);
     return true;
 }
 

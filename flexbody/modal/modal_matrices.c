@@ -275,10 +275,10 @@ bough_status bough_modal_piece_create(bough_arena *arena, const bough_rod_def *d
     part.inertia += first;
     part.bow = NULL;
     part.line = NULL; // the whole body's loads are lumped
-    bough_status status = bough_rod_create(arena, &part, &rod);
+    BOUGH_TRY(bough_rod_create(arena, &part, &rod));
     *piece =
         (bough_modal_piece){.rod = rod, .first = first, .n = last - first, .inner = last < def->n_segment};
-    if (bough_is_ok(&status)) status = bough_modal_basis(arena, options, piece);
-    if (bough_is_ok(&status)) modal_matrices(arena, options, piece);
-    return status;
+    BOUGH_TRY(bough_modal_basis(arena, options, piece));
+    modal_matrices(arena, options, piece);
+    return bough_ok();
 }

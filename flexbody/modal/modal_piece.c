@@ -77,8 +77,7 @@ static inline void add3(const bough_modal_piece *p, double sign, const double *r
     for (int k = 0; k < p->m; k++) to[k] += w.x * a[k] + w.y * b[k] + w.z * d[k];
 }
 
-// Displacement and rotation of moving vertex i = 1..n, in frame axes, for modal coordinates.
-static inline bough_twist vertex_of(const bough_modal_piece *p, int i, const double *q) {
+bough_twist bough_modal_vertex(const bough_modal_piece *p, int i, const double *q) {
     const double *rows = p->shape + (size_t)6 * (i - 1) * p->stride;
     return (bough_twist){dot3(p, rows, q), dot3(p, rows + 3 * p->stride, q)};
 }
@@ -138,10 +137,6 @@ void bough_modal_point_init(bough_modal_point *point, bough_arena *arena, const 
     bough_arena_each(arena, (size_t)piece->m * s, &point->rotating, &point->gyroscopic, &point->field);
 }
 
-bough_twist bough_modal_vertex(const bough_modal_piece *p, int i, const double *q) {
-    return vertex_of(p, i, q);
-}
-
 bough_vec3 bough_modal_spin(bough_vec3 psi, bough_vec3 rate) {
     return bough_exp_tangent(bough_exp_factors_of(psi), psi, rate);
 }
@@ -152,8 +147,8 @@ bough_vec3 bough_modal_spin(bough_vec3 psi, bough_vec3 rate) {
 static void set_tip(bough_modal_point *at) {
     const bough_modal_piece *p = at->piece;
     const bough_modal_frame *frame = &at->frame;
-    bough_twist shift = at->tip_shift = vertex_of(p, p->n, at->q);
-    bough_twist rate = at->tip_rate = vertex_of(p, p->n, at->rate_q);
+    bough_twist shift = at->tip_shift = bough_modal_vertex(p, p->n, at->q);
+    bough_twist rate = at->tip_rate = bough_modal_vertex(p, p->n, at->rate_q);
     bough_mat3 e = at->tip_rotation = bough_rotation_matrix(bough_quaternion_exponential(shift.angular));
     bough_vec3 x = bough_add(p->rod->position0[p->n], shift.linear);
     bough_vec3 u = bough_add(bough_add(frame->velocity, rate.linear), bough_cross(frame->spin, x));
@@ -317,7 +312,7 @@ static void set_load_rotations(bough_modal_point *at, const double *load, int st
             w.force = bough_cross(w.force, bough_unit3(a));
             w.moment = bough_cross(w.moment, bough_unit3(a));
             add_force(p, i, w, at->force_by_rotation + a * p->stride);
-            bough_vec3 x = bough_add(p->rod->position0[i], vertex_of(p, i, at->q).linear);
+            bough_vec3 x = bough_add(p->rod->position0[i], bough_modal_vertex(p, i, at->q).linear);
             sum = bough_add(sum, bough_add(w.moment, bough_cross(x, w.force)));
         }
         at->moment_by_rotation[a] = sum;
@@ -411,14 +406,14 @@ void bough_modal_forward_tangent(const bough_modal_point *at, const double *dq, 
     if (dq != NULL) {
         memcpy(rate, deta, (size_t)p->m * sizeof *rate);
         add_product(p, -1, at->rotating, dq, rate);
-        if (p->inner) dshift = vertex_of(p, p->n, dq);
+        if (p->inner) dshift = bough_modal_vertex(p, p->n, dq);
     }
     if (d != NULL) {
         add3(p, -1, p->rigid, d->velocity, rate);
         add3(p, -1, p->rigid + 3 * p->stride, d->spin, rate);
         add3(p, -1, at->rotating_q, d->spin, rate);
     }
-    if (p->inner) tip_change(at, dshift, vertex_of(p, p->n, rate), d ? d : &held, tip);
+    if (p->inner) tip_change(at, dshift, bough_modal_vertex(p, p->n, rate), d ? d : &held, tip);
 }
 
 // The frame's change in η̇, without its effect through q̇.
@@ -472,7 +467,7 @@ bough_wrench bough_modal_backward_tangent(const bough_modal_point *at, const dou
     // by the wrench of the next piece
     if (p->inner) {
         bough_vec3 working, dpsi = {0, 0, 0};
-        if (dq != NULL) dpsi = vertex_of(p, p->n, dq).angular;
+        if (dq != NULL) dpsi = bough_modal_vertex(p, p->n, dq).angular;
         bough_wrench change = outer_change(at, dpsi, outer, &working);
         w = add_outer(at, change, working, rate);
     }

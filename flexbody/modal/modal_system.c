@@ -27,19 +27,17 @@ bough_status bough_modal_create(bough_arena *arena, const bough_rod_def *def, in
     int *offset = bough_arena_take(arena, (size_t)pieces * sizeof *offset);
     bough_rod_model *rod = NULL;
     assert(pieces <= def->n_segment);
-    bough_status status = bough_rod_create(arena, def, &rod);
-    if (!bough_is_ok(&status)) return status;
+    BOUGH_TRY(bough_rod_create(arena, def, &rod));
     *m = (bough_modal_model){rod->name, rod, pieces, piece, offset, 0};
     for (int k = 0; k < pieces; k++) {
         // equally many segments, or one more or less
         int first = k * def->n_segment / pieces, last = (k + 1) * def->n_segment / pieces;
-        status = bough_modal_piece_create(arena, def, first, last, options, &piece[k]);
-        if (!bough_is_ok(&status)) return status;
+        BOUGH_TRY(bough_modal_piece_create(arena, def, first, last, options, &piece[k]));
         offset[k] = m->n_state;
         m->n_state += 2 * piece[k].m;
     }
     *model = m;
-    return status;
+    return bough_ok();
 }
 
 // -- sweeps ---------------------------------------------------------------------------------------
