@@ -52,38 +52,12 @@ static void constant(double c, N_Vector vz) {
     for (int i = 0; i < n; i++) z[i] = c;
 }
 
-static void product(N_Vector vx, N_Vector vy, N_Vector vz) {
-    const double *x = bough_vector_data(vx), *y = bough_vector_data(vy);
-    double *z = bough_vector_data(vz);
-    int n = length(vz);
-#pragma omp simd
-    for (int i = 0; i < n; i++) z[i] = x[i] * y[i];
-}
-
 static void scale(double c, N_Vector vx, N_Vector vz) {
     const double *x = bough_vector_data(vx);
     double *z = bough_vector_data(vz);
     int n = length(vz);
 #pragma omp simd
     for (int i = 0; i < n; i++) z[i] = c * x[i];
-}
-
-static double dot(N_Vector vx, N_Vector vy) {
-    const double *x = bough_vector_data(vx), *y = bough_vector_data(vy);
-    double sum = 0;
-    int n = length(vx);
-#pragma omp simd reduction(+ : sum)
-    for (int i = 0; i < n; i++) sum += x[i] * y[i];
-    return sum;
-}
-
-static double max_norm(N_Vector vx) {
-    const double *x = bough_vector_data(vx);
-    double most = 0;
-    int n = length(vx);
-#pragma omp simd reduction(max : most)
-    for (int i = 0; i < n; i++) most = fabs(x[i]) > most ? fabs(x[i]) : most;
-    return most;
 }
 
 // √(Σ (x w)²/n)
@@ -121,14 +95,11 @@ static int linear_combination(int count, double *c, N_Vector *vx, N_Vector vz) {
 N_Vector bough_vector_create(int n, SUNContext context) {
     N_Vector v = with_data(N_VNewEmpty_Serial(n, context));
     if (v == NULL) return NULL;
-    // all other operations are the serial vector's
+    // all other operations, which steps do not use, are the serial vector's
     v->ops->nvclone = clone;
     v->ops->nvlinearsum = linear_sum;
     v->ops->nvconst = constant;
-    v->ops->nvprod = product;
     v->ops->nvscale = scale;
-    v->ops->nvdotprod = dot;
-    v->ops->nvmaxnorm = max_norm;
     v->ops->nvwrmsnorm = wrms_norm;
     v->ops->nvlinearcombination = linear_combination;
     return v;
