@@ -21,21 +21,16 @@ typedef struct automatic {
     double lost; // the same when IDA took no fewer
 } automatic;
 
-static bough_integrator make(const bough_integrator_ops *ops, bough_arena *arena, const bough_ode *ode,
-                             const bough_integrator_options *options) {
-    return (bough_integrator){.ops = ops, .self = ops->create(arena, ode, options)};
-}
-
 static void *create(bough_arena *arena, const bough_ode *ode, const bough_integrator_options *options) {
     automatic *m = bough_arena_take(arena, sizeof *m);
     bough_integrator_options own = *options;
     own.kind = BOUGH_ROSENBROCK;
     own.most_steps = ROSENBROCK_STEPS;
-    m->rosenbrock = make(&bough_integrator_rosenbrock, arena, ode, &own);
+    bough_integrator_create(arena, ode, &own, &m->rosenbrock); // of any size
     own.kind = BOUGH_IDA;
     own.most_steps = (int)fmax(LEAST_IDA_STEPS, fmin(IDA_STEPS, most_work / ode->n));
     own.rtol *= tighter;
-    m->ida = make(&bough_integrator_ida, arena, ode, &own);
+    bough_integrator_create(arena, ode, &own, &m->ida);
     return m;
 }
 
