@@ -144,7 +144,7 @@ void bough_polar_blend(bough_arena *arena, const bough_polar *a, const bough_pol
         indicial[i] = (1 - weight) * a->wake_weight[i] + weight * b->wake_weight[i];
         indicial[2 + i] = (1 - weight) * a->wake_rate[i] + weight * b->wake_rate[i];
     }
-    bough_polar_def def = {.name = "blend", .n = n, .row = row, .indicial = indicial};
+    bough_polar_def def = {.n = n, .row = row, .indicial = indicial};
     bough_polar_build(arena, &def, polar);
     bool a_whole = a->high - a->low >= circle, b_whole = b->high - b->low >= circle;
     polar->low = a_whole ? b->low : b_whole ? a->low : fmax(a->low, b->low);

@@ -11,7 +11,6 @@
 // Rows of (α [deg], Cl, Cd, Cm) with α strictly increasing over at most 360°. Between the last
 // row and the first, 360° later, values are interpolated, too.
 typedef struct bough_polar_def {
-    const char *name; // for messages
     int n;
     const double *row; // (n × 4)
     // A₁, A₂, b₁, b₂ of the indicial lift 1 − Σ A exp(−b s), s in semi-chords; NULL: Jones' values for a flat

@@ -58,7 +58,6 @@ typedef struct bough_marker_def {
 // the tree at the marker's origin in marker axes [N, N m]. Outputs, 9 per port: the marker's twist
 // (linear, angular velocity) and the gravity vector, all in marker axes [m/s, rad/s, m/s²].
 typedef struct bough_port_def {
-    const char *name;
     int marker;         // index
     bough_inertia root; // of the flexible body's root vertex, in the marker frame: the tree
                         // carries its inertia and weight, so the wrench must not contain them
@@ -71,7 +70,6 @@ typedef struct bough_port_def {
 // [N, N m]. Outputs, 13 per end after those of the ports: its absolute velocity in joint axes,
 // angular velocity in body axes, position in joint axes and quaternion [m/s, rad/s, m, –].
 typedef struct bough_end_def {
-    const char *name;
     int body;              // index, on a free joint
     bough_inertia inertia; // of the flexible body's vertex there, in body axes, as at a port
 } bough_end_def;

@@ -22,7 +22,7 @@ __attribute__((constructor)) static void nrel5mw_read(void) {
     for (int polar = -1, n = 0; file != NULL && fgets(line, sizeof line, file) != NULL && n < NREL5MW_ROWS;) {
         if (polar + 1 < NREL5MW_POLARS && sscanf(line, "  - name: %31s", name[polar + 1]) == 1) {
             polar++;
-            nrel5mw_polars[polar] = (bough_polar_def){.name = name[polar], .row = row[n]};
+            nrel5mw_polars[polar] = (bough_polar_def){.row = row[n]};
         }
         double *to = row[n];
         if (sscanf(line, " - [%lf,%lf,%lf,%lf]", to, to + 1, to + 2, to + 3) == 4) {

@@ -104,8 +104,8 @@ static inline fixture everything_with(bough_integrator_kind solver, double rtol)
         {"on f", 5, {next3(&seed), turned(1, 1, 0.1)}},
     };
     bough_port_def ports[] = {
-        {"first", 0, bough_inertia_of(0.4, bough_v3(0.1, 0, 0.2), diagonal(0.1, 0.2, 0.2)), true},
-        {"second", 1, bough_inertia_of(0.2, bough_v3(0, 0.3, 0), diagonal(0.1, 0.1, 0.1)), false},
+        {0, bough_inertia_of(0.4, bough_v3(0.1, 0, 0.2), diagonal(0.1, 0.2, 0.2)), true},
+        {1, bough_inertia_of(0.2, bough_v3(0, 0.3, 0), diagonal(0.1, 0.1, 0.1)), false},
     };
     bough_spring_def springs[] = {{{0, 2}, 6, 0.4, 0.5}, {{1, 2}, 9, 0, 1.5}};
     bough_joint_load_def loads[] = {{.body = 5, .value = 3.0, .schedule = {.start = 0.1, .end = 0.3}},

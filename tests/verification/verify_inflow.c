@@ -51,7 +51,7 @@ static bough_status build_polars(bough_arena *arena, const bough_scene_polars *f
             row[4 * i + 1] = p->row[i].cl;
             row[4 * i + 2] = p->row[i].cd;
         }
-        bough_polar_def def = {.name = p->name, .n = p->n_row, .row = row};
+        bough_polar_def def = {.n = p->n_row, .row = row};
         bough_polar_build(arena, &def, &polar[k]);
     }
     return bough_ok();

@@ -83,7 +83,7 @@ static void take_tables(bough_arena *arena, const bough_aero_link *l, tables *t)
             const double values[4] = {r->alpha * (180 / BOUGH_PI), r->cl, r->cd, r->cm};
             memcpy(row + 4 * i, values, sizeof values);
         }
-        t->polar[k] = (bough_polar_def){from->name, from->n_row, row, from->indicial};
+        t->polar[k] = (bough_polar_def){from->n_row, row, from->indicial};
     }
     for (int k = 0; k < aero->blade.n_station; k++) {
         t->station[k] = aero->blade.station[k].def;

@@ -190,20 +190,19 @@ static bough_inertia root_inertia(const bough_rod_def *def) {
 static bough_status add_end(bough_builder *b, bough_beam *beam, int index) {
     const bough_rod_def *def = &beam->def;
     int n = def->n_segment, body = b->scene->n_body + b->s->n_end;
-    const char *name = bough_arena_print(b->arena, "%s end", beam->body->name);
     bough_quaternion p = def->rotation[n];
     bough_vec3 x = def->position[n];
     const double q[BOUGH_JOINT_COORDINATES] = {x.x, x.y, x.z, p.w, p.x, p.y, p.z};
     bough_body_def *to = &b->body[body];
     *to = bough_body_def_default();
-    to->name = name;
+    to->name = bough_arena_print(b->arena, "%s end", beam->body->name);
     to->parent = index;
     to->kind = BOUGH_JOINT_FREE;
     memcpy(to->coordinates, q, sizeof q);
     beam->end = b->s->n_end++;
     beam->def.carries = true;
     beam->vertex[1] = vertex_inertia(&def->inertia[n]);
-    b->end[beam->end] = (bough_end_def){name, body, beam->vertex[1]};
+    b->end[beam->end] = (bough_end_def){body, beam->vertex[1]};
     return bough_ok();
 }
 
@@ -228,16 +227,16 @@ static bough_status add_beam(bough_builder *b, int index) {
     beam->port = s->n_rod;
     beam->vertex[0] = root_inertia(&beam->def);
     beam->in_ground = moves_under_ground_loads(b->scene, index);
-    b->port[s->n_rod++] = (bough_port_def){beam->body->name, beam->marker, beam->vertex[0], beam->in_ground};
+    b->port[s->n_rod++] = (bough_port_def){beam->marker, beam->vertex[0], beam->in_ground};
     return bough_scene_carried_by(b->scene, index) >= 0 ? add_end(b, beam, index) : bough_ok();
 }
 
 // Its marker and port come after those of all beams.
 static void add_fmu(bough_builder *b, int index) {
-    const char *name = b->scene->body[index].name;
     int marker = b->s->n_beam + b->s->n_fmu, port = b->s->n_rod + b->s->n_fmu++;
-    b->force.marker[marker] = (bough_marker_def){name, index, bough_transform_identity()};
-    b->port[port] = (bough_port_def){.name = name, .marker = marker};
+    b->force.marker[marker] =
+        (bough_marker_def){b->scene->body[index].name, index, bough_transform_identity()};
+    b->port[port] = (bough_port_def){.marker = marker};
 }
 
 bough_status bough_build_bodies(bough_builder *b) {

@@ -22,7 +22,7 @@ static int set_up(void **state) {
         plate_row[i][0] = -180 + 0.1 * i;
         plate_row[i][1] = 2 * BOUGH_PI * sin(plate_row[i][0] * BOUGH_PI / 180);
     }
-    bough_polar_def def = {.name = "plate", .n = PLATE, .row = &plate_row[0][0]};
+    bough_polar_def def = {.n = PLATE, .row = &plate_row[0][0]};
     bough_polar_build(a->arena, &def, &a->plate);
     *state = a;
     return 0;

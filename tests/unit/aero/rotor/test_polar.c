@@ -74,7 +74,7 @@ TEST(any_angle_has_an_answer) {
 TEST(gap_is_bridged) {
     const double row[] = {-90, 1, 0, 0, 90, 3, 0, 0};
     check_arena(arena);
-    bough_polar polar = build(arena, &(bough_polar_def){.name = "gap", .n = 2, .row = row});
+    bough_polar polar = build(arena, &(bough_polar_def){.n = 2, .row = row});
     check_near(bough_polar_at(&polar, 180 * degree).lift, 2, 1e-12, 0);
     check_near(bough_polar_at(&polar, -135 * degree).lift, 1.5, 1e-12, 0);
     check_near(bough_polar_at(&polar, 45 * degree).lift, 2.5, 1e-12, 0);
@@ -112,7 +112,7 @@ TEST(smooth_polars_are_monotone_and_smooth) {
             row[4 * i] = -180 + 360. * i / (n - 1);
             row[4 * i + 1] = sin(row[4 * i] * degree);
         }
-        bough_polar polar = build(arena, &(bough_polar_def){.name = "sine", .n = n, .row = row});
+        bough_polar polar = build(arena, &(bough_polar_def){.n = n, .row = row});
         bough_polar_smoothen(arena, &polar);
         for (double a = -1; a < 1; a += 0.01) // away from the extrema, where monotony costs order
             error[fine] = fmax(error[fine], fabs(bough_polar_at(&polar, a).lift - sin(a)));
@@ -125,7 +125,7 @@ TEST(blends_are_exact) {
     check_arena(arena);
     const double gap[] = {-90, 1, 0.1, 0, 90, 3, 0, 0.2};
     bough_polar a = build(arena, nrel5mw_polars + 2), b = build(arena, nrel5mw_polars + 7), mixed;
-    bough_polar c = build(arena, &(bough_polar_def){.name = "gap", .n = 2, .row = gap});
+    bough_polar c = build(arena, &(bough_polar_def){.n = 2, .row = gap});
     for (int i = 0; i < 3; i++) {
         const bough_polar *other = i == 1 ? &c : &b;
         double share = i == 2 ? 1 : 0.3;
@@ -146,8 +146,8 @@ TEST(gaps_are_known) {
     static const double part[3][4] = {{-20, -1, 0, 0}, {0, 0, 0, 0}, {25, 1, 0, 0}};
     static const double shifted[3][4] = {{-30, -1, 0, 0}, {0, 0, 0, 0}, {15, 1, 0, 0}};
     check_arena(arena);
-    bough_polar a = build(arena, &(bough_polar_def){.name = "a", .n = 3, .row = &part[0][0]});
-    bough_polar b = build(arena, &(bough_polar_def){.name = "b", .n = 3, .row = &shifted[0][0]});
+    bough_polar a = build(arena, &(bough_polar_def){.n = 3, .row = &part[0][0]});
+    bough_polar b = build(arena, &(bough_polar_def){.n = 3, .row = &shifted[0][0]});
     bough_polar whole = build(arena, nrel5mw_polars + 4), mixed;
     for (int k = -4; k <= 4; k++) {
         double turned = 2 * BOUGH_PI * k;

@@ -23,7 +23,7 @@ static const double plate_rows[4][4] = {{-180, 0, 0, 0},
 static int set_up(void **state) {
     foils *a = test_malloc(sizeof *a);
     a->arena = check_memory();
-    bough_polar_def plate = {.name = "plate", .n = 4, .row = &plate_rows[0][0]};
+    bough_polar_def plate = {.n = 4, .row = &plate_rows[0][0]};
     bough_polar_build(a->arena, &plate, &a->plate);
     for (int i = 0; i < 8; i++) {
         bough_polar_build(a->arena, nrel5mw_polars + i, a->polar + i);
@@ -178,7 +178,7 @@ TEST(indicial_lift_is_the_polars) {
     foils *a = *context;
     static const double k[] = {0.3, 0.7, 0.14, 0.53};
     const double chord = 2, speed = 40, step = 0.01 * degree;
-    bough_polar_def def = {.name = "plate", .n = 4, .row = &plate_rows[0][0], .indicial = k};
+    bough_polar_def def = {.n = 4, .row = &plate_rows[0][0], .indicial = k};
     bough_polar foil;
     bough_polar_build(a->arena, &def, &foil);
     bough_stall_state s = {0};

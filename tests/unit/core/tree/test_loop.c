@@ -333,7 +333,7 @@ TEST(windows_pass_the_singular_position) {
 
 // A hinge closed twice over, on the closures and off them.
 TEST(closed_trees_fulfil_the_contract) {
-    const bough_port_def port = {.name = "port", .marker = 1};
+    const bough_port_def port = {.marker = 1};
     const double input[6] = {1, 2, 3, -1, -2, 0.5};
     double y[MOST];
     for (int solver = BOUGH_IDA; solver <= BOUGH_RADAU5; solver += BOUGH_RADAU5) {

@@ -135,7 +135,7 @@ static fixture satellite(bough_joint_kind base, double rtol) {
     b[3].name = "hinge", b[3].kind = BOUGH_JOINT_REVOLUTE, b[3].axis = bough_v3(1, 0, 0.2);
     b[3].spring.stiffness = 3;
     bough_marker_def marker = {"end", 3, bough_transform_identity()};
-    bough_port_def port = {.name = "end", .root = {.mass = 0.1}};
+    bough_port_def port = {.root = {.mass = 0.1}};
     bough_tree_def def = {
         .n_bodies = 4, .bodies = b, .n_markers = 1, .markers = &marker, .n_ports = 1, .ports = &port};
     if (base == BOUGH_JOINT_FIXED) def.gravity = bough_v3(0, 3, -9.81);

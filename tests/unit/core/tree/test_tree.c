@@ -291,8 +291,7 @@ TEST(root_inertia_is_felt_as_a_welded_body) {
     bough_body_def b[2] = {random_body(&seed, "hub", BOUGH_GROUND, BOUGH_JOINT_FREE),
                            random_body(&seed, "root", 0, BOUGH_JOINT_FIXED)};
     bough_marker_def marker = {"flange", 0, b[1].joint};
-    bough_port_def port = {.name = "blade",
-                           .root = bough_inertia_of(b[1].mass, b[1].mass_centre, b[1].inertia)};
+    bough_port_def port = {.root = bough_inertia_of(b[1].mass, b[1].mass_centre, b[1].inertia)};
     bough_tree_def welded = {.gravity = down_z, .n_bodies = 2, .bodies = b};
     bough_tree_def ported = {.gravity = down_z,
                              .n_bodies = 1,
@@ -313,7 +312,7 @@ TEST(ground_fixed_tree_has_no_states) {
     b.name = "base", b.joint.position = bough_v3(1, 2, 3);
     b.joint.rotation = turned(0, BOUGH_PI / 2, 0); // x to −z
     bough_marker_def marker = {"clamp", 0, bough_transform_identity()};
-    bough_port_def port = {.name = "rod", .root = {.mass = 1}};
+    bough_port_def port = {.root = {.mass = 1}};
     bough_tree_def def = {.gravity = down_z,
                           .n_bodies = 1,
                           .bodies = &b,

@@ -44,8 +44,8 @@ static bough_status create(fixture *f, bough_joint_kind kind) {
     bodies[END].coordinates[3] = 1;
     const bough_marker_def marker = {"root", WELDED, bough_transform_identity()};
     const bough_inertia vertex = {0.7, {0.1, 0, -0.2}, {{0.3, 0, 0}, {0, 0.4, 0}, {0, 0, 0.5}}};
-    const bough_port_def port = {.name = "root", .root = vertex};
-    const bough_end_def end = {"end of a rod", END, vertex};
+    const bough_port_def port = {.root = vertex};
+    const bough_end_def end = {END, vertex};
     const bough_tree_def def = {.gravity = {1, -2, -9},
                                 .n_bodies = BODIES,
                                 .bodies = bodies,

@@ -85,7 +85,7 @@ static fixture everything(void) {
     const bough_schedule always = {.start = 0};
     const bough_applied_def applied[] = {{0, {{1, -2, 3}, {0.4, 0.5, -0.6}}, true, always},
                                          {2, {{2, 1, -1}, {-0.4, 0.3, 0.6}}, false, always}};
-    const bough_end_def ends[] = {{"end", 7, {.mass = 0.3}}};
+    const bough_end_def ends[] = {{7, {.mass = 0.3}}};
     bough_tree_def def = {.gravity = {1, -2, -9},
                           .n_bodies = 10,
                           .bodies = bodies,
