@@ -109,7 +109,7 @@ BOUGH_INLINE void eliminate_residual(const bough_rod_model *m, const bough_rod_t
     int n = m->n, s = m->stride;
     const double *restrict kept = k->vertex, *restrict turn = kept + KEPT_TURN * s;
     bough_vec3 g = bough_scale(k->gamma, k->omega);
-    double gamma = k->gamma, gg = 1 / (1 + bough_dot(g, g));
+    double gamma = k->gamma;
 #pragma omp simd
     for (int v = from; v < from + count; v++) {
         bough_vec3 rx = lane_load(x, n, v - 1), rp = lane_load(x + 4 * n, n, v - 1);
@@ -122,8 +122,7 @@ BOUGH_INLINE void eliminate_residual(const bough_rod_model *m, const bough_rod_t
         bough_vec3 slip =
             bough_sub(lane_load(kept + KEPT_W * s, s, v), lane_load(kept + KEPT_OMEGA * s, s, v));
         rho = bough_axpy(gamma * scalar * kept[KEPT_SCALE * s + v], slip, rho);
-        bough_vec3 shift = bough_axpy(bough_dot(g, rx), g, bough_sub(rx, bough_cross(g, rx)));
-        lane_store(q, s, v, bough_scale(gg, shift));
+        lane_store(q, s, v, solve_cross(g, rx));
         for (int i = 0; i < 3; i++) {
             q[(3 + i) * s + v] = turn[3 * i * s + v] * rho.x + turn[(3 * i + 1) * s + v] * rho.y +
                                  turn[(3 * i + 2) * s + v] * rho.z;
@@ -214,15 +213,14 @@ BOUGH_INLINE void recover(const bough_rod_model *m, const bough_rod_tangent *k, 
     const double *restrict velocity = q + WORK_VELOCITY * s;
     const double *restrict kept = k->vertex, *restrict turn = kept + KEPT_TURN * s;
     bough_vec3 g = bough_scale(k->gamma, k->omega);
-    double gamma = k->gamma, gg = 1 / (1 + bough_dot(g, g));
+    double gamma = k->gamma;
 #pragma omp simd
     for (int v = from; v < from + count; v++) {
         int i = v - 1;
         bough_vec3 du = lane_load(velocity, s, v), rate = lane_load(velocity + 3 * s, s, v);
         bough_vec3 dw = bough_scale(gamma, rate);
-        bough_vec3 gu = bough_scale(gamma, du);
-        bough_vec3 shift = bough_axpy(bough_dot(g, gu), g, bough_sub(gu, bough_cross(g, gu)));
-        lane_store(x, n, i, bough_axpy(gg, shift, lane_load(q, s, v)));
+        bough_vec3 shift = solve_cross(g, bough_scale(gamma, du));
+        lane_store(x, n, i, bough_add(lane_load(q, s, v), shift));
         bough_vec3 phi = {turn[v] * dw.x + turn[s + v] * dw.y + turn[2 * s + v] * dw.z,
                           turn[3 * s + v] * dw.x + turn[4 * s + v] * dw.y + turn[5 * s + v] * dw.z,
                           turn[6 * s + v] * dw.x + turn[7 * s + v] * dw.y + turn[8 * s + v] * dw.z};
