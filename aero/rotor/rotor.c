@@ -47,10 +47,6 @@ void bough_rotor_survey(const bough_rotor *rotor, const bough_rotor_motion *moti
 
 // -- the kernels of the rotor's level --------------------------------------------------------------
 
-BOUGH_DECLARE_LEVELS(bough_rotor_approach);
-BOUGH_DECLARE_LEVELS(bough_rotor_induce);
-BOUGH_DECLARE_LEVELS(bough_rotor_load);
-
 void bough_rotor_approach(const bough_rotor *rotor, const bough_rotor_motion *motion, int blade,
                           bough_rotor_data *data) {
     BOUGH_OF_LEVEL(bough_rotor_approach, rotor->level)(rotor, motion, blade, data);

@@ -81,8 +81,7 @@ static void take_stations(bough_arena *arena, int stride, station_rows *rows) {
     bough_arena_each(arena, n, &rows->weight, &rows->bow, &rows->chord, &rows->tip_factor, &rows->hub_factor,
                      &rows->free);
     rows->section = bough_arena_doubles(arena, 9 * n);
-    rows->centre = bough_arena_doubles(arena, 3 * n);
-    rows->ends = bough_arena_doubles(arena, 3 * n);
+    bough_arena_each(arena, 3 * n, &rows->centre, &rows->ends);
 }
 
 // Padding repeats the last station.
@@ -241,8 +240,7 @@ static void take_rows(bough_arena *arena, const bough_rotor *rotor, blade_rows *
                      &rows->static_slope);
     rows->load = bough_arena_doubles(arena, LOAD * n);
     rows->slope = bough_arena_doubles(arena, SLOPE * n);
-    rows->rotation = bough_arena_doubles(arena, 3 * (size_t)rotor->n_vertex);
-    rows->bend = bough_arena_doubles(arena, 3 * (size_t)rotor->n_vertex);
+    bough_arena_each(arena, 3 * (size_t)rotor->n_vertex, &rows->rotation, &rows->bend);
     rows->place = rows->results = bough_arena_doubles(arena, RESULTS * n);
     double **const reported[RESULTS - 3] = {
         &rows->radius,     &rows->twist,  &rows->inflow_x, &rows->inflow_y, &rows->axial,
@@ -263,8 +261,7 @@ void bough_rotor_data_build(bough_arena *arena, const bough_rotor *rotor, bough_
     s->blade = bough_arena_take(arena, n_blade * sizeof *s->blade);
     s->wind = bough_arena_take(arena, n_blade * sizeof *s->wind);
     s->velocity = bough_arena_take(arena, n_blade * sizeof *s->velocity);
-    s->thrust = bough_arena_doubles(arena, n_blade);
-    s->torque = bough_arena_doubles(arena, n_blade);
+    bough_arena_each(arena, n_blade, &s->thrust, &s->torque);
     for (int b = 0; b < rotor->n_blade; b++) take_rows(arena, rotor, s->blade + b);
     take_memory(arena, rotor, &data->memory);
 }

@@ -1,8 +1,6 @@
 // What the sections are loaded by, and how that follows their motion.
 #include "aero/rotor/rotor_model.h"
 
-BOUGH_DECLARE_LEVELS(bough_rotor_load);
-
 // theory (84), Pitt and Peters: the wake leans, and induction is larger on the leeward half of the disk.
 // D. M. Pitt, D. A. Peters, Vertica 5 (1981), with the wake angle χ = (1 + 0.6 a) χ₀; faded by
 // the loss factor. `fraction` is the position on the radius, `leeward` the radial direction's

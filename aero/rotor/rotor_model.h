@@ -7,6 +7,10 @@
 #include "core/base/level.h"
 #include "core/base/rotation.h"
 
+BOUGH_DECLARE_LEVELS(bough_rotor_approach);
+BOUGH_DECLARE_LEVELS(bough_rotor_induce);
+BOUGH_DECLARE_LEVELS(bough_rotor_load);
+
 // Stations of one blade, padded to `stride` by copies of the last; a 3×3 matrix by its columns.
 typedef struct station_rows {
     const bough_polar **polar; // (stride)

@@ -165,8 +165,7 @@ static void fill_pair(const search *s, int k, double *x, double *y, bough_eigen_
 
 static void take_shapes(bough_arena *arena, int n, bough_eigen_pair *pair, int count) {
     for (int i = 0; i < count; i++) {
-        pair[i].shape_real = bough_arena_doubles(arena, (size_t)n);
-        pair[i].shape_imag = bough_arena_doubles(arena, (size_t)n);
+        bough_arena_each(arena, (size_t)n, &pair[i].shape_real, &pair[i].shape_imag);
     }
 }
 

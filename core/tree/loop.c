@@ -56,8 +56,7 @@ bough_loops *bough_loops_create(bough_arena *arena, const bough_tree *tree) {
     l->matrix = bough_arena_doubles(arena, m * m);
     bough_arena_each(arena, m, &l->value, &l->scale, &l->multiplier);
     l->work = bough_arena_doubles(arena, 8 * m);
-    l->correction = bough_arena_doubles(arena, n);
-    l->speed = bough_arena_doubles(arena, n);
+    bough_arena_each(arena, n, &l->correction, &l->speed);
     return l;
 }
 

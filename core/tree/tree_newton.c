@@ -474,9 +474,8 @@ bough_tree_newton *bough_tree_newton_create(bough_arena *arena, const bough_tree
     bough_tree_newton *w = bough_arena_take(arena, sizeof *w);
     w->tree = tree;
     w->node = bough_arena_take(arena, (size_t)tree->n_links * sizeof *w->node);
-    w->state = bough_arena_doubles(arena, n);
+    bough_arena_each(arena, n, &w->state, &w->keep);
     w->zero = bough_arena_doubles(arena, n + BOUGH_JOINT_COORDINATES);
-    w->keep = bough_arena_doubles(arena, n);
     w->ends = bough_arena_take(arena, 2 * elements * sizeof *w->ends);
     w->block = bough_arena_doubles(arena, BLOCK * elements);
     list_ends(w);

@@ -245,15 +245,13 @@ static void *factors(void *self, bough_arena *arena) {
     const tree_system *s = self;
     size_t n = (size_t)s->n;
     tree_factors *k = bough_arena_take(arena, sizeof *k);
-    k->state = bough_arena_doubles(arena, n);
+    bough_arena_each(arena, n, &k->state, &k->rate);
     k->input = bough_arena_doubles(arena, (size_t)bough_tree_n_inputs(s->tree));
-    k->rate = bough_arena_doubles(arena, n);
     if (s->tree->n_closures == 0) {
         k->newton = bough_tree_newton_create(arena, s->tree);
         return k;
     }
-    k->jacobian = bough_arena_doubles(arena, n * n);
-    k->matrix = bough_arena_doubles(arena, n * n);
+    bough_arena_each(arena, n * n, &k->jacobian, &k->matrix);
     k->pivot = bough_arena_take(arena, n * sizeof(int));
     return k;
 }

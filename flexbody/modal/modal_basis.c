@@ -266,16 +266,14 @@ static void take_memory(bough_arena *arena, int m, bough_modal_piece *piece) {
     piece->m = m;
     piece->stride = bough_padded(m);
     size_t s = (size_t)piece->stride;
-    piece->square = bough_arena_doubles(arena, s);
-    piece->scale = bough_arena_doubles(arena, s);
+    bough_arena_each(arena, s, &piece->square, &piece->scale);
     piece->damping = bough_arena_doubles(arena, (size_t)m * s);
     piece->shape = bough_arena_doubles(arena, 6 * (size_t)piece->n * s);
 }
 
 static bool find_shapes(basis *b, bough_modal_options options, bool inner) {
     size_t most = (size_t)options.modes + 3 * RIGID + 1; // one more than can be kept, as work
-    b->vector = bough_arena_doubles(b->arena, most * (size_t)b->size);
-    b->product = bough_arena_doubles(b->arena, most * (size_t)b->size);
+    bough_arena_each(b->arena, most * (size_t)b->size, &b->vector, &b->product);
     return linearise(b) && add_modes(b, options.modes) && add_others(b, options.statics, inner);
 }
 

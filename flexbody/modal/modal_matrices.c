@@ -216,13 +216,10 @@ static void take_memory(bough_arena *arena, bough_arena *work, fields *f) {
     size_t s = (size_t)p->stride, matrix = (size_t)p->m * s, field = 6 * (size_t)p->n * s;
     p->rigid = bough_arena_doubles(arena, 6 * s);
     p->centrifugal = bough_arena_doubles(arena, BOUGH_MODAL_SQUARES * s);
-    p->rotating = bough_arena_doubles(arena, 3 * matrix);
-    p->gyroscopic = bough_arena_doubles(arena, 3 * matrix);
+    bough_arena_each(arena, 3 * matrix, &p->rotating, &p->gyroscopic);
     p->field = bough_arena_doubles(arena, BOUGH_MODAL_FIELDS * matrix);
     f->vertex = bough_arena_take(work, (size_t)p->n * sizeof *f->vertex);
-    f->shape = bough_arena_doubles(work, field);
-    f->product = bough_arena_doubles(work, field);
-    for (int a = 0; a < 3; a++) f->rest[a] = bough_arena_doubles(work, field);
+    bough_arena_each(work, field, &f->shape, &f->product, &f->rest[0], &f->rest[1], &f->rest[2]);
 }
 
 static void set_all(fields *f, bool stiffening) {

@@ -9,10 +9,8 @@
 static void take_arrays(bough_rod_model *m, bough_arena *arena) {
     size_t s = (size_t)m->stride;
     bough_arena_each(arena, s, &m->length, &m->inverse_length, &m->mass);
-    m->strain0 = bough_arena_doubles(arena, 6 * s);
-    m->inertia = bough_arena_doubles(arena, 6 * s);
-    m->bend0 = bough_arena_doubles(arena, 3 * s);
-    m->moment = bough_arena_doubles(arena, 3 * s);
+    bough_arena_each(arena, 6 * s, &m->strain0, &m->inertia);
+    bough_arena_each(arena, 3 * s, &m->bend0, &m->moment);
     bough_arena_each(arena, 21 * s, &m->stiffness, &m->damping, &m->inverse_mass);
     m->line = bough_arena_doubles(arena, 72 * s);
     m->gradient = bough_arena_doubles(arena, 35 * s);

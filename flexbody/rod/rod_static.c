@@ -123,8 +123,7 @@ void bough_rod_static_init(bough_rod_static *work, bough_arena *arena, const bou
     bough_rod_scratch_init(&work->scratch, arena, m);
     bough_rod_tangent_init(&work->tangent, arena, m);
     bough_rod_loads_init(&work->scaled, arena, m);
-    work->rate = bough_arena_doubles(arena, states);
-    work->trial = bough_arena_doubles(arena, states);
+    bough_arena_each(arena, states, &work->rate, &work->trial);
     work->step = bough_arena_doubles(arena, (size_t)W8 * m->n);
     work->force = bough_arena_doubles(arena, (size_t)6 * m->n);
     work->band = bough_arena_doubles(arena, (size_t)BAND_ROWS * 6 * m->n);

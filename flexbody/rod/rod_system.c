@@ -322,8 +322,7 @@ static void project(void *self, const double *state, double *x) {
 
 static void take_memory(bough_rod_body *b, bough_arena *arena) {
     size_t states = (size_t)BOUGH_ROD_STATES * b->model->n;
-    b->initial = bough_arena_doubles(arena, states);
-    b->scale = bough_arena_doubles(arena, states);
+    bough_arena_each(arena, states, &b->initial, &b->scale);
     bough_rod_loads_init(&b->loads, arena, b->model);
     bough_rod_scratch_init(&b->scratch, arena, b->model);
 }
