@@ -67,8 +67,7 @@ void bough_tree_steer(bough_tree *tree, int body, double t, double span, bough_m
 void bough_tree_steer_load(bough_tree *tree, int load, double t, double span, double from, double to) {
     bough_joint_load_def *l = &tree->loads[load];
     // a line between two rows
-    double *times = (double *)l->schedule.times,
-           *values = (double *)l->schedule.values; // the tree's own copies
+    double *times = (double *)l->schedule.times, *values = (double *)l->schedule.values;
     times[0] = t;
     times[1] = t + span;
     values[0] = from;

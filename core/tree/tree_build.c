@@ -171,12 +171,7 @@ static void set_initial(bough_tree *tree, const bough_tree_def *def) {
     bough_tree_prescribe(tree, 0, tree->initial);
 }
 
-static void copy_table(bough_arena *arena, bough_schedule *s) {
-    s->times = bough_arena_copy(arena, s->times, (size_t)s->n * sizeof(double));
-    s->values = bough_arena_copy(arena, s->values, (size_t)s->n * sizeof(double));
-}
-
-// Forces as in the definition, with copies of their tables.
+// Forces as in the definition.
 static void copy_forces(bough_arena *arena, const bough_tree_def *def, bough_tree *tree) {
     tree->gravity = def->gravity;
     tree->n_loads = def->n_loads;
@@ -187,8 +182,6 @@ static void copy_forces(bough_arena *arena, const bough_tree_def *def, bough_tre
     tree->springs = bough_arena_copy(arena, def->springs, (size_t)def->n_springs * sizeof *def->springs);
     tree->bushings = bough_arena_copy(arena, def->bushings, (size_t)def->n_bushings * sizeof *def->bushings);
     tree->applied = bough_arena_copy(arena, def->applied, (size_t)def->n_applied * sizeof *def->applied);
-    for (int k = 0; k < def->n_loads; k++) copy_table(arena, &tree->loads[k].schedule);
-    for (int k = 0; k < def->n_applied; k++) copy_table(arena, &tree->applied[k].schedule);
 }
 
 static void take_frames(bough_arena *arena, const bough_tree_def *def, bough_tree *tree) {

@@ -29,7 +29,8 @@ static void add_motion(bough_builder *b, const bough_scene_motion *motion) {
 
 // The last of the loads; its two rows are set sample by sample.
 static void add_generator(bough_builder *b) {
-    static const double times[2] = {0, 1}, values[2] = {0, 0};
+    double *times = bough_arena_doubles(b->arena, 2), *values = bough_arena_doubles(b->arena, 2);
+    times[1] = 1;
     b->load[b->n_load++] =
         (bough_joint_load_def){b->scene->turbine.rotor, 1, {.n = 2, .times = times, .values = values}};
 }
@@ -304,7 +305,7 @@ bough_status bough_simulation_build_on(bough_arena *arena, const bough_scene *sc
     if (bough_is_ok(&status) && scene->control.node != NULL) {
         status = bough_control_link_build(arena, b.s, b.n_load - 1, &b.s->control);
     }
-    if (bough_is_ok(&status)) status = bough_input_link_build(arena, b.s);
+    if (bough_is_ok(&status)) bough_input_link_build(arena, b.s);
     if (bough_is_ok(&status)) status = build_master(&b);
     if (bough_is_ok(&status) && b.s->control != NULL) {
         status = bough_control_link_watch(arena, b.s->control);

@@ -2,83 +2,54 @@
 
 #include "apps/bough/model/aero_link.h"
 
-#include <string.h>
-
 struct bough_input_link {
     bough_simulation *simulation;
-    int n;
-    double **table; // (n) of a load: the two values of its table; NULL of others
-    double *memory; // (5 n): values, values handed on, point reached of each motion
+    double *value, *handed;    // (n_input) now, and handed on
+    bough_motion_point *point; // (n_input) that a motion has reached
 };
 
-static bough_motion_point *points(bough_input_link *l) {
-    return (bough_motion_point *)(void *)(l->memory + 2 * l->n);
-}
-
-static double *writable(const double *values) { return (double *)values; }
-
-// The two values of a load's table where the model has them: loads on rods read the scene's.
-static double *table_of(const bough_simulation *s, int index) {
-    const bough_scene *scene = s->scene;
-    const bough_scene_load *load = &scene->load[index];
-    int on_joints = 0, on_bodies = 0;
-    for (int k = 0; k < index; k++) {
-        const bough_scene_load *x = &scene->load[k];
-        if (x->body_name == NULL) {
-            on_joints++;
-        } else if (scene->body[x->body].fidelity == BOUGH_SCENE_RIGID) {
-            on_bodies++;
-        }
-    }
-    if (load->body_name == NULL) return writable(s->tree->loads[on_joints].schedule.values);
-    if (scene->body[load->body].fidelity == BOUGH_SCENE_RIGID) {
-        return writable(s->tree->applied[on_bodies].schedule.values);
-    }
-    return load->values;
-}
-
-bough_status bough_input_link_build(bough_arena *arena, bough_simulation *s) {
-    int n = s->scene->n_input;
-    if (n == 0) return bough_ok();
-    bough_input_link *l = bough_arena_take(arena, sizeof *l);
-    *l = (bough_input_link){s, n, bough_arena_take(arena, (size_t)n * sizeof *l->table),
-                            bough_arena_doubles(arena, 5 * (size_t)n)};
-    for (int k = 0; k < n; k++) {
+void bough_input_link_build(bough_arena *arena, bough_simulation *s) {
+    size_t n = (size_t)s->scene->n_input;
+    if (n == 0) return;
+    bough_input_link *l = s->inputs = bough_arena_take(arena, sizeof *l);
+    l->simulation = s;
+    l->point = bough_arena_take(arena, n * sizeof *l->point);
+    bough_arena_each(arena, n, &l->value, &l->handed);
+    for (size_t k = 0; k < n; k++) {
         const bough_scene_input *input = &s->scene->input[k];
-        l->memory[k] = l->memory[n + k] = input->initial;
-        if (input->kind == BOUGH_INPUT_LOAD) l->table[k] = table_of(s, input->index);
-        if (input->kind == BOUGH_INPUT_MOTION) points(l)[k] = bough_simulation_joint_point(s, input->index);
+        l->value[k] = l->handed[k] = input->initial;
+        bough_input_link_put(l, (int)k, input->initial);
+        if (input->kind == BOUGH_INPUT_MOTION) l->point[k] = bough_simulation_joint_point(s, input->index);
     }
-    s->inputs = l;
-    return bough_ok();
 }
 
-double *bough_input_link_values(bough_input_link *link) { return link->memory; }
+double *bough_input_link_values(bough_input_link *link) { return link->value; }
 
-bool bough_input_link_put(bough_input_link *link, int k, double value) {
-    if (link->table[k] == NULL) return false;
-    link->table[k][0] = link->table[k][1] = value;
-    return true;
+// Tree and rods read the table of the scene.
+void bough_input_link_put(const bough_input_link *link, int k, double value) {
+    const bough_scene *scene = link->simulation->scene;
+    if (scene->input[k].kind != BOUGH_INPUT_LOAD) return;
+    double *table = scene->load[scene->input[k].index].values;
+    table[0] = table[1] = value;
 }
 
 static void move_joint(bough_input_link *l, int k, double t, double t_next) {
-    bough_motion_point from = points(l)[k], to = {l->memory[k], 0, 0};
+    bough_motion_point from = l->point[k], to = {l->value[k], 0, 0};
     to.v = (to.q - from.q) / (t_next - t);
     bough_tree_steer(l->simulation->tree, l->simulation->scene->input[k].index, t, t_next - t, from, to);
-    points(l)[k] = to;
+    l->point[k] = to;
 }
 
 static bough_status sample(void *self, double t, double t_next, bool *jumped) {
     bough_input_link *l = self;
     *jumped = false;
-    for (int k = 0; k < l->n; k++) {
+    for (int k = 0; k < l->simulation->scene->n_input; k++) {
         bough_scene_input_kind kind = l->simulation->scene->input[k].kind;
-        double value = l->memory[k], *handed = &l->memory[l->n + k];
-        bool changed = value != *handed;
-        *handed = value;
-        if (kind == BOUGH_INPUT_LOAD) l->table[k][0] = l->table[k][1] = value;
+        bool changed = l->value[k] != l->handed[k];
+        l->handed[k] = l->value[k];
+        bough_input_link_put(l, k, l->value[k]);
         if (kind == BOUGH_INPUT_MOTION) move_joint(l, k, t, t_next);
-        if (kind == BOUGH_INPUT_WIND && changed) bough_aero_link_set_wind(l->simulation->aero, value);
+        if (kind == BOUGH_INPUT_WIND && changed) bough_aero_link_set_wind(l->simulation->aero, l->value[k]);
         bool at_once = kind == BOUGH_INPUT_LOAD || kind == BOUGH_INPUT_WIND;
         *jumped = *jumped || (changed && at_once);
     }
@@ -89,13 +60,14 @@ bough_sampled_load bough_input_link_load(bough_input_link *link, double macro_st
     return (bough_sampled_load){.period = macro_step, .self = link, .sample = sample};
 }
 
-void bough_input_link_snapshot(bough_input_link *link, bough_snapshot *s) {
-    bough_snapshot_doubles(s, link->memory, 5 * link->n);
-    if (s->move != BOUGH_SNAPSHOT_RESTORE) return;
-    for (int k = 0; k < link->n; k++) {
-        double value = link->memory[link->n + k];
-        if (link->table[k] != NULL) link->table[k][0] = link->table[k][1] = value;
-        if (link->simulation->scene->input[k].kind == BOUGH_INPUT_WIND)
-            bough_aero_link_set_wind(link->simulation->aero, value);
+void bough_input_link_snapshot(bough_input_link *l, bough_snapshot *s) {
+    int n = l->simulation->scene->n_input;
+    bough_snapshot_doubles(s, l->value, n);
+    bough_snapshot_doubles(s, l->handed, n);
+    bough_snapshot_take(s, l->point, (size_t)n * sizeof *l->point);
+    for (int k = 0; k < n && s->move == BOUGH_SNAPSHOT_RESTORE; k++) {
+        bough_input_link_put(l, k, l->handed[k]);
+        if (l->simulation->scene->input[k].kind == BOUGH_INPUT_WIND)
+            bough_aero_link_set_wind(l->simulation->aero, l->handed[k]);
     }
 }

@@ -8,13 +8,13 @@
 typedef struct bough_input_link bough_input_link;
 
 // Needs the built tree and rods; s->inputs stays NULL when the scene has none.
-bough_status bough_input_link_build(bough_arena *arena, bough_simulation *s);
+void bough_input_link_build(bough_arena *arena, bough_simulation *s);
 
 // Values now (scene->n_input), SI; to be written between steps.
 double *bough_input_link_values(bough_input_link *link);
 
-// Puts a load that is input k at a value at once; false of other inputs.
-bool bough_input_link_put(bough_input_link *link, int k, double value);
+// Puts input k at a value at once if it is a load; else does nothing.
+void bough_input_link_put(const bough_input_link *link, int k, double value);
 
 // For the macro loop, before all other loads.
 bough_sampled_load bough_input_link_load(bough_input_link *link, double macro_step);
