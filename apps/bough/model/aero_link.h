@@ -138,8 +138,7 @@ typedef struct bough_drag_link bough_drag_link;
 bool bough_drag_link_wanted(const bough_scene *scene);
 
 // After the aerodynamics. `hub_marker` of the tree, on the rotor; −1: no drag of the hub.
-bough_status bough_drag_link_build(bough_arena *arena, bough_simulation *simulation, int hub_marker,
-                                   bough_drag_link **link);
+void bough_drag_link_build(bough_arena *arena, bough_simulation *simulation, int hub_marker);
 
 // The sampled load for the master's loop.
 bough_sampled_load bough_drag_link_load(bough_drag_link *link);

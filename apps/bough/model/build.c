@@ -31,7 +31,7 @@ static void add_motion(bough_builder *b, const bough_scene_motion *motion) {
 static void add_generator(bough_builder *b) {
     double *times = bough_arena_doubles(b->arena, 2), *values = bough_arena_doubles(b->arena, 2);
     times[1] = 1;
-    b->load[b->n_load++] =
+    b->load[b->tree.n_loads++] =
         (bough_joint_load_def){b->scene->turbine.rotor, 1, {.n = 2, .times = times, .values = values}};
 }
 
@@ -46,8 +46,8 @@ static void set_loads(bough_builder *b) {
         int corners = load->input == NULL ? load->n_time : 0;
         for (int i = 0; i < corners; i++) b->event[b->n_event++] = load->times[i];
         if (load->body_name != NULL) continue;
-        b->load[b->n_load++] = (bough_joint_load_def){load->joint, load->n_time > 0 ? 1 : load->amount,
-                                                      bough_scene_load_schedule(load)};
+        b->load[b->tree.n_loads++] = (bough_joint_load_def){load->joint, load->n_time > 0 ? 1 : load->amount,
+                                                            bough_scene_load_schedule(load)};
     }
     if (b->scene->aero.node != NULL) add_ramp(b, b->scene->aero.ramp);
     if (b->scene->control.node != NULL) add_generator(b);
@@ -91,37 +91,20 @@ static bough_scheme_options scheme_options(const bough_scene *scene) {
 }
 
 static bough_status build_tree(bough_builder *b) {
-    b->force.n_marker = b->s->n_beam + b->s->n_fmu;
-    bough_force_link_fill(b->scene, &b->force);
-    b->s->first_marker = b->force.first_own;
     const bough_scene *scene = b->scene;
     bough_simulation *s = b->s;
-    bough_tree_def def = {.gravity = bough_v3(scene->gravity[0], scene->gravity[1], scene->gravity[2]),
-                          .n_bodies = scene->n_body + s->n_end,
-                          .n_markers = b->force.n_marker,
-                          .n_ports = s->n_rod + s->n_fmu,
-                          .n_loads = b->n_load,
-                          .bodies = b->body,
-                          .markers = b->force.marker,
-                          .ports = b->port,
-                          .loads = b->load,
-                          .n_springs = scene->n_spring,
-                          .springs = b->force.spring,
-                          .n_bushings = scene->n_bushing,
-                          .bushings = b->force.bushing,
-                          .n_applied = b->force.n_applied,
-                          .applied = b->force.applied,
-                          .n_ends = s->n_end,
-                          .ends = b->end,
-                          .n_closures = scene->n_closure,
-                          .closures = b->force.closure,
-                          .closure_time = scene->simulation.macro_step};
-    BOUGH_TRY(bough_tree_create(b->arena, &def, &s->tree));
+    bough_build_forces(b);
+    b->tree.gravity = bough_v3(scene->gravity[0], scene->gravity[1], scene->gravity[2]);
+    b->tree.n_bodies = scene->n_body + s->n_end;
+    b->tree.n_ports = s->n_rod + s->n_fmu;
+    b->tree.n_ends = s->n_end;
+    b->tree.closure_time = scene->simulation.macro_step;
+    BOUGH_TRY(bough_tree_create(b->arena, &b->tree, &s->tree));
     s->view = bough_tree_data_create(b->arena, s->tree);
     s->acceleration = bough_arena_doubles(b->arena, s->tree->n_v);
     if (scene->n_bushing > 0) {
         bough_tree_kinematics(s->tree, s->tree->initial, s->view);
-        bough_force_link_rest(scene, s->view, s->tree);
+        bough_build_rest(s);
     }
     bough_integrator_options master = solver_options(&scene->simulation.master);
     master.most_steps = MOST_TREE_STEPS;
@@ -151,47 +134,32 @@ static bough_status build_rods(bough_builder *b) {
     return bough_ok();
 }
 
-// A motion to a rod and the wrench that answers it.
-static void add_port(bough_builder *b, int rod, const bough_connection *motion,
-                     const bough_connection *wrench) {
-    bough_connection *to = &b->connection[b->n_connection], *back = to + 1;
-    b->n_connection += 2;
-    *to = *motion;
-    *back = *wrench;
-    to->to = back->from = rod + 1;
-    to->kinematic = true;
+static void connect_one(bough_builder *b, bough_connection connection) {
+    b->connection[b->n_connection++] = connection;
 }
 
+// Of a motion and the wrench that answers it, at the end of a rod that carries bodies.
 static void connect_end(bough_builder *b, const bough_beam *beam) {
     const bough_tree *tree = b->s->tree;
-    int outputs = BOUGH_PORT_OUTPUTS * tree->n_ports, inputs = BOUGH_PORT_INPUTS * tree->n_ports;
-    bough_connection motion = {.from_offset = outputs + BOUGH_END_OUTPUTS * beam->end,
-                               .to_offset = BOUGH_ROD_INPUTS,
-                               .count = BOUGH_ROD_END_INPUTS};
-    bough_connection wrench = {.from_offset = BOUGH_ROD_OUTPUTS,
-                               .to_offset = inputs + BOUGH_END_INPUTS * beam->end,
-                               .count = BOUGH_ROD_END_OUTPUTS};
-    add_port(b, beam->port, &motion, &wrench);
+    int motion = BOUGH_PORT_OUTPUTS * tree->n_ports + BOUGH_END_OUTPUTS * beam->end;
+    int wrench = BOUGH_PORT_INPUTS * tree->n_ports + BOUGH_END_INPUTS * beam->end, rod = beam->port + 1;
+    connect_one(b, (bough_connection){0, motion, rod, BOUGH_ROD_INPUTS, BOUGH_ROD_END_INPUTS, true});
+    connect_one(b, (bough_connection){rod, BOUGH_ROD_OUTPUTS, 0, wrench, BOUGH_ROD_END_OUTPUTS, false});
 }
 
 // The n-th port with axes.
 static void connect_axes(bough_builder *b, const bough_beam *beam, int n) {
     const bough_tree *tree = b->s->tree;
-    b->connection[b->n_connection++] =
-        (bough_connection){.from_offset = BOUGH_PORT_OUTPUTS * tree->n_ports +
-                                          BOUGH_END_OUTPUTS * tree->n_ends + BOUGH_GROUND_AXES * n,
-                           .to = beam->port + 1,
-                           .to_offset = b->s->rod[beam->port].system.n_input - BOUGH_GROUND_AXES,
-                           .count = BOUGH_GROUND_AXES,
-                           .kinematic = true};
+    int from = BOUGH_PORT_OUTPUTS * tree->n_ports + BOUGH_END_OUTPUTS * tree->n_ends + BOUGH_GROUND_AXES * n;
+    int to = b->s->rod[beam->port].system.n_input - BOUGH_GROUND_AXES;
+    connect_one(b, (bough_connection){0, from, beam->port + 1, to, BOUGH_GROUND_AXES, true});
 }
 
 // Port k, of a rod or an FMU.
 static void connect_root(bough_builder *b, int k) {
     b->member[k + 1] = (bough_assembly_member){&b->s->rod[k], 1};
-    bough_connection motion = {.from_offset = BOUGH_PORT_OUTPUTS * k, .count = BOUGH_PORT_OUTPUTS};
-    bough_connection wrench = {.to_offset = BOUGH_PORT_INPUTS * k, .count = BOUGH_PORT_INPUTS};
-    add_port(b, k, &motion, &wrench);
+    connect_one(b, (bough_connection){0, BOUGH_PORT_OUTPUTS * k, k + 1, 0, BOUGH_PORT_OUTPUTS, true});
+    connect_one(b, (bough_connection){k + 1, 0, 0, BOUGH_PORT_INPUTS * k, BOUGH_PORT_INPUTS, false});
 }
 
 static void connect(bough_builder *b) {
@@ -256,18 +224,21 @@ static bough_status build_master(bough_builder *b) {
 // -- whole ----------------------------------------------------------------------------------------
 
 static void take_arrays(bough_builder *b) {
-    size_t bodies = (size_t)b->scene->n_body, loads = (size_t)b->scene->n_load;
+    const bough_scene *scene = b->scene;
+    size_t bodies = (size_t)scene->n_body, loads = (size_t)scene->n_load;
+    size_t pairs = (size_t)scene->n_spring + (size_t)scene->n_bushing + (size_t)scene->n_closure;
+    size_t markers = bodies + 2 * pairs + loads + (size_t)scene->n_marker + 1;
     b->s = bough_arena_take(b->arena, sizeof *b->s);
-    b->body = bough_arena_take(b->arena, 2 * bodies * sizeof *b->body);
-    b->end = bough_arena_take(b->arena, bodies * sizeof *b->end);
-    bough_force_link_take(b->arena, b->scene, b->scene->n_body, &b->force);
-    b->port = bough_arena_take(b->arena, bodies * sizeof *b->port);
-    b->load = bough_arena_take(b->arena, (loads + 2) * sizeof *b->load);
+    b->tree.bodies = b->body = bough_arena_take(b->arena, 2 * bodies * sizeof *b->body);
+    b->tree.ends = b->end = bough_arena_take(b->arena, bodies * sizeof *b->end);
+    b->tree.markers = b->marker = bough_arena_take(b->arena, markers * sizeof *b->marker);
+    b->tree.ports = b->port = bough_arena_take(b->arena, bodies * sizeof *b->port);
+    b->tree.loads = b->load = bough_arena_take(b->arena, (loads + 2) * sizeof *b->load);
     b->member = bough_arena_take(b->arena, (bodies + 1) * sizeof *b->member);
     b->connection = bough_arena_take(b->arena, 5 * bodies * sizeof *b->connection);
-    b->event = bough_arena_doubles(b->arena, count_corners(b->scene));
+    b->event = bough_arena_doubles(b->arena, count_corners(scene));
     b->s->validity = bough_arena_take(b->arena, sizeof *b->s->validity);
-    b->s->scene = b->scene;
+    b->s->scene = scene;
     b->s->beam = bough_arena_take(b->arena, bodies * sizeof *b->s->beam);
     b->s->rod = bough_arena_take(b->arena, bodies * sizeof *b->s->rod);
 }
@@ -288,33 +259,25 @@ bough_status bough_simulation_build_on(bough_arena *arena, const bough_scene *sc
     bough_builder b = {.arena = arena, .scene = scene};
     take_arrays(&b);
     b.s->pool = pool;
-    bough_status status = bough_build_bodies(&b);
-    if (bough_is_ok(&status)) set_loads(&b);
-    if (bough_is_ok(&status)) status = build_tree(&b);
-    if (bough_is_ok(&status)) status = build_rods(&b);
-    if (bough_is_ok(&status)) connect(&b);
-    if (bough_is_ok(&status)) bough_simulation_update(b.s);
-    if (bough_is_ok(&status)) status = bough_load_link_build(arena, b.s);
-    if (bough_is_ok(&status)) status = bough_jump_link_build(arena, b.s);
-    if (bough_is_ok(&status) && scene->aero.node != NULL) {
-        status = bough_aero_link_build(arena, b.s, &b.s->aero);
-    }
-    if (bough_is_ok(&status) && bough_drag_link_wanted(scene)) {
-        status = bough_drag_link_build(arena, b.s, b.force.hub, &b.s->drag);
-    }
-    if (bough_is_ok(&status) && scene->control.node != NULL) {
-        status = bough_control_link_build(arena, b.s, b.n_load - 1, &b.s->control);
-    }
-    if (bough_is_ok(&status)) bough_input_link_build(arena, b.s);
-    if (bough_is_ok(&status)) status = build_master(&b);
-    if (bough_is_ok(&status) && b.s->control != NULL) {
-        status = bough_control_link_watch(arena, b.s->control);
-    }
-    if (!bough_is_ok(&status)) return status;
+    BOUGH_TRY(bough_build_bodies(&b));
+    set_loads(&b);
+    BOUGH_TRY(build_tree(&b));
+    BOUGH_TRY(build_rods(&b));
+    connect(&b);
+    bough_simulation_update(b.s);
+    bough_load_link_build(arena, b.s);
+    bough_jump_link_build(arena, b.s);
+    if (scene->aero.node != NULL) BOUGH_TRY(bough_aero_link_build(arena, b.s, &b.s->aero));
+    if (bough_drag_link_wanted(scene)) bough_drag_link_build(arena, b.s, b.hub);
+    if (scene->control.node != NULL)
+        BOUGH_TRY(bough_control_link_build(arena, b.s, b.tree.n_loads - 1, &b.s->control));
+    bough_input_link_build(arena, b.s);
+    BOUGH_TRY(build_master(&b));
+    if (b.s->control != NULL) BOUGH_TRY(bough_control_link_watch(arena, b.s->control));
     bough_simulation_update(b.s);
     bough_validity_start(b.s);
     *simulation = b.s;
-    return status;
+    return bough_ok();
 }
 
 // -- what the parts of a simulation remember, in order --------------------------------------------

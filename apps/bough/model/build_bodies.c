@@ -206,6 +206,11 @@ static bough_status add_end(bough_builder *b, bough_beam *beam, int index) {
     return bough_ok();
 }
 
+int bough_build_marker(bough_builder *b, const char *name, int body, bough_transform placement) {
+    b->marker[b->tree.n_markers] = (bough_marker_def){name, body, placement};
+    return b->tree.n_markers++;
+}
+
 static bool moves_under_ground_loads(const bough_scene *scene, int body) {
     for (int k = 0; k < scene->n_load; k++) {
         const bough_scene_load *load = &scene->load[k];
@@ -219,10 +224,10 @@ static bough_status add_beam(bough_builder *b, int index) {
     bough_simulation *s = b->s;
     bough_beam *beam = &s->beam[s->n_beam];
     beam->body = &b->scene->body[index];
-    beam->marker = s->n_beam;
     beam->port = beam->end = -1;
     BOUGH_TRY(discretise(b, beam));
-    b->force.marker[s->n_beam++] = (bough_marker_def){beam->body->name, index, bough_transform_identity()};
+    beam->marker = bough_build_marker(b, beam->body->name, index, bough_transform_identity());
+    s->n_beam++;
     if (beam->body->fidelity == BOUGH_SCENE_RIGID) return bough_ok();
     beam->port = s->n_rod;
     beam->vertex[0] = root_inertia(&beam->def);
@@ -233,10 +238,9 @@ static bough_status add_beam(bough_builder *b, int index) {
 
 // Its marker and port come after those of all beams.
 static void add_fmu(bough_builder *b, int index) {
-    int marker = b->s->n_beam + b->s->n_fmu, port = b->s->n_rod + b->s->n_fmu++;
-    b->force.marker[marker] =
-        (bough_marker_def){b->scene->body[index].name, index, bough_transform_identity()};
-    b->port[port] = (bough_port_def){.marker = marker};
+    const char *name = b->scene->body[index].name;
+    int marker = bough_build_marker(b, name, index, bough_transform_identity());
+    b->port[b->s->n_rod + b->s->n_fmu++] = (bough_port_def){.marker = marker};
 }
 
 bough_status bough_build_bodies(bough_builder *b) {

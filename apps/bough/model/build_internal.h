@@ -8,35 +8,10 @@
 #include "core/tree/tree.h"
 #include "cosim/member.h"
 
-// -- springs, bushings, closures, applied wrenches and recorded points (load_link.c) --------------
-
-// The markers of the tree and the elements between them. The first markers are those of the beams, which the
-// caller fills.
-typedef struct bough_force_link {
-    int n_marker;  // of the tree, those of the beams included
-    int first_own; // the first of those that the scene names
-    int hub;       // on which the hub's drag acts; −1: none
-    bough_marker_def *marker;
-    bough_spring_def *spring;
-    bough_bushing_def *bushing;
-    bough_closure_def *closure;
-    int n_applied;
-    bough_applied_def *applied;
-} bough_force_link;
-
-// Takes the memory, with room for so many markers of beams.
-void bough_force_link_take(bough_arena *arena, const bough_scene *scene, int n_beam, bough_force_link *link);
-
-// Fills everything, the markers from n_marker on.
-void bough_force_link_fill(const bough_scene *scene, bough_force_link *link);
-
-// Turns the second markers of the bushings so that nothing acts at the state of `data`.
-void bough_force_link_rest(const bough_scene *scene, const bough_tree_data *data, bough_tree *tree);
-
 // -- loads on rods, lumped to their vertices (load_link.c) ----------------------------------------
 
 // Needs the rods and the view of a built simulation.
-bough_status bough_load_link_build(bough_arena *arena, bough_simulation *s);
+void bough_load_link_build(bough_arena *arena, bough_simulation *s);
 
 // -- placements and axes of a scene as transforms and vectors (build_bodies.c) --------------------
 
@@ -83,13 +58,14 @@ typedef struct bough_builder {
     bough_arena *arena;
     const bough_scene *scene;
     bough_simulation *s;
-    bough_body_def *body;       // (n_body + n_end): the tree's body i is the scene's body i; after
-                                // them what each carrying rod ends in
-    bough_end_def *end;         // (n_end)
-    bough_force_link force;     // markers, those of the beams first, and what acts on them
-    bough_port_def *port;       // (n_rod)
-    bough_joint_load_def *load; // (n_load): those on joints
-    int n_load;
+    bough_tree_def tree;           // of the arrays down to `load`
+    bough_body_def *body;          // (n_body + n_end): the tree's body i is the scene's body i; after
+                                   // them what each carrying rod ends in
+    bough_end_def *end;            // (n_end)
+    bough_marker_def *marker;      // (tree.n_markers), those of the beams first, then of the FMUs
+    bough_port_def *port;          // (n_rod + n_fmu)
+    bough_joint_load_def *load;    // (tree.n_loads): those on joints
+    int hub;                       // marker on which the hub's drag acts; −1: none
     bough_assembly_member *member; // leader, then rods
     bough_connection *connection;  // two per rod, two more of one that carries bodies
     int n_connection;
@@ -99,5 +75,16 @@ typedef struct bough_builder {
 
 // The beams' meshes, and the bodies of the tree.
 bough_status bough_build_bodies(bough_builder *b);
+
+// The index of a new marker of the tree.
+int bough_build_marker(bough_builder *b, const char *name, int body, bough_transform placement);
+
+// -- springs, bushings, closures, applied wrenches and recorded points (load_link.c) --------------
+
+// All of the scene, after the markers of beams and FMUs.
+void bough_build_forces(bough_builder *b);
+
+// Turns the second markers of the bushings so that nothing acts in the simulation's view.
+void bough_build_rest(const bough_simulation *s);
 
 #endif

@@ -28,8 +28,7 @@ static void take_motion(bough_arena *arena, bough_drag_link *l) {
     l->motion.rotation = bough_arena_take(arena, n * sizeof(bough_mat3));
 }
 
-bough_status bough_drag_link_build(bough_arena *arena, bough_simulation *simulation, int hub_marker,
-                                   bough_drag_link **link) {
+void bough_drag_link_build(bough_arena *arena, bough_simulation *simulation, int hub_marker) {
     const bough_scene_aero *aero = &simulation->scene->aero;
     bough_drag_link *l = bough_arena_take(arena, sizeof *l);
     l->simulation = simulation;
@@ -44,8 +43,7 @@ bough_status bough_drag_link_build(bough_arena *arena, bough_simulation *simulat
     l->n = l->n_tower + 6;
     l->fresh = bough_arena_doubles(arena, (size_t)l->n);
     l->memory = bough_arena_doubles(arena, 2 * (size_t)l->n + 2);
-    *link = l;
-    return bough_ok();
+    simulation->drag = l;
 }
 
 // -- sample ---------------------------------------------------------------------------------------

@@ -18,19 +18,9 @@ static void add(bough_jump_link *link, bough_schedule *ramp) {
     link->jump[link->n++] = (jump){ramp->start, ramp};
 }
 
-static size_t count_loads(const bough_simulation *s) {
-    size_t n = (size_t)s->tree->n_loads + (size_t)s->tree->n_applied;
-    for (int k = 0; k < s->n_beam; k++) {
-        if (s->beam[k].port < 0) continue;
-        const bough_rod_ramped_load *l = bough_beam_loads(&s->beam[k])->ramped;
-        for (; l != NULL; l = l->next) n++;
-    }
-    return n;
-}
-
-bough_status bough_jump_link_build(bough_arena *arena, bough_simulation *s) {
+void bough_jump_link_build(bough_arena *arena, bough_simulation *s) {
     bough_jump_link *link = bough_arena_take(arena, sizeof *link);
-    *link = (bough_jump_link){0, bough_arena_take(arena, (count_loads(s) + 1) * sizeof(jump))};
+    *link = (bough_jump_link){0, bough_arena_take(arena, (size_t)s->scene->n_load * sizeof(jump))};
     for (int k = 0; k < s->tree->n_loads; k++) {
         add(link, &s->tree->loads[k].schedule);
     }
@@ -43,7 +33,6 @@ bough_status bough_jump_link_build(bough_arena *arena, bough_simulation *s) {
         for (; l != NULL; l = l->next) add(link, &l->schedule);
     }
     if (link->n > 0) s->jump = link;
-    return bough_ok();
 }
 
 void bough_jump_link_begin(bough_jump_link *link, double t) {

@@ -8,7 +8,7 @@
 typedef struct bough_jump_link bough_jump_link;
 
 // Finds them among the loads of the built tree and rods; s->jump stays NULL when there are none.
-bough_status bough_jump_link_build(bough_arena *arena, bough_simulation *s);
+void bough_jump_link_build(bough_arena *arena, bough_simulation *s);
 
 // Sets the loads to those of a step that begins at t.
 void bough_jump_link_begin(bough_jump_link *link, double t);

@@ -53,12 +53,12 @@ static void add(bough_arena *arena, const bough_simulation *s, const bough_beam 
 }
 
 // Loads in ground axes on a body that moves come last: loads of the same ramp in body axes are summed before.
-bough_status bough_load_link_build(bough_arena *arena, bough_simulation *s) {
+void bough_load_link_build(bough_arena *arena, bough_simulation *s) {
     for (int pass = 0; pass < 2; pass++) {
         for (int k = 0; k < s->scene->n_load; k++) {
             const bough_scene_load *load = &s->scene->load[k];
             if (load->body_name == NULL) continue;
-            if (s->scene->body[load->body].fidelity == BOUGH_SCENE_RIGID) continue; // force_link.h
+            if (s->scene->body[load->body].fidelity == BOUGH_SCENE_RIGID) continue; // add_wrenches
             const bough_beam *beam = bough_simulation_beam(s, load->body);
             bool turns = beam->in_ground && load->frame == BOUGH_SCENE_LOAD_GROUND;
             if (turns != (pass == 1)) continue;
@@ -68,107 +68,92 @@ bough_status bough_load_link_build(bough_arena *arena, bough_simulation *s) {
                 add(arena, s, beam, load);
         }
     }
-    return bough_ok();
 }
 
 // -- springs, bushings, closures, applied wrenches, recorded points -------------------------------
 
-void bough_force_link_take(bough_arena *arena, const bough_scene *scene, int n_beam, bough_force_link *link) {
-    size_t springs = (size_t)scene->n_spring, bushings = (size_t)scene->n_bushing;
-    size_t closures = (size_t)scene->n_closure, loads = (size_t)scene->n_load;
-    size_t markers =
-        (size_t)n_beam + 2 * (springs + bushings + closures) + loads + (size_t)scene->n_marker + 1;
-    link->marker = bough_arena_take(arena, markers * sizeof *link->marker);
-    link->spring = bough_arena_take(arena, springs * sizeof *link->spring);
-    link->bushing = bough_arena_take(arena, bushings * sizeof *link->bushing);
-    link->closure = bough_arena_take(arena, closures * sizeof *link->closure);
-    link->applied = bough_arena_take(arena, loads * sizeof *link->applied);
-}
-
 static bough_vec3 point(const double x[3]) { return bough_v3(x[0], x[1], x[2]); }
 
-// The index of a new marker at a point of a body.
-static int add_marker(bough_force_link *link, const char *name, int body, const double at[3]) {
-    bough_marker_def *marker = &link->marker[link->n_marker];
-    *marker = (bough_marker_def){name, body, bough_transform_identity()};
-    marker->placement.position = point(at);
-    return link->n_marker++;
-}
+static bough_transform at(const double x[3]) { return (bough_transform){point(x), bough_mat3_identity()}; }
 
-static void add_springs(const bough_scene *scene, bough_force_link *link) {
-    for (int k = 0; k < scene->n_spring; k++) {
-        const bough_scene_spring *from = &scene->spring[k];
-        link->spring[k] = from->def;
+static void add_springs(bough_builder *b) {
+    int n = b->tree.n_springs = b->scene->n_spring;
+    bough_spring_def *spring = bough_arena_take(b->arena, (size_t)n * sizeof *spring);
+    b->tree.springs = spring;
+    for (int k = 0; k < n; k++) {
+        const bough_scene_spring *from = &b->scene->spring[k];
+        spring[k] = from->def;
         for (int end = 0; end < 2; end++)
-            link->spring[k].marker[end] = add_marker(link, from->name, from->body[end], from->point[end]);
+            spring[k].marker[end] = bough_build_marker(b, from->name, from->body[end], at(from->point[end]));
     }
 }
 
-static void add_bushings(const bough_scene *scene, bough_force_link *link) {
-    for (int k = 0; k < scene->n_bushing; k++) {
-        const bough_scene_bushing *from = &scene->bushing[k];
-        link->bushing[k] = from->def;
+static void add_bushings(bough_builder *b) {
+    int n = b->tree.n_bushings = b->scene->n_bushing;
+    bough_bushing_def *bushing = bough_arena_take(b->arena, (size_t)n * sizeof *bushing);
+    b->tree.bushings = bushing;
+    for (int k = 0; k < n; k++) {
+        const bough_scene_bushing *from = &b->scene->bushing[k];
+        bushing[k] = from->def;
         for (int end = 0; end < 2; end++)
-            link->bushing[k].marker[end] = add_marker(link, from->name, from->body[end], from->point);
+            bushing[k].marker[end] = bough_build_marker(b, from->name, from->body[end], at(from->point));
     }
 }
 
-static void add_closures(const bough_scene *scene, bough_force_link *link) {
-    static const double origin[3];
-    for (int k = 0; k < scene->n_closure; k++) {
-        const bough_scene_closure *from = &scene->closure[k];
-        bough_closure_def *to = &link->closure[k];
+static void add_closures(bough_builder *b) {
+    int n = b->tree.n_closures = b->scene->n_closure;
+    bough_closure_def *closure = bough_arena_take(b->arena, (size_t)n * sizeof *closure);
+    b->tree.closures = closure;
+    for (int k = 0; k < n; k++) {
+        const bough_scene_closure *from = &b->scene->closure[k];
+        bough_closure_def *to = &closure[k];
         to->name = from->name;
         to->kind = (bough_joint_kind)from->kind;
         to->axis = bough_placement_axis(from->axis);
         to->second_axis = bough_placement_axis(from->second_axis);
         for (int end = 0; end < 2; end++) {
-            const bough_scene_placement *steps = &from->placement[end];
-            to->marker[end] = add_marker(link, from->name, from->body[end], origin);
-            link->marker[to->marker[end]].placement = bough_placement(steps->n, steps->step);
+            bough_transform place = bough_placement(from->placement[end].n, from->placement[end].step);
+            to->marker[end] = bough_build_marker(b, from->name, from->body[end], place);
         }
     }
 }
 
-static void add_wrenches(const bough_scene *scene, bough_force_link *link) {
-    for (int k = 0; k < scene->n_load; k++) {
-        const bough_scene_load *load = &scene->load[k];
-        if (load->body_name == NULL || scene->body[load->body].fidelity != BOUGH_SCENE_RIGID) {
-            continue;
-        }
-        int marker = add_marker(link, load->body_name, load->body, load->point);
-        link->applied[link->n_applied++] =
-            (bough_applied_def){.marker = marker,
+static void add_wrenches(bough_builder *b) {
+    bough_applied_def *applied = bough_arena_take(b->arena, (size_t)b->scene->n_load * sizeof *applied);
+    b->tree.applied = applied;
+    for (int k = 0; k < b->scene->n_load; k++) {
+        const bough_scene_load *load = &b->scene->load[k];
+        if (load->body_name == NULL || b->scene->body[load->body].fidelity != BOUGH_SCENE_RIGID) continue;
+        applied[b->tree.n_applied++] =
+            (bough_applied_def){.marker = bough_build_marker(b, load->body_name, load->body, at(load->point)),
                                 .wrench = {point(load->force), point(load->moment)},
                                 .ground = load->frame == BOUGH_SCENE_LOAD_GROUND,
                                 .schedule = bough_scene_load_schedule(load)};
     }
 }
 
-void bough_force_link_fill(const bough_scene *scene, bough_force_link *link) {
-    add_springs(scene, link);
-    add_bushings(scene, link);
-    add_closures(scene, link);
-    add_wrenches(scene, link);
-    link->first_own = link->n_marker;
+void bough_build_forces(bough_builder *b) {
+    const bough_scene *scene = b->scene;
+    add_springs(b);
+    add_bushings(b);
+    add_closures(b);
+    add_wrenches(b);
+    b->s->first_marker = b->tree.n_markers;
     for (int k = 0; k < scene->n_marker; k++) {
         const bough_scene_marker *from = &scene->marker[k];
-        add_marker(link, from->name, from->body, from->point);
+        bough_build_marker(b, from->name, from->body, at(from->point));
     }
-    static const double origin[3];
-    link->hub = -1;
-    if (scene->aero.node != NULL && scene->aero.hub_drag_area > 0) {
-        link->hub = add_marker(link, "hub", scene->turbine.rotor, origin);
-    }
+    bool drag = scene->aero.node != NULL && scene->aero.hub_drag_area > 0;
+    b->hub = drag ? bough_build_marker(b, "hub", scene->turbine.rotor, bough_transform_identity()) : -1;
 }
 
-void bough_force_link_rest(const bough_scene *scene, const bough_tree_data *data, bough_tree *tree) {
-    for (int k = 0; k < scene->n_bushing; k++) {
-        const int *marker = tree->bushings[k].marker;
-        bough_transform pose = bough_tree_frame_pose(data, &tree->markers[marker[0]]);
-        bough_frame *second = &tree->markers[marker[1]];
+void bough_build_rest(const bough_simulation *s) {
+    for (int k = 0; k < s->tree->n_bushings; k++) {
+        const int *marker = s->tree->bushings[k].marker;
+        bough_transform pose = bough_tree_frame_pose(s->view, &s->tree->markers[marker[0]]);
+        bough_frame *second = &s->tree->markers[marker[1]];
         if (second->link >= 0) {
-            bough_transform back = bough_transform_inverse(data->pose[second->link]);
+            bough_transform back = bough_transform_inverse(s->view->pose[second->link]);
             pose = bough_transform_compose(back, pose);
         }
         second->placement = pose;
