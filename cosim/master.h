@@ -23,6 +23,9 @@ typedef struct bough_sampled_load {
     // Called before every macro step, which begins at t; NULL: nothing to do. Loads that jump at an event
     // take the value after the jump here.
     void (*begin)(void *self, double t);
+    // What the next samples depend on; restoring gives the members their loads back. NULL: nothing. The
+    // master's own snapshot does not contain it.
+    void (*snapshot)(void *self, bough_snapshot *snapshot);
 } bough_sampled_load;
 
 typedef struct bough_master_def {

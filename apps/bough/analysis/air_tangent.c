@@ -55,7 +55,6 @@ static bough_status find_rates(work *w, const double *state, double *rate, doubl
     } else {
         bough_aero_link_hold(s->aero, w->time);
     }
-    if (s->drag != NULL) bough_drag_link_hold(s->drag, w->time);
     return bough_whole_rate(w->coupled, w->time, state, rate);
 }
 
@@ -64,7 +63,6 @@ static void settle(work *w, const double *state) {
     bough_simulation *s = w->simulation;
     bough_equilibrium_set_state(s, w->coupled->assembly, state);
     bough_aero_link_hold(s->aero, w->time);
-    if (s->drag != NULL) bough_drag_link_hold(s->drag, w->time);
     if (!w->dynamic) return;
     bough_aero_link_continue(s->aero, w->time);
     bough_aero_link_memory(s->aero, BOUGH_SNAPSHOT_SAVE, w->before);

@@ -5,7 +5,6 @@
 #include "apps/bough/model/aero_link.h"
 #include "apps/bough/model/control_link.h"
 #include "apps/bough/model/equilibrium.h"
-#include "apps/bough/model/input_link.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -47,7 +46,7 @@ static void set_input(void *self, int k, double change, double *state) {
     bough_simulation *s = w->s;
     double value = w->input[k].base + change, speed, torque, power;
     switch (w->input[k].kind) {
-    case SCENE_LOAD: bough_input_link_put(s->inputs, w->input[k].index, value); break;
+    case SCENE_LOAD: bough_simulation_put(s, w->input[k].index, value); break;
     case WIND_SPEED: bough_aero_link_set_wind(s->aero, value); break;
     case GENERATOR_TORQUE:
     case COLLECTIVE_PITCH:
@@ -77,7 +76,7 @@ static void find_inputs(work *w, bough_state_space *to) {
     const bough_scene_wind *wind = &s->scene->aero.wind;
     for (int k = 0; k < s->scene->n_input; k++) {
         const bough_scene_input *x = &s->scene->input[k];
-        double value = bough_input_link_values(s->inputs)[k];
+        double value = s->input[k];
         if (x->kind == BOUGH_INPUT_LOAD)
             add_input(w, SCENE_LOAD, k, value, x->name, bough_dimension_unit((bough_dimension)x->dimension),
                       to);

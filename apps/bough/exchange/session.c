@@ -1,7 +1,6 @@
 #include "apps/bough/exchange/bough.h"
 
 #include "apps/bough/config/schema.h"
-#include "apps/bough/model/input_link.h"
 #include "apps/bough/model/run.h"
 #include "apps/bough/scene/scene_files.h"
 
@@ -332,7 +331,7 @@ static bool is_input(const bough_session *s, int input) {
 
 static double *input_value(const bough_session *s, int input) {
     if (!is_input(s, input)) return NULL;
-    return bough_input_link_values(s->run.simulation->inputs) + input;
+    return s->run.simulation->input + input;
 }
 
 static bough_dimension input_dimension(const bough_session *s, int input) {

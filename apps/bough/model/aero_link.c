@@ -181,27 +181,6 @@ static bough_status check_reach(bough_aero_link *l) {
                       scene->aero.wind.def.file ? scene->aero.wind.def.file : "turbulence", radius, hub.z);
 }
 
-bough_status bough_aero_link_build(bough_arena *arena, bough_simulation *simulation, bough_aero_link **link) {
-    bough_aero_link *l = bough_arena_take(arena, sizeof *l);
-    tables t;
-    l->simulation = simulation;
-    BOUGH_TRY(take_blades(arena, l));
-    take_tables(arena, l, &t);
-    bough_rotor_def def = rotor_def(l, &t);
-    bough_status status = bough_rotor_build(arena, &def, &l->rotor);
-    if (bough_is_ok(&status)) status = check_reach(l);
-    const bough_scene_aero *aero = &simulation->scene->aero;
-    const bough_node *file = bough_node_find(aero->wind.node, "file");
-    if (!bough_is_ok(&status)) {
-        return bough_scene_blame(file ? file : aero->node, file ? "aero.wind.file" : "aero", status);
-    }
-    for (int i = 0; i < 2; i++) bough_rotor_data_build(arena, l->rotor, &l->data[i]);
-    l->data[1].memory = l->data[0].memory;
-    bough_aero_link_renew(l);
-    *link = l;
-    return status;
-}
-
 // -- sample ---------------------------------------------------------------------------------------
 
 // Factor of the ramp at t. A jump is sampled at its time, up to rounding.
@@ -336,6 +315,7 @@ void bough_aero_link_continue(bough_aero_link *link, double t) {
     begin_anew(link);
     hold(link, t);
     begin_anew(link);
+    if (link->simulation->drag) bough_drag_link_hold(link->simulation->drag, t);
 }
 
 void bough_aero_link_hold(bough_aero_link *link, double t) {
@@ -346,10 +326,6 @@ void bough_aero_link_hold(bough_aero_link *link, double t) {
 
 void bough_aero_link_memory(bough_aero_link *link, bough_snapshot_move move, double *memory) {
     bough_rotor_memory_snapshot(link->rotor, &link->data[0], &(bough_snapshot){move, (char *)memory, 0});
-}
-
-bough_sampled_load bough_aero_link_load(bough_aero_link *link) {
-    return (bough_sampled_load){1 / link->simulation->scene->aero.rate, link, sample, evaluate, NULL};
 }
 
 const bough_rotor *bough_aero_link_rotor(const bough_aero_link *link) { return link->rotor; }
@@ -370,7 +346,8 @@ bough_vec3 bough_aero_link_hub_wind(const bough_aero_link *link, double t) {
 // -- saving ---------------------------------------------------------------------------------------
 
 // Stores the results of the evaluations, that of the last sample and the one ahead, but not the loads.
-void bough_aero_link_snapshot(bough_aero_link *link, bough_snapshot *s) {
+static void snapshot(void *self, bough_snapshot *s) {
+    bough_aero_link *link = self;
     if (s->move == BOUGH_SNAPSHOT_RESTORE) link->shown = 0, link->found = -1;
     bough_snapshot_take(s, &link->started, sizeof link->started);
     for (int i = 0; i < 2; i++) {
@@ -382,4 +359,29 @@ void bough_aero_link_snapshot(bough_aero_link *link, bough_snapshot *s) {
     for (int b = 0; b < link->n_blade; b++) bough_aero_signal_snapshot(link->signal[b], s);
     bough_aero_motion_snapshot(link->motion, s);
     bough_rotor_memory_snapshot(link->rotor, &link->data[0], s);
+}
+
+// -- whole ----------------------------------------------------------------------------------------
+
+bough_status bough_aero_link_build(bough_arena *arena, bough_simulation *simulation) {
+    bough_aero_link *l = bough_arena_take(arena, sizeof *l);
+    tables t;
+    l->simulation = simulation;
+    BOUGH_TRY(take_blades(arena, l));
+    take_tables(arena, l, &t);
+    bough_rotor_def def = rotor_def(l, &t);
+    bough_status status = bough_rotor_build(arena, &def, &l->rotor);
+    if (bough_is_ok(&status)) status = check_reach(l);
+    const bough_scene_aero *aero = &simulation->scene->aero;
+    const bough_node *file = bough_node_find(aero->wind.node, "file");
+    if (!bough_is_ok(&status)) {
+        return bough_scene_blame(file ? file : aero->node, file ? "aero.wind.file" : "aero", status);
+    }
+    for (int i = 0; i < 2; i++) bough_rotor_data_build(arena, l->rotor, &l->data[i]);
+    l->data[1].memory = l->data[0].memory;
+    bough_aero_link_renew(l);
+    simulation->aero = l;
+    simulation->sampled[simulation->n_sampled++] =
+        (bough_sampled_load){1 / aero->rate, l, sample, evaluate, NULL, snapshot};
+    return status;
 }

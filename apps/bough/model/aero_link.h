@@ -8,17 +8,14 @@
 
 typedef struct bough_aero_link bough_aero_link;
 
-// Builds the rotor of the scene's aero block for the simulation's blades.
-bough_status bough_aero_link_build(bough_arena *arena, bough_simulation *simulation, bough_aero_link **link);
+// Builds the rotor of the scene's aero block for the simulation's blades, which gets the link.
+bough_status bough_aero_link_build(bough_arena *arena, bough_simulation *simulation);
 
 // The turbulence by name of a scene's wind, with what the scene leaves to choose. False: it has none.
 bool bough_aero_link_turbulence(const bough_scene *scene, bough_wind_iec_def *def);
 
-// The sampled load for the master's loop.
-bough_sampled_load bough_aero_link_load(bough_aero_link *link);
-
-// Samples the blades at their present motion and keeps the loads constant from t on. Dynamic inflow and stall
-// are in equilibrium, at the next sample again.
+// Samples the blades, and the drag of tower and hub, at their present motion and keeps the loads constant
+// from t on. Dynamic inflow and stall are in equilibrium, at the next sample again.
 void bough_aero_link_hold(bough_aero_link *link, double t);
 
 // The same, but dynamic inflow and stall continue from the last sample, and the next sample from this one.
@@ -26,10 +23,6 @@ void bough_aero_link_continue(bough_aero_link *link, double t);
 
 // Saves or restores dynamic inflow and stall: memory (bough_rotor_memory_size).
 void bough_aero_link_memory(bough_aero_link *link, bough_snapshot_move move, double *memory);
-
-// All that the next samples depend on, and the loads that the bodies have, for schemes that repeat samples:
-// restoring puts the loads back.
-void bough_aero_link_snapshot(bough_aero_link *link, bough_snapshot *snapshot);
 
 const bough_rotor *bough_aero_link_rotor(const bough_aero_link *link);
 
@@ -140,13 +133,7 @@ bool bough_drag_link_wanted(const bough_scene *scene);
 // After the aerodynamics. `hub_marker` of the tree, on the rotor; −1: no drag of the hub.
 void bough_drag_link_build(bough_arena *arena, bough_simulation *simulation, int hub_marker);
 
-// The sampled load for the master's loop.
-bough_sampled_load bough_drag_link_load(bough_drag_link *link);
-
 // Sets the drag of the present motion, constant, as bough_aero_link_hold does the rotor's loads.
 void bough_drag_link_hold(bough_drag_link *link, double t);
-
-// The memory, as bough_aero_link_snapshot.
-void bough_drag_link_snapshot(bough_drag_link *link, bough_snapshot *snapshot);
 
 #endif

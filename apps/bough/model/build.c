@@ -4,8 +4,6 @@
 #include "apps/bough/model/build_internal.h"
 #include "apps/bough/model/control_link.h"
 #include "apps/bough/model/equilibrium.h"
-#include "apps/bough/model/input_link.h"
-#include "apps/bough/model/jump_link.h"
 #include "apps/bough/model/simulation.h"
 #include "apps/bough/model/validity.h"
 #include "core/base/linalg.h"
@@ -195,7 +193,6 @@ static bough_status build_master(bough_builder *b) {
     bough_simulation *s = b->s;
     const bough_scene_simulation *sim = &b->scene->simulation;
     bough_master_def def = bough_master_def_default();
-    bough_sampled_load load[5];
     def.assembly = (bough_assembly_def){s->n_rod + s->n_fmu + 1, b->member, b->n_connection, b->connection};
     def.scheme = scheme_options(b->scene);
     def.macro_step = sim->macro_step;
@@ -205,16 +202,8 @@ static bough_status build_master(bough_builder *b) {
     def.event = b->event;
     def.n_event = b->n_event;
     def.pool = s->pool;
-    if (s->inputs != NULL) {
-        load[def.n_load++] = bough_input_link_load(s->inputs, sim->macro_step);
-    }
-    if (s->aero != NULL) {
-        load[def.n_load++] = bough_aero_link_load(s->aero);
-    }
-    if (s->drag != NULL) load[def.n_load++] = bough_drag_link_load(s->drag);
-    if (s->control != NULL) load[def.n_load++] = bough_control_link_load(s->control);
-    if (s->jump != NULL) load[def.n_load++] = bough_jump_link_load(s->jump, sim->macro_step);
-    def.load = load;
+    def.n_load = s->n_sampled;
+    def.load = s->sampled;
     if (sim->initial != BOUGH_SCENE_UNDEFORMED) BOUGH_TRY(find_equilibrium(b->arena, &def.assembly, s));
     bough_status status = bough_master_build(b->arena, &def, &s->master);
     const bough_node *scheme = sim->coupling.node ? bough_node_find(sim->coupling.node, "scheme") : NULL;
@@ -266,12 +255,11 @@ bough_status bough_simulation_build_on(bough_arena *arena, const bough_scene *sc
     connect(&b);
     bough_simulation_update(b.s);
     bough_load_link_build(arena, b.s);
-    bough_jump_link_build(arena, b.s);
-    if (scene->aero.node != NULL) BOUGH_TRY(bough_aero_link_build(arena, b.s, &b.s->aero));
-    if (bough_drag_link_wanted(scene)) bough_drag_link_build(arena, b.s, b.hub);
-    if (scene->control.node != NULL)
-        BOUGH_TRY(bough_control_link_build(arena, b.s, b.tree.n_loads - 1, &b.s->control));
     bough_input_link_build(arena, b.s);
+    if (scene->aero.node != NULL) BOUGH_TRY(bough_aero_link_build(arena, b.s));
+    if (bough_drag_link_wanted(scene)) bough_drag_link_build(arena, b.s, b.hub);
+    if (scene->control.node != NULL) BOUGH_TRY(bough_control_link_build(arena, b.s, b.tree.n_loads - 1));
+    bough_jump_link_build(arena, b.s);
     BOUGH_TRY(build_master(&b));
     if (b.s->control != NULL) BOUGH_TRY(bough_control_link_watch(arena, b.s->control));
     bough_simulation_update(b.s);
@@ -284,10 +272,9 @@ bough_status bough_simulation_build_on(bough_arena *arena, const bough_scene *sc
 
 void bough_simulation_snapshot(bough_simulation *s, bough_snapshot *snapshot) {
     bough_master_snapshot(s->master, snapshot);
-    if (s->inputs) bough_input_link_snapshot(s->inputs, snapshot);
-    if (s->aero) bough_aero_link_snapshot(s->aero, snapshot);
-    if (s->drag) bough_drag_link_snapshot(s->drag, snapshot);
-    if (s->control) bough_control_link_snapshot(s->control, snapshot);
+    for (int k = 0; k < s->n_sampled; k++) {
+        if (s->sampled[k].snapshot) s->sampled[k].snapshot(s->sampled[k].self, snapshot);
+    }
     bough_snapshot_take(snapshot, s->validity, sizeof *s->validity);
 }
 

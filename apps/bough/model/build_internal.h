@@ -13,6 +13,19 @@
 // Needs the rods and the view of a built simulation.
 void bough_load_link_build(bough_arena *arena, bough_simulation *s);
 
+// -- parts that are sampled, as far as the scene has them ------------------------------------------
+
+// They enter themselves among the simulation's sampled loads.
+
+// Inputs, set between steps by whoever steps the scene: a value holds from the next macro step on; a joint
+// with a prescribed motion gets there within it (input_link.c). Before all other loads.
+void bough_input_link_build(bough_arena *arena, bough_simulation *s);
+
+// Loads that jump at a time: ramps without length. The step that ends at the jump is integrated without the
+// load, the step that begins there with it; a function of time alone could not distinguish the two
+// (jump_link.c). Needs tree and rods.
+void bough_jump_link_build(bough_arena *arena, bough_simulation *s);
+
 // -- placements and axes of a scene as transforms and vectors (build_bodies.c) --------------------
 
 // The unit vector of a bough_scene_axis.

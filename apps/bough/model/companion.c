@@ -1,7 +1,6 @@
 #include "apps/bough/model/companion.h"
 
 #include "apps/bough/model/error_verdict.h"
-#include "apps/bough/model/input_link.h"
 #include "apps/bough/model/simulation.h"
 
 #include <math.h>
@@ -81,9 +80,9 @@ bool bough_companion_due(const bough_companion *c) {
 }
 
 void bough_companion_step(bough_companion *c) {
-    if (c->run->inputs) {
+    if (c->run->input) {
         size_t size = (size_t)c->run->scene->n_input * sizeof(double);
-        memcpy(bough_input_link_values(c->coarser->inputs), bough_input_link_values(c->run->inputs), size);
+        memcpy(c->coarser->input, c->run->input, size);
     }
     c->status = bough_step(c->coarser->master);
 }

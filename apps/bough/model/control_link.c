@@ -4,7 +4,6 @@
 #include "apps/bough/config/schema.h"
 #include "apps/bough/model/aero_link.h"
 #include "apps/bough/model/fmu_instance.h"
-#include "apps/bough/model/input_link.h"
 #include "apps/bough/model/simulation.h"
 #include "core/base/base.h"
 
@@ -252,31 +251,6 @@ struct bough_control_link {
 
 static int blade_body(const bough_control_link *l, int b) { return l->simulation->scene->turbine.blade[b]; }
 
-bough_status bough_control_link_build(bough_arena *arena, bough_simulation *simulation, int load,
-                                      bough_control_link **link) {
-    const bough_scene *scene = simulation->scene;
-    bough_control_link *l = bough_arena_take(arena, sizeof *l);
-    l->simulation = simulation;
-    l->control = &scene->control;
-    l->load = load;
-    l->n_blade = scene->turbine.n_blade;
-    l->steers = scene->control.pitch && scene->body[scene->turbine.blade[0]].joint.motion.node != NULL;
-    for (int b = 0; b < l->n_blade && l->steers; b++)
-        l->now.pitch_joint[b] = bough_simulation_joint_point(simulation, blade_body(l, b));
-    *link = l;
-    if (l->control->kind == BOUGH_SCENE_EXTERNAL) return bough_ok();
-    if (l->control->kind == BOUGH_SCENE_VARIABLE_SPEED) {
-        return bough_scene_blame(l->control->node, "control", bough_controller_check(&l->control->law));
-    }
-    if (l->control->kind == BOUGH_SCENE_CONTROL_FMU) {
-        l->fmu = bough_arena_take(arena, sizeof *l->fmu);
-        return bough_fmu_open(arena, &l->control->fmu.model, "control", l->fmu);
-    }
-    bough_status status =
-        bough_discon_open(arena, l->control->library, l->control->input, l->control->copied, &l->discon);
-    return bough_scene_blame(bough_node_find(l->control->node, "library"), "control.library", status);
-}
-
 bough_status bough_control_link_watch(bough_arena *arena, bough_control_link *link) {
     return bough_events_build(arena, link->simulation, &link->events);
 }
@@ -386,7 +360,7 @@ static bough_discon_sensed sense(bough_control_link *l, double t, double step, d
 
 static bough_status take_inputs(const bough_control_link *l, bough_discon_demand *demand) {
     const bough_scene *scene = l->simulation->scene;
-    const double *value = bough_input_link_values(l->simulation->inputs);
+    const double *value = l->simulation->input;
     for (int k = 0; k < scene->n_input; k++) {
         const bough_scene_input *input = &scene->input[k];
         if (input->kind == BOUGH_INPUT_TORQUE) demand->torque = value[k];
@@ -496,18 +470,44 @@ static bough_status sample(void *self, double t, double t_next, bool *jumped) {
     return bough_ok();
 }
 
-bough_sampled_load bough_control_link_load(bough_control_link *link) {
-    return (bough_sampled_load){1 / link->control->rate, link, sample, NULL, NULL};
-}
-
 void bough_control_link_generator(const bough_control_link *l, double *speed, double *torque, double *power) {
     *speed = l->now.speed;
     *torque = l->now.torque;
     *power = electrical_power(l->control, l->now.speed, l->now.torque);
 }
 
-void bough_control_link_snapshot(bough_control_link *link, bough_snapshot *s) {
+// A foreign controller's own memory is not in it.
+static void snapshot(void *self, bough_snapshot *s) {
+    bough_control_link *link = self;
     size_t events = link->events ? (size_t)link->control->n_event : 0;
     bough_snapshot_take(s, &link->now, sizeof link->now);
     bough_snapshot_take(s, link->event, events * sizeof *link->event);
+}
+
+// -- whole ----------------------------------------------------------------------------------------
+
+bough_status bough_control_link_build(bough_arena *arena, bough_simulation *simulation, int load) {
+    const bough_scene *scene = simulation->scene;
+    bough_control_link *l = bough_arena_take(arena, sizeof *l);
+    l->simulation = simulation;
+    l->control = &scene->control;
+    l->load = load;
+    l->n_blade = scene->turbine.n_blade;
+    l->steers = scene->control.pitch && scene->body[scene->turbine.blade[0]].joint.motion.node != NULL;
+    for (int b = 0; b < l->n_blade && l->steers; b++)
+        l->now.pitch_joint[b] = bough_simulation_joint_point(simulation, blade_body(l, b));
+    simulation->control = l;
+    simulation->sampled[simulation->n_sampled++] = (bough_sampled_load){
+        .period = 1 / l->control->rate, .self = l, .sample = sample, .snapshot = snapshot};
+    if (l->control->kind == BOUGH_SCENE_EXTERNAL) return bough_ok();
+    if (l->control->kind == BOUGH_SCENE_VARIABLE_SPEED) {
+        return bough_scene_blame(l->control->node, "control", bough_controller_check(&l->control->law));
+    }
+    if (l->control->kind == BOUGH_SCENE_CONTROL_FMU) {
+        l->fmu = bough_arena_take(arena, sizeof *l->fmu);
+        return bough_fmu_open(arena, &l->control->fmu.model, "control", l->fmu);
+    }
+    bough_status status =
+        bough_discon_open(arena, l->control->library, l->control->input, l->control->copied, &l->discon);
+    return bough_scene_blame(bough_node_find(l->control->node, "library"), "control.library", status);
 }

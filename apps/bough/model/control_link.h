@@ -9,8 +9,7 @@
 typedef struct bough_control_link bough_control_link;
 
 // Takes the load `load` of the simulation's tree, on the rotor's joint, for the generator.
-bough_status bough_control_link_build(bough_arena *arena, bough_simulation *simulation, int load,
-                                      bough_control_link **link);
+bough_status bough_control_link_build(bough_arena *arena, bough_simulation *simulation, int load);
 
 // Takes the scene's events into account; called when all else is built.
 bough_status bough_control_link_watch(bough_arena *arena, bough_control_link *link);
@@ -25,15 +24,9 @@ void bough_control_link_stand(bough_control_link *link, double speed, double pit
 // The generator's torque on the fast shaft [N m], and blades that are turned at a pitch [rad], from now on.
 void bough_control_link_put(bough_control_link *link, double torque, double pitch);
 
-// The sampled load for the master's loop.
-bough_sampled_load bough_control_link_load(bough_control_link *link);
-
 // At the last sample: generator speed [rad/s], torque on the fast shaft [N m] and electrical power
 // [W].
 void bough_control_link_generator(const bough_control_link *link, double *speed, double *torque,
                                   double *power);
-
-// The memory, for schemes that repeat a sample. A shared library's own is not in it.
-void bough_control_link_snapshot(bough_control_link *link, bough_snapshot *snapshot);
 
 #endif

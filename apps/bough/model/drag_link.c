@@ -28,24 +28,6 @@ static void take_motion(bough_arena *arena, bough_drag_link *l) {
     l->motion.rotation = bough_arena_take(arena, n * sizeof(bough_mat3));
 }
 
-void bough_drag_link_build(bough_arena *arena, bough_simulation *simulation, int hub_marker) {
-    const bough_scene_aero *aero = &simulation->scene->aero;
-    bough_drag_link *l = bough_arena_take(arena, sizeof *l);
-    l->simulation = simulation;
-    l->rotor = bough_aero_link_rotor(simulation->aero);
-    l->hub_marker = hub_marker;
-    if (aero->tower.body_name != NULL) {
-        l->tower = bough_simulation_beam(simulation, aero->tower.body);
-        l->n_vertex = l->tower->def.n_segment + 1;
-        l->n_tower = l->tower->port < 0 ? 6 : 3 * l->n_vertex;
-        take_motion(arena, l);
-    }
-    l->n = l->n_tower + 6;
-    l->fresh = bough_arena_doubles(arena, (size_t)l->n);
-    l->memory = bough_arena_doubles(arena, 2 * (size_t)l->n + 2);
-    simulation->drag = l;
-}
-
 // -- sample ---------------------------------------------------------------------------------------
 
 // The part of the tower that a vertex stands for [m].
@@ -128,10 +110,6 @@ static bough_status sample(void *self, double t, double t_next, bool *jumped) {
     return bough_ok();
 }
 
-bough_sampled_load bough_drag_link_load(bough_drag_link *link) {
-    return (bough_sampled_load){1 / link->simulation->scene->aero.rate, link, sample, NULL, NULL};
-}
-
 void bough_drag_link_hold(bough_drag_link *link, double t) {
     bool jumped;
     double *started = link->memory + 2 * link->n + 1;
@@ -140,7 +118,28 @@ void bough_drag_link_hold(bough_drag_link *link, double t) {
     *started = 0;
 }
 
-void bough_drag_link_snapshot(bough_drag_link *link, bough_snapshot *s) {
+static void snapshot(void *self, bough_snapshot *s) {
+    bough_drag_link *link = self;
     bough_snapshot_doubles(s, link->memory, 2 * link->n + 2);
     if (s->move == BOUGH_SNAPSHOT_RESTORE && link->memory[2 * link->n + 1] != 0) put(link);
+}
+
+void bough_drag_link_build(bough_arena *arena, bough_simulation *simulation, int hub_marker) {
+    const bough_scene_aero *aero = &simulation->scene->aero;
+    bough_drag_link *l = bough_arena_take(arena, sizeof *l);
+    l->simulation = simulation;
+    l->rotor = bough_aero_link_rotor(simulation->aero);
+    l->hub_marker = hub_marker;
+    if (aero->tower.body_name != NULL) {
+        l->tower = bough_simulation_beam(simulation, aero->tower.body);
+        l->n_vertex = l->tower->def.n_segment + 1;
+        l->n_tower = l->tower->port < 0 ? 6 : 3 * l->n_vertex;
+        take_motion(arena, l);
+    }
+    l->n = l->n_tower + 6;
+    l->fresh = bough_arena_doubles(arena, (size_t)l->n);
+    l->memory = bough_arena_doubles(arena, 2 * (size_t)l->n + 2);
+    simulation->drag = l;
+    simulation->sampled[simulation->n_sampled++] =
+        (bough_sampled_load){.period = 1 / aero->rate, .self = l, .sample = sample, .snapshot = snapshot};
 }

@@ -1,7 +1,6 @@
 #include "apps/bough/model/equilibrium.h"
 
 #include "apps/bough/model/aero_link.h"
-#include "apps/bough/model/jump_link.h"
 #include "cosim/analysis/equilibrium.h"
 #include "cosim/analysis/modes.h"
 #include "flexbody/rod/rod_static.h"
@@ -132,7 +131,6 @@ static bough_status balance_in_air(bough_arena *arena, bough_simulation *s, boug
     while (work->samples < SAMPLES) {
         memcpy(before, state, (size_t)coupled->assembly->n_state * sizeof *state);
         bough_aero_link_hold(s->aero, def->time);
-        if (s->drag != NULL) bough_drag_link_hold(s->drag, def->time);
         work->samples++;
         bough_status status = balance(arena, s, coupled, def, state, work);
         if (!bough_is_ok(&status)) return status;
@@ -232,7 +230,9 @@ static void set_up(bough_arena *arena, bough_simulation *s, const bough_assembly
     b->state = bough_arena_doubles(arena, (size_t)assembly->n_state + 1);
     int *row = bough_arena_take(arena, ((size_t)s->leader.system.n_state + 1) * sizeof *row);
     b->coupled = bough_whole_create(arena, assembly, NULL);
-    if (s->jump != NULL) bough_jump_link_begin(s->jump, time);
+    for (int k = 0; k < s->n_sampled; k++) {
+        if (s->sampled[k].begin) s->sampled[k].begin(s->sampled[k].self, time);
+    }
     bough_whole_hold(arena, b->coupled, bough_equilibrium_held(s->tree, true, row), row);
     bough_assembly_states(assembly, b->state);
     bough_tree_prescribe(s->tree, time, b->state);
@@ -564,7 +564,7 @@ static bough_status refuse_path(const bough_simulation *s) {
                           file, s->tree->bodies[link->body].name);
     }
     if (s->aero != NULL) return bough_fail(BOUGH_INVALID, "%.200s: a path of equilibria knows no air", file);
-    if (s->jump != NULL)
+    if (s->jumps)
         return bough_fail(BOUGH_INVALID, "%.200s: loads: a path of equilibria knows no jumps", file);
     if (bough_equilibrium_time(s) > 0) return bough_ok();
     return bough_fail(BOUGH_INVALID,

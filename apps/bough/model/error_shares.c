@@ -295,7 +295,7 @@ bough_status bough_error_shares_find(bough_arena *arena, bough_companion *c, boo
     bough_status status = bough_ok();
     if (!c->coarser) {
         status = bough_fail(BOUGH_FAILED, "%s", c->reason);
-    } else if (c->run->inputs) {
+    } else if (c->run->input) {
         status = bough_fail(BOUGH_FAILED, "the run has inputs, which are not known any more");
     } else {
         status = bough_arena_use(find, &x);

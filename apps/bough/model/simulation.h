@@ -13,7 +13,6 @@
 
 struct bough_aero_link;
 struct bough_control_link;
-struct bough_input_link;
 struct bough_drag_link;
 struct bough_validity;
 
@@ -44,12 +43,14 @@ typedef struct bough_simulation {
     bough_beam *beam;  // (n_beam) bodies that have a rod, in the scene's order
     bough_member *rod; // (n_rod + n_fmu) in port order, the FMUs last
     int n_rod, n_end, n_fmu;
+    double *input;                      // (scene->n_input) values now, SI; to be written between steps
     struct bough_aero_link *aero;       // NULL without an aero block
-    struct bough_input_link *inputs;    // NULL without inputs
     struct bough_drag_link *drag;       // NULL without drag of tower and hub
     struct bough_control_link *control; // NULL without a control block
-    struct bough_jump_link *jump;       // NULL without loads that jump
     struct bough_validity *validity;    // limits of the models that the run has passed
+    int n_sampled;                      // of these parts, in this order:
+    bough_sampled_load sampled[5];      // inputs, air, drag, control, loads that jump
+    bool jumps;                         // there are loads that jump
     bough_master *master;
     bough_pool *pool; // NULL: one thread
     // the rods in a row that carry the rotor, NULL without; undeformed top in the frame of the foot
@@ -72,6 +73,9 @@ bough_status bough_simulation_storable(const bough_simulation *s);
 
 // BOUGH_INVALID where the equations of a part are not known: an FMU's. `what` cannot be done then.
 bough_status bough_simulation_known(const bough_simulation *s, const char *what);
+
+// Puts input k at a value at once if it is a load; else does nothing.
+void bough_simulation_put(const bough_simulation *s, int k, double value);
 
 // Number of bodies on joints that move.
 int bough_simulation_n_joints(const bough_simulation *s);

@@ -24,7 +24,7 @@ typedef struct fixture {
 static fixture open_turbine(const char *const *sets) {
     fixture f = {.arena = check_memory()};
     f.s = scene_build(f.arena, turbine, sets);
-    f.load = bough_aero_link_load(f.s->aero);
+    f.load = f.s->sampled[0];
     return f;
 }
 
@@ -416,10 +416,10 @@ TEST(samples_repeat_from_saved) {
     fixture f = open_turbine(sets);
     for (int k = 0; k < 4; k++) sample(&f, k * period, (k + 1) * period);
     bough_snapshot room = {BOUGH_SNAPSHOT_MEASURE, NULL, 0};
-    bough_aero_link_snapshot(f.s->aero, &room);
+    f.load.snapshot(f.load.self, &room);
     char *saved = calloc(1, room.used);
     signal before[2], first[2];
-    bough_aero_link_snapshot(f.s->aero, &(bough_snapshot){BOUGH_SNAPSHOT_SAVE, saved, 0});
+    f.load.snapshot(f.load.self, &(bough_snapshot){BOUGH_SNAPSHOT_SAVE, saved, 0});
     for (int b = 0; b < 2; b++) before[b] = signal_of(&f, b);
     for (int round = 0; round < 2; round++) {
         sample(&f, 4 * period, 5 * period);
@@ -430,7 +430,7 @@ TEST(samples_repeat_from_saved) {
             assert_memory_equal(now.value, first[b].value, (size_t)now.n * sizeof(double));
             assert_memory_equal(now.rate, first[b].rate, (size_t)now.n * sizeof(double));
         }
-        bough_aero_link_snapshot(f.s->aero, &(bough_snapshot){BOUGH_SNAPSHOT_RESTORE, saved, 0});
+        f.load.snapshot(f.load.self, &(bough_snapshot){BOUGH_SNAPSHOT_RESTORE, saved, 0});
         for (int b = 0; b < 2; b++) {
             signal now = signal_of(&f, b);
             assert_memory_equal(now.value, before[b].value, (size_t)now.n * sizeof(double));

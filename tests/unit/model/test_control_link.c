@@ -175,16 +175,16 @@ TEST(memory_is_saved_and_restored) {
     run_until(&f, 3);
     double saved[100], speed[2], torque[2], power[2];
     bool jumped;
-    bough_sampled_load load = bough_control_link_load(f.s->control);
+    bough_sampled_load load = f.s->sampled[1];
     bough_snapshot copy = {BOUGH_SNAPSHOT_SAVE, (char *)saved, 0},
                    back = {BOUGH_SNAPSHOT_RESTORE, (char *)saved, 0};
     bough_snapshot room = {BOUGH_SNAPSHOT_MEASURE, NULL, 0};
-    bough_control_link_snapshot(f.s->control, &room);
+    load.snapshot(load.self, &room);
     assert_true(room.used <= sizeof saved);
-    bough_control_link_snapshot(f.s->control, &copy);
+    load.snapshot(load.self, &copy);
     for (int k = 0; k < 2; k++) {
         back.used = 0;
-        bough_control_link_snapshot(f.s->control, &back);
+        load.snapshot(load.self, &back);
         check_ok(load.sample(load.self, 3, 3.02, &jumped));
         bough_control_link_generator(f.s->control, &speed[k], &torque[k], &power[k]);
         assert_false(jumped);

@@ -24,7 +24,7 @@ static double whole_tower(const bough_scene *scene) {
 
 static bough_simulation *sampled(bough_arena *arena, const char *const *sets, double t) {
     bough_simulation *s = scene_build(arena, turbine, sets);
-    bough_sampled_load aero = bough_aero_link_load(s->aero), drag = bough_drag_link_load(s->drag);
+    bough_sampled_load aero = s->sampled[0], drag = s->sampled[1];
     bool jumped;
     aero.sample(aero.self, t, t + 0.02, &jumped);
     check_ok(drag.sample(drag.self, t, t + 0.02, &jumped));
@@ -71,18 +71,18 @@ TEST(drag_runs_and_repeats) {
     check_arena(arena);
     bough_simulation *s = scene_build(arena, turbine, sets);
     while (s->master->time < 0.5 - 1e-9) scene_step(s);
+    bough_sampled_load load = s->sampled[1];
     bough_snapshot room = {BOUGH_SNAPSHOT_MEASURE, NULL, 0};
-    bough_drag_link_snapshot(s->drag, &room);
+    load.snapshot(load.self, &room);
     size_t n = room.used;
     char *saved = calloc(1, n), *first = calloc(1, n), *again = calloc(1, n);
-    bough_sampled_load load = bough_drag_link_load(s->drag);
     bool jumped;
-    bough_drag_link_snapshot(s->drag, &(bough_snapshot){BOUGH_SNAPSHOT_SAVE, saved, 0});
+    load.snapshot(load.self, &(bough_snapshot){BOUGH_SNAPSHOT_SAVE, saved, 0});
     load.sample(load.self, 0.5, 0.52, &jumped);
-    bough_drag_link_snapshot(s->drag, &(bough_snapshot){BOUGH_SNAPSHOT_SAVE, first, 0});
-    bough_drag_link_snapshot(s->drag, &(bough_snapshot){BOUGH_SNAPSHOT_RESTORE, saved, 0});
+    load.snapshot(load.self, &(bough_snapshot){BOUGH_SNAPSHOT_SAVE, first, 0});
+    load.snapshot(load.self, &(bough_snapshot){BOUGH_SNAPSHOT_RESTORE, saved, 0});
     load.sample(load.self, 0.5, 0.52, &jumped);
-    bough_drag_link_snapshot(s->drag, &(bough_snapshot){BOUGH_SNAPSHOT_SAVE, again, 0});
+    load.snapshot(load.self, &(bough_snapshot){BOUGH_SNAPSHOT_SAVE, again, 0});
     assert_false(jumped);
     assert_memory_equal(first, again, n);
     assert_memory_not_equal(first, saved, n);
@@ -104,7 +104,7 @@ TEST(held_drag_is_constant) {
         check_near(loads->rate[i], 0, 0, 0);
     }
     check_near(sum, whole_tower(s->scene), 1e-3, 0);
-    bough_sampled_load load = bough_drag_link_load(s->drag);
+    bough_sampled_load load = s->sampled[1];
     bool jumped;
     load.sample(load.self, 0, 0.02, &jumped);
     assert_true(jumped);
