@@ -188,6 +188,12 @@ void bough_channel_family_add(bough_channels *list, bough_channel_part part, con
     }
 }
 
+void bough_channel_group_add(bough_channels *list, bough_channel_sample *sample, void *self,
+                             bough_channel_part part) {
+    bough_channels_group(list, sample, self);
+    bough_channel_family_add(list, part, "", "");
+}
+
 // -- help -----------------------------------------------------------------------------------------
 
 static void print_family(const bough_channel_family *f, FILE *stream) {

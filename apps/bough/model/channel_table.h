@@ -64,6 +64,10 @@ extern const bough_channel_family bough_channel_families[BOUGH_CHANNEL_PARTS];
 // Adds the channels of a part to the list's last group.
 void bough_channel_family_add(bough_channels *list, bough_channel_part part, const char *a, const char *b);
 
+// A group of the list whose channels are those of a part that has no names.
+void bough_channel_group_add(bough_channels *list, bough_channel_sample *sample, void *self,
+                             bough_channel_part part);
+
 // Writes all of them as Markdown.
 void bough_channel_table_help(FILE *stream);
 

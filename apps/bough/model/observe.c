@@ -12,14 +12,20 @@
 #include <stdio.h>
 #include <string.h>
 
-// -- joints ---------------------------------------------------------------------------------------
-
-static void joint_state(const bough_simulation *s, int body, double *coordinate, double *speed) {
-    int q, v;
-    bough_tree_joint_rows(s->tree, body, &q, &v);
-    *coordinate = s->leader.state[q];
-    *speed = s->leader.state[v];
+// The channels of a part that is there n times, under the name of each, none where that is NULL; without
+// `name` under its number. Of a group of their own; without `sample` of the last one.
+static void add_each(bough_simulation *s, bough_channels *list, bough_channel_sample *sample,
+                     bough_channel_part part, int n, const char *(*name)(const bough_simulation *s, int k)) {
+    if (sample) bough_channels_group(list, sample, s);
+    for (int k = 0; k < n; k++) {
+        char number[12];
+        snprintf(number, sizeof number, "%d", k + 1);
+        const char *a = name ? name(s, k) : number;
+        if (a) bough_channel_family_add(list, part, a, "");
+    }
 }
+
+// -- joints ---------------------------------------------------------------------------------------
 
 static bool is_rotor(const bough_scene *scene, int body) {
     return scene->turbine.node != NULL && scene->turbine.rotor == body;
@@ -162,11 +168,7 @@ static void sample_springs(void *self, double t, double *value) {
         value[0] = bough_tree_spring(s->tree, s->view, k, &value[1], &direction);
 }
 
-static void add_springs(bough_simulation *s, bough_channels *list) {
-    bough_channels_group(list, sample_springs, s);
-    for (int k = 0; k < s->scene->n_spring; k++)
-        bough_channel_family_add(list, BOUGH_CHANNELS_SPRING, s->scene->spring[k].name, "");
-}
+static const char *name_spring(const bough_simulation *s, int k) { return s->scene->spring[k].name; }
 
 static void sample_bushings(void *self, double t, double *value) {
     (void)t;
@@ -183,11 +185,7 @@ static void sample_bushings(void *self, double t, double *value) {
     }
 }
 
-static void add_bushings(bough_simulation *s, bough_channels *list) {
-    bough_channels_group(list, sample_bushings, s);
-    for (int k = 0; k < s->scene->n_bushing; k++)
-        bough_channel_family_add(list, BOUGH_CHANNELS_BUSHING, s->scene->bushing[k].name, "");
-}
+static const char *name_bushing(const bough_simulation *s, int k) { return s->scene->bushing[k].name; }
 
 // Forces and moments of closures under the rods' present forces.
 static void sample_closures(void *self, double t, double *value) {
@@ -197,11 +195,7 @@ static void sample_closures(void *self, double t, double *value) {
         bough_wrench_store(bough_loops_wrench(s->tree, s->view, k), value);
 }
 
-static void add_closures(bough_simulation *s, bough_channels *list) {
-    bough_channels_group(list, sample_closures, s);
-    for (int k = 0; k < s->scene->n_closure; k++)
-        bough_channel_family_add(list, BOUGH_CHANNELS_CLOSURE, s->scene->closure[k].name, "");
-}
+static const char *name_closure(const bough_simulation *s, int k) { return s->scene->closure[k].name; }
 
 static void sample_markers(void *self, double t, double *value) {
     (void)t;
@@ -212,54 +206,28 @@ static void sample_markers(void *self, double t, double *value) {
     }
 }
 
-static void add_markers(bough_simulation *s, bough_channels *list) {
-    bough_channels_group(list, sample_markers, s);
-    for (int k = 0; k < s->scene->n_marker; k++)
-        bough_channel_family_add(list, BOUGH_CHANNELS_MARKER, s->scene->marker[k].name, "");
-}
+static const char *name_marker(const bough_simulation *s, int k) { return s->scene->marker[k].name; }
 
 // -- beams ----------------------------------------------------------------------------------------
-
-// The channels of a part with a number in place of {a}.
-static void add_numbered(bough_channels *list, bough_channel_part part, int number) {
-    char text[12];
-    snprintf(text, sizeof text, "%d", number);
-    bough_channel_family_add(list, part, text, "");
-}
-
-enum { BLADE_CHANNELS = 12 };
 
 // The root wrench is the blade's on the hub, in blade-root axes; out of and in plane are the tip's
 // displacement along the axes before the pitch.
 static void sample_blades(void *self, double t, double *value) {
     const bough_simulation *s = self;
     bough_simulation_accelerate(s, t);
-    for (int b = 0; b < s->scene->turbine.n_blade; b++, value += BLADE_CHANNELS) {
+    for (int b = 0; b < s->scene->turbine.n_blade; b++) {
         const bough_beam *beam = bough_simulation_beam(s, s->scene->turbine.blade[b]);
         double pitch = bough_simulation_pitch(s, beam), c = cos(pitch), sine = sin(pitch);
         double root[BOUGH_ROD_MOST_OUTPUTS];
         bough_vec3 d, turn;
         bough_simulation_tip_shift(s, beam, &d, &turn);
         bough_simulation_root(s, beam, t, root);
-        const double values[BLADE_CHANNELS] = {d.x * c + d.y * sine,
-                                               d.y * c - d.x * sine,
-                                               turn.z / BOUGH_DEGREE,
-                                               d.x,
-                                               d.y,
-                                               d.z,
-                                               root[0] / 1e3,
-                                               root[1] / 1e3,
-                                               root[2] / 1e3,
-                                               root[3] / 1e3,
-                                               root[4] / 1e3,
-                                               root[5] / 1e3};
-        for (int k = 0; k < BLADE_CHANNELS; k++) value[k] = values[k];
+        *value++ = d.x * c + d.y * sine;
+        *value++ = d.y * c - d.x * sine;
+        *value++ = turn.z / BOUGH_DEGREE;
+        value = bough_observe_vector(d, 1, value);
+        for (int k = 0; k < 6; k++) *value++ = root[k] / 1e3;
     }
-}
-
-static void add_blades(bough_simulation *s, bough_channels *list) {
-    bough_channels_group(list, sample_blades, s);
-    for (int b = 0; b < s->scene->turbine.n_blade; b++) add_numbered(list, BOUGH_CHANNELS_BLADE, b + 1);
 }
 
 // The rod nearest to the rotor that carries it, and the last of the rods that carry that one.
@@ -284,8 +252,6 @@ static bough_transform top_at_foot(const bough_simulation *s, bough_transform ti
     return bough_transform_compose(bough_transform_inverse(foot), bough_transform_compose(top, tip));
 }
 
-enum { TOWER_CHANNELS = 12 };
-
 // Displacement and rotation of the top and the wrench on the foundation, all in the tower's axes.
 static void sample_tower(void *self, double t, double *value) {
     const bough_simulation *s = self;
@@ -309,8 +275,7 @@ static void add_tower(bough_simulation *s, bough_channels *list) {
     s->tower_rest =
         top_at_foot(s, (bough_transform){top->position[n], bough_rotation_matrix(top->rotation[n])});
     bough_simulation_update(s);
-    bough_channels_group(list, sample_tower, s);
-    bough_channel_family_add(list, BOUGH_CHANNELS_TOWER, "", "");
+    bough_channel_group_add(list, sample_tower, s, BOUGH_CHANNELS_TOWER);
 }
 
 static bool is_blade(const bough_scene *scene, const bough_scene_body *body) {
@@ -333,14 +298,8 @@ static void sample_tips(void *self, double t, double *value) {
     }
 }
 
-static void add_tips(bough_simulation *s, bough_channels *list) {
-    bough_channels_group(list, sample_tips, s);
-    for (int k = 0; k < s->n_beam; k++) {
-        const bough_scene_body *body = s->beam[k].body;
-        if (!is_blade(s->scene, body)) {
-            bough_channel_family_add(list, BOUGH_CHANNELS_TIP, body->name, "");
-        }
-    }
+static const char *name_tip(const bough_simulation *s, int k) {
+    return is_blade(s->scene, s->beam[k].body) ? NULL : s->beam[k].body->name;
 }
 
 // -- aerodynamics ---------------------------------------------------------------------------------
@@ -377,33 +336,25 @@ static void sample_wind(void *self, double t, double *value) {
     memcpy(value, values, sizeof values);
 }
 
-static void add_wind(bough_simulation *s, bough_channels *list) {
-    bough_channels_group(list, sample_wind, s);
-    bough_channel_family_add(list, BOUGH_CHANNELS_WIND, "", "");
-}
-
-enum { NODE_CHANNELS = 10 };
-
 static void sample_nodes(void *self, double t, double *value) {
     (void)t;
     const bough_simulation *s = self;
     const bough_scene_aero *aero = &s->scene->aero;
     double factor;
     const bough_rotor_data *data = bough_aero_link_data(s->aero, &factor);
-    for (int k = 0; k < s->scene->turbine.n_blade * aero->n_node; k++, value += NODE_CHANNELS) {
+    for (int k = 0; k < s->scene->turbine.n_blade * aero->n_node; k++) {
         int node = (int)aero->nodes[k % aero->n_node] - 1;
         bough_station x = bough_rotor_station(data, k / aero->n_node, node);
-        const double values[NODE_CHANNELS] = {x.speed,
-                                              x.alpha / BOUGH_DEGREE,
-                                              x.phi / BOUGH_DEGREE,
-                                              x.axial,
-                                              x.tangential,
-                                              x.coefficients.lift,
-                                              x.coefficients.drag,
-                                              x.coefficients.moment,
-                                              factor * x.force_x,
-                                              factor * x.force_y};
-        memcpy(value, values, sizeof values);
+        *value++ = x.speed;
+        *value++ = x.alpha / BOUGH_DEGREE;
+        *value++ = x.phi / BOUGH_DEGREE;
+        *value++ = x.axial;
+        *value++ = x.tangential;
+        *value++ = x.coefficients.lift;
+        *value++ = x.coefficients.drag;
+        *value++ = x.coefficients.moment;
+        *value++ = factor * x.force_x;
+        *value++ = factor * x.force_y;
     }
 }
 
@@ -419,9 +370,8 @@ static void add_nodes(bough_simulation *s, bough_channels *list) {
 }
 
 static void add_aero(bough_simulation *s, bough_channels *list) {
-    bough_channels_group(list, sample_aero, s);
-    bough_channel_family_add(list, BOUGH_CHANNELS_AIR, "", "");
-    add_wind(s, list);
+    bough_channel_group_add(list, sample_aero, s, BOUGH_CHANNELS_AIR);
+    bough_channel_group_add(list, sample_wind, s, BOUGH_CHANNELS_WIND);
     add_nodes(s, list);
 }
 
@@ -435,21 +385,16 @@ static void sample_fmus(void *self, double t, double *value) {
     }
 }
 
-static void add_fmus(bough_simulation *s, bough_channels *list) {
-    bough_channels_group(list, sample_fmus, s);
-    for (int k = 0; k < s->n_fmu; k++) {
-        bough_channel_family_add(list, BOUGH_CHANNELS_FMU, s->rod[s->n_rod + k].system.name, "");
-    }
-}
+static const char *name_fmu(const bough_simulation *s, int k) { return s->rod[s->n_rod + k].system.name; }
 
 // -- control --------------------------------------------------------------------------------------
 
 static void sample_control(void *self, double t, double *value) {
     (void)t;
     const bough_simulation *s = self;
-    double angle, speed, torque, power;
+    double speed, torque, power;
     bough_control_link_generator(s->control, &speed, &torque, &power);
-    joint_state(s, s->scene->turbine.rotor, &angle, &speed);
+    speed = bough_simulation_joint_point(s, s->scene->turbine.rotor).v;
     value[0] = s->scene->control.gear_ratio * speed / BOUGH_RPM;
     value[1] = torque / 1e3;
     value[2] = power / 1e3;
@@ -459,52 +404,47 @@ static void sample_control(void *self, double t, double *value) {
     }
 }
 
-static void add_control(bough_simulation *s, bough_channels *list) {
-    bough_channels_group(list, sample_control, s);
-    bough_channel_family_add(list, BOUGH_CHANNELS_CONTROL, "", "");
-    for (int b = 0; b < s->scene->turbine.n_blade; b++) add_numbered(list, BOUGH_CHANNELS_PITCH, b + 1);
-}
-
 // The measurements of a control law outside.
 static void sample_law(void *self, double t, double *value) {
     (void)t;
     const bough_simulation *s = self;
-    double angle, speed;
-    joint_state(s, s->scene->turbine.rotor, &angle, &speed);
+    double speed = bough_simulation_joint_point(s, s->scene->turbine.rotor).v;
     value[0] = s->scene->control.gear_ratio * speed;
     for (int b = 0; b < s->scene->turbine.n_blade; b++) {
         value[1 + b] = bough_simulation_pitch(s, bough_simulation_beam(s, s->scene->turbine.blade[b]));
     }
 }
 
-static void add_law(bough_simulation *s, bough_channels *list) {
-    bough_channels_group(list, sample_law, s);
-    bough_channel_family_add(list, BOUGH_CHANNELS_LAW, "", "");
-    for (int b = 0; b < s->scene->turbine.n_blade; b++) add_numbered(list, BOUGH_CHANNELS_LAW_PITCH, b + 1);
+static void add_control(bough_simulation *s, bough_channels *list) {
+    int n_blade = s->scene->turbine.n_blade;
+    bough_channel_group_add(list, sample_control, s, BOUGH_CHANNELS_CONTROL);
+    add_each(s, list, NULL, BOUGH_CHANNELS_PITCH, n_blade, NULL);
+    if (s->scene->control.kind != BOUGH_SCENE_EXTERNAL) return;
+    bough_channel_group_add(list, sample_law, s, BOUGH_CHANNELS_LAW);
+    add_each(s, list, NULL, BOUGH_CHANNELS_LAW_PITCH, n_blade, NULL);
 }
 
 bough_status bough_simulation_channels(bough_simulation *s, bough_channels *channels) {
-    bool turbine = s->scene->turbine.node != NULL;
-    const bough_scene_control *control = &s->scene->control;
+    const bough_scene *scene = s->scene;
+    bool turbine = scene->turbine.node != NULL;
     if (turbine) bough_observe_turn(s, channels);
     add_joints(s, channels);
     add_free_bodies(s, channels);
     add_drives(s, channels);
-    add_springs(s, channels);
-    add_bushings(s, channels);
-    add_closures(s, channels);
-    add_markers(s, channels);
-    if (turbine) add_blades(s, channels);
+    add_each(s, channels, sample_springs, BOUGH_CHANNELS_SPRING, scene->n_spring, name_spring);
+    add_each(s, channels, sample_bushings, BOUGH_CHANNELS_BUSHING, scene->n_bushing, name_bushing);
+    add_each(s, channels, sample_closures, BOUGH_CHANNELS_CLOSURE, scene->n_closure, name_closure);
+    add_each(s, channels, sample_markers, BOUGH_CHANNELS_MARKER, scene->n_marker, name_marker);
+    add_each(s, channels, sample_blades, BOUGH_CHANNELS_BLADE, scene->turbine.n_blade, NULL);
     find_tower(s);
     if (s->tower_top != NULL) add_tower(s, channels);
-    add_tips(s, channels);
+    add_each(s, channels, sample_tips, BOUGH_CHANNELS_TIP, s->n_beam, name_tip);
     bough_observe_sections(s, channels);
     if (s->tower_top != NULL) bough_observe_yaw_bearing(s, channels);
     s->n_motion_channel = channels->count;
-    add_fmus(s, channels);
+    add_each(s, channels, sample_fmus, BOUGH_CHANNELS_FMU, s->n_fmu, name_fmu);
     if (turbine) bough_observe_shaft(s, channels);
     if (s->aero != NULL) add_aero(s, channels);
     if (s->control != NULL) add_control(s, channels);
-    if (control->node != NULL && control->kind == BOUGH_SCENE_EXTERNAL) add_law(s, channels);
     return channels->status;
 }

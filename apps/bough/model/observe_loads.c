@@ -170,6 +170,5 @@ static void sample_yaw_bearing(void *self, double t, double *value) {
 }
 
 void bough_observe_yaw_bearing(bough_simulation *s, bough_channels *list) {
-    bough_channels_group(list, sample_yaw_bearing, s);
-    bough_channel_family_add(list, BOUGH_CHANNELS_YAW_BEARING, "", "");
+    bough_channel_group_add(list, sample_yaw_bearing, s, BOUGH_CHANNELS_YAW_BEARING);
 }

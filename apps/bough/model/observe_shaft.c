@@ -60,11 +60,11 @@ static shaft *build_shaft(bough_arena *arena, const bough_simulation *s) {
 void bough_simulation_hub_turn(const bough_simulation *s, double *angle, double *speed) {
     const bough_scene_turbine *turbine = &s->scene->turbine;
     *angle = *speed = 0;
-    for (int i = turbine->blade[0], q, v; i >= 0; i = i == turbine->rotor ? -1 : parent_of(s->scene, i)) {
+    for (int i = turbine->blade[0]; i >= 0; i = i == turbine->rotor ? -1 : parent_of(s->scene, i)) {
         if (!turns_about_rotor_axis(s, i)) continue;
-        bough_tree_joint_rows(s->tree, i, &q, &v);
-        *angle += s->leader.state[q];
-        *speed += s->leader.state[v];
+        bough_motion_point joint = bough_simulation_joint_point(s, i);
+        *angle += joint.q;
+        *speed += joint.v;
     }
 }
 
@@ -122,11 +122,9 @@ static void sample_torque(void *self, double t, double *value) {
 }
 
 void bough_observe_turn(bough_simulation *s, bough_channels *list) {
-    bough_channels_group(list, sample_turn, s);
-    bough_channel_family_add(list, BOUGH_CHANNELS_ROTOR, "", "");
+    bough_channel_group_add(list, sample_turn, s, BOUGH_CHANNELS_ROTOR);
 }
 
 void bough_observe_shaft(bough_simulation *s, bough_channels *list) {
-    bough_channels_group(list, sample_torque, build_shaft(list->arena, s));
-    bough_channel_family_add(list, BOUGH_CHANNELS_SHAFT, "", "");
+    bough_channel_group_add(list, sample_torque, build_shaft(list->arena, s), BOUGH_CHANNELS_SHAFT);
 }
