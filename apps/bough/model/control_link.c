@@ -95,12 +95,6 @@ static bool happens(bough_events *e, int i, double t) {
     return event->falls ? value < event->threshold : value > event->threshold;
 }
 
-static double yaw_angle(const bough_simulation *s, int body) {
-    int q, v;
-    bough_tree_joint_rows(s->tree, body, &q, &v);
-    return s->leader.state[q];
-}
-
 // Marks the events that have happened up to the time of `sensed`.
 static void bough_events_look(bough_events *e, const bough_discon_sensed *sensed, bough_event_state *state) {
     for (int i = 0; i < e->n; i++) {
@@ -109,7 +103,8 @@ static void bough_events_look(bough_events *e, const bough_discon_sensed *sensed
         state[i] = (bough_event_state){
             .happened = 1, .since = sensed->time, .torque = sensed->torque, .speed = sensed->generator_speed};
         if (event->blade > 0) state[i].angle = sensed->pitch[event->blade - 1];
-        if (event->kind == BOUGH_SCENE_YAW_RUNAWAY) state[i].angle = yaw_angle(e->simulation, event->body);
+        if (event->kind == BOUGH_SCENE_YAW_RUNAWAY)
+            state[i].angle = bough_simulation_joint_point(e->simulation, event->body).q;
     }
 }
 

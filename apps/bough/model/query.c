@@ -35,19 +35,13 @@ bough_beam *bough_simulation_beam(const bough_simulation *s, int body) {
 double bough_simulation_pitch(const bough_simulation *s, const bough_beam *beam) {
     const bough_scene_joint *joint = &beam->body->joint;
     if (joint->kind != BOUGH_JOINT_REVOLUTE || joint->axis != 2) return beam->body->pitch;
-    int coordinate, speed;
-    bough_tree_joint_rows(s->tree, (int)(beam->body - s->scene->body), &coordinate, &speed);
-    return beam->body->pitch - s->leader.state[coordinate];
+    return beam->body->pitch - bough_simulation_joint_point(s, (int)(beam->body - s->scene->body)).q;
 }
 
 bough_vec3 bough_simulation_joint_axis(const bough_simulation *s, int body) {
     bough_mat3 r = bough_tree_frame_pose(s->view, &s->tree->bodies[body]).rotation;
-    const bough_vec3 axes[] = {
-        [BOUGH_SCENE_X] = r.c1,
-        [BOUGH_SCENE_Y] = r.c2,
-        [BOUGH_SCENE_Z] = r.c3,
-    };
-    return axes[s->scene->body[body].joint.axis];
+    int axis = s->scene->body[body].joint.axis;
+    return axis == BOUGH_SCENE_X ? r.c1 : axis == BOUGH_SCENE_Y ? r.c2 : r.c3;
 }
 
 bough_rotor_place bough_simulation_rotor(const bough_simulation *s) {
@@ -139,17 +133,20 @@ static vertex end_vertex(const bough_simulation *s, const bough_beam *beam) {
     return (vertex){x, bough_mat3_mul(r, twist.linear), bough_mat3_mul(r, twist.angular), r};
 }
 
-// Vertex i of a rod, from 1.
-static vertex moving_vertex(const bough_simulation *s, const bough_beam *beam, int i) {
-    bool end = i == beam->def.n_segment && beam->end >= 0;
-    return end ? end_vertex(s, beam) : rod_vertex(beam, s->rod[beam->port].state, i);
+// state: of the vertices, NULL of a rigid body.
+static vertex vertex_of(const bough_simulation *s, const bough_beam *beam, const double *state, int i,
+                        bough_twist twist) {
+    if (i == 0 || state == NULL) return rigid_vertex(beam, i, twist);
+    if (i > bough_beam_mesh(beam)->n) return end_vertex(s, beam);
+    return rod_vertex(beam, state, i);
 }
 
 bough_sharpest bough_simulation_bend(const bough_simulation *s, const bough_beam *beam) {
+    const double *state = s->rod[beam->port].state;
     bough_mat3 section = bough_rotation_matrix(beam->def.rotation[0]);
     bough_sharpest bend = {0};
     for (int i = 1; i <= beam->def.n_segment; i++) {
-        bough_mat3 next = moving_vertex(s, beam, i).rotation;
+        bough_mat3 next = vertex_of(s, beam, state, i, (bough_twist){0}).rotation;
         double trace =
             bough_dot(section.c1, next.c1) + bough_dot(section.c2, next.c2) + bough_dot(section.c3, next.c3);
         double angle = acos(fmax(-1, fmin(0.5 * (trace - 1), 1)));
@@ -157,14 +154,6 @@ bough_sharpest bough_simulation_bend(const bough_simulation *s, const bough_beam
         section = next;
     }
     return bend;
-}
-
-// state: of the vertices, NULL of a rigid body.
-static vertex vertex_of(const bough_simulation *s, const bough_beam *beam, const double *state, int i,
-                        bough_twist twist) {
-    if (i == 0 || state == NULL) return rigid_vertex(beam, i, twist);
-    if (i > bough_beam_mesh(beam)->n) return end_vertex(s, beam);
-    return rod_vertex(beam, state, i);
 }
 
 bough_vec3 bough_simulation_beam_tip(const bough_simulation *s, const bough_beam *beam,

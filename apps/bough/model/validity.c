@@ -96,9 +96,9 @@ static void check_air(bough_simulation *s) {
 static void check_speed(bough_simulation *s) {
     const bough_scene_control *control = &s->scene->control;
     if (!control->node || control->kind != BOUGH_SCENE_VARIABLE_SPEED) return;
-    int rotor = s->scene->turbine.rotor, q, v;
-    bough_tree_joint_rows(s->tree, rotor, &q, &v);
-    double speed = s->leader.state[v], rated = control->law.rated_speed / control->gear_ratio;
+    int rotor = s->scene->turbine.rotor;
+    double speed = bough_simulation_joint_point(s, rotor).v;
+    double rated = control->law.rated_speed / control->gear_ratio;
     if (fabs(speed) <= most_over_rated * fabs(rated)) return;
     validity_pass(s->validity, BOUGH_LIMIT_ROTOR_SPEED, rotor, s->master->time, speed * (30 / BOUGH_PI));
 }
@@ -160,8 +160,7 @@ static void check_closures(bough_simulation *s) {
     bough_validity *v = s->validity;
     if (v->limit[BOUGH_LIMIT_SINGULAR].passed) return;
     bough_simulation_update(s);
-    if (!bough_tree_forward_dynamics(s->tree, s->view, t, s->master->coupling->input, s->acceleration))
-        return;
+    if (!bough_simulation_accelerate(s, t)) return;
     double margin = bough_loops_margin(s->tree, s->view, &closure);
     v->margin = fmax(v->margin, margin);
     if (!(margin <= least_margin && margin <= least_share * v->margin)) return;
