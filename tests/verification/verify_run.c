@@ -140,21 +140,17 @@ typedef struct invariants {
 
 typedef struct gauge {
     bough_simulation *simulation;
-    bough_beam_motion *motion;  // (n_beam)
-    bough_rod_scratch *scratch; // (n_beam)
+    bough_vertex_motion **vertex; // (n_beam)
+    bough_rod_scratch *scratch;   // (n_beam)
 } gauge;
 
 static bool gauge_init(gauge *g, bough_arena *arena, bough_simulation *s) {
     g->simulation = s;
-    g->motion = bough_arena_take(arena, (size_t)s->n_beam * sizeof *g->motion);
+    g->vertex = bough_arena_take(arena, (size_t)s->n_beam * sizeof *g->vertex);
     g->scratch = bough_arena_take(arena, (size_t)s->n_beam * sizeof *g->scratch);
-    for (int k = 0; g->motion && g->scratch && k < s->n_beam; k++) {
+    for (int k = 0; k < s->n_beam; k++) {
         size_t n = (size_t)s->beam[k].def.n_segment + 1;
-        bough_beam_motion *m = &g->motion[k];
-        m->position = bough_arena_take(arena, n * sizeof *m->position);
-        m->velocity = bough_arena_take(arena, n * sizeof *m->velocity);
-        m->angular_velocity = bough_arena_take(arena, n * sizeof *m->angular_velocity);
-        m->rotation = bough_arena_take(arena, n * sizeof *m->rotation);
+        g->vertex[k] = bough_arena_take(arena, n * sizeof *g->vertex[k]);
         if (s->beam[k].rod) {
             bough_rod_scratch_init(&g->scratch[k], arena, bough_rod_body_model(s->beam[k].rod));
         }
@@ -162,20 +158,19 @@ static bool gauge_init(gauge *g, bough_arena *arena, bough_simulation *s) {
     return true;
 }
 
-static void add_vertex(const bough_beam *beam, const bough_beam_motion *m, int i, bough_vec3 gravity,
+static void add_vertex(const bough_vertex_inertia *v, const bough_vertex_motion *m, bough_vec3 gravity,
                        invariants *sum) {
-    const bough_vertex_inertia *v = &beam->def.inertia[i];
-    bough_vec3 u = m->velocity[i], x = m->position[i];
-    bough_vec3 w = bough_mat3_tmul(m->rotation[i], m->angular_velocity[i]);
-    bough_vec3 moment = bough_mat3_mul(m->rotation[i], v->moment);
+    bough_vec3 u = m->velocity, x = m->position;
+    bough_vec3 w = bough_mat3_tmul(m->rotation, m->angular);
+    bough_vec3 moment = bough_mat3_mul(m->rotation, v->moment);
     const double *j = v->inertia;
     bough_mat3 tensor = {{j[0], j[3], j[4]}, {j[3], j[1], j[5]}, {j[4], j[5], j[2]}};
     bough_vec3 jw = bough_mat3_mul(tensor, w);
-    bough_vec3 p = bough_axpy(v->mass, u, bough_cross(m->angular_velocity[i], moment));
-    bough_vec3 l = bough_add(bough_mat3_mul(m->rotation[i], jw), bough_cross(moment, u));
+    bough_vec3 p = bough_axpy(v->mass, u, bough_cross(m->angular, moment));
+    bough_vec3 l = bough_add(bough_mat3_mul(m->rotation, jw), bough_cross(moment, u));
     sum->momentum = bough_add(sum->momentum, p);
     sum->angular = bough_add(sum->angular, bough_add(l, bough_cross(x, p)));
-    double kinetic = 0.5 * (bough_dot(p, u) + bough_dot(l, m->angular_velocity[i]));
+    double kinetic = 0.5 * (bough_dot(p, u) + bough_dot(l, m->angular));
     sum->motion_energy += kinetic;
     sum->energy += kinetic - bough_dot(gravity, bough_axpy(v->mass, x, moment));
 }
@@ -194,8 +189,9 @@ static invariants measure(const gauge *g) {
         const bough_beam *beam = &s->beam[k];
         if (!beam->rod) continue;
         const bough_rod_model *model = bough_rod_body_model(beam->rod);
-        bough_simulation_beam_motion(s, beam, g->motion[k]);
-        for (int i = 1; i <= model->n; i++) add_vertex(beam, &g->motion[k], i, s->tree->gravity, &sum);
+        bough_simulation_beam_motion(s, beam, g->vertex[k]);
+        for (int i = 1; i <= model->n; i++)
+            add_vertex(&beam->def.inertia[i], &g->vertex[k][i], s->tree->gravity, &sum);
         bough_rod_gather(model, s->rod[beam->port].state, bough_simulation_rod_input(s, beam),
                          &g->scratch[k]);
         sum.strain_energy += rod_elastic_energy(model, &g->scratch[k]);

@@ -14,11 +14,11 @@ struct bough_session {
     bough_arena *arena;
     bool open; // the run is there
     bough_run run;
-    uint64_t kind;            // fingerprint of what its copies hold
-    size_t size;              // of a copy [bytes]
-    bough_beam_motion motion; // scratch of the longest beam
-    int opening;              // code of the opening
-    int code;                 // of the last call that has one
+    uint64_t kind;               // fingerprint of what its copies hold
+    size_t size;                 // of a copy [bytes]
+    bough_vertex_motion *vertex; // scratch of the longest beam
+    int opening;                 // code of the opening
+    int code;                    // of the last call that has one
     char error[ERROR_TEXT];
 };
 
@@ -135,17 +135,6 @@ int bough_session_restore(bough_session *s, const void *copy) {
 // The first region of a thread starts its team; later ones find it.
 static void start_threads(void *unused) { (void)unused; }
 
-static bough_beam_motion motion_room(bough_arena *arena, const bough_simulation *s) {
-    size_t n = 1;
-    for (int k = 0; k < s->n_beam; k++) {
-        size_t points = (size_t)s->beam[k].def.n_segment + 1;
-        if (points > n) n = points;
-    }
-    bough_vec3 *vectors = bough_arena_take(arena, 3 * n * sizeof *vectors);
-    bough_mat3 *matrices = bough_arena_take(arena, n * sizeof *matrices);
-    return (bough_beam_motion){vectors, vectors + n, vectors + 2 * n, matrices};
-}
-
 typedef struct opening {
     bough_session *session;
     const char *path, *const *set;
@@ -182,7 +171,8 @@ static bough_status build(bough_arena *arena, void *self) {
     BOUGH_TRY(bough_run_create(arena, scene, &s->run));
     bough_pool_region(s->run.pool, start_threads, NULL);
     describe_copy(s);
-    s->motion = motion_room(arena, s->run.simulation);
+    s->vertex =
+        bough_arena_take(arena, bough_simulation_most_vertices(s->run.simulation) * sizeof *s->vertex);
     s->open = true;
     return status;
 }
@@ -303,15 +293,14 @@ int bough_session_poses(bough_session *s, int body, double *position, double *ro
     const bough_beam *beam = bough_simulation_beam(x, body);
     bough_simulation_update(x);
     if (beam) {
-        bough_simulation_beam_motion(x, beam, s->motion);
+        bough_simulation_beam_motion(x, beam, s->vertex);
     } else {
         bough_transform pose = bough_tree_frame_pose(x->view, &x->tree->bodies[body]);
-        s->motion.position[0] = pose.position;
-        s->motion.rotation[0] = pose.rotation;
+        s->vertex[0] = (bough_vertex_motion){.position = pose.position, .rotation = pose.rotation};
     }
     for (int k = 0; k < bough_session_stations(s, body); k++) {
-        bough_mat3 rows = bough_mat3_transpose(s->motion.rotation[k]);
-        bough_v3_store(s->motion.position[k], position + 3 * k);
+        bough_mat3 rows = bough_mat3_transpose(s->vertex[k].rotation);
+        bough_v3_store(s->vertex[k].position, position + 3 * k);
         bough_v3_store(rows.c1, rotation + 9 * k);
         bough_v3_store(rows.c2, rotation + 9 * k + 3);
         bough_v3_store(rows.c3, rotation + 9 * k + 6);

@@ -10,22 +10,14 @@ struct bough_drag_link {
     const bough_beam *tower; // NULL: none
     int hub_marker;          // −1: none
     int n_vertex, n_tower, n;
-    bough_beam_motion motion; // of the tower
-    double *fresh;            // (n) at this sample
-    double *memory;           // (2 n + 2): value and rate of the signals, start, started
+    bough_vertex_motion *vertex; // of the tower
+    double *fresh;               // (n) at this sample
+    double *memory;              // (2 n + 2): value and rate of the signals, start, started
 };
 
 bool bough_drag_link_wanted(const bough_scene *scene) {
     const bough_scene_aero *aero = &scene->aero;
     return aero->node != NULL && (aero->tower.body_name != NULL || aero->hub_drag_area > 0);
-}
-
-static void take_motion(bough_arena *arena, bough_drag_link *l) {
-    size_t n = (size_t)l->n_vertex;
-    l->motion.position = bough_arena_take(arena, n * sizeof(bough_vec3));
-    l->motion.velocity = bough_arena_take(arena, n * sizeof(bough_vec3));
-    l->motion.angular_velocity = bough_arena_take(arena, n * sizeof(bough_vec3));
-    l->motion.rotation = bough_arena_take(arena, n * sizeof(bough_mat3));
 }
 
 // -- sample ---------------------------------------------------------------------------------------
@@ -42,11 +34,11 @@ static void blow_tower(bough_drag_link *l, double t, double factor) {
     const bough_frame *frame = &s->tree->markers[l->tower->marker];
     bough_transform pose = bough_tree_frame_pose(s->view, frame);
     int n = l->n_vertex;
-    bough_simulation_beam_motion(s, l->tower, l->motion);
+    bough_simulation_beam_motion(s, l->tower, l->vertex);
     if (l->tower->port < 0) memset(l->fresh, 0, 6 * sizeof *l->fresh);
     for (int i = 0; i < n; i++) {
-        bough_vec3 f = bough_rotor_tower_drag(l->rotor, l->motion.position[i], l->motion.rotation[i].c3,
-                                              l->motion.velocity[i], t);
+        const bough_vertex_motion *v = &l->vertex[i];
+        bough_vec3 f = bough_rotor_tower_drag(l->rotor, v->position, v->rotation.c3, v->velocity, t);
         f = bough_mat3_tmul(pose.rotation, bough_scale(factor * share_of(l->tower, i), f));
         if (l->tower->port >= 0) {
             l->fresh[i] = f.x, l->fresh[n + i] = f.y, l->fresh[2 * n + i] = f.z;
@@ -134,7 +126,7 @@ void bough_drag_link_build(bough_arena *arena, bough_simulation *simulation, int
         l->tower = bough_simulation_beam(simulation, aero->tower.body);
         l->n_vertex = l->tower->def.n_segment + 1;
         l->n_tower = l->tower->port < 0 ? 6 : 3 * l->n_vertex;
-        take_motion(arena, l);
+        l->vertex = bough_arena_take(arena, (size_t)l->n_vertex * sizeof *l->vertex);
     }
     l->n = l->n_tower + 6;
     l->fresh = bough_arena_doubles(arena, (size_t)l->n);

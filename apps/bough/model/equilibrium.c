@@ -207,16 +207,6 @@ static bool turns(const bough_whole *coupled, const bough_tree *tree, const doub
     return false;
 }
 
-// Room for the change of any rod.
-static double *rod_changes(bough_arena *arena, const bough_simulation *s) {
-    int most = 1;
-    for (int k = 0; k < s->n_beam; k++) {
-        int n = s->beam[k].def.n_segment;
-        if (n > most) most = n;
-    }
-    return bough_arena_doubles(arena, BOUGH_ROD_CHANGE * (size_t)most);
-}
-
 // The system, the states at rest at `time`, and what moves them.
 typedef struct balance_setup {
     bough_whole *coupled;
@@ -236,7 +226,8 @@ static void set_up(bough_arena *arena, bough_simulation *s, const bough_assembly
     bough_whole_hold(arena, b->coupled, bough_equilibrium_held(s->tree, true, row), row);
     bough_assembly_states(assembly, b->state);
     bough_tree_prescribe(s->tree, time, b->state);
-    b->self = (search){s, b->coupled, time, rod_changes(arena, s)};
+    double *change = bough_arena_doubles(arena, BOUGH_ROD_CHANGE * bough_simulation_most_vertices(s));
+    b->self = (search){s, b->coupled, time, change};
     bring_to_rest(&b->self, b->state);
     b->rests = turns(b->coupled, s->tree, b->state) || s->tree->n_closures == 0;
 }

@@ -103,11 +103,8 @@ void bough_simulation_root(const bough_simulation *s, const bough_beam *beam, do
     add_vertex(w, root + 6);
 }
 
-// A vertex in the body's frame: of a rod from its state, else undeformed and carried along.
-typedef struct vertex {
-    bough_vec3 position, velocity, angular; // angular velocity in body axes
-    bough_mat3 rotation;
-} vertex;
+// In the body's frame: of a rod from its state, else undeformed and carried along.
+typedef bough_vertex_motion vertex;
 
 static vertex rigid_vertex(const bough_beam *beam, int i, bough_twist twist) {
     bough_vec3 x = beam->def.position[i];
@@ -187,18 +184,26 @@ const double *bough_simulation_rod_input(const bough_simulation *s, const bough_
     return c->input + c->assembly->input_offset[beam->port + 1];
 }
 
-void bough_simulation_beam_motion(const bough_simulation *s, const bough_beam *beam,
-                                  bough_beam_motion motion) {
+size_t bough_simulation_most_vertices(const bough_simulation *s) {
+    int most = 1;
+    for (int k = 0; k < s->n_beam; k++) {
+        int n = s->beam[k].def.n_segment + 1;
+        if (n > most) most = n;
+    }
+    return (size_t)most;
+}
+
+void bough_simulation_beam_motion(const bough_simulation *s, const bough_beam *beam, vertex *moving) {
     const bough_frame *frame = &s->tree->markers[beam->marker];
     bough_transform pose = bough_tree_frame_pose(s->view, frame);
     bough_twist twist = bough_tree_frame_twist(s->view, frame);
     const double *state = beam->port < 0 ? NULL : bough_beam_state(s, beam, 1);
     for (int i = 0; i <= beam->def.n_segment; i++) {
         vertex v = vertex_of(s, beam, state, i, twist);
-        motion.position[i] = bough_add(pose.position, bough_mat3_mul(pose.rotation, v.position));
-        motion.rotation[i] = bough_mat3_product(pose.rotation, v.rotation);
-        motion.velocity[i] = bough_mat3_mul(pose.rotation, v.velocity);
-        motion.angular_velocity[i] = bough_mat3_mul(pose.rotation, v.angular);
+        moving[i] =
+            (vertex){bough_add(pose.position, bough_mat3_mul(pose.rotation, v.position)),
+                     bough_mat3_mul(pose.rotation, v.velocity), bough_mat3_mul(pose.rotation, v.angular),
+                     bough_mat3_product(pose.rotation, v.rotation)};
     }
 }
 

@@ -71,45 +71,39 @@ static void take_scratch(bough_arena *arena, bough_shape *shape) {
 }
 
 bough_status bough_shape_create(bough_arena *arena, bough_simulation *s, bough_shape *shape) {
-    size_t n = (size_t)s->scene->n_body, longest = RIGID_POINTS;
+    size_t n = (size_t)s->scene->n_body, most = bough_simulation_most_vertices(s) + RIGID_POINTS;
     *shape = (bough_shape){.simulation = s, .n_line = s->scene->n_body};
     shape->line = bough_arena_take(arena, n * sizeof *shape->line);
     for (int i = 0; i < s->scene->n_body; i++) {
-        size_t count = (size_t)beam_points(s, i);
-        shape->line[i] = (bough_polyline){s->scene->body[i].name, (int)count};
-        if (count > longest) longest = count;
+        shape->line[i] = (bough_polyline){s->scene->body[i].name, beam_points(s, i)};
     }
-    bough_beam_motion *m = &shape->motion;
-    m->position = bough_arena_take(arena, longest * sizeof *m->position);
-    m->velocity = bough_arena_take(arena, longest * sizeof *m->velocity);
-    m->angular_velocity = bough_arena_take(arena, longest * sizeof *m->angular_velocity);
-    m->rotation = bough_arena_take(arena, longest * sizeof *m->rotation);
+    shape->vertex = bough_arena_take(arena, most * sizeof *shape->vertex);
     take_scratch(arena, shape);
     return bough_ok();
 }
 
-static void rigid_line(const bough_simulation *s, int body, bough_vec3 *x) {
+static void rigid_line(const bough_simulation *s, int body, bough_vertex_motion *x) {
     const bough_scene_body *from = &s->scene->body[body];
     const double *c = from->centre_of_mass;
     int parent = from->joint.parent;
     bough_transform own = bough_tree_frame_pose(s->view, &s->tree->bodies[body]);
-    x[0] = x[1] = own.position;
-    if (parent >= 0) x[0] = bough_tree_frame_pose(s->view, &s->tree->bodies[parent]).position;
-    x[2] = bough_add(own.position, bough_mat3_mul(own.rotation, bough_v3(c[0], c[1], c[2])));
+    x[0].position = x[1].position = own.position;
+    if (parent >= 0) x[0].position = bough_tree_frame_pose(s->view, &s->tree->bodies[parent]).position;
+    x[2].position = bough_add(own.position, bough_mat3_mul(own.rotation, bough_v3(c[0], c[1], c[2])));
 }
 
 void bough_shape_points(void *self, double *point) {
     bough_shape *shape = self;
     const bough_simulation *s = shape->simulation;
-    bough_vec3 *x = shape->motion.position;
+    bough_vertex_motion *x = shape->vertex;
     for (int i = 0; i < shape->n_line; i++) {
         const bough_beam *beam = bough_simulation_beam(s, i);
         if (beam) {
-            bough_simulation_beam_motion(s, beam, shape->motion);
+            bough_simulation_beam_motion(s, beam, x);
         } else {
             rigid_line(s, i, x);
         }
-        for (int k = 0; k < shape->line[i].n_point; k++, point += 3) bough_v3_store(x[k], point);
+        for (int k = 0; k < shape->line[i].n_point; k++, point += 3) bough_v3_store(x[k].position, point);
     }
 }
 

@@ -9,9 +9,9 @@
 typedef struct bough_shape {
     bough_simulation *simulation;
     int n_line;
-    bough_polyline *line;       // (n_line) one for each body of the scene, in its order
-    bough_beam_motion motion;   // scratch of the longest beam
-    bough_rod_scratch *scratch; // (n_line) of each body with a rod of its own
+    bough_polyline *line;        // (n_line) one for each body of the scene, in its order
+    bough_vertex_motion *vertex; // scratch of the longest beam
+    bough_rod_scratch *scratch;  // (n_line) of each body with a rod of its own
 } bough_shape;
 
 bough_status bough_shape_create(bough_arena *arena, bough_simulation *s, bough_shape *shape);

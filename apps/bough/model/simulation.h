@@ -155,14 +155,18 @@ bool bough_simulation_accelerate(const bough_simulation *s, double t);
 void bough_simulation_root(const bough_simulation *s, const bough_beam *beam, double t,
                            double root[BOUGH_ROD_MOST_OUTPUTS]);
 
-// Motion of all vertices of a beam in ground axes, from `view` and the rod's state: position,
-// section axes, velocity and angular velocity, each (n_segment + 1).
-typedef struct bough_beam_motion {
-    bough_vec3 *position, *velocity, *angular_velocity;
-    bough_mat3 *rotation;
-} bough_beam_motion;
+// How a vertex of a beam moves; `rotation` are its section's axes.
+typedef struct bough_vertex_motion {
+    bough_vec3 position, velocity, angular;
+    bough_mat3 rotation;
+} bough_vertex_motion;
+
+// The largest number of vertices of a beam; 1 without beams.
+size_t bough_simulation_most_vertices(const bough_simulation *s);
+
+// Motion of all vertices of a beam (n_segment + 1) in ground axes, from `view` and the rod's state.
 void bough_simulation_beam_motion(const bough_simulation *s, const bough_beam *beam,
-                                  bough_beam_motion motion);
+                                  bough_vertex_motion *vertex);
 
 // The same in the body's axes, as rows of n_segment + 1 numbers that a blade's motion has: see rotor.h.
 void bough_simulation_beam_rows(const bough_simulation *s, const bough_beam *beam, double *rows);

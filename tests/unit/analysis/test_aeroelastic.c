@@ -162,14 +162,13 @@ TEST(modes_do_not_depend_on_how_many_are_wanted) {
 // The fastest turning of a tip in the next steps [rad/s].
 static double fastest(bough_simulation *s, const bough_beam *beam, int steps) {
     enum { MOST_VERTICES = 64 };
-    bough_vec3 position[MOST_VERTICES], velocity[MOST_VERTICES], angular[MOST_VERTICES];
-    bough_mat3 rotation[MOST_VERTICES];
+    bough_vertex_motion vertex[MOST_VERTICES];
     double most = 0;
     for (int k = 0; k < steps; k++) {
         scene_step(s);
         bough_simulation_update(s);
-        bough_simulation_beam_motion(s, beam, (bough_beam_motion){position, velocity, angular, rotation});
-        most = fmax(most, bough_norm(angular[beam->def.n_segment]));
+        bough_simulation_beam_motion(s, beam, vertex);
+        most = fmax(most, bough_norm(vertex[beam->def.n_segment].angular));
     }
     return most;
 }

@@ -81,14 +81,13 @@ static bough_wrench received(const fixture *f, int blade) {
     bough_transform pose = bough_tree_frame_pose(f->s->view, &f->s->tree->markers[beam->marker]);
     signal x = signal_of(f, blade);
     if (beam->rod == NULL) return bough_wrench_to_parent(&pose, bough_wrench_load(x.value));
-    bough_vec3 position[SEGMENTS + 1], velocity[SEGMENTS + 1], angular[SEGMENTS + 1];
-    bough_mat3 rotation[SEGMENTS + 1];
-    bough_simulation_beam_motion(f->s, beam, (bough_beam_motion){position, velocity, angular, rotation});
+    bough_vertex_motion vertex[SEGMENTS + 1];
+    bough_simulation_beam_motion(f->s, beam, vertex);
     bough_wrench sum = {{0, 0, 0}, {0, 0, 0}};
     for (int i = 0; i <= SEGMENTS; i++) {
         double w[6];
         for (int c = 0; c < 6; c++) w[c] = x.value[c * (SEGMENTS + 1) + i];
-        bough_transform at = {position[i], pose.rotation};
+        bough_transform at = {vertex[i].position, pose.rotation};
         sum = bough_wrench_add(sum, bough_wrench_to_parent(&at, bough_wrench_load(w)));
     }
     return sum;

@@ -211,21 +211,20 @@ TEST(bodies_start_where_the_scene_puts_them) {
 // Vertices of beams, flexible or rigid, lie along their arm and turn with the hub.
 TEST(beams_move_with_the_hub_at_first) {
     static const char *const names[] = {"third", "stiff", "first"};
-    bough_vec3 position[5], velocity[5], angular[5], omega = {2, 0, 0}, hub = {0, 0, 10};
-    bough_mat3 rotation[5];
+    bough_vec3 omega = {2, 0, 0}, hub = {0, 0, 10};
+    bough_vertex_motion vertex[5];
     check_arena(arena);
     bough_simulation *s = scene_build(arena, arms, no_sets);
     for (int k = 0; k < 3; k++) {
         bough_transform root = pose_of(s, names[k]);
-        bough_beam_motion motion = {position, velocity, angular, rotation};
-        bough_simulation_beam_motion(s, &s->beam[k], motion);
+        bough_simulation_beam_motion(s, &s->beam[k], vertex);
         for (int i = 0; i < 5; i++) {
             bough_vec3 expected = bough_axpy(0.5 * i, root.rotation.c3, root.position);
-            check_vec3(position[i], expected, 1e-14);
-            check_vec3(velocity[i], bough_cross(omega, bough_sub(expected, hub)), 1e-13);
-            check_vec3(angular[i], omega, 1e-14);
-            check_vec3(rotation[i].c1, root.rotation.c1, 1e-14);
-            check_vec3(rotation[i].c3, root.rotation.c3, 1e-14);
+            check_vec3(vertex[i].position, expected, 1e-14);
+            check_vec3(vertex[i].velocity, bough_cross(omega, bough_sub(expected, hub)), 1e-13);
+            check_vec3(vertex[i].angular, omega, 1e-14);
+            check_vec3(vertex[i].rotation.c1, root.rotation.c1, 1e-14);
+            check_vec3(vertex[i].rotation.c3, root.rotation.c3, 1e-14);
         }
     }
 }

@@ -174,9 +174,8 @@ typedef struct invariants {
 static invariants measure(const bough_simulation *s, bough_rod_scratch *scratch) {
     const bough_beam *beam = &s->beam[0];
     const bough_rod_model *m = bough_rod_body_model(beam->rod);
-    bough_vec3 x[16], u[16], omega[16];
-    bough_mat3 r[16];
-    bough_simulation_beam_motion(s, beam, (bough_beam_motion){x, u, omega, r});
+    bough_vertex_motion moving[16];
+    bough_simulation_beam_motion(s, beam, moving);
     tree_sums tree = tree_sum(s->tree, s->view);
     invariants sum = {tree.kinetic + tree.elastic, tree.linear_momentum, tree.angular_momentum};
     for (int i = 1; i <= m->n; i++) {
@@ -184,13 +183,14 @@ static invariants measure(const bough_simulation *s, bough_rod_scratch *scratch)
         const double *j = v->inertia;
         bough_inertia inertia = {
             v->mass, v->moment, {{j[0], j[3], j[4]}, {j[3], j[1], j[5]}, {j[4], j[5], j[2]}}};
-        bough_twist twist = {bough_mat3_tmul(r[i], u[i]), bough_mat3_tmul(r[i], omega[i])};
+        bough_mat3 r = moving[i].rotation;
+        bough_twist twist = {bough_mat3_tmul(r, moving[i].velocity), bough_mat3_tmul(r, moving[i].angular)};
         bough_wrench p = bough_inertia_mul(&inertia, twist);
         sum.energy += 0.5 * bough_power(twist, p);
-        bough_vec3 linear = bough_mat3_mul(r[i], p.force);
+        bough_vec3 linear = bough_mat3_mul(r, p.force);
         sum.momentum = bough_add(sum.momentum, linear);
-        sum.angular =
-            bough_add(sum.angular, bough_add(bough_mat3_mul(r[i], p.moment), bough_cross(x[i], linear)));
+        sum.angular = bough_add(
+            sum.angular, bough_add(bough_mat3_mul(r, p.moment), bough_cross(moving[i].position, linear)));
     }
     bough_rod_gather(m, s->rod[beam->port].state, bough_simulation_rod_input(s, beam), scratch);
     sum.energy += rod_elastic_energy(m, scratch);

@@ -39,18 +39,19 @@ static bough_simulation *build(bough_arena *arena, const char *const *sets, int 
 // ground axes; the root vertex included.
 static void add_blade(const bough_simulation *s, const bough_beam *beam, bough_vec3 hub, bough_vec3 shaft,
                       double *momentum, double *weight) {
-    bough_vec3 position[64], velocity[64], angular[64], gravity = {0, 0, -9.80665};
-    bough_mat3 rotation[64];
-    bough_simulation_beam_motion(s, beam, (bough_beam_motion){position, velocity, angular, rotation});
+    bough_vertex_motion vertex[64];
+    bough_vec3 gravity = {0, 0, -9.80665};
+    bough_simulation_beam_motion(s, beam, vertex);
     for (int i = 0; i <= beam->def.n_segment; i++) {
         const bough_vertex_inertia *v = &beam->def.inertia[i];
-        bough_vec3 x = bough_sub(position[i], hub), w = bough_mat3_tmul(rotation[i], angular[i]);
-        bough_vec3 arm = bough_mat3_mul(rotation[i], v->moment);
-        bough_vec3 linear = bough_axpy(v->mass, velocity[i], bough_cross(angular[i], arm));
+        bough_vertex_motion m = vertex[i];
+        bough_vec3 x = bough_sub(m.position, hub), w = bough_mat3_tmul(m.rotation, m.angular);
+        bough_vec3 arm = bough_mat3_mul(m.rotation, v->moment);
+        bough_vec3 linear = bough_axpy(v->mass, m.velocity, bough_cross(m.angular, arm));
         const double *j = v->inertia;
         bough_vec3 spin = {j[0] * w.x + j[3] * w.y + j[4] * w.z, j[3] * w.x + j[1] * w.y + j[5] * w.z,
                            j[4] * w.x + j[5] * w.y + j[2] * w.z};
-        bough_vec3 own = bough_add(bough_mat3_mul(rotation[i], spin), bough_cross(arm, velocity[i]));
+        bough_vec3 own = bough_add(bough_mat3_mul(m.rotation, spin), bough_cross(arm, m.velocity));
         bough_vec3 lever = bough_axpy(v->mass, x, arm);
         *momentum += bough_dot(shaft, bough_add(bough_cross(x, linear), own));
         *weight += bough_dot(shaft, bough_cross(lever, gravity));
