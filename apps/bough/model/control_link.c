@@ -10,216 +10,17 @@
 #include <math.h>
 #include <string.h>
 
-// -- events ---------------------------------------------------------------------------------------
-
-// Events in the turbine's operation: start, stop, loss of the grid, faults of pitch and yaw, at given
-// times or when a channel passes a threshold. They change what the controller demands.
-
-enum { BOUGH_MOST_EVENTS = 8 };
-
-// Doubles only, saved and restored with the controller's memory.
-typedef struct bough_event_state {
+// Of an event. Doubles only.
+typedef struct event_state {
     double happened; // 0: not yet
     double since;    // [s]
     double torque;   // of the generator then [N m]
     double speed;    // of the generator then [rad/s]
     double angle;    // of the blade's pitch or the yaw joint then [rad]
     double running;  // after a start: whether the law's own torque holds
-} bough_event_state;
+} event_state;
 
-typedef struct bough_events bough_events;
-
-struct bough_events {
-    bough_simulation *simulation;
-    int n;
-    const bough_scene_event *event; // (n)
-    bough_channels channels;
-    int *column;   // (n) channel of a threshold; −1: none
-    double *value; // (channels.count) scratch
-};
-
-// -- building -------------------------------------------------------------------------------------
-
-static bough_status find_channel(bough_arena *arena, bough_events *e, int i) {
-    const char *name = e->event[i].channel;
-    e->column[i] = name ? bough_channels_find(&e->channels, name) : -1;
-    if (!name || e->column[i] >= 0) return bough_ok();
-    const char *const *names = bough_channels_names(&e->channels, arena);
-    char key[40];
-    snprintf(key, sizeof key, "control.events[%d].channel", i);
-    bough_status status = bough_fail(BOUGH_INVALID, "the scene has no channel '%.80s'%s", name,
-                                     bough_suggest(name, names, e->channels.count).text);
-    return bough_scene_blame(bough_node_find(e->event[i].node, "channel"), key, status);
-}
-
-static bough_status find_channels(bough_arena *arena, bough_events *e) {
-    e->channels = bough_channels_start(arena);
-    bough_status status = bough_simulation_channels(e->simulation, &e->channels);
-    if (!bough_is_ok(&status)) return status;
-    e->value = bough_arena_doubles(arena, (size_t)e->channels.count + 1);
-    e->column = bough_arena_take(arena, (size_t)e->n * sizeof *e->column);
-    for (int i = 0; i < e->n && bough_is_ok(&status); i++) status = find_channel(arena, e, i);
-    return status;
-}
-
-// The events of the scene's control block; NULL without. Called when all else is built.
-static bough_status bough_events_build(bough_arena *arena, bough_simulation *simulation,
-                                       bough_events **events) {
-    const bough_scene_control *control = &simulation->scene->control;
-    if (control->n_event == 0) return bough_ok();
-    bough_events *e = bough_arena_take(arena, sizeof *e);
-    e->simulation = simulation;
-    e->n = control->n_event;
-    e->event = control->event;
-    *events = e;
-    return find_channels(arena, e);
-}
-
-// -- when -----------------------------------------------------------------------------------------
-
-static double channel_at(bough_events *e, int column, double t) {
-    for (int g = 0; g < e->channels.group_count; g++) {
-        const bough_channel_group *group = &e->channels.group[g];
-        if (column < group->first || column >= group->first + group->count) continue;
-        group->sample(group->self, t, e->value + group->first);
-    }
-    return e->value[column];
-}
-
-static bool happens(bough_events *e, int i, double t) {
-    const bough_scene_event *event = &e->event[i];
-    double near = 1e-6 * e->simulation->master->macro_step;
-    if (t < event->at - near) return false;
-    if (e->column[i] < 0) return true;
-    double value = channel_at(e, e->column[i], t);
-    return event->falls ? value < event->threshold : value > event->threshold;
-}
-
-// Marks the events that have happened up to the time of `sensed`.
-static void bough_events_look(bough_events *e, const bough_discon_sensed *sensed, bough_event_state *state) {
-    for (int i = 0; i < e->n; i++) {
-        const bough_scene_event *event = &e->event[i];
-        if (state[i].happened != 0 || !happens(e, i, sensed->time)) continue;
-        state[i] = (bough_event_state){
-            .happened = 1, .since = sensed->time, .torque = sensed->torque, .speed = sensed->generator_speed};
-        if (event->blade > 0) state[i].angle = sensed->pitch[event->blade - 1];
-        if (event->kind == BOUGH_SCENE_YAW_RUNAWAY)
-            state[i].angle = bough_simulation_joint_point(e->simulation, event->body).q;
-    }
-}
-
-// Whether the turbine idles at t because its start is yet to come.
-static bool bough_events_idle(const bough_events *e, const bough_event_state *state) {
-    for (int i = 0; i < e->n; i++)
-        if (e->event[i].kind == BOUGH_SCENE_START && state[i].happened == 0) return true;
-    return false;
-}
-
-// -- what -----------------------------------------------------------------------------------------
-
-static double towards(double from, double to, double reach) {
-    return bough_clamp(to, from - reach, from + reach);
-}
-
-static double rate_of(const bough_events *e, const bough_scene_event *event) {
-    const double normal = 4 * BOUGH_PI / 180, yaw = 0.3 * BOUGH_PI / 180; // [rad/s]
-    if (event->rate > 0) return event->rate;
-    if (event->kind == BOUGH_SCENE_STOP) return normal;
-    return event->kind == BOUGH_SCENE_YAW_RUNAWAY ? yaw : e->simulation->scene->control.law.pitch_rate;
-}
-
-static void pitch_to(const bough_events *e, const bough_scene_event *event, double to,
-                     const bough_discon_sensed *sensed, bough_discon_demand *demand) {
-    double reach = rate_of(e, event) * sensed->step;
-    for (int b = 0; b < sensed->n_blade; b++) demand->pitch[b] = towards(sensed->pitch[b], to, reach);
-}
-
-static void feather(const bough_events *e, const bough_scene_event *event, const bough_discon_sensed *sensed,
-                    bough_discon_demand *demand) {
-    pitch_to(e, event, event->angle > 0 ? event->angle : BOUGH_PI / 2, sensed, demand);
-}
-
-// Pitched, the law demands rated power at any speed, which would stop a rotor that starts: until it is at
-// rated speed or no longer pitched, it has the torque of an unpitched one.
-static void run_up(const bough_events *e, const bough_discon_sensed *sensed, bough_event_state *state,
-                   bough_discon_demand *demand) {
-    const bough_controller_def *law = &e->simulation->scene->control.law;
-    bool runs = sensed->generator_speed >= law->rated_speed || sensed->pitch[0] < law->power_pitch;
-    if (runs) state->running = 1;
-    if (state->running != 0) return;
-    demand->torque = fmin(demand->torque, bough_controller_torque(law, sensed->generator_speed, 0));
-}
-
-// Falls to zero within ten seconds, and below half the speed at the start of the stop also with the speed: a
-// constant torque would turn a rotor backwards that has stopped.
-static double stopping_torque(const bough_event_state *state, double gone, double speed) {
-    const double ramp = 10; // [s]
-    double left = fmax(0, 1 - gone / ramp), turning = state->speed > 0 ? 2 * speed / state->speed : 0;
-    return state->torque * left * bough_clamp(turning, 0, 1);
-}
-
-// The joint goes at its rate; its speed jumps where that begins and ends.
-static void turn_yaw(const bough_events *e, const bough_scene_event *event, const bough_discon_sensed *sensed,
-                     const bough_event_state *state) {
-    double rate = rate_of(e, event), gone = sensed->time - state->since;
-    double now = towards(state->angle, event->angle, rate * gone);
-    double then = towards(state->angle, event->angle, rate * (gone + sensed->step));
-    double speed = (then - now) / sensed->step;
-    bough_tree_steer(e->simulation->tree, event->body, sensed->time, sensed->step,
-                     (bough_motion_point){now, speed, 0}, (bough_motion_point){then, speed, 0});
-}
-
-// Later orders prevail: a stop over a change of pitch, the fault of one blade over what all blades shall do.
-enum { ORDERS = 3 };
-
-static int order_of(const bough_scene_event *event) {
-    return event->blade > 0 ? 2 : event->kind != BOUGH_SCENE_PITCH_TO;
-}
-
-static void change(const bough_events *e, int i, const bough_discon_sensed *sensed, bough_event_state *state,
-                   bough_discon_demand *demand) {
-    const bough_scene_event *event = &e->event[i];
-    int b = event->blade - 1;
-    double gone = sensed->time + sensed->step - state->since;
-    switch ((bough_scene_event_kind)event->kind) {
-    case BOUGH_SCENE_START:
-        if (e->simulation->scene->control.kind == BOUGH_SCENE_VARIABLE_SPEED)
-            run_up(e, sensed, state, demand);
-        break;
-    case BOUGH_SCENE_STOP:
-        demand->torque = stopping_torque(state, gone, sensed->generator_speed);
-        feather(e, event, sensed, demand);
-        break;
-    case BOUGH_SCENE_EMERGENCY_STOP:
-        demand->torque = 0;
-        feather(e, event, sensed, demand);
-        break;
-    case BOUGH_SCENE_GRID_LOSS: demand->torque = 0; break;
-    case BOUGH_SCENE_PITCH_STUCK: demand->pitch[b] = state->angle; break;
-    case BOUGH_SCENE_PITCH_RUNAWAY:
-        demand->pitch[b] = towards(sensed->pitch[b], event->angle, rate_of(e, event) * sensed->step);
-        break;
-    case BOUGH_SCENE_PITCH_TO: pitch_to(e, event, event->angle, sensed, demand); break;
-    case BOUGH_SCENE_YAW_RUNAWAY: turn_yaw(e, event, sensed, state); break;
-    }
-}
-
-// Changes the controller's demand for the next step by the events that have happened.
-static void bough_events_change(const bough_events *e, const bough_discon_sensed *sensed,
-                                bough_event_state *state, bough_discon_demand *demand) {
-    if (bough_events_idle(e, state)) {
-        demand->torque = 0;
-        for (int b = 0; b < sensed->n_blade; b++) demand->pitch[b] = sensed->pitch[b];
-    }
-    for (int order = 0; order < ORDERS; order++) {
-        for (int i = 0; i < e->n; i++) {
-            if (state[i].happened != 0 && order_of(&e->event[i]) == order)
-                change(e, i, sensed, &state[i], demand);
-        }
-    }
-}
-
-enum { BLADES = BOUGH_MOST_BLADES };
+enum { BLADES = BOUGH_MOST_BLADES, MOST_EVENTS = 8 };
 
 // Doubles only.
 typedef struct memory {
@@ -238,17 +39,189 @@ struct bough_control_link {
     bough_fmu_instance *fmu;             // NULL: none
     bough_fmu_values measured, demanded; // of the FMU
     int load, n_blade;
-    bool steers;                                // the blades are pitched
-    bough_events *events;                       // NULL: none
-    bough_event_state event[BOUGH_MOST_EVENTS]; // as far as there are events
+    bool steers;                    // the blades are pitched
+    event_state event[MOST_EVENTS]; // (control->n_event)
+    int *column;                    // (n_event) channel of a threshold; −1: none
+    bough_channels channels;        // for thresholds
+    double *value;                  // (channels.count) scratch
     memory now;
 };
 
-static int blade_body(const bough_control_link *l, int b) { return l->simulation->scene->turbine.blade[b]; }
+// -- events ---------------------------------------------------------------------------------------
 
-bough_status bough_control_link_watch(bough_arena *arena, bough_control_link *link) {
-    return bough_events_build(arena, link->simulation, &link->events);
+// Events in the turbine's operation: start, stop, loss of the grid, faults of pitch and yaw, at given
+// times or when a channel passes a threshold. They change what the controller demands.
+
+static bough_status find_channel(bough_arena *arena, bough_control_link *l, int i) {
+    const char *name = l->control->event[i].channel;
+    l->column[i] = name ? bough_channels_find(&l->channels, name) : -1;
+    if (!name || l->column[i] >= 0) return bough_ok();
+    const char *const *names = bough_channels_names(&l->channels, arena);
+    char key[40];
+    snprintf(key, sizeof key, "control.events[%d].channel", i);
+    bough_status status = bough_fail(BOUGH_INVALID, "the scene has no channel '%.80s'%s", name,
+                                     bough_suggest(name, names, l->channels.count).text);
+    return bough_scene_blame(bough_node_find(l->control->event[i].node, "channel"), key, status);
 }
+
+bough_status bough_control_link_watch(bough_arena *arena, bough_control_link *l) {
+    if (l->control->n_event == 0) return bough_ok();
+    l->channels = bough_channels_start(arena);
+    BOUGH_TRY(bough_simulation_channels(l->simulation, &l->channels));
+    l->value = bough_arena_doubles(arena, (size_t)l->channels.count + 1);
+    l->column = bough_arena_take(arena, (size_t)l->control->n_event * sizeof *l->column);
+    for (int i = 0; i < l->control->n_event; i++) BOUGH_TRY(find_channel(arena, l, i));
+    return bough_ok();
+}
+
+// -- when events happen ---------------------------------------------------------------------------
+
+static double channel_at(bough_control_link *l, int column, double t) {
+    for (int g = 0; g < l->channels.group_count; g++) {
+        const bough_channel_group *group = &l->channels.group[g];
+        if (column < group->first || column >= group->first + group->count) continue;
+        group->sample(group->self, t, l->value + group->first);
+    }
+    return l->value[column];
+}
+
+static bool happens(bough_control_link *l, int i, double t) {
+    const bough_scene_event *event = &l->control->event[i];
+    double near = 1e-6 * l->simulation->master->macro_step;
+    if (t < event->at - near) return false;
+    if (l->column[i] < 0) return true;
+    double value = channel_at(l, l->column[i], t);
+    return event->falls ? value < event->threshold : value > event->threshold;
+}
+
+// Marks the events that have happened up to the time of `sensed`.
+static void look_for_events(bough_control_link *l, const bough_discon_sensed *sensed) {
+    event_state *state = l->event;
+    for (int i = 0; i < l->control->n_event; i++) {
+        const bough_scene_event *event = &l->control->event[i];
+        if (state[i].happened != 0 || !happens(l, i, sensed->time)) continue;
+        state[i] = (event_state){
+            .happened = 1, .since = sensed->time, .torque = sensed->torque, .speed = sensed->generator_speed};
+        if (event->blade > 0) state[i].angle = sensed->pitch[event->blade - 1];
+        if (event->kind == BOUGH_SCENE_YAW_RUNAWAY)
+            state[i].angle = bough_simulation_joint_point(l->simulation, event->body).q;
+    }
+}
+
+// Whether the turbine idles because its start is yet to come.
+static bool idles(const bough_control_link *l) {
+    for (int i = 0; i < l->control->n_event; i++)
+        if (l->control->event[i].kind == BOUGH_SCENE_START && l->event[i].happened == 0) return true;
+    return false;
+}
+
+// -- what events do -------------------------------------------------------------------------------
+
+static double towards(double from, double to, double reach) {
+    return bough_clamp(to, from - reach, from + reach);
+}
+
+static double rate_of(const bough_control_link *l, const bough_scene_event *event) {
+    const double normal = 4 * BOUGH_PI / 180, yaw = 0.3 * BOUGH_PI / 180; // [rad/s]
+    if (event->rate > 0) return event->rate;
+    if (event->kind == BOUGH_SCENE_STOP) return normal;
+    return event->kind == BOUGH_SCENE_YAW_RUNAWAY ? yaw : l->control->law.pitch_rate;
+}
+
+static void pitch_to(const bough_control_link *l, const bough_scene_event *event, double to,
+                     const bough_discon_sensed *sensed, bough_discon_demand *demand) {
+    double reach = rate_of(l, event) * sensed->step;
+    for (int b = 0; b < sensed->n_blade; b++) demand->pitch[b] = towards(sensed->pitch[b], to, reach);
+}
+
+static void feather(const bough_control_link *l, const bough_scene_event *event,
+                    const bough_discon_sensed *sensed, bough_discon_demand *demand) {
+    pitch_to(l, event, event->angle > 0 ? event->angle : BOUGH_PI / 2, sensed, demand);
+}
+
+// Pitched, the law demands rated power at any speed, which would stop a rotor that starts: until it is at
+// rated speed or no longer pitched, it has the torque of an unpitched one.
+static void run_up(const bough_control_link *l, const bough_discon_sensed *sensed, event_state *state,
+                   bough_discon_demand *demand) {
+    const bough_controller_def *law = &l->control->law;
+    bool runs = sensed->generator_speed >= law->rated_speed || sensed->pitch[0] < law->power_pitch;
+    if (runs) state->running = 1;
+    if (state->running != 0) return;
+    demand->torque = fmin(demand->torque, bough_controller_torque(law, sensed->generator_speed, 0));
+}
+
+// Falls to zero within ten seconds, and below half the speed at the start of the stop also with the speed: a
+// constant torque would turn a rotor backwards that has stopped.
+static double stopping_torque(const event_state *state, double gone, double speed) {
+    const double ramp = 10; // [s]
+    double left = fmax(0, 1 - gone / ramp), turning = state->speed > 0 ? 2 * speed / state->speed : 0;
+    return state->torque * left * bough_clamp(turning, 0, 1);
+}
+
+// The joint goes at its rate; its speed jumps where that begins and ends.
+static void turn_yaw(const bough_control_link *l, const bough_scene_event *event,
+                     const bough_discon_sensed *sensed, const event_state *state) {
+    double rate = rate_of(l, event), gone = sensed->time - state->since;
+    double now = towards(state->angle, event->angle, rate * gone);
+    double then = towards(state->angle, event->angle, rate * (gone + sensed->step));
+    double speed = (then - now) / sensed->step;
+    bough_tree_steer(l->simulation->tree, event->body, sensed->time, sensed->step,
+                     (bough_motion_point){now, speed, 0}, (bough_motion_point){then, speed, 0});
+}
+
+// Later orders prevail: a stop over a change of pitch, the fault of one blade over what all blades shall do.
+enum { ORDERS = 3 };
+
+static int order_of(const bough_scene_event *event) {
+    return event->blade > 0 ? 2 : event->kind != BOUGH_SCENE_PITCH_TO;
+}
+
+static void change(bough_control_link *l, int i, const bough_discon_sensed *sensed,
+                   bough_discon_demand *demand) {
+    const bough_scene_event *event = &l->control->event[i];
+    event_state *state = &l->event[i];
+    int b = event->blade - 1;
+    double gone = sensed->time + sensed->step - state->since;
+    switch ((bough_scene_event_kind)event->kind) {
+    case BOUGH_SCENE_START:
+        if (l->control->kind == BOUGH_SCENE_VARIABLE_SPEED) run_up(l, sensed, state, demand);
+        break;
+    case BOUGH_SCENE_STOP:
+        demand->torque = stopping_torque(state, gone, sensed->generator_speed);
+        feather(l, event, sensed, demand);
+        break;
+    case BOUGH_SCENE_EMERGENCY_STOP:
+        demand->torque = 0;
+        feather(l, event, sensed, demand);
+        break;
+    case BOUGH_SCENE_GRID_LOSS: demand->torque = 0; break;
+    case BOUGH_SCENE_PITCH_STUCK: demand->pitch[b] = state->angle; break;
+    case BOUGH_SCENE_PITCH_RUNAWAY:
+        demand->pitch[b] = towards(sensed->pitch[b], event->angle, rate_of(l, event) * sensed->step);
+        break;
+    case BOUGH_SCENE_PITCH_TO: pitch_to(l, event, event->angle, sensed, demand); break;
+    case BOUGH_SCENE_YAW_RUNAWAY: turn_yaw(l, event, sensed, state); break;
+    }
+}
+
+// Changes the controller's demand for the next step by the events that have happened.
+static void change_demand(bough_control_link *l, const bough_discon_sensed *sensed,
+                          bough_discon_demand *demand) {
+    if (idles(l)) {
+        demand->torque = 0;
+        for (int b = 0; b < sensed->n_blade; b++) demand->pitch[b] = sensed->pitch[b];
+    }
+    for (int order = 0; order < ORDERS; order++) {
+        for (int i = 0; i < l->control->n_event; i++) {
+            if (l->event[i].happened != 0 && order_of(&l->control->event[i]) == order)
+                change(l, i, sensed, demand);
+        }
+    }
+}
+
+// -- set from outside -----------------------------------------------------------------------------
+
+static int blade_body(const bough_control_link *l, int b) { return l->simulation->scene->turbine.blade[b]; }
 
 bool bough_control_link_pitches(const bough_control_link *link) { return link->steers; }
 
@@ -353,15 +326,12 @@ static bough_discon_sensed sense(bough_control_link *l, double t, double step, d
     return x;
 }
 
-static bough_status take_inputs(const bough_control_link *l, bough_discon_demand *demand) {
-    const bough_scene *scene = l->simulation->scene;
-    const double *value = l->simulation->input;
-    for (int k = 0; k < scene->n_input; k++) {
-        const bough_scene_input *input = &scene->input[k];
-        if (input->kind == BOUGH_INPUT_TORQUE) demand->torque = value[k];
-        if (input->kind == BOUGH_INPUT_PITCH) demand->pitch[input->index] = value[k];
+static void take_inputs(const bough_simulation *s, bough_discon_demand *demand) {
+    for (int k = 0; k < s->scene->n_input; k++) {
+        const bough_scene_input *input = &s->scene->input[k];
+        if (input->kind == BOUGH_INPUT_TORQUE) demand->torque = s->input[k];
+        if (input->kind == BOUGH_INPUT_PITCH) demand->pitch[input->index] = s->input[k];
     }
-    return bough_ok();
 }
 
 // The FMU's terminals in order, with their values of `all`, one for each quantity and blade.
@@ -413,10 +383,13 @@ static bough_status step_fmu(bough_control_link *l, const bough_discon_sensed *x
 }
 
 static bough_status decide(bough_control_link *l, const bough_discon_sensed *x, bough_discon_demand *demand) {
-    if (l->events && bough_events_idle(l->events, l->event)) return bough_ok();
+    if (idles(l)) return bough_ok();
     if (l->discon) return bough_discon_call(l->discon, x, demand);
     if (l->fmu) return step_fmu(l, x, demand);
-    if (l->control->kind == BOUGH_SCENE_EXTERNAL) return take_inputs(l, demand);
+    if (l->control->kind == BOUGH_SCENE_EXTERNAL) {
+        take_inputs(l->simulation, demand);
+        return bough_ok();
+    }
     bough_controller_state *law = &l->now.law;
     bough_controller_advance(&l->control->law, x->generator_speed, x->pitch[0], x->step, law);
     demand->torque = law->torque;
@@ -447,13 +420,9 @@ static bough_status sample(void *self, double t, double t_next, bool *jumped) {
     double speed = control->gear_ratio * rotor.v;
     bough_discon_sensed sensed = sense(l, t, step, speed);
     bough_discon_demand demand = {0};
-    if (l->events) {
-        bough_events_look(l->events, &sensed, l->event);
-    }
+    look_for_events(l, &sensed);
     BOUGH_TRY(decide(l, &sensed, &demand));
-    if (l->events) {
-        bough_events_change(l->events, &sensed, l->event, &demand);
-    }
+    change_demand(l, &sensed, &demand);
     double before = l->now.started != 0 ? l->now.torque : demand.torque;
     bough_tree_steer_load(s->tree, l->load, t, step, -control->gear_ratio * before,
                           -control->gear_ratio * demand.torque);
@@ -474,9 +443,8 @@ void bough_control_link_generator(const bough_control_link *l, double *speed, do
 // A foreign controller's own memory is not in it.
 static void snapshot(void *self, bough_snapshot *s) {
     bough_control_link *link = self;
-    size_t events = link->events ? (size_t)link->control->n_event : 0;
     bough_snapshot_take(s, &link->now, sizeof link->now);
-    bough_snapshot_take(s, link->event, events * sizeof *link->event);
+    bough_snapshot_take(s, link->event, (size_t)link->control->n_event * sizeof *link->event);
 }
 
 // -- whole ----------------------------------------------------------------------------------------
