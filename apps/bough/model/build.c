@@ -178,10 +178,9 @@ static bough_status find_equilibrium(bough_arena *parent, const bough_assembly_d
     bough_arena *arena = bough_arena_child(parent);
     bough_assembly *assembly;
     bough_equilibrium_work work;
-    bough_trim trim;
     bough_status status = bough_assembly_build(arena, def, &assembly);
     if (bough_is_ok(&status) && s->scene->simulation.initial == BOUGH_SCENE_IN_OPERATION) {
-        status = bough_simulation_trim(arena, s, assembly, &trim);
+        status = bough_simulation_trim(arena, s, assembly);
     } else if (bough_is_ok(&status)) {
         status = bough_simulation_equilibrium(s, assembly, 0, &work);
     }

@@ -54,15 +54,8 @@ bough_status bough_fmu_member_create(bough_arena *arena, const bough_scene_body 
 // control law. Below rated power the pitch is the law's least and the speed is sought; else the speed is the
 // pitch controller's and the pitch is sought. The bodies are in equilibrium there (equilibrium.h).
 
-typedef struct bough_trim {
-    double speed, pitch; // of the rotor [rad/s], of the blades [rad]
-    double torque;       // of the air, about the shaft [N m]
-    int tries;           // speeds and pitches whose equilibrium was found
-} bough_trim;
-
 // Needs a control law. BOUGH_FAILED where there is no steady operation.
-bough_status bough_simulation_trim(bough_arena *arena, bough_simulation *s, const bough_assembly *assembly,
-                                   bough_trim *trim);
+bough_status bough_simulation_trim(bough_arena *arena, bough_simulation *s, const bough_assembly *assembly);
 
 // -- the builder ----------------------------------------------------------------------------------
 

@@ -19,7 +19,7 @@ typedef struct search {
     const bough_controller_def *law;
     double *state; // (n_state)
     double gear;
-    bough_trim at;
+    int tries; // speeds and pitches whose equilibrium was sought
     bough_status status;
 } search;
 
@@ -29,7 +29,7 @@ static double surplus(search *x, double speed, double pitch) {
     bough_simulation *s = x->simulation;
     int q, v;
     double factor;
-    if (!bough_is_ok(&x->status) || x->at.tries++ >= MOST_TRIES) return (double)NAN;
+    if (!bough_is_ok(&x->status) || x->tries++ >= MOST_TRIES) return (double)NAN;
     bough_tree_joint_rows(s->tree, s->scene->turbine.rotor, &q, &v);
     bough_assembly_states(x->assembly, x->state);
     s->tree->initial[v] = x->state[v] = speed;
@@ -39,11 +39,8 @@ static double surplus(search *x, double speed, double pitch) {
     x->status = bough_simulation_equilibrium(s, x->assembly, 0, &work);
     if (!bough_is_ok(&x->status)) return (double)NAN;
     double torque = bough_aero_link_data(s->aero, &factor)->torque;
-    x->at.speed = speed;
-    x->at.pitch = pitch;
-    x->at.torque = factor * torque;
     double generator = x->gear * bough_controller_torque(x->law, x->gear * speed, pitch);
-    return (x->at.torque - generator) / (x->gear * x->law->rated_power / x->law->rated_speed);
+    return (factor * torque - generator) / (x->gear * x->law->rated_power / x->law->rated_speed);
 }
 
 // Between a, where there is a surplus, and b, where there is none, of the speed or of the pitch: regula
@@ -108,15 +105,13 @@ static void seek_speed(search *x, double speed, double f, double pitch) {
     }
 }
 
-bough_status bough_simulation_trim(bough_arena *arena, bough_simulation *s, const bough_assembly *assembly,
-                                   bough_trim *trim) {
-    bough_arena *own = bough_arena_child(arena);
+bough_status bough_simulation_trim(bough_arena *arena, bough_simulation *s, const bough_assembly *assembly) {
     const bough_scene_control *control = &s->scene->control;
     search x = {.simulation = s,
                 .assembly = assembly,
                 .law = &control->law,
                 .gear = control->gear_ratio,
-                .state = bough_arena_doubles(own, (size_t)assembly->n_state + 1),
+                .state = bough_arena_doubles(arena, (size_t)assembly->n_state + 1),
                 .status = bough_ok()};
     bool pitches = bough_control_link_pitches(s->control);
     double speed = x.law->reference_speed / x.gear;
@@ -127,10 +122,8 @@ bough_status bough_simulation_trim(bough_arena *arena, bough_simulation *s, cons
     } else if (bough_is_ok(&x.status) && fabs(f) > tolerance) {
         seek_speed(&x, speed, f, pitch);
     }
-    if (bough_is_ok(&x.status) && x.at.tries > MOST_TRIES) {
+    if (bough_is_ok(&x.status) && x.tries > MOST_TRIES) {
         x.status = bough_fail(BOUGH_FAILED, "no steady operation found in %d tries", MOST_TRIES);
     }
-    *trim = x.at;
-    bough_arena_destroy(own);
     return x.status;
 }
