@@ -100,6 +100,24 @@ static bough_status explain(const bough_simulation *s, const bough_assembly *ass
 
 // -- the search -----------------------------------------------------------------------------------
 
+// An equilibrium, its growth or a path of equilibria, within bough_arena_use.
+typedef struct search {
+    bough_simulation *simulation;
+    const bough_assembly *assembly;
+    double time;
+    bough_equilibrium_def limits; // step, least, tolerance and steps of an equilibrium
+    bough_equilibrium_work *work; // of an equilibrium
+    bough_growth *growth;         // of a state
+    bough_path_listener listener; // of a path
+    bough_path_report *report;
+
+    // by set_up
+    bough_whole *coupled;
+    double *state;  // (n_state) at rest
+    bool rests;     // whether states are brought to rest in between
+    double *change; // of one rod's vertices, see rod_static.h
+} search;
+
 static double change_of(const bough_assembly *assembly, const double *a, const double *b) {
     double change = 0;
     for (int i = 0; i < assembly->n_member; i++) {
@@ -113,50 +131,41 @@ static double change_of(const bough_assembly *assembly, const double *a, const d
 }
 
 // The states in equilibrium under the air's forces as sampled last.
-static bough_status balance(bough_arena *arena, bough_simulation *s, bough_whole *coupled,
-                            bough_equilibrium_def *def, double *state, bough_equilibrium_work *work) {
+static bough_status balance(bough_arena *arena, search *x, bough_equilibrium_def *def) {
+    bough_simulation *s = x->simulation;
     bough_equilibrium_report report;
-    bough_status status = bough_equilibrium_find(arena, coupled, def, state, &report);
-    work->steps += report.steps;
-    bough_equilibrium_set_state(s, coupled->assembly, state);
-    if (status.code == BOUGH_FAILED) return explain(s, coupled->assembly, &report);
+    bough_status status = bough_equilibrium_find(arena, x->coupled, def, x->state, &report);
+    x->work->steps += report.steps;
+    bough_equilibrium_set_state(s, x->assembly, x->state);
+    if (status.code == BOUGH_FAILED) return explain(s, x->assembly, &report);
     if (bough_is_ok(&status)) status = explain_rods(s, report.steps);
     def->step = BOUGH_EQUILIBRIUM_LONGEST; // near it now
     return status;
 }
 
-static bough_status balance_in_air(bough_arena *arena, bough_simulation *s, bough_whole *coupled,
-                                   bough_equilibrium_def *def, double *state, bough_equilibrium_work *work) {
-    double *before = bough_arena_doubles(arena, (size_t)coupled->assembly->n_state), change = 0;
-    while (work->samples < SAMPLES) {
-        memcpy(before, state, (size_t)coupled->assembly->n_state * sizeof *state);
-        bough_aero_link_hold(s->aero, def->time);
-        work->samples++;
-        bough_status status = balance(arena, s, coupled, def, state, work);
-        if (!bough_is_ok(&status)) return status;
-        change = change_of(coupled->assembly, state, before);
-        if (change < still) return status;
+static bough_status balance_in_air(bough_arena *arena, search *x, bough_equilibrium_def *def) {
+    size_t n = (size_t)x->assembly->n_state;
+    double *before = bough_arena_doubles(arena, n), change = 0;
+    while (x->work->samples < SAMPLES) {
+        memcpy(before, x->state, n * sizeof *before);
+        bough_aero_link_hold(x->simulation->aero, def->time);
+        x->work->samples++;
+        BOUGH_TRY(balance(arena, x, def));
+        change = change_of(x->assembly, x->state, before);
+        if (change < still) return bough_ok();
     }
     return bough_fail(BOUGH_FAILED,
                       "no equilibrium in the air: the bodies still move by %.3g of their scales"
                       " after %d samples of its forces; they may flutter or stall: try another wind"
                       " speed or pitch",
-                      change, work->samples);
+                      change, x->work->samples);
 }
-
-// The system whose equilibrium is sought.
-typedef struct search {
-    bough_simulation *simulation;
-    bough_whole *coupled;
-    double time;
-    double *change; // of one rod's vertices, see rod_static.h
-} search;
 
 // Rods turn without stretching, and what hangs on their ends goes with them.
 static double move(void *self, const double *state, const double *change, double *moved) {
     const search *x = self;
     const bough_simulation *s = x->simulation;
-    const bough_assembly *a = x->coupled->assembly;
+    const bough_assembly *a = x->assembly;
     double turn = 0;
     for (int k = 0; k < a->n_state; k++) moved[k] = state[k] + change[k];
     for (int k = 0; k < s->n_beam; k++) {
@@ -184,7 +193,7 @@ static double move(void *self, const double *state, const double *change, double
 static void bring_to_rest(void *self, double *state) {
     const search *x = self;
     const bough_simulation *s = x->simulation;
-    const bough_assembly *a = x->coupled->assembly;
+    const bough_assembly *a = x->assembly;
     const bough_tree *tree = s->tree;
     for (int k = tree->n_q; k < tree->n_q + tree->n_v; k++) {
         bool held = false;
@@ -200,76 +209,50 @@ static void bring_to_rest(void *self, double *state) {
     }
 }
 
-static bool turns(const bough_whole *coupled, const bough_tree *tree, const double *state) {
-    for (int i = 0; i < coupled->n_held; i++) {
-        if (coupled->held[i] >= tree->n_q && state[coupled->held[i]] != 0) return true;
+static bool turns(const search *x) {
+    for (int i = 0; i < x->coupled->n_held; i++) {
+        int row = x->coupled->held[i];
+        if (row >= x->simulation->tree->n_q && x->state[row] != 0) return true;
     }
     return false;
 }
 
-// The system, the states at rest at `time`, and what moves them.
-typedef struct balance_setup {
-    bough_whole *coupled;
-    double *state; // (n_state)
-    search self;
-    bool rests; // whether states are brought to rest in between
-} balance_setup;
-
-static void set_up(bough_arena *arena, bough_simulation *s, const bough_assembly *assembly, double time,
-                   balance_setup *b) {
-    b->state = bough_arena_doubles(arena, (size_t)assembly->n_state + 1);
+// The system and its states at rest at the time.
+static void set_up(bough_arena *arena, search *x) {
+    bough_simulation *s = x->simulation;
+    x->state = bough_arena_doubles(arena, (size_t)x->assembly->n_state + 1);
+    x->change = bough_arena_doubles(arena, BOUGH_ROD_CHANGE * bough_simulation_most_vertices(s));
     int *row = bough_arena_take(arena, ((size_t)s->leader.system.n_state + 1) * sizeof *row);
-    b->coupled = bough_whole_create(arena, assembly, NULL);
+    x->coupled = bough_whole_create(arena, x->assembly, NULL);
     for (int k = 0; k < s->n_sampled; k++) {
-        if (s->sampled[k].begin) s->sampled[k].begin(s->sampled[k].self, time);
+        if (s->sampled[k].begin) s->sampled[k].begin(s->sampled[k].self, x->time);
     }
-    bough_whole_hold(arena, b->coupled, bough_equilibrium_held(s->tree, true, row), row);
-    bough_assembly_states(assembly, b->state);
-    bough_tree_prescribe(s->tree, time, b->state);
-    double *change = bough_arena_doubles(arena, BOUGH_ROD_CHANGE * bough_simulation_most_vertices(s));
-    b->self = (search){s, b->coupled, time, change};
-    bring_to_rest(&b->self, b->state);
-    b->rests = turns(b->coupled, s->tree, b->state) || s->tree->n_closures == 0;
+    bough_whole_hold(arena, x->coupled, bough_equilibrium_held(s->tree, true, row), row);
+    bough_assembly_states(x->assembly, x->state);
+    bough_tree_prescribe(s->tree, x->time, x->state);
+    bring_to_rest(x, x->state);
+    x->rests = turns(x) || s->tree->n_closures == 0;
 }
 
-static bough_equilibrium_def equilibrium_def(balance_setup *b) {
-    bough_equilibrium_def def = bough_equilibrium_def_default();
-    def.time = b->self.time;
-    def.self = &b->self;
+static bough_equilibrium_def equilibrium_def(search *x) {
+    bough_equilibrium_def def = x->limits;
+    def.time = x->time;
+    def.self = x;
     def.move = move;
-    if (b->rests) def.rest = bring_to_rest;
+    if (x->rests) def.rest = bring_to_rest;
     return def;
 }
 
-// The arguments of a search within bough_arena_use.
-typedef struct task {
-    bough_simulation *simulation;
-    const bough_assembly *assembly;
-    double time;
-    bough_growth *growth;                // of a state
-    const bough_equilibrium_def *limits; // step, least, tolerance and steps of an equilibrium
-    bough_equilibrium_work *work;        // of an equilibrium
-    bough_path_listener listener;        // of a path
-    bough_path_report *report;
-} task;
-
-static bough_status balance_members(bough_arena *arena, void *data) {
-    const task *x = data;
-    bough_simulation *s = x->simulation;
-    balance_setup b;
-    set_up(arena, s, x->assembly, x->time, &b);
-    bough_equilibrium_def def = equilibrium_def(&b);
-    def.step = x->limits->step;
-    def.least = x->limits->least;
-    def.steps = x->limits->steps;
-    def.tolerance = x->limits->tolerance;
-    return s->aero ? balance_in_air(arena, s, b.coupled, &def, b.state, x->work)
-                   : balance(arena, s, b.coupled, &def, b.state, x->work);
+static bough_status balance_members(bough_arena *arena, void *self) {
+    search *x = self;
+    set_up(arena, x);
+    bough_equilibrium_def def = equilibrium_def(x);
+    return x->simulation->aero ? balance_in_air(arena, x, &def) : balance(arena, x, &def);
 }
 
-static bough_status search_within(const bough_equilibrium_def *limits, bough_simulation *s,
+static bough_status search_within(bough_equilibrium_def limits, bough_simulation *s,
                                   const bough_assembly *assembly, double time, bough_equilibrium_work *work) {
-    task x = {.simulation = s, .assembly = assembly, .time = time, .limits = limits, .work = work};
+    search x = {.simulation = s, .assembly = assembly, .time = time, .limits = limits, .work = work};
     return bough_arena_use(balance_members, &x);
 }
 
@@ -287,10 +270,10 @@ static bool oscillates(const bough_eigen_pair *pair) {
     return fabs(pair->imaginary) > rounded * fabs(pair->real);
 }
 
-static bough_status find_near(bough_arena *arena, const balance_setup *b, double at, bough_eigen_pair *pair,
+static bough_status find_near(bough_arena *arena, const search *x, double at, bough_eigen_pair *pair,
                               bough_eigen_count *count) {
-    bough_modes_def def = {.time = b->self.time, .state = b->state, .input = b->coupled->input, .point = at};
-    return bough_modes_find(arena, b->coupled, &def, pair, count);
+    bough_modes_def def = {.time = x->time, .state = x->state, .input = x->coupled->input, .point = at};
+    return bough_modes_find(arena, x->coupled, &def, pair, count);
 }
 
 // The oscillation among the pairs that grows most, by parts of its value; NULL: none.
@@ -306,29 +289,27 @@ static const bough_eigen_pair *growing_oscillation(const bough_eigen_pair *pair,
 }
 
 // Rounding lets values grow otherwise from another point.
-static bough_status confirm_oscillation(bough_arena *arena, const balance_setup *b,
-                                        const bough_eigen_pair *found, bough_growth *growth) {
+static bough_status confirm_oscillation(bough_arena *arena, const search *x, const bough_eigen_pair *found) {
     bough_eigen_pair pair[NEAREST];
     bough_eigen_count count = {.wanted = NEAREST};
-    BOUGH_TRY(find_near(arena, b, again, pair, &count));
+    BOUGH_TRY(find_near(arena, x, again, pair, &count));
     for (int k = 0; k < count.found; k++) {
         double off = hypot(pair[k].real - found->real, fabs(pair[k].imaginary) - fabs(found->imaginary));
         if (off > equal * found->real) continue;
-        growth->oscillation = found->real;
-        growth->frequency = fabs(found->imaginary) / (2 * BOUGH_PI);
+        x->growth->oscillation = found->real;
+        x->growth->frequency = fabs(found->imaginary) / (2 * BOUGH_PI);
     }
     return bough_ok();
 }
 
-static bough_status find_growth(bough_arena *arena, void *data) {
-    const task *x = data;
-    balance_setup b;
-    set_up(arena, x->simulation, x->assembly, x->time, &b);
-    bough_whole_inputs(b.coupled, x->time, b.state);
+static bough_status find_growth(bough_arena *arena, void *self) {
+    search *x = self;
+    set_up(arena, x);
+    bough_whole_inputs(x->coupled, x->time, x->state);
     for (int i = 0; i < POINTS; i++) {
         bough_eigen_pair pair[NEAREST];
         bough_eigen_count count = {.wanted = i == 0 ? NEAREST : 4};
-        bough_status status = find_near(arena, &b, point[i], pair, &count);
+        bough_status status = find_near(arena, x, point[i], pair, &count);
         if (!bough_is_ok(&status) && i > 0) continue; // none is distinctly nearest: no growth near this point
         BOUGH_TRY(status);
         for (int k = 0; k < count.found; k++) {
@@ -336,15 +317,15 @@ static bough_status find_growth(bough_arena *arena, void *data) {
             if (!oscillates(&pair[k]) && known) x->growth->rate = fmax(x->growth->rate, pair[k].real);
         }
         const bough_eigen_pair *found = growing_oscillation(pair, count.found);
-        if (i > 0 || found == NULL || turns(b.coupled, x->simulation->tree, b.state)) continue;
-        BOUGH_TRY(confirm_oscillation(arena, &b, found, x->growth));
+        if (i > 0 || found == NULL || turns(x)) continue;
+        BOUGH_TRY(confirm_oscillation(arena, x, found));
     }
     return bough_ok();
 }
 
 bough_status bough_simulation_growth(bough_simulation *s, const bough_assembly *assembly, double time,
                                      bough_growth *growth) {
-    task x = {.simulation = s, .assembly = assembly, .time = time, .growth = growth};
+    search x = {.simulation = s, .assembly = assembly, .time = time, .growth = growth};
     *growth = (bough_growth){0};
     return bough_arena_use(find_growth, &x);
 }
@@ -433,7 +414,7 @@ static bough_status find_stiffened(bough_arena *arena, void *data) {
         limits.least = near_least;
         limits.steps = NEAR_STEPS;
     }
-    BOUGH_TRY(search_within(&limits, s, a, c->time, c->work));
+    BOUGH_TRY(search_within(limits, s, a, c->time, c->work));
     bough_assembly_states(a, c->state);
     c->started = true;
     return bough_ok();
@@ -476,7 +457,7 @@ static bough_status find_slack(continuation *c, const double *start) {
     // downhill, however long it takes
     bough_equilibrium_set_state(s, a, start);
     *c->work = (bough_equilibrium_work){0};
-    bough_status status = search_within(&whole, s, a, c->time, c->work);
+    bough_status status = search_within(whole, s, a, c->time, c->work);
     if (!bough_is_ok(&softened) || !c->unstable) return status;
     if (bough_is_ok(&status)) bough_simulation_growth(s, a, c->time, &fallen);
     if (bough_is_ok(&status) && fallen.rate == 0) return status;
@@ -490,13 +471,13 @@ static bough_status find_equilibrium(bough_arena *arena, void *data) {
     bough_simulation *s = c->simulation;
     const bough_assembly *a = c->assembly;
     bough_equilibrium_def limits = bough_equilibrium_def_default();
-    if (!may_soften(s)) return search_within(&limits, s, a, c->time, c->work);
+    if (!may_soften(s)) return search_within(limits, s, a, c->time, c->work);
     double *start = bough_arena_doubles(arena, (size_t)a->n_state + 1);
     c->state = bough_arena_doubles(arena, (size_t)a->n_state + 1);
     bough_assembly_states(a, start);
     limits.least = least_step;
     limits.steps = PATIENCE;
-    bough_status status = search_within(&limits, s, a, c->time, c->work);
+    bough_status status = search_within(limits, s, a, c->time, c->work);
     return status.code == BOUGH_FAILED ? find_slack(c, start) : status;
 }
 
@@ -520,28 +501,16 @@ bough_status bough_simulation_any_equilibrium(bough_simulation *s, const bough_a
 
 // -- paths ----------------------------------------------------------------------------------------
 
-typedef struct walk {
-    search search; // the first, for move
-    const bough_assembly *assembly;
-    bough_simulation *simulation;
-    bough_path_listener listener;
-} walk;
-
-static void rest(void *self, double *state) {
-    walk *w = self;
-    bring_to_rest(&w->search, state);
-}
-
 static bough_status tell_point(void *self, double share, const double *state, bool limit) {
-    const walk *w = self;
-    double time = fmin(fmax(share, 0), 1) * bough_equilibrium_time(w->simulation);
-    for (int i = 0; i < w->assembly->n_member; i++)
-        bough_member_set(w->assembly->member[i], time, state + w->assembly->state_offset[i]);
-    bough_simulation_update(w->simulation);
-    bough_whole_inputs(w->search.coupled, time, state);
-    size_t size = (size_t)w->assembly->n_input * sizeof(double);
-    memcpy(w->simulation->master->coupling->input, w->search.coupled->input, size);
-    return w->listener.point(w->listener.self, time, share, limit);
+    const search *x = self;
+    double time = fmin(fmax(share, 0), 1) * bough_equilibrium_time(x->simulation);
+    for (int i = 0; i < x->assembly->n_member; i++)
+        bough_member_set(x->assembly->member[i], time, state + x->assembly->state_offset[i]);
+    bough_simulation_update(x->simulation);
+    bough_whole_inputs(x->coupled, time, state);
+    size_t size = (size_t)x->assembly->n_input * sizeof(double);
+    memcpy(x->simulation->master->coupling->input, x->coupled->input, size);
+    return x->listener.point(x->listener.self, time, share, limit);
 }
 
 static bough_status refuse_path(const bough_simulation *s) {
@@ -564,27 +533,26 @@ static bough_status refuse_path(const bough_simulation *s) {
                       file);
 }
 
-static bough_status walk_path(bough_arena *arena, void *data) {
-    const task *x = data;
-    bough_simulation *s = x->simulation;
-    balance_setup b;
+static bough_status walk_path(bough_arena *arena, void *self) {
+    search *x = self;
     bough_path_def def = bough_path_def_default();
-    bough_equilibrium_work work = {0};
-    set_up(arena, s, x->assembly, 0, &b);
-    bough_equilibrium_def start = equilibrium_def(&b);
-    BOUGH_TRY(balance(arena, s, b.coupled, &start, b.state, &work));
-    walk w = {b.self, x->assembly, s, x->listener};
-    def.end = bough_equilibrium_time(s);
-    def.self = &w;
+    set_up(arena, x);
+    bough_equilibrium_def start = equilibrium_def(x);
+    BOUGH_TRY(balance(arena, x, &start));
+    def.end = bough_equilibrium_time(x->simulation);
+    def.self = x;
     def.move = move;
-    def.rest = rest;
+    def.rest = bring_to_rest;
     def.point = tell_point;
-    return bough_path_follow(arena, b.coupled, &def, b.state, x->report);
+    return bough_path_follow(arena, x->coupled, &def, x->state, x->report);
 }
 
 bough_status bough_simulation_path(bough_simulation *s, const bough_assembly *assembly,
                                    bough_path_listener listener, bough_path_report *report) {
-    task x = {.simulation = s, .assembly = assembly, .listener = listener, .report = report};
+    bough_equilibrium_work work = {0};
+    search x = {s, assembly, .limits = bough_equilibrium_def_default(), .work = &work};
+    x.listener = listener;
+    x.report = report;
     *report = (bough_path_report){0};
     BOUGH_TRY(refuse_path(s));
     return bough_arena_use(walk_path, &x);
