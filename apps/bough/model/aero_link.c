@@ -43,11 +43,8 @@ static bough_status take_blades(bough_arena *arena, bough_aero_link *l) {
     l->signal = bough_arena_take(arena, (size_t)l->n_blade * sizeof *l->signal);
     for (int b = 0; b < l->n_blade; b++) {
         l->beam[b] = bough_simulation_beam(l->simulation, turbine->blade[b]);
-        bough_status status = same_mesh(l, l->beam[b]);
-        if (bough_is_ok(&status)) {
-            status = bough_aero_signal_build(arena, l->simulation, l->beam[b], &l->signal[b]);
-        }
-        if (!bough_is_ok(&status)) return status;
+        BOUGH_TRY(same_mesh(l, l->beam[b]));
+        l->signal[b] = bough_aero_signal_build(arena, l->simulation, l->beam[b]);
     }
     l->n_vertex = l->beam[0]->def.n_segment + 1;
     l->motion = bough_aero_motion_build(arena, l->simulation, l->beam);
@@ -199,12 +196,6 @@ static bough_aero_fresh fresh_loads(const bough_aero_link *l, int b) {
                               .factor = l->factor[l->found]};
 }
 
-static bough_aero_course course_of(const bough_aero_link *l, int b) {
-    return (bough_aero_course){.before = bough_aero_motion_before(l->motion, b),
-                               .now = bough_aero_motion_now(l->motion, b),
-                               .next = bough_aero_motion_found(l->motion)->blade[b].vertex};
-}
-
 // The time that a signal is found for.
 typedef struct interval {
     double start, span; // [s]
@@ -233,7 +224,8 @@ static void load_blade(void *self, int b, bough_part part) {
     const bough_aero_link *l = e->link;
     if (part != BOUGH_SECOND_HALF) bough_rotor_load(l->rotor, e->motion, b, e->data);
     if (part == BOUGH_FIRST_HALF || e->next == NULL) return;
-    bough_aero_signal_follow(l->signal[b], fresh_loads(l, b), course_of(l, b), e->next->start, e->next->span);
+    bough_aero_signal_follow(l->signal[b], fresh_loads(l, b), bough_aero_motion_course(l->motion, b),
+                             e->next->start, e->next->span);
 }
 
 // Evaluates the rotor with the motion found for it; `move` finds that of a blade.
@@ -276,7 +268,7 @@ static void evaluate(void *self, double t) {
 static void hold(bough_aero_link *l, double t) {
     if (l->time[l->shown] != t || l->found != l->shown) evaluate_present(l, t);
     for (int b = 0; b < l->n_blade; b++)
-        bough_aero_signal_hold(l->signal[b], fresh_loads(l, b), course_of(l, b), t);
+        bough_aero_signal_hold(l->signal[b], fresh_loads(l, b), bough_aero_motion_course(l->motion, b), t);
 }
 
 static bough_status sample(void *self, double t, double t_next, bool *jumped) {
@@ -335,7 +327,7 @@ double bough_aero_link_missed(const bough_aero_link *link, int blade) {
 }
 
 const bough_rotor_data *bough_aero_link_data(const bough_aero_link *link, double *factor) {
-    *factor = link->factor[link->shown];
+    if (factor) *factor = link->factor[link->shown];
     return &link->data[link->shown];
 }
 

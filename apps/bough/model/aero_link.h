@@ -38,7 +38,8 @@ double bough_aero_link_evaluated(const bough_aero_link *link);
 // To be called when state or wind have been changed from outside: the next sample is evaluated in any case.
 void bough_aero_link_renew(bough_aero_link *link);
 
-// Results of the last evaluation, at the last multiple of the period, with the ramp's factor at its time.
+// Results of the last evaluation, at the last multiple of the period, with the ramp's factor at its time
+// (NULL: not wanted).
 const bough_rotor_data *bough_aero_link_data(const bough_aero_link *link, double *factor);
 
 // The wind at the place where the hub stood at the start, at a time [s], undisturbed, ground axes [m/s].
@@ -68,9 +69,12 @@ void bough_aero_motion_expect_blade(bough_aero_motion *m, int blade);
 // The result of the last calls above.
 const bough_rotor_motion *bough_aero_motion_found(const bough_aero_motion *m);
 
-// A blade's rows, BOUGH_BLADE_ROWS × n_vertex, at this call and the one before (this, if there is none).
-const double *bough_aero_motion_now(const bough_aero_motion *m, int blade);
-const double *bough_aero_motion_before(const bough_aero_motion *m, int blade);
+// A blade's motion, rows as in bough_blade_motion: at the call before (this, if there is none), at this one,
+// and as found.
+typedef struct bough_aero_course {
+    const double *before, *now, *next;
+} bough_aero_course;
+bough_aero_course bough_aero_motion_course(const bough_aero_motion *m, int blade);
 
 // Makes the next call the first.
 void bough_aero_motion_forget(bough_aero_motion *m);
@@ -95,13 +99,8 @@ typedef struct bough_aero_fresh {
     double factor;
 } bough_aero_fresh;
 
-// A blade's motion, rows as in bough_blade_motion.
-typedef struct bough_aero_course {
-    const double *before, *now, *next; // at the sample before, now, and as expected at the next
-} bough_aero_course;
-
-bough_status bough_aero_signal_build(bough_arena *arena, bough_simulation *simulation, const bough_beam *beam,
-                                     bough_aero_signal **signal);
+bough_aero_signal *bough_aero_signal_build(bough_arena *arena, bough_simulation *simulation,
+                                           const bough_beam *beam);
 
 // The loads stay as they are from `start` on. `next` is the motion that they belong to.
 void bough_aero_signal_hold(bough_aero_signal *s, bough_aero_fresh fresh, bough_aero_course course,

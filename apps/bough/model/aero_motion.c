@@ -45,12 +45,9 @@ void bough_aero_motion_forget(bough_aero_motion *m) { m->known = 0; }
 
 const bough_rotor_motion *bough_aero_motion_found(const bough_aero_motion *m) { return &m->found; }
 
-const double *bough_aero_motion_now(const bough_aero_motion *m, int b) {
-    return m->state[0] + b * m->n_state;
-}
-
-const double *bough_aero_motion_before(const bough_aero_motion *m, int b) {
-    return m->state[m->known > 1 ? 1 : 0] + b * m->n_state;
+bough_aero_course bough_aero_motion_course(const bough_aero_motion *m, int b) {
+    int at = b * m->n_state;
+    return (bough_aero_course){m->state[m->known > 1] + at, m->state[0] + at, m->expected + at};
 }
 
 // -- as it is -------------------------------------------------------------------------------------
@@ -77,8 +74,6 @@ void bough_aero_motion_blade(bough_aero_motion *m, int b) {
 
 // -- as expected ----------------------------------------------------------------------------------
 
-static void store(bough_vec3 v, double *to) { to[0] = v.x, to[1] = v.y, to[2] = v.z; }
-
 static bough_vec3 load(const double *from) { return bough_v3(from[0], from[1], from[2]); }
 
 // A quaternion and its negative are the same rotation: takes the one nearer to `like`.
@@ -102,8 +97,8 @@ static void enter(bough_aero_motion *m, int b) {
     bough_twist_store(bough_tree_frame_twist(s->view, &s->tree->markers[m->beam[b]->marker]), frame + TWIST);
     if (b > 0) return;
     bough_transform pose = frame_of(m, b);
-    store(bough_mat3_tmul(pose.rotation, bough_sub(m->found.hub, pose.position)), frame + HUB);
-    store(bough_mat3_tmul(pose.rotation, m->found.shaft), frame + SHAFT);
+    bough_v3_store(bough_mat3_tmul(pose.rotation, bough_sub(m->found.hub, pose.position)), frame + HUB);
+    bough_v3_store(bough_mat3_tmul(pose.rotation, m->found.shaft), frame + SHAFT);
 }
 
 // Weights of the last calls, by their number: of the extrapolation to the next call, and of the mean until

@@ -56,8 +56,8 @@ static void take(bough_arena *arena, bough_aero_signal *s) {
     bough_arena_each(arena, 6 * stride, &s->strain, &s->lumped);
 }
 
-bough_status bough_aero_signal_build(bough_arena *arena, bough_simulation *simulation, const bough_beam *beam,
-                                     bough_aero_signal **signal) {
+bough_aero_signal *bough_aero_signal_build(bough_arena *arena, bough_simulation *simulation,
+                                           const bough_beam *beam) {
     bough_aero_signal *s = bough_arena_take(arena, sizeof *s);
     s->simulation = simulation;
     s->beam = beam;
@@ -65,8 +65,7 @@ bough_status bough_aero_signal_build(bough_arena *arena, bough_simulation *simul
     s->n = beam->port < 0 ? 6 : 6 * s->n_vertex;
     if (beam->rod != NULL) s->n += 12 * (s->n_vertex - 1);
     take(arena, s);
-    *signal = s;
-    return bough_ok();
+    return s;
 }
 
 // -- fresh loads ----------------------------------------------------------------------------------

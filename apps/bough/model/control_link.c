@@ -256,9 +256,7 @@ static void root_moments(const bough_control_link *l, int b, double t, double *o
 }
 
 static double hub_wind(const bough_simulation *s) {
-    double factor;
-    if (s->aero == NULL) return 0;
-    return bough_norm(bough_aero_link_data(s->aero, &factor)->disk_wind);
+    return s->aero ? bough_norm(bough_aero_link_data(s->aero, NULL)->disk_wind) : 0;
 }
 
 // How the body that carries the rotor moves: velocity of its origin in ground axes, and its angular

@@ -325,11 +325,10 @@ static void sample_aero(void *self, double t, double *value) {
 // of the wind with the tower's influence relative to the blades, in the hub's.
 static void sample_wind(void *self, double t, double *value) {
     const bough_simulation *s = self;
-    double factor;
     const bough_frame *rotor = &s->tree->bodies[s->scene->turbine.rotor];
     bough_mat3 axes = bough_tree_frame_pose(s->view, rotor).rotation;
     bough_vec3 wind = bough_aero_link_hub_wind(s->aero, t);
-    const bough_rotor_data *data = bough_aero_link_data(s->aero, &factor);
+    const bough_rotor_data *data = bough_aero_link_data(s->aero, NULL);
     bough_vec3 mean = bough_mat3_tmul(axes, bough_sub(data->disk_wind, data->disk_velocity));
     double ratio = hub_spin(s) * bough_simulation_rotor(s).radius / mean.x;
     const double values[] = {wind.x, wind.y, wind.z, mean.x, mean.y, mean.z, isfinite(ratio) ? ratio : 0};
