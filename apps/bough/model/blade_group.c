@@ -14,14 +14,9 @@ static bool same_structure(const bough_rod_def *a, const bough_rod_def *b) {
            memcmp(a->inertia, b->inertia, (n + 1) * sizeof *a->inertia) == 0;
 }
 
-// Angle of a blade's span about the shaft from the upright, or from the ground's x where the shaft
-// is upright, in [0, 2π).
+// In [0, 2π).
 static double azimuth_of(const bough_simulation *s, const bough_beam *blade) {
-    bough_vec3 shaft = bough_simulation_joint_axis(s, s->scene->turbine.rotor), zero = bough_v3(0, 0, 1);
-    if (fabs(shaft.z) > 0.9) zero = bough_v3(1, 0, 0);
-    zero = bough_axpy(-bough_dot(zero, shaft), shaft, zero);
-    bough_vec3 span = bough_tree_frame_pose(s->view, &s->tree->markers[blade->marker]).rotation.c3;
-    double angle = atan2(bough_dot(span, bough_cross(shaft, zero)), bough_dot(span, zero));
+    double angle = bough_simulation_azimuth(s, blade);
     return angle < -even ? angle + 2 * BOUGH_PI : angle;
 }
 
@@ -29,8 +24,7 @@ static double azimuth_of(const bough_simulation *s, const bough_beam *blade) {
 static double spin_of(const bough_simulation *s) {
     int rotor = s->scene->turbine.rotor;
     bough_vec3 w = bough_tree_frame_twist(s->view, &s->tree->bodies[rotor]).angular;
-    const double along[3] = {w.x, w.y, w.z};
-    return along[s->scene->body[rotor].joint.axis];
+    return bough_dot(w, bough_placement_axis(s->scene->body[rotor].joint.axis));
 }
 
 // Inserts a blade by azimuth.

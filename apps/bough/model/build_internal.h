@@ -28,9 +28,6 @@ void bough_jump_link_build(bough_arena *arena, bough_simulation *s);
 
 // -- placements and axes of a scene as transforms and vectors (build_bodies.c) --------------------
 
-// The unit vector of a bough_scene_axis.
-bough_vec3 bough_placement_axis(int axis);
-
 // The frame after n steps, in the frame they start from.
 bough_transform bough_placement(int n, const bough_scene_step *step);
 

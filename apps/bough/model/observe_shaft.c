@@ -1,5 +1,4 @@
 // The rotor's shaft: how the hub turns, and the torque between hub and drive train.
-#include "apps/bough/model/build_internal.h"
 #include "apps/bough/model/channel_table.h"
 #include "apps/bough/model/observe.h"
 #include "core/tree/loop.h"

@@ -60,6 +60,14 @@ bough_rotor_place bough_simulation_rotor(const bough_simulation *s) {
     return r;
 }
 
+double bough_simulation_azimuth(const bough_simulation *s, const bough_beam *blade) {
+    bough_vec3 shaft = bough_simulation_joint_axis(s, s->scene->turbine.rotor), zero = bough_v3(0, 0, 1);
+    if (fabs(shaft.z) > 0.9) zero = bough_v3(1, 0, 0);
+    zero = bough_axpy(-bough_dot(zero, shaft), shaft, zero);
+    bough_vec3 span = bough_tree_frame_pose(s->view, &s->tree->markers[blade->marker]).rotation.c3;
+    return atan2(bough_dot(span, bough_cross(shaft, zero)), bough_dot(span, zero));
+}
+
 bool bough_simulation_accelerate(const bough_simulation *s, double t) {
     return bough_tree_forward_dynamics(s->tree, s->view, t, s->master->coupling->input, s->acceleration);
 }

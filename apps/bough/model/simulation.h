@@ -113,6 +113,9 @@ const double *bough_beam_state(const bough_simulation *s, const bough_beam *beam
 // in `input`.
 void bough_beam_ride(const bough_beam *beam, const double *input, double *state);
 
+// The unit vector of a bough_scene_axis (build_bodies.c).
+bough_vec3 bough_placement_axis(int axis);
+
 // The axis of a body's joint in `view`, a unit vector in ground axes; the joint's own angle leaves it where
 // it is.
 bough_vec3 bough_simulation_joint_axis(const bough_simulation *s, int body);
@@ -124,6 +127,10 @@ typedef struct bough_rotor_place {
     double radius; // [m]
 } bough_rotor_place;
 bough_rotor_place bough_simulation_rotor(const bough_simulation *s);
+
+// Angle of a blade's span about the rotor's axis from the upright, or from the ground's x where that axis is
+// upright [rad].
+double bough_simulation_azimuth(const bough_simulation *s, const bough_beam *blade);
 
 // How the hub has turned about the shaft, and its speed: the sum of the joints about the rotor's axis between
 // the body that carries the rotor and the blades [rad], [rad/s].

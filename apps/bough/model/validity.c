@@ -72,8 +72,8 @@ static void validity_pass(bough_validity *v, bough_limit limit, int body, double
 
 static void check_air(bough_simulation *s) {
     const bough_rotor *rotor = bough_aero_link_rotor(s->aero);
-    double factor, time = bough_aero_link_evaluated(s->aero);
-    const bough_rotor_data *data = bough_aero_link_data(s->aero, &factor);
+    double time = bough_aero_link_evaluated(s->aero);
+    const bough_rotor_data *data = bough_aero_link_data(s->aero, NULL);
     if (!(time > s->validity->looked)) return;
     s->validity->looked = time;
     for (int b = 0; b < s->scene->turbine.n_blade; b++) {
@@ -170,23 +170,16 @@ static void check_closures(bough_simulation *s) {
 
 // -- at the start ---------------------------------------------------------------------------------
 
-// The angle of a blade's root about the rotor's axis, from a direction across it [rad].
-static double azimuth(const bough_simulation *s, const bough_rotor_place *r, int blade) {
-    const bough_beam *beam = bough_simulation_beam(s, s->scene->turbine.blade[blade]);
-    bough_transform root = bough_tree_frame_pose(s->view, &s->tree->markers[beam->marker]);
-    bough_vec3 along = bough_mat3_mul(root.rotation, bough_v3(0, 0, 1));
-    bool level = fabs(r->axis.z) < 0.9;
-    bough_vec3 side = bough_cross(level ? bough_v3(0, 0, 1) : bough_v3(1, 0, 0), r->axis);
-    bough_vec3 up = bough_cross(r->axis, side);
-    return atan2(bough_dot(along, side), bough_dot(along, up));
+static double azimuth(const bough_simulation *s, int blade) {
+    return bough_simulation_azimuth(s, bough_simulation_beam(s, s->scene->turbine.blade[blade]));
 }
 
 // The narrowest gap between two blades [rad].
-static double narrowest_gap(const bough_simulation *s, const bough_rotor_place *r) {
+static double narrowest_gap(const bough_simulation *s) {
     double narrowest = 2 * BOUGH_PI;
     for (int k = 0; k < s->scene->turbine.n_blade; k++) {
         for (int j = 0; j < k; j++) {
-            double gap = remainder(azimuth(s, r, j) - azimuth(s, r, k), 2 * BOUGH_PI);
+            double gap = remainder(azimuth(s, j) - azimuth(s, k), 2 * BOUGH_PI);
             narrowest = fmin(narrowest, fabs(gap));
         }
     }
@@ -196,7 +189,7 @@ static double narrowest_gap(const bough_simulation *s, const bough_rotor_place *
 static void check_rotor(bough_simulation *s) {
     int n = s->scene->turbine.n_blade, body = s->scene->turbine.rotor;
     bough_rotor_place r = bough_simulation_rotor(s);
-    double gap = narrowest_gap(s, &r);
+    double gap = narrowest_gap(s);
     if (gap < 2 * BOUGH_PI / n - most_uneven) {
         validity_pass(s->validity, BOUGH_LIMIT_SPACING, body, 0, gap * (180 / BOUGH_PI));
     }
