@@ -332,32 +332,9 @@ static void take_inputs(const bough_simulation *s, bough_discon_demand *demand) 
     }
 }
 
-// The FMU's terminals in order, with their values of `all`, one for each quantity and blade.
-static void list_terminals(const bough_scene_terminals *from, const double *all, bough_fmu_values *values) {
-    values->n = 0;
-    for (int k = 0; k < BOUGH_SCENE_SENSED + BOUGH_MOST_BLADES; k++) {
-        if (!from->variable[k]) continue;
-        values->reference[values->n] = from->variable[k]->reference;
-        values->value[values->n++] = all[k];
-    }
-}
-
-// One output of a pitch is for all blades; without one they keep theirs.
-static void take_demands(const bough_scene_terminals *from, const bough_fmu_values *values,
-                         const bough_discon_sensed *x, bough_discon_demand *demand) {
-    double all[BOUGH_SCENE_SENSED + BOUGH_MOST_BLADES] = {0}, *pitch = all + BOUGH_SCENE_SENSED;
-    for (int k = 0, i = 0; i < values->n; k++) {
-        if (from->variable[k]) all[k] = values->value[i++];
-    }
-    demand->torque = all[BOUGH_SENSED_TORQUE];
-    for (int b = 0; b < x->n_blade; b++)
-        demand->pitch[b] = from->n_pitch == 0 ? x->pitch[b] : pitch[from->n_pitch == 1 ? 0 : b];
-}
-
 // A communication step over the sample, whose end the demands are for.
 static bough_status step_fmu(bough_control_link *l, const bough_discon_sensed *x,
                              bough_discon_demand *demand) {
-    const bough_scene_control_fmu *fmu = &l->control->fmu;
     double all[BOUGH_SCENE_SENSED + BOUGH_MOST_BLADES] = {[BOUGH_SENSED_TIME] = x->time,
                                                           [BOUGH_SENSED_GENERATOR_SPEED] = x->generator_speed,
                                                           [BOUGH_SENSED_ROTOR_SPEED] = x->rotor_speed,
@@ -367,16 +344,19 @@ static bough_status step_fmu(bough_control_link *l, const bough_discon_sensed *x
                                                           [BOUGH_SENSED_AZIMUTH] = x->azimuth,
                                                           [BOUGH_SENSED_YAW_ERROR] = x->yaw_error};
     memcpy(all + BOUGH_SCENE_SENSED, x->pitch, sizeof x->pitch);
-    list_terminals(&fmu->inputs, all, &l->measured);
-    list_terminals(&fmu->outputs, all, &l->demanded);
     if (l->fmu->started) {
-        BOUGH_TRY(bough_fmu_set(l->fmu, x->time, &l->measured));
+        BOUGH_TRY(bough_fmu_set(l->fmu, x->time, &l->measured, all));
     } else {
-        BOUGH_TRY(bough_fmu_initialise(l->fmu, x->time, l->simulation->master->duration, &l->measured));
+        BOUGH_TRY(bough_fmu_initialise(l->fmu, x->time, l->simulation->master->duration, &l->measured, all));
     }
     BOUGH_TRY(bough_fmu_step(l->fmu, x->time, x->step));
-    BOUGH_TRY(bough_fmu_get(l->fmu, x->time + x->step, &l->demanded));
-    take_demands(&fmu->outputs, &l->demanded, x, demand);
+    all[BOUGH_SENSED_TORQUE] = 0; // unless it is an output
+    BOUGH_TRY(bough_fmu_get(l->fmu, x->time + x->step, &l->demanded, all));
+    demand->torque = all[BOUGH_SENSED_TORQUE];
+    // one output of a pitch is for all blades; without one they keep theirs
+    int n = l->control->fmu.outputs.n_pitch;
+    for (int b = 0; b < x->n_blade; b++)
+        demand->pitch[b] = n == 0 ? x->pitch[b] : all[BOUGH_SCENE_SENSED + (n == 1 ? 0 : b)];
     return bough_ok();
 }
 
@@ -466,6 +446,8 @@ bough_status bough_control_link_build(bough_arena *arena, bough_simulation *simu
     }
     if (l->control->kind == BOUGH_SCENE_CONTROL_FMU) {
         l->fmu = bough_arena_take(arena, sizeof *l->fmu);
+        bough_fmu_list(BOUGH_FMU_VALUES, l->control->fmu.inputs.variable, &l->measured);
+        bough_fmu_list(BOUGH_FMU_VALUES, l->control->fmu.outputs.variable, &l->demanded);
         return bough_fmu_open(arena, &l->control->fmu.model, "control", l->fmu);
     }
     bough_status status =

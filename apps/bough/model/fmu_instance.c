@@ -26,8 +26,10 @@ static void hear(fmi3_environment environment, fmi3_status status, fmi3_string c
 
 bool bough_fmu_is_good(fmi3_status status) { return status == FMI3_OK || status == FMI3_WARNING; }
 
-// After an error the standard allows an instance to be released only, after a fatal one not even that.
-bough_status bough_fmu_refused(bough_fmu_instance *x, const char *function, double t, fmi3_status status) {
+// What a function of the FMU answered at t [s]. After an error the instance takes no further call: the
+// standard allows it to be released only, after a fatal one not even that.
+static bough_status answer(bough_fmu_instance *x, const char *function, double t, fmi3_status status) {
+    if (bough_fmu_is_good(status)) return bough_ok();
     static const char *const names[] = {"OK", "warning", "discard", "error", "fatal error"};
     const char *name = status <= FMI3_FATAL ? names[status] : "unknown status";
     x->started = false;
@@ -98,10 +100,10 @@ static bough_status instantiate(bough_fmu_instance *x) {
     snprintf(resources, sizeof resources, "%s%s%s/resources/", here, absolute ? "" : "/", x->folder);
     x->instance = x->instantiate(x->name, fmu->description.token, resources, false, true, false, false, NULL,
                                  0, x, hear, NULL);
-    if (!x->instance) return bough_fmu_refused(x, "fmi3InstantiateCoSimulation", 0, FMI3_ERROR);
+    if (!x->instance) return answer(x, "fmi3InstantiateCoSimulation", 0, FMI3_ERROR);
     size_t n = (size_t)fmu->parameters.n;
-    fmi3_status answer = n > 0 ? x->set(x->instance, fmu->reference, n, fmu->parameters.value, n) : FMI3_OK;
-    return bough_fmu_is_good(answer) ? bough_ok() : bough_fmu_refused(x, "fmi3SetFloat64", 0, answer);
+    fmi3_status set = n > 0 ? x->set(x->instance, fmu->reference, n, fmu->parameters.value, n) : FMI3_OK;
+    return answer(x, "fmi3SetFloat64", 0, set);
 }
 
 // -- values and steps -----------------------------------------------------------------------------
@@ -113,20 +115,28 @@ bough_status bough_fmu_open(bough_arena *arena, const bough_scene_fmu_model *mod
     return instantiate(x);
 }
 
-bough_status bough_fmu_initialise(bough_fmu_instance *x, double t, double end,
-                                  const bough_fmu_values *inputs) {
-    fmi3_status answer = x->enter(x->instance, false, 0, t, true, end);
-    if (!bough_fmu_is_good(answer)) return bough_fmu_refused(x, "fmi3EnterInitializationMode", t, answer);
-    BOUGH_TRY(bough_fmu_set(x, t, inputs));
-    answer = x->leave(x->instance);
-    x->started = bough_fmu_is_good(answer);
-    return x->started ? bough_ok() : bough_fmu_refused(x, "fmi3ExitInitializationMode", t, answer);
+void bough_fmu_list(int n, const bough_fmu_variable *const *variable, bough_fmu_values *v) {
+    for (int k = 0; k < n; k++) {
+        if (!variable[k]) continue;
+        v->quantity[v->n] = k;
+        v->reference[v->n++] = variable[k]->reference;
+    }
 }
 
-bough_status bough_fmu_set(bough_fmu_instance *x, double t, const bough_fmu_values *v) {
-    if (v->n == 0) return bough_ok();
-    fmi3_status status = x->set(x->instance, v->reference, (size_t)v->n, v->value, (size_t)v->n);
-    return bough_fmu_is_good(status) ? bough_ok() : bough_fmu_refused(x, "fmi3SetFloat64", t, status);
+bough_status bough_fmu_initialise(bough_fmu_instance *x, double t, double end, bough_fmu_values *inputs,
+                                  const double *all) {
+    BOUGH_TRY(answer(x, "fmi3EnterInitializationMode", t, x->enter(x->instance, false, 0, t, true, end)));
+    BOUGH_TRY(bough_fmu_set(x, t, inputs, all));
+    BOUGH_TRY(answer(x, "fmi3ExitInitializationMode", t, x->leave(x->instance)));
+    x->started = true;
+    return bough_ok();
+}
+
+bough_status bough_fmu_set(bough_fmu_instance *x, double t, bough_fmu_values *v, const double *all) {
+    size_t n = (size_t)v->n;
+    if (n == 0) return bough_ok();
+    for (size_t k = 0; k < n; k++) v->value[k] = all[v->quantity[k]];
+    return answer(x, "fmi3SetFloat64", t, x->set(x->instance, v->reference, n, v->value, n));
 }
 
 static const char *name_of(const bough_fmu_description *d, fmi3_reference reference) {
@@ -135,11 +145,12 @@ static const char *name_of(const bough_fmu_description *d, fmi3_reference refere
     return d->variable[k].name;
 }
 
-bough_status bough_fmu_get(bough_fmu_instance *x, double t, bough_fmu_values *v) {
-    if (v->n == 0) return bough_ok();
-    fmi3_status status = x->get(x->instance, v->reference, (size_t)v->n, v->value, (size_t)v->n);
-    if (!bough_fmu_is_good(status)) return bough_fmu_refused(x, "fmi3GetFloat64", t, status);
-    for (int k = 0; k < v->n; k++) {
+bough_status bough_fmu_get(bough_fmu_instance *x, double t, bough_fmu_values *v, double *all) {
+    size_t n = (size_t)v->n;
+    if (n == 0) return bough_ok();
+    BOUGH_TRY(answer(x, "fmi3GetFloat64", t, x->get(x->instance, v->reference, n, v->value, n)));
+    for (size_t k = 0; k < n; k++) {
+        all[v->quantity[k]] = v->value[k];
         if (isfinite(v->value[k])) continue;
         return bough_fail(BOUGH_FAILED, "%s: output '%.60s' of the FMU at %.6g s: not a finite number",
                           x->name, name_of(&x->model->description, v->reference[k]), t);
@@ -152,7 +163,7 @@ bough_status bough_fmu_step(bough_fmu_instance *x, double t, double h) {
     double reached = t + h;
     fmi3_status status =
         x->step(x->instance, t, h, !x->model->description.restores, &event, &terminate, &early, &reached);
-    if (!bough_fmu_is_good(status)) return bough_fmu_refused(x, "fmi3DoStep", t, status);
+    BOUGH_TRY(answer(x, "fmi3DoStep", t, status));
     if (!terminate && !early) return bough_ok();
     return bough_fail(BOUGH_FAILED, "%s: the FMU ended its step at %.6g s, before %.6g s%s", x->name, reached,
                       t + h, terminate ? ": it asks to terminate" : "");

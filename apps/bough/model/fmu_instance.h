@@ -7,8 +7,10 @@
 
 enum { BOUGH_FMU_MESSAGE = 200, BOUGH_FMU_VALUES = BOUGH_SCENE_SENSED + BOUGH_MOST_BLADES };
 
+// Variables of an FMU for some of the quantities that a part of the scene has.
 typedef struct bough_fmu_values {
     int n;
+    int quantity[BOUGH_FMU_VALUES];             // (n) which one each variable is
     fmi3_reference reference[BOUGH_FMU_VALUES]; // (n)
     double value[BOUGH_FMU_VALUES];             // (n)
 } bough_fmu_values;
@@ -39,21 +41,21 @@ typedef struct bough_fmu_instance {
 bough_status bough_fmu_open(bough_arena *arena, const bough_scene_fmu_model *model, const char *name,
                             bough_fmu_instance *x);
 
-// Begins at t [s] with these inputs; `end` of the run [s].
-bough_status bough_fmu_initialise(bough_fmu_instance *x, double t, double end,
-                                  const bough_fmu_values *inputs);
+// Lists the variables of n quantities; NULL: the FMU has none for it.
+void bough_fmu_list(int n, const bough_fmu_variable *const *variable, bough_fmu_values *values);
 
-bough_status bough_fmu_set(bough_fmu_instance *x, double t, const bough_fmu_values *inputs);
+// Begins at t [s] with these inputs of all quantities; `end` of the run [s].
+bough_status bough_fmu_initialise(bough_fmu_instance *x, double t, double end, bough_fmu_values *inputs,
+                                  const double *all);
 
-// BOUGH_FAILED also where a value is not finite.
-bough_status bough_fmu_get(bough_fmu_instance *x, double t, bough_fmu_values *outputs);
+bough_status bough_fmu_set(bough_fmu_instance *x, double t, bough_fmu_values *inputs, const double *all);
+
+// Writes those of `all` that the FMU has. BOUGH_FAILED also where a value is not finite.
+bough_status bough_fmu_get(bough_fmu_instance *x, double t, bough_fmu_values *outputs, double *all);
 
 // A communication step from t to t + h [s]. BOUGH_FAILED also where the FMU ends it before.
 bough_status bough_fmu_step(bough_fmu_instance *x, double t, double h);
 
 bool bough_fmu_is_good(fmi3_status status);
-
-// BOUGH_FAILED by what a function of the FMU answered at t [s]; the instance takes no further call.
-bough_status bough_fmu_refused(bough_fmu_instance *x, const char *function, double t, fmi3_status status);
 
 #endif

@@ -10,8 +10,7 @@ typedef struct fmu_member {
     const bough_scene_body *body;
     const bough_member *member;
     bough_fmu_instance fmu;
-    bough_fmu_values input, output;
-    int from[BOUGH_SCENE_MOTION], to[BOUGH_SCENE_WRENCH]; // their components of motion and wrench
+    bough_fmu_values input, output; // of motion and wrench
     double motion[BOUGH_SCENE_MOTION], wrench[BOUGH_SCENE_WRENCH];
 
     int n_state;
@@ -19,33 +18,6 @@ typedef struct fmu_member {
     bool lost;                     // a copy of the state could not be made or restored
     long steps;
 } fmu_member;
-
-// -- values ---------------------------------------------------------------------------------------
-
-static const bough_fmu_values *inputs_at(fmu_member *x, const double *motion) {
-    for (int k = 0; k < x->input.n; k++) x->input.value[k] = motion[x->from[k]];
-    return &x->input;
-}
-
-static bough_status get_wrench(fmu_member *x, double t) {
-    bough_status status = bough_fmu_get(&x->fmu, t, &x->output);
-    for (int k = 0; k < x->output.n && bough_is_ok(&status); k++) x->wrench[x->to[k]] = x->output.value[k];
-    return status;
-}
-
-static void list_variables(fmu_member *x) {
-    const bough_scene_fmu *fmu = &x->body->fmu;
-    for (int k = 0; k < BOUGH_SCENE_MOTION; k++) {
-        if (!fmu->input[k]) continue;
-        x->from[x->input.n] = k;
-        x->input.reference[x->input.n++] = fmu->input[k]->reference;
-    }
-    for (int k = 0; k < BOUGH_SCENE_WRENCH; k++) {
-        if (!fmu->output[k]) continue;
-        x->to[x->output.n] = k;
-        x->output.reference[x->output.n++] = fmu->output[k]->reference;
-    }
-}
 
 // -- own steps ------------------------------------------------------------------------------------
 
@@ -64,13 +36,13 @@ static bough_status advance(void *self, double *t, double pause, double t1, bool
     for (int k = 0; k < n && bough_is_ok(&status); k++) {
         double from = t0 + k * h;
         bough_signal_value(signal, from + share * h, x->motion);
-        status = bough_fmu_set(&x->fmu, from, inputs_at(x, x->motion));
+        status = bough_fmu_set(&x->fmu, from, &x->input, x->motion);
         if (bough_is_ok(&status)) status = bough_fmu_step(&x->fmu, from, k < n - 1 ? h : t1 - from);
         x->steps++;
     }
     bough_signal_value(signal, t1, x->motion);
-    if (bough_is_ok(&status)) status = bough_fmu_set(&x->fmu, t1, inputs_at(x, x->motion));
-    if (bough_is_ok(&status)) status = get_wrench(x, t1);
+    if (bough_is_ok(&status)) status = bough_fmu_set(&x->fmu, t1, &x->input, x->motion);
+    if (bough_is_ok(&status)) status = bough_fmu_get(&x->fmu, t1, &x->output, x->wrench);
     *t = t1;
     return status;
 }
@@ -160,11 +132,12 @@ bough_status bough_fmu_member_create(bough_arena *arena, const bough_scene_body 
                                      double duration, bough_member *member) {
     fmu_member *x = bough_arena_take(arena, sizeof *x);
     *x = (fmu_member){.body = body, .member = member};
-    list_variables(x);
+    bough_fmu_list(BOUGH_SCENE_MOTION, body->fmu.input, &x->input);
+    bough_fmu_list(BOUGH_SCENE_WRENCH, body->fmu.output, &x->output);
     bough_status status = bough_fmu_open(arena, &body->fmu.model, body->name, &x->fmu);
     bough_arena_on_destroy(arena, free_states, x);
-    if (bough_is_ok(&status)) status = bough_fmu_initialise(&x->fmu, 0, duration, inputs_at(x, motion));
-    if (bough_is_ok(&status)) status = get_wrench(x, 0);
+    if (bough_is_ok(&status)) status = bough_fmu_initialise(&x->fmu, 0, duration, &x->input, motion);
+    if (bough_is_ok(&status)) status = bough_fmu_get(&x->fmu, 0, &x->output, x->wrench);
     bool restores = body->fmu.model.description.restores;
     *member = (bough_member){.system = {.name = body->name,
                                         .kind = "FMU",
