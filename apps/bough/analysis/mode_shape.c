@@ -12,7 +12,7 @@ void bough_mode_shape_take(bough_arena *arena, bough_mode_shape *x) {
     x->beam = bough_arena_take(arena, ((size_t)s->n_beam + 1) * sizeof *x->beam);
     for (int k = 0; k < s->n_beam; k++) {
         if (s->beam[k].modal == NULL) continue;
-        size_t n = (size_t)BOUGH_ROD_STATES * bough_beam_mesh(&s->beam[k])->n;
+        size_t n = (size_t)BOUGH_ROD_STATES * s->beam[k].mesh->n;
         x->beam[k].memory = bough_arena_doubles(arena, 3 * n);
     }
 }
@@ -35,12 +35,12 @@ static void expand(const bough_mode_shape *x, const bough_beam *beam, int part, 
     for (int k = 0; k < n; k++)
         x->moved[k] = x->state[at + k] + step * bough_mode_shape_part(x, part)[at + k];
     memcpy(to, bough_modal_body_vertices(beam->modal, x->moved, input, 1),
-           (size_t)BOUGH_ROD_STATES * bough_beam_mesh(beam)->n * sizeof *to);
+           (size_t)BOUGH_ROD_STATES * beam->mesh->n * sizeof *to);
 }
 
 // Central differences with steps that change no state by more than a millionth.
 static void set_modal(const bough_mode_shape *x, const bough_beam *beam, bough_beam_shape *b) {
-    size_t n = (size_t)BOUGH_ROD_STATES * bough_beam_mesh(beam)->n;
+    size_t n = (size_t)BOUGH_ROD_STATES * beam->mesh->n;
     for (int part = 0; part < 2; part++) {
         double most = DBL_MIN, *to = b->memory + (size_t)(1 + part) * n;
         for (int k = 0; k < x->assembly->n_state; k++)
@@ -108,7 +108,7 @@ static bough_twist add_vertex(const bough_mode_shape *x, const bough_beam *beam,
                               bough_twist frame) {
     const bough_beam_shape *b = bough_mode_shape_beam(x, beam);
     const double *y = b->state + i - 1, *d = b->tangent[part] + i - 1;
-    int n = bough_beam_mesh(beam)->n;
+    int n = beam->mesh->n;
     bough_vec3 arm = {y[0], y[n], y[2 * n]}, shift = {d[0], d[n], d[2 * n]};
     bough_quaternion p = {y[3 * n], y[4 * n], y[5 * n], y[6 * n]};
     bough_quaternion dp = {d[3 * n], d[4 * n], d[5 * n], d[6 * n]};
@@ -133,7 +133,7 @@ static void move_body(const bough_mode_shape *x, int body, int part, bough_shape
         row->span = i == 0 ? 0 : beam->def.span[i];
         if (i == 0) {
             store(s, frame, own, row->motion[part]);
-        } else if (i <= bough_beam_mesh(beam)->n) {
+        } else if (i <= beam->mesh->n) {
             store(s, frame, add_vertex(x, beam, part, i, own), row->motion[part]);
         } else {
             const bough_frame *end = &s->tree->bodies[s->scene->n_body + beam->end];
@@ -220,7 +220,7 @@ static double vertex_energy(const bough_vertex_inertia *v, bough_vec3 u, bough_v
 
 static double rod_energy(const bough_mode_shape *x, const bough_beam *beam, int part) {
     const bough_beam_shape *b = bough_mode_shape_beam(x, beam);
-    const bough_rod_model *m = bough_beam_mesh(beam);
+    const bough_rod_model *m = beam->mesh;
     const double *d = b->tangent[part] + (size_t)BOUGH_ROD_U * m->n;
     double sum = 0;
     int n = m->n;
@@ -263,7 +263,7 @@ enum { BENDING = 6 };
 
 // The square root of its inertia times displacement c < 3 or turn of a vertex against the body.
 static double bending(const bough_mode_shape *x, const bough_beam *beam, int part, int i, int c) {
-    const bough_rod_model *m = bough_beam_mesh(beam);
+    const bough_rod_model *m = beam->mesh;
     int n = m->n;
     const double *d = bough_mode_shape_beam(x, beam)->tangent[part],
                  *y = bough_mode_shape_beam(x, beam)->state;
@@ -277,7 +277,7 @@ static double bending(const bough_mode_shape *x, const bough_beam *beam, int par
 }
 
 static void add_direction(const bough_mode_shape *x, const bough_beam *beam, double *sum) {
-    for (int i = 0; i < bough_beam_mesh(beam)->n; i++) {
+    for (int i = 0; i < beam->mesh->n; i++) {
         for (int part = 0; part < 2; part++) {
             for (int c = 0; c < 3; c++) sum[c] += pow(bending(x, beam, part, i, c), 2);
             sum[BOUGH_ROD_TORSION] += pow(bending(x, beam, part, i, 5), 2);
@@ -362,7 +362,7 @@ static void set_pattern(const bough_mode_shape *x, bough_scene_mode *mode) {
     const bough_blade_group *g = x->group;
     pattern sum = {0};
     if (g->n == 0 || g->n > MOST_BLADES) return;
-    for (int i = 0; i < bough_beam_mesh(g->blade[0])->n; i++) {
+    for (int i = 0; i < g->blade[0]->mesh->n; i++) {
         for (int c = 0; c < BENDING; c++) {
             double real[MOST_BLADES], imaginary[MOST_BLADES];
             for (int k = 0; k < g->n; k++) {

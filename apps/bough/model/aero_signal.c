@@ -52,7 +52,7 @@ static void take(bough_arena *arena, bough_aero_signal *s) {
     bough_arena_each(arena, 3 * vertices, &s->now, &s->before);
     if (s->beam->port >= 0) s->along = bough_arena_doubles(arena, 12 * segments);
     if (s->beam->modal == NULL) return;
-    size_t stride = (size_t)bough_beam_mesh(s->beam)->stride;
+    size_t stride = (size_t)s->beam->mesh->stride;
     bough_arena_each(arena, 6 * stride, &s->strain, &s->lumped);
 }
 
@@ -84,7 +84,7 @@ static void sum_loads(const bough_aero_signal *s, const double *const row[6], do
 
 // A modal body knows loads on vertices only.
 static void lump_line(bough_aero_signal *s) {
-    const bough_rod_model *m = bough_beam_mesh(s->beam);
+    const bough_rod_model *m = s->beam->mesh;
     int n = s->n_vertex, stride = m->stride;
     memset(s->lumped, 0, 6 * (size_t)stride * sizeof(double));
     bough_rod_line_strain(m, s->along, s->strain);
@@ -102,7 +102,7 @@ static void take_fresh(bough_aero_signal *s, bough_aero_fresh fresh, const doubl
         sum_loads(s, row, s->fresh);
     } else {
         memcpy(s->fresh, fresh.load, 6 * (size_t)n * sizeof(double));
-        bough_rod_take_line(bough_beam_mesh(s->beam), rows + BOUGH_BLADE_ROTATION * n, fresh.line,
+        bough_rod_take_line(s->beam->mesh, rows + BOUGH_BLADE_ROTATION * n, fresh.line,
                             s->beam->rod != NULL ? s->fresh + 6 * n : s->along, s->fresh);
         if (s->beam->modal != NULL) lump_line(s);
     }
@@ -170,7 +170,7 @@ static void take_slope(bough_aero_signal *s, bough_aero_fresh fresh, bough_aero_
     for (int k = 0; k < BOUGH_SLOPES * n; k++) slope[k] = fresh.factor * fresh.slope[k];
     for (int c = 0; c < BOUGH_SLOPES; c++) { // what moves as the input says is no state of the rod
         slope[c * n] = 0;
-        if (s->beam->rod && bough_rod_carries(bough_beam_mesh(s->beam))) slope[c * n + n - 1] = 0;
+        if (s->beam->rod && bough_rod_carries(s->beam->mesh)) slope[c * n + n - 1] = 0;
     }
     set_angle(n, course.now, s->angle);
     apply_slope(s, course.next, s->expected);
@@ -185,8 +185,8 @@ static void put(bough_aero_signal *s) {
         bough_tree_set_wrench(s->simulation->tree, beam->marker, s->start, s->value, s->rate, s->curve);
         return;
     }
-    bough_rod_loads *rod = bough_beam_loads(beam);
-    size_t stride = (size_t)bough_beam_mesh(beam)->stride, n = (size_t)s->n_vertex;
+    bough_rod_loads *rod = beam->loads;
+    size_t stride = (size_t)beam->mesh->stride, n = (size_t)s->n_vertex;
     for (size_t c = 0; c < 6; c++) {
         memcpy(rod->value + c * stride, s->value + c * n, n * sizeof(double));
         memcpy(rod->rate + c * stride, s->rate + c * n, n * sizeof(double));
@@ -204,7 +204,7 @@ static void put(bough_aero_signal *s) {
     double *restrict along = s->along, inverse = 1 / s->span;
 #pragma omp simd
     for (int k = 0; k < count; k++) along[k] = (to[k] - from[k]) * inverse;
-    bough_rod_loads_along(bough_beam_mesh(beam), from, along, rod);
+    bough_rod_loads_along(beam->mesh, from, along, rod);
 }
 
 void bough_aero_signal_hold(bough_aero_signal *s, bough_aero_fresh fresh, bough_aero_course course,

@@ -7,6 +7,8 @@ static bough_status build_rod(bough_arena *arena, bough_beam *beam, const double
     bough_rod_model *model = NULL;
     BOUGH_TRY(bough_rod_create(arena, &beam->def, &model));
     beam->rod = bough_rod_body_create(arena, model, input);
+    beam->mesh = model;
+    beam->loads = bough_rod_body_loads(beam->rod);
     *system = bough_rod_body_system(beam->rod);
     return bough_ok();
 }
@@ -19,6 +21,8 @@ static bough_status build_modal(bough_arena *arena, bough_beam *beam, const doub
     bough_modal_model *model = NULL;
     BOUGH_TRY(bough_modal_create(arena, &beam->def, pieces, options, &model));
     beam->modal = bough_modal_body_create(arena, model, input);
+    beam->mesh = model->rod;
+    beam->loads = bough_modal_body_loads(beam->modal);
     *system = bough_modal_body_system(beam->modal);
     return bough_ok();
 }
@@ -29,19 +33,10 @@ bough_status bough_beam_build(bough_arena *arena, bough_beam *beam, bough_integr
     bough_system system = {0};
     BOUGH_TRY(rod ? build_rod(arena, beam, input, &system) : build_modal(arena, beam, input, &system));
     if (beam->in_ground) {
-        beam->ground =
-            bough_ground_body_create(arena, &system, bough_beam_mesh(beam), bough_beam_loads(beam));
+        beam->ground = bough_ground_body_create(arena, &system, beam->mesh, beam->loads);
         system = bough_ground_body_system(beam->ground);
     }
     return bough_member_create(arena, &system, 0, &micro, member);
-}
-
-const bough_rod_model *bough_beam_mesh(const bough_beam *beam) {
-    return beam->rod != NULL ? bough_rod_body_model(beam->rod) : bough_modal_body_model(beam->modal)->rod;
-}
-
-bough_rod_loads *bough_beam_loads(const bough_beam *beam) {
-    return beam->rod != NULL ? bough_rod_body_loads(beam->rod) : bough_modal_body_loads(beam->modal);
 }
 
 const double *bough_beam_state(const bough_simulation *s, const bough_beam *beam, int first) {
@@ -54,7 +49,7 @@ const double *bough_beam_state(const bough_simulation *s, const bough_beam *beam
 
 void bough_beam_ride(const bough_beam *beam, const double *input, double *state) {
     if (beam->rod != NULL) {
-        bough_rod_ride(bough_rod_body_model(beam->rod), input, state);
+        bough_rod_ride(beam->mesh, input, state);
     } else {
         bough_modal_body_ride(beam->modal, input, state);
     }

@@ -4,16 +4,6 @@
 
 static const double even = 1e-6; // [rad]
 
-static bool same_structure(const bough_rod_def *a, const bough_rod_def *b) {
-    size_t n = (size_t)a->n_segment;
-    return a->n_segment == b->n_segment &&
-           memcmp(a->stiffness, b->stiffness, 21 * n * sizeof *a->stiffness) == 0 &&
-           memcmp(a->damping, b->damping, 21 * n * sizeof *a->damping) == 0 &&
-           memcmp(a->position, b->position, (n + 1) * sizeof *a->position) == 0 &&
-           memcmp(a->rotation, b->rotation, (n + 1) * sizeof *a->rotation) == 0 &&
-           memcmp(a->inertia, b->inertia, (n + 1) * sizeof *a->inertia) == 0;
-}
-
 // In [0, 2π).
 static double azimuth_of(const bough_simulation *s, const bough_beam *blade) {
     double angle = bough_simulation_azimuth(s, blade);
@@ -59,8 +49,8 @@ static bool is_alike(const bough_simulation *s, const bough_blade_group *group, 
     return blade->port >= 0 && blade->body->fidelity == first->body->fidelity &&
            s->rod[blade->port].system.n_state == s->rod[first->port].system.n_state &&
            hangs_on(s->tree, s->tree->markers[blade->marker].link, rotor) &&
-           same_structure(&first->def, &blade->def) && fabs(angle) < even &&
-           pitch_between(s, first, blade, 2 * BOUGH_PI * k / group->n) < even;
+           first->def.stiffness == blade->def.stiffness && // equal beams have one mesh
+           fabs(angle) < even && pitch_between(s, first, blade, 2 * BOUGH_PI * k / group->n) < even;
 }
 
 bough_status bough_blade_group_find(bough_arena *arena, const bough_simulation *s,
@@ -128,7 +118,7 @@ static bough_vec3 mean_chord(const bough_blade_group *group, const bough_rod_mod
 // Mean rotations, and positions by the mean strains: mean positions of blades bent to either side
 // would be shorter than the rod and press it.
 static void average_rods(const bough_blade_group *group, const double *state, double *mean) {
-    const bough_rod_model *m = bough_beam_mesh(group->blade[0]);
+    const bough_rod_model *m = group->blade[0]->mesh;
     int n = m->n;
     for (int i = 1; i <= n; i++) {
         bough_vec3 x;

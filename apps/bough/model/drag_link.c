@@ -73,8 +73,8 @@ static void put(bough_drag_link *l) {
         bough_tree_set_wrench(tree, l->tower->marker, start, value, rate, NULL);
         return;
     }
-    bough_rod_loads *rod = bough_beam_loads(l->tower);
-    int stride = bough_beam_mesh(l->tower)->stride;
+    bough_rod_loads *rod = l->tower->loads;
+    int stride = l->tower->mesh->stride;
     for (int k = 0; k < l->n_tower; k++) {
         int at = k / l->n_vertex * stride + k % l->n_vertex;
         rod->value[at] = value[k];

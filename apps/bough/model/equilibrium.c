@@ -171,7 +171,7 @@ static double move(void *self, const double *state, const double *change, double
     for (int k = 0; k < s->n_beam; k++) {
         const bough_beam *beam = &s->beam[k];
         if (!beam->rod) continue;
-        const bough_rod_model *m = bough_rod_body_model(beam->rod);
+        const bough_rod_model *m = beam->mesh;
         size_t own = (size_t)a->state_offset[beam->port + 1], size = BOUGH_ROD_U * (size_t)m->n;
         size_t end = 0; // of a rod that carries nothing: not read
         if (beam->end >= 0) {
@@ -424,8 +424,8 @@ static bough_status find_stiffened(bough_arena *arena, void *data) {
 static bough_status soften(continuation *c) {
     double part = first_part, found = 1;
     c->exponent = found;
-    bough_status status = bough_arena_use(find_stiffened, c);
-    if (!bough_is_ok(&status)) return status;
+    BOUGH_TRY(bough_arena_use(find_stiffened, c));
+    bough_status status = bough_ok();
     while (found > 0) {
         c->exponent = fmax(0, found - part);
         status = bough_arena_use(find_stiffened, c);

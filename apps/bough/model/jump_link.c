@@ -30,7 +30,7 @@ void bough_jump_link_build(bough_arena *arena, bough_simulation *s) {
     for (int k = 0; k < s->tree->n_applied; k++) add(j, &s->tree->applied[k].schedule);
     for (int k = 0; k < s->n_beam; k++) {
         if (s->beam[k].port < 0) continue;
-        bough_rod_ramped_load *l = bough_beam_loads(&s->beam[k])->ramped;
+        bough_rod_ramped_load *l = s->beam[k].loads->ramped;
         for (; l != NULL; l = l->next) add(j, &l->schedule);
     }
     s->jumps = j->n > 0;

@@ -29,7 +29,7 @@ static void resolve(const bough_simulation *s, const bough_beam *beam, const bou
 }
 
 static void add_ground(bough_arena *arena, const bough_beam *beam, const bough_scene_load *load) {
-    bough_ground_load_def def = {.reach = reach_of(load, bough_beam_mesh(beam)),
+    bough_ground_load_def def = {.reach = reach_of(load, beam->mesh),
                                  .schedule = bough_scene_load_schedule(load)};
     for (int c = 0; c < 3; c++) {
         def.wrench[c] = load->force[c], def.wrench[3 + c] = load->moment[c];
@@ -40,10 +40,10 @@ static void add_ground(bough_arena *arena, const bough_beam *beam, const bough_s
 
 static void add(bough_arena *arena, const bough_simulation *s, const bough_beam *beam,
                 const bough_scene_load *load) {
-    const bough_rod_model *m = bough_beam_mesh(beam);
+    const bough_rod_model *m = beam->mesh;
     bool follower = load->frame == BOUGH_SCENE_LOAD_FOLLOWER;
     bough_schedule schedule = bough_scene_load_schedule(load);
-    bough_rod_ramped_load *to = bough_rod_loads_ramped(bough_beam_loads(beam), arena, m, follower, &schedule);
+    bough_rod_ramped_load *to = bough_rod_loads_ramped(beam->loads, arena, m, follower, &schedule);
     double wrench[6], end[6];
     resolve(s, beam, load, load->force, load->moment, wrench);
     resolve(s, beam, load, load->end_force, load->end_moment, end);

@@ -26,13 +26,13 @@ enum { PLACE_CHANNELS = 12 };
 // A vertex as gathered in scratch->vertex: place and rotation in the body's frame.
 static bough_vec3 vertex_position(const sensor *x, int i) {
     const double *v = x->scratch.vertex + i;
-    int n = bough_beam_mesh(x->beam)->stride;
+    int n = x->beam->mesh->stride;
     return bough_v3(v[0], v[n], v[2 * n]);
 }
 
 static bough_quaternion vertex_rotation(const sensor *x, int i) {
     const double *p = x->scratch.vertex + i;
-    int n = bough_beam_mesh(x->beam)->stride;
+    int n = x->beam->mesh->stride;
     return (bough_quaternion){p[3 * n], p[4 * n], p[5 * n], p[6 * n]};
 }
 
@@ -137,7 +137,7 @@ static void add_sensor(bough_simulation *s, const bough_scene_sensor *from, boug
     sensor *x = bough_arena_take(arena, sizeof *x);
     *x = (sensor){s, bough_simulation_beam(s, from->body), from->n_at, NULL, {0}};
     x->place = bough_arena_take(arena, (size_t)x->n * sizeof *x->place);
-    bough_rod_scratch_init(&x->scratch, arena, bough_beam_mesh(x->beam));
+    bough_rod_scratch_init(&x->scratch, arena, x->beam->mesh);
     bough_channels_group(list, sample_sections, x);
     for (int k = 0; k < x->n; k++) {
         x->place[k] = find_place(&x->beam->def, from->at[k]);

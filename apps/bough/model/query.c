@@ -122,7 +122,7 @@ static vertex rigid_vertex(const bough_beam *beam, int i, bough_twist twist) {
 
 static vertex rod_vertex(const bough_beam *beam, const double *state, int i) {
     const double *y = state + i - 1;
-    int n = bough_beam_mesh(beam)->n;
+    int n = beam->mesh->n;
     bough_quaternion p = {y[3 * n], y[4 * n], y[5 * n], y[6 * n]};
     bough_mat3 r = bough_rotation_matrix(bough_quaternion_normalised(p));
     bough_vec3 w = {y[10 * n], y[11 * n], y[12 * n]};
@@ -142,7 +142,7 @@ static vertex end_vertex(const bough_simulation *s, const bough_beam *beam) {
 static vertex vertex_of(const bough_simulation *s, const bough_beam *beam, const double *state, int i,
                         bough_twist twist) {
     if (i == 0 || state == NULL) return rigid_vertex(beam, i, twist);
-    if (i > bough_beam_mesh(beam)->n) return end_vertex(s, beam);
+    if (i > beam->mesh->n) return end_vertex(s, beam);
     return rod_vertex(beam, state, i);
 }
 
@@ -227,7 +227,7 @@ static void put_vertex(vertex v, bough_quaternion p, int i, int n, double *rows)
 void bough_simulation_beam_rows(const bough_simulation *s, const bough_beam *beam, double *rows) {
     bough_twist twist = bough_tree_frame_twist(s->view, &s->tree->markers[beam->marker]);
     const double *state = beam->port < 0 ? NULL : bough_beam_state(s, beam, 1);
-    int n = beam->def.n_segment + 1, inner = state ? bough_beam_mesh(beam)->n : 0;
+    int n = beam->def.n_segment + 1, inner = state ? beam->mesh->n : 0;
     for (int c = 0; state && c < BOUGH_BLADE_ROWS; c++)
         memcpy(rows + c * n + 1, state + c * inner, (size_t)inner * sizeof *rows);
     put_vertex(rigid_vertex(beam, 0, twist), beam->def.rotation[0], 0, n, rows);

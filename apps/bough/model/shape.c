@@ -6,9 +6,9 @@
 
 bool bough_section_evaluate(const bough_simulation *s, const bough_beam *beam, double t,
                             bough_rod_scratch *scratch) {
-    const bough_rod_model *m = bough_beam_mesh(beam);
+    const bough_rod_model *m = beam->mesh;
     bough_rod_gather(m, bough_beam_state(s, beam, 1), bough_simulation_rod_input(s, beam), scratch);
-    bough_rod_load(m, bough_beam_loads(beam), t, scratch);
+    bough_rod_load(m, beam->loads, t, scratch);
     return bough_rod_forces(m, 0, m->n_segment, scratch);
 }
 
@@ -29,7 +29,7 @@ static bough_mat3 vertex_axes(const bough_rod_model *m, const bough_rod_scratch 
 // does to the right one.
 bough_section_load bough_section_in_segment(const bough_beam *beam, const bough_rod_scratch *scratch,
                                             int segment, double share) {
-    const bough_rod_model *m = bough_beam_mesh(beam);
+    const bough_rod_model *m = beam->mesh;
     bough_vec3 first = bough_mat3_mul(vertex_axes(m, scratch, segment), segment_row(m, scratch, segment, 3));
     bough_vec3 last =
         bough_mat3_mul(vertex_axes(m, scratch, segment + 1), segment_row(m, scratch, segment, 6));
@@ -41,7 +41,7 @@ bough_section_load bough_section_in_segment(const bough_beam *beam, const bough_
 // acts on the vertex; at the ends that of the only segment.
 static bough_section_load section_at_vertex(const bough_beam *beam, const bough_rod_scratch *scratch,
                                             int vertex) {
-    int n = bough_beam_mesh(beam)->n_segment;
+    int n = beam->mesh->n_segment;
     int inner = vertex > 0 ? vertex - 1 : 0, outer = vertex < n ? vertex : n - 1;
     bough_section_load a = bough_section_in_segment(beam, scratch, inner, vertex - inner);
     bough_section_load b = bough_section_in_segment(beam, scratch, outer, vertex - outer);
@@ -65,7 +65,7 @@ static void take_scratch(bough_arena *arena, bough_shape *shape) {
     shape->scratch = bough_arena_take(arena, (size_t)shape->n_line * sizeof *shape->scratch);
     for (int i = 0; i < shape->n_line; i++) {
         if (has_rod(s, i)) {
-            bough_rod_scratch_init(&shape->scratch[i], arena, bough_beam_mesh(bough_simulation_beam(s, i)));
+            bough_rod_scratch_init(&shape->scratch[i], arena, bough_simulation_beam(s, i)->mesh);
         }
     }
 }

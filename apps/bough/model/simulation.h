@@ -29,7 +29,9 @@ typedef struct bough_beam {
                              // of the end in its section's
     bough_rod_body *rod;     // NULL unless a rod
     bough_modal_body *modal; // NULL unless modal
-    bough_ground_body *ground; // around either, NULL unless in_ground
+    const bough_rod_model *mesh; // of either, NULL when rigid
+    bough_rod_loads *loads;      // on it
+    bough_ground_body *ground;   // around either, NULL unless in_ground
 } bough_beam;
 
 typedef struct bough_simulation {
@@ -103,10 +105,8 @@ void bough_simulation_tip_shift(const bough_simulation *s, const bough_beam *bea
 bough_status bough_beam_build(bough_arena *arena, bough_beam *beam, bough_integrator_options micro,
                               const double *input, bough_member *member);
 
-// Of a flexible beam: its mesh, its loads, and the state of its vertices from `first` on at `view` as
-// rod.h lays it out, the latter valid until the next call for the same beam.
-const bough_rod_model *bough_beam_mesh(const bough_beam *beam);
-bough_rod_loads *bough_beam_loads(const bough_beam *beam);
+// Of a flexible beam the state of its vertices from `first` on at `view` as rod.h lays it out, valid until
+// the next call for the same beam.
 const double *bough_beam_state(const bough_simulation *s, const bough_beam *beam, int first);
 
 // Sets the velocities of a flexible beam's own state to rest relative to its frame, whose twist is

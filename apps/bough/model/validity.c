@@ -141,7 +141,7 @@ static void check_turns(bough_simulation *s) {
     for (int i = 0; i < s->n_beam; i++) {
         const bough_beam *beam = &s->beam[i];
         if (!beam->rod || s->validity->limit[BOUGH_LIMIT_TURN].passed) continue;
-        const bough_rod_model *m = bough_rod_body_model(beam->rod);
+        const bough_rod_model *m = beam->mesh;
         const double *p = bough_beam_state(s, beam, 0) + (size_t)BOUGH_ROD_P * (size_t)m->n;
         if (turn_little(m, p)) continue;
         for (int k = 0; k < m->n; k++) {
