@@ -44,13 +44,13 @@ static bool in_air(const bough_simulation *s) {
 static void set_input(void *self, int k, double change, double *state) {
     const work *w = self;
     bough_simulation *s = w->s;
-    double value = w->input[k].base + change, speed, torque, power;
+    double value = w->input[k].base + change, torque;
     switch (w->input[k].kind) {
     case SCENE_LOAD: bough_simulation_put(s, w->input[k].index, value); break;
     case WIND_SPEED: bough_aero_link_set_wind(s->aero, value); break;
     case GENERATOR_TORQUE:
     case COLLECTIVE_PITCH:
-        bough_control_link_generator(s->control, &speed, &torque, &power);
+        torque = bough_control_link_generator(s->control).torque;
         double pitch = bough_simulation_pitch(s, bough_simulation_beam(s, s->scene->turbine.blade[0]));
         if (w->input[k].kind == GENERATOR_TORQUE) torque = value;
         if (w->input[k].kind == COLLECTIVE_PITCH) pitch = value;
@@ -82,8 +82,7 @@ static void find_inputs(work *w, bough_state_space *to) {
                       to);
     }
     if (s->control != NULL) {
-        double speed, torque, power;
-        bough_control_link_generator(s->control, &speed, &torque, &power);
+        double torque = bough_control_link_generator(s->control).torque;
         add_input(w, GENERATOR_TORQUE, 0, torque, "generator torque, fast shaft", "N m", to);
         double pitch = bough_simulation_pitch(s, bough_simulation_beam(s, s->scene->turbine.blade[0]));
         if (bough_control_link_pitches(s->control))

@@ -412,10 +412,9 @@ static bough_status sample(void *self, double t, double t_next, bool *jumped) {
     return bough_ok();
 }
 
-void bough_control_link_generator(const bough_control_link *l, double *speed, double *torque, double *power) {
-    *speed = l->now.speed;
-    *torque = l->now.torque;
-    *power = electrical_power(l->control, l->now.speed, l->now.torque);
+bough_generator bough_control_link_generator(const bough_control_link *l) {
+    double speed = l->now.speed, torque = l->now.torque;
+    return (bough_generator){speed, torque, electrical_power(l->control, speed, torque)};
 }
 
 // A foreign controller's own memory is not in it.

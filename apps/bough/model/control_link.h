@@ -24,9 +24,10 @@ void bough_control_link_stand(bough_control_link *link, double speed, double pit
 // The generator's torque on the fast shaft [N m], and blades that are turned at a pitch [rad], from now on.
 void bough_control_link_put(bough_control_link *link, double torque, double pitch);
 
-// At the last sample: generator speed [rad/s], torque on the fast shaft [N m] and electrical power
-// [W].
-void bough_control_link_generator(const bough_control_link *link, double *speed, double *torque,
-                                  double *power);
+// The generator at the last sample.
+typedef struct bough_generator {
+    double speed, torque, power; // [rad/s], on the fast shaft [N m], electrical [W]
+} bough_generator;
+bough_generator bough_control_link_generator(const bough_control_link *link);
 
 #endif

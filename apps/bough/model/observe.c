@@ -391,12 +391,11 @@ static const char *name_fmu(const bough_simulation *s, int k) { return s->rod[s-
 static void sample_control(void *self, double t, double *value) {
     (void)t;
     const bough_simulation *s = self;
-    double speed, torque, power;
-    bough_control_link_generator(s->control, &speed, &torque, &power);
-    speed = bough_simulation_joint_point(s, s->scene->turbine.rotor).v;
+    bough_generator generator = bough_control_link_generator(s->control);
+    double speed = bough_simulation_joint_point(s, s->scene->turbine.rotor).v;
     value[0] = s->scene->control.gear_ratio * speed / BOUGH_RPM;
-    value[1] = torque / 1e3;
-    value[2] = power / 1e3;
+    value[1] = generator.torque / 1e3;
+    value[2] = generator.power / 1e3;
     for (int b = 0; b < s->scene->turbine.n_blade; b++) {
         const bough_beam *blade = bough_simulation_beam(s, s->scene->turbine.blade[b]);
         value[3 + b] = bough_simulation_pitch(s, blade) / BOUGH_DEGREE;

@@ -50,35 +50,18 @@ static bough_section_load section_at_vertex(const bough_beam *beam, const bough_
 
 enum { RIGID_POINTS = 3 };
 
-static int beam_points(const bough_simulation *s, int body) {
-    const bough_beam *beam = bough_simulation_beam(s, body);
-    return beam ? beam->def.n_segment + 1 : RIGID_POINTS;
-}
-
-static bool has_rod(const bough_simulation *s, int body) {
-    const bough_beam *beam = bough_simulation_beam(s, body);
-    return beam && beam->rod;
-}
-
-static void take_scratch(bough_arena *arena, bough_shape *shape) {
-    const bough_simulation *s = shape->simulation;
-    shape->scratch = bough_arena_take(arena, (size_t)shape->n_line * sizeof *shape->scratch);
-    for (int i = 0; i < shape->n_line; i++) {
-        if (has_rod(s, i)) {
-            bough_rod_scratch_init(&shape->scratch[i], arena, bough_simulation_beam(s, i)->mesh);
-        }
-    }
-}
-
 bough_status bough_shape_create(bough_arena *arena, bough_simulation *s, bough_shape *shape) {
     size_t n = (size_t)s->scene->n_body, most = bough_simulation_most_vertices(s) + RIGID_POINTS;
     *shape = (bough_shape){.simulation = s, .n_line = s->scene->n_body};
     shape->line = bough_arena_take(arena, n * sizeof *shape->line);
+    shape->scratch = bough_arena_take(arena, n * sizeof *shape->scratch);
     for (int i = 0; i < s->scene->n_body; i++) {
-        shape->line[i] = (bough_polyline){s->scene->body[i].name, beam_points(s, i)};
+        const bough_beam *beam = bough_simulation_beam(s, i);
+        shape->line[i].name = s->scene->body[i].name;
+        shape->line[i].n_point = beam ? beam->def.n_segment + 1 : RIGID_POINTS;
+        if (beam && beam->rod) bough_rod_scratch_init(&shape->scratch[i], arena, beam->mesh);
     }
     shape->vertex = bough_arena_take(arena, most * sizeof *shape->vertex);
-    take_scratch(arena, shape);
     return bough_ok();
 }
 
@@ -110,6 +93,7 @@ void bough_shape_points(void *self, double *point) {
 static void rod_loads(const bough_shape *shape, int body, double t, double *force, double *moment) {
     const bough_simulation *s = shape->simulation;
     const bough_beam *beam = bough_simulation_beam(s, body);
+    if (!beam || !beam->rod) return;
     bough_rod_scratch *scratch = &shape->scratch[body];
     bough_mat3 axes = bough_tree_frame_pose(s->view, &s->tree->markers[beam->marker]).rotation;
     if (!bough_section_evaluate(s, beam, t, scratch)) return;
@@ -126,7 +110,7 @@ void bough_shape_loads(void *self, double t, double *force, double *moment) {
         int n = 3 * shape->line[i].n_point;
         memset(force, 0, (size_t)n * sizeof *force);
         memset(moment, 0, (size_t)n * sizeof *moment);
-        if (has_rod(shape->simulation, i)) rod_loads(shape, i, t, force, moment);
+        rod_loads(shape, i, t, force, moment);
         force += n;
         moment += n;
     }
