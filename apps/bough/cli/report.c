@@ -29,14 +29,13 @@ static const bough_option rows[] = {
 };
 
 static bough_status report(bough_arena *arena, const void *given) {
-    (void)arena;
     const report_options *own = given;
     const bough_options *options = &own->common;
-    bough_status status = bough_report_write(options->n_operand, options->operands);
+    bough_status status = bough_report_write(arena, options->n_operand, options->operands);
     bool drawn = false;
     if (bough_is_ok(&status)) {
         printf("report: %s/report.html\n", options->operand);
-        status = bough_report_shape(options->operand, own->at.given ? own->at.time : HUGE_VAL, &drawn);
+        status = bough_report_shape(arena, options->operand, own->at.given ? own->at.time : HUGE_VAL, &drawn);
     }
     if (drawn) printf("picture: %s/shape.svg, shape-dark.svg\n", options->operand);
     return status;

@@ -15,15 +15,17 @@ extern const unsigned char bough_report_page[];
 // Writes report.html into the first of n folders, complete or not at all: of its results, with the
 // channels of the other folders, which hold runs, beside its own. BOUGH_INVALID when a folder holds no
 // results, or when they are damaged: the message names the file.
-bough_status bough_report_write(int n, const char *const *folder);
+bough_status bough_report_write(bough_arena *arena, int n, const char *const *folder);
 
 // -- parts of the data, each a JavaScript expression; none when *found is false ------------------
 
+typedef bough_status bough_report_part(bough_arena *arena, const char *folder, FILE *out, bool *found);
+
 // {names, units, rows} of channels.out; of very many rows every n-th.
-bough_status bough_report_channels(const char *folder, FILE *out, bool *found);
+bough_report_part bough_report_channels;
 
 // {ends, frames: [[t, x, y, z, …], …]} of frames.pvd and what it lists.
-bough_status bough_report_frames(const char *folder, FILE *out, bool *found);
+bough_report_part bough_report_frames;
 
 // -- the shape at one time ------------------------------------------------------------------------
 
@@ -43,7 +45,7 @@ bough_status bough_report_frame(bough_arena *arena, const char *folder, double t
 
 // Draws it to scale, coloured by the section moment: shape.svg for light pages and shape-dark.svg in the
 // folder. Nothing is drawn where there is no frame.
-bough_status bough_report_shape(const char *folder, double time, bool *drawn);
+bough_status bough_report_shape(bough_arena *arena, const char *folder, double time, bool *drawn);
 
 // Opens folder/name; NULL when it does not exist.
 bough_status bough_report_open(const char *folder, const char *name, FILE **file);

@@ -32,34 +32,22 @@ static bough_status put_row(const bough_rows *r, FILE *out) {
     return bough_ok();
 }
 
-typedef struct page {
-    const char *folder;
-    FILE *out;
-    bool *found;
-} page;
-
-static bough_status put_rows(bough_arena *arena, void *self) {
-    const page *p = self;
+bough_status bough_report_channels(bough_arena *arena, const char *folder, FILE *out, bool *found) {
     bough_rows *r;
-    bough_status status = bough_rows_open(arena, p->folder, &r);
-    *p->found = r != NULL;
+    bough_status status = bough_rows_open(arena, folder, &r);
+    *found = r != NULL;
     if (!bough_is_ok(&status) || !r) return status;
-    fputs("{names: ", p->out);
-    put_words(r->n, r->name, p->out);
-    fputs(", units: ", p->out);
-    put_words(r->n, r->unit, p->out);
-    fputs(", rows: [\n", p->out);
+    fputs("{names: ", out);
+    put_words(r->n, r->name, out);
+    fputs(", units: ", out);
+    put_words(r->n, r->unit, out);
+    fputs(", rows: [\n", out);
     long stride = 1 + r->n_row / MOST_ROWS;
     for (long k = 0; bough_rows_line(r); k++) {
         if (k % stride != 0) continue;
         BOUGH_TRY(bough_rows_read(r));
-        BOUGH_TRY(put_row(r, p->out));
+        BOUGH_TRY(put_row(r, out));
     }
-    fputs("]}", p->out);
+    fputs("]}", out);
     return bough_ok();
-}
-
-bough_status bough_report_channels(const char *folder, FILE *out, bool *found) {
-    page p = {folder, out, found};
-    return bough_arena_use(put_rows, &p);
 }

@@ -93,10 +93,11 @@ bough_status bough_report_frame(bough_arena *arena, const char *folder, double t
     return nearest[0] ? read_frame(arena, folder, nearest, frame) : status;
 }
 
-static bough_status put_frame(const char *folder, const char *name, double t, bool ends, FILE *out) {
-    bough_arena *arena = bough_arena_create();
+static bough_status put_frame(bough_arena *arena, const char *folder, const char *name, double t, bool ends,
+                              FILE *out) {
+    bough_arena *own = bough_arena_child(arena);
     bough_stored_frame f;
-    bough_status status = read_frame(arena, folder, name, &f);
+    bough_status status = read_frame(own, folder, name, &f);
     if (bough_is_ok(&status) && ends) {
         fputs("{ends: [", out);
         for (int k = 0; k < f.n_line; k++) fprintf(out, "%d,", f.end[k]);
@@ -107,17 +108,17 @@ static bough_status put_frame(const char *folder, const char *name, double t, bo
         for (int i = 0; i < 3 * f.n_point; i++) fprintf(out, ",%.5g", f.point[i]);
         fputs("],\n", out);
     }
-    bough_arena_destroy(arena);
+    bough_arena_destroy(own);
     return status;
 }
 
-bough_status bough_report_frames(const char *folder, FILE *out, bool *found) {
+bough_status bough_report_frames(bough_arena *arena, const char *folder, FILE *out, bool *found) {
     FILE *list;
     bough_status status = bough_report_open(folder, "frames.pvd", &list);
     if (!bough_is_ok(&status) || !list) return status;
     char name[NAME];
     for (double t; bough_is_ok(&status) && next_frame(list, &t, name); *found = true)
-        status = put_frame(folder, name, t, !*found, out);
+        status = put_frame(arena, folder, name, t, !*found, out);
     if (*found) fputs("]}", out);
     fclose(list);
     return status;

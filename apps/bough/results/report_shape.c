@@ -176,13 +176,11 @@ static bough_status write_picture(const char *folder, const bough_stored_frame *
     return bough_folder_commit(path, d.svg);
 }
 
-bough_status bough_report_shape(const char *folder, double time, bool *drawn) {
-    bough_arena *arena = bough_arena_create();
+bough_status bough_report_shape(bough_arena *arena, const char *folder, double time, bool *drawn) {
     bough_stored_frame frame;
-    bough_status status = bough_report_frame(arena, folder, time, &frame);
-    for (int dark = 0; dark < 2 && bough_is_ok(&status) && frame.n_line > 0; dark++)
-        status = write_picture(folder, &frame, dark);
-    *drawn = bough_is_ok(&status) && frame.n_line > 0;
-    bough_arena_destroy(arena);
-    return status;
+    *drawn = false;
+    BOUGH_TRY(bough_report_frame(arena, folder, time, &frame));
+    for (int dark = 0; dark < 2 && frame.n_line > 0; dark++) BOUGH_TRY(write_picture(folder, &frame, dark));
+    *drawn = frame.n_line > 0;
+    return bough_ok();
 }

@@ -71,11 +71,12 @@ static const char channels[] = "\nbough: a run\nComplete: 2 rows\n\n1 channel\n\
                                "  Time\tRotSpeed\n (s)\t(rpm)\n 0.0E+00\t 1.25\n 1.0E-01\t-2.5\n";
 
 TEST_IN_FOLDER(page_carries_all_data) {
+    check_arena(arena);
     const char *folder = *context;
     write_frames(folder);
     write_text(folder, "channels.out", channels);
     write_text(folder, "summary.json", "{\"title\": \"a </script> trap\"}\n");
-    check_ok(bough_report_write(1, &folder));
+    check_ok(bough_report_write(arena, 1, &folder));
     char *page = scratch_read(folder, "report.html");
     has(page, "<!DOCTYPE html>");
     has(page, "data.summary = \"{\\\"title\\\": \\\"a \\u003c/script> trap\\\"}\\n\";");
@@ -90,22 +91,24 @@ TEST_IN_FOLDER(page_carries_all_data) {
 }
 
 TEST_IN_FOLDER(what_is_not_results_is_refused) {
+    check_arena(arena);
     const char *folder = *context;
-    bough_status status = bough_report_write(1, &folder);
+    bough_status status = bough_report_write(arena, 1, &folder);
     assert_int_equal(status.code, BOUGH_INVALID);
     has(status.message, "holds no results");
     write_text(folder, "channels.out", "\n\n\n\n\n\nTime\tA\n(s)\t(m)\n0.0 1.0\n0.1\n");
-    status = bough_report_write(1, &folder);
+    status = bough_report_write(arena, 1, &folder);
     assert_int_equal(status.code, BOUGH_INVALID);
     has(status.message, "channels.out:10: not a row");
     assert_false(scratch_has(folder, "report.html"));
 }
 
 TEST_IN_FOLDER(a_lost_frame_is_reported) {
+    check_arena(arena);
     const char *folder = *context;
     write_frames(folder);
     write_text(folder, "frames/000001.vtp", "<DataArray>\nnothing\n");
-    bough_status status = bough_report_write(1, &folder);
+    bough_status status = bough_report_write(arena, 1, &folder);
     assert_int_equal(status.code, BOUGH_INVALID);
     has(status.message, "frames/000001.vtp");
 }
