@@ -86,15 +86,16 @@ static void set_measure(bough_arena *arena, int k, int n_blade, bough_study *run
     int vectors = measures[k].n > 0 ? n_blade : 1, each = measures[k].n > 0 ? measures[k].n : 1;
     bough_study_measure *m = &run->measure[k];
     *m = (bough_study_measure){.name = measures[k].name, .unit = measures[k].unit, .scale = 1};
-    m->channels.n = vectors;
-    m->channels.item = bough_arena_take(arena, (size_t)vectors * sizeof *m->channels.item);
-    for (int v = 0; v < vectors && m->channels.item; v++) {
-        const char **names = bough_arena_take(arena, (size_t)each * sizeof *names);
-        m->channels.item[v] = (bough_study_vector){each, names};
-        for (int c = 0; c < each && names; c++) {
+    m->channels = (bough_study_vectors){.n_channel = vectors * each, .n_vector = vectors};
+    m->channels.channel = bough_arena_take(arena, (size_t)(vectors * each) * sizeof *m->channels.channel);
+    m->channels.end = bough_arena_take(arena, (size_t)vectors * sizeof *m->channels.end);
+    for (int v = 0; v < vectors; v++) {
+        m->channels.end[v] = (v + 1) * each;
+        for (int c = 0; c < each; c++) {
             char text[32];
             snprintf(text, sizeof text, measures[k].n > 0 ? "%s%d" : "%s", measures[k].channel[c], v + 1);
-            names[c] = run->channel[run->n_channel++] = bough_arena_string(arena, text);
+            m->channels.channel[v * each + c] = run->channel[run->n_channel++] =
+                bough_arena_string(arena, text);
         }
     }
 }

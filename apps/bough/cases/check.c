@@ -16,39 +16,26 @@
 
 // -- fingerprint ----------------------------------------------------------------------------------
 
-static void mix_measure(uint64_t *hash, const bough_study_measure *m) {
-    char numbers[80];
-    for (int i = 0; i < m->channels.n; i++) {
-        for (int k = 0; k < m->channels.item[i].n; k++) bough_mix_text(hash, m->channels.item[i].channel[k]);
-        bough_mix_text(hash, "");
+// What the study asks of each run.
+static void mix_question(uint64_t *hash, const bough_study *s) {
+    const double numbers[] = {s->repeat, s->is.parallel ? 0 : s->threads, s->from, s->is.weighted, s->series};
+    bough_mix(hash, numbers, sizeof numbers);
+    for (int i = 0; i < s->n_measure; i++) {
+        const bough_study_vectors *v = &s->measure[i].channels;
+        for (int k = 0; k < v->n_channel; k++) bough_mix_text(hash, v->channel[k]);
+        bough_mix(hash, v->end, (size_t)v->n_vector * sizeof *v->end);
+        bough_mix(hash, &s->measure[i].norm, sizeof s->measure[i].norm);
+        bough_mix(hash, &s->measure[i].scale, sizeof s->measure[i].scale);
     }
-    snprintf(numbers, sizeof numbers, "%d %.17g", m->norm, m->scale);
-    bough_mix_text(hash, numbers);
+    for (int i = 0; i < s->n_wanted; i++) bough_mix_text(hash, s->wanted[i]);
+    if (s->n_slope > 0) bough_mix(hash, s->slope, (size_t)s->n_slope * sizeof *s->slope);
 }
 
-// The title and the grid's values are not in it: a grid may grow and keeps what was run. The
-// program is, where the system shows it: results of another one are not to be mixed in.
-static void mix_comparison(uint64_t *hash, const bough_study *s, const bough_case *c) {
-    char numbers[80];
-    for (int i = 0; i < s->reference_case->n_set; i++) bough_mix_text(hash, s->reference_case->set[i]);
-    for (int i = 0; i < s->common.n; i++) bough_mix_text(hash, s->common.item[i].set);
-    for (int i = 0; i < s->grid.n; i++) bough_mix_text(hash, s->grid.axis[i].key);
-    for (int i = 0; i < s->n_measure; i++) mix_measure(hash, &s->measure[i]);
-    snprintf(numbers, sizeof numbers, "%d %d", s->repeat, s->is.parallel ? 0 : s->threads);
-    bough_mix_text(hash, numbers);
-    const uint64_t files[] = {s->reference_case[c->reference].files, c->files};
-    bough_mix(hash, files, sizeof files);
-    bough_mix_text(hash, c->settings);
-}
-
-static void mix_statistics(uint64_t *hash, const bough_study *s, const bough_case *c) {
-    char numbers[64];
+// The settings' text tells a reference from a cell with the same replacements.
+static void mix_run(uint64_t *hash, const bough_case *c) {
     bough_mix(hash, &c->files, sizeof c->files);
     for (int i = 0; i < c->n_set; i++) bough_mix_text(hash, c->set[i]);
-    snprintf(numbers, sizeof numbers, "%.17g %d %d %d", s->from, !s->is.weighted, s->series, s->n_wanted);
-    bough_mix_text(hash, numbers);
-    for (int i = 0; i < s->n_wanted; i++) bough_mix_text(hash, s->wanted[i]);
-    for (int i = 0; i < s->n_slope; i++) bough_mix(hash, &s->slope[i], sizeof s->slope[i]);
+    bough_mix_text(hash, c->settings);
 }
 
 // -- scenes ---------------------------------------------------------------------------------------
@@ -63,22 +50,6 @@ static bool concerns(const bough_error *e, const bough_study_setting *setting) {
     size_t parent = dot ? (size_t)(dot - setting->key) : 0;
     return strlen(e->path) == parent && strncmp(e->path, setting->key, parent) == 0 &&
            strstr(e->text, word) != NULL;
-}
-
-static const bough_study_setting *concerned(const bough_study_settings *settings, const bough_error *e) {
-    for (int i = 0; i < settings->n; i++) {
-        if (concerns(e, &settings->item[i])) return &settings->item[i];
-    }
-    return NULL;
-}
-
-static const bough_study_setting *concerned_value(const bough_study_grid *grid, const int *index,
-                                                  const bough_error *e) {
-    for (int i = 0; i < grid->n; i++) {
-        const bough_study_setting *value = grid->axis[i].value.item;
-        if (index[i] >= 0 && concerns(e, &value[index[i]])) return &value[index[i]];
-    }
-    return NULL;
 }
 
 static bool is_reported(const bough_errors *errors, const bough_node *at, const bough_error *e) {
@@ -100,16 +71,12 @@ static void report(const bough_error *e, const char *scene, const bough_node *or
     if (!is_reported(errors, &where, e)) bough_errors_add(errors, &where, e->path, "%s", e->text);
 }
 
-// Where the study says what the error in the case's scene is about.
+// Where the study says what the error in the case's scene is about: of two replacements of a key the latter.
 static const bough_node *origin(const bough_study *s, const bough_case *c, const bough_error *e) {
-    const bough_load_group *g = &s->group[c->group];
-    bool reference = bough_is_reference(s, c);
-    const bough_study_setting *found = concerned_value(&g->grid, c->index, e);
-    if (!found && reference) found = concerned(&s->reference, e);
-    if (!found) found = concerned(&g->set, e);
-    if (!found) found = concerned(&s->common, e);
-    if (found) return found->node;
-    return s->is.compared ? bough_node_find(s->node, reference ? "reference" : "grid") : g->node;
+    for (int i = c->n_set - 1; i >= 0; i--)
+        if (c->setting[i] && concerns(e, c->setting[i])) return c->setting[i]->node;
+    if (!s->is.compared) return s->group[c->group].node;
+    return bough_node_find(s->node, bough_is_reference(s, c) ? "reference" : "grid");
 }
 
 // -- channels -------------------------------------------------------------------------------------
@@ -129,33 +96,21 @@ static void check_unit(bough_study_measure *m, const bough_channel *channel, bou
                      channel->name, channel->unit, m->unit);
 }
 
-static int count_channels(const bough_study *s) {
-    int n = 0;
-    for (int i = 0; i < s->n_measure; i++) {
-        for (int k = 0; k < s->measure[i].channels.n; k++) n += s->measure[i].channels.item[k].n;
-    }
-    return n;
-}
-
-static void check_vector(bough_study *s, bough_study_measure *m, const bough_study_vector *vector,
-                         const bough_channels *channels, bough_errors *errors) {
-    for (int i = 0; i < vector->n; i++) {
-        int k = bough_channels_find(channels, vector->channel[i]);
-        if (k < 0) {
-            add_unknown(channels, vector->channel[i], m->node, "measures", errors);
-        } else {
-            check_unit(m, &channels->channel[k], errors->arena, errors);
-        }
-        s->channel[s->n_channel++] = vector->channel[i];
-    }
-}
-
 static void check_measures(bough_arena *arena, bough_study *s, const bough_channels *channels,
                            bough_errors *errors) {
-    s->channel = bough_arena_take(arena, (size_t)count_channels(s) * sizeof *s->channel);
+    int n = 0;
+    for (int i = 0; i < s->n_measure; i++) n += s->measure[i].channels.n_channel;
+    s->channel = bough_arena_take(arena, (size_t)n * sizeof *s->channel);
     for (int i = 0; i < s->n_measure; i++) {
-        for (int k = 0; k < s->measure[i].channels.n; k++)
-            check_vector(s, &s->measure[i], &s->measure[i].channels.item[k], channels, errors);
+        bough_study_measure *m = &s->measure[i];
+        for (int k = 0; k < m->channels.n_channel; k++) {
+            const char *name = s->channel[s->n_channel++] = m->channels.channel[k];
+            int found = bough_channels_find(channels, name);
+            if (found < 0)
+                add_unknown(channels, name, m->node, "measures", errors);
+            else
+                check_unit(m, &channels->channel[found], arena, errors);
+        }
     }
 }
 
@@ -250,14 +205,15 @@ static void check_duration(const check *k, const bough_case *c, const bough_scen
     }
 }
 
+// The title and the grid's values are not in it: a grid may grow and keeps what was run. The
+// program is, where the system shows it: results of another one are not to be mixed in.
 static void take_fingerprint(check *k, bough_case *c, const bough_scene *scene) {
     c->files = BOUGH_FINGERPRINT_START;
     bough_mix_scene(&c->files, &k->sums, scene);
     c->fingerprint = k->program;
-    if (k->study->is.compared)
-        mix_comparison(&c->fingerprint, k->study, c);
-    else
-        mix_statistics(&c->fingerprint, k->study, c);
+    mix_question(&c->fingerprint, k->study);
+    if (k->study->is.compared) mix_run(&c->fingerprint, &k->study->reference_case[c->reference]);
+    mix_run(&c->fingerprint, c);
 }
 
 static void link_turbulence(check *k, bough_case *c, const bough_scene *scene) {

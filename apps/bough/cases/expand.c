@@ -68,8 +68,13 @@ double bough_case_weight(const bough_study *s, const bough_case *c, double count
 
 // -- cases ----------------------------------------------------------------------------------------
 
+static void add_set(bough_case *c, const bough_study_setting *setting) {
+    c->setting[c->n_set] = setting;
+    c->set[c->n_set++] = setting->set;
+}
+
 static void add_sets(bough_case *c, const bough_study_settings *settings) {
-    for (int i = 0; i < settings->n; i++) c->set[c->n_set++] = settings->item[i].set;
+    for (int i = 0; i < settings->n; i++) add_set(c, &settings->item[i]);
 }
 
 // The choice depends on the case's place in the set alone, so that all processes agree. What the scene says
@@ -81,7 +86,9 @@ static void add_companion(const bough_study *s, bough_case *c) {
 }
 
 static void take_sets(bough_arena *arena, const bough_study *s, int n_own, bough_case *c) {
-    c->set = bough_arena_take(arena, (size_t)(s->common.n + n_own + 2) * sizeof *c->set);
+    size_t most = (size_t)(s->common.n + n_own + 2);
+    c->set = bough_arena_take(arena, most * sizeof *c->set);
+    c->setting = bough_arena_take(arena, most * sizeof *c->setting);
     if (s->is.weighted) add_companion(s, c);
     add_sets(c, &s->common);
 }
@@ -105,7 +112,7 @@ static void make_case(bough_arena *arena, bough_study *s, int group, int number,
         if (i == scenes)
             scene = value->value;
         else
-            c->set[c->n_set++] = value->set;
+            add_set(c, value);
     }
     c->scene = bough_study_path(arena, s->file, scene);
     c->settings = bough_grid_settings(arena, &g->grid, c->index);
@@ -117,13 +124,6 @@ static void make_case(bough_arena *arena, bough_study *s, int group, int number,
 static bool is_model(const bough_study *s, int axis) {
     return s->is.compared && s->is.parallel &&
            strncmp(s->grid.axis[axis].key, "simulation.", strlen("simulation.")) != 0;
-}
-
-static int count_references(const bough_study *s) {
-    int n = 1;
-    for (int i = 0; i < s->grid.n; i++)
-        if (is_model(s, i)) n *= s->grid.axis[i].value.n;
-    return n;
 }
 
 // The number of the reference with a cell's parameters of the model.
@@ -146,24 +146,28 @@ static const char *name_reference(bough_arena *arena, const bough_study *s, cons
     return text;
 }
 
-static void make_reference(bough_arena *arena, const bough_study *s, int number, bough_case *cell) {
-    take_sets(arena, s, s->reference.n + s->grid.n, cell);
-    for (int i = 0; i < BOUGH_STUDY_AXES; i++) cell->index[i] = -1;
+// The reference of a cell.
+static void make_reference(bough_arena *arena, const bough_study *s, const bough_case *cell, bough_case *c) {
+    take_sets(arena, s, s->reference.n + s->grid.n, c);
+    for (int i = 0; i < BOUGH_STUDY_AXES; i++) c->index[i] = -1;
     for (int i = s->grid.n - 1; i >= 0; i--) {
         if (!is_model(s, i)) continue;
-        cell->index[i] = number % s->grid.axis[i].value.n;
-        number /= s->grid.axis[i].value.n;
-        cell->set[cell->n_set++] = s->grid.axis[i].value.item[cell->index[i]].set;
+        c->index[i] = cell->index[i];
+        add_set(c, &s->grid.axis[i].value.item[c->index[i]]);
     }
-    add_sets(cell, &s->reference);
-    cell->scene = bough_study_path(arena, s->file, s->scene_name);
-    cell->settings = name_reference(arena, s, cell);
+    add_sets(c, &s->reference);
+    c->scene = cell->scene;
+    c->settings = name_reference(arena, s, c);
 }
 
+// In the order of the first cells that they belong to.
 static void make_references(bough_arena *arena, bough_study *s) {
-    s->n_reference = count_references(s);
+    s->n_reference = s->cases[s->n_case - 1].reference + 1;
     s->reference_case = bough_arena_take(arena, (size_t)s->n_reference * sizeof *s->reference_case);
-    for (int i = 0; i < s->n_reference; i++) make_reference(arena, s, i, &s->reference_case[i]);
+    for (int i = 0; i < s->n_case; i++) {
+        bough_case *c = &s->reference_case[s->cases[i].reference];
+        if (!c->set) make_reference(arena, s, &s->cases[i], c);
+    }
 }
 
 // -- all ------------------------------------------------------------------------------------------
@@ -185,7 +189,6 @@ void bough_study_expand(bough_arena *arena, bough_study *s, bough_errors *errors
     if (n > BOUGH_MOST_CASES)
         bough_errors_add(errors, s->node, "", "expected at most %d cases", BOUGH_MOST_CASES);
     if (errors->n > 0) return;
-    if (s->is.compared) make_references(arena, s);
     s->cases = bough_arena_take(arena, (size_t)n * sizeof *s->cases);
     for (int g = 0; g < s->n_group; g++) {
         int n_group = count_group(&s->group[g]);
@@ -195,4 +198,5 @@ void bough_study_expand(bough_arena *arena, bough_study *s, bough_errors *errors
             c->reference = reference_of(s, c);
         }
     }
+    if (s->is.compared) make_references(arena, s);
 }

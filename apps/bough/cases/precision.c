@@ -34,33 +34,27 @@ static double difference(const double *a, const double *b, int n, int norm) {
 // The largest norm of the vectors of a measure in a row.
 static double measured(const bough_study_measure *m, const double *a, const double *b) {
     double largest = 0;
-    for (int k = 0, first = 0; k < m->channels.n; first += m->channels.item[k++].n) {
+    for (int k = 0, first = 0; k < m->channels.n_vector; first = m->channels.end[k++]) {
         const double *other = b ? b + first : NULL;
-        largest = larger(largest, difference(a + first, other, m->channels.item[k].n, m->norm));
+        largest = larger(largest, difference(a + first, other, m->channels.end[k] - first, m->norm));
     }
     return largest;
 }
 
-static int width_of(const bough_study_measure *m) {
-    int n = 0;
-    for (int k = 0; k < m->channels.n; k++) n += m->channels.item[k].n;
-    return n;
-}
-
 void bough_study_norms(const bough_study *study, const double *value, double *norm) {
-    for (int i = 0; i < study->n_measure; value += width_of(&study->measure[i++]))
+    for (int i = 0; i < study->n_measure; value += study->measure[i++].channels.n_channel)
         norm[i] = study->measure[i].scale * measured(&study->measure[i], value, NULL);
 }
 
 void bough_study_compare(const bough_study *study, const bough_study_series *series,
                          const bough_study_series *reference, double *error) {
     assert(series->filled == series->n_row && reference->filled == series->n_row);
-    size_t first = 0;
-    for (int i = 0; i < study->n_measure; first += (size_t)width_of(&study->measure[i++])) {
+    int first = 0;
+    for (int i = 0; i < study->n_measure; first += study->measure[i++].channels.n_channel) {
         const bough_study_measure *m = &study->measure[i];
         error[i] = 0;
         for (int row = 0; row < series->n_row; row++) {
-            size_t at = (size_t)row * (size_t)series->n_channel + first;
+            size_t at = (size_t)row * (size_t)series->n_channel + (size_t)first;
             error[i] = larger(error[i], measured(m, series->value + at, reference->value + at));
         }
         error[i] *= m->scale;

@@ -12,33 +12,33 @@
 
 static const char channels_form[] = "[A, B, C], or several such lists";
 
-static void read_vector(bough_schema_reader *r, const bough_node *node, bough_study_vector *vector) {
-    if (node->kind != BOUGH_SEQUENCE || node->n == 0) {
-        bough_schema_expected(r, node, channels_form);
-        return;
-    }
-    vector->channel = bough_arena_take(r->arena, (size_t)node->n * sizeof *vector->channel);
-    vector->n = node->n;
-    for (int i = 0; i < node->n; i++) {
+static void read_vector(bough_schema_reader *r, const bough_node *node, bough_study_vectors *vectors) {
+    if (node->kind != BOUGH_SEQUENCE || node->n == 0) bough_schema_expected(r, node, channels_form);
+    for (int i = 0; node->kind == BOUGH_SEQUENCE && i < node->n; i++) {
         const bough_node *name = node->value[i];
-        vector->channel[i] = name->kind == BOUGH_SCALAR ? name->text : "";
-        if (vector->channel[i][0] != '\0') continue;
-        bough_schema_expected(r, name, "a channel's name");
+        const char *text = name->kind == BOUGH_SCALAR ? name->text : "";
+        if (text[0] == '\0') bough_schema_expected(r, name, "a channel's name");
+        vectors->channel[vectors->n_channel++] = text;
     }
+    vectors->end[vectors->n_vector++] = vectors->n_channel;
+}
+
+static void take_vectors(bough_arena *arena, int n_channel, int n_vector, bough_study_vectors *vectors) {
+    vectors->channel = bough_arena_take(arena, (size_t)n_channel * sizeof *vectors->channel);
+    vectors->end = bough_arena_take(arena, (size_t)n_vector * sizeof *vectors->end);
 }
 
 static void read_channels(bough_schema_reader *r, const bough_node *node, void *field) {
-    bough_study_vectors *vectors = field;
     bool nested = node->kind == BOUGH_SEQUENCE && node->n > 0 && node->value[0]->kind == BOUGH_SEQUENCE;
-    int n = nested ? node->n : 1;
-    vectors->item = bough_arena_take(r->arena, (size_t)n * sizeof *vectors->item);
-    vectors->n = n;
-    for (int i = 0; i < n; i++) read_vector(r, nested ? node->value[i] : node, &vectors->item[i]);
+    int n_vector = nested ? node->n : 1, n_channel = nested ? 0 : node->n;
+    for (int i = 0; nested && i < n_vector; i++) n_channel += node->value[i]->n;
+    take_vectors(r->arena, n_channel, n_vector, field);
+    for (int i = 0; i < n_vector; i++) read_vector(r, nested ? node->value[i] : node, field);
 }
 
 static void check_measure(bough_schema_reader *r, void *item) {
     bough_study_measure *m = item;
-    bool several = m->channels.n > 0;
+    bool several = m->channels.n_vector > 0;
     if ((m->channel != NULL) == several) {
         bough_schema_error(r, m->node, "", "expected one of 'channel' and 'channels'");
     }
@@ -46,11 +46,9 @@ static void check_measure(bough_schema_reader *r, void *item) {
         bough_schema_error(r, m->node, "scale", "needs a 'unit': of the scaled difference");
     }
     if (several || !m->channel) return;
-    m->channels.item = bough_arena_take(r->arena, sizeof *m->channels.item);
-    const char **names = bough_arena_take(r->arena, sizeof *names);
-    names[0] = m->channel;
-    m->channels.item[0] = (bough_study_vector){1, names};
-    m->channels.n = 1;
+    take_vectors(r->arena, 1, 1, &m->channels);
+    m->channels.channel[0] = m->channel;
+    m->channels.n_channel = m->channels.n_vector = m->channels.end[0] = 1;
 }
 
 // -- keys -----------------------------------------------------------------------------------------

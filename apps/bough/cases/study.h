@@ -59,15 +59,11 @@ typedef struct bough_study_grid {
     bough_study_axis *axis; // (n)
 } bough_study_grid;
 
-// Channels whose differences form one vector.
-typedef struct bough_study_vector {
-    int n;
-    const char **channel; // (n)
-} bough_study_vector;
-
+// Channels whose differences form vectors.
 typedef struct bough_study_vectors {
-    int n;
-    bough_study_vector *item; // (n)
+    int n_channel, n_vector;
+    const char **channel; // (n_channel) of one vector after the other
+    int *end;             // (n_vector) behind each one's last channel
 } bough_study_vectors;
 
 typedef enum bough_study_norm { BOUGH_STUDY_EUCLID, BOUGH_STUDY_LARGEST } bough_study_norm;
@@ -112,12 +108,13 @@ typedef struct bough_case {
     int index[BOUGH_STUDY_AXES]; // of its value on each axis of the group; −1 where a reference has none
     const char *scene;           // path
     int n_set;
-    const char **set;     // (n_set) replacements in the scene
-    const char *settings; // those that tell it from the others, "scheme=ramp, macro_step=5 ms"
-    int reference;        // to compare with
-    double share;         // of its group's hours or events
-    int next;             // of those with the same turbulence, to be run after it; −1: none
-    bool follows;         // another one with the same turbulence
+    const char **set;                    // (n_set) replacements in the scene
+    const bough_study_setting **setting; // (n_set) of the study's text that each of them is; NULL: of none
+    const char *settings;                // those that tell it from the others, "scheme=ramp, macro_step=5 ms"
+    int reference;                       // to compare with
+    double share;                        // of its group's hours or events
+    int next;                            // of those with the same turbulence, to be run after it; −1: none
+    bool follows;                        // another one with the same turbulence
     uint64_t files;       // fingerprint of the scene's files, which must stay as they are; 0: may change
     uint64_t fingerprint; // of all that its result depends on
 } bough_case;

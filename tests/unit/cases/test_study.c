@@ -204,9 +204,10 @@ TEST_IN_FOLDER(missing_scene_is_reported) {
 // -- differences ----------------------------------------------------------------------------------
 
 TEST(differences_are_the_largest_norms) {
-    bough_study_vector pairs[] = {{2, NULL}, {2, NULL}};
-    bough_study_measure measures[] = {{.channels = {2, pairs}, .norm = BOUGH_STUDY_EUCLID, .scale = 10},
-                                      {.channels = {1, pairs}, .norm = BOUGH_STUDY_LARGEST, .scale = 1}};
+    int end[] = {2, 4};
+    bough_study_measure measures[] = {
+        {.channels = {4, 2, NULL, end}, .norm = BOUGH_STUDY_EUCLID, .scale = 10},
+        {.channels = {2, 1, NULL, end}, .norm = BOUGH_STUDY_LARGEST, .scale = 1}};
     bough_study study = {.n_measure = 2, .measure = measures};
     double a[] = {0, 0, 0, 0, 5, 6, 3, 4, 1, 0, 5, 8};
     double b[] = {0, 0, 0, 0, 5, 6, 0, 0, 0, 0, 5, 6};
