@@ -1,40 +1,34 @@
 #include "apps/bough/cases/counts.h"
 
-#include <math.h>
+#include "core/base/base.h"
+
 #include <string.h>
 
 // -- levels ---------------------------------------------------------------------------------------
 
-// Bits of the first value that the finest bins resolve, and those of a whole double.
+// Bits of the first value that the finest bins resolve; all of a bin's number are fewer than the latter.
 enum { FINEST = 40, MOST_SHIFT = 62 };
 
 static double bin_of(double x, int exponent) { return floor(ldexp(x, -exponent)); }
 
 // Rounded down, also below zero.
-static int64_t halved(int64_t bin, int shift) {
-    if (shift > MOST_SHIFT) return bin < 0 ? -1 : 0;
-    int64_t unit = (int64_t)1 << shift;
-    return bin >= 0 ? bin / unit : -((-bin - 1) / unit) - 1;
-}
-
-static bool is_multiple(int64_t bin, int shift) {
-    return shift > MOST_SHIFT ? bin == 0 : bin % ((int64_t)1 << shift) == 0;
-}
+static int64_t halved(int64_t bin, int64_t unit) { return bin >= 0 ? bin / unit : -((-bin - 1) / unit) - 1; }
 
 // Wider bins; of the edges only the common ones remain.
 static void coarsen(bough_levels *l, int exponent) {
     int shift = exponent - l->exponent;
     if (shift <= 0) return;
+    int64_t unit = (int64_t)1 << (shift < MOST_SHIFT ? shift : MOST_SHIFT);
     bough_levels old = *l;
     memset(l->inside, 0, sizeof l->inside);
     memset(l->crossed, 0, sizeof l->crossed);
     for (int64_t k = old.low; k <= old.high; k++) {
-        int64_t wide = halved(k, shift);
+        int64_t wide = halved(k, unit);
         l->inside[bough_levels_slot(wide)] += old.inside[bough_levels_slot(k)];
-        if (is_multiple(k, shift)) l->crossed[bough_levels_slot(wide)] = old.crossed[bough_levels_slot(k)];
+        if (k % unit == 0) l->crossed[bough_levels_slot(wide)] = old.crossed[bough_levels_slot(k)];
     }
-    l->low = halved(old.low, shift);
-    l->high = halved(old.high, shift);
+    l->low = halved(old.low, unit);
+    l->high = halved(old.high, unit);
     l->exponent = exponent;
 }
 
@@ -187,12 +181,6 @@ void bough_counts_take(bough_arena *arena, int n_channel, int n_slope, const dou
     }
 }
 
-static bool are_finite(const double *value, int n) {
-    for (int i = 0; i < n; i++)
-        if (!isfinite(value[i])) return false;
-    return true;
-}
-
 static void add(bough_channel_counts *c, double t, double x, const double *row, size_t size) {
     bough_sample_statistics *s = &c->statistics;
     bool first = s->n == 0, least = first || x < s->least, most = first || x > s->most;
@@ -205,7 +193,7 @@ static void add(bough_channel_counts *c, double t, double x, const double *row, 
 
 void bough_counts_add(bough_counts *counts, double t, const double *value) {
     int n = counts->n_channel;
-    if (!are_finite(value, n)) {
+    if (!bough_all_finite(n, value)) {
         counts->broken++;
         return;
     }
