@@ -10,8 +10,6 @@
 #include <stdio.h>
 #include <string.h>
 
-// One stretch of a scene with other settings: its errors and its cost.
-
 // -- the scene ------------------------------------------------------------------------------------
 
 // A load at a vertex, the pieces of a modal body: the number of segments is then the scene's.
@@ -119,24 +117,21 @@ static bough_status run_in(bough_arena *arena, void *self) {
     return bough_ok();
 }
 
-static bough_status perform(measurement *m) {
-    m->point->outcome = bough_arena_use(run_in, m);
-    return bough_ends_study(m->point->outcome.code) ? m->point->outcome : bough_ok();
+// A run that fails is an outcome of the point. BOUGH_INTERRUPTED by the options' stop.
+static bough_status perform(measurement m) {
+    m.point->outcome = bough_arena_use(run_in, &m);
+    return bough_ends_study(m.point->outcome.code) ? m.point->outcome : bough_ok();
 }
 
 // Runs it again, without an estimate of the error, and takes the lesser CPU time.
-static bough_status tune_time(const bough_tune_state *t, bough_tune_point *point) {
-    measurement m = {t, point, false, false};
-    return perform(&m);
+static bough_status measure_time(const bough_tune_state *t, bough_tune_point *point) {
+    return perform((measurement){t, point, false, false});
 }
 
 // Runs the stretch with the point's settings: its errors, with `shares` their shares, and its CPU time.
-// BOUGH_INTERRUPTED by the options' stop; a run that fails is an outcome of the point.
-static bough_status tune_measure(const bough_tune_state *t, bool shares, bough_tune_point *point) {
-    measurement m = {t, point, true, shares};
-    bough_status status = perform(&m);
-    if (!bough_is_ok(&status) || !bough_is_ok(&point->outcome)) return status;
-    return tune_time(t, point);
+static bough_status measure(const bough_tune_state *t, bool shares, bough_tune_point *point) {
+    BOUGH_TRY(perform((measurement){t, point, true, shares}));
+    return bough_is_ok(&point->outcome) ? measure_time(t, point) : bough_ok();
 }
 
 // -- the front ------------------------------------------------------------------------------------
@@ -223,7 +218,7 @@ static bough_status try(bough_tune_state *t, const bough_tune_settings *s, bool 
     if (*at >= 0 || t->n == BOUGH_TUNE_POINTS) return bough_ok();
     *at = t->n++;
     t->point[*at] = (bough_tune_point){.settings = *s, .outcome = bough_ok()};
-    bough_status status = tune_measure(t, shares, &t->point[*at]);
+    bough_status status = measure(t, shares, &t->point[*at]);
     tune_choose(t);
     if (bough_is_ok(&status)) bough_tune_print(t, *at, t->options->stream);
     return status;
@@ -359,7 +354,7 @@ static bough_status time_again(bough_tune_state *t) {
             bough_tune_point *p = &t->point[i];
             if (!p->best && !p->settings.own && !(tune_meets(t, p) && p->cpu < 1.3 * t->point[t->chosen].cpu))
                 continue;
-            BOUGH_TRY(tune_time(t, p));
+            BOUGH_TRY(measure_time(t, p));
         }
     }
     tune_choose(t);
@@ -402,14 +397,12 @@ static bough_status conclude(const bough_tune_state *t) {
 bough_status bough_tune(bough_arena *arena, const bough_tune_options *options) {
     bough_errors errors = {.arena = arena};
     bough_scene *scene;
-    bough_status status =
-        bough_scene_read(arena, options->scene, options->set, options->n_set, &errors, &scene);
-    if (!bough_is_ok(&status)) return status;
+    BOUGH_TRY(bough_scene_read(arena, options->scene, options->set, options->n_set, &errors, &scene));
     bough_tune_state *t = bough_arena_take(arena, sizeof *t);
     *t = (bough_tune_state){.options = options, .scene = scene, .chosen = -1};
     t->error = options->error > 0 ? options->error : scene->simulation.accuracy;
     bough_tune_print(t, -1, options->stream);
     BOUGH_TRY(search(t));
-    if (t->chosen >= 0) status = bough_tune_write(t);
-    return bough_is_ok(&status) ? conclude(t) : status;
+    if (t->chosen >= 0) BOUGH_TRY(bough_tune_write(t));
+    return conclude(t);
 }

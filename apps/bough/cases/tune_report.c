@@ -146,38 +146,26 @@ static bool has_new_mesh(const bough_tune_state *t, int body) {
     return n > 0 && n != s->body[body].rod.n_segment;
 }
 
-static void print_block(const bough_tune_state *t, FILE *stream) {
+// As a scene has them, or as the words of a command line.
+static void print_chosen(const bough_tune_state *t, bool words, FILE *stream) {
     const bough_tune_settings *s = &t->point[t->chosen].settings;
+    if (words) fprintf(stream, "# bough run %s", t->options->scene);
     fprintf(stream,
-            "simulation:\n  macro_step: %.9g ms\n  coupling: {scheme: %s}\n  %s: ", 1e3 * s->macro_step,
-            bough_scheme_name(s->scheme), is_whole(s) ? "master" : "micro");
+            words ? " --set 'simulation.macro_step=%.9g ms' --set 'simulation.coupling={scheme: %s}'"
+                    " --set 'simulation.%s="
+                  : "simulation:\n  macro_step: %.9g ms\n  coupling: {scheme: %s}\n  %s: ",
+            1e3 * s->macro_step, bough_scheme_name(s->scheme), is_whole(s) ? "master" : "micro");
     print_solver(s, stream);
-    if (s->rate > 0) fprintf(stream, "\naero:\n  rate: %.9g Hz", s->rate);
-    fputc('\n', stream);
+    if (words) fputc('\'', stream);
+    if (s->rate > 0)
+        fprintf(stream, words ? " --set 'aero.rate=%.9g Hz'" : "\naero:\n  rate: %.9g Hz", s->rate);
+    if (!words) fputc('\n', stream);
     for (int i = 0; i < t->scene->n_body; i++) {
         if (has_new_mesh(t, i))
-            fprintf(stream, "# %s: rod: segments: %d\n", name_in_text(t->scene, i),
-                    bough_tune_segments(t->scene, i, s));
+            fprintf(stream, words ? " --set 'bodies[%s].rod.segments=%d'" : "# %s: rod: segments: %d\n",
+                    name_in_text(t->scene, i), bough_tune_segments(t->scene, i, s));
     }
-}
-
-// The same as replacements in the scene.
-static void print_words(const bough_tune_state *t, FILE *stream) {
-    const bough_tune_settings *s = &t->point[t->chosen].settings;
-    fprintf(stream, "bough run %s", t->options->scene);
-    fprintf(
-        stream,
-        " --set 'simulation.macro_step=%.9g ms' --set 'simulation.coupling={scheme: %s}' --set 'simulation.%s=",
-        1e3 * s->macro_step, bough_scheme_name(s->scheme), is_whole(s) ? "master" : "micro");
-    print_solver(s, stream);
-    fputc('\'', stream);
-    if (s->rate > 0) fprintf(stream, " --set 'aero.rate=%.9g Hz'", s->rate);
-    for (int i = 0; i < t->scene->n_body; i++) {
-        if (has_new_mesh(t, i))
-            fprintf(stream, " --set 'bodies[%s].rod.segments=%d'", name_in_text(t->scene, i),
-                    bough_tune_segments(t->scene, i, s));
-    }
-    fputc('\n', stream);
+    if (words) fputc('\n', stream);
 }
 
 void bough_tune_print_settings(const bough_tune_state *t, FILE *stream) {
@@ -188,9 +176,8 @@ void bough_tune_print_settings(const bough_tune_state *t, FILE *stream) {
         fputs("# the settings of the scene as it is written\n", stream);
         return;
     }
-    print_block(t, stream);
-    fputs("# ", stream);
-    print_words(t, stream);
+    print_chosen(t, false, stream);
+    print_chosen(t, true, stream);
 }
 
 static void write_settings(const void *self, FILE *file) { bough_tune_print_settings(self, file); }
