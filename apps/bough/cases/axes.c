@@ -155,6 +155,15 @@ const char *bough_grid_settings(bough_arena *arena, const bough_study_grid *grid
     return text;
 }
 
+const char *bough_grid_others(bough_arena *arena, const bough_study *study, const bough_case *c, int axis) {
+    const char *text = "";
+    for (int i = 0; i < study->grid.n; i++) {
+        if (i == axis || study->grid.axis[i].value.n < 2) continue;
+        text = bough_arena_print(arena, "%s%s%s", text, text[0] ? ", " : "", bough_study_value(study, c, i));
+    }
+    return text;
+}
+
 static const char *find_value(const bough_study_settings *settings, const char *key) {
     for (int i = 0; i < settings->n; i++) {
         if (strcmp(settings->item[i].key, key) == 0) return settings->item[i].value;

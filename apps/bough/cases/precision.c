@@ -76,7 +76,9 @@ static void case_status(const bough_case_result *result, char text[40]) {
 
 static double real_time_factor(const bough_case_result *r) { return r->time / r->wall; }
 
-// Row −1 is the reference.
+// Rows before those of the cells.
+enum { HEAD = -2, REFERENCE = -1 };
+
 static const bough_case *cell_of(const bough_study *s, int row) {
     return row < 0 ? s->reference_case : &s->cases[row];
 }
@@ -126,6 +128,10 @@ static void put_head(line *l, const bough_study *s) {
 
 static void put_row(line *l, const bough_study_results *results, int row) {
     const bough_study *s = results->study;
+    if (row == HEAD) {
+        put_head(l, s);
+        return;
+    }
     const bough_case_result *r = result_of(results, row);
     char status[40];
     bool good = r->done && bough_is_ok(&r->outcome);
@@ -181,24 +187,22 @@ static void print_diagnosis(const char *settings, const bough_case_result *r, FI
     fprintf(stream, "failed: %s: %.*s%s\n", settings, (int)length, text, cut ? "..." : "");
 }
 
+// The columns are as wide as the widest of their fields, which are made once to see that.
 static void print(const bough_study_results *results, FILE *stream) {
     const bough_study *s = results->study;
     line l;
     int width[COLUMNS] = {0};
-    put_head(&l, s);
-    widen(&l, width);
-    for (int row = -1; row < s->n_case; row++) {
-        put_row(&l, results, row);
-        widen(&l, width);
-    }
     if (s->title) fprintf(stream, "%s\n", s->title);
-    put_head(&l, s);
-    print_line(&l, width, s->grid.n + 2, stream);
-    for (int row = -1; row < s->n_case; row++) {
-        put_row(&l, results, row);
-        print_line(&l, width, s->grid.n + 2, stream);
+    for (int pass = 0; pass < 2; pass++) {
+        for (int row = HEAD; row < s->n_case; row++) {
+            put_row(&l, results, row);
+            if (pass == 0)
+                widen(&l, width);
+            else
+                print_line(&l, width, s->grid.n + 2, stream);
+        }
     }
-    for (int row = -1; row < s->n_case; row++)
+    for (int row = REFERENCE; row < s->n_case; row++)
         print_diagnosis(cell_of(s, row)->settings, result_of(results, row), stream);
 }
 
@@ -271,7 +275,7 @@ static void write_csv_row(const bough_study_results *results, int row, FILE *f) 
 static void write_csv(const void *self, FILE *f) {
     const bough_study_results *results = self;
     write_csv_head(results->study, f);
-    for (int row = -1; row < results->study->n_case; row++) write_csv_row(results, row, f);
+    for (int row = REFERENCE; row < results->study->n_case; row++) write_csv_row(results, row, f);
 }
 
 // -- files ----------------------------------------------------------------------------------------
@@ -298,12 +302,7 @@ static bool has_point(const bough_case_result *r, int measure) {
 static const char *line_name(bough_arena *arena, const bough_study_results *results, int curve) {
     const bough_study *s = results->study;
     int n = along(s), first = curve * n, last = s->grid.n - 1;
-    const char *name = "", *between = " — ";
-    for (int i = 0; i < last; i++) {
-        if (s->grid.axis[i].value.n < 2) continue;
-        const char *value = bough_study_value(s, &s->cases[first], i);
-        name = bough_arena_print(arena, "%s%s%s", name, name[0] ? ", " : "", value);
-    }
+    const char *name = bough_grid_others(arena, s, &s->cases[first], last), *between = " — ";
     if (!name[0]) name = s->grid.axis[last].label;
     for (int i = first; i < first + n; i++) {
         char status[40];
@@ -338,8 +337,8 @@ static bough_status plot(bough_arena *arena, const bough_study_results *results)
 
 bough_status bough_precision_conclude(bough_arena *arena, const bough_study_results *results) {
     const bough_study_options *o = results->options;
-    bough_status status = bough_precision_tables(results, o->folder);
-    if (bough_is_ok(&status)) status = plot(arena, results);
-    if (bough_is_ok(&status)) print(results, o->stream);
-    return status;
+    BOUGH_TRY(bough_precision_tables(results, o->folder));
+    BOUGH_TRY(plot(arena, results));
+    print(results, o->stream);
+    return bough_ok();
 }

@@ -180,6 +180,9 @@ const char *bough_study_path(bough_arena *arena, const char *study, const char *
 // The value of a grid key in a case; for the reference what its replacements say, "" if nothing.
 const char *bough_study_value(const bough_study *study, const bough_case *c, int axis);
 
+// The values of the other keys that have several: "ramp, 5 ms".
+const char *bough_grid_others(bough_arena *arena, const bough_study *study, const bough_case *c, int axis);
+
 // Whether a case is a reference of the study.
 static inline bool bough_is_reference(const bough_study *study, const bough_case *c) {
     return c >= study->reference_case && c < study->reference_case + study->n_reference;

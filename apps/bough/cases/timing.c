@@ -138,12 +138,7 @@ static void add_growth(bough_arena *arena, const timing *t, int first, int axis,
                        bough_chart *chart) {
     const bough_study *s = t->study;
     int last = s->grid.axis[axis].value.n - 1, stride = stride_of(s, axis), end = first + last * stride;
-    const char *name = "";
-    for (int k = 0; k < s->grid.n; k++) {
-        if (k == axis || s->grid.axis[k].value.n < 2) continue;
-        name = bough_arena_print(arena, "%s%s%s", name, name[0] ? ", " : "",
-                                 bough_study_value(s, &s->cases[first], k));
-    }
+    const char *name = bough_grid_others(arena, s, &s->cases[first], axis);
     double exponent =
         log(cpu_of(t, end) / cpu_of(t, first)) / log(number_of(s, end, axis) / number_of(s, first, axis));
     name = bough_arena_print(arena, "%s%sexponent %.2f", name, name[0] ? ": " : "", exponent);
@@ -182,11 +177,11 @@ bough_status bough_timing_conclude(bough_arena *arena, const bough_study_results
     t.series = bough_study_series_take(arena, study);
     t.drive.stop = options->stop;
     t.drive.progress = bough_progress_start(0, study->duration, options->quiet);
-    bough_status status = bough_folder_make(options->folder);
-    if (bough_is_ok(&status)) status = run_all(&t);
-    if (bough_is_ok(&status)) status = bough_folder_write(options->folder, "timing.csv", write_csv, &t);
-    if (bough_is_ok(&status)) status = bough_folder_write(options->folder, "table.txt", print_times, &t);
-    if (bough_is_ok(&status)) status = plot(arena, &t);
-    if (bough_is_ok(&status)) print_times(&t, options->stream);
-    return status;
+    BOUGH_TRY(bough_folder_make(options->folder));
+    BOUGH_TRY(run_all(&t));
+    BOUGH_TRY(bough_folder_write(options->folder, "timing.csv", write_csv, &t));
+    BOUGH_TRY(bough_folder_write(options->folder, "table.txt", print_times, &t));
+    BOUGH_TRY(plot(arena, &t));
+    print_times(&t, options->stream);
+    return bough_ok();
 }
