@@ -195,8 +195,7 @@ static bough_status judge(bough_arena *arena, const case_run *r) {
 static bough_status run_in(bough_arena *arena, void *self) {
     case_run *r = self;
     bough_case_result *result = r->result;
-    bough_status status = build(arena, r);
-    if (!bough_is_ok(&status)) return status;
+    BOUGH_TRY(build(arena, r));
     bough_run *run = &r->run;
     const bough_master *m = run->simulation->master;
     double interval = r->series ? r->study->interval : run->simulation->scene->simulation.output.interval;
@@ -217,7 +216,7 @@ static bough_status run_in(bough_arena *arena, void *self) {
     result->counted = m->time - r->study->from;
     result->warned = m->verdict[0] != '\0';
     result->coupling = bough_monitor_report(m->monitor, m->coupling);
-    if (r->recorder) status = finish_series(r);
+    bough_status status = r->recorder ? finish_series(r) : bough_ok();
     return bough_is_ok(&run->outcome) ? status : run->outcome;
 }
 

@@ -54,7 +54,6 @@ static double share_of(const bough_study *s, const bough_case *c, int n_group) {
     const bough_load_group *g = &s->group[c->group];
     int speeds = axis_of(g, speed_key);
     if (!(g->weibull > 0)) return 1. / n_group;
-    if (speeds < 0) return 0;
     const bough_study_axis *axis = &g->grid.axis[speeds];
     return share_of_speed(&s->wind, axis, c->index[speeds]) * axis->value.n / n_group;
 }

@@ -99,10 +99,9 @@ static bough_status remove_tables(const char *folder) {
     static const char *const names[] = {"table.txt",  "table.csv",  "plot.svg",
                                         "cases.csv",  "costs.csv",  "equivalent.csv",
                                         "ranges.csv", "levels.csv", "extremes.csv"};
-    bough_status status = bough_ok();
-    for (size_t i = 0; i < sizeof names / sizeof *names && bough_is_ok(&status); i++)
-        status = bough_folder_remove(folder, names[i]);
-    return status;
+    for (size_t i = 0; i < sizeof names / sizeof *names; i++)
+        BOUGH_TRY(bough_folder_remove(folder, names[i]));
+    return bough_ok();
 }
 
 // -- compared runs --------------------------------------------------------------------------------
@@ -110,12 +109,10 @@ static bough_status remove_tables(const char *folder) {
 static bough_status read_results(bough_study_results *x) {
     const bough_study *s = x->study;
     const char *folder = x->options->folder;
-    bough_status status = bough_ok();
-    for (int i = 0; i < s->n_reference && bough_is_ok(&status); i++)
-        status = bough_store_read(folder, s, &s->reference_case[i], &x->reference[i]);
-    for (int i = 0; i < s->n_case && bough_is_ok(&status); i++)
-        status = bough_store_read(folder, s, &s->cases[i], &x->result[i]);
-    return status;
+    for (int i = 0; i < s->n_reference; i++)
+        BOUGH_TRY(bough_store_read(folder, s, &s->reference_case[i], &x->reference[i]));
+    for (int i = 0; i < s->n_case; i++) BOUGH_TRY(bough_store_read(folder, s, &s->cases[i], &x->result[i]));
+    return bough_ok();
 }
 
 // Runs it again where its result is there but not its series.
@@ -124,14 +121,13 @@ static bough_status run_reference(work *w, int group, bough_study_drive *drive, 
     const bough_case *cell = &s->reference_case[group];
     bough_case_result *kept = &w->results.reference[group], r;
     drive->progress.label = "reference";
-    bough_status status = bough_case_run(s, cell, 1, drive, series, &r);
-    if (!bough_is_ok(&status)) return status;
+    BOUGH_TRY(bough_case_run(s, cell, 1, drive, series, &r));
     if (bough_is_ok(&r.outcome)) {
         bough_study_compare(s, series, series, r.error);
     } else if (!s->is.parallel) {
         return bough_fail(BOUGH_FAILED, "the reference failed: %.340s", r.outcome.message);
     }
-    if (kept->done) return status;
+    if (kept->done) return bough_ok();
     *kept = r;
     return bough_store_write(w->results.options->folder, s, cell, kept);
 }
@@ -208,11 +204,11 @@ static bough_status run_case(bough_arena *arena, work *w, int number) {
     bough_case_result result = bough_case_take(arena, s);
     bough_study_drive drive = {.stop = o->stop, .folder = s->series ? folder : NULL, .boxes = w->boxes};
     snprintf(name, sizeof name, "cases/%06d", number + 1);
-    bough_status status = bough_folder_path(o->folder, name, folder);
-    if (bough_is_ok(&status)) status = bough_case_run(s, &s->cases[number], 1, &drive, NULL, &result);
-    if (bough_is_ok(&status)) status = bough_store_write(o->folder, s, &s->cases[number], &result);
-    if (bough_is_ok(&status)) count_run(w, number, &result);
-    return status;
+    BOUGH_TRY(bough_folder_path(o->folder, name, folder));
+    BOUGH_TRY(bough_case_run(s, &s->cases[number], 1, &drive, NULL, &result));
+    BOUGH_TRY(bough_store_write(o->folder, s, &s->cases[number], &result));
+    count_run(w, number, &result);
+    return bough_ok();
 }
 
 // Another process may have run it since the list was made.
@@ -294,10 +290,10 @@ bough_status bough_study_perform(bough_arena *arena, const bough_study *study,
         return bough_fail(BOUGH_INVALID, "only a load set has load cases to choose by --case");
     }
     work w = {.results = {.study = study, .options = options}};
-    bough_status status = check_name(arena, study, options->only);
-    if (bough_is_ok(&status) && kinds[study->kind].run) {
-        status = bough_store_open(options->folder);
-        if (bough_is_ok(&status)) status = kinds[study->kind].run(arena, &w);
+    BOUGH_TRY(check_name(arena, study, options->only));
+    if (kinds[study->kind].run) {
+        BOUGH_TRY(bough_store_open(options->folder));
+        BOUGH_TRY(kinds[study->kind].run(arena, &w));
     }
-    return bough_is_ok(&status) ? kinds[study->kind].conclude(arena, &w.results) : status;
+    return kinds[study->kind].conclude(arena, &w.results);
 }

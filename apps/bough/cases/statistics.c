@@ -121,6 +121,9 @@ static void put_extremes(const void *self, FILE *f) {
 
 // A row for each bin: cycles by range, or hours and crossings by level.
 static void put_bins(const bough_lifetime *l, bool by_level, FILE *f) {
+    fprintf(f, "channel,unit,%s\n",
+            by_level ? "from,to,hours in the lifetime,upward crossings of from"
+                     : "range from,range to,cycles in the lifetime");
     for (int i = 0; i < l->study->n_channel; i++) {
         const bough_levels *r = by_level ? &l->channel[i].levels : &l->channel[i].ranges;
         double width = bough_levels_width(r);
@@ -133,15 +136,9 @@ static void put_bins(const bough_lifetime *l, bool by_level, FILE *f) {
     }
 }
 
-static void put_ranges(const void *self, FILE *f) {
-    fputs("channel,unit,range from,range to,cycles in the lifetime\n", f);
-    put_bins(self, false, f);
-}
+static void put_ranges(const void *self, FILE *f) { put_bins(self, false, f); }
 
-static void put_levels(const void *self, FILE *f) {
-    fputs("channel,unit,from,to,hours in the lifetime,upward crossings of from\n", f);
-    put_bins(self, true, f);
-}
+static void put_levels(const void *self, FILE *f) { put_bins(self, true, f); }
 
 static bough_status write_lifetime(const bough_lifetime *l, const char *folder) {
     BOUGH_TRY(bough_folder_write(folder, "equivalent.csv", put_equivalent, l));
@@ -324,11 +321,10 @@ static bough_status read_all(bough_arena *arena, conclusion *c, FILE *failures) 
     bough_case_result result = bough_case_take(arena, s);
     char path[BOUGH_PATH_MAX];
     FILE *file;
-    bough_status status = bough_folder_open(c->folder, "cases.csv", path, &file);
-    if (!bough_is_ok(&status)) return status;
+    BOUGH_TRY(bough_folder_open(c->folder, "cases.csv", path, &file));
     head_cases(s, file);
     for (int i = 0; i < s->n_case; i++) {
-        status = bough_store_read(c->folder, s, &s->cases[i], &result);
+        bough_status status = bough_store_read(c->folder, s, &s->cases[i], &result);
         if (!bough_is_ok(&status)) {
             bough_folder_discard(path, file);
             return status;
@@ -367,12 +363,10 @@ static bough_status write_all(conclusion *c) {
         plot_ranges(&c->chart, &c->lifetime);
     else
         plot_sweep(&c->chart, c->study, c->note);
-    bough_status status = bough_folder_write(c->folder, "costs.csv", put_costs, c);
-    if (bough_is_ok(&status) && weighted) status = write_lifetime(&c->lifetime, c->folder);
-    if (bough_is_ok(&status)) status = bough_folder_write(c->folder, "table.txt", print_table, c);
-    if (bough_is_ok(&status))
-        status = bough_folder_write(c->folder, "plot.svg", bough_chart_write, &c->chart);
-    return status;
+    BOUGH_TRY(bough_folder_write(c->folder, "costs.csv", put_costs, c));
+    if (weighted) BOUGH_TRY(write_lifetime(&c->lifetime, c->folder));
+    BOUGH_TRY(bough_folder_write(c->folder, "table.txt", print_table, c));
+    return bough_folder_write(c->folder, "plot.svg", bough_chart_write, &c->chart);
 }
 
 static bough_status judge(const bough_study_results *x, const bough_lifetime *l) {

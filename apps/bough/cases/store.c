@@ -78,14 +78,12 @@ static void move_settings(rows *r, const char *settings) {
 static void move_comparison(rows *r, const bough_study *s, const bough_case *c, bough_case_result *x) {
     bough_coupling_report *k = &x->coupling;
     double run[] = {x->time, x->wall, x->cpu, x->warned};
-    double coupling[] = {k->defect_max, k->defect_rms, k->energy_residual, k->energy_exchanged};
     move_settings(r, c->settings);
     move(r, "run", 4, run);
-    move(r, "coupling", 4, coupling);
+    move(r, "coupling", sizeof *k / sizeof(double), &k->defect_max); // numbers only
     move(r, "errors", s->n_measure, x->error);
     move(r, "estimates", s->n_measure, x->estimate);
     x->time = run[0], x->wall = run[1], x->cpu = run[2], x->warned = run[3] > 0;
-    *k = (bough_coupling_report){coupling[0], coupling[1], coupling[2], coupling[3]};
 }
 
 // -- statistics -----------------------------------------------------------------------------------
