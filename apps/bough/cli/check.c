@@ -435,8 +435,7 @@ static bough_status check(bough_arena *arena, const void *options) {
 const bough_command bough_command_check = {
     .name = "check",
     .summary = "shows what a scene builds; nothing is run or written",
-    .operand = BOUGH_OPERAND_REQUIRED,
-    .operand_name = "SCENE",
+    .operands = "SCENE",
     .option = rows,
     .size = sizeof(check_options),
     .run = check,

@@ -133,20 +133,13 @@ bough_status bough_option_kernels(const char *name, const char *text, void *fiel
 
 // -- reading --------------------------------------------------------------------------------------
 
+static int count_operands(const bough_command *command) { return strchr(command->operands, ' ') ? 2 : 1; }
+
 static bough_status take_operand(const bough_command *command, const char *word, bough_options *options) {
-    if (command->operand == BOUGH_OPERAND_TWO && options->operand && !options->second) {
-        options->second = word;
-        return bough_ok();
-    }
-    if (command->operand == BOUGH_OPERAND_SOME) {
-        options->operands[options->n_operand++] = word;
-        options->operand = options->operands[0];
-        return bough_ok();
-    }
-    if (command->operand == BOUGH_OPERAND_NONE || options->operand) {
+    if (options->n_operand == count_operands(command) && !command->repeats)
         return bough_fail(BOUGH_INVALID, "unexpected argument '%.200s'", word);
-    }
-    options->operand = word;
+    options->operands[options->n_operand++] = word;
+    options->operand = options->operands[0];
     return bough_ok();
 }
 
@@ -208,10 +201,9 @@ bough_status bough_options_read(bough_arena *arena, int argc, char **argv, const
     for (; bough_is_ok(&status) && optind < argc; optind++) {
         status = take_operand(command, argv[optind], options); // after "--"
     }
-    const char *last = command->operand == BOUGH_OPERAND_TWO ? options->second : options->operand;
-    bool needed = command->operand != BOUGH_OPERAND_NONE && command->operand != BOUGH_OPERAND_OPTIONAL;
-    if (bough_is_ok(&status) && needed && !last && !options->help) {
-        return bough_fail(BOUGH_INVALID, "%s: missing %s; see --help", argv[0], command->operand_name);
+    bool complete = command->optional || options->n_operand >= count_operands(command);
+    if (bough_is_ok(&status) && !complete && !options->help) {
+        return bough_fail(BOUGH_INVALID, "%s: missing %s; see --help", argv[0], command->operands);
     }
     return status;
 }
@@ -219,10 +211,10 @@ bough_status bough_options_read(bough_arena *arena, int argc, char **argv, const
 // -- help -----------------------------------------------------------------------------------------
 
 void bough_options_usage(const bough_command *command, FILE *stream) {
-    if (command->operand == BOUGH_OPERAND_REQUIRED || command->operand == BOUGH_OPERAND_TWO)
-        fprintf(stream, " %s", command->operand_name);
-    if (command->operand == BOUGH_OPERAND_SOME) fprintf(stream, " %s...", command->operand_name);
-    if (command->operand == BOUGH_OPERAND_OPTIONAL) fprintf(stream, " [%s]", command->operand_name);
+    fprintf(stream, " %s%s%s", command->optional ? "[" : "", command->operands,
+            command->optional  ? "]"
+            : command->repeats ? "..."
+                               : "");
     for (const bough_option *row = command->option; row->name; row++) {
         if (!row->read) continue;
         fprintf(stream, " [--%s%s%s]%s", row->name, row->argument ? " " : "",

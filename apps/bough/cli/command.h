@@ -24,10 +24,9 @@ typedef struct bough_texts {
 
 // What the command line says. A command with options of its own has a struct that begins with this one.
 typedef struct bough_options {
-    const char *operand; // the scene or the topic; NULL: not given
-    const char *second;  // of two operands
+    const char *operand; // the first: the scene or the topic; NULL: not given
     int n_operand;
-    const char **operands; // (n_operand) of one or more
+    const char **operands; // (n_operand)
     bough_texts set;       // replacements "key=value"
     const char *out;       // NULL: named after the operand
     int threads;           // 0: as the scene says
@@ -76,18 +75,11 @@ bough_status bough_option_kernels(const char *name, const char *text, void *fiel
 
 // -- commands -------------------------------------------------------------------------------------
 
-typedef enum bough_operand {
-    BOUGH_OPERAND_NONE,
-    BOUGH_OPERAND_OPTIONAL,
-    BOUGH_OPERAND_REQUIRED,
-    BOUGH_OPERAND_TWO,
-    BOUGH_OPERAND_SOME, // one or more
-} bough_operand;
-
 typedef struct bough_command {
     const char *name, *summary;
-    bough_operand operand;
-    const char *operand_name;   // "SCENE"; NULL without operand
+    const char *operands;       // one or two, as the usage shows them: "SCENE", "KIND FILE"
+    bool optional;              // the operand may be left out
+    bool repeats;               // or given several times
     const bough_option *option; // ended by a row without a name; every command also accepts --help
     size_t size;                // of the struct that they fill
     // Does the work. A failure without a message is already printed.

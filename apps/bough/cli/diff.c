@@ -100,7 +100,7 @@ static bough_status diff(bough_arena *arena, const void *given) {
     const bough_options *options = given;
     bough_rows *a, *b;
     BOUGH_TRY(open_rows(arena, options->operand, &a));
-    BOUGH_TRY(open_rows(arena, options->second, &b));
+    BOUGH_TRY(open_rows(arena, options->operands[1], &b));
     pair *list = bough_arena_take(arena, ((size_t)a->n + 1) * sizeof *list);
     int n = find_pairs(a, b, list);
     long common = 0;
@@ -119,8 +119,7 @@ const bough_command bough_command_diff = {
     .name = "diff",
     .summary =
         "compares the channels of two results: the largest difference of each over its range, and when",
-    .operand = BOUGH_OPERAND_TWO,
-    .operand_name = "DIR DIR",
+    .operands = "DIR DIR",
     .option = rows,
     .size = sizeof(bough_options),
     .run = diff,

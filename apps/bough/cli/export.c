@@ -399,7 +399,7 @@ static bough_status export_scene(bough_arena *arena, const void *given) {
         return bough_fail(BOUGH_INVALID, "export: unknown kind '%.80s'; known: fmu", options->operand);
     }
     bough_options named = *options;
-    named.operand = options->second;
+    named.operand = options->operands[1];
     export x = {.arena = arena, .options = &named};
     bough_simulation *simulation;
     BOUGH_TRY(bough_open(arena, &named, &simulation));
@@ -424,8 +424,7 @@ static bough_status export_scene(bough_arena *arena, const void *given) {
 const bough_command bough_command_export = {
     .name = "export",
     .summary = "writes a scene as 'fmu', a model for co-simulation by other programs (FMI 3.0)",
-    .operand = BOUGH_OPERAND_TWO,
-    .operand_name = "KIND SCENE",
+    .operands = "KIND SCENE",
     .option = rows,
     .size = sizeof(bough_options),
     .run = export_scene,

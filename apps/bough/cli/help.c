@@ -102,8 +102,8 @@ static bough_status help(bough_arena *arena, const void *given) {
 const bough_command bough_command_help = {
     .name = "help",
     .summary = "explains a command, the keys of scenes and studies, the channels or the coupling schemes",
-    .operand = BOUGH_OPERAND_OPTIONAL,
-    .operand_name = "TOPIC",
+    .operands = "TOPIC",
+    .optional = true,
     .option = rows,
     .size = sizeof(help_options),
     .run = help,

@@ -38,7 +38,7 @@ static const bough_option rows[] = {
 
 static bough_status import(bough_arena *arena, const void *given) {
     const import_options *options = given;
-    const char *kind = options->common.operand, *file = options->common.second;
+    const char *kind = options->common.operand, *file = options->common.operands[1];
     bool windio = strcmp(kind, "windio") == 0;
     if (!windio && strcmp(kind, "openfast") != 0) {
         return bough_fail(BOUGH_INVALID, "import: unknown kind '%.80s'; known: openfast, windio", kind);
@@ -61,8 +61,7 @@ static bough_status import(bough_arena *arena, const void *given) {
 const bough_command bough_command_import = {
     .name = "import",
     .summary = "converts 'openfast MAIN.fst' or 'windio TURBINE.yaml' to a scene and lists what it took",
-    .operand = BOUGH_OPERAND_TWO,
-    .operand_name = "KIND FILE",
+    .operands = "KIND FILE",
     .option = rows,
     .size = sizeof(import_options),
     .run = import,

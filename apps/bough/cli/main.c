@@ -59,7 +59,7 @@ static bough_status call(bough_arena *arena, void *self) {
     bough_options *options;
     bough_status status = bough_options_read(arena, argc, argv, command, &options);
     if (!bough_is_ok(&status)) return status;
-    bool scene = command->operand == BOUGH_OPERAND_REQUIRED && strcmp(command->operand_name, "SCENE") == 0;
+    bool scene = strcmp(command->operands, "SCENE") == 0;
     if (scene && !options->help) status = bough_find_scene(arena, options);
     if (!bough_is_ok(&status)) return status;
     if (!options->help) return command->run(arena, options);

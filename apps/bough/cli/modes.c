@@ -452,8 +452,7 @@ const bough_command bough_command_modes = {
     .name = "modes",
     .summary = "computes frequencies, damping and shapes of the whole scene or of each rod, at rest or "
                "rotating",
-    .operand = BOUGH_OPERAND_REQUIRED,
-    .operand_name = "SCENE",
+    .operands = "SCENE",
     .option = rows,
     .size = sizeof(modes_options),
     .run = find,

@@ -44,12 +44,12 @@ static bough_status new (bough_arena *arena, const void *given) {
     if (!known)
         return bough_fail(BOUGH_INVALID, "new: unknown kind '%.80s'%s; known: beam, mechanism, turbine",
                           options->operand, bough_suggest(options->operand, kinds, 3).text);
-    bough_status status = open_directory(options->second);
+    bough_status status = open_directory(options->operands[1]);
     for (const bough_template *t = bough_templates; t->name && bough_is_ok(&status); t++) {
-        if (belongs(t, options->operand)) status = write_file(arena, options->second, t);
+        if (belongs(t, options->operand)) status = write_file(arena, options->operands[1], t);
     }
     if (bough_is_ok(&status))
-        printf("scene: %s/scene.yaml\nnext: bough run %s\n", options->second, options->second);
+        printf("scene: %s/scene.yaml\nnext: bough run %s\n", options->operands[1], options->operands[1]);
     return status;
 }
 
@@ -59,8 +59,7 @@ const bough_command bough_command_new = {
     .name = "new",
     .summary =
         "writes a commented scene that runs, of a beam, a mechanism or a turbine, into a new directory",
-    .operand = BOUGH_OPERAND_TWO,
-    .operand_name = "KIND DIR",
+    .operands = "KIND DIR",
     .option = rows,
     .size = sizeof(bough_options),
     .run = new,

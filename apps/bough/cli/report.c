@@ -45,8 +45,8 @@ const bough_command bough_command_report = {
     .name = "report",
     .summary = "makes one page of the results of a run or a study, or of several runs side by side: "
                "DIR/report.html; of stored frames also a picture, DIR/shape.svg",
-    .operand = BOUGH_OPERAND_SOME,
-    .operand_name = "DIR",
+    .operands = "DIR",
+    .repeats = true,
     .option = rows,
     .size = sizeof(report_options),
     .run = report,

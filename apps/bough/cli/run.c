@@ -281,8 +281,7 @@ static bough_status run(bough_arena *arena, const void *options) {
 const bough_command bough_command_run = {
     .name = "run",
     .summary = "simulates a scene and writes its results",
-    .operand = BOUGH_OPERAND_REQUIRED,
-    .operand_name = "SCENE",
+    .operands = "SCENE",
     .option = rows,
     .size = sizeof(bough_run_options),
     .run = run,

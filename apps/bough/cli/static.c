@@ -481,8 +481,7 @@ static bough_status find(bough_arena *arena, const void *given) {
 const bough_command bough_command_static = {
     .name = "static",
     .summary = "computes the equilibrium of rods and joints under gravity, loads and air",
-    .operand = BOUGH_OPERAND_REQUIRED,
-    .operand_name = "SCENE",
+    .operands = "SCENE",
     .option = rows,
     .size = sizeof(static_options),
     .run = find,

@@ -61,8 +61,7 @@ static bough_status perform(bough_arena *arena, const void *given) {
 const bough_command bough_command_study = {
     .name = "study",
     .summary = "runs a scene for a grid of settings and compares cost and error",
-    .operand = BOUGH_OPERAND_REQUIRED,
-    .operand_name = "STUDY",
+    .operands = "STUDY",
     .option = rows,
     .size = sizeof(study_options),
     .run = perform,

@@ -62,8 +62,7 @@ static bough_status perform(bough_arena *arena, const void *given) {
 const bough_command bough_command_tune = {
     .name = "tune",
     .summary = "finds the cheapest solvers, steps and segments of a scene that meet an error",
-    .operand = BOUGH_OPERAND_REQUIRED,
-    .operand_name = "SCENE",
+    .operands = "SCENE",
     .option = rows,
     .size = sizeof(tune_options),
     .run = perform,

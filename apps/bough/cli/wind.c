@@ -40,8 +40,7 @@ static bough_status wind(bough_arena *arena, const void *options) {
 const bough_command bough_command_wind = {
     .name = "wind",
     .summary = "writes the turbulence of a scene for other programs: wind.bts",
-    .operand = BOUGH_OPERAND_REQUIRED,
-    .operand_name = "SCENE",
+    .operands = "SCENE",
     .option = rows,
     .size = sizeof(bough_options),
     .run = wind,
