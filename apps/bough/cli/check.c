@@ -386,7 +386,7 @@ typedef struct check_options {
 static const bough_option rows[] = {
     BOUGH_OPTION_SET,
     {"full", NULL, "prints the scene with base and --set merged into it, as a scene that runs",
-     bough_option_flag, offsetof(check_options, full), false},
+     bough_option_flag, offsetof(check_options, full)},
     {0},
 };
 

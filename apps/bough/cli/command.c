@@ -54,9 +54,11 @@ enum {
 
 // -- errors ---------------------------------------------------------------------------------------
 
+static bool may_repeat(const bough_option *row) { return row->read == bough_option_texts; }
+
 static int count(const bough_command *command) {
     int n = 0;
-    while (command->option[n].name) n++;
+    while (command->option && command->option[n].name) n++;
     return n;
 }
 
@@ -175,11 +177,10 @@ static bough_status take(const bough_command *command, int code, const char *wor
 // The struct of the command, with room for as many values of a repeated option as there are words.
 static bough_options *take_memory(bough_arena *arena, const bough_command *command, int argc) {
     bough_options *options = bough_arena_take(arena, command->size);
-    memset(options, 0, command->size);
     options->operands = bough_arena_take(arena, (size_t)argc * sizeof(char *));
-    for (const bough_option *row = command->option; row->name; row++) {
+    for (const bough_option *row = command->option; row && row->name; row++) {
         bough_texts *texts = (bough_texts *)((char *)options + row->offset);
-        if (row->repeats) texts->text = bough_arena_take(arena, (size_t)argc * sizeof(char *));
+        if (may_repeat(row)) texts->text = bough_arena_take(arena, (size_t)argc * sizeof(char *));
     }
     return options;
 }
@@ -215,15 +216,15 @@ void bough_options_usage(const bough_command *command, FILE *stream) {
             command->optional  ? "]"
             : command->repeats ? "..."
                                : "");
-    for (const bough_option *row = command->option; row->name; row++) {
+    for (const bough_option *row = command->option; row && row->name; row++) {
         if (!row->read) continue;
         fprintf(stream, " [--%s%s%s]%s", row->name, row->argument ? " " : "",
-                row->argument ? row->argument : "", row->repeats ? "..." : "");
+                row->argument ? row->argument : "", may_repeat(row) ? "..." : "");
     }
 }
 
 void bough_options_help(const bough_command *command, FILE *stream) {
-    for (const bough_option *row = command->option; row->name; row++) {
+    for (const bough_option *row = command->option; row && row->name; row++) {
         if (!row->read) continue;
         char left[40];
         snprintf(left, sizeof left, "--%s %s", row->name, row->argument ? row->argument : "");

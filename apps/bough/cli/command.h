@@ -39,7 +39,6 @@ typedef struct bough_option {
     // Reads the value into its field; NULL: the option was removed, `help` says what takes its place.
     bough_status (*read)(const char *name, const char *text, void *field);
     size_t offset; // of the field in the command's struct
-    bool repeats;  // the field is a bough_texts
 } bough_option;
 
 // Readers of options: const char *; bough_texts; bool; a number of threads, int.
@@ -53,25 +52,25 @@ bough_status bough_option_kernels(const char *name, const char *text, void *fiel
 #define BOUGH_OPTION_SET                                                                                     \
     {                                                                                                        \
         "set", "KEY=VALUE", "replaces or adds a value of the scene: 'bodies[blade1].pitch=5 deg'",           \
-            bough_option_texts, offsetof(bough_options, set), true                                           \
+            bough_option_texts, offsetof(bough_options, set)                                                 \
     }
 #define BOUGH_OPTION_OUT                                                                                     \
     {                                                                                                        \
         "out", "DIR", "folder for the results; default out/<name of the scene>", bough_option_text,          \
-            offsetof(bough_options, out), false                                                              \
+            offsetof(bough_options, out)                                                                     \
     }
 #define BOUGH_OPTION_THREADS                                                                                 \
     {                                                                                                        \
         "threads", "N", "1 to 64; replaces the scene's number", bough_option_threads,                        \
-            offsetof(bough_options, threads), false                                                          \
+            offsetof(bough_options, threads)                                                                 \
     }
 #define BOUGH_OPTION_KERNELS                                                                                 \
     {                                                                                                        \
         "kernels", "LEVEL", "v2, v3 or v4: level of the instruction set, default the processor's highest",   \
-            bough_option_kernels, 0, false                                                                   \
+            bough_option_kernels, 0                                                                          \
     }
 #define BOUGH_OPTION_QUIET                                                                                   \
-    { "quiet", NULL, "no progress line", bough_option_flag, offsetof(bough_options, quiet), false }
+    { "quiet", NULL, "no progress line", bough_option_flag, offsetof(bough_options, quiet) }
 
 // -- commands -------------------------------------------------------------------------------------
 
@@ -80,7 +79,7 @@ typedef struct bough_command {
     const char *operands;       // one or two, as the usage shows them: "SCENE", "KIND FILE"
     bool optional;              // the operand may be left out
     bool repeats;               // or given several times
-    const bough_option *option; // ended by a row without a name; every command also accepts --help
+    const bough_option *option; // ended by a row without a name; NULL: only --help, as all commands have
     size_t size;                // of the struct that they fill
     // Does the work. A failure without a message is already printed.
     bough_status (*run)(bough_arena *arena, const void *options);

@@ -94,8 +94,6 @@ static void print(const bough_rows *a, const bough_rows *b, int n, pair *list, l
     }
 }
 
-static const bough_option rows[] = {{0}};
-
 static bough_status diff(bough_arena *arena, const void *given) {
     const bough_options *options = given;
     bough_rows *a, *b;
@@ -120,7 +118,6 @@ const bough_command bough_command_diff = {
     .summary =
         "compares the channels of two results: the largest difference of each over its range, and when",
     .operands = "DIR DIR",
-    .option = rows,
     .size = sizeof(bough_options),
     .run = diff,
 };

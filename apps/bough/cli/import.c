@@ -25,14 +25,14 @@ static bough_status read_mass(const char *name, const char *text, void *field) {
 static const bough_option rows[] = {
     BOUGH_OPTION_OUT,
     {"wind", "FILE", "wind for the imported model; replaces its own: .bts, .wnd or uniform",
-     bough_option_text, AT(wind), false},
+     bough_option_text, AT(wind)},
     {"controller", "FILE", "library with Bladed's interface; replaces the model's own", bough_option_text,
-     AT(controller), false},
+     AT(controller)},
     {"clamp-base", NULL, "imports an offshore turbine as clamped at the base of its tower", bough_option_flag,
-     AT(clamp_base), false},
-    {"hub-mass", "KG", "mass of the hub of a WindIO turbine without one", read_mass, AT(hub_mass), false},
-    {"nacelle-mass", "KG", "mass of the nacelle of a WindIO turbine without one", read_mass, AT(nacelle_mass),
-     false},
+     AT(clamp_base)},
+    {"hub-mass", "KG", "mass of the hub of a WindIO turbine without one", read_mass, AT(hub_mass)},
+    {"nacelle-mass", "KG", "mass of the nacelle of a WindIO turbine without one", read_mass,
+     AT(nacelle_mass)},
     {0},
 };
 

@@ -414,11 +414,11 @@ static const bough_option rows[] = {
     BOUGH_OPTION_SET,
     BOUGH_OPTION_OUT,
     {"until", "unstable", "ends the sweep where an oscillation begins to grow, and finds that place",
-     read_until, offsetof(modes_options, until), false},
+     read_until, offsetof(modes_options, until)},
     {"sweep", "KEY=V1, V2, ...", "modes over operating points; the values of several --sweep vary together",
-     bough_option_texts, offsetof(modes_options, sweep), true},
+     bough_option_texts, offsetof(modes_options, sweep)},
     {"sensitivity", "MODE", "what a mode, its number or words of its row as 'edge forward', depends on most",
-     bough_option_text, offsetof(modes_options, sensitivity), false},
+     bough_option_text, offsetof(modes_options, sensitivity)},
     {0},
 };
 

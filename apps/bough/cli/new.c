@@ -53,14 +53,11 @@ static bough_status new (bough_arena *arena, const void *given) {
     return status;
 }
 
-static const bough_option rows[] = {{0}};
-
 const bough_command bough_command_new = {
     .name = "new",
     .summary =
         "writes a commented scene that runs, of a beam, a mechanism or a turbine, into a new directory",
     .operands = "KIND DIR",
-    .option = rows,
     .size = sizeof(bough_options),
     .run = new,
 };

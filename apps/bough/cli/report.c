@@ -24,7 +24,7 @@ static bough_status read_time(const char *name, const char *text, void *field) {
 
 static const bough_option rows[] = {
     {"at", "TIME", "of the stored frame that shape.svg shows; default the last", read_time,
-     offsetof(report_options, at), false},
+     offsetof(report_options, at)},
     {0},
 };
 

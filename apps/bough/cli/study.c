@@ -25,9 +25,9 @@ static const bough_option rows[] = {
     BOUGH_OPTION_OUT,
     BOUGH_OPTION_THREADS,
     {"part", "K/N", "of a study (stability, sweep, load-set) only the K-th of N shares of its runs",
-     read_part, offsetof(study_options, part), false},
+     read_part, offsetof(study_options, part)},
     {"case", "NAME", "of a load set only the load case of that name", bough_option_text,
-     offsetof(study_options, only), false},
+     offsetof(study_options, only)},
     BOUGH_OPTION_QUIET,
     {0},
 };

@@ -33,9 +33,9 @@ static const bough_option rows[] = {
     BOUGH_OPTION_SET,
     BOUGH_OPTION_OUT,
     {"error", "E", "to be met, over the range of each channel; default the scene's accuracy", read_error,
-     offsetof(tune_options, error), false},
+     offsetof(tune_options, error)},
     {"for", "TIME", "stretch of the scene that is run with each of the settings; default 20 s", read_span,
-     offsetof(tune_options, span), false},
+     offsetof(tune_options, span)},
     {0},
 };
 
