@@ -24,10 +24,10 @@ typedef struct zip_entry {
 } zip_entry;
 
 typedef struct zip {
-    bough_arena *arena; // of copies and entries
+    bough_arena *arena; // of copies
     FILE *file;         // open for writing, at its start
-    int n, room;
-    zip_entry *entry; // (room), n of them filled
+    int n;
+    zip_entry *entry; // (n), with room for all that come
 } zip;
 
 enum { LOCAL = 0x04034b50, CENTRAL = 0x02014b50, END = 0x06054b50 };
@@ -37,8 +37,7 @@ enum { DAY = 1 << 5 | 1, VERSION = 20, UTF8 = 1 << 11 }; // 1 January 1980: the 
 static void put_entry(FILE *file, const zip_entry *entry) {
     bough_put_bytes(file, VERSION, 2);
     bough_put_bytes(file, UTF8, 2);
-    bough_put_bytes(file, 0, 2); // stored
-    bough_put_bytes(file, 0, 2); // midnight
+    bough_put_bytes(file, 0, 4); // stored, at midnight
     bough_put_bytes(file, DAY, 2);
     bough_put_bytes(file, entry->sum, 4);
     bough_put_bytes(file, entry->size, 4);
@@ -47,23 +46,13 @@ static void put_entry(FILE *file, const zip_entry *entry) {
     bough_put_bytes(file, 0, 2);
 }
 
-static zip_entry *next_entry(zip *z) {
-    if (z->n == z->room) {
-        zip_entry *old = z->entry;
-        z->room = 2 * z->room + 16;
-        z->entry = bough_arena_take(z->arena, (size_t)z->room * sizeof *z->entry);
-        if (z->n > 0) memcpy(z->entry, old, (size_t)z->n * sizeof *old);
-    }
-    return &z->entry[z->n++];
-}
-
 // Appends a file of `size` bytes. BOUGH_INVALID when it does not fit: 4 GB or 65535 files.
 static bough_status zip_add(zip *z, const char *name, const void *bytes, size_t size) {
     long at = ftell(z->file);
     if (z->n == UINT16_MAX || at < 0 || size + (size_t)at > UINT32_MAX - (1u << 20)) {
         return bough_fail(BOUGH_INVALID, "the archive has no room for '%.200s'", name);
     }
-    zip_entry *entry = next_entry(z);
+    zip_entry *entry = &z->entry[z->n++];
     *entry = (zip_entry){name, (uint32_t)crc32_z(0, bytes, size), (uint32_t)size, (uint32_t)at};
     bough_put_bytes(z->file, LOCAL, 4);
     put_entry(z->file, entry);
@@ -91,10 +80,8 @@ static void zip_end(zip *z) {
         bough_put_bytes(z->file, CENTRAL, 4);
         bough_put_bytes(z->file, VERSION, 2);
         put_entry(z->file, &z->entry[k]);
-        bough_put_bytes(z->file, 0, 2); // comment
-        bough_put_bytes(z->file, 0, 2);
-        bough_put_bytes(z->file, 0, 2);
-        bough_put_bytes(z->file, 0, 4);
+        bough_put_bytes(z->file, 0, 4); // no comment, the first disk
+        bough_put_bytes(z->file, 0, 6); // attributes
         bough_put_bytes(z->file, z->entry[k].at, 4);
         fputs(z->entry[k].name, z->file);
     }
@@ -119,8 +106,8 @@ typedef struct export {
     bough_arena *arena;
     const bough_options *options;
     bough_simulation *simulation;
-    int n_input, n_output;
-    variable *input, *output; // (n_input), (n_output)
+    int n_input, n_variable;
+    variable *variable; // (n_variable) inputs, then outputs
     char token[40];
     const char *scene; // in resources/
     bough_scene_files files;
@@ -187,10 +174,16 @@ static void put_exponent(const char *name, int exponent, FILE *out) {
     if (exponent != 0) fprintf(out, " %s=\"%d\"", name, exponent);
 }
 
+static void put_text(const char *name, const char *text, FILE *out) {
+    fprintf(out, " %s=\"", name);
+    bough_picture_text(out, text);
+    fputc('"', out);
+}
+
 static void put_unit(const char *unit, FILE *out) {
-    fputs("    <Unit name=\"", out);
-    bough_picture_text(out, unit);
-    fputs("\">", out);
+    fputs("    <Unit", out);
+    put_text("name", unit, out);
+    fputc('>', out);
     static const char *const base[BOUGH_BASE_UNITS] = {"m", "kg", "s", "rad"};
     int exponent[BOUGH_BASE_UNITS];
     double factor;
@@ -213,61 +206,46 @@ static void put_unit(const char *unit, FILE *out) {
 static void put_units(const export *x, FILE *out) {
     fputs("  <UnitDefinitions>\n", out);
     put_unit("s", out);
-    for (int i = 0; i < x->n_input + x->n_output; i++) {
-        const char *unit = i < x->n_input ? x->input[i].unit : x->output[i - x->n_input].unit;
+    for (int i = 0; i < x->n_variable; i++) {
+        const char *unit = x->variable[i].unit;
         bool known = unit[0] == '\0' || strcmp(unit, "s") == 0;
-        for (int k = 0; k < i && !known; k++) {
-            const variable *other = k < x->n_input ? &x->input[k] : &x->output[k - x->n_input];
-            known = strcmp(unit, other->unit) == 0;
-        }
+        for (int k = 0; k < i && !known; k++) known = strcmp(unit, x->variable[k].unit) == 0;
         if (!known) put_unit(unit, out);
     }
     fputs("  </UnitDefinitions>\n", out);
 }
 
 static void put_variable(const variable *v, int reference, bool input, FILE *out) {
-    fputs("    <Float64 name=\"", out);
-    bough_picture_text(out, v->name);
-    fprintf(out, "\" valueReference=\"%d\" causality=\"%s\" variability=\"continuous\"", reference,
+    fputs("    <Float64", out);
+    put_text("name", v->name, out);
+    fprintf(out, " valueReference=\"%d\" causality=\"%s\" variability=\"continuous\"", reference,
             input ? "input" : "output");
     if (input) fprintf(out, " start=\"%.17g\"", v->start);
-    if (v->meaning) {
-        fputs(" description=\"", out);
-        bough_picture_text(out, v->meaning);
-        fputc('"', out);
-    }
-    if (v->unit[0]) {
-        fputs(" unit=\"", out);
-        bough_picture_text(out, v->unit);
-        fputc('"', out);
-    }
+    if (v->meaning) put_text("description", v->meaning, out);
+    if (v->unit[0]) put_text("unit", v->unit, out);
     fputs("/>\n", out);
 }
 
 static void put_variables(const export *x, FILE *out) {
-    int first = x->n_input + 1;
     fputs("  <ModelVariables>\n    <Float64 name=\"time\" valueReference=\"0\" "
           "causality=\"independent\" variability=\"continuous\" unit=\"s\"/>\n",
           out);
-    for (int k = 0; k < x->n_input; k++) put_variable(&x->input[k], k + 1, true, out);
-    for (int k = 0; k < x->n_output; k++) put_variable(&x->output[k], first + k, false, out);
+    for (int k = 0; k < x->n_variable; k++) put_variable(&x->variable[k], k + 1, k < x->n_input, out);
     fputs("  </ModelVariables>\n  <ModelStructure>\n", out);
-    for (int k = 0; k < x->n_output; k++)
-        fprintf(out, "    <Output valueReference=\"%d\" dependencies=\"\"/>\n", first + k);
-    for (int k = 0; k < x->n_output; k++)
-        fprintf(out, "    <InitialUnknown valueReference=\"%d\"/>\n", first + k);
+    for (int k = x->n_input; k < x->n_variable; k++)
+        fprintf(out, "    <Output valueReference=\"%d\" dependencies=\"\"/>\n", k + 1);
+    for (int k = x->n_input; k < x->n_variable; k++)
+        fprintf(out, "    <InitialUnknown valueReference=\"%d\"/>\n", k + 1);
     fputs("  </ModelStructure>\n", out);
 }
 
 static void put_description(const export *x, FILE *out) {
     const bough_scene *scene = x->simulation->scene;
     bool copies = !bough_scene_control_is_foreign(&scene->control);
-    fputs("<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<fmiModelDescription fmiVersion=\"3.0\" "
-          "modelName=\"",
-          out);
-    bough_picture_text(out, scene->title ? scene->title : scene->file);
+    fputs("<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<fmiModelDescription fmiVersion=\"3.0\"", out);
+    put_text("modelName", scene->title ? scene->title : scene->file, out);
     fprintf(out,
-            "\" instantiationToken=\"%s\" generationTool=\"bough " BOUGH_VERSION "\" "
+            " instantiationToken=\"%s\" generationTool=\"bough " BOUGH_VERSION "\" "
             "variableNamingConvention=\"flat\">\n",
             x->token);
     fprintf(out,
@@ -295,31 +273,26 @@ static const char *const input_meanings[] = {
     [BOUGH_INPUT_PITCH] = "pitch demanded of the blade, positive towards feather",
 };
 
-static bough_status list_scene(export *x, const bough_channels *channels) {
+static bough_status list_variables(export *x) {
     const bough_scene *scene = x->simulation->scene;
+    bough_channels channels = bough_channels_start(x->arena);
+    BOUGH_TRY(bough_simulation_channels(x->simulation, &channels));
     x->n_input = scene->n_input;
-    x->n_output = channels->count;
-    for (int k = 0; k < x->n_output; k++)
-        x->output[k] =
-            (variable){channels->channel[k].name, channels->channel[k].unit, channels->channel[k].meaning, 0};
+    x->n_variable = x->n_input + channels.count;
+    x->variable = bough_arena_take(x->arena, ((size_t)x->n_variable + 1) * sizeof *x->variable);
+    for (int k = 0; k < channels.count; k++) {
+        const bough_channel *from = &channels.channel[k];
+        x->variable[x->n_input + k] = (variable){from->name, from->unit, from->meaning, 0};
+    }
     for (int k = 0; k < x->n_input; k++) {
         const bough_scene_input *from = &scene->input[k];
-        x->input[k] = (variable){from->name, bough_dimension_unit((bough_dimension)from->dimension),
-                                 input_meanings[from->kind], from->initial};
-        if (strcmp(from->name, "time") != 0 && bough_channels_find(channels, from->name) < 0) continue;
+        x->variable[k] = (variable){from->name, bough_dimension_unit((bough_dimension)from->dimension),
+                                    input_meanings[from->kind], from->initial};
+        if (strcmp(from->name, "time") != 0 && bough_channels_find(&channels, from->name) < 0) continue;
         return bough_fail(BOUGH_INVALID, "the input '%.80s' has the name of an output: rename it",
                           from->name);
     }
     return bough_ok();
-}
-
-static bough_status list_variables(export *x) {
-    bough_channels channels = bough_channels_start(x->arena);
-    BOUGH_TRY(bough_simulation_channels(x->simulation, &channels));
-    size_t inputs = (size_t)x->simulation->scene->n_input, outputs = (size_t)channels.count;
-    x->input = bough_arena_take(x->arena, (inputs + 1) * sizeof *x->input);
-    x->output = bough_arena_take(x->arena, (outputs + 1) * sizeof *x->output);
-    return list_scene(x, &channels);
 }
 
 // The file that a session of the FMU reads: token, scene and settings, a line each.
@@ -359,10 +332,13 @@ static bough_status add_library(zip *archive) {
                                      "OpenBLAS, FFTW and libyaml");
 }
 
+enum { OWN = 3 }; // files beside the scene's: description, library, settings
+
 static bough_status write_archive(export *x, const char *path) {
     FILE *file;
     BOUGH_TRY(bough_folder_open_partial(path, &file));
     zip archive = {.arena = x->arena, .file = file};
+    archive.entry = bough_arena_take(x->arena, ((size_t)x->files.n + OWN) * sizeof *archive.entry);
     bough_status status = add_text(x, "modelDescription.xml", put_description, &archive);
     if (bough_is_ok(&status)) status = add_library(&archive);
     if (bough_is_ok(&status)) status = add_text(x, "resources/scene.txt", put_settings, &archive);
@@ -401,24 +377,19 @@ static bough_status export_scene(bough_arena *arena, const void *given) {
     bough_options named = *options;
     named.operand = options->operands[1];
     export x = {.arena = arena, .options = &named};
-    bough_simulation *simulation;
-    BOUGH_TRY(bough_open(arena, &named, &simulation));
-    x.simulation = simulation;
-    bough_status status =
-        bough_simulation_known(simulation, "it has files of its own, which are not exported");
-    if (bough_is_ok(&status)) status = list_variables(&x);
-    BOUGH_TRY(status);
-    x.files = bough_scene_list_files(arena, simulation->scene);
-    status = place_files(&x);
+    BOUGH_TRY(bough_open(arena, &named, &x.simulation));
+    BOUGH_TRY(bough_simulation_known(x.simulation, "it has files of its own, which are not exported"));
+    BOUGH_TRY(list_variables(&x));
+    x.files = bough_scene_list_files(arena, x.simulation->scene);
+    BOUGH_TRY(place_files(&x));
     make_token(&x);
     const char *folder = bough_out_folder(arena, &named);
     char path[BOUGH_PATH_MAX];
-    if (bough_is_ok(&status)) status = bough_folder_make(folder);
-    if (bough_is_ok(&status)) status = bough_folder_path(folder, "bough.fmu", path);
-    if (bough_is_ok(&status)) status = write_archive(&x, path);
-    BOUGH_TRY(status);
-    printf("inputs: %d\noutputs: %d\nfmu: %s\n", x.n_input, x.n_output, path);
-    return status;
+    BOUGH_TRY(bough_folder_make(folder));
+    BOUGH_TRY(bough_folder_path(folder, "bough.fmu", path));
+    BOUGH_TRY(write_archive(&x, path));
+    printf("inputs: %d\noutputs: %d\nfmu: %s\n", x.n_input, x.n_variable - x.n_input, path);
+    return bough_ok();
 }
 
 const bough_command bough_command_export = {
