@@ -230,19 +230,16 @@ static bough_status solve_in_air(bough_arena *arena, bough_simulation *s, const 
     return bough_aeroelastic_modes(arena, &system, v->pair, &v->count, &v->unpaired);
 }
 
-static bough_status solve(bough_arena *arena, bough_simulation *s, double time, int count,
-                          bough_vibration *v) {
+static bough_status solve(bough_arena *arena, bough_simulation *s, int count, bough_vibration *v) {
     bough_vibration_point x;
     v->mode = bough_arena_take(arena, (size_t)count * sizeof *v->mode);
-    BOUGH_TRY(bough_vibration_point_find(arena, s, time, &x));
+    BOUGH_TRY(bough_vibration_point_find(arena, s, v->time, &x));
     v->n_blade = x.group.n;
     v->spin = fabs(x.group.speed) < at_rest ? 0 : x.group.speed;
     v->frozen = is_frozen(s, &x.group);
     if (v->frozen && !s->scene->modes.linear) BOUGH_TRY(check_constant(arena, s, &x));
     bool in_air = s->aero && s->scene->modes.air != BOUGH_SCENE_AIR_FROZEN;
-    bough_status status =
-        in_air ? solve_in_air(arena, s, &x, count, v) : solve_bodies(arena, s, &x, count, v);
-    if (!bough_is_ok(&status)) return status;
+    BOUGH_TRY(in_air ? solve_in_air(arena, s, &x, count, v) : solve_bodies(arena, s, &x, count, v));
     drop_other_motions(s->tree, x.def.point, count, v);
     return describe(arena, s, &x, v);
 }
@@ -258,11 +255,10 @@ bool bough_vibration_wanted(const bough_simulation *s) {
 bough_status bough_vibration_find(bough_arena *arena, bough_simulation *s, int count,
                                   bough_vibration *vibration) {
     bool balanced = s->scene->modes.at == BOUGH_SCENE_IN_EQUILIBRIUM;
-    double time = balanced ? bough_equilibrium_time(s) : 0;
-    *vibration = (bough_vibration){.asked = count};
-    bough_status status = bough_ok();
-    if (balanced) status = bough_simulation_equilibrium(s, s->master->assembly, time, &vibration->work);
-    return bough_is_ok(&status) ? solve(arena, s, time, count, vibration) : status;
+    *vibration = (bough_vibration){.asked = count, .time = balanced ? bough_equilibrium_time(s) : 0};
+    bough_equilibrium_work work;
+    if (balanced) BOUGH_TRY(bough_simulation_equilibrium(s, s->master->assembly, vibration->time, &work));
+    return solve(arena, s, count, vibration);
 }
 
 // -- another mesh ---------------------------------------------------------------------------------

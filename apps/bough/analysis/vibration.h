@@ -13,14 +13,14 @@
 #include "cosim/analysis/modes.h"
 
 typedef struct bough_vibration {
-    bough_equilibrium_work work; // how the equilibrium was found; 0 steps: none was sought
-    double spin;                 // of the rotor [rad/s]
-    bool frozen;                 // something turns otherwise than a rotor whose blades allow the transform
-    int n_blade;                 // compared; 0: none
-    int n_row;                   // of a shape
-    int asked;                   // modes
-    bough_eigen_count count;     // of the eigenvalues among which they are sought
-    int unpaired;                // of these, left out of the air's system: see aeroelastic.h
+    double time;             // of the loads [s]
+    double spin;             // of the rotor [rad/s]
+    bool frozen;             // something turns otherwise than a rotor whose blades allow the transform
+    int n_blade;             // compared; 0: none
+    int n_row;               // of a shape
+    int asked;               // modes
+    bough_eigen_count count; // of the eigenvalues among which they are sought
+    int unpaired;            // of these, left out of the air's system: see aeroelastic.h
     int found;
     bough_scene_mode *mode; // (found) by the distance of λ from a point near 0
     bough_eigen_pair *pair; // (found)

@@ -38,8 +38,19 @@ typedef struct rod_list {
 
 // -- table ----------------------------------------------------------------------------------------
 
-double bough_modes_decrement(double frequency, double damped_frequency, double damping) {
+// −Re λ over the damped frequency; NaN of a motion that does not oscillate.
+static double decrement(double frequency, double damped_frequency, double damping) {
     return damped_frequency > 0 ? 2 * BOUGH_PI * frequency * damping / damped_frequency : (double)NAN;
+}
+
+void bough_modes_print_value(double frequency, double damped_frequency, double damping) {
+    printf(" %12.6g %12.6g %11.5f %11.5f  ", frequency, damped_frequency, 100 * damping,
+           decrement(frequency, damped_frequency, damping));
+}
+
+void bough_modes_write_value(FILE *file, double frequency, double damped_frequency, double damping) {
+    fprintf(file, ",%.10g,%.10g,%.10g,%.10g", frequency, damped_frequency, damping,
+            decrement(frequency, damped_frequency, damping));
 }
 
 static void print_rod_head(const rod_modes *x) {
@@ -61,9 +72,9 @@ static void print_rod(const rod_modes *x) {
     print_rod_head(x);
     for (int k = 0; k < x->list.found; k++) {
         const bough_rod_mode *m = &x->list.mode[k];
-        printf("%4d %12.6g %12.6g %11.5f %11.5f  %-8s", k + 1, m->frequency, m->damped_frequency,
-               100 * m->damping, bough_modes_decrement(m->frequency, m->damped_frequency, m->damping),
-               blade_shapes[m->dominant]);
+        printf("%4d", k + 1);
+        bough_modes_print_value(m->frequency, m->damped_frequency, m->damping);
+        printf("%-8s", blade_shapes[m->dominant]);
         for (int c = 0; c < BOUGH_ROD_DIRECTIONS; c++) printf(" %7.4f", m->share[c]);
         putchar('\n');
     }
@@ -78,10 +89,9 @@ static void print_rod(const rod_modes *x) {
 static void write_rod_modes(FILE *file, const rod_modes *x) {
     for (int k = 0; k < x->list.found; k++) {
         const bough_rod_mode *m = &x->list.mode[k];
-        fprintf(file, "%s,%d,%.10g,%.10g,%.10g,%.10g,%s", x->steady.model->name, k + 1, m->frequency,
-                m->damped_frequency, m->damping,
-                bough_modes_decrement(m->frequency, m->damped_frequency, m->damping),
-                blade_shapes[m->dominant]);
+        fprintf(file, "%s,%d", x->steady.model->name, k + 1);
+        bough_modes_write_value(file, m->frequency, m->damped_frequency, m->damping);
+        fprintf(file, ",%s", blade_shapes[m->dominant]);
         for (int c = 0; c < BOUGH_ROD_DIRECTIONS; c++) fprintf(file, ",%.6g", m->share[c]);
         fputc('\n', file);
     }
@@ -94,10 +104,8 @@ static void write_rod_shapes(FILE *file, const rod_modes *x) {
         const double *const part[2] = {mode->real, mode->imaginary};
         for (int i = 0; i <= m->n; i++) { // vertex 0 is held
             fprintf(file, "%s,%d,%.10g", m->name, k + 1, m->span[i]);
-            for (int c = 0; c < 12; c++) {
-                double value = i == 0 ? 0 : part[c / 6][(c % 6) * m->n + i - 1];
-                fprintf(file, ",%.10g", value);
-            }
+            for (int c = 0; c < 12; c++)
+                fprintf(file, ",%.10g", i == 0 ? 0 : part[c / 6][(c % 6) * m->n + i - 1]);
             fputc('\n', file);
         }
     }
@@ -121,11 +129,8 @@ static void write_all_shapes(const void *self, FILE *file) {
 static bough_status solve_rod(bough_arena *arena, const bough_simulation *s, const bough_beam *beam,
                               rod_modes *x) {
     x->list.wanted = s->scene->modes.count;
-    bough_status status = bough_steady_turning(s, beam, &x->turning);
-    if (bough_is_ok(&status)) {
-        status = bough_steady_find(arena, s, beam, &x->turning, &x->steady);
-    }
-    if (!bough_is_ok(&status)) return status;
+    BOUGH_TRY(bough_steady_turning(s, beam, &x->turning));
+    BOUGH_TRY(bough_steady_find(arena, s, beam, &x->turning, &x->steady));
     return bough_rod_modes(arena, x->steady.model, &x->steady.work, x->steady.input, x->steady.state,
                            &x->list);
 }
@@ -236,9 +241,10 @@ static void print_modes(const bough_simulation *s, const bough_vibration *v) {
     print_head(s, v);
     for (int k = 0; k < v->found; k++) {
         const bough_scene_mode *m = &v->mode[k];
-        printf("%4d %12.6g %12.6g %11.5f %11.5f  %-12s %-8s %-12s", k + 1, m->frequency, m->damped_frequency,
-               100 * m->damping, bough_modes_decrement(m->frequency, m->damped_frequency, m->damping),
-               bough_modes_body(s, m), bough_modes_shape(s, m), bough_pattern_names[m->pattern]);
+        printf("%4d", k + 1);
+        bough_modes_print_value(m->frequency, m->damped_frequency, m->damping);
+        printf("%-12s %-8s %-12s", bough_modes_body(s, m), bough_modes_shape(s, m),
+               bough_pattern_names[m->pattern]);
         for (int c = 0; v->n_blade > 0 && c < 3; c++) printf(" %8.4f", m->whirl[c]);
         if (rotor_is_free(s) && turns_rotor(m)) printf("  free rotor");
         putchar('\n');
@@ -275,10 +281,10 @@ static void write_modes(const void *self, FILE *file) {
     fputc('\n', file);
     for (int k = 0; k < v->found; k++) {
         const bough_scene_mode *m = &v->mode[k];
-        fprintf(file, "%d,%.10g,%.10g,%.10g,%.10g,%.2g,%.2g,%s,%s,%s", k + 1, m->frequency,
-                m->damped_frequency, m->damping,
-                bough_modes_decrement(m->frequency, m->damped_frequency, m->damping), m->residual, m->moved,
-                bough_modes_body(s, m), bough_modes_shape(s, m), bough_pattern_names[m->pattern]);
+        fprintf(file, "%d", k + 1);
+        bough_modes_write_value(file, m->frequency, m->damped_frequency, m->damping);
+        fprintf(file, ",%.2g,%.2g,%s,%s,%s", m->residual, m->moved, bough_modes_body(s, m),
+                bough_modes_shape(s, m), bough_pattern_names[m->pattern]);
         for (int c = 0; c < 3; c++) fprintf(file, ",%.6g", m->whirl[c]);
         for (int i = 0; i < n_body; i++) fprintf(file, ",%.6g", m->share[i]);
         fputc('\n', file);
@@ -345,7 +351,7 @@ static void write_list(const void *self, FILE *file) {
 // inputs.csv and outputs.csv, row k of which names row or column k of the matrices.
 static bough_status write_linear(bough_arena *arena, bough_simulation *s, double time, const char *folder) {
     bough_state_space x;
-    bough_status status = bough_state_space_find(arena, s, time, &x);
+    BOUGH_TRY(bough_state_space_find(arena, s, time, &x));
     const content contents[] = {
         {"A.mtx", x.n, x.n, x.a, NULL},
         {"B.mtx", x.n, x.n_input, x.b, NULL},
@@ -355,13 +361,12 @@ static bough_status write_linear(bough_arena *arena, bough_simulation *s, double
         {"inputs.csv", x.n_input, 1, NULL, x.input},
         {"outputs.csv", x.n_output, 1, NULL, x.output},
     };
-    for (int k = 0; k < 7 && bough_is_ok(&status); k++) {
+    for (int k = 0; k < 7; k++) {
         const content *c = &contents[k];
-        status = bough_folder_write(folder, c->name, c->matrix ? write_matrix : write_list, c);
+        BOUGH_TRY(bough_folder_write(folder, c->name, c->matrix ? write_matrix : write_list, c));
     }
-    if (bough_is_ok(&status))
-        printf("linear system: %d states, %d inputs, %d outputs\n", x.n, x.n_input, x.n_output);
-    return status;
+    printf("linear system: %d states, %d inputs, %d outputs\n", x.n, x.n_input, x.n_output);
+    return bough_ok();
 }
 
 static bough_status find_whole(bough_arena *arena, const bough_options *options, bough_simulation *s,
@@ -378,21 +383,14 @@ static bough_status find_whole(bough_arena *arena, const bough_options *options,
     bough_status status = bough_vibration_compare(arena, s, &v, &compared);
     if (!bough_is_ok(&status)) printf("no modes of another mesh: %s\n", status.message);
     if (bough_is_ok(&status) && compared) print_mesh(&v);
-    status = bough_folder_make(folder);
-    if (bough_is_ok(&status)) status = bough_folder_write(folder, "modes.csv", write_modes, &x);
-    if (bough_is_ok(&status)) status = write_search(&v, folder);
-    if (bough_is_ok(&status) && s->scene->modes.shapes) {
-        status = bough_folder_write(folder, "shapes.csv", write_shapes, &x);
-    }
-    bool balanced = s->scene->modes.at == BOUGH_SCENE_IN_EQUILIBRIUM;
-    if (bough_is_ok(&status) && s->scene->modes.linear) {
-        status = write_linear(arena, s, balanced ? bough_equilibrium_time(s) : 0, folder);
-    }
-    if (bough_is_ok(&status) && sensitivity) {
-        status = bough_modes_sensitivity(arena, s, &v, sensitivity, folder);
-    }
-    if (bough_is_ok(&status)) printf("out: %s\n", folder);
-    return status;
+    BOUGH_TRY(bough_folder_make(folder));
+    BOUGH_TRY(bough_folder_write(folder, "modes.csv", write_modes, &x));
+    BOUGH_TRY(write_search(&v, folder));
+    if (s->scene->modes.shapes) BOUGH_TRY(bough_folder_write(folder, "shapes.csv", write_shapes, &x));
+    if (s->scene->modes.linear) BOUGH_TRY(write_linear(arena, s, v.time, folder));
+    if (sensitivity) BOUGH_TRY(bough_modes_sensitivity(arena, s, &v, sensitivity, folder));
+    printf("out: %s\n", folder);
+    return bough_ok();
 }
 
 // -- the command ----------------------------------------------------------------------------------

@@ -20,8 +20,8 @@ bough_status bough_modes_sensitivity(bough_arena *arena, bough_simulation *s, co
 const char *bough_modes_body(const bough_simulation *s, const bough_scene_mode *mode);
 const char *bough_modes_shape(const bough_simulation *s, const bough_scene_mode *mode);
 
-// The logarithmic decrement of an oscillation, −Re λ over its damped frequency; NaN of one that does not
-// oscillate.
-double bough_modes_decrement(double frequency, double damped_frequency, double damping);
+// Frequency, damped frequency, damping ratio and logarithmic decrement, of a row of the table and of a file.
+void bough_modes_print_value(double frequency, double damped_frequency, double damping);
+void bough_modes_write_value(FILE *file, double frequency, double damped_frequency, double damping);
 
 #endif

@@ -83,8 +83,7 @@ bough_status bough_modes_sensitivity(bough_arena *arena, bough_simulation *s, co
             "table, such as 'edge forward' or 'edge forward 2' for the second of them",
             v->found, wanted);
     bough_sensitivities found;
-    double time = s->scene->modes.at == BOUGH_SCENE_IN_EQUILIBRIUM ? bough_equilibrium_time(s) : 0;
-    bough_status status = bough_sensitivity_find(arena, s, time, &v->mode[k], &found);
+    bough_status status = bough_sensitivity_find(arena, s, v->time, &v->mode[k], &found);
     if (!bough_is_ok(&status)) return bough_fail(status.code, "mode %d: %.380s", k + 1, status.message);
     print(v, k, &found);
     return bough_folder_write(folder, "sensitivity.csv", write, &found);

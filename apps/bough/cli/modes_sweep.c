@@ -22,7 +22,8 @@ static const double rounding = 1e-6; // damping ratios below it are none
 typedef struct sweep_mode {
     int point, line; // a line joins what is the same mode of neighbouring points
     double frequency, damped, damping;
-    char body[32], shape[16], pattern[16];
+    const char *body, *shape, *pattern;
+    const char *name; // of all three
 } sweep_mode;
 
 typedef struct sweep {
@@ -95,16 +96,14 @@ static bough_status read_points(bough_arena *arena, const bough_texts *sweeps, s
     return bough_ok();
 }
 
-static bough_status set_point(bough_arena *arena, const bough_options *options, const sweep *s, int point,
-                              bough_options *at) {
-    *at = *options;
-    at->set.text = bough_arena_take(arena, (size_t)(options->set.n + s->n_key) * sizeof(char *));
-    for (int k = 0; k < options->set.n; k++) at->set.text[k] = options->set.text[k];
-    for (int k = 0; k < s->n_key; k++) {
-        at->set.text[at->set.n++] =
+static bough_options options_at(bough_arena *arena, const bough_options *options, const sweep *s, int point) {
+    bough_options at = *options;
+    at.set.text = bough_arena_take(arena, (size_t)(options->set.n + s->n_key) * sizeof(char *));
+    for (int k = 0; k < options->set.n; k++) at.set.text[k] = options->set.text[k];
+    for (int k = 0; k < s->n_key; k++)
+        at.set.text[at.set.n++] =
             bough_arena_print(arena, "%s=%s", s->key[k], s->value[k * s->n_point + point]);
-    }
-    return bough_ok();
+    return at;
 }
 
 // -- lines ----------------------------------------------------------------------------------------
@@ -182,8 +181,8 @@ static tracks take_tracks(bough_arena *arena, int count, int n_state) {
 }
 
 // The point's modes into the sweep, and its shapes to `now`.
-static void add_modes(bough_arena *arena, const bough_simulation *sim, const bough_vibration *v, int point,
-                      const tracks *before, tracks *now, sweep *s) {
+static void add_modes(bough_arena *keep, bough_arena *arena, const bough_simulation *sim,
+                      const bough_vibration *v, int point, const tracks *before, tracks *now, sweep *s) {
     size_t n = (size_t)now->n_state;
     now->n = v->found;
     bough_assembly_scales(sim->master->assembly, now->weight);
@@ -201,46 +200,56 @@ static void add_modes(bough_arena *arena, const bough_simulation *sim, const bou
                            .line = now->line[k],
                            .frequency = m->frequency,
                            .damped = m->damped_frequency,
-                           .damping = m->damping};
-        snprintf(to->body, sizeof to->body, "%s", bough_modes_body(sim, m));
-        snprintf(to->shape, sizeof to->shape, "%s", bough_modes_shape(sim, m));
-        snprintf(to->pattern, sizeof to->pattern, "%s", bough_pattern_names[m->pattern]);
+                           .damping = m->damping,
+                           .body = bough_arena_string(keep, bough_modes_body(sim, m)),
+                           .shape = bough_modes_shape(sim, m),
+                           .pattern = bough_pattern_names[m->pattern]};
+        to->name =
+            bough_arena_print(keep, "%s %s%s%s", to->body, to->shape, to->pattern[0] ? " " : "", to->pattern);
     }
 }
 
 // -- points ---------------------------------------------------------------------------------------
 
+static bough_status find_modes(bough_arena *arena, const bough_options *options, int point, const sweep *s,
+                               bough_simulation **sim, bough_vibration *v) {
+    bough_options at = options_at(arena, options, s, point);
+    BOUGH_TRY(bough_open(arena, &at, sim));
+    BOUGH_TRY(bough_simulation_known(*sim, "it has no modes"));
+    return bough_vibration_find(arena, *sim, (*sim)->scene->modes.count, v);
+}
+
+static bough_status add_point(bough_arena *keep, bough_arena *arena, const bough_simulation *sim,
+                              const bough_vibration *v, int point, tracks *track, sweep *s) {
+    int n_state = sim->master->assembly->n_state, count = sim->scene->modes.count;
+    tracks *before = &track[point % 2], *now = &track[(point + 1) % 2];
+    if (point == 0) {
+        s->mode = bough_arena_take(keep, (size_t)(count * s->n_point) * sizeof *s->mode);
+        *before = take_tracks(keep, count, n_state);
+        *now = take_tracks(keep, count, n_state);
+    } else if (n_state != before->n_state || v->found > s->n_point * count - s->n_mode) {
+        return bough_fail(BOUGH_INVALID,
+                          "--sweep cannot change the bodies, their mesh or the count of modes");
+    }
+    add_modes(keep, arena, sim, v, point, before, now, s);
+    s->speed[point] = fabs(v->spin) * 30 / BOUGH_PI;
+    s->n_blade = sim->scene->turbine.n_blade;
+    char *end;
+    s->x[point] = strtod(s->value[point], &end);
+    if (end == s->value[point]) s->x[point] = point + 1;
+    return bough_ok();
+}
+
 static bough_status solve_point(bough_arena *keep, const bough_options *options, int point, tracks *track,
                                 sweep *s) {
     bough_arena *arena = bough_arena_child(keep);
-    bough_options at;
-    bough_simulation *sim = NULL;
-    bough_vibration v = {0};
-    bough_status status = set_point(arena, options, s, point, &at);
-    if (bough_is_ok(&status)) status = bough_open(arena, &at, &sim);
-    if (bough_is_ok(&status)) status = bough_simulation_known(sim, "it has no modes");
-    int count = sim ? sim->scene->modes.count : 0;
-    if (bough_is_ok(&status)) status = bough_vibration_find(arena, sim, count, &v);
-    if (bough_is_ok(&status)) {
-        int n_state = sim->master->assembly->n_state;
-        tracks *before = &track[point % 2], *now = &track[(point + 1) % 2];
-        if (point == 0) {
-            s->mode = bough_arena_take(keep, (size_t)(count * s->n_point) * sizeof *s->mode);
-            *before = take_tracks(keep, count, n_state);
-            *now = take_tracks(keep, count, n_state);
-        } else if (n_state != before->n_state || v.found > s->n_point * count - s->n_mode) {
-            status = bough_fail(BOUGH_INVALID, "--sweep cannot change the bodies, their mesh or the "
-                                               "count of modes");
-        }
-        if (bough_is_ok(&status)) add_modes(arena, sim, &v, point, before, now, s);
-        s->speed[point] = fabs(v.spin) * 30 / BOUGH_PI;
-        s->n_blade = sim->scene->turbine.n_blade;
-        char *end;
-        s->x[point] = strtod(s->value[point], &end);
-        if (end == s->value[point]) s->x[point] = point + 1;
-    } else if (status.message[0]) {
+    bough_simulation *sim;
+    bough_vibration v;
+    bough_status status = find_modes(arena, options, point, s, &sim, &v);
+    if (bough_is_ok(&status))
+        status = add_point(keep, arena, sim, &v, point, track, s);
+    else if (status.message[0])
         status = bough_fail(status.code, "%s=%s: %s", s->key[0], s->value[point], status.message);
-    }
     bough_arena_destroy(arena);
     return status;
 }
@@ -252,15 +261,15 @@ static void print_point(const sweep *s, int point, int first) {
     putchar('\n');
     for (int k = first; k < s->n_mode; k++) {
         const sweep_mode *m = &s->mode[k];
-        printf("%4d %12.6g %12.6g %11.5f %11.5f  %-12s %-8s %s%s\n", m->line + 1, m->frequency, m->damped,
-               100 * m->damping, bough_modes_decrement(m->frequency, m->damped, m->damping), m->body,
-               m->shape, m->pattern, m->damping < -rounding ? "  unstable" : "");
+        printf("%4d", m->line + 1);
+        bough_modes_print_value(m->frequency, m->damped, m->damping);
+        printf("%-12s %-8s %s%s\n", m->body, m->shape, m->pattern,
+               m->damping < -rounding ? "  unstable" : "");
     }
 }
 
 static bool has_name(const sweep_mode *a, const sweep_mode *b) {
-    return a->line == b->line && strcmp(a->body, b->body) == 0 && strcmp(a->shape, b->shape) == 0 &&
-           strcmp(a->pattern, b->pattern) == 0;
+    return a->line == b->line && strcmp(a->name, b->name) == 0;
 }
 
 // Names each line after most of its modes: where modes come near each other, they exchange what they are
@@ -275,11 +284,6 @@ static void name_lines(bough_arena *arena, sweep *s) {
     }
 }
 
-static const char *name_of(bough_arena *arena, const sweep *s, int line) {
-    const sweep_mode *m = s->named[line];
-    return bough_arena_print(arena, "%s %s%s%s", m->body, m->shape, m->pattern[0] ? " " : "", m->pattern);
-}
-
 static void write_table(const void *self, FILE *file) {
     const sweep *s = self;
     fputs("point", file);
@@ -289,15 +293,14 @@ static void write_table(const void *self, FILE *file) {
         "shape,pattern\n",
         file);
     for (int i = 0; i < s->n_mode; i++) {
-        const sweep_mode *m = &s->mode[i], *name = s->named[m->line];
+        const sweep_mode *m = &s->mode[i];
         fprintf(file, "%d", m->point + 1);
         for (int k = 0; k < s->n_key; k++) {
             fprintf(file, ",\"%s\"", s->value[k * s->n_point + m->point]);
         }
-        fprintf(file, ",%.10g,%d,%s %s%s%s,%.10g,%.10g,%.10g,%.10g,%s,%s,%s\n", s->speed[m->point],
-                m->line + 1, name->body, name->shape, name->pattern[0] ? " " : "", name->pattern,
-                m->frequency, m->damped, m->damping,
-                bough_modes_decrement(m->frequency, m->damped, m->damping), m->body, m->shape, m->pattern);
+        fprintf(file, ",%.10g,%d,%s", s->speed[m->point], m->line + 1, s->named[m->line]->name);
+        bough_modes_write_value(file, m->frequency, m->damped, m->damping);
+        fprintf(file, ",%s,%s,%s\n", m->body, m->shape, m->pattern);
     }
 }
 
@@ -342,8 +345,7 @@ static void add_line(diagram *d, int line) {
     bough_chart_add_line(&d->chart, (bough_chart_line){.colour = line, .joined = true, .marked = true});
     for (const sweep_mode *m = s->mode; last && m <= last; m++) {
         if (m->line != line || (d->damping && m->damped == 0)) continue;
-        const char *label =
-            bough_arena_print(d->chart.arena, "%d %s", line + 1, name_of(d->chart.arena, s, line));
+        const char *label = bough_arena_print(d->chart.arena, "%d %s", line + 1, s->named[line]->name);
         bough_chart_add(&d->chart, (bough_chart_point){.x = x_of(d, m->point),
                                                        .y = d->damping ? 100 * m->damping : m->frequency,
                                                        .label = m == last ? label : NULL});
@@ -409,12 +411,11 @@ static bough_status grow(bough_arena *keep, const bough_options *options, const 
             return bough_fail(BOUGH_INVALID, "--until needs numbers with one unit, got %s=%s, %s", s->key[k],
                               value[0], value[1]);
     }
-    bough_options at;
+    bough_options at = options_at(arena, options, &one, 0);
     bough_scene *scene;
     bough_simulation *sim;
     bough_vibration v;
-    bough_status status = set_point(arena, options, &one, 0, &at);
-    if (bough_is_ok(&status)) status = bough_open_scene(arena, &at, &scene);
+    bough_status status = bough_open_scene(arena, &at, &scene);
     if (bough_is_ok(&status) && share) {
         bough_scene *other = bough_coarser_scene(arena, scene, BOUGH_COARSER_MESH);
         *share = bough_coarser_share(scene, other);
@@ -441,11 +442,10 @@ static bough_status find_boundary(bough_arena *arena, const bough_options *optio
                                   double low, double high, boundary *to) {
     double a = 0, b = 1, first = s->x[point], second = s->x[point + 1];
     double width = accurate * fmax(fabs(first), fabs(second)) / fabs(second - first);
-    bough_status status = bough_ok();
-    for (int trial = 0; trial < MOST_TRIALS && b - a > width && bough_is_ok(&status); trial++) {
+    for (int trial = 0; trial < MOST_TRIALS && b - a > width; trial++) {
         double growth, x = trial % 4 == 3 ? (a + b) / 2 : a + (b - a) * low / (low - high);
         x = fmin(fmax(x, a + width / 4), b - width / 4);
-        status = grow(arena, options, s, point, x, NULL, &growth, &to->frequency);
+        BOUGH_TRY(grow(arena, options, s, point, x, NULL, &growth, &to->frequency));
         to->slope = (growth - (growth > 0 ? low : high)) / (x - (growth > 0 ? a : b));
         if (growth > 0) {
             b = x, high = growth, low /= 2;
@@ -454,7 +454,7 @@ static bough_status find_boundary(bough_arena *arena, const bough_options *optio
         }
     }
     to->part = (a + b) / 2;
-    return status;
+    return bough_ok();
 }
 
 // Says from where on an oscillation grows, and by how much the mesh moves that place.
@@ -468,14 +468,13 @@ static bough_status print_boundary(bough_arena *arena, const bough_options *opti
     }
     boundary at = {0};
     double share = 0, other = 0, of_other = 0;
-    bough_status status = find_boundary(arena, options, s, last - 1, growth_of(before), growth_of(m), &at);
-    if (bough_is_ok(&status)) status = grow(arena, options, s, last - 1, at.part, &share, &other, &of_other);
-    if (!bough_is_ok(&status)) return status;
+    BOUGH_TRY(find_boundary(arena, options, s, last - 1, growth_of(before), growth_of(m), &at));
+    BOUGH_TRY(grow(arena, options, s, last - 1, at.part, &share, &other, &of_other));
     double step = s->x[last] - s->x[last - 1], error = fabs(share * other / at.slope * step);
     const char *value = between(arena, s->value[last - 1], s->value[last], at.part);
     printf("unstable from %s=%s on, mesh +- %.2g: line %d, %.6g Hz, %s %s\n", s->key[0], value, error,
            m->line + 1, at.frequency, m->body, m->shape);
-    return status;
+    return bough_ok();
 }
 
 // -- the sweep ------------------------------------------------------------------------------------
@@ -485,25 +484,20 @@ bough_status bough_modes_sweep(bough_arena *arena, const bough_options *options,
     sweep s = {0};
     tracks track[2] = {{0}};
     const char *folder = bough_out_folder(arena, options);
-    bough_status status = read_points(arena, sweeps, &s);
-    if (!bough_is_ok(&status)) return status;
+    BOUGH_TRY(read_points(arena, sweeps, &s));
     printf("%4s %12s %12s %11s %11s  %-12s %-8s pattern\n", "line", "frequency", "damped", "damping",
            "decrement", "body", "shape");
-    for (int i = 0; i < s.n_point && bough_is_ok(&status); i++) {
+    for (bool ends = false; s.n_solved < s.n_point && !ends; s.n_solved++) {
         int first = s.n_mode;
-        status = solve_point(arena, options, i, track, &s);
-        if (!bough_is_ok(&status)) break;
-        s.n_solved = i + 1;
-        print_point(&s, i, first);
-        bool ends = grows(most_growing(&s, i)) || i + 1 == s.n_point;
-        if (!until_unstable || !ends) continue;
-        status = print_boundary(arena, options, &s, i);
-        break;
+        BOUGH_TRY(solve_point(arena, options, s.n_solved, track, &s));
+        print_point(&s, s.n_solved, first);
+        ends = until_unstable && grows(most_growing(&s, s.n_solved));
     }
+    if (until_unstable) BOUGH_TRY(print_boundary(arena, options, &s, s.n_solved - 1));
     name_lines(arena, &s);
-    if (bough_is_ok(&status)) status = bough_folder_make(folder);
-    if (bough_is_ok(&status)) status = bough_folder_write(folder, "campbell.csv", write_table, &s);
-    if (bough_is_ok(&status)) status = draw(arena, &s, folder);
-    if (bough_is_ok(&status)) printf("out: %s\n", folder);
-    return status;
+    BOUGH_TRY(bough_folder_make(folder));
+    BOUGH_TRY(bough_folder_write(folder, "campbell.csv", write_table, &s));
+    BOUGH_TRY(draw(arena, &s, folder));
+    printf("out: %s\n", folder);
+    return bough_ok();
 }
