@@ -33,9 +33,8 @@ bough_forecast bough_run_results(const bough_simulation *simulation, const bough
                                                    samples(duration, output->frames)};
 }
 
-void bough_forecast_print(bough_forecast f, const bough_channels *channels, FILE *stream) {
-    fprintf(stream, "results: %.10g rows of %d columns, %.3g MB\n", f.rows, channels->count + 1,
-            1e-6 * f.bytes);
+void bough_forecast_print(bough_forecast f, const bough_channels *channels) {
+    printf("results: %.10g rows of %d columns, %.3g MB\n", f.rows, channels->count + 1, 1e-6 * f.bytes);
 }
 
 double bough_forecast_derivative(const bough_coupling *c, int member, int tries, double *rate) {
@@ -61,7 +60,7 @@ static double least_step_time(const bough_run_command *command) {
 
 // Tells what the command records, and of a long run (more than a million macro steps or a gigabyte)
 // steps and time on stderr. BOUGH_INVALID where the results cannot fit on the disk of its folder.
-static bough_status run_forecast(const bough_run_command *command, FILE *stream) {
+static bough_status run_forecast(const bough_run_command *command) {
     const bough_run *run = &command->run;
     const bough_master *m = run->simulation->master;
     bough_forecast results = bough_run_results(run->simulation, &command->recorded, &command->shape);
@@ -75,8 +74,8 @@ static bough_status run_forecast(const bough_run_command *command, FILE *stream)
                           "simulation.output.interval or shorter duration",
                           1e-9 * bytes, command->folder, 1e-9 * room);
     }
-    bough_forecast_print(results, &command->recorded, stream);
-    fflush(stream);
+    bough_forecast_print(results, &command->recorded);
+    fflush(stdout);
     if (steps <= long_run && bytes <= much_data) return bough_ok();
     fprintf(stderr, "bough: %.3g macro steps, more than %.2g hours\n", steps,
             steps * least_step_time(command) / 3600);
@@ -141,22 +140,19 @@ static bough_status clean(const bough_run_command *command) {
 // Results of an earlier run stay until this one replaces them, except its checkpoint.
 static bough_status open_results(bough_run_command *command) {
     command->folder = bough_out_folder(command->arena, &command->options->common);
-    bough_status status = bough_checkpoint_open(command);
-    if (bough_is_ok(&status)) status = bough_folder_make(command->folder);
-    if (bough_is_ok(&status)) status = bough_lock_folder(command->arena, command->folder);
-    if (bough_is_ok(&status)) status = clean(command);
-    if (bough_is_ok(&status)) {
-        status = command->options->resume ? bough_folder_remove(command->folder, "summary.json")
-                                          : bough_checkpoint_remove(command->folder);
-    }
-    if (!bough_is_ok(&status)) return status;
+    BOUGH_TRY(bough_checkpoint_open(command));
+    BOUGH_TRY(bough_folder_make(command->folder));
+    BOUGH_TRY(bough_lock_folder(command->arena, command->folder));
+    BOUGH_TRY(clean(command));
+    BOUGH_TRY(command->options->resume ? bough_folder_remove(command->folder, "summary.json")
+                                       : bough_checkpoint_remove(command->folder));
     bough_recorder_def def = {.folder = command->folder,
                               .title = title(command),
                               .channels = &command->recorded,
                               .kept = command->rows};
-    status = bough_recorder_open(command->arena, &def, &command->recorder);
-    if (bough_is_ok(&status)) status = open_frames(command);
-    return bough_is_ok(&status) ? run_forecast(command, stdout) : status;
+    BOUGH_TRY(bough_recorder_open(command->arena, &def, &command->recorder));
+    BOUGH_TRY(open_frames(command));
+    return run_forecast(command);
 }
 
 bough_status bough_run_command_build(bough_run_command *command) {
@@ -181,29 +177,27 @@ static bough_status write_binary(const bough_run_command *command) {
                                                   .interval = output->interval});
 }
 
-// Ends the files; their outcome is the first failure. An older summary
-// must not stand beside the new channels, nor a new one beside older channels.
-static bough_status close_results(bough_run_command *command) {
-    bough_status status = bough_recorder_finish(command->recorder, &command->run.outcome);
-    if (!bough_is_ok(&status)) {
-        if (bough_is_ok(&command->run.outcome)) command->run.outcome = status;
-        return command->run.outcome;
-    }
+// An older summary must not stand beside the new channels, nor a new one beside older channels.
+static bough_status replace_older(const bough_run_command *command) {
     static const char *const older[] = {"summary.json", "channels.outb", "report.html", "shape.svg",
                                         "shape-dark.svg"};
-    for (size_t i = 0; i < sizeof older / sizeof *older && bough_is_ok(&status); i++)
-        status = bough_folder_remove(command->folder, older[i]);
-    if (bough_is_ok(&status)) {
-        status =
-            command->frames ? bough_frames_finish(command->frames) : bough_frames_remove(command->folder);
-    }
-    if (bough_is_ok(&status)) status = write_binary(command);
-    if (bough_is_ok(&command->run.outcome)) command->run.outcome = status;
+    for (size_t i = 0; i < sizeof older / sizeof *older; i++)
+        BOUGH_TRY(bough_folder_remove(command->folder, older[i]));
+    BOUGH_TRY(command->frames ? bough_frames_finish(command->frames) : bough_frames_remove(command->folder));
+    return write_binary(command);
+}
+
+// Ends the files; their outcome is the first failure.
+static bough_status close_results(bough_run_command *command) {
+    bough_status *outcome = &command->run.outcome;
+    bough_status status = bough_recorder_finish(command->recorder, outcome);
+    bool finished = bough_is_ok(&status);
+    if (finished) status = replace_older(command);
+    if (bough_is_ok(outcome)) *outcome = status;
+    if (!finished) return *outcome;
     status = bough_run_summarise(command);
-    if (bough_is_ok(&command->run.outcome) && bough_is_ok(&status)) {
-        status = bough_checkpoint_remove(command->folder);
-    }
-    return bough_is_ok(&command->run.outcome) ? status : command->run.outcome;
+    BOUGH_TRY(*outcome);
+    return bough_is_ok(&status) ? bough_checkpoint_remove(command->folder) : status;
 }
 
 // Warns during the run where solver steps make it slow.
@@ -274,7 +268,7 @@ static bough_status run(bough_arena *arena, const void *options) {
     step_all(&command);
     if (bough_is_ok(&command.run.outcome)) command.verdict = judge(&command);
     bough_status status = close_results(&command);
-    bough_run_report(&command, stdout);
+    bough_run_report(&command);
     return bough_is_ok(&status) ? command.verdict : status;
 }
 

@@ -51,7 +51,7 @@ bough_status bough_run_command_build(bough_run_command *command);
 bough_status bough_run_summarise(const bough_run_command *command);
 
 // Tells the user how it went: what was run, how fast, what came out, how wrong at most, what to do next.
-void bough_run_report(bough_run_command *command, FILE *stream);
+void bough_run_report(bough_run_command *command);
 
 // -- checkpoints (checkpoint.c) -------------------------------------------------------------------
 
@@ -82,6 +82,6 @@ bough_forecast bough_run_results(const bough_simulation *simulation, const bough
 double bough_forecast_derivative(const bough_coupling *c, int member, int tries, double *rate);
 
 // Writes "results: 101 rows of 6 columns, 0.012 MB".
-void bough_forecast_print(bough_forecast forecast, const bough_channels *channels, FILE *stream);
+void bough_forecast_print(bough_forecast forecast, const bough_channels *channels);
 
 #endif

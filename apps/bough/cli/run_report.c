@@ -10,9 +10,7 @@
 #include <string.h>
 #include <sys/resource.h>
 
-enum { LINE = 400 };
-
-enum { WORST = 3 };
+enum { LINE = 400, WORST = 3 };
 
 static double bound_of(const bough_run *run) { return run->simulation->scene->simulation.error_bound; }
 
@@ -26,6 +24,32 @@ static void warn_of_force(const bough_run *run, char text[BOUGH_ERROR_WARNING]) 
     bough_error_size(c, v.channel, error);
     snprintf(text, BOUGH_ERROR_WARNING, "%s errs by %s", c->channels->channel[v.channel].name, error);
 }
+
+// -- memory ---------------------------------------------------------------------------------------
+
+// getrusage alone would not do: on Linux its figure survives exec, so that a large program that
+// starts this one passes its own memory on.
+static long long bough_peak_memory(void) {
+    long long kilobytes = 0;
+    char line[128];
+    FILE *file = fopen("/proc/self/status", "r");
+    while (file && kilobytes == 0 && fgets(line, sizeof line, file)) {
+        if (sscanf(line, "VmHWM: %lld kB", &kilobytes) != 1) kilobytes = 0;
+    }
+    if (file) fclose(file);
+    struct rusage usage;
+    if (kilobytes == 0 && getrusage(RUSAGE_SELF, &usage) == 0) kilobytes = usage.ru_maxrss;
+    return 1024 * kilobytes;
+}
+
+// -- figures --------------------------------------------------------------------------------------
+
+static const char *outcome_name(const bough_run *run) {
+    if (bough_is_ok(&run->outcome)) return "complete";
+    return run->outcome.code == BOUGH_INTERRUPTED ? "interrupted" : "failed";
+}
+
+static double real_time_factor(const bough_run *run) { return run->simulation->master->time / run->wall_s; }
 
 // -- summary.json ---------------------------------------------------------------------------------
 
@@ -84,74 +108,11 @@ static void write_shares(bough_summary *s, const bough_run_command *command) {
     bough_summary_end(s);
 }
 
-// What the run errs by (run_error.c): into the summary, and in the closing lines.
-static void run_write_error(bough_summary *s, const bough_run_command *command) {
+static void write_error(bough_summary *s, const bough_run_command *command) {
     write_verdict(s, command);
     write_channels(s, &command->run, "error_estimate", command->run.companion->error);
     write_shares(s, command);
 }
-
-// -- closing lines --------------------------------------------------------------------------------
-
-static void tell_shares(const bough_run_command *command, int channel, FILE *stream) {
-    for (int k = 0; k < BOUGH_SHARES && command->shares.found; k++) {
-        const bough_error_share *share = &command->shares.share[k];
-        if (share->unknown[0]) continue;
-        fprintf(stream, "; %s %.2g", bough_error_share_name((bough_error_share_kind)k),
-                share->largest[channel]);
-    }
-}
-
-static void run_tell_error(const bough_run_command *command, FILE *stream) {
-    const bough_companion *c = command->run.companion;
-    char warning[BOUGH_ERROR_WARNING];
-    int worst[WORST], n = bough_error_worst(c, WORST, worst);
-    if (c->compared == 0) {
-        fprintf(stream, "errors: not estimated: %s\n",
-                c->reason[0] ? c->reason : "the run has not reached the companion's first step");
-    } else if (n == 0) {
-        fprintf(stream, "errors: none: nothing moves\n");
-    }
-    for (int k = 0; k < n; k++) {
-        char error[BOUGH_ERROR_SIZE];
-        bough_error_size(c, worst[k], error);
-        fprintf(stream, "%s %s %s", k == 0 ? "largest errors:" : "               ",
-                c->channels->channel[worst[k]].name, error);
-        tell_shares(command, worst[k], stream);
-        fputc('\n', stream);
-    }
-    warn_of_force(&command->run, warning);
-    if (command->warning[0]) fprintf(stream, "warning: %s\n", command->warning);
-    if (warning[0]) fprintf(stream, "warning: %s\n", warning);
-}
-
-// -- memory ---------------------------------------------------------------------------------------
-
-// getrusage alone would not do: on Linux its figure survives exec, so that a large program that
-// starts this one passes its own memory on.
-static long long bough_peak_memory(void) {
-    long long kilobytes = 0;
-    char line[128];
-    FILE *file = fopen("/proc/self/status", "r");
-    while (file && kilobytes == 0 && fgets(line, sizeof line, file)) {
-        if (sscanf(line, "VmHWM: %lld kB", &kilobytes) != 1) kilobytes = 0;
-    }
-    if (file) fclose(file);
-    struct rusage usage;
-    if (kilobytes == 0 && getrusage(RUSAGE_SELF, &usage) == 0) kilobytes = usage.ru_maxrss;
-    return 1024 * kilobytes;
-}
-
-// -- figures --------------------------------------------------------------------------------------
-
-static const char *outcome_name(const bough_run *run) {
-    if (bough_is_ok(&run->outcome)) return "complete";
-    return run->outcome.code == BOUGH_INTERRUPTED ? "interrupted" : "failed";
-}
-
-static double real_time_factor(const bough_run *run) { return run->simulation->master->time / run->wall_s; }
-
-// -- summary.json ---------------------------------------------------------------------------------
 
 static void write_input(bough_summary *s, const bough_run_command *command) {
     const bough_scene *scene = command->run.simulation->scene;
@@ -346,7 +307,7 @@ bough_status bough_run_summarise(const bough_run_command *command) {
     write_control(&s, run);
     write_accuracy(&s, run);
     write_interfaces(&s, run);
-    run_write_error(&s, command);
+    write_error(&s, command);
     write_statistics(&s, command);
     write_whole(&s, run);
     const bough_assembly *assembly = run->simulation->master->assembly;
@@ -384,7 +345,7 @@ static int digits(double largest, double error) {
     return (int)fmin(fmax(n, LEAST_DIGITS), MOST_DIGITS);
 }
 
-static void tell_channel(bough_run_command *command, int k, FILE *stream) {
+static void tell_channel(bough_run_command *command, int k) {
     bough_run *run = &command->run;
     const bough_channel *channel = &command->recorded.channel[k];
     const bough_sample_statistics *x = &command->statistics[k];
@@ -394,65 +355,93 @@ static void tell_channel(bough_run_command *command, int k, FILE *stream) {
     const double value[] = {x->mean, x->least, x->most, bough_run_values(run)[of_run]};
     double largest = fmax(fabs(x->least), fabs(x->most)), rounding = 1e-9 * largest;
     int n = digits(largest, error);
-    fprintf(stream, "%-12s %-6s", channel->name, channel->unit);
-    for (int i = 0; i < 4; i++) fprintf(stream, " %11.*g", n, fabs(value[i]) > rounding ? value[i] : 0);
+    printf("%-12s %-6s", channel->name, channel->unit);
+    for (int i = 0; i < 4; i++) printf(" %11.*g", n, fabs(value[i]) > rounding ? value[i] : 0);
     if (known)
-        fprintf(stream, " %9.2g\n", error);
+        printf(" %9.2g\n", error);
     else
-        fprintf(stream, " %9s\n", "unknown");
+        printf(" %9s\n", "unknown");
 }
 
 // What came out: nothing after a failure, when the state means nothing.
-static void tell_channels(bough_run_command *command, FILE *stream) {
+static void tell_channels(bough_run_command *command) {
     const bough_scene_output *output = &command->run.simulation->scene->simulation.output;
     int list[MOST_LINES], n = main_channels(command, list);
     if (!bough_run_values(&command->run) || n == 0 || !(command->statistics[list[0]].n > 0)) return;
-    if (output->from > 0) fprintf(stream, "from %.9g s on:\n", output->from);
-    fprintf(stream, "%-12s %-6s %11s %11s %11s %11s %9s\n", "channel", "unit", "mean", "min", "max", "end",
-            "error");
-    for (int i = 0; i < n; i++) tell_channel(command, list[i], stream);
+    if (output->from > 0) printf("from %.9g s on:\n", output->from);
+    printf("%-12s %-6s %11s %11s %11s %11s %9s\n", "channel", "unit", "mean", "min", "max", "end", "error");
+    for (int i = 0; i < n; i++) tell_channel(command, list[i]);
 }
 
-static void tell_warnings(const bough_run *run, FILE *stream) {
+static void tell_warnings(const bough_run *run) {
     const bough_master *m = run->simulation->master;
     long unfinished = bough_scheme_reported(m->coupling).unfinished;
     if (unfinished > 0) {
-        fprintf(
-            stream,
+        printf(
             "warning: %ld of %ld macro steps went on before they had converged; the error contains what this "
             "changes\n",
             unfinished, m->steps);
     }
-    bough_validity_print(run->simulation, stream);
+    bough_validity_print(run->simulation, stdout);
+}
+
+static void tell_shares(const bough_run_command *command, int channel) {
+    for (int k = 0; k < BOUGH_SHARES && command->shares.found; k++) {
+        const bough_error_share *share = &command->shares.share[k];
+        if (share->unknown[0]) continue;
+        printf("; %s %.2g", bough_error_share_name((bough_error_share_kind)k), share->largest[channel]);
+    }
+}
+
+static void tell_error(const bough_run_command *command) {
+    const bough_companion *c = command->run.companion;
+    char warning[BOUGH_ERROR_WARNING];
+    int worst[WORST], n = bough_error_worst(c, WORST, worst);
+    if (c->compared == 0) {
+        printf("errors: not estimated: %s\n",
+               c->reason[0] ? c->reason : "the run has not reached the companion's first step");
+    } else if (n == 0) {
+        printf("errors: none: nothing moves\n");
+    }
+    for (int k = 0; k < n; k++) {
+        char error[BOUGH_ERROR_SIZE];
+        bough_error_size(c, worst[k], error);
+        printf("%s %s %s", k == 0 ? "largest errors:" : "               ",
+               c->channels->channel[worst[k]].name, error);
+        tell_shares(command, worst[k]);
+        putchar('\n');
+    }
+    warn_of_force(&command->run, warning);
+    if (command->warning[0]) printf("warning: %s\n", command->warning);
+    if (warning[0]) printf("warning: %s\n", warning);
 }
 
 // What was run, and how fast.
-static void tell_run(const bough_run_command *command, FILE *stream) {
+static void tell_run(const bough_run_command *command) {
     const bough_run *run = &command->run;
     double factor = real_time_factor(run);
-    fprintf(stream, "status: %s\n", outcome_name(run));
-    fprintf(stream, "run: %.9g s of %s", run->simulation->master->time, run->simulation->scene->file);
+    printf("status: %s\n", outcome_name(run));
+    printf("run: %.9g s of %s", run->simulation->master->time, run->simulation->scene->file);
     for (int i = 0; i < command->options->common.set.n; i++)
-        fprintf(stream, ", %s", command->options->common.set.text[i]);
-    fprintf(stream, "\nspeed: %.3g s, %.*f times real time, %.0f MB\n", run->wall_s, factor < 10 ? 2 : 0,
-            factor, (double)bough_peak_memory() / 1e6);
-    if (!bough_is_ok(&run->outcome))
-        fprintf(stream, "recorded: %ld rows\n", bough_recorder_rows(command->recorder));
+        printf(", %s", command->options->common.set.text[i]);
+    printf("\nspeed: %.3g s, %.*f times real time, %.0f MB\n", run->wall_s, factor < 10 ? 2 : 0, factor,
+           (double)bough_peak_memory() / 1e6);
+    if (!bough_is_ok(&run->outcome)) printf("recorded: %ld rows\n", bough_recorder_rows(command->recorder));
 }
 
-static void tell_next(const bough_run_command *command, FILE *stream) {
+static void tell_next(const bough_run_command *command) {
     bool resumes = command->checkpoint.interval > 0 && !bough_is_ok(&command->run.outcome);
-    fprintf(stream, "out: %s\n", command->folder);
+    printf("out: %s\n", command->folder);
     if (resumes)
-        fprintf(stream, "next: the same command with --resume goes on from the last checkpoint\n");
+        printf("next: the same command with --resume goes on from the last checkpoint\n");
     else
-        fprintf(stream, "next: bough report %s\n", command->folder);
+        printf("next: bough report %s\n", command->folder);
 }
 
-void bough_run_report(bough_run_command *command, FILE *stream) {
-    tell_run(command, stream);
-    tell_channels(command, stream);
-    run_tell_error(command, stream);
-    tell_warnings(&command->run, stream);
-    tell_next(command, stream);
+void bough_run_report(bough_run_command *command) {
+    tell_run(command);
+    tell_channels(command);
+    tell_error(command);
+    tell_warnings(&command->run);
+    tell_next(command);
 }
