@@ -73,18 +73,16 @@ static bough_status check_interval(const bough_run_command *command, double inte
     BOUGH_TRY(bough_simulation_storable(command->run.simulation));
     if (interval > m->duration) {
         return bough_fail(BOUGH_INVALID,
-                          "--checkpoint %.9g s is longer than the run, %.9g s: "
-                          "there would be no checkpoint",
+                          "--checkpoint %.9g s is longer than the run, %.9g s: there would be no checkpoint",
                           interval, m->duration);
     }
     if (bough_master_multiple(interval, m->macro_step) == 0) {
         return bough_fail(BOUGH_INVALID, "--checkpoint %.9g s is not a multiple of the macro step %.9g s",
                           interval, m->macro_step);
     }
-    bough_status status = check_samples(m, "", interval);
+    BOUGH_TRY(check_samples(m, "", interval));
     const bough_simulation *companion = command->run.companion->coarser;
-    return bough_is_ok(&status) && companion ? check_samples(companion->master, " of the companion", interval)
-                                             : status;
+    return companion ? check_samples(companion->master, " of the companion", interval) : bough_ok();
 }
 
 // Threads and the folder change no result.
@@ -106,36 +104,28 @@ static void take_memory(bough_run_command *command) {
 
 // -- reading --------------------------------------------------------------------------------------
 
-static bough_status damaged(const char *path) {
-    return bough_fail(BOUGH_INVALID,
-                      "the checkpoint '%.200s' is damaged; without --resume the run "
-                      "starts anew",
-                      path);
-}
-
-static bough_status other(const char *path, const char *what) {
-    return bough_fail(BOUGH_INVALID,
-                      "the checkpoint '%.200s' is of %s; without --resume the run "
-                      "starts anew",
+static bough_status refuse(const char *path, const char *what) {
+    return bough_fail(BOUGH_INVALID, "the checkpoint '%.200s' is %s; without --resume the run starts anew",
                       path, what);
 }
 
 // The sum is looked at first: only then the rest means what it says.
 static bough_status read_copy(bough_run_command *command, const char *path, FILE *file) {
+    static const char damaged[] = "damaged";
     bough_checkpoint *c = &command->checkpoint;
     head h;
-    if (fread(&h, sizeof h, 1, file) != 1) return damaged(path);
+    if (fread(&h, sizeof h, 1, file) != 1) return refuse(path, damaged);
     if (memcmp(h.magic, magic, sizeof magic) != 0) {
         return bough_fail(BOUGH_INVALID, "'%.200s' is not a checkpoint of this version", path);
     }
     bool fits = h.size == c->size;
     if (fits &&
         (fread(c->copy, 1, c->size, file) != c->size || fgetc(file) != EOF || sum_of(&h, c->copy) != h.sum)) {
-        return damaged(path);
+        return refuse(path, damaged);
     }
-    if (h.program != c->program) return other(path, "another version of the program");
-    if (h.input != c->input) return other(path, "another scene or other settings");
-    if (!fits) return damaged(path);
+    if (h.program != c->program) return refuse(path, "of another version of the program");
+    if (h.input != c->input) return refuse(path, "of another scene or other settings");
+    if (!fits) return refuse(path, damaged);
     if (c->interval > 0 && c->interval != h.interval) {
         return bough_fail(BOUGH_INVALID, "the run to resume has --checkpoint %.9g s, not %.9g s", h.interval,
                           c->interval);
@@ -150,31 +140,31 @@ static bough_status resume(bough_run_command *command) {
     char why[BOUGH_INPUT_REASON];
     FILE *file = bough_input_open(path, BOUGH_INPUT_DATA, why);
     if (!file && errno == ENOENT) {
-        return bough_fail(BOUGH_INVALID,
-                          "nothing to resume: there is no '%.200s'; a run with "
-                          "--checkpoint writes it and removes it at its end",
-                          path);
+        return bough_fail(
+            BOUGH_INVALID,
+            "nothing to resume: there is no '%.200s'; a run with --checkpoint writes it and removes it at its end",
+            path);
     }
-    if (!file) {
-        return bough_fail(BOUGH_IO, "cannot read '%.200s': %s", path, why);
-    }
+    if (!file) return bough_fail(BOUGH_IO, "cannot read '%.200s': %s", path, why);
     bough_status status = read_copy(command, path, file);
     fclose(file);
-    if (bough_is_ok(&status)) status = check_interval(command, command->checkpoint.interval);
-    if (bough_is_ok(&status)) move(command, BOUGH_SNAPSHOT_RESTORE);
-    return status;
+    BOUGH_TRY(status);
+    BOUGH_TRY(check_interval(command, command->checkpoint.interval));
+    move(command, BOUGH_SNAPSHOT_RESTORE);
+    return bough_ok();
 }
 
 bough_status bough_checkpoint_open(bough_run_command *command) {
     const bough_run_options *o = command->options;
     bough_checkpoint *c = &command->checkpoint;
     if (!o->checkpoint && !o->resume) return bough_ok();
-    bough_status status = o->checkpoint ? read_interval(o->checkpoint, &c->interval) : bough_ok();
-    if (bough_is_ok(&status) && o->checkpoint) status = check_interval(command, c->interval);
-    BOUGH_TRY(status);
+    if (o->checkpoint) {
+        BOUGH_TRY(read_interval(o->checkpoint, &c->interval));
+        BOUGH_TRY(check_interval(command, c->interval));
+    }
     take_memory(command);
     find_fingerprints(command);
-    return o->resume ? resume(command) : status;
+    return o->resume ? resume(command) : bough_ok();
 }
 
 // -- writing --------------------------------------------------------------------------------------
@@ -208,13 +198,10 @@ bough_status bough_checkpoint_update(void *self) {
     bough_run_command *command = self;
     if (!(command->checkpoint.interval > 0) || !is_due(command)) return bough_ok();
     bough_run_update_clock(&command->run);
-    bough_status status = bough_recorder_keep(command->recorder, &command->rows);
-    if (bough_is_ok(&status) && command->frames) {
-        status = bough_frames_keep(command->frames, &command->frames_kept);
-    }
-    if (!bough_is_ok(&status)) return status;
+    BOUGH_TRY(bough_recorder_keep(command->recorder, &command->rows));
+    if (command->frames) BOUGH_TRY(bough_frames_keep(command->frames, &command->frames_kept));
     move(command, BOUGH_SNAPSHOT_SAVE);
-    status = write_copy(command);
+    bough_status status = write_copy(command);
     move(command, BOUGH_SNAPSHOT_RESTORE);
     return status;
 }
