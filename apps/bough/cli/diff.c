@@ -67,15 +67,15 @@ static int larger(const void *x, const void *y) {
 
 static bough_status walk(bough_rows *a, bough_rows *b, int n, pair *list, long *rows) {
     bool more_a, more_b;
-    bough_status status = next_row(a, &more_a);
-    if (bough_is_ok(&status)) status = next_row(b, &more_b);
-    while (bough_is_ok(&status) && more_a && more_b) {
+    BOUGH_TRY(next_row(a, &more_a));
+    BOUGH_TRY(next_row(b, &more_b));
+    while (more_a && more_b) {
         double apart = a->value[0] - b->value[0], same = 1e-9 * (1 + fabs(a->value[0]));
         if (fabs(apart) <= same) compare(a, b, n, list), ++*rows;
-        if (apart <= same) status = next_row(a, &more_a);
-        if (apart >= -same && bough_is_ok(&status)) status = next_row(b, &more_b);
+        if (apart <= same) BOUGH_TRY(next_row(a, &more_a));
+        if (apart >= -same) BOUGH_TRY(next_row(b, &more_b));
     }
-    return status;
+    return bough_ok();
 }
 
 static void print(const bough_rows *a, const bough_rows *b, int n, pair *list, long rows) {
@@ -102,13 +102,10 @@ static bough_status diff(bough_arena *arena, const void *given) {
     pair *list = bough_arena_take(arena, ((size_t)a->n + 1) * sizeof *list);
     int n = find_pairs(a, b, list);
     long common = 0;
-    if (n == 0)
-        return bough_fail(BOUGH_INVALID, "'%.200s' and '%.200s' have no channel in common", a->folder,
-                          b->folder);
-    BOUGH_TRY(walk(a, b, n, list, &common));
+    if (n > 0) BOUGH_TRY(walk(a, b, n, list, &common));
     if (common == 0)
-        return bough_fail(BOUGH_INVALID, "'%.200s' and '%.200s' have no time in common", a->folder,
-                          b->folder);
+        return bough_fail(BOUGH_INVALID, "'%.200s' and '%.200s' have no %s in common", a->folder, b->folder,
+                          n > 0 ? "time" : "channel");
     print(a, b, n, list, common);
     return bough_ok();
 }
