@@ -54,17 +54,16 @@ static bough_status find_rods(bough_arena *arena, equilibrium *x) {
 static bough_status find_whole(bough_arena *arena, equilibrium *x) {
     bough_simulation *s = x->simulation;
     x->time = bough_equilibrium_time(s);
-    bough_status status = bough_simulation_any_equilibrium(s, s->master->assembly, x->time, &x->work);
-    for (int k = 0; k < s->n_beam && bough_is_ok(&status); k++) {
+    BOUGH_TRY(bough_simulation_any_equilibrium(s, s->master->assembly, x->time, &x->work));
+    for (int k = 0; k < s->n_beam; k++) {
         if (s->beam[k].rod == NULL) continue;
-        status = bough_steady_equilibrium(arena, s, &s->beam[k], x->time, &x->rod[x->n++]);
+        BOUGH_TRY(bough_steady_equilibrium(arena, s, &s->beam[k], x->time, &x->rod[x->n++]));
     }
-    if (bough_is_ok(&status)) status = bough_simulation_channels(s, &x->channels);
-    BOUGH_TRY(status);
+    BOUGH_TRY(bough_simulation_channels(s, &x->channels));
     x->value = bough_arena_doubles(arena, (size_t)x->channels.count + 1);
     bough_simulation_update(s);
     bough_channels_sample(&x->channels, x->time, x->value);
-    return status;
+    return bough_ok();
 }
 
 // What grows from the equilibrium. Rods that were found alone are put into the whole.
@@ -182,9 +181,9 @@ static bough_status find_finer(bough_arena *arena, void *self) {
     if (!refine(arena, &scene, c->mesh)) return bough_ok();
     BOUGH_TRY(bough_simulation_build(arena, &scene, &s));
     start_near(c->coarse->simulation, s);
-    bough_status status = find_equilibrium(arena, s, &fine);
-    if (bough_is_ok(&status)) compare(c, &fine);
-    return status;
+    BOUGH_TRY(find_equilibrium(arena, s, &fine));
+    compare(c, &fine);
+    return bough_ok();
 }
 
 // Error of the mesh: a fraction of the difference to four times the segments. Returns norms for each rod (n ×
@@ -228,8 +227,10 @@ static void print_row(double span, const double value[MOTION]) {
     putchar('\n');
 }
 
-static void print_three(const char *what, bough_vec3 v, const char *unit) {
-    printf("%s %.7g %.7g %.7g %s", what, v.x, v.y, v.z, unit);
+static void print_head(const char *const word[MOTION + 1]) {
+    printf("%10s", word[0]);
+    for (int c = 1; c <= MOTION; c++) printf(" %12s", word[c]);
+    putchar('\n');
 }
 
 static void print_rod(bough_steady *x) {
@@ -238,27 +239,25 @@ static void print_rod(bough_steady *x) {
     printf("rod %s: %d segments, %.9g m", m->name, m->n_segment, m->span[m->n_segment]);
     if (x->work.iterations > 0) printf(", %d iterations", x->work.iterations);
     putchar('\n');
-    printf("%10s %12s %12s %12s %12s %12s %12s\n", "span", "ux", "uy", "uz", "rx", "ry", "rz");
-    printf("%10s %12s %12s %12s %12s %12s %12s\n", "(m)", "(m)", "(m)", "(m)", "(deg)", "(deg)", "(deg)");
+    print_head((const char *const[]){"span", "ux", "uy", "uz", "rx", "ry", "rz"});
+    print_head((const char *const[]){"(m)", "(m)", "(m)", "(m)", "(deg)", "(deg)", "(deg)"});
     for (int i = 0; i <= m->n_segment; i++) {
         motion_of(x, i, value);
         print_row(m->span[i], value);
     }
-    printf("%10s %12s %12s %12s %12s %12s %12s\n", "middle", "shear x", "shear y", "axial", "bend x",
-           "bend y", "twist");
-    printf("%10s %12s %12s %12s %12s %12s %12s\n", "(m)", "(N)", "(N)", "(N)", "(N m)", "(N m)", "(N m)");
+    print_head((const char *const[]){"middle", "shear x", "shear y", "axial", "bend x", "bend y", "twist"});
+    print_head((const char *const[]){"(m)", "(N)", "(N)", "(N)", "(N m)", "(N m)", "(N m)"});
     for (int n = 0; n < m->n_segment; n++) {
         stress_of(x, n, value);
         print_row(middle_of(x, n), value);
     }
     bough_vec3 result[STATIC_RESULTS];
     find_results(x, result);
-    printf("tip %s:", m->name);
-    print_three(" u", result[STATIC_DISPLACEMENT], "m,");
-    print_three(" r", bough_scale(1 / BOUGH_DEGREE, result[STATIC_ROTATION]), "deg\n");
-    printf("root %s:", m->name);
-    print_three(" force", result[STATIC_FORCE], "N,");
-    print_three(" moment", result[STATIC_MOMENT], "N m\n");
+    bough_vec3 u = result[STATIC_DISPLACEMENT], r = bough_scale(1 / BOUGH_DEGREE, result[STATIC_ROTATION]);
+    bough_vec3 f = result[STATIC_FORCE], n = result[STATIC_MOMENT];
+    printf("tip %s: u %.7g %.7g %.7g m, r %.7g %.7g %.7g deg\n", m->name, u.x, u.y, u.z, r.x, r.y, r.z);
+    printf("root %s: force %.7g %.7g %.7g N, moment %.7g %.7g %.7g N m\n", m->name, f.x, f.y, f.z, n.x, n.y,
+           n.z);
 }
 
 static void print_mesh_error(const bough_steady *x, const double error[STATIC_RESULTS]) {
