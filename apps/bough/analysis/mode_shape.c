@@ -1,12 +1,38 @@
-#include "apps/bough/analysis/mode_shape.h"
+// An eigenvector of the whole scene as motion of its bodies, and what it is called by.
+#include "apps/bough/analysis/vibration.h"
 
 #include "core/tree/dynamics.h"
-#include "cosim/analysis/modes.h"
 
 #include <float.h>
 #include <string.h>
 
-void bough_mode_shape_take(bough_arena *arena, bough_mode_shape *x) {
+// A flexible beam's vertices and their tangents along the shape, as rod.h lays them out.
+typedef struct beam_shape {
+    const double *state;      // (13 n)
+    const double *tangent[2]; // (13 n) real and imaginary part
+    double *memory;           // (3 × 13 n) of both unless a rod, whose own they are
+} beam_shape;
+
+typedef struct mode_shape {
+    const bough_simulation *simulation;
+    const bough_assembly *assembly;
+    const bough_blade_group *group;
+    const double *state; // (n_state) that the modes are about
+    const bough_eigen_pair *pair;
+    double *moved;    // (n_state) work
+    beam_shape *beam; // (n_beam)
+} mode_shape;
+
+// The real or imaginary part of the eigenvector (n_state).
+static const double *part_of(const mode_shape *x, int part) {
+    return part == 0 ? x->pair->shape_real : x->pair->shape_imag;
+}
+
+static const beam_shape *beam_of(const mode_shape *x, const bough_beam *beam) {
+    return &x->beam[beam - x->simulation->beam];
+}
+
+static void take(bough_arena *arena, mode_shape *x) {
     const bough_simulation *s = x->simulation;
     x->moved = bough_arena_doubles(arena, (size_t)x->assembly->n_state + 1);
     x->beam = bough_arena_take(arena, ((size_t)s->n_beam + 1) * sizeof *x->beam);
@@ -20,7 +46,7 @@ void bough_mode_shape_take(bough_arena *arena, bough_mode_shape *x) {
 // -- beams ----------------------------------------------------------------------------------------
 
 // The vertices of a modal body at its state and frame's twist moved by a part of the shape.
-static void expand(const bough_mode_shape *x, const bough_beam *beam, int part, double step, double *to) {
+static void expand(const mode_shape *x, const bough_beam *beam, int part, double step, double *to) {
     const bough_simulation *s = x->simulation;
     const bough_frame *frame = &s->tree->markers[beam->marker];
     int at = x->assembly->state_offset[beam->port + 1], n = s->rod[beam->port].system.n_state;
@@ -32,22 +58,19 @@ static void expand(const bough_mode_shape *x, const bough_beam *beam, int part, 
                           change);
     }
     for (int c = 0; c < 6; c++) input[c] += step * change[c];
-    for (int k = 0; k < n; k++)
-        x->moved[k] = x->state[at + k] + step * bough_mode_shape_part(x, part)[at + k];
+    for (int k = 0; k < n; k++) x->moved[k] = x->state[at + k] + step * part_of(x, part)[at + k];
     memcpy(to, bough_modal_body_vertices(beam->modal, x->moved, input, 1),
            (size_t)BOUGH_ROD_STATES * beam->mesh->n * sizeof *to);
 }
 
 // Central differences with steps that change no state by more than a millionth.
-static void set_modal(const bough_mode_shape *x, const bough_beam *beam, bough_beam_shape *b) {
+static void set_modal(const mode_shape *x, const bough_beam *beam, beam_shape *b) {
     size_t n = (size_t)BOUGH_ROD_STATES * beam->mesh->n;
     for (int part = 0; part < 2; part++) {
         double most = DBL_MIN, *to = b->memory + (size_t)(1 + part) * n;
-        for (int k = 0; k < x->assembly->n_state; k++)
-            most = fmax(most, fabs(bough_mode_shape_part(x, part)[k]));
+        for (int k = 0; k < x->assembly->n_state; k++) most = fmax(most, fabs(part_of(x, part)[k]));
         double step = 1e-6 / most;
-        bough_tree_tangent(x->simulation->tree, x->state, bough_mode_shape_part(x, part),
-                           x->simulation->view);
+        bough_tree_tangent(x->simulation->tree, x->state, part_of(x, part), x->simulation->view);
         expand(x, beam, part, -step, b->memory);
         expand(x, beam, part, step, to);
         for (size_t k = 0; k < n; k++) to[k] = (to[k] - b->memory[k]) / (2 * step);
@@ -57,10 +80,11 @@ static void set_modal(const bough_mode_shape *x, const bough_beam *beam, bough_b
     b->state = b->memory;
 }
 
-void bough_mode_shape_set(const bough_mode_shape *x) {
+// Finds the vertices of the beams for x->pair.
+static void set_beams(const mode_shape *x) {
     for (int k = 0; k < x->simulation->n_beam; k++) {
         const bough_beam *beam = &x->simulation->beam[k];
-        bough_beam_shape *b = &x->beam[k];
+        beam_shape *b = &x->beam[k];
         if (beam->port < 0) continue;
         int at = x->assembly->state_offset[beam->port + 1];
         if (beam->modal != NULL) {
@@ -68,12 +92,8 @@ void bough_mode_shape_set(const bough_mode_shape *x) {
             continue;
         }
         b->state = x->state + at;
-        for (int part = 0; part < 2; part++) b->tangent[part] = bough_mode_shape_part(x, part) + at;
+        for (int part = 0; part < 2; part++) b->tangent[part] = part_of(x, part) + at;
     }
-}
-
-const bough_beam_shape *bough_mode_shape_beam(const bough_mode_shape *x, const bough_beam *beam) {
-    return &x->beam[beam - x->simulation->beam];
 }
 
 // -- rows -----------------------------------------------------------------------------------------
@@ -83,7 +103,7 @@ static int rows_of(const bough_simulation *s, int body) {
     return beam != NULL && beam->port >= 0 ? beam->def.n_segment + 1 : 1;
 }
 
-int bough_mode_shape_rows(const bough_simulation *s) {
+static int count_rows(const bough_simulation *s) {
     int n = 0;
     for (int i = 0; i < s->scene->n_body; i++) n += rows_of(s, i);
     return n;
@@ -91,22 +111,22 @@ int bough_mode_shape_rows(const bough_simulation *s) {
 
 // Sets the view so that twists of frames are their displacements along a part of the shape: the
 // joints' speeds are the changes of their coordinates.
-static void set_displacements(const bough_mode_shape *x, int part) {
+static void set_displacements(const mode_shape *x, int part) {
     const bough_tree *tree = x->simulation->tree;
     memcpy(x->moved, x->state, (size_t)tree->n_q * sizeof *x->moved);
     for (int i = 0; i < tree->n_links; i++) {
         const bough_link *link = &tree->links[i];
         int q = link->first_coordinate;
-        bough_joint_speed(&link->joint, x->state + q, bough_mode_shape_part(x, part) + q,
+        bough_joint_speed(&link->joint, x->state + q, part_of(x, part) + q,
                           x->moved + tree->n_q + link->first_speed);
     }
     bough_tree_kinematics(tree, x->moved, x->simulation->view);
 }
 
 // A vertex with states, against its frame's displacement, in the frame's axes.
-static bough_twist add_vertex(const bough_mode_shape *x, const bough_beam *beam, int part, int i,
+static bough_twist add_vertex(const mode_shape *x, const bough_beam *beam, int part, int i,
                               bough_twist frame) {
-    const bough_beam_shape *b = bough_mode_shape_beam(x, beam);
+    const beam_shape *b = beam_of(x, beam);
     const double *y = b->state + i - 1, *d = b->tangent[part] + i - 1;
     int n = beam->mesh->n;
     bough_vec3 arm = {y[0], y[n], y[2 * n]}, shift = {d[0], d[n], d[2 * n]};
@@ -123,7 +143,7 @@ static void store(const bough_simulation *s, const bough_frame *frame, bough_twi
     bough_twist_store((bough_twist){bough_mat3_mul(r, motion.linear), bough_mat3_mul(r, motion.angular)}, to);
 }
 
-static void move_body(const bough_mode_shape *x, int body, int part, bough_shape_row *row) {
+static void move_body(const mode_shape *x, int body, int part, bough_shape_row *row) {
     const bough_simulation *s = x->simulation;
     const bough_beam *beam = bough_simulation_beam(s, body);
     const bough_frame *frame = &s->tree->bodies[body];
@@ -163,7 +183,8 @@ static void scale_rows(bough_shape_row *row, int n) {
     }
 }
 
-void bough_mode_shape_move(const bough_mode_shape *x, bough_shape_row *row) {
+// Scaled so that the largest displacement, or else rotation, is real and 1.
+static void set_rows(const mode_shape *x, bough_shape_row *row) {
     const bough_simulation *s = x->simulation;
     for (int part = 0; part < 2; part++) {
         bough_shape_row *next = row;
@@ -173,7 +194,7 @@ void bough_mode_shape_move(const bough_mode_shape *x, bough_shape_row *row) {
             next += rows_of(s, i);
         }
     }
-    scale_rows(row, bough_mode_shape_rows(s));
+    scale_rows(row, count_rows(s));
     bough_tree_kinematics(s->tree, x->state, s->view);
 }
 
@@ -200,9 +221,9 @@ static int body_on(const bough_simulation *s, int link) {
 }
 
 // Kinetic energy of the links along the shape.
-static void add_links(const bough_mode_shape *x, int part, double *share) {
+static void add_links(const mode_shape *x, int part, double *share) {
     const bough_simulation *s = x->simulation;
-    bough_tree_tangent(s->tree, x->state, bough_mode_shape_part(x, part), s->view);
+    bough_tree_tangent(s->tree, x->state, part_of(x, part), s->view);
     for (int i = 0; i < s->tree->n_links; i++) {
         const bough_link *link = &s->tree->links[i];
         bough_twist v = s->view->acceleration[i];
@@ -218,8 +239,8 @@ static double vertex_energy(const bough_vertex_inertia *v, bough_vec3 u, bough_v
     return bough_power(twist, bough_inertia_mul(&inertia, twist));
 }
 
-static double rod_energy(const bough_mode_shape *x, const bough_beam *beam, int part) {
-    const bough_beam_shape *b = bough_mode_shape_beam(x, beam);
+static double rod_energy(const mode_shape *x, const bough_beam *beam, int part) {
+    const beam_shape *b = beam_of(x, beam);
     const bough_rod_model *m = beam->mesh;
     const double *d = b->tangent[part] + (size_t)BOUGH_ROD_U * m->n;
     double sum = 0;
@@ -233,7 +254,7 @@ static double rod_energy(const bough_mode_shape *x, const bough_beam *beam, int 
     return sum;
 }
 
-static void set_shares(const bough_mode_shape *x, bough_scene_mode *mode) {
+static void set_shares(const mode_shape *x, bough_scene_mode *mode) {
     const bough_simulation *s = x->simulation;
     int n_body = s->scene->n_body;
     double sum = 0, blades = 0;
@@ -262,11 +283,10 @@ static void set_shares(const bough_mode_shape *x, bough_scene_mode *mode) {
 enum { BENDING = 6 };
 
 // The square root of its inertia times displacement c < 3 or turn of a vertex against the body.
-static double bending(const bough_mode_shape *x, const bough_beam *beam, int part, int i, int c) {
+static double bending(const mode_shape *x, const bough_beam *beam, int part, int i, int c) {
     const bough_rod_model *m = beam->mesh;
     int n = m->n;
-    const double *d = bough_mode_shape_beam(x, beam)->tangent[part],
-                 *y = bough_mode_shape_beam(x, beam)->state;
+    const double *d = beam_of(x, beam)->tangent[part], *y = beam_of(x, beam)->state;
     const bough_vertex_inertia *v = &m->vertex[i + 1];
     if (c < 3) return sqrt(v->mass) * d[c * n + i];
     bough_quaternion p = {y[3 * n + i], -y[4 * n + i], -y[5 * n + i], -y[6 * n + i]};
@@ -276,7 +296,7 @@ static double bending(const bough_mode_shape *x, const bough_beam *beam, int par
     return 2 * sqrt(v->inertia[c - 3]) * turns[c - 3];
 }
 
-static void add_direction(const bough_mode_shape *x, const bough_beam *beam, double *sum) {
+static void add_direction(const mode_shape *x, const bough_beam *beam, double *sum) {
     for (int i = 0; i < beam->mesh->n; i++) {
         for (int part = 0; part < 2; part++) {
             for (int c = 0; c < 3; c++) sum[c] += pow(bending(x, beam, part, i, c), 2);
@@ -286,12 +306,12 @@ static void add_direction(const bough_mode_shape *x, const bough_beam *beam, dou
 }
 
 // Kinetic energy of a rigid body: of its mass centre along the ground's axes, and of its rotation.
-static void add_motion(const bough_mode_shape *x, int body, int part, double *sum) {
+static void add_motion(const mode_shape *x, int body, int part, double *sum) {
     const bough_simulation *s = x->simulation;
     int link = s->tree->bodies[body].link;
     if (link < 0) return;
     const bough_inertia *inertia = &s->tree->links[link].inertia;
-    bough_tree_tangent(s->tree, x->state, bough_mode_shape_part(x, part), s->view);
+    bough_tree_tangent(s->tree, x->state, part_of(x, part), s->view);
     bough_twist twist = s->view->acceleration[link];
     bough_wrench momentum = bough_inertia_mul(inertia, twist);
     bough_vec3 p = bough_mat3_mul(s->view->pose[link].rotation, momentum.force);
@@ -304,7 +324,7 @@ static void add_motion(const bough_mode_shape *x, int body, int part, double *su
     }
 }
 
-static void set_direction(const bough_mode_shape *x, bough_scene_mode *mode) {
+static void set_direction(const mode_shape *x, bough_scene_mode *mode) {
     const bough_beam *beam = bough_simulation_beam(x->simulation, mode->body);
     double sum[BOUGH_ROD_DIRECTIONS] = {0};
     bool rigid = !mode->blades && (beam == NULL || beam->port < 0);
@@ -358,7 +378,7 @@ static bough_pattern name_pattern(const pattern *p, const double whirl[3]) {
 enum { MOST_BLADES = 16 };
 
 // A pattern exp(−i 2πk/n) exp(iωt) is cos(ωt − 2πk/n): it runs towards growing azimuth.
-static void set_pattern(const bough_mode_shape *x, bough_scene_mode *mode) {
+static void set_pattern(const mode_shape *x, bough_scene_mode *mode) {
     const bough_blade_group *g = x->group;
     pattern sum = {0};
     if (g->n == 0 || g->n > MOST_BLADES) return;
@@ -380,8 +400,22 @@ static void set_pattern(const bough_mode_shape *x, bough_scene_mode *mode) {
     mode->pattern = name_pattern(&sum, mode->whirl);
 }
 
-void bough_mode_share_set(const bough_mode_shape *x, bough_scene_mode *mode) {
-    set_shares(x, mode);
-    set_direction(x, mode);
-    set_pattern(x, mode);
+void bough_vibration_describe(bough_arena *arena, const bough_simulation *s,
+                              const bough_vibration_point *point, bough_vibration *v) {
+    mode_shape x = {
+        .simulation = s, .assembly = s->master->assembly, .group = &point->group, .state = point->state};
+    v->n_row = count_rows(s);
+    take(arena, &x);
+    for (int k = 0; k < v->found; k++) {
+        bough_scene_mode *mode = &v->mode[k];
+        x.pair = &v->pair[k];
+        set_beams(&x);
+        mode->share = bough_arena_doubles(arena, (size_t)s->scene->n_body);
+        set_shares(&x, mode);
+        set_direction(&x, mode);
+        set_pattern(&x, mode);
+        if (!s->scene->modes.shapes) continue;
+        mode->shape = bough_arena_take(arena, (size_t)v->n_row * sizeof *mode->shape);
+        set_rows(&x, mode->shape);
+    }
 }

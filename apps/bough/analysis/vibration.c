@@ -1,7 +1,6 @@
 #include "apps/bough/analysis/vibration.h"
 
 #include "apps/bough/analysis/aeroelastic.h"
-#include "apps/bough/analysis/mode_shape.h"
 #include "apps/bough/analysis/steady.h"
 #include "apps/bough/model/companion.h"
 #include "core/tree/dynamics.h"
@@ -173,26 +172,6 @@ static bough_status check_constant(bough_arena *arena, const bough_simulation *s
 
 // -- solution -------------------------------------------------------------------------------------
 
-static bough_status describe(bough_arena *arena, const bough_simulation *s, const bough_vibration_point *x,
-                             bough_vibration *v) {
-    bough_mode_shape one = {
-        .simulation = s, .assembly = s->master->assembly, .group = &x->group, .state = x->state};
-    v->n_row = bough_mode_shape_rows(s);
-    bough_mode_shape_take(arena, &one);
-    for (int k = 0; k < v->found; k++) {
-        one.pair = &v->pair[k];
-        bough_mode_shape_set(&one);
-        bough_scene_mode *mode = &v->mode[k];
-        mode->share = bough_arena_doubles(arena, (size_t)s->scene->n_body);
-        set_value(&v->pair[k], mode);
-        bough_mode_share_set(&one, mode);
-        if (!s->scene->modes.shapes) continue;
-        mode->shape = bough_arena_take(arena, (size_t)v->n_row * sizeof *mode->shape);
-        bough_mode_shape_move(&one, mode->shape);
-    }
-    return bough_ok();
-}
-
 // Violations of closures decay at a rate of their own, which is no motion of the scene.
 static bool is_closure(const bough_tree *tree, const bough_eigen_pair *pair) {
     double rate = 1 / tree->closure_time;
@@ -241,7 +220,9 @@ static bough_status solve(bough_arena *arena, bough_simulation *s, int count, bo
     bool in_air = s->aero && s->scene->modes.air != BOUGH_SCENE_AIR_FROZEN;
     BOUGH_TRY(in_air ? solve_in_air(arena, s, &x, count, v) : solve_bodies(arena, s, &x, count, v));
     drop_other_motions(s->tree, x.def.point, count, v);
-    return describe(arena, s, &x, v);
+    for (int k = 0; k < v->found; k++) set_value(&v->pair[k], &v->mode[k]);
+    bough_vibration_describe(arena, s, &x, v);
+    return bough_ok();
 }
 
 bool bough_vibration_wanted(const bough_simulation *s) {

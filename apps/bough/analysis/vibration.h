@@ -8,9 +8,54 @@
 #ifndef BOUGH_APPS_ANALYSIS_VIBRATION_H
 #define BOUGH_APPS_ANALYSIS_VIBRATION_H
 
-#include "apps/bough/analysis/mode_shape.h"
+#include "apps/bough/model/blade_group.h"
 #include "apps/bough/model/equilibrium.h"
+#include "core/base/eigen.h"
 #include "cosim/analysis/modes.h"
+#include "flexbody/rod/rod_modes.h"
+
+// -- a mode: whose energy, in which direction, in which pattern over the blades ------------------
+
+// The motion of the whole, displacement [m] and rotation [rad] in ground axes: a row for each body
+// of the scene at its frame, of a flexible one for each vertex.
+typedef struct bough_shape_row {
+    int body;
+    double span;         // [m]; 0 of a rigid body
+    double motion[2][6]; // real and imaginary part
+} bough_shape_row;
+
+// How the blades move against each other.
+typedef enum bough_pattern {
+    BOUGH_PATTERN_NONE,         // there are no blades to compare
+    BOUGH_PATTERN_COLLECTIVE,   // all alike
+    BOUGH_PATTERN_FORWARD,      // whirling in the sense of the rotation, at rest of the shaft's axis
+    BOUGH_PATTERN_BACKWARD,     // against it
+    BOUGH_PATTERN_COSINE,       // standing, as the cosine of the azimuth: the rotor tilts
+    BOUGH_PATTERN_SINE,         // standing, as the sine: it yaws
+    BOUGH_PATTERN_REACTIONLESS, // of four blades and more
+    BOUGH_PATTERNS,
+} bough_pattern;
+
+typedef struct bough_scene_mode {
+    double frequency;        // |λ|/2π [Hz]
+    double damped_frequency; // Im λ/2π [Hz]; 0: it grows without oscillating
+    double damping;          // ratio −Re λ/|λ|; negative: it grows
+    double growth;           // Re λ [1/s]
+    double residual;         // of its eigenvector: bough_eigen_residual
+    double moved;            // by another mesh, |λ − λ'|/|λ|; NaN: not compared, or no such mode there
+    double *share;           // of the kinetic energy per body of the scene, sum 1
+    int body;                // the body of the largest, or a blade when all blades' together is
+    bool blades;             // it is
+    int direction;           // of the largest share: bough_rod_direction in these rods; of a rigid
+                             // body 0..2 along the ground's axes, 3 turning
+    bough_pattern pattern;   // of the blades
+    double whirl[3];         // shares of the blades' motion: collective, forward, backward
+    bough_shape_row *shape;  // (n_row); NULL unless the scene's modes block asks for shapes
+} bough_scene_mode;
+
+extern const char *const bough_pattern_names[BOUGH_PATTERNS];
+
+// -- the modes of a scene -------------------------------------------------------------------------
 
 typedef struct bough_vibration {
     double time;             // of the loads [s]
@@ -38,6 +83,10 @@ typedef struct bough_vibration_point {
 
 bough_status bough_vibration_point_find(bough_arena *arena, bough_simulation *s, double time,
                                         bough_vibration_point *point);
+
+// Sets v->mode from the eigenvectors v->pair about the point (mode_shape.c), but for their eigenvalues.
+void bough_vibration_describe(bough_arena *arena, const bough_simulation *s, const bough_vibration_point *x,
+                              bough_vibration *v);
 
 // Whether the scene's modes block, or the scene without it, asks for modes of the whole.
 bool bough_vibration_wanted(const bough_simulation *s);

@@ -5,7 +5,6 @@
 #include "apps/bough/cli/modes_internal.h"
 #include "apps/bough/results/folder.h"
 #include "apps/bough/results/summary.h"
-#include "flexbody/rod/rod_modes.h"
 
 static const double unstable = 1e-6; // growth relative to |λ| above it is no rounding
 static const double fine = 0.01;     // residuals and changes by another mesh up to it need no warning
