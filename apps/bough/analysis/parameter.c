@@ -154,9 +154,6 @@ bough_scene *bough_parameter_change(bough_arena *arena, const bough_scene *scene
                                     double times) {
     const kind *of = &kinds[x->kind];
     bough_scene *to = bough_coarser_scene(arena, scene, 0);
-    size_t size = (size_t)scene->n_body * sizeof *to->body;
-    to->body = bough_arena_take(arena, size);
-    memcpy(to->body, scene->body, size);
     for (int i = 0; i < x->n_body; i++)
         change_rod(arena, of, times * of->change, &to->body[x->body[i]].rod.structure);
     if (of->scene) of->scene(to, times * of->change);

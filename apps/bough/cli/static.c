@@ -2,6 +2,7 @@
 // under gravity and the whole of the scene's loads.
 #include "apps/bough/analysis/steady.h"
 #include "apps/bough/cli/command.h"
+#include "apps/bough/model/companion.h"
 #include "apps/bough/model/equilibrium.h"
 #include "apps/bough/model/error_verdict.h"
 #include "apps/bough/results/channels.h"
@@ -140,46 +141,31 @@ static void start_near(const bough_simulation *coarse, bough_simulation *fine) {
     memcpy(fine->leader.state, coarse->leader.state, (size_t)fine->leader.system.n_state * sizeof(double));
 }
 
-// Loads on vertices stay at their places.
-static void follow_vertices(bough_arena *arena, bough_scene *scene) {
-    size_t n = (size_t)scene->n_load;
-    bough_scene_load *load = bough_arena_take(arena, n * sizeof *load);
-    for (size_t i = 0; i < n; i++) {
-        load[i] = scene->load[i];
-        if (load[i].place == BOUGH_SCENE_AT_VERTEX) load[i].vertex *= TIMES;
-    }
-    scene->load = load;
-}
-
 // False, with the reason, where a finer mesh gives no error.
-static bool refine(bough_arena *arena, bough_scene *scene, mesh_error *mesh) {
-    size_t n = (size_t)scene->n_body;
-    bough_scene_body *body = bough_arena_take(arena, n * sizeof *body);
+static bool refine(bough_scene *scene, mesh_error *mesh) {
     bool any = false;
-    memcpy(body, scene->body, n * sizeof *body);
-    for (size_t i = 0; i < n; i++) {
-        if (!bough_scene_has_mesh(&body[i])) continue;
-        if (body[i].fidelity != BOUGH_SCENE_ROD) {
+    for (int i = 0; i < scene->n_body; i++) {
+        bough_scene_body *body = &scene->body[i];
+        if (!bough_scene_has_mesh(body)) continue;
+        if (body->fidelity != BOUGH_SCENE_ROD) {
             snprintf(mesh->unknown, sizeof mesh->unknown,
-                     "%.60s is a modal body, whose shapes have errors of their own", body[i].name);
+                     "%.60s is a modal body, whose shapes have errors of their own", body->name);
             return false;
         }
-        body[i].rod.n_segment *= TIMES;
+        body->rod.n_segment *= TIMES;
         any = true;
     }
     if (!any) snprintf(mesh->unknown, sizeof mesh->unknown, "no body has a mesh");
-    follow_vertices(arena, scene);
-    scene->body = body;
     return any;
 }
 
 static bough_status find_finer(bough_arena *arena, void *self) {
     const comparison *c = self;
-    bough_scene scene = *c->coarse->simulation->scene;
+    bough_scene *scene = bough_coarser_scene(arena, c->coarse->simulation->scene, 0);
     bough_simulation *s;
     equilibrium fine;
-    if (!refine(arena, &scene, c->mesh)) return bough_ok();
-    BOUGH_TRY(bough_simulation_build(arena, &scene, &s));
+    if (!refine(scene, c->mesh)) return bough_ok();
+    BOUGH_TRY(bough_simulation_build(arena, scene, &s));
     start_near(c->coarse->simulation, s);
     BOUGH_TRY(find_equilibrium(arena, s, &fine));
     compare(c, &fine);

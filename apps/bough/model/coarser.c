@@ -126,10 +126,7 @@ static bool some_finer(const bough_scene *scene) {
     return finer;
 }
 
-static void change_segments(bough_arena *arena, const bough_scene *scene, bough_scene *to) {
-    size_t size = (size_t)scene->n_body * sizeof *to->body;
-    to->body = bough_arena_take(arena, size);
-    memcpy(to->body, scene->body, size);
+static void change_segments(const bough_scene *scene, bough_scene *to) {
     for (int i = 0; i < scene->n_body; i++) {
         if (scene->body[i].rod.node) to->body[i].rod.n_segment = other_segments(scene, i);
     }
@@ -287,8 +284,10 @@ static void shorten_steps(bough_scene *to) {
 bough_scene *bough_coarser_scene(bough_arena *arena, const bough_scene *scene, int parts) {
     bough_scene *to = bough_arena_take(arena, sizeof *to);
     *to = *scene;
+    to->body = bough_arena_take(arena, (size_t)scene->n_body * sizeof *to->body);
+    memcpy(to->body, scene->body, (size_t)scene->n_body * sizeof *to->body);
     copy_loads(arena, scene, to);
-    if (parts & BOUGH_COARSER_MESH) change_segments(arena, scene, to);
+    if (parts & BOUGH_COARSER_MESH) change_segments(scene, to);
     if (parts & BOUGH_COARSER_AIR)
         to->aero.rate = other_rate(scene, parts & BOUGH_COARSER_MESH && some_finer(scene));
     if (parts & BOUGH_COARSER_TIME) lengthen_steps(scene, to);
