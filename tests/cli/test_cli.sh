@@ -174,6 +174,8 @@ checks() {
     has ../stdout '^wind: box file .*turbulence.bts, mean .* m/s, .* s.*: covers the rotor'
     expect 0 check "$folder/apps/turbine/land-operation.yaml"
     has ../stdout '^control: built, variable-speed law, 25 Hz, gear ratio 97, generator torque and pitch, 0 ev'
+    expect 0 check "$folder/apps/turbine/land-operation.yaml" --set control.pitch=false
+    has ../stdout '^control: built, .* generator torque only'
     expect 2 check "$turbine" --set 'control={kind: variable-speed}'
     has ../stderr "error: control: the joint of 'blade1' cannot pitch it: .*'pitch: false'"
     expect 0 check "$turbine" --set 'control={kind: variable-speed, pitch: false}'

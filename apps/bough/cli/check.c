@@ -3,6 +3,7 @@
 #include "apps/bough/cli/run.h"
 #include "apps/bough/config/base.h"
 #include "apps/bough/model/aero_link.h"
+#include "apps/bough/model/control_link.h"
 #include "apps/bough/model/validity.h"
 
 #include <math.h>
@@ -336,11 +337,6 @@ static void print_aero(const bough_simulation *s, const bough_rotor_place *r) {
 
 // -- control --------------------------------------------------------------------------------------
 
-static bool is_pitched(const bough_scene *scene) {
-    const bough_scene_joint *joint = &scene->body[scene->turbine.blade[0]].joint;
-    return joint->kind == BOUGH_JOINT_REVOLUTE && joint->motion.node != NULL;
-}
-
 static void print_control(const bough_simulation *s) {
     static const char *const kind[] = {[BOUGH_SCENE_VARIABLE_SPEED] = "variable-speed law",
                                        [BOUGH_SCENE_BLADED] = "library ",
@@ -355,8 +351,8 @@ static void print_control(const bough_simulation *s) {
            c->kind == BOUGH_SCENE_BLADED        ? c->library
            : c->kind == BOUGH_SCENE_CONTROL_FMU ? c->fmu.model.folder
                                                 : "",
-           c->rate, c->gear_ratio, is_pitched(s->scene) ? " and pitch" : " only", c->n_event,
-           c->n_event == 1 ? "" : "s");
+           c->rate, c->gear_ratio, bough_control_link_pitches(s->control) ? " and pitch" : " only",
+           c->n_event, c->n_event == 1 ? "" : "s");
 }
 
 static void print_turbine(bough_simulation *s) {
