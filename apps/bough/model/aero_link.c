@@ -356,6 +356,8 @@ static void snapshot(void *self, bough_snapshot *s) {
 // -- whole ----------------------------------------------------------------------------------------
 
 bough_status bough_aero_link_build(bough_arena *arena, bough_simulation *simulation) {
+    const bough_scene_aero *aero = &simulation->scene->aero;
+    if (aero->node == NULL) return bough_ok();
     bough_aero_link *l = bough_arena_take(arena, sizeof *l);
     tables t;
     l->simulation = simulation;
@@ -364,7 +366,6 @@ bough_status bough_aero_link_build(bough_arena *arena, bough_simulation *simulat
     bough_rotor_def def = rotor_def(l, &t);
     bough_status status = bough_rotor_build(arena, &def, &l->rotor);
     if (bough_is_ok(&status)) status = check_reach(l);
-    const bough_scene_aero *aero = &simulation->scene->aero;
     const bough_node *file = bough_node_find(aero->wind.node, "file");
     if (!bough_is_ok(&status)) {
         return bough_scene_blame(file ? file : aero->node, file ? "aero.wind.file" : "aero", status);

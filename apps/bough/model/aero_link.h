@@ -8,7 +8,7 @@
 
 typedef struct bough_aero_link bough_aero_link;
 
-// Builds the rotor of the scene's aero block for the simulation's blades, which gets the link.
+// Builds the rotor of the scene's aero block, if it has one, for the simulation's blades.
 bough_status bough_aero_link_build(bough_arena *arena, bough_simulation *simulation);
 
 // The turbulence by name of a scene's wind, with what the scene leaves to choose. False: it has none.
@@ -126,11 +126,8 @@ void bough_aero_signal_snapshot(bough_aero_signal *s, bough_snapshot *snapshot);
 
 typedef struct bough_drag_link bough_drag_link;
 
-// Whether the scene has such drag.
-bool bough_drag_link_wanted(const bough_scene *scene);
-
-// After the aerodynamics. `hub_marker` of the tree, on the rotor; −1: no drag of the hub.
-void bough_drag_link_build(bough_arena *arena, bough_simulation *simulation, int hub_marker);
+// After the aerodynamics.
+void bough_drag_link_build(bough_arena *arena, bough_simulation *simulation);
 
 // Sets the drag of the present motion, constant, as bough_aero_link_hold does the rotor's loads.
 void bough_drag_link_hold(bough_drag_link *link, double t);

@@ -255,9 +255,9 @@ bough_status bough_simulation_build_on(bough_arena *arena, const bough_scene *sc
     bough_simulation_update(b.s);
     bough_load_link_build(arena, b.s);
     bough_input_link_build(arena, b.s);
-    if (scene->aero.node != NULL) BOUGH_TRY(bough_aero_link_build(arena, b.s));
-    if (bough_drag_link_wanted(scene)) bough_drag_link_build(arena, b.s, b.hub);
-    if (scene->control.node != NULL) BOUGH_TRY(bough_control_link_build(arena, b.s, b.tree.n_loads - 1));
+    BOUGH_TRY(bough_aero_link_build(arena, b.s));
+    bough_drag_link_build(arena, b.s);
+    BOUGH_TRY(bough_control_link_build(arena, b.s));
     bough_jump_link_build(arena, b.s);
     BOUGH_TRY(build_master(&b));
     if (b.s->control != NULL) BOUGH_TRY(bough_control_link_watch(arena, b.s->control));

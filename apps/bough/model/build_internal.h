@@ -68,7 +68,6 @@ typedef struct bough_builder {
     bough_marker_def *marker;      // (tree.n_markers), those of the beams first, then of the FMUs
     bough_port_def *port;          // (n_rod + n_fmu)
     bough_joint_load_def *load;    // (tree.n_loads): those on joints
-    int hub;                       // marker on which the hub's drag acts; −1: none
     bough_assembly_member *member; // leader, then rods
     bough_connection *connection;  // two per rod, two more of one that carries bodies
     int n_connection;
@@ -84,7 +83,8 @@ int bough_build_marker(bough_builder *b, const char *name, int body, bough_trans
 
 // -- springs, bushings, closures, applied wrenches and recorded points (load_link.c) --------------
 
-// All of the scene, after the markers of beams and FMUs.
+// All of the scene, after the markers of beams and FMUs. The last marker is that of the hub's drag, if it has
+// any.
 void bough_build_forces(bough_builder *b);
 
 // Turns the second markers of the bushings so that nothing acts in the simulation's view.

@@ -426,12 +426,13 @@ static void snapshot(void *self, bough_snapshot *s) {
 
 // -- whole ----------------------------------------------------------------------------------------
 
-bough_status bough_control_link_build(bough_arena *arena, bough_simulation *simulation, int load) {
+bough_status bough_control_link_build(bough_arena *arena, bough_simulation *simulation) {
     const bough_scene *scene = simulation->scene;
+    if (scene->control.node == NULL) return bough_ok();
     bough_control_link *l = bough_arena_take(arena, sizeof *l);
     l->simulation = simulation;
     l->control = &scene->control;
-    l->load = load;
+    l->load = simulation->tree->n_loads - 1;
     l->n_blade = scene->turbine.n_blade;
     l->steers = scene->control.pitch && scene->body[scene->turbine.blade[0]].joint.motion.node != NULL;
     for (int b = 0; b < l->n_blade && l->steers; b++)

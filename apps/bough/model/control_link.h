@@ -8,8 +8,9 @@
 
 typedef struct bough_control_link bough_control_link;
 
-// Takes the load `load` of the simulation's tree, on the rotor's joint, for the generator.
-bough_status bough_control_link_build(bough_arena *arena, bough_simulation *simulation, int load);
+// Builds the scene's control, if it has one: the last load of the tree, on the rotor's joint, is the
+// generator's.
+bough_status bough_control_link_build(bough_arena *arena, bough_simulation *simulation);
 
 // Takes the scene's events into account; called when all else is built.
 bough_status bough_control_link_watch(bough_arena *arena, bough_control_link *link);

@@ -15,11 +15,6 @@ struct bough_drag_link {
     double *memory;              // (2 n + 2): value and rate of the signals, start, started
 };
 
-bool bough_drag_link_wanted(const bough_scene *scene) {
-    const bough_scene_aero *aero = &scene->aero;
-    return aero->node != NULL && (aero->tower.body_name != NULL || aero->hub_drag_area > 0);
-}
-
 // -- sample ---------------------------------------------------------------------------------------
 
 // The part of the tower that a vertex stands for [m].
@@ -116,13 +111,15 @@ static void snapshot(void *self, bough_snapshot *s) {
     if (s->move == BOUGH_SNAPSHOT_RESTORE && link->memory[2 * link->n + 1] != 0) put(link);
 }
 
-void bough_drag_link_build(bough_arena *arena, bough_simulation *simulation, int hub_marker) {
+void bough_drag_link_build(bough_arena *arena, bough_simulation *simulation) {
     const bough_scene_aero *aero = &simulation->scene->aero;
+    bool tower = aero->tower.body_name != NULL, hub = aero->hub_drag_area > 0;
+    if (aero->node == NULL || !(tower || hub)) return;
     bough_drag_link *l = bough_arena_take(arena, sizeof *l);
     l->simulation = simulation;
     l->rotor = bough_aero_link_rotor(simulation->aero);
-    l->hub_marker = hub_marker;
-    if (aero->tower.body_name != NULL) {
+    l->hub_marker = hub ? simulation->first_marker + simulation->scene->n_marker : -1;
+    if (tower) {
         l->tower = bough_simulation_beam(simulation, aero->tower.body);
         l->n_vertex = l->tower->def.n_segment + 1;
         l->n_tower = l->tower->port < 0 ? 6 : 3 * l->n_vertex;

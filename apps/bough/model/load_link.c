@@ -143,8 +143,8 @@ void bough_build_forces(bough_builder *b) {
         const bough_scene_marker *from = &scene->marker[k];
         bough_build_marker(b, from->name, from->body, at(from->point));
     }
-    bool drag = scene->aero.node != NULL && scene->aero.hub_drag_area > 0;
-    b->hub = drag ? bough_build_marker(b, "hub", scene->turbine.rotor, bough_transform_identity()) : -1;
+    if (scene->aero.node != NULL && scene->aero.hub_drag_area > 0)
+        bough_build_marker(b, "hub", scene->turbine.rotor, bough_transform_identity());
 }
 
 void bough_build_rest(const bough_simulation *s) {
