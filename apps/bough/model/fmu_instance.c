@@ -66,8 +66,7 @@ static bough_status open_library(bough_fmu_instance *x, bough_arena *arena) {
     const char *missing = NULL;
     x->folder = x->model->folder;
     if (bough_fmu_is_archive(x->model->folder)) {
-        bough_status status = bough_fmu_archive_unpack(arena, x->model->folder, &x->folder);
-        if (!bough_is_ok(&status)) return status;
+        BOUGH_TRY(bough_fmu_archive_unpack(arena, x->model->folder, &x->folder));
     }
     snprintf(path, sizeof path, "%s%s/binaries/" PLATFORM "/%s.so", strchr(x->folder, '/') ? "" : "./",
              x->folder, d->identifier);

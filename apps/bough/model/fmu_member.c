@@ -28,23 +28,22 @@ static bough_status advance(void *self, double *t, double pause, double t1, bool
     int n = x->body->fmu.steps;
     double t0 = *t, h = (t1 - t0) / n;
     double share = x->body->fmu.hold == BOUGH_SCENE_FMU_HELD ? 0.5 : 1;
-    bough_status status = bough_ok();
     if (x->lost) {
         return bough_fail(BOUGH_FAILED, "%s: the FMU could not store or restore its state at %.6g s%s%s",
                           x->body->name, t0, x->fmu.message[0] ? ": " : "", x->fmu.message);
     }
-    for (int k = 0; k < n && bough_is_ok(&status); k++) {
+    for (int k = 0; k < n; k++) {
         double from = t0 + k * h;
-        bough_signal_value(signal, from + share * h, x->motion);
-        status = bough_fmu_set(&x->fmu, from, &x->input, x->motion);
-        if (bough_is_ok(&status)) status = bough_fmu_step(&x->fmu, from, k < n - 1 ? h : t1 - from);
         x->steps++;
+        bough_signal_value(signal, from + share * h, x->motion);
+        BOUGH_TRY(bough_fmu_set(&x->fmu, from, &x->input, x->motion));
+        BOUGH_TRY(bough_fmu_step(&x->fmu, from, k < n - 1 ? h : t1 - from));
     }
     bough_signal_value(signal, t1, x->motion);
-    if (bough_is_ok(&status)) status = bough_fmu_set(&x->fmu, t1, &x->input, x->motion);
-    if (bough_is_ok(&status)) status = bough_fmu_get(&x->fmu, t1, &x->output, x->wrench);
+    BOUGH_TRY(bough_fmu_set(&x->fmu, t1, &x->input, x->motion));
+    BOUGH_TRY(bough_fmu_get(&x->fmu, t1, &x->output, x->wrench));
     *t = t1;
-    return status;
+    return bough_ok();
 }
 
 static void statistics(const void *self, bough_statistics *sum) {
@@ -134,10 +133,10 @@ bough_status bough_fmu_member_create(bough_arena *arena, const bough_scene_body 
     *x = (fmu_member){.body = body, .member = member};
     bough_fmu_list(BOUGH_SCENE_MOTION, body->fmu.input, &x->input);
     bough_fmu_list(BOUGH_SCENE_WRENCH, body->fmu.output, &x->output);
-    bough_status status = bough_fmu_open(arena, &body->fmu.model, body->name, &x->fmu);
+    BOUGH_TRY(bough_fmu_open(arena, &body->fmu.model, body->name, &x->fmu));
     bough_arena_on_destroy(arena, free_states, x);
-    if (bough_is_ok(&status)) status = bough_fmu_initialise(&x->fmu, 0, duration, &x->input, motion);
-    if (bough_is_ok(&status)) status = bough_fmu_get(&x->fmu, 0, &x->output, x->wrench);
+    BOUGH_TRY(bough_fmu_initialise(&x->fmu, 0, duration, &x->input, motion));
+    BOUGH_TRY(bough_fmu_get(&x->fmu, 0, &x->output, x->wrench));
     bool restores = body->fmu.model.description.restores;
     *member = (bough_member){.system = {.name = body->name,
                                         .kind = "FMU",
@@ -152,5 +151,5 @@ bough_status bough_fmu_member_create(bough_arena *arena, const bough_scene_body 
                              .input = bough_arena_doubles(arena, BOUGH_SCENE_MOTION),
                              .factors = x,
                              .integrator = {.ops = restores ? &steps_and_states : &steps, .self = x}};
-    return status;
+    return bough_ok();
 }
