@@ -42,7 +42,7 @@ static fixture mounted(double rtol, bool damped) {
     const bough_bushing_def bushings[] = {
         {{0, 1}, {8, 5, 3, 4, 6, 2}, {0.4 * c, 0.2 * c, 0.3 * c, 0.2 * c, 0.1 * c, 0.5 * c}},
         {{2, 0}, {3, 5, 7, 2, 5, 4}, {0.1 * c, 0.2 * c, 0.3 * c, 0.1 * c, 0.4 * c, 0.2 * c}}};
-    const double times[] = {0, 0.3, 1}, values[] = {0.5, 2, -1};
+    static const double times[] = {0, 0.3, 1}, values[] = {0.5, 2, -1};
     const bough_applied_def applied[] = {
         {0, {{1, -2, 3}, {0.4, 0.5, -0.6}}, true, {.start = 0, .end = 1}},
         {1, {{2, 1, -1}, {-0.4, 0.3, 0.6}}, false, {.n = 3, .times = times, .values = values}}};
