@@ -72,13 +72,13 @@ complete("An integrator" "\\[BOUGH_RADAU5\\]|^    BOUGH_RADAU5,")
 recipe("A joint" core/tree/joint.h "typedef enum bough_joint_kind" core/tree/joint.c "[BOUGH_JOINT_PLANAR] ="
   core/tree/constraint.c "BOUGH_JOINT_PLANAR" apps/bough/scene/scene_schema_body.c "WHEN"
   apps/bough/model/build_bodies.c "case BOUGH_JOINT_PLANAR" apps/bough/model/channel_table.c
-  "bough_channel_row planar[]" apps/bough/model/observe.c "joint_channels[")
+  "[BOUGH_CHANNELS_PLANAR] =" apps/bough/model/observe.c "joint_channels[")
 complete("A joint" "case BOUGH_JOINT_(PLANAR|UNIVERSAL)|\\[BOUGH_JOINT_(PLANAR|UNIVERSAL)\\]|^    BOUGH_JOINT_PLANAR,")
 
 recipe("A key of a scene or a study" apps/bough/config/schema_keys.h "#define KEY(" apps/bough/scene/scene_schema.c
   "KEY(" apps/bough/scene/scene_link.c "bough_")
-recipe("A channel" apps/bough/model/channel_table.c "bough_channel_row rotor[]")
-complete("A channel" "bough_channel_row [a-z_]+\\[\\] =")
+recipe("A channel" apps/bough/model/channel_table.c "[BOUGH_CHANNELS_ROTOR] =")
+complete("A channel" "\\[BOUGH_CHANNELS_[A-Z_]+\\] =")
 recipe("A command" apps/bough/cli/command.h "bough_command_" apps/bough/cli/main.c "bough_command_")
 
 if(found)
