@@ -55,12 +55,9 @@ void bough_rod_ride(const bough_rod_model *m, const double *input, double *state
 }
 
 static void put_cross(bough_vec3 a, double *block, int at) {
-    block[W8 * at + at + 1] = a.z;
-    block[W8 * at + at + 2] = -a.y;
-    block[W8 * (at + 1) + at] = -a.z;
-    block[W8 * (at + 1) + at + 2] = a.x;
-    block[W8 * (at + 2) + at] = a.y;
-    block[W8 * (at + 2) + at + 1] = -a.x;
+    for (int j = 0; j < 3; j++) {
+        bough_v3_store(bough_cross(a, bough_unit3(j)), block + (size_t)W8 * (at + j) + at);
+    }
 }
 
 // B of vertex i + 1

@@ -429,7 +429,7 @@ bough_status bough_section_discretise(bough_arena *arena, const bough_section_ta
                            .inertia = inertia,
                            .sections = {part_strain, a}};
     for (int i = 0; i <= n_segment; i++) {
-        span[i] = bough_section_length(a) * bough_section_graded(table->grading, (double)i / n_segment);
+        span[i] = a->arc[a->n - 1] * bough_section_graded(table->grading, (double)i / n_segment);
         position[i] = bough_section_at(a, span[i]).position;
         rotation[i] = bough_section_rotation(a, span[i]);
     }

@@ -37,8 +37,6 @@ void bough_section_axis_init(bough_section_axis *a, bough_arena *arena, const bo
     }
 }
 
-double bough_section_length(const bough_section_axis *a) { return a->arc[a->n - 1]; }
-
 bough_section_place bough_section_find(const bough_section_axis *a, double s) {
     int k = bough_table_row(a->n, a->arc, 1, s);
     double fraction = bough_clamp((s - a->arc[k]) / (a->arc[k + 1] - a->arc[k]), 0, 1);

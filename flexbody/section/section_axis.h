@@ -15,8 +15,6 @@ typedef struct bough_section_axis {
 
 void bough_section_axis_init(bough_section_axis *a, bough_arena *arena, const bough_section_table *table);
 
-double bough_section_length(const bough_section_axis *a);
-
 // Where s lies between two stations, and what is linear between them there.
 typedef struct bough_section_place {
     const bough_section_station *low, *high;
