@@ -263,7 +263,7 @@ double bough_session_read(bough_session *s, int channel) {
 }
 
 double bough_session_estimate(const bough_session *s, int channel) {
-    bool there = s->open && known(s, channel) && bough_companion_knows(s->run.companion, channel);
+    bool there = known(s, channel) && bough_companion_knows(s->run.companion, channel);
     return there ? s->run.companion->error[channel] : (double)NAN;
 }
 
