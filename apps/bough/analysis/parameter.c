@@ -14,6 +14,7 @@ typedef void change_scene(bough_scene *scene, double change);
 typedef struct kind {
     const char *name, *by;
     double change;
+    unsigned stiffness; // set of its components, 1 << c
     change_section *section;
     bool damping;
     change_scene *scene;
@@ -26,15 +27,6 @@ static void scale_stiffness(bough_section_station *x, int component, double chan
     for (int j = 0; j < 6; j++)
         x->stiffness[bough_symmetric6_index(component, j)] *= j == component ? 1 + change : sqrt(1 + change);
 }
-
-static void change_shear(bough_section_station *x, double change) {
-    scale_stiffness(x, 0, change);
-    scale_stiffness(x, 1, change);
-}
-static void change_axial(bough_section_station *x, double change) { scale_stiffness(x, 2, change); }
-static void change_about_x(bough_section_station *x, double change) { scale_stiffness(x, 3, change); }
-static void change_about_y(bough_section_station *x, double change) { scale_stiffness(x, 4, change); }
-static void change_torsion(bough_section_station *x, double change) { scale_stiffness(x, 5, change); }
 
 static void change_mass(bough_section_station *x, double change) {
     x->mass *= 1 + change;
@@ -84,11 +76,11 @@ enum { RODS = 9, PITCH = RODS, SPEED, DENSITY, WIND, KINDS };
 
 static const kind kinds[KINDS] = {
     {"structural damping", "1 %", 0.01, .damping = true},
-    {"bending stiffness about x", "1 %", 0.01, .section = change_about_x},
-    {"bending stiffness about y", "1 %", 0.01, .section = change_about_y},
-    {"torsional stiffness", "1 %", 0.01, .section = change_torsion},
-    {"shear stiffness", "1 %", 0.01, .section = change_shear},
-    {"axial stiffness", "1 %", 0.01, .section = change_axial},
+    {"bending stiffness about x", "1 %", 0.01, .stiffness = 1 << 3},
+    {"bending stiffness about y", "1 %", 0.01, .stiffness = 1 << 4},
+    {"torsional stiffness", "1 %", 0.01, .stiffness = 1 << 5},
+    {"shear stiffness", "1 %", 0.01, .stiffness = 1 << 0 | 1 << 1},
+    {"axial stiffness", "1 %", 0.01, .stiffness = 1 << 2},
     {"mass", "1 %", 0.01, .section = change_mass},
     {"mass centre along y", "1 cm", 0.01, .section = shift_mass},
     {"shear centre along y", "1 cm", 0.01, .section = shift_shear_centre},
@@ -143,10 +135,13 @@ const bough_parameter *bough_parameters_of(bough_arena *arena, const bough_scene
 
 static void change_rod(bough_arena *arena, const kind *of, double change, bough_scene_structure *x) {
     for (int k = 0; k < 6 && of->damping; k++) x->damping[k] *= 1 + change;
-    if (!of->section) return;
     bough_scene_station *station = bough_arena_take(arena, (size_t)x->n_station * sizeof *station);
     memcpy(station, x->station, (size_t)x->n_station * sizeof *station);
-    for (int k = 0; k < x->n_station; k++) of->section(&station[k].def, change);
+    for (int k = 0; k < x->n_station; k++) {
+        for (int c = 0; c < 6; c++)
+            if (of->stiffness >> c & 1) scale_stiffness(&station[k].def, c, change);
+        if (of->section) of->section(&station[k].def, change);
+    }
     x->station = station;
 }
 
