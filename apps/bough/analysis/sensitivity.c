@@ -116,7 +116,6 @@ typedef struct mode {
     int all;
     double complex value;         // λ
     double complex *right, *left; // (all)
-    double residual;
 } mode;
 
 static double complex *take_complex(bough_arena *arena, size_t n) {
@@ -183,15 +182,15 @@ static bool has_twin(int n, const double complex *a, const double complex *b) {
     return cabs(sum) < 0.99;
 }
 
-// λ by the quotient of both vectors, and its residual.
-static void improve(bough_arena *arena, const double *matrix, mode *x) {
+// λ by the quotient of both vectors; its residual relative to |λ|.
+static double improve(bough_arena *arena, const double *matrix, mode *x) {
     size_t all = (size_t)x->all;
     double complex *image = take_complex(arena, all);
     for (size_t j = 0; j < all; j++)
         for (size_t i = 0; i < all; i++) image[i] += matrix[j * all + i] * x->right[j];
     x->value = product(x->all, x->left, image) / product(x->all, x->left, x->right);
     for (size_t i = 0; i < all; i++) image[i] -= x->value * x->right[i];
-    x->residual = length_of(x->all, image) / cabs(x->value);
+    return length_of(x->all, image) / cabs(x->value);
 }
 
 static bough_status find_vectors(bough_arena *arena, linear *system, mode *x) {
@@ -209,8 +208,7 @@ static bough_status find_vectors(bough_arena *arena, linear *system, mode *x) {
     if (found && has_twin(x->all, x->right, twin))
         return bough_fail(BOUGH_INVALID, "the sensitivity of one of several modes with one eigenvalue is not "
                                          "defined: their shapes mix");
-    if (found) improve(arena, matrix, x);
-    if (!found || !(x->residual < exact))
+    if (!found || !(improve(arena, matrix, x) < exact))
         return bough_fail(BOUGH_FAILED, "the eigenvector of the mode does not converge");
     return bough_ok();
 }
@@ -280,7 +278,6 @@ bough_status bough_sensitivity_find(bough_arena *arena, bough_simulation *s, dou
               .value = of->growth + 2 * BOUGH_PI * imaginary * of->damped_frequency};
     BOUGH_TRY(find_vectors(arena, &system, &x));
     *found = (bough_sensitivities){
-        .residual = x.residual,
         .list = bough_arena_take(arena, ((size_t)n_parameter + 1) * sizeof *found->list)};
     for (int k = 0; k < n_parameter; k++) {
         double complex change = 0;

@@ -15,7 +15,6 @@ typedef struct bough_sensitivity {
 } bough_sensitivity;
 
 typedef struct bough_sensitivities {
-    double residual;         // of the eigenvector, relative to |λ|
     int n;                   // parameters that the mode depends on by more than rounding
     bough_sensitivity *list; // (n) the largest change first
 } bough_sensitivities;
