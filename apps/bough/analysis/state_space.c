@@ -182,12 +182,11 @@ static void name_outputs(const work *w, bough_state_space *to) {
 static bough_status evaluate(work *w, const double *state, int side) {
     bough_simulation *s = w->s;
     bough_equilibrium_set_state(s, w->coupled->assembly, state);
-    bough_status status = bough_whole_rate(w->coupled, w->time, state, w->rate[side]);
-    if (!bough_is_ok(&status)) return status;
+    BOUGH_TRY(bough_whole_rate(w->coupled, w->time, state, w->rate[side]));
     memcpy(s->master->coupling->input, w->coupled->input,
            (size_t)w->coupled->assembly->n_input * sizeof(double));
     bough_channels_sample(&w->channels, w->time, w->value[side]);
-    return status;
+    return bough_ok();
 }
 
 static void put_rates(const work *w, double size, double *column) {
@@ -264,9 +263,8 @@ static bough_status prepare(bough_arena *arena, work *w) {
     const bough_assembly *a = s->master->assembly;
     size_t n = (size_t)a->n_state, most = (size_t)s->scene->n_input + 3;
     w->channels = bough_channels_start(arena);
-    bough_status status = bough_simulation_channels(s, &w->channels);
-    if (bough_is_ok(&status)) w->coupled = bough_whole_create_evaluation(arena, a, NULL);
-    if (!bough_is_ok(&status)) return status;
+    BOUGH_TRY(bough_simulation_channels(s, &w->channels));
+    w->coupled = bough_whole_create_evaluation(arena, a, NULL);
     double *about;
     w->input = bough_arena_take(arena, most * sizeof *w->input);
     w->size = bough_arena_doubles(arena, most);
