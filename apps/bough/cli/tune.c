@@ -8,8 +8,7 @@
 
 typedef struct tune_options {
     bough_options common;
-    double error; // to be met; 0: the scene's accuracy
-    double span;  // of the stretch that is run [s]; 0: the usual one
+    bough_tune_options how; // span 0: the usual one
 } tune_options;
 
 static const double usual_span = 20; // [s]
@@ -33,9 +32,9 @@ static const bough_option rows[] = {
     BOUGH_OPTION_SET,
     BOUGH_OPTION_OUT,
     {"error", "E", "to be met, over the range of each channel; default the scene's accuracy", read_error,
-     offsetof(tune_options, error)},
+     offsetof(tune_options, how.error)},
     {"for", "TIME", "stretch of the scene that is run with each of the settings; default 20 s", read_span,
-     offsetof(tune_options, span)},
+     offsetof(tune_options, how.span)},
     {0},
 };
 
@@ -44,15 +43,14 @@ static bough_status perform(bough_arena *arena, const void *given) {
     const bough_options *options = &own->common;
     bough_scene *scene;
     BOUGH_TRY(bough_open_scene(arena, options, &scene));
-    double span = own->span > 0 ? own->span : usual_span;
-    bough_tune_options how = {.scene = options->operand,
-                              .n_set = options->set.n,
-                              .set = options->set.text,
-                              .error = own->error,
-                              .span = fmin(span, scene->simulation.duration),
-                              .folder = bough_out_folder(arena, options),
-                              .stop = bough_stop_requested,
-                              .stream = stdout};
+    bough_tune_options how = own->how;
+    how.scene = options->operand;
+    how.n_set = options->set.n;
+    how.set = options->set.text;
+    how.span = fmin(how.span > 0 ? how.span : usual_span, scene->simulation.duration);
+    how.folder = bough_out_folder(arena, options);
+    how.stop = bough_stop_requested;
+    how.stream = stdout;
     bough_stop_listen();
     bough_status status = bough_tune(arena, &how);
     if (bough_is_ok(&status)) printf("out: %s: tune.csv, tune.svg, tune.yaml\n", how.folder);
