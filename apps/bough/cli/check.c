@@ -13,7 +13,7 @@ static const char *body_name(const bough_scene *scene, int body) {
     return body == BOUGH_GROUND ? "ground" : scene->body[body].name;
 }
 
-static const char *plural(int n) { return n == 1 ? "" : "s"; }
+static const char *plural(long n) { return n == 1 ? "" : "s"; }
 
 // -- bodies ---------------------------------------------------------------------------------------
 
@@ -100,8 +100,7 @@ static void print_closures(const bough_tree *tree) {
     printf("closures: %d, %d equation%s, %d independent", tree->n_closures, tree->n_rows,
            plural(tree->n_rows), tree->closure_rank);
     if (redundant > 0) {
-        printf("; %d depend%s on the others: the smallest of the possible constraint forces are "
-               "computed",
+        printf("; %d depend%s on the others: the smallest of the possible constraint forces are computed",
                redundant, redundant == 1 ? "s" : "");
     }
     int freedoms = tree->n_v - tree->closure_rank;
@@ -242,8 +241,7 @@ static void print_rotor(const bough_simulation *s, const bough_rotor_place *r) {
     bough_vec3 from = bough_sub(r->hub, tower_axis(s));
     double level = hypot(r->axis.x, r->axis.y);
     printf("rotor: %d blade%s, radius %.6g m, hub height %.6g m, tilt %.6g deg, ", s->scene->turbine.n_blade,
-           s->scene->turbine.n_blade == 1 ? "" : "s", r->radius, r->hub.z,
-           atan2(-r->axis.z, level) / BOUGH_DEGREE);
+           plural(s->scene->turbine.n_blade), r->radius, r->hub.z, atan2(-r->axis.z, level) / BOUGH_DEGREE);
     if (level > 1e-6) {
         double along = (from.x * r->axis.x + from.y * r->axis.y) / (level * level);
         printf("overhang %.6g m %s", fabs(along), along < 0 ? "upwind" : "downwind");
@@ -327,8 +325,7 @@ static void print_aero(const bough_simulation *s, const bough_rotor_place *r) {
     printf("aero: built, %d blades of %d stations, %d polars, %.6g Hz (every %ld macro step%s), "
            "%s between samples, tower influence %s%s%s%s\n",
            s->scene->turbine.n_blade, aero->blade.n_station, aero->polars.n_polar, aero->rate, every,
-           every == 1 ? "" : "s", aero->hold == BOUGH_SCENE_LINEAR ? "linear" : "constant",
-           tower_words(&aero->tower),
+           plural(every), aero->hold == BOUGH_SCENE_LINEAR ? "linear" : "constant", tower_words(&aero->tower),
            aero->tower.def.shadow == BOUGH_TOWER_SHADOW_POWLES ? ", Powles shadow" : "",
            aero->induction.inflow.kind == BOUGH_INFLOW_OYE ? ", dynamic inflow" : "",
            aero->dynamic_stall != BOUGH_STALL_NONE ? ", dynamic stall" : "");
@@ -352,7 +349,7 @@ static void print_control(const bough_simulation *s) {
            : c->kind == BOUGH_SCENE_CONTROL_FMU ? c->fmu.model.folder
                                                 : "",
            c->rate, c->gear_ratio, bough_control_link_pitches(s->control) ? " and pitch" : " only",
-           c->n_event, c->n_event == 1 ? "" : "s");
+           c->n_event, plural(c->n_event));
 }
 
 static void print_turbine(bough_simulation *s) {

@@ -80,14 +80,9 @@ static bough_status help(bough_arena *arena, const void *given) {
         return bough_ok();
     }
     for (size_t i = 0; i < sizeof topics / sizeof *topics; i++) {
-        if (strcmp(topics[i].name, word) != 0) continue;
-        if (!options->json) {
-            topics[i].write(stdout);
-        } else if (topics[i].json) {
-            topics[i].json(stdout);
-        } else {
-            break;
-        }
+        void (*write)(FILE * stream) = options->json ? topics[i].json : topics[i].write;
+        if (strcmp(topics[i].name, word) != 0 || !write) continue;
+        write(stdout);
         return bough_ok();
     }
     if (options->json) {

@@ -57,14 +57,13 @@ static bough_status call(bough_arena *arena, void *self) {
     const bough_command *command = asks ? &bough_command_help : bough_command_find(argv[0]);
     if (!command) return bough_unknown_word("command", argv[0], NULL);
     bough_options *options;
-    bough_status status = bough_options_read(arena, argc, argv, command, &options);
-    if (!bough_is_ok(&status)) return status;
-    bool scene = strcmp(command->operands, "SCENE") == 0;
-    if (scene && !options->help) status = bough_find_scene(arena, options);
-    if (!bough_is_ok(&status)) return status;
-    if (!options->help) return command->run(arena, options);
-    bough_help_command(command, stdout);
-    return status;
+    BOUGH_TRY(bough_options_read(arena, argc, argv, command, &options));
+    if (options->help) {
+        bough_help_command(command, stdout);
+        return bough_ok();
+    }
+    if (strcmp(command->operands, "SCENE") == 0) BOUGH_TRY(bough_find_scene(arena, options));
+    return command->run(arena, options);
 }
 
 static bough_status end_output(bough_status status) {
