@@ -8,6 +8,7 @@
 
 #include <math.h>
 #include <stdarg.h>
+#include <stddef.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -32,7 +33,7 @@ typedef struct instance {
 
 typedef struct state {
     size_t size;
-    char *copy;
+    _Alignas(max_align_t) char copy[]; // (size)
 } state;
 
 // -- messages -------------------------------------------------------------------------------------
@@ -241,12 +242,11 @@ fmi3_status fmi3GetNumberOfVariableDependencies(fmi3_instance self, fmi3_referen
 
 fmi3_status fmi3GetFMUState(fmi3_instance self, fmi3_state *to) {
     const instance *x = self;
-    state *s = *to ? *to : calloc(1, sizeof *s);
+    size_t size = bough_session_size(x->session);
+    state *s = *to ? *to : malloc(sizeof *s + size);
     if (!s) return tell(x, FMI3_ERROR, "out of memory");
     *to = s;
-    if (!s->copy) s->copy = malloc(bough_session_size(x->session));
-    if (!s->copy) return tell(x, FMI3_ERROR, "out of memory");
-    s->size = bough_session_size(x->session);
+    s->size = size;
     return answer(x, bough_session_save(x->session, s->copy));
 }
 
@@ -263,8 +263,7 @@ fmi3_status fmi3SetFMUState(fmi3_instance self, fmi3_state from) {
 
 fmi3_status fmi3FreeFMUState(fmi3_instance self, fmi3_state *from) {
     (void)self;
-    if (!from || !*from) return FMI3_OK;
-    free(((state *)*from)->copy);
+    if (!from) return FMI3_OK;
     free(*from);
     *from = NULL;
     return FMI3_OK;
