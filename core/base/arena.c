@@ -120,6 +120,13 @@ void bough_arena_arrays(bough_arena *arena, size_t count, double **const *array)
     for (; *array; array++) **array = bough_arena_doubles(arena, count);
 }
 
+void *bough_arena_grow(bough_arena *arena, void *items, int n, int *room, size_t size) {
+    if (n < *room) return items;
+    *room = *room ? 2 * *room : 16;
+    void *more = bough_arena_take(arena, (size_t)*room * size);
+    return n > 0 ? memcpy(more, items, (size_t)n * size) : more;
+}
+
 char *bough_arena_string(bough_arena *arena, const char *text) {
     if (!text) return NULL;
     return bough_arena_copy(arena, text, strlen(text) + 1);

@@ -12,20 +12,9 @@ bough_channels bough_channels_start(bough_arena *arena) {
     return (bough_channels){.arena = arena, .status = bough_ok()};
 }
 
-// Room for one item more. The arena keeps the outgrown blocks: at most as much again.
-static void *grown(bough_arena *arena, void *items, int count, int *capacity, size_t size) {
-    if (count < *capacity) return items;
-    int wanted = *capacity ? 2 * *capacity : 16;
-    void *larger = bough_arena_take(arena, (size_t)wanted * size);
-    if (count) memcpy(larger, items, (size_t)count * size);
-    *capacity = wanted;
-    return larger;
-}
-
 void bough_channels_group(bough_channels *list, bough_channel_sample *sample, void *self) {
-    bough_channel_group *group =
-        grown(list->arena, list->group, list->group_count, &list->group_capacity, sizeof *group);
-    list->group = group;
+    list->group = bough_arena_grow(list->arena, list->group, list->group_count, &list->group_capacity,
+                                   sizeof *list->group);
     list->group[list->group_count++] =
         (bough_channel_group){.sample = sample, .self = self, .first = list->count};
 }
@@ -43,13 +32,11 @@ static int *slot_of(const bough_channels *list, const char *name) {
 
 static void make_room(bough_channels *list) {
     int capacity = list->capacity;
-    bough_channel *channel = grown(list->arena, list->channel, list->count, &capacity, sizeof *channel);
+    list->channel =
+        bough_arena_grow(list->arena, list->channel, list->count, &list->capacity, sizeof *list->channel);
     if (capacity == list->capacity) return;
-    int *slot = bough_arena_take(list->arena, 2 * (size_t)capacity * sizeof *slot);
-    list->channel = channel;
-    list->slot = slot;
-    list->capacity = capacity;
-    for (int i = 0; i < list->count; i++) *slot_of(list, channel[i].name) = i + 1;
+    list->slot = bough_arena_take(list->arena, 2 * (size_t)list->capacity * sizeof *list->slot);
+    for (int i = 0; i < list->count; i++) *slot_of(list, list->channel[i].name) = i + 1;
 }
 
 // Units of channels that are compared: other ones have no kind.

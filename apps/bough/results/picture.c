@@ -1,7 +1,6 @@
 #include "apps/bough/results/picture.h"
 
 #include <math.h>
-#include <string.h>
 
 // -- text -----------------------------------------------------------------------------------------
 
@@ -169,24 +168,15 @@ bough_chart bough_chart_start(bough_arena *arena, const char *title, int per_row
     return (bough_chart){.arena = arena, .title = title, .per_row = per_row, .right = 44};
 }
 
-// Room for one item more.
-static void *grown(bough_chart *c, void *items, int n, int *room, size_t size) {
-    if (n < *room) return items;
-    *room = *room ? 2 * *room : 32;
-    void *more = bough_arena_take(c->arena, (size_t)*room * size);
-    if (n > 0) memcpy(more, items, (size_t)n * size);
-    return more;
-}
-
 void bough_chart_add_panel(bough_chart *c, const char *heading, const char *across, bool log_x, bool log_y) {
     bough_axis x = {HUGE_VAL, -HUGE_VAL, .logarithmic = log_x}, y = x;
     y.logarithmic = log_y;
-    c->panel = grown(c, c->panel, c->n_panel, &c->room[0], sizeof *c->panel);
+    c->panel = bough_arena_grow(c->arena, c->panel, c->n_panel, &c->room[0], sizeof *c->panel);
     c->panel[c->n_panel++] = (bough_chart_panel){heading, across, x, y, c->n_line};
 }
 
 void bough_chart_add_line(bough_chart *c, bough_chart_line line) {
-    c->line = grown(c, c->line, c->n_line, &c->room[1], sizeof *c->line);
+    c->line = bough_arena_grow(c->arena, c->line, c->n_line, &c->room[1], sizeof *c->line);
     line.end = c->n_point;
     c->line[c->n_line++] = line;
     c->panel[c->n_panel - 1].end = c->n_line;
@@ -194,7 +184,7 @@ void bough_chart_add_line(bough_chart *c, bough_chart_line line) {
 
 void bough_chart_add(bough_chart *c, bough_chart_point point) {
     bough_chart_panel *p = &c->panel[c->n_panel - 1];
-    c->point = grown(c, c->point, c->n_point, &c->room[2], sizeof *c->point);
+    c->point = bough_arena_grow(c->arena, c->point, c->n_point, &c->room[2], sizeof *c->point);
     c->point[c->n_point++] = point;
     c->line[c->n_line - 1].end = c->n_point;
     include(&p->x, point.x);

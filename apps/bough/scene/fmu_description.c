@@ -37,15 +37,6 @@ static bool is_true(const char **attributes, const char *name) {
     return value && (strcmp(value, "true") == 0 || strcmp(value, "1") == 0);
 }
 
-// Room for one more of n items.
-static void *grown(bough_arena *arena, void *items, int n, int *room, size_t size) {
-    if (n < *room) return items;
-    *room = *room ? 2 * *room : 64;
-    void *more = bough_arena_take(arena, (size_t)*room * size);
-    if (n > 0) memcpy(more, items, (size_t)n * size);
-    return more;
-}
-
 static bough_fmu_causality causality(const char **attributes) {
     static const char *const names[] = {
         [BOUGH_FMU_INPUT] = "input", [BOUGH_FMU_OUTPUT] = "output", [BOUGH_FMU_PARAMETER] = "parameter"};
@@ -58,7 +49,7 @@ static bough_fmu_causality causality(const char **attributes) {
 static void add_variable(reader *r, const char **attributes) {
     bough_fmu_description *d = r->d;
     const char *reference = attribute(attributes, "valueReference");
-    d->variable = grown(r->arena, d->variable, d->n_variable, &r->room, sizeof *d->variable);
+    d->variable = bough_arena_grow(r->arena, d->variable, d->n_variable, &r->room, sizeof *d->variable);
     d->variable[d->n_variable++] =
         (bough_fmu_variable){.name = kept(r, attributes, "name"),
                              .reference = reference ? (uint32_t)strtoul(reference, NULL, 10) : 0,
@@ -71,7 +62,7 @@ static void add_base_unit(reader *r, const char **attributes) {
     const char *factor = attribute(attributes, "factor"), *offset = attribute(attributes, "offset");
     bool scaled = (factor && strtod(factor, NULL) != 1) || (offset && strtod(offset, NULL) != 0);
     if (!scaled || !r->unit) return;
-    d->scaled = grown(r->arena, d->scaled, d->n_scaled, &r->scaled_room, sizeof *d->scaled);
+    d->scaled = bough_arena_grow(r->arena, d->scaled, d->n_scaled, &r->scaled_room, sizeof *d->scaled);
     d->scaled[d->n_scaled++] = r->unit;
 }
 
