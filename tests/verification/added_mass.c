@@ -322,8 +322,7 @@ bough_status bough_added_mass_perform(bough_arena *arena, const void *study,
     report out = {.options = options};
     BOUGH_TRY(take_picture(arena, study, &out.picture));
     BOUGH_TRY(bough_folder_make(options->folder));
-    BOUGH_TRY(bough_folder_path(options->folder, "added-mass.csv", path));
-    BOUGH_TRY(bough_folder_open_partial(path, &out.csv));
+    BOUGH_TRY(bough_folder_open(options->folder, "added-mass.csv", path, &out.csv));
     fputs("problem,way,evaluations or sweeps,expected,error [1],verdict,diagnosis\n", out.csv);
     bough_status status = perform_maps(study, &out);
     if (bough_is_ok(&status)) status = perform_runs(arena, study, &out);

@@ -255,8 +255,7 @@ static void write_rows(const comparison *c, FILE *f) {
 static bough_status write_file(const comparison *c, const char *folder) {
     char path[BOUGH_PATH_MAX];
     FILE *file = NULL;
-    BOUGH_TRY(bough_folder_path(folder, "blade-models.csv", path));
-    BOUGH_TRY(bough_folder_open_partial(path, &file));
+    BOUGH_TRY(bough_folder_open(folder, "blade-models.csv", path, &file));
     write_rows(c, file);
     return bough_folder_commit(path, file);
 }

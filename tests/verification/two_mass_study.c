@@ -344,8 +344,7 @@ bough_status bough_two_mass_perform(bough_arena *arena, const void *study,
     char path[BOUGH_PATH_MAX];
     report out = {.options = options};
     BOUGH_TRY(bough_folder_make(options->folder));
-    BOUGH_TRY(bough_folder_path(options->folder, "two-mass.csv", path));
-    BOUGH_TRY(bough_folder_open_partial(path, &out.csv));
+    BOUGH_TRY(bough_folder_open(options->folder, "two-mass.csv", path, &out.csv));
     bough_status status = perform_all(arena, study, &out);
     bough_status written = bough_folder_commit(path, out.csv);
     if (!bough_is_ok(&status)) return status;

@@ -152,8 +152,7 @@ bough_status bough_verify_perform(bough_arena *arena, const void *study,
     char path[BOUGH_PATH_MAX];
     report r = {.options = options};
     BOUGH_TRY(bough_folder_make(options->folder));
-    BOUGH_TRY(bough_folder_path(options->folder, "verify.csv", path));
-    BOUGH_TRY(bough_folder_open_partial(path, &r.csv));
+    BOUGH_TRY(bough_folder_open(options->folder, "verify.csv", path, &r.csv));
     bough_status status = perform_all(arena, study, &r);
     bough_status written = bough_folder_commit(path, r.csv);
     if (!bough_is_ok(&status)) return status;

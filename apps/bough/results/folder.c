@@ -42,21 +42,20 @@ bough_status bough_folder_path(const char *folder, const char *name, char *path)
     return bough_fail(BOUGH_INVALID, "the path of '%s' in the results folder is too long", name);
 }
 
-static bough_status partial_path(const char *path, char *partial) {
-    int length = snprintf(partial, BOUGH_PATH_MAX, "%s.partial", path);
-    if (length < BOUGH_PATH_MAX) return bough_ok();
-    return bough_fail(BOUGH_INVALID, "the path '%.200s' is too long", path);
+typedef char partial_path[BOUGH_PATH_MAX + sizeof ".partial"];
+
+static void name_partial(const char *path, partial_path partial) {
+    snprintf(partial, sizeof(partial_path), "%s.partial", path);
 }
 
 bough_status bough_folder_open_partial(const char *path, FILE **file) {
-    char partial[BOUGH_PATH_MAX];
-    bough_status status = partial_path(path, partial);
-    if (!bough_is_ok(&status)) return status;
+    partial_path partial;
+    name_partial(path, partial);
     // A pipe that nobody reads would hold the call up.
     int descriptor = open(partial, O_WRONLY | O_CREAT | O_TRUNC | O_NONBLOCK | O_CLOEXEC, 0666);
     *file = descriptor < 0 ? NULL : fdopen(descriptor, "w");
-    if (*file) return status;
-    status = bough_fail(BOUGH_IO, "cannot write '%.200s': %s", partial, strerror(errno));
+    if (*file) return bough_ok();
+    bough_status status = bough_fail(BOUGH_IO, "cannot write '%.200s': %s", partial, strerror(errno));
     if (descriptor >= 0) close(descriptor);
     return status;
 }
@@ -73,35 +72,6 @@ bough_status bough_folder_write(const char *folder, const char *name,
     BOUGH_TRY(bough_folder_open(folder, name, path, &file));
     write(self, file);
     return bough_folder_commit(path, file);
-}
-
-bough_status bough_folder_keep(const char *path, FILE *file, long *bytes) {
-    errno = 0;
-    bool good = !ferror(file) && fflush(file) == 0 && fsync(fileno(file)) == 0;
-    *bytes = good ? ftell(file) : -1;
-    if (*bytes >= 0) return bough_ok();
-    return bough_fail(BOUGH_IO, "cannot write '%.200s.partial': %s", path,
-                      errno ? strerror(errno) : "an earlier write failed");
-}
-
-bough_status bough_folder_reopen_partial(const char *path, long bytes, FILE **file) {
-    char partial[BOUGH_PATH_MAX];
-    bough_status status = partial_path(path, partial);
-    if (!bough_is_ok(&status)) return status;
-    struct stat info;
-    if (stat(partial, &info) != 0 && errno == ENOENT) rename(path, partial);
-    if (stat(partial, &info) != 0 || info.st_size < bytes) {
-        return bough_fail(
-            BOUGH_INVALID,
-            "'%.200s' lacks rows that the checkpoint needs; without --resume the run starts anew", partial);
-    }
-    *file = fopen(partial, "r+");
-    if (*file && ftruncate(fileno(*file), bytes) == 0 && fseek(*file, bytes, SEEK_SET) == 0) {
-        return status;
-    }
-    status = bough_fail(BOUGH_IO, "cannot write '%.200s': %s", partial, strerror(errno));
-    if (*file) fclose(*file);
-    return status;
 }
 
 // A symbolic link was put there by somebody.
@@ -127,25 +97,69 @@ bough_status bough_folder_remove(const char *folder, const char *name) {
 }
 
 bough_status bough_folder_commit(const char *path, FILE *file) {
-    char partial[BOUGH_PATH_MAX];
-    bough_status status = partial_path(path, partial);
-    if (!bough_is_ok(&status)) return status;
-    if (file) {
-        bool broken = ferror(file) != 0;
-        if (fclose(file) != 0 || broken) {
-            return bough_fail(BOUGH_IO, "cannot finish '%.200s': %s", partial,
-                              errno ? strerror(errno) : "an earlier write failed");
-        }
+    partial_path partial;
+    name_partial(path, partial);
+    bool broken = ferror(file) != 0;
+    if (fclose(file) != 0 || broken) {
+        return bough_fail(BOUGH_IO, "cannot finish '%.200s': %s", partial,
+                          errno ? strerror(errno) : "an earlier write failed");
     }
-    if (rename(partial, path) == 0) return status;
+    if (rename(partial, path) == 0) return bough_ok();
     return bough_fail(BOUGH_IO, "cannot rename '%.200s': %s", partial, strerror(errno));
 }
 
 void bough_folder_discard(const char *path, FILE *file) {
-    char partial[BOUGH_PATH_MAX];
-    bough_status status = partial_path(path, partial);
+    partial_path partial;
+    name_partial(path, partial);
     fclose(file);
-    if (bough_is_ok(&status)) unlink(partial);
+    unlink(partial);
+}
+
+// -- files that grow ------------------------------------------------------------------------------
+
+static bough_status reopen(const char *path, long bytes, FILE **file) {
+    partial_path partial;
+    struct stat info;
+    name_partial(path, partial);
+    if (stat(partial, &info) != 0 && errno == ENOENT) rename(path, partial);
+    if (stat(partial, &info) != 0 || info.st_size < bytes) {
+        return bough_fail(
+            BOUGH_INVALID,
+            "'%.200s' lacks rows that the checkpoint needs; without --resume the run starts anew", partial);
+    }
+    *file = fopen(partial, "r+");
+    if (*file && ftruncate(fileno(*file), bytes) == 0 && fseek(*file, bytes, SEEK_SET) == 0)
+        return bough_ok();
+    return bough_fail(BOUGH_IO, "cannot write '%.200s': %s", partial, strerror(errno));
+}
+
+static void close_growing(void *self) {
+    bough_growing *g = self;
+    if (g->file) fclose(g->file);
+}
+
+bough_status bough_growing_open(bough_arena *arena, const char *folder, const char *name, bough_kept kept,
+                                bough_growing *g) {
+    *g = (bough_growing){.count = kept.count};
+    BOUGH_TRY(bough_folder_path(folder, name, g->path));
+    bough_arena_on_destroy(arena, close_growing, g);
+    return kept.count > 0 ? reopen(g->path, kept.bytes, &g->file)
+                          : bough_folder_open_partial(g->path, &g->file);
+}
+
+bough_status bough_growing_keep(const bough_growing *g, bough_kept *kept) {
+    errno = 0;
+    bool good = !ferror(g->file) && fflush(g->file) == 0 && fsync(fileno(g->file)) == 0;
+    *kept = (bough_kept){g->count, good ? ftell(g->file) : -1};
+    if (kept->bytes >= 0) return bough_ok();
+    return bough_fail(BOUGH_IO, "cannot write '%.200s.partial': %s", g->path,
+                      errno ? strerror(errno) : "an earlier write failed");
+}
+
+bough_status bough_growing_finish(bough_growing *g) {
+    FILE *file = g->file;
+    g->file = NULL;
+    return bough_folder_commit(g->path, file);
 }
 
 // -- the lock -------------------------------------------------------------------------------------

@@ -27,31 +27,44 @@ bough_status bough_folder_open(const char *folder, const char *name, char *path,
 bough_status bough_folder_write(const char *folder, const char *name,
                                 void (*write)(const void *self, FILE *file), const void *self);
 
-// What of a file is on the disk for good.
-typedef struct bough_kept {
-    long count; // rows or frames
-    long bytes;
-} bough_kept;
-
-// Brings path.partial to the disk: bytes = its length.
-bough_status bough_folder_keep(const char *path, FILE *file, long *bytes);
-
-// Opens path.partial again to go on behind its first `bytes`; the rest of it is cut off. A file
-// that has its final name becomes partial again. BOUGH_INVALID when there is less than that.
-bough_status bough_folder_reopen_partial(const char *path, long bytes, FILE **file);
-
 // Removes the partial files that a process which died has left in an existing folder.
 void bough_folder_clean(const char *folder);
 
 // Removes folder/name if there is one.
 bough_status bough_folder_remove(const char *folder, const char *name);
 
-// Closes the file (NULL is allowed) and gives path.partial its final name. A write error noticed
-// only now is reported, and the partial file is then left as it is.
+// Closes the file and gives path.partial its final name. A write error noticed only now is reported, and the
+// partial file is then left as it is.
 bough_status bough_folder_commit(const char *path, FILE *file);
 
 // Closes the file and removes path.partial.
 void bough_folder_discard(const char *path, FILE *file);
+
+// -- a file that grows with a run ------------------------------------------------------------------
+
+// What of it is on the disk for good.
+typedef struct bough_kept {
+    long count; // rows or frames
+    long bytes;
+} bough_kept;
+
+typedef struct bough_growing {
+    char path[BOUGH_PATH_MAX]; // of path.partial until it is finished
+    FILE *file;                // NULL once it is
+    long count;                // rows or frames so far
+} bough_growing;
+
+// Opens folder/name: a new one, or, where an earlier process has kept some of it, that to go on behind; the
+// rest of it is cut off. A file that has its final name becomes partial again. BOUGH_INVALID when there is
+// less than was kept. The arena closes what is not finished.
+bough_status bough_growing_open(bough_arena *arena, const char *folder, const char *name, bough_kept kept,
+                                bough_growing *growing);
+
+// Brings what is written to the disk.
+bough_status bough_growing_keep(const bough_growing *growing, bough_kept *kept);
+
+// Gives the file its name.
+bough_status bough_growing_finish(bough_growing *growing);
 
 // -- one process at a time writes into a folder ---------------------------------------------------
 

@@ -1,39 +1,16 @@
 #include "apps/bough/results/frames.h"
 
 #include <dirent.h>
-#include <errno.h>
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
 
 struct bough_frames {
     bough_frames_def def;
-    FILE *list;                     // frames.pvd.partial; NULL once finished
+    bough_growing list;             // frames.pvd
     double *point, *force, *moment; // (n_point × 3)
-    int n_point, n_frame;
-    char list_path[BOUGH_PATH_MAX];
+    int n_point;
 };
-
-static void release(void *self) {
-    bough_frames *f = self;
-    if (f->list) fclose(f->list);
-    f->list = NULL;
-}
-
-static bough_status reopen(bough_frames *f) {
-    f->n_frame = (int)f->def.kept.count;
-    return bough_folder_reopen_partial(f->list_path, f->def.kept.bytes, &f->list);
-}
-
-static bough_status create(bough_frames *f) {
-    if (unlink(f->list_path) != 0 && errno != ENOENT) {
-        return bough_fail(BOUGH_IO, "cannot replace '%.200s': %s", f->list_path, strerror(errno));
-    }
-    BOUGH_TRY(bough_folder_open_partial(f->list_path, &f->list));
-    fprintf(f->list, "<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"0.1\">\n"
-                     "<Collection>\n");
-    return bough_ok();
-}
 
 bough_status bough_frames_open(bough_arena *arena, const bough_frames_def *def, bough_frames **frames) {
     bough_frames *f = bough_arena_take(arena, sizeof *f);
@@ -45,9 +22,11 @@ bough_status bough_frames_open(bough_arena *arena, const bough_frames_def *def, 
     char folder[BOUGH_PATH_MAX];
     BOUGH_TRY(bough_folder_path(def->folder, "frames", folder));
     BOUGH_TRY(bough_folder_make(folder));
-    BOUGH_TRY(bough_folder_path(def->folder, "frames.pvd", f->list_path));
-    bough_arena_on_destroy(arena, release, f);
-    BOUGH_TRY(def->kept.count > 0 ? reopen(f) : create(f));
+    if (def->kept.count == 0) BOUGH_TRY(bough_folder_remove(def->folder, "frames.pvd"));
+    BOUGH_TRY(bough_growing_open(arena, def->folder, "frames.pvd", def->kept, &f->list));
+    if (def->kept.count == 0)
+        fputs("<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"0.1\">\n<Collection>\n",
+              f->list.file);
     *frames = f;
     return bough_ok();
 }
@@ -94,7 +73,7 @@ static void write_bodies(const bough_frames *f, FILE *file) {
 bough_status bough_frames_sample(bough_frames *f, double t) {
     char path[BOUGH_PATH_MAX], name[32];
     FILE *file;
-    snprintf(name, sizeof name, "frames/%06d.vtp", f->n_frame);
+    snprintf(name, sizeof name, "frames/%06ld.vtp", f->list.count);
     BOUGH_TRY(bough_folder_open(f->def.folder, name, path, &file));
     f->def.points(f->def.self, f->point);
     f->def.loads(f->def.self, t, f->force, f->moment);
@@ -108,18 +87,17 @@ bough_status bough_frames_sample(bough_frames *f, double t) {
     write_bodies(f, file);
     fprintf(file, "</Piece>\n</PolyData>\n</VTKFile>\n");
     BOUGH_TRY(bough_folder_commit(path, file));
-    fprintf(f->list, "<DataSet timestep=\"%.9g\" file=\"%s\"/>\n", t, name);
-    f->n_frame++;
+    fprintf(f->list.file, "<DataSet timestep=\"%.9g\" file=\"%s\"/>\n", t, name);
+    f->list.count++;
     return bough_ok();
 }
 
 bough_status bough_frames_keep(bough_frames *f, bough_kept *kept) {
-    kept->count = f->n_frame;
-    return bough_folder_keep(f->list_path, f->list, &kept->bytes);
+    return bough_growing_keep(&f->list, kept);
 }
 
 // Removes the frames from number n on: files of exactly the names that are given above.
-static bough_status remove_from(const char *folder, int n) {
+static bough_status remove_from(const char *folder, long n) {
     char path[BOUGH_PATH_MAX], name[32];
     bough_status status = bough_folder_path(folder, "frames", path);
     DIR *directory = bough_is_ok(&status) ? opendir(path) : NULL;
@@ -140,9 +118,7 @@ bough_status bough_frames_remove(const char *folder) {
 }
 
 bough_status bough_frames_finish(bough_frames *f) {
-    BOUGH_TRY(remove_from(f->def.folder, f->n_frame));
-    fprintf(f->list, "</Collection>\n</VTKFile>\n");
-    FILE *list = f->list;
-    f->list = NULL;
-    return bough_folder_commit(f->list_path, list);
+    BOUGH_TRY(remove_from(f->def.folder, f->list.count));
+    fputs("</Collection>\n</VTKFile>\n", f->list.file);
+    return bough_growing_finish(&f->list);
 }

@@ -1,7 +1,5 @@
 #include "apps/bough/results/recorder.h"
 
-#include "apps/bough/results/folder.h"
-
 #include <assert.h>
 #include <errno.h>
 #include <float.h>
@@ -99,26 +97,18 @@ enum { COLUMN = 18, OUTCOME = 160, BUFFER = 1 << 16 };
 
 struct bough_recorder {
     const bough_channels *channels;
-    FILE *file; // NULL once finished
-    char *path;
+    bough_growing out;
     char *buffer;    // of the file (BUFFER)
     char *line;      // one row and its terminator (row_length + 1)
     double *value;   // (count)
     long outcome_at; // offset of the line that tells how the run ended
     long rows_at;    // offset of the first row
     long row_length; // of every row [bytes]
-    long rows;
 };
 
-static void release(void *self) {
-    bough_recorder *recorder = self;
-    if (recorder->file) fclose(recorder->file);
-    recorder->file = NULL;
-}
-
 static bough_status write_error(const bough_recorder *r) {
-    return bough_fail(BOUGH_IO, "cannot write '%.200s.partial' (%ld rows so far): %s", r->path, r->rows,
-                      errno ? strerror(errno) : "the device refused");
+    return bough_fail(BOUGH_IO, "cannot write '%.200s.partial' (%ld rows so far): %s", r->out.path,
+                      r->out.count, errno ? strerror(errno) : "the device refused");
 }
 
 // Whether the byte is inside a UTF-8 character, after its first.
@@ -137,11 +127,11 @@ static bool write_outcome(bough_recorder *r, const char *text) {
         if (text[i] != '\n' && text[i] != '\r') line[i] = text[i];
     }
     line[OUTCOME - 1] = '\n';
-    return fwrite(line, 1, OUTCOME, r->file) == OUTCOME;
+    return fwrite(line, 1, OUTCOME, r->out.file) == OUTCOME;
 }
 
 static bough_status write_head(bough_recorder *r, const char *title) {
-    FILE *f = r->file;
+    FILE *f = r->out.file;
     const bough_channels *c = r->channels;
     errno = 0;
     fprintf(f, "\nbough: %.*s\n", (int)strcspn(title, "\r\n"), title);
@@ -163,21 +153,12 @@ static bough_status write_head(bough_recorder *r, const char *title) {
 }
 
 // The head is written again, for its outcome; the rows stay.
-static bough_status reopen(bough_recorder *r, const bough_recorder_def *def) {
-    BOUGH_TRY(bough_folder_reopen_partial(r->path, def->kept.bytes, &r->file));
-    rewind(r->file);
-    bough_status status = write_head(r, def->title);
-    r->rows = def->kept.count;
-    if (!bough_is_ok(&status)) return status;
-    bool same = r->rows_at + r->rows * r->row_length == def->kept.bytes;
-    if (same && fseek(r->file, def->kept.bytes, SEEK_SET) == 0) return status;
-    return bough_fail(BOUGH_INVALID, "'%.200s.partial' has other channels", r->path);
-}
-
-static bough_status create(bough_recorder *r, const bough_recorder_def *def) {
-    BOUGH_TRY(bough_folder_open_partial(r->path, &r->file));
-    setvbuf(r->file, r->buffer, _IOFBF, BUFFER);
-    return write_head(r, def->title);
+static bough_status go_on(bough_recorder *r, const bough_recorder_def *def) {
+    rewind(r->out.file);
+    BOUGH_TRY(write_head(r, def->title));
+    bool same = r->rows_at + r->out.count * r->row_length == def->kept.bytes;
+    if (same && fseek(r->out.file, def->kept.bytes, SEEK_SET) == 0) return bough_ok();
+    return bough_fail(BOUGH_INVALID, "'%.200s.partial' has other channels", r->out.path);
 }
 
 static void take_memory(bough_recorder *r, bough_arena *arena) {
@@ -190,15 +171,13 @@ static void take_memory(bough_recorder *r, bough_arena *arena) {
 
 bough_status bough_recorder_open(bough_arena *arena, const bough_recorder_def *def,
                                  bough_recorder **recorder) {
-    char path[BOUGH_PATH_MAX];
-    BOUGH_TRY(bough_folder_path(def->folder, "channels.out", path));
-    bough_recorder *r = bough_arena_take(arena, sizeof *r);
+    bough_recorder *r = *recorder = bough_arena_take(arena, sizeof *r);
     r->channels = def->channels;
-    r->path = bough_arena_string(arena, path);
     take_memory(r, arena);
-    bough_arena_on_destroy(arena, release, r);
-    *recorder = r;
-    return def->kept.count > 0 ? reopen(r, def) : create(r, def);
+    BOUGH_TRY(bough_growing_open(arena, def->folder, "channels.out", def->kept, &r->out));
+    if (def->kept.count > 0) return go_on(r, def);
+    setvbuf(r->out.file, r->buffer, _IOFBF, BUFFER);
+    return write_head(r, def->title);
 }
 
 static void format_row(bough_recorder *r, double t) {
@@ -219,20 +198,19 @@ bough_status bough_recorder_sample(bough_recorder *r, double t) {
     format_row(r, t);
     size_t length = (size_t)r->row_length;
     errno = 0;
-    if (fwrite(r->line, 1, length, r->file) != length) return write_error(r);
-    r->rows++;
+    if (fwrite(r->line, 1, length, r->out.file) != length) return write_error(r);
+    r->out.count++;
     return bough_ok();
 }
 
 bough_status bough_recorder_keep(bough_recorder *r, bough_kept *kept) {
-    kept->count = r->rows;
-    return bough_folder_keep(r->path, r->file, &kept->bytes);
+    return bough_growing_keep(&r->out, kept);
 }
 
 // Where the device was full, readers would stumble over half a row.
 static void cut_to_whole_rows(const bough_recorder *r) {
     char partial[BOUGH_PATH_MAX + 16];
-    snprintf(partial, sizeof partial, "%s.partial", r->path);
+    snprintf(partial, sizeof partial, "%s.partial", r->out.path);
     struct stat info;
     if (stat(partial, &info) != 0 || info.st_size <= r->rows_at) return;
     off_t rows = (info.st_size - r->rows_at) / r->row_length;
@@ -243,25 +221,23 @@ static void cut_to_whole_rows(const bough_recorder *r) {
 bough_status bough_recorder_finish(bough_recorder *r, const bough_status *outcome) {
     char text[2 * OUTCOME];
     if (bough_is_ok(outcome)) {
-        snprintf(text, sizeof text, "Complete: %ld rows", r->rows);
+        snprintf(text, sizeof text, "Complete: %ld rows", r->out.count);
     } else {
-        snprintf(text, sizeof text, "INCOMPLETE: %ld rows, then %.280s", r->rows, outcome->message);
+        snprintf(text, sizeof text, "INCOMPLETE: %ld rows, then %.280s", r->out.count, outcome->message);
     }
     errno = 0;
     // An earlier error counts too: the library may have dropped its buffer with it.
-    bool written = !ferror(r->file) && fflush(r->file) == 0 && fseek(r->file, r->outcome_at, SEEK_SET) == 0 &&
-                   write_outcome(r, text) && fflush(r->file) == 0;
-    if (!written) {
-        bough_status status = write_error(r);
-        release(r);
-        cut_to_whole_rows(r);
-        return status;
-    }
-    FILE *file = r->file;
-    r->file = NULL;
-    return bough_folder_commit(r->path, file);
+    FILE *file = r->out.file;
+    bool written = !ferror(file) && fflush(file) == 0 && fseek(file, r->outcome_at, SEEK_SET) == 0 &&
+                   write_outcome(r, text) && fflush(file) == 0;
+    if (written) return bough_growing_finish(&r->out);
+    bough_status status = write_error(r);
+    fclose(file);
+    r->out.file = NULL;
+    cut_to_whole_rows(r);
+    return status;
 }
 
 const double *bough_recorder_values(const bough_recorder *recorder) { return recorder->value; }
 
-long bough_recorder_rows(const bough_recorder *recorder) { return recorder->rows; }
+long bough_recorder_rows(const bough_recorder *recorder) { return recorder->out.count; }

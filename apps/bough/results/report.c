@@ -95,12 +95,11 @@ bough_status bough_report_write(bough_arena *arena, int n, const char *const *fo
     const char *page = (const char *)bough_report_page, *data = strstr(page, mark);
     char path[BOUGH_PATH_MAX];
     FILE *out;
-    BOUGH_TRY(bough_folder_path(folder[0], "report.html", path));
     struct stat there;
     if (stat(folder[0], &there) != 0) {
         return bough_fail(BOUGH_INVALID, "there is no folder '%.200s'", folder[0]);
     }
-    BOUGH_TRY(bough_folder_open_partial(path, &out));
+    BOUGH_TRY(bough_folder_open(folder[0], "report.html", path, &out));
     fwrite(page, 1, (size_t)(data - page), out);
     bough_status status = add_data(arena, folder[0], out);
     if (bough_is_ok(&status)) status = add_others(arena, n, folder, out);
