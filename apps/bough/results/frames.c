@@ -38,20 +38,6 @@ static void write_vectors(const bough_frames *f, const char *name, const double 
     fprintf(file, "</DataArray>\n");
 }
 
-static void write_points(const bough_frames *f, FILE *file) {
-    fprintf(file, "<Points>\n");
-    write_vectors(f, "position", f->point, file);
-    fprintf(file, "</Points>\n");
-}
-
-// The report reads the points, which stand first.
-static void write_loads(const bough_frames *f, FILE *file) {
-    fprintf(file, "<PointData>\n");
-    write_vectors(f, "section force (N)", f->force, file);
-    write_vectors(f, "section moment (N m)", f->moment, file);
-    fprintf(file, "</PointData>\n");
-}
-
 static void write_lines(const bough_frames *f, FILE *file) {
     fprintf(file, "<Lines>\n<DataArray type=\"Int32\" Name=\"connectivity\" format=\"ascii\">\n");
     for (int i = 0; i < f->n_point; i++) fprintf(file, "%d\n", i);
@@ -70,23 +56,30 @@ static void write_bodies(const bough_frames *f, FILE *file) {
     fprintf(file, " -->\n");
 }
 
-bough_status bough_frames_sample(bough_frames *f, double t) {
-    char path[BOUGH_PATH_MAX], name[32];
-    FILE *file;
-    snprintf(name, sizeof name, "frames/%06ld.vtp", f->list.count);
-    BOUGH_TRY(bough_folder_open(f->def.folder, name, path, &file));
-    f->def.points(f->def.self, f->point);
-    f->def.loads(f->def.self, t, f->force, f->moment);
+// The report reads points, lines and loads in this order.
+static void write_frame(const void *self, FILE *file) {
+    const bough_frames *f = self;
     fprintf(file,
             "<?xml version=\"1.0\"?>\n<VTKFile type=\"PolyData\" version=\"0.1\">\n"
-            "<PolyData>\n<Piece NumberOfPoints=\"%d\" NumberOfLines=\"%d\">\n",
+            "<PolyData>\n<Piece NumberOfPoints=\"%d\" NumberOfLines=\"%d\">\n<Points>\n",
             f->n_point, f->def.n_line);
-    write_points(f, file);
+    write_vectors(f, "position", f->point, file);
+    fprintf(file, "</Points>\n");
     write_lines(f, file);
-    write_loads(f, file);
+    fprintf(file, "<PointData>\n");
+    write_vectors(f, "section force (N)", f->force, file);
+    write_vectors(f, "section moment (N m)", f->moment, file);
+    fprintf(file, "</PointData>\n");
     write_bodies(f, file);
     fprintf(file, "</Piece>\n</PolyData>\n</VTKFile>\n");
-    BOUGH_TRY(bough_folder_commit(path, file));
+}
+
+bough_status bough_frames_sample(bough_frames *f, double t) {
+    char name[32];
+    snprintf(name, sizeof name, "frames/%06ld.vtp", f->list.count);
+    f->def.points(f->def.self, f->point);
+    f->def.loads(f->def.self, t, f->force, f->moment);
+    BOUGH_TRY(bough_folder_write(f->def.folder, name, write_frame, f));
     fprintf(f->list.file, "<DataSet timestep=\"%.9g\" file=\"%s\"/>\n", t, name);
     f->list.count++;
     return bough_ok();
