@@ -158,13 +158,13 @@ static bough_status build(bough_arena *arena, case_run *r) {
     if (!r->series) scene->simulation.output.from = s->from;
     if (r->drive->boxes) scene->aero.wind.def.box = r->box = bough_boxes_lend(r->drive->boxes, scene);
     bough_status built = bough_run_create(arena, scene, &r->run);
-    bough_status status = same_files(arena, scene, r->chosen->files);
-    if (bough_is_ok(&status)) status = built;
-    if (bough_is_ok(&status)) status = find_columns(arena, r);
+    BOUGH_TRY(same_files(arena, scene, r->chosen->files));
+    BOUGH_TRY(built);
+    BOUGH_TRY(find_columns(arena, r));
     r->value = bough_arena_doubles(arena, (size_t)s->n_channel);
     for (int k = 0; k < 2 && s->is.weighted; k++)
         bough_counts_take(arena, s->n_channel, s->n_slope, s->slope, &r->pair[k]);
-    return bough_is_ok(&status) ? open_recorder(arena, r) : status;
+    return open_recorder(arena, r);
 }
 
 // Ends the series; a binary one stands in place of the text, ten times as large.

@@ -68,6 +68,9 @@ typedef struct bough_case_result {
     bough_load_error *load_error; // (n_channel)
 } bough_case_result;
 
+// Whether the run has ended well.
+static inline bool bough_held(const bough_case_result *r) { return r->done && bough_is_ok(&r->outcome); }
+
 // An empty result with room for statistics, whose memory is the arena's.
 bough_case_result bough_case_take(bough_arena *arena, const bough_study *study);
 

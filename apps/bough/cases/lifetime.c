@@ -1,4 +1,4 @@
-#include "apps/bough/cases/lifetime.h"
+#include "apps/bough/cases/perform.h"
 
 #include <math.h>
 #include <string.h>
@@ -92,7 +92,7 @@ void bough_lifetime_add(bough_lifetime *l, int number, const bough_case_result *
     const bough_study *study = l->study;
     l->simulated += r->done ? r->time : 0;
     l->cpu += r->done ? r->cpu : 0;
-    if (!r->done || !bough_is_ok(&r->outcome)) {
+    if (!bough_held(r)) {
         l->n_missing += !r->done;
         l->n_failed += r->done;
         l->lacking += l->total > 0 ? hours_of(study, number) / l->total : 1. / study->n_case;

@@ -61,7 +61,7 @@ static void count_run(work *w, int number, const bough_case_result *r) {
     w->cpu += r->cpu;
     if (!s->is.compared && !bough_is_ok(&r->outcome)) {
         w->results.failed++;
-        bough_case_failed(s, number, &r->outcome, stderr);
+        bough_case_failed(s, number, r->outcome.message, stderr);
     }
     if (w->counts) fprintf(stderr, "\r%d of %d %s", w->results.ran, w->to_do, w->what);
     pthread_mutex_unlock(&w->mutex);

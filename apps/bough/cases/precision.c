@@ -134,7 +134,7 @@ static void put_row(line *l, const bough_study_results *results, int row) {
     }
     const bough_case_result *r = result_of(results, row);
     char status[40];
-    bool good = r->done && bough_is_ok(&r->outcome);
+    bool good = bough_held(r);
     case_status(r, status);
     l->n = 0;
     if (row < 0)
@@ -237,29 +237,17 @@ static void write_csv_head(const bough_study *s, FILE *f) {
     fputs(",defect_max [1],defect_rms [1],energy_residual [J],energy_exchanged [J],diagnosis\n", f);
 }
 
-static void write_csv_number(FILE *f, double value) {
-    fputc(',', f);
-    if (isfinite(value)) fprintf(f, "%.9g", value);
-}
-
-static void write_csv_numbers(const bough_study *s, const bough_case_result *r, FILE *f) {
-    write_csv_number(f, r->time);
-    write_csv_number(f, r->wall);
-    write_csv_number(f, r->cpu);
-    write_csv_number(f, real_time_factor(r));
-    for (int i = 0; i < s->n_measure; i++) {
-        write_csv_number(f, r->error[i]);
-        write_csv_number(f, r->estimate[i]);
+static void write_csv_numbers(FILE *f, int n, const double *value) {
+    for (int i = 0; i < n; i++) {
+        fputc(',', f);
+        if (isfinite(value[i])) fprintf(f, "%.9g", value[i]);
     }
-    write_csv_number(f, r->coupling.defect_max);
-    write_csv_number(f, r->coupling.defect_rms);
-    write_csv_number(f, r->coupling.energy_residual);
-    write_csv_number(f, r->coupling.energy_exchanged);
 }
 
 static void write_csv_row(const bough_study_results *results, int row, FILE *f) {
     const bough_study *s = results->study;
     const bough_case_result *r = result_of(results, row);
+    const bough_coupling_report *k = &r->coupling;
     bool good = bough_is_ok(&r->outcome);
     if (row < 0)
         fputs("reference", f);
@@ -267,7 +255,10 @@ static void write_csv_row(const bough_study_results *results, int row, FILE *f) 
         fprintf(f, "%d", row + 1);
     for (int i = 0; i < s->grid.n; i++) bough_csv_next(f, bough_study_value(s, cell_of(s, row), i));
     fprintf(f, ",%s", good ? "ok" : "failed");
-    write_csv_numbers(s, r, f);
+    write_csv_numbers(f, 4, (double[]){r->time, r->wall, r->cpu, real_time_factor(r)});
+    for (int i = 0; i < s->n_measure; i++)
+        write_csv_numbers(f, 2, (double[]){r->error[i], r->estimate[i]});
+    write_csv_numbers(f, 4, (double[]){k->defect_max, k->defect_rms, k->energy_residual, k->energy_exchanged});
     bough_csv_next(f, good ? "" : r->outcome.message);
     fputc('\n', f);
 }
@@ -295,7 +286,7 @@ static double cost(const bough_case_result *r) { return r->cpu / r->time; }
 
 // A run that equals the reference has no place on a logarithmic axis.
 static bool has_point(const bough_case_result *r, int measure) {
-    return r->done && bough_is_ok(&r->outcome) && r->error[measure] > 0 && cost(r) > 0;
+    return bough_held(r) && r->error[measure] > 0 && cost(r) > 0;
 }
 
 // The settings that tell a line from the others, and the runs of it that have no point.

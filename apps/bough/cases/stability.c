@@ -12,8 +12,6 @@ static bool is_silent(const bough_case_result *r) {
     return !(r->error[0] <= 3 * r->estimate[0]) && r->error[0] > large;
 }
 
-static bool held(const bough_case_result *r) { return r->done && bough_is_ok(&r->outcome); }
-
 // "[1, 2, 3]" is shown by its first.
 static void shorten(const char *value, char text[24]) {
     snprintf(text, 24, "%s", value + (value[0] == '['));
@@ -35,7 +33,7 @@ static void print_row_name(const bough_study *s, const bough_case *cell, FILE *f
 // stopped.
 static void print_cell(const bough_case_result *r, FILE *f) {
     char text[24] = "held";
-    if (!held(r)) {
+    if (!bough_held(r)) {
         snprintf(text, sizeof text, "%.3g s", r->time);
     } else if (isfinite(r->error[0])) {
         snprintf(text, sizeof text, "%.1e%s", r->error[0], r->warned ? "!" : "");
@@ -62,7 +60,7 @@ static void print(const bough_study_results *x, FILE *f) {
 static bough_status conclude(const bough_study_results *x, FILE *f) {
     int n_held = 0, n_silent = 0, n = x->study->n_case;
     for (int i = 0; i < n; i++) {
-        n_held += held(&x->result[i]);
+        n_held += bough_held(&x->result[i]);
         n_silent += is_silent(&x->result[i]);
     }
     fprintf(f, "%d of %d held, %d stopped with a diagnosis, %d silent\n", n_held, n, n - n_held, n_silent);

@@ -13,6 +13,7 @@ enum { PANELS = 6, VALUES = 3 }; // channels in plot.svg; least, largest and mea
 typedef struct note {
     double simulated, cpu, wall; // [s]
     double shown[PANELS][VALUES];
+    const char *failure; // the message; NULL: none
 } note;
 
 // The tables and what they are made of.
@@ -21,8 +22,7 @@ typedef struct conclusion {
     const char *folder;
     bough_lifetime lifetime;
     bough_chart chart;
-    note *note;     // (n_case)
-    char *failures; // a text
+    note *note; // (n_case)
 } conclusion;
 
 // -- cases ----------------------------------------------------------------------------------------
@@ -57,7 +57,7 @@ static void put_channel(const bough_study *s, const bough_case_result *r, int i,
 
 static void put_case(const bough_study *s, int number, const bough_case_result *r, FILE *f) {
     const bough_case *c = &s->cases[number];
-    bool good = r->done && bough_is_ok(&r->outcome);
+    bool good = bough_held(r);
     fprintf(f, "%d", number + 1);
     for (int i = 0; i < s->grid.n; i++) bough_csv_next(f, bough_study_value(s, c, i));
     if (s->is.weighted) {
@@ -293,30 +293,31 @@ static void put_command(FILE *f, const bough_case *c) {
     }
 }
 
-void bough_case_failed(const bough_study *s, int number, const bough_status *outcome, FILE *f) {
+void bough_case_failed(const bough_study *s, int number, const char *message, FILE *f) {
     const bough_case *c = &s->cases[number];
     fprintf(f, "case %d failed (%s%s%s): %s\n    ", number + 1, s->group[c->group].name,
-            c->settings[0] ? ", " : "", c->settings, outcome->message);
+            c->settings[0] ? ", " : "", c->settings, message);
     put_command(f, c);
     fputc('\n', f);
 }
 
 // -- conclusion -----------------------------------------------------------------------------------
 
-static void keep(const bough_study *s, const bough_case_result *r, note *to) {
-    bool good = r->done && bough_is_ok(&r->outcome);
+static void keep(bough_arena *arena, const bough_study *s, const bough_case_result *r, note *to) {
+    bool failed = r->done && !bough_is_ok(&r->outcome);
+    if (failed) to->failure = bough_arena_string(arena, r->outcome.message);
     to->simulated = r->done ? r->time : 0;
     to->cpu = r->cpu;
     to->wall = r->wall;
     for (int k = 0; k < s->n_channel && k < PANELS; k++) {
         const bough_sample_statistics *x = &r->counts.channel[k].statistics;
-        const double values[VALUES] = {x->least, x->most, good ? x->mean : (double)NAN};
+        const double values[VALUES] = {x->least, x->most, bough_held(r) ? x->mean : (double)NAN};
         memcpy(to->shown[k], values, sizeof values);
     }
 }
 
 // Reads the results one after the other into cases.csv and the conclusion: their number costs little memory.
-static bough_status read_all(bough_arena *arena, conclusion *c, FILE *failures) {
+static bough_status read_all(bough_arena *arena, conclusion *c) {
     const bough_study *s = c->study;
     bough_case_result result = bough_case_take(arena, s);
     char path[BOUGH_PATH_MAX];
@@ -330,9 +331,8 @@ static bough_status read_all(bough_arena *arena, conclusion *c, FILE *failures) 
             return status;
         }
         put_case(s, i, &result, file);
-        keep(s, &result, &c->note[i]);
+        keep(arena, s, &result, &c->note[i]);
         bough_lifetime_add(&c->lifetime, i, &result);
-        if (result.done && !bough_is_ok(&result.outcome)) bough_case_failed(s, i, &result.outcome, failures);
     }
     return bough_folder_commit(path, file);
 }
@@ -354,7 +354,8 @@ static void print_table(const void *self, FILE *f) {
     } else {
         print_lifetime(&c->lifetime, f);
     }
-    fputs(c->failures, f);
+    for (int i = 0; i < s->n_case; i++)
+        if (c->note[i].failure) bough_case_failed(s, i, c->note[i].failure, f);
 }
 
 static bough_status write_all(conclusion *c) {
@@ -387,16 +388,10 @@ static bough_status conclude_in(bough_arena *arena, const bough_study_results *x
                     .lifetime = bough_lifetime_take(arena, study),
                     .chart = bough_chart_start(arena, NULL, 2),
                     .note = bough_arena_take(arena, (size_t)study->n_case * sizeof *c.note)};
-    size_t size = 0;
-    FILE *stream = open_memstream(&c.failures, &size);
-    if (!stream) bough_arena_leave(arena);
-    bough_status status = read_all(arena, &c, stream);
-    fclose(stream);
-    if (bough_is_ok(&status)) status = write_all(&c);
-    if (bough_is_ok(&status)) print_table(&c, x->options->stream);
-    if (bough_is_ok(&status)) status = judge(x, &c.lifetime);
-    free(c.failures);
-    return status;
+    BOUGH_TRY(read_all(arena, &c));
+    BOUGH_TRY(write_all(&c));
+    print_table(&c, x->options->stream);
+    return judge(x, &c.lifetime);
 }
 
 static int count_missing(const bough_study_results *x) {

@@ -17,7 +17,6 @@ typedef struct timing {
     const bough_study_options *options;
     cell_times *cell; // (n_case)
     bough_study_series reference, series;
-    bough_study_drive drive;
 } timing;
 
 // The cell with the first value of the last axis and this cell's values of all others: what the
@@ -54,9 +53,11 @@ static bough_status take_turn(timing *t, int turn) {
 
 static bough_status run_all(timing *t) {
     bough_case_result reference;
-    t->drive.progress.label = "reference";
-    bough_status status = run(t, t->study->reference_case, &t->drive, &t->reference, &reference);
-    bough_progress_clear(&t->drive.progress);
+    bough_study_drive drive = {.stop = t->options->stop,
+                               .progress = bough_progress_start(0, t->study->duration, t->options->quiet)};
+    drive.progress.label = "reference";
+    bough_status status = run(t, t->study->reference_case, &drive, &t->reference, &reference);
+    bough_progress_clear(&drive.progress);
     for (int turn = 0; turn < t->study->repeat && bough_is_ok(&status); turn++) status = take_turn(t, turn);
     return status;
 }
@@ -175,8 +176,6 @@ bough_status bough_timing_conclude(bough_arena *arena, const bough_study_results
     t.cell = bough_arena_take(arena, (size_t)study->n_case * sizeof *t.cell);
     t.reference = bough_study_series_take(arena, study);
     t.series = bough_study_series_take(arena, study);
-    t.drive.stop = options->stop;
-    t.drive.progress = bough_progress_start(0, study->duration, options->quiet);
     BOUGH_TRY(bough_folder_make(options->folder));
     BOUGH_TRY(run_all(&t));
     BOUGH_TRY(bough_folder_write(options->folder, "timing.csv", write_csv, &t));

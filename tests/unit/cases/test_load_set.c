@@ -1,5 +1,5 @@
 // Weights of a load set's cases and what their sums are, beside formulas by hand.
-#include "apps/bough/cases/lifetime.h"
+#include "apps/bough/cases/perform.h"
 
 #include "apps/bough/cases/study.h"
 #include "tests/unit/check.h"
