@@ -108,9 +108,9 @@ static void write_csv(const void *self, FILE *f) {
 // -- plot.svg: CPU time over the numbers of each axis -----------------------------------------------
 
 // 0: none, or one with a unit.
-static double number_of(const bough_study *s, int cell, int axis) {
+static double number_of(const bough_study_axis *axis, int k) {
     char *end;
-    double number = strtod(bough_study_value(s, &s->cases[cell], axis), &end);
+    double number = strtod(axis->value.item[k].value, &end);
     return *end == '\0' ? number : 0;
 }
 
@@ -121,12 +121,10 @@ static int stride_of(const bough_study *s, int axis) {
     return stride;
 }
 
-static bool is_of_numbers(const bough_study *s, int axis) {
-    int n = s->grid.axis[axis].value.n, stride = stride_of(s, axis);
-    for (int k = 0; k < n; k++) {
-        if (!(number_of(s, k * stride, axis) > 0)) return false;
-    }
-    return n > 1;
+static bool is_of_numbers(const bough_study_axis *axis) {
+    for (int k = 0; k < axis->value.n; k++)
+        if (!(number_of(axis, k) > 0)) return false;
+    return axis->value.n > 1;
 }
 
 static double cpu_of(const timing *t, int cell) {
@@ -138,15 +136,16 @@ static double cpu_of(const timing *t, int cell) {
 static void add_growth(bough_arena *arena, const timing *t, int first, int axis, int colour,
                        bough_chart *chart) {
     const bough_study *s = t->study;
-    int last = s->grid.axis[axis].value.n - 1, stride = stride_of(s, axis), end = first + last * stride;
+    const bough_study_axis *numbers = &s->grid.axis[axis];
+    int last = numbers->value.n - 1, stride = stride_of(s, axis), end = first + last * stride;
     const char *name = bough_grid_others(arena, s, &s->cases[first], axis);
     double exponent =
-        log(cpu_of(t, end) / cpu_of(t, first)) / log(number_of(s, end, axis) / number_of(s, first, axis));
+        log(cpu_of(t, end) / cpu_of(t, first)) / log(number_of(numbers, last) / number_of(numbers, 0));
     name = bough_arena_print(arena, "%s%sexponent %.2f", name, name[0] ? ": " : "", exponent);
     bough_chart_add_line(chart, (bough_chart_line){NULL, colour, true, true, 0});
     for (int k = 0; k <= last; k++) {
         int cell = first + k * stride;
-        bough_chart_add(chart, (bough_chart_point){.x = number_of(s, cell, axis),
+        bough_chart_add(chart, (bough_chart_point){.x = number_of(numbers, k),
                                                    .y = cpu_of(t, cell) / s->duration,
                                                    .label = k == last ? name : NULL});
     }
@@ -157,7 +156,7 @@ static bough_status plot(bough_arena *arena, const timing *t) {
     bough_chart chart = bough_chart_start(arena, s->title ? s->title : s->file, 2);
     chart.right = 130;
     for (int axis = 0; axis < s->grid.n; axis++) {
-        if (!is_of_numbers(s, axis)) continue;
+        if (!is_of_numbers(&s->grid.axis[axis])) continue;
         int colour = 0;
         bough_chart_add_panel(&chart, "CPU time per simulated second [s]", s->grid.axis[axis].label, true,
                               true);
