@@ -235,7 +235,8 @@ static void write_frequencies(FILE *f, const char *name, const bough_model_blade
     for (int k = 0; k < BOUGH_BLADE_MODELS_FREQUENCIES; k++) fprintf(f, ",%.9g", b->bent[k]);
 }
 
-static void write_rows(const comparison *c, FILE *f) {
+static void write_rows(const void *self, FILE *f) {
+    const comparison *c = self;
     fputs("model,states,tip (m),twist (deg)", f);
     for (int k = 0; k < BOUGH_BLADE_MODELS_FREQUENCIES; k++) fprintf(f, ",f%d (Hz)", k + 1);
     for (int k = 0; k < BOUGH_BLADE_MODELS_FREQUENCIES; k++) fprintf(f, ",bent f%d (Hz)", k + 1);
@@ -252,14 +253,6 @@ static void write_rows(const comparison *c, FILE *f) {
     }
 }
 
-static bough_status write_file(const comparison *c, const char *folder) {
-    char path[BOUGH_PATH_MAX];
-    FILE *file = NULL;
-    BOUGH_TRY(bough_folder_open(folder, "blade-models.csv", path, &file));
-    write_rows(c, file);
-    return bough_folder_commit(path, file);
-}
-
 bough_status bough_blade_models_perform(bough_arena *arena, const void *study,
                                         const bough_verification_options *options) {
     comparison c = {.study = study};
@@ -273,7 +266,8 @@ bough_status bough_blade_models_perform(bough_arena *arena, const void *study,
     c.outcome = bough_arena_take(arena, (size_t)c.study->n * sizeof *c.outcome);
     bough_status status = measure_all(arena, &c);
     bough_progress_clear(&c.drive.progress);
-    if (bough_is_ok(&status)) status = write_file(&c, options->folder);
+    if (bough_is_ok(&status))
+        status = bough_folder_write(options->folder, "blade-models.csv", write_rows, &c);
     if (bough_is_ok(&status)) print_table(&c, options->stream);
     return status;
 }

@@ -148,7 +148,8 @@ static void draw_legend(const drawing *d, double height) {
             end, y - 14);
 }
 
-static void draw(drawing *d, bool dark) {
+static void draw(const bough_stored_frame *frame, bool dark, FILE *svg) {
+    drawing *d = &(drawing){.frame = frame, .svg = svg};
     look(d);
     double height = fit(d);
     fprintf(d->svg,
@@ -168,19 +169,17 @@ static void draw(drawing *d, bool dark) {
     fputs("</svg>\n", d->svg);
 }
 
-static bough_status write_picture(const char *folder, const bough_stored_frame *frame, bool dark) {
-    drawing d = {.frame = frame};
-    char path[BOUGH_PATH_MAX];
-    BOUGH_TRY(bough_folder_open(folder, dark ? "shape-dark.svg" : "shape.svg", path, &d.svg));
-    draw(&d, dark);
-    return bough_folder_commit(path, d.svg);
-}
+static void draw_light(const void *frame, FILE *svg) { draw(frame, false, svg); }
+
+static void draw_dark(const void *frame, FILE *svg) { draw(frame, true, svg); }
 
 bough_status bough_report_shape(bough_arena *arena, const char *folder, double time, bool *drawn) {
     bough_stored_frame frame;
     *drawn = false;
     BOUGH_TRY(bough_report_frame(arena, folder, time, &frame));
-    for (int dark = 0; dark < 2 && frame.n_line > 0; dark++) BOUGH_TRY(write_picture(folder, &frame, dark));
-    *drawn = frame.n_line > 0;
+    if (frame.n_line == 0) return bough_ok();
+    BOUGH_TRY(bough_folder_write(folder, "shape.svg", draw_light, &frame));
+    BOUGH_TRY(bough_folder_write(folder, "shape-dark.svg", draw_dark, &frame));
+    *drawn = true;
     return bough_ok();
 }
