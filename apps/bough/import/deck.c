@@ -206,10 +206,8 @@ static bool is_default(const bough_deck *deck, const char *names) {
 double bough_deck_number(const bough_deck *deck, const char *names) {
     char word[WORD];
     double value = 0;
-    int line = value_of(deck, names, "number", word);
-    if (line < 0 || read_number(word, &value)) return value;
-    bough_deck_fail(deck, line, "%.*s: expected a number, got '%.60s'", (int)strcspn(names, "|"), names,
-                    word);
+    if (value_of(deck, names, "number", word) < 0 || read_number(word, &value)) return value;
+    bough_deck_refuse(deck, names, "expected a number, got '%.60s'", word);
     return 0;
 }
 
@@ -223,21 +221,17 @@ int bough_deck_whole(const bough_deck *deck, const char *names, int least, int m
 
 static bool deck_flag(const bough_deck *deck, const char *names) {
     char word[WORD];
-    int line = value_of(deck, names, "True", word);
-    if (line < 0) return false;
+    if (value_of(deck, names, "True", word) < 0) return false;
     const char *first = word + (word[0] == '.'); // Fortran reads no further
     if (*first == 't' || *first == 'T') return true;
     if (*first == 'f' || *first == 'F') return false;
-    bough_deck_fail(deck, line, "%.*s: expected True or False, got '%.60s'", (int)strcspn(names, "|"), names,
-                    word);
+    bough_deck_refuse(deck, names, "expected True or False, got '%.60s'", word);
     return false;
 }
 
 const char *bough_deck_text(const bough_deck *deck, const char *names) {
     char word[WORD];
-    if (value_of(deck, names, "\"text\"", word) < 0) return "";
-    const char *copy = bough_arena_string(deck->arena, word);
-    return copy ? copy : "";
+    return value_of(deck, names, "\"text\"", word) < 0 ? "" : bough_arena_string(deck->arena, word);
 }
 
 double bough_deck_number_or(const bough_deck *deck, const char *names, double fallback) {
@@ -304,8 +298,7 @@ const char *bough_deck_path_at(const bough_deck *deck, int line) {
     int folder = slash && word[0] != '/' ? (int)(slash - deck->path) + 1 : 0;
     snprintf(path, sizeof path, "%.*s%s", folder, deck->path, word);
     if (access(path, F_OK) != 0) respell_path(path);
-    const char *copy = bough_arena_string(deck->arena, path);
-    return copy ? copy : "";
+    return bough_arena_string(deck->arena, path);
 }
 
 const char *bough_deck_file_at(const bough_deck *deck, int line) {

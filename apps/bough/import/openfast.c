@@ -33,10 +33,9 @@ static void leave_water(bough_openfast *o) {
             bough_left_out(o, "%s: the tower's base is clamped", part[i]);
             continue;
         }
-        bough_deck_fail(o->main, bough_deck_line(o->main, part[i]),
-                        "%s: expected 0, a turbine on land; --clamp-base imports it clamped at the tower's "
-                        "base",
-                        part[i]);
+        bough_deck_refuse(
+            o->main, part[i],
+            "expected 0, a turbine on land; --clamp-base imports it clamped at the tower's base");
     }
     if (bough_deck_whole_or(o->main, "MHK", 0) != 0) {
         bough_deck_refuse(o->main, "MHK", "expected 0, a turbine in air");

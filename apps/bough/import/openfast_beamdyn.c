@@ -142,13 +142,6 @@ static void put_damping(bough_openfast *o, const bough_deck *deck, const beam *b
     fputs("  # s\n", o->draft.file[BOUGH_IMPORT_BLADE]);
 }
 
-static void take_beam(bough_openfast *o, beam *b, int n) {
-    b->span = bough_arena_doubles(o->draft.arena, 4 * (size_t)n);
-    b->flap = b->span + n;
-    b->edge = b->flap + n;
-    b->mass = b->edge + n;
-}
-
 void bough_openfast_beamdyn(bough_openfast *o) {
     bough_deck *deck = bough_openfast_open(o, o->main, "BDBldFile(1)|BDBldFile1");
     if (!bough_is_ok(o->draft.status)) return;
@@ -161,7 +154,7 @@ void bough_openfast_beamdyn(bough_openfast *o) {
     o->blade_length = p[n - 1].z;
     fprintf(o->draft.file[BOUGH_IMPORT_BLADE], "length: %.10g\n", o->blade_length);
     beam b = {0};
-    take_beam(o, &b, MOST + 2);
+    bough_arena_each(o->draft.arena, MOST + 2, &b.span, &b.flap, &b.edge, &b.mass);
     put_stations(o, blade, p, n, &b);
     if (bough_is_ok(o->draft.status)) put_damping(o, blade, &b);
 }

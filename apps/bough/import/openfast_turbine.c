@@ -36,9 +36,7 @@ static void put_manoeuvre(bough_openfast *o, const char *key, double way, double
     double speed = copysign(rate, way), lasts = way / speed;
     double half = fmin(fmin(o->draft.macro_step / 2, lasts / 4), start > 0 ? start / 2 : HUGE_VAL);
     if (!(fabs(rate) > 0) || !(start >= 0)) {
-        bough_deck_fail(o->servo, bough_deck_line(o->servo, key),
-                        "%.*s: expected a time from 0 on and a rate that is not zero", (int)strcspn(key, "|"),
-                        key);
+        bough_deck_refuse(o->servo, key, "expected a time from 0 on and a rate that is not zero");
     }
     fputs("motion: {speed: {times: [", file);
     if (start > 0) fprintf(file, "%.10g, %.10g, ", start - half, start + half);

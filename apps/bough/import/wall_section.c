@@ -127,14 +127,9 @@ typedef struct network {
 
 static void take(bough_arena *arena, network *n) {
     size_t m = (size_t)n->n_node;
-    n->x = bough_arena_doubles(arena, m);
-    n->y = bough_arena_doubles(arena, m);
-    n->area = bough_arena_doubles(arena, m);
+    bough_arena_each(arena, m, &n->x, &n->y, &n->area);
     n->matrix = bough_arena_doubles(arena, m * m);
-    for (int k = 0; k < 3; k++) {
-        n->load[k] = bough_arena_doubles(arena, m);
-        n->right[k] = bough_arena_doubles(arena, m);
-    }
+    for (int k = 0; k < 3; k++) bough_arena_each(arena, m, &n->load[k], &n->right[k]);
 }
 
 // Nodes move to the middles of their walls, in the mean of these by length.

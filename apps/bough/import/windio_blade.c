@@ -40,8 +40,6 @@ static matrices read_grid(bough_windio *w, const bough_node *from, const char *p
     if (m.node) m.grid = bough_entry_numbers(&w->draft, m.node, "grid", &m.n);
     if (!m.grid) return (matrices){0};
     m.entry = bough_arena_doubles(w->draft.arena, (size_t)ENTRIES * m.n);
-    if (!m.entry) return (matrices){0};
-    for (int i = 0; i < ENTRIES * m.n; i++) m.entry[i] = 0;
     return m;
 }
 

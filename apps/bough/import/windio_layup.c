@@ -73,9 +73,8 @@ static points read_points(bough_windio *w, const bough_node *airfoil) {
     points p = {0};
     const double *x = bough_entry_numbers(d, airfoil, "coordinates.x", &p.n);
     const double *y = x ? bough_entry_numbers(d, airfoil, "coordinates.y", &p.n) : NULL;
-    p.x = bough_arena_doubles(d->arena, (size_t)p.n + 2);
-    p.y = bough_arena_doubles(d->arena, (size_t)p.n + 2);
-    if (!y || !p.x || !p.y) return (points){0};
+    if (!y) return (points){0};
+    bough_arena_each(d->arena, (size_t)p.n + 2, &p.x, &p.y);
     memcpy(p.x, x, (size_t)p.n * sizeof(double));
     memcpy(p.y, y, (size_t)p.n * sizeof(double));
     int edge = leading_edge(&p);
@@ -349,7 +348,7 @@ static bough_curve read_plies(parts *p, const bough_node *node, const bough_node
     double *thick = bough_arena_doubles(d->arena, (size_t)c.n + 1);
     double each = bough_entry_number(d, material, "ply_t");
     for (int i = 0; i < c.n; i++) thick[i] = each * c.y[i];
-    return thick ? (bough_curve){c.node, c.n, c.x, thick} : (bough_curve){0};
+    return (bough_curve){c.node, c.n, c.x, thick};
 }
 
 static void read_layer(parts *p, const bough_node *node, layer *l) {
@@ -528,8 +527,7 @@ void bough_windio_layup(bough_windio *w, bough_layup *to) {
     read_parts(p);
     if (!bough_is_ok(d->status)) return;
     to->n = choose_shares(p, &to->share);
-    to->stiffness = bough_arena_doubles(d->arena, 36 * (size_t)to->n);
-    to->mass = bough_arena_doubles(d->arena, 36 * (size_t)to->n);
+    bough_arena_each(d->arena, 36 * (size_t)to->n, &to->stiffness, &to->mass);
     for (int i = 0; i < to->n && bough_is_ok(d->status); i++) {
         p->share = to->share[i];
         solve_station(p, s, to->stiffness + 36 * i, to->mass + 36 * i);
