@@ -165,9 +165,9 @@ static void convert(void *self, const char *path) {
     bough_openfast *o = self;
     o->main = bough_deck_open(o->draft.arena, path, BOUGH_DECK_HEADING, o->draft.status);
     if (o->main) open_modules(o);
-    bough_openfast_check(o->elasto, BOUGH_LIMITS_ELASTO);
-    bough_openfast_check(o->servo, BOUGH_LIMITS_SERVO);
-    bough_openfast_check(o->inflow, BOUGH_LIMITS_INFLOW);
+    bough_openfast_check(o->elasto);
+    bough_openfast_check(o->servo);
+    bough_openfast_check(o->inflow);
     if (bough_is_ok(o->draft.status)) read_shape(o);
     write_scene(o, path);
 }

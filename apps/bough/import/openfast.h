@@ -118,14 +118,7 @@ typedef struct bough_openfast {
 bough_deck *bough_openfast_open(bough_openfast *o, const bough_deck *from, const char *names);
 
 // Fails at the line of a number that no turbine has; a deck of NULL has none.
-typedef enum bough_openfast_limits {
-    BOUGH_LIMITS_ELASTO,
-    BOUGH_LIMITS_SERVO,
-    BOUGH_LIMITS_INFLOW,
-    BOUGH_LIMITS_BLADE,
-    BOUGH_LIMITS_TOWER,
-} bough_openfast_limits;
-void bough_openfast_check(const bough_deck *deck, bough_openfast_limits which);
+void bough_openfast_check(const bough_deck *deck);
 
 // Values of a deck for which the scene has no place, and what the list says of them.
 typedef struct bough_openfast_rest {

@@ -9,16 +9,12 @@
 
 // -- limits ---------------------------------------------------------------------------------------
 
-// Limits of the decks' numbers.
-
-// What a number may be, in its line's unit. A value beyond would be refused later, in the scene, where nobody
-// has written it.
-typedef struct limit {
+// What a number of any of the decks may be, in its line's unit: no two decks have one name for two things.
+// A value beyond would be refused later, in the scene, where nobody has written it.
+static const struct {
     const char *names;
     double low, high;
-} limit;
-
-static const limit elasto[] = {
+} limits[] = {
     {"RotSpeed", -1e4, 1e4},
     {"NacYaw", -360, 360},
     {"TipRad", 0.01, 1e3},
@@ -47,24 +43,16 @@ static const limit elasto[] = {
     {"GBRatio", 1e-3, 1e4},
     {"DTTorSpr", 0, 1e20},
     {"DTTorDmp", 0, 1e20},
-};
-static const limit servo[] = {
     {"GenEff", 0, 100},
     {"YawSpr", 0, 1e20},
     {"YawDamp", 0, 1e20},
-};
-static const limit inflow[] = {
     {"VFlowAng", -80, 80},
     {"HWindSpeed", 0, 200},
-};
-static const limit blade[] = {
     {"BldFlDmp(1)|BldFlDmp1", 0, 100},
     {"BldEdDmp(1)|BldEdDmp1", 0, 100},
     {"AdjBlMs", 1e-6, 1e6},
     {"AdjFlSt", 1e-6, 1e6},
     {"AdjEdSt", 1e-6, 1e6},
-};
-static const limit tower[] = {
     {"TwrFADmp(1)|TwrFADmp1", 0, 100},
     {"TwrSSDmp(1)|TwrSSDmp1", 0, 100},
     {"AdjTwMa", 1e-6, 1e6},
@@ -72,23 +60,12 @@ static const limit tower[] = {
     {"AdjSSSt", 1e-6, 1e6},
 };
 
-#define LIMITS(list)                                                                                         \
-    { sizeof(list) / sizeof *(list), list }
-static const struct {
-    int n;
-    const limit *list;
-} limits[] = {
-    [BOUGH_LIMITS_ELASTO] = LIMITS(elasto), [BOUGH_LIMITS_SERVO] = LIMITS(servo),
-    [BOUGH_LIMITS_INFLOW] = LIMITS(inflow), [BOUGH_LIMITS_BLADE] = LIMITS(blade),
-    [BOUGH_LIMITS_TOWER] = LIMITS(tower),
-};
-
-void bough_openfast_check(const bough_deck *deck, bough_openfast_limits which) {
-    for (int k = 0; k < limits[which].n && deck; k++) {
-        const limit *x = &limits[which].list[k];
-        double value = bough_deck_number_or(deck, x->names, x->low);
-        if (value >= x->low && value <= x->high) continue;
-        bough_deck_refuse(deck, x->names, "expected %g to %g, got %g", x->low, x->high, value);
+void bough_openfast_check(const bough_deck *deck) {
+    for (size_t k = 0; k < sizeof limits / sizeof *limits && deck; k++) {
+        double low = limits[k].low, high = limits[k].high;
+        double value = bough_deck_number_or(deck, limits[k].names, low);
+        if (value >= low && value <= high) continue;
+        bough_deck_refuse(deck, limits[k].names, "expected %g to %g, got %g", low, high, value);
     }
 }
 

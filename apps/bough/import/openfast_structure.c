@@ -158,7 +158,7 @@ static void put_blade(bough_openfast *o, const bough_deck *deck, const slender *
 
 void bough_openfast_blade(bough_openfast *o) {
     bough_deck *deck = bough_openfast_open(o, o->elasto, "BldFile(1)|BldFile1");
-    bough_openfast_check(deck, BOUGH_LIMITS_BLADE);
+    bough_openfast_check(deck);
     if (!deck) return;
     const char *const column[] = {"BlFract", "StrcTwst", "BMassDen", "FlpStff",
                                   "EdgStff", "?GJStff",  "?EAStff"};
@@ -207,7 +207,7 @@ enum { FORE = 2, SIDE, N_TOWER_COLUMN };
 
 void bough_openfast_tower(bough_openfast *o, double top_mass) {
     bough_deck *deck = bough_openfast_open(o, o->elasto, "TwrFile");
-    bough_openfast_check(deck, BOUGH_LIMITS_TOWER);
+    bough_openfast_check(deck);
     if (!deck) return;
     const char *const column[] = {"HtFract", "TMassDen", "TwFAStif", "TwSSStif"};
     int n = bough_deck_whole(deck, "NTwInpSt", 1, MOST);
