@@ -70,6 +70,9 @@ void bough_draft_note(bough_draft *d, bough_import_note kind, const char *format
 #define bough_left_out(x, ...) bough_draft_note(&(x)->draft, BOUGH_LEFT_OUT, __VA_ARGS__)
 #define bough_other_case(x, ...) bough_draft_note(&(x)->draft, BOUGH_OTHER_CASE, __VA_ARGS__)
 
+// Adds to the scene's text, as printf does.
+#define bough_put(x, ...) fprintf((x)->draft.file[BOUGH_IMPORT_SCENE], __VA_ARGS__)
+
 // Writes the scene's first lines: comment, title, time, solvers. The macro step follows from the rotor's
 // speed [rad/s]; the duration [s] is rounded up to whole macro steps. `origin`: "an OpenFAST model".
 void bough_draft_head(bough_draft *d, const char *title, const char *origin, double gravity, double duration,

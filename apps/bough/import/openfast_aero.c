@@ -180,19 +180,18 @@ static void put_induction(bough_openfast *o) {
     bool oye = wake == 2 || (wake == 1 && bough_deck_line(a, "Wake_Mod") >= 0 && dynamic > 0);
     bool pitt = new_skew ? skew == 1 && bough_deck_whole_or(a, "SkewRedistr_Mod", 1) != 0 : skew == 2;
     int balance = bough_deck_whole_or(a, "BEM_Mod", 0);
-    FILE *file = o->draft.file[BOUGH_IMPORT_SCENE];
-    fprintf(file,
-            "  induction: {tip_loss: %s, hub_loss: %s, tangential: %s, drag: %s, skew: %s, "
-            "high_thrust: %s",
-            truth(bough_deck_flag_or(a, "TipLoss", true)), truth(bough_deck_flag_or(a, "HubLoss", true)),
-            truth(bough_deck_flag_or(a, "TanInd", true)), truth(bough_deck_flag_or(a, "AIDrag", true)),
-            pitt ? "pitt-peters" : "none", balance == 1 ? "buhl" : "smooth");
+    bough_put(o,
+              "  induction: {tip_loss: %s, hub_loss: %s, tangential: %s, drag: %s, skew: %s, "
+              "high_thrust: %s",
+              truth(bough_deck_flag_or(a, "TipLoss", true)), truth(bough_deck_flag_or(a, "HubLoss", true)),
+              truth(bough_deck_flag_or(a, "TanInd", true)), truth(bough_deck_flag_or(a, "AIDrag", true)),
+              pitt ? "pitt-peters" : "none", balance == 1 ? "buhl" : "smooth");
     bool momentum = bough_deck_flag_or(a, "SkewMomCorr", false);
-    if (momentum && balance != 1) fputs(", skewed_momentum: true", file);
-    if (oye) fputs(", inflow: oye", file);
+    if (momentum && balance != 1) bough_put(o, ", skewed_momentum: true");
+    if (oye) bough_put(o, ", inflow: oye");
     double time = oye && dynamic != 2 ? bough_deck_number_or(a, "tau1_const", 0) : 0;
-    if (time > 0) fprintf(file, ", inflow_time: %.10g s", time);
-    fputs("}\n", file);
+    if (time > 0) bough_put(o, ", inflow_time: %.10g s", time);
+    bough_put(o, "}\n");
     if (momentum && balance == 1) {
         bough_left_out(o, "SkewMomCorr is only used with BEM_Mod 2");
     }
@@ -219,8 +218,7 @@ static void put_stall(bough_openfast *o) {
     const bough_deck *a = o->aero;
     int model = bough_deck_whole_or(a, "UAMod|UA_Mod", 0);
     bool on = dynamic_stall(a);
-    FILE *file = o->draft.file[BOUGH_IMPORT_SCENE];
-    if (on) fputs("  dynamic_stall: hgm\n", file);
+    if (on) bough_put(o, "  dynamic_stall: hgm\n");
     if (on && model != 4) {
         bough_approximated(o,
                            "UAMod %d: dynamic stall by Hansen, Gaunaa and Madsen's model (4), its "
@@ -230,7 +228,7 @@ static void put_stall(bough_openfast *o) {
     if (on && bough_deck_number_or(a, "UAStartRad", 0) > 0) {
         bough_left_out(o, "UAStartRad: dynamic stall acts on all elements");
     }
-    if (!bough_deck_flag_or(a, "UseBlCm", true)) fputs("  pitching_moment: false\n", file);
+    if (!bough_deck_flag_or(a, "UseBlCm", true)) bough_put(o, "  pitching_moment: false\n");
 }
 
 static void put_column(FILE *file, const char *key, const double *row, int column, int n) {
@@ -296,12 +294,11 @@ void bough_openfast_aero(bough_openfast *o) {
     const bough_deck *a = o->aero;
     if (!a || !bough_is_ok(o->draft.status)) return;
     double density = bough_deck_number_or(o->main, "AirDens", 1.225);
-    FILE *file = o->draft.file[BOUGH_IMPORT_SCENE];
-    fprintf(file, "aero:\n  rate: %.10g Hz\n  air_density: %.10g\n", 1 / o->draft.macro_step,
-            bough_deck_number_or(a, "AirDens", density));
+    bough_put(o, "aero:\n  rate: %.10g Hz\n  air_density: %.10g\n", 1 / o->draft.macro_step,
+              bough_deck_number_or(a, "AirDens", density));
     bough_openfast_wind(o);
-    fprintf(file, "  blade: %s\n  polars: %s\n  hub_radius: %.10g m\n", bough_import_name[BOUGH_IMPORT_AERO],
-            bough_import_name[BOUGH_IMPORT_POLARS], o->hub_radius);
+    bough_put(o, "  blade: %s\n  polars: %s\n  hub_radius: %.10g m\n", bough_import_name[BOUGH_IMPORT_AERO],
+              bough_import_name[BOUGH_IMPORT_POLARS], o->hub_radius);
     put_induction(o);
     put_stall(o);
     put_tower(o);

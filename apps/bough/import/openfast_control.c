@@ -300,21 +300,20 @@ static void put_law(bough_openfast *o) {
                         "for samples every %g s",
                         l.most, full / rpm, o->draft.macro_step);
     }
-    fprintf(o->draft.file[BOUGH_IMPORT_SCENE],
-            "control:\n  kind: variable-speed\n  rate: %.10g Hz\n  gear_ratio: %.10g\n"
-            "  efficiency: %.10g\n  pitch: false\n  law:\n    corner: %.10g rad/s\n    cut_in: 0 rad/s\n"
-            "    optimal_from: %g rad/s\n    optimal_gain: %.10g\n    rated_speed: %.10g rad/s\n"
-            "    rated_power: %.10g\n    above_rated: torque\n    slip: %.10g\n"
-            "    most_torque: %.10g\n    torque_rate: 1e9\n",
-            1 / o->draft.macro_step, bough_deck_number(o->elasto, "GBRatio"),
-            bough_deck_number_or(o->servo, "GenEff", 100) / 100, 2 / o->draft.macro_step, least_speed, l.gain,
-            full, l.most * full, l.slip, l.most);
-    if (torque_mode(o) == NONE) fputs("    motoring: true\n", o->draft.file[BOUGH_IMPORT_SCENE]);
+    bough_put(o,
+              "control:\n  kind: variable-speed\n  rate: %.10g Hz\n  gear_ratio: %.10g\n"
+              "  efficiency: %.10g\n  pitch: false\n  law:\n    corner: %.10g rad/s\n    cut_in: 0 rad/s\n"
+              "    optimal_from: %g rad/s\n    optimal_gain: %.10g\n    rated_speed: %.10g rad/s\n"
+              "    rated_power: %.10g\n    above_rated: torque\n    slip: %.10g\n"
+              "    most_torque: %.10g\n    torque_rate: 1e9\n",
+              1 / o->draft.macro_step, bough_deck_number(o->elasto, "GBRatio"),
+              bough_deck_number_or(o->servo, "GenEff", 100) / 100, 2 / o->draft.macro_step, least_speed,
+              l.gain, full, l.most * full, l.slip, l.most);
+    if (torque_mode(o) == NONE) bough_put(o, "    motoring: true\n");
 }
 
 // When the generator goes on line, and off for good.
 static void put_switches(bough_openfast *o) {
-    FILE *file = o->draft.file[BOUGH_IMPORT_SCENE];
     const bough_deck *s = o->servo;
     bool law = o->generator == BOUGH_GENERATOR_LAW;
     bool timed = bough_deck_flag_or(s, "GenTiStr", true), stops = bough_deck_flag_or(s, "GenTiStp", true);
@@ -327,11 +326,11 @@ static void put_switches(bough_openfast *o) {
                          timed ? "TimGenOn" : "SpdGenOn");
     }
     if (!starts && !by_time && !by_power) return;
-    fputs("  events:\n", file);
-    if (starts && timed) fprintf(file, "    - {kind: start, at: %.10g s}\n", on);
-    if (starts && !timed) fprintf(file, "    - {kind: start, channel: GenSpeed, above: %.10g}\n", on);
-    if (by_time) fprintf(file, "    - {kind: grid-loss, at: %.10g s}\n", off);
-    if (by_power) fputs("    - {kind: grid-loss, channel: GenPwr, below: 0}\n", file);
+    bough_put(o, "  events:\n");
+    if (starts && timed) bough_put(o, "    - {kind: start, at: %.10g s}\n", on);
+    if (starts && !timed) bough_put(o, "    - {kind: start, channel: GenSpeed, above: %.10g}\n", on);
+    if (by_time) bough_put(o, "    - {kind: grid-loss, at: %.10g s}\n", off);
+    if (by_power) bough_put(o, "    - {kind: grid-loss, channel: GenPwr, below: 0}\n");
     bough_taken(o, "the generator's switches: %s%s%s",
                 !starts ? ""
                 : timed ? "TimGenOn"
@@ -351,7 +350,7 @@ static void put_library(bough_openfast *o) {
     bough_draft_library(&o->draft, o->library, input ? bough_deck_path(o->servo, "DLL_InFile") : NULL,
                         bough_deck_number(o->elasto, "GBRatio"), efficiency);
     if (o->servo && bough_deck_whole_or(o->servo, "Ptch_Cntrl", 0) == 1) {
-        fputs("  individual_pitch: true\n", o->draft.file[BOUGH_IMPORT_SCENE]);
+        bough_put(o, "  individual_pitch: true\n");
     }
     if (o->servo && bough_deck_number_or(o->servo, "TPCOn", 0) > 0) {
         bough_left_out(o, "TPCOn: the library controls the pitch from the start");

@@ -7,9 +7,8 @@
 // -- tower and nacelle ----------------------------------------------------------------------------
 
 static void put_tower(bough_openfast *o, double top_mass) {
-    FILE *file = o->draft.file[BOUGH_IMPORT_SCENE];
     if (o->rigid_tower) {
-        fputs("  - name: tower\n    fidelity: rigid\n    joint: {kind: fixed, parent: ground}\n", file);
+        bough_put(o, "  - name: tower\n    fidelity: rigid\n    joint: {kind: fixed, parent: ground}\n");
         return;
     }
     bough_openfast_tower(o, top_mass);
@@ -32,66 +31,61 @@ static bool has_yaw_drive(const bough_openfast *o) {
 // The speed of a joint that turns by `way` [deg] from `start` [s] on, at a constant rate [deg/s], which comes
 // and goes within a macro step; `key` is where the deck has them.
 static void put_manoeuvre(bough_openfast *o, const char *key, double way, double start, double rate) {
-    FILE *file = o->draft.file[BOUGH_IMPORT_SCENE];
     double speed = copysign(rate, way), lasts = way / speed;
     double half = fmin(fmin(o->draft.macro_step / 2, lasts / 4), start > 0 ? start / 2 : HUGE_VAL);
     if (!(fabs(rate) > 0) || !(start >= 0)) {
         bough_deck_refuse(o->servo, key, "expected a time from 0 on and a rate that is not zero");
     }
-    fputs("motion: {speed: {times: [", file);
-    if (start > 0) fprintf(file, "%.10g, %.10g, ", start - half, start + half);
-    if (start == 0) fputs("0, ", file);
-    fprintf(file, "%.10g, %.10g], values: [", start + lasts - half, start + lasts + half);
-    if (start > 0) fputs("0 deg/s, ", file);
-    fprintf(file, "%.10g deg/s, %.10g deg/s, 0 deg/s]}}", speed, speed);
+    bough_put(o, "motion: {speed: {times: [");
+    if (start > 0) bough_put(o, "%.10g, %.10g, ", start - half, start + half);
+    if (start == 0) bough_put(o, "0, ");
+    bough_put(o, "%.10g, %.10g], values: [", start + lasts - half, start + lasts + half);
+    if (start > 0) bough_put(o, "0 deg/s, ");
+    bough_put(o, "%.10g deg/s, %.10g deg/s, 0 deg/s]}}", speed, speed);
     bough_taken(o, "%.*s: turns by %g deg from %g s on", (int)strcspn(key, "|"), key, fabs(way), start);
 }
 
 // A body that turns what the spring of the yaw bearing is fixed to.
 static void put_yaw_drive(bough_openfast *o) {
-    FILE *file = o->draft.file[BOUGH_IMPORT_SCENE];
-    fputs("  - name: yaw # drive, against which the nacelle turns\n    fidelity: rigid\n"
-          "    joint: {kind: revolute, axis: z, parent: tower, ",
-          file);
-    if (o->rigid_tower) fprintf(file, "placement: [move z %.10g m], ", o->tower_top);
-    fprintf(file, "angle: %.10g deg,\n            ", neutral_yaw(o));
+    bough_put(o, "  - name: yaw # drive, against which the nacelle turns\n    fidelity: rigid\n"
+                 "    joint: {kind: revolute, axis: z, parent: tower, ");
+    if (o->rigid_tower) bough_put(o, "placement: [move z %.10g m], ", o->tower_top);
+    bough_put(o, "angle: %.10g deg,\n            ", neutral_yaw(o));
     put_manoeuvre(o, "TYawManS", bough_deck_number(o->servo, "NacYawF") - neutral_yaw(o),
                   bough_deck_number(o->servo, "TYawManS"), bough_deck_number(o->servo, "YawManRat"));
-    fputs("}\n", file);
+    bough_put(o, "}\n");
 }
 
 static void put_yaw(bough_openfast *o) {
     const bough_deck *e = o->elasto;
-    FILE *file = o->draft.file[BOUGH_IMPORT_SCENE];
     double yaw = bough_deck_number_or(e, "NacYaw", 0);
     bool turns = yaws(o), driven = has_yaw_drive(o), high = o->rigid_tower && !driven;
-    fprintf(file, "    joint: {kind: %s, parent: %s", turns ? "revolute, axis: z" : "fixed",
-            driven ? "yaw" : "tower");
+    bough_put(o, "    joint: {kind: %s, parent: %s", turns ? "revolute, axis: z" : "fixed",
+              driven ? "yaw" : "tower");
     if (high || (yaw != 0 && !turns)) {
-        fputs(", placement: [", file);
-        if (high) fprintf(file, "move z %.10g m", o->tower_top);
-        if (high && yaw != 0 && !turns) fputs(", ", file);
-        if (yaw != 0 && !turns) fprintf(file, "rotate z %.10g deg", yaw);
-        fputs("]", file);
+        bough_put(o, ", placement: [");
+        if (high) bough_put(o, "move z %.10g m", o->tower_top);
+        if (high && yaw != 0 && !turns) bough_put(o, ", ");
+        if (yaw != 0 && !turns) bough_put(o, "rotate z %.10g deg", yaw);
+        bough_put(o, "]");
     }
     if (turns) {
-        fprintf(file, ", stiffness: %.10g, damping: %.10g", bough_deck_number(o->servo, "YawSpr"),
-                bough_deck_number(o->servo, "YawDamp"));
+        bough_put(o, ", stiffness: %.10g, damping: %.10g", bough_deck_number(o->servo, "YawSpr"),
+                  bough_deck_number(o->servo, "YawDamp"));
         double neutral = neutral_yaw(o);
-        fprintf(file, ", angle: %.10g deg, rest: %.10g deg", driven ? yaw - neutral : yaw,
-                driven ? 0 : neutral);
+        bough_put(o, ", angle: %.10g deg, rest: %.10g deg", driven ? yaw - neutral : yaw,
+                  driven ? 0 : neutral);
         bough_taken(o, "yaw bearing with spring and damper");
     } else if (bough_deck_flag_or(e, "YawDOF", false)) {
         bough_left_out(o, "YawDOF: without ServoDyn the yaw angle is constant");
     }
-    fputs("}\n", file);
+    bough_put(o, "}\n");
 }
 
 // The yaw bearing's mass sits at the tower's top, the origin of the nacelle's frame, and so moves the
 // common centre of mass towards it.
 static void put_nacelle(bough_openfast *o) {
     const bough_deck *e = o->elasto;
-    FILE *file = o->draft.file[BOUGH_IMPORT_SCENE];
     double mass = bough_deck_number(e, "NacMass"), about_yaw = bough_deck_number(e, "NacYIner");
     double bearing = bough_deck_number_or(e, "YawBrMass", 0), sum = mass + bearing;
     double share = sum > 0 ? mass / sum : 0;
@@ -103,10 +97,10 @@ static void put_nacelle(bough_openfast *o) {
         polar = 0;
     }
     if (has_yaw_drive(o)) put_yaw_drive(o);
-    fputs("  - name: nacelle\n    fidelity: rigid\n", file);
+    bough_put(o, "  - name: nacelle\n    fidelity: rigid\n");
     put_yaw(o);
-    fprintf(file, "    mass: %.10g kg\n    centre_of_mass: [%.10g, %.10g, %.10g]\n", sum, x, y, z);
-    fprintf(file, "    inertia: [%.10g, %.10g, %.10g]\n", polar / 2, polar / 2, polar);
+    bough_put(o, "    mass: %.10g kg\n    centre_of_mass: [%.10g, %.10g, %.10g]\n", sum, x, y, z);
+    bough_put(o, "    inertia: [%.10g, %.10g, %.10g]\n", polar / 2, polar / 2, polar);
     bough_approximated(o, "nacelle: inertias about its other axes half of that about the yaw axis");
     if (bearing > 0) {
         bough_taken(o, "YawBrMass %g kg, with the nacelle", bearing);
@@ -128,38 +122,36 @@ bool bough_openfast_shaft_twists(const bough_openfast *o) {
 // The joint on the nacelle, which turns with the generator's speed.
 static void put_main_joint(bough_openfast *o) {
     const bough_deck *e = o->elasto;
-    FILE *file = o->draft.file[BOUGH_IMPORT_SCENE];
     double speed = bough_deck_number(e, "RotSpeed");
     double angle = bough_deck_number_or(e, "Azimuth", 0) - bough_deck_number_or(e, "AzimB1Up", 0);
-    fprintf(file,
-            "    joint:\n      kind: revolute\n      parent: nacelle\n      placement: [move z %.10g m, "
-            "rotate y %.10g deg, move x %.10g m]\n      axis: x\n",
-            bough_deck_number(e, "Twr2Shft"), -bough_deck_number(e, "ShftTilt"),
-            bough_deck_number(e, "OverHang"));
-    if (angle != 0) fprintf(file, "      angle: %.10g deg\n", angle);
+    bough_put(o,
+              "    joint:\n      kind: revolute\n      parent: nacelle\n      placement: [move z %.10g m, "
+              "rotate y %.10g deg, move x %.10g m]\n      axis: x\n",
+              bough_deck_number(e, "Twr2Shft"), -bough_deck_number(e, "ShftTilt"),
+              bough_deck_number(e, "OverHang"));
+    if (angle != 0) bough_put(o, "      angle: %.10g deg\n", angle);
     if (o->lacks_control) {
-        fprintf(file, "      # This scene lacks %s:\n      # the speed of the start is kept.\n",
-                o->lacks_control);
+        bough_put(o, "      # This scene lacks %s:\n      # the speed of the start is kept.\n",
+                  o->lacks_control);
     }
-    fprintf(file,
-            o->generator == BOUGH_GENERATOR_DRIVEN ? "      motion: {speed: %.10g rpm}\n"
-                                                   : "      speed: %.10g rpm\n",
-            speed);
+    bough_put(o,
+              o->generator == BOUGH_GENERATOR_DRIVEN ? "      motion: {speed: %.10g rpm}\n"
+                                                     : "      speed: %.10g rpm\n",
+              speed);
 }
 
 static void put_generator(bough_openfast *o, bool twists) {
-    FILE *file = o->draft.file[BOUGH_IMPORT_SCENE];
-    fputs("  - name: generator # on the slow shaft\n    fidelity: rigid\n", file);
+    bough_put(o, "  - name: generator # on the slow shaft\n    fidelity: rigid\n");
     put_main_joint(o);
-    fprintf(file, "    inertia: [%.10g, 0, 0]\n", bough_openfast_generator_inertia(o));
+    bough_put(o, "    inertia: [%.10g, 0, 0]\n", bough_openfast_generator_inertia(o));
     bough_taken(o, "drive train: %s between hub and generator", twists ? "spring and damper" : "rigid");
 }
 
 static void put_spring(bough_openfast *o) {
-    fprintf(o->draft.file[BOUGH_IMPORT_SCENE],
-            "    joint: {kind: revolute, axis: x, parent: generator, stiffness: %.10g, "
-            "damping: %.10g}\n",
-            bough_deck_number(o->elasto, "DTTorSpr"), bough_deck_number(o->elasto, "DTTorDmp"));
+    bough_put(o,
+              "    joint: {kind: revolute, axis: x, parent: generator, stiffness: %.10g, "
+              "damping: %.10g}\n",
+              bough_deck_number(o->elasto, "DTTorSpr"), bough_deck_number(o->elasto, "DTTorDmp"));
 }
 
 static bool teeters(const bough_openfast *o) {
@@ -169,21 +161,20 @@ static bool teeters(const bough_openfast *o) {
 // The pin about which a two-bladed hub teeters, on the shaft.
 static void put_teeter(bough_openfast *o, const char *shaft) {
     const bough_deck *e = o->elasto;
-    FILE *file = o->draft.file[BOUGH_IMPORT_SCENE];
     bool standard = bough_deck_whole_or(e, "TeetMod", 0) == 1;
     double stop = standard ? bough_deck_number_or(e, "TeetHStP", 0) : 0, radian = acos(-1.0) / 180;
     double stiffness = standard ? bough_deck_number_or(e, "TeetHSSp", 0) : 0;
     double damping = standard ? bough_deck_number_or(e, "TeetDmp", 0) : 0;
-    fprintf(file,
-            "    joint: {kind: revolute, axis: y, parent: %s, placement: [rotate x %.10g deg], "
-            "angle: %.10g deg",
-            shaft, -bough_deck_number_or(e, "Delta3", 0), bough_deck_number_or(e, "TeetDefl", 0));
-    if (damping > 0) fprintf(file, ", damping: %.10g", damping);
+    bough_put(o,
+              "    joint: {kind: revolute, axis: y, parent: %s, placement: [rotate x %.10g deg], "
+              "angle: %.10g deg",
+              shaft, -bough_deck_number_or(e, "Delta3", 0), bough_deck_number_or(e, "TeetDefl", 0));
+    if (damping > 0) bough_put(o, ", damping: %.10g", damping);
     if (stop > 0 && stop < 90 && stiffness > 0) {
-        fprintf(file, ", stop: [%.10g rad, %.10g rad], stop_stiffness: %.10g", -stop * radian, stop * radian,
-                stiffness);
+        bough_put(o, ", stop: [%.10g rad, %.10g rad], stop_stiffness: %.10g", -stop * radian, stop * radian,
+                  stiffness);
     }
-    fputs("}\n", file);
+    bough_put(o, "}\n");
     bough_taken(o, "TeetDOF: the hub teeters, with damper and hard stops");
     bool more = bough_deck_number_or(e, "TeetCDmp", 0) != 0 || bough_deck_number_or(e, "TeetSSSp", 0) > 1;
     if (standard && (more || bough_deck_number_or(e, "TeetDmpP", 0) != 0)) {
@@ -202,7 +193,7 @@ static void put_shaft_joint(bough_openfast *o, bool twists) {
     if (twists) {
         put_spring(o);
     } else if (has_generator(o)) {
-        fputs("    joint: {kind: fixed, parent: generator}\n", o->draft.file[BOUGH_IMPORT_SCENE]);
+        bough_put(o, "    joint: {kind: fixed, parent: generator}\n");
     } else {
         put_main_joint(o);
     }
@@ -211,23 +202,22 @@ static void put_shaft_joint(bough_openfast *o, bool twists) {
 // The hub's frame is on the shaft's axis, of a teetering hub at the pin; HubCM counts from the apex.
 static void put_hub(bough_openfast *o, bool twists) {
     const bough_deck *e = o->elasto;
-    FILE *file = o->draft.file[BOUGH_IMPORT_SCENE];
     double given = bough_deck_number(e, "HubIner");
     bool generator_is_shaft = has_generator(o) && !twists;
     if (teeters(o) && !generator_is_shaft) {
-        fputs("  - name: shaft\n    fidelity: rigid\n", file);
+        bough_put(o, "  - name: shaft\n    fidelity: rigid\n");
         put_shaft_joint(o, twists);
     }
-    fputs("  - name: hub\n    fidelity: rigid\n", file);
+    bough_put(o, "  - name: hub\n    fidelity: rigid\n");
     if (teeters(o)) {
         put_teeter(o, generator_is_shaft ? "generator" : "shaft");
     } else {
         put_shaft_joint(o, twists);
     }
-    fprintf(file, "    mass: %.10g kg\n    centre_of_mass: [%.10g, 0, 0]\n", bough_deck_number(e, "HubMass"),
-            bough_deck_number_or(e, "HubCM", 0) - undersling(o));
-    fprintf(file, "    inertia: [%.10g, %.10g, %.10g]\n", given, given / 2,
-            o->n_blade == 2 ? given : given / 2);
+    bough_put(o, "    mass: %.10g kg\n    centre_of_mass: [%.10g, 0, 0]\n", bough_deck_number(e, "HubMass"),
+              bough_deck_number_or(e, "HubCM", 0) - undersling(o));
+    bough_put(o, "    inertia: [%.10g, %.10g, %.10g]\n", given, given / 2,
+              o->n_blade == 2 ? given : given / 2);
     bough_approximated(o, "hub: inertias about its other axes half of HubIner");
 }
 
@@ -242,17 +232,16 @@ static void put_tip(bough_openfast *o, int k) {
         bough_left_out(o, "TipMass(%d): only for ElastoDyn's blades, not for BeamDyn's", k);
         return;
     }
-    fprintf(o->draft.file[BOUGH_IMPORT_SCENE],
-            "  - {name: tip%d, fidelity: rigid, joint: {kind: fixed, parent: blade%d}, "
-            "mass: %.10g kg}\n",
-            k, k, mass);
+    bough_put(o,
+              "  - {name: tip%d, fidelity: rigid, joint: {kind: fixed, parent: blade%d}, "
+              "mass: %.10g kg}\n",
+              k, k, mass);
     bough_taken(o, "TipMass(%d): %g kg", k, mass);
 }
 
 // The joint of a blade: steered by a library, turned by a manoeuvre, or fixed. Its angle is that of the pitch
 // with the opposite sign.
 static void put_blade_joint(bough_openfast *o, int k) {
-    FILE *file = o->draft.file[BOUGH_IMPORT_SCENE];
     char pitch[48], start[48], last[48], rate[48];
     snprintf(pitch, sizeof pitch, "BlPitch(%d)|BlPitch%d", k, k);
     snprintf(start, sizeof start, "TPitManS(%d)|TPitManS%d", k, k);
@@ -261,13 +250,13 @@ static void put_blade_joint(bough_openfast *o, int k) {
     double from = bough_deck_number(o->elasto, pitch), end = bough_deck_number(o->main, "TMax");
     double to = o->servo ? bough_deck_number_or(o->servo, last, from) : from;
     if (o->generator == BOUGH_GENERATOR_LIBRARY) {
-        fputs("kind: revolute, axis: z, motion: {angle: 0 deg}", file);
+        bough_put(o, "kind: revolute, axis: z, motion: {angle: 0 deg}");
     } else if (o->servo && bough_deck_number_or(o->servo, start, end) < end && to != from) {
-        fputs("kind: revolute, axis: z, ", file);
+        bough_put(o, "kind: revolute, axis: z, ");
         put_manoeuvre(o, start, from - to, bough_deck_number(o->servo, start),
                       bough_deck_number(o->servo, rate));
     } else {
-        fputs("kind: fixed", file);
+        bough_put(o, "kind: fixed");
     }
 }
 
@@ -275,16 +264,15 @@ static void put_blade(bough_openfast *o, int k) {
     char pitch[48], cone[48];
     snprintf(pitch, sizeof pitch, "BlPitch(%d)|BlPitch%d", k, k);
     snprintf(cone, sizeof cone, "PreCone(%d)|PreCone%d", k, k);
-    FILE *file = o->draft.file[BOUGH_IMPORT_SCENE];
-    fprintf(file, "  - name: blade%d\n    fidelity: %s\n    joint: {", k, o->rigid_blade ? "rigid" : "rod");
+    bough_put(o, "  - name: blade%d\n    fidelity: %s\n    joint: {", k, o->rigid_blade ? "rigid" : "rod");
     put_blade_joint(o, k);
-    fputs(", parent: hub, placement: [", file);
-    if (undersling(o) != 0) fprintf(file, "move x %.10g m, ", -undersling(o));
-    fprintf(file,
-            "rotate x %.10g deg, rotate y %.10g deg, move z %.10g m]}\n    pitch: %.10g deg\n"
-            "    rod: {table: %s, segments: 48}\n",
-            360.0 * (k - 1) / o->n_blade, bough_deck_number(o->elasto, cone), o->hub_radius,
-            bough_deck_number(o->elasto, pitch), bough_import_name[BOUGH_IMPORT_BLADE]);
+    bough_put(o, ", parent: hub, placement: [");
+    if (undersling(o) != 0) bough_put(o, "move x %.10g m, ", -undersling(o));
+    bough_put(o,
+              "rotate x %.10g deg, rotate y %.10g deg, move z %.10g m]}\n    pitch: %.10g deg\n"
+              "    rod: {table: %s, segments: 48}\n",
+              360.0 * (k - 1) / o->n_blade, bough_deck_number(o->elasto, cone), o->hub_radius,
+              bough_deck_number(o->elasto, pitch), bough_import_name[BOUGH_IMPORT_BLADE]);
     put_tip(o, k);
 }
 
@@ -328,7 +316,7 @@ void bough_openfast_bodies(bough_openfast *o) {
     const bough_deck *e = o->elasto;
     double top = bough_deck_number(e, "NacMass") + bough_deck_number(e, "HubMass") +
                  bough_deck_number_or(e, "YawBrMass", 0) + o->n_blade * o->blade_mass;
-    fputs("bodies:\n", o->draft.file[BOUGH_IMPORT_SCENE]);
+    bough_put(o, "bodies:\n");
     put_tower(o, top);
     put_nacelle(o);
     put_rotor(o);

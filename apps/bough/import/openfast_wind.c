@@ -42,12 +42,11 @@ static double positive(const bough_deck *w, const char *names, double fallback) 
 }
 
 static void put_steady(bough_openfast *o, double speed) {
-    FILE *file = o->draft.file[BOUGH_IMPORT_SCENE];
     double power = o->inflow ? bough_deck_number_or(o->inflow, "PLExp|PLexp", 0) : 0;
-    fprintf(file, "  wind: {kind: %s, speed: %.10g m/s", power > 0 ? "power" : "uniform", speed);
+    bough_put(o, "  wind: {kind: %s, speed: %.10g m/s", power > 0 ? "power" : "uniform", speed);
     if (power > 0) {
-        fprintf(file, ", exponent: %.10g, reference_height: %.10g m", fmin(power, 1),
-                positive(o->inflow, "RefHt", hub_height(o)));
+        bough_put(o, ", exponent: %.10g, reference_height: %.10g m", fmin(power, 1),
+                  positive(o->inflow, "RefHt", hub_height(o)));
     }
 }
 
@@ -55,8 +54,7 @@ static void put_steady(bough_openfast *o, double speed) {
 static void put_stand_in(bough_openfast *o, const char *why) {
     const double usual = 8; // [m/s]
     double speed = positive(o->inflow, "HWindSpeed", positive(o->inflow, "URef", usual));
-    fprintf(o->draft.file[BOUGH_IMPORT_SCENE],
-            "  # This scene lacks its wind, which --wind FILE of the import gives:\n  # %s\n", why);
+    bough_put(o, "  # This scene lacks its wind, which --wind FILE of the import gives:\n  # %s\n", why);
     put_steady(o, speed);
     bough_left_out(o, "the wind file is missing (give it by --wind FILE): %s; steady wind of %g m/s instead",
                    why, speed);
@@ -145,7 +143,6 @@ static void put_type(bough_openfast *o, int type) {
 }
 
 void bough_openfast_wind(bough_openfast *o) {
-    FILE *file = o->draft.file[BOUGH_IMPORT_SCENE];
     const char *given = o->options->wind;
     double to = 0, up = 0;
     if (o->inflow) {
@@ -157,12 +154,12 @@ void bough_openfast_wind(bough_openfast *o) {
     } else if (o->inflow) {
         put_type(o, bough_deck_whole(o->inflow, "WindType", 1, 7));
     } else if (bough_deck_whole_or(o->main, "CompInflow", 0) == 0) {
-        fputs("  wind: {kind: uniform, speed: 0 m/s", file);
+        bough_put(o, "  wind: {kind: uniform, speed: 0 m/s");
         bough_approximated(o, "without InflowWind the air is still");
     } else {
         put_stand_in(o, "CompInflow 2, the wind of another program");
     }
-    if (to != 0) fprintf(file, ", direction: %.10g deg", -to);
-    if (up != 0) fprintf(file, ", upflow: %.10g deg", up);
-    fputs("}\n", file);
+    if (to != 0) bough_put(o, ", direction: %.10g deg", -to);
+    if (up != 0) bough_put(o, ", upflow: %.10g deg", up);
+    bough_put(o, "}\n");
 }

@@ -133,11 +133,10 @@ void bough_windio_tower(bough_windio *w) {
 }
 
 static void put_list(bough_windio *w, const char *key, const bough_curve *over, const bough_curve *of) {
-    FILE *file = w->draft.file[BOUGH_IMPORT_SCENE];
-    fprintf(file, "    %s: [", key);
+    bough_put(w, "    %s: [", key);
     for (int i = 0; i < over->n; i++)
-        fprintf(file, "%s%.10g", i > 0 ? ", " : "", bough_curve_at(of, over->x[i]));
-    fputs("]\n", file);
+        bough_put(w, "%s%.10g", i > 0 ? ", " : "", bough_curve_at(of, over->x[i]));
+    bough_put(w, "]\n");
 }
 
 void bough_windio_tower_air(bough_windio *w) {
@@ -146,7 +145,7 @@ void bough_windio_tower_air(bough_windio *w) {
     bough_curve diameter =
         bough_entry_curve(&w->draft, w->tower, "outer_shape_bem|outer_shape.outer_diameter");
     if (!bough_is_ok(w->draft.status)) return;
-    fprintf(w->draft.file[BOUGH_IMPORT_SCENE], "  tower:\n    influence: potential\n");
+    bough_put(w, "  tower:\n    influence: potential\n");
     put_list(w, "height", &height, &height);
     put_list(w, "diameter", &height, &diameter);
     bough_taken(w, "the tower's influence on the wind, without its drag");

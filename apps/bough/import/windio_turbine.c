@@ -165,7 +165,8 @@ static double generator_inertia(bough_windio *w, double ratio) {
 
 // -- bodies ---------------------------------------------------------------------------------------
 
-static void put_lump(FILE *file, const lump *l) {
+static void put_lump(bough_windio *w, const lump *l) {
+    FILE *file = w->draft.file[BOUGH_IMPORT_SCENE];
     fprintf(file, "    mass: %.10g kg\n    centre_of_mass: ", l->mass);
     bough_import_list(file, l->centre, 3);
     fputs("\n    inertia: ", file);
@@ -174,47 +175,44 @@ static void put_lump(FILE *file, const lump *l) {
 }
 
 static void put_nacelle(bough_windio *w, bool on_rod, const lump *l) {
-    FILE *file = w->draft.file[BOUGH_IMPORT_SCENE];
-    fprintf(file, "  - name: nacelle\n    fidelity: rigid\n    joint: {kind: fixed, parent: %s",
-            on_rod ? "tower" : "ground");
-    if (!on_rod) fprintf(file, ", placement: [move z %.10g m]", w->tower_top);
-    fputs("}\n", file);
-    put_lump(file, l);
+    bough_put(w, "  - name: nacelle\n    fidelity: rigid\n    joint: {kind: fixed, parent: %s",
+              on_rod ? "tower" : "ground");
+    if (!on_rod) bough_put(w, ", placement: [move z %.10g m]", w->tower_top);
+    bough_put(w, "}\n");
+    put_lump(w, l);
 }
 
 // The hub, fixed to the generator, which is a body of its own if its inertia is given; the body on the
 // rotor's joint.
 static const char *put_hub(bough_windio *w, const lump *l, double overhang, double tilt, double ratio) {
-    FILE *file = w->draft.file[BOUGH_IMPORT_SCENE];
     double generator = generator_inertia(w, ratio);
     const char *first = generator > 0 ? "generator" : "hub";
     w->inertia += l->inertia[0] + generator;
-    fprintf(file,
-            "  - name: %s\n    fidelity: rigid\n    joint:\n      kind: revolute\n"
-            "      parent: nacelle\n      placement: [move z %.10g m, move x %.10g m, "
-            "rotate y %.10g deg]\n      axis: x\n      speed: %.10g rad/s\n",
-            first, w->hub_height, -w->forward * overhang, w->forward * tilt, w->speed);
+    bough_put(w,
+              "  - name: %s\n    fidelity: rigid\n    joint:\n      kind: revolute\n"
+              "      parent: nacelle\n      placement: [move z %.10g m, move x %.10g m, "
+              "rotate y %.10g deg]\n      axis: x\n      speed: %.10g rad/s\n",
+              first, w->hub_height, -w->forward * overhang, w->forward * tilt, w->speed);
     if (generator > 0) {
-        fprintf(file,
-                "    inertia: [%.10g, 0, 0] # on the slow shaft\n"
-                "  - name: hub\n    fidelity: rigid\n    joint: {kind: fixed, parent: generator}\n",
-                generator);
+        bough_put(w,
+                  "    inertia: [%.10g, 0, 0] # on the slow shaft\n"
+                  "  - name: hub\n    fidelity: rigid\n    joint: {kind: fixed, parent: generator}\n",
+                  generator);
     }
-    put_lump(file, l);
+    put_lump(w, l);
     return first;
 }
 
 static void put_blades(bough_windio *w, const char *rotor, double cone, double pitch) {
-    FILE *file = w->draft.file[BOUGH_IMPORT_SCENE];
     bool steered = w->rated_power > 0 || w->options->controller;
     for (int k = 1; k <= w->n_blade; k++) {
-        fprintf(file,
-                "  - name: blade%d\n    fidelity: rod\n    joint: {%s, parent: hub, "
-                "placement: [rotate x %.10g deg, rotate y %.10g deg, move z %.10g m]}\n"
-                "    pitch: %.10g deg\n    rod: {table: %s, segments: 48}\n",
-                k, steered ? "kind: revolute, axis: z, motion: {angle: 0 deg}" : "kind: fixed",
-                360.0 * (k - 1) / w->n_blade, -w->forward * cone, w->hub_radius, pitch,
-                bough_import_name[BOUGH_IMPORT_BLADE]);
+        bough_put(w,
+                  "  - name: blade%d\n    fidelity: rod\n    joint: {%s, parent: hub, "
+                  "placement: [rotate x %.10g deg, rotate y %.10g deg, move z %.10g m]}\n"
+                  "    pitch: %.10g deg\n    rod: {table: %s, segments: 48}\n",
+                  k, steered ? "kind: revolute, axis: z, motion: {angle: 0 deg}" : "kind: fixed",
+                  360.0 * (k - 1) / w->n_blade, -w->forward * cone, w->hub_radius, pitch,
+                  bough_import_name[BOUGH_IMPORT_BLADE]);
     }
     bough_draft_turbine(&w->draft, rotor, w->n_blade);
 }
@@ -241,7 +239,7 @@ void bough_windio_bodies(bough_windio *w) {
     fflush(d->file[BOUGH_IMPORT_TOWER]);
     bool rod = d->file_size[BOUGH_IMPORT_TOWER] > 0;
     if (!w->tower) w->tower_top -= w->hub_height;
-    fputs("bodies:\n", d->file[BOUGH_IMPORT_SCENE]);
+    bough_put(w, "bodies:\n");
     if (rod) bough_draft_tower(d, w->tower_base); // a rigid one is only a place
     lump hub = hub_lump(w), nacelle = nacelle_lump(w, overhang, hub.mass);
     put_nacelle(w, rod, &nacelle);
@@ -257,7 +255,6 @@ void bough_windio_bodies(bough_windio *w) {
 
 static void put_wind(bough_windio *w) {
     bough_draft *d = &w->draft;
-    FILE *file = d->file[BOUGH_IMPORT_SCENE];
     const char *given = w->options->wind;
     double shear = bough_entry_number_or(d, w->root, "environment.shear_exp", 0);
     double height = w->tower_top + w->hub_height;
@@ -266,9 +263,9 @@ static void put_wind(bough_windio *w) {
         if (bough_is_ok(d->status)) *d->status = status;
         return;
     }
-    fprintf(file, "  wind: {kind: %s, speed: %.6g m/s", shear > 0 ? "power" : "uniform", w->wind);
+    bough_put(w, "  wind: {kind: %s, speed: %.6g m/s", shear > 0 ? "power" : "uniform", w->wind);
     if (shear > 0) {
-        fprintf(file, ", exponent: %.10g, reference_height: %.10g m", shear, height);
+        bough_put(w, ", exponent: %.10g, reference_height: %.10g m", shear, height);
         bough_draft_note(d, BOUGH_TAKEN, "wind that grows with height^%g", shear);
     }
 }
@@ -276,13 +273,12 @@ static void put_wind(bough_windio *w) {
 void bough_windio_air(bough_windio *w) {
     bough_draft *d = &w->draft;
     if (!bough_is_ok(d->status)) return;
-    FILE *file = d->file[BOUGH_IMPORT_SCENE];
-    fprintf(file, "aero:\n  rate: %.10g Hz\n  air_density: %.10g\n", 1 / d->macro_step, w->density);
+    bough_put(w, "aero:\n  rate: %.10g Hz\n  air_density: %.10g\n", 1 / d->macro_step, w->density);
     put_wind(w);
-    fprintf(file,
-            "}\n  ramp: [0 s, 2 s]\n  blade: %s\n  polars: %s\n  hub_radius: %.10g m\n"
-            "  induction: {high_thrust: smooth, skew: pitt-peters}\n  dynamic_stall: hgm\n",
-            bough_import_name[BOUGH_IMPORT_AERO], bough_import_name[BOUGH_IMPORT_POLARS], w->hub_radius);
+    bough_put(w,
+              "}\n  ramp: [0 s, 2 s]\n  blade: %s\n  polars: %s\n  hub_radius: %.10g m\n"
+              "  induction: {high_thrust: smooth, skew: pitt-peters}\n  dynamic_stall: hgm\n",
+              bough_import_name[BOUGH_IMPORT_AERO], bough_import_name[BOUGH_IMPORT_POLARS], w->hub_radius);
     bough_draft_note(d, BOUGH_APPROXIMATED,
                      "dynamic stall by Hansen, Gaunaa and Madsen's model, which also damps the blade's "
                      "torsion");
@@ -297,10 +293,10 @@ static void put_pitch(bough_windio *w, double ratio) {
     double least = bough_windio_control(w, "pitch.min_pitch", "min_pitch_limit|fine_pitch", degree, 0);
     double most = bough_windio_control(w, "pitch.max_pitch", "max_pitch_limit", degree, BOUGH_PI / 2);
     double rate = bough_windio_control(w, "pitch.max_pitch_rate", "max_pitch_rate", degree, 0.1);
-    fprintf(w->draft.file[BOUGH_IMPORT_SCENE],
-            "    reference_speed: %.10g rad/s\n    least_pitch: %.10g rad\n    most_pitch: %.10g rad\n"
-            "    pitch_rate: %.10g rad/s\n",
-            w->rated_speed * ratio, least, most, rate);
+    bough_put(w,
+              "    reference_speed: %.10g rad/s\n    least_pitch: %.10g rad\n    most_pitch: %.10g rad\n"
+              "    pitch_rate: %.10g rad/s\n",
+              w->rated_speed * ratio, least, most, rate);
     bough_left_out(w, "pitch control: the file has no gains, so the pitch is held, which is right below "
                       "rated wind; --controller FILE, or control.pitch: true with control.law.proportional, "
                       "integral and halving_pitch");
@@ -344,13 +340,14 @@ void bough_windio_law(bough_windio *w) {
     double power = w->rated_power / efficiency, held = w->rated_speed * ratio;
     double rated = 0.99 * held; // so that torque and pitch do not compete
     double rate = bough_windio_control(w, "torque.max_torque_rate", "max_torque_rate", 1, 1e9);
-    fprintf(d->file[BOUGH_IMPORT_SCENE],
-            "control:\n  kind: variable-speed\n  rate: %.10g Hz\n  gear_ratio: %.10g\n"
-            "  efficiency: %.10g\n  pitch: false\n  law:\n    cut_in: 0 rad/s\n    optimal_from: 1e-3 rad/s\n"
-            "    optimal_gain: %.10g\n    rated_speed: %.10g rad/s\n    rated_power: %.10g\n"
-            "    most_torque: %.10g\n    torque_rate: %.10g\n",
-            1 / d->macro_step, ratio, efficiency, 0.99 * power / (rated * rated * rated), rated, power,
-            1.1 * power / rated, rate);
+    bough_put(
+        w,
+        "control:\n  kind: variable-speed\n  rate: %.10g Hz\n  gear_ratio: %.10g\n"
+        "  efficiency: %.10g\n  pitch: false\n  law:\n    cut_in: 0 rad/s\n    optimal_from: 1e-3 rad/s\n"
+        "    optimal_gain: %.10g\n    rated_speed: %.10g rad/s\n    rated_power: %.10g\n"
+        "    most_torque: %.10g\n    torque_rate: %.10g\n",
+        1 / d->macro_step, ratio, efficiency, 0.99 * power / (rated * rated * rated), rated, power,
+        1.1 * power / rated, rate);
     bough_draft_note(d, BOUGH_TAKEN, "rated power %g MW at %.4g rpm of the rotor", w->rated_power / 1e6,
                      w->rated_speed * 30 / BOUGH_PI);
     bough_draft_note(d, BOUGH_APPROXIMATED,
