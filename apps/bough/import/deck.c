@@ -201,6 +201,10 @@ static bool is_default(const bough_deck *deck, const char *names) {
     return next_word(&at, word) && strcasecmp(word, "default") == 0;
 }
 
+const char *bough_deck_kth(const bough_deck *deck, const char *stem, int k) {
+    return bough_arena_print(deck->arena, "%s(%d)|%s%d", stem, k, stem, k);
+}
+
 // -- values ---------------------------------------------------------------------------------------
 
 double bough_deck_number(const bough_deck *deck, const char *names) {

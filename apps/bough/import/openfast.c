@@ -135,10 +135,9 @@ static void put_head(bough_openfast *o, const char *path) {
 }
 
 static void note_other_blades(bough_openfast *o, const bough_deck *deck, const char *stem) {
-    char name[64], first[64];
-    snprintf(first, sizeof first, "%s(1)|%s1", stem, stem);
+    const char *first = bough_deck_kth(deck, stem, 1);
     for (int k = 2; k <= o->n_blade && bough_is_ok(o->draft.status); k++) {
-        snprintf(name, sizeof name, "%s(%d)|%s%d", stem, k, stem, k);
+        const char *name = bough_deck_kth(deck, stem, k);
         if (bough_deck_line(deck, name) < 0) continue;
         if (strcmp(bough_deck_text(deck, name), bough_deck_text(deck, first)) == 0) continue;
         bough_approximated(o, "%s(%d): blade %d is as the first", stem, k, k);

@@ -44,6 +44,9 @@ int bough_deck_line(const bough_deck *deck, const char *names);
 // where there is no such line.
 bough_deck bough_deck_part(const bough_deck *deck, const char *words);
 
+// The spellings of what the k-th blade has: "TipMass(2)|TipMass2".
+const char *bough_deck_kth(const bough_deck *deck, const char *stem, int k);
+
 // The value of that name.
 double bough_deck_number(const bough_deck *deck, const char *names);
 int bough_deck_whole(const bough_deck *deck, const char *names, int least, int most);

@@ -4,7 +4,6 @@
 #include "aero/control/discon.h"
 
 #include <math.h>
-#include <stdarg.h>
 #include <string.h>
 
 // -- limits ---------------------------------------------------------------------------------------
@@ -109,21 +108,14 @@ double bough_openfast_rotor_speed(const bough_openfast *o) {
 
 // -- what acts on the generator -------------------------------------------------------------------
 
-static void lack(bough_openfast *o, const char *format, ...) __attribute__((format(printf, 2, 3)));
-
 // The generator has a torque of which too little is known.
-static void lack(bough_openfast *o, const char *format, ...) {
-    char text[400];
-    va_list list;
-    va_start(list, format);
-    vsnprintf(text, sizeof text, format, list);
-    va_end(list);
-    o->lacks_control = bough_arena_string(o->draft.arena, text);
+static void lack(bough_openfast *o, const char *why) {
+    o->lacks_control = why;
     o->generator = BOUGH_GENERATOR_DRIVEN;
     bough_other_case(o,
                      "%s: the generator keeps its initial speed, %g rpm of the rotor, and the pitch is "
                      "constant",
-                     text, bough_deck_number(o->elasto, "RotSpeed"));
+                     why, bough_deck_number(o->elasto, "RotSpeed"));
 }
 
 static bool take_library(bough_openfast *o, const char *path, char why[200]) {
@@ -151,7 +143,8 @@ static void find_library(bough_openfast *o) {
     const char *path = bough_deck_path(o->servo, "DLL_FileName");
     if (!bough_is_ok(o->draft.status) || take_library(o, path, why)) return;
     if (torque_mode(o) == LIBRARY) {
-        lack(o, "a controller, which --controller FILE of the import gives (%s)", why);
+        lack(o, bough_arena_print(o->draft.arena,
+                                  "a controller, which --controller FILE of the import gives (%s)", why));
     } else {
         bough_other_case(o, "PCMode 5: the pitch is held: %s", why);
     }
@@ -167,7 +160,8 @@ static bool stays_off(const bough_openfast *o) {
 static void find_induction(bough_openfast *o) {
     int model = bough_deck_whole_or(o->servo, "GenModel", SIMPLE);
     if (model == SIMPLE || model == THEVENIN) o->generator = BOUGH_GENERATOR_LAW;
-    if (model != SIMPLE && model != THEVENIN) lack(o, "the user's generator of GenModel %d", model);
+    if (model != SIMPLE && model != THEVENIN)
+        lack(o, bough_arena_print(o->draft.arena, "the user's generator of GenModel %d", model));
 }
 
 void bough_openfast_generator(bough_openfast *o) {
@@ -188,7 +182,8 @@ void bough_openfast_generator(bough_openfast *o) {
     if (torque == NONE) {
         find_induction(o);
     } else {
-        lack(o, "the torque of VSContrl %d, the user's own routine", torque);
+        lack(o,
+             bough_arena_print(o->draft.arena, "the torque of VSContrl %d, the user's own routine", torque));
     }
 }
 

@@ -53,9 +53,7 @@ static double frequency(const slender *b) {
 static double frequency_of(const bough_deck *deck, slender b, const char *stem) {
     double shape[COEFFICIENTS];
     for (int k = 0; k < COEFFICIENTS; k++) {
-        char name[40];
-        snprintf(name, sizeof name, "%s(%d)", stem, FIRST + k);
-        shape[k] = bough_deck_number(deck, name);
+        shape[k] = bough_deck_number(deck, bough_arena_print(deck->arena, "%s(%d)", stem, FIRST + k));
     }
     b.shape = shape;
     return bough_is_ok(deck->status) ? frequency(&b) : 0;

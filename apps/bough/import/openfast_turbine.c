@@ -224,9 +224,7 @@ static void put_hub(bough_openfast *o, bool twists) {
 // -- blades ---------------------------------------------------------------------------------------
 
 static void put_tip(bough_openfast *o, int k) {
-    char name[48];
-    snprintf(name, sizeof name, "TipMass(%d)|TipMass%d", k, k);
-    double mass = bough_deck_number_or(o->elasto, name, 0);
+    double mass = bough_deck_number_or(o->elasto, bough_deck_kth(o->elasto, "TipMass", k), 0);
     if (mass == 0) return;
     if (o->beamdyn) {
         bough_left_out(o, "TipMass(%d): only for ElastoDyn's blades, not for BeamDyn's", k);
@@ -242,28 +240,23 @@ static void put_tip(bough_openfast *o, int k) {
 // The joint of a blade: steered by a library, turned by a manoeuvre, or fixed. Its angle is that of the pitch
 // with the opposite sign.
 static void put_blade_joint(bough_openfast *o, int k) {
-    char pitch[48], start[48], last[48], rate[48];
-    snprintf(pitch, sizeof pitch, "BlPitch(%d)|BlPitch%d", k, k);
-    snprintf(start, sizeof start, "TPitManS(%d)|TPitManS%d", k, k);
-    snprintf(last, sizeof last, "BlPitchF(%d)|BlPitchF%d", k, k);
-    snprintf(rate, sizeof rate, "PitManRat(%d)|PitManRat%d", k, k);
-    double from = bough_deck_number(o->elasto, pitch), end = bough_deck_number(o->main, "TMax");
-    double to = o->servo ? bough_deck_number_or(o->servo, last, from) : from;
+    const bough_deck *e = o->elasto, *s = o->servo;
+    const char *start = bough_deck_kth(e, "TPitManS", k), *rate = bough_deck_kth(e, "PitManRat", k);
+    double from = bough_deck_number(e, bough_deck_kth(e, "BlPitch", k));
+    double to = s ? bough_deck_number_or(s, bough_deck_kth(s, "BlPitchF", k), from) : from;
+    double end = bough_deck_number(o->main, "TMax");
     if (o->generator == BOUGH_GENERATOR_LIBRARY) {
         bough_put(o, "kind: revolute, axis: z, motion: {angle: 0 deg}");
-    } else if (o->servo && bough_deck_number_or(o->servo, start, end) < end && to != from) {
+    } else if (s && bough_deck_number_or(s, start, end) < end && to != from) {
         bough_put(o, "kind: revolute, axis: z, ");
-        put_manoeuvre(o, start, from - to, bough_deck_number(o->servo, start),
-                      bough_deck_number(o->servo, rate));
+        put_manoeuvre(o, start, from - to, bough_deck_number(s, start), bough_deck_number(s, rate));
     } else {
         bough_put(o, "kind: fixed");
     }
 }
 
 static void put_blade(bough_openfast *o, int k) {
-    char pitch[48], cone[48];
-    snprintf(pitch, sizeof pitch, "BlPitch(%d)|BlPitch%d", k, k);
-    snprintf(cone, sizeof cone, "PreCone(%d)|PreCone%d", k, k);
+    const bough_deck *e = o->elasto;
     bough_put(o, "  - name: blade%d\n    fidelity: %s\n    joint: {", k, o->rigid_blade ? "rigid" : "rod");
     put_blade_joint(o, k);
     bough_put(o, ", parent: hub, placement: [");
@@ -271,8 +264,9 @@ static void put_blade(bough_openfast *o, int k) {
     bough_put(o,
               "rotate x %.10g deg, rotate y %.10g deg, move z %.10g m]}\n    pitch: %.10g deg\n"
               "    rod: {table: %s, segments: 48}\n",
-              360.0 * (k - 1) / o->n_blade, bough_deck_number(o->elasto, cone), o->hub_radius,
-              bough_deck_number(o->elasto, pitch), bough_import_name[BOUGH_IMPORT_BLADE]);
+              360.0 * (k - 1) / o->n_blade, bough_deck_number(e, bough_deck_kth(e, "PreCone", k)),
+              o->hub_radius, bough_deck_number(e, bough_deck_kth(e, "BlPitch", k)),
+              bough_import_name[BOUGH_IMPORT_BLADE]);
     put_tip(o, k);
 }
 
