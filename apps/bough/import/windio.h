@@ -151,16 +151,17 @@ void bough_windio_law(bough_windio *w);
 // The blade's stiffness and inertia from what it is made of: layers and webs on the outlines of its
 // sections.
 
-// At `n` shares of the blade: matrices (36 each, rows) about the reference line in section axes.
-typedef struct bough_layup {
+// 6 × 6 matrices about the reference line in section axes, of which the upper triangle is given.
+typedef struct bough_windio_matrices {
+    const bough_node *node;
     int n;
-    double *share;            // (n) from 0 to 1
-    double *stiffness, *mass; // (n × 36)
-} bough_layup;
+    const double *grid; // (n) shares of the blade
+    double *entry;      // (21 × n), the values of one entry side by side
+} bough_windio_matrices;
 
 // Whether the blade has layers.
 bool bough_windio_has_layers(const bough_windio *w);
 
-void bough_windio_layup(bough_windio *w, bough_layup *layup);
+void bough_windio_layup(bough_windio *w, bough_windio_matrices *stiffness, bough_windio_matrices *mass);
 
 #endif

@@ -12,23 +12,18 @@ enum { ENTRIES = 21, MATRIX = BOUGH_IMPORT_MATRIX };
 // Damping times where the file has none [s]: a few tenths of a percent in the first modes.
 static const double usual_damping = 2e-3;
 
-// 6 × 6 matrices, of which the upper triangle is given.
-typedef struct matrices {
-    const bough_node *node;
-    int n;
-    const double *grid; // (n)
-    double *entry;      // (21 × n), the values of one entry side by side
-} matrices;
+typedef bough_windio_matrices matrices;
+
+// One entry over the share of the blade.
+static bough_curve curve_of(const matrices *m, int i, int j) {
+    return (bough_curve){m->node, m->n, m->grid, m->entry + (size_t)bough_symmetric6_index(i, j) * m->n};
+}
 
 static void matrix_at(const matrices *m, double share, double to[MATRIX]) {
-    int k = m->n > 1;
-    while (k < m->n - 1 && m->grid[k] < share) k++;
-    double width = k > 0 ? m->grid[k] - m->grid[k - 1] : 0;
-    double s = width > 0 ? fmin(fmax((share - m->grid[k - 1]) / width, 0), 1) : 1;
     for (int i = 0; i < 6; i++) {
         for (int j = i; j < 6; j++) {
-            const double *y = m->entry + (size_t)bough_symmetric6_index(i, j) * m->n + k;
-            to[6 * i + j] = to[6 * j + i] = k > 0 ? y[-1] + s * (y[0] - y[-1]) : y[0];
+            bough_curve entry = curve_of(m, i, j);
+            to[6 * i + j] = to[6 * j + i] = bough_curve_at(&entry, share);
         }
     }
 }
@@ -151,7 +146,7 @@ static void put_station(bough_windio *w, const matrices *stiffness, const matric
 // Of the length of the reference line.
 static double mass_between(const bough_windio *w, const matrices *inertia, double a, double b) {
     double square = 0;
-    bough_curve mass = {inertia->node, inertia->n, inertia->grid, inertia->entry};
+    bough_curve mass = curve_of(inertia, 0, 0);
     for (int i = 0; i < 3; i++) {
         double step = bough_curve_at(&w->axis[i], b) - bough_curve_at(&w->axis[i], a);
         square += step * step;
@@ -186,8 +181,7 @@ static void put_damping(bough_windio *w, const bough_node *from) {
 
 static void put_stations(bough_windio *w, const bough_node *from, const matrices *stiffness,
                          const matrices *inertia) {
-    bough_curve k = {stiffness->node, stiffness->n, stiffness->grid, NULL};
-    bough_curve m = {inertia->node, inertia->n, inertia->grid, NULL};
+    bough_curve k = curve_of(stiffness, 0, 0), m = curve_of(inertia, 0, 0);
     bough_curve twist = bough_entry_curve(&w->draft, bough_entry(from, "twist") ? from : w->shape, "twist");
     bough_windio_check_angles(w, &twist, "twist");
     const bough_curve *all[] = {&k, &m, &twist, &w->axis[0], &w->axis[1], &w->axis[2]};
@@ -211,25 +205,10 @@ static void put_stations(bough_windio *w, const bough_node *from, const matrices
     bough_section_note(&w->draft, strange);
 }
 
-// The matrices of a row of stations.
-static matrices of_layup(bough_windio *w, const bough_layup *l, const double *from) {
-    matrices m = {w->blade, l->n, l->share, bough_arena_doubles(w->draft.arena, ENTRIES * (size_t)l->n)};
-    for (int k = 0; k < l->n; k++) {
-        for (int i = 0; i < 6; i++) {
-            for (int j = i; j < 6; j++)
-                m.entry[(size_t)bough_symmetric6_index(i, j) * l->n + k] = from[36 * k + 6 * i + j];
-        }
-    }
-    return m;
-}
-
 // From what the blade is made of.
 static void read_layup(bough_windio *w, matrices *stiffness, matrices *inertia) {
-    bough_layup layup;
-    bough_windio_layup(w, &layup);
+    bough_windio_layup(w, stiffness, inertia);
     if (!bough_is_ok(w->draft.status)) return;
-    *stiffness = of_layup(w, &layup, layup.stiffness);
-    *inertia = of_layup(w, &layup, layup.mass);
     bough_approximated(w, "blade: stiffness and inertia of thin walls, from layers and webs: plane sections, "
                           "shear flow in the cells, no coupling by fibre angles");
 }

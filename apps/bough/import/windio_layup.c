@@ -2,6 +2,7 @@
 #include "apps/bough/import/section.h"
 #include "apps/bough/import/windio.h"
 #include "core/base/base.h"
+#include "core/base/linalg.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -517,19 +518,29 @@ static int choose_shares(parts *p, double **share) {
     return bough_curve_shares(&p->w->draft, curve, p->n_layer + 2, 0.01, share);
 }
 
-void bough_windio_layup(bough_windio *w, bough_layup *to) {
+static void put_matrix(const double from[36], int station, const bough_windio_matrices *to) {
+    for (int i = 0; i < 6; i++) {
+        for (int j = i; j < 6; j++)
+            to->entry[(size_t)bough_symmetric6_index(i, j) * to->n + station] = from[6 * i + j];
+    }
+}
+
+void bough_windio_layup(bough_windio *w, bough_windio_matrices *stiffness, bough_windio_matrices *mass) {
     bough_draft *d = &w->draft;
     parts *p = bough_arena_take(d->arena, sizeof *p);
     section *s = bough_arena_take(d->arena, sizeof *s);
-    *to = (bough_layup){0};
     if (!bough_is_ok(d->status)) return;
     p->w = w;
     read_parts(p);
     if (!bough_is_ok(d->status)) return;
-    to->n = choose_shares(p, &to->share);
-    bough_arena_each(d->arena, 36 * (size_t)to->n, &to->stiffness, &to->mass);
-    for (int i = 0; i < to->n && bough_is_ok(d->status); i++) {
-        p->share = to->share[i];
-        solve_station(p, s, to->stiffness + 36 * i, to->mass + 36 * i);
+    double *share, k[36], m[36];
+    int n = choose_shares(p, &share);
+    *stiffness = *mass = (bough_windio_matrices){.node = w->blade, .n = n, .grid = share};
+    bough_arena_each(d->arena, 21 * (size_t)n, &stiffness->entry, &mass->entry);
+    for (int i = 0; i < n && bough_is_ok(d->status); i++) {
+        p->share = share[i];
+        solve_station(p, s, k, m);
+        put_matrix(k, i, stiffness);
+        put_matrix(m, i, mass);
     }
 }
