@@ -98,9 +98,9 @@ const char *const bough_import_name[BOUGH_N_IMPORT_FILE] = {"scene.yaml",       
 void bough_draft_note(bough_draft *d, bough_import_note kind, const char *format, ...) {
     va_list list;
     va_start(list, format);
-    fputs("  ", d->note[kind]);
-    vfprintf(d->note[kind], format, list);
-    fputc('\n', d->note[kind]);
+    fputs("  ", d->file[kind]);
+    vfprintf(d->file[kind], format, list);
+    fputc('\n', d->file[kind]);
     va_end(list);
 }
 
@@ -136,7 +136,7 @@ void bough_draft_library(bough_draft *d, const char *library, const char *input,
 void bough_draft_airfoil_name(const char *text, size_t length, int number, char name[BOUGH_AIRFOIL_NAME]) {
     int n = snprintf(name, BOUGH_AIRFOIL_NAME, "%d-", number);
     for (size_t i = 0; i < length && n < BOUGH_AIRFOIL_NAME - 1; i++)
-        name[n++] = bough_import_letter(text[i]);
+        name[n++] = isalnum((unsigned char)text[i]) || text[i] == '-' ? text[i] : '_';
     name[n] = '\0';
 }
 
@@ -188,10 +188,6 @@ void bough_import_path(FILE *file, const char *path) {
     bough_quote(file, whole);
 }
 
-char bough_import_letter(char letter) {
-    return isalnum((unsigned char)letter) || letter == '-' ? letter : '_';
-}
-
 void bough_draft_head(bough_draft *d, const char *title, const char *origin, double gravity, double duration,
                       double rotor_speed) {
     FILE *file = d->file[BOUGH_IMPORT_SCENE];
@@ -222,10 +218,8 @@ void bough_draft_head(bough_draft *d, const char *title, const char *origin, dou
 
 static bough_status open_texts(bough_draft *d) {
     bool good = true;
-    for (int i = 0; i < BOUGH_N_NOTE; i++)
-        good = (d->note[i] = open_memstream(&d->note_text[i], &d->note_size[i])) && good;
-    for (int i = 0; i < BOUGH_N_IMPORT_FILE; i++)
-        good = (d->file[i] = open_memstream(&d->file_text[i], &d->file_size[i])) && good;
+    for (int i = 0; i < BOUGH_N_IMPORT_TEXT; i++)
+        good = (d->file[i] = open_memstream(&d->text[i], &d->size[i])) && good;
     return good ? bough_ok() : bough_fail(BOUGH_OUT_OF_MEMORY, "memory is exhausted");
 }
 
@@ -241,7 +235,7 @@ static bough_status write_box(const char *folder, const bough_wind_box *box) {
 }
 
 static bough_status write_file(const char *folder, const bough_draft *d, int i) {
-    const char *text = d->file_text[i];
+    const char *text = d->text[i];
     return text[0] ? bough_folder_write(folder, bough_import_name[i], put_text, text) : bough_ok();
 }
 
@@ -270,7 +264,7 @@ static bough_status try_scene(bough_draft *d, const char *folder, bough_scene *s
     for (int i = 0; i < N_TOLERANCE; i++) {
         double part = d->trial_steps == 0 ? 0 : i + 1 < N_TOLERANCE ? usual : 1;
         scene->simulation.master.rtol = strtod(tolerance[i], NULL);
-        memcpy(d->file_text[BOUGH_IMPORT_SCENE] + d->tolerance_at, tolerance[i], strlen(tolerance[i]));
+        memcpy(d->text[BOUGH_IMPORT_SCENE] + d->tolerance_at, tolerance[i], strlen(tolerance[i]));
         status = bough_import_trial(d->arena, scene, steps, part * scene->simulation.error_bound);
         if (status.code != BOUGH_FAILED) break;
         bough_draft_note(d, BOUGH_TRIED, "rtol %s: %s", tolerance[i], status.message);
@@ -328,12 +322,17 @@ static bool close_all(FILE **file, int n) {
 
 // The list, with the lines of the trials.
 static bough_status write_list(bough_draft *d, const char *folder) {
-    static const char *const head[BOUGH_N_NOTE] = {"NOT THE MODEL'S LOAD CASE, which also has", "taken",
-                                                   "approximated", "left out", "tried"};
+    static const char *const head[] = {
+        [BOUGH_OTHER_CASE] = "NOT THE MODEL'S LOAD CASE, which also has",
+        [BOUGH_TAKEN] = "taken",
+        [BOUGH_APPROXIMATED] = "approximated",
+        [BOUGH_LEFT_OUT] = "left out",
+        [BOUGH_TRIED] = "tried",
+    };
     FILE **list = &d->file[BOUGH_IMPORT_LIST];
-    bool good = close_all(d->note, BOUGH_N_NOTE);
-    for (int i = 0; i < BOUGH_N_NOTE && good; i++) {
-        const char *note = d->note_text[i];
+    bool good = close_all(d->file + BOUGH_OTHER_CASE, BOUGH_N_IMPORT_TEXT - BOUGH_OTHER_CASE);
+    for (int i = BOUGH_OTHER_CASE; i < BOUGH_N_IMPORT_TEXT && good; i++) {
+        const char *note = d->text[i];
         if (i == BOUGH_OTHER_CASE && !note[0]) continue;
         fprintf(*list, "%s:\n%s", head[i], note[0] ? note : "  nothing\n");
     }
@@ -355,27 +354,32 @@ static bough_status publish(bough_draft *d, const char *folder) {
     return status;
 }
 
+typedef struct task {
+    bough_draft *draft;
+    void (*convert)(bough_draft *d, const char *path);
+    const char *path, *folder;
+    FILE *echo;
+} task;
+
 static bough_status import(bough_arena *arena, void *self) {
-    const bough_draft_def *def = self;
-    bough_draft *d = def->draft;
+    const task *t = self;
+    bough_draft *d = t->draft;
     d->arena = arena;
-    def->convert(def->self, def->path);
+    t->convert(d, t->path);
     if (!close_all(d->file, BOUGH_IMPORT_LIST)) return bough_fail(BOUGH_OUT_OF_MEMORY, "memory is exhausted");
-    if (bough_is_ok(d->status)) *d->status = publish(d, def->folder);
-    if (bough_is_ok(d->status) && def->echo) fputs(d->file_text[BOUGH_IMPORT_LIST], def->echo);
+    if (bough_is_ok(d->status)) *d->status = publish(d, t->folder);
+    if (bough_is_ok(d->status) && t->echo) fputs(d->text[BOUGH_IMPORT_LIST], t->echo);
     return *d->status;
 }
 
-bough_status bough_draft_import(const bough_draft_def *def) {
-    bough_draft *d = def->draft;
-    bough_draft_def own = *def;
+bough_status bough_draft_import(bough_draft *d, void (*convert)(bough_draft *d, const char *path),
+                                const char *path, const char *folder, FILE *echo) {
+    task t = {d, convert, path, folder, echo};
     bough_status kept = bough_ok();
-    *d = (bough_draft){.status = &kept, .trial_steps = def->trial_steps};
+    d->status = &kept;
     bough_status status = open_texts(d);
-    if (bough_is_ok(&status)) status = bough_arena_use(import, &own);
-    close_all(d->note, BOUGH_N_NOTE);
-    close_all(d->file, BOUGH_N_IMPORT_FILE);
-    for (int i = 0; i < BOUGH_N_NOTE; i++) free(d->note_text[i]);
-    for (int i = 0; i < BOUGH_N_IMPORT_FILE; i++) free(d->file_text[i]);
+    if (bough_is_ok(&status)) status = bough_arena_use(import, &t);
+    close_all(d->file, BOUGH_N_IMPORT_TEXT);
+    for (int i = 0; i < BOUGH_N_IMPORT_TEXT; i++) free(d->text[i]);
     return status;
 }

@@ -11,15 +11,6 @@
 #include <stddef.h>
 #include <stdio.h>
 
-typedef enum bough_import_note {
-    BOUGH_OTHER_CASE, // left out although the run becomes another than the model's; the first lines
-    BOUGH_TAKEN,
-    BOUGH_APPROXIMATED,
-    BOUGH_LEFT_OUT,
-    BOUGH_TRIED,
-    BOUGH_N_NOTE
-} bough_import_note;
-
 typedef enum bough_import_file {
     BOUGH_IMPORT_SCENE,
     BOUGH_IMPORT_BLADE,
@@ -30,35 +21,36 @@ typedef enum bough_import_file {
     BOUGH_N_IMPORT_FILE,
 } bough_import_file;
 
+// Parts of the list, which are texts beside those of the files.
+typedef enum bough_import_note {
+    BOUGH_OTHER_CASE = BOUGH_N_IMPORT_FILE, // left out although the run becomes another than the model's
+    BOUGH_TAKEN,
+    BOUGH_APPROXIMATED,
+    BOUGH_LEFT_OUT,
+    BOUGH_TRIED,
+    BOUGH_N_IMPORT_TEXT
+} bough_import_note;
+
 extern const char *const bough_import_name[BOUGH_N_IMPORT_FILE];
 
 typedef struct bough_draft {
     bough_arena *arena;
     bough_status *status;            // the first failure is kept
-    FILE *note[BOUGH_N_NOTE];        // lines of the list
-    FILE *file[BOUGH_N_IMPORT_FILE]; // texts of the files; one left empty is not written
-    char *note_text[BOUGH_N_NOTE], *file_text[BOUGH_N_IMPORT_FILE];
-    size_t note_size[BOUGH_N_NOTE], file_size[BOUGH_N_IMPORT_FILE];
+    FILE *file[BOUGH_N_IMPORT_TEXT]; // by file and note; a file left empty is not written
+    char *text[BOUGH_N_IMPORT_TEXT];
+    size_t size[BOUGH_N_IMPORT_TEXT];
     double macro_step;         // [s]; air and control are sampled as often
     long tolerance_at;         // where the scene's text has the integrator's tolerance
-    int trial_steps;           // of the definition
+    int trial_steps;           // as in the options
     const bough_wind_box *box; // to be written as wind.bts; NULL: none
 } bough_draft;
 
 #define BOUGH_IMPORT_BOX "wind.bts"
 
-// An import: convert(self, path) fills the draft, then the files are written unless there was a failure or
-// they make no scene that runs; the list also to `echo` (NULL: nobody).
-typedef struct bough_draft_def {
-    bough_draft *draft;
-    void (*convert)(void *self, const char *path);
-    void *self;
-    const char *path, *folder;
-    int trial_steps; // as in the options
-    FILE *echo;
-} bough_draft_def;
-
-bough_status bough_draft_import(const bough_draft_def *def);
+// An import with a draft of which only trial_steps is set: convert(d, path) fills it, then the files are
+// written unless there was a failure or they make no scene that runs; the list also to `echo` (NULL: nobody).
+bough_status bough_draft_import(bough_draft *d, void (*convert)(bough_draft *d, const char *path),
+                                const char *path, const char *folder, FILE *echo);
 
 // A line of the list.
 void bough_draft_note(bough_draft *d, bough_import_note kind, const char *format, ...)
@@ -103,9 +95,6 @@ void bough_import_list(FILE *file, const double *value, int n);
 
 // Writes a path as an absolute path in double quotes, for files that stay where they are.
 void bough_import_path(FILE *file, const char *path);
-
-// Whether the letter may stand in a scene's name.
-char bough_import_letter(char letter);
 
 // -- the first steps of an imported scene, as a run takes them ------------------------------------
 

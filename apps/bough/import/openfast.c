@@ -160,8 +160,8 @@ static void write_scene(bough_openfast *o, const char *path) {
     if (o->aero) note_other_blades(o, o->aero, "ADBlFile");
 }
 
-static void convert(void *self, const char *path) {
-    bough_openfast *o = self;
+static void convert(bough_draft *d, const char *path) {
+    bough_openfast *o = (bough_openfast *)d; // its first member
     o->main = bough_deck_open(o->draft.arena, path, BOUGH_DECK_HEADING, o->draft.status);
     if (o->main) open_modules(o);
     bough_openfast_check(o->elasto);
@@ -173,12 +173,6 @@ static void convert(void *self, const char *path) {
 
 bough_status bough_import_openfast(const char *path, const char *folder, const bough_import_options *options,
                                    FILE *echo) {
-    bough_openfast o = {.options = options};
-    return bough_draft_import(&(bough_draft_def){.draft = &o.draft,
-                                                 .convert = convert,
-                                                 .self = &o,
-                                                 .path = path,
-                                                 .folder = folder,
-                                                 .trial_steps = options->trial_steps,
-                                                 .echo = echo});
+    bough_openfast o = {.draft.trial_steps = options->trial_steps, .options = options};
+    return bough_draft_import(&o.draft, convert, path, folder, echo);
 }

@@ -137,8 +137,8 @@ static void note_left(bough_windio *w) {
     bough_left_out(w, "strength, costs, site");
 }
 
-static void convert(void *self, const char *path) {
-    bough_windio *w = self;
+static void convert(bough_draft *d, const char *path) {
+    bough_windio *w = (bough_windio *)d; // its first member
     w->root = bough_entry_read(&w->draft, path);
     find_parts(w);
     read_axis(w);
@@ -160,12 +160,6 @@ static void convert(void *self, const char *path) {
 
 bough_status bough_import_windio(const char *path, const char *folder, const bough_import_options *options,
                                  FILE *echo) {
-    bough_windio w = {.options = options};
-    return bough_draft_import(&(bough_draft_def){.draft = &w.draft,
-                                                 .convert = convert,
-                                                 .self = &w,
-                                                 .path = path,
-                                                 .folder = folder,
-                                                 .trial_steps = options->trial_steps,
-                                                 .echo = echo});
+    bough_windio w = {.draft.trial_steps = options->trial_steps, .options = options};
+    return bough_draft_import(&w.draft, convert, path, folder, echo);
 }

@@ -237,7 +237,7 @@ void bough_windio_bodies(bough_windio *w) {
     w->hub_height = w->tower && above > 0 ? bough_entry_number_or(d, from, "distance_tt_hub", above)
                                           : bough_entry_number(d, from, "distance_tt_hub");
     fflush(d->file[BOUGH_IMPORT_TOWER]);
-    bool rod = d->file_size[BOUGH_IMPORT_TOWER] > 0;
+    bool rod = d->size[BOUGH_IMPORT_TOWER] > 0;
     if (!w->tower) w->tower_top -= w->hub_height;
     bough_put(w, "bodies:\n");
     if (rod) bough_draft_tower(d, w->tower_base); // a rigid one is only a place
