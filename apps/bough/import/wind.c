@@ -5,10 +5,10 @@
 #include "core/base/bytes.h"
 #include "core/base/input_file.h"
 
-#include <ctype.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
+#include <strings.h>
 
 enum { PATH = 1024, LINE = 1024, MOST_POINTS = 100000000, MOST_GRID = 4096 };
 
@@ -54,12 +54,8 @@ typedef struct summary {
 // Whether the line has the words, in whatever capitals.
 static bool has(const char *line, const char *words) {
     size_t n = strlen(words);
-    for (; *line; line++) {
-        size_t i = 0;
-        while (i < n && toupper((unsigned char)line[i]) == words[i]) i++;
-        if (i == n) return true;
-    }
-    return false;
+    while (*line && strncasecmp(line, words, n) != 0) line++;
+    return *line != '\0';
 }
 
 // The number behind '=', or at the line's beginning.

@@ -8,23 +8,21 @@
 #include <stdlib.h>
 #include <string.h>
 
-// -- outlines of sections: interpolated between the nearest airfoils, and scaled ------------------
+// -- outlines of sections -------------------------------------------------------------------------
 
 // The outline of a blade's section: interpolated between the two nearest airfoils, whose sides have points at
 // equal shares of their arcs, and scaled.
 
-enum { BOUGH_OUTLINE_SIDE = 80, BOUGH_OUTLINE = 2 * BOUGH_OUTLINE_SIDE };
+enum { SIDE = 80, ROUND = 2 * SIDE, POINTS = ROUND + 1 };
 
 // Points from the trailing edge along the suction side to the leading edge and back along the pressure
 // side, the last at the first one; in section axes about the reference line: x towards the suction
 // side, y towards the trailing edge.
-typedef struct bough_outline {
-    double x[BOUGH_OUTLINE + 1], y[BOUGH_OUTLINE + 1]; // [m]
-    double arc[BOUGH_OUTLINE + 1];                     // from 0 to 1
-    double length;                                     // of the way round [m]
-} bough_outline;
-
-enum { SIDE = BOUGH_OUTLINE_SIDE, ROUND = BOUGH_OUTLINE, POINTS = ROUND + 1 };
+typedef struct outline {
+    double x[POINTS], y[POINTS]; // [m]
+    double arc[POINTS];          // from 0 to 1
+    double length;               // of the way round [m]
+} outline;
 
 // -- airfoils -------------------------------------------------------------------------------------
 
@@ -121,9 +119,9 @@ static void draw(const points *p, double *x, double *y) {
     }
 }
 
-// Airfoils of unit chord, (n × 2 × (BOUGH_OUTLINE + 1)): x along the chord, y towards the suction side,
+// Airfoils of unit chord, (n × 2 × POINTS): x along the chord, y towards the suction side,
 // of each place of the shape; NULL after a failure.
-static const double *bough_windio_airfoils(bough_windio *w) {
+static const double *read_airfoils(bough_windio *w) {
     const bough_windio_shape *a = &w->outline;
     double *all = bough_arena_doubles(w->draft.arena, (size_t)a->n * 2 * POINTS);
     for (int i = 0; i < a->n && bough_is_ok(w->draft.status); i++) {
@@ -136,8 +134,7 @@ static const double *bough_windio_airfoils(bough_windio *w) {
 // -- the section ----------------------------------------------------------------------------------
 
 // The outline at a share of the blade.
-static void bough_windio_outline_at(const bough_windio *w, const double *airfoils, double share,
-                                    bough_outline *to) {
+static void outline_at(const bough_windio *w, const double *airfoils, double share, outline *to) {
     double mix, chord = bough_curve_at(&w->outline.chord, share);
     int i = bough_windio_neighbours(&w->outline, share, &mix);
     const double *one = airfoils + (size_t)i * 2 * POINTS, *two = mix > 0 ? one + 2 * POINTS : one;
@@ -157,7 +154,7 @@ static void bough_windio_outline_at(const bough_windio *w, const double *airfoil
 // The arc where a straight line crosses a side (0 suction, 1 pressure). The line is normal to the direction
 // that is turned from the chord towards the suction side by `turn` [rad]; `offset` is its distance from the
 // reference line in that direction [m]. Without a crossing: the nearest point.
-static double bough_outline_crossing(const bough_outline *o, int side, double turn, double offset) {
+static double outline_crossing(const outline *o, int side, double turn, double offset) {
     double nearest = HUGE_VAL, found = side ? 0.75 : 0.25;
     for (int k = side * SIDE; k < (side + 1) * SIDE; k++) {
         double a = o->y[k] * cos(turn) + o->x[k] * sin(turn) - offset;
@@ -195,8 +192,8 @@ typedef struct parts {
     int n_layer;
     layer layer[MOST_LAYERS];
     const double *airfoils;
-    bough_outline outline; // at the present share
-    double share, twist;   // twist [rad]
+    outline outline;     // at the present share
+    double share, twist; // twist [rad]
 } parts;
 
 // -- where on the arc -----------------------------------------------------------------------------
@@ -238,7 +235,7 @@ static double said(parts *p, const bough_node *node, handle end, int depth) {
     const bough_node *fixed = bough_entry(node, "fixed");
     if (fixed && fixed->kind == BOUGH_SCALAR) {
         if (strcmp(fixed->text, "TE") == 0) return end == START ? 0 : 1;
-        if (strcmp(fixed->text, "LE") == 0) return p->outline.arc[BOUGH_OUTLINE_SIDE];
+        if (strcmp(fixed->text, "LE") == 0) return p->outline.arc[SIDE];
     }
     if (bough_entry(node, "values")) return curve_at(p, node, "");
     const bough_node *part = fixed && fixed->kind == BOUGH_SCALAR ? find_part(p, fixed->text) : NULL;
@@ -257,13 +254,13 @@ static double turn_of(parts *p, const bough_node *part) {
 // Where a plane crosses: version 1 by offset_y_pa, version 2 by plane_intersection; NAN: none.
 static double crossing(parts *p, const bough_node *part, int side) {
     if (bough_entry(part, "offset_y_pa")) {
-        return bough_outline_crossing(&p->outline, side, turn_of(p, part), curve_at(p, part, "offset_y_pa"));
+        return outline_crossing(&p->outline, side, turn_of(p, part), curve_at(p, part, "offset_y_pa"));
     }
     const bough_node *plane = bough_entry(part, "plane_intersection");
     if (!plane || !bough_entry(plane, "offset")) return NAN;
     double turn = bough_entry_number_or(&p->w->draft, plane, "plane_type1|plane_type2.rotation", 0);
-    return bough_outline_crossing(&p->outline, side, -p->twist + turn * BOUGH_PI / 180,
-                                  curve_at(p, plane, "offset"));
+    return outline_crossing(&p->outline, side, -p->twist + turn * BOUGH_PI / 180,
+                            curve_at(p, plane, "offset"));
 }
 
 static int side_of(const bough_node *part, handle end) {
@@ -394,7 +391,7 @@ static void read_parts(parts *p) {
     }
     for (; p->n_layer < p->layers->n && bough_is_ok(d->status); p->n_layer++)
         read_layer(p, p->layers->value[p->n_layer], &p->layer[p->n_layer]);
-    p->airfoils = bough_is_ok(d->status) ? bough_windio_airfoils(p->w) : NULL;
+    p->airfoils = bough_is_ok(d->status) ? read_airfoils(p->w) : NULL;
 }
 
 // Nothing outside of the curve's own stretch.
@@ -428,7 +425,7 @@ static const bough_ply film = {{1e7, 1e7}, 4e6, 0.25, 0, 0, 1e-4};
 // Node k is the outline's point k; walls go against its way, so that their plies lie inside.
 static void put_skin(parts *p, section *s) {
     double from[MOST_LAYERS], to[MOST_LAYERS], thick[MOST_LAYERS];
-    const bough_outline *o = &p->outline;
+    const outline *o = &p->outline;
     for (int i = 0; i < p->n_layer; i++) {
         thick[i] = p->layer[i].web < 0 ? thickness_at(&p->layer[i], p->share) : 0;
         if (!(thick[i] > 0)) continue;
@@ -456,7 +453,7 @@ static void put_skin(parts *p, section *s) {
 }
 
 // The outline's point at an arc.
-static int node_at(const bough_outline *o, double arc) {
+static int node_at(const outline *o, double arc) {
     int k = 0;
     while (k < ROUND - 1 && o->arc[k + 1] < arc) k++;
     if (arc - o->arc[k] > o->arc[k + 1] - arc) k++;
@@ -491,7 +488,7 @@ static void put_web(parts *p, section *s, int web) {
 static void solve_station(parts *p, section *s, double stiffness[36], double mass[36]) {
     bough_draft *d = &p->w->draft;
     bough_arena *scratch = bough_arena_child(d->arena);
-    bough_windio_outline_at(p->w, p->airfoils, p->share, &p->outline);
+    outline_at(p->w, p->airfoils, p->share, &p->outline);
     p->twist = bough_curve_at(&p->w->outline.twist, p->share) * p->w->degree * BOUGH_PI / 180;
     s->n_wall = s->n_ply = 0;
     put_skin(p, s);

@@ -245,10 +245,9 @@ void bough_windio_bodies(bough_windio *w) {
     put_nacelle(w, rod, &nacelle);
     const char *rotor = put_hub(w, &hub, overhang, tilt, gear_ratio(w));
     put_blades(w, rotor, cone, pitch * 180 / BOUGH_PI);
-    bough_draft_note(d, BOUGH_TAKEN,
-                     "hub radius %g m, cone %.4g deg, tilt %.4g deg, overhang %g m, pitch %.4g deg",
-                     w->hub_radius, cone, tilt, overhang, pitch * 180 / BOUGH_PI);
-    bough_draft_note(d, BOUGH_LEFT_OUT, "yaw bearing and drive train are rigid");
+    bough_taken(w, "hub radius %g m, cone %.4g deg, tilt %.4g deg, overhang %g m, pitch %.4g deg",
+                w->hub_radius, cone, tilt, overhang, pitch * 180 / BOUGH_PI);
+    bough_left_out(w, "yaw bearing and drive train are rigid");
 }
 
 // -- air ------------------------------------------------------------------------------------------
@@ -266,7 +265,7 @@ static void put_wind(bough_windio *w) {
     bough_put(w, "  wind: {kind: %s, speed: %.6g m/s", shear > 0 ? "power" : "uniform", w->wind);
     if (shear > 0) {
         bough_put(w, ", exponent: %.10g, reference_height: %.10g m", shear, height);
-        bough_draft_note(d, BOUGH_TAKEN, "wind that grows with height^%g", shear);
+        bough_taken(w, "wind that grows with height^%g", shear);
     }
 }
 
@@ -279,9 +278,8 @@ void bough_windio_air(bough_windio *w) {
               "}\n  ramp: [0 s, 2 s]\n  blade: %s\n  polars: %s\n  hub_radius: %.10g m\n"
               "  induction: {high_thrust: smooth, skew: pitt-peters}\n  dynamic_stall: hgm\n",
               bough_import_name[BOUGH_IMPORT_AERO], bough_import_name[BOUGH_IMPORT_POLARS], w->hub_radius);
-    bough_draft_note(d, BOUGH_APPROXIMATED,
-                     "dynamic stall by Hansen, Gaunaa and Madsen's model, which also damps the blade's "
-                     "torsion");
+    bough_approximated(w, "dynamic stall by Hansen, Gaunaa and Madsen's model, which also damps the blade's "
+                          "torsion");
     bough_windio_tower_air(w);
 }
 
@@ -321,7 +319,7 @@ static void put_library(bough_windio *w) {
         return;
     }
     bough_draft_library(d, w->options->controller, NULL, gear_ratio(w), efficiency_of(w));
-    bough_draft_note(d, BOUGH_TAKEN, "controller: %s, by its path", w->options->controller);
+    bough_taken(w, "controller: %s, by its path", w->options->controller);
 }
 
 void bough_windio_law(bough_windio *w) {
@@ -332,7 +330,7 @@ void bough_windio_law(bough_windio *w) {
         return;
     }
     if (!(w->rated_power > 0)) {
-        bough_draft_note(d, BOUGH_LEFT_OUT, "no rated_power: no torque acts on the generator");
+        bough_left_out(w, "no rated_power: no torque acts on the generator");
         return;
     }
     double ratio = gear_ratio(w);
@@ -348,10 +346,10 @@ void bough_windio_law(bough_windio *w) {
         "    most_torque: %.10g\n    torque_rate: %.10g\n",
         1 / d->macro_step, ratio, efficiency, 0.99 * power / (rated * rated * rated), rated, power,
         1.1 * power / rated, rate);
-    bough_draft_note(d, BOUGH_TAKEN, "rated power %g MW at %.4g rpm of the rotor", w->rated_power / 1e6,
-                     w->rated_speed * 30 / BOUGH_PI);
-    bough_draft_note(d, BOUGH_APPROXIMATED,
-                     "torque grows with the square of the speed to its rated value, then constant power; no "
-                     "loss in the generator");
+    bough_taken(w, "rated power %g MW at %.4g rpm of the rotor", w->rated_power / 1e6,
+                w->rated_speed * 30 / BOUGH_PI);
+    bough_approximated(
+        w, "torque grows with the square of the speed to its rated value, then constant power; no "
+           "loss in the generator");
     put_pitch(w, ratio);
 }
