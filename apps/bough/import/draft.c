@@ -181,6 +181,13 @@ void bough_import_list(FILE *file, const double *value, int n) {
     fputc(']', file);
 }
 
+void bough_draft_tower_list(bough_draft *d, const char *key, const double *value, int stride, int n) {
+    FILE *file = d->file[BOUGH_IMPORT_SCENE];
+    fprintf(file, "    %s: ", key);
+    for (int i = 0; i < n; i++) fprintf(file, "%s%.10g", i > 0 ? ", " : "[", value[stride * i]);
+    fputs("]\n", file);
+}
+
 void bough_import_path(FILE *file, const char *path) {
     char here[BOUGH_PATH_MAX], whole[2 * BOUGH_PATH_MAX];
     bool relative = path[0] != '/' && getcwd(here, sizeof here);

@@ -93,6 +93,9 @@ void bough_draft_polar(bough_draft *d, const char *name, const double *row, int 
 // "[1, 2, 3]" in the scene's spelling.
 void bough_import_list(FILE *file, const double *value, int n);
 
+// A line of the scene's aero.tower: the n values at these strides.
+void bough_draft_tower_list(bough_draft *d, const char *key, const double *value, int stride, int n);
+
 // Writes a path as an absolute path in double quotes, for files that stay where they are.
 void bough_import_path(FILE *file, const char *path);
 

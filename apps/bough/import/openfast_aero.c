@@ -231,12 +231,6 @@ static void put_stall(bough_openfast *o) {
     if (!bough_deck_flag_or(a, "UseBlCm", true)) bough_put(o, "  pitching_moment: false\n");
 }
 
-static void put_column(FILE *file, const char *key, const double *row, int column, int n) {
-    fprintf(file, "    %s: [", key);
-    for (int i = 0; i < n; i++) fprintf(file, "%s%.10g", i > 0 ? ", " : "", row[3 * i + column]);
-    fputs("]\n", file);
-}
-
 // The rows above the ground; from the first below it on the ground's.
 static const double *above_ground(bough_openfast *o, const double *row, int *n) {
     double *kept = bough_arena_doubles(o->draft.arena, 3 * ((size_t)*n + 1));
@@ -273,13 +267,12 @@ static void put_tower(bough_openfast *o) {
     const double *row = bough_deck_table(a, column, 3, n);
     if (row) row = above_ground(o, row, &n);
     if (!row) return;
-    FILE *file = o->draft.file[BOUGH_IMPORT_SCENE];
-    fprintf(file, "  tower:\n    influence: %s\n", potential == 2 ? "bak" : "potential");
-    if (shadow > 0) fputs("    shadow: powles\n", file);
-    if (drag) fputs("    body: tower\n", file);
-    put_column(file, "height", row, 0, n);
-    put_column(file, "diameter", row, 1, n);
-    put_column(file, "drag", row, 2, n);
+    bough_put(o, "  tower:\n    influence: %s\n", potential == 2 ? "bak" : "potential");
+    if (shadow > 0) bough_put(o, "    shadow: powles\n");
+    if (drag) bough_put(o, "    body: tower\n");
+    bough_draft_tower_list(&o->draft, "height", row, 3, n);
+    bough_draft_tower_list(&o->draft, "diameter", row + 1, 3, n);
+    bough_draft_tower_list(&o->draft, "drag", row + 2, 3, n);
     bough_taken(o, "the tower's influence on the wind%s", drag ? " and its drag" : "");
     if (potential == 0) {
         bough_approximated(o, "TwrPotent 0: potential flow about the tower is included with its shadow or "

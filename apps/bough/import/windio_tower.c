@@ -132,13 +132,6 @@ void bough_windio_tower(bough_windio *w) {
     if (t.n > 0) put_tube(w, &t);
 }
 
-static void put_list(bough_windio *w, const char *key, const bough_curve *over, const bough_curve *of) {
-    bough_put(w, "    %s: [", key);
-    for (int i = 0; i < over->n; i++)
-        bough_put(w, "%s%.10g", i > 0 ? ", " : "", bough_curve_at(of, over->x[i]));
-    bough_put(w, "]\n");
-}
-
 void bough_windio_tower_air(bough_windio *w) {
     if (!w->tower || !bough_is_ok(w->draft.status)) return;
     bough_curve height = read_height(w);
@@ -146,7 +139,9 @@ void bough_windio_tower_air(bough_windio *w) {
         bough_entry_curve(&w->draft, w->tower, "outer_shape_bem|outer_shape.outer_diameter");
     if (!bough_is_ok(w->draft.status)) return;
     bough_put(w, "  tower:\n    influence: potential\n");
-    put_list(w, "height", &height, &height);
-    put_list(w, "diameter", &height, &diameter);
+    double *wide = bough_arena_doubles(w->draft.arena, (size_t)height.n);
+    for (int i = 0; i < height.n; i++) wide[i] = bough_curve_at(&diameter, height.x[i]);
+    bough_draft_tower_list(&w->draft, "height", height.y, 1, height.n);
+    bough_draft_tower_list(&w->draft, "diameter", wide, 1, height.n);
     bough_taken(w, "the tower's influence on the wind, without its drag");
 }
