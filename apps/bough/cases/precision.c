@@ -248,6 +248,8 @@ static void write_csv_row(const bough_study_results *results, int row, FILE *f) 
     const bough_study *s = results->study;
     const bough_case_result *r = result_of(results, row);
     const bough_coupling_report *k = &r->coupling;
+    const double speed[] = {r->time, r->wall, r->cpu, real_time_factor(r)};
+    const double coupling[] = {k->defect_max, k->defect_rms, k->energy_residual, k->energy_exchanged};
     bool good = bough_is_ok(&r->outcome);
     if (row < 0)
         fputs("reference", f);
@@ -255,10 +257,12 @@ static void write_csv_row(const bough_study_results *results, int row, FILE *f) 
         fprintf(f, "%d", row + 1);
     for (int i = 0; i < s->grid.n; i++) bough_csv_next(f, bough_study_value(s, cell_of(s, row), i));
     fprintf(f, ",%s", good ? "ok" : "failed");
-    write_csv_numbers(f, 4, (double[]){r->time, r->wall, r->cpu, real_time_factor(r)});
-    for (int i = 0; i < s->n_measure; i++)
-        write_csv_numbers(f, 2, (double[]){r->error[i], r->estimate[i]});
-    write_csv_numbers(f, 4, (double[]){k->defect_max, k->defect_rms, k->energy_residual, k->energy_exchanged});
+    write_csv_numbers(f, 4, speed);
+    for (int i = 0; i < s->n_measure; i++) {
+        write_csv_numbers(f, 1, &r->error[i]);
+        write_csv_numbers(f, 1, &r->estimate[i]);
+    }
+    write_csv_numbers(f, 4, coupling);
     bough_csv_next(f, good ? "" : r->outcome.message);
     fputc('\n', f);
 }
