@@ -53,22 +53,14 @@ typedef struct reader {
 
 // -- errors ---------------------------------------------------------------------------------------
 
-static void grow_errors(bough_errors *errors) {
-    if (errors->n < errors->capacity) return;
-    int capacity = errors->capacity == 0 ? 8 : 2 * errors->capacity;
-    bough_error *item = bough_arena_take(errors->arena, (size_t)capacity * sizeof *item);
-    if (errors->n > 0) memcpy(item, errors->item, (size_t)errors->n * sizeof *item);
-    errors->item = item;
-    errors->capacity = capacity;
-}
-
 void bough_errors_add(bough_errors *errors, const bough_node *where, const char *path, const char *format,
                       ...) {
     if (errors->n >= MAX_ERRORS) {
         errors->dropped++;
         return;
     }
-    grow_errors(errors);
+    errors->item =
+        bough_arena_grow(errors->arena, errors->item, errors->n, &errors->capacity, sizeof *errors->item);
     char text[400];
     va_list arguments;
     va_start(arguments, format);

@@ -33,12 +33,7 @@ static void add(list *l, bough_scene_file file) {
     for (int k = 0; k < f->n; k++) {
         if (strcmp(f->item[k].path, file.path) == 0) return;
     }
-    if (f->n == l->room) {
-        bough_scene_file *old = f->item;
-        l->room = 2 * l->room + 16;
-        f->item = bough_arena_take(l->arena, (size_t)l->room * sizeof *f->item);
-        if (f->n > 0) memcpy(f->item, old, (size_t)f->n * sizeof *old);
-    }
+    f->item = bough_arena_grow(l->arena, f->item, f->n, &l->room, sizeof *f->item);
     f->item[f->n++] = file;
 }
 
