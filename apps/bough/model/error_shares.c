@@ -3,6 +3,7 @@
 #include "apps/bough/model/companion.h"
 #include "apps/bough/model/simulation.h"
 #include "apps/bough/results/progress.h"
+#include "cosim/scheme.h"
 
 #include <math.h>
 #include <stdarg.h>
@@ -44,10 +45,32 @@ static void sample(other_run *r) {
     bough_channels_sample(&r->channels, r->simulation->master->time, r->value);
 }
 
-static bough_status advance(other_run *r, double t) {
+// Of all bodies, so far.
+static long steps_of(const bough_simulation *s) {
+    const bough_assembly *a = s->master->assembly;
+    const bough_member *whole = bough_scheme_whole(s->master->coupling);
+    bough_statistics sum = whole ? bough_member_statistics(whole) : (bough_statistics){0};
+    for (int i = 0; i < a->n_member; i++) {
+        bough_statistics own = bough_member_statistics(a->member[i]);
+        bough_statistics_add(&sum, 1, &own);
+    }
+    return sum.steps + sum.failed_steps;
+}
+
+enum { MOST_TIMES_THE_STEPS = 10, FEW_STEPS = 1000 };
+
+// One that needs many times the steps of the other run, NULL: none, beside it has found another solution, and
+// would take for ever.
+static bough_status advance(other_run *r, double t, const bough_simulation *beside) {
     bough_status status = bough_ok();
-    while (bough_is_ok(&status) && r->simulation->master->time < t)
+    while (bough_is_ok(&status) && r->simulation->master->time < t) {
         status = bough_step(r->simulation->master);
+        if (!bough_is_ok(&status) || beside == NULL) continue;
+        long most = MOST_TIMES_THE_STEPS * (steps_of(beside) + FEW_STEPS);
+        if (steps_of(r->simulation) > most)
+            status = bough_fail(BOUGH_FAILED, "a run beside it took more than %ld steps to %.6g s", most,
+                                r->simulation->master->time);
+    }
     return status;
 }
 
@@ -102,7 +125,8 @@ static void advance_finer(const finding *x, int k, double t, const other_run *ba
     bough_error_share *share = &x->shares->share[k];
     const bough_companion *c = x->companion;
     if (!finer->simulation || share->unknown[0]) return;
-    bough_status own = advance(finer, fmin(t, x->end));
+    // as fine in time as the run, it costs as much
+    bough_status own = advance(finer, fmin(t, x->end), k == BOUGH_SHARE_TIME ? NULL : base->simulation);
     if (!bough_is_ok(&own)) {
         unknown(share, "%.150s", own.message);
         return;
@@ -150,7 +174,7 @@ static bough_status find(bough_arena *arena, void *self) {
         if (x->stop && x->stop())
             return bough_fail(BOUGH_INTERRUPTED, "interrupted while the error's cause was looked for");
         status = step_base(x, &base, &t);
-        if (bough_is_ok(&status) && again.simulation) status = advance(&again, fmin(t, x->end));
+        if (bough_is_ok(&status) && again.simulation) status = advance(&again, fmin(t, x->end), NULL);
         if (bough_is_ok(&status) && again.simulation) sample(&again);
     }
     return status;
@@ -216,7 +240,7 @@ static bough_status prove(bough_arena *arena, void *self) {
     for (int k = 0; k < 3 && bough_is_ok(&status); k++) status = build(arena, run, parts[k], &r[k]);
     for (double t = 0; bough_is_ok(&status); t = r[0].simulation->master->time) {
         for (int k = 0; k < 3 && bough_is_ok(&status); k++) {
-            status = advance(&r[k], t);
+            status = advance(&r[k], t, r[0].simulation);
             if (bough_is_ok(&status)) sample(&r[k]);
         }
         if (!bough_is_ok(&status)) break;

@@ -168,6 +168,30 @@ TEST(finer_steps_prove_an_error_in_time) {
     free(truth);
 }
 
+static int asked; // NOLINT(cppcoreguidelines-avoid-non-const-global-variables): by one test
+
+static bool count_and_go_on(void) {
+    asked++;
+    return false;
+}
+
+// Steps of generalised-α are given; a method that keeps such a tolerance needs a hundred times as many, and
+// is given up.
+TEST(a_proof_of_too_many_steps_is_none) {
+    const char *const sets[] = {"simulation.macro_step=20 ms", "simulation.error_bound=1e-6",
+                                "simulation.master={solver: generalized-alpha, step: 20 ms, rtol: 1e-11}",
+                                NULL};
+    check_arena(arena);
+    bough_run r;
+    bough_error_shares shares;
+    check_ok(bough_run_create(arena, scene_read(arena, "apps/mechanisms/pendulum.yaml", sets), &r));
+    while (!bough_run_done(&r)) check_ok(bough_run_step(&r));
+    asked = 0;
+    check_ok(bough_error_shares_find(arena, r.companion, count_and_go_on, &shares));
+    print_message("%d macro steps\n", asked);
+    assert_true(asked > 250 && asked < 400); // 250 of the companion; the proof would take 500
+}
+
 // Estimating changes no bit of the run.
 TEST(a_companion_changes_nothing) {
     const char *const with[] = {"simulation.duration=1 s", NULL};
