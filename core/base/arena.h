@@ -51,8 +51,8 @@ void *bough_arena_copy(bough_arena *arena, const void *from, size_t size);
 // A text as printf makes it.
 char *bough_arena_print(bough_arena *arena, const char *format, ...) __attribute__((format(printf, 2, 3)));
 
-// Room for one more of n items: they themselves, or a copy with twice the room, whose number *room is of
-// items of `size` bytes. The arena keeps the outgrown blocks: at most as much again.
+// The n items with room for one more: the same array, or a copy with twice the room. *room: how many items of
+// `size` bytes fit in it. The arena keeps the outgrown arrays: at most as much again.
 void *bough_arena_grow(bough_arena *arena, void *items, int n, int *room, size_t size);
 
 // Calls `release(object)` when the arena is destroyed, newest first: for handles of libraries.

@@ -78,7 +78,7 @@ typedef struct bough_end_def {
 typedef struct bough_joint_load_def {
     int body;                // whose joint; revolute or prismatic
     double value;            // [N m] or [N]
-    bough_schedule schedule; // of the factor; its table must stay
+    bough_schedule schedule; // of the factor; its table must outlive the tree
 } bough_joint_load_def;
 
 // A linear spring and damper on the line between two markers, which must not meet.
@@ -109,7 +109,7 @@ typedef struct bough_applied_def {
     int marker;              // index
     bough_wrench wrench;     // [N, N m]
     bool ground;             // in ground axes, else in the marker's
-    bough_schedule schedule; // of the factor; its table must stay
+    bough_schedule schedule; // of the factor; its table must outlive the tree
 } bough_applied_def;
 
 typedef struct bough_tree_def {
@@ -217,7 +217,7 @@ void bough_tree_prescribe(const bough_tree *tree, double t, double *state);
 void bough_tree_steer(bough_tree *tree, int body, double t, double span, bough_motion_point from,
                       bough_motion_point to);
 
-// A load goes linearly from one value to another in [t, t + span], by its table of two rows, which changes.
+// Makes a load linear from one value to another in [t, t + span]. Writes into its table, of two rows.
 void bough_tree_steer_load(bough_tree *tree, int load, double t, double span, double from, double to);
 
 // The external wrench on the tree at a marker from now on: value + τ (rate + τ curve), τ = t − start,

@@ -187,7 +187,7 @@ static void print_diagnosis(const char *settings, const bough_case_result *r, FI
     fprintf(stream, "failed: %s: %.*s%s\n", settings, (int)length, text, cut ? "..." : "");
 }
 
-// The columns are as wide as the widest of their fields, which are made once to see that.
+// All fields are formatted once before to find the widest of each column.
 static void print(const bough_study_results *results, FILE *stream) {
     const bough_study *s = results->study;
     line l;

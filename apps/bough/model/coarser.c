@@ -267,7 +267,7 @@ static void lengthen_steps(const bough_scene *scene, bough_scene *to) {
     lengthen_macro_step(to);
 }
 
-static const double largest_rtol = 1e-4; // of steps by which a run's own are judged
+static const double largest_rtol = 1e-4; // of the run by whose steps a run's own are judged
 
 // A run whose tolerance allows longer steps takes one in a macro step.
 static void shorten_steps(bough_scene *to) {

@@ -45,7 +45,7 @@ static void sample(other_run *r) {
     bough_channels_sample(&r->channels, r->simulation->master->time, r->value);
 }
 
-// Of all bodies, so far.
+// Steps of all bodies so far, with those that failed.
 static long steps_of(const bough_simulation *s) {
     const bough_assembly *a = s->master->assembly;
     const bough_member *whole = bough_scheme_whole(s->master->coupling);
@@ -59,8 +59,8 @@ static long steps_of(const bough_simulation *s) {
 
 enum { MOST_TIMES_THE_STEPS = 10, FEW_STEPS = 1000 };
 
-// One that needs many times the steps of the other run, NULL: none, beside it has found another solution, and
-// would take for ever.
+// A further run that needs many times the steps of the run beside it (NULL: no limit) follows another
+// solution and may never end.
 static bough_status advance(other_run *r, double t, const bough_simulation *beside) {
     bough_status status = bough_ok();
     while (bough_is_ok(&status) && r->simulation->master->time < t) {
@@ -125,7 +125,7 @@ static void advance_finer(const finding *x, int k, double t, const other_run *ba
     bough_error_share *share = &x->shares->share[k];
     const bough_companion *c = x->companion;
     if (!finer->simulation || share->unknown[0]) return;
-    // as fine in time as the run, it costs as much
+    // the run that is as fine in time may cost as much as the user's own
     bough_status own = advance(finer, fmin(t, x->end), k == BOUGH_SHARE_TIME ? NULL : base->simulation);
     if (!bough_is_ok(&own)) {
         unknown(share, "%.150s", own.message);
@@ -226,7 +226,7 @@ typedef struct proof {
     double *time, *others; // (n_channel) largest errors: of the steps; of mesh and air
 } proof;
 
-static const double half_steps = 4 / 3.0; // of the difference to them is the error of the run, of order 2
+static const double half_steps = 4 / 3.0; // error over the difference to a run of half the steps, at order 2
 
 // The run once more, beside one with finer steps and one that is coarser in mesh and air alone.
 static bough_status prove(bough_arena *arena, void *self) {
