@@ -9,7 +9,7 @@
 enum {
     W8 = 8,
     BLOCK_SIZE = BOUGH_EIGEN_AT_ONCE, // starting vectors: multiplicities up to this are found
-    SPARE = 40,                       // vectors beyond those wanted before the first look
+    SPARE = 15,                       // vectors beyond those wanted before the first look
     LOOKS = 10,                       // after the first, each with a quarter as many vectors more
 };
 
@@ -109,7 +109,7 @@ static int select(const search *s, int wanted, int *chosen, double *sum) {
 // has found no other among them.
 static bool iterate(search *s, int wanted, int *chosen, int *found) {
     bough_arnoldi *a = &s->basis;
-    int first = 3 * wanted + SPARE;
+    int first = 9 * wanted / 2 + SPARE;
     double before = -1, sum;
     for (int look = 0; look <= LOOKS; look++) {
         // a larger space each time, its Ritz values by falling modulus
@@ -171,7 +171,7 @@ static void take_shapes(bough_arena *arena, int n, bough_eigen_pair *pair, int c
 
 static bough_status find(bough_arena *arena, const bough_eigen_operator *op, int wanted,
                          bough_eigen_pair *pair, int *found) {
-    int first = 3 * wanted + SPARE, capacity = first + first * LOOKS / 4 + BLOCK_SIZE;
+    int first = 9 * wanted / 2 + SPARE, capacity = first + first * LOOKS / 4 + BLOCK_SIZE;
     search s = {.op = op, .basis = {.apply = apply, .self = &s}};
     s.order = bough_arena_take(arena, (size_t)(capacity + wanted) * sizeof *s.order);
     bough_arnoldi_create(arena, op->length, capacity, BLOCK_SIZE, &s.basis);

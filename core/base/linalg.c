@@ -16,9 +16,6 @@ extern void dgbsv_(const int *n, const int *below, const int *above, const int *
 extern void dgemv_(const char *trans, const int *m, const int *n, const double *alpha, const double *a,
                    const int *lda, const double *x, const int *incx, const double *beta, double *y,
                    const int *incy, size_t l_trans);
-extern void dtrsv_(const char *uplo, const char *trans, const char *diagonal, const int *n, const double *a,
-                   const int *lda, double *x, const int *incx, size_t l_uplo, size_t l_trans,
-                   size_t l_diagonal);
 extern void dgemm_(const char *transa, const char *transb, const int *m, const int *n, const int *k,
                    const double *alpha, const double *a, const int *lda, const double *b, const int *ldb,
                    const double *beta, double *c, const int *ldc, size_t transa_length, size_t transb_length);
@@ -200,59 +197,7 @@ void bough_dense_solve(int n, int n_right, const double *factor, const int *pivo
     dgetrs_("N", &n, &n_right, factor, &n, pivot, b, &n, &info, 1);
 }
 
-// Uᵀ forwards, Lᵀ backwards, interchanges in reverse.
-static void solve_small_transposed(int n, const double *factor, const int *pivot, double *x) {
-    for (int k = 0; k < n; k++) {
-        for (int i = 0; i < k; i++) x[k] -= factor[k * n + i] * x[i];
-        x[k] /= factor[k * n + k];
-    }
-    for (int k = n - 1; k >= 0; k--) {
-        for (int i = k + 1; i < n; i++) x[k] -= factor[k * n + i] * x[i];
-    }
-    for (int k = n - 1; k >= 0; k--) {
-        if (pivot[k] != k) swap(&x[k], &x[pivot[k]]);
-    }
-}
-
 enum { FEW = 8, TILE = 16 };
-
-// A tile of columns of a triangle serves all right sides while it is in the cache. Solved before it are the
-// rows above, of L those below.
-static void solve_tile(bool upper, int n, int n_right, const double *factor, int begin, double *b) {
-    int width = n - begin < TILE ? n - begin : TILE, one = 1;
-    int from = upper ? 0 : begin + width, rows = upper ? begin : n - from;
-    const double *column = factor + (size_t)begin * (size_t)n, minus = -1, plus = 1;
-    for (int j = 0; j < n_right; j++) {
-        double *x = b + (size_t)j * (size_t)n;
-        dgemv_("T", &rows, &width, &minus, column + from, &n, x + from, &one, &plus, x + begin, &one, 1);
-        dtrsv_(upper ? "U" : "L", "T", upper ? "N" : "U", &width, column + begin, &n, x + begin, &one, 1, 1,
-               1);
-    }
-}
-
-// Uᵀ forwards, Lᵀ backwards, interchanges in reverse. Few right sides are bound by the reading of the
-// factors, which LAPACK does for each of them.
-static void solve_few_transposed(int n, int n_right, const double *factor, const int *pivot, double *b) {
-    for (int begin = 0; begin < n; begin += TILE) solve_tile(true, n, n_right, factor, begin, b);
-    for (int begin = (n - 1) / TILE * TILE; begin >= 0; begin -= TILE)
-        solve_tile(false, n, n_right, factor, begin, b);
-    for (int j = 0; j < n_right; j++) {
-        double *x = b + (size_t)j * (size_t)n;
-        for (int k = n - 1; k >= 0; k--) swap(&x[k], &x[pivot[k] - 1]);
-    }
-}
-
-void bough_dense_solve_transposed(int n, int n_right, const double *factor, const int *pivot, double *b) {
-    if (n == 0 || n_right == 0) return;
-    if (n <= SMALL) {
-        for (int j = 0; j < n_right; j++) solve_small_transposed(n, factor, pivot, b + j * n);
-    } else if (n_right <= FEW) {
-        solve_few_transposed(n, n_right, factor, pivot, b);
-    } else {
-        int info = 0;
-        dgetrs_("T", &n, &n_right, factor, &n, pivot, b, &n, &info, 1);
-    }
-}
 
 // Products with few columns b are bound by the reading of a: some of its columns at a time serve all of b.
 static void multiply_few(const bough_product *p, const double *a, const double *b, double *c) {

@@ -30,9 +30,6 @@ bool bough_band_solve(int n, int width, double *a, int *pivot, double *b);
 // Solves a x = b in place with those factors: b (n × n_right, column-major).
 void bough_dense_solve(int n, int n_right, const double *factor, const int *pivot, double *b);
 
-// Solves aᵀ x = b in place with them.
-void bough_dense_solve_transposed(int n, int n_right, const double *factor, const int *pivot, double *b);
-
 // c ← factor a b + keep c, all column-major: a (m × k), or its transpose where a is given (k × m), b (k × n),
 // c (m × n).
 typedef struct bough_product {

@@ -1,6 +1,7 @@
 // theory (77). The matrix is dense where the air couples states, the members' own part of its inverse is not:
 // a solution is one by the members' factors, then one by the dense factors of what the air and the rotation
-// add.
+// add. Where the air has states, left vectors and their forces are solutions, too: for so many the inverse is
+// one matrix.
 #include "apps/bough/analysis/aeroelastic.h"
 
 #include "core/base/linalg.h"
@@ -12,7 +13,10 @@
 static const double same = 1e-6;        // relative distance of an eigenvalue on both sides
 static const double least_motion = 0.2; // participation of the bodies; modes with less are the air's
 
-enum { CHUNK = 64 }; // columns of a product
+enum {
+    CHUNK = 64,       // columns of a product
+    MODES_BEYOND = 8, // those wanted, of the basis for the air's memory, and an eighth
+};
 
 // A joint that nothing holds moves on at its speed: the eigenvalue 0 twice, with one vector. Joints'
 // coordinates that go back this slowly, against the point, have two.
@@ -20,20 +24,18 @@ static const double going_back = 1e-6;
 
 typedef struct work {
     const bough_aeroelastic *system;
-    int n, m;           // states of the members, those of the air that change
-    int *air, *place;   // (m) rows of the air's tangents; (n_air) places of these rows in m, −1: none
-    double *inverse;    // P = (I − γJ)⁻¹ (n × n), column-major as all
-    double *factor;     // T (n × n), theory (77), factored
-    int *pivot;         // (n)
-    double *rate;       // S (n_part × n_part), row-major
-    double *transposed; // (n × BOUGH_EIGEN_AT_ONCE) T⁻ᵀ z
+    int n, m;         // states of the members, those of the air that change
+    int *air, *place; // (m) rows of the air's tangents; (n_air) places of these rows in m, −1: none
+    double *inverse;  // P = (I − γJ)⁻¹ (n × n), column-major as all; then T⁻¹ P, theory (77)
+    double *factor;   // T (n × n), factored
+    int *pivot;       // (n)
+    double *rate;     // S (n_part × n_part), row-major
 } work;
 
 static void take(bough_arena *arena, work *w) {
     size_t n = (size_t)w->n, parts = (size_t)w->system->def->n_part;
     w->pivot = bough_arena_take(arena, n * sizeof *w->pivot);
     bough_arena_each(arena, n * n, &w->inverse, &w->factor);
-    w->transposed = bough_arena_doubles(arena, n * BOUGH_EIGEN_AT_ONCE);
     w->rate = bough_arena_doubles(arena, parts * parts + 1);
 }
 
@@ -57,7 +59,7 @@ static void solve_members(const work *w, double *x) {
     bough_whole_project(w->system->whole, w->system->def->state, x);
 }
 
-static void invert(work *w) {
+static void invert_members(work *w) {
     size_t n = (size_t)w->n;
     for (size_t j = 0; j < n; j++) {
         w->inverse[j * n + j] = 1;
@@ -114,6 +116,7 @@ static void subtract_forces(bough_arena *arena, work *w, const double *a) {
 static bool factor(bough_arena *arena, work *w) {
     const bough_aeroelastic *x = w->system;
     size_t n = (size_t)w->n;
+    invert_members(w);
     for (size_t j = 0; j < n; j++) w->factor[j * n + j] = 1;
     for (size_t j = 0; j < (size_t)x->simulation->tree->n_q; j++) add_column(w, j, j, going_back);
     if (x->def->spin != 0) {
@@ -126,8 +129,8 @@ static bool factor(bough_arena *arena, work *w) {
 
 // -- its eigenvalues ------------------------------------------------------------------------------
 
-// T⁻¹ P z
-static void apply(void *self, int n, const double *z, double *image) {
+// T⁻¹ P z by the factors
+static void solve(void *self, int n, const double *z, double *image) {
     const work *w = self;
     size_t length = (size_t)w->n;
     memcpy(image, z, length * (size_t)n * sizeof *image);
@@ -135,12 +138,16 @@ static void apply(void *self, int n, const double *z, double *image) {
     bough_dense_solve(w->n, n, w->factor, w->pivot, image);
 }
 
+// T⁻¹ P z by the inverse
+static void apply(void *self, int n, const double *z, double *image) {
+    const work *w = self;
+    bough_dense_product((bough_product){w->n, n, w->n, false, 1, 0}, w->inverse, z, image);
+}
+
 // Pᵀ T⁻ᵀ z
 static void apply_transposed(void *self, int n, const double *z, double *image) {
     const work *w = self;
-    memcpy(w->transposed, z, (size_t)w->n * (size_t)n * sizeof *z);
-    bough_dense_solve_transposed(w->n, n, w->factor, w->pivot, w->transposed);
-    bough_dense_product((bough_product){w->n, n, w->n, true, 1, 0}, w->inverse, w->transposed, image);
+    bough_dense_product((bough_product){w->n, n, w->n, true, 1, 0}, w->inverse, z, image);
 }
 
 // Products in which states of the members count in units of their scales (power −2), those of the air as they
@@ -164,7 +171,9 @@ static bough_status find_pairs(bough_arena *arena, work *w, bool left, bool deca
                                      .decaying = decaying,
                                      .known = known,
                                      .self = w,
-                                     .apply = left ? apply_transposed : apply};
+                                     .apply = w->m == 0 ? solve
+                                              : left    ? apply_transposed
+                                                        : apply};
     return bough_eigen_nearest(arena, &op, pair, count);
 }
 
@@ -525,11 +534,12 @@ static bough_status find_both(bough_arena *arena, work *w, bough_eigen_pair *rig
 
 static bough_status follow_memory(bough_arena *arena, work *w, bough_eigen_pair *pair,
                                   bough_eigen_count *count, int *unpaired) {
-    int basis = count->wanted + count->wanted / 2;
+    int basis = count->wanted + count->wanted / 8 + MODES_BEYOND;
     bough_eigen_pair *right = bough_arena_take(arena, (size_t)basis * sizeof *right);
     bough_eigen_pair *left = bough_arena_take(arena, (size_t)basis * sizeof *left);
     bough_eigen_count n_right = {.wanted = basis}, n_left = {.wanted = basis};
     reduced x = {0};
+    bough_dense_solve(w->n, w->n, w->factor, w->pivot, w->inverse);
     BOUGH_TRY(find_both(arena, w, right, &n_right, left, &n_left, unpaired));
     if (!reduce(arena, w, n_right.found, right, n_left.found, left, &x) || !factor_reduced(arena, w, &x) ||
         !find_vectors(arena, &x))
@@ -548,7 +558,6 @@ bough_status bough_aeroelastic_modes(bough_arena *arena, const bough_aeroelastic
     take(arena, &w);
     bough_status status = bough_whole_setup(system->whole, def->time, def->state, def->input, 1 / def->point);
     if (!bough_is_ok(&status)) return bough_fail(BOUGH_FAILED, "%s", status.message);
-    invert(&w);
     if (!factor(arena, &w))
         return bough_fail(BOUGH_FAILED, "the motion in the air is singular about %g /s", def->point);
     if (w.m > 0) return follow_memory(arena, &w, pair, count, unpaired);

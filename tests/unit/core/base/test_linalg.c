@@ -53,31 +53,6 @@ TEST(lu_solves_systems_of_any_size) {
         assert_true(bough_dense_factor(n, a, pivot));
         bough_dense_solve(n, 1, a, pivot, b);
         for (int i = 0; i < n; i++) check_near(b[i], i - 2.5, 0, 1e-12);
-        memset(b, 0, sizeof b); // and its transpose
-        for (int k = 0; k < n * n; k++) a[k] = sin(1.7 * k * k + n) - (k % (n + 1) == 0 ? 0.9 : 0);
-        for (int c = 0; c < n; c++) {
-            for (int r = 0; r < n; r++) b[c] += a[c * n + r] * (r - 2.5);
-        }
-        assert_true(bough_dense_factor(n, a, pivot));
-        bough_dense_solve_transposed(n, 1, a, pivot, b);
-        for (int i = 0; i < n; i++) check_near(b[i], i - 2.5, 0, 1e-12);
-    }
-}
-
-// As many right sides as are solved for together, and more; rows in several tiles.
-TEST(transposed_systems_with_several_right_sides) {
-    enum { N = 53, MOST = 9 };
-    double a[N * N], b[N * MOST];
-    int pivot[N];
-    for (int n_right = 1; n_right <= MOST; n_right += 4) {
-        memset(b, 0, sizeof b);
-        for (int k = 0; k < N * N; k++) a[k] = sin(1.7 * k * k + 1) - (k % (N + 1) == 0 ? 0.9 : 0);
-        for (int j = 0; j < n_right; j++) {
-            for (int k = 0; k < N * N; k++) b[j * N + k / N] += a[k] * (k % N - 2.5 * j);
-        }
-        assert_true(bough_dense_factor(N, a, pivot));
-        bough_dense_solve_transposed(N, n_right, a, pivot, b);
-        for (int i = 0; i < N * n_right; i++) check_near(b[i], i % N - 2.5 * (i / N), 0, 1e-9);
     }
 }
 
