@@ -47,13 +47,7 @@ static void sample(other_run *r) {
 
 // Steps of all bodies so far, with those that failed.
 static long steps_of(const bough_simulation *s) {
-    const bough_assembly *a = s->master->assembly;
-    const bough_member *whole = bough_scheme_whole(s->master->coupling);
-    bough_statistics sum = whole ? bough_member_statistics(whole) : (bough_statistics){0};
-    for (int i = 0; i < a->n_member; i++) {
-        bough_statistics own = bough_member_statistics(a->member[i]);
-        bough_statistics_add(&sum, 1, &own);
-    }
+    bough_statistics sum = bough_master_statistics(s->master);
     return sum.steps + sum.failed_steps;
 }
 
