@@ -60,80 +60,55 @@ static bool has_names(const bough_node *list) {
     return all;
 }
 
-static size_t enter(merger *m, const char *before, const char *key, const char *after) {
-    size_t length = strlen(m->path);
-    snprintf(m->path + length, sizeof m->path - length, "%s%s%s", before, key, after);
-    return length;
-}
-
 static bough_node *merge(merger *m, bough_node *base, bough_node *over);
 
 // What stands below a key of the base or below a name of its list.
 static bough_node *merge_at(merger *m, const char *before, const char *key, const char *after,
                             bough_node *base, bough_node *over) {
-    size_t length = enter(m, before, key, after);
+    size_t length = strlen(m->path);
+    snprintf(m->path + length, sizeof m->path - length, "%s%s%s", before, key, after);
     bough_node *merged = merge(m, base, over);
     m->path[length] = '\0';
     return merged;
 }
 
-static void nothing_to_remove(merger *m, const bough_node *where, const char *key, const char *const *known,
-                              int n) {
-    bough_errors_add(m->errors, where, m->path, "the base has no '%.60s'%s", key,
-                     bough_suggest(key, known, n).text);
+static const char *name_at(const bough_node *node, int i) {
+    return node->kind == BOUGH_MAPPING ? node->key[i]->text : name_of(node->value[i]);
 }
 
-static const char *const *keys_of(const merger *m, const bough_node *node) {
-    const char **names = bough_arena_take(m->arena, ((size_t)node->n + 1) * sizeof *names);
-    for (int i = 0; i < node->n; i++)
-        names[i] = node->kind == BOUGH_MAPPING ? node->key[i]->text : name_of(node->value[i]);
-    return names;
-}
-
-static bough_node *merge_mappings(merger *m, const bough_node *base, const bough_node *over) {
-    bough_node *merged = start(m, base, over->n);
-    for (int i = 0; i < base->n; i++) {
-        bough_node *other = bough_node_find(over, base->key[i]->text), *value = base->value[i];
-        if (other != NULL) value = merge_at(m, m->path[0] ? "." : "", base->key[i]->text, "", value, other);
-        if (value != NULL) bough_node_append(merged, base->key[i], value);
-    }
-    for (int i = 0; i < over->n; i++) {
-        if (bough_node_find(base, over->key[i]->text) != NULL) continue;
-        if (bough_node_is_null(over->value[i])) {
-            nothing_to_remove(m, over->key[i], over->key[i]->text, keys_of(m, base), base->n);
-        } else {
-            bough_node_append(merged, over->key[i], over->value[i]);
-        }
-    }
-    return merged;
+static void nothing_to_remove(merger *m, const bough_node *key, const bough_node *base) {
+    const char **known = bough_arena_take(m->arena, ((size_t)base->n + 1) * sizeof *known);
+    for (int i = 0; i < base->n; i++) known[i] = name_at(base, i);
+    bough_errors_add(m->errors, key, m->path, "the base has no '%.60s'%s", key->text,
+                     bough_suggest(key->text, known, base->n).text);
 }
 
 // The value for a name in a list of named items or in a mapping by names.
 static bough_node *named(const bough_node *node, const char *name) {
-    if (node->kind == BOUGH_MAPPING) return bough_node_find(node, name);
     for (int i = 0; i < node->n; i++) {
-        const char *text = name_of(node->value[i]);
+        const char *text = name_at(node, i);
         if (text != NULL && strcmp(text, name) == 0) return node->value[i];
     }
     return NULL;
 }
 
-static bough_node *merge_lists(merger *m, const bough_node *base, const bough_node *over) {
+// Values have names by their keys in a mapping, by their own key `name` in a list.
+static bough_node *merge_values(merger *m, const bough_node *base, const bough_node *over) {
+    bool list = base->kind == BOUGH_SEQUENCE;
+    const char *before = list ? "[" : m->path[0] ? "." : "", *after = list ? "]" : "";
     bough_node *merged = start(m, base, over->n);
     for (int i = 0; i < base->n; i++) {
-        const char *name = name_of(base->value[i]);
+        const char *name = name_at(base, i);
         bough_node *other = named(over, name), *value = base->value[i];
-        if (other != NULL) value = merge_at(m, "[", name, "]", value, other);
-        if (value != NULL) bough_node_append(merged, NULL, value);
+        if (other != NULL) value = merge_at(m, before, name, after, value, other);
+        if (value != NULL) bough_node_append(merged, list ? NULL : base->key[i], value);
     }
     for (int i = 0; i < over->n; i++) {
-        bool by_key = over->kind == BOUGH_MAPPING;
-        const char *name = by_key ? over->key[i]->text : name_of(over->value[i]);
-        if (named(base, name) != NULL) continue;
-        if (by_key) {
-            nothing_to_remove(m, over->key[i], name, keys_of(m, base), base->n);
+        if (named(base, name_at(over, i)) != NULL) continue;
+        if (over->kind != base->kind || bough_node_is_null(over->value[i])) {
+            nothing_to_remove(m, over->key[i], base);
         } else {
-            bough_node_append(merged, NULL, over->value[i]);
+            bough_node_append(merged, list ? NULL : over->key[i], over->value[i]);
         }
     }
     return merged;
@@ -142,10 +117,10 @@ static bough_node *merge_lists(merger *m, const bough_node *base, const bough_no
 // The base's value as the other one changes it; NULL: it is removed.
 static bough_node *merge(merger *m, bough_node *base, bough_node *over) {
     if (bough_node_is_null(over)) return NULL;
-    if (base->kind == BOUGH_MAPPING && over->kind == BOUGH_MAPPING) return merge_mappings(m, base, over);
+    if (base->kind == BOUGH_MAPPING && over->kind == BOUGH_MAPPING) return merge_values(m, base, over);
     bool table = bough_node_find(over, "columns") != NULL; // a list in another form
     bool by_name = has_names(over) || (over->kind == BOUGH_MAPPING && !table);
-    return has_names(base) && by_name ? merge_lists(m, base, over) : over;
+    return has_names(base) && by_name ? merge_values(m, base, over) : over;
 }
 
 bough_node *bough_node_merge(bough_arena *arena, bough_errors *errors, const char *path, bough_node *base,
