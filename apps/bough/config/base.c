@@ -30,23 +30,29 @@ const char *bough_directory_of(bough_arena *arena, const char *path) {
 
 // -- merging --------------------------------------------------------------------------------------
 
-// Room for the values of `base` and `more` others; nothing is in it yet.
-static bough_node *start(const merger *m, const bough_node *base, int more) {
-    bough_node *node = bough_arena_take(m->arena, sizeof *node);
-    size_t room = (size_t)(base->n + more) + 1;
-    bough_node **slots = bough_arena_take(m->arena, 2 * room * sizeof *slots);
-    *node = *base;
+bough_node *bough_node_start(bough_arena *arena, const bough_node *like, int room) {
+    bough_node *node = bough_arena_take(arena, sizeof *node);
+    bough_node **slots = bough_arena_take(arena, 2 * (size_t)room * sizeof *slots);
+    *node = *like;
     node->n = 0;
     node->value = slots;
-    node->key = base->kind == BOUGH_MAPPING ? slots + room : NULL;
+    node->key = like->kind == BOUGH_MAPPING ? slots + room : NULL;
     return node;
 }
 
 void bough_node_append(bough_node *node, bough_node *key, bough_node *value) {
     if (node->key != NULL) node->key[node->n] = key;
     node->value[node->n++] = value;
-    node->weight += value->weight;
-    if (value->height >= node->height) node->height = value->height + 1;
+}
+
+void bough_node_move(bough_node *node, const bough_node *at) {
+    node->file = at->file;
+    node->line = at->line;
+    node->column = at->column;
+    for (int i = 0; i < node->n; i++) {
+        if (node->key != NULL) bough_node_move(node->key[i], at);
+        bough_node_move(node->value[i], at);
+    }
 }
 
 static const char *name_of(const bough_node *item) {
@@ -76,35 +82,39 @@ static const char *name_at(const bough_node *node, int i) {
     return node->kind == BOUGH_MAPPING ? node->key[i]->text : name_of(node->value[i]);
 }
 
-static void nothing_to_remove(merger *m, const bough_node *key, const bough_node *base) {
-    const char **known = bough_arena_take(m->arena, ((size_t)base->n + 1) * sizeof *known);
-    for (int i = 0; i < base->n; i++) known[i] = name_at(base, i);
-    bough_errors_add(m->errors, key, m->path, "the base has no '%.60s'%s", key->text,
-                     bough_suggest(key->text, known, base->n).text);
-}
-
-// The value for a name in a list of named items or in a mapping by names.
-static bough_node *named(const bough_node *node, const char *name) {
+int bough_node_index(const bough_node *node, const char *name) {
     for (int i = 0; i < node->n; i++) {
         const char *text = name_at(node, i);
-        if (text != NULL && strcmp(text, name) == 0) return node->value[i];
+        if (text != NULL && strcmp(text, name) == 0) return i;
     }
-    return NULL;
+    return -1;
+}
+
+bough_suggestion bough_node_suggest(bough_arena *arena, const bough_node *node, const char *name) {
+    const char **known = bough_arena_take(arena, ((size_t)node->n + 1) * sizeof *known);
+    for (int i = 0; i < node->n; i++) known[i] = name_at(node, i);
+    return bough_suggest(name, known, node->n);
+}
+
+static void nothing_to_remove(merger *m, const bough_node *key, const bough_node *base) {
+    bough_errors_add(m->errors, key, m->path, "the base has no '%.60s'%s", key->text,
+                     bough_node_suggest(m->arena, base, key->text).text);
 }
 
 // Values have names by their keys in a mapping, by their own key `name` in a list.
 static bough_node *merge_values(merger *m, const bough_node *base, const bough_node *over) {
     bool list = base->kind == BOUGH_SEQUENCE;
     const char *before = list ? "[" : m->path[0] ? "." : "", *after = list ? "]" : "";
-    bough_node *merged = start(m, base, over->n);
+    bough_node *merged = bough_node_start(m->arena, base, base->n + over->n);
     for (int i = 0; i < base->n; i++) {
         const char *name = name_at(base, i);
-        bough_node *other = named(over, name), *value = base->value[i];
-        if (other != NULL) value = merge_at(m, before, name, after, value, other);
+        int other = bough_node_index(over, name);
+        bough_node *value = base->value[i];
+        if (other >= 0) value = merge_at(m, before, name, after, value, over->value[other]);
         if (value != NULL) bough_node_append(merged, list ? NULL : base->key[i], value);
     }
     for (int i = 0; i < over->n; i++) {
-        if (named(base, name_at(over, i)) != NULL) continue;
+        if (bough_node_index(base, name_at(over, i)) >= 0) continue;
         if (over->kind != base->kind || bough_node_is_null(over->value[i])) {
             nothing_to_remove(m, over->key[i], base);
         } else {

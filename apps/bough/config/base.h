@@ -20,8 +20,20 @@ bough_node *bough_base_read(bough_arena *arena, const char *path, bough_errors *
 bough_node *bough_node_merge(bough_arena *arena, bough_errors *errors, const char *path, bough_node *base,
                              bough_node *over);
 
+// A container as `like`, empty, with room for so many values.
+bough_node *bough_node_start(bough_arena *arena, const bough_node *like, int room);
+
 // Appends to a container that has room; `key` NULL in a sequence.
 void bough_node_append(bough_node *node, bough_node *key, bough_node *value);
+
+// The place of the value of that name: of its key in a mapping, of its own key 'name' in a list; −1: none.
+int bough_node_index(const bough_node *node, const char *name);
+
+// The name in the container that is nearest to a misspelt one.
+bough_suggestion bough_node_suggest(bough_arena *arena, const bough_node *node, const char *name);
+
+// Gives the node, and all below it, the place of another one.
+void bough_node_move(bough_node *node, const bough_node *at);
 
 // Whether the value is a plain null or ~, which removes a key.
 bool bough_node_is_null(const bough_node *node);

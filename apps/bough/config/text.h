@@ -28,7 +28,7 @@ typedef struct bough_node {
     const char *text;          // of a scalar
     const char *file;
     int line, column;   // from 1; line 0: no position, the file's name says all
-    int height, weight; // levels below; values below, this one included, aliases expanded
+    int height, weight; // as read: levels below; values below, this one included, aliases expanded
 } bough_node;
 
 typedef struct bough_error {

@@ -114,17 +114,6 @@ static const char *blade_text(bough_arena *arena, const block *b, int k) {
                              fixed);
 }
 
-// Its nodes stand where the block does.
-static void place(bough_node *node, const bough_node *at) {
-    node->file = at->file;
-    node->line = at->line;
-    node->column = at->column;
-    for (int i = 0; i < node->n; i++) {
-        if (node->key != NULL) place(node->key[i], at);
-        place(node->value[i], at);
-    }
-}
-
 // -- the tree -------------------------------------------------------------------------------------
 
 static void merge_parts(bough_schema_reader *r, const block *b, bough_node *list) {
@@ -148,22 +137,15 @@ static bough_node *generate(bough_schema_reader *r, const block *b) {
         length(r->arena, b->hub_radius));
     bough_node *tree = bough_text_parse(r->arena, "turbine", text, strlen(text), r->errors);
     if (tree == NULL) return NULL;
-    place(tree, b->node);
+    bough_node_move(tree, b->node);
     merge_parts(r, b, bough_node_find(tree, "bodies"));
     return tree;
 }
 
 // The scene with the block's bodies in front of its own ones, which change those of their name.
 static bough_node *expand(bough_schema_reader *r, const block *b, const bough_node *root) {
-    bough_node *made = generate(r, b), *scene = bough_arena_take(r->arena, sizeof *scene);
+    bough_node *made = generate(r, b), *scene = bough_node_start(r->arena, root, root->n + 1);
     if (made == NULL) return NULL;
-    bough_node **slots = bough_arena_take(r->arena, 2 * ((size_t)root->n + 1) * sizeof *slots);
-    *scene = (bough_node){.kind = BOUGH_MAPPING,
-                          .key = slots,
-                          .value = slots + root->n + 1,
-                          .file = root->file,
-                          .line = root->line,
-                          .column = root->column};
     if (bough_node_find(root, "bodies") == NULL) bough_node_append(scene, made->key[0], made->value[0]);
     for (int i = 0; i < root->n; i++) {
         bough_node *value = root->value[i], *base = bough_node_find(made, root->key[i]->text);
