@@ -213,7 +213,7 @@ static const bough_key set_keys[] = {
 static void check_set(bough_schema_reader *r, void *item) {
     const bough_study *s = item;
     if (s->n_slope > BOUGH_MOST_SLOPES) {
-        bough_schema_error(r, bough_node_find(s->node, "slopes"), "slopes",
+        bough_schema_error(r, s->node, "slopes",
                            "expected at most %d, got %d", BOUGH_MOST_SLOPES, s->n_slope);
     }
     for (int i = 0; i < s->n_group; i++) {

@@ -37,6 +37,7 @@ void bough_schema_error(bough_schema_reader *reader, const bough_node *node, con
     vsnprintf(text, sizeof text, format, arguments);
     va_end(arguments);
     size_t length = key[0] == '\0' ? strlen(reader->path) : bough_schema_push_key(reader, key);
+    bough_node_below(node, key, &node);
     bough_errors_add(reader->errors, node, reader->path, "%s", text);
     bough_schema_pop(reader, length);
 }

@@ -451,3 +451,15 @@ bough_node *bough_node_find(const bough_node *node, const char *key) {
     }
     return NULL;
 }
+
+const bough_node *bough_node_below(const bough_node *node, const char *path, const bough_node **last) {
+    char key[64];
+    for (size_t n; node != NULL && *path != '\0'; path += n + (path[n] == '.')) {
+        n = strcspn(path, ".");
+        snprintf(key, sizeof key, "%.*s", (int)n, path);
+        *last = node;
+        node = bough_node_find(node, key);
+    }
+    if (node != NULL) *last = node;
+    return node;
+}

@@ -74,4 +74,8 @@ bough_node *bough_text_parse(bough_arena *arena, const char *file, const char *t
 // The value of a key in a mapping, NULL when there is none or the node is no mapping (or NULL).
 bough_node *bough_node_find(const bough_node *node, const char *key);
 
+// The value at "output.frames" below a mapping, NULL where a key of it is left out. *last: the last value
+// found on the way there, the mapping itself at least.
+const bough_node *bough_node_below(const bough_node *node, const char *path, const bough_node **last);
+
 #endif

@@ -119,12 +119,12 @@ static void cut(bough_scene_structure *s, const double part[2], bough_scene_stat
     s->station = to;
 }
 
-void bough_scene_take_part(bough_schema_reader *r, const bough_node *given, const double part[2],
+void bough_scene_take_part(bough_schema_reader *r, const bough_node *rod, const double part[2],
                            bough_scene_structure *s) {
     bool good = part[0] >= 0 && part[0] < part[1] && part[1] <= s->length * (1 + 1e-9);
     if (s->n_station < 1 || !isfinite(s->length)) return; // reported already
     if (!good) {
-        bough_schema_error(r, given, "part",
+        bough_schema_error(r, rod, "part",
                            "must be a stretch of the table, which is %g m long, got [%g m, %g m]", s->length,
                            part[0], part[1]);
         return;

@@ -20,7 +20,7 @@ static void keep(bough_schema_reader *r, const bough_node *node, void *field) {
     if (node->kind != BOUGH_MAPPING) {
         bough_schema_error(r, node, "", "expected a mapping with keys of a body");
     } else if (bough_node_find(node, "name") != NULL) {
-        bough_schema_error(r, bough_node_find(node, "name"), "name", "the block names its bodies itself");
+        bough_schema_error(r, node, "name", "the block names its bodies itself");
     } else {
         *(const bough_node **)field = node;
     }
@@ -170,6 +170,6 @@ bough_node *bough_scene_expand(bough_schema_reader *r, bough_node *root) {
     bough_link_at(r, "%s", "");
     if (r->errors->n != before) return NULL;
     if (b.height > 0 && bough_node_find(b.tower, "rod") != NULL)
-        bough_schema_error(r, turbine, "turbine.tower_height", "only of a rigid tower: this one has a rod");
+        bough_schema_error(r, root, "turbine.tower_height", "only of a rigid tower: this one has a rod");
     return expand(r, &b, root);
 }

@@ -45,7 +45,7 @@ static const bough_fmu_variable *find(bough_schema_reader *r, const bough_scene_
 static bool is_count(bough_schema_reader *r, const bough_scene_fmu *fmu, const char *key, int n,
                      int expected) {
     if (n == 0 || n == expected) return true;
-    bough_schema_error(r, bough_link_value(fmu->model.node, key), key,
+    bough_schema_error(r, fmu->model.node, key,
                        "expected %d names, 'none' for those that the FMU does not have, got %d", expected, n);
     return false;
 }
@@ -77,7 +77,7 @@ static bool describe(bough_schema_reader *r, bough_scene_fmu_model *m) {
     m->folder = bough_schema_path(r, m->node, "folder", m->folder);
     bough_status status = bough_fmu_describe(r->arena, m->folder, &m->description);
     if (!bough_is_ok(&status)) {
-        bough_schema_error(r, bough_link_value(m->node, "folder"), "folder", "%s", status.message);
+        bough_schema_error(r, m->node, "folder", "%s", status.message);
         return false;
     }
     m->reference = bough_arena_take(r->arena, (size_t)(p->n + 1) * sizeof *m->reference);
@@ -93,15 +93,13 @@ void bough_scene_check_fmu(bough_schema_reader *r, void *item) {
     if (!describe(r, &fmu->model)) return;
     bool counts = is_count(r, fmu, "motion", fmu->n_motion, BOUGH_SCENE_MOTION);
     if (!is_count(r, fmu, "wrench", fmu->n_wrench, BOUGH_SCENE_WRENCH) || !counts) return;
-    const bough_node *motion = bough_link_value(fmu->model.node, "motion");
-    const bough_node *wrench = bough_link_value(fmu->model.node, "wrench");
     for (int k = 0; k < BOUGH_SCENE_MOTION; k++) {
         const char *name = fmu->n_motion > 0 ? fmu->motion[k] : usual_motion[k];
-        fmu->input[k] = find(r, &fmu->model, motion, "motion", name, BOUGH_FMU_INPUT);
+        fmu->input[k] = find(r, &fmu->model, fmu->model.node, "motion", name, BOUGH_FMU_INPUT);
     }
     for (int k = 0; k < BOUGH_SCENE_WRENCH; k++) {
         const char *name = fmu->n_wrench > 0 ? fmu->wrench[k] : usual_wrench[k];
-        fmu->output[k] = find(r, &fmu->model, wrench, "wrench", name, BOUGH_FMU_OUTPUT);
+        fmu->output[k] = find(r, &fmu->model, fmu->model.node, "wrench", name, BOUGH_FMU_OUTPUT);
     }
 }
 
@@ -115,7 +113,7 @@ static void find_terminals(bough_schema_reader *r, const bough_scene_fmu_model *
         }
         to->variable[k] = find(r, m, place, key, to->name[k], causality);
     }
-    const bough_node *pitch = bough_link_value(to->node, "pitch");
+    const bough_node *pitch = bough_node_find(to->node, "pitch");
     for (int b = 0; b < to->n_pitch && b < BOUGH_MOST_BLADES; b++)
         to->variable[BOUGH_SCENE_SENSED + b] = find(r, m, pitch, key, to->pitch[b], causality);
 }
@@ -148,26 +146,25 @@ static const char *list_schemes(const bough_scene_fmu *fmu, char text[BOUGH_SCHE
 // its state.
 static void check_scheme(bough_schema_reader *r, const bough_scene *s, const bough_scene_body *b) {
     const bough_scene_coupling *coupling = &s->simulation.coupling;
-    const bough_node *place =
-        coupling->node ? bough_link_value(coupling->node, "scheme") : s->simulation.node;
+    const bough_node *node = s->simulation.node;
     if (coupling->scheme < 0) return;
     const bough_scheme *scheme = bough_scheme_find(bough_scheme_name(coupling->scheme));
     char expected[BOUGH_SCHEME_TEXT];
     if (!scheme->foreign) {
-        bough_schema_error(r, place, "coupling.scheme",
+        bough_schema_error(r, node, "coupling.scheme",
                            "'%s' is an FMU, whose equations are not known: expected %s, got %s", b->name,
                            list_schemes(&b->fmu, expected), scheme->name);
     } else if (!scheme->repeats) {
         return;
     } else if (!b->fmu.model.description.restores) {
-        bough_schema_error(r, place, "coupling.scheme",
+        bough_schema_error(r, node, "coupling.scheme",
                            "%s repeats steps, and the FMU '%s' cannot restore its state: expected %s",
                            scheme->name, b->name, list_schemes(&b->fmu, expected));
     } else if (coupling->options.accelerator == BOUGH_ACCELERATE_NEWTON) {
-        bough_schema_error(r, bough_link_value(coupling->node, "accelerator"), "coupling.accelerator",
+        bough_schema_error(r, node, "coupling.accelerator",
                            "interface-newton needs tangents, which the FMU '%s' does not give", b->name);
     } else if (coupling->options.exchange != BOUGH_EXCHANGE_END_VALUES) {
-        bough_schema_error(r, bough_link_value(coupling->node, "exchange"), "coupling.exchange",
+        bough_schema_error(r, node, "coupling.exchange",
                            "the FMU '%s' stops at communication points only: expected end-values", b->name);
     }
 }
@@ -177,11 +174,11 @@ static void check_simulation(bough_schema_reader *r, const bough_scene *s, const
     bough_link_at(r, "simulation");
     check_scheme(r, s, b);
     if (x->step_control.tolerance > 0) {
-        bough_schema_error(r, bough_link_value(x->step_control.node, "tolerance"), "step_control.tolerance",
+        bough_schema_error(r, x->node, "step_control.tolerance",
                            "not with an FMU ('%s'): expected fixed steps", b->name);
     }
     if (x->initial == BOUGH_SCENE_IN_EQUILIBRIUM || x->initial == BOUGH_SCENE_IN_OPERATION) {
-        bough_schema_error(r, bough_node_find(x->node, "initial"), "initial",
+        bough_schema_error(r, x->node, "initial",
                            "the equilibrium of the FMU '%s' is not known: expected undeformed", b->name);
     }
 }
@@ -207,8 +204,8 @@ static void check_once(bough_schema_reader *r, const bough_scene *s, int i) {
     for (int k = 0; k < i; k++) {
         if (s->body[k].fidelity != BOUGH_SCENE_FMU || !same_library(&s->body[k].fmu, fmu)) continue;
         bough_link_at(r, "bodies[%d].fmu", i);
-        bough_schema_error(r, bough_link_value(fmu->model.node, "folder"), "folder",
-                           "only one body can use this FMU, and '%s' does", s->body[k].name);
+        bough_schema_error(r, fmu->model.node, "folder", "only one body can use this FMU, and '%s' does",
+                           s->body[k].name);
         return;
     }
 }
@@ -217,7 +214,7 @@ static void check_pitch(bough_schema_reader *r, const bough_scene *s, const boug
                         const char *key, bool common) {
     int n = s->turbine.n_blade;
     if (!x->node || x->n_pitch == 0 || x->n_pitch == n || (common && x->n_pitch == 1)) return;
-    bough_schema_error(r, bough_link_value(x->node, "pitch"), key,
+    bough_schema_error(r, s->control.fmu.model.node, key,
                        "expected %sa name for each of the %d blades, got %d",
                        common ? "one name for all blades, or " : "", n, x->n_pitch);
 }

@@ -104,7 +104,7 @@ static void add_wind(bough_schema_reader *r, bough_scene *s) {
     input->initial = wind->def.speed;
     if (bough_scene_wind_is_steady(wind)) return;
     bough_link_at(r, "aero.wind");
-    bough_schema_error(r, bough_node_find(wind->node, "input"), "input",
+    bough_schema_error(r, wind->node, "input",
                        "only of a uniform wind or one sheared by a law, with a 'speed'");
 }
 

@@ -57,8 +57,8 @@ void bough_scene_check_structure(bough_schema_reader *r, void *item);
 void bough_scene_check_rod(bough_schema_reader *r, void *item);
 void bough_scene_check_body(bough_schema_reader *r, void *item);
 
-// Makes the stretch `part` of a structure of it; `given` is where it is written.
-void bough_scene_take_part(bough_schema_reader *r, const bough_node *given, const double part[2],
+// Makes the stretch of a structure of it that the key `part` of the rod names.
+void bough_scene_take_part(bough_schema_reader *r, const bough_node *rod, const double part[2],
                            bough_scene_structure *structure);
 
 void bough_scene_check_aero_blade(bough_schema_reader *r, void *item);
@@ -97,12 +97,9 @@ enum { BOUGH_UNRESOLVED = -2 }; // the index of a name that no body has
 // Sets the path of the next errors.
 void bough_link_at(bough_schema_reader *r, const char *format, ...) __attribute__((format(printf, 2, 3)));
 
-// The index of a named body; BOUGH_UNRESOLVED after an error at the key of `node`.
+// The index of a body that a key of `node` names; BOUGH_UNRESOLVED after an error there.
 int bough_link_body(bough_schema_reader *r, const bough_scene *s, const bough_node *node, const char *key,
                     const char *name);
-
-// The value of a key, where an error about it stands; the mapping where it is left out.
-const bough_node *bough_link_value(const bough_node *node, const char *key);
 
 // Parts of bough_scene_link, in this order.
 void bough_link_fmus(bough_schema_reader *r, bough_scene *s);

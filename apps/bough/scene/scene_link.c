@@ -26,8 +26,7 @@ void bough_scene_refuse(bough_schema_reader *r, const bough_node *mapping, const
     for (size_t n; *keys != '\0'; keys += n + (keys[n] == '|')) {
         n = strcspn(keys, "|");
         snprintf(key, sizeof key, "%.*s", (int)n, keys);
-        const bough_node *given = bough_node_find(mapping, key);
-        if (given != NULL) bough_schema_error(r, given, key, "%s", text);
+        if (bough_node_find(mapping, key) != NULL) bough_schema_error(r, mapping, key, "%s", text);
     }
 }
 
@@ -78,11 +77,6 @@ int bough_link_body(bough_schema_reader *r, const bough_scene *s, const bough_no
     return BOUGH_UNRESOLVED;
 }
 
-const bough_node *bough_link_value(const bough_node *node, const char *key) {
-    const bough_node *value = bough_node_find(node, key);
-    return value == NULL ? node : value;
-}
-
 // -- bodies ---------------------------------------------------------------------------------------
 
 // Names go into channels and file names.
@@ -90,15 +84,14 @@ static void check_name(bough_schema_reader *r, const bough_scene *s, int i) {
     static const char allowed[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789_-";
     const bough_scene_body *b = &s->body[i];
     if (b->name == NULL) return;
-    const bough_node *node = bough_link_value(b->node, "name");
     char shown[64];
     if (strspn(b->name, allowed) != strlen(b->name)) {
-        bough_schema_error(r, node, "name", "a name has letters, digits, '_' and '-', got %s",
-                           bough_node_shown(node, shown));
+        bough_schema_error(r, b->node, "name", "a name has letters, digits, '_' and '-', got %s",
+                           bough_node_shown(bough_node_find(b->node, "name"), shown));
     } else if (strcmp(b->name, "ground") == 0) {
-        bough_schema_error(r, node, "name", "'ground' is no name for a body");
+        bough_schema_error(r, b->node, "name", "'ground' is no name for a body");
     } else if (find_body(s, b->name) != i) {
-        bough_schema_error(r, node, "name", "body '%s' is given twice", b->name);
+        bough_schema_error(r, b->node, "name", "body '%s' is given twice", b->name);
     }
 }
 
@@ -111,13 +104,12 @@ static void link_parent(bough_schema_reader *r, bough_scene *s, int i) {
         joint->parent = BOUGH_GROUND;
         return;
     }
-    const bough_node *node = bough_link_value(joint->node, "parent");
-    joint->parent = bough_link_body(r, s, node, "parent", joint->parent_name);
+    joint->parent = bough_link_body(r, s, joint->node, "parent", joint->parent_name);
     if (joint->parent >= 0 && bough_scene_is_flexible(&s->body[joint->parent]) &&
         s->body[joint->parent].fidelity != BOUGH_SCENE_ROD) {
         bool fmu = s->body[joint->parent].fidelity == BOUGH_SCENE_FMU;
-        bough_schema_error(r, node, "parent", "'%s' is %s, which cannot carry bodies; %s", joint->parent_name,
-                           fmu ? "an FMU" : "a modal body",
+        bough_schema_error(r, joint->node, "parent", "'%s' is %s, which cannot carry bodies; %s",
+                           joint->parent_name, fmu ? "an FMU" : "a modal body",
                            fmu ? "let the body that carries it carry them" : "make it a rod");
     }
 }
@@ -141,8 +133,8 @@ static void report_loop(bough_schema_reader *r, const bough_scene *s, int start)
         more = s->body[k].joint.parent != first;
     }
     bough_link_at(r, "bodies[%d].joint", first);
-    bough_schema_error(r, bough_link_value(s->body[first].joint.node, "parent"), "parent",
-                       "parents form a loop: %s%s", loop, s->body[first].name);
+    bough_schema_error(r, s->body[first].joint.node, "parent", "parents form a loop: %s%s", loop,
+                       s->body[first].name);
 }
 
 // Parents before children. Bodies that no pass can place hang on a loop or on an unknown parent.
@@ -208,14 +200,13 @@ static void link_bodies(bough_schema_reader *r, bough_scene *s) {
 // -- loads and turbine ----------------------------------------------------------------------------
 
 static void link_joint_load(bough_schema_reader *r, const bough_scene *s, bough_scene_load *load) {
-    const bough_node *joint = bough_link_value(load->node, "joint");
-    load->joint = bough_link_body(r, s, joint, "joint", load->joint_name);
+    load->joint = bough_link_body(r, s, load->node, "joint", load->joint_name);
     if (load->joint < 0) return;
     int kind = s->body[load->joint].joint.kind;
     if (kind < 0) return;
     bool revolute = kind == BOUGH_JOINT_REVOLUTE;
     if (!revolute && kind != BOUGH_JOINT_PRISMATIC) {
-        bough_schema_error(r, joint, "joint",
+        bough_schema_error(r, load->node, "joint",
                            "the joint of '%s' must be revolute or prismatic to take a load",
                            load->joint_name);
         return;
@@ -228,8 +219,7 @@ static void link_load(bough_schema_reader *r, const bough_scene *s, void *item) 
     bough_scene_load *load = item;
     load->joint = load->body = BOUGH_UNRESOLVED;
     if (load->body_name != NULL) {
-        const bough_node *node = bough_link_value(load->node, "body");
-        load->body = bough_link_body(r, s, node, "body", load->body_name);
+        load->body = bough_link_body(r, s, load->node, "body", load->body_name);
         if (load->body >= 0) bough_scene_check_body_load(r, s, load);
     } else {
         link_joint_load(r, s, load);
@@ -243,16 +233,15 @@ static void link_ends(bough_schema_reader *r, const bough_scene *s, const bough_
     for (int end = 0; end < 2; end++) {
         body[end] = BOUGH_GROUND;
         if (name[end] == NULL || strcmp(name[end], "ground") == 0) continue;
-        const bough_node *node = bough_link_value(item, keys[end]);
-        body[end] = bough_link_body(r, s, node, keys[end], name[end]);
+        body[end] = bough_link_body(r, s, item, keys[end], name[end]);
         if (body[end] < 0 || !bough_scene_is_flexible(&s->body[body[end]])) continue;
-        bough_schema_error(r, node, keys[end],
+        bough_schema_error(r, item, keys[end],
                            "'%s' is no rigid body; it must be one, which may hang on a rod and "
                            "needs no mass",
                            name[end]);
     }
     if (name[0] != NULL && name[1] != NULL && strcmp(name[0], name[1]) == 0) {
-        bough_schema_error(r, bough_link_value(item, "to"), "to", "must be another body");
+        bough_schema_error(r, item, "to", "must be another body");
     }
 }
 
@@ -281,10 +270,9 @@ static void link_marker(bough_schema_reader *r, const bough_scene *s, void *item
     bough_scene_marker *marker = item;
     marker->body = BOUGH_GROUND;
     if (marker->body_name == NULL || strcmp(marker->body_name, "ground") == 0) return;
-    const bough_node *node = bough_link_value(marker->node, "body");
-    marker->body = bough_link_body(r, s, node, "body", marker->body_name);
+    marker->body = bough_link_body(r, s, marker->node, "body", marker->body_name);
     if (marker->body < 0 || !bough_scene_is_flexible(&s->body[marker->body])) return;
-    bough_schema_error(r, node, "body",
+    bough_schema_error(r, marker->node, "body",
                        s->body[marker->body].fidelity == BOUGH_SCENE_FMU
                            ? "'%s' is an FMU: name the body that carries it"
                            : "'%s' is a rod, whose tip is recorded",
@@ -300,14 +288,13 @@ static bool is_sensed_before(const bough_scene *s, const bough_scene_sensor *sen
 
 static void link_sensor(bough_schema_reader *r, const bough_scene *s, void *item) {
     bough_scene_sensor *sensor = item;
-    const bough_node *node = bough_link_value(sensor->node, "body");
-    sensor->body = bough_link_body(r, s, node, "body", sensor->body_name);
+    sensor->body = bough_link_body(r, s, sensor->node, "body", sensor->body_name);
     if (sensor->body < 0) return;
     const bough_scene_body *body = &s->body[sensor->body];
     if (body->fidelity != BOUGH_SCENE_ROD) {
-        bough_schema_error(r, node, "body", "'%s' is not of fidelity rod", body->name);
+        bough_schema_error(r, sensor->node, "body", "'%s' is not of fidelity rod", body->name);
     } else if (is_sensed_before(s, sensor)) {
-        bough_schema_error(r, node, "body",
+        bough_schema_error(r, sensor->node, "body",
                            "'%s' already has a sensor: give all places in that "
                            "sensor",
                            body->name);
@@ -315,8 +302,8 @@ static void link_sensor(bough_schema_reader *r, const bough_scene *s, void *item
     double length = body->rod.structure.length;
     for (int k = 0; k < sensor->n_at && length > 0; k++) {
         if (sensor->at[k] <= length * (1 + 1e-9)) continue;
-        bough_schema_error(r, bough_node_find(sensor->node, "at"), "at",
-                           "%g m is beyond the end of '%s', at %g m", sensor->at[k], body->name, length);
+        bough_schema_error(r, sensor->node, "at", "%g m is beyond the end of '%s', at %g m", sensor->at[k],
+                           body->name, length);
     }
 }
 
@@ -327,27 +314,21 @@ static void link_modes(bough_schema_reader *r, bough_scene *s) {
     m->about = BOUGH_UNRESOLVED;
     if (m->node == NULL) return;
     bough_link_at(r, "modes");
-    const bough_node *axis = bough_node_find(m->node, "axis");
-    const bough_node *centre = bough_node_find(m->node, "centre");
-    const bough_node *speed = bough_node_find(m->node, "speed");
-    if (speed != NULL && m->of == BOUGH_SCENE_MODES_SCENE) {
-        bough_schema_error(r, speed, "speed", "only used with 'of: rods'");
-    }
+    bool axis = bough_node_find(m->node, "axis") != NULL;
+    if (m->of == BOUGH_SCENE_MODES_SCENE)
+        bough_scene_refuse(r, m->node, "speed", "only used with 'of: rods'");
     if (m->about_name != NULL) {
-        const bough_node *about = bough_link_value(m->node, "about");
-        m->about = bough_link_body(r, s, about, "about", m->about_name);
+        m->about = bough_link_body(r, s, m->node, "about", m->about_name);
         if (m->about >= 0 && s->body[m->about].joint.kind >= 0 &&
             s->body[m->about].joint.kind != BOUGH_JOINT_REVOLUTE) {
-            bough_schema_error(r, about, "about", "the joint of '%s' must be revolute", m->about_name);
+            bough_schema_error(r, m->node, "about", "the joint of '%s' must be revolute", m->about_name);
         }
-        if (axis != NULL) bough_schema_error(r, axis, "axis", "only used without 'about'");
+        bough_scene_refuse(r, m->node, "axis", "only used without 'about'");
     }
-    if (axis != NULL && m->axis[0] == 0 && m->axis[1] == 0 && m->axis[2] == 0) {
-        bough_schema_error(r, axis, "axis", "must not be zero");
+    if (axis && m->axis[0] == 0 && m->axis[1] == 0 && m->axis[2] == 0) {
+        bough_schema_error(r, m->node, "axis", "must not be zero");
     }
-    if (centre != NULL && axis == NULL) {
-        bough_schema_error(r, centre, "centre", "only used with 'axis'");
-    }
+    if (!axis) bough_scene_refuse(r, m->node, "centre", "only used with 'axis'");
 }
 
 // -- times ----------------------------------------------------------------------------------------
@@ -360,45 +341,30 @@ bool bough_scene_is_multiple(double time, double step) {
     return count > 0.5 && fabs(count - round(count)) <= 1e-9 * count;
 }
 
-// Shapes are stored at ends of macro steps.
-static void check_shapes(bough_schema_reader *r, const bough_scene_output *output, double step) {
-    if (!(output->frames > 0) || output->frames >= (1 - 1e-9) * step) return;
-    bough_schema_error(r, bough_link_value(output->node, "frames"), "output.frames",
-                       "%g s is less than the macro step, %g s", output->frames, step);
+static void check_multiple(bough_schema_reader *r, const bough_scene *s, const char *key, const char *what,
+                           double time) {
+    double step = s->simulation.macro_step;
+    if (bough_scene_is_multiple(time, step)) return;
+    bough_schema_error(r, s->node, key, "%s%g s is not a multiple of the macro step, %g s", what, time, step);
 }
 
 static void check_times(bough_schema_reader *r, bough_scene *s) {
-    bough_scene_simulation *simulation = &s->simulation;
-    double step = simulation->macro_step;
-    const bough_node *interval = bough_node_find(simulation->output.node, "interval");
-    if (simulation->output.node == NULL || interval == NULL) simulation->output.interval = step;
-    bough_link_at(r, "simulation");
-    if (!bough_scene_is_multiple(simulation->duration, step)) {
-        bough_schema_error(r, bough_link_value(simulation->node, "duration"), "duration",
-                           "%g s is not a multiple of the macro step, %g s", simulation->duration, step);
+    const bough_scene_simulation *x = &s->simulation;
+    double step = x->macro_step;
+    if (bough_node_find(x->output.node, "interval") == NULL) s->simulation.output.interval = step;
+    check_multiple(r, s, "simulation.duration", "", x->duration);
+    check_multiple(r, s, "simulation.output.interval", "", x->output.interval);
+    if (s->control.node) check_multiple(r, s, "control.rate", "its period ", 1 / s->control.rate);
+    if (s->aero.node && s->aero.rate > 0) check_multiple(r, s, "aero.rate", "its period ", 1 / s->aero.rate);
+    if (x->duration > most_steps * step) {
+        bough_schema_error(r, s->node, "simulation.duration",
+                           "%g s are %.3g macro steps of %g s; at most %.3g are taken", x->duration,
+                           x->duration / step, step, most_steps);
     }
-    if (simulation->duration > most_steps * step) {
-        bough_schema_error(r, bough_link_value(simulation->node, "duration"), "duration",
-                           "%g s are %.3g macro steps of %g s; at most %.3g are taken", simulation->duration,
-                           simulation->duration / step, step, most_steps);
-    }
-    check_shapes(r, &simulation->output, step);
-    if (interval != NULL && !bough_scene_is_multiple(simulation->output.interval, step)) {
-        bough_schema_error(r, interval, "output.interval", "%g s is not a multiple of the macro step, %g s",
-                           simulation->output.interval, step);
-    }
-    if (s->control.node != NULL && s->control.rate > 0 &&
-        !bough_scene_is_multiple(1 / s->control.rate, step)) {
-        bough_link_at(r, "control");
-        bough_schema_error(r, bough_link_value(s->control.node, "rate"), "rate",
-                           "its period %g s is not a multiple of the macro step, %g s", 1 / s->control.rate,
-                           step);
-    }
-    if (s->aero.node != NULL && s->aero.rate > 0 && !bough_scene_is_multiple(1 / s->aero.rate, step)) {
-        bough_link_at(r, "aero");
-        bough_schema_error(r, bough_link_value(s->aero.node, "rate"), "rate",
-                           "its period %g s is not a multiple of the macro step, %g s", 1 / s->aero.rate,
-                           step);
+    // shapes are stored at ends of macro steps
+    if (x->output.frames > 0 && x->output.frames < (1 - 1e-9) * step) {
+        bough_schema_error(r, s->node, "simulation.output.frames", "%g s is less than the macro step, %g s",
+                           x->output.frames, step);
     }
 }
 

@@ -35,11 +35,10 @@ void bough_link_turbine(bough_schema_reader *r, bough_scene *s) {
     t->rotor = BOUGH_UNRESOLVED;
     if (t->node == NULL) return;
     bough_link_at(r, "turbine");
-    const bough_node *rotor = bough_link_value(t->node, "rotor");
-    t->rotor = bough_link_body(r, s, rotor, "rotor", t->rotor_name);
+    t->rotor = bough_link_body(r, s, t->node, "rotor", t->rotor_name);
     int kind = t->rotor < 0 ? -1 : s->body[t->rotor].joint.kind;
     if (kind >= 0 && kind != BOUGH_JOINT_REVOLUTE) {
-        bough_schema_error(r, rotor, "rotor", "the joint of '%s' must be revolute", t->rotor_name);
+        bough_schema_error(r, t->node, "rotor", "the joint of '%s' must be revolute", t->rotor_name);
     }
     t->blade = bough_arena_take(r->arena, (size_t)t->n_blade * sizeof *t->blade);
     for (int k = 0; k < t->n_blade; k++) link_blade(r, s, k);
@@ -57,8 +56,8 @@ static int find_polar(bough_schema_reader *r, bough_scene *s, const char *const 
     bool compact = bough_node_find(s->aero.blade.node, "stations")->kind == BOUGH_MAPPING;
     bough_link_at(r, "stations%s[%d]", compact ? ".rows" : "", i);
     int n = r->errors->dropped > 0 ? 0 : polars->n_polar;
-    bough_schema_error(r, bough_link_value(s->aero.blade.station[i].node, key), key,
-                       "the polars file has no '%.48s'%s", name, bough_suggest(name, names, n).text);
+    bough_schema_error(r, s->aero.blade.station[i].node, key, "the polars file has no '%.48s'%s", name,
+                       bough_suggest(name, names, n).text);
     return -1;
 }
 
@@ -97,8 +96,8 @@ static void check_blade_lengths(bough_schema_reader *r, const bough_scene *s) {
         const bough_scene_body *b = &s->body[s->turbine.blade[k]];
         double length = b->rod.structure.length;
         if (!(length > 0) || !(fabs(span - length) > 1e-3 * length)) continue;
-        bough_schema_error(r, bough_link_value(s->aero.node, "blade"), "blade",
-                           "the blade elements end at %g m, but '%s' is %g m long", span, b->name, length);
+        bough_schema_error(r, s->aero.node, "blade", "the blade elements end at %g m, but '%s' is %g m long",
+                           span, b->name, length);
         return;
     }
 }
@@ -106,11 +105,10 @@ static void check_blade_lengths(bough_schema_reader *r, const bough_scene *s) {
 // The body on which the tower's drag acts.
 static void link_tower(bough_schema_reader *r, bough_scene *s) {
     bough_scene_tower *tower = &s->aero.tower;
-    const bough_node *node = bough_link_value(tower->node, "body");
-    tower->body = bough_link_body(r, s, node, "tower.body", tower->body_name);
+    tower->body = bough_link_body(r, s, s->aero.node, "tower.body", tower->body_name);
     if (tower->body < 0) return;
     if (bough_scene_blade(s, tower->body) >= 0 || bough_node_find(s->body[tower->body].node, "rod") == NULL) {
-        bough_schema_error(r, node, "tower.body", "'%s' must have a rod and must not be a blade",
+        bough_schema_error(r, s->aero.node, "tower.body", "'%s' must have a rod and must not be a blade",
                            tower->body_name);
     }
 }
@@ -125,8 +123,8 @@ void bough_link_aero(bough_schema_reader *r, bough_scene *s) {
     for (int k = 0; k < s->aero.n_node; k++) {
         double node = s->aero.nodes[k];
         if (node == floor(node) && node <= s->aero.blade.n_station) continue;
-        bough_schema_error(r, bough_link_value(s->aero.node, "nodes"), "nodes",
-                           "expected numbers from 1 to %d, got %g", s->aero.blade.n_station, node);
+        bough_schema_error(r, s->aero.node, "nodes", "expected numbers from 1 to %d, got %g",
+                           s->aero.blade.n_station, node);
     }
     check_blade_lengths(r, s);
     if (s->aero.tower.body_name != NULL) link_tower(r, s);
@@ -152,33 +150,30 @@ static void link_event(bough_schema_reader *r, bough_scene *s, int i) {
         bough_schema_error(r, e->node, "", "needs 'control.pitch: true': no pitch is changed else");
     }
     if (e->blade > s->turbine.n_blade) {
-        bough_schema_error(r, bough_link_value(e->node, "blade"), "blade", "the turbine has %d blades",
-                           s->turbine.n_blade);
+        bough_schema_error(r, e->node, "blade", "the turbine has %d blades", s->turbine.n_blade);
     }
     if (e->body_name == NULL) return;
-    const bough_node *node = bough_link_value(e->node, "body");
-    e->body = bough_link_body(r, s, node, "body", e->body_name);
+    e->body = bough_link_body(r, s, e->node, "body", e->body_name);
     if (e->body >= 0 && s->body[e->body].joint.motion.node == NULL) {
-        bough_schema_error(r, node, "body", "the joint of '%s' has no 'motion'", e->body_name);
+        bough_schema_error(r, e->node, "body", "the joint of '%s' has no 'motion'", e->body_name);
     }
 }
 
 // Steady operation needs a law, air from the start on, and a rotor that is free to turn.
 static void check_operation(bough_schema_reader *r, const bough_scene *s) {
     if (s->simulation.initial != BOUGH_SCENE_IN_OPERATION) return;
-    const bough_node *given = bough_link_value(s->simulation.node, "initial");
     bool law = s->control.node != NULL && s->control.kind == BOUGH_SCENE_VARIABLE_SPEED;
-    bough_link_at(r, "simulation");
+    bough_link_at(r, "%s", "");
     if (!law || s->aero.node == NULL || s->turbine.node == NULL) {
-        bough_schema_error(r, given, "initial",
+        bough_schema_error(r, s->node, "simulation.initial",
                            "operation needs 'aero' and 'control: {kind: "
                            "variable-speed}'; else give the rotor's speed and 'equilibrium'");
     } else if (s->aero.ramp[1] > 0) {
-        bough_schema_error(r, given, "initial",
+        bough_schema_error(r, s->node, "simulation.initial",
                            "operation needs the air from the start on: leave out "
                            "'aero.ramp'");
     } else if (s->turbine.rotor >= 0 && s->body[s->turbine.rotor].joint.motion.node != NULL) {
-        bough_schema_error(r, given, "initial", "the motion of '%s' leaves no speed to be found",
+        bough_schema_error(r, s->node, "simulation.initial", "the motion of '%s' leaves no speed to be found",
                            s->turbine.rotor_name);
     }
 }
@@ -215,8 +210,7 @@ void bough_link_control(bough_schema_reader *r, bough_scene *s) {
     }
     if (s->control.n_event > 8) {
         bough_link_at(r, "control");
-        bough_schema_error(r, bough_link_value(s->control.node, "events"), "events",
-                           "expected at most 8, got %d", s->control.n_event);
+        bough_schema_error(r, s->control.node, "events", "expected at most 8, got %d", s->control.n_event);
     }
     for (int i = 0; i < s->control.n_event && s->turbine.blade; i++) link_event(r, s, i);
 }

@@ -121,8 +121,8 @@ static void check_body_keys(bough_schema_reader *r, bough_scene_load *load) {
     if (!is_spread(load)) return;
     load->place = BOUGH_SCENE_ALONG;
     if (load->span[1] > load->span[0]) return;
-    bough_schema_error(r, bough_node_find(load->node, "along"), "along",
-                       "must end after it starts, got [%g m, %g m]", load->span[0], load->span[1]);
+    bough_schema_error(r, load->node, "along", "must end after it starts, got [%g m, %g m]", load->span[0],
+                       load->span[1]);
 }
 
 void bough_scene_check_load(bough_schema_reader *r, void *item) {
@@ -135,7 +135,7 @@ void bough_scene_check_load(bough_schema_reader *r, void *item) {
     }
     bough_scene_check_ramp(r, load->node, load->ramp);
     if (load->input == NULL || (load->n_time == 0 && load->ramp[1] == 0)) return;
-    bough_schema_error(r, bough_node_find(load->node, "input"), "input", "only without a ramp or a table");
+    bough_schema_error(r, load->node, "input", "only without a ramp or a table");
 }
 
 // -- checks against the body ----------------------------------------------------------------------
@@ -151,21 +151,17 @@ double bough_scene_arc_length(const bough_scene_structure *s) {
 
 // The place must be on the rod, up to rounding of its length.
 static void check_place(bough_schema_reader *r, const bough_scene_load *load, const bough_scene_rod *rod) {
-    const bough_node *at = bough_node_find(load->node, "at");
-    const bough_node *along = bough_node_find(load->node, "along");
     double length = bough_scene_arc_length(&rod->structure), most = length * (1 + 1e-9);
-    if (load->place == BOUGH_SCENE_AT_VERTEX && at != NULL &&
-        (load->vertex < 0 || load->vertex > rod->n_segment)) {
-        bough_schema_error(r, at, "at", "'%s' has the vertices 0 to %d, got %d", load->body_name,
+    if (load->place == BOUGH_SCENE_AT_VERTEX && (load->vertex < 0 || load->vertex > rod->n_segment)) {
+        bough_schema_error(r, load->node, "at", "'%s' has the vertices 0 to %d, got %d", load->body_name,
                            rod->n_segment, load->vertex);
     }
-    bool beyond = load->place == BOUGH_SCENE_AT_SPAN && (load->span[0] > most || load->span[0] < 0);
-    if (beyond && at != NULL) {
-        bough_schema_error(r, at, "at", "'%s' is %g m long, got %g m", load->body_name, length,
+    if (load->place == BOUGH_SCENE_AT_SPAN && (load->span[0] > most || load->span[0] < 0)) {
+        bough_schema_error(r, load->node, "at", "'%s' is %g m long, got %g m", load->body_name, length,
                            load->span[0]);
     }
-    if (along != NULL && load->span[1] > most) {
-        bough_schema_error(r, along, "along", "'%s' is %g m long, got %g m", load->body_name, length,
+    if (is_spread(load) && load->span[1] > most) {
+        bough_schema_error(r, load->node, "along", "'%s' is %g m long, got %g m", load->body_name, length,
                            load->span[1]);
     }
 }
@@ -173,25 +169,23 @@ static void check_place(bough_schema_reader *r, const bough_scene_load *load, co
 static void check_rigid_load(bough_schema_reader *r, const bough_scene_load *load) {
     bough_scene_refuse(r, load->node, "at|along", "'%s' is rigid: give the 'point'", load->body_name);
     if (load->frame != BOUGH_SCENE_LOAD_FOLLOWER) return;
-    bough_schema_error(r, bough_node_find(load->node, "frame"), "frame",
-                       "'%s' is rigid: 'frame: body' turns with it", load->body_name);
+    bough_schema_error(r, load->node, "frame", "'%s' is rigid: 'frame: body' turns with it", load->body_name);
 }
 
 void bough_scene_check_body_load(bough_schema_reader *r, const bough_scene *scene,
                                  const bough_scene_load *load) {
     const bough_scene_body *body = &scene->body[load->body];
-    const bough_node *name = bough_node_find(load->node, "body");
     if (body->fidelity == BOUGH_SCENE_RIGID) check_rigid_load(r, load);
     if (!bough_scene_is_flexible(body)) return;
     if (body->fidelity == BOUGH_SCENE_FMU) {
-        bough_schema_error(r, name, "body", "'%s' is an FMU: loads act on rigid bodies and rods",
+        bough_schema_error(r, load->node, "body", "'%s' is an FMU: loads act on rigid bodies and rods",
                            load->body_name);
         return;
     }
     bough_scene_refuse(r, load->node, "point", "only used with a rigid body");
     if (!check_either(r, load->node, "at", "along")) return;
     if (body->fidelity != BOUGH_SCENE_ROD && load->frame == BOUGH_SCENE_LOAD_FOLLOWER) {
-        bough_schema_error(r, bough_node_find(load->node, "frame"), "frame",
+        bough_schema_error(r, load->node, "frame",
                            "'%s' is a modal body, on which loads do not turn with its sections: make"
                            " it a rod or give 'frame: body'",
                            load->body_name);

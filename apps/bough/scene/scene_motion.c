@@ -60,7 +60,7 @@ static void read_ramp(bough_schema_reader *r, const bough_node *node, bough_dime
     ramp x = {0};
     if (!read_form(r, node, &schema, &x)) return;
     if (!(x.ramp[1] > x.ramp[0])) {
-        bough_schema_error(r, bough_node_find(node, "ramp"), "ramp",
+        bough_schema_error(r, node, "ramp",
                            "must end after it starts, got [%g s, %g s]", x.ramp[0], x.ramp[1]);
     }
     def->from = x.from;
@@ -136,8 +136,7 @@ static void check_motion(bough_schema_reader *r, void *item) {
     motion->def.speed = bough_node_find(motion->node, "speed") != NULL;
     bool constant = motion->def.n == 0 && !(motion->def.end > motion->def.start);
     if (motion->input != NULL && (motion->def.speed || !constant)) {
-        bough_schema_error(r, bough_node_find(motion->node, "input"), "input",
-                           "only with a constant initial position");
+        bough_schema_error(r, motion->node, "input", "only with a constant initial position");
     }
     if (motion->node->n == (motion->input != NULL ? 2 : 1)) return;
     bough_schema_error(r, motion->node, "",

@@ -58,17 +58,14 @@ void bough_scene_read_placement(bough_schema_reader *r, const bough_node *node, 
 void bough_scene_check_joint(bough_schema_reader *r, void *item) {
     const bough_scene_joint *joint = item;
     bough_scene_check_motion(r, joint);
-    const bough_node *stop = bough_node_find(joint->node, "stop");
-    const bough_node *stiffness = bough_node_find(joint->node, "stop_stiffness");
-    if ((stop == NULL) != (stiffness == NULL)) {
-        bough_schema_error(r, stop == NULL ? stiffness : stop, stop == NULL ? "stop_stiffness" : "stop",
-                           "'stop' and 'stop_stiffness' go together");
-    } else if (stop != NULL && !(joint->spring.low < joint->spring.high)) {
-        bough_schema_error(r, stop, "stop", "the second must be greater than the first");
+    bool stop = bough_node_find(joint->node, "stop") != NULL;
+    if (stop != (bough_node_find(joint->node, "stop_stiffness") != NULL)) {
+        bough_scene_refuse(r, joint->node, "stop|stop_stiffness", "'stop' and 'stop_stiffness' go together");
+    } else if (stop && !(joint->spring.low < joint->spring.high)) {
+        bough_schema_error(r, joint->node, "stop", "the second must be greater than the first");
     }
     if (joint->kind != BOUGH_JOINT_UNIVERSAL || joint->second_axis != joint->axis) return;
-    bough_schema_error(r, bough_node_find(joint->node, "second_axis"), "second_axis",
-                       "must not be the first axis");
+    bough_schema_error(r, joint->node, "second_axis", "must not be the first axis");
 }
 
 // -- matrices -------------------------------------------------------------------------------------
@@ -243,12 +240,11 @@ static bool check_next(bough_schema_reader *r, const sequence *s, const bough_no
     bool first = isnan(before);
     if (first ? fabs(value - s->first) <= 1e-6 * unit : value > before) return true;
     size_t length = push_row(r, owner, s->list, i);
-    const bough_node *at = bough_node_find(row, s->key);
     if (first) {
-        bough_schema_error(r, at, s->key, "the first must be %g %s, got %g %s", s->first / unit, s->unit_name,
-                           value / unit, s->unit_name);
+        bough_schema_error(r, row, s->key, "the first must be %g %s, got %g %s", s->first / unit,
+                           s->unit_name, value / unit, s->unit_name);
     } else {
-        bough_schema_error(r, at, s->key, "must be more than the %g %s before it, got %g %s", before / unit,
+        bough_schema_error(r, row, s->key, "must be more than the %g %s before it, got %g %s", before / unit,
                            s->unit_name, value / unit, s->unit_name);
     }
     bough_schema_pop(r, length);
@@ -260,13 +256,13 @@ static const sequence spans = {"stations", "span", 0, 1, "m"};
 // The last span against the length; one station holds for the whole length.
 static void check_length(bough_schema_reader *r, bough_scene_structure *s) {
     double last = s->station[s->n_station - 1].def.position.z;
-    const bough_node *given = bough_node_find(s->node, "length");
-    if (given == NULL && s->n_station == 1) {
+    bool given = bough_node_find(s->node, "length") != NULL;
+    if (!given && s->n_station == 1) {
         bough_schema_error(r, s->node, "", "required key 'length' is missing (with one station)");
-    } else if (given == NULL) {
+    } else if (!given) {
         s->length = last;
     } else if (s->n_station > 1 && fabs(last - s->length) > 1e-6 * s->length) {
-        bough_schema_error(r, given, "length", "is %g m, but the last station stands at %g m", s->length,
+        bough_schema_error(r, s->node, "length", "is %g m, but the last station stands at %g m", s->length,
                            last);
     }
 }
@@ -319,8 +315,8 @@ void bough_scene_check_polar(bough_schema_reader *r, void *item) {
     if (good && fabs(before - BOUGH_PI) <= 1e-6) check_turn(r, p);
     if (!good || fabs(before - BOUGH_PI) <= 1e-6) return;
     size_t length = push_row(r, p->node, "table", p->n_row - 1);
-    bough_schema_error(r, bough_node_find(p->row[p->n_row - 1].node, "alpha"), "alpha",
-                       "the last must be 180 deg, got %g deg", before * 180 / BOUGH_PI);
+    bough_schema_error(r, p->row[p->n_row - 1].node, "alpha", "the last must be 180 deg, got %g deg",
+                       before * 180 / BOUGH_PI);
     bough_schema_pop(r, length);
 }
 
@@ -330,8 +326,7 @@ void bough_scene_check_polars(bough_schema_reader *r, void *item) {
         for (int k = 0; k < i; k++) {
             if (strcmp(p->polar[i].name, p->polar[k].name) != 0) continue;
             size_t length = push_row(r, p->node, "polars", i);
-            bough_schema_error(r, bough_node_find(p->polar[i].node, "name"), "name",
-                               "polar '%s' is given twice", p->polar[i].name);
+            bough_schema_error(r, p->polar[i].node, "name", "polar '%s' is given twice", p->polar[i].name);
             bough_schema_pop(r, length);
             break;
         }
@@ -356,8 +351,7 @@ bool bough_scene_check_increasing(bough_schema_reader *r, const bough_node *node
 void bough_scene_check_wind_table(bough_schema_reader *r, void *item) {
     const bough_scene_wind_table *t = item;
     if (t->n_time != t->n_speed) {
-        bough_schema_error(r, bough_node_find(t->node, "speeds"), "speeds", "has %d values, but times has %d",
-                           t->n_speed, t->n_time);
+        bough_schema_error(r, t->node, "speeds", "has %d values, but times has %d", t->n_speed, t->n_time);
     }
     bough_scene_check_increasing(r, t->node, "times", t->time, "s");
 }
@@ -377,9 +371,7 @@ static void check_wind_condition(bough_schema_reader *r, bough_scene_wind *w) {
         bough_scene_refuse(r, w->node, "table|vertical", "not used with 'kind: iec'");
     }
     if (!extreme && !(w->def.speed > 0)) {
-        const bough_node *node = bough_node_find(w->node, "speed");
-        bough_schema_error(r, node ? node : w->node, "speed",
-                           "a speed above 0 is required with this condition");
+        bough_schema_error(r, w->node, "speed", "a speed above 0 is required with this condition");
     }
     if (extreme && !bough_node_find(w->node, "exponent")) w->def.exponent = 0.11;
 }
@@ -394,17 +386,14 @@ void bough_scene_check_wind(bough_schema_reader *r, void *item) {
         check_wind_file(r, w);
         return;
     }
-    const bough_node *speed = bough_node_find(w->node, "speed");
-    if (speed != NULL && w->table.node != NULL) {
-        bough_schema_error(r, speed, "speed", "only used without a table");
-    }
-    if (speed == NULL && w->table.node == NULL) {
+    if (w->table.node != NULL) {
+        bough_scene_refuse(r, w->node, "speed", "only used without a table");
+    } else if (bough_node_find(w->node, "speed") == NULL) {
         bough_schema_error(r, w->node, "", "required key 'speed' is missing (without a table)");
     }
     if (w->kind == BOUGH_SCENE_WIND_LOG && w->def.roughness >= w->def.reference_height) {
-        bough_schema_error(r, bough_node_find(w->node, "reference_height"), "reference_height",
-                           "must be more than the roughness, %g m, got %g m", w->def.roughness,
-                           w->def.reference_height);
+        bough_schema_error(r, w->node, "reference_height", "must be more than the roughness, %g m, got %g m",
+                           w->def.roughness, w->def.reference_height);
     }
 }
 
@@ -412,12 +401,11 @@ void bough_scene_check_tower(bough_schema_reader *r, void *item) {
     bough_scene_tower *t = item;
     int n = t->def.n;
     if (n != t->n_diameter) {
-        bough_schema_error(r, bough_node_find(t->node, "diameter"), "diameter",
-                           "has %d values, but height has %d", t->n_diameter, n);
+        bough_schema_error(r, t->node, "diameter", "has %d values, but height has %d", t->n_diameter, n);
     }
     if (t->n_drag != 1 && t->n_drag != n) {
-        bough_schema_error(r, bough_node_find(t->node, "drag"), "drag",
-                           "has %d values, but height has %d; give one or as many", t->n_drag, n);
+        bough_schema_error(r, t->node, "drag", "has %d values, but height has %d; give one or as many",
+                           t->n_drag, n);
     }
     bough_scene_check_increasing(r, t->node, "height", t->def.height, "m");
     double *drag = bough_arena_doubles(r->arena, (size_t)n);
@@ -448,8 +436,8 @@ void bough_scene_check_rod(bough_schema_reader *r, void *item) {
     if (bough_node_find(rod->node, "damping") != NULL) {
         memcpy(rod->structure.damping, rod->damping, sizeof rod->damping);
     }
-    const bough_node *part = bough_node_find(rod->node, "part");
-    if (table && part != NULL) bough_scene_take_part(r, part, rod->part, &rod->structure);
+    bool part = bough_node_find(rod->node, "part") != NULL;
+    if (table && part) bough_scene_take_part(r, rod->node, rod->part, &rod->structure);
 }
 
 // The uniform section of a rod without a table.
@@ -469,9 +457,9 @@ static void check_section_given(bough_schema_reader *r, const bough_node *rod) {
 }
 
 static void check_modal(bough_schema_reader *r, const bough_scene_body *b, bool has_rod) {
-    const bough_node *pieces = bough_node_find(b->modal.node, "pieces");
-    if (b->fidelity == BOUGH_SCENE_MODAL && pieces != NULL) {
-        bough_schema_error(r, pieces, "modal.pieces", "only used with 'fidelity: segmented-modal'");
+    bool pieces = bough_node_find(b->modal.node, "pieces") != NULL;
+    if (b->fidelity == BOUGH_SCENE_MODAL && pieces) {
+        bough_schema_error(r, b->node, "modal.pieces", "only used with 'fidelity: segmented-modal'");
     }
     bool named = has_rod && b->rod.n_segment > 0; // else they follow from the accuracy
     if (b->fidelity == BOUGH_SCENE_SEGMENTED_MODAL && named && b->modal.pieces > b->rod.n_segment) {
@@ -495,7 +483,7 @@ void bough_scene_check_body(bough_schema_reader *r, void *item) {
     if (b->fidelity == BOUGH_SCENE_FMU) {
         bough_scene_refuse(r, b->node, "rod", "not used with 'fidelity: fmu'");
     } else if (rod != NULL && has_two_masses(b)) {
-        bough_schema_error(r, rod, "rod",
+        bough_schema_error(r, b->node, "rod",
                            "a rigid body gets its mass from a rod or from 'mass', 'centre_of_mass' and "
                            "'inertia', not from both");
     } else if (rod != NULL) {
@@ -509,8 +497,7 @@ void bough_scene_check_body(bough_schema_reader *r, void *item) {
 }
 
 void bough_scene_check_ramp(bough_schema_reader *r, const bough_node *node, const double ramp[2]) {
-    const bough_node *given = bough_node_find(node, "ramp");
-    if (given != NULL && ramp[1] < ramp[0]) {
-        bough_schema_error(r, given, "ramp", "must end after it starts, got [%g s, %g s]", ramp[0], ramp[1]);
+    if (ramp[1] < ramp[0]) {
+        bough_schema_error(r, node, "ramp", "must end after it starts, got [%g s, %g s]", ramp[0], ramp[1]);
     }
 }

@@ -38,7 +38,7 @@ static void warn_inertia(const bough_scene_body *b, FILE *stream) {
     const double *v = b->inertia;
     if (has_distribution(v) || is_about_one_axis(v)) return;
     warn(
-        bough_link_value(b->node, "inertia"), stream,
+        bough_node_find(b->node, "inertia"), stream,
         "body '%s': no mass distribution has the inertia [%g, %g, %g] about principal or other axes: none may "
         "exceed the sum of the other two. Right if it holds gears or a generator referred to this shaft",
         b->name, v[0], v[1], v[2]);
@@ -48,13 +48,8 @@ static void warn_inertia(const bough_scene_body *b, FILE *stream) {
 
 // The value at "coupling.order"; NULL: there is none.
 static const bough_node *find_path(const bough_node *node, const char *path) {
-    char key[32];
-    for (size_t n; node != NULL && *path != '\0'; path += n + (path[n] == '.')) {
-        n = strcspn(path, ".");
-        snprintf(key, sizeof key, "%.*s", (int)n, path);
-        node = bough_node_find(node, key);
-    }
-    return node;
+    const bough_node *last;
+    return bough_node_below(node, path, &last);
 }
 
 // Whether a setting is given that does not suit the choice of scheme, solver or duration. Where the command

@@ -164,7 +164,7 @@ TEST_IN_FOLDER(bad_keys_are_reported_all_at_once) {
                  "  - {name: z, channel: c, scale: 2}\n",
                  "1:1 \n2:7 kind\n3:8 scene\n4:12 reference\n5:13 grid.a.b\n"
                  "7:9 repeat\n9:5 measures[0]\n10:25 measures[1].channels\n"
-                 "10:35 measures[1].norm\n11:5 measures[2].scale\n");
+                 "10:35 measures[1].norm\n11:34 measures[2].scale\n");
 }
 
 TEST_IN_FOLDER(replacements_are_checked_where_the_study_gives_them) {

@@ -340,7 +340,7 @@ TEST(keys_depend_on_choices) {
 }
 
 TEST(checks_run_on_clean_mappings_only) {
-    refuses("kind: fixed\ninner: {length: 100}\n", "f:2:8: error: inner.length: a long part\n");
+    refuses("kind: fixed\ninner: {length: 100}\n", "f:2:17: error: inner.length: a long part\n");
     refuses("kind: fixed\ninner: {length: 100, x: 1}\n", "f:2:22: error: inner: unknown key 'x'\n");
 }
 
