@@ -14,7 +14,7 @@ static double azimuth_of(const bough_simulation *s, const bough_beam *blade) {
 static double spin_of(const bough_simulation *s) {
     int rotor = s->scene->turbine.rotor;
     bough_vec3 w = bough_tree_frame_twist(s->view, &s->tree->bodies[rotor]).angular;
-    return bough_dot(w, bough_placement_axis(s->scene->body[rotor].joint.axis));
+    return bough_dot(w, bough_scene_direction(s->scene->body[rotor].joint.axis));
 }
 
 // Inserts a blade by azimuth.

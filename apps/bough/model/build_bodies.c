@@ -6,39 +6,15 @@
 
 #include <string.h>
 
-// -- placements and axes --------------------------------------------------------------------------
-
-bough_vec3 bough_placement_axis(int axis) {
-    return bough_v3(axis == BOUGH_SCENE_X, axis == BOUGH_SCENE_Y, axis == BOUGH_SCENE_Z);
-}
-
-// The rotation by an angle [rad] about one of the axes.
-static bough_mat3 placement_turn(int axis, double angle) {
-    bough_vec3 turn = bough_scale(angle, bough_placement_axis(axis));
-    return bough_rotation_matrix(bough_quaternion_exponential(turn));
-}
-
-bough_transform bough_placement(int n, const bough_scene_step *step) {
-    bough_transform x = bough_transform_identity();
-    for (int k = 0; k < n; k++) {
-        bough_transform move = bough_transform_identity();
-        if (step[k].rotate) {
-            move.rotation = placement_turn(step[k].axis, step[k].amount);
-        } else {
-            move.position = bough_scale(step[k].amount, bough_placement_axis(step[k].axis));
-        }
-        x = bough_transform_compose(x, move);
-    }
-    return x;
-}
+// -- joints ---------------------------------------------------------------------------------------
 
 // The joint frame in the frame of the tree's body it hangs on: from where bodies hang on the parent
-// the steps in order, then the pitch.
+// the joint's placement, then the pitch.
 static bough_transform placement(const bough_scene_body *body, bough_transform x) {
-    x = bough_transform_compose(x, bough_placement(body->joint.n_placement, body->joint.placement));
+    x = bough_transform_compose(x, body->joint.placement);
     if (body->pitch != 0) {
         bough_transform pitch = bough_transform_identity();
-        pitch.rotation = placement_turn(BOUGH_SCENE_Z, -body->pitch);
+        pitch.rotation = bough_scene_rotation(BOUGH_SCENE_Z, -body->pitch);
         x = bough_transform_compose(x, pitch);
     }
     return x;
@@ -103,8 +79,8 @@ static void set_joint(const bough_builder *b, const bough_scene_body *from, boug
     to->kind = (bough_joint_kind)joint->kind;
     set_parent(b, from, to);
     bool universal = to->kind == BOUGH_JOINT_UNIVERSAL;
-    to->axis = bough_placement_axis(joint->axis);
-    to->second_axis = bough_placement_axis(universal ? joint->second_axis : (joint->axis + 1) % 3);
+    to->axis = bough_scene_direction(joint->axis);
+    to->second_axis = bough_scene_direction(universal ? joint->second_axis : (joint->axis + 1) % 3);
     if (bough_joint_n_axes(to->kind) > 0) {
         set_coordinates(joint, to);
         return;

@@ -26,11 +26,6 @@ void bough_input_link_build(bough_arena *arena, bough_simulation *s);
 // (jump_link.c). Needs tree and rods.
 void bough_jump_link_build(bough_arena *arena, bough_simulation *s);
 
-// -- placements and axes of a scene as transforms and vectors (build_bodies.c) --------------------
-
-// The frame after n steps, in the frame they start from.
-bough_transform bough_placement(int n, const bough_scene_step *step);
-
 // -- an FMU as a member (fmu_member.c) ------------------------------------------------------------
 
 // An FMU as a member: it advances by its own steps from communication point to communication point, under

@@ -109,11 +109,10 @@ static void add_closures(bough_builder *b) {
         bough_closure_def *to = &closure[k];
         to->name = from->name;
         to->kind = (bough_joint_kind)from->kind;
-        to->axis = bough_placement_axis(from->axis);
-        to->second_axis = bough_placement_axis(from->second_axis);
+        to->axis = bough_scene_direction(from->axis);
+        to->second_axis = bough_scene_direction(from->second_axis);
         for (int end = 0; end < 2; end++) {
-            bough_transform place = bough_placement(from->placement[end].n, from->placement[end].step);
-            to->marker[end] = bough_build_marker(b, from->name, from->body[end], place);
+            to->marker[end] = bough_build_marker(b, from->name, from->body[end], from->placement[end]);
         }
     }
 }

@@ -113,9 +113,6 @@ const double *bough_beam_state(const bough_simulation *s, const bough_beam *beam
 // in `input`.
 void bough_beam_ride(const bough_beam *beam, const double *input, double *state);
 
-// The unit vector of a bough_scene_axis (build_bodies.c).
-bough_vec3 bough_placement_axis(int axis);
-
 // The axis of a body's joint in `view`, a unit vector in ground axes; the joint's own angle leaves it where
 // it is.
 bough_vec3 bough_simulation_joint_axis(const bough_simulation *s, int body);

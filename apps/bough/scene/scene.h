@@ -5,9 +5,9 @@
 // All memory belongs to the arena given to bough_scene_read. Every struct begins with its place in the
 // text. An optional part that is absent has `node == NULL`, and its other fields have the defaults.
 //
-// Axes: ground z up. A placement is a list of steps, each in the frame reached so far. Section
-// quantities are in the section's axes, whose z is the tangent of the reference axis, and about the
-// reference axis; strains in the order shear x, shear y, axial, bend about x, bend about y, twist.
+// Axes: ground z up. Section quantities are in the section's axes, whose z is the tangent of the reference
+// axis, and about the reference axis; strains in the order shear x, shear y, axial, bend about x, bend about
+// y, twist.
 #ifndef BOUGH_APPS_SCENE_SCENE_H
 #define BOUGH_APPS_SCENE_SCENE_H
 
@@ -89,11 +89,9 @@ typedef struct bough_scene_simulation {
 
 typedef enum bough_scene_axis { BOUGH_SCENE_X, BOUGH_SCENE_Y, BOUGH_SCENE_Z } bough_scene_axis;
 
-typedef struct bough_scene_step {
-    bool rotate;   // a rotation about the axis, else a translation along it
-    int axis;      // bough_scene_axis
-    double amount; // [rad] or [m]
-} bough_scene_step;
+// Its unit vector, and the rotation about it by an angle [rad].
+bough_vec3 bough_scene_direction(int axis);
+bough_mat3 bough_scene_rotation(int axis, double angle);
 
 // Of a revolute [rad, rad/s] or prismatic [m, m/s] joint.
 typedef struct bough_scene_motion {
@@ -102,22 +100,20 @@ typedef struct bough_scene_motion {
     bough_motion_def def;
 } bough_scene_motion;
 
-// The joint that carries a body: placement from the parent's frame to the joint's frame, which is
-// the body's frame at zero joint displacement. On a body with a rod it begins at the rod's end, in
-// the axes of the rod's body, which turn with the last section.
+// The joint that carries a body. Its frame is the body's frame at zero joint displacement.
 typedef struct bough_scene_joint {
     const bough_node *node;
-    int kind;                // bough_joint_kind
-    const char *parent_name; // as written
-    int parent;              // index of a body, or BOUGH_GROUND
-    int n_placement;
-    bough_scene_step *placement;         // (n_placement)
-    int axis;                            // bough_scene_axis of all but fixed, spherical and free
-    int second_axis;                     // bough_scene_axis of universal, not the first
-    double position;                     // initial angle [rad] of revolute, displacement [m] of prismatic
-                                         // and cylindrical
-    double speed;                        // initial, [rad/s] of revolute, [m/s] of prismatic, cylindrical
-    double angle, angular_speed;         // initial, of cylindrical and planar [rad, rad/s]
+    int kind;                    // bough_joint_kind
+    const char *parent_name;     // as written
+    int parent;                  // index of a body, or BOUGH_GROUND
+    bough_transform placement;   // of the joint's frame in the parent's, on a body with a rod from the rod's
+                                 // end, in the axes of the rod's body, which turn with the last section
+    int axis;                    // bough_scene_axis of all but fixed, spherical and free
+    int second_axis;             // bough_scene_axis of universal, not the first
+    double position;             // initial angle [rad] of revolute, displacement [m] of prismatic
+                                 // and cylindrical
+    double speed;                // initial, [rad/s] of revolute, [m/s] of prismatic, cylindrical
+    double angle, angular_speed; // initial, of cylindrical and planar [rad, rad/s]
     double angles[2], angular_speeds[2]; // initial, of universal [rad, rad/s]
     double positions[2], speeds[2];      // initial, of planar, along the two axes after the normal
                                          // in the order x, y, z, x, in the joint's frame [m, m/s]
@@ -345,20 +341,15 @@ typedef struct bough_scene_spring {
     bough_spring_def def; // but for the markers
 } bough_scene_spring;
 
-typedef struct bough_scene_placement {
-    int n;
-    bough_scene_step *step; // (n)
-} bough_scene_placement;
-
 // A joint that closes a loop between two rigid bodies or the ground.
 typedef struct bough_scene_closure {
     const bough_node *node;
     const char *name;
     int kind; // bough_joint_kind but free
     const char *body_name[2];
-    int body[2];                        // indices, or BOUGH_GROUND
-    bough_scene_placement placement[2]; // of the joint's frame in either body's
-    int axis, second_axis;              // bough_scene_axis as of a joint, universal: of `to`
+    int body[2];                  // indices, or BOUGH_GROUND
+    bough_transform placement[2]; // of the joint's frame in either body's
+    int axis, second_axis;        // bough_scene_axis as of a joint, universal: of `to`
 } bough_scene_closure;
 
 typedef struct bough_scene_turbine {

@@ -96,7 +96,7 @@ static const bough_key joint_keys[] = {
      .help = "kind of joint"},
     {NAMED("parent", TEXT), AT(parent_name), .required = true, .example = "hub",
      .help = "name of a body, or ground; a parent with a rod carries this body at the rod's end"},
-    {NAMED("placement", CUSTOM), .read = bough_scene_read_placement, .form = PLACEMENT_FORM,
+    {KEY(CUSTOM, placement), .read = bough_scene_read_placement, .form = PLACEMENT_FORM, .fallback = "[]",
      .example = "[rotate x 120 deg, move z 1.5 m]",
      .help = "from the parent's frame to the joint's frame; each step is in the frame that the "
              "previous steps give"},

@@ -111,13 +111,13 @@ static const bough_key closure_keys[] = {
              "prevents"},
     {NAMED("from", TEXT), AT(body_name[0]), .required = true, .example = "coupler",
      .help = "name of a rigid body, or ground"},
-    {NAMED("from_placement", CUSTOM), AT(placement[0]), .read = bough_scene_read_steps,
-     .form = PLACEMENT_FORM, .example = "[move x 0.5 m]",
+    {NAMED("from_placement", CUSTOM), AT(placement[0]), .read = bough_scene_read_placement,
+     .form = PLACEMENT_FORM, .fallback = "[]", .example = "[move x 0.5 m]",
      .help = "placement of the joint's frame in that body's frame"},
     {NAMED("to", TEXT), AT(body_name[1]), .required = true, .example = "ground",
      .help = "name of another rigid body, or ground"},
-    {NAMED("to_placement", CUSTOM), AT(placement[1]), .read = bough_scene_read_steps,
-     .form = PLACEMENT_FORM, .example = "[move x 1 m]",
+    {NAMED("to_placement", CUSTOM), AT(placement[1]), .read = bough_scene_read_placement,
+     .form = PLACEMENT_FORM, .fallback = "[]", .example = "[move x 1 m]",
      .help = "placement of the joint's frame in that body's frame; the two frames must almost "
              "coincide at the start: small motions of all joints close the rest, and joints "
              "without a speed follow"},

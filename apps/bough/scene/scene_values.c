@@ -3,56 +3,54 @@
 
 #include "core/base/base.h"
 #include "core/base/linalg.h"
+#include "core/base/rotation.h"
 
 #include <math.h>
 #include <string.h>
 
 // -- placement ------------------------------------------------------------------------------------
 
-// "move z 1.96 m" or "rotate y 5 deg".
-static bool parse_step(bough_schema_reader *r, const bough_node *node, bough_scene_step *step) {
-    static const char *const verbs[] = {"move", "rotate"};
+bough_vec3 bough_scene_direction(int axis) {
+    return bough_v3(axis == BOUGH_SCENE_X, axis == BOUGH_SCENE_Y, axis == BOUGH_SCENE_Z);
+}
+
+bough_mat3 bough_scene_rotation(int axis, double angle) {
+    bough_vec3 turn = bough_scale(angle, bough_scene_direction(axis));
+    return bough_rotation_matrix(bough_quaternion_exponential(turn));
+}
+
+// "move z 1.96 m" or "rotate y 5 deg"; none after an error.
+static bough_transform read_step(bough_schema_reader *r, const bough_node *node) {
     char verb[8], axis[4], shown[64], why[160] = "";
     int used = 0;
+    double amount;
+    bough_transform step = bough_transform_identity();
     const char *text = node->kind == BOUGH_SCALAR ? node->text : "";
     if (sscanf(text, "%7s %3s %n", verb, axis, &used) == 2 && used > 0) {
-        int k = strcmp(verb, verbs[0]) == 0 ? 0 : strcmp(verb, verbs[1]) == 0 ? 1 : -1;
+        bool moves = strcmp(verb, "move") == 0, turns = strcmp(verb, "rotate") == 0;
         bool named = axis[1] == '\0' && axis[0] >= 'x' && axis[0] <= 'z';
-        bough_dimension dimension = k == 1 ? BOUGH_ANGLE : BOUGH_LENGTH;
-        step->rotate = k == 1;
-        step->axis = axis[0] - 'x';
-        if (k >= 0 && named && bough_quantity(text + used, dimension, &step->amount, why)) {
-            return true;
+        bough_dimension dimension = turns ? BOUGH_ANGLE : BOUGH_LENGTH;
+        if ((moves || turns) && named && bough_quantity(text + used, dimension, &amount, why)) {
+            if (moves) step.position = bough_scale(amount, bough_scene_direction(axis[0] - 'x'));
+            if (turns) step.rotation = bough_scene_rotation(axis[0] - 'x', amount);
+            return step;
         }
     }
     bough_schema_error(r, node, "", "expected 'move x|y|z LENGTH' or 'rotate x|y|z ANGLE', got %s%s%s",
                        bough_node_shown(node, shown), why[0] == '\0' ? "" : ": ", why);
-    return false;
+    return step;
 }
 
-// field: bough_scene_placement
-void bough_scene_read_steps(bough_schema_reader *r, const bough_node *node, void *field) {
-    bough_scene_placement *placement = field;
-    if (node->kind != BOUGH_SEQUENCE) {
-        bough_schema_expected(r, node, "a list of steps");
-        return;
-    }
-    placement->step = bough_arena_take(r->arena, (size_t)node->n * sizeof *placement->step);
-    placement->n = node->n;
-    for (int i = 0; i < node->n; i++) {
+// field: bough_transform; each step is in the frame reached so far
+void bough_scene_read_placement(bough_schema_reader *r, const bough_node *node, void *field) {
+    bough_transform *placement = field;
+    *placement = bough_transform_identity();
+    if (node->kind != BOUGH_SEQUENCE) bough_schema_expected(r, node, "a list of steps");
+    for (int i = 0; node->kind == BOUGH_SEQUENCE && i < node->n; i++) {
         size_t length = bough_schema_push(r, "[%d]", i);
-        parse_step(r, node->value[i], &placement->step[i]);
+        *placement = bough_transform_compose(*placement, read_step(r, node->value[i]));
         bough_schema_pop(r, length);
     }
-}
-
-// field: the joint
-void bough_scene_read_placement(bough_schema_reader *r, const bough_node *node, void *field) {
-    bough_scene_joint *joint = field;
-    bough_scene_placement placement = {0};
-    bough_scene_read_steps(r, node, &placement);
-    joint->n_placement = placement.n;
-    joint->placement = placement.step;
 }
 
 void bough_scene_check_joint(bough_schema_reader *r, void *item) {

@@ -47,14 +47,12 @@ TEST(turbine_is_read) {
     assert_int_equal(hub->parent, 1);
     assert_int_equal(hub->axis, BOUGH_SCENE_X);
     check_near(hub->speed, 0.5, 0, 0);
-    assert_int_equal(hub->n_placement, 3);
-    assert_false(hub->placement[0].rotate);
-    assert_int_equal(hub->placement[0].axis, BOUGH_SCENE_Z);
-    check_near(hub->placement[0].amount, 1.2, 0, 0);
-    assert_true(hub->placement[1].rotate);
-    assert_int_equal(hub->placement[1].axis, BOUGH_SCENE_Y);
-    check_near(hub->placement[1].amount, 5 * degree, 1e-15, 0);
-    check_near(hub->placement[2].amount, -2, 0, 0);
+    // up by 1.2 m, turned about y, then back by 2 m
+    check_near(hub->placement.position.x, -2 * cos(5 * degree), 1e-15, 0);
+    check_near(hub->placement.position.y, 0, 0, 0);
+    check_near(hub->placement.position.z, 1.2 + 2 * sin(5 * degree), 1e-15, 0);
+    check_near(hub->placement.rotation.c1.z, -sin(5 * degree), 1e-15, 0);
+    check_near(hub->placement.rotation.c3.x, sin(5 * degree), 1e-15, 0);
     check_near(s->body[1].mass, 2000, 0, 0);
     check_near(s->body[2].inertia[0], 1200, 0, 0);
     check_near(s->body[2].centre_of_mass[0], 0.1, 0, 0);
