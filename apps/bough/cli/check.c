@@ -58,7 +58,7 @@ static void print_joint(const bough_scene *scene, int body) {
     if (word != NULL) printf(" %s %c", word, "xyz"[joint->axis]);
     if (joint->kind == BOUGH_JOINT_UNIVERSAL) printf(" and %c", "xyz"[joint->second_axis]);
     printf(" on %s: %d degree%s of freedom", body_name(scene, joint->parent), n, plural(n));
-    int driven = (joint->motion.node != NULL) + (joint->second_motion.node != NULL);
+    int driven = (joint->motion[0].node != NULL) + (joint->motion[1].node != NULL);
     if (driven > 0) printf(", %d of them prescribed", driven);
     print_spring(joint);
 }

@@ -164,7 +164,7 @@ const char *bough_modes_body(const bough_simulation *s, const bough_scene_mode *
 static bool rotor_is_free(const bough_simulation *s) {
     if (s->scene->turbine.node == NULL) return false;
     const bough_scene_joint *joint = &s->scene->body[s->scene->turbine.rotor].joint;
-    return joint->spring.stiffness == 0 && joint->motion.node == NULL;
+    return joint->spring.stiffness == 0 && joint->motion[0].node == NULL;
 }
 
 // All blades swing alike in their plane, or what they hang on turns: against each other where the

@@ -35,8 +35,8 @@ static void add_generator(bough_builder *b) {
 
 static void set_loads(bough_builder *b) {
     for (int k = 0; k < b->scene->n_body; k++) {
-        add_motion(b, &b->scene->body[k].joint.motion);
-        add_motion(b, &b->scene->body[k].joint.second_motion);
+        add_motion(b, &b->scene->body[k].joint.motion[0]);
+        add_motion(b, &b->scene->body[k].joint.motion[1]);
     }
     for (int k = 0; k < b->scene->n_load; k++) {
         const bough_scene_load *load = &b->scene->load[k];
@@ -56,7 +56,7 @@ static size_t count_corners(const bough_scene *scene) {
     for (int k = 0; k < scene->n_load; k++) n += (size_t)scene->load[k].n_time;
     for (int k = 0; k < scene->n_body; k++) {
         const bough_scene_joint *joint = &scene->body[k].joint;
-        n += 4 + (size_t)joint->motion.def.n + (size_t)joint->second_motion.def.n;
+        n += 4 + (size_t)joint->motion[0].def.n + (size_t)joint->motion[1].def.n;
     }
     return n;
 }

@@ -27,8 +27,8 @@ static bough_mat3 tensor(const double j[6]) {
 
 static void set_coordinates(const bough_scene_joint *joint, bough_body_def *to) {
     double *q = to->coordinates, *v = to->speeds;
-    to->motion = joint->motion.def;
-    to->second_motion = joint->second_motion.def;
+    to->motion = joint->motion[0].def;
+    to->second_motion = joint->motion[1].def;
     double c = cos(joint->angle), s = sin(joint->angle);
     switch (to->kind) {
     case BOUGH_JOINT_CYLINDRICAL:

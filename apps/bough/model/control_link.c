@@ -434,7 +434,7 @@ bough_status bough_control_link_build(bough_arena *arena, bough_simulation *simu
     l->control = &scene->control;
     l->load = simulation->tree->n_loads - 1;
     l->n_blade = scene->turbine.n_blade;
-    l->steers = scene->control.pitch && scene->body[scene->turbine.blade[0]].joint.motion.node != NULL;
+    l->steers = scene->control.pitch && scene->body[scene->turbine.blade[0]].joint.motion[0].node != NULL;
     for (int b = 0; b < l->n_blade && l->steers; b++)
         l->now.pitch_joint[b] = bough_simulation_joint_point(simulation, blade_body(l, b));
     simulation->control = l;

@@ -125,18 +125,13 @@ static void add_free_bodies(bough_simulation *s, bough_channels *list) {
     }
 }
 
-// Whether coordinate k of a joint is prescribed
-static bool is_driven(const bough_scene_joint *joint, int k) {
-    return (k == 0 ? &joint->motion : &joint->second_motion)->node != NULL;
-}
-
 // Forces and torques of prescribed motions under the rods' present forces.
 static void sample_drives(void *self, double t, double *value) {
     const bough_simulation *s = self;
     bough_simulation_accelerate(s, t);
     for (int i = 0; i < s->scene->n_body; i++) {
         for (int k = 0, q, v; k < 2; k++) {
-            if (!is_driven(&s->scene->body[i].joint, k)) continue;
+            if (s->scene->body[i].joint.motion[k].node == NULL) continue;
             bough_tree_joint_rows(s->tree, i, &q, &v);
             *value++ = s->view->drive[v - s->tree->n_q + k];
         }
@@ -156,7 +151,7 @@ static void add_drives(bough_simulation *s, bough_channels *list) {
     bough_channels_group(list, sample_drives, s);
     for (int i = 0; i < 2 * s->scene->n_body; i++) {
         const bough_scene_body *body = &s->scene->body[i / 2];
-        if (is_driven(&body->joint, i % 2)) add_drive(body, i % 2, list);
+        if (body->joint.motion[i % 2].node != NULL) add_drive(body, i % 2, list);
     }
 }
 

@@ -87,7 +87,7 @@ static double joint_torque(const bough_simulation *s, int body, double t) {
         if (load->body != tree->bodies[body].link) continue;
         torque += load->value * bough_schedule_at(&load->schedule, t);
     }
-    bool driven = s->scene->body[body].joint.motion.node != NULL;
+    bool driven = s->scene->body[body].joint.motion[0].node != NULL;
     return torque + (driven ? s->view->drive[v - tree->n_q] : 0);
 }
 
@@ -112,7 +112,7 @@ static void sample_torque(void *self, double t, double *value) {
     const bough_simulation *s = x->simulation;
     double angle, speed, torque = 0;
     bool heavy = has_inertia(&x->inertia);
-    if (heavy || s->scene->body[x->body].joint.motion.node != NULL) bough_simulation_accelerate(s, t);
+    if (heavy || s->scene->body[x->body].joint.motion[0].node != NULL) bough_simulation_accelerate(s, t);
     if (heavy) torque = inertial_torque(x);
     torque -= joint_torque(s, x->body, t);
     bough_simulation_hub_turn(s, &angle, &speed);

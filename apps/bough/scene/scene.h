@@ -120,8 +120,8 @@ typedef struct bough_scene_joint {
     double velocity[3];                  // initial [m/s] of free, in the joint's frame
     double angular_velocity[3];          // initial [rad/s] of spherical and free, in the joint's frame
     bough_joint_spring spring;           // of revolute and prismatic
-    bough_scene_motion motion;           // of the first coordinate
-    bough_scene_motion second_motion;    // of the second of cylindrical (the angle) and universal
+    bough_scene_motion motion[2];        // of the first coordinate; of the second of cylindrical (the
+                                         // angle) and universal
 } bough_scene_joint;
 
 // A section of a rod. Between stations everything is linear in span.

@@ -71,7 +71,7 @@ static void add_loads(bough_arena *arena, bough_scene *s) {
 
 static void add_motions(bough_scene *s) {
     for (int i = 0; i < s->n_body; i++) {
-        const bough_scene_motion *motion = &s->body[i].joint.motion;
+        const bough_scene_motion *motion = &s->body[i].joint.motion[0];
         if (motion->node == NULL || motion->input == NULL) continue;
         bool turns = s->body[i].joint.kind == BOUGH_JOINT_REVOLUTE;
         bough_scene_input *input = add(s, motion->node, motion->input, BOUGH_INPUT_MOTION);

@@ -179,7 +179,7 @@ static void check_moving_mass(bough_schema_reader *r, const bough_scene *s) {
         const bough_scene_body *b = &s->body[i];
         carries[i] = carries[i] || has_mass(b);
         if (carries[i] && b->joint.parent >= 0) carries[b->joint.parent] = true;
-        bool driven = b->joint.motion.node != NULL;
+        bool driven = b->joint.motion[0].node != NULL;
         if (carries[i] || driven || b->joint.kind < 0 || b->joint.kind == BOUGH_JOINT_FIXED) continue;
         bough_link_at(r, "bodies[%d]", i);
         bough_schema_error(r, b->node, "",

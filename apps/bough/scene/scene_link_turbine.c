@@ -135,7 +135,7 @@ void bough_link_aero(bough_schema_reader *r, bough_scene *s) {
 
 // A blade is pitched by a revolute joint about its own z with a prescribed motion.
 static bool has_pitch_joint(const bough_scene_body *b) {
-    return b->joint.kind == BOUGH_JOINT_REVOLUTE && b->joint.motion.node != NULL;
+    return b->joint.kind == BOUGH_JOINT_REVOLUTE && b->joint.motion[0].node != NULL;
 }
 
 static void link_event(bough_schema_reader *r, bough_scene *s, int i) {
@@ -154,7 +154,7 @@ static void link_event(bough_schema_reader *r, bough_scene *s, int i) {
     }
     if (e->body_name == NULL) return;
     e->body = bough_link_body(r, s, e->node, "body", e->body_name);
-    if (e->body >= 0 && s->body[e->body].joint.motion.node == NULL) {
+    if (e->body >= 0 && s->body[e->body].joint.motion[0].node == NULL) {
         bough_schema_error(r, e->node, "body", "the joint of '%s' has no 'motion'", e->body_name);
     }
 }
@@ -172,7 +172,7 @@ static void check_operation(bough_schema_reader *r, const bough_scene *s) {
         bough_schema_error(r, s->node, "simulation.initial",
                            "operation needs the air from the start on: leave out "
                            "'aero.ramp'");
-    } else if (s->turbine.rotor >= 0 && s->body[s->turbine.rotor].joint.motion.node != NULL) {
+    } else if (s->turbine.rotor >= 0 && s->body[s->turbine.rotor].joint.motion[0].node != NULL) {
         bough_schema_error(r, s->node, "simulation.initial", "the motion of '%s' leaves no speed to be found",
                            s->turbine.rotor_name);
     }

@@ -3,15 +3,10 @@
 
 #include <string.h>
 
-// A cylindrical joint's, whose schema begins with the node of the first
-typedef struct motion_pair {
+// A joint's array of them. Its tables begin with the node of the first.
+typedef struct motions {
     bough_scene_motion first, second;
-} motion_pair;
-
-typedef struct universal_pair {
-    const bough_node *node;
-    bough_scene_motion first, second;
-} universal_pair;
+} motions;
 
 // -- a table or a ramp ----------------------------------------------------------------------------
 
@@ -106,14 +101,13 @@ static const bough_key prismatic_keys[] = {
     INPUT,
 };
 #undef FILLS
-#define FILLS motion_pair
+#define FILLS motions
 static const bough_key cylindrical_keys[] = {
     {NAMED("speed", CUSTOM), .read = read_values, UNIT(SPEED)},
     {NAMED("position", CUSTOM), .read = read_values, UNIT(LENGTH)},
     {NAMED("angular_speed", CUSTOM), AT(second), .read = read_values, UNIT(ANGULAR_SPEED)},
     {NAMED("angle", CUSTOM), AT(second), .read = read_values, UNIT(ANGLE)},
 };
-#undef FILLS
 // clang-format on
 
 // At most one of two keys may be given: the speed or the place.
@@ -131,21 +125,18 @@ static void check_one(bough_schema_reader *r, const bough_node *node, const char
 
 static void check_motion(bough_schema_reader *r, void *item) {
     bough_scene_motion *motion = item;
-    if (motion->node == NULL) return;
-    motion->def.given = true;
-    motion->def.speed = bough_node_find(motion->node, "speed") != NULL;
+    const bough_node *node = motion->node;
+    check_one(r, node, "speed", bough_node_find(node, "angle") ? "angle" : "position", motion);
     bool constant = motion->def.n == 0 && !(motion->def.end > motion->def.start);
     if (motion->input != NULL && (motion->def.speed || !constant)) {
-        bough_schema_error(r, motion->node, "input", "only with a constant initial position");
+        bough_schema_error(r, node, "input", "only with a constant initial position");
     }
-    if (motion->node->n == (motion->input != NULL ? 2 : 1)) return;
-    bough_schema_error(r, motion->node, "",
-                       "expected either the speed or the position of the "
-                       "joint");
+    if (motion->def.given) return;
+    bough_schema_error(r, node, "", "expected the speed or the position of the joint");
 }
 
 static void check_pair(bough_schema_reader *r, void *item) {
-    motion_pair *pair = item;
+    motions *pair = item;
     const bough_node *node = pair->first.node;
     check_one(r, node, "speed", "position", &pair->first);
     check_one(r, node, "angular_speed", "angle", &pair->second);
@@ -158,40 +149,30 @@ static const bough_schema revolute_motion = {
 static const bough_schema prismatic_motion = {
     SCHEMA("the motion of a prismatic joint", bough_scene_motion, prismatic_keys), .check = check_motion};
 static const bough_schema cylindrical_motion = {
-    SCHEMA("the motion of a cylindrical joint", motion_pair, cylindrical_keys), .check = check_pair};
-#define FILLS universal_pair
+    SCHEMA("the motion of a cylindrical joint", motions, cylindrical_keys), .check = check_pair};
 static const bough_key universal_keys[] = {
     {KEY(MAPPING, first), .of = &revolute_motion},
     {KEY(MAPPING, second), .of = &revolute_motion},
 };
 #undef FILLS
 static const bough_schema universal_motion = {
-    SCHEMA("the motion of a universal joint", universal_pair, universal_keys)};
+    SCHEMA("the motion of a universal joint", motions, universal_keys)};
 // clang-format on
 
 // field: the joint, whose kind is read before
 void bough_scene_read_motion(bough_schema_reader *r, const bough_node *node, void *field) {
+    static const bough_schema *const of_kind[] = {[BOUGH_JOINT_REVOLUTE] = &revolute_motion,
+                                                  [BOUGH_JOINT_PRISMATIC] = &prismatic_motion,
+                                                  [BOUGH_JOINT_CYLINDRICAL] = &cylindrical_motion,
+                                                  [BOUGH_JOINT_UNIVERSAL] = &universal_motion};
     bough_scene_joint *joint = field;
-    motion_pair pair = {0};
-    universal_pair two = {0};
-    switch (joint->kind) {
-    case BOUGH_JOINT_REVOLUTE: bough_schema_read(r, &revolute_motion, node, &joint->motion); break;
-    case BOUGH_JOINT_PRISMATIC: bough_schema_read(r, &prismatic_motion, node, &joint->motion); break;
-    case BOUGH_JOINT_CYLINDRICAL:
-        bough_schema_read(r, &cylindrical_motion, node, &pair);
-        joint->motion = pair.first, joint->second_motion = pair.second;
-        break;
-    default:
-        bough_schema_read(r, &universal_motion, node, &two);
-        joint->motion = two.first, joint->second_motion = two.second;
-        break;
-    }
+    bough_schema_read(r, of_kind[joint->kind], node, joint->motion);
 }
 
 // The joint starts where and as fast as its motion says.
 void bough_scene_check_motion(bough_schema_reader *r, const bough_scene_joint *joint) {
     static const char why[] = "follows from the joint's motion";
-    const bough_scene_motion *first = &joint->motion, *second = &joint->second_motion;
+    const bough_scene_motion *first = &joint->motion[0], *second = &joint->motion[1];
     bool placed = first->node != NULL && !first->def.speed;
     bool cylindrical = joint->kind == BOUGH_JOINT_CYLINDRICAL; // its angle is the second motion's
     if (first->node != NULL) bough_scene_refuse(r, joint->node, "speed", why);

@@ -65,7 +65,7 @@ TEST(a_controlled_blade_hangs_on_a_joint) {
     assert_int_equal(f.scene->n_body, 5);
     assert_int_equal(blade->joint.kind, BOUGH_JOINT_REVOLUTE);
     assert_int_equal(blade->joint.axis, BOUGH_SCENE_Z);
-    assert_non_null(blade->joint.motion.node);
+    assert_non_null(blade->joint.motion[0].node);
     check_near(blade->joint.placement.rotation.c2.y, -1, 1e-15, 0);
     assert_int_equal(blade->rod.n_segment, 7);
     assert_int_equal(f.scene->body[3].rod.n_segment, 24);
