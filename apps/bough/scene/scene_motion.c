@@ -90,11 +90,11 @@ static void read_values(bough_schema_reader *r, const bough_node *node, void *fi
 #define INPUT                                                                                      \
     {KEY(TEXT, input), .example = "yaw",                                                           \
      .help = "with a constant place: name by which it is set between steps"}
-static const bough_key revolute_keys[] = {
-    {NAMED("speed", CUSTOM), .read = read_values, UNIT(ANGULAR_SPEED), FORM},
-    {NAMED("angle", CUSTOM), .read = read_values, UNIT(ANGLE), FORM},
-    INPUT,
-};
+#define TURN                                                                                       \
+    {NAMED("speed", CUSTOM), .read = read_values, UNIT(ANGULAR_SPEED), FORM},                      \
+    {NAMED("angle", CUSTOM), .read = read_values, UNIT(ANGLE), FORM}
+static const bough_key revolute_keys[] = {TURN, INPUT};
+static const bough_key axis_keys[] = {TURN};
 static const bough_key prismatic_keys[] = {
     {NAMED("speed", CUSTOM), .read = read_values, UNIT(SPEED), FORM},
     {NAMED("position", CUSTOM), .read = read_values, UNIT(LENGTH), FORM},
@@ -150,9 +150,11 @@ static const bough_schema prismatic_motion = {
     SCHEMA("the motion of a prismatic joint", bough_scene_motion, prismatic_keys), .check = check_motion};
 static const bough_schema cylindrical_motion = {
     SCHEMA("the motion of a cylindrical joint", motions, cylindrical_keys), .check = check_pair};
+static const bough_schema axis_motion = {
+    SCHEMA("the motion about an axis", bough_scene_motion, axis_keys), .check = check_motion};
 static const bough_key universal_keys[] = {
-    {KEY(MAPPING, first), .of = &revolute_motion},
-    {KEY(MAPPING, second), .of = &revolute_motion},
+    {KEY(MAPPING, first), .of = &axis_motion},
+    {KEY(MAPPING, second), .of = &axis_motion},
 };
 #undef FILLS
 static const bough_schema universal_motion = {

@@ -184,6 +184,9 @@ TEST(bad_inputs_are_refused) {
         {"loads=[{joint: bob, torque: 1, input: a}, {joint: bob, torque: 1, input: a}]",
          "two inputs are named 'a'"},
         {"bodies[0].joint.motion={speed: 1 rad/s, input: a}", "only with a constant initial position"},
+        {"bodies[0].joint={kind: universal, parent: ground, axis: y, second_axis: x, "
+         "motion: {first: {angle: 0, input: a}}}",
+         "joint.motion.first: unknown key 'input'"},
     };
     for (size_t i = 0; i < sizeof bad / sizeof *bad; i++) {
         s = bough_session_open(APPS "mechanisms/pendulum.yaml", &bad[i][0], 1);
