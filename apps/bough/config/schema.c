@@ -9,21 +9,12 @@
 
 static void read_value(bough_schema_reader *r, const bough_key *key, const bough_node *node, void *item);
 
-static int errors_so_far(const bough_schema_reader *r) { return r->errors->n + r->errors->dropped; }
-
-// -- lists of mappings ----------------------------------------------------------------------------
-
-static void read_rows(bough_schema_reader *r, const bough_key *key, const bough_node *node, void *item) {
-    char *items = bough_schema_items(r, key, node, key->of->size);
-    if (items == NULL) return;
-    for (int i = 0; i < node->n; i++) {
-        size_t length = bough_schema_push(r, "[%d]", i);
-        bough_schema_read(r, key->of, node->value[i], items + (size_t)i * key->of->size);
-        bough_schema_pop(r, length);
-    }
-    *(void **)bough_field_at(item, key->offset) = items;
-    *(int *)bough_field_at(item, key->count_offset) = node->n;
+// But for values that do not increase: checks of what spans several keys are made beside them.
+static int errors_so_far(const bough_schema_reader *r) {
+    return r->errors->n + r->errors->dropped - r->out_of_order;
 }
+
+// -- tables ---------------------------------------------------------------------------------------
 
 static const bough_key *find_key(const bough_schema *schema, const char *name) {
     for (int i = 0; i < schema->n_key; i++) {
@@ -127,20 +118,38 @@ static bool row_mapping(bough_schema_reader *r, const bough_node *row, const col
     return true;
 }
 
-static void read_compact_rows(bough_schema_reader *r, const bough_key *key, const bough_node *rows,
-                              const columns *c, void *item) {
-    char *items = bough_schema_items(r, key, rows, key->of->size);
-    bough_node *mapping = bough_arena_take(r->arena, (size_t)rows->n * sizeof *mapping);
+// The values of some keys increase from row to row.
+static void check_order(bough_schema_reader *r, const bough_schema *schema, void *before, void *row) {
+    for (int i = 0; i < schema->n_key; i++) {
+        const bough_key *key = &schema->key[i];
+        if (!key->increasing) continue;
+        const bough_node *last = bough_node_find(*(const bough_node **)before, key->name);
+        const bough_node *now = bough_node_find(*(const bough_node **)row, key->name);
+        if (last == NULL || now == NULL) continue;
+        double value = *(double *)bough_field_at(row, key->offset);
+        if (value <= *(double *)bough_field_at(before, key->offset))
+            bough_schema_not_more(r, key->name, last, now);
+    }
+}
+
+// A list of mappings; with columns the rows of a compact table.
+static void read_rows(bough_schema_reader *r, const bough_key *key, const bough_node *node, const columns *c,
+                      void *item) {
+    size_t size = key->of->size;
+    char *items = bough_schema_items(r, key, node, size, item);
     if (items == NULL) return;
-    for (int i = 0; i < rows->n; i++) {
+    bough_node *mapping = bough_arena_take(r->arena, (c ? (size_t)node->n : 0) * sizeof *mapping);
+    for (int i = 0; i < node->n; i++) {
         size_t length = bough_schema_push(r, "[%d]", i);
-        if (row_mapping(r, rows->value[i], c, &mapping[i])) {
-            read_mapping(r, key->of, &mapping[i], c->unit, items + (size_t)i * key->of->size);
+        char *row = items + (size_t)i * size;
+        if (c == NULL) {
+            bough_schema_read(r, key->of, node->value[i], row);
+        } else if (row_mapping(r, node->value[i], c, &mapping[i])) {
+            read_mapping(r, key->of, &mapping[i], c->unit, row);
         }
+        if (i > 0) check_order(r, key->of, row - size, row);
         bough_schema_pop(r, length);
     }
-    *(void **)bough_field_at(item, key->offset) = items;
-    *(int *)bough_field_at(item, key->count_offset) = rows->n;
 }
 
 // {columns: […], rows: [[…], …]}
@@ -163,7 +172,7 @@ static void read_table(bough_schema_reader *r, const bough_key *key, const bough
     bough_schema_pop(r, length);
     if (!good) return;
     length = bough_schema_push_key(r, "rows");
-    read_compact_rows(r, key, rows, &c, item);
+    read_rows(r, key, rows, &c, item);
     bough_schema_pop(r, length);
 }
 
@@ -251,7 +260,7 @@ static void read_value(bough_schema_reader *r, const bough_key *key, const bough
         if (node->kind == BOUGH_MAPPING) {
             read_table(r, key, node, item);
         } else {
-            read_rows(r, key, node, item);
+            read_rows(r, key, node, NULL, item);
         }
         break;
     case BOUGH_KEY_FILE: read_file(r, key->of, node, field); break;

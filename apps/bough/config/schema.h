@@ -58,7 +58,8 @@ typedef struct bough_key {
     const char *when;                 // … is one of these, "revolute|prismatic"; NULL: always
     const char *fallback;             // default as it would be written
     bool required;
-    int count; // of a vector; least number of items of a list
+    bool increasing; // a number of the rows of a list, or numbers
+    int count;       // of a vector; least number of items of a list
     const bough_schema *of;
     void (*read)(bough_schema_reader *reader, const bough_node *node, void *field);
     size_t offset, count_offset; // of the field in the struct
@@ -103,6 +104,7 @@ struct bough_schema_reader {
     const char *unit;               // of plain numbers, from the head of a column; NULL: SI
     char path[256];                 // of the value being read
     const bough_key *key;           // whose value `read` of the key is called for
+    int out_of_order;               // errors of values that do not increase
     bough_schema_file *files;       // named so far, once each without a schema, once with each that read it
 };
 

@@ -10,8 +10,14 @@ void bough_dimension_expected(bough_dimension dimension, char text[96]);
 // Whether the text is a unit of the dimension; `why` then says why not.
 bool bough_unit_fits(const char *text, bough_dimension dimension, char why[160]);
 
-// Memory for the items of a list; NULL (and an error) when the node is not one long enough.
-void *bough_schema_items(bough_schema_reader *r, const bough_key *key, const bough_node *node, size_t size);
+// Memory for the items of a list, which is then in the key's field of the struct `item` with its count; NULL
+// (and an error) when the node is not one long enough.
+void *bough_schema_items(bough_schema_reader *r, const bough_key *key, const bough_node *node, size_t size,
+                         void *item);
+
+// An error: the value of a key that increases is not more than the one before it.
+void bough_schema_not_more(bough_schema_reader *r, const char *key, const bough_node *before,
+                           const bough_node *node);
 
 // Reads a value that is no mapping, table, file or custom one into its field of the struct.
 void bough_schema_value(bough_schema_reader *r, const bough_key *key, const bough_node *node, void *item);

@@ -47,6 +47,14 @@ void bough_schema_expected(bough_schema_reader *r, const bough_node *node, const
     bough_schema_error(r, node, "", "expected %s, got %s", what, bough_node_shown(node, shown));
 }
 
+void bough_schema_not_more(bough_schema_reader *r, const char *key, const bough_node *before,
+                           const bough_node *node) {
+    char shown[2][64];
+    r->out_of_order++;
+    bough_schema_error(r, node, key, "must be more than %s before it, got %s",
+                       bough_node_shown(before, shown[0]), bough_node_shown(node, shown[1]));
+}
+
 // -- numbers --------------------------------------------------------------------------------------
 
 static bool is_word(const bough_node *node, const char *word) {
@@ -182,7 +190,8 @@ static void read_boolean(bough_schema_reader *r, const bough_node *node, bool *f
     bough_schema_expected(r, node, "true or false");
 }
 
-void *bough_schema_items(bough_schema_reader *r, const bough_key *key, const bough_node *node, size_t size) {
+void *bough_schema_items(bough_schema_reader *r, const bough_key *key, const bough_node *node, size_t size,
+                         void *item) {
     if (node->kind != BOUGH_SEQUENCE) {
         bool mappings = key->kind == BOUGH_KEY_LIST;
         bough_schema_expected(r, node, mappings ? "a list of mappings" : "a list");
@@ -197,19 +206,17 @@ void *bough_schema_items(bough_schema_reader *r, const bough_key *key, const bou
         bough_schema_error(r, node, "", "expected at most %d items, got %d", MAX_ITEMS, node->n);
         return NULL;
     }
-    return bough_arena_take(r->arena, (size_t)node->n * size);
+    *(int *)bough_field_at(item, key->count_offset) = node->n;
+    return *(void **)bough_field_at(item, key->offset) = bough_arena_take(r->arena, (size_t)node->n * size);
 }
 
 static void read_texts(bough_schema_reader *r, const bough_key *key, const bough_node *node, void *item) {
-    const char **texts = bough_schema_items(r, key, node, sizeof *texts);
-    if (texts == NULL) return;
-    for (int i = 0; i < node->n; i++) {
+    const char **texts = bough_schema_items(r, key, node, sizeof *texts, item);
+    for (int i = 0; texts != NULL && i < node->n; i++) {
         size_t length = bough_schema_push(r, "[%d]", i);
         read_text(r, node->value[i], &texts[i]);
         bough_schema_pop(r, length);
     }
-    *(const char ***)bough_field_at(item, key->offset) = texts;
-    *(int *)bough_field_at(item, key->count_offset) = node->n;
 }
 
 // -- lists of numbers -----------------------------------------------------------------------------
@@ -219,6 +226,8 @@ static void read_components(bough_schema_reader *r, const bough_key *key, const 
     for (int i = 0; i < node->n; i++) {
         size_t length = bough_schema_push(r, "[%d]", i);
         read_number(r, key, node->value[i], &values[i]);
+        if (key->increasing && i > 0 && values[i] <= values[i - 1])
+            bough_schema_not_more(r, "", node->value[i - 1], node->value[i]);
         bough_schema_pop(r, length);
     }
 }
@@ -239,11 +248,8 @@ static void read_vector(bough_schema_reader *r, const bough_key *key, const boug
 }
 
 static void read_numbers(bough_schema_reader *r, const bough_key *key, const bough_node *node, void *item) {
-    double *values = bough_schema_items(r, key, node, sizeof *values);
-    if (values == NULL) return;
-    read_components(r, key, node, values);
-    *(double **)bough_field_at(item, key->offset) = values;
-    *(int *)bough_field_at(item, key->count_offset) = node->n;
+    double *values = bough_schema_items(r, key, node, sizeof *values, item);
+    if (values != NULL) read_components(r, key, node, values);
 }
 
 // -- any of them ----------------------------------------------------------------------------------

@@ -43,11 +43,6 @@ typedef struct bough_scene_table {
 bool bough_scene_read_table(bough_schema_reader *r, const bough_node *node, bough_dimension unit,
                             bough_scene_table *table);
 
-// Whether the values of the list `key` of a mapping increase; adds an error at each that does not. `unit` is
-// for the message.
-bool bough_scene_check_increasing(bough_schema_reader *r, const bough_node *node, const char *key,
-                                  const double *value, const char *unit);
-
 // Whether the symmetric matrix xx yy zz xy xz yz is not below zero about any axis.
 bool bough_scene_semidefinite(const double v[6]);
 

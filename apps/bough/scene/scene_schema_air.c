@@ -6,7 +6,7 @@
 
 #define FILLS bough_scene_aero_station
 static const bough_key aero_station_keys[] = {
-    {NAMED("span", NUMBER), AT(def.span), UNIT(LENGTH), .required = true, .example = "20.5 m",
+    {NAMED("span", NUMBER), AT(def.span), UNIT(LENGTH), .required = true, .increasing = true, .example = "20.5 m",
      .help = "distance from the root, along z"},
     {NAMED("ac_x", NUMBER), AT(def.centre_x), UNIT(LENGTH), .fallback = "0", .example = "0.1 m",
      .help = "aerodynamic centre from the pitch axis, blade-root x (flapwise)"},
@@ -43,7 +43,7 @@ static const bough_schema aero_blade_schema = {
 #define ROW(member, shown, what)                                                                   \
     {KEY(NUMBER, member), .required = true, .example = shown, .help = what}
 static const bough_key polar_row_keys[] = {
-    {KEY(NUMBER, alpha), UNIT(ANGLE), .required = true, .example = "8 deg",
+    {KEY(NUMBER, alpha), UNIT(ANGLE), .required = true, .increasing = true, .example = "8 deg",
      .help = "angle of attack"},
     ROW(cl, "1.05", "lift coefficient"),
     ROW(cd, "0.012", "drag coefficient"),
@@ -80,7 +80,7 @@ static const bough_schema polars_schema = {
 
 #define FILLS bough_scene_wind_table
 static const bough_key wind_table_keys[] = {
-    {NAMED("times", NUMBERS), AT(time), UNIT(TIME), .count = 2, .required = true, COUNT_AT(n_time),
+    {NAMED("times", NUMBERS), AT(time), UNIT(TIME), .count = 2, .required = true, .increasing = true, COUNT_AT(n_time),
      .example = "[0, 10 s, 12 s]", .help = "strictly increasing"},
     {NAMED("speeds", NUMBERS), AT(speed), UNIT(SPEED), .range = WIND_SPEED_RANGE, .count = 2,
      .required = true, COUNT_AT(n_speed), .example = "[8, 8, 12 m/s]",
@@ -230,7 +230,7 @@ static const bough_key tower_keys[] = {
      .fallback = "none",
      .help = "wake behind the tower"},
     {NAMED("height", NUMBERS), AT(def.height), UNIT(LENGTH), .range = ">= 0", .count = 2, .required = true,
-     COUNT_AT(def.n), .example = "[0, 45 m, 87.6 m]", .help = "above the ground's origin"},
+     .increasing = true, COUNT_AT(def.n), .example = "[0, 45 m, 87.6 m]", .help = "above the ground's origin"},
     {NAMED("diameter", NUMBERS), AT(def.diameter), UNIT(LENGTH), .range = "> 0", .count = 2, .required = true,
      COUNT_AT(n_diameter), .example = "[6, 4.9 m, 3.87 m]", .help = "diameter at each height"},
     {NAMED("drag", NUMBERS), AT(def.drag), .range = ">= 0", .count = 1, .fallback = "[1]", COUNT_AT(n_drag),

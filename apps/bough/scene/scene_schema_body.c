@@ -19,7 +19,7 @@ static const char stiffness_help[] =
 
 #define FILLS bough_scene_station
 static const bough_key station_keys[] = {
-    {NAMED("span", NUMBER), AT(def.position.z), UNIT(LENGTH), .required = true,
+    {NAMED("span", NUMBER), AT(def.position.z), UNIT(LENGTH), .required = true, .increasing = true,
      .example = "20.5 m", .help = "position along z, from 0 at the root to the length"},
     {NAMED("twist", NUMBER), AT(def.twist), UNIT(ANGLE), .fallback = "0", .example = "13.3 deg",
      .help = "the section's axes are turned by -twist about z, like pitch"},

@@ -223,33 +223,23 @@ static size_t push_row(bough_schema_reader *r, const bough_node *owner, const ch
     return bough_schema_push(r, "%s%s%s[%d]", r->path[0] == '\0' ? "" : ".", list, compact ? ".rows" : "", i);
 }
 
-// A column whose values increase from row to row and begin with `first`.
-typedef struct sequence {
-    const char *list, *key; // "stations", "span"
-    double first;
-    double unit; // of the message
-    const char *unit_name;
-} sequence;
+// The first or last value of a column, `expected` to 1e-6 of its unit; false after an error.
+typedef struct column_end {
+    const char *list, *key, *which, *unit_name; // "stations", "span", "first", "m"
+    double expected, unit;
+} column_end;
 
-// False after an error at the value that does not go on from the one before.
-static bool check_next(bough_schema_reader *r, const sequence *s, const bough_node *owner,
-                       const bough_node *row, int i, double before, double value) {
-    double unit = s->unit;
-    bool first = isnan(before);
-    if (first ? fabs(value - s->first) <= 1e-6 * unit : value > before) return true;
-    size_t length = push_row(r, owner, s->list, i);
-    if (first) {
-        bough_schema_error(r, row, s->key, "the first must be %g %s, got %g %s", s->first / unit,
-                           s->unit_name, value / unit, s->unit_name);
-    } else {
-        bough_schema_error(r, row, s->key, "must be more than the %g %s before it, got %g %s", before / unit,
-                           s->unit_name, value / unit, s->unit_name);
-    }
+static bool check_end(bough_schema_reader *r, const column_end *c, const bough_node *owner,
+                      const bough_node *row, int i, double value) {
+    if (fabs(value - c->expected) <= 1e-6 * c->unit) return true;
+    size_t length = push_row(r, owner, c->list, i);
+    bough_schema_error(r, row, c->key, "the %s must be %g %s, got %g %s", c->which, c->expected / c->unit,
+                       c->unit_name, value / c->unit, c->unit_name);
     bough_schema_pop(r, length);
     return false;
 }
 
-static const sequence spans = {"stations", "span", 0, 1, "m"};
+static const column_end first_span = {"stations", "span", "first", "m", 0, 1};
 
 // The last span against the length; one station holds for the whole length.
 static void check_length(bough_schema_reader *r, bough_scene_structure *s) {
@@ -267,24 +257,13 @@ static void check_length(bough_schema_reader *r, bough_scene_structure *s) {
 
 void bough_scene_check_structure(bough_schema_reader *r, void *item) {
     bough_scene_structure *s = item;
-    double before = NAN;
-    bool good = true;
-    for (int i = 0; i < s->n_station; i++) {
-        double span = s->station[i].def.position.z;
-        good = check_next(r, &spans, s->node, s->station[i].node, i, before, span) && good;
-        before = span;
-    }
-    if (good) check_length(r, s);
+    const bough_scene_station *first = &s->station[0];
+    if (check_end(r, &first_span, s->node, first->node, 0, first->def.position.z)) check_length(r, s);
 }
 
 void bough_scene_check_aero_blade(bough_schema_reader *r, void *item) {
     const bough_scene_aero_blade *b = item;
-    double before = NAN;
-    for (int i = 0; i < b->n_station; i++) {
-        double span = b->station[i].def.span;
-        check_next(r, &spans, b->node, b->station[i].node, i, before, span);
-        before = span;
-    }
+    check_end(r, &first_span, b->node, b->station[0].node, 0, b->station[0].def.span);
 }
 
 // A turn later the coefficients are the same.
@@ -302,20 +281,14 @@ static void check_turn(bough_schema_reader *r, const bough_scene_polar *p) {
 }
 
 void bough_scene_check_polar(bough_schema_reader *r, void *item) {
-    static const sequence angles = {"table", "alpha", -BOUGH_PI, BOUGH_PI / 180, "deg"};
+    static const column_end first = {"table", "alpha", "first", "deg", -BOUGH_PI, BOUGH_DEGREE},
+                            last = {"table", "alpha", "last", "deg", BOUGH_PI, BOUGH_DEGREE};
     const bough_scene_polar *p = item;
-    double before = NAN;
-    bool good = true;
-    for (int i = 0; i < p->n_row; i++) {
-        good = check_next(r, &angles, p->node, p->row[i].node, i, before, p->row[i].alpha) && good;
-        before = p->row[i].alpha;
-    }
-    if (good && fabs(before - BOUGH_PI) <= 1e-6) check_turn(r, p);
-    if (!good || fabs(before - BOUGH_PI) <= 1e-6) return;
-    size_t length = push_row(r, p->node, "table", p->n_row - 1);
-    bough_schema_error(r, p->row[p->n_row - 1].node, "alpha", "the last must be 180 deg, got %g deg",
-                       before * 180 / BOUGH_PI);
-    bough_schema_pop(r, length);
+    int n = p->n_row - 1;
+    const bough_scene_polar_row *x = p->row;
+    if (check_end(r, &first, p->node, x[0].node, 0, x[0].alpha) &&
+        check_end(r, &last, p->node, x[n].node, n, x[n].alpha))
+        check_turn(r, p);
 }
 
 void bough_scene_check_polars(bough_schema_reader *r, void *item) {
@@ -331,27 +304,11 @@ void bough_scene_check_polars(bough_schema_reader *r, void *item) {
     }
 }
 
-bool bough_scene_check_increasing(bough_schema_reader *r, const bough_node *node, const char *key,
-                                  const double *value, const char *unit) {
-    const bough_node *list = bough_node_find(node, key);
-    bool good = true;
-    for (int i = 1; i < list->n; i++) {
-        if (value[i] > value[i - 1]) continue;
-        char path[32];
-        snprintf(path, sizeof path, "%s[%d]", key, i);
-        bough_schema_error(r, list->value[i], path, "must be more than the %g %s before it, got %g %s",
-                           value[i - 1], unit, value[i], unit);
-        good = false;
-    }
-    return good;
-}
-
 void bough_scene_check_wind_table(bough_schema_reader *r, void *item) {
     const bough_scene_wind_table *t = item;
     if (t->n_time != t->n_speed) {
         bough_schema_error(r, t->node, "speeds", "has %d values, but times has %d", t->n_speed, t->n_time);
     }
-    bough_scene_check_increasing(r, t->node, "times", t->time, "s");
 }
 
 // The wind of a file is all in it; its path becomes relative to where the program runs.
@@ -405,7 +362,6 @@ void bough_scene_check_tower(bough_schema_reader *r, void *item) {
         bough_schema_error(r, t->node, "drag", "has %d values, but height has %d; give one or as many",
                            t->n_drag, n);
     }
-    bough_scene_check_increasing(r, t->node, "height", t->def.height, "m");
     double *drag = bough_arena_doubles(r->arena, (size_t)n);
     for (int i = 0; i < n; i++) drag[i] = t->def.drag[t->n_drag == n ? i : 0];
     t->def.drag = drag;

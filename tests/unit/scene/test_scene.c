@@ -216,7 +216,7 @@ TEST(tables_of_joint_loads_are_checked) {
                "  - {joint: a, torque: " more "}\n"
     accepts(LOADED("{times: [0, 1 s], values: [2 kN m, 0]}"));
     refuses(LOADED("{times: [0, 1, 1], values: [2, 0, 1]}"),
-            "s.yaml:8:39: error: loads[0].torque.times[2]: must be more than the 1 s before it, got 1 s\n");
+            "s.yaml:8:39: error: loads[0].torque.times[2]: must be more than '1' before it, got '1'\n");
     refuses(LOADED("{times: [0, 1], values: [2, 0, 1]}"),
             "s.yaml:8:24: error: loads[0].torque: 2 times, but 3 values\n");
     refuses(LOADED("{times: [0, 1]}"),

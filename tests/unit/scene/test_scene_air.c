@@ -46,8 +46,7 @@ TEST(aerodynamics_are_consistent) {
             "s.yaml:8:14: error: aero.rate: its period 0.0333333 s is not a multiple of the macro "
             "step, 0.01 s\n"
             "s.yaml:9:29: error: aero.ramp: must end after it starts, got [1 s, 0 s]\n"
-            "s.yaml:9:61: error: aero.tower.height[2]: must be more than the 20 m before it, got 10 "
-            "m\n"
+            "s.yaml:9:61: error: aero.tower.height[2]: must be more than '20' before it, got '10'\n"
             "s.yaml:9:76: error: aero.tower.diameter: has 2 values, but height has 3\n");
     refuses(ROTOR "turbine: {rotor: hub, blades: [b1]}\n"
                   "aero: {rate: 50 Hz, wind: {speed: 8}, blade: aero.yaml, polars: polars.yaml,\n"
@@ -65,8 +64,8 @@ TEST(aerodynamics_are_consistent) {
     write_file("aero.yaml", "stations:\n- {span: 0, chord: 1, polar: p}\n"
                             "- {span: 0, chord: 1, polar: p}\n");
     refuses(ROTOR AERO, "s.yaml:7:7: error: aero: needs 'turbine', which names rotor and blades\n"
-                        "aero.yaml:3:10: error: stations[1].span: must be more than the 0 m before "
-                        "it, got 0 m\n");
+                        "aero.yaml:3:10: error: stations[1].span: must be more than '0' before it, "
+                        "got '0'\n");
 }
 
 #define WIND(keys)                                                                                           \
@@ -85,8 +84,8 @@ TEST(wind_is_a_speed_or_a_table) {
     refuses(WIND("speed: 8, table: {times: [0, 1], speeds: [8, 9]}"),
             "s.yaml:13:17: error: aero.wind.speed: only used without a table\n");
     refuses(WIND("table: {times: [0, 1, 1], speeds: [8, 9]}"),
-            "s.yaml:13:32: error: aero.wind.table.times[2]: must be more than the 1 s before it, "
-            "got 1 s\n"
+            "s.yaml:13:32: error: aero.wind.table.times[2]: must be more than '1' before it, "
+            "got '1'\n"
             "s.yaml:13:44: error: aero.wind.table.speeds: has 2 values, but times has 3\n");
     refuses(WIND("speed: 8, kind: log, reference_height: 1, roughness: 2"),
             "s.yaml:13:49: error: aero.wind.reference_height: must be more than the roughness, "
@@ -99,8 +98,8 @@ TEST(polars_cover_the_circle) {
                               "    rows:\n    - [-180, 0, 0, 0]\n    - [-180, 0, 0, 0]\n"
                               "    - [180, 0, 0, 0]\n");
     refuses(ROTOR "turbine: {rotor: hub, blades: [b1]}\n" AERO,
-            "polars.yaml:7:8: error: polars[0].table.rows[1].alpha: must be more than the -180 deg "
-            "before it, got -180 deg\n");
+            "polars.yaml:7:8: error: polars[0].table.rows[1].alpha: must be more than '-180' "
+            "before it, got '-180'\n");
     write_file("polars.yaml", "polars:\n- name: p\n  table:\n    columns: [alpha deg, cl, cd, cm]\n"
                               "    rows:\n    - [-180, 0, 0, 0]\n    - [90, 0, 0, 0]\n"
                               "- name: r\n  table:\n    columns: [alpha deg, cl, cd, cm]\n"

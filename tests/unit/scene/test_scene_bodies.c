@@ -207,12 +207,12 @@ TEST(stations_run_from_zero_to_the_length) {
     refuses_spans("length: 200 cm\n", (const char *[3]){"0", "1", "2"}, "");
     refuses_spans("length: 5\n", (const char *[3]){"0"}, "");
     refuses_spans("", (const char *[3]){"0", "2", "2"},
-                  "blade.yaml:6:6: error: stations.rows[2].span: must be more than the 2 m before "
-                  "it, got 2 m\n");
+                  "blade.yaml:6:6: error: stations.rows[2].span: must be more than '2' before it, "
+                  "got '2'\n");
     refuses_spans("", (const char *[3]){"0.5", "0.1", "2"},
                   "blade.yaml:4:6: error: stations.rows[0].span: the first must be 0 m, got 0.5 m\n"
-                  "blade.yaml:5:6: error: stations.rows[1].span: must be more than the 0.5 m before "
-                  "it, got 0.1 m\n");
+                  "blade.yaml:5:6: error: stations.rows[1].span: must be more than '0.5' before it, "
+                  "got '0.1'\n");
     refuses_spans("length: 3\n", (const char *[3]){"0", "1", "2"},
                   "blade.yaml:1:9: error: length: is 3 m, but the last station stands at 2 m\n");
     refuses_spans("", (const char *[3]){"0"},
