@@ -7,7 +7,7 @@
 #include "apps/bough/model/equilibrium.h"
 #include "apps/bough/model/run.h"
 #include "flexbody/rod/rod_modes.h"
-#include "tests/reference/rod_energy.h"
+#include "tests/unit/rod_energy.h"
 
 #include <assert.h>
 #include <math.h>

@@ -3,8 +3,8 @@
 #include "apps/bough/model/equilibrium.h"
 #include "core/base/base.h"
 #include "core/tree/force.h"
-#include "tests/reference/rod_energy.h"
 #include "tests/unit/built_scene.h"
+#include "tests/unit/rod_energy.h"
 #include "tests/unit/tree_measure.h"
 
 #include <stdlib.h>

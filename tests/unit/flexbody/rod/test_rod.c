@@ -1,9 +1,10 @@
 // The rod's forces, balances and tangents.
 #include "tests/unit/check.h"
 
+#include "core/base/spatial.h"
 #include "flexbody/rod/rod_system.h"
 #include "flexbody/rod/rod_tangent.h"
-#include "tests/reference/rod_energy.h"
+#include "tests/unit/rod_energy.h"
 #include "tests/unit/sample_rod.h"
 
 #include <stdlib.h>
@@ -105,6 +106,73 @@ TEST_WITH(forces_are_the_gradient_of_the_energy, setup, teardown) {
         energy[side] = rod_elastic_energy(m, &f->scratch);
     }
     check_near(power, -(energy[1] - energy[0]) / 2e-6, 1e-7, 0);
+}
+
+static bough_vec3 vector_at(const double *x, int stride, int i) {
+    return bough_v3(x[i], x[stride + i], x[2 * stride + i]);
+}
+
+// Momentum of the moving vertices, angular about the origin of the frame, in its axes.
+static bough_wrench momentum(const bough_rod_model *m, const double *y) {
+    bough_wrench sum = {{0, 0, 0}, {0, 0, 0}};
+    for (int i = 0; i < N; i++) {
+        const bough_vertex_inertia *v = &m->vertex[i + 1];
+        const double *j = v->inertia, *p = y + BOUGH_ROD_P * N + i;
+        bough_quaternion turn = {p[0], p[N], p[2 * N], p[3 * N]};
+        bough_inertia own = {
+            v->mass, v->moment, {{j[0], j[3], j[4]}, {j[3], j[1], j[5]}, {j[4], j[5], j[2]}}};
+        bough_transform at = {vector_at(y, N, i), bough_rotation_matrix(bough_quaternion_normalised(turn))};
+        bough_vec3 u = vector_at(y + BOUGH_ROD_U * N, N, i);
+        bough_twist twist = {bough_mat3_tmul(at.rotation, u), vector_at(y + BOUGH_ROD_W * N, N, i)};
+        sum = bough_wrench_add(sum, bough_wrench_to_parent(&at, bough_inertia_mul(&own, twist)));
+    }
+    return sum;
+}
+
+// Weight and loads of the moving vertices at 0.5 s, and what the root takes from the first segment.
+static bough_wrench outer_forces(fixture *f) {
+    const bough_vec3 gravity = {f->input[6], f->input[7], f->input[8]};
+    double root[6];
+    bough_rod_root_wrench(f->model, &f->loads, 0.5, f->state, f->input, &f->scratch, root);
+    bough_wrench sum = bough_wrench_sub((bough_wrench){{0, 0, 0}, {0, 0, 0}}, bough_wrench_load(root));
+    for (int i = 0; i <= N; i++) {
+        double load[6];
+        for (int c = 0; c < 6; c++) {
+            int k = c * f->model->stride + i;
+            load[c] = f->loads.value[k] + (0.5 - f->loads.start) * f->loads.rate[k];
+        }
+        bough_transform at = {i > 0 ? vector_at(f->state, N, i - 1) : bough_v3(0, 0, 0),
+                              bough_mat3_identity()};
+        sum = bough_wrench_add(sum, bough_wrench_to_parent(&at, bough_wrench_load(load)));
+        if (i == 0) continue;
+        const double *p = f->state + BOUGH_ROD_P * N + i - 1;
+        bough_quaternion turn = {p[0], p[N], p[2 * N], p[3 * N]};
+        at.rotation = bough_rotation_matrix(bough_quaternion_normalised(turn));
+        bough_vec3 arm = bough_mat3_mul(at.rotation, f->model->vertex[i].moment);
+        bough_vec3 lever = bough_axpy(f->model->vertex[i].mass, at.position, arm);
+        bough_wrench weight = {bough_scale(f->model->vertex[i].mass, gravity), bough_cross(lever, gravity)};
+        sum = bough_wrench_add(sum, weight);
+    }
+    return sum;
+}
+
+// Inner forces, elastic and viscous, have no resultant: a rod deformed and moving in a frame that moves.
+TEST_WITH(momentum_changes_by_loads_weight_and_root_alone, setup, teardown) {
+    fixture *f = *context;
+    const double h = 1e-6;
+    const bough_twist frame = bough_twist_load(f->input);
+    double rate[STATES], moved[STATES], now[6], side[2][6], expected[6];
+    derivative(f, f->state, f->input, rate);
+    for (int s = 0; s < 2; s++) {
+        for (int k = 0; k < STATES; k++) moved[k] = f->state[k] + (s == 0 ? -h : h) * rate[k];
+        bough_wrench_store(momentum(f->model, moved), side[s]);
+    }
+    bough_wrench held = bough_wrench_cross(frame, momentum(f->model, f->state));
+    bough_wrench_store(bough_wrench_sub(outer_forces(f), held), expected);
+    for (int c = 0; c < 6; c++) {
+        now[c] = (side[1][c] - side[0][c]) / (2 * h);
+        check_near(now[c], expected[c], 1e-6, 1e-6);
+    }
 }
 
 static void check_newton(fixture *f) {

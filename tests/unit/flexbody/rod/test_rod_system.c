@@ -5,8 +5,8 @@
 #include "core/base/linalg.h"
 #include "flexbody/rod/rod_system.h"
 #include "flexbody/section/section.h"
-#include "tests/reference/rod_energy.h"
 #include "tests/unit/contract.h"
+#include "tests/unit/rod_energy.h"
 #include "tests/unit/sample_rod.h"
 
 enum { N = 5, STATES = BOUGH_ROD_STATES * N };

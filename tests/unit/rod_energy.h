@@ -1,6 +1,6 @@
 // The elastic energy of a rod, for balances: no run needs it.
-#ifndef BOUGH_TESTS_REFERENCE_ROD_ENERGY_H
-#define BOUGH_TESTS_REFERENCE_ROD_ENERGY_H
+#ifndef BOUGH_TESTS_UNIT_ROD_ENERGY_H
+#define BOUGH_TESTS_UNIT_ROD_ENERGY_H
 
 #include "flexbody/rod/rod_lanes.h"
 
