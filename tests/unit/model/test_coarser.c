@@ -1,0 +1,153 @@
+// The scene of a companion: what is coarser in it, and which part of the difference is the error.
+#include "apps/bough/model/companion.h"
+#include "tests/unit/built_scene.h"
+
+static const char runup[] = "apps/turbine/runup.yaml", stages[] = "apps/turbine/runup-stages.yaml",
+                  spin_up[] = "apps/beams/spin-up.yaml";
+
+#define MONOLITHIC "simulation.coupling={scheme: monolithic}"
+#define SEGMENTS(n) "bodies[3-5].rod.segments=" #n
+
+// A scene with two settings (NULL: none) and the one beside it.
+typedef struct coarser {
+    bough_scene *scene;
+    const bough_scene *other;
+} coarser;
+
+static coarser coarser_of(bough_arena *arena, const char *path, const char *first, const char *second) {
+    const char *const sets[] = {first, first ? second : NULL, NULL};
+    bough_scene *scene = scene_read(arena, path, sets);
+    return (coarser){scene, bough_coarser_scene(arena, scene, BOUGH_COARSER_ALL)};
+}
+
+TEST(a_scene_is_coarser_in_everything) {
+    check_arena(arena);
+    coarser x = coarser_of(arena, stages, NULL, NULL);
+    const bough_scene *c = x.other;
+    check_near(c->simulation.macro_step, 40e-3, 1e-15, 0);
+    check_near(c->simulation.master.step, 20e-3, 1e-15, 0);
+    check_near(c->simulation.master.rtol, 3e-3, 1e-15, 0);
+    check_near(c->aero.rate, 25, 1e-15, 0);
+    for (int i = 0; i < c->n_body; i++) {
+        if (x.scene->body[i].rod.node) assert_int_equal(c->body[i].rod.n_segment, 12);
+    }
+    assert_true(c->simulation.halves);
+    // of the time alone: the air's samples do not let the macro step be longer
+    c = bough_coarser_scene(arena, x.scene, BOUGH_COARSER_TIME);
+    check_near(c->simulation.macro_step, 20e-3, 1e-15, 0);
+    assert_false(c->simulation.halves);
+    check_near(c->aero.rate, 50, 1e-15, 0);
+    for (int i = 0; i < c->n_body; i++)
+        assert_int_equal(c->body[i].rod.n_segment, x.scene->body[i].rod.n_segment);
+}
+
+// Rods of few segments get more, all blades as many, and the part of the difference follows; it is the whole
+// one where a coupling is explicit. A jump within a macro step makes a coupling one of first order, too. The
+// delay of loads that are held between samples is of first order; vibrations that no air damps err at a lower
+// one.
+TEST(the_error_is_a_part_of_the_difference) {
+    static const struct {
+        const char *path, *set[2];
+        int segments; // of the other's blades; 0: not looked at
+        double share;
+    } cases[] = {
+        {runup, {SEGMENTS(20), MONOLITHIC}, 10, 0.25},
+        {runup, {SEGMENTS(16), MONOLITHIC}, 10, 0.75 / (2.56 - 1)},
+        {runup, {SEGMENTS(9), MONOLITHIC}, 5, 0.75 / (81.0 / 25 - 1)},
+        {runup, {SEGMENTS(8), "simulation.coupling={scheme: ramp}"}, 16, 1},
+        {runup, {SEGMENTS(1), "simulation.coupling={scheme: ramp}"}, 8, 1},
+        {runup, {"bodies[3-5].fidelity=modal", MONOLITHIC}, 48, 1},
+        {runup, {SEGMENTS(16), "simulation.coupling={scheme: ramp}"}, 10, 0.5},
+        {runup, {SEGMENTS(16), "simulation.coupling={scheme: iterated}"}, 10, 1},
+        {runup, {SEGMENTS(16), "simulation.coupling={scheme: frozen}"}, 10, 1},
+        {runup, {"loads=[{joint: hub, torque: 1 MN m, ramp: [1 s, 1.01 s]}]"}, 0, 1},
+        {runup, {"loads=[{joint: hub, torque: 1 MN m, ramp: [1 s, 2 s]}]"}, 0, 0.5},
+        {runup,
+         {"loads=[{joint: hub, torque: {times: [0, 5 s, 5.01 s], values: [0, 1 MN m, 2 MN m]}}]"},
+         0,
+         1},
+        {runup, {"loads=[{joint: hub, torque: 1 MN m}]"}, 0, 0.5},
+        {runup, {"aero.hold=constant", MONOLITHIC}, 0, 0.5},
+        {spin_up, {"simulation.micro=null", MONOLITHIC}, 0, 0.4},
+    };
+    check_arena(arena);
+    for (size_t k = 0; k < sizeof cases / sizeof *cases; k++) {
+        coarser x = coarser_of(arena, cases[k].path, cases[k].set[0], cases[k].set[1]);
+        for (int i = 3; i <= 5 && cases[k].segments > 0; i++)
+            assert_int_equal(x.other->body[i].rod.n_segment, cases[k].segments);
+        check_near(bough_coarser_share(x.scene, x.other), cases[k].share, 1e-12, 0);
+    }
+}
+
+#define PULSE(fall, end, value)                                                                              \
+    "loads=[{body: arm, at: tip, force: [0, 0, 1], factor: {times: [0, 10 us, " fall ", " end                \
+    "], values: [0, 1, 1, " value "]}}]"
+
+// A wave takes 0.1 ms through a segment.
+TEST(short_pulses_have_a_finer_companion) {
+    static const char *const loads[] = {PULSE("40 us", "50 us", "0"), PULSE("140 us", "150 us", "0"),
+                                        PULSE("40 us", "50 us", "2")};
+    static const int segments[] = {40, 10, 10};
+    check_arena(arena);
+    for (int k = 0; k < 3; k++) {
+        coarser x = coarser_of(arena, spin_up, loads[k], NULL);
+        assert_int_equal(x.other->body[0].rod.n_segment, segments[k]);
+    }
+}
+
+// With a finer mesh the air is finer too where macro steps allow it: errors of one sign would cancel in the
+// difference.
+TEST(beside_a_finer_mesh_the_air_is_finer_where_it_can_be) {
+    static const struct {
+        const char *segments, *macro_step;
+        double rate; // of 50 Hz
+    } cases[] = {{SEGMENTS(24), "simulation.macro_step=20 ms", 25},
+                 {SEGMENTS(4), "simulation.macro_step=20 ms", 25},
+                 {SEGMENTS(4), "simulation.macro_step=10 ms", 100}};
+    check_arena(arena);
+    for (size_t k = 0; k < sizeof cases / sizeof *cases; k++) {
+        coarser x = coarser_of(arena, stages, cases[k].segments, cases[k].macro_step);
+        check_near(x.other->aero.rate, cases[k].rate, 0, 1e-12);
+    }
+}
+
+// The whole difference counts beside a finer mesh and an explicit coupling: that of the steps is to be small.
+TEST(steps_are_little_longer_where_the_whole_difference_counts) {
+    static const struct {
+        const char *segments, *coupling;
+        double step, rtol, share;
+    } cases[] = {{SEGMENTS(8), MONOLITHIC, 20e-3, 1.8e-3, 0.25},
+                 {SEGMENTS(16), "simulation.coupling={scheme: frozen}", 15e-3, 9e-4, 1}};
+    check_arena(arena);
+    for (size_t k = 0; k < sizeof cases / sizeof *cases; k++) {
+        const char *const sets[] = {cases[k].segments, cases[k].coupling,
+                                    "simulation.master={solver: rosenbrock, step: 10 ms, rtol: 3e-4}",
+                                    "simulation.micro={solver: rosenbrock, step: 10 ms, rtol: 3e-4}", NULL};
+        bough_scene *scene = scene_read(arena, stages, sets);
+        const bough_scene *c = bough_coarser_scene(arena, scene, BOUGH_COARSER_ALL);
+        check_near(c->simulation.master.step, cases[k].step, 1e-15, 0);
+        check_near(c->simulation.master.rtol, cases[k].rtol, 1e-15, 0);
+        check_near(bough_coarser_time_share(scene), cases[k].share, 1e-15, 0);
+    }
+}
+
+// Another scheme than one system leaves the companion no error of a coupling, but the sub-solvers' steps,
+// twice as long.
+TEST(a_coupling_has_a_monolithic_companion) {
+    check_arena(arena);
+    coarser x = coarser_of(arena, runup, NULL, NULL);
+    const bough_scene *c = x.other;
+    assert_string_equal(bough_scheme_name(c->simulation.coupling.scheme), "monolithic");
+    check_near(c->simulation.master.step, 20e-3, 1e-15, 0);
+    check_near(c->simulation.master.rtol, 4e-3, 1e-15, 0);
+    check_near(bough_coarser_share(x.scene, c), 0.5, 1e-12, 0);
+    // fixed steps have an error that the companion's, by tolerance, do not share
+    x = coarser_of(arena, runup, "simulation.micro={solver: generalized-alpha, step: 10 ms}", NULL);
+    check_near(bough_coarser_share(x.scene, x.other), 1, 1e-12, 0);
+    // a weight other than 1/2 makes the coupling's error one of first order: the whole difference
+    x.scene->simulation.micro.solver = BOUGH_ROSENBROCK;
+    x.scene->simulation.coupling.options.theta = 0.5;
+    check_near(bough_coarser_share(x.scene, x.other), 0.5, 1e-12, 0);
+    x.scene->simulation.coupling.options.theta = 0.89;
+    check_near(bough_coarser_share(x.scene, x.other), 1, 1e-12, 0);
+}
