@@ -176,6 +176,7 @@ static inline void contract_save_restore(bough_member *m, contract_point at, dou
     check_near(m->time, t, 0, 0);
     contract_run(m, at, length, restart);
     memcpy(first, m->state, n);
+    contract_run(m, at, length, restart); // elsewhere: what the integrator keeps differs
     member_restore(m, copy);
     void *factors = contract_factors(s, at, length, arena);
     contract_evaluate(s, CONTRACT_RATE, at.t, at.state, at.input, work);
@@ -269,7 +270,7 @@ static inline void contract_result(const bough_system *s, contract_point at, dou
 }
 
 // No result depends on earlier calls: to the bit the same after a derivative and a linearisation at another
-// time, state and input.
+// time, state and input, and once factors from there are renewed.
 static inline void contract_no_memory(const bough_system *s, contract_point at, double gamma) {
     int most = 1 + s->n_state + s->n_output + s->n_input * s->n_state;
     double *first = contract_doubles(most), *again = contract_doubles(most);
@@ -287,6 +288,9 @@ static inline void contract_no_memory(const bough_system *s, contract_point at, 
         contract_result(s, elsewhere, gamma, 4, others, again);
         contract_result(s, elsewhere, gamma, 1, others, again);
         contract_result(s, elsewhere, gamma, 0, others, again);
+        contract_result(s, at, gamma, which, factors, again);
+        contract_near(again, first, contract_result_size(s, which), 0, contract_results[which]);
+        assert_true(s->ops->factor(s->self, others, gamma)); // of elsewhere
         contract_result(s, at, gamma, which, factors, again);
         contract_near(again, first, contract_result_size(s, which), 0, contract_results[which]);
     }

@@ -85,7 +85,7 @@ static inline bough_body_def random_body(unsigned *seed, const char *name, int p
 
 // Every kind of joint, branches, a welded body in between, bodies out of order, two ports (one on
 // the welded body), a joint load with a ramp and an external wrench.
-static inline fixture everything_with(bough_integrator_kind solver, double rtol) {
+static inline fixture everything(double rtol) {
     static const char *names[] = {"a", "b", "c", "d", "e", "f", "g", "h", "i", "j"};
     static const int parents[] = {8, 0, 7, 9, 3, 4, BOUGH_GROUND, BOUGH_GROUND, 2, 2};
     static const bough_joint_kind kinds[] = {
@@ -121,13 +121,11 @@ static inline fixture everything_with(bough_integrator_kind solver, double rtol)
                           .loads = loads,
                           .n_springs = 2,
                           .springs = springs};
-    fixture f = build_with(&def, solver, rtol);
+    fixture f = build(&def, rtol);
     double value[6] = {1, 2, 3, -1, -2, 0.5}, rate[6] = {0.5, 0, 1, 0, 1, 0};
     bough_tree_set_wrench(f.tree, 2, 0.05, value, rate, NULL);
     return f;
 }
-
-static inline fixture everything(double rtol) { return everything_with(BOUGH_IDA, rtol); }
 
 static const double some_input[12] = {1, -2, 0.5, 0.3, 0.8, -0.6, -1, 0.4, 2, 0.7, -0.1, 0.9};
 

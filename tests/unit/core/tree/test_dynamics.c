@@ -1,8 +1,6 @@
-// The recursions of the tree against each other, and its tangents.
+// The recursions of the tree against each other and against laws of mechanics.
 #include "tests/unit/rigid_tree.h"
 #include "tests/unit/tree_measure.h"
-
-// -- recursions against each other -----------------------------------------------------------
 
 TEST(inverse_dynamics_inverts_forward_dynamics) {
     fixture f = everything(1e-6);
@@ -55,25 +53,6 @@ TEST(energy_follows_the_power_of_the_loads) {
                before.kinetic + before.potential + before.elastic, 1e-7, 1e-7);
 }
 
-// -- tangents --------------------------------------------------------------------------------
-
-TEST(output_tangent_is_the_derivative) {
-    fixture f = everything(1e-6);
-    int n = f.s.n_state, m = f.s.n_output;
-    double change[MOST], plus[MOST], minus[MOST], y[MOST], tangent[MOST], h = 1e-6;
-    unsigned seed = 3;
-    for (int i = 0; i < n; i++) change[i] = next(&seed);
-    for (int side = 0; side < 2; side++) {
-        for (int i = 0; i < n; i++) y[i] = f.m->state[i] + (side == 0 ? h : -h) * change[i];
-        f.s.ops->output(f.s.self, 0, y, some_input, side == 0 ? plus : minus);
-    }
-    f.s.ops->output_tangent(f.s.self, 0, f.m->state, some_input, change, NULL, tangent);
-    for (int i = 0; i < m; i++) {
-        check_near(tangent[i], (plus[i] - minus[i]) / (2 * h), 1e-8, 1e-8);
-        assert_true(fabs(tangent[i]) > 1e-4);
-    }
-}
-
 // Along the motion: the links' accelerations of the forward dynamics, and ġ = −ω×g.
 TEST(output_tangent_along_the_motion_is_the_acceleration) {
     fixture f = everything(1e-6);
@@ -96,43 +75,5 @@ TEST(output_tangent_along_the_motion_is_the_acceleration) {
         check_near(tangent[9 * p + 7], gdot.y, 1e-12, 1e-12);
         check_near(tangent[9 * p + 8], gdot.z, 1e-12, 1e-12);
         check_near(bough_norm(g), bough_norm(f.tree->gravity), 1e-14, 0);
-    }
-}
-
-TEST(input_columns_are_the_derivative) {
-    fixture f = everything(1e-6);
-    int n = f.s.n_state;
-    double *columns = calloc((size_t)(n * f.s.n_input), sizeof(double));
-    double plus[MOST], minus[MOST], u[12];
-    f.s.ops->input_columns(f.s.self, 0.2, f.m->state, some_input, columns);
-    for (int j = 0; j < f.s.n_input; j++) {
-        memcpy(u, some_input, sizeof u);
-        u[j] += 0.5; // f is linear in u: no truncation error
-        f.s.ops->derivative(f.s.self, 0.2, f.m->state, u, plus);
-        u[j] -= 1;
-        f.s.ops->derivative(f.s.self, 0.2, f.m->state, u, minus);
-        for (int i = 0; i < n; i++) check_near(columns[n * j + i], plus[i] - minus[i], 1e-9, 1e-11);
-    }
-    free(columns);
-}
-
-// (I − γJ) x = b with x by solve and J x by a difference of f along x.
-TEST(solve_inverts_the_linearisation) {
-    fixture f = everything(1e-6);
-    int n = f.s.n_state;
-    double x[MOST], b[MOST], y[MOST], plus[MOST], minus[MOST], gamma = 0.07, h = 1e-6;
-    unsigned seed = 5;
-    for (int i = 0; i < n; i++) x[i] = b[i] = next(&seed);
-    void *factors = f.s.ops->factors(f.s.self, f.arena);
-    assert_non_null(factors);
-    assert_true(f.s.ops->linearise(f.s.self, 0.2, f.m->state, some_input, factors));
-    assert_true(f.s.ops->factor(f.s.self, factors, gamma));
-    f.s.ops->solve(f.s.self, factors, x);
-    for (int side = 0; side < 2; side++) {
-        for (int i = 0; i < n; i++) y[i] = f.m->state[i] + (side == 0 ? h : -h) * x[i];
-        f.s.ops->derivative(f.s.self, 0.2, y, some_input, side == 0 ? plus : minus);
-    }
-    for (int i = 0; i < n; i++) {
-        check_near(x[i] - gamma * (plus[i] - minus[i]) / (2 * h), b[i], 1e-7, 1e-7);
     }
 }

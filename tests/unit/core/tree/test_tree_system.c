@@ -1,62 +1,15 @@
-// The tree behind the contract: copies, histories, ports.
+// The tree behind the contract: history, ports.
 #include "tests/unit/contract.h"
 #include "tests/unit/rigid_tree.h"
 #include "tests/unit/tree_measure.h"
 
 TEST(tree_fulfils_the_contract) {
-    for (int solver = BOUGH_IDA; solver <= BOUGH_ROSENBROCK; solver++) {
-        fixture f = everything_with(solver, 1e-8);
-        double y[MOST];
-        memcpy(y, f.m->state, (size_t)f.s.n_state * sizeof(double));
-        contract_point at = {0.2, y, some_input, 1e-5};
-        contract_check(f.m, at, 0.07, 0.05);
-        contract_set_state(f.m, at, 1e-4);
-        bough_arena_destroy(f.arena);
-    }
-}
-
-TEST(restored_copies_repeat_bit_by_bit) {
-    fixture f = everything(1e-7);
-    int n = f.s.n_state;
-    double coefficient[48] = {0}, first[MOST], second[MOST];
-    for (int i = 0; i < 24; i++) coefficient[i] = some_input[i % 12];
-    bough_signal signal = {12, 0, 0.5, coefficient};
-    bough_status status = bough_member_advance(f.m, 0.2, &signal, true);
-    check_ok(status);
-    char *copy = member_save(f.arena, f.m);
-    for (int run = 0; run < 2; run++) {
-        member_restore(f.m, copy);
-        check_near(f.m->time, 0.2, 0, 0);
-        for (int k = 3; k <= 5; k++) {
-            status = bough_member_advance(f.m, 0.1 * k, &signal, false);
-            check_ok(status);
-        }
-        memcpy(run == 0 ? first : second, f.m->state, (size_t)n * sizeof(double));
-        // go elsewhere in between, so that the integrator's leftovers differ
-        if (run == 0) bough_member_advance(f.m, 0.9, &signal, false);
-    }
-    assert_memory_equal(first, second, (size_t)n * sizeof(double));
-}
-
-// Radau is a one-step method: a copy of it lacks nothing.
-TEST(radau_goes_on_from_a_copy_as_if_nothing_had_been) {
-    fixture f = everything_with(BOUGH_RADAU5, 1e-7), tight = everything(1e-11);
-    size_t n = (size_t)f.s.n_state * sizeof(double);
-    double coefficient[48] = {0}, first[MOST];
-    for (int i = 0; i < 24; i++) coefficient[i] = some_input[i % 12];
-    bough_signal signal = {12, 0, 1, coefficient};
-    for (int k = 1; k <= 25; k++) {
-        char *copy = member_save(f.arena, f.m);
-        bough_member_advance(f.m, 0.02 * k, &signal, k == 16); // the ramp's end is a kink
-        memcpy(first, f.m->state, n);
-        bough_member_advance(f.m, 0.02 * k + 0.1, &signal, true);
-        member_restore(f.m, copy);
-        bough_member_advance(f.m, 0.02 * k, &signal, k == 16);
-        assert_memory_equal(first, f.m->state, n);
-    }
-    bough_member_advance(tight.m, 0.3, &signal, true);
-    bough_member_advance(tight.m, 0.5, &signal, true);
-    for (int i = 0; i < f.s.n_state; i++) check_near(f.m->state[i], tight.m->state[i], 1e-6, 1e-6);
+    fixture f = everything(1e-8);
+    double y[MOST];
+    memcpy(y, f.m->state, (size_t)f.s.n_state * sizeof(double));
+    contract_point at = {0.2, y, some_input, 1e-5};
+    contract_check(f.m, at, 0.07, 0.05);
+    contract_set_state(f.m, at, 1e-4);
 }
 
 // Kept history over many macro steps agrees with a far tighter run.
@@ -75,28 +28,6 @@ TEST(kept_history_keeps_the_accuracy) {
     count = bough_member_statistics(f.m);
     assert_int_equal(count.starts, 1);
     assert_true(count.steps > 0 && count.jacobians > 0 && count.derivatives > count.steps);
-}
-
-// f at one state, after whatever else moved the data.
-TEST(rates_do_not_depend_on_earlier_calls) {
-    fixture f = everything(1e-7);
-    const bough_system_ops *ops = f.s.ops;
-    void *factors = ops->factors(f.s.self, f.arena);
-    double here[MOST], there[MOST], fresh[MOST], rate[MOST], out[MOST];
-    size_t bytes = (size_t)f.s.n_state * sizeof(double);
-    memcpy(here, f.m->state, bytes);
-    memcpy(there, f.m->state, bytes);
-    for (int i = 0; i < f.s.n_state; i++) there[i] += 0.05 * sin(i);
-    assert_true(ops->derivative(f.s.self, 0.2, here, some_input, fresh));
-    ops->output(f.s.self, 0.2, there, some_input, out);
-    assert_true(ops->derivative(f.s.self, 0.2, here, some_input, rate));
-    assert_memory_equal(rate, fresh, bytes);
-    // linearised elsewhere
-    assert_true(ops->linearise(f.s.self, 0.2, there, some_input, factors));
-    assert_true(ops->derivative(f.s.self, 0.2, here, some_input, rate));
-    assert_true(ops->factor(f.s.self, factors, 1e-2));
-    assert_true(ops->derivative(f.s.self, 0.2, here, some_input, rate));
-    assert_memory_equal(rate, fresh, bytes);
 }
 
 // A marker's wrench against the same wrench at the port in the same place.
