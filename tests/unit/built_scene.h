@@ -4,19 +4,27 @@
 
 #include "apps/bough/model/simulation.h"
 #include "tests/unit/check.h"
+#include "tests/unit/scratch_name.h"
 
-// Reads the scene at `path` within the sources; `sets` ends with NULL.
-static inline bough_scene *scene_read(bough_arena *arena, const char *path, const char *const *sets) {
+#include <unistd.h>
+
+// Reads the scene in that file; `sets` ends with NULL.
+static inline bough_scene *scene_read_file(bough_arena *arena, const char *file, const char *const *sets) {
     bough_errors errors = {.arena = arena};
     bough_scene *scene = NULL;
-    char file[512];
     int n = 0;
     while (sets[n] != NULL) n++;
-    snprintf(file, sizeof file, BOUGH_SOURCE_DIR "/%s", path);
     bough_status status = bough_scene_read(arena, file, sets, n, &errors, &scene);
     bough_errors_print(&errors, stderr);
     assert_int_equal(status.code, BOUGH_OK);
     return scene;
+}
+
+// … at `path` within the sources.
+static inline bough_scene *scene_read(bough_arena *arena, const char *path, const char *const *sets) {
+    char file[512];
+    snprintf(file, sizeof file, BOUGH_SOURCE_DIR "/%s", path);
+    return scene_read_file(arena, file, sets);
 }
 
 static inline bough_simulation *scene_build(bough_arena *arena, const char *path, const char *const *sets) {
@@ -25,16 +33,60 @@ static inline bough_simulation *scene_build(bough_arena *arena, const char *path
     return s;
 }
 
+// A scene of this text.
+static inline bough_simulation *scene_build_text(bough_arena *arena, const char *text) {
+    static const char *const none[] = {NULL};
+    char file[SCRATCH_NAME];
+    bough_simulation *s = NULL;
+    FILE *stream = fdopen(mkstemp(scratch_name(file)), "w");
+    assert_non_null(stream);
+    fputs(text, stream);
+    fclose(stream);
+    bough_scene *scene = scene_read_file(arena, file, none);
+    unlink(file);
+    check_ok(bough_simulation_build(arena, scene, &s));
+    return s;
+}
+
 static inline void scene_step(bough_simulation *s) { check_ok(bough_step(s->master)); }
 
-// The value now of a channel of that name, of at most 64.
+static inline bough_channels scene_channels(bough_arena *arena, bough_simulation *s) {
+    bough_channels list = bough_channels_start(arena);
+    check_ok(bough_simulation_channels(s, &list));
+    return list;
+}
+
+// The value now of a channel of that name.
 static inline double scene_channel(bough_simulation *s, bough_channels *list, const char *name) {
-    double value[64];
+    double value[256];
     int index = bough_channels_find(list, name);
-    assert_true(index >= 0 && list->count <= 64);
+    if (index < 0) print_error("no channel %s\n", name);
+    assert_true(index >= 0 && list->count <= 256);
     bough_simulation_update(s);
     bough_channels_sample(list, s->master->time, value);
     return value[index];
+}
+
+// A simulation with its channels; the arena ends with the program unless it is destroyed before.
+typedef struct built {
+    bough_arena *arena;
+    bough_simulation *s;
+    bough_channels channels;
+} built;
+
+static inline built built_from(bough_arena *arena, bough_simulation *s) {
+    return (built){arena, s, scene_channels(arena, s)};
+}
+
+static inline built built_open(const char *path, const char *const *sets) {
+    bough_arena *arena = check_memory();
+    return built_from(arena, scene_build(arena, path, sets));
+}
+
+static inline double channel(built *b, const char *name) { return scene_channel(b->s, &b->channels, name); }
+
+static inline void run_until(built *b, double t) {
+    while (b->s->master->time < t - 1e-9) scene_step(b->s);
 }
 
 #endif

@@ -161,8 +161,7 @@ TEST(rotor_tells_the_wind_relative_to_the_blades) {
     double wind[2], ratio[2];
     for (int i = 0; i < 2; i++) {
         fixture f = open_turbine(sets[i]);
-        bough_channels list = bough_channels_start(f.arena);
-        check_ok(bough_simulation_channels(f.s, &list));
+        bough_channels list = scene_channels(f.arena, f.s);
         sample(&f, 0, period);
         wind[i] = scene_channel(f.s, &list, "RtVAvgxh");
         ratio[i] = scene_channel(f.s, &list, "RtTSR");

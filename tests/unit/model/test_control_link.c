@@ -11,32 +11,7 @@ static const char turbine[] = "apps/turbine/power.yaml";
     "simulation.threads=1", "bodies[3].fidelity=rigid", "bodies[4].fidelity=rigid", "bodies[5].fidelity=rigid"
 #define BLADED "control={kind: bladed, library: " BOUGH_SAMPLE_DISCON "}"
 
-typedef struct fixture {
-    bough_arena *arena;
-    bough_simulation *s;
-    bough_channels channels;
-} fixture;
-
-static fixture open_turbine(const char *const *sets) {
-    fixture f = {.arena = check_memory()};
-    f.s = scene_build(f.arena, turbine, sets);
-    f.channels = bough_channels_start(f.arena);
-    check_ok(bough_simulation_channels(f.s, &f.channels));
-    return f;
-}
-
-static void run_until(fixture *f, double t) {
-    while (f->s->master->time < t - 1e-9) scene_step(f->s);
-}
-
-static double channel(fixture *f, const char *name) {
-    double value[200];
-    int column = bough_channels_find(&f->channels, name);
-    assert_true(column >= 0 && f->channels.count <= 200);
-    bough_simulation_update(f->s);
-    bough_channels_sample(&f->channels, f->s->master->time, value);
-    return value[column];
-}
+static built open_turbine(const char *const *sets) { return built_open(turbine, sets); }
 
 // Above rated wind the law settles where a rigid rotor gives rated power at rated speed: a pitch of
 // 10.45° gives 2 % less than it.
@@ -48,7 +23,7 @@ TEST(law_holds_speed_and_power) {
                                        "bodies[5].pitch=8 deg",
                                        "bodies[2].joint.speed=12.6 rpm",
                                        NULL};
-    fixture f = open_turbine(sets);
+    built f = open_turbine(sets);
     run_until(&f, 60);
     check_near(channel(&f, "RotSpeed"), 12.1, 2e-3, 0);
     check_near(channel(&f, "BldPitch1"), 10.3, 0, 0.25);
@@ -68,7 +43,7 @@ TEST(law_brakes_unsteered_blades_only) {
                                        "bodies[5].pitch=10 deg",
                                        "bodies[2].joint.speed=0 rpm",
                                        NULL};
-    fixture f = open_turbine(sets);
+    built f = open_turbine(sets);
     for (int k = 1; k <= 10; k++) {
         run_until(&f, k);
         check_near(channel(&f, "GenTq"), 0, 0, 0);
@@ -92,7 +67,7 @@ TEST(law_brakes_unsteered_blades_only) {
 // the pitch first at 8°/s.
 TEST(library_steers_the_turbine) {
     static const char *const sets[] = {RIGID, BLADED, NULL};
-    fixture f = open_turbine(sets);
+    built f = open_turbine(sets);
     check_near(channel(&f, "GenSpeed"), 97 * 9.16, 1e-9, 0); // before any sample
     run_until(&f, 0.5);
     check_near(channel(&f, "BldPitch1"), 8 * 0.5, 1e-6, 0);
@@ -115,7 +90,7 @@ TEST(library_steers_all_blades) {
         "rod: {table: blade-structure.yaml, segments: 24}}",
         "turbine.blades=[blade1, blade2, blade3, blade4]",
         NULL};
-    fixture f = open_turbine(sets);
+    built f = open_turbine(sets);
     run_until(&f, 0.5);
     check_near(channel(&f, "BldPitch4"), 8 * 0.5, 1e-6, 0);
 }
@@ -125,12 +100,12 @@ TEST(library_receives_the_nacelle) {
     static const char *const sets[] = {RIGID, BLADED, "aero.wind.direction=10 deg", NULL};
     static const char *const record[] = {"record 24", "record 37", "record 53", "record 70"};
     for (int i = 0; i < 4; i++) {
-        fixture f = {.arena = check_memory()};
-        bough_scene *scene = scene_read(f.arena, turbine, sets);
+        bough_arena *arena = check_memory();
+        bough_simulation *s = NULL;
+        bough_scene *scene = scene_read(arena, turbine, sets);
         scene->control.input = record[i];
-        check_ok(bough_simulation_build(f.arena, scene, &f.s));
-        f.channels = bough_channels_start(f.arena);
-        check_ok(bough_simulation_channels(f.s, &f.channels));
+        check_ok(bough_simulation_build(arena, scene, &s));
+        built f = built_from(arena, s);
         run_until(&f, 1);
         double found = 1000 * channel(&f, "GenTq"); // kN m
         if (i == 0) check_near(found, 10 * BOUGH_PI / 180, 0, 5e-3);
@@ -171,7 +146,7 @@ TEST(failing_library_ends_the_run) {
 // A sample taken again from the saved memory steers as before.
 TEST(memory_is_saved_and_restored) {
     static const char *const sets[] = {RIGID, "aero.wind.speed=15 m/s", NULL};
-    fixture f = open_turbine(sets);
+    built f = open_turbine(sets);
     run_until(&f, 3);
     double saved[100];
     bough_generator generator[2];

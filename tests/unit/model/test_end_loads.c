@@ -2,41 +2,21 @@
 #include "tests/unit/built_scene.h"
 
 #include "apps/bough/model/equilibrium.h"
-#include "tests/unit/scratch.h"
 
 #include <math.h>
 #include <stdio.h>
 
 static const double g = 9.80665;
 
-// A simulation of a scene of this text.
-static bough_status build_text(bough_arena *arena, const char *folder, const char *text,
-                               bough_simulation **s) {
-    char path[300];
-    snprintf(path, sizeof path, "%s/s.yaml", folder);
-    FILE *stream = fopen(path, "w");
-    assert_non_null(stream);
-    fputs(text, stream);
-    fclose(stream);
-    bough_errors errors = {.arena = arena};
-    bough_scene *scene;
-    check_ok(bough_scene_read(arena, path, NULL, 0, &errors, &scene));
-    remove(path);
-    return bough_simulation_build(arena, scene, s);
-}
-
 // A channel at the start.
-static double at_start(const char *folder, const char *text, const char *name) {
+static double at_start(const char *text, const char *name) {
     check_arena(arena);
-    bough_simulation *s;
-    check_ok(build_text(arena, folder, text, &s));
-    bough_channels list = bough_channels_start(arena);
-    check_ok(bough_simulation_channels(s, &list));
-    return scene_channel(s, &list, name);
+    built b = built_from(arena, scene_build_text(arena, text));
+    return channel(&b, name);
 }
 
 // 20 kg of rod, of n segments that shorten, and a head of 5 kg at its end.
-static double column(const char *folder, int n, const char *channel) {
+static double column(int n, const char *name) {
     char text[800];
     snprintf(
         text, sizeof text,
@@ -47,22 +27,22 @@ static double column(const char *folder, int n, const char *channel) {
         "  - {name: head, fidelity: rigid, mass: 5, inertia: [1, 1, 1], joint: {kind: fixed, parent: a}}\n"
         "sensors:\n  - {body: a, at: [0, 2]}\n",
         n);
-    return at_start(folder, text, channel);
+    return at_start(text, name);
 }
 
 // Whatever the mesh, the root carries the whole weight and the end the head's.
-TEST_IN_FOLDER(the_root_carries_the_whole_weight) {
+TEST(the_root_carries_the_whole_weight) {
     static const int segments[] = {2, 3, 10};
     for (int k = 0; k < 3; k++) {
-        double x = column(*context, segments[k], "aSpn1FLx"), z = column(*context, segments[k], "aSpn1FLz");
+        double x = column(segments[k], "aSpn1FLx"), z = column(segments[k], "aSpn1FLz");
         check_near(hypot(x, z), 25 * g / 1e3, 0, 1e-7);
-        x = column(*context, segments[k], "aSpn2FLx"), z = column(*context, segments[k], "aSpn2FLz");
+        x = column(segments[k], "aSpn2FLx"), z = column(segments[k], "aSpn2FLz");
         check_near(hypot(x, z), 5 * g / 1e3, 0, 1e-7);
     }
 }
 
 // The tension at the root of a rod that rotates about x at 10 rad/s, of 10 kg/m from 1 to 3 m: ∫ μ Ω² r dr.
-static double rotor(const char *folder, int n) {
+static double rotor(int n) {
     char text[800];
     snprintf(text, sizeof text,
              "gravity: [0, 0, 0]\n"
@@ -74,18 +54,18 @@ static double rotor(const char *folder, int n) {
              "           mass: [10, 0, 0, 0.1, 0.1, 0]}}\n"
              "sensors:\n  - {body: a, at: [0]}\n",
              n);
-    return at_start(folder, text, "aSpn1FLz");
+    return at_start(text, "aSpn1FLz");
 }
 
-TEST_IN_FOLDER(the_tension_of_a_rotor_is_the_integral) {
+TEST(the_tension_of_a_rotor_is_the_integral) {
     double exact = 10 * 100 * (9 - 1) / 2.0 / 1e3;
-    check_near(rotor(*context, 2), exact, 0,
+    check_near(rotor(2), exact, 0,
                1e-6); // lumped at the vertices' own centres: exact but for the stretch
-    check_near(rotor(*context, 9), exact, 0, 1e-6);
+    check_near(rotor(9), exact, 0, 1e-6);
 }
 
 // A hinged chain whose tension is many times 12 EI/h²: the elastic catenary, from the force at its top down.
-TEST_IN_FOLDER(a_cable_of_long_segments_hangs_in_a_catenary) {
+TEST(a_cable_of_long_segments_hangs_in_a_catenary) {
     static const char text[] =
         "gravity: [0, 0, -10]\nsimulation: {duration: 1 s, macro_step: 10 ms, initial: equilibrium}\nbodies:\n"
         "  - {name: anchor, fidelity: rigid, mass: 1, inertia: [1, 1, 1],\n"
@@ -98,11 +78,9 @@ TEST_IN_FOLDER(a_cable_of_long_segments_hangs_in_a_catenary) {
     double x = h / w * (asinh(top / h) - asinh(foot / h)) + h * length / axial;
     double z = (hypot(h, top) - hypot(h, foot)) / w + (top - w * length / 2) * length / axial;
     check_arena(arena);
-    bough_simulation *s;
-    check_ok(build_text(arena, *context, text, &s));
+    bough_simulation *s = scene_build_text(arena, text);
     bough_growth growth;
-    bough_channels list = bough_channels_start(arena);
-    check_ok(bough_simulation_channels(s, &list));
+    bough_channels list = scene_channels(arena, s);
     check_near(scene_channel(s, &list, "lineTipX"), x, 0, 1e-4 * length);
     check_near(scene_channel(s, &list, "lineTipZ"), z, 0, 1e-4 * length);
     check_ok(bough_simulation_growth(s, s->master->assembly, 0, &growth));

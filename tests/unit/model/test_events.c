@@ -17,16 +17,7 @@ typedef struct fixture {
 static fixture open_run(const char *events, const char *more) {
     fixture f = {.arena = check_memory()};
     const char *sets[] = {rigid, sample, "simulation.duration=30 s", events, more, NULL};
-    bough_errors errors = {.arena = f.arena};
-    bough_scene *read;
-    char path[512];
-    snprintf(path, sizeof path, "%s/%s", BOUGH_SOURCE_DIR, scene);
-    bough_status status = bough_scene_read(f.arena, path, sets, more ? 5 : 4, &errors, &read);
-    bough_errors_print(&errors, stderr);
-    assert_int_equal(status.code, BOUGH_OK);
-    status = bough_run_create(f.arena, read, &f.run);
-    assert_string_equal(status.message, "");
-    assert_int_equal(status.code, BOUGH_OK);
+    check_ok(bough_run_create(f.arena, scene_read(f.arena, scene, sets), &f.run));
     return f;
 }
 
@@ -36,7 +27,7 @@ static void go_to(fixture *f, double t) {
     }
 }
 
-static double channel(fixture *f, const char *name) {
+static double value(fixture *f, const char *name) {
     int k = bough_channels_find(&f->run.channels, name);
     assert_true(k >= 0);
     return bough_run_values(&f->run)[k];
@@ -46,30 +37,30 @@ static double channel(fixture *f, const char *name) {
 TEST(emergency_stop_feathers_without_torque) {
     fixture f = open_run("control.events=[{kind: emergency-stop, at: 1 s}]", NULL);
     go_to(&f, 1);
-    assert_true(channel(&f, "GenTq") > 10);
-    double before = channel(&f, "BldPitch1");
+    assert_true(value(&f, "GenTq") > 10);
+    double before = value(&f, "BldPitch1");
     go_to(&f, 3 + step);
-    check_near(channel(&f, "GenTq"), 0, 0, 1e-12);
+    check_near(value(&f, "GenTq"), 0, 0, 1e-12);
     for (int b = 1; b <= 3; b++) {
         char name[16];
         snprintf(name, sizeof name, "BldPitch%d", b);
-        check_near(channel(&f, name) - before, 8 * (2 + step), 1e-3, 0.2);
+        check_near(value(&f, name) - before, 8 * (2 + step), 1e-3, 0.2);
     }
     go_to(&f, 16);
-    check_near(channel(&f, "BldPitch2"), 90, 1e-9, 0);
-    assert_true(channel(&f, "RotSpeed") < 4);
+    check_near(value(&f, "BldPitch2"), 90, 1e-9, 0);
+    assert_true(value(&f, "RotSpeed") < 4);
 }
 
 TEST(stop_takes_the_torque_away_in_ten_seconds) {
     fixture f = open_run("control.events=[{kind: stop, at: 1 s, angle: 80 deg, rate: 5 deg/s}]", NULL);
     go_to(&f, 1);
-    double torque = channel(&f, "GenTq");
+    double torque = value(&f, "GenTq");
     go_to(&f, 6);
-    check_near(channel(&f, "GenTq"), torque / 2, 0.01, 0);
-    check_near(channel(&f, "BldPitch1"), 25, 0.01, 0);
+    check_near(value(&f, "GenTq"), torque / 2, 0.01, 0);
+    check_near(value(&f, "BldPitch1"), 25, 0.01, 0);
     go_to(&f, 20);
-    check_near(channel(&f, "GenTq"), 0, 0, 1e-12);
-    check_near(channel(&f, "BldPitch1"), 80, 1e-9, 0);
+    check_near(value(&f, "GenTq"), 0, 0, 1e-12);
+    check_near(value(&f, "BldPitch1"), 80, 1e-9, 0);
 }
 
 // A brake on the rotor's joint stops it within those ten seconds and would turn it back: a sample after it
@@ -79,10 +70,10 @@ TEST(stop_does_not_drive_a_rotor_that_stands) {
                          "loads=[{joint: hub, torque: -12 MN m, ramp: [1 s, 1 s]}]");
     double least = 0;
     for (double t = 1; t < 9; t += step) {
-        double before = channel(&f, "RotSpeed");
+        double before = value(&f, "RotSpeed");
         go_to(&f, t + step);
-        least = fmin(least, channel(&f, "RotSpeed"));
-        if (before < 0) check_near(channel(&f, "GenTq"), 0, 0, 1e-9);
+        least = fmin(least, value(&f, "RotSpeed"));
+        if (before < 0) check_near(value(&f, "GenTq"), 0, 0, 1e-9);
     }
     assert_true(least < -0.1);
 }
@@ -93,16 +84,16 @@ TEST(a_stuck_blade_stays_while_the_others_feather) {
                          "{kind: pitch-runaway, blade: 3, at: 4 s, angle: -5 deg, rate: 4 deg/s}]",
                          NULL);
     go_to(&f, 1);
-    double stuck = channel(&f, "BldPitch2");
+    double stuck = value(&f, "BldPitch2");
     go_to(&f, 4);
-    check_near(channel(&f, "BldPitch2"), stuck, 0, 1e-9);
-    check_near(channel(&f, "BldPitch1"), 16, 0.02, 0);
-    double away = channel(&f, "BldPitch3");
+    check_near(value(&f, "BldPitch2"), stuck, 0, 1e-9);
+    check_near(value(&f, "BldPitch1"), 16, 0.02, 0);
+    double away = value(&f, "BldPitch3");
     go_to(&f, 6);
-    check_near(channel(&f, "BldPitch3") - away, -8, 0.05, 0);
-    check_near(channel(&f, "BldPitch1"), 32, 0.02, 0);
+    check_near(value(&f, "BldPitch3") - away, -8, 0.05, 0);
+    check_near(value(&f, "BldPitch1"), 32, 0.02, 0);
     go_to(&f, 12);
-    check_near(channel(&f, "BldPitch3"), -5, 1e-9, 0);
+    check_near(value(&f, "BldPitch3"), -5, 1e-9, 0);
 }
 
 // A step at the law's rate, then a ramp; the law sets the torque. A stop prevails over both, wherever it
@@ -113,22 +104,22 @@ TEST(the_pitch_goes_to_given_angles) {
                  "{kind: pitch-to, at: 6 s, angle: -1 deg, rate: 2 deg/s}]",
                  NULL);
     go_to(&f, 2);
-    double before = channel(&f, "BldPitch1");
+    double before = value(&f, "BldPitch1");
     go_to(&f, 2.2);
-    check_near(channel(&f, "BldPitch1") - before, 8 * 0.2, 0.1, 0);
+    check_near(value(&f, "BldPitch1") - before, 8 * 0.2, 0.1, 0);
     go_to(&f, 6);
     for (int b = 1; b <= 3; b++) {
         char name[16];
         snprintf(name, sizeof name, "BldPitch%d", b);
-        check_near(channel(&f, name), 4, 1e-9, 0);
+        check_near(value(&f, name), 4, 1e-9, 0);
     }
-    assert_true(channel(&f, "GenTq") > 1);
+    assert_true(value(&f, "GenTq") > 1);
     go_to(&f, 8);
-    check_near(channel(&f, "BldPitch1"), 0, 0, 0.05);
+    check_near(value(&f, "BldPitch1"), 0, 0, 0.05);
     go_to(&f, 12);
-    check_near(channel(&f, "BldPitch3"), -1, 1e-9, 0);
+    check_near(value(&f, "BldPitch3"), -1, 1e-9, 0);
     go_to(&f, 14);
-    check_near(channel(&f, "BldPitch3"), 15, 0.02, 0);
+    check_near(value(&f, "BldPitch3"), 15, 0.02, 0);
 }
 
 // The rotor speeds up until a threshold takes the load away, then until another stops it.
@@ -139,32 +130,32 @@ TEST(thresholds_trigger) {
     double lost = -1, stopped = -1;
     for (double t = 0; t < 25; t += step) {
         go_to(&f, t);
-        double speed = channel(&f, "RotSpeed");
+        double speed = value(&f, "RotSpeed");
         if (lost < 0 && speed > 9.5) lost = t;
         if (stopped < 0 && speed > 11) stopped = t;
-        if (lost < 0 && t > 2 * step) assert_true(channel(&f, "GenTq") > 1);
-        if (lost >= 0 && t > lost + 2 * step) check_near(channel(&f, "GenTq"), 0, 0, 1e-12);
-        if (stopped < 0) assert_true(channel(&f, "BldPitch1") < 1);
+        if (lost < 0 && t > 2 * step) assert_true(value(&f, "GenTq") > 1);
+        if (lost >= 0 && t > lost + 2 * step) check_near(value(&f, "GenTq"), 0, 0, 1e-12);
+        if (stopped < 0) assert_true(value(&f, "BldPitch1") < 1);
     }
     assert_true(lost > 0 && stopped > lost);
-    assert_true(channel(&f, "BldPitch1") > 30);
+    assert_true(value(&f, "BldPitch1") > 30);
 }
 
 TEST(before_its_start_the_turbine_idles) {
     fixture f =
         open_run("control.events=[{kind: start, at: 2 s}]", "bodies[3-5].joint.motion={angle: -90 deg}");
     go_to(&f, 2);
-    check_near(channel(&f, "BldPitch1"), 90, 1e-9, 0);
-    check_near(channel(&f, "GenTq"), 0, 0, 1e-12);
+    check_near(value(&f, "BldPitch1"), 90, 1e-9, 0);
+    check_near(value(&f, "GenTq"), 0, 0, 1e-12);
     go_to(&f, 7);
-    assert_true(channel(&f, "BldPitch1") < 80);
+    assert_true(value(&f, "BldPitch1") < 80);
     double slowest = 1e3;
     for (double t = 7; t <= 28; t += 1) {
         go_to(&f, t);
-        slowest = fmin(slowest, channel(&f, "RotSpeed"));
+        slowest = fmin(slowest, value(&f, "RotSpeed"));
     }
     assert_true(slowest > 0); // no torque turns it backwards
-    assert_true(channel(&f, "BldPitch1") < 30);
+    assert_true(value(&f, "BldPitch1") < 30);
 }
 
 TEST(a_yaw_drive_turns_the_nacelle) {
@@ -173,11 +164,11 @@ TEST(a_yaw_drive_turns_the_nacelle) {
                          "bodies[1].joint={kind: revolute, parent: tower, axis: z, motion: {angle: 0 deg}, "
                          "placement: [move z 87.6 m]}");
     go_to(&f, 1);
-    check_near(channel(&f, "nacellePos"), 0, 0, 1e-9);
+    check_near(value(&f, "nacellePos"), 0, 0, 1e-9);
     go_to(&f, 3);
-    check_near(channel(&f, "nacellePos"), 2, 1e-6, 0);
+    check_near(value(&f, "nacellePos"), 2, 1e-6, 0);
     go_to(&f, 6);
-    check_near(channel(&f, "nacellePos"), 3, 1e-6, 0);
+    check_near(value(&f, "nacellePos"), 3, 1e-6, 0);
 }
 
 // A copy taken before an event goes on through it to the same bits.
@@ -191,11 +182,11 @@ TEST(events_are_in_the_copy) {
     bough_run_snapshot(&f.run, &(bough_snapshot){BOUGH_SNAPSHOT_SAVE, copy, 0});
     bough_run_snapshot(&f.run, &(bough_snapshot){BOUGH_SNAPSHOT_RESTORE, copy, 0});
     go_to(&f, 3);
-    double pitch = channel(&f, "BldPitch2"), stuck = channel(&f, "BldPitch1");
+    double pitch = value(&f, "BldPitch2"), stuck = value(&f, "BldPitch1");
     bough_run_snapshot(&f.run, &(bough_snapshot){BOUGH_SNAPSHOT_RESTORE, copy, 0});
     go_to(&f, 3);
-    check_near(channel(&f, "BldPitch2"), pitch, 0, 0);
-    check_near(channel(&f, "BldPitch1"), stuck, 0, 0);
+    check_near(value(&f, "BldPitch2"), pitch, 0, 0);
+    check_near(value(&f, "BldPitch1"), stuck, 0, 0);
     assert_true(pitch > stuck + 6);
 }
 

@@ -1,6 +1,5 @@
 // Loads that jump, between macro steps' times and at them: parabolas from the jump on.
 #include "tests/unit/built_scene.h"
-#include "tests/unit/scene_text.h"
 
 // A slide pushed by its joint, a free rigid body, a free rod under a load along it; each of 2 kg.
 #define BODIES                                                                                               \
@@ -18,25 +17,13 @@
     "  - {body: rod, along: [0, 1 m], force: [6, 0, 0], frame: body, ramp: " ramp "}\n"                      \
     "markers:\n  - {name: at, body: body}\n"
 
-static void load(const char *text, bough_arena *arena, bough_simulation **s) {
-    bough_errors errors = {.arena = arena};
-    bough_scene *scene = NULL;
-    write_file("s.yaml", text);
-    bough_status status = bough_scene_read(arena, "s.yaml", NULL, 0, &errors, &scene);
-    bough_errors_print(&errors, stderr);
-    assert_int_equal(status.code, BOUGH_OK);
-    check_ok(bough_simulation_build(arena, scene, s));
-}
-
 static double after(double t, double jump) { return t > jump ? 1.5 * (t - jump) * (t - jump) : 0; }
 
 // The rod takes part in the coupling, whose error counts.
 static void check_parabolas(const char *text, double jump, double tolerance, double coupled) {
     check_arena(arena);
-    bough_simulation *s;
-    load(text, arena, &s);
-    bough_channels list = {.arena = arena};
-    check_ok(bough_simulation_channels(s, &list));
+    bough_simulation *s = scene_build_text(arena, text);
+    bough_channels list = scene_channels(arena, s);
     assert_true(s->jumps);
     while (!bough_master_done(s->master)) {
         scene_step(s);
@@ -64,11 +51,6 @@ TEST(a_load_that_jumps_acts_from_its_time_on) {
 // Without a jump there is nothing to do, and a load from time 0 on is none.
 TEST(loads_without_a_jump_take_no_part) {
     check_arena(arena);
-    bough_simulation *s;
-    load(SIMULATE("") BODIES LOADS("[0 s, 0 s]"), arena, &s);
-    assert_false(s->jumps);
-    load(SIMULATE("") BODIES LOADS("[0.2 s, 0.5 s]"), arena, &s);
-    assert_false(s->jumps);
+    assert_false(scene_build_text(arena, SIMULATE("") BODIES LOADS("[0 s, 0 s]"))->jumps);
+    assert_false(scene_build_text(arena, SIMULATE("") BODIES LOADS("[0.2 s, 0.5 s]"))->jumps);
 }
-
-GROUP(enter, leave)

@@ -10,8 +10,7 @@ static double (*record(const char *speed, int *n))[MOST] {
     const char *const sets[] = {"simulation.duration=10 s", speed, NULL};
     check_arena(arena);
     bough_simulation *s = scene_build(arena, "apps/turbine/land.yaml", sets);
-    bough_channels list = bough_channels_start(arena);
-    check_ok(bough_simulation_channels(s, &list));
+    bough_channels list = scene_channels(arena, s);
     assert_true(list.count <= MOST);
     *n = list.count;
     for (int k = 0; k < ROWS; k++) {

@@ -1,10 +1,9 @@
 // The main job, whole: the run-up of the three-bladed turbine with the default scheme against its
 // physics (balance of angular momentum, once and three times per revolution), the monolithic
 // solution and the reference of an independent code.
-#include "tests/unit/check.h"
+#include "tests/unit/built_scene.h"
 
 #include "apps/bough/model/aero_link.h"
-#include "apps/bough/model/simulation.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -22,18 +21,6 @@ typedef struct history {
 } history;
 
 static const double load_torque = 11.9e6; // after its ramp of 20 s [N m]
-
-static bough_simulation *build(bough_arena *arena, const char *const *sets, int n_set) {
-    bough_errors errors = {.arena = arena};
-    bough_scene *scene = NULL;
-    bough_simulation *s = NULL;
-    bough_status status =
-        bough_scene_read(arena, BOUGH_SOURCE_DIR "/apps/turbine/runup.yaml", sets, n_set, &errors, &scene);
-    bough_errors_print(&errors, stderr);
-    assert_int_equal(status.code, BOUGH_OK);
-    check_ok(bough_simulation_build(arena, scene, &s));
-    return s;
-}
 
 // Angular momentum of a blade about the shaft and the moment of its weight, vertex by vertex in
 // ground axes; the root vertex included.
@@ -86,13 +73,13 @@ static void record(bough_simulation *s, history *h) {
     h->out_of_plane[k] = h->tip[k][0].x * cos(pitch) + h->tip[k][0].y * sin(pitch);
 }
 
-static history *run(const char *const *sets, int n_set) {
+static history *run(const char *const *sets) {
     check_arena(arena);
     history *h = calloc(1, sizeof *h);
-    bough_simulation *s = build(arena, sets, n_set);
+    bough_simulation *s = scene_build(arena, "apps/turbine/runup.yaml", sets);
     record(s, h);
     while (!bough_master_done(s->master)) {
-        check_ok(bough_step(s->master));
+        scene_step(s);
         record(s, h);
     }
     return h;
@@ -102,8 +89,8 @@ static history *default_run;
 
 static int run_default(void **context) {
     (void)context;
-    const char *sets[] = {"simulation.threads=1"};
-    default_run = run(sets, 1);
+    const char *sets[] = {"simulation.threads=1", NULL};
+    default_run = run(sets);
     return 0;
 }
 
@@ -206,8 +193,8 @@ TEST(means_are_those_of_the_reference) {
 // The default against all equations in one implicit system at tight tolerance.
 TEST(default_scheme_is_near_the_monolithic_solution) {
     const char *sets[] = {"simulation.threads=1", "simulation.coupling.scheme=monolithic",
-                          "simulation.master={solver: ida, rtol: 1e-7}"};
-    history *reference = run(sets, 3);
+                          "simulation.master={solver: ida, rtol: 1e-7}", NULL};
+    history *reference = run(sets);
     double speed = 0, tip = 0;
     assert_int_equal(reference->n, default_run->n);
     for (int k = 0; k < reference->n; k++) {
@@ -223,8 +210,8 @@ TEST(default_scheme_is_near_the_monolithic_solution) {
 }
 
 TEST(threads_do_not_change_a_bit) {
-    const char *sets[] = {"simulation.threads=2"};
-    history *two = run(sets, 1);
+    const char *sets[] = {"simulation.threads=2", NULL};
+    history *two = run(sets);
     assert_int_equal(two->n, default_run->n);
     assert_memory_equal(two, default_run, sizeof *two);
     free(two);

@@ -5,26 +5,6 @@
 static const char scene[] = "tests/data/scenes/shaft.yaml";
 static const double generator = 3000, hub = 5000, drive = 16e3, brake = 4e3; // [kg m2], [N m]
 
-typedef struct fixture {
-    bough_arena *arena;
-    bough_simulation *s;
-    bough_channels list;
-} fixture;
-
-static fixture open_shaft(const char *const *sets) {
-    fixture f = {.arena = check_memory()};
-    f.s = scene_build(f.arena, scene, sets);
-    f.list = bough_channels_start(f.arena);
-    check_ok(bough_simulation_channels(f.s, &f.list));
-    return f;
-}
-
-static double channel(fixture *f, const char *name) { return scene_channel(f->s, &f->list, name); }
-
-static void run_until(fixture *f, double t) {
-    while (f->s->master->time < t - 1e-9) scene_step(f->s);
-}
-
 // On a rigid shaft the hub accelerates the generator: its inertia times (drive - brake) / (sum of inertias),
 // and carries the brake. So free of the brake, and with a constant speed, which leaves the driving moment.
 TEST(rigid_shaft_carries_the_generators_inertia) {
@@ -33,7 +13,7 @@ TEST(rigid_shaft_carries_the_generators_inertia) {
                                          "motion: {speed: 1 rad/s}}",
                                          "loads[1].torque=0", NULL};
     for (int i = 0; i < 2; i++) {
-        fixture f = open_shaft(i == 0 ? braked : free);
+        built f = built_open(scene, i == 0 ? braked : free);
         double against = i == 0 ? brake : 0, rate = (drive - against) / (generator + hub);
         run_until(&f, 1);
         check_near(1e3 * channel(&f, "RotTorq"), against + generator * rate, 1e-6, 0);
@@ -41,7 +21,7 @@ TEST(rigid_shaft_carries_the_generators_inertia) {
         check_near(1e3 * channel(&f, "RotPwr"), (against + generator * rate) * (1 + rate), 1e-6, 0);
         bough_arena_destroy(f.arena);
     }
-    fixture f = open_shaft(driven);
+    built f = built_open(scene, driven);
     run_until(&f, 0.1);
     check_near(1e3 * channel(&f, "RotTorq"), drive, 1e-6, 0);
 }
@@ -53,7 +33,7 @@ TEST(spring_between_hub_and_generator_carries_the_torque) {
     static const char *const sets[] = {"bodies[hub].joint={kind: revolute, axis: x, parent: generator, "
                                        "stiffness: 1e6}",
                                        NULL};
-    fixture f = open_shaft(sets);
+    built f = built_open(scene, sets);
     const double k = 1e6, reduced = generator * hub / (generator + hub), w = sqrt(k / reduced);
     const double mean = reduced * (drive / hub + brake / generator) / k;
     for (int i = 1; i <= 20; i++) {

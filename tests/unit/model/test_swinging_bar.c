@@ -2,9 +2,7 @@
 // formulation in the tree must give the motion of a stand-alone rod in absolute coordinates, here
 // integrated by the classical Runge–Kutta method straight from the segment forces; both are put
 // beside an independent solution.
-#include "tests/unit/check.h"
-
-#include "apps/bough/model/simulation.h"
+#include "tests/unit/built_scene.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -127,16 +125,8 @@ static void start_at_rest(const bough_rod_model *m, double *y) {
 
 static bough_simulation *in_the_tree(bough_arena *arena, const char *segments) {
     const char *sets[] = {"simulation.duration=0.4 s", "simulation.coupling.scheme=monolithic",
-                          "simulation.master.rtol=1e-9", segments};
-    bough_errors errors = {.arena = arena};
-    bough_scene *scene = NULL;
-    bough_simulation *s = NULL;
-    bough_status status =
-        bough_scene_read(arena, BOUGH_SOURCE_DIR "/apps/beams/rubber-bar.yaml", sets, 4, &errors, &scene);
-    bough_errors_print(&errors, stderr);
-    assert_int_equal(status.code, BOUGH_OK);
-    check_ok(bough_simulation_build(arena, scene, &s));
-    return s;
+                          "simulation.master.rtol=1e-9", segments, NULL};
+    return scene_build(arena, "apps/beams/rubber-bar.yaml", sets);
 }
 
 static bough_vec3 tip_of(bough_simulation *s) {
@@ -150,9 +140,7 @@ static bough_vec3 tip_of(bough_simulation *s) {
 }
 
 static void advance_to(bough_simulation *s, double t) {
-    while (s->master->time < t - 1e-9) {
-        check_ok(bough_step(s->master));
-    }
+    while (s->master->time < t - 1e-9) scene_step(s);
 }
 
 // -- tests ----------------------------------------------------------------------------------------

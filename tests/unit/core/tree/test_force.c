@@ -219,8 +219,7 @@ TEST(scenes_mount_and_load_bodies) {
     static const char *const none[] = {NULL};
     check_arena(arena);
     bough_simulation *s = scene_build(arena, "tests/data/scenes/mounts.yaml", none);
-    bough_channels list = bough_channels_start(arena);
-    assert_int_equal(bough_simulation_channels(s, &list).code, BOUGH_OK);
+    bough_channels list = scene_channels(arena, s);
     check_near(scene_channel(s, &list, "mountFrcX"), 0, 0, 1e-12);
     assert_int_equal(s->master->n_event, 2);
     while (s->master->time < 4) scene_step(s);

@@ -230,8 +230,7 @@ TEST(scenes_drive_joints) {
     static const char *const none[] = {NULL};
     check_arena(arena);
     bough_simulation *s = scene_build(arena, "tests/data/scenes/motion.yaml", none);
-    bough_channels list = bough_channels_start(arena);
-    assert_int_equal(bough_simulation_channels(s, &list).code, BOUGH_OK);
+    bough_channels list = scene_channels(arena, s);
     assert_int_equal(s->master->n_event, 2 + 3 + 2 + 2);
     check_near(s->master->event[3], 0.105, 1e-15, 0);
     while (s->master->time < 1) scene_step(s);
