@@ -1,9 +1,8 @@
 // The clamped NREL 5 MW blade under loads along it, in linear statics: against the integral of its
 // sections' strains.
-#include "tests/unit/check.h"
+#include "tests/unit/blade_scene.h"
 #include "tests/unit/sample_rod.h"
 
-#include "apps/bough/model/simulation.h"
 #include "core/base/linalg.h"
 #include "flexbody/rod/rod_load.h"
 #include "flexbody/rod/rod_static.h"
@@ -36,16 +35,9 @@ typedef struct blade {
 
 static blade blade_with(int segments) {
     blade b = {.arena = check_memory()};
-    bough_errors errors = {.arena = b.arena};
-    bough_scene *scene = NULL;
-    bough_simulation *simulation = NULL;
-    bough_status s =
-        bough_scene_read(b.arena, BOUGH_SOURCE_DIR "/tests/data/scenes/blade.yaml", NULL, 0, &errors, &scene);
-    assert_int_equal(s.code, BOUGH_OK);
-    scene->body[0].rod.n_segment = segments;
-    check_ok(bough_simulation_build(b.arena, scene, &simulation));
-    b.table = &scene->body[0].rod.structure;
-    b.def = simulation->beam[0].def;
+    bough_simulation *s = blade_scene(b.arena, segments);
+    b.table = &s->scene->body[0].rod.structure;
+    b.def = s->beam[0].def;
     check_ok(bough_rod_create(b.arena, &b.def, &b.model));
     return b;
 }
