@@ -305,19 +305,3 @@ TEST(jolt_at_the_start_does_not_end_a_run) {
     // weight of the head and of the tapered tower on its axial stiffness
     check_near(tip_of(s).z - 87.6, -4.4e-3, 0.05, 0);
 }
-
-TEST(threads_do_not_change_a_bit) {
-    static const char *const threads[] = {"simulation.threads=1", "simulation.threads=2"};
-    bough_simulation *s[2];
-    check_arena(arena);
-    for (int k = 0; k < 2; k++) {
-        const char *const sets[] = {threads[k], "simulation.duration=0.2 s", NULL};
-        s[k] = scene_build(arena, parked, sets);
-        run(s[k]);
-    }
-    for (int i = 0; i < s[0]->master->assembly->n_member; i++) {
-        const bough_member *a = s[0]->master->assembly->member[i];
-        const bough_member *b = s[1]->master->assembly->member[i];
-        assert_memory_equal(a->state, b->state, (size_t)a->system.n_state * sizeof(double));
-    }
-}

@@ -209,12 +209,4 @@ TEST(default_scheme_is_near_the_monolithic_solution) {
     free(reference);
 }
 
-TEST(threads_do_not_change_a_bit) {
-    const char *sets[] = {"simulation.threads=2", NULL};
-    history *two = run(sets);
-    assert_int_equal(two->n, default_run->n);
-    assert_memory_equal(two, default_run, sizeof *two);
-    free(two);
-}
-
 GROUP(run_default, release_default)
