@@ -148,15 +148,18 @@ static inline void sample_line(bough_rod_model *m) {
     for (int k = 0; k < 36 * m->stride; k++) m->line[k] = 0.05 * sample_random(&seed);
 }
 
-// Adds loads along all segments that change in time: ramped dead ones and followers from 0.1 to 1 s, and
-// strains without stress that grow steadily.
+// Adds loads on all vertices and along all segments that change in time: ramped dead ones and followers from
+// 0.1 to 1 s, and strains without stress that grow steadily.
 static inline void sample_loads_along(bough_arena *arena, const bough_rod_model *m, bough_rod_loads *loads) {
     const bough_schedule ramp = {.start = 0.1, .end = 1};
     unsigned seed = 23;
     for (int follower = 0; follower < 2; follower++) {
         bough_rod_ramped_load *load = bough_rod_loads_ramped(loads, arena, m, follower, &ramp);
         load->along = true;
-        for (int k = 0; k < 6 * m->stride; k++) load->line[k] = sample_random(&seed);
+        for (int k = 0; k < 6 * m->stride; k++) {
+            load->line[k] = sample_random(&seed);
+            load->value[k] += sample_random(&seed);
+        }
     }
     loads->moving = true;
     for (int k = 0; k < 6 * m->stride; k++) loads->rest_rate[k] = 0.01 * sample_random(&seed);

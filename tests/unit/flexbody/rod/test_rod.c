@@ -1,4 +1,4 @@
-// The rod's forces, balances and tangents.
+// The rod's forces and balances; its tangents are under the contract in test_rod_system.c.
 #include "tests/unit/check.h"
 
 #include "core/base/spatial.h"
@@ -16,7 +16,6 @@ typedef struct fixture {
     bough_rod_model *model;
     bough_rod_scratch scratch;
     bough_rod_loads loads;
-    bough_rod_tangent tangent;
     double state[STATES], input[BOUGH_ROD_INPUTS];
 } fixture;
 
@@ -27,7 +26,6 @@ static int setup(void **context) {
     f->model = sample_general(f->arena, N);
     bough_rod_scratch_init(&f->scratch, f->arena, f->model);
     bough_rod_loads_init(&f->loads, f->arena, f->model);
-    bough_rod_tangent_init(&f->tangent, f->arena, f->model);
     memcpy(f->input, input, sizeof input);
     sample_state(f->model, f->input, f->state);
     sample_loads(f->model, &f->loads);
@@ -44,23 +42,6 @@ static int teardown(void **context) {
 
 static void derivative(fixture *f, const double *state, const double *input, double *rate) {
     assert_true(bough_rod_derivative(f->model, &f->loads, 0.5, state, input, &f->scratch, rate));
-}
-
-// (f(y + εd) − f(y − εd))/2ε
-static void directional(fixture *f, const double *dstate, const double *dinput, double *d) {
-    const double eps = 3e-6;
-    double yp[STATES], ym[STATES], up[BOUGH_ROD_INPUTS], um[BOUGH_ROD_INPUTS], fm[STATES];
-    for (int k = 0; k < STATES; k++) {
-        yp[k] = f->state[k] + eps * dstate[k];
-        ym[k] = f->state[k] - eps * dstate[k];
-    }
-    for (int k = 0; k < BOUGH_ROD_INPUTS; k++) {
-        up[k] = f->input[k] + eps * dinput[k];
-        um[k] = f->input[k] - eps * dinput[k];
-    }
-    derivative(f, yp, up, d);
-    derivative(f, ym, um, fm);
-    for (int k = 0; k < STATES; k++) d[k] = (d[k] - fm[k]) / (2 * eps);
 }
 
 TEST_WITH(undeformed_rod_moving_rigidly_feels_no_stress, setup, teardown) {
@@ -175,24 +156,6 @@ TEST_WITH(momentum_changes_by_loads_weight_and_root_alone, setup, teardown) {
     }
 }
 
-static void check_newton(fixture *f) {
-    const double gammas[] = {1e-3, 0.07, 0.4};
-    for (int g = 0; g < 3; g++) {
-        unsigned seed = 3;
-        double d[STATES], jd[STATES], b[STATES], none[BOUGH_ROD_INPUTS] = {0};
-        for (int k = 0; k < STATES; k++) d[k] = sample_random(&seed);
-        directional(f, d, none, jd);
-        for (int k = 0; k < STATES; k++) b[k] = d[k] - gammas[g] * jd[k];
-        assert_true(
-            bough_rod_linearise(f->model, &f->loads, 0.5, f->state, f->input, &f->scratch, &f->tangent));
-        assert_true(bough_rod_factor(f->model, &f->tangent, gammas[g]));
-        bough_rod_solve(f->model, &f->tangent, b);
-        for (int k = 0; k < STATES; k++) check_near(b[k], d[k], 0, 2e-7);
-    }
-}
-
-TEST_WITH(newton_solution_inverts_the_jacobian, setup, teardown) { check_newton(*context); }
-
 // A rod of any number of segments, in a strongly deformed state.
 typedef struct sized {
     bough_arena *arena;
@@ -278,34 +241,6 @@ static bough_rod_ramped_load *ramped(fixture *f, bool follower) {
     return l;
 }
 
-TEST_WITH(newton_solution_knows_follower_loads, setup, teardown) {
-    fixture *f = *context;
-    unsigned seed = 21;
-    double *follower = ramped(f, true)->value, *dead = ramped(f, false)->value;
-    for (int k = 0; k < 6 * f->model->stride; k++) {
-        follower[k] = 5 * sample_random(&seed);
-        dead[k] = 5 * sample_random(&seed);
-    }
-    check_newton(f);
-}
-
-// Loads that follow the vertices' motion, about the rotations of the state.
-TEST_WITH(newton_solution_knows_loads_that_follow_the_motion, setup, teardown) {
-    fixture *f = *context;
-    unsigned seed = 27;
-    int s = f->model->stride;
-    f->loads.damped = true;
-    for (int v = 1; v <= N; v++) {
-        for (int k = 0; k < 12; k++) f->loads.slope[k * s + v] = 5 * sample_random(&seed);
-        const double *p = f->state + BOUGH_ROD_P * N + v - 1;
-        double w = p[0], x = p[N], y = p[2 * N], z = p[3 * N];
-        double scale = 2 / sqrt(w * w + x * x + y * y + z * z);
-        const double row[4] = {-scale * z, scale * y, -scale * x, scale * w};
-        for (int k = 0; k < 4; k++) f->loads.angle[k * s + v] = row[k];
-    }
-    check_newton(f);
-}
-
 // Random loads along all segments, dead ones and followers, and strains by them.
 static void lay_along(fixture *f) {
     unsigned seed = 23;
@@ -315,13 +250,6 @@ static void lay_along(fixture *f) {
         load[kind]->along = true;
         for (int k = 0; k < 6 * f->model->stride; k++) load[kind]->line[k] = 5 * sample_random(&seed);
     }
-}
-
-// D q turns in the segments where the loads along them are dead.
-TEST_WITH(newton_solution_knows_loads_along_segments, setup, teardown) {
-    fixture *f = *context;
-    lay_along(f);
-    check_newton(f);
 }
 
 TEST_WITH(second_evaluation_knows_loads_along_segments, setup, teardown) {
@@ -384,54 +312,6 @@ TEST_WITH(follower_load_turns_with_its_section, setup, teardown) {
     bough_rod_root_wrench(f->model, &f->loads, 0.5, f->state, f->input, &f->scratch, wrench[1]);
     for (int k = 0; k < STATES; k++) check_near(with[k], same[k], 1e-12, 1e-12);
     for (int k = 0; k < 6; k++) check_near(wrench[0][k], wrench[1][k], 1e-12, 1e-12);
-}
-
-// The fixture's rod under its loads.
-static bough_system system_of(const fixture *f) {
-    bough_rod_body *body = bough_rod_body_create(f->arena, f->model, f->input);
-    *bough_rod_body_loads(body) = f->loads;
-    return bough_rod_body_system(body);
-}
-
-TEST_WITH(input_columns_match_differences, setup, teardown) {
-    fixture *f = *context;
-    double column[BOUGH_ROD_INPUTS * STATES], d[STATES], none[STATES] = {0};
-    bough_system rod = system_of(f);
-    rod.ops->input_columns(rod.self, 0.5, f->state, f->input, column);
-    for (int j = 0; j < BOUGH_ROD_INPUTS; j++) {
-        double unit[BOUGH_ROD_INPUTS] = {0};
-        unit[j] = 1;
-        directional(f, none, unit, d);
-        for (int k = 0; k < STATES; k++) check_near(column[j * STATES + k], d[k], 0, 1e-7);
-    }
-}
-
-static void check_wrench_tangent(fixture *f) {
-    unsigned seed = 9;
-    const double eps = 1e-6;
-    double ds[STATES], du[BOUGH_ROD_INPUTS], y[STATES], u[BOUGH_ROD_INPUTS], side[2][6], d[6];
-    for (int k = 0; k < STATES; k++) ds[k] = sample_random(&seed);
-    for (int k = 0; k < BOUGH_ROD_INPUTS; k++) du[k] = sample_random(&seed);
-    for (int s = 0; s < 2; s++) {
-        double step = s == 0 ? -eps : eps;
-        for (int k = 0; k < STATES; k++) y[k] = f->state[k] + step * ds[k];
-        for (int k = 0; k < BOUGH_ROD_INPUTS; k++) u[k] = f->input[k] + step * du[k];
-        bough_rod_root_wrench(f->model, &f->loads, 0.5, y, u, &f->scratch, side[s]);
-    }
-    bough_system rod = system_of(f);
-    rod.ops->output_tangent(rod.self, 0.5, f->state, f->input, ds, du, d);
-    for (int k = 0; k < 6; k++) check_near(d[k], (side[1][k] - side[0][k]) / (2 * eps), 1e-7, 1e-7);
-    double kept[6];
-    assert_true(bough_rod_linearise(f->model, &f->loads, 0.5, f->state, f->input, &f->scratch, &f->tangent));
-    assert_true(rod.ops->kept_tangent(rod.self, &f->tangent, ds, du, kept));
-    for (int k = 0; k < 6; k++) check_near(kept[k], d[k], 1e-12, 1e-12);
-}
-
-TEST_WITH(wrench_tangent_matches_differences, setup, teardown) { check_wrench_tangent(*context); }
-
-TEST_WITH(wrench_tangent_knows_loads_along_segments, setup, teardown) {
-    lay_along(*context);
-    check_wrench_tangent(*context);
 }
 
 // p and −p are the same rotation at any vertex.
