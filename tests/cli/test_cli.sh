@@ -637,7 +637,7 @@ END
     has ../stdout ' 0 of 4 cells still missing'
     rm -r out
     refused 'expects K/N' study ../spread.yaml --part 3/2
-    refused 'kind: expected one of work-precision' study "$folder/tests/verification/two-mass.yaml"
+    refused 'kind: expected one of work-precision' study "$folder/tests/verification/beams.yaml"
 }
 
 usage

@@ -24,7 +24,7 @@ static const bough_option rows[] = {BOUGH_OPTION_OUT, BOUGH_OPTION_THREADS, BOUG
 
 static const bough_command command = {
     .name = "verify",
-    .summary = "runs a study of bough's own verification: verify, two-mass, added-mass, blade-models",
+    .summary = "runs a study of bough's own verification: verify, blade-models",
     .operands = "STUDY",
     .option = rows,
     .size = sizeof(bough_options),

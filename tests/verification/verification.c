@@ -1,17 +1,13 @@
 #include "tests/verification/verification.h"
 
 #include "apps/bough/config/schema.h"
-#include "tests/verification/added_mass.h"
 #include "tests/verification/blade_models.h"
-#include "tests/verification/two_mass_study.h"
 #include "tests/verification/verify.h"
 
 #include <string.h>
 
 static const bough_verification_kind kinds[] = {
     {"verify", bough_verify_read, bough_verify_perform},
-    {"two-mass", bough_two_mass_read, bough_two_mass_perform},
-    {"added-mass", bough_added_mass_read, bough_added_mass_perform},
     {"blade-models", bough_blade_models_read, bough_blade_models_perform},
 };
 
@@ -21,8 +17,7 @@ static const bough_verification_kind *find_kind(const bough_node *root, bough_er
     for (size_t i = 0; kind && kind->kind == BOUGH_SCALAR && i < sizeof kinds / sizeof *kinds; i++) {
         if (strcmp(kind->text, kinds[i].name) == 0) return &kinds[i];
     }
-    bough_errors_add(errors, kind ? kind : root, "kind",
-                     "expected verify, two-mass, added-mass or blade-models, got %s",
+    bough_errors_add(errors, kind ? kind : root, "kind", "expected verify or blade-models, got %s",
                      kind ? bough_node_shown(kind, shown) : "none");
     return NULL;
 }

@@ -75,11 +75,11 @@ static const struct text {
     const char *field, *file;
     bool alone; // of a command that leaves none of those before
 } texts[] = {
-    {"summary", "summary.json", false}, {"table", "table.txt", false},   {"rows", "verify.csv", true},
-    {"rows", "blade-models.csv", true}, {"rows", "two-mass.csv", true},  {"rows", "added-mass.csv", true},
-    {"rows", "tune.csv", true},         {"rows", "campbell.csv", true},  {"rows", "modes.csv", true},
-    {"rows", "static.csv", true},       {"cases", "cases.csv", false},   {"extremes", "extremes.csv", false},
-    {"plot", "plot.svg", false},        {"plot", "campbell.svg", false}, {"plot", "tune.svg", false},
+    {"summary", "summary.json", false},  {"table", "table.txt", false}, {"rows", "verify.csv", true},
+    {"rows", "blade-models.csv", true},  {"rows", "tune.csv", true},    {"rows", "campbell.csv", true},
+    {"rows", "modes.csv", true},         {"rows", "static.csv", true},  {"cases", "cases.csv", false},
+    {"extremes", "extremes.csv", false}, {"plot", "plot.svg", false},   {"plot", "campbell.svg", false},
+    {"plot", "tune.svg", false},
 };
 
 // A file's text as a field of the data: never as a program, whoever has written it.

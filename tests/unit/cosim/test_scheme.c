@@ -290,3 +290,56 @@ TEST(iteration_that_diverges_says_so) {
     assert_non_null(strstr(status.message, "accelerator: iqn-ils"));
     assert_non_null(strstr(status.message, "try macro_step: 0.01 s"));
 }
+
+// Mass 1 of 1 kg at 1 Hz, damped by 2 %, carries mass 2 on a critically damped spring that turns by half a
+// radian in a macro step of 10 ms. It starts as if welded: the spring already carries the force that
+// accelerates mass 2.
+static bough_two_mass carrier(double ratio) {
+    const double omega = 50, own = 6.283185307179586;
+    return (bough_two_mass){.s1 = {1, own * own * (1 + ratio), .04 * own * (1 + ratio)},
+                            .s2 = {ratio, 0, 0},
+                            .k = ratio * omega * omega,
+                            .c = 2 * ratio * omega,
+                            .y0 = {1, 0, 1 + own * own / (omega * omega), 0}};
+}
+
+// A mass that answers within the macro step as if welded to the one that carries it, at any ratio:
+// quasi-Newton steps, the interface Jacobian and one system hold, with few sweeps; no other errs without a
+// word.
+TEST(added_mass_is_carried_or_diagnosed) {
+    static const struct {
+        const char *scheme;
+        bough_acceleration accelerator;
+        bough_exchange exchange;
+        double sweeps; // at most, where it holds at any ratio; 0: it need not
+    } ways[] = {{"gauss-seidel", BOUGH_ACCELERATE_NONE, BOUGH_EXCHANGE_END_VALUES, 0},
+                {"iterated", BOUGH_ACCELERATE_NONE, BOUGH_EXCHANGE_END_VALUES, 0},
+                {"iterated", BOUGH_ACCELERATE_RELAXATION, BOUGH_EXCHANGE_END_VALUES, 0},
+                {"iterated", BOUGH_ACCELERATE_AITKEN, BOUGH_EXCHANGE_END_VALUES, 0},
+                {"iterated", BOUGH_ACCELERATE_IQN_ILS, BOUGH_EXCHANGE_END_VALUES, 3},
+                {"iterated", BOUGH_ACCELERATE_NEWTON, BOUGH_EXCHANGE_END_VALUES, 3},
+                {"iterated", BOUGH_ACCELERATE_IQN_ILS, BOUGH_EXCHANGE_WAVEFORM, 5},
+                {"iterated", BOUGH_ACCELERATE_NEWTON, BOUGH_EXCHANGE_WAVEFORM, 5},
+                {"ramp", BOUGH_ACCELERATE_NONE, BOUGH_EXCHANGE_END_VALUES, 0},
+                {"monolithic", BOUGH_ACCELERATE_NONE, BOUGH_EXCHANGE_END_VALUES, 1}};
+    static const double ratio[] = {.01, .1, .5, 1, 3, 10, 100, 1000};
+    for (size_t k = 0; k < 8 * (sizeof ways / sizeof *ways); k++) {
+        bough_two_mass m = carrier(ratio[k % 8]);
+        bough_master_def def = definition(ways[k / 8].scheme, .01);
+        def.scheme.accelerator = ways[k / 8].accelerator;
+        def.scheme.exchange = ways[k / 8].exchange;
+        def.scheme.tolerance = 1e-9;
+        def.scheme.iterations = 200;
+        def.duration = 2;
+        double error = 0;
+        bough_status status = bough_two_mass_build(check_memory(), &m, def);
+        if (bough_is_ok(&status)) status = bough_two_mass_error(&m, &error);
+        bool held = bough_is_ok(&status) && error < .5;
+        if (!held && bough_is_ok(&status)) assert_true(m.master->verdict[0] != '\0');
+        if (ways[k / 8].sweeps == 0) continue;
+        check_ok(status);
+        assert_true(held);
+        double sweeps = (double)bough_scheme_reported(m.master->coupling).sweeps / (double)m.master->steps;
+        assert_true(sweeps <= ways[k / 8].sweeps);
+    }
+}

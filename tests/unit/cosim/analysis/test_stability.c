@@ -36,6 +36,71 @@ TEST(limits_come_out_of_the_eigenvalues) {
     }
 }
 
+// Masses, and springs and dampers from wall to wall, with the macro steps that were searched [s].
+static const struct {
+    double mass[2], stiffness[3], damping[3], from, to;
+} systems[] = {{{1, 1}, {10, 10, 20}, {.2, .5, .3}, .02, .6},
+               {{1, 1}, {1, 1, 1}, {.1, .1, .1}, .1, 3},
+               {{1, .01}, {1, 1, .01}, {.1, .1, .001}, .05, 3}};
+
+#define MOTION_OUT BOUGH_CUT_DISPLACEMENT_DISPLACEMENT
+#define FORCES_IN BOUGH_CUT_FORCE_FORCE
+#define AT_ONCE "polynomial-at-once"
+
+// Largest stable macro steps by degree, from the same program; 0: none was found.
+static const struct {
+    int system;
+    bough_cut cut;
+    const char *scheme;
+    double limit[3];
+} limits[] = {{0, MOTION_OUT, AT_ONCE, {.3187, .2673, .2066}},
+              {0, FORCES_IN, AT_ONCE, {.1279, .1984, .2316}},
+              {1, 0, AT_ONCE, {.4039, .6300, .7648}},
+              {1, 0, "polynomial", {.4020, .7630, .8427}},
+              {1, 0, "polynomial-reversed", {.4020, .7616, .8429}},
+              {1, MOTION_OUT, AT_ONCE, {.6275, .7545, .7780}},
+              {1, MOTION_OUT, "polynomial", {0, 1.2558, 1.0929}},
+              {1, FORCES_IN, AT_ONCE, {.3008, .5724, .7206}},
+              {2, 0, AT_ONCE, {1.2264, .9915, .5256}},
+              {2, 0, "polynomial", {0, 0, 0}},
+              {2, 0, "polynomial-reversed", {0, 1.7240, 1.1916}},
+              {2, MOTION_OUT, AT_ONCE, {1.6308, 1.0581, .4636}},
+              {2, FORCES_IN, AT_ONCE, {.1967, .1085, .0586}}};
+
+// The verdict, and the eigenvalues of a macro step that the run takes.
+static void check_step(bough_two_mass *m, double h, bool stable) {
+    double radius;
+    check_ok(bough_two_mass_radius(m, h, &radius));
+    assert_int_equal(radius <= 1 + 1e-9, stable);
+    assert_int_equal(judge(m, &m->master->coupling->options, h).growth < 1e-9, stable);
+}
+
+// Stability need not be monotone: every macro step up to the limit is stable.
+TEST(limits_depend_on_the_cut_and_the_masses) {
+    for (size_t k = 0; k < sizeof limits / sizeof *limits; k++) {
+        const double *mass = systems[limits[k].system].mass, *c = systems[limits[k].system].damping;
+        const double *stiffness = systems[limits[k].system].stiffness, from = systems[limits[k].system].from;
+        for (int order = 0; order < 3; order++) {
+            bough_two_mass m = {.s1 = {mass[0], stiffness[0], c[0]},
+                                .s2 = {mass[1], stiffness[2], c[2]},
+                                .k = stiffness[1],
+                                .c = c[1],
+                                .y0 = {1, 0, .5, -1},
+                                .cut = limits[k].cut};
+            bough_master_def def = bough_master_def_default();
+            def.scheme.name = limits[k].scheme;
+            def.scheme.order = order;
+            def.macro_step = from;
+            def.duration = 10;
+            check_ok(bough_two_mass_build(check_memory(), &m, def));
+            double limit = limits[k].limit[order];
+            double to = limit > 0 ? .98 * limit : systems[limits[k].system].to;
+            for (int i = 0; i <= 10; i++) check_step(&m, from * pow(to / from, i / 10.), true);
+            if (limit > 0) check_step(&m, 1.02 * limit, false);
+        }
+    }
+}
+
 // A small macro step shows the slowest mode of the two masses themselves.
 TEST(growth_and_frequency_are_those_of_the_slowest_mode) {
     bough_scheme_options options = bough_scheme_options_default();
