@@ -75,7 +75,7 @@ static void read_set(bough_schema_reader *r, const bough_node *node, void *field
 static const char quantity_form[] =
     "'tip x|y|z|ux|uy|uz|rx|ry|rz', 'frequency N', 'damping N', 'growth', 'CHANNEL at TIME', "
     "'largest CHANNEL', 'smallest CHANNEL', 'mean CHANNEL from TIME', 'amplitude CHANNEL from "
-    "TIME' once per turn of the rotor, 'inflow states|failures|spread', 'drift of energy|momentum|"
+    "TIME' once per turn of the rotor, 'drift of energy|momentum|"
     "angular momentum|strain energy from TIME', 'evaluations per step'";
 
 static int word_index(const char *word, const char *const *words, int n) {
@@ -125,14 +125,6 @@ static bool parse_work(const char *phrase, bough_verify_quantity *q) {
     return true;
 }
 
-static bool parse_inflow(const char *phrase, bough_verify_quantity *q) {
-    static const char *const names[] = {"states", "failures", "spread"};
-    if (strncmp(phrase, "inflow ", 7) != 0) return false;
-    q->what = BOUGH_VERIFY_INFLOW_QUANTITY;
-    q->index = word_index(phrase + 7, names, 3);
-    return q->index >= 0;
-}
-
 static bool parse_wave(bough_arena *arena, const char *phrase, bough_verify_quantity *q) {
     char word[16], name[64], why[160];
     int end = 0;
@@ -169,7 +161,7 @@ static void check_expect(bough_schema_reader *r, void *item) {
     if (e->diagnosis) return;
     bough_verify_quantity *q = &e->quantity;
     if (!parse_tip(e->name, q) && !parse_mode(e->name, q) && !parse_drift(e->name, q) &&
-        !parse_work(e->name, q) && !parse_inflow(e->name, q) && !parse_wave(r->arena, e->name, q) &&
+        !parse_work(e->name, q) && !parse_wave(r->arena, e->name, q) &&
         !parse_channel(r->arena, e->name, q)) {
         bough_schema_error(r, e->node, "quantity", "expected %s, got '%.80s'", quantity_form, e->name);
     }
@@ -210,8 +202,7 @@ static void check_case(bough_schema_reader *r, void *item) {
             bough_schema_error(r, e->node, "extrapolate", "needs two 'meshes' or more");
         }
         if (e->diagnosis) continue;
-        bool fits = x->action == BOUGH_VERIFY_STATIC   ? e->quantity.what == BOUGH_VERIFY_TIP
-                    : x->action == BOUGH_VERIFY_INFLOW ? e->quantity.what == BOUGH_VERIFY_INFLOW_QUANTITY
+        bool fits = x->action == BOUGH_VERIFY_STATIC ? e->quantity.what == BOUGH_VERIFY_TIP
                     : x->action == BOUGH_VERIFY_MODES
                         ? e->quantity.what > BOUGH_VERIFY_TIP && e->quantity.what < BOUGH_VERIFY_AT
                         : e->quantity.what >= BOUGH_VERIFY_AT;
@@ -251,9 +242,9 @@ static const bough_key case_keys[] = {
     {.name = "name", .kind = BOUGH_KEY_TEXT, .required = true, AT(name), .help = "heads its lines"},
     {.name = "scene", .kind = BOUGH_KEY_TEXT, .required = true, AT(scene_name),
      .help = "file of the scene, relative to the study"},
-    {.name = "do", .kind = BOUGH_KEY_CHOICE, .choices = CHOICES("static", "modes", "run", "inflow"),
+    {.name = "do", .kind = BOUGH_KEY_CHOICE, .choices = CHOICES("static", "modes", "run"),
      .required = true, AT(action),
-     .help = "equilibrium or modes of the first rod, the run, or 1e6 random states of inflow"},
+     .help = "equilibrium or modes of the first rod, or the run"},
     {.name = "set", .kind = BOUGH_KEY_CUSTOM, .read = read_set, .form = "{KEY: VALUE, ...}",
      .offset = 0, .help = "replacements in the scene"},
     {.name = "meshes", .kind = BOUGH_KEY_NUMBERS, .range = ">= 1", .count = 1, AT(mesh),

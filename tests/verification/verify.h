@@ -12,23 +12,21 @@ typedef enum bough_verify_action {
     BOUGH_VERIFY_STATIC, // equilibrium of the first rod
     BOUGH_VERIFY_MODES,  // modes of the first rod or of the scene, as its modes block says
     BOUGH_VERIFY_RUN,    // the scene through its duration
-    BOUGH_VERIFY_INFLOW, // the scene's polars in random inflow
 } bough_verify_action;
 
 typedef enum bough_verify_what {
-    BOUGH_VERIFY_TIP,             // "tip ux": component of the tip's motion
-    BOUGH_VERIFY_FREQUENCY,       // "frequency 2" [Hz]
-    BOUGH_VERIFY_DAMPING,         // "damping 2", the ratio
-    BOUGH_VERIFY_GROWTH,          // "growth", of the fastest growing of the lowest modes [1/s]
-    BOUGH_VERIFY_AT,              // "CHANNEL at 0.5 s"
-    BOUGH_VERIFY_LARGEST,         // "largest CHANNEL"
-    BOUGH_VERIFY_SMALLEST,        // "smallest CHANNEL"
-    BOUGH_VERIFY_DRIFT,           // "drift of energy from 2 s", the largest, as a share of the
-                                  // largest value, of the energy without gravity's
-    BOUGH_VERIFY_WORK,            // "evaluations per step" of the tree's equations, all of them
-    BOUGH_VERIFY_MEAN,            // "mean CHANNEL from 2 s"
-    BOUGH_VERIFY_AMPLITUDE,       // "amplitude CHANNEL from 2 s", once per turn of the rotor
-    BOUGH_VERIFY_INFLOW_QUANTITY, // "inflow states", "inflow failures", "inflow spread"
+    BOUGH_VERIFY_TIP,       // "tip ux": component of the tip's motion
+    BOUGH_VERIFY_FREQUENCY, // "frequency 2" [Hz]
+    BOUGH_VERIFY_DAMPING,   // "damping 2", the ratio
+    BOUGH_VERIFY_GROWTH,    // "growth", of the fastest growing of the lowest modes [1/s]
+    BOUGH_VERIFY_AT,        // "CHANNEL at 0.5 s"
+    BOUGH_VERIFY_LARGEST,   // "largest CHANNEL"
+    BOUGH_VERIFY_SMALLEST,  // "smallest CHANNEL"
+    BOUGH_VERIFY_DRIFT,     // "drift of energy from 2 s", the largest, as a share of the
+                            // largest value, of the energy without gravity's
+    BOUGH_VERIFY_WORK,      // "evaluations per step" of the tree's equations, all of them
+    BOUGH_VERIFY_MEAN,      // "mean CHANNEL from 2 s"
+    BOUGH_VERIFY_AMPLITUDE, // "amplitude CHANNEL from 2 s", once per turn of the rotor
 } bough_verify_what;
 
 // What the bodies have together; conserved in free flight.
@@ -42,8 +40,7 @@ typedef enum bough_verify_invariant {
 
 typedef struct bough_verify_quantity {
     bough_verify_what what;
-    int index;           // of the tip's component, of the mode, of the inflow's quantity, or
-                         // bough_verify_invariant
+    int index;           // of the tip's component, of the mode, or bough_verify_invariant
     const char *channel; // NULL: no channel
     double time;         // [s]
 } bough_verify_quantity;
@@ -96,12 +93,6 @@ void bough_verify_mesh(const bough_verify_case *x, int k, char line[160]);
 // Reads the cases from the root of a study in the file `path`, and every scene with its
 // replacements; adds what is wrong to `errors`.
 void *bough_verify_read(bough_arena *arena, const char *path, const bough_node *root, bough_errors *errors);
-
-// Solves the induction in 1e6 random inflow states with the scene's polars, from calm to storm, at
-// any angle, twist and loss, by either high-thrust law: how many states, in how many the answer was
-// not finite or out of range, and by how much it differs after another state was solved.
-bough_status bough_verify_inflow(bough_arena *arena, const bough_verify_case *x, const bough_scene *scene,
-                                 double *value);
 
 // Does what a case says on mesh `k` (0 without meshes); `stop` as in the options. Failures are in
 // the result.

@@ -351,9 +351,7 @@ void bough_verify_run(bough_arena *arena, const bough_verify_case *x, int k, boo
     }
     for (int i = 0; i < x->n_expect; i++) result->value[i] = NAN;
     result->outcome = open_scene(own, x, k, &run);
-    if (bough_is_ok(&result->outcome) && x->action == BOUGH_VERIFY_INFLOW) {
-        result->outcome = bough_verify_inflow(own, x, run.simulation->scene, result->value);
-    } else if (bough_is_ok(&result->outcome)) {
+    if (bough_is_ok(&result->outcome)) {
         bough_simulation *s = run.simulation;
         result->outcome = x->action == BOUGH_VERIFY_STATIC  ? do_static(own, x, s, result->value)
                           : x->action == BOUGH_VERIFY_MODES ? do_modes(own, x, s, result->value)

@@ -1,7 +1,7 @@
 #include "core/base/base.h"
 #include "tests/unit/check.h"
 #include "tests/unit/nrel5mw_aero.h"
-#include "tests/verification/one_element.h"
+#include "tests/unit/one_element.h"
 
 typedef struct airfoils {
     bough_arena *arena;
@@ -206,20 +206,21 @@ static double uniform(uint64_t *seed, double low, double high) {
     return low + (high - low) * (double)(*seed >> 11) / 9007199254740992.;
 }
 
+// Speeds from nothing to a thousand m/s, now and then exactly none; any angle, loss and cone.
 static bough_element random_element(const airfoils *foils, uint64_t *seed) {
+    double strong = exp(uniform(seed, -12, 3)), kind = uniform(seed, 0, 1);
     bough_element e = {.polar = foils->polar + (int)uniform(seed, 0, 7.999),
-                       .solidity = exp(uniform(seed, -7, 0.5)),
-                       .tip_factor = exp(uniform(seed, -12, 4)),
-                       .hub_factor = exp(uniform(seed, -12, 4)),
+                       .solidity = exp(uniform(seed, -9, 1)),
+                       .tip_factor = exp(uniform(seed, -14, 5)),
+                       .hub_factor = exp(uniform(seed, -14, 5)),
                        .cone = uniform(seed, 0, 1),
                        .twist = uniform(seed, -BOUGH_PI, BOUGH_PI),
-                       .inflow_x = uniform(seed, -30, 30),
-                       .inflow_y = uniform(seed, -90, 90)};
-    double kind = uniform(seed, 0, 1);
-    if (kind < 0.05) e.inflow_x *= 1e-5;
-    if (kind > 0.95) e.inflow_y *= 1e-5;
-    if (kind > 0.4 && kind < 0.45) e.tip_factor = 0;
-    if (kind > 0.5 && kind < 0.55) e.inflow_x = e.inflow_y = 0;
+                       .inflow_x = uniform(seed, -30, 30) * (kind < 0.1 ? strong : 1),
+                       .inflow_y = uniform(seed, -90, 90) * (kind > 0.9 ? strong : 1)};
+    if (kind > 0.40 && kind < 0.43) e.inflow_x = 0;
+    if (kind > 0.42 && kind < 0.45) e.inflow_y = 0;
+    if (kind > 0.50 && kind < 0.55) e.twist = BOUGH_PI / 2 * floor(uniform(seed, -2, 3));
+    if (kind > 0.55 && kind < 0.60) e.tip_factor = 0;
     return e;
 }
 

@@ -1,6 +1,6 @@
 // The induction at one blade element, which fills the lanes alone.
-#ifndef BOUGH_TESTS_VERIFICATION_ONE_ELEMENT_H
-#define BOUGH_TESTS_VERIFICATION_ONE_ELEMENT_H
+#ifndef BOUGH_TESTS_UNIT_ONE_ELEMENT_H
+#define BOUGH_TESTS_UNIT_ONE_ELEMENT_H
 
 #include "aero/rotor/induction.h"
 
