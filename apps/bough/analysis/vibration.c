@@ -15,7 +15,14 @@ static const double least_point = 1, spins = 4;
 // of the rounding.
 static const double free_motion = 1e-3;
 
+// |λ| beyond this many times the point is the inverse of rounding.
+static const double beyond = 1e12;
+
 enum { FREE_MOTIONS = 8 }; // that may be found before the modes
+
+// Rounding in the solutions grows with the fourth power of |λ| over the point. Where an eigenvector has a
+// residual above this, the point moves to the lowest of them.
+static const double exact = 1e-9;
 
 static const double rounding = 1e-10; // damping ratios below it are none
 
@@ -182,8 +189,8 @@ static void drop_other_motions(const bough_tree *tree, double point, int count, 
     int kept = 0;
     for (int k = 0; k < v->count.found && kept < count; k++) {
         double modulus = hypot(v->pair[k].real, v->pair[k].imaginary);
-        bool moves = modulus > free_motion * point && !is_closure(tree, &v->pair[k]);
-        if (moves) v->pair[kept++] = v->pair[k];
+        bool moves = modulus > free_motion * point && modulus < beyond * point;
+        if (moves && !is_closure(tree, &v->pair[k])) v->pair[kept++] = v->pair[k];
     }
     v->found = kept;
 }
@@ -209,6 +216,25 @@ static bough_status solve_in_air(bough_arena *arena, bough_simulation *s, const 
     return bough_aeroelastic_modes(arena, &system, v->pair, &v->count, &v->unpaired);
 }
 
+// The eigenvalues about the point.
+static bough_status solve_about(bough_arena *arena, bough_simulation *s, const bough_vibration_point *x,
+                                int count, bough_vibration *v) {
+    bool in_air = s->aero && s->scene->modes.air != BOUGH_SCENE_AIR_FROZEN;
+    BOUGH_TRY(in_air ? solve_in_air(arena, s, x, count, v) : solve_bodies(arena, s, x, count, v));
+    drop_other_motions(s->tree, x->def.point, count, v);
+    return bough_ok();
+}
+
+// A better point on the real axis; 0 where all residuals are good or none is nearer.
+static double better_point(const bough_vibration *v, double point) {
+    double lowest = HUGE_VAL, largest = 0;
+    for (int k = 0; k < v->found; k++) {
+        lowest = fmin(lowest, hypot(v->pair[k].real, v->pair[k].imaginary));
+        largest = fmax(largest, v->pair[k].residual);
+    }
+    return largest > exact && lowest > point && v->found > 0 ? lowest : 0;
+}
+
 static bough_status solve(bough_arena *arena, bough_simulation *s, int count, bough_vibration *v) {
     bough_vibration_point x;
     v->mode = bough_arena_take(arena, (size_t)count * sizeof *v->mode);
@@ -217,9 +243,12 @@ static bough_status solve(bough_arena *arena, bough_simulation *s, int count, bo
     v->spin = fabs(x.group.speed) < at_rest ? 0 : x.group.speed;
     v->frozen = is_frozen(s, &x.group);
     if (v->frozen && !s->scene->modes.linear) BOUGH_TRY(check_constant(arena, s, &x));
-    bool in_air = s->aero && s->scene->modes.air != BOUGH_SCENE_AIR_FROZEN;
-    BOUGH_TRY(in_air ? solve_in_air(arena, s, &x, count, v) : solve_bodies(arena, s, &x, count, v));
-    drop_other_motions(s->tree, x.def.point, count, v);
+    BOUGH_TRY(solve_about(arena, s, &x, count, v));
+    double point = better_point(v, x.def.point);
+    if (point > 0) {
+        x.def.point = point;
+        BOUGH_TRY(solve_about(arena, s, &x, count, v));
+    }
     for (int k = 0; k < v->found; k++) set_value(&v->pair[k], &v->mode[k]);
     bough_vibration_describe(arena, s, &x, v);
     return bough_ok();

@@ -291,3 +291,32 @@ TEST(azimuth_does_not_matter) {
     }
     assert_true(support > 0.01); // the nacelle moves
 }
+
+// A rod across the end of another under a load, stiffness and load times `factor`.
+static found modes_of_angle(double factor) {
+    bough_arena *arena = check_memory();
+    char rod[200];
+    snprintf(rod, sizeof rod,
+             "rod: {length: 1, segments: 8, stiffness: [%g, %g, %g, %g, %g, %g], mass: [0.5, 0, 0, 1e-3, "
+             "1e-3, 0]}",
+             1e7 * factor, 1e7 * factor, 3e7 * factor, 2e3 * factor, 4e3 * factor, 2e3 * factor);
+    const char *sets[] = {
+        bough_arena_print(
+            arena,
+            "bodies=[{name: arm, fidelity: rod, joint: {kind: fixed, parent: ground}, %s}, "
+            "{name: fore, fidelity: rod, joint: {kind: fixed, parent: arm, placement: [rotate y "
+            "90 deg]}, %s}]",
+            rod, rod),
+        bough_arena_print(arena, "loads=[{body: fore, at: tip, force: [%g, %g, %g]}]", 300 * factor,
+                          1000 * factor, 300 * factor),
+        "gravity=[0, 0, 0]", "markers=[]", NULL};
+    return modes_of(pendulum, sets, 6);
+}
+
+// However high they are.
+TEST(frequencies_grow_with_the_root_of_the_stiffness) {
+    found soft = modes_of_angle(1), stiff = modes_of_angle(1e8);
+    assert_int_equal(stiff.v.found, soft.v.found);
+    for (int k = 0; k < soft.v.found; k++)
+        check_near(stiff.v.mode[k].frequency, 1e4 * soft.v.mode[k].frequency, 1e-6, 0);
+}
