@@ -4,6 +4,7 @@
 #include "core/base/base.h"
 #include "core/base/linalg.h"
 #include "core/tree/dynamics.h"
+#include "core/tree/force.h"
 
 #include <string.h>
 
@@ -312,8 +313,10 @@ enum { MOST_ITERATIONS = 60 };
 static const double longest = 0.05;    // step of a coordinate [rad, m]: longer ones snap a shallow arch
 static const double near_enough = 0.1; // relative to the mechanism's extent, and for directions
 static const double satisfied = 1e-10;
+static const double point = 1e-6; // no mechanism is as small [m]
 
-// The largest distance from a closure's end to the ground's origin, a link or another closure [m]
+// The largest distance from a closure's end to the ground's origin, a link or another closure; where they lie
+// in one point, to a spring's end [m]
 static double extent(const bough_tree *tree, const bough_tree_data *d) {
     bough_vec3 at = bough_tree_frame_pose(d, end_of(tree, 0, 0)).position;
     double largest = bough_norm(at);
@@ -323,7 +326,12 @@ static double extent(const bough_tree *tree, const bough_tree_data *d) {
         bough_vec3 x = bough_tree_frame_pose(d, end_of(tree, c, 0)).position;
         largest = fmax(largest, bough_norm(bough_sub(x, at)));
     }
-    return largest > 1e-6 ? largest : 1;
+    bool together = largest < point;
+    for (int e = 0; together && e < 2 * bough_tree_n_elements(tree); e++) {
+        bough_vec3 x = bough_tree_frame_pose(d, bough_element_frame(tree, e / 2, e % 2)).position;
+        largest = fmax(largest, bough_norm(bough_sub(x, at)));
+    }
+    return largest > point ? largest : 1;
 }
 
 // The row that is violated most, lengths measured by `size`.

@@ -24,6 +24,7 @@ typedef struct tree_system {
     double *at;                   // (n) this state
     double *initial, *scale;      // (n)
     double *placed;               // (n) a state with the given motions in place
+    double *increment;            // (n_q) of the coordinates for differences
     double *r, *plus, *minus, *y; // (n) scratch
 } tree_system;
 
@@ -219,15 +220,38 @@ static void input_columns(void *self, double t, const double *state, const doubl
 // The increment of a state that keeps y + δ − y exact to its last digit
 static double increment_at(double y, double relative) { return relative * fmax(1, fabs(y)); }
 
+// The coordinates that are lengths are a joint's first.
+static int n_lengths(bough_joint_kind kind) {
+    switch (kind) {
+    case BOUGH_JOINT_FREE: return 3;
+    case BOUGH_JOINT_PLANAR: return 2;
+    case BOUGH_JOINT_PRISMATIC:
+    case BOUGH_JOINT_CYLINDRICAL: return 1;
+    default: return 0;
+    }
+}
+
+// Coordinates enter by sines and cosines: their increments do not grow with them. Those of lengths are small
+// against a small mechanism.
+static void find_increments(tree_system *s) {
+    const bough_tree *tree = s->tree;
+    double length = central_increment * fmin(1, tree->closure_size);
+    for (int i = 0; i < tree->n_links; i++) {
+        const bough_link *link = &tree->links[i];
+        int n = n_lengths(link->joint.kind);
+        for (int k = 0; k < link->n_coordinates; k++)
+            s->increment[link->first_coordinate + k] = k < n ? length : central_increment;
+    }
+}
+
 // ∂f/∂y by differences. f is defined for quaternions of any length, so its derivative by components
 // is consistent.
 static bool find_jacobian(tree_system *s, tree_factors *k) {
     int n = s->n;
     memcpy(s->y, k->state, (size_t)n * sizeof(double));
     for (int j = 0; j < n; j++) {
-        // Coordinates enter by sines and cosines: their increment does not grow with them.
         double y = k->state[j];
-        double d = j < s->tree->n_q ? central_increment : increment_at(y, central_increment);
+        double d = j < s->tree->n_q ? s->increment[j] : increment_at(y, central_increment);
         double high = y + d, low = y - d;
         s->y[j] = high;
         bool ok = derivative(s, k->time, s->y, k->input, s->plus);
@@ -360,6 +384,8 @@ bough_system bough_tree_system_create(bough_arena *arena, bough_tree *tree, cons
     s->data = bough_tree_data_create(arena, tree);
     bough_arena_each(arena, (size_t)s->n, &s->at, &s->initial, &s->scale, &s->placed, &s->y, &s->r, &s->plus,
                      &s->minus);
+    s->increment = bough_arena_doubles(arena, (size_t)tree->n_q);
+    find_increments(s);
     for (int i = 0; i < s->n; i++) s->scale[i] = 1;
     memcpy(s->initial, tree->initial, (size_t)s->n * sizeof(double));
     return (bough_system){.name = bough_arena_string(arena, name),

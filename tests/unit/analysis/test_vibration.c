@@ -320,3 +320,34 @@ TEST(frequencies_grow_with_the_root_of_the_stiffness) {
     for (int k = 0; k < soft.v.found; k++)
         check_near(stiff.v.mode[k].frequency, 1e4 * soft.v.mode[k].frequency, 1e-6, 0);
 }
+
+// A body that slides on a plane between springs, all its lengths times `size`.
+static found modes_of_slab(double size) {
+    bough_arena *arena = check_memory();
+    double x = size, i = 0.1 * size * size;
+    const char *sets[] = {
+        bough_arena_print(
+            arena,
+            "bodies=[{name: slab, fidelity: rigid, mass: 1, inertia: [%g, %g, %g], joint: {kind: "
+            "free, parent: ground}}]",
+            i, i, i),
+        "closures=[{name: table, kind: planar, axis: z, from: ground, to: slab}]",
+        bough_arena_print(
+            arena,
+            "springs=[{name: a, from: ground, from_point: [%g, %g, 0], to: slab, stiffness: 50, length: %g}, "
+            "{name: b, from: ground, from_point: [%g, %g, 0], to: slab, to_point: [%g, %g, 0], stiffness: 80, "
+            "length: %g}]",
+            0.5 * x, 0.2 * x, 0.2 * x, -0.4 * x, 0.6 * x, -0.1 * x, 0.2 * x, 0.3 * x),
+        "gravity=[0, 0, 0]",
+        "markers=[]",
+        NULL};
+    return modes_of(pendulum, sets, 3);
+}
+
+// A closed loop of a millimetre has the frequencies of one of a metre.
+TEST(frequencies_do_not_depend_on_the_size) {
+    found large = modes_of_slab(1), small = modes_of_slab(1e-3);
+    assert_int_equal(large.v.found, 3);
+    assert_int_equal(small.v.found, 3);
+    for (int k = 0; k < 3; k++) check_near(small.v.mode[k].frequency, large.v.mode[k].frequency, 1e-6, 0);
+}
