@@ -40,6 +40,7 @@ void DISCON(float *swap, int *fail, char *input, char *output, char *message) {
     const char *slash = strrchr(input, '/');
     if (slash && strcmp(slash, "/crash") == 0) abort();
     if (slash && strcmp(slash, "/refuse") == 0) *fail = -1;
+    if (slash && strcmp(slash, "/often") == 0 && swap[2] > 0.015f) *fail = -1; // its sampling time
     // a run and its companion each begin once
     if (slash && strcmp(slash, "/fifth") == 0 && swap[0] == 0) *fail = marks(input) < 5 ? -1 : 0;
     if (strcmp(input, "fail") == 0 && swap[1] > 0.5f) {

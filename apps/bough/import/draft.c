@@ -84,6 +84,7 @@ bough_status bough_import_trial(bough_arena *arena, bough_scene *scene, int step
 
 // Macro steps [s], and by how much the rotor may turn in one [rad].
 static const double longest_step = 0.02, shortest_step = 0.02 / 32, most_turn = 0.07;
+enum { HALVINGS = 2 }; // of the longest step, where no tolerance is good enough
 
 // Tolerances of the integrator, tried from the first on, all of one length.
 static const char *const tolerance[] = {"4.5e-4", "1.5e-4", "5.0e-5", "1.5e-5"};
@@ -198,7 +199,7 @@ void bough_import_path(FILE *file, const char *path) {
 void bough_draft_head(bough_draft *d, const char *title, const char *origin, double gravity, double duration,
                       double rotor_speed) {
     FILE *file = d->file[BOUGH_IMPORT_SCENE];
-    double step = longest_step;
+    double step = longest_step / (1 << d->halvings);
     while (step * rotor_speed > most_turn && step > shortest_step * 1.5) step /= 2;
     double steps = fmax(ceil(duration / step - 1e-6), 1);
     d->macro_step = step;
@@ -266,7 +267,7 @@ static void note_trial(bough_draft *d, const bough_scene *scene, int steps) {
 // gets that tolerance.
 static bough_status try_scene(bough_draft *d, const char *folder, bough_scene *scene) {
     const double usual = 0.5; // of the bound
-    int steps = d->trial_steps > 0 ? d->trial_steps : TRIAL_STEPS;
+    int steps = d->trial_steps > 0 ? d->trial_steps << d->halvings : TRIAL_STEPS;
     bough_status status = bough_ok();
     for (int i = 0; i < N_TOLERANCE; i++) {
         double part = d->trial_steps == 0 ? 0 : i + 1 < N_TOLERANCE ? usual : 1;
@@ -280,9 +281,13 @@ static bough_status try_scene(bough_draft *d, const char *folder, bough_scene *s
         note_trial(d, scene, steps);
         return write_file(folder, d, BOUGH_IMPORT_SCENE);
     }
-    const char *last = status.code == BOUGH_FAILED ? tolerance[N_TOLERANCE - 1] : NULL;
-    return bough_fail(status.code, "the model gives a scene that cannot run%s%s: %.500s",
-                      last ? ", not even with rtol " : "", last ? last : "", status.message);
+    if (status.code != BOUGH_FAILED)
+        return bough_fail(status.code, "the model gives a scene that cannot run: %.500s", status.message);
+    return bough_fail(
+        status.code,
+        "the model gives a scene that cannot run, not even with macro steps of %g s and rtol %s: "
+        "%.500s",
+        d->macro_step, tolerance[N_TOLERANCE - 1], status.message);
 }
 
 // What the deck's own checks have let through.
@@ -377,6 +382,13 @@ static bough_status import(bough_arena *arena, void *self) {
     if (bough_is_ok(d->status)) *d->status = publish(d, t->folder);
     if (bough_is_ok(d->status) && t->echo) fputs(d->text[BOUGH_IMPORT_LIST], t->echo);
     return *d->status;
+}
+
+bool bough_draft_again(const bough_draft *last, const bough_status *status, bough_draft *next) {
+    bool judged = last->trial_steps > 0 && last->halvings < HALVINGS;
+    if (status->code != BOUGH_FAILED || !judged) return false;
+    *next = (bough_draft){.trial_steps = last->trial_steps, .halvings = last->halvings + 1};
+    return true;
 }
 
 bough_status bough_draft_import(bough_draft *d, void (*convert)(bough_draft *d, const char *path),

@@ -42,15 +42,20 @@ typedef struct bough_draft {
     double macro_step;         // [s]; air and control are sampled as often
     long tolerance_at;         // where the scene's text has the integrator's tolerance
     int trial_steps;           // as in the options
+    int halvings;              // of the longest macro step
     const bough_wind_box *box; // to be written as wind.bts; NULL: none
 } bough_draft;
 
 #define BOUGH_IMPORT_BOX "wind.bts"
 
-// An import with a draft of which only trial_steps is set: convert(d, path) fills it, then the files are
-// written unless there was a failure or they make no scene that runs; the list also to `echo` (NULL: nobody).
+// An import with a draft of which only trial_steps and halvings are set: convert(d, path) fills it, then the
+// files are written unless there was a failure or they make no scene that runs; the list also to `echo`
+// (NULL: nobody).
 bough_status bough_draft_import(bough_draft *d, void (*convert)(bough_draft *d, const char *path),
                                 const char *path, const char *folder, FILE *echo);
+
+// Whether an import that ended so is to be repeated with half the longest macro step, and with which draft.
+bool bough_draft_again(const bough_draft *last, const bough_status *status, bough_draft *next);
 
 // A line of the list.
 void bough_draft_note(bough_draft *d, bough_import_note kind, const char *format, ...)

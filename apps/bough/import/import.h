@@ -19,9 +19,9 @@ typedef struct bough_import_options {
 // Turns an OpenFAST model of a land-based turbine (the .fst file and those that it names) into
 // `folder`/scene.yaml with its tables, and import.txt, a list of what was taken, approximated and
 // left out, which `echo` also receives (NULL: nobody). The tolerance of the scene's integrator is the first
-// of a few with which its first steps are good enough. Nothing is written unless the whole model could be
-// read and there is such a tolerance. BOUGH_INVALID says file:line, the value's name and what was expected;
-// BOUGH_FAILED says how the last trial ended.
+// of a few with which its first steps are good enough; where none is, the macro step is halved. Nothing is
+// written unless the whole model could be read and there is such a tolerance. BOUGH_INVALID says file:line,
+// the value's name and what was expected; BOUGH_FAILED says how the last trial ended.
 bough_status bough_import_openfast(const char *path, const char *folder, const bough_import_options *options,
                                    FILE *echo);
 

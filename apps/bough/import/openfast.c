@@ -173,6 +173,12 @@ static void convert(bough_draft *d, const char *path) {
 
 bough_status bough_import_openfast(const char *path, const char *folder, const bough_import_options *options,
                                    FILE *echo) {
-    bough_openfast o = {.draft.trial_steps = options->trial_steps, .options = options};
-    return bough_draft_import(&o.draft, convert, path, folder, echo);
+    bough_draft draft = {.trial_steps = options->trial_steps};
+    bough_status status;
+    bough_openfast o;
+    do {
+        o = (bough_openfast){.draft = draft, .options = options};
+        status = bough_draft_import(&o.draft, convert, path, folder, echo);
+    } while (bough_draft_again(&o.draft, &status, &draft));
+    return status;
 }

@@ -160,6 +160,12 @@ static void convert(bough_draft *d, const char *path) {
 
 bough_status bough_import_windio(const char *path, const char *folder, const bough_import_options *options,
                                  FILE *echo) {
-    bough_windio w = {.draft.trial_steps = options->trial_steps, .options = options};
-    return bough_draft_import(&w.draft, convert, path, folder, echo);
+    bough_draft draft = {.trial_steps = options->trial_steps};
+    bough_status status;
+    bough_windio w;
+    do {
+        w = (bough_windio){.draft = draft, .options = options};
+        status = bough_draft_import(&w.draft, convert, path, folder, echo);
+    } while (bough_draft_again(&w.draft, &status, &draft));
+    return status;
 }

@@ -233,13 +233,29 @@ TEST(trials_call_the_library) {
     put_library(line, "refuse");
     t = import(&library);
     assert_int_equal(t.status.code, BOUGH_FAILED);
-    assert_non_null(strstr(t.status.message, "cannot run, not even with rtol 1.5e-5: "));
+    assert_non_null(
+        strstr(t.status.message, "cannot run, not even with macro steps of 0.02 s and rtol 1.5e-5: "));
     assert_int_not_equal(access(t.out, F_OK), 0);
     put_library(line, "crash");
     t = import(&library);
     assert_int_equal(t.status.code, BOUGH_INVALID);
     assert_non_null(strstr(t.status.message, BOUGH_SAMPLE_DISCON "' crashes in its first calls: Abort"));
     assert_int_not_equal(access(t.out, F_OK), 0);
+}
+
+// Where no tolerance is good enough, the macro steps are halved, at most twice.
+TEST(trials_shorten_the_macro_step) {
+    char line[512];
+    const edit library = {"parts/servo.dat", "0   PCMode", line};
+    const bough_import_options judged = {.trial_steps = 2};
+    put_library(line, "often");
+    trial t = import_given("main.fst", &library, NULL, &judged);
+    assert_string_equal(t.status.message, "");
+    assert_true(list_says(&t, "in macro steps of 0.01 s with rtol "));
+    check_near(number(read_file(&t, "scene.yaml"), "simulation.macro_step"), 0.01, 1e-12, 0);
+    put_library(line, "refuse");
+    t = import_given("main.fst", &library, NULL, &judged);
+    check_fails(t.status, BOUGH_FAILED, "macro steps of 0.005 s and rtol 1.5e-5: ");
 }
 
 static bough_status try_with(const trial *t, bough_scene *scene, double rtol, double bound) {
