@@ -15,6 +15,9 @@ enum {
 
 static const double accuracy = 1e-9;
 
+// Eigenvalues of the inverse below this share of the largest are rounding, of vectors that it maps to zero.
+static const double rounding = 1e-10;
+
 // What is sought, and the basis in which.
 typedef struct search {
     const bough_eigen_operator *op;
@@ -98,6 +101,7 @@ static int select(const search *s, int wanted, int *chosen, double *sum) {
     for (int i = 0; i < a->done && found < wanted; i++) {
         int k = s->order[i];
         double modulus = bough_arnoldi_modulus(a, k);
+        if (modulus <= rounding * bough_arnoldi_modulus(a, s->order[0])) break;
         if (!is_listed(s, k) || bough_arnoldi_residual(a, k) > accuracy * modulus) continue;
         *sum += modulus;
         chosen[found++] = k;

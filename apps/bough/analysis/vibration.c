@@ -15,9 +15,6 @@ static const double least_point = 1, spins = 4;
 // of the rounding.
 static const double free_motion = 1e-3;
 
-// |λ| beyond this many times the point is the inverse of rounding.
-static const double beyond = 1e12;
-
 enum { FREE_MOTIONS = 8 }; // that may be found before the modes
 
 // Rounding in the solutions grows with the fourth power of |λ| over the point. Where an eigenvector has a
@@ -189,8 +186,8 @@ static void drop_other_motions(const bough_tree *tree, double point, int count, 
     int kept = 0;
     for (int k = 0; k < v->count.found && kept < count; k++) {
         double modulus = hypot(v->pair[k].real, v->pair[k].imaginary);
-        bool moves = modulus > free_motion * point && modulus < beyond * point;
-        if (moves && !is_closure(tree, &v->pair[k])) v->pair[kept++] = v->pair[k];
+        bool moves = modulus > free_motion * point && !is_closure(tree, &v->pair[k]);
+        if (moves) v->pair[kept++] = v->pair[k];
     }
     v->found = kept;
 }
@@ -244,7 +241,8 @@ static bough_status solve(bough_arena *arena, bough_simulation *s, int count, bo
     v->frozen = is_frozen(s, &x.group);
     if (v->frozen && !s->scene->modes.linear) BOUGH_TRY(check_constant(arena, s, &x));
     BOUGH_TRY(solve_about(arena, s, &x, count, v));
-    double point = better_point(v, x.def.point);
+    bool air_moves = s->aero && s->scene->modes.air == BOUGH_SCENE_AIR_DYNAMIC; // with other residuals
+    double point = air_moves ? 0 : better_point(v, x.def.point);
     if (point > 0) {
         x.def.point = point;
         BOUGH_TRY(solve_about(arena, s, &x, count, v));

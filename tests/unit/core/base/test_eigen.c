@@ -169,6 +169,42 @@ TEST(as_many_as_converge_are_found) {
     }
 }
 
+// A⁻¹ = H D H with a reflection H; the last entries of the diagonal D are zero, so that their eigenvalues
+// come out as rounding of either sign.
+enum { KEPT = 6, REFLECTED = 16 };
+static void reflect(double *z) {
+    double sum = 0;
+    for (int i = 0; i < REFLECTED; i++) sum += (1 + i % 3) * z[i];
+    for (int i = 0; i < REFLECTED; i++) z[i] -= sum * (1 + i % 3) / 35.5; // half of the sum of (1 + i % 3)²
+}
+
+static void project(void *self, int n, const double *z, double *image) {
+    (void)self;
+    memcpy(image, z, (size_t)n * REFLECTED * sizeof *z);
+    for (int k = 0; k < n; k++) {
+        double *x = image + k * REFLECTED;
+        reflect(x);
+        for (int i = 0; i < REFLECTED; i++) x[i] = i < KEPT ? x[i] / (1 + i) : 0;
+        reflect(x);
+        for (int i = 0; i < REFLECTED; i++) x[i] = (x[i] + 1e4) - 1e4; // as an ill-conditioned solution
+    }
+}
+
+TEST(vectors_that_the_inverse_maps_to_zero_have_no_eigenvalue) {
+    check_arena(arena);
+    bough_eigen_operator op = {.name = "reflection",
+                               .length = REFLECTED,
+                               .n_shape = REFLECTED,
+                               .weight = bough_arena_doubles(arena, REFLECTED),
+                               .apply = project};
+    bough_eigen_pair pair[WANTED];
+    bough_eigen_count count = {.wanted = WANTED};
+    for (int i = 0; i < REFLECTED; i++) op.weight[i] = 1;
+    check_ok(bough_eigen_nearest(arena, &op, pair, &count));
+    assert_int_equal(count.found, KEPT);
+    for (int k = 0; k < KEPT; k++) check_near(pair[k].real, 1 + k, 1e-9, 0);
+}
+
 // Of x that misses an eigenvector by ε of another, y = A⁻¹ x misses it by ε λ/λ′: the residual is ε (1 −
 // λ/λ′).
 TEST(residual_is_the_distance_from_an_eigenvector) {
