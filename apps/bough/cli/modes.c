@@ -186,9 +186,10 @@ static void print_head(const bough_simulation *s, const bough_vibration *v) {
     if (rotor_is_free(s)) printf(", rotor free to turn");
     static const char *const air[] = {"do not follow", "follow at once", "follow in time"};
     if (s->aero) printf("; the air's forces %s", air[s->scene->modes.air]);
-    printf("\n%4s %12s %12s %11s %11s  %-12s %-8s %-12s %8s %8s %8s\n", "mode", "frequency", "damped",
-           "damping", "decrement", "body", "shape", "pattern", "collect.", "forward", "backward");
-    printf("%4s %12s %12s %11s %11s\n", "", "(Hz)", "(Hz)", "(%)", "(-)");
+    printf("\n%4s %12s %12s %11s %11s  %-12s %s", "mode", "frequency", "damped", "damping", "decrement",
+           "body", "shape");
+    if (v->n_blade > 0) printf("    %-12s %8s %8s %8s", "pattern", "collect.", "forward", "backward");
+    printf("\n%4s %12s %12s %11s %11s\n", "", "(Hz)", "(Hz)", "(%)", "(-)");
 }
 
 static double largest_residual(const bough_vibration *v) {
@@ -214,7 +215,8 @@ static bool print_numbers(const char *head, const bough_vibration *v, mode_choic
 static void print_search(const bough_vibration *v) {
     bool converged = v->count.converged >= v->count.wanted;
     if (v->found < v->asked && converged)
-        printf("there are no more than %d of the %d modes asked for\n", v->found, v->asked);
+        printf("%d of the %d modes asked for: the scene has no others that oscillate or grow\n", v->found,
+               v->asked);
     if (v->found < v->asked && !converged)
         printf("%d of the %d modes asked for: the iteration converges for no more than %d eigenvalues\n",
                v->found, v->asked, v->count.converged);
@@ -242,8 +244,8 @@ static void print_modes(const bough_simulation *s, const bough_vibration *v) {
         const bough_scene_mode *m = &v->mode[k];
         printf("%4d", k + 1);
         bough_modes_print_value(m->frequency, m->damped_frequency, m->damping);
-        printf("%-12s %-8s %-12s", bough_modes_body(s, m), bough_modes_shape(s, m),
-               bough_pattern_names[m->pattern]);
+        printf("%-12s %-8s", bough_modes_body(s, m), bough_modes_shape(s, m));
+        if (v->n_blade > 0) printf(" %-12s", bough_pattern_names[m->pattern]);
         for (int c = 0; v->n_blade > 0 && c < 3; c++) printf(" %8.4f", m->whirl[c]);
         if (rotor_is_free(s) && turns_rotor(m)) printf("  free rotor");
         putchar('\n');
