@@ -165,7 +165,7 @@ checks() {
     has ../stdout '^coupling: ramp, theta 0.5'
     has ../stdout '^aero: built, 3 blades of '
     has ../stdout '^rotor: 3 blades, radius 62.94 m, hub height 90 m, tilt 5 deg, overhang 5.0191 m upwind'
-    has ../stdout '^blade blade2: pitch 6.5 deg, cone -2.5 deg, root at 1.5 m'
+    has ../stdout '^blade blade2: pitch 6.5 deg, cone 2.5 deg, root at 1.5 m'
     has ../stdout '^wind: uniform, 20 m/s, to 0 deg from x, 0 m/s upwards; at the hub at 0 s \[20, 0, 0\]'
     has ../stdout '^control: not built'
     has ../stdout '^load on joint hub: -1.19e+07 N m, ramp from 0 to 20 s$'

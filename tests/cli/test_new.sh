@@ -13,6 +13,8 @@ for kind in beam mechanism turbine; do
     says 0 "out: out/$kind" run mine/$kind/ --quiet --set simulation.duration=0.2s
     [ -f out/$kind/channels.out ] || fail "out/$kind: no channels.out"
 done
+says 0 "^blade blade2: pitch 1 deg, cone 0 deg," check mine/turbine
+says 0 "^blade blade2: pitch 1 deg, cone 3 deg," check mine/turbine --set 'turbine.cone=3 deg'
 says 2 "unknown kind 'turbin' (did you mean 'turbine'?)" new turbin other
 says 2 "'mine/beam' is not empty" new beam mine/beam
 

@@ -255,9 +255,10 @@ static void print_blades(const bough_simulation *s, const bough_rotor_place *r) 
         bough_transform root = bough_tree_frame_pose(s->view, &s->tree->markers[blade->marker]);
         bough_vec3 z = bough_mat3_mul(root.rotation, bough_v3(0, 0, 1));
         bough_vec3 offset = bough_sub(root.position, r->hub);
-        double cone = asin(fmax(-1, fmin(1, bough_dot(z, r->axis))));
+        double cone = -asin(fmax(-1, fmin(1, bough_dot(z, r->axis)))); // as the key: positive upwind
+        double shown = fabs(cone) < 1e-9 ? 0 : cone / BOUGH_DEGREE;
         printf("blade %s: pitch %.6g deg, cone %.6g deg, root at %.6g m\n", blade->body->name,
-               bough_simulation_pitch(s, blade) / BOUGH_DEGREE, cone / BOUGH_DEGREE, bough_dot(offset, z));
+               bough_simulation_pitch(s, blade) / BOUGH_DEGREE, shown, bough_dot(offset, z));
     }
 }
 
