@@ -144,7 +144,7 @@ static void find_library(bough_openfast *o) {
     if (!bough_is_ok(o->draft.status) || take_library(o, path, why)) return;
     if (torque_mode(o) == LIBRARY) {
         lack(o, bough_arena_print(o->draft.arena,
-                                  "a controller, which --controller FILE of the import gives (%s)", why));
+                                  "a controller, to be given to the import by --controller FILE (%s)", why));
     } else {
         bough_other_case(o, "PCMode 5: the pitch is held: %s", why);
     }

@@ -185,6 +185,10 @@ void bough_openfast_blade(bough_openfast *o) {
     }
     bough_taken(o, "%d stations, mass times AdjBlMs %g: the blade weighs %.7g kg, without tip mass", n,
                 b.mass_factor, o->blade_mass);
+    if (o->rigid_blade) {
+        bough_taken(o, "FlapDOF1, FlapDOF2, EdgeDOF False: the blades are rigid");
+        return;
+    }
     bough_approximated(o, "blade: geometrically exact instead of ElastoDyn's modes; its damping ratio grows "
                           "with the frequency, from that of the first mode");
     if (!(b.row[AXIAL] > 0)) {

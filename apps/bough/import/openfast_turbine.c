@@ -9,6 +9,7 @@
 static void put_tower(bough_openfast *o, double top_mass) {
     if (o->rigid_tower) {
         bough_put(o, "  - name: tower\n    fidelity: rigid\n    joint: {kind: fixed, parent: ground}\n");
+        bough_taken(o, "TwFADOF1, TwFADOF2, TwSSDOF1, TwSSDOF2 False: the tower is rigid");
         return;
     }
     bough_openfast_tower(o, top_mass);

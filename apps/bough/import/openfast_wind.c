@@ -54,10 +54,11 @@ static void put_steady(bough_openfast *o, double speed) {
 static void put_stand_in(bough_openfast *o, const char *why) {
     const double usual = 8; // [m/s]
     double speed = positive(o->inflow, "HWindSpeed", positive(o->inflow, "URef", usual));
-    bough_put(o, "  # This scene lacks its wind, which --wind FILE of the import gives:\n  # %s\n", why);
+    bough_put(o, "  # This scene lacks its wind, to be given to the import by --wind FILE:\n  # %s\n", why);
     put_steady(o, speed);
-    bough_left_out(o, "the wind file is missing (give it by --wind FILE): %s; steady wind of %g m/s instead",
-                   why, speed);
+    bough_other_case(o,
+                     "its wind, to be given to the import by --wind FILE (%s): steady wind of %g m/s instead",
+                     why, speed);
 }
 
 // -- files ----------------------------------------------------------------------------------------

@@ -33,7 +33,7 @@ TEST(missing_controller_leaves_the_speed) {
                        "5   VSContrl\n\"none.dll\"  DLL_FileName"};
     trial t = import(&none);
     assert_string_equal(t.status.message, "");
-    assert_true(list_says(&t, "a controller, which --controller FILE of the import gives"));
+    assert_true(list_says(&t, "a controller, to be given to the import by --controller FILE"));
     assert_string_equal(text(body(&t, "generator"), "joint.motion.speed"), "20 rpm");
     assert_null(bough_node_find(read_file(&t, "scene.yaml"), "control"));
     steps(&t);
@@ -47,11 +47,24 @@ TEST(missing_controller_leaves_the_speed) {
     assert_non_null(strstr(t.status.message, "--controller: the controller"));
 }
 
+// Without its motions a blade or tower is rigid, and its stiffness approximates nothing.
+TEST(switched_off_motions_make_rigid_bodies) {
+    trial t = import_with(&by_modes, &(edit){"parts/elasto.dat", "True          FlapDOF1", "F  FlapDOF1"});
+    assert_string_equal(t.status.message, "");
+    assert_string_equal(text(body(&t, "blade1"), "fidelity"), "rigid");
+    assert_true(list_says(&t, "\n  FlapDOF1, FlapDOF2, EdgeDOF False: the blades are rigid\n"));
+    assert_false(list_says(&t, "ElastoDyn's modes"));
+    t = import(&(edit){"parts/elasto.dat", "True          TwFADOF1", "F  TwFADOF1"});
+    assert_true(list_says(&t, "\n  TwFADOF1, TwFADOF2, TwSSDOF1, TwSSDOF2 False: the tower is rigid\n"));
+}
+
 TEST(missing_wind_leaves_a_steady_one) {
     const edit none = {"parts/wind.dat", "1    WindType", "3    WindType\n\"none.bts\"  FileName_BTS"};
     trial t = import(&none);
     assert_string_equal(t.status.message, "");
-    assert_true(list_says(&t, "the wind file is missing (give it by --wind FILE): cannot open"));
+    assert_true(
+        list_says(&t, "NOT THE MODEL'S LOAD CASE, which also has:\n  its wind, to be given to the import by "
+                      "--wind FILE (cannot open"));
     assert_string_equal(text(read_file(&t, "scene.yaml"), "aero.wind.speed"), "12 m/s");
     assert_string_equal(text(read_file(&t, "scene.yaml"), "aero.wind.kind"), "power");
     steps(&t);
@@ -93,7 +106,7 @@ TEST(old_decks_name_heights_alike) {
     assert_string_equal(text(read_file(&t, "scene.yaml"), "aero.wind.reference_length"), "44 m");
     t = import_with(&(edit){"parts/wind.dat", "1    WindType", "5    WindType"}, &height);
     assert_string_equal(t.status.message, "");
-    assert_true(list_says(&t, "the wind file is missing"));
+    assert_true(list_says(&t, "its wind, to be given to the import by --wind FILE"));
 }
 
 TEST(offshore_turbines_stand_on_their_base) {
