@@ -378,9 +378,12 @@ static void print_equal(const bough_tune_state *t) {
         const bough_tune_point *p = &t->point[i];
         if (bough_tune_ended(p) && p->error <= own->error && p->cpu < least->cpu) least = p;
     }
-    fprintf(t->options->stream,
-            "# the scene as written: error %.2g, %.3g s of CPU; no less accurate: run %d, %.3g s\n",
-            own->motion, own->cpu, (int)(least - t->point) + 1, least->cpu);
+    fprintf(t->options->stream, "# the scene as written: error %.2g, forces %.2g; %.3g s of CPU", own->motion,
+            own->force, own->cpu);
+    if (least != own)
+        fprintf(t->options->stream, "; run %d is no less accurate in %.3g s", (int)(least - t->point) + 1,
+                least->cpu);
+    fputc('\n', t->options->stream);
 }
 
 static bough_status conclude(const bough_tune_state *t) {
@@ -390,8 +393,13 @@ static bough_status conclude(const bough_tune_state *t) {
     bough_tune_print_settings(t, t->options->stream);
     print_equal(t);
     if (tune_meets(t, p)) return bough_ok();
-    return bough_fail(BOUGH_FAILED, "no settings meet the error %.3g: the least is %.2g, with those above",
-                      t->error, p->error);
+    bool moves = p->motion > t->error;
+    return bough_fail(
+        BOUGH_FAILED,
+        "no settings meet the error %.3g: run %d comes nearest, where %s err by %.2g instead of "
+        "%.3g; try a larger --error",
+        t->error, t->chosen + 1, moves ? "motions" : "forces and moments", moves ? p->motion : p->force,
+        (moves ? 1 : 4) * t->error);
 }
 
 bough_status bough_tune(bough_arena *arena, const bough_tune_options *options) {

@@ -46,7 +46,7 @@ void bough_tune_print(const bough_tune_state *t, int k, FILE *stream) {
         for (int i = 0; i < 3; i++) print_share(p, i, stream);
         fputs(s->own ? "  as written\n" : "\n", stream);
     } else {
-        fprintf(stream, "failed: %.120s\n", p->outcome.message);
+        fprintf(stream, "failed: %s\n", p->outcome.message);
     }
     fflush(stream);
 }
