@@ -458,7 +458,7 @@ statics() {
     rm -r pieces
     expect 0 static "$turbine" --out turning
     has ../stdout '^whole scene: .* steps, .* samples of the air, loads at 20 s$'
-    has ../stdout '^joint hub: revolute 0 deg, keeps its speed 0.5$'
+    has ../stdout '^joint hub: revolute 0 deg, keeps its speed of 0.5 rad/s$'
     [ "$(wc -l <turning/static.csv)" -eq 76 ] || fail "$said: static.csv has not 76 lines"
     has turning/static-channels.csv '^channel,unit,value'
     has turning/static-channels.csv '^RtAeroMxh,N-m,[0-9]'

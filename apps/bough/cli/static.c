@@ -35,8 +35,8 @@ enum {
 };
 
 typedef struct mesh_error {
-    char unknown[160]; // why it is not known; "": it is
-    double *largest;   // (channels.count) of each channel, in its unit
+    char unknown[BOUGH_MESSAGE + 40]; // why it is not known; "": it is
+    double *largest;                  // (channels.count) of each channel, in its unit
 } mesh_error;
 
 // -- the equilibrium of each rod or of the whole scene, and the error of its mesh -----------------
@@ -180,7 +180,7 @@ static double *find_mesh_error(bough_arena *arena, equilibrium *x, mesh_error *m
     comparison c = {x, mesh, bough_arena_doubles(arena, STATIC_RESULTS * ((size_t)x->n + 1))};
     bough_status status = bough_arena_use(find_finer, &c);
     if (!bough_is_ok(&status)) {
-        snprintf(mesh->unknown, sizeof mesh->unknown, "with %d times the segments: %.120s", TIMES,
+        snprintf(mesh->unknown, sizeof mesh->unknown, "with %d times the segments: %s", TIMES,
                  status.message);
     }
     return c.error;
@@ -258,15 +258,14 @@ static void print_joints(const bough_simulation *s) {
         const bough_link *link = &s->tree->links[i];
         const double *q = s->leader.state + link->first_coordinate;
         const double *v = s->leader.state + s->tree->n_q + link->first_speed;
+        bool turns = link->joint.kind == BOUGH_JOINT_REVOLUTE,
+             slides = link->joint.kind == BOUGH_JOINT_PRISMATIC;
         printf("joint %s: %s", s->tree->bodies[link->body].name, bough_joint_name(link->joint.kind));
-        if (link->joint.kind == BOUGH_JOINT_REVOLUTE) {
-            printf(" %.7g deg", q[0] / BOUGH_DEGREE);
-        } else {
-            for (int k = 0; k < link->n_coordinates; k++) printf(" %.7g", q[k]);
-        }
+        for (int k = 0; k < link->n_coordinates; k++) printf(" %.7g", turns ? q[k] / BOUGH_DEGREE : q[k]);
+        printf("%s", turns ? " deg" : slides ? " m" : "");
         for (int k = 0; k < link->n_speeds; k++) {
             if (s->tree->initial[s->tree->n_q + link->first_speed + k] == 0) continue;
-            printf(", keeps its speed %.6g", v[k]);
+            printf(", keeps its speed of %.6g%s", v[k], turns ? " rad/s" : slides ? " m/s" : "");
         }
         putchar('\n');
     }
