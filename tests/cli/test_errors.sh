@@ -58,7 +58,7 @@ done
 run 0 '^largest errors: .*; mesh [0-9.e-]*; time ' coarse.yaml --set simulation.error_shares=true --set simulation.error_bound=0
 
 # Below the bound the warning's segments follow from the estimate, and they meet the accuracy.
-run 0 'for simulation.accuracy 0.005 try rod.segments: [0-9]*$' coarse.yaml --set simulation.error_bound=0
+run 0 'to err by less than 0.005 (simulation.accuracy) try rod.segments: [0-9]*$' coarse.yaml --set simulation.error_bound=0
 advised=$(sed -n 's/^warning: .* try rod.segments: \([0-9]*\)$/\1/p' stdout)
 run 0 '^largest errors: ' coarse.yaml --set "bodies[0].rod.segments=$advised"
 ! grep -q '^warning' stdout || fail "$advised segments: $(cat stdout)"

@@ -459,8 +459,8 @@ static void warn_of_error(const bough_companion *c, const bough_error_verdict *v
     const bough_scene *scene = c->run->scene;
     double accuracy = scene->simulation.accuracy;
     int n = describe(c, v, warning, BOUGH_ERROR_WARNING);
-    n += snprintf(warning + n, (size_t)(BOUGH_ERROR_WARNING - n), "; for simulation.accuracy %.3g try ",
-                  accuracy);
+    n += snprintf(warning + n, (size_t)(BOUGH_ERROR_WARNING - n),
+                  "; to err by less than %.3g (simulation.accuracy) try ", accuracy);
     advise_for_accuracy(scene, v->relative / accuracy, warning + n, (size_t)(BOUGH_ERROR_WARNING - n));
 }
 
