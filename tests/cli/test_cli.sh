@@ -157,9 +157,9 @@ checks() {
     expect 0 check "$turbine" --set 'bodies[3].rod.segments=8' --set 'bodies[4].rod.segments=8' \
         --set 'bodies[5].rod.segments=8' --set 'bodies[5].fidelity=rigid'
     has ../stdout '^states: 210$'
-    has ../stdout '^body nacelle: rigid; fixed to tower, welded to ground: no states'
-    has ../stdout '^body blade1: rod; fixed to hub, welded to hub: .*104 states.*mass 168.* length 61.5 m'
-    has ../stdout '^body blade3: rigid: no states of its own'
+    has ../stdout '^body nacelle: rigid; fixed to tower and so to ground: no states'
+    has ../stdout '^body blade1: rod; fixed to hub: .*104 states.*mass 168.* length 61.5 m'
+    has ../stdout '^body blade3: rigid, with mass and inertia of its rod; '
     has ../stdout '^joints: 1 moving, 5 fixed$'
     has ../stdout '^ports: 2,'
     has ../stdout '^coupling: ramp, theta 0.5'

@@ -47,8 +47,11 @@ static void print_joint(const bough_scene *scene, int body) {
     const bough_scene_joint *joint = &scene->body[body].joint;
     if (joint->kind == BOUGH_JOINT_FIXED) {
         int on = carrier(scene, body);
-        printf("; fixed to %s, welded to %s%s: no states in the tree", body_name(scene, joint->parent),
-               is_rod(scene, on) ? "the end of " : "", body_name(scene, on));
+        bool through = on != joint->parent;
+        printf("; fixed to %s%s", is_rod(scene, joint->parent) ? "the end of " : "",
+               body_name(scene, joint->parent));
+        if (through) printf(" and so to %s%s", is_rod(scene, on) ? "the end of " : "", body_name(scene, on));
+        printf(": no states in the tree");
         return;
     }
     bough_joint_kind kind = (bough_joint_kind)joint->kind;
@@ -84,8 +87,8 @@ static void print_body(const bough_simulation *s, int body) {
     const bough_beam *beam = bough_simulation_beam(s, body);
     bool flexible = beam && beam->port >= 0;
     printf("body %s: %s", s->scene->body[body].name,
-           flexible ? s->rod[beam->port].system.kind
-           : beam   ? "rigid: no states of its own, integrated from its rod"
+           flexible                                           ? s->rod[beam->port].system.kind
+           : beam                                             ? "rigid, with mass and inertia of its rod"
            : s->scene->body[body].fidelity == BOUGH_SCENE_FMU ? "FMU"
                                                               : "rigid");
     print_joint(s->scene, body);
