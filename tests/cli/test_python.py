@@ -173,6 +173,15 @@ class Module(unittest.TestCase):
         with self.assertRaises(ValueError):
             pendulum.step()
 
+    def test_errors_are_those_of_the_companion(self):
+        with bough.Session(RUNUP, *FEW, "simulation.error_estimate=companion") as run:
+            run.advance(0.4)
+            self.assertEqual(list(run.errors), run.names)
+            self.assertTrue(0 < run.errors["RotSpeed"] < 0.1)
+        with bough.Session(RUNUP, *FEW) as run:
+            run.advance(0.1)
+            self.assertTrue(math.isnan(run.errors["RotSpeed"]))
+
     def test_the_nearest_name_is_the_one_that_begins_alike(self):
         with self.assertRaises(bough.Error) as caught:
             bough.Session(RUNUP, "aero.wind.sped=12 m/s")

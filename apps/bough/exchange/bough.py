@@ -72,6 +72,7 @@ def _load():
         ("unit", text, session, ctypes.c_int),
         ("find", ctypes.c_int, session, text),
         ("values", ctypes.c_void_p, session),
+        ("estimate", real, session, ctypes.c_int),
         ("bodies", ctypes.c_int, session),
         ("body_name", text, session, ctypes.c_int),
         ("stations", ctypes.c_int, session, ctypes.c_int),
@@ -388,6 +389,12 @@ class Session:
         if name in self._input and name not in self._index:
             return self._call("input_value", self._input[name])
         return float(self.values[self._find(self._index, "find", name)])
+
+    @property
+    def errors(self) -> Dict[str, float]:
+        """Estimated largest error so far of each channel, in its unit; nan: not known, as without the setting
+        "simulation.error_estimate=companion"."""
+        return {name: self._call("estimate", i) for name, i in self._index.items()}
 
     @property
     def poses(self) -> Dict[str, Pose]:

@@ -340,6 +340,14 @@ const char *bough_session_input_unit(const bough_session *s, int input) {
 }
 
 int bough_session_input(bough_session *s, const char *name) {
+    if (is_open(s) && bough_session_inputs(s) == 0) {
+        conclude(s,
+                 bough_fail(BOUGH_INVALID,
+                            "the scene has no input '%.80s': it declares none, as 'input: NAME' of a load or "
+                            "of the wind does",
+                            name ? name : ""));
+        return -1;
+    }
     return find_name(s, "input", name, bough_session_inputs(s), bough_session_input_name);
 }
 

@@ -136,6 +136,10 @@ TEST(an_unknown_name_is_reported_with_the_nearest) {
     assert_int_equal(bough_session_set(s, 1, 0), BOUGH_SESSION_INVALID);
     assert_string_equal(bough_session_error(s), "the scene has no input of index 1: it has 1");
     bough_session_close(s);
+    s = bough_session_open(pendulum, NULL, 0);
+    assert_int_equal(bough_session_input(s, "push"), -1);
+    assert_non_null(strstr(bough_session_error(s), "no input 'push': it declares none, as 'input: NAME'"));
+    bough_session_close(s);
 }
 
 TEST(sessions_live_side_by_side) {
