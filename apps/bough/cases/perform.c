@@ -259,10 +259,10 @@ static bough_status run_cases(bough_arena *arena, work *w) {
     bough_status status = perform_all(arena, w);
     if (w->results.ran > 0) {
         fprintf(o->stream,
-                "ran %d cases, %.4g simulated hours in %.4g s on %d threads: %.4g simulated hours per "
+                "ran %d case%s, %.4g simulated hours in %.4g s on %d thread%s: %.4g simulated hours per "
                 "core hour\n",
-                w->results.ran, w->simulated / 3600, bough_wall_clock() - began, w->threads,
-                w->simulated / w->cpu);
+                w->results.ran, w->results.ran == 1 ? "" : "s", w->simulated / 3600,
+                bough_wall_clock() - began, w->threads, w->threads == 1 ? "" : "s", w->simulated / w->cpu);
     }
     return status;
 }

@@ -200,7 +200,7 @@ static void print_lifetime(const bough_lifetime *l, FILE *f) {
     }
     int compared = l->n_compared[s->n_group];
     if (compared > 0)
-        fprintf(f, "errors estimated from the companions of %d cases\n", compared);
+        fprintf(f, "errors estimated from the companions of %d case%s\n", compared, compared == 1 ? "" : "s");
     else
         fprintf(f, "errors not estimated: %s\n",
                 s->companions > 0 ? "the companions broke down" : "companions: none");

@@ -56,7 +56,7 @@ bough_status bough_option_kernels(const char *name, const char *text, void *fiel
     }
 #define BOUGH_OPTION_OUT                                                                                     \
     {                                                                                                        \
-        "out", "DIR", "folder for the results; default out/<name of the scene>", bough_option_text,          \
+        "out", "DIR", "folder for the results; default out/<name of the file>", bough_option_text,           \
             offsetof(bough_options, out)                                                                     \
     }
 #define BOUGH_OPTION_THREADS                                                                                 \

@@ -19,7 +19,8 @@ static bough_status read_part(const char *name, const char *text, void *field) {
 
 static const bough_option rows[] = {
     BOUGH_OPTION_OUT,
-    BOUGH_OPTION_THREADS,
+    {"threads", "N", "1 to 64; of stability, sweep, load-set: runs at the same time, else of each run",
+     bough_option_threads, offsetof(bough_options, threads)},
     {"part", "K/N", "of a study (stability, sweep, load-set) only the K-th of N shares of its runs",
      read_part, offsetof(study_options, how)},
     {"case", "NAME", "of a load set only the load case of that name", bough_option_text,
