@@ -237,7 +237,7 @@ same whole killed
 cp -r whole damaged && head -n 5 whole/cases/000003.case >damaged/cases/000003.case
 study 1 'cases/000003.case.*is damaged: remove it' set.yaml --out damaged
 rm damaged/cases/000003.case
-study 0 'ran 1 cases' set.yaml --out damaged
+study 0 'ran 1 case,' set.yaml --out damaged
 same whole damaged
 
 # A case that fails is reported, the others go on, and the result says what it lacks.
@@ -245,7 +245,7 @@ sed 's/speed: \[8, 16\]/speed: [8], simulation.error_bound: [0, 1e-12]/;s/^from/
 study 3 'case 8 failed (DLC1.3, speed=8, error_bound=1e-12)' failing.yaml --out failing
 grep -q "bough run .*--set aero.wind.speed=8 --set simulation.error_bound=1e-12" log || fail "no command line of the failed case: $(cat log)"
 grep -q '1 of 10 cases failed: the lifetime result is incomplete' log || fail "not called incomplete: $(cat log)"
-grep -q '^INCOMPLETE: 1 cases failed' failing/table.txt || fail "table: $(head -n 4 failing/table.txt)"
+grep -q '^INCOMPLETE: 1 case failed' failing/table.txt || fail "table: $(head -n 4 failing/table.txt)"
 [ "$(grep -c ',ok,' failing/cases.csv)" -eq 9 ] || fail "the other cases were not run"
 
 # Bad input, before anything runs.

@@ -195,8 +195,8 @@ static void print_lifetime(const bough_lifetime *l, FILE *f) {
     fprintf(f, "%d cases, %.6g hours of a lifetime of %g years; equivalent loads at %g cycles\n", s->n_case,
             l->hours, s->lifetime, s->cycles);
     if (l->n_failed + l->n_missing > 0) {
-        fprintf(f, "INCOMPLETE: %d cases failed, %d are missing, %.3g %% of the weight is missing\n",
-                l->n_failed, l->n_missing, 100 * l->lacking);
+        fprintf(f, "INCOMPLETE: %d case%s failed, %d missing, %.3g %% of the weight is missing\n",
+                l->n_failed, l->n_failed == 1 ? "" : "s", l->n_missing, 100 * l->lacking);
     }
     int compared = l->n_compared[s->n_group];
     if (compared > 0)
