@@ -138,10 +138,10 @@ void bough_schema_add_file(bough_schema_reader *reader, const char *key, const c
 // Reads a number with or without a unit; NaN after adding an error.
 double bough_schema_number(bough_schema_reader *reader, const bough_node *node, bough_dimension dimension);
 
-// Reads a list of between 1 and `most` plain numbers; its length, or −1 after adding an error.
-// `expected` says what the list should be.
-int bough_schema_numbers(bough_schema_reader *reader, const bough_node *node, int most, double *values,
-                         const char *expected);
+// Reads a list of `few` or of `many` plain numbers; its length, or −1 after adding an error. `expected` says
+// what the list should be.
+int bough_schema_numbers(bough_schema_reader *reader, const bough_node *node, int few, int many,
+                         double *values, const char *expected);
 
 // The value in SI of a number followed by a unit of that dimension, or by none. False when it is
 // not one; `why` then receives the reason.

@@ -85,14 +85,14 @@ double bough_schema_number(bough_schema_reader *reader, const bough_node *node, 
     return NAN;
 }
 
-int bough_schema_numbers(bough_schema_reader *reader, const bough_node *node, int most, double *values,
-                         const char *what) {
+int bough_schema_numbers(bough_schema_reader *reader, const bough_node *node, int few, int many,
+                         double *values, const char *what) {
     char shown[64];
     if (node->kind != BOUGH_SEQUENCE) {
         bough_schema_expected(reader, node, what);
         return -1;
     }
-    if (node->n < 1 || node->n > most) {
+    if (node->n != few && node->n != many) {
         bough_schema_error(reader, node, "", "expected %s, got %d items", what, node->n);
         return -1;
     }

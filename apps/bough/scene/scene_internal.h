@@ -17,7 +17,6 @@ extern const bough_schema bough_scene_micro_schema, bough_scene_body_schema, bou
 
 // Readers of values that are lists of their own kind. `field` is named in the body.
 void bough_scene_read_placement(bough_schema_reader *r, const bough_node *node, void *field);
-void bough_scene_read_axis_offset(bough_schema_reader *r, const bough_node *node, void *field);
 void bough_scene_read_stiffness(bough_schema_reader *r, const bough_node *node, void *field);
 void bough_scene_read_section_mass(bough_schema_reader *r, const bough_node *node, void *field);
 void bough_scene_read_motion(bough_schema_reader *r, const bough_node *node, void *field);

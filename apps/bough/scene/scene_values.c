@@ -104,12 +104,8 @@ static void refuse_row(bough_schema_reader *r, const bough_node *at, const char 
 void bough_scene_read_stiffness(bough_schema_reader *r, const bough_node *node, void *field) {
     double values[21], matrix[36] = {0}, *triangle = field;
     const char *what = "a list of 6 (diagonal) or 21 (upper triangle) numbers";
-    int n = bough_schema_numbers(r, node, 21, values, what);
+    int n = bough_schema_numbers(r, node, 6, 21, values, what);
     if (n < 0) return;
-    if (n != 6 && n != 21) {
-        bough_schema_error(r, node, "", "expected %s, got %d items", what, n);
-        return;
-    }
     for (int i = 0, at = 0; i < 6; i++) {
         for (int j = i; j < 6; j++, at++) {
             triangle[at] = n == 21 ? values[at] : i == j ? values[i] : 0;
@@ -149,12 +145,8 @@ void bough_scene_read_section_mass(bough_schema_reader *r, const bough_node *nod
     bough_section_station *s = field;
     double v[7];
     const char *what = "a list [m, cx, cy, Ixx, Iyy, Ixy] or with Izz";
-    int n = bough_schema_numbers(r, node, 7, v, what);
+    int n = bough_schema_numbers(r, node, 6, 7, v, what);
     if (n < 0) return;
-    if (n < 6) {
-        bough_schema_error(r, node, "", "expected %s, got %d items", what, n);
-        return;
-    }
     s->mass = v[0];
     memcpy(s->centre, v + 1, sizeof s->centre);
     memcpy(s->inertia, v + 3, 3 * sizeof *v);
@@ -190,27 +182,13 @@ static const double most_inertia = 1e18; // [kg m²]
 void bough_scene_read_inertia(bough_schema_reader *r, const bough_node *node, void *field) {
     double v[6] = {0}, *inertia = field;
     const char *what = "a list [Ixx, Iyy, Izz] or with Ixy, Ixz, Iyz";
-    int n = bough_schema_numbers(r, node, 6, v, what);
-    if (n < 0) return;
+    if (bough_schema_numbers(r, node, 3, 6, v, what) < 0) return;
     memcpy(inertia, v, sizeof v);
-    if (n != 3 && n != 6) {
-        bough_schema_error(r, node, "", "expected %s, got %d items", what, n);
-    } else if (fmax(fmax(v[0], v[1]), v[2]) > most_inertia) {
+    if (fmax(fmax(v[0], v[1]), v[2]) > most_inertia) {
         bough_schema_error(r, node, "", "must be at most %g kg m^2", most_inertia);
     } else if (!bough_scene_semidefinite(v)) {
         bough_schema_error(r, node, "", "the inertia matrix must not be negative about any axis, but %s is",
                            negative_part(v));
-    }
-}
-
-// field: position (3)
-void bough_scene_read_axis_offset(bough_schema_reader *r, const bough_node *node, void *field) {
-    double v[2], *position = field;
-    int n = bough_schema_numbers(r, node, 2, v, "a list [x, y] of lengths in m");
-    if (n == 2) {
-        memcpy(position, v, sizeof v);
-    } else if (n == 1) {
-        bough_schema_error(r, node, "", "expected a list [x, y] of lengths in m, got 1 items");
     }
 }
 
