@@ -11,8 +11,10 @@
 // Eigenvalues of the scaled matrix below this, relative to the largest, belong to dependent equations. It is
 // the square of the distance from a position in which the loop could branch, relative to the loop's size.
 static const double dependent = 1e-9;
-// The same in proportion to the opening of the loop relative to its size, and its maximum.
-static const double per_opening = 30, most_dependent = 1e-7;
+// The same in proportion to the opening of the loop relative to its size, and its maximum: of all mechanisms,
+// and as a share of the smallest eigenvalue at the start, which is small where masses are very different.
+static const double per_opening = 30, most_dependent = 1e-5, dependent_share = 1e-3;
+static const double dependent_before = 1e-7; // its maximum until the loops are assembled
 // Diagonal entries below this, relative to the largest of the same kind, belong to equations that nothing
 // moves.
 static const double rigid = 1e-13;
@@ -34,6 +36,7 @@ bough_status bough_loops_place(bough_arena *arena, const bough_tree_def *def, bo
     tree->closures = bough_arena_take(arena, (size_t)def->n_closures * sizeof(bough_closure));
     tree->closure_time = def->closure_time > 0 ? def->closure_time : 0.01;
     tree->closure_size = 1;
+    tree->closure_dependent = dependent_before;
     for (int k = 0; k < def->n_closures; k++) {
         const bough_closure_def *from = &def->closures[k];
         bough_closure *to = &tree->closures[k];
@@ -151,7 +154,8 @@ static double least_eigenvalue(const bough_tree *tree, const bough_loops *l) {
         double size = turns(tree, k) ? 1 : tree->closure_size;
         open = fmax(open, fabs(l->row[k].value) / size);
     }
-    return fmin(fmax(dependent, per_opening * open), most_dependent) * l->value[tree->n_rows - 1];
+    double least = fmin(per_opening * open, tree->closure_dependent);
+    return fmax(least, dependent) * l->value[tree->n_rows - 1];
 }
 
 // One scale for the translations of a closure and one for its rotations: its largest entry becomes one. Near
@@ -465,11 +469,20 @@ static bough_status assemble_speeds(bough_tree *tree, bough_tree_data *d, double
     }
 }
 
+// With the factors of the assembled loops.
+static void find_rank(bough_tree *tree, const bough_loops *l) {
+    int m = tree->n_rows;
+    tree->closure_rank = l->rank;
+    if (l->rank == 0) return;
+    double smallest = l->value[m - l->rank] / l->value[m - 1];
+    tree->closure_dependent = fmin(dependent_share * smallest, most_dependent);
+}
+
 bough_status bough_loops_assemble(bough_tree *tree, bough_tree_data *d) {
     if (d->loops == NULL) return bough_ok();
     bough_tree_kinematics(tree, tree->initial, d);
     double size = tree->closure_size = extent(tree, d);
     BOUGH_TRY(assemble_positions(tree, d, size));
-    tree->closure_rank = d->loops->rank;
+    find_rank(tree, d->loops);
     return assemble_speeds(tree, d, size);
 }

@@ -48,7 +48,8 @@ double bough_loops_margin(const bough_tree *tree, bough_tree_data *data, int *cl
 
 // Makes the tree's initial state satisfy its closures: coordinates by Newton's method from near,
 // and speeds, of which those that are zero follow the others. BOUGH_INVALID, naming the closure and
-// what remains, where that is impossible. Sets closure_rank, closure_moved and closure_size of the tree.
+// what remains, where that is impossible. Sets closure_rank, closure_moved, closure_size and
+// closure_dependent of the tree.
 bough_status bough_loops_assemble(bough_tree *tree, bough_tree_data *data);
 
 // The closures' equations at the data's poses and twists, into loops->row.

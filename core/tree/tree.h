@@ -185,6 +185,7 @@ typedef struct bough_tree {
     int closure_rank;          // how many of the equations are independent at the start
     double closure_moved;      // how far assembly moved a coordinate [rad, m]
     double closure_size;       // extent of the bodies and closures at the start [m]
+    double closure_dependent;  // up to which eigenvalues may count as zero, relative to the largest
     int n_bushings, n_applied;
     bough_bushing_def *bushings; // (n_bushings), as in the def
     bough_applied_def *applied;  // (n_applied), as in the def

@@ -164,6 +164,34 @@ TEST(windows_pass_their_singular_positions) {
     }
 }
 
+// However far its tolerance lets the loop open there, a parallelogram does not fold where its bars lie on one
+// line: the rocker turns beside the crank.
+TEST(parallelograms_do_not_fold) {
+    static const char *const tolerances[] = {"1e-5", "1e-4", "1e-3", "3e-3"};
+    for (size_t k = 0; k < sizeof tolerances / sizeof *tolerances; k++) {
+        char rtol[64];
+        snprintf(rtol, sizeof rtol, "simulation.master.rtol=%s", tolerances[k]);
+        built f = built_open("tests/data/scenes/parallelogram.yaml", (const char *const[]){rtol, NULL});
+        run(&f, 60);
+        check_near(remainder(channel(&f, "rockerPos") - channel(&f, "crankPos"), 360), 0, 0, 0.1);
+        bough_arena_destroy(f.arena);
+    }
+}
+
+// What keeps a loop closed may be a hundred thousand times less mobile in one direction than in another. The
+// crank's pin is at 0.2 m, the rod 1 m long.
+TEST(light_rods_keep_their_length) {
+    static const char *const loose[] = {"simulation.master.rtol=3e-3", NULL};
+    built f = built_open("tests/data/scenes/light-rod.yaml", loose);
+    double turn = BOUGH_PI / 180;
+    for (int k = 0; k < 10; k++) {
+        run(&f, 10);
+        double angle = turn * channel(&f, "crankPos"), across = 0.2 * sin(angle);
+        double height = 0.2 * cos(angle) + sqrt(1 - across * across);
+        check_near(channel(&f, "sliderPos") + 1.1856, height, 0, 1e-4);
+    }
+}
+
 static void check_closed(built *f, double allowed) {
     double value, rate;
     bough_simulation_update(f->s);
