@@ -35,6 +35,8 @@ int bough_joint_n_speeds(bough_joint_kind kind) { return kinds[kind].speeds; }
 
 int bough_joint_n_axes(bough_joint_kind kind) { return kinds[kind].axes; }
 
+int bough_joint_n_slides(bough_joint_kind kind) { return kinds[kind].slides; }
+
 // Where the coordinates hold the quaternion; -1 without one.
 static int quaternion_row(const bough_joint *joint) {
     return spin_of(joint) == ALL_WAYS ? slides_of(joint) : -1;

@@ -220,17 +220,6 @@ static void input_columns(void *self, double t, const double *state, const doubl
 // The increment of a state that keeps y + δ − y exact to its last digit
 static double increment_at(double y, double relative) { return relative * fmax(1, fabs(y)); }
 
-// The coordinates that are lengths are a joint's first.
-static int n_lengths(bough_joint_kind kind) {
-    switch (kind) {
-    case BOUGH_JOINT_FREE: return 3;
-    case BOUGH_JOINT_PLANAR: return 2;
-    case BOUGH_JOINT_PRISMATIC:
-    case BOUGH_JOINT_CYLINDRICAL: return 1;
-    default: return 0;
-    }
-}
-
 // Coordinates enter by sines and cosines: their increments do not grow with them. Those of lengths are small
 // against a small mechanism.
 static void find_increments(tree_system *s) {
@@ -238,7 +227,7 @@ static void find_increments(tree_system *s) {
     double length = central_increment * fmin(1, tree->closure_size);
     for (int i = 0; i < tree->n_links; i++) {
         const bough_link *link = &tree->links[i];
-        int n = n_lengths(link->joint.kind);
+        int n = bough_joint_n_slides(link->joint.kind);
         for (int k = 0; k < link->n_coordinates; k++)
             s->increment[link->first_coordinate + k] = k < n ? length : central_increment;
     }
