@@ -73,6 +73,16 @@ static double step(search *s, const double *state, bough_equilibrium_report *rep
     return size_of(s, s->second, &row) / (report->change + DBL_MIN);
 }
 
+// Whether the state after a last step is the equilibrium: its change is none, or as small as rounding lets it
+// be. Shorter last steps leave more behind: what their changes, one after the other, sum up to must be none.
+static bool is_found(const search *s, double longest, double change, double before) {
+    if (longest >= BOUGH_EQUILIBRIUM_LONGEST)
+        return change < s->def->tolerance || (change < rounding && !(change < contracting * before));
+    if (!(change < before)) return isfinite(before) && change < rounding;
+    double ratio = change / before;
+    return isfinite(before) && change * ratio / (1 - ratio) < s->def->tolerance;
+}
+
 bough_status bough_equilibrium_find(bough_arena *arena, bough_whole *whole, const bough_equilibrium_def *def,
                                     double *state, bough_equilibrium_report *report) {
     const bough_assembly *a = whole->assembly;
@@ -80,20 +90,23 @@ bough_status bough_equilibrium_find(bough_arena *arena, bough_whole *whole, cons
     *report = (bough_equilibrium_report){0};
     take(&s, arena);
     bough_assembly_scales(a, s.scale);
-    double most = growth, before = INFINITY;
+    double most = growth, before = INFINITY, taken = INFINITY, longest = BOUGH_EQUILIBRIUM_LONGEST;
     while (report->steps < def->steps && s.gamma > def->least && find_rate(&s, state)) {
         double contraction = step(&s, state, report);
-        bool last = s.gamma >= BOUGH_EQUILIBRIUM_LONGEST, near = report->change < rounding;
+        bool last = s.gamma >= longest, near = report->change < rounding;
         report->steps++;
-        if (last && report->change < def->tolerance) return bough_ok();
-        if (last && near && !(report->change < contracting * before)) return bough_ok();
+        if (last && is_found(&s, longest, report->change, before)) return bough_ok();
         before = last && near ? report->change : (double)INFINITY;
-        if (near) contraction = 0; // apart from rounding
+        bool lowered = longest < BOUGH_EQUILIBRIUM_LONGEST;
+        if (near && !lowered) contraction = 0; // apart from rounding
         bool refused = !(contraction < contracting);
         most = refused ? cautious : fmin(growth, most * cautious);
         s.gamma *= fmin(most, fmax(shrink, sqrt(aim / (contraction + DBL_MIN))));
-        s.gamma = fmin(s.gamma, BOUGH_EQUILIBRIUM_LONGEST);
+        // rounding of long steps leads away from where shorter ones came to rest
+        if (refused && taken < rounding) longest = fmin(longest, s.gamma);
+        s.gamma = fmin(s.gamma, longest);
         if (refused) continue;
+        taken = report->change;
         move(&s, s.trial, s.second, state);
         if (def->rest) def->rest(def->self, state);
     }

@@ -239,6 +239,29 @@ TEST(chain_hangs_in_a_catenary) {
     }
 }
 
+// A bar on a table between pads, which turn it by 16 degrees: rounding of the longest steps is above what is
+// left, and grows with the number of segments.
+TEST(fine_mesh_on_pads_is_found) {
+    const char *sets[] = {
+        "bodies=[{name: bar, fidelity: rod, joint: {kind: planar, parent: ground, axis: y}, rod: {length: 1, "
+        "segments: 100, stiffness: [2e6, 2e6, 5e6, 80, 80, 80], mass: [0.15, 0, 0, 3e-4, 4e-4, 0]}}, "
+        "{name: tip, fidelity: rigid, joint: {kind: fixed, parent: bar}, mass: 0.05, inertia: [2e-3, 2e-3, "
+        "2e-3]}]",
+        "loads=[{body: bar, along: [0.3 m, 0.9 m], force: [-16, -24, -45], moment: [18, 9, -12]}]",
+        "bushings=[{name: pad, from: tip, to: ground, stiffness: [400, 140, 1300], rotational_stiffness: "
+        "[380, 24, 22]}]",
+        "gravity=[0, 0, -1]",
+        "markers=[]",
+        NULL};
+    check_arena(arena);
+    bough_simulation *s = scene_build(arena, "apps/mechanisms/pendulum.yaml", sets);
+    bough_equilibrium_work work = equilibrium_of(s);
+    assert_in_range(work.steps, 1, 40);
+    int coordinate, speed;
+    assert_true(bough_tree_joint_rows(s->tree, 0, &coordinate, &speed));
+    check_near(s->leader.state[coordinate + 2] * 180 / BOUGH_PI, 16.41, 1e-3, 0);
+}
+
 // A bob of 1 kg at 1 m above its hinge, and below.
 TEST(standing_pendulum_is_unstable) {
     static const char *const angle[] = {"bodies[0].joint.angle=90 deg", "bodies[0].joint.angle=-90 deg"};
