@@ -18,8 +18,9 @@ static const double free_motion = 1e-3;
 enum { FREE_MOTIONS = 8 }; // that may be found before the modes
 
 // Rounding in the solutions grows with the fourth power of |λ| over the point. Where an eigenvector has a
-// residual above this, the point moves to the lowest of them.
-static const double exact = 1e-9;
+// residual above this, the point moves to the lowest of them, which must be some times as far.
+static const double exact = 1e-9, nearer = 1.5;
+enum { MOVES = 6 }; // of the point, most: the first values may be of rounding alone
 
 static const double rounding = 1e-10; // damping ratios below it are none
 
@@ -229,7 +230,7 @@ static double better_point(const bough_vibration *v, double point) {
         lowest = fmin(lowest, hypot(v->pair[k].real, v->pair[k].imaginary));
         largest = fmax(largest, v->pair[k].residual);
     }
-    return largest > exact && lowest > point && v->found > 0 ? lowest : 0;
+    return largest > exact && lowest > nearer * point && v->found > 0 ? lowest : 0;
 }
 
 static bough_status solve(bough_arena *arena, bough_simulation *s, int count, bough_vibration *v) {
@@ -242,8 +243,8 @@ static bough_status solve(bough_arena *arena, bough_simulation *s, int count, bo
     if (v->frozen && !s->scene->modes.linear) BOUGH_TRY(check_constant(arena, s, &x));
     BOUGH_TRY(solve_about(arena, s, &x, count, v));
     bool air_moves = s->aero && s->scene->modes.air == BOUGH_SCENE_AIR_DYNAMIC; // with other residuals
-    double point = air_moves ? 0 : better_point(v, x.def.point);
-    if (point > 0) {
+    double point;
+    for (int k = 0; k < MOVES && !air_moves && (point = better_point(v, x.def.point)) > 0; k++) {
         x.def.point = point;
         BOUGH_TRY(solve_about(arena, s, &x, count, v));
     }

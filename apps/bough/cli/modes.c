@@ -253,7 +253,7 @@ static void print_modes(const bough_simulation *s, const bough_vibration *v) {
     print_search(v);
     for (int k = 0; k < v->found; k++) {
         const bough_scene_mode *m = &v->mode[k];
-        if (m->growth <= unstable * 2 * BOUGH_PI * m->frequency) continue;
+        if (m->growth <= fmax(unstable, m->residual) * 2 * BOUGH_PI * m->frequency) continue;
         printf(
             "unstable: mode %d grows at %.6g /s%s\n", k + 1, m->growth,
             m->damped_frequency == 0 && s->aero && rotor_is_free(s)

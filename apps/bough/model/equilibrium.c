@@ -266,6 +266,9 @@ enum { POINTS = 3, NEAREST = 12 }; // the latter at the first, 4 at the others
 // An oscillation grows by this part of its value at least, equally from both points to this part of it.
 static const double rounded_oscillation = 1e-5, again = 2.7, equal = 0.01;
 
+// Pairs with a larger residual are made by the rounding of long steps, as (72) is: nothing grows with them.
+static const double trusted = 1e-4;
+
 static bool oscillates(const bough_eigen_pair *pair) {
     return fabs(pair->imaginary) > rounded * fabs(pair->real);
 }
@@ -282,7 +285,8 @@ static const bough_eigen_pair *growing_oscillation(const bough_eigen_pair *pair,
     for (int k = 0; k < n; k++) {
         double size = hypot(pair[k].real, pair[k].imaginary);
         bool slow = size > rounded && size < 1 / rounded && oscillates(&pair[k]);
-        if (slow && pair[k].real > rounded_oscillation * size && (most == NULL || pair[k].real > most->real))
+        if (slow && pair[k].residual < trusted && pair[k].real > rounded_oscillation * size &&
+            (most == NULL || pair[k].real > most->real))
             most = &pair[k];
     }
     return most;
@@ -314,7 +318,8 @@ static bough_status find_growth(bough_arena *arena, void *self) {
         BOUGH_TRY(status);
         for (int k = 0; k < count.found; k++) {
             bool known = pair[k].real > rounded * point[i] && pair[k].real < point[i] / rounded;
-            if (!oscillates(&pair[k]) && known) x->growth->rate = fmax(x->growth->rate, pair[k].real);
+            bool grows = !oscillates(&pair[k]) && known && pair[k].residual < trusted;
+            if (grows) x->growth->rate = fmax(x->growth->rate, pair[k].real);
         }
         const bough_eigen_pair *found = growing_oscillation(pair, count.found);
         if (i > 0 || found == NULL || turns(x)) continue;
