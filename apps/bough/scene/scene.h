@@ -149,7 +149,6 @@ typedef struct bough_scene_rod {
     // As written in the scene; contained in `structure`:
     double part[2]; // stretch of the table [m]
     bough_scene_station uniform;
-    double length, damping[6];
 } bough_scene_rod;
 
 // Linear reductions of a body's rod.

@@ -50,10 +50,6 @@ void bough_scene_check_structure(bough_schema_reader *r, void *item);
 void bough_scene_check_rod(bough_schema_reader *r, void *item);
 void bough_scene_check_body(bough_schema_reader *r, void *item);
 
-// Makes the stretch of a structure of it that the key `part` of the rod names.
-void bough_scene_take_part(bough_schema_reader *r, const bough_node *rod, const double part[2],
-                           bough_scene_structure *structure);
-
 void bough_scene_check_aero_blade(bough_schema_reader *r, void *item);
 void bough_scene_check_polar(bough_schema_reader *r, void *item);
 void bough_scene_check_polars(bough_schema_reader *r, void *item);

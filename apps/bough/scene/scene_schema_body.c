@@ -67,9 +67,9 @@ static const bough_key rod_keys[] = {
      .help = "g: segments shorten from the root, the first (1 + g)/(1 - g) times as long as the last; "
              "0: equal ones. With 0.2 a blade needs about two thirds of them; its default where neither this nor "
              "'segments' is named and the rod is a tenth as stiff towards its end"},
-    {KEY(VECTOR, damping), .count = 6, UNIT(TIME), .range = ">= 0",
+    {NAMED("damping", VECTOR), AT(structure.damping), .count = 6, UNIT(TIME), .range = ">= 0",
      .example = "[0, 0, 0, 3 ms, 3 ms, 3 ms]", .help = "replaces the damping of the table"},
-    {KEY(NUMBER, length), UNIT(LENGTH), .range = "> 0", .example = "2 m",
+    {NAMED("length", NUMBER), AT(structure.length), UNIT(LENGTH), .range = "> 0", .example = "2 m",
      .help = "of a uniform rod"},
     {NAMED("twist", NUMBER), AT(uniform.def.twist), UNIT(ANGLE), .fallback = "0", .example = "10 deg",
      .help = "of a uniform rod"},
