@@ -14,7 +14,8 @@ typedef struct bough_member {
     double time;                 // current [s]
     double *state;               // current (n_state)
     bough_integrator integrator; // ops NULL: there are no states
-    bool opaque; // a foreign simulator, which has outputs and own steps but neither states nor tangents
+    bool opaque; // a foreign simulator, which has outputs and own steps, but no states that could be
+                 // linearised: its system has no operations from `input_columns` on
 
     // own steps
     const bough_signal *signal; // the input on the step in progress

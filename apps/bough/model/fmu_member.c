@@ -97,28 +97,8 @@ static void output_tangent(void *self, double t, const double *state, const doub
     memset(rate, 0, BOUGH_SCENE_WRENCH * sizeof *rate);
 }
 
-static void input_columns(void *self, double t, const double *state, const double *input, double *column) {
-    (void)self, (void)t, (void)state, (void)input, (void)column;
-}
-
-static void *factors(void *self, bough_arena *arena) {
-    (void)arena;
-    return self;
-}
-
-static bool linearise(void *self, double t, const double *state, const double *input, void *kept) {
-    (void)self, (void)t, (void)state, (void)input, (void)kept;
-    return true;
-}
-
-static bool factor(void *self, void *kept, double gamma) {
-    (void)self, (void)kept, (void)gamma;
-    return true;
-}
-
-static void solve(void *self, void *kept, double *x) { (void)self, (void)kept, (void)x; }
-
-static const bough_system_ops operations = {BOUGH_SYSTEM_REQUIRED};
+static const bough_system_ops operations = {
+    .derivative = derivative, .output = output, .output_tangent = output_tangent};
 
 // -- the beginning --------------------------------------------------------------------------------
 
@@ -149,7 +129,6 @@ bough_status bough_fmu_member_create(bough_arena *arena, const bough_scene_body 
                              .state = bough_arena_doubles(arena, 1),
                              .integrated = bough_arena_doubles(arena, 1),
                              .input = bough_arena_doubles(arena, BOUGH_SCENE_MOTION),
-                             .factors = x,
                              .integrator = {.ops = restores ? &steps_and_states : &steps, .self = x}};
     return bough_ok();
 }
