@@ -2,15 +2,11 @@
 #ifndef BOUGH_TESTS_UNIT_IMPORT_H
 #define BOUGH_TESTS_UNIT_IMPORT_H
 
-#include "tests/unit/check.h"
-#include "tests/unit/scratch_name.h"
+#include "tests/unit/scratch.h"
 
 #include "apps/bough/config/text.h"
+#include "apps/bough/exchange/bough.h"
 #include "apps/bough/import/import.h"
-
-#include <stdlib.h>
-#include <string.h>
-#include <unistd.h>
 
 typedef struct edit {
     const char *file, *from, *to;
@@ -22,44 +18,54 @@ typedef struct trial {
     bough_status status;
 } trial;
 
+enum { DECK = 1 << 14 }; // characters, with room for changes
+
+// The text of a deck of tests/data/decks.
+static inline void read_deck(const char *name, char text[DECK]) {
+    FILE *in = scratch_open(BOUGH_SOURCE_DIR "/tests/data/decks", name, "r");
+    text[fread(text, 1, DECK - 1, in)] = '\0';
+    fclose(in);
+}
+
 // Replaces the first place of `from` in the text of that file.
-static inline void apply(const edit *change, const char *name, char text[8192]) {
+static inline void apply(const edit *change, const char *name, char text[DECK]) {
     if (!change || strcmp(change->file, name) != 0) return;
-    char *at = strstr(text, change->from), rest[8192];
+    char *at = strstr(text, change->from), rest[DECK];
     assert_non_null(at);
     strcpy(rest, at + strlen(change->from));
-    snprintf(at, (size_t)(text + 8192 - at), "%s%s", change->to, rest);
+    snprintf(at, (size_t)(text + DECK - at), "%s%s", change->to, rest);
 }
 
 // Writes a deck of tests/data/decks into the folder, changed.
 static inline void copy_deck(const char *folder, const char *name, const edit *one, const edit *two) {
-    char path[SCRATCH_PATH], text[8192];
-    snprintf(path, sizeof path, "%s/tests/data/decks/%s", BOUGH_SOURCE_DIR, name);
-    FILE *in = fopen(path, "r");
-    assert_non_null(in);
-    text[fread(text, 1, sizeof text - 1, in)] = '\0';
-    fclose(in);
+    char text[DECK];
+    read_deck(name, text);
     apply(one, name, text);
     apply(two, name, text);
-    snprintf(path, sizeof path, "%s/%s", folder, name);
-    FILE *out = fopen(path, "w");
-    assert_non_null(out);
-    fputs(text, out);
-    fclose(out);
+    scratch_write(folder, name, text);
 }
 
-static inline void remove_folder(void *folder) {
-    char command[SCRATCH_PATH];
-    snprintf(command, sizeof command, "rm -rf %s", (const char *)folder);
-    assert_int_equal(system(command), 0);
-}
+static inline void remove_folder(void *folder) { scratch_empty(folder); }
 
 // A trial with its folder, which goes with its memory.
 static inline trial begin_trial(void) {
     trial t = {.arena = check_memory()};
     assert_non_null(mkdtemp(scratch_name(t.folder)));
     bough_arena_on_destroy(t.arena, remove_folder, (void *)bough_arena_string(t.arena, t.folder));
+    snprintf(t.out, sizeof t.out, "%s/out", t.folder);
     return t;
+}
+
+// An attempt that must succeed.
+static inline trial imported(trial t) {
+    assert_string_equal(t.status.message, "");
+    return t;
+}
+
+// It must fail with this message, and write nothing.
+static inline void check_refused(trial t, bough_code code, const char *says) {
+    check_fails(t.status, code, says);
+    assert_false(scratch_has(t.folder, "out"));
 }
 
 static inline const bough_node *read_file(trial *t, const char *name) {
@@ -91,13 +97,37 @@ static inline double number(const bough_node *node, const char *path) {
 static inline const char *text(const bough_node *node, const char *path) { return at(node, path)->text; }
 
 static inline bool list_says(trial *t, const char *words) {
-    char path[SCRATCH_PATH], all[8192];
-    snprintf(path, sizeof path, "%s/import.txt", t->out);
-    FILE *file = fopen(path, "r");
-    assert_non_null(file);
-    all[fread(all, 1, sizeof all - 1, file)] = '\0';
-    fclose(file);
-    return strstr(all, words) != NULL;
+    char *all = scratch_read(t->out, "import.txt");
+    assert_non_null(all);
+    bool said = strstr(all, words) != NULL;
+    free(all);
+    return said;
 }
+
+// What was imported opens and steps; the rotor's speed then [rpm].
+static inline double steps(trial *t, int n) {
+    char path[SCRATCH_PATH];
+    snprintf(path, sizeof path, "%s/scene.yaml", t->out);
+    bough_session *s = bough_session_open(path, NULL, 0);
+    assert_string_equal(bough_session_error(s), "");
+    for (int i = 0; i < n; i++) assert_int_equal(bough_session_step(s), BOUGH_SESSION_OK);
+    double speed = bough_session_read(s, bough_session_find(s, "RotSpeed"));
+    bough_session_close(s);
+    return speed;
+}
+
+static inline void check_same_file(const trial *a, const trial *b, const char *name) {
+    char *one = scratch_read(a->out, name), *two = scratch_read(b->out, name);
+    assert_non_null(one);
+    assert_non_null(two);
+    assert_string_equal(one, two);
+    free(one);
+    free(two);
+}
+
+// What an import writes for a whole turbine.
+static const char *const results[] = {"scene.yaml", "blade-structure.yaml", "airfoils.yaml",
+                                      "tower-structure.yaml", "blade-aero.yaml"};
+enum { N_RESULT = sizeof results / sizeof *results };
 
 #endif

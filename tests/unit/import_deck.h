@@ -20,7 +20,6 @@ enum { N_DECK = sizeof decks / sizeof *decks };
 // A box of 12 m/s with steps of 2 m/s across, in parts/box.bts; it lasts long and repeats.
 static inline void write_box(const char *folder) {
     enum { TIMES = 8 };
-    char path[SCRATCH_PATH];
     int16_t value[TIMES * 4 * 3];
     for (int i = 0; i < TIMES * 4; i++) {
         value[3 * i] = (int16_t)(1200 + (i % 2 ? 100 : -100));
@@ -38,16 +37,14 @@ static inline void write_box(const char *folder) {
                                 .bottom = 6,
                                 .scale = {0.01, 0.01, 0.01},
                                 .value = value};
-    snprintf(path, sizeof path, "%s/parts/box.bts", folder);
-    FILE *file = fopen(path, "wb");
-    assert_non_null(file);
+    FILE *file = scratch_open(folder, "parts/box.bts", "wb");
     assert_true(bough_wind_box_write(&box, "test", file));
     fclose(file);
 }
 
 // Imports the decks under this main file with two texts replaced (NULL: none).
-static inline trial import_given(const char *main, const edit *one, const edit *two,
-                                 const bough_import_options *options) {
+static inline trial attempt_given(const char *main, const edit *one, const edit *two,
+                                  const bough_import_options *options) {
     static const char *const folder[] = {"parts/foils", "v4", "v5"};
     trial t = begin_trial();
     char path[SCRATCH_PATH];
@@ -58,9 +55,17 @@ static inline trial import_given(const char *main, const edit *one, const edit *
     for (int i = 0; i < N_DECK; i++) copy_deck(t.folder, decks[i], one, two);
     write_box(t.folder);
     snprintf(path, sizeof path, "%s/%s", t.folder, main);
-    snprintf(t.out, sizeof t.out, "%s/out", t.folder);
     t.status = bough_import_openfast(path, t.out, options, NULL);
     return t;
+}
+
+static inline trial import_given(const char *main, const edit *one, const edit *two,
+                                 const bough_import_options *options) {
+    return imported(attempt_given(main, one, two, options));
+}
+
+static inline trial attempt(const char *main, const edit *change) {
+    return attempt_given(main, change, NULL, &(bough_import_options){0});
 }
 
 static inline trial import_main(const char *main, const edit *one, const edit *two) {

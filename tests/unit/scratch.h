@@ -42,6 +42,21 @@ static inline int scratch_remove(void **state) {
 // A test that writes files: *context is the path of its folder.
 #define TEST_IN_FOLDER(name) TEST_WITH(name, scratch_make, scratch_remove)
 
+// folder/name, opened.
+static inline FILE *scratch_open(const char *folder, const char *name, const char *mode) {
+    char path[SCRATCH_PATH];
+    snprintf(path, sizeof path, "%s/%s", folder, name);
+    FILE *file = fopen(path, mode);
+    if (!file) fail_msg("cannot open %s", path);
+    return file;
+}
+
+static inline void scratch_write(const char *folder, const char *name, const char *text) {
+    FILE *file = scratch_open(folder, name, "w");
+    fputs(text, file);
+    fclose(file);
+}
+
 // The whole text of folder/name, to be freed; NULL when there is no such file.
 static inline char *scratch_read(const char *folder, const char *name) {
     char path[512];

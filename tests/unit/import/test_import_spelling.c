@@ -1,11 +1,10 @@
 // The same decks spelled otherwise, as people, programs and systems do: line ends, tabs, comments,
 // quotes, capitals, numbers, order. Each of many mixtures of such changes gives the same scene.
 #include "tests/unit/import_deck.h"
-#include "tests/unit/scratch.h"
 
 #include <ctype.h>
 
-enum { TEXT = 16384, SEEDS = 24 };
+enum { SEEDS = 24 };
 
 static uint32_t state;
 
@@ -85,15 +84,9 @@ static const char *const ends[] = {"\n", "\r\n", "\r"};
 
 // Copies a deck with its lines spelled otherwise.
 static void respell(const char *folder, const char *name) {
-    char path[SCRATCH_PATH], text[8192];
-    snprintf(path, sizeof path, "%s/tests/data/decks/%s", BOUGH_SOURCE_DIR, name);
-    FILE *in = fopen(path, "r");
-    assert_non_null(in);
-    text[fread(text, 1, sizeof text - 1, in)] = '\0';
-    fclose(in);
-    snprintf(path, sizeof path, "%s/%s", folder, name);
-    FILE *out = fopen(path, "w");
-    assert_non_null(out);
+    char text[DECK];
+    read_deck(name, text);
+    FILE *out = scratch_open(folder, name, "w");
     const char *end = ends[chance(3)];
     bool comments = chance(2), blank = chance(2), low = chance(2);
     for (char *line = strtok(text, "\n"); line; line = strtok(NULL, "\n")) {
@@ -110,34 +103,18 @@ static void respell(const char *folder, const char *name) {
 
 // Decks without tables, whose lines may stand in any order below heading and title.
 static void reverse(const char *folder, const char *name) {
-    char path[SCRATCH_PATH], text[8192], *line[200] = {""};
+    char text[DECK], *line[200] = {""};
     int n = 0;
-    snprintf(path, sizeof path, "%s/tests/data/decks/%s", BOUGH_SOURCE_DIR, name);
-    FILE *in = fopen(path, "r");
-    assert_non_null(in);
-    text[fread(text, 1, sizeof text - 1, in)] = '\0';
-    fclose(in);
+    read_deck(name, text);
     for (char *at = strtok(text, "\n"); at && n < 200; at = strtok(NULL, "\n")) line[n++] = at;
-    snprintf(path, sizeof path, "%s/%s", folder, name);
-    FILE *out = fopen(path, "w");
-    assert_non_null(out);
+    FILE *out = scratch_open(folder, name, "w");
     fprintf(out, "%s\n%s\n", line[0], line[1]);
     for (int i = n - 1; i > 1; i--) fprintf(out, "%s\n", line[i]);
     fclose(out);
 }
 
-static const char *const results[] = {"scene.yaml", "blade-structure.yaml", "airfoils.yaml",
-                                      "tower-structure.yaml", "blade-aero.yaml"};
-
 static void same_results(const trial *a, const trial *b) {
-    for (size_t i = 0; i < sizeof results / sizeof *results; i++) {
-        char *one = scratch_read(a->out, results[i]), *two = scratch_read(b->out, results[i]);
-        assert_non_null(one);
-        assert_non_null(two);
-        assert_string_equal(one, two);
-        free(one);
-        free(two);
-    }
+    for (int i = 0; i < N_RESULT; i++) check_same_file(a, b, results[i]);
 }
 
 static void again(trial *t, const char *main) {
@@ -150,7 +127,6 @@ TEST(every_spelling_gives_the_same_scene) {
     static const char *const mains[] = {"main.fst", "v4/main.fst", "v5/main.fst"};
     for (int m = 0; m < 3; m++) {
         trial base = import_main(mains[m], NULL, NULL);
-        assert_string_equal(base.status.message, "");
         trial t = import_main(mains[m], NULL, NULL);
         for (int seed = 0; seed < SEEDS; seed++) {
             state = (uint32_t)(1000 * m + seed);
@@ -168,7 +144,6 @@ TEST(order_does_not_matter) {
     trial base = import_main("main.fst", NULL, NULL), t = import_main("main.fst", NULL, NULL);
     for (size_t i = 0; i < sizeof plain / sizeof *plain; i++) reverse(t.folder, plain[i]);
     again(&t, "main.fst");
-    assert_string_equal(t.status.message, "");
     same_results(&base, &t);
 }
 
@@ -177,7 +152,6 @@ TEST(labels_and_defaults) {
     trial base = import_main("main.fst", NULL, NULL);
     trial t = import(
         &(edit){"parts/aero.dat", "\"foils/round.dat\"    AFNames  - airfoils", "\"foils/round.dat\""});
-    assert_string_equal(t.status.message, "");
     same_results(&base, &t);
     static const char *const optional[] = {"          2   WakeMod",    "          2   SkewMod",
                                            "True          TipLoss",    "          4   UAMod",
@@ -186,7 +160,6 @@ TEST(labels_and_defaults) {
         char to[64];
         snprintf(to, sizeof to, "\"DEFAULT\"   %s", optional[i] + 14);
         t = import(&(edit){"parts/aero.dat", optional[i], to});
-        assert_string_equal(t.status.message, "");
     }
     t = import(&(edit){"parts/aero.dat", "          0   TwrShadow", "TRUE   TwrShadow"});
     assert_string_equal(text(read_file(&t, "scene.yaml"), "aero.tower.shadow"), "powles");
