@@ -19,8 +19,7 @@ static bough_blade_models *read_study(bough_arena *arena, const char *folder, co
     char path[128];
     bough_verification study;
     snprintf(path, sizeof path, "%s/study.yaml", folder);
-    FILE *file = fopen(path, "w");
-    assert_non_null(file);
+    FILE *file = scratch_open(folder, "study.yaml", "w");
     fprintf(file, "%s%s", head, text);
     fclose(file);
     errors->arena = arena;

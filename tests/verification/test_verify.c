@@ -31,10 +31,7 @@ static bough_status open_study(fixture *f, const char *folder, const char *text)
     *f = (fixture){.arena = check_memory()};
     f->errors.arena = f->arena;
     snprintf(path, sizeof path, "%s/study.yaml", folder);
-    FILE *file = fopen(path, "w");
-    assert_non_null(file);
-    fputs(text, file);
-    fclose(file);
+    scratch_write(folder, "study.yaml", text);
     return bough_verification_read(f->arena, path, &f->errors, &f->study);
 }
 
@@ -116,7 +113,6 @@ TEST_IN_FOLDER(free_flight_keeps_energy_and_momenta) {
     assert_int_equal(status.code, BOUGH_FAILED);
 }
 
-// A run that stops on its way has not kept anything.
 // A rotor at a given speed, whose blade is pitched back and forth once per turn of 4 s: mean and
 // first harmonic of the pitch, and of a speed that does not change.
 TEST_IN_FOLDER(means_and_amplitudes_of_a_rotor) {
@@ -137,6 +133,7 @@ TEST_IN_FOLDER(means_and_amplitudes_of_a_rotor) {
     assert_int_equal(status.code, BOUGH_OK);
 }
 
+// A run that stops on its way has not kept anything.
 TEST_IN_FOLDER(a_run_that_fails_has_not_shown_its_values) {
     char table[4096];
     bough_status status = perform(*context,

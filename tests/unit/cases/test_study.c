@@ -1,6 +1,5 @@
 #include "apps/bough/cases/case_run.h"
-#include "apps/bough/cases/perform.h"
-#include "tests/unit/scratch.h"
+#include "tests/unit/study.h"
 
 // The rubber bar falls for 20 ms: monolithic runs are good, frozen ones fail at once, since the
 // interface body has no mass of its own.
@@ -16,32 +15,6 @@
     "  - {name: angle, channel: barPos, scale: 0.0174533, unit: rad}\n"
 static const char good_study[] = HEAD REFERENCE GRID COMMON MEASURES;
 
-typedef struct fixture {
-    bough_arena *arena;
-    bough_errors errors;
-    bough_study *study;
-    char path[128];
-} fixture;
-
-static bough_status open_study(fixture *f, const char *folder, const char *text) {
-    *f = (fixture){.arena = check_memory()};
-    f->errors.arena = f->arena;
-    snprintf(f->path, sizeof f->path, "%s/study.yaml", folder);
-    FILE *file = fopen(f->path, "w");
-    assert_non_null(file);
-    fputs(text, file);
-    fclose(file);
-    return bough_study_read(f->arena, f->path, 0, &f->errors, &f->study);
-}
-
-static void open_good(fixture *f, const char *folder) {
-    bough_status status = open_study(f, folder, good_study);
-    bough_errors_print(&f->errors, stderr);
-    assert_true(bough_is_ok(&status));
-}
-
-static void close_study(fixture *f) { bough_arena_destroy(f->arena); }
-
 // A stop request has no argument through which it could count.
 static int runs_allowed;         // NOLINT(cppcoreguidelines-avoid-non-const-global-variables)
 static const char *runs_counted; // NOLINT(cppcoreguidelines-avoid-non-const-global-variables)
@@ -49,9 +22,6 @@ static int asked;                // NOLINT(cppcoreguidelines-avoid-non-const-glo
 static bool stopped;             // NOLINT(cppcoreguidelines-avoid-non-const-global-variables)
 
 enum { ALL = 1000 };
-
-// Results in the folder, that of the reference among them.
-static int count_results(const char *folder) { return scratch_files(folder, "cases", ".case", NULL); }
 
 // Asked at each evaluation of a run; the file is read now and then.
 static bool stop(void) {
@@ -62,44 +32,18 @@ static bool stop(void) {
 }
 
 // Performs the study of the folder until so many runs are stored; `table` receives what was printed.
-static bough_status perform(const char *folder, const char *text, int runs, char table[4096]) {
-    fixture f;
-    check_ok(open_study(&f, folder, text));
+static bough_status perform(const char *folder, const char *text, int runs, char table[STUDY_SHOWN]) {
     runs_allowed = runs;
     runs_counted = folder;
     asked = 0;
     stopped = false;
-    FILE *stream = tmpfile();
-    assert_non_null(stream);
-    bough_study_options options = {.folder = folder, .quiet = true, .stop = stop, .stream = stream};
-    bough_status status = bough_study_perform(f.arena, f.study, &options);
-    rewind(stream);
-    memset(table, 0, 4096);
-    assert_true(fread(table, 1, 4095, stream) < 4095);
-    fclose(stream);
-    close_study(&f);
-    return status;
-}
-
-static int count(const char *text, const char *what) {
-    int n = 0;
-    for (; text && (text = strstr(text, what)); text += strlen(what)) n++;
-    return n;
-}
-
-static int count_in(const char *folder, const char *name, const char *what) {
-    char *text = scratch_read(folder, name);
-    assert_non_null(text);
-    int n = count(text, what);
-    free(text);
-    return n;
+    return study_perform(folder, text, (bough_study_options){.stop = stop}, table);
 }
 
 // -- reading --------------------------------------------------------------------------------------
 
 TEST_IN_FOLDER(grid_is_the_product_of_its_values) {
-    fixture f;
-    open_good(&f, *context);
+    study_text f = study_opened(*context, good_study);
     const bough_study *s = f.study;
     assert_int_equal(s->n_case, 4);
     assert_string_equal(s->cases[0].settings, "scheme=monolithic, macro_step=1 ms");
@@ -111,39 +55,33 @@ TEST_IN_FOLDER(grid_is_the_product_of_its_values) {
     assert_int_equal(s->n_channel, 3);
     assert_string_equal(s->measure[0].unit, "m");
     check_near(s->interval, 4e-3, 1e-15, 0);
-    close_study(&f);
+    bough_arena_destroy(f.arena);
 }
 
 // Keys of the same last part are distinguished; a quoted value stays text.
 TEST_IN_FOLDER(labels_are_unique_and_quotes_are_kept) {
-    fixture f;
-    bough_status status =
-        open_study(&f, *context,
-                   HEAD REFERENCE "grid: {simulation.master.rtol: [1e-6], simulation.micro.rtol: [1e-5],"
-                                  " title: ['it''s: 1']}\n" MEASURES);
-    assert_true(bough_is_ok(&status));
+    study_text f = study_opened(*context, HEAD REFERENCE
+                                "grid: {simulation.master.rtol: [1e-6], simulation.micro.rtol: [1e-5],"
+                                " title: ['it''s: 1']}\n" MEASURES);
     const bough_case *cell = &f.study->cases[0];
     assert_string_equal(cell->settings, "master.rtol=1e-6, micro.rtol=1e-5, title=it's: 1");
     assert_string_equal(cell->set[2], "title='it''s: 1'");
-    close_study(&f);
+    bough_arena_destroy(f.arena);
 }
 
 // A cell may replace a whole block of keys at once.
 TEST_IN_FOLDER(a_mapping_is_a_value) {
-    fixture f;
-    bough_status status =
-        open_study(&f, *context,
-                   HEAD REFERENCE "grid: {simulation.micro: [{solver: rosenbrock, step: 2 ms}]}\n" MEASURES);
-    assert_true(bough_is_ok(&status));
+    study_text f = study_opened(*context, HEAD REFERENCE
+                                "grid: {simulation.micro: [{solver: rosenbrock, step: 2 ms}]}\n" MEASURES);
     assert_string_equal(f.study->cases[0].set[0], "simulation.micro={solver: rosenbrock, step: 2 ms}");
-    close_study(&f);
+    bough_arena_destroy(f.arena);
 }
 
 // "line:column path" of every error, one a line.
 static void check_errors(const char *folder, const char *text, const char *expected) {
-    fixture f;
+    study_text f;
     char found[2048] = "";
-    bough_status status = open_study(&f, folder, text);
+    bough_status status = study_open(&f, folder, text);
     assert_int_equal(status.code, BOUGH_INVALID);
     assert_null(f.study);
     for (int i = 0; i < f.errors.n; i++) {
@@ -153,7 +91,7 @@ static void check_errors(const char *folder, const char *text, const char *expec
         snprintf(found + used, sizeof found - used, "%d:%d %s\n", e->line, e->column, e->path);
     }
     assert_string_equal(found, expected);
-    close_study(&f);
+    bough_arena_destroy(f.arena);
 }
 
 TEST_IN_FOLDER(bad_keys_are_reported_all_at_once) {
@@ -223,8 +161,7 @@ TEST(differences_are_the_largest_norms) {
 }
 
 TEST_IN_FOLDER(reference_differs_from_itself_by_nothing) {
-    fixture f;
-    open_good(&f, *context);
+    study_text f = study_opened(*context, good_study);
     bough_study_series reference = bough_study_series_take(f.arena, f.study);
     bough_study_series series = bough_study_series_take(f.arena, f.study);
     bough_study_drive drive = {.stop = NULL};
@@ -241,44 +178,14 @@ TEST_IN_FOLDER(reference_differs_from_itself_by_nothing) {
     series.value[3] += 0.5; // the first channel of the second row
     bough_study_compare(f.study, &series, &reference, error);
     check_near(error[0], 0.5, 1e-12, 0);
-    close_study(&f);
+    bough_arena_destroy(f.arena);
 }
 
 // -- results --------------------------------------------------------------------------------------
 
-TEST_IN_FOLDER(every_run_has_a_row) {
-    char table[4096];
-    check_ok(perform(*context, good_study, ALL, table));
-    assert_int_equal(count_in(*context, "table.csv", "\n"), 1 + 1 + 4);
-    assert_int_equal(count_results(*context), 1 + 4);
-    assert_int_equal(count_in(*context, "table.csv", ",tip [m],tip estimated [m],angle [rad],"), 1);
-    char *text = scratch_read(*context, "table.txt");
-    assert_string_equal(text, table);
-    free(text);
-    assert_int_equal(count(table, "monolithic"), 3);
-    assert_int_equal(count(table, "  ok  "), 3);
-}
-
-TEST_IN_FOLDER(failed_runs_are_reported_with_their_diagnosis) {
-    char table[4096];
-    check_ok(perform(*context, good_study, ALL, table));
-    assert_int_equal(count(table, "failed at t=0.00"), 2);
-    assert_int_equal(count(table, "failed: scheme=frozen, macro_step="), 2);
-    assert_int_equal(count_in(*context, "table.csv", ",failed,"), 2);
-    assert_int_equal(count_in(*context, "table.csv", "grows by a factor of "), 2);
-    assert_int_equal(count_in(*context, "plot.svg", "frozen — 1 ms failed at t=0.00"), 1);
-    assert_int_equal(count_in(*context, "plot.svg", "<polyline"), 4);
-    assert_int_equal(count_in(*context, "plot.svg", "</svg>\n"), 1);
-}
-
 // The title ends within the picture, its letters being 0.6 times as wide as high.
-TEST_IN_FOLDER(no_title_is_clipped) {
-    static const char title[] = "Falling bar, whose study has a title that is wider than its panels side by "
-                                "side, and wider still, so that the picture must have room for it";
-    char table[4096], text[4096];
-    snprintf(text, sizeof text, "title: '%s'%s", title, strchr(good_study, '\n'));
-    check_ok(perform(*context, text, ALL, table));
-    char *picture = scratch_read(*context, "plot.svg"), *at = strstr(picture, "font-size=\"15\"");
+static void check_title(const char *folder, const char *title) {
+    char *picture = scratch_read(folder, "plot.svg"), *at = strstr(picture, "font-size=\"15\"");
     assert_non_null(strstr(at, title));
     while (strncmp(at, "x=\"", 3) != 0) at--;
     double width = strtod(strstr(picture, "width=\"") + 7, NULL);
@@ -286,8 +193,33 @@ TEST_IN_FOLDER(no_title_is_clipped) {
     free(picture);
 }
 
+TEST_IN_FOLDER(every_run_has_a_row_with_its_diagnosis_if_it_failed) {
+    static const char title[] = "Falling bar, whose study has a title that is wider than its panels side by "
+                                "side, and wider still, so that the picture must have room for it";
+    char table[STUDY_SHOWN], study[4096];
+    const char *folder = *context;
+    snprintf(study, sizeof study, "title: '%s'%s", title, strchr(good_study, '\n'));
+    check_ok(perform(folder, study, ALL, table));
+    assert_int_equal(count_in(folder, "table.csv", "\n"), 1 + 1 + 4);
+    assert_int_equal(count_results(folder), 1 + 4);
+    assert_int_equal(count_in(folder, "table.csv", ",tip [m],tip estimated [m],angle [rad],"), 1);
+    char *text = scratch_read(folder, "table.txt");
+    assert_string_equal(text, table);
+    free(text);
+    assert_int_equal(count(table, "monolithic"), 3);
+    assert_int_equal(count(table, "  ok  "), 3);
+    assert_int_equal(count(table, "failed at t=0.00"), 2);
+    assert_int_equal(count(table, "failed: scheme=frozen, macro_step="), 2);
+    assert_int_equal(count_in(folder, "table.csv", ",failed,"), 2);
+    assert_int_equal(count_in(folder, "table.csv", "grows by a factor of "), 2);
+    assert_int_equal(count_in(folder, "plot.svg", "frozen — 1 ms failed at t=0.00"), 1);
+    assert_int_equal(count_in(folder, "plot.svg", "<polyline"), 4);
+    assert_int_equal(count_in(folder, "plot.svg", "</svg>\n"), 1);
+    check_title(folder, title);
+}
+
 TEST_IN_FOLDER(failed_reference_ends_the_study) {
-    char table[4096];
+    char table[STUDY_SHOWN];
     check_fails(perform(*context,
                         HEAD "reference: {simulation.coupling.scheme: frozen}\n" GRID COMMON MEASURES, ALL,
                         table),
@@ -296,7 +228,7 @@ TEST_IN_FOLDER(failed_reference_ends_the_study) {
 }
 
 TEST_IN_FOLDER(interrupted_study_goes_on) {
-    char table[4096], again[4096], name[256];
+    char table[STUDY_SHOWN], again[STUDY_SHOWN], name[256];
     check_fails(perform(*context, good_study, 1, table), BOUGH_INTERRUPTED, "after 1 of 4 runs");
     assert_int_equal(scratch_files(*context, "cases", ".case", name), 1 + 1);
     assert_false(scratch_has(*context, "table.csv"));
@@ -315,13 +247,9 @@ TEST_IN_FOLDER(interrupted_study_goes_on) {
 // What a process that is killed has begun is no result; a result that is cut off is refused by name, and
 // runs again once it is removed.
 TEST_IN_FOLDER(half_a_result_is_none) {
-    char table[4096], name[256], path[512];
+    char table[STUDY_SHOWN], name[256], path[512];
     perform(*context, good_study, 1, table);
-    snprintf(path, sizeof path, "%s/cases/0123.case.partial", (char *)*context);
-    FILE *file = fopen(path, "w");
-    assert_non_null(file);
-    fputs("case 0123 finger", file);
-    fclose(file);
+    scratch_write(*context, "cases/0123.case.partial", "case 0123 finger");
     check_ok(perform(*context, good_study, ALL, table));
     assert_int_equal(scratch_files(*context, "cases", ".case", name), 1 + 4);
     snprintf(path, sizeof path, "%s/%s", (char *)*context, name);
@@ -335,7 +263,7 @@ TEST_IN_FOLDER(half_a_result_is_none) {
 }
 
 TEST_IN_FOLDER(other_settings_are_run_anew_and_a_grown_grid_is_completed) {
-    char table[4096];
+    char table[STUDY_SHOWN];
     perform(*context, good_study, ALL, table);
     int whole = asked;
     bough_status status = perform(*context,

@@ -1,6 +1,5 @@
 // Studies of kind timing: all cells in every turn, and their errors.
-#include "apps/bough/cases/perform.h"
-#include "tests/unit/scratch.h"
+#include "tests/unit/study.h"
 
 static const char text[] =
     "title: Falling bar\nkind: timing\nrepeat: 3\n"
@@ -11,34 +10,10 @@ static const char text[] =
     " simulation.output.interval: 4 ms}\n"
     "measures:\n  - {name: tip, channels: [barTipX, barTipZ]}\n";
 
-static int count(const char *in, const char *what) {
-    int n = 0;
-    for (; (in = strstr(in, what)); in += strlen(what)) n++;
-    return n;
-}
-
-static void write_study(const char *folder, char path[128]) {
-    snprintf(path, 128, "%s/study.yaml", folder);
-    FILE *file = fopen(path, "w");
-    assert_non_null(file);
-    fputs(text, file);
-    fclose(file);
-}
-
 TEST_IN_FOLDER(every_round_has_every_cell_and_errors_are_reported) {
-    char path[128];
     const char *folder = *context;
-    write_study(folder, path);
-    check_arena(arena);
-    bough_errors errors = {.arena = arena};
-    bough_study *study;
-    bough_status status = bough_study_read(arena, path, 0, &errors, &study);
-    bough_errors_print(&errors, stderr);
-    assert_int_equal(status.code, BOUGH_OK);
-    FILE *stream = tmpfile();
-    bough_study_options options = {.folder = folder, .quiet = true, .stream = stream};
-    check_ok(bough_study_perform(arena, study, &options));
-    fclose(stream);
+    char shown[STUDY_SHOWN];
+    check_ok(study_perform(folder, text, (bough_study_options){0}, shown));
     char *csv = scratch_read(folder, "timing.csv"), *table = scratch_read(folder, "table.txt");
     assert_int_equal(count(csv, "\n"), 1 + 4 * 3);
     assert_int_equal(count(csv, ",1\n"), 2 * 3);  // against itself

@@ -59,10 +59,7 @@ typedef struct bytes {
 
 static bytes read_bytes(const char *folder) {
     bytes b = {0};
-    char path[256];
-    snprintf(path, sizeof path, "%s/channels.outb", folder);
-    FILE *file = fopen(path, "rb");
-    assert_non_null(file);
+    FILE *file = scratch_open(folder, "channels.outb", "rb");
     b.n = fread(b.all, 1, BYTES, file);
     fclose(file);
     return b;

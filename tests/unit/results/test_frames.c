@@ -37,15 +37,6 @@ static void write_frames(const char *folder) {
     check_ok(bough_frames_finish(frames));
 }
 
-static void write_text(const char *folder, const char *name, const char *text) {
-    char path[256];
-    snprintf(path, sizeof path, "%s/%s", folder, name);
-    FILE *file = fopen(path, "w");
-    assert_non_null(file);
-    fputs(text, file);
-    fclose(file);
-}
-
 static void has(const char *text, const char *part) {
     if (strstr(text, part) == NULL) fail_msg("'%s' is missing in\n%s", part, text);
 }
@@ -74,8 +65,8 @@ TEST_IN_FOLDER(page_carries_all_data) {
     check_arena(arena);
     const char *folder = *context;
     write_frames(folder);
-    write_text(folder, "channels.out", channels);
-    write_text(folder, "summary.json", "{\"title\": \"a </script> trap\"}\n");
+    scratch_write(folder, "channels.out", channels);
+    scratch_write(folder, "summary.json", "{\"title\": \"a </script> trap\"}\n");
     check_ok(bough_report_write(arena, 1, &folder));
     char *page = scratch_read(folder, "report.html");
     has(page, "<!DOCTYPE html>");
@@ -96,7 +87,7 @@ TEST_IN_FOLDER(what_is_not_results_is_refused) {
     bough_status status = bough_report_write(arena, 1, &folder);
     assert_int_equal(status.code, BOUGH_INVALID);
     has(status.message, "holds no results");
-    write_text(folder, "channels.out", "\n\n\n\n\n\nTime\tA\n(s)\t(m)\n0.0 1.0\n0.1\n");
+    scratch_write(folder, "channels.out", "\n\n\n\n\n\nTime\tA\n(s)\t(m)\n0.0 1.0\n0.1\n");
     status = bough_report_write(arena, 1, &folder);
     assert_int_equal(status.code, BOUGH_INVALID);
     has(status.message, "channels.out:10: not a row");
@@ -107,7 +98,7 @@ TEST_IN_FOLDER(a_lost_frame_is_reported) {
     check_arena(arena);
     const char *folder = *context;
     write_frames(folder);
-    write_text(folder, "frames/000001.vtp", "<DataArray>\nnothing\n");
+    scratch_write(folder, "frames/000001.vtp", "<DataArray>\nnothing\n");
     bough_status status = bough_report_write(arena, 1, &folder);
     assert_int_equal(status.code, BOUGH_INVALID);
     has(status.message, "frames/000001.vtp");
