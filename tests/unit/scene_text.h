@@ -54,16 +54,17 @@ static inline int leave(void **state) {
     return chdir("/") == 0 && rmdir(directory) == 0 ? 0 : -1;
 }
 
-// Reading the scene must fail with exactly these lines.
-static inline void refuses(const char *text, const char *lines) {
+// Reading the scene must fail with exactly these lines; without one it is read.
+static inline fixture refuses(const char *text, const char *lines) {
     write_file("s.yaml", text);
     fixture f = read_scene("s.yaml", NULL, 0);
     assert_string_equal(f.printed, lines);
     assert_int_equal(f.status.code, lines[0] == '\0' ? BOUGH_OK : BOUGH_INVALID);
     if (lines[0] != '\0') assert_null(f.scene);
+    return f;
 }
 
-static inline void accepts(const char *text) { refuses(text, ""); }
+static inline fixture accepts(const char *text) { return refuses(text, ""); }
 
 // A scene with one body, whose text (four spaces deep) goes on in line 6.
 #define SIMULATION "simulation: {duration: 1 s, macro_step: 10 ms}\n"

@@ -11,15 +11,8 @@
     "  - {name: b, fidelity: rod, joint: {kind: fixed, parent: ground}, rod: {length: 2,\n"                  \
     "      stiffness: [1, 1, 1, 1, 1, 1], mass: [1, 0, 0, 1, 1, 0]}}\n"
 
-static fixture accepted(const char *text) {
-    write_file("s.yaml", text);
-    fixture f = read_scene("s.yaml", NULL, 0);
-    assert_string_equal(f.printed, "");
-    return f;
-}
-
 TEST(everything_follows_from_the_default) {
-    fixture f = accepted(BAR(""));
+    fixture f = accepts(BAR(""));
     const bough_scene_simulation *s = &f.scene->simulation;
     check_near(s->accuracy, 0.005, 0, 0);
     assert_string_equal(bough_scheme_name(s->coupling.scheme), "monolithic");
@@ -34,14 +27,14 @@ TEST(everything_follows_from_the_default) {
 }
 
 TEST(everything_scales_with_the_accuracy) {
-    fixture f = accepted(BAR(", accuracy: 0.02"));
+    fixture f = accepts(BAR(", accuracy: 0.02"));
     check_near(f.scene->simulation.master.rtol, 2e-4, 1e-12, 0);
     check_near(f.scene->simulation.micro.step, 10e-3, 1e-12, 0);
     assert_int_equal(f.scene->body[0].rod.n_segment, 16);
-    f = accepted(BAR(", accuracy: 0.001, macro_step: 20 ms"));
+    f = accepts(BAR(", accuracy: 0.001, macro_step: 20 ms"));
     check_near(f.scene->simulation.master.rtol, 1e-5, 1e-12, 0);
     assert_int_equal(f.scene->body[0].rod.n_segment, 72);
-    f = accepted(BAR(", accuracy: 5e-6"));
+    f = accepts(BAR(", accuracy: 5e-6"));
     check_near(f.scene->simulation.master.rtol, 5e-8, 1e-12, 0);
     assert_int_equal(f.scene->simulation.master.solver, BOUGH_IDA); // as with that rtol named
 }
@@ -73,35 +66,35 @@ TEST(a_longest_step_follows_a_second_mode) {
 
 // A key that is named holds; those beside it still follow.
 TEST(keys_replace_one_by_one) {
-    fixture f = accepted(BAR(", master: {rtol: 1e-3}"));
+    fixture f = accepts(BAR(", master: {rtol: 1e-3}"));
     assert_int_equal(f.scene->simulation.master.solver, BOUGH_AUTOMATIC);
     check_near(f.scene->simulation.master.rtol, 1e-3, 1e-12, 0);
     check_near(f.scene->simulation.micro.rtol, 1e-4, 1e-12, 0);
-    f = accepted(BAR(", master: {solver: radau5}"));
+    f = accepts(BAR(", master: {solver: radau5}"));
     assert_int_equal(f.scene->simulation.master.solver, BOUGH_RADAU5);
     check_near(f.scene->simulation.master.rtol, 5e-5, 1e-12, 0);
-    f = accepted(BAR(", coupling: {scheme: monolithic}"));
+    f = accepts(BAR(", coupling: {scheme: monolithic}"));
     assert_int_equal(f.scene->simulation.master.solver, BOUGH_AUTOMATIC);
-    f = accepted(BAR(", coupling: {scheme: ramp}, micro: {solver: rosenbrock}"));
+    f = accepts(BAR(", coupling: {scheme: ramp}, micro: {solver: rosenbrock}"));
     assert_int_equal(f.scene->simulation.master.solver, BOUGH_IDA);
     check_near(f.scene->simulation.master.rtol, 1e-6, 1e-12, 0);
     check_near(f.scene->simulation.micro.rtol, 1e-4, 1e-12, 0);
     check_near(f.scene->simulation.micro.step, 5e-3, 1e-12, 0);
-    f = accepted(BAR(", macro_step: 40 ms"));
+    f = accepts(BAR(", macro_step: 40 ms"));
     check_near(f.scene->simulation.macro_step, 0.04, 1e-12, 0);
-    f = accepted(BAR(", output: {interval: 15 ms}"));
+    f = accepts(BAR(", output: {interval: 15 ms}"));
     check_near(f.scene->simulation.macro_step, 0.005, 1e-12, 0); // 15 ms and 1.2 s are multiples
 }
 
 // Settings that follow lead one to expect the accuracy; those that are named, what their orders say.
 TEST(settings_let_errors_be_expected) {
-    fixture f = accepted(BAR(""));
+    fixture f = accepts(BAR(""));
     bough_scene_expectation e = bough_scene_expect_errors(f.scene);
     for (int k = 0; k < 3; k++) {
         check_near(e.error[k], k == 1 ? 0 : 1, 1e-12, 0); // no air
         assert_false(e.named[k]);
     }
-    f = accepted(BAR(", master: {rtol: 2e-4}"));
+    f = accepts(BAR(", master: {rtol: 2e-4}"));
     e = bough_scene_expect_errors(f.scene);
     check_near(e.error[2], 4, 1e-12, 0);
     assert_true(e.named[2] && !e.named[0]);
@@ -113,15 +106,15 @@ TEST(settings_let_errors_be_expected) {
 
 // A modal body has a segment for each piece at least.
 TEST(pieces_have_segments) {
-    fixture f = accepted("simulation: {duration: 1.2 s}\nbodies:\n"
-                         "  - {name: b, fidelity: segmented-modal, joint: {kind: fixed, parent: ground},\n"
-                         "     modal: {modes: 2, pieces: 40}, rod: {length: 2,\n"
-                         "     stiffness: [1, 1, 1, 1, 1, 1], mass: [1, 0, 0, 1, 1, 0]}}\n");
+    fixture f = accepts("simulation: {duration: 1.2 s}\nbodies:\n"
+                        "  - {name: b, fidelity: segmented-modal, joint: {kind: fixed, parent: ground},\n"
+                        "     modal: {modes: 2, pieces: 40}, rod: {length: 2,\n"
+                        "     stiffness: [1, 1, 1, 1, 1, 1], mass: [1, 0, 0, 1, 1, 0]}}\n");
     assert_int_equal(f.scene->body[0].rod.n_segment, 40);
 }
 
 TEST(durations_without_a_round_step_are_divided) {
-    fixture f = accepted("simulation: {duration: 0.777777777}\nbodies:\n" BODY("a", "ground"));
+    fixture f = accepts("simulation: {duration: 0.777777777}\nbodies:\n" BODY("a", "ground"));
     double count = 0.777777777 / f.scene->simulation.macro_step;
     check_near(count, 100, 1e-9, 0);
 }
@@ -151,7 +144,7 @@ TEST(the_rate_of_the_air_follows_the_radius) {
     write_file("polars.yaml", "polars:\n- name: p\n  table: {columns: [alpha deg, cl, cd, cm],\n"
                               "    rows: [[-180, 0, 0, 0], [180, 0, 0, 0]]}\n");
     for (size_t k = 0; k < sizeof cases / sizeof *cases; k++) {
-        fixture f = accepted(cases[k].text);
+        fixture f = accepts(cases[k].text);
         check_near(f.scene->simulation.macro_step, cases[k].macro_step, 1e-12, 0);
         check_near(f.scene->aero.rate, cases[k].rate, 1e-9, 0);
     }
