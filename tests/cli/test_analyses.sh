@@ -1,0 +1,176 @@
+#!/bin/sh
+# Equilibria, modes and sensors as a user meets them: test_analyses.sh PROGRAM SOURCE_FOLDER
+set -u
+bough=$1
+folder=$2
+scenes=$2/tests/data/scenes
+blade=$scenes/blade.yaml
+beam=$scenes/example-beam.yaml
+turbine=$2/apps/turbine/runup.yaml
+. "$(dirname "$0")/work.sh"
+
+# near FILE PATTERN N VALUE TOLERANCE: word N of the line that matches.
+near() {
+    grep -e "$2" "$1" | awk -v n="$3" -v want="$4" -v by="$5" \
+        '{ d = $n - want; if (d < 0) d = -d; if (d <= by) good = 1 } END { exit !good }' ||
+        fail "$said: word $3 of '$(grep -e "$2" "$1")' is not $4"
+}
+
+# A cantilever under a force at its tip: the moment at a place is the force times what is left.
+sensed() {
+    cat >../bar.yaml <<'EOF'
+gravity: [0, 0, 0]
+simulation: {duration: 10 ms, macro_step: 10 ms, initial: equilibrium, output: {channels: ['*Spn*']}}
+bodies:
+  - name: bar
+    fidelity: rod
+    joint: {kind: fixed, parent: ground}
+    rod: {length: 2 m, segments: 8, stiffness: [1e8, 1e8, 3e8, 20e3, 20e3, 15e3], mass: [1, 0, 0, 1e-4, 1e-4, 0]}
+sensors: [{body: bar, at: [0, 0.6 m, 2 m]}]
+loads: [{body: bar, at: tip, force: [10, 0, 7]}]
+EOF
+    expect 0 run ../bar.yaml --out sensed
+    awk '/^ *Time/ { for (i = 1; i <= NF; i++) at[$i] = i }
+        $1 + 0 > 0.005 { for (name in at) print name, $at[name] }' sensed/channels.out >../sensed
+    [ "$(wc -l <../sensed)" -eq 37 ] || fail "$said: 36 channels and the time"
+    near ../sensed '^barSpn1MLy ' 2 0.0199907 1e-6 # 10 N times 2 m, less 7 N times the deflection
+    near ../sensed '^barSpn2MLy ' 2 0.0139918 1e-6
+    near ../sensed '^barSpn3MLy ' 2 0 1e-9
+    near ../sensed '^barSpn1FLx ' 2 0.01 1e-9
+    near ../sensed '^barSpn2FLz ' 2 0.0070051 1e-7 # turned with the section by 0.029 deg
+    near ../sensed '^barSpn3TDx ' 2 0.0013328 1e-6 # F L^3 / 3 EI
+    rm -r sensed
+    refused "bodies\[0\]\|sensors\[0\].body: there is no body 'b'" run ../bar.yaml --set 'sensors[0].body=b'
+    refused "3 m is beyond the end of 'bar', at 2 m" run ../bar.yaml --set 'sensors[0].at=[3 m]'
+    expect 2 run ../bar.yaml --set 'simulation.output.channels=[Rot*]'
+    has ../stderr "simulation.output.channels\[0\]: no channel matches 'Rot\*'"
+    sed 's/^simulation: {/&output: {channels: [beamTipZ, beamTipQ]}, /' "$beam" >../named.yaml
+    expect 2 check ../named.yaml
+    has ../stderr "error: \.\./named\.yaml:3:44: simulation.output.channels\[1\]: no channel matches 'beamTipQ' (did you mean 'beamTip.'?)"
+    expect 0 check ../bar.yaml --set 'bodies[bar].rod.segments=4'
+    has ../stdout '^body bar: .* 4 segments'
+    refused "there is no item with 'name: baz' in that list (did you mean 'bar'?)" check ../bar.yaml --set 'bodies[baz].rod.segments=4'
+    # the same wrench from both sides of the cut
+    expect 0 run "$folder/apps/turbine/land.yaml" --set 'simulation.duration=0.1 s' --out sensed \
+        --set 'sensors=[{body: blade1, at: [0]}, {body: tower, at: [0, 87.6 m]}]'
+    awk '/^ *Time/ { for (i = 1; i <= NF; i++) at[$i] = i }
+        $1 + 0 > 0.095 { for (name in at) print name, $at[name] }' sensed/channels.out >../sensed
+    value() { sed -n "s/^$1 //p" ../sensed; }
+    # the table begins with a twist of 13.308 deg, as in OpenFAST
+    near ../sensed "^Spn1MLyb1 " 2 "$(awk "BEGIN { t = 13.308 / 57.29578; print cos(t) * $(value RootMyb1) + sin(t) * $(value RootMxb1) }")" 1e-3
+    near ../sensed "^Spn1MLxb1 " 2 "$(awk "BEGIN { t = 13.308 / 57.29578; print cos(t) * $(value RootMxb1) - sin(t) * $(value RootMyb1) }")" 1e-3
+    near ../sensed '^TwHt1MLyt ' 2 "$(value TwrBsMyt)" 1e-3
+    near ../sensed '^TwHt2FLzt ' 2 "$(value YawBrFzp)" 1
+    # the tower's two interfaces
+    [ "$(grep -A 1 '"body": "tower"' sensed/summary.json | grep -c '"place": "end"')" -eq 1 ] || fail "$said: one end"
+    near ../sensed '^RotTorq ' 2 59.5 1e-3 # 11.9 MN m at a two hundredth of the ramp
+    rm -r sensed
+}
+
+# The blade under 100 kN at its tip: reference of a geometrically exact beam by shooting.
+statics() {
+    expect 0 static "$blade" --set 'loads=[{body: blade, at: tip, force: [100 kN, 0, 0]}]'
+    has ../stdout '^rod blade: 48 segments, 61.5 m, [0-9]* iterations$'
+    near ../stdout '^tip blade: u ' 4 7.68969 0.0015
+    near ../stdout '^tip blade: u ' 5 -0.414706 0.0015
+    near ../stdout '^tip blade: u ' 6 -1.122878 0.0015
+    near ../stdout '^root blade: force ' 4 100000 0.01
+    has ../stdout '^out: out/blade$'
+    empty ../stderr
+    [ "$(wc -l <out/blade/static.csv)" -eq 50 ] || fail "$said: static.csv has not 50 lines"
+    has out/blade/static.csv '^rod,span (m),ux (m),'
+    has out/blade/static.csv '^blade,61.5,7.6'
+    rm -r out
+    expect 0 static "$blade" --set 'loads=[{body: blade, at: tip, force: [100 kN, 0, 0]}]' \
+        --set bodies[0].fidelity=segmented-modal --set bodies[0].modal.pieces=24 --out pieces
+    near ../stdout '^modal blade: tip moved by ' 6 7.68969 0.02
+    rm -r pieces
+    expect 0 static "$turbine" --out turning
+    has ../stdout '^whole scene: .* steps, .* samples of the air, loads at 20 s$'
+    has ../stdout '^joint hub: revolute 0 deg, keeps its speed of 0.5 rad/s$'
+    [ "$(wc -l <turning/static.csv)" -eq 76 ] || fail "$said: static.csv has not 76 lines"
+    has turning/static-channels.csv '^channel,unit,value'
+    has turning/static-channels.csv '^RtAeroMxh,N-m,[0-9]'
+    rm -r turning
+    expect 3 static "$turbine" --set bodies[2].joint.speed=0 --out failed
+    has ../stderr 'no equilibrium found in .* nothing but loads holds the joint of .hub.: it needs a spring, a speed or a motion'
+    refused "'x' is not\|there is no body 'x'" static "$blade" \
+        --set 'loads=[{body: x, at: tip, force: [1, 0, 0]}]'
+    expect 3 static "$blade" --set 'bodies[0].rod.segments=4' --out failed \
+        --set 'loads=[{body: blade, at: tip, moment: [0, 1e9, 0]}]'
+    has ../stderr '^bough: error: rod blade: no static equilibrium found beyond .* % of the load'
+    nothing_written
+}
+
+# The blade's frequencies at rest: beam finite elements converged at 800 elements.
+modes() {
+    expect 0 modes "$blade" --set 'modes={count: 6, shapes: true}'
+    has ../stdout '^rod blade: 48 segments, 61.5 m, root held$'
+    near ../stdout '^ *1 ' 2 0.68582 0.0005
+    near ../stdout '^ *2 ' 2 1.08057 0.0005
+    has ../stdout '^ *6 .* torsion '
+    empty ../stderr
+    [ "$(wc -l <out/blade/modes.csv)" -eq 7 ] || fail "$said: modes.csv has not 7 lines"
+    [ "$(wc -l <out/blade/shapes.csv)" -eq 295 ] || fail "$said: shapes.csv has not 295 lines"
+    has out/blade/modes.csv '^rod,mode,frequency (Hz),'
+    expect 0 modes "$turbine" --set 'modes={count: 2, speed: 12.1 rpm}' --out turning
+    has ../stdout '^rod blade3: .* turning at 12.1 rpm about (0.996195, 0, -0.0871557)'
+    near ../stdout '^ *1 ' 2 0.7349 0.001
+    missing turning/shapes.csv
+    expect 0 modes "$turbine" --set 'modes={count: 3, of: scene, at: undeformed}' --out campbell \
+        --sweep 'gravity=[0, 0, -9], [0, 0, 0]' --sweep 'simulation.master.rtol=1e-5, 1e-6'
+    [ "$(wc -l <campbell/campbell.csv)" -eq 7 ] || fail "$said: campbell.csv has not 7 lines"
+    has campbell/campbell.csv '^1,"\[0, 0, -9\]","1e-5",'
+    has campbell/campbell.svg '^</svg>'
+    rm -r campbell
+    expect 0 modes "$turbine" --set 'modes={count: 3, at: undeformed, shapes: true}' --out whole
+    has ../stdout '^whole scene: .*, rotor at 4.77465 rpm, seen by an observer at rest, rotor free to turn; the air'
+    has ../stdout '^ *1 .* blades .* flap .* backward '
+    has ../stdout '^half the segments move no mode by more than 0.0'
+    has ../stdout '^largest residual of a mode: [0-9.]*e-1[0-9] of its eigenvalue'
+    has whole/modes.json '"eigenvalues_converged": 11'
+    has whole/shapes.csv '^body,mode,span (m),ux (m),'
+    [ "$(wc -l <whole/shapes.csv)" -eq 235 ] || fail "$said: shapes.csv has not 235 lines"
+    has whole/modes.csv '^mode,frequency (Hz),.*,decrement (-),residual (-),.*,pattern,collective (-),forward (-),backward (-),tower'
+    rm -r whole
+    expect 0 modes "$beam" --set 'loads=[{body: beam, at: tip, force: [0, 0, -3 kN], frame: follower}]'
+    has ../stdout '^unstable beam: mode [23] grows at '
+    rm -r out turning
+    refused 'no revolute joint carries it' modes "$blade" --set 'modes.speed=1 rad/s'
+    refused "'b=1' has 1 values, the first 2" modes "$turbine" --sweep 'a=1, 2' --sweep 'b=1'
+    refused "expects KEY=V1, V2" modes "$turbine" --sweep 'gravity'
+    # two sliders whose frequencies cross: each is one branch, on a line of its own
+    expect 0 modes "$folder/apps/mechanisms/pendulum.yaml" --set 'markers=[]' --out crossing --set 'modes.count=2' \
+        --set 'bodies=[{name: a, fidelity: rigid, mass: 1, joint: {kind: prismatic, parent: ground, axis: z, stiffness: 50}},
+        {name: b, fidelity: rigid, mass: 1, joint: {kind: prismatic, parent: ground, axis: z, stiffness: 100}}]' \
+        --sweep 'bodies[a].joint.stiffness=60, 90, 99, 101, 140'
+    [ "$(grep -c ',1,a z,.*,a,z,' crossing/campbell.csv)" -eq 5 ] || fail "$said: a is not line 1 at all points"
+    [ "$(grep -c ',2,b z,.*,b,z,' crossing/campbell.csv)" -eq 5 ] || fail "$said: b is not line 2 at all points"
+    rm -r crossing
+    refused 'the linear system changes as the bodies turn' modes "$turbine" --set 'bodies[blade1].pitch=7 deg'
+    expect 0 modes "$blade" --set 'modes={of: scene, count: 9}' --set 'bodies[0].rod.segments=6' --out mesh
+    has ../stdout '^warning: half the segments move by more than 1 %: mode [2-9]'
+    rm -r mesh
+    refused "needs a --sweep" modes "$turbine" --until unstable
+    refused "expects unstable, got 'stable'" modes "$turbine" --sweep 'a=1' --until stable
+    # Goland's wing: 139.63 m/s and 72.03 rad/s by strips with the model's mass terms
+    expect 0 modes "$scenes/goland.yaml" --out flutter --until unstable \
+        --sweep 'aero.wind.speed=120 m/s, 130 m/s, 150 m/s, 170 m/s'
+    has ../stdout '^unstable from aero.wind.speed=139.[567][0-9]* m/s on, mesh +- 0.1[0-9]*: line 2, 11.4[0-9]* Hz'
+    [ "$(wc -l <flutter/campbell.csv)" -eq 7 ] || fail "$said: campbell.csv has not 7 lines"
+    expect 0 modes "$scenes/goland.yaml" --out flutter --until unstable \
+        --sweep 'aero.wind.speed=100 m/s, 120 m/s'
+    has ../stdout '^no oscillation grows up to aero.wind.speed=120 m/s'
+    rm -r flutter
+    refused "modes.about: the joint of 'nacelle' must be revolute" modes "$turbine" \
+        --set 'modes.about=nacelle'
+    refused "modes.speed: only used with 'of: rods'" modes "$turbine" \
+        --set 'modes={of: scene, speed: 12.1 rpm}'
+    refused "modes.axis: only used without 'about'" modes "$turbine" \
+        --set 'modes={about: hub, axis: [1, 0, 0]}'
+}
+
+statics
+sensed
+modes
+[ $failures -eq 0 ]
