@@ -49,7 +49,7 @@ static void count_all(case_run *r, double t, const double *value) {
     count(r, &r->result->counts, t, value);
     if (!r->study->is.weighted || !bough_companion_compares(c)) return;
     count(r, &r->pair[0], t, c->value);
-    count(r, &r->pair[1], t, c->other);
+    count(r, &r->pair[1], t, c->coarser.value);
 }
 
 static bough_status sample(void *self, double t) {
@@ -95,7 +95,7 @@ static bough_load_error error_of(const bough_channel_counts *run, const bough_ch
 static void find_load_errors(case_run *r) {
     const bough_companion *c = r->run.companion;
     bough_case_result *result = r->result;
-    result->has_companion = c->coarser && !c->reason[0] && r->pair[0].channel[0].statistics.n > 0;
+    result->has_companion = c->coarser.simulation && !c->reason[0] && r->pair[0].channel[0].statistics.n > 0;
     for (int k = 0; k < 2; k++) bough_counts_finish(&r->pair[k]);
     for (int i = 0; i < r->study->n_channel && result->has_companion; i++)
         result->load_error[i] = error_of(&r->pair[0].channel[i], &r->pair[1].channel[i], c->share);

@@ -81,7 +81,7 @@ static bough_status check_interval(const bough_run_command *command, double inte
                           interval, m->macro_step);
     }
     BOUGH_TRY(check_samples(m, "", interval));
-    const bough_simulation *companion = command->run.companion->coarser;
+    const bough_simulation *companion = command->run.companion->coarser.simulation;
     return companion ? check_samples(companion->master, " of the companion", interval) : bough_ok();
 }
 

@@ -304,3 +304,20 @@ bough_scene *bough_coarser_scene_beside(bough_arena *arena, const bough_simulati
     if (run->aero) to->aero.wind.def.box = bough_rotor_wind(bough_aero_link_rotor(run->aero))->box;
     return to;
 }
+
+bough_status bough_other_run_build(bough_arena *arena, const bough_simulation *run, int parts,
+                                   bough_other_run *other) {
+    bough_simulation *simulation;
+    *other = (bough_other_run){.channels = bough_channels_start(arena)};
+    BOUGH_TRY(bough_simulation_build_on(arena, bough_coarser_scene_beside(arena, run, parts), run->pool,
+                                        &simulation));
+    BOUGH_TRY(bough_simulation_channels(simulation, &other->channels));
+    other->value = bough_arena_doubles(arena, (size_t)other->channels.count + 1);
+    other->simulation = simulation;
+    return bough_ok();
+}
+
+void bough_other_run_sample(bough_other_run *other) {
+    bough_simulation_update(other->simulation);
+    bough_channels_sample(&other->channels, other->simulation->master->time, other->value);
+}

@@ -11,7 +11,7 @@
 
 static void take(bough_companion *c, bough_arena *arena) {
     size_t n = (size_t)c->channels->count + 1;
-    bough_arena_each(arena, n, &c->value, &c->other, &c->before, &c->error, &c->low, &c->high, &c->other_low,
+    bough_arena_each(arena, n, &c->value, &c->before, &c->error, &c->low, &c->high, &c->other_low,
                      &c->other_high, &c->noticed);
     for (size_t i = 0; i < n; i++) {
         c->low[i] = c->other_low[i] = HUGE_VAL;
@@ -32,16 +32,10 @@ static double share_held(const bough_scene *scene) {
 }
 
 static bough_status build(bough_arena *arena, bough_companion *c) {
-    const bough_scene *scene = bough_coarser_scene_beside(arena, c->run, BOUGH_COARSER_ALL);
-    bough_status status = bough_simulation_build_on(arena, scene, c->run->pool, &c->coarser);
-    c->share = bough_coarser_share(c->run->scene, scene);
+    BOUGH_TRY(bough_other_run_build(arena, c->run, BOUGH_COARSER_ALL, &c->coarser));
+    c->share = bough_coarser_share(c->run->scene, c->coarser.simulation->scene);
     c->share_held = share_held(c->run->scene);
-    if (bough_is_ok(&status)) {
-        c->own = bough_channels_start(arena);
-        status = bough_simulation_channels(c->coarser, &c->own);
-    }
-    if (!bough_is_ok(&status)) c->coarser = NULL;
-    return status;
+    return bough_ok();
 }
 
 // Takes the channels of both into their ranges.
@@ -53,15 +47,11 @@ static void widen(int n, const double *value, double *low, double *high) {
 }
 
 static void sample(bough_companion *c) {
-    bough_simulation *const of[] = {c->run, c->coarser};
-    const bough_channels *const list[] = {c->channels, &c->own};
-    double *const value[] = {c->value, c->other};
-    for (int k = 0; k < 2; k++) {
-        bough_simulation_update(of[k]);
-        bough_channels_sample(list[k], of[k]->master->time, value[k]);
-    }
+    bough_simulation_update(c->run);
+    bough_channels_sample(c->channels, c->run->master->time, c->value);
+    bough_other_run_sample(&c->coarser);
     widen(c->channels->count, c->value, c->low, c->high);
-    widen(c->channels->count, c->other, c->other_low, c->other_high);
+    widen(c->channels->count, c->coarser.value, c->other_low, c->other_high);
 }
 
 // What is before simulation.output.from counts no more than in the statistics.
@@ -72,19 +62,19 @@ static bool counts_now(const bough_companion *c) {
 
 // -- stepping -------------------------------------------------------------------------------------
 
-static bool alive(const bough_companion *c) { return c->coarser && !c->reason[0]; }
+static bool alive(const bough_companion *c) { return c->coarser.simulation && !c->reason[0]; }
 
 bool bough_companion_due(const bough_companion *c) {
-    return alive(c) && c->coarser->master->time <= c->run->master->time &&
-           !bough_master_done(c->coarser->master);
+    return alive(c) && c->coarser.simulation->master->time <= c->run->master->time &&
+           !bough_master_done(c->coarser.simulation->master);
 }
 
 void bough_companion_step(bough_companion *c) {
     if (c->run->input) {
         size_t size = (size_t)c->run->scene->n_input * sizeof(double);
-        memcpy(c->coarser->input, c->run->input, size);
+        memcpy(c->coarser.simulation->input, c->run->input, size);
     }
-    c->status = bough_step(c->coarser->master);
+    c->status = bough_step(c->coarser.simulation->master);
 }
 
 // -- comparing ------------------------------------------------------------------------------------
@@ -126,19 +116,20 @@ static double change_of(const bough_companion *c, int i) {
 // change. Where both agree to the bit the value follows from the time alone and is not held.
 static double stale(const bough_companion *c, int i) {
     const bough_channel *channel = &c->channels->channel[i];
-    bool held = channel->sampled == BOUGH_BY_AIR && c->compared > 1 && c->value[i] != c->other[i];
+    bool held = channel->sampled == BOUGH_BY_AIR && c->compared > 1 && c->value[i] != c->coarser.value[i];
     return held ? c->share_held * change_of(c, i) : 0;
 }
 
 static void compare(bough_companion *c) {
-    bool rarer = c->coarser->scene->aero.rate <= c->run->scene->aero.rate;
-    bool held = rarer && !bough_master_sampled(c->coarser->master);
+    bool rarer = c->coarser.simulation->scene->aero.rate <= c->run->scene->aero.rate;
+    bool held = rarer && !bough_master_sampled(c->coarser.simulation->master);
     memcpy(c->before, c->value, (size_t)c->channels->count * sizeof(double));
     sample(c);
     c->compared++;
     for (int i = 0; i < c->channels->count; i++) {
         const bough_channel *channel = &c->channels->channel[i];
-        double error = share_now(c, channel, held) * fabs(difference(channel, c->value[i], c->other[i]));
+        double error =
+            share_now(c, channel, held) * fabs(difference(channel, c->value[i], c->coarser.value[i]));
         error = fmax(error, stale(c, i));
         if (!(error <= c->error[i])) c->error[i] = error; // a NaN wins
     }
@@ -170,7 +161,7 @@ bough_status bough_companion_create(bough_arena *arena, bough_simulation *run, c
         if (status.code == BOUGH_IO) return status;
         if (!bough_is_ok(&status)) give_up(c, status.message);
     }
-    if (!c->coarser) return bough_ok();
+    if (!c->coarser.simulation) return bough_ok();
     run->master->compared = true;
     if (!counts_now(c)) return bough_ok();
     compare(c);
@@ -198,7 +189,7 @@ static void watch(bough_companion *c) {
     for (int i = 0; i < c->channels->count; i++) {
         if (!bough_error_is_motion(&c->channels->channel[i])) continue;
         double own = range_of(c, i, c->low, c->high), other = range_of(c, i, c->other_low, c->other_high);
-        double apart = fabs(difference(&c->channels->channel[i], c->value[i], c->other[i]));
+        double apart = fabs(difference(&c->channels->channel[i], c->value[i], c->coarser.value[i]));
         double range = bough_error_range(c, i);
         if (!(apart > several * range) || !bough_error_counts(c, i) || !bough_error_shows(c, i, apart))
             continue;
@@ -219,15 +210,15 @@ void bough_companion_compare(bough_companion *c) {
     if (!bough_is_ok(&c->status)) {
         give_up(c, c->status.message);
         c->run->master->compared = false;
-    } else if (c->coarser->master->time == c->run->master->time && counts_now(c)) {
+    } else if (c->coarser.simulation->master->time == c->run->master->time && counts_now(c)) {
         compare(c);
         watch(c);
     }
 }
 
 bool bough_companion_compares(const bough_companion *c) {
-    return alive(c) && c->coarser->master->time == c->run->master->time && counts_now(c) &&
-           bough_master_sampled(c->coarser->master);
+    return alive(c) && c->coarser.simulation->master->time == c->run->master->time && counts_now(c) &&
+           bough_master_sampled(c->coarser.simulation->master);
 }
 
 bool bough_companion_knows(const bough_companion *c, int channel) {
@@ -235,19 +226,19 @@ bool bough_companion_knows(const bough_companion *c, int channel) {
 }
 
 void bough_companion_stop_by(bough_companion *c, bool (*stop)(void)) {
-    if (c->coarser) bough_master_stop_by(c->coarser->master, stop);
+    if (c->coarser.simulation) bough_master_stop_by(c->coarser.simulation->master, stop);
 }
 
 // -- copies ---------------------------------------------------------------------------------------
 
 bool bough_companion_storable(const bough_companion *c) {
-    return !alive(c) || bough_master_sampled(c->coarser->master);
+    return !alive(c) || bough_master_sampled(c->coarser.simulation->master);
 }
 
 void bough_companion_snapshot(bough_companion *c, bough_snapshot *s) {
-    if (!c->coarser) return;
+    if (!c->coarser.simulation) return;
     int n = c->channels->count;
-    bough_simulation_snapshot(c->coarser, s);
+    bough_simulation_snapshot(c->coarser.simulation, s);
     double *const rows[] = {c->value, c->error, c->low, c->high, c->other_low, c->other_high, c->noticed};
     for (size_t k = 0; k < sizeof rows / sizeof *rows; k++) bough_snapshot_doubles(s, rows[k], n);
     bough_snapshot_take(s, &c->compared, sizeof c->compared);

@@ -43,11 +43,23 @@ double bough_coarser_time_share(const bough_scene *scene);
 
 enum { BOUGH_COMPANION_REASON = 320 };
 
+// A further simulation of a run's scene, with the run's channels.
+typedef struct bough_other_run {
+    bough_simulation *simulation; // NULL: there is none
+    bough_channels channels;
+    double *value; // (channels.count) as sampled last
+} bough_other_run;
+
+// Builds one that is coarser in these parts, with the pool of the run.
+bough_status bough_other_run_build(bough_arena *arena, const bough_simulation *run, int parts,
+                                   bough_other_run *other);
+
+void bough_other_run_sample(bough_other_run *other);
+
 typedef struct bough_companion {
     bough_simulation *run;
-    bough_simulation *coarser;           // NULL: there is none
+    bough_other_run coarser;
     const bough_channels *channels;      // of the run
-    bough_channels own;                  // of the companion: the same ones
     double length;                       // of the longest rod; 0: there is none [m]
     double share;                        // of the difference, that the run errs by
     double share_held;                   // the same of a channel whose last sample the companion holds
@@ -56,12 +68,12 @@ typedef struct bough_companion {
     double motion;                       // largest range of all motion, or value up to 1, in SI units
     double rest;                         // motion of a scene at rest; 0: it moves
     long compared;                       // times
-    double *value, *other;          // (channels->count) at the last of them, of the run and of the companion
-    double *before;                 // (channels->count) of the run at the comparison before
-    double *error;                  // (channels->count) largest so far, in the channels' units
-    double *low, *high;             // (channels->count) range of the run
-    double *other_low, *other_high; // (channels->count) of the companion
-    double *noticed;                // (channels->count) when the error first passed the accuracy [s]
+    double *value;                       // (channels->count) of the run at the last of them
+    double *before;                      // (channels->count) of the run at the comparison before
+    double *error;                       // (channels->count) largest so far, in the channels' units
+    double *low, *high;                  // (channels->count) range of the run
+    double *other_low, *other_high;      // (channels->count) of the companion
+    double *noticed;                     // (channels->count) when the error first passed the accuracy [s]
     int parted_for,
         astray_for;      // comparisons in a row in which the run, the companion has left the other behind
     bough_status status; // of its last step

@@ -5,6 +5,7 @@
 #include "apps/bough/results/progress.h"
 #include "cosim/scheme.h"
 
+#include <limits.h>
 #include <math.h>
 #include <stdarg.h>
 #include <stdio.h>
@@ -24,27 +25,6 @@ static void unknown(bough_error_share *share, const char *format, ...) {
 
 // -- further runs ---------------------------------------------------------------------------------
 
-typedef struct other_run {
-    bough_simulation *simulation; // NULL: there is none
-    bough_channels channels;
-    double *value; // (channels.count)
-} other_run;
-
-static bough_status build(bough_arena *arena, const bough_simulation *run, int parts, other_run *r) {
-    const bough_scene *scene = bough_coarser_scene_beside(arena, run, parts);
-    bough_status status = bough_simulation_build_on(arena, scene, run->pool, &r->simulation);
-    r->channels = bough_channels_start(arena);
-    if (bough_is_ok(&status)) status = bough_simulation_channels(r->simulation, &r->channels);
-    r->value = bough_arena_doubles(arena, (size_t)r->channels.count + 1);
-    if (!bough_is_ok(&status)) r->simulation = NULL;
-    return status;
-}
-
-static void sample(other_run *r) {
-    bough_simulation_update(r->simulation);
-    bough_channels_sample(&r->channels, r->simulation->master->time, r->value);
-}
-
 // Steps of all bodies so far, with those that failed.
 static long steps_of(const bough_simulation *s) {
     bough_statistics sum = bough_master_statistics(s->master);
@@ -55,22 +35,25 @@ enum { MOST_TIMES_THE_STEPS = 10, FEW_STEPS = 1000 };
 
 // A further run that needs many times the steps of the run beside it (NULL: no limit) follows another
 // solution and may never end.
-static bough_status advance(other_run *r, double t, const bough_simulation *beside) {
-    bough_status status = bough_ok();
-    while (bough_is_ok(&status) && r->simulation->master->time < t) {
-        status = bough_step(r->simulation->master);
-        if (!bough_is_ok(&status) || beside == NULL) continue;
-        long most = MOST_TIMES_THE_STEPS * (steps_of(beside) + FEW_STEPS);
+static bough_status advance(bough_other_run *r, double t, const bough_simulation *beside) {
+    while (r->simulation->master->time < t) {
+        BOUGH_TRY(bough_step(r->simulation->master));
+        long most = beside ? MOST_TIMES_THE_STEPS * (steps_of(beside) + FEW_STEPS) : LONG_MAX;
         if (steps_of(r->simulation) > most)
-            status = bough_fail(BOUGH_FAILED, "a run beside it took more than %ld steps to %.6g s", most,
-                                r->simulation->master->time);
+            return bough_fail(BOUGH_FAILED, "a run beside it took more than %ld steps to %.6g s", most,
+                              r->simulation->master->time);
     }
-    return status;
+    return bough_ok();
+}
+
+static bough_status look_for_stop(bool (*stop)(void)) {
+    if (!stop || !stop()) return bough_ok();
+    return bough_fail(BOUGH_INTERRUPTED, "interrupted while the error's cause was looked for");
 }
 
 // `part`, `held`: of the difference, that the run errs by; of channels whose last sample the base holds. Both
 // runs are sampled.
-static void compare(const other_run *base, const other_run *other, double part, double held,
+static void compare(const bough_other_run *base, const bough_other_run *other, double part, double held,
                     double *largest) {
     bool holds = !bough_master_sampled(base->simulation->master);
     if (other->simulation->master->time != base->simulation->master->time) return;
@@ -99,7 +82,7 @@ static bool has_part(const bough_scene *scene, int kind) {
     return false;
 }
 
-static void build_finer(bough_arena *arena, const finding *x, other_run finer[BOUGH_SHARES]) {
+static void build_finer(bough_arena *arena, const finding *x, bough_other_run finer[BOUGH_SHARES]) {
     static const int coarser[BOUGH_SHARES] = {BOUGH_COARSER_MESH, BOUGH_COARSER_AIR, BOUGH_COARSER_TIME};
     const bough_simulation *run = x->companion->run;
     for (int k = 0; k < BOUGH_SHARES; k++) {
@@ -108,14 +91,14 @@ static void build_finer(bough_arena *arena, const finding *x, other_run finer[BO
             unknown(share, "the scene has no %s", bough_error_share_name((bough_error_share_kind)k));
             continue;
         }
-        bough_status status = build(arena, run, BOUGH_COARSER_ALL & ~coarser[k], &finer[k]);
+        bough_status status = bough_other_run_build(arena, run, BOUGH_COARSER_ALL & ~coarser[k], &finer[k]);
         if (!bough_is_ok(&status)) unknown(share, "%.150s", status.message);
     }
 }
 
 // As far as the base, with a run that is finer in part k.
-static void advance_finer(const finding *x, int k, double t, const other_run *base, const other_run *again,
-                          other_run *finer, double part, double held) {
+static void advance_finer(const finding *x, int k, double t, const bough_other_run *base,
+                          const bough_other_run *again, bough_other_run *finer, double part, double held) {
     bough_error_share *share = &x->shares->share[k];
     const bough_companion *c = x->companion;
     if (!finer->simulation || share->unknown[0]) return;
@@ -126,18 +109,18 @@ static void advance_finer(const finding *x, int k, double t, const other_run *ba
         return;
     }
     if (t < c->run->scene->simulation.output.from - 1e-6 * c->run->master->macro_step) return;
-    sample(finer);
+    bough_other_run_sample(finer);
     if (base->simulation) compare(base, finer, part, held, share->largest);
     if (again->simulation) compare(finer, again, c->share, c->share_held, share->others);
 }
 
 // Where the companion is lost, its failure ends no more than the comparison with it.
-static bough_status step_base(const finding *x, other_run *base, double *t) {
+static bough_status step_base(const finding *x, bough_other_run *base, double *t) {
     const bough_simulation *s = base->simulation;
     bough_status status = s == NULL ? bough_ok() : bough_step(s->master);
     if (s != NULL && bough_is_ok(&status)) {
         *t = s->master->time;
-        sample(base);
+        bough_other_run_sample(base);
         return status;
     }
     *t += 2 * x->companion->run->master->macro_step;
@@ -155,23 +138,22 @@ static bough_status find(bough_arena *arena, void *self) {
     // what is held longer than in the run is held so in two of the further runs as well
     const double held[BOUGH_SHARES] = {part[BOUGH_SHARE_MESH], x->companion->share_held,
                                        part[BOUGH_SHARE_TIME]};
-    other_run base, again = {0}, finer[BOUGH_SHARES] = {{0}};
-    bough_status status = build(arena, run, BOUGH_COARSER_ALL, &base);
-    if (bough_is_ok(&status)) build_finer(arena, x, finer);
-    if (bough_is_ok(&status) && x->lost) status = build(arena, run, 0, &again);
-    if (bough_is_ok(&status)) sample(&base);
-    if (bough_is_ok(&status) && again.simulation) sample(&again);
-    for (double t = 0; bough_is_ok(&status);) {
+    bough_other_run base, again = {0}, finer[BOUGH_SHARES] = {{0}};
+    BOUGH_TRY(bough_other_run_build(arena, run, BOUGH_COARSER_ALL, &base));
+    build_finer(arena, x, finer);
+    if (x->lost) BOUGH_TRY(bough_other_run_build(arena, run, 0, &again));
+    bough_other_run_sample(&base);
+    if (x->lost) bough_other_run_sample(&again);
+    for (double t = 0;;) {
         for (int k = 0; k < BOUGH_SHARES; k++)
             advance_finer(x, k, t, &base, &again, &finer[k], part[k], held[k]);
-        if (t >= x->end) break;
-        if (x->stop && x->stop())
-            return bough_fail(BOUGH_INTERRUPTED, "interrupted while the error's cause was looked for");
-        status = step_base(x, &base, &t);
-        if (bough_is_ok(&status) && again.simulation) status = advance(&again, fmin(t, x->end), NULL);
-        if (bough_is_ok(&status) && again.simulation) sample(&again);
+        if (t >= x->end) return bough_ok();
+        BOUGH_TRY(look_for_stop(x->stop));
+        BOUGH_TRY(step_base(x, &base, &t));
+        if (!x->lost) continue;
+        BOUGH_TRY(advance(&again, fmin(t, x->end), NULL));
+        bough_other_run_sample(&again);
     }
-    return status;
 }
 
 // -- a companion that has lost the solution -------------------------------------------------------
@@ -229,23 +211,19 @@ static bough_status prove(bough_arena *arena, void *self) {
     const bough_simulation *run = c->run;
     static const int parts[] = {0, BOUGH_FINER_TIME, BOUGH_COARSER_ALL & ~BOUGH_COARSER_TIME};
     double from = run->scene->simulation.output.from - 1e-6 * run->master->macro_step;
-    other_run r[3] = {{0}};
-    bough_status status = bough_ok();
-    for (int k = 0; k < 3 && bough_is_ok(&status); k++) status = build(arena, run, parts[k], &r[k]);
-    for (double t = 0; bough_is_ok(&status); t = r[0].simulation->master->time) {
-        for (int k = 0; k < 3 && bough_is_ok(&status); k++) {
-            status = advance(&r[k], t, r[0].simulation);
-            if (bough_is_ok(&status)) sample(&r[k]);
+    bough_other_run r[3];
+    for (int k = 0; k < 3; k++) BOUGH_TRY(bough_other_run_build(arena, run, parts[k], &r[k]));
+    for (double t = 0;; t = r[0].simulation->master->time) {
+        for (int k = 0; k < 3; k++) {
+            BOUGH_TRY(advance(&r[k], t, r[0].simulation));
+            bough_other_run_sample(&r[k]);
         }
-        if (!bough_is_ok(&status)) break;
         if (t >= from) compare(&r[0], &r[1], half_steps, half_steps, x->time);
         if (t >= from) compare(&r[2], &r[0], c->share, c->share_held, x->others);
-        if (t >= x->end) break;
-        if (x->stop && x->stop())
-            return bough_fail(BOUGH_INTERRUPTED, "interrupted while the error's cause was looked for");
-        status = bough_step(r[0].simulation->master);
+        if (t >= x->end) return bough_ok();
+        BOUGH_TRY(look_for_stop(x->stop));
+        BOUGH_TRY(bough_step(r[0].simulation->master));
     }
-    return status;
 }
 
 // A companion's longer steps can err by far more than the share of the difference that is the run's. Before
@@ -311,7 +289,7 @@ bough_status bough_error_shares_find(bough_arena *arena, bough_companion *c, boo
         bough_arena_each(arena, (size_t)c->channels->count + 1, &shares->share[k].largest,
                          &shares->share[k].others);
     bough_status status = bough_ok();
-    if (!c->coarser) {
+    if (!c->coarser.simulation) {
         status = bough_fail(BOUGH_FAILED, "%s", c->reason);
     } else if (c->run->input) {
         status = bough_fail(BOUGH_FAILED, "the run has inputs, which are not known any more");

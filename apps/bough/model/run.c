@@ -155,7 +155,7 @@ static bough_status step(bough_run *run) {
     }
     // a thread that waits for half of the steps sleeps
     bool together = run->side_by_side && run->steps_together && bough_companion_due(run->companion);
-    run->until = together ? bough_master_next(run->companion->coarser->master) : 0;
+    run->until = together ? bough_master_next(run->companion->coarser.simulation->master) : 0;
     bough_status status = bough_run_step(run);
     return bough_is_ok(&status) && run->after ? run->after(run->self) : status;
 }
