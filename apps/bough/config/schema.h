@@ -135,6 +135,9 @@ const char *bough_schema_path(bough_schema_reader *reader, const bough_node *nod
 // Records a file that the scene is made of and that no value of it names.
 void bough_schema_add_file(bough_schema_reader *reader, const char *key, const char *path, bool absolute);
 
+// Reads a value that is no mapping, table, file or custom one into its field of the struct.
+void bough_schema_value(bough_schema_reader *r, const bough_key *key, const bough_node *node, void *item);
+
 // Reads a number with or without a unit; NaN after adding an error.
 double bough_schema_number(bough_schema_reader *reader, const bough_node *node, bough_dimension dimension);
 

@@ -19,9 +19,6 @@ void *bough_schema_items(bough_schema_reader *r, const bough_key *key, const bou
 void bough_schema_not_more(bough_schema_reader *r, const char *key, const bough_node *before,
                            const bough_node *node);
 
-// Reads a value that is no mapping, table, file or custom one into its field of the struct.
-void bough_schema_value(bough_schema_reader *r, const bough_key *key, const bough_node *node, void *item);
-
 // Writes a mapping of the schema as an object of JSON Schema.
 void bough_schema_json_object(const bough_schema *schema, FILE *stream);
 

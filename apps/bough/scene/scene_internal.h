@@ -22,9 +22,9 @@ void bough_scene_read_section_mass(bough_schema_reader *r, const bough_node *nod
 void bough_scene_read_motion(bough_schema_reader *r, const bough_node *node, void *field);
 void bough_scene_read_inertia(bough_schema_reader *r, const bough_node *node, void *field);
 void bough_scene_read_load_place(bough_schema_reader *r, const bough_node *node, void *field);
-void bough_scene_read_load_torque(bough_schema_reader *r, const bough_node *node, void *field);
+void bough_scene_read_load_amount(bough_schema_reader *r, const bough_node *node, void *field);
 void bough_scene_read_load_force(bough_schema_reader *r, const bough_node *node, void *field);
-void bough_scene_read_load_factor(bough_schema_reader *r, const bough_node *node, void *field);
+void bough_scene_read_load_table(bough_schema_reader *r, const bough_node *node, void *field);
 void bough_scene_read_load_moment(bough_schema_reader *r, const bough_node *node, void *field);
 
 // Adds an error at each of the keys "a|b" that the mapping has.

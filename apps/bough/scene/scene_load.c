@@ -26,51 +26,37 @@ static bool is_spread(const bough_scene_load *load) { return bough_node_find(loa
 // Three numbers, with or without a unit.
 static void read_three(bough_schema_reader *r, const bough_node *node, bough_dimension dimension,
                        double *values) {
-    if (node->kind != BOUGH_SEQUENCE || node->n != 3) {
-        bough_schema_expected(r, node, "a list of 3 numbers");
-        return;
-    }
-    for (int i = 0; i < 3; i++) {
-        size_t length = bough_schema_push(r, "[%d]", i);
-        values[i] = bough_schema_number(r, node->value[i], dimension);
-        bough_schema_pop(r, length);
-    }
+    const bough_key key = {.kind = BOUGH_KEY_VECTOR, .count = 3, .dimension = dimension};
+    bough_schema_value(r, &key, node, values);
 }
 
-static void read_table(bough_schema_reader *r, const bough_node *node, bough_dimension dimension,
-                       bough_scene_load *load) {
+// field: the load; a table over time in the key's dimension
+void bough_scene_read_load_table(bough_schema_reader *r, const bough_node *node, void *field) {
+    bough_scene_load *load = field;
     bough_scene_table table;
-    if (!bough_scene_read_table(r, node, dimension, &table)) return;
+    if (!bough_scene_read_table(r, node, r->key->dimension, &table)) return;
     load->n_time = table.n_time;
     load->times = table.times;
     load->values = table.values;
 }
 
-// A number, or a table over time.
-static void read_amount(bough_schema_reader *r, const bough_node *node, bough_dimension dimension,
-                        bough_scene_load *load) {
+// field: the load; a number or a table over time in the key's dimension
+void bough_scene_read_load_amount(bough_schema_reader *r, const bough_node *node, void *field) {
+    bough_scene_load *load = field;
     if (node->kind == BOUGH_MAPPING) {
-        read_table(r, node, dimension, load);
+        bough_scene_read_load_table(r, node, load);
     } else {
-        load->amount = bough_schema_number(r, node, dimension);
+        load->amount = bough_schema_number(r, node, r->key->dimension);
     }
-}
-
-void bough_scene_read_load_torque(bough_schema_reader *r, const bough_node *node, void *field) {
-    read_amount(r, node, BOUGH_MOMENT, field);
 }
 
 void bough_scene_read_load_force(bough_schema_reader *r, const bough_node *node, void *field) {
     bough_scene_load *load = field;
     if (bough_node_find(load->node, "body") == NULL) {
-        read_amount(r, node, BOUGH_FORCE, load);
+        bough_scene_read_load_amount(r, node, load);
     } else {
         read_three(r, node, is_spread(load) ? BOUGH_LINE_FORCE : BOUGH_FORCE, load->force);
     }
-}
-
-void bough_scene_read_load_factor(bough_schema_reader *r, const bough_node *node, void *field) {
-    read_table(r, node, BOUGH_PURE_NUMBER, field);
 }
 
 void bough_scene_read_load_moment(bough_schema_reader *r, const bough_node *node, void *field) {

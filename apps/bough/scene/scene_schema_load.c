@@ -8,8 +8,8 @@
 static const bough_key load_keys[] = {
     {NAMED("joint", TEXT), AT(joint_name), .example = "hub",
      .help = "load on a joint: name of the body that the joint carries"},
-    {NAMED("torque", CUSTOM), .read = bough_scene_read_load_torque,
-     .form = "number in N m, or {times: [...], values: [...]}", .example = "-11.9 MN m",
+    {NAMED("torque", CUSTOM), .read = bough_scene_read_load_amount, UNIT(MOMENT),
+     .form = "number, or {times: [...], values: [...]},", .example = "-11.9 MN m",
      .help = "about the axis of a revolute joint"},
     {NAMED("body", TEXT), AT(body_name), .example = "blade1",
      .help = "load on a rod or a rigid body: name of the body"},
@@ -20,8 +20,8 @@ static const bough_key load_keys[] = {
      .help = "place on the rod, counted from the root"},
     {NAMED("along", VECTOR), AT(span), .count = 2, UNIT(LENGTH), .range = ">= 0",
      .example = "[40 m, 61.5 m]", .help = "range of a distributed load; replaces 'at'"},
-    {NAMED("force", CUSTOM), .read = bough_scene_read_load_force,
-     .form = "number in N, {times: [...], values: [...]}, or 3 numbers in N, in N/m with 'along'",
+    {NAMED("force", CUSTOM), .read = bough_scene_read_load_force, UNIT(FORCE),
+     .form = "number, {times: [...], values: [...]}, or 3 numbers, with 'along' in N/m, else",
      .example = "12 kN", .help = "along the axis of a prismatic joint, or on the body"},
     {NAMED("moment", CUSTOM), .read = bough_scene_read_load_moment,
      .form = "3 numbers in N m, in N m/m with 'along'", .example = "[0, 0, 5 kN m]",
@@ -34,7 +34,7 @@ static const bough_key load_keys[] = {
      .example = "[0, 0, 100]",
      .help = "with 'along': moment at the end of the range, if it differs from 'moment' at the "
              "start; linear between"},
-    {NAMED("factor", CUSTOM), .read = bough_scene_read_load_factor,
+    {NAMED("factor", CUSTOM), .read = bough_scene_read_load_table,
      .form = "{times: [...], values: [...]}", .example = "{times: [0, 1, 2], values: [0, 1, 0]}",
      .help = "on a body: factor of the load over time, linear between the times and constant "
              "outside; replaces 'ramp'"},
