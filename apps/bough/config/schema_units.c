@@ -39,7 +39,7 @@ static const unit units[] = {
 static const struct {
     const char *symbol;
     double factor;
-} prefixes[] = {{"n", 1e-9}, {"u", 1e-6}, {"µ", 1e-6}, {"m", 1e-3},
+} prefixes[] = {{"", 1},     {"n", 1e-9}, {"u", 1e-6}, {"µ", 1e-6}, {"m", 1e-3},
                 {"c", 1e-2}, {"k", 1e3},  {"M", 1e6},  {"G", 1e9}};
 
 static const struct {
@@ -76,10 +76,10 @@ void bough_dimension_expected(bough_dimension dimension, char text[96]) {
     if (angular) {
         snprintf(text, 96, "%s with its unit, as '%s'", dimensions[dimension].name,
                  dimensions[dimension].example);
-        return;
+    } else {
+        snprintf(text, 96, "%s (in %s, or with a unit, as '%s')", dimensions[dimension].name,
+                 dimensions[dimension].si, dimensions[dimension].example);
     }
-    snprintf(text, 96, "%s (in %s, or with a unit, as '%s')", dimensions[dimension].name,
-             dimensions[dimension].si, dimensions[dimension].example);
 }
 
 void bough_schema_help_units(FILE *stream) {
@@ -92,16 +92,13 @@ void bough_schema_help_units(FILE *stream) {
 
 // A unit by its symbol without exponent: factor and exponents, NULL when there is none.
 static const unit *find_unit(const char *symbol, double *factor) {
-    for (size_t i = 0; i < sizeof units / sizeof units[0]; i++) {
-        *factor = units[i].factor;
-        if (strcmp(units[i].symbol, symbol) == 0) return &units[i];
-    }
     for (size_t p = 0; p < sizeof prefixes / sizeof prefixes[0]; p++) {
         size_t length = strlen(prefixes[p].symbol);
         if (strncmp(symbol, prefixes[p].symbol, length) != 0) continue;
         for (size_t i = 0; i < sizeof units / sizeof units[0]; i++) {
             *factor = prefixes[p].factor * units[i].factor;
-            if (units[i].prefix && strcmp(units[i].symbol, symbol + length) == 0) return &units[i];
+            bool fits = length == 0 || units[i].prefix;
+            if (fits && strcmp(units[i].symbol, symbol + length) == 0) return &units[i];
         }
     }
     return NULL;
@@ -109,14 +106,12 @@ static const unit *find_unit(const char *symbol, double *factor) {
 
 // Cuts an exponent "^3", "3", "²", "³" off the end of a token.
 static int cut_exponent(char *token) {
+    static const char *const raised[] = {"²", "³"};
     size_t length = strlen(token);
-    if (length >= 3 && strcmp(token + length - 2, "²") == 0) {
+    for (int i = 0; i < 2; i++) {
+        if (length < 3 || strcmp(token + length - 2, raised[i]) != 0) continue;
         token[length - 2] = '\0';
-        return 2;
-    }
-    if (length >= 3 && strcmp(token + length - 2, "³") == 0) {
-        token[length - 2] = '\0';
-        return 3;
+        return i + 2;
     }
     if (length < 2 || token[length - 1] < '2' || token[length - 1] > '9') return 1;
     int exponent = token[length - 1] - '0';
@@ -216,18 +211,12 @@ static bool convert(const char *text, size_t length, double *value) {
 
 // Angles without a unit: radians to one reader, degrees to the next. 0 is the same to both.
 static bool is_ambiguous(const char *number, bough_dimension dimension, double value, char why[160]) {
-    if (value == 0) return false;
-    if (dimension == BOUGH_ANGLE) {
-        snprintf(why, 160, "%.30s rad is %.4g deg; write '%.30s deg' or '%.30s rad'", number,
-                 value * 180 / BOUGH_PI, number, number);
-        return true;
-    }
-    if (dimension == BOUGH_ANGULAR_SPEED) {
-        snprintf(why, 160, "%.30s rad/s is %.4g rpm; write '%.30s rpm' or '%.30s rad/s'", number,
-                 value * 30 / BOUGH_PI, number, number);
-        return true;
-    }
-    return false;
+    bool angle = dimension == BOUGH_ANGLE, speed = dimension == BOUGH_ANGULAR_SPEED;
+    if (value == 0 || !(angle || speed)) return false;
+    const char *si = angle ? "rad" : "rad/s", *usual = angle ? "deg" : "rpm";
+    snprintf(why, 160, "%.30s %s is %.4g %s; write '%.30s %s' or '%.30s %s'", number, si,
+             value * (angle ? 180 : 30) / BOUGH_PI, usual, number, usual, number, si);
+    return true;
 }
 
 bool bough_quantity(const char *text, bough_dimension dimension, double *value, char why[160]) {
