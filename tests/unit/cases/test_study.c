@@ -266,11 +266,11 @@ TEST_IN_FOLDER(other_settings_are_run_anew_and_a_grown_grid_is_completed) {
     char table[STUDY_SHOWN];
     perform(*context, good_study, ALL, table);
     int whole = asked;
-    bough_status status = perform(*context,
-                                  HEAD REFERENCE GRID "common: {simulation.duration: 20 ms,"
-                                                      " simulation.output.interval: 20 ms}\n" MEASURES,
-                                  0, table);
-    assert_int_equal(status.code, BOUGH_INTERRUPTED);
+    check_fails(perform(*context,
+                        HEAD REFERENCE GRID "common: {simulation.duration: 20 ms,"
+                                            " simulation.output.interval: 20 ms}\n" MEASURES,
+                        0, table),
+                BOUGH_INTERRUPTED, "interrupted after");
     static const char grown[] =
         HEAD REFERENCE "grid:\n  simulation.coupling.scheme: [monolithic, frozen, gauss-seidel]\n"
                        "  simulation.macro_step: [1 ms, 4 ms]\n" COMMON MEASURES;

@@ -20,11 +20,10 @@ TEST(steps_end_on_events_and_on_the_duration) {
     def.event = event;
     def.n_event = 4;
     bough_two_mass m = bough_two_mass_default();
-    bough_status status = bough_two_mass_build(check_memory(), &m, def);
+    check_ok(bough_two_mass_build(check_memory(), &m, def));
     for (int k = 0; k < 7; k++) {
         assert_false(bough_master_done(m.master));
-        status = bough_step(m.master);
-        check_ok(status);
+        check_ok(bough_step(m.master));
         check_near(m.master->time, expected[k], 0, 1e-15);
         assert_int_equal(m.master->at_event, k == 2 || k == 4);
     }

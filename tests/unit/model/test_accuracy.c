@@ -166,15 +166,13 @@ static void record(const char *path, const char *const *sets, const char *last, 
     all[n] = last;
     check_arena(arena);
     bough_run run;
-    bough_status status = bough_run_create(arena, scene_read(arena, path, all), &run);
-    check_ok(status);
+    check_ok(bough_run_create(arena, scene_read(arena, path, all), &run));
     r->n_channel = run.channels.count;
     assert_true(r->n_channel <= MOST_CHANNELS);
     bough_run_start(&run);
     for (r->n_row = 0; !bough_run_done(&run); r->n_row++) {
         assert_true(r->n_row < MOST_ROWS);
-        status = bough_run_step(&run);
-        check_ok(status);
+        check_ok(bough_run_step(&run));
         memcpy(r->row[r->n_row], bough_run_values(&run), (size_t)r->n_channel * sizeof(double));
     }
 }

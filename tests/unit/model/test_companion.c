@@ -23,15 +23,13 @@ static outcome *run_for(const char *path, int steps, const char *const *sets) {
     outcome *o = calloc(1, sizeof *o);
     check_arena(arena);
     bough_run r;
-    bough_status status = bough_run_create(arena, scene_read(arena, path, sets), &r);
-    check_ok(status);
+    check_ok(bough_run_create(arena, scene_read(arena, path, sets), &r));
     assert_true(r.channels.count <= MOST);
     o->n = r.channels.count;
     for (int i = 0; i < o->n; i++) strcpy(o->name[i], r.channels.channel[i].name);
     for (int k = 0; k < steps; k++) {
         do {
-            status = bough_run_step(&r);
-            check_ok(status);
+            check_ok(bough_run_step(&r));
         } while (r.simulation->master->time < 0.02 * (k + 1) - 1e-9);
         memcpy(o->value[k], bough_run_values(&r), (size_t)o->n * sizeof(double));
     }

@@ -104,9 +104,7 @@ TEST(a_failed_run_has_no_values) {
     check_arena(arena);
     bough_run run;
     sampled rows = {0};
-    bough_status status =
-        bough_run_create(arena, scene_read(arena, "apps/beams/rubber-bar.yaml", sets), &run);
-    assert_int_equal(status.code, BOUGH_OK);
+    check_ok(bough_run_create(arena, scene_read(arena, "apps/beams/rubber-bar.yaml", sets), &run));
     assert_non_null(bough_run_values(&run));
     bough_run_record_at(&run, (bough_run_record){10, true, .sample = sample, .self = &rows});
     bough_run_all(&run);

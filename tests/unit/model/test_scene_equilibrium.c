@@ -10,9 +10,7 @@ static const char runup[] = "apps/turbine/runup.yaml";
 
 static bough_equilibrium_work equilibrium_of(bough_simulation *s) {
     bough_equilibrium_work work;
-    bough_status status =
-        bough_simulation_equilibrium(s, s->master->assembly, bough_equilibrium_time(s), &work);
-    check_ok(status);
+    check_ok(bough_simulation_equilibrium(s, s->master->assembly, bough_equilibrium_time(s), &work));
     return work;
 }
 

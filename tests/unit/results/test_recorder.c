@@ -140,8 +140,7 @@ TEST_IN_FOLDER(full_device_is_an_error_of_files) {
     snprintf(partial, sizeof partial, "%s/channels.out.partial", (char *)*context);
     assert_int_equal(symlink("/dev/full", partial), 0);
     fixture f;
-    bough_status status = open_recorder(&f, *context);
-    assert_int_equal(status.code, BOUGH_IO);
+    check_fails(open_recorder(&f, *context), BOUGH_IO, "channels.out");
 }
 
 TEST_IN_FOLDER(device_that_fills_up_leaves_whole_rows) {
@@ -173,18 +172,14 @@ TEST_IN_FOLDER(folder_is_made_with_its_parents) {
     char path[128], file[160];
     snprintf(path, sizeof path, "%s/a/b/", (char *)*context);
     check_ok(bough_folder_make(path));
-    bough_status status = bough_folder_make(path); // again: it exists
-    assert_true(bough_is_ok(&status));
+    check_ok(bough_folder_make(path)); // it exists
 
     snprintf(file, sizeof file, "%s/taken", (char *)*context);
     fclose(fopen(file, "w"));
     check_fails(bough_folder_make(file), BOUGH_IO, "is a file");
     snprintf(file, sizeof file, "%s/taken/below", (char *)*context);
-    status = bough_folder_make(file);
-    assert_int_equal(status.code, BOUGH_IO);
-    status = bough_folder_make("");
-    assert_int_equal(status.code, BOUGH_INVALID);
-    status = bough_folder_make("/proc/none/here");
-    assert_int_equal(status.code, BOUGH_IO);
+    check_fails(bough_folder_make(file), BOUGH_IO, "taken");
+    check_fails(bough_folder_make(""), BOUGH_INVALID, "");
+    check_fails(bough_folder_make("/proc/none/here"), BOUGH_IO, "/proc/none");
     rmdir(path);
 }

@@ -75,14 +75,12 @@ TEST_IN_FOLDER(numbers_survive_the_round_trip) {
 TEST_IN_FOLDER(unwritable_place_is_an_error_of_files) {
     char partial[128];
     bough_summary s;
-    bough_status status = bough_summary_open(&s, "/nowhere/at/all", "summary.json");
-    assert_int_equal(status.code, BOUGH_IO);
+    check_fails(bough_summary_open(&s, "/nowhere/at/all", "summary.json"), BOUGH_IO, "/nowhere/at/all");
 
     snprintf(partial, sizeof partial, "%s/summary.json.partial", (char *)*context);
     assert_int_equal(symlink("/dev/full", partial), 0);
     check_ok(bough_summary_open(&s, *context, "summary.json"));
-    status = bough_summary_close(&s);
-    assert_int_equal(status.code, BOUGH_IO);
+    check_fails(bough_summary_close(&s), BOUGH_IO, "summary.json");
     assert_false(scratch_has(*context, "summary.json"));
 }
 
