@@ -1,7 +1,7 @@
 #!/bin/sh
 # A tutorial's commands print what it says. test_tutorial.sh BOUGH SOURCE TUTORIAL.md
 #
-# A block "yaml NAME" is a file; in a block "console", "$ " begins a command, "> " continues it, the
+# A block "yaml NAME" or "c NAME" is a file; in a block "console", "$ " begins a command, "> " continues it, the
 # rest is its output. There "..." stands for a word or, last in a line, for the rest. Numbers agree in
 # all digits shown but for one unit of the last, since machines round differently. After "~" zeros at the end
 # of a whole number are no digits, "~2970" is 2960 to 2980, and a single digit is a size within a factor of
@@ -17,7 +17,7 @@ PATH=$(dirname "$bough"):$PATH
 export OMP_NUM_THREADS=1
 
 awk '
-    /^```yaml ./ {file = $2; next}
+    /^```(yaml|c) ./ {file = $2; next}
     /^```console$/ {console = 1; next}
     /^```$/ {console = 0; file = ""; next}
     file {print >file}
