@@ -1,7 +1,7 @@
 // The macro loop. Macro times are T_k = k·H, by multiplication; a step is split where an event time
 // falls inside it, and the last one ends exactly on the duration. A run that is compared with one of half its
-// macro step takes some steps in halves: what happens within its steps would be seen at no time, or, of a
-// vibration of two of them, at one phase alone.
+// macro step takes some steps in halves: what happens only within macro steps would never be compared, and a
+// vibration with a period of two macro steps at one phase only.
 #ifndef BOUGH_COSIM_MASTER_H
 #define BOUGH_COSIM_MASTER_H
 
@@ -32,8 +32,8 @@ typedef struct bough_master_def {
     bough_assembly_def assembly;
     bough_scheme_options scheme;
     double macro_step; // H, the longest [s]
-    // of a system that is integrated as one: every second of the first 64 steps, or all where its integrator
-    // takes several in each, every eighth later, and those after events are taken in halves
+    // of a system that is integrated as one: taken in halves are every second of the first 64 steps (all
+    // where its integrator takes several in each), every eighth later, and those after events
     bool halves;
     bough_step_control_def control; // shorter ones by error; tolerance 0: none
     double duration;                // [s]; the run starts at time 0

@@ -1,5 +1,4 @@
-// The field's interface to a turbine controller: a shared library in the style of Bladed whose
-// function
+// Bladed's interface to a turbine controller: a shared library whose function
 //     void DISCON(float *avrSWAP, int *aviFAIL, char *accINFILE, char *avcOUTNAME, char *avcMSG)
 // reads and writes numbered records. Here records count from 1, as its manual does.
 //
@@ -51,8 +50,8 @@ typedef struct bough_discon bough_discon;
 bough_status bough_discon_open(bough_arena *arena, const char *library, const char *input, bool copy,
                                bough_discon **discon);
 
-// Calls the controller. BOUGH_FAILED with its own message when it reports a failure or demands what
-// is no number; warnings are not failures.
+// Calls the controller. BOUGH_FAILED with its own message when it reports a failure or demands a value
+// that is not finite; warnings are not failures.
 bough_status bough_discon_call(bough_discon *discon, const bough_discon_sensed *sensed,
                                bough_discon_demand *demand);
 

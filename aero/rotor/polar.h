@@ -1,5 +1,5 @@
 // Airfoil coefficients: tables over the angle of attack, periodic over a full circle, interpolated
-// linearly as the field's reference codes do, or by monotone cubics.
+// linearly or by monotone cubics.
 #ifndef BOUGH_AERO_ROTOR_POLAR_H
 #define BOUGH_AERO_ROTOR_POLAR_H
 

@@ -1,6 +1,6 @@
 // Undisturbed wind: one direction everywhere, sheared over the height, its speed constant or a
-// table over time, when the whole field changes speed at once; or a file of the field; or a condition
-// of IEC 61400-1. Any of them may be inclined and veer with the height.
+// table over time, in which the wind changes everywhere at once; or a wind file; or a condition of
+// IEC 61400-1. Any of them may be inclined and veer with the height.
 #ifndef BOUGH_AERO_WIND_WIND_H
 #define BOUGH_AERO_WIND_WIND_H
 

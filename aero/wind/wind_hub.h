@@ -1,5 +1,5 @@
-// Wind from a uniform file of the field (`.wnd`, hub height): a table over time of speed, direction,
-// shears, gust and upflow that holds in the whole space at once.
+// Wind from a hub-height file (`.wnd`): a table over time of speed, direction, shears, gust and upflow,
+// the same everywhere at one time.
 #ifndef BOUGH_AERO_WIND_WIND_HUB_H
 #define BOUGH_AERO_WIND_WIND_HUB_H
 

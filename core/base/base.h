@@ -9,9 +9,9 @@
 
 #define BOUGH_PI 3.14159265358979323846
 
-// A function that loops over vector lanes call: a loop that calls runs lane by lane. clang splits structures
-// that are arguments of static functions into their members, and the new calls are not known to be without
-// dependences, so that the loop is not vectorised.
+// For functions called in loops over vector lanes, which are not vectorised where a call remains. clang
+// splits structures that are arguments of static functions into their members, and of the new calls it does
+// not know that iterations are independent.
 #ifdef __clang__
 #define BOUGH_INLINE extern inline __attribute__((always_inline, gnu_inline))
 #else

@@ -1,5 +1,5 @@
 // Results of operations that can fail: a code and, when it is not BOUGH_OK, one message written
-// where the failure arose. Asserts are for our own bugs, statuses for the world.
+// where the failure arose. Mistakes of the program are caught by asserts.
 #ifndef BOUGH_CORE_BASE_STATUS_H
 #define BOUGH_CORE_BASE_STATUS_H
 
@@ -15,7 +15,7 @@ typedef enum bough_code {
     BOUGH_INTERRUPTED,   // the user asked to stop: exit code 130
 } bough_code;
 
-// Room for the longest that any of our sentences makes of names and paths.
+// Room for the longest message with its names and paths.
 enum { BOUGH_MESSAGE = 1000 };
 
 typedef struct bough_status {
