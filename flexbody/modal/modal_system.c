@@ -249,7 +249,7 @@ static void set_initial(bough_modal_body *b, const double *input) {
     }
 }
 
-void bough_modal_body_ride(bough_modal_body *b, const double *input, double *state) {
+void bough_modal_body_move_rigidly(bough_modal_body *b, const double *input, double *state) {
     const bough_modal_model *m = b->model;
     bough_modal_frame frame = body_frame(input);
     for (int k = 0; k < m->n_piece; k++) {

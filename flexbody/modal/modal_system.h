@@ -124,7 +124,7 @@ const bough_modal_model *bough_modal_body_model(const bough_modal_body *body);
 bough_rod_loads *bough_modal_body_loads(bough_modal_body *body);
 
 // Sets η to that of a body at rest relative to its frame in the shape of the state, q̇ = 0.
-void bough_modal_body_ride(bough_modal_body *body, const double *input, double *state);
+void bough_modal_body_move_rigidly(bough_modal_body *body, const double *input, double *state);
 
 // The state of vertices from `first` on, in a state of the body, as rod.h lays out that of a rod
 // (13 n), absolute velocities for the frame's twist in `input`; valid until the next call.

@@ -208,7 +208,7 @@ static bool converge(const bough_rod_model *m, const double *input, const bough_
     int shortened = 0;
     for (int k = 0; k < options->iterations; k++) {
         w->iterations++;
-        bough_rod_ride(m, input, state);
+        bough_rod_move_rigidly(m, input, state);
         if (!bough_rod_linearise(m, &w->scaled, 0, state, input, &w->scratch, &w->tangent)) {
             return false;
         }
@@ -220,7 +220,7 @@ static bool converge(const bough_rod_model *m, const double *input, const bough_
         if (shortened > SHORTENED) return false;
         // rounding in a stiff rod keeps the residual up; then the steps tell
         if (change < options->tolerance) {
-            bough_rod_ride(m, input, state);
+            bough_rod_move_rigidly(m, input, state);
             return true;
         }
     }

@@ -42,7 +42,7 @@ void bough_rod_solve(const bough_rod_model *m, bough_rod_tangent *k, double *x) 
 
 // -- about a steady motion ------------------------------------------------------------------------
 
-void bough_rod_ride(const bough_rod_model *m, const double *input, double *state) {
+void bough_rod_move_rigidly(const bough_rod_model *m, const double *input, double *state) {
     int n = m->n;
     bough_vec3 u0 = {input[0], input[1], input[2]}, omega = {input[3], input[4], input[5]};
     for (int i = 0; i < n; i++) {

@@ -47,10 +47,10 @@ const double *bough_beam_state(const bough_simulation *s, const bough_beam *beam
     return bough_modal_body_vertices(beam->modal, state, input, first);
 }
 
-void bough_beam_ride(const bough_beam *beam, const double *input, double *state) {
+void bough_beam_move_rigidly(const bough_beam *beam, const double *input, double *state) {
     if (beam->rod != NULL) {
-        bough_rod_ride(beam->mesh, input, state);
+        bough_rod_move_rigidly(beam->mesh, input, state);
     } else {
-        bough_modal_body_ride(beam->modal, input, state);
+        bough_modal_body_move_rigidly(beam->modal, input, state);
     }
 }

@@ -144,6 +144,6 @@ void bough_blade_group_average(const bough_blade_group *group, const double *inp
     if (group->blade[0]->rod != NULL) average_rods(group, state, mean);
     for (int k = 0; k < group->n; k++) {
         memcpy(state + group->first[k], mean, (size_t)group->n_row * sizeof *state);
-        bough_beam_ride(group->blade[k], input + group->first_input[k], state + group->first[k]);
+        bough_beam_move_rigidly(group->blade[k], input + group->first_input[k], state + group->first[k]);
     }
 }

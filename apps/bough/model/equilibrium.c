@@ -205,7 +205,8 @@ static void bring_to_rest(void *self, double *state) {
         const bough_beam *beam = &s->beam[k];
         int member = beam->port + 1;
         if (beam->port < 0) continue;
-        bough_beam_ride(beam, x->coupled->input + a->input_offset[member], state + a->state_offset[member]);
+        bough_beam_move_rigidly(beam, x->coupled->input + a->input_offset[member],
+                                state + a->state_offset[member]);
     }
 }
 

@@ -111,7 +111,7 @@ const double *bough_beam_state(const bough_simulation *s, const bough_beam *beam
 
 // Sets the velocities of a flexible beam's own state to rest relative to its frame, whose twist is
 // in `input`.
-void bough_beam_ride(const bough_beam *beam, const double *input, double *state);
+void bough_beam_move_rigidly(const bough_beam *beam, const double *input, double *state);
 
 // The axis of a body's joint in `view`, a unit vector in ground axes; the joint's own angle leaves it where
 // it is.

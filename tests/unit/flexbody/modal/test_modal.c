@@ -173,7 +173,7 @@ static void rest_modal(bar *b, const double *input) {
     memset(b->state, 0, (size_t)bough_modal_body_model(b->modal)->n_state * sizeof *b->state);
     memcpy(bough_modal_body_loads(b->modal)->value, b->loads.value,
            6 * (size_t)b->rod->stride * sizeof(double));
-    bough_modal_body_ride(b->modal, input, b->state);
+    bough_modal_body_move_rigidly(b->modal, input, b->state);
     check_ok(bough_modal_steady(b->modal, 0, input, b->arena, b->state));
 }
 
