@@ -161,6 +161,9 @@ modes() {
     expect 0 modes "$scenes/goland.yaml" --out flutter --until unstable \
         --sweep 'aero.wind.speed=100 m/s, 120 m/s'
     has ../stdout '^no oscillation grows up to aero.wind.speed=120 m/s'
+    # Beck's column without damping: P L2/EI = 20.0509, L = 1.41602 m
+    expect 0 modes "$folder/apps/beams/beck.yaml" --out flutter --until unstable --sweep 'bodies[0].rod.length=1.2 m, 1.3 m, 1.5 m'
+    has ../stdout '^unstable from bodies.0..rod.length=1.41[56][09][0-9]* m on, mesh +- [1-9].*e-0[56]: line 1, '
     rm -r flutter
     refused "modes.about: the joint of 'nacelle' must be revolute" modes "$turbine" \
         --set 'modes.about=nacelle'

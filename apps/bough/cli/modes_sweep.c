@@ -375,7 +375,9 @@ enum { MOST_TRIALS = 40 };
 static const double accurate = 1e-5; // of the boundary, relative to the first key's values
 
 // Growth of the oscillation that grows most, or decays least [1/s].
-static double growth_of(const sweep_mode *m) { return -2 * BOUGH_PI * m->frequency * m->damping; }
+static double growth_of(const sweep_mode *m) {
+    return fabs(m->damping) > rounding ? -2 * BOUGH_PI * m->frequency * m->damping : 0;
+}
 
 static const sweep_mode *most_growing(const sweep *s, int point) {
     const sweep_mode *most = NULL;
@@ -397,10 +399,16 @@ static const char *between(bough_arena *arena, const char *a, const char *b, dou
     return numbers ? bough_arena_print(arena, "%.8g%s", first + part * (second - first), unit_a) : NULL;
 }
 
-// Growth at a place behind the point, with the scene's mesh or another one; *share: of their difference, that
-// the mesh errs by.
+// The growth at a place.
+typedef struct growth_at {
+    double rate;      // of the oscillation that grows most [1/s]: 0: by no more than rounding
+    double frequency; // of that oscillation, damped [Hz]
+    double share;     // of the difference from another mesh, that the mesh errs by; if that was asked for
+} growth_at;
+
+// Growth at a place behind the point, with the scene's mesh or the other one.
 static bough_status grow(bough_arena *keep, const bough_options *options, const sweep *s, int point,
-                         double part, double *share, double *growth, double *frequency) {
+                         double part, bool other, growth_at *to) {
     bough_arena *arena = bough_arena_child(keep);
     sweep one = {.n_key = s->n_key, .n_point = 1, .key = s->key};
     one.value = bough_arena_take(arena, (size_t)s->n_key * sizeof *one.value);
@@ -416,17 +424,19 @@ static bough_status grow(bough_arena *keep, const bough_options *options, const 
     bough_simulation *sim;
     bough_vibration v;
     bough_status status = bough_open_scene(arena, &at, &scene);
-    if (bough_is_ok(&status) && share) {
-        bough_scene *other = bough_coarser_scene(arena, scene, BOUGH_COARSER_MESH);
-        *share = bough_coarser_share(scene, other);
-        scene = other;
+    *to = (growth_at){.rate = -HUGE_VAL};
+    if (bough_is_ok(&status) && other) {
+        bough_scene *coarser = bough_coarser_scene(arena, scene, BOUGH_COARSER_MESH);
+        to->share = bough_coarser_share(scene, coarser);
+        scene = coarser;
     }
     if (bough_is_ok(&status)) status = bough_simulation_build(arena, scene, &sim);
     if (bough_is_ok(&status)) status = bough_vibration_find(arena, sim, scene->modes.count, &v);
-    *growth = -HUGE_VAL;
-    for (int k = 0; bough_is_ok(&status) && k < v.found; k++)
-        if (v.mode[k].damped_frequency > 0 && v.mode[k].growth > *growth)
-            *growth = v.mode[k].growth, *frequency = v.mode[k].damped_frequency;
+    for (int k = 0; bough_is_ok(&status) && k < v.found; k++) {
+        const bough_scene_mode *m = &v.mode[k];
+        double rate = fabs(m->damping) > rounding ? m->growth : 0;
+        if (m->damped_frequency > 0 && rate > to->rate) to->rate = rate, to->frequency = m->damped_frequency;
+    }
     bough_arena_destroy(arena);
     return status;
 }
@@ -434,26 +444,45 @@ static bough_status grow(bough_arena *keep, const bough_options *options, const 
 typedef struct boundary {
     double part;      // of the way from the point before it to the next
     double slope;     // of the growth over that part [1/s]
-    double frequency; // of the oscillation there, damped [Hz]
+    double frequency; // of the oscillation that grows, damped [Hz]
+    double share;     // as in growth_at
 } boundary;
 
-// Between a stable point and the next one, where growths are low and high, by the Illinois rule.
+// Between a stable point and the next one, where growths are low and high, by the Illinois rule; without
+// damping, where growth is 0 up to the boundary, in halves.
 static bough_status find_boundary(bough_arena *arena, const bough_options *options, const sweep *s, int point,
-                                  double low, double high, boundary *to) {
+                                  double low, double high, bool other, boundary *to) {
     double a = 0, b = 1, first = s->x[point], second = s->x[point + 1];
     double width = accurate * fmax(fabs(first), fabs(second)) / fabs(second - first);
     for (int trial = 0; trial < MOST_TRIALS && b - a > width; trial++) {
-        double growth, x = trial % 4 == 3 ? (a + b) / 2 : a + (b - a) * low / (low - high);
+        bool halves = trial % 4 == 3 || !(low < 0);
+        double x = halves ? (a + b) / 2 : a + (b - a) * low / (low - high);
+        growth_at at;
         x = fmin(fmax(x, a + width / 4), b - width / 4);
-        BOUGH_TRY(grow(arena, options, s, point, x, NULL, &growth, &to->frequency));
-        to->slope = (growth - (growth > 0 ? low : high)) / (x - (growth > 0 ? a : b));
-        if (growth > 0) {
-            b = x, high = growth, low /= 2;
+        BOUGH_TRY(grow(arena, options, s, point, x, other, &at));
+        to->slope = (at.rate - (at.rate > 0 ? low : high)) / (x - (at.rate > 0 ? a : b));
+        to->share = at.share;
+        if (at.rate > 0) {
+            b = x, high = at.rate, low /= 2, to->frequency = at.frequency;
         } else {
-            a = x, low = growth, high /= 2;
+            a = x, low = at.rate, high /= 2;
         }
     }
     to->part = (a + b) / 2;
+    return bough_ok();
+}
+
+// By how much the mesh moves the boundary, as a part of the way: by the growth of the other mesh there and
+// the slope, or, where growth begins at once, by its own boundary.
+static bough_status find_error(bough_arena *arena, const bough_options *options, const sweep *s, int point,
+                               double low, double high, const boundary *at, double *error) {
+    growth_at other;
+    boundary of_other = {0};
+    BOUGH_TRY(grow(arena, options, s, point, at->part, true, &other));
+    *error = fabs(other.share * other.rate / at->slope);
+    if (low < 0) return bough_ok();
+    BOUGH_TRY(find_boundary(arena, options, s, point, low, high, true, &of_other));
+    *error = fabs(of_other.share * (of_other.part - at->part));
     return bough_ok();
 }
 
@@ -466,11 +495,11 @@ static bough_status print_boundary(bough_arena *arena, const bough_options *opti
                s->key[0], s->value[last]);
         return bough_ok();
     }
-    boundary at = {0};
-    double share = 0, other = 0, of_other = 0;
-    BOUGH_TRY(find_boundary(arena, options, s, last - 1, growth_of(before), growth_of(m), &at));
-    BOUGH_TRY(grow(arena, options, s, last - 1, at.part, &share, &other, &of_other));
-    double step = s->x[last] - s->x[last - 1], error = fabs(share * other / at.slope * step);
+    boundary at = {.frequency = m->damped};
+    double low = growth_of(before), high = growth_of(m), error;
+    BOUGH_TRY(find_boundary(arena, options, s, last - 1, low, high, false, &at));
+    BOUGH_TRY(find_error(arena, options, s, last - 1, low, high, &at, &error));
+    error *= fabs(s->x[last] - s->x[last - 1]);
     const char *value = between(arena, s->value[last - 1], s->value[last], at.part);
     printf("unstable from %s=%s on, mesh +- %.2g: line %d, %.6g Hz, %s %s\n", s->key[0], value, error,
            m->line + 1, at.frequency, m->body, m->shape);
