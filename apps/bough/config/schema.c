@@ -16,7 +16,7 @@ static int errors_so_far(const bough_schema_reader *r) {
 
 // -- tables ---------------------------------------------------------------------------------------
 
-static const bough_key *find_key(const bough_schema *schema, const char *name) {
+const bough_key *bough_schema_find(const bough_schema *schema, const char *name) {
     for (int i = 0; i < schema->n_key; i++) {
         if (strcmp(schema->key[i].name, name) == 0) return &schema->key[i];
     }
@@ -60,7 +60,7 @@ static bool read_column(bough_schema_reader *r, const bough_schema *row, const b
     *name = *head;
     name->text = text;
     *unit = space == NULL ? NULL : space + 1 + strspn(space + 1, " ");
-    const bough_key *key = find_key(row, text);
+    const bough_key *key = bough_schema_find(row, text);
     if (key == NULL) {
         unknown_key(r, row, head, text);
         return false;
@@ -301,7 +301,7 @@ typedef enum relevance { APPLIES, APPLIES_NOT, UNKNOWN } relevance;
 // Whether the key applies under the choices read before it.
 static relevance applies(const bough_schema *schema, const bough_key *key, void *item) {
     if (key->when == NULL) return APPLIES;
-    const bough_key *by = find_key(schema, key->when_key);
+    const bough_key *by = bough_schema_find(schema, key->when_key);
     int choice = *(int *)bough_field_at(item, by->offset);
     if (choice < 0) return UNKNOWN;
     return is_among(bough_key_choice(by, choice), key->when) ? APPLIES : APPLIES_NOT;
@@ -359,7 +359,7 @@ static void read_mapping(bough_schema_reader *r, const bough_schema *schema, con
         read_one_key(r, schema, &schema->key[i], node, units, item);
     }
     for (int i = 0; node != NULL && i < node->n; i++) {
-        if (find_key(schema, node->key[i]->text) == NULL) {
+        if (bough_schema_find(schema, node->key[i]->text) == NULL) {
             unknown_key(r, schema, node->key[i], node->key[i]->text);
         }
     }

@@ -95,9 +95,11 @@ static void put_choices(const bough_key *key, FILE *stream) {
     fputc(']', stream);
 }
 
+static void put_object(const bough_schema *schema, FILE *stream);
+
 static void put_list(const bough_key *key, FILE *stream) {
     fputs("\"anyOf\": [{\"type\": \"array\", \"items\": ", stream);
-    bough_schema_json_object(key->of, stream);
+    put_object(key->of, stream);
     fprintf(stream, ", \"minItems\": %d}, ", key->count);
     fputs("{\"type\": \"object\", \"properties\": {\"columns\": {\"type\": \"array\", \"items\": "
           "{\"type\": \"string\"}}, \"rows\": {\"type\": \"array\", \"items\": {\"type\": "
@@ -140,7 +142,7 @@ static void put_description(const bough_key *key, FILE *stream) {
 
 static void put_key(const bough_key *key, FILE *stream) {
     if (key->of != NULL && (key->kind == BOUGH_KEY_MAPPING || key->kind == BOUGH_KEY_CUSTOM)) {
-        bough_schema_json_object(key->of, stream);
+        put_object(key->of, stream);
         return;
     }
     fputc('{', stream);
@@ -150,42 +152,37 @@ static void put_key(const bough_key *key, FILE *stream) {
     fputc('}', stream);
 }
 
-static bool comes_again(const bough_schema *schema, int i, int step) {
-    for (int k = i + step; k >= 0 && k < schema->n_key; k += step) {
-        if (strcmp(schema->key[k].name, schema->key[i].name) == 0) return true;
-    }
-    return false;
+static bool is_first(const bough_schema *schema, int i) {
+    return bough_schema_find(schema, schema->key[i].name) == &schema->key[i];
 }
 
 // A key that takes another form with another choice of a key before it stands once, with all forms.
 static void put_property(const bough_schema *schema, int first, FILE *stream) {
+    int n = 0;
+    for (int i = first; i < schema->n_key; i++)
+        n += strcmp(schema->key[i].name, schema->key[first].name) == 0;
     bough_quote(stream, schema->key[first].name);
-    fputs(": ", stream);
-    if (!comes_again(schema, first, 1)) {
-        put_key(&schema->key[first], stream);
-        return;
-    }
-    fputs("{\"anyOf\": [", stream);
+    fputs(n > 1 ? ": {\"anyOf\": [" : ": ", stream);
     for (int i = first; i < schema->n_key; i++) {
         if (strcmp(schema->key[i].name, schema->key[first].name) != 0) continue;
         if (i > first) fputs(", ", stream);
         put_key(&schema->key[i], stream);
     }
-    fputs("]}", stream);
+    if (n > 1) fputs("]}", stream);
 }
 
-void bough_schema_json_object(const bough_schema *schema, FILE *stream) {
+static void put_object(const bough_schema *schema, FILE *stream) {
     fputs("{\"type\": \"object\", \"title\": ", stream);
     bough_quote(stream, schema->name);
     fputs(", \"additionalProperties\": false, \"properties\": {\n", stream);
     for (int i = 0, n = 0; i < schema->n_key; i++) {
-        if (comes_again(schema, i, -1)) continue;
+        if (!is_first(schema, i)) continue;
         if (n++ > 0) fputs(",\n", stream);
         put_property(schema, i, stream);
     }
     fputs("}, \"required\": [", stream);
     for (int i = 0, n = 0; i < schema->n_key; i++) {
-        if (!schema->key[i].required || schema->key[i].when || comes_again(schema, i, -1)) continue;
+        if (!schema->key[i].required || schema->key[i].when || !is_first(schema, i)) continue;
         if (n++ > 0) fputs(", ", stream);
         bough_quote(stream, schema->key[i].name);
     }
@@ -203,20 +200,14 @@ static void put_on_base(const bough_schema *schema, FILE *stream) {
     fputs("}, \"required\": [\"base\"]}", stream);
 }
 
-static bool has_base(const bough_schema *schema) {
-    bool has = false;
-    for (int i = 0; i < schema->n_key; i++) has = has || strcmp(schema->key[i].name, "base") == 0;
-    return has;
-}
-
 void bough_schema_json(const char *title, const bough_schema *const *schema, int n, FILE *stream) {
     fputs("{\"$schema\": \"https://json-schema.org/draft/2020-12/schema\", \"title\": ", stream);
     bough_quote(stream, title);
     fputs(", \"anyOf\": [\n", stream);
     for (int i = 0; i < n; i++) {
         if (i > 0) fputs(",\n", stream);
-        bough_schema_json_object(schema[i], stream);
-        if (has_base(schema[i])) put_on_base(schema[i], stream);
+        put_object(schema[i], stream);
+        if (bough_schema_find(schema[i], "base") != NULL) put_on_base(schema[i], stream);
     }
     fputs("\n]}\n", stream);
 }

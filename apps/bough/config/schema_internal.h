@@ -19,8 +19,8 @@ void *bough_schema_items(bough_schema_reader *r, const bough_key *key, const bou
 void bough_schema_not_more(bough_schema_reader *r, const char *key, const bough_node *before,
                            const bough_node *node);
 
-// Writes a mapping of the schema as an object of JSON Schema.
-void bough_schema_json_object(const bough_schema *schema, FILE *stream);
+// The first key of that name; NULL: there is none.
+const bough_key *bough_schema_find(const bough_schema *schema, const char *name);
 
 static inline void *bough_field_at(void *item, size_t offset) { return (char *)item + offset; }
 
