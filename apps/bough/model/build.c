@@ -14,15 +14,15 @@
 
 // -- loads and times ------------------------------------------------------------------------------
 
-static void add_ramp(bough_builder *b, const double ramp[2]) {
-    if (ramp[1] > 0) b->event[b->n_event++] = ramp[0];
-    if (ramp[1] > ramp[0]) b->event[b->n_event++] = ramp[1];
+static void add_event(bough_builder *b, double time) {
+    b->event = bough_arena_grow(b->arena, b->event, b->n_event, &b->event_room, sizeof *b->event);
+    b->event[b->n_event++] = time;
 }
 
-static void add_motion(bough_builder *b, const bough_scene_motion *motion) {
-    const bough_motion_def *def = &motion->def;
-    add_ramp(b, (const double[]){def->start, def->end});
-    for (int i = 0; i < def->n; i++) b->event[b->n_event++] = def->times[i];
+static void add_events(bough_builder *b, double start, double end, int n, const double *times) {
+    if (end > 0) add_event(b, start);
+    if (end > start) add_event(b, end);
+    for (int i = 0; i < n; i++) add_event(b, times[i]);
 }
 
 // The last of the loads; its two rows are set sample by sample.
@@ -34,31 +34,19 @@ static void add_generator(bough_builder *b) {
 }
 
 static void set_loads(bough_builder *b) {
-    for (int k = 0; k < b->scene->n_body; k++) {
-        add_motion(b, &b->scene->body[k].joint.motion[0]);
-        add_motion(b, &b->scene->body[k].joint.motion[1]);
+    for (int k = 0; k < 2 * b->scene->n_body; k++) {
+        const bough_motion_def *def = &b->scene->body[k / 2].joint.motion[k % 2].def;
+        add_events(b, def->start, def->end, def->n, def->times);
     }
     for (int k = 0; k < b->scene->n_load; k++) {
         const bough_scene_load *load = &b->scene->load[k];
-        add_ramp(b, load->ramp);
-        int corners = load->input == NULL ? load->n_time : 0;
-        for (int i = 0; i < corners; i++) b->event[b->n_event++] = load->times[i];
+        add_events(b, load->ramp[0], load->ramp[1], load->input == NULL ? load->n_time : 0, load->times);
         if (load->body_name != NULL) continue;
         b->load[b->tree.n_loads++] = (bough_joint_load_def){load->joint, load->n_time > 0 ? 1 : load->amount,
                                                             bough_scene_load_schedule(load)};
     }
-    if (b->scene->aero.node != NULL) add_ramp(b, b->scene->aero.ramp);
+    if (b->scene->aero.node != NULL) add_events(b, b->scene->aero.ramp[0], b->scene->aero.ramp[1], 0, NULL);
     if (b->scene->control.node != NULL) add_generator(b);
-}
-
-static size_t count_corners(const bough_scene *scene) {
-    size_t n = 2 * (size_t)scene->n_load + 2; // two per ramp, of loads and of the aerodynamics
-    for (int k = 0; k < scene->n_load; k++) n += (size_t)scene->load[k].n_time;
-    for (int k = 0; k < scene->n_body; k++) {
-        const bough_scene_joint *joint = &scene->body[k].joint;
-        n += 4 + (size_t)joint->motion[0].def.n + (size_t)joint->motion[1].def.n;
-    }
-    return n;
 }
 
 // -- parts ----------------------------------------------------------------------------------------
@@ -224,7 +212,6 @@ static void take_arrays(bough_builder *b) {
     b->tree.loads = b->load = bough_arena_take(b->arena, (loads + 2) * sizeof *b->load);
     b->member = bough_arena_take(b->arena, (bodies + 1) * sizeof *b->member);
     b->connection = bough_arena_take(b->arena, 5 * bodies * sizeof *b->connection);
-    b->event = bough_arena_doubles(b->arena, count_corners(scene));
     b->s->validity = bough_arena_take(b->arena, sizeof *b->s->validity);
     b->s->scene = scene;
     b->s->beam = bough_arena_take(b->arena, bodies * sizeof *b->s->beam);

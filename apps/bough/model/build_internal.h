@@ -66,8 +66,8 @@ typedef struct bough_builder {
     bough_assembly_member *member; // leader, then rods
     bough_connection *connection;  // two per rod, two more of one that carries bodies
     int n_connection;
-    double *event; // corners of loads and of the aerodynamics
-    int n_event;
+    double *event; // (n_event) corners of loads and of the aerodynamics
+    int n_event, event_room;
 } bough_builder;
 
 // The beams' meshes, and the bodies of the tree.
