@@ -2,10 +2,11 @@
 #ifndef BOUGH_TESTS_UNIT_BUILT_SCENE_H
 #define BOUGH_TESTS_UNIT_BUILT_SCENE_H
 
-#include "apps/bough/model/simulation.h"
+#include "apps/bough/model/run.h"
 #include "tests/unit/check.h"
 #include "tests/unit/scratch_name.h"
 
+#include <string.h>
 #include <unistd.h>
 
 // Reads the scene in that file; `sets` ends with NULL.
@@ -46,6 +47,22 @@ static inline bough_simulation *scene_build_text(bough_arena *arena, const char 
     unlink(file);
     check_ok(bough_simulation_build(arena, scene, &s));
     return s;
+}
+
+// With this replacement the scene, or a run of it, must be refused, by an error that says so.
+static inline void scene_refused(const char *path, const char *set, const char *says) {
+    check_arena(arena);
+    bough_errors errors = {.arena = arena};
+    bough_scene *scene;
+    bough_run run;
+    char file[512];
+    snprintf(file, sizeof file, BOUGH_SOURCE_DIR "/%s", path);
+    bough_status status = bough_scene_read(arena, file, &set, 1, &errors, &scene);
+    if (bough_is_ok(&status)) status = bough_run_create(arena, scene, &run);
+    assert_int_equal(status.code, BOUGH_INVALID);
+    bool said = strstr(status.message, says) != NULL;
+    for (int i = 0; i < errors.n; i++) said = said || strstr(errors.item[i].text, says);
+    if (!said) fail_msg("no '%s' for %s: %s", says, set, status.message);
 }
 
 static inline void scene_step(bough_simulation *s) { check_ok(bough_step(s->master)); }

@@ -458,13 +458,8 @@ TEST(results_are_of_their_own_time) {
 }
 
 TEST(blades_want_one_mesh) {
-    static const char *const sets[] = {"bodies[4].rod.segments=10", NULL};
-    check_arena(arena);
-    bough_simulation *s = NULL;
-    bough_status status = bough_simulation_build(arena, scene_read(arena, turbine, sets), &s);
-    assert_int_equal(status.code, BOUGH_INVALID);
-    assert_string_equal(status.message,
-                        "--set: rod.segments: blades blade1 and blade2 have 12 and 10 segments; the"
-                        " aerodynamics wants the same mesh on all blades");
-    assert_null(s);
+    scene_refused(
+        turbine, "bodies[4].rod.segments=10",
+        "--set: rod.segments: blades blade1 and blade2 have 12 and 10 segments; the aerodynamics wants "
+        "the same mesh on all blades");
 }

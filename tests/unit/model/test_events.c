@@ -1,7 +1,6 @@
 // What events make of torque, pitch and yaw: the NREL 5 MW turbine with rigid blades in steady wind.
 #include "tests/unit/built_scene.h"
 
-#include "apps/bough/model/run.h"
 
 #include <string.h>
 
@@ -190,24 +189,7 @@ TEST(events_are_in_the_copy) {
     assert_true(pitch > stuck + 6);
 }
 
-static void refused(const char *set, const char *message) {
-    check_arena(arena);
-    bough_errors errors = {.arena = arena};
-    bough_scene *read;
-    char path[512];
-    snprintf(path, sizeof path, "%s/%s", BOUGH_SOURCE_DIR, scene);
-    bough_status status = bough_scene_read(arena, path, &set, 1, &errors, &read);
-    bool found = false;
-    for (int i = 0; i < errors.n; i++) found = found || strstr(errors.item[i].text, message);
-    if (bough_is_ok(&status)) {
-        bough_run run;
-        status = bough_run_create(arena, read, &run);
-        found = strstr(status.message, message) != NULL;
-    }
-    assert_int_equal(status.code, BOUGH_INVALID);
-    if (!found) print_error("no '%s' for %s\n", message, set);
-    assert_true(found);
-}
+static void refused(const char *set, const char *message) { scene_refused(scene, set, message); }
 
 TEST(senseless_events_are_refused) {
     refused("control.events=[{kind: stop}]", "time of the event");
