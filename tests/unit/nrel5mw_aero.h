@@ -33,6 +33,28 @@ __attribute__((constructor)) static void nrel5mw_read(void) {
     if (file == NULL || fclose(file) != 0 || nrel5mw_polars[NREL5MW_POLARS - 1].n != 127) abort();
 }
 
+// The airfoils built, and a plate beside them.
+typedef struct airfoils {
+    bough_arena *arena;
+    bough_polar polar[NREL5MW_POLARS], plate;
+} airfoils;
+
+static inline int airfoils_make(void **state, const bough_polar_def *plate) {
+    airfoils *a = test_malloc(sizeof *a);
+    a->arena = check_memory();
+    for (int i = 0; i < NREL5MW_POLARS; i++) bough_polar_build(a->arena, nrel5mw_polars + i, a->polar + i);
+    bough_polar_build(a->arena, plate, &a->plate);
+    *state = a;
+    return 0;
+}
+
+static inline int airfoils_drop(void **state) {
+    airfoils *a = *state;
+    bough_arena_destroy(a->arena);
+    test_free(a);
+    return 0;
+}
+
 // clang-format off
 // span [m], x and y of the aerodynamic centre [m], twist [deg], chord [m], polar
 static const double nrel5mw_blade[19][6] = {

@@ -3,36 +3,16 @@
 #include "tests/unit/nrel5mw_aero.h"
 #include "tests/unit/one_element.h"
 
-typedef struct airfoils {
-    bough_arena *arena;
-    bough_polar polar[8], plate;
-} airfoils;
-
 // Lift 2π sin α as a fine table, no drag.
 enum { PLATE = 3601 };
 static double plate_row[PLATE][4];
 
 static int set_up(void **state) {
-    airfoils *a = test_malloc(sizeof *a);
-    a->arena = check_memory();
-    for (int i = 0; i < 8; i++) {
-        bough_polar_build(a->arena, nrel5mw_polars + i, a->polar + i);
-    }
     for (int i = 0; i < PLATE; i++) {
         plate_row[i][0] = -180 + 0.1 * i;
         plate_row[i][1] = 2 * BOUGH_PI * sin(plate_row[i][0] * BOUGH_PI / 180);
     }
-    bough_polar_def def = {.n = PLATE, .row = &plate_row[0][0]};
-    bough_polar_build(a->arena, &def, &a->plate);
-    *state = a;
-    return 0;
-}
-
-static int tear_down(void **state) {
-    airfoils *a = *state;
-    bough_arena_destroy(a->arena);
-    test_free(a);
-    return 0;
+    return airfoils_make(state, &(bough_polar_def){.n = PLATE, .row = &plate_row[0][0]});
 }
 
 static bough_induction_options lossless(void) {
@@ -303,4 +283,4 @@ TEST(mirrored_flow_gives_same_induction) {
     }
 }
 
-GROUP(set_up, tear_down)
+GROUP(set_up, airfoils_drop)

@@ -9,11 +9,6 @@
 
 static const double degree = BOUGH_PI / 180;
 
-typedef struct foils {
-    bough_arena *arena;
-    bough_polar polar[8], plate;
-} foils;
-
 // Lift 2π(α − 1°) up to 20° from there, without drag.
 static const double plate_rows[4][4] = {{-180, 0, 0, 0},
                                         {-19, -20 * 2 * BOUGH_PI *BOUGH_PI / 180, 0, 0},
@@ -21,22 +16,7 @@ static const double plate_rows[4][4] = {{-180, 0, 0, 0},
                                         {180, 0, 0, 0}};
 
 static int set_up(void **state) {
-    foils *a = test_malloc(sizeof *a);
-    a->arena = check_memory();
-    bough_polar_def plate = {.n = 4, .row = &plate_rows[0][0]};
-    bough_polar_build(a->arena, &plate, &a->plate);
-    for (int i = 0; i < 8; i++) {
-        bough_polar_build(a->arena, nrel5mw_polars + i, a->polar + i);
-    }
-    *state = a;
-    return 0;
-}
-
-static int tear_down(void **state) {
-    foils *a = *state;
-    bough_arena_destroy(a->arena);
-    test_free(a);
-    return 0;
+    return airfoils_make(state, &(bough_polar_def){.n = 4, .row = &plate_rows[0][0]});
 }
 
 static void check_static(const bough_polar *polar, double alpha, bough_coefficients k) {
@@ -49,7 +29,7 @@ static void check_static(const bough_polar *polar, double alpha, bough_coefficie
 // Static lift is the mixture of attached and separated, at every angle of every airfoil; f is one
 // somewhere in attached flow and zero in deep stall.
 TEST(parts_make_the_static_polar) {
-    foils *a = *context;
+    airfoils *a = *context;
     for (int p = 2; p < 8; p++) {
         bough_polar foil = a->polar[p];
         double most = 0, f, separated;
@@ -70,7 +50,7 @@ TEST(parts_make_the_static_polar) {
 
 // From wherever it comes, steady flow ends on the static polar, with steps of any length.
 TEST(steady_limit_is_the_static_polar) {
-    foils *a = *context;
+    airfoils *a = *context;
     for (int p = 0; p < 8; p++) {
         bough_polar foil = a->polar[p];
         for (double angle = -178; angle < 180; angle += 7.3) {
@@ -90,7 +70,7 @@ TEST(steady_limit_is_the_static_polar) {
 // coefficients of its polar within 20 s, to 1e-3 at every angle of operation; of joined straight lines, of
 // cubics, and of mixtures of neighbours.
 TEST(a_run_settles_on_the_static_polar) {
-    foils *a = *context;
+    airfoils *a = *context;
     enum { N = 8, STEPS = 1000 };
     bough_polar polar[3 * N - 1];
     memcpy(polar, a->polar, sizeof a->polar);
@@ -121,7 +101,7 @@ TEST(a_run_settles_on_the_static_polar) {
 // Attached flow: lift at the reduced frequency k is slope·C(k) with Jones' approximation of
 // Theodorsen's function, C = 1 − Σ A ik/(ik + b).
 TEST(attached_lift_is_indicial) {
-    foils *a = *context;
+    airfoils *a = *context;
     bough_polar foil = a->plate;
     check_near(foil.slope, 2 * BOUGH_PI, 1e-9, 0);
     check_near(foil.zero_lift, degree, 1e-9, 0);
@@ -148,7 +128,7 @@ TEST(attached_lift_is_indicial) {
 // mass: slope·x + πx with x = c·rate/(2U). The circulation's part stands square to the flow there, and
 // the rotation leans it back by x more.
 TEST(rotation_lifts) {
-    foils *a = *context;
+    airfoils *a = *context;
     bough_polar foil = a->plate;
     bough_stall_state s = {0};
     bough_coefficients k = {0};
@@ -163,7 +143,7 @@ TEST(rotation_lifts) {
 // Right after a step of the angle of attack, attached, half of the step lies between the angle and
 // the effective one: drag (α − α_E) Cl of the circulation.
 TEST(withheld_lift_leans_back) {
-    foils *a = *context;
+    airfoils *a = *context;
     bough_polar foil = a->plate;
     bough_stall_state s = {0};
     bough_stall_advance(&foil, 2, (bough_stall_inflow){40, 4 * degree, 0}, 0, &s);
@@ -175,7 +155,7 @@ TEST(withheld_lift_leans_back) {
 
 // After a small step of the angle of attack the attached lift follows the polar's own indicial function.
 TEST(indicial_lift_is_the_polars) {
-    foils *a = *context;
+    airfoils *a = *context;
     static const double k[] = {0.3, 0.7, 0.14, 0.53};
     const double chord = 2, speed = 40, step = 0.01 * degree;
     bough_polar_def def = {.n = 4, .row = &plate_rows[0][0], .indicial = k};
@@ -225,7 +205,7 @@ static loop run_loop(const bough_polar *foil, double mean, double amplitude, int
 // In stall lift is higher while the angle grows; the loop closes, and halving the step moves it at
 // second order.
 TEST(stall_loop_is_closed) {
-    foils *a = *context;
+    airfoils *a = *context;
     bough_polar foil = a->polar[7];
     loop coarse = run_loop(&foil, 12 * degree, 5 * degree, 6, 200);
     loop middle = run_loop(&foil, 12 * degree, 5 * degree, 6, 400);
@@ -244,7 +224,7 @@ TEST(stall_loop_is_closed) {
 // The slopes are those of an advance from the same state whose angle or rotation differs, in attached,
 // stalled and partly static flow. A step of a hundredth of a chord leaves the separation as it is.
 TEST(slopes_are_those_of_an_advance) {
-    foils *a = *context;
+    airfoils *a = *context;
     const double chord = 3, step = 6e-4, d = 1e-3, turning = 0.2;
     static const double angle[] = {4.03, 13.03, 24.03, 43.03, -45.03, 75.03};
     for (int p = 0; p < 8; p++) {
@@ -279,7 +259,7 @@ TEST(slopes_are_those_of_an_advance) {
 
 // Any flow, however it jumps, gives finite coefficients.
 TEST(odd_flow_is_finite) {
-    foils *a = *context;
+    airfoils *a = *context;
     uint64_t seed = 3;
     for (int p = 0; p < 8; p++) {
         bough_polar foil = a->polar[p];
@@ -299,4 +279,4 @@ TEST(odd_flow_is_finite) {
     }
 }
 
-GROUP(set_up, tear_down)
+GROUP(set_up, airfoils_drop)
