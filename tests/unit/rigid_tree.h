@@ -4,6 +4,7 @@
 
 #include "tests/unit/check.h"
 #include "tests/unit/member.h"
+#include "tests/unit/sample_numbers.h"
 
 #include "core/base/base.h"
 #include "core/base/rotation.h"
@@ -53,14 +54,8 @@ static inline bough_mat3 turned(double x, double y, double z) {
     return bough_rotation_matrix(bough_quaternion_exponential(bough_v3(x, y, z)));
 }
 
-// Deterministic numbers in (−1, 1)
-static inline double next(unsigned *seed) {
-    *seed = *seed * 1664525u + 1013904223u;
-    return (double)(*seed >> 8) / (double)(1u << 23) - 1;
-}
-
 static inline bough_vec3 next3(unsigned *seed) {
-    double x = next(seed), y = next(seed), z = next(seed);
+    double x = sample_random(seed), y = sample_random(seed), z = sample_random(seed);
     return bough_v3(x, y, z);
 }
 
@@ -74,12 +69,12 @@ static inline bough_body_def random_body(unsigned *seed, const char *name, int p
     b.joint = (bough_transform){next3(seed), turned(turn.x, turn.y, turn.z)};
     b.axis = next3(seed);
     b.second_axis = bough_cross(b.axis, bough_v3(0.3, 0.5, -0.8));
-    b.mass = 1 + 0.5 * next(seed);
+    b.mass = 1 + 0.5 * sample_random(seed);
     b.mass_centre = next3(seed);
-    bough_mat3 r = turned(next(seed), next(seed), next(seed));
+    bough_mat3 r = turned(sample_random(seed), sample_random(seed), sample_random(seed));
     b.inertia = bough_mat3_product(r, bough_mat3_product(diagonal(0.3, 0.5, 0.7), bough_mat3_transpose(r)));
-    for (int k = 0; k < BOUGH_JOINT_COORDINATES; k++) b.coordinates[k] = next(seed);
-    for (int k = 0; k < BOUGH_JOINT_SPEEDS; k++) b.speeds[k] = next(seed);
+    for (int k = 0; k < BOUGH_JOINT_COORDINATES; k++) b.coordinates[k] = sample_random(seed);
+    for (int k = 0; k < BOUGH_JOINT_SPEEDS; k++) b.speeds[k] = sample_random(seed);
     return b;
 }
 

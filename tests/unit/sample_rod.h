@@ -3,14 +3,9 @@
 #define BOUGH_TESTS_UNIT_SAMPLE_ROD_H
 
 #include "flexbody/rod/rod_static.h"
+#include "tests/unit/sample_numbers.h"
 
 #include <string.h>
-
-// A reproducible number in [−1, 1].
-static inline double sample_random(unsigned *seed) {
-    *seed = *seed * 1664525u + 1013904223u;
-    return (double)(*seed >> 8) / 8388608.0 - 1;
-}
 
 typedef struct sample_arrays {
     double *span, *stiffness, *damping;

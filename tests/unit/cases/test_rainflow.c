@@ -1,6 +1,6 @@
 #include "apps/bough/cases/counts.h"
 
-#include "tests/unit/check.h"
+#include "tests/unit/sample_numbers.h"
 
 #include <math.h>
 #include <string.h>
@@ -74,11 +74,6 @@ TEST(memory_is_bounded) {
 
 // -- levels ---------------------------------------------------------------------------------------
 
-static double noise(unsigned *seed) {
-    *seed = *seed * 1664525u + 1013904223u;
-    return (double)(*seed >> 8) / 16777216.;
-}
-
 static void check_same_levels(const bough_levels *a, const bough_levels *b) {
     assert_int_equal(a->exponent, b->exponent);
     assert_int_equal(a->low, b->low);
@@ -96,7 +91,7 @@ TEST(levels_are_those_of_a_second_count) {
     unsigned seed = 7;
     bough_levels l = {0};
     for (int i = 0; i < N; i++) {
-        x[i] = (noise(&seed) - 0.4) * (1 + i * 0.01);
+        x[i] = (sample_between(&seed, 0, 1) - 0.4) * (1 + i * 0.01);
         bough_levels_follow(&l, x[i]);
     }
     double width = bough_levels_width(&l);
@@ -116,7 +111,7 @@ TEST(parts_add_to_the_whole) {
     bough_levels whole = {0}, part[3] = {{0}}, sum = {0}, other = {0};
     unsigned seed = 3;
     for (int i = 0; i < 3000; i++) {
-        double x = (noise(&seed) - 0.5) * (i < 1000 ? 1e-3 : i < 2000 ? 5 : 400);
+        double x = (sample_between(&seed, 0, 1) - 0.5) * (i < 1000 ? 1e-3 : i < 2000 ? 5 : 400);
         bough_levels_add(&whole, x, 1);
         bough_levels_add(&part[i / 1000], x, 1);
     }

@@ -1,7 +1,7 @@
 // Condensed interfaces of random linear members against the system as a whole.
 #include "core/base/linalg.h"
 #include "cosim/whole.h"
-#include "tests/unit/check.h"
+#include "tests/unit/sample_numbers.h"
 
 #include <math.h>
 #include <string.h>
@@ -81,11 +81,6 @@ static void solve(void *self, void *factors, double *x) {
     if (m->s.n_state > 0) bough_dense_solve(m->s.n_state, 1, m->matrix, m->pivot, x);
 }
 
-static double noise(unsigned *seed) {
-    *seed = *seed * 1664525u + 1013904223u;
-    return (double)(*seed >> 8) / (1 << 23) - 1;
-}
-
 static void make(member *m, int n_state, int n_input, int n_output, bool feedthrough, unsigned seed) {
     static const bough_system_ops ops = {BOUGH_SYSTEM_REQUIRED};
     *m = (member){.s = {.name = "member",
@@ -96,10 +91,10 @@ static void make(member *m, int n_state, int n_input, int n_output, bool feedthr
                         .self = m}};
     m->m = (bough_member){.system = m->s, .state = m->state};
     for (int k = 0; k < MOST * MOST; k++) {
-        m->a[k] = noise(&seed);
-        m->b[k] = noise(&seed);
-        m->c[k] = noise(&seed);
-        m->d[k] = feedthrough ? .3 * noise(&seed) : 0;
+        m->a[k] = sample_random(&seed);
+        m->b[k] = sample_random(&seed);
+        m->c[k] = sample_random(&seed);
+        m->d[k] = feedthrough ? .3 * sample_random(&seed) : 0;
     }
 }
 
@@ -131,8 +126,8 @@ static void check(const plan *p) {
     unsigned seed = 3;
     double y[STATES], r[STATES], x[STATES], before[STATES], after[STATES];
     double outside[PORTS], input[PORTS], gamma = .2;
-    for (int k = 0; k < a->n_state; k++) y[k] = noise(&seed), r[k] = x[k] = noise(&seed);
-    for (int j = 0; j < a->n_input; j++) outside[j] = noise(&seed);
+    for (int k = 0; k < a->n_state; k++) y[k] = sample_random(&seed), r[k] = x[k] = sample_random(&seed);
+    for (int j = 0; j < a->n_input; j++) outside[j] = sample_random(&seed);
     bough_whole_rate(coupled, 0, y, before);
     memcpy(input, coupled->input, (size_t)a->n_input * sizeof(double));
     check_ok(bough_whole_setup(coupled, 0, y, input, gamma));

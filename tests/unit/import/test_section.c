@@ -1,5 +1,5 @@
 // Section tables integrated into segments and vertices.
-#include "tests/unit/check.h"
+#include "tests/unit/sample_numbers.h"
 
 #include "core/base/linalg.h"
 #include "flexbody/section/section.h"
@@ -125,10 +125,7 @@ TEST(twist_turns_sections) {
 }
 
 // A number between 10⁻² and 10².
-static double decades(unsigned *seed) {
-    *seed = *seed * 1664525u + 1013904223u;
-    return pow(10, 4.0 * (*seed >> 8) / 16777216.0 - 2);
-}
+static double decades(unsigned *seed) { return pow(10, sample_between(seed, -2, 2)); }
 
 // A straight table whose stations have mass, offset and radii of gyration of their own.
 static void draw_table(unsigned *seed, int n, bough_section_station *s) {

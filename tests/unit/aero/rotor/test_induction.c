@@ -1,7 +1,7 @@
 #include "core/base/base.h"
-#include "tests/unit/check.h"
 #include "tests/unit/nrel5mw_aero.h"
 #include "tests/unit/one_element.h"
+#include "tests/unit/sample_numbers.h"
 
 // Lift 2π sin α as a fine table, no drag.
 enum { PLATE = 3601 };
@@ -180,33 +180,27 @@ TEST(skewed_momentum_is_that_of_glauert) {
     assert_true(low > 10 && high > 10);
 }
 
-// A small generator with a fixed sequence, so that failures repeat.
-static double uniform(uint64_t *seed, double low, double high) {
-    *seed = *seed * 6364136223846793005u + 1442695040888963407u;
-    return low + (high - low) * (double)(*seed >> 11) / 9007199254740992.;
-}
-
 // Speeds from nothing to a thousand m/s, now and then exactly none; any angle, loss and cone.
-static bough_element random_element(const airfoils *foils, uint64_t *seed) {
-    double strong = exp(uniform(seed, -12, 3)), kind = uniform(seed, 0, 1);
-    bough_element e = {.polar = foils->polar + (int)uniform(seed, 0, 7.999),
-                       .solidity = exp(uniform(seed, -9, 1)),
-                       .tip_factor = exp(uniform(seed, -14, 5)),
-                       .hub_factor = exp(uniform(seed, -14, 5)),
-                       .cone = uniform(seed, 0, 1),
-                       .twist = uniform(seed, -BOUGH_PI, BOUGH_PI),
-                       .inflow_x = uniform(seed, -30, 30) * (kind < 0.1 ? strong : 1),
-                       .inflow_y = uniform(seed, -90, 90) * (kind > 0.9 ? strong : 1)};
+static bough_element random_element(const airfoils *foils, unsigned *seed) {
+    double strong = exp(sample_between(seed, -12, 3)), kind = sample_between(seed, 0, 1);
+    bough_element e = {.polar = foils->polar + (int)sample_between(seed, 0, 7.999),
+                       .solidity = exp(sample_between(seed, -9, 1)),
+                       .tip_factor = exp(sample_between(seed, -14, 5)),
+                       .hub_factor = exp(sample_between(seed, -14, 5)),
+                       .cone = sample_between(seed, 0, 1),
+                       .twist = sample_between(seed, -BOUGH_PI, BOUGH_PI),
+                       .inflow_x = sample_between(seed, -30, 30) * (kind < 0.1 ? strong : 1),
+                       .inflow_y = sample_between(seed, -90, 90) * (kind > 0.9 ? strong : 1)};
     if (kind > 0.40 && kind < 0.43) e.inflow_x = 0;
     if (kind > 0.42 && kind < 0.45) e.inflow_y = 0;
-    if (kind > 0.50 && kind < 0.55) e.twist = BOUGH_PI / 2 * floor(uniform(seed, -2, 3));
+    if (kind > 0.50 && kind < 0.55) e.twist = BOUGH_PI / 2 * floor(sample_between(seed, -2, 3));
     if (kind > 0.55 && kind < 0.60) e.tip_factor = 0;
     return e;
 }
 
 TEST(any_state_is_finite_and_repeats) {
     airfoils *foils = *context;
-    uint64_t seed = 1;
+    unsigned seed = 1;
     long evaluations = 0, worst = 0;
     for (int n = 0; n < 100000; n++) {
         bough_induction_options options = bough_induction_options_default();
@@ -231,13 +225,13 @@ TEST(any_state_is_finite_and_repeats) {
 TEST(lanes_give_what_one_gives) {
     airfoils *foils = *context;
     enum { N = 40, TIMES = 2000 };
-    uint64_t seed = 3;
+    unsigned seed = 3;
     for (int n = 0; n < TIMES; n++) {
         bough_induction_options options = bough_induction_options_default();
         if (n % 2) options.high_thrust = BOUGH_HIGH_THRUST_BUHL;
         if (n % 3 == 0) options.tip_loss = options.tangential_drag = false;
         if (n % 7 < 3) options.skewed_momentum = true;
-        double skew = n % 7 == 0 ? 0 : uniform(&seed, 0, 1.5);
+        double skew = n % 7 == 0 ? 0 : sample_between(&seed, 0, 1.5);
         if (n % 5 == 0) options.hub_loss = options.tangential = false;
         bough_element e[N];
         const bough_polar *polar[N];
@@ -245,8 +239,8 @@ TEST(lanes_give_what_one_gives) {
         for (int i = 0; i < N; i++) {
             e[i] = random_element(foils, &seed);
             e[i].skew = skew;
-            e[i].skew_normal = uniform(&seed, -0.05, 0.05);
-            e[i].skew_chord = uniform(&seed, 0, 0.01);
+            e[i].skew_normal = sample_between(&seed, -0.05, 0.05);
+            e[i].skew_chord = sample_between(&seed, 0, 0.01);
             if (n % 4 == 0) e[i].inflow_x = fabs(e[i].inflow_x), e[i].twist *= 0.1;
             polar[i] = e[i].polar;
             const double row[9] = {e[i].solidity, e[i].tip_factor,  e[i].hub_factor,
@@ -270,7 +264,7 @@ TEST(lanes_give_what_one_gives) {
 TEST(mirrored_flow_gives_same_induction) {
     airfoils *foils = *context;
     bough_induction_options options = bough_induction_options_default();
-    uint64_t seed = 7;
+    unsigned seed = 7;
     for (int n = 0; n < 1000; n++) {
         bough_element e = random_element(foils, &seed);
         e.polar = &foils->plate; // symmetric in both ways

@@ -1,8 +1,8 @@
 #include "aero/rotor/stall.h"
 
 #include "core/base/base.h"
-#include "tests/unit/check.h"
 #include "tests/unit/nrel5mw_aero.h"
+#include "tests/unit/sample_numbers.h"
 
 #include <complex.h>
 #include <string.h>
@@ -260,16 +260,13 @@ TEST(slopes_are_those_of_an_advance) {
 // Any flow, however it jumps, gives finite coefficients.
 TEST(odd_flow_is_finite) {
     airfoils *a = *context;
-    uint64_t seed = 3;
+    unsigned seed = 3;
     for (int p = 0; p < 8; p++) {
         bough_polar foil = a->polar[p];
         bough_stall_state s = {0};
         for (int i = 0; i < 20000; i++) {
             double r[4];
-            for (int c = 0; c < 4; c++) {
-                seed = seed * 6364136223846793005u + 1442695040888963407u;
-                r[c] = (double)(seed >> 11) / 9007199254740992.;
-            }
+            for (int c = 0; c < 4; c++) r[c] = sample_between(&seed, 0, 1);
             bough_stall_inflow inflow = {i % 9 ? 90 * r[0] : 0, 20 * (r[1] - 0.5),
                                          1e3 * (r[2] - 0.5) * (i % 5 == 0)};
             double step = i % 7 ? 0.02 * r[3] : (i % 14 ? 0 : 1e6);

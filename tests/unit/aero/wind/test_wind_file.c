@@ -1,7 +1,7 @@
 #include "aero/wind/wind.h"
 
 #include "core/base/base.h"
-#include "tests/unit/check.h"
+#include "tests/unit/sample_numbers.h"
 #include "tests/unit/scratch_name.h"
 
 #include <stdlib.h>
@@ -49,9 +49,7 @@ static bough_status build(place *p, bough_wind_source source, bough_wind *wind) 
 }
 
 static void check_vec(bough_vec3 v, double x, double y, double z) {
-    check_near(v.x, x, 1e-12, 1e-12);
-    check_near(v.y, y, 1e-12, 1e-12);
-    check_near(v.z, z, 1e-12, 1e-12);
+    check_vec3(v, bough_v3(x, y, z), 1e-12, 1e-12);
 }
 
 // -- .wnd -----------------------------------------------------------------------------------------

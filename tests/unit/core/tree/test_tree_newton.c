@@ -80,11 +80,11 @@ TEST(solve_inverts_the_differences) {
     double rate[MOST], x[MOST], y[MOST], yp[MOST], r[2][MOST], h = 1e-6, t = 0.3;
     unsigned seed = 9;
     memcpy(y, f.tree->initial, (size_t)n * sizeof(double));
-    for (int i = 0; i < n; i++) rate[i] = next(&seed);
+    for (int i = 0; i < n; i++) rate[i] = sample_random(&seed);
     for (int trial = 0; trial < 6; trial++) {
         double c = trial < 3 ? 12 : 3e4;
         assert_true(bough_tree_newton_setup(newton, f.data, t, input, y, rate + f.tree->n_q, c));
-        for (int i = 0; i < n; i++) x[i] = next(&seed);
+        for (int i = 0; i < n; i++) x[i] = sample_random(&seed);
         for (int side = 0; side < 2; side++) {
             double s = side == 0 ? h : -h, changed[MOST];
             for (int i = 0; i < n; i++) {
@@ -106,7 +106,7 @@ TEST(known_accelerations_are_forces) {
     int n_q = f.tree->n_q, n_v = f.tree->n_v;
     double rate[MOST] = {0}, a[MOST], x[MOST] = {0}, y[MOST] = {0}, mass[MOST * MOST];
     unsigned seed = 3;
-    for (int i = 0; i < n_v; i++) a[i] = next(&seed);
+    for (int i = 0; i < n_v; i++) a[i] = sample_random(&seed);
     for (int i = 0; i < f.tree->n_links; i++) {
         if (f.tree->links[i].motion != NULL) a[f.tree->links[i].first_speed] = 0;
     }

@@ -1,6 +1,7 @@
 // The growth watches on the two-mass oscillator (limit of Gauss–Seidel .0777) and on a lightly
 // damped one: slow growth is diagnosed, stable runs never are, growth of the mechanics is not under
 // implicit coupling.
+#include "tests/unit/sample_numbers.h"
 #include "tests/unit/two_mass.h"
 
 static bough_status run(bough_two_mass m, const char *scheme, double macro_step, double duration,
@@ -81,11 +82,6 @@ static double fate(bough_two_mass m, const char *scheme, bough_exchange exchange
     return bough_is_ok(&status) ? largest : -1;
 }
 
-static double uniform(unsigned *seed) {
-    *seed = *seed * 1664525u + 1013904223u;
-    return *seed / 4294967296.;
-}
-
 typedef struct variant {
     const char *scheme;
     bough_exchange exchange;
@@ -101,11 +97,11 @@ TEST(no_scheme_blows_up_in_silence) {
     int stopped = 0;
     for (int n = 0; n < 60; n++) {
         bough_two_mass m = {.s2.m = 1, .y0 = {1, 0, 0, 0}};
-        m.s1.m = pow(10, 3 * uniform(&seed) - 1);
-        m.s1.k = pow(10, 4 * uniform(&seed) - 1);
-        m.s2.k = pow(10, 4 * uniform(&seed) - 1);
-        m.k = pow(10, 4 * uniform(&seed));
-        double macro_step = .02 * pow(10, uniform(&seed));
+        m.s1.m = pow(10, 3 * sample_between(&seed, 0, 1) - 1);
+        m.s1.k = pow(10, 4 * sample_between(&seed, 0, 1) - 1);
+        m.s2.k = pow(10, 4 * sample_between(&seed, 0, 1) - 1);
+        m.k = pow(10, 4 * sample_between(&seed, 0, 1));
+        double macro_step = .02 * pow(10, sample_between(&seed, 0, 1));
         for (int k = 0; k < 6; k++) {
             double largest = fate(m, tried[k].scheme, tried[k].exchange, macro_step);
             stopped += largest < 0;

@@ -23,12 +23,6 @@ static sums resultant(const bough_rod_model *m, const double *value) {
     return sum;
 }
 
-static void check_vector(bough_vec3 value, bough_vec3 expected) {
-    check_near(value.x, expected.x, 1e-12, 1e-12);
-    check_near(value.y, expected.y, 1e-12, 1e-12);
-    check_near(value.z, expected.z, 1e-12, 1e-12);
-}
-
 static const double wrench[6] = {3, -2, 0.5, 1, 4, -0.7};
 
 static bough_rod_ramped_load empty(bough_arena *arena, const bough_rod_model *m, bool follower) {
@@ -51,8 +45,8 @@ TEST(resultant_of_a_point_load_is_the_load) {
         double xi = (s - m->span[n]) / (m->span[n + 1] - m->span[n]);
         bough_vec3 at = bough_axpy(xi, bough_sub(m->position0[n + 1], m->position0[n]), m->position0[n]);
         bough_vec3 force = {3, -2, 0.5}, moment = {1, 4, -0.7};
-        check_vector(sum.force, force);
-        check_vector(sum.moment, bough_add(moment, bough_cross(at, force)));
+        check_vec3(sum.force, force, 1e-12, 1e-12);
+        check_vec3(sum.moment, bough_add(moment, bough_cross(at, force)), 1e-12, 1e-12);
     }
 }
 
@@ -68,8 +62,8 @@ TEST(resultant_of_a_line_load_is_the_load) {
         sums sum = resultant(m, load.value);
         bough_vec3 force = bough_scale(length, bough_v3(3, -2, 0.5));
         bough_vec3 moment = bough_scale(length, bough_v3(1, 4, -0.7));
-        check_vector(sum.force, force);
-        check_vector(sum.moment, bough_add(moment, bough_cross(bough_v3(0, 0, at), force)));
+        check_vec3(sum.force, force, 1e-12, 1e-12);
+        check_vec3(sum.moment, bough_add(moment, bough_cross(bough_v3(0, 0, at), force)), 1e-12, 1e-12);
     }
 }
 
@@ -111,7 +105,8 @@ TEST(follower_is_lumped_in_section_axes) {
     bough_rod_lump(m, last, in_section, NULL, &follower);
     for (int c = 0; c < 6; c += 3) {
         const double *v = follower.value + c * s + N, *d = dead.value + c * s + N;
-        check_vector(bough_mat3_mul(r, bough_v3(v[0], v[s], v[2 * s])), bough_v3(d[0], d[s], d[2 * s]));
+        check_vec3(bough_mat3_mul(r, bough_v3(v[0], v[s], v[2 * s])), bough_v3(d[0], d[s], d[2 * s]), 1e-12,
+                   1e-12);
     }
 }
 
@@ -139,8 +134,8 @@ TEST(line_lumped_to_vertices_does_the_same_at_rest) {
         assert_false(load->along);
         if (kind == 1) { // in the body's axes
             sums sum = resultant(m, load->value);
-            check_vector(sum.force, bough_v3(0, 0, 0));
-            check_vector(sum.moment, bough_v3(0, 0, 0));
+            check_vec3(sum.force, bough_v3(0, 0, 0), 1e-12, 1e-12);
+            check_vec3(sum.moment, bough_v3(0, 0, 0), 1e-12, 1e-12);
         }
         assert_true(bough_rod_derivative(m, &loads, 0, state, input, &scratch, rate[1]));
         for (int k = 0; k < BOUGH_ROD_STATES * N; k++) {

@@ -205,9 +205,7 @@ TEST(free_fall_strains_nothing) {
     for (int k = 0; k < BOUGH_ROD_U * N; k++) check_near(r.m->state[k], start[k], 0, 1e-7);
     for (int i = 1; i <= N; i++) {
         bough_vec3 u = part(r.m->state, N, BOUGH_ROD_U, i), w = part(r.m->state, N, BOUGH_ROD_W, i);
-        check_near(u.x, 0.7, 0, 1e-7);
-        check_near(u.y, -1.4, 0, 1e-7);
-        check_near(u.z, -6.3, 0, 1e-7);
+        check_vec3(u, bough_v3(0.7, -1.4, -6.3), 0, 1e-7);
         check_near(bough_norm(w), 0, 0, 1e-7);
     }
     for (int k = 0; k < BOUGH_ROD_INPUTS; k++) end[k] = input[k] + 0.7 * rate[k];
