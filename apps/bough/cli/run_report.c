@@ -22,7 +22,10 @@ static void warn_of_force(const bough_run *run, char text[BOUGH_ERROR_WARNING]) 
     if (v.channel < 0 || !(bound_of(run) > 0) || v.relative <= bound_of(run)) return;
     char error[BOUGH_ERROR_SIZE];
     bough_error_size(c, v.channel, error);
-    snprintf(text, BOUGH_ERROR_WARNING, "%s errs by %s", c->channels->channel[v.channel].name, error);
+    snprintf(text, BOUGH_ERROR_WARNING, "%s errs by %s%s", c->channels->channel[v.channel].name, error,
+             run->simulation->scene->simulation.error_shares
+                 ? ""
+                 : "; simulation.error_shares: true finds the cause");
 }
 
 // -- memory ---------------------------------------------------------------------------------------

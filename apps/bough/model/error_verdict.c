@@ -2,6 +2,7 @@
 
 #include <math.h>
 #include <stdio.h>
+#include <string.h>
 
 static const double rounding = 1e-6;    // of the largest range of all motion or value up to 1, in SI units
 static const double least_share = 1e-3; // of the largest range of that kind; of a velocity: its least range
@@ -166,10 +167,12 @@ void bough_error_size(const bough_companion *c, int channel, char text[BOUGH_ERR
     static const double beyond = 10;
     double error = c->error[channel], relative = relative_of(c, channel, error);
     const char *unit = c->channels->channel[channel].unit;
+    bool pure = strcmp(unit, "-") == 0;
+    int n = snprintf(text, BOUGH_ERROR_SIZE, "%.2g%s%.40s, ", error, pure ? "" : " ", pure ? "" : unit);
     if (relative > beyond)
-        snprintf(text, BOUGH_ERROR_SIZE, "%.2g %.40s, more than %.0f times its range", error, unit, beyond);
+        snprintf(text + n, (size_t)(BOUGH_ERROR_SIZE - n), "more than %.0f times its range", beyond);
     else
-        snprintf(text, BOUGH_ERROR_SIZE, "%.2g %.40s, %.2g of its range", error, unit, relative);
+        snprintf(text + n, (size_t)(BOUGH_ERROR_SIZE - n), "%.2g of its range", relative);
 }
 
 void bough_error_notice(bough_companion *c, double t) {

@@ -116,6 +116,8 @@ TEST(an_error_far_beyond_its_range_has_no_figure) {
     char words[BOUGH_ERROR_SIZE];
     assert_int_equal(worst_in(1, (row[]){{"TipDxb1", "m", 4, .01}}, words), 0);
     assert_string_equal(words, "0.01 m, 0.0025 of its range");
+    assert_int_equal(worst_in(1, (row[]){{"DirXx", "-", 4, .01}}, words), 0);
+    assert_string_equal(words, "0.01, 0.0025 of its range");
     assert_int_equal(worst_in(1, (row[]){{"Pos", "deg", 3e-14, 5}}, words), 0);
     assert_string_equal(words, "5 deg, more than 10 times its range");
 }
