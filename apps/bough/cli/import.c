@@ -1,4 +1,4 @@
-// bough import: a foreign model as a scene.
+// bough import: a model of another program as a scene.
 #include "apps/bough/import/import.h"
 
 #include "apps/bough/cli/command.h"

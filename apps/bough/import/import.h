@@ -1,4 +1,4 @@
-// Foreign models as scenes.
+// Models of other programs as scenes.
 #ifndef BOUGH_APPS_IMPORT_IMPORT_H
 #define BOUGH_APPS_IMPORT_IMPORT_H
 
@@ -10,7 +10,7 @@
 // What the user adds to a model or takes in place of its own; NULL: as the model has it.
 typedef struct bough_import_options {
     const char *wind;              // file of the wind
-    const char *controller;        // library in the style of Bladed
+    const char *controller;        // library with Bladed's interface
     bool clamp_base;               // an offshore turbine without what is below its tower
     double hub_mass, nacelle_mass; // of a WindIO turbine without them [kg]; 0: not given
     int trial_steps; // macro steps for which the scene is tried and its errors judged; 0: two, not judged
