@@ -212,19 +212,27 @@ static bool samples_fit(double rate, double macro_step) {
     return bough_master_multiple(1 / rate, macro_step) > 0;
 }
 
-// Half the rate; beside a finer mesh twice the rate where macro steps allow it: a coarser one can hide in the
-// difference what the mesh shows.
-static double other_rate(const bough_scene *scene, bool finer) {
-    double rate = scene->aero.rate;
-    return finer && samples_fit(2 * rate, scene->simulation.macro_step) ? 2 * rate : rate / 2;
+// Inputs are set for one macro step of the run, and the rate of a controller is its own.
+static bool steps_fit(const bough_scene *scene, double step) {
+    bool air = !scene->aero.node || samples_fit(scene->aero.rate, step);
+    bool control = !scene->control.node || samples_fit(scene->control.rate, step);
+    return scene->n_input == 0 && air && control;
 }
 
-// Inputs are set for one macro step of the run, and the rate of a controller is its own.
+// Half the rate; beside a finer mesh twice the rate where macro steps allow it: a coarser one can hide in the
+// difference what the mesh shows. Loads that are held between samples err most: for them macro steps of half
+// the length make room.
+static void change_rate(const bough_scene *scene, bool finer, bough_scene *to) {
+    double rate = scene->aero.rate, step = scene->simulation.macro_step;
+    bool held = scene->aero.hold == BOUGH_SCENE_CONSTANT;
+    bool fits = samples_fit(2 * rate, step), room = held && steps_fit(scene, step / 2);
+    to->aero.rate = finer && (fits || room) ? 2 * rate : rate / 2;
+    if (finer && !fits && room) to->simulation.macro_step = step / 2;
+}
+
 static void lengthen_macro_step(bough_scene *to) {
     double step = 2 * to->simulation.macro_step;
-    bool air = !to->aero.node || samples_fit(to->aero.rate, step);
-    bool control = !to->control.node || samples_fit(to->control.rate, step);
-    if (to->n_input > 0 || !air || !control) return;
+    if (!steps_fit(to, step)) return;
     to->simulation.macro_step = step;
     to->simulation.halves = true;
 }
@@ -288,8 +296,7 @@ bough_scene *bough_coarser_scene(bough_arena *arena, const bough_scene *scene, i
     memcpy(to->body, scene->body, (size_t)scene->n_body * sizeof *to->body);
     copy_loads(arena, scene, to);
     if (parts & BOUGH_COARSER_MESH) change_segments(scene, to);
-    if (parts & BOUGH_COARSER_AIR)
-        to->aero.rate = other_rate(scene, parts & BOUGH_COARSER_MESH && some_finer(scene));
+    if (parts & BOUGH_COARSER_AIR) change_rate(scene, parts & BOUGH_COARSER_MESH && some_finer(scene), to);
     if (parts & BOUGH_COARSER_TIME) lengthen_steps(scene, to);
     if (parts & BOUGH_FINER_TIME) shorten_steps(to);
     to->simulation.error_estimate = BOUGH_SCENE_NO_ESTIMATE;

@@ -69,12 +69,21 @@ bool bough_companion_due(const bough_companion *c) {
            !bough_master_done(c->coarser.simulation->master);
 }
 
+// Whether a step of the run ends, too, where the companion is.
+static bool meets_run(const bough_companion *c) {
+    const bough_master *m = c->coarser.simulation->master;
+    double step = c->run->scene->simulation.macro_step;
+    return m->at_event || bough_master_done(m) || fabs(remainder(m->time, step)) < 1e-6 * step;
+}
+
 void bough_companion_step(bough_companion *c) {
     if (c->run->input) {
         size_t size = (size_t)c->run->scene->n_input * sizeof(double);
         memcpy(c->coarser.simulation->input, c->run->input, size);
     }
-    c->status = bough_step(c->coarser.simulation->master);
+    do {
+        c->status = bough_step(c->coarser.simulation->master);
+    } while (bough_is_ok(&c->status) && !meets_run(c));
 }
 
 // -- comparing ------------------------------------------------------------------------------------
@@ -121,8 +130,9 @@ static double stale(const bough_companion *c, int i) {
 }
 
 static void compare(bough_companion *c) {
+    // the rarer sample is held longer; at an event, between two steps, that of the run
     bool rarer = c->coarser.simulation->scene->aero.rate <= c->run->scene->aero.rate;
-    bool held = rarer && !bough_master_sampled(c->coarser.simulation->master);
+    bool held = rarer ? !bough_master_sampled(c->coarser.simulation->master) : c->run->master->at_event;
     memcpy(c->before, c->value, (size_t)c->channels->count * sizeof(double));
     sample(c);
     c->compared++;

@@ -87,7 +87,7 @@ bough_status bough_companion_create(bough_arena *arena, bough_simulation *run, c
 // Whether it is at the time of the run and can go on, so that its next step is due.
 bool bough_companion_due(const bough_companion *c);
 
-// A macro step of its own, of two of the run's. It touches nothing of the run.
+// A macro step of its own, of two of the run's, or two in one of the run's. It touches nothing of the run.
 void bough_companion_step(bough_companion *c);
 
 // After a step of the run: compares the two if they are at one time. Changes no result.

@@ -283,6 +283,29 @@ TEST(turning_axes_are_no_age) {
     free(o);
 }
 
+// Loads that are held between samples of every macro step leave no room for a finer air: the companion takes
+// two steps in one of the run's. An event within one, where both show older samples, is no error of theirs.
+TEST(beside_a_finer_mesh_held_loads_are_sampled_in_shorter_steps) {
+    static const char *const sets[] = {
+        "simulation.duration=1.02 s",
+        "bodies[3-5].rod.segments=4",
+        "aero.hold=constant",
+        "aero.wind={kind: uniform, table: {times: [0, 1.02], speeds: [6, 12]}}",
+        "loads=[{joint: hub, torque: 1, ramp: [0.113 s, 0.113 s]}]",
+        NULL};
+    check_arena(arena);
+    bough_run r;
+    check_ok(bough_run_create(arena, scene_read(arena, "apps/turbine/runup-stages.yaml", sets), &r));
+    const bough_companion *c = r.companion;
+    check_near(c->coarser.simulation->scene->aero.rate, 100, 1e-12, 0);
+    for (int k = 1; k <= 11; k++) {
+        check_ok(bough_run_step(&r));
+        check_near(c->coarser.simulation->master->time, r.simulation->master->time, 1e-12, 0);
+        assert_int_equal(c->compared, k);
+    }
+    assert_true(c->error[bough_channels_find(&r.channels, "RtVAvgxh")] < 0.02);
+}
+
 // Blades of one segment change the speed of their hub by 4 %, many times what it had changed by: an error of
 // the mesh, which ends no run early.
 TEST(a_coarse_mesh_is_no_lost_solution) {
