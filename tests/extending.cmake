@@ -71,7 +71,7 @@ complete("An integrator" "\\[BOUGH_RADAU5\\]|^    BOUGH_RADAU5,")
 
 recipe("A joint" core/tree/joint.h "typedef enum bough_joint_kind" core/tree/joint.c "[BOUGH_JOINT_PLANAR] ="
   core/tree/constraint.c "BOUGH_JOINT_PLANAR" apps/bough/scene/scene_schema_body.c "WHEN"
-  apps/bough/model/build_bodies.c "case BOUGH_JOINT_PLANAR" apps/bough/model/channel_table.c
+  apps/bough/model/build_bodies.c "BOUGH_JOINT_PLANAR" apps/bough/model/channel_table.c
   "[BOUGH_CHANNELS_PLANAR] =" apps/bough/model/observe.c "joint_channels[")
 complete("A joint" "case BOUGH_JOINT_(PLANAR|UNIVERSAL)|\\[BOUGH_JOINT_(PLANAR|UNIVERSAL)\\]|^    BOUGH_JOINT_PLANAR,")
 

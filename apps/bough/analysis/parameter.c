@@ -62,7 +62,7 @@ static void change_pitch(bough_scene *scene, double change) {
 
 static void change_speed(bough_scene *scene, double change) {
     bough_scene_joint *joint = &scene->body[scene->turbine.rotor].joint;
-    joint->speed *= 1 + change;
+    joint->speeds[0] *= 1 + change;
     if (joint->motion[0].def.given && joint->motion[0].def.speed) {
         joint->motion[0].def.from *= 1 + change;
         joint->motion[0].def.to *= 1 + change;

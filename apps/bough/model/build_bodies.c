@@ -25,32 +25,6 @@ static bough_mat3 tensor(const double j[6]) {
     return (bough_mat3){{j[0], j[3], j[4]}, {j[3], j[1], j[5]}, {j[4], j[5], j[2]}};
 }
 
-static void set_coordinates(const bough_scene_joint *joint, bough_body_def *to) {
-    double *q = to->coordinates, *v = to->speeds;
-    to->motion = joint->motion[0].def;
-    to->second_motion = joint->motion[1].def;
-    double c = cos(joint->angle), s = sin(joint->angle);
-    switch (to->kind) {
-    case BOUGH_JOINT_CYLINDRICAL:
-        q[1] = joint->angle, v[1] = joint->angular_speed;
-        q[0] = joint->position, v[0] = joint->speed;
-        break;
-    case BOUGH_JOINT_UNIVERSAL:
-        memcpy(q, joint->angles, sizeof joint->angles);
-        memcpy(v, joint->angular_speeds, sizeof joint->angular_speeds);
-        break;
-    case BOUGH_JOINT_PLANAR: // the tree's linear speeds are in body axes
-        q[0] = joint->positions[0], v[0] = c * joint->speeds[0] + s * joint->speeds[1];
-        q[1] = joint->positions[1], v[1] = c * joint->speeds[1] - s * joint->speeds[0];
-        q[2] = joint->angle, v[2] = joint->angular_speed;
-        break;
-    default:
-        q[0] = joint->position, v[0] = joint->speed;
-        to->spring = joint->spring;
-        break;
-    }
-}
-
 // Where bodies hang on a beam: at its end, in the axes of the beam's body, which turn with the last
 // section. So a placement means the same whether the beam bends or not.
 static bough_transform beam_end(const bough_beam *beam) {
@@ -81,15 +55,16 @@ static void set_joint(const bough_builder *b, const bough_scene_body *from, boug
     bool universal = to->kind == BOUGH_JOINT_UNIVERSAL;
     to->axis = bough_scene_direction(joint->axis);
     to->second_axis = bough_scene_direction(universal ? joint->second_axis : (joint->axis + 1) % 3);
-    if (bough_joint_n_axes(to->kind) > 0) {
-        set_coordinates(joint, to);
-        return;
-    }
-    int angular = to->kind == BOUGH_JOINT_FREE ? 3 : 0; // a free joint's linear speeds come first
-    for (int k = 0; k < 3; k++) {
-        if (angular == 3) to->speeds[k] = joint->velocity[k];
-        to->speeds[angular + k] = joint->angular_velocity[k];
-    }
+    to->motion = joint->motion[0].def;
+    to->second_motion = joint->motion[1].def;
+    to->spring = joint->spring;
+    memcpy(to->coordinates, joint->coordinates, sizeof joint->coordinates);
+    memcpy(to->speeds, joint->speeds, sizeof joint->speeds);
+    if (to->kind != BOUGH_JOINT_PLANAR) return;
+    // the tree's linear speeds are in body axes
+    double c = cos(joint->coordinates[2]), s = sin(joint->coordinates[2]);
+    to->speeds[0] = c * joint->speeds[0] + s * joint->speeds[1];
+    to->speeds[1] = c * joint->speeds[1] - s * joint->speeds[0];
 }
 
 // The mass of a rigid body, given or integrated from its rod's table.

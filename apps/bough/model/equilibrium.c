@@ -73,7 +73,7 @@ static bough_status explain_rods(const bough_simulation *s, int steps) {
 static const char *loose_joint(const bough_scene *scene) {
     for (int i = 0; i < scene->n_body; i++) {
         const bough_scene_joint *joint = &scene->body[i].joint;
-        bool held = joint->kind == BOUGH_JOINT_FIXED || joint->motion[0].node || joint->speed != 0;
+        bool held = joint->kind == BOUGH_JOINT_FIXED || joint->motion[0].node || joint->speeds[0] != 0;
         if (!held && joint->spring.stiffness == 0) return scene->body[i].name;
     }
     return NULL;

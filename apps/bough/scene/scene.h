@@ -103,25 +103,20 @@ typedef struct bough_scene_motion {
 // The joint that carries a body. Its frame is the body's frame at zero joint displacement.
 typedef struct bough_scene_joint {
     const bough_node *node;
-    int kind;                    // bough_joint_kind
-    const char *parent_name;     // as written
-    int parent;                  // index of a body, or BOUGH_GROUND
-    bough_transform placement;   // of the joint's frame in the parent's, on a body with a rod from the rod's
-                                 // end, in the axes of the rod's body, which turn with the last section
-    int axis;                    // bough_scene_axis of all but fixed, spherical and free
-    int second_axis;             // bough_scene_axis of universal, not the first
-    double position;             // initial angle [rad] of revolute, displacement [m] of prismatic
-                                 // and cylindrical
-    double speed;                // initial, [rad/s] of revolute, [m/s] of prismatic, cylindrical
-    double angle, angular_speed; // initial, of cylindrical and planar [rad, rad/s]
-    double angles[2], angular_speeds[2]; // initial, of universal [rad, rad/s]
-    double positions[2], speeds[2];      // initial, of planar, along the two axes after the normal
-                                         // in the order x, y, z, x, in the joint's frame [m, m/s]
-    double velocity[3];                  // initial [m/s] of free, in the joint's frame
-    double angular_velocity[3];          // initial [rad/s] of spherical and free, in the joint's frame
-    bough_joint_spring spring;           // of revolute and prismatic
-    bough_scene_motion motion[2];        // of the first coordinate; of the second of cylindrical (the
-                                         // angle) and universal
+    int kind;                  // bough_joint_kind
+    const char *parent_name;   // as written
+    int parent;                // index of a body, or BOUGH_GROUND
+    bough_transform placement; // of the joint's frame in the parent's, on a body with a rod from the rod's
+                               // end, in the axes of the rod's body, which turn with the last section
+    int axis;                  // bough_scene_axis of all but fixed, spherical and free
+    int second_axis;           // bough_scene_axis of universal, not the first
+    double coordinates[BOUGH_JOINT_COORDINATES]; // initial, as core/tree/joint.h has them; of free and
+                                                 // spherical 0 [rad, m]
+    double
+        speeds[BOUGH_JOINT_SPEEDS]; // likewise; the linear ones of planar in the joint's frame [rad/s, m/s]
+    bough_joint_spring spring;      // of revolute and prismatic
+    bough_scene_motion motion[2];   // of the first coordinate; of the second of cylindrical (the
+                                    // angle) and universal
 } bough_scene_joint;
 
 // A section of a rod. Between stations everything is linear in span.

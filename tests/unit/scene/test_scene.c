@@ -46,7 +46,7 @@ TEST(turbine_is_read) {
     assert_int_equal(hub->kind, BOUGH_JOINT_REVOLUTE);
     assert_int_equal(hub->parent, 1);
     assert_int_equal(hub->axis, BOUGH_SCENE_X);
-    check_near(hub->speed, 0.5, 0, 0);
+    check_near(hub->speeds[0], 0.5, 0, 0);
     // up by 1.2 m, turned about y, then back by 2 m
     check_near(hub->placement.position.x, -2 * cos(5 * degree), 1e-15, 0);
     check_near(hub->placement.position.y, 0, 0, 0);
@@ -137,10 +137,10 @@ TEST(free_and_sliding_joints_start_moving) {
                         "  - name: b\n    fidelity: rigid\n    mass: 2 kg\n"
                         "    joint: {kind: prismatic, parent: a, axis: y, position: 2 cm, speed: -1 m/s}\n");
     const bough_scene_joint *a = &f.scene->body[0].joint, *b = &f.scene->body[1].joint;
-    check_near(a->velocity[2], 3 / 3.6, 1e-15, 0);
-    check_near(a->angular_velocity[1], 6 * degree, 1e-15, 0);
-    check_near(b->position, 0.02, 1e-15, 0);
-    check_near(b->speed, -1, 0, 0);
+    check_near(a->speeds[2], 3 / 3.6, 1e-15, 0);
+    check_near(a->speeds[4], 6 * degree, 1e-15, 0);
+    check_near(b->coordinates[0], 0.02, 1e-15, 0);
+    check_near(b->speeds[0], -1, 0, 0);
     assert_int_equal(b->axis, BOUGH_SCENE_Y);
     check_near(f.scene->body[0].inertia[2], 3, 0, 0);
     check_near(f.scene->body[0].inertia[3], 0, 0, 0);
@@ -161,16 +161,16 @@ TEST(joints_of_several_axes_are_read) {
     const bough_scene_joint *a = &f.scene->body[0].joint, *b = &f.scene->body[1].joint;
     const bough_scene_joint *c = &f.scene->body[2].joint;
     assert_int_equal(a->second_axis, BOUGH_SCENE_Y);
-    check_near(a->angles[1], -5 * degree, 1e-15, 0);
-    check_near(a->angular_speeds[1], 6 * degree, 1e-15, 0);
-    check_near(b->positions[1], 0.02, 1e-15, 0);
-    check_near(b->angle, 3 * degree, 1e-15, 0);
+    check_near(a->coordinates[1], -5 * degree, 1e-15, 0);
+    check_near(a->speeds[1], 6 * degree, 1e-15, 0);
+    check_near(b->coordinates[1], 0.02, 1e-15, 0);
+    check_near(b->coordinates[2], 3 * degree, 1e-15, 0);
     check_near(b->speeds[0], 4, 0, 0);
-    check_near(b->angular_speed, 6, 0, 0);
-    check_near(c->position, 0.02, 1e-15, 0);
-    check_near(c->angle, 90 * degree, 1e-15, 0);
-    check_near(c->speed, 3, 0, 0);
-    check_near(c->angular_speed, 6 * degree, 1e-15, 0);
+    check_near(b->speeds[2], 6, 0, 0);
+    check_near(c->coordinates[0], 0.02, 1e-15, 0);
+    check_near(c->coordinates[1], 90 * degree, 1e-15, 0);
+    check_near(c->speeds[0], 3, 0, 0);
+    check_near(c->speeds[1], 6 * degree, 1e-15, 0);
     refuses(SIMULATION "bodies:\n  - name: a\n    fidelity: rigid\n    mass: 1\n"
                        "    joint: {kind: universal, parent: ground, axis: x, second_axis: x}\n",
             "s.yaml:6:68: error: bodies[0].joint.second_axis: must not be the first axis\n");

@@ -47,7 +47,7 @@ TEST(a_block_is_its_long_form) {
         const bough_scene_body *a = &f.scene->body[i], *b = &g.scene->body[i];
         assert_string_equal(a->name, b->name);
         assert_int_equal(a->fidelity, b->fidelity);
-        assert_true(a->pitch == b->pitch && a->mass == b->mass && a->joint.speed == b->joint.speed);
+        assert_true(a->pitch == b->pitch && a->mass == b->mass && a->joint.speeds[0] == b->joint.speeds[0]);
         check_same_placement(&a->joint, &b->joint);
     }
     assert_int_equal(f.scene->turbine.rotor, g.scene->turbine.rotor);
