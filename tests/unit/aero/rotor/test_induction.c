@@ -77,6 +77,18 @@ TEST(hardly_any_wind_has_one_answer) {
     }
 }
 
+// Below 1 mm/s of either component.
+TEST(too_slow_an_inflow_has_no_wake) {
+    airfoils *foils = *context;
+    bough_induction_options options = bough_induction_options_default();
+    for (int k = 0; k < 4; k++) {
+        bough_element e = element_of(foils->polar + 7);
+        *(k % 2 ? &e.inflow_x : &e.inflow_y) = k < 2 ? 0.99e-3 : 1.01e-3;
+        bough_induction i = induction_at(&options, &e);
+        assert_true((i.axial == 0 && i.tangential == 0 && i.loss == 0) == (k < 2));
+    }
+}
+
 // For small angles, lift 2πα and no twist φ = (1 − a)/λ, and 4a(1 − a) = 2πσλ²φ gives a = πσλ/2.
 TEST(small_angles_agree_with_closed_form) {
     airfoils *foils = *context;
