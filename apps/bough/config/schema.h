@@ -24,6 +24,7 @@ typedef enum bough_dimension {
     BOUGH_STIFFNESS,
     BOUGH_LINE_FORCE,
     BOUGH_LINE_MOMENT,
+    BOUGH_POWER,
 } bough_dimension;
 
 // How a value is written, and what its field in the struct is.

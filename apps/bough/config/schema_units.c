@@ -63,6 +63,7 @@ static const struct {
     [BOUGH_STIFFNESS] = {"a stiffness", "N/m", "3 kN/m", {0, 1, -2, 0}},
     [BOUGH_LINE_FORCE] = {"a force per length", "N/m", "2 kN/m", {0, 1, -2, 0}},
     [BOUGH_LINE_MOMENT] = {"a moment per length", "N m/m", "5 kN m/m", {1, 1, -2, 0}},
+    [BOUGH_POWER] = {"a power", "W", "5 MW", {2, 1, -3, 0}},
 };
 
 const char *bough_dimension_unit(bough_dimension dimension) { return dimensions[dimension].si; }

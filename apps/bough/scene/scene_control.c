@@ -23,7 +23,7 @@ static const bough_key law_keys[] = {
      CHOICES([BOUGH_CONSTANT_POWER] = "power", [BOUGH_CONSTANT_TORQUE] = "torque"),
      .fallback = "power", .example = "torque",
      .help = "quantity that is constant above rated speed"},
-    LAW(rated_power, PURE_NUMBER, "5296610", "5.3e6", "rated mechanical power, in W"),
+    LAW(rated_power, POWER, "5296610", "5.3 MW", "rated mechanical power"),
     LAW(slip, PURE_NUMBER, "0.1", "0.05",
         "slip of the linear transition from the optimal to the rated torque"),
     LAW(most_torque, MOMENT, "47402.91", "47.4 kN m", "largest torque of the generator"),

@@ -371,6 +371,8 @@ TEST(units_are_converted) {
     quantity_is("2 min", BOUGH_TIME, 120);
     quantity_is("1 h", BOUGH_TIME, 3600);
     quantity_is("-11.9 MN m", BOUGH_MOMENT, -11.9e6);
+    quantity_is("5.3 MW", BOUGH_POWER, 5.3e6);
+    quantity_is("5296610", BOUGH_POWER, 5296610);
     quantity_is("11.9 MN*m", BOUGH_MOMENT, 11.9e6);
     quantity_is("1 kg m^2/s^2", BOUGH_MOMENT, 1);
     quantity_is("50 Hz", BOUGH_FREQUENCY, 50);
