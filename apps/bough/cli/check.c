@@ -209,7 +209,7 @@ static void print_loads(const bough_simulation *s) {
 
 static bough_status print_results(bough_arena *arena, bough_simulation *s, const bough_channels *channels) {
     bough_shape shape;
-    BOUGH_TRY(bough_shape_create(arena, s, &shape));
+    bough_shape_create(arena, s, &shape);
     bough_forecast_print(bough_run_results(s, channels, &shape), channels);
     return bough_ok();
 }

@@ -112,7 +112,7 @@ static void record(bough_run_command *command) {
 static bough_status open_frames(bough_run_command *command) {
     const bough_scene_output *output = &command->run.simulation->scene->simulation.output;
     if (!(output->frames > 0)) return bough_ok();
-    BOUGH_TRY(bough_shape_create(command->arena, command->run.simulation, &command->shape));
+    bough_shape_create(command->arena, command->run.simulation, &command->shape);
     bough_frames_def def = {.folder = command->folder,
                             .n_line = command->shape.n_line,
                             .line = command->shape.line,

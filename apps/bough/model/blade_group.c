@@ -1,5 +1,7 @@
 #include "apps/bough/model/blade_group.h"
 
+#include "apps/bough/model/shape.h"
+
 #include <string.h>
 
 static const double even = 1e-6; // [rad]
@@ -93,13 +95,6 @@ static void vertex_of(const bough_rod_model *m, const double *y, int i, bough_ve
         (bough_quaternion){y[3 * n + at], y[4 * n + at], y[5 * n + at], y[6 * n + at]});
 }
 
-// The rotation halfway between two.
-static bough_mat3 middle(bough_quaternion p, bough_quaternion q) {
-    bough_quaternion step = bough_quaternion_product(bough_quaternion_conjugate(p), q);
-    bough_quaternion half = bough_quaternion_exponential(bough_scale(0.5, bough_quaternion_logarithm(step)));
-    return bough_rotation_matrix(bough_quaternion_product(p, half));
-}
-
 // The chord from vertex i − 1 to i in the frame halfway, mean over the blades.
 static bough_vec3 mean_chord(const bough_blade_group *group, const bough_rod_model *m, int i,
                              const double *state) {
@@ -109,7 +104,7 @@ static bough_vec3 mean_chord(const bough_blade_group *group, const bough_rod_mod
         for (int end = 0; end < 2; end++) {
             vertex_of(m, state + group->first[k], i - 1 + end, &x[end], &p[end]);
         }
-        bough_vec3 chord = bough_mat3_tmul(middle(p[0], p[1]), bough_sub(x[1], x[0]));
+        bough_vec3 chord = bough_mat3_tmul(bough_axes_between(p[0], p[1], 0.5), bough_sub(x[1], x[0]));
         sum = bough_axpy(1.0 / group->n, chord, sum);
     }
     return sum;
@@ -129,7 +124,7 @@ static void average_rods(const bough_blade_group *group, const double *state, do
         }
         p = bough_quaternion_normalised((bough_quaternion){sum[0], sum[1], sum[2], sum[3]});
         vertex_of(m, mean, i - 1, &x, &before);
-        x = bough_add(x, bough_mat3_mul(middle(before, p), mean_chord(group, m, i, state)));
+        x = bough_add(x, bough_mat3_mul(bough_axes_between(before, p, 0.5), mean_chord(group, m, i, state)));
         const double values[7] = {x.x, x.y, x.z, p.w, p.x, p.y, p.z};
         for (int c = 0; c < 7; c++) mean[c * n + i - 1] = values[c];
     }

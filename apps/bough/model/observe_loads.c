@@ -31,23 +31,13 @@ static bough_vec3 vertex_position(const sensor *x, int i) {
 }
 
 static bough_quaternion vertex_rotation(const sensor *x, int i) {
-    const double *p = x->scratch.vertex + i;
-    int n = x->beam->mesh->stride;
-    return (bough_quaternion){p[3 * n], p[4 * n], p[5 * n], p[6 * n]};
+    return bough_section_vertex_rotation(x->beam->mesh, &x->scratch, i);
 }
 
 // Rotation vector of a section against the undeformed one, in the body's axes.
 static bough_vec3 vertex_turn(const sensor *x, int i) {
     bough_quaternion back = bough_quaternion_conjugate(x->beam->def.rotation[i]);
     return bough_quaternion_logarithm(bough_quaternion_product(vertex_rotation(x, i), back));
-}
-
-// Between two sections' axes.
-static bough_mat3 axes_between(bough_quaternion p, bough_quaternion q, double share) {
-    bough_quaternion back = bough_quaternion_conjugate(p);
-    bough_vec3 whole = bough_quaternion_logarithm(bough_quaternion_product(back, q));
-    bough_quaternion part = bough_quaternion_exponential(bough_scale(share, whole));
-    return bough_rotation_matrix(bough_quaternion_product(p, part));
 }
 
 // Loads of the sections at both ends, in the body's axes.
@@ -94,7 +84,7 @@ static void sample_place(const sensor *x, const end_loads *ends, place at, doubl
                                    bough_sub(vertex_position(x, right), def->position[right]), at.share);
     bough_vec3 turn = bough_blend(vertex_turn(x, left), vertex_turn(x, right), at.share);
     bough_section_load load = load_at(x, ends, at);
-    bough_mat3 axes = axes_between(vertex_rotation(x, left), vertex_rotation(x, right), at.share);
+    bough_mat3 axes = bough_axes_between(vertex_rotation(x, left), vertex_rotation(x, right), at.share);
     bough_vec3 force = bough_mat3_tmul(axes, load.force);
     bough_vec3 moment = bough_mat3_tmul(axes, load.moment);
     value = bough_observe_vector(turn, BOUGH_DEGREE, bough_observe_vector(shift, 1, value));

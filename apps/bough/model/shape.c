@@ -19,10 +19,15 @@ static bough_vec3 segment_row(const bough_rod_model *m, const bough_rod_scratch 
     return bough_v3(f[row * n], f[(row + 1) * n], f[(row + 2) * n]);
 }
 
-static bough_mat3 vertex_axes(const bough_rod_model *m, const bough_rod_scratch *scratch, int i) {
+bough_quaternion bough_section_vertex_rotation(const bough_rod_model *m, const bough_rod_scratch *scratch,
+                                               int i) {
     const double *p = scratch->vertex + i;
     int n = m->stride;
-    return bough_rotation_matrix((bough_quaternion){p[3 * n], p[4 * n], p[5 * n], p[6 * n]});
+    return (bough_quaternion){p[3 * n], p[4 * n], p[5 * n], p[6 * n]};
+}
+
+static bough_mat3 vertex_axes(const bough_rod_model *m, const bough_rod_scratch *scratch, int i) {
+    return bough_rotation_matrix(bough_section_vertex_rotation(m, scratch, i));
 }
 
 // The moment goes linearly from what the segment does to the left vertex to the opposite of what it
@@ -50,7 +55,7 @@ static bough_section_load section_at_vertex(const bough_beam *beam, const bough_
 
 enum { RIGID_POINTS = 3 };
 
-bough_status bough_shape_create(bough_arena *arena, bough_simulation *s, bough_shape *shape) {
+void bough_shape_create(bough_arena *arena, bough_simulation *s, bough_shape *shape) {
     size_t n = (size_t)s->scene->n_body, most = bough_simulation_most_vertices(s) + RIGID_POINTS;
     *shape = (bough_shape){.simulation = s, .n_line = s->scene->n_body};
     shape->line = bough_arena_take(arena, n * sizeof *shape->line);
@@ -62,7 +67,6 @@ bough_status bough_shape_create(bough_arena *arena, bough_simulation *s, bough_s
         if (beam && beam->rod) bough_rod_scratch_init(&shape->scratch[i], arena, beam->mesh);
     }
     shape->vertex = bough_arena_take(arena, most * sizeof *shape->vertex);
-    return bough_ok();
 }
 
 static void rigid_line(const bough_simulation *s, int body, bough_vertex_motion *x) {

@@ -5,6 +5,7 @@
 
 #include "apps/bough/model/simulation.h"
 #include "apps/bough/results/frames.h"
+#include "core/base/rotation.h"
 
 typedef struct bough_shape {
     bough_simulation *simulation;
@@ -14,7 +15,7 @@ typedef struct bough_shape {
     bough_rod_scratch *scratch;  // (n_line) of each body with a rod of its own
 } bough_shape;
 
-bough_status bough_shape_create(bough_arena *arena, bough_simulation *s, bough_shape *shape);
+void bough_shape_create(bough_arena *arena, bough_simulation *s, bough_shape *shape);
 
 // The points of all lines (Σ n_point × 3) [m], from the simulation's `view`. `self`: the shape.
 void bough_shape_points(void *self, double *point);
@@ -30,6 +31,13 @@ static inline bough_vec3 bough_blend(bough_vec3 a, bough_vec3 b, double share) {
     return bough_add(a, bough_scale(share, bough_sub(b, a)));
 }
 
+// Axes between two rotations: p at share 0, q at share 1.
+static inline bough_mat3 bough_axes_between(bough_quaternion p, bough_quaternion q, double share) {
+    bough_quaternion step = bough_quaternion_product(bough_quaternion_conjugate(p), q);
+    bough_vec3 part = bough_scale(share, bough_quaternion_logarithm(step));
+    return bough_rotation_matrix(bough_quaternion_product(p, bough_quaternion_exponential(part)));
+}
+
 typedef struct bough_section_load {
     bough_vec3 force, moment; // [N], [N m] in the axes of the rod's body
 } bough_section_load;
@@ -38,6 +46,10 @@ typedef struct bough_section_load {
 // mesh: vertices and segments. False when the forces are not finite.
 bool bough_section_evaluate(const bough_simulation *s, const bough_beam *beam, double t,
                             bough_rod_scratch *scratch);
+
+// The rotation of a section at a vertex in the body's frame, after an evaluation.
+bough_quaternion bough_section_vertex_rotation(const bough_rod_model *m, const bough_rod_scratch *scratch,
+                                               int vertex);
 
 // Load within a segment, at a share of its length, after an evaluation. A segment's force is constant
 // over its length and its moment is linear.

@@ -64,7 +64,7 @@ static bough_status open_output(bough_arena *arena, const subject *x, bough_simu
     if (bough_is_ok(&status)) status = bough_recorder_open(arena, &def, &recorder);
     if (bough_is_ok(&status)) status = bough_recorder_sample(recorder, 0);
     bough_shape shape;
-    if (bough_is_ok(&status)) status = bough_shape_create(arena, s, &shape);
+    if (bough_is_ok(&status)) bough_shape_create(arena, s, &shape);
     if (!bough_is_ok(&status)) return status;
     bough_frames *frames;
     bough_frames_def frames_def = {.folder = x->folder,
