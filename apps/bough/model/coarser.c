@@ -18,14 +18,10 @@ static int least_segments(const bough_scene *scene, int body) {
 
 // Loads on vertices stay where they are. Values of tables, which inputs change, are the copy's own.
 static void copy_loads(bough_arena *arena, const bough_scene *scene, bough_scene *to) {
-    to->load = bough_arena_take(arena, (size_t)scene->n_load * sizeof *to->load);
+    to->load = bough_arena_copy(arena, scene->load, (size_t)scene->n_load * sizeof *to->load);
     for (int k = 0; k < scene->n_load; k++) {
         bough_scene_load *load = &to->load[k];
-        *load = scene->load[k];
-        if (load->n_time > 0) {
-            load->values = bough_arena_doubles(arena, (size_t)load->n_time);
-            memcpy(load->values, scene->load[k].values, (size_t)load->n_time * sizeof *load->values);
-        }
+        load->values = bough_arena_copy(arena, load->values, (size_t)load->n_time * sizeof *load->values);
         if (load->body_name == NULL || load->place != BOUGH_SCENE_AT_VERTEX) continue;
         const bough_scene_rod *rod = &scene->body[load->body].rod;
         if (!rod->node) continue;
@@ -290,10 +286,7 @@ static void shorten_steps(bough_scene *to) {
 // -- all ------------------------------------------------------------------------------------------
 
 bough_scene *bough_coarser_scene(bough_arena *arena, const bough_scene *scene, int parts) {
-    bough_scene *to = bough_arena_take(arena, sizeof *to);
-    *to = *scene;
-    to->body = bough_arena_take(arena, (size_t)scene->n_body * sizeof *to->body);
-    memcpy(to->body, scene->body, (size_t)scene->n_body * sizeof *to->body);
+    bough_scene *to = bough_scene_copy(arena, scene);
     copy_loads(arena, scene, to);
     if (parts & BOUGH_COARSER_MESH) change_segments(scene, to);
     if (parts & BOUGH_COARSER_AIR) change_rate(scene, parts & BOUGH_COARSER_MESH && some_finer(scene), to);

@@ -358,8 +358,7 @@ static void stiffen_section(double length, double exponent, double *stiffness) {
 
 static void stiffen(bough_arena *arena, double exponent, bough_scene_structure *structure) {
     size_t n = (size_t)structure->n_station;
-    bough_scene_station *station = bough_arena_take(arena, n * sizeof *station);
-    memcpy(station, structure->station, n * sizeof *station);
+    bough_scene_station *station = bough_arena_copy(arena, structure->station, n * sizeof *station);
     for (size_t i = 0; i < n; i++) stiffen_section(structure->length, exponent, station[i].def.stiffness);
     structure->station = station;
 }
@@ -367,13 +366,9 @@ static void stiffen(bough_arena *arena, double exponent, bough_scene_structure *
 // The scene, undeformed, with rods of the stiffness at this exponent: 1, of thick bars, to 0, their own.
 static bough_status build_stiffened(bough_arena *arena, const bough_scene *given, double exponent,
                                     bough_simulation **simulation) {
-    bough_scene *scene = bough_arena_take(arena, sizeof *scene);
-    size_t n = (size_t)given->n_body;
-    *scene = *given;
+    bough_scene *scene = bough_scene_copy(arena, given);
     scene->simulation.initial = BOUGH_SCENE_UNDEFORMED;
-    scene->body = bough_arena_take(arena, n * sizeof *scene->body);
-    memcpy(scene->body, given->body, n * sizeof *scene->body);
-    for (size_t i = 0; i < n; i++) {
+    for (int i = 0; i < scene->n_body; i++) {
         bough_scene_body *body = &scene->body[i];
         if (body->fidelity == BOUGH_SCENE_ROD) stiffen(arena, exponent, &body->rod.structure);
     }

@@ -138,6 +138,12 @@ bough_status bough_scene_read(bough_arena *arena, const char *path, const char *
     return status;
 }
 
+bough_scene *bough_scene_copy(bough_arena *arena, const bough_scene *scene) {
+    bough_scene *copy = bough_arena_copy(arena, scene, sizeof *scene);
+    copy->body = bough_arena_copy(arena, scene->body, (size_t)scene->n_body * sizeof *scene->body);
+    return copy;
+}
+
 const char *bough_scene_place(const bough_node *value, char *text, size_t size) {
     text[0] = '\0';
     if (value == NULL) return text;

@@ -523,6 +523,9 @@ typedef struct bough_scene {
 bough_status bough_scene_read(bough_arena *arena, const char *path, const char *const *sets, int n_set,
                               bough_errors *errors, bough_scene **scene);
 
+// A copy with bodies of its own, which may be changed; the rest is shared.
+bough_scene *bough_scene_copy(bough_arena *arena, const bough_scene *scene);
+
 // The place of a value before a message, "file:line:column: " or "--set: ", written into `text`; "" of NULL.
 const char *bough_scene_place(const bough_node *value, char *text, size_t size);
 
