@@ -138,7 +138,7 @@ static bough_inertia root_inertia(const bough_rod_def *def) {
 
 // The last vertex becomes a body of the tree, free against the rod's frame; what the rod carries
 // hangs on it.
-static bough_status add_end(bough_builder *b, bough_beam *beam, int index) {
+static void add_end(bough_builder *b, bough_beam *beam, int index) {
     const bough_rod_def *def = &beam->def;
     int n = def->n_segment, body = b->scene->n_body + b->s->n_end;
     bough_quaternion p = def->rotation[n];
@@ -154,7 +154,6 @@ static bough_status add_end(bough_builder *b, bough_beam *beam, int index) {
     beam->def.carries = true;
     beam->vertex[1] = vertex_inertia(&def->inertia[n]);
     b->end[beam->end] = (bough_end_def){body, beam->vertex[1]};
-    return bough_ok();
 }
 
 int bough_build_marker(bough_builder *b, const char *name, int body, bough_transform placement) {
@@ -184,7 +183,8 @@ static bough_status add_beam(bough_builder *b, int index) {
     beam->vertex[0] = root_inertia(&beam->def);
     beam->in_ground = moves_under_ground_loads(b->scene, index);
     b->port[s->n_rod++] = (bough_port_def){beam->marker, beam->vertex[0], beam->in_ground};
-    return bough_scene_carried_by(b->scene, index) >= 0 ? add_end(b, beam, index) : bough_ok();
+    if (bough_scene_carried_by(b->scene, index) >= 0) add_end(b, beam, index);
+    return bough_ok();
 }
 
 // Its marker and port come after those of all beams.

@@ -7,7 +7,6 @@
 
 #include <limits.h>
 #include <math.h>
-#include <stdarg.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -16,11 +15,8 @@ const char *bough_error_share_name(bough_error_share_kind kind) {
     return names[kind];
 }
 
-static void unknown(bough_error_share *share, const char *format, ...) {
-    va_list arguments;
-    va_start(arguments, format);
-    vsnprintf(share->unknown, sizeof share->unknown, format, arguments);
-    va_end(arguments);
+static void unknown(bough_error_share *share, const char *why) {
+    snprintf(share->unknown, sizeof share->unknown, "%.150s", why);
 }
 
 // -- further runs ---------------------------------------------------------------------------------
@@ -88,11 +84,12 @@ static void build_finer(bough_arena *arena, const finding *x, bough_other_run fi
     for (int k = 0; k < BOUGH_SHARES; k++) {
         bough_error_share *share = &x->shares->share[k];
         if (!has_part(run->scene, k)) {
-            unknown(share, "the scene has no %s", bough_error_share_name((bough_error_share_kind)k));
+            snprintf(share->unknown, sizeof share->unknown, "the scene has no %s",
+                     bough_error_share_name((bough_error_share_kind)k));
             continue;
         }
         bough_status status = bough_other_run_build(arena, run, BOUGH_COARSER_ALL & ~coarser[k], &finer[k]);
-        if (!bough_is_ok(&status)) unknown(share, "%.150s", status.message);
+        if (!bough_is_ok(&status)) unknown(share, status.message);
     }
 }
 
@@ -105,7 +102,7 @@ static void advance_finer(const finding *x, int k, double t, const bough_other_r
     // the run that is as fine in time may cost as much as the user's own
     bough_status own = advance(finer, fmin(t, x->end), k == BOUGH_SHARE_TIME ? NULL : base->simulation);
     if (!bough_is_ok(&own)) {
-        unknown(share, "%.150s", own.message);
+        unknown(share, own.message);
         return;
     }
     if (t < c->run->scene->simulation.output.from - 1e-6 * c->run->master->macro_step) return;
@@ -301,7 +298,7 @@ bough_status bough_error_shares_find(bough_arena *arena, bough_companion *c, boo
     if (bough_is_ok(&status) && fails_by_time(c, shares)) BOUGH_TRY(prove_time(arena, &x));
     shares->cpu_s = bough_cpu_clock(false) - cpu;
     for (int k = 0; k < BOUGH_SHARES && !bough_is_ok(&status); k++)
-        unknown(&shares->share[k], "%.150s", status.message);
+        unknown(&shares->share[k], status.message);
     return bough_ok();
 }
 
