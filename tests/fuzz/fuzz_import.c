@@ -1,26 +1,19 @@
 #include "apps/bough/import/import.h"
+#include "apps/bough/results/folder.h"
 #include "apps/bough/scene/scene.h"
 #include "tests/fuzz/fuzz.h"
+#include "tests/unit/decks.h"
 
 #include <string.h>
-#include <sys/stat.h>
 
-static const char *const decks[] = {
-    "main.fst",       "parts/elasto.dat",     "parts/blade.dat",      "parts/tower.dat",
-    "parts/aero.dat", "parts/aero-blade.dat", "parts/foils/flat.dat", "parts/servo.dat",
-    "parts/wind.dat", "parts/beam.dat",       "parts/beam-blade.dat", "parts/foils/round.dat",
-    "v4/main.fst",    "v4/elasto.dat",        "v4/blade.dat",         "v4/aero.dat",
-    "v5/main.fst",    "v5/elasto.dat",        "v5/aero.dat",          "v5/aero-blade.dat",
-    "v5/servo.dat",   "v5/beam.dat",          "v5/beam-blade.dat",
-};
-enum { DECKS = sizeof decks / sizeof *decks, ROOM = 1 << 16 };
+enum { ROOM = 1 << 16 };
 
 typedef struct deck {
     char text[ROOM];
     size_t size;
 } deck;
 
-static deck original[DECKS];
+static deck original[N_DECK];
 
 static void load(int i) {
     char path[512];
@@ -32,28 +25,24 @@ static void load(int i) {
     fuzz_file(decks[i], original[i].text, original[i].size);
 }
 
-static void make(const char *name) {
-    char path[SCRATCH_PATH];
-    snprintf(path, sizeof path, "%s/%s", fuzz_folder(), name);
-    mkdir(path, 0700);
-}
-
 static void start(void) {
     static int started;
     if (started) return;
     started = 1;
-    make("parts");
-    make("parts/foils");
-    make("v4");
-    make("v5");
-    for (int i = 0; i < DECKS; i++) load(i);
+    for (int k = 0; k < N_DECK_FOLDER; k++) {
+        char path[SCRATCH_PATH];
+        snprintf(path, sizeof path, "%s/%s", fuzz_folder(), deck_folders[k]);
+        bough_status status = bough_folder_make(path);
+        fuzz_demand(bough_is_ok(&status), "a folder for decks");
+    }
+    for (int i = 0; i < N_DECK; i++) load(i);
 }
 
 // The deck that begins most like the input.
 static int likest(const uint8_t *data, size_t size) {
     int best = 0;
     size_t most = 0;
-    for (int i = 0; i < DECKS; i++) {
+    for (int i = 0; i < N_DECK; i++) {
         const deck *d = &original[i];
         size_t same = 0;
         while (same < size && same < d->size && data[same] == (uint8_t)d->text[same]) same++;

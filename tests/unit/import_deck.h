@@ -2,20 +2,11 @@
 #ifndef BOUGH_TESTS_UNIT_IMPORT_DECK_H
 #define BOUGH_TESTS_UNIT_IMPORT_DECK_H
 
+#include "tests/unit/decks.h"
 #include "tests/unit/import.h"
 
 #include "aero/wind/wind_box.h"
 #include "apps/bough/results/folder.h"
-
-static const char *const decks[] = {
-    "main.fst",        "parts/elasto.dat",     "parts/blade.dat",       "parts/tower.dat",
-    "parts/beam.dat",  "parts/beam-blade.dat", "parts/wind.dat",        "parts/aero.dat",
-    "parts/servo.dat", "parts/aero-blade.dat", "parts/foils/round.dat", "parts/foils/flat.dat",
-    "v4/main.fst",     "v4/elasto.dat",        "v4/blade.dat",          "v4/aero.dat",
-    "v5/main.fst",     "v5/elasto.dat",        "v5/aero-blade.dat",     "v5/aero.dat",
-    "v5/servo.dat",    "v5/beam.dat",          "v5/beam-blade.dat",
-};
-enum { N_DECK = sizeof decks / sizeof *decks };
 
 // A box of 12 m/s with steps of 2 m/s across, in parts/box.bts; it lasts long and repeats.
 static inline void write_box(const char *folder) {
@@ -45,11 +36,10 @@ static inline void write_box(const char *folder) {
 // Imports the decks under this main file with two texts replaced (NULL: none).
 static inline trial attempt_given(const char *main, const edit *one, const edit *two,
                                   const bough_import_options *options) {
-    static const char *const folder[] = {"parts/foils", "v4", "v5"};
     trial t = begin_trial();
     char path[SCRATCH_PATH];
-    for (int i = 0; i < 3; i++) {
-        snprintf(path, sizeof path, "%s/%s", t.folder, folder[i]);
+    for (int i = 0; i < N_DECK_FOLDER; i++) {
+        snprintf(path, sizeof path, "%s/%s", t.folder, deck_folders[i]);
         check_ok(bough_folder_make(path));
     }
     for (int i = 0; i < N_DECK; i++) copy_deck(t.folder, decks[i], one, two);
