@@ -7,8 +7,7 @@
 
 static const char pendulum[] = "apps/mechanisms/pendulum.yaml", runup[] = "apps/turbine/runup.yaml";
 
-#define COARSE_LAND                                                                                          \
-    "bodies[blade1].rod.segments=6", "bodies[blade2].rod.segments=6", "bodies[blade3].rod.segments=6"
+#define COARSE_LAND "bodies[4-6].rod.segments=6"
 
 typedef struct found {
     bough_arena *arena;
@@ -54,13 +53,8 @@ TEST(spherical_pendulum_swings_twice) {
 
 // Two windows of four-bars hang: ω² = g ((N + 1)/2 + N)/((N + 1)/3 + N), and nothing else moves.
 TEST(closed_loops_swing_as_one) {
-    const char *sets[] = {"bodies[0].joint.speed=0",
-                          "bodies[0].joint.angle=180 deg",
-                          "bodies[1].joint.angle=180 deg",
-                          "bodies[2].joint.angle=180 deg",
-                          "bodies[3].joint.angle=-180 deg",
-                          "bodies[4].joint.angle=-180 deg",
-                          NULL};
+    const char *sets[] = {"bodies[0].joint.speed=0", "bodies[0-2].joint.angle=180 deg",
+                          "bodies[3-4].joint.angle=-180 deg", NULL};
     found f = modes_of("apps/mechanisms/four-bar.yaml", sets, 6);
     assert_int_equal(f.v.found, 1);
     check_near(f.v.mode[0].frequency, sqrt(9.81 * 3.5 / 3) / (2 * BOUGH_PI), 1e-6, 0);
@@ -137,7 +131,7 @@ TEST(body_on_a_rod_swings) {
     "bodies[2].joint={kind: revolute, parent: nacelle, axis: x, motion: " motion                             \
     ", placement: [move z 1.96256 m, rotate y 5 deg, move x -5.0191 m]}"
 #define CALM "aero.ramp=[0, 1000]", "aero.wind.speed=0", "loads=[]", "gravity=[0, 0, 0]"
-#define COARSE "bodies[3].rod.segments=8", "bodies[4].rod.segments=8", "bodies[5].rod.segments=8"
+#define COARSE "bodies[3-5].rod.segments=8"
 
 // The blades of a locked rotor on a rigid support do not know of each other.
 TEST(parked_blades_have_their_own_frequencies) {
@@ -244,14 +238,8 @@ TEST(shapes_join_the_bodies) {
 // Reduced to their modes, the blades of a rotor on a rigid support keep patterns and frequencies.
 TEST(modal_blades_whirl_as_rods_do) {
     const char *rods[] = {HUB("{speed: 6 rpm}"), CALM, COARSE, "aero.air_density=1e-9", NULL};
-    const char *modal[] = {HUB("{speed: 6 rpm}"),
-                           CALM,
-                           COARSE,
-                           "aero.air_density=1e-9",
-                           "bodies[3].fidelity=modal",
-                           "bodies[4].fidelity=modal",
-                           "bodies[5].fidelity=modal",
-                           NULL};
+    const char *modal[] = {HUB("{speed: 6 rpm}"),        CALM, COARSE, "aero.air_density=1e-9",
+                           "bodies[3-5].fidelity=modal", NULL};
     found a = modes_of(runup, rods, 6), b = modes_of(runup, modal, 6);
     for (int k = 0; k < 6; k++) {
         const bough_scene_mode *rod = &a.v.mode[k], *reduced = &b.v.mode[k];

@@ -283,8 +283,7 @@ TEST(parked_turbine_swings_as_published) {
 // Two shapes of the tapered tower, bent by a force and by a moment at its top, by Ritz: 0.3233 and
 // 0.3211 Hz of the same bodies, rigid, without gravity and shear; shear takes 0.4 %.
 TEST(tower_with_rigid_blades_swings_as_by_ritz) {
-    static const char *const sets[] = {"gravity=[0, 0, 0]", "bodies[3].fidelity=rigid",
-                                       "bodies[4].fidelity=rigid", "bodies[5].fidelity=rigid", NULL};
+    static const char *const sets[] = {"gravity=[0, 0, 0]", "bodies[3-5].fidelity=rigid", NULL};
     static const double ritz[] = {0.3233 * 0.996, 0.3211 * 0.996};
     for (int axis = 0; axis < 2; axis++) {
         check_arena(arena);
@@ -297,8 +296,7 @@ TEST(tower_with_rigid_blades_swings_as_by_ritz) {
 // interface makes more than a hundredth of what it has exchanged by then, but for nothing after.
 TEST(jolt_at_the_start_does_not_end_a_run) {
     static const char *const sets[] = {"simulation.initial=undeformed", "simulation.duration=3 s",
-                                       "bodies[3].fidelity=rigid",      "bodies[4].fidelity=rigid",
-                                       "bodies[5].fidelity=rigid",      NULL};
+                                       "bodies[3-5].fidelity=rigid", NULL};
     check_arena(arena);
     bough_simulation *s = scene_build(arena, parked, sets);
     run(s);

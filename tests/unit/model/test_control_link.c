@@ -7,8 +7,7 @@
 
 static const char turbine[] = "apps/turbine/power.yaml";
 
-#define RIGID                                                                                                \
-    "simulation.threads=1", "bodies[3].fidelity=rigid", "bodies[4].fidelity=rigid", "bodies[5].fidelity=rigid"
+#define RIGID "simulation.threads=1", "bodies[3-5].fidelity=rigid"
 #define BLADED "control={kind: bladed, library: " BOUGH_SAMPLE_DISCON "}"
 
 static built open_turbine(const char *const *sets) { return built_open(turbine, sets); }
@@ -16,13 +15,8 @@ static built open_turbine(const char *const *sets) { return built_open(turbine, 
 // Above rated wind the law settles where a rigid rotor gives rated power at rated speed: a pitch of
 // 10.45° gives 2 % less than it.
 TEST(law_holds_speed_and_power) {
-    static const char *const sets[] = {RIGID,
-                                       "aero.wind.speed=15 m/s",
-                                       "bodies[3].pitch=8 deg",
-                                       "bodies[4].pitch=8 deg",
-                                       "bodies[5].pitch=8 deg",
-                                       "bodies[2].joint.speed=12.6 rpm",
-                                       NULL};
+    static const char *const sets[] = {RIGID, "aero.wind.speed=15 m/s", "bodies[3-5].pitch=8 deg",
+                                       "bodies[2].joint.speed=12.6 rpm", NULL};
     built f = open_turbine(sets);
     run_until(&f, 60);
     check_near(channel(&f, "RotSpeed"), 12.1, 2e-3, 0);
@@ -38,9 +32,7 @@ TEST(law_brakes_unsteered_blades_only) {
     static const char *const sets[] = {RIGID,
                                        "aero.wind.speed=6 m/s",
                                        "control.pitch=false",
-                                       "bodies[3].pitch=10 deg",
-                                       "bodies[4].pitch=10 deg",
-                                       "bodies[5].pitch=10 deg",
+                                       "bodies[3-5].pitch=10 deg",
                                        "bodies[2].joint.speed=0 rpm",
                                        NULL};
     built f = open_turbine(sets);
@@ -50,13 +42,8 @@ TEST(law_brakes_unsteered_blades_only) {
         assert_true(channel(&f, "RotSpeed") > 0);
     }
     bough_arena_destroy(f.arena);
-    static const char *const turning[] = {RIGID,
-                                          "aero.wind.speed=8 m/s",
-                                          "control.pitch=false",
-                                          "bodies[3].pitch=2 deg",
-                                          "bodies[4].pitch=2 deg",
-                                          "bodies[5].pitch=2 deg",
-                                          NULL};
+    static const char *const turning[] = {RIGID, "aero.wind.speed=8 m/s", "control.pitch=false",
+                                          "bodies[3-5].pitch=2 deg", NULL};
     f = open_turbine(turning);
     run_until(&f, 0.04);
     double speed = channel(&f, "GenSpeed") * BOUGH_PI / 30;

@@ -8,9 +8,7 @@
 
 static const char turbine[] = "apps/turbine/land.yaml";
 
-#define FEW                                                                                                  \
-    "simulation.threads=1", "bodies[0].rod.segments=10", "bodies[4].rod.segments=12",                        \
-        "bodies[5].rod.segments=12", "bodies[6].rod.segments=12"
+#define FEW "simulation.threads=1", "bodies[0].rod.segments=10", "bodies[4-6].rod.segments=12"
 #define DRAG "aero.ramp=[0 s, 0 s]", "aero.tower.body=tower", "aero.tower.drag=[0.8]"
 
 // ½ρ c V² ∫D dz of the scene's tower, at 20 m/s [N].

@@ -145,9 +145,7 @@ TEST(parked_turbine_stays_at_rest) {
                           "bodies[2].joint={kind: revolute, parent: nacelle, axis: x, placement: "
                           "[move z 89.6 m, move x -5 m], motion: {angle: 0}}",
                           "aero.ramp=[0, 0]",
-                          "bodies[3].rod.segments=24",
-                          "bodies[4].rod.segments=24",
-                          "bodies[5].rod.segments=24",
+                          "bodies[3-5].rod.segments=24",
                           NULL};
     check_arena(arena);
     bough_simulation *s = scene_build(arena, runup, sets);
@@ -166,8 +164,7 @@ TEST(parked_turbine_stays_at_rest) {
 
 // With tower, yaw drive and drive train.
 TEST(turbine_on_its_tower_stays_at_rest) {
-    const char *sets[] = {"bodies[0].rod.segments=8", "bodies[4].rod.segments=8", "bodies[5].rod.segments=8",
-                          "bodies[6].rod.segments=8", NULL};
+    const char *sets[] = {"bodies[0].rod.segments=8", "bodies[4-6].rod.segments=8", NULL};
     check_arena(arena);
     bough_simulation *s = scene_build(arena, "apps/turbine/parked.yaml", sets);
     size_t n = (size_t)s->master->assembly->n_state;
