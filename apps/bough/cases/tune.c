@@ -138,18 +138,18 @@ static bough_status measure(const bough_tune_state *t, bool shares, bough_tune_p
 
 bool bough_tune_ended(const bough_tune_point *p) { return bough_is_ok(&p->outcome) && p->cpu > 0; }
 
-static bool tune_meets(const bough_tune_state *t, const bough_tune_point *p) {
+static bool meets_error(const bough_tune_state *t, const bough_tune_point *p) {
     return bough_tune_ended(p) && p->error <= t->error;
 }
 
 static bool beats(const bough_tune_state *t, const bough_tune_point *a, const bough_tune_point *b) {
-    bool meets = tune_meets(t, a), other = tune_meets(t, b);
+    bool meets = meets_error(t, a), other = meets_error(t, b);
     if (meets != other) return meets;
     return meets ? a->cpu < b->cpu : a->error < b->error;
 }
 
 // Notes the front and the chosen point.
-static void tune_choose(bough_tune_state *t) {
+static void choose(bough_tune_state *t) {
     t->chosen = -1;
     for (int i = 0; i < t->n; i++) {
         bough_tune_point *p = &t->point[i];
@@ -219,7 +219,7 @@ static bough_status try(bough_tune_state *t, const bough_tune_settings *s, bool 
     *at = t->n++;
     t->point[*at] = (bough_tune_point){.settings = *s, .outcome = bough_ok()};
     bough_status status = measure(t, shares, &t->point[*at]);
-    tune_choose(t);
+    choose(t);
     if (bough_is_ok(&status)) bough_tune_print(t, *at, t->options->stream);
     return status;
 }
@@ -266,7 +266,7 @@ static bough_status descend(bough_tune_state *t, bough_tune_settings *s) {
         bough_status status = try(t, s, true, &at);
         if (!bough_is_ok(&status) || at < 0) return status;
         const bough_tune_point *p = &t->point[at];
-        bool meets = tune_meets(t, p);
+        bool meets = meets_error(t, p);
         if (!bough_tune_ended(p) || !p->shared || (k > 0 && t->n == n)) break;
         if (meets ? p->error > close_to * t->error : !(p->error < much_more * before)) break;
         if (!meets && p->error > hardly_less * before) aimed *= 0.6;
@@ -352,12 +352,13 @@ static bough_status time_again(bough_tune_state *t) {
     for (int k = 0; k < 2; k++) {
         for (int i = 0; i < t->n; i++) {
             bough_tune_point *p = &t->point[i];
-            if (!p->best && !p->settings.own && !(tune_meets(t, p) && p->cpu < 1.3 * t->point[t->chosen].cpu))
+            if (!p->best && !p->settings.own &&
+                !(meets_error(t, p) && p->cpu < 1.3 * t->point[t->chosen].cpu))
                 continue;
             BOUGH_TRY(measure_time(t, p));
         }
     }
-    tune_choose(t);
+    choose(t);
     return bough_ok();
 }
 
@@ -392,7 +393,7 @@ static bough_status conclude(const bough_tune_state *t) {
     fprintf(t->options->stream, "\n");
     bough_tune_print_settings(t, t->options->stream);
     print_equal(t);
-    if (tune_meets(t, p)) return bough_ok();
+    if (meets_error(t, p)) return bough_ok();
     bool moves = p->motion > t->error;
     return bough_fail(
         BOUGH_FAILED,

@@ -32,7 +32,7 @@ static void warn_of_force(const bough_run *run, char text[BOUGH_ERROR_WARNING]) 
 
 // getrusage alone would not do: on Linux its figure survives exec, so that a large program that
 // starts this one passes its own memory on.
-static long long bough_peak_memory(void) {
+static long long peak_memory(void) {
     long long kilobytes = 0;
     char line[128];
     FILE *file = fopen("/proc/self/status", "r");
@@ -185,7 +185,7 @@ static void write_cost(bough_summary *s, const bough_run_command *command) {
     bough_summary_number(s, "cpu_s", run->cpu_s);
     bough_summary_number(s, "build_s", command->build_s);
     bough_summary_number(s, "real_time_factor", real_time_factor(run));
-    bough_summary_integer(s, "peak_memory_bytes", bough_peak_memory());
+    bough_summary_integer(s, "peak_memory_bytes", peak_memory());
     bough_summary_integer(s, "model_bytes", (long long)bough_arena_bytes(command->arena));
 }
 
@@ -428,7 +428,7 @@ static void tell_run(const bough_run_command *command) {
     for (int i = 0; i < command->options->common.set.n; i++)
         printf(", %s", command->options->common.set.text[i]);
     printf("\nspeed: %.3g s, %.*f times real time, %.0f MB\n", run->wall_s, factor < 10 ? 2 : 0, factor,
-           (double)bough_peak_memory() / 1e6);
+           (double)peak_memory() / 1e6);
     if (!bough_is_ok(&run->outcome)) printf("recorded: %ld rows\n", bough_recorder_rows(command->recorder));
 }
 
