@@ -42,7 +42,8 @@ static const bough_key structure_keys[] = {
      .help = "extent along z; default the last span, required with one station"},
     {KEY(VECTOR, damping), .count = 6, UNIT(TIME), .range = ">= 0", .fallback = zero6,
      .example = "[0, 0, 0, 3 ms, 3 ms, 3 ms]",
-     .help = "for each strain: stress = stiffness (strain + damping x strain rate)"},
+     .help = "for each strain: stress = stiffness (strain + damping x strain rate); a mode of frequency f has the damping "
+             "ratio pi f damping"},
     {NAMED("stations", LIST), AT(station), .of = &station_schema, .count = 1, .required = true,
      COUNT_AT(n_station),
      .help = "sections along the span, with linear interpolation; one station: uniform rod"},
