@@ -156,11 +156,13 @@ static void print_coupling(const bough_simulation *s) {
     char text[BOUGH_SCHEME_TEXT];
     bough_scheme_describe(scheme, &m->coupling->options, text);
     printf("coupling: %s (%s)\n", text, scheme->summary);
-    printf("ports: %d, each %d motions and gravities to the rod, %d forces and moments back\n",
+    printf("ports: %d, each %d components of velocity and gravity to the rod, %d of force and moment back\n",
            s->tree->n_ports, BOUGH_PORT_OUTPUTS, BOUGH_PORT_INPUTS);
     if (s->n_end > 0) {
-        printf("ends of rods that carry: %d, each %d motions to the rod, %d forces and moments back\n",
-               s->n_end, BOUGH_END_OUTPUTS, BOUGH_END_INPUTS);
+        printf(
+            "ends of rods that carry: %d, each %d components of velocity and pose to the rod, %d of force and "
+            "moment back\n",
+            s->n_end, BOUGH_END_OUTPUTS, BOUGH_END_INPUTS);
     }
     printf("duration: %.9g s\n", m->duration);
     printf("macro_step: %.9g s\n", m->macro_step);
