@@ -65,13 +65,13 @@ double bough_error_relative(const bough_companion *c, int channel, double error)
 
 static const double least_motion = 1e-12; // [m], [rad], [m/s], [rad/s]: less is rounding wherever it is
 
-// The largest range of the channels of that kind, in SI units.
-static double own_kind_range(const bough_companion *c, bough_quantity_kind kind) {
+// The largest range or value of the channels of that kind, in SI units.
+static double largest_of(const bough_companion *c, bough_quantity_kind kind,
+                         double (*size)(const bough_companion *c, int channel)) {
     double largest = 0;
     for (int i = 0; i < c->channels->count; i++) {
         const bough_channel *channel = &c->channels->channel[i];
-        if (channel->kind == kind && !channel->sampled)
-            largest = fmax(largest, channel->si * own_range(c, i));
+        if (channel->kind == kind && !channel->sampled) largest = fmax(largest, channel->si * size(c, i));
     }
     return largest;
 }
@@ -79,10 +79,10 @@ static double own_kind_range(const bough_companion *c, bough_quantity_kind kind)
 // A rod that bends by a length turns its sections by an angle of that over its own length, beside which its
 // twist is judged, too.
 static double kind_range(const bough_companion *c, bough_quantity_kind kind) {
-    double range = own_kind_range(c, kind);
+    double range = largest_of(c, kind, own_range);
     bool angle = kind == BOUGH_KIND_ANGLE, rate = kind == BOUGH_KIND_ANGULAR_VELOCITY;
     if (!(c->length > 0) || !(angle || rate)) return range;
-    return fmax(range, own_kind_range(c, angle ? BOUGH_KIND_LENGTH : BOUGH_KIND_VELOCITY) / c->length);
+    return fmax(range, largest_of(c, angle ? BOUGH_KIND_LENGTH : BOUGH_KIND_VELOCITY, own_range) / c->length);
 }
 
 // Of all motion, whatever its kind: where nothing moves, the ranges are those of rounding.
@@ -119,13 +119,8 @@ bool bough_error_counts(const bough_companion *c, int i) {
 static const double much = 0.1;
 
 bool bough_error_shows(const bough_companion *c, int channel, double difference) {
-    const bough_channel *list = c->channels->channel;
-    double largest = 0;
-    for (int i = 0; i < c->channels->count; i++) {
-        if (list[i].kind == list[channel].kind && !list[i].sampled)
-            largest = fmax(largest, list[i].si * largest_value(c, i));
-    }
-    return list[channel].si * difference > much * largest;
+    const bough_channel *own = &c->channels->channel[channel];
+    return own->si * difference > much * largest_of(c, own->kind, largest_value);
 }
 
 // -- the verdict ----------------------------------------------------------------------------------
