@@ -74,22 +74,17 @@ static void check_air(bough_simulation *s) {
     const bough_rotor *rotor = bough_aero_link_rotor(s->aero);
     double time = bough_aero_link_evaluated(s->aero);
     const bough_rotor_data *data = bough_aero_link_data(s->aero, NULL);
-    if (!(time > s->validity->looked)) return;
-    s->validity->looked = time;
+    bough_validity *v = s->validity;
+    if (!(time > v->looked)) return;
+    v->looked = time;
     for (int b = 0; b < s->scene->turbine.n_blade; b++) {
         bough_rotor_extremes x = bough_rotor_look(rotor, data, b);
         int body = s->scene->turbine.blade[b];
-        if (x.outside_table) {
-            validity_pass(s->validity, BOUGH_LIMIT_ATTACK, body, time, x.alpha * (180 / BOUGH_PI));
-        }
-        if (x.speed > most_mach * speed_of_sound) {
-            validity_pass(s->validity, BOUGH_LIMIT_MACH, body, time, x.speed);
-        }
-        double missed = bough_aero_link_missed(s->aero, b);
-        if (missed > most_missed) validity_pass(s->validity, BOUGH_LIMIT_SAMPLES, body, time, missed);
-        if (x.distance < 1) {
-            validity_pass(s->validity, BOUGH_LIMIT_TOWER, body, time, x.distance);
-        }
+        double angle = x.alpha * (180 / BOUGH_PI), missed = bough_aero_link_missed(s->aero, b);
+        if (x.outside_table) validity_pass(v, BOUGH_LIMIT_ATTACK, body, time, angle);
+        if (x.speed > most_mach * speed_of_sound) validity_pass(v, BOUGH_LIMIT_MACH, body, time, x.speed);
+        if (missed > most_missed) validity_pass(v, BOUGH_LIMIT_SAMPLES, body, time, missed);
+        if (x.distance < 1) validity_pass(v, BOUGH_LIMIT_TOWER, body, time, x.distance);
     }
 }
 
