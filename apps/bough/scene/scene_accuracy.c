@@ -17,9 +17,7 @@ static const double tree_error = 5000; // the tree beside them: it is cheap, and
 static const double fine_rtol = 1e-6;  // below it BDF's high orders serve better
 static const double usual_step = 5e-3; // longest one of a rod's own method [s]; order 2
 
-static bool has_mesh(const bough_scene_body *b) { return b->rod.node && b->fidelity != BOUGH_SCENE_RIGID; }
-
-static bool is_named(const bough_node *map, const char *key) { return map && bough_node_find(map, key); }
+static bool is_named(const bough_node *map, const char *key) { return bough_node_find(map, key) != NULL; }
 
 static void choose_micro(double accuracy, bough_scene_solver *micro) {
     if (!is_named(micro->node, "rtol")) micro->rtol = accuracy / rod_error;
@@ -202,7 +200,7 @@ static void limit_step(bough_scene *s) {
     if (!is_whole(s) || !reads_step || is_named(master->node, "step")) return;
     double step = (double)INFINITY, least = usual_step * sqrt(s->simulation.accuracy / usual);
     for (int i = 0; i < s->n_body; i++) {
-        if (!has_mesh(&s->body[i])) continue;
+        if (!bough_scene_has_mesh(&s->body[i])) continue;
         double part = second_period(&s->body[i].rod) / parts_of_period * scale_of_time(s);
         step = fmin(step, fmax(part, least));
     }
@@ -214,7 +212,7 @@ static void limit_step(bough_scene *s) {
 static void expect_mesh(const bough_scene *s, bough_scene_expectation *e) {
     for (int i = 0; i < s->n_body; i++) {
         const bough_scene_rod *rod = &s->body[i].rod;
-        if (!has_mesh(&s->body[i])) continue;
+        if (!bough_scene_has_mesh(&s->body[i])) continue;
         double coarser = (double)usual_segments(s, rod->grading > 0) / rod->n_segment;
         if (coarser * coarser <= e->error[0]) continue;
         e->error[0] = coarser * coarser;

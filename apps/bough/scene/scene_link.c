@@ -77,6 +77,13 @@ int bough_link_body(bough_schema_reader *r, const bough_scene *s, const bough_no
     return BOUGH_UNRESOLVED;
 }
 
+// The same, or the ground; it too where the name is left out, which is an error elsewhere.
+static int link_frame(bough_schema_reader *r, const bough_scene *s, const bough_node *node, const char *key,
+                      const char *name) {
+    bool ground = name == NULL || strcmp(name, "ground") == 0;
+    return ground ? BOUGH_GROUND : bough_link_body(r, s, node, key, name);
+}
+
 // -- bodies ---------------------------------------------------------------------------------------
 
 // Names go into channels and file names.
@@ -100,11 +107,7 @@ static void link_parent(bough_schema_reader *r, bough_scene *s, int i) {
     joint->parent = BOUGH_UNRESOLVED;
     if (joint->parent_name == NULL) return;
     bough_link_at(r, "bodies[%d].joint", i);
-    if (strcmp(joint->parent_name, "ground") == 0) {
-        joint->parent = BOUGH_GROUND;
-        return;
-    }
-    joint->parent = bough_link_body(r, s, joint->node, "parent", joint->parent_name);
+    joint->parent = link_frame(r, s, joint->node, "parent", joint->parent_name);
     if (joint->parent >= 0 && bough_scene_is_flexible(&s->body[joint->parent]) &&
         s->body[joint->parent].fidelity != BOUGH_SCENE_ROD) {
         bool fmu = s->body[joint->parent].fidelity == BOUGH_SCENE_FMU;
@@ -231,9 +234,7 @@ static void link_ends(bough_schema_reader *r, const bough_scene *s, const bough_
                       const char *const name[2], int body[2]) {
     static const char *const keys[] = {"from", "to"};
     for (int end = 0; end < 2; end++) {
-        body[end] = BOUGH_GROUND;
-        if (name[end] == NULL || strcmp(name[end], "ground") == 0) continue;
-        body[end] = bough_link_body(r, s, item, keys[end], name[end]);
+        body[end] = link_frame(r, s, item, keys[end], name[end]);
         if (body[end] < 0 || !bough_scene_is_flexible(&s->body[body[end]])) continue;
         bough_schema_error(r, item, keys[end],
                            "'%s' is no rigid body; it must be one, which may hang on a rod and "
@@ -268,9 +269,7 @@ static void link_bushing(bough_schema_reader *r, const bough_scene *s, void *ite
 
 static void link_marker(bough_schema_reader *r, const bough_scene *s, void *item) {
     bough_scene_marker *marker = item;
-    marker->body = BOUGH_GROUND;
-    if (marker->body_name == NULL || strcmp(marker->body_name, "ground") == 0) return;
-    marker->body = bough_link_body(r, s, marker->node, "body", marker->body_name);
+    marker->body = link_frame(r, s, marker->node, "body", marker->body_name);
     if (marker->body < 0 || !bough_scene_is_flexible(&s->body[marker->body])) return;
     bough_schema_error(r, marker->node, "body",
                        s->body[marker->body].fidelity == BOUGH_SCENE_FMU
