@@ -56,8 +56,13 @@ const bough_scheme *bough_scheme_find(const char *name) {
     return index < 0 ? NULL : schemes[index];
 }
 
+const bough_scheme *bough_scheme_at(int index) {
+    return index >= 0 && index < N_SCHEME ? schemes[index] : NULL;
+}
+
 const char *bough_scheme_name(int index) {
-    return index >= 0 && index < N_SCHEME ? schemes[index]->name : NULL;
+    const bough_scheme *scheme = bough_scheme_at(index);
+    return scheme ? scheme->name : NULL;
 }
 
 const bough_scheme *bough_scheme_advised(void) {

@@ -82,7 +82,8 @@ bough_scheme_options bough_scheme_options_default(void);
 // The scheme of that name; NULL when unknown.
 const bough_scheme *bough_scheme_find(const char *name);
 
-// Name of the scheme at that place of the table, for messages and help; NULL beyond its end.
+// The scheme at that place of the table, and its name; NULL beyond its end.
+const bough_scheme *bough_scheme_at(int index);
 const char *bough_scheme_name(int index);
 int bough_scheme_index(const char *name); // −1: there is none
 

@@ -36,7 +36,7 @@ int bough_tune_segments(const bough_scene *scene, int body, const bough_tune_set
 static void apply(const bough_tune_state *t, const bough_tune_settings *s, bough_scene *scene) {
     bough_scene_simulation *simulation = &scene->simulation;
     if (!s->own) {
-        bool whole = bough_scheme_find(bough_scheme_name(s->scheme))->one_system;
+        bool whole = bough_scheme_at(s->scheme)->one_system;
         bough_scene_solver *solver = whole ? &simulation->master : &simulation->micro;
         simulation->coupling.scheme = s->scheme;
         solver->solver = s->solver;
@@ -324,7 +324,7 @@ static bough_status vary_best(bough_tune_state *t) {
 
 static bough_tune_settings settings_of(const bough_scene *scene) {
     const bough_scene_simulation *s = &scene->simulation;
-    bool whole = bough_scheme_find(bough_scheme_name(s->coupling.scheme))->one_system;
+    bool whole = bough_scheme_at(s->coupling.scheme)->one_system;
     const bough_scene_solver *solver = whole ? &s->master : &s->micro;
     return (bough_tune_settings){.own = true,
                                  .scheme = s->coupling.scheme,
@@ -340,7 +340,7 @@ static bough_tune_settings settings_of(const bough_scene *scene) {
 static bough_tune_settings start_of(const bough_tune_state *t) {
     bough_tune_settings s = settings_of(t->scene);
     s.own = false;
-    if (bough_scheme_find(bough_scheme_name(s.scheme))->one_system) return s;
+    if (bough_scheme_at(s.scheme)->one_system) return s;
     s.scheme = bough_scheme_index(BOUGH_SCHEME_DEFAULT);
     if (s.solver != BOUGH_ROSENBROCK && s.solver != BOUGH_GENERALIZED_ALPHA) s.step = 0;
     s.solver = BOUGH_AUTOMATIC;
@@ -365,7 +365,7 @@ static bough_status time_again(bough_tune_state *t) {
 static bough_status search(bough_tune_state *t) {
     bough_tune_settings own = settings_of(t->scene), s = start_of(t);
     int at;
-    BOUGH_TRY(try(t, &own, bough_scheme_find(bough_scheme_name(own.scheme))->one_system, &at));
+    BOUGH_TRY(try(t, &own, bough_scheme_at(own.scheme)->one_system, &at));
     BOUGH_TRY(descend(t, &s));
     BOUGH_TRY(vary_best(t));
     return time_again(t);

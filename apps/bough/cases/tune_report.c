@@ -126,9 +126,7 @@ static void print_solver(const bough_tune_settings *s, FILE *stream) {
     fputc('}', stream);
 }
 
-static bool is_whole(const bough_tune_settings *s) {
-    return bough_scheme_find(bough_scheme_name(s->scheme))->one_system;
-}
+static bool is_whole(const bough_tune_settings *s) { return bough_scheme_at(s->scheme)->one_system; }
 
 static const char *name_in_text(const bough_scene *scene, int body) {
     const bough_node *name = bough_node_find(scene->body[body].node, "name");

@@ -95,7 +95,7 @@ static bough_status build_tree(bough_builder *b) {
     bough_integrator_options master = solver_options(&scene->simulation.master);
     master.most_steps = MOST_TREE_STEPS;
     // the tree's own method is never asked, and the scheme's may not suit it
-    if (bough_scheme_find(scheme_options(scene).name)->one_system) master.kind = BOUGH_ROSENBROCK;
+    if (bough_scheme_at(scene->simulation.coupling.scheme)->one_system) master.kind = BOUGH_ROSENBROCK;
     bough_system tree = bough_tree_system_create(b->arena, s->tree, "tree");
     return bough_member_create(b->arena, &tree, 0, &master, &s->leader);
 }

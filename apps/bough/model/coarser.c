@@ -164,7 +164,7 @@ static bool has_jumps(const bough_scene *scene) {
 // part.
 static double usual_share(const bough_scene *scene) {
     const bough_scene_coupling *x = &scene->simulation.coupling;
-    const bough_scheme *scheme = bough_scheme_find(bough_scheme_name(x->scheme));
+    const bough_scheme *scheme = bough_scheme_at(x->scheme);
     bool air = scene->aero.node != NULL, held = air && scene->aero.hold == BOUGH_SCENE_CONSTANT;
     if (scheme->one_system) return held ? 0.5 : air ? 0.25 : 0.4;
     bool whole = scheme->explicit_forces || scheme->repeats || has_jumps(scene) ||

@@ -340,7 +340,7 @@ static void advise_air(const bough_scene *scene, double factor, char text[ADVICE
 
 static void advise_time(const bough_scene *s, double factor, char text[ADVICE]) {
     const bough_scene_simulation *x = &s->simulation;
-    const bough_scheme *scheme = bough_scheme_find(bough_scheme_name(x->coupling.scheme));
+    const bough_scheme *scheme = bough_scheme_at(x->coupling.scheme);
     double shorter = pow(factor, -1 / time_order) / margin;
     if (!scheme->one_system) {
         double halvings =
@@ -368,7 +368,7 @@ static void advise(const bough_scene *scene, int kind, double factor, char text[
 static const char *cause_name(const bough_scene *scene, int kind) {
     if (kind == BOUGH_SHARE_MESH) return "the mesh";
     if (kind == BOUGH_SHARE_AIR) return "the sampling of the air";
-    bool one_system = bough_scheme_find(bough_scheme_name(scene->simulation.coupling.scheme))->one_system;
+    bool one_system = bough_scheme_at(scene->simulation.coupling.scheme)->one_system;
     return one_system ? "the integrator's steps" : "the coupling or the sub-solvers' steps";
 }
 

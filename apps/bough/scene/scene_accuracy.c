@@ -39,8 +39,8 @@ static bool is_linkage(const bough_scene *s) {
 
 // Whether the scheme integrates all bodies together; a word that is no scheme is reported.
 static bool is_whole(const bough_scene *s) {
-    const char *scheme = bough_scheme_name(s->simulation.coupling.scheme);
-    return scheme && bough_scheme_find(scheme)->one_system;
+    const bough_scheme *scheme = bough_scheme_at(s->simulation.coupling.scheme);
+    return scheme && scheme->one_system;
 }
 
 static void choose_master(bough_scene *scene) {

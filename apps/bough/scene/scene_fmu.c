@@ -129,11 +129,11 @@ void bough_scene_check_control_fmu(bough_schema_reader *r, void *item) {
 
 // The names of the schemes that take the FMU, "A, B or C".
 static const char *list_schemes(const bough_scene_fmu *fmu, char text[BOUGH_SCHEME_TEXT]) {
-    const char *found[BOUGH_SCHEME_TEXT / 2] = {0}, *name;
+    const char *found[BOUGH_SCHEME_TEXT / 2] = {0};
+    const bough_scheme *s;
     int n = 0, length = 0;
-    for (int i = 0; (name = bough_scheme_name(i)) != NULL; i++) {
-        const bough_scheme *s = bough_scheme_find(name);
-        if (s->foreign && (!s->repeats || fmu->model.description.restores)) found[n++] = name;
+    for (int i = 0; (s = bough_scheme_at(i)) != NULL; i++) {
+        if (s->foreign && (!s->repeats || fmu->model.description.restores)) found[n++] = s->name;
     }
     for (int i = 0; i < n; i++) {
         const char *before = i == 0 ? "" : i < n - 1 ? ", " : " or ";
@@ -147,8 +147,8 @@ static const char *list_schemes(const bough_scene_fmu *fmu, char text[BOUGH_SCHE
 static void check_scheme(bough_schema_reader *r, const bough_scene *s, const bough_scene_body *b) {
     const bough_scene_coupling *coupling = &s->simulation.coupling;
     const bough_node *node = s->simulation.node;
-    if (coupling->scheme < 0) return;
-    const bough_scheme *scheme = bough_scheme_find(bough_scheme_name(coupling->scheme));
+    const bough_scheme *scheme = bough_scheme_at(coupling->scheme);
+    if (scheme == NULL) return;
     char expected[BOUGH_SCHEME_TEXT];
     if (!scheme->foreign) {
         bough_schema_error(r, node, "coupling.scheme",

@@ -131,6 +131,7 @@ bool bough_fmu_scaled(const bough_fmu_description *d, const bough_fmu_variable *
 
 // clang-format off
 #define ZERO3 "[0, 0, 0]"
+#define AXIS CHOICES([BOUGH_SCENE_X] = "x", [BOUGH_SCENE_Y] = "y", [BOUGH_SCENE_Z] = "z")
 #define WIND_SPEED_RANGE "[0, 150]"
 #define PLACEMENT_FORM "list of 'move x|y|z LENGTH' and 'rotate x|y|z ANGLE'"
 

@@ -100,13 +100,11 @@ static const bough_key joint_keys[] = {
      .example = "[rotate x 120 deg, move z 1.5 m]",
      .help = "from the parent's frame to the joint's frame; each step is in the frame that the "
              "previous steps give"},
-    {KEY(CHOICE, axis),
-     CHOICES([BOUGH_SCENE_X] = "x", [BOUGH_SCENE_Y] = "y", [BOUGH_SCENE_Z] = "z"), .required = true,
+    {KEY(CHOICE, axis), AXIS, .required = true,
      WHEN("kind", "revolute|prismatic|cylindrical|universal|planar"),
      .help = "axis of the motion; of a universal joint the first axis, fixed in the parent; of a "
              "planar joint the normal of the plane"},
-    {KEY(CHOICE, second_axis),
-     CHOICES([BOUGH_SCENE_X] = "x", [BOUGH_SCENE_Y] = "y", [BOUGH_SCENE_Z] = "z"), .required = true, WHEN("kind", "universal"),
+    {KEY(CHOICE, second_axis), AXIS, .required = true, WHEN("kind", "universal"),
      .help = "second axis, which rotates about the first"},
     {NAMED("angle", NUMBER), AT(coordinates), UNIT(ANGLE), .fallback = "0", WHEN("kind", "revolute"),
      .example = "90 deg", .help = "initial angle"},

@@ -121,12 +121,10 @@ static const bough_key closure_keys[] = {
      .help = "placement of the joint's frame in that body's frame; the two frames must almost "
              "coincide at the start: small motions of all joints close the rest, and joints "
              "without a speed follow"},
-    {KEY(CHOICE, axis),
-     CHOICES([BOUGH_SCENE_X] = "x", [BOUGH_SCENE_Y] = "y", [BOUGH_SCENE_Z] = "z"), .required = true,
+    {KEY(CHOICE, axis), AXIS, .required = true,
      WHEN("kind", "revolute|prismatic|cylindrical|universal|planar"),
      .help = "axis of the motion, as of a joint; of a universal joint in the frame of 'from'"},
-    {KEY(CHOICE, second_axis),
-     CHOICES([BOUGH_SCENE_X] = "x", [BOUGH_SCENE_Y] = "y", [BOUGH_SCENE_Z] = "z"), .required = true, WHEN("kind", "universal"),
+    {KEY(CHOICE, second_axis), AXIS, .required = true, WHEN("kind", "universal"),
      .help = "normal to the axis, in the frame of 'to'"},
 };
 #undef FILLS

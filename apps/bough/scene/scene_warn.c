@@ -72,18 +72,17 @@ static void warn_output(const bough_scene_simulation *s, FILE *stream) {
 }
 
 static void warn_scheme(const bough_scene_simulation *s, FILE *stream) {
-    const char *name = bough_scheme_name(s->coupling.scheme);
-    const bough_scheme *scheme = bough_scheme_find(name);
+    const bough_scheme *scheme = bough_scheme_at(s->coupling.scheme), *reader;
     const bough_scheme_key *key;
     for (int i = 0; (key = bough_scheme_key_at(i)) != NULL; i++) {
         const bough_node *given = find_path(s->node, key->path);
         if (bough_scheme_reads(scheme, key->option)) continue;
         if (!is_unused(given, find_path(s->node, "coupling.scheme"))) continue;
         char readers[160] = "";
-        for (int k = 0; (name = bough_scheme_name(k)) != NULL; k++) {
-            if (!bough_scheme_reads(bough_scheme_find(name), key->option)) continue;
+        for (int k = 0; (reader = bough_scheme_at(k)) != NULL; k++) {
+            if (!bough_scheme_reads(reader, key->option)) continue;
             size_t used = strlen(readers);
-            snprintf(readers + used, sizeof readers - used, "%s%s", used == 0 ? "" : ", ", name);
+            snprintf(readers + used, sizeof readers - used, "%s%s", used == 0 ? "" : ", ", reader->name);
         }
         warn(given, stream, "simulation.%s: not used with 'scheme: %s', only with %s", key->path,
              scheme->name, readers);
@@ -105,13 +104,13 @@ static void warn_solver(const bough_scene_solver *s, const char *path, FILE *str
 
 static void warn_micro(const bough_scene *scene, const bough_scene_body *b, FILE *stream) {
     const bough_scene_simulation *s = &scene->simulation;
-    const char *scheme = bough_scheme_name(s->coupling.scheme);
+    const bough_scheme *scheme = bough_scheme_at(s->coupling.scheme);
     char path[64];
     snprintf(path, sizeof path, "body '%.40s': micro", b->name);
-    if (bough_scheme_reads(bough_scheme_find(scheme), BOUGH_READS_MEMBERS)) {
+    if (bough_scheme_reads(scheme, BOUGH_READS_MEMBERS)) {
         warn_solver(&b->micro, path, stream);
     } else if (is_unused(b->micro.node, find_path(s->node, "coupling.scheme"))) {
-        warn(b->micro.node, stream, "%s: not used with 'scheme: %s'", path, scheme);
+        warn(b->micro.node, stream, "%s: not used with 'scheme: %s'", path, scheme->name);
     }
 }
 
@@ -130,7 +129,6 @@ void bough_scene_warn(const bough_scene *scene, FILE *stream) {
     warn_output(s, stream);
     warn_scheme(s, stream);
     warn_solver(&s->master, "simulation.master", stream);
-    bool members =
-        bough_scheme_reads(bough_scheme_find(bough_scheme_name(s->coupling.scheme)), BOUGH_READS_MEMBERS);
+    bool members = bough_scheme_reads(bough_scheme_at(s->coupling.scheme), BOUGH_READS_MEMBERS);
     if (members) warn_solver(&s->micro, "simulation.micro", stream);
 }
