@@ -60,7 +60,6 @@ static const bough_schema study_schema = {
 void *bough_blade_models_read(bough_arena *arena, const char *path, const bough_node *root,
                               bough_errors *errors) {
     bough_blade_models *s = bough_arena_take(arena, sizeof *s);
-    if (!s) return NULL;
     bough_schema_reader reader = {.arena = arena, .errors = errors, .directory = ""};
     bough_schema_read(&reader, &study_schema, root, s);
     if (errors->n > 0) return s;
@@ -113,7 +112,6 @@ static bough_status make_run(bough_arena *arena, const bough_blade_models *s, bo
                          .interval = 5 * scene->simulation.macro_step};
     run->measure = bough_arena_take(arena, BOUGH_BLADE_MODELS_MEASURES * sizeof *run->measure);
     run->channel = bough_arena_take(arena, (size_t)(4 * n_blade + 1) * sizeof *run->channel);
-    if (!run->measure || !run->channel) return bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory");
     for (int k = 0; k < BOUGH_BLADE_MODELS_MEASURES; k++) set_measure(arena, k, n_blade, run);
     return status;
 }

@@ -14,7 +14,6 @@ bough_status bough_model_scene_sets(bough_arena *arena, const char *scene, const
     int most = given->n + model->set.n * read->n_body;
     sets->n = given->n;
     sets->item = bough_arena_take(arena, (size_t)(most + 1) * sizeof *sets->item);
-    if (!sets->item) return bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory");
     for (int k = 0; k < given->n; k++) sets->item[k] = given->item[k];
     for (int i = 0; i < read->n_body; i++) {
         bool beam = read->body[i].rod.node && read->body[i].fidelity != BOUGH_SCENE_RIGID;
@@ -65,7 +64,6 @@ static bough_status find_modal(bough_arena *arena, bough_simulation *s, const bo
     double time = s->scene->simulation.duration; // loads have grown
     int found = 0;
     double *state = bough_arena_doubles(arena, (size_t)m->n_state);
-    if (!state) return bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory");
     bough_status status = bough_modal_steady(beam->modal, time, input, arena, state);
     if (bough_is_ok(&status)) {
         status = bough_modal_frequencies(arena, beam->modal, time, input, state,

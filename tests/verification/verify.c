@@ -58,8 +58,7 @@ static void read_set(bough_schema_reader *r, const bough_node *node, void *field
                            bough_node_shown(node, shown));
         return;
     }
-    x->set.item = bough_arena_take(r->arena, ((size_t)node->n + 1) * sizeof *x->set.item);
-    if (!x->set.item) return;
+    x->set.item = bough_arena_take(r->arena, (size_t)node->n * sizeof *x->set.item);
     for (int i = 0; i < node->n; i++) {
         text t = {line, sizeof line};
         put(&t, node->key[i]->text);
@@ -76,7 +75,7 @@ static const char quantity_form[] =
     "'tip x|y|z|ux|uy|uz|rx|ry|rz', 'frequency N', 'damping N', 'growth', 'CHANNEL at TIME', "
     "'largest CHANNEL', 'smallest CHANNEL', 'mean CHANNEL from TIME', 'amplitude CHANNEL from "
     "TIME' once per turn of the rotor, 'drift of energy|momentum|"
-    "angular momentum|strain energy from TIME', 'evaluations per step'";
+    "angular momentum from TIME', 'evaluations per step'";
 
 static int word_index(const char *word, const char *const *words, int n) {
     for (int i = 0; i < n; i++) {
@@ -109,7 +108,7 @@ static bool parse_mode(const char *phrase, bough_verify_quantity *q) {
 }
 
 static bool parse_drift(const char *phrase, bough_verify_quantity *q) {
-    static const char *const names[] = {"energy", "momentum", "angular momentum", "strain energy"};
+    static const char *const names[] = {"energy", "momentum", "angular momentum"};
     char word[32] = "", why[160];
     const char *from = strstr(phrase, " from ");
     if (strncmp(phrase, "drift of ", 9) != 0 || !from || from < phrase + 9) return false;
@@ -279,30 +278,26 @@ static const bough_schema verify_schema = {
 
 // -- reading --------------------------------------------------------------------------------------
 
-void bough_verify_mesh(const bough_verify_case *x, int k, char line[160]) {
-    double value = x->mesh_of > 0 ? x->mesh_of / x->mesh[k] : x->mesh[k];
-    snprintf(line, 160, "%.120s=%.15g", x->mesh_key, value);
-}
-
-static void set_mesh(bough_arena *arena, bough_verify_case *x) {
-    for (int i = 0; i < x->n_mesh; i++) { // x.set has room for one more
-        char line[160];
-        bough_verify_mesh(x, i, line);
-        x->set.item[x->set.n] = bough_arena_string(arena, line);
+bough_status bough_verify_scene(bough_arena *arena, const bough_verify_case *x, int k, bough_errors *errors,
+                                bough_scene **scene) {
+    const char **set = bough_arena_take(arena, ((size_t)x->set.n + 1) * sizeof *set);
+    int n = x->set.n;
+    for (int i = 0; i < n; i++) set[i] = x->set.item[i];
+    if (x->n_mesh > 0) {
+        char mesh[160];
+        double value = x->mesh_of > 0 ? x->mesh_of / x->mesh[k] : x->mesh[k];
+        snprintf(mesh, sizeof mesh, "%.120s=%.15g", x->mesh_key, value);
+        set[n++] = bough_arena_string(arena, mesh);
     }
+    return bough_scene_read(arena, x->scene, set, n, errors, scene);
 }
 
-// The scene with its replacements on the first mesh; what is wrong there is reported at the case.
-static void check_scene(bough_arena *arena, bough_verify_case *x, bough_errors *errors) {
-    bough_arena *own = bough_arena_create();
-    if (!own) return;
+// The scene on the first mesh; what is wrong there is reported at the case.
+static void check_scene(bough_arena *arena, const bough_verify_case *x, bough_errors *errors) {
+    bough_arena *own = bough_arena_child(arena);
     bough_errors found = {.arena = own};
     bough_scene *scene;
-    if (!x->set.item) x->set.item = bough_arena_take(arena, sizeof *x->set.item);
-    if (x->set.item) {
-        set_mesh(arena, x);
-        bough_scene_read(own, x->scene, x->set.item, x->set.n + (x->n_mesh > 0), &found, &scene);
-    }
+    bough_verify_scene(own, x, 0, &found, &scene);
     for (int i = 0; i < found.n; i++) {
         const bough_error *e = &found.item[i];
         bough_errors_add(errors, x->node, x->name, "%.60s:%d: %.80s: %.200s", e->file, e->line, e->path,
@@ -313,7 +308,6 @@ static void check_scene(bough_arena *arena, bough_verify_case *x, bough_errors *
 
 void *bough_verify_read(bough_arena *arena, const char *path, const bough_node *root, bough_errors *errors) {
     bough_verify *v = bough_arena_take(arena, sizeof *v);
-    if (!v) return NULL;
     bough_schema_reader reader = {.arena = arena, .errors = errors, .directory = ""};
     bough_schema_read(&reader, &verify_schema, root, v);
     if (errors->n + errors->dropped > 0) return v;

@@ -34,7 +34,6 @@ typedef enum bough_verify_invariant {
     BOUGH_VERIFY_ENERGY, // kinetic, elastic and of gravity [J]
     BOUGH_VERIFY_MOMENTUM,
     BOUGH_VERIFY_ANGULAR_MOMENTUM, // about the ground's origin
-    BOUGH_VERIFY_STRAIN_ENERGY,    // "drift" is its largest share of the energy
     BOUGH_VERIFY_INVARIANTS,
 } bough_verify_invariant;
 
@@ -87,12 +86,13 @@ typedef struct bough_verify_result {
     double *value; // (n_expect), NaN where there is none
 } bough_verify_result;
 
-// The replacement "key=value" that mesh k of a case stands for.
-void bough_verify_mesh(const bough_verify_case *x, int k, char line[160]);
-
 // Reads the cases from the root of a study in the file `path`, and every scene with its
 // replacements; adds what is wrong to `errors`.
 void *bough_verify_read(bough_arena *arena, const char *path, const bough_node *root, bough_errors *errors);
+
+// Reads the scene of a case with its replacements, on mesh k (0 without meshes).
+bough_status bough_verify_scene(bough_arena *arena, const bough_verify_case *x, int k, bough_errors *errors,
+                                bough_scene **scene);
 
 // Does what a case says on mesh `k` (0 without meshes); `stop` as in the options. Failures are in
 // the result.

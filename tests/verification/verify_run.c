@@ -18,16 +18,7 @@
 static bough_status open_scene(bough_arena *arena, const bough_verify_case *x, int k, bough_run *run) {
     bough_errors errors = {.arena = arena};
     bough_scene *scene;
-    char mesh[160];
-    const char **set = bough_arena_take(arena, ((size_t)x->set.n + 1) * sizeof *set);
-    if (!set) return bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory");
-    for (int i = 0; i < x->set.n; i++) set[i] = x->set.item[i];
-    int n = x->set.n;
-    if (x->n_mesh > 0) {
-        bough_verify_mesh(x, k, mesh);
-        set[n++] = mesh;
-    }
-    BOUGH_TRY(bough_scene_read(arena, x->scene, set, n, &errors, &scene));
+    BOUGH_TRY(bough_verify_scene(arena, x, k, &errors, &scene));
     return bough_run_create(arena, scene, run);
 }
 
@@ -133,8 +124,7 @@ static bough_status do_modes(bough_arena *arena, const bough_verify_case *x, bou
 
 // Of the whole scene.
 typedef struct invariants {
-    double energy, strain_energy;
-    double motion_energy; // without gravity's
+    double energy, motion_energy; // the latter without gravity's
     bough_vec3 momentum, angular;
 } invariants;
 
@@ -144,7 +134,7 @@ typedef struct gauge {
     bough_rod_scratch *scratch;   // (n_beam)
 } gauge;
 
-static bool gauge_init(gauge *g, bough_arena *arena, bough_simulation *s) {
+static void gauge_init(gauge *g, bough_arena *arena, bough_simulation *s) {
     g->simulation = s;
     g->vertex = bough_arena_take(arena, (size_t)s->n_beam * sizeof *g->vertex);
     g->scratch = bough_arena_take(arena, (size_t)s->n_beam * sizeof *g->scratch);
@@ -155,7 +145,6 @@ static bool gauge_init(gauge *g, bough_arena *arena, bough_simulation *s) {
             bough_rod_scratch_init(&g->scratch[k], arena, bough_rod_body_model(s->beam[k].rod));
         }
     }
-    return true;
 }
 
 static void add_vertex(const bough_vertex_inertia *v, const bough_vertex_motion *m, bough_vec3 gravity,
@@ -180,9 +169,9 @@ static invariants measure(const gauge *g) {
     bough_simulation *s = g->simulation;
     bough_simulation_update(s);
     tree_sums tree = tree_sum(s->tree, s->view);
+    double strain_energy = tree.elastic;
     invariants sum = {.energy = tree.kinetic + tree.potential,
                       .motion_energy = tree.kinetic,
-                      .strain_energy = tree.elastic,
                       .momentum = tree.linear_momentum,
                       .angular = tree.angular_momentum};
     for (int k = 0; k < s->n_beam; k++) {
@@ -194,10 +183,10 @@ static invariants measure(const gauge *g) {
             add_vertex(&beam->def.inertia[i], &g->vertex[k][i], s->tree->gravity, &sum);
         bough_rod_gather(model, s->rod[beam->port].state, bough_simulation_rod_input(s, beam),
                          &g->scratch[k]);
-        sum.strain_energy += rod_elastic_energy(model, &g->scratch[k]);
+        strain_energy += rod_elastic_energy(model, &g->scratch[k]);
     }
-    sum.energy += sum.strain_energy;
-    sum.motion_energy += sum.strain_energy;
+    sum.energy += strain_energy;
+    sum.motion_energy += strain_energy;
     return sum;
 }
 
@@ -214,9 +203,6 @@ static void follow_drift(drift *d, bough_verify_invariant which, const invariant
     d->started = true;
     if (which == BOUGH_VERIFY_ENERGY) {
         change = fabs(now->energy - d->first.energy);
-        size = now->motion_energy;
-    } else if (which == BOUGH_VERIFY_STRAIN_ENERGY) {
-        change = now->strain_energy;
         size = now->motion_energy;
     } else {
         bool angular = which == BOUGH_VERIFY_ANGULAR_MOMENTUM;
@@ -256,9 +242,7 @@ static bough_status prepare(bough_arena *arena, case_run *r) {
     r->drift = bough_arena_take(arena, n * sizeof *r->drift);
     r->wave = bough_arena_take(arena, n * sizeof *r->wave);
     r->azimuth = bough_channels_find(&r->run->channels, "Azimuth");
-    if (!gauge_init(&r->gauge, arena, r->run->simulation)) {
-        return bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory");
-    }
+    gauge_init(&r->gauge, arena, r->run->simulation);
     for (int i = 0; i < r->x->n_expect; i++) {
         const bough_verify_quantity *q = &r->x->expect[i].quantity;
         if (!r->x->expect[i].diagnosis && q->what == BOUGH_VERIFY_DRIFT) r->conserves = true;
@@ -341,14 +325,9 @@ static bough_status do_run(bough_arena *arena, const bough_verify_case *x, bough
 
 void bough_verify_run(bough_arena *arena, const bough_verify_case *x, int k, bool (*stop)(void),
                       bough_verify_result *result) {
-    bough_arena *own = bough_arena_create();
+    bough_arena *own = bough_arena_child(arena);
     bough_run run;
     result->value = bough_arena_doubles(arena, (size_t)x->n_expect);
-    if (!own || !result->value) {
-        result->outcome = bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory");
-        bough_arena_destroy(own);
-        return;
-    }
     for (int i = 0; i < x->n_expect; i++) result->value[i] = NAN;
     result->outcome = open_scene(own, x, k, &run);
     if (bough_is_ok(&result->outcome)) {
