@@ -1,73 +1,11 @@
 // The keys of a study of kind verify and their reading.
 #include "tests/verification/verify.h"
 
-#include "apps/bough/cases/study.h"
 #include "apps/bough/config/schema.h"
 #include "apps/bough/model/simulation.h"
 
 #include <math.h>
 #include <string.h>
-
-// -- replacements ---------------------------------------------------------------------------------
-
-typedef struct text {
-    char *at;
-    size_t left;
-} text;
-
-static void put(text *t, const char *word) {
-    size_t n = strlen(word);
-    if (n >= t->left) n = t->left - 1;
-    memcpy(t->at, word, n);
-    t->at += n;
-    t->left -= n;
-    *t->at = '\0';
-}
-
-static void put_scalar(text *t, const bough_node *node) {
-    put(t, node->quoted ? "'" : "");
-    for (const char *c = node->text; *c; c++) {
-        char two[3] = {*c, '\0', '\0'};
-        if (node->quoted && *c == '\'') two[1] = '\'';
-        put(t, two);
-    }
-    put(t, node->quoted ? "'" : "");
-}
-
-// The node in YAML on one line.
-static void put_node(text *t, const bough_node *node) {
-    if (node->kind == BOUGH_SCALAR) {
-        put_scalar(t, node);
-        return;
-    }
-    put(t, node->kind == BOUGH_SEQUENCE ? "[" : "{");
-    for (int i = 0; i < node->n; i++) {
-        put(t, i ? ", " : "");
-        if (node->key) put_scalar(t, node->key[i]);
-        put(t, node->key ? ": " : "");
-        put_node(t, node->value[i]);
-    }
-    put(t, node->kind == BOUGH_SEQUENCE ? "]" : "}");
-}
-
-static void read_set(bough_schema_reader *r, const bough_node *node, void *field) {
-    bough_verify_case *x = field;
-    char line[2000], shown[64];
-    if (node->kind != BOUGH_MAPPING) {
-        bough_schema_error(r, node, "", "expected keys of the scene with their values, got %s",
-                           bough_node_shown(node, shown));
-        return;
-    }
-    x->set.item = bough_arena_take(r->arena, (size_t)node->n * sizeof *x->set.item);
-    for (int i = 0; i < node->n; i++) {
-        text t = {line, sizeof line};
-        put(&t, node->key[i]->text);
-        put(&t, "=");
-        put_node(&t, node->value[i]);
-        if (t.left <= 1) bough_schema_error(r, node->value[i], "", "the value is too long");
-        x->set.item[x->set.n++] = bough_arena_string(r->arena, line);
-    }
-}
 
 // -- quantities -----------------------------------------------------------------------------------
 
@@ -244,8 +182,8 @@ static const bough_key case_keys[] = {
     {.name = "do", .kind = BOUGH_KEY_CHOICE, .choices = CHOICES("static", "modes", "run"),
      .required = true, AT(action),
      .help = "equilibrium or modes of the first rod, or the run"},
-    {.name = "set", .kind = BOUGH_KEY_CUSTOM, .read = read_set, .form = "{KEY: VALUE, ...}",
-     .offset = 0, .help = "replacements in the scene"},
+    {.name = "set", .kind = BOUGH_KEY_CUSTOM, .read = bough_study_read_settings,
+     .form = "{KEY: VALUE, ...}", AT(set), .help = "replacements in the scene"},
     {.name = "meshes", .kind = BOUGH_KEY_NUMBERS, .range = ">= 1", .count = 1, AT(mesh),
      .count_offset = offsetof(bough_verify_case, n_mesh),
      .help = "numbers of segments that grow by a constant factor; default the scene's"},
@@ -282,7 +220,7 @@ bough_status bough_verify_scene(bough_arena *arena, const bough_verify_case *x, 
                                 bough_scene **scene) {
     const char **set = bough_arena_take(arena, ((size_t)x->set.n + 1) * sizeof *set);
     int n = x->set.n;
-    for (int i = 0; i < n; i++) set[i] = x->set.item[i];
+    for (int i = 0; i < n; i++) set[i] = x->set.item[i].set;
     if (x->n_mesh > 0) {
         char mesh[160];
         double value = x->mesh_of > 0 ? x->mesh_of / x->mesh[k] : x->mesh[k];

@@ -3,6 +3,7 @@
 #ifndef BOUGH_TESTS_VERIFICATION_VERIFY_H
 #define BOUGH_TESTS_VERIFICATION_VERIFY_H
 
+#include "apps/bough/cases/study.h"
 #include "apps/bough/scene/scene.h"
 #include "tests/verification/verification.h"
 
@@ -62,12 +63,9 @@ typedef struct bough_verify_case {
     int action;                     // bough_verify_action
     const char *mesh_key;           // "bodies[0].rod.segments"
     int n_mesh;
-    double *mesh;   // (n_mesh) numbers of segments, growing by a constant factor
-    double mesh_of; // what is divided by them; 0: the key takes the numbers themselves
-    struct {
-        int n;
-        const char **item; // (n) "key=value", for bough_scene_read
-    } set;
+    double *mesh;             // (n_mesh) numbers of segments, growing by a constant factor
+    double mesh_of;           // what is divided by them; 0: the key takes the numbers themselves
+    bough_study_settings set; // replacements in the scene
     int n_expect;
     bough_verify_expect *expect; // (n_expect)
 } bough_verify_case;
