@@ -83,13 +83,20 @@ static bough_status find_growth(bough_arena *arena, equilibrium *x) {
     return bough_simulation_growth(s, a, x->time, &x->growth);
 }
 
-// The equilibrium of the simulation, as built.
+// The equilibrium of the simulation, as built. A rod that its own search does not find, as one that is slack,
+// is found with the whole.
 static bough_status find_equilibrium(bough_arena *arena, bough_simulation *s, equilibrium *x) {
     *x = (equilibrium){.simulation = s, .channels = bough_channels_start(arena)};
     x->rod = bough_arena_take(arena, ((size_t)s->n_rod + 1) * sizeof *x->rod);
     // a modal body only with the whole
     x->independent = bough_rods_are_independent(s) && bough_steady_rods(s) == s->n_rod;
-    return x->independent ? find_rods(arena, x) : find_whole(arena, x);
+    if (!x->independent) return find_whole(arena, x);
+    bough_status status = find_rods(arena, x);
+    if (status.code != BOUGH_FAILED) return status;
+    x->independent = false;
+    x->n = 0;
+    bough_status whole = find_whole(arena, x);
+    return whole.code == BOUGH_FAILED ? status : whole;
 }
 
 // Displacement and rotation of the tip, force and moment at the root.
@@ -127,7 +134,8 @@ static void compare(const comparison *c, equilibrium *fine) {
             c->error[STATIC_RESULTS * k + i] = part * bough_norm(bough_sub(here[i], there[i]));
         }
     }
-    for (int i = 0; !fine->independent && i < fine->simulation->n_motion_channel; i++) {
+    bool channels = !fine->independent && !c->coarse->independent;
+    for (int i = 0; channels && i < fine->simulation->n_motion_channel; i++) {
         c->mesh->largest[i] = part * fabs(c->coarse->value[i] - fine->value[i]);
     }
 }
