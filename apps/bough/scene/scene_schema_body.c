@@ -38,7 +38,7 @@ static const bough_schema station_schema = {SCHEMA("a station", bough_scene_stat
 static const bough_key structure_keys[] = {
     {KEY(TEXT, source), .example = "Jonkman et al. 2009, NREL/TP-500-38060",
      .help = "where the data come from"},
-    {KEY(NUMBER, length), UNIT(LENGTH), .range = "> 0", .example = "61.5 m",
+    {KEY(NUMBER, length), UNIT(LENGTH), .range = "[1e-9, 1e9]", .example = "61.5 m",
      .help = "extent along z; default the last span, required with one station"},
     {KEY(VECTOR, damping), .count = 6, UNIT(TIME), .range = ">= 0", .fallback = zero6,
      .example = "[0, 0, 0, 3 ms, 3 ms, 3 ms]",
@@ -70,7 +70,7 @@ static const bough_key rod_keys[] = {
              "'segments' is named and the rod is a tenth as stiff towards its end"},
     {NAMED("damping", VECTOR), AT(structure.damping), .count = 6, UNIT(TIME), .range = ">= 0",
      .example = "[0, 0, 0, 3 ms, 3 ms, 3 ms]", .help = "replaces the damping of the table"},
-    {NAMED("length", NUMBER), AT(structure.length), UNIT(LENGTH), .range = "> 0", .example = "2 m",
+    {NAMED("length", NUMBER), AT(structure.length), UNIT(LENGTH), .range = "[1e-9, 1e9]", .example = "2 m",
      .help = "of a uniform rod"},
     {NAMED("twist", NUMBER), AT(uniform.def.twist), UNIT(ANGLE), .fallback = "0", .example = "10 deg",
      .help = "of a uniform rod"},

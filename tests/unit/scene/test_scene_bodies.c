@@ -159,6 +159,11 @@ TEST(rods_are_complete) {
             "s.yaml:6:38: error: bodies[0].rod.length: only used without a table\n");
 }
 
+TEST(lengths_have_limits) {
+    refuses(ROD_BODY "    rod: {length: 1e300, stiffness: [1, 1, 1, 1, 1, 1], mass: [1, 0, 0, 1, 1, 0]}\n",
+            "s.yaml:6:19: error: bodies[0].rod.length: must be in [1e-9, 1e9] m, got '1e300'\n");
+}
+
 TEST(section_matrices_are_checked) {
     refuses(
         ROD_BODY "    rod:\n      length: 1\n"
