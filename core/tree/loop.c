@@ -354,6 +354,13 @@ static int worst_row(const bough_tree *tree, const bough_tree_data *d, bool of_r
     return worst;
 }
 
+double bough_loops_opening(const bough_tree *tree, bough_tree_data *d, int *closure) {
+    double opening;
+    bough_loops_rows(tree, d);
+    *closure = closure_of(tree, worst_row(tree, d, false, tree->closure_size, &opening));
+    return opening;
+}
+
 static bough_status refuse(const bough_tree *tree, const bough_tree_data *d, int row, bool of_rate) {
     const char *name = tree->closures[closure_of(tree, row)].name;
     bool turning = turns(tree, row);

@@ -46,6 +46,10 @@ bough_wrench bough_loops_wrench(const bough_tree *tree, const bough_tree_data *d
 // size. After bough_tree_forward_dynamics, whose factors of the closures it overwrites.
 double bough_loops_margin(const bough_tree *tree, bough_tree_data *data, int *closure);
 
+// How far the loops are open: the largest violation of an equation, of positions relative to the extent of
+// the bodies and closures [1], and its closure. After bough_tree_kinematics.
+double bough_loops_opening(const bough_tree *tree, bough_tree_data *data, int *closure);
+
 // Makes the tree's initial state satisfy its closures: coordinates by Newton's method from near,
 // and speeds, of which those that are zero follow the others. BOUGH_INVALID, naming the closure and
 // what remains, where that is impossible. Sets closure_rank, closure_moved, closure_size and

@@ -105,6 +105,7 @@ static double steps_of(const bough_simulation *s) {
 static void finish_step(bough_run *run) {
     run->sampled = false;
     bough_validity_check(run->simulation);
+    if (bough_is_ok(&run->outcome)) run->outcome = bough_validity_check_closed(run->simulation);
     if (bough_is_ok(&run->outcome)) bough_validity_check_work(run->simulation, steps_of(run->simulation));
     if (bough_is_ok(&run->outcome)) run->outcome = record_due(run);
 }

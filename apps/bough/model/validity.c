@@ -19,6 +19,7 @@ static const double most_turn = 0.25 * BOUGH_PI;
 // Limits of bough_loops_margin, absolute and relative to the largest so far: on random linkages it stays
 // above 0.02 or above 0.03 of the largest, and falls to 1e-5 to 3e-3 where the links come to lie on one line.
 static const double least_margin = 0.01, least_share = 0.1;
+static const double most_open = 0.01;             // of the size of a closed loop
 static const double most_uneven = BOUGH_PI / 180; // of the gap between two blades
 // Cosine of the angle between axis and wind, 60°: beyond every yaw error of operation.
 static const double least_along = 0.5;
@@ -219,6 +220,21 @@ void bough_validity_check(bough_simulation *s) {
     if (s->aero) check_air(s);
     check_turns(s);
     check_speed(s);
+}
+
+bough_status bough_validity_check_closed(bough_simulation *s) {
+    int closure = 0;
+    if (s->tree->n_closures == 0) return bough_ok();
+    bough_simulation_update(s);
+    double opening = bough_loops_opening(s->tree, s->view, &closure);
+    if (opening <= most_open) return bough_ok();
+    return bough_fail(
+        BOUGH_FAILED,
+        "closure '%s' at %.6g s under scheme %s: its loop has come apart by %.2g of its size. Where a"
+        " body of the loop is much lighter than the others, the loop is not kept closed: give it more"
+        " mass and inertia",
+        s->scene->closure[closure].name, s->master->time,
+        bough_scheme_name(s->scene->simulation.coupling.scheme), opening);
 }
 
 // -- work -----------------------------------------------------------------------------------------

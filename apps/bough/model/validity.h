@@ -41,6 +41,9 @@ void bough_validity_start(bough_simulation *s);
 // Checks the state after a step, without changing a result.
 void bough_validity_check(bough_simulation *s);
 
+// BOUGH_FAILED where a closed loop has come apart.
+bough_status bough_validity_check_closed(bough_simulation *s);
+
 // Notes macro steps of very many steps; `steps` of all solvers since the process began.
 void bough_validity_check_work(bough_simulation *s, double steps);
 
