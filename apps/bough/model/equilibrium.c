@@ -69,12 +69,30 @@ static bough_status explain_rods(const bough_simulation *s, int steps) {
     return bough_ok();
 }
 
+// Whether a spring, bushing or closure between two bodies is one of a joint, too: only one of its ends moves.
+static bool is_across(const bough_scene *scene, int joint, const int body[2]) {
+    bool moves[2];
+    for (int end = 0; end < 2; end++)
+        moves[end] = body[end] != BOUGH_GROUND && bough_scene_carries(scene, joint, body[end]);
+    return moves[0] != moves[1];
+}
+
+static bool is_tied(const bough_scene *scene, int joint) {
+    for (int k = 0; k < scene->n_spring; k++)
+        if (is_across(scene, joint, scene->spring[k].body)) return true;
+    for (int k = 0; k < scene->n_bushing; k++)
+        if (is_across(scene, joint, scene->bushing[k].body)) return true;
+    for (int k = 0; k < scene->n_closure; k++)
+        if (is_across(scene, joint, scene->closure[k].body)) return true;
+    return false;
+}
+
 // The first body whose joint moves without a spring; NULL: there is none.
 static const char *loose_joint(const bough_scene *scene) {
     for (int i = 0; i < scene->n_body; i++) {
         const bough_scene_joint *joint = &scene->body[i].joint;
         bool held = joint->kind == BOUGH_JOINT_FIXED || joint->motion[0].node || joint->speeds[0] != 0;
-        if (!held && joint->spring.stiffness == 0) return scene->body[i].name;
+        if (!held && joint->spring.stiffness == 0 && !is_tied(scene, i)) return scene->body[i].name;
     }
     return NULL;
 }

@@ -212,6 +212,21 @@ TEST(driven_free_rotor_has_none) {
     assert_non_null(strstr(status.message, "a spring, a speed or a motion"));
 }
 
+// A pad holds the wheel, up to half a turn: there is none for its torque, but not for want of a spring.
+TEST(wheel_on_a_pad_has_none) {
+    const char *sets[] = {
+        "bodies=[{name: wheel, fidelity: rigid, mass: 1, inertia: [1, 1, 1], joint: {kind: revolute, parent: "
+        "ground, axis: z}}]",
+        "bushings=[{name: pad, from: wheel, to: ground, rotational_stiffness: [10, 10, 10]}]",
+        "loads=[{joint: wheel, torque: 1000}]", "markers=[]", NULL};
+    check_arena(arena);
+    bough_simulation *s = scene_build(arena, "apps/mechanisms/pendulum.yaml", sets);
+    bough_equilibrium_work work;
+    bough_status status = bough_simulation_equilibrium(s, s->master->assembly, 0, &work);
+    check_fails(status, BOUGH_FAILED, "no equilibrium");
+    assert_null(strstr(status.message, "nothing but loads"));
+}
+
 // A slack chain is found by way of stiff rods. The elastic catenary, from the force at its top down.
 TEST(chain_hangs_in_a_catenary) {
     static const char *const bending[] = {"1e4", "1e2", "1"};
