@@ -11,8 +11,8 @@
 // Eigenvalues of the scaled matrix below this, relative to the largest, belong to dependent equations. It is
 // the square of the distance from a position in which the loop could branch, relative to the loop's size.
 static const double dependent = 1e-9;
-// The same in proportion to the opening of the loop relative to its size, and its maximum: of all mechanisms,
-// and as a share of the smallest eigenvalue at the start, which is small where masses are very different.
+// The same limit per opening of the loop relative to its size. It is at most the smaller of `most_dependent`
+// and this share of the smallest eigenvalue at the start, which is small where masses are very different.
 static const double per_opening = 30, most_dependent = 3e-6, dependent_share = 1e-3;
 static const double dependent_before = 1e-7; // its maximum until the loops are assembled
 // Diagonal entries below this, relative to the largest of the same kind, belong to equations that nothing

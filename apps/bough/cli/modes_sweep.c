@@ -401,9 +401,9 @@ static const char *between(bough_arena *arena, const char *a, const char *b, dou
 
 // The growth at a place.
 typedef struct growth_at {
-    double rate;      // of the oscillation that grows most [1/s]: 0: by no more than rounding
+    double rate;      // of the oscillation that grows most [1/s]; 0: it grows by no more than rounding
     double frequency; // of that oscillation, damped [Hz]
-    double share;     // of the difference from another mesh, that the mesh errs by; if that was asked for
+    double share;     // with the other mesh: the error of the scene's mesh over the difference of the two
 } growth_at;
 
 // Growth at a place behind the point, with the scene's mesh or the other one.
