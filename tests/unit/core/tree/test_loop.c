@@ -180,6 +180,57 @@ TEST(closures_act_as_the_joints_they_replace) {
     }
 }
 
+// Lengths of a tree that only turns, and with them what its motion scales by.
+static void resize(bough_tree_def *def, bough_body_def *b, double size) {
+    def->gravity = bough_scale(size, def->gravity);
+    for (int i = 0; i < 2; i++) {
+        b[i].joint.position = bough_scale(size, b[i].joint.position);
+        b[i].mass_centre = bough_scale(size, b[i].mass_centre);
+        bough_vec3 *column[] = {&b[i].inertia.c1, &b[i].inertia.c2, &b[i].inertia.c3};
+        for (int j = 0; j < 3; j++) *column[j] = bough_scale(size * size, *column[j]);
+    }
+}
+
+static fixture closed_of_size(bough_joint_kind kind, double size) {
+    bough_body_def b[2];
+    bough_marker_def m[2];
+    bough_closure_def c;
+    base_and_arm(b, kind);
+    bough_tree_def def = {.gravity = down_z, .n_bodies = 2, .bodies = b};
+    resize(&def, b, size);
+    fixture open = build_with(&def, BOUGH_RADAU5, 1e-9);
+    bough_tree_kinematics(open.tree, open.m->state, open.data);
+    bough_tree_def closed = closed_def(b, m, &c, &open);
+    closed.gravity = def.gravity;
+    fixture f = build_with(&closed, BOUGH_RADAU5, 1e-9);
+    bough_arena_destroy(open.arena);
+    return f;
+}
+
+// A mechanism of another size turns as the one of 1 m does.
+TEST(closures_act_alike_in_every_size) {
+    static const bough_joint_kind turning[] = {BOUGH_JOINT_REVOLUTE, BOUGH_JOINT_UNIVERSAL,
+                                               BOUGH_JOINT_SPHERICAL};
+    static const double sizes[] = {1, 1e-3, 1e3, 1e-7, 1e7};
+    for (int k = 0; k < 3; k++) {
+        bough_vec3 expected[2];
+        for (int j = 0; j < 5; j++) {
+            fixture f = closed_of_size(turning[k], sizes[j]);
+            assert_int_equal(f.tree->closure_rank, 6 - bough_joint_n_speeds(turning[k]));
+            // the integrator's tolerance is one of 1 m
+            int steps = j < 3 ? 20 : 0;
+            for (int step = 1; step <= steps; step++) go_to(&f, 0.05 * step, step == 1);
+            check_closed(&f, 1e-6 * sizes[j]);
+            for (int i = 0; i < 2 && steps > 0; i++) {
+                bough_vec3 x = bough_tree_frame_pose(f.data, &f.tree->bodies[i]).rotation.c1;
+                if (j == 0) expected[i] = x;
+                check_near(bough_norm(bough_sub(x, expected[i])), 0, 0, 1e-8);
+            }
+            bough_arena_destroy(f.arena);
+        }
+    }
+}
+
 // -- plane four-bars -------------------------------------------------------------------------
 
 // Windows of uniform rods of 1 m and 1 kg, n uprights behind the first, a coupler between
