@@ -124,9 +124,11 @@ static bough_status changed(const char *scene, const char *why) {
 
 // Every scene was read when the study began, so that an error now, BOUGH_IO, is of the study and not of the
 // run.
-static bough_status read_scene(bough_arena *arena, const bough_case *c, bough_scene **scene) {
+static bough_status read_scene(bough_arena *arena, const case_run *r, bough_scene **scene) {
+    const bough_case *c = r->chosen;
     bough_errors errors = {.arena = arena};
-    bough_status status = bough_scene_read(arena, c->scene, c->set, c->n_set, &errors, scene);
+    bough_status status =
+        bough_scene_read_shared(arena, r->study->files, c->scene, c->set, c->n_set, &errors, scene);
     if (c->files == 0 || status.code != BOUGH_INVALID) return status;
     return changed(c->scene, errors.n > 0 ? errors.item[0].text : "");
 }
@@ -151,7 +153,7 @@ static bough_status open_recorder(bough_arena *arena, case_run *r) {
 static bough_status build(bough_arena *arena, case_run *r) {
     const bough_study *s = r->study;
     bough_scene *scene;
-    BOUGH_TRY(read_scene(arena, r->chosen, &scene));
+    BOUGH_TRY(read_scene(arena, r, &scene));
     int threads = s->is.parallel ? 1 : s->threads;
     if (threads > 0) scene->simulation.threads = threads;
     if (bough_is_reference(s, r->chosen)) scene->simulation.error_estimate = BOUGH_SCENE_NO_ESTIMATE;

@@ -236,7 +236,7 @@ static bough_status check_case(bough_arena *arena, check *k, bough_case *c, bool
     bough_arena *own = bough_arena_child(arena);
     bough_errors found = {.arena = own};
     bough_scene *scene;
-    bough_status status = bough_scene_read(own, c->scene, c->set, c->n_set, &found, &scene);
+    bough_status status = bough_scene_read_shared(own, s->files, c->scene, c->set, c->n_set, &found, &scene);
     for (int i = 0; i < found.n; i++)
         report(&found.item[i], c->scene, origin(s, c, &found.item[i]), k->errors);
     if (status.code == BOUGH_INVALID) status = bough_ok();
@@ -254,6 +254,8 @@ bough_status bough_study_check(bough_arena *arena, bough_study *s, bough_errors 
     assert(errors->arena == arena);
     check k = {.study = s, .program = BOUGH_FINGERPRINT_START, .sums = {.arena = arena}, .errors = errors};
     k.turbulence = bough_arena_take(arena, (size_t)s->n_case * sizeof *k.turbulence);
+    s->files = bough_arena_take(arena, sizeof *s->files);
+    s->files->arena = arena;
     for (int i = 0; i < s->n_case; i++) s->cases[i].next = -1;
     bough_mix_program(&k.program);
     bough_status status = bough_ok();
@@ -263,5 +265,6 @@ bough_status bough_study_check(bough_arena *arena, bough_study *s, bough_errors 
         bool first = i == 0 || s->cases[i].group != s->cases[i - 1].group;
         status = check_case(arena, &k, &s->cases[i], first && !s->is.compared);
     }
+    s->files->complete = true;
     return status;
 }

@@ -160,8 +160,9 @@ typedef struct bough_study {
     // by bough_study_check, common to all runs
     double duration, interval; // of compared runs [s] interval: between the common output times
     int n_channel;
-    const char **channel; // (n_channel) of all measures in their order, or those that are kept
-    const char **unit;    // (n_channel) of those that are kept
+    const char **channel;       // (n_channel) of all measures in their order, or those that are kept
+    const char **unit;          // (n_channel) of those that are kept
+    bough_schema_shared *files; // of the scenes, each read once
 } bough_study;
 
 // Reads a study and checks it with every scene that its runs see. `threads` replaces the scene's

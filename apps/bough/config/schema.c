@@ -5,6 +5,7 @@
 #include "apps/bough/config/schema_internal.h"
 #include "core/base/input_file.h"
 
+#include <assert.h>
 #include <string.h>
 
 static void read_value(bough_schema_reader *r, const bough_key *key, const bough_node *node, void *item);
@@ -179,22 +180,21 @@ static void read_table(bough_schema_reader *r, const bough_key *key, const bough
 // -- files ----------------------------------------------------------------------------------------
 
 // The record of a file that a schema has read, or without a schema of its name; NULL: none yet.
-static const bough_schema_file *find_file(const bough_schema_reader *r, const char *path,
+static const bough_schema_file *find_file(const bough_schema_file *f, const char *path,
                                           const bough_schema *schema) {
-    const bough_schema_file *f = r->files;
     while (f != NULL && (f->schema != schema || strcmp(f->path, path) != 0)) f = f->next;
     return f;
 }
 
-static void add_file(bough_schema_reader *r, bough_schema_file added) {
-    bough_schema_file *file = bough_arena_take(r->arena, sizeof *file);
+static void add_file(bough_arena *arena, bough_schema_file **files, bough_schema_file added) {
+    bough_schema_file *file = bough_arena_take(arena, sizeof *file);
     *file = added;
-    file->next = r->files;
-    r->files = file;
+    file->next = *files;
+    *files = file;
 }
 
 void bough_schema_add_file(bough_schema_reader *r, const char *key, const char *path, bool absolute) {
-    add_file(r, (bough_schema_file){.key = key, .path = path, .absolute = absolute});
+    add_file(r->arena, &r->files, (bough_schema_file){.key = key, .path = path, .absolute = absolute});
 }
 
 const char *bough_schema_path(bough_schema_reader *r, const bough_node *node, const char *key,
@@ -204,12 +204,11 @@ const char *bough_schema_path(bough_schema_reader *r, const bough_node *node, co
     while (base != NULL && strcmp(base->path, written->file) != 0) base = base->next;
     const char *directory = name[0] == '/' ? "" : base != NULL ? base->directory : r->directory;
     const char *path = bough_arena_print(r->arena, "%s%s", directory, name);
-    const bough_schema_file *known = find_file(r, path, NULL);
+    const bough_schema_file *known = find_file(r->files, path, NULL);
     if (known != NULL) return known->path;
     size_t length = key[0] == '\0' ? strlen(r->path) : bough_schema_push_key(r, key);
-    add_file(r, (bough_schema_file){.key = bough_arena_string(r->arena, r->path),
-                                    .path = path,
-                                    .absolute = name[0] == '/' || (base != NULL && base->absolute)});
+    bough_schema_add_file(r, bough_arena_string(r->arena, r->path), path,
+                          name[0] == '/' || (base != NULL && base->absolute));
     bough_schema_pop(r, length);
     return path;
 }
@@ -217,7 +216,7 @@ const char *bough_schema_path(bough_schema_reader *r, const bough_node *node, co
 // Reads the file's struct; errors inside it have paths that start at the file's top.
 static void *load(bough_schema_reader *r, const bough_schema *schema, const char *path) {
     void *item = bough_arena_take(r->arena, schema->size);
-    add_file(r, (bough_schema_file){.path = path, .schema = schema, .item = item});
+    add_file(r->arena, &r->files, (bough_schema_file){.path = path, .schema = schema, .item = item});
     bough_node *root = bough_text_read(r->arena, path, r->errors);
     if (root == NULL) return item;
     char outer[sizeof r->path];
@@ -228,6 +227,21 @@ static void *load(bough_schema_reader *r, const bough_schema *schema, const char
     return item;
 }
 
+// The same for other scenes too. The file names no further ones, which each scene would have to list.
+static void *load_shared(bough_schema_reader *r, const bough_schema *schema, const char *path) {
+    bough_schema_shared *shared = r->shared;
+    bough_arena *own = r->arena;
+    int before = r->errors->n + r->errors->dropped;
+    r->arena = shared->arena;
+    bough_schema_file file = {.path = bough_arena_string(r->arena, path), .schema = schema};
+    void *item = load(r, schema, file.path);
+    r->arena = own;
+    assert(r->files->item == item);
+    if (r->errors->n + r->errors->dropped == before) file.item = item;
+    add_file(shared->arena, &shared->file, file);
+    return item;
+}
+
 static void read_file(bough_schema_reader *r, const bough_schema *schema, const bough_node *node,
                       void *field) {
     if (node->kind != BOUGH_SCALAR || node->text[0] == '\0') {
@@ -235,8 +249,10 @@ static void read_file(bough_schema_reader *r, const bough_schema *schema, const 
         return;
     }
     const char *path = bough_schema_path(r, node, "", node->text);
-    const bough_schema_file *known = find_file(r, path, schema); // bodies that name it share its tables
-    if (known != NULL) {
+    const bough_schema_file *known =
+        find_file(r->files, path, schema); // bodies that name it share its tables
+    if (known == NULL && r->shared != NULL) known = find_file(r->shared->file, path, schema);
+    if (known != NULL && known->item != NULL) {
         memcpy(field, known->item, schema->size);
         return;
     }
@@ -247,7 +263,8 @@ static void read_file(bough_schema_reader *r, const bough_schema *schema, const 
         return;
     }
     fclose(stream);
-    memcpy(field, load(r, schema, path), schema->size);
+    bool shares = r->shared != NULL && !r->shared->complete && known == NULL;
+    memcpy(field, shares ? load_shared(r, schema, path) : load(r, schema, path), schema->size);
 }
 
 // -- mappings -------------------------------------------------------------------------------------

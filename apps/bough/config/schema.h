@@ -88,6 +88,13 @@ typedef struct bough_schema_file {
     void *item;
 } bough_schema_file;
 
+// What was read from files, for several scenes that share it and do not change it. The arena outlives them.
+typedef struct bough_schema_shared {
+    bough_arena *arena;
+    bough_schema_file *file; // NULL at the beginning; `item` NULL: it has errors, which each scene reports
+    bool complete;           // files are looked up but not added, so that several threads may read scenes
+} bough_schema_shared;
+
 // A file on which the scene builds: see config/base.h.
 typedef struct bough_schema_base {
     struct bough_schema_base *next; // the base of this one, NULL: it has none
@@ -107,6 +114,7 @@ struct bough_schema_reader {
     const bough_key *key;           // whose value `read` of the key is called for
     int out_of_order;               // errors of values that do not increase
     bough_schema_file *files;       // named so far, once each without a schema, once with each that read it
+    bough_schema_shared *shared;    // with other scenes; NULL: nothing
 };
 
 // Fills `item` (zeroed, of the schema's size) from a mapping; NULL fills the defaults.

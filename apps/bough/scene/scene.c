@@ -109,8 +109,9 @@ static bool is_study(const char *path, const bough_node *root, bough_errors *err
     return true;
 }
 
-bough_status bough_scene_read(bough_arena *arena, const char *path, const char *const *sets, int n_set,
-                              bough_errors *errors, bough_scene **scene) {
+bough_status bough_scene_read_shared(bough_arena *arena, bough_schema_shared *shared, const char *path,
+                                     const char *const *sets, int n_set, bough_errors *errors,
+                                     bough_scene **scene) {
     *scene = NULL;
     bough_scene *s = bough_arena_take(arena, sizeof *s);
     bough_schema_base *bases;
@@ -118,7 +119,8 @@ bough_status bough_scene_read(bough_arena *arena, const char *path, const char *
     if (root == NULL) return bough_errors_status(errors, path, "scene");
     if (is_study(path, root, errors)) return bough_errors_status(errors, path, "scene");
     const char *directory = bough_directory_of(arena, path);
-    bough_schema_reader reader = {.arena = arena, .errors = errors, .directory = directory, .bases = bases};
+    bough_schema_reader reader = {
+        .arena = arena, .errors = errors, .directory = directory, .bases = bases, .shared = shared};
     root = bough_scene_expand(&reader, replace(arena, root, sets, n_set, true, errors));
     if (root == NULL) return bough_errors_status(errors, path, "scene");
     root = replace(arena, root, sets, n_set, false, errors);
@@ -136,6 +138,11 @@ bough_status bough_scene_read(bough_arena *arena, const char *path, const char *
     bough_status status = bough_errors_status(errors, path, "scene");
     if (bough_is_ok(&status)) *scene = s;
     return status;
+}
+
+bough_status bough_scene_read(bough_arena *arena, const char *path, const char *const *sets, int n_set,
+                              bough_errors *errors, bough_scene **scene) {
+    return bough_scene_read_shared(arena, NULL, path, sets, n_set, errors, scene);
 }
 
 bough_scene *bough_scene_copy(bough_arena *arena, const bough_scene *scene) {

@@ -13,6 +13,7 @@
 
 #include "aero/control/controller.h"
 #include "aero/control/discon.h"
+#include "apps/bough/config/schema.h"
 #include "apps/bough/config/text.h"
 #include "apps/bough/scene/scene_air.h"
 #include "core/base/arena.h"
@@ -522,6 +523,11 @@ typedef struct bough_scene {
 // found is added to `errors`; then the status is BOUGH_INVALID and *scene is NULL.
 bough_status bough_scene_read(bough_arena *arena, const char *path, const char *const *sets, int n_set,
                               bough_errors *errors, bough_scene **scene);
+
+// The same for one of several scenes, which share the tables of files.
+bough_status bough_scene_read_shared(bough_arena *arena, bough_schema_shared *shared, const char *path,
+                                     const char *const *sets, int n_set, bough_errors *errors,
+                                     bough_scene **scene);
 
 // A copy with bodies of its own, which may be changed; the rest is shared.
 bough_scene *bough_scene_copy(bough_arena *arena, const bough_scene *scene);

@@ -78,11 +78,15 @@ static void link_polar(bough_schema_reader *r, bough_scene *s, const char *const
 
 static void link_polars(bough_schema_reader *r, bough_scene *s) {
     const bough_scene_polars *polars = &s->aero.polars;
+    bough_scene_aero_blade *blade = &s->aero.blade;
     if (polars->n_polar == 0) return;
+    // the file's own stations may belong to other scenes with other polars
+    blade->station =
+        bough_arena_copy(r->arena, blade->station, (size_t)blade->n_station * sizeof *blade->station);
     const char **names = bough_arena_take(r->arena, (size_t)polars->n_polar * sizeof *names);
     for (int k = 0; k < polars->n_polar; k++) names[k] = polars->polar[k].name;
-    for (int i = 0; i < s->aero.blade.n_station; i++) {
-        if (s->aero.blade.station[i].node != NULL) link_polar(r, s, names, i);
+    for (int i = 0; i < blade->n_station; i++) {
+        if (blade->station[i].node != NULL) link_polar(r, s, names, i);
     }
 }
 

@@ -119,4 +119,55 @@ TEST(a_path_from_the_root_is_known_as_one) {
     assert_int_equal(absolute, 1);
 }
 
+// -- scenes that share files ----------------------------------------------------------------------
+
+static const char two_polars[] =
+    "polars:\n- {name: q, table: &t {columns: [alpha deg, cl, cd, cm], rows: [[-180, 0, 0, 0], "
+    "[180, 0, 0, 0]]}}\n- {name: p, table: *t}\n";
+
+static bough_scene *read_shared(bough_schema_shared *shared, const char *set, bough_errors *errors) {
+    bough_scene *scene_read;
+    bough_scene_read_shared(shared->arena, shared, "s.yaml", &set, 1, errors, &scene_read);
+    return scene_read;
+}
+
+TEST(scenes_share_the_tables_of_a_file) {
+    bough_schema_shared shared = {.arena = check_memory()};
+    bough_errors errors = {.arena = shared.arena};
+    const bough_scene *a = read_shared(&shared, "gravity=[0, 0, 0]", &errors);
+    write_file("rod.yaml", "no table\n");
+    shared.complete = true;
+    const bough_scene *b = read_shared(&shared, "gravity=[0, 0, 1]", &errors);
+    write_file("rod.yaml", files[1].text);
+    assert_non_null(b);
+    assert_ptr_equal(a->body[1].rod.structure.station, b->body[2].rod.structure.station);
+    assert_ptr_equal(a->aero.polars.polar, b->aero.polars.polar);
+    check_near(b->gravity[2], 1, 0, 0);
+    assert_int_equal(bough_scene_list_files(shared.arena, b).n, FILES);
+}
+
+// A station's polar has another place in each scene's list of polars.
+TEST(scenes_link_shared_stations_to_polars_of_their_own) {
+    bough_schema_shared shared = {.arena = check_memory()};
+    bough_errors errors = {.arena = shared.arena};
+    write_file("two.yaml", two_polars);
+    const bough_scene *a = read_shared(&shared, "aero.polars=polars.yaml", &errors);
+    const bough_scene *b = read_shared(&shared, "aero.polars=two.yaml", &errors);
+    remove("two.yaml");
+    assert_int_equal(a->aero.blade.station[1].def.polar, 0);
+    assert_int_equal(b->aero.blade.station[1].def.polar, 1);
+}
+
+TEST(every_scene_reports_the_errors_of_a_shared_file) {
+    bough_schema_shared shared = {.arena = check_memory()};
+    write_file("rod.yaml", "length: 5\nstations: []\n");
+    for (int k = 0; k < 3; k++) {
+        bough_errors errors = {.arena = shared.arena};
+        assert_null(read_shared(&shared, "gravity=[0, 0, 0]", &errors));
+        assert_string_equal(printed_errors(&errors),
+                            "rod.yaml:2:11: error: stations: expected at least 1 item, got 0\n");
+    }
+    write_file("rod.yaml", files[1].text);
+}
+
 GROUP(enter_files, leave_files)
