@@ -66,23 +66,22 @@ static void line_stress(double sigma, double h, bool slope, matrix6 stress) {
 
 // Mass between the left end of a segment and s.
 typedef struct mass_sum {
-    const bough_section_axis *axis;
     double to, twist;  // s; of the segment's mid frame
     double mass, arm;  // ∫ρ, ∫ρ (s − s′)
     bough_vec3 offset; // ∫ρ c in the mid frame
 } mass_sum;
 
-static void add_mass(void *context, double s, double weight) {
+static void add_mass(void *context, const bough_section_point *point) {
     mass_sum *c = context;
-    bough_section_place p = bough_section_find(c->axis, s);
+    bough_section_place p = point->place;
     double angle = -(bough_section_mix(p.fraction, p.low->twist, p.high->twist) - c->twist);
-    double mass = weight * bough_section_mix(p.fraction, p.low->mass, p.high->mass);
+    double mass = point->weight * bough_section_mix(p.fraction, p.low->mass, p.high->mass);
     double x = bough_section_mix(p.fraction, p.low->centre[0], p.high->centre[0]);
     double y = bough_section_mix(p.fraction, p.low->centre[1], p.high->centre[1]);
     double cosine = cos(angle), sine = sin(angle);
     bough_vec3 centre = {cosine * x - sine * y, sine * x + cosine * y, 0};
     c->mass += mass;
-    c->arm += mass * (c->to - s);
+    c->arm += mass * (c->to - point->s);
     c->offset = bough_axpy(mass, centre, c->offset);
 }
 
@@ -93,11 +92,11 @@ typedef struct hat_sum {
     bough_vec3 moment;
 } hat_sum;
 
-static void add_hat_mass(void *context, double s, double weight) {
+static void add_hat_mass(void *context, const bough_section_point *p) {
     hat_sum *c = context;
-    mass_sum here = {.axis = c->whole->axis, .to = s, .twist = c->whole->twist};
-    double hat = (c->whole->to - s) / c->length;
-    add_mass(&here, s, weight);
+    mass_sum here = {.to = p->s, .twist = c->whole->twist};
+    double hat = (c->whole->to - p->s) / c->length;
+    add_mass(&here, p);
     c->mass += hat * here.mass;
     c->moment = bough_axpy(hat, here.offset, c->moment);
     c->curvature += here.mass * (1 - hat) * hat * c->length * c->length;
@@ -135,7 +134,7 @@ typedef struct segment_sum {
 // left vertex takes the given mass and first moment, theory (33):
 //     n = (m_left − ∫ρ) g,   m = (s_left − ∫ρ c)×g − d₃×g (m_left (s − a) − ∫ρ (s − s′)).
 static void weight_stress(const segment_sum *c, double s, matrix6 stress) {
-    mass_sum below = {.axis = c->axis, .to = s, .twist = c->twist};
+    mass_sum below = {.to = s, .twist = c->twist};
     bough_section_integrate(c->axis, c->from, s, add_mass, &below);
     bough_vec3 arm = bough_sub(c->left.moment, below.offset);
     arm.z -= c->left.mass * (s - c->from) - below.arm;
@@ -146,7 +145,7 @@ static void weight_stress(const segment_sum *c, double s, matrix6 stress) {
 // bending wave in a uniform segment, ½∫ρ (s − a)(b − s)/h.
 static void lump_left(segment_sum *c) {
     double to = c->from + c->length;
-    mass_sum whole = {.axis = c->axis, .to = to, .twist = c->twist};
+    mass_sum whole = {.to = to, .twist = c->twist};
     hat_sum left = {.whole = &whole, .length = c->length};
     bough_section_integrate(c->axis, c->from, to, add_hat_mass, &left);
     c->left = (bough_section_mass){left.mass, left.moment};
@@ -160,9 +159,10 @@ static double trace(matrix6 a, matrix6 b) {
     return sum;
 }
 
-static void add_compliance(void *context, double s, double weight) {
+static void add_compliance(void *context, const bough_section_point *p) {
     segment_sum *c = context;
-    bough_section_station x = bough_section_at(c->axis, s);
+    bough_section_station x = bough_section_of(p->place);
+    const double s = p->s, weight = p->weight;
     double compliance[21], damping[21], angle = -(x.twist - c->twist);
     matrix6 t, f, d, line, ft = {{0}};
     if (!bough_symmetric6_inverse(x.stiffness, compliance)) {
@@ -365,9 +365,10 @@ static void part_stress(const part_sum *c, double s, double stress[6]) {
     stress[4] -= c->left[0] * (s - c->from) - arm[0];
 }
 
-static void add_part_strain(void *context, double s, double weight) {
+static void add_part_strain(void *context, const bough_section_point *p) {
     part_sum *c = context;
-    bough_section_station x = bough_section_at(c->axis, s);
+    bough_section_station x = bough_section_of(p->place);
+    const double s = p->s, weight = p->weight;
     double compliance[21], stress[6], own[6] = {0};
     matrix6 f;
     bough_symmetric6_inverse(x.stiffness, compliance); // bough_section_discretise has done so
@@ -431,7 +432,7 @@ bough_status bough_section_discretise(bough_arena *arena, const bough_section_ta
     for (int i = 0; i <= n_segment; i++) {
         span[i] = a->arc[a->n - 1] * bough_section_graded(table->grading, (double)i / n_segment);
         position[i] = bough_section_at(a, span[i]).position;
-        rotation[i] = bough_section_rotation(a, span[i]);
+        rotation[i] = bough_section_rotation(a, bough_section_find(a, span[i]));
     }
     for (int k = 0; k < n_segment; k++) {
         if (segment_matrices(a, def, k, &laws)) continue;

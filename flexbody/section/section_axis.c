@@ -18,6 +18,32 @@ static const double gauss_weight[POINTS] = {0.1012285362903763, 0.22238103445337
                                             0.3626837833783620, 0.3626837833783620, 0.3137066458778873,
                                             0.2223810344533745, 0.1012285362903763};
 
+// Where s lies in the interval behind station k.
+static bough_section_place place_in(const bough_section_axis *a, int k, double s) {
+    double fraction = bough_clamp((s - a->arc[k]) / (a->arc[k + 1] - a->arc[k]), 0, 1);
+    return (bough_section_place){&a->station[k], &a->station[k + 1], fraction};
+}
+
+bough_section_place bough_section_find(const bough_section_axis *a, double s) {
+    return place_in(a, bough_table_row(a->n, a->arc, 1, s), s);
+}
+
+static double stiffness_at(bough_section_place p, int i) {
+    int k = bough_symmetric6_index(i, i);
+    return bough_section_mix(p.fraction, p.low->stiffness[k], p.high->stiffness[k]);
+}
+
+// Whether no stiffness varies by more than √2, so that no part of the interval need be halved.
+static bool is_even(bough_section_place low, bough_section_place high) {
+    const double most = 1.414; // less than √2 by more than rounding
+    bool even = true;
+    for (int i = 0; i < 6; i++) {
+        double x = stiffness_at(low, i), y = stiffness_at(high, i);
+        even = even && x > 0 && y > 0 && x < most * y && y < most * x;
+    }
+    return even;
+}
+
 void bough_section_axis_init(bough_section_axis *a, bough_arena *arena, const bough_section_table *table) {
     size_t given = (size_t)table->n_station;
     a->n = table->n_station == 1 ? 2 : table->n_station; // a uniform rod is two equal stations
@@ -31,16 +57,12 @@ void bough_section_axis_init(bough_section_axis *a, bough_arena *arena, const bo
     a->station = station;
     memcpy(a->damping, table->damping, sizeof a->damping);
     a->arc = bough_arena_doubles(arena, (size_t)a->n);
+    a->even = bough_arena_take(arena, (size_t)a->n * sizeof *a->even);
     for (int k = 1; k < a->n; k++) {
         bough_vec3 step = bough_sub(a->station[k].position, a->station[k - 1].position);
         a->arc[k] = a->arc[k - 1] + bough_norm(step);
+        a->even[k - 1] = is_even(place_in(a, k - 1, a->arc[k - 1]), place_in(a, k - 1, a->arc[k]));
     }
-}
-
-bough_section_place bough_section_find(const bough_section_axis *a, double s) {
-    int k = bough_table_row(a->n, a->arc, 1, s);
-    double fraction = bough_clamp((s - a->arc[k]) / (a->arc[k + 1] - a->arc[k]), 0, 1);
-    return (bough_section_place){&a->station[k], &a->station[k + 1], fraction};
 }
 
 void bough_section_central(const bough_section_station *x, double central[4]) {
@@ -68,8 +90,7 @@ static void mend_inertia(const bough_section_station *low, const bough_section_s
     for (int i = 0; i < 4; i++) x->inertia[i] += bough_section_mix(fraction, below[i], above[i]) - central[i];
 }
 
-bough_section_station bough_section_at(const bough_section_axis *a, double s) {
-    bough_section_place p = bough_section_find(a, s);
+bough_section_station bough_section_of(bough_section_place p) {
     const bough_section_station *l = p.low, *h = p.high;
     bough_section_station x;
     x.position = bough_between(l->position, h->position, p.fraction);
@@ -82,6 +103,10 @@ bough_section_station bough_section_at(const bough_section_axis *a, double s) {
     for (int i = 0; i < 4; i++) x.inertia[i] = bough_section_mix(p.fraction, l->inertia[i], h->inertia[i]);
     mend_inertia(l, h, p.fraction, &x);
     return x;
+}
+
+bough_section_station bough_section_at(const bough_section_axis *a, double s) {
+    return bough_section_of(bough_section_find(a, s));
 }
 
 // Tangent of the axis; at a station the mean of its two sides.
@@ -98,30 +123,34 @@ static bough_vec3 tangent_at(const bough_section_axis *a, bough_section_place p)
 }
 
 // The smallest rotation of z onto the tangent, then −twist about it.
-bough_quaternion bough_section_rotation(const bough_section_axis *a, double s) {
-    bough_section_place p = bough_section_find(a, s);
+bough_quaternion bough_section_rotation(const bough_section_axis *a, bough_section_place p) {
     bough_vec3 t = tangent_at(a, p);
     bough_quaternion lean = bough_quaternion_normalised((bough_quaternion){1 + t.z, -t.y, t.x, 0});
     double half = -0.5 * bough_section_mix(p.fraction, p.low->twist, p.high->twist);
     return bough_quaternion_product(lean, (bough_quaternion){cos(half), 0, 0, sin(half)});
 }
 
-static void integrate_piece(double from, double to, bough_section_visitor visit, void *context) {
-    double half = 0.5 * (to - from);
-    for (int p = 0; p < POINTS; p++) {
-        visit(context, 0.5 * (from + to) + half * gauss_at[p], half * gauss_weight[p]);
-    }
-}
+// A part of the interval behind station k, of whose quadrature the points are visited.
+typedef struct stretch {
+    const bough_section_axis *axis;
+    int k;
+    bough_section_visitor visit;
+    void *context;
+} stretch;
 
-static double stiffness_at(bough_section_place p, int i) {
-    int k = bough_symmetric6_index(i, i);
-    return bough_section_mix(p.fraction, p.low->stiffness[k], p.high->stiffness[k]);
+static void integrate_piece(const stretch *x, double from, double to) {
+    double half = 0.5 * (to - from);
+    for (int i = 0; i < POINTS; i++) {
+        bough_section_point p = {0.5 * (from + to) + half * gauss_at[i], half * gauss_weight[i], {0}};
+        p.place = place_in(x->axis, x->k, p.s);
+        x->visit(x->context, &p);
+    }
 }
 
 // Halvings of an interval towards its softer end, so that compliances, 1/(a + b s), vary by little more than
 // a factor of two over each part.
-static int halvings(const bough_section_axis *a, double soft, double stiff) {
-    bough_section_place low = bough_section_find(a, soft), high = bough_section_find(a, stiff);
+static int halvings(const stretch *x, double soft, double stiff) {
+    bough_section_place low = place_in(x->axis, x->k, soft), high = place_in(x->axis, x->k, stiff);
     double ratio = 1;
     for (int i = 0; i < 6; i++) {
         double least = stiffness_at(low, i), most = stiffness_at(high, i);
@@ -130,29 +159,28 @@ static int halvings(const bough_section_axis *a, double soft, double stiff) {
     return (int)fmin(ceil(log2(ratio) - 0.5), MOST_HALVINGS);
 }
 
-// An interval without a station inside.
-static void integrate_stretch(const bough_section_axis *a, double from, double to,
-                              bough_section_visitor visit, void *context) {
+static void integrate_stretch(const stretch *x, double from, double to) {
     double middle = 0.5 * (from + to), inside = to - 1e-9 * (to - from); // before a station
-    int below = halvings(a, from, inside), above = halvings(a, inside, from);
+    bool even = x->axis->even[x->k];
+    int below = even ? 0 : halvings(x, from, inside), above = even ? 0 : halvings(x, inside, from);
     if (below == 0 && above == 0) {
-        integrate_piece(from, to, visit, context);
+        integrate_piece(x, from, to);
         return;
     }
     // parts that halve towards both ends
     double low = from + ldexp(middle - from, -below), high = to - ldexp(to - middle, -above);
-    integrate_piece(from, low, visit, context);
+    integrate_piece(x, from, low);
     for (int k = below - 1; k >= 0; k--) {
         double next = from + ldexp(middle - from, -k);
-        integrate_piece(low, next, visit, context);
+        integrate_piece(x, low, next);
         low = next;
     }
     for (int k = 1; k <= above; k++) {
         double next = to - ldexp(to - middle, -k);
-        integrate_piece(low, next, visit, context);
+        integrate_piece(x, low, next);
         low = next;
     }
-    integrate_piece(high, to, visit, context);
+    integrate_piece(x, high, to);
 }
 
 void bough_section_integrate(const bough_section_axis *a, double from, double to, bough_section_visitor visit,
@@ -161,7 +189,7 @@ void bough_section_integrate(const bough_section_axis *a, double from, double to
         double end = k + 1 < a->n ? a->arc[k + 1] : to;
         if (end <= from) continue;
         if (end > to) end = to;
-        integrate_stretch(a, from, end, visit, context);
+        integrate_stretch(&(stretch){a, k < a->n - 1 ? k : k - 1, visit, context}, from, end);
         from = end;
     }
 }

@@ -10,6 +10,7 @@ typedef struct bough_section_axis {
     int n; // stations, 2 or more
     const bough_section_station *station;
     double *arc;       // (n) [m]
+    bool *even;        // (n − 1) whether a piece up to the next station is integrated in one
     double damping[6]; // of the table [s]
 } bough_section_axis;
 
@@ -26,16 +27,23 @@ static inline double bough_section_mix(double fraction, double low, double high)
     return low + fraction * (high - low);
 }
 
-// The section at arc length s, and its axes in the BRF.
+// The section at a place, or at arc length s, and its axes in the BRF.
+bough_section_station bough_section_of(bough_section_place place);
 bough_section_station bough_section_at(const bough_section_axis *a, double s);
-bough_quaternion bough_section_rotation(const bough_section_axis *a, double s);
+bough_quaternion bough_section_rotation(const bough_section_axis *a, bough_section_place place);
 
 // Its inertia about the mass centre: central (Ixx Iyy Ixy Izz) [kg m].
 void bough_section_central(const bough_section_station *x, double central[4]);
 
-// Calls visit(context, s, weight) at the points of a quadrature from one arc length to another: exact
+// A point of a quadrature on the axis.
+typedef struct bough_section_point {
+    double s, weight; // [m]
+    bough_section_place place;
+} bough_section_point;
+
+// Calls visit(context, point) at the points of a quadrature from one arc length to another: exact
 // for polynomials of degree 15 between stations, and for compliances to 1e-9.
-typedef void (*bough_section_visitor)(void *context, double s, double weight);
+typedef void (*bough_section_visitor)(void *context, const bough_section_point *p);
 void bough_section_integrate(const bough_section_axis *a, double from, double to, bough_section_visitor visit,
                              void *context);
 

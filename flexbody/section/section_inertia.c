@@ -86,10 +86,11 @@ static element element_of(const lumping *c, const bough_section_station *x, boug
     return e;
 }
 
-static void add_twist(void *context, double s, double weight) {
+static void add_twist(void *context, const bough_section_point *point) {
     lumping *c = context;
-    bough_section_place p = bough_section_find(c->axis, s);
-    c->twist += weight * (1 / bough_section_mix(p.fraction, p.low->stiffness[20], p.high->stiffness[20]));
+    bough_section_place p = point->place;
+    c->twist +=
+        point->weight * (1 / bough_section_mix(p.fraction, p.low->stiffness[20], p.high->stiffness[20]));
 }
 
 // Twist at s for a unit twist over the segment.
@@ -99,16 +100,17 @@ static double twist_fraction(const lumping *c, double s) {
     return below.twist / c->twist;
 }
 
-static void add_mass(void *context, double s, double weight) {
+static void add_mass(void *context, const bough_section_point *p) {
     lumping *c = context;
+    const double s = p->s, weight = p->weight;
     const bough_rod_def *def = c->def;
     int k = c->segment;
     double a = def->span[k], b = def->span[k + 1], fraction = (s - a) / (b - a);
     double twisted = twist_fraction(c, s);
-    bough_section_station x = bough_section_at(c->axis, s);
+    bough_section_station x = bough_section_of(p->place);
     bough_vec3 step = bough_sub(def->position[k + 1], def->position[k]);
     bough_vec3 chord = bough_axpy(fraction, step, def->position[k]);
-    bough_mat3 section = bough_rotation_matrix(bough_section_rotation(c->axis, s));
+    bough_mat3 section = bough_rotation_matrix(bough_section_rotation(c->axis, p->place));
     for (int side = 0; side < 2; side++) {
         double hat = side == 0 ? 1 - fraction : fraction;
         element on_chord = element_of(c, &x, section, weight, k + side, chord);
