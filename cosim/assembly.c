@@ -18,6 +18,7 @@ static void take_members(bough_assembly *a, bough_arena *arena, const bough_asse
     a->feedthrough = bough_arena_take(arena, n * sizeof(bool));
     a->order = bough_arena_take(arena, n * sizeof(int));
     a->leads = bough_arena_take(arena, n * sizeof(bool));
+    a->by_role = bough_arena_take(arena, n * sizeof(int));
     for (int i = 0; i < def->n_member; i++) {
         a->member[i] = def->member[i].member;
         const bough_system *s = &a->member[i]->system;
@@ -41,6 +42,7 @@ static void connect(bough_assembly *a, const bough_connection *c) {
     for (int j = 0; j < c->count; j++) {
         int input = a->input_offset[c->to] + c->to_offset + j;
         assert(a->source[input] < 0); // connected once
+        a->receiver[input] = c->to;
         a->source[input] = a->output_offset[c->from] + c->from_offset + j;
         a->source_member[input] = c->from;
         a->kinematic[input] = c->kinematic;
@@ -56,13 +58,12 @@ static void connect_all(bough_assembly *a, const bough_assembly_def *def) {
 
 // A vector is up to three inputs in a row of one connection.
 static void find_vectors(bough_assembly *a) {
-    for (int i = 0; i < a->n_member; i++) {
-        for (int j = a->input_offset[i]; j < a->input_offset[i + 1]; j++) {
-            bool continues = j > a->input_offset[i] && a->source[j] == a->source[j - 1] + 1 &&
-                             a->source_member[j] == a->source_member[j - 1] &&
-                             a->kinematic[j] == a->kinematic[j - 1] && j - a->vector[j - 1] < 3;
-            a->vector[j] = continues ? a->vector[j - 1] : j;
-        }
+    for (int j = 0; j < a->n_input; j++) {
+        bool continues = j > 0 && a->receiver[j] == a->receiver[j - 1] &&
+                         a->source[j] == a->source[j - 1] + 1 &&
+                         a->source_member[j] == a->source_member[j - 1] &&
+                         a->kinematic[j] == a->kinematic[j - 1] && j - a->vector[j - 1] < 3;
+        a->vector[j] = continues ? a->vector[j - 1] : j;
     }
 }
 
@@ -138,21 +139,23 @@ static bough_status order_outputs(bough_assembly *a, bool *resolved) {
 }
 
 static void find_leaders(bough_assembly *a) {
-    a->followers_last = true;
+    int n = 0;
     // level 0, and members of higher levels that are connected with each other
     for (int i = 0; i < a->n_member; i++) a->leads[i] = a->level[i] == 0;
-    for (int i = 0; i < a->n_member; i++) {
-        for (int j = a->input_offset[i]; j < a->input_offset[i + 1]; j++) {
-            int from = a->source_member[j];
-            if (a->level[i] == 0 || a->level[from] == 0) continue;
-            a->leads[i] = a->leads[from] = true;
-        }
+    for (int j = 0; j < a->n_input; j++) {
+        int to = a->receiver[j], from = a->source_member[j];
+        if (a->level[to] != 0 && a->level[from] != 0) a->leads[to] = a->leads[from] = true;
     }
+    for (int i = 0; i < a->n_member; i++)
+        if (!a->leads[i]) a->by_role[n++] = i;
+    a->n_follower = n;
+    for (int i = 0; i < a->n_member; i++)
+        if (a->leads[i]) a->by_role[n++] = i;
     // outputs of leaders that depend on those of followers directly
-    for (int i = 0; i < a->n_member; i++) {
-        for (int j = a->input_offset[i]; j < a->input_offset[i + 1]; j++) {
-            if (a->feedthrough[i] && a->leads[i] && !a->leads[a->source_member[j]]) a->followers_last = false;
-        }
+    a->followers_last = true;
+    for (int j = 0; j < a->n_input; j++) {
+        int to = a->receiver[j];
+        if (a->feedthrough[to] && a->leads[to] && !a->leads[a->source_member[j]]) a->followers_last = false;
     }
 }
 
@@ -161,6 +164,7 @@ bough_status bough_assembly_build(bough_arena *arena, const bough_assembly_def *
     bough_assembly *a = bough_arena_take(arena, sizeof *a);
     take_members(a, arena, def);
     size_t n_input = (size_t)a->n_input;
+    a->receiver = bough_arena_take(arena, n_input * sizeof(int));
     a->source = bough_arena_take(arena, n_input * sizeof(int));
     a->source_member = bough_arena_take(arena, n_input * sizeof(int));
     a->kinematic = bough_arena_take(arena, n_input * sizeof(bool));

@@ -45,14 +45,17 @@ typedef struct bough_assembly {
     int *state_offset;              // (n_member + 1)
     int *input_offset;              // (n_member + 1)
     int *output_offset;             // (n_member + 1)
-    int *source;                    // (n_input) the output that feeds each input
-    int *source_member;             // (n_input) the member it belongs to
+    int *receiver;                  // (n_input) the member that gets each input
+    int *source;                    // (n_input) the output that feeds it
+    int *source_member;             // (n_input) the member that belongs to
     bool *kinematic;                // (n_input)
     int *vector;       // (n_input) first of the up to three inputs that form a vector with this one
     bool *feedthrough; // (n_member) whether outputs depend on inputs directly
     int *order;        // (n_member) outputs evaluated in this order need no iteration
     bool *leads; // (n_member) leaders: members of level 0, and others that are connected with each other. The
                  // other members are followers, which are connected with members of level 0 only
+    int n_follower;
+    int *by_role;        // (n_member) the followers, then the leaders
     bool followers_last; // no outputs of leaders depend on those of followers directly
     int n_pair;
     bough_port_pair *pair; // (n_pair)

@@ -69,14 +69,12 @@ typedef struct iteration {
 // -- building -------------------------------------------------------------------------------------
 
 static void find_feedback(iteration *it, const bough_assembly *a) {
-    for (int i = 0; i < a->n_member; i++) {
-        for (int j = a->input_offset[i]; j < a->input_offset[i + 1]; j++) {
-            if (a->level[a->source_member[j]] < a->level[i]) continue;
-            int k = it->n++;
-            it->is_feedback[j] = true;
-            it->input[k] = j;
-            it->group[k] = a->vector[j] == j ? k : it->group[k - 1];
-        }
+    for (int j = 0; j < a->n_input; j++) {
+        if (a->level[a->source_member[j]] < a->level[a->receiver[j]]) continue;
+        int k = it->n++;
+        it->is_feedback[j] = true;
+        it->input[k] = j;
+        it->group[k] = a->vector[j] == j ? k : it->group[k - 1];
     }
 }
 
@@ -304,12 +302,12 @@ static bough_status not_converged(const bough_coupling *c, int sweeps, double re
     const bough_assembly *a = c->assembly;
     const iteration *it = c->scheme_data;
     // the input with the largest residual at t1, and its receiver
-    int worst = 0, to = 0, last = (it->n_node - 1) * it->n;
+    int worst = 0, last = (it->n_node - 1) * it->n;
     for (int k = 1; k < it->n; k++) {
         double off = fabs(it->image[last + k] - it->guess[last + k]);
         if (off > fabs(it->image[last + worst] - it->guess[last + worst])) worst = k;
     }
-    while (it->input[worst] >= a->input_offset[to + 1]) to++;
+    int from = a->source_member[it->input[worst]], to = a->receiver[it->input[worst]];
     // what may help
     double contraction = bough_accelerator_contraction(it->accelerator);
     bool learns = c->options.accelerator >= BOUGH_ACCELERATE_IQN_ILS;
@@ -319,8 +317,8 @@ static bough_status not_converged(const bough_coupling *c, int sweeps, double re
     return bough_fail(BOUGH_RETRY,
                       "coupling of %.24s and %.24s not converged at %.6g s: residual %.2g after %d "
                       "iterations, factor %.3g in each; %s",
-                      a->member[a->source_member[it->input[worst]]]->system.name, a->member[to]->system.name,
-                      c->t1, residual, sweeps, contraction, advice);
+                      a->member[from]->system.name, a->member[to]->system.name, c->t1, residual, sweeps,
+                      contraction, advice);
 }
 
 // Repeats the step with the values of the smallest residual: where another solution shows the error, their

@@ -47,22 +47,22 @@ static void find_right_side(const stages *s, int i) {
 // both of two threads.
 static void find_and_solve(void *self, int k) {
     const stages *s = self;
-    const int *order = s->factors->order, n = s->factors->n_follower;
+    const int *member = s->assembly->by_role, n = s->assembly->n_follower;
     if (k < n) {
-        find_right_side(s, order[k]);
+        find_right_side(s, member[k]);
     } else if (k < 2 * n) {
         bough_pool_await(s->factors->pool, k - n);
-        bough_whole_solve_of(s->factors, order[k - n]);
+        bough_whole_solve_of(s->factors, member[k - n]);
     } else {
         for (int j = 0; j < n; j++) bough_pool_await(s->factors->pool, j);
-        find_right_side(s, order[k - n]);
-        bough_whole_solve_of(s->factors, order[k - n]);
+        find_right_side(s, member[k - n]);
+        bough_whole_solve_of(s->factors, member[k - n]);
     }
 }
 
 static void finish_member(void *self, int k) {
     const stages *s = self;
-    int i = s->factors->order[k];
+    int i = s->assembly->by_role[k];
     const int *offset = s->assembly->state_offset + i;
     bough_whole_respond(s->factors, i, s->step->u[BOUGH_ROSENBROCK_STAGES - 1]);
     s->square[i] = bough_rosenbrock_end(s->step, offset[0], offset[1]);
@@ -90,7 +90,7 @@ static bool take_stage(stages *s) {
     begin_rates(s, s->stage == 0 ? step->y : step->at);
     // every member by itself
     bough_whole_begin_solution(s->factors, NULL, step->u[s->stage]);
-    bough_pool_run(s->factors->pool, n_member + s->factors->n_follower, find_and_solve, s);
+    bough_pool_run(s->factors->pool, n_member + s->assembly->n_follower, find_and_solve, s);
     // the interface; the members' responses to it follow with the next stage
     bough_whole_solve_interface(s->factors);
     bough_status status = bough_whole_failure(s->evaluation[0]);

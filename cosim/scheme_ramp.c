@@ -23,8 +23,7 @@
 
 typedef struct ramp {
     // constant
-    int *order, n_leader; // (n_member) the leaders, then the followers
-    bool named;           // the scene names θ
+    bool named; // the scene names θ
 
     // by the first prediction
     bool measured; // it has been made
@@ -64,13 +63,11 @@ static bough_status check_shape(const bough_coupling *c) {
                 a->member[i]->system.name);
         }
     }
-    for (int i = 0; i < a->n_member; i++) {
-        for (int j = a->input_offset[i]; j < a->input_offset[i + 1]; j++) {
-            if (leads(c, i) != leads(c, a->source_member[j])) continue;
-            return bough_fail(BOUGH_INVALID,
-                              "ramp: leaders and followers may only be connected with each other; use "
-                              "another scheme");
-        }
+    for (int j = 0; j < a->n_input; j++) {
+        if (leads(c, a->receiver[j]) != leads(c, a->source_member[j])) continue;
+        return bough_fail(BOUGH_INVALID,
+                          "ramp: leaders and followers may only be connected with each other; use "
+                          "another scheme");
     }
     return bough_ok();
 }
@@ -79,11 +76,6 @@ static bough_status create(bough_coupling *c, bough_arena *arena) {
     const bough_assembly *a = c->assembly;
     BOUGH_TRY(check_shape(c));
     ramp *r = c->scheme_data = bough_arena_take(arena, sizeof *r);
-    r->order = bough_arena_take(arena, (size_t)a->n_member * sizeof *r->order);
-    for (int i = 0; i < a->n_member; i++)
-        if (leads(c, i)) r->order[r->n_leader++] = i;
-    for (int i = 0, n = r->n_leader; i < a->n_member; i++)
-        if (!leads(c, i)) r->order[n++] = i;
     r->interface = bough_interface_create(arena, a);
     r->increment = bough_arena_doubles(arena, (size_t)a->n_state);
     bough_arena_each(arena, (size_t)a->n_output, &r->base, &r->output);
@@ -199,18 +191,18 @@ static void choose_tangents(bough_coupling *c) {
 // advances.
 static void predict_member(void *data, int k) {
     bough_coupling *c = data;
-    const ramp *r = c->scheme_data;
-    const int *follower = r->order + r->n_leader;
-    int n_follower = c->assembly->n_member - r->n_leader,
-        shift = n_follower > 0 ? r->n_leader % n_follower : 0;
-    int place = k - r->n_leader, last = place - n_follower;
+    const bough_assembly *a = c->assembly;
+    const int *follower = a->by_role, *leader = a->by_role + a->n_follower;
+    int n_follower = a->n_follower, n_leader = a->n_member - n_follower;
+    int shift = n_follower > 0 ? n_leader % n_follower : 0;
+    int place = k - n_leader, last = place - n_follower;
     if (place < 0) {
-        predict_leader(c, r->order[k]);
+        predict_leader(c, leader[k]);
     } else if (last < 0) {
         prepare_follower(c, follower[(place + shift) % n_follower]);
     } else {
-        for (int l = 0; l < r->n_leader; l++) bough_pool_await(c->pool, l);
-        bough_pool_await(c->pool, r->n_leader + (last + n_follower - shift) % n_follower);
+        for (int l = 0; l < n_leader; l++) bough_pool_await(c->pool, l);
+        bough_pool_await(c->pool, n_leader + (last + n_follower - shift) % n_follower);
         if (bough_is_ok(&c->status[follower[last]])) predict_follower(c, follower[last]);
     }
 }
@@ -225,7 +217,7 @@ static bough_status predict(bough_coupling *c) {
     r->middle = c->t0 + r->gamma;
     // every member with the leaders' inputs held
     bough_coupling_clear(c);
-    bough_pool_run(c->pool, 2 * a->n_member - r->n_leader, predict_member, c);
+    bough_pool_run(c->pool, a->n_member + a->n_follower, predict_member, c);
     BOUGH_TRY(bough_coupling_failure(c));
     // the interface, theory (56)
     for (int i = 0; i < a->n_member; i++) {

@@ -25,7 +25,7 @@ static void run_member(void *data, int k) {
 
 bough_status bough_whole_failure(const bough_whole *whole) {
     for (int k = 0; k < whole->assembly->n_member; k++) {
-        const bough_status *status = &whole->status[whole->order[k]];
+        const bough_status *status = &whole->status[whole->assembly->by_role[k]];
         if (!bough_is_ok(status)) return *status;
     }
     return bough_ok();
@@ -33,10 +33,10 @@ bough_status bough_whole_failure(const bough_whole *whole) {
 
 // work(whole, member) for the followers, the leaders or all, in parallel; the first failure.
 static bough_status each(bough_whole *whole, int whom, void (*work)(bough_whole *whole, int member)) {
-    int n_member = whole->assembly->n_member, n_leader = n_member - whole->n_follower;
-    int n = whom == ALL ? n_member : whom == LEADERS ? n_leader : whole->n_follower;
-    member_work w = {whole, whom == LEADERS ? whole->order + whole->n_follower : whole->order, work};
-    bough_pool_run(whole->pool, n, run_member, &w);
+    const bough_assembly *a = whole->assembly;
+    int first = whom == LEADERS ? a->n_follower : 0, last = whom == FOLLOWERS ? a->n_follower : a->n_member;
+    member_work w = {whole, a->by_role + first, work};
+    bough_pool_run(whole->pool, last - first, run_member, &w);
     return bough_whole_failure(whole);
 }
 
@@ -141,7 +141,7 @@ static void factor_member(void *self, int place) {
     bough_whole *whole = self;
     const bough_assembly *a = whole->assembly;
     bough_interface *k = whole->interface;
-    int i = whole->order[(place + whole->n_follower) % a->n_member];
+    int i = a->by_role[(place + a->n_follower) % a->n_member];
     bough_operating_point at = operating_point(whole, i);
     whole->status[i].code = BOUGH_OK;
     bool good = whole->linearised || bough_interface_linearise(k, i, &at);
@@ -251,9 +251,9 @@ static void gather_changes(bough_whole *whole, int i) {
 static void gather_all_changes(bough_whole *whole) {
     const bough_assembly *a = whole->assembly;
     for (int k = 0; k < a->n_member; k++) {
-        int i = whole->order[k];
+        int i = a->by_role[k];
         gather_changes(whole, i);
-        if (k >= whole->n_follower) continue;
+        if (k >= a->n_follower) continue;
         bough_interface_add_output_response(whole->interface, i, whole->led + a->input_offset[i],
                                             whole->output_change + a->output_offset[i]);
     }
@@ -330,43 +330,22 @@ void bough_whole_solve(bough_whole *whole, double *x) {
 
 // -- memory ---------------------------------------------------------------------------------------
 
-// Memory of an evaluation.
-static void take(bough_whole *whole, bough_arena *arena) {
-    const bough_assembly *a = whole->assembly;
-    size_t n_input = (size_t)a->n_input, n_output = (size_t)a->n_output;
-    whole->status = bough_arena_take(arena, (size_t)a->n_member * sizeof *whole->status);
-    whole->order = bough_arena_take(arena, (size_t)a->n_member * sizeof *whole->order);
-    whole->input = bough_arena_doubles(arena, n_input);
-    whole->output = bough_arena_doubles(arena, n_output);
-    // followers, then leaders
-    for (int i = 0; i < a->n_member; i++) {
-        if (!a->leads[i]) whole->order[whole->n_follower++] = i;
-    }
-    for (int i = 0, n = whole->n_follower; i < a->n_member; i++) {
-        if (a->leads[i]) whole->order[n++] = i;
-    }
-}
-
-// Memory of factors and solutions.
-static void take_solution(bough_whole *whole, bough_arena *arena) {
-    const bough_assembly *a = whole->assembly;
-    whole->setup_state = bough_arena_doubles(arena, (size_t)a->n_state);
-    bough_arena_each(arena, (size_t)a->n_input, &whole->setup_input, &whole->change, &whole->led);
-    whole->output_change = bough_arena_doubles(arena, (size_t)a->n_output);
-}
-
 bough_whole *bough_whole_create_evaluation(bough_arena *arena, const bough_assembly *assembly,
                                            bough_pool *pool) {
     bough_whole *whole = bough_arena_take(arena, sizeof *whole);
     whole->assembly = assembly;
     whole->pool = pool;
-    take(whole, arena);
+    whole->status = bough_arena_take(arena, (size_t)assembly->n_member * sizeof *whole->status);
+    whole->input = bough_arena_doubles(arena, (size_t)assembly->n_input);
+    whole->output = bough_arena_doubles(arena, (size_t)assembly->n_output);
     return whole;
 }
 
 bough_whole *bough_whole_create(bough_arena *arena, const bough_assembly *assembly, bough_pool *pool) {
     bough_whole *whole = bough_whole_create_evaluation(arena, assembly, pool);
-    take_solution(whole, arena);
+    whole->setup_state = bough_arena_doubles(arena, (size_t)assembly->n_state);
+    bough_arena_each(arena, (size_t)assembly->n_input, &whole->setup_input, &whole->change, &whole->led);
+    whole->output_change = bough_arena_doubles(arena, (size_t)assembly->n_output);
     whole->interface = bough_interface_create(arena, assembly);
     return whole;
 }

@@ -12,7 +12,6 @@ typedef struct bough_whole {
     bough_pool *pool;       // NULL: one thread
     double *output, *input; // (n_output), (n_input) of the last bough_whole_inputs
     bough_status *status;   // (n_member) of the last work on each
-    int *order, n_follower; // (n_member) the followers, then the leaders
 
     // the evaluation in progress
     double time;      // [s]

@@ -59,17 +59,11 @@ struct bough_monitor {
     double *state, *input; // (n_state), (n_input) at the start of the step
 };
 
-static int receiver(const bough_assembly *a, int input) {
-    int i = 0;
-    while (input >= a->input_offset[i + 1]) i++;
-    return i;
-}
-
 static void make_groups(bough_monitor *m, const bough_assembly *a) {
     for (int j = 0; j < a->n_input; j++) {
         if (a->vector[j] == j) {
             m->group[m->n_group++] = (group){
-                .first = j, .to = receiver(a, j), .from = a->source_member[j], .kinematic = a->kinematic[j]};
+                .first = j, .to = a->receiver[j], .from = a->source_member[j], .kinematic = a->kinematic[j]};
         }
         m->group[m->n_group - 1].count++;
     }
