@@ -49,15 +49,15 @@ static void widen(int n, const double *value, double *low, double *high) {
 static void sample(bough_companion *c) {
     bough_simulation_update(c->run);
     bough_channels_sample(c->channels, c->run->master->time, c->value);
-    bough_other_run_sample(&c->coarser);
+    if (!c->sampled) bough_other_run_sample(&c->coarser);
     widen(c->channels->count, c->value, c->low, c->high);
     widen(c->channels->count, c->coarser.value, c->other_low, c->other_high);
 }
 
 // What is before simulation.output.from counts no more than in the statistics.
-static bool counts_now(const bough_companion *c) {
-    const bough_master *m = c->run->master;
-    return m->time >= c->run->scene->simulation.output.from - 1e-6 * m->macro_step;
+static bool counts_now(const bough_companion *c, const bough_simulation *of) {
+    const bough_scene_simulation *s = &c->run->scene->simulation;
+    return of->master->time >= s->output.from - 1e-6 * s->macro_step;
 }
 
 // -- stepping -------------------------------------------------------------------------------------
@@ -84,6 +84,9 @@ void bough_companion_step(bough_companion *c) {
     do {
         c->status = bough_step(c->coarser.simulation->master);
     } while (bough_is_ok(&c->status) && !meets_run(c));
+    // its channels here, beside the run's step
+    c->sampled = bough_is_ok(&c->status) && counts_now(c, c->coarser.simulation);
+    if (c->sampled) bough_other_run_sample(&c->coarser);
 }
 
 // -- comparing ------------------------------------------------------------------------------------
@@ -173,7 +176,7 @@ bough_status bough_companion_create(bough_arena *arena, bough_simulation *run, c
     }
     if (!c->coarser.simulation) return bough_ok();
     run->master->compared = true;
-    if (!counts_now(c)) return bough_ok();
+    if (!counts_now(c, c->run)) return bough_ok();
     compare(c);
     c->compared = 0; // one that ends in its first step knows no error
     return bough_ok();
@@ -198,8 +201,9 @@ static void watch(bough_companion *c) {
     bool run = false, companion = false;
     for (int i = 0; i < c->channels->count; i++) {
         if (!bough_error_is_motion(&c->channels->channel[i])) continue;
-        double own = range_of(c, i, c->low, c->high), other = range_of(c, i, c->other_low, c->other_high);
         double apart = fabs(difference(&c->channels->channel[i], c->value[i], c->coarser.value[i]));
+        if (!(apart > several * bough_error_own_range(c, i))) continue; // the range is no less
+        double own = range_of(c, i, c->low, c->high), other = range_of(c, i, c->other_low, c->other_high);
         double range = bough_error_range(c, i);
         if (!(apart > several * range) || !bough_error_counts(c, i) || !bough_error_shows(c, i, apart))
             continue;
@@ -220,14 +224,14 @@ void bough_companion_compare(bough_companion *c) {
     if (!bough_is_ok(&c->status)) {
         give_up(c, c->status.message);
         c->run->master->compared = false;
-    } else if (c->coarser.simulation->master->time == c->run->master->time && counts_now(c)) {
+    } else if (c->coarser.simulation->master->time == c->run->master->time && counts_now(c, c->run)) {
         compare(c);
         watch(c);
     }
 }
 
 bool bough_companion_compares(const bough_companion *c) {
-    return alive(c) && c->coarser.simulation->master->time == c->run->master->time && counts_now(c) &&
+    return alive(c) && c->coarser.simulation->master->time == c->run->master->time && counts_now(c, c->run) &&
            bough_master_sampled(c->coarser.simulation->master);
 }
 
@@ -257,5 +261,7 @@ void bough_companion_snapshot(bough_companion *c, bough_snapshot *s) {
     bough_snapshot_take(s, c->reason, sizeof c->reason);
     bough_snapshot_take(s, &c->from, sizeof c->from);
     bough_snapshot_take(s, &c->run->master->compared, sizeof c->run->master->compared);
-    if (s->move == BOUGH_SNAPSHOT_RESTORE) c->status = bough_ok();
+    if (s->move != BOUGH_SNAPSHOT_RESTORE) return;
+    c->status = bough_ok();
+    c->sampled = false;
 }

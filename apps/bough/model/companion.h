@@ -67,6 +67,7 @@ typedef struct bough_companion {
     double from;                         // when they ceased to be [s]
     double motion;                       // largest range of all motion, or value up to 1, in SI units
     double rest;                         // motion of a scene at rest; 0: it moves
+    bool sampled;                        // the companion's channels are of its present time
     long compared;                       // times
     double *value;                       // (channels->count) of the run at the last of them
     double *before;                      // (channels->count) of the run at the comparison before

@@ -22,7 +22,7 @@ static bool is_velocity(const bough_channel *channel) {
 
 // -- ranges ---------------------------------------------------------------------------------------
 
-static double own_range(const bough_companion *c, int i) {
+double bough_error_own_range(const bough_companion *c, int i) {
     return fmax(fmin(c->high[i] - c->low[i], c->other_high[i] - c->other_low[i]), 0);
 }
 
@@ -47,7 +47,7 @@ double bough_error_range(const bough_companion *c, int channel) {
     double range = 0, value = 0, si = list[channel].si;
     for (int i = list[channel].vector; i < c->channels->count && list[i].vector == list[channel].vector;
          i++) {
-        range = fmax(range, own_range(c, i));
+        range = fmax(range, bough_error_own_range(c, i));
         value = fmax(value, largest_value(c, i));
     }
     if (is_velocity(&list[channel])) range = fmax(range, least_share * value);
@@ -79,10 +79,11 @@ static double largest_of(const bough_companion *c, bough_quantity_kind kind,
 // A rod that bends by a length turns its sections by an angle of that over its own length, beside which its
 // twist is judged, too.
 static double kind_range(const bough_companion *c, bough_quantity_kind kind) {
-    double range = largest_of(c, kind, own_range);
+    double range = largest_of(c, kind, bough_error_own_range);
     bool angle = kind == BOUGH_KIND_ANGLE, rate = kind == BOUGH_KIND_ANGULAR_VELOCITY;
     if (!(c->length > 0) || !(angle || rate)) return range;
-    return fmax(range, largest_of(c, angle ? BOUGH_KIND_LENGTH : BOUGH_KIND_VELOCITY, own_range) / c->length);
+    return fmax(range, largest_of(c, angle ? BOUGH_KIND_LENGTH : BOUGH_KIND_VELOCITY, bough_error_own_range) /
+                           c->length);
 }
 
 // Of all motion, whatever its kind: where nothing moves, the ranges are those of rounding.
@@ -92,7 +93,7 @@ static double largest_motion(const bough_companion *c) {
         const bough_channel *channel = &c->channels->channel[i];
         if (!bough_error_is_motion(channel)) continue;
         double value = fmin(channel->si * largest_value(c, i), 1);
-        largest = fmax(largest, fmax(value, channel->si * own_range(c, i)));
+        largest = fmax(largest, fmax(value, channel->si * bough_error_own_range(c, i)));
     }
     return largest;
 }
@@ -102,7 +103,8 @@ static double size_at_rest(const bough_companion *c) {
     double size = c->motion;
     for (int i = 0; i < c->channels->count; i++) {
         const bough_channel *channel = &c->channels->channel[i];
-        if (bough_error_is_motion(channel) && channel->si * own_range(c, i) > rounding * size) return 0;
+        if (bough_error_is_motion(channel) && channel->si * bough_error_own_range(c, i) > rounding * size)
+            return 0;
     }
     return size;
 }
@@ -170,11 +172,17 @@ void bough_error_size(const bough_companion *c, int channel, char text[BOUGH_ERR
         snprintf(text + n, (size_t)(BOUGH_ERROR_SIZE - n), "%.2g of its range", relative);
 }
 
+// Most channels are within the share of their own range already, which is no more than the whole one.
+static bool is_within(const bough_companion *c, int i, double share) {
+    double error = c->error[i];
+    return error <= share * bough_error_own_range(c, i) || error <= share * bough_error_range(c, i);
+}
+
 void bough_error_notice(bough_companion *c, double t) {
     double accuracy = c->run->scene->simulation.accuracy;
     c->motion = largest_motion(c);
     c->rest = size_at_rest(c);
     for (int i = 0; i < c->channels->count; i++) {
-        if (c->noticed[i] < 0 && !(c->error[i] <= accuracy * bough_error_range(c, i))) c->noticed[i] = t;
+        if (c->noticed[i] < 0 && !is_within(c, i, accuracy)) c->noticed[i] = t;
     }
 }

@@ -21,6 +21,9 @@ bool bough_error_is_motion(const bough_channel *channel);
 // changes has a thousandth of its value, and where the whole scene is at rest a motion has the scene's size.
 double bough_error_range(const bough_companion *c, int channel);
 
+// The same of the channel alone: no more than that.
+double bough_error_own_range(const bough_companion *c, int channel);
+
 // An error of the channel, in its unit, relative to its range; NaN for one that keeps its value.
 double bough_error_relative(const bough_companion *c, int channel, double error);
 
