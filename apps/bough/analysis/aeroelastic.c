@@ -1,9 +1,7 @@
-// theory (77). The matrix is dense where the air couples states, the members' own part of its inverse is not:
-// a solution is one by the members' factors, then one by the dense factors of what the air and the rotation
-// add. Where the air has states, left vectors and their forces are solutions, too: for so many the inverse is
-// one matrix.
+// theory (77, 100).
 #include "apps/bough/analysis/aeroelastic.h"
 
+#include "apps/bough/analysis/air_inverse.h"
 #include "core/base/linalg.h"
 
 #include <math.h>
@@ -13,30 +11,20 @@
 static const double same = 1e-6;        // relative distance of an eigenvalue on both sides
 static const double least_motion = 0.2; // participation of the bodies; modes with less are the air's
 
-enum {
-    CHUNK = 64,       // columns of a product
-    MODES_BEYOND = 8, // those wanted, of the basis for the air's memory, and an eighth
-};
-
-// A joint that nothing holds moves on at its speed: the eigenvalue 0 twice, with one vector. Joints'
-// coordinates that go back this slowly, against the point, have two.
-static const double going_back = 1e-6;
+enum { MODES_BEYOND = 8 }; // those wanted, of the basis for the air's memory, and an eighth
 
 typedef struct work {
     const bough_aeroelastic *system;
     int n, m;         // states of the members, those of the air that change
     int *air, *place; // (m) rows of the air's tangents; (n_air) places of these rows in m, −1: none
-    double *inverse;  // P = (I − γJ)⁻¹ (n × n), column-major as all; then T⁻¹ P, theory (77)
-    double *factor;   // T (n × n), factored
-    int *pivot;       // (n)
     double *rate;     // S (n_part × n_part), row-major
+    bough_air_inverse *inverse; // T⁻¹ P
 } work;
 
 static void take(bough_arena *arena, work *w) {
-    size_t n = (size_t)w->n, parts = (size_t)w->system->def->n_part;
-    w->pivot = bough_arena_take(arena, n * sizeof *w->pivot);
-    bough_arena_each(arena, n * n, &w->inverse, &w->factor);
+    size_t parts = (size_t)w->system->def->n_part;
     w->rate = bough_arena_doubles(arena, parts * parts + 1);
+    if (w->system->def->spin != 0) bough_modes_rate(w->system->def, w->rate);
 }
 
 // The states of the air that change: a model that is not in use leaves its own at rest.
@@ -54,100 +42,14 @@ static void find_air(bough_arena *arena, work *w) {
     }
 }
 
-static void solve_members(const work *w, double *x) {
-    bough_whole_solve(w->system->whole, x);
-    bough_whole_project(w->system->whole, w->system->def->state, x);
-}
-
-static void invert_members(work *w) {
-    size_t n = (size_t)w->n;
-    for (size_t j = 0; j < n; j++) {
-        w->inverse[j * n + j] = 1;
-        solve_members(w, w->inverse + j * n);
-    }
-}
-
-// Column `to` += factor P e_from
-static void add_column(work *w, size_t to, size_t from, double factor) {
-    const double *restrict column = w->inverse + from * (size_t)w->n;
-    double *restrict sum = w->factor + to * (size_t)w->n;
-    for (int i = 0; i < w->n; i++) sum[i] += factor * column[i];
-}
-
-// γ P S of the members
-static void add_spin(work *w) {
-    const bough_modes_def *def = w->system->def;
-    for (int k = 0; k < def->n_part; k++) {
-        for (int l = 0; l < def->n_part; l++) {
-            double factor = w->rate[k * def->n_part + l] / def->point;
-            for (int j = 0; j < def->n_row && factor != 0; j++)
-                add_column(w, (size_t)def->row[l * def->n_row + j], (size_t)def->row[k * def->n_row + j],
-                           factor);
-        }
-    }
-}
-
-// −= γ P A, some columns at a time: the rows of these that are not 0, and the columns of P for them.
-static void subtract_forces(bough_arena *arena, work *w, const double *a) {
-    size_t n = (size_t)w->n;
-    int *row = bough_arena_take(arena, n * sizeof *row);
-    double *inverse = bough_arena_doubles(arena, n * n), *force = bough_arena_doubles(arena, n * CHUNK),
-           *product = bough_arena_doubles(arena, n * CHUNK);
-    for (int begin = 0; begin < w->n; begin += CHUNK) {
-        int width = w->n - begin < CHUNK ? w->n - begin : CHUNK, rows = 0;
-        const double *column = a + (size_t)begin * n;
-        for (size_t i = 0; i < n; i++) {
-            bool used = false;
-            for (size_t j = 0; j < (size_t)width && !used; j++) used = column[j * n + i] != 0;
-            if (used) row[rows++] = (int)i;
-        }
-        for (size_t k = 0; k < (size_t)rows; k++) {
-            memcpy(inverse + k * n, w->inverse + (size_t)row[k] * n, n * sizeof *inverse);
-            for (size_t j = 0; j < (size_t)width; j++)
-                force[j * (size_t)rows + k] = column[j * n + (size_t)row[k]];
-        }
-        bough_product p = {w->n, width, rows, false, -1 / w->system->def->point, 0};
-        bough_dense_product(p, inverse, force, product);
-        double *to = w->factor + (size_t)begin * n;
-        for (size_t i = 0; i < n * (size_t)width; i++) to[i] += product[i];
-    }
-}
-
-static bool factor(bough_arena *arena, work *w) {
-    const bough_aeroelastic *x = w->system;
-    size_t n = (size_t)w->n;
-    invert_members(w);
-    for (size_t j = 0; j < n; j++) w->factor[j * n + j] = 1;
-    for (size_t j = 0; j < (size_t)x->simulation->tree->n_q; j++) add_column(w, j, j, going_back);
-    if (x->def->spin != 0) {
-        bough_modes_rate(x->def, w->rate);
-        add_spin(w);
-    }
-    subtract_forces(arena, w, x->air->motion);
-    return bough_dense_factor(w->n, w->factor, w->pivot);
-}
-
-// -- its eigenvalues ------------------------------------------------------------------------------
-
-// T⁻¹ P z by the factors
-static void solve(void *self, int n, const double *z, double *image) {
-    const work *w = self;
-    size_t length = (size_t)w->n;
-    memcpy(image, z, length * (size_t)n * sizeof *image);
-    for (size_t k = 0; k < (size_t)n; k++) solve_members(w, image + k * length);
-    bough_dense_solve(w->n, n, w->factor, w->pivot, image);
-}
-
-// T⁻¹ P z by the inverse
+// T⁻¹ P z
 static void apply(void *self, int n, const double *z, double *image) {
-    const work *w = self;
-    bough_dense_product((bough_product){w->n, n, w->n, false, 1, 0}, w->inverse, z, image);
+    bough_air_inverse_apply(((const work *)self)->inverse, false, n, z, image);
 }
 
 // Pᵀ T⁻ᵀ z
 static void apply_transposed(void *self, int n, const double *z, double *image) {
-    const work *w = self;
-    bough_dense_product((bough_product){w->n, n, w->n, true, 1, 0}, w->inverse, z, image);
+    bough_air_inverse_apply(((const work *)self)->inverse, true, n, z, image);
 }
 
 // Products in which states of the members count in units of their scales (power −2), those of the air as they
@@ -171,9 +73,7 @@ static bough_status find_pairs(bough_arena *arena, work *w, bool left, bool deca
                                      .decaying = decaying,
                                      .known = known,
                                      .self = w,
-                                     .apply = w->m == 0 ? solve
-                                              : left    ? apply_transposed
-                                                        : apply};
+                                     .apply = left ? apply_transposed : apply};
     return bough_eigen_nearest(arena, &op, pair, count);
 }
 
@@ -539,7 +439,6 @@ static bough_status follow_memory(bough_arena *arena, work *w, bough_eigen_pair 
     bough_eigen_pair *left = bough_arena_take(arena, (size_t)basis * sizeof *left);
     bough_eigen_count n_right = {.wanted = basis}, n_left = {.wanted = basis};
     reduced x = {0};
-    bough_dense_solve(w->n, w->n, w->factor, w->pivot, w->inverse);
     BOUGH_TRY(find_both(arena, w, right, &n_right, left, &n_left, unpaired));
     if (!reduce(arena, w, n_right.found, right, n_left.found, left, &x) || !factor_reduced(arena, w, &x) ||
         !find_vectors(arena, &x))
@@ -558,7 +457,8 @@ bough_status bough_aeroelastic_modes(bough_arena *arena, const bough_aeroelastic
     take(arena, &w);
     bough_status status = bough_whole_setup(system->whole, def->time, def->state, def->input, 1 / def->point);
     if (!bough_is_ok(&status)) return bough_fail(BOUGH_FAILED, "%s", status.message);
-    if (!factor(arena, &w))
+    w.inverse = bough_air_inverse_create(arena, system, w.m > 0);
+    if (w.inverse == NULL)
         return bough_fail(BOUGH_FAILED, "the motion in the air is singular about %g /s", def->point);
     if (w.m > 0) return follow_memory(arena, &w, pair, count, unpaired);
     status = find_pairs(arena, &w, false, false, false, pair, count);

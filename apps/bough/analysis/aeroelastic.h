@@ -23,9 +23,9 @@ typedef struct bough_aeroelastic {
 //   half as
 //             many again
 //   unpaired  eigenvectors that the subspace leaves out: on the other side, left or right, none converged
-// The cost is that of factoring a dense matrix of n_state rows, and with memory of the air that of all
-// eigenvalues of one of its states and of three for each mode. BOUGH_FAILED where the eigenvalues do not
-// converge or the system is singular about the point.
+// The cost is that of factoring a dense matrix of n_state rows (of equal blades a tenth of it), and with
+// memory of the air that of all eigenvalues of one of its states and of three for each mode. BOUGH_FAILED
+// where the eigenvalues do not converge or the system is singular about the point.
 bough_status bough_aeroelastic_modes(bough_arena *arena, const bough_aeroelastic *system,
                                      bough_eigen_pair *pair, bough_eigen_count *count, int *unpaired);
 

@@ -1,0 +1,135 @@
+// The inverse of a rotor of equal blades in blocks, beside the equations that it solves.
+#include "apps/bough/analysis/air_inverse.h"
+#include "apps/bough/analysis/rotor_inverse.h"
+#include "apps/bough/analysis/vibration.h"
+#include "tests/unit/built_scene.h"
+
+#include <math.h>
+#include <string.h>
+
+// Four segments on each blade, a tower that bends; the rotor symmetric about its shaft in all but the tower.
+static const char *const symmetric[] = {
+    "gravity=[0, 0, 0]",
+    "bodies[blade1].rod.segments=4",
+    "bodies[blade2].rod.segments=4",
+    "bodies[blade3].rod.segments=4",
+    "aero.wind={kind: uniform, speed: 10 m/s}",
+    "aero.tower={influence: potential, diameter: [1e-3, 1e-3], height: [0 m, 87.6 m]}",
+    "aero.induction.skew=none",
+    "bodies[hub].joint.placement=[move z 1.96256 m, move x -5.0191 m]",
+    "modes.of=scene",
+    NULL,
+};
+
+static const double going_back = 1e-6;
+
+// What the inverse is of.
+typedef struct scene {
+    bough_vibration_point x;
+    bough_air_tangent air;
+    bough_aeroelastic system;
+} scene;
+
+static void setup(const scene *c) {
+    const bough_modes_def *def = &c->x.def;
+    check_ok(bough_whole_setup(c->x.coupled, def->time, def->state, def->input, 1 / def->point));
+}
+
+// About the initial state: an equilibrium is not needed.
+static void open_scene(bough_arena *arena, scene *c) {
+    bough_simulation *s = scene_build(arena, "apps/turbine/land-operation.yaml", symmetric);
+    check_ok(bough_vibration_point_find(arena, s, 0, &c->x));
+    check_ok(bough_air_tangent_find(arena, s, c->x.coupled, 0, c->x.state, false, NULL, &c->air));
+    bough_air_tangent_average(arena, s, &c->x.group, &c->air);
+    c->system = (bough_aeroelastic){s, c->x.coupled, &c->x.def, &c->x.group, &c->air};
+    assert_int_equal(c->x.group.n, 3);
+    assert_true(c->x.def.spin > 0);
+    setup(c);
+}
+
+// (I − γ(J − S + A))⁻¹ z = y is y = P (z − γ(S − A) y): the largest miss in units of the scales, relative.
+static double miss(bough_arena *arena, const scene *c, const double *z, const double *y) {
+    const bough_modes_def *def = &c->x.def;
+    size_t n = (size_t)c->air.n;
+    double *force = bough_arena_copy(arena, z, n * sizeof *z), *scale = bough_arena_doubles(arena, n),
+           rate[9];
+    double most = 0, size = 0;
+    bough_assembly_scales(c->x.coupled->assembly, scale);
+    bough_modes_rate(def, rate);
+    for (size_t j = 0; j < n; j++) {
+        for (size_t i = 0; i < n; i++) force[i] += c->air.motion[j * n + i] * y[j] / def->point;
+    }
+    for (int k = 0; k < 9; k++) {
+        for (int j = 0; j < def->n_row; j++)
+            force[def->row[k / 3 * def->n_row + j]] -=
+                rate[k] / def->point * y[def->row[k % 3 * def->n_row + j]];
+    }
+    for (int k = 0; k < c->system.simulation->tree->n_q; k++) force[k] -= going_back * y[k];
+    bough_whole_solve(c->x.coupled, force);
+    bough_whole_project(c->x.coupled, def->state, force);
+    for (size_t i = 0; i < n; i++) {
+        most = fmax(most, fabs(force[i] - y[i]) / scale[i]);
+        size = fmax(size, fabs(y[i]) / scale[i]);
+    }
+    return most / size;
+}
+
+enum { VECTORS = 70 }; // more than are worked on at once
+
+TEST(the_blocks_solve_the_equations_of_the_whole_rotor) {
+    check_arena(arena);
+    scene c;
+    open_scene(arena, &c);
+    bough_rotor_inverse *inverse = bough_rotor_inverse_create(arena, &c.system, going_back);
+    assert_non_null(inverse);
+    size_t n = (size_t)c.air.n;
+    double *z = bough_arena_doubles(arena, n * VECTORS), *y = bough_arena_doubles(arena, n * VECTORS);
+    for (size_t k = 0; k < VECTORS; k++) {
+        bough_assembly_scales(c.x.coupled->assembly, z + k * n);
+        for (size_t i = 0; i < n; i++) z[k * n + i] *= sin((double)(i + 1) * (double)(k + 2));
+        bough_whole_project(c.x.coupled, c.x.state, z + k * n);
+    }
+    bough_rotor_inverse_apply(inverse, false, VECTORS, z, y);
+    for (size_t k = 0; k < VECTORS; k++) assert_true(miss(arena, &c, z + k * n, y + k * n) < 1e-8);
+}
+
+TEST(the_transpose_has_the_same_products) {
+    check_arena(arena);
+    scene c;
+    open_scene(arena, &c);
+    bough_rotor_inverse *inverse = bough_rotor_inverse_create(arena, &c.system, going_back);
+    size_t n = (size_t)c.air.n;
+    double *z, *left, *y, *image, *scale;
+    bough_arena_each(arena, n, &z, &left, &y, &image, &scale);
+    bough_assembly_scales(c.x.coupled->assembly, scale);
+    for (size_t i = 0; i < n; i++) z[i] = scale[i] * sin((double)i), left[i] = cos(3 * (double)i) / scale[i];
+    bough_rotor_inverse_apply(inverse, false, 1, z, y);
+    bough_rotor_inverse_apply(inverse, true, 1, left, image);
+    double one = 0, other = 0, size = 0;
+    for (size_t i = 0; i < n; i++) {
+        one += left[i] * y[i];
+        other += image[i] * z[i];
+        size += fabs(left[i] * y[i]);
+    }
+    check_near(one, other, 0, 1e-12 * size);
+}
+
+// One blade bent, which the others are not: the blocks would be those of another rotor.
+TEST(unlike_blades_are_solved_as_a_whole) {
+    check_arena(arena);
+    scene c;
+    open_scene(arena, &c);
+    int n = c.x.group.n_row / BOUGH_BLADE_ROWS;
+    double *state = c.x.state + c.x.group.first[1];
+    for (int i = 0; i < n; i++) state[4 * n + i] += 0.05 * (i + 1); // a part of the quaternions
+    setup(&c);
+    assert_null(bough_rotor_inverse_create(arena, &c.system, going_back));
+    double *z = bough_arena_doubles(arena, (size_t)c.air.n), *y = bough_arena_doubles(arena, (size_t)c.air.n);
+    bough_assembly_scales(c.x.coupled->assembly, z);
+    bough_whole_project(c.x.coupled, c.x.state, z);
+    for (int transposed = 0; transposed < 2; transposed++) {
+        bough_air_inverse *inverse = bough_air_inverse_create(arena, &c.system, transposed);
+        bough_air_inverse_apply(inverse, false, 1, z, y);
+        assert_true(miss(arena, &c, z, y) < 1e-8);
+    }
+}
