@@ -204,6 +204,8 @@ double bough_coarser_time_share(const bough_scene *scene) {
     return fmax(usual_share(scene), looser_of(scene).step < 2 ? 0.6 : 0);
 }
 
+double bough_finer_time_share(void) { return 4 / 3.0; } // half the steps, at order 2
+
 static bool samples_fit(double rate, double macro_step) {
     return bough_master_multiple(1 / rate, macro_step) > 0;
 }
@@ -274,12 +276,12 @@ static void lengthen_steps(const bough_scene *scene, bough_scene *to) {
 static const double largest_rtol = 1e-4; // of the run by whose steps a run's own are judged
 
 // A run whose tolerance allows longer steps takes one in a macro step.
-static void shorten_steps(bough_scene *to) {
+static void shorten_steps(bough_scene *to, double tighter, double least_rtol) {
     bough_scene_solver *master = &to->simulation.master;
     double macro_step = to->simulation.macro_step;
     make_one_system(to);
     if (master->solver == BOUGH_GENERALIZED_ALPHA) master->solver = BOUGH_ROSENBROCK;
-    master->rtol = fmin(0.1 * master->rtol, largest_rtol);
+    master->rtol = fmin(fmax(tighter * master->rtol, least_rtol), largest_rtol);
     master->step = 0.5 * (master->step > 0 ? fmin(master->step, macro_step) : macro_step);
 }
 
@@ -291,7 +293,8 @@ bough_scene *bough_coarser_scene(bough_arena *arena, const bough_scene *scene, i
     if (parts & BOUGH_COARSER_MESH) change_segments(scene, to);
     if (parts & BOUGH_COARSER_AIR) change_rate(scene, parts & BOUGH_COARSER_MESH && some_finer(scene), to);
     if (parts & BOUGH_COARSER_TIME) lengthen_steps(scene, to);
-    if (parts & BOUGH_FINER_TIME) shorten_steps(to);
+    if (parts & BOUGH_FINER_TIME) shorten_steps(to, 0.1, 0);
+    if (parts & BOUGH_FINEST_TIME) shorten_steps(to, 0.01, 1e-6);
     to->simulation.error_estimate = BOUGH_SCENE_NO_ESTIMATE;
     to->simulation.error_bound = 0;
     to->simulation.error_shares = false;

@@ -11,7 +11,7 @@
 
 static void take(bough_companion *c, bough_arena *arena) {
     size_t n = (size_t)c->channels->count + 1;
-    bough_arena_each(arena, n, &c->value, &c->before, &c->error, &c->low, &c->high, &c->other_low,
+    bough_arena_each(arena, n, &c->value, &c->before, &c->error, &c->least, &c->low, &c->high, &c->other_low,
                      &c->other_high, &c->noticed);
     for (size_t i = 0; i < n; i++) {
         c->low[i] = c->other_low[i] = HUGE_VAL;
@@ -31,8 +31,17 @@ static double share_held(const bough_scene *scene) {
     return fmax(1 - rate * scene->simulation.macro_step, 0);
 }
 
+// Whether a run that is finer in time stands beside the first steps. One of a tight tolerance follows every
+// vibration by itself, and a further copy of a library would write to the companion's file.
+static bool begins_beside_finer(const bough_scene *scene) {
+    static const double tight = 1e-5;
+    return scene->simulation.master.rtol >= tight && !scene->control.library;
+}
+
 static bough_status build(bough_arena *arena, bough_companion *c) {
     BOUGH_TRY(bough_other_run_build(arena, c->run, BOUGH_COARSER_ALL, &c->coarser));
+    c->first_steps = begins_beside_finer(c->run->scene);
+    if (c->first_steps) BOUGH_TRY(bough_other_run_build(arena, c->run, BOUGH_FINEST_TIME, &c->finer));
     c->share = bough_coarser_share(c->run->scene, c->coarser.simulation->scene);
     c->share_held = share_held(c->run->scene);
     return bough_ok();
@@ -76,13 +85,16 @@ static bool meets_run(const bough_companion *c) {
     return m->at_event || bough_master_done(m) || fabs(remainder(m->time, step)) < 1e-6 * step;
 }
 
+// A macro step of one of the others, with the inputs of the run.
+static bough_status step(const bough_companion *c, bough_simulation *other) {
+    size_t size = (size_t)c->run->scene->n_input * sizeof(double);
+    if (c->run->input) memcpy(other->input, c->run->input, size);
+    return bough_step(other->master);
+}
+
 void bough_companion_step(bough_companion *c) {
-    if (c->run->input) {
-        size_t size = (size_t)c->run->scene->n_input * sizeof(double);
-        memcpy(c->coarser.simulation->input, c->run->input, size);
-    }
     do {
-        c->status = bough_step(c->coarser.simulation->master);
+        c->status = step(c, c->coarser.simulation);
     } while (bough_is_ok(&c->status) && !meets_run(c));
     // its channels here, beside the run's step
     c->sampled = bough_is_ok(&c->status) && counts_now(c, c->coarser.simulation);
@@ -132,6 +144,30 @@ static double stale(const bough_companion *c, int i) {
     return held ? c->share_held * change_of(c, i) : 0;
 }
 
+enum { FIRST_STEPS = 8 }; // macro steps
+
+// As far as the run; false: the first steps are over, or the finer run cannot go on.
+static bool advance_finer(const bough_companion *c) {
+    const bough_master *run = c->run->master, *m = c->finer.simulation->master;
+    if (run->time > (FIRST_STEPS + 0.5) * run->macro_step) return false;
+    bough_status status = bough_ok();
+    while (bough_is_ok(&status) && m->time < run->time) status = step(c, c->finer.simulation);
+    return bough_is_ok(&status) && m->time == run->time;
+}
+
+// Vibrations that are faster than the steps decay in the first ones of run and companion alike and leave no
+// difference. The finer run follows them for long enough.
+static void compare_first(bough_companion *c) {
+    c->first_steps = advance_finer(c);
+    if (!c->first_steps) return;
+    bough_other_run_sample(&c->finer);
+    for (int i = 0; i < c->channels->count; i++) {
+        double between = fabs(difference(&c->channels->channel[i], c->value[i], c->finer.value[i]));
+        c->least[i] = fmax(c->least[i], bough_finer_time_share() * between);
+        if (c->error[i] < c->least[i]) c->error[i] = c->least[i];
+    }
+}
+
 static void compare(bough_companion *c) {
     // the rarer sample is held longer; at an event, between two steps, that of the run
     bool rarer = c->coarser.simulation->scene->aero.rate <= c->run->scene->aero.rate;
@@ -146,6 +182,7 @@ static void compare(bough_companion *c) {
         error = fmax(error, stale(c, i));
         if (!(error <= c->error[i])) c->error[i] = error; // a NaN wins
     }
+    if (c->first_steps) compare_first(c);
     bough_error_notice(c, c->run->master->time);
 }
 
@@ -241,6 +278,7 @@ bool bough_companion_knows(const bough_companion *c, int channel) {
 
 void bough_companion_stop_by(bough_companion *c, bool (*stop)(void)) {
     if (c->coarser.simulation) bough_master_stop_by(c->coarser.simulation->master, stop);
+    if (c->finer.simulation) bough_master_stop_by(c->finer.simulation->master, stop);
 }
 
 // -- copies ---------------------------------------------------------------------------------------
@@ -253,7 +291,10 @@ void bough_companion_snapshot(bough_companion *c, bough_snapshot *s) {
     if (!c->coarser.simulation) return;
     int n = c->channels->count;
     bough_simulation_snapshot(c->coarser.simulation, s);
-    double *const rows[] = {c->value, c->error, c->low, c->high, c->other_low, c->other_high, c->noticed};
+    if (c->finer.simulation) bough_simulation_snapshot(c->finer.simulation, s);
+    bough_snapshot_take(s, &c->first_steps, sizeof c->first_steps);
+    double *const rows[] = {c->value, c->error,     c->least,      c->low,
+                            c->high,  c->other_low, c->other_high, c->noticed};
     for (size_t k = 0; k < sizeof rows / sizeof *rows; k++) bough_snapshot_doubles(s, rows[k], n);
     bough_snapshot_take(s, &c->compared, sizeof c->compared);
     bough_snapshot_take(s, &c->parted_for, sizeof c->parted_for);

@@ -1,6 +1,6 @@
 // The companion of a run: a second simulation of the same scene that is coarser in everything. What lies
 // between the two at equal times tells what the run errs by: mesh, air, time and coupling at once, for every
-// channel.
+// channel. Beside the first macro steps a third one that is finer in time finds what decays in both.
 //
 // If the error falls with order p, a solution with twice the step errs by 2ᵖ times as much, and the run by
 // 1/(2ᵖ − 1) of the difference: a third for order 2 (docs/theory.md).
@@ -24,6 +24,7 @@ enum {
     BOUGH_COARSER_ALL = 7,
     // Not coarser but finer in time: one system, a tenth of the tolerance and half the longest step.
     BOUGH_FINER_TIME = 8,
+    BOUGH_FINEST_TIME = 16, // the same with a hundredth of the tolerance, not below 1e-6
 };
 
 // In the arena; it shares what no run changes with the scene. It estimates no error itself.
@@ -40,6 +41,9 @@ double bough_coarser_share(const bough_scene *scene, const bough_scene *other);
 
 // The same for a copy that is coarser in time alone.
 double bough_coarser_time_share(const bough_scene *scene);
+
+// The same for a copy that is finer in time.
+double bough_finer_time_share(void);
 
 enum { BOUGH_COMPANION_REASON = 320 };
 
@@ -59,6 +63,8 @@ void bough_other_run_sample(bough_other_run *other);
 typedef struct bough_companion {
     bough_simulation *run;
     bough_other_run coarser;
+    bough_other_run finer;               // in time, beside the first macro steps
+    bool first_steps;                    // these are not over
     const bough_channels *channels;      // of the run
     double length;                       // of the longest rod; 0: there is none [m]
     double share;                        // of the difference, that the run errs by
@@ -72,6 +78,7 @@ typedef struct bough_companion {
     double *value;                       // (channels->count) of the run at the last of them
     double *before;                      // (channels->count) of the run at the comparison before
     double *error;                       // (channels->count) largest so far, in the channels' units
+    double *least;                       // (channels->count) of the first macro steps, by the finer run
     double *low, *high;                  // (channels->count) range of the run
     double *other_low, *other_high;      // (channels->count) of the companion
     double *noticed;                     // (channels->count) when the error first passed the accuracy [s]

@@ -183,6 +183,7 @@ static void lower_errors(bough_companion *c, bough_error_shares *shares) {
     bool ended = c->reason[0];
     for (int i = 0; i < c->channels->count; i++) {
         double sum = shares->share[nearest[0]].others[i] + shares->share[nearest[1]].others[i];
+        sum = fmax(sum, c->least[i]);
         c->error[i] = ended ? sum : fmin(c->error[i], sum);
         for (int k = 0; k < BOUGH_SHARES; k++)
             shares->share[k].largest[i] = fmin(shares->share[k].largest[i], sum);
@@ -199,8 +200,6 @@ typedef struct proof {
     double *time, *others; // (n_channel) largest errors: of the steps; of mesh and air
 } proof;
 
-static const double half_steps = 4 / 3.0; // error over the difference to a run of half the steps, at order 2
-
 // The run once more, beside one with finer steps and one that is coarser in mesh and air alone.
 static bough_status prove(bough_arena *arena, void *self) {
     const proof *x = self;
@@ -208,6 +207,7 @@ static bough_status prove(bough_arena *arena, void *self) {
     const bough_simulation *run = c->run;
     static const int parts[] = {0, BOUGH_FINER_TIME, BOUGH_COARSER_ALL & ~BOUGH_COARSER_TIME};
     double from = run->scene->simulation.output.from - 1e-6 * run->master->macro_step;
+    double finer = bough_finer_time_share();
     bough_other_run r[3];
     for (int k = 0; k < 3; k++) BOUGH_TRY(bough_other_run_build(arena, run, parts[k], &r[k]));
     for (double t = 0;; t = r[0].simulation->master->time) {
@@ -215,7 +215,7 @@ static bough_status prove(bough_arena *arena, void *self) {
             BOUGH_TRY(advance(&r[k], t, r[0].simulation));
             bough_other_run_sample(&r[k]);
         }
-        if (t >= from) compare(&r[0], &r[1], half_steps, half_steps, x->time);
+        if (t >= from) compare(&r[0], &r[1], finer, finer, x->time);
         if (t >= from) compare(&r[2], &r[0], c->share, c->share_held, x->others);
         if (t >= x->end) return bough_ok();
         BOUGH_TRY(look_for_stop(x->stop));

@@ -143,6 +143,31 @@ TEST(steps_of_a_macro_step_have_an_error) {
     free(truth);
 }
 
+// A weight that is let go on a stiff rod sinks by s (1 - exp(-D w t) (cos w' t + D w/w' sin w' t)), at 250
+// Hz. Steps of 20 ms pass over that vibration, and the companion's do, too.
+TEST(a_vibration_that_both_lose_is_an_error) {
+    const double s = 0.2 * 9.8 * 2 / 1e6, w = 1581, damping = 5e-6 * w / 2;
+    const char *const sets[] = {"simulation.duration=2 s",
+                                "simulation.macro_step=20 ms",
+                                "simulation.master={solver: rosenbrock, rtol: 3e-4}",
+                                "gravity=[9.8, 0, 0]",
+                                "bodies[0].rod.damping=[5e-6, 5e-6, 5e-6, 5e-6, 5e-6, 5e-6]",
+                                "bodies[1].mass=0.2",
+                                NULL};
+    outcome *o = run_for("tests/data/scenes/tip-weight.yaml", STEPS, sets);
+    int i = find(o, "beamTipX");
+    double error = 0, of = w * sqrt(1 - damping * damping);
+    for (int k = 0; k < STEPS; k++) {
+        double t = 0.02 * (k + 1), phase = of * t;
+        double sunk = s * (1 - exp(-damping * w * t) * (cos(phase) + damping * w / of * sin(phase)));
+        error = fmax(error, fabs(o->value[k][i] - 2 - sunk));
+    }
+    print_message("error %.2g of %.2g m, estimate %.2g\n", error, s, o->error[i]);
+    assert_true(error > s / 3);
+    assert_true(o->error[i] > error / 2 && o->error[i] < 2 * error);
+    free(o);
+}
+
 // Before a run fails by its steps, finer ones say what these err by: more closely than the companion does.
 TEST(finer_steps_prove_an_error_in_time) {
     static const char scene[] = "apps/mechanisms/pendulum.yaml";
