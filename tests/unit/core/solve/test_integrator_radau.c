@@ -135,8 +135,8 @@ TEST(van_der_pol_reaches_its_reference) {
 
 // -- calls -----------------------------------------------------------------------------------
 
-// Going on from a copy is the same as having gone on, to the last bit and the last factorisation. With a loose
-// tolerance every call is one step of the same size, whose factors are only of another Jacobian.
+// Going on from a copy is the same as having gone on, to the last bit and the last factorisation. With a
+// loose tolerance every call is one step of the same size, whose factors are only of another Jacobian.
 static void check_copies(double rtol, double ahead) {
     problem p = make(2, van_der_pol, 100);
     check_arena(arena);
