@@ -138,7 +138,7 @@ const bough_channel_family bough_channel_families[BOUGH_CHANNEL_PARTS] = {
         SAME_OF(2, "Wind1VelY", "m/s", "undisturbed wind at the initial position of the hub, along ground y"),
         SAME_OF(3, "Wind1VelZ", "m/s", "undisturbed wind at the initial position of the hub, along ground z"),
         SAME_XYZ("RtVAvg", "h", "m/s", "wind relative to the blades, mean over all blade elements, with the tower's influence, along the hub's ", ""),
-        SAME("RtTSR", "-", "tip-speed ratio: angular velocity of the hub about the shaft times the undeformed rotor's radius, divided by RtVAvgxh")), .sampled = BOUGH_BY_AIR},
+        SAME("RtTSR", "-", "tip-speed ratio: angular velocity of the hub about the shaft times the undeformed rotor's radius, divided by RtVAvgxh; 0 in still air")), .sampled = BOUGH_BY_AIR},
     [BOUGH_CHANNELS_ELEMENT] = {"Blade element that aero.nodes names",
         "{a}: number of the blade; {b}: number of the element, with three digits", ROWS(
         SAME("AB{a}N{b}VRel", "m/s", "speed of the air relative to the element"),

@@ -325,8 +325,9 @@ static void sample_wind(void *self, double t, double *value) {
     bough_vec3 wind = bough_aero_link_hub_wind(s->aero, t);
     const bough_rotor_data *data = bough_aero_link_data(s->aero, NULL);
     bough_vec3 mean = bough_mat3_tmul(axes, bough_sub(data->disk_wind, data->disk_velocity));
-    double ratio = hub_spin(s) * bough_simulation_rotor(s).radius / mean.x;
-    const double values[] = {wind.x, wind.y, wind.z, mean.x, mean.y, mean.z, isfinite(ratio) ? ratio : 0};
+    double tip = hub_spin(s) * bough_simulation_rotor(s).radius;
+    bool blows = fabs(mean.x) > 1e-12 * fabs(tip); // by more than rounding
+    const double values[] = {wind.x, wind.y, wind.z, mean.x, mean.y, mean.z, blows ? tip / mean.x : 0};
     memcpy(value, values, sizeof values);
 }
 

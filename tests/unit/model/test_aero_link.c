@@ -166,6 +166,17 @@ TEST(rotor_tells_the_wind_relative_to_the_blades) {
     check_near(ratio[1] / ratio[0], wind[0] / wind[1], 1e-6, 0);
 }
 
+// Without wind RtVAvgxh of a turning rotor is rounding, of either sign.
+TEST(rotor_in_still_air_has_no_tip_speed_ratio) {
+    static const char *const sets[] = {"bodies[2].joint.speed=3 rad/s", "aero.wind.speed=0", NULL};
+    fixture f = open_turbine(sets);
+    bough_channels list = scene_channels(f.arena, f.s);
+    sample(&f, 0, period);
+    check_near(scene_channel(f.s, &list, "RtVAvgxh"), 0, 0, 1e-12);
+    assert_true(scene_channel(f.s, &list, "RtTSR") == 0);
+    close_turbine(&f);
+}
+
 // Mean over the stations, which the tower disturbs a little; the 12 m/s of the scene at 50 m.
 TEST(wind_of_the_scene_reaches_the_rotor) {
     static const char *const sets[][6] = {
