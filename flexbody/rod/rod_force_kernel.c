@@ -123,23 +123,28 @@ static bool loads_lie_along(const bough_rod_loads *loads) {
     return false;
 }
 
-// Adds the moments beside the chord of segment n of the loads per length on its axis.
-static void add_chord_moments_of(const bough_rod_model *m, int n, bough_rod_scratch *scratch) {
+// Adds the moments of the loads along segment n on its axis, which lies beside the chord.
+static void add_line_moments_of(const bough_rod_model *m, int n, bough_rod_scratch *scratch) {
     int s = m->stride;
     double h = m->length[n];
-    vertex_state l = load_vertex(scratch->vertex, s, n), r = load_vertex(scratch->vertex, s, n + 1);
+    const double *c = bough_rod_tile(m->stiffness, 21, n), *gradient = bough_rod_tile(m->gradient, 35, n);
     segment_geometry shape = shape_at(m, scratch, n);
-    bough_vec3 change = bough_sub(bough_rotation_matrix(r.p).c3, bough_rotation_matrix(l.p).c3);
-    change = bough_sub(change, bough_mat3_mul(shape.r, lane_load(m->bend0, s, n)));
-    bough_vec3 moment = chord_moment(h, change, bough_mat3_mul(shape.r, lane_load(scratch->along, s, n)));
+    strain e = elastic_strain(shape, m->inverse_length[n], scratch->rest, s, n);
+    elastic_state elastic = elastic_at(c, gradient, BOUGH_LANES, 0, e);
+    dead_line dead = dead_line_at(c, 0, m->line, scratch->along, s, n, elastic);
+    end_moments on = middle_moment(shape, axis_moment(m->line, s, n, h, dead.stress, dead.q));
     bough_vec3 bend = bough_axpy(-h, lane_load(m->strain0 + 3 * s, s, n), shape.phi);
-    bough_vec3 following = following_moment(h, bend, lane_load(scratch->following, s, n));
-    moment = bough_add(moment, bough_mat3_mul(shape.r, following));
-    for (int side = 0; side < 2; side++) lane_add(scratch->load + 3 * s, s, n + side, moment);
+    bough_vec3 follower = following_moment(h, bend, lane_load(scratch->following, s, n));
+    const bough_vec3 moment[2] = {on.left, on.right};
+    for (int side = 0; side < 2; side++) {
+        bough_mat3 axes = bough_rotation_matrix(load_vertex(scratch->vertex, s, n + side).p);
+        bough_vec3 sum = bough_add(bough_mat3_mul(axes, moment[side]), bough_mat3_mul(shape.r, follower));
+        lane_add(scratch->load + 3 * s, s, n + side, sum);
+    }
 }
 
-// Adds D q of the ramped loads along the segments, the dead ones turned into their middles, and the moments
-// beside the chords.
+// Adds D q of the ramped loads along the segments, the dead ones turned into their middles, and their moments
+// on the axis.
 static void add_along(const bough_rod_model *m, const bough_rod_loads *loads, double t,
                       bough_rod_scratch *scratch) {
     int s = m->stride;
@@ -167,7 +172,7 @@ static void add_along(const bough_rod_model *m, const bough_rod_loads *loads, do
             lane_add(scratch->own_rest + 3 * s, s, n, e.u);
         }
     }
-    for (int n = 0; n < m->n_segment; n++) add_chord_moments_of(m, n, scratch);
+    for (int n = 0; n < m->n_segment; n++) add_line_moments_of(m, n, scratch);
 }
 
 static void move_rest(const bough_rod_model *m, const bough_rod_loads *loads, double elapsed,

@@ -45,15 +45,69 @@ BOUGH_INLINE strain line_strain(const double *restrict line, int s, int n, const
 #undef D
 }
 
-// Change of the elastic strain where dead loads `along` the segment turn against its middle.
-BOUGH_INLINE strain add_turned(strain change, const double *restrict line, const double *restrict along,
-                               int s, int n, bough_vec3 middle) {
-    const bough_vec3 q[4] = {bough_cross(lane_load(along, s, n), middle),
-                             bough_cross(lane_load(along + 3 * s, s, n), middle),
-                             bough_cross(lane_load(along + 6 * s, s, n), middle),
-                             bough_cross(lane_load(along + 9 * s, s, n), middle)};
-    strain e = line_strain(line, s, n, q);
-    return (strain){bough_sub(change.v, e.v), bough_sub(change.u, e.u)};
+BOUGH_INLINE strain subtract_strain(strain a, strain b) {
+    return (strain){bough_sub(a.v, b.v), bough_sub(a.u, b.u)};
+}
+
+// Dead loads along a segment: force, moment and their slopes in the axes of its middle, their strain D q, and
+// the segment's stress under the forces on its ends alone.
+typedef struct dead_line {
+    bough_vec3 q[4];
+    strain own, stress;
+} dead_line;
+
+BOUGH_INLINE dead_line dead_line_at(const double *restrict c, int lane, const double *restrict line,
+                                    const double *restrict along, int s, int n, elastic_state elastic) {
+    dead_line x = {.q = {lane_load(along, s, n), lane_load(along + 3 * s, s, n),
+                         lane_load(along + 6 * s, s, n), lane_load(along + 9 * s, s, n)}};
+    x.own = line_strain(line, s, n, x.q);
+    x.stress = add_strain(elastic_stress(elastic), symmetric_times(c, BOUGH_LANES, lane, x.own));
+    return x;
+}
+
+// Its change where the middle turns; of the stress only by that.
+BOUGH_INLINE dead_line dead_line_turned(const double *restrict c, int lane, const double *restrict line,
+                                        int s, int n, const dead_line *x, bough_vec3 middle) {
+    dead_line d = {.q = {bough_cross(x->q[0], middle), bough_cross(x->q[1], middle),
+                         bough_cross(x->q[2], middle), bough_cross(x->q[3], middle)}};
+    d.own = line_strain(line, s, n, d.q);
+    d.stress = symmetric_times(c, BOUGH_LANES, lane, d.own);
+    return d;
+}
+
+// theory (22): forces q per length act on the axis, Dᵀ S beside the chord: their moment on the middle.
+BOUGH_INLINE bough_vec3 axis_moment(const double *restrict line, int s, int n, double h, strain stress,
+                                    const bough_vec3 q[4]) {
+#define D(part, i, j) line[(36 * (part) + 6 * (i) + (j)) * s + n]
+#define COLUMN(part, j)                                                                                      \
+    (D(part, 0, j) * stress.v.x + D(part, 1, j) * stress.v.y + D(part, 2, j) * stress.v.z +                  \
+     D(part, 3, j) * stress.u.x + D(part, 4, j) * stress.u.y + D(part, 5, j) * stress.u.z)
+    bough_vec3 mean = {COLUMN(0, 0), COLUMN(0, 1), COLUMN(0, 2)};
+    bough_vec3 slope = {COLUMN(1, 0), COLUMN(1, 1), COLUMN(1, 2)};
+#undef COLUMN
+#undef D
+    return bough_scale(h, bough_add(bough_cross(mean, q[0]), bough_cross(slope, q[2])));
+}
+
+// Moments on the two vertices of a segment, in their axes.
+typedef struct end_moments {
+    bough_vec3 left, right;
+} end_moments;
+
+// A moment on the middle, in its axes, does the work of these; and their variation.
+BOUGH_INLINE end_moments middle_moment(segment_geometry shape, bough_vec3 moment) {
+    bough_vec3 half = bough_scale(0.5, moment), tilt = bough_cross(shape.t, half);
+    return (end_moments){half_forward(shape.v, shape.t, bough_sub(half, tilt)),
+                         half_backward(shape.v, shape.t, bough_add(half, tilt))};
+}
+
+BOUGH_INLINE end_moments middle_moment_variation(segment_geometry shape, segment_variation d,
+                                                 bough_vec3 moment, bough_vec3 change) {
+    bough_vec3 half = bough_scale(0.5, moment), dhalf = bough_scale(0.5, change);
+    bough_vec3 tilt = bough_cross(shape.t, half);
+    bough_vec3 dtilt = bough_add(bough_cross(d.t, half), bough_cross(shape.t, dhalf));
+    return (end_moments){half_forward_variation(shape, d, bough_sub(half, tilt), bough_sub(dhalf, dtilt)),
+                         half_backward_variation(shape, d, bough_add(half, tilt), bough_add(dhalf, dtilt))};
 }
 
 // Beside the chord of a bent segment its axis lies by −(h/12) of the tangent's change in the mean, where a
@@ -68,24 +122,27 @@ BOUGH_INLINE bough_vec3 following_moment(double h, bough_vec3 bend, bough_vec3 l
     return bough_scale(-h * h / 24, bough_cross(bend, (bough_vec3){-load.y, load.x, 0}));
 }
 
-// Adds what the turns phi of the sections change in these moments of the loads along segment n, dead ones and
-// followers.
-// NOLINTNEXTLINE(readability-function-size): what the equation names
-BOUGH_INLINE segment_force add_chord_moments(segment_force f, segment_geometry shape, segment_variation d,
-                                             bough_mat3 rl, bough_mat3 rr, bough_vec3 phi_l, bough_vec3 phi_r,
-                                             bough_vec3 bend0, bough_vec3 turn0, bough_vec3 along,
-                                             bough_vec3 following, double h) {
-    const bough_vec3 tangent = {0, 0, 1};
-    bough_vec3 change = bough_sub(bough_mat3_mul(rr, bough_cross(phi_r, tangent)),
-                                  bough_mat3_mul(rl, bough_cross(phi_l, tangent)));
-    change = bough_sub(change, bough_mat3_mul(shape.r, bough_cross(d.middle, bend0)));
-    bough_vec3 moment = chord_moment(h, change, bough_mat3_mul(shape.r, along));
+// Adds what the turns phi of the sections change in the moments of the loads along segment n: dead ones,
+// whose stress changes by dstress with the elastic strain, and followers.
+// NOLINTNEXTLINE(readability-function-size): what the equations name
+BOUGH_INLINE segment_force add_line_moments(segment_force f, segment_geometry shape, segment_variation d,
+                                            const double *restrict line, int s, int n, double h,
+                                            const dead_line *dead, const dead_line *turned, strain dstress,
+                                            bough_mat3 rl, bough_mat3 rr, vertex_variation dl,
+                                            vertex_variation dr, bough_vec3 turn0, bough_vec3 following) {
+    bough_vec3 moment = axis_moment(line, s, n, h, dead->stress, dead->q);
+    bough_vec3 change = axis_moment(line, s, n, h, dead->stress, turned->q);
+    change = bough_add(change, axis_moment(line, s, n, h, add_strain(dstress, turned->stress), dead->q));
+    end_moments on = middle_moment(shape, moment);
+    end_moments don = middle_moment_variation(shape, d, moment, change);
     bough_vec3 bend = bough_axpy(-h, turn0, shape.phi);
-    bough_vec3 turned = bough_cross(d.middle, following_moment(h, bend, following));
-    turned = bough_add(turned, following_moment(h, d.phi, following));
-    moment = bough_add(moment, bough_mat3_mul(shape.r, turned));
-    f.ll = bough_add(f.ll, bough_mat3_tmul(rl, moment));
-    f.lr = bough_add(f.lr, bough_mat3_tmul(rr, moment));
+    bough_vec3 follower = bough_cross(d.middle, following_moment(h, bend, following));
+    follower = bough_add(follower, following_moment(h, d.phi, following));
+    f.ll = bough_add(f.ll, bough_add(don.left, bough_cross(dl.phi, on.left)));
+    f.lr = bough_add(f.lr, bough_add(don.right, bough_cross(dr.phi, on.right)));
+    follower = bough_mat3_mul(shape.r, follower);
+    f.ll = bough_add(f.ll, bough_mat3_tmul(rl, follower));
+    f.lr = bough_add(f.lr, bough_mat3_tmul(rr, follower));
     return f;
 }
 
@@ -105,15 +162,20 @@ BOUGH_INLINE segment_force segment_tangent(const bough_rod_model *m, const bough
     strain stress = add_strain(elastic_stress(elastic), symmetric_times(viscous, BOUGH_LANES, 0, rate));
     segment_variation d = shape_variation(shape, *dl, *dr, inverse);
     strain de = {d.stretch, bough_scale(inverse, d.phi)};
-    if (scratch->turning) de = add_turned(de, m->line, scratch->along, s, n, d.middle);
+    dead_line dead = {0}, turned = {0};
+    if (scratch->turning) {
+        dead = dead_line_at(c, 0, m->line, scratch->along, s, n, elastic);
+        turned = dead_line_turned(c, 0, m->line, s, n, &dead, d.middle);
+        de = subtract_strain(de, turned.own);
+    }
     strain drate = rate_variation(shape, motion, d, dl, dr, inverse);
-    strain dstress = add_strain(elastic_variation(c, gradient, BOUGH_LANES, 0, elastic, de),
-                                symmetric_times(viscous, BOUGH_LANES, 0, drate));
+    strain delastic = elastic_variation(c, gradient, BOUGH_LANES, 0, elastic, de);
+    strain dstress = add_strain(delastic, symmetric_times(viscous, BOUGH_LANES, 0, drate));
     segment_force f = force_variation(shape, d, stress, dstress, h);
     if (!scratch->turning) return f;
-    return add_chord_moments(f, shape, d, bough_rotation_matrix(l.p), bough_rotation_matrix(r.p), dl->phi,
-                             dr->phi, lane_load(m->bend0, s, n), lane_load(m->strain0 + 3 * s, s, n),
-                             lane_load(scratch->along, s, n), lane_load(scratch->following, s, n), h);
+    return add_line_moments(f, shape, d, m->line, s, n, h, &dead, &turned, delastic,
+                            bough_rotation_matrix(l.p), bough_rotation_matrix(r.p), *dl, *dr,
+                            lane_load(m->strain0 + 3 * s, s, n), lane_load(scratch->following, s, n));
 }
 
 #endif

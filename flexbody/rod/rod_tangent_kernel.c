@@ -117,15 +117,14 @@ BOUGH_INLINE void store_force(double *restrict column, int l, segment_force f) {
     lane_store(column + LANES * DIRECTIONS * LR, LANES * DIRECTIONS, l, f.lr);
 }
 
-// `turning`: D q turns as well, and the moments of loads along the segment beside its chord.
+// `turning`: D q turns as well, and the moments of loads along the segment on its axis.
 BOUGH_INLINE void position_direction(const bough_rod_model *m, const bough_rod_scratch *scratch, bool turning,
                                      int first, const double *restrict base, vertex_variation dl,
                                      vertex_variation dr, double *restrict column) {
     int s = m->stride;
     const double *restrict at = scratch->vertex + first, *restrict along = scratch->along + first;
-    const double *restrict line = m->line + first, *restrict bend = m->bend0 + first;
-    const double *restrict turn = m->strain0 + 3 * s + first, *restrict following =
-                                                                  scratch->following + first;
+    const double *restrict line = m->line + first, *restrict turn = m->strain0 + 3 * s + first;
+    const double *restrict following = scratch->following + first, *restrict rest = scratch->rest + first;
     const double *restrict c = m->stiffness + 21 * first, *restrict gradient = m->gradient + 35 * first;
     const double *restrict damping = m->damping + 21 * first;
     const double *restrict inverse = m->inverse_length + first, *restrict h = m->length + first;
@@ -141,18 +140,24 @@ BOUGH_INLINE void position_direction(const bough_rod_model *m, const bough_rod_s
                          lane_load(base + LANES * (BASE_STRESS + 3), LANES, l)};
         segment_variation d = shape_variation(shape, dl, dr, inverse[l]);
         strain de = {d.stretch, bough_scale(inverse[l], d.phi)};
-        if (turning) de = add_turned(de, line, along, s, l, d.middle);
-        strain drate = rate_variation(shape, motion, d, &dl, &dr, inverse[l]);
         elastic_state elastic = load_elastic(base, l);
-        strain dstress = add_strain(elastic_variation(c, gradient, LANES, l, elastic, de),
-                                    symmetric_times(damping, LANES, l, drate));
+        dead_line dead = {0}, turned = {0};
+        if (turning) {
+            shape.stretch = along_axis(shape.v, shape.chord);
+            strain e = elastic_strain(shape, inverse[l], rest, s, l);
+            dead = dead_line_at(c, l, line, along, s, l, elastic_at(c, gradient, LANES, l, e));
+            turned = dead_line_turned(c, l, line, s, l, &dead, d.middle);
+            de = subtract_strain(de, turned.own);
+        }
+        strain drate = rate_variation(shape, motion, d, &dl, &dr, inverse[l]);
+        strain delastic = elastic_variation(c, gradient, LANES, l, elastic, de);
+        strain dstress = add_strain(delastic, symmetric_times(damping, LANES, l, drate));
         segment_force f = force_variation(shape, d, stress, dstress, h[l]);
         if (turning) {
             bough_mat3 rl = bough_rotation_matrix(load_vertex(at, s, l).p);
             bough_mat3 rr = bough_rotation_matrix(load_vertex(at, s, l + 1).p);
-            f = add_chord_moments(f, shape, d, rl, rr, dl.phi, dr.phi, lane_load(bend, s, l),
-                                  lane_load(turn, s, l), lane_load(along, s, l), lane_load(following, s, l),
-                                  h[l]);
+            f = add_line_moments(f, shape, d, line, s, l, h[l], &dead, &turned, delastic, rl, rr, dl, dr,
+                                 lane_load(turn, s, l), lane_load(following, s, l));
         }
         store_force(column, l, f);
     }

@@ -143,3 +143,48 @@ TEST(line_lumped_to_vertices_does_the_same_at_rest) {
         }
     }
 }
+
+// The moments of a bent rod's vertices about their own axes: of its segments and of a load on it.
+static double rolling_moment(const bough_rod_model *m, const bough_rod_scratch *scratch,
+                             const double *state) {
+    int s = m->stride, n = m->n;
+    double sum = 0;
+    for (int k = 0; k < n; k++) sum += scratch->segment[5 * s + k] + scratch->segment[8 * s + k];
+    for (int i = 0; i <= n; i++) {
+        bough_quaternion p = bough_quaternion_identity();
+        const double *at = state + i - 1;
+        if (i > 0) p = (bough_quaternion){at[3 * n], at[4 * n], at[5 * n], at[6 * n]};
+        const double *l = scratch->load + 3 * s + i;
+        bough_vec3 axis = bough_rotation_matrix(bough_quaternion_normalised(p)).c3;
+        sum += bough_dot(axis, bough_v3(l[0], l[s], l[2 * s]));
+    }
+    return sum;
+}
+
+// A dead force on the axis of a round rod does no work when all sections roll about their own axes, however
+// the rod is bent and however soft it is: a cable on a spherical joint would spin.
+TEST(force_between_vertices_does_not_roll_a_bent_rod) {
+    const double inertia[4] = {1, 1, 1, 1}, input[BOUGH_ROD_INPUTS] = {0};
+    const bough_schedule always = {0};
+    for (int k = 0; k < 3; k++) {
+        double bending = pow(10, k);
+        const double stiffness[6] = {3000, 3000, 9000, bending, bending, bending};
+        const double force[6] = {0.2, -0.5, 0.3, 0, 0, 0};
+        double state[BOUGH_ROD_STATES * N];
+        bough_rod_loads loads;
+        bough_rod_scratch scratch;
+        unsigned seed = 5;
+        check_arena(arena);
+        const bough_rod_model *m = sample_uniform(arena, N, N, stiffness, 0, inertia);
+        bough_rod_loads_init(&loads, arena, m);
+        bough_rod_scratch_init(&scratch, arena, m);
+        bough_rod_rest_state(m, input, state);
+        for (int i = 0; i < 7 * N; i++) state[i] += 0.05 * sample_random(&seed);
+        bough_rod_lump(m, (bough_rod_reach){2.3, 2.3}, force, NULL,
+                       bough_rod_loads_ramped(&loads, arena, m, false, &always));
+        bough_rod_gather(m, state, input, &scratch);
+        bough_rod_load(m, &loads, 0, &scratch);
+        assert_true(bough_rod_forces(m, 0, N, &scratch));
+        check_near(rolling_moment(m, &scratch, state), 0, 0, 1e-13);
+    }
+}
