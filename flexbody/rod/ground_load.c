@@ -1,12 +1,15 @@
 #include "flexbody/rod/ground_load.h"
 
+#include <math.h>
 #include <string.h>
+
+enum { VERTEX_ROWS = 6, ROWS = 18 }; // of a load: on the vertices, and with those along the segments
 
 // A load is linear in the axes' components: value = Σ_j axis_j by_axis_j.
 typedef struct ground_load {
     struct ground_load *next;
     bough_rod_ramped_load *resolved; // in BRF axes, one of the body's
-    double *by_axis;                 // (9 × 6 × stride)
+    double *by_axis;                 // (9 × 18 × stride): on the vertices, then along the segments
 } ground_load;
 
 struct bough_ground_body {
@@ -14,20 +17,26 @@ struct bough_ground_body {
     bough_system_ops ops;
     const bough_rod_model *mesh;
     bough_rod_loads *loads;
+    bool vertices_only; // the body takes no loads between its vertices
     ground_load *first;
-    double *rate, *out, *zero; // (n_state), (n_output), (inputs) scratch
-    double *probe;             // (inputs) scratch
+    double *rate, *out; // (n_state), (n_output) scratch
+    double *probe;      // (inputs) scratch
 };
 
+// sum (n) ← Σ_j axis_j by (n × 18 × stride rows apart)
+static void sum_axes(const bough_ground_body *b, const double *axis, const double *by, int n, double *sum) {
+    memset(sum, 0, (size_t)n * sizeof *sum);
+    for (int j = 0; j < BOUGH_GROUND_AXES; j++, by += (size_t)ROWS * b->mesh->stride) {
+        for (int k = 0; k < n; k++) sum[k] += axis[j] * by[k];
+    }
+}
+
 void bough_ground_body_turn(bough_ground_body *b, const double *axis) {
-    int count = 6 * b->mesh->stride;
+    int s = b->mesh->stride;
     for (ground_load *l = b->first; l != NULL; l = l->next) {
-        double *restrict value = l->resolved->value;
-        memset(value, 0, (size_t)count * sizeof *value);
-        for (int j = 0; j < BOUGH_GROUND_AXES; j++) {
-            const double *restrict by = l->by_axis + (size_t)j * (size_t)count;
-            for (int k = 0; k < count; k++) value[k] += axis[j] * by[k];
-        }
+        sum_axes(b, axis, l->by_axis, VERTEX_ROWS * s, l->resolved->value);
+        if (l->resolved->along)
+            sum_axes(b, axis, l->by_axis + VERTEX_ROWS * s, (ROWS - VERTEX_ROWS) * s, l->resolved->line);
     }
 }
 
@@ -45,10 +54,13 @@ static void output(void *self, double t, const double *state, const double *inpu
     b->inner.ops->output(b->inner.self, t, state, input, out);
 }
 
-// The input with other axes. f and h are linear in these: their differences are exact.
-static double *with_axes(bough_ground_body *b, const double *input, const double *axes) {
-    memcpy(b->probe, input, (size_t)b->inner.n_input * sizeof *input);
-    memcpy(b->probe + b->inner.n_input, axes, BOUGH_GROUND_AXES * sizeof *axes);
+// The input with changed axes. f and h are nearly linear in these: central differences are as good as exact.
+static const double part = 1; // of a unit vector
+
+static double *with_axes(bough_ground_body *b, const double *input, const double *change, double factor) {
+    int n = b->inner.n_input;
+    memcpy(b->probe, input, (size_t)n * sizeof *input);
+    for (int j = 0; j < BOUGH_GROUND_AXES; j++) b->probe[n + j] = input[n + j] + factor * change[j];
     return b->probe;
 }
 
@@ -59,10 +71,13 @@ static void output_tangent(void *self, double t, const double *state, const doub
     bough_ground_body_turn(b, input + b->inner.n_input);
     b->inner.ops->output_tangent(b->inner.self, t, state, input, state_rate, input_rate, out);
     if (input_rate == NULL) return;
-    for (int side = 0; side < 2; side++) {
-        const double *axes = side == 0 ? input_rate + b->inner.n_input : b->zero;
-        output(b, t, state, with_axes(b, input, axes), b->out);
-        for (int k = 0; k < b->inner.n_output; k++) out[k] += (1 - 2 * side) * b->out[k];
+    const double *change = input_rate + b->inner.n_input;
+    double largest = 0;
+    for (int j = 0; j < BOUGH_GROUND_AXES; j++) largest = fmax(largest, fabs(change[j]));
+    if (largest == 0) return;
+    for (int sign = -1; sign <= 1; sign += 2) {
+        output(b, t, state, with_axes(b, input, change, sign * part / largest), b->out);
+        for (int k = 0; k < b->inner.n_output; k++) out[k] += sign * largest / (2 * part) * b->out[k];
     }
 }
 
@@ -71,12 +86,12 @@ static void input_columns(void *self, double t, const double *state, const doubl
     bough_ground_body_turn(b, input + b->inner.n_input);
     b->inner.ops->input_columns(b->inner.self, t, state, input, column);
     column += (size_t)b->inner.n_input * (size_t)b->inner.n_state;
-    derivative(b, t, state, with_axes(b, input, b->zero), b->rate);
     for (int j = 0; j < BOUGH_GROUND_AXES; j++, column += b->inner.n_state) {
         double unit[BOUGH_GROUND_AXES] = {0};
         unit[j] = 1;
-        derivative(b, t, state, with_axes(b, input, unit), column);
-        for (int k = 0; k < b->inner.n_state; k++) column[k] -= b->rate[k];
+        derivative(b, t, state, with_axes(b, input, unit, -part), b->rate);
+        derivative(b, t, state, with_axes(b, input, unit, part), column);
+        for (int k = 0; k < b->inner.n_state; k++) column[k] = (column[k] - b->rate[k]) / (2 * part);
     }
 }
 
@@ -114,16 +129,17 @@ static void project(void *self, const double *state, double *x) {
 // -- life -----------------------------------------------------------------------------------------
 
 bough_ground_body *bough_ground_body_create(bough_arena *arena, const bough_system *inner,
-                                            const bough_rod_model *mesh, bough_rod_loads *loads) {
+                                            const bough_rod_model *mesh, bough_rod_loads *loads,
+                                            bool vertices_only) {
     bough_ground_body *b = bough_arena_take(arena, sizeof *b);
     size_t inputs = (size_t)inner->n_input + BOUGH_GROUND_AXES;
     *b = (bough_ground_body){.inner = *inner,
                              .ops = {BOUGH_SYSTEM_REQUIRED},
                              .mesh = mesh,
                              .loads = loads,
+                             .vertices_only = vertices_only,
                              .rate = bough_arena_doubles(arena, (size_t)inner->n_state),
                              .out = bough_arena_doubles(arena, (size_t)inner->n_output),
-                             .zero = bough_arena_doubles(arena, inputs),
                              .probe = bough_arena_doubles(arena, inputs)};
     if (inner->ops->constrain != NULL) b->ops.constrain = constrain;
     if (inner->ops->project != NULL) b->ops.project = project;
@@ -150,18 +166,21 @@ static void add_axis(const bough_ground_body *b, const bough_ground_load_def *de
     }
     bool tapered = memcmp(def->wrench, def->end, sizeof def->end) != 0;
     bough_rod_lump(b->mesh, def->reach, wrench[0], tapered ? wrench[1] : NULL, to);
-    bough_rod_lump_line(b->mesh, to);
+    if (b->vertices_only) bough_rod_lump_line(b->mesh, to);
 }
 
 void bough_ground_body_load(bough_ground_body *b, bough_arena *arena, const bough_ground_load_def *def) {
-    size_t size = 6 * (size_t)b->mesh->stride;
+    size_t s = (size_t)b->mesh->stride, size = ROWS * s;
     ground_load *l = bough_arena_take(arena, sizeof *l);
     *l = (ground_load){.next = b->first, .by_axis = bough_arena_doubles(arena, BOUGH_GROUND_AXES * size)};
     b->first = l;
     l->resolved = bough_rod_loads_add(b->loads, arena, b->mesh, false, &def->schedule);
     for (int j = 0; j < BOUGH_GROUND_AXES; j++) {
-        memset(l->resolved->value, 0, size * sizeof(double));
+        double *by = l->by_axis + (size_t)j * size;
+        memset(l->resolved->value, 0, VERTEX_ROWS * s * sizeof(double));
+        memset(l->resolved->line, 0, (ROWS - VERTEX_ROWS) * s * sizeof(double));
         add_axis(b, def, j, l->resolved);
-        memcpy(l->by_axis + (size_t)j * size, l->resolved->value, size * sizeof(double));
+        memcpy(by, l->resolved->value, VERTEX_ROWS * s * sizeof(double));
+        memcpy(by + VERTEX_ROWS * s, l->resolved->line, (ROWS - VERTEX_ROWS) * s * sizeof(double));
     }
 }

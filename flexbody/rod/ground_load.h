@@ -10,9 +10,11 @@ enum { BOUGH_GROUND_AXES = 9 }; // components of the ground's x, y and z axis in
 
 typedef struct bough_ground_body bough_ground_body;
 
-// `inner` is the system of the body with this mesh and these loads, which are borrowed.
+// `inner` is the system of the body with this mesh and these loads, which are borrowed; `vertices_only`: it
+// takes no loads between its vertices.
 bough_ground_body *bough_ground_body_create(bough_arena *arena, const bough_system *inner,
-                                            const bough_rod_model *mesh, bough_rod_loads *loads);
+                                            const bough_rod_model *mesh, bough_rod_loads *loads,
+                                            bool vertices_only);
 
 // The inner system with inputs for the axes after its own.
 bough_system bough_ground_body_system(bough_ground_body *body);

@@ -33,7 +33,7 @@ bough_status bough_beam_build(bough_arena *arena, bough_beam *beam, bough_integr
     bough_system system = {0};
     BOUGH_TRY(rod ? build_rod(arena, beam, input, &system) : build_modal(arena, beam, input, &system));
     if (beam->in_ground) {
-        beam->ground = bough_ground_body_create(arena, &system, beam->mesh, beam->loads);
+        beam->ground = bough_ground_body_create(arena, &system, beam->mesh, beam->loads, beam->modal != NULL);
         system = bough_ground_body_system(beam->ground);
     }
     return bough_member_create(arena, &system, 0, &micro, member);
