@@ -83,6 +83,18 @@ static void add_variation(const bough_rod_model *m, int n, bough_rod_part part, 
     lump_stress(m, n, line, load->follower, load->value);
 }
 
+// By how much the load between the vertices bends segment n, by linear statics [rad]; beyond the most that
+// linear statics is good for, the load goes to the vertices alone, as along a cable.
+static const double most_bend = 0.5;
+
+static double bend_of(const bough_rod_model *m, int n, const double line[12]) {
+    const double *c = bough_rod_tile(m->stiffness, 21, n);
+    double h = m->length[n], softest = fmin(c[15 * BOUGH_LANES], c[18 * BOUGH_LANES]);
+    double mean = bough_norm(bough_v3(line[0], line[1], line[2]));
+    double slope = bough_norm(bough_v3(line[6], line[7], line[8]));
+    return (mean + 0.5 * h * slope) * h * h * h / (12 * softest);
+}
+
 static void add_to_segment(const bough_rod_model *m, int n, const bough_rod_part *part,
                            bough_rod_ramped_load *load) {
     int s = m->stride;
@@ -94,7 +106,7 @@ static void add_to_segment(const bough_rod_model *m, int n, const bough_rod_part
     }
     bool at_vertex = part->from == part->to && (part->from == m->span[n] || part->from == m->span[n + 1]);
     bool whole = part->from == m->span[n] && part->to == m->span[n + 1];
-    if (at_vertex) return;
+    if (at_vertex || bend_of(m, n, own.line) > most_bend) return;
     load->along = true;
     for (int c = 0; c < 12; c++) load->line[c * s + n] += own.line[c];
     if (!whole && m->sections.strain != NULL) add_variation(m, n, *part, load);

@@ -12,7 +12,8 @@ typedef struct bough_rod_reach {
 // Adds to the load a wrench (force, moment) [N, N m], in the load's axes. Along a stretch `wrench` is per
 // length [N/m, N m/m] at its start and `end` at its end, linear between; NULL: the same. Vertices share it by
 // hat functions. Between them it goes to load->line as well: a part of a segment, or a point in it, as the
-// linear load that bends a uniform segment equally. What a segment of varying sections bends otherwise are
+// linear load that bends a uniform segment equally; not where that bends it by more than half a radian, as a
+// cable's. What a segment of varying sections bends otherwise are
 // forces and moments on its vertices that cancel, for the axes of the undeformed rod.
 void bough_rod_lump(const bough_rod_model *m, bough_rod_reach reach, const double *wrench, const double *end,
                     bough_rod_ramped_load *load);

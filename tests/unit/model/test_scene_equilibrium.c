@@ -249,6 +249,42 @@ TEST(chain_hangs_in_a_catenary) {
     }
 }
 
+// A cable of 1 N/m and 10 m on a spherical joint, pulled at its tip and within a segment, spins freely about
+// its own axis. The elastic cable, T its tension: x = ∫ T/|T| (1 + |T|/EA) ds.
+TEST(cable_on_a_spherical_joint_hangs_under_forces) {
+    enum { PARTS = 20000 };
+    const double bending[] = {1e-3, 0.1, 10};
+    const bough_vec3 tip = {6, 3, -2}, side = {-2, 5, 1};
+    bough_vec3 x = {0, 0, 0};
+    for (int i = 0; i < PARTS; i++) {
+        double at = (i + 0.5) * 10 / PARTS;
+        bough_vec3 pull = bough_add(tip, bough_v3(0, 0, -(10 - at)));
+        if (at < 4.3) pull = bough_add(pull, side);
+        x = bough_axpy(10.0 / PARTS * (1 / bough_norm(pull) + 1e-4), pull, x);
+    }
+    for (int k = 0; k < 3; k++) {
+        check_arena(arena);
+        double b = bending[k];
+        const char *sets[] = {
+            bough_arena_print(
+                arena,
+                "bodies=[{name: line, fidelity: rod, joint: {kind: spherical, parent: ground, "
+                "placement: [rotate x 60 deg]}, rod: {length: 10, segments: 24, stiffness: [4e3, "
+                "4e3, 1e4, %g, %g, %g], mass: [0.1, 0, 0, 1e-6, 1e-6, 0]}}]",
+                b, b, b),
+            "loads=[{body: line, at: tip, force: [6, 3, -2]}, {body: line, at: 4.3 m, force: [-2, 5, 1]}]",
+            "gravity=[0, 0, -10]", "markers=[]", NULL};
+        bough_simulation *s = scene_build(arena, "apps/mechanisms/pendulum.yaml", sets);
+        bough_equilibrium_work work;
+        check_ok(bough_simulation_any_equilibrium(s, s->master->assembly, 0, &work));
+        bough_channels list = scene_channels(arena, s);
+        const bough_vec3 found = {scene_channel(s, &list, "lineTipX"), scene_channel(s, &list, "lineTipY"),
+                                  scene_channel(s, &list, "lineTipZ")};
+        printf("EI %g N m2: %d steps, tip off by %.2g m\n", b, work.steps, bough_norm(bough_sub(found, x)));
+        check_near(bough_norm(bough_sub(found, x)), 0, 0, 0.03 + 0.3 * sqrt(b / 10));
+    }
+}
+
 // A bar on a table between pads, which turn it by 16 degrees; its mass times `mass`.
 static bough_simulation *bar_on_pads(bough_arena *arena, int n_segment, double mass) {
     const char *sets[] = {
