@@ -11,8 +11,8 @@
 // for a thread that does not run, and after a list in which nobody has helped the caller does not wait at
 // all. Results do not depend on the threads if no sum crosses tasks.
 //
-// A waiting thread polls for about 50 µs, yielding its processor, and then sleeps. If there are more
-// threads than processors, it sleeps at once.
+// A waiting thread polls for about 0.5 ms, yielding its processor, and then sleeps; at once where another
+// program takes the processor, or if there are more threads than processors.
 #ifndef BOUGH_CORE_BASE_POOL_H
 #define BOUGH_CORE_BASE_POOL_H
 
