@@ -46,8 +46,8 @@ typedef enum bough_part { BOUGH_WHOLE, BOUGH_FIRST_HALF, BOUGH_SECOND_HALF } bou
 
 // Does items 0 … n − 1 of about equal work, the n % threads last of them in two halves, so that no thread
 // idles for a whole item. Three items on two threads:
-//     thread 1   item 0          item 1
-//     thread 2   item 2, first   item 2, second half
+//     thread 1   item 0               item 2, second half
+//     thread 2   item 2, first half   item 1
 void bough_pool_run_turns(bough_pool *pool, int n, void (*work)(void *data, int item, bough_part part),
                           void *data);
 
