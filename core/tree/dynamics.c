@@ -197,14 +197,18 @@ static bough_mat3 block_of(const double *a, int row, int column) {
                         {from[2], from[N + 2], from[2 * N + 2]}};
 }
 
-static void add_block(bough_mat3 b, int row, int column, double *a) {
+static void add_row(double x, double y, double z, double *to) {
+    to[0] += x;
+    to[1] += y;
+    to[2] += z;
+}
+
+// By address: a matrix that is passed on the stack waits for its own stores.
+static void add_block(const bough_mat3 *b, int row, int column, double *a) {
     double *to = a + N * row + column;
-    const bough_vec3 columns[3] = {b.c1, b.c2, b.c3};
-    for (int c = 0; c < 3; c++) {
-        to[c] += columns[c].x;
-        to[N + c] += columns[c].y;
-        to[2 * N + c] += columns[c].z;
-    }
+    add_row(b->c1.x, b->c2.x, b->c3.x, to);
+    add_row(b->c1.y, b->c2.y, b->c3.y, to + N);
+    add_row(b->c1.z, b->c2.z, b->c3.z, to + 2 * N);
 }
 
 static bough_mat3 rotated(bough_mat3 r, bough_mat3 a) {
@@ -231,10 +235,11 @@ static void add_to_parent(const bough_transform *x, const double *a, double *up)
     coupling = bough_mat3_add(coupling, times_cross(mass, to_child));
     inertia = bough_mat3_add(inertia, times_cross(back, to_child));
     inertia = bough_mat3_add(inertia, cross_times(x->position, coupling));
-    add_block(mass, 0, 0, up);
-    add_block(coupling, 0, 3, up);
-    add_block(bough_mat3_transpose(coupling), 3, 0, up);
-    add_block(inertia, 3, 3, up);
+    back = bough_mat3_transpose(coupling);
+    add_block(&mass, 0, 0, up);
+    add_block(&coupling, 0, 3, up);
+    add_block(&back, 3, 0, up);
+    add_block(&inertia, 3, 3, up);
 }
 
 // Whether a column of the motion subspace moves inertia beyond rounding errors.
