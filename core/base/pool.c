@@ -13,7 +13,7 @@
 // Longer lists are done in portions.
 enum { MOST_TASKS = 256, LINE = 64 };
 
-static const long spin_time = 500000; // polling before sleep, from which another thread wakes it in 25 µs [ns]
+static const long spin_time = 500000; // polling before sleep; to wake it costs the other thread 25 µs [ns]
 static const long steal_time = 5000;  // before a thread takes what is another's task, or yields [ns]
 
 // Where threads sleep: until there is a list, or until a task is done.
