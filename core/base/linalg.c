@@ -13,9 +13,6 @@ extern void dgetrs_(const char *trans, const int *n, const int *nrhs, const doub
                     const int *pivot, double *b, const int *ldb, int *info, size_t trans_length);
 extern void dgbsv_(const int *n, const int *below, const int *above, const int *nrhs, double *a,
                    const int *lda, int *pivot, double *b, const int *ldb, int *info);
-extern void dgemv_(const char *trans, const int *m, const int *n, const double *alpha, const double *a,
-                   const int *lda, const double *x, const int *incx, const double *beta, double *y,
-                   const int *incy, size_t l_trans);
 extern void dgemm_(const char *transa, const char *transb, const int *m, const int *n, const int *k,
                    const double *alpha, const double *a, const int *lda, const double *b, const int *ldb,
                    const double *beta, double *c, const int *ldc, size_t transa_length, size_t transb_length);
@@ -197,30 +194,15 @@ void bough_dense_solve(int n, int n_right, const double *factor, const int *pivo
     dgetrs_("N", &n, &n_right, factor, &n, pivot, b, &n, &info, 1);
 }
 
-enum { FEW = 8, TILE = 16 };
-
-// Products with few columns b are bound by the reading of a: some of its columns at a time serve all of b.
-static void multiply_few(const bough_product *p, const double *a, const double *b, double *c) {
-    int rows = p->transposed ? p->k : p->m, columns = p->transposed ? p->m : p->k, one = 1;
-    for (int begin = 0; begin < columns; begin += TILE) {
-        int width = columns - begin < TILE ? columns - begin : TILE;
-        for (int j = 0; j < p->n; j++) {
-            const double *x = b + (size_t)j * (size_t)p->k + (p->transposed ? 0 : begin);
-            double *y = c + (size_t)j * (size_t)p->m + (p->transposed ? begin : 0);
-            double keep = p->transposed || begin == 0 ? p->keep : 1;
-            dgemv_(p->transposed ? "T" : "N", &rows, &width, &p->factor, a + (size_t)begin * (size_t)rows,
-                   &rows, x, &one, &keep, y, &one, 1);
-        }
-    }
-}
+enum { FEW = 8 }; // columns of a product
 
 void bough_dense_product(bough_product p, const double *a, const double *b, double *c) {
     if (p.m == 0 || p.n == 0) return;
-    prepare();
     if (p.n <= FEW && p.k > 0) {
-        multiply_few(&p, a, b, c);
+        BOUGH_OF_LEVEL(bough_multiply_few, bough_level_chosen())(&p, a, b, c);
         return;
     }
+    prepare();
     int inner = p.k > 0 ? p.k : 1; // leading dimensions are at least 1
     dgemm_(p.transposed ? "T" : "N", "N", &p.m, &p.n, &p.k, &p.factor, a, p.transposed ? &inner : &p.m, b,
            &inner, &p.keep, c, &p.m, 1, 1);

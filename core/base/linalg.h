@@ -39,6 +39,11 @@ typedef struct bough_product {
 } bough_product;
 void bough_dense_product(bough_product p, const double *a, const double *b, double *c);
 
+// The same for few columns b.
+void bough_multiply_few(const bough_product *p, const double *a, const double *b, double *c);
+
+BOUGH_DECLARE_LEVELS(bough_multiply_few);
+
 // The same for complex matrices and one right side, real and imaginary parts next to each other:
 // a (n × n × 2, column-major), b (n × 2).
 bool bough_complex_factor(int n, double *a, int *pivot);

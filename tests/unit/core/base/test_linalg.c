@@ -67,31 +67,49 @@ TEST(product_of_matrices) {
     for (int i = 0; i < 4; i++) check_near(c[i], expected[i], 1e-15, 0);
 }
 
-// As many columns of the result as are multiplied some columns of the matrix at a time, and more.
-TEST(products_with_few_columns_are_products) {
-    enum { M = 37, K = 45, N = 9 };
+// Both products of a matrix (m × k), at a level.
+static void check_few(bough_level level, int m, int n, int k) {
+    enum { M = 300, K = 45, N = 9 };
     static double a[M * K], b[K * N], c[M * N], bt[M * N], ct[K * N];
-    for (int i = 0; i < M * K; i++) a[i] = sin(i);
-    for (int i = 0; i < K * N; i++) b[i] = cos(3 * i);
-    for (int i = 0; i < M * N; i++) bt[i] = cos(2 * i);
-    for (int n = 1; n <= N; n++) {
-        for (int i = 0; i < M * N; i++) c[i] = 1;
-        for (int i = 0; i < K * N; i++) ct[i] = 1;
-        bough_dense_product((bough_product){M, n, K, false, 2, -3}, a, b, c);
-        bough_dense_product((bough_product){K, n, M, true, 2, -3}, a, bt, ct);
-        for (int j = 0; j < n; j++) {
-            for (int i = 0; i < M; i++) {
-                double sum = -3;
-                for (int k = 0; k < K; k++) sum += 2 * a[k * M + i] * b[j * K + k];
-                check_near(c[j * M + i], sum, 0, 1e-12);
-            }
-            for (int k = 0; k < K; k++) {
-                double sum = -3;
-                for (int i = 0; i < M; i++) sum += 2 * a[k * M + i] * bt[j * M + i];
-                check_near(ct[j * K + k], sum, 0, 1e-12);
-            }
+    for (int i = 0; i < m * k; i++) a[i] = sin(i);
+    for (int i = 0; i < k * n; i++) b[i] = cos(3 * i), ct[i] = 1;
+    for (int i = 0; i < m * n; i++) bt[i] = cos(2 * i), c[i] = 1;
+    BOUGH_OF_LEVEL(bough_multiply_few, level)(&(bough_product){m, n, k, false, 2, -3}, a, b, c);
+    BOUGH_OF_LEVEL(bough_multiply_few, level)(&(bough_product){k, n, m, true, 2, -3}, a, bt, ct);
+    for (int j = 0; j < n; j++) {
+        for (int i = 0; i < m; i++) {
+            double sum = -3;
+            for (int q = 0; q < k; q++) sum += 2 * a[q * m + i] * b[j * k + q];
+            check_near(c[j * m + i], sum, 0, 1e-12);
+        }
+        for (int q = 0; q < k; q++) {
+            double sum = -3;
+            for (int i = 0; i < m; i++) sum += 2 * a[q * m + i] * bt[j * m + i];
+            check_near(ct[j * k + q], sum, 0, 1e-12);
         }
     }
+}
+
+// As many columns of either matrix as are worked on at once, more and fewer, and more rows.
+TEST(products_with_few_columns_are_products_at_every_level) {
+    for (bough_level level = BOUGH_LEVEL_V2; level < BOUGH_LEVEL_COUNT; level++) {
+        if (!bough_level_runs(level)) continue;
+        for (int n = 1; n <= 9; n++) {
+            for (int k = 41; k <= 45; k++) check_few(level, 37, n, k);
+        }
+        check_few(level, 300, 5, 3);
+    }
+}
+
+// A result that is not kept may be anything.
+TEST(what_a_product_does_not_keep_is_not_read) {
+    const double a[2] = {1, 2}, b[2] = {3, 4};
+    double c[2] = {(double)NAN, (double)NAN};
+    bough_dense_product((bough_product){2, 1, 1, false, 1, 0}, a, b, c);
+    assert_true(c[0] == 3 && c[1] == 6);
+    c[0] = (double)NAN;
+    bough_dense_product((bough_product){1, 1, 2, true, 1, 0}, a, b, c);
+    assert_true(c[0] == 11);
 }
 
 extern char *gotoblas_corename(void) __attribute__((weak));
