@@ -6,6 +6,7 @@
 #include <string.h>
 
 static const double dependent = 1e-13; // norm outside the basis, relative to the whole: below it, dependent
+static const double cancelled = 0.1;   // the same of one vector outside those beside it: another pass
 
 void bough_arnoldi_create(bough_arena *arena, int length, int capacity, int at_once, bough_arnoldi *a) {
     size_t n = (size_t)length, m = (size_t)capacity;
@@ -16,8 +17,8 @@ void bough_arnoldi_create(bough_arena *arena, int length, int capacity, int at_o
     a->weight = bough_arena_doubles(arena, n);
     a->at_once = at_once;
     a->image = bough_arena_doubles(arena, n * (size_t)at_once);
-    a->weighted = bough_arena_doubles(arena, n);
-    a->along = bough_arena_doubles(arena, m);
+    a->weighted = bough_arena_doubles(arena, n * (size_t)at_once);
+    a->along = bough_arena_doubles(arena, m * (size_t)at_once);
     a->value = bough_arena_doubles(arena, 2 * m);
     a->work = bough_arena_doubles(arena, 8 * m);
     for (int i = 0; i < length; i++) a->weight[i] = 1;
@@ -33,19 +34,28 @@ double bough_arnoldi_product(const bough_arnoldi *a, const double *x, const doub
     return sum;
 }
 
-// Gram–Schmidt, twice: the second pass restores what cancellation loses.
-void bough_arnoldi_append(bough_arnoldi *a, double *x, double *column) {
-    double before = sqrt(bough_arnoldi_product(a, x, x));
-    for (int pass = 0; pass < 2; pass++) {
-        // coefficients h = Vᵀ W x, then x −= V h
-        for (int i = 0; i < a->length; i++) a->weighted[i] = a->weight[i] * x[i];
-        bough_dense_product((bough_product){a->count, 1, a->length, true, 1, 0}, a->basis, a->weighted,
-                            a->along);
-        bough_dense_product((bough_product){a->length, 1, a->count, false, -1, 1}, a->basis, a->along, x);
-        for (int k = 0; k < a->count && column != NULL; k++) column[k] += a->along[k];
+// Takes the basis from its vector `first` on out of n vectors x: h = Vᵀ W x, x −= V h; h is added to the
+// column of each unless that is NULL.
+static void project_out(bough_arnoldi *a, int first, int n, double *x, double *const *column) {
+    int count = a->count - first, length = a->length;
+    const double *basis = vector_at(a, first);
+    for (int k = 0; k < n; k++) {
+        for (int i = 0; i < length; i++) a->weighted[k * length + i] = a->weight[i] * x[k * length + i];
     }
-    // a dependent vector is dropped: the space is invariant in it
-    double norm = sqrt(bough_arnoldi_product(a, x, x));
+    bough_dense_product((bough_product){count, n, length, true, 1, 0}, basis, a->weighted, a->along);
+    bough_dense_product((bough_product){length, n, count, false, -1, 1}, basis, a->along, x);
+    for (int k = 0; k < n && column[0] != NULL; k++) {
+        for (int i = 0; i < count; i++) column[k][first + i] += a->along[k * count + i];
+    }
+}
+
+static double length_of(const bough_arnoldi *a, const double *x) {
+    return sqrt(bough_arnoldi_product(a, x, x));
+}
+
+// Appends x, orthogonal to the basis, at length 1. A dependent one is dropped: the space is invariant in it.
+static void append(bough_arnoldi *a, double before, const double *x, double *column) {
+    double norm = length_of(a, x);
     bool full = a->count == a->capacity || a->count == a->length;
     if (!(norm > dependent * before) || full) return;
     // normalised, a new vector of the basis
@@ -54,16 +64,37 @@ void bough_arnoldi_append(bough_arnoldi *a, double *x, double *column) {
     for (int i = 0; i < a->length; i++) v[i] = x[i] / norm;
 }
 
+// Gram–Schmidt, twice: the second pass restores what cancellation loses.
+void bough_arnoldi_append(bough_arnoldi *a, double *x, double *column) {
+    double before = length_of(a, x);
+    for (int pass = 0; pass < 2; pass++) project_out(a, 0, 1, x, &column);
+    append(a, before, x, column);
+}
+
+// The same for n vectors: what was in the basis before is taken out of all at once. One that is nearly a
+// combination of the others loses digits that only another pass restores.
+static void append_some(bough_arnoldi *a, int n, double *x, double *const *column) {
+    int first = a->count;
+    double before[BOUGH_ARNOLDI_AT_ONCE];
+    for (int k = 0; k < n; k++) before[k] = length_of(a, x + (size_t)k * (size_t)a->length);
+    for (int pass = 0; pass < 2; pass++) project_out(a, 0, n, x, column);
+    for (int k = 0; k < n; k++) {
+        double *own = x + (size_t)k * (size_t)a->length, size = length_of(a, own);
+        for (int pass = 0; pass < 2 && a->count > first; pass++) project_out(a, first, 1, own, &column[k]);
+        if (length_of(a, own) < cancelled * size) project_out(a, 0, 1, own, &column[k]);
+        append(a, before[k], own, column[k]);
+    }
+}
+
 // A V = V H, a column of H for each vector of the basis.
 bough_status bough_arnoldi_extend(bough_arnoldi *a, int target) {
     while (a->done < a->count && a->done < target) {
         int left = (a->count < target ? a->count : target) - a->done,
             n = left < a->at_once ? left : a->at_once;
         BOUGH_TRY(a->apply(a->self, n, vector_at(a, a->done), a->image));
-        for (int k = 0; k < n; k++) {
-            double *column = a->h + (size_t)a->done++ * (size_t)a->capacity;
-            bough_arnoldi_append(a, a->image + (size_t)k * (size_t)a->length, column);
-        }
+        double *column[BOUGH_ARNOLDI_AT_ONCE];
+        for (int k = 0; k < n; k++) column[k] = a->h + (size_t)a->done++ * (size_t)a->capacity;
+        append_some(a, n, a->image, column);
     }
     return bough_ok();
 }

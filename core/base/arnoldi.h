@@ -8,6 +8,8 @@
 
 #include <stdbool.h>
 
+enum { BOUGH_ARNOLDI_AT_ONCE = 8 }; // most
+
 typedef struct bough_arnoldi {
     int length;               // of a vector
     int capacity;             // most vectors
@@ -16,9 +18,9 @@ typedef struct bough_arnoldi {
     double *basis;            // (capacity × length)
     double *h;                // operator in the basis (capacity × capacity), column j of vector j
     double *weight;           // of the inner product (length)
-    int at_once;              // vectors to which the operator is applied together
+    int at_once;              // vectors to which the operator is applied together, ≤ BOUGH_ARNOLDI_AT_ONCE
     double *image;            // (at_once × length) scratch
-    double *weighted, *along; // (length), (capacity) scratch
+    double *weighted, *along; // (at_once × length), (at_once × capacity) scratch
     // by bough_arnoldi_project: eigenvalues of the first `done` rows and columns of h
     double *value;         // real parts (done), then imaginary parts
     double *vector;        // (done × done) column by column; of a complex pair real, then imaginary part
