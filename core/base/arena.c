@@ -11,6 +11,7 @@ enum { ALIGNMENT = 64 };
 
 typedef struct block {
     struct block *next;
+    void *start;             // of the memory taken for it
     void (*release)(void *); // NULL for plain memory
     void *object;
 } block;
@@ -63,7 +64,7 @@ void bough_arena_destroy(bough_arena *arena) {
     for (block *b = arena->newest, *next; b; b = next) {
         next = b->next;
         if (b->release) b->release(b->object);
-        free(b);
+        free(b->start);
     }
     free(arena);
 }
@@ -94,11 +95,14 @@ bough_status bough_arena_use(bough_status (*work)(bough_arena *arena, void *self
 // A block of `size` payload bytes behind an aligned header; NULL when there is none.
 static block *push(bough_arena *arena, size_t size) {
     // no overflow in the rounding to whole lines
-    if (size > (size_t)-1 - 3 * ALIGNMENT) return NULL;
-    size_t whole = ALIGNMENT + (size + ALIGNMENT - 1) / ALIGNMENT * ALIGNMENT;
-    block *b = aligned_alloc(ALIGNMENT, whole);
-    if (!b) return NULL;
-    memset(b, 0, whole);
+    if (size > (size_t)-1 - 4 * ALIGNMENT) return NULL;
+    size_t whole = 2 * ALIGNMENT + (size + ALIGNMENT - 1) / ALIGNMENT * ALIGNMENT;
+    // the system's fresh pages are zero already and cost nothing until they are used
+    void *start = calloc(1, whole);
+    if (!start) return NULL;
+    size_t before = (ALIGNMENT - (size_t)start % ALIGNMENT) % ALIGNMENT;
+    block *b = (block *)((char *)start + before);
+    b->start = start;
     b->next = arena->newest;
     arena->newest = b;
     arena->bytes += whole;
