@@ -20,7 +20,7 @@ void bough_arnoldi_create(bough_arena *arena, int length, int capacity, int at_o
     a->weighted = bough_arena_doubles(arena, n * (size_t)at_once);
     a->along = bough_arena_doubles(arena, m * (size_t)at_once);
     a->value = bough_arena_doubles(arena, 2 * m);
-    a->work = bough_arena_doubles(arena, 8 * m);
+    a->work = bough_arena_doubles(arena, BOUGH_EIGEN_WORK(m));
     for (int i = 0; i < length; i++) a->weight[i] = 1;
 }
 

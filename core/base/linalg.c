@@ -228,7 +228,7 @@ bool bough_dense_eigen(int n, double *a, double *value, double *vector, double *
     prepare();
     if (!finite_matrix(n, a)) return false;
     // right eigenvectors only
-    int info = 0, one = 1, n_work = 8 * n;
+    int info = 0, one = 1, n_work = BOUGH_EIGEN_WORK(n);
     dgeev_("N", "V", &n, a, &n, value, value + n, NULL, &one, vector, &n, work, &n_work, &info, 1, 1);
     return info == 0;
 }

@@ -51,8 +51,9 @@ void bough_complex_solve(int n, const double *factor, const int *pivot, double *
 
 // Eigenvalues of a (n × n, column-major; overwritten): value (2 × n), real parts before imaginary
 // ones, conjugate pairs in sequence. vector (n × n, column-major): the right eigenvectors of length
-// 1, of a pair its real and imaginary part in two columns. work (8 n). False when a is not finite
-// or the iteration does not converge.
+// 1, of a pair its real and imaginary part in two columns. work (BOUGH_EIGEN_WORK(n)): room for the blocks
+// that pay for many rows. False when a is not finite or the iteration does not converge.
+#define BOUGH_EIGEN_WORK(n) ((n) > 100 ? 34 * (n) + 4160 : 8 * (n))
 bool bough_dense_eigen(int n, double *a, double *value, double *vector, double *work);
 
 // Eigenvalues of a symmetric matrix (n × n; its lower triangle), rising, into value (n), and its

@@ -134,7 +134,7 @@ static bough_status map_step(bough_two_mass *m, double h, const double *z, doubl
 bough_status bough_two_mass_radius(bough_two_mass *m, double macro_step, double *radius) {
     int n = bough_scheme_n_memory(m->master->coupling);
     double matrix[MOST * MOST] = {0}, column[MOST], unit[MOST];
-    double value[2 * MOST], vector[MOST * MOST], work[8 * MOST];
+    double value[2 * MOST], vector[MOST * MOST], work[BOUGH_EIGEN_WORK(MOST)];
     for (int k = 0; k < n; k++) {
         memset(unit, 0, sizeof unit);
         unit[k] = 1;

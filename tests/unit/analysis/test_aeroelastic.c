@@ -247,7 +247,7 @@ TEST(modes_are_within_their_residuals) {
     check_ok(bough_state_space_find(arena, s, 0, &x));
     size_t n = (size_t)x.n;
     double *value = bough_arena_doubles(arena, 2 * n), *vector = bough_arena_doubles(arena, n * n);
-    assert_true(bough_dense_eigen(x.n, x.a, value, vector, bough_arena_doubles(arena, 8 * n)));
+    assert_true(bough_dense_eigen(x.n, x.a, value, vector, bough_arena_doubles(arena, BOUGH_EIGEN_WORK(n))));
     assert_int_equal(v.found, 2);
     for (int k = 0; k < v.found; k++) {
         double nearest = HUGE_VAL, real = v.pair[k].real, imaginary = v.pair[k].imaginary;

@@ -174,7 +174,7 @@ TEST(symmetric_eigenvectors_rebuild_the_matrix) {
 // A rotation scaled by 0.5 beside the number 3, seen through a change of basis.
 TEST(eigenvalues_and_vectors) {
     const double a[9] = {0, 0.5, 0, -0.5, 0, 0, 1, 1, 3};
-    double copy[9], value[6], v[9], work[24];
+    double copy[9], value[6], v[9], work[BOUGH_EIGEN_WORK(3)];
     memcpy(copy, a, sizeof a);
     assert_true(bough_dense_eigen(3, copy, value, v, work));
     for (int k = 0; k < 3; k++) {

@@ -297,7 +297,7 @@ TEST(modes_are_eigenvalues_of_the_equation_of_motion) {
     const double input[BOUGH_ROD_INPUTS] = {0.4, -0.3, 0.7, 0.5, -0.8, 0.6, 1, -2, -0.5};
     const bough_schedule constant = {.start = 0, .end = 0};
     static double matrix[STATES * STATES], vector[STATES * STATES];
-    double value[2 * STATES], work[8 * STATES];
+    double value[2 * STATES], work[BOUGH_EIGEN_WORK(STATES)];
     unsigned seed = 4;
     bar b = {.arena = check_memory()};
     b.model = sample_general(b.arena, N);
