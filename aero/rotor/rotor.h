@@ -111,16 +111,17 @@ typedef struct bough_rotor_memory {
 typedef struct bough_rotor_data {
     bough_rotor_memory memory; // advanced by bough_rotor_conclude
     // computed by the stages of a sample
-    double *load;  // (n_blade × 6 × n_vertex) force on each vertex, moment about it, in the axes of
-                   // the blade's frame [N, N m]
-    double *line;  // (n_blade × 12 × (n_vertex − 1)) the same loads per length, their mean over each
-                   // segment between two vertices [N/m, N] and their slope [N/m², N/m], same axes
-    double *slope; // (n_blade × BOUGH_SLOPES × n_vertex) how the loads follow the vertices' own
-                   // motion: row 4 c + j, c of forces along x and y and moment about z of the blade's
-                   // frame, j of velocities along x and y, rotation about the section's normal and
-                   // its rate [N s/m, N, N s; N s, N m, N m s]
-    double thrust; // along the shaft [N]
-    double torque; // about the shaft [N m]
+    double *load;      // (n_blade × 6 × n_vertex) force on each vertex, moment about it, in the axes of
+                       // the blade's frame [N, N m]
+    double *line;      // (n_blade × 12 × (n_vertex − 1)) the same loads per length, their mean over each
+                       // segment between two vertices [N/m, N] and their slope [N/m², N/m], same axes
+    double *slope;     // (n_blade × BOUGH_SLOPES × n_vertex) how the loads follow the vertices' own
+                       // motion: row 4 c + j, c of forces along x and y and moment about z of the blade's
+                       // frame, j of velocities along x and y, rotation about the section's normal and
+                       // its rate [N s/m, N, N s; N s, N m, N m s]
+    bool skips_slopes; // of the caller: they are not wanted, and stay as they are
+    double thrust;     // along the shaft [N]
+    double torque;     // about the shaft [N m]
     bough_vec3 disk_wind;     // mean of the disturbed wind over all stations [m/s]
     bough_vec3 disk_velocity; // mean of the stations' velocities [m/s]
     struct bough_rotor_scratch *scratch;

@@ -268,7 +268,7 @@ void BOUGH_AT_LEVEL(bough_rotor_load)(const bough_rotor *rotor, const bough_roto
     double *line = data->line + 12 * blade * (n - 1);
     spread(n - 1, rotor->mean, LOAD, 6, r->load, line);
     spread(n - 1, rotor->slope, LOAD, 6, r->load, line + 6 * (n - 1));
-    if (rotor->slopes) {
+    if (rotor->slopes && !data->skips_slopes) {
         evaluate_slopes(rotor, motion->time, blade, data);
         slope_stations(rotor, r, data);
         spread(n, rotor->row, SLOPE, BOUGH_SLOPES, r->slope, data->slope + BOUGH_SLOPES * blade * n);

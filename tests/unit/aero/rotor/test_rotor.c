@@ -368,6 +368,20 @@ TEST(loads_follow_the_motion_by_their_slopes) {
     }
 }
 
+TEST(slopes_that_are_not_wanted_stay_and_change_no_load) {
+    rig *r = create_rig(false);
+    r->def.slopes = true;
+    operate(r, 12, 0, 12.1);
+    sample(r, 0.7);
+    double thrust = r->data.thrust, slope = r->data.slope[VERTICES / 2];
+    sample(r, 1.2);
+    assert_true(r->data.slope[VERTICES / 2] != slope);
+    slope = r->data.slope[VERTICES / 2];
+    r->data.skips_slopes = true;
+    sample(r, 0.7);
+    assert_true(r->data.thrust == thrust && r->data.slope[VERTICES / 2] == slope);
+}
+
 // Calm, locked, feathered, turning backwards, overspeeding, blown from behind.
 TEST(odd_states_are_finite) {
     static const double wind[] = {-15, 0, 1e-9, 8, 60}, pitch[] = {-180, -30, 0, 90};
