@@ -214,23 +214,23 @@ bough_status bough_coupling_advance_leaders(bough_coupling *c, int level, bool r
 
 // -- signals --------------------------------------------------------------------------------------
 
-void bough_coupling_interpolate(bough_coupling *c, int member, int j) {
+void bough_coupling_interpolate(bough_coupling *c, int j) {
     const bough_output_curve *from = &c->advanced;
-    int source = c->assembly->source[j], local = j - c->assembly->input_offset[member];
+    int source = c->assembly->source[j], member = c->assembly->receiver[j];
     c->followed[j] = true;
-    bough_signal_hermite(&c->signal[member], local, 1,
-                         (bough_signal_end){c->input + j, from->start_rate + source},
-                         (bough_signal_end){from->value + source, from->end_rate + source});
+    bough_signal_hermite(&c->signal[member], j - c->assembly->input_offset[member],
+                         (bough_signal_end){c->input[j], from->start_rate[source]},
+                         (bough_signal_end){from->value[source], from->end_rate[source]});
 }
 
 // theory (58)
-void bough_coupling_extrapolate(bough_coupling *c, int member, int j, int degree) {
+void bough_coupling_extrapolate(bough_coupling *c, int j, int degree) {
     assert(degree >= 0 && degree < BOUGH_HISTORY);
-    int n_point = degree < c->past.n ? degree + 1 : c->past.n;
-    const double *value[BOUGH_HISTORY];
-    for (int p = 0; p < n_point; p++) value[p] = c->past.input[p] + j;
-    bough_signal_polynomial(&c->signal[member], j - c->assembly->input_offset[member], 1, n_point,
-                            c->past.time, value);
+    int n_point = degree < c->past.n ? degree + 1 : c->past.n, member = c->assembly->receiver[j];
+    double value[BOUGH_HISTORY];
+    for (int p = 0; p < n_point; p++) value[p] = c->past.input[p][j];
+    bough_signal_polynomial(&c->signal[member], j - c->assembly->input_offset[member], n_point, c->past.time,
+                            value);
 }
 
 // The second divided difference, twice.
@@ -243,10 +243,6 @@ double bough_coupling_curvature(const bough_coupling *c, int j, double end) {
 }
 
 // -- the end of a step ----------------------------------------------------------------------------
-
-void bough_coupling_obtain(bough_coupling *c) {
-    bough_assembly_outputs(c->assembly, c->t1, c->output, c->input);
-}
 
 void bough_coupling_record(bough_coupling *c) {
     const bough_assembly *a = c->assembly;

@@ -60,7 +60,7 @@ typedef struct bough_coupling {
     bool restart;  // a load jumped at t0: integrators start anew
     bool compared; // another solution shows the error, so a step that has not converged may go on
 
-    // by bough_coupling_obtain and bough_coupling_record, at the end of the last step
+    // by bough_scheme_step and bough_coupling_record, at the end of the last step
     double *output;  // (n_output) of all members at their current states
     double *input;   // (n_input) the same, as their receivers get it
     double *applied; // (n_input) end values of the signals: what the receivers have got
@@ -111,11 +111,11 @@ void bough_coupling_outputs(bough_coupling *c, int member, double t, double *out
 void bough_coupling_output_rate(bough_coupling *c, int member, double t, const double *input,
                                 const double *input_rate, double *rate);
 
-// Fills input j (numbered over all inputs) of its member: from the outputs of a member that has advanced, by
-// a cubic through values and rates at both ends; and by the polynomial of `degree` through the last
+// Fill the signal of input j (numbered over all inputs): from the outputs of a member that has advanced, by a
+// cubic through values and rates at both ends; and by the polynomial of `degree` through the last
 // synchronisation points.
-void bough_coupling_interpolate(bough_coupling *c, int member, int j);
-void bough_coupling_extrapolate(bough_coupling *c, int member, int j, int degree);
+void bough_coupling_interpolate(bough_coupling *c, int j);
+void bough_coupling_extrapolate(bough_coupling *c, int j, int degree);
 
 // Second derivative at the step of the parabola through the last two values of input j (numbered
 // over all inputs) and `end` at t1; 0 if there are no such values, or a jump between them.
@@ -125,9 +125,6 @@ double bough_coupling_curvature(const bough_coupling *c, int j, double end);
 void bough_coupling_not_finite(bough_coupling *c, int member);
 
 // -- the end of a step ----------------------------------------------------------------------------
-
-// Computes outputs and inputs at t1.
-void bough_coupling_obtain(bough_coupling *c);
 
 // Stores the end values of the signals and appends the inputs to the history.
 void bough_coupling_record(bough_coupling *c);

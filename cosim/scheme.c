@@ -124,7 +124,7 @@ bough_status bough_scheme_step(bough_coupling *c) {
     // members advance as the scheme orders them
     BOUGH_TRY(c->scheme->step(c));
     // their outputs become inputs
-    bough_coupling_obtain(c);
+    bough_assembly_outputs(c->assembly, c->t1, c->output, c->input);
     if (c->scheme->obtained) c->scheme->obtained(c);
     bough_coupling_record(c);
     return bough_ok();

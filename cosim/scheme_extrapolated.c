@@ -8,15 +8,13 @@
 static bool set_signals(bough_coupling *c, int level, int degree) {
     const bough_assembly *a = c->assembly;
     bool jumps = false;
-    for (int i = 0; i < a->n_member; i++) {
-        if (a->level[i] != level) continue;
-        for (int j = a->input_offset[i]; j < a->input_offset[i + 1]; j++) {
-            if (a->level[a->source_member[j]] < level) {
-                bough_coupling_interpolate(c, i, j);
-            } else {
-                bough_coupling_extrapolate(c, i, j, degree);
-                jumps = true;
-            }
+    for (int j = 0; j < a->n_input; j++) {
+        if (a->level[a->receiver[j]] != level) continue;
+        if (a->level[a->source_member[j]] < level) {
+            bough_coupling_interpolate(c, j);
+        } else {
+            bough_coupling_extrapolate(c, j, degree);
+            jumps = true;
         }
     }
     return jumps;

@@ -21,9 +21,9 @@ static void hold(bough_coupling *c, int member) {
     for (int j = 0; j < s->n; j++) {
         int input = a->input_offset[member] + j;
         if (a->kinematic[input]) {
-            bough_signal_hold_rate(s, j, 1, c->input + input, c->advanced.start_rate + a->source[input]);
+            bough_signal_hold_rate(s, j, c->input[input], c->advanced.start_rate[a->source[input]]);
         } else {
-            bough_signal_hold(s, j, 1, c->input + input);
+            bough_signal_hold(s, j, c->input[input]);
         }
     }
 }

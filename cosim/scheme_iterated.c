@@ -152,18 +152,17 @@ static double node_time(const bough_coupling *c, int k) {
 static void interpolate(bough_coupling *c, int member, int j) {
     const bough_assembly *a = c->assembly;
     const iteration *it = c->scheme_data;
-    double time[MOST_NODES + BOUGH_HISTORY];
-    const double *value[MOST_NODES + BOUGH_HISTORY];
+    double time[MOST_NODES + BOUGH_HISTORY], value[MOST_NODES + BOUGH_HISTORY];
     int n = it->n_node, earlier = n > 1 ? 1 : c->options.order;
     for (int k = 0; k < n; k++) {
         time[k] = node_time(c, k);
-        value[k] = it->prescribed + k * a->n_input + j;
+        value[k] = it->prescribed[k * a->n_input + j];
     }
     for (int p = 0; p < earlier && p < c->past.n; p++, n++) {
         time[n] = c->past.time[p];
-        value[n] = c->past.input[p] + j;
+        value[n] = c->past.input[p][j];
     }
-    bough_signal_polynomial(&c->signal[member], j - a->input_offset[member], 1, n, time, value);
+    bough_signal_polynomial(&c->signal[member], j - a->input_offset[member], n, time, value);
 }
 
 // Advances a member from node to node, with assumed feedback and obtained other inputs, and evaluates its
@@ -204,13 +203,10 @@ static void predict(bough_coupling *c) {
     const bough_assembly *a = c->assembly;
     iteration *it = c->scheme_data;
     int degree = c->restart ? 0 : it->n_node > 1 ? BOUGH_HISTORY - 1 : c->options.order;
-    for (int i = 0; i < a->n_member; i++) {
-        int first = a->input_offset[i];
-        for (int j = first; j < a->input_offset[i + 1]; j++) {
-            bough_coupling_extrapolate(c, i, j, degree);
-        }
-        for (int k = 0; k < it->n_node; k++) {
-            double *prescribed = it->prescribed + k * a->n_input + first;
+    for (int j = 0; j < a->n_input; j++) bough_coupling_extrapolate(c, j, degree);
+    for (int k = 0; k < it->n_node; k++) {
+        for (int i = 0; i < a->n_member; i++) {
+            double *prescribed = it->prescribed + k * a->n_input + a->input_offset[i];
             bough_signal_value(&c->signal[i], node_time(c, k), prescribed);
         }
     }

@@ -156,9 +156,9 @@ static bough_status step(bough_coupling *c) {
 // The members have exchanged their values at all times: what is applied is what is obtained.
 static void obtained(bough_coupling *c) {
     const bough_assembly *a = c->assembly;
-    for (int i = 0; i < a->n_member; i++) {
-        int first = a->input_offset[i], count = a->member[i]->system.n_input;
-        bough_signal_linear(&c->signal[i], 0, count, c->past.input[0] + first, c->input + first);
+    for (int j = 0; j < a->n_input; j++) {
+        int i = a->receiver[j];
+        bough_signal_linear(&c->signal[i], j - a->input_offset[i], c->past.input[0][j], c->input[j]);
     }
 }
 

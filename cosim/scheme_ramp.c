@@ -267,12 +267,11 @@ static bough_status predict_damped(bough_coupling *c) {
 // The first prediction, which gives the interface ratio, and what follows from the ratio.
 static bough_status measure_interface(bough_coupling *c) {
     ramp *r = c->scheme_data;
-    bough_status status = predict(c);
-    if (!bough_is_ok(&status)) return status;
+    BOUGH_TRY(predict(c));
+    bough_status status = bough_ok();
     r->ratio = bough_interface_radius(r->interface);
     if (!r->named && r->ratio > heavy_interface) {
-        status = check_stability(c, r->ratio);
-        if (!bough_is_ok(&status)) return status;
+        BOUGH_TRY(check_stability(c, r->ratio));
         if (r->ratio > light_interface) r->damped = c->t1;
         status = predict_damped(c);
     }
@@ -295,28 +294,29 @@ static bough_status prepare(bough_coupling *c) {
 static bool held(const ramp *r) { return r->theta >= 1; }
 
 // The ramp with its parabola, theory (61, 62).
-static void set_repaying(bough_coupling *c, int member, int j, double end) {
+static void set_repaying(bough_coupling *c, bough_signal *signal, int local, int j, double end) {
     const ramp *r = c->scheme_data;
     double h = c->t1 - c->t0, start = c->applied[j];
     double impulse = r->deficit[j] - h * h * h / 12 * bough_coupling_curvature(c, j, end);
     double middle = 0.5 * (start + end) + 1.5 * impulse / h;
-    const double time[] = {c->t0, c->t0 + 0.5 * h, c->t1};
-    const double *const value[] = {&start, &middle, &end};
-    bough_signal_polynomial(&c->signal[member], j - c->assembly->input_offset[member], 1, 3, time, value);
+    const double time[] = {c->t0, c->t0 + 0.5 * h, c->t1}, value[] = {start, middle, end};
+    bough_signal_polynomial(signal, local, 3, time, value);
 }
 
 static void set_ramps(bough_coupling *c, int member) {
     const bough_assembly *a = c->assembly;
     const ramp *r = c->scheme_data;
-    for (int j = a->input_offset[member], local = 0; j < a->input_offset[member + 1]; j++, local++) {
+    bough_signal *signal = &c->signal[member];
+    for (int local = 0; local < signal->n; local++) {
+        int j = a->input_offset[member] + local;
         double start = c->applied[j], end = start + r->change[j];
         if (!r->repays) r->deficit[j] = 0;
         if (held(r)) {
-            bough_signal_hold(&c->signal[member], local, 1, &end);
+            bough_signal_hold(signal, local, end);
         } else if (r->repays) {
-            set_repaying(c, member, j, end);
+            set_repaying(c, signal, local, j, end);
         } else {
-            bough_signal_linear(&c->signal[member], local, 1, &start, &end);
+            bough_signal_linear(signal, local, start, end);
         }
     }
 }
@@ -331,17 +331,13 @@ static bough_status step(bough_coupling *c) {
     for (int i = 0; i < a->n_member; i++) {
         if (leads(c, i)) set_ramps(c, i);
     }
-    bough_status status = bough_coupling_advance_leaders(c, 0, c->restart || held(r));
-    if (!bough_is_ok(&status)) return status;
+    BOUGH_TRY(bough_coupling_advance_leaders(c, 0, c->restart || held(r)));
     // followers under the leaders' motion
-    for (int i = 0; i < a->n_member; i++) {
-        if (leads(c, i)) continue;
-        for (int j = a->input_offset[i]; j < a->input_offset[i + 1]; j++) bough_coupling_interpolate(c, i, j);
+    for (int j = 0; j < a->n_input; j++) {
+        if (!leads(c, a->receiver[j])) bough_coupling_interpolate(c, j);
     }
-    for (int level = 1; level < a->n_level && bough_is_ok(&status); level++) {
-        status = bough_coupling_advance(c, level, c->restart);
-    }
-    return status;
+    for (int level = 1; level < a->n_level; level++) BOUGH_TRY(bough_coupling_advance(c, level, c->restart));
+    return bough_ok();
 }
 
 // theory (62): integral of the obtained value, by its parabola, minus that of the applied value.
@@ -361,15 +357,8 @@ static void add_deficit(bough_coupling *c, int member) {
 }
 
 static void obtained(bough_coupling *c) {
-    const bough_assembly *a = c->assembly;
-    const ramp *r = c->scheme_data;
-    for (int i = 0; i < a->n_member; i++) {
-        size_t own = (size_t)a->member[i]->system.n_input * sizeof(double);
-        if (leads(c, i)) {
-            add_deficit(c, i);
-        } else {
-            memset(r->deficit + a->input_offset[i], 0, own);
-        }
+    for (int i = 0; i < c->assembly->n_member; i++) {
+        if (leads(c, i)) add_deficit(c, i);
     }
 }
 

@@ -1,6 +1,5 @@
 // Input signals on one macro step: vector-valued cubics in time, filled component by component from values
-// (and rates) at synchronisation points. `first` and `count` select components of the signal; arrays of
-// values begin with the first selected component.
+// (and rates) at synchronisation points.
 #ifndef BOUGH_COSIM_SIGNAL_H
 #define BOUGH_COSIM_SIGNAL_H
 
@@ -33,25 +32,23 @@ static inline void bough_signal_rate(const bough_signal *s, double t, double *ra
 // A zero signal of n components on [0, 1], in the arena.
 bough_signal bough_signal_create(bough_arena *arena, int n);
 
-// value(t) = value
-void bough_signal_hold(bough_signal *s, int first, int count, const double *value);
+// Component j on the step. Held: value(t) = value.
+void bough_signal_hold(bough_signal *s, int j, double value);
 
 // value(t) = value + rate (t − t0)
-void bough_signal_hold_rate(bough_signal *s, int first, int count, const double *value, const double *rate);
+void bough_signal_hold_rate(bough_signal *s, int j, double value, double rate);
 
-// The polynomial of degree n_point − 1 <= 3 through n_point values: at times time[p] the values
-// value[p][0 … count − 1]. Extrapolates when the times are before t0, interpolates otherwise.
-void bough_signal_polynomial(bough_signal *s, int first, int count, int n_point, const double *time,
-                             const double *const *value);
+// The polynomial of degree n_point − 1 <= 3 through n_point values: at time[p] value[p]. Extrapolates when
+// the times are before t0, interpolates otherwise.
+void bough_signal_polynomial(bough_signal *s, int j, int n_point, const double *time, const double *value);
 
 // Linear from `start` at t0 to `end` at t1.
-void bough_signal_linear(bough_signal *s, int first, int count, const double *start, const double *end);
+void bough_signal_linear(bough_signal *s, int j, double start, double end);
 
-// The cubic with these values and rates (2 × count each: at t0, at t1).
+// The cubic with these values and rates at t0 and at t1.
 typedef struct bough_signal_end {
-    const double *value, *rate; // (count)
+    double value, rate;
 } bough_signal_end;
-void bough_signal_hermite(bough_signal *s, int first, int count, bough_signal_end start,
-                          bough_signal_end end);
+void bough_signal_hermite(bough_signal *s, int j, bough_signal_end start, bough_signal_end end);
 
 #endif

@@ -76,11 +76,13 @@ static double worst_relative(bough_step_control *s, const bough_assembly *a, con
 // The obtained inputs: the polynomial through the last synchronisation points, none of them before a jump.
 static void reconstruct(bough_step_control *s, const bough_coupling *c) {
     int past = c->restart ? 1 : s->n_point;
-    const double *value[BOUGH_PAST];
-    for (int p = 0; p <= past; p++) value[p] = c->past.input[p];
     s->curve.t0 = c->t0;
     s->curve.t1 = c->t1;
-    bough_signal_polynomial(&s->curve, 0, s->curve.n, past + 1, c->past.time, value);
+    for (int j = 0; j < s->curve.n; j++) {
+        double value[BOUGH_PAST];
+        for (int p = 0; p <= past; p++) value[p] = c->past.input[p][j];
+        bough_signal_polynomial(&s->curve, j, past + 1, c->past.time, value);
+    }
 }
 
 static double defect_near(bough_step_control *s, const bough_coupling *c, double t) {

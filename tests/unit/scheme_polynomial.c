@@ -6,16 +6,16 @@
 static bool before(int level, int other, bool reversed) { return reversed ? level > other : level < other; }
 
 // Input j through the new value of its source and `order` earlier ones.
-static void interpolate(bough_coupling *c, int member, int j) {
+static void interpolate(bough_coupling *c, int j) {
     const bough_history *past = &c->past;
-    int degree = c->options.order < past->n ? c->options.order : past->n;
+    int degree = c->options.order < past->n ? c->options.order : past->n, member = c->assembly->receiver[j];
     double time[BOUGH_HISTORY + 1] = {c->t1};
-    const double *value[BOUGH_HISTORY + 1] = {c->advanced.value + c->assembly->source[j]};
+    double value[BOUGH_HISTORY + 1] = {c->advanced.value[c->assembly->source[j]]};
     for (int p = 0; p < degree; p++) {
         time[p + 1] = past->time[p];
-        value[p + 1] = past->input[p] + j;
+        value[p + 1] = past->input[p][j];
     }
-    bough_signal_polynomial(&c->signal[member], j - c->assembly->input_offset[member], 1, degree + 1, time,
+    bough_signal_polynomial(&c->signal[member], j - c->assembly->input_offset[member], degree + 1, time,
                             value);
 }
 
@@ -25,13 +25,12 @@ static bough_status step_by(bough_coupling *c, bool reversed) {
     bough_coupling_begin(c);
     for (int k = 0; k < a->n_level && bough_is_ok(&status); k++) {
         int level = reversed ? a->n_level - 1 - k : k;
-        for (int i = 0; i < a->n_member; i++) {
-            for (int j = a->input_offset[i]; a->level[i] == level && j < a->input_offset[i + 1]; j++) {
-                if (before(a->level[a->source_member[j]], level, reversed)) {
-                    interpolate(c, i, j);
-                } else {
-                    bough_coupling_extrapolate(c, i, j, c->options.order);
-                }
+        for (int j = 0; j < a->n_input; j++) {
+            if (a->level[a->receiver[j]] != level) continue;
+            if (before(a->level[a->source_member[j]], level, reversed)) {
+                interpolate(c, j);
+            } else {
+                bough_coupling_extrapolate(c, j, c->options.order);
             }
         }
         status = bough_coupling_advance_leaders(c, level, true);
@@ -44,13 +43,8 @@ static bough_status step(bough_coupling *c) { return step_by(c, false); }
 static bough_status step_reversed(bough_coupling *c) { return step_by(c, true); }
 
 static bough_status step_at_once(bough_coupling *c) {
-    const bough_assembly *a = c->assembly;
     bough_coupling_begin(c);
-    for (int i = 0; i < a->n_member; i++) {
-        for (int j = a->input_offset[i]; j < a->input_offset[i + 1]; j++) {
-            bough_coupling_extrapolate(c, i, j, c->options.order);
-        }
-    }
+    for (int j = 0; j < c->assembly->n_input; j++) bough_coupling_extrapolate(c, j, c->options.order);
     return bough_coupling_advance(c, BOUGH_ALL_LEVELS, true);
 }
 

@@ -12,7 +12,7 @@ static void hold(bough_coupling *c, int member) {
             slope = (past->input[0][j] - past->input[1][j]) / (past->time[0] - past->time[1]);
         }
         double middle = past->input[0][j] + 0.5 * (c->t1 - c->t0) * slope;
-        bough_signal_hold(&c->signal[member], local, 1, &middle);
+        bough_signal_hold(&c->signal[member], local, middle);
     }
 }
 

@@ -10,7 +10,7 @@ static void check_signal(const bough_signal *s, double (*expected)(double)) {
     for (double t = s->t0; t <= s->t1; t += .1) {
         double value[2];
         bough_signal_value(s, t, value);
-        check_near(value[0], 0, 0, 0); // not selected
+        check_near(value[0], 0, 0, 0); // another component
         check_near(value[1], expected(t), 1e-13, 1e-13);
     }
 }
@@ -35,11 +35,11 @@ TEST(held_values_and_rates) {
     check_arena(arena);
     bough_signal s = signal_on(arena, 2, 2.5);
     const double value = 4, rate = -3, end = 2.5;
-    bough_signal_hold(&s, 1, 1, &value);
+    bough_signal_hold(&s, 1, value);
     check_signal(&s, constant);
-    bough_signal_hold_rate(&s, 1, 1, &value, &rate);
+    bough_signal_hold_rate(&s, 1, value, rate);
     check_signal(&s, line);
-    bough_signal_linear(&s, 1, 1, &value, &end);
+    bough_signal_linear(&s, 1, value, end);
     check_signal(&s, line);
 }
 
@@ -47,7 +47,7 @@ TEST(hermite_reproduces_a_cubic) {
     check_arena(arena);
     bough_signal s = signal_on(arena, .5, 1.3);
     const double v0 = cubic(.5), r0 = cubic_rate(.5), v1 = cubic(1.3), r1 = cubic_rate(1.3);
-    bough_signal_hermite(&s, 1, 1, (bough_signal_end){&v0, &r0}, (bough_signal_end){&v1, &r1});
+    bough_signal_hermite(&s, 1, (bough_signal_end){v0, r0}, (bough_signal_end){v1, r1});
     check_signal(&s, cubic);
 }
 
@@ -55,15 +55,11 @@ TEST(polynomials_extrapolate_and_interpolate) {
     check_arena(arena);
     bough_signal s = signal_on(arena, .5, 1.3);
     const double back[3] = {.5, .2, -.3}, around[4] = {1.3, .5, .2, -.3};
-    double at_back[3], at_around[4];
-    const double *value[4] = {&at_back[0], &at_back[1], &at_back[2]};
-    for (int p = 0; p < 3; p++) at_back[p] = parabola(back[p]);
-    bough_signal_polynomial(&s, 1, 1, 3, back, value);
+    double value[4];
+    for (int p = 0; p < 3; p++) value[p] = parabola(back[p]);
+    bough_signal_polynomial(&s, 1, 3, back, value);
     check_signal(&s, parabola);
-    for (int p = 0; p < 4; p++) {
-        at_around[p] = cubic(around[p]);
-        value[p] = &at_around[p];
-    }
-    bough_signal_polynomial(&s, 1, 1, 4, around, value);
+    for (int p = 0; p < 4; p++) value[p] = cubic(around[p]);
+    bough_signal_polynomial(&s, 1, 4, around, value);
     check_signal(&s, cubic);
 }
