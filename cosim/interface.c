@@ -115,11 +115,6 @@ bool bough_interface_linearise(bough_interface *k, int member, const bough_opera
     return true;
 }
 
-static bool factor(const bough_interface *k, int member, double gamma) {
-    const bough_system *s = system_of(k, member);
-    return s->ops->factor(s->self, k->part[member].factors, gamma);
-}
-
 void bough_interface_solve_member(const bough_interface *k, int member, double *x) {
     const bough_system *s = system_of(k, member);
     s->ops->solve(s->self, k->part[member].factors, x);
@@ -188,10 +183,6 @@ static bool any(const double *x, int n) {
     return false;
 }
 
-bool bough_interface_factor_follower(bough_interface *k, int member, const bough_operating_point *at) {
-    return factor(k, member, at->gamma);
-}
-
 void bough_interface_respond(bough_interface *k, int member, const bough_operating_point *at) {
     const bough_system *s = system_of(k, member);
     const bough_interface_member *w = &k->part[member];
@@ -210,14 +201,12 @@ void bough_interface_respond(bough_interface *k, int member, const bough_operati
     }
 }
 
-bool bough_interface_factor_leader(bough_interface *k, int member, const bough_operating_point *at) {
+bool bough_interface_factor(bough_interface *k, int member, const bough_operating_point *at) {
     const bough_interface_member *w = &k->part[member];
     const bough_system *s = system_of(k, member);
-    if (!factor(k, member, at->gamma)) return false;
-    if (!w->by_state) {
-        bough_interface_respond(k, member, at);
-        return true;
-    }
+    if (!s->ops->factor(s->self, w->factors, at->gamma)) return false;
+    if (w->is_leader && !w->by_state) bough_interface_respond(k, member, at);
+    if (!w->by_state) return true;
     // γ ∂f/∂u, and the responses to its states
     find_columns(k, member, at);
     for (int i = 0; i < s->n_input * s->n_state; i++) w->column[i] *= at->gamma;

@@ -68,11 +68,9 @@ typedef struct bough_operating_point {
 // Linearises a member. False when its tangents are not finite.
 bool bough_interface_linearise(bough_interface *k, int member, const bough_operating_point *at);
 
-// Factors a leader at its last linearisation, and computes its columns and responses. False when singular.
-bool bough_interface_factor_leader(bough_interface *k, int member, const bough_operating_point *at);
-
-// Factors a follower at its last linearisation. False when singular.
-bool bough_interface_factor_follower(bough_interface *k, int member, const bough_operating_point *at);
+// Factors a member at its last linearisation; of a leader computes columns and responses too. False when
+// singular.
+bool bough_interface_factor(bough_interface *k, int member, const bough_operating_point *at);
 
 // The follower's columns and responses, once its leaders have been factored.
 void bough_interface_respond(bough_interface *k, int member, const bough_operating_point *at);

@@ -89,7 +89,7 @@ static bool take_stage(stages *s) {
         if (bough_whole_outputs_first(s->now, i)) set_argument(s, i);
     begin_rates(s, s->stage == 0 ? step->y : step->at);
     // every member by itself
-    bough_whole_begin_solution(s->factors, NULL, step->u[s->stage]);
+    bough_whole_begin_solution(s->factors, step->u[s->stage]);
     bough_pool_run(s->factors->pool, n_member + s->assembly->n_follower, find_and_solve, s);
     // the interface; the members' responses to it follow with the next stage
     bough_whole_solve_interface(s->factors);

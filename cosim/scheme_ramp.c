@@ -147,7 +147,7 @@ static void predict_leader(bough_coupling *c, int member) {
     bough_operating_point at = operating_point(c, member);
     if (s->n_input == 0 && s->n_output == 0) return; // no ports
     if (!evaluate(c, member) || !bough_interface_linearise(r->interface, member, &at) ||
-        !bough_interface_factor_leader(r->interface, member, &at)) {
+        !bough_interface_factor(r->interface, member, &at)) {
         bough_coupling_not_finite(c, member);
         return;
     }
@@ -162,7 +162,7 @@ static void predict_follower(bough_coupling *c, int member) {
     const ramp *r = c->scheme_data;
     bough_operating_point at = operating_point(c, member);
     if (r->fresh && !(bough_interface_linearise(r->interface, member, &at) &&
-                      bough_interface_factor_follower(r->interface, member, &at))) {
+                      bough_interface_factor(r->interface, member, &at))) {
         bough_coupling_not_finite(c, member);
         return;
     }

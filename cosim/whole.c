@@ -129,13 +129,6 @@ static bough_operating_point operating_point(const bough_whole *whole, int i) {
                                    whole->setup_input + a->input_offset[i], whole->gamma};
 }
 
-// Keeps the failure of a member whose matrix is singular.
-static void check(bough_whole *whole, int i, bool good) {
-    if (good) return;
-    whole->status[i] =
-        bough_fail(BOUGH_RETRY, "%s: singular Newton matrix", whole->assembly->member[i]->system.name);
-}
-
 // Leaders first: their responses take long, and those of followers need them.
 static void factor_member(void *self, int place) {
     bough_whole *whole = self;
@@ -145,11 +138,8 @@ static void factor_member(void *self, int place) {
     bough_operating_point at = operating_point(whole, i);
     whole->status[i].code = BOUGH_OK;
     bool good = whole->linearised || bough_interface_linearise(k, i, &at);
-    if (a->leads[i]) {
-        check(whole, i, good && bough_interface_factor_leader(k, i, &at));
-    } else {
-        check(whole, i, good && bough_interface_factor_follower(k, i, &at));
-    }
+    if (good && bough_interface_factor(k, i, &at)) return;
+    whole->status[i] = bough_fail(BOUGH_RETRY, "%s: singular Newton matrix", a->member[i]->system.name);
 }
 
 // The follower's response to the coordinates of the interface.
@@ -160,7 +150,8 @@ static void respond(bough_whole *whole, int i) {
 
 static bool factor_border(bough_whole *whole);
 
-void bough_whole_linearise(bough_whole *whole, double t, const double *state, const double *input) {
+// The next factors are those about this point.
+static void set_point(bough_whole *whole, double t, const double *state, const double *input) {
     const bough_assembly *a = whole->assembly;
     memcpy(whole->setup_state, state, (size_t)a->n_state * sizeof(double));
     memcpy(whole->setup_input, input, (size_t)a->n_input * sizeof(double));
@@ -168,125 +159,84 @@ void bough_whole_linearise(bough_whole *whole, double t, const double *state, co
     whole->linearised = false;
 }
 
-bough_status bough_whole_factor(bough_whole *whole, double gamma) {
+// Factors I − γJ there.
+static bough_status factor_there(bough_whole *whole, double gamma) {
     assert(whole->interface != NULL);
     whole->gamma = gamma;
     bough_pool_run(whole->pool, whole->assembly->n_member, factor_member, whole);
-    bough_status status = bough_whole_failure(whole);
-    if (!bough_is_ok(&status)) return status;
+    BOUGH_TRY(bough_whole_failure(whole));
     whole->linearised = true;
     // responses of the followers to the leaders, then the interface
     each(whole, FOLLOWERS, respond);
-    if (bough_interface_close(whole->interface) && factor_border(whole)) return status;
+    if (bough_interface_close(whole->interface) && factor_border(whole)) return bough_ok();
     return bough_fail(BOUGH_RETRY, "the interface's Newton matrix is singular");
 }
 
 bough_status bough_whole_setup(bough_whole *whole, double t, const double *state, const double *input,
                                double gamma) {
-    bough_whole_linearise(whole, t, state, input);
-    return bough_whole_factor(whole, gamma);
+    set_point(whole, t, state, input);
+    return factor_there(whole, gamma);
 }
 
 // -- solution -------------------------------------------------------------------------------------
 
-// The outputs' change with x and the inputs' change δu, NULL for 0.
-static void find_output_change(bough_whole *whole, int i, const double *x, const double *change) {
-    bough_operating_point at = operating_point(whole, i);
-    bough_interface_output_change(whole->interface, i, &at, x, change,
-                                  whole->output_change + whole->assembly->output_offset[i]);
+void bough_whole_begin_solution(bough_whole *whole, double *x) {
+    whole->x = x;
+    memset(whole->interface->coordinate, 0, (size_t)whole->interface->n * sizeof(double));
 }
 
 // x_i = (I − γJ_i)⁻¹ r_i and the outputs' change with it, the inputs held; where the states are the
-// coordinates, the interface does that.
-static void solve_leader(bough_whole *whole, int i) {
+// coordinates of the interface, it does that.
+void bough_whole_solve_of(bough_whole *whole, int i) {
     const bough_assembly *a = whole->assembly;
     const bough_system *s = &a->member[i]->system;
     const bough_interface_member *w = &whole->interface->part[i];
-    double *x = whole->x + a->state_offset[i];
-    double *coordinate = whole->interface->coordinate + w->first;
-    if (!w->by_state) {
-        memset(coordinate, 0, (size_t)w->n * sizeof(double));
-        bough_interface_solve_member(whole->interface, i, x);
-        find_output_change(whole, i, x, NULL);
+    double *x = whole->x + a->state_offset[i], *moved = whole->output_change + a->output_offset[i];
+    if (w->by_state) {
+        memcpy(whole->interface->coordinate + w->first, x, (size_t)s->n_state * sizeof(double));
+        memset(x, 0, (size_t)s->n_state * sizeof(double));
+        memset(moved, 0, (size_t)s->n_output * sizeof(double));
         return;
     }
-    memcpy(coordinate, x, (size_t)s->n_state * sizeof(double));
-    memset(x, 0, (size_t)s->n_state * sizeof(double));
-    memset(whole->output_change + a->output_offset[i], 0, (size_t)s->n_output * sizeof(double));
-}
-
-// The same of a follower under the changes from outside.
-static void solve_follower(bough_whole *whole, int i) {
-    const bough_assembly *a = whole->assembly;
-    const double *outside = whole->outside ? whole->outside + a->input_offset[i] : NULL;
-    double *x = whole->x + a->state_offset[i];
-    if (outside) bough_interface_add_columns(whole->interface, i, whole->gamma, outside, x);
+    bough_operating_point at = operating_point(whole, i);
     bough_interface_solve_member(whole->interface, i, x);
-    find_output_change(whole, i, x, outside);
+    bough_interface_output_change(whole->interface, i, &at, x, NULL, moved);
 }
 
-void bough_whole_begin_solution(bough_whole *whole, const double *outside, double *x) {
-    whole->x = x;
-    whole->outside = outside;
-}
-
-void bough_whole_solve_of(bough_whole *whole, int i) {
-    if (whole->assembly->leads[i]) {
-        solve_leader(whole, i);
-    } else {
-        solve_follower(whole, i);
-    }
-}
-
-// The inputs' change with the outputs, and with what comes from outside.
-static void gather_changes(bough_whole *whole, int i) {
-    const bough_assembly *a = whole->assembly;
-    for (int j = a->input_offset[i]; j < a->input_offset[i + 1]; j++) {
-        whole->led[j] = whole->output_change[a->source[j]];
-        whole->change[j] = whole->led[j] + (whole->outside ? whole->outside[j] : 0);
-    }
-}
-
-// The followers' inputs from the leaders' outputs, then the leaders' inputs from the followers' outputs.
-static void gather_all_changes(bough_whole *whole) {
+// The followers' inputs change with the leaders' outputs, then the leaders' with the followers'.
+void bough_whole_solve_interface(bough_whole *whole) {
     const bough_assembly *a = whole->assembly;
     for (int k = 0; k < a->n_member; k++) {
         int i = a->by_role[k];
-        gather_changes(whole, i);
+        bough_assembly_gather(a, i, whole->output_change, whole->change);
         if (k >= a->n_follower) continue;
-        bough_interface_add_output_response(whole->interface, i, whole->led + a->input_offset[i],
+        bough_interface_add_output_response(whole->interface, i, whole->change + a->input_offset[i],
                                             whole->output_change + a->output_offset[i]);
     }
-}
-
-void bough_whole_solve_interface(bough_whole *whole) {
-    gather_all_changes(whole);
     // w and the inputs' change with it
     bough_interface_solve(whole->interface, whole->change);
-    for (int j = 0; j < whole->assembly->n_input; j++)
-        whole->led[j] = whole->change[j] - (whole->outside ? whole->outside[j] : 0);
 }
 
 void bough_whole_respond(const bough_whole *whole, int i, double *x) {
     const bough_assembly *a = whole->assembly;
-    bough_interface_add_response(whole->interface, i, whole->led + a->input_offset[i],
+    bough_interface_add_response(whole->interface, i, whole->change + a->input_offset[i],
                                  x + a->state_offset[i]);
 }
 
 // x_i with the response to the interface.
 static void complete(bough_whole *whole, int i) { bough_whole_respond(whole, i, whole->x); }
 
-void bough_whole_solve_driven(bough_whole *whole, const double *outside, double *x) {
-    bough_whole_begin_solution(whole, outside, x);
-    // members by themselves, the interface, members with their response to it
+// Without regard to held states: members by themselves, the interface, members with their response to it.
+static void solve_free(bough_whole *whole, double *x) {
+    bough_whole_begin_solution(whole, x);
     each(whole, ALL, bough_whole_solve_of);
     bough_whole_solve_interface(whole);
     each(whole, ALL, complete);
 }
 
-void bough_whole_close(bough_whole *whole, double *outside) {
+void bough_whole_close(bough_whole *whole, double *change) {
     memset(whole->interface->coordinate, 0, (size_t)whole->interface->n * sizeof(double));
-    bough_interface_solve(whole->interface, outside);
+    bough_interface_solve(whole->interface, change);
 }
 
 void bough_whole_project(const bough_whole *whole, const double *state, double *x) {
@@ -305,7 +255,7 @@ static bool factor_border(bough_whole *whole) {
         double *column = whole->border + (size_t)j * n;
         memset(column, 0, (size_t)n * sizeof *column);
         column[whole->held[j]] = 1;
-        bough_whole_solve_driven(whole, NULL, column);
+        solve_free(whole, column);
         for (int i = 0; i < held; i++) {
             whole->multiplier[j * held + i] = column[whole->held[i]];
         }
@@ -315,7 +265,7 @@ static bool factor_border(bough_whole *whole) {
 
 void bough_whole_solve(bough_whole *whole, double *x) {
     int n = whole->assembly->n_state, held = whole->n_held;
-    bough_whole_solve_driven(whole, NULL, x);
+    solve_free(whole, x);
     if (held == 0) return;
     // the multipliers that keep the held states
     for (int i = 0; i < held; i++) whole->held_force[i] = x[whole->held[i]];
@@ -344,7 +294,7 @@ bough_whole *bough_whole_create_evaluation(bough_arena *arena, const bough_assem
 bough_whole *bough_whole_create(bough_arena *arena, const bough_assembly *assembly, bough_pool *pool) {
     bough_whole *whole = bough_whole_create_evaluation(arena, assembly, pool);
     whole->setup_state = bough_arena_doubles(arena, (size_t)assembly->n_state);
-    bough_arena_each(arena, (size_t)assembly->n_input, &whole->setup_input, &whole->change, &whole->led);
+    bough_arena_each(arena, (size_t)assembly->n_input, &whole->setup_input, &whole->change);
     whole->output_change = bough_arena_doubles(arena, (size_t)assembly->n_output);
     whole->interface = bough_interface_create(arena, assembly);
     return whole;
@@ -391,13 +341,13 @@ static bool linearise(void *self, double t, const double *state, const double *i
     (void)self, (void)input;
     bough_whole *own = factors;
     bough_whole_inputs(own, t, state);
-    bough_whole_linearise(own, t, state, own->input);
+    set_point(own, t, state, own->input);
     return true;
 }
 
 static bool factor(void *self, void *factors, double gamma) {
     (void)self;
-    bough_status status = bough_whole_factor(factors, gamma);
+    bough_status status = factor_there(factors, gamma);
     return bough_is_ok(&status);
 }
 

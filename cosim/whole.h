@@ -18,20 +18,16 @@ typedef struct bough_whole {
     const double *at; // (n_state)
     double *x;        // (n_state) its rate, or the solution in progress
 
-    // by bough_whole_linearise
-    bool linearised;     // by bough_whole_factor: the members are linearised there
+    // by bough_whole_setup
     double setup_time;   // [s]
     double *setup_state; // (n_state)
     double *setup_input; // (n_input)
-
-    // by bough_whole_factor
-    double gamma; // [s]
+    bool linearised;     // members are linearised there
+    double gamma;        // [s]
     bough_interface *interface;
 
     // by a solution
-    const double *outside; // (n_input) change of the inputs from outside; NULL: 0
     double *change;        // (n_input) of the inputs
-    double *led;           // (n_input) the same without what comes from outside
     double *output_change; // (n_output) of each member by itself
 
     // by bough_whole_hold: states that are held
@@ -64,13 +60,8 @@ void bough_whole_inputs(bough_whole *whole, double t, const double *state);
 // F: rate (n_state). BOUGH_FAILED names the member whose rate is not finite.
 bough_status bough_whole_rate(bough_whole *whole, double t, const double *state, double *rate);
 
-// The next factors are those about (t, state, input); input (n_input), usually whole->input.
-void bough_whole_linearise(bough_whole *whole, double t, const double *state, const double *input);
-
-// Factors I − γJ there. BOUGH_RETRY when a tangent is not finite or the matrix singular.
-bough_status bough_whole_factor(bough_whole *whole, double gamma);
-
-// Both.
+// Factors I − γJ about (t, state, input); input (n_input), usually whole->input. BOUGH_RETRY when a tangent
+// is not finite or the matrix singular.
 bough_status bough_whole_setup(bough_whole *whole, double t, const double *state, const double *input,
                                double gamma);
 
@@ -80,11 +71,9 @@ void bough_whole_solve(bough_whole *whole, double *x);
 // Takes changes of quaternions' lengths out of a change x (n_state) of `state`.
 void bough_whole_project(const bough_whole *whole, const double *state, double *x);
 
-// The same with `outside` (n_input) added to the inputs' changes, δu = P δo + outside; NULL: 0.
-void bough_whole_solve_driven(bough_whole *whole, const double *outside, double *x);
-
-// δu for x = 0 and `outside` (n_input) at the leaders' inputs, in place.
-void bough_whole_close(bough_whole *whole, double *outside);
+// The change of all inputs that closes the interface over a change (n_input) of the leaders' inputs from
+// outside, members being at x = 0 by themselves; in place.
+void bough_whole_close(bough_whole *whole, double *change);
 
 // -- member by member, for a scheme that does several of these in one task -----------------------
 
@@ -104,8 +93,8 @@ void bough_whole_rates_of(bough_whole *const *evaluation, int n, int member);
 // The first failure, followers first: after the failure of a follower the leaders' inputs are not known.
 bough_status bough_whole_failure(const bough_whole *whole);
 
-// Begins a solution of x (n_state) in place; `outside` as above.
-void bough_whole_begin_solution(bough_whole *whole, const double *outside, double *x);
+// Begins a solution of x (n_state) in place.
+void bough_whole_begin_solution(bough_whole *whole, double *x);
 
 // x_i = (I − γJ_i)⁻¹ r_i of one member by itself.
 void bough_whole_solve_of(bough_whole *whole, int member);

@@ -125,22 +125,21 @@ static void check(const plan *p) {
 
     unsigned seed = 3;
     double y[STATES], r[STATES], x[STATES], before[STATES], after[STATES];
-    double outside[PORTS], input[PORTS], gamma = .2;
+    double input[PORTS], gamma = .2;
     for (int k = 0; k < a->n_state; k++) y[k] = sample_random(&seed), r[k] = x[k] = sample_random(&seed);
-    for (int j = 0; j < a->n_input; j++) outside[j] = sample_random(&seed);
     bough_whole_rate(coupled, 0, y, before);
     memcpy(input, coupled->input, (size_t)a->n_input * sizeof(double));
     check_ok(bough_whole_setup(coupled, 0, y, input, gamma));
-    bough_whole_solve_driven(coupled, outside, x);
+    bough_whole_solve(coupled, x);
 
-    // x = r + γ (A x + B δu) member by member, δu = P (C x + D δu) + outside
+    // x = r + γ (A x + B δu) member by member, δu = P (C x + D δu)
     double change[PORTS], answer[PORTS];
     for (int i = 0; i < MEMBERS; i++) {
         const double *du = coupled->change + a->input_offset[i], *dx = x + a->state_offset[i];
         output(&m[i], 0, dx, du, answer + a->output_offset[i]);
         derivative(&m[i], 0, dx, du, after + a->state_offset[i]);
     }
-    for (int j = 0; j < a->n_input; j++) change[j] = answer[a->source[j]] + outside[j];
+    for (int j = 0; j < a->n_input; j++) change[j] = answer[a->source[j]];
     for (int j = 0; j < a->n_input; j++) check_near(coupled->change[j], change[j], 0, 1e-9);
     for (int k = 0; k < a->n_state; k++) check_near(x[k] - gamma * after[k], r[k], 0, 1e-9);
 }
@@ -227,8 +226,7 @@ TEST(radius_is_that_of_the_loop) {
     const double zero[MOST] = {0};
     bough_operating_point at = {.state = zero, .input = zero, .gamma = .4};
     for (int i = 0; i < 2; i++) assert_true(bough_interface_linearise(k, i, &at));
-    assert_true(bough_interface_factor_leader(k, 0, &at));
-    assert_true(bough_interface_factor_follower(k, 1, &at));
+    for (int i = 0; i < 2; i++) assert_true(bough_interface_factor(k, i, &at));
     bough_interface_respond(k, 1, &at);
     assert_true(bough_interface_close(k));
     // the larger root of the 2 × 2 loop
