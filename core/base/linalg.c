@@ -1,6 +1,8 @@
 // LU by LAPACK; by hand, as Cholesky, for few unknowns, where a library call would cost more than the work.
 #include "core/base/linalg.h"
 
+#include "core/base/base.h"
+
 #include <math.h>
 #include <stdatomic.h>
 #include <stddef.h>
@@ -62,14 +64,7 @@ void bough_linalg_choose_kernels(void) {
 }
 
 // A NaN may pass LAPACK's pivot search.
-static bool all_finite(size_t count, const double *a) {
-    double sum = 0;
-#pragma omp simd reduction(+ : sum)
-    for (size_t i = 0; i < count; i++) sum += fabs(a[i]);
-    return isfinite(sum);
-}
-
-static bool finite_matrix(int n, const double *a) { return all_finite((size_t)n * (size_t)n, a); }
+static bool finite_matrix(int n, const double *a) { return bough_all_finite((size_t)n * (size_t)n, a); }
 
 // Up to this size the loops below are faster than a library call.
 enum { SMALL = 32 };
@@ -179,7 +174,7 @@ bool bough_band_solve(int n, int width, double *a, int *pivot, double *b) {
     const int rows = 3 * width + 1, one = 1;
     int info;
     prepare();
-    if (!all_finite((size_t)rows * (size_t)n, a)) return false;
+    if (!bough_all_finite((size_t)rows * (size_t)n, a)) return false;
     dgbsv_(&n, &width, &width, &one, a, &rows, pivot, b, &n, &info);
     return info == 0;
 }
@@ -211,7 +206,7 @@ void bough_dense_product(bough_product p, const double *a, const double *b, doub
 bool bough_complex_factor(int n, double *a, int *pivot) {
     if (n == 0) return true;
     prepare();
-    if (!all_finite(2 * (size_t)n * (size_t)n, a)) return false;
+    if (!bough_all_finite(2 * (size_t)n * (size_t)n, a)) return false;
     int info = 0;
     zgetrf_(&n, &n, a, &n, pivot, &info);
     return info == 0;

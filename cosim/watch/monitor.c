@@ -84,20 +84,12 @@ bough_monitor *bough_monitor_create(bough_arena *arena, const bough_coupling *co
 
 // -- non-finite values ----------------------------------------------------------------------------
 
-// x − x is 0 where x is finite, else NaN; without a branch, for vector instructions.
-static bool all_finite(const double *x, int n) {
-    double sum = 0;
-#pragma omp simd reduction(+ : sum)
-    for (int i = 0; i < n; i++) sum += x[i] - x[i];
-    return sum == 0;
-}
-
 static bough_status check_finite(const bough_monitor *m, const bough_coupling *c) {
     const bough_assembly *a = c->assembly;
     for (int i = 0; i < a->n_member; i++) {
         const bough_system *s = &a->member[i]->system;
-        if (all_finite(a->member[i]->state, s->n_state) &&
-            all_finite(c->output + a->output_offset[i], s->n_output)) {
+        if (bough_all_finite(s->n_state, a->member[i]->state) &&
+            bough_all_finite(s->n_output, c->output + a->output_offset[i])) {
             continue;
         }
         return bough_fail(BOUGH_FAILED,
@@ -110,11 +102,7 @@ static bough_status check_finite(const bough_monitor *m, const bough_coupling *c
 
 // -- growth ---------------------------------------------------------------------------------------
 
-static double norm(const double *x, int n) {
-    double sum = 0;
-    for (int i = 0; i < n; i++) sum += x[i] * x[i];
-    return sqrt(sum);
-}
+static double norm(const double *x, int n) { return sqrt(bough_scalar_product(n, x, x)); }
 
 // Growth of the fastest growing motion about the current state [1/s]; negative: none grows, or it is not
 // known.
@@ -275,14 +263,11 @@ static bough_status judge_energy(bough_monitor *m, const bough_coupling *c) {
 // -- the step -------------------------------------------------------------------------------------
 
 bough_status bough_monitor_step(bough_monitor *m, bough_coupling *c) {
-    bough_status status = check_finite(m, c);
-    if (!bough_is_ok(&status)) return status;
+    BOUGH_TRY(check_finite(m, c));
     m->steps++;
     keep_accounts(m, c);
-    for (int k = 0; k < m->n_group && bough_is_ok(&status); k++) {
-        status = judge_group(m, c, &m->group[k]);
-    }
-    return bough_is_ok(&status) && !m->resting ? judge_energy(m, c) : status;
+    for (int k = 0; k < m->n_group; k++) BOUGH_TRY(judge_group(m, c, &m->group[k]));
+    return m->resting ? bough_ok() : judge_energy(m, c);
 }
 
 void bough_monitor_judge(bough_monitor *m, bool judges) { m->resting = !judges; }
