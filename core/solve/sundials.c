@@ -23,9 +23,8 @@ typedef struct run run;
 
 // CVODE, ARKODE and IDA, whose flags are the same numbers and whose settings have the same parameters.
 typedef struct library {
-    const char *name, *title; // in messages
-    int most_steps;           // in a macro step
-    bool scaled;              // its linear systems are (1/γ − ∂f/∂y) x = b
+    int most_steps; // in a macro step
+    bool scaled;    // its linear systems are (1/γ − ∂f/∂y) x = b
     void *(*create)(run *r);
     void (*destroy)(void **memory);
     int (*set_messages)(void *memory, void (*message)(int, const char *, const char *, char *, void *),
@@ -43,6 +42,7 @@ typedef struct library {
 
 struct run {
     const library *library;
+    const char *title; // in messages
     bough_ode ode;
     SUNContext context;
     N_Vector y, weight; // state, and 1/tolerance of each component
@@ -213,6 +213,7 @@ static void *create(bough_arena *arena, const bough_ode *ode, const bough_integr
     run *r = bough_arena_take(arena, sizeof *r);
     bough_arena_on_destroy(arena, destroy, r);
     r->library = library_of(options->kind);
+    r->title = bough_integrator_find(options->kind)->title;
     r->ode = *ode;
     bool limited = options->kind == BOUGH_IDA && options->most_steps > 0;
     r->most_steps = limited ? options->most_steps : r->library->most_steps;
@@ -227,8 +228,8 @@ static bough_status start(run *r, double t) {
     if (r->started) r->library->count(r->memory, &r->past); // counters restart from zero
     r->started = r->library->restart(r, t) == CV_SUCCESS;
     if (!r->started) {
-        return bough_fail(BOUGH_FAILED, "%s at t = %.6g s: %s cannot start: %s", r->ode.name, t,
-                          r->library->name, r->text);
+        return bough_fail(BOUGH_FAILED, "%s at t = %.6g s: %s cannot start: %s", r->ode.name, t, r->title,
+                          r->text);
     }
     r->past.starts++;
     return bough_ok();
@@ -287,8 +288,8 @@ static bough_status advance(void *self, double *t, double pause, double t1, bool
         r->library->current_time(r->memory, t);
         r->library->count(r->memory, &r->past);
         r->started = false;
-        return bough_fail(BOUGH_FAILED, "%s at t = %.6g s: %s cannot go on: %s", r->ode.name, *t,
-                          r->library->title, reason(r, flag));
+        return bough_fail(BOUGH_FAILED, "%s at t = %.6g s: %s cannot go on: %s", r->ode.name, *t, r->title,
+                          reason(r, flag));
     }
     *t = t1;
     memcpy(y, own, (size_t)r->ode.n * sizeof *own);
@@ -343,8 +344,6 @@ static void cvode_count(void *memory, bough_statistics *sum) {
 }
 
 static const library cvode = {
-    .name = "CVODE",
-    .title = "CVODE BDF",
     .most_steps = 20000,
     .create = cvode_memory,
     .destroy = CVodeFree,
@@ -434,8 +433,6 @@ static void arkode_count(void *memory, bough_statistics *sum) {
 }
 
 static const library arkode = {
-    .name = "ARKODE",
-    .title = "ARKODE ESDIRK",
     .most_steps = 20000,
     .create = arkode_memory,
     .destroy = ARKStepFree,
@@ -532,8 +529,6 @@ static void ida_count(void *memory, bough_statistics *sum) {
 }
 
 static const library ida = {
-    .name = "IDA",
-    .title = "IDA",
     .most_steps = 200000,
     .scaled = true,
     .create = ida_memory,
