@@ -379,7 +379,7 @@ static bough_status refuse(const bough_tree *tree, const bough_tree_data *d, int
 // One step of Newton's method, the least in the measure of the inertias.
 static bool approach(bough_tree *tree, bough_tree_data *d) {
     bough_loops *l = d->loops;
-    double *q = tree->initial, step[BOUGH_JOINT_COORDINATES];
+    double *q = tree->initial;
     memset(l->multiplier, 0, (size_t)tree->n_rows * sizeof(double));
     if (!bough_tree_free_dynamics(tree, d, 0, NULL, l->speed) || !find_mobility(tree, d)) {
         return false;
@@ -391,13 +391,9 @@ static bool approach(bough_tree *tree, bough_tree_data *d) {
     double largest = 0;
     for (int k = 0; k < tree->n_v; k++) largest = fmax(largest, fabs(l->correction[k]));
     for (int k = 0; k < tree->n_v && largest > longest; k++) l->correction[k] *= longest / largest;
-    for (int i = 0; i < tree->n_links; i++) {
-        const bough_link *link = &tree->links[i];
-        double *own = q + link->first_coordinate;
-        bough_joint_rate(&link->joint, own, l->correction + link->first_speed, step);
-        for (int k = 0; k < link->n_coordinates; k++) own[k] -= step[k];
-        bough_joint_normalise(&link->joint, own);
-    }
+    bough_loops_correct(tree, d, q, q);
+    for (int i = 0; i < tree->n_links; i++)
+        bough_joint_normalise(&tree->links[i].joint, q + tree->links[i].first_coordinate);
     for (int k = 0; k < tree->n_v; k++)
         tree->closure_moved = fmax(tree->closure_moved, fabs(l->correction[k]));
     return true;
