@@ -238,7 +238,6 @@ static bough_status follow(path *p, bough_path_report *report) {
         }
         // the end of the loads
         if (over) {
-            report->reversed = last < 0;
             status = report_point(p, &p->here, false, report);
             copy_place(p, &p->limit, &p->here);
             return bough_is_ok(&status) ? report_point(p, &p->here, false, report) : status;

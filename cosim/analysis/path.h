@@ -30,7 +30,6 @@ bough_path_def bough_path_def_default(void);
 
 typedef struct bough_path_report {
     int steps, points, limits;
-    bool reversed; // the path ended at the load factor −1
     double factor; // load factor of the last point
 } bough_path_report;
 
