@@ -74,8 +74,7 @@ bough_status bough_master_build(bough_arena *arena, const bough_master_def *def,
     copy_loads(m, arena, def);
     // the assembly and its coupling
     BOUGH_TRY(bough_assembly_build(arena, &def->assembly, &m->assembly));
-    bough_status status = bough_scheme_couple(arena, m->assembly, &def->scheme, def->pool, &m->coupling);
-    if (!bough_is_ok(&status)) return status;
+    BOUGH_TRY(bough_scheme_couple(arena, m->assembly, &def->scheme, def->pool, &m->coupling));
     // what checks and controls the steps
     const bough_scheme *scheme = m->coupling->scheme;
     m->monitor = bough_monitor_create(arena, m->coupling);
@@ -90,7 +89,7 @@ bough_status bough_master_build(bough_arena *arena, const bough_master_def *def,
     evaluate_loads(m);
     m->coupling->t1 = m->coupling->t0 + m->macro_step;
     *master = m;
-    return scheme->prepare ? scheme->prepare(m->coupling) : status;
+    return scheme->prepare ? scheme->prepare(m->coupling) : bough_ok();
 }
 
 bool bough_master_done(const bough_master *m) { return m->time >= m->duration; }

@@ -67,8 +67,7 @@ bough_status bough_member_create(bough_arena *arena, const bough_system *system,
                      .factor = factor,
                      .solve = solve,
                      .elastic_rate = system->elastic_rate};
-    bough_status status = bough_integrator_create(arena, &ode, options, &m->integrator);
-    return status;
+    return bough_integrator_create(arena, &ode, options, &m->integrator);
 }
 
 // -- own steps ------------------------------------------------------------------------------------

@@ -88,8 +88,8 @@ static void input_columns(void *self, double t, const double *state, const doubl
 static void *factors(void *self, bough_arena *arena) {
     const linear_member *s = self;
     linear_factors *k = bough_arena_take(arena, sizeof *k);
-    if (k != NULL) k->real = s->real->ops->factors(s->real->self, arena);
-    return k != NULL && k->real != NULL ? k : NULL;
+    k->real = s->real->ops->factors(s->real->self, arena);
+    return k;
 }
 
 static bool linearise(void *self, double t, const double *state, const double *input, void *factors) {

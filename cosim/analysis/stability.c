@@ -71,16 +71,13 @@ static bough_status build(map *m, const bough_assembly *a, const bough_scheme_op
     bough_assembly_outputs(a, a->member[0]->time, output, input);
     build_linear_members(m, a, input);
     // the scheme on the linear members
-    bough_coupling *c = NULL;
-    bough_status status = bough_scheme_couple(m->arena, &m->assembly, &judged, NULL, &c);
-    if (!bough_is_ok(&status) || !c) return status;
-    m->coupling = c;
+    BOUGH_TRY(bough_scheme_couple(m->arena, &m->assembly, &judged, NULL, &m->coupling));
+    bough_coupling *c = m->coupling;
     m->n = bough_scheme_n_memory(c);
     m->repeat = (int)fmin(ceil(span / m->macro_step - 1e-6), MOST_REPEATED);
     c->t1 = c->t0 + m->macro_step;
-    if (c->scheme->prepare) status = c->scheme->prepare(c);
     take(m);
-    return status;
+    return c->scheme->prepare ? c->scheme->prepare(c) : bough_ok();
 }
 
 // -- the map --------------------------------------------------------------------------------------
@@ -256,8 +253,7 @@ static bough_status choose(map *m, bough_stability *result) {
     *result = (bough_stability){.growth = decay, .suspected = decay};
     for (int k = 0; k < count; k++) {
         bough_stability candidate;
-        bough_status status = refine(m, &found[k], &candidate);
-        if (!bough_is_ok(&status)) return status;
+        BOUGH_TRY(refine(m, &found[k], &candidate));
         bool alternates = candidate.frequency * m->macro_step > 0.25; // the mechanics are slower
         bool oscillates = 2 * BOUGH_PI * candidate.frequency > candidate.growth;
         candidate.rising = result->rising;
@@ -269,7 +265,7 @@ static bough_status choose(map *m, bough_stability *result) {
         result->suspected = candidate.suspected;
         if (!certain(m, &found[k])) continue;
         *result = candidate;
-        return status;
+        break;
     }
     return bough_ok();
 }
