@@ -133,10 +133,10 @@ void bough_study_read_grid(bough_schema_reader *r, const bough_node *node, void 
 
 // -- combinations ---------------------------------------------------------------------------------
 
-int bough_grid_count(const bough_study_grid *grid, int most) {
+int bough_grid_count(const bough_study_grid *grid) {
     long n = 1;
-    for (int i = 0; i < grid->n && n <= most; i++) n *= grid->axis[i].value.n;
-    return n <= most ? (int)n : most + 1;
+    for (int i = 0; i < grid->n && n <= BOUGH_MOST_CASES; i++) n *= grid->axis[i].value.n;
+    return n <= BOUGH_MOST_CASES ? (int)n : BOUGH_MOST_CASES + 1;
 }
 
 void bough_grid_place(const bough_study_grid *grid, int number, int *index) {

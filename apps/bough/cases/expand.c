@@ -171,8 +171,6 @@ static void make_references(bough_arena *arena, bough_study *s) {
 
 // -- all ------------------------------------------------------------------------------------------
 
-static int count_group(const bough_load_group *g) { return bough_grid_count(&g->grid, BOUGH_MOST_CASES); }
-
 static void check_group(const bough_study *s, const bough_load_group *g, bough_errors *errors) {
     check_speeds(g, errors);
     if (s->scene_name || g->scene_name || scene_axis(s, g) >= 0) return;
@@ -183,14 +181,14 @@ void bough_study_expand(bough_arena *arena, bough_study *s, bough_errors *errors
     long n = 0;
     for (int g = 0; g < s->n_group && n <= BOUGH_MOST_CASES; g++) {
         check_group(s, &s->group[g], errors);
-        n += count_group(&s->group[g]);
+        n += bough_grid_count(&s->group[g].grid);
     }
     if (n > BOUGH_MOST_CASES)
         bough_errors_add(errors, s->node, "", "expected at most %d cases", BOUGH_MOST_CASES);
     if (errors->n > 0) return;
     s->cases = bough_arena_take(arena, (size_t)n * sizeof *s->cases);
     for (int g = 0; g < s->n_group; g++) {
-        int n_group = count_group(&s->group[g]);
+        int n_group = bough_grid_count(&s->group[g].grid);
         for (int i = 0; i < n_group; i++) {
             bough_case *c = &s->cases[s->n_case++];
             make_case(arena, s, g, i, n_group, c);

@@ -205,9 +205,9 @@ bough_study *bough_study_parse(bough_arena *arena, const char *path, const bough
 void bough_study_read_settings(bough_schema_reader *r, const bough_node *node, void *field);
 void bough_study_read_grid(bough_schema_reader *r, const bough_node *node, void *field);
 
-// The number of a grid's combinations, at most `most` + 1; the places on the axes of the combination
-// `number`, the last axis runs fastest; and these as text, "scheme=ramp, macro_step=5 ms".
-int bough_grid_count(const bough_study_grid *grid, int most);
+// The number of a grid's combinations, at most BOUGH_MOST_CASES + 1; the places on the axes of the
+// combination `number`, the last axis runs fastest; and these as text, "scheme=ramp, macro_step=5 ms".
+int bough_grid_count(const bough_study_grid *grid);
 void bough_grid_place(const bough_study_grid *grid, int number, int *index);
 const char *bough_grid_settings(bough_arena *arena, const bough_study_grid *grid, const int *index);
 

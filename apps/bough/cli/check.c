@@ -209,16 +209,15 @@ static void print_loads(const bough_simulation *s) {
     if (n > SHOWN) printf("and %d more loads\n", n - SHOWN);
 }
 
-static bough_status print_results(bough_arena *arena, bough_simulation *s, const bough_channels *channels) {
+static void print_results(bough_arena *arena, bough_simulation *s, const bough_channels *channels) {
     bough_shape shape;
     bough_shape_create(arena, s, &shape);
     bough_forecast_print(bough_run_results(s, channels, &shape), channels);
-    return bough_ok();
 }
 
 // -- cost -----------------------------------------------------------------------------------------
 
-static bough_status print_cost(const bough_simulation *s, bough_arena *arena) {
+static void print_cost(const bough_simulation *s, bough_arena *arena) {
     const bough_assembly *a = s->master->assembly;
     printf("model_bytes: %zu\n", bough_arena_bytes(arena));
     double *rate = bough_arena_doubles(arena, (size_t)a->n_state + 1);
@@ -227,12 +226,9 @@ static bough_status print_cost(const bough_simulation *s, bough_arena *arena) {
         double time = bough_forecast_derivative(s->master->coupling, i, 200, rate);
         printf("derivative_us %s: %.3g\n", a->member[i]->system.name, 1e6 * time);
     }
-    return bough_ok();
 }
 
-// -- turbine: its geometry, its wind, its control -------------------------------------------------
-
-// -- geometry -------------------------------------------------------------------------------------
+// -- geometry of the turbine ----------------------------------------------------------------------
 
 // The vertical from which the overhang counts: that of the tower's top, else of the ground's origin.
 static bough_vec3 tower_axis(const bough_simulation *s) {
@@ -423,8 +419,9 @@ static bough_status check(bough_arena *arena, const void *options) {
     print_loads(s);
     bough_validity_print(s, stdout);
     printf("channels: %d every %.9g s\n", recorded.count, output->interval);
-    BOUGH_TRY(print_results(arena, s, &recorded));
-    return print_cost(s, arena);
+    print_results(arena, s, &recorded);
+    print_cost(s, arena);
+    return bough_ok();
 }
 
 const bough_command bough_command_check = {

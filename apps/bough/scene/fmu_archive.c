@@ -2,6 +2,7 @@
 
 #include "apps/bough/scene/fmu_archive.h"
 
+#include "core/base/bytes.h"
 #include "core/base/input_file.h"
 
 #include <errno.h>
@@ -31,11 +32,7 @@ typedef struct entry {
     const unsigned char *data; // (packed)
 } entry;
 
-static uint32_t number(const unsigned char *at, int bytes) {
-    uint32_t value = 0;
-    for (int i = 0; i < bytes; i++) value |= (uint32_t)at[i] << 8 * i;
-    return value;
-}
+static uint32_t number(const unsigned char *at, int bytes) { return (uint32_t)bough_bytes(at, bytes); }
 
 static bough_status damaged(const archive *a, const char *what) {
     return bough_fail(BOUGH_INVALID, "%.200s: %.200s", a->path, what);
