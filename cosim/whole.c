@@ -180,10 +180,8 @@ bough_status bough_whole_setup(bough_whole *whole, double t, const double *state
 
 // -- solution -------------------------------------------------------------------------------------
 
-void bough_whole_begin_solution(bough_whole *whole, double *x) {
-    whole->x = x;
-    memset(whole->interface->coordinate, 0, (size_t)whole->interface->n * sizeof(double));
-}
+// The coordinates are those of the solution before until a leader is solved: others may still respond to it.
+void bough_whole_begin_solution(bough_whole *whole, double *x) { whole->x = x; }
 
 // x_i = (I − γJ_i)⁻¹ r_i and the outputs' change with it, the inputs held; where the states are the
 // coordinates of the interface, it does that.
@@ -192,12 +190,14 @@ void bough_whole_solve_of(bough_whole *whole, int i) {
     const bough_system *s = &a->member[i]->system;
     const bough_interface_member *w = &whole->interface->part[i];
     double *x = whole->x + a->state_offset[i], *moved = whole->output_change + a->output_offset[i];
+    double *coordinate = whole->interface->coordinate + w->first;
     if (w->by_state) {
-        memcpy(whole->interface->coordinate + w->first, x, (size_t)s->n_state * sizeof(double));
+        memcpy(coordinate, x, (size_t)s->n_state * sizeof(double));
         memset(x, 0, (size_t)s->n_state * sizeof(double));
         memset(moved, 0, (size_t)s->n_output * sizeof(double));
         return;
     }
+    if (w->is_leader) memset(coordinate, 0, (size_t)w->n * sizeof(double));
     bough_operating_point at = operating_point(whole, i);
     bough_interface_solve_member(whole->interface, i, x);
     bough_interface_output_change(whole->interface, i, &at, x, NULL, moved);

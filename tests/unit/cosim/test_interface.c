@@ -1,5 +1,6 @@
 // Condensed interfaces of random linear members against the system as a whole.
 #include "core/base/linalg.h"
+#include "cosim/scheme.h"
 #include "cosim/whole.h"
 #include "tests/unit/sample_numbers.h"
 
@@ -83,10 +84,12 @@ static void solve(void *self, void *factors, double *x) {
 
 static void make(member *m, int n_state, int n_input, int n_output, bool feedthrough, unsigned seed) {
     static const bough_system_ops ops = {BOUGH_SYSTEM_REQUIRED};
+    static const double scale[MOST] = {1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1};
     *m = (member){.s = {.name = "member",
                         .n_state = n_state,
                         .n_input = n_input,
                         .n_output = n_output,
+                        .scale = scale,
                         .ops = &ops,
                         .self = m}};
     m->m = (bough_member){.system = m->s, .state = m->state};
@@ -107,20 +110,24 @@ typedef struct plan {
     int unknowns; // of the interface
 } plan;
 
-static void check(const plan *p) {
-    check_arena(arena);
-    member m[MEMBERS];
+static bough_assembly *build(bough_arena *arena, const plan *p, member m[MEMBERS]) {
     bough_assembly_member part[MEMBERS];
     for (int i = 0; i < MEMBERS; i++) {
         make(&m[i], p->n_state[i], p->n_input[i], p->n_output[i], p->feedthrough[i], 7u + i);
         part[i] = (bough_assembly_member){&m[i].m, p->stage[i]};
     }
     bough_assembly_def def = {MEMBERS, part, p->n_connection, p->connection};
-    bough_assembly *a;
-    bough_whole *coupled = NULL;
+    bough_assembly *a = NULL;
     bough_status status = bough_assembly_build(arena, &def, &a);
-    if (bough_is_ok(&status)) coupled = bough_whole_create(arena, a, NULL);
     if (!bough_is_ok(&status)) fail_msg("%s: %s", p->what, status.message);
+    return a;
+}
+
+static void check(const plan *p) {
+    check_arena(arena);
+    member m[MEMBERS];
+    bough_assembly *a = build(arena, p, m);
+    bough_whole *coupled = bough_whole_create(arena, a, NULL);
     assert_int_equal(coupled->interface->n, p->unknowns);
 
     unsigned seed = 3;
@@ -206,6 +213,35 @@ static const plan plans[] = {{.what = "three on a leader of two states, along th
 
 TEST(every_shape_solves_the_whole) {
     for (size_t k = 0; k < sizeof plans / sizeof *plans; k++) check(&plans[k]);
+}
+
+// Steps by stages, member by member, against those of the whole system by itself.
+static void check_stages(const plan *p) {
+    check_arena(arena);
+    member m[MEMBERS];
+    unsigned seed = 5;
+    bough_assembly *a = build(arena, p, m);
+    for (int i = 0; i < MEMBERS; i++)
+        for (int k = 0; k < p->n_state[i]; k++) m[i].state[k] = sample_random(&seed);
+    bough_scheme_options options = bough_scheme_options_default();
+    options.name = "monolithic";
+    options.integrator = (bough_integrator_options){.kind = BOUGH_ROSENBROCK, .rtol = 1, .step = .01};
+    bough_system system = bough_whole_system(arena, a, NULL, "whole");
+    bough_member whole;
+    bough_coupling *c;
+    check_ok(bough_member_create(arena, &system, 0, &options.integrator, &whole));
+    check_ok(bough_member_advance(&whole, .05, NULL, true));
+    check_ok(bough_scheme_couple(arena, a, &options, NULL, &c));
+    c->t1 = .05;
+    c->restart = true;
+    check_ok(bough_scheme_step(c));
+    for (int i = 0; i < MEMBERS; i++)
+        for (int k = 0; k < p->n_state[i]; k++)
+            check_near(m[i].state[k], whole.state[a->state_offset[i] + k], 0, 1e-12);
+}
+
+TEST(every_shape_steps_by_stages_as_the_whole) {
+    for (size_t k = 0; k < sizeof plans / sizeof *plans; k++) check_stages(&plans[k]);
 }
 
 // The gain of the interface.
