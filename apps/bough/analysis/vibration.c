@@ -137,6 +137,16 @@ static bough_status respond(const bough_simulation *s, const bough_vibration_poi
     return bough_ok();
 }
 
+static bough_status refuse(const bough_simulation *s, double change) {
+    return bough_fail(
+        BOUGH_INVALID,
+        "%.200s: the linear system changes as the bodies turn, by %.2g of itself, as that of a "
+        "rotor of two or of unequal blades or out of balance does: it has no modes but periodic "
+        "solutions (Floquet), which are not computed; take 'modes.linear: true' "
+        "for the system at the present azimuth, or modes at rest",
+        s->scene->file, change);
+}
+
 // The tangent where all that turns has turned on by an angle, beside that of the present state: not the same
 // where a rotor of two blades, or one out of balance, is on a support that can move.
 static bough_status check_constant(bough_arena *arena, const bough_simulation *s,
@@ -162,17 +172,48 @@ static bough_status check_constant(bough_arena *arena, const bough_simulation *s
             change = fmax(change, fabs(turned[i] - present[i]) / scale[i]);
             size = fmax(size, fabs(present[i]) / scale[i]);
         }
-        if (change > constant * size)
-            return bough_fail(
-                BOUGH_INVALID,
-                "%.200s: the linear system changes as the bodies turn, by %.2g of itself, as that of a "
-                "rotor of two or of unequal blades or out of balance does: it has no modes but periodic "
-                "solutions (Floquet), which are not computed; take 'modes.linear: true' "
-                "for the system at the present azimuth, or modes at rest",
-                s->scene->file, change / size);
+        if (change > constant * size) return refuse(s, change / size);
     }
     bough_whole_inputs(x->coupled, x->def.time, x->state);
     return bough_ok();
+}
+
+// A change of the inertia of a hub as it turns, relative, whose effect is small beside that of the azimuth at
+// which tilt, shear and tower are taken.
+static const double even = 1e-3;
+
+// Of all that joints connect to the rotor, about its centre, in the ground's axes.
+static bough_inertia turning_inertia(const bough_simulation *s, int rotor, bough_vec3 centre) {
+    bough_inertia sum = {0};
+    for (int i = rotor; i < s->tree->n_links; i++) {
+        int root = i;
+        while (root > rotor) root = s->tree->links[root].parent;
+        if (root != rotor) continue;
+        bough_transform pose = s->view->pose[i];
+        pose.position = bough_sub(pose.position, centre);
+        sum = bough_inertia_add(sum, bough_inertia_to_parent(&pose, s->tree->links[i].inertia));
+    }
+    return sum;
+}
+
+// Equal blades make the system constant only on a hub that is the same at every azimuth, or one whose shaft
+// cannot move.
+static bough_status check_balance(const bough_simulation *s) {
+    int rotor = s->tree->bodies[s->scene->turbine.rotor].link;
+    bool moves = false;
+    for (int i = s->tree->links[rotor].parent; i >= 0; i = s->tree->links[i].parent)
+        moves = moves || s->tree->links[i].motion == NULL;
+    if (!moves) return bough_ok();
+    bough_vec3 axis = bough_simulation_joint_axis(s, s->scene->turbine.rotor);
+    bough_transform turn = {{0, 0, 0}, bough_rotation_matrix(bough_quaternion_exponential(axis))};
+    bough_inertia here = turning_inertia(s, rotor, s->view->pose[rotor].position);
+    bough_inertia there = bough_inertia_to_parent(&turn, here);
+    const bough_mat3 a = here.rotational, b = there.rotational;
+    double size = a.c1.x + a.c2.y + a.c3.z, off = bough_norm(bough_sub(here.first, there.first));
+    double change = fmax(bough_norm(bough_sub(a.c1, b.c1)),
+                         fmax(bough_norm(bough_sub(a.c2, b.c2)), bough_norm(bough_sub(a.c3, b.c3))));
+    change = size > 0 ? fmax(change / size, off / sqrt(here.mass * size)) : 0;
+    return change > even ? refuse(s, change) : bough_ok();
 }
 
 // -- solution -------------------------------------------------------------------------------------
@@ -241,6 +282,7 @@ static bough_status solve(bough_arena *arena, bough_simulation *s, int count, bo
     v->spin = fabs(x.group.speed) < at_rest ? 0 : x.group.speed;
     v->frozen = is_frozen(s, &x.group);
     if (v->frozen && !s->scene->modes.linear) BOUGH_TRY(check_constant(arena, s, &x));
+    if (v->n_blade > 0 && v->spin != 0 && !s->scene->modes.linear) BOUGH_TRY(check_balance(s));
     BOUGH_TRY(solve_about(arena, s, &x, count, v));
     bool air_moves = s->aero && s->scene->modes.air == BOUGH_SCENE_AIR_DYNAMIC; // with other residuals
     double point;

@@ -86,8 +86,8 @@ TEST(gyroscope_nutates_and_precesses) {
     assert_true(f.v.frozen); // it is no turbine's rotor
 }
 
-// The same out of balance, whose linear system changes with the disc's azimuth, and a turbine of unequal
-// blades.
+// The same out of balance, whose linear system changes with the disc's azimuth, a turbine of unequal
+// blades, and one of equal blades on a hub whose centre is off the shaft or which differs across it.
 TEST(periodic_systems_are_refused) {
     const char *disc[] = {
         "bodies=[{name: outer, fidelity: rigid, joint: {kind: revolute, parent: ground, axis: x, "
@@ -102,6 +102,14 @@ TEST(periodic_systems_are_refused) {
     check_fails(bough_vibration_find(arena, s, 4, &v), BOUGH_INVALID, "changes as the bodies turn");
     s = scene_build(arena, "apps/turbine/land.yaml", blades);
     check_fails(bough_vibration_find(arena, s, 4, &v), BOUGH_INVALID, "changes as the bodies turn");
+    const char *hubs[] = {"bodies[hub].centre_of_mass=[0, 0.5, 0]", "bodies[hub].inertia=[5e6, 2.6e6, 2e6]"};
+    for (int k = 0; k < 2; k++) {
+        s = scene_build(arena, "apps/turbine/land.yaml", (const char *[]){hubs[k], COARSE_LAND, NULL});
+        check_fails(bough_vibration_find(arena, s, 4, &v), BOUGH_INVALID, "changes as the bodies turn");
+        s = scene_build(arena, "apps/turbine/land.yaml",
+                        (const char *[]){hubs[k], COARSE_LAND, "modes.linear=true", NULL});
+        check_ok(bough_vibration_find(arena, s, 4, &v));
+    }
     s = scene_build(arena, "apps/turbine/land.yaml", known);
     check_ok(bough_vibration_find(arena, s, 4, &v));
     assert_true(v.frozen);
