@@ -46,8 +46,8 @@ typedef struct bough_assembly {
     int *input_offset;              // (n_member + 1)
     int *output_offset;             // (n_member + 1)
     int *receiver;                  // (n_input) the member that gets each input
-    int *source;                    // (n_input) the output that feeds it
-    int *source_member;             // (n_input) the member that belongs to
+    int *source;                    // (n_input) the output that feeds each input
+    int *source_member;             // (n_input) the member of that output
     bool *kinematic;                // (n_input)
     int *vector;       // (n_input) first of the up to three inputs that form a vector with this one
     bool *feedthrough; // (n_member) whether outputs depend on inputs directly

@@ -315,9 +315,8 @@ void bough_interface_solve(bough_interface *k, double *change) {
     for (int l = 0; l < k->n_leader_input; l++) change[k->leader_input[l]] = k->right[l];
     // the followers' inputs move with the leaders' outputs
     move_outputs(k);
-    for (int i = 0; i < a->n_member; i++) {
-        if (k->part[i].is_leader) continue;
-        for (int j = a->input_offset[i]; j < a->input_offset[i + 1]; j++) change[j] += k->moved[a->source[j]];
+    for (int j = 0; j < a->n_input; j++) {
+        if (!k->part[a->receiver[j]].is_leader) change[j] += k->moved[a->source[j]];
     }
 }
 

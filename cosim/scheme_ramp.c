@@ -93,12 +93,8 @@ static bough_status create(bough_coupling *c, bough_arena *arena) {
 // Leaders start from the inputs that were applied last: that is where the ramp starts.
 static void choose_inputs(bough_coupling *c) {
     const bough_assembly *a = c->assembly;
-    ramp *r = c->scheme_data;
-    for (int i = 0; i < a->n_member; i++) {
-        size_t first = (size_t)a->input_offset[i], n = (size_t)a->member[i]->system.n_input;
-        const double *from = leads(c, i) ? c->applied : c->input;
-        memcpy(r->input + first, from + first, n * sizeof(double));
-    }
+    const ramp *r = c->scheme_data;
+    for (int j = 0; j < a->n_input; j++) r->input[j] = leads(c, a->receiver[j]) ? c->applied[j] : c->input[j];
 }
 
 // Changes of the inputs without the leaders' response to their inputs.
