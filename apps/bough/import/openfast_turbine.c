@@ -238,12 +238,19 @@ static void put_tip(bough_openfast *o, int k) {
     bough_taken(o, "TipMass(%d): %g kg", k, mass);
 }
 
+// Where nothing controls the pitch, OpenFAST 5 holds the controller's neutral one from the start [deg].
+static double pitch_of(const bough_openfast *o, int k) {
+    double pitch = bough_deck_number(o->elasto, bough_deck_kth(o->elasto, "BlPitch", k));
+    bool held = o->servo && bough_deck_whole_or(o->servo, "PCMode", 0) == 0;
+    return held ? bough_deck_number_or(o->servo, bough_deck_kth(o->servo, "PitNeut", k), pitch) : pitch;
+}
+
 // The joint of a blade: steered by a library, turned by a manoeuvre, or fixed. Its angle is that of the pitch
 // with the opposite sign.
 static void put_blade_joint(bough_openfast *o, int k) {
     const bough_deck *e = o->elasto, *s = o->servo;
     const char *start = bough_deck_kth(e, "TPitManS", k), *rate = bough_deck_kth(e, "PitManRat", k);
-    double from = bough_deck_number(e, bough_deck_kth(e, "BlPitch", k));
+    double from = pitch_of(o, k);
     double to = s ? bough_deck_number_or(s, bough_deck_kth(s, "BlPitchF", k), from) : from;
     double end = bough_deck_number(o->main, "TMax");
     if (o->generator == BOUGH_GENERATOR_LIBRARY) {
@@ -266,8 +273,7 @@ static void put_blade(bough_openfast *o, int k) {
               "rotate x %.10g deg, rotate y %.10g deg, move z %.10g m]}\n    pitch: %.10g deg\n"
               "    rod: {table: %s, segments: 48}\n",
               360.0 * (k - 1) / o->n_blade, bough_deck_number(e, bough_deck_kth(e, "PreCone", k)),
-              o->hub_radius, bough_deck_number(e, bough_deck_kth(e, "BlPitch", k)),
-              bough_import_name[BOUGH_IMPORT_BLADE]);
+              o->hub_radius, pitch_of(o, k), bough_import_name[BOUGH_IMPORT_BLADE]);
     put_tip(o, k);
 }
 

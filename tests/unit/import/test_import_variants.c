@@ -302,6 +302,13 @@ static double way_of(const bough_node *motion, int n) {
     return sum;
 }
 
+// As OpenFAST 5 does, which takes a pitch that nothing controls from ServoDyn.
+TEST(a_pitch_without_control_is_the_neutral_one) {
+    trial t = import_main("v5/main.fst", &(edit){"v5/servo.dat", "4.5   PitNeut", "2   PitNeut"}, NULL);
+    assert_string_equal(text(body(&t, "blade1"), "pitch"), "2 deg");
+    assert_string_equal(text(body(&t, "blade2"), "pitch"), "4.5 deg");
+}
+
 // What the bearing's spring is fixed to turns from 2 to -10 deg at 3 deg/s, from 1 s on or from the start; so
 // do blades that no library steers. Without the yaw's freedom nothing turns, as in OpenFAST.
 TEST(manoeuvres_are_motions_of_joints) {
