@@ -61,7 +61,8 @@ bough_status bough_modal_frequencies(bough_arena *arena, bough_modal_body *body,
     size_t n = (size_t)s.n_state;
     void *factors = s.ops->factors(body, arena);
     double *jacobian = bough_arena_doubles(arena, n * n), *value = bough_arena_doubles(arena, 2 * n);
-    double *vector = bough_arena_doubles(arena, n * n), *work = bough_arena_doubles(arena, BOUGH_EIGEN_WORK(n));
+    double *vector = bough_arena_doubles(arena, n * n),
+           *work = bough_arena_doubles(arena, BOUGH_EIGEN_WORK(n));
     bool ok = s.ops->linearise(body, t, state, input, factors);
     memcpy(jacobian, bough_modal_jacobian(factors), n * n * sizeof *jacobian);
     if (!ok || !bough_dense_eigen(s.n_state, jacobian, value, vector, work)) {

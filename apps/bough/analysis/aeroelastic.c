@@ -228,7 +228,8 @@ static bool find_vectors(bough_arena *arena, reduced *x) {
     size_t all = (size_t)x->all;
     double *factor = bough_arena_doubles(arena, all * all);
     int *pivot = bough_arena_take(arena, all * sizeof *pivot);
-    if (!bough_dense_eigen(x->all, x->matrix, x->value, x->vector, bough_arena_doubles(arena, BOUGH_EIGEN_WORK(all))))
+    if (!bough_dense_eigen(x->all, x->matrix, x->value, x->vector,
+                           bough_arena_doubles(arena, BOUGH_EIGEN_WORK(all))))
         return false;
     memcpy(factor, x->vector, all * all * sizeof *factor);
     for (size_t i = 0; i < all; i++) x->inverse[i * all + i] = 1;
