@@ -54,9 +54,8 @@ static void output(void *self, double t, const double *state, const double *inpu
     b->inner.ops->output(b->inner.self, t, state, input, out);
 }
 
-// The input with changed axes. f and h are nearly linear in these: central differences are as good as exact.
-static const double part = 1; // of a unit vector
-
+// The input with changed axes. f and h are nearly linear in these: central differences over a unit vector are
+// as good as exact.
 static double *with_axes(bough_ground_body *b, const double *input, const double *change, double factor) {
     int n = b->inner.n_input;
     memcpy(b->probe, input, (size_t)n * sizeof *input);
@@ -76,8 +75,8 @@ static void output_tangent(void *self, double t, const double *state, const doub
     for (int j = 0; j < BOUGH_GROUND_AXES; j++) largest = fmax(largest, fabs(change[j]));
     if (largest == 0) return;
     for (int sign = -1; sign <= 1; sign += 2) {
-        output(b, t, state, with_axes(b, input, change, sign * part / largest), b->out);
-        for (int k = 0; k < b->inner.n_output; k++) out[k] += sign * largest / (2 * part) * b->out[k];
+        output(b, t, state, with_axes(b, input, change, sign / largest), b->out);
+        for (int k = 0; k < b->inner.n_output; k++) out[k] += sign * largest / 2 * b->out[k];
     }
 }
 
@@ -89,9 +88,9 @@ static void input_columns(void *self, double t, const double *state, const doubl
     for (int j = 0; j < BOUGH_GROUND_AXES; j++, column += b->inner.n_state) {
         double unit[BOUGH_GROUND_AXES] = {0};
         unit[j] = 1;
-        derivative(b, t, state, with_axes(b, input, unit, -part), b->rate);
-        derivative(b, t, state, with_axes(b, input, unit, part), column);
-        for (int k = 0; k < b->inner.n_state; k++) column[k] = (column[k] - b->rate[k]) / (2 * part);
+        derivative(b, t, state, with_axes(b, input, unit, -1), b->rate);
+        derivative(b, t, state, with_axes(b, input, unit, 1), column);
+        for (int k = 0; k < b->inner.n_state; k++) column[k] = (column[k] - b->rate[k]) / 2;
     }
 }
 

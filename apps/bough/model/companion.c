@@ -31,16 +31,16 @@ static double share_held(const bough_scene *scene) {
     return fmax(1 - rate * scene->simulation.macro_step, 0);
 }
 
-// Whether a run that is finer in time stands beside the first steps. One of a tight tolerance follows every
+// Whether a solution that is finer in time runs beside the first steps. A tight tolerance follows every
 // vibration by itself, and a further copy of a library would write to the companion's file.
-static bool begins_beside_finer(const bough_scene *scene) {
+static bool has_finer_start(const bough_scene *scene) {
     static const double tight = 1e-5;
     return scene->simulation.master.rtol >= tight && !scene->control.library;
 }
 
 static bough_status build(bough_arena *arena, bough_companion *c) {
     BOUGH_TRY(bough_other_run_build(arena, c->run, BOUGH_COARSER_ALL, &c->coarser));
-    c->first_steps = begins_beside_finer(c->run->scene);
+    c->first_steps = has_finer_start(c->run->scene);
     if (c->first_steps) BOUGH_TRY(bough_other_run_build(arena, c->run, BOUGH_FINEST_TIME, &c->finer));
     c->share = bough_coarser_share(c->run->scene, c->coarser.simulation->scene);
     c->share_held = share_held(c->run->scene);
