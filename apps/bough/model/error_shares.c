@@ -5,7 +5,6 @@
 #include "apps/bough/results/progress.h"
 #include "cosim/scheme.h"
 
-#include <limits.h>
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
@@ -29,12 +28,11 @@ static long steps_of(const bough_simulation *s) {
 
 enum { MOST_TIMES_THE_STEPS = 10, FEW_STEPS = 1000 };
 
-// A further run that needs many times the steps of the run beside it (NULL: no limit) follows another
-// solution and may never end.
-static bough_status advance(bough_other_run *r, double t, const bough_simulation *beside) {
+// A further run that needs many times the steps of the user's own follows another solution and may never end.
+static bough_status advance(bough_other_run *r, double t, const bough_simulation *run) {
+    long most = MOST_TIMES_THE_STEPS * (steps_of(run) + FEW_STEPS);
     while (r->simulation->master->time < t) {
         BOUGH_TRY(bough_step(r->simulation->master));
-        long most = beside ? MOST_TIMES_THE_STEPS * (steps_of(beside) + FEW_STEPS) : LONG_MAX;
         if (steps_of(r->simulation) > most)
             return bough_fail(BOUGH_FAILED, "a run beside it took more than %ld steps to %.6g s", most,
                               r->simulation->master->time);
@@ -99,8 +97,7 @@ static void advance_finer(const finding *x, int k, double t, const bough_other_r
     bough_error_share *share = &x->shares->share[k];
     const bough_companion *c = x->companion;
     if (!finer->simulation || share->unknown[0]) return;
-    // the run that is as fine in time may cost as much as the user's own
-    bough_status own = advance(finer, fmin(t, x->end), k == BOUGH_SHARE_TIME ? NULL : base->simulation);
+    bough_status own = advance(finer, fmin(t, x->end), c->run);
     if (!bough_is_ok(&own)) {
         unknown(share, own.message);
         return;
@@ -148,7 +145,7 @@ static bough_status find(bough_arena *arena, void *self) {
         BOUGH_TRY(look_for_stop(x->stop));
         BOUGH_TRY(step_base(x, &base, &t));
         if (!x->lost) continue;
-        BOUGH_TRY(advance(&again, fmin(t, x->end), NULL));
+        BOUGH_TRY(advance(&again, fmin(t, x->end), run));
         bough_other_run_sample(&again);
     }
 }
@@ -212,7 +209,7 @@ static bough_status prove(bough_arena *arena, void *self) {
     for (int k = 0; k < 3; k++) BOUGH_TRY(bough_other_run_build(arena, run, parts[k], &r[k]));
     for (double t = 0;; t = r[0].simulation->master->time) {
         for (int k = 0; k < 3; k++) {
-            BOUGH_TRY(advance(&r[k], t, r[0].simulation));
+            BOUGH_TRY(advance(&r[k], t, run));
             bough_other_run_sample(&r[k]);
         }
         if (t >= from) compare(&r[0], &r[1], finer, finer, x->time);
@@ -247,7 +244,7 @@ bool bough_error_exceeds(const bough_companion *c, double bound) {
     return bound > 0 && v.channel >= 0 && v.relative > bound;
 }
 
-// The largest share; the mesh only if time and air alone stay below the bound.
+// The largest share; the mesh only if time and air alone stay below the bound. Negative: not known.
 static int cause_of(const bough_companion *c, const bough_error_shares *shares, double bound,
                     double *relative) {
     int cause = -1;
@@ -262,7 +259,8 @@ static int cause_of(const bough_companion *c, const bough_error_shares *shares, 
         cause = k;
         *relative = own;
     }
-    return cause;
+    bool time_unknown = shares->share[BOUGH_SHARE_TIME].unknown[0];
+    return cause == BOUGH_SHARE_MESH && time_unknown ? -1 : cause;
 }
 
 // An error of a part of the range, above the bound: the companion may have lost the solution.
