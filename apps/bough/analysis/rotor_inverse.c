@@ -24,8 +24,9 @@ struct bough_rotor_inverse {
     double **same, **turn; // D (r × r) of each harmonic: on itself; of the sine on the cosine, NULL: none
     double *from, *to;     // V (n_other × n_part r), W K⁻¹ (n_part r × n_other)
     double *others;        // P_oo K⁻¹ (n_other × n_other)
-    // scratch of MOST vectors: harmonics of arguments, of images, of the part by turns; on the others
-    double *argument, *image, *turned, *force;
+    // scratch of MOST vectors: harmonics of arguments, of images, of the part that couples cosine and sine;
+    // g of apply, and P_oo g
+    double *argument, *image, *turned, *force, *moved;
 };
 
 // A matrix of the air in blocks: rows and columns of the blades by harmonics, and of the others.
@@ -457,7 +458,7 @@ static void take(bough_arena *arena, bough_rotor_inverse *x) {
     bough_arena_each(arena, all * n_other + 1, &x->from, &x->to);
     x->others = bough_arena_doubles(arena, square(x->n_other) + 1);
     bough_arena_each(arena, all * MOST, &x->argument, &x->image, &x->turned);
-    x->force = bough_arena_doubles(arena, n_other * MOST + 1);
+    bough_arena_each(arena, n_other * MOST + 1, &x->force, &x->moved);
 }
 
 bough_rotor_inverse *bough_rotor_inverse_create(bough_arena *arena, const bough_aeroelastic *system,
@@ -494,57 +495,47 @@ static void scatter(const bough_rotor_inverse *x, int n, const double *force, do
     }
 }
 
-// y_b = D z_b + W g, y_o = P_oo g, g = V z_b + z_o (K in W and P_oo)
-static void apply(const bough_rotor_inverse *x, int n, const double *z, double *image) {
-    size_t block = (size_t)x->n_other * (size_t)x->r, size = (size_t)n * (size_t)x->r;
-    to_harmonics(x, n, z, x->argument);
-    gather(x, n, z, x->force);
-    memset(image, 0, (size_t)n * (size_t)x->n * sizeof *image); // what is held stays at rest
-    for (int p = 0; p < x->n_part; p++)
-        bough_dense_product((bough_product){x->n_other, n, x->r, false, 1, 1}, x->from + (size_t)p * block,
-                            x->argument + (size_t)p * size, x->force);
-    apply_blades(x, false, n, x->argument, x->turned, x->image);
-    for (int p = 0; p < x->n_part; p++)
-        bough_dense_product((bough_product){x->r, n, x->n_other, false, 1, 1}, x->to + (size_t)p * block,
-                            x->force, x->image + (size_t)p * size);
-    from_harmonics(x, n, x->image, image);
-    bough_dense_product((bough_product){x->n_other, n, x->n_other, false, 1, 0}, x->others, x->force,
-                        x->turned);
-    scatter(x, n, x->turned, image);
+static void project(const bough_rotor_inverse *x, int n, double *z) {
     for (int c = 0; c < n; c++)
-        bough_whole_project(x->system->whole, x->system->def->state, image + (size_t)c * (size_t)x->n);
+        bough_whole_project(x->system->whole, x->system->def->state, z + (size_t)c * (size_t)x->n);
 }
 
-// The same backwards; the projection is its own transpose.
-static void apply_transposed(const bough_rotor_inverse *x, int n, const double *z, double *image) {
+// g ← P_oo g, or its transpose.
+static void multiply_others(const bough_rotor_inverse *x, bool transposed, int n) {
+    bough_product p = {x->n_other, n, x->n_other, transposed, 1, 0};
+    bough_dense_product(p, x->others, x->force, x->moved);
+    memcpy(x->force, x->moved, (size_t)n * (size_t)x->n_other * sizeof *x->force);
+}
+
+// y_b = D z_b + W g, y_o = P_oo g, g = V z_b + z_o (K in W and P_oo), then projected. The transpose takes the
+// steps in the other order: y_b = Dᵀ z_b + Vᵀ g, y_o = g = Wᵀ z_b + P_ooᵀ z_o; the projection is its own.
+static void apply(const bough_rotor_inverse *x, bool transposed, int n, const double *z, double *image) {
     size_t block = (size_t)x->n_other * (size_t)x->r, size = (size_t)n * (size_t)x->r;
+    const double *in = transposed ? x->to : x->from, *out = transposed ? x->from : x->to;
     memcpy(image, z, (size_t)n * (size_t)x->n * sizeof *image);
-    for (int c = 0; c < n; c++)
-        bough_whole_project(x->system->whole, x->system->def->state, image + (size_t)c * (size_t)x->n);
+    if (transposed) project(x, n, image);
     to_harmonics(x, n, image, x->argument);
-    gather(x, n, image, x->turned);
-    bough_dense_product((bough_product){x->n_other, n, x->n_other, true, 1, 0}, x->others, x->turned,
-                        x->force);
+    gather(x, n, image, x->force);
+    if (transposed) multiply_others(x, true, n);
+    // g from the blades, then the blades' own part and that from g
     for (int p = 0; p < x->n_part; p++)
-        bough_dense_product((bough_product){x->n_other, n, x->r, true, 1, 1}, x->to + (size_t)p * block,
+        bough_dense_product((bough_product){x->n_other, n, x->r, transposed, 1, 1}, in + (size_t)p * block,
                             x->argument + (size_t)p * size, x->force);
-    apply_blades(x, true, n, x->argument, x->turned, x->image);
+    apply_blades(x, transposed, n, x->argument, x->turned, x->image);
     for (int p = 0; p < x->n_part; p++)
-        bough_dense_product((bough_product){x->r, n, x->n_other, true, 1, 1}, x->from + (size_t)p * block,
+        bough_dense_product((bough_product){x->r, n, x->n_other, transposed, 1, 1}, out + (size_t)p * block,
                             x->force, x->image + (size_t)p * size);
-    memset(image, 0, (size_t)n * (size_t)x->n * sizeof *image);
+    if (!transposed) multiply_others(x, false, n);
+    memset(image, 0, (size_t)n * (size_t)x->n * sizeof *image); // what is held stays at rest
     from_harmonics(x, n, x->image, image);
     scatter(x, n, x->force, image);
+    if (!transposed) project(x, n, image);
 }
 
 void bough_rotor_inverse_apply(bough_rotor_inverse *x, bool transposed, int n, const double *z,
                                double *image) {
     for (int begin = 0; begin < n; begin += MOST) {
-        int some = n - begin < MOST ? n - begin : MOST;
         size_t at = (size_t)begin * (size_t)x->n;
-        if (transposed)
-            apply_transposed(x, some, z + at, image + at);
-        else
-            apply(x, some, z + at, image + at);
+        apply(x, transposed, n - begin < MOST ? n - begin : MOST, z + at, image + at);
     }
 }

@@ -7,9 +7,11 @@
 #include <math.h>
 #include <string.h>
 
-// Four segments on each blade, a tower that bends; the rotor symmetric about its shaft in all but the tower.
+// Four segments on each blade; a tower that bends, of more states than the blades; the rotor symmetric about
+// its shaft in all but the tower.
 static const char *const symmetric[] = {
     "gravity=[0, 0, 0]",
+    "bodies[tower].rod.segments=16",
     "bodies[blade1].rod.segments=4",
     "bodies[blade2].rod.segments=4",
     "bodies[blade3].rod.segments=4",
