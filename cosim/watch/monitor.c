@@ -343,8 +343,10 @@ static void advise(const bough_coupling *c, const bough_stability_advice *advice
                                        : "scheme: " BOUGH_SCHEME_DEFAULT);
         return;
     }
-    int n = snprintf(text, ADVICE, ": the coupling grows by a factor of %.3g in each macro step; try ",
-                     exp(advice->now.growth * (c->t1 - c->t0)));
+    double factor = exp(advice->now.growth * (c->t1 - c->t0));
+    bool slowly = factor < 1.1; // three digits of such a factor would hide the growth
+    int n = snprintf(text, ADVICE, ": the coupling grows by %s%.3g%s in each macro step; try ",
+                     slowly ? "" : "a factor of ", slowly ? 100 * (factor - 1) : factor, slowly ? " %" : "");
     if (advice->macro_step > 0) {
         n += snprintf(text + n, (size_t)(ADVICE - n), "macro_step: %.9g s or ", advice->macro_step);
     }
