@@ -21,7 +21,7 @@ static const double least_loss = 1e-4;
 // a beyond which the smooth parabola replaces momentum theory: without skew, and the most [Spera].
 static const double critical = 0.35, most_critical = 0.5;
 // Of a wake's angle, beyond which there is no disk across the wind [rad].
-static const double most_skew_angle = 80 * BOUGH_PI / 180;
+static const double most_skew_angle = 80 * BOUGH_DEGREE;
 
 // The thrust that momentum theory has at a = 1 − x, and the parabola from x_c on, by the skew; of the
 // whole rotor.

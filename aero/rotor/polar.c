@@ -15,7 +15,7 @@ static void fill_rows(const bough_polar_def *def, int n, double *row) {
     for (int i = 0; i < n; i++) {
         const double *from = def->row + 4 * (i % def->n);
         double *to = row + ROW * i;
-        to[0] = from[0] * (BOUGH_PI / 180) + (i < def->n ? 0 : circle);
+        to[0] = from[0] * BOUGH_DEGREE + (i < def->n ? 0 : circle);
         for (int c = 1; c < 4; c++) to[c] = from[c];
     }
     for (int i = 0; i + 1 < n; i++) {
@@ -38,13 +38,13 @@ static void fill_bins(bough_polar *polar, int *bin) {
 
 // The range of the rows; a table whose gap is as wide as two of its own steps covers the circle.
 static void find_range(const bough_polar_def *def, bough_polar *polar) {
-    const double degree = BOUGH_PI / 180, gap = 360 - (def->row[4 * (def->n - 1)] - def->row[0]);
+    const double gap = 360 - (def->row[4 * (def->n - 1)] - def->row[0]);
     double widest = 0;
     for (int i = 1; i < def->n; i++) {
         widest = fmax(widest, def->row[4 * i] - def->row[4 * (i - 1)]);
     }
-    polar->low = def->row[0] * degree;
-    polar->high = gap <= 2 * widest ? polar->low + circle : def->row[4 * (def->n - 1)] * degree;
+    polar->low = def->row[0] * BOUGH_DEGREE;
+    polar->high = gap <= 2 * widest ? polar->low + circle : def->row[4 * (def->n - 1)] * BOUGH_DEGREE;
 }
 
 // -- attached flow --------------------------------------------------------------------------------
@@ -53,7 +53,7 @@ static double lift_at(const bough_polar *polar, double alpha) { return bough_pol
 
 // Where the lift grows through zero, nearest to no angle within 20°; false if nowhere.
 static bool find_zero_lift(const bough_polar *polar, double *zero) {
-    const double step = 0.25 * BOUGH_PI / 180;
+    const double step = 0.25 * BOUGH_DEGREE;
     bool found = false;
     for (int k = -80; k < 80; k++) {
         double a = k * step, b = a + step, fa = lift_at(polar, a), fb = lift_at(polar, b);
@@ -78,7 +78,7 @@ static bool find_zero_lift(const bough_polar *polar, double *zero) {
 static double steepest(const bough_polar *polar, double zero) {
     const double near_zero = 1e-4; // closer to it the ratio is that of small numbers [rad]
     enum { FINE = 1200 };
-    const double reach = 30 * BOUGH_PI / 180;
+    const double reach = 30 * BOUGH_DEGREE;
     double slope = 0;
     for (int k = 0; k < polar->n + 2 * FINE; k++) {
         int j = k - polar->n - FINE;
@@ -131,10 +131,10 @@ void bough_polar_blend(bough_arena *arena, const bough_polar *a, const bough_pol
     // knots of both tables within one circle
     qsort(angle, (size_t)most, sizeof *angle, bough_ascending);
     for (int k = 0; k < most && angle[k] < angle[0] + circle - 1e-9; k++) {
-        if (n > 0 && angle[k] * (180 / BOUGH_PI) - row[4 * (n - 1)] < 1e-9) continue;
+        if (n > 0 && angle[k] * (1 / BOUGH_DEGREE) - row[4 * (n - 1)] < 1e-9) continue;
         bough_coefficients x = bough_polar_at(a, angle[k]), y = bough_polar_at(b, angle[k]);
         double *to = row + 4 * n++;
-        to[0] = angle[k] * (180 / BOUGH_PI);
+        to[0] = angle[k] * (1 / BOUGH_DEGREE);
         to[1] = (1 - weight) * x.lift + weight * y.lift;
         to[2] = (1 - weight) * x.drag + weight * y.drag;
         to[3] = (1 - weight) * x.moment + weight * y.moment;

@@ -9,7 +9,7 @@
 // Lags of pressure and separation, in semi-chords.
 static const double pressure_time = 1.7, separation_time = 3.0;
 // The static polar alone from the second angle on, none of it up to the first [rad].
-static const double fading = 40 * BOUGH_PI / 180, faded = 50 * BOUGH_PI / 180;
+static const double fading = 40 * BOUGH_DEGREE, faded = 50 * BOUGH_DEGREE;
 // Slower than this there is no wake [m/s].
 static const double slow = 1e-3;
 

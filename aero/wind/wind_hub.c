@@ -30,8 +30,8 @@ static bool is_comment(const char *line) {
 }
 
 static bough_wind_hub_row row_of(const double *v) {
-    const double degree = BOUGH_PI / 180;
-    return (bough_wind_hub_row){v[0], v[1], v[2] * degree, v[3], v[4], v[5], v[6], v[7], v[8] * degree};
+    return (bough_wind_hub_row){v[0], v[1], v[2] * BOUGH_DEGREE, v[3], v[4], v[5],
+                                v[6], v[7], v[8] * BOUGH_DEGREE};
 }
 
 // Times must increase; the ninth number, the upflow, may be missing.

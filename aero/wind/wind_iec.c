@@ -74,7 +74,7 @@ static double operating_gust(const bough_wind_iec_def *d, double deviation, doub
 
 // Change of direction in the coherent gust.
 static double coherent_veer(double speed) {
-    return (speed < 4 ? 180 : 720 / speed) * BOUGH_PI / 180; // (25)
+    return (speed < 4 ? 180 : 720 / speed) * BOUGH_DEGREE; // (25)
 }
 
 // Duration, amplitude and change of direction of a deterministic condition.

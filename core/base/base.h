@@ -8,6 +8,8 @@
 #include <stddef.h>
 
 #define BOUGH_PI 3.14159265358979323846
+#define BOUGH_DEGREE (BOUGH_PI / 180) // [rad]
+#define BOUGH_RPM (BOUGH_PI / 30)     // [rad/s]
 
 // For functions called in loops over vector lanes, which are not vectorised where a call remains. clang
 // splits structures that are arguments of static functions into their members, and of the new calls it does

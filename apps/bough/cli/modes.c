@@ -59,7 +59,7 @@ static void print_rod_head(const rod_modes *x) {
         bough_vec3 a = x->turning.axis;
         printf(", turning at %.9g rpm about (%.6g, %.6g, %.6g), seen from the rotating frame; gravity "
                "in the mean of a turn",
-               x->turning.speed * 30 / BOUGH_PI, a.x, a.y, a.z);
+               x->turning.speed / BOUGH_RPM, a.x, a.y, a.z);
     }
     printf("\n%4s %12s %12s %11s %11s  %-8s %7s %7s %7s %7s\n", "mode", "frequency", "damped", "damping",
            "decrement", "shape", "flap", "edge", "axial", "torsion");
@@ -180,7 +180,7 @@ static bool turns_rotor(const bough_scene_mode *mode) {
 static void print_head(const bough_simulation *s, const bough_vibration *v) {
     printf("whole scene: %d states, about %s", s->master->assembly->n_state,
            s->scene->modes.at == BOUGH_SCENE_IN_EQUILIBRIUM ? "equilibrium" : "its initial state");
-    if (v->spin != 0) printf(", rotor at %.6g rpm", v->spin * 30 / BOUGH_PI);
+    if (v->spin != 0) printf(", rotor at %.6g rpm", v->spin / BOUGH_RPM);
     if (v->frozen) printf(", at the present azimuth: blades as seen from the rotating frame");
     if (v->spin != 0 && v->n_blade > 0) printf(", seen by an observer at rest");
     if (rotor_is_free(s)) printf(", rotor free to turn");

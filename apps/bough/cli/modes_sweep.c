@@ -232,7 +232,7 @@ static bough_status add_point(bough_arena *keep, bough_arena *arena, const bough
                           "--sweep cannot change the bodies, their mesh or the count of modes");
     }
     add_modes(keep, arena, sim, v, point, before, now, s);
-    s->speed[point] = fabs(v->spin) * 30 / BOUGH_PI;
+    s->speed[point] = fabs(v->spin) / BOUGH_RPM;
     s->n_blade = sim->scene->turbine.n_blade;
     char *end;
     s->x[point] = strtod(s->value[point], &end);

@@ -420,7 +420,7 @@ static void print_modal(bough_simulation *s) {
         if (beam->modal == NULL) continue;
         bough_vec3 u, r;
         bough_simulation_tip_shift(s, beam, &u, &r);
-        r = bough_scale(180 / BOUGH_PI, r);
+        r = bough_scale(1 / BOUGH_DEGREE, r);
         printf("modal %s: tip moved by %.9g %.9g %.9g m, turned by %.9g %.9g %.9g deg\n", beam->body->name,
                u.x, u.y, u.z, r.x, r.y, r.z);
     }

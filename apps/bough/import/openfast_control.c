@@ -72,8 +72,7 @@ void bough_openfast_check(const bough_deck *deck) {
 
 enum { NONE, SIMPLE, LIBRARY = 5, THEVENIN = 2 };
 
-static const double rpm = 3.14159265358979323846 / 30; // [rad/s]
-static const double least_speed = 1e-3;                // of a generator with torque [rad/s]
+static const double least_speed = 1e-3; // of a generator with torque [rad/s]
 
 static int torque_mode(const bough_openfast *o) {
     return o->servo ? bough_deck_whole_or(o->servo, "VSContrl", NONE) : NONE;
@@ -88,18 +87,19 @@ static int pitch_mode(const bough_openfast *o) {
 // Of an induction generator without torque [rad/s].
 static double synchronous_speed(const bough_openfast *o) {
     if (bough_deck_whole_or(o->servo, "GenModel", SIMPLE) == SIMPLE) {
-        return bough_deck_number(o->servo, "SIG_SySp") * rpm;
+        return bough_deck_number(o->servo, "SIG_SySp") * BOUGH_RPM;
     }
-    return 120 * rpm * bough_deck_number(o->servo, "TEC_Freq") / bough_deck_number(o->servo, "TEC_NPol");
+    return 120 * BOUGH_RPM * bough_deck_number(o->servo, "TEC_Freq") /
+           bough_deck_number(o->servo, "TEC_NPol");
 }
 
 double bough_openfast_rotor_speed(const bough_openfast *o) {
     const double usual_tip = 70; // [m/s]
-    double speed = fabs(bough_deck_number(o->elasto, "RotSpeed")) * rpm, fast = 0;
+    double speed = fabs(bough_deck_number(o->elasto, "RotSpeed")) * BOUGH_RPM, fast = 0;
     double ratio = bough_deck_number_or(o->elasto, "GBRatio", 1);
     bool free = bough_deck_flag_or(o->elasto, "GenDOF", true);
     if (!free || !o->servo) return speed;
-    if (torque_mode(o) == SIMPLE) fast = bough_deck_number(o->servo, "VS_RtGnSp") * rpm;
+    if (torque_mode(o) == SIMPLE) fast = bough_deck_number(o->servo, "VS_RtGnSp") * BOUGH_RPM;
     int model = bough_deck_whole_or(o->servo, "GenModel", SIMPLE);
     if (torque_mode(o) == NONE && (model == SIMPLE || model == THEVENIN)) fast = synchronous_speed(o);
     speed = fmax(speed, ratio > 0 && isfinite(fast) ? fabs(fast) / ratio : 0);
@@ -199,8 +199,8 @@ typedef struct torque_line {
 
 static torque_line read_variable_speed(const bough_openfast *o) {
     const bough_deck *s = o->servo;
-    torque_line l = {.gain = bough_deck_number(s, "VS_Rgn2K") / (rpm * rpm),
-                     .full_speed = bough_deck_number(s, "VS_RtGnSp") * rpm,
+    torque_line l = {.gain = bough_deck_number(s, "VS_Rgn2K") / (BOUGH_RPM * BOUGH_RPM),
+                     .full_speed = bough_deck_number(s, "VS_RtGnSp") * BOUGH_RPM,
                      .most = bough_deck_number(s, "VS_RtTq"),
                      .slip = bough_deck_number(s, "VS_SlPc") / 100};
     bool good = l.full_speed > 0 && l.most > 0 && l.most <= 1e9 && l.slip > 0 && l.slip <= 1 && l.gain >= 0;
@@ -293,7 +293,7 @@ static void put_law(bough_openfast *o) {
                         bough_deck_line(o->servo, torque_mode(o) == SIMPLE ? "VS_RtGnSp" : "GenModel"),
                         "the torque reaches its maximum of %g N m at %.3g rpm of the generator, too suddenly "
                         "for samples every %g s",
-                        l.most, full / rpm, o->draft.macro_step);
+                        l.most, full / BOUGH_RPM, o->draft.macro_step);
     }
     bough_put(o,
               "control:\n  kind: variable-speed\n  rate: %.10g Hz\n  gear_ratio: %.10g\n"

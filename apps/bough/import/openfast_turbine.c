@@ -163,7 +163,7 @@ static bool teeters(const bough_openfast *o) {
 static void put_teeter(bough_openfast *o, const char *shaft) {
     const bough_deck *e = o->elasto;
     bool standard = bough_deck_whole_or(e, "TeetMod", 0) == 1;
-    double stop = standard ? bough_deck_number_or(e, "TeetHStP", 0) : 0, radian = acos(-1.0) / 180;
+    double stop = standard ? bough_deck_number_or(e, "TeetHStP", 0) : 0;
     double stiffness = standard ? bough_deck_number_or(e, "TeetHSSp", 0) : 0;
     double damping = standard ? bough_deck_number_or(e, "TeetDmp", 0) : 0;
     bough_put(o,
@@ -172,8 +172,8 @@ static void put_teeter(bough_openfast *o, const char *shaft) {
               shaft, -bough_deck_number_or(e, "Delta3", 0), bough_deck_number_or(e, "TeetDefl", 0));
     if (damping > 0) bough_put(o, ", damping: %.10g", damping);
     if (stop > 0 && stop < 90 && stiffness > 0) {
-        bough_put(o, ", stop: [%.10g rad, %.10g rad], stop_stiffness: %.10g", -stop * radian, stop * radian,
-                  stiffness);
+        bough_put(o, ", stop: [%.10g rad, %.10g rad], stop_stiffness: %.10g", -stop * BOUGH_DEGREE,
+                  stop * BOUGH_DEGREE, stiffness);
     }
     bough_put(o, "}\n");
     bough_taken(o, "TeetDOF: the hub teeters, with damper and hard stops");

@@ -20,7 +20,7 @@ static void find_parts(bough_windio *w) {
     w->second = bough_entry(w->blade, "outer_shape") != NULL;
     w->train = bough_entry_need(d, w->parts, w->second ? "drivetrain" : "nacelle.drivetrain");
     w->tower = bough_entry(w->parts, "tower");
-    w->degree = w->second ? 1 : 180 / BOUGH_PI;
+    w->degree = w->second ? 1 : 1 / BOUGH_DEGREE;
 }
 
 static void read_axis(bough_windio *w) {
@@ -61,7 +61,7 @@ static void read_assembly(bough_windio *w) {
     if (bough_is_ok(d->status) && !(w->hub_radius > 0)) {
         bough_entry_fail(d, w->hub, "diameter: expected a positive value");
     }
-    double cone = bough_entry_number_or(d, w->hub, "cone_angle", 0) * w->degree * BOUGH_PI / 180;
+    double cone = bough_entry_number_or(d, w->hub, "cone_angle", 0) * w->degree * BOUGH_DEGREE;
     w->radius = (w->hub_radius + w->blade_length) * cos(cone);
 }
 
@@ -94,11 +94,11 @@ double bough_windio_property(bough_windio *w, const bough_node *material, const 
 // Where the optimal tip speed ratio meets three quarters of the rated speed, the rotor turns in the
 // middle of its range, and no pitch is needed.
 static void choose_start(bough_windio *w) {
-    double rpm = BOUGH_PI / 30,
-           tip = bough_windio_control(w, "supervisory.maxTS", "max_allowable_blade_tip_speed", 1, 0);
+    double tip = bough_windio_control(w, "supervisory.maxTS", "max_allowable_blade_tip_speed", 1, 0);
     double ratio = bough_windio_control(w, "torque.tsr", "optimal_tsr", 1, 0);
     double limit = tip > 0 ? tip / w->radius : HUGE_VAL;
-    double given = bough_windio_control(w, "torque.VS_maxspd", "rated_rotor_speed|max_rotor_speed", rpm, 0);
+    double given =
+        bough_windio_control(w, "torque.VS_maxspd", "rated_rotor_speed|max_rotor_speed", BOUGH_RPM, 0);
     // of both limits the lower one counts; a speed at the limit of the tip is taken, by whatever radius it is
     w->rated_speed = given > 0 && given <= 1.02 * limit ? given : limit;
     if (!isfinite(w->rated_speed)) {
@@ -116,7 +116,7 @@ static void choose_start(bough_windio *w) {
     bough_approximated(w,
                        "the file has no load case: wind of %.3g m/s and %.3g rpm, at the optimal "
                        "tip-speed ratio",
-                       w->wind, w->speed / rpm);
+                       w->wind, w->speed / BOUGH_RPM);
 }
 
 // -- writing --------------------------------------------------------------------------------------

@@ -106,7 +106,7 @@ static void put_element(bough_windio *w, const bough_windio_shape *a, double at)
     const bough_windio_place *p = &a->place[i], *q = share > 0 ? p + 1 : p;
     double centre = (1 - share) * centre_of(w, p) + share * centre_of(w, q);
     double back = centre * chord - bough_windio_line(a, at), up = bough_curve_at(&a->offset_x, at);
-    double twist = bough_curve_at(&a->twist, at) * w->degree, turn = twist * BOUGH_PI / 180;
+    double twist = bough_curve_at(&a->twist, at) * w->degree, turn = twist * BOUGH_DEGREE;
     airfoil_name(p->airfoil, p->number, name);
     airfoil_name(q->airfoil, q->number, other);
     fprintf(file, "    - [%.10g, %.10g, %.10g, %.10g, %.10g, %s, %s, %.10g]\n",

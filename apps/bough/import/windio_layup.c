@@ -245,7 +245,7 @@ static double said(parts *p, const bough_node *node, handle end, int depth) {
 
 // The turn from the chord to the blade's y axis, by which offsets of planes are counted [rad].
 static double turn_of(parts *p, const bough_node *part) {
-    double degree = p->w->degree * BOUGH_PI / 180;
+    double degree = p->w->degree * BOUGH_DEGREE;
     const bough_node *rotation = bough_entry(part, "rotation");
     if (bough_entry(rotation, "values")) return curve_at(p, part, "rotation") * degree;
     return -p->twist;
@@ -259,8 +259,7 @@ static double crossing(parts *p, const bough_node *part, int side) {
     const bough_node *plane = bough_entry(part, "plane_intersection");
     if (!plane || !bough_entry(plane, "offset")) return NAN;
     double turn = bough_entry_number_or(&p->w->draft, plane, "plane_type1|plane_type2.rotation", 0);
-    return outline_crossing(&p->outline, side, -p->twist + turn * BOUGH_PI / 180,
-                            curve_at(p, plane, "offset"));
+    return outline_crossing(&p->outline, side, -p->twist + turn * BOUGH_DEGREE, curve_at(p, plane, "offset"));
 }
 
 static int side_of(const bough_node *part, handle end) {
@@ -413,7 +412,7 @@ typedef struct section {
 
 static bough_ply ply_of(const parts *p, const layer *l, double thickness) {
     bough_ply ply = l->ply;
-    double degree = p->w->degree * BOUGH_PI / 180;
+    double degree = p->w->degree * BOUGH_DEGREE;
     ply.thickness = thickness;
     ply.angle = l->angle.n > 0 ? bough_curve_at(&l->angle, p->share) * degree : 0;
     return ply;
@@ -489,7 +488,7 @@ static void solve_station(parts *p, section *s, double stiffness[36], double mas
     bough_draft *d = &p->w->draft;
     bough_arena *scratch = bough_arena_child(d->arena);
     outline_at(p->w, p->airfoils, p->share, &p->outline);
-    p->twist = bough_curve_at(&p->w->outline.twist, p->share) * p->w->degree * BOUGH_PI / 180;
+    p->twist = bough_curve_at(&p->w->outline.twist, p->share) * p->w->degree * BOUGH_DEGREE;
     s->n_wall = s->n_ply = 0;
     put_skin(p, s);
     for (int i = 0; p->webs && i < p->webs->n; i++) put_web(p, s, i);

@@ -231,8 +231,7 @@ void bough_windio_bodies(bough_windio *w) {
     double overhang = bough_entry_number(d, from, "overhang");
     double tilt = bough_entry_number_or(d, from, "uptilt", 0) * w->degree;
     double cone = bough_entry_number_or(d, w->hub, "cone_angle", 0) * w->degree;
-    double pitch =
-        bough_windio_control(w, "pitch.min_pitch", "fine_pitch|min_pitch_limit", BOUGH_PI / 180, 0);
+    double pitch = bough_windio_control(w, "pitch.min_pitch", "fine_pitch|min_pitch_limit", BOUGH_DEGREE, 0);
     double above = bough_entry_number_or(d, w->root, "assembly.hub_height", NAN) - w->tower_top;
     w->hub_height = w->tower && above > 0 ? bough_entry_number_or(d, from, "distance_tt_hub", above)
                                           : bough_entry_number(d, from, "distance_tt_hub");
@@ -244,9 +243,9 @@ void bough_windio_bodies(bough_windio *w) {
     lump hub = hub_lump(w), nacelle = nacelle_lump(w, overhang, hub.mass);
     put_nacelle(w, rod, &nacelle);
     const char *rotor = put_hub(w, &hub, overhang, tilt, gear_ratio(w));
-    put_blades(w, rotor, cone, pitch * 180 / BOUGH_PI);
+    put_blades(w, rotor, cone, pitch / BOUGH_DEGREE);
     bough_taken(w, "hub radius %g m, cone %.4g deg, tilt %.4g deg, overhang %g m, pitch %.4g deg",
-                w->hub_radius, cone, tilt, overhang, pitch * 180 / BOUGH_PI);
+                w->hub_radius, cone, tilt, overhang, pitch / BOUGH_DEGREE);
     bough_left_out(w, "yaw bearing and drive train are rigid");
 }
 
@@ -287,10 +286,9 @@ void bough_windio_air(bough_windio *w) {
 
 // The limits of the pitch, whose law no file has.
 static void put_pitch(bough_windio *w, double ratio) {
-    double degree = BOUGH_PI / 180;
-    double least = bough_windio_control(w, "pitch.min_pitch", "min_pitch_limit|fine_pitch", degree, 0);
-    double most = bough_windio_control(w, "pitch.max_pitch", "max_pitch_limit", degree, BOUGH_PI / 2);
-    double rate = bough_windio_control(w, "pitch.max_pitch_rate", "max_pitch_rate", degree, 0.1);
+    double least = bough_windio_control(w, "pitch.min_pitch", "min_pitch_limit|fine_pitch", BOUGH_DEGREE, 0);
+    double most = bough_windio_control(w, "pitch.max_pitch", "max_pitch_limit", BOUGH_DEGREE, BOUGH_PI / 2);
+    double rate = bough_windio_control(w, "pitch.max_pitch_rate", "max_pitch_rate", BOUGH_DEGREE, 0.1);
     bough_put(w,
               "    reference_speed: %.10g rad/s\n    least_pitch: %.10g rad\n    most_pitch: %.10g rad\n"
               "    pitch_rate: %.10g rad/s\n",
@@ -347,7 +345,7 @@ void bough_windio_law(bough_windio *w) {
         1 / d->macro_step, ratio, efficiency, 0.99 * power / (rated * rated * rated), rated, power,
         1.1 * power / rated, rate);
     bough_taken(w, "rated power %g MW at %.4g rpm of the rotor", w->rated_power / 1e6,
-                w->rated_speed * 30 / BOUGH_PI);
+                w->rated_speed / BOUGH_RPM);
     bough_approximated(
         w, "torque grows with the square of the speed to its rated value, then constant power; no "
            "loss in the generator");

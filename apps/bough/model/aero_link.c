@@ -77,7 +77,7 @@ static void take_tables(bough_arena *arena, const bough_aero_link *l, tables *t)
         double *row = bough_arena_doubles(arena, 4 * (size_t)from->n_row);
         for (int i = 0; i < from->n_row; i++) {
             const bough_scene_polar_row *r = &from->row[i];
-            const double values[4] = {r->alpha * (180 / BOUGH_PI), r->cl, r->cd, r->cm};
+            const double values[4] = {r->alpha * (1 / BOUGH_DEGREE), r->cl, r->cd, r->cm};
             memcpy(row + 4 * i, values, sizeof values);
         }
         t->polar[k] = (bough_polar_def){from->n_row, row, from->indicial};

@@ -122,7 +122,7 @@ static double towards(double from, double to, double reach) {
 }
 
 static double rate_of(const bough_control_link *l, const bough_scene_event *event) {
-    const double normal = 4 * BOUGH_PI / 180, yaw = 0.3 * BOUGH_PI / 180; // [rad/s]
+    const double normal = 4 * BOUGH_DEGREE, yaw = 0.3 * BOUGH_DEGREE; // [rad/s]
     if (event->rate > 0) return event->rate;
     if (event->kind == BOUGH_SCENE_STOP) return normal;
     return event->kind == BOUGH_SCENE_YAW_RUNAWAY ? yaw : l->control->law.pitch_rate;

@@ -8,10 +8,10 @@
 
 enum { MOST_TRIES = 60 };
 
-static const double tolerance = 1e-5;             // of the torque's balance, relative to the rated torque
-static const double slower = 0.85, faster = 1.1;  // factors by which the speed is bracketed
-static const double steeper = 4 * BOUGH_PI / 180; // steps by which the pitch is bracketed [rad]
-static const double standing = 0.1;               // of its reference speed: a slower rotor stands still
+static const double tolerance = 1e-5;            // of the torque's balance, relative to the rated torque
+static const double slower = 0.85, faster = 1.1; // factors by which the speed is bracketed
+static const double steeper = 4 * BOUGH_DEGREE;  // steps by which the pitch is bracketed [rad]
+static const double standing = 0.1;              // of its reference speed: a slower rotor stands still
 
 typedef struct search {
     bough_simulation *simulation;
@@ -77,7 +77,7 @@ static void seek_pitch(search *x, double speed, double f) {
     x->status = bough_fail(BOUGH_FAILED,
                            "no steady operation: at a pitch of %.4g degrees the "
                            "rotor still accelerates at %.4g rpm",
-                           low * 180 / BOUGH_PI, speed * 30 / BOUGH_PI);
+                           low / BOUGH_DEGREE, speed / BOUGH_RPM);
 }
 
 // From a speed with a surplus (f > 0) upwards, or without one downwards.
@@ -96,11 +96,10 @@ static void seek_speed(search *x, double speed, double f, double pitch) {
         }
         speed = next, f = g;
         if (speed > standing * reference && speed < reference / standing) continue;
-        x->status =
-            bough_fail(BOUGH_FAILED,
-                       "no steady operation: the torque of the air equals "
-                       "that of the generator at no speed from %.4g to %.4g rpm",
-                       fmin(speed, reference) * 30 / BOUGH_PI, fmax(speed, reference) * 30 / BOUGH_PI);
+        x->status = bough_fail(BOUGH_FAILED,
+                               "no steady operation: the torque of the air equals "
+                               "that of the generator at no speed from %.4g to %.4g rpm",
+                               fmin(speed, reference) / BOUGH_RPM, fmax(speed, reference) / BOUGH_RPM);
         return;
     }
 }

@@ -19,8 +19,8 @@ static const double most_turn = 0.25 * BOUGH_PI;
 // Limits of bough_loops_margin, absolute and relative to the largest so far: on random linkages it stays
 // above 0.02 or above 0.03 of the largest, and falls to 1e-5 to 3e-3 where the links come to lie on one line.
 static const double least_margin = 0.01, least_share = 0.1;
-static const double most_open = 0.01;             // of the size of a closed loop
-static const double most_uneven = BOUGH_PI / 180; // of the gap between two blades
+static const double most_open = 0.01;           // of the size of a closed loop
+static const double most_uneven = BOUGH_DEGREE; // of the gap between two blades
 // Cosine of the angle between axis and wind, 60°: beyond every yaw error of operation.
 static const double least_along = 0.5;
 // Steps of solvers in a macro step, and the work in such macro steps, steps times states, of which a hundred
@@ -81,7 +81,7 @@ static void check_air(bough_simulation *s) {
     for (int b = 0; b < s->scene->turbine.n_blade; b++) {
         bough_rotor_extremes x = bough_rotor_look(rotor, data, b);
         int body = s->scene->turbine.blade[b];
-        double angle = x.alpha * (180 / BOUGH_PI), missed = bough_aero_link_missed(s->aero, b);
+        double angle = x.alpha / BOUGH_DEGREE, missed = bough_aero_link_missed(s->aero, b);
         if (x.outside_table) validity_pass(v, BOUGH_LIMIT_ATTACK, body, time, angle);
         if (x.speed > most_mach * speed_of_sound) validity_pass(v, BOUGH_LIMIT_MACH, body, time, x.speed);
         if (missed > most_missed) validity_pass(v, BOUGH_LIMIT_SAMPLES, body, time, missed);
@@ -96,7 +96,7 @@ static void check_speed(bough_simulation *s) {
     double speed = bough_simulation_joint_point(s, rotor).v;
     double rated = control->law.rated_speed / control->gear_ratio;
     if (fabs(speed) <= most_over_rated * fabs(rated)) return;
-    validity_pass(s->validity, BOUGH_LIMIT_ROTOR_SPEED, rotor, s->master->time, speed * (30 / BOUGH_PI));
+    validity_pass(s->validity, BOUGH_LIMIT_ROTOR_SPEED, rotor, s->master->time, speed / BOUGH_RPM);
 }
 
 static double dot(bough_quaternion p, bough_quaternion q) {
@@ -144,7 +144,7 @@ static void check_turns(bough_simulation *s) {
             double turn = turn_of(m, p, k);
             if (turn <= most_turn) continue;
             validity_pass(s->validity, BOUGH_LIMIT_TURN, (int)(beam->body - s->scene->body), s->master->time,
-                          turn * (180 / BOUGH_PI));
+                          turn / BOUGH_DEGREE);
             break;
         }
     }
@@ -187,14 +187,14 @@ static void check_rotor(bough_simulation *s) {
     bough_rotor_place r = bough_simulation_rotor(s);
     double gap = narrowest_gap(s);
     if (gap < 2 * BOUGH_PI / n - most_uneven) {
-        validity_pass(s->validity, BOUGH_LIMIT_SPACING, body, 0, gap * (180 / BOUGH_PI));
+        validity_pass(s->validity, BOUGH_LIMIT_SPACING, body, 0, gap / BOUGH_DEGREE);
     }
     if (!s->aero) return;
     bough_vec3 wind = bough_aero_link_hub_wind(s->aero, 0);
     double speed = sqrt(bough_dot(wind, wind)), along = bough_dot(wind, r.axis);
     if (along >= least_along * speed) return;
     double angle = acos(fmax(-1, along / speed));
-    validity_pass(s->validity, BOUGH_LIMIT_ACROSS, body, 0, angle * (180 / BOUGH_PI));
+    validity_pass(s->validity, BOUGH_LIMIT_ACROSS, body, 0, angle / BOUGH_DEGREE);
 }
 
 // Rods in a row are one rod: only a single one is coarse.

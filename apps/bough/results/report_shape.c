@@ -18,8 +18,6 @@ typedef struct drawing {
     FILE *svg;
 } drawing;
 
-static const double pi = 3.14159265358979323846;
-
 static bough_vec3 row(const double *x, int i) { return bough_v3(x[3 * i], x[3 * i + 1], x[3 * i + 2]); }
 
 static bough_vec3 point(const drawing *d, int i) { return row(d->frame->point, i); }
@@ -44,7 +42,7 @@ static void include(drawing *d, bough_vec3 x) {
 
 // Seen from upwind and aside, 10 degrees from above.
 static void look(drawing *d) {
-    const double azimuth = 62 * pi / 180, height = 10 * pi / 180;
+    const double azimuth = 62 * BOUGH_DEGREE, height = 10 * BOUGH_DEGREE;
     bough_vec3 deep = bough_v3(cos(azimuth), sin(azimuth), 0);
     d->across = bough_v3(sin(azimuth), -cos(azimuth), 0);
     d->up = bough_add(bough_v3(0, 0, cos(height)), bough_scale(sin(height), deep));

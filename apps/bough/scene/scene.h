@@ -26,9 +26,6 @@
 #include <stdint.h>
 #include <stdio.h>
 
-#define BOUGH_DEGREE (BOUGH_PI / 180) // [rad]
-#define BOUGH_RPM (BOUGH_PI / 30)     // [rad/s]
-
 typedef struct bough_scene_coupling {
     const bough_node *node;
     int scheme;                   // place in the table of schemes: bough_scheme_name
