@@ -23,6 +23,9 @@
 // Doubles per SIMD lane group; arrays over vertices and segments are padded to a multiple of it.
 enum { BOUGH_LANES = 8 };
 
+// Doubles of a column of six that is padded to one vector (core/base/block_tridiagonal.h).
+enum { BOUGH_COLUMN = 8 };
+
 static inline int bough_padded(int n) { return (n + BOUGH_LANES - 1) / BOUGH_LANES * BOUGH_LANES; }
 
 // x − x is 0 where x is finite, else NaN; without a branch, for vector instructions.

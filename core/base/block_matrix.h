@@ -4,7 +4,7 @@
 
 #include "core/base/base.h"
 
-enum { W = 8 }; // padded column
+enum { W = BOUGH_COLUMN };
 
 // Entry i of Σ_k a_k b_k over the columns a_k, padding included.
 #define COLUMN_SUM(a, b, i)                                                                                  \

@@ -7,7 +7,6 @@
 #include <string.h>
 
 enum {
-    W8 = 8,
     BLOCK_SIZE = BOUGH_EIGEN_AT_ONCE, // starting vectors: multiplicities up to this are found
     SPARE = 15,                       // vectors beyond those wanted before the first look
     LOOKS = 10,                       // after the first, each with a quarter as many vectors more
@@ -211,13 +210,14 @@ bough_status bough_eigen_nearest(bough_arena *arena, const bough_eigen_operator 
 // y −= M x
 static void subtract_mass(const bough_eigen_problem *problem, const double *x, double *y) {
     for (int i = 0; i < problem->stiffness->n; i++) {
-        bough_block_subtract(problem->mass + (size_t)i * BOUGH_BLOCK, x + (size_t)W8 * i, y + (size_t)W8 * i);
+        bough_block_subtract(problem->mass + (size_t)i * BOUGH_BLOCK, x + (size_t)BOUGH_COLUMN * i,
+                             y + (size_t)BOUGH_COLUMN * i);
     }
 }
 
 // Vectors are (q, λq), 16 n long: (q, v) → (−K⁻¹(C q + M v), q), its eigenvalues are 1/λ.
 static void solve_one(const bough_eigen_problem *problem, const double *z, double *image) {
-    size_t half = (size_t)W8 * (size_t)problem->stiffness->n;
+    size_t half = (size_t)BOUGH_COLUMN * (size_t)problem->stiffness->n;
     memset(image, 0, half * sizeof *image);
     bough_block_tridiagonal_subtract(problem->damping, z, image);
     subtract_mass(problem, z + half, image);
@@ -227,13 +227,13 @@ static void solve_one(const bough_eigen_problem *problem, const double *z, doubl
 
 static void apply_inverse(void *self, int n, const double *z, double *image) {
     const bough_eigen_problem *problem = self;
-    size_t length = 2 * (size_t)W8 * (size_t)problem->stiffness->n;
+    size_t length = 2 * (size_t)BOUGH_COLUMN * (size_t)problem->stiffness->n;
     for (int k = 0; k < n; k++) solve_one(problem, z + (size_t)k * length, image + (size_t)k * length);
 }
 
 bough_status bough_eigen_smallest(bough_arena *arena, const bough_eigen_problem *problem, int wanted,
                                   bough_eigen_pair *pair, int *found) {
-    int half = W8 * problem->stiffness->n;
+    int half = BOUGH_COLUMN * problem->stiffness->n;
     bough_eigen_problem self = *problem;
     bough_eigen_operator op = {.name = problem->name,
                                .length = 2 * half,
@@ -249,9 +249,9 @@ bough_status bough_eigen_smallest(bough_arena *arena, const bough_eigen_problem 
                           problem->name);
     }
     for (int i = 0; i < half; i++) {
-        int c = i % W8;
-        const double *mass = problem->mass + (size_t)(i / W8) * BOUGH_BLOCK;
-        op.weight[i] = op.weight[half + i] = c < 6 ? fabs(mass[W8 * c + c]) : 0;
+        int c = i % BOUGH_COLUMN;
+        const double *mass = problem->mass + (size_t)(i / BOUGH_COLUMN) * BOUGH_BLOCK;
+        op.weight[i] = op.weight[half + i] = c < 6 ? fabs(mass[BOUGH_COLUMN * c + c]) : 0;
     }
     return find(arena, &op, wanted, pair, found);
 }

@@ -9,7 +9,7 @@
 
 #include <string.h>
 
-enum { W8 = 8, RIGID = 6 };
+enum { RIGID = 6 };
 
 static const double dependent =
     1e-6; // norm outside the span of earlier shapes, relative to the whole: below it, dependent
@@ -46,7 +46,7 @@ static bool linearise(basis *b) {
 // y += A x for the blocks of a row
 static void add_block(const double *block, const double *x, double *y) {
     for (int i = 0; i < 6; i++) {
-        for (int j = 0; j < 6; j++) y[i] += block[W8 * j + i] * x[j];
+        for (int j = 0; j < 6; j++) y[i] += block[BOUGH_COLUMN * j + i] * x[j];
     }
 }
 
@@ -114,7 +114,7 @@ static void put_whitened(const basis *b, const double *factor, const double *blo
                          double *dense) {
     double column[6][6];
     for (int c = 0; c < 6; c++) {
-        for (int r = 0; r < 6; r++) column[c][r] = block[W8 * c + r];
+        for (int r = 0; r < 6; r++) column[c][r] = block[BOUGH_COLUMN * c + r];
         forward(factor + 36 * i, column[c]);
     }
     for (int r = 0; r < 6; r++) {
@@ -129,7 +129,8 @@ static void put_whitened(const basis *b, const double *factor, const double *blo
 static bool factor_mass(const basis *b, double *factor) {
     for (int i = 0; i < b->rod->n; i++) {
         for (int k = 0; k < 36; k++) {
-            factor[36 * i + k] = b->tangent.blocks.mass[(size_t)i * BOUGH_BLOCK + W8 * (k / 6) + k % 6];
+            factor[36 * i + k] =
+                b->tangent.blocks.mass[(size_t)i * BOUGH_BLOCK + BOUGH_COLUMN * (k / 6) + k % 6];
         }
         if (!bough_cholesky_factor(6, factor + 36 * i)) return false;
     }
@@ -183,11 +184,11 @@ static bool solve(basis *b, double *work, double *x) {
     if (!b->factored && !bough_block_tridiagonal_factor(&b->stiffness)) return false;
     b->factored = true;
     for (int i = 0; i < b->rod->n; i++) {
-        memset(work + W8 * i, 0, W8 * sizeof *work);
-        memcpy(work + W8 * i, x + 6 * i, 6 * sizeof *work);
+        memset(work + BOUGH_COLUMN * i, 0, BOUGH_COLUMN * sizeof *work);
+        memcpy(work + BOUGH_COLUMN * i, x + 6 * i, 6 * sizeof *work);
     }
     bough_block_tridiagonal_solve(&b->stiffness, work);
-    for (int i = 0; i < b->rod->n; i++) memcpy(x + 6 * i, work + W8 * i, 6 * sizeof *work);
+    for (int i = 0; i < b->rod->n; i++) memcpy(x + 6 * i, work + BOUGH_COLUMN * i, 6 * sizeof *work);
     return true;
 }
 
@@ -195,7 +196,7 @@ static bool solve(basis *b, double *work, double *x) {
 static bool add_others(basis *b, bool statics, bool inner) {
     double *x = bough_arena_doubles(b->arena, (size_t)b->size);
     double *y = bough_arena_doubles(b->arena, (size_t)b->size);
-    double *work = bough_arena_doubles(b->arena, (size_t)W8 * b->rod->n);
+    double *work = bough_arena_doubles(b->arena, (size_t)BOUGH_COLUMN * b->rod->n);
     for (int k = 0; k < RIGID; k++) {
         rigid_motion(b->rod, k, x);
         add_vector(b, x);

@@ -18,12 +18,12 @@ static lanes lanes_from(const bough_rod_model *m, int v) {
 // stored, or added to what is there.
 BOUGH_INLINE void put_tile(const tile *t, lanes at, int column, bool added, double *blocks) {
     tile turned;
-    turn_tile(t->entry, LANES, turned.entry, W8);
+    turn_tile(t->entry, LANES, turned.entry, BOUGH_COLUMN);
     for (int lane = at.begin; lane < at.end; lane++) {
-        double *restrict to = blocks + BOUGH_BLOCK * (at.v - 1 + lane) + W8 * column;
-        const double *restrict from = turned.entry + W8 * lane;
+        double *restrict to = blocks + BOUGH_BLOCK * (at.v - 1 + lane) + BOUGH_COLUMN * column;
+        const double *restrict from = turned.entry + BOUGH_COLUMN * lane;
 #pragma omp simd
-        for (int i = 0; i < W8; i++) to[i] = added ? to[i] + from[i] : from[i];
+        for (int i = 0; i < BOUGH_COLUMN; i++) to[i] = added ? to[i] + from[i] : from[i];
     }
 }
 

@@ -3,8 +3,6 @@
 #include "core/base/eigen.h"
 #include "flexbody/rod/rod_tangent.h"
 
-enum { W8 = 8 };
-
 static const double rounding = 1e-11; // damping ratios below it are none
 
 static double square_of(const bough_eigen_pair *pair, int k) {
@@ -15,8 +13,8 @@ static void set_shares(const bough_rod_model *m, const bough_eigen_pair *pair, b
     double sum = 0;
     for (int i = 0; i < m->n; i++) {
         const bough_vertex_inertia *v = &m->vertex[i + 1];
-        for (int c = 0; c < 3; c++) mode->share[c] += v->mass * square_of(pair, W8 * i + c);
-        mode->share[BOUGH_ROD_TORSION] += v->inertia[2] * square_of(pair, W8 * i + 5);
+        for (int c = 0; c < 3; c++) mode->share[c] += v->mass * square_of(pair, BOUGH_COLUMN * i + c);
+        mode->share[BOUGH_ROD_TORSION] += v->inertia[2] * square_of(pair, BOUGH_COLUMN * i + 5);
     }
     for (int c = 0; c < BOUGH_ROD_DIRECTIONS; c++) sum += mode->share[c];
     for (int c = 0; c < BOUGH_ROD_DIRECTIONS; c++) {
@@ -31,7 +29,7 @@ static int reference_of(const bough_rod_model *m, const bough_eigen_pair *pair, 
     int at = torsion ? 5 : 0;
     for (int i = 0; i < m->n; i++) {
         for (int c = torsion ? 5 : 0; c < (torsion ? 6 : 3); c++) {
-            if (square_of(pair, W8 * i + c) > square_of(pair, at)) at = W8 * i + c;
+            if (square_of(pair, BOUGH_COLUMN * i + c) > square_of(pair, at)) at = BOUGH_COLUMN * i + c;
         }
     }
     return at;
@@ -46,7 +44,8 @@ static void set_shape(const bough_rod_model *m, const bough_eigen_pair *pair, co
     double sine = -pair->shape_imag[reference] / square;
     for (int i = 0; i < n; i++) {
         bough_mat3 r = bough_rod_rotation(state, n, i);
-        const double *a = pair->shape_real + (size_t)W8 * i, *b = pair->shape_imag + (size_t)W8 * i;
+        const double *a = pair->shape_real + (size_t)BOUGH_COLUMN * i,
+                     *b = pair->shape_imag + (size_t)BOUGH_COLUMN * i;
         double real[6], imaginary[6];
         for (int c = 0; c < 6; c++) {
             real[c] = cosine * a[c] - sine * b[c];

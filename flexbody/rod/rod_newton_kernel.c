@@ -53,14 +53,14 @@ typedef struct elimination {
 BOUGH_INLINE void form_column(const elimination *e, int v, int j, const double *position,
                               const double *velocity, const double *mass, double gamma,
                               double *restrict out) {
-    const double *restrict k = position + (j < 3 ? 0 : W8 * 3);
+    const double *restrict k = position + (j < 3 ? 0 : BOUGH_COLUMN * 3);
     double a[3];
     for (int i = 0; i < 3; i++) {
         a[i] = j < 3 ? e->shift[j][i] : e->square * e->turn[(3 * i + j - 3) * e->stride + v];
     }
 #pragma omp simd
-    for (int i = 0; i < W8; i++) {
-        double sum = k[i] * a[0] + k[W8 + i] * a[1] + k[2 * W8 + i] * a[2];
+    for (int i = 0; i < BOUGH_COLUMN; i++) {
+        double sum = k[i] * a[0] + k[BOUGH_COLUMN + i] * a[1] + k[2 * BOUGH_COLUMN + i] * a[2];
         out[i] = (mass == NULL ? 0 : mass[i]) - gamma * velocity[i] - sum;
     }
 }
@@ -68,8 +68,8 @@ BOUGH_INLINE void form_column(const elimination *e, int v, int j, const double *
 BOUGH_INLINE void form_block(const elimination *e, int v, const double *position, const double *velocity,
                              const double *mass, double gamma, double *out) {
     for (int j = 0; j < 6; j++) {
-        form_column(e, v, j, position, velocity + W8 * j, mass == NULL ? NULL : mass + W8 * j, gamma,
-                    out + W8 * j);
+        form_column(e, v, j, position, velocity + BOUGH_COLUMN * j,
+                    mass == NULL ? NULL : mass + BOUGH_COLUMN * j, gamma, out + BOUGH_COLUMN * j);
     }
 }
 
@@ -199,11 +199,13 @@ BOUGH_INLINE void velocity_residual(const bough_rod_model *m, const bough_rod_ta
 
 // The block solver's rows, one per vertex, from eight arrays over the vertices, and back.
 static void pack(int n, int s, const double *velocity, double *packed) {
-    for (int v = 1; v <= n; v += LANES) turn_tile(velocity + v, s, packed + W8 * (v - 1), W8);
+    for (int v = 1; v <= n; v += LANES)
+        turn_tile(velocity + v, s, packed + BOUGH_COLUMN * (v - 1), BOUGH_COLUMN);
 }
 
 static void unpack(int n, int s, const double *packed, double *velocity) {
-    for (int v = 1; v <= n; v += LANES) turn_tile(packed + W8 * (v - 1), W8, velocity + v, s);
+    for (int v = 1; v <= n; v += LANES)
+        turn_tile(packed + BOUGH_COLUMN * (v - 1), BOUGH_COLUMN, velocity + v, s);
 }
 
 // Velocities and the configuration that belongs to them back into the state's layout.

@@ -89,8 +89,6 @@ void bough_rod_move(const bough_rod_model *m, const double *change, double share
 
 // -- equilibria --------------------------------------------------------------------------------
 
-enum { W8 = 8 };
-
 static const double most_turn = 0.5; // of a vertex in one Newton step [rad]
 
 enum { BAND = 11, BAND_ROWS = 3 * BAND + 1 }; // of the stiffness, on either side of its diagonal
@@ -124,7 +122,7 @@ void bough_rod_static_init(bough_rod_static *work, bough_arena *arena, const bou
     bough_rod_tangent_init(&work->tangent, arena, m);
     bough_rod_loads_init(&work->scaled, arena, m);
     bough_arena_each(arena, states, &work->rate, &work->trial);
-    work->step = bough_arena_doubles(arena, (size_t)W8 * m->n);
+    work->step = bough_arena_doubles(arena, (size_t)BOUGH_COLUMN * m->n);
     work->force = bough_arena_doubles(arena, (size_t)6 * m->n);
     work->band = bough_arena_doubles(arena, (size_t)BAND_ROWS * 6 * m->n);
     work->pivot = bough_arena_take(arena, (size_t)6 * m->n * sizeof *work->pivot);
@@ -139,10 +137,10 @@ static double residual(const bough_rod_model *m, bough_rod_static *w, double ref
     const double *a = w->rate + (size_t)BOUGH_ROD_U * n;
     double largest = 0;
     for (int i = 0; i < n; i++) {
-        double *row = w->step + (size_t)W8 * i;
-        const double minus[W8] = {
+        double *row = w->step + (size_t)BOUGH_COLUMN * i;
+        const double minus[BOUGH_COLUMN] = {
             -a[i], -a[n + i], -a[2 * n + i], -a[3 * n + i], -a[4 * n + i], -a[5 * n + i], 0, 0};
-        memset(row, 0, W8 * sizeof *row);
+        memset(row, 0, BOUGH_COLUMN * sizeof *row);
         bough_block_subtract(w->tangent.blocks.mass + (size_t)i * BOUGH_BLOCK, minus, row);
         for (int c = 0; c < 6; c++) largest = fmax(largest, fabs(row[c]));
     }
@@ -162,7 +160,7 @@ static double magnitude(const bough_rod_model *m, const bough_rod_static *w) {
 }
 
 static bough_vec3 step_of(const double *step, int i, int from) {
-    const double *d = step + (size_t)W8 * i + from;
+    const double *d = step + (size_t)BOUGH_COLUMN * i + from;
     return bough_v3(d[0], d[1], d[2]);
 }
 
@@ -179,7 +177,7 @@ static double update(const bough_rod_model *m, const double *step, double *state
 static void put_in_band(const double *block, int i, int j, double *band) {
     for (int column = 0; column < 6; column++) {
         double *to = band + (size_t)BAND_ROWS * (6 * j + column) + 2 * BAND + 6 * (i - j) - column;
-        for (int row = 0; row < 6; row++) to[row] = block[W8 * column + row];
+        for (int row = 0; row < 6; row++) to[row] = block[BOUGH_COLUMN * column + row];
     }
 }
 
@@ -195,10 +193,10 @@ static bool newton_step(const bough_rod_model *m, bough_rod_static *w, const dou
         put_in_band(a->diagonal + at, i, i, w->band);
         if (i > 0) put_in_band(a->lower + at, i, i - 1, w->band);
         if (i < m->n - 1) put_in_band(a->upper + at, i, i + 1, w->band);
-        memcpy(w->force + 6 * i, w->step + W8 * i, 6 * sizeof(double));
+        memcpy(w->force + 6 * i, w->step + BOUGH_COLUMN * i, 6 * sizeof(double));
     }
     if (!bough_band_solve(6 * m->n, BAND, w->band, w->pivot, w->force)) return false;
-    for (int i = 0; i < m->n; i++) memcpy(w->step + W8 * i, w->force + 6 * i, 6 * sizeof(double));
+    for (int i = 0; i < m->n; i++) memcpy(w->step + BOUGH_COLUMN * i, w->force + 6 * i, 6 * sizeof(double));
     return true;
 }
 

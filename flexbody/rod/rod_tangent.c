@@ -21,7 +21,7 @@ void bough_rod_tangent_init(bough_rod_tangent *k, bough_arena *arena, const boug
     k->rate = bough_arena_doubles(arena, BOUGH_ROD_STATES * s);
     bough_arena_each(arena, TANGENTS, &k->root, &k->end);
     k->force = bough_arena_doubles(arena, FORCES * s);
-    k->packed = bough_arena_doubles(arena, (size_t)bough_padded(m->n) * W8);
+    k->packed = bough_arena_doubles(arena, (size_t)bough_padded(m->n) * BOUGH_COLUMN);
     bough_block_tridiagonal_init(&k->matrix, arena, m->n);
     blocks_init(&k->blocks, arena, m);
 }
@@ -56,7 +56,7 @@ void bough_rod_move_rigidly(const bough_rod_model *m, const double *input, doubl
 
 static void put_cross(bough_vec3 a, double *block, int at) {
     for (int j = 0; j < 3; j++) {
-        bough_v3_store(bough_cross(a, bough_unit3(j)), block + (size_t)W8 * (at + j) + at);
+        bough_v3_store(bough_cross(a, bough_unit3(j)), block + (size_t)BOUGH_COLUMN * (at + j) + at);
     }
 }
 

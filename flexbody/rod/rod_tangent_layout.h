@@ -9,7 +9,6 @@ enum {
     DIRECTIONS = 9, // Δx, φ left, φ right; then Δu, W left, W right
     TANGENTS = FORCES * DIRECTIONS,
     LANES = BOUGH_LANES,
-    W8 = 8,
 };
 
 // Rows of `vertex`: what elimination and solution need of each vertex.
@@ -28,7 +27,7 @@ enum {
     WORK_Q = 0,        // eliminated configuration residual A r_q
     WORK_SCALAR = 6,   // of the quaternion residual
     WORK_VELOCITY = 7, // residual, then increments of the velocities
-    WORK = WORK_VELOCITY + W8,
+    WORK = WORK_VELOCITY + BOUGH_COLUMN,
 };
 
 enum { DELTA = 0, LEFT = 3, RIGHT = 6, F = 0, LL = 3, LR = 6 }; // directions; forces
