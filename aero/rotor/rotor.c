@@ -151,9 +151,7 @@ bough_rotor_extremes bough_rotor_look(const bough_rotor *rotor, const bough_roto
     return x;
 }
 
-void bough_rotor_set_speed(const bough_rotor *rotor, double speed) {
-    ((bough_rotor *)rotor)->wind.def.speed = speed; // the one thing that changes in it
-}
+void bough_rotor_set_speed(bough_rotor *rotor, double speed) { rotor->wind.def.speed = speed; }
 
 const bough_wind *bough_rotor_wind(const bough_rotor *rotor) { return &rotor->wind; }
 

@@ -99,7 +99,7 @@ typedef struct bough_station {
     double force_x, force_y;         // line force [N/m]
 } bough_station;
 
-typedef struct bough_rotor bough_rotor; // the constant model
+typedef struct bough_rotor bough_rotor; // the model: constant, but for bough_rotor_set_speed
 
 // What dynamic inflow and stall remember of the samples before; nothing without them.
 typedef struct bough_rotor_memory {
@@ -129,7 +129,7 @@ typedef struct bough_rotor_data {
 
 // Builds the model; the def and all it points to may be released afterwards. BOUGH_INVALID for a
 // station off the blade and for wind that cannot be read or made.
-bough_status bough_rotor_build(bough_arena *arena, const bough_rotor_def *def, const bough_rotor **rotor);
+bough_status bough_rotor_build(bough_arena *arena, const bough_rotor_def *def, bough_rotor **rotor);
 
 // Takes the memory of a data struct; its loads are zero. The only other allocation.
 void bough_rotor_data_build(bough_arena *arena, const bough_rotor *rotor, bough_rotor_data *data);
@@ -193,6 +193,6 @@ bough_vec3 bough_rotor_hub_drag(const bough_rotor *rotor, double area, bough_vec
 const bough_wind *bough_rotor_wind(const bough_rotor *rotor);
 
 // Changes the speed of a wind by a formula [m/s]; the next sample meets it.
-void bough_rotor_set_speed(const bough_rotor *rotor, double speed);
+void bough_rotor_set_speed(bough_rotor *rotor, double speed);
 
 #endif

@@ -168,7 +168,7 @@ static const bough_polar *build_polars(bough_arena *arena, const bough_rotor_def
     return polar;
 }
 
-bough_status bough_rotor_build(bough_arena *arena, const bough_rotor_def *def, const bough_rotor **result) {
+bough_status bough_rotor_build(bough_arena *arena, const bough_rotor_def *def, bough_rotor **result) {
     *result = NULL;
     BOUGH_TRY(check_spans(def));
     size_t n_station = (size_t)def->n_station, n_vertex = (size_t)def->n_vertex;

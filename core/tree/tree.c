@@ -65,11 +65,12 @@ void bough_tree_steer(bough_tree *tree, int body, double t, double span, bough_m
 }
 
 void bough_tree_steer_load(bough_tree *tree, int load, double t, double span, double from, double to) {
-    bough_joint_load_def *l = &tree->loads[load];
     // a line between two rows
-    double *times = (double *)l->schedule.times, *values = (double *)l->schedule.values;
+    double *times = tree->steered + 4 * (size_t)load, *values = times + 2;
     times[0] = t;
     times[1] = t + span;
     values[0] = from;
     values[1] = to;
+    tree->loads[load].value = 1;
+    tree->loads[load].schedule = (bough_schedule){.n = 2, .times = times, .values = values};
 }

@@ -177,6 +177,7 @@ typedef struct bough_tree {
     bough_frame *markers;        // (n_markers), as in the def
     bough_frame *ports;          // (n_ports), as in the def, the marker's placement
     bough_joint_load_def *loads; // (n_loads), body replaced by the link's index
+    double *steered;             // (n_loads × 4) two times, two values: tables of steered loads
     int n_springs;
     bough_spring_def *springs; // (n_springs), as in the def
     int n_closures, n_rows;    // n_rows: equations of all closures
@@ -218,7 +219,7 @@ void bough_tree_prescribe(const bough_tree *tree, double t, double *state);
 void bough_tree_steer(bough_tree *tree, int body, double t, double span, bough_motion_point from,
                       bough_motion_point to);
 
-// Makes a load linear from one value to another in [t, t + span]. Writes into its table, of two rows.
+// Makes a load linear from one value to another in [t, t + span].
 void bough_tree_steer_load(bough_tree *tree, int load, double t, double span, double from, double to);
 
 // The external wrench on the tree at a marker from now on: value + τ (rate + τ curve), τ = t − start,

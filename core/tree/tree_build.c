@@ -179,6 +179,7 @@ static void copy_forces(bough_arena *arena, const bough_tree_def *def, bough_tre
     tree->n_bushings = def->n_bushings;
     tree->n_applied = def->n_applied;
     tree->loads = bough_arena_copy(arena, def->loads, (size_t)def->n_loads * sizeof *def->loads);
+    tree->steered = bough_arena_doubles(arena, 4 * (size_t)def->n_loads);
     tree->springs = bough_arena_copy(arena, def->springs, (size_t)def->n_springs * sizeof *def->springs);
     tree->bushings = bough_arena_copy(arena, def->bushings, (size_t)def->n_bushings * sizeof *def->bushings);
     tree->applied = bough_arena_copy(arena, def->applied, (size_t)def->n_applied * sizeof *def->applied);

@@ -16,7 +16,7 @@ enum { VERTICES = 25, BLADES = 3, STATIONS = 19 };
 typedef struct rig {
     bough_arena *arena;
     bough_rotor_def def;
-    const bough_rotor *rotor;
+    bough_rotor *rotor;
     bough_rotor_data data;
     bough_rotor_motion motion;
     double tilt, cone, overhang; // cone: blade tips upwind [rad], [m]

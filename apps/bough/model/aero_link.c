@@ -8,7 +8,7 @@
 
 struct bough_aero_link {
     bough_simulation *simulation;
-    const bough_rotor *rotor;
+    bough_rotor *rotor;
     int n_blade, n_vertex;
     const bough_beam **beam;    // (n_blade)
     bough_aero_signal **signal; // (n_blade)

@@ -25,12 +25,9 @@ static void add_events(bough_builder *b, double start, double end, int n, const 
     for (int i = 0; i < n; i++) add_event(b, times[i]);
 }
 
-// The last of the loads; its two rows are set sample by sample.
+// The last of the loads; 0 until it is steered, sample by sample.
 static void add_generator(bough_builder *b) {
-    double *times = bough_arena_doubles(b->arena, 2), *values = bough_arena_doubles(b->arena, 2);
-    times[1] = 1;
-    b->load[b->tree.n_loads++] =
-        (bough_joint_load_def){b->scene->turbine.rotor, 1, {.n = 2, .times = times, .values = values}};
+    b->load[b->tree.n_loads++] = (bough_joint_load_def){.body = b->scene->turbine.rotor};
 }
 
 static void set_loads(bough_builder *b) {
