@@ -15,7 +15,7 @@ enum { REST_STEPS = 4 };
 
 typedef struct work {
     bough_simulation *simulation;
-    bough_whole *coupled;
+    bough_whole *whole;
     double time;
     bool dynamic;
     int n_memory, n_air;
@@ -26,7 +26,7 @@ typedef struct work {
 } work;
 
 static void take(bough_arena *arena, work *w) {
-    size_t n = (size_t)w->coupled->assembly->n_state, m = (size_t)w->n_memory + 1;
+    size_t n = (size_t)w->whole->assembly->n_state, m = (size_t)w->n_memory + 1;
     w->row = bough_arena_take(arena, m * sizeof *w->row);
     bough_arena_each(arena, m, &w->memory, &w->before, &w->after, &w->air_rate[0], &w->air_rate[1]);
     bough_arena_each(arena, n, &w->state, &w->rate[0], &w->rate[1]);
@@ -44,7 +44,7 @@ static void advance_air(work *w, double step, double *from, double *to) {
 // w->before. The first of two short steps makes the air's inputs those of this state.
 static bough_status find_rates(work *w, const double *state, double *rate, double *air_rate) {
     bough_simulation *s = w->simulation;
-    bough_equilibrium_set_state(s, w->coupled->assembly, w->state);
+    bough_equilibrium_set_state(s, w->whole->assembly, w->state);
     if (w->dynamic) {
         advance_air(w, rate_time, w->before, w->after);
         memcpy(w->before, w->after, (size_t)w->n_memory * sizeof *w->before);
@@ -55,13 +55,13 @@ static bough_status find_rates(work *w, const double *state, double *rate, doubl
     } else {
         bough_aero_link_hold(s->aero, w->time);
     }
-    return bough_whole_rate(w->coupled, w->time, state, rate);
+    return bough_whole_rate(w->whole, w->time, state, rate);
 }
 
 // Brings the air to rest about `state`; what it remembers then, to w->memory.
 static void settle(work *w, const double *state) {
     bough_simulation *s = w->simulation;
-    bough_equilibrium_set_state(s, w->coupled->assembly, state);
+    bough_equilibrium_set_state(s, w->whole->assembly, state);
     bough_aero_link_hold(s->aero, w->time);
     if (!w->dynamic) return;
     bough_aero_link_continue(s->aero, w->time);
@@ -74,7 +74,7 @@ static void settle(work *w, const double *state) {
 
 // Both sides of a difference are in the work: their slopes, of the bodies' rates and of the air's.
 static void set_column(const work *w, double between, double *column, double *air_column) {
-    int n = w->coupled->assembly->n_state;
+    int n = w->whole->assembly->n_state;
     for (int k = 0; k < n; k++) column[k] = (w->rate[1][k] - w->rate[0][k]) / between;
     for (int k = 0; k < w->n_air; k++) {
         air_column[k] = (w->air_rate[1][k] - w->air_rate[0][k]) / between;
@@ -83,7 +83,7 @@ static void set_column(const work *w, double between, double *column, double *ai
 
 // The state and the air at rest about it, to be changed.
 static void begin_change(work *w, const double *state) {
-    memcpy(w->state, state, (size_t)w->coupled->assembly->n_state * sizeof *state);
+    memcpy(w->state, state, (size_t)w->whole->assembly->n_state * sizeof *state);
     memcpy(w->before, w->memory, (size_t)w->n_memory * sizeof *w->before);
 }
 
@@ -98,7 +98,7 @@ static bool meets_air(const bough_simulation *s, int member) {
 // To one side: there are thousands of states, and the curvature of the loads within the difference is 1e-5 of
 // their slope.
 static bough_status follow_motion(work *w, const double *state, bough_air_tangent *t) {
-    const bough_assembly *a = w->coupled->assembly;
+    const bough_assembly *a = w->whole->assembly;
     for (int i = 0; i < a->n_member; i++) {
         if (!meets_air(w->simulation, i)) continue;
         for (int k = 0; k < a->member[i]->system.n_state; k++) {
@@ -114,7 +114,7 @@ static bough_status follow_motion(work *w, const double *state, bough_air_tangen
 }
 
 static bough_status follow_memory(work *w, const double *state, bough_air_tangent *t) {
-    size_t n = (size_t)w->coupled->assembly->n_state;
+    size_t n = (size_t)w->whole->assembly->n_state;
     for (int k = 0; k < w->n_air; k++) {
         begin_change(w, state);
         w->before[w->row[k]] += air_difference;
@@ -126,7 +126,7 @@ static bough_status follow_memory(work *w, const double *state, bough_air_tangen
 
 static bough_status follow_inputs(work *w, const double *state, const bough_air_inputs *inputs,
                                   bough_air_tangent *t) {
-    size_t n = (size_t)w->coupled->assembly->n_state;
+    size_t n = (size_t)w->whole->assembly->n_state;
     for (int k = 0; k < inputs->n; k++) {
         for (int side = 0; side < 2; side++) {
             begin_change(w, state);
@@ -140,21 +140,20 @@ static bough_status follow_inputs(work *w, const double *state, const bough_air_
     return bough_ok();
 }
 
-static work start(bough_arena *arena, bough_simulation *s, bough_whole *coupled, double time, bool dynamic) {
+static work start(bough_arena *arena, bough_simulation *s, bough_whole *whole, double time, bool dynamic) {
     const bough_rotor *rotor = bough_aero_link_rotor(s->aero);
     int n_memory = dynamic ? bough_rotor_memory_size(rotor) : 0;
-    work w = {
-        .simulation = s, .coupled = coupled, .time = time, .n_memory = n_memory, .dynamic = n_memory > 0};
+    work w = {.simulation = s, .whole = whole, .time = time, .n_memory = n_memory, .dynamic = n_memory > 0};
     take(arena, &w);
     if (w.dynamic) w.n_air = bough_rotor_memory_states(rotor, w.row);
     return w;
 }
 
-bough_status bough_air_tangent_find(bough_arena *arena, bough_simulation *s, bough_whole *coupled,
-                                    double time, const double *state, bool dynamic,
-                                    const bough_air_inputs *inputs, bough_air_tangent *t) {
-    work w = start(arena, s, coupled, time, dynamic);
-    size_t n = (size_t)coupled->assembly->n_state, m = (size_t)w.n_air;
+bough_status bough_air_tangent_find(bough_arena *arena, bough_simulation *s, bough_whole *whole, double time,
+                                    const double *state, bool dynamic, const bough_air_inputs *inputs,
+                                    bough_air_tangent *t) {
+    work w = start(arena, s, whole, time, dynamic);
+    size_t n = (size_t)whole->assembly->n_state, m = (size_t)w.n_air;
     size_t n_input = inputs ? (size_t)inputs->n : 0;
     *t = (bough_air_tangent){.n = (int)n,
                              .n_air = w.n_air,
@@ -182,10 +181,10 @@ struct bough_air_change {
     const double *about;
 };
 
-bough_air_change *bough_air_change_create(bough_arena *arena, bough_simulation *s, bough_whole *coupled,
+bough_air_change *bough_air_change_create(bough_arena *arena, bough_simulation *s, bough_whole *whole,
                                           double time, const double *state, bool dynamic, int *n_air) {
     bough_air_change *x = bough_arena_take(arena, sizeof *x);
-    *x = (bough_air_change){start(arena, s, coupled, time, dynamic), state};
+    *x = (bough_air_change){start(arena, s, whole, time, dynamic), state};
     settle(&x->w, state);
     *n_air = x->w.n_air;
     return x;
@@ -193,7 +192,7 @@ bough_air_change *bough_air_change_create(bough_arena *arena, bough_simulation *
 
 bough_status bough_air_change_follow(bough_air_change *x, double size, const double *change, double *image) {
     work *w = &x->w;
-    int n = w->coupled->assembly->n_state;
+    int n = w->whole->assembly->n_state;
     for (int side = 0; side < 2; side++) {
         double factor = (2 * side - 1) * size;
         for (int k = 0; k < n; k++) w->state[k] = x->about[k] + factor * change[k];

@@ -29,15 +29,15 @@ typedef struct bough_air_inputs {
 
 // About `state` (n) at `time`; `dynamic`: with the memory that the scene's inflow and stall have; inputs
 // NULL: none. The simulation is left in that state.
-bough_status bough_air_tangent_find(bough_arena *arena, bough_simulation *s, bough_whole *coupled,
-                                    double time, const double *state, bool dynamic,
-                                    const bough_air_inputs *inputs, bough_air_tangent *tangent);
+bough_status bough_air_tangent_find(bough_arena *arena, bough_simulation *s, bough_whole *whole, double time,
+                                    const double *state, bool dynamic, const bough_air_inputs *inputs,
+                                    bough_air_tangent *tangent);
 
 // The same for one change of bodies and air at once: the products that the matrices have with it.
 typedef struct bough_air_change bough_air_change;
 
 // Brings the air to rest about `state` (n), which is borrowed; *n_air: its states.
-bough_air_change *bough_air_change_create(bough_arena *arena, bough_simulation *s, bough_whole *coupled,
+bough_air_change *bough_air_change_create(bough_arena *arena, bough_simulation *s, bough_whole *whole,
                                           double time, const double *state, bool dynamic, int *n_air);
 
 // A y + R m and G y + H m into image (n + n_air), of change = y, m (n + n_air), by differences of `size`

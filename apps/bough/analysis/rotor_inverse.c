@@ -20,21 +20,21 @@ struct bough_rotor_inverse {
     double gamma;
     double *harmonic; // (n_part × n_part) orthonormal: row p of blade k's share; 1, then cos and sin
     // all column-major
-    double *blade;         // P of one blade by itself (r × r)
-    double **same, **turn; // D (r × r) of each harmonic: on itself; of the sine on the cosine, NULL: none
-    double *from, *to;     // V (n_other × n_part r), W K⁻¹ (n_part r × n_other)
-    double *others;        // P_oo K⁻¹ (n_other × n_other)
+    double *blade;          // P of one blade by itself (r × r)
+    double **same, **cross; // D (r × r) of each harmonic: on itself; of the sine on the cosine, NULL: none
+    double *from, *to;      // V (n_other × n_part r), W K⁻¹ (n_part r × n_other)
+    double *others;         // P_oo K⁻¹ (n_other × n_other)
     // scratch of MOST vectors: harmonics of arguments, of images, of the part that couples cosine and sine;
     // g of apply, and P_oo g
-    double *argument, *image, *turned, *force, *moved;
+    double *argument, *image, *crossed, *force, *moved;
 };
 
 // A matrix of the air in blocks: rows and columns of the blades by harmonics, and of the others.
 typedef struct blocks {
-    double *between;       // γ (S − A), others × n_part r
-    double *onto;          // n_part r × others
-    double *among;         // others × others, with what holds free joints
-    double **same, **turn; // one blade's, of each harmonic (r × r): on itself, of the sine on the cosine
+    double *between;        // γ (S − A), others × n_part r
+    double *onto;           // n_part r × others
+    double *among;          // others × others, with what holds free joints
+    double **same, **cross; // one blade's, of each harmonic (r × r): on itself, of the sine on the cosine
 } blocks;
 
 static size_t square(int n) { return (size_t)n * (size_t)n; }
@@ -87,7 +87,7 @@ static void from_harmonics(const bough_rotor_inverse *x, int columns, const doub
 
 // hat (n_part × columns × r) ← D of it, or Dᵀ.
 static void apply_blades(const bough_rotor_inverse *x, bool transposed, int columns, const double *argument,
-                         double *turned, double *image) {
+                         double *crossed, double *image) {
     size_t size = (size_t)columns * (size_t)x->r;
     for (int m = 0; m < n_harmonic(x); m++) {
         int parts = parts_of(x, m);
@@ -96,11 +96,11 @@ static void apply_blades(const bough_rotor_inverse *x, bool transposed, int colu
         bough_product p = {x->r, parts * columns, x->r, transposed, 1, 0};
         bough_dense_product(p, x->same[m], a, to);
         if (parts == 1) continue;
-        bough_dense_product(p, x->turn[m], a, turned);
+        bough_dense_product(p, x->cross[m], a, crossed);
         double sign = transposed ? -1 : 1;
         for (size_t i = 0; i < size; i++) {
-            to[i] += sign * turned[size + i];
-            to[size + i] -= sign * turned[i];
+            to[i] += sign * crossed[size + i];
+            to[size + i] -= sign * crossed[i];
         }
     }
 }
@@ -154,7 +154,7 @@ static void set_borders(const bough_rotor_inverse *x, double *work, double *colu
 }
 
 // Columns of blade after blade (rows × n_part r) → harmonics.
-static void turn_columns(bough_arena *arena, const bough_rotor_inverse *x, int rows, double *matrix) {
+static void columns_to_harmonics(bough_arena *arena, const bough_rotor_inverse *x, int rows, double *matrix) {
     size_t block = (size_t)rows * (size_t)x->r;
     double *copy = bough_arena_copy(arena, matrix, (size_t)x->n_part * block * sizeof *copy);
     memset(matrix, 0, (size_t)x->n_part * block * sizeof *matrix);
@@ -171,7 +171,7 @@ static void turn_columns(bough_arena *arena, const bough_rotor_inverse *x, int r
 
 // Of one harmonic: Σ_d (block of blades 0, d) cos and sin of m times their angle.
 static void sum_harmonic(const bough_rotor_inverse *x, int m, const double *rate, double *same,
-                         double *turn) {
+                         double *cross) {
     const bough_modes_def *def = x->system->def;
     const double *a = x->system->air->motion;
     size_t n = (size_t)x->n, r = (size_t)x->r;
@@ -181,10 +181,10 @@ static void sum_harmonic(const bough_rotor_inverse *x, int m, const double *rate
             const double *from = a + (size_t)def->row[(size_t)d * r + j] * n + def->row[0];
             for (size_t i = 0; i < r; i++) {
                 same[j * r + i] -= c * from[i];
-                if (turn) turn[j * r + i] -= s * from[i];
+                if (cross) cross[j * r + i] -= s * from[i];
             }
             same[j * r + j] += c * rate[d];
-            if (turn) turn[j * r + j] += s * rate[d];
+            if (cross) cross[j * r + j] += s * rate[d];
         }
     }
 }
@@ -194,8 +194,8 @@ static void sum_harmonics(bough_arena *arena, const bough_rotor_inverse *x, bloc
     if (x->system->def->spin != 0) bough_modes_rate(x->system->def, rate);
     for (int m = 0; m < n_harmonic(x); m++) {
         b->same[m] = bough_arena_doubles(arena, square(x->r));
-        if (parts_of(x, m) == 2) b->turn[m] = bough_arena_doubles(arena, square(x->r));
-        sum_harmonic(x, m, rate, b->same[m], b->turn[m]);
+        if (parts_of(x, m) == 2) b->cross[m] = bough_arena_doubles(arena, square(x->r));
+        sum_harmonic(x, m, rate, b->same[m], b->cross[m]);
     }
 }
 
@@ -209,7 +209,7 @@ static void sum_others(bough_arena *arena, const bough_rotor_inverse *x, double 
         for (size_t i = 0; i < n_other; i++)
             b->between[j * n_other + i] = -x->gamma * a[(size_t)row[j] * n + (size_t)x->other[i]];
     }
-    turn_columns(arena, x, x->n_other, b->between);
+    columns_to_harmonics(arena, x, x->n_other, b->between);
     for (size_t j = 0; j < n_other; j++) {
         for (size_t i = 0; i < n; i++) column[j * n + i] = -x->gamma * a[(size_t)x->other[j] * n + i];
         for (size_t i = 0; i < n_other; i++) b->among[j * n_other + i] = column[j * n + (size_t)x->other[i]];
@@ -239,17 +239,17 @@ static void multiply_blade(bough_arena *arena, const bough_rotor_inverse *x, con
 }
 
 // Columns with `parts` times r rows, from those of part after part, or to them.
-static void join(size_t r, size_t parts, size_t columns, const double *apart, double *joined) {
+static void join(size_t r, size_t parts, size_t columns, const double *separate, double *joined) {
     for (size_t p = 0; p < parts; p++) {
         for (size_t j = 0; j < columns; j++)
-            memcpy(joined + (j * parts + p) * r, apart + (p * columns + j) * r, r * sizeof *joined);
+            memcpy(joined + (j * parts + p) * r, separate + (p * columns + j) * r, r * sizeof *joined);
     }
 }
 
-static void part(size_t r, size_t parts, size_t columns, const double *joined, double *apart) {
+static void split(size_t r, size_t parts, size_t columns, const double *joined, double *separate) {
     for (size_t p = 0; p < parts; p++) {
         for (size_t j = 0; j < columns; j++)
-            memcpy(apart + (p * columns + j) * r, joined + (j * parts + p) * r, r * sizeof *apart);
+            memcpy(separate + (p * columns + j) * r, joined + (j * parts + p) * r, r * sizeof *separate);
     }
 }
 
@@ -257,12 +257,12 @@ static void part(size_t r, size_t parts, size_t columns, const double *joined, d
 static double *blade_matrix(bough_arena *arena, const bough_rotor_inverse *x, int m, const blocks *b) {
     size_t r = (size_t)x->r, parts = (size_t)parts_of(x, m), q = parts * r;
     double *t = bough_arena_doubles(arena, q * q), *product = bough_arena_doubles(arena, r * r);
-    for (size_t turn = 0; turn < parts; turn++) {
-        multiply_blade(arena, x, turn ? b->turn[m] : b->same[m], product);
+    for (size_t cross = 0; cross < parts; cross++) {
+        multiply_blade(arena, x, cross ? b->cross[m] : b->same[m], product);
         for (size_t p = 0; p < parts; p++) {
             // rows of the cosine and columns of the sine, or with the other sign the other way round
-            size_t other = turn ? 1 - p : p;
-            double sign = turn && p == 1 ? -1 : 1;
+            size_t other = cross ? 1 - p : p;
+            double sign = cross && p == 1 ? -1 : 1;
             for (size_t j = 0; j < r; j++) {
                 for (size_t i = 0; i < r; i++) t[(other * r + j) * q + p * r + i] = sign * product[j * r + i];
             }
@@ -285,10 +285,10 @@ static bool factor_blades(bough_arena *arena, bough_rotor_inverse *x, const bloc
         join(r, parts, n_other, border, right + r * q);
         bool regular = bough_dense_factor((int)q, t, pivot);
         if (regular) bough_dense_solve((int)q, (int)(r + n_other), t, pivot, right);
-        part(r, parts, n_other, right + r * q, border);
+        split(r, parts, n_other, right + r * q, border);
         for (size_t j = 0; j < r; j++) {
             memcpy(x->same[m] + j * r, right + j * q, r * sizeof *right);
-            for (size_t i = 0; i < r && parts == 2; i++) x->turn[m][j * r + i] = -right[j * q + r + i];
+            for (size_t i = 0; i < r && parts == 2; i++) x->cross[m][j * r + i] = -right[j * q + r + i];
         }
         bough_arena_destroy(own);
         if (!regular) return false;
@@ -300,7 +300,7 @@ static bool factor_blades(bough_arena *arena, bough_rotor_inverse *x, const bloc
 
 // c += factor a N, a and c (n_other × n_part r) and N in blocks of the harmonics.
 static void multiply_right(const bough_rotor_inverse *x, double factor, const double *a, double *const *same,
-                           double *const *turn, double *c) {
+                           double *const *cross, double *c) {
     size_t block = (size_t)x->n_other * (size_t)x->r;
     for (int m = 0; m < n_harmonic(x); m++) {
         int parts = parts_of(x, m);
@@ -311,7 +311,7 @@ static void multiply_right(const bough_rotor_inverse *x, double factor, const do
             bough_dense_product(direct, from + (size_t)p * block, same[m], to + (size_t)p * block);
             if (parts == 1) continue;
             across.factor = p == 1 ? factor : -factor;
-            bough_dense_product(across, from + (size_t)(1 - p) * block, turn[m], to + (size_t)p * block);
+            bough_dense_product(across, from + (size_t)(1 - p) * block, cross[m], to + (size_t)p * block);
         }
     }
 }
@@ -336,12 +336,12 @@ static void divide(bough_arena *arena, int rows, int n, const double *factor, co
 // W = T⁻¹ P_bo − D γ(S − A)_bo P_oo
 static void set_response(bough_arena *arena, bough_rotor_inverse *x, const blocks *b) {
     size_t block = (size_t)x->n_other * (size_t)x->r, all = block * (size_t)x->n_part;
-    double *force, *turned, *response;
-    bough_arena_each(arena, all + 1, &force, &turned, &response);
+    double *force, *crossed, *response;
+    bough_arena_each(arena, all + 1, &force, &crossed, &response);
     for (int p = 0; p < x->n_part; p++)
         bough_dense_product((bough_product){x->r, x->n_other, x->n_other, false, 1, 0},
                             b->onto + (size_t)p * block, x->others, force + (size_t)p * block);
-    apply_blades(x, false, x->n_other, force, turned, response);
+    apply_blades(x, false, x->n_other, force, crossed, response);
     for (size_t i = 0; i < all; i++) x->to[i] -= response[i];
 }
 
@@ -352,14 +352,14 @@ static bool close_border(bough_arena *arena, bough_rotor_inverse *x, const block
     int n = x->n_other, *pivot = bough_arena_take(arena, (n_other + 1) * sizeof *pivot);
     double *k = bough_arena_doubles(arena, square(n) + 1), *rest = b->between;
     bough_product by_blade = {n, n, x->r, false, 1, 1};
-    multiply_right(x, 1, x->from, b->same, b->turn, rest);
+    multiply_right(x, 1, x->from, b->same, b->cross, rest);
     for (int p = 0; p < x->n_part; p++)
         bough_dense_product(by_blade, x->from + (size_t)p * block, b->onto + (size_t)p * block, b->among);
     bough_dense_product((bough_product){n, n, n, false, 1, 0}, b->among, x->others, k);
     for (int p = 0; p < x->n_part; p++)
         bough_dense_product(by_blade, rest + (size_t)p * block, x->to + (size_t)p * block, k);
     for (size_t i = 0; i < n_other; i++) k[i * n_other + i] += 1;
-    multiply_right(x, -1, rest, x->same, x->turn, x->from);
+    multiply_right(x, -1, rest, x->same, x->cross, x->from);
     double *factor = transpose(arena, n, n, k);
     if (!bough_dense_factor(n, factor, pivot)) return false;
     for (int p = 0; p < x->n_part; p++) divide(arena, x->r, n, factor, pivot, x->to + (size_t)p * block);
@@ -378,7 +378,7 @@ static bool set_others(bough_arena *arena, bough_rotor_inverse *x, const double 
     double *factor = bough_arena_copy(arena, x->others, square(x->n_other) * sizeof *factor);
     if (!bough_dense_factor(x->n_other, factor, pivot)) return false;
     bough_dense_solve(x->n_other, x->n_part * x->r, factor, pivot, x->from);
-    turn_columns(arena, x, x->n_other, x->from);
+    columns_to_harmonics(arena, x, x->n_other, x->from);
     return true;
 }
 
@@ -389,7 +389,7 @@ static bool set(bough_arena *arena, bough_rotor_inverse *x, double going_back) {
     bough_arena_each(arena, all * n_other + 1, &b.between, &b.onto);
     b.among = bough_arena_doubles(arena, square(x->n_other) + 1);
     b.same = bough_arena_take(arena, (size_t)n_harmonic(x) * sizeof *b.same);
-    b.turn = bough_arena_take(arena, (size_t)n_harmonic(x) * sizeof *b.turn);
+    b.cross = bough_arena_take(arena, (size_t)n_harmonic(x) * sizeof *b.cross);
     double *work = bough_arena_doubles(arena, n);
     set_blade(x, work);
     set_borders(x, work, columns, x->from);
@@ -450,14 +450,14 @@ static void take(bough_arena *arena, bough_rotor_inverse *x) {
     x->harmonic = bough_arena_doubles(arena, square(x->n_part));
     x->blade = bough_arena_doubles(arena, r * r);
     x->same = bough_arena_take(arena, (size_t)n_harmonic(x) * sizeof *x->same);
-    x->turn = bough_arena_take(arena, (size_t)n_harmonic(x) * sizeof *x->turn);
+    x->cross = bough_arena_take(arena, (size_t)n_harmonic(x) * sizeof *x->cross);
     for (int m = 0; m < n_harmonic(x); m++) {
         x->same[m] = bough_arena_doubles(arena, r * r);
-        if (parts_of(x, m) == 2) x->turn[m] = bough_arena_doubles(arena, r * r);
+        if (parts_of(x, m) == 2) x->cross[m] = bough_arena_doubles(arena, r * r);
     }
     bough_arena_each(arena, all * n_other + 1, &x->from, &x->to);
     x->others = bough_arena_doubles(arena, square(x->n_other) + 1);
-    bough_arena_each(arena, all * MOST, &x->argument, &x->image, &x->turned);
+    bough_arena_each(arena, all * MOST, &x->argument, &x->image, &x->crossed);
     bough_arena_each(arena, n_other * MOST + 1, &x->force, &x->moved);
 }
 
@@ -521,7 +521,7 @@ static void apply(const bough_rotor_inverse *x, bool transposed, int n, const do
     for (int p = 0; p < x->n_part; p++)
         bough_dense_product((bough_product){x->n_other, n, x->r, transposed, 1, 1}, in + (size_t)p * block,
                             x->argument + (size_t)p * size, x->force);
-    apply_blades(x, transposed, n, x->argument, x->turned, x->image);
+    apply_blades(x, transposed, n, x->argument, x->crossed, x->image);
     for (int p = 0; p < x->n_part; p++)
         bough_dense_product((bough_product){x->r, n, x->n_other, transposed, 1, 1}, out + (size_t)p * block,
                             x->force, x->image + (size_t)p * size);

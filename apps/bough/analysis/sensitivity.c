@@ -33,7 +33,7 @@ static bough_status prepare(bough_arena *arena, bough_simulation *s, double time
     BOUGH_TRY(bough_vibration_point_find(arena, s, time, &x->point));
     const bough_modes_def *def = &x->point.def;
     if (s->aero != NULL && s->scene->modes.air != BOUGH_SCENE_AIR_FROZEN)
-        x->air = bough_air_change_create(arena, s, x->point.coupled, time, x->point.state,
+        x->air = bough_air_change_create(arena, s, x->point.whole, time, x->point.state,
                                          s->scene->modes.air == BOUGH_SCENE_AIR_DYNAMIC, &x->m);
     if (x->air) x->n_row = x->m / s->scene->turbine.n_blade;
     size_t all = (size_t)(x->n + x->m) + 1, parts = (size_t)def->n_part;
@@ -100,7 +100,7 @@ static bough_status multiply(linear *x, const double *y, double *image) {
     double size = difference / largest;
     for (int side = 0; side < 2; side++) {
         for (int i = 0; i < x->n; i++) x->moved[i] = p->state[i] + (2 * side - 1) * size * y[i];
-        BOUGH_TRY(bough_whole_rate(p->coupled, p->def.time, x->moved, x->side[side]));
+        BOUGH_TRY(bough_whole_rate(p->whole, p->def.time, x->moved, x->side[side]));
     }
     for (int i = 0; i < x->n; i++) image[i] = (x->side[1][i] - x->side[0][i]) / (2 * size);
     if (x->air) BOUGH_TRY(add_air(x, size, y, image));

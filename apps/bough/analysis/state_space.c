@@ -23,7 +23,7 @@ typedef struct input {
 
 typedef struct work {
     bough_simulation *s;
-    bough_whole *coupled;
+    bough_whole *whole;
     bough_channels channels;
     double time;
     const double *about;        // (n) states of the members
@@ -151,7 +151,7 @@ static void name_air(const bough_simulation *s, int n_air, bough_signal_name *st
 }
 
 static void name_states(const work *w, bough_state_space *to) {
-    const bough_assembly *a = w->coupled->assembly;
+    const bough_assembly *a = w->whole->assembly;
     const bough_tree *tree = w->s->tree;
     for (int i = 0; i < tree->n_links; i++) name_joint(tree, &tree->links[i], to->state);
     for (int i = 1; i < a->n_member; i++) {
@@ -181,16 +181,15 @@ static void name_outputs(const work *w, bough_state_space *to) {
 // Rates and channels at a state, under the air's forces that the bodies have.
 static bough_status evaluate(work *w, const double *state, int side) {
     bough_simulation *s = w->s;
-    bough_equilibrium_set_state(s, w->coupled->assembly, state);
-    BOUGH_TRY(bough_whole_rate(w->coupled, w->time, state, w->rate[side]));
-    memcpy(s->master->coupling->input, w->coupled->input,
-           (size_t)w->coupled->assembly->n_input * sizeof(double));
+    bough_equilibrium_set_state(s, w->whole->assembly, state);
+    BOUGH_TRY(bough_whole_rate(w->whole, w->time, state, w->rate[side]));
+    memcpy(s->master->coupling->input, w->whole->input, (size_t)w->whole->assembly->n_input * sizeof(double));
     bough_channels_sample(&w->channels, w->time, w->value[side]);
     return bough_ok();
 }
 
 static void put_rates(const work *w, double size, double *column) {
-    for (int k = 0; k < w->coupled->assembly->n_state; k++)
+    for (int k = 0; k < w->whole->assembly->n_state; k++)
         column[k] = (w->rate[1][k] - w->rate[0][k]) / (2 * size);
 }
 
@@ -205,7 +204,7 @@ static void put_outputs(const work *w, int n_output, double size, double *column
 }
 
 static bough_status by_states(work *w, bough_state_space *to) {
-    const bough_assembly *a = w->coupled->assembly;
+    const bough_assembly *a = w->whole->assembly;
     for (int i = 0; i < a->n_member; i++) {
         for (int j = a->state_offset[i]; j < a->state_offset[i + 1]; j++) {
             double size = difference * a->member[i]->system.scale[j - a->state_offset[i]];
@@ -222,13 +221,13 @@ static bough_status by_states(work *w, bough_state_space *to) {
 }
 
 static bough_status by_inputs(work *w, bough_state_space *to) {
-    size_t n_state = (size_t)w->coupled->assembly->n_state;
+    size_t n_state = (size_t)w->whole->assembly->n_state;
     for (int k = 0; k < w->n_input; k++) {
         for (int side = 0; side < 2; side++) {
             memcpy(w->state, w->about, n_state * sizeof *w->state);
             set_input(w, k, (2 * side - 1) * w->size[k], w->state);
             bough_status status = evaluate(w, w->state, side);
-            bough_equilibrium_set_state(w->s, w->coupled->assembly, w->about);
+            bough_equilibrium_set_state(w->s, w->whole->assembly, w->about);
             set_input(w, k, 0, w->state);
             if (!bough_is_ok(&status)) return status;
         }
@@ -264,7 +263,7 @@ static bough_status prepare(bough_arena *arena, work *w) {
     size_t n = (size_t)a->n_state, most = (size_t)s->scene->n_input + 3;
     w->channels = bough_channels_start(arena);
     BOUGH_TRY(bough_simulation_channels(s, &w->channels));
-    w->coupled = bough_whole_create_evaluation(arena, a, NULL);
+    w->whole = bough_whole_create_evaluation(arena, a, NULL);
     double *about;
     w->input = bough_arena_take(arena, most * sizeof *w->input);
     w->size = bough_arena_doubles(arena, most);
@@ -276,7 +275,7 @@ static bough_status prepare(bough_arena *arena, work *w) {
 }
 
 static void take(bough_arena *arena, int n_air, const work *w, bough_state_space *to) {
-    to->n = w->coupled->assembly->n_state + n_air;
+    to->n = w->whole->assembly->n_state + n_air;
     to->n_input = w->n_input;
     to->n_output = w->s->n_motion_channel;
     size_t n = (size_t)to->n, u = (size_t)to->n_input, o = (size_t)to->n_output;
@@ -299,7 +298,7 @@ bough_status bough_state_space_find(bough_arena *arena, bough_simulation *s, dou
     if (in_air(s)) {
         bough_air_inputs inputs = {w.n_input, w.size, &w, set_input};
         bool dynamic = s->scene->modes.air == BOUGH_SCENE_AIR_DYNAMIC;
-        BOUGH_TRY(bough_air_tangent_find(arena, s, w.coupled, time, w.about, dynamic, &inputs, &air));
+        BOUGH_TRY(bough_air_tangent_find(arena, s, w.whole, time, w.about, dynamic, &inputs, &air));
     }
     take(arena, air.n_air, &w, space);
     BOUGH_TRY(by_states(&w, space));

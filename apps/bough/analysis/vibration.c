@@ -63,9 +63,9 @@ static bough_status prepare(bough_arena *arena, bough_simulation *s, bough_vibra
     bough_arena_each(arena, (size_t)a->n_state + 1, &x->state, &x->mean);
     x->held = bough_arena_take(arena, ((size_t)s->leader.system.n_state + 1) * sizeof *x->held);
     bough_assembly_states(a, x->state);
-    x->coupled = bough_whole_create(arena, a, NULL);
+    x->whole = bough_whole_create(arena, a, NULL);
     x->n_held = bough_equilibrium_held(s->tree, false, x->held);
-    bough_whole_hold(arena, x->coupled, x->n_held, x->held);
+    bough_whole_hold(arena, x->whole, x->n_held, x->held);
     return bough_blade_group_find(arena, s, a, &x->group);
 }
 
@@ -73,16 +73,16 @@ static bough_status prepare(bough_arena *arena, bough_simulation *s, bough_vibra
 // the blades bend in their mean.
 static void define(double time, bough_vibration_point *x) {
     const bough_blade_group *g = &x->group;
-    bough_whole_inputs(x->coupled, time, x->state);
+    bough_whole_inputs(x->whole, time, x->state);
     x->def = (bough_modes_def){.time = time,
                                .state = x->state,
-                               .input = x->coupled->input,
+                               .input = x->whole->input,
                                .point = least_point,
                                .n_part = g->n,
                                .n_row = g->n_row,
                                .row = g->row};
     if (g->n == 0 || fabs(g->speed) < at_rest) return;
-    bough_blade_group_average(g, x->coupled->input, x->mean, x->state);
+    bough_blade_group_average(g, x->whole->input, x->mean, x->state);
     x->def.spin = g->speed;
     x->def.point = fmax(least_point, spins * ((g->n - 1) / 2) * fabs(g->speed));
 }
@@ -128,11 +128,11 @@ static bough_status respond(const bough_simulation *s, const bough_vibration_poi
     bough_assembly_scales(a, response);
     for (int k = 0; k < a->n_state; k++) response[k] *= 1 + 0.5 * sin(k);
     convert(s->tree, state, false, work, response);
-    bough_whole_project(x->coupled, state, response);
-    bough_whole_inputs(x->coupled, time, state);
-    BOUGH_TRY(bough_whole_setup(x->coupled, time, state, x->coupled->input, 1 / x->def.point));
-    bough_whole_solve(x->coupled, response);
-    bough_whole_project(x->coupled, state, response);
+    bough_whole_project(x->whole, state, response);
+    bough_whole_inputs(x->whole, time, state);
+    BOUGH_TRY(bough_whole_setup(x->whole, time, state, x->whole->input, 1 / x->def.point));
+    bough_whole_solve(x->whole, response);
+    bough_whole_project(x->whole, state, response);
     convert(s->tree, state, true, work, response);
     return bough_ok();
 }
@@ -174,7 +174,7 @@ static bough_status check_constant(bough_arena *arena, const bough_simulation *s
         }
         if (change > constant * size) return refuse(s, change / size);
     }
-    bough_whole_inputs(x->coupled, x->def.time, x->state);
+    bough_whole_inputs(x->whole, x->def.time, x->state);
     return bough_ok();
 }
 
@@ -239,7 +239,7 @@ static bough_status solve_bodies(bough_arena *arena, const bough_simulation *s,
                                  const bough_vibration_point *x, int count, bough_vibration *v) {
     v->count.wanted = count + FREE_MOTIONS + 2 * s->tree->closure_rank;
     v->pair = bough_arena_take(arena, (size_t)v->count.wanted * sizeof *v->pair);
-    return bough_modes_find(arena, x->coupled, &x->def, v->pair, &v->count);
+    return bough_modes_find(arena, x->whole, &x->def, v->pair, &v->count);
 }
 
 // Modes in the air whose forces follow the bodies' motion.
@@ -247,9 +247,9 @@ static bough_status solve_in_air(bough_arena *arena, bough_simulation *s, const 
                                  int count, bough_vibration *v) {
     bough_air_tangent air;
     bool dynamic = s->scene->modes.air == BOUGH_SCENE_AIR_DYNAMIC;
-    BOUGH_TRY(bough_air_tangent_find(arena, s, x->coupled, x->def.time, x->state, dynamic, NULL, &air));
+    BOUGH_TRY(bough_air_tangent_find(arena, s, x->whole, x->def.time, x->state, dynamic, NULL, &air));
     bough_air_tangent_average(arena, s, &x->group, &air);
-    bough_aeroelastic system = {s, x->coupled, &x->def, &x->group, &air};
+    bough_aeroelastic system = {s, x->whole, &x->def, &x->group, &air};
     v->count.wanted = count + FREE_MOTIONS;
     v->pair = bough_arena_take(arena, (size_t)v->count.wanted * sizeof *v->pair);
     return bough_aeroelastic_modes(arena, &system, v->pair, &v->count, &v->unpaired);
@@ -334,8 +334,9 @@ static bool is_compared(const bough_scene_mode *mode) {
 
 // Distance of the eigenvalues relative to that of a.
 static double distance(const bough_scene_mode *a, const bough_scene_mode *b) {
-    double apart = hypot(a->growth - b->growth, 2 * BOUGH_PI * (a->damped_frequency - b->damped_frequency));
-    return apart / (2 * BOUGH_PI * a->frequency);
+    double difference =
+        hypot(a->growth - b->growth, 2 * BOUGH_PI * (a->damped_frequency - b->damped_frequency));
+    return difference / (2 * BOUGH_PI * a->frequency);
 }
 
 // The least distance first. Modes of other bodies and directions are farther: but in round sections, and

@@ -73,7 +73,7 @@ typedef struct bough_vibration {
 
 // What modes are about: the simulation's present state, the blades in their mean.
 typedef struct bough_vibration_point {
-    bough_whole *coupled;
+    bough_whole *whole;
     bough_blade_group group;
     double *state;     // (n_state)
     double *mean;      // (n_state) work

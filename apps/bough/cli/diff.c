@@ -70,10 +70,10 @@ static bough_status walk(bough_rows *a, bough_rows *b, int n, pair *list, long *
     BOUGH_TRY(next_row(a, &more_a));
     BOUGH_TRY(next_row(b, &more_b));
     while (more_a && more_b) {
-        double apart = a->value[0] - b->value[0], same = 1e-9 * (1 + fabs(a->value[0]));
-        if (fabs(apart) <= same) compare(a, b, n, list), ++*rows;
-        if (apart <= same) BOUGH_TRY(next_row(a, &more_a));
-        if (apart >= -same) BOUGH_TRY(next_row(b, &more_b));
+        double later = a->value[0] - b->value[0], same = 1e-9 * (1 + fabs(a->value[0]));
+        if (fabs(later) <= same) compare(a, b, n, list), ++*rows;
+        if (later <= same) BOUGH_TRY(next_row(a, &more_a));
+        if (later >= -same) BOUGH_TRY(next_row(b, &more_b));
     }
     return bough_ok();
 }

@@ -238,11 +238,11 @@ static void watch(bough_companion *c) {
     bool run = false, companion = false;
     for (int i = 0; i < c->channels->count; i++) {
         if (!bough_error_is_motion(&c->channels->channel[i])) continue;
-        double apart = fabs(difference(&c->channels->channel[i], c->value[i], c->coarser.value[i]));
-        if (!(apart > several * bough_error_own_range(c, i))) continue; // the range is no less
+        double distance = fabs(difference(&c->channels->channel[i], c->value[i], c->coarser.value[i]));
+        if (!(distance > several * bough_error_own_range(c, i))) continue; // the range is no less
         double own = range_of(c, i, c->low, c->high), other = range_of(c, i, c->other_low, c->other_high);
         double range = bough_error_range(c, i);
-        if (!(apart > several * range) || !bough_error_counts(c, i) || !bough_error_shows(c, i, apart))
+        if (!(distance > several * range) || !bough_error_counts(c, i) || !bough_error_shows(c, i, distance))
             continue;
         run = run || own > several * fmax(other, range);
         companion = companion || other > several * fmax(own, range);

@@ -130,7 +130,7 @@ typedef struct search {
     bough_path_report *report;
 
     // by set_up
-    bough_whole *coupled;
+    bough_whole *whole;
     double *state;  // (n_state) at rest
     bool rests;     // whether states are brought to rest in between
     double *change; // of one rod's vertices, see rod_static.h
@@ -152,7 +152,7 @@ static double change_of(const bough_assembly *assembly, const double *a, const d
 static bough_status balance(bough_arena *arena, search *x, bough_equilibrium_def *def) {
     bough_simulation *s = x->simulation;
     bough_equilibrium_report report;
-    bough_status status = bough_equilibrium_find(arena, x->coupled, def, x->state, &report);
+    bough_status status = bough_equilibrium_find(arena, x->whole, def, x->state, &report);
     x->work->steps += report.steps;
     bough_equilibrium_set_state(s, x->assembly, x->state);
     if (status.code == BOUGH_FAILED) return explain(s, x->assembly, &report);
@@ -215,22 +215,22 @@ static void bring_to_rest(void *self, double *state) {
     const bough_tree *tree = s->tree;
     for (int k = tree->n_q; k < tree->n_q + tree->n_v; k++) {
         bool held = false;
-        for (int i = 0; i < x->coupled->n_held; i++) held = held || x->coupled->held[i] == k;
+        for (int i = 0; i < x->whole->n_held; i++) held = held || x->whole->held[i] == k;
         if (!held) state[k] = 0;
     }
-    bough_whole_inputs(x->coupled, x->time, state);
+    bough_whole_inputs(x->whole, x->time, state);
     for (int k = 0; k < s->n_beam; k++) {
         const bough_beam *beam = &s->beam[k];
         int member = beam->port + 1;
         if (beam->port < 0) continue;
-        bough_beam_move_rigidly(beam, x->coupled->input + a->input_offset[member],
+        bough_beam_move_rigidly(beam, x->whole->input + a->input_offset[member],
                                 state + a->state_offset[member]);
     }
 }
 
 static bool turns(const search *x) {
-    for (int i = 0; i < x->coupled->n_held; i++) {
-        int row = x->coupled->held[i];
+    for (int i = 0; i < x->whole->n_held; i++) {
+        int row = x->whole->held[i];
         if (row >= x->simulation->tree->n_q && x->state[row] != 0) return true;
     }
     return false;
@@ -242,11 +242,11 @@ static void set_up(bough_arena *arena, search *x) {
     x->state = bough_arena_doubles(arena, (size_t)x->assembly->n_state + 1);
     x->change = bough_arena_doubles(arena, BOUGH_ROD_CHANGE * bough_simulation_most_vertices(s));
     int *row = bough_arena_take(arena, ((size_t)s->leader.system.n_state + 1) * sizeof *row);
-    x->coupled = bough_whole_create(arena, x->assembly, NULL);
+    x->whole = bough_whole_create(arena, x->assembly, NULL);
     for (int k = 0; k < s->n_sampled; k++) {
         if (s->sampled[k].begin) s->sampled[k].begin(s->sampled[k].self, x->time);
     }
-    bough_whole_hold(arena, x->coupled, bough_equilibrium_held(s->tree, true, row), row);
+    bough_whole_hold(arena, x->whole, bough_equilibrium_held(s->tree, true, row), row);
     bough_assembly_states(x->assembly, x->state);
     bough_tree_prescribe(s->tree, x->time, x->state);
     bring_to_rest(x, x->state);
@@ -294,8 +294,8 @@ static bool oscillates(const bough_eigen_pair *pair) {
 
 static bough_status find_near(bough_arena *arena, const search *x, double at, bough_eigen_pair *pair,
                               bough_eigen_count *count) {
-    bough_modes_def def = {.time = x->time, .state = x->state, .input = x->coupled->input, .point = at};
-    return bough_modes_find(arena, x->coupled, &def, pair, count);
+    bough_modes_def def = {.time = x->time, .state = x->state, .input = x->whole->input, .point = at};
+    return bough_modes_find(arena, x->whole, &def, pair, count);
 }
 
 // The oscillation among the pairs that grows most, by parts of its value; NULL: none.
@@ -328,7 +328,7 @@ static bough_status confirm_oscillation(bough_arena *arena, const search *x, con
 static bough_status find_growth(bough_arena *arena, void *self) {
     search *x = self;
     set_up(arena, x);
-    bough_whole_inputs(x->coupled, x->time, x->state);
+    bough_whole_inputs(x->whole, x->time, x->state);
     for (int i = 0; i < POINTS; i++) {
         bough_eigen_pair pair[NEAREST];
         bough_eigen_count count = {.wanted = i == 0 ? NEAREST : 4};
@@ -526,9 +526,9 @@ static bough_status tell_point(void *self, double share, const double *state, bo
     for (int i = 0; i < x->assembly->n_member; i++)
         bough_member_set(x->assembly->member[i], time, state + x->assembly->state_offset[i]);
     bough_simulation_update(x->simulation);
-    bough_whole_inputs(x->coupled, time, state);
+    bough_whole_inputs(x->whole, time, state);
     size_t size = (size_t)x->assembly->n_input * sizeof(double);
-    memcpy(x->simulation->master->coupling->input, x->coupled->input, size);
+    memcpy(x->simulation->master->coupling->input, x->whole->input, size);
     return x->listener.point(x->listener.self, time, share, limit);
 }
 
@@ -563,7 +563,7 @@ static bough_status walk_path(bough_arena *arena, void *self) {
     def.move = move;
     def.rest = bring_to_rest;
     def.point = tell_point;
-    return bough_path_follow(arena, x->coupled, &def, x->state, x->report);
+    return bough_path_follow(arena, x->whole, &def, x->state, x->report);
 }
 
 bough_status bough_simulation_path(bough_simulation *s, const bough_assembly *assembly,

@@ -260,8 +260,8 @@ static bough_status find_fastest(bough_arena *arena, void *self) {
     bough_arena_each(arena, n, &state, &rate, &scale);
     bough_assembly_states(m->assembly, state);
     bough_assembly_scales(m->assembly, scale);
-    bough_whole *coupled = bough_whole_create_evaluation(arena, m->assembly, NULL);
-    bough_status status = bough_whole_rate(coupled, m->time, state, rate);
+    bough_whole *whole = bough_whole_create_evaluation(arena, m->assembly, NULL);
+    bough_status status = bough_whole_rate(whole, m->time, state, rate);
     for (int k = 0; bough_is_ok(&status) && k < (int)n; k++) {
         if (!(fabs(rate[k]) / scale[k] > largest)) continue;
         largest = fabs(rate[k]) / scale[k];

@@ -21,18 +21,18 @@ bough_mat3 bough_scene_rotation(int axis, double angle) {
 
 // "move z 1.96 m" or "rotate y 5 deg"; none after an error.
 static bough_transform read_step(bough_schema_reader *r, const bough_node *node) {
-    char verb[8], axis[4], shown[64], why[160] = "";
+    char word[8], axis[4], shown[64], why[160] = "";
     int used = 0;
     double amount;
     bough_transform step = bough_transform_identity();
     const char *text = node->kind == BOUGH_SCALAR ? node->text : "";
-    if (sscanf(text, "%7s %3s %n", verb, axis, &used) == 2 && used > 0) {
-        bool moves = strcmp(verb, "move") == 0, turns = strcmp(verb, "rotate") == 0;
+    if (sscanf(text, "%7s %3s %n", word, axis, &used) == 2 && used > 0) {
+        bool moves = strcmp(word, "move") == 0, rotates = strcmp(word, "rotate") == 0;
         bool named = axis[1] == '\0' && axis[0] >= 'x' && axis[0] <= 'z';
-        bough_dimension dimension = turns ? BOUGH_ANGLE : BOUGH_LENGTH;
-        if ((moves || turns) && named && bough_quantity(text + used, dimension, &amount, why)) {
+        bough_dimension dimension = rotates ? BOUGH_ANGLE : BOUGH_LENGTH;
+        if ((moves || rotates) && named && bough_quantity(text + used, dimension, &amount, why)) {
             if (moves) step.position = bough_scale(amount, bough_scene_direction(axis[0] - 'x'));
-            if (turns) step.rotation = bough_scene_rotation(axis[0] - 'x', amount);
+            if (rotates) step.rotation = bough_scene_rotation(axis[0] - 'x', amount);
             return step;
         }
     }

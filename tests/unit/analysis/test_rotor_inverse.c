@@ -34,16 +34,16 @@ typedef struct scene {
 
 static void setup(const scene *c) {
     const bough_modes_def *def = &c->x.def;
-    check_ok(bough_whole_setup(c->x.coupled, def->time, def->state, def->input, 1 / def->point));
+    check_ok(bough_whole_setup(c->x.whole, def->time, def->state, def->input, 1 / def->point));
 }
 
 // About the initial state: an equilibrium is not needed.
 static void open_scene(bough_arena *arena, scene *c) {
     bough_simulation *s = scene_build(arena, "apps/turbine/land-operation.yaml", symmetric);
     check_ok(bough_vibration_point_find(arena, s, 0, &c->x));
-    check_ok(bough_air_tangent_find(arena, s, c->x.coupled, 0, c->x.state, false, NULL, &c->air));
+    check_ok(bough_air_tangent_find(arena, s, c->x.whole, 0, c->x.state, false, NULL, &c->air));
     bough_air_tangent_average(arena, s, &c->x.group, &c->air);
-    c->system = (bough_aeroelastic){s, c->x.coupled, &c->x.def, &c->x.group, &c->air};
+    c->system = (bough_aeroelastic){s, c->x.whole, &c->x.def, &c->x.group, &c->air};
     assert_int_equal(c->x.group.n, 3);
     assert_true(c->x.def.spin > 0);
     setup(c);
@@ -56,7 +56,7 @@ static double miss(bough_arena *arena, const scene *c, const double *z, const do
     double *force = bough_arena_copy(arena, z, n * sizeof *z), *scale = bough_arena_doubles(arena, n),
            rate[9];
     double most = 0, size = 0;
-    bough_assembly_scales(c->x.coupled->assembly, scale);
+    bough_assembly_scales(c->x.whole->assembly, scale);
     bough_modes_rate(def, rate);
     for (size_t j = 0; j < n; j++) {
         for (size_t i = 0; i < n; i++) force[i] += c->air.motion[j * n + i] * y[j] / def->point;
@@ -67,8 +67,8 @@ static double miss(bough_arena *arena, const scene *c, const double *z, const do
                 rate[k] / def->point * y[def->row[k % 3 * def->n_row + j]];
     }
     for (int k = 0; k < c->system.simulation->tree->n_q; k++) force[k] -= going_back * y[k];
-    bough_whole_solve(c->x.coupled, force);
-    bough_whole_project(c->x.coupled, def->state, force);
+    bough_whole_solve(c->x.whole, force);
+    bough_whole_project(c->x.whole, def->state, force);
     for (size_t i = 0; i < n; i++) {
         most = fmax(most, fabs(force[i] - y[i]) / scale[i]);
         size = fmax(size, fabs(y[i]) / scale[i]);
@@ -87,9 +87,9 @@ TEST(the_blocks_solve_the_equations_of_the_whole_rotor) {
     size_t n = (size_t)c.air.n;
     double *z = bough_arena_doubles(arena, n * VECTORS), *y = bough_arena_doubles(arena, n * VECTORS);
     for (size_t k = 0; k < VECTORS; k++) {
-        bough_assembly_scales(c.x.coupled->assembly, z + k * n);
+        bough_assembly_scales(c.x.whole->assembly, z + k * n);
         for (size_t i = 0; i < n; i++) z[k * n + i] *= sin((double)(i + 1) * (double)(k + 2));
-        bough_whole_project(c.x.coupled, c.x.state, z + k * n);
+        bough_whole_project(c.x.whole, c.x.state, z + k * n);
     }
     bough_rotor_inverse_apply(inverse, false, VECTORS, z, y);
     for (size_t k = 0; k < VECTORS; k++) assert_true(miss(arena, &c, z + k * n, y + k * n) < 1e-8);
@@ -103,7 +103,7 @@ TEST(the_transpose_has_the_same_products) {
     size_t n = (size_t)c.air.n;
     double *z, *left, *y, *image, *scale;
     bough_arena_each(arena, n, &z, &left, &y, &image, &scale);
-    bough_assembly_scales(c.x.coupled->assembly, scale);
+    bough_assembly_scales(c.x.whole->assembly, scale);
     for (size_t i = 0; i < n; i++) z[i] = scale[i] * sin((double)i), left[i] = cos(3 * (double)i) / scale[i];
     bough_rotor_inverse_apply(inverse, false, 1, z, y);
     bough_rotor_inverse_apply(inverse, true, 1, left, image);
@@ -127,8 +127,8 @@ TEST(unlike_blades_are_solved_as_a_whole) {
     setup(&c);
     assert_null(bough_rotor_inverse_create(arena, &c.system, going_back));
     double *z = bough_arena_doubles(arena, (size_t)c.air.n), *y = bough_arena_doubles(arena, (size_t)c.air.n);
-    bough_assembly_scales(c.x.coupled->assembly, z);
-    bough_whole_project(c.x.coupled, c.x.state, z);
+    bough_assembly_scales(c.x.whole->assembly, z);
+    bough_whole_project(c.x.whole, c.x.state, z);
     for (int transposed = 0; transposed < 2; transposed++) {
         bough_air_inverse *inverse = bough_air_inverse_create(arena, &c.system, transposed);
         bough_air_inverse_apply(inverse, false, 1, z, y);

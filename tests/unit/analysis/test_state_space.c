@@ -75,16 +75,16 @@ TEST(rods_beside_exact_tangents) {
     bough_state_space x = linear(arena, s);
     const bough_assembly *a = s->master->assembly;
     assert_int_equal(x.n, a->n_state);
-    bough_whole *coupled = bough_whole_create(arena, a, NULL);
+    bough_whole *whole = bough_whole_create(arena, a, NULL);
     double *y = bough_arena_doubles(arena, (size_t)x.n), *solution = bough_arena_doubles(arena, (size_t)x.n);
     bough_assembly_states(a, y);
-    bough_whole_inputs(coupled, 0, y);
+    bough_whole_inputs(whole, 0, y);
     const double gamma = 0.01;
-    check_ok(bough_whole_setup(coupled, 0, y, coupled->input, gamma));
+    check_ok(bough_whole_setup(whole, 0, y, whole->input, gamma));
     for (int trial = 0; trial < 5; trial++) {
         double *b = bough_arena_doubles(arena, (size_t)x.n), worst = 0;
         for (int k = 0; k < x.n; k++) solution[k] = b[k] = sin(1.7 * k + trial);
-        bough_whole_solve(coupled, solution);
+        bough_whole_solve(whole, solution);
         for (int i = 0; i < x.n; i++) {
             double sum = solution[i], size = fabs(solution[i]) + fabs(b[i]);
             for (int j = 0; j < x.n; j++) {

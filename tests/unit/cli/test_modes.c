@@ -9,7 +9,7 @@ enum { N = 4 };
 
 typedef struct setup {
     bough_two_mass m;
-    bough_whole *coupled;
+    bough_whole *whole;
     bough_modes_def def;
     bough_eigen_pair pair[N];
     bough_eigen_count count;
@@ -21,15 +21,15 @@ static void build(setup *s, bough_two_mass masses) {
     def.macro_step = def.duration = .1;
     bough_status status = bough_two_mass_build(check_memory(), &s->m, def);
     check_ok(status);
-    s->coupled = bough_whole_create(s->m.arena, s->m.master->assembly, NULL);
+    s->whole = bough_whole_create(s->m.arena, s->m.master->assembly, NULL);
     assert_true(bough_is_ok(&status));
-    bough_whole_inputs(s->coupled, 0, s->m.y0);
-    s->def = (bough_modes_def){.state = s->m.y0, .input = s->coupled->input, .point = 1};
+    bough_whole_inputs(s->whole, 0, s->m.y0);
+    s->def = (bough_modes_def){.state = s->m.y0, .input = s->whole->input, .point = 1};
 }
 
 static void find(setup *s, int wanted) {
     s->count.wanted = wanted;
-    check_ok(bough_modes_find(s->m.arena, s->coupled, &s->def, s->pair, &s->count));
+    check_ok(bough_modes_find(s->m.arena, s->whole, &s->def, s->pair, &s->count));
 }
 
 // det(λ² M + λ C + K) = 0, and the shape's ratio is that of the first row.

@@ -127,27 +127,27 @@ static void check(const plan *p) {
     check_arena(arena);
     member m[MEMBERS];
     bough_assembly *a = build(arena, p, m);
-    bough_whole *coupled = bough_whole_create(arena, a, NULL);
-    assert_int_equal(coupled->interface->n, p->unknowns);
+    bough_whole *whole = bough_whole_create(arena, a, NULL);
+    assert_int_equal(whole->interface->n, p->unknowns);
 
     unsigned seed = 3;
     double y[STATES], r[STATES], x[STATES], before[STATES], after[STATES];
     double input[PORTS], gamma = .2;
     for (int k = 0; k < a->n_state; k++) y[k] = sample_random(&seed), r[k] = x[k] = sample_random(&seed);
-    bough_whole_rate(coupled, 0, y, before);
-    memcpy(input, coupled->input, (size_t)a->n_input * sizeof(double));
-    check_ok(bough_whole_setup(coupled, 0, y, input, gamma));
-    bough_whole_solve(coupled, x);
+    bough_whole_rate(whole, 0, y, before);
+    memcpy(input, whole->input, (size_t)a->n_input * sizeof(double));
+    check_ok(bough_whole_setup(whole, 0, y, input, gamma));
+    bough_whole_solve(whole, x);
 
     // x = r + γ (A x + B δu) member by member, δu = P (C x + D δu)
     double change[PORTS], answer[PORTS];
     for (int i = 0; i < MEMBERS; i++) {
-        const double *du = coupled->change + a->input_offset[i], *dx = x + a->state_offset[i];
+        const double *du = whole->change + a->input_offset[i], *dx = x + a->state_offset[i];
         output(&m[i], 0, dx, du, answer + a->output_offset[i]);
         derivative(&m[i], 0, dx, du, after + a->state_offset[i]);
     }
     for (int j = 0; j < a->n_input; j++) change[j] = answer[a->source[j]];
-    for (int j = 0; j < a->n_input; j++) check_near(coupled->change[j], change[j], 0, 1e-9);
+    for (int j = 0; j < a->n_input; j++) check_near(whole->change[j], change[j], 0, 1e-9);
     for (int k = 0; k < a->n_state; k++) check_near(x[k] - gamma * after[k], r[k], 0, 1e-9);
 }
 

@@ -3,7 +3,7 @@
 
 enum { N = 4 };
 
-static void build(bough_two_mass *m, bough_whole **coupled, int threads) {
+static void build(bough_two_mass *m, bough_whole **whole, int threads) {
     bough_pool *pool;
     *m = bough_two_mass_default();
     bough_master_def def = bough_master_def_default();
@@ -12,24 +12,24 @@ static void build(bough_two_mass *m, bough_whole **coupled, int threads) {
     check_ok(status);
     pool = bough_pool_create(m->arena, threads);
     assert_true(bough_is_ok(&status));
-    *coupled = bough_whole_create(m->arena, m->master->assembly, pool);
+    *whole = bough_whole_create(m->arena, m->master->assembly, pool);
     assert_true(bough_is_ok(&status));
 }
 
 // The system is linear: (I − γJ) x = r is x − γ (F(y + x) − F(y)) = r.
 TEST(solves_the_coupled_system) {
-    bough_whole *coupled;
+    bough_whole *whole;
     bough_two_mass m;
-    build(&m, &coupled, 1);
+    build(&m, &whole, 1);
     const double y[N] = {.1, -.2, .5, .3}, r[N] = {1, 2, -3, .5}, gammas[] = {1e-3, .1, 1e4};
     for (size_t g = 0; g < sizeof gammas / sizeof *gammas; g++) {
         double x[N], moved[N], before[N], after[N], gamma = gammas[g];
         memcpy(x, r, sizeof x);
-        check_ok(bough_whole_rate(coupled, 0, y, before));
-        check_ok(bough_whole_setup(coupled, 0, y, coupled->input, gamma));
-        bough_whole_solve(coupled, x);
+        check_ok(bough_whole_rate(whole, 0, y, before));
+        check_ok(bough_whole_setup(whole, 0, y, whole->input, gamma));
+        bough_whole_solve(whole, x);
         for (int k = 0; k < N; k++) moved[k] = y[k] + x[k];
-        check_ok(bough_whole_rate(coupled, 0, moved, after));
+        check_ok(bough_whole_rate(whole, 0, moved, after));
         for (int k = 0; k < N; k++) {
             check_near(x[k] - gamma * (after[k] - before[k]), r[k], 1e-9, 1e-12 * gamma);
         }
@@ -38,12 +38,12 @@ TEST(solves_the_coupled_system) {
 
 // F of two masses on springs, by hand.
 TEST(rates_are_those_of_the_coupled_masses) {
-    bough_whole *coupled;
+    bough_whole *whole;
     bough_two_mass m;
-    build(&m, &coupled, 2);
+    build(&m, &whole, 2);
     const double y[N] = {.1, -.2, .5, .3};
     double rate[N], force = m.k * (y[2] - y[0]) + m.c * (y[3] - y[1]);
-    check_ok(bough_whole_rate(coupled, 0, y, rate));
+    check_ok(bough_whole_rate(whole, 0, y, rate));
     check_near(rate[0], y[1], 0, 0);
     check_near(rate[1], -10 * y[0] - .2 * y[1] + force, 1e-14, 0);
     check_near(rate[2], y[3], 0, 0);

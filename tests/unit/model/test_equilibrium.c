@@ -5,7 +5,7 @@ enum { N = 4 };
 
 typedef struct setup {
     bough_two_mass m;
-    bough_whole *coupled;
+    bough_whole *whole;
     double y[N];
 } setup;
 
@@ -15,14 +15,14 @@ static void build(setup *s) {
     def.macro_step = def.duration = .1;
     bough_status status = bough_two_mass_build(check_memory(), &s->m, def);
     check_ok(status);
-    s->coupled = bough_whole_create(s->m.arena, s->m.master->assembly, NULL);
+    s->whole = bough_whole_create(s->m.arena, s->m.master->assembly, NULL);
     assert_true(bough_is_ok(&status));
     memcpy(s->y, s->m.y0, sizeof s->y);
 }
 
 static bough_equilibrium_report find(setup *s, bough_equilibrium_def def, bough_code code) {
     bough_equilibrium_report report;
-    bough_status status = bough_equilibrium_find(s->m.arena, s->coupled, &def, s->y, &report);
+    bough_status status = bough_equilibrium_find(s->m.arena, s->whole, &def, s->y, &report);
     assert_int_equal(status.code, code);
     return report;
 }
@@ -40,7 +40,7 @@ TEST(held_states_stay) {
     setup s;
     build(&s);
     s.y[0] = .3;
-    bough_whole_hold(s.m.arena, s.coupled, 2, held);
+    bough_whole_hold(s.m.arena, s.whole, 2, held);
     find(&s, bough_equilibrium_def_default(), BOUGH_OK);
     check_near(s.y[0], .3, 0, 0);
     check_near(s.y[1], 0, 0, 0);

@@ -291,7 +291,7 @@ static double distance(const double *value, int n, double real, double imaginary
     return nearest;
 }
 
-// A curved, coupled, damped rod with mass offsets, dead and follower loads, gravity, turning about
+// A curved, whole, damped rod with mass offsets, dead and follower loads, gravity, turning about
 // an oblique axis off its root: every mode is an eigenvalue of the differential equation.
 TEST(modes_are_eigenvalues_of_the_equation_of_motion) {
     const double input[BOUGH_ROD_INPUTS] = {0.4, -0.3, 0.7, 0.5, -0.8, 0.6, 1, -2, -0.5};
