@@ -1,3 +1,5 @@
+// Loads in ground axes are linear in the components of these axes: each is lumped once for every component,
+// and an evaluation sums the nine results.
 #include "flexbody/rod/ground_load.h"
 
 #include <math.h>
@@ -70,6 +72,7 @@ static void output_tangent(void *self, double t, const double *state, const doub
     bough_ground_body_turn(b, input + b->inner.n_input);
     b->inner.ops->output_tangent(b->inner.self, t, state, input, state_rate, input_rate, out);
     if (input_rate == NULL) return;
+    // ∂h/∂axes · change by a central difference over a change of unit length
     const double *change = input_rate + b->inner.n_input;
     double largest = 0;
     for (int j = 0; j < BOUGH_GROUND_AXES; j++) largest = fmax(largest, fabs(change[j]));
@@ -84,6 +87,7 @@ static void input_columns(void *self, double t, const double *state, const doubl
     bough_ground_body *b = self;
     bough_ground_body_turn(b, input + b->inner.n_input);
     b->inner.ops->input_columns(b->inner.self, t, state, input, column);
+    // then a column for each component of the axes
     column += (size_t)b->inner.n_input * (size_t)b->inner.n_state;
     for (int j = 0; j < BOUGH_GROUND_AXES; j++, column += b->inner.n_state) {
         double unit[BOUGH_GROUND_AXES] = {0};
@@ -94,6 +98,7 @@ static void input_columns(void *self, double t, const double *state, const doubl
     }
 }
 
+// The loads do not depend on the state: tangents by it are the inner system's.
 static void *factors(void *self, bough_arena *arena) {
     const bough_ground_body *b = self;
     return b->inner.ops->factors(b->inner.self, arena);
@@ -131,6 +136,7 @@ bough_ground_body *bough_ground_body_create(bough_arena *arena, const bough_syst
                                             const bough_rod_model *mesh, bough_rod_loads *loads,
                                             bool vertices_only) {
     bough_ground_body *b = bough_arena_take(arena, sizeof *b);
+    // the inner system's inputs, then the axes
     size_t inputs = (size_t)inner->n_input + BOUGH_GROUND_AXES;
     *b = (bough_ground_body){.inner = *inner,
                              .ops = {BOUGH_SYSTEM_REQUIRED},
@@ -158,6 +164,7 @@ static void add_axis(const bough_ground_body *b, const bough_ground_load_def *de
                      bough_rod_ramped_load *to) {
     double wrench[2][6] = {{0}};
     const double *const given[2] = {def->wrench, def->end};
+    // component `component` of the ground's axis number `axis`
     int axis = j / 3, component = j % 3;
     for (int side = 0; side < 2; side++) {
         wrench[side][component] = given[side][axis];
@@ -173,6 +180,7 @@ void bough_ground_body_load(bough_ground_body *b, bough_arena *arena, const boug
     ground_load *l = bough_arena_take(arena, sizeof *l);
     *l = (ground_load){.next = b->first, .by_axis = bough_arena_doubles(arena, BOUGH_GROUND_AXES * size)};
     b->first = l;
+    // lumped once for each component of the axes; later only sums of these are formed
     l->resolved = bough_rod_loads_add(b->loads, arena, b->mesh, false, &def->schedule);
     for (int j = 0; j < BOUGH_GROUND_AXES; j++) {
         double *by = l->by_axis + (size_t)j * size;

@@ -25,13 +25,16 @@ static void set_gradient(bough_rod_model *m, const bough_rod_def *def, int n, co
     double x = u[0], y = u[m->stride], z = u[2 * m->stride], stiffest = 0, softest = 0;
     const double turned[3][3] = {{0, z, -y}, {-z, 0, x}, {y, -x, 0}}; // m×κ⁰
     for (int i = 0; i < 3; i++) {
+        // row i of the bending compliance F
         double f[3];
         for (int j = 0; j < 3; j++) f[j] = compliance[bough_symmetric6_index(3 + i, 3 + j)];
+        // F m' + F' m by the stress (n, m): m' = −t×n + m×κ⁰, and F' from the taper of the sections
         double change[6] = {-f[1], f[0]};
         for (int j = 0; j < 3; j++) {
             change[3 + j] = def->taper ? def->taper[9 * n + 3 * i + j] : 0;
             for (int k = 0; k < 3; k++) change[3 + j] += f[k] * turned[k][j];
         }
+        // L, by the strains: the stress is C e
         for (int j = 0; j < 6; j++) {
             double sum = 0;
             for (int k = 0; k < 6; k++) sum += change[k] * c[bough_symmetric6_index(k, j)];
@@ -43,6 +46,7 @@ static void set_gradient(bough_rod_model *m, const bough_rod_def *def, int n, co
         stiffest += c[bough_symmetric6_index(3 + i, 3 + i)];
         softest += f[i];
     }
+    // R, at least h²/12 times the ratio of the largest to the least bending stiffness; then B
     gradient[24 * BOUGH_LANES] = part * stiffest * softest;
     for (int k = 0; k < 10 && def->bow != NULL; k++) gradient[(25 + k) * BOUGH_LANES] = def->bow[10 * n + k];
 }
@@ -59,6 +63,7 @@ static bough_status set_segment(bough_rod_model *m, const bough_rod_def *def, in
                           " definite",
                           m->name, n + 1);
     }
+    // lengths and section matrices
     m->length[n] = h;
     m->inverse_length[n] = 1 / h;
     for (int k = 0; k < 21; k++) {
@@ -66,11 +71,12 @@ static bough_status set_segment(bough_rod_model *m, const bough_rod_def *def, in
         bough_rod_tile(m->damping, 21, n)[k * BOUGH_LANES] = def->damping[21 * n + k];
     }
     for (int k = 0; k < 72 && def->line != NULL; k++) m->line[k * s + n] = def->line[72 * n + k];
+    // the undeformed shape: strains e⁰, and the change of the tangent, in the axes of the middle
     const bough_quaternion *p = def->rotation + n;
     segment_geometry shape = shape_between(def->position + n, p, 1 / h);
     if (shape.w < 0.5) {
         return bough_fail(BOUGH_INVALID,
-                          "rod %s: the undeformed section turns by more than 120°"
+                          "rod %s: the undeformed section rotates by more than 120°"
                           " over segment %d; use more segments",
                           m->name, n + 1);
     }
@@ -93,6 +99,7 @@ void bough_vertex_mass(const bough_vertex_inertia *v, double upper[21]) {
     memcpy(upper, rows, sizeof rows);
 }
 
+// Mass, first moment and inertia of vertex i, and the inverse of its 6×6 mass.
 static bough_status set_vertex(bough_rod_model *m, const bough_rod_def *def, int i) {
     int s = m->stride;
     const bough_vertex_inertia *v = &def->inertia[i];
@@ -126,11 +133,13 @@ bough_status bough_rod_create(bough_arena *arena, const bough_rod_def *def, boug
     }
     m->stride = bough_padded(m->n_segment + BOUGH_LANES); // vertices go by lanes from 1 on
     take_arrays(m, arena);
+    // the undeformed line
     size_t vertices = (size_t)m->n_segment + 1;
     m->span = bough_arena_copy(arena, def->span, vertices * sizeof *m->span);
     m->position0 = bough_arena_copy(arena, def->position, vertices * sizeof *m->position0);
     m->rotation0 = bough_arena_copy(arena, def->rotation, vertices * sizeof *m->rotation0);
     m->root = bough_rotation_matrix(m->rotation0[0]);
+    // inertia and segments
     m->vertex = bough_arena_copy(arena, def->inertia, vertices * sizeof *m->vertex);
     for (int n = 0; n < m->n_segment; n++) {
         BOUGH_TRY(set_segment(m, def, n));
@@ -140,6 +149,7 @@ bough_status bough_rod_create(bough_arena *arena, const bough_rod_def *def, boug
     return bough_ok();
 }
 
+// Vertex 1 begins a register; vertex 0 is the last entry of the register before.
 double *bough_rod_vertex_rows(bough_arena *arena, const bough_rod_model *model, int rows) {
     size_t room = (size_t)rows * (size_t)model->stride + BOUGH_LANES;
     return bough_arena_doubles(arena, room) + BOUGH_LANES - 1;
@@ -194,6 +204,7 @@ bough_rod_ramped_load *bough_rod_loads_ramped(bough_rod_loads *loads, bough_aren
                                               const bough_schedule *schedule) {
     for (bough_rod_ramped_load *l = loads->ramped; l != NULL && schedule->n == 0; l = l->next) {
         const bough_schedule *own = &l->schedule;
+        // loads of one kind on one ramp are one load
         bool same = own->n == 0 && own->start == schedule->start && own->end == schedule->end;
         if (same && l->follower == follower) return l;
     }
@@ -205,6 +216,7 @@ void bough_rod_loads_along(const bough_rod_model *m, const double *line, const d
     bough_rod_line_strain(m, line, loads->rest);
     bough_rod_line_strain(m, rate, loads->rest_rate);
     loads->moving = true;
+    // e⁰ + D q
     double *restrict rest = loads->rest;
     const double *restrict strain0 = m->strain0;
 #pragma omp simd
@@ -224,6 +236,7 @@ void bough_rod_rest_state(const bough_rod_model *m, const double *input, double 
     for (int i = 0; i < n; i++) {
         bough_vec3 x = m->position0[i + 1];
         bough_quaternion p = m->rotation0[i + 1];
+        // velocities of the frame's rigid motion: u₀ + ω×x, and Rᵀω
         bough_vec3 u = bough_add(u0, bough_cross(omega, x));
         bough_vec3 w = bough_mat3_tmul(bough_rotation_matrix(p), omega);
         const double values[BOUGH_ROD_STATES] = {x.x, x.y, x.z, p.w, p.x, p.y, p.z,

@@ -44,6 +44,7 @@ void bough_rod_present_root_wrench(const bough_rod_model *m, const bough_rod_scr
                                    double *wrench) {
     int s = m->stride;
     const double *f = scratch->segment;
+    // the first segment's pull on vertex 0, with its moment in BRF axes, and the loads there
     bough_vec3 moment = bough_mat3_mul(m->root, bough_v3(f[3 * s], f[4 * s], f[5 * s]));
     const double inner[6] = {f[0], f[s], f[2 * s], moment.x, moment.y, moment.z};
     for (int c = 0; c < 6; c++) wrench[c] = inner[c] + scratch->load[c * s];
@@ -54,6 +55,7 @@ void bough_rod_present_end_wrench(const bough_rod_model *m, const bough_rod_scra
     int s = m->stride, end = m->n_segment;
     bough_mat3 r = bough_rotation_matrix(load_vertex(scratch->vertex, s, end).p);
     const double *f = scratch->segment + end - 1, *load = scratch->load + end;
+    // the loads on the last vertex, their moment in section axes, and the pull of the last segment
     bough_vec3 moment = bough_mat3_tmul(r, lane_load(load + 3 * s, s, 0));
     lane_store(wrench, 1, 0, bough_sub(lane_load(load, s, 0), lane_load(f, s, 0)));
     lane_store(wrench + 3, 1, 0, bough_add(moment, lane_load(f + 6 * s, s, 0)));
@@ -66,6 +68,7 @@ void bough_rod_stress(const bough_rod_model *m, const bough_rod_scratch *scratch
     strain e = elastic_strain(shape, m->inverse_length[n], scratch->rest, m->stride, n);
     strain s = segment_stress(bough_rod_tile(m->stiffness, 21, n), bough_rod_tile(m->gradient, 35, n),
                               BOUGH_LANES, 0, e);
+    // forces of the segment on its vertices, then the moment in its middle from that on the left one
     segment_force f = stress_force(shape, s, m->length[n]);
     bough_vec3 half = bough_scale(0.5 * m->length[n], shape.chord);
     bough_vec3 force = along_axis(shape.v, s.v);

@@ -8,6 +8,7 @@
 static void gather_input(const bough_rod_model *m, const double *input, bough_rod_scratch *scratch) {
     int s = m->stride;
     double *vertex = scratch->vertex;
+    // the root: at the origin of the BRF, moving with it
     bough_quaternion p0 = m->rotation0[0];
     bough_vec3 omega = {input[3], input[4], input[5]};
     bough_vec3 w0 = bough_mat3_tmul(m->root, omega);
@@ -15,6 +16,7 @@ static void gather_input(const bough_rod_model *m, const double *input, bough_ro
                                            input[0], input[1], input[2], w0.x, w0.y, w0.z};
     for (int c = 0; c < BOUGH_ROD_STATES; c++) vertex[c * s] = root[c];
     if (!bough_rod_carries(m)) return;
+    // the last vertex, with its quaternion normalised
     const double *u = input + BOUGH_ROD_INPUTS, *p = u + 9; // u W x p
     double scale = 1 / sqrt(p[0] * p[0] + p[1] * p[1] + p[2] * p[2] + p[3] * p[3]);
     const double end[BOUGH_ROD_STATES] = {u[6],         u[7],         u[8], scale * p[0], scale * p[1],
@@ -66,9 +68,11 @@ static __attribute__((noinline)) void find_forces(const bough_rod_model *m, cons
 #pragma omp simd
     for (int n = 0; n < BOUGH_WIDTH; n++) {
         vertex_state l = load_vertex(vertex, s, n), r = load_vertex(vertex, s, n + 1);
+        // strains beyond those at rest, and their rates
         segment_geometry shape = segment_shape(l, r, inverse[n]);
         strain e = elastic_strain(shape, inverse[n], rest, s, n);
         strain rate = strain_rate(shape, segment_motion(shape, l, r), inverse[n]);
+        // stress of the elastic law and of the viscosity, and its forces on the two vertices
         strain elastic = segment_stress(c, gradient, BOUGH_LANES, n, e);
         strain viscous = symmetric_times(d, BOUGH_LANES, n, rate);
         segment_force f = stress_force(shape, add_strain(elastic, viscous), length[n]);
@@ -79,6 +83,7 @@ static __attribute__((noinline)) void find_forces(const bough_rod_model *m, cons
     }
 }
 
+// A vector whose segments are all asked for goes straight to scratch, of another only those that are.
 bool AT(forces)(const bough_rod_model *m, int first, int last, bough_rod_scratch *scratch) {
     int s = m->stride;
     double least = 1, cosine[BOUGH_WIDTH], some[9 * BOUGH_WIDTH];
@@ -107,6 +112,7 @@ static void add_ramped(const bough_rod_model *m, const bough_rod_loads *loads, d
         for (int k = 0; k < 6 * s; k++) to[k] += factor * l->value[k];
     }
     if (!follow) return;
+    // followers from section to BRF axes
     for (int i = 0; i <= m->n_segment; i++) {
         bough_mat3 r = bough_rotation_matrix(load_vertex(scratch->vertex, s, i).p);
         for (int part = 0; part < 6; part += 3) {
@@ -131,10 +137,12 @@ static void add_line_moments_of(const bough_rod_model *m, int n, bough_rod_scrat
     segment_geometry shape = shape_at(m, scratch, n);
     strain e = elastic_strain(shape, m->inverse_length[n], scratch->rest, s, n);
     elastic_state elastic = elastic_at(c, gradient, BOUGH_LANES, 0, e);
+    // dead loads: theory (22); followers: theory (23)
     dead_line dead = dead_line_at(c, 0, m->line, scratch->along, s, n, elastic);
     end_moments on = middle_moment(shape, axis_moment(m->line, s, n, h, dead.stress, dead.q));
     bough_vec3 bend = bough_axpy(-h, lane_load(m->strain0 + 3 * s, s, n), shape.phi);
     bough_vec3 follower = following_moment(h, bend, lane_load(scratch->following, s, n));
+    // on both vertices, in BRF axes
     const bough_vec3 moment[2] = {on.left, on.right};
     for (int side = 0; side < 2; side++) {
         bough_mat3 axes = bough_rotation_matrix(load_vertex(scratch->vertex, s, n + side).p);
@@ -158,6 +166,7 @@ static void add_along(const bough_rod_model *m, const bough_rod_loads *loads, do
         double factor = bough_schedule_at(&l->schedule, t);
         if (!l->along) continue;
         for (int n = 0; n < m->n_segment; n++) {
+            // q in the axes of the middle: force, moment and their slopes
             bough_mat3 r = shape_at(m, scratch, n).r;
             bough_vec3 q[4];
             for (int part = 0; part < 4; part++) {
@@ -167,6 +176,7 @@ static void add_along(const bough_rod_model *m, const bough_rod_loads *loads, do
                 if (l->follower && part > 0) continue;
                 lane_add(to, s, n, q[part]);
             }
+            // D q
             strain e = line_strain(m->line, s, n, q);
             lane_add(scratch->own_rest, s, n, e.v);
             lane_add(scratch->own_rest + 3 * s, s, n, e.u);
@@ -175,6 +185,7 @@ static void add_along(const bough_rod_model *m, const bough_rod_loads *loads, do
     for (int n = 0; n < m->n_segment; n++) add_line_moments_of(m, n, scratch);
 }
 
+// e⁰ + D q of loads along the segments, `elapsed` after they were set.
 static void move_rest(const bough_rod_model *m, const bough_rod_loads *loads, double elapsed,
                       bough_rod_scratch *scratch) {
     const double *restrict rest = loads->rest, *restrict rate = loads->rest_rate;
@@ -185,7 +196,7 @@ static void move_rest(const bough_rod_model *m, const bough_rod_loads *loads, do
     scratch->rest = now;
 }
 
-// Adds what the own motion of vertices first..last makes of the loads.
+// Adds how the loads follow the motion of vertices first..last themselves.
 static void add_damping(const bough_rod_model *m, const bough_rod_loads *loads, int first, int last,
                         bough_rod_scratch *scratch) {
     int s = m->stride;
@@ -195,6 +206,7 @@ static void add_damping(const bough_rod_model *m, const bough_rod_loads *loads, 
     double *restrict load = scratch->load;
 #pragma omp simd
     for (int i = first; i <= last; i++) {
+        // rotation of the section about its normal
         double phi = angle[i] * p[i] + angle[s + i] * p[s + i] + angle[2 * s + i] * p[2 * s + i] +
                      angle[3 * s + i] * p[3 * s + i];
         double x = u[i], y = u[s + i], z = w[i];
@@ -206,7 +218,8 @@ static void add_damping(const bough_rod_model *m, const bough_rod_loads *loads, 
 }
 
 void AT(load)(const bough_rod_model *m, const bough_rod_loads *loads, double t, bough_rod_scratch *scratch) {
-    double elapsed = t - loads->start; // all that bough_rod_vertex_rows took: whole registers
+    // sampled loads on the vertices; all that bough_rod_vertex_rows took: whole registers
+    double elapsed = t - loads->start;
     const double *restrict value = loads->value, *restrict rate = loads->rate;
     const double *restrict curve = loads->curve;
     double *restrict load = scratch->load;
@@ -216,9 +229,11 @@ void AT(load)(const bough_rod_model *m, const bough_rod_loads *loads, double t, 
         load[k] = value[k] + elapsed * (rate[k] + elapsed * curve[k]);
     }
     if (loads->damped) add_damping(m, loads, 1, m->n_segment, scratch);
+    // strains at rest
     scratch->rest = loads->rest;
     scratch->turning = false;
     if (loads->moving) move_rest(m, loads, elapsed, scratch);
+    // loads on a schedule
     if (loads->ramped == NULL) return;
     add_ramped(m, loads, t, scratch);
     if (loads_lie_along(loads)) add_along(m, loads, t, scratch);
@@ -258,14 +273,17 @@ BOUGH_INLINE void vertex_accelerations(const bough_rod_model *m, const bough_rod
     for (int i = from; i < from + count; i++) {
         vertex_state a = load_vertex(v, s, i);
         bough_mat3 r = bough_rotation_matrix(a.p);
+        // segments on both sides, and loads: force in BRF axes, moment in section axes
         bough_vec3 force =
             bough_add(bough_sub(lane_load(f, s, i), lane_load(f, s, i - 1)), lane_load(load, s, i));
         bough_vec3 moment = bough_add(bough_add(lane_load(f + 3 * s, s, i), lane_load(f + 6 * s, s, i - 1)),
                                       bough_mat3_tmul(r, lane_load(load + 3 * s, s, i)));
+        // less the centrifugal and gyroscopic terms, W×(W×s) and W×I W
         bough_vec3 offset = lane_load(first, s, i - 1);
         bough_vec3 centrifugal = bough_cross(a.w, bough_cross(a.w, offset));
         bough_vec3 gyroscopic = bough_cross(a.w, inertia_times(inertia, s, i - 1, a.w));
         strain h = {bough_sub(bough_mat3_tmul(r, force), centrifugal), bough_sub(moment, gyroscopic)};
+        // times the inverse mass; u̇ in the rotating BRF axes
         strain q = symmetric_times(inverse, BOUGH_LANES, i - from, h);
         bough_vec3 acceleration =
             bough_sub(bough_add(bough_mat3_mul(r, q.v), gravity), bough_cross(omega, a.u));
@@ -275,7 +293,7 @@ BOUGH_INLINE void vertex_accelerations(const bough_rod_model *m, const bough_rod
 }
 
 // theory (16): ẋ = u − u₀ − ω×x and ṗ = ½ (p∘(0,W) − (0,ω)∘p) + κ(1 − |p|²)p: the last term takes back what
-// integration errors do to the norm, in about a second, and does not turn the section.
+// integration errors do to the norm, in about a second, and does not rotate the section.
 BOUGH_INLINE void vertex_kinematics(int n, const double *restrict state, const double *input, int from,
                                     int count, double *restrict rate) {
     bough_vec3 u0 = {input[0], input[1], input[2]}, omega = {input[3], input[4], input[5]};
@@ -285,6 +303,7 @@ BOUGH_INLINE void vertex_kinematics(int n, const double *restrict state, const d
         bough_vec3 w = lane_load(state + 10 * n, n, i);
         bough_quaternion p = lane_load_quaternion(state + 3 * n, n, i);
         bough_vec3 v = {p.x, p.y, p.z};
+        // p∘(0,W) − (0,ω)∘p = (−v·(W − ω), p₀(W − ω) + v×(W + ω))
         bough_vec3 difference = bough_sub(w, omega), sum = bough_add(w, omega);
         bough_vec3 turn = bough_axpy(p.w, difference, bough_cross(v, sum));
         double restore = BOUGH_ROD_NORM_RATE * (1 - p.w * p.w - bough_dot(v, v));
@@ -321,7 +340,7 @@ bool AT(derivative)(const bough_rod_model *m, const bough_rod_loads *loads, doub
 }
 
 // Adds to the forces of the segments what the change Δ of D q does to them where they are:
-// f = −R C Δ, moments ∓h/2 f×V + C Δ, in segments whose own turn is neglected.
+// f = −R C Δ, moments ∓h/2 f×V + C Δ, in segments whose own rotation, φ, is neglected.
 static void add_drift(const bough_rod_model *m, const bough_rod_loads *loads, double elapsed,
                       bough_rod_scratch *scratch) {
     int s = m->stride;
@@ -350,8 +369,10 @@ bool AT(derivative_again)(const bough_rod_model *m, const bough_rod_loads *loads
                           double *rate) {
     int n = m->n_segment;
     double before = scratch->time;
+    // the vertices that the input moves, and the loads at the new time
     gather_input(m, input, scratch);
     AT(load)(m, loads, t, scratch);
+    // all segments if ramped loads lie along them, else those that touch the input
     bool all = loads_lie_along(loads);
     if (!all && loads->moving) add_drift(m, loads, t - before, scratch);
     bool ok = AT(forces)(m, 0, all ? bough_padded(n) : 1, scratch);

@@ -1,3 +1,5 @@
+// Loads along a rod onto its vertices, by hat functions, and between them, as the linear loads that bend the
+// segments equally: theory (105).
 #include "flexbody/rod/rod_load.h"
 
 #include "flexbody/rod/rod_kernels.h"
@@ -29,6 +31,7 @@ static void add_point(double h, double xi, double weight, const double *wrench, 
     }
 }
 
+// Adds a part of a load on segment n: a point, or its quadrature over a length.
 static void add_part(const bough_rod_model *m, int n, const bough_rod_part *part, segment_load *to) {
     double h = m->span[n + 1] - m->span[n], length = part->to - part->from;
     if (length == 0) add_point(h, (part->from - m->span[n]) / h, 1, part->start, to);
@@ -53,13 +56,12 @@ static void lump_stress(const bough_rod_model *m, int n, strain line, bool follo
     strain stress = symmetric_times(bough_rod_tile(m->stiffness, 21, n), BOUGH_LANES, 0, minus);
     segment_force f = stress_force(shape, stress, m->length[n]);
     const bough_vec3 force[2] = {f.f, bough_scale(-1, f.f)}, moment[2] = {f.ll, f.lr};
+    // forces are in BRF axes, moments in section axes
     for (int side = 0; side < 2; side++) {
         bough_mat3 axes = bough_rotation_matrix(m->rotation0[n + side]);
         double *to = value + n + side;
-        bough_vec3 pull = follower ? bough_mat3_tmul(axes, force[side]) : force[side];
-        bough_vec3 turn = follower ? moment[side] : bough_mat3_mul(axes, moment[side]);
-        lane_add(to, s, 0, pull);
-        lane_add(to + 3 * s, s, 0, turn);
+        lane_add(to, s, 0, follower ? bough_mat3_tmul(axes, force[side]) : force[side]);
+        lane_add(to + 3 * s, s, 0, follower ? moment[side] : bough_mat3_mul(axes, moment[side]));
     }
 }
 
@@ -74,6 +76,7 @@ static void add_variation(const bough_rod_model *m, int n, bough_rod_part part, 
         bough_vec3 turned = bough_mat3_tmul(middle, lane_load(vectors[k], 1, 0));
         lane_store(vectors[k], 1, 0, turned);
     }
+    // the strain of the sections as they are, less that of the equivalent load on uniform sections
     add_part(m, n, &part, &own);
     for (int k = 0; k < 4; k++) q[k] = lane_load(own.line + 3 * k, 1, 0);
     m->sections.strain(m->sections.axis, m, n, &part, strain_of);
@@ -95,6 +98,7 @@ static double bend_of(const bough_rod_model *m, int n, const double line[12]) {
     return (mean + 0.5 * h * slope) * h * h * h / (12 * softest);
 }
 
+// Adds a part of a load that lies on segment n.
 static void add_to_segment(const bough_rod_model *m, int n, const bough_rod_part *part,
                            bough_rod_ramped_load *load) {
     int s = m->stride;
@@ -104,6 +108,7 @@ static void add_to_segment(const bough_rod_model *m, int n, const bough_rod_part
         load->value[c * s + n] += own.left[c];
         load->value[c * s + n + 1] += own.right[c];
     }
+    // between the vertices, unless it acts at one or bends the segment too far
     bool at_vertex = part->from == part->to && (part->from == m->span[n] || part->from == m->span[n + 1]);
     bool whole = part->from == m->span[n] && part->to == m->span[n + 1];
     if (at_vertex || bend_of(m, n, own.line) > most_bend) return;
@@ -117,6 +122,7 @@ void bough_rod_lump(const bough_rod_model *m, bough_rod_reach reach, const doubl
     for (int n = 0; n < m->n_segment; n++) {
         bool last = n == m->n_segment - 1;
         bough_rod_part part = {.from = fmax(reach.from, m->span[n]), .to = fmin(reach.to, m->span[n + 1])};
+        // a point between two segments belongs to the right one
         bool point = reach.from == reach.to && (last || reach.to < m->span[n + 1]);
         if (part.to < part.from || (part.to == part.from && !point)) continue;
         for (int c = 0; c < 6; c++) {

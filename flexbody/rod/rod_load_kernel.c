@@ -2,6 +2,7 @@
 #include "flexbody/rod/rod_kernels.h"
 #include "flexbody/rod/rod_lanes.h"
 
+// Row by row D q = D₀ (mean) + D₁ (slope).
 void AT(line_strain)(const bough_rod_model *m, const double *line, double *along) {
     int s = m->stride, n = m->n_segment;
     for (int i = 0; i < 6; i++) {
@@ -18,12 +19,14 @@ void AT(line_strain)(const bough_rod_model *m, const double *line, double *along
     }
 }
 
+// d₃ of the section with the quaternion p.
 BOUGH_INLINE bough_vec3 tangent_of(bough_quaternion p) {
     return (bough_vec3){2 * (p.x * p.z + p.w * p.y), 2 * (p.y * p.z - p.w * p.x),
                         1 - 2 * (p.x * p.x + p.y * p.y)};
 }
 
-// Segments first..first + count − 1: their lines of load turned, and their moments about the chords.
+// Segments first..first + count − 1: their line loads in the axes of their middles, and the moments of these
+// about the chords.
 BOUGH_INLINE void turn_line(const bough_rod_model *m, const double *restrict rotation,
                             const double *restrict line, int first, int count, double *restrict turned,
                             double *restrict moment) {
@@ -35,12 +38,14 @@ BOUGH_INLINE void turn_line(const bough_rod_model *m, const double *restrict rot
         bough_quaternion p = bough_quaternion_unit(lane_load_quaternion(rotation, v, k));
         bough_quaternion q = bough_quaternion_unit(lane_load_quaternion(rotation, v, k + 1));
         bough_mat3 r = mid_frame_between(p, q);
+        // mean force and moment, slopes of force and moment
         for (int part = 0; part < 4; part++) {
             lane_store(turned + 3 * part * n, n, k, bough_mat3_tmul(r, lane_load(line + 3 * part * n, n, k)));
         }
-        bough_vec3 turn = bough_sub(tangent_of(q), tangent_of(p));
-        turn = bough_sub(turn, bough_mat3_mul(r, lane_load(bend, s, l)));
-        lane_store(moment, BOUGH_LANES, l, chord_moment(h[l], turn, lane_load(line, n, k)));
+        // how much more the tangent changes over the segment than in the undeformed rod
+        bough_vec3 change = bough_sub(tangent_of(q), tangent_of(p));
+        change = bough_sub(change, bough_mat3_mul(r, lane_load(bend, s, l)));
+        lane_store(moment, BOUGH_LANES, l, chord_moment(h[l], change, lane_load(line, n, k)));
     }
 }
 
@@ -51,6 +56,7 @@ void AT(take_line)(const bough_rod_model *m, const double *rotation, const doubl
         int count = n - first < BOUGH_LANES ? n - first : BOUGH_LANES;
         double moment[3 * BOUGH_LANES];
         turn_line(m, rotation, line, first, count, turned, moment);
+        // a pass for the left and one for the right vertices, because neighbours share one
         for (int c = 0; c < 3; c++) {
             double *restrict to = load + (3 + c) * v + first;
             const double *restrict from = moment + c * BOUGH_LANES;

@@ -5,10 +5,12 @@
 
 static const double rounding = 1e-11; // damping ratios below it are none
 
+// |x_k|² of a complex shape.
 static double square_of(const bough_eigen_pair *pair, int k) {
     return pair->shape_real[k] * pair->shape_real[k] + pair->shape_imag[k] * pair->shape_imag[k];
 }
 
+// Kinetic energy of translations and of the rotation about the axis; the largest names the mode.
 static void set_shares(const bough_rod_model *m, const bough_eigen_pair *pair, bough_rod_mode *mode) {
     double sum = 0;
     for (int i = 0; i < m->n; i++) {
@@ -35,7 +37,7 @@ static int reference_of(const bough_rod_model *m, const bough_eigen_pair *pair, 
     return at;
 }
 
-// Divided by the reference entry, rotations turned from section to body axes.
+// The shape divided by its reference entry, rotations in body axes in place of section axes.
 static void set_shape(const bough_rod_model *m, const bough_eigen_pair *pair, const double *state,
                       bough_rod_mode *mode) {
     int n = m->n, reference = reference_of(m, pair, mode);
@@ -46,14 +48,16 @@ static void set_shape(const bough_rod_model *m, const bough_eigen_pair *pair, co
         bough_mat3 r = bough_rod_rotation(state, n, i);
         const double *a = pair->shape_real + (size_t)BOUGH_COLUMN * i,
                      *b = pair->shape_imag + (size_t)BOUGH_COLUMN * i;
+        // (a + i b) divided by the reference
         double real[6], imaginary[6];
         for (int c = 0; c < 6; c++) {
             real[c] = cosine * a[c] - sine * b[c];
             imaginary[c] = cosine * b[c] + sine * a[c];
         }
-        bough_vec3 turn = bough_mat3_mul(r, bough_v3(real[3], real[4], real[5]));
-        bough_vec3 lag = bough_mat3_mul(r, bough_v3(imaginary[3], imaginary[4], imaginary[5]));
-        const double turned[6] = {turn.x, turn.y, turn.z, lag.x, lag.y, lag.z};
+        // rotations from section to body axes
+        bough_vec3 first = bough_mat3_mul(r, bough_v3(real[3], real[4], real[5]));
+        bough_vec3 second = bough_mat3_mul(r, bough_v3(imaginary[3], imaginary[4], imaginary[5]));
+        const double turned[6] = {first.x, first.y, first.z, second.x, second.y, second.z};
         for (int c = 0; c < 3; c++) {
             mode->real[c * n + i] = real[c];
             mode->real[(3 + c) * n + i] = turned[c];
@@ -94,6 +98,7 @@ bough_status bough_rod_modes(bough_arena *arena, const bough_rod_model *m, bough
     bough_eigen_pair *pair = bough_arena_take(arena, wanted * sizeof *pair);
     list->mode = bough_arena_take(arena, wanted * sizeof *list->mode);
     bough_block_tridiagonal_init(&damping, arena, m->n);
+    // M, C, K about the equilibrium, then the eigenvalues nearest to 0
     BOUGH_TRY(linearise(m, work, input, state, &damping));
     bough_eigen_problem problem = {m->name, work->tangent.blocks.mass, &damping, &work->tangent.matrix};
     BOUGH_TRY(bough_eigen_smallest(arena, &problem, list->wanted, pair, &list->found));

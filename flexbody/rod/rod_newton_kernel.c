@@ -23,12 +23,15 @@ static void eliminate_rotations(const bough_rod_model *m, bough_rod_tangent *k) 
         bough_vec3 vector = lane_load(kept + (KEPT_P + 1) * s, s, v);
         double scalar = kept[KEPT_P * s + v];
         double square = scalar * scalar + bough_dot(vector, vector);
+        // e and f from the length of the quaternion
         double e = 1 - gamma * BOUGH_ROD_NORM_RATE * (1 - square);
         double f = e + 2 * gamma * BOUGH_ROD_NORM_RATE * square;
+        // the update of rank one: bq = (eE + ξ(a))⁻¹q
         bough_vec3 a = bough_scale(0.5 * gamma / e, bough_add(w, o));
         bough_vec3 q = bough_scale(0.5 * gamma, bough_sub(w, o));
         bough_vec3 bq = bough_scale(1 / e, solve_cross(a, q));
         double weight = 1 / (f + bough_dot(q, bq));
+        // columns of A_φ
         for (int j = 0; j < 3; j++) {
             bough_vec3 b = bough_scale(1 / e, solve_cross(a, bough_unit3(j)));
             b = bough_axpy(-weight * bough_dot(q, b), bq, b);
@@ -115,10 +118,12 @@ BOUGH_INLINE void eliminate_residual(const bough_rod_model *m, const bough_rod_t
         bough_vec3 rx = lane_load(x, n, v - 1), rp = lane_load(x + 4 * n, n, v - 1);
         bough_vec3 p = lane_load(kept + (KEPT_P + 1) * s, s, v);
         double rw = x[3 * n + v - 1], pw = kept[KEPT_P * s + v];
+        // p⁻¹∘r: scalar part, and twice the vector part, a rotation
         double inverse = 1 / (pw * pw + bough_dot(p, p));
         double scalar = inverse * (pw * rw + bough_dot(p, rp));
         bough_vec3 rho = bough_axpy(pw, rp, bough_axpy(-rw, p, bough_cross(rp, p)));
         rho = bough_scale(2 * inverse, rho);
+        // the scalar part eliminated, then A_x r_x and A_φ ρ
         bough_vec3 slip =
             bough_sub(lane_load(kept + KEPT_W * s, s, v), lane_load(kept + KEPT_OMEGA * s, s, v));
         rho = bough_axpy(gamma * scalar * kept[KEPT_SCALE * s + v], slip, rho);
@@ -181,9 +186,11 @@ BOUGH_INLINE void velocity_residual(const bough_rod_model *m, const bough_rod_ta
         bough_vec3 ru = lane_load(x + 7 * n, n, v - 1), rw = lane_load(x + 10 * n, n, v - 1);
         bough_vec3 offset = lane_load(first, s, v - 1), phi = lane_load(work + (WORK_Q + 3) * s, s, v);
         phi = bough_scale(gamma, phi);
+        // M r_v
         bough_vec3 f = bough_axpy(mass[v - 1], ru, bough_mat3_mul(r, bough_cross(rw, offset)));
         bough_vec3 l =
             bough_add(bough_cross(offset, bough_mat3_tmul(r, ru)), inertia_times(inertia, s, v - 1, rw));
+        // γ K A r_q of the segments on both sides, then of the vertex' own terms
         bough_vec3 pull = bough_sub(lane_load(force, s, v), lane_load(force, s, v - 1));
         bough_vec3 turn = bough_add(lane_load(force + 3 * s, s, v), lane_load(force + 6 * s, s, v - 1));
         f = bough_add(f, bough_axpy(phi.x, lane_load(own, s, v), pull));
@@ -221,14 +228,17 @@ BOUGH_INLINE void recover(const bough_rod_model *m, const bough_rod_tangent *k, 
         int i = v - 1;
         bough_vec3 du = lane_load(velocity, s, v), rate = lane_load(velocity + 3 * s, s, v);
         bough_vec3 dw = bough_scale(gamma, rate);
+        // δx = A_x (r_x + γ δu)
         bough_vec3 shift = solve_cross(g, bough_scale(gamma, du));
         lane_store(x, n, i, bough_add(lane_load(q, s, v), shift));
+        // δφ = A_φ (ρ + γ δW)
         bough_vec3 phi = {turn[v] * dw.x + turn[s + v] * dw.y + turn[2 * s + v] * dw.z,
                           turn[3 * s + v] * dw.x + turn[4 * s + v] * dw.y + turn[5 * s + v] * dw.z,
                           turn[6 * s + v] * dw.x + turn[7 * s + v] * dw.y + turn[8 * s + v] * dw.z};
         phi = bough_add(phi, lane_load(q + 3 * s, s, v));
         bough_vec3 slip =
             bough_sub(lane_load(kept + KEPT_W * s, s, v), lane_load(kept + KEPT_OMEGA * s, s, v));
+        // δp from its scalar part and δφ/2
         double scalar = q[WORK_SCALAR * s + v] - 0.25 * gamma * bough_dot(slip, phi);
         scalar *= kept[KEPT_SCALE * s + v];
         bough_vec3 p = lane_load(kept + (KEPT_P + 1) * s, s, v), half = bough_scale(0.5, phi);
@@ -244,14 +254,17 @@ BOUGH_INLINE void recover(const bough_rod_model *m, const bough_rod_tangent *k, 
 void AT(solve)(const bough_rod_model *m, bough_rod_tangent *k, double *x) {
     double *velocity = k->work + (size_t)WORK_VELOCITY * m->stride;
     int n = m->n, whole = n - n % BOUGH_WIDTH;
+    // M r_v + γ K A r_q
     for (int v = 1; v <= whole; v += BOUGH_WIDTH) eliminate_residual(m, k, x, v, BOUGH_WIDTH, k->work);
     for (int v = whole + 1; v <= n; v++) eliminate_residual(m, k, x, v, 1, k->work);
     segment_residual(m, k, k->work, k->force);
     for (int v = 1; v <= whole; v += BOUGH_WIDTH) velocity_residual(m, k, x, v, BOUGH_WIDTH, k->work);
     for (int v = whole + 1; v <= n; v++) velocity_residual(m, k, x, v, 1, k->work);
+    // the block-tridiagonal system in the velocities
     pack(m->n, m->stride, velocity, k->packed);
     BOUGH_AT_LEVEL(bough_block_tridiagonal_solve)(&k->matrix, k->packed);
     unpack(m->n, m->stride, k->packed, velocity);
+    // the configuration
     for (int v = 1; v <= whole; v += BOUGH_WIDTH) recover(m, k, k->work, v, BOUGH_WIDTH, x);
     for (int v = whole + 1; v <= n; v++) recover(m, k, k->work, v, 1, x);
 }

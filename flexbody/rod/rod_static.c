@@ -1,3 +1,4 @@
+// Newton's method with increments of load for a rod with a held root, and finite changes of its shape.
 #include "flexbody/rod/rod_static.h"
 
 #include "core/base/linalg.h"
@@ -30,17 +31,18 @@ void bough_rod_change(const bough_rod_model *m, const double *state, const doubl
     for (int i = 0; i < m->n_segment; i++, change += BOUGH_ROD_CHANGE) {
         vertex_row at = row_of(m, state, end, i), by = row_of(m, rate, end_rate, i);
         bough_vec3 shift = position_in(by);
-        bough_quaternion turn =
+        // δφ = 2 Im(p̄∘δp)
+        bough_quaternion half =
             bough_quaternion_product(bough_quaternion_conjugate(quaternion_in(at)), quaternion_in(by));
-        const double values[BOUGH_ROD_CHANGE] = {shift.x,    shift.y,    shift.z, 2 * turn.x,
-                                                 2 * turn.y, 2 * turn.z, 0,       0};
+        const double values[BOUGH_ROD_CHANGE] = {shift.x,    shift.y,    shift.z, 2 * half.x,
+                                                 2 * half.y, 2 * half.z, 0,       0};
         memcpy(change, values, sizeof values);
     }
 }
 
-static vertex_variation variation_of(const double *change, double share) {
-    return (vertex_variation){.x = bough_scale(share, bough_v3(change[0], change[1], change[2])),
-                              .phi = bough_scale(share, bough_v3(change[3], change[4], change[5]))};
+static vertex_variation variation_of(const double *change, double factor) {
+    return (vertex_variation){.x = bough_scale(factor, bough_v3(change[0], change[1], change[2])),
+                              .phi = bough_scale(factor, bough_v3(change[3], change[4], change[5]))};
 }
 
 double bough_rod_turn(const bough_rod_model *m, const double *change) {
@@ -66,16 +68,18 @@ static void put_vertex(double *to, int stride, const vertex_state *v) {
     for (int c = 0; c < 7; c++) to[c * stride] = values[c];
 }
 
-void bough_rod_move(const bough_rod_model *m, const double *change, double share, double *state,
+void bough_rod_move(const bough_rod_model *m, const double *change, double fraction, double *state,
                     double *end) {
     vertex_state old = {.x = m->position0[0], .p = m->rotation0[0]}, now = old;
     vertex_variation dl = {{0, 0, 0}, {0, 0, 0}, {0, 0, 0}, {0, 0, 0}};
     for (int i = 0; i < m->n_segment; i++, change += BOUGH_ROD_CHANGE) {
         vertex_row row = row_of(m, state, end, i);
         vertex_state r = {.x = position_in(row), .p = quaternion_in(row)}, moved = r;
-        vertex_variation dr = variation_of(change, share);
+        vertex_variation dr = variation_of(change, fraction);
+        // the rotated vertex
         moved.p =
             bough_quaternion_normalised(bough_quaternion_product(r.p, bough_quaternion_exponential(dr.phi)));
+        // its place at the end of a chord that has the segment's strains
         segment_geometry before = segment_shape(old, r, m->inverse_length[i]);
         segment_geometry after = segment_shape(now, moved, m->inverse_length[i]);
         bough_vec3 chord = stretched(&before, &after, m->length[i], dl, dr);
@@ -181,11 +185,12 @@ static void put_in_band(const double *block, int i, int j, double *band) {
     }
 }
 
-// K δq = residual, in place in step. With pivoting: blocks eliminated in their order leave of the residual
-// what would strain a slender rod.
+// theory (27): K δq = residual, in place in step. With pivoting: blocks eliminated in their order leave of
+// the residual what would strain a slender rod.
 static bool newton_step(const bough_rod_model *m, bough_rod_static *w, const double *input,
                         const double *state) {
     const bough_block_tridiagonal *a = &w->tangent.matrix;
+    // K in LAPACK's band storage
     bough_rod_linear_stiffness(m, &w->tangent.blocks, input, state, &w->tangent.matrix);
     memset(w->band, 0, (size_t)BAND_ROWS * 6 * m->n * sizeof(double));
     for (int i = 0; i < m->n; i++) {
@@ -206,6 +211,7 @@ static bool converge(const bough_rod_model *m, const double *input, const bough_
     int shortened = 0;
     for (int k = 0; k < options->iterations; k++) {
         w->iterations++;
+        // tangent and residual at rest in the moving frame
         bough_rod_move_rigidly(m, input, state);
         if (!bough_rod_linearise(m, &w->scaled, 0, state, input, &w->scratch, &w->tangent)) {
             return false;
@@ -213,10 +219,11 @@ static bool converge(const bough_rod_model *m, const double *input, const bough_
         bough_rod_derivative(m, &w->scaled, 0, state, input, &w->scratch, w->rate);
         if (residual(m, w, magnitude(m, w)) < options->tolerance) return true;
         if (!newton_step(m, w, input, state)) return false;
+        // the step; one that is shortened again and again leads to another equilibrium
         double change = update(m, w->step, state);
         shortened += change > most_turn;
         if (shortened > SHORTENED) return false;
-        // rounding in a stiff rod keeps the residual up; then the steps tell
+        // rounding in a stiff rod keeps the residual up; then a small step is convergence
         if (change < options->tolerance) {
             bough_rod_move_rigidly(m, input, state);
             return true;
@@ -226,7 +233,7 @@ static bool converge(const bough_rod_model *m, const double *input, const bough_
 }
 
 // Adds what the ramped loads of one kind end with. Whether there are any.
-static bool sum_ramped(const bough_rod_model *m, const bough_rod_loads *loads, double share,
+static bool sum_ramped(const bough_rod_model *m, const bough_rod_loads *loads, double fraction,
                        bough_rod_ramped_load *sum) {
     size_t count = 6 * (size_t)m->stride;
     bool any = false;
@@ -237,36 +244,40 @@ static bool sum_ramped(const bough_rod_model *m, const bough_rod_loads *loads, d
         if (l->follower != sum->follower) continue;
         any = true;
         sum->along = sum->along || l->along;
-        double factor = share * (l->schedule.n > 0 ? l->schedule.values[l->schedule.n - 1] : 1);
+        // the factor at the end of its schedule
+        double factor = fraction * (l->schedule.n > 0 ? l->schedule.values[l->schedule.n - 1] : 1);
         for (size_t k = 0; k < count; k++) sum->value[k] += factor * l->value[k];
         for (size_t k = 0; k < 2 * count; k++) sum->line[k] += factor * l->line[k];
     }
     return any;
 }
 
-static void scale_loads(const bough_rod_model *m, const bough_rod_loads *loads, double share,
+// w->scaled ← `fraction` of all loads: those on the vertices, strains of loads along the segments, ramped
+// ones.
+static void scale_loads(const bough_rod_model *m, const bough_rod_loads *loads, double fraction,
                         bough_rod_static *w) {
     int count = 6 * m->stride;
     for (int k = 0; k < count; k++) {
-        w->scaled.value[k] = share * loads->value[k];
-        w->scaled.rest[k] = m->strain0[k] + share * (loads->rest[k] - m->strain0[k]);
+        w->scaled.value[k] = fraction * loads->value[k];
+        w->scaled.rest[k] = m->strain0[k] + fraction * (loads->rest[k] - m->strain0[k]);
     }
     w->scaled.ramped = NULL;
     bough_rod_ramped_load *const kinds[2] = {w->follower, w->dead};
     for (int k = 0; k < 2; k++) {
-        if (!sum_ramped(m, loads, share, kinds[k])) continue;
+        if (!sum_ramped(m, loads, fraction, kinds[k])) continue;
         kinds[k]->next = w->scaled.ramped;
         w->scaled.ramped = kinds[k];
     }
 }
 
 // Centrifugal forces grow with the square of the twist.
-static void scale_input(const double *input, double share, double *scaled) {
+static void scale_input(const double *input, double fraction, double *scaled) {
     for (int k = 0; k < BOUGH_ROD_INPUTS; k++) {
-        scaled[k] = (k < BOUGH_ROD_INPUTS - 3 ? sqrt(share) : share) * input[k];
+        scaled[k] = (k < BOUGH_ROD_INPUTS - 3 ? sqrt(fraction) : fraction) * input[k];
     }
 }
 
+// The failure, with its likely cause.
 static bough_status not_found(const bough_rod_model *m, double reached) {
     double ratio = slenderness(m);
     if (ratio > slender) {
@@ -289,11 +300,13 @@ bough_status bough_rod_steady(const bough_rod_model *m, const bough_rod_loads *l
     double least = ldexp(largest, -options->halvings);
     work->iterations = 0;
     while (reached < 1) {
+        // the next increment, from the last equilibrium
         double target = fmin(reached + increment, 1), scaled[BOUGH_ROD_INPUTS];
         int before = work->iterations;
         scale_loads(m, loads, target, work);
         scale_input(input, target, scaled);
         memcpy(work->trial, state, bytes);
+        // accepted, and doubled where it was easy; else halved
         if (converge(m, scaled, options, work, work->trial)) {
             memcpy(state, work->trial, bytes);
             reached = target;

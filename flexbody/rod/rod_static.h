@@ -37,8 +37,8 @@ void bough_rod_static_init(bough_rod_static *work, bough_arena *arena, const bou
 
 // Brings `state` (13 n), from where it is, to rest in a BRF of constant twist and gravity, `input`
 // (9, BRF axes), under loads->value (its rates are ignored) and the whole of the ramped loads. An
-// increment is a share of loads, gravity and the square of the twist. BOUGH_FAILED names the rod and
-// the share of load reached; the state is then the last equilibrium.
+// increment is a fraction of loads, gravity and the square of the twist. BOUGH_FAILED names the rod and
+// the fraction of load reached; the state is then the last equilibrium.
 bough_status bough_rod_steady(const bough_rod_model *m, const bough_rod_loads *loads, const double *input,
                               const bough_rod_static_options *options, bough_rod_static *work, double *state);
 
@@ -52,12 +52,13 @@ enum { BOUGH_ROD_CHANGE = 8 }; // numbers of a vertex' change: δx [m, BRF axes]
 void bough_rod_change(const bough_rod_model *m, const double *state, const double *end, const double *rate,
                       const double *end_rate, double *change);
 
-// Turns the vertices, p ← p∘exp(share δφ), and moves them from the root on by the strains that the
-// change gives to first order: a slender rod then turns without stretching. With x ← x + δx its
-// axial stiffness would answer to the square of the turn. Velocities stay. `end` as above.
-void bough_rod_move(const bough_rod_model *m, const double *change, double share, double *state, double *end);
+// Rotates the vertices, p ← p∘exp(fraction δφ), and moves them from the root on by the strains that the
+// change gives to first order: a slender rod then rotates without stretching. With x ← x + δx it would
+// stretch by the square of the rotation. Velocities stay. `end` as above.
+void bough_rod_move(const bough_rod_model *m, const double *change, double fraction, double *state,
+                    double *end);
 
-// The largest turn of a vertex in a change [rad].
+// The largest rotation of a vertex in a change [rad].
 double bough_rod_turn(const bough_rod_model *m, const double *change);
 
 #endif

@@ -19,7 +19,7 @@ struct bough_rod_body {
 };
 
 // p⁻¹∘r: the rotation 2·vector of a quaternion's variation r, any |p|
-static bough_vec3 turn_of(const double *p, int p_stride, const double *r, int stride) {
+static bough_vec3 rotation_of(const double *p, int p_stride, const double *r, int stride) {
     bough_quaternion q = lane_load_quaternion(p, p_stride, 0), dq = lane_load_quaternion(r, stride, 0);
     bough_quaternion d = bough_quaternion_product(bough_quaternion_conjugate(q), dq);
     double inverse = 1 / (q.w * q.w + q.x * q.x + q.y * q.y + q.z * q.z);
@@ -28,6 +28,7 @@ static bough_vec3 turn_of(const double *p, int p_stride, const double *r, int st
 
 // -- variations of vertices -----------------------------------------------------------------------
 
+// Of the root, along a change of the BRF's velocity and angular velocity.
 static vertex_variation root_variation(const bough_rod_model *m, const double *d) {
     return (vertex_variation){.u = bough_v3_load(d), .w = bough_mat3_tmul(m->root, bough_v3_load(d + 3))};
 }
@@ -37,7 +38,7 @@ static vertex_variation state_variation(const bough_rod_model *m, const double *
                                         const double *d, int i) {
     int n = m->n;
     return (vertex_variation){.x = lane_load(d, n, i),
-                              .phi = turn_of(p, stride, d + 3 * n + i, n),
+                              .phi = rotation_of(p, stride, d + 3 * n + i, n),
                               .u = lane_load(d + (size_t)BOUGH_ROD_U * n, n, i),
                               .w = lane_load(d + (size_t)BOUGH_ROD_W * n, n, i)};
 }
@@ -47,7 +48,7 @@ static vertex_variation end_variation(const double *p, const double *d) {
     return (vertex_variation){.u = bough_v3_load(d),
                               .w = bough_v3_load(d + 3),
                               .x = bough_v3_load(d + 6),
-                              .phi = turn_of(p, 1, d + 9, 1)};
+                              .phi = rotation_of(p, 1, d + 9, 1)};
 }
 
 // Of the vertices of the first segment, and of the last one of a rod that carries bodies.
@@ -70,19 +71,20 @@ static variations variations_along(const bough_rod_model *m, const double *p, in
 
 // -- the wrenches ---------------------------------------------------------------------------------
 
+// The first segment's force on the root, moment in BRF axes.
 static void put_root(const bough_rod_model *m, segment_force f, double *wrench) {
     bough_v3_store(f.f, wrench);
     bough_v3_store(bough_mat3_mul(m->root, f.ll), wrench + 3);
 }
 
-// `load`: what the turn of the vertex changes in the loads on it.
+// `load`: how the loads on the vertex change with its rotation.
 static void put_end(segment_force load, segment_force f, double *wrench) {
     bough_v3_store(bough_sub(load.f, f.f), wrench);
     bough_v3_store(bough_add(load.lr, f.lr), wrench + 3);
 }
 
-// What turning the last vertex by phi changes in the loads on it: in section axes a dead moment
-// turns, in BRF axes the force of a follower.
+// Change of the loads on the last vertex with its rotation phi: in section axes that of a dead moment, in BRF
+// axes that of a follower's force.
 static segment_force load_variation(const bough_rod_model *m, const bough_rod_loads *loads,
                                     const bough_rod_scratch *scratch, bough_vec3 phi) {
     int s = m->stride, end = m->n_segment;
@@ -111,6 +113,7 @@ void bough_rod_keep_end(const bough_rod_model *m, const bough_rod_loads *loads, 
 // A segment's forces by the motion of its vertices, `position` being in lanes.
 static segment_force kept_force(const double *position, const double *velocity, vertex_variation l,
                                 vertex_variation r) {
+    // the directions of the tangents: differences of place and velocity, rotations of both vertices
     double q[DIRECTIONS], v[DIRECTIONS], force[FORCES];
     lane_store(q + DELTA, 1, 0, bough_sub(r.x, l.x));
     lane_store(q + LEFT, 1, 0, l.phi);
@@ -137,6 +140,7 @@ static bool kept_tangent(void *self, const void *factors, const double *state_ra
         variations_along(m, k->vertex + (size_t)KEPT_P * s + 1, s, k->end_rotation, state_rate, input_rate);
     put_root(m, kept_force(k->variation, k->root, v.left[0], v.right[0]), wrench);
     if (!bough_rod_carries(m)) return true;
+    // the last segment in its tile of eight, and the loads on the last vertex
     const double *position = k->variation + (size_t)TANGENTS * (m->n - lane) + lane;
     bough_vec3 phi = v.right[1].phi;
     segment_force load = {.f = bough_mat3_mul(lane_load_matrix(k->end_load, 1, 0), phi),
@@ -169,10 +173,11 @@ static void frame_column(const bough_rod_model *m, const double *state, int kind
         if (kind == 0) lane_store(column, n, i, bough_scale(-1, e));
         if (kind == 2) lane_store(column + (size_t)BOUGH_ROD_U * n, n, i, e);
         if (kind != 1) continue;
-        bough_quaternion turn = bough_quaternion_product((bough_quaternion){0, e.x, e.y, e.z}, p);
+        // by theory (16): −e×x, −½ (0,e)∘p; and −e×u of (11)
+        bough_quaternion rate = bough_quaternion_product((bough_quaternion){0, e.x, e.y, e.z}, p);
         lane_store(column, n, i, bough_cross(x, e));
-        column[3 * n + i] = -0.5 * turn.w;
-        lane_store(column + (size_t)4 * n, n, i, bough_scale(-0.5, bough_v3(turn.x, turn.y, turn.z)));
+        column[3 * n + i] = -0.5 * rate.w;
+        lane_store(column + (size_t)4 * n, n, i, bough_scale(-0.5, bough_v3(rate.x, rate.y, rate.z)));
         lane_store(column + (size_t)BOUGH_ROD_U * n, n, i, bough_cross(u, e));
     }
 }

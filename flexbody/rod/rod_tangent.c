@@ -42,6 +42,7 @@ void bough_rod_solve(const bough_rod_model *m, bough_rod_tangent *k, double *x) 
 
 // -- about a steady motion ------------------------------------------------------------------------
 
+// u = u₀ + ω×x and W = Rᵀω at every vertex.
 void bough_rod_move_rigidly(const bough_rod_model *m, const double *input, double *state) {
     int n = m->n;
     bough_vec3 u0 = {input[0], input[1], input[2]}, omega = {input[3], input[4], input[5]};
@@ -54,13 +55,14 @@ void bough_rod_move_rigidly(const bough_rod_model *m, const double *input, doubl
     }
 }
 
+// The matrix of a × y into a block, from row and column `at` on.
 static void put_cross(bough_vec3 a, double *block, int at) {
     for (int j = 0; j < 3; j++) {
         bough_v3_store(bough_cross(a, bough_unit3(j)), block + (size_t)BOUGH_COLUMN * (at + j) + at);
     }
 }
 
-// B of vertex i + 1
+// B of vertex i + 1: how the velocities of the steady motion change with its position and rotation.
 static void slide(const double *input, const double *state, int n, int i, double *block) {
     bough_vec3 omega = {input[3], input[4], input[5]};
     bough_mat3 r = bough_rod_rotation(state, n, i);
@@ -82,6 +84,7 @@ void bough_rod_linear_stiffness(const bough_rod_model *m, const bough_rod_blocks
     for (int i = 0; i < m->n; i++) {
         double b[BOUGH_BLOCK];
         size_t at = (size_t)i * BOUGH_BLOCK, before = at - BOUGH_BLOCK, after = at + BOUGH_BLOCK;
+        // the blocks of column i, on which B of vertex i + 1 acts
         slide(input, state, m->n, i, b);
         stiffness_block(p->diagonal + at, v->diagonal + at, b, stiffness->diagonal + at);
         if (i > 0) {
@@ -96,6 +99,7 @@ void bough_rod_linear_stiffness(const bough_rod_model *m, const bough_rod_blocks
 void bough_rod_linear_damping(const bough_rod_model *m, const bough_rod_blocks *blocks, const double *input,
                               const double *state, bough_block_tridiagonal *damping) {
     size_t count = (size_t)m->n * BOUGH_BLOCK;
+    // off the diagonal −∂f/∂v alone: M is block-diagonal
     for (size_t j = 0; j < count; j++) {
         damping->lower[j] = -blocks->velocity.lower[j];
         damping->upper[j] = -blocks->velocity.upper[j];

@@ -8,6 +8,7 @@
 
 // -- what all directions share --------------------------------------------------------------------
 
+// Rows of 8: shape, motion and stress of eight segments.
 enum {
     BASE_R = 0,
     BASE_V = 9,
@@ -89,6 +90,7 @@ static void find_base(const bough_rod_model *m, const bough_rod_scratch *scratch
         segment_rate motion = segment_motion(shape, left, right);
         strain e = elastic_strain(shape, inverse[l], rest, s, l);
         strain rate = strain_rate(shape, motion, inverse[l]);
+        // stress, elastic and viscous
         elastic_state elastic = elastic_at(c, gradient, LANES, l, e);
         strain stress = add_strain(elastic_stress(elastic), symmetric_times(d, LANES, l, rate));
         store_elastic(out, l, elastic);
@@ -138,6 +140,7 @@ BOUGH_INLINE void position_direction(const bough_rod_model *m, const bough_rod_s
                                .wr = lane_load(at + BOUGH_ROD_W * s, s, l + 1)};
         strain stress = {lane_load(base + LANES * BASE_STRESS, LANES, l),
                          lane_load(base + LANES * (BASE_STRESS + 3), LANES, l)};
+        // change of the strains beyond those at rest; D q of dead loads rotates against the middle
         segment_variation d = shape_variation(shape, dl, dr, inverse[l]);
         strain de = {d.stretch, bough_scale(inverse[l], d.phi)};
         elastic_state elastic = load_elastic(base, l);
@@ -149,10 +152,12 @@ BOUGH_INLINE void position_direction(const bough_rod_model *m, const bough_rod_s
             turned = dead_line_turned(c, l, line, s, l, &dead, d.middle);
             de = subtract_strain(de, turned.own);
         }
+        // change of the stress, then of the forces
         strain drate = rate_variation(shape, motion, d, &dl, &dr, inverse[l]);
         strain delastic = elastic_variation(c, gradient, LANES, l, elastic, de);
         strain dstress = add_strain(delastic, symmetric_times(damping, LANES, l, drate));
         segment_force f = force_variation(shape, d, stress, dstress, h[l]);
+        // change of the moments of loads along the segment
         if (turning) {
             bough_mat3 rl = bough_rotation_matrix(load_vertex(at, s, l).p);
             bough_mat3 rr = bough_rotation_matrix(load_vertex(at, s, l + 1).p);
@@ -208,6 +213,7 @@ BOUGH_INLINE void store_column(double *restrict block, int l, int row, int colum
     lane_store(block + (6 * row + column) * LANES, 6 * LANES, l, x);
 }
 
+// What elimination and solution need of each vertex: rows KEPT_… of k->vertex.
 static void keep_vertices(const bough_rod_model *m, const double *restrict state,
                           const double *restrict vertex, bough_rod_tangent *k) {
     int n = m->n, s = m->stride;
@@ -255,6 +261,7 @@ static void velocity_columns(const bough_rod_model *m, const bough_rod_tangent *
     for (int l = 0; l < LANES; l++) {
         bough_mat3 r = lane_load_matrix(kept + KEPT_R * s, s, l);
         bough_vec3 offset = lane_load(moment, s, l), w = lane_load(kept + KEPT_W * s, s, l);
+        // δ(W×(W×s)) and δ(W×I W)
         bough_vec3 centrifugal =
             bough_add(bough_cross(e, bough_cross(w, offset)), bough_cross(w, bough_cross(e, offset)));
         bough_vec3 gyroscopic = bough_add(bough_cross(e, inertia_times(inertia, s, l, w)),
@@ -298,7 +305,7 @@ static void damping_columns(const bough_rod_model *m, const bough_rod_loads *loa
 }
 
 // What the rotation of a vertex changes, from the accelerations `rate` (6 n: u̇, Ẇ): the moment of
-// a load in BRF axes and the first moment's forces turn with it.
+// a load in BRF axes and the first moment's forces rotate in section axes.
 static void rotation_columns(const bough_rod_model *m, const double *restrict rate, const double *input,
                              const bough_rod_scratch *scratch, bough_rod_tangent *k) {
     int n = m->n, s = m->stride;
@@ -312,6 +319,7 @@ static void rotation_columns(const bough_rod_model *m, const double *restrict ra
         bough_vec3 offset = lane_load(first, s, v - 1), w = lane_load(kept + KEPT_W * s, s, v);
         bough_vec3 u = lane_load(vertex + BOUGH_ROD_U * s, s, v);
         bough_vec3 udot = lane_load(rate, n, v - 1), wdot = lane_load(rate + 3 * n, n, v - 1);
+        // the acceleration less gravity, in section axes
         bough_vec3 felt = bough_sub(bough_add(udot, bough_cross(omega, u)), gravity);
         bough_vec3 c = bough_mat3_tmul(r, felt);
         bough_vec3 moment = bough_mat3_tmul(r, lane_load(load + 3 * s, s, v));
@@ -326,7 +334,7 @@ static void rotation_columns(const bough_rod_model *m, const double *restrict ra
     }
 }
 
-// Followers turn with their vertex: δ(R f) = R (δφ×f), and the moment in section axes stays, where
+// Followers rotate with their vertex: δ(R f) = R (δφ×f), and the moment in section axes stays, where
 // rotation_columns took it for a dead one.
 static void add_followers(const bough_rod_model *m, const bough_rod_scratch *scratch, bough_rod_tangent *k) {
     int s = m->stride;
@@ -342,7 +350,7 @@ static void add_followers(const bough_rod_model *m, const bough_rod_scratch *scr
     }
 }
 
-// Adds what they change with the rotation about the section's normal.
+// Adds how the loads follow the rotation about the section's normal.
 static void add_turning(const bough_rod_model *m, const bough_rod_loads *loads, bough_rod_tangent *k) {
     int s = m->stride;
     const double *restrict kept = k->vertex, *restrict slope = loads->slope;
@@ -369,14 +377,17 @@ static void linearise_eight(const bough_rod_model *m, const bough_rod_loads *loa
     bough_rod_eight eight;
     eight.first = first;
     double *position = k->variation + (size_t)TANGENTS * first;
+    // the segments' forces
     find_base(m, scratch, first, base);
     position_variation(m, scratch, first, base, position);
     velocity_variation(m, first, base, eight.velocity);
+    // the vertices' mass and own velocity terms
     for (int j = 0; j < 3; j++) {
         mass_columns(m, k, first, j, eight.mass);
         velocity_columns(m, k, first, j, eight.own_velocity);
     }
     if (loads->damped) damping_columns(m, loads, k, first, eight.own_velocity);
+    // tangents of root and end wrench, then the blocks
     keep_velocity(&eight, 0, k->root);
     if (bough_rod_carries(m)) keep_velocity(&eight, m->n, k->end);
     AT(form_blocks)(m, k, &eight);
@@ -387,6 +398,7 @@ bool AT(linearise)(const bough_rod_model *m, const bough_rod_loads *loads, doubl
     double *rate = k->rate;
     if (!AT(derivative)(m, loads, t, state, input, scratch, rate)) return false;
     k->omega = bough_v3(input[3], input[4], input[5]);
+    // the vertices' own terms by their rotations
     keep_vertices(m, state, scratch->vertex, k);
     rotation_columns(m, rate + (size_t)BOUGH_ROD_U * m->n, input, scratch, k);
     if (bough_rod_loads_follow(loads)) add_followers(m, scratch, k);

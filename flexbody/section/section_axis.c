@@ -28,6 +28,7 @@ bough_section_place bough_section_find(const bough_section_axis *a, double s) {
     return place_in(a, bough_table_row(a->n, a->arc, 1, s), s);
 }
 
+// Diagonal entry i of the stiffness.
 static double stiffness_at(bough_section_place p, int i) {
     int k = bough_symmetric6_index(i, i);
     return bough_section_mix(p.fraction, p.low->stiffness[k], p.high->stiffness[k]);
@@ -58,6 +59,7 @@ void bough_section_axis_init(bough_section_axis *a, bough_arena *arena, const bo
     memcpy(a->damping, table->damping, sizeof a->damping);
     a->arc = bough_arena_doubles(arena, (size_t)a->n);
     a->even = bough_arena_take(arena, (size_t)a->n * sizeof *a->even);
+    // arc lengths are those of the polygon through the stations
     for (int k = 1; k < a->n; k++) {
         bough_vec3 step = bough_sub(a->station[k].position, a->station[k - 1].position);
         a->arc[k] = a->arc[k - 1] + bough_norm(step);
@@ -65,6 +67,7 @@ void bough_section_axis_init(bough_section_axis *a, bough_arena *arena, const bo
     }
 }
 
+// Steiner's theorem, for the offset of the mass centre from the axis.
 void bough_section_central(const bough_section_station *x, double central[4]) {
     double cx = x->centre[0], cy = x->centre[1];
     central[0] = x->inertia[0] - x->mass * cy * cy;
@@ -138,6 +141,7 @@ typedef struct stretch {
     void *context;
 } stretch;
 
+// One quadrature from one arc length to another.
 static void integrate_piece(const stretch *x, double from, double to) {
     double half = 0.5 * (to - from);
     for (int i = 0; i < POINTS; i++) {
@@ -185,6 +189,7 @@ static void integrate_stretch(const stretch *x, double from, double to) {
 
 void bough_section_integrate(const bough_section_axis *a, double from, double to, bough_section_visitor visit,
                              void *context) {
+    // piece by piece between stations; beyond the last one the last interval goes on
     for (int k = 0; k < a->n && from < to; k++) {
         double end = k + 1 < a->n ? a->arc[k + 1] : to;
         if (end <= from) continue;
