@@ -21,7 +21,8 @@ typedef struct bough_interface_member {
     bool by_state; // leader: its coordinates are its states, else its inputs
     int leader;    // follower: its directions are the coordinates of that member; −1: its own inputs
     int first;     // leader: its coordinates begin there among all
-    int n;         // coordinates of a leader, directions of a follower; those of a leader by inputs are both
+    int n;         // number of coordinates of a leader, of directions of a follower; the coordinates of a
+                   // leader by inputs are its directions, too
 
     // by linearising, factoring and responding
     void *factors;         // of its I − γJ
@@ -86,17 +87,18 @@ void bough_interface_solve_member(const bough_interface *k, int member, double *
 // K and the factors of I − Z K. False when that is singular.
 bool bough_interface_close(bough_interface *k);
 
-// Solves the interface. `coordinate` holds the right sides of (I − γJ) x = r of the leaders by states, of
-// others what their coordinates change by themselves; change (n_input) the inputs' changes as far as they
-// come from elsewhere than the leaders' response to their inputs. On return w and changes are complete.
+// Solves the interface: w into `coordinate`, and all changes of inputs into change (n_input). Before the
+// call, `coordinate` holds r of (I − γJ) x = r for leaders by states, and the changes of their inputs that do
+// not come from the leaders for leaders by inputs; `change` holds the changes of all inputs without the
+// leaders' response to their own inputs.
 void bough_interface_solve(bough_interface *k, double *change);
 
-// Adds to x (n_state of the member) its response to the coordinates; that of a follower whose directions are
-// its inputs is to their change (n_input of the member) by the leaders.
+// Adds to x (n_state of the member) its response to the coordinates. A follower whose directions are its own
+// inputs responds to the change of these (n_input of the member) that the leaders cause.
 void bough_interface_add_response(const bough_interface *k, int member, const double *change, double *x);
 
-// Adds to the outputs' change of such a follower its response to a change of its inputs; a leader that
-// others follow along its states does not change their inputs by itself.
+// Of a follower: adds to output_change its response to a change of its inputs, where these are its
+// directions. One that follows a leader's states adds nothing.
 void bough_interface_add_output_response(const bough_interface *k, int member, const double *change,
                                          double *output_change);
 

@@ -91,13 +91,13 @@ bough_wind_iec bough_wind_iec_start(const bough_wind_iec_def *def) {
     case BOUGH_WIND_EDC: {
         double veer = 4 * atan(deviation / (w.speed * (1 + 0.1 * ratio))); // (21)
         w.length = 6;
-        w.turn = sign * fmin(veer, BOUGH_PI);
+        w.change = sign * fmin(veer, BOUGH_PI);
         break;
     }
     case BOUGH_WIND_ECD:
         w.length = 10;
         w.gust = 15;
-        w.turn = sign * coherent_veer(w.speed);
+        w.change = sign * coherent_veer(w.speed);
         break;
     case BOUGH_WIND_EWS:
         w.length = 12;
@@ -131,6 +131,6 @@ bough_vec3 bough_wind_iec_at(const bough_wind_iec *w, bough_vec3 position, doubl
     default: break;
     }
     // change of direction, to the right looking downwind
-    double angle = w->turn * step;
+    double angle = w->change * step;
     return bough_v3(speed * cos(angle), -speed * sin(angle), 0);
 }

@@ -73,7 +73,7 @@ typedef struct bough_wind_iec {
     bough_wind_iec_def def;
     double speed;  // at hub height [m/s]
     double gust;   // amplitude: EOG and ECD [m/s], EWS per height or breadth [1/s]
-    double turn;   // change of direction [rad]
+    double change; // of the direction [rad]
     double length; // of the event [s]
 } bough_wind_iec;
 

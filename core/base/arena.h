@@ -1,9 +1,9 @@
 // Memory of a built model: blocks are taken while building, all released at once, and nothing is
 // taken while stepping. Every block is zeroed and aligned to 64 bytes.
 //
-// Where memory ends, work is left at once: the program goes on behind bough_arena_guard, which returns
-// BOUGH_OUT_OF_MEMORY. So code that takes memory always gets it, and neither tests nor reports that. A file
-// or an object of a library that is open meanwhile must belong to the arena (bough_arena_on_destroy).
+// When memory is exhausted, the work is abandoned by a jump: bough_arena_guard returns BOUGH_OUT_OF_MEMORY.
+// So code that takes memory always gets it, and need not check. Files and objects of libraries that are open
+// during the work must belong to the arena (bough_arena_on_destroy).
 #ifndef BOUGH_CORE_BASE_ARENA_H
 #define BOUGH_CORE_BASE_ARENA_H
 
@@ -17,14 +17,14 @@ typedef struct bough_arena bough_arena;
 bough_arena *bough_arena_create(void);
 
 // A new, empty arena for the scratch memory of one task. It is destroyed with its parent at the latest.
-// Where its memory ends, the parent's work is left.
+// When it exhausts memory, the parent's work is abandoned.
 bough_arena *bough_arena_child(bough_arena *parent);
 
 // Releases the arena and every block taken from it; NULL is allowed.
 void bough_arena_destroy(bough_arena *arena);
 
-// Returns work(arena, self); BOUGH_OUT_OF_MEMORY as soon as memory of the arena or of its children
-// ends in it. Without any guard the process ends with exit code 1.
+// Returns work(arena, self), or BOUGH_OUT_OF_MEMORY as soon as the arena or a child of it exhausts memory.
+// Without a guard the process then ends with exit code 1.
 bough_status bough_arena_guard(bough_arena *arena, bough_status (*work)(bough_arena *arena, void *self),
                                void *self);
 
@@ -59,7 +59,7 @@ void *bough_arena_grow(bough_arena *arena, void *items, int n, int *room, size_t
 // Exhausted memory releases the object at once.
 void bough_arena_on_destroy(bough_arena *arena, void (*release)(void *), void *object);
 
-// Leaves the work as where the arena's memory ends: for memory of a library that has ended.
+// Abandons the work in the same way: for a library that has exhausted memory.
 _Noreturn void bough_arena_leave(bough_arena *arena);
 
 // Bytes taken so far.

@@ -11,9 +11,9 @@
 #define BOUGH_DEGREE (BOUGH_PI / 180) // [rad]
 #define BOUGH_RPM (BOUGH_PI / 30)     // [rad/s]
 
-// For functions called in loops over vector lanes, which are not vectorised where a call remains. clang
-// splits structures that are arguments of static functions into their members, and of the new calls it does
-// not know that iterations are independent.
+// For functions called in loops over vector lanes: a loop with a call in it is not vectorised. Of a static
+// function clang passes the members of structures one by one, and no longer knows that iterations are
+// independent; hence extern inline.
 #ifdef __clang__
 #define BOUGH_INLINE extern inline __attribute__((always_inline, gnu_inline))
 #else

@@ -121,7 +121,7 @@ static bool iterate(search *s, int wanted, int *chosen, int *found) {
         sort(s);
         *found = select(s, wanted, chosen, &sum);
         if (a->done == a->count) return true;
-        if (*found == wanted && (s->op->known || fabs(sum - before) <= 10 * accuracy * sum)) return true;
+        if (*found == wanted && (s->op->checked || fabs(sum - before) <= 10 * accuracy * sum)) return true;
         before = *found == wanted ? sum : -1;
     }
     return false;
@@ -159,7 +159,7 @@ static void fill_pair(const search *s, int k, double *x, double *y, bough_eigen_
         for (size_t i = 0; i < n && part == 1 && op->gamma == 0; i++) own[i] *= -1;
         memcpy(part == 0 ? pair->shape_real : pair->shape_imag, own, bytes);
     }
-    if (op->known) return;
+    if (op->checked) return;
     op->apply(op->self, 1 + oscillates, x, y);
     pair->residual = bough_eigen_residual(op, pair->real, pair->imaginary, x, y);
 }

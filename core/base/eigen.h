@@ -19,8 +19,8 @@ typedef struct bough_eigen_operator {
     bool balance;     // the second half is the rate of the first: scales the weights of the first
                       // so that both count alike
     bool decaying;    // real decaying solutions are listed too
-    bool known; // the caller finds out whether some are missing, and how exact they are: no second look,
-                // no residuals
+    bool checked;     // the caller checks itself whether pairs are missing and how exact they are: neither a
+                      // second search nor residuals
     void *self;
     // Images of n ≤ BOUGH_EIGEN_AT_ONCE vectors, one after the other.
     void (*apply)(void *self, int n, const double *z, double *image);
@@ -38,8 +38,8 @@ typedef struct bough_eigen_pair {
 // How many pairs a search has found.
 typedef struct bough_eigen_count {
     int wanted;    // room for them
-    int converged; // for so many the iteration converges: `wanted`, halved until it does
-    int found;     // fewer than that: there are no more
+    int converged; // number for which the iteration converged: `wanted`, halved until it did
+    int found;     // fewer than `converged`: there are no more
 } bough_eigen_count;
 
 // Finds the pairs, count->wanted of them or as many as converge, each with a residual below 1e-9 of the

@@ -1,6 +1,6 @@
 // Levels of the x86-64 instruction set. A file named *_kernel.c holds loops that take most of a run's time:
-// it is compiled once for each level (CMakeLists.txt), and its functions' names end in the level's. A model
-// keeps from its building on which of them it calls, so that one program serves every processor. Results
+// it is compiled once for each level (CMakeLists.txt), and its functions' names end in the level's. When a
+// model is built, it notes the level that it calls, so that one program serves every processor. Results
 // differ between levels by rounding.
 #ifndef BOUGH_CORE_BASE_LEVEL_H
 #define BOUGH_CORE_BASE_LEVEL_H
@@ -21,9 +21,9 @@ typedef enum bough_level {
 #define BOUGH_OF_LEVEL(name, level)                                                                          \
     ((level) == BOUGH_LEVEL_V4 ? name##_v4 : (level) == BOUGH_LEVEL_V3 ? name##_v3 : name##_v2)
 
-// Its name in the file of kernels that defines it: BOUGH_LEVEL is what the file is compiled for. BOUGH_WIDTH
-// is how many doubles a vector of the level has: a loop over as many is one vector and no loop, and the rows
-// that it reads lie at offsets from few pointers.
+// The function's name in the file of kernels that defines it; BOUGH_LEVEL is the level that the file is
+// compiled for. BOUGH_WIDTH is the number of doubles in a vector of that level: the compiler makes a loop
+// over so many into single vector instructions.
 #define BOUGH_AT_LEVEL(name) BOUGH_JOIN_LEVEL(name, BOUGH_LEVEL)
 #define BOUGH_JOIN_LEVEL(name, level) BOUGH_JOIN_NAMES(name, level)
 #define BOUGH_JOIN_NAMES(name, level) name##_##level

@@ -13,9 +13,9 @@
 // does.
 void bough_linalg_choose_kernels(void);
 
-// Takes the library's work arrays for so many threads beside those of all arenas that live, when a model is
-// built, so that no step does. OpenBLAS needs 128 MB of addresses for each thread and, without them, tries
-// for ever.
+// Lets the library take its work arrays for so many threads, in addition to those of all other arenas, when a
+// model is built; steps then take none. OpenBLAS needs 128 MB of address space for each thread and, without
+// it, tries for ever.
 void bough_linalg_room(bough_arena *arena, int threads);
 
 // LU factors of a (n × n, column-major) in place, with row interchanges in pivot (n). False when a

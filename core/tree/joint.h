@@ -63,7 +63,7 @@ const char *bough_joint_name(bough_joint_kind kind);
 int bough_joint_n_coordinates(bough_joint_kind kind);
 int bough_joint_n_speeds(bough_joint_kind kind);
 int bough_joint_n_axes(bough_joint_kind kind);
-int bough_joint_n_slides(bough_joint_kind kind); // of its coordinates the first, lengths [m]
+int bough_joint_n_slides(bough_joint_kind kind); // how many of its coordinates, the first ones, are lengths
 
 // The placement of the body frame in the parent's frame. A quaternion is used as q/|q|.
 bough_transform bough_joint_pose(const bough_joint *joint, const double *q);

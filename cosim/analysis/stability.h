@@ -4,9 +4,9 @@
 // from Arnoldi's method (modified Gram–Schmidt, twice), applied to so many macro steps that the stiff
 // modes decay and the slow modes change their phase visibly.
 //
-// The analysis does not contain loads from outside the members, such as aerodynamic damping (it is
-// conservative), changes of the state during the run, and growth without oscillation, which belongs to
-// the mechanics: a free rotation, an inverted pendulum.
+// The analysis leaves out loads from outside the members, such as aerodynamic damping (so it is
+// conservative), changes of the state during the run, and growth without oscillation, which belongs to the
+// mechanics: a free rotation, an inverted pendulum.
 #ifndef BOUGH_COSIM_ANALYSIS_STABILITY_H
 #define BOUGH_COSIM_ANALYSIS_STABILITY_H
 

@@ -28,7 +28,7 @@ typedef struct bough_ground_load_def {
 } bough_ground_load_def;
 void bough_ground_body_load(bough_ground_body *body, bough_arena *arena, const bough_ground_load_def *def);
 
-// Resolves all loads for these axes (9), for those who read the body's loads.
+// Resolves all loads in BRF axes for these ground axes (9), as readers of the body's loads need.
 void bough_ground_body_turn(bough_ground_body *body, const double *axes);
 
 #endif

@@ -145,7 +145,7 @@ static inline int bough_rod_n_outputs(const bough_rod_model *m) {
 // the mass and first moment of the vertices account for them (section.c).
 
 // Loads that change over time: value × factor. Dead ones are resolved in BRF axes, followers in the section
-// axes of each vertex and segment, with which they turn.
+// axes of each vertex and segment, with which they rotate.
 typedef struct bough_rod_ramped_load {
     struct bough_rod_ramped_load *next;
     bough_schedule schedule; // of the factor
@@ -159,18 +159,18 @@ typedef struct bough_rod_ramped_load {
 // Loads on the vertices: value + τ·(rate + τ·curve), τ = t − start, resolved in BRF axes, what the
 // vertices' own motion adds to them (`damped`), and all ramped loads.
 typedef struct bough_rod_loads {
-    double start;      // [s]
-    double *value;     // force then moment (6 × stride), vertex 0 included [N, N m]
-    double *rate;      // (6 × stride) [N/s, N m/s]
-    double *curve;     // (6 × stride) [N/s², N m/s²]
-    bool damped;       // forces along x and y and moment about z of the BRF, c, follow the vertex' velocity
-                       // along x and y, its section's rotation about the normal and W₃, j …
-    double *slope;     // … by this, row 4 c + j (12 × stride) [N s/m, N, N s; N s, N m, N m s]; 0 at
-                       // vertices that move as the input says
-    double *angle;     // that rotation is this row times the vertex' quaternion (4 × stride)
-    double *rest;      // strains without stress: e⁰ + D q of loads along the segments (6 × stride) …
-    double *rest_rate; // … and its rate [1/s, 1/(m s)], both set by bough_rod_loads_along
-    bool moving;       // the rate is not zero
+    double start;  // [s]
+    double *value; // force then moment (6 × stride), vertex 0 included [N, N m]
+    double *rate;  // (6 × stride) [N/s, N m/s]
+    double *curve; // (6 × stride) [N/s², N m/s²]
+    bool damped;   // forces along x and y and moment about z of the BRF, c, follow the vertex' velocity
+                   // along x and y, its section's rotation about the normal and W₃, j …
+    double *slope; // … by row 4 c + j of this array (12 × stride) [N s/m, N, N s; N s, N m, N m s]; 0 at
+                   // vertices that move as the input says
+    double *angle; // (4 × stride) times the vertex' quaternion it is the rotation about the normal
+    double *rest;  // strains without stress: e⁰ + D q of loads along the segments (6 × stride) …
+    double *rest_rate;             // … and its rate [1/s, 1/(m s)], both set by bough_rod_loads_along
+    bool moving;                   // the rate is not zero
     bough_rod_ramped_load *ramped; // NULL: none
 } bough_rod_loads;
 
@@ -184,7 +184,7 @@ typedef struct bough_rod_scratch {
     // set with the loads:
     double time;        // of the last bough_rod_derivative [s]
     const double *rest; // strains without stress (6 × stride); before any loads e⁰
-    bool turning;       // part of it is made by ramped loads along the segments, and turns with dead ones:
+    bool turning;       // ramped loads along the segments make part of it, and that of dead ones rotates:
     double *along;      // the dead ones in the axes of the segments' middles (12 × stride)
     double *following;  // forces of the followers per length, in section axes (3 × stride)
     double *own_rest;   // (6 × stride)
@@ -240,7 +240,7 @@ bool bough_rod_derivative(const bough_rod_model *m, const bough_rod_loads *loads
 // The same at another time and input, `state` being that of the last bough_rod_derivative with this
 // scratch: only segments that touch the input, or have ramped loads, are evaluated anew. In the others
 // the forces change by what loads along them do to an unbent segment, for the derivative
-// by time: it errs by a share of the segment's own turn.
+// by time: its relative error is of the order of the segment's own rotation.
 bool bough_rod_derivative_again(const bough_rod_model *m, const bough_rod_loads *loads, double t,
                                 const double *state, const double *input, bough_rod_scratch *scratch,
                                 double *rate);

@@ -1,6 +1,6 @@
-// The elastic law of one rod segment, whose curvature changes along it. Of the sections' energy
-// ½∫κ·F⁻¹κ the mean strains e = (γ, κ) tell ½ e·C e; the moment that changes along the segment,
-// m' = m×(κ⁰ + κ) − t×n, adds
+// The elastic law of one rod segment, whose curvature changes along it. The mean strains e = (γ, κ) give the
+// part ½ e·C e of the sections' energy ½∫κ·F⁻¹κ; the moment that changes along the segment, m' = m×(κ⁰ + κ) −
+// t×n, adds
 //     −χΠ,  Π = y·L e + ½ y·G y,  y = m×κ,  (n, m) = C e,  χ = 1/(1 + R κ·κ),
 // Π the part of h²/24 m'·F m' that is beyond linear statics: without it a rod that bends two ways at
 // once twists wrongly in proportion to h², theory (21). χ is 1 up to higher orders and keeps the

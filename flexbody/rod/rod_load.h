@@ -10,16 +10,17 @@ typedef struct bough_rod_reach {
 } bough_rod_reach;
 
 // Adds to the load a wrench (force, moment) [N, N m], in the load's axes. Along a stretch `wrench` is per
-// length [N/m, N m/m] at its start and `end` at its end, linear between; NULL: the same. Vertices share it by
-// hat functions. Between them it goes to load->line as well: a part of a segment, or a point in it, as the
-// linear load that bends a uniform segment equally; not where that bends it by more than half a radian, as a
-// cable's. What a segment of varying sections bends otherwise are
-// forces and moments on its vertices that cancel, for the axes of the undeformed rod.
+// length [N/m, N m/m] at its start and `end` at its end, linear between; NULL: the same. It is distributed to
+// the vertices by hat functions. Between them it goes to load->line as well: on a part of a segment, or at a
+// point of it, as the linear load that bends a uniform segment equally; not where it bends the segment by
+// more than half a radian, as in a cable. Where sections vary, they bend by more or less: the difference
+// becomes forces and moments on the segment's two vertices whose resultant is zero, in the axes of the
+// undeformed rod.
 void bough_rod_lump(const bough_rod_model *m, bough_rod_reach reach, const double *wrench, const double *end,
                     bough_rod_ramped_load *load);
 
-// Puts what load->line does to the undeformed rod into load->value: forces and moments on the two
-// vertices of each segment that cancel. For bodies that know loads on vertices only.
+// Puts what load->line does to the undeformed rod into load->value: forces and moments on the two vertices of
+// each segment whose resultant is zero. For bodies that take loads on vertices only.
 void bough_rod_lump_line(const bough_rod_model *m, bough_rod_ramped_load *load);
 
 // The same of a strain D q (6 × stride) on a dead load: adds to value (6 × stride).

@@ -30,8 +30,8 @@ typedef struct bough_rod_tangent {
     double *rate;           // f (13 × stride)
     double *root;           // of the first segment's forces by velocities, 9 f + d (81)
     double *end;            // the same of the last segment of a rod that carries bodies (81)
-    double end_rotation[4]; // of such a rod's last vertex, whose turn changes
-    double end_load[18];    // the loads on it: force and moment by columns
+    double end_rotation[4]; // quaternion of such a rod's last vertex
+    double end_load[18];    // change of the loads on it with its rotation: force and moment by columns
     bough_rod_blocks blocks;
     // computed by bough_rod_factor
     double gamma;
@@ -65,14 +65,14 @@ bool bough_rod_factor(const bough_rod_model *m, bough_rod_tangent *k, double gam
 // Solves (I − γ ∂f/∂y) x = b in place (13 n).
 void bough_rod_solve(const bough_rod_model *m, bough_rod_tangent *k, double *x);
 
-// Into a linearisation of a rod that carries bodies: what the turn of the last vertex, whose motion is
-// `end`, changes in the loads in scratch.
+// Stores in a linearisation of a rod that carries bodies how the loads in scratch change with the rotation of
+// the last vertex, whose motion is `end`.
 void bough_rod_keep_end(const bough_rod_model *m, const bough_rod_loads *loads, const double *end,
                         const bough_rod_scratch *scratch, bough_rod_tangent *k);
 
 // -- about a steady motion ------------------------------------------------------------------------
 
-// The rod about a steady motion, its BRF at rest or turning at a constant twist, in 6 tangent
+// The rod about a steady motion, its BRF at rest or moving at a constant twist, in 6 tangent
 // coordinates per vertex, q = (δx in BRF axes, δφ in section axes):
 //     M q̈ + C q̇ + K q = 0,   δv = q̇ + B q,   C = M B − ∂f/∂v,   K = −(∂f/∂q + ∂f/∂v B).
 // B = diag(ξ(ω), ξ(Rᵀω)): the variation of u₀ + ω×x and Rᵀω, the velocities of the steady motion, so

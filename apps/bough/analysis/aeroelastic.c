@@ -61,9 +61,9 @@ static double *product_weights(bough_arena *arena, const work *w, double power) 
     return weight;
 }
 
-// Pairs nearest to the point, right or left, without the memory of the air; `known`: the other side shows
+// Pairs nearest to the point, right or left, without the memory of the air; `checked`: the other side shows
 // whether some are missing.
-static bough_status find_pairs(bough_arena *arena, work *w, bool left, bool decaying, bool known,
+static bough_status find_pairs(bough_arena *arena, work *w, bool left, bool decaying, bool checked,
                                bough_eigen_pair *pair, bough_eigen_count *count) {
     const bough_eigen_operator op = {.name = "whole scene in the air",
                                      .length = w->n,
@@ -71,7 +71,7 @@ static bough_status find_pairs(bough_arena *arena, work *w, bool left, bool deca
                                      .gamma = 1 / w->system->def->point,
                                      .weight = product_weights(arena, w, left ? 2 : -2),
                                      .decaying = decaying,
-                                     .known = known,
+                                     .checked = checked,
                                      .self = w,
                                      .apply = left ? apply_transposed : apply};
     return bough_eigen_nearest(arena, &op, pair, count);
@@ -424,9 +424,9 @@ static int count_unpaired(int n_right, const bough_eigen_pair *right, int n_left
 static bough_status find_both(bough_arena *arena, work *w, bough_eigen_pair *right,
                               bough_eigen_count *n_right, bough_eigen_pair *left, bough_eigen_count *n_left,
                               int *unpaired) {
-    for (int known = 1; known >= 0; known--) {
-        BOUGH_TRY(find_pairs(arena, w, false, true, known, right, n_right));
-        BOUGH_TRY(find_pairs(arena, w, true, true, known, left, n_left));
+    for (int checked = 1; checked >= 0; checked--) {
+        BOUGH_TRY(find_pairs(arena, w, false, true, checked, right, n_right));
+        BOUGH_TRY(find_pairs(arena, w, true, true, checked, left, n_left));
         *unpaired = count_unpaired(n_right->found, right, n_left->found, left);
         if (*unpaired == 0) break;
     }
