@@ -188,7 +188,7 @@ static void advance_part(void *data, int k, bough_part part) {
 bough_status bough_coupling_advance(bough_coupling *c, int level, bool restart) {
     c->scratch->restart = restart;
     bough_coupling_clear(c);
-    bough_pool_run_turns(c->pool, list_level(c, level), advance_part, c);
+    bough_pool_run_halves(c->pool, list_level(c, level), advance_part, c);
     return bough_coupling_failure(c);
 }
 

@@ -210,8 +210,8 @@ static void do_item(void *self, int k) {
     }
 }
 
-void bough_pool_run_turns(bough_pool *pool, int n, void (*work)(void *data, int item, bough_part part),
-                          void *data) {
+void bough_pool_run_halves(bough_pool *pool, int n, void (*work)(void *data, int item, bough_part part),
+                           void *data) {
     int threads = bough_pool_threads(pool);
     rounds w = {.pool = pool, .n = n, .work = work, .data = data};
     if (n > threads) w.rest = n % threads;

@@ -48,8 +48,8 @@ typedef enum bough_part { BOUGH_WHOLE, BOUGH_FIRST_HALF, BOUGH_SECOND_HALF } bou
 // idles for a whole item. Three items on two threads:
 //     thread 1   item 0               item 2, second half
 //     thread 2   item 2, first half   item 1
-void bough_pool_run_turns(bough_pool *pool, int n, void (*work)(void *data, int item, bough_part part),
-                          void *data);
+void bough_pool_run_halves(bough_pool *pool, int n, void (*work)(void *data, int item, bough_part part),
+                           void *data);
 
 // Inside a task: returns when the task `earlier` of the list, which comes before it, is done.
 void bough_pool_await(bough_pool *pool, int earlier);

@@ -41,8 +41,9 @@ BOUGH_INLINE bough_vec3 bough_axpy(double s, bough_vec3 b, bough_vec3 a) {
     return (bough_vec3){a.x + s * b.x, a.y + s * b.y, a.z + s * b.z};
 }
 // The point between a and b at a fraction of the way.
-BOUGH_INLINE bough_vec3 bough_between(bough_vec3 a, bough_vec3 b, double share) {
-    return (bough_vec3){a.x + share * (b.x - a.x), a.y + share * (b.y - a.y), a.z + share * (b.z - a.z)};
+BOUGH_INLINE bough_vec3 bough_between(bough_vec3 a, bough_vec3 b, double fraction) {
+    return (bough_vec3){a.x + fraction * (b.x - a.x), a.y + fraction * (b.y - a.y),
+                        a.z + fraction * (b.z - a.z)};
 }
 BOUGH_INLINE double bough_dot(bough_vec3 a, bough_vec3 b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
 BOUGH_INLINE bough_vec3 bough_cross(bough_vec3 a, bough_vec3 b) {

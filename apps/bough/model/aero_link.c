@@ -237,9 +237,9 @@ static void evaluate_rotor(bough_aero_link *l, int to, void (*move)(bough_aero_m
     l->factor[to] = ramp_factor(l->simulation->scene->aero.ramp, e.motion->time);
     l->found = to;
     e.data->skips_slopes = next == NULL; // only signals that follow have them
-    bough_pool_run_turns(pool, l->n_blade, approach_blade, &e);
+    bough_pool_run_halves(pool, l->n_blade, approach_blade, &e);
     bough_rotor_survey(l->rotor, e.motion, e.data);
-    bough_pool_run_turns(pool, l->n_blade, load_blade, &e);
+    bough_pool_run_halves(pool, l->n_blade, load_blade, &e);
     bough_rotor_conclude(l->rotor, e.motion, e.data);
 }
 

@@ -7,10 +7,10 @@
 
 // -- sections -------------------------------------------------------------------------------------
 
-// A place on a rod: within a segment, at a share of its length.
+// A place on a rod: within a segment, at a fraction of its length.
 typedef struct place {
     int segment;
-    double share;
+    double fraction;
 } place;
 
 typedef struct sensor {
@@ -58,21 +58,22 @@ static end_loads loads_at_ends(const sensor *x, double t) {
         {bough_v3(-w[6], -w[7], -w[8]), bough_mat3_mul(section, bough_v3(-w[9], -w[10], -w[11]))}};
 }
 
-static bough_section_load blend_loads(bough_section_load a, bough_section_load b, double share) {
-    return (bough_section_load){bough_blend(a.force, b.force, share), bough_blend(a.moment, b.moment, share)};
+static bough_section_load blend_loads(bough_section_load a, bough_section_load b, double fraction) {
+    return (bough_section_load){bough_between(a.force, b.force, fraction),
+                                bough_between(a.moment, b.moment, fraction)};
 }
 
 // A segment's loads are those of its middle. From there to the root, and to an end that carries bodies, they
 // go linearly to what the rod does there.
 static bough_section_load load_at(const sensor *x, const end_loads *ends, place at) {
     const bough_beam *beam = x->beam;
-    bough_section_load load = bough_section_in_segment(beam, &x->scratch, at.segment, at.share);
-    if (at.segment == 0 && at.share < 0.5) {
+    bough_section_load load = bough_section_in_segment(beam, &x->scratch, at.segment, at.fraction);
+    if (at.segment == 0 && at.fraction < 0.5) {
         bough_section_load middle = bough_section_in_segment(beam, &x->scratch, 0, 0.5);
-        load = blend_loads(ends->root, middle, 2 * at.share);
-    } else if (at.segment == beam->def.n_segment - 1 && at.share > 0.5 && beam->end >= 0) {
+        load = blend_loads(ends->root, middle, 2 * at.fraction);
+    } else if (at.segment == beam->def.n_segment - 1 && at.fraction > 0.5 && beam->end >= 0) {
         bough_section_load middle = bough_section_in_segment(beam, &x->scratch, at.segment, 0.5);
-        load = blend_loads(middle, ends->end, 2 * at.share - 1);
+        load = blend_loads(middle, ends->end, 2 * at.fraction - 1);
     }
     return load;
 }
@@ -80,11 +81,11 @@ static bough_section_load load_at(const sensor *x, const end_loads *ends, place 
 static void sample_place(const sensor *x, const end_loads *ends, place at, double *value) {
     int left = at.segment, right = left + 1;
     const bough_rod_def *def = &x->beam->def;
-    bough_vec3 shift = bough_blend(bough_sub(vertex_position(x, left), def->position[left]),
-                                   bough_sub(vertex_position(x, right), def->position[right]), at.share);
-    bough_vec3 turn = bough_blend(vertex_turn(x, left), vertex_turn(x, right), at.share);
+    bough_vec3 shift = bough_between(bough_sub(vertex_position(x, left), def->position[left]),
+                                     bough_sub(vertex_position(x, right), def->position[right]), at.fraction);
+    bough_vec3 turn = bough_between(vertex_turn(x, left), vertex_turn(x, right), at.fraction);
     bough_section_load load = load_at(x, ends, at);
-    bough_mat3 axes = bough_axes_between(vertex_rotation(x, left), vertex_rotation(x, right), at.share);
+    bough_mat3 axes = bough_axes_between(vertex_rotation(x, left), vertex_rotation(x, right), at.fraction);
     bough_vec3 force = bough_mat3_tmul(axes, load.force);
     bough_vec3 moment = bough_mat3_tmul(axes, load.moment);
     value = bough_observe_vector(turn, BOUGH_DEGREE, bough_observe_vector(shift, 1, value));

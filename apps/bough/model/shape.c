@@ -33,13 +33,13 @@ static bough_mat3 vertex_axes(const bough_rod_model *m, const bough_rod_scratch 
 // The moment goes linearly from what the segment does to the left vertex to the opposite of what it
 // does to the right one.
 bough_section_load bough_section_in_segment(const bough_beam *beam, const bough_rod_scratch *scratch,
-                                            int segment, double share) {
+                                            int segment, double fraction) {
     const bough_rod_model *m = beam->mesh;
     bough_vec3 first = bough_mat3_mul(vertex_axes(m, scratch, segment), segment_row(m, scratch, segment, 3));
     bough_vec3 last =
         bough_mat3_mul(vertex_axes(m, scratch, segment + 1), segment_row(m, scratch, segment, 6));
     return (bough_section_load){.force = segment_row(m, scratch, segment, 0),
-                                .moment = bough_blend(first, bough_scale(-1, last), share)};
+                                .moment = bough_between(first, bough_scale(-1, last), fraction)};
 }
 
 // Load at a vertex, from 0 to n_segment: the mean of both segments, whose loads differ by the load that
@@ -50,7 +50,7 @@ static bough_section_load section_at_vertex(const bough_beam *beam, const bough_
     int inner = vertex > 0 ? vertex - 1 : 0, outer = vertex < n ? vertex : n - 1;
     bough_section_load a = bough_section_in_segment(beam, scratch, inner, vertex - inner);
     bough_section_load b = bough_section_in_segment(beam, scratch, outer, vertex - outer);
-    return (bough_section_load){bough_blend(a.force, b.force, 0.5), bough_blend(a.moment, b.moment, 0.5)};
+    return (bough_section_load){bough_between(a.force, b.force, 0.5), bough_between(a.moment, b.moment, 0.5)};
 }
 
 enum { RIGID_POINTS = 3 };

@@ -26,15 +26,10 @@ void bough_shape_loads(void *self, double t, double *force, double *moment);
 
 // -- forces and moments in the sections of a rod --------------------------------------------------
 
-// a at share 0, b at share 1.
-static inline bough_vec3 bough_blend(bough_vec3 a, bough_vec3 b, double share) {
-    return bough_add(a, bough_scale(share, bough_sub(b, a)));
-}
-
-// Axes between two rotations: p at share 0, q at share 1.
-static inline bough_mat3 bough_axes_between(bough_quaternion p, bough_quaternion q, double share) {
+// Axes between two rotations: p at fraction 0, q at fraction 1.
+static inline bough_mat3 bough_axes_between(bough_quaternion p, bough_quaternion q, double fraction) {
     bough_quaternion step = bough_quaternion_product(bough_quaternion_conjugate(p), q);
-    bough_vec3 part = bough_scale(share, bough_quaternion_logarithm(step));
+    bough_vec3 part = bough_scale(fraction, bough_quaternion_logarithm(step));
     return bough_rotation_matrix(bough_quaternion_product(p, bough_quaternion_exponential(part)));
 }
 
@@ -51,9 +46,9 @@ bool bough_section_evaluate(const bough_simulation *s, const bough_beam *beam, d
 bough_quaternion bough_section_vertex_rotation(const bough_rod_model *m, const bough_rod_scratch *scratch,
                                                int vertex);
 
-// Load within a segment, at a share of its length, after an evaluation. A segment's force is constant
+// Load within a segment, at a fraction of its length, after an evaluation. A segment's force is constant
 // over its length and its moment is linear.
 bough_section_load bough_section_in_segment(const bough_beam *beam, const bough_rod_scratch *scratch,
-                                            int segment, double share);
+                                            int segment, double fraction);
 
 #endif

@@ -85,14 +85,14 @@ static void count_parts(void *data, int item, bough_part part) {
     atomic_fetch_add(&l->count[part], 1);
 }
 
-static void take_turns(void *data) {
+static void take_halves(void *data) {
     list *l = data;
     int threads = bough_pool_threads(l->pool);
     for (int n = 0; n < 20; n++) {
         reset(l);
         memset(l->sum, 0, sizeof l->sum);
         int halved = n > threads ? n % threads : 0;
-        bough_pool_run_turns(l->pool, n, count_parts, l);
+        bough_pool_run_halves(l->pool, n, count_parts, l);
         for (int i = 0; i < MOST; i++) assert_int_equal(l->sum[i], i < n ? 2 : 0);
         assert_int_equal(atomic_load(&l->count[BOUGH_WHOLE]), n - halved);
         assert_int_equal(atomic_load(&l->count[BOUGH_FIRST_HALF]), halved);
@@ -104,8 +104,8 @@ TEST(items_that_fill_no_turn_are_halved) {
     list l;
     for (int threads = 1; threads <= 8; threads++) {
         bough_arena *arena = make(threads, &l);
-        take_turns(&l);
-        bough_pool_region(l.pool, take_turns, &l);
+        take_halves(&l);
+        bough_pool_region(l.pool, take_halves, &l);
         bough_arena_destroy(arena);
     }
 }
