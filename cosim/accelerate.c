@@ -49,7 +49,7 @@ bough_accelerator *bough_accelerator_create(bough_arena *arena, const bough_acce
     size_t n = (size_t)def->n;
     a->def = *def;
     bough_arena_each(arena, n, &a->residual, &a->image, &a->residual_before, &a->image_before);
-    if (def->kind == BOUGH_ACCELERATE_IQN_ILS || def->kind == BOUGH_ACCELERATE_NEWTON) {
+    if (bough_acceleration_learns(def->kind)) {
         a->capacity = def->n < MOST_COLUMNS ? def->n : MOST_COLUMNS;
     }
     for (int k = 0; k < a->capacity; k++) {

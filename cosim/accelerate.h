@@ -16,6 +16,11 @@ typedef enum bough_acceleration {
     BOUGH_ACCELERATE_NEWTON,     // u + (I − ∂H/∂u)⁻¹ r, corrected by the differences, too
 } bough_acceleration;
 
+// Whether it learns from the differences of iterates.
+static inline bool bough_acceleration_learns(bough_acceleration kind) {
+    return kind == BOUGH_ACCELERATE_IQN_ILS || kind == BOUGH_ACCELERATE_NEWTON;
+}
+
 typedef struct bough_accelerator_def {
     bough_acceleration kind;
     int n;             // components

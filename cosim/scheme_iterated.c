@@ -306,7 +306,7 @@ static bough_status not_converged(const bough_coupling *c, int sweeps, double re
     int from = a->source_member[it->input[worst]], to = a->receiver[it->input[worst]];
     // what may help
     double contraction = bough_accelerator_contraction(it->accelerator);
-    bool learns = c->options.accelerator >= BOUGH_ACCELERATE_IQN_ILS;
+    bool learns = bough_acceleration_learns(c->options.accelerator);
     const char *advice = !learns             ? "try accelerator: iqn-ils"
                          : contraction < 0.9 ? "try more iterations"
                                              : "try a larger tolerance or a tighter micro rtol";

@@ -7,17 +7,17 @@
 static const double rounding = 1e-6;    // of the largest range of all motion or value up to 1, in SI units
 static const double least_share = 1e-3; // of the largest range of that kind; of a velocity: its least range
 
-bool bough_error_is_motion(const bough_channel *channel) {
-    return channel->kind >= BOUGH_KIND_LENGTH && channel->kind <= BOUGH_KIND_ANGULAR_VELOCITY &&
-           !channel->sampled;
-}
-
 static bool is_force(const bough_channel *channel) {
     return channel->kind == BOUGH_KIND_FORCE || channel->kind == BOUGH_KIND_MOMENT;
 }
 
 static bool is_velocity(const bough_channel *channel) {
     return channel->kind == BOUGH_KIND_VELOCITY || channel->kind == BOUGH_KIND_ANGULAR_VELOCITY;
+}
+
+bool bough_error_is_motion(const bough_channel *channel) {
+    bool place = channel->kind == BOUGH_KIND_LENGTH || channel->kind == BOUGH_KIND_ANGLE;
+    return (place || is_velocity(channel)) && !channel->sampled;
 }
 
 // -- ranges ---------------------------------------------------------------------------------------
