@@ -105,6 +105,7 @@ static bool taken_in_halves(const bough_master *m) {
 }
 
 static double next_on_grid(const bough_master *m) {
+    // by multiplication, so that the grid does not drift
     double half = ((double)m->grid_index + 0.5) * m->macro_step;
     return taken_in_halves(m) && half > m->time + resolution(m) ? half
                                                                 : (double)(m->grid_index + 1) * m->macro_step;
@@ -126,6 +127,7 @@ double bough_master_next(const bough_master *m) {
 static bough_status sample_loads(bough_master *m, bool *jumped) {
     for (int i = 0; i < m->n_load; i++) {
         if (!m->load[i].sample || !is_due(m, i)) continue;
+        // held or continued by the load itself until its next sample
         double next = (double)(m->grid_index + m->load_every[i]) * m->macro_step;
         bool jump = false;
         BOUGH_TRY(m->load[i].sample(m->load[i].self, m->time, next, &jump));
@@ -261,18 +263,21 @@ bough_status bough_step(bough_master *m) {
 
 void bough_master_snapshot(bough_master *m, bough_snapshot *s) {
     bough_coupling *c = m->coupling;
+    // where the run is
     bough_snapshot_take(s, &m->time, sizeof m->time);
     bough_snapshot_take(s, &m->steps, sizeof m->steps);
     bough_snapshot_take(s, &m->grid_index, sizeof m->grid_index);
     bough_snapshot_take(s, &m->at_event, sizeof m->at_event);
     bough_snapshot_take(s, &m->begun, sizeof m->begun);
     bough_snapshot_take(s, &m->many_steps, sizeof m->many_steps);
+    // members, coupling and scheme; what checks and controls the steps
     bough_scheme_snapshot(c, s);
     bough_snapshot_take(s, &c->t0, sizeof c->t0);
     bough_snapshot_take(s, &c->t1, sizeof c->t1);
     bough_monitor_snapshot(m->monitor, c, s);
     if (m->control) bough_step_control_snapshot(m->control, s);
     if (s->move != BOUGH_SNAPSHOT_RESTORE) return;
+    // what follows from the time
     m->next_event = 0;
     pass_events(m);
     begin_loads(m, m->begun);

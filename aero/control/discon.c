@@ -123,6 +123,7 @@ static bough_status find_function(bough_arena *arena, const char *library, bool 
 bough_status bough_discon_open(bough_arena *arena, const char *library, const char *input, bool copy,
                                bough_discon **discon) {
     bough_discon *d = bough_arena_take(arena, sizeof *d);
+    // the path of the library, and the names of its input and of its logs
     size_t size = strlen(library) + 3;
     char *path = bough_arena_take(arena, size);
     // A name without a slash would be looked for in the system's folders.
@@ -141,6 +142,7 @@ bough_status bough_discon_open(bough_arena *arena, const char *library, const ch
 // The measured values, into the records.
 static void write_records(bough_discon *d, const bough_discon_sensed *s) {
     float *r = d->record;
+    // the call: the first 0, the last −1; its time and interval
     r[STATUS] = s->last ? -1.0F : (float)d->started;
     r[TIME] = (float)s->time;
     r[STEP] = (float)s->step;
@@ -148,6 +150,7 @@ static void write_records(bough_discon *d, const bough_discon_sensed *s) {
     r[PITCH_2] = (float)s->pitch[1];
     r[PITCH_3] = (float)s->pitch[2];
     r[PITCH_CONTROL] = s->individual;
+    // generator, rotor and wind
     r[SHAFT_POWER] = (float)s->shaft_power;
     r[ELECTRICAL_POWER] = (float)s->electrical_power;
     r[GENERATOR_SPEED] = (float)s->generator_speed;
@@ -155,6 +158,7 @@ static void write_records(bough_discon *d, const bough_discon_sensed *s) {
     r[TORQUE] = (float)s->torque;
     r[YAW_ERROR] = (float)s->yaw_error;
     r[WIND] = (float)s->wind;
+    // nacelle and blade roots
     r[HEADING] = (float)s->heading;
     r[FORE_AFT] = (float)s->acceleration[0];
     r[SIDE_SIDE] = (float)s->acceleration[1];

@@ -45,14 +45,17 @@ static bough_mat3 section_axes(bough_vec3 tangent, double twist) {
     return bough_mat3_product(lean, (bough_mat3){{c, -s, 0}, {s, c, 0}, {0, 0, 1}});
 }
 
+// Station j of the rotor from its row in the table.
 static void place_station(const bough_rotor_def *def, const bough_station_def *from, int j,
                           bough_rotor *rotor) {
+    // its place between two vertices
     int i = 0;
     while (i < def->n_vertex - 2 && from->span > def->vertex_span[i + 1]) i++;
     double start = def->vertex_span[i], end = def->vertex_span[i + 1];
     double w = bough_clamp((from->span - start) / (end - start), 0, 1);
     bough_mat3 structure = rotation_between(bough_quaternion_of_matrix(def->vertex_rotation[i]),
                                             bough_quaternion_of_matrix(def->vertex_rotation[i + 1]), w);
+    // aerodynamic centre and section axes in the interpolated section
     bough_vec3 axis = bough_between(def->vertex_position[i], def->vertex_position[i + 1], w);
     bough_vec3 arm = bough_v3(from->centre_x - axis.x, from->centre_y - axis.y, 0);
     bough_mat3 section =
@@ -64,10 +67,12 @@ static void place_station(const bough_rotor_def *def, const bough_station_def *f
     to->weight[j] = w;
     lane_store_matrix(to->section, rotor->stride, j, section);
     lane_store(to->centre, rotor->stride, j, bough_mat3_tmul(structure, arm));
+    // where the axis lies beside the chord of the two vertices
     bough_vec3 ends = bough_sub(def->vertex_rotation[i + 1].c3, def->vertex_rotation[i].c3);
     lane_store(to->ends, rotor->stride, j, bough_mat3_tmul(structure, ends));
     to->bow[j] = -0.5 * w * (1 - w) * (end - start);
     to->chord[j] = from->chord;
+    // Prandtl's losses
     to->tip_factor[j] = def->n_blade * (tip - radius) / (2 * radius);
     to->hub_factor[j] = def->n_blade * from->span / (2 * def->hub_radius);
     bool fixed = bough_induction_is_fixed(&def->induction, to->tip_factor[j], to->hub_factor[j]);

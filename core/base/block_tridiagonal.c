@@ -1,3 +1,4 @@
+// Memory and products of block-tridiagonal matrices; factors and solutions are kernels.
 #include "core/base/block_tridiagonal.h"
 
 #include "core/base/block_matrix.h"
@@ -20,6 +21,7 @@ void bough_block_tridiagonal_solve(const bough_block_tridiagonal *m, double *x) 
 void bough_block_tridiagonal_subtract(const bough_block_tridiagonal *m, const double *x, double *y) {
     for (int i = 0; i < m->n; i++) {
         size_t block = (size_t)i * BOUGH_BLOCK;
+        // the three blocks of row i
         double *row = y + (size_t)W * i;
         subtract_matvec(m->diagonal + block, x + (size_t)W * i, row);
         if (i > 0) subtract_matvec(m->lower + block, x + (size_t)W * (i - 1), row);

@@ -17,6 +17,7 @@ BOUGH_INLINE void add(int count, int n, const double *restrict weight, const dou
     }
 }
 
+// `count` becomes a constant of each loop.
 static void add_some(int count, int n, const double *weight, const double *const *column, double *sum) {
     switch (count) {
     case 1: add(1, n, weight, column, sum); break;
@@ -38,6 +39,7 @@ void BOUGH_AT_LEVEL(bough_add_columns)(int n, int count, const double *column, d
     int k = 0;
     for (int j = 0; j < count; j++, column += n) {
         if (weight[j] == 0) continue;
+        // collected until there are enough for one pass
         scaled[k] = factor * weight[j];
         some[k++] = column;
         if (k < AT_ONCE) continue;

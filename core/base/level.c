@@ -19,7 +19,8 @@ bool bough_level_runs(bough_level level) {
            __builtin_cpu_supports("avx512cd") && __builtin_cpu_supports("avx512dq") &&
            __builtin_cpu_supports("avx512vl");
 #else
-    return level == BOUGH_LEVEL_V2; // all are compiled alike
+    // on other processors all levels are compiled alike
+    return level == BOUGH_LEVEL_V2;
 #endif
 }
 

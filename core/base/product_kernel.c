@@ -36,6 +36,7 @@ BOUGH_INLINE weights weights_at(double factor, const double *b, int count) {
 
 #define SUM(w, i) ((w).w0 * c0[i] + (w).w1 * c1[i] + ((w).w2 * c2[i] + (w).w3 * c3[i]))
 
+// Four columns of c, each the sum of four columns of a.
 static void add_to_four(int n, four a, const weights *w, double *restrict y0, double *restrict y1,
                         double *restrict y2, double *restrict y3) {
     const double *restrict c0 = a.c0, *restrict c1 = a.c1, *restrict c2 = a.c2, *restrict c3 = a.c3;
@@ -60,6 +61,7 @@ static void add_rows(const bough_product *p, int n, const double *a, const doubl
     size_t m = (size_t)p->m, k = (size_t)p->k;
     for (int column = 0; column < p->k; column += COLUMNS) {
         int count = p->k - column < COLUMNS ? p->k - column : COLUMNS;
+        // four columns of a, for all columns of c: these by fours, then one by one
         four some = columns_at(a + (size_t)column * m, m, count);
         const double *weight = b + column;
         int j = 0;
@@ -74,6 +76,7 @@ static void add_rows(const bough_product *p, int n, const double *a, const doubl
     }
 }
 
+// c ← keep c, then += factor a b, some rows at a time.
 static void multiply(const bough_product *p, const double *a, const double *b, double *c) {
     size_t size = (size_t)p->m * (size_t)p->n;
     if (p->keep == 0) memset(c, 0, size * sizeof *c);
@@ -101,6 +104,7 @@ static void dot(int n, four a, const double *restrict x, const double *restrict 
     memcpy(sum, sums, sizeof sums);
 }
 
+// Four rows of c by two of its columns at a time.
 static void multiply_transposed(const bough_product *p, const double *a, const double *b, double *c) {
     size_t k = (size_t)p->k, m = (size_t)p->m;
     double sum[TWO * COLUMNS];

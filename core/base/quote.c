@@ -18,6 +18,7 @@ static int character_length(const unsigned char *text) {
 void bough_quote(FILE *file, const char *text) {
     fputc('"', file);
     for (const unsigned char *c = (const unsigned char *)text; *c;) {
+        // a byte that begins no character becomes U+FFFD
         int length = character_length(c);
         if (length == 0) {
             fputs("\\ufffd", file);

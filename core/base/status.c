@@ -4,6 +4,7 @@
 #include <stdio.h>
 #include <string.h>
 
+// Not an initialiser, which would clear the whole message.
 bough_status bough_ok(void) {
     bough_status status;
     status.code = BOUGH_OK;
@@ -23,6 +24,7 @@ bough_status bough_fail(bough_code code, const char *format, ...) {
     bough_status status = {.code = code};
     va_list arguments;
     va_start(arguments, format);
+    // vsnprintf returns the length that the whole message would have
     int length = vsnprintf(status.message, sizeof status.message, format, arguments);
     va_end(arguments);
     if (length >= (int)sizeof status.message) end_after_word(status.message);

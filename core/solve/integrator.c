@@ -3,6 +3,7 @@
 
 #include <assert.h>
 
+// By their kinds; scenes name a method as its operations do.
 static const bough_integrator_ops *const methods[] = {
     [BOUGH_IDA] = &bough_integrator_ida,
     [BOUGH_CVODE_BDF] = &bough_integrator_cvode,

@@ -18,6 +18,7 @@ typedef struct modes {
     bool diverged;
 } modes;
 
+// A discrete Fourier transform, one harmonic of it.
 void bough_modes_harmonic(int n, int h, const double *real, const double *imaginary, double harmonic[2]) {
     harmonic[0] = harmonic[1] = 0;
     for (int k = 0; k < n; k++) {
@@ -49,12 +50,14 @@ static void apply_spin(const modes *m, const double *x, double *moved) {
     for (int k = 0; k < n; k++) {
         for (int l = 0; l < n; l++) {
             double factor = -m->rate[k * n + l] / def->point;
+            // from part l to part k, row by row
             const int *to = def->row + k * def->n_row, *from = def->row + l * def->n_row;
             for (int j = 0; j < def->n_row; j++) moved[to[j]] += factor * x[from[j]];
         }
     }
 }
 
+// The maximum norm.
 static double largest(const double *x, int n) {
     double most = 0;
     for (int i = 0; i < n; i++) most = fmax(most, fabs(x[i]));

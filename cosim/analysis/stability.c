@@ -82,7 +82,7 @@ static bough_status build(map *m, const bough_assembly *a, const bough_scheme_op
 
 // -- the map --------------------------------------------------------------------------------------
 
-// image = z after `count` macro steps
+// theory (69): image = Φⁿ z, z after `count` macro steps
 static bough_status apply(map *m, int count, const double *z, double *image) {
     bough_coupling *c = m->coupling;
     bough_status status = bough_ok();

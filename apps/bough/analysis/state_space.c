@@ -1,3 +1,4 @@
+// The linear system theory (78), by differences.
 #include "apps/bough/analysis/state_space.h"
 
 #include "apps/bough/analysis/air_tangent.h"

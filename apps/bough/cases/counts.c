@@ -130,7 +130,8 @@ static void count_inside(bough_rainflow *r) {
     r->n -= 2;
 }
 
-static void turn(bough_rainflow *r, double point) {
+// Takes a reversal of the load, and counts the ranges that it completes.
+static void reversal(bough_rainflow *r, double point) {
     r->point[r->n++] = point;
     while (r->n >= 3 && range_before(r, 1) >= range_before(r, 2)) {
         if (r->n == 3)
@@ -152,16 +153,17 @@ void bough_rainflow_add(bough_rainflow *r, double x) {
     }
     int direction = (x > r->last) - (x < r->last);
     if (direction == 0) return;
-    if (r->direction != 0 && direction != r->direction) turn(r, r->last);
+    if (r->direction != 0 && direction != r->direction) reversal(r, r->last);
     r->direction = direction;
     r->last = x;
 }
 
 void bough_rainflow_finish(bough_rainflow *r) {
-    if (r->direction != 0) turn(r, r->last);
+    if (r->direction != 0) reversal(r, r->last);
     for (; r->n > 1; r->n--) count(r, range_before(r, 1), 0.5);
 }
 
+// theory (99)
 double bough_equivalent_load(double sum, double slope, double cycles) { return pow(sum / cycles, 1 / slope); }
 
 // -- all counts of a run --------------------------------------------------------------------------

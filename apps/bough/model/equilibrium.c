@@ -439,7 +439,7 @@ static bough_status find_stiffened(bough_arena *arena, void *data) {
     return bough_ok();
 }
 
-// Theory (104): each equilibrium starts the next, of softer rods.
+// theory (104): each equilibrium starts the next, of softer rods.
 static bough_status soften(continuation *c) {
     double part = first_part, found = 1;
     c->exponent = found;
