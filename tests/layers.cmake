@@ -1,5 +1,5 @@
 # Who may include whom: cmake -D ROOT=<source folder> -P layers.cmake. Every violation is printed as
-# file:line. The arrows are those of the folder map in README.md.
+# file:line. The arrows are those of the table of folders in docs/architecture.md.
 cmake_minimum_required(VERSION 3.20)
 
 set(found 0)

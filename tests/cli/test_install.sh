@@ -28,7 +28,7 @@ fi
 # is data that one of them names.
 scenes=0
 for file in $(find "$folder/usr/share/bough" -name '*.yaml'); do
-    if grep -Eq "^(bodies|base):" "$file"; then
+    if grep -Eq "^(bodies|base|turbine):" "$file"; then
         "$folder/usr/bin/bough" check "$file" >"$folder/said" 2>&1 || { cat "$folder/said"; exit 1; }
         scenes=$((scenes + 1))
     elif grep -q '^kind:' "$file"; then
