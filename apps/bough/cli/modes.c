@@ -234,8 +234,8 @@ static void print_search(const bough_vibration *v) {
 static void print_mesh(const bough_vibration *v) {
     double most = 0;
     for (int k = 0; k < v->found; k++) most = fmax(most, v->mode[k].moved);
-    if (!print_numbers("warning: half the segments move by more than 1 %: mode", v, is_moved))
-        printf("half the segments move no mode by more than %.2g %%\n", 100 * most);
+    if (!print_numbers("warning: changed by more than 1 % with half the segments: mode", v, is_moved))
+        printf("no mode changes by more than %.2g %% with half the segments\n", 100 * most);
 }
 
 static void print_modes(const bough_simulation *s, const bough_vibration *v) {
