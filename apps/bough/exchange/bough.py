@@ -47,7 +47,7 @@ class Error(Exception):
 
 
 class UnknownName(Error, KeyError):
-    """The scene has no channel or input of that name; the message tells the nearest."""
+    """The scene has no channel or input of that name; the message names the nearest."""
 
 
 def _load():

@@ -204,7 +204,7 @@ void bough_draft_head(bough_draft *d, const char *title, const char *origin, dou
     double steps = fmax(ceil(duration / step - 1e-6), 1);
     d->macro_step = step;
     fprintf(file,
-            "# Imported from %s: import.txt tells what was taken.\n"
+            "# Imported from %s: import.txt lists what was taken.\n"
             "# Ground axes: x downwind, z up. The rotor turns positive about the shaft's x.\n"
             "title: ",
             origin);

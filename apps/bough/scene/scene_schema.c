@@ -143,7 +143,7 @@ static const bough_key simulation_keys[] = {
     {KEY(CHOICE, error_estimate), .fallback = "companion",
      CHOICES([BOUGH_SCENE_COMPANION] = "companion", [BOUGH_SCENE_NO_ESTIMATE] = "none"),
      .help = "companion: a second solution beside the run that is coarser (half the segments, twice the "
-             "steps, half the sampling rate of the air) gives the whole error of every channel, for a third to a half "
+             "steps, half the sampling rate of the air) gives the whole error of every channel, for two to three fifths "
              "of the run's cost; a rod of up to eight segments has twice as many there, at least eight, which costs up to nine tenths"},
     {KEY(BOOLEAN, error_shares), .fallback = "false",
      .help = "also gives the errors of mesh, air and time by themselves, by further runs after the run"},
