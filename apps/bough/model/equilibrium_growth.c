@@ -1,0 +1,83 @@
+// What grows from an equilibrium, by eigenvalues of the tangents.
+#include "apps/bough/model/equilibrium_search.h"
+#include "cosim/analysis/modes.h"
+
+#include <math.h>
+
+// Where growing eigenvalues of the Jacobian are looked for [1/s], how many values nearest to each, and the
+// part of a point that is rounding; far beyond it lie values that a small system does not have.
+static const double point[] = {1, 50, 1000}, rounded = 1e-3;
+enum { POINTS = 3, NEAREST = 12 }; // the latter at the first, 4 at the others
+
+// An oscillation grows by this part of its value at least, equally from both points to this part of it.
+static const double rounded_oscillation = 1e-5, again = 2.7, equal = 0.01;
+
+// Pairs with a larger residual are made by the rounding of long steps, as (72) is: nothing grows with them.
+static const double trusted = 1e-4;
+
+static bool oscillates(const bough_eigen_pair *pair) {
+    return fabs(pair->imaginary) > rounded * fabs(pair->real);
+}
+
+static bough_status find_near(bough_arena *arena, const bough_equilibrium_search *x, double at,
+                              bough_eigen_pair *pair, bough_eigen_count *count) {
+    bough_modes_def def = {.time = x->time, .state = x->state, .input = x->whole->input, .point = at};
+    return bough_modes_find(arena, x->whole, &def, pair, count);
+}
+
+// The oscillation among the pairs that grows most, by parts of its value; NULL: none.
+static const bough_eigen_pair *growing_oscillation(const bough_eigen_pair *pair, int n) {
+    const bough_eigen_pair *most = NULL;
+    for (int k = 0; k < n; k++) {
+        double size = hypot(pair[k].real, pair[k].imaginary);
+        bool slow = size > rounded && size < 1 / rounded && oscillates(&pair[k]);
+        if (slow && pair[k].residual < trusted && pair[k].real > rounded_oscillation * size &&
+            (most == NULL || pair[k].real > most->real))
+            most = &pair[k];
+    }
+    return most;
+}
+
+// Rounding lets values grow otherwise from another point.
+static bough_status confirm_oscillation(bough_arena *arena, const bough_equilibrium_search *x,
+                                        const bough_eigen_pair *found) {
+    bough_eigen_pair pair[NEAREST];
+    bough_eigen_count count = {.wanted = NEAREST};
+    BOUGH_TRY(find_near(arena, x, again, pair, &count));
+    for (int k = 0; k < count.found; k++) {
+        double off = hypot(pair[k].real - found->real, fabs(pair[k].imaginary) - fabs(found->imaginary));
+        if (off > equal * found->real) continue;
+        x->growth->oscillation = found->real;
+        x->growth->frequency = fabs(found->imaginary) / (2 * BOUGH_PI);
+    }
+    return bough_ok();
+}
+
+static bough_status find_growth(bough_arena *arena, void *self) {
+    bough_equilibrium_search *x = self;
+    bough_equilibrium_search_set_up(arena, x);
+    bough_whole_inputs(x->whole, x->time, x->state);
+    for (int i = 0; i < POINTS; i++) {
+        bough_eigen_pair pair[NEAREST];
+        bough_eigen_count count = {.wanted = i == 0 ? NEAREST : 4};
+        bough_status status = find_near(arena, x, point[i], pair, &count);
+        if (!bough_is_ok(&status) && i > 0) continue; // none is distinctly nearest: no growth near this point
+        BOUGH_TRY(status);
+        for (int k = 0; k < count.found; k++) {
+            bool known = pair[k].real > rounded * point[i] && pair[k].real < point[i] / rounded;
+            bool grows = !oscillates(&pair[k]) && known && pair[k].residual < trusted;
+            if (grows) x->growth->rate = fmax(x->growth->rate, pair[k].real);
+        }
+        const bough_eigen_pair *found = growing_oscillation(pair, count.found);
+        if (i > 0 || found == NULL || bough_equilibrium_search_turns(x)) continue;
+        BOUGH_TRY(confirm_oscillation(arena, x, found));
+    }
+    return bough_ok();
+}
+
+bough_status bough_simulation_growth(bough_simulation *s, const bough_assembly *assembly, double time,
+                                     bough_growth *growth) {
+    bough_equilibrium_search x = {.simulation = s, .assembly = assembly, .time = time, .growth = growth};
+    *growth = (bough_growth){0};
+    return bough_arena_use(find_growth, &x);
+}

@@ -1,0 +1,229 @@
+#include "apps/bough/model/equilibrium_search.h"
+
+#include "apps/bough/model/aero_link.h"
+#include "flexbody/rod/rod_static.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+enum { SAMPLES = 60 }; // of the air, most
+
+// Changes between samples of the air below it are none, in units of the states' scales.
+static const double still = 1e-8;
+
+// -- why there is none ----------------------------------------------------------------------------
+
+static const double folded = 2; // between neighbouring sections: what lies beyond has no direction [rad]
+
+// What is found beyond this angle is no equilibrium of a rod.
+static bough_status explain_rod(const bough_simulation *s, const bough_beam *beam, int steps) {
+    const double *span = beam->def.span;
+    bough_sharpest bend = bough_simulation_bend(s, beam);
+    if (bend.angle >= folded)
+        return bough_fail(
+            BOUGH_FAILED,
+            "%s: no equilibrium found in %d steps: the rod folds, by %.0f deg between %.3g and %.3g m; "
+            "its segments are too long for its load: try rod.segments: %d",
+            beam->body->name, steps, bend.angle / BOUGH_DEGREE, span[bend.segment], span[bend.segment + 1],
+            4 * beam->def.n_segment);
+    return bough_ok();
+}
+
+static bough_status explain_rods(const bough_simulation *s, int steps) {
+    for (int k = 0; k < s->n_beam; k++) {
+        if (s->beam[k].rod) BOUGH_TRY(explain_rod(s, &s->beam[k], steps));
+    }
+    return bough_ok();
+}
+
+// Whether a spring, bushing or closure between two bodies is one of a joint, too: only one of its ends moves.
+static bool is_across(const bough_scene *scene, int joint, const int body[2]) {
+    bool moves[2];
+    for (int end = 0; end < 2; end++)
+        moves[end] = body[end] != BOUGH_GROUND && bough_scene_carries(scene, joint, body[end]);
+    return moves[0] != moves[1];
+}
+
+static bool is_tied(const bough_scene *scene, int joint) {
+    for (int k = 0; k < scene->n_spring; k++)
+        if (is_across(scene, joint, scene->spring[k].body)) return true;
+    for (int k = 0; k < scene->n_bushing; k++)
+        if (is_across(scene, joint, scene->bushing[k].body)) return true;
+    for (int k = 0; k < scene->n_closure; k++)
+        if (is_across(scene, joint, scene->closure[k].body)) return true;
+    return false;
+}
+
+// The first body whose joint moves without a spring; NULL: there is none.
+static const char *loose_joint(const bough_scene *scene) {
+    for (int i = 0; i < scene->n_body; i++) {
+        const bough_scene_joint *joint = &scene->body[i].joint;
+        bool held = joint->kind == BOUGH_JOINT_FIXED || joint->motion[0].node || joint->speeds[0] != 0;
+        if (!held && joint->spring.stiffness == 0 && !is_tied(scene, i)) return scene->body[i].name;
+    }
+    return NULL;
+}
+
+// The states are the last ones reached.
+static bough_status explain(const bough_simulation *s, const bough_assembly *assembly,
+                            const bough_equilibrium_report *report) {
+    char joint[200] = "";
+    const char *loose = loose_joint(s->scene);
+    BOUGH_TRY(explain_rods(s, report->steps));
+    if (loose)
+        snprintf(joint, sizeof joint,
+                 "nothing but loads holds the joint of '%.80s': it needs a spring, a speed or a motion; or ",
+                 loose);
+    return bough_fail(
+        BOUGH_FAILED,
+        "%s: no equilibrium found in %d steps; it still moves by %.3g of its scale "
+        "in a step, at a rate of %.3g; %sthe load is too large (try a part of it, or 'bough static "
+        "--path'), or the mesh too coarse",
+        bough_simulation_body_of(s, assembly, report->row), report->steps, report->change, report->rate,
+        joint);
+}
+
+// -- the search -----------------------------------------------------------------------------------
+
+static double change_of(const bough_assembly *assembly, const double *a, const double *b) {
+    double change = 0;
+    for (int i = 0; i < assembly->n_member; i++) {
+        int first = assembly->state_offset[i];
+        for (int k = 0; k < assembly->member[i]->system.n_state; k++) {
+            double size = fabs(a[first + k] - b[first + k]) / assembly->member[i]->system.scale[k];
+            change = fmax(change, size);
+        }
+    }
+    return change;
+}
+
+bough_status bough_equilibrium_search_balance(bough_arena *arena, bough_equilibrium_search *x,
+                                              bough_equilibrium_def *def) {
+    bough_simulation *s = x->simulation;
+    bough_equilibrium_report report;
+    bough_status status = bough_equilibrium_find(arena, x->whole, def, x->state, &report);
+    x->work->steps += report.steps;
+    bough_equilibrium_set_state(s, x->assembly, x->state);
+    if (status.code == BOUGH_FAILED) return explain(s, x->assembly, &report);
+    if (bough_is_ok(&status)) status = explain_rods(s, report.steps);
+    def->step = BOUGH_EQUILIBRIUM_LONGEST; // near it now
+    return status;
+}
+
+static bough_status balance_in_air(bough_arena *arena, bough_equilibrium_search *x,
+                                   bough_equilibrium_def *def) {
+    size_t n = (size_t)x->assembly->n_state;
+    double *before = bough_arena_doubles(arena, n), change = 0;
+    while (x->work->samples < SAMPLES) {
+        memcpy(before, x->state, n * sizeof *before);
+        bough_aero_link_hold(x->simulation->aero, def->time);
+        x->work->samples++;
+        BOUGH_TRY(bough_equilibrium_search_balance(arena, x, def));
+        change = change_of(x->assembly, x->state, before);
+        if (change < still) return bough_ok();
+    }
+    return bough_fail(BOUGH_FAILED,
+                      "no equilibrium in the air: the bodies still move by %.3g of their scales"
+                      " after %d samples of its forces; they may flutter or stall: try another wind"
+                      " speed or pitch",
+                      change, x->work->samples);
+}
+
+// Rods turn without stretching, and what hangs on their ends goes with them.
+double bough_equilibrium_search_move(void *self, const double *state, const double *change, double *moved) {
+    const bough_equilibrium_search *x = self;
+    const bough_simulation *s = x->simulation;
+    const bough_assembly *a = x->assembly;
+    double turn = 0;
+    for (int k = 0; k < a->n_state; k++) moved[k] = state[k] + change[k];
+    for (int k = 0; k < s->n_beam; k++) {
+        const bough_beam *beam = &s->beam[k];
+        if (!beam->rod) continue;
+        const bough_rod_model *m = beam->mesh;
+        size_t own = (size_t)a->state_offset[beam->port + 1], size = BOUGH_ROD_U * (size_t)m->n;
+        size_t end = 0; // of a rod that carries nothing: not read
+        if (beam->end >= 0) {
+            int link = s->tree->ends[beam->end].link;
+            end = (size_t)s->tree->links[link].first_coordinate;
+        }
+        bough_rod_change(m, state + own, state + end, change + own, change + end, x->change);
+        memcpy(moved + own, state + own, size * sizeof *moved);
+        if (beam->end >= 0) memcpy(moved + end, state + end, BOUGH_ROD_U * sizeof *moved);
+        bough_rod_move(m, x->change, 1, moved + own, moved + end);
+        turn = fmax(turn, bough_rod_turn(m, x->change));
+    }
+    return turn;
+}
+
+// All joints but the held ones are at rest, and the rods move with them. Each step then starts at rest: it
+// goes downhill and makes no vibration. A closed loop is not brought to rest unless something turns: it may
+// have to close, which takes velocities.
+void bough_equilibrium_search_rest(void *self, double *state) {
+    const bough_equilibrium_search *x = self;
+    const bough_simulation *s = x->simulation;
+    const bough_assembly *a = x->assembly;
+    const bough_tree *tree = s->tree;
+    for (int k = tree->n_q; k < tree->n_q + tree->n_v; k++) {
+        bool held = false;
+        for (int i = 0; i < x->whole->n_held; i++) held = held || x->whole->held[i] == k;
+        if (!held) state[k] = 0;
+    }
+    bough_whole_inputs(x->whole, x->time, state);
+    for (int k = 0; k < s->n_beam; k++) {
+        const bough_beam *beam = &s->beam[k];
+        int member = beam->port + 1;
+        if (beam->port < 0) continue;
+        bough_beam_move_rigidly(beam, x->whole->input + a->input_offset[member],
+                                state + a->state_offset[member]);
+    }
+}
+
+bool bough_equilibrium_search_turns(const bough_equilibrium_search *x) {
+    for (int i = 0; i < x->whole->n_held; i++) {
+        int row = x->whole->held[i];
+        if (row >= x->simulation->tree->n_q && x->state[row] != 0) return true;
+    }
+    return false;
+}
+
+void bough_equilibrium_search_set_up(bough_arena *arena, bough_equilibrium_search *x) {
+    bough_simulation *s = x->simulation;
+    x->state = bough_arena_doubles(arena, (size_t)x->assembly->n_state + 1);
+    x->change = bough_arena_doubles(arena, BOUGH_ROD_CHANGE * bough_simulation_most_vertices(s));
+    int *row = bough_arena_take(arena, ((size_t)s->leader.system.n_state + 1) * sizeof *row);
+    x->whole = bough_whole_create(arena, x->assembly, NULL);
+    for (int k = 0; k < s->n_sampled; k++) {
+        if (s->sampled[k].begin) s->sampled[k].begin(s->sampled[k].self, x->time);
+    }
+    bough_whole_hold(arena, x->whole, bough_equilibrium_held(s->tree, true, row), row);
+    bough_assembly_states(x->assembly, x->state);
+    bough_tree_prescribe(s->tree, x->time, x->state);
+    bough_equilibrium_search_rest(x, x->state);
+    x->rests = bough_equilibrium_search_turns(x) || s->tree->n_closures == 0;
+}
+
+bough_equilibrium_def bough_equilibrium_search_def(bough_equilibrium_search *x) {
+    bough_equilibrium_def def = x->limits;
+    def.time = x->time;
+    def.self = x;
+    def.move = bough_equilibrium_search_move;
+    if (x->rests) def.rest = bough_equilibrium_search_rest;
+    return def;
+}
+
+static bough_status balance_members(bough_arena *arena, void *self) {
+    bough_equilibrium_search *x = self;
+    bough_equilibrium_search_set_up(arena, x);
+    bough_equilibrium_def def = bough_equilibrium_search_def(x);
+    return x->simulation->aero ? balance_in_air(arena, x, &def)
+                               : bough_equilibrium_search_balance(arena, x, &def);
+}
+
+bough_status bough_equilibrium_search_within(bough_equilibrium_def limits, bough_simulation *s,
+                                             const bough_assembly *assembly, double time,
+                                             bough_equilibrium_work *work) {
+    bough_equilibrium_search x = {
+        .simulation = s, .assembly = assembly, .time = time, .limits = limits, .work = work};
+    return bough_arena_use(balance_members, &x);
+}

@@ -1,0 +1,50 @@
+// What the searches for an equilibrium and for what grows from it, and the paths of equilibria have in
+// common: the system of all members at rest at a time, how its states move by a finite change, and one
+// search.
+#ifndef BOUGH_APPS_MODEL_EQUILIBRIUM_SEARCH_H
+#define BOUGH_APPS_MODEL_EQUILIBRIUM_SEARCH_H
+
+#include "apps/bough/model/equilibrium.h"
+#include "cosim/analysis/equilibrium.h"
+
+// An equilibrium, its growth or a path of equilibria, within bough_arena_use.
+typedef struct bough_equilibrium_search {
+    bough_simulation *simulation;
+    const bough_assembly *assembly;
+    double time;
+    bough_equilibrium_def limits; // step, least, tolerance and steps of an equilibrium
+    bough_equilibrium_work *work; // of an equilibrium
+    bough_growth *growth;         // of a state
+    bough_path_listener listener; // of a path
+    bough_path_report *report;
+
+    // by bough_equilibrium_search_set_up
+    bough_whole *whole;
+    double *state;  // (n_state) at rest
+    bool rests;     // whether states are brought to rest in between
+    double *change; // of one rod's vertices, see rod_static.h
+} bough_equilibrium_search;
+
+// The system and its states at rest at the time.
+void bough_equilibrium_search_set_up(bough_arena *arena, bough_equilibrium_search *x);
+
+// Whether a joint that is held turns or slides.
+bool bough_equilibrium_search_turns(const bough_equilibrium_search *x);
+
+// The limits, with how states move and come to rest. After set_up.
+bough_equilibrium_def bough_equilibrium_search_def(bough_equilibrium_search *x);
+
+// The functions `move` and `rest` of bough_equilibrium_def; self: a bough_equilibrium_search.
+double bough_equilibrium_search_move(void *self, const double *state, const double *change, double *moved);
+void bough_equilibrium_search_rest(void *self, double *state);
+
+// The states in equilibrium under the air's forces as sampled last. After set_up.
+bough_status bough_equilibrium_search_balance(bough_arena *arena, bough_equilibrium_search *x,
+                                              bough_equilibrium_def *def);
+
+// One search from the members' states on, with samples of the air.
+bough_status bough_equilibrium_search_within(bough_equilibrium_def limits, bough_simulation *s,
+                                             const bough_assembly *assembly, double time,
+                                             bough_equilibrium_work *work);
+
+#endif
