@@ -23,6 +23,8 @@ typedef struct work {
     double *memory, *before, *after; // (n_memory): at rest; at both ends of rate_time
     double *state;                   // (n)
     double *rate[2], *air_rate[2];   // (n), (n_air) on either side
+    const bough_blade_group *group;  // whose states are changed at once; NULL: each state by itself
+    int n_per_blade, *blade_air;     // states of a blade's air; (n_part × n_per_blade) their rows
 } work;
 
 static void take(bough_arena *arena, work *w) {
@@ -95,31 +97,153 @@ static bool meets_air(const bough_simulation *s, int member) {
     return false;
 }
 
-// To one side: there are thousands of states, and the curvature of the loads within the difference is 1e-5 of
-// their slope.
+// -- equal blades at once -------------------------------------------------------------------------
+
+// Change of another blade's rates, relative to that of its own, below which blades move by themselves: what
+// is left are means over the disk, which all blades change.
+static const double apart = 1e-3;
+
+// The largest change of the rates of a blade and its air, in units of the scales.
+static double change_of(const work *w, const double *scale, int blade) {
+    const bough_blade_group *g = w->group;
+    double most = 0;
+    for (int j = 0; j < g->n_row; j++) {
+        int at = g->row[blade * g->n_row + j];
+        most = fmax(most, fabs(w->rate[1][at] - w->rate[0][at]) / scale[at]);
+    }
+    for (int j = 0; j < w->n_per_blade; j++) {
+        int at = w->blade_air[blade * w->n_per_blade + j];
+        most = fmax(most, fabs(w->air_rate[1][at] - w->air_rate[0][at]));
+    }
+    return most;
+}
+
+// Leaves the group where a change of the first blade, its air and all of its states, moves the others.
+static bough_status choose_group(bough_arena *arena, work *w, const double *state,
+                                 const bough_blade_group *group) {
+    if (group == NULL || group->n < 2) return bough_ok();
+    double *scale = bough_arena_doubles(arena, (size_t)w->whole->assembly->n_state), own, others = 0;
+    w->group = group;
+    w->n_per_blade = w->n_air / w->simulation->scene->turbine.n_blade;
+    w->blade_air = bough_arena_take(arena, (size_t)(group->n * w->n_per_blade + 1) * sizeof *w->blade_air);
+    bough_air_tangent_rows(w->simulation, group, w->n_per_blade, w->blade_air);
+    bough_assembly_scales(w->whole->assembly, scale);
+    begin_change(w, state);
+    for (int j = 0; j < group->n_row; j++) {
+        int at = group->row[j];
+        w->state[at] += difference * scale[at] * sin(1 + 7.3 * j);
+    }
+    for (int j = 0; j < w->n_per_blade; j++)
+        w->before[w->row[w->blade_air[j]]] += air_difference * cos(2 + 5.1 * j);
+    BOUGH_TRY(find_rates(w, state, w->rate[1], w->air_rate[1]));
+    own = change_of(w, scale, 0);
+    for (int k = 1; k < group->n; k++) others = fmax(others, change_of(w, scale, k));
+    if (others > apart * own) w->group = NULL;
+    return bough_ok();
+}
+
+// Whether the rates on both sides are the same but for the blades'.
+static bool is_of_blades(const work *w) {
+    const bough_blade_group *g = w->group;
+    int own = g->n * g->n_row, changed = 0;
+    for (int i = 0; i < w->whole->assembly->n_state; i++) changed += w->rate[1][i] != w->rate[0][i];
+    for (int i = 0; i < own; i++) changed -= w->rate[1][g->row[i]] != w->rate[0][g->row[i]];
+    return changed == 0;
+}
+
+// Slopes of each blade's rates, and of its air's, by its own state: columns (n_part) of the tangents.
+static void set_blades(const work *w, double between, const int *from, double *of_state, double *of_air) {
+    const bough_blade_group *g = w->group;
+    for (int k = 0; k < g->n; k++) {
+        double *column = of_state + (size_t)from[k] * (size_t)w->whole->assembly->n_state;
+        double *air_column = of_air + (size_t)from[k] * (size_t)w->n_air;
+        for (int j = 0; j < g->n_row; j++) {
+            int at = g->row[k * g->n_row + j];
+            column[at] = (w->rate[1][at] - w->rate[0][at]) / between;
+        }
+        for (int j = 0; j < w->n_per_blade; j++) {
+            int at = w->blade_air[k * w->n_per_blade + j];
+            air_column[at] = (w->air_rate[1][at] - w->air_rate[0][at]) / between;
+        }
+    }
+}
+
+// -- columns --------------------------------------------------------------------------------------
+
+// States that take part in a difference: `n` of them, which are alike.
+typedef struct changed {
+    bool of_air;
+    int n;
+    const int *at;
+    double size;
+} changed;
+
+static bough_status change_some(work *w, const double *state, const changed *c, int first, int n) {
+    begin_change(w, state);
+    for (int k = first; k < first + n; k++) {
+        if (c->of_air)
+            w->before[w->row[c->at[k]]] += c->size;
+        else
+            w->state[c->at[k]] += c->size;
+    }
+    return find_rates(w, state, w->rate[1], w->air_rate[1]);
+}
+
+// At once where no rate but the blades' own changes, else one after the other. To one side: there are
+// thousands of states, and the curvature of the loads within the difference is 1e-5 of their slope.
+static bough_status follow(work *w, const double *state, changed c, bough_air_tangent *t) {
+    double *of_state = c.of_air ? t->lift : t->motion, *of_air = c.of_air ? t->lag : t->drive;
+    if (c.n > 1) {
+        BOUGH_TRY(change_some(w, state, &c, 0, c.n));
+        if (is_of_blades(w)) {
+            set_blades(w, c.size, c.at, of_state, of_air);
+            return bough_ok();
+        }
+    }
+    for (int k = 0; k < c.n; k++) {
+        BOUGH_TRY(change_some(w, state, &c, k, 1));
+        set_column(w, c.size, of_state + (size_t)c.at[k] * (size_t)t->n,
+                   of_air + (size_t)c.at[k] * (size_t)t->n_air);
+    }
+    return bough_ok();
+}
+
+enum { MOST_BLADES = 16 };
+
+// The same state of all blades, of which state j is one of the first's; of others itself alone.
+static changed states_with(const work *w, int n_row, const int *row, int state, int *at) {
+    changed c = {.n = 1, .at = at};
+    at[0] = state;
+    for (int j = 0; w->group && w->group->n <= MOST_BLADES && j < w->group->n * n_row; j++) {
+        if (row[j] != state) continue;
+        c.n = j < n_row ? w->group->n : 0; // those of other blades are changed with it
+        for (int k = 0; k < c.n; k++) at[k] = row[k * n_row + j];
+        return c;
+    }
+    return c;
+}
+
 static bough_status follow_motion(work *w, const double *state, bough_air_tangent *t) {
     const bough_assembly *a = w->whole->assembly;
+    int at[MOST_BLADES], n_row = w->group ? w->group->n_row : 0;
     for (int i = 0; i < a->n_member; i++) {
         if (!meets_air(w->simulation, i)) continue;
         for (int k = 0; k < a->member[i]->system.n_state; k++) {
-            int at = a->state_offset[i] + k;
-            double size = difference * a->member[i]->system.scale[k];
-            begin_change(w, state);
-            w->state[at] += size;
-            BOUGH_TRY(find_rates(w, state, w->rate[1], w->air_rate[1]));
-            set_column(w, size, t->motion + (size_t)at * a->n_state, t->drive + (size_t)at * t->n_air);
+            changed c = states_with(w, n_row, n_row ? w->group->row : NULL, a->state_offset[i] + k, at);
+            c.size = difference * a->member[i]->system.scale[k];
+            BOUGH_TRY(follow(w, state, c, t));
         }
     }
     return bough_ok();
 }
 
 static bough_status follow_memory(work *w, const double *state, bough_air_tangent *t) {
-    size_t n = (size_t)w->whole->assembly->n_state;
+    int at[MOST_BLADES];
     for (int k = 0; k < w->n_air; k++) {
-        begin_change(w, state);
-        w->before[w->row[k]] += air_difference;
-        BOUGH_TRY(find_rates(w, state, w->rate[1], w->air_rate[1]));
-        set_column(w, air_difference, t->lift + (size_t)k * n, t->lag + (size_t)k * t->n_air);
+        changed c = states_with(w, w->n_per_blade, w->blade_air, k, at);
+        c.of_air = true;
+        c.size = air_difference;
+        BOUGH_TRY(follow(w, state, c, t));
     }
     return bough_ok();
 }
@@ -150,8 +274,8 @@ static work start(bough_arena *arena, bough_simulation *s, bough_whole *whole, d
 }
 
 bough_status bough_air_tangent_find(bough_arena *arena, bough_simulation *s, bough_whole *whole, double time,
-                                    const double *state, bool dynamic, const bough_air_inputs *inputs,
-                                    bough_air_tangent *t) {
+                                    const double *state, bool dynamic, const bough_blade_group *group,
+                                    const bough_air_inputs *inputs, bough_air_tangent *t) {
     work w = start(arena, s, whole, time, dynamic);
     size_t n = (size_t)whole->assembly->n_state, m = (size_t)w.n_air;
     size_t n_input = inputs ? (size_t)inputs->n : 0;
@@ -167,6 +291,7 @@ bough_status bough_air_tangent_find(bough_arena *arena, bough_simulation *s, bou
     settle(&w, state);
     begin_change(&w, state);
     bough_status status = find_rates(&w, state, w.rate[0], w.air_rate[0]);
+    if (bough_is_ok(&status)) status = choose_group(arena, &w, state, group);
     if (bough_is_ok(&status)) status = follow_motion(&w, state, t);
     if (bough_is_ok(&status)) status = follow_memory(&w, state, t);
     if (bough_is_ok(&status) && inputs) status = follow_inputs(&w, state, inputs, t);

@@ -28,10 +28,12 @@ typedef struct bough_air_inputs {
 } bough_air_inputs;
 
 // About `state` (n) at `time`; `dynamic`: with the memory that the scene's inflow and stall have; inputs
-// NULL: none. The simulation is left in that state.
+// NULL: none. `group`: blades whose states are changed at once where a blade's loads follow its own motion
+// alone, but for means over the disk within 1e-3, which then count as the blade's own; NULL: none. The
+// simulation is left in that state.
 bough_status bough_air_tangent_find(bough_arena *arena, bough_simulation *s, bough_whole *whole, double time,
-                                    const double *state, bool dynamic, const bough_air_inputs *inputs,
-                                    bough_air_tangent *tangent);
+                                    const double *state, bool dynamic, const bough_blade_group *group,
+                                    const bough_air_inputs *inputs, bough_air_tangent *tangent);
 
 // The same for one change of bodies and air at once: the products that the matrices have with it.
 typedef struct bough_air_change bough_air_change;

@@ -247,7 +247,8 @@ static bough_status solve_in_air(bough_arena *arena, bough_simulation *s, const 
                                  int count, bough_vibration *v) {
     bough_air_tangent air;
     bool dynamic = s->scene->modes.air == BOUGH_SCENE_AIR_DYNAMIC;
-    BOUGH_TRY(bough_air_tangent_find(arena, s, x->whole, x->def.time, x->state, dynamic, NULL, &air));
+    BOUGH_TRY(
+        bough_air_tangent_find(arena, s, x->whole, x->def.time, x->state, dynamic, &x->group, NULL, &air));
     bough_air_tangent_average(arena, s, &x->group, &air);
     bough_aeroelastic system = {s, x->whole, &x->def, &x->group, &air};
     v->count.wanted = count + FREE_MOTIONS;

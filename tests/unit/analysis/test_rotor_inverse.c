@@ -41,7 +41,7 @@ static void setup(const scene *c) {
 static void open_scene(bough_arena *arena, scene *c) {
     bough_simulation *s = scene_build(arena, "apps/turbine/land-operation.yaml", symmetric);
     check_ok(bough_vibration_point_find(arena, s, 0, &c->x));
-    check_ok(bough_air_tangent_find(arena, s, c->x.whole, 0, c->x.state, false, NULL, &c->air));
+    check_ok(bough_air_tangent_find(arena, s, c->x.whole, 0, c->x.state, false, NULL, NULL, &c->air));
     bough_air_tangent_average(arena, s, &c->x.group, &c->air);
     c->system = (bough_aeroelastic){s, c->x.whole, &c->x.def, &c->x.group, &c->air};
     assert_int_equal(c->x.group.n, 3);
