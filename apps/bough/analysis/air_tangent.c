@@ -23,8 +23,6 @@ typedef struct work {
     double *memory, *before, *after; // (n_memory): at rest; at both ends of rate_time
     double *state;                   // (n)
     double *rate[2], *air_rate[2];   // (n), (n_air) on either side
-    const bough_blade_group *group;  // whose states are changed at once; NULL: each state by itself
-    int n_per_blade, *blade_air;     // states of a blade's air; (n_part × n_per_blade) their rows
 } work;
 
 static void take(bough_arena *arena, work *w) {
@@ -97,154 +95,266 @@ static bool meets_air(const bough_simulation *s, int member) {
     return false;
 }
 
-// -- equal blades at once -------------------------------------------------------------------------
-
-// Change of another blade's rates, relative to that of its own, below which blades move by themselves: what
-// is left are means over the disk, which all blades change.
-static const double apart = 1e-3;
-
-// The largest change of the rates of a blade and its air, in units of the scales.
-static double change_of(const work *w, const double *scale, int blade) {
-    const bough_blade_group *g = w->group;
-    double most = 0;
-    for (int j = 0; j < g->n_row; j++) {
-        int at = g->row[blade * g->n_row + j];
-        most = fmax(most, fabs(w->rate[1][at] - w->rate[0][at]) / scale[at]);
-    }
-    for (int j = 0; j < w->n_per_blade; j++) {
-        int at = w->blade_air[blade * w->n_per_blade + j];
-        most = fmax(most, fabs(w->air_rate[1][at] - w->air_rate[0][at]));
-    }
-    return most;
-}
-
-// Leaves the group where a change of the first blade, its air and all of its states, moves the others.
-static bough_status choose_group(bough_arena *arena, work *w, const double *state,
-                                 const bough_blade_group *group) {
-    if (group == NULL || group->n < 2) return bough_ok();
-    double *scale = bough_arena_doubles(arena, (size_t)w->whole->assembly->n_state), own, others = 0;
-    w->group = group;
-    w->n_per_blade = w->n_air / w->simulation->scene->turbine.n_blade;
-    w->blade_air = bough_arena_take(arena, (size_t)(group->n * w->n_per_blade + 1) * sizeof *w->blade_air);
-    bough_air_tangent_rows(w->simulation, group, w->n_per_blade, w->blade_air);
-    bough_assembly_scales(w->whole->assembly, scale);
+// One state, of the bodies or of the air.
+static bough_status follow_state(work *w, const double *state, bool of_air, int at, double size,
+                                 bough_air_tangent *t) {
     begin_change(w, state);
-    for (int j = 0; j < group->n_row; j++) {
-        int at = group->row[j];
-        w->state[at] += difference * scale[at] * sin(1 + 7.3 * j);
-    }
-    for (int j = 0; j < w->n_per_blade; j++)
-        w->before[w->row[w->blade_air[j]]] += air_difference * cos(2 + 5.1 * j);
+    if (of_air)
+        w->before[w->row[at]] += size;
+    else
+        w->state[at] += size;
     BOUGH_TRY(find_rates(w, state, w->rate[1], w->air_rate[1]));
-    own = change_of(w, scale, 0);
-    for (int k = 1; k < group->n; k++) others = fmax(others, change_of(w, scale, k));
-    if (others > apart * own) w->group = NULL;
+    set_column(w, size, (of_air ? t->lift : t->motion) + (size_t)at * (size_t)t->n,
+               (of_air ? t->lag : t->drive) + (size_t)at * (size_t)t->n_air);
     return bough_ok();
 }
 
-// Whether the rates on both sides are the same but for the blades'.
-static bool is_of_blades(const work *w) {
-    const bough_blade_group *g = w->group;
-    int own = g->n * g->n_row, changed = 0;
-    for (int i = 0; i < w->whole->assembly->n_state; i++) changed += w->rate[1][i] != w->rate[0][i];
-    for (int i = 0; i < own; i++) changed -= w->rate[1][g->row[i]] != w->rate[0][g->row[i]];
-    return changed == 0;
-}
-
-// Slopes of each blade's rates, and of its air's, by its own state: columns (n_part) of the tangents.
-static void set_blades(const work *w, double between, const int *from, double *of_state, double *of_air) {
-    const bough_blade_group *g = w->group;
-    for (int k = 0; k < g->n; k++) {
-        double *column = of_state + (size_t)from[k] * (size_t)w->whole->assembly->n_state;
-        double *air_column = of_air + (size_t)from[k] * (size_t)w->n_air;
-        for (int j = 0; j < g->n_row; j++) {
-            int at = g->row[k * g->n_row + j];
-            column[at] = (w->rate[1][at] - w->rate[0][at]) / between;
-        }
-        for (int j = 0; j < w->n_per_blade; j++) {
-            int at = w->blade_air[k * w->n_per_blade + j];
-            air_column[at] = (w->air_rate[1][at] - w->air_rate[0][at]) / between;
-        }
-    }
-}
-
-// -- columns --------------------------------------------------------------------------------------
-
-// States that take part in a difference: `n` of them, which are alike.
-typedef struct changed {
-    bool of_air;
-    int n;
-    const int *at;
-    double size;
-} changed;
-
-static bough_status change_some(work *w, const double *state, const changed *c, int first, int n) {
-    begin_change(w, state);
-    for (int k = first; k < first + n; k++) {
-        if (c->of_air)
-            w->before[w->row[c->at[k]]] += c->size;
-        else
-            w->state[c->at[k]] += c->size;
-    }
-    return find_rates(w, state, w->rate[1], w->air_rate[1]);
-}
-
-// At once where no rate but the blades' own changes, else one after the other. To one side: there are
-// thousands of states, and the curvature of the loads within the difference is 1e-5 of their slope.
-static bough_status follow(work *w, const double *state, changed c, bough_air_tangent *t) {
-    double *of_state = c.of_air ? t->lift : t->motion, *of_air = c.of_air ? t->lag : t->drive;
-    if (c.n > 1) {
-        BOUGH_TRY(change_some(w, state, &c, 0, c.n));
-        if (is_of_blades(w)) {
-            set_blades(w, c.size, c.at, of_state, of_air);
-            return bough_ok();
-        }
-    }
-    for (int k = 0; k < c.n; k++) {
-        BOUGH_TRY(change_some(w, state, &c, k, 1));
-        set_column(w, c.size, of_state + (size_t)c.at[k] * (size_t)t->n,
-                   of_air + (size_t)c.at[k] * (size_t)t->n_air);
-    }
-    return bough_ok();
-}
-
-enum { MOST_BLADES = 16 };
-
-// The same state of all blades, of which state j is one of the first's; of others itself alone.
-static changed states_with(const work *w, int n_row, const int *row, int state, int *at) {
-    changed c = {.n = 1, .at = at};
-    at[0] = state;
-    for (int j = 0; w->group && w->group->n <= MOST_BLADES && j < w->group->n * n_row; j++) {
-        if (row[j] != state) continue;
-        c.n = j < n_row ? w->group->n : 0; // those of other blades are changed with it
-        for (int k = 0; k < c.n; k++) at[k] = row[k * n_row + j];
-        return c;
-    }
-    return c;
-}
-
-static bough_status follow_motion(work *w, const double *state, bough_air_tangent *t) {
+// To one side: there are thousands of states, and the curvature of the loads within the difference is 1e-5 of
+// their slope.
+static bough_status follow_member(work *w, const double *state, int member, bough_air_tangent *t) {
     const bough_assembly *a = w->whole->assembly;
-    int at[MOST_BLADES], n_row = w->group ? w->group->n_row : 0;
-    for (int i = 0; i < a->n_member; i++) {
-        if (!meets_air(w->simulation, i)) continue;
-        for (int k = 0; k < a->member[i]->system.n_state; k++) {
-            changed c = states_with(w, n_row, n_row ? w->group->row : NULL, a->state_offset[i] + k, at);
-            c.size = difference * a->member[i]->system.scale[k];
-            BOUGH_TRY(follow(w, state, c, t));
+    const bough_system *system = &a->member[member]->system;
+    for (int k = 0; k < system->n_state; k++)
+        BOUGH_TRY(
+            follow_state(w, state, false, a->state_offset[member] + k, difference * system->scale[k], t));
+    return bough_ok();
+}
+
+// -- equal blades ---------------------------------------------------------------------------------
+
+// Loads of a section follow the vertices and the air beside it: states of all blades, and of places far
+// enough apart, are changed at once.
+
+// States of one blade, then those of its air; places along it count aerodynamic stations.
+typedef struct blades {
+    work *w;
+    const bough_blade_group *group;
+    int n_row, n_air, n_all; // of a blade
+    int *air_row;            // (n_part × n_air)
+    double *place, *reach;   // (n_all); how far from it loads change
+    double *size;            // (n_all) of differences
+    int *nearest;            // (n_all) of the states changed at once
+    double *other;           // (n) 1 over the scale of a member's state; 0: a blade's
+} blades;
+
+static bool is_of_air(const blades *b, int j) { return j >= b->n_row; }
+
+static int row_of(const blades *b, int blade, int j) {
+    return is_of_air(b, j) ? b->air_row[blade * b->n_air + j - b->n_row]
+                           : b->group->row[blade * b->n_row + j];
+}
+
+// Places of spans between stations.
+static double place_of(const bough_scene_aero_blade *aero, double span) {
+    int k = 1;
+    while (k + 1 < aero->n_station && aero->station[k].def.span < span) k++;
+    double from = aero->station[k - 1].def.span, to = aero->station[k].def.span;
+    return k - 1 + (span - from) / (to - from);
+}
+
+// A state of vertex i reaches sections between the vertices beside it; their loads, one station further.
+static void set_places(blades *b) {
+    const bough_rod_model *m = b->group->blade[0]->mesh;
+    const bough_scene_aero_blade *aero = &b->w->simulation->scene->aero.blade;
+    int per_station = b->n_air / aero->n_station;
+    for (int j = 0; j < b->n_all; j++) {
+        double span =
+            is_of_air(b, j) ? aero->station[(j - b->n_row) / per_station].def.span : m->span[j % m->n + 1];
+        int i = 1;
+        while (i + 1 < m->n_segment && m->span[i] < span) i++;
+        double gap = place_of(aero, m->span[i + 1]) - place_of(aero, m->span[i - 1]);
+        b->place[j] = place_of(aero, span);
+        b->reach[j] = 2 + gap;
+    }
+}
+
+static blades take_blades(bough_arena *arena, work *w, const bough_blade_group *group) {
+    int n_air = w->n_air / w->simulation->scene->turbine.n_blade, n_row = group->n_row;
+    blades b = {.w = w, .group = group, .n_row = n_row, .n_air = n_air, .n_all = n_row + n_air};
+    size_t all = (size_t)b.n_all + 1;
+    int n = w->whole->assembly->n_state;
+    double *scale = b.other = bough_arena_doubles(arena, (size_t)n);
+    bough_arena_each(arena, all, &b.place, &b.reach, &b.size);
+    b.nearest = bough_arena_take(arena, all * sizeof *b.nearest);
+    b.air_row = bough_arena_take(arena, (size_t)(group->n * n_air + 1) * sizeof *b.air_row);
+    bough_air_tangent_rows(w->simulation, group, n_air, b.air_row);
+    bough_assembly_scales(w->whole->assembly, scale);
+    for (int j = 0; j < b.n_all; j++)
+        b.size[j] = is_of_air(&b, j) ? air_difference : difference * scale[group->row[j]];
+    for (int i = 0; i < n; i++) b.other[i] = 1 / b.other[i];
+    for (int i = 0; i < group->n * n_row; i++) b.other[group->row[i]] = 0;
+    set_places(&b);
+    return b;
+}
+
+static void change(const blades *b, int blade, int j, double size) {
+    int at = row_of(b, blade, j);
+    if (is_of_air(b, j))
+        b->w->before[b->w->row[at]] += size;
+    else
+        b->w->state[at] += size;
+}
+
+static double rate_change(const blades *b, int blade, int j) {
+    const work *w = b->w;
+    int at = row_of(b, blade, j);
+    return is_of_air(b, j) ? w->air_rate[1][at] - w->air_rate[0][at] : w->rate[1][at] - w->rate[0][at];
+}
+
+// Slopes of each blade's rates by its own state nearest to them.
+static void set_columns(const blades *b, bough_air_tangent *t) {
+    for (int k = 0; k < b->group->n; k++) {
+        for (int i = 0; i < b->n_all; i++) {
+            int j = b->nearest[i];
+            size_t column = (size_t)row_of(b, k, j), row = (size_t)row_of(b, k, i);
+            double *of_body = (is_of_air(b, j) ? t->lift : t->motion) + column * (size_t)t->n;
+            double *of_air = (is_of_air(b, j) ? t->lag : t->drive) + column * (size_t)t->n_air;
+            (is_of_air(b, i) ? of_air : of_body)[row] = rate_change(b, k, i) / b->size[j];
         }
+    }
+}
+
+static void set_nearest(blades *b, int n, const int *some) {
+    for (int i = 0; i < b->n_all; i++) {
+        int at = 0;
+        double here = b->place[i];
+        for (int k = 1; k < n; k++)
+            if (fabs(b->place[some[k]] - here) < fabs(b->place[some[at]] - here)) at = k;
+        b->nearest[i] = some[at];
+    }
+}
+
+// Change of the rates of what carries the blades, relative to that of theirs, in units of the scales: below
+// it, it comes of means over the disk.
+static const double carried = 1e-8;
+
+static bool moves_blades_only(const blades *b) {
+    const work *w = b->w;
+    double blade = 0, other = 0;
+    for (int i = 0; i < w->whole->assembly->n_state; i++)
+        other = fmax(other, b->other[i] * fabs(w->rate[1][i] - w->rate[0][i]));
+    for (int k = 0; k < b->group->n; k++)
+        for (int j = 0; j < b->n_row; j++)
+            blade = fmax(blade, fabs(rate_change(b, k, j)) * difference / b->size[j]);
+    return other <= carried * blade;
+}
+
+// n states at once, or one after the other where loads at the root move what carries the blades.
+static bough_status follow_some(blades *b, const double *state, int n, const int *some,
+                                bough_air_tangent *t) {
+    work *w = b->w;
+    begin_change(w, state);
+    for (int k = 0; k < b->group->n; k++)
+        for (int i = 0; i < n; i++) change(b, k, some[i], b->size[some[i]]);
+    BOUGH_TRY(find_rates(w, state, w->rate[1], w->air_rate[1]));
+    if (moves_blades_only(b)) {
+        set_nearest(b, n, some);
+        set_columns(b, t);
+        return bough_ok();
+    }
+    for (int k = 0; k < b->group->n; k++)
+        for (int i = 0; i < n; i++)
+            BOUGH_TRY(
+                follow_state(w, state, is_of_air(b, some[i]), row_of(b, k, some[i]), b->size[some[i]], t));
+    return bough_ok();
+}
+
+// States of one kind along the blade, n of them from `first` on, `stride` apart: those near the root by
+// themselves, of the others as many at once as are apart.
+static bough_status follow_along(bough_arena *arena, blades *b, const double *state, int first, int stride,
+                                 int n, bough_air_tangent *t) {
+    bool *done = bough_arena_take(arena, (size_t)n * sizeof *done);
+    int *some = bough_arena_take(arena, (size_t)n * sizeof *some), left = n;
+    while (left > 0) {
+        int count = 0;
+        double end = -HUGE_VAL;
+        for (int i = 0; i < n; i++) {
+            int j = first + i * stride;
+            bool at_root = b->place[j] - b->reach[j] < b->place[0];
+            if (done[i] || b->place[j] - b->reach[j] < end) continue;
+            some[count++] = j;
+            done[i] = true;
+            left--;
+            if (at_root) break;
+            end = b->place[j] + b->reach[j];
+        }
+        BOUGH_TRY(follow_some(b, state, count, some, t));
     }
     return bough_ok();
 }
 
-static bough_status follow_memory(work *w, const double *state, bough_air_tangent *t) {
-    int at[MOST_BLADES];
-    for (int k = 0; k < w->n_air; k++) {
-        changed c = states_with(w, w->n_per_blade, w->blade_air, k, at);
-        c.of_air = true;
-        c.size = air_difference;
-        BOUGH_TRY(follow(w, state, c, t));
+static bough_status follow_blades(bough_arena *arena, blades *b, const double *state, bough_air_tangent *t) {
+    int n = b->group->blade[0]->mesh->n, stations = b->w->simulation->scene->aero.blade.n_station;
+    for (int c = 0; c < b->n_row / n; c++) BOUGH_TRY(follow_along(arena, b, state, c * n, 1, n, t));
+    for (int c = 0; c < b->n_air / stations; c++)
+        BOUGH_TRY(follow_along(arena, b, state, b->n_row + c, b->n_air / stations, stations, t));
+    return bough_ok();
+}
+
+// A miss of the blades' tangent, relative, that comes of means over the disk, on which all of a blade has
+// some influence.
+static const double disk = 1e-3;
+
+// Whether the tangent gives the rates that a change of all states of the blades and their air causes.
+static bough_status check(bough_arena *arena, const blades *b, const double *state,
+                          const bough_air_tangent *t, bool *good) {
+    work *w = b->w;
+    double miss = 0, size = 0, *body, *air;
+    bough_arena_each(arena, (size_t)(t->n + t->n_air) + 1, &body, &air);
+    begin_change(w, state);
+    for (int k = 0; k < b->group->n; k++) {
+        for (int j = 0; j < b->n_all; j++) {
+            double by = b->size[j] * sin(1 + 7.3 * j + 3.1 * k);
+            size_t column = (size_t)row_of(b, k, j);
+            const double *of_body = (is_of_air(b, j) ? t->lift : t->motion) + column * (size_t)t->n;
+            const double *of_air = (is_of_air(b, j) ? t->lag : t->drive) + column * (size_t)t->n_air;
+            change(b, k, j, by);
+            for (int i = 0; i < t->n; i++) body[i] += by * of_body[i];
+            for (int i = 0; i < t->n_air; i++) air[i] += by * of_air[i];
+        }
     }
+    BOUGH_TRY(find_rates(w, state, w->rate[1], w->air_rate[1]));
+    for (int k = 0; k < b->group->n; k++) {
+        for (int j = 0; j < b->n_all; j++) {
+            double own = rate_change(b, k, j), unit = is_of_air(b, j) ? 1 : b->size[j] / difference;
+            miss = fmax(miss, fabs(own - (is_of_air(b, j) ? air : body)[row_of(b, k, j)]) / unit);
+            size = fmax(size, fabs(own) / unit);
+        }
+    }
+    *good = miss <= disk * size;
+    return bough_ok();
+}
+
+// The blades' columns, if they can be found so.
+static bough_status follow_group(bough_arena *arena, work *w, const double *state,
+                                 const bough_blade_group *group, bough_air_tangent *t, bool *found) {
+    *found = false;
+    if (group == NULL || group->n == 0 || group->blade[0]->rod == NULL || w->simulation->drag != NULL)
+        return bough_ok();
+    blades b = take_blades(arena, w, group);
+    BOUGH_TRY(follow_blades(arena, &b, state, t));
+    return check(arena, &b, state, t, found);
+}
+
+// -- all ------------------------------------------------------------------------------------------
+
+static bool is_of_group(const bough_assembly *a, const bough_blade_group *group, int member) {
+    for (int k = 0; k < group->n; k++)
+        if (a->state_offset[member] == group->first[k]) return true;
+    return false;
+}
+
+static bough_status follow_all(bough_arena *arena, work *w, const double *state,
+                               const bough_blade_group *group, bough_air_tangent *t) {
+    const bough_assembly *a = w->whole->assembly;
+    bool found;
+    BOUGH_TRY(follow_group(arena, w, state, group, t, &found));
+    for (int i = 0; i < a->n_member; i++) {
+        if (!meets_air(w->simulation, i) || (found && is_of_group(a, group, i))) continue;
+        BOUGH_TRY(follow_member(w, state, i, t));
+    }
+    for (int k = 0; k < w->n_air && !found; k++)
+        BOUGH_TRY(follow_state(w, state, true, k, air_difference, t));
     return bough_ok();
 }
 
@@ -291,9 +401,7 @@ bough_status bough_air_tangent_find(bough_arena *arena, bough_simulation *s, bou
     settle(&w, state);
     begin_change(&w, state);
     bough_status status = find_rates(&w, state, w.rate[0], w.air_rate[0]);
-    if (bough_is_ok(&status)) status = choose_group(arena, &w, state, group);
-    if (bough_is_ok(&status)) status = follow_motion(&w, state, t);
-    if (bough_is_ok(&status)) status = follow_memory(&w, state, t);
+    if (bough_is_ok(&status)) status = follow_all(arena, &w, state, group, t);
     if (bough_is_ok(&status) && inputs) status = follow_inputs(&w, state, inputs, t);
     settle(&w, state);
     return status;

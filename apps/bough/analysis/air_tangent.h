@@ -28,9 +28,9 @@ typedef struct bough_air_inputs {
 } bough_air_inputs;
 
 // About `state` (n) at `time`; `dynamic`: with the memory that the scene's inflow and stall have; inputs
-// NULL: none. `group`: blades whose states are changed at once where a blade's loads follow its own motion
-// alone, but for means over the disk within 1e-3, which then count as the blade's own; NULL: none. The
-// simulation is left in that state.
+// NULL: none. `group`: rods whose states, and those of places that share no loads, are changed at once; means
+// over the disk then count as of the blade's nearest state. Where a change of all misses by more than 1e-3
+// with that, and for NULL, each state is changed by itself. The simulation is left in that state.
 bough_status bough_air_tangent_find(bough_arena *arena, bough_simulation *s, bough_whole *whole, double time,
                                     const double *state, bool dynamic, const bough_blade_group *group,
                                     const bough_air_inputs *inputs, bough_air_tangent *tangent);
