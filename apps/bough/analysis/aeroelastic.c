@@ -353,17 +353,32 @@ static void collect_parts(const work *w, const vectors *v, size_t column, int pa
     }
 }
 
+static int count_parts(int count, const listed *mode) {
+    int columns = 0;
+    for (int k = 0; k < count; k++) columns += parts_of(&mode[k].pair);
+    return columns;
+}
+
+// A vector of members and the air's states that change (2 × (n + m)) as one of all (2 × (n + n_air)).
+static double *spread(bough_arena *arena, const work *w, const double *from) {
+    size_t n = (size_t)w->n, m = (size_t)w->m, all = n + (size_t)w->system->air->n_air;
+    double *to = bough_arena_doubles(arena, 2 * all);
+    for (size_t part = 0; part < 2; part++) {
+        memcpy(to + part * all, from + part * (n + m), n * sizeof *to);
+        for (size_t i = 0; i < m; i++) to[part * all + n + (size_t)w->air[i]] = from[part * (n + m) + n + i];
+    }
+    return to;
+}
+
 // Modes as those of the whole, after one step of inverse iteration, with their residuals.
 static void expand(bough_arena *arena, work *w, const reduced *x, int count, const listed *mode,
-                   bough_eigen_pair *pair) {
+                   bough_eigen_pair *pair, bough_mode_vectors *vector) {
     size_t n = (size_t)w->n, length = n + (size_t)w->m, all = (size_t)x->all, column = 0;
     const bough_eigen_operator op = {
         .length = (int)length, .gamma = 1 / w->system->def->point, .weight = product_weights(arena, w, -2)};
     double *from = bough_arena_doubles(arena, 4 * length), *to = from + 2 * length;
-    int columns = 0;
-    for (int k = 0; k < count; k++) columns += parts_of(&mode[k].pair);
     // all vectors of the reduced system, as states
-    vectors z = take_vectors(arena, w, x, columns);
+    vectors z = take_vectors(arena, w, x, count_parts(count, mode));
     for (int k = 0; k < count; k++) {
         size_t parts = (size_t)parts_of(&mode[k].pair);
         memcpy(z.joined + column * all, x->vector + mode[k].column * all, parts * all * sizeof *z.joined);
@@ -380,6 +395,50 @@ static void expand(bough_arena *arena, work *w, const reduced *x, int count, con
         memcpy(pair[k].shape_real, to, n * sizeof *to);
         memcpy(pair[k].shape_imag, to + length, n * sizeof *to);
         pair[k].residual = bough_eigen_residual(&op, pair[k].real, pair[k].imaginary, from, to);
+        if (vector) vector[k].right = spread(arena, w, to);
+        column += (size_t)parts;
+    }
+}
+
+// Left vectors of the reduced system: of a pair, p and q of the columns inverse to its real and imaginary
+// part, that of the mode is p − iq.
+static vectors left_coordinates(bough_arena *arena, const work *w, const reduced *x, int count,
+                                const listed *mode) {
+    size_t all = (size_t)x->all, column = 0;
+    vectors y = take_vectors(arena, w, x, count_parts(count, mode));
+    for (int k = 0; k < count; k++) {
+        for (size_t part = 0; part < (size_t)parts_of(&mode[k].pair); part++, column++) {
+            const double *row = x->inverse + mode[k].column + part;
+            for (size_t i = 0; i < all; i++)
+                y.joined[column * all + i] = part == 0 ? row[i * all] : -row[i * all];
+        }
+    }
+    split(x, &y);
+    return y;
+}
+
+// Left vectors of the whole: Lᵀ y_u and γ (E − U L)ᵀ (T⁻¹ P)ᵀ Gᵀ y_m of the modes left out, theory (100).
+static void find_left(bough_arena *arena, work *w, const reduced *x, int count, const listed *mode,
+                      bough_mode_vectors *vector) {
+    const bough_air_tangent *t = w->system->air;
+    vectors y = left_coordinates(arena, w, x, count, mode);
+    size_t n = (size_t)w->n, columns = (size_t)y.columns, n_air = (size_t)t->n_air, column = 0;
+    double *force = bough_arena_doubles(arena, n * columns + 1),
+           *of_air = bough_arena_doubles(arena, n_air * columns);
+    double *both = bough_arena_doubles(arena, 2 * (n + (size_t)w->m));
+    for (size_t k = 0; k < columns; k++) {
+        for (size_t i = 0; i < (size_t)w->m; i++)
+            of_air[k * n_air + (size_t)w->air[i]] = y.air[k * (size_t)w->m + i];
+    }
+    bough_dense_product((bough_product){w->n, y.columns, t->n_air, true, 1 / w->system->def->point, 0},
+                        t->drive, of_air, force);
+    bough_air_inverse_apply(w->inverse, true, y.columns, force, y.members);
+    bough_dense_product((bough_product){x->r, y.columns, w->n, true, -1, 1}, x->right, y.members, y.modes);
+    bough_dense_product((bough_product){w->n, y.columns, x->r, true, 1, 1}, x->left, y.modes, y.members);
+    for (int k = 0; k < count; k++) {
+        int parts = parts_of(&mode[k].pair);
+        collect_parts(w, &y, column, parts, both);
+        vector[k].left = spread(arena, w, both);
         column += (size_t)parts;
     }
 }
@@ -398,7 +457,7 @@ static int choose_modes(const reduced *x, listed *mode) {
 }
 
 static void list_modes(bough_arena *arena, work *w, const reduced *x, bough_eigen_pair *pair,
-                       bough_eigen_count *count) {
+                       bough_eigen_count *count, bough_mode_vectors *vector) {
     size_t n = (size_t)w->n;
     listed *mode = bough_arena_take(arena, (size_t)x->all * sizeof *mode);
     count->found = choose_modes(x, mode);
@@ -408,7 +467,8 @@ static void list_modes(bough_arena *arena, work *w, const reduced *x, bough_eige
         pair[k] = mode[k].pair;
         bough_arena_each(arena, n, &pair[k].shape_real, &pair[k].shape_imag);
     }
-    expand(arena, w, x, count->found, mode, pair);
+    expand(arena, w, x, count->found, mode, pair, vector);
+    if (vector) find_left(arena, w, x, count->found, mode, vector);
 }
 
 // Eigenvectors of one side without a partner on the other.
@@ -434,7 +494,7 @@ static bough_status find_both(bough_arena *arena, work *w, bough_eigen_pair *rig
 }
 
 static bough_status follow_memory(bough_arena *arena, work *w, bough_eigen_pair *pair,
-                                  bough_eigen_count *count, int *unpaired) {
+                                  bough_eigen_count *count, bough_mode_vectors *vector, int *unpaired) {
     int basis = count->wanted + count->wanted / 8 + MODES_BEYOND;
     bough_eigen_pair *right = bough_arena_take(arena, (size_t)basis * sizeof *right);
     bough_eigen_pair *left = bough_arena_take(arena, (size_t)basis * sizeof *left);
@@ -445,12 +505,36 @@ static bough_status follow_memory(bough_arena *arena, work *w, bough_eigen_pair 
         !find_vectors(arena, &x))
         return bough_fail(BOUGH_FAILED, "the motion in the air cannot be reduced to %d modes", n_right.found);
     count->converged = n_right.converged < n_left.converged ? n_right.converged : n_left.converged;
-    list_modes(arena, w, &x, pair, count);
+    list_modes(arena, w, &x, pair, count, vector);
+    return bough_ok();
+}
+
+// A pair's vector with all states of the air, at rest.
+static double *with_air(bough_arena *arena, const work *w, const bough_eigen_pair *pair) {
+    size_t n = (size_t)w->n, all = n + (size_t)w->system->air->n_air;
+    double *both = bough_arena_doubles(arena, 2 * all);
+    memcpy(both, pair->shape_real, n * sizeof *both);
+    memcpy(both + all, pair->shape_imag, n * sizeof *both);
+    return both;
+}
+
+// Vectors of modes without memory of the air.
+static bough_status find_partners(bough_arena *arena, work *w, const bough_eigen_pair *pair,
+                                  const bough_eigen_count *count, bough_mode_vectors *vector) {
+    bough_eigen_count n_left = {.wanted = count->wanted};
+    bough_eigen_pair *left = bough_arena_take(arena, (size_t)n_left.wanted * sizeof *left);
+    BOUGH_TRY(find_pairs(arena, w, true, false, true, left, &n_left));
+    for (int k = 0; k < count->found; k++) {
+        const bough_eigen_pair *other = partner(&pair[k], n_left.found, left);
+        vector[k].right = with_air(arena, w, &pair[k]);
+        vector[k].left = other ? with_air(arena, w, other) : NULL;
+    }
     return bough_ok();
 }
 
 bough_status bough_aeroelastic_modes(bough_arena *arena, const bough_aeroelastic *system,
-                                     bough_eigen_pair *pair, bough_eigen_count *count, int *unpaired) {
+                                     bough_eigen_pair *pair, bough_eigen_count *count,
+                                     bough_mode_vectors *vector, int *unpaired) {
     const bough_modes_def *def = system->def;
     work w = {.system = system, .n = system->air->n};
     *unpaired = 0;
@@ -461,8 +545,8 @@ bough_status bough_aeroelastic_modes(bough_arena *arena, const bough_aeroelastic
     w.inverse = bough_air_inverse_create(arena, system, w.m > 0);
     if (w.inverse == NULL)
         return bough_fail(BOUGH_FAILED, "the motion in the air is singular about %g /s", def->point);
-    if (w.m > 0) return follow_memory(arena, &w, pair, count, unpaired);
-    status = find_pairs(arena, &w, false, false, false, pair, count);
+    if (w.m > 0) return follow_memory(arena, &w, pair, count, vector, unpaired);
+    BOUGH_TRY(find_pairs(arena, &w, false, false, false, pair, count));
     qsort(pair, (size_t)count->found, sizeof *pair, slower);
-    return status;
+    return vector ? find_partners(arena, &w, pair, count, vector) : bough_ok();
 }

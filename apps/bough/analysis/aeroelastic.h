@@ -17,16 +17,23 @@ typedef struct bough_aeroelastic {
     const bough_air_tangent *air;   // how loads and air follow the motion
 } bough_aeroelastic;
 
+// Eigenvectors of one mode in members and air: real before imaginary part (2 × (n + n_air)).
+typedef struct bough_mode_vectors {
+    double *right, *left; // left: NULL where none is found
+} bough_mode_vectors;
+
 // Finds up to `wanted` oscillations and growing motions in which the bodies take part.
 //   pair      by |λ|, room for count->wanted; their shapes (n_state), of any length and phase, are the
 //   arena's count     how many there are; with memory of the air `converged` is that of the subspace's basis,
 //   half as
 //             many again
+//   vectors   (count->wanted) of each pair; NULL: not wanted
 //   unpaired  eigenvectors that the subspace leaves out: on the other side, left or right, none converged
 // The cost is that of factoring a dense matrix of n_state rows (of equal blades a tenth of it), and with
 // memory of the air that of all eigenvalues of one of its states and of three for each mode. BOUGH_FAILED
 // where the eigenvalues do not converge or the system is singular about the point.
 bough_status bough_aeroelastic_modes(bough_arena *arena, const bough_aeroelastic *system,
-                                     bough_eigen_pair *pair, bough_eigen_count *count, int *unpaired);
+                                     bough_eigen_pair *pair, bough_eigen_count *count,
+                                     bough_mode_vectors *vectors, int *unpaired);
 
 #endif

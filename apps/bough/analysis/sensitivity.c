@@ -1,6 +1,6 @@
 #include "apps/bough/analysis/sensitivity.h"
 
-#include "apps/bough/analysis/air_tangent.h"
+#include "apps/bough/analysis/azimuth.h"
 #include "core/base/linalg.h"
 
 #include <complex.h>
@@ -20,7 +20,9 @@ enum { ITERATIONS = 4 }; // of inverse iteration about an eigenvalue that is kno
 typedef struct linear {
     bough_simulation *simulation;
     bough_vibration_point point;
-    bough_air_change *air;                      // NULL: its forces do not follow
+    bool in_air, dynamic;                       // the air's forces follow, with memory
+    bough_azimuths azimuths;                    // over which it is the mean
+    bough_azimuth_product **air;                // (azimuths.n)
     int n, m, n_row;                            // states of the members, of the air; of the latter in a blade
     int *air_row;                               // (n_part × n_row)
     double *scale;                              // (n)
@@ -32,10 +34,16 @@ static bough_status prepare(bough_arena *arena, bough_simulation *s, double time
     *x = (linear){.simulation = s, .n = s->master->assembly->n_state};
     BOUGH_TRY(bough_vibration_point_find(arena, s, time, &x->point));
     const bough_modes_def *def = &x->point.def;
-    if (s->aero != NULL && s->scene->modes.air != BOUGH_SCENE_AIR_FROZEN)
-        x->air = bough_air_change_create(arena, s, x->point.whole, time, x->point.state,
-                                         s->scene->modes.air == BOUGH_SCENE_AIR_DYNAMIC, &x->m);
-    if (x->air) x->n_row = x->m / s->scene->turbine.n_blade;
+    x->in_air = s->aero != NULL && s->scene->modes.air != BOUGH_SCENE_AIR_FROZEN;
+    x->dynamic = s->scene->modes.air == BOUGH_SCENE_AIR_DYNAMIC;
+    if (x->in_air) {
+        bool balanced = s->scene->modes.at == BOUGH_SCENE_IN_EQUILIBRIUM;
+        BOUGH_TRY(bough_azimuths_find(arena, s, time, balanced, &x->point, &x->azimuths));
+        x->air = bough_arena_take(arena, (size_t)x->azimuths.n * sizeof *x->air);
+        for (int k = 0; k < x->azimuths.n; k++)
+            x->air[k] = bough_azimuth_product_create(arena, &x->azimuths, k, x->dynamic, &x->m);
+        x->n_row = x->m / s->scene->turbine.n_blade;
+    }
     size_t all = (size_t)(x->n + x->m) + 1, parts = (size_t)def->n_part;
     bough_arena_each(arena, all, &x->moved, &x->side[0], &x->side[1], &x->turned, &x->follows);
     x->scale = bough_arena_doubles(arena, all);
@@ -53,15 +61,6 @@ static int row_of(const linear *x, int k, int j) {
     return j < def->n_row ? def->row[k * def->n_row + j] : x->n + x->air_row[k * x->n_row + j - def->n_row];
 }
 
-// Gives part k what part k + shift has.
-static void shift_parts(const linear *x, int shift, const double *from, double *to) {
-    const bough_modes_def *def = &x->point.def;
-    memcpy(to, from, (size_t)(x->n + x->m) * sizeof *to);
-    for (int k = 0; k < def->n_part; k++)
-        for (int j = 0; j < def->n_row + x->n_row; j++)
-            to[row_of(x, k, j)] = from[row_of(x, (k + shift) % def->n_part, j)];
-}
-
 // −S y
 static void subtract_spin(const linear *x, const double *y, double *image) {
     const bough_modes_def *def = &x->point.def;
@@ -71,41 +70,74 @@ static void subtract_spin(const linear *x, const double *y, double *image) {
                 image[row_of(x, k, j)] -= x->rate[k * def->n_part + l] * y[row_of(x, l, j)];
 }
 
-// What follows from the air, in the mean over the azimuths of the blades, over which a slope in azimuth is
-// none.
-static bough_status add_air(linear *x, double size, const double *y, double *image) {
-    const bough_modes_def *def = &x->point.def;
-    bool turns = def->spin != 0;
-    int shifts = turns ? def->n_part : 1, azimuth = 0, speed;
-    if (turns)
-        bough_tree_joint_rows(x->simulation->tree, x->simulation->scene->turbine.rotor, &azimuth, &speed);
-    for (int shift = 0; shift < shifts; shift++) {
-        shift_parts(x, shift, y, x->turned);
-        if (turns) x->turned[azimuth] = 0;
-        BOUGH_TRY(bough_air_change_follow(x->air, size, x->turned, x->follows));
-        shift_parts(x, (shifts - shift) % shifts, x->follows, x->turned);
-        for (int i = 0; i < x->n + x->m; i++) image[i] += x->turned[i] / shifts;
+// Whether anything but blades and their air moves.
+static bool moves_others(const linear *x, const double *y) {
+    int moved = 0;
+    for (int i = 0; i < x->n + x->m; i++) moved += y[i] != 0;
+    for (int k = 0; k < x->point.def.n_part; k++)
+        for (int j = 0; j < x->point.def.n_row + x->n_row; j++) moved -= y[row_of(x, k, j)] != 0;
+    return moved > 0;
+}
+
+// The blades' entries of y, each those of the blade `shift` further on; 0 elsewhere.
+static void take_blades(const linear *x, int shift, const double *y, double *to) {
+    int n = x->point.def.n_part;
+    memset(to, 0, (size_t)(x->n + x->m) * sizeof *to);
+    for (int k = 0; k < n; k++)
+        for (int j = 0; j < x->point.def.n_row + x->n_row; j++)
+            to[row_of(x, k, j)] = y[row_of(x, (k + shift) % n, j)];
+}
+
+static void add_blades(const linear *x, int shift, double factor, const double *from, double *image) {
+    int n = x->point.def.n_part;
+    for (int k = 0; k < n; k++)
+        for (int j = 0; j < x->point.def.n_row + x->n_row; j++)
+            image[row_of(x, (k + shift) % n, j)] += factor * from[row_of(x, k, j)];
+}
+
+// What follows from the air of one azimuth; of blades on blades the mean over them.
+static bough_status add_azimuth(linear *x, bough_azimuth_product *air, double size, const double *y,
+                                double *image) {
+    double share = 1. / x->azimuths.n;
+    int shifts = x->point.def.spin != 0 ? x->point.def.n_part : 1;
+    BOUGH_TRY(bough_azimuth_product_follow(air, size, y, x->follows));
+    for (int i = 0; i < x->n + x->m; i++) image[i] += share * x->follows[i];
+    bool others = moves_others(x, y);
+    for (int shift = 0; shift < shifts && shifts > 1; shift++) {
+        take_blades(x, shift, y, x->turned);
+        if (shift > 0 || others) BOUGH_TRY(bough_azimuth_product_follow(air, size, x->turned, x->follows));
+        add_blades(x, shift, share * (1. / shifts - (shift == 0)), x->follows, image);
     }
     return bough_ok();
 }
 
-// image = (J − S + A) y of a real vector; states that are held stay.
-static bough_status multiply(linear *x, const double *y, double *image) {
+// Of the difference by which y is multiplied; 0: y is 0.
+static double size_of(const linear *x, const double *y) {
     double largest = 0;
-    const bough_vibration_point *p = &x->point;
     for (int i = 0; i < x->n; i++) largest = fmax(largest, fabs(y[i]) / x->scale[i]);
     for (int i = x->n; i < x->n + x->m; i++) largest = fmax(largest, fabs(y[i]));
+    return largest > 0 ? difference / largest : 0;
+}
+
+// image = (J − S) y
+static bough_status multiply_members(linear *x, double size, const double *y, double *image) {
+    const bough_vibration_point *p = &x->point;
     memset(image, 0, (size_t)(x->n + x->m) * sizeof *image);
-    if (largest == 0) return bough_ok();
-    double size = difference / largest;
     for (int side = 0; side < 2; side++) {
         for (int i = 0; i < x->n; i++) x->moved[i] = p->state[i] + (2 * side - 1) * size * y[i];
         BOUGH_TRY(bough_whole_rate(p->whole, p->def.time, x->moved, x->side[side]));
     }
     for (int i = 0; i < x->n; i++) image[i] = (x->side[1][i] - x->side[0][i]) / (2 * size);
-    if (x->air) BOUGH_TRY(add_air(x, size, y, image));
     if (p->def.spin != 0) subtract_spin(x, y, image);
-    for (int k = 0; k < p->n_held; k++) image[p->held[k]] = 0;
+    return bough_ok();
+}
+
+// image = (J − S + A) y of a real vector that is not 0; states that are held stay.
+static bough_status multiply(linear *x, const double *y, double *image) {
+    double size = size_of(x, y);
+    BOUGH_TRY(multiply_members(x, size, y, image));
+    for (int k = 0; k < x->azimuths.n; k++) BOUGH_TRY(add_azimuth(x, x->air[k], size, y, image));
+    for (int k = 0; k < x->point.n_held; k++) image[x->point.held[k]] = 0;
     return bough_ok();
 }
 
@@ -135,13 +167,27 @@ static double length_of(int n, const double complex *a) {
     return sqrt(sum);
 }
 
+// The air's part of column j.
+static void add_air(const linear *x, const bough_air_tangent *t, size_t j, double *column) {
+    size_t n = (size_t)x->n, m = (size_t)x->m;
+    const double *of_members = j < n ? t->motion + j * n : t->lift + (j - n) * n;
+    const double *of_air = j < n ? t->drive + j * m : t->lag + (j - n) * m;
+    for (size_t i = 0; i < n; i++) column[i] += of_members[i];
+    for (size_t i = 0; i < m; i++) column[n + i] += of_air[i];
+}
+
 // The matrix by its columns. Rows of states of the air that never change are 0.
 static bough_status fill(bough_arena *arena, linear *x, double *matrix) {
     size_t all = (size_t)(x->n + x->m);
     double *unit = bough_arena_doubles(arena, all);
+    bough_air_tangent air;
+    if (x->in_air) BOUGH_TRY(bough_azimuths_tangent(arena, &x->azimuths, x->dynamic, &air));
     for (size_t j = 0; j < all; j++) {
+        double *column = matrix + j * all;
         unit[j] = 1;
-        BOUGH_TRY(multiply(x, unit, matrix + j * all));
+        BOUGH_TRY(multiply_members(x, size_of(x, unit), unit, column));
+        if (x->in_air) add_air(x, &air, j, column);
+        for (int k = 0; k < x->point.n_held; k++) column[x->point.held[k]] = 0;
         unit[j] = 0;
     }
     for (int k = 0; k < x->point.n_held; k++)
@@ -230,6 +276,7 @@ static bough_status quotient(bough_arena *arena, bough_scene *scene, double time
     *value = 0;
     for (int k = 0; k < 2; k++) {
         for (int i = 0; i < of->all; i++) part[i] = k == 0 ? creal(of->right[i]) : cimag(of->right[i]);
+        if (size_of(&x, part) == 0) continue;
         BOUGH_TRY(multiply(&x, part, image));
         for (int i = 0; i < of->all; i++) *value += (k == 0 ? 1 : imaginary) * of->left[i] * image[i];
     }

@@ -1,11 +1,13 @@
 #include "apps/bough/analysis/vibration.h"
 
 #include "apps/bough/analysis/aeroelastic.h"
+#include "apps/bough/analysis/azimuth.h"
 #include "apps/bough/analysis/steady.h"
 #include "apps/bough/model/companion.h"
 #include "core/tree/dynamics.h"
 #include "cosim/analysis/modes.h"
 
+#include <complex.h>
 #include <string.h>
 
 // Eigenvalues are sought about this point of the real axis, and several times the spin [1/s].
@@ -24,7 +26,7 @@ enum { MOVES = 6 }; // of the point, most: the first values may be of rounding a
 
 static const double rounding = 1e-10; // damping ratios below it are none
 
-static void set_value(const bough_eigen_pair *pair, bough_scene_mode *mode) {
+static void set_value(const bough_eigen_pair *pair, const double change[2], bough_scene_mode *mode) {
     double modulus = hypot(pair->real, pair->imaginary);
     double ratio = -pair->real / modulus;
     mode->growth = pair->real;
@@ -32,6 +34,8 @@ static void set_value(const bough_eigen_pair *pair, bough_scene_mode *mode) {
     mode->damped_frequency = pair->imaginary / (2 * BOUGH_PI);
     mode->damping = fabs(ratio) > rounding ? ratio : 0;
     mode->residual = pair->residual;
+    mode->frequency_change = change[0];
+    mode->damping_change = change[1];
     mode->moved = (double)NAN;
 }
 
@@ -229,7 +233,9 @@ static void drop_other_motions(const bough_tree *tree, double point, int count, 
     for (int k = 0; k < v->count.found && kept < count; k++) {
         double modulus = hypot(v->pair[k].real, v->pair[k].imaginary);
         bool moves = modulus > free_motion * point && !is_closure(tree, &v->pair[k]);
-        if (moves) v->pair[kept++] = v->pair[k];
+        if (!moves) continue;
+        v->pair[kept] = v->pair[k];
+        memcpy(v->change[kept++], v->change[k], sizeof *v->change);
     }
     v->found = kept;
 }
@@ -242,25 +248,62 @@ static bough_status solve_bodies(bough_arena *arena, const bough_simulation *s,
     return bough_modes_find(arena, x->whole, &x->def, v->pair, &v->count);
 }
 
-// Modes in the air whose forces follow the bodies' motion.
+// The air whose forces follow the motion, in the mean over the azimuths.
+typedef struct moving_air {
+    bool moves, dynamic;
+    bool changes; // what an azimuth changes is wanted
+    bough_azimuths azimuths;
+    bough_air_tangent tangent;
+} moving_air;
+
+static bough_status find_air(bough_arena *arena, bough_simulation *s, double time, bough_vibration_point *x,
+                             moving_air *air) {
+    bool balanced = s->scene->modes.at == BOUGH_SCENE_IN_EQUILIBRIUM;
+    air->moves = s->aero && s->scene->modes.air != BOUGH_SCENE_AIR_FROZEN;
+    air->dynamic = s->scene->modes.air == BOUGH_SCENE_AIR_DYNAMIC;
+    air->azimuths.n = 1;
+    if (!air->moves) return bough_ok();
+    BOUGH_TRY(bough_azimuths_find(arena, s, time, balanced, x, &air->azimuths));
+    return bough_azimuths_tangent(arena, &air->azimuths, air->dynamic, &air->tangent);
+}
+
+// The largest changes of frequency and damping ratio over the azimuths, change (azimuths × n).
+static void set_changes(int n_azimuth, int n, const double complex *change, bough_vibration *v) {
+    for (int k = 0; k < n; k++) {
+        double complex mean = v->pair[k].real + v->pair[k].imaginary * (double complex)I;
+        v->change[k][0] = v->change[k][1] = 0;
+        for (int i = 0; i < n_azimuth; i++) {
+            double complex value = mean + change[i * n + k];
+            double longer = cabs(value) / cabs(mean) - 1;
+            double damping = creal(value) / cabs(value) - creal(mean) / cabs(mean);
+            v->change[k][0] = fmax(v->change[k][0], fabs(longer));
+            v->change[k][1] = fmax(v->change[k][1], fabs(damping));
+        }
+        if (isnan(creal(change[k]))) v->change[k][0] = v->change[k][1] = (double)NAN;
+    }
+}
+
 static bough_status solve_in_air(bough_arena *arena, bough_simulation *s, const bough_vibration_point *x,
-                                 int count, bough_vibration *v) {
-    bough_air_tangent air;
-    bool dynamic = s->scene->modes.air == BOUGH_SCENE_AIR_DYNAMIC;
-    BOUGH_TRY(
-        bough_air_tangent_find(arena, s, x->whole, x->def.time, x->state, dynamic, &x->group, NULL, &air));
-    bough_air_tangent_average(arena, s, &x->group, &air);
-    bough_aeroelastic system = {s, x->whole, &x->def, &x->group, &air};
-    v->count.wanted = count + FREE_MOTIONS;
-    v->pair = bough_arena_take(arena, (size_t)v->count.wanted * sizeof *v->pair);
-    return bough_aeroelastic_modes(arena, &system, v->pair, &v->count, &v->unpaired);
+                                 const moving_air *air, int count, bough_vibration *v) {
+    int wanted = v->count.wanted = count + FREE_MOTIONS, azimuths = air->changes ? air->azimuths.n : 1;
+    const bough_aeroelastic system = {s, x->whole, &x->def, &x->group, &air->tangent};
+    v->pair = bough_arena_take(arena, (size_t)wanted * sizeof *v->pair);
+    bough_mode_vectors *vector = bough_arena_take(arena, (size_t)wanted * sizeof *vector);
+    BOUGH_TRY(bough_aeroelastic_modes(arena, &system, v->pair, &v->count, azimuths > 1 ? vector : NULL,
+                                      &v->unpaired));
+    if (azimuths == 1) return bough_ok();
+    double complex *change = bough_arena_take(arena, (size_t)(azimuths * wanted) * sizeof *change);
+    BOUGH_TRY(bough_azimuths_change(arena, &air->azimuths, air->dynamic, v->count.found, vector, change));
+    set_changes(azimuths, v->count.found, change, v);
+    return bough_ok();
 }
 
 // The eigenvalues about the point.
 static bough_status solve_about(bough_arena *arena, bough_simulation *s, const bough_vibration_point *x,
-                                int count, bough_vibration *v) {
-    bool in_air = s->aero && s->scene->modes.air != BOUGH_SCENE_AIR_FROZEN;
-    BOUGH_TRY(in_air ? solve_in_air(arena, s, x, count, v) : solve_bodies(arena, s, x, count, v));
+                                const moving_air *air, int count, bough_vibration *v) {
+    size_t most = (size_t)(count + FREE_MOTIONS + 2 * s->tree->closure_rank);
+    v->change = bough_arena_take(arena, most * sizeof *v->change);
+    BOUGH_TRY(air->moves ? solve_in_air(arena, s, x, air, count, v) : solve_bodies(arena, s, x, count, v));
     drop_other_motions(s->tree, x->def.point, count, v);
     return bough_ok();
 }
@@ -275,8 +318,11 @@ static double better_point(const bough_vibration *v, double point) {
     return largest > exact && lowest > nearer * point && v->found > 0 ? lowest : 0;
 }
 
-static bough_status solve(bough_arena *arena, bough_simulation *s, int count, bough_vibration *v) {
+// `changes`: with what an azimuth changes.
+static bough_status solve(bough_arena *arena, bough_simulation *s, int count, bool changes,
+                          bough_vibration *v) {
     bough_vibration_point x;
+    moving_air air = {.changes = changes};
     v->mode = bough_arena_take(arena, (size_t)count * sizeof *v->mode);
     BOUGH_TRY(bough_vibration_point_find(arena, s, v->time, &x));
     v->n_blade = x.group.n;
@@ -284,14 +330,16 @@ static bough_status solve(bough_arena *arena, bough_simulation *s, int count, bo
     v->frozen = is_frozen(s, &x.group);
     if (v->frozen && !s->scene->modes.linear) BOUGH_TRY(check_constant(arena, s, &x));
     if (v->n_blade > 0 && v->spin != 0 && !s->scene->modes.linear) BOUGH_TRY(check_balance(s));
-    BOUGH_TRY(solve_about(arena, s, &x, count, v));
-    bool air_moves = s->aero && s->scene->modes.air == BOUGH_SCENE_AIR_DYNAMIC; // with other residuals
+    BOUGH_TRY(find_air(arena, s, v->time, &x, &air));
+    v->n_azimuth = air.azimuths.n;
+    BOUGH_TRY(solve_about(arena, s, &x, &air, count, v));
     double point;
-    for (int k = 0; k < MOVES && !air_moves && (point = better_point(v, x.def.point)) > 0; k++) {
+    bool dynamic = air.moves && air.dynamic; // with other residuals
+    for (int k = 0; k < MOVES && !dynamic && (point = better_point(v, x.def.point)) > 0; k++) {
         x.def.point = point;
-        BOUGH_TRY(solve_about(arena, s, &x, count, v));
+        BOUGH_TRY(solve_about(arena, s, &x, &air, count, v));
     }
-    for (int k = 0; k < v->found; k++) set_value(&v->pair[k], &v->mode[k]);
+    for (int k = 0; k < v->found; k++) set_value(&v->pair[k], v->change[k], &v->mode[k]);
     bough_vibration_describe(arena, s, &x, v);
     return bough_ok();
 }
@@ -304,13 +352,17 @@ bool bough_vibration_wanted(const bough_simulation *s) {
     return (!bough_rods_are_independent(s) || reduced) && modes->speed == 0 && !axis;
 }
 
-bough_status bough_vibration_find(bough_arena *arena, bough_simulation *s, int count,
-                                  bough_vibration *vibration) {
+static bough_status find(bough_arena *arena, bough_simulation *s, int count, bool changes,
+                         bough_vibration *v) {
     bool balanced = s->scene->modes.at == BOUGH_SCENE_IN_EQUILIBRIUM;
-    *vibration = (bough_vibration){.asked = count, .time = balanced ? bough_equilibrium_time(s) : 0};
+    *v = (bough_vibration){.asked = count, .time = balanced ? bough_equilibrium_time(s) : 0};
     bough_equilibrium_work work;
-    if (balanced) BOUGH_TRY(bough_simulation_equilibrium(s, s->master->assembly, vibration->time, &work));
-    return solve(arena, s, count, vibration);
+    if (balanced) BOUGH_TRY(bough_simulation_equilibrium(s, s->master->assembly, v->time, &work));
+    return solve(arena, s, count, changes, v);
+}
+
+bough_status bough_vibration_find(bough_arena *arena, bough_simulation *s, int count, bough_vibration *v) {
+    return find(arena, s, count, true, v);
 }
 
 // -- another mesh ---------------------------------------------------------------------------------
@@ -370,7 +422,7 @@ bough_status bough_vibration_compare(bough_arena *arena, const bough_simulation 
     *compared = has_other_mesh(s->scene, other);
     if (!*compared) return bough_ok();
     BOUGH_TRY(bough_simulation_build(arena, other, &companion));
-    BOUGH_TRY(bough_vibration_find(arena, companion, v->found + MODES_BEYOND, &of_other));
+    BOUGH_TRY(find(arena, companion, v->found + MODES_BEYOND, false, &of_other));
     pair_modes(v, &of_other, bough_arena_take(arena, ((size_t)of_other.found + 1) * sizeof(bool)));
     return bough_ok();
 }

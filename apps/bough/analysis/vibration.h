@@ -42,6 +42,8 @@ typedef struct bough_scene_mode {
     double damping;          // ratio −Re λ/|λ|; negative: it grows
     double growth;           // Re λ [1/s]
     double residual;         // of its eigenvector: bough_eigen_residual
+    double frequency_change; // the largest of one azimuth from their mean, relative; NaN: not known
+    double damping_change;   // the same of the damping ratio
     double moved;            // by another mesh, |λ − λ'|/|λ|; NaN: not compared, or no such mode there
     double *share;           // of the kinetic energy per body of the scene, sum 1
     int body;                // the body of the largest, or a blade when all blades' together is
@@ -69,6 +71,8 @@ typedef struct bough_vibration {
     int found;
     bough_scene_mode *mode; // (found) by the distance of λ from a point near 0
     bough_eigen_pair *pair; // (found)
+    int n_azimuth;          // over which the system is the mean; 1: that of the scene's azimuth
+    double (*change)[2];    // (found) of each mode over them, as frequency_change and damping_change
 } bough_vibration;
 
 // What modes are about: the simulation's present state, the blades in their mean.

@@ -186,10 +186,12 @@ static void print_head(const bough_simulation *s, const bough_vibration *v) {
     if (rotor_is_free(s)) printf(", rotor free to turn");
     static const char *const air[] = {"do not follow", "follow at once", "follow in time"};
     if (s->aero) printf("; the air's forces %s", air[s->scene->modes.air]);
-    printf("\n%4s %12s %12s %11s %11s  %-12s %s", "mode", "frequency", "damped", "damping", "decrement",
-           "body", "shape");
+    if (v->n_azimuth > 1) printf(", in the mean over %d azimuths", v->n_azimuth);
+    bool by_azimuth = v->n_azimuth > 1;
+    printf("\n%4s %12s %12s %11s %11s  ", "mode", "frequency", "damped", "damping", "decrement");
+    printf("%s%-12s %s", by_azimuth ? "azimuth   " : "", "body", "shape");
     if (v->n_blade > 0) printf("    %-12s %8s %8s %8s", "pattern", "collect.", "forward", "backward");
-    printf("\n%4s %12s %12s %11s %11s\n", "", "(Hz)", "(Hz)", "(%)", "(-)");
+    printf("\n%4s %12s %12s %11s %11s  %s\n", "", "(Hz)", "(Hz)", "(%)", "(-)", by_azimuth ? "(+-%)" : "");
 }
 
 static double largest_residual(const bough_vibration *v) {
@@ -202,6 +204,12 @@ static double largest_residual(const bough_vibration *v) {
 typedef bool mode_choice(const bough_scene_mode *mode);
 static bool is_inexact(const bough_scene_mode *mode) { return mode->residual > fine; }
 static bool is_moved(const bough_scene_mode *mode) { return mode->moved > fine; }
+
+// Whether one azimuth differs from their mean by all its damping; of a left vector that is missing nobody
+// knows.
+static bool is_of_azimuth(const bough_scene_mode *mode) {
+    return isnan(mode->damping_change) || mode->damping_change >= fabs(mode->damping);
+}
 
 static bool print_numbers(const char *head, const bough_vibration *v, mode_choice *chosen) {
     int n = 0;
@@ -231,6 +239,17 @@ static void print_search(const bough_vibration *v) {
     print_numbers("warning: not exact, with a residual above 1 %: mode", v, is_inexact);
 }
 
+// Beside the column of the damping ratio's change.
+static void print_azimuths(const bough_vibration *v) {
+    double most = 0;
+    if (v->n_azimuth == 1) return;
+    for (int k = 0; k < v->found; k++) most = fmax(most, v->mode[k].frequency_change);
+    printf("over the azimuths no frequency changes by more than %.2g %%\n", 100 * most);
+    print_numbers(
+        "warning: over the azimuths the damping changes by as much as itself, or by nobody knows what: mode",
+        v, is_of_azimuth);
+}
+
 static void print_mesh(const bough_vibration *v) {
     double most = 0;
     for (int k = 0; k < v->found; k++) most = fmax(most, v->mode[k].moved);
@@ -244,6 +263,7 @@ static void print_modes(const bough_simulation *s, const bough_vibration *v) {
         const bough_scene_mode *m = &v->mode[k];
         printf("%4d", k + 1);
         bough_modes_print_value(m->frequency, m->damped_frequency, m->damping);
+        if (v->n_azimuth > 1) printf("%-9.2g ", 100 * m->damping_change);
         printf("%-12s %-8s", bough_modes_body(s, m), bough_modes_shape(s, m));
         if (v->n_blade > 0) printf(" %-12s", bough_pattern_names[m->pattern]);
         for (int c = 0; v->n_blade > 0 && c < 3; c++) printf(" %8.4f", m->whirl[c]);
@@ -251,6 +271,7 @@ static void print_modes(const bough_simulation *s, const bough_vibration *v) {
         putchar('\n');
     }
     print_search(v);
+    print_azimuths(v);
     for (int k = 0; k < v->found; k++) {
         const bough_scene_mode *m = &v->mode[k];
         if (m->growth <= fmax(unstable, m->residual) * 2 * BOUGH_PI * m->frequency) continue;
@@ -275,17 +296,19 @@ static void write_modes(const void *self, FILE *file) {
     const bough_simulation *s = x->simulation;
     const bough_vibration *v = x->found;
     int n_body = s->scene->n_body;
-    fputs("mode,frequency (Hz),damped frequency (Hz),damping ratio (-),decrement (-),residual (-),change by "
-          "mesh (-),body,shape,pattern,collective (-),forward (-),backward (-)",
-          file);
+    fputs(
+        "mode,frequency (Hz),damped frequency (Hz),damping ratio (-),decrement (-),residual (-),change by "
+        "mesh (-),change of frequency over azimuths (-),change of damping ratio over azimuths (-),body,shape,pattern,collective (-),forward (-),backward (-)",
+        file);
     for (int i = 0; i < n_body; i++) fprintf(file, ",%s (-)", s->scene->body[i].name);
     fputc('\n', file);
     for (int k = 0; k < v->found; k++) {
         const bough_scene_mode *m = &v->mode[k];
         fprintf(file, "%d", k + 1);
         bough_modes_write_value(file, m->frequency, m->damped_frequency, m->damping);
-        fprintf(file, ",%.2g,%.2g,%s,%s,%s", m->residual, m->moved, bough_modes_body(s, m),
-                bough_modes_shape(s, m), bough_pattern_names[m->pattern]);
+        fprintf(file, ",%.2g,%.2g,%.2g,%.2g", m->residual, m->moved, m->frequency_change, m->damping_change);
+        fprintf(file, ",%s,%s,%s", bough_modes_body(s, m), bough_modes_shape(s, m),
+                bough_pattern_names[m->pattern]);
         for (int c = 0; c < 3; c++) fprintf(file, ",%.6g", m->whirl[c]);
         for (int i = 0; i < n_body; i++) fprintf(file, ",%.6g", m->share[i]);
         fputc('\n', file);
@@ -316,6 +339,7 @@ static bough_status write_search(const bough_vibration *v, const char *folder) {
     bough_summary_integer(&s, "eigenvalues_converged", v->count.converged);
     bough_summary_integer(&s, "eigenvectors_unpaired", v->unpaired);
     bough_summary_number(&s, "largest_residual", largest_residual(v));
+    bough_summary_integer(&s, "azimuths", v->n_azimuth);
     return bough_summary_close(&s);
 }
 

@@ -22,6 +22,7 @@ static const double rounding = 1e-6; // damping ratios below it are none
 typedef struct sweep_mode {
     int point, line; // a line joins what is the same mode of neighbouring points
     double frequency, damped, damping;
+    double damping_change; // over the azimuths
     const char *body, *shape, *pattern;
     const char *name; // of all three
 } sweep_mode;
@@ -201,6 +202,7 @@ static void add_modes(bough_arena *keep, bough_arena *arena, const bough_simulat
                            .frequency = m->frequency,
                            .damped = m->damped_frequency,
                            .damping = m->damping,
+                           .damping_change = m->damping_change,
                            .body = bough_arena_string(keep, bough_modes_body(sim, m)),
                            .shape = bough_modes_shape(sim, m),
                            .pattern = bough_pattern_names[m->pattern]};
@@ -263,8 +265,9 @@ static void print_point(const sweep *s, int point, int first) {
         const sweep_mode *m = &s->mode[k];
         printf("%4d", m->line + 1);
         bough_modes_print_value(m->frequency, m->damped, m->damping);
-        printf("%-12s %-8s %s%s\n", m->body, m->shape, m->pattern,
-               m->damping < -rounding ? "  unstable" : "");
+        printf("%-12s %-8s %s%s%s\n", m->body, m->shape, m->pattern,
+               m->damping < -rounding ? "  unstable" : "",
+               m->damping_change >= fabs(m->damping) ? "  damping changes by itself with the azimuth" : "");
     }
 }
 
@@ -289,8 +292,8 @@ static void write_table(const void *self, FILE *file) {
     fputs("point", file);
     for (int k = 0; k < s->n_key; k++) fprintf(file, ",%s", s->key[k]);
     fputs(
-        ",rotor speed (rpm),line,branch,frequency (Hz),damped frequency (Hz),damping ratio (-),decrement (-),body,"
-        "shape,pattern\n",
+        ",rotor speed (rpm),line,branch,frequency (Hz),damped frequency (Hz),damping ratio (-),decrement (-),"
+        "change of damping ratio over azimuths (-),body,shape,pattern\n",
         file);
     for (int i = 0; i < s->n_mode; i++) {
         const sweep_mode *m = &s->mode[i];
@@ -300,7 +303,7 @@ static void write_table(const void *self, FILE *file) {
         }
         fprintf(file, ",%.10g,%d,%s", s->speed[m->point], m->line + 1, s->named[m->line]->name);
         bough_modes_write_value(file, m->frequency, m->damped, m->damping);
-        fprintf(file, ",%s,%s,%s\n", m->body, m->shape, m->pattern);
+        fprintf(file, ",%.2g,%s,%s,%s\n", m->damping_change, m->body, m->shape, m->pattern);
     }
 }
 

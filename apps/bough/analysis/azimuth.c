@@ -1,0 +1,295 @@
+// theory (110).
+#include "apps/bough/analysis/azimuth.h"
+
+#include "apps/bough/model/companion.h"
+#include "core/base/base.h"
+
+#include <complex.h>
+#include <math.h>
+#include <string.h>
+
+static const double at_rest = 1e-9;    // [rad/s]
+static const double difference = 1e-4; // of the largest entry of a vector in units of its scale
+
+static const double complex imaginary = (double complex)I;
+
+enum { AZIMUTHS = 4, MOST_BLADES = 16 };
+
+// -- the azimuths ---------------------------------------------------------------------------------
+
+// C_kl = (1/n) Σ_h exp(i h (2π(k − l)/n + turn)), |h| <= (n − 1)/2; what alternates from blade to blade
+// stays.
+static double *blend_of(bough_arena *arena, int n, double turn) {
+    double *c = bough_arena_doubles(arena, (size_t)(n * n));
+    for (int k = 0; k < n; k++) {
+        for (int l = 0; l < n; l++) {
+            double sum = n % 2 == 0 ? 1 + cos(BOUGH_PI * (k - l)) : 1;
+            for (int h = 1; h <= (n - 1) / 2; h++) sum += 2 * cos(h * (2 * BOUGH_PI * (k - l) / n + turn));
+            c[k * n + l] = sum / n;
+        }
+    }
+    return c;
+}
+
+// A copy of the scene whose rotor begins further on.
+static bough_scene *turned_scene(bough_arena *arena, const bough_simulation *s, double turn) {
+    bough_scene *to = bough_coarser_scene_beside(arena, s, 0);
+    bough_scene_joint *joint = &to->body[to->turbine.rotor].joint;
+    bough_motion_def *motion = &joint->motion[0].def;
+    joint->coordinates[0] += turn;
+    if (!motion->given || motion->speed) return to;
+    motion->from += turn;
+    motion->to += turn;
+    double *values = bough_arena_copy(arena, motion->values, (size_t)motion->n * sizeof *values);
+    for (int i = 0; i < motion->n; i++) values[i] += turn;
+    motion->values = values;
+    return to;
+}
+
+// Begins in the state of the scene's azimuth, so that its equilibrium is near.
+static void begin(const bough_azimuths *a, bough_azimuth *x, double *state) {
+    const bough_azimuth *first = &a->at[0];
+    const bough_simulation *s = first->simulation;
+    int azimuth, speed;
+    bough_assembly_states(s->master->assembly, state);
+    bough_tree_joint_rows(s->tree, s->scene->turbine.rotor, &azimuth, &speed);
+    state[azimuth] += x->turn;
+    bough_equilibrium_set_state(x->simulation, x->simulation->master->assembly, state);
+}
+
+static bough_status turn_on(bough_arena *arena, const bough_azimuths *a, double time, bool balanced,
+                            bough_azimuth *x) {
+    const bough_simulation *s = a->at[0].simulation;
+    bough_equilibrium_work work;
+    BOUGH_TRY(bough_simulation_build_on(arena, turned_scene(arena, s, x->turn), s->pool, &x->simulation));
+    const bough_assembly *assembly = x->simulation->master->assembly;
+    begin(a, x, bough_arena_doubles(arena, (size_t)assembly->n_state));
+    if (balanced) {
+        bough_status status = bough_simulation_equilibrium(x->simulation, assembly, time, &work);
+        if (!bough_is_ok(&status))
+            return bough_fail(status.code, "with the rotor turned on by %.3g degrees: %.380s",
+                              x->turn / BOUGH_DEGREE, status.message);
+    }
+    return bough_vibration_point_find(arena, x->simulation, time, &x->point);
+}
+
+// The mean of the blades' shapes, in which the members' own loads differ little.
+static void set_mean(const bough_azimuths *a, double *state) {
+    const bough_blade_group *g = a->group;
+    for (int j = 0; j < g->n * g->n_row; j++) {
+        double sum = 0;
+        for (int k = 0; k < a->n; k++) sum += a->at[k].point.state[g->row[j]];
+        state[g->row[j]] = sum / a->n;
+    }
+}
+
+bough_status bough_azimuths_find(bough_arena *arena, bough_simulation *s, double time, bool balanced,
+                                 bough_vibration_point *point, bough_azimuths *a) {
+    int n = point->group.n;
+    *a = (bough_azimuths){.n = n > 0 && n <= MOST_BLADES && fabs(point->group.speed) > at_rest ? AZIMUTHS : 1,
+                          .group = &point->group};
+    a->at = bough_arena_take(arena, (size_t)a->n * sizeof *a->at);
+    for (int k = 0; k < a->n; k++) {
+        bough_azimuth *x = &a->at[k];
+        x->turn = n > 0 ? 2 * BOUGH_PI / n * k / a->n : 0;
+        x->blend = blend_of(arena, n, x->turn);
+        if (k == 0)
+            *x = (bough_azimuth){x->turn, s, *point, x->blend};
+        else
+            BOUGH_TRY(turn_on(arena, a, time, balanced, x));
+    }
+    a->at[0].point.state =
+        bough_arena_copy(arena, point->state, (size_t)s->master->assembly->n_state * sizeof(double));
+    if (a->n > 1) set_mean(a, point->state);
+    return bough_ok();
+}
+
+// -- blades seen by an observer at rest -----------------------------------------------------------
+
+// Rows of equal blades, of their states or of those of their air: row (n_part × n).
+typedef struct blade_rows {
+    int n_part, n;
+    const int *row;
+} blade_rows;
+
+// Entries of the blades, `stride` apart, by C or its transpose, in place.
+static void blend(const double *c, bool transposed, blade_rows of, size_t stride, double *x) {
+    double before[MOST_BLADES];
+    for (int j = 0; j < of.n; j++) {
+        for (int k = 0; k < of.n_part; k++) before[k] = x[(size_t)of.row[k * of.n + j] * stride];
+        for (int k = 0; k < of.n_part; k++) {
+            double sum = 0;
+            for (int l = 0; l < of.n_part; l++)
+                sum += c[transposed ? l * of.n_part + k : k * of.n_part + l] * before[l];
+            x[(size_t)of.row[k * of.n + j] * stride] = sum;
+        }
+    }
+}
+
+// Rows of the blades' states and, n_per_blade of each, of their air's.
+typedef struct both_rows {
+    blade_rows blade, air;
+} both_rows;
+
+static both_rows rows_of(bough_arena *arena, const bough_azimuths *a, int n_per_blade) {
+    const bough_blade_group *g = a->group;
+    int *air = bough_arena_take(arena, (size_t)(g->n * n_per_blade + 1) * sizeof *air);
+    bough_air_tangent_rows(a->at[0].simulation, g, n_per_blade, air);
+    return (both_rows){{g->n, g->n_row, g->row}, {g->n, n_per_blade, air}};
+}
+
+// -- the mean tangent -----------------------------------------------------------------------------
+
+// What blades and bodies that do not turn do to each other, as at the scene's azimuth. Blades on blades stay:
+// C does not change their mean over the blades.
+static void turn_back(bough_arena *arena, const bough_azimuths *a, const double *c, bough_air_tangent *t) {
+    size_t n = (size_t)t->n, m = (size_t)t->n_air;
+    both_rows rows = rows_of(arena, a, t->n_per_blade);
+    bool *turns = bough_arena_take(arena, n * sizeof *turns);
+    for (int i = 0; i < rows.blade.n_part * rows.blade.n; i++) turns[rows.blade.row[i]] = true;
+    for (size_t i = 0; i < n; i++) {
+        if (turns[i]) continue;
+        blend(c, true, rows.blade, 1, t->motion + i * n);
+        blend(c, true, rows.air, 1, t->drive + i * m);
+        blend(c, true, rows.blade, n, t->motion + i);
+        blend(c, true, rows.air, n, t->lift + i);
+    }
+}
+
+// to = share of (to + from), or of itself.
+static void mean_of(double share, size_t n, const double *restrict from, double *restrict to) {
+    for (size_t i = 0; i < n; i++) to[i] = share * (from ? to[i] + from[i] : to[i]);
+}
+
+static void add(double share, const bough_air_tangent *from, bough_air_tangent *to) {
+    size_t n = (size_t)to->n, m = (size_t)to->n_air;
+    mean_of(share, n * n, from->motion, to->motion);
+    mean_of(share, n * m, from->lift, to->lift);
+    mean_of(share, n * m, from->drive, to->drive);
+    mean_of(share, m * m, from->lag, to->lag);
+}
+
+static bough_status find_tangent(bough_arena *arena, const bough_azimuth *x, bool dynamic,
+                                 bough_air_tangent *t) {
+    const bough_vibration_point *p = &x->point;
+    return bough_air_tangent_find(arena, x->simulation, p->whole, p->def.time, p->state, dynamic, &p->group,
+                                  NULL, t);
+}
+
+bough_status bough_azimuths_tangent(bough_arena *arena, const bough_azimuths *a, bool dynamic,
+                                    bough_air_tangent *mean) {
+    BOUGH_TRY(find_tangent(arena, &a->at[0], dynamic, mean));
+    for (int k = 1; k < a->n; k++) {
+        bough_arena *own = bough_arena_child(arena);
+        bough_air_tangent other;
+        bough_status status = find_tangent(own, &a->at[k], dynamic, &other);
+        if (bough_is_ok(&status)) {
+            turn_back(own, a, a->at[k].blend, &other);
+            add(k + 1 == a->n ? 1. / a->n : 1, &other, mean);
+        }
+        bough_arena_destroy(own);
+        if (!bough_is_ok(&status)) return status;
+    }
+    bough_air_tangent_average(arena, a->at[0].simulation, a->group, mean);
+    return bough_ok();
+}
+
+// -- products with one azimuth --------------------------------------------------------------------
+
+struct bough_azimuth_product {
+    const double *blend; // C
+    bough_air_change *air;
+    both_rows rows;
+    int n, n_air; // states of the members, of the air
+    int angle;    // the row of the rotor's; −1: it counts
+    double *here; // (n + n_air) a vector as at this azimuth
+};
+
+bough_azimuth_product *bough_azimuth_product_create(bough_arena *arena, const bough_azimuths *a, int k,
+                                                    bool dynamic, int *n_air) {
+    const bough_azimuth *x = &a->at[k];
+    const bough_simulation *s = x->simulation;
+    const bough_vibration_point *point = &x->point;
+    bough_azimuth_product *p = bough_arena_take(arena, sizeof *p);
+    *p = (bough_azimuth_product){.blend = x->blend, .n = point->whole->assembly->n_state, .angle = -1};
+    p->air = bough_air_change_create(arena, x->simulation, point->whole, point->def.time, point->state,
+                                     dynamic, &p->n_air);
+    p->rows = rows_of(arena, a, p->n_air / s->scene->turbine.n_blade);
+    p->here = bough_arena_doubles(arena, (size_t)(p->n + p->n_air));
+    int speed;
+    if (a->n > 1) bough_tree_joint_rows(s->tree, s->scene->turbine.rotor, &p->angle, &speed);
+    *n_air = p->n_air;
+    return p;
+}
+
+static void blend_all(const bough_azimuth_product *p, bool back, double *x) {
+    blend(p->blend, back, p->rows.blade, 1, x);
+    blend(p->blend, back, p->rows.air, 1, x + p->n);
+}
+
+bough_status bough_azimuth_product_follow(bough_azimuth_product *p, double size, const double *y,
+                                          double *image) {
+    memcpy(p->here, y, (size_t)(p->n + p->n_air) * sizeof *y);
+    blend_all(p, false, p->here);
+    if (p->angle >= 0) p->here[p->angle] = 0;
+    BOUGH_TRY(bough_air_change_follow(p->air, size, p->here, image));
+    blend_all(p, true, image);
+    return bough_ok();
+}
+
+// -- what an azimuth changes ----------------------------------------------------------------------
+
+// yᵀ A x/(yᵀ x) of an eigenvector; scale (n + n_air), image: work.
+static bough_status quotient(bough_azimuth_product *p, const bough_mode_vectors *v, const double *scale,
+                             double *image, double complex *value) {
+    size_t all = (size_t)(p->n + p->n_air);
+    double complex length = 0, sum = 0;
+    for (size_t part = 0; part < 2; part++) {
+        const double *right = v->right + part * all;
+        double complex unit = part == 0 ? 1 : imaginary;
+        double largest = 0;
+        for (size_t i = 0; i < all; i++) largest = fmax(largest, fabs(right[i]) / scale[i]);
+        if (largest == 0) continue;
+        BOUGH_TRY(bough_azimuth_product_follow(p, difference / largest, right, image));
+        for (size_t i = 0; i < all; i++) {
+            double complex left = v->left[i] + imaginary * v->left[all + i];
+            length += unit * left * right[i];
+            sum += unit * left * image[i];
+        }
+    }
+    *value = sum / length;
+    return bough_ok();
+}
+
+static bough_status find_quotients(bough_arena *arena, const bough_azimuths *a, int k, bool dynamic, int n,
+                                   const bough_mode_vectors *vector, double complex *value) {
+    const bough_assembly *assembly = a->at[k].point.whole->assembly;
+    int n_air;
+    bough_azimuth_product *p = bough_azimuth_product_create(arena, a, k, dynamic, &n_air);
+    double *scale, *image;
+    bough_arena_each(arena, (size_t)(p->n + n_air), &scale, &image);
+    bough_assembly_scales(assembly, scale);
+    for (int i = 0; i < n_air; i++) scale[p->n + i] = 1;
+    for (int i = 0; i < n; i++) {
+        value[i] = (double)NAN;
+        if (vector[i].left) BOUGH_TRY(quotient(p, &vector[i], scale, image, &value[i]));
+    }
+    return bough_ok();
+}
+
+bough_status bough_azimuths_change(bough_arena *arena, const bough_azimuths *a, bool dynamic, int n,
+                                   const bough_mode_vectors *vector, double complex *change) {
+    for (int i = 0; i < a->n; i++) {
+        bough_arena *own = bough_arena_child(arena);
+        bough_status status = find_quotients(own, a, i, dynamic, n, vector, change + i * n);
+        bough_arena_destroy(own);
+        if (!bough_is_ok(&status)) return status;
+    }
+    // from their mean
+    for (int k = 0; k < n; k++) {
+        double complex mean = 0;
+        for (int i = 0; i < a->n; i++) mean += change[i * n + k] / a->n;
+        for (int i = 0; i < a->n; i++) change[i * n + k] -= mean;
+    }
+    return bough_ok();
+}

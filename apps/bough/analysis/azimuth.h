@@ -1,0 +1,51 @@
+// The mean of a turning rotor of n equal blades over its azimuths, theory (110). Where tilt, shear, weight
+// and tower make the loads of a blade change with its azimuth, the linear system, seen by an observer at
+// rest, repeats with an nth of a turn. Modes are those of its mean over some azimuths of that, each about its
+// own equilibrium.
+#ifndef BOUGH_APPS_ANALYSIS_AZIMUTH_H
+#define BOUGH_APPS_ANALYSIS_AZIMUTH_H
+
+#include "apps/bough/analysis/aeroelastic.h"
+#include "apps/bough/analysis/vibration.h"
+
+#include <complex.h>
+
+// The rotor at one of its azimuths.
+typedef struct bough_azimuth {
+    double turn; // from the scene's azimuth [rad]
+    bough_simulation *simulation;
+    bough_vibration_point point;
+    double *blend; // C (n_part × n_part), row-major: a blade's states here by those of all there, as an
+                   // observer at rest sees no change
+} bough_azimuth;
+
+typedef struct bough_azimuths {
+    int n; // 1: the scene's alone
+    bough_azimuth *at;
+    const bough_blade_group *group; // of the scene's azimuth
+} bough_azimuths;
+
+// The first is that of the simulation and its point, both borrowed; the others are those of further
+// simulations of its scene, in equilibrium at `time` if `balanced`. Sets the point's state to the mean over
+// all. Where no rotor of equal blades turns there is one azimuth only.
+bough_status bough_azimuths_find(bough_arena *arena, bough_simulation *s, double time, bool balanced,
+                                 bough_vibration_point *point, bough_azimuths *azimuths);
+
+// The mean tangent, of blades on blades also over the blades.
+bough_status bough_azimuths_tangent(bough_arena *arena, const bough_azimuths *azimuths, bool dynamic,
+                                    bough_air_tangent *mean);
+
+// Products with the tangent of the k-th azimuth's air, as at the scene's, by differences of `size` times y:
+// image = Cᵀ A C y of members and air (n + n_air), without the rotor's angle where it turns.
+typedef struct bough_azimuth_product bough_azimuth_product;
+bough_azimuth_product *bough_azimuth_product_create(bough_arena *arena, const bough_azimuths *azimuths, int k,
+                                                    bool dynamic, int *n_air);
+bough_status bough_azimuth_product_follow(bough_azimuth_product *product, double size, const double *y,
+                                          double *image);
+
+// How far the air of each azimuth moves the eigenvalues of n modes from those of the mean, by first order:
+// change (azimuths × n) [1/s]; NaN without a left vector.
+bough_status bough_azimuths_change(bough_arena *arena, const bough_azimuths *azimuths, bool dynamic, int n,
+                                   const bough_mode_vectors *vector, double complex *change);
+
+#endif
