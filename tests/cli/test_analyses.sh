@@ -140,6 +140,9 @@ modes() {
     [ "$(wc -l <whole/shapes.csv)" -eq 235 ] || fail "$said: shapes.csv has not 235 lines"
     has whole/modes.csv '^mode,frequency (Hz),.*,decrement (-),residual (-),.*,pattern,collective (-),forward (-),backward (-),tower'
     rm -r whole
+    expect 0 modes "$blade" --set 'modes={of: scene, count: 2}' --set 'bodies[0].rod.segments=4' --sensitivity 1 --out depends
+    has depends/modes.json '"name": "[^"]*: bending stiffness about [xy]"'
+    rm -r depends
     expect 0 modes "$beam" --set 'loads=[{body: beam, at: tip, force: [0, 0, -3 kN], frame: follower}]'
     has ../stdout '^unstable beam: mode [23] grows at '
     rm -r out turning

@@ -23,10 +23,9 @@ typedef struct bough_mode_vectors {
 } bough_mode_vectors;
 
 // Finds up to `wanted` oscillations and growing motions in which the bodies take part.
-//   pair      by |λ|, room for count->wanted; their shapes (n_state), of any length and phase, are the
-//   arena's count     how many there are; with memory of the air `converged` is that of the subspace's basis,
-//   half as
-//             many again
+//   pair      by |λ|, room for count->wanted; their shapes (n_state), of any length and phase, in the arena
+//   count     how many there are; with memory of the air `converged` is that of the subspace's basis, which
+//             has half as many again
 //   vectors   (count->wanted) of each pair; NULL: not wanted
 //   unpaired  eigenvectors that the subspace leaves out: on the other side, left or right, none converged
 // The cost is that of factoring a dense matrix of n_state rows (of equal blades a tenth of it), and with

@@ -330,7 +330,24 @@ static void write_shapes(const void *self, FILE *file) {
     }
 }
 
-static bough_status write_search(const bough_vibration *v, const char *folder) {
+static void add_dependence(bough_summary *s, const bough_modes_dependence *x) {
+    bough_summary_object(s, "sensitivity");
+    bough_summary_integer(s, "mode", x->mode + 1);
+    bough_summary_array(s, "parameters");
+    for (int i = 0; i < x->of.n; i++) {
+        bough_summary_object(s, NULL);
+        bough_summary_text(s, "name", x->of.list[i].name);
+        bough_summary_text(s, "by", x->of.list[i].by);
+        bough_summary_number(s, "frequency", x->of.list[i].frequency);
+        bough_summary_number(s, "damping", x->of.list[i].damping);
+        bough_summary_end(s);
+    }
+    bough_summary_end(s);
+    bough_summary_end(s);
+}
+
+static bough_status write_search(const bough_vibration *v, const bough_modes_dependence *dependence,
+                                 const char *folder) {
     bough_summary s;
     BOUGH_TRY(bough_summary_open(&s, folder, "modes.json"));
     bough_summary_integer(&s, "modes_asked", v->asked);
@@ -340,6 +357,7 @@ static bough_status write_search(const bough_vibration *v, const char *folder) {
     bough_summary_integer(&s, "eigenvectors_unpaired", v->unpaired);
     bough_summary_number(&s, "largest_residual", largest_residual(v));
     bough_summary_integer(&s, "azimuths", v->n_azimuth);
+    if (dependence->mode >= 0) add_dependence(&s, dependence);
     return bough_summary_close(&s);
 }
 
@@ -410,10 +428,13 @@ static bough_status find_whole(bough_arena *arena, const bough_options *options,
     if (bough_is_ok(&status) && compared) print_mesh(&v);
     BOUGH_TRY(bough_folder_make(folder));
     BOUGH_TRY(bough_folder_write(folder, "modes.csv", write_modes, &x));
-    BOUGH_TRY(write_search(&v, folder));
     if (s->scene->modes.shapes) BOUGH_TRY(bough_folder_write(folder, "shapes.csv", write_shapes, &x));
     if (s->scene->modes.linear) BOUGH_TRY(write_linear(arena, s, v.time, folder));
-    if (sensitivity) BOUGH_TRY(bough_modes_sensitivity(arena, s, &v, sensitivity, folder));
+    bough_modes_dependence dependence = {.mode = -1};
+    status = bough_ok();
+    if (sensitivity) status = bough_modes_sensitivity(arena, s, &v, sensitivity, folder, &dependence);
+    BOUGH_TRY(write_search(&v, &dependence, folder));
+    if (!bough_is_ok(&status)) return status;
     printf("out: %s\n", folder);
     return bough_ok();
 }

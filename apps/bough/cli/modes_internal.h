@@ -2,6 +2,7 @@
 #ifndef BOUGH_APPS_CLI_MODES_INTERNAL_H
 #define BOUGH_APPS_CLI_MODES_INTERNAL_H
 
+#include "apps/bough/analysis/sensitivity.h"
 #include "apps/bough/analysis/vibration.h"
 #include "apps/bough/cli/command.h"
 
@@ -11,10 +12,16 @@
 bough_status bough_modes_sweep(bough_arena *arena, const bough_options *options, const bough_texts *sweeps,
                                bool until_unstable);
 
-// Prints and writes what a mode depends on: `wanted` is its number, or words of its row, then perhaps a
+// What a mode depends on.
+typedef struct bough_modes_dependence {
+    int mode; // its place among those found; −1: of none
+    bough_sensitivities of;
+} bough_modes_dependence;
+
+// Prints it and writes sensitivity.csv: `wanted` is the mode's number, or words of its row, then perhaps a
 // number among those that have them.
 bough_status bough_modes_sensitivity(bough_arena *arena, bough_simulation *s, const bough_vibration *v,
-                                     const char *wanted, const char *folder);
+                                     const char *wanted, const char *folder, bough_modes_dependence *found);
 
 // What moves most in a mode, and how.
 const char *bough_modes_body(const bough_simulation *s, const bough_scene_mode *mode);

@@ -1,5 +1,4 @@
 // bough modes --sensitivity: what the frequency and the damping of a mode depend on most.
-#include "apps/bough/analysis/sensitivity.h"
 #include "apps/bough/cli/modes_internal.h"
 #include "apps/bough/results/folder.h"
 
@@ -74,7 +73,7 @@ static void write(const void *self, FILE *file) {
 }
 
 bough_status bough_modes_sensitivity(bough_arena *arena, bough_simulation *s, const bough_vibration *v,
-                                     const char *wanted, const char *folder) {
+                                     const char *wanted, const char *folder, bough_modes_dependence *found) {
     int k = find_mode(s, v, wanted);
     if (k < 0)
         return bough_fail(
@@ -82,9 +81,9 @@ bough_status bough_modes_sensitivity(bough_arena *arena, bough_simulation *s, co
             "--sensitivity: none of the %d modes is '%.80s': take a number, or words of a row of the "
             "table, such as 'edge forward' or 'edge forward 2' for the second of them",
             v->found, wanted);
-    bough_sensitivities found;
-    bough_status status = bough_sensitivity_find(arena, s, v->time, &v->mode[k], &found);
+    bough_status status = bough_sensitivity_find(arena, s, v->time, &v->mode[k], &found->of);
     if (!bough_is_ok(&status)) return bough_fail(status.code, "mode %d: %.380s", k + 1, status.message);
-    print(v, k, &found);
-    return bough_folder_write(folder, "sensitivity.csv", write, &found);
+    found->mode = k;
+    print(v, k, &found->of);
+    return bough_folder_write(folder, "sensitivity.csv", write, &found->of);
 }
