@@ -91,14 +91,6 @@ static void define(double time, bough_vibration_point *x) {
     x->def.point = fmax(least_point, spins * ((g->n - 1) / 2) * fabs(g->speed));
 }
 
-bough_status bough_vibration_point_find(bough_arena *arena, bough_simulation *s, double time,
-                                        bough_vibration_point *point) {
-    *point = (bough_vibration_point){0};
-    BOUGH_TRY(prepare(arena, s, point));
-    define(time, point);
-    return bough_ok();
-}
-
 // Turns all joints on at their own speeds, the fastest by `angle`.
 static void turn_on(const bough_tree *tree, double fastest, double angle, double *rate, double *state) {
     enum { STEPS = 200 };
@@ -201,13 +193,13 @@ static bough_inertia turning_inertia(const bough_simulation *s, int rotor, bough
 }
 
 // Equal blades make the system constant only on a hub that is the same at every azimuth, or one whose shaft
-// cannot move.
-static bough_status check_balance(const bough_simulation *s) {
+// cannot move: how far it is from that, relative.
+static double imbalance(const bough_simulation *s) {
     int rotor = s->tree->bodies[s->scene->turbine.rotor].link;
     bool moves = false;
     for (int i = s->tree->links[rotor].parent; i >= 0; i = s->tree->links[i].parent)
         moves = moves || s->tree->links[i].motion == NULL;
-    if (!moves) return bough_ok();
+    if (!moves) return 0;
     bough_vec3 axis = bough_simulation_joint_axis(s, s->scene->turbine.rotor);
     bough_transform turn = {{0, 0, 0}, bough_rotation_matrix(bough_quaternion_exponential(axis))};
     bough_inertia here = turning_inertia(s, rotor, s->view->pose[rotor].position);
@@ -216,8 +208,24 @@ static bough_status check_balance(const bough_simulation *s) {
     double size = a.c1.x + a.c2.y + a.c3.z, off = bough_norm(bough_sub(here.first, there.first));
     double change = fmax(bough_norm(bough_sub(a.c1, b.c1)),
                          fmax(bough_norm(bough_sub(a.c2, b.c2)), bough_norm(bough_sub(a.c3, b.c3))));
-    change = size > 0 ? fmax(change / size, off / sqrt(here.mass * size)) : 0;
-    return change > even ? refuse(s, change) : bough_ok();
+    return size > 0 ? fmax(change / size, off / sqrt(here.mass * size)) : 0;
+}
+
+// The present azimuth, each blade as it bends there.
+static void leave_transform(const bough_simulation *s, bough_vibration_point *x) {
+    x->group.n = x->group.n_row = x->def.n_part = x->def.n_row = 0;
+    x->def.spin = 0;
+    bough_assembly_states(s->master->assembly, x->state);
+    bough_whole_inputs(x->whole, x->def.time, x->state);
+}
+
+bough_status bough_vibration_point_find(bough_arena *arena, bough_simulation *s, double time,
+                                        bough_vibration_point *point) {
+    *point = (bough_vibration_point){0};
+    BOUGH_TRY(prepare(arena, s, point));
+    define(time, point);
+    if (s->scene->modes.linear && point->def.spin != 0 && imbalance(s) > even) leave_transform(s, point);
+    return bough_ok();
 }
 
 // -- solution -------------------------------------------------------------------------------------
@@ -325,11 +333,12 @@ static bough_status solve(bough_arena *arena, bough_simulation *s, int count, bo
     moving_air air = {.changes = changes};
     v->mode = bough_arena_take(arena, (size_t)count * sizeof *v->mode);
     BOUGH_TRY(bough_vibration_point_find(arena, s, v->time, &x));
-    v->n_blade = x.group.n;
     v->spin = fabs(x.group.speed) < at_rest ? 0 : x.group.speed;
+    double uneven = x.def.spin != 0 ? imbalance(s) : 0;
+    if (uneven > even) return refuse(s, uneven);
+    v->n_blade = x.group.n;
     v->frozen = is_frozen(s, &x.group);
     if (v->frozen && !s->scene->modes.linear) BOUGH_TRY(check_constant(arena, s, &x));
-    if (v->n_blade > 0 && v->spin != 0 && !s->scene->modes.linear) BOUGH_TRY(check_balance(s));
     BOUGH_TRY(find_air(arena, s, v->time, &x, &air));
     v->n_azimuth = air.azimuths.n;
     BOUGH_TRY(solve_about(arena, s, &x, &air, count, v));

@@ -75,7 +75,8 @@ typedef struct bough_vibration {
     double (*change)[2];    // (found) of each mode over them, as frequency_change and damping_change
 } bough_vibration;
 
-// What modes are about: the simulation's present state, the blades in their mean.
+// What modes are about: the simulation's present state, the blades in their mean where they turn (not on a
+// hub out of balance, for modes.linear).
 typedef struct bough_vibration_point {
     bough_whole *whole;
     bough_blade_group group;

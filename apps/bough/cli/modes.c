@@ -191,7 +191,7 @@ static void print_head(const bough_simulation *s, const bough_vibration *v) {
     printf("\n%4s %12s %12s %11s %11s  ", "mode", "frequency", "damped", "damping", "decrement");
     printf("%s%-12s %s", by_azimuth ? "azimuth   " : "", "body", "shape");
     if (v->n_blade > 0) printf("    %-12s %8s %8s %8s", "pattern", "collect.", "forward", "backward");
-    printf("\n%4s %12s %12s %11s %11s  %s\n", "", "(Hz)", "(Hz)", "(%)", "(-)", by_azimuth ? "(+-%)" : "");
+    printf("\n%4s %12s %12s %11s %11s%s\n", "", "(Hz)", "(Hz)", "(%)", "(-)", by_azimuth ? "  (+-%)" : "");
 }
 
 static double largest_residual(const bough_vibration *v) {
