@@ -161,7 +161,7 @@ const char *bough_modes_body(const bough_simulation *s, const bough_scene_mode *
 }
 
 // Whether nothing but inertia holds the rotor's joint.
-static bool rotor_is_free(const bough_simulation *s) {
+bool bough_modes_rotor_is_free(const bough_simulation *s) {
     if (s->scene->turbine.node == NULL) return false;
     const bough_scene_joint *joint = &s->scene->body[s->scene->turbine.rotor].joint;
     return joint->spring.stiffness == 0 && joint->motion[0].node == NULL;
@@ -183,7 +183,7 @@ static void print_head(const bough_simulation *s, const bough_vibration *v) {
     if (v->spin != 0) printf(", rotor at %.6g rpm", v->spin / BOUGH_RPM);
     if (v->frozen) printf(", at the present azimuth: blades as seen from the rotating frame");
     if (v->spin != 0 && v->n_blade > 0) printf(", seen by an observer at rest");
-    if (rotor_is_free(s)) printf(", rotor free to turn");
+    if (bough_modes_rotor_is_free(s)) printf(", rotor free to turn");
     static const char *const air[] = {"do not follow", "follow at once", "follow in time"};
     if (s->aero) printf("; the air's forces %s", air[s->scene->modes.air]);
     if (v->n_azimuth > 1) printf(", in the mean over %d azimuths", v->n_azimuth);
@@ -267,7 +267,7 @@ static void print_modes(const bough_simulation *s, const bough_vibration *v) {
         printf("%-12s %-8s", bough_modes_body(s, m), bough_modes_shape(s, m));
         if (v->n_blade > 0) printf(" %-12s", bough_pattern_names[m->pattern]);
         for (int c = 0; v->n_blade > 0 && c < 3; c++) printf(" %8.4f", m->whirl[c]);
-        if (rotor_is_free(s) && turns_rotor(m)) printf("  free rotor");
+        if (bough_modes_rotor_is_free(s) && turns_rotor(m)) printf("  free rotor");
         putchar('\n');
     }
     print_search(v);
@@ -277,7 +277,7 @@ static void print_modes(const bough_simulation *s, const bough_vibration *v) {
         if (m->growth <= fmax(unstable, m->residual) * 2 * BOUGH_PI * m->frequency) continue;
         printf(
             "unstable: mode %d grows at %.6g /s%s\n", k + 1, m->growth,
-            m->damped_frequency == 0 && s->aero && rotor_is_free(s)
+            m->damped_frequency == 0 && s->aero && bough_modes_rotor_is_free(s)
                 ? " without swinging: the speed of the rotor, if the air's torque grows with it or, at one "
                   "azimuth, by its weight; the generator's torque and the pitch are held"
                 : "");
@@ -457,8 +457,9 @@ static bough_status read_until(const char *name, const char *text, void *field) 
 static const bough_option rows[] = {
     BOUGH_OPTION_SET,
     BOUGH_OPTION_OUT,
-    {"until", "unstable", "ends the sweep where an oscillation begins to grow, and finds that place",
-     read_until, offsetof(modes_options, until)},
+    {"until", "unstable",
+     "ends the sweep where an oscillation or a divergence begins to grow, and finds that place", read_until,
+     offsetof(modes_options, until)},
     {"sweep", "KEY=V1, V2, ...", "modes over operating points; the values of several --sweep vary together",
      bough_option_texts, offsetof(modes_options, sweep)},
     {"sensitivity", "MODE", "what a mode, its number or words of its row as 'edge forward', depends on most",

@@ -7,8 +7,8 @@
 #include "apps/bough/cli/command.h"
 
 // Solves every point of --sweep and writes campbell.csv and campbell.svg. `until_unstable`: the points up to
-// the first at which an oscillation grows, then the place between it and the one before from which on it
-// does.
+// the first at which an oscillation grows, or a motion without one where the rotor is not free, then the
+// place between it and the one before from which on it does.
 bough_status bough_modes_sweep(bough_arena *arena, const bough_options *options, const bough_texts *sweeps,
                                bool until_unstable);
 
@@ -22,6 +22,9 @@ typedef struct bough_modes_dependence {
 // number among those that have them.
 bough_status bough_modes_sensitivity(bough_arena *arena, bough_simulation *s, const bough_vibration *v,
                                      const char *wanted, const char *folder, bough_modes_dependence *found);
+
+// Whether nothing but inertia holds the rotor's joint.
+bool bough_modes_rotor_is_free(const bough_simulation *s);
 
 // What moves most in a mode, and how.
 const char *bough_modes_body(const bough_simulation *s, const bough_scene_mode *mode);

@@ -31,6 +31,7 @@ typedef struct sweep {
     int n_key, n_point;
     int n_solved;       // points, the first ones
     int n_blade;        // of the turbine; 0: none
+    bool free;          // its rotor turns freely
     const char **key;   // (n_key)
     const char **value; // (n_key × n_point) as written
     double *x, *speed;  // (n_point) of the first key, else its place in the list;
@@ -236,6 +237,7 @@ static bough_status add_point(bough_arena *keep, bough_arena *arena, const bough
     add_modes(keep, arena, sim, v, point, before, now, s);
     s->speed[point] = fabs(v->spin) / BOUGH_RPM;
     s->n_blade = sim->scene->turbine.n_blade;
+    s->free = bough_modes_rotor_is_free(sim);
     char *end;
     s->x[point] = strtod(s->value[point], &end);
     if (end == s->value[point]) s->x[point] = point + 1;
@@ -377,16 +379,21 @@ enum { MOST_TRIALS = 40 };
 
 static const double accurate = 1e-5; // of the boundary, relative to the first key's values
 
-// Growth of the oscillation that grows most, or decays least [1/s].
+// Growth of a motion [1/s].
 static double growth_of(const sweep_mode *m) {
     return fabs(m->damping) > rounding ? -2 * BOUGH_PI * m->frequency * m->damping : 0;
 }
+
+// Whether growth of the mode ends the sweep: an oscillation, or a divergence, of which a free rotor, whose
+// speed may run away under a torque that is held, says nothing.
+static bool counts(bool free, double damped) { return damped > 0 || !free; }
 
 static const sweep_mode *most_growing(const sweep *s, int point) {
     const sweep_mode *most = NULL;
     for (int i = 0; i < s->n_mode; i++) {
         const sweep_mode *m = &s->mode[i];
-        if (m->point == point && m->damped > 0 && (!most || growth_of(m) > growth_of(most))) most = m;
+        bool taken = m->point == point && counts(s->free, m->damped);
+        if (taken && (!most || growth_of(m) > growth_of(most))) most = m;
     }
     return most;
 }
@@ -394,18 +401,35 @@ static const sweep_mode *most_growing(const sweep *s, int point) {
 // Beyond rounding.
 static bool grows(const sweep_mode *m) { return m && m->damping < -rounding; }
 
-// The value between those of a point and the next, "139.6 m/s"; NULL where they are no numbers with one unit.
+static bool begins_number(const char *text) {
+    return strchr("+-.0123456789", *text) != NULL && *text != '\0';
+}
+
+// The value between those of a point and the next, "139.6 m/s": all numbers in it; NULL where the texts
+// differ in anything else.
 static const char *between(bough_arena *arena, const char *a, const char *b, double part) {
-    char *unit_a, *unit_b;
-    double first = strtod(a, &unit_a), second = strtod(b, &unit_b);
-    bool numbers = unit_a != a && unit_b != b && strcmp(unit_a, unit_b) == 0;
-    return numbers ? bough_arena_print(arena, "%.8g%s", first + part * (second - first), unit_a) : NULL;
+    const char *value = "";
+    while (*a != '\0') {
+        char *end_a, *end_b;
+        double first = begins_number(a) ? strtod(a, &end_a) : 0,
+               second = begins_number(b) ? strtod(b, &end_b) : 0;
+        if (begins_number(a) && begins_number(b) && end_a != a && end_b != b) {
+            value = bough_arena_print(arena, "%s%.8g", value, first + part * (second - first));
+            a = end_a, b = end_b;
+        } else {
+            if (*a != *b) return NULL;
+            value = bough_arena_print(arena, "%s%c", value, *a);
+            a++, b++;
+        }
+    }
+    return *b == '\0' ? value : NULL;
 }
 
 // The growth at a place.
 typedef struct growth_at {
-    double rate;      // of the oscillation that grows most [1/s]; 0: it grows by no more than rounding
-    double frequency; // of that oscillation, damped [Hz]
+    double rate;      // of what grows most [1/s]; 0: it grows by no more than rounding
+    double frequency; // of that, damped [Hz]; 0: a divergence
+    const char *name; // what moves in it
     double share;     // with the other mesh: the error of the scene's mesh over the difference of the two
 } growth_at;
 
@@ -438,7 +462,10 @@ static bough_status grow(bough_arena *keep, const bough_options *options, const 
     for (int k = 0; bough_is_ok(&status) && k < v.found; k++) {
         const bough_scene_mode *m = &v.mode[k];
         double rate = fabs(m->damping) > rounding ? m->growth : 0;
-        if (m->damped_frequency > 0 && rate > to->rate) to->rate = rate, to->frequency = m->damped_frequency;
+        if (!counts(s->free, m->damped_frequency) || rate <= to->rate) continue;
+        to->rate = rate;
+        to->frequency = m->damped_frequency;
+        to->name = bough_arena_print(keep, "%s %s", bough_modes_body(sim, m), bough_modes_shape(sim, m));
     }
     bough_arena_destroy(arena);
     return status;
@@ -447,12 +474,13 @@ static bough_status grow(bough_arena *keep, const bough_options *options, const 
 typedef struct boundary {
     double part;      // of the way from the point before it to the next
     double slope;     // of the growth over that part [1/s]
-    double frequency; // of the oscillation that grows, damped [Hz]
-    double share;     // as in growth_at
+    double frequency; // as in growth_at, behind it
+    const char *name;
+    double share;
 } boundary;
 
-// Between a stable point and the next one, where growths are low and high, by the Illinois rule; without
-// damping, where growth is 0 up to the boundary, in halves.
+// Between a stable point and the next one, where growths are low and high, by the Illinois rule; in halves
+// where low is 0: without damping, up to the boundary, and before a divergence, of which nothing is listed.
 static bough_status find_boundary(bough_arena *arena, const bough_options *options, const sweep *s, int point,
                                   double low, double high, bool other, boundary *to) {
     double a = 0, b = 1, first = s->x[point], second = s->x[point + 1];
@@ -466,7 +494,7 @@ static bough_status find_boundary(bough_arena *arena, const bough_options *optio
         to->slope = (at.rate - (at.rate > 0 ? low : high)) / (x - (at.rate > 0 ? a : b));
         to->share = at.share;
         if (at.rate > 0) {
-            b = x, high = at.rate, low /= 2, to->frequency = at.frequency;
+            b = x, high = at.rate, low /= 2, to->frequency = at.frequency, to->name = at.name;
         } else {
             a = x, low = at.rate, high /= 2;
         }
@@ -489,23 +517,30 @@ static bough_status find_error(bough_arena *arena, const bough_options *options,
     return bough_ok();
 }
 
-// Says from where on an oscillation grows, and by how much the mesh moves that place.
+// Says from where on something grows, and by how much the mesh moves that place.
 static bough_status print_boundary(bough_arena *arena, const bough_options *options, const sweep *s,
                                    int last) {
     const sweep_mode *m = most_growing(s, last), *before = last > 0 ? most_growing(s, last - 1) : NULL;
-    if (!grows(m) || !before) {
-        printf(grows(m) ? "unstable at the first point: %s=%s\n" : "no oscillation grows up to %s=%s\n",
+    if (!grows(m) || last == 0) {
+        printf(grows(m)  ? "unstable at the first point: %s=%s\n"
+               : s->free ? "no oscillation grows up to %s=%s\n"
+                         : "nothing grows up to %s=%s\n",
                s->key[0], s->value[last]);
         return bough_ok();
     }
-    boundary at = {.frequency = m->damped};
-    double low = growth_of(before), high = growth_of(m), error;
+    boundary at = {.frequency = m->damped, .name = bough_arena_print(arena, "%s %s", m->body, m->shape)};
+    double low = m->damped > 0 && before ? growth_of(before) : 0, high = growth_of(m), error;
     BOUGH_TRY(find_boundary(arena, options, s, last - 1, low, high, false, &at));
     BOUGH_TRY(find_error(arena, options, s, last - 1, low, high, &at, &error));
+    bool number = begins_number(s->value[last]);
     error *= fabs(s->x[last] - s->x[last - 1]);
     const char *value = between(arena, s->value[last - 1], s->value[last], at.part);
-    printf("unstable from %s=%s on, mesh +- %.2g: line %d, %.6g Hz, %s %s\n", s->key[0], value, error,
-           m->line + 1, at.frequency, m->body, m->shape);
+    printf("unstable from %s=%s on, mesh +- %.2g%s: ", s->key[0], value, error, number ? "" : " of the step");
+    if ((m->damped > 0) == (at.frequency > 0)) printf("line %d, ", m->line + 1);
+    if (at.frequency > 0)
+        printf("%.6g Hz, %s\n", at.frequency, at.name);
+    else
+        printf("divergence, %s\n", at.name);
     return bough_ok();
 }
 
