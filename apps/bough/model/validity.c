@@ -14,6 +14,8 @@ static const double most_over_rated = 2;
 // Error of the loads relative to the loads: up to 0.1 at a sufficient rate, near 1 where their delay feeds
 // vibrations.
 static const double most_missed = 0.3;
+// Of the wind's range, by which it may go beyond both of the samples around it.
+static const double most_between = 0.05;
 // A segment has one strain, a coarse approximation beyond this angle; there is none beyond 120°.
 static const double most_turn = 0.25 * BOUGH_PI;
 // Limits of bough_loops_margin, absolute and relative to the largest so far: on random linkages it stays
@@ -58,6 +60,8 @@ static const struct {
     [BOUGH_LIMIT_SINGULAR] = {"singular_position",
                               "its closed loop is near a position from which its bodies can go on in two"
                               " ways, and takes one of them by the smallest difference; margin %.2g"},
+    [BOUGH_LIMIT_WIND] = {"wind_samples", "the wind changes by %.3g m/s and back between two samples of the"
+                                          " air, which do not see it: take a higher aero.rate"},
     [BOUGH_LIMIT_STEPS] =
         {"solver_steps", "motions so fast that a solver takes %.3g steps in a macro step make most of the"
                          " cost: damping, a larger rtol or another solver (radau5, cvode-bdf) may end that"},
@@ -197,6 +201,14 @@ static void check_rotor(bough_simulation *s) {
     validity_pass(s->validity, BOUGH_LIMIT_ACROSS, body, 0, angle / BOUGH_DEGREE);
 }
 
+static void check_wind(bough_simulation *s) {
+    const bough_wind *wind = bough_rotor_wind(bough_aero_link_rotor(s->aero));
+    bough_wind_missed missed =
+        bough_wind_between(wind, 1 / s->scene->aero.rate, s->scene->simulation.duration);
+    if (missed.speed <= most_between * missed.range) return;
+    validity_pass(s->validity, BOUGH_LIMIT_WIND, s->scene->turbine.rotor, missed.time, missed.speed);
+}
+
 // Rods in a row are one rod: only a single one is coarse.
 static void check_mesh(bough_simulation *s) {
     for (int i = 0; i < s->n_beam; i++) {
@@ -210,6 +222,7 @@ static void check_mesh(bough_simulation *s) {
 
 void bough_validity_start(bough_simulation *s) {
     if (s->scene->turbine.node) check_rotor(s);
+    if (s->aero) check_wind(s);
     check_mesh(s);
 }
 

@@ -89,10 +89,14 @@ TEST(defects_of_the_model_are_reported_at_the_start) {
          "hub at 0 s: the blades are not evenly spaced about its axis: between two of them are 60 deg"},
         {turbine, "aero.wind.direction=90 deg", BOUGH_LIMIT_ACROSS, 90,
          "hub at 0 s: its axis is across the wind, or faces away from it: the angle between them is 90 deg"},
+        {turbine,
+         "aero.wind={kind: uniform, table: {times: [0, 1.001, 1.01, 1.019], speeds: [12, 12, 40, 12]}}",
+         BOUGH_LIMIT_WIND, 28,
+         "hub at 1.01 s: the wind changes by 28 m/s and back between two samples of the air"},
         {"tests/data/scenes/example-beam.yaml", "bodies[beam].rod.segments=1", BOUGH_LIMIT_MESH, 1,
          "beam at 0 s: a rod of one segment bends by a third too little"},
     };
-    for (int i = 0; i < 3; i++) {
+    for (int i = 0; i < 4; i++) {
         const char *const sets[] = {model[i].set, NULL};
         check_arena(arena);
         bough_simulation *s = scene_build(arena, model[i].scene, sets);

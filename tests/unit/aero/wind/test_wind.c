@@ -80,3 +80,25 @@ TEST(table_is_linear_between_and_constant_outside) {
         check_near(u, expected[i][1], 1e-14, 0);
     }
 }
+
+// A peak between two samples, a jump, a slow gust, a peak of which the sample before it shows a half.
+TEST(what_lies_between_samples_is_found) {
+    static const struct {
+        double time[5], speed[5], missed, at, range;
+    } wind[] = {
+        {{0, 1.01, 1.05, 1.09, 9}, {8, 8, 20, 8, 8}, 12, 1.05, 12},
+        {{0, 1.01, 1.05, 1.09, 9}, {8, 8, 8, 20, 20}, 0, 0, 12},
+        {{0, 1, 2, 3, 9}, {8, 8, 20, 8, 8}, 0, 0, 12},
+        {{0, 1.05, 1.15, 1.21, 9}, {8, 8, 20, 8, 8}, 6, 1.15, 12},
+    };
+    for (size_t i = 0; i < sizeof wind / sizeof *wind; i++) {
+        check_arena(arena);
+        const bough_wind_def def = {.n_time = 5, .time = wind[i].time, .speed_at_time = wind[i].speed};
+        bough_wind model;
+        check_ok(bough_wind_build(arena, &def, &model));
+        bough_wind_missed m = bough_wind_between(&model, 0.1, 10);
+        check_near(m.speed, wind[i].missed, 0, 1e-12);
+        check_near(m.time, wind[i].at, 0, 0);
+        check_near(m.range, wind[i].range, 1e-15, 0);
+    }
+}

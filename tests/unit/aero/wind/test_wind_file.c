@@ -81,6 +81,20 @@ TEST_WITH(hub_rows_are_interpolated, set_up, tear_down) {
     check_vec(bough_wind_at(&wind, hub, 99), 10 * cos(8 * degree), 0, 10 * sin(8 * degree));
 }
 
+// A shear that comes and goes between two samples, 10 m/s at the half of the reference length above the hub.
+TEST_WITH(what_lies_between_samples_of_a_hub_file_is_found, set_up, tear_down) {
+    static const char text[] = "0 20 0 0 0 0 0 0\n1.01 20 0 0 0 0 0 0\n1.05 20 0 0 0 0 1 0\n"
+                               "1.09 20 0 0 0 0 0 0\n";
+    place *p = *context;
+    bough_wind wind;
+    write_file(p, text, strlen(text));
+    check_ok(build(p, BOUGH_WIND_HUB_FILE, &wind));
+    bough_wind_missed m = bough_wind_between(&wind, 0.1, 10);
+    check_near(m.speed, 10, 1e-12, 0);
+    check_near(m.time, 1.05, 0, 0);
+    check_near(bough_wind_between(&wind, 0.01, 10).speed, 0, 0, 1e-9);
+}
+
 TEST_WITH(bad_hub_files_are_refused, set_up, tear_down) {
     place *p = *context;
     static const char *const bad[][2] = {
