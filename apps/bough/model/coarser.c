@@ -156,6 +156,8 @@ static bool has_jumps(const bough_scene *scene) {
     return found;
 }
 
+static bool holds_loads(const bough_scene *scene) { return scene->aero.hold == BOUGH_SCENE_CONSTANT; }
+
 // A quarter, of an order between 2 and 3, in air whose loads follow the motion; two fifths without air, where
 // vibrations stay whose phases and amplitudes err at a lower order; half where loads of the air are held
 // constant between samples, which is of order 1. What a coupling errs by is the whole difference to a
@@ -165,7 +167,7 @@ static bool has_jumps(const bough_scene *scene) {
 static double usual_share(const bough_scene *scene) {
     const bough_scene_coupling *x = &scene->simulation.coupling;
     const bough_scheme *scheme = bough_scheme_at(x->scheme);
-    bool air = scene->aero.node != NULL, held = air && scene->aero.hold == BOUGH_SCENE_CONSTANT;
+    bool air = scene->aero.node != NULL, held = air && holds_loads(scene);
     if (scheme->one_system) return held ? 0.5 : air ? 0.25 : 0.4;
     bool whole = scheme->explicit_forces || scheme->repeats || has_jumps(scene) ||
                  has_fixed_sub_steps(scene) || bough_scheme_error_order(scheme, &x->options) == 1;
@@ -206,6 +208,8 @@ double bough_coarser_time_share(const bough_scene *scene) {
 
 double bough_finer_time_share(void) { return 4 / 3.0; } // half the steps, at order 2
 
+double bough_finer_air_share(const bough_scene *scene) { return holds_loads(scene) ? 2 : 4 / 3.0; } // order 1
+
 static bool samples_fit(double rate, double macro_step) {
     return bough_master_multiple(1 / rate, macro_step) > 0;
 }
@@ -217,15 +221,21 @@ static bool steps_fit(const bough_scene *scene, double step) {
     return scene->n_input == 0 && air && control;
 }
 
+// Twice the rate, with `shorter` in macro steps of half the length where it needs them; or as it is.
+static void double_rate(const bough_scene *scene, bool shorter, bough_scene *to) {
+    double rate = 2 * scene->aero.rate, step = scene->simulation.macro_step;
+    bool fits = samples_fit(rate, step);
+    if (!fits && !(shorter && steps_fit(scene, step / 2))) return;
+    to->aero.rate = rate;
+    if (!fits) to->simulation.macro_step = step / 2;
+}
+
 // Half the rate; beside a finer mesh twice the rate where macro steps allow it: a coarser one can hide in the
 // difference what the mesh shows. Loads that are held between samples err most: for them macro steps of half
 // the length make room.
 static void change_rate(const bough_scene *scene, bool finer, bough_scene *to) {
-    double rate = scene->aero.rate, step = scene->simulation.macro_step;
-    bool held = scene->aero.hold == BOUGH_SCENE_CONSTANT;
-    bool fits = samples_fit(2 * rate, step), room = held && steps_fit(scene, step / 2);
-    to->aero.rate = finer && (fits || room) ? 2 * rate : rate / 2;
-    if (finer && !fits && room) to->simulation.macro_step = step / 2;
+    to->aero.rate = scene->aero.rate / 2;
+    if (finer) double_rate(scene, holds_loads(scene), to);
 }
 
 static void lengthen_macro_step(bough_scene *to) {
@@ -294,6 +304,7 @@ bough_scene *bough_coarser_scene(bough_arena *arena, const bough_scene *scene, i
     if (parts & BOUGH_COARSER_AIR) change_rate(scene, parts & BOUGH_COARSER_MESH && some_finer(scene), to);
     if (parts & BOUGH_COARSER_TIME) lengthen_steps(scene, to);
     if (parts & BOUGH_FINER_TIME) shorten_steps(to, 0.1, 0);
+    if (parts & BOUGH_FINER_AIR) double_rate(scene, true, to);
     if (parts & BOUGH_FINEST_TIME) shorten_steps(to, 0.01, 1e-6);
     to->simulation.error_estimate = BOUGH_SCENE_NO_ESTIMATE;
     to->simulation.error_bound = 0;

@@ -25,6 +25,9 @@ enum {
     // Not coarser but finer in time: one system, a tenth of the tolerance and half the longest step.
     BOUGH_FINER_TIME = 8,
     BOUGH_FINEST_TIME = 16, // the same with a hundredth of the tolerance, not below 1e-6
+    // Twice the aerodynamic sampling rate, in macro steps of half the length where it needs them. Not for a
+    // scene with inputs.
+    BOUGH_FINER_AIR = 32,
 };
 
 // In the arena; it shares what no run changes with the scene. It estimates no error itself.
@@ -42,8 +45,9 @@ double bough_coarser_share(const bough_scene *scene, const bough_scene *other);
 // The same for a copy that is coarser in time alone.
 double bough_coarser_time_share(const bough_scene *scene);
 
-// The same for a copy that is finer in time.
+// The same for a copy that is finer in time, and in air.
 double bough_finer_time_share(void);
+double bough_finer_air_share(const bough_scene *scene);
 
 enum { BOUGH_COMPANION_REASON = 320 };
 

@@ -76,8 +76,9 @@ static bool has_part(const bough_scene *scene, int kind) {
     return false;
 }
 
+static const int coarser[BOUGH_SHARES] = {BOUGH_COARSER_MESH, BOUGH_COARSER_AIR, BOUGH_COARSER_TIME};
+
 static void build_finer(bough_arena *arena, const finding *x, bough_other_run finer[BOUGH_SHARES]) {
-    static const int coarser[BOUGH_SHARES] = {BOUGH_COARSER_MESH, BOUGH_COARSER_AIR, BOUGH_COARSER_TIME};
     const bough_simulation *run = x->companion->run;
     for (int k = 0; k < BOUGH_SHARES; k++) {
         bough_error_share *share = &x->shares->share[k];
@@ -188,31 +189,40 @@ static void lower_errors(bough_companion *c, bough_error_shares *shares) {
     c->reason[0] = 0;
 }
 
-// -- steps that a companion finds too long ---------------------------------------------------------
+// -- steps and samples that a companion finds too long --------------------------------------------
 
 typedef struct proof {
     const bough_companion *companion;
+    bough_error_share_kind kind; // time or air
     bool (*stop)(void);
-    double end;            // of the run, less rounding [s]
-    double *time, *others; // (n_channel) largest errors: of the steps; of mesh and air
+    double end;           // of the run, less rounding [s]
+    double *own, *others; // (n_channel) largest errors: of that kind; of the two other kinds
 } proof;
 
-// The run once more, beside one with finer steps and one that is coarser in mesh and air alone.
+// A run that is finer in that kind alone, and its part of the difference to it that a run errs by.
+static bough_status build_proof(bough_arena *arena, const proof *x, bough_other_run *finer, double *part) {
+    const bough_simulation *run = x->companion->run;
+    bool air = x->kind == BOUGH_SHARE_AIR;
+    *part = air ? bough_finer_air_share(run->scene) : bough_finer_time_share();
+    return bough_other_run_build(arena, run, air ? BOUGH_FINER_AIR : BOUGH_FINER_TIME, finer);
+}
+
+// The run once more, beside one that is finer in one kind and one that is coarser in the two others alone.
 static bough_status prove(bough_arena *arena, void *self) {
     const proof *x = self;
     const bough_companion *c = x->companion;
     const bough_simulation *run = c->run;
-    static const int parts[] = {0, BOUGH_FINER_TIME, BOUGH_COARSER_ALL & ~BOUGH_COARSER_TIME};
-    double from = run->scene->simulation.output.from - 1e-6 * run->master->macro_step;
-    double finer = bough_finer_time_share();
+    double from = run->scene->simulation.output.from - 1e-6 * run->master->macro_step, part;
     bough_other_run r[3];
-    for (int k = 0; k < 3; k++) BOUGH_TRY(bough_other_run_build(arena, run, parts[k], &r[k]));
+    BOUGH_TRY(bough_other_run_build(arena, run, 0, &r[0]));
+    BOUGH_TRY(build_proof(arena, x, &r[1], &part));
+    BOUGH_TRY(bough_other_run_build(arena, run, BOUGH_COARSER_ALL & ~coarser[x->kind], &r[2]));
     for (double t = 0;; t = r[0].simulation->master->time) {
         for (int k = 0; k < 3; k++) {
             BOUGH_TRY(advance(&r[k], t, run));
             bough_other_run_sample(&r[k]);
         }
-        if (t >= from) compare(&r[0], &r[1], finer, finer, x->time);
+        if (t >= from) compare(&r[0], &r[1], part, part, x->own);
         if (t >= from) compare(&r[2], &r[0], c->share, c->share_held, x->others);
         if (t >= x->end) return bough_ok();
         BOUGH_TRY(look_for_stop(x->stop));
@@ -220,19 +230,20 @@ static bough_status prove(bough_arena *arena, void *self) {
     }
 }
 
-// A companion's longer steps can err by far more than the share of the difference that is the run's. Before
-// the run fails by its steps, finer ones are to show that they err. BOUGH_INTERRUPTED by stop().
-static bough_status prove_time(bough_arena *arena, const finding *x) {
+// A companion's longer steps and rarer samples can err by far more than the share of the difference that is
+// the run's. Before the run fails by its own, finer ones are to show that they err. BOUGH_INTERRUPTED by
+// stop().
+static bough_status prove_kind(bough_arena *arena, const finding *x, bough_error_share_kind kind) {
     bough_companion *c = x->companion;
     size_t n = (size_t)c->channels->count;
-    proof p = {c, x->stop, x->end, .time = NULL};
-    bough_arena_each(arena, n + 1, &p.time, &p.others);
+    proof p = {c, kind, x->stop, x->end, .own = NULL};
+    bough_arena_each(arena, n + 1, &p.own, &p.others);
     bough_status status = bough_arena_use(prove, &p);
     if (status.code == BOUGH_INTERRUPTED) return status;
-    double *time = x->shares->share[BOUGH_SHARE_TIME].largest;
+    double *own = x->shares->share[kind].largest;
     for (size_t i = 0; i < n && bough_is_ok(&status); i++) {
-        time[i] = fmin(time[i], p.time[i]);
-        c->error[i] = fmin(c->error[i], p.time[i] + p.others[i]);
+        own[i] = fmin(own[i], p.own[i]);
+        c->error[i] = fmin(c->error[i], p.own[i] + p.others[i]);
     }
     return bough_ok();
 }
@@ -269,9 +280,22 @@ static bool has_lost(const bough_companion *c) {
     return bound > 0 && bough_error_exceeds(c, fmax(bound, lost));
 }
 
-static bool fails_by_time(const bough_companion *c, const bough_error_shares *shares) {
+// Time, air, or −1: the error is within the bound, or the mesh's, or its cause is not known.
+static int fails_by(const bough_companion *c, const bough_error_shares *shares) {
     double relative, bound = c->run->scene->simulation.error_bound;
-    return bough_error_exceeds(c, bound) && cause_of(c, shares, bound, &relative) == BOUGH_SHARE_TIME;
+    int cause = bough_error_exceeds(c, bound) ? cause_of(c, shares, bound, &relative) : -1;
+    return cause == BOUGH_SHARE_MESH ? -1 : cause;
+}
+
+// Whichever of time and air the run fails by, and the other where it fails by that then.
+static bough_status prove_causes(bough_arena *arena, const finding *x) {
+    bool proved[BOUGH_SHARES] = {false};
+    for (;;) {
+        int kind = fails_by(x->companion, x->shares);
+        if (kind < 0 || proved[kind]) return bough_ok();
+        BOUGH_TRY(prove_kind(arena, x, (bough_error_share_kind)kind));
+        proved[kind] = true;
+    }
 }
 
 bough_status bough_error_shares_find(bough_arena *arena, bough_companion *c, bool (*stop)(void),
@@ -293,7 +317,7 @@ bough_status bough_error_shares_find(bough_arena *arena, bough_companion *c, boo
     }
     if (status.code == BOUGH_INTERRUPTED) return status;
     if (bough_is_ok(&status) && x.lost) lower_errors(c, shares);
-    if (bough_is_ok(&status) && fails_by_time(c, shares)) BOUGH_TRY(prove_time(arena, &x));
+    if (bough_is_ok(&status)) BOUGH_TRY(prove_causes(arena, &x));
     shares->cpu_s = bough_cpu_clock(false) - cpu;
     for (int k = 0; k < BOUGH_SHARES && !bough_is_ok(&status); k++)
         unknown(&shares->share[k], status.message);
