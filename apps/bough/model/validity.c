@@ -16,6 +16,8 @@ static const double most_over_rated = 2;
 static const double most_missed = 0.3;
 // Of the wind's range, by which it may go beyond both of the samples around it.
 static const double most_between = 0.05;
+// Of the rotor between two samples: what changes three times in a rotation is then seen twice in its period.
+static const double most_rotation = BOUGH_PI / 3;
 // A segment has one strain, a coarse approximation beyond this angle; there is none beyond 120°.
 static const double most_turn = 0.25 * BOUGH_PI;
 // Limits of bough_loops_margin, absolute and relative to the largest so far: on random linkages it stays
@@ -62,6 +64,9 @@ static const struct {
                               " ways, and takes one of them by the smallest difference; margin %.2g"},
     [BOUGH_LIMIT_WIND] = {"wind_samples", "the wind changes by %.3g m/s and back between two samples of the"
                                           " air, which do not see it: take a higher aero.rate"},
+    [BOUGH_LIMIT_ROTATION] = {"rotor_samples",
+                              "it turns by %.3g deg between two samples of the air, which miss what"
+                              " changes within a rotation: take a higher aero.rate"},
     [BOUGH_LIMIT_STEPS] =
         {"solver_steps", "motions so fast that a solver takes %.3g steps in a macro step make most of the"
                          " cost: damping, a larger rtol or another solver (radau5, cvode-bdf) may end that"},
@@ -93,11 +98,23 @@ static void check_air(bough_simulation *s) {
     }
 }
 
+static double rotor_speed(const bough_simulation *s) {
+    return bough_simulation_joint_point(s, s->scene->turbine.rotor).v;
+}
+
+// Run and companion may both see a blade at the same places of each rotation.
+static void check_rotation(bough_simulation *s) {
+    double turned = fabs(rotor_speed(s)) / s->scene->aero.rate;
+    if (turned <= most_rotation) return;
+    validity_pass(s->validity, BOUGH_LIMIT_ROTATION, s->scene->turbine.rotor, s->master->time,
+                  turned * (180 / BOUGH_PI));
+}
+
 static void check_speed(bough_simulation *s) {
     const bough_scene_control *control = &s->scene->control;
     if (!control->node || control->kind != BOUGH_SCENE_VARIABLE_SPEED) return;
     int rotor = s->scene->turbine.rotor;
-    double speed = bough_simulation_joint_point(s, rotor).v;
+    double speed = rotor_speed(s);
     double rated = control->law.rated_speed / control->gear_ratio;
     if (fabs(speed) <= most_over_rated * fabs(rated)) return;
     validity_pass(s->validity, BOUGH_LIMIT_ROTOR_SPEED, rotor, s->master->time, speed / BOUGH_RPM);
@@ -231,6 +248,7 @@ void bough_validity_start(bough_simulation *s) {
 void bough_validity_check(bough_simulation *s) {
     if (s->tree->n_closures > 0) check_closures(s);
     if (s->aero) check_air(s);
+    if (s->aero) check_rotation(s);
     check_turns(s);
     check_speed(s);
 }

@@ -16,6 +16,7 @@ typedef enum bough_limit {
     BOUGH_LIMIT_MESH,        // a rod has one segment
     BOUGH_LIMIT_SINGULAR,    // a closed loop is near a position in which its bodies can go on in two ways
     BOUGH_LIMIT_WIND,        // the wind rises and falls between two samples of the air
+    BOUGH_LIMIT_ROTATION,    // the rotor turns by a sixth of a rotation between two samples of the air
     BOUGH_LIMIT_STEPS,       // macro steps of very many steps of a solver have become costly
     BOUGH_LIMITS,
 } bough_limit;

@@ -52,6 +52,20 @@ TEST(a_fast_section_is_warned_of_once) {
     assert_non_null(strstr(text, "blade1 at 0.02 s: a section meets the air at "));
 }
 
+// 5 rad/s are 57 deg in a fifth of a second, 6 rad/s 69 deg.
+TEST(a_rotor_that_turns_far_between_samples_is_reported) {
+    for (int speed = 5; speed <= 6; speed++) {
+        char chosen[48];
+        snprintf(chosen, sizeof chosen, "bodies[hub].joint.motion={speed: %d rad/s}", speed);
+        const char *const sets[] = {"bodies[hub].joint.speed=null", chosen, "aero.rate=5", NULL};
+        check_arena(arena);
+        bough_simulation *s = run(arena, sets, 4);
+        bough_passing first = s->validity->limit[BOUGH_LIMIT_ROTATION];
+        assert_int_equal(first.passed, speed == 6);
+        if (first.passed) check_near(first.value, 1.2 * 180 / BOUGH_PI, 1e-3, 0);
+    }
+}
+
 // A cantilever whose tip moment rolls it up to a circle: 60 deg in each of six segments, 30 of twelve.
 TEST(a_turned_segment_is_reported) {
     static const char *const coarse[] = {"bodies[0].rod.segments=6", "simulation.initial=equilibrium", NULL};
