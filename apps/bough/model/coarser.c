@@ -330,6 +330,7 @@ bough_status bough_other_run_build(bough_arena *arena, const bough_simulation *r
     BOUGH_TRY(bough_simulation_channels(simulation, &other->channels));
     other->value = bough_arena_doubles(arena, (size_t)other->channels.count + 1);
     other->simulation = simulation;
+    simulation->master->compared = true; // as the run beside it
     return bough_ok();
 }
 

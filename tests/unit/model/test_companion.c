@@ -256,6 +256,23 @@ TEST(a_proof_of_too_many_steps_is_none) {
     assert_true(asked > 250 && asked < 400); // 250 of the companion; the proof would take 500
 }
 
+// An iteration that does not converge goes on where errors are known, and a copy of such a run does, too.
+TEST(a_further_run_goes_on_as_the_run_does) {
+    const char *const sets[] = {"simulation.coupling={scheme: iterated, iterations: 1, tolerance: 1e-12}",
+                                NULL};
+    check_arena(arena);
+    bough_run r;
+    bough_other_run copy;
+    check_ok(bough_run_create(arena, scene_read(arena, example, sets), &r));
+    check_ok(bough_other_run_build(arena, r.simulation, 0, &copy));
+    for (int k = 0; k < 4; k++) {
+        check_ok(bough_run_step(&r));
+        check_ok(bough_step(copy.simulation->master));
+    }
+    bough_other_run_sample(&copy);
+    for (int i = 0; i < r.channels.count; i++) check_near(copy.value[i], bough_run_values(&r)[i], 0, 0);
+}
+
 #define LIBRARY                                                                                              \
     "control={kind: bladed, rate: 50, gear_ratio: 97, input: memory, library: " BOUGH_SAMPLE_DISCON "}"
 
