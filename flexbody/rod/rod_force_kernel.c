@@ -1,6 +1,7 @@
 // Right-hand side of the rod: gather, segment forces, vertex balances.
 #include "flexbody/rod/rod_kernels.h"
 #include "flexbody/rod/rod_lanes.h"
+#include "flexbody/rod/rod_vectors.h"
 
 #include <string.h>
 
@@ -43,9 +44,11 @@ BOUGH_INLINE void gather_some(const bough_rod_model *m, const double *restrict s
 
 // Moving vertices first to last.
 static void gather_state(const bough_rod_model *m, const double *state, int first, int last, double *vertex) {
-    int n = last + 1 - first, end = first + n - n % BOUGH_WIDTH;
+    int n = last + 1 - first, end = first + whole_vectors(n);
+    bool more = one_more_vector(n);
     for (int i = first; i < end; i += BOUGH_WIDTH) gather_some(m, state, i, BOUGH_WIDTH, vertex);
-    for (int i = end; i <= last; i++) gather_some(m, state, i, 1, vertex);
+    if (more) gather_some(m, state, last + 1 - BOUGH_WIDTH, BOUGH_WIDTH, vertex);
+    for (int i = end; i <= last && !more; i++) gather_some(m, state, i, 1, vertex);
 }
 
 void AT(gather)(const bough_rod_model *m, const double *state, const double *input,
@@ -259,18 +262,18 @@ static void load_end(const bough_rod_model *m, const bough_rod_loads *loads, dou
     }
 }
 
-// theory (11) solved for the accelerations, `count` vertices from the first on: the linear part goes out in
-// BRF axes.
+// theory (11) solved for the accelerations of as many vertices as a vector has lanes, into rows of the given
+// stride: the linear part goes out in BRF axes.
 BOUGH_INLINE void vertex_accelerations(const bough_rod_model *m, const bough_rod_scratch *scratch,
-                                       const double *input, int from, int count, double *restrict rate) {
-    int n = m->n, s = m->stride;
+                                       const double *input, int from, double *restrict out, int stride) {
+    int s = m->stride;
     const double *restrict v = scratch->vertex, *restrict f = scratch->segment;
     const double *restrict load = scratch->load;
     const double *restrict inverse = bough_rod_tile(m->inverse_mass, 21, from - 1);
     const double *restrict first = m->moment, *restrict inertia = m->inertia;
     bough_vec3 omega = {input[3], input[4], input[5]}, gravity = {input[6], input[7], input[8]};
 #pragma omp simd
-    for (int i = from; i < from + count; i++) {
+    for (int i = from; i < from + BOUGH_WIDTH; i++) {
         vertex_state a = load_vertex(v, s, i);
         bough_mat3 r = bough_rotation_matrix(a.p);
         // segments on both sides, and loads: force in BRF axes, moment in section axes
@@ -287,9 +290,27 @@ BOUGH_INLINE void vertex_accelerations(const bough_rod_model *m, const bough_rod
         strain q = symmetric_times(inverse, BOUGH_LANES, i - from, h);
         bough_vec3 acceleration =
             bough_sub(bough_add(bough_mat3_mul(r, q.v), gravity), bough_cross(omega, a.u));
-        lane_store(rate + BOUGH_ROD_U * n, n, i - 1, acceleration);
-        lane_store(rate + BOUGH_ROD_W * n, n, i - 1, q.u);
+        lane_store(out, stride, i - from, acceleration);
+        lane_store(out + 3 * stride, stride, i - from, q.u);
     }
+}
+
+// The last vertices, which do not fill a vector: beyond them are lanes of zeros.
+static void accelerate_last(const bough_rod_model *m, const bough_rod_scratch *scratch, const double *input,
+                            int from, double *restrict out) {
+    double some[6 * BOUGH_WIDTH];
+    vertex_accelerations(m, scratch, input, from, some, BOUGH_WIDTH);
+    for (int k = 0; k < 6; k++) {
+        for (int i = 0; i <= m->n - from; i++) out[k * m->n + i] = some[k * BOUGH_WIDTH + i];
+    }
+}
+
+static void accelerate_vertices(const bough_rod_model *m, const bough_rod_scratch *scratch,
+                                const double *input, double *restrict rate) {
+    int n = m->n, whole = whole_vectors(n);
+    double *restrict out = rate + BOUGH_ROD_U * n - 1;
+    for (int i = 1; i <= whole; i += BOUGH_WIDTH) vertex_accelerations(m, scratch, input, i, out + i, n);
+    if (whole < n) accelerate_last(m, scratch, input, whole + 1, out + whole + 1);
 }
 
 // theory (16): ẋ = u − u₀ − ω×x and ṗ = ½ (p∘(0,W) − (0,ω)∘p) + κ(1 − |p|²)p: the last term takes back what
@@ -316,12 +337,12 @@ BOUGH_INLINE void vertex_kinematics(int n, const double *restrict state, const d
 // The balances of all vertices under the segments' forces in scratch.
 static bool balance_vertices(const bough_rod_model *m, const double *state, const double *input,
                              const bough_rod_scratch *scratch, double *restrict rate) {
-    int n = m->n, whole = n - n % BOUGH_WIDTH;
+    int n = m->n, whole = whole_vectors(n);
+    bool more = one_more_vector(n);
     for (int i = 1; i <= whole; i += BOUGH_WIDTH) vertex_kinematics(n, state, input, i, BOUGH_WIDTH, rate);
-    for (int i = whole + 1; i <= n; i++) vertex_kinematics(n, state, input, i, 1, rate);
-    for (int i = 1; i <= whole; i += BOUGH_WIDTH)
-        vertex_accelerations(m, scratch, input, i, BOUGH_WIDTH, rate);
-    for (int i = whole + 1; i <= n; i++) vertex_accelerations(m, scratch, input, i, 1, rate);
+    if (more) vertex_kinematics(n, state, input, n + 1 - BOUGH_WIDTH, BOUGH_WIDTH, rate);
+    for (int i = whole + 1; i <= n && !more; i++) vertex_kinematics(n, state, input, i, 1, rate);
+    accelerate_vertices(m, scratch, input, rate);
     double sum = 0; // NaN and infinity survive a sum of squares
     int last = BOUGH_ROD_STATES * n;
 #pragma omp simd reduction(+ : sum)

@@ -2,6 +2,7 @@
 #include "flexbody/rod/rod_kernels.h"
 #include "flexbody/rod/rod_lanes.h"
 #include "flexbody/rod/rod_tangent_layout.h"
+#include "flexbody/rod/rod_vectors.h"
 
 // (E + ξ(a))⁻¹ y = (y + a (a·y) − a×y)/(1 + |a|²)
 BOUGH_INLINE bough_vec3 solve_cross(bough_vec3 a, bough_vec3 y) {
@@ -253,18 +254,22 @@ BOUGH_INLINE void recover(const bough_rod_model *m, const bough_rod_tangent *k, 
 
 void AT(solve)(const bough_rod_model *m, bough_rod_tangent *k, double *x) {
     double *velocity = k->work + (size_t)WORK_VELOCITY * m->stride;
-    int n = m->n, whole = n - n % BOUGH_WIDTH;
+    int n = m->n, whole = whole_vectors(n), last = n + 1 - BOUGH_WIDTH;
+    bool more = one_more_vector(n);
     // M r_v + γ K A r_q
     for (int v = 1; v <= whole; v += BOUGH_WIDTH) eliminate_residual(m, k, x, v, BOUGH_WIDTH, k->work);
-    for (int v = whole + 1; v <= n; v++) eliminate_residual(m, k, x, v, 1, k->work);
+    if (more) eliminate_residual(m, k, x, last, BOUGH_WIDTH, k->work);
+    for (int v = whole + 1; v <= n && !more; v++) eliminate_residual(m, k, x, v, 1, k->work);
     segment_residual(m, k, k->work, k->force);
     for (int v = 1; v <= whole; v += BOUGH_WIDTH) velocity_residual(m, k, x, v, BOUGH_WIDTH, k->work);
-    for (int v = whole + 1; v <= n; v++) velocity_residual(m, k, x, v, 1, k->work);
+    if (more) velocity_residual(m, k, x, last, BOUGH_WIDTH, k->work);
+    for (int v = whole + 1; v <= n && !more; v++) velocity_residual(m, k, x, v, 1, k->work);
     // the block-tridiagonal system in the velocities
     pack(m->n, m->stride, velocity, k->packed);
     BOUGH_AT_LEVEL(bough_block_tridiagonal_solve)(&k->matrix, k->packed);
     unpack(m->n, m->stride, k->packed, velocity);
     // the configuration
     for (int v = 1; v <= whole; v += BOUGH_WIDTH) recover(m, k, k->work, v, BOUGH_WIDTH, x);
-    for (int v = whole + 1; v <= n; v++) recover(m, k, k->work, v, 1, x);
+    if (more) recover(m, k, k->work, last, BOUGH_WIDTH, x);
+    for (int v = whole + 1; v <= n && !more; v++) recover(m, k, k->work, v, 1, x);
 }

@@ -208,12 +208,34 @@ static void check_sized(int n_segment, bool carries) {
     bough_arena_destroy(r.arena);
 }
 
-// Segments go by eight: fewer, just as many, one more.
+// Segments go by eight: fewer, just as many, one more, some more.
 TEST(newton_solution_holds_for_any_number_of_segments) {
-    const int sizes[] = {1, 2, 7, 8, 9, 16, 17, 25};
-    for (int k = 0; k < 8; k++) {
+    const int sizes[] = {1, 2, 7, 8, 9, 10, 12, 16, 17, 25};
+    for (int k = 0; k < 10; k++) {
         check_sized(sizes[k], false);
         if (sizes[k] > 1) check_sized(sizes[k], true);
+    }
+}
+
+// Vectors of two, four and eight vertices, the last of which repeats some or is not full.
+static void check_rates(int n_segment, bool carries) {
+    sized r = build_sized(n_segment, carries);
+    int count = BOUGH_ROD_STATES * r.model->n;
+    for (bough_level level = BOUGH_LEVEL_V2; level < BOUGH_LEVEL_COUNT; level++) {
+        if (!bough_level_runs(level)) continue;
+        r.model->level = level;
+        double *rate = level == BOUGH_LEVEL_V2 ? r.rate : r.moved;
+        for (int k = 0; k < count; k++) rate[k] = NAN;
+        assert_true(bough_rod_derivative(r.model, &r.loads, 0.5, r.state, r.input, &r.scratch, rate));
+        for (int k = 0; k < count; k++) check_near(rate[k], r.rate[k], 1e-9, 1e-9);
+    }
+    bough_arena_destroy(r.arena);
+}
+
+TEST(rates_are_the_same_at_each_level_for_any_number_of_segments) {
+    for (int n = 1; n <= 25; n++) {
+        check_rates(n, false);
+        if (n > 1) check_rates(n, true);
     }
 }
 
