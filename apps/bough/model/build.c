@@ -85,6 +85,7 @@ static bough_status build_tree(bough_builder *b) {
     BOUGH_TRY(bough_tree_create(b->arena, &b->tree, &s->tree));
     s->view = bough_tree_data_create(b->arena, s->tree);
     s->acceleration = bough_arena_doubles(b->arena, s->tree->n_v);
+    s->accelerated = bough_arena_doubles(b->arena, 1);
     if (scene->n_bushing > 0) {
         bough_tree_kinematics(s->tree, s->tree->initial, s->view);
         bough_build_rest(s);

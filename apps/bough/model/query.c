@@ -9,6 +9,7 @@
 
 void bough_simulation_update(bough_simulation *s) {
     bough_tree_kinematics(s->tree, s->leader.state, s->view);
+    *s->accelerated = (double)NAN;
     for (int k = 0; k < s->n_beam; k++) {
         if (s->beam[k].ground == NULL) continue;
         const bough_frame *frame = &s->tree->markers[s->beam[k].marker];
@@ -69,7 +70,10 @@ double bough_simulation_azimuth(const bough_simulation *s, const bough_beam *bla
 }
 
 bool bough_simulation_accelerate(const bough_simulation *s, double t) {
-    return bough_tree_forward_dynamics(s->tree, s->view, t, s->master->coupling->input, s->acceleration);
+    if (*s->accelerated == t) return true;
+    bool good = bough_tree_forward_dynamics(s->tree, s->view, t, s->master->coupling->input, s->acceleration);
+    *s->accelerated = good ? t : (double)NAN;
+    return good;
 }
 
 // A - g in the axes of a frame, which may stand on the ground.

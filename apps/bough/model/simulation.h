@@ -39,6 +39,7 @@ typedef struct bough_simulation {
     bough_tree *tree;
     bough_tree_data *view; // for queries between steps
     double *acceleration;  // of the tree (n_v), scratch of queries
+    double *accelerated;   // (1) time for which `view` has its links' accelerations [s]; NAN: none
     bough_member leader;
     int first_marker; // of the tree, the first of those that the scene names
     int n_beam;
@@ -148,8 +149,8 @@ typedef struct bough_sharpest {
 // Of a rod the largest rotation between the sections at both ends of a segment.
 bough_sharpest bough_simulation_bend(const bough_simulation *s, const bough_beam *beam);
 
-// Accelerations of the tree's links under the rods' present forces, into s->view; false as
-// bough_tree_forward_dynamics.
+// Accelerations of the tree's links under the rods' present forces, into s->view, where they stay until
+// bough_simulation_update; false as bough_tree_forward_dynamics.
 bool bough_simulation_accelerate(const bough_simulation *s, double t);
 
 // The wrench of a rod on its carrier, in the body's axes at its origin, and behind it the wrench of its end

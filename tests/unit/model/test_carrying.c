@@ -28,6 +28,26 @@ static void run(bough_simulation *s) {
     while (!bough_master_done(s->master)) scene_step(s);
 }
 
+// -- accelerations between steps ------------------------------------------------------------------
+
+// At one time they are found once, and again after an update, then under the forces of that moment.
+TEST(accelerations_stay_until_the_next_update) {
+    check_arena(arena);
+    bough_simulation *s = scene_build(arena, tip_weight, no_sets);
+    for (int k = 0; k < 3; k++) scene_step(s);
+    double t = s->master->time, *force = s->master->coupling->input;
+    bough_simulation_update(s);
+    assert_true(bough_simulation_accelerate(s, t));
+    int link = s->tree->bodies[1].link;
+    bough_vec3 before = s->view->acceleration[link].linear;
+    for (int j = 0; j < s->master->assembly->n_input; j++) force[j] += 1;
+    assert_true(bough_simulation_accelerate(s, t));
+    assert_memory_equal(&s->view->acceleration[link].linear, &before, sizeof before);
+    bough_simulation_update(s);
+    assert_true(bough_simulation_accelerate(s, t));
+    assert_true(bough_norm(bough_sub(s->view->acceleration[link].linear, before)) > 1);
+}
+
 // -- a weight at the end of a cantilever ----------------------------------------------------------
 
 static const double length = 2, bending = 1000, shear = 1e5, mass = 0.05, arm = 0.1, turning = 2e-3;
