@@ -264,6 +264,7 @@ void bough_companion_compare(bough_companion *c) {
     } else if (c->coarser.simulation->master->time == c->run->master->time && counts_now(c, c->run)) {
         compare(c);
         watch(c);
+        bough_channels_know(c->channels, c->value);
     }
 }
 

@@ -102,7 +102,8 @@ bool bough_companion_due(const bough_companion *c);
 // A macro step of its own, of two of the run's, or two in one of the run's. It touches nothing of the run.
 void bough_companion_step(bough_companion *c);
 
-// After a step of the run: compares the two if they are at one time. Changes no result.
+// After a step of the run: compares the two if they are at one time; the run's channels are then known
+// (bough_channels_know). Changes no result.
 void bough_companion_compare(bough_companion *c);
 
 // Whether `value` and `other` are of the present time of the run, at which the companion's loads are sampled.

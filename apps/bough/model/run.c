@@ -108,6 +108,7 @@ static void finish_step(bough_run *run) {
     if (bough_is_ok(&run->outcome)) run->outcome = bough_validity_check_closed(run->simulation);
     if (bough_is_ok(&run->outcome)) bough_validity_check_work(run->simulation, steps_of(run->simulation));
     if (bough_is_ok(&run->outcome)) run->outcome = record_due(run);
+    bough_channels_know(&run->channels, NULL);
 }
 
 // Up to `until`, at least one; the last is not finished, since the companion's results come first.

@@ -52,7 +52,8 @@ typedef struct bough_channels {
     int count, capacity;
     int *slot; // (2 capacity) channels by the hash of their names: index + 1, 0 where there is none
     int group_count, group_capacity;
-    bough_status status; // BOUGH_INVALID where a name is not possible
+    const double **known; // (1) values at present, which copies of the list share; NULL: the groups are asked
+    bough_status status;  // BOUGH_INVALID where a name is not possible
 } bough_channels;
 
 // An empty list whose memory is the arena's.
@@ -87,7 +88,11 @@ bool bough_channels_match(const bough_channels *list, const char *pattern);
 void bough_channels_choose(const bough_channels *all, int n, const char *const *pattern,
                            bough_channels *chosen);
 
-// Asks every group: value (count).
+// Until the next call these are the values (count) of the list, of its copies and of what is chosen from it,
+// so that nobody evaluates them twice; NULL: none are known.
+void bough_channels_know(const bough_channels *list, const double *value);
+
+// Asks every group where no values are known: value (count).
 void bough_channels_sample(const bough_channels *list, double t, double *value);
 
 #endif

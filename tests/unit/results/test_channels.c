@@ -35,6 +35,30 @@ TEST(groups_fill_their_own_channels) {
     check_near(value[3], 7, 0, 0);
 }
 
+TEST(known_values_are_those_of_copies_and_choices) {
+    check_arena(arena);
+    static const char *const pattern[] = {"RotSpeed"};
+    const double known[3] = {4, 5, 6};
+    bough_channels list = bough_channels_start(arena), copy, chosen;
+    double factor[3] = {1, 2, 3}, value[3];
+    bough_channels_group(&list, sample_times, factor);
+    bough_channels_add(&list, "m", "OoPDefl1");
+    bough_channels_add(&list, "m", "IPDefl1");
+    bough_channels_add(&list, "rpm", "RotSpeed");
+    bough_channels_choose(&list, 0, NULL, &copy);
+    bough_channels_choose(&list, 1, pattern, &chosen);
+    bough_channels_know(&copy, known);
+    bough_channels_sample(&list, 10, value);
+    assert_memory_equal(value, known, sizeof known);
+    bough_channels_sample(&chosen, 10, value);
+    check_near(value[0], 6, 0, 0);
+    bough_channels_know(&list, NULL);
+    bough_channels_sample(&copy, 10, value);
+    check_near(value[1], 20, 0, 0);
+    bough_channels_sample(&chosen, 10, value);
+    check_near(value[0], 30, 0, 0);
+}
+
 TEST(an_empty_group_is_not_asked) {
     check_arena(arena);
     bough_channels list = bough_channels_start(arena);
