@@ -227,9 +227,9 @@ bough_status bough_simulation_build(bough_arena *arena, const bough_scene *scene
     return bough_simulation_build_on(arena, scene, bough_pool_create(arena, threads), simulation);
 }
 
-bough_status bough_simulation_build_on(bough_arena *arena, const bough_scene *scene, bough_pool *pool,
-                                       bough_simulation **simulation) {
-    bough_builder b = {.arena = arena, .scene = scene};
+static bough_status build(bough_arena *arena, const bough_scene *scene, bough_pool *pool,
+                          const bough_simulation *beside, bough_simulation **simulation) {
+    bough_builder b = {.arena = arena, .scene = scene, .beside = beside};
     take_arrays(&b);
     b.s->pool = pool;
     BOUGH_TRY(bough_build_bodies(&b));
@@ -250,6 +250,16 @@ bough_status bough_simulation_build_on(bough_arena *arena, const bough_scene *sc
     bough_validity_start(b.s);
     *simulation = b.s;
     return bough_ok();
+}
+
+bough_status bough_simulation_build_on(bough_arena *arena, const bough_scene *scene, bough_pool *pool,
+                                       bough_simulation **simulation) {
+    return build(arena, scene, pool, NULL, simulation);
+}
+
+bough_status bough_simulation_build_beside(bough_arena *arena, const bough_scene *scene,
+                                           const bough_simulation *other, bough_simulation **simulation) {
+    return build(arena, scene, other->pool, other, simulation);
 }
 
 // -- what the parts of a simulation remember, in order --------------------------------------------

@@ -94,15 +94,21 @@ static bool equal_structures(const bough_scene_structure *x, const bough_scene_s
     return equal;
 }
 
-// Equal beams, such as the blades of a rotor, have one mesh.
-static const bough_beam *equal_beam(const bough_builder *b, const bough_beam *beam) {
+// One of the first n beams of a simulation with that beam's mesh.
+static const bough_beam *equal_in(const bough_simulation *s, int n, const bough_beam *beam) {
     const bough_scene_rod *rod = &beam->body->rod;
-    for (const bough_beam *other = b->s->beam; other < beam; other++) {
+    for (const bough_beam *other = s->beam; other < s->beam + n; other++) {
         const bough_scene_rod *its = &other->body->rod;
         bool equal = its->n_segment == rod->n_segment && its->grading == rod->grading;
         if (equal && equal_structures(&its->structure, &rod->structure)) return other;
     }
     return NULL;
+}
+
+// Equal beams, such as the blades of a rotor, have one mesh.
+static const bough_beam *equal_beam(const bough_builder *b, const bough_beam *beam) {
+    const bough_beam *equal = equal_in(b->s, b->s->n_beam, beam);
+    return equal || !b->beside ? equal : equal_in(b->beside, b->beside->n_beam, beam);
 }
 
 static bough_status discretise(bough_builder *b, bough_beam *beam) {

@@ -56,15 +56,16 @@ typedef struct bough_builder {
     bough_arena *arena;
     const bough_scene *scene;
     bough_simulation *s;
-    bough_tree_def tree;           // of the arrays down to `load`
-    bough_body_def *body;          // (n_body + n_end): the tree's body i is the scene's body i; after
-                                   // them what each carrying rod ends in
-    bough_end_def *end;            // (n_end)
-    bough_marker_def *marker;      // (tree.n_markers), those of the beams first, then of the FMUs
-    bough_port_def *port;          // (n_rod + n_fmu)
-    bough_joint_load_def *load;    // (tree.n_loads): those on joints
-    bough_assembly_member *member; // leader, then rods
-    bough_connection *connection;  // two per rod, two more of one that carries bodies
+    const bough_simulation *beside; // NULL, or one whose meshes serve where rods are equal
+    bough_tree_def tree;            // of the arrays down to `load`
+    bough_body_def *body;           // (n_body + n_end): the tree's body i is the scene's body i; after
+                                    // them what each carrying rod ends in
+    bough_end_def *end;             // (n_end)
+    bough_marker_def *marker;       // (tree.n_markers), those of the beams first, then of the FMUs
+    bough_port_def *port;           // (n_rod + n_fmu)
+    bough_joint_load_def *load;     // (tree.n_loads): those on joints
+    bough_assembly_member *member;  // leader, then rods
+    bough_connection *connection;   // two per rod, two more of one that carries bodies
     int n_connection;
     double *event; // (n_event) corners of loads and of the aerodynamics
     int n_event, event_room;

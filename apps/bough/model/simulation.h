@@ -191,4 +191,9 @@ bough_status bough_simulation_build(bough_arena *arena, const bough_scene *scene
 bough_status bough_simulation_build_on(bough_arena *arena, const bough_scene *scene, bough_pool *pool,
                                        bough_simulation **simulation);
 
+// The same beside another one that outlives it: with its pool, and with the meshes of its rods where they are
+// equal.
+bough_status bough_simulation_build_beside(bough_arena *arena, const bough_scene *scene,
+                                           const bough_simulation *other, bough_simulation **simulation);
+
 #endif

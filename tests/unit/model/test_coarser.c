@@ -20,6 +20,21 @@ static coarser coarser_of(bough_arena *arena, const char *path, const char *firs
     return (coarser){scene, bough_coarser_scene(arena, scene, BOUGH_COARSER_ALL)};
 }
 
+// What is equal has been discretised before.
+TEST(another_run_takes_the_meshes_that_are_equal) {
+    check_arena(arena);
+    static const char *const none[] = {NULL};
+    const bough_simulation *run = scene_build(arena, runup, none);
+    bough_other_run finer, coarse;
+    check_ok(bough_other_run_build(arena, run, BOUGH_FINEST_TIME, &finer));
+    check_ok(bough_other_run_build(arena, run, BOUGH_COARSER_ALL, &coarse));
+    for (int k = 0; k < run->n_beam; k++) {
+        assert_ptr_equal(finer.simulation->beam[k].def.position, run->beam[k].def.position);
+        assert_ptr_not_equal(finer.simulation->beam[k].mesh, run->beam[k].mesh);
+        assert_int_equal(coarse.simulation->beam[k].def.n_segment, 12);
+    }
+}
+
 TEST(a_scene_is_coarser_in_everything) {
     check_arena(arena);
     coarser x = coarser_of(arena, stages, NULL, NULL);
