@@ -78,6 +78,7 @@ static void swap(double **x, double **y) {
 
 double bough_accelerator_take(bough_accelerator *a, const double *u, const double *image) {
     int n = a->def.n;
+    // the last evaluation becomes the one before
     swap(&a->residual, &a->residual_before);
     swap(&a->image, &a->image_before);
     memcpy(a->image, image, (size_t)n * sizeof(double));
@@ -86,6 +87,7 @@ double bough_accelerator_take(bough_accelerator *a, const double *u, const doubl
     a->norm[0] = sqrt(bough_scalar_product(n, a->residual, a->residual));
     a->smallest = fmin(a->smallest, a->norm[0]);
     a->evaluations++;
+    // Newton's correction is the residual of the iteration that is accelerated
     if (a->def.kind == BOUGH_ACCELERATE_NEWTON) {
         a->def.solve(a->def.self, a->residual);
         for (int i = 0; i < n; i++) a->image[i] = u[i] + a->residual[i];
@@ -186,6 +188,7 @@ void bough_accelerator_next(bough_accelerator *a, double *u) {
         update_factor(a);
         factor = a->factor;
     }
+    // quasi-Newton from the second iteration on
     if (a->capacity > 0 && a->evaluations > 1) {
         insert_column(a);
         solve_least_squares(a, u);

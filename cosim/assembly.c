@@ -19,6 +19,7 @@ static void take_members(bough_assembly *a, bough_arena *arena, const bough_asse
     a->order = bough_arena_take(arena, n * sizeof(int));
     a->leads = bough_arena_take(arena, n * sizeof(bool));
     a->by_role = bough_arena_take(arena, n * sizeof(int));
+    // each begins where the one before ends
     for (int i = 0; i < def->n_member; i++) {
         a->member[i] = def->member[i].member;
         const bough_system *s = &a->member[i]->system;

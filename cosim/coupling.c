@@ -214,6 +214,7 @@ bough_status bough_coupling_advance_leaders(bough_coupling *c, int level, bool r
 
 // -- signals --------------------------------------------------------------------------------------
 
+// The cubic begins at the input obtained last.
 void bough_coupling_interpolate(bough_coupling *c, int j) {
     const bough_output_curve *from = &c->advanced;
     int source = c->assembly->source[j], member = c->assembly->receiver[j];

@@ -132,6 +132,7 @@ void bough_member_set(bough_member *m, double t, const double *state) {
 
 void bough_member_snapshot(bough_member *m, bough_snapshot *s) {
     const bough_integrator_ops *ops = m->integrator.ops;
+    // without the method's own memory it starts anew
     bool kept = ops != NULL && ops->transfer != NULL, started = m->started && kept;
     bough_snapshot_take(s, &m->time, sizeof m->time);
     bough_snapshot_take(s, &started, sizeof started);

@@ -71,6 +71,7 @@ const bough_scheme *bough_scheme_advised(void) {
     return schemes[i];
 }
 
+// The advised scheme in the form that it calls its most damped.
 bough_scheme_options bough_scheme_damped(const bough_scheme_options *options) {
     const bough_scheme *advised = bough_scheme_advised();
     bough_scheme_options damped = *options;
@@ -185,6 +186,7 @@ void bough_scheme_load(bough_coupling *c, double h, const double *z) {
     c->t1 = 0;
 }
 
+// As bough_scheme_load, the other way.
 void bough_scheme_store(const bough_coupling *c, double *z) {
     const bough_assembly *a = c->assembly;
     double *row[4];

@@ -239,6 +239,7 @@ void bough_whole_close(bough_whole *whole, double *change) {
     bough_interface_solve(whole->interface, change);
 }
 
+// Member by member; most have nothing to take out.
 void bough_whole_project(const bough_whole *whole, const double *state, double *x) {
     const bough_assembly *a = whole->assembly;
     for (int i = 0; i < a->n_member; i++) {

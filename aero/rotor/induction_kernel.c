@@ -77,6 +77,7 @@ BOUGH_INLINE void weigh_all(bough_high_thrust high_thrust, bool brake, bool skew
     for (int g = 0; g < x->n_live; g++) weigh(high_thrust, brake, skewed, o, x->live[g], x);
 }
 
+// The options become constants of the loops.
 BOUGH_INLINE void weigh_in(bool brake, lanes *restrict x) {
     if (x->options->high_thrust == BOUGH_HIGH_THRUST_BUHL) {
         weigh_all(BOUGH_HIGH_THRUST_BUHL, brake, false, x);
@@ -218,6 +219,7 @@ static void surround_guess(lanes *restrict x) {
 // brake state, and what is left.
 enum { INTERVALS = 4, BEYOND = 1, BRAKE = 2 };
 
+// Sets the angles of all elements to one end of an interval.
 static void go_to_end(int interval, int end, lanes *restrict x) {
     for (int i = 0; i < x->n; i++) {
         double middle = x->free_angle[i];

@@ -53,6 +53,7 @@ static bough_status build(bough_arena *arena, const bough_wind_def *def, bough_w
     if (def->source == BOUGH_WIND_STANDARD) return make_standard(arena, wind);
     if (def->source == BOUGH_WIND_HUB_FILE) return read_hub(arena, wind);
     if (def->source == BOUGH_WIND_BOX_FILE) return read_box(arena, wind);
+    // a formula, and its table of speeds
     if (def->shear == BOUGH_WIND_LOG) {
         assert(def->roughness > 0 && def->roughness < def->reference_height);
         wind->shear_scale = 1 / log(def->reference_height / def->roughness);

@@ -131,6 +131,7 @@ static void set_amplitudes(maker *m, int component) {
 
 // -- coherence ------------------------------------------------------------------------------------
 
+// Distances on a grid of equal steps are few: one for each difference of rows and of columns.
 static void set_distances(maker *m) {
     int n = m->def->points;
     for (int z = 0; z < n; z++) {
@@ -215,6 +216,7 @@ static void set_waves(maker *m, int component, int point) {
     const double *restrict amplitude = amplitude_of(m, component);
     int n = m->n_wave, mixed = component == 0 ? m->n_coherent : 0;
     a[0] = a[1] = a[2 * n + 2] = a[2 * n + 3] = 0;
+    // coherent waves first, then those of the point alone
     for (int i = 1; i <= mixed; i++) {
         const double *from = m->mixed + 2 * ((size_t)m->n_point * (size_t)(i - 1) + (size_t)point);
         a[2 * i] = from[0];
@@ -356,6 +358,7 @@ static bough_status make_in(bough_arena *scratch, maker *m) {
     m->pair = bough_arena_take(scratch, n * n * sizeof *m->pair);
     m->series = bough_arena_take(scratch, 3 * BATCH * (size_t)m->box->n_time * sizeof *m->series);
     place *places = bough_arena_take(scratch, n * sizeof *places);
+    // amplitudes by the spectra, phases mixed by the coherence, series by Fourier transforms
     make_plan(scratch, m);
     set_order(m, places);
     for (int c = 0; c < 3; c++) set_amplitudes(m, c);

@@ -143,6 +143,7 @@ void *bough_arena_copy(bough_arena *arena, const void *from, size_t size) {
 }
 
 char *bough_arena_print(bough_arena *arena, const char *format, ...) {
+    // once for the length, once for the text
     va_list arguments, again;
     va_start(arguments, format);
     va_copy(again, arguments);

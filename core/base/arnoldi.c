@@ -8,6 +8,7 @@
 static const double dependent = 1e-13; // norm outside the basis, relative to the whole: below it, dependent
 static const double cancelled = 0.1;   // the same of one vector outside those beside it: another pass
 
+// All memory is taken here.
 void bough_arnoldi_create(bough_arena *arena, int length, int capacity, int at_once, bough_arnoldi *a) {
     size_t n = (size_t)length, m = (size_t)capacity;
     a->length = length;

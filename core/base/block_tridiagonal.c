@@ -29,6 +29,7 @@ void bough_block_tridiagonal_subtract(const bough_block_tridiagonal *m, const do
     }
 }
 
+// The kernels' products of single blocks, for others.
 void bough_block_product(const double *a, const double *b, double *c) { product(a, b, c); }
 
 void bough_block_subtract(const double *a, const double *x, double *y) { subtract_matvec(a, x, y); }

@@ -56,6 +56,7 @@ void bough_linalg_choose_kernels(void) {
     const char *fitting = bough_level_runs(BOUGH_LEVEL_V4)   ? "SkylakeX"
                           : bough_level_runs(BOUGH_LEVEL_V3) ? "Haswell"
                                                              : NULL;
+    // only a library that chooses its kernels as it starts, and takes those for Prescott
     bool chooses = gotoblas_corename && gotoblas_dynamic_quit && gotoblas_dynamic_init;
     if (!fitting || !chooses || strcmp(gotoblas_corename(), "Prescott") != 0) return;
     gotoblas_dynamic_quit();
@@ -163,6 +164,7 @@ bool bough_dense_factor(int n, double *a, int *pivot) {
     if (n == 0) return true;
     if (!finite_matrix(n, a)) return false;
     if (n <= SMALL) return factor_small(n, a, pivot);
+    // by the library, on one thread
     prepare();
     int info = 0;
     dgetrf_(&n, &n, a, &n, pivot, &info);

@@ -114,6 +114,7 @@ static void multiply_transposed(const bough_product *p, const double *a, const d
         for (int j = 0; j < p->n; j += TWO) {
             int both = p->n - j < TWO ? 1 : TWO;
             dot(p->k, some, b + (size_t)j * k, b + (size_t)(j + both - 1) * k, sum);
+            // entry (i + q % count, j + q / count) of c
             for (int q = 0; q < both * count; q++) {
                 double *to = c + (size_t)(j + q / count) * m + (size_t)(i + q % count);
                 double before = p->keep != 0 ? p->keep * *to : 0;

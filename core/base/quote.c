@@ -9,6 +9,7 @@ static int character_length(const unsigned char *text) {
                  : text[0] < 0xF0 ? 3
                  : text[0] < 0xF5 ? 4
                                   : 0;
+    // its further bytes
     for (int i = 1; i < length; i++) {
         if ((text[i] & 0xC0) != 0x80) return 0;
     }

@@ -89,14 +89,15 @@ static bool balance(alpha *m, double t, const double *restrict y, double h) {
 static double correct(alpha *m, double h) {
     double *restrict next = m->next, *restrict next_rate = m->next_rate;
     const double *restrict step = m->residual, *restrict weight = m->weight;
-    double inverse = 1 / m->am, share = m->gamma * h, sum = 0;
+    double inverse = 1 / m->am, step_factor = m->gamma * h, sum = 0;
 #pragma omp simd reduction(+ : sum)
     for (int i = 0; i < m->ode.n; i++) {
         double d = inverse * step[i];
         next_rate[i] += d;
-        next[i] += share * d;
-        double part = share * d * weight[i];
-        sum += part * part;
+        // Newmark's relation: y₁ follows ẏ₁ by γh
+        next[i] += step_factor * d;
+        double relative = step_factor * d * weight[i];
+        sum += relative * relative;
     }
     return sqrt(sum / m->ode.n);
 }

@@ -19,6 +19,7 @@ typedef struct stretch {
 
 static v3 velocity(const stretch *x, int end) { return bough_mat3_mul(x->r[end], x->v[end].linear); }
 
+// Length, direction, their rate and the tension of a spring.
 static stretch stretch_of(const bough_tree *tree, const bough_tree_data *d, int spring) {
     const bough_spring_def *s = &tree->springs[spring];
     stretch x;
@@ -98,6 +99,7 @@ typedef struct relative {
     v3 v_second, w_second, w_own; // velocities of the second, angular velocity of the first
 } relative;
 
+// The second marker's pose and velocities seen from the first marker.
 static relative relative_of(const bough_tree *tree, const bough_tree_data *d, const bough_bushing_def *b) {
     const bough_frame *first = &tree->markers[b->marker[0]], *second = &tree->markers[b->marker[1]];
     bough_transform back = bough_transform_inverse(bough_tree_frame_pose(d, first));

@@ -112,6 +112,7 @@ static void rotate_plane(double angle, const double *x, double *rotated) {
     rotated[1] = s * x[0] + c * x[1];
 }
 
+// Slides, then the rotation.
 void bough_joint_rate(const bough_joint *joint, const double *q, const double *v, double *rate) {
     int n = slides_of(joint);
     if (n == 1) rate[0] = v[0];

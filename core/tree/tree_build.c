@@ -16,6 +16,7 @@ static bough_status check_place(const char *what, const char *name, bough_vec3 x
     return bough_fail(BOUGH_INVALID, "%s '%s': its position is not finite", what, name);
 }
 
+// Of joints and markers.
 static bough_status check_places(const bough_tree_def *def) {
     for (int b = 0; b < def->n_bodies; b++) {
         const bough_body_def *body = &def->bodies[b];

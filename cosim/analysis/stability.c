@@ -287,6 +287,7 @@ static bough_status judge(bough_arena *arena, void *self) {
     m->arena = arena;
     bough_status status = build(m, m->real, m->options);
     if (bough_is_ok(&status)) status = start(m);
+    // two more vectors at a time, until the largest eigenvalue is known or the space is whole
     for (int wanted = 2; bough_is_ok(&status) && wanted <= DIMENSION; wanted += 2) {
         bough_arnoldi *space = &m->arnoldi;
         m->before = space->done;

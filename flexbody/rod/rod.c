@@ -6,6 +6,7 @@
 
 #include <string.h>
 
+// Arrays over segments and vertices.
 static void take_arrays(bough_rod_model *m, bough_arena *arena) {
     size_t s = (size_t)m->stride;
     bough_arena_each(arena, s, &m->length, &m->inverse_length, &m->mass);
@@ -51,6 +52,7 @@ static void set_gradient(bough_rod_model *m, const bough_rod_def *def, int n, co
     for (int k = 0; k < 10 && def->bow != NULL; k++) gradient[(25 + k) * BOUGH_LANES] = def->bow[10 * n + k];
 }
 
+// Segment n of the model; refuses one without length or stiffness, or that is too coarse.
 static bough_status set_segment(bough_rod_model *m, const bough_rod_def *def, int n) {
     int s = m->stride;
     double h = def->span[n + 1] - def->span[n], compliance[21];
@@ -172,6 +174,7 @@ void bough_rod_scratch_init(bough_rod_scratch *scratch, bough_arena *arena, cons
 }
 
 void bough_rod_loads_init(bough_rod_loads *loads, bough_arena *arena, const bough_rod_model *model) {
+    // on vertices: sampled, and following their motion
     loads->start = 0;
     loads->value = bough_rod_vertex_rows(arena, model, 6);
     loads->rate = bough_rod_vertex_rows(arena, model, 6);
@@ -179,6 +182,7 @@ void bough_rod_loads_init(bough_rod_loads *loads, bough_arena *arena, const boug
     loads->damped = false;
     loads->slope = bough_rod_vertex_rows(arena, model, 12);
     loads->angle = bough_rod_vertex_rows(arena, model, 4);
+    // along segments, and on schedules: none so far
     loads->rest = bough_arena_doubles(arena, 6 * (size_t)model->stride);
     loads->rest_rate = bough_arena_doubles(arena, 6 * (size_t)model->stride);
     loads->moving = false;
@@ -223,6 +227,7 @@ void bough_rod_loads_along(const bough_rod_model *m, const double *line, const d
     for (int k = 0; k < 6 * m->stride; k++) rest[k] += strain0[k];
 }
 
+// Of the ramped loads; sampled ones are dead.
 bool bough_rod_loads_follow(const bough_rod_loads *loads) {
     for (const bough_rod_ramped_load *l = loads->ramped; l != NULL; l = l->next) {
         if (l->follower) return true;

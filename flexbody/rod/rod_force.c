@@ -64,6 +64,7 @@ void bough_rod_present_end_wrench(const bough_rod_model *m, const bough_rod_scra
 // By the balance of the segment's left half: pretwist and curvature make it differ a little from what
 // the strains are conjugate to.
 void bough_rod_stress(const bough_rod_model *m, const bough_rod_scratch *scratch, int n, double stress[6]) {
+    // the stress that the strains are conjugate to
     segment_geometry shape = shape_at(m, scratch, n);
     strain e = elastic_strain(shape, m->inverse_length[n], scratch->rest, m->stride, n);
     strain s = segment_stress(bough_rod_tile(m->stiffness, 21, n), bough_rod_tile(m->gradient, 35, n),

@@ -18,6 +18,7 @@ static void set_shares(const bough_rod_model *m, const bough_eigen_pair *pair, b
         for (int c = 0; c < 3; c++) mode->share[c] += v->mass * square_of(pair, BOUGH_COLUMN * i + c);
         mode->share[BOUGH_ROD_TORSION] += v->inertia[2] * square_of(pair, BOUGH_COLUMN * i + 5);
     }
+    // as parts of their sum
     for (int c = 0; c < BOUGH_ROD_DIRECTIONS; c++) sum += mode->share[c];
     for (int c = 0; c < BOUGH_ROD_DIRECTIONS; c++) {
         mode->share[c] /= sum;
@@ -69,6 +70,7 @@ static void set_shape(const bough_rod_model *m, const bough_eigen_pair *pair, co
 
 static void fill_mode(bough_arena *arena, const bough_rod_model *m, const bough_eigen_pair *pair,
                       const double *state, bough_rod_mode *mode) {
+    // frequency and damping of λ
     double modulus = hypot(pair->real, pair->imaginary), ratio = -pair->real / modulus;
     *mode = (bough_rod_mode){.frequency = modulus / (2 * BOUGH_PI),
                              .damped_frequency = pair->imaginary / (2 * BOUGH_PI),

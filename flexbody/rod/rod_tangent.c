@@ -12,6 +12,7 @@ static void blocks_init(bough_rod_blocks *b, bough_arena *arena, const bough_rod
     bough_block_tridiagonal_init(&b->velocity, arena, m->n);
 }
 
+// Rows over vertices begin a vector register at vertex 1.
 void bough_rod_tangent_init(bough_rod_tangent *k, bough_arena *arena, const bough_rod_model *m) {
     size_t s = (size_t)m->stride;
     k->variation = bough_arena_doubles(arena, TANGENTS * s);
@@ -104,6 +105,7 @@ void bough_rod_linear_damping(const bough_rod_model *m, const bough_rod_blocks *
         damping->lower[j] = -blocks->velocity.lower[j];
         damping->upper[j] = -blocks->velocity.upper[j];
     }
+    // on it M B, too
     for (int i = 0; i < m->n; i++) {
         double b[BOUGH_BLOCK], product[BOUGH_BLOCK];
         size_t at = (size_t)i * BOUGH_BLOCK;
