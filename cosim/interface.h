@@ -88,9 +88,8 @@ void bough_interface_solve_member(const bough_interface *k, int member, double *
 bool bough_interface_close(bough_interface *k);
 
 // Solves the interface: w into `coordinate`, and all changes of inputs into change (n_input). Before the
-// call, `coordinate` holds r of (I − γJ) x = r for leaders by states, and the changes of their inputs that do
-// not come from the leaders for leaders by inputs; `change` holds the changes of all inputs without the
-// leaders' response to their own inputs.
+// call, `coordinate` holds r of (I − γJ) x = r for leaders by states and 0 for leaders by inputs; `change`
+// holds the changes of all inputs without what the coordinates add to them.
 void bough_interface_solve(bough_interface *k, double *change);
 
 // Adds to x (n_state of the member) its response to the coordinates. A follower whose directions are its own
