@@ -194,6 +194,27 @@ bough_status bough_simulation_equilibrium(bough_simulation *s, const bough_assem
     return find_any(false, s, assembly, time, work);
 }
 
+// From the present state by long steps, else as from anywhere.
+static bough_status find_from_here(bough_arena *arena, void *data) {
+    continuation *c = data;
+    double *start = c->state = bough_arena_doubles(arena, (size_t)c->assembly->n_state + 1);
+    bough_assembly_states(c->assembly, start);
+    c->started = true;
+    bough_status status = find_stiffened(arena, c);
+    if (bough_is_ok(&status)) return status; // else `start` is as it was
+    bough_equilibrium_set_state(c->simulation, c->assembly, start);
+    c->started = false;
+    *c->work = (bough_equilibrium_work){0};
+    return find_equilibrium(arena, c);
+}
+
+bough_status bough_simulation_equilibrium_near(bough_simulation *s, const bough_assembly *assembly,
+                                               double time, bough_equilibrium_work *work) {
+    continuation c = {.simulation = s, .assembly = assembly, .time = time, .work = work};
+    *work = (bough_equilibrium_work){0};
+    return bough_arena_use(find_from_here, &c);
+}
+
 bough_status bough_simulation_any_equilibrium(bough_simulation *s, const bough_assembly *assembly,
                                               double time, bough_equilibrium_work *work) {
     return find_any(true, s, assembly, time, work);

@@ -31,6 +31,10 @@ double bough_equilibrium_time(const bough_simulation *s);
 bough_status bough_simulation_equilibrium(bough_simulation *s, const bough_assembly *assembly, double time,
                                           bough_equilibrium_work *work);
 
+// The same, from a state that is near it: faster.
+bough_status bough_simulation_equilibrium_near(bough_simulation *s, const bough_assembly *assembly,
+                                               double time, bough_equilibrium_work *work);
+
 // The same, where an unstable equilibrium is better than none.
 bough_status bough_simulation_any_equilibrium(bough_simulation *s, const bough_assembly *assembly,
                                               double time, bough_equilibrium_work *work);
