@@ -143,6 +143,10 @@ modes() {
     expect 0 modes "$blade" --set 'modes={of: scene, count: 2}' --set 'bodies[0].rod.segments=4' --sensitivity 1 --out depends
     has depends/modes.json '"name": "[^"]*: bending stiffness about [xy]"'
     rm -r depends
+    expect 0 modes "$folder/apps/iea22/rotor.yaml" --set 'modes={of: scene, air: dynamic, count: 3}' \
+        --set 'bodies[3-5].rod.segments=6' --out inexact
+    has ../stdout '^not compared with half the segments: mode 1'
+    rm -r inexact
     expect 0 modes "$beam" --set 'loads=[{body: beam, at: tip, force: [0, 0, -3 kN], frame: follower}]'
     has ../stdout '^unstable beam: mode [23] grows at '
     rm -r out turning

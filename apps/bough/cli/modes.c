@@ -246,15 +246,24 @@ static void print_azimuths(const bough_vibration *v) {
     for (int k = 0; k < v->found; k++) most = fmax(most, v->mode[k].frequency_change);
     printf("over the azimuths no frequency changes by more than %.2g %%\n", 100 * most);
     print_numbers(
-        "warning: over the azimuths the damping changes by as much as itself, or by nobody knows what: mode",
+        "warning: over the azimuths the damping changes by as much as itself, or it is not known by how much: mode",
         v, is_of_azimuth);
 }
 
+static bool is_not_compared(const bough_scene_mode *mode) { return isnan(mode->moved); }
+
 static void print_mesh(const bough_vibration *v) {
     double most = 0;
-    for (int k = 0; k < v->found; k++) most = fmax(most, v->mode[k].moved);
-    if (!print_numbers("warning: changed by more than 1 % with half the segments: mode", v, is_moved))
+    int compared = 0;
+    for (int k = 0; k < v->found; k++) {
+        compared += !is_not_compared(&v->mode[k]);
+        most = fmax(most, v->mode[k].moved);
+    }
+    bool changed =
+        print_numbers("warning: changed by more than 1 % with half the segments: mode", v, is_moved);
+    if (!changed && compared > 0)
         printf("no mode changes by more than %.2g %% with half the segments\n", 100 * most);
+    print_numbers("not compared with half the segments: mode", v, is_not_compared);
 }
 
 static void print_modes(const bough_simulation *s, const bough_vibration *v) {
