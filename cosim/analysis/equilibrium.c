@@ -83,6 +83,15 @@ static bool is_found(const search *s, double longest, double change, double befo
     return isfinite(before) && change * ratio / (1 - ratio) < s->def->tolerance;
 }
 
+// Takes the motion out of the state after a step; with a kinetic energy, once that falls below the one
+// `before`. Theory (110).
+static void rest(const bough_equilibrium_def *def, double *before, double *state) {
+    double now = def->kinetic ? def->kinetic(def->self, state) : 0;
+    bool falls = def->kinetic == NULL || now < *before;
+    if (falls && def->rest) def->rest(def->self, state);
+    *before = falls ? 0 : now;
+}
+
 bough_status bough_equilibrium_find(bough_arena *arena, bough_whole *whole, const bough_equilibrium_def *def,
                                     double *state, bough_equilibrium_report *report) {
     const bough_assembly *a = whole->assembly;
@@ -91,6 +100,7 @@ bough_status bough_equilibrium_find(bough_arena *arena, bough_whole *whole, cons
     take(&s, arena);
     bough_assembly_scales(a, s.scale);
     double most = growth, before = INFINITY, taken = INFINITY, longest = BOUGH_EQUILIBRIUM_LONGEST;
+    double kinetic = 0;
     while (report->steps < def->steps && s.gamma > def->least && find_rate(&s, state)) {
         double contraction = step(&s, state, report);
         bool last = s.gamma >= longest, near = report->change < rounding;
@@ -108,7 +118,7 @@ bough_status bough_equilibrium_find(bough_arena *arena, bough_whole *whole, cons
         if (refused) continue;
         taken = report->change;
         move(&s, s.trial, s.second, state);
-        if (def->rest) def->rest(def->self, state);
+        rest(def, &kinetic, state);
     }
     return bough_fail(BOUGH_FAILED, "no equilibrium found in %d steps", report->steps);
 }

@@ -21,6 +21,9 @@ typedef struct bough_equilibrium_def {
     // Takes the motion that is not part of the equilibrium out of a state, after each step; NULL:
     // none.
     void (*rest)(void *self, double *state);
+    // Twice the kinetic energy of a state [J]. With it, states come to rest only after steps in which it
+    // falls: light bodies then follow heavy ones, which gather speed. NULL: after each step.
+    double (*kinetic)(void *self, const double *state);
 } bough_equilibrium_def;
 
 // Time 0, 0.1 s, 1e-9 s, 1e-10, 1000 steps.

@@ -2,6 +2,7 @@
 #include "flexbody/rod/rod.h"
 
 #include "core/base/linalg.h"
+#include "core/base/spatial.h"
 #include "flexbody/rod/rod_segment.h"
 
 #include <string.h>
@@ -99,6 +100,14 @@ void bough_vertex_mass(const bough_vertex_inertia *v, double upper[21]) {
     const double rows[21] = {v->mass, 0,   0,    0, s.z,  -s.y, v->mass, 0,    -s.z, 0,   s.x,
                              v->mass, s.y, -s.x, 0, j[0], j[3], j[4],    j[1], j[5], j[2]};
     memcpy(upper, rows, sizeof rows);
+}
+
+double bough_vertex_energy(const bough_vertex_inertia *v, bough_vec3 velocity, bough_vec3 angular) {
+    const double *j = v->inertia;
+    bough_inertia inertia = {
+        v->mass, v->moment, {{j[0], j[3], j[4]}, {j[3], j[1], j[5]}, {j[4], j[5], j[2]}}};
+    bough_twist twist = {velocity, angular};
+    return bough_power(twist, bough_inertia_mul(&inertia, twist));
 }
 
 // Mass, first moment and inertia of vertex i, and the inverse of its 6×6 mass.

@@ -48,6 +48,9 @@ typedef struct bough_vertex_inertia {
 // The upper triangle of the mass of theory (11) in section axes: [mE, −ξ(s); ξ(s), I].
 void bough_vertex_mass(const bough_vertex_inertia *v, double upper[21]);
 
+// Twice its kinetic energy at a velocity and an angular velocity, both in section axes [J].
+double bough_vertex_energy(const bough_vertex_inertia *v, bough_vec3 velocity, bough_vec3 angular);
+
 // A wrench (force, moment) on segment n, from one arc length to another: per length, linear between, or at
 // one point, in the axes of the segment's middle.
 typedef struct bough_rod_part {

@@ -231,14 +231,6 @@ static void add_links(const mode_shape *x, int part, double *share) {
     }
 }
 
-static double vertex_energy(const bough_vertex_inertia *v, bough_vec3 u, bough_vec3 w) {
-    const double *j = v->inertia;
-    bough_inertia inertia = {
-        v->mass, v->moment, {{j[0], j[3], j[4]}, {j[3], j[1], j[5]}, {j[4], j[5], j[2]}}};
-    bough_twist twist = {u, w};
-    return bough_power(twist, bough_inertia_mul(&inertia, twist));
-}
-
 static double rod_energy(const mode_shape *x, const bough_beam *beam, int part) {
     const beam_shape *b = beam_of(x, beam);
     const bough_rod_model *m = beam->mesh;
@@ -249,7 +241,7 @@ static double rod_energy(const mode_shape *x, const bough_beam *beam, int part) 
         bough_vec3 u =
             bough_mat3_tmul(bough_rod_rotation(b->state, n, i), bough_v3(d[i], d[n + i], d[2 * n + i]));
         bough_vec3 w = {d[3 * n + i], d[4 * n + i], d[5 * n + i]};
-        sum += vertex_energy(&m->vertex[i + 1], u, w);
+        sum += bough_vertex_energy(&m->vertex[i + 1], u, w);
     }
     return sum;
 }

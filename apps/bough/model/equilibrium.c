@@ -148,6 +148,7 @@ static bough_status find_slack(continuation *c, const double *start) {
     bough_simulation *s = c->simulation;
     const bough_assembly *a = c->assembly;
     bough_equilibrium_def whole = bough_equilibrium_def_default();
+    whole.kinetic = bough_equilibrium_search_kinetic;
     bough_growth growth = {0}, fallen = {0};
     bough_equilibrium_set_state(s, a, start);
     bough_status softened = soften(c);

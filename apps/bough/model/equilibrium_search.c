@@ -1,6 +1,7 @@
 #include "apps/bough/model/equilibrium_search.h"
 
 #include "apps/bough/model/aero_link.h"
+#include "core/tree/dynamics.h"
 #include "flexbody/rod/rod_static.h"
 
 #include <math.h>
@@ -179,6 +180,36 @@ void bough_equilibrium_search_rest(void *self, double *state) {
     }
 }
 
+static double rod_energy(const bough_rod_model *m, const double *state) {
+    const double *d = state + (size_t)BOUGH_ROD_U * m->n;
+    double sum = 0;
+    int n = m->n;
+    for (int i = 0; i < n; i++) {
+        bough_vec3 u =
+            bough_mat3_tmul(bough_rod_rotation(state, n, i), bough_v3(d[i], d[n + i], d[2 * n + i]));
+        bough_vec3 w = {d[3 * n + i], d[4 * n + i], d[5 * n + i]};
+        sum += bough_vertex_energy(&m->vertex[i + 1], u, w);
+    }
+    return sum;
+}
+
+// Of rigid bodies and rods.
+double bough_equilibrium_search_kinetic(void *self, const double *state) {
+    const bough_equilibrium_search *x = self;
+    const bough_simulation *s = x->simulation;
+    double sum = 0;
+    bough_tree_kinematics(s->tree, state, s->view);
+    for (int i = 0; i < s->tree->n_links; i++) {
+        bough_twist twist = s->view->twist[i];
+        sum += bough_power(twist, bough_inertia_mul(&s->tree->links[i].inertia, twist));
+    }
+    for (int k = 0; k < s->n_beam; k++) {
+        const bough_beam *beam = &s->beam[k];
+        if (beam->rod) sum += rod_energy(beam->mesh, state + x->assembly->state_offset[beam->port + 1]);
+    }
+    return sum;
+}
+
 bool bough_equilibrium_search_turns(const bough_equilibrium_search *x) {
     for (int i = 0; i < x->whole->n_held; i++) {
         int row = x->whole->held[i];
@@ -209,6 +240,8 @@ bough_equilibrium_def bough_equilibrium_search_def(bough_equilibrium_search *x) 
     def.self = x;
     def.move = bough_equilibrium_search_move;
     if (x->rests) def.rest = bough_equilibrium_search_rest;
+    // of a steady rotation it tells nothing
+    if (bough_equilibrium_search_turns(x)) def.kinetic = NULL;
     return def;
 }
 

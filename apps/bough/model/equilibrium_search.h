@@ -34,9 +34,10 @@ bool bough_equilibrium_search_turns(const bough_equilibrium_search *x);
 // The limits, with how states move and come to rest. After set_up.
 bough_equilibrium_def bough_equilibrium_search_def(bough_equilibrium_search *x);
 
-// The functions `move` and `rest` of bough_equilibrium_def; self: a bough_equilibrium_search.
+// The functions `move`, `rest` and `kinetic` of bough_equilibrium_def; self: a bough_equilibrium_search.
 double bough_equilibrium_search_move(void *self, const double *state, const double *change, double *moved);
 void bough_equilibrium_search_rest(void *self, double *state);
+double bough_equilibrium_search_kinetic(void *self, const double *state);
 
 // The states in equilibrium under the air's forces as sampled last. After set_up.
 bough_status bough_equilibrium_search_balance(bough_arena *arena, bough_equilibrium_search *x,

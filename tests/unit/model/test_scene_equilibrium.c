@@ -285,6 +285,20 @@ TEST(cable_on_a_spherical_joint_hangs_under_forces) {
     }
 }
 
+// Heavy bodies on a light rod that bends far fall and come to rest in a stable equilibrium: where each step
+// starts at rest, 1000 do not suffice.
+TEST(heavy_bodies_fall_from_a_light_rod) {
+    static const char *const none[] = {NULL};
+    check_arena(arena);
+    bough_simulation *s = scene_build(arena, "tests/data/scenes/slender-tree.yaml", none);
+    bough_equilibrium_work work;
+    bough_growth growth;
+    check_ok(bough_simulation_equilibrium(s, s->master->assembly, 0, &work));
+    printf("%d steps\n", work.steps);
+    check_ok(bough_simulation_growth(s, s->master->assembly, 0, &growth));
+    check_near(growth.rate, 0, 0, 0);
+}
+
 // A bar on a table between pads, which turn it by 16 degrees; its mass times `mass`.
 static bough_simulation *bar_on_pads(bough_arena *arena, int n_segment, double mass) {
     const char *sets[] = {
