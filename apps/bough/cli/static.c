@@ -95,8 +95,7 @@ static bough_status find_equilibrium(bough_arena *arena, bough_simulation *s, eq
     if (status.code != BOUGH_FAILED) return status;
     x->independent = false;
     x->n = 0;
-    bough_status whole = find_whole(arena, x);
-    return whole.code == BOUGH_FAILED ? status : whole;
+    return find_whole(arena, x);
 }
 
 // Displacement and rotation of the tip, force and moment at the root.

@@ -167,12 +167,11 @@ static bough_status find_slack(continuation *c, const double *start) {
     return softened;
 }
 
-static bough_status find_equilibrium(bough_arena *arena, void *data) {
-    continuation *c = data;
+// The first searches, on the scene's own mesh.
+static bough_status find_on_mesh(bough_arena *arena, continuation *c) {
     bough_simulation *s = c->simulation;
     const bough_assembly *a = c->assembly;
     bough_equilibrium_def limits = bough_equilibrium_def_default();
-    if (!may_soften(s)) return bough_equilibrium_search_within(limits, s, a, c->time, c->work);
     double *start = bough_arena_doubles(arena, (size_t)a->n_state + 1);
     c->state = bough_arena_doubles(arena, (size_t)a->n_state + 1);
     bough_assembly_states(a, start);
@@ -180,6 +179,85 @@ static bough_status find_equilibrium(bough_arena *arena, void *data) {
     limits.steps = PATIENCE;
     bough_status status = bough_equilibrium_search_within(limits, s, a, c->time, c->work);
     return status.code == BOUGH_FAILED ? find_slack(c, start) : status;
+}
+
+// -- whether a finer mesh has one -----------------------------------------------------------------
+
+// Segments of finer meshes by those of the scene, and most of all rods together.
+static const int finer[] = {4, 16};
+enum { FINER = 2, MOST_SEGMENTS = 2000 };
+
+// A rod whose sections turn by this from one vertex to the next may need shorter segments [rad].
+static const double sharp = 0.7;
+
+typedef struct finer_mesh {
+    const continuation *given;
+    int times; // its segments by the scene's
+} finer_mesh;
+
+static int count_segments(const bough_scene *scene) {
+    int n = 0;
+    for (int i = 0; i < scene->n_body; i++) {
+        if (scene->body[i].fidelity == BOUGH_SCENE_ROD) n += scene->body[i].rod.n_segment;
+    }
+    return n;
+}
+
+// The rod that is bent most from one vertex to the next; NULL: none is bent sharply.
+static const bough_beam *sharpest_rod(const bough_simulation *s) {
+    const bough_beam *found = NULL;
+    double largest = sharp;
+    for (int k = 0; k < s->n_beam; k++) {
+        if (!s->beam[k].rod) continue;
+        bough_sharpest bend = bough_simulation_bend(s, &s->beam[k]);
+        if (!(bend.angle > largest)) continue;
+        found = &s->beam[k];
+        largest = bend.angle;
+    }
+    return found;
+}
+
+static bough_status find_on_finer(bough_arena *arena, void *data) {
+    const finer_mesh *x = data;
+    continuation fine = *x->given;
+    bough_scene *scene = bough_scene_copy(arena, fine.simulation->scene);
+    scene->simulation.initial = BOUGH_SCENE_UNDEFORMED;
+    for (int i = 0; i < scene->n_body; i++) {
+        if (scene->body[i].fidelity == BOUGH_SCENE_ROD) scene->body[i].rod.n_segment *= x->times;
+    }
+    BOUGH_TRY(bough_simulation_build(arena, scene, &fine.simulation));
+    fine.assembly = fine.simulation->master->assembly;
+    fine.started = false;
+    return find_on_mesh(arena, &fine);
+}
+
+// The failure on the scene's mesh, and whether finer ones have an equilibrium.
+static bough_status explain_by_finer(const continuation *c, bough_status failure) {
+    const bough_beam *beam = sharpest_rod(c->simulation);
+    int times = 0;
+    if (beam == NULL) return failure;
+    for (int k = 0; k < FINER && finer[k] * count_segments(c->simulation->scene) <= MOST_SEGMENTS; k++) {
+        finer_mesh x = {c, finer[k]};
+        times = finer[k];
+        bough_status status = bough_arena_use(find_on_finer, &x);
+        if (bough_is_ok(&status))
+            return bough_fail(BOUGH_FAILED,
+                              "%s: no equilibrium found: its segments are too long for its load; with %d "
+                              "times the segments in each rod (here %d) one is found",
+                              beam->body->name, times, times * beam->def.n_segment);
+    }
+    if (times == 0) return failure;
+    return bough_fail(BOUGH_FAILED, "%s; none found with up to %d times the segments either", failure.message,
+                      times);
+}
+
+static bough_status find_equilibrium(bough_arena *arena, void *data) {
+    continuation *c = data;
+    if (!may_soften(c->simulation))
+        return bough_equilibrium_search_within(bough_equilibrium_def_default(), c->simulation, c->assembly,
+                                               c->time, c->work);
+    bough_status status = find_on_mesh(arena, c);
+    return status.code == BOUGH_FAILED ? explain_by_finer(c, status) : status;
 }
 
 static bough_status find_any(bool unstable, bough_simulation *s, const bough_assembly *assembly, double time,

@@ -25,9 +25,8 @@ static bough_status explain_rod(const bough_simulation *s, const bough_beam *bea
         return bough_fail(
             BOUGH_FAILED,
             "%s: no equilibrium found in %d steps: the rod folds, by %.0f deg between %.3g and %.3g m; "
-            "its segments are too long for its load: try rod.segments: %d",
-            beam->body->name, steps, bend.angle / BOUGH_DEGREE, span[bend.segment], span[bend.segment + 1],
-            4 * beam->def.n_segment);
+            "its segments may be too long for its load",
+            beam->body->name, steps, bend.angle / BOUGH_DEGREE, span[bend.segment], span[bend.segment + 1]);
     return bough_ok();
 }
 

@@ -299,6 +299,29 @@ TEST(heavy_bodies_fall_from_a_light_rod) {
     check_near(growth.rate, 0, 0, 0);
 }
 
+// A thin rod that stands on a clamp and is pulled down bends within sqrt(EI/F) = 0.03 m of its length 1 m.
+// Four segments have no equilibrium; the message says with how many there is one.
+TEST(segments_too_long_for_a_bend_are_named) {
+    const char *sets[] = {
+        "bodies=[{name: whip, fidelity: rod, joint: {kind: fixed, parent: ground}, rod: {length: 1, segments: "
+        "4, stiffness: [1e3, 1e3, 1e3, 1e-3, 1e-3, 1e-3], mass: [0.01, 0, 0, 1e-6, 1e-6, 0]}}]",
+        "loads=[{body: whip, at: tip, force: [0.1, 0, -1]}]", "gravity=[0, 0, 0]", "markers=[]", NULL};
+    check_arena(arena);
+    bough_simulation *s = scene_build(arena, "apps/mechanisms/pendulum.yaml", sets);
+    bough_equilibrium_work work;
+    bough_status status = bough_simulation_equilibrium(s, s->master->assembly, 0, &work);
+    check_fails(status, BOUGH_FAILED, "whip: no equilibrium found: its segments are too long for its load");
+    int times = 0;
+    const char *with = strstr(status.message, "with ");
+    assert_non_null(with);
+    assert_int_equal(sscanf(with, "with %d times", &times), 1);
+    char set[60];
+    snprintf(set, sizeof set, "bodies[0].rod.segments=%d", 4 * times);
+    const char *finer[] = {sets[0], sets[1], sets[2], sets[3], set, NULL};
+    s = scene_build(arena, "apps/mechanisms/pendulum.yaml", finer);
+    check_ok(bough_simulation_equilibrium(s, s->master->assembly, 0, &work));
+}
+
 // A bar on a table between pads, which turn it by 16 degrees; its mass times `mass`.
 static bough_simulation *bar_on_pads(bough_arena *arena, int n_segment, double mass) {
     const char *sets[] = {
