@@ -45,11 +45,16 @@ typedef struct bough_growth {
     double rate;        // the largest of a motion that does not oscillate [1/s]; 0: none grows
     double oscillation; // the largest of an oscillation, such as flutter [1/s]; 0: none grows
     double frequency;   // of that one [Hz]
+    int row;            // the state that moves most in what grows fastest, by its scale
 } bough_growth;
 
 // Of the states of the assembly.
 bough_status bough_simulation_growth(bough_simulation *s, const bough_assembly *assembly, double time,
                                      bough_growth *growth);
+
+// The same from the twelve eigenvalues nearest to 1/s alone, at an eighth of the cost.
+bough_status bough_simulation_slow_growth(bough_simulation *s, const bough_assembly *assembly, double time,
+                                          bough_growth *growth);
 
 // Called at each point of a path, where the members, their inputs and the simulation's view then are; `time`:
 // when the loads are those of the point [s]. `limit`: they have a local maximum or minimum there. A failure

@@ -38,6 +38,23 @@ static const bough_eigen_pair *growing_oscillation(const bough_eigen_pair *pair,
     return most;
 }
 
+// The state that moves most in it, by its scale.
+static int largest_row(const bough_equilibrium_search *x, const bough_eigen_pair *pair) {
+    const bough_assembly *a = x->assembly;
+    int row = 0;
+    double largest = 0;
+    for (int i = 0; i < a->n_member; i++) {
+        const bough_system *system = &a->member[i]->system;
+        int first = a->state_offset[i];
+        for (int k = 0; k < system->n_state; k++) {
+            double size = hypot(pair->shape_real[first + k], pair->shape_imag[first + k]) / system->scale[k];
+            if (size > largest) row = first + k;
+            largest = fmax(largest, size);
+        }
+    }
+    return row;
+}
+
 // Rounding lets values grow otherwise from another point.
 static bough_status confirm_oscillation(bough_arena *arena, const bough_equilibrium_search *x,
                                         const bough_eigen_pair *found) {
@@ -47,6 +64,7 @@ static bough_status confirm_oscillation(bough_arena *arena, const bough_equilibr
     for (int k = 0; k < count.found; k++) {
         double off = hypot(pair[k].real - found->real, fabs(pair[k].imaginary) - fabs(found->imaginary));
         if (off > equal * found->real) continue;
+        if (found->real > x->growth->rate) x->growth->row = largest_row(x, found);
         x->growth->oscillation = found->real;
         x->growth->frequency = fabs(found->imaginary) / (2 * BOUGH_PI);
     }
@@ -57,7 +75,7 @@ static bough_status find_growth(bough_arena *arena, void *self) {
     bough_equilibrium_search *x = self;
     bough_equilibrium_search_set_up(arena, x);
     bough_whole_inputs(x->whole, x->time, x->state);
-    for (int i = 0; i < POINTS; i++) {
+    for (int i = 0; i < x->points; i++) {
         bough_eigen_pair pair[NEAREST];
         bough_eigen_count count = {.wanted = i == 0 ? NEAREST : 4};
         bough_status status = find_near(arena, x, point[i], pair, &count);
@@ -66,7 +84,9 @@ static bough_status find_growth(bough_arena *arena, void *self) {
         for (int k = 0; k < count.found; k++) {
             bool known = pair[k].real > rounded * point[i] && pair[k].real < point[i] / rounded;
             bool grows = !oscillates(&pair[k]) && known && pair[k].residual < trusted;
-            if (grows) x->growth->rate = fmax(x->growth->rate, pair[k].real);
+            if (!grows || pair[k].real <= x->growth->rate) continue;
+            x->growth->rate = pair[k].real;
+            x->growth->row = largest_row(x, &pair[k]);
         }
         const bough_eigen_pair *found = growing_oscillation(pair, count.found);
         if (i > 0 || found == NULL || bough_equilibrium_search_turns(x)) continue;
@@ -75,9 +95,20 @@ static bough_status find_growth(bough_arena *arena, void *self) {
     return bough_ok();
 }
 
-bough_status bough_simulation_growth(bough_simulation *s, const bough_assembly *assembly, double time,
-                                     bough_growth *growth) {
-    bough_equilibrium_search x = {.simulation = s, .assembly = assembly, .time = time, .growth = growth};
+static bough_status find_growth_at(int points, bough_simulation *s, const bough_assembly *assembly,
+                                   double time, bough_growth *growth) {
+    bough_equilibrium_search x = {
+        .simulation = s, .assembly = assembly, .time = time, .growth = growth, .points = points};
     *growth = (bough_growth){0};
     return bough_arena_use(find_growth, &x);
+}
+
+bough_status bough_simulation_growth(bough_simulation *s, const bough_assembly *assembly, double time,
+                                     bough_growth *growth) {
+    return find_growth_at(POINTS, s, assembly, time, growth);
+}
+
+bough_status bough_simulation_slow_growth(bough_simulation *s, const bough_assembly *assembly, double time,
+                                          bough_growth *growth) {
+    return find_growth_at(1, s, assembly, time, growth);
 }

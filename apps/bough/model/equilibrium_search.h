@@ -15,6 +15,7 @@ typedef struct bough_equilibrium_search {
     bough_equilibrium_def limits; // step, least, tolerance and steps of an equilibrium
     bough_equilibrium_work *work; // of an equilibrium
     bough_growth *growth;         // of a state
+    int points;                   // near which it is looked for
     bough_path_listener listener; // of a path
     bough_path_report *report;
 

@@ -1,6 +1,7 @@
 #include "apps/bough/model/validity.h"
 
 #include "apps/bough/model/aero_link.h"
+#include "apps/bough/model/equilibrium.h"
 #include "core/tree/loop.h"
 #include "cosim/whole.h"
 
@@ -67,6 +68,9 @@ static const struct {
     [BOUGH_LIMIT_ROTATION] = {"rotor_samples",
                               "it turns by %.3g deg between two samples of the air, which miss what"
                               " changes within a rotation: take a higher aero.rate"},
+    [BOUGH_LIMIT_START] = {"unstable_start",
+                           "the equilibrium from which the run starts is unstable: motions from it grow at"
+                           " %.3g 1/s, from disturbances that the error estimate does not contain"},
     [BOUGH_LIMIT_STEPS] =
         {"solver_steps", "motions so fast that a solver takes %.3g steps in a macro step make most of the"
                          " cost: damping, a larger rtol or another solver (radau5, cvode-bdf) may end that"},
@@ -280,6 +284,17 @@ static int find_body(const bough_scene *scene, const char *name) {
     for (int i = 0; i < scene->n_body; i++)
         if (strncmp(scene->body[i].name, name, strlen(scene->body[i].name)) == 0) return i;
     return 0;
+}
+
+void bough_validity_check_equilibrium(bough_simulation *s) {
+    bough_growth growth;
+    const bough_assembly *a = s->master->assembly;
+    if (s->scene->simulation.initial != BOUGH_SCENE_IN_EQUILIBRIUM) return;
+    bough_status status = bough_simulation_slow_growth(s, a, 0, &growth);
+    double rate = fmax(growth.rate, growth.oscillation);
+    if (!bough_is_ok(&status) || !(rate > 0)) return;
+    int body = find_body(s->scene, bough_simulation_body_of(s, a, growth.row));
+    validity_pass(s->validity, BOUGH_LIMIT_START, body, 0, rate);
 }
 
 // The body whose state changes fastest, measured by the tolerance.

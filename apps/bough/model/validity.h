@@ -17,6 +17,7 @@ typedef enum bough_limit {
     BOUGH_LIMIT_SINGULAR,    // a closed loop is near a position in which its bodies can go on in two ways
     BOUGH_LIMIT_WIND,        // the wind rises and falls between two samples of the air
     BOUGH_LIMIT_ROTATION,    // the rotor turns by a sixth of a rotation between two samples of the air
+    BOUGH_LIMIT_START,       // the equilibrium from which the run starts is unstable
     BOUGH_LIMIT_STEPS,       // macro steps of very many steps of a solver have become costly
     BOUGH_LIMITS,
 } bough_limit;
@@ -39,6 +40,9 @@ typedef struct bough_validity {
 
 // Checks the model at the start, with `view` up to date.
 void bough_validity_start(bough_simulation *s);
+
+// Checks the equilibrium from which a run starts, where its scene asks for one.
+void bough_validity_check_equilibrium(bough_simulation *s);
 
 // Checks the state after a step, without changing a result.
 void bough_validity_check(bough_simulation *s);

@@ -197,3 +197,25 @@ TEST(costly_motions_are_reported) {
         assert_true(k == 1 || cost.body == 0 || cost.body == 1);
     }
 }
+
+// A column that stands straight under more than Euler's load starts in an unstable equilibrium; under less it
+// does not. EI π²/(4 L²) = 24.7 N.
+TEST(an_unstable_start_is_reported) {
+    static const char *const load[] = {"loads=[{body: column, at: tip, force: [0, 0, -40]}]",
+                                       "loads=[{body: column, at: tip, force: [0, 0, -20]}]"};
+    for (int k = 0; k < 2; k++) {
+        const char *sets[] = {
+            "bodies=[{name: column, fidelity: rod, joint: {kind: fixed, parent: ground}, rod: "
+            "{length: 1, segments: 16, stiffness: [1e5, 1e5, 1e6, 10, 20, 10], mass: [1, 0, "
+            "0, 1e-3, 1e-3, 0]}}]",
+            load[k],
+            "gravity=[0, 0, 0]",
+            "markers=[]",
+            "simulation.initial=equilibrium",
+            NULL};
+        check_arena(arena);
+        bough_run run;
+        check_ok(bough_run_create(arena, scene_read(arena, "apps/mechanisms/pendulum.yaml", sets), &run));
+        assert_int_equal(passed(run.simulation), k == 0 ? 1 << BOUGH_LIMIT_START : 0);
+    }
+}
