@@ -272,4 +272,8 @@ void bough_rod_load(const bough_rod_model *m, const bough_rod_loads *loads, doub
 // configuration in scratch->vertex, under the loads that scratch had last [N, N m].
 void bough_rod_stress(const bough_rod_model *m, const bough_rod_scratch *scratch, int n, double stress[6]);
 
+// The smallest ratio of a segment's torsional stiffness to that below which, bent and under tension, it
+// twists though the rod it stands for does not, theory (111). After bough_rod_stress' conditions.
+double bough_rod_twist_reserve(const bough_rod_model *m, const bough_rod_scratch *scratch);
+
 #endif

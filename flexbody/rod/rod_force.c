@@ -2,6 +2,8 @@
 #include "flexbody/rod/rod_kernels.h"
 #include "flexbody/rod/rod_lanes.h"
 
+#include <math.h>
+
 void bough_rod_gather(const bough_rod_model *m, const double *state, const double *input,
                       bough_rod_scratch *scratch) {
     BOUGH_OF_LEVEL(bough_rod_gather, m->level)(m, state, input, scratch);
@@ -76,4 +78,20 @@ void bough_rod_stress(const bough_rod_model *m, const bough_rod_scratch *scratch
     bough_vec3 moment = bough_sub(half_backward(shape.v, shape.t, f.ll), bough_cross(half, force));
     lane_store(stress, 1, 0, s.v);
     lane_store(stress + 3, 1, 0, moment);
+}
+
+enum { TWIST = 20 }; // C₆₆ in the upper triangle by rows
+
+// theory (111)
+double bough_rod_twist_reserve(const bough_rod_model *m, const bough_rod_scratch *scratch) {
+    double least = INFINITY;
+    for (int n = 0; n < m->n_segment; n++) {
+        double stress[6], h = m->length[n];
+        bough_vec3 phi = shape_at(m, scratch, n).phi;
+        bough_rod_stress(m, scratch, n, stress);
+        double needed = 0.04 * (phi.x * phi.x + phi.y * phi.y) * stress[2] * h * h;
+        if (needed > 0)
+            least = fmin(least, bough_rod_tile(m->stiffness, 21, n)[TWIST * BOUGH_LANES] / needed);
+    }
+    return least;
 }

@@ -284,6 +284,12 @@ static void warn_of_growth(const bough_status *found, const bough_growth *growth
         fprintf(stderr, "bough: warning: whether the equilibrium is stable was not found: %s\n",
                 found->message);
     if (growth->rate > 0) fprintf(stderr, "%s motions from it grow at %.3g 1/s\n", unstable, growth->rate);
+    if (growth->twisting)
+        fprintf(
+            stderr,
+            "bough: warning: in the equilibrium the sections of rod '%s' twist, as its segments are too long "
+            "for its torsional stiffness; a rod's do not: try rod.segments: %d, or more torsional stiffness\n",
+            growth->twisting, growth->segments);
     if (growth->oscillation > 0)
         fprintf(stderr, "%s oscillations of %.4g Hz grow at %.3g 1/s\n", unstable, growth->frequency,
                 growth->oscillation);

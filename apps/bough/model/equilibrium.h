@@ -46,6 +46,10 @@ typedef struct bough_growth {
     double oscillation; // the largest of an oscillation, such as flutter [1/s]; 0: none grows
     double frequency;   // of that one [Hz]
     int row;            // the state that moves most in what grows fastest, by its scale
+    // Not among these: twist of a bent rod's sections that grows in segments too long for its torsional
+    // stiffness. NULL: none does; else the rod and how many segments would end it.
+    const char *twisting;
+    int segments;
 } bough_growth;
 
 // Of the states of the assembly.

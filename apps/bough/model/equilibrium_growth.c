@@ -1,8 +1,10 @@
 // What grows from an equilibrium, by eigenvalues of the tangents.
 #include "apps/bough/model/equilibrium_search.h"
 #include "cosim/analysis/modes.h"
+#include "flexbody/rod/rod_system.h"
 
 #include <math.h>
+#include <string.h>
 
 // Where growing eigenvalues of the Jacobian are looked for [1/s], how many values nearest to each, and the
 // part of a point that is rounding; far beyond it lie values that a small system does not have.
@@ -55,6 +57,63 @@ static int largest_row(const bough_equilibrium_search *x, const bough_eigen_pair
     return row;
 }
 
+// The state with the pair's velocities; of a motion that grows without oscillating they are real.
+static double *take_motion(bough_arena *arena, const bough_equilibrium_search *x,
+                           const bough_eigen_pair *pair) {
+    const bough_simulation *s = x->simulation;
+    const bough_assembly *a = x->assembly;
+    size_t n = (size_t)a->n_state, speeds = (size_t)s->tree->n_v * sizeof(double);
+    double *motion = bough_arena_copy(arena, x->state, n * sizeof *motion);
+    memcpy(motion + s->tree->n_q, pair->shape_real + s->tree->n_q, speeds);
+    for (int k = 0; k < s->n_beam; k++) {
+        if (!s->beam[k].rod) continue;
+        int vertices = s->beam[k].mesh->n;
+        size_t first = (size_t)(a->state_offset[s->beam[k].port + 1] + BOUGH_ROD_U * vertices);
+        size_t size = (size_t)((BOUGH_ROD_STATES - BOUGH_ROD_U) * vertices) * sizeof *motion;
+        memcpy(motion + first, pair->shape_real + first, size);
+    }
+    return motion;
+}
+
+// Twice the kinetic energy of its sections' rotation about the rod's axis.
+static double twist_energy(const bough_equilibrium_search *x, const bough_beam *beam, const double *motion) {
+    int n = beam->mesh->n;
+    const double *w =
+        motion + x->assembly->state_offset[beam->port + 1] + (size_t)(BOUGH_ROD_W + 2) * (size_t)n;
+    double sum = 0;
+    for (int i = 0; i < n; i++) sum += beam->mesh->vertex[i + 1].inertia[2] * w[i] * w[i];
+    return sum;
+}
+
+static double twist_reserve(bough_arena *arena, const bough_equilibrium_search *x, const bough_beam *beam) {
+    const bough_assembly *a = x->assembly;
+    int member = beam->port + 1;
+    bough_rod_scratch scratch;
+    bough_rod_scratch_init(&scratch, arena, beam->mesh);
+    bough_rod_gather(beam->mesh, x->state + a->state_offset[member],
+                     x->whole->input + a->input_offset[member], &scratch);
+    bough_rod_load(beam->mesh, bough_rod_body_loads(beam->rod), x->time, &scratch);
+    return bough_rod_twist_reserve(beam->mesh, &scratch);
+}
+
+// Whether what grows is the twist of a rod that its mesh makes, theory (111); notes the rod if so.
+static bool is_twist_of_mesh(bough_arena *arena, bough_equilibrium_search *x, const bough_eigen_pair *pair) {
+    static const double most = 0.5; // of the motion's kinetic energy
+    const bough_simulation *s = x->simulation;
+    double *motion = take_motion(arena, x, pair);
+    double whole = bough_equilibrium_search_kinetic(x, motion);
+    for (int k = 0; k < s->n_beam; k++) {
+        const bough_beam *beam = &s->beam[k];
+        if (!beam->rod || !(twist_energy(x, beam, motion) > most * whole)) continue;
+        double reserve = twist_reserve(arena, x, beam);
+        if (!(reserve < 1)) continue;
+        x->growth->twisting = beam->body->name;
+        x->growth->segments = (int)ceil(beam->def.n_segment * pow(reserve, -0.25));
+        return true;
+    }
+    return false;
+}
+
 // Rounding lets values grow otherwise from another point.
 static bough_status confirm_oscillation(bough_arena *arena, const bough_equilibrium_search *x,
                                         const bough_eigen_pair *found) {
@@ -84,7 +143,7 @@ static bough_status find_growth(bough_arena *arena, void *self) {
         for (int k = 0; k < count.found; k++) {
             bool known = pair[k].real > rounded * point[i] && pair[k].real < point[i] / rounded;
             bool grows = !oscillates(&pair[k]) && known && pair[k].residual < trusted;
-            if (!grows || pair[k].real <= x->growth->rate) continue;
+            if (!grows || pair[k].real <= x->growth->rate || is_twist_of_mesh(arena, x, &pair[k])) continue;
             x->growth->rate = pair[k].real;
             x->growth->row = largest_row(x, &pair[k]);
         }

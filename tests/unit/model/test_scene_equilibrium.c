@@ -249,6 +249,24 @@ TEST(chain_hangs_in_a_catenary) {
     }
 }
 
+// The chain is stable: that its sections twist is the mesh's, until there are as many segments as is told.
+TEST(twist_of_long_segments_is_not_called_unstable) {
+    char more[60] = "bodies[1].rod.segments=48";
+    const char *sets[] = {"bodies[1].rod.stiffness=[1.2e9, 1.2e9, 3.2e9, 1e4, 1e4, 1e4]", more, NULL};
+    for (int k = 0; k < 2; k++) {
+        check_arena(arena);
+        bough_simulation *s = scene_build(arena, "tests/data/scenes/mooring.yaml", sets);
+        bough_equilibrium_work work;
+        bough_growth growth;
+        check_ok(bough_simulation_equilibrium(s, s->master->assembly, 0, &work));
+        check_ok(bough_simulation_growth(s, s->master->assembly, 0, &growth));
+        check_near(growth.rate, 0, 0, 0);
+        assert_true((growth.twisting != NULL) == (k == 0));
+        assert_true(k == 1 || (growth.segments > 60 && growth.segments < 100));
+        snprintf(more, sizeof more, "bodies[1].rod.segments=%d", growth.segments);
+    }
+}
+
 // A cable of 1 N/m and 10 m on a spherical joint, pulled at its tip and within a segment, spins freely about
 // its own axis. The elastic cable, T its tension: x = ∫ T/|T| (1 + |T|/EA) ds.
 TEST(cable_on_a_spherical_joint_hangs_under_forces) {
