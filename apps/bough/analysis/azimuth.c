@@ -1,4 +1,4 @@
-// theory (110).
+// theory (112).
 #include "apps/bough/analysis/azimuth.h"
 
 #include "apps/bough/model/companion.h"
