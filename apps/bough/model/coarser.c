@@ -203,6 +203,7 @@ static looser looser_of(const bough_scene *scene) {
 }
 
 double bough_coarser_time_share(const bough_scene *scene) {
+    if (bough_coarser_is_loose(scene)) return bough_finer_time_share();
     return fmax(usual_share(scene), looser_of(scene).step < 2 ? 0.6 : 0);
 }
 
@@ -273,9 +274,29 @@ static void make_one_system(bough_scene *to) {
     x->coupling.scheme = monolithic;
 }
 
+// Tolerances above it leave no room for ten times as much.
+static const double loose = 5e-3;
+
+bool bough_coarser_is_loose(const bough_scene *scene) {
+    bool one_system = bough_scheme_at(scene->simulation.coupling.scheme)->one_system;
+    return (one_system ? scene->simulation.master.rtol : all_sub_solvers(scene).rtol) > loose;
+}
+
+// A tenth of a loose tolerance, and two steps at least where the run may take one.
+static void tighten_steps(bough_scene *to) {
+    bough_scene_simulation *x = &to->simulation;
+    x->master.rtol = fmin(x->master.rtol / 10, loose / 5);
+    x->master.step /= 2;
+    if (steps_fit(to, x->macro_step / 2)) x->macro_step /= 2;
+}
+
 static void lengthen_steps(const bough_scene *scene, bough_scene *to) {
     bough_scene_simulation *x = &to->simulation;
     make_one_system(to);
+    if (bough_coarser_is_loose(scene)) {
+        tighten_steps(to);
+        return;
+    }
     looser by = looser_of(scene);
     x->master.rtol = fmax(x->master.rtol, fmin(by.rtol * x->master.rtol, loosest));
     x->master.step *= by.step;

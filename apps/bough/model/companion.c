@@ -43,6 +43,7 @@ static bough_status build(bough_arena *arena, bough_companion *c) {
     c->first_steps = has_finer_start(c->run->scene);
     if (c->first_steps) BOUGH_TRY(bough_other_run_build(arena, c->run, BOUGH_FINEST_TIME, &c->finer));
     c->share = bough_coarser_share(c->run->scene, c->coarser.simulation->scene);
+    if (bough_coarser_is_loose(c->run->scene)) c->share = fmax(c->share, bough_finer_time_share());
     c->share_held = share_held(c->run->scene);
     return bough_ok();
 }

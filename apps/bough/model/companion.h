@@ -45,6 +45,9 @@ double bough_coarser_share(const bough_scene *scene, const bough_scene *other);
 // The same for a copy that is coarser in time alone.
 double bough_coarser_time_share(const bough_scene *scene);
 
+// Whether the steps' tolerance is so loose that the copy that is coarser in all has a tighter one.
+bool bough_coarser_is_loose(const bough_scene *scene);
+
 // The same for a copy that is finer in time, and in air.
 double bough_finer_time_share(void);
 double bough_finer_air_share(const bough_scene *scene);

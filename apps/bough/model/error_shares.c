@@ -127,7 +127,8 @@ static bough_status step_base(const finding *x, bough_other_run *base, double *t
 static bough_status find(bough_arena *arena, void *self) {
     const finding *x = self;
     const bough_simulation *run = x->companion->run;
-    const double part[BOUGH_SHARES] = {[BOUGH_SHARE_MESH] = x->companion->share,
+    const bough_scene *other = x->companion->coarser.simulation->scene;
+    const double part[BOUGH_SHARES] = {[BOUGH_SHARE_MESH] = bough_coarser_share(run->scene, other),
                                        [BOUGH_SHARE_AIR] = bough_coarser_share(run->scene, run->scene),
                                        [BOUGH_SHARE_TIME] = bough_coarser_time_share(run->scene)};
     // what is held longer than in the run is held so in two of the further runs as well
