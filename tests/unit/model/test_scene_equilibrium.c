@@ -410,3 +410,42 @@ TEST(follower_force_makes_a_column_flutter) {
         check_near(growth.rate, 0, 0, 0);
     }
 }
+
+// A rod on a hinge with a spring, pulled at its tip: of a unit of length, mass and time.
+static bough_simulation *hinged_rod(bough_arena *arena, double length, double mass, double time) {
+    double force = mass * length / (time * time), bending = force * length * length,
+           inertia = mass * length * length;
+    const char *sets[] = {
+        bough_arena_print(
+            arena,
+            "bodies=[{name: hub, fidelity: rigid, mass: %g, inertia: [%g, %g, %g], joint: {kind: revolute, axis: y, "
+            "parent: ground, stiffness: %g}}, {name: r, fidelity: rod, joint: {kind: fixed, parent: hub}, rod: "
+            "{length: %g, segments: 16, stiffness: [%g, %g, %g, %g, %g, %g], mass: [%g, 0, 0, %g, %g, 0]}}]",
+            mass, inertia, inertia, inertia, 50 * force * length, length, 1e4 * force, 1e4 * force,
+            3e4 * force, bending, bending, bending, mass / length, 1e-3 * mass * length,
+            1e-3 * mass * length),
+        bough_arena_print(arena, "loads=[{body: r, at: tip, force: [%g, 0, %g]}]", 10 * force, -5 * force),
+        "gravity=[0, 0, 0]", "markers=[]", NULL};
+    return scene_build(arena, "apps/mechanisms/pendulum.yaml", sets);
+}
+
+// A beam of 0.1 mm and 10 kHz and one of 10 km and 100 s take the shape of one of 1 m and 1 s.
+TEST(shape_does_not_depend_on_scale) {
+    static const double unit[3][3] = {{1, 1, 1}, {1e-4, 1e-10, 1e-4}, {1e4, 1e6, 100}};
+    double first[2] = {0, 0};
+    for (int k = 0; k < 3; k++) {
+        check_arena(arena);
+        double length = unit[k][0];
+        bough_simulation *s = hinged_rod(arena, length, unit[k][1], unit[k][2]);
+        bough_growth growth;
+        printf("%g m: %d steps\n", length, equilibrium_of(s).steps);
+        bough_channels list = scene_channels(arena, s);
+        double x = scene_channel(s, &list, "rTipX") / length, z = scene_channel(s, &list, "rTipZ") / length;
+        if (k == 0) first[0] = x;
+        if (k == 0) first[1] = z;
+        check_near(x, first[0], 0, 1e-7);
+        check_near(z, first[1], 0, 1e-7);
+        check_ok(bough_simulation_growth(s, s->master->assembly, 0, &growth));
+        check_near(growth.rate, 0, 0, 0);
+    }
+}
