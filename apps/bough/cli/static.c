@@ -16,6 +16,7 @@ enum { MOTION = 6 }; // displacement and rotation, or force and moment
 
 typedef struct equilibrium {
     bough_simulation *simulation;
+    bool finer;                  // of the mesh that the scene's is compared with
     bool independent;            // each rod has its own equilibrium: no channels
     double time;                 // of the loads of the whole scene [s]
     bough_equilibrium_work work; // of the whole scene
@@ -55,7 +56,8 @@ static bough_status find_rods(bough_arena *arena, equilibrium *x) {
 static bough_status find_whole(bough_arena *arena, equilibrium *x) {
     bough_simulation *s = x->simulation;
     x->time = bough_equilibrium_time(s);
-    BOUGH_TRY(bough_simulation_any_equilibrium(s, s->master->assembly, x->time, &x->work));
+    BOUGH_TRY((x->finer ? bough_simulation_finer_equilibrium
+                        : bough_simulation_any_equilibrium)(s, s->master->assembly, x->time, &x->work));
     for (int k = 0; k < s->n_beam; k++) {
         if (s->beam[k].rod == NULL) continue;
         BOUGH_TRY(bough_steady_equilibrium(arena, s, &s->beam[k], x->time, &x->rod[x->n++]));
@@ -85,8 +87,8 @@ static bough_status find_growth(bough_arena *arena, equilibrium *x) {
 
 // The equilibrium of the simulation, as built. A rod that its own search does not find, as one that is slack,
 // is found with the whole.
-static bough_status find_equilibrium(bough_arena *arena, bough_simulation *s, equilibrium *x) {
-    *x = (equilibrium){.simulation = s, .channels = bough_channels_start(arena)};
+static bough_status find_equilibrium(bough_arena *arena, bough_simulation *s, bool finer, equilibrium *x) {
+    *x = (equilibrium){.simulation = s, .finer = finer, .channels = bough_channels_start(arena)};
     x->rod = bough_arena_take(arena, ((size_t)s->n_rod + 1) * sizeof *x->rod);
     // a modal body only with the whole
     x->independent = bough_rods_are_independent(s) && bough_steady_rods(s) == s->n_rod;
@@ -174,7 +176,7 @@ static bough_status find_finer(bough_arena *arena, void *self) {
     if (!refine(scene, c->mesh)) return bough_ok();
     BOUGH_TRY(bough_simulation_build(arena, scene, &s));
     start_near(c->coarse->simulation, s);
-    BOUGH_TRY(find_equilibrium(arena, s, &fine));
+    BOUGH_TRY(find_equilibrium(arena, s, true, &fine));
     compare(c, &fine);
     return bough_ok();
 }
@@ -457,7 +459,7 @@ static bough_status find(bough_arena *arena, const void *given) {
     if (own->path) return follow_path(arena, s, folder);
     equilibrium x;
     mesh_error mesh;
-    BOUGH_TRY(find_equilibrium(arena, s, &x));
+    BOUGH_TRY(find_equilibrium(arena, s, false, &x));
     bough_status stability = find_growth(arena, &x);
     warn_of_growth(&stability, &x.growth);
     const double *error = find_mesh_error(arena, &x, &mesh);

@@ -94,6 +94,7 @@ typedef struct continuation {
     double *state; // (n_state) of the equilibrium found last
     bool started;
     bool unstable; // an unstable equilibrium is better than none
+    bool alone;    // finer meshes are not asked after a failure
 } continuation;
 
 // The equilibrium of rods of the present exponent, from the one found last.
@@ -257,7 +258,7 @@ static bough_status find_equilibrium(bough_arena *arena, void *data) {
         return bough_equilibrium_search_within(bough_equilibrium_def_default(), c->simulation, c->assembly,
                                                c->time, c->work);
     bough_status status = find_on_mesh(arena, c);
-    return status.code == BOUGH_FAILED ? explain_by_finer(c, status) : status;
+    return status.code == BOUGH_FAILED && !c->alone ? explain_by_finer(c, status) : status;
 }
 
 static bough_status find_any(bool unstable, bough_simulation *s, const bough_assembly *assembly, double time,
@@ -297,4 +298,12 @@ bough_status bough_simulation_equilibrium_near(bough_simulation *s, const bough_
 bough_status bough_simulation_any_equilibrium(bough_simulation *s, const bough_assembly *assembly,
                                               double time, bough_equilibrium_work *work) {
     return find_any(true, s, assembly, time, work);
+}
+
+bough_status bough_simulation_finer_equilibrium(bough_simulation *s, const bough_assembly *assembly,
+                                                double time, bough_equilibrium_work *work) {
+    continuation c = {
+        .simulation = s, .assembly = assembly, .time = time, .work = work, .unstable = true, .alone = true};
+    *work = (bough_equilibrium_work){0};
+    return bough_arena_use(find_equilibrium, &c);
 }

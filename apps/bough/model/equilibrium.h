@@ -39,6 +39,10 @@ bough_status bough_simulation_equilibrium_near(bough_simulation *s, const bough_
 bough_status bough_simulation_any_equilibrium(bough_simulation *s, const bough_assembly *assembly,
                                               double time, bough_equilibrium_work *work);
 
+// The same for a mesh that another one is compared with: a failure does not look for still finer ones.
+bough_status bough_simulation_finer_equilibrium(bough_simulation *s, const bough_assembly *assembly,
+                                                double time, bough_equilibrium_work *work);
+
 // What grows from an equilibrium by the tangents, the air's forces constant. Where something turns, the
 // tangents of one azimuth say nothing about oscillations: none is given.
 typedef struct bough_growth {
