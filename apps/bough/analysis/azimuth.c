@@ -1,4 +1,4 @@
-// theory (112).
+// theory (113).
 #include "apps/bough/analysis/azimuth.h"
 
 #include "apps/bough/model/companion.h"

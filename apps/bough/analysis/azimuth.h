@@ -1,4 +1,4 @@
-// The mean of a turning rotor of n equal blades over its azimuths, theory (112). Where tilt, shear, weight
+// The mean of a turning rotor of n equal blades over its azimuths, theory (113). Where tilt, shear, weight
 // and tower make the loads of a blade change with its azimuth, the linear system, seen by an observer at
 // rest, repeats with an nth of a turn. Modes are those of its mean over some azimuths of that, each about its
 // own equilibrium.
