@@ -248,6 +248,23 @@ grep -q '1 of 10 cases failed: the lifetime result is incomplete' log || fail "n
 grep -q '^INCOMPLETE: 1 case failed' failing/table.txt || fail "table: $(head -n 4 failing/table.txt)"
 [ "$(grep -c ',ok,' failing/cases.csv)" -eq 9 ] || fail "the other cases were not run"
 
+# A case that passes a limit of the models is warned of, when it runs and when it is read again.
+cat >pulse.yaml <<END
+kind: sweep
+scene: $power
+common:
+  simulation.duration: 2 s
+  aero.wind: {kind: uniform, table: {times: [0, 1.021, 1.024, 1.027], speeds: [10, 10, 60, 10]}}
+channels: [RotSpeed]
+grid:
+  aero.air_density: [1.1, 1.225]
+END
+for call in first second; do
+    study 0 'case 2 (sweep, air_density=1.225): warning: .*the wind changes by 50 m/s and back between two samples' \
+        pulse.yaml --out pulse
+done
+[ "$(grep -c 'the wind changes by' pulse/cases.csv)" -eq 2 ] || fail "warnings in cases.csv: $(cat pulse/cases.csv)"
+
 # Bad input, before anything runs.
 refused() {
     message=$1

@@ -2,6 +2,7 @@
 
 #include "apps/bough/model/error_verdict.h"
 #include "apps/bough/model/run.h"
+#include "apps/bough/model/validity.h"
 #include "apps/bough/results/folder.h"
 #include "apps/bough/results/recorder.h"
 #include "apps/bough/scene/scene_files.h"
@@ -188,10 +189,14 @@ static bough_status judge(bough_arena *arena, const case_run *r) {
     bough_companion *c = r->run.companion;
     double bound = r->run.simulation->scene->simulation.error_bound;
     bough_error_shares shares = {0};
-    char warning[BOUGH_ERROR_WARNING];
+    char warning[BOUGH_ERROR_WARNING], *text = r->result->warnings;
     bough_status status = bough_ok();
     if (bough_error_exceeds(c, bound)) status = bough_error_shares_find(arena, c, r->drive->stop, &shares);
-    return bough_is_ok(&status) ? bough_error_judge(c, &shares, bound, warning) : status;
+    if (bough_is_ok(&status)) status = bough_error_judge(c, &shares, bound, warning);
+    if (!bough_is_ok(&status) || !warning[0]) return status;
+    size_t n = strlen(text);
+    snprintf(text + n, BOUGH_CASE_WARNINGS - n, "%s%s", n > 0 ? "; " : "", warning);
+    return status;
 }
 
 static bough_status run_in(bough_arena *arena, void *self) {
@@ -209,6 +214,7 @@ static bough_status run_in(bough_arena *arena, void *self) {
     bough_run_all(run);
     assert(!r->series || !bough_is_ok(&run->outcome) || r->series->filled == r->series->n_row);
     if (r->series) gather_estimates(r);
+    if (!r->series) bough_validity_list(run->simulation, result->warnings, BOUGH_CASE_WARNINGS);
     if (!r->series && bough_is_ok(&run->outcome)) run->outcome = judge(arena, r);
     if (!r->series) bough_counts_finish(&result->counts);
     if (r->study->is.weighted) find_load_errors(r);

@@ -49,6 +49,8 @@ typedef struct bough_load_error {
     double larger[BOUGH_MOST_SLOPES]; // the same of an equivalent load that is larger by its error
 } bough_load_error;
 
+enum { BOUGH_CASE_WARNINGS = 1200 };
+
 typedef struct bough_case_result {
     bough_status outcome; // BOUGH_FAILED with a diagnosis: the run ended there
     bool done;            // ended, well or not
@@ -62,7 +64,8 @@ typedef struct bough_case_result {
     double estimate[BOUGH_STUDY_MEASURES]; // the run's own of the same; NaN where it has none
 
     // with statistics
-    double counted; // of the time after the study's `from` [s]
+    char warnings[BOUGH_CASE_WARNINGS]; // limits of the models that the run has passed, and its error; or ""
+    double counted;                     // of the time after the study's `from` [s]
     bough_counts counts;
     bool has_companion;           // whose errors of loads follow
     bough_load_error *load_error; // (n_channel)

@@ -13,7 +13,8 @@ enum { PANELS = 6, VALUES = 3 }; // channels in plot.svg; least, largest and mea
 typedef struct note {
     double simulated, cpu, wall; // [s]
     double shown[PANELS][VALUES];
-    const char *failure; // the message; NULL: none
+    const char *failure;  // the message; NULL: none
+    const char *warnings; // likewise
 } note;
 
 // The tables and what they are made of.
@@ -38,6 +39,7 @@ static void head_cases(const bough_study *s, FILE *f) {
         for (int k = 0; k < s->n_slope; k++)
             fprintf(f, ",%s DEL(m=%g; 1 Hz) [%s]", s->channel[i], s->slope[k], s->unit[i]);
     }
+    fputs(",warnings", f);
     fputc('\n', f);
 }
 
@@ -72,6 +74,7 @@ static void put_case(const bough_study *s, int number, const bough_case_result *
         else
             for (int k = 0; k < 4 + s->n_slope; k++) fputs(",nan", f);
     }
+    bough_csv_next(f, r->done ? r->warnings : "");
     fputc('\n', f);
 }
 
@@ -306,6 +309,7 @@ void bough_case_failed(const bough_study *s, int number, const char *message, FI
 static void keep(bough_arena *arena, const bough_study *s, const bough_case_result *r, note *to) {
     bool failed = r->done && !bough_is_ok(&r->outcome);
     if (failed) to->failure = bough_arena_string(arena, r->outcome.message);
+    if (r->done && r->warnings[0]) to->warnings = bough_arena_string(arena, r->warnings);
     to->simulated = r->done ? r->time : 0;
     to->cpu = r->cpu;
     to->wall = r->wall;
@@ -344,6 +348,20 @@ static void put_costs(const void *self, FILE *f) {
         fprintf(f, "%d,%.9g,%.6g,%.6g\n", i + 1, c->note[i].simulated, c->note[i].cpu, c->note[i].wall);
 }
 
+enum { WARNED = 10 }; // cases whose warnings are printed
+
+static void print_warnings(const conclusion *c, FILE *f) {
+    const bough_study *s = c->study;
+    int n = 0;
+    for (int i = 0; i < s->n_case; i++) {
+        const bough_case *one = &s->cases[i];
+        if (!c->note[i].warnings || n++ >= WARNED) continue;
+        fprintf(f, "case %d (%s%s%s): warning: %s\n", i + 1, s->group[one->group].name,
+                one->settings[0] ? ", " : "", one->settings, c->note[i].warnings);
+    }
+    if (n > WARNED) fprintf(f, "%d more cases have warnings: see cases.csv\n", n - WARNED);
+}
+
 static void print_table(const void *self, FILE *f) {
     const conclusion *c = self;
     const bough_study *s = c->study;
@@ -356,6 +374,7 @@ static void print_table(const void *self, FILE *f) {
     }
     for (int i = 0; i < s->n_case; i++)
         if (c->note[i].failure) bough_case_failed(s, i, c->note[i].failure, f);
+    print_warnings(c, f);
 }
 
 static bough_status write_all(conclusion *c) {

@@ -3,6 +3,7 @@
 #include "apps/bough/results/folder.h"
 #include "core/base/input_file.h"
 
+#include <assert.h>
 #include <errno.h>
 #include <fcntl.h>
 #include <inttypes.h>
@@ -65,6 +66,20 @@ static void move(rows *r, const char *word, int n, double *x) {
     }
     r->good = r->good && take_word(r->file, word);
     for (int i = 0; i < n && r->good; i++) r->good = fscanf(r->file, "%lf", &x[i]) == 1;
+}
+
+// A row of a word and a text of less than `size` bytes.
+static void move_text(rows *r, const char *word, char *text, int size) {
+    if (!r->reads) {
+        put_text(r->file, word, text);
+        return;
+    }
+    char line[BOUGH_CASE_WARNINGS + 2] = "";
+    assert((size_t)size + 2 <= sizeof line);
+    r->good = r->good && take_word(r->file, word) && fgets(line, size + 2, r->file) && line[0] == ' ';
+    if (!r->good) return;
+    line[strcspn(line, "\n")] = line[size] = '\0';
+    memcpy(text, line + 1, (size_t)size);
 }
 
 // -- compared runs --------------------------------------------------------------------------------
@@ -143,6 +158,7 @@ static void move_statistics(rows *r, const bough_study *s, bough_case_result *x)
     move(r, "run", 6, run);
     x->time = run[0], x->counted = run[1], x->cpu = run[2], x->wall = run[3];
     x->counts.broken = run[4], x->has_companion = run[5] > 0;
+    move_text(r, "warnings", x->warnings, BOUGH_CASE_WARNINGS);
     for (int i = 0; bough_is_ok(&x->outcome) && i < s->n_channel && r->good; i++) {
         move_channel(r, s, &x->counts.channel[i]);
         if (x->has_companion) move_error(r, s, &x->load_error[i]);

@@ -337,6 +337,17 @@ void bough_validity_describe(const bough_simulation *s, bough_limit limit, char 
     snprintf(text + n, size - (size_t)n, limits[limit].text, p->value);
 }
 
+void bough_validity_list(const bough_simulation *s, char *text, size_t size) {
+    size_t n = 0;
+    text[0] = '\0';
+    for (int k = 0; k < BOUGH_LIMITS && n + 2 < size; k++) {
+        if (!s->validity->limit[k].passed) continue;
+        if (n > 0) n += (size_t)snprintf(text + n, size - n, "; ");
+        bough_validity_describe(s, (bough_limit)k, text + n, size - n);
+        n += strlen(text + n);
+    }
+}
+
 void bough_validity_print(const bough_simulation *s, FILE *stream) {
     char text[400];
     for (int k = 0; k < BOUGH_LIMITS; k++) {

@@ -57,6 +57,9 @@ void bough_validity_check_work(bough_simulation *s, double steps);
 const char *bough_limit_name(bough_limit limit);
 void bough_validity_describe(const bough_simulation *s, bough_limit limit, char *text, size_t size);
 
+// The sentences about all limits that are passed, as many as `size` bytes hold.
+void bough_validity_list(const bough_simulation *s, char *text, size_t size);
+
 // Writes a line for each limit that is passed.
 void bough_validity_print(const bough_simulation *s, FILE *stream);
 
