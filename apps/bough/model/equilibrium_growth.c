@@ -13,6 +13,7 @@ enum { POINTS = 3, NEAREST = 12 }; // the latter at the first, 4 at the others
 
 // An oscillation grows by this part of its value at least, equally from both points to this part of it.
 static const double rounded_oscillation = 1e-5, again = 2.7, equal = 0.01;
+static const double beside = 1.3; // of a rate, the second point for a motion that does not oscillate
 
 // Pairs with a larger residual are made by the rounding of long steps, as (72) is: nothing grows with them.
 static const double trusted = 1e-4;
@@ -130,6 +131,18 @@ static bough_status confirm_oscillation(bough_arena *arena, const bough_equilibr
     return bough_ok();
 }
 
+// Whether a motion that grows does so from a point beside its value, too. Where nothing converges there, it
+// is believed.
+static bool confirms_growth(bough_arena *arena, const bough_equilibrium_search *x, double rate) {
+    bough_eigen_pair pair[NEAREST];
+    bough_eigen_count count = {.wanted = 4};
+    bough_status status = find_near(arena, x, beside * rate, pair, &count);
+    bool found = !bough_is_ok(&status);
+    for (int k = 0; k < count.found && !found; k++)
+        found = !oscillates(&pair[k]) && fabs(pair[k].real - rate) < equal * rate;
+    return found;
+}
+
 static bough_status find_growth(bough_arena *arena, void *self) {
     bough_equilibrium_search *x = self;
     bough_equilibrium_search_set_up(arena, x);
@@ -144,6 +157,7 @@ static bough_status find_growth(bough_arena *arena, void *self) {
             bool known = pair[k].real > rounded * point[i] && pair[k].real < point[i] / rounded;
             bool grows = !oscillates(&pair[k]) && known && pair[k].residual < trusted;
             if (!grows || pair[k].real <= x->growth->rate || is_twist_of_mesh(arena, x, &pair[k])) continue;
+            if (!confirms_growth(arena, x, pair[k].real)) continue;
             x->growth->rate = pair[k].real;
             x->growth->row = largest_row(x, &pair[k]);
         }
