@@ -156,17 +156,17 @@ static void turn_back(bough_arena *arena, const bough_azimuths *a, const double 
     }
 }
 
-// to = share of (to + from), or of itself.
-static void mean_of(double share, size_t n, const double *restrict from, double *restrict to) {
-    for (size_t i = 0; i < n; i++) to[i] = share * (from ? to[i] + from[i] : to[i]);
+static void add_scaled(double factor, size_t n, const double *restrict from, double *restrict to) {
+    for (size_t i = 0; i < n; i++) to[i] = factor * (to[i] + from[i]);
 }
 
-static void add(double share, const bough_air_tangent *from, bough_air_tangent *to) {
+// to = factor (to + from).
+static void add(double factor, const bough_air_tangent *from, bough_air_tangent *to) {
     size_t n = (size_t)to->n, m = (size_t)to->n_air;
-    mean_of(share, n * n, from->motion, to->motion);
-    mean_of(share, n * m, from->lift, to->lift);
-    mean_of(share, n * m, from->drive, to->drive);
-    mean_of(share, m * m, from->lag, to->lag);
+    add_scaled(factor, n * n, from->motion, to->motion);
+    add_scaled(factor, n * m, from->lift, to->lift);
+    add_scaled(factor, n * m, from->drive, to->drive);
+    add_scaled(factor, m * m, from->lag, to->lag);
 }
 
 static bough_status find_tangent(bough_arena *arena, const bough_azimuth *x, bool dynamic,

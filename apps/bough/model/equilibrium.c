@@ -261,19 +261,6 @@ static bough_status find_equilibrium(bough_arena *arena, void *data) {
     return status.code == BOUGH_FAILED && !c->alone ? explain_by_finer(c, status) : status;
 }
 
-static bough_status find_any(bool unstable, bough_simulation *s, const bough_assembly *assembly, double time,
-                             bough_equilibrium_work *work) {
-    continuation c = {
-        .simulation = s, .assembly = assembly, .time = time, .work = work, .unstable = unstable};
-    *work = (bough_equilibrium_work){0};
-    return bough_arena_use(find_equilibrium, &c);
-}
-
-bough_status bough_simulation_equilibrium(bough_simulation *s, const bough_assembly *assembly, double time,
-                                          bough_equilibrium_work *work) {
-    return find_any(false, s, assembly, time, work);
-}
-
 // From the present state by long steps, else as from anywhere.
 static bough_status find_from_here(bough_arena *arena, void *data) {
     continuation *c = data;
@@ -288,22 +275,28 @@ static bough_status find_from_here(bough_arena *arena, void *data) {
     return find_equilibrium(arena, c);
 }
 
+static bough_status search(bough_status (*find)(bough_arena *, void *), continuation c) {
+    *c.work = (bough_equilibrium_work){0};
+    return bough_arena_use(find, &c);
+}
+
+bough_status bough_simulation_equilibrium(bough_simulation *s, const bough_assembly *assembly, double time,
+                                          bough_equilibrium_work *work) {
+    return search(find_equilibrium, (continuation){s, assembly, time, .work = work});
+}
+
 bough_status bough_simulation_equilibrium_near(bough_simulation *s, const bough_assembly *assembly,
                                                double time, bough_equilibrium_work *work) {
-    continuation c = {.simulation = s, .assembly = assembly, .time = time, .work = work};
-    *work = (bough_equilibrium_work){0};
-    return bough_arena_use(find_from_here, &c);
+    return search(find_from_here, (continuation){s, assembly, time, .work = work});
 }
 
 bough_status bough_simulation_any_equilibrium(bough_simulation *s, const bough_assembly *assembly,
                                               double time, bough_equilibrium_work *work) {
-    return find_any(true, s, assembly, time, work);
+    return search(find_equilibrium, (continuation){s, assembly, time, .work = work, .unstable = true});
 }
 
 bough_status bough_simulation_finer_equilibrium(bough_simulation *s, const bough_assembly *assembly,
                                                 double time, bough_equilibrium_work *work) {
-    continuation c = {
-        .simulation = s, .assembly = assembly, .time = time, .work = work, .unstable = true, .alone = true};
-    *work = (bough_equilibrium_work){0};
-    return bough_arena_use(find_equilibrium, &c);
+    return search(find_equilibrium,
+                  (continuation){s, assembly, time, .work = work, .unstable = true, .alone = true});
 }

@@ -69,8 +69,8 @@ static const struct {
                               "it turns by %.3g deg between two samples of the air, which miss what"
                               " changes within a rotation: take a higher aero.rate"},
     [BOUGH_LIMIT_START] = {"unstable_start",
-                           "the equilibrium from which the run starts is unstable: motions from it grow at"
-                           " %.3g 1/s, from disturbances that the error estimate does not contain"},
+                           "the equilibrium from which the run starts is unstable: small disturbances, which"
+                           " the error estimate does not contain, grow at %.3g 1/s"},
     [BOUGH_LIMIT_STEPS] =
         {"solver_steps", "motions so fast that a solver takes %.3g steps in a macro step make most of the"
                          " cost: damping, a larger rtol or another solver (radau5, cvode-bdf) may end that"},
@@ -111,7 +111,7 @@ static void check_rotation(bough_simulation *s) {
     double turned = fabs(rotor_speed(s)) / s->scene->aero.rate;
     if (turned <= most_rotation) return;
     validity_pass(s->validity, BOUGH_LIMIT_ROTATION, s->scene->turbine.rotor, s->master->time,
-                  turned * (180 / BOUGH_PI));
+                  turned / BOUGH_DEGREE);
 }
 
 static void check_speed(bough_simulation *s) {
