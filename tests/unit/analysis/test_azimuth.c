@@ -59,6 +59,6 @@ TEST(azimuths_of_a_symmetric_rotor_change_nothing) {
                    "bodies[hub].joint.placement=[move z 1.96256 m, move x -5.0191 m]", NULL});
     for (int k = 0; k < COUNT; k++) {
         assert_true(v.mode[k].frequency_change < 1e-3);
-        assert_true(v.mode[k].damping_change < 1e-3);
+        assert_true(v.mode[k].damping_change < 2e-4); // 4e-4 where blades blend in the wrong direction
     }
 }
