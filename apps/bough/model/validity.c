@@ -21,6 +21,9 @@ static const double most_between = 0.05;
 static const double most_rotation = BOUGH_PI / 3;
 // A segment has one strain, a coarse approximation beyond this angle; there is none beyond 120°.
 static const double most_turn = 0.25 * BOUGH_PI;
+// Of the length of a modal piece, by which its shapes may move a vertex: a cantilever whose tip goes that far
+// aside comes nearer to its root by 0.06 of the way, which shapes that are linear leave out.
+static const double most_linear = 0.1;
 // Limits of bough_loops_margin, absolute and relative to the largest so far: on random linkages it stays
 // above 0.02 or above 0.03 of the largest, and falls to 1e-5 to 3e-3 where the links come to lie on one line.
 static const double least_margin = 0.01, least_share = 0.1;
@@ -50,6 +53,10 @@ static const struct {
                                             " between two samples: take a higher aero.rate, or fidelity rod"},
     [BOUGH_LIMIT_TURN] = {"segment_turn", "a segment turns its ends against each other by %.3g deg, more"
                                           " than 45 deg: take more segments"},
+    [BOUGH_LIMIT_SHAPES] =
+        {"modal_deflection",
+         "its shapes, which hold for small deflections, move a vertex by %.2g of its length:"
+         " take fidelity rod"},
     [BOUGH_LIMIT_SPACING] = {"blade_spacing",
                              "the blades are not evenly spaced about its axis: between two of them are"
                              " %.4g deg"},
@@ -175,6 +182,32 @@ static void check_turns(bough_simulation *s) {
     }
 }
 
+// The largest way of a vertex over the length of the piece.
+static double deflection_of(const bough_modal_piece *p, const double *q) {
+    double square = 0, length = 0;
+    for (int i = 1; i <= p->n; i++) {
+        bough_vec3 way = bough_modal_vertex(p, i, q).linear;
+        square = fmax(square, bough_dot(way, way));
+        length += p->rod->length[i - 1];
+    }
+    return sqrt(square) / length;
+}
+
+static void check_shapes(bough_simulation *s) {
+    for (int i = 0; i < s->n_beam; i++) {
+        const bough_beam *beam = &s->beam[i];
+        if (!beam->modal || s->validity->limit[BOUGH_LIMIT_SHAPES].passed) continue;
+        const bough_modal_model *m = bough_modal_body_model(beam->modal);
+        for (int k = 0; k < m->n_piece; k++) {
+            double deflection = deflection_of(&m->piece[k], s->rod[beam->port].state + m->offset[k]);
+            if (deflection <= most_linear) continue;
+            validity_pass(s->validity, BOUGH_LIMIT_SHAPES, (int)(beam->body - s->scene->body),
+                          s->master->time, deflection);
+            break;
+        }
+    }
+}
+
 static void check_closures(bough_simulation *s) {
     double t = s->master->time;
     int closure = 0;
@@ -254,6 +287,7 @@ void bough_validity_check(bough_simulation *s) {
     if (s->aero) check_air(s);
     if (s->aero) check_rotation(s);
     check_turns(s);
+    check_shapes(s);
     check_speed(s);
 }
 

@@ -11,6 +11,7 @@ typedef enum bough_limit {
     BOUGH_LIMIT_TOWER,       // a blade is inside the tower
     BOUGH_LIMIT_SAMPLES,     // the samples of the air are too seldom for the vibrations of a modal blade
     BOUGH_LIMIT_TURN,        // a rod's segment turns its ends against each other by more than 45°
+    BOUGH_LIMIT_SHAPES,      // a modal body, or a piece of one, bends by more than a tenth of its length
     BOUGH_LIMIT_SPACING,     // the blades are not evenly spaced about the rotor's axis
     BOUGH_LIMIT_ACROSS,      // the rotor's axis is across the wind, or faces away from it
     BOUGH_LIMIT_MESH,        // a rod has one segment

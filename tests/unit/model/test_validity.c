@@ -80,6 +80,22 @@ TEST(a_turned_segment_is_reported) {
     check_near(s->validity->limit[BOUGH_LIMIT_TURN].value, 60, 1, 0);
 }
 
+// The tip of a uniform cantilever goes aside by F L³/(3 E I): 50 N and 55 N are on either side of a tenth of
+// its length.
+TEST(a_modal_body_that_bends_far_is_reported) {
+    static const char *const load[] = {"loads=[{body: beam, at: tip, force: [50 N, 0, 0]}]",
+                                       "loads=[{body: beam, at: tip, force: [55 N, 0, 0]}]"};
+    for (int k = 0; k < 2; k++) {
+        const char *const sets[] = {"bodies[beam].fidelity=modal", "gravity=[0, 0, 0]",
+                                    "simulation.initial=equilibrium", load[k], NULL};
+        check_arena(arena);
+        bough_simulation *s = scene_build(arena, "tests/data/scenes/example-beam.yaml", sets);
+        bough_validity_check(s);
+        assert_int_equal(passed(s), k == 0 ? 0 : 1 << BOUGH_LIMIT_SHAPES);
+        if (k == 1) check_near(s->validity->limit[BOUGH_LIMIT_SHAPES].value, 55. * 4 / (3 * 700), 1e-3, 0);
+    }
+}
+
 // The hub on the tower's axis, without tilt: the hanging blade stands in the tower.
 TEST(a_blade_in_the_tower_is_reported) {
     static const char *const sets[] = {"bodies[2].joint.placement=[move z 1.2 m]", NULL};
