@@ -241,9 +241,11 @@ static bough_status prove_kind(bough_arena *arena, const finding *x, bough_error
     bough_arena_each(arena, n + 1, &p.own, &p.others);
     bough_status status = bough_arena_use(prove, &p);
     if (status.code == BOUGH_INTERRUPTED) return status;
-    double *own = x->shares->share[kind].largest;
     for (size_t i = 0; i < n && bough_is_ok(&status); i++) {
-        own[i] = fmin(own[i], p.own[i]);
+        for (int k = 0; k < BOUGH_SHARES; k++) {
+            double *share = &x->shares->share[k].largest[i];
+            *share = fmin(*share, k == (int)kind ? p.own[i] : p.others[i]);
+        }
         c->error[i] = fmin(c->error[i], p.own[i] + p.others[i]);
     }
     return bough_ok();
