@@ -240,12 +240,14 @@ static void bend(bough_aero_signal *s, const double *from, const double *next, c
     }
 }
 
-// Error of the expected motion in the forces across the blade of a modal body, mean of about ten samples.
+// Error of the expected motion in the forces across the blade, mean of about ten samples.
 static void note_missed(bough_aero_signal *s) {
+    const double *restrict now = s->now, *restrict expected = s->expected, *restrict whole = s->whole;
     double missed = 0, size = 0;
+#pragma omp simd reduction(+ : missed, size)
     for (int k = 0; k < 2 * s->n_vertex; k++) {
-        missed += pow(s->now[k] - s->expected[k], 2);
-        size += pow(s->whole[k], 2);
+        missed += (now[k] - expected[k]) * (now[k] - expected[k]);
+        size += whole[k] * whole[k];
     }
     if (size > 0) s->missed += 0.1 * (fmin(missed / size, 1) - s->missed);
 }
@@ -263,7 +265,7 @@ void bough_aero_signal_follow(bough_aero_signal *s, bough_aero_fresh fresh, boug
     memcpy(whole, s->reached, bytes);
     add_slope(s, 1, s->now, whole);
     add_slope(s, -1, s->expected, whole);
-    if (s->beam->modal) note_missed(s);
+    if (s->beam->port >= 0) note_missed(s);
     memcpy(last, s->sampled, bytes);
     memcpy(s->sampled, whole, bytes);
     take_slope(s, fresh, course);

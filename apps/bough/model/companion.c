@@ -1,5 +1,6 @@
 #include "apps/bough/model/companion.h"
 
+#include "apps/bough/model/aero_link.h"
 #include "apps/bough/model/error_verdict.h"
 #include "apps/bough/model/simulation.h"
 
@@ -112,11 +113,22 @@ static double difference(const bough_channel *channel, double a, double b) {
 // A force answers accelerations, whose errors are of a lower order.
 static const double least_share_of_force = 0.4;
 
+// Of the loads of the air, that may be missed between two samples. What misses more vibrates about as fast as
+// the samples follow each other; with half of these a solution errs by no multiple of what the run errs by.
+static const double most_missed = 0.1;
+
+static bool resolves_air(const bough_simulation *s) {
+    double missed = 0;
+    for (int b = 0; s->aero && b < s->scene->turbine.n_blade; b++)
+        missed = fmax(missed, bough_aero_link_missed(s->aero, b));
+    return missed <= most_missed;
+}
+
 // Of the difference, that the run errs by in a channel. A sampled one that the companion holds, one sample of
 // the run longer than the run does, differs by what happens in that time.
-static double share_now(const bough_companion *c, const bough_channel *channel, bool held) {
-    if (channel->sampled) return held ? c->share_held : c->share;
-    return channel->kind == BOUGH_KIND_FORCE ? fmax(c->share, least_share_of_force) : c->share;
+static double share_now(const bough_channel *channel, double share, double share_held) {
+    if (channel->sampled) return share_held;
+    return channel->kind == BOUGH_KIND_FORCE ? fmax(share, least_share_of_force) : share;
 }
 
 // The length of the vector that the channel is a component of.
@@ -173,13 +185,15 @@ static void compare(bough_companion *c) {
     // the rarer sample is held longer; at an event, between two steps, that of the run
     bool rarer = c->coarser.simulation->scene->aero.rate <= c->run->scene->aero.rate;
     bool held = rarer ? !bough_master_sampled(c->coarser.simulation->master) : c->run->master->at_event;
+    double share = resolves_air(c->run) ? c->share : fmax(c->share, 1),
+           share_held = held ? c->share_held : share;
     memcpy(c->before, c->value, (size_t)c->channels->count * sizeof(double));
     sample(c);
     c->compared++;
     for (int i = 0; i < c->channels->count; i++) {
         const bough_channel *channel = &c->channels->channel[i];
-        double error =
-            share_now(c, channel, held) * fabs(difference(channel, c->value[i], c->coarser.value[i]));
+        double error = share_now(channel, share, share_held) *
+                       fabs(difference(channel, c->value[i], c->coarser.value[i]));
         error = fmax(error, stale(c, i));
         if (!(error <= c->error[i])) c->error[i] = error; // a NaN wins
     }
