@@ -324,7 +324,7 @@ static int find_body(const bough_scene *scene, const char *name) {
 void bough_validity_check_equilibrium(bough_simulation *s) {
     bough_growth growth;
     const bough_assembly *a = s->master->assembly;
-    if (s->scene->simulation.initial != BOUGH_SCENE_IN_EQUILIBRIUM) return;
+    if (s->scene->simulation.initial == BOUGH_SCENE_UNDEFORMED) return;
     bough_status status = bough_simulation_slow_growth(s, a, 0, &growth);
     double rate = fmax(growth.rate, growth.oscillation);
     if (!bough_is_ok(&status) || !(rate > 0)) return;

@@ -235,3 +235,16 @@ TEST(an_unstable_start_is_reported) {
         assert_int_equal(passed(run.simulation), k == 0 ? 1 << BOUGH_LIMIT_START : 0);
     }
 }
+
+// So is one beside a turbine in steady operation, whose own start is stable.
+TEST(an_unstable_start_in_operation_is_reported) {
+    static const char *const load[] = {"loads[0].force=[0, 0, -200]", "loads[0].force=[0, 0, -40]"};
+    for (int k = 0; k < 2; k++) {
+        const char *sets[] = {load[k], NULL};
+        check_arena(arena);
+        bough_run run;
+        const bough_scene *scene = scene_read(arena, "tests/data/scenes/operation-beside-column.yaml", sets);
+        check_ok(bough_run_create(arena, scene, &run));
+        assert_int_equal(passed(run.simulation), k == 0 ? 1 << BOUGH_LIMIT_START : 0);
+    }
+}
