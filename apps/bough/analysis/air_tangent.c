@@ -164,7 +164,7 @@ static void set_places(blades *b) {
         while (i + 1 < m->n_segment && m->span[i] < span) i++;
         double gap = place_of(aero, m->span[i + 1]) - place_of(aero, m->span[i - 1]);
         b->place[j] = place_of(aero, span);
-        b->reach[j] = 1.5 + gap;
+        b->reach[j] = 2 + gap;
     }
 }
 
@@ -214,17 +214,13 @@ static void set_columns(const blades *b, bough_air_tangent *t) {
     }
 }
 
-// Distance of place i from that of state j, relative to how far that one reaches.
-static double distance(const blades *b, int i, int j) {
-    return fabs(b->place[i] - b->place[j]) / b->reach[j];
-}
-
 static void set_nearest(blades *b, int n, const int *some) {
     for (int i = 0; i < b->n_all; i++) {
-        int nearest = some[0];
+        int at = 0;
+        double here = b->place[i];
         for (int k = 1; k < n; k++)
-            if (distance(b, i, some[k]) < distance(b, i, nearest)) nearest = some[k];
-        b->nearest[i] = nearest;
+            if (fabs(b->place[some[k]] - here) < fabs(b->place[some[at]] - here)) at = k;
+        b->nearest[i] = some[at];
     }
 }
 
