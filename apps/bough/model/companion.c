@@ -32,17 +32,18 @@ static double share_held(const bough_scene *scene) {
     return fmax(1 - rate * scene->simulation.macro_step, 0);
 }
 
-// Whether a solution that is finer in time runs beside the first steps. A tight tolerance follows every
-// vibration by itself, and a further copy of a library would write to the companion's file.
+// Whether a solution that is finer in time and air runs beside the first steps. Without air a tight tolerance
+// follows every vibration by itself, and a further copy of a library would write to the companion's file.
 static bool has_finer_start(const bough_scene *scene) {
     static const double tight = 1e-5;
-    return scene->simulation.master.rtol >= tight && !scene->control.library;
+    return (scene->simulation.master.rtol >= tight || scene->aero.node) && !scene->control.library;
 }
 
 static bough_status build(bough_arena *arena, bough_companion *c) {
     BOUGH_TRY(bough_other_run_build(arena, c->run, BOUGH_COARSER_ALL, &c->coarser));
     c->first_steps = has_finer_start(c->run->scene);
-    if (c->first_steps) BOUGH_TRY(bough_other_run_build(arena, c->run, BOUGH_FINEST_TIME, &c->finer));
+    static const int finer = BOUGH_FINEST_TIME | BOUGH_FINER_AIR;
+    if (c->first_steps) BOUGH_TRY(bough_other_run_build(arena, c->run, finer, &c->finer));
     c->share = bough_coarser_share(c->run->scene, c->coarser.simulation->scene);
     if (bough_coarser_is_loose(c->run->scene)) c->share = fmax(c->share, bough_finer_time_share());
     c->share_held = share_held(c->run->scene);
@@ -169,12 +170,15 @@ static bool advance_finer(const bough_companion *c) {
 }
 
 // Vibrations that are faster than the steps decay in the first ones of run and companion alike and leave no
-// difference. The finer run follows them for long enough.
+// difference, and those that are faster than the samples of the air have their own value at each of these.
+// The finer run follows them for long enough.
 static void compare_first(bough_companion *c) {
     c->first_steps = advance_finer(c);
     if (!c->first_steps) return;
     bough_other_run_sample(&c->finer);
+    bool held = !bough_master_sampled(c->run->master);
     for (int i = 0; i < c->channels->count; i++) {
+        if (held && c->channels->channel[i].sampled) continue; // an older sample than that of the finer run
         double between = fabs(difference(&c->channels->channel[i], c->value[i], c->finer.value[i]));
         c->least[i] = fmax(c->least[i], bough_finer_time_share() * between);
         if (c->error[i] < c->least[i]) c->error[i] = c->least[i];

@@ -1,6 +1,6 @@
 // The companion of a run: a second simulation of the same scene that is coarser in everything. What lies
 // between the two at equal times tells what the run errs by: mesh, air, time and coupling at once, for every
-// channel. Beside the first macro steps a third one that is finer in time finds what decays in both.
+// channel. Beside the first macro steps a third one that is finer in time and air finds what decays in both.
 //
 // If the error falls with order p, a solution with twice the step errs by 2ᵖ times as much, and the run by
 // 1/(2ᵖ − 1) of the difference: a third for order 2 (docs/theory.md).
@@ -70,7 +70,7 @@ void bough_other_run_sample(bough_other_run *other);
 typedef struct bough_companion {
     bough_simulation *run;
     bough_other_run coarser;
-    bough_other_run finer;               // in time, beside the first macro steps
+    bough_other_run finer;               // in time and air, beside the first macro steps
     bool first_steps;                    // these are not over
     const bough_channels *channels;      // of the run
     double length;                       // of the longest rod; 0: there is none [m]

@@ -246,7 +246,7 @@ static bough_status prove_kind(bough_arena *arena, const finding *x, bough_error
             double *share = &x->shares->share[k].largest[i];
             *share = fmin(*share, k == (int)kind ? p.own[i] : p.others[i]);
         }
-        c->error[i] = fmin(c->error[i], p.own[i] + p.others[i]);
+        c->error[i] = fmax(fmin(c->error[i], p.own[i] + p.others[i]), c->least[i]);
     }
     return bough_ok();
 }

@@ -281,35 +281,52 @@ TEST(a_proof_bounds_the_other_parts) {
     assert_true(sum > 0.5 * whole && sum < 1.5 * whole);
 }
 
-// Blades in deep negative stall vibrate about as fast as the samples of the air follow each other, so that
-// half of these err no more.
-TEST(samples_that_resolve_no_vibration_err_by_the_whole_difference) {
-#define OVERSPEED                                                                                            \
-    "simulation.duration=3.2 s", "simulation.output.from=0", "bodies[hub].joint.speed=16 rpm",               \
-        "aero.wind={kind: uniform, speed: 12}"
+// Largest differences in channels over steps of 40 ms of land-operation.yaml between a run and one in macro
+// steps of a quarter with four times the samples of the air, and what the run estimates.
+static void compare_operation(const char *const *sets, const char *const *truth_sets, int steps, int n,
+                              const char *const *channel, double *error, double *estimate) {
     static const char scene[] = "apps/turbine/land-operation.yaml";
-    const char *const truth_sets[] = {OVERSPEED, "simulation.macro_step=10 ms", "aero.rate=100", NULL};
-    const char *const sets[] = {OVERSPEED, "simulation.error_estimate=companion", NULL};
-    static const char *const watched[] = {"GenSpeed", "RtAeroPwr", "RtAeroMxh", "RotPwr", "blade2Trq"};
     check_arena(arena);
     bough_run r, truth;
     check_ok(bough_run_create(arena, scene_read(arena, scene, sets), &r));
     check_ok(bough_run_create(arena, scene_read(arena, scene, truth_sets), &truth));
-    double error[5] = {0};
-    for (int k = 1; k <= 80; k++) {
+    for (int k = 1; k <= steps; k++) {
         check_ok(bough_run_step(&r));
         while (truth.simulation->master->time < 0.04 * k - 1e-9) check_ok(bough_run_step(&truth));
-        for (int w = 0; w < 5; w++) {
-            int i = bough_channels_find(&r.channels, watched[w]);
+        for (int w = 0; w < n; w++) {
+            int i = bough_channels_find(&r.channels, channel[w]);
+            estimate[w] = r.companion->error[i];
             error[w] = fmax(error[w], fabs(bough_run_values(&r)[i] - bough_run_values(&truth)[i]));
         }
     }
-    for (int w = 0; w < 5; w++) {
-        double estimate = r.companion->error[bough_channels_find(&r.channels, watched[w])];
-        print_message("%s: true %.2g, estimate %.2g: %.2f\n", watched[w], error[w], estimate,
-                      estimate / error[w]);
-        assert_true(estimate > error[w] / 3 && estimate < 4 * error[w]);
-    }
+    for (int w = 0; w < n; w++)
+        print_message("%s: true %.2g, estimate %.2g: %.2f\n", channel[w], error[w], estimate[w],
+                      estimate[w] / error[w]);
+}
+
+#define OPERATION "simulation.output.from=0", "simulation.duration=3.2 s"
+#define FOUR_TIMES "simulation.macro_step=10 ms", "aero.rate=100"
+#define OVERSPEED "bodies[hub].joint.speed=16 rpm", "aero.wind={kind: uniform, speed: 12}"
+
+// Blades in deep negative stall vibrate about as fast as the samples of the air follow each other, so that
+// half of these err no more.
+TEST(samples_that_resolve_no_vibration_err_by_the_whole_difference) {
+    const char *const truth_sets[] = {OPERATION, OVERSPEED, FOUR_TIMES, NULL};
+    const char *const sets[] = {OPERATION, OVERSPEED, "simulation.error_estimate=companion", NULL};
+    static const char *const channel[] = {"GenSpeed", "RtAeroPwr", "RtAeroMxh", "RotPwr", "blade2Trq"};
+    double error[5] = {0}, estimate[5];
+    compare_operation(sets, truth_sets, 80, 5, channel, error, estimate);
+    for (int w = 0; w < 5; w++) assert_true(estimate[w] > error[w] / 3 && estimate[w] < 4 * error[w]);
+}
+
+// In the first samples the speed of the blades' vibrations is not resolved.
+TEST(samples_of_the_start_have_an_error) {
+    const char *const truth_sets[] = {OPERATION, FOUR_TIMES, NULL};
+    const char *const sets[] = {OPERATION, "simulation.error_estimate=companion", NULL};
+    static const char *const channel[] = {"RtVAvgxh", "RtVAvgyh", "RtVAvgzh", "RtTSR"};
+    double error[4] = {0}, estimate[4];
+    compare_operation(sets, truth_sets, 10, 4, channel, error, estimate);
+    for (int w = 0; w < 4; w++) assert_true(estimate[w] > 0.8 * error[w] && estimate[w] < 3 * error[w]);
 }
 
 static int asked; // NOLINT(cppcoreguidelines-avoid-non-const-global-variables): by one test
@@ -411,7 +428,7 @@ TEST(a_held_sample_errs_by_its_age) {
         outcome *o = run_for("apps/turbine/runup-stages.yaml", 51, sets);
         double held = 6 / 1.02 * cases[k].age, error = o->error[find(o, "RtVAvgxh")];
         print_message("error %.2g m/s, held %.2g\n", error, held);
-        check_near(error, held, 0, 0.02);
+        check_near(error, held, 0, 0.025); // with that of the start
         free(o);
     }
 }
