@@ -233,6 +233,9 @@ def finer(scene, times, solver, rtol):
     for body in scene["bodies"]:
         if "rod" in body:
             body["rod"]["segments"] *= times
+    for load in scene.get("loads", []):
+        if isinstance(load.get("at"), int):  # the same place
+            load["at"] *= times
     simulation = scene["simulation"]
     step = float(simulation["macro_step"].split()[0])
     simulation["output"] = {"interval": "%.12g ms" % step}
