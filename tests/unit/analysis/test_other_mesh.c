@@ -1,0 +1,70 @@
+// What another mesh changes in modes in the air, beside the modes of that mesh itself.
+#include "apps/bough/analysis/vibration.h"
+#include "apps/bough/model/companion.h"
+#include "tests/unit/built_scene.h"
+
+#include <math.h>
+
+// The nearest eigenvalue of the other scene, |λ − λ'|/|λ|.
+static double nearest(const bough_scene_mode *mode, const bough_vibration *other) {
+    double least = HUGE_VAL;
+    for (int k = 0; k < other->found; k++) {
+        const bough_scene_mode *there = &other->mode[k];
+        double growth = there->growth - mode->growth;
+        double turn = 2 * BOUGH_PI * (there->damped_frequency - mode->damped_frequency);
+        least = fmin(least, hypot(growth, turn) / (2 * BOUGH_PI * mode->frequency));
+    }
+    return least;
+}
+
+// Compares each mode's `moved`; returns the largest.
+static double check_modes(bough_arena *arena, int count, const char *const *sets) {
+    bough_simulation *s = scene_build(arena, "apps/turbine/land-operation.yaml", sets), *coarser;
+    bough_vibration v, other;
+    bool compared;
+    check_ok(bough_vibration_find(arena, s, count, &v));
+    check_ok(bough_vibration_compare(arena, s, &v, &compared));
+    assert_true(compared);
+    const bough_scene *scene = bough_coarser_scene_beside(arena, s, BOUGH_COARSER_MESH);
+    check_ok(bough_simulation_build(arena, scene, &coarser));
+    check_ok(bough_vibration_find(arena, coarser, count + 4, &other));
+    double largest = 0;
+    int known = 0;
+    for (int k = 0; k < v.found; k++) {
+        if (isnan(v.mode[k].moved)) continue;
+        check_near(v.mode[k].moved, nearest(&v.mode[k], &other), 0.15, 2e-5);
+        largest = fmax(largest, v.mode[k].moved);
+        known++;
+    }
+    assert_true(known >= 8);
+    return largest;
+}
+
+TEST(another_mesh_moves_modes_as_its_own_modes_say) {
+    check_arena(arena);
+    const char *sets[] = {"aero.wind={kind: uniform, speed: 12 m/s}", "modes={of: scene, air: quasi-steady}",
+                          NULL};
+    double largest = check_modes(arena, 10, sets);
+    assert_true(largest > 1e-3 && largest < 1e-2);
+}
+
+TEST(another_mesh_moves_modes_with_states_of_the_air) {
+    check_arena(arena);
+    const char *sets[] = {"aero.wind={kind: uniform, speed: 12 m/s}", "modes={of: scene, air: dynamic}",
+                          NULL};
+    double largest = check_modes(arena, 20, sets);
+    assert_true(largest > 1e-4 && largest < 1e-2);
+}
+
+// The mesh is so coarse that the vectors do not lead to those of the other one.
+TEST(a_mesh_that_differs_much_is_searched) {
+    check_arena(arena);
+    const char *sets[] = {"bodies[blade1].rod.segments=6",
+                          "bodies[blade2].rod.segments=6",
+                          "bodies[blade3].rod.segments=6",
+                          "bodies[tower].rod.segments=4",
+                          "aero.wind={kind: uniform, speed: 12 m/s}",
+                          "modes={of: scene, air: quasi-steady}",
+                          NULL};
+    assert_true(check_modes(arena, 10, sets) > 5e-3);
+}
