@@ -23,6 +23,8 @@ typedef struct work {
     double *memory, *before, *after; // (n_memory): at rest; at both ends of rate_time
     double *state;                   // (n)
     double *rate[2], *air_rate[2];   // (n), (n_air) on either side
+    bough_air_mean *mean;            // that columns are added to; NULL: they are set
+    double *slope;                   // (n + n_air) of a column
 } work;
 
 static void take(bough_arena *arena, work *w) {
@@ -30,6 +32,7 @@ static void take(bough_arena *arena, work *w) {
     w->row = bough_arena_take(arena, m * sizeof *w->row);
     bough_arena_each(arena, m, &w->memory, &w->before, &w->after, &w->air_rate[0], &w->air_rate[1]);
     bough_arena_each(arena, n, &w->state, &w->rate[0], &w->rate[1]);
+    w->slope = bough_arena_doubles(arena, n + m);
 }
 
 // Advances the air's states by `step` from `from`, which is changed, to `to`.
@@ -95,17 +98,23 @@ static bool meets_air(const bough_simulation *s, int member) {
     return false;
 }
 
-// One state, of the bodies or of the air.
+// One state, of the bodies or of the air; its slopes stay in the work.
 static bough_status follow_state(work *w, const double *state, bool of_air, int at, double size,
                                  bough_air_tangent *t) {
+    size_t n = (size_t)t->n, n_air = (size_t)t->n_air, column = (size_t)at;
     begin_change(w, state);
     if (of_air)
         w->before[w->row[at]] += size;
     else
         w->state[at] += size;
     BOUGH_TRY(find_rates(w, state, w->rate[1], w->air_rate[1]));
-    set_column(w, size, (of_air ? t->lift : t->motion) + (size_t)at * (size_t)t->n,
-               (of_air ? t->lag : t->drive) + (size_t)at * (size_t)t->n_air);
+    set_column(w, size, w->slope, w->slope + n);
+    if (w->mean) {
+        bough_air_mean_add(w->mean, of_air ? t->n + at : at, w->slope, t);
+        return bough_ok();
+    }
+    memcpy((of_air ? t->lift : t->motion) + column * n, w->slope, n * sizeof(double));
+    memcpy((of_air ? t->lag : t->drive) + column * n_air, w->slope + n, n_air * sizeof(double));
     return bough_ok();
 }
 
@@ -134,6 +143,7 @@ typedef struct blades {
     double *place, *reach;   // (n_all); how far from it loads change
     double *size;            // (n_all) of differences
     int *nearest;            // (n_all) of the states changed at once
+    double *expected;        // (n + n_air) rates by the tangent for the changes of `check`
     double *other;           // (n) 1 over the scale of a member's state; 0: a blade's
 } blades;
 
@@ -176,6 +186,7 @@ static blades take_blades(bough_arena *arena, work *w, const bough_blade_group *
     double *scale = b.other = bough_arena_doubles(arena, (size_t)n);
     bough_arena_each(arena, all, &b.place, &b.reach, &b.size);
     b.nearest = bough_arena_take(arena, all * sizeof *b.nearest);
+    b.expected = bough_arena_doubles(arena, (size_t)(n + w->n_air) + 1);
     b.air_row = bough_arena_take(arena, (size_t)(group->n * n_air + 1) * sizeof *b.air_row);
     bough_air_tangent_rows(w->simulation, group, n_air, b.air_row);
     bough_assembly_scales(w->whole->assembly, scale);
@@ -201,16 +212,28 @@ static double rate_change(const blades *b, int blade, int j) {
     return is_of_air(b, j) ? w->air_rate[1][at] - w->air_rate[0][at] : w->rate[1][at] - w->rate[0][at];
 }
 
+// By how much the check changes a state.
+static double check_size(const blades *b, int blade, int j) {
+    return b->size[j] * sin(1 + 7.3 * j + 3.1 * blade);
+}
+
 // Slopes of each blade's rates by its own state nearest to them.
 static void set_columns(const blades *b, bough_air_tangent *t) {
-    for (int k = 0; k < b->group->n; k++) {
-        for (int i = 0; i < b->n_all; i++) {
-            int j = b->nearest[i];
+    const work *w = b->w;
+    for (int i = 0; i < b->n_all; i++) {
+        int j = b->nearest[i];
+        double sum = 0;
+        for (int k = 0; k < b->group->n; k++) {
             size_t column = (size_t)row_of(b, k, j), row = (size_t)row_of(b, k, i);
+            double slope = rate_change(b, k, i) / b->size[j];
+            b->expected[(is_of_air(b, i) ? (size_t)t->n : 0) + row] += check_size(b, k, j) * slope;
+            sum += slope;
+            if (w->mean) continue;
             double *of_body = (is_of_air(b, j) ? t->lift : t->motion) + column * (size_t)t->n;
             double *of_air = (is_of_air(b, j) ? t->lag : t->drive) + column * (size_t)t->n_air;
-            (is_of_air(b, i) ? of_air : of_body)[row] = rate_change(b, k, i) / b->size[j];
+            (is_of_air(b, i) ? of_air : of_body)[row] = slope;
         }
+        if (w->mean) bough_air_mean_add_own(w->mean, i, j, sum / b->group->n, t);
     }
 }
 
@@ -252,10 +275,13 @@ static bough_status follow_some(blades *b, const double *state, int n, const int
         set_columns(b, t);
         return bough_ok();
     }
-    for (int k = 0; k < b->group->n; k++)
-        for (int i = 0; i < n; i++)
-            BOUGH_TRY(
-                follow_state(w, state, is_of_air(b, some[i]), row_of(b, k, some[i]), b->size[some[i]], t));
+    for (int k = 0; k < b->group->n; k++) {
+        for (int i = 0; i < n; i++) {
+            int j = some[i];
+            BOUGH_TRY(follow_state(w, state, is_of_air(b, j), row_of(b, k, j), b->size[j], t));
+            for (int r = 0; r < t->n + t->n_air; r++) b->expected[r] += check_size(b, k, j) * w->slope[r];
+        }
+    }
     return bough_ok();
 }
 
@@ -296,28 +322,18 @@ static bough_status follow_blades(bough_arena *arena, blades *b, const double *s
 static const double disk = 1e-3;
 
 // Whether the tangent gives the rates that a change of all states of the blades and their air causes.
-static bough_status check(bough_arena *arena, const blades *b, const double *state,
-                          const bough_air_tangent *t, bool *good) {
+static bough_status check(const blades *b, const double *state, bool *good) {
     work *w = b->w;
-    double miss = 0, size = 0, *body, *air;
-    bough_arena_each(arena, (size_t)(t->n + t->n_air) + 1, &body, &air);
+    double miss = 0, size = 0;
+    const double *air = b->expected + w->whole->assembly->n_state;
     begin_change(w, state);
-    for (int k = 0; k < b->group->n; k++) {
-        for (int j = 0; j < b->n_all; j++) {
-            double by = b->size[j] * sin(1 + 7.3 * j + 3.1 * k);
-            size_t column = (size_t)row_of(b, k, j);
-            const double *of_body = (is_of_air(b, j) ? t->lift : t->motion) + column * (size_t)t->n;
-            const double *of_air = (is_of_air(b, j) ? t->lag : t->drive) + column * (size_t)t->n_air;
-            change(b, k, j, by);
-            for (int i = 0; i < t->n; i++) body[i] += by * of_body[i];
-            for (int i = 0; i < t->n_air; i++) air[i] += by * of_air[i];
-        }
-    }
+    for (int k = 0; k < b->group->n; k++)
+        for (int j = 0; j < b->n_all; j++) change(b, k, j, check_size(b, k, j));
     BOUGH_TRY(find_rates(w, state, w->rate[1], w->air_rate[1]));
     for (int k = 0; k < b->group->n; k++) {
         for (int j = 0; j < b->n_all; j++) {
             double own = rate_change(b, k, j), unit = is_of_air(b, j) ? 1 : b->size[j] / difference;
-            miss = fmax(miss, fabs(own - (is_of_air(b, j) ? air : body)[row_of(b, k, j)]) / unit);
+            miss = fmax(miss, fabs(own - (is_of_air(b, j) ? air : b->expected)[row_of(b, k, j)]) / unit);
             size = fmax(size, fabs(own) / unit);
         }
     }
@@ -325,15 +341,16 @@ static bough_status check(bough_arena *arena, const blades *b, const double *sta
     return bough_ok();
 }
 
-// The blades' columns, if they can be found so.
+// Whether the blades' columns may be found so.
+static bool may_be_at_once(const work *w, const bough_blade_group *group) {
+    return group && group->n > 0 && group->blade[0]->rod && w->simulation->drag == NULL;
+}
+
 static bough_status follow_group(bough_arena *arena, work *w, const double *state,
-                                 const bough_blade_group *group, bough_air_tangent *t, bool *found) {
-    *found = false;
-    if (group == NULL || group->n == 0 || group->blade[0]->rod == NULL || w->simulation->drag != NULL)
-        return bough_ok();
+                                 const bough_blade_group *group, bough_air_tangent *t, bool *good) {
     blades b = take_blades(arena, w, group);
     BOUGH_TRY(follow_blades(arena, &b, state, t));
-    return check(arena, &b, state, t, found);
+    return check(&b, state, good);
 }
 
 // -- all ------------------------------------------------------------------------------------------
@@ -344,13 +361,12 @@ static bool is_of_group(const bough_assembly *a, const bough_blade_group *group,
     return false;
 }
 
-static bough_status follow_all(bough_arena *arena, work *w, const double *state,
-                               const bough_blade_group *group, bough_air_tangent *t) {
+// All but the columns of a group and its air; `found` NULL: all.
+static bough_status follow_others(work *w, const double *state, const bough_blade_group *found,
+                                  bough_air_tangent *t) {
     const bough_assembly *a = w->whole->assembly;
-    bool found;
-    BOUGH_TRY(follow_group(arena, w, state, group, t, &found));
     for (int i = 0; i < a->n_member; i++) {
-        if (!meets_air(w->simulation, i) || (found && is_of_group(a, group, i))) continue;
+        if (!meets_air(w->simulation, i) || (found && is_of_group(a, found, i))) continue;
         BOUGH_TRY(follow_member(w, state, i, t));
     }
     for (int k = 0; k < w->n_air && !found; k++)
@@ -383,27 +399,66 @@ static work start(bough_arena *arena, bough_simulation *s, bough_whole *whole, d
     return w;
 }
 
+static bough_air_tangent take_tangent(bough_arena *arena, const work *w, int inputs) {
+    size_t n = (size_t)w->whole->assembly->n_state, m = (size_t)w->n_air, n_input = (size_t)inputs;
+    return (bough_air_tangent){.n = (int)n,
+                               .n_air = w->n_air,
+                               .n_per_blade = w->n_air / w->simulation->scene->turbine.n_blade,
+                               .motion = bough_arena_doubles(arena, n * n),
+                               .lift = bough_arena_doubles(arena, n * m + 1),
+                               .drive = bough_arena_doubles(arena, n * m + 1),
+                               .lag = bough_arena_doubles(arena, m * m + 1),
+                               .input = bough_arena_doubles(arena, n * n_input + 1),
+                               .input_drive = bough_arena_doubles(arena, m * n_input + 1)};
+}
+
+// Brings the air to rest about the state and finds the rates there.
+static bough_status begin_differences(work *w, const double *state) {
+    settle(w, state);
+    begin_change(w, state);
+    return find_rates(w, state, w->rate[0], w->air_rate[0]);
+}
+
+// Takes a group's columns out of the mean, as they were added.
+static bough_status take_back(bough_arena *arena, work *w, const double *state,
+                              const bough_blade_group *group, bough_air_tangent *t) {
+    bool good;
+    bough_air_mean_turn(w->mean);
+    BOUGH_TRY(follow_group(arena, w, state, group, t, &good));
+    bough_air_mean_turn(w->mean);
+    return bough_ok();
+}
+
+// All columns, those of a group at once where that is good.
+static bough_status follow_all(bough_arena *arena, work *w, const double *state,
+                               const bough_blade_group *group, bough_air_tangent *t) {
+    bool good = false;
+    BOUGH_TRY(begin_differences(w, state));
+    if (may_be_at_once(w, group)) {
+        BOUGH_TRY(follow_group(arena, w, state, group, t, &good));
+        if (!good && w->mean) BOUGH_TRY(take_back(arena, w, state, group, t));
+    }
+    return follow_others(w, state, good ? group : NULL, t);
+}
+
 bough_status bough_air_tangent_find(bough_arena *arena, bough_simulation *s, bough_whole *whole, double time,
                                     const double *state, bool dynamic, const bough_blade_group *group,
                                     const bough_air_inputs *inputs, bough_air_tangent *t) {
     work w = start(arena, s, whole, time, dynamic);
-    size_t n = (size_t)whole->assembly->n_state, m = (size_t)w.n_air;
-    size_t n_input = inputs ? (size_t)inputs->n : 0;
-    *t = (bough_air_tangent){.n = (int)n,
-                             .n_air = w.n_air,
-                             .n_per_blade = w.n_air / s->scene->turbine.n_blade,
-                             .motion = bough_arena_doubles(arena, n * n),
-                             .lift = bough_arena_doubles(arena, n * m + 1),
-                             .drive = bough_arena_doubles(arena, n * m + 1),
-                             .lag = bough_arena_doubles(arena, m * m + 1),
-                             .input = bough_arena_doubles(arena, n * n_input + 1),
-                             .input_drive = bough_arena_doubles(arena, m * n_input + 1)};
-    settle(&w, state);
-    begin_change(&w, state);
-    bough_status status = find_rates(&w, state, w.rate[0], w.air_rate[0]);
-    if (bough_is_ok(&status)) status = follow_all(arena, &w, state, group, t);
+    *t = take_tangent(arena, &w, inputs ? inputs->n : 0);
+    bough_status status = follow_all(arena, &w, state, group, t);
     if (bough_is_ok(&status) && inputs) status = follow_inputs(&w, state, inputs, t);
     settle(&w, state);
+    return status;
+}
+
+bough_status bough_air_tangent_add(bough_arena *arena, const bough_air_azimuth *x, bool dynamic,
+                                   bough_air_tangent *t) {
+    work w = start(arena, x->simulation, x->whole, x->time, dynamic);
+    if (t->motion == NULL) *t = take_tangent(arena, &w, 0);
+    if (x->group->n > 0) w.mean = bough_air_mean_create(arena, x, t);
+    bough_status status = follow_all(arena, &w, x->state, x->group, t);
+    settle(&w, x->state);
     return status;
 }
 
@@ -435,62 +490,4 @@ bough_status bough_air_change_follow(bough_air_change *x, double size, const dou
     }
     set_column(w, 2 * size, image, image + n);
     return bough_ok();
-}
-
-// -- mean over azimuths ---------------------------------------------------------------------------
-
-// a (rows × ·): its block of parts (k, l) becomes the mean over all (k + i, l + i).
-typedef struct blocks {
-    int n_part, rows;
-    int n_to, n_from;     // entries of a part
-    const int *to, *from; // (n_part × n_to), (n_part × n_from)
-} blocks;
-
-// NOLINTNEXTLINE(readability-function-size): one sum over six indices
-static void average(const blocks *b, double *a) {
-    for (int between = 0; between < b->n_part; between++) {
-        for (int j = 0; j < b->n_from; j++) {
-            for (int i = 0; i < b->n_to; i++) {
-                double sum = 0;
-                for (int pass = 0; pass < 2; pass++) {
-                    for (int k = 0; k < b->n_part; k++) {
-                        int l = (k + between) % b->n_part;
-                        size_t column = (size_t)b->from[l * b->n_from + j] * (size_t)b->rows;
-                        double *entry = a + column + (size_t)b->to[k * b->n_to + i];
-                        if (pass == 0) sum += *entry / b->n_part;
-                        if (pass == 1) *entry = sum;
-                    }
-                }
-            }
-        }
-    }
-}
-
-void bough_air_tangent_rows(const bough_simulation *s, const bough_blade_group *group, int n_per_blade,
-                            int *row) {
-    const bough_scene_turbine *turbine = &s->scene->turbine;
-    for (int k = 0; k < group->n; k++) {
-        for (int b = 0; b < turbine->n_blade; b++) {
-            if (bough_simulation_beam(s, turbine->blade[b]) != group->blade[k]) continue;
-            for (int j = 0; j < n_per_blade; j++) row[k * n_per_blade + j] = b * n_per_blade + j;
-        }
-    }
-}
-
-void bough_air_tangent_average(bough_arena *arena, const bough_simulation *s, const bough_blade_group *group,
-                               bough_air_tangent *t) {
-    if (group->n == 0) return;
-    int *air = bough_arena_take(arena, ((size_t)t->n_air + 1) * sizeof *air);
-    bough_air_tangent_rows(s, group, t->n_per_blade, air);
-    int n = group->n, m = t->n_per_blade;
-    average(&(blocks){n, t->n, group->n_row, group->n_row, group->row, group->row}, t->motion);
-    average(&(blocks){n, t->n, group->n_row, m, group->row, air}, t->lift);
-    average(&(blocks){n, t->n_air, m, group->n_row, air, group->row}, t->drive);
-    average(&(blocks){n, t->n_air, m, m, air, air}, t->lag);
-    if (fabs(group->speed) > 0) { // over a revolution the mean of a slope in azimuth is none
-        int azimuth, speed;
-        bough_tree_joint_rows(s->tree, s->scene->turbine.rotor, &azimuth, &speed);
-        memset(t->motion + (size_t)azimuth * (size_t)t->n, 0, (size_t)t->n * sizeof(double));
-        memset(t->drive + (size_t)azimuth * (size_t)t->n_air, 0, (size_t)t->n_air * sizeof(double));
-    }
 }

@@ -46,13 +46,47 @@ bough_air_change *bough_air_change_create(bough_arena *arena, bough_simulation *
 // times it.
 bough_status bough_air_change_follow(bough_air_change *x, double size, const double *change, double *image);
 
+// -- mean over azimuths and blades (air_mean.c) ---------------------------------------------------
+
+// One of the azimuths of a mean, theory (113); all borrowed.
+typedef struct bough_air_azimuth {
+    bough_simulation *simulation;
+    bough_whole *whole;
+    double time;
+    const double *state;            // (n)
+    const bough_blade_group *group; // its equal blades; none: the mean is over azimuths alone
+    const bough_simulation *first;  // of the first azimuth
+    const bough_blade_group *parts; // the same blades there, in whose order they are the mean's parts
+    const double *blend;            // C (group->n × group->n)
+    double share;                   // of the mean
+} bough_air_azimuth;
+
+// Adds an azimuth's share to the tangent, which takes its matrices if it is {0}.
+bough_status bough_air_tangent_add(bough_arena *arena, const bough_air_azimuth *azimuth, bool dynamic,
+                                   bough_air_tangent *tangent);
+
+// After the last azimuth: what the first blade does holds for the others.
+void bough_air_tangent_close(bough_arena *arena, const bough_air_azimuth *azimuth,
+                             bough_air_tangent *tangent);
+
+typedef struct bough_air_mean bough_air_mean;
+
+bough_air_mean *bough_air_mean_create(bough_arena *arena, const bough_air_azimuth *azimuth,
+                                      const bough_air_tangent *tangent);
+
+// Adds the slopes (n + n_air) by a state, `at` among those of the members and then of the air.
+void bough_air_mean_add(const bough_air_mean *mean, int at, const double *slope, bough_air_tangent *tangent);
+
+// Adds the slope of a blade's i-th rate by its j-th state, its own and then its air's, in the mean over the
+// blades.
+void bough_air_mean_add_own(const bough_air_mean *mean, int i, int j, double slope,
+                            bough_air_tangent *tangent);
+
+// What is added from now on is taken away, or added again.
+void bough_air_mean_turn(bough_air_mean *mean);
+
 // Rows of the air's states of the group's blades (n × n_per_blade).
 void bough_air_tangent_rows(const bough_simulation *s, const bough_blade_group *group, int n_per_blade,
                             int *row);
-
-// Makes what blades do to blades that of the mean over as many azimuths as there are blades, at which
-// gravity, tilt, shear and tower differ.
-void bough_air_tangent_average(bough_arena *arena, const bough_simulation *s, const bough_blade_group *group,
-                               bough_air_tangent *tangent);
 
 #endif

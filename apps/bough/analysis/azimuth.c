@@ -140,57 +140,25 @@ static both_rows rows_of(bough_arena *arena, const bough_azimuths *a, int n_per_
 
 // -- the mean tangent -----------------------------------------------------------------------------
 
-// What blades and bodies that do not turn do to each other, as at the scene's azimuth. Blades on blades stay:
-// C does not change their mean over the blades.
-static void turn_back(bough_arena *arena, const bough_azimuths *a, const double *c, bough_air_tangent *t) {
-    size_t n = (size_t)t->n, m = (size_t)t->n_air;
-    both_rows rows = rows_of(arena, a, t->n_per_blade);
-    bool *turns = bough_arena_take(arena, n * sizeof *turns);
-    for (int i = 0; i < rows.blade.n_part * rows.blade.n; i++) turns[rows.blade.row[i]] = true;
-    for (size_t i = 0; i < n; i++) {
-        if (turns[i]) continue;
-        blend(c, true, rows.blade, 1, t->motion + i * n);
-        blend(c, true, rows.air, 1, t->drive + i * m);
-        blend(c, true, rows.blade, n, t->motion + i);
-        blend(c, true, rows.air, n, t->lift + i);
-    }
-}
-
-static void add_scaled(double factor, size_t n, const double *restrict from, double *restrict to) {
-    for (size_t i = 0; i < n; i++) to[i] = factor * (to[i] + from[i]);
-}
-
-// to = factor (to + from).
-static void add(double factor, const bough_air_tangent *from, bough_air_tangent *to) {
-    size_t n = (size_t)to->n, m = (size_t)to->n_air;
-    add_scaled(factor, n * n, from->motion, to->motion);
-    add_scaled(factor, n * m, from->lift, to->lift);
-    add_scaled(factor, n * m, from->drive, to->drive);
-    add_scaled(factor, m * m, from->lag, to->lag);
-}
-
-static bough_status find_tangent(bough_arena *arena, const bough_azimuth *x, bool dynamic,
-                                 bough_air_tangent *t) {
-    const bough_vibration_point *p = &x->point;
-    return bough_air_tangent_find(arena, x->simulation, p->whole, p->def.time, p->state, dynamic, &p->group,
-                                  NULL, t);
-}
-
 bough_status bough_azimuths_tangent(bough_arena *arena, const bough_azimuths *a, bool dynamic,
                                     bough_air_tangent *mean) {
-    BOUGH_TRY(find_tangent(arena, &a->at[0], dynamic, mean));
-    for (int k = 1; k < a->n; k++) {
-        bough_arena *own = bough_arena_child(arena);
-        bough_air_tangent other;
-        bough_status status = find_tangent(own, &a->at[k], dynamic, &other);
-        if (bough_is_ok(&status)) {
-            turn_back(own, a, a->at[k].blend, &other);
-            add(k + 1 == a->n ? 1. / a->n : 1, &other, mean);
-        }
-        bough_arena_destroy(own);
-        if (!bough_is_ok(&status)) return status;
+    bough_air_azimuth of;
+    *mean = (bough_air_tangent){0};
+    for (int k = 0; k < a->n; k++) {
+        const bough_azimuth *x = &a->at[k];
+        const bough_vibration_point *p = &x->point;
+        of = (bough_air_azimuth){.simulation = x->simulation,
+                                 .whole = p->whole,
+                                 .time = p->def.time,
+                                 .state = p->state,
+                                 .group = &p->group,
+                                 .first = a->at[0].simulation,
+                                 .parts = a->group,
+                                 .blend = x->blend,
+                                 .share = 1. / a->n};
+        BOUGH_TRY(bough_air_tangent_add(arena, &of, dynamic, mean));
     }
-    bough_air_tangent_average(arena, a->at[0].simulation, a->group, mean);
+    bough_air_tangent_close(arena, &of, mean);
     return bough_ok();
 }
 

@@ -41,8 +41,11 @@ static void setup(const scene *c) {
 static void open_scene(bough_arena *arena, scene *c) {
     bough_simulation *s = scene_build(arena, "apps/turbine/land-operation.yaml", symmetric);
     check_ok(bough_vibration_point_find(arena, s, 0, &c->x));
-    check_ok(bough_air_tangent_find(arena, s, c->x.whole, 0, c->x.state, false, NULL, NULL, &c->air));
-    bough_air_tangent_average(arena, s, &c->x.group, &c->air);
+    static const double same[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1};
+    bough_air_azimuth azimuth = {s, c->x.whole, 0, c->x.state, &c->x.group, s, &c->x.group, same, 1};
+    c->air = (bough_air_tangent){0};
+    check_ok(bough_air_tangent_add(arena, &azimuth, false, &c->air));
+    bough_air_tangent_close(arena, &azimuth, &c->air);
     c->system = (bough_aeroelastic){s, c->x.whole, &c->x.def, &c->x.group, &c->air};
     assert_int_equal(c->x.group.n, 3);
     assert_true(c->x.def.spin > 0);

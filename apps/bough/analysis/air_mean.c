@@ -1,0 +1,131 @@
+// The air's tangent of equal blades as the mean over azimuths and blades, column by column: theory (113).
+#include "apps/bough/analysis/air_tangent.h"
+
+#include <math.h>
+#include <string.h>
+
+struct bough_air_mean {
+    int n_part, n_row, n_air; // blades; states of each, of its air
+    const int *row;           // (n_part × n_row)
+    int *air_row;             // (n_part × n_air)
+    int *place;               // (n + all air) 1 + blade (n_row + n_air) + state; 0: of no blade
+    const double *blend;      // C (n_part × n_part)
+    double share;
+};
+
+void bough_air_tangent_rows(const bough_simulation *s, const bough_blade_group *group, int n_per_blade,
+                            int *row) {
+    const bough_scene_turbine *turbine = &s->scene->turbine;
+    for (int k = 0; k < group->n; k++) {
+        for (int b = 0; b < turbine->n_blade; b++) {
+            if (bough_simulation_beam(s, turbine->blade[b]) != group->blade[k]) continue;
+            for (int j = 0; j < n_per_blade; j++) row[k * n_per_blade + j] = b * n_per_blade + j;
+        }
+    }
+}
+
+bough_air_mean *bough_air_mean_create(bough_arena *arena, const bough_air_azimuth *x,
+                                      const bough_air_tangent *t) {
+    const bough_blade_group *group = x->parts;
+    bough_air_mean *m = bough_arena_take(arena, sizeof *m);
+    *m = (bough_air_mean){.n_part = group->n,
+                          .n_row = group->n_row,
+                          .n_air = t->n_per_blade,
+                          .row = group->row,
+                          .blend = x->blend,
+                          .share = x->share};
+    m->air_row = bough_arena_take(arena, (size_t)(m->n_part * m->n_air + 1) * sizeof *m->air_row);
+    m->place = bough_arena_take(arena, (size_t)(t->n + t->n_air + 1) * sizeof *m->place);
+    bough_air_tangent_rows(x->first, group, m->n_air, m->air_row);
+    for (int k = 0; k < m->n_part; k++) {
+        int before = 1 + k * (m->n_row + m->n_air);
+        for (int j = 0; j < m->n_row; j++) m->place[m->row[k * m->n_row + j]] = before + j;
+        for (int j = 0; j < m->n_air; j++)
+            m->place[t->n + m->air_row[k * m->n_air + j]] = before + m->n_row + j;
+    }
+    return m;
+}
+
+// State j of a blade among all and the air's.
+static size_t state_of(const bough_air_mean *m, const bough_air_tangent *t, int blade, int j) {
+    if (j < m->n_row) return (size_t)m->row[blade * m->n_row + j];
+    return (size_t)(t->n + m->air_row[blade * m->n_air + j - m->n_row]);
+}
+
+// Of the four matrices as one.
+static double *entry(const bough_air_tangent *t, size_t row, size_t column) {
+    size_t n = (size_t)t->n, m = (size_t)t->n_air;
+    if (column < n) return row < n ? &t->motion[column * n + row] : &t->drive[column * m + row - n];
+    return row < n ? &t->lift[(column - n) * n + row] : &t->lag[(column - n) * m + row - n];
+}
+
+// A column of what is no blade's: the blades' rates as an observer at rest sees them, Cᵀ of them.
+static void add_other(const bough_air_mean *m, size_t at, const double *slope, bough_air_tangent *t) {
+    for (size_t i = 0; i < (size_t)(t->n + t->n_air); i++)
+        if (m->place[i] == 0) *entry(t, i, at) += m->share * slope[i];
+    for (int j = 0; j < m->n_row + m->n_air; j++) {
+        for (int k = 0; k < m->n_part; k++) {
+            double sum = 0;
+            for (int l = 0; l < m->n_part; l++)
+                sum += m->blend[l * m->n_part + k] * slope[state_of(m, t, l, j)];
+            *entry(t, state_of(m, t, k, j), at) += m->share * sum;
+        }
+    }
+}
+
+// Column j of a blade: what it does to others as all blades do, by C; to blades, in the mean over these, as
+// the first does. C does not change that mean.
+static void add_of_blade(const bough_air_mean *m, int blade, int j, const double *slope,
+                         bough_air_tangent *t) {
+    int all = m->n_row + m->n_air;
+    for (size_t i = 0; i < (size_t)(t->n + t->n_air); i++) {
+        if (slope[i] == 0) continue;
+        if (m->place[i] > 0) {
+            int to = (m->place[i] - 1) / all - blade, row = (m->place[i] - 1) % all;
+            *entry(t, state_of(m, t, to < 0 ? to + m->n_part : to, row), state_of(m, t, 0, j)) +=
+                m->share / m->n_part * slope[i];
+            continue;
+        }
+        for (int k = 0; k < m->n_part; k++)
+            *entry(t, i, state_of(m, t, k, j)) += m->share * m->blend[blade * m->n_part + k] * slope[i];
+    }
+}
+
+void bough_air_mean_add(const bough_air_mean *m, int at, const double *slope, bough_air_tangent *t) {
+    int all = m->n_row + m->n_air, place = m->place[at];
+    if (place == 0)
+        add_other(m, (size_t)at, slope, t);
+    else
+        add_of_blade(m, (place - 1) / all, (place - 1) % all, slope, t);
+}
+
+void bough_air_mean_add_own(const bough_air_mean *m, int i, int j, double slope, bough_air_tangent *t) {
+    *entry(t, state_of(m, t, 0, i), state_of(m, t, 0, j)) += m->share * slope;
+}
+
+void bough_air_mean_turn(bough_air_mean *m) { m->share = -m->share; }
+
+// What the first blade does to the blades from itself on, the others do to those from themselves on.
+static void repeat(const bough_air_mean *m, bough_air_tangent *t) {
+    int all = m->n_row + m->n_air;
+    for (int j = 0; j < all; j++) {
+        for (int k = 0; k < m->n_part; k++) {
+            for (int i = 0; i < all; i++) {
+                double value = *entry(t, state_of(m, t, k, i), state_of(m, t, 0, j));
+                for (int l = 1; l < m->n_part && value != 0; l++)
+                    *entry(t, state_of(m, t, (k + l) % m->n_part, i), state_of(m, t, l, j)) = value;
+            }
+        }
+    }
+}
+
+void bough_air_tangent_close(bough_arena *arena, const bough_air_azimuth *x, bough_air_tangent *t) {
+    if (x->group->n == 0) return;
+    repeat(bough_air_mean_create(arena, x, t), t);
+    if (fabs(x->group->speed) > 0) { // over a revolution the mean of a slope in azimuth is none
+        int azimuth, speed;
+        bough_tree_joint_rows(x->simulation->tree, x->simulation->scene->turbine.rotor, &azimuth, &speed);
+        memset(t->motion + (size_t)azimuth * (size_t)t->n, 0, (size_t)t->n * sizeof(double));
+        memset(t->drive + (size_t)azimuth * (size_t)t->n_air, 0, (size_t)t->n_air * sizeof(double));
+    }
+}
