@@ -263,6 +263,25 @@ class Fmu(unittest.TestCase):
         late.free()
         self.assertEqual(Instance().start(stop=3, start=5)[0], ERROR)
 
+    def test_time_may_be_that_of_a_calendar(self):
+        early, late, epoch = Instance(), Instance(), 1.7e9
+        early.start()
+        late.start(start=epoch)
+        every = sorted(variables("output").values())
+        for k in range(3):
+            early.step(0.02 * k, 0.02)
+            self.assertEqual(late.step(epoch + 0.02 * k, 0.02)[0], OK, late.messages)
+            self.assertEqual(late.get(every), early.get(every))
+        self.assertEqual(late.step(epoch, 0.02)[0], ERROR)
+        early.free()
+        late.free()
+
+    def test_a_stop_time_needs_no_whole_macro_steps(self):
+        fmu = Instance()
+        self.assertEqual(fmu.start(stop=50.007), (OK, OK), fmu.messages)
+        self.assertEqual(fmu.step(0, 0.02)[0], OK, fmu.messages)
+        fmu.free()
+
     def test_a_state_is_gone_back_to(self):
         fmu, place = Instance(), ctypes.c_void_p()
         fmu.start()
@@ -288,7 +307,8 @@ class Fmu(unittest.TestCase):
         self.assertEqual(fmu.step(0, 0.02)[0], ERROR)  # not initialised
         fmu.start()
         self.assertEqual(fmu.step(0, 0.03)[0], ERROR)
-        self.assertIn("no whole number of macro steps", fmu.messages[-1])
+        self.assertIn("no whole number of macro steps of 0.02 s", fmu.messages[-1])
+        self.assertEqual(fmu.step(0, 0.02)[0], OK, "the refused step has moved nothing")
         self.assertEqual(fmu.set(0, 1), ERROR)
         self.assertEqual(fmu.get([100000]), ERROR)
         fmu.free()

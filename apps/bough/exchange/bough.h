@@ -55,9 +55,10 @@ BOUGH_API const char *bough_session_warning(const bough_session *session);
 /* Takes one macro step. After one that has failed, the same code and message again. */
 BOUGH_API int bough_session_step(bough_session *session);
 
-/* Time now and at the end [s]; NaN when the scene could not be opened. */
+/* Time now, at the end, and of one macro step [s]; NaN when the scene could not be opened. */
 BOUGH_API double bough_session_time(const bough_session *session);
 BOUGH_API double bough_session_duration(const bough_session *session);
+BOUGH_API double bough_session_macro_step(const bough_session *session);
 
 /* Channels, as in channels.out: number of channels, name, unit, index of a name (-1: no such channel; the
    message names the nearest), current value (NaN: no such channel). The first read after a step computes all

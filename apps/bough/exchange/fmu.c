@@ -15,7 +15,7 @@
 
 // NOLINTBEGIN(readability-function-size): FMI fixes the parameters
 
-enum { MOST_SETTINGS = 64, LINE = 4096 };
+enum { MOST_SETTINGS = 64, MORE_SETTINGS = 2, LINE = 4096 };
 
 typedef enum mode { INSTANTIATED, INITIALIZATION, STEP, TERMINATED } mode;
 
@@ -24,7 +24,7 @@ typedef struct instance {
     double start; // time of the importer at the session's time 0 [s]
     mode mode;
     char *scene;
-    char *set[MOST_SETTINGS + 1]; // with room for another duration
+    char *set[MOST_SETTINGS + MORE_SETTINGS]; // with room for those of a longer run
     int n_set;
     bool logging;
     fmi3_log *log;
@@ -141,21 +141,34 @@ void fmi3FreeInstance(fmi3_instance self) {
     free(x);
 }
 
-// Opens the session once more with a longer duration; what was set before is kept.
-static fmi3_status prolong(instance *x, double stop) {
-    char text[64];
-    int n = bough_session_inputs(x->session), n_set = x->n_set;
+// Opens the session once more with settings after its own.
+static bool reopen(instance *x, const char *const *text, int n) {
+    int n_set = x->n_set;
+    bool good = true;
+    for (int k = 0; k < n; k++) {
+        x->set[n_set + k] = strdup(text[k]);
+        good = good && x->set[n_set + k];
+    }
+    x->n_set = n_set + n;
+    good = good && open_session(x);
+    for (int k = 0; k < n; k++) free(x->set[n_set + k]);
+    x->n_set = n_set;
+    return good;
+}
+
+// A longer duration, of whole macro steps of the same length; what was set before is kept.
+static fmi3_status prolong(instance *x, double duration) {
+    char longer[64], same_step[64];
+    double step = bough_session_macro_step(x->session);
+    int n = bough_session_inputs(x->session);
     double *value = malloc(((size_t)n + 1) * sizeof *value);
-    snprintf(text, sizeof text, "simulation.duration=%.17g", stop);
     if (!value) return FMI3_ERROR;
     for (int k = 0; k < n; k++) value[k] = bough_session_input_value(x->session, k);
-    x->set[n_set] = strdup(text);
-    x->n_set = n_set + 1;
-    bool good = x->set[n_set] && open_session(x);
+    snprintf(longer, sizeof longer, "simulation.duration=%.17g", ceil(duration / step - 1e-6) * step);
+    snprintf(same_step, sizeof same_step, "simulation.macro_step=%.17g", step);
+    bool good = reopen(x, (const char *[]){longer, same_step}, MORE_SETTINGS);
     for (int k = 0; good && k < n; k++) bough_session_set(x->session, k, value[k]);
     free(value);
-    free(x->set[n_set]);
-    x->n_set = n_set;
     return good ? FMI3_OK : answer(x, BOUGH_SESSION_OTHER);
 }
 
@@ -271,9 +284,24 @@ fmi3_status fmi3FreeFMUState(fmi3_instance self, fmi3_state *from) {
 
 // -- stepping -------------------------------------------------------------------------------------
 
-static bool near(double a, double b) { return fabs(a - b) <= 1e-9 * fmax(1, fabs(b)); }
+// Whether two times are the same but for rounding: far less than a step apart, also long after time 0.
+static bool near(double a, double b, double step) {
+    return fabs(a - b) <= fmin(1e-9 * fmax(1, fabs(b)), 1e-3 * step);
+}
 
-// Macro steps up to a communication point, which one of them must meet.
+static fmi3_status check_step(const instance *x, double time, double step) {
+    double macro_steps = step / bough_session_macro_step(x->session);
+    if (!near(time, now(x), step) || !(step > 0))
+        return tell(x, FMI3_ERROR, "fmi3DoStep: a step of %.9g s from %.15g s, the FMU is at %.15g s", step,
+                    time, now(x));
+    if (fabs(macro_steps - round(macro_steps)) > 1e-3 || macro_steps < 0.5)
+        return tell(x, FMI3_ERROR, "fmi3DoStep: %.9g s is no whole number of macro steps of %.9g s", step,
+                    bough_session_macro_step(x->session));
+    return FMI3_OK;
+}
+
+// Macro steps up to a communication point, counted in the session's own time, which has no rounding of a late
+// start.
 fmi3_status fmi3DoStep(fmi3_instance self, double time, double step, bool no_return, bool *event,
                        bool *terminate, bool *early, double *reached) {
     instance *x = self;
@@ -281,22 +309,21 @@ fmi3_status fmi3DoStep(fmi3_instance self, double time, double step, bool no_ret
     *event = *terminate = *early = false;
     *reached = now(x);
     if (x->mode != STEP) return misplaced(x, "fmi3DoStep");
-    double end = time + step;
-    if (!near(time, *reached) || !(step > 0)) {
-        return tell(x, FMI3_ERROR, "fmi3DoStep: a step of %g s from %g s, the FMU is at %g s", step, time,
-                    *reached);
-    }
-    while (*reached < end && !near(*reached, end)) {
+    if (check_step(x, time, step) != FMI3_OK) return FMI3_ERROR;
+    double end = bough_session_time(x->session) + step - 1e-3 * bough_session_macro_step(x->session);
+    while (bough_session_time(x->session) < end) {
         int code = bough_session_step(x->session);
         *reached = now(x);
         if (code == BOUGH_SESSION_DONE) {
             *terminate = true;
-            return tell(x, FMI3_ERROR, "fmi3DoStep: the run ends at %g s", *reached);
+            return tell(
+                x, FMI3_ERROR,
+                "fmi3DoStep: the run ends at %.15g s; a stop time at the initialisation makes it longer",
+                *reached);
         }
         if (code != BOUGH_SESSION_OK) return answer(x, code);
     }
-    if (near(*reached, end)) return FMI3_OK;
-    return tell(x, FMI3_ERROR, "fmi3DoStep: %g s is no whole number of macro steps", step);
+    return FMI3_OK;
 }
 
 // -- functions of the standard that the FMU does not offer ----------------------------------------

@@ -215,6 +215,10 @@ double bough_session_duration(const bough_session *s) {
     return is_open(s) ? s->run.simulation->master->duration : (double)NAN;
 }
 
+double bough_session_macro_step(const bough_session *s) {
+    return is_open(s) ? s->run.simulation->master->macro_step : (double)NAN;
+}
+
 int bough_session_count(const bough_session *s) { return is_open(s) ? s->run.channels.count : 0; }
 
 static bool known(const bough_session *s, int channel) {

@@ -24,6 +24,7 @@ TEST(steps_to_the_end_and_reads) {
     assert_true(steps > 1);
     check_near(bough_session_time(s), 0.5, 1e-12, 0);
     check_near(bough_session_duration(s), 0.5, 1e-12, 0);
+    check_near(bough_session_macro_step(s), 0.01, 1e-12, 0);
     assert_true(fabs(bough_session_read(s, channel) - first) > 1e-3);
     assert_int_equal(bough_session_step(s), BOUGH_SESSION_DONE);
     assert_int_equal(bough_session_code(s), BOUGH_SESSION_OK);
@@ -56,10 +57,11 @@ static void check_without_scene(bough_session *s, int code) {
     const char *const nothing[] = {bough_session_warning(s),       bough_session_name(s, 0),
                                    bough_session_unit(s, 0),       bough_session_input_name(s, 0),
                                    bough_session_input_unit(s, 0), bough_session_body_name(s, 0)};
-    const double none[] = {bough_session_time(s), bough_session_duration(s), bough_session_read(s, 0),
+    const double none[] = {bough_session_time(s),           bough_session_duration(s),
+                           bough_session_macro_step(s),     bough_session_read(s, 0),
                            bough_session_input_value(s, 0), bough_session_estimate(s, 0)};
     for (int k = 0; k < 6; k++) assert_string_equal(nothing[k], "");
-    for (int k = 0; k < 5; k++) assert_true(isnan(none[k]));
+    for (int k = 0; k < 6; k++) assert_true(isnan(none[k]));
     assert_null(bough_session_values(s));
     assert_int_equal(bough_session_count(s) + bough_session_inputs(s), 0);
     assert_int_equal(bough_session_bodies(s) + bough_session_stations(s, 0), 0);
