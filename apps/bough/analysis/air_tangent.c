@@ -467,27 +467,33 @@ bough_status bough_air_tangent_add(bough_arena *arena, const bough_air_azimuth *
 struct bough_air_change {
     work w;
     const double *about;
+    bool known; // the rates there are in w.rate[0]
 };
 
 bough_air_change *bough_air_change_create(bough_arena *arena, bough_simulation *s, bough_whole *whole,
                                           double time, const double *state, bool dynamic, int *n_air) {
     bough_air_change *x = bough_arena_take(arena, sizeof *x);
-    *x = (bough_air_change){start(arena, s, whole, time, dynamic), state};
+    *x = (bough_air_change){start(arena, s, whole, time, dynamic), state, false};
     settle(&x->w, state);
     *n_air = x->w.n_air;
     return x;
 }
 
-bough_status bough_air_change_follow(bough_air_change *x, double size, const double *change, double *image) {
+// The rates with `factor` times a change.
+static bough_status change_by(bough_air_change *x, double factor, const double *change, int side) {
     work *w = &x->w;
     int n = w->whole->assembly->n_state;
-    for (int side = 0; side < 2; side++) {
-        double factor = (2 * side - 1) * size;
-        for (int k = 0; k < n; k++) w->state[k] = x->about[k] + factor * change[k];
-        memcpy(w->before, w->memory, (size_t)w->n_memory * sizeof *w->before);
-        for (int k = 0; k < w->n_air; k++) w->before[w->row[k]] += factor * change[n + k];
-        BOUGH_TRY(find_rates(w, x->about, w->rate[side], w->air_rate[side]));
-    }
-    set_column(w, 2 * size, image, image + n);
+    for (int k = 0; k < n; k++) w->state[k] = x->about[k] + factor * change[k];
+    memcpy(w->before, w->memory, (size_t)w->n_memory * sizeof *w->before);
+    for (int k = 0; k < w->n_air; k++) w->before[w->row[k]] += factor * change[n + k];
+    return find_rates(w, x->about, w->rate[side], w->air_rate[side]);
+}
+
+bough_status bough_air_change_follow(bough_air_change *x, double size, bool to_one_side, const double *change,
+                                     double *image) {
+    if (!to_one_side || !x->known) BOUGH_TRY(change_by(x, to_one_side ? 0 : -size, change, 0));
+    x->known = to_one_side;
+    BOUGH_TRY(change_by(x, size, change, 1));
+    set_column(&x->w, to_one_side ? size : 2 * size, image, image + x->w.whole->assembly->n_state);
     return bough_ok();
 }

@@ -43,8 +43,9 @@ bough_air_change *bough_air_change_create(bough_arena *arena, bough_simulation *
                                           double time, const double *state, bool dynamic, int *n_air);
 
 // A y + R m and G y + H m into image (n + n_air), of change = y, m (n + n_air), by differences of `size`
-// times it.
-bough_status bough_air_change_follow(bough_air_change *x, double size, const double *change, double *image);
+// times it, to both sides or, at half the cost, to one.
+bough_status bough_air_change_follow(bough_air_change *x, double size, bool to_one_side, const double *change,
+                                     double *image);
 
 // -- mean over azimuths and blades (air_mean.c) ---------------------------------------------------
 

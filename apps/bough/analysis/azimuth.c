@@ -9,7 +9,7 @@
 #include <string.h>
 
 static const double at_rest = 1e-9;    // [rad/s]
-static const double difference = 1e-4; // of the largest entry of a vector in units of its scale
+static const double difference = 1e-5; // of the largest entry of a vector in units of its scale
 
 static const double complex imaginary = (double complex)I;
 
@@ -195,12 +195,12 @@ static void blend_all(const bough_azimuth_product *p, bool back, double *x) {
     blend(p->blend, back, p->rows.air, 1, x + p->n);
 }
 
-bough_status bough_azimuth_product_follow(bough_azimuth_product *p, double size, const double *y,
-                                          double *image) {
+bough_status bough_azimuth_product_follow(bough_azimuth_product *p, double size, bool to_one_side,
+                                          const double *y, double *image) {
     memcpy(p->here, y, (size_t)(p->n + p->n_air) * sizeof *y);
     blend_all(p, false, p->here);
     if (p->angle >= 0) p->here[p->angle] = 0;
-    BOUGH_TRY(bough_air_change_follow(p->air, size, p->here, image));
+    BOUGH_TRY(bough_air_change_follow(p->air, size, to_one_side, p->here, image));
     blend_all(p, true, image);
     return bough_ok();
 }
@@ -218,7 +218,7 @@ static bough_status quotient(bough_azimuth_product *p, const bough_mode_vectors 
         double largest = 0;
         for (size_t i = 0; i < all; i++) largest = fmax(largest, fabs(right[i]) / scale[i]);
         if (largest == 0) continue;
-        BOUGH_TRY(bough_azimuth_product_follow(p, difference / largest, right, image));
+        BOUGH_TRY(bough_azimuth_product_follow(p, difference / largest, true, right, image));
         for (size_t i = 0; i < all; i++) {
             double complex left = v->left[i] + imaginary * v->left[all + i];
             length += unit * left * right[i];

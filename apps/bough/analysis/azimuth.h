@@ -40,8 +40,8 @@ bough_status bough_azimuths_tangent(bough_arena *arena, const bough_azimuths *az
 typedef struct bough_azimuth_product bough_azimuth_product;
 bough_azimuth_product *bough_azimuth_product_create(bough_arena *arena, const bough_azimuths *azimuths, int k,
                                                     bool dynamic, int *n_air);
-bough_status bough_azimuth_product_follow(bough_azimuth_product *product, double size, const double *y,
-                                          double *image);
+bough_status bough_azimuth_product_follow(bough_azimuth_product *product, double size, bool to_one_side,
+                                          const double *y, double *image);
 
 // How far the air of each azimuth moves the eigenvalues of n modes from those of the mean, by first order:
 // change (azimuths × n) [1/s]; NaN without a left vector.

@@ -100,12 +100,13 @@ static bough_status add_azimuth(linear *x, bough_azimuth_product *air, double si
                                 double *image) {
     double share = 1. / x->azimuths.n;
     int shifts = x->point.def.spin != 0 ? x->point.def.n_part : 1;
-    BOUGH_TRY(bough_azimuth_product_follow(air, size, y, x->follows));
+    BOUGH_TRY(bough_azimuth_product_follow(air, size, false, y, x->follows));
     for (int i = 0; i < x->n + x->m; i++) image[i] += share * x->follows[i];
     bool others = moves_others(x, y);
     for (int shift = 0; shift < shifts && shifts > 1; shift++) {
         take_blades(x, shift, y, x->turned);
-        if (shift > 0 || others) BOUGH_TRY(bough_azimuth_product_follow(air, size, x->turned, x->follows));
+        if (shift > 0 || others)
+            BOUGH_TRY(bough_azimuth_product_follow(air, size, false, x->turned, x->follows));
         add_blades(x, shift, share * (1. / shifts - (shift == 0)), x->follows, image);
     }
     return bough_ok();

@@ -236,12 +236,21 @@ static bool is_closure(const bough_tree *tree, const bough_eigen_pair *pair) {
     return tree->n_closures > 0 && hypot(pair->real + rate, pair->imaginary) < 1e-3 * rate;
 }
 
+static bool is_mode(const bough_tree *tree, double point, const bough_eigen_pair *pair) {
+    return hypot(pair->real, pair->imaginary) > free_motion * point && !is_closure(tree, pair);
+}
+
+// Pairs up to that of the last mode wanted.
+static int count_pairs(const bough_tree *tree, double point, int count, const bough_vibration *v) {
+    int n = 0;
+    for (int kept = 0; n < v->count.found && kept < count; n++) kept += is_mode(tree, point, &v->pair[n]);
+    return n;
+}
+
 static void drop_other_motions(const bough_tree *tree, double point, int count, bough_vibration *v) {
-    int kept = 0;
-    for (int k = 0; k < v->count.found && kept < count; k++) {
-        double modulus = hypot(v->pair[k].real, v->pair[k].imaginary);
-        bool moves = modulus > free_motion * point && !is_closure(tree, &v->pair[k]);
-        if (!moves) continue;
+    int kept = 0, n = count_pairs(tree, point, count, v);
+    for (int k = 0; k < n; k++) {
+        if (!is_mode(tree, point, &v->pair[k])) continue;
         v->pair[kept] = v->pair[k];
         v->place[kept] = k;
         memcpy(v->change[kept++], v->change[k], sizeof *v->change);
@@ -309,9 +318,10 @@ static bough_status solve_in_air(bough_arena *arena, bough_simulation *s, const 
         .vector = vector,
         .wanted = bough_arena_take(arena, (size_t)wanted * sizeof(bool)),
     };
+    int n = count_pairs(s->tree, x->def.point, count, v);
     double complex *change = bough_arena_take(arena, (size_t)(azimuths * wanted) * sizeof *change);
-    BOUGH_TRY(bough_azimuths_change(arena, &air->azimuths, air->dynamic, v->count.found, vector, change));
-    set_changes(azimuths, v->count.found, change, v);
+    BOUGH_TRY(bough_azimuths_change(arena, &air->azimuths, air->dynamic, n, vector, change));
+    set_changes(azimuths, n, change, v);
     return bough_ok();
 }
 
