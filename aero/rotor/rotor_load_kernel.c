@@ -26,10 +26,9 @@ static void induce(const bough_rotor *rotor, const bough_rotor_motion *motion, i
 #pragma omp simd
     for (int j = 0; j < s; j++) {
         double leeward = bough_dot(bough_cross(shaft, lane_load(r.y, s, j)), downwind);
-        // induction with skew and wake strength, where the loss factor leaves it free
+        // induction with skew, where the loss factor leaves it free, as strong as the wake is
         double leaning = skewed(r.axial[j], r.loss[j], skew, r.radius[j] / tip, leeward);
-        double axial = free[j] > 0 ? wake * leaning : r.axial[j];
-        double tangential = free[j] > 0 ? wake * r.tangential[j] : r.tangential[j];
+        double axial = wake * (free[j] > 0 ? leaning : r.axial[j]), tangential = wake * r.tangential[j];
         // inflow at the section: angle, speed, angle of attack in its own plane
         double u = r.inflow_x[j] * (1 - axial), v = r.inflow_y[j] * (1 + tangential);
         r.axial[j] = axial;
