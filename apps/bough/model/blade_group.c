@@ -12,11 +12,12 @@ static double azimuth_of(const bough_simulation *s, const bough_beam *blade) {
     return angle < -even ? angle + 2 * BOUGH_PI : angle;
 }
 
-// The rotor's angular velocity along its shaft: of all joints that turn it.
-static double spin_of(const bough_simulation *s) {
-    int rotor = s->scene->turbine.rotor;
-    bough_vec3 w = bough_tree_frame_twist(s->view, &s->tree->bodies[rotor]).angular;
-    return bough_dot(w, bough_scene_direction(s->scene->body[rotor].joint.axis));
+// The angular velocity along the shaft of the link that carries the blades: of all joints that turn it.
+static double spin_of(const bough_simulation *s, int hub) {
+    const bough_frame frame = {.link = hub, .placement = bough_transform_identity()};
+    bough_vec3 shaft = bough_simulation_joint_axis(s, s->scene->turbine.rotor);
+    bough_vec3 w = bough_tree_frame_twist(s->view, &frame).angular;
+    return bough_dot(bough_mat3_mul(bough_tree_frame_pose(s->view, &frame).rotation, w), shaft);
 }
 
 // Inserts a blade by azimuth.
@@ -28,10 +29,31 @@ static void insert(const bough_simulation *s, const bough_beam *blade, bough_bla
     group->blade[k] = blade;
 }
 
-// Whether nothing but joints of given motion is between a blade and the rotor.
-static bool hangs_on(const bough_tree *tree, int link, int rotor) {
+// The link that carries a blade, beyond joints of given motion.
+static int hub_of(const bough_simulation *s, const bough_beam *blade) {
+    const bough_tree *tree = s->tree;
+    int link = tree->markers[blade->marker].link, rotor = tree->bodies[s->scene->turbine.rotor].link;
     while (link != rotor && link >= 0 && tree->links[link].motion != NULL) link = tree->links[link].parent;
-    return link == rotor;
+    return link;
+}
+
+// Whether a link turns about the rotor's shaft; `length` is that of a blade.
+static bool turns_about_shaft(const bough_simulation *s, int link, double length) {
+    const bough_joint *joint = &s->tree->links[link].joint;
+    const bough_transform *pose = &s->view->pose[link];
+    bough_vec3 shaft = bough_simulation_joint_axis(s, s->scene->turbine.rotor);
+    bough_vec3 centre = bough_tree_frame_pose(s->view, &s->tree->bodies[s->scene->turbine.rotor]).position;
+    bough_vec3 tilted = bough_cross(bough_mat3_mul(pose->rotation, joint->axis), shaft);
+    bough_vec3 off = bough_cross(bough_sub(pose->position, centre), shaft);
+    return joint->kind == BOUGH_JOINT_REVOLUTE && bough_norm(tilted) < even &&
+           bough_norm(off) < even * length;
+}
+
+// Whether what carries the blades turns with the rotor or, as beyond the spring of a shaft, about its axis.
+static bool is_on_shaft(const bough_simulation *s, int hub, double length) {
+    int rotor = s->tree->bodies[s->scene->turbine.rotor].link;
+    while (hub > rotor && turns_about_shaft(s, hub, length)) hub = s->tree->links[hub].parent;
+    return hub == rotor;
 }
 
 // How far the blade's pitch is from the first one's: of x and y of its frame about the span.
@@ -46,11 +68,12 @@ static double pitch_between(const bough_simulation *s, const bough_beam *first, 
 
 static bool is_alike(const bough_simulation *s, const bough_blade_group *group, int k) {
     const bough_beam *first = group->blade[0], *blade = group->blade[k];
-    int rotor = s->tree->bodies[s->scene->turbine.rotor].link;
+    int hub = hub_of(s, first);
     double angle = azimuth_of(s, blade) - azimuth_of(s, first) - 2 * BOUGH_PI * k / group->n;
     return blade->port >= 0 && blade->body->fidelity == first->body->fidelity &&
            s->rod[blade->port].system.n_state == s->rod[first->port].system.n_state &&
-           hangs_on(s->tree, s->tree->markers[blade->marker].link, rotor) &&
+           hub_of(s, blade) == hub &&
+           is_on_shaft(s, hub, bough_norm(blade->def.position[blade->def.n_segment])) &&
            first->def.stiffness == blade->def.stiffness && // equal beams have one mesh
            fabs(angle) < even && pitch_between(s, first, blade, 2 * BOUGH_PI * k / group->n) < even;
 }
@@ -61,11 +84,11 @@ bough_status bough_blade_group_find(bough_arena *arena, const bough_simulation *
     int n = turbine->node == NULL ? 0 : turbine->n_blade;
     *group = (bough_blade_group){0};
     if (n == 0) return bough_ok();
-    group->speed = spin_of(s);
     group->blade = bough_arena_take(arena, (size_t)n * sizeof *group->blade);
     group->first = bough_arena_take(arena, (size_t)n * sizeof *group->first);
     group->first_input = bough_arena_take(arena, (size_t)n * sizeof *group->first_input);
     for (int k = 0; k < n; k++) insert(s, bough_simulation_beam(s, turbine->blade[k]), group);
+    group->speed = spin_of(s, hub_of(s, group->blade[0]));
     bool alike = n >= 3;
     for (int k = 0; k < n; k++) alike = alike && is_alike(s, group, k);
     if (!alike) {

@@ -289,6 +289,30 @@ TEST(azimuth_does_not_matter) {
     assert_true(support > 0.01); // the nacelle moves
 }
 
+// Generator and hub on the two ends of the shaft's spring: the same turbine whichever of them is the rotor
+// that the nacelle carries.
+TEST(either_end_of_the_shaft_may_be_the_rotor) {
+    const char *usual[] = {"loads=[]", "bodies[hub].joint.speed=12.1 rpm", "aero=null", COARSE_LAND, NULL};
+    const char *other[] = {
+        "loads=[]",
+        "turbine.rotor=generator",
+        "bodies[hub].joint={kind: revolute, axis: x, parent: generator, stiffness: 8.67637e8, damping: 6.215e6}",
+        "bodies[generator].joint={kind: revolute, axis: x, parent: nacelle, speed: 12.1 rpm, placement: "
+        "[move z 1.96256 m, rotate y 5 deg, move x -5.0191 m]}",
+        "aero=null",
+        COARSE_LAND,
+        NULL};
+    found a = modes_of("apps/turbine/land.yaml", usual, 10),
+          b = modes_of("apps/turbine/land.yaml", other, 10);
+    assert_int_equal(b.v.n_blade, 3);
+    assert_false(a.v.frozen || b.v.frozen);
+    for (int k = 0; k < 10; k++) {
+        check_near(b.v.mode[k].frequency, a.v.mode[k].frequency, 1e-6, 0);
+        check_near(b.v.mode[k].growth, a.v.mode[k].growth, 1e-4, 1e-7);
+        assert_int_equal(b.v.mode[k].pattern, a.v.mode[k].pattern);
+    }
+}
+
 // A rod across the end of another under a load, stiffness and load times `factor`.
 static found modes_of_angle(double factor) {
     bough_arena *arena = check_memory();
