@@ -137,6 +137,15 @@ class Files(unittest.TestCase):
         self.assertEqual(self.names(), sorted(["resources/many.yaml", "resources/scene.txt"] +
                                               ["resources/t%02d.yaml" % k for k in tables]))
 
+    def test_a_directory_stands_for_the_scene_in_it(self):
+        self.write("mine/scene.yaml", "simulation: {duration: 1 s}\n"
+                   "bodies: [{name: a, fidelity: rigid, mass: 1, joint: {kind: prismatic, axis: z, parent: ground}}]\n")
+        said = self.export("mine")
+        self.assertEqual(said.returncode, 0, said.stderr)
+        self.assertIn("resources/scene.txt", self.names())
+        os.mkdir(self.folder + "/empty")
+        self.assertIn("'empty' holds no scene", self.export("empty").stderr)
+
     def test_the_files_of_a_controller_are_in_the_archive(self):
         for name in "power", "blade-structure", "blade-aero", "airfoils":
             with open(SOURCE + "/apps/turbine/%s.yaml" % name) as file:

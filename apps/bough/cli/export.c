@@ -376,6 +376,7 @@ static bough_status export_scene(bough_arena *arena, const void *given) {
     }
     bough_options named = *options;
     named.operand = options->operands[1];
+    BOUGH_TRY(bough_find_scene(arena, &named));
     export x = {.arena = arena, .options = &named};
     BOUGH_TRY(bough_open(arena, &named, &x.simulation));
     BOUGH_TRY(bough_simulation_known(x.simulation, "it has files of its own, which are not exported"));
