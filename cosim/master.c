@@ -282,3 +282,17 @@ void bough_master_snapshot(bough_master *m, bough_snapshot *s) {
     pass_events(m);
     begin_loads(m, m->begun);
 }
+
+void bough_master_join(bough_master *m, const bough_master *other) {
+    bough_member *whole = bough_scheme_whole(m->coupling);
+    m->time = m->begun = other->time;
+    m->grid_index = (long)floor((m->time + resolution(m)) / m->macro_step);
+    m->next_event = 0;
+    m->at_event = pass_events(m);
+    for (int i = 0; i < m->assembly->n_member; i++)
+        bough_member_set(m->assembly->member[i], m->time, other->assembly->member[i]->state);
+    if (whole) {
+        bough_assembly_states(m->assembly, whole->state);
+        bough_member_set(whole, m->time, whole->state);
+    }
+}

@@ -103,6 +103,10 @@ bough_statistics bough_master_statistics(const bough_master *m);
 // that restores the copy it has just saved continues bit for bit like another process that restores it.
 void bough_master_snapshot(bough_master *m, bough_snapshot *s);
 
+// Puts it where another master of the same bodies is: its time, between two of its steps, and the states of
+// all members, whose integrators begin anew. Loads are not touched.
+void bough_master_join(bough_master *m, const bough_master *other);
+
 // Whether all loads are sampled at `time`, which a snapshot requires.
 bool bough_master_sampled(const bough_master *m);
 

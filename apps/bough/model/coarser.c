@@ -139,23 +139,6 @@ static bool has_fixed_sub_steps(const bough_scene *scene) {
     return false;
 }
 
-// Whether a load changes in less than a macro step, not at the start.
-static bool has_jump(const bough_scene *scene, const bough_scene_load *load) {
-    double step = scene->simulation.macro_step;
-    bool jumps = load->ramp[0] > 0 && load->ramp[1] - load->ramp[0] < step;
-    for (int k = 1; k < load->n_time; k++) {
-        bool changes = load->values[k] != load->values[k - 1] && load->times[k - 1] > 0;
-        jumps = jumps || (changes && load->times[k] - load->times[k - 1] < step);
-    }
-    return jumps;
-}
-
-static bool has_jumps(const bough_scene *scene) {
-    bool found = false;
-    for (int k = 0; k < scene->n_load; k++) found = found || has_jump(scene, &scene->load[k]);
-    return found;
-}
-
 static bool holds_loads(const bough_scene *scene) { return scene->aero.hold == BOUGH_SCENE_CONSTANT; }
 
 // A quarter, of an order between 2 and 3, in air whose loads follow the motion; two fifths without air, where
@@ -169,7 +152,7 @@ static double usual_share(const bough_scene *scene) {
     const bough_scheme *scheme = bough_scheme_at(x->scheme);
     bool air = scene->aero.node != NULL, held = air && holds_loads(scene);
     if (scheme->one_system) return held ? 0.5 : air ? 0.25 : 0.4;
-    bool whole = scheme->explicit_forces || scheme->repeats || has_jumps(scene) ||
+    bool whole = scheme->explicit_forces || scheme->repeats || bough_load_jumps(scene, 0, NULL) > 0 ||
                  has_fixed_sub_steps(scene) || bough_scheme_error_order(scheme, &x->options) == 1;
     return whole ? 1 : 0.5;
 }
@@ -356,4 +339,10 @@ bough_status bough_other_run_build(bough_arena *arena, const bough_simulation *r
 void bough_other_run_sample(bough_other_run *other) {
     bough_simulation_update(other->simulation);
     bough_channels_sample(&other->channels, other->simulation->master->time, other->value);
+}
+
+bough_status bough_other_run_step(bough_other_run *other, const bough_simulation *run) {
+    size_t size = (size_t)run->scene->n_input * sizeof(double);
+    if (run->input) memcpy(other->simulation->input, run->input, size);
+    return bough_step(other->simulation->master);
 }

@@ -32,18 +32,9 @@ static double share_held(const bough_scene *scene) {
     return fmax(1 - rate * scene->simulation.macro_step, 0);
 }
 
-// Whether a solution that is finer in time and air runs beside the first steps. Without air a tight tolerance
-// follows every vibration by itself, and a further copy of a library would write to the companion's file.
-static bool has_finer_start(const bough_scene *scene) {
-    static const double tight = 1e-5;
-    return (scene->simulation.master.rtol >= tight || scene->aero.node) && !scene->control.library;
-}
-
 static bough_status build(bough_arena *arena, bough_companion *c) {
     BOUGH_TRY(bough_other_run_build(arena, c->run, BOUGH_COARSER_ALL, &c->coarser));
-    c->first_steps = has_finer_start(c->run->scene);
-    static const int finer = BOUGH_FINEST_TIME | BOUGH_FINER_AIR;
-    if (c->first_steps) BOUGH_TRY(bough_other_run_build(arena, c->run, finer, &c->finer));
+    BOUGH_TRY(bough_finer_build(arena, c->run, &c->finer));
     c->share = bough_coarser_share(c->run->scene, c->coarser.simulation->scene);
     if (bough_coarser_is_loose(c->run->scene)) c->share = fmax(c->share, bough_finer_time_share());
     c->share_held = share_held(c->run->scene);
@@ -88,16 +79,9 @@ static bool meets_run(const bough_companion *c) {
     return m->at_event || bough_master_done(m) || fabs(remainder(m->time, step)) < 1e-6 * step;
 }
 
-// A macro step of one of the others, with the inputs of the run.
-static bough_status step(const bough_companion *c, bough_simulation *other) {
-    size_t size = (size_t)c->run->scene->n_input * sizeof(double);
-    if (c->run->input) memcpy(other->input, c->run->input, size);
-    return bough_step(other->master);
-}
-
 void bough_companion_step(bough_companion *c) {
     do {
-        c->status = step(c, c->coarser.simulation);
+        c->status = bough_other_run_step(&c->coarser, c->run);
     } while (bough_is_ok(&c->status) && !meets_run(c));
     // its channels here, beside the run's step
     c->sampled = bough_is_ok(&c->status) && counts_now(c, c->coarser.simulation);
@@ -158,31 +142,26 @@ static double stale(const bough_companion *c, int i) {
     return held ? c->share_held * change_of(c, i) : 0;
 }
 
-enum { FIRST_STEPS = 8 }; // macro steps
-
-// As far as the run; false: the first steps are over, or the finer run cannot go on.
-static bool advance_finer(const bough_companion *c) {
-    const bough_master *run = c->run->master, *m = c->finer.simulation->master;
-    if (run->time > (FIRST_STEPS + 0.5) * run->macro_step) return false;
-    bough_status status = bough_ok();
-    while (bough_is_ok(&status) && m->time < run->time) status = step(c, c->finer.simulation);
-    return bough_is_ok(&status) && m->time == run->time;
-}
-
-// Vibrations that are faster than the steps decay in the first ones of run and companion alike and leave no
-// difference, and those that are faster than the samples of the air have their own value at each of these.
-// The finer run follows them for long enough.
-static void compare_first(bough_companion *c) {
-    c->first_steps = advance_finer(c);
-    if (!c->first_steps) return;
-    bough_other_run_sample(&c->finer);
+// Vibrations that are faster than the steps decay in run and companion alike and leave no difference, and
+// those that are faster than the samples of the air have their own value at each of these. The finer solution
+// follows them for long enough.
+static void compare_finer(bough_companion *c) {
+    if (!bough_finer_advance(&c->finer, c->run)) return;
     bool held = !bough_master_sampled(c->run->master);
     for (int i = 0; i < c->channels->count; i++) {
-        if (held && c->channels->channel[i].sampled) continue; // an older sample than that of the finer run
-        double between = fabs(difference(&c->channels->channel[i], c->value[i], c->finer.value[i]));
+        const bough_channel *channel = &c->channels->channel[i];
+        if (held && channel->sampled) continue; // an older sample than the finer one
+        double between = fabs(difference(channel, c->value[i], c->finer.other.value[i]));
         c->least[i] = fmax(c->least[i], bough_finer_time_share() * between);
         if (c->error[i] < c->least[i]) c->error[i] = c->least[i];
     }
+}
+
+// Until run and companion are both sampled again, at the latest.
+static double reach(const bough_companion *c) {
+    const bough_scene *scene = c->coarser.simulation->scene;
+    double step = scene->simulation.macro_step;
+    return 2 * (scene->aero.node ? fmax(step, 1 / scene->aero.rate) : step);
 }
 
 static void compare(bough_companion *c) {
@@ -201,7 +180,8 @@ static void compare(bough_companion *c) {
         error = fmax(error, stale(c, i));
         if (!(error <= c->error[i])) c->error[i] = error; // a NaN wins
     }
-    if (c->first_steps) compare_first(c);
+    compare_finer(c);
+    bough_finer_begin(&c->finer, c->run, reach(c));
     bough_error_notice(c, c->run->master->time);
 }
 
@@ -298,7 +278,8 @@ bool bough_companion_knows(const bough_companion *c, int channel) {
 
 void bough_companion_stop_by(bough_companion *c, bool (*stop)(void)) {
     if (c->coarser.simulation) bough_master_stop_by(c->coarser.simulation->master, stop);
-    if (c->finer.simulation) bough_master_stop_by(c->finer.simulation->master, stop);
+    const bough_simulation *finer = c->finer.other.simulation;
+    if (finer) bough_master_stop_by(finer->master, stop);
 }
 
 // -- copies ---------------------------------------------------------------------------------------
@@ -311,8 +292,7 @@ void bough_companion_snapshot(bough_companion *c, bough_snapshot *s) {
     if (!c->coarser.simulation) return;
     int n = c->channels->count;
     bough_simulation_snapshot(c->coarser.simulation, s);
-    if (c->finer.simulation) bough_simulation_snapshot(c->finer.simulation, s);
-    bough_snapshot_take(s, &c->first_steps, sizeof c->first_steps);
+    bough_finer_snapshot(&c->finer, s);
     double *const rows[] = {c->value, c->error,     c->least,      c->low,
                             c->high,  c->other_low, c->other_high, c->noticed};
     for (size_t k = 0; k < sizeof rows / sizeof *rows; k++) bough_snapshot_doubles(s, rows[k], n);

@@ -1,6 +1,7 @@
 // The companion of a run: a second simulation of the same scene that is coarser in everything. What lies
 // between the two at equal times tells what the run errs by: mesh, air, time and coupling at once, for every
-// channel. Beside the first macro steps a third one that is finer in time and air finds what decays in both.
+// channel. Beside the first macro steps, and those after a jump of a load, a third one that is finer in time
+// and air finds what decays in both.
 //
 // If the error falls with order p, a solution with twice the step errs by 2ᵖ times as much, and the run by
 // 1/(2ᵖ − 1) of the difference: a third for order 2 (docs/theory.md).
@@ -52,8 +53,6 @@ bool bough_coarser_is_loose(const bough_scene *scene);
 double bough_finer_time_share(void);
 double bough_finer_air_share(const bough_scene *scene);
 
-enum { BOUGH_COMPANION_REASON = 320 };
-
 // A further simulation of a run's scene, with the run's channels.
 typedef struct bough_other_run {
     bough_simulation *simulation; // NULL: there is none
@@ -67,11 +66,46 @@ bough_status bough_other_run_build(bough_arena *arena, const bough_simulation *r
 
 void bough_other_run_sample(bough_other_run *other);
 
+// A macro step of its own, with the inputs of the run.
+bough_status bough_other_run_step(bough_other_run *other, const bough_simulation *run);
+
+// -- loads that jump (load_jump.c) ----------------------------------------------------------------
+
+// How often loads change by more than a part of their range in less than a macro step, not at the start.
+// Writes when they have, in order: time (as many) [s]; NULL: not wanted.
+int bough_load_jumps(const bough_scene *scene, double part, double *time);
+
+// -- the finer solution (finer.c) -----------------------------------------------------------------
+
+// It is finer in time and air. It stands beside the first macro steps, and beside those after a jump of a
+// load, until what these excite has decayed in the run.
+typedef struct bough_finer {
+    bough_other_run other;  // its simulation is NULL where the scene has none
+    bool follows;           // it is beside the run
+    double until, followed; // the end of that; for how long in all [s]
+    int n_jump;
+    double *jump; // (n_jump) when loads have jumped, in order [s]
+    char *loads;  // memory of the run's loads on their way
+} bough_finer;
+
+bough_status bough_finer_build(bough_arena *arena, bough_simulation *run, bough_finer *f);
+
+// Goes on to the time of the run, and samples there. False: it is not beside the run, or cannot go on.
+bool bough_finer_advance(bough_finer *f, const bough_simulation *run);
+
+// Puts it where the run is if a load jumps before `reach` [s] are over.
+void bough_finer_begin(bough_finer *f, bough_simulation *run, double reach);
+
+void bough_finer_snapshot(bough_finer *f, bough_snapshot *snapshot);
+
+// -- the companion --------------------------------------------------------------------------------
+
+enum { BOUGH_COMPANION_REASON = 320 };
+
 typedef struct bough_companion {
     bough_simulation *run;
     bough_other_run coarser;
-    bough_other_run finer;               // in time and air, beside the first macro steps
-    bool first_steps;                    // these are not over
+    bough_finer finer;
     const bough_channels *channels;      // of the run
     double length;                       // of the longest rod; 0: there is none [m]
     double share;                        // of the difference, that the run errs by
@@ -85,7 +119,7 @@ typedef struct bough_companion {
     double *value;                       // (channels->count) of the run at the last of them
     double *before;                      // (channels->count) of the run at the comparison before
     double *error;                       // (channels->count) largest so far, in the channels' units
-    double *least;                       // (channels->count) of the first macro steps, by the finer run
+    double *least;                       // (channels->count) beside the finer solution
     double *low, *high;                  // (channels->count) range of the run
     double *other_low, *other_high;      // (channels->count) of the companion
     double *noticed;                     // (channels->count) when the error first passed the accuracy [s]

@@ -1,0 +1,86 @@
+#include "apps/bough/model/companion.h"
+
+#include <math.h>
+#include <string.h>
+
+enum { FOLLOWED = 8 }; // macro steps from the start, or from a jump of a load on
+
+// Of all macro steps; a step of the finer solution costs several of the run's.
+enum { FEW_STEPS = 3 * (FOLLOWED + 2) };
+static const double most_followed = 0.02;
+
+// Changes of a load that may excite more than the steps follow, of its range.
+static const double least_jump = 0.1;
+
+// A tight tolerance follows every vibration by itself, unless air is sampled; a further copy of a library
+// would write to the companion's file.
+static bool is_wanted(const bough_scene *scene) {
+    static const double tight = 1e-5;
+    return (scene->simulation.master.rtol >= tight || scene->aero.node) && !scene->control.library;
+}
+
+// What the loads of a simulation remember: those of the air and the control.
+static void snapshot_loads(const bough_simulation *s, bough_snapshot *to) {
+    for (int k = 0; k < s->n_sampled; k++)
+        if (s->sampled[k].snapshot) s->sampled[k].snapshot(s->sampled[k].self, to);
+}
+
+bough_status bough_finer_build(bough_arena *arena, bough_simulation *run, bough_finer *f) {
+    static const int parts = BOUGH_FINEST_TIME | BOUGH_FINER_AIR;
+    bough_snapshot measure = {.move = BOUGH_SNAPSHOT_MEASURE};
+    const bough_scene *scene = run->scene;
+    if (!is_wanted(scene)) return bough_ok();
+    BOUGH_TRY(bough_other_run_build(arena, run, parts, &f->other));
+    f->follows = true;
+    f->until = (FOLLOWED + 0.5) * scene->simulation.macro_step;
+    f->n_jump = bough_load_jumps(scene, least_jump, NULL);
+    f->jump = bough_arena_doubles(arena, (size_t)f->n_jump + 1);
+    bough_load_jumps(scene, least_jump, f->jump);
+    snapshot_loads(run, &measure);
+    f->loads = bough_arena_take(arena, measure.used + 1);
+    return bough_ok();
+}
+
+// Puts the finer solution where the run is.
+static void join(bough_finer *f, bough_simulation *run) {
+    bough_master_join(f->other.simulation->master, run->master);
+    snapshot_loads(run, &(bough_snapshot){BOUGH_SNAPSHOT_SAVE, f->loads, 0});
+    snapshot_loads(f->other.simulation, &(bough_snapshot){BOUGH_SNAPSHOT_RESTORE, f->loads, 0});
+}
+
+// The next jump of a load after a time; HUGE_VAL: none.
+static double next_jump(const bough_finer *f, double t) {
+    int k = 0;
+    while (k < f->n_jump && f->jump[k] <= t) k++;
+    return k < f->n_jump ? f->jump[k] : HUGE_VAL;
+}
+
+// From a time at which both have new samples of the air, at most `reach` before the jump.
+void bough_finer_begin(bough_finer *f, bough_simulation *run, double reach) {
+    const bough_master *m = run->master;
+    double jump = f->other.simulation ? next_jump(f, m->time) : HUGE_VAL;
+    double most = fmax(FEW_STEPS * m->macro_step, most_followed * m->duration);
+    if (jump > m->time + reach || f->followed > most || !bough_master_sampled(m)) return;
+    if (!f->follows) join(f, run);
+    f->follows = true;
+    f->until = jump + (FOLLOWED + 0.5) * m->macro_step;
+}
+
+bool bough_finer_advance(bough_finer *f, const bough_simulation *run) {
+    const bough_master *m = f->other.simulation ? f->other.simulation->master : NULL;
+    bough_status status = bough_ok();
+    if (!f->follows || run->master->time > f->until) return f->follows = false;
+    f->followed += run->master->time - m->time;
+    while (bough_is_ok(&status) && m->time < run->master->time) status = bough_other_run_step(&f->other, run);
+    f->follows = bough_is_ok(&status) && m->time == run->master->time;
+    if (f->follows) bough_other_run_sample(&f->other);
+    return f->follows;
+}
+
+void bough_finer_snapshot(bough_finer *f, bough_snapshot *s) {
+    if (!f->other.simulation) return;
+    bough_simulation_snapshot(f->other.simulation, s);
+    bough_snapshot_take(s, &f->follows, sizeof f->follows);
+    bough_snapshot_take(s, &f->until, sizeof f->until);
+    bough_snapshot_take(s, &f->followed, sizeof f->followed);
+}
