@@ -119,6 +119,12 @@ void bough_draft_tower(bough_draft *d, double foot) {
     fprintf(file, "}\n    rod: {table: %s, segments: 20}\n", bough_import_name[BOUGH_IMPORT_TOWER]);
 }
 
+// Segments that shorten towards the tip: what other numbers err by is in docs/import.md.
+void bough_draft_blade_rod(bough_draft *d) {
+    fprintf(d->file[BOUGH_IMPORT_SCENE], "    rod: {table: %s, segments: 32, grading: 0.2}\n",
+            bough_import_name[BOUGH_IMPORT_BLADE]);
+}
+
 void bough_draft_library(bough_draft *d, const char *library, const char *input, double gear_ratio,
                          double efficiency) {
     FILE *file = d->file[BOUGH_IMPORT_SCENE];

@@ -80,6 +80,9 @@ enum { BOUGH_IMPORT_BLADES = 16 }; // at most
 // The scene's 'turbine': blades are named blade1, blade2 ...
 void bough_draft_turbine(bough_draft *d, const char *rotor, int n_blade);
 
+// Table and segments of the blade whose body was written last.
+void bough_draft_blade_rod(bough_draft *d);
+
 // The scene's flexible tower, its foot at this height [m], and its 'control' by a library with its input file
 // (NULL: none) and the constants of the generator; further keys may follow.
 void bough_draft_tower(bough_draft *d, double foot);

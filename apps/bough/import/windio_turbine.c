@@ -209,10 +209,10 @@ static void put_blades(bough_windio *w, const char *rotor, double cone, double p
         bough_put(w,
                   "  - name: blade%d\n    fidelity: rod\n    joint: {%s, parent: hub, "
                   "placement: [rotate x %.10g deg, rotate y %.10g deg, move z %.10g m]}\n"
-                  "    pitch: %.10g deg\n    rod: {table: %s, segments: 48}\n",
+                  "    pitch: %.10g deg\n",
                   k, steered ? "kind: revolute, axis: z, motion: {angle: 0 deg}" : "kind: fixed",
-                  360.0 * (k - 1) / w->n_blade, -w->forward * cone, w->hub_radius, pitch,
-                  bough_import_name[BOUGH_IMPORT_BLADE]);
+                  360.0 * (k - 1) / w->n_blade, -w->forward * cone, w->hub_radius, pitch);
+        bough_draft_blade_rod(&w->draft);
     }
     bough_draft_turbine(&w->draft, rotor, w->n_blade);
 }

@@ -59,6 +59,18 @@ TEST(turbine_has_the_decks_values) {
     assert_true(list_says(&t, "spring and damper between hub and generator"));
 }
 
+TEST(blades_have_shorter_segments_towards_the_tip) {
+    trial t = import(NULL);
+    const bough_node *s = read_file(&t, "scene.yaml");
+    for (int k = 4; k < 7; k++) {
+        char path[40];
+        snprintf(path, sizeof path, "bodies.%d.rod.segments", k);
+        check_near(number(s, path), 32, 0, 0);
+        snprintf(path, sizeof path, "bodies.%d.rod.grading", k);
+        check_near(number(s, path), 0.2, 0, 0);
+    }
+}
+
 TEST(air_tables_follow_their_headers) {
     trial t = import(NULL);
     const bough_node *blade = at(read_file(&t, "blade-aero.yaml"), "stations.rows");
