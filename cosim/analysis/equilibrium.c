@@ -15,7 +15,7 @@ static const double rounding = 1e-6; // changes that only rounding keeps from co
 static const double most_turn = 1;   // of a vertex or body in a correction [rad]
 
 bough_equilibrium_def bough_equilibrium_def_default(void) {
-    return (bough_equilibrium_def){.step = 0.1, .least = 1e-9, .tolerance = 1e-10, .steps = 1000};
+    return (bough_equilibrium_def){.unit = 1, .step = 0.1, .least = 1e-9, .tolerance = 1e-10, .steps = 1000};
 }
 
 typedef struct search {
@@ -76,7 +76,7 @@ static double step(search *s, const double *state, bough_equilibrium_report *rep
 // Whether the state after a last step is the equilibrium: its change is none, or as small as rounding lets it
 // be. Shorter last steps leave more behind: what their changes, one after the other, sum up to must be none.
 static bool is_found(const search *s, double longest, double change, double before) {
-    if (longest >= BOUGH_EQUILIBRIUM_LONGEST)
+    if (longest >= s->def->unit * BOUGH_EQUILIBRIUM_LONGEST)
         return change < s->def->tolerance || (change < rounding && !(change < contracting * before));
     if (!(change < before)) return isfinite(before) && change < rounding;
     double ratio = change / before;
@@ -95,25 +95,29 @@ static void rest(const bough_equilibrium_def *def, double *before, double *state
 bough_status bough_equilibrium_find(bough_arena *arena, bough_whole *whole, const bough_equilibrium_def *def,
                                     double *state, bough_equilibrium_report *report) {
     const bough_assembly *a = whole->assembly;
-    search s = {.whole = whole, .def = def, .n = a->n_state, .gamma = def->step};
+    search s = {.whole = whole, .def = def, .n = a->n_state, .gamma = def->unit * def->step};
     *report = (bough_equilibrium_report){0};
     take(&s, arena);
     bough_assembly_scales(a, s.scale);
-    double most = growth, before = INFINITY, taken = INFINITY, longest = BOUGH_EQUILIBRIUM_LONGEST;
+    if (def->scale) memcpy(s.scale, def->scale, (size_t)s.n * sizeof *s.scale);
+    double newton = def->unit * BOUGH_EQUILIBRIUM_LONGEST, longest = newton;
+    double most = growth, before = INFINITY, taken = INFINITY;
     double kinetic = 0;
-    while (report->steps < def->steps && s.gamma > def->least && find_rate(&s, state)) {
+    while (report->steps < def->steps && s.gamma > def->unit * def->least && find_rate(&s, state)) {
         double contraction = step(&s, state, report);
         bool last = s.gamma >= longest, near = report->change < rounding;
         report->steps++;
         if (last && is_found(&s, longest, report->change, before)) return bough_ok();
         before = last && near ? report->change : (double)INFINITY;
-        bool lowered = longest < BOUGH_EQUILIBRIUM_LONGEST;
+        bool lowered = longest < newton;
         if (near && !lowered) contraction = 0; // apart from rounding
         bool refused = !(contraction < contracting);
         most = refused ? cautious : fmin(growth, most * cautious);
         s.gamma *= fmin(most, fmax(shrink, sqrt(aim / (contraction + DBL_MIN))));
         // rounding of long steps leads away from where shorter ones came to rest
         if (refused && taken < rounding) longest = fmin(longest, s.gamma);
+        // a stiffness that vanishes with the deflection takes ever longer steps
+        if (last && !refused && !lowered && report->change > contracting * taken) longest *= growth;
         s.gamma = fmin(s.gamma, longest);
         if (refused) continue;
         taken = report->change;

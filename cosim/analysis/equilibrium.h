@@ -9,11 +9,13 @@
 #include "cosim/whole.h"
 
 typedef struct bough_equilibrium_def {
-    double time;      // [s]
-    double step;      // the first γ [s]
-    double least;     // γ below which the search ends [s]
-    double tolerance; // of the last step, in units of the members' scales
-    int steps;        // most, refused ones among them
+    double time;         // [s]
+    double unit;         // of time, to which the motions of the whole belong [s]
+    double step;         // the first γ, in this unit
+    double least;        // γ below which the search ends, in this unit
+    double tolerance;    // of the last step, in units of the scales
+    const double *scale; // (n_state) of the states; NULL: the members'
+    int steps;           // most, refused ones among them
     void *self;
     // moved (n_state) ← state after a finite change, as its rotations and shapes add up; returns
     // its largest rotation [rad]. NULL: state + change.
@@ -26,10 +28,10 @@ typedef struct bough_equilibrium_def {
     double (*kinetic)(void *self, const double *state);
 } bough_equilibrium_def;
 
-// Time 0, 0.1 s, 1e-9 s, 1e-10, 1000 steps.
+// Time 0, a unit of 1 s, 0.1, 1e-9, 1e-10, the members' scales, 1000 steps.
 bough_equilibrium_def bough_equilibrium_def_default(void);
 
-enum { BOUGH_EQUILIBRIUM_LONGEST = 30 }; // γ of the last steps [s]; beyond, rounding grows
+enum { BOUGH_EQUILIBRIUM_LONGEST = 120 }; // γ of the last steps, in units of time; beyond, rounding grows
 
 typedef struct bough_equilibrium_report {
     int steps;     // taken and refused

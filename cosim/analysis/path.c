@@ -9,8 +9,8 @@
 enum { CORRECTIONS = 30, FEW = 16, PARABOLAS = 5 };
 
 // γ is so long that a step of implicit Euler is one of Newton's method: until the response to the loads
-// changes by no more than this when γ is four times as long.
-static const double shift = 0.03, longer = 4, longest = 1e6; // [-, -, s]
+// changes by no more than `shift` when γ is four times as long. `newton`: the first one tried.
+static const double shift = 0.03, longer = 4, newton = 30, longest = 1e6; // [-, -, s, s]
 static const double most_turn = 0.5;  // rotation of a vertex or body in a correction [rad]
 static const double rounding = 1e-5;  // corrections that only rounding keeps from contracting
 static const double smooth = 0.97;    // least cosine between the tangents of neighbouring points
@@ -95,7 +95,7 @@ static bool linearise(path *p, const place *at) {
 
 // The factors' γ, and the factors and p->load of a place with it.
 static bool choose_gamma(path *p, const place *at) {
-    for (p->gamma = BOUGH_EQUILIBRIUM_LONGEST; linearise(p, at); p->gamma *= longer) {
+    for (p->gamma = newton; linearise(p, at); p->gamma *= longer) {
         double change = 0, size = largest(p, p->load);
         for (int k = 0; k < p->n; k++) change = fmax(change, fabs(p->load[k] - p->change[k]) / p->scale[k]);
         bool same = change <= shift * size;
@@ -231,8 +231,7 @@ static bough_status follow(path *p, bough_path_report *report) {
         bool over = fabs(p->next.factor) >= 1;
         double last = copysign(1, p->next.factor);
         if (corrections == 0 || turned < smooth || (over && !finish(p, last))) {
-            if (corrections == 0)
-                p->gamma = fmax(p->gamma / longer, BOUGH_EQUILIBRIUM_LONGEST); // less rounding
+            if (corrections == 0) p->gamma = fmax(p->gamma / longer, newton); // less rounding
             step *= shrink;
             continue;
         }

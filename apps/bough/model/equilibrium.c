@@ -75,13 +75,13 @@ static bough_status build_stiffened(bough_arena *arena, const bough_scene *given
 }
 
 // A search that takes more steps, or shorter ones, may follow a slack rod into folds: stiff rods come first.
-static const double least_step = 5e-3; // [s]
+static const double least_step = 5e-3; // in units of the scene's time
 enum { PATIENCE = 60 };
 
 // From an equilibrium of stiffer rods on, Newton's method: its steps, its shortest γ, and the tolerance while
 // the rods are not the scene's.
 enum { NEAR_STEPS = 30 };
-static const double near_least = 0.03, near_tolerance = 1e-2; // [s], [-]
+static const double near_least = 0.03, near_tolerance = 1e-2;
 
 // Changes of the exponent: the first, the least, and by how much they grow and shrink.
 static const double first_part = 0.5, least_part = 0.004, easier = 1.6, harder = 0.5;

@@ -6,10 +6,10 @@
 #include <math.h>
 #include <string.h>
 
-// Where growing eigenvalues of the Jacobian are looked for [1/s], how many values nearest to each, and the
-// part of a point that is rounding; far beyond it lie values that a small system does not have.
-static const double point[] = {1, 50, 1000}, rounded = 1e-3;
-enum { POINTS = 3, NEAREST = 12 }; // the latter at the first, 4 at the others
+// Where growing eigenvalues of the Jacobian are looked for, by the scene's time, how many values nearest to
+// each, and the part of a point that is rounding; far beyond it lie values that a small system does not have.
+static const double point[] = {1, 10, 100, 1000}, rounded = 1e-3;
+enum { POINTS = 4, NEAREST = 12 }; // the latter at the first, 4 at the others
 
 // An oscillation grows by this part of its value at least, equally from both points to this part of it.
 static const double rounded_oscillation = 1e-5, again = 2.7, equal = 0.01;
@@ -22,18 +22,21 @@ static bool oscillates(const bough_eigen_pair *pair) {
     return fabs(pair->imaginary) > rounded * fabs(pair->real);
 }
 
+// `at`: by the scene's time.
 static bough_status find_near(bough_arena *arena, const bough_equilibrium_search *x, double at,
                               bough_eigen_pair *pair, bough_eigen_count *count) {
-    bough_modes_def def = {.time = x->time, .state = x->state, .input = x->whole->input, .point = at};
+    bough_modes_def def = {
+        .time = x->time, .state = x->state, .input = x->whole->input, .point = at / x->unit.period};
     return bough_modes_find(arena, x->whole, &def, pair, count);
 }
 
-// The oscillation among the pairs that grows most, by parts of its value; NULL: none.
-static const bough_eigen_pair *growing_oscillation(const bough_eigen_pair *pair, int n) {
+// The oscillation among the pairs that grows most, by parts of its value; NULL: none. `time`: the scene's
+// [s].
+static const bough_eigen_pair *growing_oscillation(const bough_eigen_pair *pair, int n, double time) {
     const bough_eigen_pair *most = NULL;
     for (int k = 0; k < n; k++) {
         double size = hypot(pair[k].real, pair[k].imaginary);
-        bool slow = size > rounded && size < 1 / rounded && oscillates(&pair[k]);
+        bool slow = size * time > rounded && size * time < 1 / rounded && oscillates(&pair[k]);
         if (slow && pair[k].residual < trusted && pair[k].real > rounded_oscillation * size &&
             (most == NULL || pair[k].real > most->real))
             most = &pair[k];
@@ -136,7 +139,7 @@ static bough_status confirm_oscillation(bough_arena *arena, const bough_equilibr
 static bool confirms_growth(bough_arena *arena, const bough_equilibrium_search *x, double rate) {
     bough_eigen_pair pair[NEAREST];
     bough_eigen_count count = {.wanted = 4};
-    bough_status status = find_near(arena, x, beside * rate, pair, &count);
+    bough_status status = find_near(arena, x, beside * rate * x->unit.period, pair, &count);
     bool found = !bough_is_ok(&status);
     for (int k = 0; k < count.found && !found; k++)
         found = !oscillates(&pair[k]) && fabs(pair[k].real - rate) < equal * rate;
@@ -154,14 +157,15 @@ static bough_status find_growth(bough_arena *arena, void *self) {
         if (!bough_is_ok(&status) && i > 0) continue; // none is distinctly nearest: no growth near this point
         BOUGH_TRY(status);
         for (int k = 0; k < count.found; k++) {
-            bool known = pair[k].real > rounded * point[i] && pair[k].real < point[i] / rounded;
+            double part = pair[k].real * x->unit.period / point[i];
+            bool known = part > rounded && part < 1 / rounded;
             bool grows = !oscillates(&pair[k]) && known && pair[k].residual < trusted;
             if (!grows || pair[k].real <= x->growth->rate || is_twist_of_mesh(arena, x, &pair[k])) continue;
             if (!confirms_growth(arena, x, pair[k].real)) continue;
             x->growth->rate = pair[k].real;
             x->growth->row = largest_row(x, &pair[k]);
         }
-        const bough_eigen_pair *found = growing_oscillation(pair, count.found);
+        const bough_eigen_pair *found = growing_oscillation(pair, count.found, x->unit.period);
         if (i > 0 || found == NULL || bough_equilibrium_search_turns(x)) continue;
         BOUGH_TRY(confirm_oscillation(arena, x, found));
     }

@@ -219,7 +219,9 @@ bool bough_equilibrium_search_turns(const bough_equilibrium_search *x) {
 
 void bough_equilibrium_search_set_up(bough_arena *arena, bough_equilibrium_search *x) {
     bough_simulation *s = x->simulation;
-    x->state = bough_arena_doubles(arena, (size_t)x->assembly->n_state + 1);
+    size_t states = (size_t)x->assembly->n_state + 1;
+    bough_arena_each(arena, states, &x->state, &x->scale);
+    x->unit = bough_equilibrium_find_units(s, x->assembly, x->scale);
     x->change = bough_arena_doubles(arena, BOUGH_ROD_CHANGE * bough_simulation_most_vertices(s));
     int *row = bough_arena_take(arena, ((size_t)s->leader.system.n_state + 1) * sizeof *row);
     x->whole = bough_whole_create(arena, x->assembly, NULL);
@@ -236,6 +238,8 @@ void bough_equilibrium_search_set_up(bough_arena *arena, bough_equilibrium_searc
 bough_equilibrium_def bough_equilibrium_search_def(bough_equilibrium_search *x) {
     bough_equilibrium_def def = x->limits;
     def.time = x->time;
+    def.unit = x->unit.time;
+    def.scale = x->scale;
     def.self = x;
     def.move = bough_equilibrium_search_move;
     if (x->rests) def.rest = bough_equilibrium_search_rest;

@@ -7,6 +7,14 @@
 #include "apps/bough/model/equilibrium.h"
 #include "cosim/analysis/equilibrium.h"
 
+// The size of a scene and how slow it is, by those for which the constants of a search are chosen: 1 without
+// a length or without forces.
+typedef struct bough_equilibrium_units {
+    double length; // of its longest rod, link or spring [500 m]
+    double time;   // in which gravity, loads, springs and rotation move it by its length [8 s]
+    double period; // the same [s]
+} bough_equilibrium_units;
+
 // An equilibrium, its growth or a path of equilibria, within bough_arena_use.
 typedef struct bough_equilibrium_search {
     bough_simulation *simulation;
@@ -21,10 +29,16 @@ typedef struct bough_equilibrium_search {
 
     // by bough_equilibrium_search_set_up
     bough_whole *whole;
-    double *state;  // (n_state) at rest
+    double *state; // (n_state) at rest
+    double *scale; // (n_state) of the members' scales, in units of the scene
+    bough_equilibrium_units unit;
     bool rests;     // whether states are brought to rest in between
     double *change; // of one rod's vertices, see rod_static.h
 } bough_equilibrium_search;
+
+// The units of a scene, and with them the scales of the assembly's states (n_state).
+bough_equilibrium_units bough_equilibrium_find_units(bough_simulation *s, const bough_assembly *assembly,
+                                                     double *scale);
 
 // The system and its states at rest at the time.
 void bough_equilibrium_search_set_up(bough_arena *arena, bough_equilibrium_search *x);

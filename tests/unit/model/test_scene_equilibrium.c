@@ -433,12 +433,16 @@ static bough_simulation *hinged_rod(bough_arena *arena, double length, double ma
 TEST(shape_does_not_depend_on_scale) {
     static const double unit[3][3] = {{1, 1, 1}, {1e-4, 1e-10, 1e-4}, {1e4, 1e6, 100}};
     double first[2] = {0, 0};
+    int first_steps = 0;
     for (int k = 0; k < 3; k++) {
         check_arena(arena);
         double length = unit[k][0];
         bough_simulation *s = hinged_rod(arena, length, unit[k][1], unit[k][2]);
         bough_growth growth;
-        printf("%g m: %d steps\n", length, equilibrium_of(s).steps);
+        int steps = equilibrium_of(s).steps;
+        printf("%g m: %d steps\n", length, steps);
+        if (k == 0) first_steps = steps;
+        assert_in_range(steps, first_steps - 2, first_steps + 2);
         bough_channels list = scene_channels(arena, s);
         double x = scene_channel(s, &list, "rTipX") / length, z = scene_channel(s, &list, "rTipZ") / length;
         if (k == 0) first[0] = x;
@@ -448,4 +452,80 @@ TEST(shape_does_not_depend_on_scale) {
         check_ok(bough_simulation_growth(s, s->master->assembly, 0, &growth));
         check_near(growth.rate, 0, 0, 0);
     }
+}
+
+// A cable of 30 segments, so thin that its clamp's moment ends within one of them.
+static bough_simulation *thin_cable(bough_arena *arena, const char *joint, int angle, double length) {
+    double w = 9.81 * length, bending = 1e-5 * w * length * length, inertia = 1e-6 * length * length;
+    const char *sets[] = {
+        bough_arena_print(
+            arena,
+            "bodies=[{name: line, fidelity: rod, joint: {kind: %s, parent: ground, placement: [rotate y %d deg]}, "
+            "rod: {length: %g, segments: 30, stiffness: [%g, %g, %g, %g, %g, %g], mass: [1, 0, 0, %g, %g, 0]}}]",
+            joint, angle, length, 300 * w, 300 * w, 1000 * w, bending, bending, bending, inertia, inertia),
+        "gravity=[0, 0, -9.81]", "markers=[]", NULL};
+    return scene_build(arena, "apps/mechanisms/pendulum.yaml", sets);
+}
+
+// A cable that starts nearly upright on a spherical joint comes to hang, whatever its length. Steps that are
+// long for a short cable would leave it upright.
+TEST(cable_of_any_length_falls_from_upright) {
+    static const double length[] = {1e-4, 0.01, 1, 1e4};
+    for (int k = 0; k < 4; k++) {
+        check_arena(arena);
+        bough_simulation *s = thin_cable(arena, "spherical", 30, length[k]);
+        int steps = equilibrium_of(s).steps;
+        printf("%g m: %d steps\n", length[k], steps);
+        assert_in_range(steps, 1, 100);
+        bough_channels list = scene_channels(arena, s);
+        check_near(scene_channel(s, &list, "lineTipZ"), -length[k] * 1.0005, 1e-6, 0);
+    }
+}
+
+// A beam that is pushed straight back to its clamp by more than Euler's load buckles as fast at every length,
+// by its own time.
+TEST(growth_does_not_depend_on_scale) {
+    static const double length[] = {1, 1e-6, 1e6};
+    double first = 0;
+    for (int k = 0; k < 3; k++) {
+        check_arena(arena);
+        double l = length[k];
+        const char *sets[] = {
+            bough_arena_print(
+                arena,
+                "bodies=[{name: column, fidelity: rod, joint: {kind: fixed, parent: ground}, rod: {length: %g, segments: "
+                "12, stiffness: [%g, %g, %g, %g, %g, %g], mass: [1, 0, 0, %g, %g, 0]}}]",
+                l, 3e4 * l, 3e4 * l, 1e5 * l, l * l * l, 2 * l * l * l, l * l * l, 1e-5 * l * l,
+                1e-5 * l * l),
+            bough_arena_print(arena, "loads=[{body: column, at: tip, force: [0, 0, %g]}]", -30 * l),
+            "gravity=[0, 0, 0]", "markers=[]", NULL};
+        bough_simulation *s = scene_build(arena, "apps/mechanisms/pendulum.yaml", sets);
+        bough_growth growth;
+        equilibrium_of(s);
+        check_ok(bough_simulation_growth(s, s->master->assembly, 0, &growth));
+        printf("%g m: growth %g 1/s\n", l, growth.rate);
+        if (k == 0) first = growth.rate;
+        assert_true(first > 5);
+        check_near(growth.rate * sqrt(l), first, 1e-4, 0);
+    }
+}
+
+// Two masses in a row of springs that are just slack: only the third power of their deflection pulls them
+// back.
+TEST(net_without_stiffness_is_found) {
+    const char *sets[] = {
+        "bodies=[{name: a, fidelity: rigid, mass: 1, inertia: [0.1, 0.1, 0.1], joint: {kind: free, parent: ground, "
+        "placement: [move x 1 m, move z 0.05 m]}}, {name: b, fidelity: rigid, mass: 1, inertia: [0.1, 0.1, 0.1], "
+        "joint: {kind: free, parent: ground, placement: [move x 2 m, move z -0.02 m]}}]",
+        "springs=[{name: r, from: ground, to: a, stiffness: 1e4, length: 1}, {name: s, from: a, to: b, stiffness: "
+        "1e4, length: 1}, {name: t, from: b, to: ground, to_point: [3, 0, 0], stiffness: 1e4, length: 1}]",
+        "gravity=[0, 0, 0]", "markers=[{name: a, body: a}, {name: b, body: b}]", NULL};
+    check_arena(arena);
+    bough_simulation *s = scene_build(arena, "apps/mechanisms/pendulum.yaml", sets);
+    int steps = equilibrium_of(s).steps;
+    printf("%d steps\n", steps);
+    assert_in_range(steps, 1, 300);
+    bough_channels list = scene_channels(arena, s);
+    check_near(scene_channel(s, &list, "aZ"), 0, 0, 1e-3);
+    check_near(scene_channel(s, &list, "bZ"), 0, 0, 1e-3);
 }
