@@ -35,6 +35,7 @@ typedef struct blocks {
     double *onto;           // n_part r × others
     double *among;          // others × others, with what holds free joints
     double **same, **cross; // one blade's, of each harmonic (r × r): on itself, of the sine on the cosine
+    double (*spin)[2];      // of γS, this times E; added to both when the blades are factored
 } blocks;
 
 static size_t square(int n) { return (size_t)n * (size_t)n; }
@@ -169,22 +170,22 @@ static void columns_to_harmonics(bough_arena *arena, const bough_rotor_inverse *
 
 // -- the parts of γ (S − A) -----------------------------------------------------------------------
 
-// Of one harmonic: Σ_d (block of blades 0, d) cos and sin of m times their angle.
-static void sum_harmonic(const bough_rotor_inverse *x, int m, const double *rate, double *same,
-                         double *cross) {
+// Of one harmonic: Σ_d (block of blades 0, d) cos and sin of m times their angle; of γS, `spin`.
+static void sum_harmonic(const bough_rotor_inverse *x, int m, const double *rate, double *same, double *cross,
+                         double spin[2]) {
     const bough_modes_def *def = x->system->def;
     const double *a = x->system->air->motion;
     size_t n = (size_t)x->n, r = (size_t)x->r;
     for (int d = 0; d < x->n_part; d++) {
         double angle = 2 * BOUGH_PI * m * d / x->n_part, c = x->gamma * cos(angle), s = x->gamma * sin(angle);
+        spin[0] += c * rate[d];
+        spin[1] += s * rate[d];
         for (size_t j = 0; j < r; j++) {
             const double *from = a + (size_t)def->row[(size_t)d * r + j] * n + def->row[0];
             for (size_t i = 0; i < r; i++) {
                 same[j * r + i] -= c * from[i];
                 if (cross) cross[j * r + i] -= s * from[i];
             }
-            same[j * r + j] += c * rate[d];
-            if (cross) cross[j * r + j] += s * rate[d];
         }
     }
 }
@@ -195,7 +196,15 @@ static void sum_harmonics(bough_arena *arena, const bough_rotor_inverse *x, bloc
     for (int m = 0; m < n_harmonic(x); m++) {
         b->same[m] = bough_arena_doubles(arena, square(x->r));
         if (parts_of(x, m) == 2) b->cross[m] = bough_arena_doubles(arena, square(x->r));
-        sum_harmonic(x, m, rate, b->same[m], b->cross[m]);
+        sum_harmonic(x, m, rate, b->same[m], b->cross[m], b->spin[m]);
+    }
+}
+
+static void add_spin(const bough_rotor_inverse *x, const blocks *b) {
+    size_t r = (size_t)x->r;
+    for (int m = 0; m < n_harmonic(x); m++) {
+        for (size_t j = 0; j < r; j++) b->same[m][j * r + j] += b->spin[m][0];
+        for (size_t j = 0; j < r && b->cross[m]; j++) b->cross[m][j * r + j] += b->spin[m][1];
     }
 }
 
@@ -220,8 +229,9 @@ static void sum_others(bough_arena *arena, const bough_rotor_inverse *x, double 
 
 // -- the blades by harmonics ----------------------------------------------------------------------
 
-// to (r × r) = P of one blade times part (r × r), whose rows without entries are left out.
-static void multiply_blade(bough_arena *arena, const bough_rotor_inverse *x, const double *part, double *to) {
+// to (r × r) = P of one blade times part (r × r), whose rows without entries are left out, and spin E.
+static void multiply_blade(bough_arena *arena, const bough_rotor_inverse *x, const double *part, double spin,
+                           double *to) {
     size_t r = (size_t)x->r, rows = 0;
     int *row = bough_arena_take(arena, r * sizeof *row);
     double *columns, *used;
@@ -235,7 +245,8 @@ static void multiply_blade(bough_arena *arena, const bough_rotor_inverse *x, con
         memcpy(columns + i * r, x->blade + (size_t)row[i] * r, r * sizeof *columns);
         for (size_t j = 0; j < r; j++) used[j * rows + i] = part[j * r + (size_t)row[i]];
     }
-    bough_dense_product((bough_product){x->r, x->r, (int)rows, false, 1, 0}, columns, used, to);
+    memcpy(to, x->blade, r * r * sizeof *to);
+    bough_dense_product((bough_product){x->r, x->r, (int)rows, false, 1, spin}, columns, used, to);
 }
 
 // Columns with `parts` times r rows, from those of part after part, or to them.
@@ -258,7 +269,7 @@ static double *blade_matrix(bough_arena *arena, const bough_rotor_inverse *x, in
     size_t r = (size_t)x->r, parts = (size_t)parts_of(x, m), q = parts * r;
     double *t = bough_arena_doubles(arena, q * q), *product = bough_arena_doubles(arena, r * r);
     for (size_t cross = 0; cross < parts; cross++) {
-        multiply_blade(arena, x, cross ? b->cross[m] : b->same[m], product);
+        multiply_blade(arena, x, cross ? b->cross[m] : b->same[m], b->spin[m][cross], product);
         for (size_t p = 0; p < parts; p++) {
             // rows of the cosine and columns of the sine, or with the other sign the other way round
             size_t other = cross ? 1 - p : p;
@@ -388,6 +399,7 @@ static bool set(bough_arena *arena, bough_rotor_inverse *x, double going_back) {
     double *columns = bough_arena_doubles(arena, n * n_other + 1);
     bough_arena_each(arena, all * n_other + 1, &b.between, &b.onto);
     b.among = bough_arena_doubles(arena, square(x->n_other) + 1);
+    b.spin = bough_arena_take(arena, (size_t)n_harmonic(x) * sizeof *b.spin);
     b.same = bough_arena_take(arena, (size_t)n_harmonic(x) * sizeof *b.same);
     b.cross = bough_arena_take(arena, (size_t)n_harmonic(x) * sizeof *b.cross);
     double *work = bough_arena_doubles(arena, n);
@@ -397,6 +409,7 @@ static bool set(bough_arena *arena, bough_rotor_inverse *x, double going_back) {
     sum_others(arena, x, going_back, &b);
     to_harmonics(x, x->n_other, columns, x->to);
     if (!set_others(arena, x, columns) || !factor_blades(arena, x, &b)) return false;
+    add_spin(x, &b);
     set_response(arena, x, &b);
     return close_border(arena, x, &b);
 }
