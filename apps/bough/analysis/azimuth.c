@@ -15,6 +15,28 @@ static const double complex imaginary = (double complex)I;
 
 enum { AZIMUTHS = 4, MOST_BLADES = 16 };
 
+// -- blades seen by an observer at rest -----------------------------------------------------------
+
+// Rows of equal blades, of their states or of those of their air: row (n_part × n).
+typedef struct blade_rows {
+    int n_part, n;
+    const int *row;
+} blade_rows;
+
+// Entries of the blades by C or its transpose, in place.
+static void blend(const double *c, bool transposed, blade_rows of, double *x) {
+    double before[MOST_BLADES];
+    for (int j = 0; j < of.n; j++) {
+        for (int k = 0; k < of.n_part; k++) before[k] = x[of.row[k * of.n + j]];
+        for (int k = 0; k < of.n_part; k++) {
+            double sum = 0;
+            for (int l = 0; l < of.n_part; l++)
+                sum += c[transposed ? l * of.n_part + k : k * of.n_part + l] * before[l];
+            x[of.row[k * of.n + j]] = sum;
+        }
+    }
+}
+
 // -- the azimuths ---------------------------------------------------------------------------------
 
 // C_kl = (1/n) Σ_h exp(i h (2π(k − l)/n + turn)), |h| <= (n − 1)/2; what alternates from blade to blade
@@ -46,12 +68,18 @@ static bough_scene *turned_scene(bough_arena *arena, const bough_simulation *s, 
     return to;
 }
 
-// Begins in the state of the scene's azimuth, so that its equilibrium is near.
-static void begin(const bough_azimuths *a, bough_azimuth *x, double *state) {
-    const bough_azimuth *first = &a->at[0];
-    const bough_simulation *s = first->simulation;
+// Begins in the state of the scene's azimuth, with the blades bent as an observer at rest sees those there,
+// so that its equilibrium is near.
+static void begin(const bough_azimuths *a, bough_azimuth *x, double time, double *state) {
+    const bough_simulation *s = a->at[0].simulation;
+    const bough_assembly *assembly = s->master->assembly;
     int azimuth, speed;
-    bough_assembly_states(s->master->assembly, state);
+    bough_assembly_states(assembly, state);
+    blend(x->blend, false, (blade_rows){a->group->n, a->group->n_row, a->group->row}, state);
+    for (int k = 0; k < a->group->n; k++) { // quaternions of length 1
+        const bough_system *system = &assembly->member[a->group->blade[k]->port + 1]->system;
+        if (system->ops->constrain) system->ops->constrain(system->self, time, state + a->group->first[k]);
+    }
     bough_tree_joint_rows(s->tree, s->scene->turbine.rotor, &azimuth, &speed);
     state[azimuth] += x->turn;
     bough_equilibrium_set_state(x->simulation, x->simulation->master->assembly, state);
@@ -63,7 +91,7 @@ static bough_status turn_on(bough_arena *arena, const bough_azimuths *a, double 
     bough_equilibrium_work work;
     BOUGH_TRY(bough_simulation_build_on(arena, turned_scene(arena, s, x->turn), s->pool, &x->simulation));
     const bough_assembly *assembly = x->simulation->master->assembly;
-    begin(a, x, bough_arena_doubles(arena, (size_t)assembly->n_state));
+    begin(a, x, time, bough_arena_doubles(arena, (size_t)assembly->n_state));
     if (balanced) {
         bough_status status = bough_simulation_equilibrium_near(x->simulation, assembly, time, &work);
         if (!bough_is_ok(&status))
@@ -102,28 +130,6 @@ bough_status bough_azimuths_find(bough_arena *arena, bough_simulation *s, double
         bough_arena_copy(arena, point->state, (size_t)s->master->assembly->n_state * sizeof(double));
     if (a->n > 1) set_mean(a, point->state);
     return bough_ok();
-}
-
-// -- blades seen by an observer at rest -----------------------------------------------------------
-
-// Rows of equal blades, of their states or of those of their air: row (n_part × n).
-typedef struct blade_rows {
-    int n_part, n;
-    const int *row;
-} blade_rows;
-
-// Entries of the blades, `stride` apart, by C or its transpose, in place.
-static void blend(const double *c, bool transposed, blade_rows of, size_t stride, double *x) {
-    double before[MOST_BLADES];
-    for (int j = 0; j < of.n; j++) {
-        for (int k = 0; k < of.n_part; k++) before[k] = x[(size_t)of.row[k * of.n + j] * stride];
-        for (int k = 0; k < of.n_part; k++) {
-            double sum = 0;
-            for (int l = 0; l < of.n_part; l++)
-                sum += c[transposed ? l * of.n_part + k : k * of.n_part + l] * before[l];
-            x[(size_t)of.row[k * of.n + j] * stride] = sum;
-        }
-    }
 }
 
 // Rows of the blades' states and, n_per_blade of each, of their air's.
@@ -191,8 +197,8 @@ bough_azimuth_product *bough_azimuth_product_create(bough_arena *arena, const bo
 }
 
 static void blend_all(const bough_azimuth_product *p, bool back, double *x) {
-    blend(p->blend, back, p->rows.blade, 1, x);
-    blend(p->blend, back, p->rows.air, 1, x + p->n);
+    blend(p->blend, back, p->rows.blade, x);
+    blend(p->blend, back, p->rows.air, x + p->n);
 }
 
 bough_status bough_azimuth_product_follow(bough_azimuth_product *p, double size, bool to_one_side,
