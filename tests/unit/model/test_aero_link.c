@@ -362,6 +362,7 @@ static void start_suddenly(const char *rate, const char *fidelity, double tip[RO
     const char *const sets[] = {set,
                                 kind,
                                 "aero.ramp=[0 s, 0 s]",
+                                "bodies[2].joint.speed=0.8 rad/s", // no fading of the wake
                                 "simulation.macro_step=2.5 ms",
                                 "simulation.micro.step=2.5 ms",
                                 "simulation.threads=1",
