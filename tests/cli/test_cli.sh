@@ -166,6 +166,15 @@ checks() {
     sed 's/^    mass: .*/&\n    inertia: [5.1e6, 1e3, 1e3]/' "$mechanisms/pendulum.yaml" >../odd.yaml
     expect 0 check ../odd.yaml
     has ../stderr "^../odd.yaml:[0-9]*:[0-9]*: warning: body '.*': no mass distribution has the inertia"
+    mkdir ../drives
+    cp "$folder"/apps/templates/turbine/*.yaml ../drives
+    sed -i 's/0.88, 0.009/0.88, -0.009/' ../drives/airfoils.yaml
+    expect 0 check ../drives
+    has ../stderr "^../drives/airfoils.yaml:23:11: warning: polar 'section': the drag coefficient is negative, -0.009 at 4 deg"
+    expect 0 check "$folder/apps/templates/turbine/scene.yaml" --set control.law.rated_power=null --set control.law.cut_in=null
+    has ../stderr "warning: control.law: cut_in, rated_power not given: the values of the NREL 5 MW turbine, .* 97, not 25"
+    expect 0 check "$folder/apps/templates/turbine/scene.yaml" --set control.gear_ratio=97 --set control.law=null
+    [ ! -s ../stderr ] || fail "a warning for the turbine of the defaults"
     refused 'mass: must be in \[0, 1e12\] kg' run "$mechanisms/pendulum.yaml" --set 'bodies[0].mass=1e300 t'
     refused "error: aero.wind.speed: must be in \[0, 150\] m/s, got '300'" check "$turbine" --set aero.wind.speed=300
     refused "solver: expected one of .*, got 'cvode' (did you mean 'cvode-bdf'?)" check "$bar" --set simulation.micro.solver=cvode

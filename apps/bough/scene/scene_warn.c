@@ -44,6 +44,43 @@ static void warn_inertia(const bough_scene_body *b, FILE *stream) {
         b->name, v[0], v[1], v[2]);
 }
 
+// -- air and control ------------------------------------------------------------------------------
+
+// Air along a section never drives it: columns that are swapped, or a sign.
+static void warn_polars(const bough_scene_polars *polars, FILE *stream) {
+    for (int i = 0; i < polars->n_polar; i++) {
+        const bough_scene_polar *p = &polars->polar[i];
+        int least = 0;
+        for (int k = 1; k < p->n_row; k++) least = p->row[k].cd < p->row[least].cd ? k : least;
+        if (p->row[least].cd >= 0) continue;
+        warn(p->row[least].node, stream,
+             "polar '%s': the drag coefficient is negative, %g at %g deg: such air drives the section",
+             p->name, p->row[least].cd, p->row[least].alpha / BOUGH_DEGREE);
+    }
+}
+
+// The defaults of the built-in law belong to one turbine, which this gear ratio tells from others.
+static const double ratio_of_defaults = 97;
+
+static void warn_law(const bough_scene_control *control, FILE *stream) {
+    static const char *const keys[] = {"cut_in",      "optimal_from", "optimal_gain",    "rated_speed",
+                                       "rated_power", "most_torque",  "reference_speed", "proportional",
+                                       "integral",    "halving_pitch"};
+    enum { OF_TORQUE = 6, ALL = sizeof keys / sizeof *keys };
+    const bough_node *law = bough_node_find(control->node, "law");
+    char list[200] = "";
+    if (control->kind != BOUGH_SCENE_VARIABLE_SPEED || control->gear_ratio == ratio_of_defaults) return;
+    for (int i = 0; i < (control->pitch ? ALL : OF_TORQUE); i++) {
+        if (law && bough_node_find(law, keys[i])) continue;
+        size_t used = strlen(list);
+        snprintf(list + used, sizeof list - used, "%s%s", used == 0 ? "" : ", ", keys[i]);
+    }
+    if (list[0] == '\0') return;
+    warn(law ? law : control->node, stream,
+         "control.law: %s not given: the values of the NREL 5 MW turbine, whose gear ratio is %g, not %g",
+         list, ratio_of_defaults, control->gear_ratio);
+}
+
 // -- settings that are not used -------------------------------------------------------------------
 
 // The value at "coupling.order"; NULL: there is none.
@@ -125,6 +162,8 @@ void bough_scene_warn(const bough_scene *scene, FILE *stream) {
         if (bough_node_find(b->node, "inertia")) warn_inertia(b, stream);
         if (b->micro.node) warn_micro(scene, b, stream);
     }
+    if (scene->aero.node) warn_polars(&scene->aero.polars, stream);
+    if (scene->control.node) warn_law(&scene->control, stream);
     const bough_scene_simulation *s = &scene->simulation;
     warn_output(s, stream);
     warn_scheme(s, stream);
