@@ -85,13 +85,15 @@ static bough_status find_growth(bough_arena *arena, equilibrium *x) {
     return bough_simulation_growth(s, a, x->time, &x->growth);
 }
 
-// The equilibrium of the simulation, as built. A rod that its own search does not find, as one that is slack,
-// is found with the whole.
-static bough_status find_equilibrium(bough_arena *arena, bough_simulation *s, bool finer, equilibrium *x) {
-    *x = (equilibrium){.simulation = s, .finer = finer, .channels = bough_channels_start(arena)};
+// The equilibrium of the simulation, as it is; of a mesh that is compared with a coarse one, found in the
+// same way. A rod that its own search does not find, as one that is slack, is found with the whole.
+static bough_status find_equilibrium(bough_arena *arena, bough_simulation *s, const equilibrium *coarse,
+                                     equilibrium *x) {
+    *x = (equilibrium){.simulation = s, .finer = coarse, .channels = bough_channels_start(arena)};
     x->rod = bough_arena_take(arena, ((size_t)s->n_rod + 1) * sizeof *x->rod);
     // a modal body only with the whole
     x->independent = bough_rods_are_independent(s) && bough_steady_rods(s) == s->n_rod;
+    if (coarse && !coarse->independent) x->independent = false;
     if (!x->independent) return find_whole(arena, x);
     bough_status status = find_rods(arena, x);
     if (status.code != BOUGH_FAILED) return status;
@@ -145,11 +147,6 @@ static void compare(const comparison *c, equilibrium *fine) {
 // metre of a blade.
 enum { TIMES = 4 };
 
-// The finer mesh starts with the joints of the equilibrium found: a mechanism may have several.
-static void start_near(const bough_simulation *coarse, bough_simulation *fine) {
-    memcpy(fine->leader.state, coarse->leader.state, (size_t)fine->leader.system.n_state * sizeof(double));
-}
-
 // False, with the reason, where a finer mesh gives no error.
 static bool refine(bough_scene *scene, mesh_error *mesh) {
     bool any = false;
@@ -175,8 +172,9 @@ static bough_status find_finer(bough_arena *arena, void *self) {
     equilibrium fine;
     if (!refine(scene, c->mesh)) return bough_ok();
     BOUGH_TRY(bough_simulation_build(arena, scene, &s));
-    start_near(c->coarse->simulation, s);
-    BOUGH_TRY(find_equilibrium(arena, s, true, &fine));
+    // from the equilibrium found: there may be several
+    bough_simulation_take_shape(c->coarse->simulation, s);
+    BOUGH_TRY(find_equilibrium(arena, s, c->coarse, &fine));
     compare(c, &fine);
     return bough_ok();
 }
@@ -459,7 +457,7 @@ static bough_status find(bough_arena *arena, const void *given) {
     if (own->path) return follow_path(arena, s, folder);
     equilibrium x;
     mesh_error mesh;
-    BOUGH_TRY(find_equilibrium(arena, s, false, &x));
+    BOUGH_TRY(find_equilibrium(arena, s, NULL, &x));
     bough_status stability = find_growth(arena, &x);
     warn_of_growth(&stability, &x.growth);
     const double *error = find_mesh_error(arena, &x, &mesh);

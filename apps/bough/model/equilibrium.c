@@ -297,6 +297,6 @@ bough_status bough_simulation_any_equilibrium(bough_simulation *s, const bough_a
 
 bough_status bough_simulation_finer_equilibrium(bough_simulation *s, const bough_assembly *assembly,
                                                 double time, bough_equilibrium_work *work) {
-    return search(find_equilibrium,
+    return search(find_from_here,
                   (continuation){s, assembly, time, .work = work, .unstable = true, .alone = true});
 }

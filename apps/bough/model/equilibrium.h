@@ -39,7 +39,8 @@ bough_status bough_simulation_equilibrium_near(bough_simulation *s, const bough_
 bough_status bough_simulation_any_equilibrium(bough_simulation *s, const bough_assembly *assembly,
                                               double time, bough_equilibrium_work *work);
 
-// The same for a mesh that another one is compared with: a failure does not look for still finer ones.
+// The same for a mesh that another one is compared with, from its shape (bough_simulation_take_shape): a
+// failure does not look for still finer ones.
 bough_status bough_simulation_finer_equilibrium(bough_simulation *s, const bough_assembly *assembly,
                                                 double time, bough_equilibrium_work *work);
 
@@ -78,6 +79,10 @@ typedef struct bough_path_listener {
 // ends before.
 bough_status bough_simulation_path(bough_simulation *s, const bough_assembly *assembly,
                                    bough_path_listener listener, bough_path_report *report);
+
+// Brings `to`, a simulation of the same scene with other meshes, to rest in the shape of `from`: rods
+// linearly between vertices, joints as they are.
+void bough_simulation_take_shape(const bough_simulation *from, bough_simulation *to);
 
 // Sets the states of all members (n_state); their clocks are set to 0, and `view` follows.
 void bough_equilibrium_set_state(bough_simulation *s, const bough_assembly *assembly, const double *state);

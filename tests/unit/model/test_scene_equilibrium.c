@@ -529,3 +529,23 @@ TEST(net_without_stiffness_is_found) {
     check_near(scene_channel(s, &list, "aZ"), 0, 0, 1e-3);
     check_near(scene_channel(s, &list, "bZ"), 0, 0, 1e-3);
 }
+
+// Four times the segments start in the shape of the chain found, and its joint where it is: far fewer steps
+// lead to the equilibrium than from the undeformed chain.
+TEST(finer_mesh_starts_in_the_shape_found) {
+    static const char *const none[] = {NULL};
+    const char *finer[] = {"bodies[1].rod.segments=192", NULL};
+    check_arena(arena);
+    bough_simulation *coarse = scene_build(arena, "tests/data/scenes/mooring.yaml", none);
+    bough_simulation *fine = scene_build(arena, "tests/data/scenes/mooring.yaml", finer);
+    bough_equilibrium_work work;
+    int first = equilibrium_of(coarse).steps;
+    bough_simulation_take_shape(coarse, fine);
+    check_near(fine->leader.state[0], coarse->leader.state[0], 0, 0);
+    check_ok(bough_simulation_finer_equilibrium(fine, fine->master->assembly, 0, &work));
+    printf("%d steps, then %d\n", first, work.steps);
+    assert_in_range(work.steps, 1, 12);
+    bough_channels list = scene_channels(arena, coarse), finer_list = scene_channels(arena, fine);
+    check_near(scene_channel(fine, &finer_list, "lineTipZ"), scene_channel(coarse, &list, "lineTipZ"), 1e-3,
+               0);
+}
