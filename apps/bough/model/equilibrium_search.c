@@ -45,11 +45,17 @@ static bool is_across(const bough_scene *scene, int joint, const int body[2]) {
     return moves[0] != moves[1];
 }
 
+static bool is_stiff(const bough_bushing_def *bushing) {
+    bool stiff = false;
+    for (int c = 0; c < 6; c++) stiff = stiff || bushing->stiffness[c] > 0;
+    return stiff;
+}
+
 static bool is_tied(const bough_scene *scene, int joint) {
     for (int k = 0; k < scene->n_spring; k++)
-        if (is_across(scene, joint, scene->spring[k].body)) return true;
+        if (scene->spring[k].def.stiffness > 0 && is_across(scene, joint, scene->spring[k].body)) return true;
     for (int k = 0; k < scene->n_bushing; k++)
-        if (is_across(scene, joint, scene->bushing[k].body)) return true;
+        if (is_stiff(&scene->bushing[k].def) && is_across(scene, joint, scene->bushing[k].body)) return true;
     for (int k = 0; k < scene->n_closure; k++)
         if (is_across(scene, joint, scene->closure[k].body)) return true;
     return false;
@@ -65,11 +71,45 @@ static const char *loose_joint(const bough_scene *scene) {
     return NULL;
 }
 
+static int group_of(const int *group, int body) {
+    while (group[body] != body) body = group[body];
+    return body;
+}
+
+static void tie(int *group, const int body[2]) {
+    int a = group_of(group, body[0] + 1), b = group_of(group, body[1] + 1);
+    group[a > b ? a : b] = a > b ? b : a;
+}
+
+// The first body of those that nothing ties to the ground, not even through others; NULL: there is none.
+static const char *floating_body(bough_arena *arena, const bough_scene *scene) {
+    int *group = bough_arena_take(arena, ((size_t)scene->n_body + 1) * sizeof *group); // the ground first
+    for (int i = 0; i <= scene->n_body; i++) group[i] = i;
+    for (int i = 0; i < scene->n_body; i++) {
+        const bough_scene_joint *joint = &scene->body[i].joint;
+        if (joint->kind != BOUGH_JOINT_FREE) tie(group, (const int[2]){i, joint->parent});
+    }
+    for (int k = 0; k < scene->n_spring; k++)
+        if (scene->spring[k].def.stiffness > 0) tie(group, scene->spring[k].body);
+    for (int k = 0; k < scene->n_bushing; k++)
+        if (is_stiff(&scene->bushing[k].def)) tie(group, scene->bushing[k].body);
+    for (int k = 0; k < scene->n_closure; k++) tie(group, scene->closure[k].body);
+    for (int i = 0; i < scene->n_body; i++)
+        if (group_of(group, i + 1) != 0) return scene->body[i].name;
+    return NULL;
+}
+
 // The states are the last ones reached.
-static bough_status explain(const bough_simulation *s, const bough_assembly *assembly,
+static bough_status explain(bough_arena *arena, const bough_simulation *s, const bough_assembly *assembly,
                             const bough_equilibrium_report *report) {
     char joint[200] = "";
-    const char *loose = loose_joint(s->scene);
+    const char *loose = loose_joint(s->scene), *floating = floating_body(arena, s->scene);
+    if (floating)
+        return bough_fail(
+            BOUGH_FAILED,
+            "%s: no equilibrium found: nothing ties it to the ground, not even through other bodies: "
+            "it needs a joint, spring, bushing or closure",
+            floating);
     BOUGH_TRY(explain_rods(s, report->steps));
     if (loose)
         snprintf(joint, sizeof joint,
@@ -105,7 +145,7 @@ bough_status bough_equilibrium_search_balance(bough_arena *arena, bough_equilibr
     bough_status status = bough_equilibrium_find(arena, x->whole, def, x->state, &report);
     x->work->steps += report.steps;
     bough_equilibrium_set_state(s, x->assembly, x->state);
-    if (status.code == BOUGH_FAILED) return explain(s, x->assembly, &report);
+    if (status.code == BOUGH_FAILED) return explain(arena, s, x->assembly, &report);
     if (bough_is_ok(&status)) status = explain_rods(s, report.steps);
     def->step = BOUGH_EQUILIBRIUM_LONGEST; // near it now
     return status;

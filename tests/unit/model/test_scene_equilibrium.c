@@ -549,3 +549,27 @@ TEST(finer_mesh_starts_in_the_shape_found) {
     check_near(scene_channel(fine, &finer_list, "lineTipZ"), scene_channel(coarse, &list, "lineTipZ"), 1e-3,
                0);
 }
+
+// Bodies that springs hold together fall together; a spring without stiffness holds nothing.
+TEST(bodies_tied_only_to_each_other_have_none) {
+    static const char *const stay[] = {"0", "100"};
+    for (int k = 0; k < 2; k++) {
+        check_arena(arena);
+        const char *sets[] = {
+            "bodies=[{name: a, fidelity: rigid, mass: 1, inertia: [1, 1, 1], joint: {kind: free, parent: ground}}, "
+            "{name: b, fidelity: rigid, mass: 1, inertia: [1, 1, 1], joint: {kind: free, parent: ground, placement: "
+            "[move z -2 m]}}]",
+            bough_arena_print(
+                arena,
+                "springs=[{name: link, from: a, to: b, stiffness: 100, length: 1}, {name: stay, from: "
+                "ground, from_point: [0, 0, 2], to: a, stiffness: %s, length: 1}]",
+                stay[k]),
+            "markers=[]", NULL};
+        bough_simulation *s = scene_build(arena, "apps/mechanisms/pendulum.yaml", sets);
+        bough_equilibrium_work work;
+        bough_status status = bough_simulation_equilibrium(s, s->master->assembly, 0, &work);
+        if (k == 0)
+            check_fails(status, BOUGH_FAILED, "a: no equilibrium found: nothing ties it to the ground");
+        if (k == 1) check_ok(status);
+    }
+}
