@@ -102,6 +102,17 @@ static bough_status find_equilibrium(bough_arena *arena, bough_simulation *s, co
     return find_whole(arena, x);
 }
 
+// Where rods that were found alone are unstable, the whole may come to a stable equilibrium from its initial shape.
+static void seek_stable(bough_arena *arena, equilibrium *x) {
+    if (!x->independent || x->growth.rate == 0) return;
+    equilibrium whole = {.channels = bough_channels_start(arena)};
+    whole.rod = bough_arena_take(arena, ((size_t)x->n + 1) * sizeof *whole.rod);
+    bough_status status = bough_simulation_build(arena, x->simulation->scene, &whole.simulation);
+    if (bough_is_ok(&status)) status = find_whole(arena, &whole);
+    if (bough_is_ok(&status)) status = find_growth(arena, &whole);
+    if (bough_is_ok(&status) && whole.growth.rate == 0) *x = whole;
+}
+
 // Displacement and rotation of the tip, force and moment at the root.
 static void find_results(bough_steady *rod, bough_vec3 result[STATIC_RESULTS]) {
     double wrench[6];
@@ -259,10 +270,18 @@ static void print_mesh_error(const bough_steady *x, const double error[STATIC_RE
            error[STATIC_MOMENT]);
 }
 
-// Coordinates and speeds of the joints, and the speeds that are kept.
+// Whether a rod ends in the link, whose coordinates are those of the rod's tip.
+static bool is_end(const bough_tree *tree, int link) {
+    bool end = false;
+    for (int k = 0; k < tree->n_ends; k++) end = end || tree->ends[k].link == link;
+    return end;
+}
+
+// Coordinates and speeds of the scene's joints, and the speeds that are kept.
 static void print_joints(const bough_simulation *s) {
     for (int i = 0; i < s->tree->n_links; i++) {
         const bough_link *link = &s->tree->links[i];
+        if (is_end(s->tree, i)) continue;
         const double *q = s->leader.state + link->first_coordinate;
         const double *v = s->leader.state + s->tree->n_q + link->first_speed;
         bool turns = link->joint.kind == BOUGH_JOINT_REVOLUTE,
@@ -459,6 +478,7 @@ static bough_status find(bough_arena *arena, const void *given) {
     mesh_error mesh;
     BOUGH_TRY(find_equilibrium(arena, s, NULL, &x));
     bough_status stability = find_growth(arena, &x);
+    seek_stable(arena, &x);
     warn_of_growth(&stability, &x.growth);
     const double *error = find_mesh_error(arena, &x, &mesh);
     if (!x.independent) print_whole(&x);
@@ -466,7 +486,7 @@ static bough_status find(bough_arena *arena, const void *given) {
         print_rod(&x.rod[k]);
         if (mesh.unknown[0] == '\0') print_mesh_error(&x.rod[k], error + STATIC_RESULTS * k);
     }
-    print_modal(s);
+    print_modal(x.simulation);
     if (mesh.unknown[0]) printf("mesh error: not estimated: %s\n", mesh.unknown);
     BOUGH_TRY(bough_folder_make(folder));
     BOUGH_TRY(bough_folder_write(folder, "static.csv", write_rods, &x));
