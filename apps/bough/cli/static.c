@@ -102,7 +102,8 @@ static bough_status find_equilibrium(bough_arena *arena, bough_simulation *s, co
     return find_whole(arena, x);
 }
 
-// Where rods that were found alone are unstable, the whole may come to a stable equilibrium from its initial shape.
+// Where rods that were found alone are unstable, the whole may come to a stable equilibrium from its initial
+// shape.
 static void seek_stable(bough_arena *arena, equilibrium *x) {
     if (!x->independent || x->growth.rate == 0) return;
     equilibrium whole = {.channels = bough_channels_start(arena)};

@@ -269,8 +269,7 @@ static void put_blade(bough_openfast *o, int k) {
     put_blade_joint(o, k);
     bough_put(o, ", parent: hub, placement: [");
     if (undersling(o) != 0) bough_put(o, "move x %.10g m, ", -undersling(o));
-    bough_put(o,
-              "rotate x %.10g deg, rotate y %.10g deg, move z %.10g m]}\n    pitch: %.10g deg\n",
+    bough_put(o, "rotate x %.10g deg, rotate y %.10g deg, move z %.10g m]}\n    pitch: %.10g deg\n",
               360.0 * (k - 1) / o->n_blade, bough_deck_number(e, bough_deck_kth(e, "PreCone", k)),
               o->hub_radius, pitch_of(o, k));
     bough_draft_blade_rod(&o->draft);
