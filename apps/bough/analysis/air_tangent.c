@@ -441,14 +441,13 @@ static bough_status follow_all(bough_arena *arena, work *w, const double *state,
     return follow_others(w, state, good ? group : NULL, t);
 }
 
-bough_status bough_air_tangent_find(bough_arena *arena, bough_simulation *s, bough_whole *whole, double time,
-                                    const double *state, bool dynamic, const bough_blade_group *group,
+bough_status bough_air_tangent_find(bough_arena *arena, const bough_air_azimuth *x, bool dynamic,
                                     const bough_air_inputs *inputs, bough_air_tangent *t) {
-    work w = start(arena, s, whole, time, dynamic);
+    work w = start(arena, x->simulation, x->whole, x->time, dynamic);
     *t = take_tangent(arena, &w, inputs ? inputs->n : 0);
-    bough_status status = follow_all(arena, &w, state, group, t);
-    if (bough_is_ok(&status) && inputs) status = follow_inputs(&w, state, inputs, t);
-    settle(&w, state);
+    bough_status status = follow_all(arena, &w, x->state, x->group, t);
+    if (bough_is_ok(&status) && inputs) status = follow_inputs(&w, x->state, inputs, t);
+    settle(&w, x->state);
     return status;
 }
 

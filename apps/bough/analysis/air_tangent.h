@@ -27,12 +27,25 @@ typedef struct bough_air_inputs {
     void (*set)(void *self, int k, double change, double *state); // `state`: where a motion given is put
 } bough_air_inputs;
 
-// About `state` (n) at `time`; `dynamic`: with the memory that the scene's inflow and stall have; inputs
-// NULL: none. `group`: rods whose states, and those of places that share no loads, are changed at once; means
-// over the disk then count as of the blade's nearest state. Where a change of all misses by more than 1e-3
-// with that, and for NULL, each state is changed by itself. The simulation is left in that state.
-bough_status bough_air_tangent_find(bough_arena *arena, bough_simulation *s, bough_whole *whole, double time,
-                                    const double *state, bool dynamic, const bough_blade_group *group,
+// What a tangent is about: a state, as of one of the azimuths of a mean, theory (113); all borrowed.
+typedef struct bough_air_azimuth {
+    bough_simulation *simulation;
+    bough_whole *whole;
+    double time;
+    const double *state;            // (n)
+    const bough_blade_group *group; // its equal blades; NULL or none: each state is by itself
+    // of a mean alone
+    const bough_simulation *first;  // of the first azimuth
+    const bough_blade_group *parts; // the same blades there, in whose order they are the mean's parts
+    const double *blend;            // C (group->n × group->n)
+    double share;                   // of the mean
+} bough_air_azimuth;
+
+// About the azimuth's state; `dynamic`: with the memory that the scene's inflow and stall have; inputs NULL:
+// none. States of a group of rods, and of places that share no loads, are changed at once; means over the
+// disk then count as of the blade's nearest state. Where a change of all misses by more than 1e-3 with that,
+// each state is changed by itself. The simulation is left in that state.
+bough_status bough_air_tangent_find(bough_arena *arena, const bough_air_azimuth *azimuth, bool dynamic,
                                     const bough_air_inputs *inputs, bough_air_tangent *tangent);
 
 // The same for one change of bodies and air at once: the products that the matrices have with it.
@@ -48,19 +61,6 @@ bough_status bough_air_change_follow(bough_air_change *x, double size, bool to_o
                                      double *image);
 
 // -- mean over azimuths and blades (air_mean.c) ---------------------------------------------------
-
-// One of the azimuths of a mean, theory (113); all borrowed.
-typedef struct bough_air_azimuth {
-    bough_simulation *simulation;
-    bough_whole *whole;
-    double time;
-    const double *state;            // (n)
-    const bough_blade_group *group; // its equal blades; none: the mean is over azimuths alone
-    const bough_simulation *first;  // of the first azimuth
-    const bough_blade_group *parts; // the same blades there, in whose order they are the mean's parts
-    const double *blend;            // C (group->n × group->n)
-    double share;                   // of the mean
-} bough_air_azimuth;
 
 // Adds an azimuth's share to the tangent, which takes its matrices if it is {0}.
 bough_status bough_air_tangent_add(bough_arena *arena, const bough_air_azimuth *azimuth, bool dynamic,

@@ -299,7 +299,8 @@ bough_status bough_state_space_find(bough_arena *arena, bough_simulation *s, dou
     if (in_air(s)) {
         bough_air_inputs inputs = {w.n_input, w.size, &w, set_input};
         bool dynamic = s->scene->modes.air == BOUGH_SCENE_AIR_DYNAMIC;
-        BOUGH_TRY(bough_air_tangent_find(arena, s, w.whole, time, w.about, dynamic, NULL, &inputs, &air));
+        bough_air_azimuth about = {.simulation = s, .whole = w.whole, .time = time, .state = w.about};
+        BOUGH_TRY(bough_air_tangent_find(arena, &about, dynamic, &inputs, &air));
     }
     take(arena, air.n_air, &w, space);
     BOUGH_TRY(by_states(&w, space));

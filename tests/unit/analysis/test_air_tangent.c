@@ -30,8 +30,10 @@ TEST(equal_blades_at_once_have_the_tangent_of_each) {
     bough_air_tangent each, at_once;
     check_ok(bough_vibration_point_find(arena, s, 0, &x));
     assert_int_equal(x.group.n, 3);
-    check_ok(bough_air_tangent_find(arena, s, x.whole, 0, x.state, true, NULL, NULL, &each));
-    check_ok(bough_air_tangent_find(arena, s, x.whole, 0, x.state, true, &x.group, NULL, &at_once));
+    bough_air_azimuth about = {.simulation = s, .whole = x.whole, .state = x.state};
+    check_ok(bough_air_tangent_find(arena, &about, true, NULL, &each));
+    about.group = &x.group;
+    check_ok(bough_air_tangent_find(arena, &about, true, NULL, &at_once));
     size_t n = (size_t)each.n, m = (size_t)each.n_air;
     assert_true(m > 0);
     const struct {
