@@ -101,12 +101,13 @@ static const double least_share_of_force = 0.4;
 // Of the loads of the air, that may be missed between two samples. What misses more vibrates about as fast as
 // the samples follow each other; with half of these a solution errs by no multiple of what the run errs by.
 static const double most_missed = 0.1;
+static const double fluttering = 0.3; // what misses more feeds the vibrations
 
-static bool resolves_air(const bough_simulation *s) {
+static double missed_air(const bough_simulation *s) {
     double missed = 0;
     for (int b = 0; s->aero && b < s->scene->turbine.n_blade; b++)
         missed = fmax(missed, bough_aero_link_missed(s->aero, b));
-    return missed <= most_missed;
+    return missed;
 }
 
 // Of the difference, that the run errs by in a channel. A sampled one that the companion holds, one sample of
@@ -168,8 +169,9 @@ static void compare(bough_companion *c) {
     // the rarer sample is held longer; at an event, between two steps, that of the run
     bool rarer = c->coarser.simulation->scene->aero.rate <= c->run->scene->aero.rate;
     bool held = rarer ? !bough_master_sampled(c->coarser.simulation->master) : c->run->master->at_event;
-    double share = resolves_air(c->run) ? c->share : fmax(c->share, 1),
-           share_held = held ? c->share_held : share;
+    bool resolved = missed_air(c->run) <= most_missed;
+    double share = resolved ? c->share : fmax(c->share, 1), share_held = held ? c->share_held : share;
+    c->flutters = c->flutters || (resolved && missed_air(c->coarser.simulation) > fluttering);
     memcpy(c->before, c->value, (size_t)c->channels->count * sizeof(double));
     sample(c);
     c->compared++;
@@ -297,6 +299,7 @@ void bough_companion_snapshot(bough_companion *c, bough_snapshot *s) {
                             c->high,  c->other_low, c->other_high, c->noticed};
     for (size_t k = 0; k < sizeof rows / sizeof *rows; k++) bough_snapshot_doubles(s, rows[k], n);
     bough_snapshot_take(s, &c->compared, sizeof c->compared);
+    bough_snapshot_take(s, &c->flutters, sizeof c->flutters);
     bough_snapshot_take(s, &c->parted_for, sizeof c->parted_for);
     bough_snapshot_take(s, &c->astray_for, sizeof c->astray_for);
     bough_snapshot_take(s, c->reason, sizeof c->reason);

@@ -125,6 +125,7 @@ typedef struct bough_companion {
     double *noticed;                     // (channels->count) when the error first passed the accuracy [s]
     int parted_for,
         astray_for;      // comparisons in a row in which the run, the companion has left the other behind
+    bool flutters;       // its blades have, those of the run have not
     bough_status status; // of its last step
 } bough_companion;
 

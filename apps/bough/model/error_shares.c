@@ -174,20 +174,45 @@ static bool find_nearest(const bough_companion *c, const bough_error_shares *sha
     return isfinite(*relative);
 }
 
+// Of the two runs that show least of a channel's error, the sum; HUGE_VAL: fewer are known.
+static double least_sum(const bough_error_shares *shares, int channel) {
+    double sum = 0, most = 0;
+    int known = 0;
+    for (int k = 0; k < BOUGH_SHARES; k++) {
+        if (shares->share[k].unknown[0]) continue;
+        known++;
+        sum += shares->share[k].others[channel];
+        most = fmax(most, shares->share[k].others[channel]);
+    }
+    return known == BOUGH_SHARES ? sum - most : known == 2 ? sum : HUGE_VAL;
+}
+
+static void lower(bough_companion *c, bough_error_shares *shares, int i, double sum) {
+    sum = fmax(sum, c->least[i]);
+    // a companion that ended knows nothing of what came later, the two others do
+    c->error[i] = c->reason[0] ? sum : fmin(c->error[i], sum);
+    for (int k = 0; k < BOUGH_SHARES; k++)
+        shares->share[k].largest[i] = fmin(shares->share[k].largest[i], sum);
+}
+
+// Blades that flutter in the companion show in some channels alone.
+static void lower_some(bough_companion *c, bough_error_shares *shares) {
+    for (int i = 0; i < c->channels->count; i++) {
+        double sum = least_sum(shares, i);
+        if (sum <= much_less * c->error[i]) lower(c, shares, i, sum);
+    }
+}
+
 static void lower_errors(bough_companion *c, bough_error_shares *shares) {
     int nearest[2] = {0};
     double relative, whole = bough_error_verdict_of(c, true, c->error).relative;
-    if (!find_nearest(c, shares, nearest, &relative) || relative > much_less * whole) return;
-    // a companion that ended knows nothing of what came later, the two others do
-    bool ended = c->reason[0];
-    for (int i = 0; i < c->channels->count; i++) {
-        double sum = shares->share[nearest[0]].others[i] + shares->share[nearest[1]].others[i];
-        sum = fmax(sum, c->least[i]);
-        c->error[i] = ended ? sum : fmin(c->error[i], sum);
-        for (int k = 0; k < BOUGH_SHARES; k++)
-            shares->share[k].largest[i] = fmin(shares->share[k].largest[i], sum);
-    }
-    c->reason[0] = 0;
+    bool less = find_nearest(c, shares, nearest, &relative) && relative <= much_less * whole;
+    for (int i = 0; less && i < c->channels->count; i++)
+        lower(c, shares, i, shares->share[nearest[0]].others[i] + shares->share[nearest[1]].others[i]);
+    if (less)
+        c->reason[0] = 0;
+    else if (c->flutters && !c->reason[0])
+        lower_some(c, shares);
 }
 
 // -- steps and samples that a companion finds too long --------------------------------------------
@@ -277,10 +302,11 @@ static int cause_of(const bough_companion *c, const bough_error_shares *shares, 
     return cause == BOUGH_SHARE_MESH && time_unknown ? -1 : cause;
 }
 
-// An error of a part of the range, above the bound: the companion may have lost the solution.
+// An error of a part of the range, above the bound, or blades that flutter in it alone: the companion may
+// have lost the solution.
 static bool has_lost(const bough_companion *c) {
     double bound = c->run->scene->simulation.error_bound;
-    return bound > 0 && bough_error_exceeds(c, fmax(bound, lost));
+    return bound > 0 && bough_error_exceeds(c, c->flutters ? bound : fmax(bound, lost));
 }
 
 // Time, air, or −1: the error is within the bound, or the mesh's, or its cause is not known.

@@ -356,6 +356,54 @@ TEST(samples_of_the_start_have_an_error) {
     for (int w = 0; w < 4; w++) assert_true(estimate[w] > 0.8 * error[w] && estimate[w] < 3 * error[w]);
 }
 
+#define SLOW_PITCH                                                                                           \
+    "simulation.duration=16 s", "simulation.output.interval=0.02", "simulation.output.from=0",               \
+        "bodies[tower].rod.segments=8",                                                                      \
+        "aero.wind={kind: uniform, table: {times: [0, 5, 6, 10], speeds: [11, 11, 20, 20]}}",                \
+        "control={kind: variable-speed, rate: 25 Hz, gear_ratio: 97, law: {pitch_rate: 1 deg/s},"            \
+        " events: [{kind: emergency-stop, channel: GenSpeed, above: 1300}]}"
+
+// Ten segments of a blade under air at 25 Hz flutter in an overspeed, sixteen at 50 Hz do not. Solutions that
+// have either as in the run say what it errs by.
+TEST(a_companion_whose_blades_flutter_is_replaced) {
+    static const char scene[] = "apps/turbine/land-operation.yaml";
+    static const char solver[] = "simulation.master={solver: rosenbrock, step: 10 ms, rtol: 3e-4}";
+    static const char *const watched[] = {"RootMyb2", "RootMxb1", "RootFyb1", "RtAeroMxh"};
+    const char *const truth_sets[] = {
+        SLOW_PITCH,      solver, "bodies[3-5].rod.segments=32", "simulation.macro_step=10 ms",
+        "aero.rate=100", NULL};
+    const char *const sets[] = {SLOW_PITCH,
+                                solver,
+                                "bodies[3-5].rod.segments=16",
+                                "simulation.macro_step=20 ms",
+                                "simulation.error_estimate=companion",
+                                "aero.rate=50",
+                                NULL};
+    check_arena(arena);
+    bough_run r, truth;
+    bough_error_shares shares;
+    double error[4] = {0}, before[4];
+    check_ok(bough_run_create(arena, scene_read(arena, scene, sets), &r));
+    check_ok(bough_run_create(arena, scene_read(arena, scene, truth_sets), &truth));
+    for (int k = 1; !bough_run_done(&r); k++) {
+        check_ok(bough_run_step(&r));
+        while (truth.simulation->master->time < 0.02 * k - 1e-9) check_ok(bough_run_step(&truth));
+        for (int w = 0; w < 4; w++) {
+            int i = bough_channels_find(&r.channels, watched[w]);
+            before[w] = r.companion->error[i];
+            error[w] = fmax(error[w], fabs(bough_run_values(&r)[i] - bough_run_values(&truth)[i]));
+        }
+    }
+    assert_true(r.companion->flutters);
+    check_ok(bough_error_shares_find(arena, r.companion, NULL, &shares));
+    for (int w = 0; w < 4; w++) {
+        double estimate = r.companion->error[bough_channels_find(&r.channels, watched[w])];
+        print_message("%s: true %.2g, companion %.2g, replaced %.2g\n", watched[w], error[w], before[w],
+                      estimate);
+        assert_true(estimate > 0.8 * error[w] && estimate < 10 * error[w] && estimate < 0.5 * before[w]);
+    }
+}
+
 static int asked; // NOLINT(cppcoreguidelines-avoid-non-const-global-variables): by one test
 
 static bool count_and_go_on(void) {
