@@ -76,7 +76,7 @@ static bough_status build_stiffened(bough_arena *arena, const bough_scene *given
 
 // A search that takes more steps, or shorter ones, may follow a slack rod into folds: stiff rods come first.
 static const double least_step = 5e-3; // in units of the scene's time
-enum { PATIENCE = 60 };
+enum { PATIENCE = 60, RIGID_STEPS = 200 };
 
 // From an equilibrium of stiffer rods on, Newton's method: its steps, its shortest γ, and the tolerance while
 // the rods are not the scene's.
@@ -252,11 +252,26 @@ static bough_status explain_by_finer(const continuation *c, bough_status failure
                       times);
 }
 
+// Without rods: by steps from rest, then downhill with kinetic damping.
+static bough_status find_rigid(bough_arena *arena, continuation *c) {
+    bough_simulation *s = c->simulation;
+    bough_equilibrium_def limits = bough_equilibrium_def_default();
+    double *start = bough_arena_doubles(arena, (size_t)c->assembly->n_state + 1);
+    bough_assembly_states(c->assembly, start);
+    bool damps = s->scene->simulation.initial != BOUGH_SCENE_IN_OPERATION;
+    if (damps) limits.steps = RIGID_STEPS;
+    bough_status status = bough_equilibrium_search_within(limits, s, c->assembly, c->time, c->work);
+    if (status.code != BOUGH_FAILED || !damps) return status;
+    limits = bough_equilibrium_def_default();
+    limits.kinetic = bough_equilibrium_search_kinetic;
+    bough_equilibrium_set_state(s, c->assembly, start);
+    *c->work = (bough_equilibrium_work){0};
+    return bough_equilibrium_search_within(limits, s, c->assembly, c->time, c->work);
+}
+
 static bough_status find_equilibrium(bough_arena *arena, void *data) {
     continuation *c = data;
-    if (!may_soften(c->simulation))
-        return bough_equilibrium_search_within(bough_equilibrium_def_default(), c->simulation, c->assembly,
-                                               c->time, c->work);
+    if (!may_soften(c->simulation)) return find_rigid(arena, c);
     bough_status status = find_on_mesh(arena, c);
     return status.code == BOUGH_FAILED && !c->alone ? explain_by_finer(c, status) : status;
 }

@@ -282,7 +282,7 @@ bough_equilibrium_def bough_equilibrium_search_def(bough_equilibrium_search *x) 
     def.scale = x->scale;
     def.self = x;
     def.move = bough_equilibrium_search_move;
-    if (x->rests) def.rest = bough_equilibrium_search_rest;
+    if (x->rests || def.kinetic) def.rest = bough_equilibrium_search_rest;
     // of a steady rotation it tells nothing
     if (bough_equilibrium_search_turns(x)) def.kinetic = NULL;
     return def;

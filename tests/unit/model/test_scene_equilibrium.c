@@ -573,3 +573,27 @@ TEST(bodies_tied_only_to_each_other_have_none) {
         if (k == 1) check_ok(status);
     }
 }
+
+// Eight rigid links, 4 m between their hinges, hang in a discrete catenary: the tangent of link k's angle is
+// (k − ½)/H.
+TEST(chain_of_rigid_links_hangs) {
+    static const char *const none[] = {NULL};
+    double low = 0.1, high = 10, middle = 0;
+    for (int i = 0; i < 100; i++) {
+        double h = (low + high) / 2, reach = middle = 0;
+        for (int k = 1; k <= 4; k++) {
+            reach += h / hypot(h, k - 0.5);
+            middle -= (k - 0.5) / hypot(h, k - 0.5);
+        }
+        *(reach < 2 ? &low : &high) = h;
+    }
+    check_arena(arena);
+    bough_simulation *s = scene_build(arena, "tests/data/scenes/link-chain.yaml", none);
+    bough_growth growth;
+    assert_in_range(equilibrium_of(s).steps, 1, 300);
+    bough_channels list = scene_channels(arena, s);
+    check_near(scene_channel(s, &list, "middleX"), 2, 0, 1e-6);
+    check_near(scene_channel(s, &list, "middleZ"), middle, 0, 1e-6);
+    check_ok(bough_simulation_growth(s, s->master->assembly, 0, &growth));
+    check_near(growth.rate, 0, 0, 0);
+}
