@@ -171,8 +171,8 @@ checks() {
     sed -i 's/0.88, 0.009/0.88, -0.009/' ../drives/airfoils.yaml
     expect 0 check ../drives
     has ../stderr "^../drives/airfoils.yaml:23:11: warning: polar 'section': the drag coefficient is negative, -0.009 at 4 deg"
-    expect 0 check "$folder/apps/templates/turbine/scene.yaml" --set control.law.rated_power=null --set control.law.cut_in=null
-    has ../stderr "warning: control.law: cut_in, rated_power not given: the values of the NREL 5 MW turbine, .* 97, not 25"
+    expect 0 check "$folder/apps/templates/turbine/scene.yaml" --set control.law.rated_power=null
+    has ../stderr "warning: control.law: rated_power not given: the values of the NREL 5 MW turbine, .* 97, not 25"
     expect 0 check "$folder/apps/templates/turbine/scene.yaml" --set control.gear_ratio=97 --set control.law=null
     [ ! -s ../stderr ] || fail "a warning for the turbine of the defaults"
     refused 'mass: must be in \[0, 1e12\] kg' run "$mechanisms/pendulum.yaml" --set 'bodies[0].mass=1e300 t'

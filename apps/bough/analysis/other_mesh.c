@@ -355,7 +355,7 @@ static bool has_converged(const bough_mode_basis *modes, double (*before)[2], do
 // upon step of both sides' vectors.
 static bool iterate(bough_arena *arena, work *w, const bough_simulation *own, const chosen *x,
                     const bough_mode_basis *modes, double (*value)[2]) {
-    enum { STEPS = 4 };
+    enum { STEPS = 6 };
     int n = own->master->assembly->n_state;
     size_t size = (size_t)x->count * (size_t)x->count, bytes = (size_t)modes->n * sizeof *value;
     double *here, *there, (*before)[2] = bough_arena_take(arena, bytes);

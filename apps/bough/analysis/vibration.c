@@ -475,6 +475,7 @@ bough_status bough_vibration_compare(bough_arena *arena, const bough_simulation 
     BOUGH_TRY(begin(arena, companion, v->found + MODES_BEYOND, false, &x, &air, &of_other));
     const bough_aeroelastic system = {companion, x.whole, &x.def, &x.group, &air.tangent};
     if (v->basis) BOUGH_TRY(follow_modes(arena, s, &system, v, &found));
+    v->followed = found;
     if (found) return bough_ok();
     BOUGH_TRY(solve(arena, companion, &x, &air, &of_other));
     pair_modes(v, &of_other, bough_arena_take(arena, ((size_t)of_other.found + 1) * sizeof(bool)));
