@@ -61,14 +61,6 @@ static void subtract_at(bough_tree_data *d, const bough_frame *frame, bough_wren
     *sum = bough_wrench_sub(*sum, bough_wrench_to_parent(&frame->placement, wrench));
 }
 
-// The parabola of a sampled wrench.
-static bough_wrench external_at(const bough_external *e, double t) {
-    double dt = t - e->start;
-    bough_vec3 force = bough_axpy(dt, e->curve.force, e->rate.force);
-    bough_vec3 moment = bough_axpy(dt, e->curve.moment, e->rate.moment);
-    return (bough_wrench){bough_axpy(dt, force, e->value.force), bough_axpy(dt, moment, e->value.moment)};
-}
-
 static void element_wrenches(const bough_tree *tree, bough_tree_data *d, int element) {
     double energy;
     bough_force_pair pair = bough_element_force(tree, d, element, &energy);
@@ -112,8 +104,7 @@ static void bias_wrenches(const bough_tree *tree, bough_tree_data *d, double t, 
         subtract_at(d, &tree->ends[e], bough_tree_end_wrench(tree, d, e, own));
     }
     for (int m = 0; m < tree->n_markers; m++) {
-        const bough_external *e = &tree->external[m];
-        if (e->active) subtract_at(d, &tree->markers[m], external_at(e, t));
+        if (tree->external[m].active) subtract_at(d, &tree->markers[m], bough_tree_wrench(tree, m, t));
     }
     for (int k = 0; k < bough_tree_n_elements(tree); k++) element_wrenches(tree, d, k);
     for (int k = 0; k < tree->n_applied; k++) {

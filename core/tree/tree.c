@@ -41,6 +41,16 @@ void bough_tree_set_wrench(bough_tree *tree, int marker, double start, const dou
     e->curve = bough_wrench_load(curve != NULL ? curve : zero);
 }
 
+// The parabola of a sampled wrench.
+bough_wrench bough_tree_wrench(const bough_tree *tree, int marker, double t) {
+    const bough_external *e = &tree->external[marker];
+    double dt = t - e->start;
+    bough_vec3 force = bough_axpy(dt, e->curve.force, e->rate.force);
+    bough_vec3 moment = bough_axpy(dt, e->curve.moment, e->rate.moment);
+    if (!e->active) return (bough_wrench){0};
+    return (bough_wrench){bough_axpy(dt, force, e->value.force), bough_axpy(dt, moment, e->value.moment)};
+}
+
 bough_transform bough_tree_frame_pose(const bough_tree_data *data, const bough_frame *frame) {
     if (frame->link < 0) return frame->placement;
     // on a link: the link's pose, then the placement

@@ -227,6 +227,9 @@ void bough_tree_steer_load(bough_tree *tree, int load, double t, double span, do
 void bough_tree_set_wrench(bough_tree *tree, int marker, double start, const double *value,
                            const double *rate, const double *curve);
 
+// That wrench at a time.
+bough_wrench bough_tree_wrench(const bough_tree *tree, int marker, double t);
+
 // -- data of one evaluation ------------------------------------------------------------------
 
 // Of the closures: what loop.h computes.

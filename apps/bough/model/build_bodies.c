@@ -68,7 +68,7 @@ static void set_joint(const bough_builder *b, const bough_scene_body *from, boug
 }
 
 // The mass of a rigid body, given or integrated from its rod's table.
-static void set_mass(const bough_scene_body *from, const bough_beam *beam, bough_body_def *to) {
+static void set_mass(const bough_scene_body *from, bough_beam *beam, bough_body_def *to) {
     if (beam == NULL) {
         to->mass = from->mass;
         to->mass_centre = bough_v3(from->centre_of_mass[0], from->centre_of_mass[1], from->centre_of_mass[2]);
@@ -81,6 +81,7 @@ static void set_mass(const bough_scene_body *from, const bough_beam *beam, bough
     to->mass = whole.mass;
     to->mass_centre = centre;
     to->inertia = bough_mat3_add(tensor(whole.inertia), steiner);
+    beam->vertex[0] = bough_inertia_of(to->mass, to->mass_centre, to->inertia);
 }
 
 // -- beams ----------------------------------------------------------------------------------------

@@ -217,7 +217,7 @@ void bough_channel_table_help(FILE *stream) {
         "same\nquantity. Where OpenFAST has small angles or a straight blade, the two agree to first order: "
         "displacements count\nfrom the undeformed blade, bent or not, and rotations are rotation vectors. "
         "The nacelle's forces on the tower's top\nare of all that the scene puts there, also of the "
-        "yaw bearing. Rigid blades have no root loads: these are zero.\n",
+        "yaw bearing. Root loads of a\nrigid blade on which other bodies, springs, closures or loads act are zero.\n",
         stream);
     for (int i = 0; i < BOUGH_CHANNEL_PARTS; i++) print_family(&bough_channel_families[i], stream);
 }

@@ -100,10 +100,34 @@ static void add_vertex(bough_wrench inertial, double *wrench) {
     for (int k = 0; k < 6; k++) wrench[k] -= values[k];
 }
 
+static bool names(const int body[2], int other) { return body[0] == other || body[1] == other; }
+
+// Whether nothing but its carrier, its weight and the air act on a body.
+static bool stands_alone(const bough_scene *scene, int body) {
+    bool alone = bough_scene_carried_by(scene, body) < 0;
+    for (int k = 0; k < scene->n_spring; k++) alone = alone && !names(scene->spring[k].body, body);
+    for (int k = 0; k < scene->n_bushing; k++) alone = alone && !names(scene->bushing[k].body, body);
+    for (int k = 0; k < scene->n_closure; k++) alone = alone && !names(scene->closure[k].body, body);
+    for (int k = 0; k < scene->n_load; k++)
+        alone = alone && (scene->load[k].body_name == NULL || scene->load[k].body != body);
+    return alone;
+}
+
+// Inertia and weight less the load of the air.
+static void rigid_root(const bough_simulation *s, const bough_beam *beam, double t, double *root) {
+    if (!stands_alone(s->scene, (int)(beam->body - s->scene->body))) return;
+    bough_wrench air = bough_tree_wrench(s->tree, beam->marker, t);
+    bough_wrench inertial = inertial_wrench(s, &s->tree->markers[beam->marker], &beam->vertex[0]);
+    bough_wrench_store(bough_wrench_sub(air, inertial), root);
+}
+
 void bough_simulation_root(const bough_simulation *s, const bough_beam *beam, double t,
                            double root[BOUGH_ROD_MOST_OUTPUTS]) {
     memset(root, 0, BOUGH_ROD_MOST_OUTPUTS * sizeof *root);
-    if (beam->port < 0) return;
+    if (beam->port < 0) {
+        rigid_root(s, beam, t, root);
+        return;
+    }
     const bough_member *rod = &s->rod[beam->port];
     rod->system.ops->output(rod->system.self, t, rod->state, bough_simulation_rod_input(s, beam), root);
     add_vertex(inertial_wrench(s, &s->tree->markers[beam->marker], &beam->vertex[0]), root);

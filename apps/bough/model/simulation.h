@@ -25,8 +25,8 @@ typedef struct bough_beam {
     int port;                // of the tree; −1 when rigid
     bool in_ground;          // it moves under loads in ground axes
     int end;                 // of the tree, where bodies hang on the rod; −1 when it carries none
-    bough_inertia vertex[2]; // of the vertices that belong to the tree: the root's in the body's frame, that
-                             // of the end in its section's
+    bough_inertia vertex[2]; // of the vertices that belong to the tree: the root's in the body's frame, of a
+                             // rigid body the whole's, that of the end in its section's
     bough_rod_body *rod;     // NULL unless a rod
     bough_modal_body *modal; // NULL unless modal
     const bough_rod_model *mesh; // of either, NULL when rigid
@@ -154,9 +154,10 @@ bough_sharpest bough_simulation_bend(const bough_simulation *s, const bough_beam
 bool bough_simulation_accelerate(const bough_simulation *s, double t);
 
 // The wrench of a rod on its carrier, in the body's axes at its origin, and behind it the wrench of its end
-// on the bodies that it carries, force in the body's axes and moment in the section's [N, N m]; zero for a
-// rigid body. Weight and inertia of the vertices there, which the tree carries, are those of the rod. Reads
-// the accelerations of bough_simulation_accelerate. Theory (99).
+// on the bodies that it carries, force in the body's axes and moment in the section's [N, N m]; of a rigid
+// body on its carrier, zero where other bodies, elements or loads act on it. Weight and inertia of the
+// vertices there, which the tree carries, are those of the rod. Reads the accelerations of
+// bough_simulation_accelerate. Theory (99).
 void bough_simulation_root(const bough_simulation *s, const bough_beam *beam, double t,
                            double root[BOUGH_ROD_MOST_OUTPUTS]);
 

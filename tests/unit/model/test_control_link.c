@@ -85,8 +85,8 @@ TEST(library_steers_all_blades) {
 // A turbine that looks along x in a wind of 10° across; a tower that bends moves its nacelle.
 TEST(library_receives_the_nacelle) {
     static const char *const sets[] = {RIGID, BLADED, "aero.wind.direction=10 deg", NULL};
-    static const char *const record[] = {"record 24", "record 37", "record 53", "record 70"};
-    for (int i = 0; i < 4; i++) {
+    static const char *const record[] = {"record 24", "record 37", "record 53"};
+    for (int i = 0; i < 3; i++) {
         bough_arena *arena = check_memory();
         bough_simulation *s = NULL;
         bough_scene *scene = scene_read(arena, turbine, sets);
@@ -98,7 +98,6 @@ TEST(library_receives_the_nacelle) {
         if (i == 0) check_near(found, 10 * BOUGH_PI / 180, 0, 5e-3);
         if (i == 1) check_near(found, 0, 0, 5e-3);
         if (i == 2) assert_true(fabs(found) < 2);
-        if (i == 3) check_near(found, 0, 0, 0); // rigid blades have no root moments
         bough_arena_destroy(f.arena);
     }
 }

@@ -57,6 +57,30 @@ static double rotor(int n) {
     return at_start(text, "aSpn1FLz");
 }
 
+// A rigid blade pulls at its hub as a rod does, and hangs on it by its weight.
+TEST(a_rigid_blade_has_root_loads) {
+    static const char *const weight[] = {"gravity=[0, 0, 0]", "gravity=[0, 0, -9.80665]"};
+    static const char *const motion[] = {"bodies[hub].joint.motion={speed: 3 rad/s}",
+                                         "bodies[hub].joint.motion={speed: 0}"};
+    for (int k = 0; k < 2; k++) {
+        const char *const sets[] = {"aero=null",
+                                    "loads=null",
+                                    "bodies[hub].joint.angle=90 deg",
+                                    "bodies[hub].joint.speed=null",
+                                    "simulation.initial=equilibrium",
+                                    weight[k],
+                                    motion[k],
+                                    NULL};
+        check_arena(arena);
+        built b = built_from(arena, scene_build(arena, "tests/data/scenes/example-turbine.yaml", sets));
+        double x = channel(&b, "RootFxb1"), y = channel(&b, "RootFyb1"), z = channel(&b, "RootFzb1");
+        double rod = hypot(hypot(x, y), z);
+        x = channel(&b, "RootFxb2"), y = channel(&b, "RootFyb2"), z = channel(&b, "RootFzb2");
+        assert_true(rod > 2);
+        check_near(hypot(hypot(x, y), z), rod, 2e-3, 0);
+    }
+}
+
 TEST(the_tension_of_a_rotor_is_the_integral) {
     double exact = 10 * 100 * (9 - 1) / 2.0 / 1e3;
     check_near(rotor(2), exact, 0,
