@@ -40,20 +40,20 @@ static double check_modes(bough_arena *arena, int count, bool followed, const ch
     return largest;
 }
 
+// With and without states of the air.
 TEST(another_mesh_moves_modes_as_its_own_modes_say) {
-    check_arena(arena);
-    const char *sets[] = {"aero.wind={kind: uniform, speed: 12 m/s}", "modes={of: scene, air: quasi-steady}",
-                          NULL};
-    double largest = check_modes(arena, 10, true, sets);
-    assert_true(largest > 1e-3 && largest < 1e-2);
-}
-
-TEST(another_mesh_moves_modes_with_states_of_the_air) {
-    check_arena(arena);
-    const char *sets[] = {"aero.wind={kind: uniform, speed: 12 m/s}", "modes={of: scene, air: dynamic}",
-                          NULL};
-    double largest = check_modes(arena, 20, true, sets);
-    assert_true(largest > 1e-4 && largest < 1e-2);
+    static const struct {
+        const char *modes;
+        int count;
+        double least;
+    } air[] = {{"modes={of: scene, air: quasi-steady}", 10, 1e-3},
+               {"modes={of: scene, air: dynamic}", 20, 1e-4}};
+    for (int k = 0; k < 2; k++) {
+        check_arena(arena);
+        const char *const sets[] = {"aero.wind={kind: uniform, speed: 12 m/s}", air[k].modes, NULL};
+        double largest = check_modes(arena, air[k].count, true, sets);
+        assert_true(largest > air[k].least && largest < 1e-2);
+    }
 }
 
 // The mesh is so coarse that the vectors do not lead to those of the other one.
