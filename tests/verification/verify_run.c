@@ -49,7 +49,7 @@ static bough_status steady(bough_arena *arena, bough_simulation *s, bough_steady
     double time = bough_equilibrium_time(s);
     if (!rod) return bough_fail(BOUGH_INVALID, "the scene has no rod");
     if (bough_vibration_wanted(s)) {
-        bough_status status = bough_simulation_equilibrium(s, s->master->assembly, time, &work);
+        bough_status status = bough_simulation_equilibrium(s, s->master->assembly, time, 0, &work);
         return bough_is_ok(&status) ? bough_steady_equilibrium(arena, s, rod, time, found) : status;
     }
     BOUGH_TRY(bough_steady_turning(s, rod, &turning));

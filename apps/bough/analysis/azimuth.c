@@ -93,7 +93,8 @@ static bough_status turn_on(bough_arena *arena, const bough_azimuths *a, double 
     const bough_assembly *assembly = x->simulation->master->assembly;
     begin(a, x, time, bough_arena_doubles(arena, (size_t)assembly->n_state));
     if (balanced) {
-        bough_status status = bough_simulation_equilibrium_near(x->simulation, assembly, time, &work);
+        bough_status status =
+            bough_simulation_equilibrium(x->simulation, assembly, time, BOUGH_EQUILIBRIUM_NEAR, &work);
         if (!bough_is_ok(&status))
             return bough_fail(status.code, "with the rotor turned on by %.3g degrees: %.380s",
                               x->turn / BOUGH_DEGREE, status.message);

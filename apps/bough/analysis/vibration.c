@@ -355,7 +355,7 @@ static bough_status begin(bough_arena *arena, bough_simulation *s, int count, bo
     *air = (moving_air){.changes = changes};
     v->mode = bough_arena_take(arena, (size_t)count * sizeof *v->mode);
     bough_equilibrium_work work;
-    if (balanced) BOUGH_TRY(bough_simulation_equilibrium(s, s->master->assembly, v->time, &work));
+    if (balanced) BOUGH_TRY(bough_simulation_equilibrium(s, s->master->assembly, v->time, 0, &work));
     BOUGH_TRY(bough_vibration_point_find(arena, s, v->time, x));
     v->spin = fabs(x->group.speed) < at_rest ? 0 : x->group.speed;
     double uneven = x->def.spin != 0 ? imbalance(s) : 0;

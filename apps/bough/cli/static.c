@@ -56,8 +56,8 @@ static bough_status find_rods(bough_arena *arena, equilibrium *x) {
 static bough_status find_whole(bough_arena *arena, equilibrium *x) {
     bough_simulation *s = x->simulation;
     x->time = bough_equilibrium_time(s);
-    BOUGH_TRY((x->finer ? bough_simulation_finer_equilibrium
-                        : bough_simulation_any_equilibrium)(s, s->master->assembly, x->time, &x->work));
+    int how = x->finer ? BOUGH_EQUILIBRIUM_FINER : BOUGH_EQUILIBRIUM_UNSTABLE;
+    BOUGH_TRY(bough_simulation_equilibrium(s, s->master->assembly, x->time, how, &x->work));
     for (int k = 0; k < s->n_beam; k++) {
         if (s->beam[k].rod == NULL) continue;
         BOUGH_TRY(bough_steady_equilibrium(arena, s, &s->beam[k], x->time, &x->rod[x->n++]));
@@ -82,7 +82,7 @@ static bough_status find_growth(bough_arena *arena, equilibrium *x) {
         x->time = fmax(x->time, rod->time);
     }
     if (x->independent) bough_equilibrium_set_state(s, a, state);
-    return bough_simulation_growth(s, a, x->time, &x->growth);
+    return bough_simulation_growth(s, a, x->time, false, &x->growth);
 }
 
 // The equilibrium of the simulation, as it is; of a mesh that is compared with a coarse one, found in the

@@ -168,7 +168,7 @@ static bough_status find_equilibrium(bough_arena *parent, const bough_assembly_d
     if (bough_is_ok(&status) && s->scene->simulation.initial == BOUGH_SCENE_IN_OPERATION) {
         status = bough_simulation_trim(arena, s, assembly);
     } else if (bough_is_ok(&status)) {
-        status = bough_simulation_equilibrium(s, assembly, 0, &work);
+        status = bough_simulation_equilibrium(s, assembly, 0, 0, &work);
     }
     bough_arena_destroy(arena);
     return status;

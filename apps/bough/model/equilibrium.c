@@ -92,9 +92,8 @@ typedef struct continuation {
     double time, exponent;
     bough_equilibrium_work *work;
     double *state; // (n_state) of the equilibrium found last
+    int how;
     bool started;
-    bool unstable; // an unstable equilibrium is better than none
-    bool alone;    // finer meshes are not asked after a failure
 } continuation;
 
 // The equilibrium of rods of the present exponent, from the one found last.
@@ -138,13 +137,8 @@ static bough_status soften(continuation *c) {
     return status;
 }
 
-// Whether the simulation is as its scene says, and has rods that stiffer ones could stand for.
-static bool may_soften(const bough_simulation *s) {
-    return s->n_rod > 0 && s->scene->simulation.initial != BOUGH_SCENE_IN_OPERATION;
-}
-
 // By stiffer rods from `start` on: a stable equilibrium; or an unstable one, unless the way downhill ends in
-// a stable one.
+// a stable one. Without rods downhill.
 static bough_status find_slack(continuation *c, const double *start) {
     bough_simulation *s = c->simulation;
     const bough_assembly *a = c->assembly;
@@ -152,34 +146,36 @@ static bough_status find_slack(continuation *c, const double *start) {
     whole.kinetic = bough_equilibrium_search_kinetic;
     bough_growth growth = {0}, fallen = {0};
     bough_equilibrium_set_state(s, a, start);
-    bough_status softened = soften(c);
+    bough_status softened = s->n_rod > 0 ? soften(c) : bough_fail(BOUGH_FAILED, "no rods");
     bough_equilibrium_work work = *c->work;
-    if (bough_is_ok(&softened)) bough_simulation_growth(s, a, c->time, &growth);
+    if (bough_is_ok(&softened)) bough_simulation_growth(s, a, c->time, false, &growth);
     if (bough_is_ok(&softened) && growth.rate == 0) return softened;
     // downhill, however long it takes
     bough_equilibrium_set_state(s, a, start);
     *c->work = (bough_equilibrium_work){0};
     bough_status status = bough_equilibrium_search_within(whole, s, a, c->time, c->work);
-    if (!bough_is_ok(&softened) || !c->unstable) return status;
-    if (bough_is_ok(&status)) bough_simulation_growth(s, a, c->time, &fallen);
+    if (!bough_is_ok(&softened) || !(c->how & BOUGH_EQUILIBRIUM_UNSTABLE)) return status;
+    if (bough_is_ok(&status)) bough_simulation_growth(s, a, c->time, false, &fallen);
     if (bough_is_ok(&status) && fallen.rate == 0) return status;
     bough_equilibrium_set_state(s, a, c->state);
     *c->work = work;
     return softened;
 }
 
-// The first searches, on the scene's own mesh.
+// The searches on the scene's own mesh. In operation speed and pitch are tried until one is found.
 static bough_status find_on_mesh(bough_arena *arena, continuation *c) {
-    bough_simulation *s = c->simulation;
-    const bough_assembly *a = c->assembly;
+    const bough_simulation *s = c->simulation;
+    bool once = s->scene->simulation.initial == BOUGH_SCENE_IN_OPERATION;
     bough_equilibrium_def limits = bough_equilibrium_def_default();
-    double *start = bough_arena_doubles(arena, (size_t)a->n_state + 1);
-    c->state = bough_arena_doubles(arena, (size_t)a->n_state + 1);
-    bough_assembly_states(a, start);
-    limits.least = least_step;
-    limits.steps = PATIENCE;
-    bough_status status = bough_equilibrium_search_within(limits, s, a, c->time, c->work);
-    return status.code == BOUGH_FAILED ? find_slack(c, start) : status;
+    size_t n = (size_t)c->assembly->n_state + 1;
+    double *start;
+    bough_arena_each(arena, n, &start, &c->state);
+    bough_assembly_states(c->assembly, start);
+    if (!once) limits.steps = s->n_rod > 0 ? PATIENCE : RIGID_STEPS;
+    if (!once && s->n_rod > 0) limits.least = least_step;
+    bough_status status =
+        bough_equilibrium_search_within(limits, c->simulation, c->assembly, c->time, c->work);
+    return status.code == BOUGH_FAILED && !once ? find_slack(c, start) : status;
 }
 
 // -- whether a finer mesh has one -----------------------------------------------------------------
@@ -252,33 +248,17 @@ static bough_status explain_by_finer(const continuation *c, bough_status failure
                       times);
 }
 
-// Without rods: by steps from rest, then downhill with kinetic damping.
-static bough_status find_rigid(bough_arena *arena, continuation *c) {
-    bough_simulation *s = c->simulation;
-    bough_equilibrium_def limits = bough_equilibrium_def_default();
-    double *start = bough_arena_doubles(arena, (size_t)c->assembly->n_state + 1);
-    bough_assembly_states(c->assembly, start);
-    bool damps = s->scene->simulation.initial != BOUGH_SCENE_IN_OPERATION;
-    if (damps) limits.steps = RIGID_STEPS;
-    bough_status status = bough_equilibrium_search_within(limits, s, c->assembly, c->time, c->work);
-    if (status.code != BOUGH_FAILED || !damps) return status;
-    limits = bough_equilibrium_def_default();
-    limits.kinetic = bough_equilibrium_search_kinetic;
-    bough_equilibrium_set_state(s, c->assembly, start);
-    *c->work = (bough_equilibrium_work){0};
-    return bough_equilibrium_search_within(limits, s, c->assembly, c->time, c->work);
+static bough_status find_from_anywhere(bough_arena *arena, continuation *c) {
+    bough_status status = find_on_mesh(arena, c);
+    bool asks = c->simulation->scene->simulation.initial != BOUGH_SCENE_IN_OPERATION &&
+                !(c->how & BOUGH_EQUILIBRIUM_ALONE);
+    return status.code == BOUGH_FAILED && asks ? explain_by_finer(c, status) : status;
 }
 
+// From the present state by long steps where that is near, else as from anywhere.
 static bough_status find_equilibrium(bough_arena *arena, void *data) {
     continuation *c = data;
-    if (!may_soften(c->simulation)) return find_rigid(arena, c);
-    bough_status status = find_on_mesh(arena, c);
-    return status.code == BOUGH_FAILED && !c->alone ? explain_by_finer(c, status) : status;
-}
-
-// From the present state by long steps, else as from anywhere.
-static bough_status find_from_here(bough_arena *arena, void *data) {
-    continuation *c = data;
+    if (!(c->how & BOUGH_EQUILIBRIUM_NEAR)) return find_from_anywhere(arena, c);
     double *start = c->state = bough_arena_doubles(arena, (size_t)c->assembly->n_state + 1);
     bough_assembly_states(c->assembly, start);
     c->started = true;
@@ -287,31 +267,12 @@ static bough_status find_from_here(bough_arena *arena, void *data) {
     bough_equilibrium_set_state(c->simulation, c->assembly, start);
     c->started = false;
     *c->work = (bough_equilibrium_work){0};
-    return find_equilibrium(arena, c);
-}
-
-static bough_status search(bough_status (*find)(bough_arena *, void *), continuation c) {
-    *c.work = (bough_equilibrium_work){0};
-    return bough_arena_use(find, &c);
+    return find_from_anywhere(arena, c);
 }
 
 bough_status bough_simulation_equilibrium(bough_simulation *s, const bough_assembly *assembly, double time,
-                                          bough_equilibrium_work *work) {
-    return search(find_equilibrium, (continuation){s, assembly, time, .work = work});
-}
-
-bough_status bough_simulation_equilibrium_near(bough_simulation *s, const bough_assembly *assembly,
-                                               double time, bough_equilibrium_work *work) {
-    return search(find_from_here, (continuation){s, assembly, time, .work = work});
-}
-
-bough_status bough_simulation_any_equilibrium(bough_simulation *s, const bough_assembly *assembly,
-                                              double time, bough_equilibrium_work *work) {
-    return search(find_equilibrium, (continuation){s, assembly, time, .work = work, .unstable = true});
-}
-
-bough_status bough_simulation_finer_equilibrium(bough_simulation *s, const bough_assembly *assembly,
-                                                double time, bough_equilibrium_work *work) {
-    return search(find_from_here,
-                  (continuation){s, assembly, time, .work = work, .unstable = true, .alone = true});
+                                          int how, bough_equilibrium_work *work) {
+    continuation c = {s, assembly, time, .work = work, .how = how};
+    *work = (bough_equilibrium_work){0};
+    return bough_arena_use(find_equilibrium, &c);
 }

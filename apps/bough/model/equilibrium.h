@@ -26,23 +26,19 @@ bool bough_rods_are_independent(const bough_simulation *s);
 // The time after which no load grows any more [s].
 double bough_equilibrium_time(const bough_simulation *s);
 
+// How an equilibrium is looked for. A set of these.
+enum {
+    BOUGH_EQUILIBRIUM_NEAR = 1,     // first from the present state on, which is near it: faster
+    BOUGH_EQUILIBRIUM_UNSTABLE = 2, // an unstable one is better than none
+    BOUGH_EQUILIBRIUM_ALONE = 4,    // a failure does not ask finer meshes
+    // of a mesh that another one is compared with, from its shape (bough_simulation_take_shape)
+    BOUGH_EQUILIBRIUM_FINER = 7,
+};
+
 // Brings the members of the assembly, the simulation's, to equilibrium under the loads at `time`;
 // their clocks stay at 0. BOUGH_FAILED names the body that finds none.
 bough_status bough_simulation_equilibrium(bough_simulation *s, const bough_assembly *assembly, double time,
-                                          bough_equilibrium_work *work);
-
-// The same, from a state that is near it: faster.
-bough_status bough_simulation_equilibrium_near(bough_simulation *s, const bough_assembly *assembly,
-                                               double time, bough_equilibrium_work *work);
-
-// The same, where an unstable equilibrium is better than none.
-bough_status bough_simulation_any_equilibrium(bough_simulation *s, const bough_assembly *assembly,
-                                              double time, bough_equilibrium_work *work);
-
-// The same for a mesh that another one is compared with, from its shape (bough_simulation_take_shape): a
-// failure does not look for still finer ones.
-bough_status bough_simulation_finer_equilibrium(bough_simulation *s, const bough_assembly *assembly,
-                                                double time, bough_equilibrium_work *work);
+                                          int how, bough_equilibrium_work *work);
 
 // What grows from an equilibrium by the tangents, the air's forces constant. Where something turns, the
 // tangents of one azimuth say nothing about oscillations: none is given.
@@ -57,13 +53,10 @@ typedef struct bough_growth {
     int segments;
 } bough_growth;
 
-// Of the states of the assembly.
+// Of the states of the assembly; `slow`: from the twelve eigenvalues nearest to 1/s alone, at an eighth of
+// the cost.
 bough_status bough_simulation_growth(bough_simulation *s, const bough_assembly *assembly, double time,
-                                     bough_growth *growth);
-
-// The same from the twelve eigenvalues nearest to 1/s alone, at an eighth of the cost.
-bough_status bough_simulation_slow_growth(bough_simulation *s, const bough_assembly *assembly, double time,
-                                          bough_growth *growth);
+                                     bool slow, bough_growth *growth);
 
 // Called at each point of a path, where the members, their inputs and the simulation's view then are; `time`:
 // when the loads are those of the point [s]. `limit`: they have a local maximum or minimum there. A failure

@@ -172,20 +172,10 @@ static bough_status find_growth(bough_arena *arena, void *self) {
     return bough_ok();
 }
 
-static bough_status find_growth_at(int points, bough_simulation *s, const bough_assembly *assembly,
-                                   double time, bough_growth *growth) {
+bough_status bough_simulation_growth(bough_simulation *s, const bough_assembly *assembly, double time,
+                                     bool slow, bough_growth *growth) {
     bough_equilibrium_search x = {
-        .simulation = s, .assembly = assembly, .time = time, .growth = growth, .points = points};
+        .simulation = s, .assembly = assembly, .time = time, .growth = growth, .points = slow ? 1 : POINTS};
     *growth = (bough_growth){0};
     return bough_arena_use(find_growth, &x);
-}
-
-bough_status bough_simulation_growth(bough_simulation *s, const bough_assembly *assembly, double time,
-                                     bough_growth *growth) {
-    return find_growth_at(POINTS, s, assembly, time, growth);
-}
-
-bough_status bough_simulation_slow_growth(bough_simulation *s, const bough_assembly *assembly, double time,
-                                          bough_growth *growth) {
-    return find_growth_at(1, s, assembly, time, growth);
 }

@@ -325,7 +325,7 @@ void bough_validity_check_equilibrium(bough_simulation *s) {
     bough_growth growth;
     const bough_assembly *a = s->master->assembly;
     if (s->scene->simulation.initial == BOUGH_SCENE_UNDEFORMED) return;
-    bough_status status = bough_simulation_slow_growth(s, a, 0, &growth);
+    bough_status status = bough_simulation_growth(s, a, 0, true, &growth);
     double rate = fmax(growth.rate, growth.oscillation);
     if (!bough_is_ok(&status) || !(rate > 0)) return;
     int body = find_body(s->scene, bough_simulation_body_of(s, a, growth.row));

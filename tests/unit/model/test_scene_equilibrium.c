@@ -10,7 +10,7 @@ static const char runup[] = "apps/turbine/runup.yaml";
 
 static bough_equilibrium_work equilibrium_of(bough_simulation *s) {
     bough_equilibrium_work work;
-    check_ok(bough_simulation_equilibrium(s, s->master->assembly, bough_equilibrium_time(s), &work));
+    check_ok(bough_simulation_equilibrium(s, s->master->assembly, bough_equilibrium_time(s), 0, &work));
     return work;
 }
 
@@ -207,7 +207,7 @@ TEST(driven_free_rotor_has_none) {
     check_arena(arena);
     bough_simulation *s = scene_build(arena, runup, sets);
     bough_equilibrium_work work;
-    bough_status status = bough_simulation_equilibrium(s, s->master->assembly, 0, &work);
+    bough_status status = bough_simulation_equilibrium(s, s->master->assembly, 0, 0, &work);
     check_fails(status, BOUGH_FAILED, "no equilibrium");
     assert_non_null(strstr(status.message, "a spring, a speed or a motion"));
 }
@@ -222,7 +222,7 @@ TEST(wheel_on_a_pad_has_none) {
     check_arena(arena);
     bough_simulation *s = scene_build(arena, "apps/mechanisms/pendulum.yaml", sets);
     bough_equilibrium_work work;
-    bough_status status = bough_simulation_equilibrium(s, s->master->assembly, 0, &work);
+    bough_status status = bough_simulation_equilibrium(s, s->master->assembly, 0, 0, &work);
     check_fails(status, BOUGH_FAILED, "no equilibrium");
     assert_null(strstr(status.message, "nothing but loads"));
 }
@@ -241,7 +241,7 @@ TEST(chain_hangs_in_a_catenary) {
         check_arena(arena);
         bough_simulation *s = scene_build(arena, "tests/data/scenes/mooring.yaml", sets);
         bough_equilibrium_work work;
-        check_ok(bough_simulation_any_equilibrium(s, s->master->assembly, 0, &work));
+        check_ok(bough_simulation_equilibrium(s, s->master->assembly, 0, BOUGH_EQUILIBRIUM_UNSTABLE, &work));
         bough_channels list = scene_channels(arena, s);
         printf("EI %s N m2: %d steps\n", b, work.steps);
         check_near(scene_channel(s, &list, "lineTipX"), x, 0, 1e-4 * length);
@@ -258,8 +258,8 @@ TEST(twist_of_long_segments_is_not_called_unstable) {
         bough_simulation *s = scene_build(arena, "tests/data/scenes/mooring.yaml", sets);
         bough_equilibrium_work work;
         bough_growth growth;
-        check_ok(bough_simulation_equilibrium(s, s->master->assembly, 0, &work));
-        check_ok(bough_simulation_growth(s, s->master->assembly, 0, &growth));
+        check_ok(bough_simulation_equilibrium(s, s->master->assembly, 0, 0, &work));
+        check_ok(bough_simulation_growth(s, s->master->assembly, 0, false, &growth));
         check_near(growth.rate, 0, 0, 0);
         assert_true((growth.twisting != NULL) == (k == 0));
         assert_true(k == 1 || (growth.segments > 60 && growth.segments < 100));
@@ -294,7 +294,7 @@ TEST(cable_on_a_spherical_joint_hangs_under_forces) {
             "gravity=[0, 0, -10]", "markers=[]", NULL};
         bough_simulation *s = scene_build(arena, "apps/mechanisms/pendulum.yaml", sets);
         bough_equilibrium_work work;
-        check_ok(bough_simulation_any_equilibrium(s, s->master->assembly, 0, &work));
+        check_ok(bough_simulation_equilibrium(s, s->master->assembly, 0, BOUGH_EQUILIBRIUM_UNSTABLE, &work));
         bough_channels list = scene_channels(arena, s);
         const bough_vec3 found = {scene_channel(s, &list, "lineTipX"), scene_channel(s, &list, "lineTipY"),
                                   scene_channel(s, &list, "lineTipZ")};
@@ -311,9 +311,9 @@ TEST(heavy_bodies_fall_from_a_light_rod) {
     bough_simulation *s = scene_build(arena, "tests/data/scenes/slender-tree.yaml", none);
     bough_equilibrium_work work;
     bough_growth growth;
-    check_ok(bough_simulation_equilibrium(s, s->master->assembly, 0, &work));
+    check_ok(bough_simulation_equilibrium(s, s->master->assembly, 0, 0, &work));
     printf("%d steps\n", work.steps);
-    check_ok(bough_simulation_growth(s, s->master->assembly, 0, &growth));
+    check_ok(bough_simulation_growth(s, s->master->assembly, 0, false, &growth));
     check_near(growth.rate, 0, 0, 0);
 }
 
@@ -327,7 +327,7 @@ TEST(segments_too_long_for_a_bend_are_named) {
     check_arena(arena);
     bough_simulation *s = scene_build(arena, "apps/mechanisms/pendulum.yaml", sets);
     bough_equilibrium_work work;
-    bough_status status = bough_simulation_equilibrium(s, s->master->assembly, 0, &work);
+    bough_status status = bough_simulation_equilibrium(s, s->master->assembly, 0, 0, &work);
     check_fails(status, BOUGH_FAILED, "whip: no equilibrium found: its segments are too long for its load");
     int times = 0;
     const char *with = strstr(status.message, "with ");
@@ -337,7 +337,7 @@ TEST(segments_too_long_for_a_bend_are_named) {
     snprintf(set, sizeof set, "bodies[0].rod.segments=%d", 4 * times);
     const char *finer[] = {sets[0], sets[1], sets[2], sets[3], set, NULL};
     s = scene_build(arena, "apps/mechanisms/pendulum.yaml", finer);
-    check_ok(bough_simulation_equilibrium(s, s->master->assembly, 0, &work));
+    check_ok(bough_simulation_equilibrium(s, s->master->assembly, 0, 0, &work));
 }
 
 // A bar on a table between pads, which turn it by 16 degrees; its mass times `mass`.
@@ -376,7 +376,7 @@ TEST(light_bar_on_pads_is_stable) {
     check_arena(arena);
     bough_simulation *s = bar_on_pads(arena, 8, 1e-8);
     equilibrium_of(s);
-    check_ok(bough_simulation_growth(s, s->master->assembly, 0, &growth));
+    check_ok(bough_simulation_growth(s, s->master->assembly, 0, false, &growth));
     check_near(growth.rate, 0, 0, 0);
     check_near(growth.oscillation, 0, 0, 0);
 }
@@ -390,7 +390,7 @@ TEST(standing_pendulum_is_unstable) {
         check_arena(arena);
         bough_simulation *s = scene_build(arena, "apps/mechanisms/pendulum.yaml", sets);
         equilibrium_of(s);
-        check_ok(bough_simulation_growth(s, s->master->assembly, 0, &growth));
+        check_ok(bough_simulation_growth(s, s->master->assembly, 0, false, &growth));
         check_near(growth.rate, k == 0 ? sqrt(9.81) : 0, 0, 1e-6);
         check_near(growth.oscillation, 0, 0, 0);
     }
@@ -405,7 +405,7 @@ TEST(follower_force_makes_a_column_flutter) {
         check_arena(arena);
         bough_simulation *s = scene_build(arena, "apps/beams/beck.yaml", sets);
         equilibrium_of(s);
-        check_ok(bough_simulation_growth(s, s->master->assembly, 0, &growth));
+        check_ok(bough_simulation_growth(s, s->master->assembly, 0, false, &growth));
         check_near(growth.oscillation, k == 0 ? 3.05491 : 0, 5e-3, 1e-6);
         check_near(growth.rate, 0, 0, 0);
     }
@@ -449,7 +449,7 @@ TEST(shape_does_not_depend_on_scale) {
         if (k == 0) first[1] = z;
         check_near(x, first[0], 0, 1e-7);
         check_near(z, first[1], 0, 1e-7);
-        check_ok(bough_simulation_growth(s, s->master->assembly, 0, &growth));
+        check_ok(bough_simulation_growth(s, s->master->assembly, 0, false, &growth));
         check_near(growth.rate, 0, 0, 0);
     }
 }
@@ -502,7 +502,7 @@ TEST(growth_does_not_depend_on_scale) {
         bough_simulation *s = scene_build(arena, "apps/mechanisms/pendulum.yaml", sets);
         bough_growth growth;
         equilibrium_of(s);
-        check_ok(bough_simulation_growth(s, s->master->assembly, 0, &growth));
+        check_ok(bough_simulation_growth(s, s->master->assembly, 0, false, &growth));
         printf("%g m: growth %g 1/s\n", l, growth.rate);
         if (k == 0) first = growth.rate;
         assert_true(first > 5);
@@ -542,7 +542,7 @@ TEST(finer_mesh_starts_in_the_shape_found) {
     int first = equilibrium_of(coarse).steps;
     bough_simulation_take_shape(coarse, fine);
     check_near(fine->leader.state[0], coarse->leader.state[0], 0, 0);
-    check_ok(bough_simulation_finer_equilibrium(fine, fine->master->assembly, 0, &work));
+    check_ok(bough_simulation_equilibrium(fine, fine->master->assembly, 0, BOUGH_EQUILIBRIUM_FINER, &work));
     printf("%d steps, then %d\n", first, work.steps);
     assert_in_range(work.steps, 1, 12);
     bough_channels list = scene_channels(arena, coarse), finer_list = scene_channels(arena, fine);
@@ -567,7 +567,7 @@ TEST(bodies_tied_only_to_each_other_have_none) {
             "markers=[]", NULL};
         bough_simulation *s = scene_build(arena, "apps/mechanisms/pendulum.yaml", sets);
         bough_equilibrium_work work;
-        bough_status status = bough_simulation_equilibrium(s, s->master->assembly, 0, &work);
+        bough_status status = bough_simulation_equilibrium(s, s->master->assembly, 0, 0, &work);
         if (k == 0)
             check_fails(status, BOUGH_FAILED, "a: no equilibrium found: nothing ties it to the ground");
         if (k == 1) check_ok(status);
@@ -594,6 +594,6 @@ TEST(chain_of_rigid_links_hangs) {
     bough_channels list = scene_channels(arena, s);
     check_near(scene_channel(s, &list, "middleX"), 2, 0, 1e-6);
     check_near(scene_channel(s, &list, "middleZ"), middle, 0, 1e-6);
-    check_ok(bough_simulation_growth(s, s->master->assembly, 0, &growth));
+    check_ok(bough_simulation_growth(s, s->master->assembly, 0, false, &growth));
     check_near(growth.rate, 0, 0, 0);
 }

@@ -10,7 +10,7 @@ TEST(tip_force_passes_all_sections) {
     bough_simulation *s = scene_build(arena, "apps/beams/elastica.yaml", sets);
     bough_equilibrium_work work;
     double t = bough_equilibrium_time(s);
-    check_ok(bough_simulation_equilibrium(s, s->master->assembly, t, &work));
+    check_ok(bough_simulation_equilibrium(s, s->master->assembly, t, 0, &work));
     bough_simulation_update(s);
     bough_shape shape;
     bough_shape_create(arena, s, &shape);
