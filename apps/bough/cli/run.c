@@ -211,13 +211,11 @@ static void warn_of_work(bough_run_command *command) {
     fprintf(stderr, "bough: warning: %s\n", text);
 }
 
-// After each step. The error is judged at the end, but a run that has lost the solution does not go on.
+// After each step. The error is judged at the end.
 static bough_status after_step(void *self) {
     bough_run_command *command = self;
-    const bough_run *run = &command->run;
     warn_of_work(command);
-    bool lost = run->simulation->scene->simulation.error_bound > 0 && bough_companion_parted(run->companion);
-    return lost ? bough_error_parted(run->companion) : bough_checkpoint_update(command);
+    return bough_checkpoint_update(command);
 }
 
 // The cause of an error above the bound is looked for by further runs, as the shares are where the scene

@@ -31,10 +31,7 @@ static bough_status take_steps(bough_arena *arena, bough_scene *scene, int steps
     x->duration = fmin(x->duration, steps * x->macro_step);
     x->output.from = 0;
     bough_status status = bough_run_create(arena, scene, &run);
-    while (bough_is_ok(&status) && !bough_run_done(&run)) {
-        status = bough_run_step(&run);
-        if (bough_companion_parted(run.companion)) return bough_error_parted(run.companion);
-    }
+    while (bough_is_ok(&status) && !bough_run_done(&run)) status = bough_run_step(&run);
     if (!bough_is_ok(&status)) return status;
     if (bough_error_exceeds(run.companion, bound))
         status = bough_error_shares_find(arena, run.companion, NULL, &shares);

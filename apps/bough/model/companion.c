@@ -189,19 +189,9 @@ static void compare(bough_companion *c) {
 
 // -- the start -------------------------------------------------------------------------------------
 
-static double longest_rod(const bough_scene *scene) {
-    double longest = 0;
-    for (int i = 0; i < scene->n_body; i++) {
-        const bough_scene_rod *rod = &scene->body[i].rod;
-        if (rod->node) longest = fmax(longest, bough_scene_arc_length(&rod->structure));
-    }
-    return longest;
-}
-
 bough_status bough_companion_create(bough_arena *arena, bough_simulation *run, const bough_channels *channels,
                                     bough_companion *c) {
     *c = (bough_companion){.run = run, .channels = channels, .status = bough_ok()};
-    c->length = longest_rod(run->scene);
     take(c, arena);
     if (run->scene->simulation.error_estimate != BOUGH_SCENE_COMPANION) {
         give_up(c, "simulation.error_estimate is none");
@@ -220,43 +210,6 @@ bough_status bough_companion_create(bough_arena *arena, bough_simulation *run, c
     return bough_ok();
 }
 
-// -- which of the two has left --------------------------------------------------------------------
-
-static const double several = 10; // ranges
-enum { PARTED_FOR = 16 };
-
-// Of the vector that the channel is a component of: the largest range of one of the two simulations.
-static double range_of(const bough_companion *c, int channel, const double *low, const double *high) {
-    const bough_channel *list = c->channels->channel;
-    double range = 0;
-    for (int i = list[channel].vector; i < c->channels->count && list[i].vector == list[channel].vector; i++)
-        range = fmax(range, high[i] - low[i]);
-    return range;
-}
-
-// The one with the much larger range has left the other behind.
-static void watch(bough_companion *c) {
-    bool run = false, companion = false;
-    for (int i = 0; i < c->channels->count; i++) {
-        if (!bough_error_is_motion(&c->channels->channel[i])) continue;
-        double distance = fabs(difference(&c->channels->channel[i], c->value[i], c->coarser.value[i]));
-        if (!(distance > several * bough_error_own_range(c, i))) continue; // the range is no less
-        double own = range_of(c, i, c->low, c->high), other = range_of(c, i, c->other_low, c->other_high);
-        double range = bough_error_range(c, i);
-        if (!(distance > several * range) || !bough_error_counts(c, i) || !bough_error_shows(c, i, distance))
-            continue;
-        run = run || own > several * fmax(other, range);
-        companion = companion || other > several * fmax(own, range);
-    }
-    c->parted_for = run ? c->parted_for + 1 : 0;
-    c->astray_for = companion && !run ? c->astray_for + 1 : 0;
-    if (c->astray_for < PARTED_FOR) return;
-    give_up(c, "the coarser solution by which errors are measured runs away");
-    c->run->master->compared = false;
-}
-
-bool bough_companion_parted(const bough_companion *c) { return c->parted_for >= PARTED_FOR; }
-
 void bough_companion_compare(bough_companion *c) {
     if (!alive(c)) return;
     if (!bough_is_ok(&c->status)) {
@@ -264,7 +217,6 @@ void bough_companion_compare(bough_companion *c) {
         c->run->master->compared = false;
     } else if (c->coarser.simulation->master->time == c->run->master->time && counts_now(c, c->run)) {
         compare(c);
-        watch(c);
         bough_channels_know(c->channels, c->value);
     }
 }
@@ -300,8 +252,6 @@ void bough_companion_snapshot(bough_companion *c, bough_snapshot *s) {
     for (size_t k = 0; k < sizeof rows / sizeof *rows; k++) bough_snapshot_doubles(s, rows[k], n);
     bough_snapshot_take(s, &c->compared, sizeof c->compared);
     bough_snapshot_take(s, &c->flutters, sizeof c->flutters);
-    bough_snapshot_take(s, &c->parted_for, sizeof c->parted_for);
-    bough_snapshot_take(s, &c->astray_for, sizeof c->astray_for);
     bough_snapshot_take(s, c->reason, sizeof c->reason);
     bough_snapshot_take(s, &c->from, sizeof c->from);
     bough_snapshot_take(s, &c->run->master->compared, sizeof c->run->master->compared);

@@ -107,7 +107,6 @@ typedef struct bough_companion {
     bough_other_run coarser;
     bough_finer finer;
     const bough_channels *channels;      // of the run
-    double length;                       // of the longest rod; 0: there is none [m]
     double share;                        // of the difference, that the run errs by
     double share_held;                   // the same of a channel whose last sample the companion holds
     char reason[BOUGH_COMPANION_REASON]; // why errors are not known, or not any more; "": they are
@@ -123,10 +122,8 @@ typedef struct bough_companion {
     double *low, *high;                  // (channels->count) range of the run
     double *other_low, *other_high;      // (channels->count) of the companion
     double *noticed;                     // (channels->count) when the error first passed the accuracy [s]
-    int parted_for,
-        astray_for;      // comparisons in a row in which the run, the companion has left the other behind
-    bool flutters;       // its blades have, those of the run have not
-    bough_status status; // of its last step
+    bool flutters;                       // its blades have, those of the run have not
+    bough_status status;                 // of its last step
 } bough_companion;
 
 // Builds the companion that the scene of the run asks for, with the run's pool, at time 0. Where it cannot be
@@ -149,10 +146,6 @@ bool bough_companion_compares(const bough_companion *c);
 
 // Whether the channel's error is known.
 bool bough_companion_knows(const bough_companion *c, int channel);
-
-// Whether run and companion have been several ranges apart for so long, the run being the one that has left,
-// that it should end.
-bool bough_companion_parted(const bough_companion *c);
 
 // Whether the companion can be stored now, when it may be ahead of the run: its loads are sampled, as a copy
 // needs.

@@ -504,14 +504,3 @@ bough_status bough_error_judge(const bough_companion *c, const bough_error_share
     if (v.relative > c->run->scene->simulation.accuracy && !warning[0]) warn_of_error(c, &v, warning);
     return bough_ok();
 }
-
-bough_status bough_error_parted(const bough_companion *c) {
-    char what[240], remedy[ADVICE];
-    bough_error_verdict v = bough_error_verdict_of(c, true, c->error);
-    if (v.channel < 0) return bough_ok();
-    describe(c, &v, what, sizeof what);
-    advise_time(c->run->scene, 16, remedy);
-    return bough_fail(BOUGH_FAILED,
-                      "the run has lost the solution at %.6g s: %s, by a coarser solution beside it; try %s",
-                      c->run->master->time, what, remedy);
-}

@@ -22,7 +22,8 @@ bool bough_error_is_motion(const bough_channel *channel) {
 
 // -- ranges ---------------------------------------------------------------------------------------
 
-double bough_error_own_range(const bough_companion *c, int i) {
+// The same of the channel alone: no more than that.
+static double own_range(const bough_companion *c, int i) {
     return fmax(fmin(c->high[i] - c->low[i], c->other_high[i] - c->other_low[i]), 0);
 }
 
@@ -47,7 +48,7 @@ double bough_error_range(const bough_companion *c, int channel) {
     double range = 0, value = 0, si = list[channel].si;
     for (int i = list[channel].vector; i < c->channels->count && list[i].vector == list[channel].vector;
          i++) {
-        range = fmax(range, bough_error_own_range(c, i));
+        range = fmax(range, own_range(c, i));
         value = fmax(value, largest_value(c, i));
     }
     if (is_velocity(&list[channel])) range = fmax(range, least_share * value);
@@ -65,25 +66,14 @@ double bough_error_relative(const bough_companion *c, int channel, double error)
 
 static const double least_motion = 1e-12; // [m], [rad], [m/s], [rad/s]: less is rounding wherever it is
 
-// The largest range or value of the channels of that kind, in SI units.
-static double largest_of(const bough_companion *c, bough_quantity_kind kind,
-                         double (*size)(const bough_companion *c, int channel)) {
+static double kind_range(const bough_companion *c, bough_quantity_kind kind) {
     double largest = 0;
     for (int i = 0; i < c->channels->count; i++) {
         const bough_channel *channel = &c->channels->channel[i];
-        if (channel->kind == kind && !channel->sampled) largest = fmax(largest, channel->si * size(c, i));
+        if (channel->kind == kind && !channel->sampled)
+            largest = fmax(largest, channel->si * own_range(c, i));
     }
     return largest;
-}
-
-// A rod that bends by a length turns its sections by an angle of that over its own length, beside which its
-// twist is judged, too.
-static double kind_range(const bough_companion *c, bough_quantity_kind kind) {
-    double range = largest_of(c, kind, bough_error_own_range);
-    bool angle = kind == BOUGH_KIND_ANGLE, rate = kind == BOUGH_KIND_ANGULAR_VELOCITY;
-    if (!(c->length > 0) || !(angle || rate)) return range;
-    return fmax(range, largest_of(c, angle ? BOUGH_KIND_LENGTH : BOUGH_KIND_VELOCITY, bough_error_own_range) /
-                           c->length);
 }
 
 // Of all motion, whatever its kind: where nothing moves, the ranges are those of rounding.
@@ -93,7 +83,7 @@ static double largest_motion(const bough_companion *c) {
         const bough_channel *channel = &c->channels->channel[i];
         if (!bough_error_is_motion(channel)) continue;
         double value = fmin(channel->si * largest_value(c, i), 1);
-        largest = fmax(largest, fmax(value, channel->si * bough_error_own_range(c, i)));
+        largest = fmax(largest, fmax(value, channel->si * own_range(c, i)));
     }
     return largest;
 }
@@ -103,8 +93,7 @@ static double size_at_rest(const bough_companion *c) {
     double size = c->motion;
     for (int i = 0; i < c->channels->count; i++) {
         const bough_channel *channel = &c->channels->channel[i];
-        if (bough_error_is_motion(channel) && channel->si * bough_error_own_range(c, i) > rounding * size)
-            return 0;
+        if (bough_error_is_motion(channel) && channel->si * own_range(c, i) > rounding * size) return 0;
     }
     return size;
 }
@@ -115,14 +104,6 @@ bool bough_error_counts(const bough_companion *c, int i) {
     bool moving = bough_error_is_motion(channel) ? moves > fmax(rounding * c->motion, least_motion)
                                                  : moves > least_share * channel->si * largest_value(c, i);
     return moving && moves >= least_share * kind_range(c, channel->kind);
-}
-
-// Of the largest value of its kind: a run that differs by more has left its companion.
-static const double much = 0.1;
-
-bool bough_error_shows(const bough_companion *c, int channel, double difference) {
-    const bough_channel *own = &c->channels->channel[channel];
-    return own->si * difference > much * largest_of(c, own->kind, largest_value);
 }
 
 // -- the verdict ----------------------------------------------------------------------------------
@@ -175,7 +156,7 @@ void bough_error_size(const bough_companion *c, int channel, char text[BOUGH_ERR
 // Most channels are within the share of their own range already, which is no more than the whole one.
 static bool is_within(const bough_companion *c, int i, double share) {
     double error = c->error[i];
-    return error <= share * bough_error_own_range(c, i) || error <= share * bough_error_range(c, i);
+    return error <= share * own_range(c, i) || error <= share * bough_error_range(c, i);
 }
 
 void bough_error_notice(bough_companion *c, double t) {

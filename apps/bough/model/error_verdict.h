@@ -21,19 +21,12 @@ bool bough_error_is_motion(const bough_channel *channel);
 // changes has a thousandth of its value, and where the whole scene is at rest a motion has the scene's size.
 double bough_error_range(const bough_companion *c, int channel);
 
-// The same of the channel alone: no more than that.
-double bough_error_own_range(const bough_companion *c, int channel);
-
 // An error of the channel, in its unit, relative to its range; NaN for one that keeps its value.
 double bough_error_relative(const bough_companion *c, int channel, double error);
 
 // Whether a channel counts: channels that move, or err, by less than a thousandth of other channels of their
 // kind, and those whose motion is rounding do not.
 bool bough_error_counts(const bough_companion *c, int channel);
-
-// Whether a difference in the channel, in its unit, is more than a tenth of the largest value of its
-// kind: ranges are small early in a run, and a difference may be many of them.
-bool bough_error_shows(const bough_companion *c, int channel, double difference);
 
 // The channel with the largest relative error: of motion, or of forces and moments. `error`
 // (channels->count): the companion's, or a share of it.
@@ -97,8 +90,5 @@ bough_status bough_error_judge(const bough_companion *c, const bough_error_share
 
 // Whether the error of a motion is above the bound, so that the cause is to be found.
 bool bough_error_exceeds(const bough_companion *c, double bound);
-
-// A run that has parted from its companion: BOUGH_FAILED with channel, time and what to try.
-bough_status bough_error_parted(const bough_companion *c);
 
 #endif

@@ -557,17 +557,3 @@ TEST(beside_a_finer_mesh_held_loads_are_sampled_in_shorter_steps) {
     }
     assert_true(c->error[bough_channels_find(&r.channels, "RtVAvgxh")] < 0.02);
 }
-
-// Blades of one segment change the speed of their hub by 4 %, many times what it had changed by: an error of
-// the mesh, which ends no run early.
-TEST(a_coarse_mesh_is_no_lost_solution) {
-    const char *const sets[] = {NULL};
-    check_arena(arena);
-    bough_run r;
-    check_ok(bough_run_create(arena, scene_read(arena, "tests/data/scenes/uneven-rotor.yaml", sets), &r));
-    while (!bough_run_done(&r)) {
-        check_ok(bough_run_step(&r));
-        assert_false(bough_companion_parted(r.companion));
-    }
-    assert_true(bough_error_exceeds(r.companion, 1));
-}

@@ -13,7 +13,7 @@ typedef struct row {
 static int worst_in(int n, const row *rows, char words[BOUGH_ERROR_SIZE]) {
     bough_arena *arena = bough_arena_create();
     bough_channels channels = bough_channels_start(arena);
-    bough_companion c = {.channels = &channels, .compared = 1, .length = 60};
+    bough_companion c = {.channels = &channels, .compared = 1};
     bough_arena_each(arena, (size_t)n, &c.low, &c.high, &c.other_low, &c.other_high, &c.error, &c.noticed);
     bough_channels_group(&channels, NULL, NULL);
     for (int i = 0; i < n; i++) {
@@ -67,24 +67,6 @@ static void check_verdicts(two_channels *v, int channel, double high, double bef
     check_near(bough_error_verdict_of(c, true, c->error).relative, after, 1e-5, 0);
 }
 
-// A hinge of a rotor, before a load comes: it has hardly moved, so that a difference is many ranges.
-TEST(a_difference_shows_beside_the_values_of_its_kind) {
-    two_channels v = {.low = {700, 0},
-                      .high = {700, 1e-4},
-                      .other_low = {700, 0},
-                      .other_high = {700, 7e-3},
-                      .error = {0, 7e-3},
-                      .unit = {"deg/s", "deg/s"},
-                      .name = {"shaftVel", "hingeVel"}};
-    check_arena(arena);
-    bough_companion *c = compared(arena, &v);
-    bough_error_notice(c, 1);
-    assert_true(bough_error_relative(c, 1, v.error[1]) > 10);
-    assert_false(bough_error_shows(c, 1, v.error[1]));
-    assert_false(bough_error_shows(c, 1, 69));
-    assert_true(bough_error_shows(c, 1, 71));
-}
-
 // A scene that stays in equilibrium has no range: an error of a hundred-thousandth of its size is small,
 // until both solutions move.
 TEST(errors_of_a_scene_at_rest_are_judged_by_its_size) {
@@ -130,8 +112,7 @@ TEST(what_hardly_moves_does_not_count) {
     } cases[] = {
         {2, 0, {{"TipDxb1", "m", 4, .01}, {"TwstDefl1", "deg", 4e-16, 3e-16}}},
         {3, 2, {{"TipDxb1", "m", 4, .01}, {"TwstDefl1", "deg", 2.5e-4, 2e-4}, {"Pos", "deg", 3, .01}}},
-        {2, 0, {{"TipDxb1", "m", 4, .01}, {"TwstDefl1", "deg", 2.5e-3, 2e-3}}},
-        {2, 1, {{"TipDxb1", "m", 4, .01}, {"TwstDefl1", "deg", 5e-3, 4e-3}}},
+        {2, 1, {{"TipDxb1", "m", 4, .01}, {"TwstDefl1", "deg", 2.5e-3, 2e-3}}},
         {2, -1, {{"TipDxb1", "m", 4e-13, 1e-14}, {"TwstDefl1", "deg", 4e-16, 3e-16}}},
         {2, 1, {{"one", "m", 1, .01}, {"other", "m", 2e-3, 1e-3}}},
         {2, 0, {{"one", "m", 1, .01}, {"other", "m", 5e-4, 4e-4}}},
