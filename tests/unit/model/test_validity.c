@@ -6,13 +6,17 @@
 
 #include <string.h>
 
-static const char turbine[] = "tests/data/scenes/example-turbine.yaml";
+static const char turbine[] = "tests/data/scenes/example-turbine.yaml", roll_up[] = "apps/beams/roll-up.yaml",
+                  runup[] = "apps/turbine/runup.yaml", pendulum[] = "apps/mechanisms/pendulum.yaml",
+                  beam[] = "tests/data/scenes/example-beam.yaml",
+                  operation[] = "tests/data/scenes/operation-beside-column.yaml";
 
 static bough_simulation *run_scene(bough_arena *arena, const char *scene, const char *const *sets,
                                    int steps) {
     bough_simulation *s = scene_build(arena, scene, sets);
-    for (int k = 0; k < steps; k++) {
-        scene_step(s);
+    bough_validity_check_equilibrium(s);
+    for (int k = 0; k <= steps; k++) {
+        if (k > 0) scene_step(s);
         bough_validity_check(s);
     }
     return s;
@@ -52,59 +56,86 @@ TEST(a_fast_section_is_warned_of_once) {
     assert_non_null(strstr(text, "blade1 at 0.02 s: a section meets the air at "));
 }
 
-// 5 rad/s are 57 deg in a fifth of a second, 6 rad/s 69 deg.
-TEST(a_rotor_that_turns_far_between_samples_is_reported) {
-    for (int speed = 5; speed <= 6; speed++) {
-        char chosen[48];
-        snprintf(chosen, sizeof chosen, "bodies[hub].joint.motion={speed: %d rad/s}", speed);
-        const char *const sets[] = {"bodies[hub].joint.speed=null", chosen, "aero.rate=5", NULL};
+#define IN_PIECES(blade) "bodies[" blade "].fidelity=segmented-modal", "bodies[" blade "].rod.segments=6"
+#define PIECES                                                                                               \
+    IN_PIECES("blade1"), IN_PIECES("blade2"), IN_PIECES("blade3"), "aero.ramp=[0, 0]",                       \
+        "simulation.coupling.scheme=monolithic", "bodies[hub].joint.speed=1.2 rad/s"
+#define SPEED(value) "bodies[hub].joint.speed=null", "bodies[hub].joint.motion={speed: " value " rad/s}"
+#define MODAL(force)                                                                                         \
+    "bodies[beam].fidelity=modal", "gravity=[0, 0, 0]", "simulation.initial=equilibrium",                    \
+        "loads=[{body: beam, at: tip, force: [" force ", 0, 0]}]"
+#define COLUMN(force)                                                                                        \
+    "bodies=[{name: column, fidelity: rod, joint: {kind: fixed, parent: ground}, rod: {length: 1, "          \
+    "segments: 16, stiffness: [1e5, 1e5, 1e6, 10, 20, 10], mass: [1, 0, 0, 1e-3, 1e-3, 0]}}]",               \
+        "loads=[{body: column, at: tip, force: [0, 0, " force "]}]", "gravity=[0, 0, 0]", "markers=[]",      \
+        "simulation.initial=equilibrium"
+
+// On either side of a limit.
+TEST(a_limit_is_reported_where_it_is_passed) {
+    static const struct {
+        const char *scene, *set[12];
+        int steps;
+        bough_limit limit;
+        bool passes, others; // it is passed; so may others be
+        double low, high;    // of its value
+        const char *body;    // NULL: not looked at
+    } run[] = {
+        // 5 rad/s are 57 deg in a fifth of a second, 6 rad/s 69 deg
+        {turbine, {SPEED("5"), "aero.rate=5"}, 4, BOUGH_LIMIT_ROTATION, false, true, 0, 0, NULL},
+        {turbine, {SPEED("6"), "aero.rate=5"}, 4, BOUGH_LIMIT_ROTATION, true, true, 68.7, 68.8, "hub"},
+        // a tip moment rolls a cantilever up to a circle: 30 deg in each of twelve segments, 60 of six
+        {roll_up,
+         {"bodies[0].rod.segments=12", "simulation.initial=equilibrium"},
+         0,
+         BOUGH_LIMIT_TURN,
+         .others = true},
+        {roll_up,
+         {"bodies[0].rod.segments=6", "simulation.initial=equilibrium"},
+         0,
+         BOUGH_LIMIT_TURN,
+         true,
+         true,
+         59,
+         61,
+         NULL},
+        // the tip of a uniform cantilever goes aside by F L³/(3 E I), a tenth of its length at 52.5 N
+        {beam, {MODAL("50 N")}, 0, BOUGH_LIMIT_SHAPES, .others = false},
+        {beam, {MODAL("55 N")}, 0, BOUGH_LIMIT_SHAPES, true, false, 0.1046, 0.1049, "beam"},
+        // the hub on the tower's axis, without tilt: the hanging blade stands in the tower
+        {turbine,
+         {"bodies[2].joint.placement=[move z 1.2 m]"},
+         4,
+         BOUGH_LIMIT_TOWER,
+         true,
+         false,
+         0,
+         1,
+         "blade2"},
+        // vibrations of the pieces grow under air at 10 Hz, and not at 50 Hz
+        {runup, {PIECES, "aero.rate=10"}, 30, BOUGH_LIMIT_SAMPLES, true, true, 0.3, 1, NULL},
+        {runup, {PIECES, "aero.rate=50"}, 30, BOUGH_LIMIT_SAMPLES, false, true, 0, 0, NULL},
+        // windows of four bars, whose rods all come to lie on one line at 0.75 s; a loop that stays away from
+        // such
+        // a position
+        {"apps/mechanisms/four-bar.yaml", {NULL}, 75, BOUGH_LIMIT_SINGULAR, true, false, 0, 0.01, NULL},
+        {"tests/data/scenes/closed.yaml", {NULL}, 100, BOUGH_LIMIT_SINGULAR, .others = false},
+        // Euler's load is EI π²/(4 L²) = 24.7 N
+        {pendulum, {COLUMN("-20")}, 0, BOUGH_LIMIT_START, .others = false},
+        {pendulum, {COLUMN("-40")}, 0, BOUGH_LIMIT_START, true, false, 0.1, 100, "column"},
+        // beside a turbine in steady operation, whose own start is stable
+        {operation, {"loads[0].force=[0, 0, -40]"}, 0, BOUGH_LIMIT_START, .others = false},
+        {operation, {"loads[0].force=[0, 0, -200]"}, 0, BOUGH_LIMIT_START, true, false, 0.1, 100, "column"},
+    };
+    for (size_t k = 0; k < sizeof run / sizeof *run; k++) {
         check_arena(arena);
-        bough_simulation *s = run(arena, sets, 4);
-        bough_passing first = s->validity->limit[BOUGH_LIMIT_ROTATION];
-        assert_int_equal(first.passed, speed == 6);
-        if (first.passed) check_near(first.value, 1.2 * 180 / BOUGH_PI, 1e-3, 0);
+        bough_simulation *s = run_scene(arena, run[k].scene, run[k].set, run[k].steps);
+        bough_passing first = s->validity->limit[run[k].limit];
+        print_message("%s: %g\n", bough_limit_name(run[k].limit), first.value);
+        assert_int_equal(first.passed, run[k].passes);
+        assert_true(run[k].others || passed(s) == run[k].passes << run[k].limit);
+        if (first.passed) assert_true(first.value >= run[k].low && first.value <= run[k].high);
+        if (run[k].body) assert_string_equal(s->scene->body[first.body].name, run[k].body);
     }
-}
-
-// A cantilever whose tip moment rolls it up to a circle: 60 deg in each of six segments, 30 of twelve.
-TEST(a_turned_segment_is_reported) {
-    static const char *const coarse[] = {"bodies[0].rod.segments=6", "simulation.initial=equilibrium", NULL};
-    static const char *const fine[] = {"bodies[0].rod.segments=12", "simulation.initial=equilibrium", NULL};
-    check_arena(arena);
-    bough_simulation *s = scene_build(arena, "apps/beams/roll-up.yaml", fine);
-    bough_validity_check(s);
-    assert_int_equal(passed(s), 0);
-    s = scene_build(arena, "apps/beams/roll-up.yaml", coarse);
-    bough_validity_check(s);
-    assert_int_equal(passed(s), 1 << BOUGH_LIMIT_TURN);
-    check_near(s->validity->limit[BOUGH_LIMIT_TURN].value, 60, 1, 0);
-}
-
-// The tip of a uniform cantilever goes aside by F L³/(3 E I): 50 N and 55 N are on either side of a tenth of
-// its length.
-TEST(a_modal_body_that_bends_far_is_reported) {
-    static const char *const load[] = {"loads=[{body: beam, at: tip, force: [50 N, 0, 0]}]",
-                                       "loads=[{body: beam, at: tip, force: [55 N, 0, 0]}]"};
-    for (int k = 0; k < 2; k++) {
-        const char *const sets[] = {"bodies[beam].fidelity=modal", "gravity=[0, 0, 0]",
-                                    "simulation.initial=equilibrium", load[k], NULL};
-        check_arena(arena);
-        bough_simulation *s = scene_build(arena, "tests/data/scenes/example-beam.yaml", sets);
-        bough_validity_check(s);
-        assert_int_equal(passed(s), k == 0 ? 0 : 1 << BOUGH_LIMIT_SHAPES);
-        if (k == 1) check_near(s->validity->limit[BOUGH_LIMIT_SHAPES].value, 55. * 4 / (3 * 700), 1e-3, 0);
-    }
-}
-
-// The hub on the tower's axis, without tilt: the hanging blade stands in the tower.
-TEST(a_blade_in_the_tower_is_reported) {
-    static const char *const sets[] = {"bodies[2].joint.placement=[move z 1.2 m]", NULL};
-    check_arena(arena);
-    bough_simulation *s = run(arena, sets, 4);
-    bough_passing first = s->validity->limit[BOUGH_LIMIT_TOWER];
-    assert_int_equal(passed(s), 1 << BOUGH_LIMIT_TOWER);
-    assert_string_equal(s->scene->body[first.body].name, "blade2");
-    assert_true(first.value >= 0 && first.value < 1);
 }
 
 // Each is seen before the first step; a scene without the defect passes nothing, above.
@@ -123,7 +154,7 @@ TEST(defects_of_the_model_are_reported_at_the_start) {
          "aero.wind={kind: uniform, table: {times: [0, 1.001, 1.01, 1.019], speeds: [12, 12, 40, 12]}}",
          BOUGH_LIMIT_WIND, 28,
          "hub at 1.01 s: the wind changes by 28 m/s and back between two samples of the air"},
-        {"tests/data/scenes/example-beam.yaml", "bodies[beam].rod.segments=1", BOUGH_LIMIT_MESH, 1,
+        {beam, "bodies[beam].rod.segments=1", BOUGH_LIMIT_MESH, 1,
          "beam at 0 s: a rod of one segment bends by a third too little"},
     };
     for (int i = 0; i < 4; i++) {
@@ -136,39 +167,6 @@ TEST(defects_of_the_model_are_reported_at_the_start) {
         bough_validity_describe(s, model[i].limit, text, sizeof text);
         assert_memory_equal(text, model[i].text, strlen(model[i].text));
     }
-}
-
-#define IN_PIECES(blade) "bodies[" blade "].fidelity=segmented-modal", "bodies[" blade "].rod.segments=6"
-
-// Vibrations of the pieces grow under air at 10 Hz, and not at 50 Hz.
-TEST(samples_too_seldom_for_a_modal_blade_are_reported) {
-    for (int rate = 10; rate <= 50; rate += 40) {
-        char chosen[32];
-        snprintf(chosen, sizeof chosen, "aero.rate=%d", rate);
-        const char *const sets[] = {IN_PIECES("blade1"),
-                                    IN_PIECES("blade2"),
-                                    IN_PIECES("blade3"),
-                                    chosen,
-                                    "aero.ramp=[0, 0]",
-                                    "simulation.coupling.scheme=monolithic",
-                                    "bodies[hub].joint.speed=1.2 rad/s",
-                                    NULL};
-        check_arena(arena);
-        bough_simulation *s = run_scene(arena, "apps/turbine/runup.yaml", sets, 30);
-        assert_int_equal(s->validity->limit[BOUGH_LIMIT_SAMPLES].passed, rate == 10);
-    }
-}
-
-// Windows of four bars, whose rods all come to lie on one line at 0.75 s; a loop that stays away from such a
-// position.
-TEST(singular_positions_are_reported) {
-    static const char *const sets[] = {NULL};
-    check_arena(arena);
-    bough_simulation *s = run_scene(arena, "apps/mechanisms/four-bar.yaml", sets, 75);
-    bough_passing first = s->validity->limit[BOUGH_LIMIT_SINGULAR];
-    assert_int_equal(passed(s), 1 << BOUGH_LIMIT_SINGULAR);
-    assert_true(first.time > 0.6 && first.value < 0.01);
-    assert_int_equal(passed(run_scene(arena, "tests/data/scenes/closed.yaml", sets, 100)), 0);
 }
 
 // A connecting rod of 3 mg between bodies of one ton is too light to be told from equations that depend on
@@ -211,40 +209,5 @@ TEST(costly_motions_are_reported) {
         assert_int_equal(passed(run.simulation), k == 0 ? 1 << BOUGH_LIMIT_STEPS : 0);
         assert_true(k == 1 || (cost.time > 0.005 && cost.time < 0.295 && cost.value > 1000));
         assert_true(k == 1 || cost.body == 0 || cost.body == 1);
-    }
-}
-
-// A column that stands straight under more than Euler's load starts in an unstable equilibrium; under less it
-// does not. EI π²/(4 L²) = 24.7 N.
-TEST(an_unstable_start_is_reported) {
-    static const char *const load[] = {"loads=[{body: column, at: tip, force: [0, 0, -40]}]",
-                                       "loads=[{body: column, at: tip, force: [0, 0, -20]}]"};
-    for (int k = 0; k < 2; k++) {
-        const char *sets[] = {
-            "bodies=[{name: column, fidelity: rod, joint: {kind: fixed, parent: ground}, rod: "
-            "{length: 1, segments: 16, stiffness: [1e5, 1e5, 1e6, 10, 20, 10], mass: [1, 0, "
-            "0, 1e-3, 1e-3, 0]}}]",
-            load[k],
-            "gravity=[0, 0, 0]",
-            "markers=[]",
-            "simulation.initial=equilibrium",
-            NULL};
-        check_arena(arena);
-        bough_run run;
-        check_ok(bough_run_create(arena, scene_read(arena, "apps/mechanisms/pendulum.yaml", sets), &run));
-        assert_int_equal(passed(run.simulation), k == 0 ? 1 << BOUGH_LIMIT_START : 0);
-    }
-}
-
-// So is one beside a turbine in steady operation, whose own start is stable.
-TEST(an_unstable_start_in_operation_is_reported) {
-    static const char *const load[] = {"loads[0].force=[0, 0, -200]", "loads[0].force=[0, 0, -40]"};
-    for (int k = 0; k < 2; k++) {
-        const char *sets[] = {load[k], NULL};
-        check_arena(arena);
-        bough_run run;
-        const bough_scene *scene = scene_read(arena, "tests/data/scenes/operation-beside-column.yaml", sets);
-        check_ok(bough_run_create(arena, scene, &run));
-        assert_int_equal(passed(run.simulation), k == 0 ? 1 << BOUGH_LIMIT_START : 0);
     }
 }
