@@ -54,6 +54,42 @@ static double true_error(const outcome *o, const outcome *truth, int channel, in
     return error;
 }
 
+// A run to its end.
+static void run_all(bough_arena *arena, const char *scene, const char *const *sets, bough_run *r) {
+    check_ok(bough_run_create(arena, scene_read(arena, scene, sets), r));
+    while (!bough_run_done(r)) check_ok(bough_run_step(r));
+}
+
+static bough_error_shares find_shares(bough_arena *arena, bough_run *r) {
+    bough_error_shares shares;
+    check_ok(bough_error_shares_find(arena, r->companion, NULL, &shares));
+    return shares;
+}
+
+// A run over so many steps (0: to its end) beside one whose macro steps are a part of its own: what its
+// channels (up to NULL) differ by, and the run's estimates.
+static void run_beside(bough_arena *arena, const char *scene, const char *const *sets,
+                       const char *const *truth_sets, int steps, bough_run *r, const char *const *channel,
+                       double *error, double *estimate) {
+    bough_run truth;
+    check_ok(bough_run_create(arena, scene_read(arena, scene, sets), r));
+    check_ok(bough_run_create(arena, scene_read(arena, scene, truth_sets), &truth));
+    for (int w = 0; channel[w]; w++) error[w] = 0;
+    for (int k = 0; steps > 0 ? k < steps : !bough_run_done(r); k++) {
+        check_ok(bough_run_step(r));
+        double time = r->simulation->master->time - 1e-9;
+        while (truth.simulation->master->time < time) check_ok(bough_run_step(&truth));
+        for (int w = 0; channel[w]; w++) {
+            int i = bough_channels_find(&r->channels, channel[w]);
+            estimate[w] = r->companion->error[i];
+            error[w] = fmax(error[w], fabs(bough_run_values(r)[i] - bough_run_values(&truth)[i]));
+        }
+    }
+    for (int w = 0; channel[w]; w++)
+        print_message("%s: true %.2g, estimate %.2g: %.2f\n", channel[w], error[w], estimate[w],
+                      estimate[w] / error[w]);
+}
+
 // The whole error of motion, by mesh, air, steps and coupling, for two schemes.
 TEST(the_whole_error_is_estimated) {
     const char *const truth_sets[] = {"simulation.duration=2 s",
@@ -95,12 +131,10 @@ TEST(a_companion_that_loses_the_solution_is_replaced) {
                                 "simulation.error_estimate=companion", "bodies[3-5].rod.segments=12", NULL};
     check_arena(arena);
     bough_run r;
-    bough_error_shares shares;
-    check_ok(bough_run_create(arena, scene_read(arena, "apps/turbine/land-operation.yaml", sets), &r));
-    while (!bough_run_done(&r)) check_ok(bough_run_step(&r));
+    run_all(arena, "apps/turbine/land-operation.yaml", sets, &r);
     int twist = bough_channels_find(&r.channels, "TwstDefl1");
     assert_true(bough_error_relative(r.companion, twist, r.companion->error[twist]) > 0.5);
-    check_ok(bough_error_shares_find(arena, r.companion, NULL, &shares));
+    find_shares(arena, &r);
     double relative = bough_error_relative(r.companion, twist, r.companion->error[twist]);
     print_message("TwstDefl1: %.2g of its range\n", relative);
     assert_true(relative > 2e-3 && relative < 0.15);
@@ -112,13 +146,11 @@ TEST(the_last_half_step_has_shares) {
                                 "loads[0].factor={times: [0.795, 0.7951], values: [0, 1]}", NULL};
     check_arena(arena);
     bough_run r;
-    bough_error_shares shares;
-    check_ok(bough_run_create(arena, scene_read(arena, "tests/data/scenes/small-vibration.yaml", sets), &r));
-    while (!bough_run_done(&r)) check_ok(bough_run_step(&r));
+    run_all(arena, "tests/data/scenes/small-vibration.yaml", sets, &r);
     int tip = bough_channels_find(&r.channels, "armTipX");
     double error = r.companion->error[tip];
     assert_true(error > 0);
-    check_ok(bough_error_shares_find(arena, r.companion, NULL, &shares));
+    bough_error_shares shares = find_shares(arena, &r);
     check_near(r.companion->error[tip], error, 0.5, 0);
     assert_true(shares.share[BOUGH_SHARE_TIME].largest[tip] > 0.1 * error);
 }
@@ -157,18 +189,10 @@ TEST(a_loose_tolerance_has_an_error) {
         const char *const truth_sets[] = {LONG_STEPS, "simulation.master={solver: ida, rtol: 1e-9}",
                                           "simulation.error_estimate=none", NULL};
         check_arena(arena);
-        bough_run r, truth;
-        check_ok(bough_run_create(arena, scene_read(arena, run[k].scene, sets), &r));
-        check_ok(bough_run_create(arena, scene_read(arena, run[k].scene, truth_sets), &truth));
-        int i = bough_channels_find(&r.channels, run[k].channel);
-        double error = 0;
-        while (!bough_run_done(&r)) {
-            check_ok(bough_run_step(&r));
-            check_ok(bough_run_step(&truth));
-            error = fmax(error, fabs(bough_run_values(&r)[i] - bough_run_values(&truth)[i]));
-        }
-        double estimate = r.companion->error[i];
-        print_message("%s: true %.2g, estimate %.2g\n", run[k].channel, error, estimate);
+        const char *const channel[] = {run[k].channel, NULL};
+        bough_run r;
+        double error, estimate;
+        run_beside(arena, run[k].scene, sets, truth_sets, 0, &r, channel, &error, &estimate);
         assert_true(estimate > error / 2 && estimate < 4 * error);
     }
 }
@@ -235,10 +259,8 @@ TEST(finer_steps_prove_an_error_in_time) {
     outcome *truth = run_for(scene, STEPS, truth_sets), *o = run_for(scene, STEPS, sets);
     check_arena(arena);
     bough_run r;
-    bough_error_shares shares;
-    check_ok(bough_run_create(arena, scene_read(arena, scene, sets), &r));
-    for (int k = 0; k < STEPS; k++) check_ok(bough_run_step(&r));
-    check_ok(bough_error_shares_find(arena, r.companion, NULL, &shares));
+    run_all(arena, scene, sets, &r);
+    bough_error_shares shares = find_shares(arena, &r);
     for (int i = 0; i < 2; i++) {
         double error = true_error(o, truth, i, STEPS), proved = r.companion->error[i];
         print_message("%s: true %.3g, companion %.3g, finer steps %.3g\n", o->name[i], error, o->error[i],
@@ -267,22 +289,14 @@ TEST(finer_samples_prove_an_error_of_the_air) {
                                 "simulation.error_estimate=companion",
                                 "aero.rate=50",
                                 NULL};
-    enum { SAMPLES = 300 };
+    static const char *const channel[] = {"TwstDefl3", NULL};
     check_arena(arena);
-    bough_run r, truth;
-    bough_error_shares shares;
+    bough_run r;
     char warning[BOUGH_ERROR_WARNING];
-    check_ok(bough_run_create(arena, scene_read(arena, scene, sets), &r));
-    check_ok(bough_run_create(arena, scene_read(arena, scene, truth_sets), &truth));
-    int twist = bough_channels_find(&r.channels, "TwstDefl3");
-    double error = 0;
-    for (int k = 1; k <= SAMPLES; k++) {
-        check_ok(bough_run_step(&r));
-        while (truth.simulation->master->time < 0.02 * k - 1e-9) check_ok(bough_run_step(&truth));
-        error = fmax(error, fabs(bough_run_values(&r)[twist] - bough_run_values(&truth)[twist]));
-    }
-    check_ok(bough_error_shares_find(arena, r.companion, NULL, &shares));
-    double air = shares.share[BOUGH_SHARE_AIR].largest[twist];
+    double error, estimate;
+    run_beside(arena, scene, sets, truth_sets, 0, &r, channel, &error, &estimate);
+    bough_error_shares shares = find_shares(arena, &r);
+    double air = shares.share[BOUGH_SHARE_AIR].largest[bough_channels_find(&r.channels, channel[0])];
     print_message("TwstDefl3: by the air %.2g deg, estimate %.2g\n", error, air);
     assert_true(air > error / 3 && air < 3 * error);
     check_ok(bough_error_judge(r.companion, &shares, 0.05, warning));
@@ -297,10 +311,8 @@ TEST(a_proof_bounds_the_other_parts) {
                                        NULL};
     check_arena(arena);
     bough_run r;
-    bough_error_shares shares;
-    check_ok(bough_run_create(arena, scene_read(arena, "apps/turbine/land.yaml", sets), &r));
-    while (!bough_master_done(r.simulation->master)) check_ok(bough_run_step(&r));
-    check_ok(bough_error_shares_find(arena, r.companion, NULL, &shares));
+    run_all(arena, "apps/turbine/land.yaml", sets, &r);
+    bough_error_shares shares = find_shares(arena, &r);
     int twist = bough_channels_find(&r.channels, "TwstDefl1");
     double sum = 0, whole = r.companion->error[twist];
     for (int k = 0; k < BOUGH_SHARES; k++) sum += shares.share[k].largest[twist];
@@ -308,28 +320,7 @@ TEST(a_proof_bounds_the_other_parts) {
     assert_true(sum > 0.5 * whole && sum < 1.5 * whole);
 }
 
-// Largest differences in channels over steps of 40 ms of land-operation.yaml between a run and one in macro
-// steps of a quarter with four times the samples of the air, and what the run estimates.
-static void compare_operation(const char *const *sets, const char *const *truth_sets, int steps, int n,
-                              const char *const *channel, double *error, double *estimate) {
-    static const char scene[] = "apps/turbine/land-operation.yaml";
-    check_arena(arena);
-    bough_run r, truth;
-    check_ok(bough_run_create(arena, scene_read(arena, scene, sets), &r));
-    check_ok(bough_run_create(arena, scene_read(arena, scene, truth_sets), &truth));
-    for (int k = 1; k <= steps; k++) {
-        check_ok(bough_run_step(&r));
-        while (truth.simulation->master->time < 0.04 * k - 1e-9) check_ok(bough_run_step(&truth));
-        for (int w = 0; w < n; w++) {
-            int i = bough_channels_find(&r.channels, channel[w]);
-            estimate[w] = r.companion->error[i];
-            error[w] = fmax(error[w], fabs(bough_run_values(&r)[i] - bough_run_values(&truth)[i]));
-        }
-    }
-    for (int w = 0; w < n; w++)
-        print_message("%s: true %.2g, estimate %.2g: %.2f\n", channel[w], error[w], estimate[w],
-                      estimate[w] / error[w]);
-}
+static const char operation[] = "apps/turbine/land-operation.yaml";
 
 #define OPERATION "simulation.output.from=0", "simulation.duration=3.2 s"
 #define FOUR_TIMES "simulation.macro_step=10 ms", "aero.rate=100"
@@ -340,9 +331,11 @@ static void compare_operation(const char *const *sets, const char *const *truth_
 TEST(samples_that_resolve_no_vibration_err_by_the_whole_difference) {
     const char *const truth_sets[] = {OPERATION, OVERSPEED, FOUR_TIMES, NULL};
     const char *const sets[] = {OPERATION, OVERSPEED, "simulation.error_estimate=companion", NULL};
-    static const char *const channel[] = {"GenSpeed", "RtAeroPwr", "RtAeroMxh", "RotPwr", "blade2Trq"};
-    double error[5] = {0}, estimate[5];
-    compare_operation(sets, truth_sets, 80, 5, channel, error, estimate);
+    static const char *const channel[] = {"GenSpeed", "RtAeroPwr", "RtAeroMxh", "RotPwr", "blade2Trq", NULL};
+    double error[5], estimate[5];
+    bough_run r;
+    check_arena(arena);
+    run_beside(arena, operation, sets, truth_sets, 80, &r, channel, error, estimate);
     for (int w = 0; w < 5; w++) assert_true(estimate[w] > error[w] / 3 && estimate[w] < 4 * error[w]);
 }
 
@@ -350,9 +343,11 @@ TEST(samples_that_resolve_no_vibration_err_by_the_whole_difference) {
 TEST(samples_of_the_start_have_an_error) {
     const char *const truth_sets[] = {OPERATION, FOUR_TIMES, NULL};
     const char *const sets[] = {OPERATION, "simulation.error_estimate=companion", NULL};
-    static const char *const channel[] = {"RtVAvgxh", "RtVAvgyh", "RtVAvgzh", "RtTSR"};
-    double error[4] = {0}, estimate[4];
-    compare_operation(sets, truth_sets, 10, 4, channel, error, estimate);
+    static const char *const channel[] = {"RtVAvgxh", "RtVAvgyh", "RtVAvgzh", "RtTSR", NULL};
+    double error[4], estimate[4];
+    bough_run r;
+    check_arena(arena);
+    run_beside(arena, operation, sets, truth_sets, 10, &r, channel, error, estimate);
     for (int w = 0; w < 4; w++) assert_true(estimate[w] > 0.8 * error[w] && estimate[w] < 3 * error[w]);
 }
 
@@ -366,9 +361,8 @@ TEST(samples_of_the_start_have_an_error) {
 // Ten segments of a blade under air at 25 Hz flutter in an overspeed, sixteen at 50 Hz do not. Solutions that
 // have either as in the run say what it errs by.
 TEST(a_companion_whose_blades_flutter_is_replaced) {
-    static const char scene[] = "apps/turbine/land-operation.yaml";
     static const char solver[] = "simulation.master={solver: rosenbrock, step: 10 ms, rtol: 3e-4}";
-    static const char *const watched[] = {"RootMyb2", "RootMxb1", "RootFyb1", "RtAeroMxh"};
+    static const char *const watched[] = {"RootMyb2", "RootMxb1", "RootFyb1", "RtAeroMxh", NULL};
     const char *const truth_sets[] = {
         SLOW_PITCH,      solver, "bodies[3-5].rod.segments=32", "simulation.macro_step=10 ms",
         "aero.rate=100", NULL};
@@ -380,26 +374,14 @@ TEST(a_companion_whose_blades_flutter_is_replaced) {
                                 "aero.rate=50",
                                 NULL};
     check_arena(arena);
-    bough_run r, truth;
-    bough_error_shares shares;
-    double error[4] = {0}, before[4];
-    check_ok(bough_run_create(arena, scene_read(arena, scene, sets), &r));
-    check_ok(bough_run_create(arena, scene_read(arena, scene, truth_sets), &truth));
-    for (int k = 1; !bough_run_done(&r); k++) {
-        check_ok(bough_run_step(&r));
-        while (truth.simulation->master->time < 0.02 * k - 1e-9) check_ok(bough_run_step(&truth));
-        for (int w = 0; w < 4; w++) {
-            int i = bough_channels_find(&r.channels, watched[w]);
-            before[w] = r.companion->error[i];
-            error[w] = fmax(error[w], fabs(bough_run_values(&r)[i] - bough_run_values(&truth)[i]));
-        }
-    }
+    bough_run r;
+    double error[4], before[4];
+    run_beside(arena, operation, sets, truth_sets, 0, &r, watched, error, before);
     assert_true(r.companion->flutters);
-    check_ok(bough_error_shares_find(arena, r.companion, NULL, &shares));
+    find_shares(arena, &r);
     for (int w = 0; w < 4; w++) {
         double estimate = r.companion->error[bough_channels_find(&r.channels, watched[w])];
-        print_message("%s: true %.2g, companion %.2g, replaced %.2g\n", watched[w], error[w], before[w],
-                      estimate);
+        print_message("%s: replaced %.2g\n", watched[w], estimate);
         assert_true(estimate > 0.8 * error[w] && estimate < 10 * error[w] && estimate < 0.5 * before[w]);
     }
 }
@@ -420,8 +402,7 @@ TEST(a_proof_of_too_many_steps_is_none) {
     check_arena(arena);
     bough_run r;
     bough_error_shares shares;
-    check_ok(bough_run_create(arena, scene_read(arena, "apps/mechanisms/pendulum.yaml", sets), &r));
-    while (!bough_run_done(&r)) check_ok(bough_run_step(&r));
+    run_all(arena, "apps/mechanisms/pendulum.yaml", sets, &r);
     asked = 0;
     check_ok(bough_error_shares_find(arena, r.companion, count_and_go_on, &shares));
     print_message("%d macro steps\n", asked);

@@ -14,6 +14,24 @@ static bough_equilibrium_work equilibrium_of(bough_simulation *s) {
     return work;
 }
 
+// Of the loads at the start: why there is none, and the steps to one that may be unstable.
+static bough_status seek(bough_simulation *s) {
+    bough_equilibrium_work work;
+    return bough_simulation_equilibrium(s, s->master->assembly, 0, 0, &work);
+}
+
+static int steps_to_any(bough_simulation *s) {
+    bough_equilibrium_work work;
+    check_ok(bough_simulation_equilibrium(s, s->master->assembly, 0, BOUGH_EQUILIBRIUM_UNSTABLE, &work));
+    return work.steps;
+}
+
+static bough_growth growth_of(bough_simulation *s) {
+    bough_growth growth;
+    check_ok(bough_simulation_growth(s, s->master->assembly, 0, false, &growth));
+    return growth;
+}
+
 static double joint_angle(const bough_simulation *s, int body) {
     int coordinate, speed;
     assert_true(bough_tree_joint_rows(s->tree, body, &coordinate, &speed));
@@ -206,8 +224,7 @@ TEST(driven_free_rotor_has_none) {
     const char *sets[] = {"bodies[2].joint.speed=0", "aero.ramp=[0, 0]", NULL};
     check_arena(arena);
     bough_simulation *s = scene_build(arena, runup, sets);
-    bough_equilibrium_work work;
-    bough_status status = bough_simulation_equilibrium(s, s->master->assembly, 0, 0, &work);
+    bough_status status = seek(s);
     check_fails(status, BOUGH_FAILED, "no equilibrium");
     assert_non_null(strstr(status.message, "a spring, a speed or a motion"));
 }
@@ -221,8 +238,7 @@ TEST(wheel_on_a_pad_has_none) {
         "loads=[{joint: wheel, torque: 1000}]", "markers=[]", NULL};
     check_arena(arena);
     bough_simulation *s = scene_build(arena, "apps/mechanisms/pendulum.yaml", sets);
-    bough_equilibrium_work work;
-    bough_status status = bough_simulation_equilibrium(s, s->master->assembly, 0, 0, &work);
+    bough_status status = seek(s);
     check_fails(status, BOUGH_FAILED, "no equilibrium");
     assert_null(strstr(status.message, "nothing but loads"));
 }
@@ -240,10 +256,9 @@ TEST(chain_hangs_in_a_catenary) {
         snprintf(set, sizeof set, "bodies[1].rod.stiffness=[1.2e9, 1.2e9, 3.2e9, %s, %s, %s]", b, b, b);
         check_arena(arena);
         bough_simulation *s = scene_build(arena, "tests/data/scenes/mooring.yaml", sets);
-        bough_equilibrium_work work;
-        check_ok(bough_simulation_equilibrium(s, s->master->assembly, 0, BOUGH_EQUILIBRIUM_UNSTABLE, &work));
+        int steps = steps_to_any(s);
         bough_channels list = scene_channels(arena, s);
-        printf("EI %s N m2: %d steps\n", b, work.steps);
+        printf("EI %s N m2: %d steps\n", b, steps);
         check_near(scene_channel(s, &list, "lineTipX"), x, 0, 1e-4 * length);
         check_near(scene_channel(s, &list, "lineTipZ"), z, 0, 1e-4 * length);
     }
@@ -256,10 +271,8 @@ TEST(twist_of_long_segments_is_not_called_unstable) {
     for (int k = 0; k < 2; k++) {
         check_arena(arena);
         bough_simulation *s = scene_build(arena, "tests/data/scenes/mooring.yaml", sets);
-        bough_equilibrium_work work;
-        bough_growth growth;
-        check_ok(bough_simulation_equilibrium(s, s->master->assembly, 0, 0, &work));
-        check_ok(bough_simulation_growth(s, s->master->assembly, 0, false, &growth));
+        check_ok(seek(s));
+        bough_growth growth = growth_of(s);
         check_near(growth.rate, 0, 0, 0);
         assert_true((growth.twisting != NULL) == (k == 0));
         assert_true(k == 1 || (growth.segments > 60 && growth.segments < 100));
@@ -293,12 +306,11 @@ TEST(cable_on_a_spherical_joint_hangs_under_forces) {
             "loads=[{body: line, at: tip, force: [6, 3, -2]}, {body: line, at: 4.3 m, force: [-2, 5, 1]}]",
             "gravity=[0, 0, -10]", "markers=[]", NULL};
         bough_simulation *s = scene_build(arena, "apps/mechanisms/pendulum.yaml", sets);
-        bough_equilibrium_work work;
-        check_ok(bough_simulation_equilibrium(s, s->master->assembly, 0, BOUGH_EQUILIBRIUM_UNSTABLE, &work));
+        int steps = steps_to_any(s);
         bough_channels list = scene_channels(arena, s);
         const bough_vec3 found = {scene_channel(s, &list, "lineTipX"), scene_channel(s, &list, "lineTipY"),
                                   scene_channel(s, &list, "lineTipZ")};
-        printf("EI %g N m2: %d steps, tip off by %.2g m\n", b, work.steps, bough_norm(bough_sub(found, x)));
+        printf("EI %g N m2: %d steps, tip off by %.2g m\n", b, steps, bough_norm(bough_sub(found, x)));
         check_near(bough_norm(bough_sub(found, x)), 0, 0, 0.03 + 0.3 * sqrt(b / 10));
     }
 }
@@ -309,11 +321,8 @@ TEST(heavy_bodies_fall_from_a_light_rod) {
     static const char *const none[] = {NULL};
     check_arena(arena);
     bough_simulation *s = scene_build(arena, "tests/data/scenes/slender-tree.yaml", none);
-    bough_equilibrium_work work;
-    bough_growth growth;
-    check_ok(bough_simulation_equilibrium(s, s->master->assembly, 0, 0, &work));
-    printf("%d steps\n", work.steps);
-    check_ok(bough_simulation_growth(s, s->master->assembly, 0, false, &growth));
+    printf("%d steps\n", equilibrium_of(s).steps);
+    bough_growth growth = growth_of(s);
     check_near(growth.rate, 0, 0, 0);
 }
 
@@ -326,8 +335,7 @@ TEST(segments_too_long_for_a_bend_are_named) {
         "loads=[{body: whip, at: tip, force: [0.1, 0, -1]}]", "gravity=[0, 0, 0]", "markers=[]", NULL};
     check_arena(arena);
     bough_simulation *s = scene_build(arena, "apps/mechanisms/pendulum.yaml", sets);
-    bough_equilibrium_work work;
-    bough_status status = bough_simulation_equilibrium(s, s->master->assembly, 0, 0, &work);
+    bough_status status = seek(s);
     check_fails(status, BOUGH_FAILED, "whip: no equilibrium found: its segments are too long for its load");
     int times = 0;
     const char *with = strstr(status.message, "with ");
@@ -337,7 +345,7 @@ TEST(segments_too_long_for_a_bend_are_named) {
     snprintf(set, sizeof set, "bodies[0].rod.segments=%d", 4 * times);
     const char *finer[] = {sets[0], sets[1], sets[2], sets[3], set, NULL};
     s = scene_build(arena, "apps/mechanisms/pendulum.yaml", finer);
-    check_ok(bough_simulation_equilibrium(s, s->master->assembly, 0, 0, &work));
+    check_ok(seek(s));
 }
 
 // A bar on a table between pads, which turn it by 16 degrees; its mass times `mass`.
@@ -372,11 +380,10 @@ TEST(fine_mesh_on_pads_is_found) {
 
 // Eigenvalues of rounding about points far below its frequencies of 50 kHz are no growth.
 TEST(light_bar_on_pads_is_stable) {
-    bough_growth growth;
     check_arena(arena);
     bough_simulation *s = bar_on_pads(arena, 8, 1e-8);
     equilibrium_of(s);
-    check_ok(bough_simulation_growth(s, s->master->assembly, 0, false, &growth));
+    bough_growth growth = growth_of(s);
     check_near(growth.rate, 0, 0, 0);
     check_near(growth.oscillation, 0, 0, 0);
 }
@@ -386,11 +393,10 @@ TEST(standing_pendulum_is_unstable) {
     static const char *const angle[] = {"bodies[0].joint.angle=90 deg", "bodies[0].joint.angle=-90 deg"};
     for (int k = 0; k < 2; k++) {
         const char *sets[] = {angle[k], NULL};
-        bough_growth growth;
         check_arena(arena);
         bough_simulation *s = scene_build(arena, "apps/mechanisms/pendulum.yaml", sets);
         equilibrium_of(s);
-        check_ok(bough_simulation_growth(s, s->master->assembly, 0, false, &growth));
+        bough_growth growth = growth_of(s);
         check_near(growth.rate, k == 0 ? sqrt(9.81) : 0, 0, 1e-6);
         check_near(growth.oscillation, 0, 0, 0);
     }
@@ -401,11 +407,10 @@ TEST(follower_force_makes_a_column_flutter) {
     static const char *const force[] = {"loads[0].force=[0, 0, -22]", "loads[0].force=[0, 0, -19]"};
     for (int k = 0; k < 2; k++) {
         const char *sets[] = {force[k], "bodies[0].rod.segments=20", NULL};
-        bough_growth growth;
         check_arena(arena);
         bough_simulation *s = scene_build(arena, "apps/beams/beck.yaml", sets);
         equilibrium_of(s);
-        check_ok(bough_simulation_growth(s, s->master->assembly, 0, false, &growth));
+        bough_growth growth = growth_of(s);
         check_near(growth.oscillation, k == 0 ? 3.05491 : 0, 5e-3, 1e-6);
         check_near(growth.rate, 0, 0, 0);
     }
@@ -438,7 +443,6 @@ TEST(shape_does_not_depend_on_scale) {
         check_arena(arena);
         double length = unit[k][0];
         bough_simulation *s = hinged_rod(arena, length, unit[k][1], unit[k][2]);
-        bough_growth growth;
         int steps = equilibrium_of(s).steps;
         printf("%g m: %d steps\n", length, steps);
         if (k == 0) first_steps = steps;
@@ -449,7 +453,7 @@ TEST(shape_does_not_depend_on_scale) {
         if (k == 0) first[1] = z;
         check_near(x, first[0], 0, 1e-7);
         check_near(z, first[1], 0, 1e-7);
-        check_ok(bough_simulation_growth(s, s->master->assembly, 0, false, &growth));
+        bough_growth growth = growth_of(s);
         check_near(growth.rate, 0, 0, 0);
     }
 }
@@ -500,9 +504,8 @@ TEST(growth_does_not_depend_on_scale) {
             bough_arena_print(arena, "loads=[{body: column, at: tip, force: [0, 0, %g]}]", -30 * l),
             "gravity=[0, 0, 0]", "markers=[]", NULL};
         bough_simulation *s = scene_build(arena, "apps/mechanisms/pendulum.yaml", sets);
-        bough_growth growth;
         equilibrium_of(s);
-        check_ok(bough_simulation_growth(s, s->master->assembly, 0, false, &growth));
+        bough_growth growth = growth_of(s);
         printf("%g m: growth %g 1/s\n", l, growth.rate);
         if (k == 0) first = growth.rate;
         assert_true(first > 5);
@@ -566,8 +569,7 @@ TEST(bodies_tied_only_to_each_other_have_none) {
                 stay[k]),
             "markers=[]", NULL};
         bough_simulation *s = scene_build(arena, "apps/mechanisms/pendulum.yaml", sets);
-        bough_equilibrium_work work;
-        bough_status status = bough_simulation_equilibrium(s, s->master->assembly, 0, 0, &work);
+        bough_status status = seek(s);
         if (k == 0)
             check_fails(status, BOUGH_FAILED, "a: no equilibrium found: nothing ties it to the ground");
         if (k == 1) check_ok(status);
@@ -589,11 +591,10 @@ TEST(chain_of_rigid_links_hangs) {
     }
     check_arena(arena);
     bough_simulation *s = scene_build(arena, "tests/data/scenes/link-chain.yaml", none);
-    bough_growth growth;
     assert_in_range(equilibrium_of(s).steps, 1, 300);
     bough_channels list = scene_channels(arena, s);
     check_near(scene_channel(s, &list, "middleX"), 2, 0, 1e-6);
     check_near(scene_channel(s, &list, "middleZ"), middle, 0, 1e-6);
-    check_ok(bough_simulation_growth(s, s->master->assembly, 0, false, &growth));
+    bough_growth growth = growth_of(s);
     check_near(growth.rate, 0, 0, 0);
 }
