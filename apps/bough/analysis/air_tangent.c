@@ -98,23 +98,27 @@ static bool meets_air(const bough_simulation *s, int member) {
     return false;
 }
 
-// One state, of the bodies or of the air; its slopes stay in the work.
+// The slopes in the work as the column of a state, of the bodies or of the air.
+static void put_column(const work *w, bool of_air, int at, bough_air_tangent *t) {
+    size_t n = (size_t)t->n, n_air = (size_t)t->n_air, column = (size_t)at;
+    if (w->mean) {
+        bough_air_mean_add(w->mean, of_air ? t->n + at : at, w->slope, t);
+        return;
+    }
+    memcpy((of_air ? t->lift : t->motion) + column * n, w->slope, n * sizeof(double));
+    memcpy((of_air ? t->lag : t->drive) + column * n_air, w->slope + n, n_air * sizeof(double));
+}
+
 static bough_status follow_state(work *w, const double *state, bool of_air, int at, double size,
                                  bough_air_tangent *t) {
-    size_t n = (size_t)t->n, n_air = (size_t)t->n_air, column = (size_t)at;
     begin_change(w, state);
     if (of_air)
         w->before[w->row[at]] += size;
     else
         w->state[at] += size;
     BOUGH_TRY(find_rates(w, state, w->rate[1], w->air_rate[1]));
-    set_column(w, size, w->slope, w->slope + n);
-    if (w->mean) {
-        bough_air_mean_add(w->mean, of_air ? t->n + at : at, w->slope, t);
-        return bough_ok();
-    }
-    memcpy((of_air ? t->lift : t->motion) + column * n, w->slope, n * sizeof(double));
-    memcpy((of_air ? t->lag : t->drive) + column * n_air, w->slope + n, n_air * sizeof(double));
+    set_column(w, size, w->slope, w->slope + t->n);
+    put_column(w, of_air, at, t);
     return bough_ok();
 }
 
@@ -143,8 +147,13 @@ typedef struct blades {
     double *place, *reach;   // (n_all); how far from it loads change
     double *size;            // (n_all) of differences
     int *nearest;            // (n_all) of the states changed at once
-    double *expected;        // (n + n_air) rates by the tangent for the changes of `check`
+    double *own;             // (n_all) slopes of a blade's rates by these, their mean over the blades
+    double *check;           // (n_part × n_all) by how much `check` changes the states
+    double *expected;        // (n + n_air) rates by the tangent for these changes
     double *other;           // (n) 1 over the scale of a member's state; 0: a blade's
+    int *number;             // (n_part) of each blade among the rotor's
+    size_t n_load;           // of a copy of a blade's loads
+    double *load[2];         // (n_part × n_load) of the state itself, of a changed one
 } blades;
 
 static bool is_of_air(const blades *b, int j) { return j >= b->n_row; }
@@ -178,20 +187,36 @@ static void set_places(blades *b) {
     }
 }
 
+static void keep_loads(const blades *b, int side) {
+    for (int k = 0; k < b->group->n; k++)
+        bough_aero_link_loads(b->w->simulation->aero, BOUGH_SNAPSHOT_SAVE, b->number[k],
+                              b->load[side] + (size_t)k * b->n_load);
+}
+
+// Takes the present loads as those of the state itself.
 static blades take_blades(bough_arena *arena, work *w, const bough_blade_group *group) {
-    int n_air = w->n_air / w->simulation->scene->turbine.n_blade, n_row = group->n_row;
+    const bough_simulation *s = w->simulation;
+    int n_air = w->n_air / s->scene->turbine.n_blade, n_row = group->n_row;
     blades b = {.w = w, .group = group, .n_row = n_row, .n_air = n_air, .n_all = n_row + n_air};
-    size_t all = (size_t)b.n_all + 1;
+    size_t all = (size_t)b.n_all + 1, parts = (size_t)group->n;
     int n = w->whole->assembly->n_state;
     double *scale = b.other = bough_arena_doubles(arena, (size_t)n);
-    bough_arena_each(arena, all, &b.place, &b.reach, &b.size);
+    bough_arena_each(arena, all, &b.place, &b.reach, &b.size, &b.own);
     b.nearest = bough_arena_take(arena, all * sizeof *b.nearest);
+    b.check = bough_arena_doubles(arena, parts * all);
     b.expected = bough_arena_doubles(arena, (size_t)(n + w->n_air) + 1);
-    b.air_row = bough_arena_take(arena, (size_t)(group->n * n_air + 1) * sizeof *b.air_row);
-    bough_air_tangent_rows(w->simulation, group, n_air, b.air_row);
+    b.air_row = bough_arena_take(arena, (parts * (size_t)n_air + 1) * sizeof *b.air_row);
+    bough_air_tangent_rows(s, group, n_air, b.air_row);
+    b.number = bough_arena_take(arena, parts * sizeof *b.number);
+    bough_air_tangent_rows(s, group, 1, b.number);
+    b.n_load = (size_t)bough_aero_link_loads_size(s->aero, b.number[0]);
+    bough_arena_each(arena, parts * b.n_load, &b.load[0], &b.load[1]);
+    keep_loads(&b, 0);
     bough_assembly_scales(w->whole->assembly, scale);
     for (int j = 0; j < b.n_all; j++)
         b.size[j] = is_of_air(&b, j) ? air_difference : difference * scale[group->row[j]];
+    for (int k = 0; k < group->n; k++)
+        for (int j = 0; j < b.n_all; j++) b.check[k * b.n_all + j] = b.size[j] * sin(1 + 7.3 * j + 3.1 * k);
     for (int i = 0; i < n; i++) b.other[i] = 1 / b.other[i];
     for (int i = 0; i < group->n * n_row; i++) b.other[group->row[i]] = 0;
     set_places(&b);
@@ -212,28 +237,19 @@ static double rate_change(const blades *b, int blade, int j) {
     return is_of_air(b, j) ? w->air_rate[1][at] - w->air_rate[0][at] : w->rate[1][at] - w->rate[0][at];
 }
 
-// By how much the check changes a state.
-static double check_size(const blades *b, int blade, int j) {
-    return b->size[j] * sin(1 + 7.3 * j + 3.1 * blade);
-}
-
-// Slopes of each blade's rates by its own state nearest to them.
-static void set_columns(const blades *b, bough_air_tangent *t) {
+// Slopes of a blade's rates by its own state nearest to them.
+static void add_own(blades *b, int blade, bough_air_tangent *t) {
     const work *w = b->w;
     for (int i = 0; i < b->n_all; i++) {
         int j = b->nearest[i];
-        double sum = 0;
-        for (int k = 0; k < b->group->n; k++) {
-            size_t column = (size_t)row_of(b, k, j), row = (size_t)row_of(b, k, i);
-            double slope = rate_change(b, k, i) / b->size[j];
-            b->expected[(is_of_air(b, i) ? (size_t)t->n : 0) + row] += check_size(b, k, j) * slope;
-            sum += slope;
-            if (w->mean) continue;
-            double *of_body = (is_of_air(b, j) ? t->lift : t->motion) + column * (size_t)t->n;
-            double *of_air = (is_of_air(b, j) ? t->lag : t->drive) + column * (size_t)t->n_air;
-            (is_of_air(b, i) ? of_air : of_body)[row] = slope;
-        }
-        if (w->mean) bough_air_mean_add_own(w->mean, i, j, sum / b->group->n, t);
+        size_t column = (size_t)row_of(b, blade, j), row = (size_t)row_of(b, blade, i);
+        double slope = rate_change(b, blade, i) / b->size[j];
+        b->expected[(is_of_air(b, i) ? (size_t)t->n : 0) + row] += b->check[blade * b->n_all + j] * slope;
+        b->own[i] += slope / b->group->n;
+        if (w->mean) continue;
+        double *of_body = (is_of_air(b, j) ? t->lift : t->motion) + column * (size_t)t->n;
+        double *of_air = (is_of_air(b, j) ? t->lag : t->drive) + column * (size_t)t->n_air;
+        (is_of_air(b, i) ? of_air : of_body)[row] = slope;
     }
 }
 
@@ -262,7 +278,24 @@ static bool moves_blades_only(const blades *b) {
     return other <= carried * blade;
 }
 
-// n states at once, or one after the other where loads at the root move what carries the blades.
+// Rates under the changed loads of one blade alone; what these move beside the blade is by its state j.
+static bough_status follow_loads(const blades *b, const double *state, int blade, int j,
+                                 bough_air_tangent *t) {
+    work *w = b->w;
+    for (int k = 0; k < b->group->n; k++)
+        bough_aero_link_loads(w->simulation->aero, BOUGH_SNAPSHOT_RESTORE, b->number[k],
+                              b->load[k == blade] + (size_t)k * b->n_load);
+    BOUGH_TRY(bough_whole_rate(w->whole, w->time, state, w->rate[1]));
+    set_column(w, b->size[j], w->slope, w->slope + t->n);
+    for (int i = 0; i < b->n_row; i++) w->slope[row_of(b, blade, i)] = 0;
+    memset(w->slope + t->n, 0, (size_t)t->n_air * sizeof(double));
+    put_column(w, is_of_air(b, j), row_of(b, blade, j), t);
+    for (int r = 0; r < t->n; r++) b->expected[r] += b->check[blade * b->n_all + j] * w->slope[r];
+    return bough_ok();
+}
+
+// n states of all blades at once, from the root outwards. Loads at the root move what carries the blades, and
+// with it the other blades: their rates are found blade by blade.
 static bough_status follow_some(blades *b, const double *state, int n, const int *some,
                                 bough_air_tangent *t) {
     work *w = b->w;
@@ -270,23 +303,21 @@ static bough_status follow_some(blades *b, const double *state, int n, const int
     for (int k = 0; k < b->group->n; k++)
         for (int i = 0; i < n; i++) change(b, k, some[i], b->size[some[i]]);
     BOUGH_TRY(find_rates(w, state, w->rate[1], w->air_rate[1]));
-    if (moves_blades_only(b)) {
-        set_nearest(b, n, some);
-        set_columns(b, t);
-        return bough_ok();
-    }
+    bool at_root = !moves_blades_only(b);
+    if (at_root) keep_loads(b, 1);
+    set_nearest(b, n, some);
+    memset(b->own, 0, (size_t)b->n_all * sizeof *b->own);
     for (int k = 0; k < b->group->n; k++) {
-        for (int i = 0; i < n; i++) {
-            int j = some[i];
-            BOUGH_TRY(follow_state(w, state, is_of_air(b, j), row_of(b, k, j), b->size[j], t));
-            for (int r = 0; r < t->n + t->n_air; r++) b->expected[r] += check_size(b, k, j) * w->slope[r];
-        }
+        if (at_root) BOUGH_TRY(follow_loads(b, state, k, some[0], t));
+        add_own(b, k, t);
     }
+    for (int i = 0; i < b->n_all && w->mean; i++)
+        bough_air_mean_add_own(w->mean, i, b->nearest[i], b->own[i], t);
     return bough_ok();
 }
 
-// States of one kind along the blade, n of them from `first` on, `stride` apart: those near the root by
-// themselves, of the others as many at once as are apart.
+// States of one kind along the blade, n of them from `first` on, `stride` apart: as many at once as are
+// apart.
 static bough_status follow_along(bough_arena *arena, blades *b, const double *state, int first, int stride,
                                  int n, bough_air_tangent *t) {
     bool *done = bough_arena_take(arena, (size_t)n * sizeof *done);
@@ -296,12 +327,10 @@ static bough_status follow_along(bough_arena *arena, blades *b, const double *st
         double end = -HUGE_VAL;
         for (int i = 0; i < n; i++) {
             int j = first + i * stride;
-            bool at_root = b->place[j] - b->reach[j] < b->place[0];
             if (done[i] || b->place[j] - b->reach[j] < end) continue;
             some[count++] = j;
             done[i] = true;
             left--;
-            if (at_root) break;
             end = b->place[j] + b->reach[j];
         }
         BOUGH_TRY(follow_some(b, state, count, some, t));
@@ -328,7 +357,7 @@ static bough_status check(const blades *b, const double *state, bool *good) {
     const double *air = b->expected + w->whole->assembly->n_state;
     begin_change(w, state);
     for (int k = 0; k < b->group->n; k++)
-        for (int j = 0; j < b->n_all; j++) change(b, k, j, check_size(b, k, j));
+        for (int j = 0; j < b->n_all; j++) change(b, k, j, b->check[k * b->n_all + j]);
     BOUGH_TRY(find_rates(w, state, w->rate[1], w->air_rate[1]));
     for (int k = 0; k < b->group->n; k++) {
         for (int j = 0; j < b->n_all; j++) {

@@ -24,6 +24,10 @@ void bough_aero_link_continue(bough_aero_link *link, double t);
 // Saves or restores dynamic inflow and stall: memory (bough_rotor_memory_size).
 void bough_aero_link_memory(bough_aero_link *link, bough_snapshot_move move, double *memory);
 
+// Saves or restores the present loads on a blade: memory (bough_aero_link_loads_size).
+void bough_aero_link_loads(bough_aero_link *link, bough_snapshot_move move, int blade, double *memory);
+int bough_aero_link_loads_size(bough_aero_link *link, int blade);
+
 const bough_rotor *bough_aero_link_rotor(const bough_aero_link *link);
 
 // bough_aero_signal_missed of a blade.
