@@ -1,4 +1,5 @@
 // Blocks in a list, each behind an aligned header; destroyed newest first.
+#define _DEFAULT_SOURCE // madvise
 #include "core/base/arena.h"
 
 #include <setjmp.h>
@@ -6,8 +7,9 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/mman.h>
 
-enum { ALIGNMENT = 64 };
+enum { ALIGNMENT = 64, LARGE = 1 << 18, PAGE = 1 << 16 }; // [bytes]; the last: a multiple of what pages have
 
 typedef struct block {
     struct block *next;
@@ -92,6 +94,14 @@ bough_status bough_arena_use(bough_status (*work)(bough_arena *arena, void *self
 
 // -- blocks ---------------------------------------------------------------------------------------
 
+// Fresh memory of a large matrix on large pages: fewer faults and look-ups of addresses.
+static void use_large_pages(void *start, size_t size) {
+#ifdef MADV_HUGEPAGE
+    size_t before = (PAGE - (size_t)start % PAGE) % PAGE;
+    if (size >= LARGE) (void)madvise((char *)start + before, (size - before) / PAGE * PAGE, MADV_HUGEPAGE);
+#endif
+}
+
 // A block of `size` payload bytes behind an aligned header; NULL when there is none.
 static block *push(bough_arena *arena, size_t size) {
     // no overflow in the rounding to whole lines
@@ -100,6 +110,7 @@ static block *push(bough_arena *arena, size_t size) {
     // the system's fresh pages are zero already and cost nothing until they are used
     void *start = calloc(1, whole);
     if (!start) return NULL;
+    use_large_pages(start, whole);
     size_t before = (ALIGNMENT - (size_t)start % ALIGNMENT) % ALIGNMENT;
     block *b = (block *)((char *)start + before);
     b->start = start;
