@@ -35,9 +35,8 @@ typedef struct memory {
 struct bough_control_link {
     bough_simulation *simulation;
     const bough_scene_control *control;
-    bough_discon *discon;                // NULL: none
-    bough_fmu_instance *fmu;             // NULL: none
-    bough_fmu_values measured, demanded; // of the FMU
+    bough_discon *discon;    // NULL: none
+    bough_fmu_instance *fmu; // NULL: none
     int load, n_blade;
     bool steers;                    // the blades are pitched
     event_state event[MOST_EVENTS]; // (control->n_event)
@@ -335,26 +334,28 @@ static void take_inputs(const bough_simulation *s, bough_discon_demand *demand) 
 // A communication step over the sample, whose end the demands are for.
 static bough_status step_fmu(bough_control_link *l, const bough_discon_sensed *x,
                              bough_discon_demand *demand) {
-    double all[BOUGH_SCENE_SENSED + BOUGH_MOST_BLADES] = {[BOUGH_SENSED_TIME] = x->time,
-                                                          [BOUGH_SENSED_GENERATOR_SPEED] = x->generator_speed,
-                                                          [BOUGH_SENSED_ROTOR_SPEED] = x->rotor_speed,
-                                                          [BOUGH_SENSED_TORQUE] = x->torque,
-                                                          [BOUGH_SENSED_POWER] = x->electrical_power,
-                                                          [BOUGH_SENSED_WIND] = x->wind,
-                                                          [BOUGH_SENSED_AZIMUTH] = x->azimuth,
-                                                          [BOUGH_SENSED_YAW_ERROR] = x->yaw_error};
+    const bough_scene_control_fmu *fmu = &l->control->fmu;
+    double all[BOUGH_FMU_VALUES] = {[BOUGH_SENSED_TIME] = x->time,
+                                    [BOUGH_SENSED_GENERATOR_SPEED] = x->generator_speed,
+                                    [BOUGH_SENSED_ROTOR_SPEED] = x->rotor_speed,
+                                    [BOUGH_SENSED_TORQUE] = x->torque,
+                                    [BOUGH_SENSED_POWER] = x->electrical_power,
+                                    [BOUGH_SENSED_WIND] = x->wind,
+                                    [BOUGH_SENSED_AZIMUTH] = x->azimuth,
+                                    [BOUGH_SENSED_YAW_ERROR] = x->yaw_error};
     memcpy(all + BOUGH_SCENE_SENSED, x->pitch, sizeof x->pitch);
     if (l->fmu->started) {
-        BOUGH_TRY(bough_fmu_set(l->fmu, x->time, &l->measured, all));
+        BOUGH_TRY(bough_fmu_set(l->fmu, x->time, &fmu->inputs.values, all));
     } else {
-        BOUGH_TRY(bough_fmu_initialise(l->fmu, x->time, l->simulation->master->duration, &l->measured, all));
+        BOUGH_TRY(
+            bough_fmu_initialise(l->fmu, x->time, l->simulation->master->duration, &fmu->inputs.values, all));
     }
     BOUGH_TRY(bough_fmu_step(l->fmu, x->time, x->step));
     all[BOUGH_SENSED_TORQUE] = 0; // unless it is an output
-    BOUGH_TRY(bough_fmu_get(l->fmu, x->time + x->step, &l->demanded, all));
+    BOUGH_TRY(bough_fmu_get(l->fmu, x->time + x->step, &fmu->outputs.values, all));
     demand->torque = all[BOUGH_SENSED_TORQUE];
     // one output of a pitch is for all blades; without one they keep theirs
-    int n = l->control->fmu.outputs.n_pitch;
+    int n = fmu->outputs.n_pitch;
     for (int b = 0; b < x->n_blade; b++)
         demand->pitch[b] = n == 0 ? x->pitch[b] : all[BOUGH_SCENE_SENSED + (n == 1 ? 0 : b)];
     return bough_ok();
@@ -446,8 +447,6 @@ bough_status bough_control_link_build(bough_arena *arena, bough_simulation *simu
     }
     if (l->control->kind == BOUGH_SCENE_CONTROL_FMU) {
         l->fmu = bough_arena_take(arena, sizeof *l->fmu);
-        bough_fmu_list(BOUGH_FMU_VALUES, l->control->fmu.inputs.variable, &l->measured);
-        bough_fmu_list(BOUGH_FMU_VALUES, l->control->fmu.outputs.variable, &l->demanded);
         return bough_fmu_open(arena, &l->control->fmu.model, "control", l->fmu);
     }
     bough_status status =

@@ -1,7 +1,5 @@
 #include "apps/bough/model/fmu_instance.h"
 
-#include "apps/bough/scene/fmu_archive.h"
-
 #include <dlfcn.h>
 #include <limits.h>
 #include <math.h>
@@ -64,12 +62,9 @@ static bough_status open_library(bough_fmu_instance *x, bough_arena *arena) {
     const bough_fmu_description *d = &x->model->description;
     char path[PATH_MAX];
     const char *missing = NULL;
-    x->folder = x->model->folder;
-    if (bough_fmu_is_archive(x->model->folder)) {
-        BOUGH_TRY(bough_fmu_archive_unpack(arena, x->model->folder, &x->folder));
-    }
-    snprintf(path, sizeof path, "%s%s/binaries/" PLATFORM "/%s.so", strchr(x->folder, '/') ? "" : "./",
-             x->folder, d->identifier);
+    const char *folder = x->model->unpacked;
+    snprintf(path, sizeof path, "%s%s/binaries/" PLATFORM "/%s.so", strchr(folder, '/') ? "" : "./", folder,
+             d->identifier);
     x->library = dlopen(path, RTLD_NOW | RTLD_LOCAL);
     if (!x->library) return unusable(x, "cannot be loaded:", dlerror());
     bough_arena_on_destroy(arena, let_go, x);
@@ -92,11 +87,11 @@ static bough_status open_library(bough_fmu_instance *x, bough_arena *arena) {
 static bough_status instantiate(bough_fmu_instance *x) {
     const bough_scene_fmu_model *fmu = x->model;
     char here[PATH_MAX] = "", resources[2 * PATH_MAX + 16];
-    bool absolute = x->folder[0] == '/';
+    bool absolute = fmu->unpacked[0] == '/';
     if (!absolute && !getcwd(here, sizeof here)) {
         return bough_fail(BOUGH_IO, "the name of the current folder is not known");
     }
-    snprintf(resources, sizeof resources, "%s%s%s/resources/", here, absolute ? "" : "/", x->folder);
+    snprintf(resources, sizeof resources, "%s%s%s/resources/", here, absolute ? "" : "/", fmu->unpacked);
     x->instance = x->instantiate(x->name, fmu->description.token, resources, false, true, false, false, NULL,
                                  0, x, hear, NULL);
     if (!x->instance) return answer(x, "fmi3InstantiateCoSimulation", 0, FMI3_ERROR);
@@ -114,15 +109,7 @@ bough_status bough_fmu_open(bough_arena *arena, const bough_scene_fmu_model *mod
     return instantiate(x);
 }
 
-void bough_fmu_list(int n, const bough_fmu_variable *const *variable, bough_fmu_values *v) {
-    for (int k = 0; k < n; k++) {
-        if (!variable[k]) continue;
-        v->quantity[v->n] = k;
-        v->reference[v->n++] = variable[k]->reference;
-    }
-}
-
-bough_status bough_fmu_initialise(bough_fmu_instance *x, double t, double end, bough_fmu_values *inputs,
+bough_status bough_fmu_initialise(bough_fmu_instance *x, double t, double end, const bough_fmu_values *inputs,
                                   const double *all) {
     BOUGH_TRY(answer(x, "fmi3EnterInitializationMode", t, x->enter(x->instance, false, 0, t, true, end)));
     BOUGH_TRY(bough_fmu_set(x, t, inputs, all));
@@ -131,11 +118,12 @@ bough_status bough_fmu_initialise(bough_fmu_instance *x, double t, double end, b
     return bough_ok();
 }
 
-bough_status bough_fmu_set(bough_fmu_instance *x, double t, bough_fmu_values *v, const double *all) {
+bough_status bough_fmu_set(bough_fmu_instance *x, double t, const bough_fmu_values *v, const double *all) {
     size_t n = (size_t)v->n;
     if (n == 0) return bough_ok();
-    for (size_t k = 0; k < n; k++) v->value[k] = all[v->quantity[k]];
-    return answer(x, "fmi3SetFloat64", t, x->set(x->instance, v->reference, n, v->value, n));
+    double value[BOUGH_FMU_VALUES];
+    for (size_t k = 0; k < n; k++) value[k] = all[v->quantity[k]];
+    return answer(x, "fmi3SetFloat64", t, x->set(x->instance, v->reference, n, value, n));
 }
 
 static const char *name_of(const bough_fmu_description *d, fmi3_reference reference) {
@@ -144,13 +132,14 @@ static const char *name_of(const bough_fmu_description *d, fmi3_reference refere
     return d->variable[k].name;
 }
 
-bough_status bough_fmu_get(bough_fmu_instance *x, double t, bough_fmu_values *v, double *all) {
+bough_status bough_fmu_get(bough_fmu_instance *x, double t, const bough_fmu_values *v, double *all) {
     size_t n = (size_t)v->n;
     if (n == 0) return bough_ok();
-    BOUGH_TRY(answer(x, "fmi3GetFloat64", t, x->get(x->instance, v->reference, n, v->value, n)));
+    double value[BOUGH_FMU_VALUES];
+    BOUGH_TRY(answer(x, "fmi3GetFloat64", t, x->get(x->instance, v->reference, n, value, n)));
     for (size_t k = 0; k < n; k++) {
-        all[v->quantity[k]] = v->value[k];
-        if (isfinite(v->value[k])) continue;
+        all[v->quantity[k]] = value[k];
+        if (isfinite(value[k])) continue;
         return bough_fail(BOUGH_FAILED, "%s: output '%.60s' of the FMU at %.6g s: not a finite number",
                           x->name, name_of(&x->model->description, v->reference[k]), t);
     }

@@ -5,20 +5,11 @@
 #include "apps/bough/model/fmi3.h"
 #include "apps/bough/scene/scene.h"
 
-enum { BOUGH_FMU_MESSAGE = 200, BOUGH_FMU_VALUES = BOUGH_SCENE_SENSED + BOUGH_MOST_BLADES };
-
-// Variables of an FMU for some of the quantities that a part of the scene has.
-typedef struct bough_fmu_values {
-    int n;
-    int quantity[BOUGH_FMU_VALUES];             // (n) which one each variable is
-    fmi3_reference reference[BOUGH_FMU_VALUES]; // (n)
-    double value[BOUGH_FMU_VALUES];             // (n)
-} bough_fmu_values;
+enum { BOUGH_FMU_MESSAGE = 200 };
 
 typedef struct bough_fmu_instance {
     const char *name; // of the part of the scene
     const bough_scene_fmu_model *model;
-    const char *folder; // where it is unpacked
     void *library;
     fmi3_instance instance;
     bool started;
@@ -41,17 +32,15 @@ typedef struct bough_fmu_instance {
 bough_status bough_fmu_open(bough_arena *arena, const bough_scene_fmu_model *model, const char *name,
                             bough_fmu_instance *x);
 
-// Lists the variables of n quantities; NULL: the FMU has none for it.
-void bough_fmu_list(int n, const bough_fmu_variable *const *variable, bough_fmu_values *values);
-
 // Begins at t [s] with these inputs of all quantities; `end` of the run [s].
-bough_status bough_fmu_initialise(bough_fmu_instance *x, double t, double end, bough_fmu_values *inputs,
+bough_status bough_fmu_initialise(bough_fmu_instance *x, double t, double end, const bough_fmu_values *inputs,
                                   const double *all);
 
-bough_status bough_fmu_set(bough_fmu_instance *x, double t, bough_fmu_values *inputs, const double *all);
+bough_status bough_fmu_set(bough_fmu_instance *x, double t, const bough_fmu_values *inputs,
+                           const double *all);
 
 // Writes those of `all` that the FMU has. BOUGH_FAILED also where a value is not finite.
-bough_status bough_fmu_get(bough_fmu_instance *x, double t, bough_fmu_values *outputs, double *all);
+bough_status bough_fmu_get(bough_fmu_instance *x, double t, const bough_fmu_values *outputs, double *all);
 
 // A communication step from t to t + h [s]. BOUGH_FAILED also where the FMU ends it before.
 bough_status bough_fmu_step(bough_fmu_instance *x, double t, double h);

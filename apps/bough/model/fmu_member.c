@@ -10,7 +10,6 @@ typedef struct fmu_member {
     const bough_scene_body *body;
     const bough_member *member;
     bough_fmu_instance fmu;
-    bough_fmu_values input, output; // of motion and wrench
     double motion[BOUGH_SCENE_MOTION], wrench[BOUGH_SCENE_WRENCH];
 
     int n_state;
@@ -36,12 +35,12 @@ static bough_status advance(void *self, double *t, double pause, double t1, bool
         double from = t0 + k * h;
         x->steps++;
         bough_signal_value(signal, from + share * h, x->motion);
-        BOUGH_TRY(bough_fmu_set(&x->fmu, from, &x->input, x->motion));
+        BOUGH_TRY(bough_fmu_set(&x->fmu, from, &x->body->fmu.input, x->motion));
         BOUGH_TRY(bough_fmu_step(&x->fmu, from, k < n - 1 ? h : t1 - from));
     }
     bough_signal_value(signal, t1, x->motion);
-    BOUGH_TRY(bough_fmu_set(&x->fmu, t1, &x->input, x->motion));
-    BOUGH_TRY(bough_fmu_get(&x->fmu, t1, &x->output, x->wrench));
+    BOUGH_TRY(bough_fmu_set(&x->fmu, t1, &x->body->fmu.input, x->motion));
+    BOUGH_TRY(bough_fmu_get(&x->fmu, t1, &x->body->fmu.output, x->wrench));
     *t = t1;
     return bough_ok();
 }
@@ -111,12 +110,10 @@ bough_status bough_fmu_member_create(bough_arena *arena, const bough_scene_body 
                                      double duration, bough_member *member) {
     fmu_member *x = bough_arena_take(arena, sizeof *x);
     *x = (fmu_member){.body = body, .member = member};
-    bough_fmu_list(BOUGH_SCENE_MOTION, body->fmu.input, &x->input);
-    bough_fmu_list(BOUGH_SCENE_WRENCH, body->fmu.output, &x->output);
     BOUGH_TRY(bough_fmu_open(arena, &body->fmu.model, body->name, &x->fmu));
     bough_arena_on_destroy(arena, free_states, x);
-    BOUGH_TRY(bough_fmu_initialise(&x->fmu, 0, duration, &x->input, motion));
-    BOUGH_TRY(bough_fmu_get(&x->fmu, 0, &x->output, x->wrench));
+    BOUGH_TRY(bough_fmu_initialise(&x->fmu, 0, duration, &x->body->fmu.input, motion));
+    BOUGH_TRY(bough_fmu_get(&x->fmu, 0, &x->body->fmu.output, x->wrench));
     bool restores = body->fmu.model.description.restores;
     *member = (bough_member){.system = {.name = body->name,
                                         .kind = "FMU",

@@ -100,37 +100,16 @@ static bool inflated(const entry *e, unsigned char *out) {
     return ended && z.total_out == e->size;
 }
 
-static bough_status extract(bough_arena *arena, const archive *a, const entry *e, char **bytes) {
+// NULL: it is damaged.
+static const unsigned char *extract(bough_arena *arena, const entry *e) {
+    if (e->method == STORED) return crc32(0, e->data, e->packed) == e->sum ? e->data : NULL;
     unsigned char *out = bough_arena_take(arena, (size_t)e->size + 1);
-    bool good = true;
-    if (e->method == DEFLATED) {
-        good = inflated(e, out);
-    } else if (e->size > 0) {
-        memcpy(out, e->data, e->size);
-    }
-    if (!good || crc32(0, out, e->size) != e->sum) return damaged(a, "a file of the archive is damaged");
-    out[e->size] = '\0';
-    *bytes = (char *)out;
-    return bough_ok();
+    return inflated(e, out) && crc32(0, out, e->size) == e->sum ? out : NULL;
 }
 
 bool bough_fmu_is_archive(const char *path) {
     size_t length = strlen(path);
     return length > 4 && strcmp(path + length - 4, ".fmu") == 0;
-}
-
-bough_status bough_fmu_archive_read(bough_arena *arena, const char *path, const char *name, char **bytes,
-                                    size_t *size) {
-    archive a;
-    bough_status status = open_archive(arena, path, &a);
-    while (bough_is_ok(&status) && a.left > 0) {
-        entry e;
-        status = next_entry(&a, &e);
-        if (!bough_is_ok(&status) || strcmp(e.name, name) != 0) continue;
-        *size = e.size;
-        return extract(arena, &a, &e, bytes);
-    }
-    return bough_is_ok(&status) ? bough_fail(BOUGH_INVALID, "%.200s has no file %s", path, name) : status;
 }
 
 // -- unpacked -------------------------------------------------------------------------------------
@@ -150,7 +129,7 @@ static bough_status cannot_write(const char *path) {
 }
 
 // Writes a file with the folders above it; a name that ends with a slash is a folder.
-static bough_status write_file(char *path, size_t inside, const char *bytes, size_t size) {
+static bough_status write_file(char *path, size_t inside, const unsigned char *bytes, size_t size) {
     for (char *slash = path + inside; (slash = strchr(slash, '/')) != NULL; slash++) {
         *slash = '\0';
         bool made = mkdir(path, 0700) == 0 || errno == EEXIST;
@@ -166,13 +145,13 @@ static bough_status write_file(char *path, size_t inside, const char *bytes, siz
 
 static bough_status unpack_entry(bough_arena *arena, archive *a, const char *folder) {
     entry e;
-    char *bytes;
     BOUGH_TRY(next_entry(a, &e));
     if (!stays_inside(e.name)) return damaged(a, "the name of a file leads out of the archive");
     bough_arena *own = bough_arena_child(arena);
     char *path = bough_arena_print(own, "%s/%s", folder, e.name);
-    bough_status status = extract(own, a, &e, &bytes);
-    if (bough_is_ok(&status)) status = write_file(path, strlen(folder) + 1, bytes, e.size);
+    const unsigned char *bytes = extract(own, &e);
+    bough_status status = bytes ? write_file(path, strlen(folder) + 1, bytes, e.size)
+                                : damaged(a, "a file of the archive is damaged");
     bough_arena_destroy(own);
     return status;
 }

@@ -11,13 +11,9 @@
 // Whether the name is that of an archive: it ends with ".fmu".
 bool bough_fmu_is_archive(const char *path);
 
-// One file of the archive, *size bytes and a NUL behind them, in the arena's memory. BOUGH_INVALID: there is
-// no such archive or no such file in it, or it is damaged, encrypted or of ZIP64.
-bough_status bough_fmu_archive_read(bough_arena *arena, const char *path, const char *name, char **bytes,
-                                    size_t *size);
-
 // Unpacks all files into a new folder below $TMPDIR, else /tmp, which is removed with the arena.
-// BOUGH_INVALID: as above, or a file's name leads out of the folder; BOUGH_IO: the folder cannot be written.
+// BOUGH_INVALID: there is no such archive, it is damaged, encrypted or of ZIP64, or a file's name leads out
+// of the folder. BOUGH_IO: the folder cannot be written.
 bough_status bough_fmu_archive_unpack(bough_arena *arena, const char *path, const char **folder);
 
 #endif

@@ -1,6 +1,5 @@
 // The description of an FMU, modelDescription.xml, as far as an importer of real inputs, outputs and
 // parameters needs it: FMI 3.0 (https://fmi-standard.org), co-simulation.
-#include "apps/bough/scene/fmu_archive.h"
 #include "apps/bough/scene/scene_internal.h"
 
 #include "core/base/input_file.h"
@@ -99,19 +98,6 @@ static void end(void *self, const char *element) {
 
 // -- the file -------------------------------------------------------------------------------------
 
-// The text of the description in an archive or an unpacked folder.
-static bough_status read_text(bough_arena *arena, const char *fmu, const char *path, char **text,
-                              size_t *size) {
-    char why[BOUGH_INPUT_REASON];
-    if (bough_fmu_is_archive(fmu)) {
-        bough_status status = bough_fmu_archive_read(arena, fmu, "modelDescription.xml", text, size);
-        bool small = !bough_is_ok(&status) || *size <= BOUGH_INPUT_TEXT;
-        return small ? status : bough_fail(BOUGH_INVALID, "%.200s is too large", path);
-    }
-    *text = bough_input_read(arena, path, BOUGH_INPUT_TEXT, size, why);
-    return *text ? bough_ok() : bough_fail(BOUGH_INVALID, "cannot read %.200s: %s", path, why);
-}
-
 static bough_status parse(XML_Parser parser, const char *text, size_t size, const char *path) {
     if (XML_Parse(parser, text, (int)size, true) != XML_STATUS_ERROR) return bough_ok();
     return bough_fail(BOUGH_INVALID, "%.200s:%lu: %s", path, (unsigned long)XML_GetCurrentLineNumber(parser),
@@ -135,15 +121,19 @@ static bough_status check(const reader *r, const char *path) {
     return bough_ok();
 }
 
-bough_status bough_fmu_describe(bough_arena *arena, const char *fmu, bough_fmu_description *description) {
+bough_status bough_fmu_describe(bough_arena *arena, const char *fmu, const char *folder,
+                                bough_fmu_description *description) {
     reader r = {.arena = arena, .d = description};
-    char *text;
+    char why[BOUGH_INPUT_REASON];
     size_t size;
     *description = (bough_fmu_description){0};
     bough_arena *own = bough_arena_child(arena);
     const char *path = bough_arena_print(arena, "%s/modelDescription.xml", fmu);
-    bough_status status = read_text(own, fmu, path, &text, &size);
-    if (bough_is_ok(&status)) {
+    const char *file = bough_arena_print(own, "%s/modelDescription.xml", folder);
+    const char *text = bough_input_read(own, file, BOUGH_INPUT_TEXT, &size, why);
+    bough_status status = bough_ok();
+    if (!text) status = bough_fail(BOUGH_INVALID, "cannot read %.200s: %s", path, why);
+    if (text) {
         XML_Parser parser = XML_ParserCreate(NULL);
         if (!parser) bough_arena_leave(arena);
         bough_arena_on_destroy(own, free_parser, parser);

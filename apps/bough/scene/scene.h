@@ -190,6 +190,28 @@ typedef struct bough_fmu_description {
     const char **scaled; // (n_scaled) names of units that are not SI: with a factor or an offset
 } bough_fmu_description;
 
+// What a controller that is an FMU gets, besides each blade's pitch [rad]; SI.
+typedef enum bough_scene_sensed {
+    BOUGH_SENSED_TIME,
+    BOUGH_SENSED_GENERATOR_SPEED,
+    BOUGH_SENSED_ROTOR_SPEED,
+    BOUGH_SENSED_TORQUE, // of the generator
+    BOUGH_SENSED_POWER,  // electrical
+    BOUGH_SENSED_WIND,   // at the hub, along the shaft
+    BOUGH_SENSED_AZIMUTH,
+    BOUGH_SENSED_YAW_ERROR,
+    BOUGH_SCENE_SENSED,
+} bough_scene_sensed;
+
+enum { BOUGH_FMU_VALUES = BOUGH_SCENE_SENSED + BOUGH_MOST_BLADES };
+
+// Variables of an FMU for some of the quantities that a part of the scene has.
+typedef struct bough_fmu_values {
+    int n;
+    int quantity[BOUGH_FMU_VALUES];       // (n) which one each variable is
+    uint32_t reference[BOUGH_FMU_VALUES]; // (n)
+} bough_fmu_values;
+
 // Numbers by names that are not the scene's.
 typedef struct bough_scene_values {
     int n;
@@ -201,7 +223,8 @@ typedef struct bough_scene_values {
 // A model of another program: a co-simulation FMU of FMI 3.0.
 typedef struct bough_scene_fmu_model {
     const bough_node *node;
-    const char *folder; // path of its archive, or of the folder where it is unpacked, once it is checked
+    const char *folder;   // path of its archive, or of the folder where it is unpacked, once it is checked
+    const char *unpacked; // of that folder, of an archive a temporary one
     bough_scene_values parameters;
     uint32_t *reference; // (parameters.n) of the parameters
     bough_fmu_description description;
@@ -212,10 +235,10 @@ typedef struct bough_scene_fmu_model {
 typedef struct bough_scene_fmu {
     bough_scene_fmu_model model;
     int n_motion, n_wrench;
-    const char **motion, **wrench; // names of its variables, "none" where it has none; 0: the usual ones
-    int hold;                      // bough_scene_fmu_hold
-    int steps;                     // communication steps per macro step
-    const bough_fmu_variable *input[BOUGH_SCENE_MOTION], *output[BOUGH_SCENE_WRENCH]; // NULL: none
+    const char **motion, **wrench;  // names of its variables, "none" where it has none; 0: the usual ones
+    int hold;                       // bough_scene_fmu_hold
+    int steps;                      // communication steps per macro step
+    bough_fmu_values input, output; // of motion and wrench
 } bough_scene_fmu;
 
 // What an FMU does with its inputs over a communication step.
@@ -360,26 +383,13 @@ typedef enum bough_scene_controller {
     BOUGH_SCENE_CONTROL_FMU,
 } bough_scene_controller;
 
-// What a controller that is an FMU gets, besides each blade's pitch [rad]; SI.
-typedef enum bough_scene_sensed {
-    BOUGH_SENSED_TIME,
-    BOUGH_SENSED_GENERATOR_SPEED,
-    BOUGH_SENSED_ROTOR_SPEED,
-    BOUGH_SENSED_TORQUE, // of the generator
-    BOUGH_SENSED_POWER,  // electrical
-    BOUGH_SENSED_WIND,   // at the hub, along the shaft
-    BOUGH_SENSED_AZIMUTH,
-    BOUGH_SENSED_YAW_ERROR,
-    BOUGH_SCENE_SENSED,
-} bough_scene_sensed;
-
 // Names of an FMU's variables for quantities of the turbine.
 typedef struct bough_scene_terminals {
     const bough_node *node;
     const char *name[BOUGH_SCENE_SENSED]; // NULL: none; of outputs only the torque
     int n_pitch;
-    const char **pitch; // (n_pitch) of blade 1, 2 …; of one output: of all blades
-    const bough_fmu_variable *variable[BOUGH_SCENE_SENSED + BOUGH_MOST_BLADES]; // the same; NULL: none
+    const char **pitch;      // (n_pitch) of blade 1, 2 …; of one output: of all blades
+    bough_fmu_values values; // the same, then of the blades
 } bough_scene_terminals;
 
 typedef struct bough_scene_control_fmu {

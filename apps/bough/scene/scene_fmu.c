@@ -1,4 +1,5 @@
 // Bodies that are FMUs: their variables are found, and what such a body cannot take part in is refused.
+#include "apps/bough/scene/fmu_archive.h"
 #include "apps/bough/scene/scene_internal.h"
 #include "cosim/master.h"
 
@@ -42,6 +43,13 @@ static const bough_fmu_variable *find(bough_schema_reader *r, const bough_scene_
     return NULL;
 }
 
+// Enters the variable of a quantity where there is one.
+static void enter(bough_fmu_values *values, int quantity, const bough_fmu_variable *v) {
+    if (!v) return;
+    values->quantity[values->n] = quantity;
+    values->reference[values->n++] = v->reference;
+}
+
 static bool is_count(bough_schema_reader *r, const bough_scene_fmu *fmu, const char *key, int n,
                      int expected) {
     if (n == 0 || n == expected) return true;
@@ -75,7 +83,10 @@ static bool describe(bough_schema_reader *r, bough_scene_fmu_model *m) {
     const bough_scene_values *p = &m->parameters;
     if (!m->node || !m->folder) return false;
     m->folder = bough_schema_path(r, m->node, "folder", m->folder);
-    bough_status status = bough_fmu_describe(r->arena, m->folder, &m->description);
+    m->unpacked = m->folder;
+    bough_status status = bough_ok();
+    if (bough_fmu_is_archive(m->folder)) status = bough_fmu_archive_unpack(r->arena, m->folder, &m->unpacked);
+    if (bough_is_ok(&status)) status = bough_fmu_describe(r->arena, m->folder, m->unpacked, &m->description);
     if (!bough_is_ok(&status)) {
         bough_schema_error(r, m->node, "folder", "%s", status.message);
         return false;
@@ -95,11 +106,11 @@ void bough_scene_check_fmu(bough_schema_reader *r, void *item) {
     if (!is_count(r, fmu, "wrench", fmu->n_wrench, BOUGH_SCENE_WRENCH) || !counts) return;
     for (int k = 0; k < BOUGH_SCENE_MOTION; k++) {
         const char *name = fmu->n_motion > 0 ? fmu->motion[k] : usual_motion[k];
-        fmu->input[k] = find(r, &fmu->model, fmu->model.node, "motion", name, BOUGH_FMU_INPUT);
+        enter(&fmu->input, k, find(r, &fmu->model, fmu->model.node, "motion", name, BOUGH_FMU_INPUT));
     }
     for (int k = 0; k < BOUGH_SCENE_WRENCH; k++) {
         const char *name = fmu->n_wrench > 0 ? fmu->wrench[k] : usual_wrench[k];
-        fmu->output[k] = find(r, &fmu->model, fmu->model.node, "wrench", name, BOUGH_FMU_OUTPUT);
+        enter(&fmu->output, k, find(r, &fmu->model, fmu->model.node, "wrench", name, BOUGH_FMU_OUTPUT));
     }
 }
 
@@ -111,11 +122,11 @@ static void find_terminals(bough_schema_reader *r, const bough_scene_fmu_model *
             const char *text = to->node->value[i]->text;
             if (text && strcmp(text, to->name[k]) == 0) place = to->node->value[i];
         }
-        to->variable[k] = find(r, m, place, key, to->name[k], causality);
+        enter(&to->values, k, find(r, m, place, key, to->name[k], causality));
     }
     const bough_node *pitch = bough_node_find(to->node, "pitch");
     for (int b = 0; b < to->n_pitch && b < BOUGH_MOST_BLADES; b++)
-        to->variable[BOUGH_SCENE_SENSED + b] = find(r, m, pitch, key, to->pitch[b], causality);
+        enter(&to->values, BOUGH_SCENE_SENSED + b, find(r, m, pitch, key, to->pitch[b], causality));
 }
 
 void bough_scene_check_control_fmu(bough_schema_reader *r, void *item) {

@@ -117,9 +117,10 @@ bough_node *bough_scene_set(bough_arena *arena, bough_node *root, const char *se
 
 // -- modelDescription.xml of an FMU of FMI 3.0 (fmu_description.c) --------------------------------
 
-// Reads modelDescription.xml of an FMU, an archive or the folder where it is unpacked. BOUGH_INVALID: the
+// Reads modelDescription.xml in the folder of an FMU, which is called `fmu` in messages. BOUGH_INVALID: the
 // file is missing or is no XML, the version is not 3, there is no co-simulation.
-bough_status bough_fmu_describe(bough_arena *arena, const char *fmu, bough_fmu_description *description);
+bough_status bough_fmu_describe(bough_arena *arena, const char *fmu, const char *folder,
+                                bough_fmu_description *description);
 
 // The variable of that name; NULL: there is none.
 const bough_fmu_variable *bough_fmu_find(const bough_fmu_description *d, const char *name);
