@@ -118,32 +118,19 @@ static bool is_twist_of_mesh(bough_arena *arena, bough_equilibrium_search *x, co
     return false;
 }
 
-// Rounding lets values grow otherwise from another point.
-static bough_status confirm_oscillation(bough_arena *arena, const bough_equilibrium_search *x,
-                                        const bough_eigen_pair *found) {
+// Whether a value grows so from another point, too: rounding lets it grow otherwise. Where nothing converges
+// there, it is believed.
+static bool is_confirmed(bough_arena *arena, const bough_equilibrium_search *x, double at, int wanted,
+                         const bough_eigen_pair *found) {
     bough_eigen_pair pair[NEAREST];
-    bough_eigen_count count = {.wanted = NEAREST};
-    BOUGH_TRY(find_near(arena, x, again, pair, &count));
-    for (int k = 0; k < count.found; k++) {
+    bough_eigen_count count = {.wanted = wanted};
+    bough_status status = find_near(arena, x, at, pair, &count);
+    bool confirmed = !bough_is_ok(&status);
+    for (int k = 0; k < count.found && !confirmed; k++) {
         double off = hypot(pair[k].real - found->real, fabs(pair[k].imaginary) - fabs(found->imaginary));
-        if (off > equal * found->real) continue;
-        if (found->real > x->growth->rate) x->growth->row = largest_row(x, found);
-        x->growth->oscillation = found->real;
-        x->growth->frequency = fabs(found->imaginary) / (2 * BOUGH_PI);
+        confirmed = oscillates(&pair[k]) == oscillates(found) && off < equal * found->real;
     }
-    return bough_ok();
-}
-
-// Whether a motion that grows does so from a point beside its value, too. Where nothing converges there, it
-// is believed.
-static bool confirms_growth(bough_arena *arena, const bough_equilibrium_search *x, double rate) {
-    bough_eigen_pair pair[NEAREST];
-    bough_eigen_count count = {.wanted = 4};
-    bough_status status = find_near(arena, x, beside * rate * x->unit.period, pair, &count);
-    bool found = !bough_is_ok(&status);
-    for (int k = 0; k < count.found && !found; k++)
-        found = !oscillates(&pair[k]) && fabs(pair[k].real - rate) < equal * rate;
-    return found;
+    return confirmed;
 }
 
 static bough_status find_growth(bough_arena *arena, void *self) {
@@ -161,13 +148,16 @@ static bough_status find_growth(bough_arena *arena, void *self) {
             bool known = part > rounded && part < 1 / rounded;
             bool grows = !oscillates(&pair[k]) && known && pair[k].residual < trusted;
             if (!grows || pair[k].real <= x->growth->rate || is_twist_of_mesh(arena, x, &pair[k])) continue;
-            if (!confirms_growth(arena, x, pair[k].real)) continue;
+            if (!is_confirmed(arena, x, beside * pair[k].real * x->unit.period, 4, &pair[k])) continue;
             x->growth->rate = pair[k].real;
             x->growth->row = largest_row(x, &pair[k]);
         }
         const bough_eigen_pair *found = growing_oscillation(pair, count.found, x->unit.period);
         if (i > 0 || found == NULL || bough_equilibrium_search_turns(x)) continue;
-        BOUGH_TRY(confirm_oscillation(arena, x, found));
+        if (!is_confirmed(arena, x, again, NEAREST, found)) continue;
+        if (found->real > x->growth->rate) x->growth->row = largest_row(x, found);
+        x->growth->oscillation = found->real;
+        x->growth->frequency = fabs(found->imaginary) / (2 * BOUGH_PI);
     }
     return bough_ok();
 }

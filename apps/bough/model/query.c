@@ -176,15 +176,18 @@ static vertex vertex_of(const bough_simulation *s, const bough_beam *beam, const
 
 bough_sharpest bough_simulation_bend(const bough_simulation *s, const bough_beam *beam) {
     const double *state = s->rod[beam->port].state;
-    bough_mat3 section = bough_rotation_matrix(beam->def.rotation[0]);
+    bough_mat3 section = bough_rotation_matrix(beam->def.rotation[0]), rest = section;
     bough_sharpest bend = {0};
     for (int i = 1; i <= beam->def.n_segment; i++) {
         bough_mat3 next = vertex_of(s, beam, state, i, (bough_twist){0}).rotation;
+        bough_mat3 next_rest = bough_rotation_matrix(beam->def.rotation[i]);
+        bough_mat3 now = bough_mat3_product(bough_mat3_transpose(section), next);
+        bough_mat3 before = bough_mat3_product(bough_mat3_transpose(rest), next_rest);
         double trace =
-            bough_dot(section.c1, next.c1) + bough_dot(section.c2, next.c2) + bough_dot(section.c3, next.c3);
+            bough_dot(now.c1, before.c1) + bough_dot(now.c2, before.c2) + bough_dot(now.c3, before.c3);
         double angle = acos(fmax(-1, fmin(0.5 * (trace - 1), 1)));
         if (angle > bend.angle) bend = (bough_sharpest){angle, i - 1};
-        section = next;
+        section = next, rest = next_rest;
     }
     return bend;
 }

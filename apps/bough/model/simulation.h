@@ -146,7 +146,7 @@ typedef struct bough_sharpest {
     int segment;
 } bough_sharpest;
 
-// Of a rod the largest rotation between the sections at both ends of a segment.
+// Of a rod the largest rotation of the ends of a segment against each other, beyond that at rest.
 bough_sharpest bough_simulation_bend(const bough_simulation *s, const bough_beam *beam);
 
 // Accelerations of the tree's links under the rods' present forces, into s->view, where they stay until

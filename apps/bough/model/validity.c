@@ -136,16 +136,11 @@ static double dot(bough_quaternion p, bough_quaternion q) {
     return p.w * q.w + p.x * q.x + p.y * q.y + p.z * q.z;
 }
 
-// Section k of a rod, the root's being 0; p are the rows of the others.
-static bough_quaternion section(const bough_rod_model *m, const double *p, int k) {
-    if (k-- == 0) return m->rotation0[0];
-    return (bough_quaternion){p[k], p[m->n + k], p[2 * m->n + k], p[3 * m->n + k]};
-}
-
-// Whether no segment turns its ends by more than a quarter of most_turn, now or at rest.
+// Whether no segment turns its ends by more than a quarter of most_turn, now or at rest; p are the rows of
+// the sections but the root's.
 static bool turn_little(const bough_rod_model *m, const double *restrict p) {
-    const bough_quaternion *restrict rest = m->rotation0;
-    double least = fmin(fabs(dot(rest[0], section(m, p, 1))), fabs(dot(rest[0], rest[1])));
+    const bough_quaternion *restrict rest = m->rotation0, first = {p[0], p[m->n], p[2 * m->n], p[3 * m->n]};
+    double least = fmin(fabs(dot(rest[0], first)), fabs(dot(rest[0], rest[1])));
 #pragma omp simd reduction(min : least)
     for (int k = 1; k < m->n; k++) {
         double now = 0;
@@ -157,29 +152,16 @@ static bool turn_little(const bough_rod_model *m, const double *restrict p) {
     return least > small_turn;
 }
 
-// How far the ends of segment k turn against each other beyond what they did at rest [rad].
-static double turn_of(const bough_rod_model *m, const double *p, int k) {
-    bough_quaternion left = bough_quaternion_conjugate(section(m, p, k));
-    bough_quaternion left0 = bough_quaternion_conjugate(m->rotation0[k]);
-    bough_quaternion now = bough_quaternion_product(left, section(m, p, k + 1));
-    bough_quaternion rest = bough_quaternion_product(left0, m->rotation0[k + 1]);
-    return 2 * acos(fmin(fabs(dot(now, rest)), 1));
-}
-
 static void check_turns(bough_simulation *s) {
     for (int i = 0; i < s->n_beam; i++) {
         const bough_beam *beam = &s->beam[i];
         if (!beam->rod || s->validity->limit[BOUGH_LIMIT_TURN].passed) continue;
         const bough_rod_model *m = beam->mesh;
-        const double *p = bough_beam_state(s, beam, 0) + (size_t)BOUGH_ROD_P * (size_t)m->n;
-        if (turn_little(m, p)) continue;
-        for (int k = 0; k < m->n; k++) {
-            double turn = turn_of(m, p, k);
-            if (turn <= most_turn) continue;
+        if (turn_little(m, bough_beam_state(s, beam, 0) + (size_t)BOUGH_ROD_P * (size_t)m->n)) continue;
+        double turn = bough_simulation_bend(s, beam).angle;
+        if (turn > most_turn)
             validity_pass(s->validity, BOUGH_LIMIT_TURN, (int)(beam->body - s->scene->body), s->master->time,
                           turn / BOUGH_DEGREE);
-            break;
-        }
     }
 }
 
