@@ -21,11 +21,6 @@ void bough_scene_read_stiffness(bough_schema_reader *r, const bough_node *node, 
 void bough_scene_read_section_mass(bough_schema_reader *r, const bough_node *node, void *field);
 void bough_scene_read_motion(bough_schema_reader *r, const bough_node *node, void *field);
 void bough_scene_read_inertia(bough_schema_reader *r, const bough_node *node, void *field);
-void bough_scene_read_load_place(bough_schema_reader *r, const bough_node *node, void *field);
-void bough_scene_read_load_amount(bough_schema_reader *r, const bough_node *node, void *field);
-void bough_scene_read_load_force(bough_schema_reader *r, const bough_node *node, void *field);
-void bough_scene_read_load_table(bough_schema_reader *r, const bough_node *node, void *field);
-void bough_scene_read_load_moment(bough_schema_reader *r, const bough_node *node, void *field);
 
 // Adds an error at each of the keys "a|b" that the mapping has.
 void bough_scene_refuse(bough_schema_reader *r, const bough_node *mapping, const char *keys,
@@ -61,7 +56,6 @@ void bough_scene_check_fmu(bough_schema_reader *r, void *item);
 void bough_scene_check_control_fmu(bough_schema_reader *r, void *item);
 void bough_scene_read_values(bough_schema_reader *r, const bough_node *node, void *field);
 void bough_scene_check_motion(bough_schema_reader *r, const bough_scene_joint *joint);
-void bough_scene_check_load(bough_schema_reader *r, void *item);
 void bough_scene_check_ramp(bough_schema_reader *r, const bough_node *node, const double ramp[2]);
 
 // Checks a load against the body, load->body, that it acts on.
