@@ -1,4 +1,5 @@
 #include "apps/bough/config/schema.h"
+#include "apps/bough/config/schema_keys.h"
 
 #include "tests/unit/check.h"
 #include "tests/unit/printed.h"
@@ -32,123 +33,43 @@ static void read_sum(bough_schema_reader *r, const bough_node *node, void *field
     for (int i = 0; i < n; i++) *(int *)field += (int)v[i];
 }
 
-static const bough_key part_keys[] = {
-    {.name = "length",
-     .kind = BOUGH_KEY_NUMBER,
-     .dimension = BOUGH_LENGTH,
-     .range = "> 0",
-     .required = true,
-     .offset = offsetof(part, length),
-     .help = "length of the part"},
-    {.name = "label",
-     .kind = BOUGH_KEY_TEXT,
-     .fallback = "none",
-     .offset = offsetof(part, label),
-     .help = "label of the part"},
-};
-
 static void check_part(bough_schema_reader *r, void *item) {
     if (((part *)item)->length > 99) {
         bough_schema_error(r, ((part *)item)->node, "length", "a long part");
     }
 }
 
-static const bough_schema part_schema = {
-    .name = "a part", .size = sizeof(part), .n_key = 2, .key = part_keys, .check = check_part};
-
-static const bough_key thing_keys[] = {
-    {.name = "kind",
-     .kind = BOUGH_KEY_CHOICE,
-     .offset = offsetof(thing, kind),
-     .required = true,
-     .choices = (const char *const[]){"turning", "sliding", "fixed", NULL},
-     .help = "its kind"},
-    {.name = "angle",
-     .kind = BOUGH_KEY_NUMBER,
-     .dimension = BOUGH_ANGLE,
-     .fallback = "90 deg",
-     .when_key = "kind",
-     .when = "turning",
-     .offset = offsetof(thing, angle),
-     .help = "its angle"},
-    {.name = "speed",
-     .kind = BOUGH_KEY_NUMBER,
-     .dimension = BOUGH_ANGULAR_SPEED,
-     .when_key = "kind",
-     .when = "turning",
-     .offset = offsetof(thing, speed),
-     .help = "turning"},
-    {.name = "speed",
-     .kind = BOUGH_KEY_NUMBER,
-     .dimension = BOUGH_SPEED,
-     .when_key = "kind",
-     .when = "sliding",
-     .offset = offsetof(thing, speed),
-     .help = "sliding"},
-    {.name = "count",
-     .kind = BOUGH_KEY_INTEGER,
-     .range = "[0, 9]",
-     .fallback = "4",
-     .offset = offsetof(thing, count),
-     .help = "how many"},
-    {.name = "share",
-     .kind = BOUGH_KEY_NUMBER,
-     .range = "[0.5, 1]",
-     .word = "auto",
-     .fallback = "auto",
-     .offset = offsetof(thing, share),
-     .help = "how much"},
-    {.name = "label", .kind = BOUGH_KEY_TEXT, .offset = offsetof(thing, label), .help = "a label"},
-    {.name = "on",
-     .kind = BOUGH_KEY_BOOLEAN,
-     .fallback = "true",
-     .offset = offsetof(thing, on),
-     .help = "on or off"},
-    {.name = "vector",
-     .kind = BOUGH_KEY_VECTOR,
-     .count = 3,
-     .dimension = BOUGH_LENGTH,
-     .fallback = "[0, 0, 2 m]",
-     .offset = offsetof(thing, vector),
-     .help = "a vector"},
-    {.name = "weights",
-     .kind = BOUGH_KEY_NUMBERS,
-     .dimension = BOUGH_MASS,
-     .range = ">= 0",
-     .count = 2,
-     .offset = offsetof(thing, weight),
-     .count_offset = offsetof(thing, n_weight),
-     .help = "weights"},
-    {.name = "tags",
-     .kind = BOUGH_KEY_TEXTS,
-     .count = 1,
-     .offset = offsetof(thing, tag),
-     .count_offset = offsetof(thing, n_tag),
-     .help = "tags"},
-    {.name = "inner",
-     .kind = BOUGH_KEY_MAPPING,
-     .of = &part_schema,
-     .offset = offsetof(thing, inner),
-     .help = "an inner part"},
-    {.name = "parts",
-     .kind = BOUGH_KEY_LIST,
-     .of = &part_schema,
-     .offset = offsetof(thing, part),
-     .count_offset = offsetof(thing, n_part),
-     .help = "parts"},
-    {.name = "sum",
-     .kind = BOUGH_KEY_CUSTOM,
-     .read = read_sum,
-     .form = "numbers to add",
-     .offset = offsetof(thing, sum),
-     .help = "a sum"},
+// clang-format off
+#define FILLS part
+static const bough_key part_keys[] = {
+    {KEY(NUMBER, length), UNIT(LENGTH), .range = "> 0", .required = true, .help = "length of the part"},
+    {KEY(TEXT, label), .fallback = "none", .help = "label of the part"},
 };
+#undef FILLS
+static const bough_schema part_schema = {SCHEMA("a part", part, part_keys), .check = check_part};
+
+#define FILLS thing
+static const bough_key thing_keys[] = {
+    {KEY(CHOICE, kind), .required = true, CHOICES("turning", "sliding", "fixed"), .help = "its kind"},
+    {KEY(NUMBER, angle), UNIT(ANGLE), .fallback = "90 deg", WHEN("kind", "turning"), .help = "its angle"},
+    {KEY(NUMBER, speed), UNIT(ANGULAR_SPEED), WHEN("kind", "turning"), .help = "turning"},
+    {KEY(NUMBER, speed), UNIT(SPEED), WHEN("kind", "sliding"), .help = "sliding"},
+    {KEY(INTEGER, count), .range = "[0, 9]", .fallback = "4", .help = "how many"},
+    {KEY(NUMBER, share), .range = "[0.5, 1]", .word = "auto", .fallback = "auto", .help = "how much"},
+    {KEY(TEXT, label), .help = "a label"},
+    {KEY(BOOLEAN, on), .fallback = "true", .help = "on or off"},
+    {KEY(VECTOR, vector), .count = 3, UNIT(LENGTH), .fallback = "[0, 0, 2 m]", .help = "a vector"},
+    {NAMED("weights", NUMBERS), AT(weight), UNIT(MASS), .range = ">= 0", .count = 2, COUNT_AT(n_weight),
+     .help = "weights"},
+    {NAMED("tags", TEXTS), AT(tag), .count = 1, COUNT_AT(n_tag), .help = "tags"},
+    {KEY(MAPPING, inner), .of = &part_schema, .help = "an inner part"},
+    {NAMED("parts", LIST), AT(part), .of = &part_schema, COUNT_AT(n_part), .help = "parts"},
+    {KEY(CUSTOM, sum), .read = read_sum, .form = "numbers to add", .help = "a sum"},
+};
+#undef FILLS
+// clang-format on
 static const char *const former_keys[] = {"sort", "'kind' has its values", NULL};
-static const bough_schema thing_schema = {.name = "a thing",
-                                          .size = sizeof(thing),
-                                          .n_key = sizeof thing_keys / sizeof thing_keys[0],
-                                          .key = thing_keys,
-                                          .removed = former_keys};
+static const bough_schema thing_schema = {SCHEMA("a thing", thing, thing_keys), .removed = former_keys};
 
 typedef struct fixture {
     bough_arena *arena;

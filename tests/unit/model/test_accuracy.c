@@ -197,47 +197,35 @@ static double error_of(const recorded *r, const recorded *truth) {
 
 static const double enough = 1e-4; // the steps of Radau IIA, which linkages have, err by less at any accuracy
 
-static void check_errors(const char *path, const char *const *sets) {
+#define NO_SOLVERS "simulation.coupling={}", "simulation.master={}", "simulation.micro={}"
+
+// Of a bar, a four-bar before its first pass, and a turbine.
+TEST(errors_follow_the_accuracy) {
+    static const struct {
+        const char *path, *set[7];
+    } runs[] = {
+        {"apps/beams/rubber-bar.yaml",
+         {NO_SOLVERS, "simulation.macro_step=10 ms", "simulation.output.interval=10 ms"}},
+        {"apps/mechanisms/four-bar.yaml",
+         {"simulation.master={}", "simulation.duration=0.8 s", "simulation.macro_step=40 ms"}},
+        {"apps/turbine/runup.yaml",
+         {NO_SOLVERS, "simulation.duration=4 s", "bodies[3-5].rod.segments=6", "aero.ramp=[0 s, 1 s]"}},
+    };
     static const char *const accuracies[] = {"simulation.accuracy=0.02", "simulation.accuracy=0.005",
                                              "simulation.accuracy=0.001"};
     static const double bound[] = {0.02, 0.005, 0.001};
     static recorded run, truth;
-    double error[3];
-    record(path, sets, "simulation.master={solver: ida, rtol: 1e-9}", &truth);
-    for (int k = 0; k < 3; k++) {
-        record(path, sets, accuracies[k], &run);
-        error[k] = error_of(&run, &truth);
-        print_message("%s, %s: %.2g\n", path, accuracies[k], error[k]);
+    for (size_t i = 0; i < sizeof runs / sizeof *runs; i++) {
+        double error[3];
+        record(runs[i].path, runs[i].set, "simulation.master={solver: ida, rtol: 1e-9}", &truth);
+        for (int k = 0; k < 3; k++) {
+            record(runs[i].path, runs[i].set, accuracies[k], &run);
+            error[k] = error_of(&run, &truth);
+            print_message("%s, %s: %.2g\n", runs[i].path, accuracies[k], error[k]);
+            assert_true(error[k] < 2 * bound[k]);
+            assert_true(k == 0 || error[k] < fmax(0.7 * error[k - 1], enough));
+        }
     }
-    for (int k = 0; k < 3; k++) assert_true(error[k] < 2 * bound[k]);
-    for (int k = 1; k < 3; k++) assert_true(error[k] < fmax(0.7 * error[k - 1], enough));
-}
-
-TEST(errors_of_a_bar) {
-    static const char *const sets[] = {"simulation.coupling={}",
-                                       "simulation.master={}",
-                                       "simulation.micro={}",
-                                       "simulation.macro_step=10 ms",
-                                       "simulation.output.interval=10 ms",
-                                       NULL};
-    check_errors("apps/beams/rubber-bar.yaml", sets);
-}
-
-TEST(errors_of_a_four_bar) {
-    static const char *const sets[] = {"simulation.master={}", "simulation.duration=0.8 s",
-                                       "simulation.macro_step=40 ms", NULL}; // before the first pass
-    check_errors("apps/mechanisms/four-bar.yaml", sets);
-}
-
-TEST(errors_of_a_turbine) {
-    static const char *const sets[] = {"simulation.coupling={}",
-                                       "simulation.master={}",
-                                       "simulation.micro={}",
-                                       "simulation.duration=4 s",
-                                       "bodies[3-5].rod.segments=6",
-                                       "aero.ramp=[0 s, 1 s]",
-                                       NULL};
-    check_errors("apps/turbine/runup.yaml", sets);
 }
 
 // Without the limit of the longest step, run and companion lose the second mode.
