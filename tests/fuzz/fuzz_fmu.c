@@ -1,4 +1,3 @@
-#include "apps/bough/scene/fmu_archive.h"
 #include "apps/bough/scene/scene_internal.h"
 #include "tests/fuzz/fuzz.h"
 

@@ -1,6 +1,6 @@
 #define _XOPEN_SOURCE 700 // nftw
 
-#include "apps/bough/scene/fmu_archive.h"
+#include "apps/bough/scene/scene_internal.h"
 
 #include "core/base/bytes.h"
 #include "core/base/input_file.h"

@@ -1,5 +1,4 @@
 // Bodies that are FMUs: their variables are found, and what such a body cannot take part in is refused.
-#include "apps/bough/scene/fmu_archive.h"
 #include "apps/bough/scene/scene_internal.h"
 #include "cosim/master.h"
 

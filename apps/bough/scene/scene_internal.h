@@ -109,6 +109,16 @@ bough_node *bough_scene_set(bough_arena *arena, bough_node *root, const char *se
                 "values of its parameters, each in the unit that the FMU declares; the others keep theirs"   \
     }
 
+// -- an FMU as an archive (fmu_archive.c): ZIP (PKWARE's APPNOTE 6.3) of at most 4 GB ----------------
+
+// Whether the name is that of an archive: it ends with ".fmu".
+bool bough_fmu_is_archive(const char *path);
+
+// Unpacks all files into a new folder below $TMPDIR, else /tmp, which is removed with the arena.
+// BOUGH_INVALID: there is no such archive, it is damaged, encrypted or of ZIP64, or a file's name leads out
+// of the folder. BOUGH_IO: the folder cannot be written.
+bough_status bough_fmu_archive_unpack(bough_arena *arena, const char *path, const char **folder);
+
 // -- modelDescription.xml of an FMU of FMI 3.0 (fmu_description.c) --------------------------------
 
 // Reads modelDescription.xml in the folder of an FMU, which is called `fmu` in messages. BOUGH_INVALID: the
