@@ -395,7 +395,7 @@ static void expand(bough_arena *arena, work *w, const reduced *x, int count, con
         memcpy(pair[k].shape_real, to, n * sizeof *to);
         memcpy(pair[k].shape_imag, to + length, n * sizeof *to);
         pair[k].residual = bough_eigen_residual(&op, pair[k].real, pair[k].imaginary, from, to);
-        if (vector) vector[k].right = spread(arena, w, to), vector[k].before = spread(arena, w, from);
+        if (vector) vector[k].right = spread(arena, w, to);
         column += (size_t)parts;
     }
 }

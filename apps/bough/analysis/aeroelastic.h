@@ -20,7 +20,6 @@ typedef struct bough_aeroelastic {
 // Eigenvectors of one mode in members and air: real before imaginary part (2 × (n + n_air)).
 typedef struct bough_mode_vectors {
     double *right, *left; // left: NULL where none is found
-    double *before;       // right is its image by (E − γB)⁻¹, B the whole system; NULL: right is exact
 } bough_mode_vectors;
 
 // Finds up to `wanted` oscillations and growing motions in which the bodies take part.
@@ -35,25 +34,5 @@ typedef struct bough_mode_vectors {
 bough_status bough_aeroelastic_modes(bough_arena *arena, const bough_aeroelastic *system,
                                      bough_eigen_pair *pair, bough_eigen_count *count,
                                      bough_mode_vectors *vectors, int *unpaired);
-
-// -- on another mesh (other_mesh.c) ---------------------------------------------------------------
-
-// What another mesh of a scene changes in such modes, without a search of its own: theory (114).
-
-// Modes of the scene on its own mesh.
-typedef struct bough_mode_basis {
-    int n;        // 0: none
-    double point; // about which vectors[].before was mapped [1/s]
-    const bough_eigen_pair *pair;
-    const bough_mode_vectors *vector; // (n)
-    bool *wanted;                     // (n) whether its eigenvalue is
-} bough_mode_basis;
-
-// The eigenvalues of these modes on the mesh of `system`, whose factors are replaced: value (n), NaN of a
-// mode without a left vector. *found: false where the meshes differ by too much, or bodies other than rods
-// have other states there.
-bough_status bough_other_mesh_find(bough_arena *arena, const bough_aeroelastic *system,
-                                   const bough_simulation *own, const bough_mode_basis *modes,
-                                   double (*value)[2], bool *found);
 
 #endif

@@ -252,7 +252,6 @@ static void drop_other_motions(const bough_tree *tree, double point, int count, 
     for (int k = 0; k < n; k++) {
         if (!is_mode(tree, point, &v->pair[k])) continue;
         v->pair[kept] = v->pair[k];
-        v->place[kept] = k;
         memcpy(v->change[kept++], v->change[k], sizeof *v->change);
     }
     v->found = kept;
@@ -310,14 +309,6 @@ static bough_status solve_in_air(bough_arena *arena, bough_simulation *s, const 
     BOUGH_TRY(bough_aeroelastic_modes(arena, &system, v->pair, &v->count, azimuths > 1 ? vector : NULL,
                                       &v->unpaired));
     if (azimuths == 1) return bough_ok();
-    v->basis = bough_arena_take(arena, sizeof *v->basis);
-    *v->basis = (bough_mode_basis){
-        .n = v->count.found,
-        .point = x->def.point,
-        .pair = bough_arena_copy(arena, v->pair, (size_t)wanted * sizeof *v->pair),
-        .vector = vector,
-        .wanted = bough_arena_take(arena, (size_t)wanted * sizeof(bool)),
-    };
     int n = count_pairs(s->tree, x->def.point, count, v);
     double complex *change = bough_arena_take(arena, (size_t)(azimuths * wanted) * sizeof *change);
     BOUGH_TRY(bough_azimuths_change(arena, &air->azimuths, air->dynamic, n, vector, change));
@@ -330,7 +321,6 @@ static bough_status solve_about(bough_arena *arena, bough_simulation *s, const b
                                 const moving_air *air, int count, bough_vibration *v) {
     size_t most = (size_t)(count + FREE_MOTIONS + 2 * s->tree->closure_rank);
     v->change = bough_arena_take(arena, most * sizeof *v->change);
-    v->place = bough_arena_take(arena, most * sizeof *v->place);
     BOUGH_TRY(air->moves ? solve_in_air(arena, s, x, air, count, v) : solve_bodies(arena, s, x, count, v));
     drop_other_motions(s->tree, x->def.point, count, v);
     return bough_ok();
@@ -346,42 +336,6 @@ static double better_point(const bough_vibration *v, double point) {
     return largest > exact && lowest > nearer * point && v->found > 0 ? lowest : 0;
 }
 
-// The point in equilibrium, if the scene's modes are of that, and the air about it. `changes`: with what an
-// azimuth changes.
-static bough_status begin(bough_arena *arena, bough_simulation *s, int count, bool changes,
-                          bough_vibration_point *x, moving_air *air, bough_vibration *v) {
-    bool balanced = s->scene->modes.at == BOUGH_SCENE_IN_EQUILIBRIUM;
-    *v = (bough_vibration){.asked = count, .time = balanced ? bough_equilibrium_time(s) : 0};
-    *air = (moving_air){.changes = changes};
-    v->mode = bough_arena_take(arena, (size_t)count * sizeof *v->mode);
-    bough_equilibrium_work work;
-    if (balanced) BOUGH_TRY(bough_simulation_equilibrium(s, s->master->assembly, v->time, 0, &work));
-    BOUGH_TRY(bough_vibration_point_find(arena, s, v->time, x));
-    v->spin = fabs(x->group.speed) < at_rest ? 0 : x->group.speed;
-    double uneven = x->def.spin != 0 ? imbalance(s) : 0;
-    if (uneven > even) return refuse(s, uneven);
-    v->n_blade = x->group.n;
-    v->frozen = is_frozen(s, &x->group);
-    if (v->frozen && !s->scene->modes.linear) BOUGH_TRY(check_constant(arena, s, x));
-    BOUGH_TRY(find_air(arena, s, v->time, x, air));
-    v->n_azimuth = air->azimuths.n;
-    return bough_ok();
-}
-
-static bough_status solve(bough_arena *arena, bough_simulation *s, bough_vibration_point *x,
-                          const moving_air *air, bough_vibration *v) {
-    BOUGH_TRY(solve_about(arena, s, x, air, v->asked, v));
-    double point;
-    bool dynamic = air->moves && air->dynamic; // with other residuals
-    for (int k = 0; k < MOVES && !dynamic && (point = better_point(v, x->def.point)) > 0; k++) {
-        x->def.point = point;
-        BOUGH_TRY(solve_about(arena, s, x, air, v->asked, v));
-    }
-    for (int k = 0; k < v->found; k++) set_value(&v->pair[k], v->change[k], &v->mode[k]);
-    bough_vibration_describe(arena, s, x, v);
-    return bough_ok();
-}
-
 bool bough_vibration_wanted(const bough_simulation *s) {
     const bough_scene_modes *modes = &s->scene->modes;
     if (modes->of != BOUGH_SCENE_MODES_AUTO) return modes->of == BOUGH_SCENE_MODES_SCENE;
@@ -390,11 +344,38 @@ bool bough_vibration_wanted(const bough_simulation *s) {
     return (!bough_rods_are_independent(s) || reduced) && modes->speed == 0 && !axis;
 }
 
-bough_status bough_vibration_find(bough_arena *arena, bough_simulation *s, int count, bough_vibration *v) {
+// Finds the state, the air about it and the eigenvalues. `changes`: with what an azimuth changes.
+static bough_status find(bough_arena *arena, bough_simulation *s, int count, bool changes,
+                         bough_vibration *v) {
+    bool balanced = s->scene->modes.at == BOUGH_SCENE_IN_EQUILIBRIUM;
     bough_vibration_point x;
-    moving_air air;
-    BOUGH_TRY(begin(arena, s, count, true, &x, &air, v));
-    return solve(arena, s, &x, &air, v);
+    moving_air air = {.changes = changes};
+    *v = (bough_vibration){.asked = count, .time = balanced ? bough_equilibrium_time(s) : 0};
+    v->mode = bough_arena_take(arena, (size_t)count * sizeof *v->mode);
+    bough_equilibrium_work work;
+    if (balanced) BOUGH_TRY(bough_simulation_equilibrium(s, s->master->assembly, v->time, 0, &work));
+    BOUGH_TRY(bough_vibration_point_find(arena, s, v->time, &x));
+    v->spin = fabs(x.group.speed) < at_rest ? 0 : x.group.speed;
+    double uneven = x.def.spin != 0 ? imbalance(s) : 0, point;
+    if (uneven > even) return refuse(s, uneven);
+    v->n_blade = x.group.n;
+    v->frozen = is_frozen(s, &x.group);
+    if (v->frozen && !s->scene->modes.linear) BOUGH_TRY(check_constant(arena, s, &x));
+    BOUGH_TRY(find_air(arena, s, v->time, &x, &air));
+    v->n_azimuth = air.azimuths.n;
+    BOUGH_TRY(solve_about(arena, s, &x, &air, count, v));
+    bool dynamic = air.moves && air.dynamic; // with other residuals
+    for (int k = 0; k < MOVES && !dynamic && (point = better_point(v, x.def.point)) > 0; k++) {
+        x.def.point = point;
+        BOUGH_TRY(solve_about(arena, s, &x, &air, count, v));
+    }
+    for (int k = 0; k < v->found; k++) set_value(&v->pair[k], v->change[k], &v->mode[k]);
+    bough_vibration_describe(arena, s, &x, v);
+    return bough_ok();
+}
+
+bough_status bough_vibration_find(bough_arena *arena, bough_simulation *s, int count, bough_vibration *v) {
+    return find(arena, s, count, true, v);
 }
 
 // -- another mesh ---------------------------------------------------------------------------------
@@ -446,38 +427,15 @@ static void pair_modes(const bough_vibration *v, const bough_vibration *other, b
     }
 }
 
-// The modes' vectors, followed to the system of another mesh; *found: they could be.
-static bough_status follow_modes(bough_arena *arena, const bough_simulation *s,
-                                 const bough_aeroelastic *other, bough_vibration *v, bool *found) {
-    double(*value)[2] = bough_arena_take(arena, (size_t)v->basis->n * sizeof *value);
-    for (int k = 0; k < v->found; k++) v->basis->wanted[v->place[k]] = is_compared(&v->mode[k]);
-    BOUGH_TRY(bough_other_mesh_find(arena, other, s, v->basis, value, found));
-    for (int k = 0; k < v->found && *found; k++) {
-        const bough_eigen_pair *pair = &v->pair[k];
-        const double *there = value[v->place[k]];
-        double off = hypot(there[0] - pair->real, there[1] - pair->imaginary);
-        if (is_compared(&v->mode[k])) v->mode[k].moved = off / hypot(pair->real, pair->imaginary);
-    }
-    return bough_ok();
-}
-
 bough_status bough_vibration_compare(bough_arena *arena, const bough_simulation *s, bough_vibration *v,
                                      bool *compared) {
     const bough_scene *other = bough_coarser_scene_beside(arena, s, BOUGH_COARSER_MESH);
     bough_simulation *companion;
     bough_vibration of_other;
-    bough_vibration_point x;
-    moving_air air;
-    bool found = false;
     *compared = has_other_mesh(s->scene, other);
     if (!*compared) return bough_ok();
     BOUGH_TRY(bough_simulation_build(arena, other, &companion));
-    BOUGH_TRY(begin(arena, companion, v->found + MODES_BEYOND, false, &x, &air, &of_other));
-    const bough_aeroelastic system = {companion, x.whole, &x.def, &x.group, &air.tangent};
-    if (v->basis) BOUGH_TRY(follow_modes(arena, s, &system, v, &found));
-    v->followed = found;
-    if (found) return bough_ok();
-    BOUGH_TRY(solve(arena, companion, &x, &air, &of_other));
+    BOUGH_TRY(find(arena, companion, v->found + MODES_BEYOND, false, &of_other));
     pair_modes(v, &of_other, bough_arena_take(arena, ((size_t)of_other.found + 1) * sizeof(bool)));
     return bough_ok();
 }

@@ -73,10 +73,6 @@ typedef struct bough_vibration {
     bough_eigen_pair *pair; // (found)
     int n_azimuth;          // over which the system is the mean; 1: that of the scene's azimuth
     double (*change)[2];    // (found) of each mode over them, as frequency_change and damping_change
-    // For another mesh, where the air has been followed over azimuths; NULL: it has not.
-    struct bough_mode_basis *basis;
-    int *place;    // (found) of the modes in it
-    bool followed; // by bough_vibration_compare to that mesh, whose modes were not searched
 } bough_vibration;
 
 // What modes are about: the simulation's present state, the blades in their mean where they turn (not on a

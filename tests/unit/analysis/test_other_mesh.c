@@ -18,13 +18,13 @@ static double nearest(const bough_scene_mode *mode, const bough_vibration *other
 }
 
 // Compares each mode's `moved`; returns the largest.
-static double check_modes(bough_arena *arena, int count, bool followed, const char *const *sets) {
+static double check_modes(bough_arena *arena, int count, const char *const *sets) {
     bough_simulation *s = scene_build(arena, "apps/turbine/land-operation.yaml", sets), *coarser;
     bough_vibration v, other;
     bool compared;
     check_ok(bough_vibration_find(arena, s, count, &v));
     check_ok(bough_vibration_compare(arena, s, &v, &compared));
-    assert_true(compared && v.followed == followed);
+    assert_true(compared);
     const bough_scene *scene = bough_coarser_scene_beside(arena, s, BOUGH_COARSER_MESH);
     check_ok(bough_simulation_build(arena, scene, &coarser));
     check_ok(bough_vibration_find(arena, coarser, count + 4, &other));
@@ -32,7 +32,7 @@ static double check_modes(bough_arena *arena, int count, bool followed, const ch
     int known = 0;
     for (int k = 0; k < v.found; k++) {
         if (isnan(v.mode[k].moved)) continue;
-        check_near(v.mode[k].moved, nearest(&v.mode[k], &other), 0.15, 2e-5);
+        check_near(v.mode[k].moved, nearest(&v.mode[k], &other), 1e-3, 1e-8);
         largest = fmax(largest, v.mode[k].moved);
         known++;
     }
@@ -51,20 +51,7 @@ TEST(another_mesh_moves_modes_as_its_own_modes_say) {
     for (int k = 0; k < 2; k++) {
         check_arena(arena);
         const char *const sets[] = {"aero.wind={kind: uniform, speed: 12 m/s}", air[k].modes, NULL};
-        double largest = check_modes(arena, air[k].count, true, sets);
+        double largest = check_modes(arena, air[k].count, sets);
         assert_true(largest > air[k].least && largest < 1e-2);
     }
-}
-
-// The mesh is so coarse that the vectors do not lead to those of the other one.
-TEST(a_mesh_that_differs_much_is_searched) {
-    check_arena(arena);
-    const char *sets[] = {"bodies[blade1].rod.segments=6",
-                          "bodies[blade2].rod.segments=6",
-                          "bodies[blade3].rod.segments=6",
-                          "bodies[tower].rod.segments=4",
-                          "aero.wind={kind: uniform, speed: 12 m/s}",
-                          "modes={of: scene, air: quasi-steady}",
-                          NULL};
-    assert_true(check_modes(arena, 10, false, sets) > 5e-3);
 }
