@@ -32,6 +32,11 @@ static bool linearise(void *self, double t, const double *y) {
     return m->system.ops->linearise(m->system.self, t, y, input_at(m, t), m->factors);
 }
 
+static bool linearise_ahead(void *self, double t, const double *y, const double *ahead) {
+    const bough_member *m = self;
+    return m->system.ops->linearise_ahead(m->system.self, t, y, ahead, m->factors);
+}
+
 static bool factor(void *self, double gamma) {
     const bough_member *m = self;
     return m->system.ops->factor(m->system.self, m->factors, gamma);
@@ -64,6 +69,7 @@ bough_status bough_member_create(bough_arena *arena, const bough_system *system,
                      .derivative = derivative,
                      .derivative_twice = twice ? derivative_twice : NULL,
                      .linearise = linearise,
+                     .linearise_ahead = system->ops->linearise_ahead ? linearise_ahead : NULL,
                      .factor = factor,
                      .solve = solve,
                      .elastic_rate = system->elastic_rate};

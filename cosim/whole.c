@@ -346,6 +346,19 @@ static bool linearise(void *self, double t, const double *state, const double *i
     return true;
 }
 
+static bool linearise_ahead(void *self, double t, const double *state, const double *ahead, void *factors) {
+    bough_whole *own = factors;
+    const bough_assembly *a = own->assembly;
+    linearise(self, t, state, NULL, factors);
+    for (int i = 0; i < a->n_member; i++) {
+        const bough_system *s = &a->member[i]->system;
+        int first = a->state_offset[i];
+        if (!s->ahead || a->n_follower == 0) continue;
+        memcpy(own->setup_state + first, ahead + first, (size_t)s->n_state * sizeof *ahead);
+    }
+    return true;
+}
+
 static bool factor(void *self, void *factors, double gamma) {
     (void)self;
     bough_status status = factor_there(factors, gamma);
@@ -373,6 +386,7 @@ static void project(void *self, const double *state, double *x) { bough_whole_pr
 
 static const bough_system_ops operations = {
     BOUGH_SYSTEM_REQUIRED,
+    .linearise_ahead = linearise_ahead,
     .constrain = constrain,
     .project = project,
 };

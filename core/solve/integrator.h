@@ -40,9 +40,11 @@ typedef struct bough_ode {
     // f at two times, rate[0] and rate[1] (n): may be cheaper than twice the above. NULL: it is not.
     bool (*derivative_twice)(void *self, const double t[2], const double *y, double *const rate[2]);
     bool (*linearise)(void *self, double t, const double *y); // tangents of f
-    bool (*factor)(void *self, double gamma);                 // I − γ ∂f/∂y of the last tangents
-    void (*solve)(void *self, double *x);                     // in place
-    double elastic_rate;                                      // [1/s] as in system.h
+    // as in system.h; NULL: not known
+    bool (*linearise_ahead)(void *self, double t, const double *y, const double *ahead);
+    bool (*factor)(void *self, double gamma); // I − γ ∂f/∂y of the last tangents
+    void (*solve)(void *self, double *x);     // in place
+    double elastic_rate;                      // [1/s] as in system.h
 } bough_ode;
 
 typedef enum bough_integrator_kind {

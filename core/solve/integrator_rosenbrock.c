@@ -17,14 +17,17 @@ static const double gamma_h = 0.4358665215084590; // γ
 static const double alpha[STAGES] = {0, 0.8717330430169180, 0.7315799577888524, 1};
 
 // Old tangents let vibrations of stiff bodies grow, by damping ratios down to −9e-4. A viscosity, as a time,
-// of more than `least_viscosity` steps covers that. With less, the age of the tangents is chosen so that
-// renewed ones change a step by `most_change` of it: −2e-5 for a rod whose tip moves by 1/1000 of its length,
-// −2e-4 for three times as much, which tangents of every step have too.
+// of more than `least_viscosity` steps damps these by more. With less, the age of the tangents is chosen so
+// that renewed ones change a step by `most_change` of it: −2e-5 for a rod whose tip moves by 1/1000 of its
+// length, −2e-4 for three times as much, which tangents of every step have too.
 static const double least_viscosity = 0.03; // [-]
 static const double most_change = 0.002;    // [-]
 // A step whose error is greater than this multiple of that of the last step with new tangents, by the third
 // power of its length, fails because they are old: a member that turns fast changes them within a few steps.
 static const double too_old = 3;
+// The same of a step that does not fail, against the least with these tangents, and above this part of the
+// tolerance: a stiff body that turns moves what carries it.
+static const double turned = 10, noticed = 0.03;
 static const double older = 1.1;     // they may grow at each renewal, until a step fails again
 static const double rounding = 1e-9; // of times and steps that are meant to be equal, relative
 
@@ -40,12 +43,16 @@ typedef struct rosenbrock {
     int kept;                   // steps with the same tangents at most
     double useful;              // the same, less where steps have failed by the age of the tangents
     double new_error;           // of the last step with new tangents, over h³ [s⁻³]
+    double least;               // error of the steps since the tangents were found
     int age, most_age;          // steps since the tangents were found, and after which they are renewed
     bool started;
     int drifted;               // steps since ∂f/∂t was found
     double end;                // of the macro step in progress [s]
     bough_rosenbrock_step now; // the step in progress
     double *error;             // (n)
+    double *last;              // (n) y before the last step
+    double last_step;          // its length [s]; 0: none yet
+    double *ahead;             // (n) where rigid bodies are linearised
     double *old, *fresh;       // (n) the last increment under old and under renewed tangents
     bough_statistics sum;
 } rosenbrock;
@@ -109,7 +116,7 @@ static void *create(bough_arena *arena, const bough_ode *ode, const bough_integr
     m->step = options->step > 0 ? options->step : (double)INFINITY;
     m->most_steps = options->most_steps > 0 ? options->most_steps : MOST_STEPS;
     bough_arena_each(arena, n, &m->weight, &m->now.drift, &m->error, &m->now.at);
-    bough_arena_each(arena, n, &m->old, &m->fresh);
+    bough_arena_each(arena, n, &m->last, &m->ahead, &m->old, &m->fresh);
     for (int i = 0; i < STAGES; i++) m->now.u[i] = bough_arena_doubles(arena, n);
     for (size_t k = 0; k < n; k++) m->weight[k] = 1 / (options->rtol * ode->scale[k]);
     m->now.weight = m->weight;
@@ -142,6 +149,16 @@ static void choose_age(rosenbrock *m) {
 // The age at which tangents are renewed though no step has failed.
 static int oldest(const rosenbrock *m) { return (int)fmin(m->most_age, m->useful); }
 
+// What turns is linearised where it will be in the middle of the steps to come, by the last step. theory
+// (115)
+static bool linearise(rosenbrock *m, double t, const double *y, double h) {
+    const bough_ode *ode = &m->ode;
+    if (!ode->linearise_ahead) return ode->linearise(ode->self, t, y);
+    double by = m->last_step > 0 ? oldest(m) / 2.0 * fmin(h / m->last_step, 1) : 0;
+    for (int k = 0; k < ode->n; k++) m->ahead[k] = y[k] + by * (y[k] - m->last[k]);
+    return ode->linearise_ahead(ode->self, t, y, m->ahead);
+}
+
 static bool renew_tangents(rosenbrock *m, double t, const double *y, double gamma) {
     bool due = m->age == oldest(m), compare = undamped(m, gamma / gamma_h) && due && m->factored > 0;
     if (due) m->useful = fmin(older * m->useful, m->kept);
@@ -149,7 +166,7 @@ static bool renew_tangents(rosenbrock *m, double t, const double *y, double gamm
     if (compare) filter_increment(m, m->old);
     m->sum.jacobians++;
     m->sum.factorisations++;
-    if (!m->ode.linearise(m->ode.self, t, y) || !m->ode.factor(m->ode.self, gamma)) return false;
+    if (!linearise(m, t, y, gamma / gamma_h) || !m->ode.factor(m->ode.self, gamma)) return false;
     if (!undamped(m, gamma / gamma_h)) m->most_age = m->kept;
     if (compare && fabs(m->factored - gamma) <= rounding * gamma) {
         filter_increment(m, m->fresh);
@@ -202,7 +219,12 @@ static double try_step(rosenbrock *m, double t, double h, const double *y) {
 // -- steps ----------------------------------------------------------------------------------------
 
 // y ← y₁
-static void accept(rosenbrock *m, double *restrict y) { memcpy(y, m->now.at, (size_t)m->ode.n * sizeof *y); }
+static void accept(rosenbrock *m, double *restrict y) {
+    size_t size = (size_t)m->ode.n * sizeof *y;
+    memcpy(m->last, y, size);
+    memcpy(y, m->now.at, size);
+    m->last_step = m->now.h;
+}
 
 // After a failed step of length h: new tangents where the old ones are the cause, else a shorter step.
 static void shorten(rosenbrock *m, double h, double error) {
@@ -239,7 +261,10 @@ static const char *cross(rosenbrock *m, double *t, double pause, double t1, doub
         accept(m, y);
         m->sum.steps++;
         if (m->age == 0) m->new_error = error / (h * h * h);
+        m->least = m->age > 0 ? fmin(m->least, error) : error;
         m->age++;
+        bool late = error > noticed && error > turned * m->least;
+        if (late && m->ode.elastic_rate > 0) m->useful = m->age;
         m->drifted++;
         // elementary controller of an error of order 3
         double grown = 0.9 * h * fmin(5, cbrt(1 / fmax(error, 1e-6)));
@@ -254,6 +279,7 @@ static bough_status advance(void *self, double *t, double pause, double t1, bool
     if (restart || !m->started) {
         m->sum.starts++;
         m->started = true;
+        m->last_step = 0;
         m->age = MOST_AGE;
         m->most_age = UNDAMPED_AGE;
         m->useful = m->kept;

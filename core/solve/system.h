@@ -62,6 +62,9 @@ typedef struct bough_system_ops {
     bool (*kept_tangent)(void *self, const void *factors, const double *state_rate, const double *input_rate,
                          double *output_rate);
 
+    // As linearise without input, with members whose tangents may be ahead at another state (n_state).
+    bool (*linearise_ahead)(void *self, double t, const double *state, const double *ahead, void *factors);
+
     // Projects a state that was integrated to t onto its constraints: prescribed motions, quaternions
     // of length 1. True when the change is so large that a multistep method must restart.
     bool (*constrain)(void *self, double t, double *state);
@@ -85,6 +88,7 @@ typedef struct bough_system {
     const double *initial; // (n_state) where a run starts
     double elastic_rate;   // greatest ratio of stiffness to viscosity of its flexible bodies [1/s]: infinite
                            // without damping, 0 where nothing deforms
+    bool ahead; // its tangents may be those of a state where it will be: open chains of rigid bodies
     const bough_system_ops *ops;
     void *self;
 } bough_system;

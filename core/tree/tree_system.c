@@ -384,6 +384,7 @@ bough_system bough_tree_system_create(bough_arena *arena, bough_tree *tree, cons
                           .n_output = bough_tree_n_outputs(tree),
                           .scale = s->scale,
                           .initial = s->initial,
+                          .ahead = tree->n_closures == 0,
                           .ops = &operations,
                           .self = s};
 }

@@ -39,3 +39,34 @@ TEST(a_last_digit_is_not_amplified) {
         }
     }
 }
+
+// A blade that turns on a hub with a flywheel, on a mass that slides sideways on a spring, by tangents of 24
+// steps, in which it turns by 17 deg: y = A (sin Ωt − Ω/ω sin ωt).
+TEST(a_turning_blade_shakes_its_support) {
+    static const double speed = 1.25, length = 10, blade = 500, mass = 5501, stiffness = 2.2e4;
+    static const char text[] =
+        "gravity: [0, 0, 0]\n"
+        "simulation: {duration: 20 s, macro_step: 20 ms, coupling: {scheme: monolithic},\n"
+        "  master: {solver: rosenbrock, step: 10 ms, rtol: 1e-3}, error_estimate: none}\n"
+        "bodies:\n"
+        "  - {name: slide, fidelity: rigid, mass: 5000, inertia: [1, 1, 1],\n"
+        "     joint: {kind: prismatic, axis: y, parent: ground, stiffness: 2.2e4}}\n"
+        "  - {name: hub, fidelity: rigid, mass: 1, inertia: [1e12, 1, 1],\n"
+        "     joint: {kind: revolute, axis: x, parent: slide, speed: 1.25 rad/s}}\n"
+        "  - name: blade\n    fidelity: rod\n    joint: {kind: fixed, parent: hub}\n"
+        "    rod: {length: 10 m, segments: 4, stiffness: [1e9, 1e9, 1e9, 1e9, 1e9, 1e9],\n"
+        "      damping: [0.01, 0.01, 0.01, 0.01, 0.01, 0.01], mass: [50, 0, 0, 1, 1, 0]}\n";
+    check_arena(arena);
+    bough_simulation *s = scene_build_text(arena, text);
+    bough_channels list = scene_channels(arena, s);
+    double natural = sqrt(stiffness / mass), error = 0;
+    double amplitude = -blade * length / 2 * speed * speed / (mass * (natural * natural - speed * speed));
+    while (!bough_master_done(s->master)) {
+        scene_step(s);
+        double t = s->master->time;
+        double exact = amplitude * (sin(speed * t) - speed / natural * sin(natural * t));
+        error = fmax(error, fabs(scene_channel(s, &list, "slidePos") - exact));
+    }
+    print_message("%.2g of the amplitude\n", error / fabs(amplitude));
+    check_near(error, 0, 0, 0.01 * fabs(amplitude));
+}
