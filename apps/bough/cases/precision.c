@@ -61,8 +61,6 @@ void bough_study_compare(const bough_study *study, const bough_study_series *ser
     }
 }
 
-enum { COLUMNS = BOUGH_STUDY_AXES + 2 * BOUGH_STUDY_MEASURES + 8, WIDTH = 48, SHORT = 100 };
-
 // "ok", "failed at t=12.3 s", "not run"
 static void case_status(const bough_case_result *result, char text[40]) {
     if (!result->done) {
@@ -73,8 +71,6 @@ static void case_status(const bough_case_result *result, char text[40]) {
         snprintf(text, 40, "failed at t=%.4g s", result->time);
     }
 }
-
-static double real_time_factor(const bough_case_result *r) { return r->time / r->wall; }
 
 // Rows before those of the cells.
 enum { HEAD = -2, REFERENCE = -1 };
@@ -87,11 +83,15 @@ static const bough_case_result *result_of(const bough_study_results *results, in
     return row < 0 ? results->reference : &results->result[row];
 }
 
-// -- text -----------------------------------------------------------------------------------------
+// -- rows -----------------------------------------------------------------------------------------
 
+enum { COLUMNS = BOUGH_STUDY_AXES + 2 * BOUGH_STUDY_MEASURES + 12, SHORT = 100 };
+
+// Of table.txt, or of table.csv with keys, all digits and more columns.
 typedef struct line {
+    bool csv;
     int n;
-    char field[COLUMNS][WIDTH];
+    char field[COLUMNS][sizeof((bough_status *)NULL)->message];
 } line;
 
 static void put(line *l, const char *format, ...) __attribute__((format(printf, 2, 3)));
@@ -99,64 +99,86 @@ static void put(line *l, const char *format, ...) __attribute__((format(printf, 
 static void put(line *l, const char *format, ...) {
     va_list arguments;
     va_start(arguments, format);
-    vsnprintf(l->field[l->n++], WIDTH, format, arguments);
+    vsnprintf(l->field[l->n++], sizeof *l->field, format, arguments);
     va_end(arguments);
 }
 
+// Of the text not more than a column's width.
+static void put_either(line *l, const char *csv, const char *text) {
+    put(l, "%.*s", l->csv ? (int)sizeof *l->field : 40, l->csv ? csv : text);
+}
+
 static void put_number(line *l, bool known, double value) {
-    if (known)
-        put(l, "%.3g", value);
+    if (known && isfinite(value))
+        put(l, l->csv ? "%.9g" : "%.3g", value);
     else
-        put(l, "-");
+        put_either(l, "", "-");
 }
 
 static void put_head(line *l, const bough_study *s) {
-    l->n = 0;
     put(l, "run");
-    for (int i = 0; i < s->grid.n; i++) put(l, "%.40s", s->grid.axis[i].label);
+    for (int i = 0; i < s->grid.n; i++) put_either(l, s->grid.axis[i].key, s->grid.axis[i].label);
     put(l, "status");
+    if (l->csv) put(l, "time [s]");
     put(l, "wall [s]");
     put(l, "cpu [s]");
-    put(l, "x real time");
+    put_either(l, "real_time_factor [1]", "x real time");
     for (int i = 0; i < s->n_measure; i++) {
-        put(l, "%.30s [%.12s]", s->measure[i].name, s->measure[i].unit);
-        put(l, "estimated");
+        const bough_study_measure *m = &s->measure[i];
+        put(l, "%.120s [%.60s]", m->name, m->unit);
+        if (l->csv)
+            put(l, "%.120s estimated [%.50s]", m->name, m->unit);
+        else
+            put(l, "estimated");
     }
-    put(l, "defect rms [1]");
-    put(l, "energy defect [1]");
+    if (l->csv) put(l, "defect_max [1]");
+    put_either(l, "defect_rms [1]", "defect rms [1]");
+    put_either(l, "energy_residual [J]", "energy defect [1]");
+    if (l->csv) put(l, "energy_exchanged [J]");
+    if (l->csv) put(l, "diagnosis");
 }
 
 static void put_row(line *l, const bough_study_results *results, int row) {
     const bough_study *s = results->study;
+    l->n = 0;
     if (row == HEAD) {
         put_head(l, s);
         return;
     }
     const bough_case_result *r = result_of(results, row);
+    const bough_coupling_report *k = &r->coupling;
     char status[40];
-    bool good = bough_held(r);
+    bool failed = r->done && !bough_held(r);
     case_status(r, status);
-    l->n = 0;
     if (row < 0)
         put(l, "reference");
     else
         put(l, "%d", row + 1);
     for (int i = 0; i < s->grid.n; i++) {
         const char *value = bough_study_value(s, cell_of(s, row), i);
-        put(l, "%.40s", value[0] ? value : "as the scene");
+        put_either(l, value, value[0] ? value : "as the scene");
     }
-    put(l, "%s", status);
+    put_either(l, failed ? "failed" : status, status);
+    if (l->csv) put_number(l, r->done, r->time);
     put_number(l, r->done, r->wall);
     put_number(l, r->done, r->cpu);
-    put_number(l, r->done && r->wall > 0, real_time_factor(r));
+    put_number(l, r->done, r->time / r->wall);
     for (int i = 0; i < s->n_measure; i++) {
-        put_number(l, good, r->error[i]);
-        put_number(l, good && isfinite(r->estimate[i]), r->estimate[i]);
+        put_number(l, r->done && !(failed && !l->csv), r->error[i]);
+        put_number(l, r->done && !(failed && !l->csv), r->estimate[i]);
     }
-    put_number(l, r->done, r->coupling.defect_rms);
-    double exchanged = r->coupling.energy_exchanged;
-    put_number(l, r->done && exchanged > 0, r->coupling.energy_residual / exchanged);
+    if (l->csv) put_number(l, r->done, k->defect_max);
+    put_number(l, r->done, k->defect_rms);
+    if (!l->csv) {
+        put_number(l, r->done && k->energy_exchanged > 0, k->energy_residual / k->energy_exchanged);
+        return;
+    }
+    put_number(l, r->done, k->energy_residual);
+    put_number(l, r->done, k->energy_exchanged);
+    put(l, "%s", failed ? r->outcome.message : "");
 }
+
+// -- text -----------------------------------------------------------------------------------------
 
 static void widen(const line *l, int width[COLUMNS]) {
     for (int i = 0; i < l->n; i++) {
@@ -190,7 +212,7 @@ static void print_diagnosis(const char *settings, const bough_case_result *r, FI
 // All fields are formatted once before to find the widest of each column.
 static void print(const bough_study_results *results, FILE *stream) {
     const bough_study *s = results->study;
-    line l;
+    line l = {.csv = false};
     int width[COLUMNS] = {0};
     if (s->title) fprintf(stream, "%s\n", s->title);
     for (int pass = 0; pass < 2; pass++) {
@@ -223,54 +245,15 @@ void bough_csv_next(FILE *file, const char *text) {
     bough_csv_text(file, text);
 }
 
-static void write_csv_head(const bough_study *s, FILE *f) {
-    fputs("run", f);
-    for (int i = 0; i < s->grid.n; i++) bough_csv_next(f, s->grid.axis[i].key);
-    fputs(",status,time [s],wall [s],cpu [s],real_time_factor [1]", f);
-    for (int i = 0; i < s->n_measure; i++) {
-        char name[200];
-        snprintf(name, sizeof name, "%.120s [%.60s]", s->measure[i].name, s->measure[i].unit);
-        bough_csv_next(f, name);
-        snprintf(name, sizeof name, "%.120s estimated [%.50s]", s->measure[i].name, s->measure[i].unit);
-        bough_csv_next(f, name);
-    }
-    fputs(",defect_max [1],defect_rms [1],energy_residual [J],energy_exchanged [J],diagnosis\n", f);
-}
-
-static void write_csv_numbers(FILE *f, int n, const double *value) {
-    for (int i = 0; i < n; i++) {
-        fputc(',', f);
-        if (isfinite(value[i])) fprintf(f, "%.9g", value[i]);
-    }
-}
-
-static void write_csv_row(const bough_study_results *results, int row, FILE *f) {
-    const bough_study *s = results->study;
-    const bough_case_result *r = result_of(results, row);
-    const bough_coupling_report *k = &r->coupling;
-    const double speed[] = {r->time, r->wall, r->cpu, real_time_factor(r)};
-    const double coupling[] = {k->defect_max, k->defect_rms, k->energy_residual, k->energy_exchanged};
-    bool good = bough_is_ok(&r->outcome);
-    if (row < 0)
-        fputs("reference", f);
-    else
-        fprintf(f, "%d", row + 1);
-    for (int i = 0; i < s->grid.n; i++) bough_csv_next(f, bough_study_value(s, cell_of(s, row), i));
-    fprintf(f, ",%s", good ? "ok" : "failed");
-    write_csv_numbers(f, 4, speed);
-    for (int i = 0; i < s->n_measure; i++) {
-        write_csv_numbers(f, 1, &r->error[i]);
-        write_csv_numbers(f, 1, &r->estimate[i]);
-    }
-    write_csv_numbers(f, 4, coupling);
-    bough_csv_next(f, good ? "" : r->outcome.message);
-    fputc('\n', f);
-}
-
 static void write_csv(const void *self, FILE *f) {
     const bough_study_results *results = self;
-    write_csv_head(results->study, f);
-    for (int row = REFERENCE; row < results->study->n_case; row++) write_csv_row(results, row, f);
+    line l = {.csv = true};
+    for (int row = HEAD; row < results->study->n_case; row++) {
+        put_row(&l, results, row);
+        bough_csv_text(f, l.field[0]);
+        for (int i = 1; i < l.n; i++) bough_csv_next(f, l.field[i]);
+        fputc('\n', f);
+    }
 }
 
 // -- files ----------------------------------------------------------------------------------------
