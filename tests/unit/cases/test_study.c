@@ -202,6 +202,8 @@ TEST_IN_FOLDER(every_run_has_a_row_with_its_diagnosis_if_it_failed) {
     check_ok(perform(folder, study, ALL, table));
     assert_int_equal(count_in(folder, "table.csv", "\n"), 1 + 1 + 4);
     assert_int_equal(count_results(folder), 1 + 4);
+    assert_int_equal(
+        count_in(folder, "table.csv", "run,simulation.coupling.scheme,simulation.macro_step,status,"), 1);
     assert_int_equal(count_in(folder, "table.csv", ",tip [m],tip estimated [m],angle [rad],"), 1);
     char *text = scratch_read(folder, "table.txt");
     assert_string_equal(text, table);
