@@ -164,8 +164,8 @@ static void put_row(line *l, const bough_study_results *results, int row) {
     put_number(l, r->done, r->cpu);
     put_number(l, r->done, r->time / r->wall);
     for (int i = 0; i < s->n_measure; i++) {
-        put_number(l, r->done && !(failed && !l->csv), r->error[i]);
-        put_number(l, r->done && !(failed && !l->csv), r->estimate[i]);
+        put_number(l, r->done && (l->csv || !failed), r->error[i]);
+        put_number(l, r->done && (l->csv || !failed), r->estimate[i]);
     }
     if (l->csv) put_number(l, r->done, k->defect_max);
     put_number(l, r->done, k->defect_rms);
