@@ -381,8 +381,8 @@ shown() {
     expect 0 report out
     has ../stdout '^report: out/report.html$'
     has out/report.html 'data.summary = '
-    has ../stdout '^picture: out/shape.svg, shape-dark.svg$'
-    has out/shape-dark.svg '^<text .*>0.02 s, to scale'
+    has ../stdout '^picture: out/shape.svg$'
+    has out/shape.svg '^<text .*>0.02 s, to scale'
     expect 0 report out --at '9 ms'
     has out/shape.svg '^<text .*>0.01 s, to scale' # the nearest
     expect 0 report out --at 0s

@@ -37,7 +37,7 @@ static bough_status report(bough_arena *arena, const void *given) {
         printf("report: %s/report.html\n", options->operand);
         status = bough_report_shape(arena, options->operand, own->at.given ? own->at.time : HUGE_VAL, &drawn);
     }
-    if (drawn) printf("picture: %s/shape.svg, shape-dark.svg\n", options->operand);
+    if (drawn) printf("picture: %s/shape.svg\n", options->operand);
     return status;
 }
 

@@ -179,8 +179,7 @@ static bough_status write_binary(const bough_run_command *command) {
 
 // An older summary must not stand beside the new channels, nor a new one beside older channels.
 static bough_status replace_older(const bough_run_command *command) {
-    static const char *const older[] = {"summary.json", "channels.outb", "report.html", "shape.svg",
-                                        "shape-dark.svg"};
+    static const char *const older[] = {"summary.json", "channels.outb", "report.html", "shape.svg"};
     for (size_t i = 0; i < sizeof older / sizeof *older; i++)
         BOUGH_TRY(bough_folder_remove(command->folder, older[i]));
     BOUGH_TRY(command->frames ? bough_frames_finish(command->frames) : bough_frames_remove(command->folder));

@@ -43,8 +43,8 @@ typedef struct bough_stored_frame {
 bough_status bough_report_frame(bough_arena *arena, const char *folder, double time,
                                 bough_stored_frame *frame);
 
-// Draws it to scale, coloured by the section moment: shape.svg for light pages and shape-dark.svg in the
-// folder. Nothing is drawn where there is no frame.
+// Draws it to scale, coloured by the section moment: shape.svg in the folder. Nothing is drawn where there is
+// no frame.
 bough_status bough_report_shape(bough_arena *arena, const char *folder, double time, bool *drawn);
 
 // Opens folder/name; NULL when it does not exist.

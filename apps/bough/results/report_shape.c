@@ -146,38 +146,27 @@ static void draw_legend(const drawing *d, double height) {
             end, y - 14);
 }
 
-static void draw(const bough_stored_frame *frame, bool dark, FILE *svg) {
+static void draw(const void *frame, FILE *svg) {
     drawing *d = &(drawing){.frame = frame, .svg = svg};
     look(d);
     double height = fit(d);
-    fprintf(d->svg,
-            "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"%d\" height=\"%.0f\" viewBox=\"0 0 %d %.0f\" "
-            "font-family=\"sans-serif\" font-size=\"13\" fill=\"%s\">\n"
-            "<style>.paper{fill:%s}.axis{stroke:%s;stroke-width:1.5;fill:none}.weak-line{stroke:#8a939c}"
-            ".rigid{stroke:#8a939c;stroke-width:7;fill:none}path{stroke-linecap:round;stroke-linejoin:round}"
-            "</style>\n<rect class=\"paper\" width=\"100%%\" height=\"100%%\"/>\n",
-            WIDTH, height, WIDTH, height, dark ? "#e6e6e6" : "#222", dark ? "#0d1117" : "#fff",
-            dark ? "#e6e6e6" : "#222");
-    fprintf(d->svg, "<text x=\"%d\" y=\"26\">%.6g s, to scale; dashed: straight</text>\n", SIDE,
-            d->frame->time);
+    bough_picture_begin(svg, WIDTH, (int)lround(height));
+    fputs("<style>.weak-line{stroke:#8a939c}.rigid{stroke:#8a939c;stroke-width:7;fill:none}"
+          "path{stroke-linecap:round;stroke-linejoin:round}</style>\n",
+          svg);
+    fprintf(svg, "<text x=\"%d\" y=\"26\">%.6g s, to scale; dashed: straight</text>\n", SIDE, d->frame->time);
     draw_lines(d, false);
     draw_lines(d, true);
     draw_axes(d, SIDE + 22, height - 90);
     draw_legend(d, height);
-    fputs("</svg>\n", d->svg);
+    fputs("</svg>\n", svg);
 }
-
-static void draw_light(const void *frame, FILE *svg) { draw(frame, false, svg); }
-
-static void draw_dark(const void *frame, FILE *svg) { draw(frame, true, svg); }
 
 bough_status bough_report_shape(bough_arena *arena, const char *folder, double time, bool *drawn) {
     bough_stored_frame frame;
     *drawn = false;
     BOUGH_TRY(bough_report_frame(arena, folder, time, &frame));
     if (frame.n_line == 0) return bough_ok();
-    BOUGH_TRY(bough_folder_write(folder, "shape.svg", draw_light, &frame));
-    BOUGH_TRY(bough_folder_write(folder, "shape-dark.svg", draw_dark, &frame));
     *drawn = true;
-    return bough_ok();
+    return bough_folder_write(folder, "shape.svg", draw, &frame);
 }
