@@ -121,7 +121,7 @@ wrong_intervals() {
     has stderr 'not a multiple of the 0.02 s between the samples'
     for time in 5kg -1s 0 s ''; do
         expect 2 run "$bar" --checkpoint "$time" --out kept
-        has stderr '^bough: error: --checkpoint expects a time such as 5s'
+        has stderr '^bough: error: --checkpoint expects a time (in s, or with a unit, as .20 ms.) > 0, got'
     done
     [ ! -e kept ] || fail 'a refused run wrote something'
 }

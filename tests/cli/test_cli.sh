@@ -392,7 +392,7 @@ shown() {
         fail "$said: the end of the bar: $(cat ../straight)"
     [ "$(grep -c '<path stroke-width' out/shape.svg)" -eq 40 ] || fail "$said: a line for each segment"
     expect 2 report out --at '1 kg'
-    has ../stderr "--at expects a time such as 12.5s, got '1 kg'"
+    has ../stderr "--at expects a time (in s, or with a unit, as '20 ms'), got '1 kg'"
     touch out/frames/mine.vtp
     expect 0 run "$bar" --set 'simulation.duration=20 ms' --set 'simulation.output.frames=10 ms' --out out
     [ "$(find out/frames | wc -l)" -eq 5 ] || fail "$said: three frames and what is not ours"

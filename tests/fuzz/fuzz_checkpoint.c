@@ -30,7 +30,7 @@ static void make_good(void) {
     options.common.out = fuzz_folder();
     pid_t child = fork();
     if (child == 0) {
-        options.checkpoint = "1ms";
+        options.checkpoint = 1e-3;
         bough_command_run.run(bough_arena_create(), &options);
         _exit(1);
     }

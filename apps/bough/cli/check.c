@@ -377,7 +377,7 @@ typedef struct check_options {
 static const bough_option rows[] = {
     BOUGH_OPTION_SET,
     {"full", NULL, "prints the scene with base and --set merged into it, as a scene that runs",
-     bough_option_flag, offsetof(check_options, full)},
+     bough_option_flag, .offset = offsetof(check_options, full)},
     {0},
 };
 

@@ -1,6 +1,5 @@
 #include "apps/bough/cli/run.h"
 
-#include "apps/bough/config/schema.h"
 #include "apps/bough/results/folder.h"
 #include "apps/bough/scene/scene_files.h"
 #include "core/base/input_file.h"
@@ -48,12 +47,6 @@ static void move(bough_run_command *command, bough_snapshot_move direction) {
 }
 
 // -- options --------------------------------------------------------------------------------------
-
-static bough_status read_interval(const char *text, double *interval) {
-    char why[160];
-    if (bough_quantity(text, BOUGH_TIME, interval, why) && *interval > 0) return bough_ok();
-    return bough_fail(BOUGH_INVALID, "--checkpoint expects a time such as 5s, got '%.80s'", text);
-}
 
 static bough_status check_samples(const bough_master *m, const char *of, double interval) {
     for (int i = 0; i < m->n_load; i++) {
@@ -157,11 +150,9 @@ static bough_status resume(bough_run_command *command) {
 bough_status bough_checkpoint_open(bough_run_command *command) {
     const bough_run_options *o = command->options;
     bough_checkpoint *c = &command->checkpoint;
-    if (!o->checkpoint && !o->resume) return bough_ok();
-    if (o->checkpoint) {
-        BOUGH_TRY(read_interval(o->checkpoint, &c->interval));
-        BOUGH_TRY(check_interval(command, c->interval));
-    }
+    c->interval = o->checkpoint;
+    if (!(c->interval > 0) && !o->resume) return bough_ok();
+    if (c->interval > 0) BOUGH_TRY(check_interval(command, c->interval));
     take_memory(command);
     find_fingerprints(command);
     return o->resume ? resume(command) : bough_ok();

@@ -1,6 +1,5 @@
 #include "apps/bough/cli/command.h"
 
-#include "apps/bough/config/schema.h"
 #include "core/base/level.h"
 
 #include <errno.h>
@@ -91,38 +90,49 @@ static bough_status missing(const bough_command *command) {
 
 // -- values ---------------------------------------------------------------------------------------
 
-bough_status bough_option_text(const char *name, const char *text, void *field) {
-    (void)name;
+bough_status bough_option_text(const bough_option *row, const char *text, void *field) {
+    (void)row;
     *(const char **)field = text;
     return bough_ok();
 }
 
-bough_status bough_option_texts(const char *name, const char *text, void *field) {
-    (void)name;
+bough_status bough_option_texts(const bough_option *row, const char *text, void *field) {
+    (void)row;
     bough_texts *texts = field;
     texts->text[texts->n++] = text;
     return bough_ok();
 }
 
-bough_status bough_option_flag(const char *name, const char *text, void *field) {
-    (void)name, (void)text;
+bough_status bough_option_flag(const bough_option *row, const char *text, void *field) {
+    (void)row, (void)text;
     *(bool *)field = true;
     return bough_ok();
 }
 
-bough_status bough_option_threads(const char *name, const char *text, void *field) {
-    char *end;
-    errno = 0;
-    long n = strtol(text, &end, 10);
-    if (end == text || *end != '\0' || errno || n < 1 || n > MAX_THREADS) {
-        return bough_fail(BOUGH_INVALID, "--%s expects a whole number from 1 to %d, got '%.80s'", name,
-                          MAX_THREADS, text);
+bough_status bough_option_quantity(const bough_option *row, const char *text, void *field) {
+    char expected[96], why[160];
+    const char *range = row->range ? row->range : "";
+    double value;
+    if (bough_quantity(text, row->dimension, &value, why) && bough_in_range(value, row->range)) {
+        *(double *)field = value;
+        return bough_ok();
     }
-    *(int *)field = (int)n;
-    return bough_ok();
+    bough_dimension_expected(row->dimension, expected);
+    return bough_fail(BOUGH_INVALID, "--%s expects %s%s%s, got '%.80s'%s%s", row->name, expected,
+                      range[0] == '[' ? " in "
+                      : range[0]      ? " "
+                                      : "",
+                      range, text, why[0] ? ": " : "", why);
 }
 
-bough_status bough_option_kernels(const char *name, const char *text, void *field) {
+bough_status bough_option_threads(const bough_option *row, const char *text, void *field) {
+    int *n = field;
+    if (bough_whole_number(text, n) && *n >= 1 && *n <= MAX_THREADS) return bough_ok();
+    return bough_fail(BOUGH_INVALID, "--%s expects a whole number from 1 to %d, got '%.80s'", row->name,
+                      MAX_THREADS, text);
+}
+
+bough_status bough_option_kernels(const bough_option *row, const char *text, void *field) {
     (void)field;
     bough_level level;
     if (setenv("BOUGH_KERNELS", text, 1) != 0) {
@@ -130,7 +140,7 @@ bough_status bough_option_kernels(const char *name, const char *text, void *fiel
     }
     if (bough_level_choose(&level)) return bough_ok();
     return bough_fail(BOUGH_INVALID, "--%s expects v2, v3 or v4, on this processor at most %s, got '%.80s'",
-                      name, bough_level_name(level), text);
+                      row->name, bough_level_name(level), text);
 }
 
 // -- reading --------------------------------------------------------------------------------------
@@ -160,7 +170,7 @@ static bool is_shortened(const char *word, const char *name) {
 }
 
 static bough_status take_option(const bough_option *row, const char *text, bough_options *options) {
-    if (row->read) return row->read(row->name, text, (char *)options + row->offset);
+    if (row->read) return row->read(row, text, (char *)options + row->offset);
     return bough_fail(BOUGH_INVALID, "the option --%s was removed: %s", row->name, row->help);
 }
 

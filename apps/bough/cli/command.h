@@ -3,6 +3,7 @@
 #ifndef BOUGH_APPS_CLI_COMMAND_H
 #define BOUGH_APPS_CLI_COMMAND_H
 
+#include "apps/bough/config/schema.h"
 #include "apps/bough/model/simulation.h"
 #include "core/base/arena.h"
 #include "core/base/status.h"
@@ -37,40 +38,45 @@ typedef struct bough_option {
     const char *name, *argument; // "out", "DIR"; argument NULL: none
     const char *help;
     // Reads the value into its field; NULL: the option was removed, `help` says what takes its place.
-    bough_status (*read)(const char *name, const char *text, void *field);
+    bough_status (*read)(const struct bough_option *row, const char *text, void *field);
     size_t offset; // of the field in the command's struct
+    // of a quantity, as of a key
+    bough_dimension dimension;
+    const char *range;
 } bough_option;
 
-// Readers of options: const char *; bough_texts; bool; a number of threads, int.
-bough_status bough_option_text(const char *name, const char *text, void *field);
-bough_status bough_option_texts(const char *name, const char *text, void *field);
-bough_status bough_option_flag(const char *name, const char *text, void *field);
-bough_status bough_option_threads(const char *name, const char *text, void *field);
-bough_status bough_option_kernels(const char *name, const char *text, void *field); // sets the environment
+// Readers of options: const char *; bough_texts; bool; a quantity, double, SI; a number of threads, int.
+bough_status bough_option_text(const bough_option *row, const char *text, void *field);
+bough_status bough_option_texts(const bough_option *row, const char *text, void *field);
+bough_status bough_option_flag(const bough_option *row, const char *text, void *field);
+bough_status bough_option_quantity(const bough_option *row, const char *text, void *field);
+bough_status bough_option_threads(const bough_option *row, const char *text, void *field);
+bough_status bough_option_kernels(const bough_option *row, const char *text,
+                                  void *field); // sets the environment
 
 // Rows that several commands have.
 #define BOUGH_OPTION_SET                                                                                     \
     {                                                                                                        \
         "set", "KEY=VALUE", "replaces or adds a value of the scene: 'bodies[blade1].pitch=5 deg'",           \
-            bough_option_texts, offsetof(bough_options, set)                                                 \
+            bough_option_texts, .offset = offsetof(bough_options, set)                                       \
     }
 #define BOUGH_OPTION_OUT                                                                                     \
     {                                                                                                        \
         "out", "DIR", "folder for the results; default out/<name of the file>", bough_option_text,           \
-            offsetof(bough_options, out)                                                                     \
+            .offset = offsetof(bough_options, out)                                                           \
     }
 #define BOUGH_OPTION_THREADS                                                                                 \
     {                                                                                                        \
         "threads", "N", "1 to 64; replaces the scene's number", bough_option_threads,                        \
-            offsetof(bough_options, threads)                                                                 \
+            .offset = offsetof(bough_options, threads)                                                       \
     }
 #define BOUGH_OPTION_KERNELS                                                                                 \
     {                                                                                                        \
         "kernels", "LEVEL", "v2, v3 or v4: level of the instruction set, default the processor's highest",   \
-            bough_option_kernels, 0                                                                          \
+            bough_option_kernels, .offset = 0                                                                \
     }
 #define BOUGH_OPTION_QUIET                                                                                   \
-    { "quiet", NULL, "no progress line", bough_option_flag, offsetof(bough_options, quiet) }
+    { "quiet", NULL, "no progress line", bough_option_flag, .offset = offsetof(bough_options, quiet) }
 
 // -- commands -------------------------------------------------------------------------------------
 

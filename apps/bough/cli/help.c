@@ -66,7 +66,7 @@ typedef struct help_options {
 
 static const bough_option rows[] = {
     {"json-schema", NULL, "of scene (default) or study: the keys as JSON Schema, for editors",
-     bough_option_flag, offsetof(help_options, json)},
+     bough_option_flag, .offset = offsetof(help_options, json)},
     {0},
 };
 

@@ -3,7 +3,6 @@
 
 #include "apps/bough/cli/command.h"
 
-#include <stdlib.h>
 #include <string.h>
 
 enum { TRIAL_STEPS = 500 };
@@ -13,15 +12,8 @@ typedef struct import_options {
     bough_import_options model;
 } import_options;
 
-static bough_status read_mass(const char *name, const char *text, void *field) {
-    char *end;
-    double *mass = field;
-    *mass = strtod(text, &end);
-    if (end != text && *end == '\0' && *mass > 0 && *mass <= 1e9) return bough_ok();
-    return bough_fail(BOUGH_INVALID, "--%s expects a mass in kg up to 1e9, got '%.80s'", name, text);
-}
-
-#define AT(member) offsetof(import_options, model.member)
+#define AT(member) .offset = offsetof(import_options, model.member)
+#define MASS BOUGH_MASS, "[1e-3, 1e9]"
 static const bough_option rows[] = {
     BOUGH_OPTION_OUT,
     {"wind", "FILE", "wind for the imported model; replaces its own: .bts, .wnd or uniform",
@@ -30,9 +22,10 @@ static const bough_option rows[] = {
      AT(controller)},
     {"clamp-base", NULL, "imports an offshore turbine as clamped at the base of its tower", bough_option_flag,
      AT(clamp_base)},
-    {"hub-mass", "KG", "mass of the hub of a WindIO turbine without one", read_mass, AT(hub_mass)},
-    {"nacelle-mass", "KG", "mass of the nacelle of a WindIO turbine without one", read_mass,
-     AT(nacelle_mass)},
+    {"hub-mass", "KG", "mass of the hub of a WindIO turbine without one", bough_option_quantity, AT(hub_mass),
+     MASS},
+    {"nacelle-mass", "KG", "mass of the nacelle of a WindIO turbine without one", bough_option_quantity,
+     AT(nacelle_mass), MASS},
     {0},
 };
 

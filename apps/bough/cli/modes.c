@@ -457,10 +457,10 @@ typedef struct modes_options {
     const char *sensitivity; // of this mode; NULL: of none
 } modes_options;
 
-static bough_status read_until(const char *name, const char *text, void *field) {
+static bough_status read_until(const bough_option *row, const char *text, void *field) {
     *(bool *)field = true;
     if (strcmp(text, "unstable") == 0) return bough_ok();
-    return bough_fail(BOUGH_INVALID, "--%s expects unstable, got '%.80s'", name, text);
+    return bough_fail(BOUGH_INVALID, "--%s expects unstable, got '%.80s'", row->name, text);
 }
 
 static const bough_option rows[] = {
@@ -468,11 +468,11 @@ static const bough_option rows[] = {
     BOUGH_OPTION_OUT,
     {"until", "unstable",
      "ends the sweep where an oscillation or a divergence begins to grow, and finds that place", read_until,
-     offsetof(modes_options, until)},
+     .offset = offsetof(modes_options, until)},
     {"sweep", "KEY=V1, V2, ...", "modes over operating points; the values of several --sweep vary together",
-     bough_option_texts, offsetof(modes_options, sweep)},
+     bough_option_texts, .offset = offsetof(modes_options, sweep)},
     {"sensitivity", "MODE", "what a mode, its number or words of its row as 'edge forward', depends on most",
-     bough_option_text, offsetof(modes_options, sensitivity)},
+     bough_option_text, .offset = offsetof(modes_options, sensitivity)},
     {0},
 };
 

@@ -2,7 +2,6 @@
 #include "apps/bough/results/report.h"
 
 #include "apps/bough/cli/command.h"
-#include "apps/bough/config/schema.h"
 
 #include <math.h>
 
@@ -14,17 +13,15 @@ typedef struct report_options {
     } at;
 } report_options;
 
-static bough_status read_time(const char *name, const char *text, void *field) {
-    char why[160];
+static bough_status read_time(const bough_option *row, const char *text, void *field) {
     struct moment *at = field;
     at->given = true;
-    if (bough_quantity(text, BOUGH_TIME, &at->time, why)) return bough_ok();
-    return bough_fail(BOUGH_INVALID, "--%s expects a time such as 12.5s, got '%.80s'", name, text);
+    return bough_option_quantity(row, text, &at->time);
 }
 
 static const bough_option rows[] = {
     {"at", "TIME", "of the stored frame that shape.svg shows; default the last", read_time,
-     offsetof(report_options, at)},
+     .offset = offsetof(report_options, at), .dimension = BOUGH_TIME},
     {0},
 };
 

@@ -250,9 +250,10 @@ static const bough_option rows[] = {
     BOUGH_OPTION_THREADS,
     BOUGH_OPTION_KERNELS,
     {"checkpoint", "TIME", "stores the state of the run at this interval of simulated time",
-     bough_option_text, offsetof(bough_run_options, checkpoint)},
+     bough_option_quantity, .offset = offsetof(bough_run_options, checkpoint), .dimension = BOUGH_TIME,
+     .range = "> 0"},
     {"resume", NULL, "continues from the last checkpoint in the results folder", bough_option_flag,
-     offsetof(bough_run_options, resume)},
+     .offset = offsetof(bough_run_options, resume)},
     BOUGH_OPTION_QUIET,
     {0},
 };

@@ -20,8 +20,8 @@ typedef struct bough_checkpoint {
 
 typedef struct bough_run_options {
     bough_options common;
-    const char *checkpoint; // simulated time between checkpoints; NULL: none
-    bool resume;            // from the last one
+    double checkpoint; // simulated time between checkpoints [s]; 0: none
+    bool resume;       // from the last one
 } bough_run_options;
 
 typedef struct bough_run_command {

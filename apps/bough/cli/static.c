@@ -460,7 +460,7 @@ static const bough_option rows[] = {
     BOUGH_OPTION_SET,
     BOUGH_OPTION_OUT,
     {"path", NULL, "follows the equilibria while the loads grow along their ramps, past limit points",
-     bough_option_flag, offsetof(static_options, path)},
+     bough_option_flag, .offset = offsetof(static_options, path)},
     {0},
 };
 

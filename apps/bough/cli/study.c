@@ -9,22 +9,22 @@ typedef struct study_options {
     bough_study_options how;
 } study_options;
 
-static bough_status read_part(const char *name, const char *text, void *field) {
+static bough_status read_part(const bough_option *row, const char *text, void *field) {
     bough_study_options *how = field;
     char rest;
     bool read = sscanf(text, "%d/%d%c", &how->part, &how->parts, &rest) == 2;
     if (read && how->part >= 1 && how->part <= how->parts) return bough_ok();
-    return bough_fail(BOUGH_INVALID, "--%s expects K/N such as 1/4, got '%.80s'", name, text);
+    return bough_fail(BOUGH_INVALID, "--%s expects K/N such as 1/4, got '%.80s'", row->name, text);
 }
 
 static const bough_option rows[] = {
     BOUGH_OPTION_OUT,
     {"threads", "N", "1 to 64; of stability, sweep, load-set: runs at the same time, else of each run",
-     bough_option_threads, offsetof(bough_options, threads)},
+     bough_option_threads, .offset = offsetof(bough_options, threads)},
     {"part", "K/N", "of a study (stability, sweep, load-set) only the K-th of N shares of its runs",
-     read_part, offsetof(study_options, how)},
+     read_part, .offset = offsetof(study_options, how)},
     {"case", "NAME", "of a load set only the load case of that name", bough_option_text,
-     offsetof(study_options, how.only)},
+     .offset = offsetof(study_options, how.only)},
     BOUGH_OPTION_QUIET,
     {0},
 };

@@ -2,7 +2,6 @@
 #include "apps/bough/cases/tune.h"
 
 #include "apps/bough/cli/command.h"
-#include "apps/bough/config/schema.h"
 
 #include <math.h>
 
@@ -13,28 +12,14 @@ typedef struct tune_options {
 
 static const double usual_span = 20; // [s]
 
-static bough_status read_error(const char *name, const char *text, void *field) {
-    char why[160];
-    double *error = field;
-    if (bough_quantity(text, BOUGH_PURE_NUMBER, error, why) && *error >= 1e-7 && *error <= 0.5)
-        return bough_ok();
-    return bough_fail(BOUGH_INVALID, "--%s expects a number from 1e-7 to 0.5, got '%.80s'", name, text);
-}
-
-static bough_status read_span(const char *name, const char *text, void *field) {
-    char why[160];
-    double *span = field;
-    if (bough_quantity(text, BOUGH_TIME, span, why) && *span > 0) return bough_ok();
-    return bough_fail(BOUGH_INVALID, "--%s expects a time such as '20 s', got '%.80s'", name, text);
-}
-
 static const bough_option rows[] = {
     BOUGH_OPTION_SET,
     BOUGH_OPTION_OUT,
-    {"error", "E", "to be met, over the range of each channel; default the scene's accuracy", read_error,
-     offsetof(tune_options, how.error)},
-    {"for", "TIME", "stretch of the scene that is run with each of the settings; default 20 s", read_span,
-     offsetof(tune_options, how.span)},
+    {"error", "E", "to be met, over the range of each channel; default the scene's accuracy",
+     bough_option_quantity, .offset = offsetof(tune_options, how.error), .range = "[1e-7, 0.5]"},
+    {"for", "TIME", "stretch of the scene that is run with each of the settings; default 20 s",
+     bough_option_quantity, .offset = offsetof(tune_options, how.span), .dimension = BOUGH_TIME,
+     .range = "> 0"},
     {0},
 };
 

@@ -159,6 +159,9 @@ int bough_schema_numbers(bough_schema_reader *reader, const bough_node *node, in
 // not one; `why` then receives the reason.
 bool bough_quantity(const char *text, bough_dimension dimension, double *value, char why[160]);
 
+// What is expected of it: "a length (in m, or with a unit, as '61.5 m')".
+void bough_dimension_expected(bough_dimension dimension, char text[96]);
+
 // A unit such as "kN", "rad/s", "kg m^2" in base units: its factor and the exponents of m, kg, s and rad.
 // False with a reason for what is none.
 enum { BOUGH_BASE_UNITS = 4 };

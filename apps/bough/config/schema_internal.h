@@ -4,9 +4,6 @@
 
 #include "apps/bough/config/schema.h"
 
-// "a length (in m, or with a unit, as '61.5 m')"
-void bough_dimension_expected(bough_dimension dimension, char text[96]);
-
 // Whether the text is a unit of the dimension; `why` then says why not.
 bool bough_unit_fits(const char *text, bough_dimension dimension, char why[160]);
 
