@@ -12,8 +12,6 @@
 #include <stdio.h>
 #include <string.h>
 
-enum { MOTION = 6 }; // displacement and rotation, or force and moment
-
 typedef struct equilibrium {
     bough_simulation *simulation;
     bool finer;                  // of the mesh that the scene's is compared with
@@ -205,57 +203,81 @@ static double *find_mesh_error(bough_arena *arena, equilibrium *x, mesh_error *m
     return c.error;
 }
 
-// -- values ---------------------------------------------------------------------------------------
+// -- a rod's tables: what moves at its vertices, what acts in the middle of its segments -------------
 
-// Displacement [m] and rotation [deg] of vertex i.
-static void motion_of(const bough_steady *x, int i, double value[MOTION]) {
+enum { VERTICES, MIDDLES, TABLES, COLUMNS = 7 };
+
+// Names and units.
+static const char *const heads[TABLES][2][COLUMNS] = {
+    {{"span", "ux", "uy", "uz", "rx", "ry", "rz"}, {"(m)", "(m)", "(m)", "(m)", "(deg)", "(deg)", "(deg)"}},
+    {{"middle", "shear x", "shear y", "axial", "bend x", "bend y", "twist"},
+     {"(m)", "(N)", "(N)", "(N)", "(N m)", "(N m)", "(N m)"}},
+};
+
+static int count_rows(const bough_steady *x, int table) { return x->model->n_segment + (table == VERTICES); }
+
+static void find_row(const bough_steady *x, int table, int i, double value[COLUMNS]) {
+    const double *span = x->model->span;
     bough_vec3 shift, turn;
+    value[0] = table == VERTICES ? span[i] : 0.5 * (span[i] + span[i + 1]);
+    if (table == MIDDLES) {
+        bough_rod_stress(x->model, &x->work.scratch, i, value + 1);
+        return;
+    }
     bough_steady_displacement(x, i, &shift, &turn);
-    bough_v3_store(shift, value);
-    bough_v3_store(turn, value + 3);
-    for (int c = 3; c < MOTION; c++) value[c] /= BOUGH_DEGREE;
+    bough_v3_store(shift, value + 1);
+    bough_v3_store(turn, value + 4);
+    for (int c = 4; c < COLUMNS; c++) value[c] /= BOUGH_DEGREE;
 }
 
-static double middle_of(const bough_steady *x, int n) {
-    return 0.5 * (x->model->span[n] + x->model->span[n + 1]);
+static void print_table(const bough_steady *x, int table) {
+    double value[COLUMNS];
+    for (int k = 0; k < 2; k++) {
+        for (int c = 0; c < COLUMNS; c++) printf(c == 0 ? "%10s" : " %12s", heads[table][k][c]);
+        putchar('\n');
+    }
+    for (int i = 0; i < count_rows(x, table); i++) {
+        find_row(x, table, i, value);
+        for (int c = 0; c < COLUMNS; c++) printf(c == 0 ? "%10.4f" : " %12.6g", value[c]);
+        putchar('\n');
+    }
 }
 
-static void stress_of(const bough_steady *x, int n, double value[MOTION]) {
-    bough_rod_stress(x->model, &x->work.scratch, n, value);
+// Blanks behind the last row.
+static void write_row(const bough_steady *x, int table, int i, FILE *file) {
+    double value[COLUMNS];
+    bool there = i < count_rows(x, table);
+    if (there) find_row(x, table, i, value);
+    for (int c = 0; c < COLUMNS; c++) {
+        fputc(',', file);
+        if (there) fprintf(file, "%.10g", value[c]);
+    }
 }
 
-// -- table ----------------------------------------------------------------------------------------
-
-static void print_row(double span, const double value[MOTION]) {
-    printf("%10.4f", span);
-    for (int c = 0; c < MOTION; c++) printf(" %12.6g", value[c]);
-    putchar('\n');
+// A row is a vertex and the segment that begins there.
+static void write_rods(const void *self, FILE *file) {
+    const equilibrium *x = self;
+    fputs("rod", file);
+    for (int table = 0; table < TABLES; table++)
+        for (int c = 0; c < COLUMNS; c++) fprintf(file, ",%s %s", heads[table][0][c], heads[table][1][c]);
+    fputc('\n', file);
+    for (int k = 0; k < x->n; k++) {
+        for (int i = 0; i < count_rows(&x->rod[k], VERTICES); i++) {
+            fputs(x->rod[k].model->name, file);
+            for (int table = 0; table < TABLES; table++) write_row(&x->rod[k], table, i, file);
+            fputc('\n', file);
+        }
+    }
 }
 
-static void print_head(const char *const word[MOTION + 1]) {
-    printf("%10s", word[0]);
-    for (int c = 1; c <= MOTION; c++) printf(" %12s", word[c]);
-    putchar('\n');
-}
+// -- what is printed ------------------------------------------------------------------------------
 
 static void print_rod(bough_steady *x) {
     const bough_rod_model *m = x->model;
-    double value[MOTION];
     printf("rod %s: %d segments, %.9g m", m->name, m->n_segment, m->span[m->n_segment]);
     if (x->work.iterations > 0) printf(", %d iterations", x->work.iterations);
     putchar('\n');
-    print_head((const char *const[]){"span", "ux", "uy", "uz", "rx", "ry", "rz"});
-    print_head((const char *const[]){"(m)", "(m)", "(m)", "(m)", "(deg)", "(deg)", "(deg)"});
-    for (int i = 0; i <= m->n_segment; i++) {
-        motion_of(x, i, value);
-        print_row(m->span[i], value);
-    }
-    print_head((const char *const[]){"middle", "shear x", "shear y", "axial", "bend x", "bend y", "twist"});
-    print_head((const char *const[]){"(m)", "(N)", "(N)", "(N)", "(N m)", "(N m)", "(N m)"});
-    for (int n = 0; n < m->n_segment; n++) {
-        stress_of(x, n, value);
-        print_row(middle_of(x, n), value);
-    }
+    for (int table = 0; table < TABLES; table++) print_table(x, table);
     bough_vec3 result[STATIC_RESULTS];
     find_results(x, result);
     bough_vec3 u = result[STATIC_DISPLACEMENT], r = bough_scale(1 / BOUGH_DEGREE, result[STATIC_ROTATION]);
@@ -323,35 +345,6 @@ static void print_whole(const equilibrium *x) {
     print_joints(x->simulation);
 }
 
-// -- file -----------------------------------------------------------------------------------------
-
-static const char header[] =
-    "rod,span (m),ux (m),uy (m),uz (m),rx (deg),ry (deg),rz (deg),middle (m),shear x (N),"
-    "shear y (N),axial (N),bend x (N m),bend y (N m),twist (N m)\n";
-
-static void write_values(FILE *file, double span, const double value[MOTION]) {
-    fprintf(file, ",%.10g", span);
-    for (int c = 0; c < MOTION; c++) fprintf(file, ",%.10g", value[c]);
-}
-
-// A row is a vertex and the segment that begins there.
-static void write_rod(FILE *file, const bough_steady *x) {
-    const bough_rod_model *m = x->model;
-    double value[MOTION];
-    for (int i = 0; i <= m->n_segment; i++) {
-        fputs(m->name, file);
-        motion_of(x, i, value);
-        write_values(file, m->span[i], value);
-        if (i < m->n_segment) {
-            stress_of(x, i, value);
-            write_values(file, middle_of(x, i), value);
-        } else {
-            fputs(",,,,,,,", file);
-        }
-        fputc('\n', file);
-    }
-}
-
 // Writes and prints the values of the run's channels in the equilibrium.
 static bough_status write_channels(const equilibrium *x, const mesh_error *mesh, const char *folder) {
     char path[BOUGH_PATH_MAX];
@@ -369,12 +362,6 @@ static bough_status write_channels(const equilibrium *x, const mesh_error *mesh,
         fputc('\n', file);
     }
     return bough_folder_commit(path, file);
-}
-
-static void write_rods(const void *self, FILE *file) {
-    const equilibrium *x = self;
-    fputs(header, file);
-    for (int k = 0; k < x->n; k++) write_rod(file, &x->rod[k]);
 }
 
 // -- a path: equilibria while the loads grow, with their limit points -----------------------------
