@@ -103,11 +103,8 @@ static bough_status no_channel(const bough_scene_output *output, const bough_cha
 bough_status bough_open_channels(const bough_scene *scene, const bough_channels *all,
                                  bough_channels *recorded) {
     const bough_scene_output *output = &scene->simulation.output;
-    for (int k = 0; k < output->n_channel; k++) {
-        if (!bough_channels_match(all, output->channels[k])) return no_channel(output, all, k);
-    }
-    bough_channels_choose(all, output->n_channel, output->channels, recorded);
-    return bough_ok();
+    int k = bough_channels_choose(all, output->n_channel, output->channels, recorded);
+    return k < 0 ? bough_ok() : no_channel(output, all, k);
 }
 
 const char *bough_out_folder(bough_arena *arena, const bough_options *options) {

@@ -140,25 +140,12 @@ static void sample_choice(void *self, double t, double *value) {
     for (int k = 0; k < x->n; k++) value[k] = x->value[x->from[k]];
 }
 
-static bool matches(const char *name, int n, const char *const *pattern) {
-    for (int k = 0; k < n; k++) {
-        if (fnmatch(pattern[k], name, 0) == 0) return true;
-    }
-    return false;
-}
-
-bool bough_channels_match(const bough_channels *list, const char *pattern) {
-    for (int i = 0; i < list->count; i++) {
-        if (fnmatch(pattern, list->channel[i].name, 0) == 0) return true;
-    }
-    return false;
-}
-
-void bough_channels_choose(const bough_channels *all, int n, const char *const *pattern,
-                           bough_channels *chosen) {
-    *chosen = *all;
-    if (n == 0) return;
+int bough_channels_choose(const bough_channels *all, int n, const char *const *pattern,
+                          bough_channels *chosen) {
     bough_arena *arena = all->arena;
+    bool *used = bough_arena_take(arena, (size_t)n + 1);
+    *chosen = *all;
+    if (n == 0) return -1;
     choice *x = bough_arena_take(arena, sizeof *x);
     x->all = all;
     x->from = bough_arena_take(arena, ((size_t)all->count + 1) * sizeof *x->from);
@@ -166,10 +153,16 @@ void bough_channels_choose(const bough_channels *all, int n, const char *const *
     *chosen = bough_channels_start(arena);
     bough_channels_group(chosen, sample_choice, x);
     for (int i = 0; i < all->count; i++) {
-        if (!matches(all->channel[i].name, n, pattern)) continue;
+        bool taken = false;
+        for (int k = 0; k < n; k++)
+            if (fnmatch(pattern[k], all->channel[i].name, 0) == 0) used[k] = taken = true;
+        if (!taken) continue;
         x->from[x->n++] = i;
         bough_channels_add(chosen, all->channel[i].unit, "%s", all->channel[i].name);
     }
+    for (int k = 0; k < n; k++)
+        if (!used[k]) return k;
+    return -1;
 }
 
 void bough_channels_know(const bough_channels *list, const double *value) { *list->known = value; }

@@ -80,13 +80,10 @@ int bough_channels_find(const bough_channels *list, const char *name);
 // The names (count), in the arena.
 const char *const *bough_channels_names(const bough_channels *list, bough_arena *arena);
 
-// Whether the name of a channel matches the shell pattern ("Root*").
-bool bough_channels_match(const bough_channels *list, const char *pattern);
-
-// A list of those channels of `all`, which outlives it, whose names match one of n patterns, in their order
-// there; all of them for n = 0.
-void bough_channels_choose(const bough_channels *all, int n, const char *const *pattern,
-                           bough_channels *chosen);
+// A list of those channels of `all`, which outlives it, whose names match one of n shell patterns ("Root*"),
+// in their order there; all of them for n = 0. The first pattern that no name matches; −1: each has one.
+int bough_channels_choose(const bough_channels *all, int n, const char *const *pattern,
+                          bough_channels *chosen);
 
 // Until the next call these are the values (count) of the list, of its copies and of what is chosen from it,
 // so that nobody evaluates them twice; NULL: none are known.
