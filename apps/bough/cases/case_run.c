@@ -186,17 +186,13 @@ static bough_status finish_series(case_run *r) {
 // -- one run --------------------------------------------------------------------------------------
 
 static bough_status judge(bough_arena *arena, const case_run *r) {
-    bough_companion *c = r->run.companion;
     double bound = r->run.simulation->scene->simulation.error_bound;
     bough_error_shares shares = {0};
     char warning[BOUGH_ERROR_WARNING], *text = r->result->warnings;
-    bough_status status = bough_ok();
-    if (bough_error_exceeds(c, bound)) status = bough_error_shares_find(arena, c, r->drive->stop, &shares);
-    if (bough_is_ok(&status)) status = bough_error_judge(c, &shares, bound, warning);
-    if (!bough_is_ok(&status) || !warning[0]) return status;
+    BOUGH_TRY(bough_error_judge(arena, r->run.companion, r->drive->stop, bound, &shares, warning));
     size_t n = strlen(text);
-    snprintf(text + n, BOUGH_CASE_WARNINGS - n, "%s%s", n > 0 ? "; " : "", warning);
-    return status;
+    if (warning[0]) snprintf(text + n, BOUGH_CASE_WARNINGS - n, "%s%s", n > 0 ? "; " : "", warning);
+    return bough_ok();
 }
 
 static bough_status run_in(bough_arena *arena, void *self) {

@@ -217,14 +217,14 @@ static bough_status after_step(void *self) {
     return bough_checkpoint_update(command);
 }
 
-// The cause of an error above the bound is looked for by further runs, as the shares are where the scene
-// asks.
+// The shares are found by further runs where the scene asks.
 static bough_status judge(bough_run_command *command) {
     const bough_scene_simulation *x = &command->run.simulation->scene->simulation;
     bough_companion *c = command->run.companion;
-    if (x->error_shares || bough_error_exceeds(c, x->error_bound))
-        BOUGH_TRY(bough_error_shares_find(command->arena, c, bough_stop_requested, &command->shares));
-    return bough_error_judge(c, &command->shares, x->error_bound, command->warning);
+    bough_error_shares *shares = &command->shares;
+    if (x->error_shares) BOUGH_TRY(bough_error_shares_find(command->arena, c, bough_stop_requested, shares));
+    return bough_error_judge(command->arena, c, bough_stop_requested, x->error_bound, shares,
+                             command->warning);
 }
 
 static void step_all(bough_run_command *command) {

@@ -33,9 +33,7 @@ static bough_status take_steps(bough_arena *arena, bough_scene *scene, int steps
     bough_status status = bough_run_create(arena, scene, &run);
     while (bough_is_ok(&status) && !bough_run_done(&run)) status = bough_run_step(&run);
     if (!bough_is_ok(&status)) return status;
-    if (bough_error_exceeds(run.companion, bound))
-        status = bough_error_shares_find(arena, run.companion, NULL, &shares);
-    return bough_is_ok(&status) ? bough_error_judge(run.companion, &shares, bound, warning) : status;
+    return bough_error_judge(arena, run.companion, NULL, bound, &shares, warning);
 }
 
 static bool calls_library(const bough_scene *scene) {

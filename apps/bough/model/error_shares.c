@@ -278,7 +278,8 @@ static bough_status prove_kind(bough_arena *arena, const finding *x, bough_error
 
 // -- causes ---------------------------------------------------------------------------------------
 
-bool bough_error_exceeds(const bough_companion *c, double bound) {
+// Whether the error of a motion is above the bound.
+static bool exceeds(const bough_companion *c, double bound) {
     bough_error_verdict v = bough_error_verdict_of(c, true, c->error);
     return bound > 0 && v.channel >= 0 && v.relative > bound;
 }
@@ -306,13 +307,13 @@ static int cause_of(const bough_companion *c, const bough_error_shares *shares, 
 // have lost the solution.
 static bool has_lost(const bough_companion *c) {
     double bound = c->run->scene->simulation.error_bound;
-    return bound > 0 && bough_error_exceeds(c, c->flutters ? bound : fmax(bound, lost));
+    return bound > 0 && exceeds(c, c->flutters ? bound : fmax(bound, lost));
 }
 
 // Time, air, or −1: the error is within the bound, or the mesh's, or its cause is not known.
 static int fails_by(const bough_companion *c, const bough_error_shares *shares) {
     double relative, bound = c->run->scene->simulation.error_bound;
-    int cause = bough_error_exceeds(c, bound) ? cause_of(c, shares, bound, &relative) : -1;
+    int cause = exceeds(c, bound) ? cause_of(c, shares, bound, &relative) : -1;
     return cause == BOUGH_SHARE_MESH ? -1 : cause;
 }
 
@@ -494,9 +495,10 @@ static void warn_of_loss(const bough_companion *c, char warning[BOUGH_ERROR_WARN
     snprintf(warning, BOUGH_ERROR_WARNING, "errors are not known from %.6g s on: %s", c->from, c->reason);
 }
 
-bough_status bough_error_judge(const bough_companion *c, const bough_error_shares *shares, double bound,
-                               char warning[BOUGH_ERROR_WARNING]) {
+bough_status bough_error_judge(bough_arena *arena, bough_companion *c, bool (*stop)(void), double bound,
+                               bough_error_shares *shares, char warning[BOUGH_ERROR_WARNING]) {
     warning[0] = '\0';
+    if (exceeds(c, bound) && !shares->found) BOUGH_TRY(bough_error_shares_find(arena, c, stop, shares));
     bough_error_verdict v = bough_error_verdict_of(c, true, c->error);
     if (c->compared > 0 && c->reason[0]) warn_of_loss(c, warning);
     if (v.channel < 0) return bough_ok();

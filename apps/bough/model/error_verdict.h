@@ -84,11 +84,8 @@ enum { BOUGH_ERROR_WARNING = 600 };
 // The error of a motion beside the bound [1]; 0: no bound. Above it BOUGH_FAILED, with channel, time, cause
 // and the setting that meets it, unless the mesh alone is the cause: then that is the warning. Else the
 // warning is about an error above simulation.accuracy, with the settings that meet it, or that errors are not
-// known any more, or "". `shares` is needed above the bound; below it, it makes the settings surer.
-bough_status bough_error_judge(const bough_companion *c, const bough_error_shares *shares, double bound,
-                               char warning[BOUGH_ERROR_WARNING]);
-
-// Whether the error of a motion is above the bound, so that the cause is to be found.
-bool bough_error_exceeds(const bough_companion *c, double bound);
+// known any more, or "". `shares`, zero or found before, are found where the error is above the bound.
+bough_status bough_error_judge(bough_arena *arena, bough_companion *c, bool (*stop)(void), double bound,
+                               bough_error_shares *shares, char warning[BOUGH_ERROR_WARNING]);
 
 #endif

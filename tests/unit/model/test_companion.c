@@ -299,7 +299,7 @@ TEST(finer_samples_prove_an_error_of_the_air) {
     double air = shares.share[BOUGH_SHARE_AIR].largest[bough_channels_find(&r.channels, channel[0])];
     print_message("TwstDefl3: by the air %.2g deg, estimate %.2g\n", error, air);
     assert_true(air > error / 3 && air < 3 * error);
-    check_ok(bough_error_judge(r.companion, &shares, 0.05, warning));
+    check_ok(bough_error_judge(arena, r.companion, NULL, 0.05, &shares, warning));
     assert_non_null(strstr(warning, "cause: the mesh"));
 }
 
