@@ -119,7 +119,7 @@ static bough_status read_results(bough_study_results *x) {
 static bough_status run_reference(work *w, int group, bough_study_drive *drive, bough_study_series *series) {
     const bough_study *s = w->results.study;
     const bough_case *cell = &s->reference_case[group];
-    bough_case_result *kept = &w->results.reference[group], r;
+    bough_case_result *kept = &w->results.reference[group], r = {0};
     drive->progress.label = "reference";
     BOUGH_TRY(bough_case_run(s, cell, 1, drive, series, &r));
     if (bough_is_ok(&r.outcome)) {
@@ -148,11 +148,13 @@ static bough_status run_cell(work *w, int i, bough_study_drive *drive, const bou
     return status;
 }
 
-// Cells of a group without a result.
-static int count_missing(const bough_study_results *x, int group) {
+int bough_study_missing(const bough_study_results *x, int group) {
+    const bough_study *s = x->study;
     int n = 0;
-    for (int i = 0; i < x->study->n_case; i++)
-        n += x->study->cases[i].reference == group && !x->result[i].done;
+    for (int i = 0; i < s->n_case; i++) {
+        if (group >= 0 && s->cases[i].reference != group) continue;
+        n += x->result ? !x->result[i].done : !bough_store_has(x->options->folder, s, &s->cases[i]);
+    }
     return n;
 }
 
@@ -183,7 +185,7 @@ static bough_status run_groups(bough_arena *arena, work *w) {
     BOUGH_TRY(remove_tables(x->options->folder));
     BOUGH_TRY(read_results(x));
     for (int g = 0; g < s->n_reference; g++) {
-        int missing = count_missing(x, g);
+        int missing = bough_study_missing(x, g);
         bool needed = missing > 0 || (!s->is.parallel && !x->reference[g].done);
         if (!needed || !is_mine(x->options, g)) continue;
         w->piece[w->n++] = g;

@@ -127,6 +127,9 @@ typedef struct bough_study_results {
     int ran, failed;                       // runs in this call
 } bough_study_results;
 
+// Cases without a result: of the group that is compared with one reference; −1: of all.
+int bough_study_missing(const bough_study_results *results, int group);
+
 // Each writes the tables of its kind into the folder and prints the most important one: when all results are
 // there, else what is missing.
 typedef bough_status bough_study_conclude(bough_arena *arena, const bough_study_results *results);

@@ -72,10 +72,8 @@ bough_status bough_stability_conclude(bough_arena *arena, const bough_study_resu
     const bough_study_options *o = x->options;
     (void)arena;
     if (o->parts > 0) {
-        int n = x->study->n_case, missing = 0;
-        for (int i = 0; i < n; i++) missing += !x->result[i].done;
         fprintf(o->stream, "part %d of %d: %d runs, %d of %d cells still missing\n", o->part, o->parts,
-                x->ran, missing, n);
+                x->ran, bough_study_missing(x, -1), x->study->n_case);
         return bough_ok();
     }
     BOUGH_TRY(bough_precision_tables(x, o->folder));

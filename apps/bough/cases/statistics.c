@@ -413,16 +413,9 @@ static bough_status conclude_in(bough_arena *arena, const bough_study_results *x
     return judge(x, &c.lifetime);
 }
 
-static int count_missing(const bough_study_results *x) {
-    int n = 0;
-    for (int i = 0; i < x->study->n_case; i++)
-        n += !bough_store_has(x->options->folder, x->study, &x->study->cases[i]);
-    return n;
-}
-
 // A part, and a call that leaves cases to others, has no tables.
 bough_status bough_statistics_conclude(bough_arena *arena, const bough_study_results *x) {
-    int missing = count_missing(x), n = x->study->n_case;
+    int missing = bough_study_missing(x, -1), n = x->study->n_case;
     FILE *f = x->options->stream;
     if (x->options->parts > 0) {
         fprintf(f, "part %d of %d: %d cases run, %d of %d cases still missing\n", x->options->part,

@@ -82,25 +82,6 @@ static void move_text(rows *r, const char *word, char *text, int size) {
     memcpy(text, line + 1, (size_t)size);
 }
 
-// -- compared runs --------------------------------------------------------------------------------
-
-// The settings are for people.
-static void move_settings(rows *r, const char *settings) {
-    if (!r->reads) put_text(r->file, "settings", settings);
-    for (int byte = 0; r->reads && byte != '\n' && byte != EOF;) byte = fgetc(r->file);
-}
-
-static void move_comparison(rows *r, const bough_study *s, const bough_case *c, bough_case_result *x) {
-    bough_coupling_report *k = &x->coupling;
-    double run[] = {x->time, x->wall, x->cpu, x->warned};
-    move_settings(r, c->settings);
-    move(r, "run", 4, run);
-    move(r, "coupling", sizeof *k / sizeof(double), &k->defect_max); // numbers only
-    move(r, "errors", s->n_measure, x->error);
-    move(r, "estimates", s->n_measure, x->estimate);
-    x->time = run[0], x->wall = run[1], x->cpu = run[2], x->warned = run[3] > 0;
-}
-
 // -- statistics -----------------------------------------------------------------------------------
 
 // A range of bins from a file that may be damaged.
@@ -153,23 +134,29 @@ static void move_error(rows *r, const bough_study *s, bough_load_error *e) {
     move(r, "larger", s->n_slope, e->larger);
 }
 
-static void move_statistics(rows *r, const bough_study *s, bough_case_result *x) {
-    double run[] = {x->time, x->counted, x->cpu, x->wall, x->counts.broken, x->has_companion};
-    move(r, "run", 6, run);
-    x->time = run[0], x->counted = run[1], x->cpu = run[2], x->wall = run[3];
-    x->counts.broken = run[4], x->has_companion = run[5] > 0;
-    move_text(r, "warnings", x->warnings, BOUGH_CASE_WARNINGS);
-    for (int i = 0; bough_is_ok(&x->outcome) && i < s->n_channel && r->good; i++) {
-        move_channel(r, s, &x->counts.channel[i]);
-        if (x->has_companion) move_error(r, s, &x->load_error[i]);
-    }
+// -- a result -------------------------------------------------------------------------------------
+
+// The settings are for people.
+static void move_settings(rows *r, const char *settings) {
+    if (!r->reads) put_text(r->file, "settings", settings);
+    for (int byte = 0; r->reads && byte != '\n' && byte != EOF;) byte = fgetc(r->file);
 }
 
 static void move_result(rows *r, const bough_study *s, const bough_case *c, bough_case_result *x) {
-    if (s->is.compared)
-        move_comparison(r, s, c, x);
-    else
-        move_statistics(r, s, x);
+    bough_coupling_report *k = &x->coupling;
+    double run[] = {x->time, x->counted, x->cpu, x->wall, x->warned, x->counts.broken, x->has_companion};
+    move_settings(r, c->settings);
+    move(r, "run", 7, run);
+    x->time = run[0], x->counted = run[1], x->cpu = run[2], x->wall = run[3];
+    x->warned = run[4] > 0, x->counts.broken = run[5], x->has_companion = run[6] > 0;
+    move(r, "coupling", sizeof *k / sizeof(double), &k->defect_max); // numbers only
+    move(r, "errors", s->n_measure, x->error);
+    move(r, "estimates", s->n_measure, x->estimate);
+    move_text(r, "warnings", x->warnings, BOUGH_CASE_WARNINGS);
+    for (int i = 0; bough_is_ok(&x->outcome) && i < x->counts.n_channel && r->good; i++) {
+        move_channel(r, s, &x->counts.channel[i]);
+        if (x->has_companion) move_error(r, s, &x->load_error[i]);
+    }
 }
 
 // -- files ----------------------------------------------------------------------------------------

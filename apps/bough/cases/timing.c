@@ -39,7 +39,7 @@ static bough_status run(timing *t, const bough_case *cell, bough_study_drive *dr
 static bough_status take_turn(timing *t, int turn) {
     bough_study_drive drive = {.stop = t->options->stop, .folder = t->options->folder};
     for (int i = 0; i < t->study->n_case; i++) {
-        bough_case_result result;
+        bough_case_result result = {0};
         BOUGH_TRY(run(t, &t->study->cases[i], &drive, &t->series, &result));
         t->cell[i].wall[turn] = result.wall;
         t->cell[i].cpu[turn] = result.cpu;
@@ -52,7 +52,7 @@ static bough_status take_turn(timing *t, int turn) {
 }
 
 static bough_status run_all(timing *t) {
-    bough_case_result reference;
+    bough_case_result reference = {0};
     bough_study_drive drive = {.stop = t->options->stop,
                                .progress = bough_progress_start(0, t->study->duration, t->options->quiet)};
     drive.progress.label = "reference";
