@@ -62,7 +62,7 @@ yaml 'unknown key' keys.yaml
 { printf 'title: '; head -c 8000000 /dev/zero | tr '\0' 'x'; } >line.yaml
 yaml 'error' line.yaml
 printf 'bodies: [{name: "a' >cut.yaml
-yaml 'the quoted text has no end' cut.yaml
+yaml 'the text that this quote opens has no end' cut.yaml
 
 # A few lines that ask for much.
 rod='joint: {kind: fixed, parent: ground}, rod: {length: 1, segments: 10000, stiffness: [1, 1, 1, 1, 1, 1], mass: [1, 0, 0, 1, 1, 0]}'

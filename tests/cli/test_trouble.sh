@@ -85,6 +85,9 @@ full() {
     (ulimit -f 8 && exec "$bough" report old-report >/dev/null 2>stderr)
     [ $? -eq 1 ] || fail 'report: exit code 1'
     same old-report report
+    (ulimit -f 1 && exec "$bough" new turbine new >/dev/null 2>stderr)
+    [ $? -eq 1 ] && grep -q 'File too large' stderr || fail "new: $(head -c 300 stderr)"
+    [ -z "$(ls new)" ] || fail "new: $(ls new)"
 }
 
 # The same on a disk of its own, where one may be mounted; also read-only.

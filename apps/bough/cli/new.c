@@ -1,6 +1,7 @@
 // bough new: a commented scene that runs, with its tables, from those that the program carries.
 #include "apps/bough/cli/command.h"
 #include "apps/bough/config/schema.h"
+#include "apps/bough/results/folder.h"
 
 #include <dirent.h>
 #include <errno.h>
@@ -28,15 +29,24 @@ static bough_status open_directory(const char *path) {
                  : bough_fail(BOUGH_INVALID, "'%.200s' is not empty; name a new directory", path);
 }
 
-static bough_status write_file(bough_arena *arena, const char *folder, const bough_template *t) {
-    const char *path = bough_arena_print(arena, "%s%s", folder, strchr(t->name, '/'));
-    FILE *file = fopen(path, "w");
-    bool written = file && fputs(t->text, file) >= 0;
-    if (file && fclose(file) != 0) written = false;
-    return written ? bough_ok() : bough_fail(BOUGH_IO, "cannot write '%.200s': %s", path, strerror(errno));
+static void put_text(const void *template, FILE *file) {
+    fputs(((const bough_template *)template)->text, file);
+}
+
+// All files of the kind, or none: a directory without its tables looks like a scene.
+static bough_status write_files(const char *folder, const char *kind) {
+    bough_status status = bough_ok();
+    for (const bough_template *t = bough_templates; t->name && bough_is_ok(&status); t++)
+        if (belongs(t, kind)) status = bough_folder_write(folder, strchr(t->name, '/') + 1, put_text, t);
+    if (bough_is_ok(&status)) return status;
+    for (const bough_template *t = bough_templates; t->name; t++)
+        if (belongs(t, kind)) (void)bough_folder_remove(folder, strchr(t->name, '/') + 1);
+    bough_folder_clean(folder);
+    return status;
 }
 
 static bough_status new (bough_arena *arena, const void *given) {
+    (void)arena;
     const bough_options *options = given;
     bool known = false;
     for (const char *const *kind = kinds; *kind; kind++)
@@ -44,13 +54,10 @@ static bough_status new (bough_arena *arena, const void *given) {
     if (!known)
         return bough_fail(BOUGH_INVALID, "new: unknown kind '%.80s'%s; known: beam, mechanism, turbine",
                           options->operand, bough_suggest(options->operand, kinds, 3).text);
-    bough_status status = open_directory(options->operands[1]);
-    for (const bough_template *t = bough_templates; t->name && bough_is_ok(&status); t++) {
-        if (belongs(t, options->operand)) status = write_file(arena, options->operands[1], t);
-    }
-    if (bough_is_ok(&status))
-        printf("scene: %s/scene.yaml\nnext: bough run %s\n", options->operands[1], options->operands[1]);
-    return status;
+    BOUGH_TRY(open_directory(options->operands[1]));
+    BOUGH_TRY(write_files(options->operands[1], options->operand));
+    printf("scene: %s/scene.yaml\nnext: bough run %s\n", options->operands[1], options->operands[1]);
+    return bough_ok();
 }
 
 const bough_command bough_command_new = {

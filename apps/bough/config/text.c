@@ -37,8 +37,9 @@ typedef struct reader {
     const char *text;
     size_t size;
     yaml_parser_t parser;
-    yaml_event_t event; // the present one
-    char *pool;         // small objects are cut from blocks: the arena's smallest block has 128 bytes
+    yaml_event_t event;           // the present one
+    yaml_mark_t quote, quote_end; // of the last quoted text
+    char *pool; // small objects are cut from blocks: the arena's smallest block has 128 bytes
     size_t pool_left, pool_size;
     bough_node **stack; // (stack_capacity)
     int n_stack, stack_capacity;
@@ -196,7 +197,7 @@ static const char *readable(const char *problem) {
         {"did not find expected ',' or ']'", "expected ',' or ']' to end the list"},
         {"did not find expected ',' or '}'", "expected ',' or '}' to end the mapping"},
         {"did not find expected '-'", "expected '- ' here (check the indentation of the list)"},
-        {"unexpected end of stream", "the quoted text has no end"},
+        {"unexpected end of stream", "the text that this quote opens has no end"},
     };
     for (size_t i = 0; i < sizeof table / sizeof table[0]; i++) {
         if (strstr(problem, table[i].problem) != NULL) return table[i].readable;
@@ -221,7 +222,11 @@ static bool syntax_error(reader *r) {
     const yaml_parser_t *p = &r->parser;
     if (p->error == YAML_MEMORY_ERROR) bough_arena_leave(r->work);
     if (p->error != YAML_READER_ERROR) {
-        return refuse(r, p->problem_mark, readable(p->problem));
+        bool open = strstr(p->problem, "unexpected end of stream") != NULL;
+        // A quote that is not closed takes up the lines down to the next quote.
+        if (r->quote_end.line > r->quote.line && r->quote_end.line == p->problem_mark.line)
+            refuse(r, r->quote, "the text that this quote opens ends some lines below: is a quote missing?");
+        return refuse(r, open ? p->context_mark : p->problem_mark, readable(p->problem));
     }
     bool control = strstr(p->problem, "control") != NULL;
     return refuse(r, mark_of_offset(r, p->problem_offset),
@@ -284,6 +289,14 @@ static bool add_scalar(reader *r, const yaml_event_t *e) {
     memcpy(text, e->data.scalar.value, length + 1);
     node->text = text;
     node->quoted = e->data.scalar.style != YAML_PLAIN_SCALAR_STYLE;
+    if (!node->quoted && is_key(r) && strcmp(text, "<<") == 0)
+        return refuse(r, e->start_mark,
+                      "merge keys (<<) are not read; 'base: FILE' takes the keys of another scene");
+    yaml_scalar_style_t style = e->data.scalar.style;
+    if (style == YAML_SINGLE_QUOTED_SCALAR_STYLE || style == YAML_DOUBLE_QUOTED_SCALAR_STYLE) {
+        r->quote = e->start_mark;
+        r->quote_end = e->end_mark;
+    }
     return remember_anchor(r, e->data.scalar.anchor, node, e->start_mark) && attach(r, node, e->start_mark);
 }
 

@@ -72,7 +72,12 @@ TEST(syntax_errors_are_readable) {
                          "indented too far)\n");
     refuses("a: [1, 2\nb: 3\n", "f:2:2: error: expected ',' or ']' to end the list\n");
     refuses("a: {b: 1\nc: 3\n", "f:2:2: error: expected ',' or '}' to end the mapping\n");
-    refuses("a: 'x\n", "f:2:1: error: the quoted text has no end\n");
+    refuses("b: 1\na: 'x\nc: 2\n", "f:2:4: error: the text that this quote opens has no end\n");
+    refuses("a: \"x\nb: \"y\"\n",
+            "f:1:4: error: the text that this quote opens ends some lines below: is a quote missing?\n"
+            "f:2:5: error: expected 'key: value' here (check the indentation)\n");
+    refuses("a: &x {b: 1}\nc:\n  <<: *x\n",
+            "f:3:3: error: merge keys (<<) are not read; 'base: FILE' takes the keys of another scene\n");
     refuses("a:\n  - 1\n  b: 2\n", "f:3:3: error: expected '- ' here (check the indentation of the "
                                    "list)\n");
     refuses("a: 1\n  b\n c: 2\n", "f:3:3: error: unexpected ':' (two keys on one line, or a line "
