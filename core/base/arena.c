@@ -9,11 +9,12 @@
 #include <string.h>
 #include <sys/mman.h>
 
-enum { ALIGNMENT = 64, LARGE = 1 << 18, PAGE = 1 << 16 }; // [bytes]; the last: a multiple of what pages have
+enum { ALIGNMENT = 64, PAGE = 1 << 21, LARGE = PAGE / 4 }; // [bytes]; PAGE: of the large ones
 
 typedef struct block {
     struct block *next;
     void *start;             // of the memory taken for it
+    size_t mapped;           // its size where it is whole pages of the system; 0: malloc's
     void (*release)(void *); // NULL for plain memory
     void *object;
 } block;
@@ -66,7 +67,10 @@ void bough_arena_destroy(bough_arena *arena) {
     for (block *b = arena->newest, *next; b; b = next) {
         next = b->next;
         if (b->release) b->release(b->object);
-        free(b->start);
+        if (b->mapped)
+            munmap(b->start, b->mapped);
+        else
+            free(b->start);
     }
     free(arena);
 }
@@ -94,26 +98,40 @@ bough_status bough_arena_use(bough_status (*work)(bough_arena *arena, void *self
 
 // -- blocks ---------------------------------------------------------------------------------------
 
-// Fresh memory of a large matrix on large pages: fewer faults and look-ups of addresses.
-static void use_large_pages(void *start, size_t size) {
-#ifdef MADV_HUGEPAGE
-    size_t before = (PAGE - (size_t)start % PAGE) % PAGE;
-    if (size >= LARGE) (void)madvise((char *)start + before, (size - before) / PAGE * PAGE, MADV_HUGEPAGE);
+// Fresh memory of a large matrix, whole large pages: far fewer faults than of small ones. NULL where there is
+// none. *size: of all that is mapped.
+static void *map_pages(size_t *size) {
+#if defined MADV_HUGEPAGE && !defined __SANITIZE_ADDRESS__ // which watches malloc
+    size_t wanted = (*size + PAGE - 1) / PAGE * PAGE, all = wanted + PAGE;
+    char *from = mmap(NULL, all, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
+    if (from == MAP_FAILED) return NULL;
+    // what is before the first large page and behind the last goes back
+    size_t before = (PAGE - (size_t)from % PAGE) % PAGE;
+    if (before > 0) munmap(from, before);
+    if (before < PAGE) munmap(from + before + wanted, PAGE - before);
+    (void)madvise(from + before, wanted, MADV_HUGEPAGE);
+    *size = wanted;
+    return from + before;
+#else
+    (void)size;
+    return NULL;
 #endif
 }
 
 // A block of `size` payload bytes behind an aligned header; NULL when there is none.
 static block *push(bough_arena *arena, size_t size) {
-    // no overflow in the rounding to whole lines
-    if (size > (size_t)-1 - 4 * ALIGNMENT) return NULL;
+    // no overflow in the rounding to whole pages
+    if (size > (size_t)-1 - 2 * PAGE) return NULL;
     size_t whole = 2 * ALIGNMENT + (size + ALIGNMENT - 1) / ALIGNMENT * ALIGNMENT;
     // the system's fresh pages are zero already and cost nothing until they are used
-    void *start = calloc(1, whole);
+    size_t mapped = whole;
+    void *start = whole >= LARGE ? map_pages(&mapped) : NULL;
+    if (!start) mapped = 0, start = calloc(1, whole);
     if (!start) return NULL;
-    use_large_pages(start, whole);
     size_t before = (ALIGNMENT - (size_t)start % ALIGNMENT) % ALIGNMENT;
     block *b = (block *)((char *)start + before);
     b->start = start;
+    b->mapped = mapped;
     b->next = arena->newest;
     arena->newest = b;
     arena->bytes += whole;

@@ -23,6 +23,23 @@ TEST(blocks_are_aligned_zeroed_and_apart) {
     assert_true(bough_arena_bytes(arena) >= 50 * (1 + 37 * 49) / 2);
 }
 
+TEST(large_blocks_are_aligned_and_zeroed_also_where_memory_is_used_again) {
+    enum { SIZE = (5 << 20) + 8, STRIDE = 4096 };
+    check_arena(arena);
+    for (int k = 0; k < 3; k++) {
+        bough_arena *child = bough_arena_child(arena);
+        unsigned char *both[2] = {bough_arena_take(child, SIZE), bough_arena_take(child, SIZE)};
+        for (int i = 0; i < 2; i++) {
+            assert_int_equal((uintptr_t)both[i] % 64, 0);
+            for (size_t at = 0; at < SIZE; at += STRIDE) assert_int_equal(both[i][at], 0);
+            assert_int_equal(both[i][SIZE - 1], 0);
+            memset(both[i], i + 1, SIZE);
+        }
+        assert_int_equal(both[0][SIZE - 1], 1);
+        bough_arena_destroy(child);
+    }
+}
+
 TEST(strings_are_copied) {
     check_arena(arena);
     char text[] = "hub";
@@ -40,7 +57,7 @@ static bough_status take_too_much(bough_arena *arena, void *self) {
     if (*(bool *)self)
         bough_arena_doubles(child, (size_t)-1 / 4); // its bytes overflow
     else
-        bough_arena_take(arena, (size_t)-1);
+        bough_arena_take(arena, (size_t)-1 - 1024); // its pages overflow
     reached = true;
     return bough_ok();
 }
