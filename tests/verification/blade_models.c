@@ -2,7 +2,7 @@
 
 #include "apps/bough/cases/perform.h"
 #include "apps/bough/cases/study.h"
-#include "apps/bough/config/schema.h"
+#include "apps/bough/config/schema_keys.h"
 #include "apps/bough/results/folder.h"
 #include "apps/bough/scene/scene.h"
 #include "tests/verification/blade_models_internal.h"
@@ -13,26 +13,22 @@
 // -- reading --------------------------------------------------------------------------------------
 
 // clang-format off
-#define COUNT(table) (int)(sizeof(table) / sizeof(table)[0])
-#define CHOICES(...) (const char *const[]){__VA_ARGS__, NULL}
 
-#define AT(member) .offset = offsetof(bough_blade_model, member)
-static const bough_key model_keys[] = {
+#define FILLS bough_blade_model
+static const bough_schema model_schema = {.name = "a model", KEYS(
     {.name = "name", .kind = BOUGH_KEY_TEXT, .fallback = "reference", AT(name),
      .help = "heads its row"},
     {.name = "body", .kind = BOUGH_KEY_TEXTS, .count = 1, .required = true, AT(set.item),
      .count_offset = offsetof(bough_blade_model, set.n),
      .help = "replacements KEY=VALUE in every body that bends"},
-};
-#undef AT
-static const bough_schema model_schema = {
-    .name = "a model", .size = sizeof(bough_blade_model), .n_key = COUNT(model_keys), .key = model_keys};
+)};
+#undef FILLS
 
-#define AT(member) .offset = offsetof(bough_blade_models, member)
-static const bough_key study_keys[] = {
+#define FILLS bough_blade_models
+static const bough_schema study_schema = {.name = "a study", KEYS(
     {.name = "title", .kind = BOUGH_KEY_TEXT, .fallback = "Blade models", AT(title),
      .help = "one line: what is asked"},
-    {.name = "kind", .kind = BOUGH_KEY_CHOICE, .choices = CHOICES("blade-models"), .required = true,
+    {.name = "kind", .kind = BOUGH_KEY_CHOICE, CHOICES("blade-models"), .required = true,
      AT(kind), .help = "blade-models: one blade modelled in several ways"},
     {.name = "blade", .kind = BOUGH_KEY_TEXT, .required = true, AT(blade),
      .help = "scene of the clamped blade, relative to the study"},
@@ -48,13 +44,10 @@ static const bough_key study_keys[] = {
     {.name = "repeat", .kind = BOUGH_KEY_INTEGER, .range = "[1, 99]", .fallback = "3", AT(repeat),
      .help = "runs of each model, one after the other in turns; the least time counts"},
     {.name = "models", .kind = BOUGH_KEY_LIST, .of = &model_schema, .count = 1, .required = true,
-     AT(model), .count_offset = offsetof(bough_blade_models, n),
+     AT(model), COUNT_AT(n),
      .help = "times are relative to the first one's"},
-};
-#undef AT
-static const bough_schema study_schema = {
-    .name = "a study", .size = sizeof(bough_blade_models), .n_key = COUNT(study_keys),
-    .key = study_keys};
+)};
+#undef FILLS
 // clang-format on
 
 void *bough_blade_models_read(bough_arena *arena, const char *path, const bough_node *root,

@@ -1,7 +1,7 @@
 // The keys of a study of kind verify and their reading.
 #include "tests/verification/verify.h"
 
-#include "apps/bough/config/schema.h"
+#include "apps/bough/config/schema_keys.h"
 #include "apps/bough/model/simulation.h"
 
 #include <math.h>
@@ -150,11 +150,9 @@ static void check_case(bough_schema_reader *r, void *item) {
 
 // One line a key would become one line a field:
 // clang-format off
-#define COUNT(table) (int)(sizeof(table) / sizeof(table)[0])
-#define CHOICES(...) (const char *const[]){__VA_ARGS__, NULL}
 
-#define AT(member) .offset = offsetof(bough_verify_expect, member)
-static const bough_key expect_keys[] = {
+#define FILLS bough_verify_expect
+static const bough_schema expect_schema = {.name = "an expectation", .check = check_expect, KEYS(
     {.name = "quantity", .kind = BOUGH_KEY_TEXT, AT(name), .help = quantity_form},
     {.name = "value", .kind = BOUGH_KEY_NUMBER, .fallback = "0", AT(value),
      .help = "the reference, in m, rad, Hz or the channel's unit, times the scale"},
@@ -168,50 +166,41 @@ static const bough_key expect_keys[] = {
      .help = "the result is extrapolated at second order from the two finest meshes"},
     {.name = "diagnosis", .kind = BOUGH_KEY_TEXT, AT(diagnosis),
      .help = "in place of a quantity: part of the message with which the case must end"},
-};
-#undef AT
-static const bough_schema expect_schema = {
-    .name = "an expectation", .size = sizeof(bough_verify_expect), .n_key = COUNT(expect_keys),
-    .key = expect_keys, .check = check_expect};
+)};
+#undef FILLS
 
-#define AT(member) .offset = offsetof(bough_verify_case, member)
-static const bough_key case_keys[] = {
+#define FILLS bough_verify_case
+static const bough_schema case_schema = {.name = "a case", .check = check_case, KEYS(
     {.name = "name", .kind = BOUGH_KEY_TEXT, .required = true, AT(name), .help = "heads its lines"},
     {.name = "scene", .kind = BOUGH_KEY_TEXT, .required = true, AT(scene_name),
      .help = "file of the scene, relative to the study"},
-    {.name = "do", .kind = BOUGH_KEY_CHOICE, .choices = CHOICES("static", "modes", "run"),
+    {.name = "do", .kind = BOUGH_KEY_CHOICE, CHOICES("static", "modes", "run"),
      .required = true, AT(action),
      .help = "equilibrium or modes of the first rod, or the run"},
     {.name = "set", .kind = BOUGH_KEY_CUSTOM, .read = bough_study_read_settings,
      .form = "{KEY: VALUE, ...}", AT(set), .help = "replacements in the scene"},
     {.name = "meshes", .kind = BOUGH_KEY_NUMBERS, .range = ">= 1", .count = 1, AT(mesh),
-     .count_offset = offsetof(bough_verify_case, n_mesh),
+     COUNT_AT(n_mesh),
      .help = "numbers of segments that grow by a constant factor; default the scene's"},
     {.name = "mesh_key", .kind = BOUGH_KEY_TEXT, .fallback = "bodies[0].rod.segments",
      AT(mesh_key), .help = "key of the scene that takes them"},
     {.name = "mesh_of", .kind = BOUGH_KEY_NUMBER, .range = ">= 0", .fallback = "0", AT(mesh_of),
      .help = "what is divided by them for that key, as a time for a step; 0: nothing"},
     {.name = "expect", .kind = BOUGH_KEY_LIST, .of = &expect_schema, .count = 1, .required = true,
-     AT(expect), .count_offset = offsetof(bough_verify_case, n_expect),
+     AT(expect), COUNT_AT(n_expect),
      .help = "what should come out"},
-};
-#undef AT
-static const bough_schema case_schema = {
-    .name = "a case", .size = sizeof(bough_verify_case), .n_key = COUNT(case_keys),
-    .key = case_keys, .check = check_case};
+)};
+#undef FILLS
 
-#define AT(member) .offset = offsetof(bough_verify, member)
-static const bough_key verify_keys[] = {
+#define FILLS bough_verify
+static const bough_schema verify_schema = {.name = "a study", KEYS(
     {.name = "title", .kind = BOUGH_KEY_TEXT, AT(title), .help = "one line: what is verified"},
-    {.name = "kind", .kind = BOUGH_KEY_CHOICE, .choices = CHOICES("verify"), .required = true,
+    {.name = "kind", .kind = BOUGH_KEY_CHOICE, CHOICES("verify"), .required = true,
      AT(kind), .help = "verify: every case is compared to what it should give"},
     {.name = "cases", .kind = BOUGH_KEY_LIST, .of = &case_schema, .count = 1, .required = true,
-     AT(cases), .count_offset = offsetof(bough_verify, n_case), .help = "one after the other"},
-};
-#undef AT
-static const bough_schema verify_schema = {
-    .name = "a study", .size = sizeof(bough_verify), .n_key = COUNT(verify_keys),
-    .key = verify_keys};
+     AT(cases), COUNT_AT(n_case), .help = "one after the other"},
+)};
+#undef FILLS
 // clang-format on
 
 // -- reading --------------------------------------------------------------------------------------

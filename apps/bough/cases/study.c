@@ -56,7 +56,7 @@ static void check_measure(bough_schema_reader *r, void *item) {
 // clang-format would give each field of a key a line of its own:
 // clang-format off
 #define FILLS bough_study_measure
-static const bough_key measure_keys[] = {
+static const bough_schema measure_schema = {.name = "a measure", .check = check_measure, KEYS(
     {KEY(TEXT, name), .required = true, .help = "heading of its column"},
     {KEY(TEXT, channel), .help = "name of a channel"},
     {KEY(CUSTOM, channels), .read = read_channels, .form = channels_form,
@@ -68,13 +68,18 @@ static const bough_key measure_keys[] = {
     {KEY(NUMBER, scale), .range = "> 0", .fallback = "1",
      .help = "factor from the channels' unit to 'unit'"},
     {KEY(TEXT, unit), .help = "unit of the difference after scaling; default the channels' unit"},
-};
+)};
 #undef FILLS
-static const bough_schema measure_schema = {
-    SCHEMA("a measure", bough_study_measure, measure_keys), .check = check_measure};
+
+static void check_study(bough_schema_reader *r, void *item) {
+    const bough_study *s = item;
+    if (s->n_measure <= BOUGH_STUDY_MEASURES) return;
+    bough_schema_error(r, s->measure[BOUGH_STUDY_MEASURES].node, "measures",
+                       "expected at most %d, got %d", BOUGH_STUDY_MEASURES, s->n_measure);
+}
 
 #define FILLS bough_study
-static const bough_key study_keys[] = {
+static const bough_schema study_schema = {.name = "a study", .check = check_study, KEYS(
     {KEY(TEXT, title), .help = "one line of description"},
     {NAMED("scene", TEXT), AT(scene_name), .required = true,
      .help = "file of the scene, relative to the study"},
@@ -96,18 +101,8 @@ static const bough_key study_keys[] = {
      .help = "largest differences to the reference at the common output times"},
     {KEY(INTEGER, repeat), .range = "[1, 99]", .fallback = "1",
      .help = "number of runs of each cell; times are medians"},
-};
+)};
 #undef FILLS
-
-static void check_study(bough_schema_reader *r, void *item) {
-    const bough_study *s = item;
-    if (s->n_measure <= BOUGH_STUDY_MEASURES) return;
-    bough_schema_error(r, s->measure[BOUGH_STUDY_MEASURES].node, "measures",
-                       "expected at most %d, got %d", BOUGH_STUDY_MEASURES, s->n_measure);
-}
-
-static const bough_schema study_schema = {
-    SCHEMA("a study", bough_study, study_keys), .check = check_study};
 
 static void read_companions(bough_schema_reader *r, const bough_node *node, void *field) {
     const char *text = node->kind == BOUGH_SCALAR ? node->text : "";
@@ -121,8 +116,15 @@ static void read_companions(bough_schema_reader *r, const bough_node *node, void
     }
 }
 
+static void check_group(bough_schema_reader *r, void *item) {
+    const bough_load_group *g = item;
+    if ((g->weibull > 0) + (g->hours > 0) + (g->events > 0) > 1) {
+        bough_schema_error(r, g->node, "", "expected at most one of 'weibull', 'hours', 'events'");
+    }
+}
+
 #define FILLS bough_load_group
-static const bough_key group_keys[] = {
+static const bough_schema group_schema = {.name = "a load case", .check = check_group, KEYS(
     {KEY(TEXT, name), .required = true, .example = "DLC1.2", .help = "name of the load case"},
     {NAMED("scene", TEXT), AT(scene_name), .example = "parked.yaml",
      .help = "scene of this load case; replaces the set's"},
@@ -142,72 +144,16 @@ static const bough_key group_keys[] = {
      .help = "factor of favourable loads in place of it: of a largest value below zero and a smallest "
              "value above"},
     {KEY(BOOLEAN, extremes), .fallback = "true", .help = "its extremes count"},
-};
+)};
 #undef FILLS
 
-static void check_group(bough_schema_reader *r, void *item) {
-    const bough_load_group *g = item;
-    if ((g->weibull > 0) + (g->hours > 0) + (g->events > 0) > 1) {
-        bough_schema_error(r, g->node, "", "expected at most one of 'weibull', 'hours', 'events'");
-    }
-}
-
-static const bough_schema group_schema = {
-    SCHEMA("a load case", bough_load_group, group_keys), .check = check_group};
-
 #define FILLS bough_load_wind
-static const bough_key wind_keys[] = {
+static const bough_schema wind_schema = {.name = "the wind's distribution", KEYS(
     {KEY(NUMBER, average), UNIT(SPEED), .range = "> 0", .required = true, .example = "10 m/s",
      .help = "yearly mean at hub height"},
     {KEY(NUMBER, shape), .range = "[1, 10]", .fallback = "2", .example = "2.1",
      .help = "shape of the Weibull distribution; 2: Rayleigh distribution"},
-};
-#undef FILLS
-static const bough_schema wind_schema = {
-    SCHEMA("the wind's distribution", bough_load_wind, wind_keys)};
-
-#define FILLS bough_study
-#define HEAD(kinds)                                                                                \
-    {KEY(TEXT, title), .help = "one line of description"},                                         \
-    {KEY(CHOICE, kind), CHOICES(kinds), .required = true, .help = "kind of study"},                \
-    {KEY(CUSTOM, common), .read = bough_study_read_settings, .form = "{KEY: VALUE, ...}",          \
-     .help = "replaced keys of every case"},                                                       \
-    {KEY(NUMBER, from), UNIT(TIME), .range = ">= 0", .fallback = "0", .example = "30 s",           \
-     .help = "start of the statistics"},                                                           \
-    {NAMED("channels", TEXTS), AT(wanted), .count = 1, COUNT_AT(n_wanted),                         \
-     .example = "[RotSpeed, RootMyb1]", .help = "channels that are kept; default all"},            \
-    {KEY(BOOLEAN, series), .fallback = "false",                                                    \
-     .help = "every case keeps its channels.out; with 'simulation.output.binary: true' in "        \
-             "'common' channels.outb in its place"}
-
-static const bough_key sweep_keys[] = {
-    HEAD("sweep"),
-    {NAMED("scene", TEXT), AT(scene_name),
-     .help = "file of the scene, relative to the study; not given if the grid has the key 'scene'"},
-    {KEY(CUSTOM, grid), .read = bough_study_read_grid, .required = true,
-     .form = "{KEY: [VALUE, ...], ...}",
-     .help = "one run for each combination of the values; the key 'scene' takes files"},
-};
-static const bough_schema sweep_schema = {SCHEMA("a sweep", bough_study, sweep_keys)};
-
-static const bough_key set_keys[] = {
-    HEAD("load-set"),
-    {NAMED("scene", TEXT), AT(scene_name), .required = true,
-     .help = "file of the scene, relative to the study"},
-    {NAMED("slopes", NUMBERS), AT(slope), .range = "[1, 30]", .count = 1, .required = true,
-     COUNT_AT(n_slope), .example = "[4, 10]", .help = "exponents of the S-N curves"},
-    {NAMED("equivalent_cycles", NUMBER), AT(cycles), .range = "> 0", .fallback = "1e7",
-     .example = "2e6", .help = "number of cycles of the lifetime's damage-equivalent loads"},
-    {KEY(NUMBER, lifetime), .range = "> 0", .fallback = "20", .example = "25",
-     .help = "lifetime in years"},
-    {KEY(CUSTOM, companions), .read = read_companions, .form = "1 in N|all|none", .fallback = "1 in 20",
-     .help = "cases that have a companion, whatever the scene says: the errors of equivalent loads and "
-             "extremes follow from them"},
-    {KEY(MAPPING, wind), .of = &wind_schema,
-     .help = "distribution of the wind speed, for 'weibull'"},
-    {NAMED("cases", LIST), AT(group), .of = &group_schema, .count = 1, .required = true,
-     COUNT_AT(n_group), .help = "design load cases"},
-};
+)};
 #undef FILLS
 
 static void check_set(bough_schema_reader *r, void *item) {
@@ -228,8 +174,49 @@ static void check_set(bough_schema_reader *r, void *item) {
     }
 }
 
-static const bough_schema set_schema = {
-    SCHEMA("a load set", bough_study, set_keys), .check = check_set};
+#define FILLS bough_study
+#define HEAD(kinds)                                                                                \
+    {KEY(TEXT, title), .help = "one line of description"},                                         \
+    {KEY(CHOICE, kind), CHOICES(kinds), .required = true, .help = "kind of study"},                \
+    {KEY(CUSTOM, common), .read = bough_study_read_settings, .form = "{KEY: VALUE, ...}",          \
+     .help = "replaced keys of every case"},                                                       \
+    {KEY(NUMBER, from), UNIT(TIME), .range = ">= 0", .fallback = "0", .example = "30 s",           \
+     .help = "start of the statistics"},                                                           \
+    {NAMED("channels", TEXTS), AT(wanted), .count = 1, COUNT_AT(n_wanted),                         \
+     .example = "[RotSpeed, RootMyb1]", .help = "channels that are kept; default all"},            \
+    {KEY(BOOLEAN, series), .fallback = "false",                                                    \
+     .help = "every case keeps its channels.out; with 'simulation.output.binary: true' in "        \
+             "'common' channels.outb in its place"}
+
+static const bough_schema sweep_schema = {.name = "a sweep", KEYS(
+    HEAD("sweep"),
+    {NAMED("scene", TEXT), AT(scene_name),
+     .help = "file of the scene, relative to the study; not given if the grid has the key 'scene'"},
+    {KEY(CUSTOM, grid), .read = bough_study_read_grid, .required = true,
+     .form = "{KEY: [VALUE, ...], ...}",
+     .help = "one run for each combination of the values; the key 'scene' takes files"},
+)};
+
+static const bough_schema set_schema = {.name = "a load set", .check = check_set, KEYS(
+    HEAD("load-set"),
+    {NAMED("scene", TEXT), AT(scene_name), .required = true,
+     .help = "file of the scene, relative to the study"},
+    {NAMED("slopes", NUMBERS), AT(slope), .range = "[1, 30]", .count = 1, .required = true,
+     COUNT_AT(n_slope), .example = "[4, 10]", .help = "exponents of the S-N curves"},
+    {NAMED("equivalent_cycles", NUMBER), AT(cycles), .range = "> 0", .fallback = "1e7",
+     .example = "2e6", .help = "number of cycles of the lifetime's damage-equivalent loads"},
+    {KEY(NUMBER, lifetime), .range = "> 0", .fallback = "20", .example = "25",
+     .help = "lifetime in years"},
+    {KEY(CUSTOM, companions), .read = read_companions, .form = "1 in N|all|none", .fallback = "1 in 20",
+     .help = "cases that have a companion, whatever the scene says: the errors of equivalent loads and "
+             "extremes follow from them"},
+    {KEY(MAPPING, wind), .of = &wind_schema,
+     .help = "distribution of the wind speed, for 'weibull'"},
+    {NAMED("cases", LIST), AT(group), .of = &group_schema, .count = 1, .required = true,
+     COUNT_AT(n_group), .help = "design load cases"},
+)};
+#undef FILLS
+
 // clang-format on
 
 // -- help -----------------------------------------------------------------------------------------

@@ -20,6 +20,10 @@
 #define WHEN(key, values) .when_key = key, .when = values
 
 #define COUNT(table) (int)(sizeof(table) / sizeof(table)[0])
-#define SCHEMA(what, type, keys) .name = what, .size = sizeof(type), .n_key = COUNT(keys), .key = keys
+// The keys of a schema, rows such as {KEY(NUMBER, scale), .range = "> 0", .help = "..."}.
+#define KEYS(...)                                                                                            \
+    .size = sizeof(FILLS), .n_key = COUNT(((const bough_key[]){__VA_ARGS__})), .key = (const bough_key[]) {  \
+        __VA_ARGS__                                                                                          \
+    }
 
 #endif

@@ -29,7 +29,7 @@ static void keep(bough_schema_reader *r, const bough_node *node, void *field) {
 // clang-format off
 #define PART .form = "mapping with keys of a body", .read = keep
 #define FILLS block
-static const bough_key keys[] = {
+const bough_schema bough_scene_block_schema = {.name = "a turbine in one block", KEYS(
     {NAMED("blades", INTEGER), AT(n_blade), .range = "[1, 48]", .required = true, .example = "3",
      .help = "their number; they are equal and evenly spaced, blade1 points up"},
     {KEY(NUMBER, hub_radius), UNIT(LENGTH), .range = "> 0", .required = true, .example = "1.5 m",
@@ -57,10 +57,9 @@ static const bough_key keys[] = {
      .help = "rigid, on the shaft's revolute joint about x"},
     {KEY(CUSTOM, blade), PART, .required = true, .example = "{rod: {table: blade-structure.yaml, segments: 24}}",
      .help = "each of them a rod"},
-};
+)};
 #undef FILLS
 // clang-format on
-const bough_schema bough_scene_block_schema = {SCHEMA("a turbine in one block", block, keys)};
 
 // -- text -----------------------------------------------------------------------------------------
 

@@ -9,7 +9,7 @@
 #define FILLS bough_controller_def
 #define LAW(member, unit, given, shown, what)                                                      \
     {KEY(NUMBER, member), UNIT(unit), .fallback = given, .example = shown, .help = what}
-static const bough_key law_keys[] = {
+static const bough_schema law_schema = {.name = "the law's constants", KEYS(
     LAW(corner, ANGULAR_SPEED, "1.570796 rad/s", "2 rad/s",
         "corner frequency of the low-pass filter of the generator's speed"),
     LAW(cut_in, ANGULAR_SPEED, "70.16224 rad/s", "670 rpm",
@@ -44,15 +44,30 @@ static const bough_key law_keys[] = {
     LAW(most_pitch, ANGLE, "1.570796 rad", "85 deg", "limit of the pitch"),
     LAW(pitch_rate, ANGULAR_SPEED, "0.1396263 rad/s", "7 deg/s",
         "largest pitch rate, for all controllers"),
-};
+)};
 #undef FILLS
-static const bough_schema law_schema = {
-    SCHEMA("the law's constants", bough_controller_def, law_keys)};
 
 #define FAULTS "pitch-stuck|pitch-runaway"
 #define TURNS  "stop|emergency-stop|pitch-runaway|pitch-to|yaw-runaway"
+static void check_event(bough_schema_reader *r, void *item) {
+    bough_scene_event *e = item;
+    bool above = bough_node_find(e->node, "above"), below = bough_node_find(e->node, "below");
+    if (above + below != (e->channel != NULL)) {
+        bough_schema_error(r, e->node, "", e->channel ? "'channel' needs one of 'above' and 'below'"
+                                                      : "a threshold needs its 'channel'");
+    }
+    if (!e->channel && !bough_node_find(e->node, "at")) {
+        bough_schema_error(r, e->node, "", "expected 'at' or 'channel' as the time of the event");
+    }
+    if (e->kind == BOUGH_SCENE_PITCH_TO && !bough_node_find(e->node, "angle")) {
+        bough_schema_error(r, e->node, "", "pitch-to needs its 'angle'");
+    }
+    e->falls = below;
+    e->threshold = below ? e->below : e->above;
+}
+
 #define FILLS bough_scene_event
-static const bough_key event_keys[] = {
+static const bough_schema event_schema = {.name = "an event", .check = check_event, KEYS(
     {KEY(CHOICE, kind),
      CHOICES([BOUGH_SCENE_START] = "start", [BOUGH_SCENE_STOP] = "stop",
              [BOUGH_SCENE_EMERGENCY_STOP] = "emergency-stop",
@@ -86,33 +101,13 @@ static const bough_key event_keys[] = {
      WHEN("kind", TURNS), .example = "2 deg/s",
      .help = "rate of the motion, for pitch at most the law's pitch_rate; auto: 4 deg/s for a "
              "stop, 0.3 deg/s for the yaw, else the law's pitch_rate"},
-};
+)};
 #undef FILLS
-
-static void check_event(bough_schema_reader *r, void *item) {
-    bough_scene_event *e = item;
-    bool above = bough_node_find(e->node, "above"), below = bough_node_find(e->node, "below");
-    if (above + below != (e->channel != NULL)) {
-        bough_schema_error(r, e->node, "", e->channel ? "'channel' needs one of 'above' and 'below'"
-                                                      : "a threshold needs its 'channel'");
-    }
-    if (!e->channel && !bough_node_find(e->node, "at")) {
-        bough_schema_error(r, e->node, "", "expected 'at' or 'channel' as the time of the event");
-    }
-    if (e->kind == BOUGH_SCENE_PITCH_TO && !bough_node_find(e->node, "angle")) {
-        bough_schema_error(r, e->node, "", "pitch-to needs its 'angle'");
-    }
-    e->falls = below;
-    e->threshold = below ? e->below : e->above;
-}
-
-static const bough_schema event_schema = {
-    SCHEMA("an event", bough_scene_event, event_keys), .check = check_event};
 
 #define FILLS bough_scene_terminals
 #define SENSED(key, place, shown, what)                                                            \
     {NAMED(key, TEXT), AT(name[BOUGH_SENSED_##place]), .example = shown, .help = what}
-static const bough_key input_keys[] = {
+static const bough_schema input_schema = {.name = "the inputs", KEYS(
     SENSED("time", TIME, "t", "time [s]"),
     SENSED("generator_speed", GENERATOR_SPEED, "omega", "of the fast shaft [rad/s]"),
     SENSED("rotor_speed", ROTOR_SPEED, "omega_rotor", "of the hub [rad/s]"),
@@ -123,33 +118,35 @@ static const bough_key input_keys[] = {
     SENSED("yaw_error", YAW_ERROR, "gamma", "direction of the wind less the nacelle's [rad]"),
     {KEY(TEXTS, pitch), .count = 1, COUNT_AT(n_pitch), .example = "[beta1, beta2, beta3]",
      .help = "of each blade [rad]; none: no input"},
-};
-static const bough_key output_keys[] = {
+)};
+static const bough_schema output_schema = {.name = "the outputs", KEYS(
     {NAMED("torque", TEXT), AT(name[BOUGH_SENSED_TORQUE]), .required = true, .example = "T_demand",
      .help = "of the generator, on the fast shaft [N m]"},
     {KEY(TEXTS, pitch), .count = 1, COUNT_AT(n_pitch), .example = "[beta_demand]",
      .help = "of all blades, or of each [rad]; default: the blades keep their pitch"},
-};
+)};
 #undef FILLS
-static const bough_schema input_schema = {
-    SCHEMA("the inputs", bough_scene_terminals, input_keys)};
-static const bough_schema output_schema = {
-    SCHEMA("the outputs", bough_scene_terminals, output_keys)};
 
 #define FILLS bough_scene_control_fmu
-static const bough_key fmu_keys[] = {
+static const bough_schema fmu_schema = {.name = "an FMU", .check = bough_scene_check_control_fmu, KEYS(
     BOUGH_FMU_KEYS("controller.fmu", "{gain: 100}"),
     {KEY(MAPPING, inputs), .of = &input_schema, .required = true,
      .help = "names of its inputs for what is measured at the beginning of each sample"},
     {KEY(MAPPING, outputs), .of = &output_schema, .required = true,
      .help = "names of its outputs for what it demands by the end of the sample"},
-};
+)};
 #undef FILLS
-static const bough_schema fmu_schema = {
-    SCHEMA("an FMU", bough_scene_control_fmu, fmu_keys), .check = bough_scene_check_control_fmu};
+
+static void check_control(bough_schema_reader *r, void *item) {
+    bough_scene_control *c = item;
+    if (!c->pitch) c->law.power_pitch = INFINITY; // a pitch that nobody controls says nothing of the power
+    if (c->kind != BOUGH_SCENE_BLADED) return;
+    if (c->library) c->library = bough_schema_path(r, c->node, "library", c->library);
+    c->input = c->input && c->input[0] ? bough_schema_path(r, c->node, "input", c->input) : "";
+}
 
 #define FILLS bough_scene_control
-static const bough_key control_keys[] = {
+const bough_schema bough_scene_control_schema = {.name = "the control", .check = check_control, KEYS(
     {KEY(CHOICE, kind),
      CHOICES([BOUGH_SCENE_VARIABLE_SPEED] = "variable-speed", [BOUGH_SCENE_BLADED] = "bladed",
              [BOUGH_SCENE_EXTERNAL] = "external", [BOUGH_SCENE_CONTROL_FMU] = "fmu"), .required = true,
@@ -180,17 +177,6 @@ static const bough_key control_keys[] = {
      .help = "constants of the control law; the defaults are those of the NREL 5 MW turbine"},
     {NAMED("events", LIST), AT(event), .of = &event_schema, COUNT_AT(n_event),
      .help = "events of the turbine, at most 8"},
-};
+)};
 #undef FILLS
 // clang-format on
-
-static void check_control(bough_schema_reader *r, void *item) {
-    bough_scene_control *c = item;
-    if (!c->pitch) c->law.power_pitch = INFINITY; // a pitch that nobody controls says nothing of the power
-    if (c->kind != BOUGH_SCENE_BLADED) return;
-    if (c->library) c->library = bough_schema_path(r, c->node, "library", c->library);
-    c->input = c->input && c->input[0] ? bough_schema_path(r, c->node, "input", c->input) : "";
-}
-
-const bough_schema bough_scene_control_schema = {SCHEMA("the control", bough_scene_control, control_keys),
-                                                 .check = check_control};

@@ -22,13 +22,12 @@ static bool read_form(bough_schema_reader *r, const bough_node *node, const boug
 bool bough_scene_read_table(bough_schema_reader *r, const bough_node *node, bough_dimension unit,
                             bough_scene_table *table) {
 #define FILLS bough_scene_table
-    const bough_key keys[] = {
+    const bough_schema schema = {.name = "a table", KEYS(
         {KEY(NUMBERS, times), UNIT(TIME), .range = ">= 0", .count = 2, .required = true, .increasing = true,
          COUNT_AT(n_time)},
         {KEY(NUMBERS, values), .dimension = unit, .count = 2, .required = true, COUNT_AT(n_value)},
-    };
+    )};
 #undef FILLS
-    const bough_schema schema = {SCHEMA("a table", bough_scene_table, keys)};
     *table = (bough_scene_table){0};
     if (!read_form(r, node, &schema, table)) return false;
     if (table->n_time != table->n_value) {
@@ -46,13 +45,12 @@ typedef struct ramp {
 static void read_ramp(bough_schema_reader *r, const bough_node *node, bough_dimension unit,
                       bough_motion_def *def) {
 #define FILLS ramp
-    const bough_key keys[] = {
+    const bough_schema schema = {.name = "a ramp", KEYS(
         {KEY(NUMBER, from), .dimension = unit, .fallback = "0"},
         {KEY(NUMBER, to), .dimension = unit, .required = true},
         {KEY(VECTOR, ramp), UNIT(TIME), .count = 2, .range = ">= 0", .required = true},
-    };
+    )};
 #undef FILLS
-    const bough_schema schema = {SCHEMA("a ramp", ramp, keys)};
     ramp x = {0};
     if (!read_form(r, node, &schema, &x)) return;
     if (!(x.ramp[1] > x.ramp[0])) {
@@ -84,32 +82,6 @@ static void read_values(bough_schema_reader *r, const bough_node *node, void *fi
 }
 
 // -- the motion -----------------------------------------------------------------------------------
-
-// clang-format off
-#define FORM .form = "a number, {from: 0, to: ..., ramp: [...]} or {times: [...], values: [...]}"
-#define FILLS bough_scene_motion
-#define INPUT                                                                                      \
-    {KEY(TEXT, input), .example = "yaw",                                                           \
-     .help = "with a constant place: name by which it is set between steps"}
-#define TURN                                                                                       \
-    {NAMED("speed", CUSTOM), .read = read_values, UNIT(ANGULAR_SPEED), FORM},                      \
-    {NAMED("angle", CUSTOM), .read = read_values, UNIT(ANGLE), FORM}
-static const bough_key revolute_keys[] = {TURN, INPUT};
-static const bough_key axis_keys[] = {TURN};
-static const bough_key prismatic_keys[] = {
-    {NAMED("speed", CUSTOM), .read = read_values, UNIT(SPEED), FORM},
-    {NAMED("position", CUSTOM), .read = read_values, UNIT(LENGTH), FORM},
-    INPUT,
-};
-#undef FILLS
-#define FILLS motions
-static const bough_key cylindrical_keys[] = {
-    {NAMED("speed", CUSTOM), .read = read_values, UNIT(SPEED)},
-    {NAMED("position", CUSTOM), .read = read_values, UNIT(LENGTH)},
-    {NAMED("angular_speed", CUSTOM), AT(second), .read = read_values, UNIT(ANGULAR_SPEED)},
-    {NAMED("angle", CUSTOM), AT(second), .read = read_values, UNIT(ANGLE)},
-};
-// clang-format on
 
 // At most one of two keys may be given: the speed or the place.
 static void check_one(bough_schema_reader *r, const bough_node *node, const char *speed, const char *place,
@@ -145,21 +117,38 @@ static void check_pair(bough_schema_reader *r, void *item) {
 }
 
 // clang-format off
+#define FORM .form = "a number, {from: 0, to: ..., ramp: [...]} or {times: [...], values: [...]}"
+#define FILLS bough_scene_motion
+#define INPUT                                                                                      \
+    {KEY(TEXT, input), .example = "yaw",                                                           \
+     .help = "with a constant place: name by which it is set between steps"}
+#define TURN                                                                                       \
+    {NAMED("speed", CUSTOM), .read = read_values, UNIT(ANGULAR_SPEED), FORM},                      \
+    {NAMED("angle", CUSTOM), .read = read_values, UNIT(ANGLE), FORM}
 static const bough_schema revolute_motion = {
-    SCHEMA("the motion of a revolute joint", bough_scene_motion, revolute_keys), .check = check_motion};
-static const bough_schema prismatic_motion = {
-    SCHEMA("the motion of a prismatic joint", bough_scene_motion, prismatic_keys), .check = check_motion};
-static const bough_schema cylindrical_motion = {
-    SCHEMA("the motion of a cylindrical joint", motions, cylindrical_keys), .check = check_pair};
+    .name = "the motion of a revolute joint", .check = check_motion, KEYS(TURN, INPUT)};
 static const bough_schema axis_motion = {
-    SCHEMA("the motion about an axis", bough_scene_motion, axis_keys), .check = check_motion};
-static const bough_key universal_keys[] = {
+    .name = "the motion about an axis", .check = check_motion, KEYS(TURN)};
+static const bough_schema prismatic_motion = {
+    .name = "the motion of a prismatic joint", .check = check_motion, KEYS(
+    {NAMED("speed", CUSTOM), .read = read_values, UNIT(SPEED), FORM},
+    {NAMED("position", CUSTOM), .read = read_values, UNIT(LENGTH), FORM},
+    INPUT,
+)};
+#undef FILLS
+#define FILLS motions
+static const bough_schema cylindrical_motion = {
+    .name = "the motion of a cylindrical joint", .check = check_pair, KEYS(
+    {NAMED("speed", CUSTOM), .read = read_values, UNIT(SPEED)},
+    {NAMED("position", CUSTOM), .read = read_values, UNIT(LENGTH)},
+    {NAMED("angular_speed", CUSTOM), AT(second), .read = read_values, UNIT(ANGULAR_SPEED)},
+    {NAMED("angle", CUSTOM), AT(second), .read = read_values, UNIT(ANGLE)},
+)};
+static const bough_schema universal_motion = {.name = "the motion of a universal joint", KEYS(
     {KEY(MAPPING, first), .of = &axis_motion},
     {KEY(MAPPING, second), .of = &axis_motion},
-};
+)};
 #undef FILLS
-static const bough_schema universal_motion = {
-    SCHEMA("the motion of a universal joint", motions, universal_keys)};
 // clang-format on
 
 // field: the joint, whose kind is read before

@@ -13,7 +13,7 @@
     {KEY(NUMBER, rho), .range = "[0, 1]", .fallback = "0.8", .example = "0.6",                     \
      .help = "of generalized-alpha: spectral radius at infinite frequency"}
 #define FILLS bough_scene_solver
-static const bough_key master_keys[] = {
+static const bough_schema master_schema = {.name = "a solver", KEYS(
     {KEY(CHOICE, solver), .fallback = "ida", .choice = bough_integrator_name,
      .help = "ida, cvode-bdf: BDF of variable order; arkode-esdirk: Runge-Kutta of order 4; "
              "radau5: Runge-Kutta of order 5, up to 400 states; generalized-alpha: order 2; "
@@ -27,18 +27,16 @@ static const bough_key master_keys[] = {
              "step, and of the last two, with a scheme for all bodies together, from simulation.accuracy "
              "and the rods"},
     RHO,
-};
-static const bough_key micro_keys[] = {
+)};
+const bough_schema bough_scene_micro_schema = {.name = "a solver", KEYS(
     {KEY(CHOICE, solver), .fallback = "cvode-bdf", .choice = bough_integrator_name,
      .help = "time integrator of each rod"},
     RTOL,
     {KEY(NUMBER, step), UNIT(TIME), .range = "[1e-7, 10]", .example = "10 ms",
      .help = "of generalized-alpha and rosenbrock: longest step; default from simulation.accuracy"},
     RHO,
-};
+)};
 #undef FILLS
-static const bough_schema master_schema = {SCHEMA("a solver", bough_scene_solver, master_keys)};
-const bough_schema bough_scene_micro_schema = {SCHEMA("a solver", bough_scene_solver, micro_keys)};
 
 // -- simulation -----------------------------------------------------------------------------------
 
@@ -47,7 +45,7 @@ _Static_assert(sizeof(bough_exchange) == sizeof(int) && sizeof(bough_acceleratio
                "choices are stored as int");
 // The schemes' own keys are allowed with any scheme, so that --set may change the scheme alone; bough_scene_warn
 // names those that are not used.
-static const bough_key coupling_keys[] = {
+static const bough_schema coupling_schema = {.name = "the coupling", KEYS(
     {KEY(CHOICE, scheme), .fallback = BOUGH_SCHEME_DEFAULT, .choice = bough_scheme_name,
      .help = "how sub-systems exchange their values. The default integrates all bodies as one "
              "system"},
@@ -74,13 +72,14 @@ static const bough_key coupling_keys[] = {
              "of micro"},
     {NAMED("iterations", INTEGER), AT(options.iterations), .range = "[1, 1000]", .fallback = "30",
      .example = "50", .help = "of iterated: largest number in a macro step"},
-};
+)};
 #undef FILLS
-static const bough_schema coupling_schema = {
-    SCHEMA("the coupling", bough_scene_coupling, coupling_keys)};
+
+static const char *const removed_outputs[] = {
+    "vertices", "'frames: 0.1 s' stores the vertices of rods and their section loads, as .vtp", NULL};
 
 #define FILLS bough_scene_output
-static const bough_key output_keys[] = {
+static const bough_schema output_schema = {.name = "the output", .removed = removed_outputs, KEYS(
     {KEY(NUMBER, interval), UNIT(TIME), .range = "> 0", .example = "50 ms",
      .help = "time between recorded values, a multiple of the macro step; default the macro step"},
     {KEY(NUMBER, from), UNIT(TIME), .range = ">= 0", .fallback = "0", .example = "30 s",
@@ -93,27 +92,21 @@ static const bough_key output_keys[] = {
              "value"},
     {KEY(TEXTS, channels), .count = 1, COUNT_AT(n_channel), .example = "[RotSpeed, 'Root*']",
      .help = "names or patterns of the channels that are recorded; default all"},
-};
+)};
 #undef FILLS
-static const char *const removed_outputs[] = {
-    "vertices", "'frames: 0.1 s' stores the vertices of rods and their section loads, as .vtp", NULL};
-static const bough_schema output_schema = {SCHEMA("the output", bough_scene_output, output_keys),
-                                           .removed = removed_outputs};
 
 #define FILLS bough_scene_step_control
-static const bough_key step_control_keys[] = {
+static const bough_schema step_control_schema = {.name = "the step control", KEYS(
     {KEY(NUMBER, tolerance), .range = "[0, 1]", .fallback = "0", .example = "1e-3",
      .help = "largest difference between the value obtained at a port and the value applied, "
              "relative to the largest value so far; 0: fixed steps"},
     {KEY(NUMBER, min), UNIT(TIME), .range = "> 0", .fallback = "0.1 ms", .example = "1 ms",
      .help = "shortest macro step"},
-};
+)};
 #undef FILLS
-static const bough_schema step_control_schema = {
-    SCHEMA("the step control", bough_scene_step_control, step_control_keys)};
 
 #define FILLS bough_scene_simulation
-static const bough_key simulation_keys[] = {
+static const bough_schema simulation_schema = {.name = "the simulation", KEYS(
     {KEY(NUMBER, duration), UNIT(TIME), .range = "> 0", .required = true, .example = "40 s",
      .help = "simulated time, a multiple of the macro step"},
     {KEY(NUMBER, accuracy), .range = "[1e-7, 0.1]", .fallback = "0.005", .example = "0.001",
@@ -151,15 +144,13 @@ static const bough_key simulation_keys[] = {
      .help = "threads for the rods; --threads overrides; 0: OMP_NUM_THREADS, 1 where that is not "
              "set"},
     {KEY(MAPPING, output), .of = &output_schema, .help = "what is recorded"},
-};
+)};
 #undef FILLS
-static const bough_schema simulation_schema = {
-    SCHEMA("the simulation", bough_scene_simulation, simulation_keys)};
 
 // -- modes ----------------------------------------------------------------------------------------
 
 #define FILLS bough_scene_modes
-static const bough_key modes_keys[] = {
+static const bough_schema modes_schema = {.name = "the modes", KEYS(
     {KEY(INTEGER, count), .range = "[1, 60]", .fallback = "12", .example = "20",
      .help = "number of modes of each rod or of the scene, from the lowest frequency"},
     {KEY(CHOICE, of),
@@ -192,9 +183,8 @@ static const bough_key modes_keys[] = {
     {KEY(BOOLEAN, linear), .fallback = "false",
      .help = "of the whole scene: writes its linear state space, the matrices A to D and the names "
              "of its states, inputs and outputs"},
-};
+)};
 #undef FILLS
-static const bough_schema modes_schema = {SCHEMA("the modes", bough_scene_modes, modes_keys)};
 
 // -- the scene ------------------------------------------------------------------------------------
 
@@ -203,7 +193,7 @@ static void already_expanded(bough_schema_reader *r, const bough_node *node, voi
 }
 
 #define FILLS bough_scene
-static const bough_key scene_keys[] = {
+const bough_schema bough_scene_schema = {.name = "a scene", KEYS(
     {KEY(TEXT, base), .example = "runup.yaml",
      .help = "scene on which this one builds: the file has only what differs"},
     {KEY(TEXT, title), .example = "A bar that swings", .help = "what the scene shows"},
@@ -235,10 +225,9 @@ static const bough_key scene_keys[] = {
     {KEY(MAPPING, control), .of = &bough_scene_control_schema,
      .help = "controller of the turbine's generator and pitch; default none"},
     {KEY(MAPPING, modes), .of = &modes_schema, .help = "settings of 'bough modes'"},
-};
+)};
 #undef FILLS
 // clang-format on
-const bough_schema bough_scene_schema = {SCHEMA("a scene", bough_scene, scene_keys)};
 
 static const char example[] =
     "    title: A bar that swings from a bearing and bends\n"

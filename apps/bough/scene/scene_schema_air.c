@@ -5,7 +5,7 @@
 // clang-format off
 
 #define FILLS bough_scene_aero_station
-static const bough_key aero_station_keys[] = {
+static const bough_schema aero_station_schema = {.name = "a station", KEYS(
     {NAMED("span", NUMBER), AT(def.span), UNIT(LENGTH), .required = true, .increasing = true, .example = "20.5 m",
      .help = "distance from the root, along z"},
     {NAMED("ac_x", NUMBER), AT(def.centre_x), UNIT(LENGTH), .fallback = "0", .example = "0.1 m",
@@ -22,39 +22,33 @@ static const bough_key aero_station_keys[] = {
      .help = "name of a second polar, with which the first is mixed"},
     {NAMED("share", NUMBER), AT(def.share), .range = "[0, 1]", .fallback = "0", .example = "0.4",
      .help = "share of the second polar"},
-};
+)};
 #undef FILLS
-static const bough_schema aero_station_schema = {
-    SCHEMA("a station", bough_scene_aero_station, aero_station_keys)};
 
 #define FILLS bough_scene_aero_blade
-static const bough_key aero_blade_keys[] = {
+static const bough_schema aero_blade_schema = {
+    .name = "an aerodynamic blade", .check = bough_scene_check_aero_blade, KEYS(
     {KEY(TEXT, source), .example = "Jonkman et al. 2009, NREL/TP-500-38060",
      .help = "where the data come from"},
     {NAMED("stations", LIST), AT(station), .of = &aero_station_schema, .count = 2, .required = true,
      COUNT_AT(n_station), .help = "blade elements, from the root to the tip"},
-};
+)};
 #undef FILLS
-static const bough_schema aero_blade_schema = {
-    SCHEMA("an aerodynamic blade", bough_scene_aero_blade, aero_blade_keys),
-    .check = bough_scene_check_aero_blade};
 
 #define FILLS bough_scene_polar_row
 #define ROW(member, shown, what)                                                                   \
     {KEY(NUMBER, member), .required = true, .example = shown, .help = what}
-static const bough_key polar_row_keys[] = {
+static const bough_schema polar_row_schema = {.name = "a row", KEYS(
     {KEY(NUMBER, alpha), UNIT(ANGLE), .required = true, .increasing = true, .example = "8 deg",
      .help = "angle of attack"},
     ROW(cl, "1.05", "lift coefficient"),
     ROW(cd, "0.012", "drag coefficient"),
     ROW(cm, "-0.11", "moment coefficient about the aerodynamic centre, nose up"),
-};
+)};
 #undef FILLS
-static const bough_schema polar_row_schema = {
-    SCHEMA("a row", bough_scene_polar_row, polar_row_keys)};
 
 #define FILLS bough_scene_polar
-static const bough_key polar_keys[] = {
+static const bough_schema polar_schema = {.name = "a polar", .check = bough_scene_check_polar, KEYS(
     {KEY(TEXT, name), .required = true, .example = "DU25", .help = "unique"},
     {NAMED("table", LIST), AT(row), .of = &polar_row_schema, .count = 2, .required = true,
      COUNT_AT(n_row), .help = "rows from -180 deg to 180 deg, with linear interpolation"},
@@ -62,38 +56,32 @@ static const bough_key polar_keys[] = {
      .example = "[0.3, 0.7, 0.14, 0.53]",
      .help = "of dynamic stall: A1, A2, b1, b2 of the lift 1 - A1 exp(-b1 s) - A2 exp(-b2 s) after a step of "
              "the angle of attack, s in half chords; default a flat plate (Jones)"},
-};
+)};
 #undef FILLS
-static const bough_schema polar_schema = {SCHEMA("a polar", bough_scene_polar, polar_keys),
-                                          .check = bough_scene_check_polar};
 
 #define FILLS bough_scene_polars
-static const bough_key polars_keys[] = {
+static const bough_schema polars_schema = {.name = "a set of polars", .check = bough_scene_check_polars, KEYS(
     {KEY(TEXT, source), .example = "Jonkman et al. 2009, NREL/TP-500-38060",
      .help = "where the data come from"},
     {NAMED("polars", LIST), AT(polar), .of = &polar_schema, .count = 1, .required = true,
      COUNT_AT(n_polar), .help = "airfoils"},
-};
+)};
 #undef FILLS
-static const bough_schema polars_schema = {
-    SCHEMA("a set of polars", bough_scene_polars, polars_keys), .check = bough_scene_check_polars};
 
 #define FILLS bough_scene_wind_table
-static const bough_key wind_table_keys[] = {
+static const bough_schema wind_table_schema = {
+    .name = "a table of wind speeds", .check = bough_scene_check_wind_table, KEYS(
     {NAMED("times", NUMBERS), AT(time), UNIT(TIME), .count = 2, .required = true, .increasing = true, COUNT_AT(n_time),
      .example = "[0, 10 s, 12 s]", .help = "strictly increasing"},
     {NAMED("speeds", NUMBERS), AT(speed), UNIT(SPEED), .range = WIND_SPEED_RANGE, .count = 2,
      .required = true, COUNT_AT(n_speed), .example = "[8, 8, 12 m/s]",
      .help = "speed at each time, linear between, constant before and after"},
-};
+)};
 #undef FILLS
-static const bough_schema wind_table_schema = {
-    SCHEMA("a table of wind speeds", bough_scene_wind_table, wind_table_keys),
-    .check = bough_scene_check_wind_table};
 
 #define FILLS bough_scene_wind
 #define DEF(member) NAMED(#member, NUMBER), AT(def.member)
-static const bough_key wind_keys[] = {
+static const bough_schema wind_schema = {.name = "the wind", .check = bough_scene_check_wind, KEYS(
     {KEY(CHOICE, kind),
      CHOICES([BOUGH_SCENE_WIND_UNIFORM] = "uniform", [BOUGH_SCENE_WIND_POWER] = "power",
              [BOUGH_SCENE_WIND_LOG] = "log", [BOUGH_SCENE_WIND_WND] = "wnd",
@@ -180,16 +168,14 @@ static const bough_key wind_keys[] = {
              "without one"},
     {DEF(vertical), UNIT(SPEED), .fallback = "0", .example = "0.5 m/s",
      .help = "vertical speed, upwards, at every height and time"},
-};
+)};
 #undef FILLS
 #undef DEF
-static const bough_schema wind_schema = {SCHEMA("the wind", bough_scene_wind, wind_keys),
-                                         .check = bough_scene_check_wind};
 
 #define FILLS bough_scene_induction
 #define SWITCH(member, what)                                                                       \
     {NAMED(#member, BOOLEAN), AT(options.member), .fallback = "true", .help = what}
-static const bough_key induction_keys[] = {
+static const bough_schema induction_schema = {.name = "the induction", KEYS(
     SWITCH(tip_loss, "Prandtl's loss factor at the tip"),
     SWITCH(hub_loss, "Prandtl's loss factor at the hub"),
     SWITCH(tangential, "tangential induction"),
@@ -213,13 +199,11 @@ static const bough_key induction_keys[] = {
     {NAMED("inflow_time", NUMBER), AT(inflow.time), UNIT(TIME), .word = "auto", .range = "> 0",
      .fallback = "auto", WHEN("inflow", "oye"), .example = "5 s",
      .help = "slow time constant of the dynamic inflow; auto: 1.1/(1 - 1.3 a) R/U"},
-};
+)};
 #undef FILLS
-static const bough_schema induction_schema = {
-    SCHEMA("the induction", bough_scene_induction, induction_keys)};
 
 #define FILLS bough_scene_tower
-static const bough_key tower_keys[] = {
+static const bough_schema tower_schema = {.name = "a tower", .check = bough_scene_check_tower, KEYS(
     {NAMED("influence", CHOICE), AT(def.influence),
      CHOICES([BOUGH_TOWER_POTENTIAL] = "potential", [BOUGH_TOWER_BAK] = "bak"),
      .fallback = "potential",
@@ -239,13 +223,11 @@ static const bough_key tower_keys[] = {
              "and the drag on a body"},
     {NAMED("body", TEXT), AT(body_name), .example = "tower",
      .help = "body with a rod on which the tower's drag acts; default no drag"},
-};
+)};
 #undef FILLS
-static const bough_schema tower_schema = {SCHEMA("a tower", bough_scene_tower, tower_keys),
-                                          .check = bough_scene_check_tower};
 
 #define FILLS bough_scene_aero
-static const bough_key aero_keys[] = {
+const bough_schema bough_scene_aero_schema = {.name = "the aerodynamics", KEYS(
     {KEY(NUMBER, rate), UNIT(FREQUENCY), .range = "> 0", .example = "50 Hz",
      .help = "sampling rate; the period is a multiple of the macro step; default from "
              "simulation.accuracy and the rotor's radius"},
@@ -281,8 +263,6 @@ static const bough_key aero_keys[] = {
      .help = "includes the moment coefficients of the sections"},
     {KEY(NUMBERS, nodes), .range = ">= 1", .count = 1, COUNT_AT(n_node), .example = "[9, 15]",
      .help = "numbers of blade elements, from 1 at the root, whose flow is recorded"},
-};
+)};
 #undef FILLS
-const bough_schema bough_scene_aero_schema = {
-    SCHEMA("the aerodynamics", bough_scene_aero, aero_keys)};
 // clang-format on

@@ -18,7 +18,7 @@ static const char stiffness_help[] =
 // -- structure of a rod ---------------------------------------------------------------------------
 
 #define FILLS bough_scene_station
-static const bough_key station_keys[] = {
+static const bough_schema station_schema = {.name = "a station", KEYS(
     {NAMED("span", NUMBER), AT(def.position.z), UNIT(LENGTH), .required = true, .increasing = true,
      .example = "20.5 m", .help = "position along z, from 0 at the root to the length"},
     {NAMED("twist", NUMBER), AT(def.twist), UNIT(ANGLE), .fallback = "0", .example = "13.3 deg",
@@ -30,12 +30,12 @@ static const bough_key station_keys[] = {
      .help = stiffness_help},
     {NAMED("mass", CUSTOM), AT(def), .read = bough_scene_read_section_mass, .form = mass_form,
      .required = true, .example = "[679, 0, 0, 970, 970, 0]", .help = mass_help},
-};
+)};
 #undef FILLS
-static const bough_schema station_schema = {SCHEMA("a station", bough_scene_station, station_keys)};
 
 #define FILLS bough_scene_structure
-static const bough_key structure_keys[] = {
+static const bough_schema structure_schema = {
+    .name = "the structure of a rod", .check = bough_scene_check_structure, KEYS(
     {KEY(TEXT, source), .example = "Jonkman et al. 2009, NREL/TP-500-38060",
      .help = "where the data come from"},
     {KEY(NUMBER, length), UNIT(LENGTH), .range = "[1e-9, 1e9]", .example = "61.5 m",
@@ -47,14 +47,11 @@ static const bough_key structure_keys[] = {
     {NAMED("stations", LIST), AT(station), .of = &station_schema, .count = 1, .required = true,
      COUNT_AT(n_station),
      .help = "sections along the span, with linear interpolation; one station: uniform rod"},
-};
+)};
 #undef FILLS
-static const bough_schema structure_schema = {
-    SCHEMA("the structure of a rod", bough_scene_structure, structure_keys),
-    .check = bough_scene_check_structure};
 
 #define FILLS bough_scene_rod
-static const bough_key rod_keys[] = {
+static const bough_schema rod_schema = {.name = "a rod", .check = bough_scene_check_rod, KEYS(
     {NAMED("table", FILE), AT(structure), .of = &structure_schema,
      .example = "blade-structure.yaml",
      .help = "file with the structure, relative to the scene; a uniform rod has length, stiffness "
@@ -79,15 +76,13 @@ static const bough_key rod_keys[] = {
      .help = "of a uniform rod, as in a station"},
     {NAMED("mass", CUSTOM), AT(uniform.def), .read = bough_scene_read_section_mass, .form = mass_form,
      .example = "[0.8, 0, 0, 5e-5, 5e-5, 0]", .help = "of a uniform rod, as in a station"},
-};
+)};
 #undef FILLS
-static const bough_schema rod_schema = {SCHEMA("a rod", bough_scene_rod, rod_keys),
-                                        .check = bough_scene_check_rod};
 
 // -- bodies ---------------------------------------------------------------------------------------
 
 #define FILLS bough_scene_joint
-static const bough_key joint_keys[] = {
+static const bough_schema joint_schema = {.name = "a joint", .check = bough_scene_check_joint, KEYS(
     {KEY(CHOICE, kind), .required = true,
      CHOICES([BOUGH_JOINT_FIXED] = "fixed", [BOUGH_JOINT_REVOLUTE] = "revolute",
              [BOUGH_JOINT_PRISMATIC] = "prismatic", [BOUGH_JOINT_SPHERICAL] = "spherical",
@@ -172,13 +167,11 @@ static const bough_key joint_keys[] = {
      WHEN("kind", "revolute|prismatic"), .example = "1e6",
      .help = "in N m/rad or N/m; it grows smoothly over a hundredth of the distance between the "
              "stops"},
-};
+)};
 #undef FILLS
-static const bough_schema joint_schema = {SCHEMA("a joint", bough_scene_joint, joint_keys),
-                                          .check = bough_scene_check_joint};
 
 #define FILLS bough_scene_modal
-static const bough_key modal_keys[] = {
+static const bough_schema modal_schema = {.name = "a modal body", KEYS(
     {KEY(INTEGER, modes), .range = "[1, 300]", .fallback = "12", .example = "20",
      .help = "number of clamped modes of each piece, from the lowest frequency, besides its rigid "
              "motions"},
@@ -188,13 +181,11 @@ static const bough_key modal_keys[] = {
      .help = "axial forces, such as centrifugal forces, stiffen the bending"},
     {KEY(INTEGER, pieces), .range = "[1, 300]", .fallback = "5", .example = "10",
      .help = "of segmented-modal: number of parts of the rod, each linear in its own frame"},
-};
+)};
 #undef FILLS
-static const bough_schema modal_schema = {
-    SCHEMA("a modal body", bough_scene_modal, modal_keys)};
 
 #define FILLS bough_scene_fmu
-static const bough_key fmu_keys[] = {
+static const bough_schema fmu_schema = {.name = "an FMU", .check = bough_scene_check_fmu, KEYS(
     BOUGH_FMU_KEYS("damper.fmu", "{stiffness: 8, damping: 0.4}"),
     {KEY(TEXTS, motion), .count = 1, COUNT_AT(n_motion),
      .example = "[none, none, v, none, none, none, none, none, none]",
@@ -213,13 +204,11 @@ static const bough_key fmu_keys[] = {
              "the motion in the middle of the step; or they are reached at the end of the step"},
     {KEY(INTEGER, steps), .range = "[1, 100000]", .fallback = "1", .example = "10",
      .help = "communication steps in a macro step"},
-};
+)};
 #undef FILLS
-static const bough_schema fmu_schema = {SCHEMA("an FMU", bough_scene_fmu, fmu_keys),
-                                        .check = bough_scene_check_fmu};
 
 #define FILLS bough_scene_body
-static const bough_key body_keys[] = {
+const bough_schema bough_scene_body_schema = {.name = "a body", .check = bough_scene_check_body, KEYS(
     {KEY(TEXT, name), .required = true, .example = "blade1",
      .help = "letters, digits, '_' and '-'; unique"},
     {KEY(INTEGER, repeat), .range = "[1, 10000]", .fallback = "1", .example = "10",
@@ -254,8 +243,6 @@ static const bough_key body_keys[] = {
      .help = "how the rod is reduced to modes"},
     {KEY(MAPPING, fmu), .of = &fmu_schema, .required = true, WHEN("fidelity", "fmu"),
      .help = "the model of the other program, at the body's frame"},
-};
+)};
 #undef FILLS
-const bough_schema bough_scene_body_schema = {SCHEMA("a body", bough_scene_body, body_keys),
-                                                .check = bough_scene_check_body};
 // clang-format on

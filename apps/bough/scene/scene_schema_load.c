@@ -186,7 +186,7 @@ void bough_scene_check_body_load(bough_schema_reader *r, const bough_scene *scen
 // clang-format off
 
 #define FILLS bough_scene_load
-static const bough_key load_keys[] = {
+const bough_schema bough_scene_load_schema = {.name = "a load", .check = check_load, KEYS(
     {NAMED("joint", TEXT), AT(joint_name), .example = "hub",
      .help = "load on a joint: name of the body that the joint carries"},
     {NAMED("torque", CUSTOM), .read = read_load_amount, UNIT(MOMENT),
@@ -229,13 +229,11 @@ static const bough_key load_keys[] = {
      .help = "name of an input, by which another program sets the load between steps: torque or "
              "force on a joint; on a body six inputs, whose names end with Fx, Fy, Fz, Mx, My, Mz; "
              "the values of the scene are the start values"},
-};
+)};
 #undef FILLS
-const bough_schema bough_scene_load_schema = {SCHEMA("a load", bough_scene_load, load_keys),
-                                         .check = check_load};
 
 #define FILLS bough_scene_spring
-static const bough_key spring_keys[] = {
+const bough_schema bough_scene_spring_schema = {.name = "a spring", KEYS(
     {KEY(TEXT, name), .required = true, .example = "stay",
      .help = "name of its channels, which end with Len and Frc"},
     {NAMED("from", TEXT), AT(body_name[0]), .required = true, .example = "ground",
@@ -252,16 +250,14 @@ static const bough_key spring_keys[] = {
      .help = "of the damper parallel to the spring, in N s/m"},
     {NAMED("length", NUMBER), AT(def.length), UNIT(LENGTH), .range = ">= 0", .fallback = "0", .example = "21.5 m",
      .help = "length of the spring without force"},
-};
+)};
 #undef FILLS
-const bough_schema bough_scene_spring_schema = {
-    SCHEMA("a spring", bough_scene_spring, spring_keys)};
 
 #define FILLS bough_scene_bushing
 #define THREE(key, member, what)                                                                             \
     {NAMED(key, VECTOR), AT(def.member), .count = 3, .range = ">= 0", .fallback = ZERO3,                    \
      .example = "[1e6, 1e6, 2e6]", .help = what}
-static const bough_key bushing_keys[] = {
+const bough_schema bough_scene_bushing_schema = {.name = "a bushing", KEYS(
     {KEY(TEXT, name), .required = true, .example = "yaw_bearing",
      .help = "name of its channels FrcX to MomZ: force and moment on the second body, in the first "
              "body's axes"},
@@ -276,14 +272,12 @@ static const bough_key bushing_keys[] = {
     THREE("rotational_stiffness", stiffness[3],
           "about x, y, z, in N m/rad, by the rotation vector (below 180 deg)"),
     THREE("rotational_damping", damping[3], "about x, y, z, in N m s/rad"),
-};
+)};
 #undef THREE
 #undef FILLS
-const bough_schema bough_scene_bushing_schema = {
-    SCHEMA("a bushing", bough_scene_bushing, bushing_keys)};
 
 #define FILLS bough_scene_closure
-static const bough_key closure_keys[] = {
+const bough_schema bough_scene_closure_schema = {.name = "a closure", KEYS(
     {KEY(TEXT, name), .required = true, .example = "pin",
      .help = "name of its channels Fx to Mz: force and moment on 'to', in the joint's frame there"},
     {KEY(CHOICE, kind), .required = true,
@@ -307,44 +301,36 @@ static const bough_key closure_keys[] = {
      .help = "axis of the motion, as of a joint; of a universal joint in the frame of 'from'"},
     {KEY(CHOICE, second_axis), AXIS, .required = true, WHEN("kind", "universal"),
      .help = "normal to the axis, in the frame of 'to'"},
-};
+)};
 #undef FILLS
-const bough_schema bough_scene_closure_schema = {
-    SCHEMA("a closure", bough_scene_closure, closure_keys)};
 
 #define FILLS bough_scene_marker
-static const bough_key marker_keys[] = {
+const bough_schema bough_scene_marker_schema = {.name = "a marker", KEYS(
     {KEY(TEXT, name), .required = true, .example = "tower_top",
      .help = "name of its channels X, Y, Z in ground axes"},
     {NAMED("body", TEXT), AT(body_name), .required = true, .example = "nacelle",
      .help = "name of a rigid body, or ground"},
     {KEY(VECTOR, point), .count = 3, UNIT(LENGTH), .fallback = ZERO3, .example = "[0, 0, 1 m]",
      .help = "in that body's frame"},
-};
+)};
 #undef FILLS
-const bough_schema bough_scene_marker_schema = {
-    SCHEMA("a marker", bough_scene_marker, marker_keys)};
 
 #define FILLS bough_scene_sensor
-static const bough_key sensor_keys[] = {
+const bough_schema bough_scene_sensor_schema = {.name = "a sensor", KEYS(
     {NAMED("body", TEXT), AT(body_name), .required = true, .example = "blade1",
      .help = "name of a body of fidelity rod"},
     {KEY(NUMBERS, at), UNIT(LENGTH), .range = ">= 0", .required = true, .count = 1, COUNT_AT(n_at),
      .example = "[20 m, 40 m]",
      .help = "distances from the root, along the rod; the first place is number 1"},
-};
+)};
 #undef FILLS
-const bough_schema bough_scene_sensor_schema = {
-    SCHEMA("a sensor", bough_scene_sensor, sensor_keys)};
 
 #define FILLS bough_scene_turbine
-static const bough_key turbine_keys[] = {
+const bough_schema bough_scene_turbine_schema = {.name = "the turbine", KEYS(
     {NAMED("rotor", TEXT), AT(rotor_name), .required = true, .example = "hub",
      .help = "body on the revolute joint of the rotor"},
     {NAMED("blades", TEXTS), AT(blade_name), .required = true, .count = 1, COUNT_AT(n_blade),
      .example = "[blade1, blade2, blade3]", .help = "bodies with a rod, carried by the rotor"},
-};
+)};
 #undef FILLS
-const bough_schema bough_scene_turbine_schema = {
-    SCHEMA("the turbine", bough_scene_turbine, turbine_keys)};
 // clang-format on

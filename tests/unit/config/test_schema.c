@@ -41,15 +41,16 @@ static void check_part(bough_schema_reader *r, void *item) {
 
 // clang-format off
 #define FILLS part
-static const bough_key part_keys[] = {
+static const bough_schema part_schema = {.name = "a part", .check = check_part, KEYS(
     {KEY(NUMBER, length), UNIT(LENGTH), .range = "> 0", .required = true, .help = "length of the part"},
     {KEY(TEXT, label), .fallback = "none", .help = "label of the part"},
-};
+)};
 #undef FILLS
-static const bough_schema part_schema = {SCHEMA("a part", part, part_keys), .check = check_part};
+
+static const char *const former_keys[] = {"sort", "'kind' has its values", NULL};
 
 #define FILLS thing
-static const bough_key thing_keys[] = {
+static const bough_schema thing_schema = {.name = "a thing", .removed = former_keys, KEYS(
     {KEY(CHOICE, kind), .required = true, CHOICES("turning", "sliding", "fixed"), .help = "its kind"},
     {KEY(NUMBER, angle), UNIT(ANGLE), .fallback = "90 deg", WHEN("kind", "turning"), .help = "its angle"},
     {KEY(NUMBER, speed), UNIT(ANGULAR_SPEED), WHEN("kind", "turning"), .help = "turning"},
@@ -65,11 +66,9 @@ static const bough_key thing_keys[] = {
     {KEY(MAPPING, inner), .of = &part_schema, .help = "an inner part"},
     {NAMED("parts", LIST), AT(part), .of = &part_schema, COUNT_AT(n_part), .help = "parts"},
     {KEY(CUSTOM, sum), .read = read_sum, .form = "numbers to add", .help = "a sum"},
-};
+)};
 #undef FILLS
 // clang-format on
-static const char *const former_keys[] = {"sort", "'kind' has its values", NULL};
-static const bough_schema thing_schema = {SCHEMA("a thing", thing, thing_keys), .removed = former_keys};
 
 typedef struct fixture {
     bough_arena *arena;
