@@ -300,33 +300,15 @@ void bough_symmetric6_unpack(const double a[21], double full[6][6]) {
     }
 }
 
-// A = L Lᵀ; false at a pivot that is not positive.
-static bool cholesky(const double *upper, double l[6][6]) {
-    for (int j = 0; j < 6; j++) {
-        for (int i = j; i < 6; i++) {
-            double sum = upper[bough_symmetric6_index(j, i)];
-            for (int k = 0; k < j; k++) sum -= l[i][k] * l[j][k];
-            if (i == j && !(sum > 0)) return false;
-            l[i][j] = i == j ? sqrt(sum) : sum / l[j][j];
-        }
-    }
-    return true;
-}
-
 bool bough_symmetric6_inverse(const double a[21], double inverse[21]) {
-    double l[6][6], x[6];
-    if (!cholesky(a, l)) return false;
+    double l[6][6];
+    bough_symmetric6_unpack(a, l);
+    if (!bough_cholesky_factor(6, l[0])) return false;
+    // column by column
     for (int j = 0; j < 6; j++) {
-        for (int i = 0; i < 6; i++) {
-            // column j of the inverse: L y = e_j, then Lᵀ x = y
-            x[i] = i == j;
-            for (int k = 0; k < i; k++) x[i] -= l[i][k] * x[k];
-            x[i] /= l[i][i];
-        }
-        for (int i = 5; i >= 0; i--) {
-            for (int k = i + 1; k < 6; k++) x[i] -= l[k][i] * x[k];
-            x[i] /= l[i][i];
-        }
+        double x[6] = {0};
+        x[j] = 1;
+        bough_cholesky_solve(6, l[0], x);
         for (int i = 0; i <= j; i++) inverse[bough_symmetric6_index(i, j)] = x[i];
     }
     return true;

@@ -99,7 +99,7 @@ static inline int bough_symmetric6_index(int i, int j) {
 // The full matrix by rows.
 void bough_symmetric6_unpack(const double a[21], double full[6][6]);
 
-// The inverse by Cholesky's method; false unless a is positive definite. a and inverse may be one.
+// The inverse by bough_cholesky_factor, which decides whether there is one. a and inverse may be the same.
 bool bough_symmetric6_inverse(const double a[21], double inverse[21]);
 
 // Q A Qᵀ with Q = diag(R, R) for the rotation R by `angle` about z.
