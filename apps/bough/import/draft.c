@@ -79,7 +79,7 @@ bough_status bough_import_trial(bough_arena *arena, bough_scene *scene, int step
 
 // Macro steps [s], and by how much the rotor may turn in one [rad].
 static const double longest_step = 0.02, shortest_step = 0.02 / 32, most_turn = 0.07;
-enum { HALVINGS = 2 }; // of the longest step, where no tolerance is good enough
+enum { HALVINGS = 2 }; // of the macro step, where no tolerance is good enough
 
 // Tolerances of the integrator, tried from the first on, all of one length.
 static const char *const tolerance[] = {"4.5e-4", "1.5e-4", "5.0e-5", "1.5e-5"};
@@ -200,8 +200,9 @@ void bough_import_path(FILE *file, const char *path) {
 void bough_draft_head(bough_draft *d, const char *title, const char *origin, double gravity, double duration,
                       double rotor_speed) {
     FILE *file = d->file[BOUGH_IMPORT_SCENE];
-    double step = longest_step / (1 << d->halvings);
+    double step = longest_step;
     while (step * rotor_speed > most_turn && step > shortest_step * 1.5) step /= 2;
+    step /= 1 << d->halvings;
     double steps = fmax(ceil(duration / step - 1e-6), 1);
     d->macro_step = step;
     fprintf(file,

@@ -42,7 +42,7 @@ typedef struct bough_draft {
     double macro_step;         // [s]; air and control are sampled as often
     long tolerance_at;         // where the scene's text has the integrator's tolerance
     int trial_steps;           // as in the options
-    int halvings;              // of the longest macro step
+    int halvings;              // of the macro step, after those for the speed of the rotor
     const bough_wind_box *box; // to be written as wind.bts; NULL: none
 } bough_draft;
 

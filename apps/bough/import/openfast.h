@@ -130,7 +130,7 @@ typedef struct bough_openfast_rest {
     double neutral;   // the value that needs no word; False is 0
 } bough_openfast_rest;
 void bough_openfast_leave(bough_openfast *o, const bough_deck *deck, const bough_openfast_rest *rest,
-                          size_t n);
+                          size_t n, int list);
 
 // Tables of blade and tower; with `top_mass` [kg] on the tower.
 void bough_openfast_beamdyn(bough_openfast *o);

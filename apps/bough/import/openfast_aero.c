@@ -298,5 +298,5 @@ void bough_openfast_aero(bough_openfast *o) {
     static const bough_openfast_rest rest[] = {{"CavitCheck", NULL, 0},  {"Buoyancy", NULL, 0},
                                                {"CompAA", NULL, 0},      {"TFinAero", NULL, 0},
                                                {"NacelleDrag", NULL, 0}, {"SectAvg", NULL, 0}};
-    bough_openfast_leave(o, a, rest, sizeof rest / sizeof *rest);
+    bough_openfast_leave(o, a, rest, sizeof rest / sizeof *rest, BOUGH_LEFT_OUT);
 }

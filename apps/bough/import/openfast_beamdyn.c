@@ -148,7 +148,7 @@ void bough_openfast_beamdyn(bough_openfast *o) {
     int n;
     const line_point *p = read_line(o, deck, &n);
     static const bough_openfast_rest rest[] = {{"UsePitchAct", "the pitch actuator", 0}};
-    bough_openfast_leave(o, deck, rest, 1);
+    bough_openfast_leave(o, deck, rest, 1, BOUGH_LEFT_OUT);
     bough_deck *blade = bough_openfast_open(o, deck, "BldFile");
     if (!bough_is_ok(o->draft.status)) return;
     o->blade_length = p[n - 1].z;

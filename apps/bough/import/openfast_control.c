@@ -391,5 +391,5 @@ void bough_openfast_control(bough_openfast *o) {
     if (pitch != NONE && pitch != LIBRARY && o->generator != BOUGH_GENERATOR_LIBRARY)
         bough_other_case(o, "PCMode %d: the pitch is held", pitch);
     note_manoeuvres(o);
-    bough_openfast_leave(o, o->servo, rest, sizeof rest / sizeof *rest);
+    bough_openfast_leave(o, o->servo, rest, sizeof rest / sizeof *rest, BOUGH_OTHER_CASE);
 }

@@ -307,7 +307,6 @@ static const bough_openfast_rest rest[] = {
     {"PtfmPitch", START, 0},
     {"PtfmYaw", START, 0},
     {"PitchDOF", "the pitch bearings are rigid", 0},
-    {"YawFrctMod", "the yaw bearing has no friction", 0},
     {"GBoxEff", "the gearbox loses nothing", 100},
 };
 
@@ -320,5 +319,7 @@ void bough_openfast_bodies(bough_openfast *o) {
     put_tower(o, top);
     put_nacelle(o);
     put_rotor(o);
-    bough_openfast_leave(o, e, rest, sizeof rest / sizeof *rest);
+    if (bough_deck_whole_or(e, "YawFrctMod", 0) != 0)
+        bough_other_case(o, "YawFrctMod: the friction of the yaw bearing");
+    bough_openfast_leave(o, e, rest, sizeof rest / sizeof *rest, BOUGH_LEFT_OUT);
 }

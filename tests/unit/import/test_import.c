@@ -233,6 +233,9 @@ TEST(trials_shorten_the_macro_step) {
     put_library(line, "refuse");
     check_refused(attempt_given("main.fst", &library, NULL, &judged), BOUGH_FAILED,
                   "macro steps of 0.005 s and rtol 1.5e-5: ");
+    const edit fast = {"parts/elasto.dat", "20    RotSpeed", "188    RotSpeed"}; // from 2.5 ms on
+    check_refused(attempt_given("main.fst", &library, &fast, &judged), BOUGH_FAILED,
+                  "macro steps of 0.000625 s and rtol 1.5e-5: ");
 }
 
 static bough_status try_with(const trial *t, bough_scene *scene, double rtol, double bound) {

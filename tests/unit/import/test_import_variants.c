@@ -385,7 +385,10 @@ TEST(structural_control_is_on_the_list) {
     assert_true(list_says(&t, "NumTStC: structural control"));
     assert_true(list_says(&t, "CompNTMD: structural control"));
     assert_true(list_says(&t, "AfCmode"));
+    assert_true(list_says(&t, "NOT THE MODEL'S LOAD CASE"));
     assert_false(list_says(&t, "NumBStC"));
+    t = import(&(edit){"parts/elasto.dat", "20    RotSpeed", "1 YawFrctMod\n20    RotSpeed"});
+    assert_true(list_says(&t, "also has:\n  YawFrctMod: the friction of the yaw bearing\n"));
 }
 
 // A line that is as good as vertical becomes the steepest that samples hold.
