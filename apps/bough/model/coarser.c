@@ -152,7 +152,7 @@ static double usual_share(const bough_scene *scene) {
     const bough_scheme *scheme = bough_scheme_at(x->scheme);
     bool air = scene->aero.node != NULL, held = air && holds_loads(scene);
     if (scheme->one_system) return held ? 0.5 : air ? 0.25 : 0.4;
-    bool whole = scheme->explicit_forces || scheme->repeats || bough_load_jumps(scene, 0, NULL) > 0 ||
+    bool whole = scheme->explicit_forces || scheme->repeats || bough_jump_times(scene, 0, NULL) > 0 ||
                  has_fixed_sub_steps(scene) || bough_scheme_error_order(scheme, &x->options) == 1;
     return whole ? 1 : 0.5;
 }

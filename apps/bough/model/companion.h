@@ -1,7 +1,7 @@
 // The companion of a run: a second simulation of the same scene that is coarser in everything. What lies
 // between the two at equal times tells what the run errs by: mesh, air, time and coupling at once, for every
-// channel. Beside the first macro steps, and those after a jump of a load, a third one that is finer in time
-// and air finds what decays in both.
+// channel. Beside the first macro steps, and those after a jump of a load or a given motion, a third one that
+// is finer in time and air finds what decays in both.
 //
 // If the error falls with order p, a solution with twice the step errs by 2ᵖ times as much, and the run by
 // 1/(2ᵖ − 1) of the difference: a third for order 2 (docs/theory.md).
@@ -69,22 +69,22 @@ void bough_other_run_sample(bough_other_run *other);
 // A macro step of its own, with the inputs of the run.
 bough_status bough_other_run_step(bough_other_run *other, const bough_simulation *run);
 
-// -- loads that jump (load_jump.c) ----------------------------------------------------------------
+// -- loads and motions that jump (jump_times.c) ----------------------------------------------------
 
-// How often loads change by more than a part of their range in less than a macro step, not at the start.
-// Writes when they have, in order: time (as many) [s]; NULL: not wanted.
-int bough_load_jumps(const bough_scene *scene, double part, double *time);
+// How often loads and given motions of joints change by more than a part of their range in less than a macro
+// step, not at the start. Writes when they have, in order: time (as many) [s]; NULL: not wanted.
+int bough_jump_times(const bough_scene *scene, double part, double *time);
 
 // -- the finer solution (finer.c) -----------------------------------------------------------------
 
-// It is finer in time and air. It stands beside the first macro steps, and beside those after a jump of a
-// load, until what these excite has decayed in the run.
+// It is finer in time and air. It stands beside the first macro steps, and beside those after a jump, until
+// what these excite has decayed in the run.
 typedef struct bough_finer {
     bough_other_run other;  // its simulation is NULL where the scene has none
     bool follows;           // it is beside the run
     double until, followed; // the end of that; for how long in all [s]
     int n_jump;
-    double *jump; // (n_jump) when loads have jumped, in order [s]
+    double *jump; // (n_jump) of the jumps, in order [s]
     char *loads;  // memory of the run's loads on their way
 } bough_finer;
 
@@ -93,7 +93,7 @@ bough_status bough_finer_build(bough_arena *arena, bough_simulation *run, bough_
 // Goes on to the time of the run, and samples there. False: it is not beside the run, or cannot go on.
 bool bough_finer_advance(bough_finer *f, const bough_simulation *run);
 
-// Puts it where the run is if a load jumps before `reach` [s] are over.
+// Puts it where the run is if there is a jump before `reach` [s] are over.
 void bough_finer_begin(bough_finer *f, bough_simulation *run, double reach);
 
 void bough_finer_snapshot(bough_finer *f, bough_snapshot *snapshot);

@@ -3,13 +3,13 @@
 #include <math.h>
 #include <string.h>
 
-enum { FOLLOWED = 8 }; // macro steps from the start, or from a jump of a load on
+enum { FOLLOWED = 8 }; // macro steps from the start, or from a jump on
 
 // Of all macro steps; a step of the finer solution costs several of the run's.
 enum { FEW_STEPS = 3 * (FOLLOWED + 2) };
 static const double most_followed = 0.02;
 
-// Changes of a load that may excite more than the steps follow, of its range.
+// Changes of a load or of a given motion that may excite more than the steps follow, of its range.
 static const double least_jump = 0.1;
 
 // A tight tolerance follows every vibration by itself, unless air is sampled; a further copy of a library
@@ -33,9 +33,9 @@ bough_status bough_finer_build(bough_arena *arena, bough_simulation *run, bough_
     BOUGH_TRY(bough_other_run_build(arena, run, parts, &f->other));
     f->follows = true;
     f->until = (FOLLOWED + 0.5) * scene->simulation.macro_step;
-    f->n_jump = bough_load_jumps(scene, least_jump, NULL);
+    f->n_jump = bough_jump_times(scene, least_jump, NULL);
     f->jump = bough_arena_doubles(arena, (size_t)f->n_jump + 1);
-    bough_load_jumps(scene, least_jump, f->jump);
+    bough_jump_times(scene, least_jump, f->jump);
     snapshot_loads(run, &measure);
     f->loads = bough_arena_take(arena, measure.used + 1);
     return bough_ok();
@@ -48,7 +48,7 @@ static void join(bough_finer *f, bough_simulation *run) {
     snapshot_loads(f->other.simulation, &(bough_snapshot){BOUGH_SNAPSHOT_RESTORE, f->loads, 0});
 }
 
-// The next jump of a load after a time; HUGE_VAL: none.
+// The next jump after a time; HUGE_VAL: none.
 static double next_jump(const bough_finer *f, double t) {
     int k = 0;
     while (k < f->n_jump && f->jump[k] <= t) k++;
