@@ -89,7 +89,8 @@ static bough_status turn_on(bough_arena *arena, const bough_azimuths *a, double 
                             bough_azimuth *x) {
     const bough_simulation *s = a->at[0].simulation;
     bough_equilibrium_work work;
-    BOUGH_TRY(bough_simulation_build_on(arena, turned_scene(arena, s, x->turn), s->pool, &x->simulation));
+    BOUGH_TRY(
+        bough_simulation_build_on(arena, turned_scene(arena, s, x->turn), s->pool, NULL, &x->simulation));
     const bough_assembly *assembly = x->simulation->master->assembly;
     begin(a, x, time, bough_arena_doubles(arena, (size_t)assembly->n_state));
     if (balanced) {

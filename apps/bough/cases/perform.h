@@ -153,9 +153,6 @@ bough_study_conclude bough_statistics_conclude;
 // numbers, plot.svg: CPU time over these.
 bough_study_conclude bough_timing_conclude;
 
-// table.txt and table.csv of compared runs.
-bough_status bough_precision_tables(const bough_study_results *results, const char *folder);
-
 // Writes a field of a CSV file, in quotes where it needs them; line ends become blanks.
 void bough_csv_text(FILE *file, const char *text);
 

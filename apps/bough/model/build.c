@@ -224,11 +224,11 @@ bough_status bough_simulation_build(bough_arena *arena, const bough_scene *scene
                                     bough_simulation **simulation) {
     int threads = bough_simulation_threads(scene);
     bough_linalg_room(arena, threads);
-    return bough_simulation_build_on(arena, scene, bough_pool_create(arena, threads), simulation);
+    return bough_simulation_build_on(arena, scene, bough_pool_create(arena, threads), NULL, simulation);
 }
 
-static bough_status build(bough_arena *arena, const bough_scene *scene, bough_pool *pool,
-                          const bough_simulation *beside, bough_simulation **simulation) {
+bough_status bough_simulation_build_on(bough_arena *arena, const bough_scene *scene, bough_pool *pool,
+                                       const bough_simulation *beside, bough_simulation **simulation) {
     bough_builder b = {.arena = arena, .scene = scene, .beside = beside};
     take_arrays(&b);
     b.s->pool = pool;
@@ -250,16 +250,6 @@ static bough_status build(bough_arena *arena, const bough_scene *scene, bough_po
     bough_validity_start(b.s);
     *simulation = b.s;
     return bough_ok();
-}
-
-bough_status bough_simulation_build_on(bough_arena *arena, const bough_scene *scene, bough_pool *pool,
-                                       bough_simulation **simulation) {
-    return build(arena, scene, pool, NULL, simulation);
-}
-
-bough_status bough_simulation_build_beside(bough_arena *arena, const bough_scene *scene,
-                                           const bough_simulation *other, bough_simulation **simulation) {
-    return build(arena, scene, other->pool, other, simulation);
 }
 
 // -- what the parts of a simulation remember, in order --------------------------------------------

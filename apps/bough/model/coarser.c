@@ -327,8 +327,8 @@ bough_status bough_other_run_build(bough_arena *arena, const bough_simulation *r
                                    bough_other_run *other) {
     bough_simulation *simulation;
     *other = (bough_other_run){.channels = bough_channels_start(arena)};
-    BOUGH_TRY(bough_simulation_build_beside(arena, bough_coarser_scene_beside(arena, run, parts), run,
-                                            &simulation));
+    const bough_scene *scene = bough_coarser_scene_beside(arena, run, parts);
+    BOUGH_TRY(bough_simulation_build_on(arena, scene, run->pool, run, &simulation));
     BOUGH_TRY(bough_simulation_channels(simulation, &other->channels));
     other->value = bough_arena_doubles(arena, (size_t)other->channels.count + 1);
     other->simulation = simulation;

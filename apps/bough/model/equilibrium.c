@@ -1,6 +1,7 @@
 #include "apps/bough/model/equilibrium.h"
 
 #include "apps/bough/model/equilibrium_search.h"
+#include "apps/bough/model/shape.h"
 
 #include <math.h>
 #include <string.h>
@@ -275,4 +276,122 @@ bough_status bough_simulation_equilibrium(bough_simulation *s, const bough_assem
     continuation c = {s, assembly, time, .work = work, .how = how};
     *work = (bough_equilibrium_work){0};
     return bough_arena_use(find_equilibrium, &c);
+}
+
+// -- paths of equilibria while the loads grow -------------------------------------------------------
+
+static bough_status tell_point(void *self, double share, const double *state, bool limit) {
+    const bough_equilibrium_search *x = self;
+    double time = fmin(fmax(share, 0), 1) * bough_equilibrium_time(x->simulation);
+    for (int i = 0; i < x->assembly->n_member; i++)
+        bough_member_set(x->assembly->member[i], time, state + x->assembly->state_offset[i]);
+    bough_simulation_update(x->simulation);
+    bough_whole_inputs(x->whole, time, state);
+    size_t size = (size_t)x->assembly->n_input * sizeof(double);
+    memcpy(x->simulation->master->coupling->input, x->whole->input, size);
+    return x->listener.point(x->listener.self, time, share, limit);
+}
+
+static bough_status refuse_path(const bough_simulation *s) {
+    const char *file = s->scene->file;
+    for (int i = 0; i < s->tree->n_links; i++) {
+        const bough_link *link = &s->tree->links[i];
+        if (link->motion == NULL) continue;
+        return bough_fail(BOUGH_INVALID,
+                          "%.200s: body '%s': a path of equilibria knows no prescribed motions: give its "
+                          "joint a load",
+                          file, s->tree->bodies[link->body].name);
+    }
+    if (s->aero != NULL) return bough_fail(BOUGH_INVALID, "%.200s: a path of equilibria knows no air", file);
+    if (s->jumps)
+        return bough_fail(BOUGH_INVALID, "%.200s: loads: a path of equilibria knows no jumps", file);
+    if (bough_equilibrium_time(s) > 0) return bough_ok();
+    return bough_fail(BOUGH_INVALID,
+                      "%.200s: loads: expected one that grows, as 'ramp: [0 s, 1 s]': its path is "
+                      "followed over the ramp",
+                      file);
+}
+
+static bough_status walk_path(bough_arena *arena, void *self) {
+    bough_equilibrium_search *x = self;
+    bough_path_def def = bough_path_def_default();
+    bough_equilibrium_search_set_up(arena, x);
+    bough_equilibrium_def start = bough_equilibrium_search_def(x);
+    BOUGH_TRY(bough_equilibrium_search_balance(arena, x, &start));
+    def.end = bough_equilibrium_time(x->simulation);
+    def.self = x;
+    def.move = bough_equilibrium_search_move;
+    def.rest = bough_equilibrium_search_rest;
+    def.point = tell_point;
+    return bough_path_follow(arena, x->whole, &def, x->state, x->report);
+}
+
+bough_status bough_simulation_path(bough_simulation *s, const bough_assembly *assembly,
+                                   bough_path_listener listener, bough_path_report *report) {
+    bough_equilibrium_work work = {0};
+    bough_equilibrium_search x = {s, assembly, .limits = bough_equilibrium_def_default(), .work = &work};
+    x.listener = listener;
+    x.report = report;
+    *report = (bough_path_report){0};
+    BOUGH_TRY(refuse_path(s));
+    return bough_arena_use(walk_path, &x);
+}
+
+// -- the shape of one simulation as the start of another with other meshes --------------------------
+
+typedef struct place {
+    bough_vec3 position;   // in the axes of the rod's body [m]
+    bough_quaternion turn; // of the section, from its undeformed one
+} place;
+
+static bough_quaternion turn_of(const bough_rod_model *m, int i, bough_quaternion rotation) {
+    return bough_quaternion_product(rotation, bough_quaternion_conjugate(m->rotation0[i]));
+}
+
+// Of vertex i of a rod, 0 at its root, which does not move.
+static place place_of(const bough_simulation *s, const bough_beam *beam, int i) {
+    const bough_rod_model *m = beam->mesh;
+    if (i == 0) return (place){m->position0[0], {1, 0, 0, 0}};
+    const double *y = s->rod[beam->port].state + i - 1;
+    int n = m->n;
+    if (i > n) { // belongs to what the rod carries
+        y = s->leader.state + s->tree->links[s->tree->ends[beam->end].link].first_coordinate;
+        n = 1;
+    }
+    bough_quaternion p = {y[3 * n], y[4 * n], y[5 * n], y[6 * n]};
+    return (place){bough_v3(y[0], y[n], y[2 * n]), turn_of(m, i, bough_quaternion_normalised(p))};
+}
+
+// Of the rod at a distance from the root, linear between vertices.
+static place place_at(const bough_simulation *s, const bough_beam *beam, double span) {
+    const bough_rod_model *m = beam->mesh;
+    int k = 0;
+    while (k + 1 < m->n_segment && span > m->span[k + 1]) k++;
+    double part = (span - m->span[k]) / (m->span[k + 1] - m->span[k]);
+    place a = place_of(s, beam, k), b = place_of(s, beam, k + 1);
+    bough_mat3 axes = bough_axes_between(a.turn, b.turn, part);
+    return (place){bough_between(a.position, b.position, part), bough_quaternion_of_matrix(axes)};
+}
+
+static void shape_rod(const bough_simulation *from, const bough_beam *given, const bough_beam *beam,
+                      double *state) {
+    const bough_rod_model *m = beam->mesh;
+    int n = m->n;
+    memset(state, 0, (size_t)BOUGH_ROD_STATES * (size_t)n * sizeof *state);
+    for (int i = 0; i < n; i++) {
+        place x = place_at(from, given, m->span[i + 1]);
+        bough_quaternion p = bough_quaternion_product(x.turn, m->rotation0[i + 1]);
+        const double row[BOUGH_ROD_U] = {x.position.x, x.position.y, x.position.z, p.w, p.x, p.y, p.z};
+        for (int c = 0; c < BOUGH_ROD_U; c++) state[c * n + i] = row[c];
+    }
+}
+
+void bough_simulation_take_shape(const bough_simulation *from, bough_simulation *to) {
+    size_t joints = (size_t)to->leader.system.n_state;
+    memcpy(to->leader.state, from->leader.state, joints * sizeof(double));
+    for (int k = 0; k < to->n_beam; k++) {
+        const bough_beam *beam = &to->beam[k];
+        if (beam->rod) shape_rod(from, &from->beam[k], beam, to->rod[beam->port].state);
+    }
+    bough_simulation_update(to);
 }

@@ -1,7 +1,7 @@
 // The channels of a simulation: what each part of the scene gives to be recorded. OpenFAST's names
 // where the quantity is the same.
-#include "apps/bough/model/observe.h"
 #include "apps/bough/model/aero_link.h"
+#include "apps/bough/model/build_internal.h"
 #include "apps/bough/model/channel_table.h"
 #include "apps/bough/model/control_link.h"
 #include "apps/bough/model/simulation.h"
@@ -27,10 +27,6 @@ static void add_each(bough_simulation *s, bough_channels *list, bough_channel_sa
 
 // -- joints ---------------------------------------------------------------------------------------
 
-static bool is_rotor(const bough_scene *scene, int body) {
-    return scene->turbine.node != NULL && scene->turbine.rotor == body;
-}
-
 // The channels of a joint with axes: each coordinate and its rate.
 static const struct {
     int n;
@@ -45,7 +41,8 @@ static const struct {
 };
 
 static int n_recorded(const bough_scene *scene, int body) {
-    return is_rotor(scene, body) ? 0 : joint_channels[scene->body[body].joint.kind].n;
+    bool rotor = scene->turbine.node != NULL && scene->turbine.rotor == body;
+    return rotor ? 0 : joint_channels[scene->body[body].joint.kind].n;
 }
 
 // q̇ of the joints with axes: all speeds but the planar joint's are it.
@@ -353,8 +350,10 @@ static void sample_nodes(void *self, double t, double *value) {
     }
 }
 
-static void add_nodes(bough_simulation *s, bough_channels *list) {
+static void add_aero(bough_simulation *s, bough_channels *list) {
     const bough_scene_aero *aero = &s->scene->aero;
+    bough_channel_group_add(list, sample_aero, s, BOUGH_CHANNELS_AIR);
+    bough_channel_group_add(list, sample_wind, s, BOUGH_CHANNELS_WIND);
     bough_channels_group(list, sample_nodes, s);
     for (int k = 0; k < s->scene->turbine.n_blade * aero->n_node; k++) {
         char blade[12], node[12];
@@ -362,12 +361,6 @@ static void add_nodes(bough_simulation *s, bough_channels *list) {
         snprintf(node, sizeof node, "%03d", (int)aero->nodes[k % aero->n_node]);
         bough_channel_family_add(list, BOUGH_CHANNELS_ELEMENT, blade, node);
     }
-}
-
-static void add_aero(bough_simulation *s, bough_channels *list) {
-    bough_channel_group_add(list, sample_aero, s, BOUGH_CHANNELS_AIR);
-    bough_channel_group_add(list, sample_wind, s, BOUGH_CHANNELS_WIND);
-    add_nodes(s, list);
 }
 
 // -- FMUs -----------------------------------------------------------------------------------------

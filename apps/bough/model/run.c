@@ -24,7 +24,7 @@ bough_status bough_run_create(bough_arena *arena, const bough_scene *scene, boug
     run->pool = bough_pool_create(arena, threads);
     run->side_by_side = run->pool && fits_side_by_side(scene, threads);
     bough_pool *own = run->side_by_side ? NULL : run->pool;
-    BOUGH_TRY(bough_simulation_build_on(arena, scene, own, &run->simulation));
+    BOUGH_TRY(bough_simulation_build_on(arena, scene, own, NULL, &run->simulation));
     bough_validity_check_equilibrium(run->simulation);
     run->channels = bough_channels_start(arena);
     BOUGH_TRY(bough_simulation_channels(run->simulation, &run->channels));

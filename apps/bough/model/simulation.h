@@ -188,13 +188,9 @@ int bough_simulation_threads(const bough_scene *scene);
 bough_status bough_simulation_build(bough_arena *arena, const bough_scene *scene,
                                     bough_simulation **simulation);
 
-// The same with the threads of a pool (NULL: one thread), which several simulations may share.
+// The same with the threads of a pool (NULL: one thread), which several simulations may share, and with the
+// meshes of rods of `beside` where they are equal; NULL, or one that outlives it.
 bough_status bough_simulation_build_on(bough_arena *arena, const bough_scene *scene, bough_pool *pool,
-                                       bough_simulation **simulation);
-
-// The same beside another one that outlives it: with its pool, and with the meshes of its rods where they are
-// equal.
-bough_status bough_simulation_build_beside(bough_arena *arena, const bough_scene *scene,
-                                           const bough_simulation *other, bough_simulation **simulation);
+                                       const bough_simulation *beside, bough_simulation **simulation);
 
 #endif

@@ -29,22 +29,8 @@ bough_report_part bough_report_frames;
 
 // -- the shape at one time ------------------------------------------------------------------------
 
-// A frame as apps/bough/results/frames.c has written it.
-typedef struct bough_stored_frame {
-    double time; // [s]
-    int n_point, n_line;
-    double *point;  // (n_point × 3) in ground axes [m]
-    double *moment; // (n_point × 3) section moments in ground axes, 0 for bodies other than rods [N m]
-    int *end;       // (n_line) behind each line's last point
-} bough_stored_frame;
-
-// The stored frame that is nearest to this time [s], the last one for HUGE_VAL; n_line is 0 where a run has
-// stored none.
-bough_status bough_report_frame(bough_arena *arena, const char *folder, double time,
-                                bough_stored_frame *frame);
-
-// Draws it to scale, coloured by the section moment: shape.svg in the folder. Nothing is drawn where there is
-// no frame.
+// Draws the stored frame that is nearest to this time [s], the last one for HUGE_VAL, to scale, coloured by
+// the section moment: shape.svg in the folder. Nothing is drawn where there is no frame.
 bough_status bough_report_shape(bough_arena *arena, const char *folder, double time, bool *drawn);
 
 // Opens folder/name; NULL when it does not exist.
