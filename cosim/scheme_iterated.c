@@ -310,11 +310,11 @@ static bough_status not_converged(const bough_coupling *c, int sweeps, double re
     const char *advice = !learns             ? "try accelerator: iqn-ils"
                          : contraction < 0.9 ? "try more iterations"
                                              : "try a larger tolerance or a tighter micro rtol";
-    return bough_fail(BOUGH_RETRY,
-                      "coupling of %.24s and %.24s not converged at %.6g s: residual %.2g after %d "
-                      "iterations, factor %.3g in each; %s",
-                      a->member[from]->system.name, a->member[to]->system.name, c->t1, residual, sweeps,
-                      contraction, advice);
+    return bough_fail(
+        BOUGH_RETRY,
+        "coupling of %.24s and %.24s not converged at %.6g s: residual %.2g after %d iterations, convergence factor %.3g; %s",
+        a->member[from]->system.name, a->member[to]->system.name, c->t1, residual, sweeps, contraction,
+        advice);
 }
 
 // Repeats the step with the values of the smallest residual: where another solution shows the error, their

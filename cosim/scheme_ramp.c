@@ -248,7 +248,7 @@ static bough_status check_stability(const bough_coupling *c, double ratio) {
     if (!bough_is_ok(&status) || found.growth <= negligible_growth) return status;
     return bough_fail(BOUGH_INVALID,
                       "under ramp the body that carries %.40s is too light for a macro step of %.6g s: "
-                      "%.3g Hz would grow by %.3g per second (interface ratio %.3g); use "
+                      "a vibration of %.3g Hz would grow by %.3g per second (interface ratio %.3g); use "
                       "scheme: " BOUGH_SCHEME_DEFAULT,
                       c->assembly->member[found.body]->system.name, h, found.frequency, found.growth, ratio);
 }

@@ -25,25 +25,25 @@ bough_status bough_controller_check(const bough_controller_def *d) {
                                d->halving_pitch, d->pitch_rate,   d->integral};
     for (size_t i = 0; i < sizeof positive / sizeof *positive; i++) {
         if (positive[i] > 0 && isfinite(positive[i])) continue;
-        return bough_fail(BOUGH_INVALID, "the controller's speeds, power, torque, rates, gains and "
-                                         "slip must be positive");
+        return bough_fail(BOUGH_INVALID,
+                          "the controller's speeds, power, torque, rates, gains and slip must be positive");
     }
     if (!(d->cut_in >= 0 && d->optimal_gain >= 0 && d->proportional >= 0)) {
         return bough_fail(BOUGH_INVALID, "the controller's cut-in speed, optimal gain and proportional gain "
                                          "must not be negative");
     }
     if (d->motoring && d->optimal_gain > 0) {
-        return bough_fail(BOUGH_INVALID, "a generator with 'motoring' has its torque by the slip alone: "
-                                         "its optimal_gain must be 0");
+        return bough_fail(BOUGH_INVALID,
+                          "with 'motoring' the torque follows from the slip alone: optimal_gain must be 0");
     }
     if (!(d->least_pitch < d->most_pitch)) {
-        return bough_fail(BOUGH_INVALID, "the controller's least pitch must be below its most");
+        return bough_fail(BOUGH_INVALID, "the controller's smallest pitch must be below its largest");
     }
     if (!(d->cut_in < d->optimal_from && d->optimal_from <= transition(d) &&
           transition(d) <= d->rated_speed)) {
-        return bough_fail(BOUGH_INVALID,
-                          "the controller's speeds must grow from cut-in over the optimal range "
-                          "to rated, and its optimal torque stay below the rated");
+        return bough_fail(
+            BOUGH_INVALID,
+            "the controller's speeds must increase from cut-in to the optimal range to rated speed, and the torque at the end of the optimal range must be below rated torque");
     }
     return bough_ok();
 }

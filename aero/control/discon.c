@@ -215,10 +215,10 @@ bough_status bough_discon_call(bough_discon *d, const bough_discon_sensed *sense
                           sensed->time, d->message[0] ? d->message : "without a message");
     }
     if (d->record[PITCH_CONTROL] == 1 && sensed->n_blade > BOUGH_DISCON_BLADES) {
-        return bough_fail(BOUGH_FAILED,
-                          "the controller %.100s pitches each blade by itself, for which its interface "
-                          "has %d blades; the rotor has %d",
-                          d->library, (int)BOUGH_DISCON_BLADES, sensed->n_blade);
+        return bough_fail(
+            BOUGH_FAILED,
+            "the controller %.100s pitches each blade individually, which its interface allows for %d blades; the rotor has %d",
+            d->library, (int)BOUGH_DISCON_BLADES, sensed->n_blade);
     }
     if (!is_sound(demand)) {
         return bough_fail(BOUGH_FAILED,

@@ -72,7 +72,7 @@ static bough_status count_values(const char *path, const bough_wind_box *box, in
     if (points <= room && box->n_time <= room / points) *n = 3 * points * box->n_time;
     if (*n > 0 && HEAD + text + 2 * *n == size) return bough_ok();
     return bough_fail(BOUGH_INVALID,
-                      "%s is damaged: it has %lld bytes, but its header announces %d times of %d "
+                      "%s is damaged: it has %lld bytes, but its header gives %d times of %d "
                       "x %d points and %d of the tower.",
                       path, (long long)size, box->n_time, box->n_z, box->n_y, box->n_tower);
 }
@@ -90,7 +90,7 @@ static bough_status read_values(FILE *stream, const char *path, int64_t n, int16
 
 static bough_status read_all(bough_arena *arena, FILE *stream, const char *path, bough_wind_box *box) {
     unsigned char head[HEAD];
-    if (fseek(stream, 0, SEEK_END) != 0) return bad(path, "it is no plain file");
+    if (fseek(stream, 0, SEEK_END) != 0) return bad(path, "it is not a regular file");
     // header, then text of unknown length, then values to the end
     int64_t size = ftell(stream), n = 0;
     rewind(stream);
@@ -101,7 +101,7 @@ static bough_status read_all(bough_arena *arena, FILE *stream, const char *path,
     BOUGH_TRY(count_values(path, box, text, size, &n));
     int16_t *value = bough_arena_take(arena, (size_t)n * sizeof *value);
     box->value = value;
-    if (fseek(stream, (long)(HEAD + text), SEEK_SET) != 0) return bad(path, "it is no plain file");
+    if (fseek(stream, (long)(HEAD + text), SEEK_SET) != 0) return bad(path, "it is not a regular file");
     return read_values(stream, path, n, value);
 }
 

@@ -46,8 +46,8 @@ static bough_status read_row(const char *path, const char *line, int number, con
     }
     *row = row_of(value);
     if (before && !(row->time > before->time)) {
-        return bough_fail(BOUGH_INVALID, "%s:%d: the time must be more than the %g s before it, got %g s.",
-                          path, number, before->time, row->time);
+        return bough_fail(BOUGH_INVALID, "%s:%d: times must increase: %g s is followed by %g s.", path,
+                          number, before->time, row->time);
     }
     return bough_ok();
 }

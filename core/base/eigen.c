@@ -243,10 +243,10 @@ bough_status bough_eigen_smallest(bough_arena *arena, const bough_eigen_problem 
                                .self = &self,
                                .apply = apply_inverse};
     if (!bough_block_tridiagonal_factor(problem->stiffness)) {
-        return bough_fail(BOUGH_FAILED,
-                          "%s: the stiffness about the equilibrium is singular: it"
-                          " stands at a buckling load; change the load",
-                          problem->name);
+        return bough_fail(
+            BOUGH_FAILED,
+            "%s: the stiffness about the equilibrium is singular (a buckling load); change the load",
+            problem->name);
     }
     for (int i = 0; i < half; i++) {
         int c = i % BOUGH_COLUMN;

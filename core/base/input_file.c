@@ -19,7 +19,7 @@ static bool is_readable(int file, int64_t most, char *reason) {
         snprintf(reason, BOUGH_INPUT_REASON, "%s", strerror(errno));
     } else if (!S_ISREG(info.st_mode)) {
         errno = EINVAL;
-        snprintf(reason, BOUGH_INPUT_REASON, "it is a %s, a plain file is expected",
+        snprintf(reason, BOUGH_INPUT_REASON, "it is a %s, not a regular file",
                  S_ISFIFO(info.st_mode) ? "pipe" : "device");
     } else if (info.st_size > most) {
         errno = EFBIG;
@@ -64,7 +64,7 @@ char *bough_input_read(bough_arena *arena, const char *path, int64_t most, size_
     // exactly the bytes of the file, else it changed meanwhile
     bool whole = end >= 0 && !ferror(stream) && *size <= expected;
     if (!whole)
-        snprintf(reason, BOUGH_INPUT_REASON, "%s", errno ? strerror(errno) : "it grows while it is read");
+        snprintf(reason, BOUGH_INPUT_REASON, "%s", errno ? strerror(errno) : "it grows during reading");
     bytes[whole ? *size : 0] = '\0';
     bough_arena_destroy(own);
     return whole ? bytes : NULL;

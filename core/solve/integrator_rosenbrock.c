@@ -245,8 +245,7 @@ static const char *cross(rosenbrock *m, double *t, double pause, double t1, doub
         double h = (t1 - *t) / fmax(parts, 1);
         bool known = n >= m->most_steps / 5;
         if (known && n * (t1 - begun) >= m->most_steps * (*t - begun)) {
-            return "too many steps to the end of the macro step: it follows vibrations that fast, which"
-                   " damping of rods or a larger rtol would end";
+            return "too many steps in one macro step, because the vibrations are so fast; damp the rods or take a larger rtol";
         }
         // a step that fails with old tangents is repeated with new ones
         double error = try_step(m, *t, h, y);

@@ -244,10 +244,10 @@ static const char *reason(run *r, int flag) {
     if (r->refused) flag = CV_RHSFUNC_FAIL;
     switch (flag) {
     case CV_TOO_MUCH_WORK:
-        snprintf(r->text, sizeof r->text,
-                 "%d steps do not reach the end of the macro step: it follows vibrations that fast, which"
-                 " damping of rods or a larger rtol would end",
-                 r->most_steps);
+        snprintf(
+            r->text, sizeof r->text,
+            "%d steps do not reach the end of the macro step, because the vibrations are so fast; damp the rods or take a larger rtol",
+            r->most_steps);
         return r->text;
     case CV_TOO_MUCH_ACC: return "the tolerance is below rounding error";
     case CV_ERR_FAILURE: return "the error test failed down to the smallest step";

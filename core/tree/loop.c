@@ -365,15 +365,15 @@ static bough_status refuse(const bough_tree *tree, const bough_tree_data *d, int
     const char *name = tree->closures[closure_of(tree, row)].name;
     bool turning = turns(tree, row);
     if (of_rate) {
-        return bough_fail(BOUGH_INVALID,
-                          "closure '%s': with the initial speeds its ends move apart at %.4g %s; "
-                          "leave out the speeds that should follow the others",
-                          name, fabs(d->loops->row[row].rate), turning ? "rad/s" : "m/s");
+        return bough_fail(
+            BOUGH_INVALID,
+            "closure '%s': with the initial speeds its ends separate at %.4g %s; leave out the speeds that follow from the others",
+            name, fabs(d->loops->row[row].rate), turning ? "rad/s" : "m/s");
     }
-    return bough_fail(BOUGH_INVALID,
-                      "closure '%s': its ends are %.4g %s apart, from where it cannot be assembled; "
-                      "correct the joints' initial positions, the closure's placements or its axis",
-                      name, fabs(d->loops->row[row].value), turning ? "(sine of an angle)" : "m");
+    return bough_fail(
+        BOUGH_INVALID,
+        "closure '%s': its ends are %.4g %s apart and cannot be brought together; correct the joints' initial positions, the closure's placements or its axis",
+        name, fabs(d->loops->row[row].value), turning ? "(sine of an angle)" : "m");
 }
 
 // One step of Newton's method, the least in the measure of the inertias.

@@ -251,7 +251,7 @@ static bough_status follow(path *p, bough_path_report *report) {
     }
     if (bough_is_ok(&status)) status = report_point(p, &p->here, false, report);
     BOUGH_TRY(status);
-    return bough_fail(BOUGH_FAILED, "the path of equilibria ends at %.6g of the loads after %d steps",
+    return bough_fail(BOUGH_FAILED, "the path of equilibria ends at %.6g times the loads after %d steps",
                       p->here.factor, report->steps);
 }
 

@@ -310,7 +310,8 @@ bough_status bough_stability_judge_by(const bough_assembly *a, const bough_schem
                                       double macro_step, double longest, bough_stability *result) {
     const bough_scheme *scheme = bough_scheme_find(options->name);
     if (!scheme || scheme->one_system) {
-        return bough_fail(BOUGH_INVALID, "scheme %s has no coupling to judge", options->name);
+        return bough_fail(BOUGH_INVALID, "scheme %s has no coupling whose stability is in question",
+                          options->name);
     }
     if (a->opaque) {
         return bough_fail(BOUGH_INVALID, "the tangents of a foreign simulator are not known");
@@ -366,16 +367,16 @@ void bough_stability_describe(const bough_assembly *a, const bough_stability_adv
                               const bough_scheme_options *options, double macro_step, char *text) {
     text[0] = 0;
     if (!advice->unstable) return;
-    int length = snprintf(text, BOUGH_VERDICT,
-                          "scheme %s at a macro step of %.6g s is unstable without the damping of "
-                          "outer loads: %.3g Hz in %.40s grow by %.3g per second",
-                          options->name, macro_step, advice->now.frequency,
-                          a->member[advice->now.body]->system.name, advice->now.growth);
+    int length = snprintf(
+        text, BOUGH_VERDICT,
+        "scheme %s at a macro step of %.6g s is unstable without the damping of external loads: vibrations of %.3g Hz in %.40s grow by %.3g per second",
+        options->name, macro_step, advice->now.frequency, a->member[advice->now.body]->system.name,
+        advice->now.growth);
     if (advice->macro_step > 0) {
-        length += snprintf(text + length, (size_t)(BOUGH_VERDICT - length), "; macro_step: %.9g s holds",
+        length += snprintf(text + length, (size_t)(BOUGH_VERDICT - length), "; macro_step: %.9g s is stable",
                            advice->macro_step);
     }
     if (advice->scheme) {
-        snprintf(text + length, (size_t)(BOUGH_VERDICT - length), "; scheme: %s holds", advice->scheme);
+        snprintf(text + length, (size_t)(BOUGH_VERDICT - length), "; scheme: %s is stable", advice->scheme);
     }
 }

@@ -281,10 +281,10 @@ static void scale_input(const double *input, double fraction, double *scaled) {
 static bough_status not_found(const bough_rod_model *m, double reached) {
     double ratio = slenderness(m);
     if (ratio > slender) {
-        return bough_fail(BOUGH_FAILED,
-                          "rod %s: no static equilibrium found: EA L²/EI is %.2g, and beyond %.0e"
-                          " the rounding of positions bends the rod; with EA = %.0e EI/L² it bends the same",
-                          m->name, ratio, slender, 1e8);
+        return bough_fail(
+            BOUGH_FAILED,
+            "rod %s: no static equilibrium found: EA L²/EI is %.2g, and beyond %.0e rounding of the positions bends the rod; EA = %.0e EI/L² gives the same bending",
+            m->name, ratio, slender, 1e8);
     }
     return bough_fail(BOUGH_FAILED,
                       "rod %s: no static equilibrium found beyond %.4g %% of"

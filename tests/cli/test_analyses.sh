@@ -168,7 +168,7 @@ modes() {
     [ "$(grep -c ',1,a z,.*,a,z,' crossing/campbell.csv)" -eq 5 ] || fail "$said: a is not line 1 at all points"
     [ "$(grep -c ',2,b z,.*,b,z,' crossing/campbell.csv)" -eq 5 ] || fail "$said: b is not line 2 at all points"
     rm -r crossing
-    refused 'the linear system changes as the bodies turn' modes "$turbine" --set 'bodies[blade1].pitch=7 deg'
+    refused 'the linear system changes by' modes "$turbine" --set 'bodies[blade1].pitch=7 deg'
     expect 0 modes "$blade" --set 'modes={of: scene, count: 9}' --set 'bodies[0].rod.segments=6' --out mesh
     has ../stdout '^warning: changed by more than 1 % with half the segments: mode [2-9]'
     rm -r mesh

@@ -96,7 +96,7 @@ bodies:
   - {name: head, joint: {kind: fixed, parent: mast}, fidelity: rigid, mass: 1.8, inertia: [7e-3, 7e-3, 2e-3]}
 END
 noisy='simulation.coupling={scheme: iterated, tolerance: 1e-12, iterations: 5}'
-run 0 'warning: .* of 20 macro steps went on before they had converged' carrying.yaml --set "$noisy" --set 'simulation.macro_step=5 ms'
+run 0 'warning: .* of 20 macro steps ended before they had converged' carrying.yaml --set "$noisy" --set 'simulation.macro_step=5 ms'
 run 3 'not converged' carrying.yaml --set "$noisy" --set 'simulation.macro_step=5 ms' --set simulation.error_estimate=none
 run 0 '^largest errors: .*; mesh .*; time ' carrying.yaml --set "$noisy" --set 'simulation.macro_step=5 ms' \
     --set simulation.error_shares=true

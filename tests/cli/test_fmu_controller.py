@@ -85,9 +85,9 @@ class Controller(unittest.TestCase):
         sets = RIGID + ["simulation.duration=1 s", self.control()]
         self.assertIn("error", self.run_program("run", *sets).stdout)
         with open(self.folder + "/out/power/summary.json") as file:
-            self.assertNotIn("second one", file.read())
+            self.assertNotIn("second time", file.read())
         self.unpack(once="true")
-        self.assertIn("there is no second one", "".join(self.run_program("run", *sets).stdout))
+        self.assertIn("cannot be loaded a second time", "".join(self.run_program("run", *sets).stdout))
 
     def test_the_example_of_the_documents_runs(self):
         with open(SOURCE + "/docs/programs.md") as file:
@@ -111,9 +111,9 @@ class Controller(unittest.TestCase):
         self.refused("control.fmu.inputs: the FMU has no variable 'omeg' of type Float64 (did you mean 'omega'?)",
                      self.control(inputs))
         self.refused("(did you mean 'generator_speed'?)", self.control("{generator_sped: omega}"))
-        self.refused("'T' is no input", self.control("{generator_speed: T}"))
+        self.refused("'T' is not of causality input", self.control("{generator_speed: T}"))
         self.refused("'n' is in rpm; expected SI units", self.control("{generator_speed: n}"))
-        self.refused("'omega' is no output", self.control(outputs="{torque: omega}"))
+        self.refused("'omega' is not of causality output", self.control(outputs="{torque: omega}"))
         self.refused("'torque' is missing", self.control(outputs="{pitch: [demand]}"))
         self.refused("expected one name for all blades, or a name for each of the 3 blades, got 2",
                      self.control(outputs="{torque: T, pitch: [demand, demand]}"))

@@ -219,7 +219,7 @@ class Member(unittest.TestCase):
                      "simulation.coupling.accelerator=interface-newton")
         motion = "bodies[damper].fmu.motion=[%s, none, v, none, none, none, none, none, none]"
         self.refused("no variable 'w' of type Float64", motion % "w")
-        self.refused("'f' is no input", motion % "f")
+        self.refused("'f' is not of causality input", motion % "f")
         wrench = "bodies[damper].fmu.wrench=[none, none, %s, none, none, none]"
         self.refused("'f_kN' is in kN; expected SI units", wrench % "f_kN")
         self.refused("'all' is an array", wrench % "all")
@@ -227,7 +227,7 @@ class Member(unittest.TestCase):
         self.refused("cannot read", "bodies[damper].fmu.folder=another")
         self.refused("parameters: the FMU has no variable 'kk' of type Float64 (did you mean 'k'?)",
                      "bodies[damper].fmu.parameters={kk: 1}")
-        self.refused("the variable 'v' is no parameter", "bodies[damper].fmu.parameters={v: 1}")
+        self.refused("the variable 'v' is not of causality parameter", "bodies[damper].fmu.parameters={v: 1}")
         self.refused("expected a mapping of names and numbers", "bodies[damper].fmu.parameters=8")
         self.refused("has no modes", command="modes")
         self.refused("has no equilibrium", command="static")
@@ -263,7 +263,7 @@ class Member(unittest.TestCase):
 
     def test_no_copy_of_a_state_that_is_elsewhere(self):
         with bough.Session(self.scene) as run:
-            with self.assertRaisesRegex(Exception, "keeps a memory of its own"):
+            with self.assertRaisesRegex(Exception, "has memory of its own"):
                 run.save()
 
 

@@ -97,7 +97,7 @@ mkdir many
 mkfifo many/pipe.yaml
 refused "'many' holds no scene" check many
 printf 'base: ../pipe\n' >many/scene.yaml
-refused 'no file to build on' check many/scene.yaml
+refused 'not a file to build on' check many/scene.yaml
 mkdir ends
 for own in channels.out checkpoint.bin channels.out.partial; do
     ln -s ../pipe "ends/$own"

@@ -144,7 +144,7 @@ vanished() {
     wait $process
     code=$?
     [ $code -eq 1 ] || fail "vanished scene: exit code $code, expected 1"
-    grep -q 'has changed or is gone' stderr || fail "vanished scene: $(head -c 300 stderr)"
+    grep -q 'has changed or disappeared' stderr || fail "vanished scene: $(head -c 300 stderr)"
     rm -rf kept
     cp -r part/cases kept
     grep -q '^outcome [1-9]' kept/*.case && fail 'vanished scene: stored as a result'

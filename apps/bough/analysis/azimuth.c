@@ -97,7 +97,7 @@ static bough_status turn_on(bough_arena *arena, const bough_azimuths *a, double 
         bough_status status =
             bough_simulation_equilibrium(x->simulation, assembly, time, BOUGH_EQUILIBRIUM_NEAR, &work);
         if (!bough_is_ok(&status))
-            return bough_fail(status.code, "with the rotor turned on by %.3g degrees: %.380s",
+            return bough_fail(status.code, "with the rotor turned further by %.3g degrees: %.380s",
                               x->turn / BOUGH_DEGREE, status.message);
     }
     return bough_vibration_point_find(arena, x->simulation, time, &x->point);

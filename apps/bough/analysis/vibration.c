@@ -136,10 +136,7 @@ static bough_status respond(const bough_simulation *s, const bough_vibration_poi
 static bough_status refuse(const bough_simulation *s, double change) {
     return bough_fail(
         BOUGH_INVALID,
-        "%.200s: the linear system changes as the bodies turn, by %.2g of itself, as that of a "
-        "rotor of two or of unequal blades or out of balance does: it has no modes but periodic "
-        "solutions (Floquet), which are not computed; take 'modes.linear: true' "
-        "for the system at the present azimuth, or modes at rest",
+        "%.200s: the linear system changes by %.2g of itself as the bodies turn (a rotor with two or unequal blades, or out of balance): its solutions are periodic (Floquet) and not computed; take 'modes.linear: true' for the system at the present azimuth, or modes at rest",
         s->scene->file, change);
 }
 

@@ -117,10 +117,10 @@ static bough_status find_columns(bough_arena *arena, case_run *r) {
 }
 
 static bough_status changed(const char *scene, const char *why) {
-    return bough_fail(BOUGH_IO,
-                      "the scene '%.150s' or a file of it has changed or is gone since the study "
-                      "began%s%.100s; runs so far are kept",
-                      scene, why[0] ? ": " : "", why);
+    return bough_fail(
+        BOUGH_IO,
+        "the scene '%.150s' or one of its files has changed or disappeared since the study began%s%.100s; runs so far are kept",
+        scene, why[0] ? ": " : "", why);
 }
 
 // Every scene was read when the study began, so that an error now, BOUGH_IO, is of the study and not of the

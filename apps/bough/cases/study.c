@@ -86,7 +86,7 @@ static const bough_schema study_schema = {.name = "a study", .check = check_stud
     {KEY(CHOICE, kind), CHOICES("work-precision", "timing", "stability", "sweep", "load-set"),
      .required = true,
      .help = "work-precision: time and error of every cell of the grid against one reference; "
-             "timing: cost of the cells, measured in turns; stability: table of errors and "
+             "timing: cost of the cells, measured alternately; stability: table of errors and "
              "diagnoses, each cell against a reference with the same model parameters; sweep: "
              "statistics of every cell; load-set: lifetime loads of weighted cases (both: "
              "docs/loads.md)"},
@@ -141,8 +141,7 @@ static const bough_schema group_schema = {.name = "a load case", .check = check_
     {KEY(NUMBER, factor), .range = "> 0", .fallback = "1.35", .example = "1.1",
      .help = "partial safety factor of its extreme forces and moments"},
     {KEY(NUMBER, favourable), .range = "(0, 1]", .fallback = "0.9", .example = "1",
-     .help = "factor of favourable loads in place of it: of a largest value below zero and a smallest "
-             "value above"},
+     .help = "factor of favourable loads in place of 'factor': of a largest value below zero or a smallest value above zero"},
     {KEY(BOOLEAN, extremes), .fallback = "true", .help = "its extremes count"},
 )};
 #undef FILLS
@@ -208,7 +207,7 @@ static const bough_schema set_schema = {.name = "a load set", .check = check_set
     {KEY(NUMBER, lifetime), .range = "> 0", .fallback = "20", .example = "25",
      .help = "lifetime in years"},
     {KEY(CUSTOM, companions), .read = read_companions, .form = "1 in N|all|none", .fallback = "1 in 20",
-     .help = "cases that have a companion, whatever the scene says: the errors of equivalent loads and "
+     .help = "cases that have a companion, regardless of the scene: the errors of equivalent loads and "
              "extremes follow from them"},
     {KEY(MAPPING, wind), .of = &wind_schema,
      .help = "distribution of the wind speed, for 'weibull'"},

@@ -246,7 +246,7 @@ static void print_azimuths(const bough_vibration *v) {
     for (int k = 0; k < v->found; k++) most = fmax(most, v->mode[k].frequency_change);
     printf("over the azimuths no frequency changes by more than %.2g %%\n", 100 * most);
     print_numbers(
-        "warning: over the azimuths the damping changes by as much as itself, or it is not known by how much: mode",
+        "warning: over the azimuths the damping changes by as much as its own value, or by an unknown amount: mode",
         v, is_of_azimuth);
 }
 
@@ -287,8 +287,7 @@ static void print_modes(const bough_simulation *s, const bough_vibration *v) {
         printf(
             "unstable: mode %d grows at %.6g /s%s\n", k + 1, m->growth,
             m->damped_frequency == 0 && s->aero && bough_modes_rotor_is_free(s)
-                ? " without swinging: the speed of the rotor, if the air's torque grows with it or, at one "
-                  "azimuth, by its weight; the generator's torque and the pitch are held"
+                ? " without oscillation: the rotor runs away where the torque of the air grows with its speed (at one azimuth also by its weight); generator torque and pitch are held"
                 : "");
     }
 }
@@ -471,7 +470,8 @@ static const bough_option rows[] = {
      .offset = offsetof(modes_options, until)},
     {"sweep", "KEY=V1, V2, ...", "modes over operating points; the values of several --sweep vary together",
      bough_option_texts, .offset = offsetof(modes_options, sweep)},
-    {"sensitivity", "MODE", "what a mode, its number or words of its row as 'edge forward', depends on most",
+    {"sensitivity", "MODE",
+     "parameters that change a mode most; MODE: its number or words of its row, such as 'edge forward'",
      bough_option_text, .offset = offsetof(modes_options, sensitivity)},
     {0},
 };
@@ -480,7 +480,7 @@ static bough_status find(bough_arena *arena, const void *given) {
     const modes_options *own = given;
     const bough_options *options = &own->common;
     if (own->sweep.n > 0 && own->sensitivity)
-        return bough_fail(BOUGH_INVALID, "--sensitivity is of one operating point, without --sweep");
+        return bough_fail(BOUGH_INVALID, "--sensitivity belongs to one operating point: leave out --sweep");
     if (own->sweep.n > 0) return bough_modes_sweep(arena, options, &own->sweep, own->until);
     if (own->until) return bough_fail(BOUGH_INVALID, "--until unstable needs a --sweep");
     bough_simulation *s;

@@ -232,7 +232,7 @@ static bough_status add_point(bough_arena *keep, bough_arena *arena, const bough
         *now = take_tracks(keep, count, n_state);
     } else if (n_state != before->n_state || v->found > s->n_point * count - s->n_mode) {
         return bough_fail(BOUGH_INVALID,
-                          "--sweep cannot change the bodies, their mesh or the count of modes");
+                          "--sweep cannot change the bodies, their mesh or the number of modes");
     }
     add_modes(keep, arena, sim, v, point, before, now, s);
     s->speed[point] = fabs(v->spin) / BOUGH_RPM;
@@ -269,7 +269,9 @@ static void print_point(const sweep *s, int point, int first) {
         bough_modes_print_value(m->frequency, m->damped, m->damping);
         printf("%-12s %-8s %s%s%s\n", m->body, m->shape, m->pattern,
                m->damping < -rounding ? "  unstable" : "",
-               m->damping_change >= fabs(m->damping) ? "  damping changes by itself with the azimuth" : "");
+               m->damping_change >= fabs(m->damping)
+                   ? "  damping changes with the azimuth by as much as its own value"
+                   : "");
     }
 }
 

@@ -20,7 +20,7 @@ static bough_status open_directory(const char *path) {
     if (mkdir(path, 0777) == 0) return bough_ok();
     if (errno != EEXIST) return bough_fail(BOUGH_IO, "cannot make '%.200s': %s", path, strerror(errno));
     DIR *folder = opendir(path);
-    if (!folder) return bough_fail(BOUGH_INVALID, "'%.200s' is no directory: %s", path, strerror(errno));
+    if (!folder) return bough_fail(BOUGH_INVALID, "'%.200s' is not a directory: %s", path, strerror(errno));
     bool empty = true;
     for (struct dirent *entry; (entry = readdir(folder)) != NULL;)
         empty = empty && (strcmp(entry->d_name, ".") == 0 || strcmp(entry->d_name, "..") == 0);

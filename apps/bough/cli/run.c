@@ -69,10 +69,10 @@ static bough_status run_forecast(const bough_run_command *command) {
     double room =
         statvfs(command->folder, &disk) == 0 ? (double)disk.f_bavail * (double)disk.f_frsize : HUGE_VAL;
     if (bytes > much_data && bytes > room) {
-        return bough_fail(BOUGH_INVALID,
-                          "the results take about %.3g GB, '%.200s' has room for %.3g GB: a longer "
-                          "simulation.output.interval or shorter duration",
-                          1e-9 * bytes, command->folder, 1e-9 * room);
+        return bough_fail(
+            BOUGH_INVALID,
+            "the results take about %.3g GB, '%.200s' has room for %.3g GB: take a longer simulation.output.interval or a shorter duration",
+            1e-9 * bytes, command->folder, 1e-9 * room);
     }
     bough_forecast_print(results, &command->recorded);
     fflush(stdout);

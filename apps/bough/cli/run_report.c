@@ -381,8 +381,7 @@ static void tell_warnings(const bough_run *run) {
     long unfinished = bough_scheme_reported(m->coupling).unfinished;
     if (unfinished > 0) {
         printf(
-            "warning: %ld of %ld macro steps went on before they had converged; the error contains what this "
-            "changes\n",
+            "warning: %ld of %ld macro steps ended before they had converged; the stated error includes the effect\n",
             unfinished, m->steps);
     }
     bough_validity_print(run->simulation, stdout);

@@ -323,14 +323,13 @@ static void print_joints(const bough_simulation *s) {
 static void warn_of_growth(const bough_status *found, const bough_growth *growth) {
     static const char unstable[] = "bough: warning: the equilibrium is unstable:";
     if (!bough_is_ok(found))
-        fprintf(stderr, "bough: warning: whether the equilibrium is stable was not found: %s\n",
+        fprintf(stderr, "bough: warning: the stability of the equilibrium is not known: %s\n",
                 found->message);
     if (growth->rate > 0) fprintf(stderr, "%s motions from it grow at %.3g 1/s\n", unstable, growth->rate);
     if (growth->twisting)
         fprintf(
             stderr,
-            "bough: warning: in the equilibrium the sections of rod '%s' twist, as its segments are too long "
-            "for its torsional stiffness; a rod's do not: try rod.segments: %d, or more torsional stiffness\n",
+            "bough: warning: the sections of rod '%s' twist in this equilibrium only because its segments are too long for its torsional stiffness: try rod.segments: %d, or more torsional stiffness\n",
             growth->twisting, growth->segments);
     if (growth->oscillation > 0)
         fprintf(stderr, "%s oscillations of %.4g Hz grow at %.3g 1/s\n", unstable, growth->frequency,

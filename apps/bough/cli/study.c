@@ -19,11 +19,12 @@ static bough_status read_part(const bough_option *row, const char *text, void *f
 
 static const bough_option rows[] = {
     BOUGH_OPTION_OUT,
-    {"threads", "N", "1 to 64; of stability, sweep, load-set: runs at the same time, else of each run",
+    {"threads", "N",
+     "1 to 64: of stability, sweep and load-set simultaneous runs, otherwise threads of each run",
      bough_option_threads, .offset = offsetof(bough_options, threads)},
-    {"part", "K/N", "of a study (stability, sweep, load-set) only the K-th of N shares of its runs",
-     read_part, .offset = offsetof(study_options, how)},
-    {"case", "NAME", "of a load set only the load case of that name", bough_option_text,
+    {"part", "K/N", "only part K of N of the runs (stability, sweep, load-set)", read_part,
+     .offset = offsetof(study_options, how)},
+    {"case", "NAME", "only the load case of this name (load-set)", bough_option_text,
      .offset = offsetof(study_options, how.only)},
     BOUGH_OPTION_QUIET,
     {0},

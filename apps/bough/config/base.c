@@ -190,7 +190,7 @@ static bough_node *read_on_base(merger *m, const char *path, bool absolute, boug
     *next = base;
     bough_node *tree = read_on_base(m, base->path, base->absolute, &base->next, bases);
     if (tree == NULL || tree->kind != BOUGH_MAPPING) {
-        bough_errors_add(m->errors, name, base_key, "'%s' is no file to build on", base->path);
+        bough_errors_add(m->errors, name, base_key, "'%s' is not a file to build on", base->path);
         return NULL;
     }
     return merge(m, tree, root);

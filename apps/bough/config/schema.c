@@ -104,7 +104,7 @@ static void read_mapping(bough_schema_reader *r, const bough_schema *schema, con
 static bool row_mapping(bough_schema_reader *r, const bough_node *row, const columns *c,
                         bough_node *mapping) {
     char what[60];
-    snprintf(what, sizeof what, "a list of %d values, one a column", c->n);
+    snprintf(what, sizeof what, "a list of %d values, one per column", c->n);
     if (row->kind != BOUGH_SEQUENCE) {
         bough_schema_expected(r, row, what);
         return false;

@@ -267,7 +267,7 @@ fmi3_status fmi3SetFMUState(fmi3_instance self, fmi3_state from) {
     instance *x = self;
     const state *s = from;
     if (!s || s->size != bough_session_size(x->session)) {
-        return tell(x, FMI3_ERROR, "fmi3SetFMUState: no state of this FMU");
+        return tell(x, FMI3_ERROR, "fmi3SetFMUState: not a state of this FMU");
     }
     fmi3_status status = answer(x, bough_session_restore(x->session, s->copy));
     if (status == FMI3_OK && x->mode == TERMINATED) x->mode = STEP;
@@ -295,7 +295,7 @@ static fmi3_status check_step(const instance *x, double time, double step) {
         return tell(x, FMI3_ERROR, "fmi3DoStep: a step of %.9g s from %.15g s, the FMU is at %.15g s", step,
                     time, now(x));
     if (fabs(macro_steps - round(macro_steps)) > 1e-3 || macro_steps < 0.5)
-        return tell(x, FMI3_ERROR, "fmi3DoStep: %.9g s is no whole number of macro steps of %.9g s", step,
+        return tell(x, FMI3_ERROR, "fmi3DoStep: %.9g s is not a whole number of macro steps of %.9g s", step,
                     bough_session_macro_step(x->session));
     return FMI3_OK;
 }

@@ -102,7 +102,7 @@ static bough_status check_copy(const bough_session *s, const void *copy) {
     if (!copy) return bough_fail(BOUGH_INVALID, "restore: no copy is given (NULL)");
     memcpy(&h, copy, sizeof h);
     if (memcmp(h.magic, magic, sizeof magic) != 0) {
-        return bough_fail(BOUGH_INVALID, "this is no copy of a session");
+        return bough_fail(BOUGH_INVALID, "this is not a copy of a session");
     }
     if (h.kind == s->kind) return bough_ok();
     return bough_fail(BOUGH_INVALID, "the copy is of a scene with other parts, coupling or steps");

@@ -255,12 +255,12 @@ static torque_line read_line(bough_openfast *o) {
     }
     int model = bough_deck_whole_or(o->servo, "GenModel", SIMPLE);
     if (model == SIMPLE) {
-        bough_taken(o, "GenModel 1: the generator's torque over its slip, of both signs");
+        bough_taken(o, "GenModel 1: the generator's torque over its slip, for both signs");
         return read_simple(o);
     }
-    bough_approximated(o, "GenModel 2: torque grows linearly with the slip to the pull-out torque and is "
-                          "then constant, of both signs: far below the synchronous speed the circuit drives "
-                          "less");
+    bough_approximated(
+        o,
+        "GenModel 2: torque grows linearly with the slip up to the pull-out torque and is then constant, for both signs; far below synchronous speed the deck's circuit gives less");
     return read_thevenin(o);
 }
 

@@ -307,7 +307,7 @@ static const bough_openfast_rest rest[] = {
     {"PtfmPitch", START, 0},
     {"PtfmYaw", START, 0},
     {"PitchDOF", "the pitch bearings are rigid", 0},
-    {"GBoxEff", "the gearbox loses nothing", 100},
+    {"GBoxEff", "the gearbox has no losses", 100},
 };
 
 void bough_openfast_bodies(bough_openfast *o) {

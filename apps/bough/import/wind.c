@@ -190,7 +190,7 @@ static bough_status read_bladed(bough_arena *arena, FILE *file, const char *path
     bool good =
         read_int16(file, &first) &&
         (first == -99 ? read_new_head(file, &h) : first < 0 && first >= -3 && read_old_head(file, first, &h));
-    if (!good || !is_sound(&h)) return bad(path, "it is no full-field file in the style of Bladed");
+    if (!good || !is_sound(&h)) return bad(path, "it is not a full-field file in Bladed's format");
     if (fabs(h.mean - s->mean) > 0.1) {
         return bad(path, "its mean speed is not that of the .sum file");
     }
@@ -248,7 +248,7 @@ static bough_status read_component(bough_arena *arena, const char *path, size_t 
     for (size_t i = 0; i < n && bough_is_ok(&status); i++) {
         if (!read_words(file, &read, 1)) status = bad(path, "it ends before its last velocity");
         (*value)[i] = bough_bytes_float(read);
-        if (!isfinite((*value)[i])) status = bad(path, "a velocity is no number");
+        if (!isfinite((*value)[i])) status = bad(path, "a velocity is not a number");
     }
     fclose(file);
     return status;
@@ -310,8 +310,9 @@ bough_status bough_wind_hawc_read(bough_arena *arena, const bough_hawc_def *def,
         sound = def->roughness > 0 && def->roughness < def->height;
     }
     if (!sound) {
-        return bough_fail(BOUGH_INVALID, "the wind in HAWC's form: expected at least 2 points a way, "
-                                         "positive distances, height and mean speed");
+        return bough_fail(BOUGH_INVALID,
+                          "the wind in HAWC's form: expected at least 2 points in each direction, "
+                          "positive distances, height and mean speed");
     }
     *box = (bough_wind_box){.n_z = def->nz,
                             .n_y = def->ny,

@@ -61,7 +61,7 @@ static bool read_lump(bough_windio *w, const bough_node *part, lump *l) {
     const double *at = centre ? bough_entry_numbers(d, centre, "", &n) : NULL;
     if (at) memcpy(l->centre, at, sizeof l->centre);
     read_inertia(w, from, "system_inertia|inertia", l->inertia);
-    if (l->mass < 0) bough_entry_fail(d, from, "mass: expected no negative one");
+    if (l->mass < 0) bough_entry_fail(d, from, "mass: expected a value that is not negative");
     if (!possible_inertia(l->inertia)) {
         bough_entry_fail(
             d, bough_entry(from, "system_inertia|inertia"),

@@ -30,7 +30,7 @@ static bough_status same_mesh(const bough_aero_link *l, const bough_beam *beam) 
     if (beam->def.n_segment == first->def.n_segment) return bough_ok();
     bough_status status = bough_fail(
         BOUGH_INVALID,
-        "blades %s and %s have %d and %d segments; the aerodynamics wants the same mesh on all blades",
+        "blades %s and %s have %d and %d segments; the aerodynamics needs the same mesh on all blades",
         first->body->name, beam->body->name, first->def.n_segment, beam->def.n_segment);
     const bough_node *segments = bough_node_find(beam->body->rod.node, "segments");
     return bough_scene_blame(segments ? segments : beam->body->rod.node, "rod.segments", status);

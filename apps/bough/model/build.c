@@ -270,15 +270,12 @@ bough_status bough_simulation_known(const bough_simulation *s, const char *what)
 
 bough_status bough_simulation_storable(const bough_simulation *s) {
     if (s->n_fmu > 0) {
-        return bough_fail(BOUGH_INVALID,
-                          "the FMU of '%.40s' keeps a memory of its own, which cannot be "
-                          "stored",
+        return bough_fail(BOUGH_INVALID, "the FMU of '%.40s' has memory of its own, which cannot be stored",
                           s->rod[s->n_rod].system.name);
     }
     const bough_scene_control *control = &s->scene->control;
     if (!bough_scene_control_is_foreign(control)) return bough_ok();
     bool fmu = control->kind == BOUGH_SCENE_CONTROL_FMU;
-    return bough_fail(BOUGH_INVALID,
-                      "the controller %.200s keeps a memory of its own, which cannot be stored",
+    return bough_fail(BOUGH_INVALID, "the controller %.200s has memory of its own, which cannot be stored",
                       fmu ? control->fmu.model.folder : control->library);
 }

@@ -196,7 +196,7 @@ bough_status bough_companion_create(bough_arena *arena, bough_simulation *run, c
     if (run->scene->simulation.error_estimate != BOUGH_SCENE_COMPANION) {
         give_up(c, "simulation.error_estimate is none");
     } else if (run->n_fmu > 0 || run->scene->control.fmu.model.description.once) {
-        give_up(c, "an FMU keeps a memory of its own, and there is no second one for the companion");
+        give_up(c, "an FMU has memory of its own and cannot be loaded a second time for the companion");
     } else {
         bough_status status = build(arena, c);
         if (status.code == BOUGH_IO) return status;

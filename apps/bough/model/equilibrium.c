@@ -298,17 +298,17 @@ static bough_status refuse_path(const bough_simulation *s) {
         const bough_link *link = &s->tree->links[i];
         if (link->motion == NULL) continue;
         return bough_fail(BOUGH_INVALID,
-                          "%.200s: body '%s': a path of equilibria knows no prescribed motions: give its "
+                          "%.200s: body '%s': a path of equilibria allows no prescribed motions: give its "
                           "joint a load",
                           file, s->tree->bodies[link->body].name);
     }
-    if (s->aero != NULL) return bough_fail(BOUGH_INVALID, "%.200s: a path of equilibria knows no air", file);
+    if (s->aero != NULL) return bough_fail(BOUGH_INVALID, "%.200s: a path of equilibria allows no air", file);
     if (s->jumps)
-        return bough_fail(BOUGH_INVALID, "%.200s: loads: a path of equilibria knows no jumps", file);
+        return bough_fail(BOUGH_INVALID, "%.200s: loads: a path of equilibria allows no jumps", file);
     if (bough_equilibrium_time(s) > 0) return bough_ok();
     return bough_fail(BOUGH_INVALID,
-                      "%.200s: loads: expected one that grows, as 'ramp: [0 s, 1 s]': its path is "
-                      "followed over the ramp",
+                      "%.200s: loads: the path follows a growing load: expected one with a ramp, such as "
+                      "'ramp: [0 s, 1 s]'",
                       file);
 }
 

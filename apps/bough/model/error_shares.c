@@ -34,7 +34,7 @@ static bough_status advance(bough_other_run *r, double t, const bough_simulation
     while (r->simulation->master->time < t) {
         BOUGH_TRY(bough_step(r->simulation->master));
         if (steps_of(r->simulation) > most)
-            return bough_fail(BOUGH_FAILED, "a run beside it took more than %ld steps to %.6g s", most,
+            return bough_fail(BOUGH_FAILED, "a further run took more than %ld steps to reach %.6g s", most,
                               r->simulation->master->time);
     }
     return bough_ok();
@@ -42,7 +42,7 @@ static bough_status advance(bough_other_run *r, double t, const bough_simulation
 
 static bough_status look_for_stop(bool (*stop)(void)) {
     if (!stop || !stop()) return bough_ok();
-    return bough_fail(BOUGH_INTERRUPTED, "interrupted while the error's cause was looked for");
+    return bough_fail(BOUGH_INTERRUPTED, "interrupted during the search for the cause of the error");
 }
 
 // `part`, `held`: of the difference, that the run errs by; of channels whose last sample the base holds. Both
@@ -341,7 +341,7 @@ bough_status bough_error_shares_find(bough_arena *arena, bough_companion *c, boo
     if (!c->coarser.simulation) {
         status = bough_fail(BOUGH_FAILED, "%s", c->reason);
     } else if (c->run->input) {
-        status = bough_fail(BOUGH_FAILED, "the run has inputs, which are not known any more");
+        status = bough_fail(BOUGH_FAILED, "the run has inputs, whose values are no longer known");
     } else {
         status = bough_arena_use(find, &x);
     }

@@ -51,8 +51,9 @@ static const struct {
                                            " from the axis: nothing stops it there"},
     [BOUGH_LIMIT_SAMPLES] = {"air_samples", "the loads of the air miss its vibrations by %.2g of their size"
                                             " between two samples: take a higher aero.rate, or fidelity rod"},
-    [BOUGH_LIMIT_TURN] = {"segment_turn", "a segment turns its ends against each other by %.3g deg, more"
-                                          " than 45 deg: take more segments"},
+    [BOUGH_LIMIT_TURN] =
+        {"segment_turn",
+         "the ends of a segment are rotated by %.3g deg to each other, more than 45 deg: take more segments"},
     [BOUGH_LIMIT_SHAPES] =
         {"modal_deflection",
          "its shapes, which hold for small deflections, move a vertex by %.2g of its length:"
@@ -67,9 +68,9 @@ static const struct {
         {"one_segment",
          "a rod of one segment bends by a third too little under a load along it, and its first"
          " frequency is a tenth too high: take more segments than %g"},
-    [BOUGH_LIMIT_SINGULAR] = {"singular_position",
-                              "its closed loop is near a position from which its bodies can go on in two"
-                              " ways, and takes one of them by the smallest difference; margin %.2g"},
+    [BOUGH_LIMIT_SINGULAR] =
+        {"singular_position",
+         "its closed loop is near a singular position, where its bodies can continue in two ways and the smallest difference decides; margin %.2g"},
     [BOUGH_LIMIT_WIND] = {"wind_samples", "the wind changes by %.3g m/s and back between two samples of the"
                                           " air, which do not see it: take a higher aero.rate"},
     [BOUGH_LIMIT_ROTATION] = {"rotor_samples",
@@ -79,8 +80,8 @@ static const struct {
                            "the equilibrium from which the run starts is unstable: small disturbances, which"
                            " the error estimate does not contain, grow at %.3g 1/s"},
     [BOUGH_LIMIT_STEPS] =
-        {"solver_steps", "motions so fast that a solver takes %.3g steps in a macro step make most of the"
-                         " cost: damping, a larger rtol or another solver (radau5, cvode-bdf) may end that"},
+        {"solver_steps",
+         "most of the cost comes from motions so fast that a solver takes %.3g steps in a macro step: damping, a larger rtol or another solver (radau5, cvode-bdf) may help"},
 };
 
 const char *bough_limit_name(bough_limit limit) { return limits[limit].name; }
@@ -282,9 +283,7 @@ bough_status bough_validity_check_closed(bough_simulation *s) {
     if (opening <= most_open) return bough_ok();
     return bough_fail(
         BOUGH_FAILED,
-        "closure '%s' at %.6g s under scheme %s: its loop has come apart by %.2g of its size. Where a"
-        " body of the loop is much lighter than the others, the loop is not kept closed: give it more"
-        " mass and inertia",
+        "closure '%s' at %.6g s under scheme %s: its loop is open by %.2g of its size. A loop with a body that is much lighter than the others may not stay closed: give that body more mass and inertia",
         s->scene->closure[closure].name, s->master->time,
         bough_scheme_name(s->scene->simulation.coupling.scheme), opening);
 }

@@ -108,7 +108,7 @@ static void free_parser(void *parser) { XML_ParserFree(parser); }
 
 static bough_status check(const reader *r, const char *path) {
     const bough_fmu_description *d = r->d;
-    if (!r->root) return bough_fail(BOUGH_INVALID, "%.200s describes no FMU", path);
+    if (!r->root) return bough_fail(BOUGH_INVALID, "%.200s does not describe an FMU", path);
     if (strncmp(r->version, "3.", 2) != 0) {
         return bough_fail(BOUGH_INVALID, "the FMU is of FMI %.12s; expected FMI 3.0", r->version);
     }
@@ -116,7 +116,7 @@ static bough_status check(const reader *r, const char *path) {
         return bough_fail(BOUGH_INVALID, "the FMU is not for co-simulation");
     }
     if (strchr(d->identifier, '/')) {
-        return bough_fail(BOUGH_INVALID, "'%.80s' is no model identifier", d->identifier);
+        return bough_fail(BOUGH_INVALID, "'%.80s' is not a model identifier", d->identifier);
     }
     return bough_ok();
 }

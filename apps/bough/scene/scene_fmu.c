@@ -30,7 +30,8 @@ static const bough_fmu_variable *find(bough_schema_reader *r, const bough_scene_
     if (!v) {
         unknown(r, d, node, key, name);
     } else if (v->causality != causality) {
-        bough_schema_error(r, node, key, "the variable '%.60s' is no %s", name, kinds[causality]);
+        bough_schema_error(r, node, key, "the variable '%.60s' is not of causality %s", name,
+                           kinds[causality]);
     } else if (v->array) {
         bough_schema_error(r, node, key, "the variable '%.60s' is an array", name);
     } else if (causality != BOUGH_FMU_PARAMETER && bough_fmu_scaled(d, v)) {

@@ -96,7 +96,7 @@ static void check_name(bough_schema_reader *r, const bough_scene *s, int i) {
         bough_schema_error(r, b->node, "name", "a name has letters, digits, '_' and '-', got %s",
                            bough_node_shown(bough_node_find(b->node, "name"), shown));
     } else if (strcmp(b->name, "ground") == 0) {
-        bough_schema_error(r, b->node, "name", "'ground' is no name for a body");
+        bough_schema_error(r, b->node, "name", "'ground' cannot be the name of a body");
     } else if (find_body(s, b->name) != i) {
         bough_schema_error(r, b->node, "name", "body '%s' is given twice", b->name);
     }
@@ -237,9 +237,7 @@ static void link_ends(bough_schema_reader *r, const bough_scene *s, const bough_
         body[end] = link_frame(r, s, item, keys[end], name[end]);
         if (body[end] < 0 || !bough_scene_is_flexible(&s->body[body[end]])) continue;
         bough_schema_error(r, item, keys[end],
-                           "'%s' is no rigid body; it must be one, which may hang on a rod and "
-                           "needs no mass",
-                           name[end]);
+                           "'%s' must be a rigid body; it may hang on a rod and needs no mass", name[end]);
     }
     if (name[0] != NULL && name[1] != NULL && strcmp(name[0], name[1]) == 0) {
         bough_schema_error(r, item, "to", "must be another body");

@@ -151,7 +151,7 @@ static void link_event(bough_schema_reader *r, bough_scene *s, int i) {
         !has_pitch_joint(&s->body[s->turbine.blade[0]])) {
         bough_schema_error(r, e->node, "", "needs blades on pitch joints: revolute with 'motion'");
     } else if (pitches && !s->control.pitch) {
-        bough_schema_error(r, e->node, "", "needs 'control.pitch: true': no pitch is changed else");
+        bough_schema_error(r, e->node, "", "needs 'control.pitch: true', without which no pitch changes");
     }
     if (e->blade > s->turbine.n_blade) {
         bough_schema_error(r, e->node, "blade", "the turbine has %d blades", s->turbine.n_blade);
@@ -177,8 +177,8 @@ static void check_operation(bough_schema_reader *r, const bough_scene *s) {
                            "operation needs the air from the start on: leave out "
                            "'aero.ramp'");
     } else if (s->turbine.rotor >= 0 && s->body[s->turbine.rotor].joint.motion[0].node != NULL) {
-        bough_schema_error(r, s->node, "simulation.initial", "the motion of '%s' leaves no speed to be found",
-                           s->turbine.rotor_name);
+        bough_schema_error(r, s->node, "simulation.initial",
+                           "the motion of '%s' already prescribes its speed", s->turbine.rotor_name);
     }
 }
 

@@ -163,7 +163,7 @@ void bough_scene_read_motion(bough_schema_reader *r, const bough_node *node, voi
 
 // The joint starts where and as fast as its motion says.
 void bough_scene_check_motion(bough_schema_reader *r, const bough_scene_joint *joint) {
-    static const char why[] = "not beside the joint's motion, from which it follows";
+    static const char why[] = "not allowed with the joint's motion, from which it follows";
     const bough_scene_motion *first = &joint->motion[0], *second = &joint->motion[1];
     bool placed = first->node != NULL && !first->def.speed;
     bool cylindrical = joint->kind == BOUGH_JOINT_CYLINDRICAL; // its angle is the second motion's

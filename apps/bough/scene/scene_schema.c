@@ -58,8 +58,7 @@ static const bough_schema coupling_schema = {.name = "the coupling", KEYS(
     {NAMED("exchange", CHOICE), AT(options.exchange),
      CHOICES([BOUGH_EXCHANGE_END_VALUES] = "end-values", [BOUGH_EXCHANGE_WAVEFORM] = "waveform"),
      .fallback = "end-values",
-     .help = "of iterated: what the iteration makes agree: values at the end of the macro step, or "
-             "cubics through values within it"},
+     .help = "of iterated: quantities on which the iteration converges: values at the end of the macro step, or cubics through values within it"},
     {NAMED("accelerator", CHOICE), AT(options.accelerator), .fallback = "iqn-ils",
      .choices = bough_acceleration_names,
      .help = "of iterated: how the next values of the iteration are computed"},
@@ -139,7 +138,7 @@ static const bough_schema simulation_schema = {.name = "the simulation", KEYS(
              "steps, half the sampling rate of the air) gives the whole error of every channel, for two to three fifths "
              "of the run's cost; a rod of up to eight segments has twice as many there, at least eight, which costs up to nine tenths"},
     {KEY(BOOLEAN, error_shares), .fallback = "false",
-     .help = "also gives the errors of mesh, air and time by themselves, by further runs after the run"},
+     .help = "also gives the separate errors of mesh, air and time, by further runs after the run"},
     {KEY(INTEGER, threads), .range = "[0, 1024]", .fallback = "0", .example = "2",
      .help = "threads for the rods; --threads overrides; 0: OMP_NUM_THREADS, 1 where that is not "
              "set"},
@@ -275,7 +274,7 @@ void bough_scene_help(FILE *stream) {
     fputs(
         "\n## A turbine in one block\n\n"
         "`turbine` with a number of blades stands for the bodies `tower`, `nacelle`, `hub`, `blade1`, `blade2`, ... and\n"
-        "their joints. What it says of a part changes or adds keys of that body; `bodies` changes one of them by its\n"
+        "their joints. Its keys for a part change or add keys of that body; `bodies` changes one of them by its\n"
         "name and adds others; `--set 'turbine.cone=3 deg'` and `--set 'bodies[blade2].pitch=1 deg'` both work.\n"
         "`bough check --full SCENE` prints the bodies.\n\n"
         "    turbine:\n"

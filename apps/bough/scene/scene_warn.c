@@ -54,7 +54,7 @@ static void warn_polars(const bough_scene_polars *polars, FILE *stream) {
         for (int k = 1; k < p->n_row; k++) least = p->row[k].cd < p->row[least].cd ? k : least;
         if (p->row[least].cd >= 0) continue;
         warn(p->row[least].node, stream,
-             "polar '%s': the drag coefficient is negative, %g at %g deg: such air drives the section",
+             "polar '%s': the drag coefficient is negative, %g at %g deg: the air would drive the section",
              p->name, p->row[least].cd, p->row[least].alpha / BOUGH_DEGREE);
     }
 }

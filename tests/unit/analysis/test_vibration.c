@@ -99,13 +99,13 @@ TEST(periodic_systems_are_refused) {
     check_arena(arena);
     bough_vibration v;
     bough_simulation *s = scene_build(arena, pendulum, disc);
-    check_fails(bough_vibration_find(arena, s, 4, &v), BOUGH_INVALID, "changes as the bodies turn");
+    check_fails(bough_vibration_find(arena, s, 4, &v), BOUGH_INVALID, "as the bodies turn");
     s = scene_build(arena, "apps/turbine/land.yaml", blades);
-    check_fails(bough_vibration_find(arena, s, 4, &v), BOUGH_INVALID, "changes as the bodies turn");
+    check_fails(bough_vibration_find(arena, s, 4, &v), BOUGH_INVALID, "as the bodies turn");
     const char *hubs[] = {"bodies[hub].centre_of_mass=[0, 0.5, 0]", "bodies[hub].inertia=[5e6, 2.6e6, 2e6]"};
     for (int k = 0; k < 2; k++) {
         s = scene_build(arena, "apps/turbine/land.yaml", (const char *[]){hubs[k], COARSE_LAND, NULL});
-        check_fails(bough_vibration_find(arena, s, 4, &v), BOUGH_INVALID, "changes as the bodies turn");
+        check_fails(bough_vibration_find(arena, s, 4, &v), BOUGH_INVALID, "as the bodies turn");
         s = scene_build(arena, "apps/turbine/land.yaml",
                         (const char *[]){hubs[k], COARSE_LAND, "modes.linear=true", NULL});
         check_ok(bough_vibration_find(arena, s, 4, &v));

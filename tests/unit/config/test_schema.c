@@ -157,11 +157,11 @@ TEST(bad_tables_are_refused) {
             "f:3:21: error: parts.columns: column 'length' is given twice\n");
     refuses("kind: fixed\nparts:\n  columns: [length, label]\n  rows:\n    - [1]\n    - 2\n"
             "    - [x, y]\n    - {length: 1}\n",
-            "f:5:7: error: parts.rows[0]: expected a list of 2 values, one a column, got 1\n"
-            "f:6:7: error: parts.rows[1]: expected a list of 2 values, one a column, got '2'\n"
+            "f:5:7: error: parts.rows[0]: expected a list of 2 values, one per column, got 1\n"
+            "f:6:7: error: parts.rows[1]: expected a list of 2 values, one per column, got '2'\n"
             "f:7:8: error: parts.rows[2].length: expected a length (in m, or with a unit, as "
             "'61.5 m'), got 'x'\n"
-            "f:8:7: error: parts.rows[3]: expected a list of 2 values, one a column, got a "
+            "f:8:7: error: parts.rows[3]: expected a list of 2 values, one per column, got a "
             "mapping\n");
     refuses("kind: fixed\nparts: {columns: [label], rows: [[x]], more: 1}\n",
             "f:2:34: error: parts.rows[0]: required key 'length' is missing\n"

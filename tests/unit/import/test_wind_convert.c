@@ -140,7 +140,7 @@ TEST_WITH(damaged_bladed_files_are_reported, set_up, tear_down) {
                 "ends before its last velocity");
     assert_int_equal(truncate(p->wind, 60), 0);
     check_fails(bough_wind_bladed_read(p->arena, p->wind, &box), BOUGH_INVALID,
-                "no full-field file in the style of Bladed");
+                "not a full-field file in Bladed's format");
     write_bladed(p, false, "F", "");
     assert_int_equal(truncate(p->sum, 40), 0);
     check_fails(bough_wind_bladed_read(p->arena, p->wind, &box), BOUGH_INVALID,
@@ -213,5 +213,6 @@ TEST_WITH(hawc_files_are_boxes, set_up, tear_down) {
     check_fails(bough_wind_hawc_read(p->arena, &d, &box), BOUGH_INVALID,
                 "u.bin: it ends before its last velocity");
     d.nx = 1;
-    check_fails(bough_wind_hawc_read(p->arena, &d, &box), BOUGH_INVALID, "expected at least 2 points a way");
+    check_fails(bough_wind_hawc_read(p->arena, &d, &box), BOUGH_INVALID,
+                "expected at least 2 points in each direction");
 }

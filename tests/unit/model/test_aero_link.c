@@ -470,6 +470,5 @@ TEST(results_are_of_their_own_time) {
 TEST(blades_want_one_mesh) {
     scene_refused(
         turbine, "bodies[4].rod.segments=10",
-        "--set: rod.segments: blades blade1 and blade2 have 12 and 10 segments; the aerodynamics wants "
-        "the same mesh on all blades");
+        "--set: rod.segments: blades blade1 and blade2 have 12 and 10 segments; the aerodynamics needs the same mesh on all blades");
 }

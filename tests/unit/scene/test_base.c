@@ -73,12 +73,12 @@ TEST(a_base_that_is_none_is_refused) {
     refuses("base: s.yaml\n", "s.yaml:1:7: error: base: file 's.yaml' would build on itself\n");
     refuses("base: [1]\n", "s.yaml:1:7: error: base: expected the name of a file, got a list\n");
     refuses("base: none.yaml\n", "none.yaml: error: cannot be read: No such file or directory\n"
-                                 "s.yaml:1:7: error: base: 'none.yaml' is no file to build on\n");
+                                 "s.yaml:1:7: error: base: 'none.yaml' is not a file to build on\n");
     write_file("polars.yaml", "base: s.yaml\n");
-    refuses("base: polars.yaml\n", "s.yaml:1:7: error: base: 'polars.yaml' is no file to build on\n"
+    refuses("base: polars.yaml\n", "s.yaml:1:7: error: base: 'polars.yaml' is not a file to build on\n"
                                    "polars.yaml:1:7: error: base: file 's.yaml' would build on itself\n");
     write_file("polars.yaml", "[1]\n");
-    refuses("base: polars.yaml\n", "s.yaml:1:7: error: base: 'polars.yaml' is no file to build on\n");
+    refuses("base: polars.yaml\n", "s.yaml:1:7: error: base: 'polars.yaml' is not a file to build on\n");
 }
 
 // Paths are relative to the file that they stand in; the base is one of the scene's files.

@@ -75,7 +75,7 @@ TEST(names_are_checked) {
     refuses(SIMULATION "bodies:\n" BODY("a", "ground") BODY("a", "ground") BODY("ground", "a")
                 BODY("a b/c", "a"),
             "s.yaml:4:12: error: bodies[1].name: body 'a' is given twice\n"
-            "s.yaml:5:12: error: bodies[2].name: 'ground' is no name for a body\n"
+            "s.yaml:5:12: error: bodies[2].name: 'ground' cannot be the name of a body\n"
             "s.yaml:6:12: error: bodies[3].name: a name has letters, digits, '_' and '-', got 'a "
             "b/c'\n");
     refuses(SIMULATION "bodies:\n" BODY("tower", "ground") BODY("hub", "twoer"),

@@ -102,7 +102,7 @@ TEST_WITH(bad_hub_files_are_refused, set_up, tear_down) {
         {"0 8 0 0 0 0 0\n", ":1:"},
         {"0 8 0 0 0 0 0 0\n5 8 0 east 0 0 0 0\n", ":2:"},
         {"0 8 0 0 0 0 0 nan\n", ":1:"},
-        {"0 8 0 0 0 0 0 0\n0 8 0 0 0 0 0 0\n", ":2: the time must be more than the 0 s before it, got 0 s"}};
+        {"0 8 0 0 0 0 0 0\n0 8 0 0 0 0 0 0\n", ":2: times must increase: 0 s is followed by 0 s"}};
     for (size_t i = 0; i < sizeof bad / sizeof *bad; i++) {
         bough_wind wind;
         write_file(p, bad[i][0], strlen(bad[i][0]));

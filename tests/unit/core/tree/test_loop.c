@@ -475,7 +475,7 @@ TEST(what_cannot_be_closed_is_refused) {
     refused(&w.def, "closure 'close'", "0.01 m apart");
     make_windows(&w, 1, BOUGH_JOINT_REVOLUTE);
     w.body[1].speeds[0] = 0.5;
-    refused(&w.def, "move apart", "closure 'close'");
+    refused(&w.def, "separate", "closure 'close'");
     make_windows(&w, 1, BOUGH_JOINT_REVOLUTE);
     w.marker[1].body = w.marker[0].body;
     refused(&w.def, "closure 'close'", "nothing to close");

@@ -133,7 +133,7 @@ static void refuses(const char *scene, const char *set, const char *why) {
 }
 
 TEST(other_scenes_are_refused) {
-    refuses("apps/beams/elastica.yaml", NULL, "loads: expected one that grows");
-    refuses("apps/turbine/runup.yaml", NULL, "knows no air");
-    refuses("apps/turbine/rotor.yaml", NULL, "body 'hub': a path of equilibria knows no prescribed motions");
+    refuses("apps/beams/elastica.yaml", NULL, "expected one with a ramp");
+    refuses("apps/turbine/runup.yaml", NULL, "allows no air");
+    refuses("apps/turbine/rotor.yaml", NULL, "body 'hub': a path of equilibria allows no prescribed motions");
 }
