@@ -111,7 +111,7 @@ bodies:
   - {name: hub, fidelity: rigid, mass: 0.2, inertia: [2e-3, 2e-3, 2e-3], centre_of_mass: [0.01, 0, 0],
      joint: {kind: revolute, axis: x, parent: mast, speed: 3.6 rad/s}}
 END
-run 3 'the cause was not found: mast at t = ' heavy.yaml
+run 3 'the cause was not found: mast at t = .*; try scheme: monolithic' heavy.yaml
 
 # All speeds of a driven parallelogram are constant: an error of a millionth of them is none of their range.
 cat >parallelogram.yaml <<'END'

@@ -231,7 +231,7 @@ static void lengthen_macro_step(bough_scene *to) {
 
 // The loosest tolerance and the longest step of the bodies' sub-solvers.
 static bough_scene_solver all_sub_solvers(const bough_scene *scene) {
-    bough_scene_solver all = {.solver = BOUGH_ROSENBROCK};
+    bough_scene_solver all = {0};
     bool limited = true;
     for (int i = 0; i < scene->n_body; i++) {
         if (!bough_scene_has_mesh(&scene->body[i])) continue;
@@ -251,7 +251,7 @@ static void make_one_system(bough_scene *to) {
     x->step_control.tolerance = 0;
     if (x->coupling.scheme == monolithic) return;
     bough_scene_solver sub_solvers = all_sub_solvers(to);
-    x->master.solver = BOUGH_ROSENBROCK;
+    x->master.solver = BOUGH_AUTOMATIC;
     x->master.rtol = sub_solvers.rtol;
     x->master.step = sub_solvers.step;
     x->coupling.scheme = monolithic;
@@ -334,6 +334,18 @@ bough_status bough_other_run_build(bough_arena *arena, const bough_simulation *r
     other->simulation = simulation;
     simulation->master->compared = true; // as the run beside it
     return bough_ok();
+}
+
+double bough_coarser_work(const bough_simulation *s) {
+    const bough_assembly *a = s->master->assembly;
+    const bough_member *whole = bough_scheme_whole(s->master->coupling);
+    double work = 0;
+    for (int i = whole ? -1 : 0; i < a->n_member; i++) {
+        bough_statistics own = bough_member_statistics(i < 0 ? whole : a->member[i]);
+        int states = i < 0 ? a->n_state : a->member[i]->system.n_state;
+        work += (double)(own.derivatives + own.factorisations) * states;
+    }
+    return work;
 }
 
 void bough_other_run_sample(bough_other_run *other) {

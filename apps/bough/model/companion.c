@@ -236,6 +236,10 @@ void bough_companion_stop_by(bough_companion *c, bool (*stop)(void)) {
     if (finer) bough_master_stop_by(finer->master, stop);
 }
 
+double bough_companion_work(const bough_companion *c) {
+    return c->earlier + bough_coarser_work(c->run) + bough_coarser_work(c->coarser.simulation);
+}
+
 // -- copies ---------------------------------------------------------------------------------------
 
 bool bough_companion_storable(const bough_companion *c) {
@@ -250,6 +254,9 @@ void bough_companion_snapshot(bough_companion *c, bough_snapshot *s) {
     double *const rows[] = {c->value, c->error,     c->least,      c->low,
                             c->high,  c->other_low, c->other_high, c->noticed};
     for (size_t k = 0; k < sizeof rows / sizeof *rows; k++) bough_snapshot_doubles(s, rows[k], n);
+    double work = bough_companion_work(c), now = work - c->earlier;
+    bough_snapshot_take(s, &work, sizeof work);
+    c->earlier = work - now;
     bough_snapshot_take(s, &c->compared, sizeof c->compared);
     bough_snapshot_take(s, &c->flutters, sizeof c->flutters);
     bough_snapshot_take(s, c->reason, sizeof c->reason);

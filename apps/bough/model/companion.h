@@ -64,6 +64,9 @@ typedef struct bough_other_run {
 bough_status bough_other_run_build(bough_arena *arena, const bough_simulation *run, int parts,
                                    bough_other_run *other);
 
+// Evaluations and factorisations of all members so far, each as many times as the member has states.
+double bough_coarser_work(const bough_simulation *s);
+
 void bough_other_run_sample(bough_other_run *other);
 
 // A macro step of its own, with the inputs of the run.
@@ -115,6 +118,7 @@ typedef struct bough_companion {
     double rest;                         // motion of a scene at rest; 0: it moves
     bool sampled;                        // the companion's channels are of its present time
     long compared;                       // times
+    double earlier;                      // work of both before a copy was restored
     double *value;                       // (channels->count) of the run at the last of them
     double *before;                      // (channels->count) of the run at the comparison before
     double *error;                       // (channels->count) largest so far, in the channels' units
@@ -130,6 +134,9 @@ typedef struct bough_companion {
 // built, the reason says why.
 bough_status bough_companion_create(bough_arena *arena, bough_simulation *run, const bough_channels *channels,
                                     bough_companion *companion);
+
+// Of run and companion since time 0 (bough_coarser_work).
+double bough_companion_work(const bough_companion *c);
 
 // Whether it is at the time of the run and can go on, so that its next step is due.
 bool bough_companion_due(const bough_companion *c);

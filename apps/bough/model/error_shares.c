@@ -20,23 +20,31 @@ static void unknown(bough_error_share *share, const char *why) {
 
 // -- further runs ---------------------------------------------------------------------------------
 
-// Steps of all bodies so far, with those that failed.
-static long steps_of(const bough_simulation *s) {
-    bough_statistics sum = bough_master_statistics(s->master);
-    return sum.steps + sum.failed_steps;
+// Of all further runs together.
+typedef struct budget {
+    double left;  // work
+    double alone; // most work of one of them
+} budget;
+
+static const double most_times = 4;   // the work of the run and its companion
+static const double most_alone = 0.5; // of that
+static const double few = 1e4;        // evaluations, which take no time
+
+// A macro step of a further run. One that needs much more work than the run and its companion follows another
+// solution and may never end.
+static bough_status step(const bough_simulation *s, budget *b) {
+    double before = bough_coarser_work(s);
+    BOUGH_TRY(bough_step(s->master));
+    double work = bough_coarser_work(s);
+    b->left -= work - before;
+    if (b->left >= 0 && work <= b->alone) return bough_ok();
+    return bough_fail(BOUGH_FAILED, "to %.6g s %s taken more than %.2g times the work of both",
+                      s->master->time, b->left < 0 ? "further runs have" : "a further run has",
+                      b->left < 0 ? most_times : most_times * most_alone);
 }
 
-enum { MOST_TIMES_THE_STEPS = 10, FEW_STEPS = 1000 };
-
-// A further run that needs many times the steps of the user's own follows another solution and may never end.
-static bough_status advance(bough_other_run *r, double t, const bough_simulation *run) {
-    long most = MOST_TIMES_THE_STEPS * (steps_of(run) + FEW_STEPS);
-    while (r->simulation->master->time < t) {
-        BOUGH_TRY(bough_step(r->simulation->master));
-        if (steps_of(r->simulation) > most)
-            return bough_fail(BOUGH_FAILED, "a further run took more than %ld steps to reach %.6g s", most,
-                              r->simulation->master->time);
-    }
+static bough_status advance(bough_other_run *r, double t, budget *b) {
+    while (r->simulation->master->time < t) BOUGH_TRY(step(r->simulation, b));
     return bough_ok();
 }
 
@@ -64,6 +72,7 @@ typedef struct finding {
     bool lost; // the companion may have lost the solution
     bool (*stop)(void);
     double end; // of the run, less rounding [s]
+    budget *budget;
     bough_error_shares *shares;
 } finding;
 
@@ -74,6 +83,11 @@ static bool has_part(const bough_scene *scene, int kind) {
         if (bough_scene_has_mesh(&scene->body[i])) return true;
     }
     return false;
+}
+
+// Whose error has no other part.
+static bool has_time_alone(const bough_scene *scene) {
+    return !has_part(scene, BOUGH_SHARE_MESH) && !has_part(scene, BOUGH_SHARE_AIR);
 }
 
 static const int coarser[BOUGH_SHARES] = {BOUGH_COARSER_MESH, BOUGH_COARSER_AIR, BOUGH_COARSER_TIME};
@@ -98,7 +112,7 @@ static void advance_finer(const finding *x, int k, double t, const bough_other_r
     bough_error_share *share = &x->shares->share[k];
     const bough_companion *c = x->companion;
     if (!finer->simulation || share->unknown[0]) return;
-    bough_status own = advance(finer, fmin(t, x->end), c->run);
+    bough_status own = advance(finer, fmin(t, x->end), x->budget);
     if (!bough_is_ok(&own)) {
         unknown(share, own.message);
         return;
@@ -112,7 +126,7 @@ static void advance_finer(const finding *x, int k, double t, const bough_other_r
 // Where the companion is lost, its failure ends no more than the comparison with it.
 static bough_status step_base(const finding *x, bough_other_run *base, double *t) {
     const bough_simulation *s = base->simulation;
-    bough_status status = s == NULL ? bough_ok() : bough_step(s->master);
+    bough_status status = s == NULL ? bough_ok() : step(s, x->budget);
     if (s != NULL && bough_is_ok(&status)) {
         *t = s->master->time;
         bough_other_run_sample(base);
@@ -137,6 +151,11 @@ static bough_status find(bough_arena *arena, void *self) {
     bough_other_run base, again = {0}, finer[BOUGH_SHARES] = {{0}};
     BOUGH_TRY(bough_other_run_build(arena, run, BOUGH_COARSER_ALL, &base));
     build_finer(arena, x, finer);
+    if (has_time_alone(run->scene)) {
+        memcpy(x->shares->share[BOUGH_SHARE_TIME].largest, x->companion->error,
+               (size_t)x->shares->n_channel * sizeof(double));
+        return bough_ok();
+    }
     if (x->lost) BOUGH_TRY(bough_other_run_build(arena, run, 0, &again));
     bough_other_run_sample(&base);
     if (x->lost) bough_other_run_sample(&again);
@@ -147,7 +166,7 @@ static bough_status find(bough_arena *arena, void *self) {
         BOUGH_TRY(look_for_stop(x->stop));
         BOUGH_TRY(step_base(x, &base, &t));
         if (!x->lost) continue;
-        BOUGH_TRY(advance(&again, fmin(t, x->end), run));
+        BOUGH_TRY(advance(&again, fmin(t, x->end), x->budget));
         bough_other_run_sample(&again);
     }
 }
@@ -218,41 +237,43 @@ static void lower_errors(bough_companion *c, bough_error_shares *shares) {
 // -- steps and samples that a companion finds too long --------------------------------------------
 
 typedef struct proof {
-    const bough_companion *companion;
+    const finding *of;
     bough_error_share_kind kind; // time or air
-    bool (*stop)(void);
-    double end;           // of the run, less rounding [s]
+    bool others_known;
     double *own, *others; // (n_channel) largest errors: of that kind; of the two other kinds
 } proof;
 
 // A run that is finer in that kind alone, and its part of the difference to it that a run errs by.
 static bough_status build_proof(bough_arena *arena, const proof *x, bough_other_run *finer, double *part) {
-    const bough_simulation *run = x->companion->run;
+    const bough_simulation *run = x->of->companion->run;
     bool air = x->kind == BOUGH_SHARE_AIR;
     *part = air ? bough_finer_air_share(run->scene) : bough_finer_time_share();
     return bough_other_run_build(arena, run, air ? BOUGH_FINER_AIR : BOUGH_FINER_TIME, finer);
 }
 
-// The run once more, beside one that is finer in one kind and one that is coarser in the two others alone.
+// The run once more, beside one that is finer in one kind and, where these are not known, one that is coarser
+// in the two others alone.
 static bough_status prove(bough_arena *arena, void *self) {
     const proof *x = self;
-    const bough_companion *c = x->companion;
+    const finding *of = x->of;
+    const bough_companion *c = of->companion;
     const bough_simulation *run = c->run;
     double from = run->scene->simulation.output.from - 1e-6 * run->master->macro_step, part;
     bough_other_run r[3];
+    int n = x->others_known ? 2 : 3;
     BOUGH_TRY(bough_other_run_build(arena, run, 0, &r[0]));
     BOUGH_TRY(build_proof(arena, x, &r[1], &part));
-    BOUGH_TRY(bough_other_run_build(arena, run, BOUGH_COARSER_ALL & ~coarser[x->kind], &r[2]));
+    if (n > 2) BOUGH_TRY(bough_other_run_build(arena, run, BOUGH_COARSER_ALL & ~coarser[x->kind], &r[2]));
     for (double t = 0;; t = r[0].simulation->master->time) {
-        for (int k = 0; k < 3; k++) {
-            BOUGH_TRY(advance(&r[k], t, run));
+        for (int k = 0; k < n; k++) {
+            BOUGH_TRY(advance(&r[k], t, of->budget));
             bough_other_run_sample(&r[k]);
         }
         if (t >= from) compare(&r[0], &r[1], part, part, x->own);
-        if (t >= from) compare(&r[2], &r[0], c->share, c->share_held, x->others);
-        if (t >= x->end) return bough_ok();
-        BOUGH_TRY(look_for_stop(x->stop));
-        BOUGH_TRY(bough_step(r[0].simulation->master));
+        if (t >= from && n > 2) compare(&r[2], &r[0], c->share, c->share_held, x->others);
+        if (t >= of->end) return bough_ok();
+        BOUGH_TRY(look_for_stop(of->stop));
+        BOUGH_TRY(step(r[0].simulation, of->budget));
     }
 }
 
@@ -262,8 +283,10 @@ static bough_status prove(bough_arena *arena, void *self) {
 static bough_status prove_kind(bough_arena *arena, const finding *x, bough_error_share_kind kind) {
     bough_companion *c = x->companion;
     size_t n = (size_t)c->channels->count;
-    proof p = {c, kind, x->stop, x->end, .own = NULL};
-    bough_arena_each(arena, n + 1, &p.own, &p.others);
+    const bough_error_share *found = &x->shares->share[kind];
+    proof p = {x, kind, has_time_alone(c->run->scene) || (x->lost && !found->unknown[0]), NULL,
+               found->others};
+    bough_arena_each(arena, n + 1, &p.own);
     bough_status status = bough_arena_use(prove, &p);
     if (status.code == BOUGH_INTERRUPTED) return status;
     for (size_t i = 0; i < n && bough_is_ok(&status); i++) {
@@ -331,7 +354,8 @@ static bough_status prove_causes(bough_arena *arena, const finding *x) {
 bough_status bough_error_shares_find(bough_arena *arena, bough_companion *c, bool (*stop)(void),
                                      bough_error_shares *shares) {
     double end = c->run->scene->simulation.duration - 1e-6 * c->run->master->macro_step;
-    finding x = {c, has_lost(c), stop, end, shares};
+    budget b = {0};
+    finding x = {c, has_lost(c), stop, end, &b, shares};
     double cpu = bough_cpu_clock(false);
     *shares = (bough_error_shares){.found = true, .n_channel = c->channels->count};
     for (int k = 0; k < BOUGH_SHARES; k++)
@@ -343,6 +367,8 @@ bough_status bough_error_shares_find(bough_arena *arena, bough_companion *c, boo
     } else if (c->run->input) {
         status = bough_fail(BOUGH_FAILED, "the run has inputs, whose values are no longer known");
     } else {
+        b.left = most_times * bough_companion_work(c) + few * c->run->master->assembly->n_state;
+        b.alone = most_alone * b.left;
         status = bough_arena_use(find, &x);
     }
     if (status.code == BOUGH_INTERRUPTED) return status;
@@ -438,11 +464,13 @@ static bough_status judge_excess(const bough_companion *c, const bough_error_sha
     double relative;
     int cause = cause_of(c, shares, bound, &relative);
     describe(c, v, what, sizeof what);
+    // what is not known to be right ends the run: the steps
+    advise(scene, cause < 0 ? BOUGH_SHARE_TIME : cause, fmax(fmax(relative, v->relative) / bound, 1), remedy);
     if (cause < 0) {
-        return bough_fail(BOUGH_FAILED, "the error bound %.3g is exceeded: %s; the cause was not found: %s",
-                          bound, what, shares->share[BOUGH_SHARE_TIME].unknown);
+        return bough_fail(BOUGH_FAILED,
+                          "the error bound %.3g is exceeded: %s; the cause was not found: %s; try %s", bound,
+                          what, shares->share[BOUGH_SHARE_TIME].unknown, remedy);
     }
-    advise(scene, cause, fmax(fmax(relative, v->relative) / bound, 1), remedy);
     snprintf(warning, BOUGH_ERROR_WARNING, "%s; cause: %s; try %s", what, cause_name(scene, cause), remedy);
     if (cause == BOUGH_SHARE_MESH) return bough_ok();
     bough_status failed = bough_fail(BOUGH_FAILED, "the error bound %.3g is exceeded: %s", bound, warning);

@@ -153,6 +153,7 @@ TEST(a_coupling_has_a_monolithic_companion) {
     coarser x = coarser_of(arena, runup, NULL, NULL);
     const bough_scene *c = x.other;
     assert_string_equal(bough_scheme_name(c->simulation.coupling.scheme), "monolithic");
+    assert_int_equal(c->simulation.master.solver, BOUGH_AUTOMATIC);
     check_near(c->simulation.master.step, 20e-3, 1e-15, 0);
     check_near(c->simulation.master.rtol, 4e-3, 1e-15, 0);
     check_near(bough_coarser_share(x.scene, c), 0.5, 1e-12, 0);

@@ -417,7 +417,7 @@ TEST(a_proof_of_too_many_steps_is_none) {
     asked = 0;
     check_ok(bough_error_shares_find(arena, r.companion, count_and_go_on, &shares));
     print_message("%d macro steps\n", asked);
-    assert_true(asked > 250 && asked < 400); // 250 of the companion; the proof would take 500
+    assert_true(asked > 0 && asked < 250); // of 500
 }
 
 // An iteration that does not converge goes on where errors are known, and a copy of such a run does, too.

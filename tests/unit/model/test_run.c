@@ -96,6 +96,8 @@ TEST(a_copy_goes_on_with_its_records) {
     assert_memory_equal(bough_run_values(&run), bough_run_values(&other),
                         (size_t)run.channels.count * sizeof(double));
     assert_int_equal(bough_run_statistics(&run, 0).steps, bough_run_statistics(&other, 0).steps);
+    // what a search for the cause of an error may take is the same, too
+    check_near(bough_companion_work(other.companion), bough_companion_work(run.companion), 1e-12, 0);
 }
 
 // An undamped bar under a scheme that cannot hold it.
