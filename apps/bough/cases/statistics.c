@@ -43,11 +43,6 @@ static void head_cases(const bough_study *s, FILE *f) {
     fputc('\n', f);
 }
 
-static const char *outcome_of(const bough_case_result *r) {
-    if (!r->done) return "missing";
-    return bough_is_ok(&r->outcome) ? "ok" : "failed";
-}
-
 static void put_channel(const bough_study *s, const bough_case_result *r, int i, FILE *f) {
     const bough_channel_counts *c = &r->counts.channel[i];
     const bough_sample_statistics *x = &c->statistics;
@@ -67,7 +62,7 @@ static void put_case(const bough_study *s, int number, const bough_case_result *
         bough_csv_next(f, c->settings);
         fprintf(f, ",%.10g", good ? bough_case_weight(s, c, r->counted) : 0);
     }
-    fprintf(f, ",%s", outcome_of(r));
+    fprintf(f, ",%s", good ? "ok" : r->done ? "failed" : "missing");
     for (int i = 0; i < s->n_channel; i++) {
         if (good)
             put_channel(s, r, i, f);

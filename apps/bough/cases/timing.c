@@ -19,13 +19,6 @@ typedef struct timing {
     bough_study_series reference, series;
 } timing;
 
-// The cell with the first value of the last axis and this cell's values of all others: what the
-// ratios are against.
-static int partner(const bough_study *s, int cell) {
-    int last = s->grid.n - 1;
-    return cell - s->cases[cell].index[last];
-}
-
 // -- runs -----------------------------------------------------------------------------------------
 
 static bough_status run(timing *t, const bough_case *cell, bough_study_drive *drive,
@@ -45,8 +38,10 @@ static bough_status take_turn(timing *t, int turn) {
         t->cell[i].cpu[turn] = result.cpu;
         if (turn == 0) bough_study_compare(t->study, &t->series, &t->reference, t->cell[i].error);
     }
+    // against the cell with the first value of the last axis and the same values of all others
     for (int i = 0; i < t->study->n_case; i++) {
-        t->cell[i].ratio[turn] = t->cell[partner(t->study, i)].wall[turn] / t->cell[i].wall[turn];
+        int first = i - t->study->cases[i].index[t->study->grid.n - 1];
+        t->cell[i].ratio[turn] = t->cell[first].wall[turn] / t->cell[i].wall[turn];
     }
     return bough_ok();
 }

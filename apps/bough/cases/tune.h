@@ -77,7 +77,7 @@ bool bough_tune_ended(const bough_tune_point *point);
 void bough_tune_print(const bough_tune_state *t, int k, FILE *stream);
 
 // The settings of the chosen point as a scene has them, and as words of a command line.
-void bough_tune_print_settings(const bough_tune_state *t, FILE *stream);
+void bough_tune_print_settings(const void *state, FILE *stream); // bough_tune_state
 
 bough_status bough_tune_write(bough_tune_state *t);
 

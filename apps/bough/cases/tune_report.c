@@ -5,7 +5,6 @@
 #include "apps/bough/results/picture.h"
 
 #include <math.h>
-#include <string.h>
 
 // -- table ----------------------------------------------------------------------------------------
 
@@ -126,8 +125,6 @@ static void print_solver(const bough_tune_settings *s, FILE *stream) {
     fputc('}', stream);
 }
 
-static bool is_whole(const bough_tune_settings *s) { return bough_scheme_at(s->scheme)->one_system; }
-
 static const char *name_in_text(const bough_scene *scene, int body) {
     const bough_node *name = bough_node_find(scene->body[body].node, "name");
     return name && name->text ? name->text : scene->body[body].name;
@@ -147,12 +144,13 @@ static bool has_new_mesh(const bough_tune_state *t, int body) {
 // As a scene has them, or as the words of a command line.
 static void print_chosen(const bough_tune_state *t, bool words, FILE *stream) {
     const bough_tune_settings *s = &t->point[t->chosen].settings;
+    bool whole = bough_scheme_at(s->scheme)->one_system;
     if (words) fprintf(stream, "# bough run %s", t->options->scene);
     fprintf(stream,
             words ? " --set 'simulation.macro_step=%.9g ms' --set 'simulation.coupling={scheme: %s}'"
                     " --set 'simulation.%s="
                   : "simulation:\n  macro_step: %.9g ms\n  coupling: {scheme: %s}\n  %s: ",
-            1e3 * s->macro_step, bough_scheme_name(s->scheme), is_whole(s) ? "master" : "micro");
+            1e3 * s->macro_step, bough_scheme_name(s->scheme), whole ? "master" : "micro");
     print_solver(s, stream);
     if (words) fputc('\'', stream);
     if (s->rate > 0)
@@ -166,7 +164,8 @@ static void print_chosen(const bough_tune_state *t, bool words, FILE *stream) {
     if (words) fputc('\n', stream);
 }
 
-void bough_tune_print_settings(const bough_tune_state *t, FILE *stream) {
+void bough_tune_print_settings(const void *self, FILE *stream) {
+    const bough_tune_state *t = self;
     const bough_tune_point *p = &t->point[t->chosen];
     fprintf(stream, "# run %d: error %.2g (%s), forces %.2g; %.3g s of CPU for %.4g s\n", t->chosen + 1,
             p->motion, p->channel[0] ? p->channel : "-", p->force, p->cpu, t->options->span);
@@ -178,12 +177,10 @@ void bough_tune_print_settings(const bough_tune_state *t, FILE *stream) {
     print_chosen(t, true, stream);
 }
 
-static void write_settings(const void *self, FILE *file) { bough_tune_print_settings(self, file); }
-
 bough_status bough_tune_write(bough_tune_state *t) {
     const char *folder = t->options->folder;
     BOUGH_TRY(bough_folder_make(folder));
     BOUGH_TRY(bough_folder_write(folder, "tune.csv", write_table, t));
     BOUGH_TRY(bough_arena_use(draw, t));
-    return bough_folder_write(folder, "tune.yaml", write_settings, t);
+    return bough_folder_write(folder, "tune.yaml", bough_tune_print_settings, t);
 }

@@ -209,12 +209,6 @@ static void print_loads(const bough_simulation *s) {
     if (n > SHOWN) printf("and %d more loads\n", n - SHOWN);
 }
 
-static void print_results(bough_arena *arena, bough_simulation *s, const bough_channels *channels) {
-    bough_shape shape;
-    bough_shape_create(arena, s, &shape);
-    bough_forecast_print(bough_run_results(s, channels, &shape), channels);
-}
-
 // -- cost -----------------------------------------------------------------------------------------
 
 static void print_cost(const bough_simulation *s, bough_arena *arena) {
@@ -409,6 +403,7 @@ static bough_status check(bough_arena *arena, const void *options) {
     bough_channels channels = bough_channels_start(arena);
     const bough_scene_output *output = &s->scene->simulation.output;
     bough_channels recorded;
+    bough_shape shape;
     BOUGH_TRY(bough_simulation_channels(s, &channels));
     BOUGH_TRY(bough_open_channels(s->scene, &channels, &recorded));
     printf("scene: %s\n", s->scene->file);
@@ -419,7 +414,8 @@ static bough_status check(bough_arena *arena, const void *options) {
     print_loads(s);
     bough_validity_print(s, stdout);
     printf("channels: %d every %.9g s\n", recorded.count, output->interval);
-    print_results(arena, s, &recorded);
+    bough_shape_create(arena, s, &shape);
+    bough_forecast_print(bough_run_results(s, &recorded, &shape), &recorded);
     print_cost(s, arena);
     return bough_ok();
 }

@@ -164,11 +164,6 @@ static void list_options(const bough_command *command, struct option *list) {
     }
 }
 
-// getopt_long accepts the beginning of a name, which a later option may share.
-static bool is_shortened(const char *word, const char *name) {
-    return strcspn(word + 2, "=") != strlen(name);
-}
-
 static bough_status take_option(const bough_option *row, const char *text, bough_options *options) {
     if (row->read) return row->read(row, text, (char *)options + row->offset);
     return bough_fail(BOUGH_INVALID, "the option --%s was removed: %s", row->name, row->help);
@@ -206,7 +201,9 @@ bough_status bough_options_read(bough_arena *arena, int argc, char **argv, const
     for (int code; bough_is_ok(&status) && (code = getopt_long(argc, argv, "-:h", list, NULL)) != -1;) {
         bool separate = code >= FIRST && optarg == argv[optind - 1]; // the value is a word of its own
         const char *word = argv[optind - 1 - separate];
-        bool shortened = code >= FIRST && is_shortened(word, command->option[code - FIRST].name);
+        // getopt_long accepts the beginning of a name, which a later option may share.
+        bool shortened =
+            code >= FIRST && strcspn(word + 2, "=") != strlen(command->option[code - FIRST].name);
         status = shortened ? unknown_long(command, word) : take(command, code, word, options);
     }
     for (; bough_is_ok(&status) && optind < argc; optind++) {

@@ -170,10 +170,6 @@ static bough_status place_files(export *x) {
 
 // -- description ----------------------------------------------------------------------------------
 
-static void put_exponent(const char *name, int exponent, FILE *out) {
-    if (exponent != 0) fprintf(out, " %s=\"%d\"", name, exponent);
-}
-
 static void put_text(const char *name, const char *text, FILE *out) {
     fprintf(out, " %s=\"", name);
     bough_picture_text(out, text);
@@ -195,7 +191,8 @@ static void put_unit(const char *unit, FILE *out) {
     }
     if (bough_unit_base(text, &factor, exponent, why)) {
         fputs("<BaseUnit", out);
-        for (int k = 0; k < BOUGH_BASE_UNITS; k++) put_exponent(base[k], exponent[k], out);
+        for (int k = 0; k < BOUGH_BASE_UNITS; k++)
+            if (exponent[k] != 0) fprintf(out, " %s=\"%d\"", base[k], exponent[k]);
         if (factor != 1) fprintf(out, " factor=\"%.17g\"", factor);
         fputs("/>", out);
     }

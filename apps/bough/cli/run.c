@@ -17,11 +17,6 @@ static const double frame_head = 900;  // bytes of a frame's file beside its poi
 static const double frame_point = 110; // bytes of one of its points
 enum { COLUMN = 18 };                  // bytes of a value in channels.out
 
-// How often something is recorded: at the start and after every interval.
-static double samples(double duration, double interval) {
-    return interval > 0 ? 1 + floor(duration / interval + 1e-9) : 0;
-}
-
 bough_forecast bough_run_results(const bough_simulation *simulation, const bough_channels *channels,
                                  const bough_shape *shape) {
     const bough_scene_output *output = &simulation->scene->simulation.output;
@@ -29,8 +24,8 @@ bough_forecast bough_run_results(const bough_simulation *simulation, const bough
     for (int k = 0; k < shape->n_line; k++) n_point += shape->line[k].n_point;
     double row = COLUMN * (channels->count + 1.0) + 1 + (output->binary ? 2 * channels->count : 0);
     double rows = 1 + ceil(duration / output->interval - 1e-9); // the end is recorded too
-    return (bough_forecast){rows, row * rows + (frame_head + frame_point * n_point) *
-                                                   samples(duration, output->frames)};
+    double frames = output->frames > 0 ? 1 + floor(duration / output->frames + 1e-9) : 0;
+    return (bough_forecast){rows, row * rows + (frame_head + frame_point * n_point) * frames};
 }
 
 void bough_forecast_print(bough_forecast f, const bough_channels *channels) {

@@ -7,7 +7,6 @@
 
 #include <math.h>
 #include <stdio.h>
-#include <string.h>
 #include <sys/resource.h>
 
 enum { LINE = 400, WORST = 3 };
@@ -109,12 +108,6 @@ static void write_shares(bough_summary *s, const bough_run_command *command) {
         }
     }
     bough_summary_end(s);
-}
-
-static void write_error(bough_summary *s, const bough_run_command *command) {
-    write_verdict(s, command);
-    write_channels(s, &command->run, "error_estimate", command->run.companion->error);
-    write_shares(s, command);
 }
 
 static void write_input(bough_summary *s, const bough_run_command *command) {
@@ -310,7 +303,9 @@ bough_status bough_run_summarise(const bough_run_command *command) {
     write_control(&s, run);
     write_accuracy(&s, run);
     write_interfaces(&s, run);
-    write_error(&s, command);
+    write_verdict(&s, command);
+    write_channels(&s, run, "error_estimate", run->companion->error);
+    write_shares(&s, command);
     write_statistics(&s, command);
     write_whole(&s, run);
     const bough_assembly *assembly = run->simulation->master->assembly;

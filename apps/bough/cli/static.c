@@ -390,12 +390,6 @@ static bough_status write_path_point(void *self, double time, double share, bool
     return bough_ok();
 }
 
-static void print_path_end(const bough_path_report *report) {
-    printf("path: %d points, %d limit points, %d steps, ", report->points, report->limits, report->steps);
-    printf("to %.7g of the loads\n", report->factor);
-    puts("mesh error: not estimated along a path");
-}
-
 // Prints the limit points and writes every channel at every point to static-path.csv in the folder. What
 // has been followed is written also when the path ends before the loads are whole; the failure is
 // returned.
@@ -415,7 +409,8 @@ static bough_status follow_path(bough_arena *arena, bough_simulation *s, const c
         bough_folder_discard(path, t.file);
         return followed;
     }
-    print_path_end(&report);
+    printf("path: %d points, %d limit points, %d steps, ", report.points, report.limits, report.steps);
+    printf("to %.7g of the loads\nmesh error: not estimated along a path\n", report.factor);
     BOUGH_TRY(bough_folder_commit(path, t.file));
     printf("out: %s\n", path);
     return followed;

@@ -2,7 +2,6 @@
 // the rest is read, so that one run shows every error of a file.
 #include "apps/bough/config/schema.h"
 
-#include "apps/bough/config/schema_internal.h"
 #include "core/base/input_file.h"
 
 #include <assert.h>

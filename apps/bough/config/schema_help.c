@@ -1,5 +1,5 @@
 // The help text of a schema: nested lists of keys, which are Markdown as they stand.
-#include "apps/bough/config/schema_internal.h"
+#include "apps/bough/config/schema.h"
 
 #include "core/base/quote.h"
 

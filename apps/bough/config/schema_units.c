@@ -1,7 +1,7 @@
 // Numbers and units. A number is decimal in the strict form of JSON (no hexadecimal, no leading
 // zero, no inf or nan), read the same in every locale. A unit is a product of named units with SI
 // prefixes and whole exponents: "MN m", "kg/m^3", "rad/s".
-#include "apps/bough/config/schema_internal.h"
+#include "apps/bough/config/schema.h"
 
 #include "core/base/base.h"
 

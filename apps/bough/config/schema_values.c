@@ -1,6 +1,4 @@
 // Reading one value by its key: numbers, texts, choices, lists of them. Errors name the path.
-#include "apps/bough/config/schema_internal.h"
-
 #include "apps/bough/config/schema.h"
 
 #include <assert.h>

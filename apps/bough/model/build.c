@@ -10,8 +10,6 @@
 #include "core/tree/dynamics.h"
 #include "core/tree/tree.h"
 
-#include <string.h>
-
 // -- loads and times ------------------------------------------------------------------------------
 
 static void add_event(bough_builder *b, double time) {
@@ -23,11 +21,6 @@ static void add_events(bough_builder *b, double start, double end, int n, const 
     if (end > 0) add_event(b, start);
     if (end > start) add_event(b, end);
     for (int i = 0; i < n; i++) add_event(b, times[i]);
-}
-
-// The last of the loads; 0 until it is steered, sample by sample.
-static void add_generator(bough_builder *b) {
-    b->load[b->tree.n_loads++] = (bough_joint_load_def){.body = b->scene->turbine.rotor};
 }
 
 static void set_loads(bough_builder *b) {
@@ -43,7 +36,9 @@ static void set_loads(bough_builder *b) {
                                                             bough_scene_load_schedule(load)};
     }
     if (b->scene->aero.node != NULL) add_events(b, b->scene->aero.ramp[0], b->scene->aero.ramp[1], 0, NULL);
-    if (b->scene->control.node != NULL) add_generator(b);
+    // the generator's is the last; 0 until it is steered, sample by sample
+    if (b->scene->control.node != NULL)
+        b->load[b->tree.n_loads++] = (bough_joint_load_def){.body = b->scene->turbine.rotor};
 }
 
 // -- parts ----------------------------------------------------------------------------------------

@@ -2,11 +2,9 @@
 // one of a kilometre.
 #include "apps/bough/model/equilibrium_search.h"
 
-#include "core/base/base.h"
 #include "core/tree/dynamics.h"
 
 #include <math.h>
-#include <string.h>
 
 // The scales of the members' states and the constants of the search suit this length and time [m], [s].
 static const double usual_length = 500, usual_time = 8;

@@ -7,7 +7,6 @@
 
 #include <math.h>
 #include <stdio.h>
-#include <string.h>
 
 const char *bough_error_share_name(bough_error_share_kind kind) {
     static const char *const names[BOUGH_SHARES] = {"mesh", "air", "time"};
@@ -519,16 +518,13 @@ static void warn_of_error(const bough_companion *c, const bough_error_verdict *v
     advise_for_accuracy(scene, v->relative / accuracy, warning + n, (size_t)(BOUGH_ERROR_WARNING - n));
 }
 
-static void warn_of_loss(const bough_companion *c, char warning[BOUGH_ERROR_WARNING]) {
-    snprintf(warning, BOUGH_ERROR_WARNING, "errors are not known from %.6g s on: %s", c->from, c->reason);
-}
-
 bough_status bough_error_judge(bough_arena *arena, bough_companion *c, bool (*stop)(void), double bound,
                                bough_error_shares *shares, char warning[BOUGH_ERROR_WARNING]) {
     warning[0] = '\0';
     if (exceeds(c, bound) && !shares->found) BOUGH_TRY(bough_error_shares_find(arena, c, stop, shares));
     bough_error_verdict v = bough_error_verdict_of(c, true, c->error);
-    if (c->compared > 0 && c->reason[0]) warn_of_loss(c, warning);
+    if (c->compared > 0 && c->reason[0])
+        snprintf(warning, BOUGH_ERROR_WARNING, "errors are not known from %.6g s on: %s", c->from, c->reason);
     if (v.channel < 0) return bough_ok();
     if (bound > 0 && v.relative > bound) return judge_excess(c, shares, bound, &v, warning);
     if (v.relative > c->run->scene->simulation.accuracy && !warning[0]) warn_of_error(c, &v, warning);

@@ -194,10 +194,6 @@ static void check_simulation(bough_schema_reader *r, const bough_scene *s, const
     }
 }
 
-static bool same_library(const bough_scene_fmu *a, const bough_scene_fmu *b) {
-    return a->model.folder && b->model.folder && strcmp(a->model.folder, b->model.folder) == 0;
-}
-
 // The first FMU, but one that cannot restore its state where there is one; NULL: no FMU.
 static const bough_scene_body *hardest(const bough_scene *s) {
     const bough_scene_body *found = NULL;
@@ -213,7 +209,8 @@ static const bough_scene_body *hardest(const bough_scene *s) {
 static void check_once(bough_schema_reader *r, const bough_scene *s, int i) {
     const bough_scene_fmu *fmu = &s->body[i].fmu;
     for (int k = 0; k < i; k++) {
-        if (s->body[k].fidelity != BOUGH_SCENE_FMU || !same_library(&s->body[k].fmu, fmu)) continue;
+        const char *folder = s->body[k].fmu.model.folder, *own = fmu->model.folder;
+        if (s->body[k].fidelity != BOUGH_SCENE_FMU || !folder || !own || strcmp(folder, own) != 0) continue;
         bough_link_at(r, "bodies[%d].fmu", i);
         bough_schema_error(r, fmu->model.node, "folder", "only one body can use this FMU, and '%s' does",
                            s->body[k].name);

@@ -1,8 +1,6 @@
 // The prescribed motion of a joint: its speed or itself, constant, by a ramp or by a table.
 #include "apps/bough/scene/scene_internal.h"
 
-#include <string.h>
-
 // A joint's array of them. Its tables begin with the node of the first.
 typedef struct motions {
     bough_scene_motion first, second;
