@@ -3,18 +3,10 @@
 #include "apps/bough/model/aero_link.h"
 #include "apps/bough/results/folder.h"
 
-static bough_status write_box(const bough_wind_box *box, const char *title, const char *folder) {
-    char path[BOUGH_PATH_MAX];
-    FILE *file;
-    BOUGH_TRY(bough_folder_make(folder));
-    BOUGH_TRY(bough_folder_open(folder, "wind.bts", path, &file));
-    if (!bough_wind_box_write(box, title, file)) {
-        bough_folder_discard(path, file);
-        return bough_fail(BOUGH_IO, "cannot write '%.200s'", path);
-    }
-    BOUGH_TRY(bough_folder_commit(path, file));
-    printf("wind: %s\n", path);
-    return bough_ok();
+static void put_box(const void *self, FILE *file) {
+    const bough_simulation *s = self;
+    const bough_wind_box *box = bough_rotor_wind(bough_aero_link_rotor(s->aero))->box;
+    bough_wind_box_write(box, s->scene->title ? s->scene->title : s->scene->file, file);
 }
 
 static const bough_option rows[] = {BOUGH_OPTION_SET, BOUGH_OPTION_OUT, {0}};
@@ -34,7 +26,10 @@ static bough_status wind(bough_arena *arena, const void *options) {
     printf("points: %d x %d, %.6g m apart, lowest at %.6g m\n", box->n_z, box->n_y, box->dz, box->bottom);
     printf("times: %d, every %.6g s, period %.6g s\n", box->n_time, box->dt, box->duration);
     printf("mean_speed: %.6g m/s at %.6g m\n", box->mean, box->hub);
-    return write_box(box, s->scene->title ? s->scene->title : s->scene->file, folder);
+    BOUGH_TRY(bough_folder_make(folder));
+    BOUGH_TRY(bough_folder_write(folder, "wind.bts", put_box, s));
+    printf("wind: %s/wind.bts\n", folder);
+    return bough_ok();
 }
 
 const bough_command bough_command_wind = {

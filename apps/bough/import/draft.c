@@ -235,14 +235,7 @@ static bough_status open_texts(bough_draft *d) {
 
 static void put_text(const void *text, FILE *file) { fputs(text, file); }
 
-static bough_status write_box(const char *folder, const bough_wind_box *box) {
-    char path[BOUGH_PATH_MAX];
-    FILE *file;
-    BOUGH_TRY(bough_folder_open(folder, BOUGH_IMPORT_BOX, path, &file));
-    if (bough_wind_box_write(box, "imported", file)) return bough_folder_commit(path, file);
-    bough_folder_discard(path, file);
-    return bough_fail(BOUGH_IO, "cannot write '%.200s'", path);
-}
+static void put_box(const void *box, FILE *file) { bough_wind_box_write(box, "imported", file); }
 
 static bough_status write_file(const char *folder, const bough_draft *d, int i) {
     const char *text = d->text[i];
@@ -252,7 +245,8 @@ static bough_status write_file(const char *folder, const bough_draft *d, int i) 
 static bough_status write_files(const char *folder, const bough_draft *d) {
     bough_status status = bough_folder_make(folder);
     for (int i = 0; i < BOUGH_IMPORT_LIST && bough_is_ok(&status); i++) status = write_file(folder, d, i);
-    if (d->box && bough_is_ok(&status)) status = write_box(folder, d->box);
+    if (d->box && bough_is_ok(&status))
+        status = bough_folder_write(folder, BOUGH_IMPORT_BOX, put_box, d->box);
     return status;
 }
 
