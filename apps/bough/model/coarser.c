@@ -336,14 +336,16 @@ bough_status bough_other_run_build(bough_arena *arena, const bough_simulation *r
     return bough_ok();
 }
 
+static const double states_of_a_call = 300; // that take as much time as the rest of an evaluation
+
 double bough_coarser_work(const bough_simulation *s) {
     const bough_assembly *a = s->master->assembly;
     const bough_member *whole = bough_scheme_whole(s->master->coupling);
     double work = 0;
     for (int i = whole ? -1 : 0; i < a->n_member; i++) {
         bough_statistics own = bough_member_statistics(i < 0 ? whole : a->member[i]);
-        int states = i < 0 ? a->n_state : a->member[i]->system.n_state;
-        work += (double)(own.derivatives + own.factorisations) * states;
+        double states = i < 0 ? a->n_state : a->member[i]->system.n_state;
+        work += (double)(own.derivatives + own.factorisations) * (states_of_a_call + states);
     }
     return work;
 }

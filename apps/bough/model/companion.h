@@ -64,7 +64,7 @@ typedef struct bough_other_run {
 bough_status bough_other_run_build(bough_arena *arena, const bough_simulation *run, int parts,
                                    bough_other_run *other);
 
-// Evaluations and factorisations of all members so far, each as many times as the member has states.
+// Evaluations and factorisations of all members so far, each weighted by the states of the member.
 double bough_coarser_work(const bough_simulation *s);
 
 void bough_other_run_sample(bough_other_run *other);

@@ -19,31 +19,24 @@ static void unknown(bough_error_share *share, const char *why) {
 
 // -- further runs ---------------------------------------------------------------------------------
 
-// Of all further runs together.
-typedef struct budget {
-    double left;  // work
-    double alone; // most work of one of them
-} budget;
+static const double most_times = 5; // the work of the run and its companion, by all further runs together
+static const double little = 3e6;   // work that takes no time
 
-static const double most_times = 4;   // the work of the run and its companion
-static const double most_alone = 0.5; // of that
-static const double few = 1e4;        // evaluations, which take no time
-
-// A macro step of a further run. One that needs much more work than the run and its companion follows another
-// solution and may never end.
-static bough_status step(const bough_simulation *s, budget *b) {
+// A macro step of a further run, of whose work so much is left. One that needs much more than the run and its
+// companion follows another solution and may never end.
+static bough_status step(const bough_simulation *s, double *left) {
     double before = bough_coarser_work(s);
     BOUGH_TRY(bough_step(s->master));
-    double work = bough_coarser_work(s);
-    b->left -= work - before;
-    if (b->left >= 0 && work <= b->alone) return bough_ok();
-    return bough_fail(BOUGH_FAILED, "to %.6g s %s taken more than %.2g times the work of both",
-                      s->master->time, b->left < 0 ? "further runs have" : "a further run has",
-                      b->left < 0 ? most_times : most_times * most_alone);
+    *left -= bough_coarser_work(s) - before;
+    if (*left >= 0) return bough_ok();
+    return bough_fail(BOUGH_FAILED,
+                      "further runs took more than %.0f times the work of this one and its "
+                      "companion to %.6g s",
+                      most_times, s->master->time);
 }
 
-static bough_status advance(bough_other_run *r, double t, budget *b) {
-    while (r->simulation->master->time < t) BOUGH_TRY(step(r->simulation, b));
+static bough_status advance(bough_other_run *r, double t, double *left) {
+    while (r->simulation->master->time < t) BOUGH_TRY(step(r->simulation, left));
     return bough_ok();
 }
 
@@ -70,8 +63,8 @@ typedef struct finding {
     bough_companion *companion;
     bool lost; // the companion may have lost the solution
     bool (*stop)(void);
-    double end; // of the run, less rounding [s]
-    budget *budget;
+    double end;   // of the run, less rounding [s]
+    double *left; // work
     bough_error_shares *shares;
 } finding;
 
@@ -111,7 +104,7 @@ static void advance_finer(const finding *x, int k, double t, const bough_other_r
     bough_error_share *share = &x->shares->share[k];
     const bough_companion *c = x->companion;
     if (!finer->simulation || share->unknown[0]) return;
-    bough_status own = advance(finer, fmin(t, x->end), x->budget);
+    bough_status own = advance(finer, fmin(t, x->end), x->left);
     if (!bough_is_ok(&own)) {
         unknown(share, own.message);
         return;
@@ -125,7 +118,7 @@ static void advance_finer(const finding *x, int k, double t, const bough_other_r
 // Where the companion is lost, its failure ends no more than the comparison with it.
 static bough_status step_base(const finding *x, bough_other_run *base, double *t) {
     const bough_simulation *s = base->simulation;
-    bough_status status = s == NULL ? bough_ok() : step(s, x->budget);
+    bough_status status = s == NULL ? bough_ok() : step(s, x->left);
     if (s != NULL && bough_is_ok(&status)) {
         *t = s->master->time;
         bough_other_run_sample(base);
@@ -165,7 +158,7 @@ static bough_status find(bough_arena *arena, void *self) {
         BOUGH_TRY(look_for_stop(x->stop));
         BOUGH_TRY(step_base(x, &base, &t));
         if (!x->lost) continue;
-        BOUGH_TRY(advance(&again, fmin(t, x->end), x->budget));
+        BOUGH_TRY(advance(&again, fmin(t, x->end), x->left));
         bough_other_run_sample(&again);
     }
 }
@@ -265,14 +258,14 @@ static bough_status prove(bough_arena *arena, void *self) {
     if (n > 2) BOUGH_TRY(bough_other_run_build(arena, run, BOUGH_COARSER_ALL & ~coarser[x->kind], &r[2]));
     for (double t = 0;; t = r[0].simulation->master->time) {
         for (int k = 0; k < n; k++) {
-            BOUGH_TRY(advance(&r[k], t, of->budget));
+            BOUGH_TRY(advance(&r[k], t, of->left));
             bough_other_run_sample(&r[k]);
         }
         if (t >= from) compare(&r[0], &r[1], part, part, x->own);
         if (t >= from && n > 2) compare(&r[2], &r[0], c->share, c->share_held, x->others);
         if (t >= of->end) return bough_ok();
         BOUGH_TRY(look_for_stop(of->stop));
-        BOUGH_TRY(step(r[0].simulation, of->budget));
+        BOUGH_TRY(step(r[0].simulation, of->left));
     }
 }
 
@@ -353,8 +346,8 @@ static bough_status prove_causes(bough_arena *arena, const finding *x) {
 bough_status bough_error_shares_find(bough_arena *arena, bough_companion *c, bool (*stop)(void),
                                      bough_error_shares *shares) {
     double end = c->run->scene->simulation.duration - 1e-6 * c->run->master->macro_step;
-    budget b = {0};
-    finding x = {c, has_lost(c), stop, end, &b, shares};
+    double left = 0;
+    finding x = {c, has_lost(c), stop, end, &left, shares};
     double cpu = bough_cpu_clock(false);
     *shares = (bough_error_shares){.found = true, .n_channel = c->channels->count};
     for (int k = 0; k < BOUGH_SHARES; k++)
@@ -366,8 +359,7 @@ bough_status bough_error_shares_find(bough_arena *arena, bough_companion *c, boo
     } else if (c->run->input) {
         status = bough_fail(BOUGH_FAILED, "the run has inputs, whose values are no longer known");
     } else {
-        b.left = most_times * bough_companion_work(c) + few * c->run->master->assembly->n_state;
-        b.alone = most_alone * b.left;
+        left = most_times * bough_companion_work(c) + little;
         status = bough_arena_use(find, &x);
     }
     if (status.code == BOUGH_INTERRUPTED) return status;
