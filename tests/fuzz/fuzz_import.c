@@ -59,7 +59,7 @@ static void read_scene(const char *folder) {
     bough_errors errors = {.arena = arena};
     bough_scene *scene;
     snprintf(path, sizeof path, "%s/scene.yaml", folder);
-    bough_status status = bough_scene_read(arena, path, NULL, 0, &errors, &scene);
+    bough_status status = bough_scene_read(arena, NULL, path, NULL, 0, &errors, &scene);
     if (!bough_is_ok(&status)) bough_errors_print(&errors, stderr);
     fuzz_demand(bough_is_ok(&status), "a scene that can be read");
     bough_arena_destroy(arena);

@@ -19,7 +19,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
     bough_scene *scene;
     fuzz_file("table.yaml", data, size);
     const char *path = fuzz_file("scene.yaml", scene_text, strlen(scene_text));
-    bough_scene_read(arena, path, NULL, 0, &errors, &scene);
+    bough_scene_read(arena, NULL, path, NULL, 0, &errors, &scene);
     fuzz_demand(scene == NULL && errors.n > 0, "no file is all tables at once");
     bough_arena_destroy(arena);
     return 0;

@@ -14,7 +14,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
     bough_arena *arena = bough_arena_create();
     bough_errors errors = {.arena = arena};
     bough_scene *scene;
-    status = bough_scene_read(arena, path, NULL, 0, &errors, &scene);
+    status = bough_scene_read(arena, NULL, path, NULL, 0, &errors, &scene);
     bool good = bough_is_ok(&status);
     if (!good) bough_errors_print(&errors, stderr);
     fuzz_demand(good, "a scene that can be read");

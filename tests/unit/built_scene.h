@@ -15,7 +15,7 @@ static inline bough_scene *scene_read_file(bough_arena *arena, const char *file,
     bough_scene *scene = NULL;
     int n = 0;
     while (sets[n] != NULL) n++;
-    bough_status status = bough_scene_read(arena, file, sets, n, &errors, &scene);
+    bough_status status = bough_scene_read(arena, NULL, file, sets, n, &errors, &scene);
     bough_errors_print(&errors, stderr);
     assert_int_equal(status.code, BOUGH_OK);
     return scene;
@@ -57,7 +57,7 @@ static inline void scene_refused(const char *path, const char *set, const char *
     bough_run run;
     char file[512];
     snprintf(file, sizeof file, BOUGH_SOURCE_DIR "/%s", path);
-    bough_status status = bough_scene_read(arena, file, &set, 1, &errors, &scene);
+    bough_status status = bough_scene_read(arena, NULL, file, &set, 1, &errors, &scene);
     if (bough_is_ok(&status)) status = bough_run_create(arena, scene, &run);
     assert_int_equal(status.code, BOUGH_INVALID);
     bool said = strstr(status.message, says) != NULL;

@@ -27,7 +27,7 @@ typedef struct fixture {
 static inline fixture read_scene(const char *path, const char *const *sets, int n_set) {
     fixture f = {.arena = check_memory()};
     f.errors.arena = f.arena;
-    f.status = bough_scene_read(f.arena, path, sets, n_set, &f.errors, &f.scene);
+    f.status = bough_scene_read(f.arena, NULL, path, sets, n_set, &f.errors, &f.scene);
     f.printed = printed_errors(&f.errors);
     return f;
 }

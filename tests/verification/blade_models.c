@@ -96,7 +96,7 @@ static void set_measure(bough_arena *arena, int k, int n_blade, bough_study *run
 static bough_status make_run(bough_arena *arena, const bough_blade_models *s, bough_study *run) {
     bough_errors errors = {.arena = arena};
     bough_scene *scene;
-    bough_status status = bough_scene_read(arena, s->turbine, s->run.item, s->run.n, &errors, &scene);
+    bough_status status = bough_scene_read(arena, NULL, s->turbine, s->run.item, s->run.n, &errors, &scene);
     if (errors.n > 0) bough_errors_print(&errors, stderr);
     if (!bough_is_ok(&status)) return status;
     int n_blade = scene->turbine.n_blade;

@@ -10,7 +10,7 @@ bough_status bough_model_scene_sets(bough_arena *arena, const char *scene, const
                                     const bough_blade_model *model, bough_model_sets *sets) {
     bough_errors errors = {.arena = arena};
     bough_scene *read;
-    BOUGH_TRY(bough_scene_read(arena, scene, given->item, given->n, &errors, &read));
+    BOUGH_TRY(bough_scene_read(arena, NULL, scene, given->item, given->n, &errors, &read));
     int most = given->n + model->set.n * read->n_body;
     sets->n = given->n;
     sets->item = bough_arena_take(arena, (size_t)(most + 1) * sizeof *sets->item);
@@ -84,7 +84,7 @@ static bough_status find(bough_arena *arena, const char *path, const bough_model
     bough_simulation *s;
     bough_status status = bough_model_scene_sets(arena, path, given, model, &sets);
     if (bough_is_ok(&status)) {
-        status = bough_scene_read(arena, path, sets.item, sets.n, &errors, &scene);
+        status = bough_scene_read(arena, NULL, path, sets.item, sets.n, &errors, &scene);
     }
     if (errors.n > 0) bough_errors_print(&errors, stderr);
     if (bough_is_ok(&status)) status = bough_simulation_build(arena, scene, &s);

@@ -216,7 +216,7 @@ bough_status bough_verify_scene(bough_arena *arena, const bough_verify_case *x, 
         snprintf(mesh, sizeof mesh, "%.120s=%.15g", x->mesh_key, value);
         set[n++] = bough_arena_string(arena, mesh);
     }
-    return bough_scene_read(arena, x->scene, set, n, errors, scene);
+    return bough_scene_read(arena, NULL, x->scene, set, n, errors, scene);
 }
 
 // The scene on the first mesh; what is wrong there is reported at the case.

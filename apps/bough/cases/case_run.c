@@ -129,7 +129,7 @@ static bough_status read_scene(bough_arena *arena, const case_run *r, bough_scen
     const bough_case *c = r->chosen;
     bough_errors errors = {.arena = arena};
     bough_status status =
-        bough_scene_read_shared(arena, r->study->files, c->scene, c->set, c->n_set, &errors, scene);
+        bough_scene_read(arena, r->study->files, c->scene, c->set, c->n_set, &errors, scene);
     if (c->files == 0 || status.code != BOUGH_INVALID) return status;
     return changed(c->scene, errors.n > 0 ? errors.item[0].text : "");
 }

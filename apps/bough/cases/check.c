@@ -236,7 +236,7 @@ static bough_status check_case(bough_arena *arena, check *k, bough_case *c, bool
     bough_arena *own = bough_arena_child(arena);
     bough_errors found = {.arena = own};
     bough_scene *scene;
-    bough_status status = bough_scene_read_shared(own, s->files, c->scene, c->set, c->n_set, &found, &scene);
+    bough_status status = bough_scene_read(own, s->files, c->scene, c->set, c->n_set, &found, &scene);
     for (int i = 0; i < found.n; i++)
         report(&found.item[i], c->scene, origin(s, c, &found.item[i]), k->errors);
     if (status.code == BOUGH_INVALID) status = bough_ok();

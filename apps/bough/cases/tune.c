@@ -8,7 +8,6 @@
 
 #include <math.h>
 #include <stdio.h>
-#include <string.h>
 
 // -- the scene ------------------------------------------------------------------------------------
 
@@ -103,7 +102,7 @@ static bough_status run_in(bough_arena *arena, void *self) {
     bough_errors errors = {.arena = arena};
     bough_scene *scene;
     bough_run run;
-    BOUGH_TRY(bough_scene_read(arena, o->scene, o->set, o->n_set, &errors, &scene));
+    BOUGH_TRY(bough_scene_read(arena, NULL, o->scene, o->set, o->n_set, &errors, &scene));
     apply(m->tune, &m->point->settings, scene);
     scene->simulation.error_estimate = m->estimate ? BOUGH_SCENE_COMPANION : BOUGH_SCENE_NO_ESTIMATE;
     BOUGH_TRY(bough_run_create(arena, scene, &run));
@@ -126,12 +125,6 @@ static bough_status perform(measurement m) {
 // Runs it again, without an estimate of the error, and takes the lesser CPU time.
 static bough_status measure_time(const bough_tune_state *t, bough_tune_point *point) {
     return perform((measurement){t, point, false, false});
-}
-
-// Runs the stretch with the point's settings: its errors, with `shares` their shares, and its CPU time.
-static bough_status measure(const bough_tune_state *t, bool shares, bough_tune_point *point) {
-    BOUGH_TRY(perform((measurement){t, point, true, shares}));
-    return bough_is_ok(&point->outcome) ? measure_time(t, point) : bough_ok();
 }
 
 // -- the front ------------------------------------------------------------------------------------
@@ -209,7 +202,8 @@ static bool same(const bough_tune_state *t, const bough_tune_settings *a, const 
 
 // -- trying ---------------------------------------------------------------------------------------
 
-// Runs settings that were not run before; *at: their point, −1 where there is no room.
+// Runs the stretch with settings that were not run before: its errors, with `shares` their shares, and its
+// CPU time. *at: their point, −1 where there is no room.
 static bough_status try(bough_tune_state *t, const bough_tune_settings *s, bool shares, int *at) {
     *at = -1;
     for (int i = 0; i < t->n; i++) {
@@ -217,8 +211,10 @@ static bough_status try(bough_tune_state *t, const bough_tune_settings *s, bool 
     }
     if (*at >= 0 || t->n == BOUGH_TUNE_POINTS) return bough_ok();
     *at = t->n++;
-    t->point[*at] = (bough_tune_point){.settings = *s, .outcome = bough_ok()};
-    bough_status status = measure(t, shares, &t->point[*at]);
+    bough_tune_point *p = &t->point[*at];
+    *p = (bough_tune_point){.settings = *s, .outcome = bough_ok()};
+    bough_status status = perform((measurement){t, p, true, shares});
+    if (bough_is_ok(&status) && bough_is_ok(&p->outcome)) status = measure_time(t, p);
     choose(t);
     if (bough_is_ok(&status)) bough_tune_print(t, *at, t->options->stream);
     return status;
@@ -406,7 +402,7 @@ static bough_status conclude(const bough_tune_state *t) {
 bough_status bough_tune(bough_arena *arena, const bough_tune_options *options) {
     bough_errors errors = {.arena = arena};
     bough_scene *scene;
-    BOUGH_TRY(bough_scene_read(arena, options->scene, options->set, options->n_set, &errors, &scene));
+    BOUGH_TRY(bough_scene_read(arena, NULL, options->scene, options->set, options->n_set, &errors, &scene));
     bough_tune_state *t = bough_arena_take(arena, sizeof *t);
     *t = (bough_tune_state){.options = options, .scene = scene, .chosen = -1};
     t->error = options->error > 0 ? options->error : scene->simulation.accuracy;

@@ -158,7 +158,7 @@ static bough_status build(bough_arena *arena, void *self) {
     if (!bough_is_ok(&given)) return given;
     bough_errors errors = {.arena = arena};
     bough_scene *scene = NULL;
-    bough_status status = bough_scene_read(arena, o->path, o->set, o->n_set, &errors, &scene);
+    bough_status status = bough_scene_read(arena, NULL, o->path, o->set, o->n_set, &errors, &scene);
     if (!bough_is_ok(&status)) {
         bool listed = errors.n > 0 && status.code == BOUGH_INVALID;
         if (listed) keep_errors(s, &errors);

@@ -292,7 +292,7 @@ static bough_status check_scene(bough_draft *d, const char *folder) {
     bough_errors errors = {.arena = d->arena};
     bough_scene *scene;
     bough_status status = bough_folder_path(folder, bough_import_name[BOUGH_IMPORT_SCENE], path);
-    if (bough_is_ok(&status)) status = bough_scene_read(d->arena, path, NULL, 0, &errors, &scene);
+    if (bough_is_ok(&status)) status = bough_scene_read(d->arena, NULL, path, NULL, 0, &errors, &scene);
     if (errors.n == 0) return bough_is_ok(&status) ? try_scene(d, folder, scene) : status;
     const bough_error *e = errors.item;
     const char *slash = strrchr(e->file, '/');

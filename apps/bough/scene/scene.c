@@ -2,7 +2,6 @@
 #include "apps/bough/config/base.h"
 #include "apps/bough/scene/scene_internal.h"
 
-#include <math.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -109,9 +108,8 @@ static bool is_study(const char *path, const bough_node *root, bough_errors *err
     return true;
 }
 
-bough_status bough_scene_read_shared(bough_arena *arena, bough_schema_shared *shared, const char *path,
-                                     const char *const *sets, int n_set, bough_errors *errors,
-                                     bough_scene **scene) {
+bough_status bough_scene_read(bough_arena *arena, bough_schema_shared *shared, const char *path,
+                              const char *const *sets, int n_set, bough_errors *errors, bough_scene **scene) {
     *scene = NULL;
     bough_scene *s = bough_arena_take(arena, sizeof *s);
     bough_schema_base *bases;
@@ -138,11 +136,6 @@ bough_status bough_scene_read_shared(bough_arena *arena, bough_schema_shared *sh
     bough_status status = bough_errors_status(errors, path, "scene");
     if (bough_is_ok(&status)) *scene = s;
     return status;
-}
-
-bough_status bough_scene_read(bough_arena *arena, const char *path, const char *const *sets, int n_set,
-                              bough_errors *errors, bough_scene **scene) {
-    return bough_scene_read_shared(arena, NULL, path, sets, n_set, errors, scene);
 }
 
 bough_scene *bough_scene_copy(bough_arena *arena, const bough_scene *scene) {

@@ -527,14 +527,10 @@ typedef struct bough_scene {
 } bough_scene;
 
 // Reads and checks the scene with the replacements `sets` ("bodies[2].pitch=5 deg"). Every error
-// found is added to `errors`; then the status is BOUGH_INVALID and *scene is NULL.
-bough_status bough_scene_read(bough_arena *arena, const char *path, const char *const *sets, int n_set,
-                              bough_errors *errors, bough_scene **scene);
-
-// The same for one of several scenes, which share the tables of files.
-bough_status bough_scene_read_shared(bough_arena *arena, bough_schema_shared *shared, const char *path,
-                                     const char *const *sets, int n_set, bough_errors *errors,
-                                     bough_scene **scene);
+// found is added to `errors`; then the status is BOUGH_INVALID and *scene is NULL. `shared`: tables of files
+// that several scenes have in common; NULL: none.
+bough_status bough_scene_read(bough_arena *arena, bough_schema_shared *shared, const char *path,
+                              const char *const *sets, int n_set, bough_errors *errors, bough_scene **scene);
 
 // A copy with bodies of its own, which may be changed; the rest is shared.
 bough_scene *bough_scene_copy(bough_arena *arena, const bough_scene *scene);

@@ -114,7 +114,7 @@ TEST(a_law_outside_is_the_law_inside) {
     bough_arena *arena = bough_arena_create();
     bough_errors errors = {.arena = arena};
     bough_scene *scene;
-    bough_scene_read(arena, APPS "turbine/land-operation.yaml", NULL, 0, &errors, &scene);
+    bough_scene_read(arena, NULL, APPS "turbine/land-operation.yaml", NULL, 0, &errors, &scene);
     bough_controller_def law = scene->control.law;
     bough_controller_state memory = {0};
     int torque = bough_session_input(b, "GenTqCom");

@@ -250,7 +250,7 @@ TEST(trials_judge_errors) {
     snprintf(path, sizeof path, "%s/scene.yaml", t.out);
     bough_errors errors = {.arena = t.arena};
     bough_scene *scene;
-    check_ok(bough_scene_read(t.arena, path, NULL, 0, &errors, &scene));
+    check_ok(bough_scene_read(t.arena, NULL, path, NULL, 0, &errors, &scene));
     bough_status status = try_with(&t, scene, 1e-3, 0);
     assert_string_equal(status.message, "");
     double bound = 1;

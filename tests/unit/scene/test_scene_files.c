@@ -127,7 +127,7 @@ static const char two_polars[] =
 
 static bough_scene *read_shared(bough_schema_shared *shared, const char *set, bough_errors *errors) {
     bough_scene *scene_read;
-    bough_scene_read_shared(shared->arena, shared, "s.yaml", &set, 1, errors, &scene_read);
+    bough_scene_read(shared->arena, shared, "s.yaml", &set, 1, errors, &scene_read);
     return scene_read;
 }
 

@@ -85,7 +85,7 @@ static bough_status set_up(bough_arena *arena, void *self) {
     bough_simulation *s;
     int n = 0;
     while (x->set[n]) n++;
-    bough_status status = bough_scene_read(arena, x->path, x->set, n, &errors, &scene);
+    bough_status status = bough_scene_read(arena, NULL, x->path, x->set, n, &errors, &scene);
     if (bough_is_ok(&status)) status = bough_simulation_build(arena, scene, &s);
     if (bough_is_ok(&status)) status = open_output(arena, x, s);
     return bough_is_ok(&status) ? bough_step(s->master) : status;
