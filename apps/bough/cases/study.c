@@ -55,6 +55,8 @@ static void check_measure(bough_schema_reader *r, void *item) {
 
 // clang-format would give each field of a key a line of its own:
 // clang-format off
+#define SETTINGS .read = bough_study_read_settings, .form = "{KEY: VALUE, ...}"
+#define GRID     .read = bough_study_read_grid, .form = "{KEY: [VALUE, ...], ...}"
 #define FILLS bough_study_measure
 static const bough_schema measure_schema = {.name = "a measure", .check = check_measure, KEYS(
     {KEY(TEXT, name), .required = true, .help = "heading of its column"},
@@ -90,12 +92,9 @@ static const bough_schema study_schema = {.name = "a study", .check = check_stud
              "diagnoses, each cell against a reference with the same model parameters; sweep: "
              "statistics of every cell; load-set: lifetime loads of weighted cases (both: "
              "docs/loads.md)"},
-    {KEY(CUSTOM, reference), .read = bough_study_read_settings, .required = true,
-     .form = "{KEY: VALUE, ...}", .help = "replaced keys of the reference run"},
-    {KEY(CUSTOM, grid), .read = bough_study_read_grid, .required = true,
-     .form = "{KEY: [VALUE, ...], ...}", .help = "one run for each combination of the values"},
-    {KEY(CUSTOM, common), .read = bough_study_read_settings, .form = "{KEY: VALUE, ...}",
-     .help = "replaced keys of every run"},
+    {KEY(CUSTOM, reference), SETTINGS, .required = true, .help = "replaced keys of the reference run"},
+    {KEY(CUSTOM, grid), GRID, .required = true, .help = "one run for each combination of the values"},
+    {KEY(CUSTOM, common), SETTINGS, .help = "replaced keys of every run"},
     {NAMED("measures", LIST), AT(measure), .of = &measure_schema, .count = 1, .required = true,
      COUNT_AT(n_measure),
      .help = "largest differences to the reference at the common output times"},
@@ -128,10 +127,8 @@ static const bough_schema group_schema = {.name = "a load case", .check = check_
     {KEY(TEXT, name), .required = true, .example = "DLC1.2", .help = "name of the load case"},
     {NAMED("scene", TEXT), AT(scene_name), .example = "parked.yaml",
      .help = "scene of this load case; replaces the set's"},
-    {KEY(CUSTOM, set), .read = bough_study_read_settings, .form = "{KEY: VALUE, ...}",
-     .help = "replaced keys of its cases"},
-    {KEY(CUSTOM, grid), .read = bough_study_read_grid, .form = "{KEY: [VALUE, ...], ...}",
-     .help = "one case for each combination of the values; default one case"},
+    {KEY(CUSTOM, set), SETTINGS, .help = "replaced keys of its cases"},
+    {KEY(CUSTOM, grid), GRID, .help = "one case for each combination of the values; default one case"},
     {KEY(NUMBER, weibull), .range = "[0, 1]", .fallback = "0", .example = "0.95",
      .help = "share of all hours, distributed over the values of aero.wind.speed"},
     {KEY(NUMBER, hours), .range = ">= 0", .fallback = "0", .example = "50",
@@ -177,8 +174,7 @@ static void check_set(bough_schema_reader *r, void *item) {
 #define HEAD(kinds)                                                                                \
     {KEY(TEXT, title), .help = "one line of description"},                                         \
     {KEY(CHOICE, kind), CHOICES(kinds), .required = true, .help = "kind of study"},                \
-    {KEY(CUSTOM, common), .read = bough_study_read_settings, .form = "{KEY: VALUE, ...}",          \
-     .help = "replaced keys of every case"},                                                       \
+    {KEY(CUSTOM, common), SETTINGS, .help = "replaced keys of every case"},                        \
     {KEY(NUMBER, from), UNIT(TIME), .range = ">= 0", .fallback = "0", .example = "30 s",           \
      .help = "start of the statistics"},                                                           \
     {NAMED("channels", TEXTS), AT(wanted), .count = 1, COUNT_AT(n_wanted),                         \
@@ -191,8 +187,7 @@ static const bough_schema sweep_schema = {.name = "a sweep", KEYS(
     HEAD("sweep"),
     {NAMED("scene", TEXT), AT(scene_name),
      .help = "file of the scene, relative to the study; not given if the grid has the key 'scene'"},
-    {KEY(CUSTOM, grid), .read = bough_study_read_grid, .required = true,
-     .form = "{KEY: [VALUE, ...], ...}",
+    {KEY(CUSTOM, grid), GRID, .required = true,
      .help = "one run for each combination of the values; the key 'scene' takes files"},
 )};
 

@@ -151,8 +151,7 @@ static vertex rigid_vertex(const bough_beam *beam, int i, bough_twist twist) {
 static vertex rod_vertex(const bough_beam *beam, const double *state, int i) {
     const double *y = state + i - 1;
     int n = beam->mesh->n;
-    bough_quaternion p = {y[3 * n], y[4 * n], y[5 * n], y[6 * n]};
-    bough_mat3 r = bough_rotation_matrix(bough_quaternion_normalised(p));
+    bough_mat3 r = bough_rod_rotation(state, n, i - 1);
     bough_vec3 w = {y[10 * n], y[11 * n], y[12 * n]};
     return (vertex){{y[0], y[n], y[2 * n]}, {y[7 * n], y[8 * n], y[9 * n]}, bough_mat3_mul(r, w), r};
 }

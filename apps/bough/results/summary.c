@@ -1,13 +1,10 @@
 #include "apps/bough/results/summary.h"
 
-#include "apps/bough/results/folder.h"
 #include "core/base/quote.h"
 
 #include <assert.h>
 #include <math.h>
 #include <stdlib.h>
-
-static_assert(sizeof((bough_summary){0}.path) == BOUGH_PATH_MAX, "paths have one length");
 
 static void indent(bough_summary *s) { fprintf(s->file, "\n%*s", 2 * s->depth, ""); }
 

@@ -3,14 +3,14 @@
 #ifndef BOUGH_APPS_RESULTS_SUMMARY_H
 #define BOUGH_APPS_RESULTS_SUMMARY_H
 
-#include "core/base/status.h"
+#include "apps/bough/results/folder.h"
 
 #include <stdbool.h>
 #include <stdio.h>
 
 typedef struct bough_summary {
     FILE *file;
-    char path[4096];
+    char path[BOUGH_PATH_MAX];
     char closing[16]; // the brackets still open, outermost first
     int depth;
     bool first; // nothing written yet inside the innermost bracket
