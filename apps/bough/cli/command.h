@@ -55,28 +55,20 @@ bough_status bough_option_kernels(const bough_option *row, const char *text,
                                   void *field); // sets the environment
 
 // Rows that several commands have.
+#define BOUGH_COMMON(name, argument, help, reader, member)                                                   \
+    { name, argument, help, bough_option_##reader, .offset = offsetof(bough_options, member) }
 #define BOUGH_OPTION_SET                                                                                     \
-    {                                                                                                        \
-        "set", "KEY=VALUE", "replaces or adds a value of the scene: 'bodies[blade1].pitch=5 deg'",           \
-            bough_option_texts, .offset = offsetof(bough_options, set)                                       \
-    }
+    BOUGH_COMMON("set", "KEY=VALUE", "replaces or adds a value of the scene: 'bodies[blade1].pitch=5 deg'",  \
+                 texts, set)
 #define BOUGH_OPTION_OUT                                                                                     \
-    {                                                                                                        \
-        "out", "DIR", "folder for the results; default out/<name of the file>", bough_option_text,           \
-            .offset = offsetof(bough_options, out)                                                           \
-    }
+    BOUGH_COMMON("out", "DIR", "folder for the results; default out/<name of the file>", text, out)
 #define BOUGH_OPTION_THREADS                                                                                 \
-    {                                                                                                        \
-        "threads", "N", "1 to 64; replaces the scene's number", bough_option_threads,                        \
-            .offset = offsetof(bough_options, threads)                                                       \
-    }
+    BOUGH_COMMON("threads", "N", "1 to 64; replaces the scene's number", threads, threads)
 #define BOUGH_OPTION_KERNELS                                                                                 \
-    {                                                                                                        \
-        "kernels", "LEVEL", "v2, v3 or v4: level of the instruction set, default the processor's highest",   \
-            bough_option_kernels, .offset = 0                                                                \
-    }
-#define BOUGH_OPTION_QUIET                                                                                   \
-    { "quiet", NULL, "no progress line", bough_option_flag, .offset = offsetof(bough_options, quiet) }
+    BOUGH_COMMON("kernels", "LEVEL",                                                                         \
+                 "v2, v3 or v4: level of the instruction set, default the processor's highest", kernels,     \
+                 quiet)
+#define BOUGH_OPTION_QUIET BOUGH_COMMON("quiet", NULL, "no progress line", flag, quiet)
 
 // -- commands -------------------------------------------------------------------------------------
 

@@ -85,44 +85,38 @@ static void print_rod(const rod_modes *x) {
     }
 }
 
-static void write_rod_modes(FILE *file, const rod_modes *x) {
-    for (int k = 0; k < x->list.found; k++) {
-        const bough_rod_mode *m = &x->list.mode[k];
-        fprintf(file, "%s,%d", x->steady.model->name, k + 1);
-        bough_modes_write_value(file, m->frequency, m->damped_frequency, m->damping);
-        fprintf(file, ",%s", blade_shapes[m->dominant]);
-        for (int c = 0; c < BOUGH_ROD_DIRECTIONS; c++) fprintf(file, ",%.6g", m->share[c]);
-        fputc('\n', file);
+static void write_rod_modes(const void *self, FILE *file) {
+    const rod_list *rods = self;
+    fputs(
+        "rod,mode,frequency (Hz),damped frequency (Hz),damping ratio (-),decrement (-),shape,flap x (-),edge y (-),"
+        "axial z (-),torsion (-)\n",
+        file);
+    for (const rod_modes *x = rods->rod; x < rods->rod + rods->n; x++) {
+        for (int k = 0; k < x->list.found; k++) {
+            const bough_rod_mode *m = &x->list.mode[k];
+            fprintf(file, "%s,%d", x->steady.model->name, k + 1);
+            bough_modes_write_value(file, m->frequency, m->damped_frequency, m->damping);
+            fprintf(file, ",%s", blade_shapes[m->dominant]);
+            for (int c = 0; c < BOUGH_ROD_DIRECTIONS; c++) fprintf(file, ",%.6g", m->share[c]);
+            fputc('\n', file);
+        }
     }
 }
 
-static void write_rod_shapes(FILE *file, const rod_modes *x) {
-    const bough_rod_model *m = x->steady.model;
-    for (int k = 0; k < x->list.found; k++) {
-        const bough_rod_mode *mode = &x->list.mode[k];
-        const double *const part[2] = {mode->real, mode->imaginary};
-        for (int i = 0; i <= m->n; i++) { // vertex 0 is held
+static void write_rod_shapes(const void *self, FILE *file) {
+    const rod_list *rods = self;
+    fprintf(file, "rod,%s", shape_columns);
+    for (const rod_modes *x = rods->rod; x < rods->rod + rods->n; x++) {
+        const bough_rod_model *m = x->steady.model;
+        for (int row = 0; row < x->list.found * (m->n + 1); row++) {
+            int k = row / (m->n + 1), i = row % (m->n + 1); // vertex 0 is held
+            const double *const part[2] = {x->list.mode[k].real, x->list.mode[k].imaginary};
             fprintf(file, "%s,%d,%.10g", m->name, k + 1, m->span[i]);
             for (int c = 0; c < 12; c++)
                 fprintf(file, ",%.10g", i == 0 ? 0 : part[c / 6][(c % 6) * m->n + i - 1]);
             fputc('\n', file);
         }
     }
-}
-
-static void write_all_modes(const void *self, FILE *file) {
-    const rod_list *rods = self;
-    fputs(
-        "rod,mode,frequency (Hz),damped frequency (Hz),damping ratio (-),decrement (-),shape,flap x (-),edge y (-),"
-        "axial z (-),torsion (-)\n",
-        file);
-    for (int k = 0; k < rods->n; k++) write_rod_modes(file, &rods->rod[k]);
-}
-
-static void write_all_shapes(const void *self, FILE *file) {
-    const rod_list *rods = self;
-    fprintf(file, "rod,%s", shape_columns);
-    for (int k = 0; k < rods->n; k++) write_rod_shapes(file, &rods->rod[k]);
 }
 
 static bough_status solve_rod(bough_arena *arena, const bough_simulation *s, const bough_beam *beam,
@@ -496,8 +490,8 @@ static bough_status find(bough_arena *arena, const void *given) {
     rod_list rods = {bough_steady_rods(s), bough_arena_take(arena, (size_t)s->n_rod * sizeof *rods.rod)};
     BOUGH_TRY(solve_rods(arena, s, rods.rod));
     BOUGH_TRY(bough_folder_make(folder));
-    BOUGH_TRY(bough_folder_write(folder, "modes.csv", write_all_modes, &rods));
-    if (s->scene->modes.shapes) BOUGH_TRY(bough_folder_write(folder, "shapes.csv", write_all_shapes, &rods));
+    BOUGH_TRY(bough_folder_write(folder, "modes.csv", write_rod_modes, &rods));
+    if (s->scene->modes.shapes) BOUGH_TRY(bough_folder_write(folder, "shapes.csv", write_rod_shapes, &rods));
     printf("out: %s\n", folder);
     return bough_ok();
 }

@@ -287,12 +287,6 @@ static void print_rod(bough_steady *x) {
            n.z);
 }
 
-static void print_mesh_error(const bough_steady *x, const double error[STATIC_RESULTS]) {
-    printf("mesh error %s: tip u %.2g m, r %.2g deg, root force %.2g N, moment %.2g N m\n", x->model->name,
-           error[STATIC_DISPLACEMENT], error[STATIC_ROTATION] / BOUGH_DEGREE, error[STATIC_FORCE],
-           error[STATIC_MOMENT]);
-}
-
 // Whether a rod ends in the link, whose coordinates are those of the rod's tip.
 static bool is_end(const bough_tree *tree, int link) {
     bool end = false;
@@ -466,7 +460,11 @@ static bough_status find(bough_arena *arena, const void *given) {
     if (!x.independent) print_whole(&x);
     for (int k = 0; k < x.n; k++) {
         print_rod(&x.rod[k]);
-        if (mesh.unknown[0] == '\0') print_mesh_error(&x.rod[k], error + STATIC_RESULTS * k);
+        const double *e = error + STATIC_RESULTS * k;
+        if (mesh.unknown[0] == '\0')
+            printf("mesh error %s: tip u %.2g m, r %.2g deg, root force %.2g N, moment %.2g N m\n",
+                   x.rod[k].model->name, e[STATIC_DISPLACEMENT], e[STATIC_ROTATION] / BOUGH_DEGREE,
+                   e[STATIC_FORCE], e[STATIC_MOMENT]);
     }
     print_modal(x.simulation);
     if (mesh.unknown[0]) printf("mesh error: not estimated: %s\n", mesh.unknown);
