@@ -40,6 +40,14 @@ typedef struct library {
     void (*count)(void *memory, bough_statistics *sum); // since the last start, added
 } library;
 
+// The operations of a library whose names begin with `its`; those of this file begin with `own`.
+#define LIBRARY(own, its)                                                                                    \
+    .create = own##_memory, .destroy = its##Free, .set_messages = its##SetErrHandlerFn,                      \
+    .set_user = its##SetUserData, .set_weights = its##WFtolerances, .set_solver = its##SetLinearSolver,      \
+    .begin_settings = own##_begin, .end_settings = own##_end, .restart = own##_restart,                      \
+    .stop_at = its##SetStopTime, .step = own##_step, .current_time = its##GetCurrentTime,                    \
+    .count = own##_count
+
 struct run {
     const library *library;
     const char *title; // in messages
@@ -348,22 +356,7 @@ static void cvode_count(void *memory, bough_statistics *sum) {
     sum->iterations += iterations;
 }
 
-static const library cvode = {
-    .most_steps = 20000,
-    .create = cvode_memory,
-    .destroy = CVodeFree,
-    .set_messages = CVodeSetErrHandlerFn,
-    .set_user = CVodeSetUserData,
-    .set_weights = CVodeWFtolerances,
-    .set_solver = CVodeSetLinearSolver,
-    .begin_settings = cvode_begin,
-    .end_settings = cvode_end,
-    .restart = cvode_restart,
-    .stop_at = CVodeSetStopTime,
-    .step = cvode_step,
-    .current_time = CVodeGetCurrentTime,
-    .count = cvode_count,
-};
+static const library cvode = {LIBRARY(cvode, CVode), .most_steps = 20000};
 
 // -- ARKODE ----------------------------------------------------------------------------------------
 
@@ -438,22 +431,7 @@ static void arkode_count(void *memory, bough_statistics *sum) {
     sum->iterations += iterations;
 }
 
-static const library arkode = {
-    .most_steps = 20000,
-    .create = arkode_memory,
-    .destroy = ARKStepFree,
-    .set_messages = ARKStepSetErrHandlerFn,
-    .set_user = ARKStepSetUserData,
-    .set_weights = ARKStepWFtolerances,
-    .set_solver = ARKStepSetLinearSolver,
-    .begin_settings = arkode_begin,
-    .end_settings = arkode_end,
-    .restart = arkode_restart,
-    .stop_at = ARKStepSetStopTime,
-    .step = arkode_step,
-    .current_time = ARKStepGetCurrentTime,
-    .count = arkode_count,
-};
+static const library arkode = {LIBRARY(arkode, ARKStep), .most_steps = 20000};
 
 // -- IDA -------------------------------------------------------------------------------------------
 
@@ -536,23 +514,7 @@ static void ida_count(void *memory, bough_statistics *sum) {
     sum->iterations += iterations;
 }
 
-static const library ida = {
-    .most_steps = 200000,
-    .scaled = true,
-    .create = ida_memory,
-    .destroy = IDAFree,
-    .set_messages = IDASetErrHandlerFn,
-    .set_user = IDASetUserData,
-    .set_weights = IDAWFtolerances,
-    .set_solver = IDASetLinearSolver,
-    .begin_settings = ida_begin,
-    .end_settings = ida_end,
-    .restart = ida_restart,
-    .stop_at = IDASetStopTime,
-    .step = ida_step,
-    .current_time = IDAGetCurrentTime,
-    .count = ida_count,
-};
+static const library ida = {LIBRARY(ida, IDA), .most_steps = 200000, .scaled = true};
 
 // -- the table ----------------------------------------------------------------------------------------
 
@@ -560,26 +522,11 @@ static const library *library_of(bough_integrator_kind kind) {
     return kind == BOUGH_IDA ? &ida : kind == BOUGH_CVODE_BDF ? &cvode : &arkode;
 }
 
-const bough_integrator_ops bough_integrator_ida = {
-    .name = "ida",
-    .title = "IDA",
-    .create = create,
-    .advance = advance,
-    .statistics = statistics,
-};
+#define OPERATIONS .create = create, .advance = advance, .statistics = statistics
 
-const bough_integrator_ops bough_integrator_cvode = {
-    .name = "cvode-bdf",
-    .title = "CVODE BDF",
-    .create = create,
-    .advance = advance,
-    .statistics = statistics,
-};
+const bough_integrator_ops bough_integrator_ida = {.name = "ida", .title = "IDA", OPERATIONS};
+
+const bough_integrator_ops bough_integrator_cvode = {.name = "cvode-bdf", .title = "CVODE BDF", OPERATIONS};
 
 const bough_integrator_ops bough_integrator_arkode = {
-    .name = "arkode-esdirk",
-    .title = "ARKODE ESDIRK",
-    .create = create,
-    .advance = advance,
-    .statistics = statistics,
-};
+    .name = "arkode-esdirk", .title = "ARKODE ESDIRK", OPERATIONS};
