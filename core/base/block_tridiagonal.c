@@ -10,14 +10,6 @@ void bough_block_tridiagonal_init(bough_block_tridiagonal *m, bough_arena *arena
     bough_arena_each(arena, count, &m->lower, &m->diagonal, &m->upper);
 }
 
-bool bough_block_tridiagonal_factor(bough_block_tridiagonal *m) {
-    return BOUGH_OF_LEVEL(bough_block_tridiagonal_factor, m->level)(m);
-}
-
-void bough_block_tridiagonal_solve(const bough_block_tridiagonal *m, double *x) {
-    BOUGH_OF_LEVEL(bough_block_tridiagonal_solve, m->level)(m, x);
-}
-
 void bough_block_tridiagonal_subtract(const bough_block_tridiagonal *m, const double *x, double *y) {
     for (int i = 0; i < m->n; i++) {
         size_t block = (size_t)i * BOUGH_BLOCK;

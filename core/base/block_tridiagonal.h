@@ -36,6 +36,8 @@ void bough_block_tridiagonal_solve(const bough_block_tridiagonal *m, double *x);
 // Both at their levels.
 BOUGH_DECLARE_LEVELS(bough_block_tridiagonal_factor);
 BOUGH_DECLARE_LEVELS(bough_block_tridiagonal_solve);
+#define bough_block_tridiagonal_factor(m) BOUGH_OF_LEVEL(bough_block_tridiagonal_factor, (m)->level)(m)
+#define bough_block_tridiagonal_solve(m, x) BOUGH_OF_LEVEL(bough_block_tridiagonal_solve, (m)->level)(m, x)
 
 // y −= A x for a matrix that is not factored; lower[0] is not used. x, y (n × 8).
 void bough_block_tridiagonal_subtract(const bough_block_tridiagonal *m, const double *x, double *y);

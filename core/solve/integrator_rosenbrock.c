@@ -57,23 +57,9 @@ typedef struct rosenbrock {
     bough_statistics sum;
 } rosenbrock;
 
-// -- the formulas of a step -----------------------------------------------------------------------
+// -- one step of one system -----------------------------------------------------------------------
 
 double bough_rosenbrock_time(const bough_rosenbrock_step *s, int i) { return s->t + alpha[i] * s->h; }
-
-void bough_rosenbrock_argument(bough_rosenbrock_step *s, int i, int first, int last) {
-    BOUGH_OF_LEVEL(bough_rosenbrock_argument, s->level)(s, i, first, last);
-}
-
-void bough_rosenbrock_right_side(bough_rosenbrock_step *s, int i, int first, int last) {
-    BOUGH_OF_LEVEL(bough_rosenbrock_right_side, s->level)(s, i, first, last);
-}
-
-double bough_rosenbrock_end(bough_rosenbrock_step *s, int first, int last) {
-    return BOUGH_OF_LEVEL(bough_rosenbrock_end, s->level)(s, first, last);
-}
-
-// -- one step of one system -----------------------------------------------------------------------
 
 // f into u_i, and for the first stage at the step's end too where ∂f/∂t is to be found.
 static bool evaluate(rosenbrock *m, int i) {
@@ -130,7 +116,7 @@ static bool undamped(const rosenbrock *m, double h) { return m->ode.elastic_rate
 
 // (I − γhJ)⁻¹ (y₁ − y₀) of the last step
 static void filter_increment(rosenbrock *m, double *x) {
-    BOUGH_OF_LEVEL(bough_rosenbrock_increment, m->now.level)(&m->now, m->ode.n, x);
+    bough_rosenbrock_increment(&m->now, m->ode.n, x);
     m->ode.solve(m->ode.self, x);
 }
 
@@ -194,7 +180,7 @@ static double filter(rosenbrock *m) {
     const bough_rosenbrock_step *s = &m->now;
     const double *restrict weight = m->weight;
     double sum = 0;
-    BOUGH_OF_LEVEL(bough_rosenbrock_error, s->level)(s, m->ode.n, error);
+    bough_rosenbrock_error(s, m->ode.n, error);
     m->ode.solve(m->ode.self, error);
 #pragma omp simd reduction(+ : sum)
     for (int k = 0; k < m->ode.n; k++) sum += (weight[k] * error[k]) * (weight[k] * error[k]);

@@ -49,4 +49,14 @@ BOUGH_DECLARE_LEVELS(bough_rosenbrock_end);
 BOUGH_DECLARE_LEVELS(bough_rosenbrock_error);
 BOUGH_DECLARE_LEVELS(bough_rosenbrock_increment);
 
+#define bough_rosenbrock_argument(step, ...)                                                                 \
+    BOUGH_OF_LEVEL(bough_rosenbrock_argument, (step)->level)(step, __VA_ARGS__)
+#define bough_rosenbrock_right_side(step, ...)                                                               \
+    BOUGH_OF_LEVEL(bough_rosenbrock_right_side, (step)->level)(step, __VA_ARGS__)
+#define bough_rosenbrock_end(step, ...) BOUGH_OF_LEVEL(bough_rosenbrock_end, (step)->level)(step, __VA_ARGS__)
+#define bough_rosenbrock_error(step, ...)                                                                    \
+    BOUGH_OF_LEVEL(bough_rosenbrock_error, (step)->level)(step, __VA_ARGS__)
+#define bough_rosenbrock_increment(step, ...)                                                                \
+    BOUGH_OF_LEVEL(bough_rosenbrock_increment, (step)->level)(step, __VA_ARGS__)
+
 #endif

@@ -276,4 +276,23 @@ void bough_rod_stress(const bough_rod_model *m, const bough_rod_scratch *scratch
 // twists though the rod it stands for does not, theory (111). After bough_rod_stress' conditions.
 double bough_rod_twist_reserve(const bough_rod_model *m, const bough_rod_scratch *scratch);
 
+// Kernels, each called at its model's level.
+BOUGH_DECLARE_LEVELS(bough_rod_gather);
+BOUGH_DECLARE_LEVELS(bough_rod_forces);
+BOUGH_DECLARE_LEVELS(bough_rod_load);
+BOUGH_DECLARE_LEVELS(bough_rod_derivative);
+BOUGH_DECLARE_LEVELS(bough_rod_derivative_again);
+BOUGH_DECLARE_LEVELS(bough_rod_root_wrench);
+BOUGH_DECLARE_LEVELS(bough_rod_end_wrench);
+BOUGH_DECLARE_LEVELS(bough_rod_line_strain);
+#define bough_rod_gather(m, ...) BOUGH_OF_LEVEL(bough_rod_gather, (m)->level)(m, __VA_ARGS__)
+#define bough_rod_forces(m, ...) BOUGH_OF_LEVEL(bough_rod_forces, (m)->level)(m, __VA_ARGS__)
+#define bough_rod_load(m, ...) BOUGH_OF_LEVEL(bough_rod_load, (m)->level)(m, __VA_ARGS__)
+#define bough_rod_derivative(m, ...) BOUGH_OF_LEVEL(bough_rod_derivative, (m)->level)(m, __VA_ARGS__)
+#define bough_rod_derivative_again(m, ...)                                                                   \
+    BOUGH_OF_LEVEL(bough_rod_derivative_again, (m)->level)(m, __VA_ARGS__)
+#define bough_rod_root_wrench(m, ...) BOUGH_OF_LEVEL(bough_rod_root_wrench, (m)->level)(m, __VA_ARGS__)
+#define bough_rod_end_wrench(m, ...) BOUGH_OF_LEVEL(bough_rod_end_wrench, (m)->level)(m, __VA_ARGS__)
+#define bough_rod_line_strain(m, ...) BOUGH_OF_LEVEL(bough_rod_line_strain, (m)->level)(m, __VA_ARGS__)
+
 #endif

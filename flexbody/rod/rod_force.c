@@ -1,46 +1,8 @@
-// Wrenches and stresses of a rod, and its right-hand side by the kernels of the model's level.
+// Wrenches and stresses of a rod.
 #include "flexbody/rod/rod_kernels.h"
 #include "flexbody/rod/rod_lanes.h"
 
 #include <math.h>
-
-void bough_rod_gather(const bough_rod_model *m, const double *state, const double *input,
-                      bough_rod_scratch *scratch) {
-    BOUGH_OF_LEVEL(bough_rod_gather, m->level)(m, state, input, scratch);
-}
-
-bool bough_rod_forces(const bough_rod_model *m, int first, int last, bough_rod_scratch *scratch) {
-    return BOUGH_OF_LEVEL(bough_rod_forces, m->level)(m, first, last, scratch);
-}
-
-void bough_rod_load(const bough_rod_model *m, const bough_rod_loads *loads, double t,
-                    bough_rod_scratch *scratch) {
-    BOUGH_OF_LEVEL(bough_rod_load, m->level)(m, loads, t, scratch);
-}
-
-bool bough_rod_derivative(const bough_rod_model *m, const bough_rod_loads *loads, double t,
-                          const double *state, const double *input, bough_rod_scratch *scratch,
-                          double *rate) {
-    return BOUGH_OF_LEVEL(bough_rod_derivative, m->level)(m, loads, t, state, input, scratch, rate);
-}
-
-bool bough_rod_derivative_again(const bough_rod_model *m, const bough_rod_loads *loads, double t,
-                                const double *state, const double *input, bough_rod_scratch *scratch,
-                                double *rate) {
-    return BOUGH_OF_LEVEL(bough_rod_derivative_again, m->level)(m, loads, t, state, input, scratch, rate);
-}
-
-void bough_rod_root_wrench(const bough_rod_model *m, const bough_rod_loads *loads, double t,
-                           const double *state, const double *input, bough_rod_scratch *scratch,
-                           double *wrench) {
-    BOUGH_OF_LEVEL(bough_rod_root_wrench, m->level)(m, loads, t, state, input, scratch, wrench);
-}
-
-void bough_rod_end_wrench(const bough_rod_model *m, const bough_rod_loads *loads, double t,
-                          const double *state, const double *input, bough_rod_scratch *scratch,
-                          double *wrench) {
-    BOUGH_OF_LEVEL(bough_rod_end_wrench, m->level)(m, loads, t, state, input, scratch, wrench);
-}
 
 void bough_rod_present_root_wrench(const bough_rod_model *m, const bough_rod_scratch *scratch,
                                    double *wrench) {

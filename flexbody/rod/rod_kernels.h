@@ -10,18 +10,6 @@
 // The name of bough_rod_NAME in a file of kernels.
 #define AT(name) BOUGH_AT_LEVEL(bough_rod_##name)
 
-BOUGH_DECLARE_LEVELS(bough_rod_gather);
-BOUGH_DECLARE_LEVELS(bough_rod_forces);
-BOUGH_DECLARE_LEVELS(bough_rod_load);
-BOUGH_DECLARE_LEVELS(bough_rod_derivative);
-BOUGH_DECLARE_LEVELS(bough_rod_derivative_again);
-BOUGH_DECLARE_LEVELS(bough_rod_root_wrench);
-BOUGH_DECLARE_LEVELS(bough_rod_end_wrench);
-BOUGH_DECLARE_LEVELS(bough_rod_line_strain);
-BOUGH_DECLARE_LEVELS(bough_rod_take_line);
-BOUGH_DECLARE_LEVELS(bough_rod_linearise);
 BOUGH_DECLARE_LEVELS(bough_rod_form_blocks);
-BOUGH_DECLARE_LEVELS(bough_rod_factor);
-BOUGH_DECLARE_LEVELS(bough_rod_solve);
 
 #endif

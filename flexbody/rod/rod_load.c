@@ -155,12 +155,3 @@ void bough_rod_lump_line(const bough_rod_model *m, bough_rod_ramped_load *load) 
     memset(load->line, 0, 12 * (size_t)s * sizeof *load->line);
     load->along = false;
 }
-
-void bough_rod_line_strain(const bough_rod_model *m, const double *line, double *along) {
-    BOUGH_OF_LEVEL(bough_rod_line_strain, m->level)(m, line, along);
-}
-
-void bough_rod_take_line(const bough_rod_model *m, const double *rotation, const double *line, double *turned,
-                         double *load) {
-    BOUGH_OF_LEVEL(bough_rod_take_line, m->level)(m, rotation, line, turned, load);
-}

@@ -33,4 +33,8 @@ void bough_rod_lump_strain(const bough_rod_model *m, const double *line_strain, 
 void bough_rod_take_line(const bough_rod_model *m, const double *rotation, const double *line, double *turned,
                          double *load);
 
+// A kernel, called at its model's level.
+BOUGH_DECLARE_LEVELS(bough_rod_take_line);
+#define bough_rod_take_line(m, ...) BOUGH_OF_LEVEL(bough_rod_take_line, (m)->level)(m, __VA_ARGS__)
+
 #endif

@@ -241,9 +241,10 @@ static bool evaluate(void *self, const double *state, int n, const bough_evaluat
     bough_rod_body *b = self;
     bool ok = true;
     for (int k = 0; k < n && ok; k++) {
-        bool (*f)(const bough_rod_model *, const bough_rod_loads *, double, const double *, const double *,
-                  bough_rod_scratch *, double *) = k == 0 ? bough_rod_derivative : bough_rod_derivative_again;
-        ok = f(b->model, &b->loads, at[k].t, state, at[k].input, &b->scratch, at[k].rate);
+        const double t = at[k].t, *input = at[k].input;
+        ok = k == 0
+                 ? derivative(b, t, state, input, at[k].rate)
+                 : bough_rod_derivative_again(b->model, &b->loads, t, state, input, &b->scratch, at[k].rate);
         if (at[k].output == NULL) continue;
         bough_rod_present_root_wrench(b->model, &b->scratch, at[k].output);
         if (!bough_rod_carries(b->model)) continue;

@@ -1,4 +1,4 @@
-// Memory of a linearisation, and the kernels of the model's level.
+// Memory of a linearisation, and that about a steady motion.
 #include "flexbody/rod/rod_tangent.h"
 
 #include "flexbody/rod/rod_kernels.h"
@@ -25,20 +25,6 @@ void bough_rod_tangent_init(bough_rod_tangent *k, bough_arena *arena, const boug
     k->packed = bough_arena_doubles(arena, (size_t)bough_padded(m->n) * BOUGH_COLUMN);
     bough_block_tridiagonal_init(&k->matrix, arena, m->n);
     blocks_init(&k->blocks, arena, m);
-}
-
-bool bough_rod_linearise(const bough_rod_model *m, const bough_rod_loads *loads, double t,
-                         const double *state, const double *input, bough_rod_scratch *scratch,
-                         bough_rod_tangent *k) {
-    return BOUGH_OF_LEVEL(bough_rod_linearise, m->level)(m, loads, t, state, input, scratch, k);
-}
-
-bool bough_rod_factor(const bough_rod_model *m, bough_rod_tangent *k, double gamma) {
-    return BOUGH_OF_LEVEL(bough_rod_factor, m->level)(m, k, gamma);
-}
-
-void bough_rod_solve(const bough_rod_model *m, bough_rod_tangent *k, double *x) {
-    BOUGH_OF_LEVEL(bough_rod_solve, m->level)(m, k, x);
 }
 
 // -- about a steady motion ------------------------------------------------------------------------

@@ -90,4 +90,12 @@ void bough_rod_linear_stiffness(const bough_rod_model *m, const bough_rod_blocks
 void bough_rod_linear_damping(const bough_rod_model *m, const bough_rod_blocks *blocks, const double *input,
                               const double *state, bough_block_tridiagonal *damping);
 
+// Kernels, each called at its model's level.
+BOUGH_DECLARE_LEVELS(bough_rod_linearise);
+BOUGH_DECLARE_LEVELS(bough_rod_factor);
+BOUGH_DECLARE_LEVELS(bough_rod_solve);
+#define bough_rod_linearise(m, ...) BOUGH_OF_LEVEL(bough_rod_linearise, (m)->level)(m, __VA_ARGS__)
+#define bough_rod_factor(m, ...) BOUGH_OF_LEVEL(bough_rod_factor, (m)->level)(m, __VA_ARGS__)
+#define bough_rod_solve(m, ...) BOUGH_OF_LEVEL(bough_rod_solve, (m)->level)(m, __VA_ARGS__)
+
 #endif
