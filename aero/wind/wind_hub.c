@@ -52,24 +52,26 @@ static bough_status read_row(const char *path, const char *line, int number, con
     return bough_ok();
 }
 
-// Counts the rows, and with `row` fills at most `room` of them.
-static bough_status scan(FILE *stream, const char *path, int room, int *n, bough_wind_hub_row *row) {
+static bough_status read_rows(bough_arena *arena, FILE *stream, const char *path, bough_wind_hub *hub) {
     char line[LINE];
-    *n = 0;
-    rewind(stream);
+    bough_wind_hub_row *row = NULL;
+    int n = 0, room = 0;
     for (int number = 1; fgets(line, LINE, stream); number++) {
         // a line that does not fit would be read as two
         if (!strchr(line, '\n') && !feof(stream)) {
             return bough_fail(BOUGH_INVALID, "%s:%d: the line is too long.", path, number);
         }
         if (is_comment(line)) continue;
-        if (*n == room) {
-            return bough_fail(BOUGH_INVALID, "%s:%d: more than %d rows.", path, number, room);
+        if (n == MOST_ROWS) {
+            return bough_fail(BOUGH_INVALID, "%s:%d: more than %d rows.", path, number, (int)MOST_ROWS);
         }
-        if (row) BOUGH_TRY(read_row(path, line, number, *n > 0 ? row + *n - 1 : NULL, row + *n));
-        ++*n;
+        row = bough_arena_grow(arena, row, n, &room, sizeof *row);
+        BOUGH_TRY(read_row(path, line, number, n > 0 ? row + n - 1 : NULL, row + n));
+        n++;
     }
-    if (*n == 0) return bough_fail(BOUGH_INVALID, "%s: has no rows.", path);
+    if (n == 0) return bough_fail(BOUGH_INVALID, "%s: has no rows.", path);
+    hub->n = n;
+    hub->row = row;
     return bough_ok();
 }
 
@@ -79,15 +81,8 @@ bough_status bough_wind_hub_read(bough_arena *arena, const char *path, bough_win
     if (!stream) {
         return bough_fail(BOUGH_INVALID, "cannot open the wind file %.220s: %s", path, why);
     }
-    bough_wind_hub_row *row = NULL;
-    // one pass counts, the second fills
-    bough_status status = scan(stream, path, MOST_ROWS, &hub->n, NULL);
-    if (bough_is_ok(&status)) {
-        row = bough_arena_take(arena, (size_t)hub->n * sizeof *row);
-        status = scan(stream, path, hub->n, &hub->n, row);
-    }
+    bough_status status = read_rows(arena, stream, path, hub);
     fclose(stream);
-    hub->row = row;
     return status;
 }
 
