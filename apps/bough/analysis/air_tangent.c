@@ -470,22 +470,13 @@ static bough_status follow_all(bough_arena *arena, work *w, const double *state,
     return follow_others(w, state, good ? group : NULL, t);
 }
 
-bough_status bough_air_tangent_find(bough_arena *arena, const bough_air_azimuth *x, bool dynamic,
-                                    const bough_air_inputs *inputs, bough_air_tangent *t) {
+bough_status bough_air_tangent_add(bough_arena *arena, const bough_air_azimuth *x, bool dynamic,
+                                   const bough_air_inputs *inputs, bough_air_tangent *t) {
     work w = start(arena, x->simulation, x->whole, x->time, dynamic);
-    *t = take_tangent(arena, &w, inputs ? inputs->n : 0);
+    if (t->motion == NULL) *t = take_tangent(arena, &w, inputs ? inputs->n : 0);
+    if (x->blend && x->group->n > 0) w.mean = bough_air_mean_create(arena, x, t);
     bough_status status = follow_all(arena, &w, x->state, x->group, t);
     if (bough_is_ok(&status) && inputs) status = follow_inputs(&w, x->state, inputs, t);
-    settle(&w, x->state);
-    return status;
-}
-
-bough_status bough_air_tangent_add(bough_arena *arena, const bough_air_azimuth *x, bool dynamic,
-                                   bough_air_tangent *t) {
-    work w = start(arena, x->simulation, x->whole, x->time, dynamic);
-    if (t->motion == NULL) *t = take_tangent(arena, &w, 0);
-    if (x->group->n > 0) w.mean = bough_air_mean_create(arena, x, t);
-    bough_status status = follow_all(arena, &w, x->state, x->group, t);
     settle(&w, x->state);
     return status;
 }

@@ -34,19 +34,20 @@ typedef struct bough_air_azimuth {
     double time;
     const double *state;            // (n)
     const bough_blade_group *group; // its equal blades; NULL or none: each state is by itself
-    // of a mean alone
+    // of a mean alone; without one 0
     const bough_simulation *first;  // of the first azimuth
     const bough_blade_group *parts; // the same blades there, in whose order they are the mean's parts
     const double *blend;            // C (group->n × group->n)
     double share;                   // of the mean
 } bough_air_azimuth;
 
-// About the azimuth's state; `dynamic`: with the memory that the scene's inflow and stall have; inputs NULL:
-// none. States of a group of rods, and of places that share no loads, are changed at once; means over the
+// About the azimuth's state, or an azimuth's share of the mean, which is added; a tangent that is {0} takes
+// its matrices. `dynamic`: with the memory that the scene's inflow and stall have; inputs NULL: none, as of a
+// mean. States of a group of rods, and of places that share no loads, are changed at once; means over the
 // disk then count as of the blade's nearest state. Where a change of all misses by more than 1e-3 with that,
 // each state is changed by itself. The simulation is left in that state.
-bough_status bough_air_tangent_find(bough_arena *arena, const bough_air_azimuth *azimuth, bool dynamic,
-                                    const bough_air_inputs *inputs, bough_air_tangent *tangent);
+bough_status bough_air_tangent_add(bough_arena *arena, const bough_air_azimuth *azimuth, bool dynamic,
+                                   const bough_air_inputs *inputs, bough_air_tangent *tangent);
 
 // The same for one change of bodies and air at once: the products that the matrices have with it.
 typedef struct bough_air_change bough_air_change;
@@ -61,10 +62,6 @@ bough_status bough_air_change_follow(bough_air_change *x, double size, bool to_o
                                      double *image);
 
 // -- mean over azimuths and blades (air_mean.c) ---------------------------------------------------
-
-// Adds an azimuth's share to the tangent, which takes its matrices if it is {0}.
-bough_status bough_air_tangent_add(bough_arena *arena, const bough_air_azimuth *azimuth, bool dynamic,
-                                   bough_air_tangent *tangent);
 
 // After the last azimuth: what the first blade does holds for the others.
 void bough_air_tangent_close(bough_arena *arena, const bough_air_azimuth *azimuth,

@@ -164,7 +164,7 @@ bough_status bough_azimuths_tangent(bough_arena *arena, const bough_azimuths *a,
                                  .parts = a->group,
                                  .blend = x->blend,
                                  .share = 1. / a->n};
-        BOUGH_TRY(bough_air_tangent_add(arena, &of, dynamic, mean));
+        BOUGH_TRY(bough_air_tangent_add(arena, &of, dynamic, NULL, mean));
     }
     bough_air_tangent_close(arena, &of, mean);
     return bough_ok();

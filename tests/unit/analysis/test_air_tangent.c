@@ -27,13 +27,13 @@ TEST(equal_blades_at_once_have_the_tangent_of_each) {
     check_arena(arena);
     bough_simulation *s = scene_build(arena, "apps/turbine/land-operation.yaml", before_the_tower);
     bough_vibration_point x;
-    bough_air_tangent each, at_once;
+    bough_air_tangent each = {0}, at_once = {0};
     check_ok(bough_vibration_point_find(arena, s, 0, &x));
     assert_int_equal(x.group.n, 3);
     bough_air_azimuth about = {.simulation = s, .whole = x.whole, .state = x.state};
-    check_ok(bough_air_tangent_find(arena, &about, true, NULL, &each));
+    check_ok(bough_air_tangent_add(arena, &about, true, NULL, &each));
     about.group = &x.group;
-    check_ok(bough_air_tangent_find(arena, &about, true, NULL, &at_once));
+    check_ok(bough_air_tangent_add(arena, &about, true, NULL, &at_once));
     size_t n = (size_t)each.n, m = (size_t)each.n_air;
     assert_true(m > 0);
     const struct {
