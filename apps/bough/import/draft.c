@@ -263,10 +263,10 @@ static void note_trial(bough_draft *d, const bough_scene *scene, int steps) {
 // gets that tolerance.
 static bough_status try_scene(bough_draft *d, const char *folder, bough_scene *scene) {
     const double usual = 0.5; // of the bound
-    int steps = d->trial_steps > 0 ? d->trial_steps << d->halvings : TRIAL_STEPS;
+    int steps = d->options->trial_steps > 0 ? d->options->trial_steps << d->halvings : TRIAL_STEPS;
     bough_status status = bough_ok();
     for (int i = 0; i < N_TOLERANCE; i++) {
-        double part = d->trial_steps == 0 ? 0 : i + 1 < N_TOLERANCE ? usual : 1;
+        double part = d->options->trial_steps == 0 ? 0 : i + 1 < N_TOLERANCE ? usual : 1;
         scene->simulation.master.rtol = strtod(tolerance[i], NULL);
         memcpy(d->text[BOUGH_IMPORT_SCENE] + d->tolerance_at, tolerance[i], strlen(tolerance[i]));
         status = bough_import_trial(d->arena, scene, steps, part * scene->simulation.error_bound);
@@ -363,15 +363,15 @@ static bough_status publish(bough_draft *d, const char *folder) {
 }
 
 typedef struct task {
-    bough_draft *draft;
     void (*convert)(bough_draft *d, const char *path);
     const char *path, *folder;
     FILE *echo;
+    bough_draft draft;
 } task;
 
 static bough_status import(bough_arena *arena, void *self) {
-    const task *t = self;
-    bough_draft *d = t->draft;
+    task *t = self;
+    bough_draft *d = &t->draft;
     d->arena = arena;
     t->convert(d, t->path);
     if (!close_all(d->file, BOUGH_IMPORT_LIST)) return bough_fail(BOUGH_OUT_OF_MEMORY, "memory is exhausted");
@@ -380,21 +380,24 @@ static bough_status import(bough_arena *arena, void *self) {
     return *d->status;
 }
 
-bool bough_draft_again(const bough_draft *last, const bough_status *status, bough_draft *next) {
-    bool judged = last->trial_steps > 0 && last->halvings < HALVINGS;
-    if (status->code != BOUGH_FAILED || !judged) return false;
-    *next = (bough_draft){.trial_steps = last->trial_steps, .halvings = last->halvings + 1};
-    return true;
-}
-
-bough_status bough_draft_import(bough_draft *d, void (*convert)(bough_draft *d, const char *path),
-                                const char *path, const char *folder, FILE *echo) {
-    task t = {d, convert, path, folder, echo};
+static bough_status import_once(task *t) {
+    bough_draft *d = &t->draft;
     bough_status kept = bough_ok();
     d->status = &kept;
     bough_status status = open_texts(d);
-    if (bough_is_ok(&status)) status = bough_arena_use(import, &t);
+    if (bough_is_ok(&status)) status = bough_arena_use(import, t);
     close_all(d->file, BOUGH_N_IMPORT_TEXT);
     for (int i = 0; i < BOUGH_N_IMPORT_TEXT; i++) free(d->text[i]);
+    return status;
+}
+
+bough_status bough_draft_import(void (*convert)(bough_draft *d, const char *path), const char *path,
+                                const char *folder, const bough_import_options *options, FILE *echo) {
+    int most = options->trial_steps > 0 ? HALVINGS : 0;
+    bough_status status = {.code = BOUGH_FAILED};
+    for (int k = 0; k <= most && status.code == BOUGH_FAILED; k++) {
+        task t = {convert, path, folder, echo, {.options = options, .halvings = k}};
+        status = import_once(&t);
+    }
     return status;
 }

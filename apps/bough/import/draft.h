@@ -4,6 +4,7 @@
 #define BOUGH_APPS_IMPORT_DRAFT_H
 
 #include "aero/wind/wind_box.h"
+#include "apps/bough/import/import.h"
 #include "apps/bough/scene/scene.h"
 #include "core/base/arena.h"
 #include "core/base/status.h"
@@ -39,36 +40,32 @@ typedef struct bough_draft {
     FILE *file[BOUGH_N_IMPORT_TEXT]; // by file and note; a file left empty is not written
     char *text[BOUGH_N_IMPORT_TEXT];
     size_t size[BOUGH_N_IMPORT_TEXT];
-    double macro_step;         // [s]; air and control are sampled as often
-    long tolerance_at;         // where the scene's text has the integrator's tolerance
-    int trial_steps;           // as in the options
+    double macro_step; // [s]; air and control are sampled as often
+    long tolerance_at; // where the scene's text has the integrator's tolerance
+    const bough_import_options *options;
     int halvings;              // of the macro step, after those for the speed of the rotor
     const bough_wind_box *box; // to be written as wind.bts; NULL: none
 } bough_draft;
 
 #define BOUGH_IMPORT_BOX "wind.bts"
 
-// An import with a draft of which only trial_steps and halvings are set: convert(d, path) fills it, then the
-// files are written unless there was a failure or they make no scene that runs; the list also to `echo`
-// (NULL: nobody).
-bough_status bough_draft_import(bough_draft *d, void (*convert)(bough_draft *d, const char *path),
-                                const char *path, const char *folder, FILE *echo);
-
-// Whether an import that ended so is to be repeated with half the longest macro step, and with which draft.
-bool bough_draft_again(const bough_draft *last, const bough_status *status, bough_draft *next);
+// convert(d, path) fills a draft, then the files are written unless there was a failure or they make no scene
+// that runs; the list also to `echo` (NULL: nobody). Where a trial fails, again with half the macro step.
+bough_status bough_draft_import(void (*convert)(bough_draft *d, const char *path), const char *path,
+                                const char *folder, const bough_import_options *options, FILE *echo);
 
 // A line of the list.
 void bough_draft_note(bough_draft *d, bough_import_note kind, const char *format, ...)
     __attribute__((format(printf, 3, 4)));
 
 // … of the kinds that readers of models use; x->draft is the draft.
-#define bough_taken(x, ...) bough_draft_note(&(x)->draft, BOUGH_TAKEN, __VA_ARGS__)
-#define bough_approximated(x, ...) bough_draft_note(&(x)->draft, BOUGH_APPROXIMATED, __VA_ARGS__)
-#define bough_left_out(x, ...) bough_draft_note(&(x)->draft, BOUGH_LEFT_OUT, __VA_ARGS__)
-#define bough_other_case(x, ...) bough_draft_note(&(x)->draft, BOUGH_OTHER_CASE, __VA_ARGS__)
+#define bough_taken(x, ...) bough_draft_note((x)->draft, BOUGH_TAKEN, __VA_ARGS__)
+#define bough_approximated(x, ...) bough_draft_note((x)->draft, BOUGH_APPROXIMATED, __VA_ARGS__)
+#define bough_left_out(x, ...) bough_draft_note((x)->draft, BOUGH_LEFT_OUT, __VA_ARGS__)
+#define bough_other_case(x, ...) bough_draft_note((x)->draft, BOUGH_OTHER_CASE, __VA_ARGS__)
 
 // Adds to the scene's text, as printf does.
-#define bough_put(x, ...) fprintf((x)->draft.file[BOUGH_IMPORT_SCENE], __VA_ARGS__)
+#define bough_put(x, ...) fprintf((x)->draft->file[BOUGH_IMPORT_SCENE], __VA_ARGS__)
 
 // Writes the scene's first lines: comment, title, time, solvers. The macro step follows from the rotor's
 // speed [rad/s]; the duration [s] is rounded up to whole macro steps. `origin`: "an OpenFAST model".

@@ -7,7 +7,7 @@
 
 bough_deck *bough_openfast_open(bough_openfast *o, const bough_deck *from, const char *names) {
     const char *path = bough_deck_file(from, names);
-    bough_deck *deck = bough_deck_open(o->draft.arena, path, BOUGH_DECK_HEADING, o->draft.status);
+    bough_deck *deck = bough_deck_open(o->draft->arena, path, BOUGH_DECK_HEADING, o->draft->status);
     if (deck) bough_taken(o, "%.*s: %s", (int)strcspn(names, "|"), names, path);
     return deck;
 }
@@ -17,7 +17,7 @@ void bough_openfast_leave(bough_openfast *o, const bough_deck *deck, const bough
     for (size_t i = 0; i < n; i++) {
         double value = bough_deck_switch_or(deck, rest[i].name, rest[i].neutral);
         if (value == rest[i].neutral) continue;
-        bough_draft_note(&o->draft, list, "%s%s%s", rest[i].name, rest[i].text ? ": " : "",
+        bough_draft_note(o->draft, list, "%s%s%s", rest[i].name, rest[i].text ? ": " : "",
                          rest[i].text ? rest[i].text : "");
     }
 }
@@ -30,7 +30,7 @@ static void leave_water(bough_openfast *o) {
                                        "CompMooring", "CompIce",   "CompSoil"};
     for (size_t i = 0; i < sizeof part / sizeof *part; i++) {
         if (bough_deck_whole_or(o->main, part[i], 0) == 0) continue;
-        if (o->options->clamp_base) {
+        if (o->draft->options->clamp_base) {
             bough_left_out(o, "%s: the tower's base is clamped", part[i]);
             continue;
         }
@@ -110,7 +110,7 @@ static void read_shape(bough_openfast *o) {
     o->hub_radius = bough_deck_number(e, "HubRad");
     o->tower_top = bough_deck_number(e, "TowerHt");
     o->tower_base = bough_deck_number_or(e, "TowerBsHt", 0);
-    if (!bough_is_ok(o->draft.status)) return;
+    if (!bough_is_ok(o->draft->status)) return;
     if (bough_deck_flag_or(e, "Furling", false)) {
         bough_deck_refuse(e, "Furling", "expected False: tails and rotors that furl are not supported");
     }
@@ -130,14 +130,14 @@ static void put_head(bough_openfast *o, const char *path) {
         bough_deck_refuse(o->main, "TMax", "expected a time from 0 to 1e6 s");
     }
     const char *slash = strrchr(path, '/');
-    bough_draft_head(&o->draft, slash ? slash + 1 : path, "an OpenFAST model", g, most, turn);
+    bough_draft_head(o->draft, slash ? slash + 1 : path, "an OpenFAST model", g, most, turn);
     bough_left_out(o, "solver settings, output channels, visualisation, linearisation: the scene has its "
                       "own");
 }
 
 static void note_other_blades(bough_openfast *o, const bough_deck *deck, const char *stem) {
     const char *first = bough_deck_kth(deck, stem, 1);
-    for (int k = 2; k <= o->n_blade && bough_is_ok(o->draft.status); k++) {
+    for (int k = 2; k <= o->n_blade && bough_is_ok(o->draft->status); k++) {
         const char *name = bough_deck_kth(deck, stem, k);
         if (bough_deck_line(deck, name) < 0) continue;
         if (strcmp(bough_deck_text(deck, name), bough_deck_text(deck, first)) == 0) continue;
@@ -146,7 +146,7 @@ static void note_other_blades(bough_openfast *o, const bough_deck *deck, const c
 }
 
 static void write_scene(bough_openfast *o, const char *path) {
-    if (!bough_is_ok(o->draft.status)) return;
+    if (!bough_is_ok(o->draft->status)) return;
     put_head(o, path);
     if (o->beamdyn)
         bough_openfast_beamdyn(o);
@@ -162,24 +162,18 @@ static void write_scene(bough_openfast *o, const char *path) {
 }
 
 static void convert(bough_draft *d, const char *path) {
-    bough_openfast *o = (bough_openfast *)d; // its first member
-    o->main = bough_deck_open(o->draft.arena, path, BOUGH_DECK_HEADING, o->draft.status);
+    bough_openfast *o = bough_arena_take(d->arena, sizeof *o);
+    o->draft = d;
+    o->main = bough_deck_open(o->draft->arena, path, BOUGH_DECK_HEADING, o->draft->status);
     if (o->main) open_modules(o);
     bough_openfast_check(o->elasto);
     bough_openfast_check(o->servo);
     bough_openfast_check(o->inflow);
-    if (bough_is_ok(o->draft.status)) read_shape(o);
+    if (bough_is_ok(o->draft->status)) read_shape(o);
     write_scene(o, path);
 }
 
 bough_status bough_import_openfast(const char *path, const char *folder, const bough_import_options *options,
                                    FILE *echo) {
-    bough_draft draft = {.trial_steps = options->trial_steps};
-    bough_status status;
-    bough_openfast o;
-    do {
-        o = (bough_openfast){.draft = draft, .options = options};
-        status = bough_draft_import(&o.draft, convert, path, folder, echo);
-    } while (bough_draft_again(&o.draft, &status, &draft));
-    return status;
+    return bough_draft_import(convert, path, folder, options, echo);
 }

@@ -101,8 +101,7 @@ typedef enum bough_generator {
 } bough_generator;
 
 typedef struct bough_openfast {
-    bough_draft draft;
-    const bough_import_options *options;
+    bough_draft *draft;
     bough_deck *main, *elasto, *tower, *servo, *inflow, *aero; // NULL: the model has none
     int n_blade;
     bool beamdyn; // blades by BeamDyn, else by ElastoDyn

@@ -24,9 +24,9 @@ static double *read_polar(bough_openfast *o, const bough_deck *deck, int *n) {
                         "InCol_Alfa, InCol_Cl, InCol_Cd, InCol_Cm: expected columns from 1 to %d",
                         (int)MOST_COLUMNS);
     }
-    if (!bough_is_ok(o->draft.status)) return NULL;
-    double *table = bough_arena_doubles(o->draft.arena, (size_t)POLAR * (size_t)*n), row[MOST_COLUMNS];
-    for (int i = 0; i < *n && bough_is_ok(o->draft.status); i++) {
+    if (!bough_is_ok(o->draft->status)) return NULL;
+    double *table = bough_arena_doubles(o->draft->arena, (size_t)POLAR * (size_t)*n), row[MOST_COLUMNS];
+    for (int i = 0; i < *n && bough_is_ok(o->draft->status); i++) {
         bough_deck_row(deck, &line, "a row of the polar", width, row);
         for (int k = 0; k < POLAR; k++) table[POLAR * i + k] = column[k] > 0 ? row[column[k] - 1] : 0;
         double angle = table[POLAR * i];
@@ -34,7 +34,7 @@ static double *read_polar(bough_openfast *o, const bough_deck *deck, int *n) {
         bough_deck_fail(deck, line - 1, "alpha: expected increasing angles from -180 to 180 deg, got %g",
                         angle);
     }
-    return bough_is_ok(o->draft.status) ? table : NULL;
+    return bough_is_ok(o->draft->status) ? table : NULL;
 }
 
 static bool dynamic_stall(const bough_deck *aero) {
@@ -50,8 +50,8 @@ static void put_polar(bough_openfast *o, const bough_deck *deck, const char *nam
     const double indicial[] = {bough_deck_number_or(deck, "A1", 0.3), bough_deck_number_or(deck, "A2", 0.7),
                                bough_deck_number_or(deck, "b1", 0.14),
                                bough_deck_number_or(deck, "b2", 0.53)};
-    if (!bough_is_ok(o->draft.status)) return;
-    bough_draft_polar(&o->draft, name, table, n, dynamic_stall(o->aero) ? indicial : NULL);
+    if (!bough_is_ok(o->draft->status)) return;
+    bough_draft_polar(o->draft, name, table, n, dynamic_stall(o->aero) ? indicial : NULL);
     if (bough_deck_whole_or(deck, "NumTabs", 1) > 1) {
         bough_approximated(o, "%s: the first of its tables is used for all Reynolds numbers", name);
     }
@@ -62,7 +62,7 @@ static void put_polar(bough_openfast *o, const bough_deck *deck, const char *nam
 static bough_deck *open_airfoil(bough_openfast *o, int *line, int number, char name[NAME]) {
     while (bough_deck_is_comment(o->aero, *line)) ++*line;
     const char *path = bough_deck_file_at(o->aero, (*line)++);
-    bough_deck *deck = bough_deck_open(o->draft.arena, path, 0, o->draft.status);
+    bough_deck *deck = bough_deck_open(o->draft->arena, path, 0, o->draft->status);
     const char *slash = strrchr(path, '/'), *own = slash ? slash + 1 : path;
     if (deck) bough_draft_airfoil_name(own, strcspn(own, "."), number, name);
     return deck;
@@ -72,8 +72,8 @@ static int put_polars(bough_openfast *o, char (*name)[NAME]) {
     int n = bough_deck_whole(o->aero, "NumAFfiles", 1, MOST_AIRFOILS);
     int line = bough_deck_line(o->aero, "AFNames");
     if (line < 0) line = bough_deck_line(o->aero, "NumAFfiles") + 1; // the label may be missing
-    fputs("polars:\n", o->draft.file[BOUGH_IMPORT_POLARS]);
-    for (int i = 0; i < n && bough_is_ok(o->draft.status); i++) {
+    fputs("polars:\n", o->draft->file[BOUGH_IMPORT_POLARS]);
+    for (int i = 0; i < n && bough_is_ok(o->draft->status); i++) {
         bough_deck *deck = open_airfoil(o, &line, i + 1, name[i]);
         if (!deck) return 0;
         put_polar(o, deck, name[i]);
@@ -96,7 +96,7 @@ static void put_element(FILE *file, const double *row, double span, const char *
 // From the root to the tip: what stands beyond the tip is cut, and what ends before it goes on as it
 // is there. A station within a millimetre of either is at it.
 static void put_span(bough_openfast *o, const double *row, int n, char (*name)[NAME]) {
-    FILE *file = o->draft.file[BOUGH_IMPORT_AERO];
+    FILE *file = o->draft->file[BOUGH_IMPORT_AERO];
     const double close = 1e-3, length = o->blade_length; // [m]
     double first = row[SPAN], last = row[(n - 1) * N_COLUMN + SPAN];
     if (first > close) put_element(file, row, 0, name[(int)row[AIRFOIL] - 1]);
@@ -130,7 +130,7 @@ static void put_elements(bough_openfast *o, const bough_deck *deck, char (*name)
     int n = bough_deck_whole(deck, "NumBlNds", 1, MOST_ROWS);
     const double *row = bough_deck_table(deck, column, N_COLUMN, n);
     fputs("stations:\n  columns: [span, ac_x, ac_y, twist deg, chord, polar]\n  rows:\n",
-          o->draft.file[BOUGH_IMPORT_AERO]);
+          o->draft->file[BOUGH_IMPORT_AERO]);
     double angle = 0, last = -1;
     for (int i = 0; row && i < n; i++) {
         const double *r = row + N_COLUMN * i;
@@ -151,7 +151,7 @@ static void put_elements(bough_openfast *o, const bough_deck *deck, char (*name)
         last = r[SPAN];
         angle = fmax(angle, isnan(r[CURVE_ANGLE]) ? 0 : fabs(r[CURVE_ANGLE]));
     }
-    if (!row || !bough_is_ok(o->draft.status)) return;
+    if (!row || !bough_is_ok(o->draft->status)) return;
     put_span(o, row, n, name);
     bough_taken(o, "%d blade elements", n);
     if (angle > 0) {
@@ -160,11 +160,11 @@ static void put_elements(bough_openfast *o, const bough_deck *deck, char (*name)
 }
 
 void bough_openfast_aero_tables(bough_openfast *o) {
-    if (!o->aero || !bough_is_ok(o->draft.status)) return;
-    char(*name)[NAME] = bough_arena_take(o->draft.arena, MOST_AIRFOILS * sizeof *name);
+    if (!o->aero || !bough_is_ok(o->draft->status)) return;
+    char(*name)[NAME] = bough_arena_take(o->draft->arena, MOST_AIRFOILS * sizeof *name);
     int n = put_polars(o, name);
     bough_deck *deck = bough_openfast_open(o, o->aero, "ADBlFile(1)|ADBlFile1");
-    if (bough_is_ok(o->draft.status)) put_elements(o, deck, name, n);
+    if (bough_is_ok(o->draft->status)) put_elements(o, deck, name, n);
 }
 
 // -- theory ---------------------------------------------------------------------------------------
@@ -233,7 +233,7 @@ static void put_stall(bough_openfast *o) {
 
 // The rows above the ground; from the first below it on the ground's.
 static const double *above_ground(bough_openfast *o, const double *row, int *n) {
-    double *kept = bough_arena_doubles(o->draft.arena, 3 * ((size_t)*n + 1));
+    double *kept = bough_arena_doubles(o->draft->arena, 3 * ((size_t)*n + 1));
     int m = 0;
     for (int i = 0; i < *n; i++) {
         const double *r = row + 3 * i;
@@ -270,9 +270,9 @@ static void put_tower(bough_openfast *o) {
     bough_put(o, "  tower:\n    influence: %s\n", potential == 2 ? "bak" : "potential");
     if (shadow > 0) bough_put(o, "    shadow: powles\n");
     if (drag) bough_put(o, "    body: tower\n");
-    bough_draft_tower_list(&o->draft, "height", row, 3, n);
-    bough_draft_tower_list(&o->draft, "diameter", row + 1, 3, n);
-    bough_draft_tower_list(&o->draft, "drag", row + 2, 3, n);
+    bough_draft_tower_list(o->draft, "height", row, 3, n);
+    bough_draft_tower_list(o->draft, "diameter", row + 1, 3, n);
+    bough_draft_tower_list(o->draft, "drag", row + 2, 3, n);
     bough_taken(o, "the tower's influence on the wind%s", drag ? " and its drag" : "");
     if (potential == 0) {
         bough_approximated(o, "TwrPotent 0: potential flow about the tower is included with its shadow or "
@@ -285,9 +285,9 @@ static void put_tower(bough_openfast *o) {
 
 void bough_openfast_aero(bough_openfast *o) {
     const bough_deck *a = o->aero;
-    if (!a || !bough_is_ok(o->draft.status)) return;
+    if (!a || !bough_is_ok(o->draft->status)) return;
     double density = bough_deck_number_or(o->main, "AirDens", 1.225);
-    bough_put(o, "aero:\n  rate: %.10g Hz\n  air_density: %.10g\n", 1 / o->draft.macro_step,
+    bough_put(o, "aero:\n  rate: %.10g Hz\n  air_density: %.10g\n", 1 / o->draft->macro_step,
               bough_deck_number_or(a, "AirDens", density));
     bough_openfast_wind(o);
     bough_put(o, "  blade: %s\n  polars: %s\n  hub_radius: %.10g m\n", bough_import_name[BOUGH_IMPORT_AERO],

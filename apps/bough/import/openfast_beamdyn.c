@@ -61,7 +61,7 @@ static void put_station(bough_openfast *o, const bough_deck *deck, const line_po
         bough_deck_fail(deck, line,
                         "the station: expected stiffness and inertia of a real section, positive definite");
     }
-    bough_section_matrix_put(o->draft.file[BOUGH_IMPORT_BLADE], p, k, m);
+    bough_section_matrix_put(o->draft->file[BOUGH_IMPORT_BLADE], p, k, m);
 }
 
 // Puts the section `s` at a share of the line.
@@ -81,12 +81,12 @@ static void put_stations(bough_openfast *o, const bough_deck *deck, const line_p
                          beam *b) {
     int n = bough_deck_whole(deck, "station_total", 1, MOST);
     int line = bough_deck_find(deck, "DISTRIBUTED PROPERTIES") + 1;
-    if (bough_is_ok(o->draft.status) && line == 0) {
+    if (bough_is_ok(o->draft->status) && line == 0) {
         bough_deck_fail(deck, -1, "no section 'DISTRIBUTED PROPERTIES'");
     }
     double first = 0, last = 0, s[STATION], strange = 0;
-    bough_section_matrix_head(o->draft.file[BOUGH_IMPORT_BLADE]);
-    for (int i = 0; i < n && bough_is_ok(o->draft.status); i++) {
+    bough_section_matrix_head(o->draft->file[BOUGH_IMPORT_BLADE]);
+    for (int i = 0; i < n && bough_is_ok(o->draft->status); i++) {
         bough_deck_numbers(deck, &line, "a station's share of the length", 1, s);
         int start = line - 1;
         bough_deck_numbers(deck, &line, "a station's two matrices", 2 * MATRIX, s + 1);
@@ -100,24 +100,24 @@ static void put_stations(bough_openfast *o, const bough_deck *deck, const line_p
         if (fabs(s[0]) <= close_enough) s[0] = 0;
         if (fabs(s[0] - 1) <= close_enough) s[0] = 1;
         if (i == 0 && s[0] > 0) add_station(o, deck, p, n_point, 0, s, start, b);
-        if (bough_is_ok(o->draft.status)) add_station(o, deck, p, n_point, s[0], s, start, b);
+        if (bough_is_ok(o->draft->status)) add_station(o, deck, p, n_point, s[0], s, start, b);
         strange = fmax(strange, bough_section_strangeness(s + 1 + MATRIX));
         if (i == n - 1 && s[0] < 1) add_station(o, deck, p, n_point, 1, s, start, b);
     }
-    if (bough_is_ok(o->draft.status) && (fabs(first) > close_enough || fabs(last - 1) > close_enough)) {
+    if (bough_is_ok(o->draft->status) && (fabs(first) > close_enough || fabs(last - 1) > close_enough)) {
         bough_approximated(o, "stations from %g to %g of the length: extended with the values at their ends",
                            first, last);
     }
     bough_taken(o, "%d stations with full stiffness and mass; the blade weighs %.7g kg", n, o->blade_mass);
-    bough_section_note(&o->draft, strange);
+    bough_section_note(o->draft, strange);
 }
 
 // Times that give the first flapwise and edgewise mode their ratios.
 static const double *modal_damping(bough_openfast *o, const bough_deck *deck, const beam *b) {
     int n = bough_deck_whole(deck, "n_modes", 1, MOST), line = bough_deck_line(deck, "n_modes") + 1;
-    double ratio[2] = {0}, *mu = bough_arena_doubles(o->draft.arena, 6);
+    double ratio[2] = {0}, *mu = bough_arena_doubles(o->draft->arena, 6);
     bough_deck_numbers(deck, &line, "zeta", n < 2 ? 1 : 2, ratio);
-    if (!bough_is_ok(o->draft.status)) return NULL;
+    if (!bough_is_ok(o->draft->status)) return NULL;
     double flap = 2 * ratio[0] / bough_section_frequency(b->n, b->span, b->flap, b->mass);
     double edge = 2 * ratio[n > 1] / bough_section_frequency(b->n, b->span, b->edge, b->mass);
     mu[0] = mu[2] = mu[4] = mu[5] = flap;
@@ -137,24 +137,24 @@ static void put_damping(bough_openfast *o, const bough_deck *deck, const beam *b
     if (kind == 1) mu = bough_deck_table(deck, column, 6, 1);
     if (kind == 2) mu = modal_damping(o, deck, b);
     if (!mu) return;
-    fputs("damping: ", o->draft.file[BOUGH_IMPORT_BLADE]);
-    bough_import_list(o->draft.file[BOUGH_IMPORT_BLADE], mu, 6);
-    fputs("  # s\n", o->draft.file[BOUGH_IMPORT_BLADE]);
+    fputs("damping: ", o->draft->file[BOUGH_IMPORT_BLADE]);
+    bough_import_list(o->draft->file[BOUGH_IMPORT_BLADE], mu, 6);
+    fputs("  # s\n", o->draft->file[BOUGH_IMPORT_BLADE]);
 }
 
 void bough_openfast_beamdyn(bough_openfast *o) {
     bough_deck *deck = bough_openfast_open(o, o->main, "BDBldFile(1)|BDBldFile1");
-    if (!bough_is_ok(o->draft.status)) return;
+    if (!bough_is_ok(o->draft->status)) return;
     int n;
     const line_point *p = read_line(o, deck, &n);
     static const bough_openfast_rest rest[] = {{"UsePitchAct", "the pitch actuator", 0}};
     bough_openfast_leave(o, deck, rest, 1, BOUGH_LEFT_OUT);
     bough_deck *blade = bough_openfast_open(o, deck, "BldFile");
-    if (!bough_is_ok(o->draft.status)) return;
+    if (!bough_is_ok(o->draft->status)) return;
     o->blade_length = p[n - 1].z;
-    fprintf(o->draft.file[BOUGH_IMPORT_BLADE], "length: %.10g\n", o->blade_length);
+    fprintf(o->draft->file[BOUGH_IMPORT_BLADE], "length: %.10g\n", o->blade_length);
     beam b = {0};
-    bough_arena_each(o->draft.arena, MOST + 2, &b.span, &b.flap, &b.edge, &b.mass);
+    bough_arena_each(o->draft->arena, MOST + 2, &b.span, &b.flap, &b.edge, &b.mass);
     put_stations(o, blade, p, n, &b);
-    if (bough_is_ok(o->draft.status)) put_damping(o, blade, &b);
+    if (bough_is_ok(o->draft->status)) put_damping(o, blade, &b);
 }

@@ -120,7 +120,7 @@ static void lack(bough_openfast *o, const char *why) {
 
 static bool take_library(bough_openfast *o, const char *path, char why[200]) {
     bough_discon *discon;
-    bough_status status = bough_discon_open(o->draft.arena, path, "", false, &discon);
+    bough_status status = bough_discon_open(o->draft->arena, path, "", false, &discon);
     snprintf(why, 200, "%.190s", status.message);
     if (!bough_is_ok(&status)) return false;
     o->library = path;
@@ -135,15 +135,15 @@ static bool take_library(bough_openfast *o, const char *path, char why[200]) {
 // The deck's library, unless the user gives another.
 static void find_library(bough_openfast *o) {
     char why[200];
-    const char *given = o->options->controller;
+    const char *given = o->draft->options->controller;
     if (given && !take_library(o, given, why)) {
-        *o->draft.status = bough_fail(BOUGH_INVALID, "--controller: %.200s", why);
+        *o->draft->status = bough_fail(BOUGH_INVALID, "--controller: %.200s", why);
     }
     if (given) return;
     const char *path = bough_deck_path(o->servo, "DLL_FileName");
-    if (!bough_is_ok(o->draft.status) || take_library(o, path, why)) return;
+    if (!bough_is_ok(o->draft->status) || take_library(o, path, why)) return;
     if (torque_mode(o) == LIBRARY) {
-        lack(o, bough_arena_print(o->draft.arena,
+        lack(o, bough_arena_print(o->draft->arena,
                                   "a controller, to be given to the import by --controller FILE (%s)", why));
     } else {
         bough_other_case(o, "PCMode 5: the pitch is held: %s", why);
@@ -161,29 +161,29 @@ static void find_induction(bough_openfast *o) {
     int model = bough_deck_whole_or(o->servo, "GenModel", SIMPLE);
     if (model == SIMPLE || model == THEVENIN) o->generator = BOUGH_GENERATOR_LAW;
     if (model != SIMPLE && model != THEVENIN)
-        lack(o, bough_arena_print(o->draft.arena, "the user's generator of GenModel %d", model));
+        lack(o, bough_arena_print(o->draft->arena, "the user's generator of GenModel %d", model));
 }
 
 void bough_openfast_generator(bough_openfast *o) {
-    if (!bough_is_ok(o->draft.status)) return;
+    if (!bough_is_ok(o->draft->status)) return;
     if (!bough_deck_flag_or(o->elasto, "GenDOF", true)) {
         o->generator = BOUGH_GENERATOR_DRIVEN;
         bough_taken(o, "GenDOF False: the rotor turns at %g rpm", bough_deck_number(o->elasto, "RotSpeed"));
-        if (o->options->controller) {
+        if (o->draft->options->controller) {
             bough_left_out(o, "--controller: GenDOF is False");
         }
         return;
     }
     int torque = torque_mode(o);
     if (torque == SIMPLE && !stays_off(o)) o->generator = BOUGH_GENERATOR_LAW;
-    if (o->options->controller || torque == LIBRARY || pitch_mode(o) == LIBRARY) find_library(o);
+    if (o->draft->options->controller || torque == LIBRARY || pitch_mode(o) == LIBRARY) find_library(o);
     if (o->generator != BOUGH_GENERATOR_FREE || !o->servo) return;
     if ((torque == NONE || torque == SIMPLE) && stays_off(o)) return;
     if (torque == NONE) {
         find_induction(o);
     } else {
         lack(o,
-             bough_arena_print(o->draft.arena, "the torque of VSContrl %d, the user's own routine", torque));
+             bough_arena_print(o->draft->arena, "the torque of VSContrl %d, the user's own routine", torque));
     }
 }
 
@@ -273,18 +273,18 @@ static double least_slip(const bough_openfast *o, const torque_line *l) {
     if (!bough_openfast_shaft_twists(o)) {
         inertia += o->n_blade * o->blade_inertia + bough_deck_number(o->elasto, "HubIner");
     }
-    return ratio * ratio * l->most * o->draft.macro_step / (most_gain * inertia * l->full_speed);
+    return ratio * ratio * l->most * o->draft->macro_step / (most_gain * inertia * l->full_speed);
 }
 
 static void put_law(bough_openfast *o) {
     torque_line l = read_line(o);
     double least = least_slip(o, &l), full = l.full_speed;
-    if (!bough_is_ok(o->draft.status)) return;
+    if (!bough_is_ok(o->draft->status)) return;
     if (!(l.slip >= least) && isfinite(least)) {
         bough_approximated(o,
                            "torque grows to its maximum over %.2g %% of the speed, not %.2g %%, which "
                            "would be unstable with samples every %g s",
-                           100 * least, 100 * l.slip, o->draft.macro_step);
+                           100 * least, 100 * l.slip, o->draft->macro_step);
         if (l.gain == 0) full *= (1 + least) / (1 + l.slip);
         l.slip = least;
     }
@@ -293,7 +293,7 @@ static void put_law(bough_openfast *o) {
                         bough_deck_line(o->servo, torque_mode(o) == SIMPLE ? "VS_RtGnSp" : "GenModel"),
                         "the torque reaches its maximum of %g N m at %.3g rpm of the generator, too suddenly "
                         "for samples every %g s",
-                        l.most, full / BOUGH_RPM, o->draft.macro_step);
+                        l.most, full / BOUGH_RPM, o->draft->macro_step);
     }
     bough_put(o,
               "control:\n  kind: variable-speed\n  rate: %.10g Hz\n  gear_ratio: %.10g\n"
@@ -301,8 +301,8 @@ static void put_law(bough_openfast *o) {
               "    optimal_from: %g rad/s\n    optimal_gain: %.10g\n    rated_speed: %.10g rad/s\n"
               "    rated_power: %.10g\n    above_rated: torque\n    slip: %.10g\n"
               "    most_torque: %.10g\n    torque_rate: 1e9\n",
-              1 / o->draft.macro_step, bough_deck_number(o->elasto, "GBRatio"),
-              bough_deck_number_or(o->servo, "GenEff", 100) / 100, 2 / o->draft.macro_step, least_speed,
+              1 / o->draft->macro_step, bough_deck_number(o->elasto, "GBRatio"),
+              bough_deck_number_or(o->servo, "GenEff", 100) / 100, 2 / o->draft->macro_step, least_speed,
               l.gain, full, l.most * full, l.slip, l.most);
     if (torque_mode(o) == NONE) bough_put(o, "    motoring: true\n");
 }
@@ -339,10 +339,10 @@ static void put_switches(bough_openfast *o) {
 // -- library --------------------------------------------------------------------------------------
 
 static void put_library(bough_openfast *o) {
-    double step = o->draft.macro_step;
+    double step = o->draft->macro_step;
     double efficiency = o->servo ? bough_deck_number_or(o->servo, "GenEff", 100) / 100 : 1;
     bool input = o->servo && bough_deck_line(o->servo, "DLL_InFile") >= 0;
-    bough_draft_library(&o->draft, o->library, input ? bough_deck_path(o->servo, "DLL_InFile") : NULL,
+    bough_draft_library(o->draft, o->library, input ? bough_deck_path(o->servo, "DLL_InFile") : NULL,
                         bough_deck_number(o->elasto, "GBRatio"), efficiency);
     if (o->servo && bough_deck_whole_or(o->servo, "Ptch_Cntrl", 0) == 1) {
         bough_put(o, "  individual_pitch: true\n");
@@ -379,7 +379,7 @@ static const bough_openfast_rest rest[] = {
 };
 
 void bough_openfast_control(bough_openfast *o) {
-    if (!bough_is_ok(o->draft.status)) return;
+    if (!bough_is_ok(o->draft->status)) return;
     if (o->generator == BOUGH_GENERATOR_LIBRARY) put_library(o);
     if (o->generator == BOUGH_GENERATOR_LAW) put_law(o);
     if (!o->servo) return;

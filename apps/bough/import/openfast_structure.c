@@ -93,7 +93,7 @@ static void extend(bough_openfast *o, const bough_deck *deck, slender *b, const 
     const double close = 1e-4;
     if (!b->row || b->n < 1) return;
     size_t width = (size_t)b->width;
-    double *row = bough_arena_doubles(o->draft.arena, width * ((size_t)b->n + 2));
+    double *row = bough_arena_doubles(o->draft->arena, width * ((size_t)b->n + 2));
     const double *last = b->row + width * (size_t)(b->n - 1);
     double first = b->n == 1 ? 1 : b->row[0], end = b->n == 1 ? 0 : last[0];
     int before = first > close, after = end < 1 - close;
@@ -137,11 +137,11 @@ static void put_blade(bough_openfast *o, const bough_deck *deck, const slender *
     edgewise.bending = EDGE;
     edgewise.bending_factor = edge;
     double edge_time = damping(deck, edgewise, "BldEdDmp(1)|BldEdDmp1", "BldEdgSh");
-    if (!bough_is_ok(o->draft.status)) return;
+    if (!bough_is_ok(o->draft->status)) return;
     // ElastoDyn has no shear, stretch and twist: undamped, they would ring on at high frequencies
     double other = fmax(flap_time, least_damping(deck, b));
     const double time[] = {other, fmax(edge_time, other), other, edge_time, flap_time, other};
-    FILE *file = o->draft.file[BOUGH_IMPORT_BLADE];
+    FILE *file = o->draft->file[BOUGH_IMPORT_BLADE];
     bough_section_head(file, b->length, time);
     for (int i = 0; i < b->n; i++) {
         const double *r = &b->row[i * b->width];
@@ -171,7 +171,7 @@ void bough_openfast_blade(bough_openfast *o) {
                  .length = bough_deck_number(o->elasto, "TipRad") - o->hub_radius};
     double edge = bough_deck_number_or(deck, "AdjEdSt", 1);
     extend(o, deck, &b, "NBlInpSt");
-    if (!bough_is_ok(o->draft.status)) return;
+    if (!bough_is_ok(o->draft->status)) return;
     if (!(b.length > 0)) {
         bough_deck_refuse(o->elasto, "TipRad", "expected more than HubRad");
     }
@@ -224,14 +224,14 @@ void bough_openfast_tower(bough_openfast *o, double top_mass) {
                  .end_mass = top_mass};
     double side = bough_deck_number_or(deck, "AdjSSSt", 1);
     extend(o, deck, &b, "NTwInpSt");
-    if (!bough_is_ok(o->draft.status)) return;
+    if (!bough_is_ok(o->draft->status)) return;
     check_rows(deck, &b, "NTwInpSt", SIDE);
     slender bare = b; // to which the deck's ratio refers: ElastoDyn's is of the tower alone
     bare.end_mass = 0;
     double time = damping(deck, bare, "TwrFADmp(1)|TwrFADmp1", "TwFAM1Sh");
-    if (!bough_is_ok(o->draft.status)) return;
+    if (!bough_is_ok(o->draft->status)) return;
     const double times[] = {time, time, time, time, time, time};
-    FILE *file = o->draft.file[BOUGH_IMPORT_TOWER];
+    FILE *file = o->draft->file[BOUGH_IMPORT_TOWER];
     bough_section_head(file, b.length, times);
     for (int i = 0; i < b.n; i++) {
         const double *r = &b.row[i * b.width];

@@ -13,7 +13,7 @@ static void put_tower(bough_openfast *o, double top_mass) {
         return;
     }
     bough_openfast_tower(o, top_mass);
-    bough_draft_tower(&o->draft, o->tower_base);
+    bough_draft_tower(o->draft, o->tower_base);
 }
 
 static bool yaws(const bough_openfast *o) {
@@ -33,7 +33,7 @@ static bool has_yaw_drive(const bough_openfast *o) {
 // and goes within a macro step; `key` is where the deck has them.
 static void put_manoeuvre(bough_openfast *o, const char *key, double way, double start, double rate) {
     double speed = copysign(rate, way), lasts = way / speed;
-    double half = fmin(fmin(o->draft.macro_step / 2, lasts / 4), start > 0 ? start / 2 : HUGE_VAL);
+    double half = fmin(fmin(o->draft->macro_step / 2, lasts / 4), start > 0 ? start / 2 : HUGE_VAL);
     if (!(fabs(rate) > 0) || !(start >= 0)) {
         bough_deck_refuse(o->servo, key, "expected a time from 0 on and a rate that is not zero");
     }
@@ -272,7 +272,7 @@ static void put_blade(bough_openfast *o, int k) {
     bough_put(o, "rotate x %.10g deg, rotate y %.10g deg, move z %.10g m]}\n    pitch: %.10g deg\n",
               360.0 * (k - 1) / o->n_blade, bough_deck_number(e, bough_deck_kth(e, "PreCone", k)),
               o->hub_radius, pitch_of(o, k));
-    bough_draft_blade_rod(&o->draft);
+    bough_draft_blade_rod(o->draft);
     put_tip(o, k);
 }
 
@@ -285,7 +285,7 @@ static void put_rotor(bough_openfast *o) {
     }
     put_hub(o, twists);
     for (int k = 1; k <= o->n_blade; k++) put_blade(o, k);
-    bough_draft_turbine(&o->draft, has_generator(o) ? "generator" : teeters(o) ? "shaft" : "hub", o->n_blade);
+    bough_draft_turbine(o->draft, has_generator(o) ? "generator" : teeters(o) ? "shaft" : "hub", o->n_blade);
 }
 
 #define START "the run starts undeformed, without initial displacement"
@@ -311,7 +311,7 @@ static const bough_openfast_rest rest[] = {
 };
 
 void bough_openfast_bodies(bough_openfast *o) {
-    if (!bough_is_ok(o->draft.status)) return;
+    if (!bough_is_ok(o->draft->status)) return;
     const bough_deck *e = o->elasto;
     double top = bough_deck_number(e, "NacMass") + bough_deck_number(e, "HubMass") +
                  bough_deck_number_or(e, "YawBrMass", 0) + o->n_blade * o->blade_mass;

@@ -85,17 +85,17 @@ static bough_status read_hawc(bough_openfast *o, bough_wind_box *box) {
         d.factor[c] = bough_deck_number_or(w, factor[c], 1);
         d.sigma[c] = bough_deck_number_or(w, sigma[c], 1);
     }
-    if (!bough_is_ok(o->draft.status)) return bough_ok();
-    return bough_wind_hawc_read(o->draft.arena, &d, box);
+    if (!bough_is_ok(o->draft->status)) return bough_ok();
+    return bough_wind_hawc_read(o->draft->arena, &d, box);
 }
 
 // What cannot be read is stood in for, unless the user gave it.
 static void take_status(bough_openfast *o, bough_status status) {
-    if (bough_is_ok(&status) || !bough_is_ok(o->draft.status)) return;
-    if (status.code == BOUGH_INVALID && !o->options->wind) {
+    if (bough_is_ok(&status) || !bough_is_ok(o->draft->status)) return;
+    if (status.code == BOUGH_INVALID && !o->draft->options->wind) {
         put_stand_in(o, status.message);
     } else {
-        *o->draft.status = status;
+        *o->draft->status = status;
     }
 }
 
@@ -103,19 +103,19 @@ static void put_file(bough_openfast *o, bough_wind_form form, const char *path) 
     bough_deck uniform = {0};
     if (o->inflow) uniform = section_of(o->inflow, UNIFORM);
     const bough_deck *w = o->inflow ? &uniform : NULL;
-    take_status(o, bough_wind_given(&o->draft, form, path, positive(w, "RefHt_Uni|RefHt", hub_height(o)),
+    take_status(o, bough_wind_given(o->draft, form, path, positive(w, "RefHt_Uni|RefHt", hub_height(o)),
                                     positive(w, "RefLength", rotor_diameter(o))));
 }
 
 static void put_hawc(bough_openfast *o, const char *path) {
-    bough_wind_box *box = bough_arena_take(o->draft.arena, sizeof *box);
+    bough_wind_box *box = bough_arena_take(o->draft->arena, sizeof *box);
     bough_status status = read_hawc(o, box);
-    if (bough_is_ok(&status) && bough_is_ok(o->draft.status)) bough_wind_made(&o->draft, box, path);
+    if (bough_is_ok(&status) && bough_is_ok(o->draft->status)) bough_wind_made(o->draft, box, path);
     take_status(o, status);
 }
 
 static void put_type(bough_openfast *o, int type) {
-    if (!bough_is_ok(o->draft.status)) return; // no such type
+    if (!bough_is_ok(o->draft->status)) return; // no such type
     if (type == STEADY) {
         double speed = bough_deck_number(o->inflow, "HWindSpeed");
         put_steady(o, speed);
@@ -136,7 +136,7 @@ static void put_type(bough_openfast *o, int type) {
     static const bough_wind_form form[] = {
         [UNIFORM] = BOUGH_WIND_UNIFORM_FILE, [TURBSIM] = BOUGH_WIND_TURBSIM, [BLADED] = BOUGH_WIND_BLADED};
     const char *path = bough_deck_path_at(o->inflow, line);
-    if (!bough_is_ok(o->draft.status)) return;
+    if (!bough_is_ok(o->draft->status)) return;
     if (type == HAWC)
         put_hawc(o, path);
     else
@@ -144,7 +144,7 @@ static void put_type(bough_openfast *o, int type) {
 }
 
 void bough_openfast_wind(bough_openfast *o) {
-    const char *given = o->options->wind;
+    const char *given = o->draft->options->wind;
     double to = 0, up = 0;
     if (o->inflow) {
         to = bough_deck_number_or(o->inflow, "PropagationDir|PropogationDir", 0);

@@ -12,7 +12,7 @@ static const double duration = 20; // [s]: the file has none
 // -- reading --------------------------------------------------------------------------------------
 
 static void find_parts(bough_windio *w) {
-    bough_draft *d = &w->draft;
+    bough_draft *d = w->draft;
     w->parts = bough_entry_need(d, w->root, "components");
     w->blade = bough_entry_need(d, w->parts, "blade");
     w->shape = bough_entry_need(d, w->blade, "outer_shape_bem|outer_shape");
@@ -26,25 +26,25 @@ static void find_parts(bough_windio *w) {
 static void read_axis(bough_windio *w) {
     static const char *const key[] = {"reference_axis.x", "reference_axis.y", "reference_axis.z"};
     const bough_node *from = w->second ? w->blade : w->shape;
-    for (int i = 0; i < 3; i++) w->axis[i] = bough_entry_curve(&w->draft, from, key[i]);
+    for (int i = 0; i < 3; i++) w->axis[i] = bough_entry_curve(w->draft, from, key[i]);
     const bough_curve *z = &w->axis[2];
-    if (!bough_is_ok(w->draft.status)) return;
+    if (!bough_is_ok(w->draft->status)) return;
     for (int i = 1; i < z->n; i++) {
         if (z->y[i] > z->y[i - 1] && z->x[i] > z->x[i - 1]) continue;
-        bough_entry_fail(&w->draft, z->node,
+        bough_entry_fail(w->draft, z->node,
                          "reference_axis.z: expected increasing values, but number %d is not larger than the "
                          "one before",
                          i + 1);
     }
     if (z->n < 2 || fabs(z->y[0]) > 1e-6 || z->x[0] != 0 || z->x[z->n - 1] != 1) {
-        bough_entry_fail(&w->draft, z->node,
+        bough_entry_fail(w->draft, z->node,
                          "reference_axis.z: expected a line from 0 m at the grid's 0 to its 1");
     }
     w->blade_length = z->y[z->n - 1];
 }
 
 static void read_assembly(bough_windio *w) {
-    bough_draft *d = &w->draft;
+    bough_draft *d = w->draft;
     const bough_node *assembly = bough_entry_need(d, w->root, "assembly");
     double blades = bough_entry_number_or(d, assembly, "number_of_blades", 3);
     if (!(blades >= 1 && blades <= BOUGH_IMPORT_BLADES && blades == floor(blades))) {
@@ -70,24 +70,24 @@ double bough_windio_control(bough_windio *w, const char *first, const char *seco
     const bough_node *control = bough_entry(w->root, "control");
     const char *name = bough_entry(control, first) ? first : second;
     double unit = w->second || name == second ? second_unit : 1;
-    return bough_entry_number_or(&w->draft, control, name, fallback / unit) * unit;
+    return bough_entry_number_or(w->draft, control, name, fallback / unit) * unit;
 }
 
 const bough_node *bough_windio_material(bough_windio *w, const bough_node *layer) {
-    const bough_node *materials = bough_entry_need(&w->draft, w->root, "materials");
-    const char *name = bough_entry_text(&w->draft, layer, "material");
+    const bough_node *materials = bough_entry_need(w->draft, w->root, "materials");
+    const char *name = bough_entry_text(w->draft, layer, "material");
     const bough_node *material = bough_entry_named(materials, name);
     if (materials && !material)
-        bough_entry_fail(&w->draft, layer, "material: no material is named '%.60s'", name);
+        bough_entry_fail(w->draft, layer, "material: no material is named '%.60s'", name);
     return material;
 }
 
 double bough_windio_property(bough_windio *w, const bough_node *material, const char *key, int k) {
-    const bough_node *node = bough_entry_need(&w->draft, material, key);
+    const bough_node *node = bough_entry_need(w->draft, material, key);
     if (node && node->kind == BOUGH_SEQUENCE && node->n > 0)
         node = node->value[k < node->n ? k : node->n - 1];
-    double value = node ? bough_entry_number(&w->draft, node, "") : 0;
-    if (node && !(value > 0)) bough_entry_fail(&w->draft, node, "%s: expected a positive value", key);
+    double value = node ? bough_entry_number(w->draft, node, "") : 0;
+    if (node && !(value > 0)) bough_entry_fail(w->draft, node, "%s: expected a positive value", key);
     return value;
 }
 
@@ -103,7 +103,7 @@ static void choose_start(bough_windio *w) {
     w->rated_speed = given > 0 && given <= 1.02 * limit ? given : limit;
     if (!isfinite(w->rated_speed)) {
         bough_entry_fail(
-            &w->draft, w->root,
+            w->draft, w->root,
             "control: expected the rotor's rated speed, 'torque.VS_maxspd' or 'rated_rotor_speed', or its "
             "largest tip speed, 'supervisory.maxTS' or 'max_allowable_blade_tip_speed'");
         return;
@@ -125,7 +125,7 @@ static void put_head(bough_windio *w, const char *path) {
     const char *slash = strrchr(path, '/');
     const bough_node *name = bough_entry(w->root, "name");
     const char *title = name && name->kind == BOUGH_SCALAR ? name->text : slash ? slash + 1 : path;
-    bough_draft_head(&w->draft, title, "a WindIO turbine", 9.80665, duration, w->rated_speed);
+    bough_draft_head(w->draft, title, "a WindIO turbine", 9.80665, duration, w->rated_speed);
 }
 
 static void note_left(bough_windio *w) {
@@ -138,16 +138,17 @@ static void note_left(bough_windio *w) {
 }
 
 static void convert(bough_draft *d, const char *path) {
-    bough_windio *w = (bough_windio *)d; // its first member
-    w->root = bough_entry_read(&w->draft, path);
+    bough_windio *w = bough_arena_take(d->arena, sizeof *w);
+    w->draft = d;
+    w->root = bough_entry_read(w->draft, path);
     find_parts(w);
     read_axis(w);
-    if (bough_is_ok(w->draft.status)) bough_windio_shape_read(w);
+    if (bough_is_ok(w->draft->status)) bough_windio_shape_read(w);
     read_assembly(w);
-    if (!bough_is_ok(w->draft.status)) return;
+    if (!bough_is_ok(w->draft->status)) return;
     bough_taken(w, "%s, in the layout of version %d", path, w->second ? 2 : 1);
     choose_start(w);
-    if (!bough_is_ok(w->draft.status)) return;
+    if (!bough_is_ok(w->draft->status)) return;
     put_head(w, path);
     bough_windio_blade(w);
     bough_windio_tower(w);
@@ -160,12 +161,5 @@ static void convert(bough_draft *d, const char *path) {
 
 bough_status bough_import_windio(const char *path, const char *folder, const bough_import_options *options,
                                  FILE *echo) {
-    bough_draft draft = {.trial_steps = options->trial_steps};
-    bough_status status;
-    bough_windio w;
-    do {
-        w = (bough_windio){.draft = draft, .options = options};
-        status = bough_draft_import(&w.draft, convert, path, folder, echo);
-    } while (bough_draft_again(&w.draft, &status, &draft));
-    return status;
+    return bough_draft_import(convert, path, folder, options, echo);
 }

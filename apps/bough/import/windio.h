@@ -85,8 +85,7 @@ typedef struct bough_windio_shape {
 } bough_windio_shape;
 
 typedef struct bough_windio {
-    bough_draft draft;
-    const bough_import_options *options;
+    bough_draft *draft;
     const bough_node *root, *parts; // the file; its components
     const bough_node *blade, *shape, *hub, *train;
     const bough_node *tower; // NULL: none

@@ -18,12 +18,12 @@ static void airfoil_name(const bough_node *airfoil, int number, char name[NAME])
 // at 3.14.
 static bough_curve read_coefficient(bough_windio *w, const bough_node *from, const char *names, bool needed) {
     if (!needed && !bough_entry(from, names)) return (bough_curve){0};
-    bough_curve c = bough_entry_curve(&w->draft, from, names);
+    bough_curve c = bough_entry_curve(w->draft, from, names);
     if (c.n == 0) return c;
-    double *x = bough_arena_doubles(w->draft.arena, (size_t)c.n), low = c.x[0] * w->degree;
+    double *x = bough_arena_doubles(w->draft->arena, (size_t)c.n), low = c.x[0] * w->degree;
     double high = c.x[c.n - 1] * w->degree;
     if (low < -181 || high > 181) {
-        bough_entry_fail(&w->draft, c.node, "grid: expected angles from -180 to 180 deg, got %g to %g", low,
+        bough_entry_fail(w->draft, c.node, "grid: expected angles from -180 to 180 deg, got %g to %g", low,
                          high);
     }
     for (int i = 0; i < c.n; i++) x[i] = c.x[i] * w->degree;
@@ -40,24 +40,24 @@ static bough_curve read_coefficient(bough_windio *w, const bough_node *from, con
 // One row for each angle at which one of the three has a point.
 static void put_polar(bough_windio *w, const bough_curve *c, const char *name) {
     const bough_curve *const all[] = {&c[0], &c[1], &c[2]};
-    if (!bough_is_ok(w->draft.status)) return;
+    if (!bough_is_ok(w->draft->status)) return;
     double *angle;
-    int n = bough_curve_places(&w->draft, all, 3, 1e-9, &angle);
-    double *row = bough_arena_doubles(w->draft.arena, POLAR * (size_t)n);
+    int n = bough_curve_places(w->draft, all, 3, 1e-9, &angle);
+    double *row = bough_arena_doubles(w->draft->arena, POLAR * (size_t)n);
     for (int i = 0; i < n; i++) {
         row[POLAR * i] = angle[i];
         for (int k = 0; k < 3; k++) row[POLAR * i + 1 + k] = bough_curve_at(&c[k], angle[i]);
     }
-    bough_draft_polar(&w->draft, name, row, n, NULL);
+    bough_draft_polar(w->draft, name, row, n, NULL);
 }
 
 static void put_airfoil(bough_windio *w, const bough_node *airfoil, int number) {
     char name[NAME];
     airfoil_name(airfoil, number, name);
-    const bough_node *polars = bough_entry_need(&w->draft, airfoil, "polars");
+    const bough_node *polars = bough_entry_need(w->draft, airfoil, "polars");
     if (!polars) return;
     if (polars->kind != BOUGH_SEQUENCE || polars->n < 1) {
-        bough_entry_fail(&w->draft, polars, "polars: expected a list of polars");
+        bough_entry_fail(w->draft, polars, "polars: expected a list of polars");
         return;
     }
     const bough_node *from = polars->value[0], *sets = bough_entry(from, "re_sets");
@@ -80,8 +80,8 @@ static void put_airfoil(bough_windio *w, const bough_node *airfoil, int number) 
 // Numbers the airfoils in the order of the blade, each once, and writes them.
 static void put_airfoils(bough_windio *w, bough_windio_shape *a) {
     int n = 0;
-    fputs("polars:\n", w->draft.file[BOUGH_IMPORT_POLARS]);
-    for (int i = 0; i < a->n && bough_is_ok(w->draft.status); i++) {
+    fputs("polars:\n", w->draft->file[BOUGH_IMPORT_POLARS]);
+    for (int i = 0; i < a->n && bough_is_ok(w->draft->status); i++) {
         for (int k = 0; k < i && a->place[i].number == 0; k++) {
             if (a->place[k].airfoil == a->place[i].airfoil) a->place[i].number = a->place[k].number;
         }
@@ -95,11 +95,11 @@ static void put_airfoils(bough_windio *w, bough_windio_shape *a) {
 // -- blade elements -------------------------------------------------------------------------------
 
 static double centre_of(bough_windio *w, const bough_windio_place *p) {
-    return bough_entry_number_or(&w->draft, p->airfoil, "aerodynamic_center", 0.25);
+    return bough_entry_number_or(w->draft, p->airfoil, "aerodynamic_center", 0.25);
 }
 
 static void put_element(bough_windio *w, const bough_windio_shape *a, double at) {
-    FILE *file = w->draft.file[BOUGH_IMPORT_AERO];
+    FILE *file = w->draft->file[BOUGH_IMPORT_AERO];
     char name[NAME], other[NAME];
     double share, chord = bough_curve_at(&a->chord, at);
     int i = bough_windio_neighbours(a, at, &share);
@@ -114,7 +114,7 @@ static void put_element(bough_windio *w, const bough_windio_shape *a, double at)
             bough_curve_at(&w->axis[0], at) + back * sin(turn) + up * cos(turn),
             bough_curve_at(&w->axis[1], at) + back * cos(turn) - up * sin(turn), twist, chord, name, other,
             share);
-    if (!(chord > 0)) bough_entry_fail(&w->draft, a->chord.node, "chord: expected a positive value");
+    if (!(chord > 0)) bough_entry_fail(w->draft, a->chord.node, "chord: expected a positive value");
 }
 
 static void put_elements(bough_windio *w, const bough_windio_shape *a) {
@@ -122,22 +122,22 @@ static void put_elements(bough_windio *w, const bough_windio_shape *a) {
     double last = -1;
     fputs("stations:\n  columns: [span, ac_x, ac_y, twist deg, chord, polar, blend, share]\n"
           "  rows:\n",
-          w->draft.file[BOUGH_IMPORT_AERO]);
-    for (int i = 0; i < a->chord.n && bough_is_ok(w->draft.status); i++) {
+          w->draft->file[BOUGH_IMPORT_AERO]);
+    for (int i = 0; i < a->chord.n && bough_is_ok(w->draft->status); i++) {
         double at = a->chord.x[i];
         if (at < 0 || at > 1 || at < last + 1e-6) continue;
         put_element(w, a, at);
         last = at;
         n++;
     }
-    if (n < 2) bough_entry_fail(&w->draft, a->chord.node, "chord: expected two points from 0 to 1");
+    if (n < 2) bough_entry_fail(w->draft, a->chord.node, "chord: expected two points from 0 to 1");
     bough_taken(w, "%d blade elements, at the stations of the chord", n);
     bough_approximated(w, "polars between airfoils: mixed linearly by %s",
                        a->by_thickness ? "thickness" : "place");
 }
 
 void bough_windio_air_tables(bough_windio *w) {
-    if (!bough_is_ok(w->draft.status)) return;
+    if (!bough_is_ok(w->draft->status)) return;
     put_airfoils(w, &w->outline);
     put_elements(w, &w->outline);
 }

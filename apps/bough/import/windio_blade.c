@@ -31,10 +31,10 @@ static void matrix_at(const matrices *m, double share, double to[MATRIX]) {
 // -- reading --------------------------------------------------------------------------------------
 
 static matrices read_grid(bough_windio *w, const bough_node *from, const char *path) {
-    matrices m = {.node = bough_entry_need(&w->draft, from, path)};
-    if (m.node) m.grid = bough_entry_numbers(&w->draft, m.node, "grid", &m.n);
+    matrices m = {.node = bough_entry_need(w->draft, from, path)};
+    if (m.node) m.grid = bough_entry_numbers(w->draft, m.node, "grid", &m.n);
     if (!m.grid) return (matrices){0};
-    m.entry = bough_arena_doubles(w->draft.arena, (size_t)ENTRIES * m.n);
+    m.entry = bough_arena_doubles(w->draft->arena, (size_t)ENTRIES * m.n);
     return m;
 }
 
@@ -42,19 +42,19 @@ static matrices read_grid(bough_windio *w, const bough_node *from, const char *p
 static void read_rows(bough_windio *w, matrices *m) {
     const bough_node *rows = bough_entry(m->node, "values");
     if (rows->kind != BOUGH_SEQUENCE || rows->n != m->n) {
-        bough_entry_fail(&w->draft, rows, "values: expected a list of %d rows, as the grid has", m->n);
+        bough_entry_fail(w->draft, rows, "values: expected a list of %d rows, as the grid has", m->n);
         return;
     }
-    for (int k = 0; k < m->n && bough_is_ok(w->draft.status); k++) {
+    for (int k = 0; k < m->n && bough_is_ok(w->draft->status); k++) {
         int n = ENTRIES;
-        const double *row = bough_entry_numbers(&w->draft, rows->value[k], "", &n);
+        const double *row = bough_entry_numbers(w->draft, rows->value[k], "", &n);
         for (int e = 0; row && e < ENTRIES; e++) m->entry[(size_t)e * m->n + k] = row[e];
     }
 }
 
 static const double *read_list(bough_windio *w, const matrices *m, const char *key) {
     int n = m->n;
-    return bough_entry_numbers(&w->draft, m->node, key, &n);
+    return bough_entry_numbers(w->draft, m->node, key, &n);
 }
 
 static matrices read_stiffness(bough_windio *w, const bough_node *from) {
@@ -101,7 +101,7 @@ static matrices read_inertia(bough_windio *w, const bough_node *from) {
     const double *list[7];
     for (int e = 0; e < 7; e++)
         list[e] = needed[e] || bough_entry(m.node, key[e]) ? read_list(w, &m, key[e]) : NULL;
-    for (int k = 0; k < m.n && bough_is_ok(w->draft.status); k++) {
+    for (int k = 0; k < m.n && bough_is_ok(w->draft->status); k++) {
         double value[7];
         for (int e = 0; e < 7; e++) value[e] = list[e] ? list[e][k] : 0;
         put_inertia(&m, k, value);
@@ -132,14 +132,14 @@ static void put_station(bough_windio *w, const matrices *stiffness, const matric
     matrix_at(inertia, share, m);
     w->shear_stiff = stiffen_shear(k) || w->shear_stiff;
     if (!bough_section_possible(k, m)) {
-        bough_entry_fail(&w->draft, stiffness->node,
+        bough_entry_fail(w->draft, stiffness->node,
                          "at %.4g of the span: expected stiffness and inertia of a real section, positive "
                          "definite",
                          share);
     }
     const bough_section_place at = {bough_curve_at(&w->axis[0], share), bough_curve_at(&w->axis[1], share),
                                     bough_curve_at(&w->axis[2], share), twist};
-    bough_section_matrix_put(w->draft.file[BOUGH_IMPORT_BLADE], &at, k, m);
+    bough_section_matrix_put(w->draft->file[BOUGH_IMPORT_BLADE], &at, k, m);
     *strange = fmax(*strange, bough_section_strangeness(m));
 }
 
@@ -155,18 +155,18 @@ static double mass_between(const bough_windio *w, const matrices *inertia, doubl
 }
 
 static void put_damping(bough_windio *w, const bough_node *from) {
-    FILE *file = w->draft.file[BOUGH_IMPORT_BLADE];
+    FILE *file = w->draft->file[BOUGH_IMPORT_BLADE];
     const double usual[6] = {usual_damping, usual_damping, usual_damping,
                              usual_damping, usual_damping, usual_damping};
     int n = 6;
     const double *mu = usual;
     if (bough_entry(from, "structural_damping.mu"))
-        mu = bough_entry_numbers(&w->draft, from, "structural_damping.mu", &n);
+        mu = bough_entry_numbers(w->draft, from, "structural_damping.mu", &n);
     bool any = false;
     for (int i = 0; mu && i < 6; i++) {
         any = any || mu[i] > 0;
         if (mu[i] < 0)
-            bough_entry_fail(&w->draft, from, "structural_damping.mu: expected times that are not negative");
+            bough_entry_fail(w->draft, from, "structural_damping.mu: expected times that are not negative");
     }
     if (!any || mu == usual) {
         mu = usual;
@@ -182,12 +182,12 @@ static void put_damping(bough_windio *w, const bough_node *from) {
 static void put_stations(bough_windio *w, const bough_node *from, const matrices *stiffness,
                          const matrices *inertia) {
     bough_curve k = curve_of(stiffness, 0, 0), m = curve_of(inertia, 0, 0);
-    bough_curve twist = bough_entry_curve(&w->draft, bough_entry(from, "twist") ? from : w->shape, "twist");
+    bough_curve twist = bough_entry_curve(w->draft, bough_entry(from, "twist") ? from : w->shape, "twist");
     bough_windio_check_angles(w, &twist, "twist");
     const bough_curve *all[] = {&k, &m, &twist, &w->axis[0], &w->axis[1], &w->axis[2]};
     double *share, strange = 0;
-    int n = bough_curve_shares(&w->draft, all, 6, 1e-6, &share); // all at which something bends
-    for (int i = 0; i < n && bough_is_ok(w->draft.status); i++) {
+    int n = bough_curve_shares(w->draft, all, 6, 1e-6, &share); // all at which something bends
+    for (int i = 0; i < n && bough_is_ok(w->draft->status); i++) {
         double turn = bough_curve_at(&twist, share[i]) * w->degree;
         put_station(w, stiffness, inertia, share[i], turn, &strange);
         if (i == 0) continue;
@@ -202,13 +202,13 @@ static void put_stations(bough_windio *w, const bough_node *from, const matrices
         bough_approximated(w, "blade: shear stiffness of zero (K11, K22) is read as no shear: the axial "
                               "stiffness");
     }
-    bough_section_note(&w->draft, strange);
+    bough_section_note(w->draft, strange);
 }
 
 // From what the blade is made of.
 static void read_layup(bough_windio *w, matrices *stiffness, matrices *inertia) {
     bough_windio_layup(w, stiffness, inertia);
-    if (!bough_is_ok(w->draft.status)) return;
+    if (!bough_is_ok(w->draft->status)) return;
     bough_approximated(w, "blade: stiffness and inertia of thin walls, from layers and webs: plane sections, "
                           "shear flow in the cells, no coupling by fibre angles");
 }
@@ -243,7 +243,7 @@ void bough_windio_blade(bough_windio *w) {
     const bough_node *from = find_matrices(w);
     matrices stiffness = {0}, inertia = {0};
     if (!from && !bough_windio_has_layers(w)) {
-        bough_entry_fail(&w->draft, w->blade,
+        bough_entry_fail(w->draft, w->blade,
                          "expected stiffness and inertia of the blade: 'elastic_properties_mb.six_x_six' or "
                          "'structure.elastic_properties', or the layers that it is made of");
         return;
@@ -252,7 +252,7 @@ void bough_windio_blade(bough_windio *w) {
         stiffness = read_stiffness(w, from);
         inertia = read_inertia(w, from);
     }
-    bool good = from && bough_is_ok(w->draft.status) && are_possible(&stiffness, &inertia);
+    bool good = from && bough_is_ok(w->draft->status) && are_possible(&stiffness, &inertia);
     if (bough_windio_has_layers(w) && !good) {
         if (from) {
             bough_left_out(w, "blade: the matrices of stiffness and inertia, which no section can have: they "
@@ -260,14 +260,14 @@ void bough_windio_blade(bough_windio *w) {
         }
         read_layup(w, &stiffness, &inertia);
     }
-    if (bough_is_ok(w->draft.status)) {
-        bough_curve_of(&w->draft, stiffness.node, stiffness.grid, stiffness.entry, stiffness.n);
-        bough_curve_of(&w->draft, inertia.node, inertia.grid, inertia.entry, inertia.n);
+    if (bough_is_ok(w->draft->status)) {
+        bough_curve_of(w->draft, stiffness.node, stiffness.grid, stiffness.entry, stiffness.n);
+        bough_curve_of(w->draft, inertia.node, inertia.grid, inertia.entry, inertia.n);
     }
-    if (!bough_is_ok(w->draft.status)) return;
+    if (!bough_is_ok(w->draft->status)) return;
     put_damping(w, from);
     put_stations(w, from, &stiffness, &inertia);
-    if (bough_entry_number_or(&w->draft, w->blade, "internal_structure_2d_fem.joint.mass", 0) > 0) {
+    if (bough_entry_number_or(w->draft, w->blade, "internal_structure_2d_fem.joint.mass", 0) > 0) {
         bough_left_out(w, "the mass of the blade's joint");
     }
 }

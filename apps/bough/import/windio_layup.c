@@ -68,7 +68,7 @@ static void close_edge(points *p) {
 }
 
 static points read_points(bough_windio *w, const bough_node *airfoil) {
-    bough_draft *d = &w->draft;
+    bough_draft *d = w->draft;
     points p = {0};
     const double *x = bough_entry_numbers(d, airfoil, "coordinates.x", &p.n);
     const double *y = x ? bough_entry_numbers(d, airfoil, "coordinates.y", &p.n) : NULL;
@@ -123,12 +123,12 @@ static void draw(const points *p, double *x, double *y) {
 // of each place of the shape; NULL after a failure.
 static const double *read_airfoils(bough_windio *w) {
     const bough_windio_shape *a = &w->outline;
-    double *all = bough_arena_doubles(w->draft.arena, (size_t)a->n * 2 * POINTS);
-    for (int i = 0; i < a->n && bough_is_ok(w->draft.status); i++) {
+    double *all = bough_arena_doubles(w->draft->arena, (size_t)a->n * 2 * POINTS);
+    for (int i = 0; i < a->n && bough_is_ok(w->draft->status); i++) {
         points p = read_points(w, a->place[i].airfoil);
         if (p.n > 0) draw(&p, all + (size_t)i * 2 * POINTS, all + (size_t)i * 2 * POINTS + POINTS);
     }
-    return bough_is_ok(w->draft.status) ? all : NULL;
+    return bough_is_ok(w->draft->status) ? all : NULL;
 }
 
 // -- the section ----------------------------------------------------------------------------------
@@ -210,7 +210,7 @@ static const bough_node *find_part(const parts *p, const char *name) {
 }
 
 static double curve_at(parts *p, const bough_node *from, const char *key) {
-    bough_curve c = bough_entry_curve(&p->w->draft, from, key);
+    bough_curve c = bough_entry_curve(p->w->draft, from, key);
     return bough_curve_at(&c, p->share);
 }
 
@@ -258,7 +258,7 @@ static double crossing(parts *p, const bough_node *part, int side) {
     }
     const bough_node *plane = bough_entry(part, "plane_intersection");
     if (!plane || !bough_entry(plane, "offset")) return NAN;
-    double turn = bough_entry_number_or(&p->w->draft, plane, "plane_type1|plane_type2.rotation", 0);
+    double turn = bough_entry_number_or(p->w->draft, plane, "plane_type1|plane_type2.rotation", 0);
     return outline_crossing(&p->outline, side, -p->twist + turn * BOUGH_DEGREE, curve_at(p, plane, "offset"));
 }
 
@@ -306,7 +306,7 @@ static bool defines(const bough_node *part, const char *key, handle end) {
 
 static double arc_of(parts *p, const bough_node *part, handle end, int depth) {
     if (depth > DEEPEST) {
-        bough_entry_fail(&p->w->draft, part, "%s: it refers to itself", arc_name[end]);
+        bough_entry_fail(p->w->draft, part, "%s: it refers to itself", arc_name[end]);
         return 0;
     }
     double arc = NAN;
@@ -324,7 +324,7 @@ static double arc_of(parts *p, const bough_node *part, handle end, int depth) {
 
 // Its stiffness must be that of a material: ν² below E1/E2.
 static bough_ply read_material(parts *p, const bough_node *material) {
-    bough_draft *d = &p->w->draft;
+    bough_draft *d = p->w->draft;
     bough_ply ply = {.density = bough_windio_property(p->w, material, "rho", 0)};
     const bough_node *ratio = bough_entry(material, "nu");
     if (ratio && ratio->kind == BOUGH_SEQUENCE && ratio->n > 0) ratio = ratio->value[0];
@@ -340,7 +340,7 @@ static bough_ply read_material(parts *p, const bough_node *material) {
 
 // Plies of a thickness that the material has, in place of the layer's thickness.
 static bough_curve read_plies(parts *p, const bough_node *node, const bough_node *material) {
-    bough_draft *d = &p->w->draft;
+    bough_draft *d = p->w->draft;
     bough_curve c = bough_entry_curve(d, node, "n_plies");
     double *thick = bough_arena_doubles(d->arena, (size_t)c.n + 1);
     double each = bough_entry_number(d, material, "ply_t");
@@ -349,7 +349,7 @@ static bough_curve read_plies(parts *p, const bough_node *node, const bough_node
 }
 
 static void read_layer(parts *p, const bough_node *node, layer *l) {
-    bough_draft *d = &p->w->draft;
+    bough_draft *d = p->w->draft;
     const bough_node *material = bough_windio_material(p->w, node);
     *l = (layer){.node = node, .web = -1};
     if (!material) return;
@@ -377,7 +377,7 @@ bool bough_windio_has_layers(const bough_windio *w) {
 }
 
 static void read_parts(parts *p) {
-    bough_draft *d = &p->w->draft;
+    bough_draft *d = p->w->draft;
     const bough_node *from = structure_of(p->w);
     p->layers = bough_entry(from, "layers");
     p->webs = bough_entry(from, "webs");
@@ -485,7 +485,7 @@ static void put_web(parts *p, section *s, int web) {
 // -- stations -------------------------------------------------------------------------------------
 
 static void solve_station(parts *p, section *s, double stiffness[36], double mass[36]) {
-    bough_draft *d = &p->w->draft;
+    bough_draft *d = p->w->draft;
     bough_arena *scratch = bough_arena_child(d->arena);
     outline_at(p->w, p->airfoils, p->share, &p->outline);
     p->twist = bough_curve_at(&p->w->outline.twist, p->share) * p->w->degree * BOUGH_DEGREE;
@@ -511,7 +511,7 @@ static int choose_shares(parts *p, double **share) {
     for (int l = 0; l < p->n_layer; l++) curve[l] = &p->layer[l].thickness;
     curve[p->n_layer] = &p->w->outline.chord;
     curve[p->n_layer + 1] = &between;
-    return bough_curve_shares(&p->w->draft, curve, p->n_layer + 2, 0.01, share);
+    return bough_curve_shares(p->w->draft, curve, p->n_layer + 2, 0.01, share);
 }
 
 static void put_matrix(const double from[36], int station, const bough_windio_matrices *to) {
@@ -522,7 +522,7 @@ static void put_matrix(const double from[36], int station, const bough_windio_ma
 }
 
 void bough_windio_layup(bough_windio *w, bough_windio_matrices *stiffness, bough_windio_matrices *mass) {
-    bough_draft *d = &w->draft;
+    bough_draft *d = w->draft;
     parts *p = bough_arena_take(d->arena, sizeof *p);
     section *s = bough_arena_take(d->arena, sizeof *s);
     if (!bough_is_ok(d->status)) return;

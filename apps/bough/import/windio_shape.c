@@ -8,15 +8,15 @@ enum { MOST_AIRFOILS = 200 };
 // -- places ---------------------------------------------------------------------------------------
 
 static double thickness_of(bough_windio *w, const bough_node *airfoil) {
-    return bough_entry_number_or(&w->draft, airfoil, "relative_thickness|rthick", NAN);
+    return bough_entry_number_or(w->draft, airfoil, "relative_thickness|rthick", NAN);
 }
 
 static void read_place(bough_windio *w, const bough_node *where, const char *name, double share,
                        bough_windio_place *p) {
-    const bough_node *list = bough_entry_need(&w->draft, w->root, "airfoils");
+    const bough_node *list = bough_entry_need(w->draft, w->root, "airfoils");
     const bough_node *airfoil = list ? bough_entry_named(list, name) : NULL;
     if (list && !airfoil) {
-        bough_entry_fail(&w->draft, where, "no airfoil is named '%.60s'", name);
+        bough_entry_fail(w->draft, where, "no airfoil is named '%.60s'", name);
     }
     *p = (bough_windio_place){.airfoil = airfoil, .share = share};
     if (airfoil) p->thickness = thickness_of(w, airfoil);
@@ -25,16 +25,16 @@ static void read_place(bough_windio *w, const bough_node *where, const char *nam
 // Version 1: {grid: [...], labels: [...]}.
 static void read_labels(bough_windio *w, const bough_node *from, bough_windio_shape *a) {
     int n = 0;
-    const double *grid = bough_entry_numbers(&w->draft, from, "grid", &n);
-    const bough_node *labels = bough_entry_need(&w->draft, from, "labels");
+    const double *grid = bough_entry_numbers(w->draft, from, "grid", &n);
+    const bough_node *labels = bough_entry_need(w->draft, from, "labels");
     if (!grid || !labels) return;
     if (labels->kind != BOUGH_SEQUENCE || labels->n != n || n > MOST_AIRFOILS) {
-        bough_entry_fail(&w->draft, labels, "labels: expected %d names, as the grid has", n);
+        bough_entry_fail(w->draft, labels, "labels: expected %d names, as the grid has", n);
         return;
     }
-    for (a->n = 0; a->n < n && bough_is_ok(w->draft.status); a->n++) {
+    for (a->n = 0; a->n < n && bough_is_ok(w->draft->status); a->n++) {
         const bough_node *label = labels->value[a->n];
-        const char *name = bough_entry_text(&w->draft, label, "");
+        const char *name = bough_entry_text(w->draft, label, "");
         read_place(w, label, name, grid[a->n], &a->place[a->n]);
     }
 }
@@ -42,14 +42,14 @@ static void read_labels(bough_windio *w, const bough_node *from, bough_windio_sh
 // Version 2: [{name, spanwise_position, ...}, ...].
 static void read_items(bough_windio *w, const bough_node *list, bough_windio_shape *a) {
     if (list->kind != BOUGH_SEQUENCE || list->n < 1 || list->n > MOST_AIRFOILS) {
-        bough_entry_fail(&w->draft, list, "airfoils: expected a list of 1 to %d", (int)MOST_AIRFOILS);
+        bough_entry_fail(w->draft, list, "airfoils: expected a list of 1 to %d", (int)MOST_AIRFOILS);
         return;
     }
     bool mixed = false;
-    for (a->n = 0; a->n < list->n && bough_is_ok(w->draft.status); a->n++) {
+    for (a->n = 0; a->n < list->n && bough_is_ok(w->draft->status); a->n++) {
         const bough_node *item = list->value[a->n], *tags = bough_entry(item, "configuration");
-        double share = bough_entry_number_or(&w->draft, item, "spanwise_position", NAN);
-        read_place(w, item, bough_entry_text(&w->draft, item, "name"), share, &a->place[a->n]);
+        double share = bough_entry_number_or(w->draft, item, "spanwise_position", NAN);
+        read_place(w, item, bough_entry_text(w->draft, item, "name"), share, &a->place[a->n]);
         mixed = mixed || (tags && tags->kind == BOUGH_SEQUENCE && tags->n > 1);
     }
     if (mixed) {
@@ -66,7 +66,7 @@ static void choose_measure(bough_windio *w, const bough_node *where, bough_windi
     }
     for (int i = 0; i < a->n && !a->by_thickness; i++) {
         if (a->place[i].share >= (i > 0 ? a->place[i - 1].share : 0)) continue;
-        bough_entry_fail(&w->draft, where, "airfoil %d: expected increasing fractions of the span", i + 1);
+        bough_entry_fail(w->draft, where, "airfoil %d: expected increasing fractions of the span", i + 1);
     }
 }
 
@@ -95,16 +95,16 @@ double bough_windio_line(const bough_windio_shape *a, double at) {
 
 void bough_windio_check_angles(bough_windio *w, const bough_curve *angles, const char *name) {
     const double most = 90; // [deg]
-    for (int i = 0; i < angles->n && bough_is_ok(w->draft.status); i++) {
+    for (int i = 0; i < angles->n && bough_is_ok(w->draft->status); i++) {
         if (fabs(angles->y[i] * w->degree) <= most) continue;
-        bough_entry_fail(&w->draft, angles->node,
+        bough_entry_fail(w->draft, angles->node,
                          "%s: expected angles up to %g %s, as version %d has them, got %g", name,
                          most / w->degree, w->second ? "deg" : "rad", w->second ? 2 : 1, angles->y[i]);
     }
 }
 
 void bough_windio_shape_read(bough_windio *w) {
-    bough_draft *d = &w->draft;
+    bough_draft *d = w->draft;
     bough_windio_shape *a = &w->outline;
     a->place = bough_arena_take(d->arena, MOST_AIRFOILS * sizeof *a->place);
     a->chord = bough_entry_curve(d, w->shape, "chord");

@@ -26,7 +26,7 @@ typedef struct tube {
 
 static layer read_layer(bough_windio *w, const bough_node *from) {
     const bough_node *material = bough_windio_material(w, from);
-    layer l = {.thickness = bough_entry_curve(&w->draft, from, "thickness")};
+    layer l = {.thickness = bough_entry_curve(w->draft, from, "thickness")};
     if (!material) return l;
     l.young = bough_windio_property(w, material, "E", 0);
     l.density = bough_windio_property(w, material, "rho", 0);
@@ -37,13 +37,13 @@ static layer read_layer(bough_windio *w, const bough_node *from) {
 
 static bough_curve read_height(bough_windio *w) {
     const char *path = w->second ? "reference_axis.z" : "outer_shape_bem.reference_axis.z";
-    bough_curve z = bough_entry_curve(&w->draft, w->tower, path);
+    bough_curve z = bough_entry_curve(w->draft, w->tower, path);
     for (int i = 1; i < z.n; i++) {
         if (z.y[i] > z.y[i - 1] && z.x[i] > z.x[i - 1]) continue;
-        bough_entry_fail(&w->draft, z.node, "reference_axis.z: expected increasing heights");
+        bough_entry_fail(w->draft, z.node, "reference_axis.z: expected increasing heights");
     }
     if (z.n < 2 || z.y[0] < 0) {
-        bough_entry_fail(&w->draft, w->tower, "reference_axis.z: expected a tower above the ground");
+        bough_entry_fail(w->draft, w->tower, "reference_axis.z: expected a tower above the ground");
     }
     return z;
 }
@@ -51,12 +51,12 @@ static bough_curve read_height(bough_windio *w) {
 static void read_tube(bough_windio *w, tube *t) {
     const bough_node *from = bough_entry(w->tower, "internal_structure_2d_fem|structure");
     const bough_node *layers = bough_entry(from, "layers");
-    t->mass_factor = bough_entry_number_or(&w->draft, from, "outfitting_factor", 1);
+    t->mass_factor = bough_entry_number_or(w->draft, from, "outfitting_factor", 1);
     if (layers && (layers->kind != BOUGH_SEQUENCE || layers->n > MOST_LAYERS)) {
-        bough_entry_fail(&w->draft, layers, "layers: expected at most %d", (int)MOST_LAYERS);
+        bough_entry_fail(w->draft, layers, "layers: expected at most %d", (int)MOST_LAYERS);
         return;
     }
-    for (; layers && t->n < layers->n && bough_is_ok(w->draft.status); t->n++)
+    for (; layers && t->n < layers->n && bough_is_ok(w->draft->status); t->n++)
         t->layer[t->n] = read_layer(w, layers->value[t->n]);
     if (t->n == 0) {
         bough_approximated(w, "tower: no layers, so it is rigid");
@@ -73,7 +73,7 @@ static bough_section section_at(bough_windio *w, const tube *t, double share) {
         const layer *l = &t->layer[i];
         double thickness = bough_curve_at(&l->thickness, share), inner = outer - 2 * thickness;
         if (!(thickness >= 0) || !(inner >= 0)) {
-            bough_entry_fail(&w->draft, l->thickness.node,
+            bough_entry_fail(w->draft, l->thickness.node,
                              "thickness: expected a value from 0 to the tower's radius, got %g m", thickness);
         }
         double area = BOUGH_PI / 4 * (outer * outer - inner * inner);
@@ -87,7 +87,7 @@ static bough_section section_at(bough_windio *w, const tube *t, double share) {
     }
     s.bend_y = s.bend_x;
     if (!(s.axial > 0) || !(s.mass > 0)) {
-        bough_entry_fail(&w->draft, t->diameter.node, "the tower has no wall at %g m", s.span);
+        bough_entry_fail(w->draft, t->diameter.node, "the tower has no wall at %g m", s.span);
     }
     return s;
 }
@@ -95,11 +95,11 @@ static bough_section section_at(bough_windio *w, const tube *t, double share) {
 static void put_tube(bough_windio *w, const tube *t) {
     const double time[] = {usual_damping, usual_damping, usual_damping,
                            usual_damping, usual_damping, usual_damping};
-    FILE *file = w->draft.file[BOUGH_IMPORT_TOWER];
+    FILE *file = w->draft->file[BOUGH_IMPORT_TOWER];
     double mass = 0;
     bough_section last = {0};
     bough_section_head(file, w->tower_top - w->tower_base, time);
-    for (int i = 0; i < t->height.n && bough_is_ok(w->draft.status); i++) {
+    for (int i = 0; i < t->height.n && bough_is_ok(w->draft->status); i++) {
         bough_section s = section_at(w, t, t->height.x[i]);
         bough_section_put(file, &s);
         if (i > 0) mass += (s.span - last.span) * (s.mass + last.mass) / 2;
@@ -116,32 +116,32 @@ static void put_tube(bough_windio *w, const tube *t) {
 }
 
 void bough_windio_tower(bough_windio *w) {
-    if (!bough_is_ok(w->draft.status)) return;
+    if (!bough_is_ok(w->draft->status)) return;
     if (!w->tower) {
         w->tower_base = 0;
-        w->tower_top = bough_entry_number(&w->draft, w->root, "assembly.hub_height");
+        w->tower_top = bough_entry_number(w->draft, w->root, "assembly.hub_height");
         bough_left_out(w, "no tower: the hub is fixed at its height");
         return;
     }
     tube t = {.height = read_height(w)};
-    t.diameter = bough_entry_curve(&w->draft, w->tower, "outer_shape_bem|outer_shape.outer_diameter");
+    t.diameter = bough_entry_curve(w->draft, w->tower, "outer_shape_bem|outer_shape.outer_diameter");
     read_tube(w, &t);
-    if (!bough_is_ok(w->draft.status)) return;
+    if (!bough_is_ok(w->draft->status)) return;
     w->tower_base = t.height.y[0];
     w->tower_top = t.height.y[t.height.n - 1];
     if (t.n > 0) put_tube(w, &t);
 }
 
 void bough_windio_tower_air(bough_windio *w) {
-    if (!w->tower || !bough_is_ok(w->draft.status)) return;
+    if (!w->tower || !bough_is_ok(w->draft->status)) return;
     bough_curve height = read_height(w);
     bough_curve diameter =
-        bough_entry_curve(&w->draft, w->tower, "outer_shape_bem|outer_shape.outer_diameter");
-    if (!bough_is_ok(w->draft.status)) return;
+        bough_entry_curve(w->draft, w->tower, "outer_shape_bem|outer_shape.outer_diameter");
+    if (!bough_is_ok(w->draft->status)) return;
     bough_put(w, "  tower:\n    influence: potential\n");
-    double *wide = bough_arena_doubles(w->draft.arena, (size_t)height.n);
+    double *wide = bough_arena_doubles(w->draft->arena, (size_t)height.n);
     for (int i = 0; i < height.n; i++) wide[i] = bough_curve_at(&diameter, height.x[i]);
-    bough_draft_tower_list(&w->draft, "height", height.y, 1, height.n);
-    bough_draft_tower_list(&w->draft, "diameter", wide, 1, height.n);
+    bough_draft_tower_list(w->draft, "height", height.y, 1, height.n);
+    bough_draft_tower_list(w->draft, "diameter", wide, 1, height.n);
     bough_taken(w, "the tower's influence on the wind, without its drag");
 }

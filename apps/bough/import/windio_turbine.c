@@ -37,7 +37,7 @@ static void move_to_centre(lump *l) {
 static void read_inertia(bough_windio *w, const bough_node *from, const char *path, double to[6]) {
     const bough_node *node = bough_entry(from, path);
     int n = node && node->n == 3 ? 3 : 6;
-    const double *row = node ? bough_entry_numbers(&w->draft, node, "", &n) : NULL;
+    const double *row = node ? bough_entry_numbers(w->draft, node, "", &n) : NULL;
     for (int i = 0; i < 6; i++) to[i] = row && i < n ? row[i] : 0;
 }
 
@@ -52,7 +52,7 @@ static bool possible_inertia(const double i[6]) {
 // Version 1: elastic_properties_mb {system_mass, system_inertia, system_center_mass}; version 2:
 // elastic_properties {mass, inertia, location}. False: there are none.
 static bool read_lump(bough_windio *w, const bough_node *part, lump *l) {
-    bough_draft *d = &w->draft;
+    bough_draft *d = w->draft;
     const bough_node *from = bough_entry(part, "elastic_properties_mb|elastic_properties");
     if (!bough_entry(from, "system_mass|mass")) return false;
     *l = (lump){.mass = bough_entry_number(d, from, "system_mass|mass")};
@@ -72,8 +72,8 @@ static bool read_lump(bough_windio *w, const bough_node *part, lump *l) {
 
 // The yaw bearing's mass sits at the tower's top.
 static void add_yaw(bough_windio *w, lump *l) {
-    double mass = bough_entry_number_or(&w->draft, w->train, "elastic_properties_mb.yaw_mass", 0);
-    mass = bough_entry_number_or(&w->draft, w->parts, "yaw.elastic_properties.mass", mass);
+    double mass = bough_entry_number_or(w->draft, w->train, "elastic_properties_mb.yaw_mass", 0);
+    mass = bough_entry_number_or(w->draft, w->parts, "yaw.elastic_properties.mass", mass);
     double sum = l->mass + mass;
     if (!(mass > 0)) return;
     add_offset(l->inertia, l->mass * mass / sum, l->centre);
@@ -84,7 +84,7 @@ static void add_yaw(bough_windio *w, lump *l) {
 // The mass that the user gives for a part without one; `option` gives it.
 static double given_mass(bough_windio *w, const bough_node *part, const char *name, double given) {
     if (!(given > 0)) {
-        bough_entry_fail(&w->draft, part,
+        bough_entry_fail(w->draft, part,
                          "expected the mass of the %s, 'elastic_properties.mass'; --%s-mass KG gives it",
                          name, name);
     }
@@ -100,10 +100,10 @@ static void leave_given(bough_windio *w, const char *name, double given) {
 static lump hub_lump(bough_windio *w) {
     lump l;
     if (read_lump(w, w->hub, &l)) {
-        leave_given(w, "hub", w->options->hub_mass);
+        leave_given(w, "hub", w->draft->options->hub_mass);
         return l;
     }
-    double mass = given_mass(w, w->hub, "hub", w->options->hub_mass);
+    double mass = given_mass(w, w->hub, "hub", w->draft->options->hub_mass);
     double inertia = 2.0 / 3 * mass * w->hub_radius * w->hub_radius;
     bough_approximated(w, "hub: its inertia is that of a shell of its radius");
     return (lump){mass, {0}, {inertia, inertia, inertia}};
@@ -116,7 +116,7 @@ static bool assembly_lump(bough_windio *w, double overhang, double hub, lump *l)
     if (!part || !read_lump(w, part, &all)) return false;
     double head = hub + w->n_blade * w->blade_mass, mass = all.mass - head;
     if (!(mass > 0)) {
-        bough_entry_fail(&w->draft, part, "mass: %g kg, which is less than the mass of hub and blades, %g kg",
+        bough_entry_fail(w->draft, part, "mass: %g kg, which is less than the mass of hub and blades, %g kg",
                          all.mass, head);
         return false;
     }
@@ -142,10 +142,10 @@ static bool read_nacelle(bough_windio *w, double overhang, double hub, lump *l) 
 static lump nacelle_lump(bough_windio *w, double overhang, double hub) {
     lump l;
     if (read_nacelle(w, overhang, hub, &l)) {
-        leave_given(w, "nacelle", w->options->nacelle_mass);
+        leave_given(w, "nacelle", w->draft->options->nacelle_mass);
         return l;
     }
-    double mass = given_mass(w, w->train, "nacelle", w->options->nacelle_mass);
+    double mass = given_mass(w, w->train, "nacelle", w->draft->options->nacelle_mass);
     double inertia = mass * overhang * overhang / 4;
     bough_approximated(w, "nacelle: its centre of mass is at half the hub's height above the tower, its "
                           "radius of gyration half the overhang");
@@ -166,7 +166,7 @@ static double generator_inertia(bough_windio *w, double ratio) {
 // -- bodies ---------------------------------------------------------------------------------------
 
 static void put_lump(bough_windio *w, const lump *l) {
-    FILE *file = w->draft.file[BOUGH_IMPORT_SCENE];
+    FILE *file = w->draft->file[BOUGH_IMPORT_SCENE];
     fprintf(file, "    mass: %.10g kg\n    centre_of_mass: ", l->mass);
     bough_import_list(file, l->centre, 3);
     fputs("\n    inertia: ", file);
@@ -204,7 +204,7 @@ static const char *put_hub(bough_windio *w, const lump *l, double overhang, doub
 }
 
 static void put_blades(bough_windio *w, const char *rotor, double cone, double pitch) {
-    bool steered = w->rated_power > 0 || w->options->controller;
+    bool steered = w->rated_power > 0 || w->draft->options->controller;
     for (int k = 1; k <= w->n_blade; k++) {
         bough_put(w,
                   "  - name: blade%d\n    fidelity: rod\n    joint: {%s, parent: hub, "
@@ -212,20 +212,20 @@ static void put_blades(bough_windio *w, const char *rotor, double cone, double p
                   "    pitch: %.10g deg\n",
                   k, steered ? "kind: revolute, axis: z, motion: {angle: 0 deg}" : "kind: fixed",
                   360.0 * (k - 1) / w->n_blade, -w->forward * cone, w->hub_radius, pitch);
-        bough_draft_blade_rod(&w->draft);
+        bough_draft_blade_rod(w->draft);
     }
-    bough_draft_turbine(&w->draft, rotor, w->n_blade);
+    bough_draft_turbine(w->draft, rotor, w->n_blade);
 }
 
 static double gear_ratio(bough_windio *w) {
     const char *path = w->second ? "gearbox.gear_ratio" : "gear_ratio";
-    double ratio = bough_entry_number_or(&w->draft, w->train, path, 1);
-    if (!(ratio > 0)) bough_entry_fail(&w->draft, w->train, "gear_ratio: expected a positive value");
+    double ratio = bough_entry_number_or(w->draft, w->train, path, 1);
+    if (!(ratio > 0)) bough_entry_fail(w->draft, w->train, "gear_ratio: expected a positive value");
     return ratio;
 }
 
 void bough_windio_bodies(bough_windio *w) {
-    bough_draft *d = &w->draft;
+    bough_draft *d = w->draft;
     if (!bough_is_ok(d->status)) return;
     const bough_node *from = w->second ? bough_entry_need(d, w->train, "outer_shape") : w->train;
     double overhang = bough_entry_number(d, from, "overhang");
@@ -252,8 +252,8 @@ void bough_windio_bodies(bough_windio *w) {
 // -- air ------------------------------------------------------------------------------------------
 
 static void put_wind(bough_windio *w) {
-    bough_draft *d = &w->draft;
-    const char *given = w->options->wind;
+    bough_draft *d = w->draft;
+    const char *given = w->draft->options->wind;
     double shear = bough_entry_number_or(d, w->root, "environment.shear_exp", 0);
     double height = w->tower_top + w->hub_height;
     if (given) {
@@ -269,7 +269,7 @@ static void put_wind(bough_windio *w) {
 }
 
 void bough_windio_air(bough_windio *w) {
-    bough_draft *d = &w->draft;
+    bough_draft *d = w->draft;
     if (!bough_is_ok(d->status)) return;
     bough_put(w, "aero:\n  rate: %.10g Hz\n  air_density: %.10g\n", 1 / d->macro_step, w->density);
     put_wind(w);
@@ -300,30 +300,30 @@ static void put_pitch(bough_windio *w, double ratio) {
 
 static double efficiency_of(bough_windio *w) {
     const char *path = w->second ? "gearbox.efficiency" : "gearbox_efficiency";
-    double efficiency = bough_entry_number_or(&w->draft, w->train, path, 1);
+    double efficiency = bough_entry_number_or(w->draft, w->train, path, 1);
     if (!(efficiency > 0 && efficiency <= 1)) {
-        bough_entry_fail(&w->draft, w->train, "efficiency: expected a value above 0 and at most 1");
+        bough_entry_fail(w->draft, w->train, "efficiency: expected a value above 0 and at most 1");
     }
     return efficiency;
 }
 
 // The library that the user gives.
 static void put_library(bough_windio *w) {
-    bough_draft *d = &w->draft;
+    bough_draft *d = w->draft;
     bough_discon *discon;
-    bough_status status = bough_discon_open(d->arena, w->options->controller, "", false, &discon);
+    bough_status status = bough_discon_open(d->arena, w->draft->options->controller, "", false, &discon);
     if (!bough_is_ok(&status)) {
         *d->status = bough_fail(status.code, "--controller: %.200s", status.message);
         return;
     }
-    bough_draft_library(d, w->options->controller, NULL, gear_ratio(w), efficiency_of(w));
-    bough_taken(w, "controller: %s, by its path", w->options->controller);
+    bough_draft_library(d, w->draft->options->controller, NULL, gear_ratio(w), efficiency_of(w));
+    bough_taken(w, "controller: %s, by its path", w->draft->options->controller);
 }
 
 void bough_windio_law(bough_windio *w) {
-    bough_draft *d = &w->draft;
+    bough_draft *d = w->draft;
     if (!bough_is_ok(d->status)) return;
-    if (w->options->controller) {
+    if (w->draft->options->controller) {
         put_library(w);
         return;
     }
