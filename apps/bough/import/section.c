@@ -1,6 +1,7 @@
 #include "apps/bough/import/section.h"
 
 #include "core/base/linalg.h"
+#include "core/base/schedule.h"
 
 #include <math.h>
 
@@ -81,12 +82,6 @@ double bough_section_strangeness(const double m[BOUGH_IMPORT_MATRIX]) {
 
 enum { CELLS = 200, ROUNDS = 6 };
 
-static double between(int n, const double *x, const double *y, double at) {
-    int i = 1;
-    while (i < n - 1 && x[i] < at) i++;
-    return y[i - 1] + (at - x[i - 1]) / (x[i] - x[i - 1]) * (y[i] - y[i - 1]);
-}
-
 // Stodola's iteration: the deflection under the mode's own inertial load, and Rayleigh's quotient.
 double bough_section_frequency(int n, const double *span, const double *stiffness, const double *mass) {
     double h = (span[n - 1] - span[0]) / CELLS, square = 0;
@@ -95,13 +90,13 @@ double bough_section_frequency(int n, const double *span, const double *stiffnes
     for (int round = 0; round < ROUNDS; round++) {
         double shear = 0, bend = 0, slope = 0, place = 0, work = 0, kinetic = 0;
         for (int i = CELLS - 1; i >= 0; i--) {
-            load[i] = between(n, span, mass, span[0] + (i + 0.5) * h) * shape[i];
+            load[i] = bough_table_value(n, span, mass, span[0] + (i + 0.5) * h) * shape[i];
             moment[i] = bend + shear * h / 2 + load[i] * h * h / 8; // in the cell's middle
             bend += shear * h + load[i] * h * h / 2;
             shear += load[i] * h;
         }
         for (int i = 0; i < CELLS; i++) {
-            double curvature = moment[i] / between(n, span, stiffness, span[0] + (i + 0.5) * h);
+            double curvature = moment[i] / bough_table_value(n, span, stiffness, span[0] + (i + 0.5) * h);
             double middle = place + slope * h / 2 + curvature * h * h / 8;
             work += load[i] * middle;
             kinetic += load[i] / shape[i] * middle * middle;

@@ -69,11 +69,9 @@ static bool is_yes(const char *line) {
     return *line && strchr("TtYy", *line);
 }
 
-static bool next_line(FILE *file, char line[LINE]) { return fgets(line, LINE, file) != NULL; }
-
 static void read_summary_lines(FILE *file, summary *s) {
     char line[LINE];
-    while (next_line(file, line)) {
+    while (fgets(line, LINE, file)) {
         if (has(line, "CLOCKWISE")) s->clockwise = is_yes(line);
         if (s->hub == 0 && (has(line, "HUB HEIGHT") || has(line, "ZHUB"))) s->hub = number_in(line);
         if (has(line, "HEIGHT OFFSET")) s->offset = number_in(line);
@@ -81,7 +79,7 @@ static void read_summary_lines(FILE *file, summary *s) {
         if (has(line, "BLADED LEFT-HAND RULE")) s->left_handed = true;
         if (!has(line, "UBAR")) continue;
         s->mean = number_in(line);
-        for (int c = 0; c < 3 && next_line(file, line); c++) s->intensity[c] = number_in(line);
+        for (int c = 0; c < 3 && fgets(line, LINE, file); c++) s->intensity[c] = number_in(line);
     }
 }
 

@@ -100,6 +100,7 @@ typedef struct bough_windio {
     double inertia;                  // of the rotor about its axis [kg m2]
     double hub_radius, radius;       // [m]
     double tower_base, tower_top;    // above ground [m]
+    bough_curve height, diameter;    // of the tower, over the share of its length [m]
     double hub_height;               // above the tower's top [m]
     double density;                  // of the air [kg/m3]
     double rated_power;              // of the generator [W]

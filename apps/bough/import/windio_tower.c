@@ -16,7 +16,6 @@ typedef struct layer {
 } layer;
 
 typedef struct tube {
-    bough_curve height, diameter; // over the share of its length [m]
     int n;
     layer layer[MOST_LAYERS]; // from outside
     double mass_factor;
@@ -67,8 +66,8 @@ static void read_tube(bough_windio *w, tube *t) {
 
 // Sums the layers' rings, from outside inwards.
 static bough_section section_at(bough_windio *w, const tube *t, double share) {
-    double outer = bough_curve_at(&t->diameter, share);
-    bough_section s = {.span = bough_curve_at(&t->height, share) - w->tower_base};
+    double outer = bough_curve_at(&w->diameter, share);
+    bough_section s = {.span = bough_curve_at(&w->height, share) - w->tower_base};
     for (int i = 0; i < t->n; i++) {
         const layer *l = &t->layer[i];
         double thickness = bough_curve_at(&l->thickness, share), inner = outer - 2 * thickness;
@@ -87,7 +86,7 @@ static bough_section section_at(bough_windio *w, const tube *t, double share) {
     }
     s.bend_y = s.bend_x;
     if (!(s.axial > 0) || !(s.mass > 0)) {
-        bough_entry_fail(w->draft, t->diameter.node, "the tower has no wall at %g m", s.span);
+        bough_entry_fail(w->draft, w->diameter.node, "the tower has no wall at %g m", s.span);
     }
     return s;
 }
@@ -99,8 +98,8 @@ static void put_tube(bough_windio *w, const tube *t) {
     double mass = 0;
     bough_section last = {0};
     bough_section_head(file, w->tower_top - w->tower_base, time);
-    for (int i = 0; i < t->height.n && bough_is_ok(w->draft->status); i++) {
-        bough_section s = section_at(w, t, t->height.x[i]);
+    for (int i = 0; i < w->height.n && bough_is_ok(w->draft->status); i++) {
+        bough_section s = section_at(w, t, w->height.x[i]);
         bough_section_put(file, &s);
         if (i > 0) mass += (s.span - last.span) * (s.mass + last.mass) / 2;
         last = s;
@@ -108,7 +107,7 @@ static void put_tube(bough_windio *w, const tube *t) {
     bough_taken(w,
                 "%d stations of the tower, a tube of %d layers with outfitting_factor %g; it weighs %.7g "
                 "kg",
-                t->height.n, t->n, t->mass_factor, mass);
+                w->height.n, t->n, t->mass_factor, mass);
     bough_approximated(w,
                        "tower: wall thickness linear between stations; shear stiffness of a thin tube; "
                        "damping coefficient of %g s for all strains",
@@ -123,25 +122,22 @@ void bough_windio_tower(bough_windio *w) {
         bough_left_out(w, "no tower: the hub is fixed at its height");
         return;
     }
-    tube t = {.height = read_height(w)};
-    t.diameter = bough_entry_curve(w->draft, w->tower, "outer_shape_bem|outer_shape.outer_diameter");
+    tube t = {0};
+    w->height = read_height(w);
+    w->diameter = bough_entry_curve(w->draft, w->tower, "outer_shape_bem|outer_shape.outer_diameter");
     read_tube(w, &t);
     if (!bough_is_ok(w->draft->status)) return;
-    w->tower_base = t.height.y[0];
-    w->tower_top = t.height.y[t.height.n - 1];
+    w->tower_base = w->height.y[0];
+    w->tower_top = w->height.y[w->height.n - 1];
     if (t.n > 0) put_tube(w, &t);
 }
 
 void bough_windio_tower_air(bough_windio *w) {
     if (!w->tower || !bough_is_ok(w->draft->status)) return;
-    bough_curve height = read_height(w);
-    bough_curve diameter =
-        bough_entry_curve(w->draft, w->tower, "outer_shape_bem|outer_shape.outer_diameter");
-    if (!bough_is_ok(w->draft->status)) return;
     bough_put(w, "  tower:\n    influence: potential\n");
-    double *wide = bough_arena_doubles(w->draft->arena, (size_t)height.n);
-    for (int i = 0; i < height.n; i++) wide[i] = bough_curve_at(&diameter, height.x[i]);
-    bough_draft_tower_list(w->draft, "height", height.y, 1, height.n);
-    bough_draft_tower_list(w->draft, "diameter", wide, 1, height.n);
+    double *wide = bough_arena_doubles(w->draft->arena, (size_t)w->height.n);
+    for (int i = 0; i < w->height.n; i++) wide[i] = bough_curve_at(&w->diameter, w->height.x[i]);
+    bough_draft_tower_list(w->draft, "height", w->height.y, 1, w->height.n);
+    bough_draft_tower_list(w->draft, "diameter", wide, 1, w->height.n);
     bough_taken(w, "the tower's influence on the wind, without its drag");
 }
