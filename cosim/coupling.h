@@ -57,7 +57,7 @@ typedef struct bough_coupling {
 
     // the step to take, by the master
     double t0, t1; // [s]
-    bool restart;  // a load jumped at t0: integrators start anew
+    bool restart;  // a load jumped at t0: integrators restart
     bool compared; // another solution shows the error, so a step that has not converged may go on
 
     // by bough_scheme_step and bough_coupling_record, at the end of the last step

@@ -84,7 +84,7 @@ typedef struct bough_master {
 long bough_master_multiple(double period, double macro_step);
 
 // Builds everything in the arena; stepping allocates nothing. The stability of a coupling is analysed
-// about the initial state. The result is only a warning, because outer loads may add damping.
+// about the initial state. The result is only a warning, because external loads may add damping.
 bough_status bough_master_build(bough_arena *arena, const bough_master_def *def, bough_master **master);
 
 // One macro step: samples loads, advances the members, exchanges values, checks the result. A caller that
@@ -104,7 +104,7 @@ bough_statistics bough_master_statistics(const bough_master *m);
 void bough_master_snapshot(bough_master *m, bough_snapshot *s);
 
 // Puts it where another master of the same bodies is: its time, between two of its steps, and the states of
-// all members, whose integrators begin anew. Loads are not touched.
+// all members, whose integrators restart. Loads are not touched.
 void bough_master_join(bough_master *m, const bough_master *other);
 
 // Whether all loads are sampled at `time`, which a snapshot requires.

@@ -44,7 +44,7 @@ bough_status bough_member_advance(bough_member *m, double t1, const bough_signal
 bough_status bough_member_advance_part(bough_member *m, double pause, double t1, const bough_signal *input,
                                        bool restart);
 
-// Replaces the current time and state (n_state); the integrator starts anew.
+// Replaces the current time and state (n_state); the integrator restarts.
 void bough_member_set(bough_member *m, double t, const double *state);
 
 // The memory that its next step depends on, including the integrator's where that can be stored. Restoring

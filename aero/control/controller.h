@@ -34,7 +34,7 @@ typedef struct bough_controller_def {
     double pitch_rate;              // the most [rad/s]
 } bough_controller_def;
 
-// BOUGH_INVALID says which value makes no sense.
+// BOUGH_INVALID: the message names the value that is out of range.
 bough_status bough_controller_check(const bough_controller_def *def);
 
 // Doubles only, saved and restored as a row of them.

@@ -45,8 +45,8 @@ typedef struct bough_discon_demand {
 typedef struct bough_discon bough_discon;
 
 // Loads the library; `input` is the controller's own input file, "" for none. `copy`: loads a copy of the
-// library, which has variables of its own. BOUGH_INVALID says whether the file is
-// missing, is no library, or has no such function.
+// library, which has variables of its own. BOUGH_INVALID: the file is missing, is
+// not a library, or has no function DISCON.
 bough_status bough_discon_open(bough_arena *arena, const char *library, const char *input, bool copy,
                                bough_discon **discon);
 

@@ -28,8 +28,8 @@ typedef struct bough_wind_box {
     const int16_t *value;       // (n_time × (n_z·n_y + n_tower) × 3)
 } bough_wind_box;
 
-// Reads a file. BOUGH_INVALID says what is wrong with it; its size is compared with what its head
-// promises before anything is allocated.
+// Reads a file. BOUGH_INVALID: the message states its fault; its size is compared with that in its
+// header before anything is allocated.
 bough_status bough_wind_box_read(bough_arena *arena, const char *path, bough_wind_box *box);
 
 // Writes it as such a file with a line of text; false when the stream refused.

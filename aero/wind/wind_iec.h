@@ -77,7 +77,7 @@ typedef struct bough_wind_iec {
     double length; // of the event [s]
 } bough_wind_iec;
 
-// BOUGH_INVALID says which value makes no sense.
+// BOUGH_INVALID: the message names the value that is out of range.
 bough_status bough_wind_iec_check(const bough_wind_iec_def *def);
 
 bough_wind_iec bough_wind_iec_start(const bough_wind_iec_def *def);

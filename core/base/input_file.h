@@ -14,8 +14,8 @@ enum { BOUGH_INPUT_REASON = 96 };
 #define BOUGH_INPUT_TEXT (INT64_C(16) << 20)
 #define BOUGH_INPUT_DATA (INT64_C(64) << 30)
 
-// Opens a plain file of at most `most` bytes for reading. NULL: `reason` says why in a few words,
-// errno as of open(2), EISDIR, EINVAL for anything else that is no plain file, EFBIG.
+// Opens a regular file of at most `most` bytes for reading. NULL: `reason` in a few words,
+// errno as of open(2), EISDIR, EINVAL for anything else that is not a regular file, EFBIG.
 FILE *bough_input_open(const char *path, int64_t most, char reason[BOUGH_INPUT_REASON]);
 
 // The same file as a whole, *size bytes and a NUL behind them, in the arena's memory; NULL: `reason` as

@@ -247,7 +247,8 @@ typedef struct bough_loops {
 } bough_loops;
 
 typedef struct bough_tree_data {
-    // computed by bough_tree_kinematics (dynamics.h), each (n_links), in link axes unless it says otherwise
+    // computed by bough_tree_kinematics (dynamics.h), each (n_links), in link axes where nothing else is
+    // stated
     bough_transform *relative; // link in its parent
     bough_transform *pose;     // link in the ground
     bough_twist *joint_twist;  // S v
@@ -291,7 +292,7 @@ bough_tree_data *bough_tree_data_create(bough_arena *arena, const bough_tree *tr
 
 // The rigid tree behind the contract of system.h: kind "tree". State (q, v), input 6 and output 9
 // per port, 6 and 13 per end, output 9 per port with axes, as in tree.h; q̇ = N(q) v and v̇ by the
-// recursive forward dynamics, in O(n). Prescribed joints are where their motion says: f and h do not depend
+// recursive forward dynamics, in O(n). Prescribed joints follow their motion exactly: f and h do not depend
 // on their states, which hold q(t) and v(t) at the end of every step, so that nothing drifts under any
 // integrator or scheme. Newton's systems are solved in O(n) by tree_newton.h; with closures by dense matrices
 // from differences. In the arena; `name` is copied. Tolerance per state: rtol × (1 rad, 1 m, 1 of a

@@ -40,8 +40,8 @@ typedef struct bough_equilibrium_report {
     double rate;   // its rate of change [units per s]
 } bough_equilibrium_report;
 
-// Brings `state` (n_state) to equilibrium. BOUGH_FAILED when it is not found: the report says
-// which state still moves, the state is the last one reached.
+// Brings `state` (n_state) to equilibrium. BOUGH_FAILED when it is not found: the report has
+// the state that still moves, `state` is the last one reached.
 bough_status bough_equilibrium_find(bough_arena *arena, bough_whole *whole, const bough_equilibrium_def *def,
                                     double *state, bough_equilibrium_report *report);
 

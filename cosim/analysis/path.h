@@ -34,7 +34,7 @@ typedef struct bough_path_report {
 } bough_path_report;
 
 // Follows the path from `state` (n_state), an equilibrium under the loads at time 0, to the load factor 1 or
-// −1. BOUGH_FAILED: the path cannot be followed, or goes on beyond the most steps; the state is that of the
+// −1. BOUGH_FAILED: the path cannot be followed, or is longer than the most steps; the state is that of the
 // last point.
 bough_status bough_path_follow(bough_arena *arena, bough_whole *whole, const bough_path_def *def,
                                double *state, bough_path_report *report);

@@ -29,7 +29,7 @@ typedef struct bough_modal_options {
 // Matrices are (m × stride) by columns, row arrays (rows × stride); shapes are orthonormal in the
 // mass and diagonal in the stiffness.
 typedef struct bough_modal_piece {
-    const bough_rod_model *rod; // the vertices and segments it stands for
+    const bough_rod_model *rod; // the vertices and segments of the piece
     int first;                  // its first vertex among the body's
     int n;                      // moving vertices
     int m, stride;              // shapes; padded

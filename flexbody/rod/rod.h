@@ -1,9 +1,9 @@
 // The discrete geometrically exact Cosserat rod (docs/theory.md, "The rod"): constant model and
 // scratch.
 //
-// Vertex 0 is the root: it is welded to the body reference frame (BRF) and moves as the input
-// says. Of a rod that carries bodies at its end, vertex N is the bodies' and moves as the input
-// says, too. The vertices 1..n between carry the states, n = N or N − 1. Velocities are ABSOLUTE
+// Vertex 0 is the root: it is welded to the body reference frame (BRF), whose motion is an
+// input. Of a rod that carries bodies at its end, vertex N belongs to them, and its motion is an
+// input, too. The vertices 1..n between carry the states, n = N or N − 1. Velocities are ABSOLUTE
 // velocities resolved in moving axes, so that inputs are the BRF's twist and gravity only, no
 // acceleration:
 //     x  position relative to the BRF, in BRF axes [m]              ẋ = u − u₀ − ω×x
@@ -58,7 +58,7 @@ typedef struct bough_rod_part {
     double start[6], slope[6]; // at `from` [N/m, N or N, N m], and over the length [N/m², N/m]
 } bough_rod_part;
 
-// What knows the sections between the vertices: `strain` gives the mean strain (6) of segment n, in the axes
+// The sections between the vertices: `strain` gives the mean strain (6) of segment n, in the axes
 // of its middle, that such a wrench adds to what its forces and moments on the vertices by hat functions
 // cause.
 typedef struct bough_rod_model bough_rod_model;
@@ -169,7 +169,7 @@ typedef struct bough_rod_loads {
     bool damped;   // forces along x and y and moment about z of the BRF, c, follow the vertex' velocity
                    // along x and y, its section's rotation about the normal and W₃, j …
     double *slope; // … by row 4 c + j of this array (12 × stride) [N s/m, N, N s; N s, N m, N m s]; 0 at
-                   // vertices that move as the input says
+                   // vertices whose motion is an input
     double *angle; // (4 × stride) times the vertex' quaternion it is the rotation about the normal
     double *rest;  // strains without stress: e⁰ + D q of loads along the segments (6 × stride) …
     double *rest_rate;             // … and its rate [1/s, 1/(m s)], both set by bough_rod_loads_along
@@ -241,7 +241,7 @@ bool bough_rod_derivative(const bough_rod_model *m, const bough_rod_loads *loads
                           const double *state, const double *input, bough_rod_scratch *scratch, double *rate);
 
 // The same at another time and input, `state` being that of the last bough_rod_derivative with this
-// scratch: only segments that touch the input, or have ramped loads, are evaluated anew. In the others
+// scratch: only segments that touch the input, or have ramped loads, are evaluated again. In the others
 // the forces change by what loads along them do to an unbent segment, for the derivative
 // by time: its relative error is of the order of the segment's own rotation.
 bool bough_rod_derivative_again(const bough_rod_model *m, const bough_rod_loads *loads, double t,
@@ -273,7 +273,7 @@ void bough_rod_load(const bough_rod_model *m, const bough_rod_loads *loads, doub
 void bough_rod_stress(const bough_rod_model *m, const bough_rod_scratch *scratch, int n, double stress[6]);
 
 // The smallest ratio of a segment's torsional stiffness to that below which, bent and under tension, it
-// twists though the rod it stands for does not, theory (111). After bough_rod_stress' conditions.
+// twists although the rod does not, theory (111). After bough_rod_stress' conditions.
 double bough_rod_twist_reserve(const bough_rod_model *m, const bough_rod_scratch *scratch);
 
 // Kernels, each called at its model's level.

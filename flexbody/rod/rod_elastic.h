@@ -6,7 +6,7 @@
 // once twists wrongly in proportion to h², theory (21). χ is 1 up to higher orders and keeps the
 // energy positive whatever the strains: R = h²/12 times at least the ratio of the largest to the least
 // stiffness. The sections lean against the segment's middle where it bends, so that its axis is longer than
-// the strains of the middle say: e₃ is larger by ½ q·B q, q shear and bending of the segment, theory (107).
+// by the strains of the middle: e₃ is larger by ½ q·B q, q shear and bending of the segment, theory (107).
 // Inline, for loops over lanes.
 #ifndef BOUGH_FLEXBODY_ROD_ROD_ELASTIC_H
 #define BOUGH_FLEXBODY_ROD_ROD_ELASTIC_H
