@@ -316,7 +316,7 @@ class Fmu(unittest.TestCase):
         self.assertEqual(fmu.step(0, 0.02)[0], ERROR)  # not initialised
         fmu.start()
         self.assertEqual(fmu.step(0, 0.03)[0], ERROR)
-        self.assertIn("no whole number of macro steps of 0.02 s", fmu.messages[-1])
+        self.assertIn("not a whole number of macro steps of 0.02 s", fmu.messages[-1])
         self.assertEqual(fmu.step(0, 0.02)[0], OK, "the refused step has moved nothing")
         self.assertEqual(fmu.set(0, 1), ERROR)
         self.assertEqual(fmu.get([100000]), ERROR)
