@@ -111,13 +111,14 @@ static double next_on_grid(const bough_master *m) {
                                                                 : (double)(m->grid_index + 1) * m->macro_step;
 }
 
-// The next synchronisation point: grid point, half of a step, event or the end, whichever comes first.
+// The next synchronisation point: grid point, half of a step, event or the end, whichever comes first. An
+// event next to a grid point gives its own time, which is the same number on every grid.
 double bough_master_next(const bough_master *m) {
     double eps = resolution(m);
     double next = next_on_grid(m);
     for (int i = m->next_event; i < m->n_event; i++) {
         if (m->event[i] <= m->time + eps) continue;
-        if (m->event[i] < next - eps) next = m->event[i];
+        if (m->event[i] < next + eps) next = m->event[i];
         break;
     }
     return next > m->duration - eps ? m->duration : next;

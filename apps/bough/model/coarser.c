@@ -128,9 +128,14 @@ static void change_segments(const bough_scene *scene, bough_scene *to) {
     }
 }
 
-// Whether a body's own integrator takes fixed steps, whose error the companion's steps by tolerance do not
-// share.
-static bool has_fixed_sub_steps(const bough_scene *scene) {
+static bool is_one_system(const bough_scene *scene) {
+    return bough_scheme_at(scene->simulation.coupling.scheme)->one_system;
+}
+
+// Whether the integrator of the whole or of a body takes fixed steps, whose error the companion's steps by
+// tolerance do not share. Fixed ones would end where loads have corners, as the run's do, and not be longer.
+static bool has_fixed_steps(const bough_scene *scene) {
+    if (is_one_system(scene)) return scene->simulation.master.solver == BOUGH_GENERALIZED_ALPHA;
     for (int i = 0; i < scene->n_body; i++) {
         const bough_scene_body *b = &scene->body[i];
         if (bough_scene_has_mesh(b) && bough_scene_micro(scene, b)->solver == BOUGH_GENERALIZED_ALPHA)
@@ -151,9 +156,10 @@ static double usual_share(const bough_scene *scene) {
     const bough_scene_coupling *x = &scene->simulation.coupling;
     const bough_scheme *scheme = bough_scheme_at(x->scheme);
     bool air = scene->aero.node != NULL, held = air && holds_loads(scene);
+    if (has_fixed_steps(scene)) return 1;
     if (scheme->one_system) return held ? 0.5 : air ? 0.25 : 0.4;
     bool whole = scheme->explicit_forces || scheme->repeats || bough_jump_times(scene, 0, NULL) > 0 ||
-                 has_fixed_sub_steps(scene) || bough_scheme_error_order(scheme, &x->options) == 1;
+                 bough_scheme_error_order(scheme, &x->options) == 1;
     return whole ? 1 : 0.5;
 }
 
@@ -247,22 +253,23 @@ static bough_scene_solver all_sub_solvers(const bough_scene *scene) {
 
 static void make_one_system(bough_scene *to) {
     bough_scene_simulation *x = &to->simulation;
-    int monolithic = bough_scheme_index(BOUGH_SCHEME_DEFAULT);
     x->step_control.tolerance = 0;
-    if (x->coupling.scheme == monolithic) return;
+    if (is_one_system(to)) {
+        if (has_fixed_steps(to)) x->master.solver = BOUGH_AUTOMATIC;
+        return;
+    }
     bough_scene_solver sub_solvers = all_sub_solvers(to);
     x->master.solver = BOUGH_AUTOMATIC;
     x->master.rtol = sub_solvers.rtol;
     x->master.step = sub_solvers.step;
-    x->coupling.scheme = monolithic;
+    x->coupling.scheme = bough_scheme_index(BOUGH_SCHEME_DEFAULT);
 }
 
 // Tolerances above it leave no room for ten times as much.
 static const double loose = 5e-3;
 
 bool bough_coarser_is_loose(const bough_scene *scene) {
-    bool one_system = bough_scheme_at(scene->simulation.coupling.scheme)->one_system;
-    return (one_system ? scene->simulation.master.rtol : all_sub_solvers(scene).rtol) > loose;
+    return (is_one_system(scene) ? scene->simulation.master.rtol : all_sub_solvers(scene).rtol) > loose;
 }
 
 // A tenth of a loose tolerance, and two steps at least where the run may take one.
@@ -294,7 +301,6 @@ static void shorten_steps(bough_scene *to, double tighter, double least_rtol) {
     bough_scene_solver *master = &to->simulation.master;
     double macro_step = to->simulation.macro_step;
     make_one_system(to);
-    if (master->solver == BOUGH_GENERALIZED_ALPHA) master->solver = BOUGH_ROSENBROCK;
     master->rtol = fmin(fmax(tighter * master->rtol, least_rtol), largest_rtol);
     master->step = 0.5 * (master->step > 0 ? fmin(master->step, macro_step) : macro_step);
 }

@@ -210,8 +210,14 @@ bough_status bough_companion_create(bough_arena *arena, bough_simulation *run, c
     return bough_ok();
 }
 
+// Where an event of one is, by rounding, a point of the grid of the other.
+static bool lags(const bough_companion *c) {
+    return bough_is_ok(&c->status) && c->coarser.simulation->master->time < c->run->master->time;
+}
+
 void bough_companion_compare(bough_companion *c) {
     if (!alive(c)) return;
+    while (lags(c)) bough_companion_step(c);
     if (!bough_is_ok(&c->status)) {
         give_up(c, c->status.message);
         c->run->master->compared = false;
