@@ -104,7 +104,9 @@ static bough_status do_modes(bough_arena *arena, const bough_verify_case *x, bou
     for (int i = 0; i < x->n_expect; i++) {
         if (x->expect[i].quantity.index >= wanted) wanted = x->expect[i].quantity.index + 1;
     }
-    if (bough_vibration_wanted(s)) return do_whole_modes(arena, x, wanted, s, value);
+    // in the air the others' number moves a mode, as those of `bough modes`
+    int listed = s->scene->modes.count > wanted ? s->scene->modes.count : wanted;
+    if (bough_vibration_wanted(s)) return do_whole_modes(arena, x, listed, s, value);
     bough_steady at;
     bough_rod_mode_list list = {.wanted = wanted};
     bough_status status = steady(arena, s, &at);
