@@ -98,8 +98,8 @@ bough_status bough_arena_use(bough_status (*work)(bough_arena *arena, void *self
 
 // -- blocks ---------------------------------------------------------------------------------------
 
-// Fresh memory of a large matrix, whole large pages: far fewer faults than of small ones. NULL where there is
-// none. *size: of all that is mapped.
+// Zeroed memory for a large matrix in whole large pages, which cause fewer page faults than small ones. *size
+// [bytes]: what is needed, then what is mapped. NULL: the system has none.
 static void *map_pages(size_t *size) {
 #if defined MADV_HUGEPAGE && !defined __SANITIZE_ADDRESS__ // which watches malloc
     size_t wanted = (*size + PAGE - 1) / PAGE * PAGE, all = wanted + PAGE;

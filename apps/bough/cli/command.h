@@ -65,9 +65,10 @@ bough_status bough_option_kernels(const bough_option *row, const char *text,
 #define BOUGH_OPTION_THREADS                                                                                 \
     BOUGH_COMMON("threads", "N", "1 to 64; replaces the scene's number", threads, threads)
 #define BOUGH_OPTION_KERNELS                                                                                 \
-    BOUGH_COMMON("kernels", "LEVEL",                                                                         \
-                 "v2, v3 or v4: level of the instruction set, default the processor's highest", kernels,     \
-                 quiet)
+    {                                                                                                        \
+        "kernels", "LEVEL", "v2, v3 or v4: level of the instruction set, default the processor's highest",   \
+            .read = bough_option_kernels                                                                     \
+    }
 #define BOUGH_OPTION_QUIET BOUGH_COMMON("quiet", NULL, "no progress line", flag, quiet)
 
 // -- commands -------------------------------------------------------------------------------------

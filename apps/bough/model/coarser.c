@@ -133,7 +133,8 @@ static bool is_one_system(const bough_scene *scene) {
 }
 
 // Whether the integrator of the whole or of a body takes fixed steps, whose error the companion's steps by
-// tolerance do not share. Fixed ones would end where loads have corners, as the run's do, and not be longer.
+// tolerance do not share. Fixed steps of its own would end at the corners of loads, as the run's do, and be
+// as short.
 static bool has_fixed_steps(const bough_scene *scene) {
     if (is_one_system(scene)) return scene->simulation.master.solver == BOUGH_GENERALIZED_ALPHA;
     for (int i = 0; i < scene->n_body; i++) {
@@ -150,8 +151,7 @@ static bool holds_loads(const bough_scene *scene) { return scene->aero.hold == B
 // vibrations stay whose phases and amplitudes err at a lower order; half where loads of the air are held
 // constant between samples, which is of order 1. What a coupling errs by is the whole difference to a
 // solution without one: all of it by a coupling that is explicit, repeats steps or is of order 1, as any is
-// across a jump within a macro step, or fixed steps of sub-solvers; half otherwise, where steps and mesh take
-// part.
+// across a jump within a macro step, or of fixed steps; half otherwise, where steps and mesh take part.
 static double usual_share(const bough_scene *scene) {
     const bough_scene_coupling *x = &scene->simulation.coupling;
     const bough_scheme *scheme = bough_scheme_at(x->scheme);
@@ -342,9 +342,10 @@ bough_status bough_other_run_build(bough_arena *arena, const bough_simulation *r
     return bough_ok();
 }
 
-static const double states_of_a_call = 300; // that take as much time as the rest of an evaluation
+// The fixed time of an evaluation, in states of a member.
+static const double states_of_a_call = 300;
 
-double bough_coarser_work(const bough_simulation *s) {
+double bough_simulation_work(const bough_simulation *s) {
     const bough_assembly *a = s->master->assembly;
     const bough_member *whole = bough_scheme_whole(s->master->coupling);
     double work = 0;

@@ -210,7 +210,7 @@ bough_status bough_companion_create(bough_arena *arena, bough_simulation *run, c
     return bough_ok();
 }
 
-// Where an event of one is, by rounding, a point of the grid of the other.
+// By rounding, a synchronisation point of the companion may be just before that of the run.
 static bool lags(const bough_companion *c) {
     return bough_is_ok(&c->status) && c->coarser.simulation->master->time < c->run->master->time;
 }
@@ -243,7 +243,7 @@ void bough_companion_stop_by(bough_companion *c, bool (*stop)(void)) {
 }
 
 double bough_companion_work(const bough_companion *c) {
-    return c->earlier + bough_coarser_work(c->run) + bough_coarser_work(c->coarser.simulation);
+    return c->earlier + bough_simulation_work(c->run) + bough_simulation_work(c->coarser.simulation);
 }
 
 // -- copies ---------------------------------------------------------------------------------------
@@ -260,6 +260,7 @@ void bough_companion_snapshot(bough_companion *c, bough_snapshot *s) {
     double *const rows[] = {c->value, c->error,     c->least,      c->low,
                             c->high,  c->other_low, c->other_high, c->noticed};
     for (size_t k = 0; k < sizeof rows / sizeof *rows; k++) bough_snapshot_doubles(s, rows[k], n);
+    // a restored companion goes on from the stored work, whatever its own counters are
     double work = bough_companion_work(c), now = work - c->earlier;
     bough_snapshot_take(s, &work, sizeof work);
     c->earlier = work - now;

@@ -64,8 +64,9 @@ typedef struct bough_other_run {
 bough_status bough_other_run_build(bough_arena *arena, const bough_simulation *run, int parts,
                                    bough_other_run *other);
 
-// Evaluations and factorisations of all members so far, each weighted by the states of the member.
-double bough_coarser_work(const bough_simulation *s);
+// Evaluations and factorisations of all members so far, each weighted by the states of the member and a
+// constant. Nearly proportional to CPU time, and the same on every machine.
+double bough_simulation_work(const bough_simulation *s);
 
 void bough_other_run_sample(bough_other_run *other);
 
@@ -135,7 +136,7 @@ typedef struct bough_companion {
 bough_status bough_companion_create(bough_arena *arena, bough_simulation *run, const bough_channels *channels,
                                     bough_companion *companion);
 
-// Of run and companion since time 0 (bough_coarser_work).
+// Of run and companion since time 0 (bough_simulation_work).
 double bough_companion_work(const bough_companion *c);
 
 // Whether it is at the time of the run and can go on, so that its next step is due.

@@ -20,14 +20,14 @@ static void unknown(bough_error_share *share, const char *why) {
 // -- further runs ---------------------------------------------------------------------------------
 
 static const double most_times = 5; // the work of the run and its companion, by all further runs together
-static const double little = 3e6;   // work that takes no time
+static const double little = 3e6;   // work that takes a few milliseconds
 
-// A macro step of a further run, of whose work so much is left. One that needs much more than the run and its
-// companion follows another solution and may never end.
+// A macro step of a further run, whose work is taken off what is left. Runs that need much more than the run
+// and its companion follow another solution and may never end.
 static bough_status step(const bough_simulation *s, double *left) {
-    double before = bough_coarser_work(s);
+    double before = bough_simulation_work(s);
     BOUGH_TRY(bough_step(s->master));
-    *left -= bough_coarser_work(s) - before;
+    *left -= bough_simulation_work(s) - before;
     if (*left >= 0) return bough_ok();
     return bough_fail(BOUGH_FAILED,
                       "further runs took more than %.0f times the work of this one and its "

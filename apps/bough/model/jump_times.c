@@ -1,3 +1,4 @@
+// When loads and given motions of joints jump, in tables and ramps of the scene.
 #include "apps/bough/model/companion.h"
 
 #include <math.h>
