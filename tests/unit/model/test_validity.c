@@ -70,71 +70,72 @@ TEST(a_fast_section_is_warned_of_once) {
         "loads=[{body: column, at: tip, force: [0, 0, " force "]}]", "gravity=[0, 0, 0]", "markers=[]",      \
         "simulation.initial=equilibrium"
 
-// On either side of a limit.
+// Runs on either side of a limit.
+static const struct {
+    const char *scene, *set[12];
+    int steps;
+    bough_limit limit;
+    bool passes, others; // it is passed; so may others be
+    double low, high;    // of its value
+    const char *body;    // NULL: not looked at
+} either_side[] = {
+    // 5 rad/s are 57 deg in a fifth of a second, 6 rad/s 69 deg
+    {turbine, {SPEED("5"), "aero.rate=5"}, 4, BOUGH_LIMIT_ROTATION, false, true, 0, 0, NULL},
+    {turbine, {SPEED("6"), "aero.rate=5"}, 4, BOUGH_LIMIT_ROTATION, true, true, 68.7, 68.8, "hub"},
+    // a tip moment rolls a cantilever up to a circle: 30 deg in each of twelve segments, 60 of six
+    {roll_up,
+     {"bodies[0].rod.segments=12", "simulation.initial=equilibrium"},
+     0,
+     BOUGH_LIMIT_TURN,
+     .others = true},
+    {roll_up,
+     {"bodies[0].rod.segments=6", "simulation.initial=equilibrium"},
+     0,
+     BOUGH_LIMIT_TURN,
+     true,
+     true,
+     59,
+     61,
+     NULL},
+    // the tip of a uniform cantilever goes aside by F L³/(3 E I), a tenth of its length at 52.5 N
+    {beam, {MODAL("50 N")}, 0, BOUGH_LIMIT_SHAPES, .others = false},
+    {beam, {MODAL("55 N")}, 0, BOUGH_LIMIT_SHAPES, true, false, 0.1046, 0.1049, "beam"},
+    // the hub on the tower's axis, without tilt: the hanging blade stands in the tower
+    {turbine,
+     {"bodies[2].joint.placement=[move z 1.2 m]"},
+     4,
+     BOUGH_LIMIT_TOWER,
+     true,
+     false,
+     0,
+     1,
+     "blade2"},
+    // vibrations of the pieces grow under air at 10 Hz, and not at 50 Hz
+    {runup, {PIECES, "aero.rate=10"}, 30, BOUGH_LIMIT_SAMPLES, true, true, 0.3, 1, NULL},
+    {runup, {PIECES, "aero.rate=50"}, 30, BOUGH_LIMIT_SAMPLES, false, true, 0, 0, NULL},
+    // four bars that all come to lie on one line at 0.75 s; a loop that stays away from such a position
+    {"apps/mechanisms/four-bar.yaml", {NULL}, 75, BOUGH_LIMIT_SINGULAR, true, false, 0, 0.01, NULL},
+    {"tests/data/scenes/closed.yaml", {NULL}, 100, BOUGH_LIMIT_SINGULAR, .others = false},
+    // Euler's load is EI π²/(4 L²) = 24.7 N
+    {pendulum, {COLUMN("-20")}, 0, BOUGH_LIMIT_START, .others = false},
+    {pendulum, {COLUMN("-40")}, 0, BOUGH_LIMIT_START, true, false, 0.1, 100, "column"},
+    // beside a turbine in steady operation, whose own start is stable
+    {operation, {"loads[0].force=[0, 0, -40]"}, 0, BOUGH_LIMIT_START, .others = false},
+    {operation, {"loads[0].force=[0, 0, -200]"}, 0, BOUGH_LIMIT_START, true, false, 0.1, 100, "column"},
+};
+
 TEST(a_limit_is_reported_where_it_is_passed) {
-    static const struct {
-        const char *scene, *set[12];
-        int steps;
-        bough_limit limit;
-        bool passes, others; // it is passed; so may others be
-        double low, high;    // of its value
-        const char *body;    // NULL: not looked at
-    } run[] = {
-        // 5 rad/s are 57 deg in a fifth of a second, 6 rad/s 69 deg
-        {turbine, {SPEED("5"), "aero.rate=5"}, 4, BOUGH_LIMIT_ROTATION, false, true, 0, 0, NULL},
-        {turbine, {SPEED("6"), "aero.rate=5"}, 4, BOUGH_LIMIT_ROTATION, true, true, 68.7, 68.8, "hub"},
-        // a tip moment rolls a cantilever up to a circle: 30 deg in each of twelve segments, 60 of six
-        {roll_up,
-         {"bodies[0].rod.segments=12", "simulation.initial=equilibrium"},
-         0,
-         BOUGH_LIMIT_TURN,
-         .others = true},
-        {roll_up,
-         {"bodies[0].rod.segments=6", "simulation.initial=equilibrium"},
-         0,
-         BOUGH_LIMIT_TURN,
-         true,
-         true,
-         59,
-         61,
-         NULL},
-        // the tip of a uniform cantilever goes aside by F L³/(3 E I), a tenth of its length at 52.5 N
-        {beam, {MODAL("50 N")}, 0, BOUGH_LIMIT_SHAPES, .others = false},
-        {beam, {MODAL("55 N")}, 0, BOUGH_LIMIT_SHAPES, true, false, 0.1046, 0.1049, "beam"},
-        // the hub on the tower's axis, without tilt: the hanging blade stands in the tower
-        {turbine,
-         {"bodies[2].joint.placement=[move z 1.2 m]"},
-         4,
-         BOUGH_LIMIT_TOWER,
-         true,
-         false,
-         0,
-         1,
-         "blade2"},
-        // vibrations of the pieces grow under air at 10 Hz, and not at 50 Hz
-        {runup, {PIECES, "aero.rate=10"}, 30, BOUGH_LIMIT_SAMPLES, true, true, 0.3, 1, NULL},
-        {runup, {PIECES, "aero.rate=50"}, 30, BOUGH_LIMIT_SAMPLES, false, true, 0, 0, NULL},
-        // windows of four bars, whose rods all come to lie on one line at 0.75 s; a loop that stays away from
-        // such
-        // a position
-        {"apps/mechanisms/four-bar.yaml", {NULL}, 75, BOUGH_LIMIT_SINGULAR, true, false, 0, 0.01, NULL},
-        {"tests/data/scenes/closed.yaml", {NULL}, 100, BOUGH_LIMIT_SINGULAR, .others = false},
-        // Euler's load is EI π²/(4 L²) = 24.7 N
-        {pendulum, {COLUMN("-20")}, 0, BOUGH_LIMIT_START, .others = false},
-        {pendulum, {COLUMN("-40")}, 0, BOUGH_LIMIT_START, true, false, 0.1, 100, "column"},
-        // beside a turbine in steady operation, whose own start is stable
-        {operation, {"loads[0].force=[0, 0, -40]"}, 0, BOUGH_LIMIT_START, .others = false},
-        {operation, {"loads[0].force=[0, 0, -200]"}, 0, BOUGH_LIMIT_START, true, false, 0.1, 100, "column"},
-    };
-    for (size_t k = 0; k < sizeof run / sizeof *run; k++) {
+    for (size_t k = 0; k < sizeof either_side / sizeof *either_side; k++) {
         check_arena(arena);
-        bough_simulation *s = run_scene(arena, run[k].scene, run[k].set, run[k].steps);
-        bough_passing first = s->validity->limit[run[k].limit];
-        print_message("%s: %g\n", bough_limit_name(run[k].limit), first.value);
-        assert_int_equal(first.passed, run[k].passes);
-        assert_true(run[k].others || passed(s) == run[k].passes << run[k].limit);
-        if (first.passed) assert_true(first.value >= run[k].low && first.value <= run[k].high);
-        if (run[k].body) assert_string_equal(s->scene->body[first.body].name, run[k].body);
+        bough_simulation *s =
+            run_scene(arena, either_side[k].scene, either_side[k].set, either_side[k].steps);
+        bough_passing first = s->validity->limit[either_side[k].limit];
+        print_message("%s: %g\n", bough_limit_name(either_side[k].limit), first.value);
+        assert_int_equal(first.passed, either_side[k].passes);
+        assert_true(either_side[k].others || passed(s) == either_side[k].passes << either_side[k].limit);
+        if (first.passed)
+            assert_true(first.value >= either_side[k].low && first.value <= either_side[k].high);
+        if (either_side[k].body) assert_string_equal(s->scene->body[first.body].name, either_side[k].body);
     }
 }
 
