@@ -81,8 +81,8 @@ help() {
 # Errors stand one a line as file:line:col: error: path: text.
 bad_scenes() {
     sed 's/^gravity:/gravty:/' "$bar" >../bad.yaml
-    for verb in run check; do
-        expect 2 "$verb" ../bad.yaml
+    for command in run check; do
+        expect 2 "$command" ../bad.yaml
         has ../stderr "^\.\./bad\.yaml:[0-9]*:1: error: .*gravty.*did you mean 'gravity'"
         [ "$(wc -l <../stderr)" -eq 1 ] || fail "$said: more than the one error"
         empty ../stdout

@@ -1,5 +1,5 @@
 #!/bin/sh
-# What a run's companion tells of its error, and what the bound makes of it: test_errors.sh PROGRAM SOURCE_FOLDER.
+# The error that a run states by its companion, and what follows its bound: test_errors.sh PROGRAM SOURCE_FOLDER.
 set -u
 bough=$1 source=$2
 . "$(dirname "$0")/scratch.sh"
@@ -86,7 +86,7 @@ bodies:
 END
 run 0 '^status: complete' fall.yaml
 
-# A step whose repetitions end before they agree goes on, because the companion tells what the run errs by; else it stops.
+# A step whose repetitions end before they agree goes on, because the companion states its error; else it stops.
 cat >carrying.yaml <<'END'
 simulation: {duration: 0.1 s, macro_step: 20 ms, coupling: {scheme: ramp}}
 bodies:

@@ -33,7 +33,7 @@ FUNCTIONS = ["fmi3" + name for name in """
     GetContinuousStateDerivatives GetEventIndicators GetContinuousStates GetNominalsOfContinuousStates
     GetNumberOfEventIndicators GetNumberOfContinuousStates EnterStepMode GetOutputDerivatives DoStep
     ActivateModelPartition""".split()]
-FUNCTIONS += ["fmi3%s%s" % (verb, name) for verb in ("Get", "Set") for name in TYPES.split()]
+FUNCTIONS += ["fmi3%s%s" % (access, name) for access in ("Get", "Set") for name in TYPES.split()]
 
 OK, ERROR = 0, 3
 REAL, REFERENCE, SIZE = ctypes.c_double, ctypes.c_uint32, ctypes.c_size_t

@@ -131,7 +131,7 @@ if parallel --version 2>/dev/null | grep -q 'GNU parallel'; then
     same whole jobs
 fi
 
-# The one case in twenty with a companion, the first, tells errors; companions change no load.
+# The one case in twenty with a companion, the first, states errors; companions change no load.
 grep -q '^errors estimated from the companions of 1 case' whole/table.txt || fail "errors: $(head -n 4 whole/table.txt)"
 sed 's/^from/companions: none\n&/' set.yaml >unknown.yaml
 study 0 'errors not estimated: companions: none' unknown.yaml --out unknown

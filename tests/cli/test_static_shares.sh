@@ -1,5 +1,5 @@
 #!/bin/sh
-# What bough static tells of the mesh, within 1/3 and 3 of what is found: the difference to 384 segments, of tips
+# The mesh error that bough static states, within 1/3 and 3 of the error found: the difference to 384 segments, of tips
 # and root moments of single rods and of channels of a whole turbine. A modal body's is not estimated.
 # test_static_shares.sh BOUGH SOURCE
 set -e

@@ -29,7 +29,7 @@ END
 
 # What writes results, each into a folder of its own that holds those of an earlier, shorter call.
 long='simulation.duration=0.3 s'
-declare -A verb=(
+declare -A command=(
     [run]="run $bar --set $long"
     [frames]="run $bar --set simulation.output.frames=1e-3 --set $long"
     [checkpoint]="run $bar --set $long --checkpoint 10ms"
@@ -40,10 +40,10 @@ declare -A verb=(
 )
 small_study "$bar" >bar.yaml
 
-# with NAME FOLDER [MORE]...: the words of a verb; the duration has a blank.
+# with NAME FOLDER [MORE]...: the words of a command; the duration has a blank.
 with() {
     words=()
-    for word in ${verb[$1]//0.3 s/0.3_s}; do words+=("${word//_s/ s}"); done
+    for word in ${command[$1]//0.3 s/0.3_s}; do words+=("${word//_s/ s}"); done
     words+=(--out "$2" "${@:3}")
 }
 
@@ -61,7 +61,7 @@ earlier() {
 
 # A disk that is full from some byte on: a limit of a file's size, with the device's message.
 full() {
-    for name in "${!verb[@]}"; do
+    for name in "${!command[@]}"; do
         for blocks in 1 4 8; do
             rm -rf out
             cp -r "old-$name" out

@@ -13,7 +13,7 @@ static inline double two_mass_error(bough_two_mass *m) {
     return worst;
 }
 
-// With 3 ports on either side: the leader takes the sum of three forces and tells (v, x, x), a
+// With 3 ports on either side: the leader takes the sum of three forces and sends (v, x, x), a
 // follower takes the mean of the two positions.
 static inline void oscillator_widen(bough_oscillator *leader, bough_oscillator *follower) {
     for (int j = 1; j < 3; j++) leader->b[1][j] = leader->b[1][0];

@@ -30,7 +30,7 @@ bough_oscillator bough_oscillator_force_in(bough_spring_mass s, double sign, dou
 // Input: the other's (v, x). It has the coupling spring (k, c); output: the force on the other.
 bough_oscillator bough_oscillator_motion_in(bough_spring_mass s, double k, double c, double x);
 
-// The same, but tells its own (v, x).
+// The same, but its output is its own (v, x).
 bough_oscillator bough_oscillator_motion_in_and_out(bough_spring_mass s, double k, double c, double x);
 
 // The coupling spring alone. Input: (v, x) of the first mass and of the second; output: the force on the

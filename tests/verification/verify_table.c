@@ -105,7 +105,8 @@ static bool expects_diagnosis(const bough_verify_case *x) {
     return false;
 }
 
-static void tell(const bough_verify_case *x, const bough_verify_result *result, double wall, report *r) {
+static void report_case(const bough_verify_case *x, const bough_verify_result *result, double wall,
+                        report *r) {
     int n = x->n_mesh > 0 ? x->n_mesh : 1;
     for (int i = 0; i < x->n_expect; i++) {
         verdict d = judge(x, i, result);
@@ -131,7 +132,7 @@ static bough_status perform_case(bough_arena *arena, const bough_verify_case *x,
         bough_code code = result[k].outcome.code;
         if (code == BOUGH_INTERRUPTED || code == BOUGH_OUT_OF_MEMORY) return result[k].outcome;
     }
-    tell(x, result, bough_wall_clock() - began, r);
+    report_case(x, result, bough_wall_clock() - began, r);
     return bough_ok();
 }
 

@@ -106,7 +106,7 @@ static bool ends_with(const char *text, const char *end) {
     return n <= length && strcmp(text + length - n, end) == 0;
 }
 
-// The last part of the key, or as many parts as tell it from the other axes' keys.
+// The last part of the key, or as many parts as distinguish it from the other axes' keys.
 static const char *short_label(const bough_study_grid *grid, int axis) {
     const char *key = grid->axis[axis].key;
     for (const char *label = key + strlen(key); label > key; label--) {

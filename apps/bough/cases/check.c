@@ -31,7 +31,7 @@ static void mix_question(uint64_t *hash, const bough_study *s) {
     if (s->n_slope > 0) bough_mix(hash, s->slope, (size_t)s->n_slope * sizeof *s->slope);
 }
 
-// The settings' text tells a reference from a cell with the same replacements.
+// The settings' text distinguishes a reference from a cell with the same replacements.
 static void mix_run(uint64_t *hash, const bough_case *c) {
     bough_mix(hash, &c->files, sizeof c->files);
     for (int i = 0; i < c->n_set; i++) bough_mix_text(hash, c->set[i]);

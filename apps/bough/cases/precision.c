@@ -276,7 +276,7 @@ static bool has_point(const bough_case_result *r, int measure) {
     return bough_held(r) && r->error[measure] > 0 && cost(r) > 0;
 }
 
-// The settings that tell a line from the others, and the runs of it that have no point.
+// The settings that distinguish a line from the others, and the runs of it that have no point.
 static const char *line_name(bough_arena *arena, const bough_study_results *results, int curve) {
     const bough_study *s = results->study;
     int n = along(s), first = curve * n, last = s->grid.n - 1;

@@ -50,7 +50,7 @@ typedef struct bough_study_settings {
 typedef struct bough_study_axis {
     const bough_node *node; // of the key
     const char *key;
-    const char *label; // the end of the key that tells it from the others
+    const char *label; // the end of the key that distinguishes it from the others
     bough_study_settings value;
 } bough_study_axis;
 
@@ -110,11 +110,11 @@ typedef struct bough_case {
     int n_set;
     const char **set;                    // (n_set) replacements in the scene
     const bough_study_setting **setting; // (n_set) of the study's text that each of them is; NULL: of none
-    const char *settings;                // those that tell it from the others, "scheme=ramp, macro_step=5 ms"
-    int reference;                       // to compare with
-    double share;                        // of its group's hours or events
-    int next;                            // of those with the same turbulence, to be run after it; −1: none
-    bool follows;                        // another one with the same turbulence
+    const char *settings; // those that distinguish it from the others, "scheme=ramp, macro_step=5 ms"
+    int reference;        // to compare with
+    double share;         // of its group's hours or events
+    int next;             // of those with the same turbulence, to be run after it; −1: none
+    bool follows;         // another one with the same turbulence
     uint64_t files;       // fingerprint of the scene's files, which must stay as they are; 0: may change
     uint64_t fingerprint; // of all that its result depends on
 } bough_case;

@@ -197,7 +197,7 @@ bough_status bough_options_read(bough_arena *arena, int argc, char **argv, const
     list_options(command, list);
     bough_status status = bough_ok();
     opterr = 0; // messages are ours
-    // "-": operands come in order, whatever POSIXLY_CORRECT says; ":": tell missing from unknown.
+    // "-": operands come in order, whatever POSIXLY_CORRECT says; ":": distinguishes missing from unknown.
     for (int code; bough_is_ok(&status) && (code = getopt_long(argc, argv, "-:h", list, NULL)) != -1;) {
         bool separate = code >= FIRST && optarg == argv[optind - 1]; // the value is a word of its own
         const char *word = argv[optind - 1 - separate];

@@ -53,8 +53,8 @@ static double least_step_time(const bough_run_command *command) {
     return 2 * sum;
 }
 
-// Tells what the command records, and of a long run (more than a million macro steps or a gigabyte)
-// steps and time on stderr. BOUGH_INVALID where the results cannot fit on the disk of its folder.
+// Prints what the command records, and for a long run (more than a million macro steps or a gigabyte)
+// steps and time, on stderr. BOUGH_INVALID where the results cannot fit on the disk of its folder.
 static bough_status run_forecast(const bough_run_command *command) {
     const bough_run *run = &command->run;
     const bough_master *m = run->simulation->master;

@@ -50,7 +50,7 @@ bough_status bough_run_command_build(bough_run_command *command);
 // Writes summary.json into the command's folder.
 bough_status bough_run_summarise(const bough_run_command *command);
 
-// Tells the user how it went: what was run, how fast, what came out, how wrong at most, what to do next.
+// Prints for the user what was run, how fast, what came out, how wrong at most, what to do next.
 void bough_run_report(bough_run_command *command);
 
 // -- checkpoints (checkpoint.c) -------------------------------------------------------------------

@@ -41,7 +41,7 @@ enum {
 };
 
 /* Reads and builds a scene with `count` replacements "key=value" (NULL: none). Returns NULL only if
-   memory is exhausted; bough_session_code tells whether the scene was built. */
+   memory is exhausted; bough_session_code states whether the scene was built. */
 BOUGH_API bough_session *bough_session_open(const char *scene, const char *const *set, int count);
 
 /* Code of the last open, step, save, restore, set or failed search of a name, and the message of a failure:

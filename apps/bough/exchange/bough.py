@@ -347,7 +347,7 @@ class Session:
         return code
 
     def _find(self, known, call, name):
-        """The index of a channel or an input among those known; the library's call tells what is wrong."""
+        """The index of a channel or an input among those known; the error of the library's call is raised."""
         if name in known:
             return known[name]
         if not isinstance(name, str):

@@ -38,8 +38,8 @@ typedef struct state {
 
 // -- messages -------------------------------------------------------------------------------------
 
-__attribute__((format(printf, 3, 4))) static fmi3_status tell(const instance *x, fmi3_status status,
-                                                              const char *format, ...) {
+__attribute__((format(printf, 3, 4))) static fmi3_status notify(const instance *x, fmi3_status status,
+                                                                const char *format, ...) {
     char text[2400];
     va_list arguments;
     va_start(arguments, format);
@@ -54,11 +54,11 @@ __attribute__((format(printf, 3, 4))) static fmi3_status tell(const instance *x,
 
 static fmi3_status answer(const instance *x, int code) {
     if (code == BOUGH_SESSION_OK) return FMI3_OK;
-    return tell(x, FMI3_ERROR, "%s", bough_session_error(x->session));
+    return notify(x, FMI3_ERROR, "%s", bough_session_error(x->session));
 }
 
 static fmi3_status misplaced(const instance *x, const char *function) {
-    return tell(x, FMI3_ERROR, "%s: not allowed at this point", function);
+    return notify(x, FMI3_ERROR, "%s: not allowed at this point", function);
 }
 
 const char *fmi3GetVersion(void) { return "3.0"; }
@@ -119,13 +119,13 @@ fmi3_instance fmi3InstantiateCoSimulation(fmi3_string name, fmi3_string token, f
     bool good = false;
     if (!resources || !token || !read_resources(x, resources, token)) {
         x->logging = true;
-        tell(x, FMI3_ERROR, "%s: the resources are not those of this FMU", name ? name : "");
+        notify(x, FMI3_ERROR, "%s: the resources are not those of this FMU", name ? name : "");
     } else if (event_mode) {
-        tell(x, FMI3_ERROR, "the FMU has no event mode");
+        notify(x, FMI3_ERROR, "the FMU has no event mode");
     } else {
         good = open_session(x);
         x->logging = x->logging || !good;
-        if (!good && x->session) tell(x, FMI3_ERROR, "%s", bough_session_error(x->session));
+        if (!good && x->session) notify(x, FMI3_ERROR, "%s", bough_session_error(x->session));
     }
     if (good) return x;
     fmi3FreeInstance(x);
@@ -178,9 +178,9 @@ fmi3_status fmi3EnterInitializationMode(fmi3_instance self, bool has_tolerance, 
     (void)has_tolerance;
     (void)tolerance; // the scene's solvers have theirs
     if (x->mode != INSTANTIATED) return misplaced(x, "fmi3EnterInitializationMode");
-    if (!isfinite(start)) return tell(x, FMI3_ERROR, "a run cannot start at %g s", start);
+    if (!isfinite(start)) return notify(x, FMI3_ERROR, "a run cannot start at %g s", start);
     if (has_stop && !(stop > start && isfinite(stop)))
-        return tell(x, FMI3_ERROR, "a run from %g s cannot stop at %g s", start, stop);
+        return notify(x, FMI3_ERROR, "a run from %g s cannot stop at %g s", start, stop);
     x->mode = INITIALIZATION;
     x->start = start;
     bool longer = has_stop && stop - start > bough_session_duration(x->session) * (1 + 1e-12);
@@ -215,11 +215,11 @@ fmi3_status fmi3GetFloat64(fmi3_instance self, const fmi3_reference *reference, 
     size_t inputs = (size_t)bough_session_inputs(x->session);
     const double *channel = bough_session_values(x->session);
     size_t count = (size_t)bough_session_count(x->session);
-    if (n != n_value) return tell(x, FMI3_ERROR, "fmi3GetFloat64: %zu values of %zu", n_value, n);
+    if (n != n_value) return notify(x, FMI3_ERROR, "fmi3GetFloat64: %zu values of %zu", n_value, n);
     for (size_t k = 0; k < n; k++) {
         size_t at = reference[k];
         if (at > inputs + count || (at > inputs && !channel)) {
-            return tell(x, FMI3_ERROR, "fmi3GetFloat64: no value of reference %zu", at);
+            return notify(x, FMI3_ERROR, "fmi3GetFloat64: no value of reference %zu", at);
         }
         value[k] = at == 0        ? now(x)
                    : at <= inputs ? bough_session_input_value(x->session, (int)at - 1)
@@ -232,10 +232,10 @@ fmi3_status fmi3SetFloat64(fmi3_instance self, const fmi3_reference *reference, 
                            size_t n_value) {
     const instance *x = self;
     if (x->mode == TERMINATED) return misplaced(x, "fmi3SetFloat64");
-    if (n != n_value) return tell(x, FMI3_ERROR, "fmi3SetFloat64: %zu values of %zu", n_value, n);
+    if (n != n_value) return notify(x, FMI3_ERROR, "fmi3SetFloat64: %zu values of %zu", n_value, n);
     for (size_t k = 0; k < n; k++) {
         if (reference[k] == 0 || reference[k] > (size_t)bough_session_inputs(x->session)) {
-            return tell(x, FMI3_ERROR, "fmi3SetFloat64: no input of reference %zu", (size_t)reference[k]);
+            return notify(x, FMI3_ERROR, "fmi3SetFloat64: no input of reference %zu", (size_t)reference[k]);
         }
         int code = bough_session_set(x->session, (int)reference[k] - 1, value[k]);
         if (code != BOUGH_SESSION_OK) return answer(x, code);
@@ -257,7 +257,7 @@ fmi3_status fmi3GetFMUState(fmi3_instance self, fmi3_state *to) {
     const instance *x = self;
     size_t size = bough_session_size(x->session);
     state *s = *to ? *to : malloc(sizeof *s + size);
-    if (!s) return tell(x, FMI3_ERROR, "out of memory");
+    if (!s) return notify(x, FMI3_ERROR, "out of memory");
     *to = s;
     s->size = size;
     return answer(x, bough_session_save(x->session, s->copy));
@@ -267,7 +267,7 @@ fmi3_status fmi3SetFMUState(fmi3_instance self, fmi3_state from) {
     instance *x = self;
     const state *s = from;
     if (!s || s->size != bough_session_size(x->session)) {
-        return tell(x, FMI3_ERROR, "fmi3SetFMUState: not a state of this FMU");
+        return notify(x, FMI3_ERROR, "fmi3SetFMUState: not a state of this FMU");
     }
     fmi3_status status = answer(x, bough_session_restore(x->session, s->copy));
     if (status == FMI3_OK && x->mode == TERMINATED) x->mode = STEP;
@@ -292,11 +292,11 @@ static bool near(double a, double b, double step) {
 static fmi3_status check_step(const instance *x, double time, double step) {
     double macro_steps = step / bough_session_macro_step(x->session);
     if (!near(time, now(x), step) || !(step > 0))
-        return tell(x, FMI3_ERROR, "fmi3DoStep: a step of %.9g s from %.15g s, the FMU is at %.15g s", step,
-                    time, now(x));
+        return notify(x, FMI3_ERROR, "fmi3DoStep: a step of %.9g s from %.15g s, the FMU is at %.15g s", step,
+                      time, now(x));
     if (fabs(macro_steps - round(macro_steps)) > 1e-3 || macro_steps < 0.5)
-        return tell(x, FMI3_ERROR, "fmi3DoStep: %.9g s is not a whole number of macro steps of %.9g s", step,
-                    bough_session_macro_step(x->session));
+        return notify(x, FMI3_ERROR, "fmi3DoStep: %.9g s is not a whole number of macro steps of %.9g s",
+                      step, bough_session_macro_step(x->session));
     return FMI3_OK;
 }
 
@@ -316,7 +316,7 @@ fmi3_status fmi3DoStep(fmi3_instance self, double time, double step, bool no_ret
         *reached = now(x);
         if (code == BOUGH_SESSION_DONE) {
             *terminate = true;
-            return tell(
+            return notify(
                 x, FMI3_ERROR,
                 "fmi3DoStep: the run ends at %.15g s; a stop time at the initialisation makes it longer",
                 *reached);

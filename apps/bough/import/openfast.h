@@ -144,7 +144,7 @@ void bough_openfast_aero_tables(bough_openfast *o);
 void bough_openfast_aero(bough_openfast *o);
 void bough_openfast_wind(bough_openfast *o);
 
-// The highest speed of the rotor that the decks tell [rad/s].
+// The highest speed of the rotor in the decks [rad/s].
 double bough_openfast_rotor_speed(const bough_openfast *o);
 
 // Finds out what acts on the generator.

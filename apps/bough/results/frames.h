@@ -32,7 +32,7 @@ bough_status bough_frames_open(bough_arena *arena, const bough_frames_def *def, 
 // Writes the frame of time t [s].
 bough_status bough_frames_sample(bough_frames *frames, double t);
 
-// Brings the list of the frames so far to the disk and tells how many they are.
+// Brings the list of the frames so far to the disk and counts them.
 bough_status bough_frames_keep(bough_frames *frames, bough_kept *kept);
 
 // Writes frames.pvd and removes the frames of an earlier run that this one has not replaced.

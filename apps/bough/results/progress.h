@@ -1,4 +1,4 @@
-// One line on a terminal that tells how far a run is, how fast, and how long it still takes.
+// One line on a terminal: how far a run is, how fast, and how long it still takes.
 #ifndef BOUGH_APPS_RESULTS_PROGRESS_H
 #define BOUGH_APPS_RESULTS_PROGRESS_H
 

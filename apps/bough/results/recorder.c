@@ -101,7 +101,7 @@ struct bough_recorder {
     char *buffer;    // of the file (BUFFER)
     char *line;      // one row and its terminator (row_length + 1)
     double *value;   // (count)
-    long outcome_at; // offset of the line that tells how the run ended
+    long outcome_at; // offset of the line with the outcome of the run
     long rows_at;    // offset of the first row
     long row_length; // of every row [bytes]
 };

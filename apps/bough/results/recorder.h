@@ -32,7 +32,7 @@ bough_status bough_recorder_open(bough_arena *arena, const bough_recorder_def *d
 // Asks the channels for their values at t [s] and appends a row.
 bough_status bough_recorder_sample(bough_recorder *recorder, double t);
 
-// Brings the rows so far to the disk and tells how many they are.
+// Brings the rows so far to the disk and counts them.
 bough_status bough_recorder_keep(bough_recorder *recorder, bough_kept *kept);
 
 // Ends the file with the run's outcome; the rows of a failed run are kept and marked INCOMPLETE.

@@ -59,7 +59,7 @@ static void warn_polars(const bough_scene_polars *polars, FILE *stream) {
     }
 }
 
-// The defaults of the built-in law belong to one turbine, which this gear ratio tells from others.
+// The defaults of the built-in law belong to one turbine, which has this gear ratio.
 static const double ratio_of_defaults = 97;
 
 static void warn_law(const bough_scene_control *control, FILE *stream) {

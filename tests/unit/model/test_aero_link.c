@@ -147,7 +147,7 @@ TEST(rotor_sees_the_motion_of_the_hub) {
 
 // The blades' mean velocity is the nacelle's: two opposite blades turn about their middle. RtVAvgxh and RtTSR
 // are of the wind relative to it.
-TEST(rotor_tells_the_wind_relative_to_the_blades) {
+TEST(rotor_takes_the_wind_relative_to_the_blades) {
     static const char *const sets[2][3] = {
         {"bodies[2].joint.speed=3 rad/s", NULL},
         {"bodies[2].joint.speed=3 rad/s",

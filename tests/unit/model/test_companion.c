@@ -1,4 +1,4 @@
-// The companion of a run: what it tells against solutions that are finer in mesh, air and time.
+// The companion of a run: what it states beside solutions that are finer in mesh, air and time.
 #include "apps/bough/model/companion.h"
 #include "apps/bough/model/error_verdict.h"
 #include "apps/bough/model/run.h"

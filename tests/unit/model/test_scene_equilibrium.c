@@ -264,7 +264,8 @@ TEST(chain_hangs_in_a_catenary) {
     }
 }
 
-// The chain is stable: that its sections twist is the mesh's, until there are as many segments as is told.
+// The chain is stable: that its sections twist is the mesh's, until there are as many segments as the message
+// asks for.
 TEST(twist_of_long_segments_is_not_called_unstable) {
     char more[60] = "bodies[1].rod.segments=48";
     const char *sets[] = {"bodies[1].rod.stiffness=[1.2e9, 1.2e9, 3.2e9, 1e4, 1e4, 1e4]", more, NULL};

@@ -170,8 +170,8 @@ TEST(defects_of_the_model_are_reported_at_the_start) {
     }
 }
 
-// A connecting rod of 3 mg between bodies of one ton is too light to be told from equations that depend on
-// each other: its loop opens, and the run ends.
+// A connecting rod of 3 mg between bodies of one ton is too light to be distinguished from equations that
+// depend on each other: its loop opens, and the run ends.
 TEST(a_loop_that_comes_apart_ends_the_run) {
     static const char *const sets[] = {"bodies[rod].mass=3e-6 kg",
                                        "bodies[rod].inertia=[2.5e-7, 2.5e-7, 1e-9]",

@@ -141,7 +141,7 @@ TEST(blends_are_exact) {
 }
 
 // A table that ends short of the full turn leaves a gap, unless it only lacks a row; of a mixture
-// both must tell an angle.
+// both must have a row at an angle.
 TEST(gaps_are_known) {
     static const double part[3][4] = {{-20, -1, 0, 0}, {0, 0, 0, 0}, {25, 1, 0, 0}};
     static const double shifted[3][4] = {{-30, -1, 0, 0}, {0, 0, 0, 0}, {15, 1, 0, 0}};

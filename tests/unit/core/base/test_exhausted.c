@@ -91,7 +91,7 @@ static bough_status set_up(bough_arena *arena, void *self) {
     return bough_is_ok(&status) ? bough_step(s->master) : status;
 }
 
-static bool tells(const bough_status *status) {
+static bool names_memory(const bough_status *status) {
     return status->code == BOUGH_OUT_OF_MEMORY && strstr(status->message, "memory");
 }
 
@@ -103,7 +103,7 @@ static bool try_without(subject *x, long k, bool only_one) {
     bough_status status = bough_arena_use(set_up, x);
     armed = false;
     bool refused = left < 0;
-    if (refused ? !bough_is_ok(&status) && !tells(&status) : !bough_is_ok(&status)) {
+    if (refused ? !bough_is_ok(&status) && !names_memory(&status) : !bough_is_ok(&status)) {
         print_error("%s, allocation %ld: code %d: %s\n", x->path, k, status.code, status.message);
         fail();
     }

@@ -237,7 +237,7 @@ TEST(steady_translation_changes_nothing) {
 static const double soft[6] = {1e-12, 1e-12, 1e-12, 1e-12, 1e-12, 1e-12};
 static const double ball[4] = {2, 0.3, 0.3, 0.3};
 
-// Vertices that hardly feel each other move as F = value + rate (t − start) tells.
+// Vertices that hardly feel each other move by F = value + rate (t − start) alone.
 TEST(loads_grow_linearly_from_their_start) {
     check_arena(arena);
     rod r = make(arena, sample_uniform(arena, 4, 4, soft, 0, ball), 1e-9, at_rest);
@@ -451,7 +451,7 @@ TEST(stiff_rod_keeps_its_amplitude_under_the_rosenbrock_method) {
 
 // -- failure --------------------------------------------------------------------------------------
 
-// A moment that winds one segment up beyond what a rotation vector tells.
+// A moment that winds one segment up beyond the range of a rotation vector.
 TEST(overturned_rod_is_a_failure_by_name) {
     check_arena(arena);
     rod r = make(arena, sample_uniform(arena, 2, 2, soft, 0, ball), 1e-6, at_rest);
