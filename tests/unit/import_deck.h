@@ -66,6 +66,9 @@ static inline trial import_with(const edit *one, const edit *two) {
     return import_main("main.fst", one, two);
 }
 
+// Blades by ElastoDyn.
+static const edit by_modes = {"main.fst", "2    CompElast", "1    CompElast"};
+
 static inline trial import(const edit *change) { return import_with(change, NULL); }
 
 #endif

@@ -54,7 +54,7 @@ static void refuse_other_rotors(const bough_openfast *o) {
 
 // Main files of other programs of the family.
 static void refuse_other_files(const bough_openfast *o) {
-    static const char *const key[] = {"ADFile|ADAMSPrep", "Mod_AmbWind", "AnalysisType"};
+    static const char *const key[] = {"ADFile|ADAMSPrep", "Mod_AmbWind", "AnalysisType|DynamicSolve"};
     static const char *const what[] = {"a model of FAST 8.07 or older: convert it to OpenFAST's files",
                                        "a wind farm: give the main file of one of its turbines",
                                        "the file of a driver: give the main file of a turbine"};

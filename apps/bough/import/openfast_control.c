@@ -57,6 +57,9 @@ static const struct {
     {"AdjTwMa", 1e-6, 1e6},
     {"AdjFASt", 1e-6, 1e6},
     {"AdjSSSt", 1e-6, 1e6},
+    {"FlStTunr(1)|FlStTunr1", 1e-6, 1e6},
+    {"FAStTunr(1)|FAStTunr1", 1e-6, 1e6},
+    {"SSStTunr(1)|SSStTunr1", 1e-6, 1e6},
 };
 
 void bough_openfast_check(const bough_deck *deck) {
@@ -277,7 +280,13 @@ static double least_slip(const bough_openfast *o, const torque_line *l) {
 }
 
 static void put_law(bough_openfast *o) {
+    const double slow = 0.1; // of the speed of the start
+    double start = fabs(bough_deck_number(o->elasto, "RotSpeed") * bough_deck_number(o->elasto, "GBRatio"));
     torque_line l = read_line(o);
+    if (l.full_speed < slow * start * BOUGH_RPM) { // as of a deck whose torque is constant
+        l.full_speed = slow * start * BOUGH_RPM;
+        bough_approximated(o, "torque has its maximum from %g rpm of the generator on", slow * start);
+    }
     double least = least_slip(o, &l), full = l.full_speed;
     if (!bough_is_ok(o->draft->status)) return;
     if (!(l.slip >= least) && isfinite(least)) {
@@ -326,14 +335,10 @@ static void put_switches(bough_openfast *o) {
     if (starts && !timed) bough_put(o, "    - {kind: start, channel: GenSpeed, above: %.10g}\n", on);
     if (by_time) bough_put(o, "    - {kind: grid-loss, at: %.10g s}\n", off);
     if (by_power) bough_put(o, "    - {kind: grid-loss, channel: GenPwr, below: 0}\n");
-    bough_taken(o, "the generator's switches: %s%s%s",
-                !starts ? ""
-                : timed ? "TimGenOn"
-                        : "SpdGenOn",
-                starts && (by_time || by_power) ? ", " : "",
-                by_time    ? "TimGenOf"
-                : by_power ? "GenTiStp False"
-                           : "");
+    const char *first = timed ? "TimGenOn" : "SpdGenOn", *last = by_time ? "TimGenOf" : "GenTiStp False";
+    bool both = starts && (by_time || by_power);
+    bough_taken(o, "the generator's switches: %s%s%s", starts ? first : last, both ? ", " : "",
+                both ? last : "");
 }
 
 // -- library --------------------------------------------------------------------------------------

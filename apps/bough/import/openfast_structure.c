@@ -72,6 +72,15 @@ static double least_damping(const bough_deck *deck, const slender *b) {
     return omega > 0 ? 2 * least / omega : 0;
 }
 
+// The factor of a bending stiffness: that of the table, times the tuner of the first mode's stiffness.
+static double stiffness_factor(bough_openfast *o, const bough_deck *deck, const char *adjust,
+                               const char *tuner) {
+    double first = bough_deck_number_or(deck, bough_deck_kth(deck, tuner, 1), 1);
+    double second = bough_deck_number_or(deck, bough_deck_kth(deck, tuner, 2), first);
+    if (second != first) bough_approximated(o, "%s(2): that of the first mode is used", tuner);
+    return first * bough_deck_number_or(deck, adjust, 1);
+}
+
 static double total_mass(const slender *b) {
     double sum = 0;
     for (int i = 1; i < b->n; i++) {
@@ -167,7 +176,7 @@ void bough_openfast_blade(bough_openfast *o) {
                  .bending = FLAP,
                  .row = bough_deck_table(deck, column, N_BLADE_COLUMN, n),
                  .mass_factor = bough_deck_number_or(deck, "AdjBlMs", 1),
-                 .bending_factor = bough_deck_number_or(deck, "AdjFlSt", 1),
+                 .bending_factor = stiffness_factor(o, deck, "AdjFlSt", "FlStTunr"),
                  .length = bough_deck_number(o->elasto, "TipRad") - o->hub_radius};
     double edge = bough_deck_number_or(deck, "AdjEdSt", 1);
     extend(o, deck, &b, "NBlInpSt");
@@ -219,10 +228,10 @@ void bough_openfast_tower(bough_openfast *o, double top_mass) {
                  .bending = FORE,
                  .row = bough_deck_table(deck, column, N_TOWER_COLUMN, n),
                  .mass_factor = bough_deck_number_or(deck, "AdjTwMa", 1),
-                 .bending_factor = bough_deck_number_or(deck, "AdjFASt", 1),
+                 .bending_factor = stiffness_factor(o, deck, "AdjFASt", "FAStTunr"),
                  .length = o->tower_top - o->tower_base,
                  .end_mass = top_mass};
-    double side = bough_deck_number_or(deck, "AdjSSSt", 1);
+    double side = stiffness_factor(o, deck, "AdjSSSt", "SSStTunr");
     extend(o, deck, &b, "NTwInpSt");
     if (!bough_is_ok(o->draft->status)) return;
     check_rows(deck, &b, "NTwInpSt", SIDE);

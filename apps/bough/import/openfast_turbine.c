@@ -203,7 +203,9 @@ static void put_shaft_joint(bough_openfast *o, bool twists) {
 // The hub's frame is on the shaft's axis, of a teetering hub at the pin; HubCM counts from the apex.
 static void put_hub(bough_openfast *o, bool twists) {
     const bough_deck *e = o->elasto;
-    double given = bough_deck_number(e, "HubIner");
+    double mass = bough_deck_number(e, "HubMass"), about = bough_deck_number(e, "HubIner"),
+           others = about / 2;
+    double arm = bough_deck_number_or(e, "HubCM", 0) - undersling(o), along = others;
     bool generator_is_shaft = has_generator(o) && !twists;
     if (teeters(o) && !generator_is_shaft) {
         bough_put(o, "  - name: shaft\n    fidelity: rigid\n");
@@ -215,11 +217,18 @@ static void put_hub(bough_openfast *o, bool twists) {
     } else {
         put_shaft_joint(o, twists);
     }
-    bough_put(o, "    mass: %.10g kg\n    centre_of_mass: [%.10g, 0, 0]\n", bough_deck_number(e, "HubMass"),
-              bough_deck_number_or(e, "HubCM", 0) - undersling(o));
-    bough_put(o, "    inertia: [%.10g, %.10g, %.10g]\n", given, given / 2,
-              o->n_blade == 2 ? given : given / 2);
-    bough_approximated(o, "hub: inertias about its other axes half of HubIner");
+    if (o->n_blade == 2) { // a cylinder along the blades, whose inertia is given about the teeter axis
+        double cosine = cos(bough_deck_number_or(e, "Delta3", 0) * BOUGH_DEGREE);
+        about = others = (about - mass * arm * arm) / (cosine * cosine);
+        along = 0;
+        if (!(about >= 0))
+            bough_deck_refuse(e, "HubIner", "expected at least %g, that of HubMass at its place",
+                              mass * arm * arm);
+    } else {
+        bough_approximated(o, "hub: inertias about its other axes half of HubIner");
+    }
+    bough_put(o, "    mass: %.10g kg\n    centre_of_mass: [%.10g, 0, 0]\n", mass, arm);
+    bough_put(o, "    inertia: [%.10g, %.10g, %.10g]\n", about, others, along);
 }
 
 // -- blades ---------------------------------------------------------------------------------------

@@ -96,7 +96,7 @@ TEST(high_thrust_is_the_decks) {
 // With the shape x² of a uniform blade ω² = 20 E I/(m l⁴), of the tower, without what it
 // carries, 4 E I/l³/(m l/5).
 TEST(elastodyn_structure_is_scaled_and_damped) {
-    trial t = import(&(edit){"main.fst", "2    CompElast", "1    CompElast"});
+    trial t = import(&by_modes);
     const bough_node *blade = read_file(&t, "blade-structure.yaml");
     check_near(number(blade, "length"), 9, 1e-9, 0);
     check_near(number(blade, "stations.rows.0.3.0"), 44, 1e-9, 0);
@@ -108,6 +108,20 @@ TEST(elastodyn_structure_is_scaled_and_damped) {
     double omega2 = 4 * 2e9 / 8000 / (500 * 20 / 5.0);
     check_near(number(tower, "damping.0"), 2 * 0.01 / sqrt(omega2), 1e-4, 0);
     assert_true(list_says(&t, "no torsion"));
+}
+
+// A tuner of the first mode acts as the factor of the table does.
+TEST(tuners_scale_the_stiffness) {
+    static const edit scaled = {"parts/blade.dat", "2   AdjFlSt", "1 AdjFlSt\n2 FlStTunr(1)\n3 FlStTunr(2)"};
+    trial one = import(&by_modes), two = import_with(&by_modes, &scaled);
+    check_same_file(&one, &two, "blade-structure.yaml");
+    assert_true(list_says(&two, "FlStTunr(2): that of the first mode is used"));
+    trial t = import(&(edit){"parts/tower.dat", "1   TwrFADmp(1)",
+                             "2 FAStTunr(1)\n2 FAStTunr(2)\n0.5 SSStTunr(1)\n1 TwrFADmp(1)"});
+    const bough_node *row = at(read_file(&t, "tower-structure.yaml"), "stations.rows.0");
+    check_near(number(row, "2.4"), 4e9, 1e-9, 0); // fore-aft is about y
+    check_near(number(row, "2.3"), 1e9, 1e-9, 0);
+    assert_false(list_says(&t, "FAStTunr"));
 }
 
 TEST(newer_names_are_known) {
@@ -172,7 +186,7 @@ static void a_scene_steps(const edit *one, const edit *two) {
 TEST(scenes_step) {
     const edit stiff = {"parts/elasto.dat", "True          TwFADOF1", "False         TwFADOF1"};
     a_scene_steps(NULL, NULL);
-    a_scene_steps(&stiff, &(edit){"main.fst", "2    CompElast", "1    CompElast"});
+    a_scene_steps(&stiff, &by_modes);
     a_scene_steps(&stiff, &(edit){"parts/servo.dat", "1   VSContrl", "0   VSContrl"});
     a_scene_steps(&stiff, &(edit){"parts/elasto.dat", "T             GenDOF", "F    GenDOF"});
     a_scene_steps(&stiff, &(edit){"main.fst", "2    CompAero", "0    CompAero"});
@@ -316,8 +330,8 @@ TEST(bad_decks_are_reported_with_their_place) {
         {{"parts/aero-blade.dat", "2       1.0\n", "2       0.0\n"},
          "aero-blade.dat:3: BlChord: row 2: expected a positive chord"},
         {{"parts/servo.dat", "400   VS_RtTq", "4   VS_RtTq"}, "servo.dat:7: VS_RtGnSp"},
-        {{"parts/servo.dat", "900   VS_RtGnSp", "0.009   VS_RtGnSp"},
-         "servo.dat:7: the torque reaches its maximum of 400 N m"},
+        {{"parts/servo.dat", "400   VS_RtTq", "1E9   VS_RtTq"},
+         "servo.dat:7: the torque reaches its maximum of 1e+09 N m"},
         {{"main.fst", "2    CompAero", "1    CompAero"}, "main.fst:8: CompAero: expected 0 or 2"},
         {{"parts/elasto.dat", "True          YawDOF", "True Furling\nTrue YawDOF"},
          "elasto.dat:7: Furling: expected False"},

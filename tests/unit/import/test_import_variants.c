@@ -13,8 +13,6 @@ static const bough_node *body(trial *t, const char *name) {
     return NULL;
 }
 
-static const edit by_modes = {"main.fst", "2    CompElast", "1    CompElast"};
-
 // -- what is missing ------------------------------------------------------------------------------
 
 TEST(missing_controller_leaves_the_speed) {
@@ -200,10 +198,12 @@ TEST(masses_on_tips_and_yaw_bearing) {
     steps(&t, 2);
 }
 
+// The hub is a rod along the blades of 600 kg m2 about the pin, of which 2000 kg at 0.3 m have 180.
 TEST(two_blades_teeter) {
-    const edit blades = {"parts/elasto.dat", "         3    NumBl",
-                         "2 NumBl\nTrue TeetDOF\n0.3 UndSling\n5 TeetDefl\n1 TeetMod\n3E4 TeetDmp\n"
-                         "20 TeetHStP\n5E6 TeetHSSp"};
+    const edit blades = {
+        "parts/elasto.dat", "         3    NumBl",
+        "2 NumBl\nTrue TeetDOF\n0.3 UndSling\n30 Delta3\n5 TeetDefl\n1 TeetMod\n3E4 TeetDmp\n"
+        "20 TeetHStP\n5E6 TeetHSSp"};
     trial t = import(&blades);
     const bough_node *hub = body(&t, "hub");
     assert_string_equal(text(hub, "joint.axis"), "y");
@@ -211,6 +211,9 @@ TEST(two_blades_teeter) {
     check_near(number(hub, "joint.damping"), 3e4, 1e-9, 0);
     check_near(number(hub, "joint.stop_stiffness"), 5e6, 1e-9, 0);
     check_near(number(hub, "centre_of_mass.0"), -0.3, 1e-9, 0);
+    check_near(number(hub, "inertia.0"), (600 - 180) / 0.75, 1e-9, 0);
+    check_near(number(hub, "inertia.1"), (600 - 180) / 0.75, 1e-9, 0);
+    check_near(number(hub, "inertia.2"), 0, 0, 0);
     assert_string_equal(text(body(&t, "blade2"), "joint.placement.0"), "move x -0.3 m");
     assert_string_equal(text(body(&t, "blade2"), "joint.placement.1"), "rotate x 180 deg");
     steps(&t, 2);
@@ -397,6 +400,11 @@ TEST(steep_torque_lines_are_taken) {
     double slip = number(read_file(&t, "scene.yaml"), "control.law.slip");
     assert_true(slip > 0.01 && slip < 0.1);
     assert_true(list_says(&t, "not 1e-05 %"));
+    steps(&t, 2);
+    // a constant torque begins at a tenth of the initial speed of 20 rpm times 30
+    t = import(&(edit){"parts/servo.dat", "900   VS_RtGnSp", "9E-9   VS_RtGnSp"});
+    check_near(number(read_file(&t, "scene.yaml"), "control.law.rated_speed"), 2 * acos(-1.0), 1e-9, 0);
+    assert_true(list_says(&t, "its maximum from 60 rpm of the generator on"));
     steps(&t, 2);
 }
 
