@@ -291,6 +291,16 @@ class Fmu(unittest.TestCase):
         self.assertEqual(fmu.step(0, 0.02)[0], OK, fmu.messages)
         fmu.free()
 
+    def test_no_step_leads_beyond_the_stop_time(self):
+        fmu = Instance()
+        fmu.start(stop=1000.05, start=1000)  # in the third macro step
+        for far in (0.08, float("inf"), float("nan")):
+            self.assertEqual(fmu.step(1000, far), (ERROR, 1000))
+        self.assertEqual(fmu.step(1000, 0.06)[0], OK, fmu.messages)
+        self.assertEqual(fmu.step(1000.06, 0.02)[0], ERROR)
+        self.assertIn("0.02 s lead beyond the end at 1000.06 s", fmu.messages[-1])
+        fmu.free()
+
     def test_a_state_is_gone_back_to(self):
         fmu, place = Instance(), ctypes.c_void_p()
         fmu.start()
@@ -305,8 +315,14 @@ class Fmu(unittest.TestCase):
         self.assertAlmostEqual(fmu.get([0])[0], 0.2)
         fmu.step(0.2, 0.2)
         self.assertEqual(fmu.get(every), once)
-        self.assertEqual(library.fmi3FreeFMUState(fmu.pointer, ctypes.byref(place)), OK)
         self.assertEqual(library.fmi3Reset(fmu.pointer), OK)
+        self.assertEqual(fmu.get([0]), [0])
+        self.assertEqual(library.fmi3SetFMUState(fmu.pointer, place), OK)
+        fmu.step(0.2, 0.2)
+        self.assertEqual(fmu.get(every), once)
+        self.assertEqual(library.fmi3FreeFMUState(fmu.pointer, ctypes.byref(place)), OK)
+        fmu.start(start=7)
+        library.fmi3Reset(fmu.pointer)
         self.assertEqual(fmu.get([0]), [0])
         fmu.free()
 

@@ -22,6 +22,7 @@ typedef enum mode { INSTANTIATED, INITIALIZATION, STEP, TERMINATED } mode;
 typedef struct instance {
     bough_session *session;
     double start; // time of the importer at the session's time 0 [s]
+    double end;   // of the session's time, by the importer's stop time or the scene's duration [s]
     mode mode;
     char *scene;
     char *set[MOST_SETTINGS + MORE_SETTINGS]; // with room for those of a longer run
@@ -33,6 +34,8 @@ typedef struct instance {
 
 typedef struct state {
     size_t size;
+    double start;
+    mode mode;
     _Alignas(max_align_t) char copy[]; // (size)
 } state;
 
@@ -104,6 +107,7 @@ static bool read_resources(instance *x, const char *resources, const char *token
 static bool open_session(instance *x) {
     bough_session_close(x->session);
     x->session = bough_session_open(x->scene, (const char *const *)x->set, x->n_set);
+    x->end = bough_session_duration(x->session);
     return x->session && bough_session_code(x->session) == BOUGH_SESSION_OK;
 }
 
@@ -156,7 +160,7 @@ static bool reopen(instance *x, const char *const *text, int n) {
     return good;
 }
 
-// A longer duration, of whole macro steps of the same length; what was set before is kept.
+// A longer duration in macro steps of the same length; what was set before is kept.
 static fmi3_status prolong(instance *x, double duration) {
     char longer[64], same_step[64];
     double step = bough_session_macro_step(x->session);
@@ -164,7 +168,7 @@ static fmi3_status prolong(instance *x, double duration) {
     double *value = malloc(((size_t)n + 1) * sizeof *value);
     if (!value) return FMI3_ERROR;
     for (int k = 0; k < n; k++) value[k] = bough_session_input_value(x->session, k);
-    snprintf(longer, sizeof longer, "simulation.duration=%.17g", ceil(duration / step - 1e-6) * step);
+    snprintf(longer, sizeof longer, "simulation.duration=%.17g", duration);
     snprintf(same_step, sizeof same_step, "simulation.macro_step=%.17g", step);
     bool good = reopen(x, (const char *[]){longer, same_step}, MORE_SETTINGS);
     for (int k = 0; good && k < n; k++) bough_session_set(x->session, k, value[k]);
@@ -183,8 +187,12 @@ fmi3_status fmi3EnterInitializationMode(fmi3_instance self, bool has_tolerance, 
         return notify(x, FMI3_ERROR, "a run from %g s cannot stop at %g s", start, stop);
     x->mode = INITIALIZATION;
     x->start = start;
-    bool longer = has_stop && stop - start > bough_session_duration(x->session) * (1 + 1e-12);
-    return longer ? prolong(x, stop - start) : FMI3_OK;
+    if (!has_stop) return FMI3_OK;
+    double step = bough_session_macro_step(x->session), end = ceil((stop - start) / step - 1e-6) * step;
+    bool longer = end > bough_session_duration(x->session) * (1 + 1e-12);
+    fmi3_status status = longer ? prolong(x, end) : FMI3_OK;
+    x->end = end;
+    return status;
 }
 
 fmi3_status fmi3ExitInitializationMode(fmi3_instance self) {
@@ -204,6 +212,7 @@ fmi3_status fmi3Terminate(fmi3_instance self) {
 fmi3_status fmi3Reset(fmi3_instance self) {
     instance *x = self;
     x->mode = INSTANTIATED;
+    x->start = 0;
     return open_session(x) ? FMI3_OK : answer(x, BOUGH_SESSION_OTHER);
 }
 
@@ -256,10 +265,10 @@ fmi3_status fmi3GetNumberOfVariableDependencies(fmi3_instance self, fmi3_referen
 fmi3_status fmi3GetFMUState(fmi3_instance self, fmi3_state *to) {
     const instance *x = self;
     size_t size = bough_session_size(x->session);
-    state *s = *to ? *to : malloc(sizeof *s + size);
+    state *s = realloc(*to, sizeof *s + size);
     if (!s) return notify(x, FMI3_ERROR, "out of memory");
     *to = s;
-    s->size = size;
+    *s = (state){size, x->start, x->mode};
     return answer(x, bough_session_save(x->session, s->copy));
 }
 
@@ -270,7 +279,7 @@ fmi3_status fmi3SetFMUState(fmi3_instance self, fmi3_state from) {
         return notify(x, FMI3_ERROR, "fmi3SetFMUState: not a state of this FMU");
     }
     fmi3_status status = answer(x, bough_session_restore(x->session, s->copy));
-    if (status == FMI3_OK && x->mode == TERMINATED) x->mode = STEP;
+    if (status == FMI3_OK) x->start = s->start, x->mode = s->mode;
     return status;
 }
 
@@ -290,13 +299,18 @@ static bool near(double a, double b, double step) {
 }
 
 static fmi3_status check_step(const instance *x, double time, double step) {
-    double macro_steps = step / bough_session_macro_step(x->session);
+    double macro_step = bough_session_macro_step(x->session), macro_steps = step / macro_step;
     if (!near(time, now(x), step) || !(step > 0))
         return notify(x, FMI3_ERROR, "fmi3DoStep: a step of %.9g s from %.15g s, the FMU is at %.15g s", step,
                       time, now(x));
+    if (bough_session_time(x->session) + step > x->end + 1e-3 * macro_step)
+        return notify(x, FMI3_ERROR,
+                      "fmi3DoStep: %.9g s lead beyond the end at %.15g s, to be set by the stop time at the "
+                      "initialisation",
+                      step, x->start + x->end);
     if (fabs(macro_steps - round(macro_steps)) > 1e-3 || macro_steps < 0.5)
         return notify(x, FMI3_ERROR, "fmi3DoStep: %.9g s is not a whole number of macro steps of %.9g s",
-                      step, bough_session_macro_step(x->session));
+                      step, macro_step);
     return FMI3_OK;
 }
 
@@ -314,13 +328,6 @@ fmi3_status fmi3DoStep(fmi3_instance self, double time, double step, bool no_ret
     while (bough_session_time(x->session) < end) {
         int code = bough_session_step(x->session);
         *reached = now(x);
-        if (code == BOUGH_SESSION_DONE) {
-            *terminate = true;
-            return notify(
-                x, FMI3_ERROR,
-                "fmi3DoStep: the run ends at %.15g s; a stop time at the initialisation makes it longer",
-                *reached);
-        }
         if (code != BOUGH_SESSION_OK) return answer(x, code);
     }
     return FMI3_OK;
