@@ -77,6 +77,8 @@ static void open_modules(bough_openfast *o) {
     }
     leave_water(o);
     refuse_other_rotors(o);
+    if (bough_deck_flag_or(o->main, "Linearize", false) && bough_deck_flag_or(o->main, "CalcSteady", false))
+        bough_other_case(o, "CalcSteady: torque, pitch or yaw are trimmed to the speed of the start");
     o->beamdyn = elastic == 2;
     o->elasto = bough_openfast_open(o, o->main, "EDFile");
     if (bough_deck_whole(o->main, "CompInflow", 0, 2) == 1) {

@@ -280,12 +280,13 @@ static double least_slip(const bough_openfast *o, const torque_line *l) {
 }
 
 static void put_law(bough_openfast *o) {
-    const double slow = 0.1; // of the speed of the start
-    double start = fabs(bough_deck_number(o->elasto, "RotSpeed") * bough_deck_number(o->elasto, "GBRatio"));
     torque_line l = read_line(o);
-    if (l.full_speed < slow * start * BOUGH_RPM) { // as of a deck whose torque is constant
-        l.full_speed = slow * start * BOUGH_RPM;
-        bough_approximated(o, "torque has its maximum from %g rpm of the generator on", slow * start);
+    double ratio = bough_deck_number(o->elasto, "GBRatio");
+    double start = fabs(bough_deck_number(o->elasto, "RotSpeed")) * ratio * BOUGH_RPM;
+    if (l.full_speed < start / 10) { // of a deck whose torque is constant
+        l.full_speed = 0.75 * start;
+        bough_approximated(o, "torque has its maximum from %g rpm of the generator on",
+                           l.full_speed / BOUGH_RPM);
     }
     double least = least_slip(o, &l), full = l.full_speed;
     if (!bough_is_ok(o->draft->status)) return;

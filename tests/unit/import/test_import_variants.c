@@ -351,6 +351,8 @@ TEST(another_load_case_is_said_first) {
     char *list = scratch_read(t.out, "import.txt");
     assert_memory_equal(list, first, strlen(first));
     free(list);
+    t = import(&(edit){"main.fst", "0    CompHydro", "True Linearize\nTrue CalcSteady\n0    CompHydro"});
+    assert_true(list_says(&t, "also has:\n  CalcSteady: "));
 }
 
 // The generator is a body of its own, so that RotTorq is the hub's; no body has an inertia that none can
@@ -401,10 +403,10 @@ TEST(steep_torque_lines_are_taken) {
     assert_true(slip > 0.01 && slip < 0.1);
     assert_true(list_says(&t, "not 1e-05 %"));
     steps(&t, 2);
-    // a constant torque begins at a tenth of the initial speed of 20 rpm times 30
+    // a constant torque begins at three quarters of the initial speed of 20 rpm times 30
     t = import(&(edit){"parts/servo.dat", "900   VS_RtGnSp", "9E-9   VS_RtGnSp"});
-    check_near(number(read_file(&t, "scene.yaml"), "control.law.rated_speed"), 2 * acos(-1.0), 1e-9, 0);
-    assert_true(list_says(&t, "its maximum from 60 rpm of the generator on"));
+    check_near(number(read_file(&t, "scene.yaml"), "control.law.rated_speed"), 15 * acos(-1.0), 1e-9, 0);
+    assert_true(list_says(&t, "its maximum from 450 rpm of the generator on"));
     steps(&t, 2);
 }
 
