@@ -26,9 +26,12 @@ static void copy_loads(bough_master *m, bough_arena *arena, const bough_master_d
         m->load_every[i] = bough_master_multiple(def->load[i].period, def->macro_step);
         assert(m->load_every[i] > 0);
     }
-    m->n_event = def->n_event;
-    for (int i = 0; i < def->n_event; i++) m->event[i] = def->event[i];
-    if (m->n_event > 0) qsort(m->event, (size_t)m->n_event, sizeof(double), bough_ascending);
+    if (def->n_event == 0) return;
+    memcpy(m->event, def->event, (size_t)def->n_event * sizeof *m->event);
+    qsort(m->event, (size_t)def->n_event, sizeof *m->event, bough_ascending);
+    m->n_event = 1;
+    for (int i = 1; i < def->n_event; i++)
+        if (m->event[i] > m->event[m->n_event - 1]) m->event[m->n_event++] = m->event[i];
 }
 
 // The stability before the run. No verdict where the analysis fails: the run shows the cause.
@@ -99,7 +102,7 @@ enum { HALVED_EVERY = 8, FIRST = 64 }; // macro steps
 // Halves of all the first steps would be the steps of the run that is compared, theory (71), where these are
 // as long as its macro steps.
 static bool taken_in_halves(const bough_master *m) {
-    if (!m->halves) return false;
+    if (!m->halves || m->split) return false;
     if (m->grid_index >= FIRST) return m->at_event || m->grid_index % HALVED_EVERY == 0;
     return m->at_event || m->grid_index % 2 == 0 || m->many_steps;
 }
@@ -113,7 +116,7 @@ static double next_on_grid(const bough_master *m) {
 
 // The next synchronisation point: grid point, half of a step, event or the end, whichever comes first. An
 // event next to a grid point gives its own time, which is the same number on every grid.
-double bough_master_next(const bough_master *m) {
+static double next_whole(const bough_master *m) {
     double eps = resolution(m);
     double next = next_on_grid(m);
     for (int i = m->next_event; i < m->n_event; i++) {
@@ -122,6 +125,11 @@ double bough_master_next(const bough_master *m) {
         break;
     }
     return next > m->duration - eps ? m->duration : next;
+}
+
+double bough_master_next(const bough_master *m) {
+    double next = next_whole(m);
+    return m->split && (m->at_event || on_grid(m)) ? (m->time + next) / 2 : next;
 }
 
 // Samples the loads that are due; whether one of them jumps.
@@ -271,6 +279,7 @@ void bough_master_snapshot(bough_master *m, bough_snapshot *s) {
     bough_snapshot_take(s, &m->at_event, sizeof m->at_event);
     bough_snapshot_take(s, &m->begun, sizeof m->begun);
     bough_snapshot_take(s, &m->many_steps, sizeof m->many_steps);
+    bough_snapshot_take(s, &m->split, sizeof m->split);
     // members, coupling and scheme; what checks and controls the steps
     bough_scheme_snapshot(c, s);
     bough_snapshot_take(s, &c->t0, sizeof c->t0);

@@ -56,7 +56,7 @@ typedef struct bough_master {
     int n_load, n_event;
     bough_sampled_load *load; // (n_load)
     long *load_every;         // (n_load) macro steps per period
-    double *event;            // (n_event) ascending [s]
+    double *event;            // (n_event) ascending, each once [s]
 
     // about the initial state, by building
     bough_stability_advice advice; // empty when not judged
@@ -65,6 +65,7 @@ typedef struct bough_master {
     // by the caller
     bool compared; // another solution shows the error, so that growth of forces is not judged and steps that
                    // have not converged go on
+    bool split;    // what lies between two events or points of the grid is taken in two steps
     bool (*stop)(void); // NULL: never
 
     // by each step

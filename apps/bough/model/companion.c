@@ -3,6 +3,7 @@
 #include "apps/bough/model/aero_link.h"
 #include "apps/bough/model/error_verdict.h"
 #include "apps/bough/model/simulation.h"
+#include "cosim/scheme.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -165,6 +166,21 @@ static double reach(const bough_companion *c) {
     return 2 * (scene->aero.node ? fmax(step, 1 / scene->aero.rate) : step);
 }
 
+enum { MANY = 8 };                  // steps of the run
+static const double one_each = 1.5; // steps of the integrator in each of them
+
+// Corners of loads that are as close as macro steps end the companion's steps where they end the run's, and
+// both err alike. Where the integrators would go on, it takes each of these steps in two.
+static void split_steps(bough_companion *c) {
+    const bough_master *m = c->run->master;
+    const bough_member *whole = bough_scheme_whole(m->coupling);
+    if (!whole || m->steps < MANY || m->next_event < m->grid_index || bough_coarser_is_loose(c->run->scene))
+        return;
+    if ((double)bough_member_statistics(whole).steps > one_each * (double)m->steps) return;
+    c->coarser.simulation->master->split = true;
+    c->share = fmax(c->share, bough_finer_time_share());
+}
+
 static void compare(bough_companion *c) {
     // the rarer sample is held longer; at an event, between two steps, that of the run
     bool rarer = c->coarser.simulation->scene->aero.rate <= c->run->scene->aero.rate;
@@ -183,6 +199,7 @@ static void compare(bough_companion *c) {
         if (!(error <= c->error[i])) c->error[i] = error; // a NaN wins
     }
     compare_finer(c);
+    if (!c->coarser.simulation->master->split) split_steps(c);
     bough_finer_begin(&c->finer, c->run, reach(c));
     bough_error_notice(c, c->run->master->time);
 }
@@ -265,6 +282,7 @@ void bough_companion_snapshot(bough_companion *c, bough_snapshot *s) {
     bough_snapshot_take(s, &work, sizeof work);
     c->earlier = work - now;
     bough_snapshot_take(s, &c->compared, sizeof c->compared);
+    bough_snapshot_take(s, &c->share, sizeof c->share);
     bough_snapshot_take(s, &c->flutters, sizeof c->flutters);
     bough_snapshot_take(s, c->reason, sizeof c->reason);
     bough_snapshot_take(s, &c->from, sizeof c->from);

@@ -84,6 +84,14 @@ static bool has_time_alone(const bough_scene *scene) {
 
 static const int coarser[BOUGH_SHARES] = {BOUGH_COARSER_MESH, BOUGH_COARSER_AIR, BOUGH_COARSER_TIME};
 
+// With steps as the companion's.
+static bough_status build_coarser(bough_arena *arena, const bough_companion *c, int parts,
+                                  bough_other_run *other) {
+    BOUGH_TRY(bough_other_run_build(arena, c->run, parts, other));
+    other->simulation->master->split = (parts & BOUGH_COARSER_TIME) && c->coarser.simulation->master->split;
+    return bough_ok();
+}
+
 static void build_finer(bough_arena *arena, const finding *x, bough_other_run finer[BOUGH_SHARES]) {
     const bough_simulation *run = x->companion->run;
     for (int k = 0; k < BOUGH_SHARES; k++) {
@@ -93,7 +101,7 @@ static void build_finer(bough_arena *arena, const finding *x, bough_other_run fi
                      bough_error_share_name((bough_error_share_kind)k));
             continue;
         }
-        bough_status status = bough_other_run_build(arena, run, BOUGH_COARSER_ALL & ~coarser[k], &finer[k]);
+        bough_status status = build_coarser(arena, x->companion, BOUGH_COARSER_ALL & ~coarser[k], &finer[k]);
         if (!bough_is_ok(&status)) unknown(share, status.message);
     }
 }
@@ -129,6 +137,11 @@ static bough_status step_base(const finding *x, bough_other_run *base, double *t
     return x->lost ? bough_ok() : status;
 }
 
+static double time_share(const bough_companion *c) {
+    return c->coarser.simulation->master->split ? bough_finer_time_share()
+                                                : bough_coarser_time_share(c->run->scene);
+}
+
 // A run that fails leaves its share unknown.
 static bough_status find(bough_arena *arena, void *self) {
     const finding *x = self;
@@ -136,12 +149,12 @@ static bough_status find(bough_arena *arena, void *self) {
     const bough_scene *other = x->companion->coarser.simulation->scene;
     const double part[BOUGH_SHARES] = {[BOUGH_SHARE_MESH] = bough_coarser_share(run->scene, other),
                                        [BOUGH_SHARE_AIR] = bough_coarser_share(run->scene, run->scene),
-                                       [BOUGH_SHARE_TIME] = bough_coarser_time_share(run->scene)};
+                                       [BOUGH_SHARE_TIME] = time_share(x->companion)};
     // what is held longer than in the run is held so in two of the further runs as well
     const double held[BOUGH_SHARES] = {part[BOUGH_SHARE_MESH], x->companion->share_held,
                                        part[BOUGH_SHARE_TIME]};
     bough_other_run base, again = {0}, finer[BOUGH_SHARES] = {{0}};
-    BOUGH_TRY(bough_other_run_build(arena, run, BOUGH_COARSER_ALL, &base));
+    BOUGH_TRY(build_coarser(arena, x->companion, BOUGH_COARSER_ALL, &base));
     build_finer(arena, x, finer);
     if (has_time_alone(run->scene)) {
         memcpy(x->shares->share[BOUGH_SHARE_TIME].largest, x->companion->error,
@@ -255,7 +268,7 @@ static bough_status prove(bough_arena *arena, void *self) {
     int n = x->others_known ? 2 : 3;
     BOUGH_TRY(bough_other_run_build(arena, run, 0, &r[0]));
     BOUGH_TRY(build_proof(arena, x, &r[1], &part));
-    if (n > 2) BOUGH_TRY(bough_other_run_build(arena, run, BOUGH_COARSER_ALL & ~coarser[x->kind], &r[2]));
+    if (n > 2) BOUGH_TRY(build_coarser(arena, c, BOUGH_COARSER_ALL & ~coarser[x->kind], &r[2]));
     for (double t = 0;; t = r[0].simulation->master->time) {
         for (int k = 0; k < n; k++) {
             BOUGH_TRY(advance(&r[k], t, of->left));
