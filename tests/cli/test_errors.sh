@@ -101,7 +101,7 @@ run 3 'not converged' carrying.yaml --set "$noisy" --set 'simulation.macro_step=
 run 0 '^largest errors: .*; mesh .*; time ' carrying.yaml --set "$noisy" --set 'simulation.macro_step=5 ms' \
     --set simulation.error_shares=true
 
-# The mesh is not the cause where the error of the steps is not known.
+# Twice the segments cannot be run in these steps; a further run with the mesh as it is finds the cause.
 cat >heavy.yaml <<'END'
 simulation: {duration: 0.2 s, macro_step: 10 ms, coupling: {scheme: frozen}, step_control: {tolerance: 3e-3},
              micro: {solver: generalized-alpha, step: 1 ms, rho: 0.9}}
@@ -111,7 +111,10 @@ bodies:
   - {name: hub, fidelity: rigid, mass: 0.2, inertia: [2e-3, 2e-3, 2e-3], centre_of_mass: [0.01, 0, 0],
      joint: {kind: revolute, axis: x, parent: mast, speed: 3.6 rad/s}}
 END
-run 3 'the cause was not found: mast at t = .*; try scheme: monolithic' heavy.yaml
+run 3 "cause: the coupling or the sub-solvers' steps; try scheme: monolithic" heavy.yaml
+
+# Longer steps struggle at its singular positions: the search for the cause ends with what it may cost.
+run 3 'the cause was not found: further runs took more than 5 times the work' "$source/tests/data/scenes/parallelogram.yaml"
 
 # All speeds of a driven parallelogram are constant: an error of a millionth of them is none of their range.
 cat >parallelogram.yaml <<'END'

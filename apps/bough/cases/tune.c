@@ -56,7 +56,7 @@ static void apply(const bough_tune_state *t, const bough_tune_settings *s, bough
     simulation->duration = pair * fmax(1, round(t->options->span / pair));
     simulation->threads = 1;
     simulation->error_bound = 0;
-    simulation->error_shares = false;
+    simulation->error_shares = true;
     simulation->output.from = 0;
 }
 

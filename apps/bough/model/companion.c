@@ -22,6 +22,14 @@ static void take(bough_companion *c, bough_arena *arena) {
     }
 }
 
+// Inputs are not known any more when the run ends, so that none can be repeated.
+static void take_record(bough_companion *c, bough_arena *arena) {
+    const bough_scene_simulation *s = &c->run->scene->simulation;
+    if (c->run->input || !(s->error_bound > 0 || s->error_shares)) return;
+    c->record = (bough_record){.width = BOUGH_RECORD_RUN + 2 * c->channels->count, .shared = 1};
+    c->record.row = bough_arena_doubles(arena, (size_t)BOUGH_RECORD_MOST * (size_t)c->record.width);
+}
+
 static void give_up(bough_companion *c, const char *reason) {
     snprintf(c->reason, sizeof c->reason, "%.300s", reason);
     c->from = c->run->master->time;
@@ -39,6 +47,7 @@ static bough_status build(bough_arena *arena, bough_companion *c) {
     c->share = bough_coarser_share(c->run->scene, c->coarser.simulation->scene);
     if (bough_coarser_is_loose(c->run->scene)) c->share = fmax(c->share, bough_finer_time_share());
     c->share_held = share_held(c->run->scene);
+    take_record(c, arena);
     return bough_ok();
 }
 
@@ -159,6 +168,44 @@ static void compare_finer(bough_companion *c) {
     }
 }
 
+// Halves the rows: of two neighbours the one with the larger error stays.
+static void halve(bough_record *r) {
+    size_t width = (size_t)r->width;
+    r->n = BOUGH_RECORD_MOST / 2;
+    r->shared *= 2;
+    for (int k = 0; k < r->n; k++) {
+        const double *pair = r->row + 2 * width * (size_t)k;
+        bool second = pair[width + BOUGH_RECORD_ERROR] > pair[BOUGH_RECORD_ERROR];
+        memmove(r->row + width * (size_t)k, pair + second * width, width * sizeof *pair);
+    }
+}
+
+// Records the present time; `error` of a motion over its range.
+static void record(bough_companion *c, double error) {
+    bough_record *r = &c->record;
+    size_t n = (size_t)c->channels->count;
+    if (!r->row) return;
+    if (r->taken == r->shared) r->taken = 0;
+    if (r->taken == 0 && r->n == BOUGH_RECORD_MOST) halve(r);
+    if (r->taken == 0) r->n++;
+    double *row = r->row + (size_t)r->width * (size_t)(r->n - 1);
+    if (r->taken++ > 0 && error <= row[BOUGH_RECORD_ERROR]) return;
+    row[BOUGH_RECORD_TIME] = c->run->master->time;
+    row[BOUGH_RECORD_ERROR] = error;
+    row[BOUGH_RECORD_HELD] = !bough_master_sampled(c->coarser.simulation->master);
+    memcpy(row + BOUGH_RECORD_RUN, c->value, n * sizeof *row);
+    memcpy(row + BOUGH_RECORD_RUN + n, c->coarser.value, n * sizeof *row);
+}
+
+// After the companion has ended: the further runs may go on.
+static void record_alone(bough_companion *c) {
+    if (!c->record.row || !counts_now(c, c->run)) return;
+    bough_simulation_update(c->run);
+    bough_channels_sample(c->channels, c->run->master->time, c->value);
+    for (int i = 0; i < c->channels->count; i++) c->coarser.value[i] = (double)NAN;
+    record(c, 0);
+}
+
 // Until run and companion are both sampled again, at the latest.
 static double reach(const bough_companion *c) {
     const bough_scene *scene = c->coarser.simulation->scene;
@@ -191,13 +238,17 @@ static void compare(bough_companion *c) {
     memcpy(c->before, c->value, (size_t)c->channels->count * sizeof(double));
     sample(c);
     c->compared++;
+    double largest = 0;
     for (int i = 0; i < c->channels->count; i++) {
         const bough_channel *channel = &c->channels->channel[i];
         double error = share_now(channel, share, share_held) *
                        fabs(difference(channel, c->value[i], c->coarser.value[i]));
         error = fmax(error, stale(c, i));
         if (!(error <= c->error[i])) c->error[i] = error; // a NaN wins
+        if (bough_error_is_motion(channel) && error > largest * (c->high[i] - c->low[i]))
+            largest = error / (c->high[i] - c->low[i]);
     }
+    record(c, largest);
     compare_finer(c);
     if (!c->coarser.simulation->master->split) split_steps(c);
     bough_finer_begin(&c->finer, c->run, reach(c));
@@ -233,7 +284,10 @@ static bool lags(const bough_companion *c) {
 }
 
 void bough_companion_compare(bough_companion *c) {
-    if (!alive(c)) return;
+    if (!alive(c)) {
+        record_alone(c);
+        return;
+    }
     while (lags(c)) bough_companion_step(c);
     if (!bough_is_ok(&c->status)) {
         give_up(c, c->status.message);
@@ -287,6 +341,10 @@ void bough_companion_snapshot(bough_companion *c, bough_snapshot *s) {
     bough_snapshot_take(s, c->reason, sizeof c->reason);
     bough_snapshot_take(s, &c->from, sizeof c->from);
     bough_snapshot_take(s, &c->run->master->compared, sizeof c->run->master->compared);
+    bough_snapshot_take(s, &c->record.n, sizeof c->record.n);
+    bough_snapshot_take(s, &c->record.shared, sizeof c->record.shared);
+    bough_snapshot_take(s, &c->record.taken, sizeof c->record.taken);
+    bough_snapshot_doubles(s, c->record.row, c->record.row ? BOUGH_RECORD_MOST * c->record.width : 0);
     if (s->move != BOUGH_SNAPSHOT_RESTORE) return;
     c->status = bough_ok();
     c->sampled = false;

@@ -102,6 +102,22 @@ void bough_finer_begin(bough_finer *f, bough_simulation *run, double reach);
 
 void bough_finer_snapshot(bough_finer *f, bough_snapshot *snapshot);
 
+// -- the record -----------------------------------------------------------------------------------
+
+// Run and companion at times at which they were compared, for further runs that look for the cause of an
+// error. Where times are more than its rows, neighbours share one, that of the largest error.
+typedef struct bough_record {
+    int n;              // rows so far
+    int width;          // of a row
+    long shared, taken; // times of each row; of the last one so far
+    double *row; // (BOUGH_RECORD_MOST × width) time [s], largest error of a motion over its range, whether
+                 // the companion's samples are held [1], channels of the run, of the companion; NULL:
+                 // none is kept
+} bough_record;
+
+enum { BOUGH_RECORD_MOST = 512 };
+enum { BOUGH_RECORD_TIME, BOUGH_RECORD_ERROR, BOUGH_RECORD_HELD, BOUGH_RECORD_RUN };
+
 // -- the companion --------------------------------------------------------------------------------
 
 enum { BOUGH_COMPANION_REASON = 320 };
@@ -110,6 +126,7 @@ typedef struct bough_companion {
     bough_simulation *run;
     bough_other_run coarser;
     bough_finer finer;
+    bough_record record;
     const bough_channels *channels;      // of the run
     double share;                        // of the difference, that the run errs by
     double share_held;                   // the same of a channel whose last sample the companion holds

@@ -22,51 +22,73 @@ static void unknown(bough_error_share *share, const char *why) {
 static const double most_times = 5; // the work of the run and its companion, by all further runs together
 static const double little = 3e6;   // work that takes a few milliseconds
 
-// A macro step of a further run, whose work is taken off what is left. Runs that need much more than the run
-// and its companion follow another solution and may never end.
-static bough_status step(const bough_simulation *s, double *left) {
-    double before = bough_simulation_work(s);
-    BOUGH_TRY(bough_step(s->master));
-    *left -= bough_simulation_work(s) - before;
-    if (*left >= 0) return bough_ok();
-    return bough_fail(BOUGH_FAILED,
-                      "further runs took more than %.0f times the work of this one and its "
-                      "companion to %.6g s",
-                      most_times, s->master->time);
-}
-
-static bough_status advance(bough_other_run *r, double t, double *left) {
-    while (r->simulation->master->time < t) BOUGH_TRY(step(r->simulation, left));
-    return bough_ok();
-}
-
-static bough_status look_for_stop(bool (*stop)(void)) {
-    if (!stop || !stop()) return bough_ok();
-    return bough_fail(BOUGH_INTERRUPTED, "interrupted during the search for the cause of the error");
-}
-
-// `part`, `held`: of the difference, that the run errs by; of channels whose last sample the base holds. Both
-// runs are sampled.
-static void compare(const bough_other_run *base, const bough_other_run *other, double part, double held,
-                    double *largest) {
-    bool holds = !bough_master_sampled(base->simulation->master);
-    if (other->simulation->master->time != base->simulation->master->time) return;
-    for (int i = 0; i < base->channels.count; i++) {
-        const bough_channel *channel = &base->channels.channel[i];
-        double difference = base->value[i] - other->value[i];
-        if (channel->turn > 0) difference = remainder(difference, channel->turn);
-        largest[i] = fmax(largest[i], (channel->sampled && holds ? held : part) * fabs(difference));
-    }
-}
-
 typedef struct finding {
     bough_companion *companion;
     bool lost; // the companion may have lost the solution
     bool (*stop)(void);
-    double end;   // of the run, less rounding [s]
-    double *left; // work
+    double left; // work
     bough_error_shares *shares;
 } finding;
+
+// A difference between two solutions.
+typedef struct between {
+    double part, held; // of it, that the run errs by; of channels whose last sample is held for longer
+    double *largest;   // (n_channel) that part of the largest ones; NULL: not wanted
+} between;
+
+// A run that is coarser or finer in these parts, beside what is recorded of run and companion.
+typedef struct further {
+    finding *of;
+    int parts;
+    between to_companion, to_run;
+} further;
+
+// A macro step of a further run, whose work is taken off what is left. Runs that need much more than the run
+// and its companion follow another solution and may never end.
+static bough_status step(finding *x, const bough_simulation *s) {
+    double before = bough_simulation_work(s);
+    if (x->stop && x->stop())
+        return bough_fail(BOUGH_INTERRUPTED, "interrupted during the search for the cause of the error");
+    BOUGH_TRY(bough_step(s->master));
+    x->left -= bough_simulation_work(s) - before;
+    if (x->left >= 0) return bough_ok();
+    return bough_fail(BOUGH_FAILED,
+                      "further runs took more than %.0f times the work of this one and its companion",
+                      most_times);
+}
+
+// Takes the difference of two samples into the largest one. What the companion does not know is NaN.
+static void compare(const bough_channels *channels, const double *a, const double *b, bool held,
+                    const between *x) {
+    for (int i = 0; x->largest && i < channels->count; i++) {
+        const bough_channel *channel = &channels->channel[i];
+        double difference = a[i] - b[i];
+        if (channel->turn > 0) difference = remainder(difference, channel->turn);
+        x->largest[i] =
+            fmax(x->largest[i], (channel->sampled && held ? x->held : x->part) * fabs(difference));
+    }
+}
+
+static bough_status run_beside(bough_arena *arena, void *self) {
+    const further *f = self;
+    const bough_record *record = &f->of->companion->record;
+    bough_other_run other;
+    BOUGH_TRY(bough_other_run_build(arena, f->of->companion->run, f->parts, &other));
+    bough_master *m = other.simulation->master;
+    m->split = (f->parts & BOUGH_COARSER_TIME) && f->of->companion->coarser.simulation->master->split;
+    for (int k = 0; k < record->n; k++) {
+        const double *row = record->row + (size_t)record->width * (size_t)k;
+        const double *run = row + BOUGH_RECORD_RUN, *companion = run + other.channels.count;
+        while (m->time < row[BOUGH_RECORD_TIME]) BOUGH_TRY(step(f->of, other.simulation));
+        if (m->time != row[BOUGH_RECORD_TIME]) continue;
+        bough_other_run_sample(&other);
+        compare(&other.channels, companion, other.value, row[BOUGH_RECORD_HELD] != 0, &f->to_companion);
+        compare(&other.channels, run, other.value, !bough_master_sampled(m), &f->to_run);
+    }
+    return bough_ok();
+}
+
+// -- what mesh, air and time add ------------------------------------------------------------------
 
 static bool has_part(const bough_scene *scene, int kind) {
     if (kind == BOUGH_SHARE_TIME) return true;
@@ -77,109 +99,80 @@ static bool has_part(const bough_scene *scene, int kind) {
     return false;
 }
 
-// Whose error has no other part.
-static bool has_time_alone(const bough_scene *scene) {
-    return !has_part(scene, BOUGH_SHARE_MESH) && !has_part(scene, BOUGH_SHARE_AIR);
-}
-
 static const int coarser[BOUGH_SHARES] = {BOUGH_COARSER_MESH, BOUGH_COARSER_AIR, BOUGH_COARSER_TIME};
 
-// With steps as the companion's.
-static bough_status build_coarser(bough_arena *arena, const bough_companion *c, int parts,
-                                  bough_other_run *other) {
-    BOUGH_TRY(bough_other_run_build(arena, c->run, parts, other));
-    other->simulation->master->split = (parts & BOUGH_COARSER_TIME) && c->coarser.simulation->master->split;
+static between between_companion_and(const bough_companion *c, int kind, double *largest) {
+    const bough_scene *run = c->run->scene;
+    double part = kind == BOUGH_SHARE_MESH  ? bough_coarser_share(run, c->coarser.simulation->scene)
+                  : kind == BOUGH_SHARE_AIR ? bough_coarser_share(run, run)
+                  : c->coarser.simulation->master->split ? bough_finer_time_share()
+                                                         : bough_coarser_time_share(run);
+    // what is held longer than in the run is so in two of the further runs as well
+    return (between){part, kind == BOUGH_SHARE_AIR ? c->share_held : part, largest};
+}
+
+// A run that is as fine as the run itself in one part differs from the companion by that part, from the run
+// by the others. One that fails leaves the share unknown. BOUGH_INTERRUPTED by stop().
+static bough_status find_share(finding *x, int kind) {
+    const bough_companion *c = x->companion;
+    bough_error_share *share = &x->shares->share[kind];
+    if (!has_part(c->run->scene, kind)) {
+        snprintf(share->unknown, sizeof share->unknown, "the scene has no %s",
+                 bough_error_share_name((bough_error_share_kind)kind));
+        return bough_ok();
+    }
+    further f = {x, BOUGH_COARSER_ALL & ~coarser[kind], between_companion_and(c, kind, share->largest),
+                 (between){c->share, c->share_held, share->others}};
+    bough_status status = bough_arena_use(run_beside, &f);
+    if (status.code == BOUGH_INTERRUPTED) return status;
+    if (!bough_is_ok(&status)) unknown(share, status.message);
     return bough_ok();
 }
 
-static void build_finer(bough_arena *arena, const finding *x, bough_other_run finer[BOUGH_SHARES]) {
-    const bough_simulation *run = x->companion->run;
-    for (int k = 0; k < BOUGH_SHARES; k++) {
-        bough_error_share *share = &x->shares->share[k];
-        if (!has_part(run->scene, k)) {
-            snprintf(share->unknown, sizeof share->unknown, "the scene has no %s",
-                     bough_error_share_name((bough_error_share_kind)k));
-            continue;
-        }
-        bough_status status = build_coarser(arena, x->companion, BOUGH_COARSER_ALL & ~coarser[k], &finer[k]);
-        if (!bough_is_ok(&status)) unknown(share, status.message);
-    }
+// Of a motion, over its range.
+static double largest_of(const bough_companion *c, const double *error) {
+    bough_error_verdict v = bough_error_verdict_of(c, true, error);
+    return v.channel < 0 ? 0 : v.relative;
 }
 
-// As far as the base, with a run that is finer in part k.
-static void advance_finer(const finding *x, int k, double t, const bough_other_run *base,
-                          const bough_other_run *again, bough_other_run *finer, double part, double held) {
-    bough_error_share *share = &x->shares->share[k];
+static const double much_less = 0.5; // of what a companion that has lost the solution shows
+
+// Whether the mesh causes the error and nothing else is to be known.
+static bool is_by_mesh(const finding *x) {
     const bough_companion *c = x->companion;
-    if (!finer->simulation || share->unknown[0]) return;
-    bough_status own = advance(finer, fmin(t, x->end), x->left);
-    if (!bough_is_ok(&own)) {
-        unknown(share, own.message);
-        return;
-    }
-    if (t < c->run->scene->simulation.output.from - 1e-6 * c->run->master->macro_step) return;
-    bough_other_run_sample(finer);
-    if (base->simulation) compare(base, finer, part, held, share->largest);
-    if (again->simulation) compare(finer, again, c->share, c->share_held, share->others);
+    const bough_scene_simulation *s = &c->run->scene->simulation;
+    const bough_error_share *mesh = &x->shares->share[BOUGH_SHARE_MESH];
+    if (s->error_shares || c->flutters || c->reason[0]) return false;
+    return largest_of(c, mesh->others) <= fmin(s->error_bound, largest_of(c, mesh->largest));
 }
 
-// Where the companion is lost, its failure ends no more than the comparison with it.
-static bough_status step_base(const finding *x, bough_other_run *base, double *t) {
-    const bough_simulation *s = base->simulation;
-    bough_status status = s == NULL ? bough_ok() : step(s, x->left);
-    if (s != NULL && bough_is_ok(&status)) {
-        *t = s->master->time;
-        bough_other_run_sample(base);
-        return status;
-    }
-    *t += 2 * x->companion->run->master->macro_step;
-    base->simulation = NULL;
-    return x->lost ? bough_ok() : status;
-}
-
-static double time_share(const bough_companion *c) {
-    return c->coarser.simulation->master->split ? bough_finer_time_share()
-                                                : bough_coarser_time_share(c->run->scene);
-}
-
-// A run that fails leaves its share unknown.
-static bough_status find(bough_arena *arena, void *self) {
-    const finding *x = self;
-    const bough_simulation *run = x->companion->run;
-    const bough_scene *other = x->companion->coarser.simulation->scene;
-    const double part[BOUGH_SHARES] = {[BOUGH_SHARE_MESH] = bough_coarser_share(run->scene, other),
-                                       [BOUGH_SHARE_AIR] = bough_coarser_share(run->scene, run->scene),
-                                       [BOUGH_SHARE_TIME] = time_share(x->companion)};
-    // what is held longer than in the run is held so in two of the further runs as well
-    const double held[BOUGH_SHARES] = {part[BOUGH_SHARE_MESH], x->companion->share_held,
-                                       part[BOUGH_SHARE_TIME]};
-    bough_other_run base, again = {0}, finer[BOUGH_SHARES] = {{0}};
-    BOUGH_TRY(build_coarser(arena, x->companion, BOUGH_COARSER_ALL, &base));
-    build_finer(arena, x, finer);
-    if (has_time_alone(run->scene)) {
-        memcpy(x->shares->share[BOUGH_SHARE_TIME].largest, x->companion->error,
-               (size_t)x->shares->n_channel * sizeof(double));
+// The mesh first: that run is the cheapest, and often says all.
+static bough_status find(finding *x) {
+    const bough_companion *c = x->companion;
+    bough_error_share *share = x->shares->share, *mesh = &share[BOUGH_SHARE_MESH];
+    size_t size = (size_t)x->shares->n_channel * sizeof(double);
+    bool air = has_part(c->run->scene, BOUGH_SHARE_AIR);
+    BOUGH_TRY(find_share(x, BOUGH_SHARE_MESH));
+    if (!air && !has_part(c->run->scene, BOUGH_SHARE_MESH)) {
+        memcpy(share[BOUGH_SHARE_TIME].largest, c->error, size);
         return bough_ok();
     }
-    if (x->lost) BOUGH_TRY(bough_other_run_build(arena, run, 0, &again));
-    bough_other_run_sample(&base);
-    if (x->lost) bough_other_run_sample(&again);
-    for (double t = 0;;) {
-        for (int k = 0; k < BOUGH_SHARES; k++)
-            advance_finer(x, k, t, &base, &again, &finer[k], part[k], held[k]);
-        if (t >= x->end) return bough_ok();
-        BOUGH_TRY(look_for_stop(x->stop));
-        BOUGH_TRY(step_base(x, &base, &t));
-        if (!x->lost) continue;
-        BOUGH_TRY(advance(&again, fmin(t, x->end), x->left));
-        bough_other_run_sample(&again);
+    // of two parts each is what the other leaves, unless a lost companion may be replaced
+    bool open = x->lost && largest_of(c, mesh->others) <= much_less * largest_of(c, c->error);
+    bool two = !air && !c->reason[0] && !open;
+    if (!mesh->unknown[0] && (two || is_by_mesh(x))) {
+        memcpy(share[BOUGH_SHARE_TIME].largest, mesh->others, size);
+        memcpy(share[BOUGH_SHARE_TIME].others, mesh->largest, size);
+        unknown(&share[BOUGH_SHARE_AIR], air ? "it is in that of time" : "the scene has no air");
+        return bough_ok();
     }
+    BOUGH_TRY(find_share(x, BOUGH_SHARE_AIR));
+    return find_share(x, BOUGH_SHARE_TIME);
 }
 
 // -- a companion that has lost the solution -------------------------------------------------------
 
-static const double lost = 0.25;     // of the range, which a companion errs by that has lost the solution
-static const double much_less = 0.5; // of what the companion shows
+static const double lost = 0.25; // of the range, which a companion errs by that has lost the solution
 
 // The two runs that differ least from the run itself; false: fewer are known.
 static bool find_nearest(const bough_companion *c, const bough_error_shares *shares, int nearest[2],
@@ -187,8 +180,7 @@ static bool find_nearest(const bough_companion *c, const bough_error_shares *sha
     double own[2] = {HUGE_VAL, HUGE_VAL};
     for (int k = 0; k < BOUGH_SHARES; k++) {
         if (shares->share[k].unknown[0]) continue;
-        bough_error_verdict v = bough_error_verdict_of(c, true, shares->share[k].others);
-        double next = v.channel < 0 ? 0 : v.relative;
+        double next = largest_of(c, shares->share[k].others);
         int place = next < own[0] ? 0 : 1;
         if (next >= own[1]) continue;
         if (place == 0) own[1] = own[0], nearest[1] = nearest[0];
@@ -241,65 +233,24 @@ static void lower_errors(bough_companion *c, bough_error_shares *shares) {
 
 // -- steps and samples that a companion finds too long --------------------------------------------
 
-typedef struct proof {
-    const finding *of;
-    bough_error_share_kind kind; // time or air
-    bool others_known;
-    double *own, *others; // (n_channel) largest errors: of that kind; of the two other kinds
-} proof;
-
-// A run that is finer in that kind alone, and its part of the difference to it that a run errs by.
-static bough_status build_proof(bough_arena *arena, const proof *x, bough_other_run *finer, double *part) {
-    const bough_simulation *run = x->of->companion->run;
-    bool air = x->kind == BOUGH_SHARE_AIR;
-    *part = air ? bough_finer_air_share(run->scene) : bough_finer_time_share();
-    return bough_other_run_build(arena, run, air ? BOUGH_FINER_AIR : BOUGH_FINER_TIME, finer);
-}
-
-// The run once more, beside one that is finer in one kind and, where these are not known, one that is coarser
-// in the two others alone.
-static bough_status prove(bough_arena *arena, void *self) {
-    const proof *x = self;
-    const finding *of = x->of;
-    const bough_companion *c = of->companion;
-    const bough_simulation *run = c->run;
-    double from = run->scene->simulation.output.from - 1e-6 * run->master->macro_step, part;
-    bough_other_run r[3];
-    int n = x->others_known ? 2 : 3;
-    BOUGH_TRY(bough_other_run_build(arena, run, 0, &r[0]));
-    BOUGH_TRY(build_proof(arena, x, &r[1], &part));
-    if (n > 2) BOUGH_TRY(build_coarser(arena, c, BOUGH_COARSER_ALL & ~coarser[x->kind], &r[2]));
-    for (double t = 0;; t = r[0].simulation->master->time) {
-        for (int k = 0; k < n; k++) {
-            BOUGH_TRY(advance(&r[k], t, of->left));
-            bough_other_run_sample(&r[k]);
-        }
-        if (t >= from) compare(&r[0], &r[1], part, part, x->own);
-        if (t >= from && n > 2) compare(&r[2], &r[0], c->share, c->share_held, x->others);
-        if (t >= of->end) return bough_ok();
-        BOUGH_TRY(look_for_stop(of->stop));
-        BOUGH_TRY(step(r[0].simulation, of->left));
-    }
-}
-
 // A companion's longer steps and rarer samples can err by far more than the share of the difference that is
-// the run's. Before the run fails by its own, finer ones are to show that they err. BOUGH_INTERRUPTED by
-// stop().
-static bough_status prove_kind(bough_arena *arena, const finding *x, bough_error_share_kind kind) {
+// the run's. Before the run fails by its own, a run that is finer in that kind alone is to show that they
+// err. BOUGH_INTERRUPTED by stop().
+static bough_status prove_kind(bough_arena *arena, finding *x, bough_error_share_kind kind) {
     bough_companion *c = x->companion;
     size_t n = (size_t)c->channels->count;
-    const bough_error_share *found = &x->shares->share[kind];
-    proof p = {x, kind, has_time_alone(c->run->scene) || (x->lost && !found->unknown[0]), NULL,
-               found->others};
-    bough_arena_each(arena, n + 1, &p.own);
-    bough_status status = bough_arena_use(prove, &p);
+    bool air = kind == BOUGH_SHARE_AIR;
+    double *own = bough_arena_doubles(arena, n + 1), *others = x->shares->share[kind].others;
+    double part = air ? bough_finer_air_share(c->run->scene) : bough_finer_time_share();
+    further f = {.of = x, .parts = air ? BOUGH_FINER_AIR : BOUGH_FINER_TIME, .to_run = {part, part, own}};
+    bough_status status = bough_arena_use(run_beside, &f);
     if (status.code == BOUGH_INTERRUPTED) return status;
     for (size_t i = 0; i < n && bough_is_ok(&status); i++) {
         for (int k = 0; k < BOUGH_SHARES; k++) {
             double *share = &x->shares->share[k].largest[i];
-            *share = fmin(*share, k == (int)kind ? p.own[i] : p.others[i]);
+            *share = fmin(*share, k == (int)kind ? own[i] : others[i]);
         }
-        c->error[i] = fmax(fmin(c->error[i], p.own[i] + p.others[i]), c->least[i]);
+        c->error[i] = fmax(fmin(c->error[i], own[i] + others[i]), c->least[i]);
     }
     return bough_ok();
 }
@@ -320,8 +271,7 @@ static int cause_of(const bough_companion *c, const bough_error_shares *shares, 
     for (int k = 0; k < BOUGH_SHARES; k++) {
         const bough_error_share *share = &shares->share[k];
         if (share->unknown[0]) continue;
-        bough_error_verdict v = bough_error_verdict_of(c, true, share->largest);
-        double own = v.channel < 0 ? 0 : v.relative;
+        double own = largest_of(c, share->largest);
         bool before = cause == BOUGH_SHARE_MESH && own > bound;
         if (!before && own <= *relative) continue;
         cause = k;
@@ -346,7 +296,7 @@ static int fails_by(const bough_companion *c, const bough_error_shares *shares) 
 }
 
 // Whichever of time and air the run fails by, and the other where it fails by that then.
-static bough_status prove_causes(bough_arena *arena, const finding *x) {
+static bough_status prove_causes(bough_arena *arena, finding *x) {
     bool proved[BOUGH_SHARES] = {false};
     for (;;) {
         int kind = fails_by(x->companion, x->shares);
@@ -358,23 +308,19 @@ static bough_status prove_causes(bough_arena *arena, const finding *x) {
 
 bough_status bough_error_shares_find(bough_arena *arena, bough_companion *c, bool (*stop)(void),
                                      bough_error_shares *shares) {
-    double end = c->run->scene->simulation.duration - 1e-6 * c->run->master->macro_step;
-    double left = 0;
-    finding x = {c, has_lost(c), stop, end, &left, shares};
+    finding x = {c, has_lost(c), stop, most_times * bough_companion_work(c) + little, shares};
     double cpu = bough_cpu_clock(false);
     *shares = (bough_error_shares){.found = true, .n_channel = c->channels->count};
     for (int k = 0; k < BOUGH_SHARES; k++)
         bough_arena_each(arena, (size_t)c->channels->count + 1, &shares->share[k].largest,
                          &shares->share[k].others);
     bough_status status = bough_ok();
-    if (!c->coarser.simulation) {
-        status = bough_fail(BOUGH_FAILED, "%s", c->reason);
-    } else if (c->run->input) {
+    if (c->run->input)
         status = bough_fail(BOUGH_FAILED, "the run has inputs, whose values are no longer known");
-    } else {
-        left = most_times * bough_companion_work(c) + little;
-        status = bough_arena_use(find, &x);
-    }
+    else if (!c->coarser.simulation || (c->reason[0] && !x.lost))
+        status = bough_fail(BOUGH_FAILED, "%s", c->reason);
+    else
+        status = find(&x);
     if (status.code == BOUGH_INTERRUPTED) return status;
     if (bough_is_ok(&status) && x.lost) lower_errors(c, shares);
     if (bough_is_ok(&status)) BOUGH_TRY(prove_causes(arena, &x));

@@ -44,12 +44,11 @@ void bough_error_notice(bough_companion *c, double t);
 
 // -- shares of mesh, air and time (error_shares.c) ------------------------------------------------
 
-// Shares of mesh, air and time in the error of a run, and what to do about the largest. The scene is run once
-// more as its companion is, and beside it three times with one of the three as fine as in the run: what lies
-// between is that part's share of what the companion errs by, and part of it the run's. Coarser in all parts
-// at once, a companion can lose the solution that it keeps with any one of them as in the run. Then two of
-// these three runs, which together are coarser in every part, give the error: the sum of what the run differs
-// by from either.
+// Shares of mesh, air and time in the error of a run, and what to do about the largest. Up to three further
+// runs have one of the three as fine as in the run and the others as in the companion: what lies between is
+// that part's share of what the companion errs by, and part of it the run's. Coarser in all parts at once, a
+// companion can lose the solution that it keeps with any one of them as in the run. Then two of these runs,
+// which together are coarser in every part, give the error: the sum of what the run differs by from either.
 
 typedef enum bough_error_share_kind {
     BOUGH_SHARE_MESH,
@@ -61,7 +60,7 @@ typedef enum bough_error_share_kind {
 typedef struct bough_error_share {
     char unknown[160]; // why it is not known; "": it is
     double *largest;   // (n_channel) largest error of each channel in the run, in its unit
-    double *others;    // (n_channel) the same of all other parts, where the error is above the bound
+    double *others;    // (n_channel) the same of all other parts
 } bough_error_share;
 
 typedef struct bough_error_shares {

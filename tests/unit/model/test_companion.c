@@ -310,6 +310,7 @@ TEST(finer_samples_prove_an_error_of_the_air) {
                                 "simulation.macro_step=20 ms",
                                 "simulation.master={solver: rosenbrock, step: 10 ms, rtol: 3e-4}",
                                 "simulation.error_estimate=companion",
+                                "simulation.error_shares=true",
                                 "aero.rate=50",
                                 NULL};
     static const char *const channel[] = {"TwstDefl3", NULL};
