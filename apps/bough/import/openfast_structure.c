@@ -138,7 +138,7 @@ static void check_rows(const bough_deck *deck, const slender *b, const char *cou
 
 // -- blade ----------------------------------------------------------------------------------------
 
-enum { FRACTION, TWIST, MASS, FLAP, EDGE, TORSION, AXIAL, N_BLADE_COLUMN };
+enum { FRACTION, TWIST, MASS, FLAP, EDGE, AXIAL, N_BLADE_COLUMN };
 
 static void put_blade(bough_openfast *o, const bough_deck *deck, const slender *b, double edge) {
     const double flap_time = damping(deck, *b, "BldFlDmp(1)|BldFlDmp1", "BldFl1Sh");
@@ -157,8 +157,7 @@ static void put_blade(bough_openfast *o, const bough_deck *deck, const slender *
         double mass = r[MASS] * b->mass_factor;
         double axial = r[AXIAL] > 0 ? r[AXIAL] : laminate * mass;
         double bend_x = r[EDGE] * edge, bend_y = r[FLAP] * b->bending_factor;
-        double torsion = r[TORSION] > 0 ? r[TORSION] : bend_x;
-        bough_section s = {r[0] * b->length, r[TWIST], mass, axial, axial / 10, bend_x, bend_y, torsion};
+        bough_section s = {r[0] * b->length, r[TWIST], mass, axial, axial / 10, bend_x, bend_y, bend_x};
         bough_section_put(file, &s);
     }
 }
@@ -167,8 +166,7 @@ void bough_openfast_blade(bough_openfast *o) {
     bough_deck *deck = bough_openfast_open(o, o->elasto, "BldFile(1)|BldFile1");
     bough_openfast_check(deck);
     if (!deck) return;
-    const char *const column[] = {"BlFract", "StrcTwst", "BMassDen", "FlpStff",
-                                  "EdgStff", "?GJStff",  "?EAStff"};
+    const char *const column[] = {"BlFract", "StrcTwst", "BMassDen", "FlpStff", "EdgStff", "?EAStff"};
     int n = bough_deck_whole(deck, "NBlInpSt", 1, MOST);
     slender b = {.n = n,
                  .width = N_BLADE_COLUMN,
@@ -206,10 +204,8 @@ void bough_openfast_blade(bough_openfast *o) {
                            "rotary inertia as for one material",
                            laminate);
     }
-    if (!(b.row[TORSION] > 0)) {
-        bough_approximated(o, "blade: ElastoDyn has no torsion, so the torsional stiffness is the edgewise "
-                              "one, which is stiff; no offsets of mass and shear centre");
-    }
+    bough_approximated(o, "blade: ElastoDyn has no torsion, so the torsional stiffness is the edgewise one, "
+                          "which is stiff; no offsets of mass and shear centre");
 }
 
 // -- tower ----------------------------------------------------------------------------------------

@@ -108,6 +108,9 @@ TEST(elastodyn_structure_is_scaled_and_damped) {
     double omega2 = 4 * 2e9 / 8000 / (500 * 20 / 5.0);
     check_near(number(tower, "damping.0"), 2 * 0.01 / sqrt(omega2), 1e-4, 0);
     assert_true(list_says(&t, "no torsion"));
+    // ElastoDyn does not use the torsional stiffness of older decks either
+    trial older = import_with(&by_modes, &(edit){"parts/blade.dat", "PitchAxis", "GJStff"});
+    check_same_file(&t, &older, "blade-structure.yaml");
 }
 
 // A tuner of the first mode acts as the factor of the table does.
