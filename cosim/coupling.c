@@ -149,47 +149,22 @@ static void find_output_rate(bough_coupling *c, int member, double t, double *ou
 
 // -- advancing ------------------------------------------------------------------------------------
 
-// A failure of the integrator may be due to the signal; a shorter macro step gives another signal.
-static void ask_for_retry(bough_status *status) {
-    if (status->code == BOUGH_FAILED) status->code = BOUGH_RETRY;
-}
-
 void bough_coupling_advance_to(bough_coupling *c, int member, double t, bool restart) {
     bough_member *m = c->assembly->member[member];
     assert(t >= m->time && c->t0 < c->t1 && c->signal[member].t0 == c->t0);
     c->status[member] = bough_member_advance(m, t, &c->signal[member], restart);
     assert(!bough_is_ok(&c->status[member]) || m->time == t);
-    ask_for_retry(&c->status[member]);
+    // a failure may be due to the signal, and a shorter macro step gives another signal
+    if (c->status[member].code == BOUGH_FAILED) c->status[member].code = BOUGH_RETRY;
 }
 
-// Up to the first own step that ends at or after the middle.
-static void advance_first_half(bough_coupling *c, int member, bool restart) {
-    double middle = 0.5 * (c->t0 + c->t1) - 1e-9 * (c->t1 - c->t0);
-    c->status[member] =
-        bough_member_advance_part(c->assembly->member[member], middle, c->t1, &c->signal[member], restart);
-    ask_for_retry(&c->status[member]);
-}
-
-static void advance_second_half(bough_coupling *c, int member) {
-    bool arrived = c->assembly->member[member]->time >= c->t1;
-    if (bough_is_ok(&c->status[member]) && !arrived) bough_coupling_advance_to(c, member, c->t1, false);
-}
-
-static void advance_part(void *data, int k, bough_part part) {
-    bough_coupling *c = data;
-    int member = c->scratch->listed[k];
-    switch (part) {
-    case BOUGH_WHOLE: bough_coupling_advance_to(c, member, c->t1, c->scratch->restart); break;
-    case BOUGH_FIRST_HALF: advance_first_half(c, member, c->scratch->restart); break;
-    case BOUGH_SECOND_HALF: advance_second_half(c, member); break;
-    }
+static void advance_follower(bough_coupling *c, int member) {
+    bough_coupling_advance_to(c, member, c->t1, c->scratch->restart);
 }
 
 bough_status bough_coupling_advance(bough_coupling *c, int level, bool restart) {
     c->scratch->restart = restart;
-    bough_coupling_clear(c);
-    bough_pool_run_halves(c->pool, list_level(c, level), advance_part, c);
-    return bough_coupling_failure(c);
+    return bough_coupling_each(c, level, advance_follower);
 }
 
 // A member that others follow.

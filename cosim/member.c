@@ -84,35 +84,25 @@ static bool constrain(const bough_member *m) {
     return m->system.ops->constrain(m->system.self, m->time, m->state);
 }
 
-bough_status bough_member_advance_part(bough_member *m, double pause, double t1, const bough_signal *input,
-                                       bool restart) {
+bough_status bough_member_advance(bough_member *m, double t1, const bough_signal *input, bool restart) {
     size_t size = (size_t)m->system.n_state * sizeof(double);
     double t = m->time;
     bough_status status = bough_ok();
-    assert(t <= t1 && pause <= t1 && (input == NULL || input->n == m->system.n_input));
+    assert(t <= t1 && (input == NULL || input->n == m->system.n_input));
     m->signal = input;
-    if (!m->paused) memcpy(m->integrated, m->state, size);
-    // its own steps
-    if (m->integrator.ops == NULL) {
-        t = t1;
-    } else {
-        status = m->integrator.ops->advance(m->integrator.self, &t, pause, t1, restart || !m->started,
-                                            m->integrated);
+    // its own steps, from a copy: a failure leaves the state as it is
+    memcpy(m->integrated, m->state, size);
+    if (m->integrator.ops != NULL) {
+        status =
+            m->integrator.ops->advance(m->integrator.self, &t, t1, restart || !m->started, m->integrated);
     }
     m->started = bough_is_ok(&status);
-    // its time: t1, or a pause before
-    assert(!m->started || (t >= pause && t <= t1));
-    m->paused = m->started && t < t1;
     if (!m->started) return status;
-    m->time = m->paused ? t : t1;
-    // the integrator keeps its own state; a correction that is large starts it anew
+    m->time = t1;
     memcpy(m->state, m->integrated, size);
-    if (!m->paused && constrain(m)) m->started = false;
+    // the integrator keeps its own state; a correction that is large starts it anew
+    if (constrain(m)) m->started = false;
     return status;
-}
-
-bough_status bough_member_advance(bough_member *m, double t1, const bough_signal *input, bool restart) {
-    return bough_member_advance_part(m, t1, t1, input, restart);
 }
 
 bough_statistics bough_member_statistics(const bough_member *m) {
@@ -123,17 +113,11 @@ bough_statistics bough_member_statistics(const bough_member *m) {
 
 // -- state ----------------------------------------------------------------------------------------
 
-// Whether the integrator continues; it is not within a macro step.
-static void begin_anew(bough_member *m, bool started) {
-    m->started = started;
-    m->paused = false;
-}
-
 void bough_member_set(bough_member *m, double t, const double *state) {
     m->time = t;
     memmove(m->state, state, (size_t)m->system.n_state * sizeof(double));
     constrain(m);
-    begin_anew(m, false);
+    m->started = false;
 }
 
 void bough_member_snapshot(bough_member *m, bough_snapshot *s) {
@@ -144,5 +128,5 @@ void bough_member_snapshot(bough_member *m, bough_snapshot *s) {
     bough_snapshot_take(s, &started, sizeof started);
     bough_snapshot_doubles(s, m->state, m->system.n_state);
     if (kept) ops->transfer(m->integrator.self, s);
-    if (s->move == BOUGH_SNAPSHOT_RESTORE) begin_anew(m, started);
+    if (s->move == BOUGH_SNAPSHOT_RESTORE) m->started = started;
 }

@@ -21,11 +21,10 @@ typedef struct bough_member {
     const bough_signal *signal; // the input on the step in progress
     double *input;              // (n_input) at the evaluation's time
     double *first_input;        // (n_input) at the first of two times
-    double *integrated;         // (n_state) the integrator's state, before `constrain`
+    double *integrated;         // (n_state) of the step in progress, before `constrain`
     void *factors;              // of its Newton matrix
     bool started;               // the integrator's history belongs to the state
     bool (*stop)(void); // called at each evaluation: true ends the step in progress as a failure; NULL: none
-    bool paused;        // within a macro step: it continues from `integrated`
 } bough_member;
 
 // Builds a member in the arena, at time `start` [s] and the system's initial state. BOUGH_INVALID
@@ -37,12 +36,6 @@ bough_status bough_member_create(bough_arena *arena, const bough_system *system,
 // the input or a load jumps at the current time, so a multistep method restarts. On failure, time and
 // state are unchanged and the next step restarts the method.
 bough_status bough_member_advance(bough_member *m, double t1, const bough_signal *input, bool restart);
-
-// The same, but it may stop at the end of the first own step at or after `pause`; the current time is then
-// this time. A further call to t1 with the same input and without restart gives the same bits as one
-// advance to t1.
-bough_status bough_member_advance_part(bough_member *m, double pause, double t1, const bough_signal *input,
-                                       bool restart);
 
 // Replaces the current time and state (n_state); the integrator restarts.
 void bough_member_set(bough_member *m, double t, const double *state);

@@ -186,39 +186,6 @@ void bough_pool_run(bough_pool *pool, int n, bough_task task, void *data) {
     pool->listing = false;
 }
 
-// The items in rounds of one for each thread. Of a last round that is not full, each item is divided: its
-// first half joins the first round, its second half ends the list.
-typedef struct rounds {
-    bough_pool *pool;
-    int n, rest, before; // rest: items in halves; before: whole items of the first round
-    void (*work)(void *data, int item, bough_part part);
-    void *data;
-} rounds;
-
-static void do_item(void *self, int k) {
-    const rounds *w = self;
-    int split = w->n - w->rest; // the first item in halves
-    if (k < w->before) {
-        w->work(w->data, k, BOUGH_WHOLE);
-    } else if (k < w->before + w->rest) {
-        w->work(w->data, split + k - w->before, BOUGH_FIRST_HALF);
-    } else if (k < w->n) {
-        w->work(w->data, k - w->rest, BOUGH_WHOLE);
-    } else {
-        bough_pool_await(w->pool, w->before + k - w->n);
-        w->work(w->data, split + k - w->n, BOUGH_SECOND_HALF);
-    }
-}
-
-void bough_pool_run_halves(bough_pool *pool, int n, void (*work)(void *data, int item, bough_part part),
-                           void *data) {
-    int threads = bough_pool_threads(pool);
-    rounds w = {.pool = pool, .n = n, .work = work, .data = data};
-    if (n > threads) w.rest = n % threads;
-    if (w.rest > 0) w.before = threads - w.rest;
-    bough_pool_run(pool, n + w.rest, do_item, &w);
-}
-
 void bough_pool_await(bough_pool *pool, int earlier) {
     if (!pool || !pool->open || pool->n_thread == 1 || earlier < pool->first) return;
     int k = earlier - pool->first;

@@ -41,16 +41,6 @@ void bough_pool_region(bough_pool *pool, void (*work)(void *data), void *data);
 // Does task(data, 0 … n − 1) and returns when all are done. One list at a time: no task may call it.
 void bough_pool_run(bough_pool *pool, int n, bough_task task, void *data);
 
-// Part of an item's work.
-typedef enum bough_part { BOUGH_WHOLE, BOUGH_FIRST_HALF, BOUGH_SECOND_HALF } bough_part;
-
-// Does items 0 … n − 1 of about equal work, the n % threads last of them in two halves, so that no thread
-// idles for a whole item. Three items on two threads:
-//     thread 1   item 0               item 2, second half
-//     thread 2   item 2, first half   item 1
-void bough_pool_run_halves(bough_pool *pool, int n, void (*work)(void *data, int item, bough_part part),
-                           void *data);
-
 // Inside a task: returns when the task `earlier` of the list, which comes before it, is done.
 void bough_pool_await(bough_pool *pool, int earlier);
 

@@ -77,10 +77,9 @@ typedef struct bough_integrator_ops {
     int most_states;   // largest system that it suits; 0: any
     unsigned reads;    // BOUGH_METHOD_READS_…
     void *(*create)(bough_arena *arena, const bough_ode *ode, const bough_integrator_options *options);
-    // Integrates y (n) from *t to exactly t1 and never evaluates f beyond t1. A method that can stop
-    // early returns after the first step that reaches `pause`. *t is then the time of y. `restart`: y
-    // was changed, or f jumps at *t.
-    bough_status (*advance)(void *self, double *t, double pause, double t1, bool restart, double *y);
+    // Integrates y (n) from *t to exactly t1 and never evaluates f beyond t1; after a failure *t is the time
+    // of y. `restart`: y was changed, or f jumps at *t.
+    bough_status (*advance)(void *self, double *t, double t1, bool restart, double *y);
     void (*statistics)(const void *self, bough_statistics *sum); // added to sum
     // The memory that the next step depends on, besides t and y. NULL: the method restarts.
     void (*transfer)(void *self, bough_snapshot *s);

@@ -168,8 +168,7 @@ static bool start(alpha *m, double t, const double *y) {
     return m->ode.derivative(m->ode.self, t, y, m->rate);
 }
 
-static bough_status advance(void *self, double *t, double pause, double t1, bool restart, double *y) {
-    (void)pause;
+static bough_status advance(void *self, double *t, double t1, bool restart, double *y) {
     alpha *m = self;
     double longest = m->step;
     bool ok = (!restart && m->started) || start(m, *t, y);

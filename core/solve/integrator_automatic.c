@@ -44,14 +44,13 @@ static bough_statistics work_of(const bough_integrator *integrator) {
 static bough_status take(bough_integrator *integrator, double *t, double t1, bool restart, double *y,
                          bough_statistics *work) {
     bough_statistics before = work_of(integrator);
-    bough_status status = integrator->ops->advance(integrator->self, t, t1, t1, restart, y);
+    bough_status status = integrator->ops->advance(integrator->self, t, t1, restart, y);
     *work = work_of(integrator);
     bough_statistics_add(work, -1, &before);
     return status;
 }
 
-static bough_status advance(void *self, double *t, double pause, double t1, bool restart, double *y) {
-    (void)pause;
+static bough_status advance(void *self, double *t, double t1, bool restart, double *y) {
     automatic *m = self;
     bough_statistics work;
     double begun = *t;

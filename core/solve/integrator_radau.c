@@ -391,8 +391,7 @@ static bough_status cross(radau *r, double t1) {
     return bough_ok();
 }
 
-static bough_status advance(void *self, double *t, double pause, double t1, bool restart, double *y) {
-    (void)pause;
+static bough_status advance(void *self, double *t, double t1, bool restart, double *y) {
     radau *r = self;
     history *past = r->past;
     if (restart || !past->started) start(r, *t);

@@ -47,7 +47,6 @@ typedef struct rosenbrock {
     int age, most_age;          // steps since the tangents were found, and after which they are renewed
     bool started;
     int drifted;               // steps since ∂f/∂t was found
-    double end;                // of the macro step in progress [s]
     bough_rosenbrock_step now; // the step in progress
     double *error;             // (n)
     double *last;              // (n) y before the last step
@@ -222,10 +221,10 @@ static void shorten(rosenbrock *m, double h, double error) {
     if (old || m->age > YOUNG || !isfinite(error)) m->age = MOST_AGE;
 }
 
-// All steps to `pause`. Returns NULL, or the reason of a failure.
-static const char *cross(rosenbrock *m, double *t, double pause, double t1, double *y) {
+// All steps to t1. Returns NULL, or the reason of a failure.
+static const char *cross(rosenbrock *m, double *t, double t1, double *y) {
     double begun = *t;
-    for (int n = 0; *t < pause; n++) {
+    for (int n = 0; *t < t1; n++) {
         // equal steps, none longer than allowed; times are rounded
         double parts = ceil((t1 - *t) / m->longest * (1 - rounding));
         double h = (t1 - *t) / fmax(parts, 1);
@@ -259,7 +258,7 @@ static const char *cross(rosenbrock *m, double *t, double pause, double t1, doub
     return NULL;
 }
 
-static bough_status advance(void *self, double *t, double pause, double t1, bool restart, double *y) {
+static bough_status advance(void *self, double *t, double t1, bool restart, double *y) {
     rosenbrock *m = self;
     if (restart || !m->started) {
         m->sum.starts++;
@@ -268,12 +267,10 @@ static bough_status advance(void *self, double *t, double pause, double t1, bool
         m->age = MOST_AGE;
         m->most_age = UNDAMPED_AGE;
         m->useful = m->kept;
-        m->drifted = MOST_DRIFTED;
         m->longest = m->step;
     }
-    if (t1 != m->end) m->drifted = MOST_DRIFTED; // not paused on the way
-    m->end = t1;
-    const char *reason = cross(m, t, pause, t1, y);
+    m->drifted = MOST_DRIFTED;
+    const char *reason = cross(m, t, t1, y);
     if (reason == NULL) return bough_ok();
     m->started = false;
     return bough_fail(BOUGH_FAILED, "%s at t = %.6g s: the Rosenbrock method cannot go on: %s", m->ode.name,

@@ -284,8 +284,7 @@ static int cross(run *r, double t1, double *reached) {
     return flag;
 }
 
-static bough_status advance(void *self, double *t, double pause, double t1, bool restart, double *y) {
-    (void)pause;
+static bough_status advance(void *self, double *t, double t1, bool restart, double *y) {
     run *r = self;
     double *own = bough_vector_data(r->y), reached = *t;
     memcpy(own, y, (size_t)r->ode.n * sizeof *own);

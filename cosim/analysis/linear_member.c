@@ -136,8 +136,8 @@ static void step(linear_member *s, double t, double h, double *y) {
     solve(s, s->own, y);
 }
 
-static bough_status advance(void *self, double *t, double pause, double t1, bool restart, double *y) {
-    (void)pause, (void)restart;
+static bough_status advance(void *self, double *t, double t1, bool restart, double *y) {
+    (void)restart;
     linear_member *s = self;
     double t0 = *t;
     int n_step = (int)ceil((t1 - t0) / s->sub_step - 1e-6);

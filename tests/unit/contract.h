@@ -205,35 +205,6 @@ static inline void contract_set_state(bough_member *m, contract_point at, double
     free(rate), free(moved), free(coefficient);
 }
 
-// A pause on the way changes no bit.
-static inline void contract_pause(bough_member *m, contract_point at, double length) {
-    size_t n = (size_t)m->system.n_state * sizeof(double);
-    double *whole = contract_doubles(m->system.n_state);
-    check_arena(arena);
-    bough_member_set(m, at.t, at.state);
-    char *copy = member_save(arena, m);
-    double *coefficient = contract_doubles(4 * m->system.n_input);
-    memcpy(coefficient, at.input, (size_t)m->system.n_input * sizeof(double));
-    for (int run = 0; run < 2; run++) {
-        bough_signal input = {m->system.n_input, at.t, at.t + length, coefficient};
-        double pause = at.t + 0.4 * length;
-        bough_status status = bough_ok();
-        member_restore(m, copy);
-        if (run == 1) {
-            status = bough_member_advance_part(m, pause, input.t1, &input, true);
-            assert_true(m->time >= pause && m->time <= input.t1);
-        }
-        if (bough_is_ok(&status) && m->time < input.t1) {
-            status = bough_member_advance(m, input.t1, &input, run == 0);
-        }
-        check_ok(status);
-        check_near(m->time, input.t1, 0, 0);
-        if (run == 0) memcpy(whole, m->state, n);
-    }
-    assert_memory_equal(whole, m->state, n);
-    free(whole), free(coefficient);
-}
-
 // What each operation returns at the point; the solution needs factors.
 static const char *const contract_results[] = {"derivative",   "output", "output_tangent",
                                                "output_drift", "solve",  "input_columns"};
@@ -338,7 +309,6 @@ static inline void contract_check(bough_member *m, contract_point at, double gam
     contract_check_system(&m->system, at, gamma);
     contract_save_restore(m, at, length, true);
     contract_save_restore(m, at, length, false);
-    contract_pause(m, at, length);
 }
 
 #endif

@@ -6,7 +6,7 @@
 
 static inline bough_status integrator_advance(const bough_integrator *i, double t, double t1, bool restart,
                                               double *y) {
-    return i->ops->advance(i->self, &t, t1, t1, restart, y);
+    return i->ops->advance(i->self, &t, t1, restart, y);
 }
 
 #endif

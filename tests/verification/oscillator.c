@@ -103,9 +103,8 @@ static void step(const bough_oscillator *o, double t, double h, double *y) {
     }
 }
 
-static bough_status advance(void *self, double *t, double pause, double t1, bool restart, double *y) {
+static bough_status advance(void *self, double *t, double t1, bool restart, double *y) {
     bough_oscillator *o = self;
-    (void)pause;
     double rate = sqrt(fabs(o->a[1][0])) + fabs(o->a[1][1]) + 1, t0 = *t;
     int n = (int)ceil((t1 - t0) * rate);
     for (int k = 0; k < n; k++) {

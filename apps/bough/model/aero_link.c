@@ -201,7 +201,7 @@ typedef struct interval {
     double start, span; // [s]
 } interval;
 
-// An evaluation in stages, whose tasks are a blade each.
+// An evaluation. With two tasks for each blade, three blades make the same work for both of two threads.
 typedef struct evaluation {
     bough_aero_link *link;
     const bough_rotor_motion *motion;
@@ -210,20 +210,29 @@ typedef struct evaluation {
     const interval *next; // for which the blades' signals follow; NULL: they do not
 } evaluation;
 
-static void approach_blade(void *self, int b, bough_part part) {
-    const evaluation *e = self;
-    if (part != BOUGH_SECOND_HALF) {
-        e->move(e->link->motion, b);
-        bough_rotor_approach(e->link->rotor, e->motion, b, e->data);
-    }
-    if (part != BOUGH_FIRST_HALF) bough_rotor_induce(e->link->rotor, e->motion, b, e->data);
-}
-
-static void load_blade(void *self, int b, bough_part part) {
+// The wind that each blade meets, then its inductions.
+static void approach_blade(void *self, int k) {
     const evaluation *e = self;
     const bough_aero_link *l = e->link;
-    if (part != BOUGH_SECOND_HALF) bough_rotor_load(l->rotor, e->motion, b, e->data);
-    if (part == BOUGH_FIRST_HALF || e->next == NULL) return;
+    if (k < l->n_blade) {
+        e->move(l->motion, k);
+        bough_rotor_approach(l->rotor, e->motion, k, e->data);
+        return;
+    }
+    bough_pool_await(l->simulation->pool, k - l->n_blade);
+    bough_rotor_induce(l->rotor, e->motion, k - l->n_blade, e->data);
+}
+
+// The loads on each blade, then its signal to the next sample.
+static void load_blade(void *self, int k) {
+    const evaluation *e = self;
+    const bough_aero_link *l = e->link;
+    int b = k % l->n_blade;
+    if (k < l->n_blade) {
+        bough_rotor_load(l->rotor, e->motion, b, e->data);
+        return;
+    }
+    bough_pool_await(l->simulation->pool, b);
     bough_aero_signal_follow(l->signal[b], fresh_loads(l, b), bough_aero_motion_course(l->motion, b),
                              e->next->start, e->next->span);
 }
@@ -237,9 +246,9 @@ static void evaluate_rotor(bough_aero_link *l, int to, void (*move)(bough_aero_m
     l->factor[to] = ramp_factor(l->simulation->scene->aero.ramp, e.motion->time);
     l->found = to;
     e.data->skips_slopes = next == NULL; // only signals that follow have them
-    bough_pool_run_halves(pool, l->n_blade, approach_blade, &e);
+    bough_pool_run(pool, 2 * l->n_blade, approach_blade, &e);
     bough_rotor_survey(l->rotor, e.motion, e.data);
-    bough_pool_run_halves(pool, l->n_blade, load_blade, &e);
+    bough_pool_run(pool, next ? 2 * l->n_blade : l->n_blade, load_blade, &e);
     bough_rotor_conclude(l->rotor, e.motion, e.data);
 }
 

@@ -20,8 +20,8 @@ typedef struct fmu_member {
 
 // -- own steps ------------------------------------------------------------------------------------
 
-static bough_status advance(void *self, double *t, double pause, double t1, bool restart, double *y) {
-    (void)pause, (void)restart, (void)y;
+static bough_status advance(void *self, double *t, double t1, bool restart, double *y) {
+    (void)restart, (void)y;
     fmu_member *x = self;
     const bough_signal *signal = x->member->signal;
     int n = x->body->fmu.steps;

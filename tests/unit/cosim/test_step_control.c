@@ -90,8 +90,8 @@ static bough_integrator_ops failing; // NOLINT(cppcoreguidelines-avoid-non-const
 static bough_code failure;
 static int calls;
 
-static bough_status fail_to_advance(void *self, double *t, double pause, double t1, bool restart, double *y) {
-    (void)self, (void)t, (void)pause, (void)restart, (void)y;
+static bough_status fail_to_advance(void *self, double *t, double t1, bool restart, double *y) {
+    (void)self, (void)t, (void)restart, (void)y;
     calls++;
     return bough_fail(failure, "mass1 at t = %g s: gave up", t1);
 }

@@ -77,39 +77,6 @@ TEST(tasks_wait_for_earlier_ones) {
     }
 }
 
-// Two units of work each: a whole counts two, a second half only after its first one.
-static void count_parts(void *data, int item, bough_part part) {
-    list *l = data;
-    if (part == BOUGH_SECOND_HALF) assert_int_equal(l->sum[item], 1);
-    l->sum[item] += part == BOUGH_WHOLE ? 2 : 1;
-    atomic_fetch_add(&l->count[part], 1);
-}
-
-static void take_halves(void *data) {
-    list *l = data;
-    int threads = bough_pool_threads(l->pool);
-    for (int n = 0; n < 20; n++) {
-        reset(l);
-        memset(l->sum, 0, sizeof l->sum);
-        int halved = n > threads ? n % threads : 0;
-        bough_pool_run_halves(l->pool, n, count_parts, l);
-        for (int i = 0; i < MOST; i++) assert_int_equal(l->sum[i], i < n ? 2 : 0);
-        assert_int_equal(atomic_load(&l->count[BOUGH_WHOLE]), n - halved);
-        assert_int_equal(atomic_load(&l->count[BOUGH_FIRST_HALF]), halved);
-        assert_int_equal(atomic_load(&l->count[BOUGH_SECOND_HALF]), halved);
-    }
-}
-
-TEST(items_that_fill_no_turn_are_halved) {
-    list l;
-    for (int threads = 1; threads <= 8; threads++) {
-        bough_arena *arena = make(threads, &l);
-        take_halves(&l);
-        bough_pool_region(l.pool, take_halves, &l);
-        bough_arena_destroy(arena);
-    }
-}
-
 static void nap(long ns) { nanosleep(&(struct timespec){.tv_nsec = ns}, NULL); }
 
 // The first task is slow, so that its waiters and the caller sleep.

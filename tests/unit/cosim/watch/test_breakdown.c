@@ -5,12 +5,12 @@
 #include <stdlib.h>
 
 static bough_integrator_ops fragile; // NOLINT(cppcoreguidelines-avoid-non-const-global-variables)
-static bough_status (*whole)(void *self, double *t, double pause, double t1, bool restart, double *y);
+static bough_status (*whole)(void *self, double *t, double t1, bool restart, double *y);
 
-static bough_status advance(void *self, double *t, double pause, double t1, bool restart, double *y) {
+static bough_status advance(void *self, double *t, double t1, bool restart, double *y) {
     const bough_oscillator *o = self;
     if (!(fabs(o->y[0]) < .6)) return bough_fail(BOUGH_FAILED, "mass1 at t = %g s: torn", t1);
-    return whole(self, t, pause, t1, restart, y);
+    return whole(self, t, t1, restart, y);
 }
 
 // Runs to the failure.

@@ -81,7 +81,7 @@ TEST(operations_agree_on_a_deformed_loaded_rod) {
     sample_loads(r.model, loads);
     contract_point at = {0.5, state, input, 1e-6};
     contract_check(r.m, at, 0.03, 0.01);
-    // by steps between which it may pause
+    // by another method
     bough_integrator_options steps = {BOUGH_ROSENBROCK, 1e-3, 2e-3, 0, 0, false};
     contract_check(member_of(r.arena, &r.s, steps), at, 0.03, 0.01);
     for (int i = 0; i < N; i++) { // advance normalises the quaternions
