@@ -2,7 +2,7 @@
 // inclined and veered.
 #include "aero/wind/wind.h"
 
-#include "aero/wind/wind_turbulence.h"
+#include "aero/wind/wind_iec.h"
 #include "core/base/base.h"
 #include "core/base/schedule.h"
 

@@ -1,5 +1,5 @@
 // Veers' method, theory (96, 97, 98), for Kaimal's spectrum.
-#include "aero/wind/wind_turbulence.h"
+#include "aero/wind/wind_iec.h"
 
 #include "core/base/base.h"
 #include "core/base/lanes.h"

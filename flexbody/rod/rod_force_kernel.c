@@ -1,7 +1,6 @@
 // Right-hand side of the rod: gather, segment forces, vertex balances.
 #include "flexbody/rod/rod_kernels.h"
 #include "flexbody/rod/rod_lanes.h"
-#include "flexbody/rod/rod_vectors.h"
 
 #include <string.h>
 
@@ -44,8 +43,8 @@ BOUGH_INLINE void gather_some(const bough_rod_model *m, const double *restrict s
 
 // Moving vertices first to last.
 static void gather_state(const bough_rod_model *m, const double *state, int first, int last, double *vertex) {
-    int n = last + 1 - first, end = first + whole_vectors(n);
-    bool more = one_more_vector(n);
+    int n = last + 1 - first, end = first + whole_vectors(n, BOUGH_WIDTH);
+    bool more = one_more_vector(n, BOUGH_WIDTH);
     for (int i = first; i < end; i += BOUGH_WIDTH) gather_some(m, state, i, BOUGH_WIDTH, vertex);
     if (more) gather_some(m, state, last + 1 - BOUGH_WIDTH, BOUGH_WIDTH, vertex);
     for (int i = end; i <= last && !more; i++) gather_some(m, state, i, 1, vertex);
@@ -307,7 +306,7 @@ static void accelerate_last(const bough_rod_model *m, const bough_rod_scratch *s
 
 static void accelerate_vertices(const bough_rod_model *m, const bough_rod_scratch *scratch,
                                 const double *input, double *restrict rate) {
-    int n = m->n, whole = whole_vectors(n);
+    int n = m->n, whole = whole_vectors(n, BOUGH_WIDTH);
     double *restrict out = rate + BOUGH_ROD_U * n - 1;
     for (int i = 1; i <= whole; i += BOUGH_WIDTH) vertex_accelerations(m, scratch, input, i, out + i, n);
     if (whole < n) accelerate_last(m, scratch, input, whole + 1, out + whole + 1);
@@ -337,8 +336,8 @@ BOUGH_INLINE void vertex_kinematics(int n, const double *restrict state, const d
 // The balances of all vertices under the segments' forces in scratch.
 static bool balance_vertices(const bough_rod_model *m, const double *state, const double *input,
                              const bough_rod_scratch *scratch, double *restrict rate) {
-    int n = m->n, whole = whole_vectors(n);
-    bool more = one_more_vector(n);
+    int n = m->n, whole = whole_vectors(n, BOUGH_WIDTH);
+    bool more = one_more_vector(n, BOUGH_WIDTH);
     for (int i = 1; i <= whole; i += BOUGH_WIDTH) vertex_kinematics(n, state, input, i, BOUGH_WIDTH, rate);
     if (more) vertex_kinematics(n, state, input, n + 1 - BOUGH_WIDTH, BOUGH_WIDTH, rate);
     for (int i = whole + 1; i <= n && !more; i++) vertex_kinematics(n, state, input, i, 1, rate);

@@ -6,6 +6,13 @@
 #include "flexbody/rod/rod.h"
 #include "flexbody/rod/rod_elastic.h"
 
+// How many of n vertices fill whole vectors of a kernel's width.
+BOUGH_INLINE int whole_vectors(int n, int width) { return n - n % width; }
+
+// Whether the others go by one more vector that ends with the last vertex: it repeats some of the vector
+// before, and takes less time than they do one by one.
+BOUGH_INLINE bool one_more_vector(int n, int width) { return n > width && n % width > 1; }
+
 BOUGH_INLINE vertex_state load_vertex(const double *restrict v, int s, int i) {
     return (vertex_state){lane_load(v, s, i), lane_load(v + 7 * s, s, i), lane_load(v + 10 * s, s, i),
                           lane_load_quaternion(v + 3 * s, s, i)};

@@ -2,7 +2,6 @@
 #include "flexbody/rod/rod_kernels.h"
 #include "flexbody/rod/rod_lanes.h"
 #include "flexbody/rod/rod_tangent_layout.h"
-#include "flexbody/rod/rod_vectors.h"
 
 // (E + ξ(a))⁻¹ y = (y + a (a·y) − a×y)/(1 + |a|²)
 BOUGH_INLINE bough_vec3 solve_cross(bough_vec3 a, bough_vec3 y) {
@@ -254,8 +253,8 @@ BOUGH_INLINE void recover(const bough_rod_model *m, const bough_rod_tangent *k, 
 
 void AT(solve)(const bough_rod_model *m, bough_rod_tangent *k, double *x) {
     double *velocity = k->work + (size_t)WORK_VELOCITY * m->stride;
-    int n = m->n, whole = whole_vectors(n), last = n + 1 - BOUGH_WIDTH;
-    bool more = one_more_vector(n);
+    int n = m->n, whole = whole_vectors(n, BOUGH_WIDTH), last = n + 1 - BOUGH_WIDTH;
+    bool more = one_more_vector(n, BOUGH_WIDTH);
     // M r_v + γ K A r_q
     for (int v = 1; v <= whole; v += BOUGH_WIDTH) eliminate_residual(m, k, x, v, BOUGH_WIDTH, k->work);
     if (more) eliminate_residual(m, k, x, last, BOUGH_WIDTH, k->work);

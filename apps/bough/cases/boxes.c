@@ -1,6 +1,6 @@
 #include "apps/bough/cases/case_run.h"
 
-#include "aero/wind/wind_turbulence.h"
+#include "aero/wind/wind_iec.h"
 #include "apps/bough/model/aero_link.h"
 
 #include <pthread.h>

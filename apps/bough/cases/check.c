@@ -3,7 +3,7 @@
 // the last one may start hours later.
 #include "apps/bough/cases/study.h"
 
-#include "aero/wind/wind_turbulence.h"
+#include "aero/wind/wind_iec.h"
 #include "apps/bough/config/schema.h"
 #include "apps/bough/model/aero_link.h"
 #include "apps/bough/model/simulation.h"

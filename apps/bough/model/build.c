@@ -101,7 +101,7 @@ static bough_status build_rods(bough_builder *b) {
     for (int k = 0; k < s->n_beam; k++) {
         bough_beam *beam = &s->beam[k];
         if (beam->port < 0) continue;
-        BOUGH_TRY(bough_beam_build(b->arena, beam, solver_options(bough_scene_micro(b->scene, beam->body)),
+        BOUGH_TRY(bough_build_beam(b->arena, beam, solver_options(bough_scene_micro(b->scene, beam->body)),
                                    motion + BOUGH_PORT_OUTPUTS * beam->port, &s->rod[beam->port]));
     }
     for (int k = s->n_rod, i = 0; k < s->n_rod + s->n_fmu; i++) {

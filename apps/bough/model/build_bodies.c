@@ -1,4 +1,5 @@
-// The bodies of a scene as bodies of the tree, and the undeformed beams that they are or carry.
+// The bodies of a scene as bodies of the tree, their undeformed beams, and the members that flexible beams
+// are.
 #include "apps/bough/model/build_internal.h"
 
 #include "core/base/rotation.h"
@@ -200,6 +201,47 @@ static void add_fmu(bough_builder *b, int index) {
     int marker = bough_build_marker(b, name, index, bough_transform_identity());
     b->port[b->s->n_rod + b->s->n_fmu++] = (bough_port_def){.marker = marker};
 }
+
+// -- a flexible beam as a member --------------------------------------------------------------------
+
+static bough_status build_rod(bough_arena *arena, bough_beam *beam, const double *input,
+                              bough_system *system) {
+    bough_rod_model *model = NULL;
+    BOUGH_TRY(bough_rod_create(arena, &beam->def, &model));
+    beam->rod = bough_rod_body_create(arena, model, input);
+    beam->mesh = model;
+    beam->loads = bough_rod_body_loads(beam->rod);
+    *system = bough_rod_body_system(beam->rod);
+    return bough_ok();
+}
+
+static bough_status build_modal(bough_arena *arena, bough_beam *beam, const double *input,
+                                bough_system *system) {
+    const bough_scene_modal *modal = &beam->body->modal;
+    int pieces = beam->body->fidelity == BOUGH_SCENE_MODAL ? 1 : modal->pieces;
+    bough_modal_options options = {modal->modes, modal->statics, modal->stiffening};
+    bough_modal_model *model = NULL;
+    BOUGH_TRY(bough_modal_create(arena, &beam->def, pieces, options, &model));
+    beam->modal = bough_modal_body_create(arena, model, input);
+    beam->mesh = model->rod;
+    beam->loads = bough_modal_body_loads(beam->modal);
+    *system = bough_modal_body_system(beam->modal);
+    return bough_ok();
+}
+
+bough_status bough_build_beam(bough_arena *arena, bough_beam *beam, bough_integrator_options micro,
+                              const double *input, bough_member *member) {
+    bool rod = beam->body->fidelity == BOUGH_SCENE_ROD;
+    bough_system system = {0};
+    BOUGH_TRY(rod ? build_rod(arena, beam, input, &system) : build_modal(arena, beam, input, &system));
+    if (beam->in_ground) {
+        beam->ground = bough_ground_body_create(arena, &system, beam->mesh, beam->loads, beam->modal != NULL);
+        system = bough_ground_body_system(beam->ground);
+    }
+    return bough_member_create(arena, &system, 0, &micro, member);
+}
+
+// -- whole ----------------------------------------------------------------------------------------
 
 bough_status bough_build_bodies(bough_builder *b) {
     for (int i = 0; i < b->scene->n_body; i++) { // bodies hang on beams that stand already

@@ -23,7 +23,7 @@ void bough_input_link_build(bough_arena *arena, bough_simulation *s);
 
 // Loads that jump at a time: ramps without length. The step that ends at the jump is integrated without the
 // load, the step that begins there with it; a function of time alone could not distinguish the two
-// (jump_link.c). Needs tree and rods.
+// (load_link.c). Needs tree and rods.
 void bough_jump_link_build(bough_arena *arena, bough_simulation *s);
 
 // -- an FMU as a member (fmu_member.c) ------------------------------------------------------------
@@ -73,6 +73,11 @@ typedef struct bough_builder {
 
 // The beams' meshes, and the bodies of the tree.
 bough_status bough_build_bodies(bough_builder *b);
+
+// Builds the flexible body of a beam, a rod or a modal body, in a frame that moves with `input` (9)
+// at the start.
+bough_status bough_build_beam(bough_arena *arena, bough_beam *beam, bough_integrator_options micro,
+                              const double *input, bough_member *member);
 
 // The index of a new marker of the tree.
 int bough_build_marker(bough_builder *b, const char *name, int body, bough_transform placement);

@@ -4,6 +4,7 @@
 #include "aero/rotor/rotor.h"
 #include "core/tree/dynamics.h"
 #include "core/tree/loop.h"
+#include "flexbody/rod/rod_tangent.h"
 
 #include <string.h>
 
@@ -37,6 +38,22 @@ double bough_simulation_pitch(const bough_simulation *s, const bough_beam *beam)
     const bough_scene_joint *joint = &beam->body->joint;
     if (joint->kind != BOUGH_JOINT_REVOLUTE || joint->axis != 2) return beam->body->pitch;
     return beam->body->pitch - bough_simulation_joint_point(s, (int)(beam->body - s->scene->body)).q;
+}
+
+const double *bough_beam_state(const bough_simulation *s, const bough_beam *beam, int first) {
+    const double *state = s->rod[beam->port].state;
+    if (beam->rod != NULL) return state;
+    double input[BOUGH_ROD_INPUTS] = {0}; // gravity does not matter
+    bough_twist_store(bough_tree_frame_twist(s->view, &s->tree->markers[beam->marker]), input);
+    return bough_modal_body_vertices(beam->modal, state, input, first);
+}
+
+void bough_beam_move_rigidly(const bough_beam *beam, const double *input, double *state) {
+    if (beam->rod != NULL) {
+        bough_rod_move_rigidly(beam->mesh, input, state);
+    } else {
+        bough_modal_body_move_rigidly(beam->modal, input, state);
+    }
 }
 
 bough_vec3 bough_simulation_joint_axis(const bough_simulation *s, int body) {

@@ -101,11 +101,6 @@ bough_vec3 bough_simulation_beam_tip(const bough_simulation *s, const bough_beam
 void bough_simulation_tip_shift(const bough_simulation *s, const bough_beam *beam, bough_vec3 *shift,
                                 bough_vec3 *turn);
 
-// Builds the flexible body of a beam, a rod or a modal body, in a frame that moves with `input` (9)
-// at the start.
-bough_status bough_beam_build(bough_arena *arena, bough_beam *beam, bough_integrator_options micro,
-                              const double *input, bough_member *member);
-
 // Of a flexible beam the state of its vertices from `first` on at `view` as rod.h lays it out, valid until
 // the next call for the same beam.
 const double *bough_beam_state(const bough_simulation *s, const bough_beam *beam, int first);

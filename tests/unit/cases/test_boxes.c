@@ -1,7 +1,7 @@
 // Turbulence that runs share: one box for each wind, the same as a run's own.
 #include "apps/bough/cases/case_run.h"
 
-#include "aero/wind/wind_turbulence.h"
+#include "aero/wind/wind_iec.h"
 #include "apps/bough/model/aero_link.h"
 #include "tests/unit/built_scene.h"
 

@@ -2,7 +2,7 @@
 // turbulent boxes beside theory.
 #include "aero/wind/wind.h"
 
-#include "aero/wind/wind_turbulence.h"
+#include "aero/wind/wind_iec.h"
 #include "core/base/base.h"
 #include "tests/unit/check.h"
 #include "tests/unit/scratch_name.h"
