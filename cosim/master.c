@@ -34,8 +34,8 @@ static void copy_loads(bough_master *m, bough_arena *arena, const bough_master_d
         if (m->event[i] > m->event[m->n_event - 1]) m->event[m->n_event++] = m->event[i];
 }
 
-// The stability before the run. No verdict where the analysis fails: the run shows the cause.
-static void judge(bough_master *m) {
+// The stability before the run. No verdict where the analysis fails: the run then shows the cause.
+static void judge_stability(bough_master *m) {
     const bough_scheme_options *options = &m->coupling->options;
     if (!m->coupling->scheme->judged) return;
     bough_status status = bough_stability_advise(m->assembly, options, m->macro_step, &m->advice);
@@ -88,7 +88,7 @@ bough_status bough_master_build(bough_arena *arena, const bough_master_def *def,
     }
     // loads at time 0, and the scheme's preparation with them
     begin_loads(m, 0);
-    if (!m->control) judge(m);
+    if (!m->control) judge_stability(m);
     evaluate_loads(m);
     m->coupling->t1 = m->coupling->t0 + m->macro_step;
     *master = m;
@@ -99,8 +99,8 @@ bool bough_master_done(const bough_master *m) { return m->time >= m->duration; }
 
 enum { HALVED_EVERY = 8, FIRST = 64 }; // macro steps
 
-// Halves of all the first steps would be the steps of the run that is compared, theory (71), where these are
-// as long as its macro steps.
+// If all of the first steps were halved, they would be those of the run that this one is compared with,
+// theory (71), wherever that takes one step in each of its macro steps.
 static bool taken_in_halves(const bough_master *m) {
     if (!m->halves || m->split) return false;
     if (m->grid_index >= FIRST) return m->at_event || m->grid_index % HALVED_EVERY == 0;
@@ -220,8 +220,7 @@ static bough_status macro_step(bough_master *m) {
     }
 
     // check the result
-    bough_monitor_judge(m->monitor, !m->compared);
-    BOUGH_TRY(bough_monitor_step(m->monitor, c));
+    BOUGH_TRY(bough_monitor_step(m->monitor, c, m->compared));
     // t1 is the present
     set_time(m, c->t1);
     m->steps++;
@@ -261,6 +260,7 @@ bough_statistics bough_master_statistics(const bough_master *m) {
 bough_status bough_step(bough_master *m) {
     enum { SEVERAL = 4 };
     stepping w = {.master = m};
+    // how many steps the integrators take in it decides whether the next one is halved
     long before = m->halves ? bough_master_statistics(m).steps : 0;
     bough_pool_region(m->coupling->pool, macro_step_in_region, &w);
     if (m->halves) {

@@ -66,10 +66,10 @@ static void append(bough_arnoldi *a, double before, const double *x, double *col
 }
 
 // Gram–Schmidt, twice: the second pass restores what cancellation loses.
-void bough_arnoldi_append(bough_arnoldi *a, double *x, double *column) {
-    double before = length_of(a, x);
-    for (int pass = 0; pass < 2; pass++) project_out(a, 0, 1, x, &column);
-    append(a, before, x, column);
+void bough_arnoldi_append(bough_arnoldi *a, double *x) {
+    double before = length_of(a, x), *none = NULL;
+    for (int pass = 0; pass < 2; pass++) project_out(a, 0, 1, x, &none);
+    append(a, before, x, NULL);
 }
 
 // The same for n vectors: what was in the basis before is taken out of all at once. One that is nearly a

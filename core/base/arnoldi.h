@@ -35,9 +35,8 @@ void bough_arnoldi_create(bough_arena *arena, int length, int capacity, int at_o
 
 double bough_arnoldi_product(const bough_arnoldi *a, const double *x, const double *y);
 
-// Makes x orthogonal to the basis, coefficients added to `column` unless NULL, and appends it at
-// length 1; a vector that depends on the basis is dropped.
-void bough_arnoldi_append(bough_arnoldi *a, double *x, double *column);
+// Makes x orthogonal to the basis and appends it at length 1; a vector that depends on the basis is dropped.
+void bough_arnoldi_append(bough_arnoldi *a, double *x);
 
 // Applies the operator to vectors of the basis until `target` are done or there are no more.
 bough_status bough_arnoldi_extend(bough_arnoldi *a, int target);

@@ -56,7 +56,7 @@ static void start(search *s) {
             memcpy(random, a->image, (size_t)a->length * sizeof *random);
         }
         if (k == 0 && s->op->balance) balance(a, random);
-        bough_arnoldi_append(a, a->image, NULL);
+        bough_arnoldi_append(a, a->image);
     }
 }
 

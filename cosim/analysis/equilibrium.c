@@ -110,7 +110,7 @@ bough_status bough_equilibrium_find(bough_arena *arena, bough_whole *whole, cons
         if (last && is_found(&s, longest, report->change, before)) return bough_ok();
         before = last && near ? report->change : (double)INFINITY;
         bool lowered = longest < newton;
-        if (near && !lowered) contraction = 0; // apart from rounding
+        if (near && !lowered) contraction = 0; // what remains is rounding
         bool refused = !(contraction < contracting);
         most = refused ? cautious : fmin(growth, most * cautious);
         s.gamma *= fmin(most, fmax(shrink, sqrt(aim / (contraction + DBL_MIN))));

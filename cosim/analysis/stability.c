@@ -149,7 +149,7 @@ static bough_status start(map *m) {
     m->arnoldi.apply = apply_repeated;
     m->arnoldi.self = m;
     choose_weights(m, x);
-    bough_arnoldi_append(&m->arnoldi, x, NULL);
+    bough_arnoldi_append(&m->arnoldi, x);
     return bough_ok();
 }
 
@@ -328,9 +328,9 @@ bough_status bough_stability_judge_by(const bough_assembly *a, const bough_schem
 
 bool bough_stability_grows(const bough_stability *s) { return s->growth > threshold; }
 
-// Analyses an alternative; true when it is stable. The smallest growth is kept.
-static bool holds(const bough_assembly *a, const bough_scheme_options *options, double macro_step,
-                  double *least) {
+// Whether an alternative is stable; *least becomes the smallest growth of all tried.
+static bool is_stable(const bough_assembly *a, const bough_scheme_options *options, double macro_step,
+                      double *least) {
     bough_stability other = {0};
     bough_status status = bough_stability_judge(a, options, macro_step, &other);
     if (!bough_is_ok(&status)) return false;
@@ -350,13 +350,13 @@ bough_status bough_stability_advise(const bough_assembly *a, const bough_scheme_
     instead.name = other->name;
     double least = advice->now.growth;
     bool differs = strcmp(options->name, other->name) != 0;
-    if (differs && holds(a, &instead, macro_step, &least)) advice->scheme = other->name;
+    if (differs && is_stable(a, &instead, macro_step, &least)) advice->scheme = other->name;
     // the growth of the mechanics
     instead = bough_scheme_damped(options);
-    holds(a, &instead, macro_step, &least);
+    is_stable(a, &instead, macro_step, &least);
     for (size_t k = 0; k < sizeof divisor / sizeof *divisor && advice->macro_step == 0; k++) {
         double smaller = macro_step / divisor[k];
-        if (holds(a, options, smaller, &least)) advice->macro_step = smaller;
+        if (is_stable(a, options, smaller, &least)) advice->macro_step = smaller;
     }
     // growth that is independent of the coupling belongs to the mechanics
     advice->unstable = advice->now.growth > 2 * least;

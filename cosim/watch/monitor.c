@@ -45,7 +45,6 @@ typedef struct account {
 
 struct bough_monitor {
     const char *advice; // another scheme to try, or ""
-    bool resting;       // growth is not judged
     int n_group;
     group *group;
     long steps;
@@ -166,7 +165,7 @@ static bough_status watch_size(const bough_monitor *m, const bough_coupling *c, 
     return bough_ok();
 }
 
-static bough_status judge_group(const bough_monitor *m, bough_coupling *c, group *g) {
+static bough_status judge_group(const bough_monitor *m, bough_coupling *c, group *g, bool compared) {
     // the defect, theory (68), at t1
     double difference[3];
     for (int i = 0; i < g->count; i++) {
@@ -177,7 +176,7 @@ static bough_status judge_group(const bough_monitor *m, bough_coupling *c, group
     g->magnitude = fmax(g->magnitude, size);
     g->defect_max = fmax(g->defect_max, defect);
     g->defect_sum += defect * defect;
-    return m->resting ? bough_ok() : watch_size(m, c, g, size, defect);
+    return compared ? bough_ok() : watch_size(m, c, g, size, defect);
 }
 
 // -- energy ---------------------------------------------------------------------------------------
@@ -262,15 +261,13 @@ static bough_status judge_energy(bough_monitor *m, const bough_coupling *c) {
 
 // -- the step -------------------------------------------------------------------------------------
 
-bough_status bough_monitor_step(bough_monitor *m, bough_coupling *c) {
+bough_status bough_monitor_step(bough_monitor *m, bough_coupling *c, bool compared) {
     BOUGH_TRY(check_finite(m, c));
     m->steps++;
     keep_accounts(m, c);
-    for (int k = 0; k < m->n_group; k++) BOUGH_TRY(judge_group(m, c, &m->group[k]));
-    return m->resting ? bough_ok() : judge_energy(m, c);
+    for (int k = 0; k < m->n_group; k++) BOUGH_TRY(judge_group(m, c, &m->group[k], compared));
+    return compared ? bough_ok() : judge_energy(m, c);
 }
-
-void bough_monitor_judge(bough_monitor *m, bool judges) { m->resting = !judges; }
 
 void bough_monitor_snapshot(bough_monitor *m, const bough_coupling *c, bough_snapshot *s) {
     const bough_assembly *a = c->assembly;

@@ -19,12 +19,9 @@ typedef struct bough_coupling_report {
 
 bough_monitor *bough_monitor_create(bough_arena *arena, const bough_coupling *coupling);
 
-// Switches the detection of growth, which is on by default; it is off where another solution shows
-// the error.
-void bough_monitor_judge(bough_monitor *m, bool judges);
-
-// Checks the last step: BOUGH_FAILED with a diagnosis when the run has become meaningless.
-bough_status bough_monitor_step(bough_monitor *m, bough_coupling *c);
+// Checks the last step: BOUGH_FAILED with a diagnosis when the run has become meaningless. Where another
+// solution shows the error (`compared`), growth and energy are not judged.
+bough_status bough_monitor_step(bough_monitor *m, bough_coupling *c, bool compared);
 
 // Its windows, accounts and largest values so far.
 void bough_monitor_snapshot(bough_monitor *m, const bough_coupling *c, bough_snapshot *s);

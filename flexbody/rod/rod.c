@@ -102,12 +102,24 @@ void bough_vertex_mass(const bough_vertex_inertia *v, double upper[21]) {
     memcpy(upper, rows, sizeof rows);
 }
 
-double bough_vertex_energy(const bough_vertex_inertia *v, bough_vec3 velocity, bough_vec3 angular) {
+static double vertex_energy(const bough_vertex_inertia *v, bough_vec3 velocity, bough_vec3 angular) {
     const double *j = v->inertia;
     bough_inertia inertia = {
         v->mass, v->moment, {{j[0], j[3], j[4]}, {j[3], j[1], j[5]}, {j[4], j[5], j[2]}}};
     bough_twist twist = {velocity, angular};
     return bough_power(twist, bough_inertia_mul(&inertia, twist));
+}
+
+double bough_rod_energy(const bough_rod_model *m, const double *state, const double *velocity) {
+    double sum = 0;
+    int n = m->n;
+    for (int i = 0; i < n; i++) {
+        const double *d = velocity + i;
+        bough_vec3 u = bough_mat3_tmul(bough_rod_rotation(state, n, i), bough_v3(d[0], d[n], d[2 * n]));
+        bough_vec3 w = {d[3 * n], d[4 * n], d[5 * n]};
+        sum += vertex_energy(&m->vertex[i + 1], u, w);
+    }
+    return sum;
 }
 
 // Mass, first moment and inertia of vertex i, and the inverse of its 6×6 mass.

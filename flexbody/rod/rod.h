@@ -48,9 +48,6 @@ typedef struct bough_vertex_inertia {
 // The upper triangle of the mass of theory (11) in section axes: [mE, −ξ(s); ξ(s), I].
 void bough_vertex_mass(const bough_vertex_inertia *v, double upper[21]);
 
-// Twice its kinetic energy at a velocity and an angular velocity, both in section axes [J].
-double bough_vertex_energy(const bough_vertex_inertia *v, bough_vec3 velocity, bough_vec3 angular);
-
 // A wrench (force, moment) on segment n, from one arc length to another: per length, linear between, or at
 // one point, in the axes of the segment's middle.
 typedef struct bough_rod_part {
@@ -131,6 +128,9 @@ static inline bough_mat3 bough_rod_rotation(const double *state, int n, int i) {
     bough_quaternion q = {p[0], p[n], p[2 * n], p[3 * n]};
     return bough_rotation_matrix(bough_quaternion_normalised(q));
 }
+
+// Twice the kinetic energy of the moving vertices in a state (13 n) at velocities u, then W (6 n) [J].
+double bough_rod_energy(const bough_rod_model *m, const double *state, const double *velocity);
 
 static inline int bough_rod_n_inputs(const bough_rod_model *m) {
     return bough_rod_carries(m) ? BOUGH_ROD_MOST_INPUTS : BOUGH_ROD_INPUTS;

@@ -45,11 +45,10 @@ static double tip_component(const bough_steady *x, int component) {
 static bough_status steady(bough_arena *arena, bough_simulation *s, bough_steady *found) {
     const bough_beam *rod = first_rod(s);
     bough_turning turning;
-    bough_equilibrium_work work;
     double time = bough_equilibrium_time(s);
     if (!rod) return bough_fail(BOUGH_INVALID, "the scene has no rod");
     if (bough_vibration_wanted(s)) {
-        bough_status status = bough_simulation_equilibrium(s, s->master->assembly, time, 0, &work);
+        bough_status status = bough_simulation_equilibrium(s, s->master->assembly, time, 0, NULL);
         return bough_is_ok(&status) ? bough_steady_equilibrium(arena, s, rod, time, found) : status;
     }
     BOUGH_TRY(bough_steady_turning(s, rod, &turning));

@@ -88,14 +88,13 @@ static void begin(const bough_azimuths *a, bough_azimuth *x, double time, double
 static bough_status turn_on(bough_arena *arena, const bough_azimuths *a, double time, bool balanced,
                             bough_azimuth *x) {
     const bough_simulation *s = a->at[0].simulation;
-    bough_equilibrium_work work;
     BOUGH_TRY(
         bough_simulation_build_on(arena, turned_scene(arena, s, x->turn), s->pool, NULL, &x->simulation));
     const bough_assembly *assembly = x->simulation->master->assembly;
     begin(a, x, time, bough_arena_doubles(arena, (size_t)assembly->n_state));
     if (balanced) {
         bough_status status =
-            bough_simulation_equilibrium(x->simulation, assembly, time, BOUGH_EQUILIBRIUM_NEAR, &work);
+            bough_simulation_equilibrium(x->simulation, assembly, time, BOUGH_EQUILIBRIUM_NEAR, NULL);
         if (!bough_is_ok(&status))
             return bough_fail(status.code, "with the rotor turned further by %.3g degrees: %.380s",
                               x->turn / BOUGH_DEGREE, status.message);

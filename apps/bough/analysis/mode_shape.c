@@ -198,11 +198,6 @@ static void set_rows(const mode_shape *x, bough_shape_row *row) {
     bough_tree_kinematics(s->tree, x->state, s->view);
 }
 
-// -- shares ---------------------------------------------------------------------------------------
-
-const char *const bough_pattern_names[BOUGH_PATTERNS] = {"",       "collective", "forward",     "backward",
-                                                         "cosine", "sine",       "reactionless"};
-
 // -- energy ---------------------------------------------------------------------------------------
 
 // The scene's body that moves with a link: the one on its joint, or of a rod's end the first that
@@ -231,19 +226,9 @@ static void add_links(const mode_shape *x, int part, double *share) {
     }
 }
 
-static double rod_energy(const mode_shape *x, const bough_beam *beam, int part) {
+static double beam_energy(const mode_shape *x, const bough_beam *beam, int part) {
     const beam_shape *b = beam_of(x, beam);
-    const bough_rod_model *m = beam->mesh;
-    const double *d = b->tangent[part] + (size_t)BOUGH_ROD_U * m->n;
-    double sum = 0;
-    int n = m->n;
-    for (int i = 0; i < n; i++) {
-        bough_vec3 u =
-            bough_mat3_tmul(bough_rod_rotation(b->state, n, i), bough_v3(d[i], d[n + i], d[2 * n + i]));
-        bough_vec3 w = {d[3 * n + i], d[4 * n + i], d[5 * n + i]};
-        sum += bough_vertex_energy(&m->vertex[i + 1], u, w);
-    }
-    return sum;
+    return bough_rod_energy(beam->mesh, b->state, b->tangent[part] + (size_t)BOUGH_ROD_U * beam->mesh->n);
 }
 
 static void set_shares(const mode_shape *x, bough_scene_mode *mode) {
@@ -254,7 +239,7 @@ static void set_shares(const mode_shape *x, bough_scene_mode *mode) {
         add_links(x, part, mode->share);
         for (int k = 0; k < s->n_beam; k++) {
             if (s->beam[k].port < 0) continue;
-            mode->share[s->beam[k].body - s->scene->body] += rod_energy(x, &s->beam[k], part);
+            mode->share[s->beam[k].body - s->scene->body] += beam_energy(x, &s->beam[k], part);
         }
     }
     for (int i = 0; i < n_body; i++) sum += mode->share[i];
@@ -330,6 +315,9 @@ static void set_direction(const mode_shape *x, bough_scene_mode *mode) {
 }
 
 // -- patterns -------------------------------------------------------------------------------------
+
+const char *const bough_pattern_names[BOUGH_PATTERNS] = {"",       "collective", "forward",     "backward",
+                                                         "cosine", "sine",       "reactionless"};
 
 // Squares of a pattern over the blades, by what they look like.
 typedef struct pattern {

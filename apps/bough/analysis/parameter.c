@@ -42,9 +42,8 @@ static void shift_mass(bough_section_station *x, double change) {
     x->centre[1] = to;
 }
 
-// The shear strain along x, 0, that acts by itself is that of a point shifted along y: γ − y κ of the twist
-// κ,
-// 5. K ← Tᵀ K T with T = E − y e₀ e₅ᵀ.
+// About a shear centre shifted by y the shear strain along x (component 0) of a twist κ (component 5) is
+// smaller by y κ: K ← Tᵀ K T with T = E − y e₀ e₅ᵀ.
 static void shift_shear_centre(bough_section_station *x, double change) {
     double full[6][6];
     bough_symmetric6_unpack(x->stiffness, full);
@@ -92,10 +91,6 @@ static const kind kinds[KINDS] = {
 
 // -- list -----------------------------------------------------------------------------------------
 
-static bool is_flexible(const bough_scene_body *b) {
-    return b->fidelity != BOUGH_SCENE_RIGID && b->fidelity != BOUGH_SCENE_FMU && b->rod.node != NULL;
-}
-
 static void add_rods(const char *name, int n_body, int *body, bough_parameter *list, int *n) {
     for (int k = 0; k < RODS; k++) {
         bough_parameter *x = &list[(*n)++];
@@ -116,11 +111,11 @@ const bough_parameter *bough_parameters_of(bough_arena *arena, const bough_scene
     int *body = bough_arena_take(arena, ((size_t)scene->n_body + 1) * sizeof *body), *next = body;
     *n = 0;
     for (int k = 0; scene->turbine.node && k < scene->turbine.n_blade; k++)
-        if (is_flexible(&scene->body[scene->turbine.blade[k]])) *next++ = scene->turbine.blade[k];
+        if (bough_scene_has_mesh(&scene->body[scene->turbine.blade[k]])) *next++ = scene->turbine.blade[k];
     if (next > body) add_rods("blades", (int)(next - body), body, list, n);
     for (int i = 0; i < scene->n_body; i++) {
         bool blade = scene->turbine.node && bough_scene_blade(scene, i) >= 0;
-        if (blade || !is_flexible(&scene->body[i])) continue;
+        if (blade || !bough_scene_has_mesh(&scene->body[i])) continue;
         *next = i;
         add_rods(scene->body[i].name, 1, next++, list, n);
     }

@@ -266,11 +266,10 @@ static bough_status find_vectors(bough_arena *arena, linear *system, mode *x) {
 static bough_status quotient(bough_arena *arena, bough_scene *scene, double time, const mode *of,
                              double complex *value) {
     bough_simulation *s;
-    bough_equilibrium_work work;
     linear x;
     BOUGH_TRY(bough_simulation_build(arena, scene, &s));
     if (scene->modes.at == BOUGH_SCENE_IN_EQUILIBRIUM)
-        BOUGH_TRY(bough_simulation_equilibrium(s, s->master->assembly, time, 0, &work));
+        BOUGH_TRY(bough_simulation_equilibrium(s, s->master->assembly, time, 0, NULL));
     BOUGH_TRY(prepare(arena, s, time, &x));
     double *part, *image;
     bough_arena_each(arena, (size_t)of->all, &part, &image);

@@ -349,8 +349,7 @@ static bough_status find(bough_arena *arena, bough_simulation *s, int count, boo
     moving_air air = {.changes = changes};
     *v = (bough_vibration){.asked = count, .time = balanced ? bough_equilibrium_time(s) : 0};
     v->mode = bough_arena_take(arena, (size_t)count * sizeof *v->mode);
-    bough_equilibrium_work work;
-    if (balanced) BOUGH_TRY(bough_simulation_equilibrium(s, s->master->assembly, v->time, 0, &work));
+    if (balanced) BOUGH_TRY(bough_simulation_equilibrium(s, s->master->assembly, v->time, 0, NULL));
     BOUGH_TRY(bough_vibration_point_find(arena, s, v->time, &x));
     v->spin = fabs(x.group.speed) < at_rest ? 0 : x.group.speed;
     double uneven = x.def.spin != 0 ? imbalance(s) : 0, point;

@@ -23,6 +23,7 @@ static void add_events(bough_builder *b, double start, double end, int n, const 
     for (int i = 0; i < n; i++) add_event(b, times[i]);
 }
 
+// The corners of motions, loads and air as events; the loads on joints, which are the tree's.
 static void set_loads(bough_builder *b) {
     for (int k = 0; k < 2 * b->scene->n_body; k++) {
         const bough_motion_def *def = &b->scene->body[k / 2].joint.motion[k % 2].def;
@@ -36,14 +37,14 @@ static void set_loads(bough_builder *b) {
                                                             bough_scene_load_schedule(load)};
     }
     if (b->scene->aero.node != NULL) add_events(b, b->scene->aero.ramp[0], b->scene->aero.ramp[1], 0, NULL);
-    // the generator's is the last; 0 until it is steered, sample by sample
+    // the generator's is the last, 0 until the control steers it
     if (b->scene->control.node != NULL)
         b->load[b->tree.n_loads++] = (bough_joint_load_def){.body = b->scene->turbine.rotor};
 }
 
 // -- parts ----------------------------------------------------------------------------------------
 
-// In a macro step. A tree between rods that takes more follows wrenches that run away.
+// Of the tree in a macro step: one that takes more follows wrenches of rods that run away.
 enum { MOST_TREE_STEPS = 20000 };
 
 static bough_integrator_options solver_options(const bough_scene_solver *solver) {
@@ -87,7 +88,7 @@ static bough_status build_tree(bough_builder *b) {
     }
     bough_integrator_options master = solver_options(&scene->simulation.master);
     master.most_steps = MOST_TREE_STEPS;
-    // the tree's own method is never asked, and the scheme's may not suit it
+    // under a scheme of one system the tree's own method is never used; any that suits a tree will do
     if (bough_scheme_at(scene->simulation.coupling.scheme)->one_system) master.kind = BOUGH_ROSENBROCK;
     bough_system tree = bough_tree_system_create(b->arena, s->tree, "tree");
     return bough_member_create(b->arena, &tree, 0, &master, &s->leader);
@@ -104,11 +105,12 @@ static bough_status build_rods(bough_builder *b) {
         BOUGH_TRY(bough_build_beam(b->arena, beam, solver_options(bough_scene_micro(b->scene, beam->body)),
                                    motion + BOUGH_PORT_OUTPUTS * beam->port, &s->rod[beam->port]));
     }
-    for (int k = s->n_rod, i = 0; k < s->n_rod + s->n_fmu; i++) {
+    int port = s->n_rod; // of the FMUs, after those of the rods
+    for (int i = 0; i < b->scene->n_body; i++) {
         if (b->scene->body[i].fidelity != BOUGH_SCENE_FMU) continue;
-        BOUGH_TRY(bough_fmu_member_create(b->arena, &b->scene->body[i], motion + BOUGH_PORT_OUTPUTS * k,
-                                          b->scene->simulation.duration, &s->rod[k]));
-        k++;
+        BOUGH_TRY(bough_fmu_member_create(b->arena, &b->scene->body[i], motion + BOUGH_PORT_OUTPUTS * port,
+                                          b->scene->simulation.duration, &s->rod[port]));
+        port++;
     }
     return bough_ok();
 }
@@ -117,7 +119,7 @@ static void connect_one(bough_builder *b, bough_connection connection) {
     b->connection[b->n_connection++] = connection;
 }
 
-// Of a motion and the wrench that answers it, at the end of a rod that carries bodies.
+// The end of a rod that carries bodies: its motion from the tree, the wrench on it from the rod.
 static void connect_end(bough_builder *b, const bough_beam *beam) {
     const bough_tree *tree = b->s->tree;
     int motion = BOUGH_PORT_OUTPUTS * tree->n_ports + BOUGH_END_OUTPUTS * beam->end;
@@ -126,7 +128,7 @@ static void connect_end(bough_builder *b, const bough_beam *beam) {
     connect_one(b, (bough_connection){rod, BOUGH_ROD_OUTPUTS, 0, wrench, BOUGH_ROD_END_OUTPUTS, false});
 }
 
-// The n-th port with axes.
+// The ground's axes from the tree to a beam under loads in these axes, the n-th such beam.
 static void connect_axes(bough_builder *b, const bough_beam *beam, int n) {
     const bough_tree *tree = b->s->tree;
     int from = BOUGH_PORT_OUTPUTS * tree->n_ports + BOUGH_END_OUTPUTS * tree->n_ends + BOUGH_GROUND_AXES * n;
@@ -134,7 +136,7 @@ static void connect_axes(bough_builder *b, const bough_beam *beam, int n) {
     connect_one(b, (bough_connection){0, from, beam->port + 1, to, BOUGH_GROUND_AXES, true});
 }
 
-// Port k, of a rod or an FMU.
+// The root of a rod or an FMU, port k: its motion from the tree, the wrench on it from the member.
 static void connect_root(bough_builder *b, int k) {
     b->member[k + 1] = (bough_assembly_member){&b->s->rod[k], 1};
     connect_one(b, (bough_connection){0, BOUGH_PORT_OUTPUTS * k, k + 1, 0, BOUGH_PORT_OUTPUTS, true});
@@ -158,12 +160,11 @@ static bough_status find_equilibrium(bough_arena *parent, const bough_assembly_d
                                      bough_simulation *s) {
     bough_arena *arena = bough_arena_child(parent);
     bough_assembly *assembly;
-    bough_equilibrium_work work;
     bough_status status = bough_assembly_build(arena, def, &assembly);
     if (bough_is_ok(&status) && s->scene->simulation.initial == BOUGH_SCENE_IN_OPERATION) {
         status = bough_simulation_trim(arena, s, assembly);
     } else if (bough_is_ok(&status)) {
-        status = bough_simulation_equilibrium(s, assembly, 0, 0, &work);
+        status = bough_simulation_equilibrium(s, assembly, 0, 0, NULL);
     }
     bough_arena_destroy(arena);
     return status;
@@ -192,19 +193,20 @@ static bough_status build_master(bough_builder *b) {
 
 // -- whole ----------------------------------------------------------------------------------------
 
+// Room for the most that a scene can need.
 static void take_arrays(bough_builder *b) {
     const bough_scene *scene = b->scene;
     size_t bodies = (size_t)scene->n_body, loads = (size_t)scene->n_load;
     size_t pairs = (size_t)scene->n_spring + (size_t)scene->n_bushing + (size_t)scene->n_closure;
     size_t markers = bodies + 2 * pairs + loads + (size_t)scene->n_marker + 1;
     b->s = bough_arena_take(b->arena, sizeof *b->s);
-    b->tree.bodies = b->body = bough_arena_take(b->arena, 2 * bodies * sizeof *b->body);
+    b->tree.bodies = b->body = bough_arena_take(b->arena, 2 * bodies * sizeof *b->body); // and ends of rods
     b->tree.ends = b->end = bough_arena_take(b->arena, bodies * sizeof *b->end);
     b->tree.markers = b->marker = bough_arena_take(b->arena, markers * sizeof *b->marker);
     b->tree.ports = b->port = bough_arena_take(b->arena, bodies * sizeof *b->port);
-    b->tree.loads = b->load = bough_arena_take(b->arena, (loads + 2) * sizeof *b->load);
+    b->tree.loads = b->load = bough_arena_take(b->arena, (loads + 2) * sizeof *b->load); // the generator's
     b->member = bough_arena_take(b->arena, (bodies + 1) * sizeof *b->member);
-    b->connection = bough_arena_take(b->arena, 5 * bodies * sizeof *b->connection);
+    b->connection = bough_arena_take(b->arena, 5 * bodies * sizeof *b->connection); // root, end, axes
     b->s->validity = bough_arena_take(b->arena, sizeof *b->s->validity);
     b->s->scene = scene;
     b->s->beam = bough_arena_take(b->arena, bodies * sizeof *b->s->beam);

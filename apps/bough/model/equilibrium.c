@@ -273,9 +273,11 @@ static bough_status find_equilibrium(bough_arena *arena, void *data) {
 
 bough_status bough_simulation_equilibrium(bough_simulation *s, const bough_assembly *assembly, double time,
                                           int how, bough_equilibrium_work *work) {
-    continuation c = {s, assembly, time, .work = work, .how = how};
-    *work = (bough_equilibrium_work){0};
-    return bough_arena_use(find_equilibrium, &c);
+    bough_equilibrium_work done = {0};
+    continuation c = {s, assembly, time, .work = &done, .how = how};
+    bough_status status = bough_arena_use(find_equilibrium, &c);
+    if (work) *work = done;
+    return status;
 }
 
 // -- paths of equilibria while the loads grow -------------------------------------------------------

@@ -36,7 +36,7 @@ enum {
 };
 
 // Brings the members of the assembly, the simulation's, to equilibrium under the loads at `time`;
-// their clocks stay at 0. BOUGH_FAILED names the body that finds none.
+// their clocks stay at 0. `work`: NULL: not wanted. BOUGH_FAILED names the body that finds none.
 bough_status bough_simulation_equilibrium(bough_simulation *s, const bough_assembly *assembly, double time,
                                           int how, bough_equilibrium_work *work);
 

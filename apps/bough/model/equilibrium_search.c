@@ -219,19 +219,6 @@ void bough_equilibrium_search_rest(void *self, double *state) {
     }
 }
 
-static double rod_energy(const bough_rod_model *m, const double *state) {
-    const double *d = state + (size_t)BOUGH_ROD_U * m->n;
-    double sum = 0;
-    int n = m->n;
-    for (int i = 0; i < n; i++) {
-        bough_vec3 u =
-            bough_mat3_tmul(bough_rod_rotation(state, n, i), bough_v3(d[i], d[n + i], d[2 * n + i]));
-        bough_vec3 w = {d[3 * n + i], d[4 * n + i], d[5 * n + i]};
-        sum += bough_vertex_energy(&m->vertex[i + 1], u, w);
-    }
-    return sum;
-}
-
 // Of rigid bodies and rods.
 double bough_equilibrium_search_kinetic(void *self, const double *state) {
     const bough_equilibrium_search *x = self;
@@ -244,7 +231,9 @@ double bough_equilibrium_search_kinetic(void *self, const double *state) {
     }
     for (int k = 0; k < s->n_beam; k++) {
         const bough_beam *beam = &s->beam[k];
-        if (beam->rod) sum += rod_energy(beam->mesh, state + x->assembly->state_offset[beam->port + 1]);
+        if (!beam->rod) continue;
+        const double *own = state + x->assembly->state_offset[beam->port + 1];
+        sum += bough_rod_energy(beam->mesh, own, own + (size_t)BOUGH_ROD_U * (size_t)beam->mesh->n);
     }
     return sum;
 }

@@ -35,8 +35,7 @@ static double surplus(search *x, double speed, double pitch) {
     s->tree->initial[v] = x->state[v] = speed;
     bough_equilibrium_set_state(s, x->assembly, x->state);
     bough_control_link_stand(s->control, speed, pitch);
-    bough_equilibrium_work work;
-    x->status = bough_simulation_equilibrium(s, x->assembly, 0, 0, &work);
+    x->status = bough_simulation_equilibrium(s, x->assembly, 0, 0, NULL);
     if (!bough_is_ok(&x->status)) return (double)NAN;
     double torque = bough_aero_link_data(s->aero, &factor)->torque;
     double generator = x->gear * bough_controller_torque(x->law, x->gear * speed, pitch);

@@ -15,12 +15,6 @@ void bough_picture_begin(FILE *svg, int width, int height) {
             width, height, width, height);
 }
 
-void bough_picture_title(FILE *svg, int left, const char *title) {
-    fprintf(svg, "<text x=\"%d\" y=\"22\" font-size=\"15\" font-weight=\"bold\">", left);
-    bough_picture_text(svg, title);
-    fputs("</text>\n", svg);
-}
-
 void bough_picture_text(FILE *svg, const char *text) {
     for (; *text; text++) {
         switch (*text) {
@@ -312,12 +306,18 @@ static int width_of(const bough_chart *c) {
     return width;
 }
 
+static void draw_title(FILE *svg, const char *title) {
+    fprintf(svg, "<text x=\"%d\" y=\"22\" font-size=\"15\" font-weight=\"bold\">", LEFT);
+    bough_picture_text(svg, title);
+    fputs("</text>\n", svg);
+}
+
 void bough_chart_write(const void *chart, FILE *svg) {
     const bough_chart *c = chart;
     int names = count_names(c), rows = (c->n_panel + c->per_row - 1) / c->per_row;
     int end = (c->title ? TITLE : 0) + rows * HEIGHT;
     bough_picture_begin(svg, width_of(c), end + (names > 0 ? (names + 1) * LEGEND : 0));
-    if (c->title) bough_picture_title(svg, LEFT, c->title);
+    if (c->title) draw_title(svg, c->title);
     for (int k = 0; k < c->n_panel; k++) draw_panel(c, k, svg);
     draw_legend(c, end + 0.5 * LEGEND, svg);
     fputs("</svg>\n", svg);

@@ -11,9 +11,6 @@
 // other texts and shapes without a fill have the colour of text.
 void bough_picture_begin(FILE *svg, int width, int height);
 
-// The heading at the top, `left` from the edge [px].
-void bough_picture_title(FILE *svg, int left, const char *title);
-
 // A text within an element or an attribute: the characters that XML reserves are replaced.
 void bough_picture_text(FILE *svg, const char *text);
 

@@ -59,7 +59,7 @@ TEST(what_is_not_finite_is_reported) {
     bough_coupling *c = m.master->coupling;
     for (int k = 0; k < 5; k++) {
         c->output[c->assembly->n_output - 1] = values[k];
-        status = bough_monitor_step(m.master->monitor, c);
+        status = bough_monitor_step(m.master->monitor, c, false);
         assert_int_equal(bough_is_ok(&status), isfinite(values[k]) != 0);
         if (bough_is_ok(&status)) continue;
         assert_non_null(strstr(status.message, "no finite state or output"));
