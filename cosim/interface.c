@@ -22,15 +22,15 @@ static const bough_interface_member *feeder(const bough_interface *k, int j, int
 // A leader's coordinates are its states where these are fewer than its inputs, else its inputs.
 static void choose_coordinates(bough_interface *k, int member) {
     const bough_system *s = system_of(k, member);
-    bough_interface_member *w = &k->part[member];
-    w->leader = -1;
-    w->is_leader = k->assembly->leads[member];
-    w->by_state = w->is_leader && !k->assembly->feedthrough[member] && s->n_state < s->n_input;
-    w->n = w->by_state ? s->n_state : s->n_input;
-    if (!w->is_leader) return;
+    bough_interface_member *part = &k->part[member];
+    part->leader = -1;
+    part->is_leader = k->assembly->leads[member];
+    part->by_state = part->is_leader && !k->assembly->feedthrough[member] && s->n_state < s->n_input;
+    part->n = part->by_state ? s->n_state : s->n_input;
+    if (!part->is_leader) return;
     // its place among all coordinates and inputs of leaders
-    w->first = k->n;
-    k->n += w->n;
+    part->first = k->n;
+    k->n += part->n;
     for (int j = 0; j < s->n_input; j++) {
         k->leader_input[k->n_leader_input++] = k->assembly->input_offset[member] + j;
     }
@@ -39,31 +39,31 @@ static void choose_coordinates(bough_interface *k, int member) {
 // The directions of a follower whose inputs all come from one leader with few states are these states.
 static void choose_directions(bough_interface *k, int member) {
     const bough_assembly *a = k->assembly;
-    bough_interface_member *w = &k->part[member];
+    bough_interface_member *part = &k->part[member];
     int begin = a->input_offset[member], end = a->input_offset[member + 1];
-    if (w->is_leader || begin == end) return;
+    if (part->is_leader || begin == end) return;
     // one leader
     for (int j = begin; j < end; j++) {
         if (a->source_member[j] != a->source_member[begin]) return;
     }
     // fewer states than inputs
     const bough_interface_member *leader = &k->part[a->source_member[begin]];
-    if (!leader->by_state || leader->n >= w->n) return;
-    w->leader = a->source_member[begin];
-    w->n = leader->n;
+    if (!leader->by_state || leader->n >= part->n) return;
+    part->leader = a->source_member[begin];
+    part->n = leader->n;
 }
 
 static void take_part(bough_interface *k, bough_arena *arena, int member) {
     const bough_system *s = system_of(k, member);
-    bough_interface_member *w = &k->part[member];
-    size_t n = (size_t)w->n, n_state = (size_t)s->n_state, n_input = (size_t)s->n_input;
-    w->column = bough_arena_doubles(arena, n_input * n_state);
-    w->output_change = bough_arena_doubles(arena, n * (size_t)s->n_output);
-    if (w->by_state) w->inverse = bough_arena_doubles(arena, n_state * n_state);
-    w->factors = s->ops->factors(s->self, arena);
-    if (w->by_state) return;
-    w->direction = bough_arena_doubles(arena, n * n_input);
-    w->state_change = bough_arena_doubles(arena, n * n_state);
+    bough_interface_member *part = &k->part[member];
+    size_t n = (size_t)part->n, n_state = (size_t)s->n_state, n_input = (size_t)s->n_input;
+    part->column = bough_arena_doubles(arena, n_input * n_state);
+    part->output_change = bough_arena_doubles(arena, n * (size_t)s->n_output);
+    if (part->by_state) part->inverse = bough_arena_doubles(arena, n_state * n_state);
+    part->factors = s->ops->factors(s->self, arena);
+    if (part->by_state) return;
+    part->direction = bough_arena_doubles(arena, n * n_input);
+    part->state_change = bough_arena_doubles(arena, n * n_state);
 }
 
 bough_interface *bough_interface_create(bough_arena *arena, const bough_assembly *assembly) {
@@ -109,9 +109,9 @@ static void find_columns(const bough_interface *k, int member, const bough_opera
 // Columns without γ, which changes more often; those of a leader by states have γ.
 bool bough_interface_linearise(bough_interface *k, int member, const bough_operating_point *at) {
     const bough_system *s = system_of(k, member);
-    const bough_interface_member *w = &k->part[member];
-    if (!s->ops->linearise(s->self, at->time, at->state, at->input, w->factors)) return false;
-    if (!w->by_state) find_columns(k, member, at);
+    const bough_interface_member *part = &k->part[member];
+    if (!s->ops->linearise(s->self, at->time, at->state, at->input, part->factors)) return false;
+    if (!part->by_state) find_columns(k, member, at);
     return true;
 }
 
@@ -134,12 +134,12 @@ void bough_interface_add_columns(const bough_interface *k, int member, double fa
 
 // (I − γJ)⁻¹ column by column.
 static void find_inverse(const bough_interface *k, int member) {
-    const bough_interface_member *w = &k->part[member];
-    size_t n = (size_t)w->n;
-    memset(w->inverse, 0, n * n * sizeof(double));
+    const bough_interface_member *part = &k->part[member];
+    size_t n = (size_t)part->n;
+    memset(part->inverse, 0, n * n * sizeof(double));
     for (size_t i = 0; i < n; i++) {
-        w->inverse[i * n + i] = 1;
-        bough_interface_solve_member(k, member, w->inverse + i * n);
+        part->inverse[i * n + i] = 1;
+        bough_interface_solve_member(k, member, part->inverse + i * n);
     }
 }
 
@@ -159,19 +159,19 @@ static void find_state_responses(const bough_interface *k, int member, const bou
 // The input changes of a member along each of its directions.
 static void find_directions(bough_interface *k, int member) {
     const bough_assembly *a = k->assembly;
-    const bough_interface_member *w = &k->part[member];
+    const bough_interface_member *part = &k->part[member];
     int n_input = a->member[member]->system.n_input;
-    memset(w->direction, 0, (size_t)w->n * (size_t)n_input * sizeof(double));
+    memset(part->direction, 0, (size_t)part->n * (size_t)n_input * sizeof(double));
     for (int j = 0; j < n_input; j++) {
         int p, input = a->input_offset[member] + j;
         const bough_interface_member *from = feeder(k, input, &p);
         int n_output = a->member[a->source_member[input]]->system.n_output;
-        if (w->leader < 0) { // its own inputs
-            w->direction[j * n_input + j] = 1;
+        if (part->leader < 0) { // its own inputs
+            part->direction[j * n_input + j] = 1;
             continue;
         }
-        for (int d = 0; d < w->n; d++) {
-            w->direction[d * n_input + j] = from->output_change[d * n_output + p];
+        for (int d = 0; d < part->n; d++) {
+            part->direction[d * n_input + j] = from->output_change[d * n_output + p];
         }
     }
 }
@@ -185,12 +185,12 @@ static bool any(const double *x, int n) {
 
 void bough_interface_respond(bough_interface *k, int member, const bough_operating_point *at) {
     const bough_system *s = system_of(k, member);
-    const bough_interface_member *w = &k->part[member];
+    const bough_interface_member *part = &k->part[member];
     find_directions(k, member);
-    for (int d = 0; d < w->n; d++) {
-        const double *direction = w->direction + (size_t)d * (size_t)s->n_input;
-        double *state = w->state_change + (size_t)d * (size_t)s->n_state;
-        double *response = w->output_change + (size_t)d * (size_t)s->n_output;
+    for (int d = 0; d < part->n; d++) {
+        const double *direction = part->direction + (size_t)d * (size_t)s->n_input;
+        double *state = part->state_change + (size_t)d * (size_t)s->n_state;
+        double *response = part->output_change + (size_t)d * (size_t)s->n_output;
         memset(state, 0, (size_t)s->n_state * sizeof(double));
         memset(response, 0, (size_t)s->n_output * sizeof(double));
         if (!any(direction, s->n_input)) continue;
@@ -202,14 +202,14 @@ void bough_interface_respond(bough_interface *k, int member, const bough_operati
 }
 
 bool bough_interface_factor(bough_interface *k, int member, const bough_operating_point *at) {
-    const bough_interface_member *w = &k->part[member];
+    const bough_interface_member *part = &k->part[member];
     const bough_system *s = system_of(k, member);
-    if (!s->ops->factor(s->self, w->factors, at->gamma)) return false;
-    if (w->is_leader && !w->by_state) bough_interface_respond(k, member, at);
-    if (!w->by_state) return true;
+    if (!s->ops->factor(s->self, part->factors, at->gamma)) return false;
+    if (part->is_leader && !part->by_state) bough_interface_respond(k, member, at);
+    if (!part->by_state) return true;
     // γ ∂f/∂u, and the responses to its states
     find_columns(k, member, at);
-    for (int i = 0; i < s->n_input * s->n_state; i++) w->column[i] *= at->gamma;
+    for (int i = 0; i < s->n_input * s->n_state; i++) part->column[i] *= at->gamma;
     find_inverse(k, member);
     find_state_responses(k, member, at);
     return true;
@@ -220,10 +220,10 @@ bool bough_interface_factor(bough_interface *k, int member, const bough_operatin
 // Adds to row l of K the response of input j to the coordinates of the leader that feeds it.
 static void add_leading(const bough_interface *k, double factor, int j, int l) {
     int p;
-    const bough_interface_member *w = feeder(k, j, &p);
+    const bough_interface_member *part = feeder(k, j, &p);
     int n_output = system_of(k, k->assembly->source_member[j])->n_output;
-    for (int c = 0; c < w->n; c++) {
-        k->gain[(w->first + c) * k->n_leader_input + l] += factor * w->output_change[c * n_output + p];
+    for (int c = 0; c < part->n; c++) {
+        k->gain[(part->first + c) * k->n_leader_input + l] += factor * part->output_change[c * n_output + p];
     }
 }
 
@@ -231,18 +231,18 @@ static void add_leading(const bough_interface *k, double factor, int j, int l) {
 static void find_gain_row(const bough_interface *k, int l) {
     const bough_assembly *a = k->assembly;
     int p, from = a->source_member[k->leader_input[l]];
-    const bough_interface_member *w = feeder(k, k->leader_input[l], &p);
+    const bough_interface_member *part = feeder(k, k->leader_input[l], &p);
     // a leader feeds it
-    if (w->is_leader) {
+    if (part->is_leader) {
         add_leading(k, 1, k->leader_input[l], l);
         return;
     }
     // a follower feeds it: through its directions
-    for (int d = 0; d < w->n; d++) {
-        double response = w->output_change[d * a->member[from]->system.n_output + p];
+    for (int d = 0; d < part->n; d++) {
+        double response = part->output_change[d * a->member[from]->system.n_output + p];
         if (response == 0) continue;
-        if (w->leader >= 0) {
-            k->gain[(k->part[w->leader].first + d) * k->n_leader_input + l] = response;
+        if (part->leader >= 0) {
+            k->gain[(k->part[part->leader].first + d) * k->n_leader_input + l] = response;
         } else {
             add_leading(k, response, a->input_offset[from] + d, l);
         }
@@ -252,13 +252,13 @@ static void find_gain_row(const bough_interface *k, int l) {
 // z += u of a leader by inputs, γ ∂f/∂u u of one by states; u (n_leader_input)
 static void add_inputs(const bough_interface *k, const double *u, double *z) {
     for (int i = 0; i < k->assembly->n_member; i++) {
-        const bough_interface_member *w = &k->part[i];
+        const bough_interface_member *part = &k->part[i];
         int n_input = system_of(k, i)->n_input;
-        if (!w->is_leader) continue;
-        if (w->by_state) {
-            add_columns(k, w->n, n_input, w->column, 1, u, z + w->first);
+        if (!part->is_leader) continue;
+        if (part->by_state) {
+            add_columns(k, part->n, n_input, part->column, 1, u, z + part->first);
         } else {
-            for (int j = 0; j < n_input; j++) z[w->first + j] += u[j];
+            for (int j = 0; j < n_input; j++) z[part->first + j] += u[j];
         }
         u += n_input;
     }
@@ -267,11 +267,11 @@ static void add_inputs(const bough_interface *k, const double *u, double *z) {
 // z ← (I − γJ)⁻¹ z of the leaders by states
 static void apply_inverses(const bough_interface *k, double *z) {
     for (int i = 0; i < k->assembly->n_member; i++) {
-        const bough_interface_member *w = &k->part[i];
-        if (!w->by_state) continue;
-        memcpy(k->sum, z + w->first, (size_t)w->n * sizeof *z);
-        memset(z + w->first, 0, (size_t)w->n * sizeof *z);
-        add_columns(k, w->n, w->n, w->inverse, 1, k->sum, z + w->first);
+        const bough_interface_member *part = &k->part[i];
+        if (!part->by_state) continue;
+        memcpy(k->sum, z + part->first, (size_t)part->n * sizeof *z);
+        memset(z + part->first, 0, (size_t)part->n * sizeof *z);
+        add_columns(k, part->n, part->n, part->inverse, 1, k->sum, z + part->first);
     }
 }
 
@@ -294,12 +294,12 @@ bool bough_interface_close(bough_interface *k) {
 // The leaders' outputs' change with the coordinates.
 static void move_outputs(bough_interface *k) {
     for (int i = 0; i < k->assembly->n_member; i++) {
-        const bough_interface_member *w = &k->part[i];
-        if (!w->is_leader) continue;
+        const bough_interface_member *part = &k->part[i];
+        if (!part->is_leader) continue;
         int n_output = system_of(k, i)->n_output;
         double *moved = k->moved + k->assembly->output_offset[i];
         memset(moved, 0, (size_t)n_output * sizeof *moved);
-        add_columns(k, n_output, w->n, w->output_change, 1, k->coordinate + w->first, moved);
+        add_columns(k, n_output, part->n, part->output_change, 1, k->coordinate + part->first, moved);
     }
 }
 
@@ -321,24 +321,24 @@ void bough_interface_solve(bough_interface *k, double *change) {
 }
 
 void bough_interface_add_response(const bough_interface *k, int member, const double *change, double *x) {
-    const bough_interface_member *w = &k->part[member];
+    const bough_interface_member *part = &k->part[member];
     int n = system_of(k, member)->n_state;
-    if (w->by_state) {
-        for (int i = 0; i < n; i++) x[i] += k->coordinate[w->first + i];
-    } else if (w->is_leader) {
-        add_columns(k, n, w->n, w->state_change, 1, k->coordinate + w->first, x);
-    } else if (w->leader >= 0) {
-        add_columns(k, n, w->n, w->state_change, 1, k->coordinate + k->part[w->leader].first, x);
+    if (part->by_state) {
+        for (int i = 0; i < n; i++) x[i] += k->coordinate[part->first + i];
+    } else if (part->is_leader) {
+        add_columns(k, n, part->n, part->state_change, 1, k->coordinate + part->first, x);
+    } else if (part->leader >= 0) {
+        add_columns(k, n, part->n, part->state_change, 1, k->coordinate + k->part[part->leader].first, x);
     } else {
-        add_columns(k, n, w->n, w->state_change, 1, change, x);
+        add_columns(k, n, part->n, part->state_change, 1, change, x);
     }
 }
 
 void bough_interface_add_output_response(const bough_interface *k, int member, const double *change,
                                          double *output_change) {
-    const bough_interface_member *w = &k->part[member];
-    if (w->leader >= 0) return;
-    add_columns(k, system_of(k, member)->n_output, w->n, w->output_change, 1, change, output_change);
+    const bough_interface_member *part = &k->part[member];
+    if (part->leader >= 0) return;
+    add_columns(k, system_of(k, member)->n_output, part->n, part->output_change, 1, change, output_change);
 }
 
 // -- gain of the interface ------------------------------------------------------------------------

@@ -25,7 +25,7 @@ typedef struct stages {
     int n_evaluation;
 } stages;
 
-// Completes the member's u of the stage before by its response to the others; then the argument of this
+// Completes the member's u of the last stage by its response to the others, and forms the argument of this
 // stage.
 static void set_argument(const stages *s, int i) {
     const int *offset = s->assembly->state_offset + i;
@@ -34,7 +34,7 @@ static void set_argument(const stages *s, int i) {
     bough_rosenbrock_argument(s->step, s->stage, offset[0], offset[1]);
 }
 
-// The member's argument unless its outputs have needed that already, its rate and its right side.
+// The member's argument, unless it was formed for the member's outputs, its rate and its right side.
 static void find_right_side(const stages *s, int i) {
     const int *offset = s->assembly->state_offset + i;
     if (!bough_whole_outputs_first(s->now, i)) set_argument(s, i);
@@ -68,7 +68,7 @@ static void finish_member(void *self, int k) {
     s->square[i] = bough_rosenbrock_end(s->step, offset[0], offset[1]);
 }
 
-// Evaluates F in the first stage at the step's end too, if ∂F/∂t is asked for.
+// In the first stage F is evaluated at the step's end, too, if the step asks for ∂F/∂t.
 static void begin_rates(stages *s, const double *state) {
     const bough_rosenbrock_step *step = s->step;
     s->n_evaluation = 0;

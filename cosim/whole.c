@@ -90,25 +90,26 @@ static bool evaluate_separately(const bough_system *s, const double *state, int 
     return true;
 }
 
-void bough_whole_rates_of(bough_whole *const *which, int n, int i) {
-    const bough_assembly *a = which[0]->assembly;
+void bough_whole_rates_of(bough_whole *const *evaluation, int n, int i) {
+    bough_whole *first = evaluation[0];
+    const bough_assembly *a = first->assembly;
     const bough_member *m = a->member[i];
-    const double *state = which[0]->at + a->state_offset[i];
-    bool waited_for = !bough_whole_outputs_first(which[0], i);
+    const double *state = first->at + a->state_offset[i];
+    bool outputs_known = bough_whole_outputs_first(first, i);
     bough_evaluation at[BOUGH_WHOLE_TIMES];
     // its inputs at each time
     for (int k = 0; k < n; k++) {
-        bough_whole *c = which[k];
-        bough_assembly_gather(a, i, c->output, c->input);
-        at[k] = (bough_evaluation){c->time, c->input + a->input_offset[i], c->x + a->state_offset[i],
-                                   waited_for ? c->output + a->output_offset[i] : NULL};
-        c->status[i].code = BOUGH_OK;
+        bough_whole *e = evaluation[k];
+        bough_assembly_gather(a, i, e->output, e->input);
+        at[k] = (bough_evaluation){e->time, e->input + a->input_offset[i], e->x + a->state_offset[i],
+                                   outputs_known ? NULL : e->output + a->output_offset[i]};
+        e->status[i].code = BOUGH_OK;
     }
-    // its rates, and its outputs where others wait for them
+    // its rates, and its outputs unless they were needed before
     bool finite = m->system.ops->evaluate ? m->system.ops->evaluate(m->system.self, state, n, at)
                                           : evaluate_separately(&m->system, state, n, at);
     if (finite) return;
-    which[0]->status[i] =
+    first->status[i] =
         bough_fail(BOUGH_FAILED, "%s: no finite rate of change at %.6g s", m->system.name, m->time);
 }
 
@@ -129,7 +130,7 @@ static bough_operating_point operating_point(const bough_whole *whole, int i) {
                                    whole->setup_input + a->input_offset[i], whole->gamma};
 }
 
-// Leaders first: their responses take long, and those of followers need them.
+// Leaders first: their responses take long, and the responses of followers need them.
 static void factor_member(void *self, int place) {
     bough_whole *whole = self;
     const bough_assembly *a = whole->assembly;
@@ -183,21 +184,21 @@ bough_status bough_whole_setup(bough_whole *whole, double t, const double *state
 // The coordinates are those of the solution before until a leader is solved: others may still respond to it.
 void bough_whole_begin_solution(bough_whole *whole, double *x) { whole->x = x; }
 
-// x_i = (I − γJ_i)⁻¹ r_i and the outputs' change with it, the inputs held; where the states are the
-// coordinates of the interface, it does that.
+// x_i = (I − γJ_i)⁻¹ r_i and the outputs' change with it, the inputs held. A member whose states are
+// coordinates of the interface hands over r_i instead: the interface solves for them.
 void bough_whole_solve_of(bough_whole *whole, int i) {
     const bough_assembly *a = whole->assembly;
     const bough_system *s = &a->member[i]->system;
-    const bough_interface_member *w = &whole->interface->part[i];
+    const bough_interface_member *part = &whole->interface->part[i];
     double *x = whole->x + a->state_offset[i], *moved = whole->output_change + a->output_offset[i];
-    double *coordinate = whole->interface->coordinate + w->first;
-    if (w->by_state) {
+    double *coordinate = whole->interface->coordinate + part->first;
+    if (part->by_state) {
         memcpy(coordinate, x, (size_t)s->n_state * sizeof(double));
         memset(x, 0, (size_t)s->n_state * sizeof(double));
         memset(moved, 0, (size_t)s->n_output * sizeof(double));
         return;
     }
-    if (w->is_leader) memset(coordinate, 0, (size_t)w->n * sizeof(double));
+    if (part->is_leader) memset(coordinate, 0, (size_t)part->n * sizeof(double));
     bough_operating_point at = operating_point(whole, i);
     bough_interface_solve_member(whole->interface, i, x);
     bough_interface_output_change(whole->interface, i, &at, x, NULL, moved);

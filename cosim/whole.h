@@ -77,11 +77,11 @@ void bough_whole_close(bough_whole *whole, double *change);
 
 // -- member by member, for a scheme that does several of these in one task -----------------------
 
-// Begins F at a state (n_state) for `rate` (n_state): finds the outputs on which the members' inputs wait.
+// Begins F at a state (n_state) for `rate` (n_state): finds the outputs that the inputs of members need.
 void bough_whole_begin_rates(bough_whole *whole, double t, const double *state, double *rate);
 
-// Whether that computes the member's outputs, for which it needs the member's state. The outputs of the other
-// members are computed with their rates.
+// Whether bough_whole_begin_rates computes the member's outputs, for which it needs the member's state; if
+// not, they are computed with its rates.
 bool bough_whole_outputs_first(const bough_whole *whole, int member);
 
 enum { BOUGH_WHOLE_TIMES = 2 };

@@ -53,8 +53,8 @@ static bough_status call(bough_arena *arena, void *self) {
         printf("bough " BOUGH_VERSION "\n");
         return bough_ok();
     }
-    bool asks = strcmp(argv[0], "--help") == 0 || strcmp(argv[0], "-h") == 0;
-    const bough_command *command = asks ? &bough_command_help : bough_command_find(argv[0]);
+    bool help = strcmp(argv[0], "--help") == 0 || strcmp(argv[0], "-h") == 0;
+    const bough_command *command = help ? &bough_command_help : bough_command_find(argv[0]);
     if (!command) return bough_unknown_word("command", argv[0], NULL);
     bough_options *options;
     BOUGH_TRY(bough_options_read(arena, argc, argv, command, &options));
@@ -96,8 +96,8 @@ int main(int argc, char **argv) {
     }
     bough_status status = end_output(bough_arena_use(call, argv + 1));
     if (!bough_is_ok(&status) && status.message[0]) {
-        const char *grade = status.code == BOUGH_INTERRUPTED ? "" : "error: ";
-        fprintf(stderr, "bough: %s%s\n", grade, status.message);
+        const char *kind = status.code == BOUGH_INTERRUPTED ? "" : "error: ";
+        fprintf(stderr, "bough: %s%s\n", kind, status.message);
     }
     return bough_exit_code(status.code);
 }

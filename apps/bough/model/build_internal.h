@@ -57,7 +57,7 @@ typedef struct bough_builder {
     const bough_scene *scene;
     bough_simulation *s;
     const bough_simulation *beside; // NULL, or one whose meshes serve where rods are equal
-    bough_tree_def tree;            // of the arrays down to `load`
+    bough_tree_def tree;            // its arrays are `body` to `load`
     bough_body_def *body;           // (n_body + n_end): the tree's body i is the scene's body i; after
                                     // them what each carrying rod ends in
     bough_end_def *end;             // (n_end)
@@ -88,7 +88,7 @@ int bough_build_marker(bough_builder *b, const char *name, int body, bough_trans
 // any.
 void bough_build_forces(bough_builder *b);
 
-// Turns the second markers of the bushings so that nothing acts in the simulation's view.
+// Rotates the second markers of the bushings so that the bushings exert nothing in the simulation's view.
 void bough_build_rest(const bough_simulation *s);
 
 // -- channels that observe.c takes from observe_loads.c -------------------------------------------
