@@ -273,7 +273,7 @@ void bough_rod_load(const bough_rod_model *m, const bough_rod_loads *loads, doub
 void bough_rod_stress(const bough_rod_model *m, const bough_rod_scratch *scratch, int n, double stress[6]);
 
 // The smallest ratio of a segment's torsional stiffness to that below which, bent and under tension, it
-// twists although the rod does not, theory (111). After bough_rod_stress' conditions.
+// twists although the rod does not, theory (111). Conditions as for bough_rod_stress.
 double bough_rod_twist_reserve(const bough_rod_model *m, const bough_rod_scratch *scratch);
 
 // Kernels, each called at its model's level.

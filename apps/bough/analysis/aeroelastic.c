@@ -52,8 +52,8 @@ static void apply_transposed(void *self, int n, const double *z, double *image) 
     bough_air_inverse_apply(((const work *)self)->inverse, true, n, z, image);
 }
 
-// Products in which states of the members count in units of their scales (power −2), those of the air as they
-// are; of left vectors the inverse.
+// Weights of scalar products: states of the members count in units of their scales (power −2, of left vectors
+// 2), those of the air as they are.
 static double *product_weights(bough_arena *arena, const work *w, double power) {
     double *weight = bough_arena_doubles(arena, (size_t)(w->n + w->m));
     bough_assembly_scales(w->system->whole->assembly, weight);
@@ -77,7 +77,7 @@ static bough_status find_pairs(bough_arena *arena, work *w, bool left, bool deca
     return bough_eigen_nearest(arena, &op, pair, count);
 }
 
-// Of pairs, or of what begins with one.
+// Order by |λ| of eigenvalue pairs, or of structs that begin with one.
 static int slower(const void *a, const void *b) {
     const bough_eigen_pair *x = a, *y = b;
     double first = hypot(x->real, x->imaginary), second = hypot(y->real, y->imaginary);
@@ -155,7 +155,7 @@ static bool set_motion(bough_arena *arena, work *w, reduced *x) {
     return true;
 }
 
-// The static response of the modes left out to forces R (n × columns), γ T⁻¹ P (E − U L) R, in place of R;
+// rest ← γ T⁻¹ P (E − U L) rest, the static response of the modes left out to forces R = rest (n × columns);
 // force: L R.
 static void follow(bough_arena *arena, work *w, const reduced *x, int columns, const double *force,
                    double *rest) {

@@ -52,14 +52,15 @@ static size_t state_of(const bough_air_mean *m, const bough_air_tangent *t, int 
     return (size_t)(t->n + m->air_row[blade * m->n_air + j - m->n_row]);
 }
 
-// Of the four matrices as one.
+// Entry of the four matrices as one, [A R; G H].
 static double *entry(const bough_air_tangent *t, size_t row, size_t column) {
     size_t n = (size_t)t->n, m = (size_t)t->n_air;
     if (column < n) return row < n ? &t->motion[column * n + row] : &t->drive[column * m + row - n];
     return row < n ? &t->lift[(column - n) * n + row] : &t->lag[(column - n) * m + row - n];
 }
 
-// A column of what is no blade's: the blades' rates as an observer at rest sees them, Cᵀ of them.
+// A column that belongs to no blade: the rates of the blades are taken as an observer at rest sees them, by
+// Cᵀ.
 static void add_other(const bough_air_mean *m, size_t at, const double *slope, bough_air_tangent *t) {
     for (size_t i = 0; i < (size_t)(t->n + t->n_air); i++)
         if (m->place[i] == 0) *entry(t, i, at) += m->share * slope[i];
@@ -73,8 +74,8 @@ static void add_other(const bough_air_mean *m, size_t at, const double *slope, b
     }
 }
 
-// Column j of a blade: what it does to others as all blades do, by C; to blades, in the mean over these, as
-// the first does. C does not change that mean.
+// Column j of a blade. Its effect on other rows is spread over all blades by C; its effect on blades enters
+// the mean over the blades as one of the first blade's, which C does not change.
 static void add_of_blade(const bough_air_mean *m, int blade, int j, const double *slope,
                          bough_air_tangent *t) {
     int all = m->n_row + m->n_air;
@@ -103,9 +104,9 @@ void bough_air_mean_add_own(const bough_air_mean *m, int i, int j, double slope,
     *entry(t, state_of(m, t, 0, i), state_of(m, t, 0, j)) += m->share * slope;
 }
 
-void bough_air_mean_turn(bough_air_mean *m) { m->share = -m->share; }
+void bough_air_mean_negate(bough_air_mean *m) { m->share = -m->share; }
 
-// What the first blade does to the blades from itself on, the others do to those from themselves on.
+// The blocks of the first blade, repeated for the others with the blades shifted.
 static void repeat(const bough_air_mean *m, bough_air_tangent *t) {
     int all = m->n_row + m->n_air;
     for (int j = 0; j < all; j++) {

@@ -452,9 +452,9 @@ static bough_status begin_differences(work *w, const double *state) {
 static bough_status take_back(bough_arena *arena, work *w, const double *state,
                               const bough_blade_group *group, bough_air_tangent *t) {
     bool good;
-    bough_air_mean_turn(w->mean);
+    bough_air_mean_negate(w->mean);
     BOUGH_TRY(follow_group(arena, w, state, group, t, &good));
-    bough_air_mean_turn(w->mean);
+    bough_air_mean_negate(w->mean);
     return bough_ok();
 }
 

@@ -8,6 +8,11 @@
 #include "apps/bough/model/blade_group.h"
 #include "cosim/whole.h"
 
+// Whether modes and linear models of the scene contain how the air's forces follow the motion.
+static inline bool bough_air_follows(const bough_scene *scene) {
+    return scene->aero.node != NULL && scene->modes.air != BOUGH_SCENE_AIR_FROZEN;
+}
+
 typedef struct bough_air_tangent {
     int n, n_air;        // states of the members, of the air
     int n_per_blade;     // of the air, blade after blade
@@ -80,8 +85,8 @@ void bough_air_mean_add(const bough_air_mean *mean, int at, const double *slope,
 void bough_air_mean_add_own(const bough_air_mean *mean, int i, int j, double slope,
                             bough_air_tangent *tangent);
 
-// What is added from now on is taken away, or added again.
-void bough_air_mean_turn(bough_air_mean *mean);
+// Switches the sign of what is added from now on.
+void bough_air_mean_negate(bough_air_mean *mean);
 
 // Rows of the air's states of the group's blades (n × n_per_blade).
 void bough_air_tangent_rows(const bough_simulation *s, const bough_blade_group *group, int n_per_blade,

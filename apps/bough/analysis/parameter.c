@@ -1,5 +1,7 @@
 // The parameters of a scene that modes are sensitive to, and scenes in which one of them differs.
 #include "apps/bough/analysis/sensitivity.h"
+
+#include "apps/bough/analysis/air_tangent.h"
 #include "apps/bough/model/companion.h"
 #include "core/base/linalg.h"
 
@@ -105,7 +107,7 @@ static void add_scene(int of, bough_parameter *list, int *n) {
 }
 
 const bough_parameter *bough_parameters_of(bough_arena *arena, const bough_scene *scene, int *n) {
-    bool air = scene->aero.node != NULL && scene->modes.air != BOUGH_SCENE_AIR_FROZEN;
+    bool air = bough_air_follows(scene);
     size_t most = (size_t)(scene->n_body + 1) * RODS + KINDS;
     bough_parameter *list = bough_arena_take(arena, most * sizeof *list);
     int *body = bough_arena_take(arena, ((size_t)scene->n_body + 1) * sizeof *body), *next = body;

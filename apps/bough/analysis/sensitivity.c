@@ -20,8 +20,8 @@ enum { ITERATIONS = 4 }; // of inverse iteration about an eigenvalue that is kno
 typedef struct linear {
     bough_simulation *simulation;
     bough_vibration_point point;
-    bool in_air, dynamic;                       // the air's forces follow, with memory
-    bough_azimuths azimuths;                    // over which it is the mean
+    bool in_air, dynamic;                       // the air's forces follow the motion; they have memory
+    bough_azimuths azimuths;                    // A is the mean over these
     bough_azimuth_product **air;                // (azimuths.n)
     int n, m, n_row;                            // states of the members, of the air; of the latter in a blade
     int *air_row;                               // (n_part × n_row)
@@ -34,7 +34,7 @@ static bough_status prepare(bough_arena *arena, bough_simulation *s, double time
     *x = (linear){.simulation = s, .n = s->master->assembly->n_state};
     BOUGH_TRY(bough_vibration_point_find(arena, s, time, &x->point));
     const bough_modes_def *def = &x->point.def;
-    x->in_air = s->aero != NULL && s->scene->modes.air != BOUGH_SCENE_AIR_FROZEN;
+    x->in_air = bough_air_follows(s->scene);
     x->dynamic = s->scene->modes.air == BOUGH_SCENE_AIR_DYNAMIC;
     if (x->in_air) {
         bool balanced = s->scene->modes.at == BOUGH_SCENE_IN_EQUILIBRIUM;
@@ -95,7 +95,7 @@ static void add_blades(const linear *x, int shift, double factor, const double *
             image[row_of(x, (k + shift) % n, j)] += factor * from[row_of(x, k, j)];
 }
 
-// What follows from the air of one azimuth; of blades on blades the mean over them.
+// The share of one azimuth's air in A y; between blades it is the mean over the blades.
 static bough_status add_azimuth(linear *x, bough_azimuth_product *air, double size, const double *y,
                                 double *image) {
     double share = 1. / x->azimuths.n;
@@ -112,7 +112,7 @@ static bough_status add_azimuth(linear *x, bough_azimuth_product *air, double si
     return bough_ok();
 }
 
-// Of the difference by which y is multiplied; 0: y is 0.
+// The factor of y in a difference; 0: y is 0.
 static double size_of(const linear *x, const double *y) {
     double largest = 0;
     for (int i = 0; i < x->n; i++) largest = fmax(largest, fabs(y[i]) / x->scale[i]);

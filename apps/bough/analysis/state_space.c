@@ -37,10 +37,6 @@ typedef struct work {
 
 // -- inputs ---------------------------------------------------------------------------------------
 
-static bool in_air(const bough_simulation *s) {
-    return s->aero != NULL && s->scene->modes.air != BOUGH_SCENE_AIR_FROZEN;
-}
-
 // A change of pitch is a given motion: the leader's state is brought onto it.
 static void set_input(void *self, int k, double change, double *state) {
     const work *w = self;
@@ -89,7 +85,7 @@ static void find_inputs(work *w, bough_state_space *to) {
         if (bough_control_link_pitches(s->control))
             add_input(w, COLLECTIVE_PITCH, 0, pitch, "collective pitch", "rad", to);
     }
-    if (in_air(s) && bough_scene_wind_is_steady(wind))
+    if (bough_air_follows(s->scene) && bough_scene_wind_is_steady(wind))
         add_input(w, WIND_SPEED, 0, bough_rotor_wind(bough_aero_link_rotor(s->aero))->def.speed, "wind speed",
                   "m/s", to);
 }
@@ -296,7 +292,7 @@ bough_status bough_state_space_find(bough_arena *arena, bough_simulation *s, dou
     *space = (bough_state_space){
         .input = bough_arena_take(arena, ((size_t)s->scene->n_input + 3) * sizeof *space->input)};
     find_inputs(&w, space);
-    if (in_air(s)) {
+    if (bough_air_follows(s->scene)) {
         bough_air_inputs inputs = {w.n_input, w.size, &w, set_input};
         bool dynamic = s->scene->modes.air == BOUGH_SCENE_AIR_DYNAMIC;
         bough_air_azimuth about = {.simulation = s, .whole = w.whole, .time = time, .state = w.about};
@@ -306,7 +302,7 @@ bough_status bough_state_space_find(bough_arena *arena, bough_simulation *s, dou
     BOUGH_TRY(by_states(&w, space));
     BOUGH_TRY(by_inputs(&w, space));
     BOUGH_TRY(evaluate(&w, w.about, 0));
-    if (in_air(s)) add_air(&w, &air, space);
+    if (bough_air_follows(s->scene)) add_air(&w, &air, space);
     name_states(&w, space);
     name_outputs(&w, space);
     return bough_ok();

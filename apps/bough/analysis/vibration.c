@@ -41,7 +41,8 @@ static void set_value(const bough_eigen_pair *pair, const double change[2], boug
 
 static const double at_rest = 1e-9; // [rad/s]
 
-// Whether something turns otherwise than a rotor whose blades allow the transform.
+// Whether anything but a rotor whose blades allow the transform rotates: the system is then that of one
+// azimuth.
 static bool is_frozen(const bough_simulation *s, const bough_blade_group *group) {
     bough_vec3 spin = {0, 0, 0};
     if (group->n > 0) {
@@ -91,8 +92,8 @@ static void define(double time, bough_vibration_point *x) {
     x->def.point = fmax(least_point, spins * ((g->n - 1) / 2) * fabs(g->speed));
 }
 
-// Turns all joints on at their own speeds, the fastest by `angle`.
-static void turn_on(const bough_tree *tree, double fastest, double angle, double *rate, double *state) {
+// Moves all joints on at their own speeds, the fastest by `angle`.
+static void move_on(const bough_tree *tree, double fastest, double angle, double *rate, double *state) {
     enum { STEPS = 200 };
     for (int step = 0; step < STEPS; step++) {
         bough_tree_coordinate_rate(tree, state, rate);
@@ -140,8 +141,8 @@ static bough_status refuse(const bough_simulation *s, double change) {
         s->scene->file, change);
 }
 
-// The tangent where all that turns has turned on by an angle, beside that of the present state: not the same
-// where a rotor of two blades, or one out of balance, is on a support that can move.
+// Compares the tangent of the present state with those after all rotations have gone on by an angle: they
+// differ where a rotor of two blades, or one out of balance, is on a support that can move.
 static bough_status check_constant(bough_arena *arena, const bough_simulation *s,
                                    const bough_vibration_point *x) {
     static const double angles[] = {1, 2.3};
@@ -149,7 +150,7 @@ static bough_status check_constant(bough_arena *arena, const bough_simulation *s
     double *state, *work, *present, *turned, *scale, fastest = 0;
     bough_arena_each(arena, n + 1, &state, &work, &present, &turned, &scale);
     bough_assembly_scales(s->master->assembly, scale);
-    bool driven = false; // by given motions, which turn on with time
+    bool driven = false; // by given motions, which go on with time
     for (int i = 0; i < s->tree->n_links; i++) {
         double speed = bough_norm(s->view->joint_twist[i].angular);
         fastest = fmax(fastest, speed);
@@ -159,7 +160,7 @@ static bough_status check_constant(bough_arena *arena, const bough_simulation *s
     for (int k = 0; k < 2; k++) {
         double change = 0, size = 0;
         memcpy(state, x->state, n * sizeof *state);
-        turn_on(s->tree, fastest, angles[k], work, state);
+        move_on(s->tree, fastest, angles[k], work, state);
         BOUGH_TRY(respond(s, x, x->def.time + (driven ? angles[k] / fastest : 0), state, work, turned));
         for (size_t i = 0; i < n; i++) {
             change = fmax(change, fabs(turned[i] - present[i]) / scale[i]);
@@ -189,8 +190,8 @@ static bough_inertia turning_inertia(const bough_simulation *s, int rotor, bough
     return sum;
 }
 
-// Equal blades make the system constant only on a hub that is the same at every azimuth, or one whose shaft
-// cannot move: how far it is from that, relative.
+// Equal blades make the system constant only if the inertia of the hub is the same at every azimuth, or its
+// shaft cannot move: the relative change of that inertia over a rotation of 1 rad.
 static double imbalance(const bough_simulation *s) {
     int rotor = s->tree->bodies[s->scene->turbine.rotor].link;
     bool moves = false;
@@ -227,7 +228,7 @@ bough_status bough_vibration_point_find(bough_arena *arena, bough_simulation *s,
 
 // -- solution -------------------------------------------------------------------------------------
 
-// Violations of closures decay at a rate of their own, which is no motion of the scene.
+// Violations of closures decay at the rate of their stabilisation: no motion of the scene.
 static bool is_closure(const bough_tree *tree, const bough_eigen_pair *pair) {
     double rate = 1 / tree->closure_time;
     return tree->n_closures > 0 && hypot(pair->real + rate, pair->imaginary) < 1e-3 * rate;
@@ -262,21 +263,21 @@ static bough_status solve_bodies(bough_arena *arena, const bough_simulation *s,
     return bough_modes_find(arena, x->whole, &x->def, v->pair, &v->count);
 }
 
-// The air whose forces follow the motion, in the mean over the azimuths.
-typedef struct moving_air {
-    bool moves, dynamic;
-    bool changes; // what an azimuth changes is wanted
+// The air about the state, in the mean over the azimuths.
+typedef struct air_about {
+    bool follows, dynamic; // its forces follow the motion; they have memory
+    bool changes;          // what an azimuth changes is wanted
     bough_azimuths azimuths;
     bough_air_tangent tangent;
-} moving_air;
+} air_about;
 
 static bough_status find_air(bough_arena *arena, bough_simulation *s, double time, bough_vibration_point *x,
-                             moving_air *air) {
+                             air_about *air) {
     bool balanced = s->scene->modes.at == BOUGH_SCENE_IN_EQUILIBRIUM;
-    air->moves = s->aero && s->scene->modes.air != BOUGH_SCENE_AIR_FROZEN;
+    air->follows = bough_air_follows(s->scene);
     air->dynamic = s->scene->modes.air == BOUGH_SCENE_AIR_DYNAMIC;
     air->azimuths.n = 1;
-    if (!air->moves) return bough_ok();
+    if (!air->follows) return bough_ok();
     BOUGH_TRY(bough_azimuths_find(arena, s, time, balanced, x, &air->azimuths));
     return bough_azimuths_tangent(arena, &air->azimuths, air->dynamic, &air->tangent);
 }
@@ -298,7 +299,7 @@ static void set_changes(int n_azimuth, int n, const double complex *change, boug
 }
 
 static bough_status solve_in_air(bough_arena *arena, bough_simulation *s, const bough_vibration_point *x,
-                                 const moving_air *air, int count, bough_vibration *v) {
+                                 const air_about *air, int count, bough_vibration *v) {
     int wanted = v->count.wanted = count + FREE_MOTIONS, azimuths = air->changes ? air->azimuths.n : 1;
     const bough_aeroelastic system = {s, x->whole, &x->def, &x->group, &air->tangent};
     v->pair = bough_arena_take(arena, (size_t)wanted * sizeof *v->pair);
@@ -315,10 +316,10 @@ static bough_status solve_in_air(bough_arena *arena, bough_simulation *s, const 
 
 // The eigenvalues about the point.
 static bough_status solve_about(bough_arena *arena, bough_simulation *s, const bough_vibration_point *x,
-                                const moving_air *air, int count, bough_vibration *v) {
+                                const air_about *air, int count, bough_vibration *v) {
     size_t most = (size_t)(count + FREE_MOTIONS + 2 * s->tree->closure_rank);
     v->change = bough_arena_take(arena, most * sizeof *v->change);
-    BOUGH_TRY(air->moves ? solve_in_air(arena, s, x, air, count, v) : solve_bodies(arena, s, x, count, v));
+    BOUGH_TRY(air->follows ? solve_in_air(arena, s, x, air, count, v) : solve_bodies(arena, s, x, count, v));
     drop_other_motions(s->tree, x->def.point, count, v);
     return bough_ok();
 }
@@ -346,7 +347,7 @@ static bough_status find(bough_arena *arena, bough_simulation *s, int count, boo
                          bough_vibration *v) {
     bool balanced = s->scene->modes.at == BOUGH_SCENE_IN_EQUILIBRIUM;
     bough_vibration_point x;
-    moving_air air = {.changes = changes};
+    air_about air = {.changes = changes};
     *v = (bough_vibration){.asked = count, .time = balanced ? bough_equilibrium_time(s) : 0};
     v->mode = bough_arena_take(arena, (size_t)count * sizeof *v->mode);
     if (balanced) BOUGH_TRY(bough_simulation_equilibrium(s, s->master->assembly, v->time, 0, NULL));
@@ -360,7 +361,7 @@ static bough_status find(bough_arena *arena, bough_simulation *s, int count, boo
     BOUGH_TRY(find_air(arena, s, v->time, &x, &air));
     v->n_azimuth = air.azimuths.n;
     BOUGH_TRY(solve_about(arena, s, &x, &air, count, v));
-    bool dynamic = air.moves && air.dynamic; // with other residuals
+    bool dynamic = air.follows && air.dynamic; // with other residuals
     for (int k = 0; k < MOVES && !dynamic && (point = better_point(v, x.def.point)) > 0; k++) {
         x.def.point = point;
         BOUGH_TRY(solve_about(arena, s, &x, &air, count, v));

@@ -42,17 +42,18 @@ typedef struct bough_scene_mode {
     double damping;          // ratio −Re λ/|λ|; negative: it grows
     double growth;           // Re λ [1/s]
     double residual;         // of its eigenvector: bough_eigen_residual
-    double frequency_change; // the largest of one azimuth from their mean, relative; NaN: not known
-    double damping_change;   // the same of the damping ratio
-    double moved;            // by another mesh, |λ − λ'|/|λ|; NaN: not compared, or no such mode there
-    double *share;           // of the kinetic energy per body of the scene, sum 1
-    int body;                // the body of the largest, or a blade when all blades' together is
-    bool blades;             // it is
-    int direction;           // of the largest share: bough_rod_direction in these rods; of a rigid
-                             // body 0..2 along the ground's axes, 3 turning
-    bough_pattern pattern;   // of the blades
-    double whirl[3];         // shares of the blades' motion: collective, forward, backward
-    bough_shape_row *shape;  // (n_row); NULL unless the scene's modes block asks for shapes
+    double
+        frequency_change;  // largest change from the mean over the azimuths to one, relative; NaN: not known
+    double damping_change; // the same of the damping ratio
+    double moved;  // |λ − λ'|/|λ| to the mode on another mesh; NaN: not compared, or no such mode
+    double *share; // of the kinetic energy for each body of the scene, sum 1
+    bool blades;   // all blades together have more of it than any other body
+    int body;      // the body with the largest share; with `blades` the first blade
+    int direction; // in which these move most: bough_rod_direction; of a rigid body 0..2 along the
+                   // ground's axes, 3 rotation
+    bough_pattern pattern;  // of the blades
+    double whirl[3];        // shares of the blades' motion: collective, forward, backward
+    bough_shape_row *shape; // (n_row); NULL unless the scene's modes block asks for shapes
 } bough_scene_mode;
 
 extern const char *const bough_pattern_names[BOUGH_PATTERNS];
@@ -62,12 +63,12 @@ extern const char *const bough_pattern_names[BOUGH_PATTERNS];
 typedef struct bough_vibration {
     double time;             // of the loads [s]
     double spin;             // of the rotor [rad/s]
-    bool frozen;             // something turns otherwise than a rotor whose blades allow the transform
+    bool frozen;             // of one azimuth: something rotates, not only a rotor that allows the transform
     int n_blade;             // compared; 0: none
     int n_row;               // of a shape
     int asked;               // modes
     bough_eigen_count count; // of the eigenvalues among which they are sought
-    int unpaired;            // of these, left out of the air's system: see aeroelastic.h
+    int unpaired;            // eigenvectors left out of the system with air: see aeroelastic.h
     int found;
     bough_scene_mode *mode; // (found) by the distance of λ from a point near 0
     bough_eigen_pair *pair; // (found)

@@ -15,10 +15,10 @@ bough_status bough_aero_link_build(bough_arena *arena, bough_simulation *simulat
 bool bough_aero_link_turbulence(const bough_scene *scene, bough_wind_iec_def *def);
 
 // Samples the blades, and the drag of tower and hub, at their present motion and keeps the loads constant
-// from t on. Dynamic inflow and stall are in equilibrium, at the next sample again.
+// from t on. Dynamic inflow and stall are brought to equilibrium, for this sample and before the next.
 void bough_aero_link_hold(bough_aero_link *link, double t);
 
-// The same, but dynamic inflow and stall continue from the last sample, and the next sample from this one.
+// The same, but dynamic inflow and stall go on from the last sample to this one and to the next.
 void bough_aero_link_continue(bough_aero_link *link, double t);
 
 // Saves or restores dynamic inflow and stall: memory (bough_rotor_memory_size).
@@ -36,15 +36,15 @@ double bough_aero_link_missed(const bough_aero_link *link, int blade);
 // Changes the speed of a wind by a formula [m/s] from the next sample on.
 void bough_aero_link_set_wind(bough_aero_link *link, double speed);
 
-// The time of that evaluation [s]; NAN: none that is up to date.
-double bough_aero_link_evaluated(const bough_aero_link *link);
-
 // To be called when state or wind have been changed from outside: the next sample is evaluated in any case.
 void bough_aero_link_renew(bough_aero_link *link);
 
 // Results of the last evaluation, at the last multiple of the period, with the ramp's factor at its time
 // (NULL: not wanted).
 const bough_rotor_data *bough_aero_link_data(const bough_aero_link *link, double *factor);
+
+// The time of that evaluation [s]; NAN: none that is up to date.
+double bough_aero_link_evaluated(const bough_aero_link *link);
 
 // The wind at the place where the hub stood at the start, at a time [s], undisturbed, ground axes [m/s].
 bough_vec3 bough_aero_link_hub_wind(const bough_aero_link *link, double t);

@@ -24,7 +24,7 @@ static double share_of(const bough_beam *tower, int i) {
     return (s[high] - s[low]) / 2;
 }
 
-static void blow_tower(bough_drag_link *l, double t, double factor) {
+static void sample_tower(bough_drag_link *l, double t, double factor) {
     bough_simulation *s = l->simulation;
     const bough_frame *frame = &s->tree->markers[l->tower->marker];
     bough_transform pose = bough_tree_frame_pose(s->view, frame);
@@ -45,7 +45,7 @@ static void blow_tower(bough_drag_link *l, double t, double factor) {
     }
 }
 
-static void blow_hub(bough_drag_link *l, double t, double factor) {
+static void sample_hub(bough_drag_link *l, double t, double factor) {
     bough_simulation *s = l->simulation;
     const bough_frame *frame = &s->tree->markers[l->hub_marker];
     bough_transform pose = bough_tree_frame_pose(s->view, frame);
@@ -84,8 +84,8 @@ static bough_status sample(void *self, double t, double t_next, bool *jumped) {
     bool started = start[1] != 0;
     bough_simulation_update(l->simulation);
     bough_aero_link_data(l->simulation->aero, &factor);
-    if (l->tower != NULL) blow_tower(l, t, factor);
-    if (l->hub_marker >= 0) blow_hub(l, t, factor);
+    if (l->tower != NULL) sample_tower(l, t, factor);
+    if (l->hub_marker >= 0) sample_hub(l, t, factor);
     for (int k = 0; k < l->n; k++) {
         value[k] = started ? value[k] + (t - start[0]) * rate[k] : l->fresh[k];
         rate[k] = (l->fresh[k] - value[k]) / (t_next - t);

@@ -38,7 +38,7 @@ int bough_equilibrium_held(const bough_tree *tree, bool turning, int *row) {
 
 // -- continuation in the stiffness of rods --------------------------------------------------------
 
-// EI/(EA L²) of a bar that is as stiff as any: of eight times its thickness in length.
+// EI/(EA L²) of a thick bar, eight times as long as thick; stiffer rods make a search no easier.
 static const double thick = 1e-3;
 
 enum { AXIAL = 11, STRAINS = 6, FIRST_BENDING = 3 };
@@ -84,7 +84,7 @@ enum { PATIENCE = 60, RIGID_STEPS = 200 };
 enum { NEAR_STEPS = 30 };
 static const double near_least = 0.03, near_tolerance = 1e-2;
 
-// Changes of the exponent: the first, the least, and by how much they grow and shrink.
+// Changes of the exponent: the first, the least, and the factors by which they grow and shrink.
 static const double first_part = 0.5, least_part = 0.004, easier = 1.6, harder = 0.5;
 
 typedef struct continuation {
@@ -138,8 +138,8 @@ static bough_status soften(continuation *c) {
     return status;
 }
 
-// By stiffer rods from `start` on: a stable equilibrium; or an unstable one, unless the way downhill ends in
-// a stable one. Without rods downhill.
+// From `start` on by stiffer rods, which gives a stable equilibrium or an unstable one; after an unstable
+// one, or none, downhill. Where that ends in no stable one, an unstable one stays if `how` accepts it.
 static bough_status find_slack(continuation *c, const double *start) {
     bough_simulation *s = c->simulation;
     const bough_assembly *a = c->assembly;
@@ -163,7 +163,7 @@ static bough_status find_slack(continuation *c, const double *start) {
     return softened;
 }
 
-// The searches on the scene's own mesh. In operation speed and pitch are tried until one is found.
+// The searches on the scene's own mesh; one search in operation, where trim.c tries speeds and pitches.
 static bough_status find_on_mesh(bough_arena *arena, continuation *c) {
     const bough_simulation *s = c->simulation;
     bool once = s->scene->simulation.initial == BOUGH_SCENE_IN_OPERATION;
@@ -181,7 +181,7 @@ static bough_status find_on_mesh(bough_arena *arena, continuation *c) {
 
 // -- whether a finer mesh has one -----------------------------------------------------------------
 
-// Segments of finer meshes by those of the scene, and most of all rods together.
+// Segments of the finer meshes over those of the scene, and the most that all rods may have together.
 static const int finer[] = {4, 16};
 enum { FINER = 2, MOST_SEGMENTS = 2000 };
 
@@ -251,9 +251,9 @@ static bough_status explain_by_finer(const continuation *c, bough_status failure
 
 static bough_status find_from_anywhere(bough_arena *arena, continuation *c) {
     bough_status status = find_on_mesh(arena, c);
-    bool asks = c->simulation->scene->simulation.initial != BOUGH_SCENE_IN_OPERATION &&
-                !(c->how & BOUGH_EQUILIBRIUM_ALONE);
-    return status.code == BOUGH_FAILED && asks ? explain_by_finer(c, status) : status;
+    bool explains = c->simulation->scene->simulation.initial != BOUGH_SCENE_IN_OPERATION &&
+                    !(c->how & BOUGH_EQUILIBRIUM_ALONE);
+    return status.code == BOUGH_FAILED && explains ? explain_by_finer(c, status) : status;
 }
 
 // From the present state by long steps where that is near, else as from anywhere.
@@ -282,7 +282,7 @@ bough_status bough_simulation_equilibrium(bough_simulation *s, const bough_assem
 
 // -- paths of equilibria while the loads grow -------------------------------------------------------
 
-static bough_status tell_point(void *self, double share, const double *state, bool limit) {
+static bough_status report_point(void *self, double share, const double *state, bool limit) {
     const bough_equilibrium_search *x = self;
     double time = fmin(fmax(share, 0), 1) * bough_equilibrium_time(x->simulation);
     for (int i = 0; i < x->assembly->n_member; i++)
@@ -324,7 +324,7 @@ static bough_status walk_path(bough_arena *arena, void *self) {
     def.self = x;
     def.move = bough_equilibrium_search_move;
     def.rest = bough_equilibrium_search_rest;
-    def.point = tell_point;
+    def.point = report_point;
     return bough_path_follow(arena, x->whole, &def, x->state, x->report);
 }
 

@@ -28,10 +28,10 @@ double bough_equilibrium_time(const bough_simulation *s);
 
 // How an equilibrium is looked for. A set of these.
 enum {
-    BOUGH_EQUILIBRIUM_NEAR = 1,     // first from the present state on, which is near it: faster
-    BOUGH_EQUILIBRIUM_UNSTABLE = 2, // an unstable one is better than none
-    BOUGH_EQUILIBRIUM_ALONE = 4,    // a failure does not ask finer meshes
-    // of a mesh that another one is compared with, from its shape (bough_simulation_take_shape)
+    BOUGH_EQUILIBRIUM_NEAR = 1,     // the present state is near it: long steps from there are tried first
+    BOUGH_EQUILIBRIUM_UNSTABLE = 2, // an unstable one is accepted where no stable one is found
+    BOUGH_EQUILIBRIUM_ALONE = 4,    // a failure is not explained by searches on finer meshes
+    // all three: on a finer mesh, from the shape of a coarser one (bough_simulation_take_shape)
     BOUGH_EQUILIBRIUM_FINER = 7,
 };
 
@@ -53,8 +53,8 @@ typedef struct bough_growth {
     int segments;
 } bough_growth;
 
-// Of the states of the assembly; `slow`: from the twelve eigenvalues nearest to 1/s alone, at an eighth of
-// the cost.
+// About the states of the assembly; `slow`: only by the twelve eigenvalues nearest to 1 over the
+// scene's time, at an eighth of the cost.
 bough_status bough_simulation_growth(bough_simulation *s, const bough_assembly *assembly, double time,
                                      bool slow, bough_growth *growth);
 

@@ -6,14 +6,15 @@
 #include <math.h>
 #include <string.h>
 
-// Where growing eigenvalues of the Jacobian are looked for, by the scene's time, how many values nearest to
-// each, and the part of a point that is rounding; far beyond it lie values that a small system does not have.
+// Points of the real axis near which growing eigenvalues of the Jacobian are looked for, in units of 1 over
+// the scene's time. Values below this part of a point are rounding, as are those as far beyond it.
 static const double point[] = {1, 10, 100, 1000}, rounded = 1e-3;
-enum { POINTS = 4, NEAREST = 12 }; // the latter at the first, 4 at the others
+enum { POINTS = 4, NEAREST = 12 }; // values nearest to the first point; 4 of each other one
 
-// An oscillation grows by this part of its value at least, equally from both points to this part of it.
+// Growth of an oscillation below this part of its value is rounding. What grows must be found again from a
+// second point, `again` times as far, with the same growth to within `equal`.
 static const double rounded_oscillation = 1e-5, again = 2.7, equal = 0.01;
-static const double beside = 1.3; // of a rate, the second point for a motion that does not oscillate
+static const double beside = 1.3; // the second point of a motion that does not oscillate, over its rate
 
 // Pairs with a larger residual are made by the rounding of long steps, as (72) is: nothing grows with them.
 static const double trusted = 1e-4;
@@ -30,8 +31,7 @@ static bough_status find_near(bough_arena *arena, const bough_equilibrium_search
     return bough_modes_find(arena, x->whole, &def, pair, count);
 }
 
-// The oscillation among the pairs that grows most, by parts of its value; NULL: none. `time`: the scene's
-// [s].
+// The oscillation among the pairs that grows fastest; NULL: none. `time`: the scene's [s].
 static const bough_eigen_pair *growing_oscillation(const bough_eigen_pair *pair, int n, double time) {
     const bough_eigen_pair *most = NULL;
     for (int k = 0; k < n; k++) {
@@ -118,8 +118,8 @@ static bool is_twist_of_mesh(bough_arena *arena, bough_equilibrium_search *x, co
     return false;
 }
 
-// Whether a value grows so from another point, too: rounding lets it grow otherwise. Where nothing converges
-// there, it is believed.
+// Whether the same growth is found from another point: growth by rounding is not. Where nothing converges
+// there, the value is accepted.
 static bool is_confirmed(bough_arena *arena, const bough_equilibrium_search *x, double at, int wanted,
                          const bough_eigen_pair *found) {
     bough_eigen_pair pair[NEAREST];

@@ -12,8 +12,9 @@
 #include <stdio.h>
 #include <string.h>
 
-// The channels of a part that is there n times, under the name of each, none where that is NULL; without
-// `name` under its number. Of a group of their own; without `sample` of the last one.
+// Adds the channels of a part of which the scene has n. Each is called by its name, where name() gives one
+// (NULL: it has no channels), or by its number. They form a group with a sampling function; without one
+// (NULL) they join the last group.
 static void add_each(bough_simulation *s, bough_channels *list, bough_channel_sample *sample,
                      bough_channel_part part, int n, const char *(*name)(const bough_simulation *s, int k)) {
     if (sample) bough_channels_group(list, sample, s);
@@ -45,7 +46,7 @@ static int n_recorded(const bough_scene *scene, int body) {
     return rotor ? 0 : joint_channels[scene->body[body].joint.kind].n;
 }
 
-// q̇ of the joints with axes: all speeds but the planar joint's are it.
+// q̇ of a joint with axes: its speeds, except those of the planar joint.
 static void joint_rates(const bough_simulation *s, int body, const double *q, double *rate) {
     int coordinate, speed;
     bough_tree_joint_rows(s->tree, body, &coordinate, &speed);
@@ -91,7 +92,7 @@ static bool turns_freely(const bough_scene_body *body) {
     return is_free(body) || body->joint.kind == BOUGH_JOINT_SPHERICAL;
 }
 
-// Directions in place of angles: they know no jump.
+// Directions in place of angles, which would jump.
 static void sample_free_bodies(void *self, double t, double *value) {
     (void)t;
     const bough_simulation *s = self;
@@ -236,7 +237,7 @@ static void find_tower(bough_simulation *s) {
     }
 }
 
-// The section of the top in the frame of the foot, `tip` being that in its own body's.
+// The section of the top in the frame of the foot; `tip`: the section in its body's frame.
 static bough_transform top_at_foot(const bough_simulation *s, bough_transform tip) {
     const bough_frame *markers = s->tree->markers;
     bough_transform foot = bough_tree_frame_pose(s->view, &markers[s->tower_foot->marker]);
@@ -274,7 +275,7 @@ static bool is_blade(const bough_scene *scene, const bough_scene_body *body) {
     return bough_scene_blade(scene, (int)(body - scene->body)) >= 0;
 }
 
-// Where the tip of a rod that is no blade is, in ground axes.
+// Positions of the tips of rods other than blades, in ground axes.
 static void sample_tips(void *self, double t, double *value) {
     (void)t;
     const bough_simulation *s = self;
@@ -391,7 +392,7 @@ static void sample_control(void *self, double t, double *value) {
     }
 }
 
-// The measurements of a control law outside.
+// What a control law outside the program measures.
 static void sample_law(void *self, double t, double *value) {
     (void)t;
     const bough_simulation *s = self;

@@ -125,11 +125,11 @@ bough_rotor_place bough_simulation_rotor(const bough_simulation *s);
 // upright [rad].
 double bough_simulation_azimuth(const bough_simulation *s, const bough_beam *blade);
 
-// How the hub has turned about the shaft, and its speed: the sum of the joints about the rotor's axis between
-// the body that carries the rotor and the blades [rad], [rad/s].
+// Angle and speed of the hub about the shaft: sums over the joints about the rotor's axis between the body
+// that carries the rotor and the blades [rad], [rad/s].
 void bough_simulation_hub_turn(const bough_simulation *s, double *angle, double *speed);
 
-// The name of the body, or of the group of bodies, with that state of the assembly.
+// The name of the body, or of the group of bodies, to which row `row` of the assembly's states belongs.
 const char *bough_simulation_body_of(const bough_simulation *s, const bough_assembly *assembly, int row);
 
 // The pitch of a blade: its body's, and what its pitch joint adds, positive by −z [rad].

@@ -9,30 +9,32 @@
 #include <stdio.h>
 #include <string.h>
 
-// Incompressible polars err by a seventh in the slope of lift there.
+// Mach number of half: incompressible polars err by a seventh in the slope of lift there.
 static const double most_mach = 0.5, speed_of_sound = 340;
 static const double most_over_rated = 2;
-// Error of the loads relative to the loads: up to 0.1 at a sufficient rate, near 1 where their delay feeds
-// vibrations.
+// Largest error of the air's loads relative to them: it is up to 0.1 at a sufficient rate, near 1 where the
+// loads' delay feeds vibrations.
 static const double most_missed = 0.3;
-// Of the wind's range, by which it may go beyond both of the samples around it.
+// By this part of its range the wind may exceed both of the samples around it.
 static const double most_between = 0.05;
-// Of the rotor between two samples: what changes three times in a rotation is then seen twice in its period.
+// Largest rotation of the rotor between two samples: what changes three times in a rotation is then sampled
+// twice in its period.
 static const double most_rotation = BOUGH_PI / 3;
-// A segment has one strain, a coarse approximation beyond this angle; there is none beyond 120°.
+// Largest angle between the ends of a segment: it has one strain, a coarse approximation beyond, and none
+// beyond 120°.
 static const double most_turn = 0.25 * BOUGH_PI;
-// Of the length of a modal piece, by which its shapes may move a vertex: a cantilever whose tip goes that far
-// aside comes nearer to its root by 0.06 of the way, which shapes that are linear leave out.
+// By this part of its length the shapes of a modal piece may move a vertex: the tip of a cantilever that
+// deflects so far approaches the root by 0.06 of the deflection, which linear shapes leave out.
 static const double most_linear = 0.1;
-// Limits of bough_loops_margin, absolute and relative to the largest so far: on random linkages it stays
-// above 0.02 or above 0.03 of the largest, and falls to 1e-5 to 3e-3 where the links come to lie on one line.
+// Least bough_loops_margin, absolute and relative to the largest so far: on random linkages it stays above
+// 0.02 or above 0.03 of the largest, and falls to 1e-5 to 3e-3 where the links come to lie on one line.
 static const double least_margin = 0.01, least_share = 0.1;
 static const double most_open = 0.01;           // of the size of a closed loop
 static const double most_uneven = BOUGH_DEGREE; // of the gap between two blades
 // Cosine of the angle between axis and wind, 60°: beyond every yaw error of operation.
 static const double least_along = 0.5;
-// Steps of solvers in a macro step, and the work in such macro steps, steps times states, of which a hundred
-// count at least: some seconds.
+// Macro steps of so many solver steps are counted, and reported once their work, steps times states (a
+// hundred at least), takes some seconds.
 static const double many_steps = 100, most_work = 3e6;
 static const int least_states = 100;
 static const double small_turn = 0.98; // cosine of a quarter of most_turn
@@ -87,7 +89,7 @@ static const struct {
 const char *bough_limit_name(bough_limit limit) { return limits[limit].name; }
 
 // Notes that a limit is passed, if it is the first time.
-static void validity_pass(bough_validity *v, bough_limit limit, int body, double time, double value) {
+static void pass(bough_validity *v, bough_limit limit, int body, double time, double value) {
     if (v->limit[limit].passed) return;
     v->limit[limit] = (bough_passing){true, body, time, value};
 }
@@ -103,11 +105,11 @@ static void check_air(bough_simulation *s) {
         bough_rotor_extremes x = bough_rotor_look(rotor, data, b);
         int body = s->scene->turbine.blade[b];
         double angle = x.alpha / BOUGH_DEGREE, missed = bough_aero_link_missed(s->aero, b);
-        if (x.outside_table) validity_pass(v, BOUGH_LIMIT_ATTACK, body, time, angle);
-        if (x.speed > most_mach * speed_of_sound) validity_pass(v, BOUGH_LIMIT_MACH, body, time, x.speed);
+        if (x.outside_table) pass(v, BOUGH_LIMIT_ATTACK, body, time, angle);
+        if (x.speed > most_mach * speed_of_sound) pass(v, BOUGH_LIMIT_MACH, body, time, x.speed);
         bool modal = s->scene->body[body].fidelity != BOUGH_SCENE_ROD; // a rod damps between the samples
-        if (modal && missed > most_missed) validity_pass(v, BOUGH_LIMIT_SAMPLES, body, time, missed);
-        if (x.distance < 1) validity_pass(v, BOUGH_LIMIT_TOWER, body, time, x.distance);
+        if (modal && missed > most_missed) pass(v, BOUGH_LIMIT_SAMPLES, body, time, missed);
+        if (x.distance < 1) pass(v, BOUGH_LIMIT_TOWER, body, time, x.distance);
     }
 }
 
@@ -115,12 +117,11 @@ static double rotor_speed(const bough_simulation *s) {
     return bough_simulation_joint_point(s, s->scene->turbine.rotor).v;
 }
 
-// Run and companion may both see a blade at the same places of each rotation.
+// Beyond this rotation run and companion may both sample a blade at the same places of each rotation.
 static void check_rotation(bough_simulation *s) {
     double turned = fabs(rotor_speed(s)) / s->scene->aero.rate;
     if (turned <= most_rotation) return;
-    validity_pass(s->validity, BOUGH_LIMIT_ROTATION, s->scene->turbine.rotor, s->master->time,
-                  turned / BOUGH_DEGREE);
+    pass(s->validity, BOUGH_LIMIT_ROTATION, s->scene->turbine.rotor, s->master->time, turned / BOUGH_DEGREE);
 }
 
 static void check_speed(bough_simulation *s) {
@@ -130,7 +131,7 @@ static void check_speed(bough_simulation *s) {
     double speed = rotor_speed(s);
     double rated = control->law.rated_speed / control->gear_ratio;
     if (fabs(speed) <= most_over_rated * fabs(rated)) return;
-    validity_pass(s->validity, BOUGH_LIMIT_ROTOR_SPEED, rotor, s->master->time, speed / BOUGH_RPM);
+    pass(s->validity, BOUGH_LIMIT_ROTOR_SPEED, rotor, s->master->time, speed / BOUGH_RPM);
 }
 
 static double dot(bough_quaternion p, bough_quaternion q) {
@@ -161,17 +162,17 @@ static void check_turns(bough_simulation *s) {
         if (turn_little(m, bough_beam_state(s, beam, 0) + (size_t)BOUGH_ROD_P * (size_t)m->n)) continue;
         double turn = bough_simulation_bend(s, beam).angle;
         if (turn > most_turn)
-            validity_pass(s->validity, BOUGH_LIMIT_TURN, (int)(beam->body - s->scene->body), s->master->time,
-                          turn / BOUGH_DEGREE);
+            pass(s->validity, BOUGH_LIMIT_TURN, (int)(beam->body - s->scene->body), s->master->time,
+                 turn / BOUGH_DEGREE);
     }
 }
 
-// The largest way of a vertex over the length of the piece.
+// The largest displacement of a vertex over the length of the piece.
 static double deflection_of(const bough_modal_piece *p, const double *q) {
     double square = 0, length = 0;
     for (int i = 1; i <= p->n; i++) {
-        bough_vec3 way = bough_modal_vertex(p, i, q).linear;
-        square = fmax(square, bough_dot(way, way));
+        bough_vec3 shift = bough_modal_vertex(p, i, q).linear;
+        square = fmax(square, bough_dot(shift, shift));
         length += p->rod->length[i - 1];
     }
     return sqrt(square) / length;
@@ -185,8 +186,8 @@ static void check_shapes(bough_simulation *s) {
         for (int k = 0; k < m->n_piece; k++) {
             double deflection = deflection_of(&m->piece[k], s->rod[beam->port].state + m->offset[k]);
             if (deflection <= most_linear) continue;
-            validity_pass(s->validity, BOUGH_LIMIT_SHAPES, (int)(beam->body - s->scene->body),
-                          s->master->time, deflection);
+            pass(s->validity, BOUGH_LIMIT_SHAPES, (int)(beam->body - s->scene->body), s->master->time,
+                 deflection);
             break;
         }
     }
@@ -203,7 +204,7 @@ static void check_closures(bough_simulation *s) {
     v->margin = fmax(v->margin, margin);
     if (!(margin <= least_margin && margin <= least_share * v->margin)) return;
     const int *body = s->scene->closure[closure].body;
-    validity_pass(v, BOUGH_LIMIT_SINGULAR, body[body[0] == BOUGH_GROUND], t, margin);
+    pass(v, BOUGH_LIMIT_SINGULAR, body[body[0] == BOUGH_GROUND], t, margin);
 }
 
 // -- at the start ---------------------------------------------------------------------------------
@@ -229,14 +230,14 @@ static void check_rotor(bough_simulation *s) {
     bough_rotor_place r = bough_simulation_rotor(s);
     double gap = narrowest_gap(s);
     if (gap < 2 * BOUGH_PI / n - most_uneven) {
-        validity_pass(s->validity, BOUGH_LIMIT_SPACING, body, 0, gap / BOUGH_DEGREE);
+        pass(s->validity, BOUGH_LIMIT_SPACING, body, 0, gap / BOUGH_DEGREE);
     }
     if (!s->aero) return;
     bough_vec3 wind = bough_aero_link_hub_wind(s->aero, 0);
     double speed = sqrt(bough_dot(wind, wind)), along = bough_dot(wind, r.axis);
     if (along >= least_along * speed) return;
     double angle = acos(fmax(-1, along / speed));
-    validity_pass(s->validity, BOUGH_LIMIT_ACROSS, body, 0, angle / BOUGH_DEGREE);
+    pass(s->validity, BOUGH_LIMIT_ACROSS, body, 0, angle / BOUGH_DEGREE);
 }
 
 static void check_wind(bough_simulation *s) {
@@ -244,7 +245,7 @@ static void check_wind(bough_simulation *s) {
     bough_wind_missed missed =
         bough_wind_between(wind, 1 / s->scene->aero.rate, s->scene->simulation.duration);
     if (missed.speed <= most_between * missed.range) return;
-    validity_pass(s->validity, BOUGH_LIMIT_WIND, s->scene->turbine.rotor, missed.time, missed.speed);
+    pass(s->validity, BOUGH_LIMIT_WIND, s->scene->turbine.rotor, missed.time, missed.speed);
 }
 
 // Rods in a row are one rod: only a single one is coarse.
@@ -254,7 +255,7 @@ static void check_mesh(bough_simulation *s) {
         int parent = beam->body->joint.parent;
         bool in_row = beam->end >= 0 || (parent >= 0 && s->scene->body[parent].fidelity == BOUGH_SCENE_ROD);
         if (beam->port < 0 || in_row || beam->def.n_segment > 1) continue;
-        validity_pass(s->validity, BOUGH_LIMIT_MESH, (int)(beam->body - s->scene->body), 0, 1);
+        pass(s->validity, BOUGH_LIMIT_MESH, (int)(beam->body - s->scene->body), 0, 1);
     }
 }
 
@@ -262,6 +263,24 @@ void bough_validity_start(bough_simulation *s) {
     if (s->scene->turbine.node) check_rotor(s);
     if (s->aero) check_wind(s);
     check_mesh(s);
+}
+
+// The body of the name, or the first of the group of that name.
+static int find_body(const bough_scene *scene, const char *name) {
+    for (int i = 0; i < scene->n_body; i++)
+        if (strncmp(scene->body[i].name, name, strlen(scene->body[i].name)) == 0) return i;
+    return 0;
+}
+
+void bough_validity_check_equilibrium(bough_simulation *s) {
+    bough_growth growth;
+    const bough_assembly *a = s->master->assembly;
+    if (s->scene->simulation.initial == BOUGH_SCENE_UNDEFORMED) return;
+    bough_status status = bough_simulation_growth(s, a, 0, true, &growth);
+    double rate = fmax(growth.rate, growth.oscillation);
+    if (!bough_is_ok(&status) || !(rate > 0)) return;
+    int body = find_body(s->scene, bough_simulation_body_of(s, a, growth.row));
+    pass(s->validity, BOUGH_LIMIT_START, body, 0, rate);
 }
 
 // -- after each step ------------------------------------------------------------------------------
@@ -295,24 +314,6 @@ typedef struct fastest {
     int body; // of the scene
 } fastest;
 
-// The body of the name, or the first of the group of that name.
-static int find_body(const bough_scene *scene, const char *name) {
-    for (int i = 0; i < scene->n_body; i++)
-        if (strncmp(scene->body[i].name, name, strlen(scene->body[i].name)) == 0) return i;
-    return 0;
-}
-
-void bough_validity_check_equilibrium(bough_simulation *s) {
-    bough_growth growth;
-    const bough_assembly *a = s->master->assembly;
-    if (s->scene->simulation.initial == BOUGH_SCENE_UNDEFORMED) return;
-    bough_status status = bough_simulation_growth(s, a, 0, true, &growth);
-    double rate = fmax(growth.rate, growth.oscillation);
-    if (!bough_is_ok(&status) || !(rate > 0)) return;
-    int body = find_body(s->scene, bough_simulation_body_of(s, a, growth.row));
-    validity_pass(s->validity, BOUGH_LIMIT_START, body, 0, rate);
-}
-
 // The body whose state changes fastest, measured by the tolerance.
 static bough_status find_fastest(bough_arena *arena, void *self) {
     fastest *f = self;
@@ -342,8 +343,8 @@ void bough_validity_check_work(bough_simulation *s, double steps) {
     if (v->work < most_work) return;
     fastest f = {s, 0};
     bough_status status = bough_arena_use(find_fastest, &f);
-    (void)status; // no rate: the first body stands for the scene
-    validity_pass(v, BOUGH_LIMIT_STEPS, f.body, s->master->time, taken);
+    (void)status; // without a rate the first body is named
+    pass(v, BOUGH_LIMIT_STEPS, f.body, s->master->time, taken);
 }
 
 void bough_validity_describe(const bough_simulation *s, bough_limit limit, char *text, size_t size) {

@@ -33,10 +33,10 @@ typedef struct bough_passing {
 
 typedef struct bough_validity {
     bough_passing limit[BOUGH_LIMITS];
-    double looked; // time of the last sample of the air seen [s]
+    double looked; // time of the last sample of the air that was checked [s]
     double margin; // largest of the closed loops so far, see bough_loops_margin
-    double steps;  // of all solvers up to the last look
-    double work;   // steps in macro steps of very many steps, times states
+    double steps;  // of all solvers at the last check
+    double work;   // steps times states of the macro steps of very many steps so far
 } bough_validity;
 
 // Checks the model at the start, with `view` up to date.
