@@ -14,11 +14,10 @@ static const double tighter = 0.1;   // tolerance of IDA, relative: its errors a
 
 typedef struct automatic {
     bough_integrator rosenbrock, ida;
-    bool fast;  // IDA took the last macro step, and its history goes on
-    bool stays; // and it takes the next
-    double
-        work; // evaluations that the Rosenbrock method takes in a second, where it takes many steps; else 0
-    double lost; // the same when IDA took no fewer
+    bool fast;   // IDA took the last macro step: its history goes on
+    bool stays;  // IDA takes the next one
+    double work; // evaluations of the Rosenbrock method per time, where it takes many steps; else 0 [1/s]
+    double lost; // `work` when IDA last took no fewer [1/s]
 } automatic;
 
 static void *create(bough_arena *arena, const bough_ode *ode, const bough_integrator_options *options) {

@@ -9,9 +9,9 @@
 
 enum { STAGES = BOUGH_ROSENBROCK_STAGES, MOST_STEPS = 100000 };
 enum { YOUNG = 8 };        // age of tangents [steps] up to which a failed step keeps them
-enum { MOST_DRIFTED = 4 }; // the same of ∂f/∂t, and anew in every macro step
+enum { MOST_DRIFTED = 4 }; // steps with the same ∂f/∂t; every macro step finds it anew
 enum { MOST_AGE = 24 };    // steps with the same tangents; on a blade, up to 64 cost no accuracy
-enum { UNDAMPED_AGE = 2 }; // the same at the start, without damping
+enum { UNDAMPED_AGE = 2 }; // without damping, until the age is chosen by its effect
 
 static const double gamma_h = 0.4358665215084590; // γ
 static const double alpha[STAGES] = {0, 0.8717330430169180, 0.7315799577888524, 1};
@@ -22,13 +22,13 @@ static const double alpha[STAGES] = {0, 0.8717330430169180, 0.7315799577888524, 
 // length, −2e-4 for three times as much, which tangents of every step have too.
 static const double least_viscosity = 0.03; // [-]
 static const double most_change = 0.002;    // [-]
-// A step whose error is greater than this multiple of that of the last step with new tangents, by the third
-// power of its length, fails because they are old: a member that turns fast changes them within a few steps.
+// A step fails because its tangents are old where its error exceeds this multiple of the last one under new
+// tangents, both over the third power of the length: tangents of a member that rotates fast last a few steps.
 static const double too_old = 3;
-// The same of a step that does not fail, against the least with these tangents, and above this part of the
-// tolerance: a stiff body that turns moves what carries it.
+// They are renewed after a step that succeeds, too, where its error exceeds this multiple of the least under
+// these tangents and this part of the tolerance: a stiff body that rotates moves what carries it.
 static const double turned = 10, noticed = 0.03;
-static const double older = 1.1;     // they may grow at each renewal, until a step fails again
+static const double older = 1.1;     // growth of the useful age at each renewal, until a step fails again
 static const double rounding = 1e-9; // of times and steps that are meant to be equal, relative
 
 typedef struct rosenbrock {
@@ -38,13 +38,13 @@ typedef struct rosenbrock {
     double *weight;             // 1/tolerance of each state (n)
     double step;                // longest [s]
     int most_steps;             // in a macro step, and after a fifth of them their number is foreseen
-    double longest;             // step allowed next [s]
+    double longest;             // the next step may have [s]
     double factored;            // γh of the factors; 0: none
-    int kept;                   // steps with the same tangents at most
-    double useful;              // the same, less where steps have failed by the age of the tangents
-    double new_error;           // of the last step with new tangents, over h³ [s⁻³]
-    double least;               // error of the steps since the tangents were found
-    int age, most_age;          // steps since the tangents were found, and after which they are renewed
+    int kept;                   // most steps with the same tangents
+    double useful;     // useful age of tangents: less than `kept` after steps that failed by their age
+    double new_error;  // of the last step with new tangents, over h³ [s⁻³]
+    double least;      // error of the steps since the tangents were found
+    int age, most_age; // steps since the tangents were found, and after which they are renewed
     bool started;
     int drifted;               // steps since ∂f/∂t was found
     bough_rosenbrock_step now; // the step in progress

@@ -10,7 +10,7 @@
 #include <math.h>
 #include <string.h>
 
-// Of an event. Doubles only.
+// What an event has found when it happened. Doubles only: a copy has no padding.
 typedef struct event_state {
     double happened; // 0: not yet
     double since;    // [s]
@@ -22,7 +22,7 @@ typedef struct event_state {
 
 enum { BLADES = BOUGH_MOST_BLADES, MOST_EVENTS = 8 };
 
-// Doubles only.
+// What the next samples depend on. Doubles only: a copy has no padding.
 typedef struct memory {
     bough_controller_state law;
     double torque;                          // of the generator, reached at the next sample [N m]
