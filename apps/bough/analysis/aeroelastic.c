@@ -542,7 +542,7 @@ bough_status bough_aeroelastic_modes(bough_arena *arena, const bough_aeroelastic
     take(arena, &w);
     bough_status status = bough_whole_setup(system->whole, def->time, def->state, def->input, 1 / def->point);
     if (!bough_is_ok(&status)) return bough_fail(BOUGH_FAILED, "%s", status.message);
-    w.inverse = bough_air_inverse_create(arena, system, w.m > 0);
+    w.inverse = bough_air_inverse_create(arena, system);
     if (w.inverse == NULL)
         return bough_fail(BOUGH_FAILED, "the motion in the air is singular about %g /s", def->point);
     if (w.m > 0) return follow_memory(arena, &w, pair, count, vector, unpaired);

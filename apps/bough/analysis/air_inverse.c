@@ -1,136 +1,290 @@
-// theory (77). The matrix is dense where the air couples states, the members' own part of its inverse is not:
-// a solution is one by the members' factors, then one by the dense factors of what the air and the rotation
-// add. Where left vectors and forces of the air are solutions, too, the inverse is one matrix.
+// theory (77, 109). Of equal blades what couples them is in blade_inverse.h and all other states border it;
+// else all are others.
 #include "apps/bough/analysis/air_inverse.h"
 
-#include "apps/bough/analysis/rotor_inverse.h"
+#include "apps/bough/analysis/blade_inverse.h"
 #include "core/base/linalg.h"
 
+#include <math.h>
 #include <string.h>
-
-enum { CHUNK = 64 }; // columns of a product
 
 // A joint that nothing holds moves on at its speed: the eigenvalue 0 twice, with one vector. Joints'
 // coordinates that go back this slowly, against the point, have two.
 static const double going_back = 1e-6;
 
-struct bough_air_inverse {
-    const bough_aeroelastic *system;
-    int n;
-    bough_rotor_inverse *rotor; // NULL: dense, as follows
-    bool is_matrix;             // `inverse` is the whole inverse
-    double *inverse;            // P = (I − γJ)⁻¹ (n × n), column-major as all; then T⁻¹ P
-    double *factor;             // T (n × n), factored
-    int *pivot;                 // (n)
-    double *rate;               // S (n_part × n_part), row-major
-};
+// The blades' own parts of P differ with their loads, and so does the system with the azimuth. Where a test
+// vector misses the equations by no more, relative, their mean stands for them. Its transpose is exact.
+static const double alike = 1e-4, exact = 1e-9;
 
-static void take(bough_arena *arena, bough_air_inverse *w) {
-    size_t n = (size_t)w->n, parts = (size_t)w->system->def->n_part;
-    w->pivot = bough_arena_take(arena, n * sizeof *w->pivot);
-    bough_arena_each(arena, n * n, &w->inverse, &w->factor);
-    w->rate = bough_arena_doubles(arena, parts * parts + 1);
+enum { MOST = 64 }; // vectors at once
+
+static size_t square(int n) { return (size_t)n * (size_t)n; }
+
+// All but the states of the blades and those that are held. False where a blade's is held.
+static bool find_others(bough_arena *arena, bough_air_inverse *x) {
+    const bough_modes_def *def = x->system->def;
+    const bough_whole *whole = x->system->whole;
+    bool *taken = bough_arena_take(arena, (size_t)x->n * sizeof *taken);
+    x->other = bough_arena_take(arena, ((size_t)x->n + 1) * sizeof *x->other);
+    for (int i = 0; i < x->n_part * x->r; i++) taken[def->row[i]] = true;
+    for (int i = 0; i < whole->n_held; i++) {
+        if (taken[whole->held[i]]) return false;
+        taken[whole->held[i]] = true;
+    }
+    for (int i = 0; i < x->n; i++)
+        if (!taken[i]) x->other[x->n_other++] = i;
+    return true;
 }
 
-static void solve_members(const bough_air_inverse *w, double *x) {
-    bough_whole_solve(w->system->whole, x);
-    bough_whole_project(w->system->whole, w->system->def->state, x);
+// c (columns × m) += factor Σ aᵀ b over the harmonics, a (n_part × m × r), b (n_part × columns × r).
+static void add_products(const bough_air_inverse *x, int m, const double *a, int columns, const double *b,
+                         double *c) {
+    for (int p = 0; p < x->n_part; p++)
+        bough_dense_product((bough_product){m, columns, x->r, true, 1, 1}, a + (size_t)(p * m) * (size_t)x->r,
+                            b + (size_t)(p * columns) * (size_t)x->r, c);
 }
 
-static void invert_members(bough_air_inverse *w) {
-    size_t n = (size_t)w->n;
-    for (size_t j = 0; j < n; j++) {
-        w->inverse[j * n + j] = 1;
-        solve_members(w, w->inverse + j * n);
+// c (n_part × columns × r) += a b, a (n_part × n_other × r), b (columns × n_other).
+static void spread(const bough_air_inverse *x, const double *a, int columns, const double *b, double *c) {
+    for (int p = 0; p < x->n_part; p++)
+        bough_dense_product((bough_product){x->r, columns, x->n_other, false, 1, 1},
+                            a + (size_t)(p * x->n_other) * (size_t)x->r, b,
+                            c + (size_t)(p * columns) * (size_t)x->r);
+}
+
+// -- the parts of P and of N = γ (S − A) ----------------------------------------------------------
+
+// Columns of P: P_oo, and P_bo into x->to, by z (n_other × n).
+static void set_columns(const bough_air_inverse *x, double *z) {
+    size_t n = (size_t)x->n, n_other = (size_t)x->n_other;
+    for (size_t j = 0; j < n_other; j++) {
+        double *column = z + (x->blades ? j * n : 0);
+        memset(column, 0, n * sizeof *column);
+        column[x->other[j]] = 1;
+        bough_whole_solve(x->system->whole, column);
+        // unlike blades do not turn lengths of quaternions into lengths
+        if (!x->blades) bough_whole_project(x->system->whole, x->system->def->state, column);
+        for (size_t i = 0; i < n_other; i++) x->others[j * n_other + i] = column[x->other[i]];
+    }
+    if (x->blades) bough_blade_inverse_gather(x->blades, x->n_other, z, x->to);
+}
+
+// Yᵀ into x->from: what forces on the blades do to the others, P_oo⁻¹ P_ob.
+static bool set_rows(bough_arena *arena, const bough_air_inverse *x, double *z) {
+    size_t n = (size_t)x->n, n_other = (size_t)x->n_other, all = (size_t)(x->n_part * x->r);
+    const int *row = x->system->def->row;
+    int *pivot = bough_arena_take(arena, (n_other + 1) * sizeof *pivot);
+    double *column = bough_arena_doubles(arena, n), *y = bough_arena_doubles(arena, all * n_other + 1);
+    for (size_t j = 0; j < all; j++) {
+        memset(column, 0, n * sizeof *column);
+        column[row[j]] = 1;
+        bough_whole_solve(x->system->whole, column);
+        for (size_t i = 0; i < n_other; i++) y[j * n_other + i] = column[x->other[i]];
+    }
+    double *factor = bough_arena_copy(arena, x->others, square(x->n_other) * sizeof *factor);
+    if (!bough_dense_factor(x->n_other, factor, pivot)) return false;
+    bough_dense_solve(x->n_other, (int)all, factor, pivot, y);
+    for (size_t k = 0; k < all * n_other; k++) z[k % n_other * n + (size_t)row[k / n_other]] = y[k];
+    bough_blade_inverse_gather(x->blades, x->n_other, z, x->from);
+    return true;
+}
+
+// N_oo, with what holds free joints and, where the blades are among the others, their rotation.
+static void set_among(bough_arena *arena, const bough_air_inverse *x, double *among) {
+    const bough_modes_def *def = x->system->def;
+    size_t n = (size_t)x->n, n_other = (size_t)x->n_other;
+    int *place = bough_arena_take(arena, n * sizeof *place);
+    double *rate = bough_arena_doubles(arena, square(def->n_part) + 1);
+    for (size_t j = 0; j < n_other; j++) {
+        const double *column = x->system->air->motion + (size_t)x->other[j] * n;
+        place[x->other[j]] = (int)j;
+        for (size_t i = 0; i < n_other; i++) among[j * n_other + i] = -x->gamma * column[x->other[i]];
+        if (x->other[j] < x->system->simulation->tree->n_q) among[j * n_other + j] += going_back;
+    }
+    if (x->blades || def->spin == 0) return;
+    bough_modes_rate(def, rate);
+    for (int k = 0; k < def->n_part * def->n_part; k++) {
+        const int *to = def->row + k / def->n_part * def->n_row,
+                  *from = def->row + k % def->n_part * def->n_row;
+        for (int j = 0; j < def->n_row; j++)
+            among[place[from[j]] * x->n_other + place[to[j]]] += x->gamma * rate[k];
     }
 }
 
-// Column `to` += factor P e_from
-static void add_column(bough_air_inverse *w, size_t to, size_t from, double factor) {
-    const double *restrict column = w->inverse + from * (size_t)w->n;
-    double *restrict sum = w->factor + to * (size_t)w->n;
-    for (int i = 0; i < w->n; i++) sum[i] += factor * column[i];
-}
-
-// γ P S of the members
-static void add_spin(bough_air_inverse *w) {
-    const bough_modes_def *def = w->system->def;
-    for (int k = 0; k < def->n_part; k++) {
-        for (int l = 0; l < def->n_part; l++) {
-            double factor = w->rate[k * def->n_part + l] / def->point;
-            for (int j = 0; j < def->n_row && factor != 0; j++)
-                add_column(w, (size_t)def->row[l * def->n_row + j], (size_t)def->row[k * def->n_row + j],
-                           factor);
+// N_bo or N_obᵀ, by z (n_other × n).
+static void set_border(const bough_air_inverse *x, bool transposed, double *z, double *border) {
+    const double *a = x->system->air->motion;
+    const int *row = x->system->def->row;
+    size_t n = (size_t)x->n;
+    for (size_t j = 0; j < (size_t)x->n_other; j++) {
+        size_t other = (size_t)x->other[j];
+        for (int k = 0; k < x->n_part * x->r; k++) {
+            size_t blade = (size_t)row[k];
+            z[j * n + blade] = -x->gamma * a[transposed ? blade * n + other : other * n + blade];
         }
     }
+    bough_blade_inverse_gather(x->blades, x->n_other, z, border);
 }
 
-// −= γ P A, some columns at a time: the rows of these that are not 0, and the columns of P for them.
-static void subtract_forces(bough_arena *arena, bough_air_inverse *w, const double *a) {
-    size_t n = (size_t)w->n;
-    int *row = bough_arena_take(arena, n * sizeof *row);
-    double *inverse = bough_arena_doubles(arena, n * n), *force = bough_arena_doubles(arena, n * CHUNK),
-           *product = bough_arena_doubles(arena, n * CHUNK);
-    for (int begin = 0; begin < w->n; begin += CHUNK) {
-        int width = w->n - begin < CHUNK ? w->n - begin : CHUNK, rows = 0;
-        const double *column = a + (size_t)begin * n;
-        for (size_t i = 0; i < n; i++) {
-            bool used = false;
-            for (size_t j = 0; j < (size_t)width && !used; j++) used = column[j * n + i] != 0;
-            if (used) row[rows++] = (int)i;
-        }
-        for (size_t k = 0; k < (size_t)rows; k++) {
-            memcpy(inverse + k * n, w->inverse + (size_t)row[k] * n, n * sizeof *inverse);
-            for (size_t j = 0; j < (size_t)width; j++)
-                force[j * (size_t)rows + k] = column[j * n + (size_t)row[k]];
-        }
-        bough_product p = {w->n, width, rows, false, -1 / w->system->def->point, 0};
-        bough_dense_product(p, inverse, force, product);
-        double *to = w->factor + (size_t)begin * n;
-        for (size_t i = 0; i < n * (size_t)width; i++) to[i] += product[i];
+// W = P_bo − D (N_bb P_bo + N_bo P_oo), V = Y − R D with R = Y N_bb + N_ob, and K = E + R W + (Y N_bo + N_oo)
+// P_oo, of which `among` is N_oo.
+static bool set_blades(bough_arena *arena, const bough_air_inverse *x, double *z, double *among, double *k) {
+    int n = x->n_other;
+    size_t all = (size_t)(x->n_part * x->r) * (size_t)n + 1;
+    double *onto, *sources, *force, *image, *work = bough_arena_doubles(arena, 2 * all);
+    bough_arena_each(arena, all, &onto, &sources, &force, &image);
+    if (!set_rows(arena, x, z)) return false;
+    set_border(x, false, z, onto);
+    set_border(x, true, z, sources);
+    // W
+    spread(x, onto, n, x->others, force);
+    bough_blade_inverse_force(x->blades, false, n, x->to, work, force);
+    bough_blade_inverse_apply(x->blades, false, n, force, work, image);
+    for (size_t i = 0; i < all; i++) x->to[i] -= image[i];
+    // R and V
+    add_products(x, n, x->from, n, onto, among);
+    bough_blade_inverse_force(x->blades, true, n, x->from, work, sources);
+    bough_blade_inverse_apply(x->blades, true, n, sources, work, image);
+    for (size_t i = 0; i < all; i++) x->from[i] -= image[i];
+    add_products(x, n, sources, n, x->to, k);
+    return true;
+}
+
+static bool set(bough_arena *arena, const bough_air_inverse *x) {
+    int n = x->n_other, *pivot = bough_arena_take(arena, ((size_t)n + 1) * sizeof *pivot);
+    double *among, *k, *z = bough_arena_doubles(arena, (size_t)x->n * (x->blades ? (size_t)n + 1 : 1));
+    bough_arena_each(arena, square(n) + 1, &among, &k);
+    set_columns(x, z);
+    set_among(arena, x, among);
+    if (x->blades && !set_blades(arena, x, z, among, k)) return false;
+    bough_dense_product((bough_product){n, n, n, false, 1, 1}, among, x->others, k);
+    for (size_t i = 0; i < square(n); i += (size_t)n + 1) k[i] += 1, x->inverse[i] = 1;
+    if (!bough_dense_factor(n, k, pivot)) return false;
+    bough_dense_solve(n, n, k, pivot, x->inverse);
+    return true;
+}
+
+// -- test -----------------------------------------------------------------------------------------
+
+// z − γ (S − A) y − going_back y, y by the inverse: the forces of which y is the solution.
+static void find_force(bough_arena *arena, const bough_air_inverse *x, const double *y, double *z) {
+    const bough_modes_def *def = x->system->def;
+    double *rate = bough_arena_doubles(arena, square(def->n_part));
+    bough_dense_product((bough_product){x->n, 1, x->n, false, x->gamma, 1}, x->system->air->motion, y, z);
+    if (def->spin != 0) bough_modes_rate(def, rate);
+    for (int k = 0; k < def->n_part * def->n_part; k++) {
+        const int *to = def->row + k / def->n_part * def->n_row,
+                  *from = def->row + k % def->n_part * def->n_row;
+        for (int j = 0; j < def->n_row; j++) z[to[j]] -= x->gamma * rate[k] * y[from[j]];
+    }
+    for (int i = 0; i < x->system->simulation->tree->n_q; i++) z[i] -= going_back * y[i];
+}
+
+// Whether one vector's image solves the equations of the whole, and the transpose is one.
+static bool is_exact(bough_arena *arena, bough_air_inverse *x) {
+    const bough_whole *whole = x->system->whole;
+    double *scale, *z, *y, *left, *image, error = 0, size = 0, product = 0, both = 0;
+    bough_arena_each(arena, (size_t)x->n, &scale, &z, &y, &left, &image);
+    bough_assembly_scales(whole->assembly, scale);
+    for (int i = 0; i < x->n; i++) z[i] = scale[i] * sin(1 + 7.3 * i), left[i] = cos(2 + 5.1 * i) / scale[i];
+    bough_whole_project(whole, x->system->def->state, z);
+    bough_air_inverse_apply(x, false, 1, z, y);
+    bough_air_inverse_apply(x, true, 1, left, image);
+    for (int i = 0; i < x->n; i++) {
+        product += left[i] * y[i] - image[i] * z[i];
+        both += fabs(left[i] * y[i]);
+    }
+    find_force(arena, x, y, z);
+    bough_whole_solve(x->system->whole, z);
+    bough_whole_project(whole, x->system->def->state, z);
+    for (int i = 0; i < x->n; i++) {
+        error = fmax(error, fabs(z[i] - y[i]) / scale[i]);
+        size = fmax(size, fabs(y[i]) / scale[i]);
+    }
+    return error <= alike * size && fabs(product) <= exact * both;
+}
+
+// -- whole ----------------------------------------------------------------------------------------
+
+// NULL: singular, or the blades are not alike.
+static bough_air_inverse *create(bough_arena *arena, const bough_aeroelastic *system,
+                                 const bough_blade_inverse *blades) {
+    bough_air_inverse *x = bough_arena_take(arena, sizeof *x);
+    *x = (bough_air_inverse){
+        .system = system, .n = system->air->n, .gamma = 1 / system->def->point, .blades = blades};
+    if (blades) x->n_part = system->def->n_part, x->r = system->def->n_row;
+    if (!find_others(arena, x)) return NULL;
+    size_t all = (size_t)(x->n_part * x->r), n_other = (size_t)x->n_other;
+    bough_arena_each(arena, all * n_other + 1, &x->from, &x->to);
+    bough_arena_each(arena, n_other * n_other + 1, &x->others, &x->inverse);
+    bough_arena_each(arena, all * MOST + 1, &x->argument, &x->image);
+    x->work = bough_arena_doubles(arena, 2 * all * MOST + 1);
+    bough_arena_each(arena, n_other * MOST + 1, &x->force, &x->moved);
+    bough_arena *own = bough_arena_child(arena);
+    bool good = set(own, x) && (!blades || is_exact(own, x));
+    bough_arena_destroy(own);
+    return good ? x : NULL;
+}
+
+bough_air_inverse *bough_air_inverse_create(bough_arena *arena, const bough_aeroelastic *system) {
+    const bough_blade_inverse *blades = bough_blade_inverse_create(arena, system);
+    bough_air_inverse *x = blades ? create(arena, system, blades) : NULL;
+    return x ? x : create(arena, system, NULL);
+}
+
+// The others' entries of vectors (n × n_state).
+static void gather(const bough_air_inverse *x, int n, const double *z, double *force) {
+    for (int c = 0; c < n; c++) {
+        for (int i = 0; i < x->n_other; i++)
+            force[c * x->n_other + i] = z[(size_t)c * (size_t)x->n + (size_t)x->other[i]];
     }
 }
 
-static bool factor(bough_arena *arena, bough_air_inverse *w) {
-    const bough_aeroelastic *x = w->system;
-    size_t n = (size_t)w->n;
-    invert_members(w);
-    for (size_t j = 0; j < n; j++) w->factor[j * n + j] = 1;
-    for (size_t j = 0; j < (size_t)x->simulation->tree->n_q; j++) add_column(w, j, j, going_back);
-    if (x->def->spin != 0) {
-        bough_modes_rate(x->def, w->rate);
-        add_spin(w);
+static void scatter(const bough_air_inverse *x, int n, const double *force, double *z) {
+    for (int c = 0; c < n; c++) {
+        for (int i = 0; i < x->n_other; i++)
+            z[(size_t)c * (size_t)x->n + (size_t)x->other[i]] = force[c * x->n_other + i];
     }
-    subtract_forces(arena, w, x->air->motion);
-    return bough_dense_factor(w->n, w->factor, w->pivot);
 }
 
-bough_air_inverse *bough_air_inverse_create(bough_arena *arena, const bough_aeroelastic *system,
-                                            bool transposed) {
-    bough_air_inverse *w = bough_arena_take(arena, sizeof *w);
-    *w = (bough_air_inverse){.system = system, .n = system->air->n};
-    w->rotor = bough_rotor_inverse_create(arena, system, going_back);
-    if (w->rotor) return w;
-    take(arena, w);
-    if (!factor(arena, w)) return NULL;
-    w->is_matrix = transposed;
-    if (transposed) bough_dense_solve(w->n, w->n, w->factor, w->pivot, w->inverse);
-    return w;
+static void project(const bough_air_inverse *x, int n, double *z) {
+    for (int c = 0; c < n; c++)
+        bough_whole_project(x->system->whole, x->system->def->state, z + (size_t)c * (size_t)x->n);
 }
 
-// T⁻¹ P z by the factors.
-static void solve(const bough_air_inverse *w, int n, const double *z, double *image) {
-    size_t length = (size_t)w->n;
-    memcpy(image, z, length * (size_t)n * sizeof *image);
-    for (size_t k = 0; k < (size_t)n; k++) solve_members(w, image + k * length);
-    bough_dense_solve(w->n, n, w->factor, w->pivot, image);
+// g ← P_oo g or K⁻¹ g, or by the transpose.
+static void multiply_others(const bough_air_inverse *x, const double *matrix, bool transposed, int n) {
+    bough_product p = {x->n_other, n, x->n_other, transposed, 1, 0};
+    bough_dense_product(p, matrix, x->force, x->moved);
+    memcpy(x->force, x->moved, (size_t)n * (size_t)x->n_other * sizeof *x->force);
 }
 
-void bough_air_inverse_apply(bough_air_inverse *w, bool transposed, int n, const double *z, double *image) {
-    if (w->rotor)
-        bough_rotor_inverse_apply(w->rotor, transposed, n, z, image);
-    else if (w->is_matrix)
-        bough_dense_product((bough_product){w->n, n, w->n, transposed, 1, 0}, w->inverse, z, image);
-    else
-        solve(w, n, z, image);
+// theory (109): y_b = D z_b + W g, y_o = P_oo g, K g = V z_b + z_o, then projected. The transpose takes the
+// steps in the other order: y_b = Dᵀ z_b + Vᵀ g, y_o = g, Kᵀ g = Wᵀ z_b + P_ooᵀ z_o; the projection is its
+// own.
+static void apply(const bough_air_inverse *x, bool transposed, int n, const double *z, double *image) {
+    memcpy(image, z, (size_t)n * (size_t)x->n * sizeof *image);
+    if (transposed) project(x, n, image);
+    gather(x, n, image, x->force);
+    if (transposed) multiply_others(x, x->others, true, n);
+    // g from the blades, then the blades' own part and that from g
+    if (x->blades) {
+        bough_blade_inverse_gather(x->blades, n, image, x->argument);
+        add_products(x, x->n_other, transposed ? x->to : x->from, n, x->argument, x->force);
+        bough_blade_inverse_apply(x->blades, transposed, n, x->argument, x->work, x->image);
+    }
+    multiply_others(x, x->inverse, transposed, n);
+    spread(x, transposed ? x->from : x->to, n, x->force, x->image);
+    if (!transposed) multiply_others(x, x->others, false, n);
+    memset(image, 0, (size_t)n * (size_t)x->n * sizeof *image); // what is held stays at rest
+    if (x->blades) bough_blade_inverse_scatter(x->blades, n, x->image, image);
+    scatter(x, n, x->force, image);
+    if (!transposed) project(x, n, image);
+}
+
+void bough_air_inverse_apply(bough_air_inverse *x, bool transposed, int n, const double *z, double *image) {
+    for (int begin = 0; begin < n; begin += MOST) {
+        size_t at = (size_t)begin * (size_t)x->n;
+        apply(x, transposed, n - begin < MOST ? n - begin : MOST, z + at, image + at);
+    }
 }
