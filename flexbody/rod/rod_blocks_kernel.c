@@ -1,6 +1,6 @@
-// The tangents of segments and vertices put into blocks, for factors, statics and eigenvalues. In
-// tangents eight segments lie side by side, a block wants its entries together: eight vertices at a
-// time, the entries of a row are gathered in a tile, a vertex to each lane, and the tile is turned.
+// The tangents of segments and vertices put into blocks, for factors, statics and eigenvalues. Tangents have
+// eight segments side by side, a block has its entries together: for eight vertices at a time, the entries of
+// a row are gathered in a tile, one vertex in each lane, and the tile is transposed.
 #include "flexbody/rod/rod_kernels.h"
 #include "flexbody/rod/rod_tangent_layout.h"
 

@@ -4,7 +4,7 @@
 
 #include <string.h>
 
-// Vertices that move as the input says: the root, and the last one of a rod that carries bodies.
+// Vertices whose motion is an input: the root, and the last one of a rod that carries bodies.
 static void gather_input(const bough_rod_model *m, const double *input, bough_rod_scratch *scratch) {
     int s = m->stride;
     double *vertex = scratch->vertex;

@@ -189,7 +189,7 @@ static void integrate_stretch(const stretch *x, double from, double to) {
 
 void bough_section_integrate(const bough_section_axis *a, double from, double to, bough_section_visitor visit,
                              void *context) {
-    // piece by piece between stations; beyond the last one the last interval goes on
+    // piece by piece between stations; the last interval continues beyond the last station
     for (int k = 0; k < a->n && from < to; k++) {
         double end = k + 1 < a->n ? a->arc[k + 1] : to;
         if (end <= from) continue;

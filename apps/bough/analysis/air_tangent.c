@@ -316,8 +316,8 @@ static bough_status follow_some(blades *b, const double *state, int n, const int
     return bough_ok();
 }
 
-// States of one kind along the blade, n of them from `first` on, `stride` apart: as many at once as are
-// apart.
+// States of one kind along the blade, n of them from `first` on, `stride` apart: those that share no loads
+// are changed at once.
 static bough_status follow_along(bough_arena *arena, blades *b, const double *state, int first, int stride,
                                  int n, bough_air_tangent *t) {
     bool *done = bough_arena_take(arena, (size_t)n * sizeof *done);

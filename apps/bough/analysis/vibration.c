@@ -388,11 +388,11 @@ static bool has_other_mesh(const bough_scene *scene, const bough_scene *other) {
     return false;
 }
 
-// Motions that decay without swinging, which crowd at the rates of the damping, are not compared, nor is what
-// is no eigenvector.
+// Motions that decay without oscillating are not compared, because many have nearly one rate, nor are vectors
+// with a large residual.
 static bool is_compared(const bough_scene_mode *mode) {
-    bool swings = mode->damped_frequency > 0.01 * mode->frequency;
-    return (swings || mode->growth > 0) && mode->residual < 0.01;
+    bool oscillates = mode->damped_frequency > 0.01 * mode->frequency;
+    return (oscillates || mode->growth > 0) && mode->residual < 0.01;
 }
 
 // Distance of the eigenvalues relative to that of a.

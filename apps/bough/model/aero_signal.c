@@ -168,7 +168,7 @@ static void take_slope(bough_aero_signal *s, bough_aero_fresh fresh, bough_aero_
     double *restrict slope = s->slope;
 #pragma omp simd
     for (int k = 0; k < BOUGH_SLOPES * n; k++) slope[k] = fresh.factor * fresh.slope[k];
-    for (int c = 0; c < BOUGH_SLOPES; c++) { // what moves as the input says is no state of the rod
+    for (int c = 0; c < BOUGH_SLOPES; c++) { // vertices moved by inputs are no states
         slope[c * n] = 0;
         if (s->beam->rod && bough_rod_carries(s->beam->mesh)) slope[c * n + n - 1] = 0;
     }

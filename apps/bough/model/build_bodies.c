@@ -244,7 +244,7 @@ bough_status bough_build_beam(bough_arena *arena, bough_beam *beam, bough_integr
 // -- whole ----------------------------------------------------------------------------------------
 
 bough_status bough_build_bodies(bough_builder *b) {
-    for (int i = 0; i < b->scene->n_body; i++) { // bodies hang on beams that stand already
+    for (int i = 0; i < b->scene->n_body; i++) { // beams first: bodies hang on their ends
         if (b->scene->body[i].rod.node == NULL) continue;
         BOUGH_TRY(add_beam(b, i));
     }

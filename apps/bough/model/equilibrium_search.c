@@ -272,7 +272,7 @@ bough_equilibrium_def bough_equilibrium_search_def(bough_equilibrium_search *x) 
     def.self = x;
     def.move = bough_equilibrium_search_move;
     if (x->rests || def.kinetic) def.rest = bough_equilibrium_search_rest;
-    // of a steady rotation it tells nothing
+    // a steady rotation keeps its kinetic energy: no criterion
     if (bough_equilibrium_search_turns(x)) def.kinetic = NULL;
     return def;
 }

@@ -17,7 +17,7 @@ static bough_rod_reach reach_of(const bough_scene_load *load, const bough_rod_mo
     return (bough_rod_reach){m->span[m->n_segment], m->span[m->n_segment]};
 }
 
-// Force and moment in the axes that the rod wants.
+// Force and moment in the axes in which the rod takes them.
 static void resolve(const bough_simulation *s, const bough_beam *beam, const bough_scene_load *load,
                     const double *f, const double *l, double wrench[6]) {
     bough_vec3 force = {f[0], f[1], f[2]}, moment = {l[0], l[1], l[2]};

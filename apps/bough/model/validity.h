@@ -48,7 +48,7 @@ void bough_validity_check_equilibrium(bough_simulation *s);
 // Checks the state after a step, without changing a result.
 void bough_validity_check(bough_simulation *s);
 
-// BOUGH_FAILED where a closed loop has come apart.
+// BOUGH_FAILED where a closed loop is open.
 bough_status bough_validity_check_closed(bough_simulation *s);
 
 // Notes macro steps of very many steps; `steps` of all solvers since the process began.
