@@ -135,21 +135,23 @@ static double largest_of(const bough_companion *c, const double *error) {
     return v.channel < 0 ? 0 : v.relative;
 }
 
-static const double much_less = 0.5; // of what a companion that has lost the solution shows
+static const double hardly = 0.25; // of the mesh's error
 
-// Whether the mesh causes the error and nothing else is to be known.
+// Whether the mesh causes the error and nothing else is to be known. The rest is to be much less: a run
+// beside a coupled one is monolithic, and what both err by may cancel.
 static bool is_by_mesh(const finding *x) {
     const bough_companion *c = x->companion;
     const bough_scene_simulation *s = &c->run->scene->simulation;
     const bough_error_share *mesh = &x->shares->share[BOUGH_SHARE_MESH];
-    if (s->error_shares || c->flutters || c->reason[0]) return false;
-    return largest_of(c, mesh->others) <= fmin(s->error_bound, largest_of(c, mesh->largest));
+    if (s->error_shares || mesh->unknown[0] || c->flutters || c->reason[0]) return false;
+    return largest_of(c, mesh->others) <= fmin(s->error_bound, hardly * largest_of(c, mesh->largest));
 }
 
 // The mesh first: that run is the cheapest, and often says all.
 static bough_status find(finding *x) {
     const bough_companion *c = x->companion;
-    bough_error_share *share = x->shares->share, *mesh = &share[BOUGH_SHARE_MESH];
+    bough_error_share *share = x->shares->share;
+    bough_error_share *mesh = &share[BOUGH_SHARE_MESH], *time = &share[BOUGH_SHARE_TIME];
     size_t size = (size_t)x->shares->n_channel * sizeof(double);
     bool air = has_part(c->run->scene, BOUGH_SHARE_AIR);
     BOUGH_TRY(find_share(x, BOUGH_SHARE_MESH));
@@ -157,22 +159,24 @@ static bough_status find(finding *x) {
         memcpy(share[BOUGH_SHARE_TIME].largest, c->error, size);
         return bough_ok();
     }
-    // of two parts each is what the other leaves, unless a lost companion may be replaced
-    bool open = x->lost && largest_of(c, mesh->others) <= much_less * largest_of(c, c->error);
-    bool two = !air && !c->reason[0] && !open;
-    if (!mesh->unknown[0] && (two || is_by_mesh(x))) {
-        memcpy(share[BOUGH_SHARE_TIME].largest, mesh->others, size);
-        memcpy(share[BOUGH_SHARE_TIME].others, mesh->largest, size);
-        unknown(&share[BOUGH_SHARE_AIR], air ? "it is in that of time" : "the scene has no air");
-        return bough_ok();
+    bool alone = is_by_mesh(x);
+    if (!alone) BOUGH_TRY(find_share(x, BOUGH_SHARE_AIR));
+    if (!alone) BOUGH_TRY(find_share(x, BOUGH_SHARE_TIME));
+    // of two parts each is what the other leaves
+    bool other_fails = !air && !c->reason[0] && time->unknown[0] && !mesh->unknown[0];
+    if (alone || other_fails) {
+        memcpy(time->largest, mesh->others, size);
+        memcpy(time->others, mesh->largest, size);
+        time->unknown[0] = '\0';
     }
-    BOUGH_TRY(find_share(x, BOUGH_SHARE_AIR));
-    return find_share(x, BOUGH_SHARE_TIME);
+    if (alone) unknown(&share[BOUGH_SHARE_AIR], air ? "it is in that of time" : "the scene has no air");
+    return bough_ok();
 }
 
 // -- a companion that has lost the solution -------------------------------------------------------
 
-static const double lost = 0.25; // of the range, which a companion errs by that has lost the solution
+static const double lost = 0.25;     // of the range, which a companion errs by that has lost the solution
+static const double much_less = 0.5; // of what the companion shows
 
 // The two runs that differ least from the run itself; false: fewer are known.
 static bool find_nearest(const bough_companion *c, const bough_error_shares *shares, int nearest[2],
