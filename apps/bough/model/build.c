@@ -52,7 +52,8 @@ static bough_integrator_options solver_options(const bough_scene_solver *solver)
                                       .rtol = solver->rtol,
                                       .step = solver->step,
                                       .rho = solver->rho,
-                                      .coarse = solver->coarse};
+                                      .coarse = solver->coarse,
+                                      .most_steps = solver->most_steps};
 }
 
 static bough_scheme_options scheme_options(const bough_scene *scene) {

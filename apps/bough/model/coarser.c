@@ -296,6 +296,15 @@ static void lengthen_steps(const bough_scene *scene, bough_scene *to) {
 
 static const double largest_rtol = 1e-4; // of the run by whose steps a run's own are judged
 
+enum { MOST_STEPS = 1000 }; // of the finer solution in a macro step: more than it is worth
+
+// The finer solution follows vibrations by the Rosenbrock method alone: IDA takes up to twenty times as long.
+static void follow_vibrations(bough_scene *to) {
+    bough_scene_solver *master = &to->simulation.master;
+    if (master->solver == BOUGH_AUTOMATIC) master->solver = BOUGH_ROSENBROCK;
+    master->most_steps = MOST_STEPS;
+}
+
 // A run whose tolerance allows longer steps takes one in a macro step.
 static void shorten_steps(bough_scene *to, double tighter, double least_rtol) {
     bough_scene_solver *master = &to->simulation.master;
@@ -315,7 +324,7 @@ bough_scene *bough_coarser_scene(bough_arena *arena, const bough_scene *scene, i
     if (parts & BOUGH_COARSER_TIME) lengthen_steps(scene, to);
     if (parts & BOUGH_FINER_TIME) shorten_steps(to, 0.1, 0);
     if (parts & BOUGH_FINER_AIR) double_rate(scene, true, to);
-    if (parts & BOUGH_FINEST_TIME) shorten_steps(to, 0.01, 1e-6);
+    if (parts & BOUGH_FINEST_TIME) shorten_steps(to, 0.01, 1e-6), follow_vibrations(to);
     to->simulation.error_estimate = BOUGH_SCENE_NO_ESTIMATE;
     to->simulation.error_bound = 0;
     to->simulation.error_shares = false;

@@ -157,7 +157,7 @@ static double stale(const bough_companion *c, int i) {
 // those that are faster than the samples of the air have their own value at each of these. The finer solution
 // follows them for long enough.
 static void compare_finer(bough_companion *c) {
-    if (!bough_finer_advance(&c->finer, c->run)) return;
+    if (!bough_finer_advance(&c->finer, c->run, bough_companion_work(c))) return;
     bool held = !bough_master_sampled(c->run->master);
     for (int i = 0; i < c->channels->count; i++) {
         const bough_channel *channel = &c->channels->channel[i];
@@ -251,7 +251,7 @@ static void compare(bough_companion *c) {
     record(c, largest);
     compare_finer(c);
     if (!c->coarser.simulation->master->split) split_steps(c);
-    bough_finer_begin(&c->finer, c->run, reach(c));
+    bough_finer_begin(&c->finer, c->run, reach(c), bough_companion_work(c));
     bough_error_notice(c, c->run->master->time);
 }
 

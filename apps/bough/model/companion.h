@@ -84,9 +84,10 @@ int bough_jump_times(const bough_scene *scene, double part, double *time);
 // It is finer in time and air. It stands beside the first macro steps, and beside those after a jump, until
 // what these excite has decayed in the run.
 typedef struct bough_finer {
-    bough_other_run other;  // its simulation is NULL where the scene has none
-    bool follows;           // it is beside the run
-    double until, followed; // the end of that; for how long in all [s]
+    bough_other_run other; // its simulation is NULL where the scene has none
+    bool follows;          // it is beside the run
+    double until;          // the end of that [s]
+    double work;           // so far (bough_simulation_work)
     int n_jump;
     double *jump; // (n_jump) of the jumps, in order [s]
     char *loads;  // memory of the run's loads on their way
@@ -95,10 +96,11 @@ typedef struct bough_finer {
 bough_status bough_finer_build(bough_arena *arena, bough_simulation *run, bough_finer *f);
 
 // Goes on to the time of the run, and samples there. False: it is not beside the run, or cannot go on.
-bool bough_finer_advance(bough_finer *f, const bough_simulation *run);
+// `work` is that of run and companion so far, beside which it may not take too much.
+bool bough_finer_advance(bough_finer *f, const bough_simulation *run, double work);
 
 // Puts it where the run is if there is a jump before `reach` [s] are over.
-void bough_finer_begin(bough_finer *f, bough_simulation *run, double reach);
+void bough_finer_begin(bough_finer *f, bough_simulation *run, double reach, double work);
 
 void bough_finer_snapshot(bough_finer *f, bough_snapshot *snapshot);
 

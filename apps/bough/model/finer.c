@@ -5,9 +5,10 @@
 
 enum { FOLLOWED = 8 }; // macro steps from the start, or from a jump on
 
-// Of all macro steps; a step of the finer solution costs several of the run's.
-enum { FEW_STEPS = 3 * (FOLLOWED + 2) };
-static const double most_followed = 0.02;
+// Its work: of that of run and companion, foreseen from what they have taken so far, and a few milliseconds
+// more.
+static const double most_work = 0.1;
+static const double little = 3e6;
 
 // Changes of a load or of a given motion that may excite more than the steps follow, of its range.
 static const double least_jump = 0.1;
@@ -55,24 +56,30 @@ static double next_jump(const bough_finer *f, double t) {
     return k < f->n_jump ? f->jump[k] : HUGE_VAL;
 }
 
+static bool is_dear(const bough_finer *f, const bough_master *run, double work) {
+    return f->work * run->time > most_work * work * run->duration + little * run->time;
+}
+
 // From a time at which both have new samples of the air, at most `reach` before the jump.
-void bough_finer_begin(bough_finer *f, bough_simulation *run, double reach) {
+void bough_finer_begin(bough_finer *f, bough_simulation *run, double reach, double work) {
     const bough_master *m = run->master;
     double jump = f->other.simulation ? next_jump(f, m->time) : HUGE_VAL;
-    double most = fmax(FEW_STEPS * m->macro_step, most_followed * m->duration);
-    if (jump > m->time + reach || f->followed > most || !bough_master_sampled(m)) return;
+    if (jump > m->time + reach || is_dear(f, m, work) || !bough_master_sampled(m)) return;
     if (!f->follows) join(f, run);
     f->follows = true;
     f->until = jump + (FOLLOWED + 0.5) * m->macro_step;
 }
 
-bool bough_finer_advance(bough_finer *f, const bough_simulation *run) {
-    const bough_master *m = f->other.simulation ? f->other.simulation->master : NULL;
+bool bough_finer_advance(bough_finer *f, const bough_simulation *run, double work) {
+    const bough_simulation *own = f->other.simulation;
     bough_status status = bough_ok();
-    if (!f->follows || run->master->time > f->until) return f->follows = false;
-    f->followed += run->master->time - m->time;
-    while (bough_is_ok(&status) && m->time < run->master->time) status = bough_other_run_step(&f->other, run);
-    f->follows = bough_is_ok(&status) && m->time == run->master->time;
+    bool ends = run->master->time > f->until || is_dear(f, run->master, work);
+    if (!f->follows || ends) return f->follows = false;
+    f->work -= bough_simulation_work(own);
+    while (bough_is_ok(&status) && own->master->time < run->master->time)
+        status = bough_other_run_step(&f->other, run);
+    f->work += bough_simulation_work(own);
+    f->follows = bough_is_ok(&status) && own->master->time == run->master->time;
     if (f->follows) bough_other_run_sample(&f->other);
     return f->follows;
 }
@@ -82,5 +89,5 @@ void bough_finer_snapshot(bough_finer *f, bough_snapshot *s) {
     bough_simulation_snapshot(f->other.simulation, s);
     bough_snapshot_take(s, &f->follows, sizeof f->follows);
     bough_snapshot_take(s, &f->until, sizeof f->until);
-    bough_snapshot_take(s, &f->followed, sizeof f->followed);
+    bough_snapshot_take(s, &f->work, sizeof f->work);
 }

@@ -38,7 +38,9 @@ typedef struct bough_scene_solver {
     double rtol; // [-]
     double step; // generalised-α and Rosenbrock: longest step [s]; 0: none
     double rho;  // its spectral radius at infinite frequency [-]
-    bool coarse; // for a companion; not in a file
+    // of the runs beside a run; not in a file
+    bool coarse;
+    int most_steps; // in a macro step; 0: the method's own limit
 } bough_scene_solver;
 
 typedef struct bough_scene_output {

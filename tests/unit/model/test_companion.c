@@ -272,6 +272,17 @@ TEST(a_finer_solution_joins_the_run) {
     assert_true(joined >= 8);
 }
 
+// Stiff rods without damping: followed by its tolerance, the finer solution would take forty times the work
+// of the run.
+TEST(the_finer_solution_takes_little_work) {
+    check_arena(arena);
+    bough_run r;
+    run_all(arena, "tests/data/scenes/mid-weight.yaml", (const char *const[]){NULL}, &r);
+    double finer = r.companion->finer.work, both = bough_companion_work(r.companion);
+    print_message("work: %.2g, of run and companion %.2g\n", finer, both);
+    assert_true(finer > 0 && finer < both);
+}
+
 // Before a run fails by its steps, finer ones say what these err by: more closely than the companion does.
 TEST(finer_steps_prove_an_error_in_time) {
     static const char scene[] = "apps/mechanisms/pendulum.yaml";
