@@ -5,7 +5,9 @@
 #include <string.h>
 
 static const double rounding = 1e-6;    // of the largest range of all motion or value up to 1, in SI units
-static const double least_share = 1e-3; // of the largest range of that kind; of a velocity: its least range
+static const double least_share = 1e-3; // of the largest range of that kind
+static const double least_turn = 1e-3,
+                    least_move = 1e-2; // least range of a velocity, as a share of its value
 
 static bool is_force(const bough_channel *channel) {
     return channel->kind == BOUGH_KIND_FORCE || channel->kind == BOUGH_KIND_MOMENT;
@@ -51,7 +53,8 @@ double bough_error_range(const bough_companion *c, int channel) {
         range = fmax(range, own_range(c, i));
         value = fmax(value, largest_value(c, i));
     }
-    if (is_velocity(&list[channel])) range = fmax(range, least_share * value);
+    if (is_velocity(&list[channel]))
+        range = fmax(range, (list[channel].kind == BOUGH_KIND_VELOCITY ? least_move : least_turn) * value);
     if (!bough_error_is_motion(&list[channel])) return range;
     if (at_rest(c, channel)) range = fmax(range, fmin(value, 1 / si));
     return fmax(range, c->rest / si);

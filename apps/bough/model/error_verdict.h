@@ -18,7 +18,8 @@ bool bough_error_is_motion(const bough_channel *channel);
 
 // Range of the channel in its unit: of the run or of the companion, whichever is less, so that one that runs
 // away has a size. Components of a vector have one range, the largest of theirs; a velocity that hardly
-// changes has a thousandth of its value, and where the whole scene is at rest a motion has the scene's size.
+// changes has a hundredth of its value, an angular one, which adds up to turns, a thousandth, and where the
+// whole scene is at rest a motion has the scene's size.
 double bough_error_range(const bough_companion *c, int channel);
 
 // An error of the channel, in its unit, relative to its range; NaN for one that keeps its value.

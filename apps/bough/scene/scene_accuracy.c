@@ -24,17 +24,20 @@ static void choose_micro(double accuracy, bough_scene_solver *micro) {
     if (!is_named(micro->node, "step")) micro->step = usual_step * sqrt(accuracy / usual);
 }
 
-// A mechanism of rigid bodies in closed loops, small enough for Radau IIA: of its long steps hardly any ends
-// near a position from which the bodies can go on in two ways, where BDF's errors send them the other way.
-static bool is_linkage(const bough_scene *s) {
+// Rigid bodies in closed loops or free ones, few enough for Radau IIA. Of its long steps hardly any ends near
+// a position from which a linkage can go on in two ways, where BDF's errors send it the other way; a free
+// body that turns keeps its momentum better by order 5.
+static bool suits_radau(const bough_scene *s) {
+    bool suits = s->n_closure > 0;
     int states = 0;
     for (int i = 0; i < s->n_body; i++) {
         const bough_scene_body *b = &s->body[i];
         if (b->fidelity != BOUGH_SCENE_RIGID || b->joint.kind < 0)
             return false; // a word that is no kind is reported
+        suits = suits || b->joint.kind == BOUGH_JOINT_FREE;
         states += bough_joint_n_coordinates(b->joint.kind) + bough_joint_n_speeds(b->joint.kind);
     }
-    return s->n_closure > 0 && states <= bough_integrator_find(BOUGH_RADAU5)->most_states;
+    return suits && states <= bough_integrator_find(BOUGH_RADAU5)->most_states;
 }
 
 // Whether the scheme integrates all bodies together; a word that is no scheme is reported.
@@ -49,7 +52,7 @@ static void choose_master(bough_scene *scene) {
     bool whole = is_whole(scene);
     if (!is_named(master->node, "rtol")) master->rtol = s->accuracy / (whole ? whole_error : tree_error);
     if (whole && !is_named(master->node, "solver")) {
-        master->solver = is_linkage(scene)          ? BOUGH_RADAU5
+        master->solver = suits_radau(scene)         ? BOUGH_RADAU5
                          : master->rtol < fine_rtol ? BOUGH_IDA
                                                     : BOUGH_AUTOMATIC;
     }

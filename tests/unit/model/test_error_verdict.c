@@ -91,6 +91,14 @@ TEST(errors_of_what_stays_are_judged_by_its_value) {
                       .unit = {"deg", "m"},
                       .name = {"Azimuth", "OoPDefl1"}};
     check_verdicts(&v, 1, 16.6, 1.7e-4, 1.7e-4 / 2e-8);
+    two_channels steady = {.low = {0, 7},
+                           .high = {300, 7.001},
+                           .other_low = {0, 7},
+                           .other_high = {300, 7.001},
+                           .error = {0, 7e-4},
+                           .unit = {"deg", "m/s"},
+                           .name = {"Azimuth", "bodyVelX"}};
+    check_verdicts(&steady, 1, 7.001, 7e-4 / 0.07001, 7e-4 / 0.07001);
 }
 
 // A range of rounding is none to measure an error by.

@@ -21,3 +21,17 @@ TEST(free_body_tells_where_it_is_and_how_it_turns) {
     for (size_t k = 0; k < sizeof expected / sizeof *expected; k++)
         check_near(channel(&b, expected[k].name), expected[k].value, 1e-5, 1e-5);
 }
+
+// Tumbling at 20 rad/s about its middle axis, with the tolerance that follows from the default accuracy.
+TEST(a_tumbling_body_keeps_its_velocity) {
+    check_arena(arena);
+    built b = built_from(arena, scene_build_text(arena, "gravity: [0, 0, 0]\nsimulation: {duration: 10 s}\n"
+                                                        "bodies:\n  - {name: b, fidelity: rigid, mass: 2, "
+                                                        "inertia: [1, 2, 2.5], joint: {kind: free, parent: "
+                                                        "ground, velocity: [1, 2, 3], angular_velocity: "
+                                                        "[0, 20 rad/s, 0.1 rad/s]}}\n"));
+    run_until(&b, 10);
+    check_near(channel(&b, "bVelX"), 1, 1e-3, 0);
+    check_near(channel(&b, "bVelY"), 2, 1e-3, 0);
+    check_near(channel(&b, "bVelZ"), 3, 1e-3, 0);
+}
