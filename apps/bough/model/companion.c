@@ -217,12 +217,14 @@ enum { MANY = 8 };                  // steps of the run
 static const double one_each = 1.5; // steps of the integrator in each of them
 
 // Corners of loads that are as close as macro steps end the companion's steps where they end the run's, and
-// both err alike. Where the integrators would go on, it takes each of these steps in two.
+// inputs leave it the run's macro steps: both err alike. Where the integrators would go on, it takes each of
+// these steps in two.
 static void split_steps(bough_companion *c) {
+    const bough_scene *scene = c->run->scene;
     const bough_master *m = c->run->master;
     const bough_member *whole = bough_scheme_whole(m->coupling);
-    if (!whole || m->steps < MANY || m->next_event < m->grid_index || bough_coarser_is_loose(c->run->scene))
-        return;
+    bool alike = m->next_event >= m->grid_index || (scene->n_input > 0 && !scene->aero.node);
+    if (!whole || m->steps < MANY || !alike || bough_coarser_is_loose(scene)) return;
     if ((double)bough_member_statistics(whole).steps > one_each * (double)m->steps) return;
     c->coarser.simulation->master->split = true;
     c->share = fmax(c->share, bough_finer_time_share());
