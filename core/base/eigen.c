@@ -172,12 +172,12 @@ static void take_shapes(bough_arena *arena, int n, bough_eigen_pair *pair, int c
     }
 }
 
-static bough_status find(bough_arena *arena, const bough_eigen_operator *op, int wanted,
-                         bough_eigen_pair *pair, int *found) {
+static bough_status find_in(bough_arena *own, bough_arena *arena, const bough_eigen_operator *op, int wanted,
+                            bough_eigen_pair *pair, int *found) {
     int first = 9 * wanted / 2 + SPARE, capacity = first + first * LOOKS / 4 + BLOCK_SIZE;
     search s = {.op = op, .basis = {.apply = apply, .self = &s}};
-    s.order = bough_arena_take(arena, (size_t)(capacity + wanted) * sizeof *s.order);
-    bough_arnoldi_create(arena, op->length, capacity, BLOCK_SIZE, &s.basis);
+    s.order = bough_arena_take(own, (size_t)(capacity + wanted) * sizeof *s.order);
+    bough_arnoldi_create(own, op->length, capacity, BLOCK_SIZE, &s.basis);
     memcpy(s.basis.weight, op->weight, (size_t)op->length * sizeof(double));
     int *chosen = s.order + capacity;
     start(&s);
@@ -188,9 +188,18 @@ static bough_status find(bough_arena *arena, const bough_eigen_operator *op, int
                           op->name, wanted, accuracy);
     }
     take_shapes(arena, op->n_shape, pair, *found);
-    double *x = bough_arena_doubles(arena, 4 * (size_t)op->length), *y = x + 2 * (size_t)op->length;
+    double *x = bough_arena_doubles(own, 4 * (size_t)op->length), *y = x + 2 * (size_t)op->length;
     for (int i = 0; i < *found; i++) fill_pair(&s, chosen[i], x, y, &pair[i]);
     return bough_ok();
+}
+
+// The basis goes with the search.
+static bough_status find(bough_arena *arena, const bough_eigen_operator *op, int wanted,
+                         bough_eigen_pair *pair, int *found) {
+    bough_arena *own = bough_arena_child(arena);
+    bough_status status = find_in(own, arena, op, wanted, pair, found);
+    bough_arena_destroy(own);
+    return status;
 }
 
 // The highest may be beyond rounding: then half as many.

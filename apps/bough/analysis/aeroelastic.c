@@ -15,9 +15,10 @@ enum { MODES_BEYOND = 8 }; // those wanted, of the basis for the air's memory, a
 
 typedef struct work {
     const bough_aeroelastic *system;
-    int n, m;         // states of the members, those of the air that change
-    int *air, *place; // (m) rows of the air's tangents; (n_air) places of these rows in m, −1: none
-    double *rate;     // S (n_part × n_part), row-major
+    bough_arena *kept; // of what is returned
+    int n, m;          // states of the members, those of the air that change
+    int *air, *place;  // (m) rows of the air's tangents; (n_air) places of these rows in m, −1: none
+    double *rate;      // S (n_part × n_part), row-major
     bough_air_inverse *inverse; // T⁻¹ P
 } work;
 
@@ -360,9 +361,9 @@ static int count_parts(int count, const listed *mode) {
 }
 
 // A vector of members and the air's states that change (2 × (n + m)) as one of all (2 × (n + n_air)).
-static double *spread(bough_arena *arena, const work *w, const double *from) {
+static double *spread(const work *w, const double *from) {
     size_t n = (size_t)w->n, m = (size_t)w->m, all = n + (size_t)w->system->air->n_air;
-    double *to = bough_arena_doubles(arena, 2 * all);
+    double *to = bough_arena_doubles(w->kept, 2 * all);
     for (size_t part = 0; part < 2; part++) {
         memcpy(to + part * all, from + part * (n + m), n * sizeof *to);
         for (size_t i = 0; i < m; i++) to[part * all + n + (size_t)w->air[i]] = from[part * (n + m) + n + i];
@@ -395,7 +396,7 @@ static void expand(bough_arena *arena, work *w, const reduced *x, int count, con
         memcpy(pair[k].shape_real, to, n * sizeof *to);
         memcpy(pair[k].shape_imag, to + length, n * sizeof *to);
         pair[k].residual = bough_eigen_residual(&op, pair[k].real, pair[k].imaginary, from, to);
-        if (vector) vector[k].right = spread(arena, w, to);
+        if (vector) vector[k].right = spread(w, to);
         column += (size_t)parts;
     }
 }
@@ -438,7 +439,7 @@ static void find_left(bough_arena *arena, work *w, const reduced *x, int count, 
     for (int k = 0; k < count; k++) {
         int parts = parts_of(&mode[k].pair);
         collect_parts(w, &y, column, parts, both);
-        vector[k].left = spread(arena, w, both);
+        vector[k].left = spread(w, both);
         column += (size_t)parts;
     }
 }
@@ -465,7 +466,7 @@ static void list_modes(bough_arena *arena, work *w, const reduced *x, bough_eige
     if (count->found > count->wanted) count->found = count->wanted;
     for (int k = 0; k < count->found; k++) {
         pair[k] = mode[k].pair;
-        bough_arena_each(arena, n, &pair[k].shape_real, &pair[k].shape_imag);
+        bough_arena_each(w->kept, n, &pair[k].shape_real, &pair[k].shape_imag);
     }
     expand(arena, w, x, count->found, mode, pair, vector);
     if (vector) find_left(arena, w, x, count->found, mode, vector);
@@ -510,9 +511,9 @@ static bough_status follow_memory(bough_arena *arena, work *w, bough_eigen_pair 
 }
 
 // A pair's vector with all states of the air, at rest.
-static double *with_air(bough_arena *arena, const work *w, const bough_eigen_pair *pair) {
+static double *with_air(const work *w, const bough_eigen_pair *pair) {
     size_t n = (size_t)w->n, all = n + (size_t)w->system->air->n_air;
-    double *both = bough_arena_doubles(arena, 2 * all);
+    double *both = bough_arena_doubles(w->kept, 2 * all);
     memcpy(both, pair->shape_real, n * sizeof *both);
     memcpy(both + all, pair->shape_imag, n * sizeof *both);
     return both;
@@ -526,27 +527,36 @@ static bough_status find_partners(bough_arena *arena, work *w, const bough_eigen
     BOUGH_TRY(find_pairs(arena, w, true, false, true, left, &n_left));
     for (int k = 0; k < count->found; k++) {
         const bough_eigen_pair *other = partner(&pair[k], n_left.found, left);
-        vector[k].right = with_air(arena, w, &pair[k]);
-        vector[k].left = other ? with_air(arena, w, other) : NULL;
+        vector[k].right = with_air(w, &pair[k]);
+        vector[k].left = other ? with_air(w, other) : NULL;
     }
     return bough_ok();
+}
+
+static bough_status find(bough_arena *arena, work *w, bough_eigen_pair *pair, bough_eigen_count *count,
+                         bough_mode_vectors *vector, int *unpaired) {
+    const bough_modes_def *def = w->system->def;
+    find_air(arena, w);
+    take(arena, w);
+    bough_status status =
+        bough_whole_setup(w->system->whole, def->time, def->state, def->input, 1 / def->point);
+    if (!bough_is_ok(&status)) return bough_fail(BOUGH_FAILED, "%s", status.message);
+    w->inverse = bough_air_inverse_create(arena, w->system);
+    if (w->inverse == NULL)
+        return bough_fail(BOUGH_FAILED, "the motion in the air is singular about %g /s", def->point);
+    if (w->m > 0) return follow_memory(arena, w, pair, count, vector, unpaired);
+    BOUGH_TRY(find_pairs(w->kept, w, false, false, false, pair, count));
+    qsort(pair, (size_t)count->found, sizeof *pair, slower);
+    return vector ? find_partners(arena, w, pair, count, vector) : bough_ok();
 }
 
 bough_status bough_aeroelastic_modes(bough_arena *arena, const bough_aeroelastic *system,
                                      bough_eigen_pair *pair, bough_eigen_count *count,
                                      bough_mode_vectors *vector, int *unpaired) {
-    const bough_modes_def *def = system->def;
-    work w = {.system = system, .n = system->air->n};
+    work w = {.system = system, .kept = arena, .n = system->air->n};
     *unpaired = 0;
-    find_air(arena, &w);
-    take(arena, &w);
-    bough_status status = bough_whole_setup(system->whole, def->time, def->state, def->input, 1 / def->point);
-    if (!bough_is_ok(&status)) return bough_fail(BOUGH_FAILED, "%s", status.message);
-    w.inverse = bough_air_inverse_create(arena, system);
-    if (w.inverse == NULL)
-        return bough_fail(BOUGH_FAILED, "the motion in the air is singular about %g /s", def->point);
-    if (w.m > 0) return follow_memory(arena, &w, pair, count, vector, unpaired);
-    BOUGH_TRY(find_pairs(arena, &w, false, false, false, pair, count));
-    qsort(pair, (size_t)count->found, sizeof *pair, slower);
-    return vector ? find_partners(arena, &w, pair, count, vector) : bough_ok();
+    bough_arena *own = bough_arena_child(arena);
+    bough_status status = find(own, &w, pair, count, vector, unpaired);
+    bough_arena_destroy(own);
+    return status;
 }

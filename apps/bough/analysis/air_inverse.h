@@ -14,7 +14,7 @@ typedef struct bough_air_inverse {
     int *other;     // (n_other)
     double gamma;
     const struct bough_blade_inverse *blades; // NULL: none
-    int n_part, r;                     // of these; their states are in harmonics
+    int n_part, r;                            // of these; their states are in harmonics
     // all column-major
     double *from, *to;        // Vᵀ, W (n_part × r × n_other)
     double *others, *inverse; // P_oo, K⁻¹ (n_other × n_other)

@@ -358,7 +358,8 @@ static bough_status find(bough_arena *arena, bough_simulation *s, int count, boo
     v->n_blade = x.group.n;
     v->frozen = is_frozen(s, &x.group);
     if (v->frozen && !s->scene->modes.linear) BOUGH_TRY(check_constant(arena, s, &x));
-    BOUGH_TRY(find_air(arena, s, v->time, &x, &air));
+    bough_arena *of_air = bough_arena_child(arena);
+    BOUGH_TRY(find_air(of_air, s, v->time, &x, &air));
     v->n_azimuth = air.azimuths.n;
     BOUGH_TRY(solve_about(arena, s, &x, &air, count, v));
     bool dynamic = air.follows && air.dynamic; // with other residuals
@@ -366,6 +367,7 @@ static bough_status find(bough_arena *arena, bough_simulation *s, int count, boo
         x.def.point = point;
         BOUGH_TRY(solve_about(arena, s, &x, &air, count, v));
     }
+    bough_arena_destroy(of_air);
     for (int k = 0; k < v->found; k++) set_value(&v->pair[k], v->change[k], &v->mode[k]);
     bough_vibration_describe(arena, s, &x, v);
     return bough_ok();
