@@ -109,7 +109,7 @@ static void advance(const bough_polar *polar, double semi_chords, double alpha, 
 
 // -- coefficients ---------------------------------------------------------------------------------
 
-// What the static polar says of the effective angle.
+// The static polar at the effective angle.
 typedef struct static_part {
     double angle, f, separated, linear; // α_E; point of separation; lift of separated and of attached flow
     bough_coefficients k;

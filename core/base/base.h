@@ -12,7 +12,7 @@
 #define BOUGH_RPM (BOUGH_PI / 30)     // [rad/s]
 
 // For functions called in loops over vector lanes: a loop with a call in it is not vectorised. Of a static
-// function clang passes the members of structures one by one, and no longer knows that iterations are
+// function clang passes the members of structures one by one, and then cannot see that iterations are
 // independent; hence extern inline.
 #ifdef __clang__
 #define BOUGH_INLINE extern inline __attribute__((always_inline, gnu_inline))

@@ -39,8 +39,8 @@ enum { LEAST_IN_AIR = 10, SOME_SEGMENTS = 14 };
 
 static int finer_number(int n) { return 2 * n > LEAST_SEGMENTS ? 2 * n : LEAST_SEGMENTS; }
 
-// About half of n segments. A rod of few segments, or that cannot have much fewer, gets twice as many and
-// more: what lies between tells the error, too.
+// About half of n segments. A rod of few segments, or that cannot have much fewer, gets at least twice
+// as many: the difference measures the error as well.
 static int other_number(int n, int least) {
     int half = (n + 1) / 2, fewer = half > least ? half : least;
     return n >= FEW_SEGMENTS && 4 * fewer <= 3 * n ? fewer : finer_number(n);

@@ -1,5 +1,5 @@
-// The companion of a run: a second simulation of the same scene that is coarser in everything. What lies
-// between the two at equal times tells what the run errs by: mesh, air, time and coupling at once, for every
+// The companion of a run: a second simulation of the same scene that is coarser in everything. The difference
+// of the two at equal times measures the error of the run: mesh, air, time and coupling at once, for every
 // channel. Beside the first macro steps, and those after a jump of a load or a given motion, a third one that
 // is finer in time and air finds what decays in both.
 //
@@ -151,7 +151,7 @@ typedef struct bough_companion {
 } bough_companion;
 
 // Builds the companion that the scene of the run asks for, with the run's pool, at time 0. Where it cannot be
-// built, the reason says why.
+// built, `reason` is set.
 bough_status bough_companion_create(bough_arena *arena, bough_simulation *run, const bough_channels *channels,
                                     bough_companion *companion);
 

@@ -147,7 +147,7 @@ static bool is_by_mesh(const finding *x) {
     return largest_of(c, mesh->others) <= fmin(s->error_bound, hardly * largest_of(c, mesh->largest));
 }
 
-// The mesh first: that run is the cheapest, and often says all.
+// The mesh first: that run is the cheapest, and often the only one.
 static bough_status find(finding *x) {
     const bough_companion *c = x->companion;
     bough_error_share *share = x->shares->share;
@@ -209,7 +209,7 @@ static double least_sum(const bough_error_shares *shares, int channel) {
 
 static void lower(bough_companion *c, bough_error_shares *shares, int i, double sum) {
     sum = fmax(sum, c->least[i]);
-    // a companion that ended knows nothing of what came later, the two others do
+    // a companion that ended has no part in later errors, the two other runs have
     c->error[i] = c->reason[0] ? sum : fmin(c->error[i], sum);
     for (int k = 0; k < BOUGH_SHARES; k++)
         shares->share[k].largest[i] = fmin(shares->share[k].largest[i], sum);
@@ -339,7 +339,7 @@ bough_status bough_error_shares_find(bough_arena *arena, bough_companion *c, boo
 enum { ADVICE = 160 };
 static const double mesh_order = 2, air_order = 2, time_order = 2; // at least
 static const double few_order = 1.5;                               // of a mesh of few segments
-enum { FEW = 9, MOST_TIMES = 10 };     // more than so many times as many segments: the order says nothing
+enum { FEW = 9, MOST_TIMES = 10 };     // beyond this multiple of the segments the order is no guide
 static const double most_halvings = 6; // of the macro step that are worth trying
 static const double margin = 1.1;      // of the settings that are proposed
 

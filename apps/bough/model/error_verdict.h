@@ -1,4 +1,5 @@
-// What the errors that a companion tells mean: which of them counts, beside what moves in the scene.
+// The verdict on the errors that a companion measures: which of them count, relative to the motions of the
+// scene.
 #ifndef BOUGH_APPS_MODEL_ERROR_VERDICT_H
 #define BOUGH_APPS_MODEL_ERROR_VERDICT_H
 
@@ -73,9 +74,9 @@ typedef struct bough_error_shares {
 
 const char *bough_error_share_name(bough_error_share_kind kind);
 
-// After a complete run: makes the further runs. What is not known says why. Lowers the errors of a companion
-// that has lost the solution, or whose steps would end a run that finer ones confirm. BOUGH_INTERRUPTED by
-// stop() (NULL: never).
+// After a complete run: makes the further runs. A share that they do not find has a reason. Lowers the errors
+// of a companion that has lost the solution, or whose steps would end a run that finer ones confirm.
+// BOUGH_INTERRUPTED by stop() (NULL: never).
 bough_status bough_error_shares_find(bough_arena *arena, bough_companion *c, bool (*stop)(void),
                                      bough_error_shares *shares);
 
