@@ -24,6 +24,10 @@ static void choose_micro(double accuracy, bough_scene_solver *micro) {
     if (!is_named(micro->node, "step")) micro->step = usual_step * sqrt(accuracy / usual);
 }
 
+enum {
+    FEW_STATES = 65
+}; // five free bodies: of more, dense matrices cost over twice the time of other methods
+
 // Rigid bodies in closed loops or free ones, few enough for Radau IIA. Of its long steps hardly any ends near
 // a position from which a linkage can go on in two ways, where BDF's errors send it the other way; a free
 // body that turns keeps its momentum better by order 5.
@@ -37,7 +41,8 @@ static bool suits_radau(const bough_scene *s) {
         suits = suits || b->joint.kind == BOUGH_JOINT_FREE;
         states += bough_joint_n_coordinates(b->joint.kind) + bough_joint_n_speeds(b->joint.kind);
     }
-    return suits && states <= bough_integrator_find(BOUGH_RADAU5)->most_states;
+    int most = s->n_closure > 0 ? bough_integrator_find(BOUGH_RADAU5)->most_states : FEW_STATES;
+    return suits && states <= most;
 }
 
 // Whether the scheme integrates all bodies together; a word that is no scheme is reported.
