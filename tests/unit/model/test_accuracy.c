@@ -64,6 +64,17 @@ TEST(a_longest_step_follows_a_second_mode) {
     check_near(f.scene->simulation.master.step, 0, 0, 0);
 }
 
+#define FREE(name) "  - {name: " name ", fidelity: rigid, mass: 1, joint: {kind: free, parent: ground}}\n"
+#define FIVE_FREE "simulation: {duration: 1 s}\nbodies:\n" FREE("a") FREE("b") FREE("c") FREE("d") FREE("e")
+
+// Dense matrices suit few states.
+TEST(few_free_bodies_are_solved_by_radau) {
+    fixture f = accepts(FIVE_FREE);
+    assert_int_equal(f.scene->simulation.master.solver, BOUGH_RADAU5);
+    f = accepts(FIVE_FREE FREE("f"));
+    assert_int_equal(f.scene->simulation.master.solver, BOUGH_AUTOMATIC);
+}
+
 // A key that is named holds; those beside it still follow.
 TEST(keys_replace_one_by_one) {
     fixture f = accepts(BAR(", master: {rtol: 1e-3}"));
