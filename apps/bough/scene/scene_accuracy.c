@@ -24,9 +24,8 @@ static void choose_micro(double accuracy, bough_scene_solver *micro) {
     if (!is_named(micro->node, "step")) micro->step = usual_step * sqrt(accuracy / usual);
 }
 
-enum {
-    FEW_STATES = 65
-}; // five free bodies: of more, dense matrices cost over twice the time of other methods
+// Five free bodies. With more, dense matrices take over twice the time of the usual method.
+enum { FEW_STATES = 65 };
 
 // Rigid bodies in closed loops or free ones, few enough for Radau IIA. Of its long steps hardly any ends near
 // a position from which a linkage can go on in two ways, where BDF's errors send it the other way; a free
