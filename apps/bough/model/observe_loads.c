@@ -19,6 +19,7 @@ typedef struct sensor {
     const bough_beam *beam;
     int n;
     place *place; // (n)
+    bool *kink;   // (n_segment + 1) a concentrated force acts on the vertex
     bough_rod_scratch scratch;
 } sensor;
 
@@ -59,24 +60,56 @@ static end_loads loads_at_ends(const sensor *x, double t) {
         {bough_v3(-w[6], -w[7], -w[8]), bough_mat3_mul(section, bough_v3(-w[9], -w[10], -w[11]))}};
 }
 
-static bough_section_load blend_loads(bough_section_load a, bough_section_load b, double fraction) {
-    return (bough_section_load){bough_between(a.force, b.force, fraction),
-                                bough_between(a.moment, b.moment, fraction)};
+static double segment_length(const sensor *x, int i) {
+    return x->beam->def.span[i + 1] - x->beam->def.span[i];
 }
 
-// A segment's loads are those of its middle. From there to the root, and to an end that carries bodies, they
-// go linearly to what the rod does there.
-static bough_section_load load_at(const sensor *x, const end_loads *ends, place at) {
-    const bough_beam *beam = x->beam;
-    bough_section_load load = bough_section_in_segment(beam, &x->scratch, at.segment, at.fraction);
-    if (at.segment == 0 && at.fraction < 0.5) {
-        bough_section_load middle = bough_section_in_segment(beam, &x->scratch, 0, 0.5);
-        load = blend_loads(ends->root, middle, 2 * at.fraction);
-    } else if (at.segment == beam->def.n_segment - 1 && at.fraction > 0.5 && beam->end >= 0) {
-        bough_section_load middle = bough_section_in_segment(beam, &x->scratch, at.segment, 0.5);
-        load = blend_loads(middle, ends->end, 2 * at.fraction - 1);
+// Force in the middle of a segment.
+static bough_vec3 middle_force(const sensor *x, int i) {
+    return bough_section_in_segment(x->beam, &x->scratch, i, 0.5).force;
+}
+
+// Change of the force per length from the middle of a segment towards a side, -1 or 1: to the middle of the
+// neighbour or to the end of the rod.
+static bough_vec3 force_slope(const sensor *x, const end_loads *ends, int i, int side) {
+    int next = i + side, n = x->beam->def.n_segment;
+    double length = segment_length(x, i) / 2;
+    bough_vec3 to = {0, 0, 0};
+    if (next >= 0 && next < n) {
+        to = middle_force(x, next);
+        length += segment_length(x, next) / 2;
+    } else if (next < 0) {
+        to = ends->root.force;
+    } else if (x->beam->end >= 0) {
+        to = ends->end.force;
     }
-    return load;
+    return bough_scale(1 / length, bough_sub(to, middle_force(x, i)));
+}
+
+// The force varies linearly between the middles of segments. A concentrated force makes a step at its vertex:
+// towards it the slope of the segment's other half continues.
+static bough_vec3 force_at(const sensor *x, const end_loads *ends, place at) {
+    int side = at.fraction < 0.5 ? -1 : 1;
+    double offset = (at.fraction - 0.5) * segment_length(x, at.segment);
+    const bool *kink = x->kink + at.segment; // of the segment's two vertices
+    bough_vec3 slope = {0, 0, 0};
+    if (!kink[side > 0])
+        slope = bough_scale(side, force_slope(x, ends, at.segment, side));
+    else if (!kink[side < 0])
+        slope = bough_scale(-side, force_slope(x, ends, at.segment, -side));
+    return bough_axpy(offset, slope, middle_force(x, at.segment));
+}
+
+// The moment is that of the segment; from its middle to the root, and to an end that carries bodies, it goes
+// linearly to that of the rod's end.
+static bough_vec3 moment_at(const sensor *x, const end_loads *ends, place at) {
+    const bough_beam *beam = x->beam;
+    bough_vec3 middle = bough_section_in_segment(beam, &x->scratch, at.segment, 0.5).moment;
+    if (at.segment == 0 && at.fraction < 0.5)
+        return bough_between(ends->root.moment, middle, 2 * at.fraction);
+    if (at.segment == beam->def.n_segment - 1 && at.fraction > 0.5 && beam->end >= 0)
+        return bough_between(middle, ends->end.moment, 2 * at.fraction - 1);
+    return bough_section_in_segment(beam, &x->scratch, at.segment, at.fraction).moment;
 }
 
 static void sample_place(const sensor *x, const end_loads *ends, place at, double *value) {
@@ -85,10 +118,9 @@ static void sample_place(const sensor *x, const end_loads *ends, place at, doubl
     bough_vec3 shift = bough_between(bough_sub(vertex_position(x, left), def->position[left]),
                                      bough_sub(vertex_position(x, right), def->position[right]), at.fraction);
     bough_vec3 turn = bough_between(vertex_turn(x, left), vertex_turn(x, right), at.fraction);
-    bough_section_load load = load_at(x, ends, at);
     bough_mat3 axes = bough_axes_between(vertex_rotation(x, left), vertex_rotation(x, right), at.fraction);
-    bough_vec3 force = bough_mat3_tmul(axes, load.force);
-    bough_vec3 moment = bough_mat3_tmul(axes, load.moment);
+    bough_vec3 force = bough_mat3_tmul(axes, force_at(x, ends, at));
+    bough_vec3 moment = bough_mat3_tmul(axes, moment_at(x, ends, at));
     value = bough_observe_vector(turn, BOUGH_DEGREE, bough_observe_vector(shift, 1, value));
     bough_observe_vector(moment, 1e3, bough_observe_vector(force, 1e3, value));
 }
@@ -109,6 +141,22 @@ static place find_place(const bough_rod_def *def, double span) {
     return (place){i, (span - def->span[i]) / (def->span[i + 1] - def->span[i])};
 }
 
+// Marks the vertices on which concentrated loads act: of a load within a segment both.
+static void mark_kinks(const bough_scene *scene, const bough_beam *beam, bool *kink) {
+    int n = beam->def.n_segment;
+    for (int k = 0; k < scene->n_load; k++) {
+        const bough_scene_load *load = &scene->load[k];
+        if (load->body_name == NULL || &scene->body[load->body] != beam->body) continue;
+        if (load->place == BOUGH_SCENE_AT_VERTEX) kink[load->vertex] = true;
+        if (load->place == BOUGH_SCENE_AT_TIP) kink[n] = true;
+        if (load->place != BOUGH_SCENE_AT_SPAN) continue;
+        place at = find_place(&beam->def, load->span[0]);
+        kink[at.segment] |= at.fraction < 1;
+        kink[at.segment + 1] |= at.fraction > 0;
+    }
+    kink[n] &= beam->end < 0; // what bodies at the end do to it is known
+}
+
 // Blades and a tower of one rod have OpenFAST's names.
 static void add_place(const bough_simulation *s, const bough_beam *beam, int number, bough_channels *list) {
     int blade = bough_scene_blade(s->scene, (int)(beam->body - s->scene->body));
@@ -127,8 +175,10 @@ static void add_place(const bough_simulation *s, const bough_beam *beam, int num
 static void add_sensor(bough_simulation *s, const bough_scene_sensor *from, bough_channels *list) {
     bough_arena *arena = list->arena;
     sensor *x = bough_arena_take(arena, sizeof *x);
-    *x = (sensor){s, bough_simulation_beam(s, from->body), from->n_at, NULL, {0}};
+    *x = (sensor){s, bough_simulation_beam(s, from->body), from->n_at, NULL, NULL, {0}};
     x->place = bough_arena_take(arena, (size_t)x->n * sizeof *x->place);
+    x->kink = bough_arena_take(arena, ((size_t)x->beam->def.n_segment + 1) * sizeof *x->kink);
+    mark_kinks(s->scene, x->beam, x->kink);
     bough_rod_scratch_init(&x->scratch, arena, x->beam->mesh);
     bough_channels_group(list, sample_sections, x);
     for (int k = 0; k < x->n; k++) {

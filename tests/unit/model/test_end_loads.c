@@ -41,6 +41,37 @@ TEST(the_root_carries_the_whole_weight) {
     }
 }
 
+// A vertical rod of 10 kg/m that hangs, of n segments, with 100 N downwards at 1.3 m.
+static double hanging(int n, const char *at, double place) {
+    char text[900];
+    snprintf(
+        text, sizeof text,
+        "simulation: {duration: 1 s, macro_step: 10 ms, initial: equilibrium}\nbodies:\n"
+        "  - {name: a, fidelity: rod, joint: {kind: fixed, parent: ground, placement: [rotate y 180 deg]},\n"
+        "     rod: {length: 2, segments: %d, stiffness: [1e8, 1e8, 1e9, 1e6, 1e6, 1e6],\n"
+        "           mass: [10, 0, 0, 0.1, 0.1, 0]}}\n"
+        "loads:\n  - {body: a, at: %s, force: [0, 0, -100]}\nsensors:\n  - {body: a, at: [%.17g]}\n",
+        n, at, place);
+    return at_start(text, "aSpn1FLz");
+}
+
+// The force in a section is the weight and the load beyond it, within segments too; a load at a vertex makes
+// a step there, one within a segment blurs it over this segment alone.
+TEST(the_force_varies_linearly_within_segments) {
+    static const int segments[] = {4, 5, 10};
+    for (int k = 0; k < 3; k++) {
+        for (double at = 0.05; at < 2; at += 0.15) {
+            check_near(hanging(segments[k], "tip", at), (10 * (2 - at) * g + 100) / 1e3, 0, 1e-7);
+            check_near(hanging(segments[k], "0", at), 10 * (2 - at) * g / 1e3, 0, 1e-7);
+        }
+    }
+    static const double out[] = {0.1, 0.6, 1.6, 1.9};
+    for (int k = 0; k < 4; k++) {
+        double exact = (10 * (2 - out[k]) * g + (out[k] < 1.3 ? 100 : 0)) / 1e3;
+        check_near(hanging(12, "1.3 m", out[k]), exact, 0, 1e-7);
+    }
+}
+
 // The tension at the root of a rod that rotates about x at 10 rad/s, of 10 kg/m from 1 to 3 m: ∫ μ Ω² r dr.
 static double rotor(int n) {
     char text[800];
