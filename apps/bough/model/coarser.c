@@ -68,15 +68,18 @@ static bool has_modal_blades(const bough_scene *scene) {
     return modal;
 }
 
-// What a wave along a rod takes through one of its segments, the longest [s].
-static double segment_time(const bough_scene *scene) {
+// The shortest pulse whose waves half as many segments resolve, the longest of all rods [s]: what a wave
+// along the rod takes through a segment, or half the period of a bending wave as long as eight segments.
+static double resolved_time(const bough_scene *scene) {
     double longest = 0;
     for (int i = 0; i < scene->n_body; i++) {
         const bough_scene_rod *rod = &scene->body[i].rod;
         if (!bough_scene_has_mesh(&scene->body[i])) continue;
         const bough_section_station *root = &rod->structure.station[0].def;
-        double speed = sqrt(root->stiffness[11] / root->mass);
-        longest = fmax(longest, bough_scene_arc_length(&rod->structure) / rod->n_segment / speed);
+        double h = bough_scene_arc_length(&rod->structure) / rod->n_segment;
+        double bending = fmin(root->stiffness[15], root->stiffness[18]);
+        double wave = 16 * h * h / BOUGH_PI * sqrt(root->mass / bending); // λ²/4π, λ = 8 h
+        longest = fmax(longest, fmax(h * sqrt(root->mass / root->stiffness[11]), wave));
     }
     return longest;
 }
@@ -96,7 +99,7 @@ static bool has_pulse(const bough_scene_load *load, double time) {
 
 // A pulse that is shorter than that excites waves of which half as many segments know nothing.
 static bool has_short_pulses(const bough_scene *scene) {
-    double time = segment_time(scene);
+    double time = resolved_time(scene);
     bool found = false;
     for (int k = 0; k < scene->n_load; k++) found = found || has_pulse(&scene->load[k], time);
     return found;

@@ -274,6 +274,21 @@ TEST(a_finer_solution_joins_the_run) {
     assert_true(joined >= 8);
 }
 
+// A blow excites bending waves that half as many segments do not resolve: the companion has twice as many.
+TEST(beside_waves_of_a_blow_the_mesh_is_finer) {
+    static const char *const truth[] = {"bodies[bar].rod.segments=40", "simulation.master.rtol=1e-6",
+                                        "simulation.error_estimate=none", NULL};
+    static const char *const channel[] = {"barTipX", "barSpn1TDx", "barSpn1RDy", NULL};
+    check_arena(arena);
+    bough_run r;
+    double error[3], estimate[3];
+    run_beside(arena, "tests/data/scenes/struck-bar.yaml", (const char *const[]){NULL}, truth, 0, &r, channel,
+               error, estimate);
+    assert_int_equal(r.companion->coarser.simulation->beam[0].def.n_segment, 20);
+    for (int w = 0; channel[w]; w++)
+        assert_true(estimate[w] > 0.7 * error[w] && estimate[w] < 1.5 * error[w]);
+}
+
 // Stiff rods without damping: followed by its tolerance, the finer solution would take forty times the work
 // of the run.
 TEST(the_finer_solution_takes_little_work) {
