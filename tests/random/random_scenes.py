@@ -101,6 +101,7 @@ def vector_of(name, unit):
         if name.endswith(ending):
             stem = name[:-len(ending)]
     stem = re.sub("(Dir[XYZ])[xyz]$", r"\1", stem)
+    stem = re.sub("(Spn\\d+[FMTR][LD])[xyz]", r"\1", stem)
     for count in "123":
         stem = stem.replace(count + "Pos", "Pos").replace(count + "Vel", "Vel")
     return stem + " " + unit
@@ -255,6 +256,10 @@ KINDS = ("hard", "loads", "machines", "variants")  # of families
 REFERENCES = ((2, "rosenbrock", 1e-6), (4, "ida", 1e-7))
 
 
+def length_of(rod):
+    return rod.get("length") or {"blade": 61.5, "tower": 87.6}[rod["table"].split("-")[0]]
+
+
 def one(arguments, index):
     rng = random.Random("%d/%d" % (arguments.seed, index))
     chosen = next((getattr(settings, kind.upper()) for kind in KINDS if getattr(arguments, kind)), settings.FAMILIES)
@@ -266,6 +271,10 @@ def one(arguments, index):
         return None
     if arguments.defaults and word != "default":
         return None
+    places = random.Random("%d/%d/sensors" % (arguments.seed, index))
+    scene["sensors"] = [{"body": body["name"], "at": sorted(
+        places.choice([0, 1, places.random()]) * length_of(body["rod"]) for _ in range(2))}
+        for body in scene["bodies"] if "rod" in body and body["fidelity"] == "rod"]
     folder = tempfile.mkdtemp(prefix="random-")
     try:
         for table in ("blade-structure", "tower-structure", "blade-aero", "airfoils"):

@@ -2,6 +2,7 @@
 #include "apps/bough/model/build_internal.h"
 #include "apps/bough/model/channel_table.h"
 #include "apps/bough/model/shape.h"
+#include "core/base/linalg.h"
 #include "core/tree/loop.h"
 
 #include <stdio.h>
@@ -112,13 +113,38 @@ static bough_vec3 moment_at(const sensor *x, const end_loads *ends, place at) {
     return bough_section_in_segment(beam, &x->scratch, at.segment, at.fraction).moment;
 }
 
+// Displacement and slope of the axis by rotation, (R - R0) e3, at a vertex in the body's axes.
+static bough_vec3 vertex_shift(const sensor *x, int i) {
+    return bough_sub(vertex_position(x, i), x->beam->def.position[i]);
+}
+
+static bough_vec3 vertex_slope(const sensor *x, int i) {
+    bough_mat3 now = bough_rotation_matrix(vertex_rotation(x, i));
+    return bough_sub(now.c3, bough_rotation_matrix(x->beam->def.rotation[i]).c3);
+}
+
+// Change of the curvature over the segment of a place whose sections have these axes, by its moments.
+static bough_vec3 curvature_change(const sensor *x, place at, const bough_mat3 *axes) {
+    bough_vec3 first = bough_section_in_segment(x->beam, &x->scratch, at.segment, 0).moment;
+    bough_vec3 last = bough_section_in_segment(x->beam, &x->scratch, at.segment, 1).moment;
+    double m[3], k[3] = {0, 0, 0}, compliance[21];
+    bough_v3_store(bough_mat3_tmul(*axes, bough_sub(last, first)), m);
+    if (bough_symmetric6_inverse(x->beam->def.stiffness + 21 * at.segment, compliance))
+        for (int i = 0; i < 3; i++)
+            for (int j = 0; j < 3; j++) k[i] += compliance[bough_symmetric6_index(3 + i, 3 + j)] * m[j];
+    return bough_mat3_mul(*axes, bough_v3(k[0], k[1], k[2]));
+}
+
+// Between vertices displacement and rotation are parabolas, whose second derivatives follow from the slopes
+// and the moments at both.
 static void sample_place(const sensor *x, const end_loads *ends, place at, double *value) {
     int left = at.segment, right = left + 1;
-    const bough_rod_def *def = &x->beam->def;
-    bough_vec3 shift = bough_between(bough_sub(vertex_position(x, left), def->position[left]),
-                                     bough_sub(vertex_position(x, right), def->position[right]), at.fraction);
-    bough_vec3 turn = bough_between(vertex_turn(x, left), vertex_turn(x, right), at.fraction);
     bough_mat3 axes = bough_axes_between(vertex_rotation(x, left), vertex_rotation(x, right), at.fraction);
+    double bow = at.fraction * (at.fraction - 1) / 2 * segment_length(x, left);
+    bough_vec3 shift = bough_between(vertex_shift(x, left), vertex_shift(x, right), at.fraction);
+    shift = bough_axpy(bow, bough_sub(vertex_slope(x, right), vertex_slope(x, left)), shift);
+    bough_vec3 turn = bough_between(vertex_turn(x, left), vertex_turn(x, right), at.fraction);
+    turn = bough_axpy(bow, curvature_change(x, at, &axes), turn);
     bough_vec3 force = bough_mat3_tmul(axes, force_at(x, ends, at));
     bough_vec3 moment = bough_mat3_tmul(axes, moment_at(x, ends, at));
     value = bough_observe_vector(turn, BOUGH_DEGREE, bough_observe_vector(shift, 1, value));

@@ -72,6 +72,27 @@ TEST(the_force_varies_linearly_within_segments) {
     }
 }
 
+// A cantilever of 2 m under a small force at its tip: within its three segments displacement and rotation
+// follow F (L s²/2 - s³/6)/EI and F (L s - s²/2)/EI.
+TEST(the_motion_within_segments_is_that_of_a_bent_rod) {
+    const double force = 0.1, stiffness = 1e4, length = 2;
+    for (double s = 0.1; s < length; s += 0.3) {
+        char text[800];
+        snprintf(text, sizeof text,
+                 "gravity: [0, 0, 0]\n"
+                 "simulation: {duration: 1 s, macro_step: 10 ms, initial: equilibrium}\nbodies:\n"
+                 "  - {name: a, fidelity: rod, joint: {kind: fixed, parent: ground},\n"
+                 "     rod: {length: 2, segments: 3, stiffness: [1e9, 1e9, 1e10, 1e4, 1e4, 1e4],\n"
+                 "           mass: [10, 0, 0, 0.1, 0.1, 0]}}\n"
+                 "loads:\n  - {body: a, at: tip, force: [0.1, 0, 0]}\nsensors:\n  - {body: a, at: [%.17g]}\n",
+                 s);
+        double rotation = force * (length * s - s * s / 2) / stiffness;
+        double shift = force * (length * s * s / 2 - s * s * s / 6) / stiffness;
+        check_near(at_start(text, "aSpn1RDy") * BOUGH_DEGREE, rotation, 0, 1e-6 * force / stiffness);
+        check_near(at_start(text, "aSpn1TDx"), shift, 0, 5e-3 * force / stiffness); // h³F/12EI f(1-f)(1-2f)
+    }
+}
+
 // The tension at the root of a rod that rotates about x at 10 rad/s, of 10 kg/m from 1 to 3 m: ∫ μ Ω² r dr.
 static double rotor(int n) {
     char text[800];
