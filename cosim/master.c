@@ -102,14 +102,16 @@ enum { HALVED_EVERY = 8, FIRST = 64 }; // macro steps
 // If all of the first steps were halved, they would be those of the run that this one is compared with,
 // theory (71), wherever that takes one step in each of its macro steps.
 static bool taken_in_halves(const bough_master *m) {
-    if (!m->halves || m->split) return false;
+    if (!m->halves || m->split) return m->halves;
     if (m->grid_index >= FIRST) return m->at_event || m->grid_index % HALVED_EVERY == 0;
     return m->at_event || m->grid_index % 2 == 0 || m->many_steps;
 }
 
+// By multiplication, so that the grid does not drift.
+static double half_of_step(const bough_master *m) { return ((double)m->grid_index + 0.5) * m->macro_step; }
+
 static double next_on_grid(const bough_master *m) {
-    // by multiplication, so that the grid does not drift
-    double half = ((double)m->grid_index + 0.5) * m->macro_step;
+    double half = half_of_step(m);
     return taken_in_halves(m) && half > m->time + resolution(m) ? half
                                                                 : (double)(m->grid_index + 1) * m->macro_step;
 }
@@ -129,7 +131,8 @@ static double next_whole(const bough_master *m) {
 
 double bough_master_next(const bough_master *m) {
     double next = next_whole(m);
-    return m->split && (m->at_event || on_grid(m)) ? (m->time + next) / 2 : next;
+    bool halfway = m->halves && fabs(m->time - half_of_step(m)) <= resolution(m);
+    return m->split && (m->at_event || on_grid(m) || halfway) ? (m->time + next) / 2 : next;
 }
 
 // Samples the loads that are due; whether one of them jumps.

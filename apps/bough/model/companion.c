@@ -213,21 +213,34 @@ static double reach(const bough_companion *c) {
     return 2 * (scene->aero.node ? fmax(step, 1 / scene->aero.rate) : step);
 }
 
-enum { MANY = 8 };                  // steps of the run
-static const double one_each = 1.5; // steps of the integrator in each of them
+enum { MANY = 8 };                  // steps of the run, and corners among them
+enum { APART = 3 };                 // macro steps from one corner to the next, the most
+enum { STRETCH = 32 };              // macro steps in which corners are counted anew
+static const double one_each = 1.5; // steps of the integrator in each of the run's
 
-// Corners of loads that are as close as macro steps end the companion's steps where they end the run's, and
-// inputs leave it the run's macro steps: both err alike. Where the integrators would go on, it takes each of
-// these steps in two.
+static long own_steps(const bough_companion *c) {
+    const bough_member *whole = bough_scheme_whole(c->run->master->coupling);
+    return whole ? bough_member_statistics(whole).steps : 0;
+}
+
+// Corners of loads that are nearly as close as macro steps end the companion's steps, or the halves that it
+// takes after them, where they end the run's, and inputs leave it the run's macro steps: both err alike.
+// Where the integrators would go on, it takes each of these steps in two.
 static void split_steps(bough_companion *c) {
     const bough_scene *scene = c->run->scene;
     const bough_master *m = c->run->master;
-    const bough_member *whole = bough_scheme_whole(m->coupling);
-    bool alike = m->next_event >= m->grid_index || (scene->n_input > 0 && !scene->aero.node);
-    if (!whole || m->steps < MANY || !alike || bough_coarser_is_loose(scene)) return;
-    if ((double)bough_member_statistics(whole).steps > one_each * (double)m->steps) return;
-    c->coarser.simulation->master->split = true;
-    c->share = fmax(c->share, bough_finer_time_share());
+    if (!bough_scheme_whole(m->coupling) || bough_coarser_is_loose(scene)) return;
+    const long now[] = {m->grid_index, m->next_event, m->steps, own_steps(c)};
+    long n[4];
+    for (int k = 0; k < 4; k++) n[k] = now[k] - c->counted[k];
+    bool corners = n[1] >= MANY && APART * n[1] >= n[0];
+    bool alike = corners || (scene->n_input > 0 && !scene->aero.node);
+    if (n[2] >= MANY && alike && (double)n[3] <= one_each * (double)n[2]) {
+        c->coarser.simulation->master->split = true;
+        c->share = fmax(c->share, bough_finer_time_share());
+    } else if (n[0] >= STRETCH) {
+        memcpy(c->counted, now, sizeof now);
+    }
 }
 
 static void compare(bough_companion *c) {
@@ -337,6 +350,10 @@ void bough_companion_snapshot(bough_companion *c, bough_snapshot *s) {
     double work = bough_companion_work(c), now = work - c->earlier;
     bough_snapshot_take(s, &work, sizeof work);
     c->earlier = work - now;
+    long own = own_steps(c);
+    c->counted[3] = own - c->counted[3];
+    bough_snapshot_take(s, c->counted, sizeof c->counted);
+    c->counted[3] = own - c->counted[3];
     bough_snapshot_take(s, &c->compared, sizeof c->compared);
     bough_snapshot_take(s, &c->share, sizeof c->share);
     bough_snapshot_take(s, &c->flutters, sizeof c->flutters);

@@ -159,21 +159,25 @@ TEST(the_last_half_step_has_shares) {
 TEST(steps_of_a_macro_step_have_an_error) {
     const char *const truth_sets[] = {"simulation.macro_step=20 ms", "simulation.error_estimate=none", NULL};
     outcome *truth = run_for("apps/mechanisms/pendulum.yaml", STEPS, truth_sets);
-    // a torque of no weight, whose corners are as close as the steps
-    char corners[40 * STEPS], *end = corners + sprintf(corners, "loads=[{joint: bob, torque: {times: [0");
-    for (int k = 1; k < STEPS; k++) end += sprintf(end, ", %.3f", 0.02 * k);
-    end += sprintf(end, "], values: [0");
-    for (int k = 1; k < STEPS; k++) end += sprintf(end, ", %s", k % 2 ? "1e-9" : "0");
-    sprintf(end, "]}}]");
+    // a torque of no weight, whose corners are as close as the steps, and twice as far apart
+    char corners[2][40 * STEPS];
+    for (int i = 0; i < 2; i++) {
+        char *end = corners[i] + sprintf(corners[i], "loads=[{joint: bob, torque: {times: [0");
+        for (int k = 1; k < STEPS; k++) end += sprintf(end, ", %.3f", 0.02 * (i + 1) * k);
+        end += sprintf(end, "], values: [0");
+        for (int k = 1; k < STEPS; k++) end += sprintf(end, ", %s", k % 2 ? "1e-9" : "0");
+        sprintf(end, "]}}]");
+    }
     const struct {
         const char *solver, *load;
     } run[] = {{"simulation.master={solver: generalized-alpha, step: 20 ms, rtol: 1e-4}", NULL},
                {"simulation.master={solver: rosenbrock, step: 20 ms, rtol: 3e-3}", NULL},
-               {"simulation.master={solver: generalized-alpha, step: 20 ms, rtol: 1e-4}", corners},
-               {"simulation.master={solver: rosenbrock, rtol: 3e-3}", corners},
+               {"simulation.master={solver: generalized-alpha, step: 20 ms, rtol: 1e-4}", corners[0]},
+               {"simulation.master={solver: rosenbrock, rtol: 3e-3}", corners[0]},
+               {"simulation.master={solver: rosenbrock, rtol: 3e-3}", corners[1]},
                {"simulation.master={solver: rosenbrock, rtol: 3e-3}",
                 "loads=[{joint: bob, torque: 0, input: push}]"}};
-    for (int k = 0; k < 5; k++) {
+    for (int k = 0; k < 6; k++) {
         const char *const sets[] = {"simulation.macro_step=20 ms", run[k].solver, run[k].load, NULL};
         outcome *o = run_for("apps/mechanisms/pendulum.yaml", STEPS, sets);
         for (int i = 0; i < 2; i++) {
