@@ -5,6 +5,7 @@
 #include "apps/bough/model/simulation.h"
 #include "cosim/scheme.h"
 
+#include <limits.h>
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
@@ -218,23 +219,32 @@ enum { APART = 3 };                 // macro steps from one corner to the next, 
 enum { STRETCH = 32 };              // macro steps in which corners are counted anew
 static const double one_each = 1.5; // steps of the integrator in each of the run's
 
-static long own_steps(const bough_companion *c) {
-    const bough_member *whole = bough_scheme_whole(c->run->master->coupling);
-    return whole ? bough_member_statistics(whole).steps : 0;
+// Steps of the run's integrator that takes fewest, and how often it has gone through a macro step.
+static long fewest_steps(const bough_companion *c, long *advances) {
+    const bough_master *m = c->run->master;
+    const bough_member *whole = bough_scheme_whole(m->coupling);
+    long fewest = LONG_MAX, sweeps = bough_scheme_reported(m->coupling).sweeps;
+    *advances = sweeps > 0 ? sweeps : m->steps;
+    for (int i = 0; i < (whole ? 1 : m->assembly->n_member); i++) {
+        const bough_member *member = whole ? whole : m->assembly->member[i];
+        long own = member->system.n_state > 0 ? bough_member_statistics(member).steps : LONG_MAX;
+        fewest = own < fewest ? own : fewest;
+    }
+    return fewest;
 }
 
 // Corners of loads that are nearly as close as macro steps end the companion's steps, or the halves that it
-// takes after them, where they end the run's, and inputs leave it the run's macro steps: both err alike.
-// Where the integrators would go on, it takes each of these steps in two.
+// takes after them, where they end the run's, and inputs or a controller without air leave it the run's macro
+// steps: both err alike. Where the integrators would go on, it takes each of these steps in two.
 static void split_steps(bough_companion *c) {
     const bough_scene *scene = c->run->scene;
-    const bough_master *m = c->run->master;
-    if (!bough_scheme_whole(m->coupling) || bough_coarser_is_loose(scene)) return;
-    const long now[] = {m->grid_index, m->next_event, m->steps, own_steps(c)};
-    long n[4];
+    const bough_master *m = c->run->master, *other = c->coarser.simulation->master;
+    if (bough_coarser_is_loose(scene)) return;
+    long now[4] = {m->grid_index, m->next_event}, n[4];
+    now[3] = fewest_steps(c, &now[2]);
     for (int k = 0; k < 4; k++) n[k] = now[k] - c->counted[k];
     bool corners = n[1] >= MANY && APART * n[1] >= n[0];
-    bool alike = corners || (scene->n_input > 0 && !scene->aero.node);
+    bool alike = corners || (scene->aero.node == NULL && !other->halves);
     if (n[2] >= MANY && alike && (double)n[3] <= one_each * (double)n[2]) {
         c->coarser.simulation->master->split = true;
         c->share = fmax(c->share, bough_finer_time_share());
@@ -350,7 +360,7 @@ void bough_companion_snapshot(bough_companion *c, bough_snapshot *s) {
     double work = bough_companion_work(c), now = work - c->earlier;
     bough_snapshot_take(s, &work, sizeof work);
     c->earlier = work - now;
-    long own = own_steps(c);
+    long advances, own = fewest_steps(c, &advances);
     c->counted[3] = own - c->counted[3];
     bough_snapshot_take(s, c->counted, sizeof c->counted);
     c->counted[3] = own - c->counted[3];

@@ -138,7 +138,7 @@ typedef struct bough_companion {
     double rest;                         // motion of a scene at rest; 0: it moves
     bool sampled;                        // the companion's channels are of its present time
     long compared;                       // times
-    long counted[4];                     // macro steps, events, steps, those of the integrator: earlier
+    long counted[4];                     // macro steps, events, advances, steps: earlier
     double earlier;                      // work of both before a copy was restored
     double *value;                       // (channels->count) of the run at the last of them
     double *before;                      // (channels->count) of the run at the comparison before

@@ -168,17 +168,19 @@ TEST(steps_of_a_macro_step_have_an_error) {
         for (int k = 1; k < STEPS; k++) end += sprintf(end, ", %s", k % 2 ? "1e-9" : "0");
         sprintf(end, "]}}]");
     }
-    const struct {
-        const char *solver, *load;
-    } run[] = {{"simulation.master={solver: generalized-alpha, step: 20 ms, rtol: 1e-4}", NULL},
-               {"simulation.master={solver: rosenbrock, step: 20 ms, rtol: 3e-3}", NULL},
-               {"simulation.master={solver: generalized-alpha, step: 20 ms, rtol: 1e-4}", corners[0]},
-               {"simulation.master={solver: rosenbrock, rtol: 3e-3}", corners[0]},
-               {"simulation.master={solver: rosenbrock, rtol: 3e-3}", corners[1]},
-               {"simulation.master={solver: rosenbrock, rtol: 3e-3}",
-                "loads=[{joint: bob, torque: 0, input: push}]"}};
-    for (int k = 0; k < 6; k++) {
-        const char *const sets[] = {"simulation.macro_step=20 ms", run[k].solver, run[k].load, NULL};
+    // solver, load, scheme
+    const char *const run[][3] = {
+        {"simulation.master={solver: generalized-alpha, step: 20 ms, rtol: 1e-4}"},
+        {"simulation.master={solver: rosenbrock, step: 20 ms, rtol: 3e-3}"},
+        {"simulation.master={solver: generalized-alpha, step: 20 ms, rtol: 1e-4}", corners[0]},
+        {"simulation.master={solver: rosenbrock, rtol: 3e-3}", corners[0]},
+        {"simulation.master={solver: rosenbrock, rtol: 3e-3}", corners[1]},
+        {"simulation.master={solver: rosenbrock, rtol: 3e-3}", corners[1],
+         "simulation.coupling={scheme: ramp}"},
+        {"simulation.master={solver: rosenbrock, rtol: 3e-3}",
+         "loads=[{joint: bob, torque: 0, input: push}]"}};
+    for (int k = 0; k < 7; k++) {
+        const char *const sets[] = {"simulation.macro_step=20 ms", run[k][0], run[k][1], run[k][2], NULL};
         outcome *o = run_for("apps/mechanisms/pendulum.yaml", STEPS, sets);
         for (int i = 0; i < 2; i++) {
             double error = true_error(o, truth, i, STEPS);
