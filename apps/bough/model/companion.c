@@ -253,11 +253,37 @@ static void split_steps(bough_companion *c) {
     }
 }
 
+static const double large = 0.1; // change of the wind, of its highest speed
+
+// Whether the row is followed by a jump of the wind, in less than a sample and alone in more.
+static bool wind_jumps(const bough_scene_wind_table *x, int k, double rate) {
+    const double *t = x->time;
+    double highest = 0;
+    if ((t[k + 1] - t[k]) * rate >= 1) return false;
+    if (k > 0 && (t[k] - t[k - 1]) * rate < 1) return false;
+    if (k + 2 < x->n_time && (t[k + 2] - t[k + 1]) * rate < 1) return false;
+    for (int i = 0; i < x->n_time; i++) highest = fmax(highest, x->speed[i]);
+    return fabs(x->speed[k + 1] - x->speed[k]) > large * highest;
+}
+
+// A jump is spread over the whole of its sample, and over two in the companion, whose middle is half a sample
+// away; the run errs by the time from the jump to the middle of its own.
+static void pass_wind_jumps(bough_companion *c) {
+    const bough_scene_aero *aero = &c->run->scene->aero;
+    const bough_scene_wind_table *x = &aero->wind.table;
+    for (; c->wind + 1 < x->n_time && x->time[c->wind + 1] <= c->run->master->time; c->wind++) {
+        double sample = (x->time[c->wind] + x->time[c->wind + 1]) / 2 * aero->rate;
+        if (wind_jumps(x, c->wind, aero->rate))
+            c->share = fmax(c->share, 2 * fabs(sample - floor(sample) - 0.5));
+    }
+}
+
 static void compare(bough_companion *c) {
     // the rarer sample is held longer; at an event, between two steps, that of the run
     bool rarer = c->coarser.simulation->scene->aero.rate <= c->run->scene->aero.rate;
     bool held = rarer ? !bough_master_sampled(c->coarser.simulation->master) : c->run->master->at_event;
     bool resolved = missed_air(c->run) <= most_missed;
+    pass_wind_jumps(c);
     double share = resolved ? c->share : fmax(c->share, 1), share_held = held ? c->share_held : share;
     c->flutters = c->flutters || (resolved && missed_air(c->coarser.simulation) > fluttering);
     memcpy(c->before, c->value, (size_t)c->channels->count * sizeof(double));

@@ -139,6 +139,7 @@ typedef struct bough_companion {
     bool sampled;                        // the companion's channels are of its present time
     long compared;                       // times
     long counted[4];                     // macro steps, events, advances, steps: earlier
+    int wind;                            // row of the wind's table up to which it is known to jump or not
     double earlier;                      // work of both before a copy was restored
     double *value;                       // (channels->count) of the run at the last of them
     double *before;                      // (channels->count) of the run at the comparison before
