@@ -155,12 +155,13 @@ static bough_status find(finding *x) {
     size_t size = (size_t)x->shares->n_channel * sizeof(double);
     bool air = has_part(c->run->scene, BOUGH_SHARE_AIR);
     BOUGH_TRY(find_share(x, BOUGH_SHARE_MESH));
+    if (!air) BOUGH_TRY(find_share(x, BOUGH_SHARE_AIR));
     if (!air && !has_part(c->run->scene, BOUGH_SHARE_MESH)) {
         memcpy(share[BOUGH_SHARE_TIME].largest, c->error, size);
         return bough_ok();
     }
     bool alone = is_by_mesh(x);
-    if (!alone) BOUGH_TRY(find_share(x, BOUGH_SHARE_AIR));
+    if (air && !alone) BOUGH_TRY(find_share(x, BOUGH_SHARE_AIR));
     if (!alone) BOUGH_TRY(find_share(x, BOUGH_SHARE_TIME));
     // of two parts each is what the other leaves
     bool other_fails = !air && !c->reason[0] && time->unknown[0] && !mesh->unknown[0];
@@ -169,7 +170,7 @@ static bough_status find(finding *x) {
         memcpy(time->others, mesh->largest, size);
         time->unknown[0] = '\0';
     }
-    if (alone) unknown(&share[BOUGH_SHARE_AIR], air ? "it is in that of time" : "the scene has no air");
+    if (alone && air) unknown(&share[BOUGH_SHARE_AIR], "it is in that of time");
     return bough_ok();
 }
 

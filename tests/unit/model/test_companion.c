@@ -140,6 +140,19 @@ TEST(a_companion_that_loses_the_solution_is_replaced) {
     assert_true(relative > 2e-3 && relative < 0.15);
 }
 
+// Rigid bodies without air have a share of time alone, which no other solutions replace.
+TEST(rigid_bodies_that_lose_the_solution_have_its_error) {
+    const char *const sets[] = {"simulation.duration=30 s",
+                                "simulation.master={solver: rosenbrock, rtol: 1e-3}", NULL};
+    check_arena(arena);
+    bough_run r;
+    run_all(arena, "apps/mechanisms/double-pendulum.yaml", sets, &r);
+    int x = bough_channels_find(&r.channels, "bob1X");
+    assert_true(bough_error_relative(r.companion, x, r.companion->error[x]) > 0.3);
+    find_shares(arena, &r);
+    assert_true(bough_error_relative(r.companion, x, r.companion->error[x]) > 0.1);
+}
+
 // A load that comes in the second half of the last macro step, of which the further runs know, too.
 TEST(the_last_half_step_has_shares) {
     const char *const sets[] = {"simulation.coupling.scheme=frozen", "bodies[arm].rod.segments=10",
