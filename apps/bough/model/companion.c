@@ -239,12 +239,13 @@ static long fewest_steps(const bough_companion *c, long *advances) {
 static void split_steps(bough_companion *c) {
     const bough_scene *scene = c->run->scene;
     const bough_master *m = c->run->master, *other = c->coarser.simulation->master;
-    if (bough_coarser_is_loose(scene)) return;
     long now[4] = {m->grid_index, m->next_event}, n[4];
     now[3] = fewest_steps(c, &now[2]);
     for (int k = 0; k < 4; k++) n[k] = now[k] - c->counted[k];
-    bool corners = n[1] >= MANY && APART * n[1] >= n[0];
-    bool alike = corners || (scene->aero.node == NULL && !other->halves);
+    // the companion of a loose tolerance has half the run's macro steps
+    bool close = bough_coarser_is_loose(scene) ? n[1] >= APART * n[0] : APART * n[1] >= n[0];
+    bool same = scene->aero.node == NULL && other->macro_step == m->macro_step;
+    bool alike = (close && n[1] >= MANY) || same;
     if (n[2] >= MANY && alike && (double)n[3] <= one_each * (double)n[2]) {
         c->coarser.simulation->master->split = true;
         c->share = fmax(c->share, bough_finer_time_share());
