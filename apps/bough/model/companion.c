@@ -233,20 +233,28 @@ static long fewest_steps(const bough_companion *c, long *advances) {
     return fewest;
 }
 
+// Corners so far, those that follow another in less than a macro step left out.
+static long count_corners(bough_companion *c) {
+    const bough_master *m = c->run->master;
+    double corner = m->next_event > 0 ? m->event[m->next_event - 1] : -HUGE_VAL;
+    if (corner < c->corner + 0.99 * m->macro_step) return c->corners;
+    c->corner = corner;
+    return ++c->corners;
+}
+
 // Corners of loads that are nearly as close as macro steps end the companion's steps, or the halves that it
 // takes after them, where they end the run's, and inputs or a controller without air leave it the run's macro
 // steps: both err alike. Where the integrators would go on, it takes each of these steps in two.
 static void split_steps(bough_companion *c) {
     const bough_scene *scene = c->run->scene;
     const bough_master *m = c->run->master, *other = c->coarser.simulation->master;
-    long now[4] = {m->grid_index, m->next_event}, n[4];
+    long now[4] = {m->grid_index, count_corners(c), 0, 0}, n[4];
     now[3] = fewest_steps(c, &now[2]);
     for (int k = 0; k < 4; k++) n[k] = now[k] - c->counted[k];
-    // the companion of a loose tolerance has half the run's macro steps
-    bool close = bough_coarser_is_loose(scene) ? n[1] >= APART * n[0] : APART * n[1] >= n[0];
+    // the companion of a loose tolerance has half the run's macro steps: several corners are in each of them
+    bool close = bough_coarser_is_loose(scene) ? n[2] >= APART * n[0] : n[1] >= MANY && APART * n[1] >= n[0];
     bool same = scene->aero.node == NULL && other->macro_step == m->macro_step;
-    bool alike = (close && n[1] >= MANY) || same;
-    if (n[2] >= MANY && alike && (double)n[3] <= one_each * (double)n[2]) {
+    if ((close || same) && n[2] >= MANY && (double)n[3] <= one_each * (double)n[2]) {
         c->coarser.simulation->master->split = true;
         c->share = fmax(c->share, bough_finer_time_share());
     } else if (n[0] >= STRETCH) {
@@ -390,6 +398,8 @@ void bough_companion_snapshot(bough_companion *c, bough_snapshot *s) {
     long advances, own = fewest_steps(c, &advances);
     c->counted[3] = own - c->counted[3];
     bough_snapshot_take(s, c->counted, sizeof c->counted);
+    bough_snapshot_take(s, &c->corners, sizeof c->corners);
+    bough_snapshot_take(s, &c->corner, sizeof c->corner);
     c->counted[3] = own - c->counted[3];
     bough_snapshot_take(s, &c->compared, sizeof c->compared);
     bough_snapshot_take(s, &c->share, sizeof c->share);

@@ -138,7 +138,9 @@ typedef struct bough_companion {
     double rest;                         // motion of a scene at rest; 0: it moves
     bool sampled;                        // the companion's channels are of its present time
     long compared;                       // times
-    long counted[4];                     // macro steps, events, advances, steps: earlier
+    long counted[4];                     // macro steps, corners, advances, steps: earlier
+    long corners;                        // so far, a macro step apart at least
+    double corner;                       // the last of them [s]
     int wind;                            // row of the wind's table up to which it is known to jump or not
     double earlier;                      // work of both before a copy was restored
     double *value;                       // (channels->count) of the run at the last of them

@@ -194,7 +194,7 @@ TEST(steps_of_a_macro_step_have_an_error) {
          "loads=[{joint: bob, torque: 0, input: push}]"},
         {"simulation.master={solver: rosenbrock, rtol: 0.02}",
          "loads=[{joint: bob, torque: 0, input: push}]"},
-        {"simulation.master={solver: rosenbrock, rtol: 0.02}", corners[0], "simulation.macro_step=200 ms"}};
+        {"simulation.master={solver: rosenbrock, rtol: 0.02}", corners[0], "simulation.macro_step=80 ms"}};
     for (int k = 0; k < 9; k++) {
         const char *const sets[] = {"simulation.macro_step=20 ms", run[k][0], run[k][1], run[k][2], NULL};
         outcome *o = run_for("apps/mechanisms/pendulum.yaml", STEPS, sets);
