@@ -13,6 +13,7 @@ static const double contracting = 0.5, aim = 0.2, growth = 8, shrink = 0.1, caut
 
 static const double rounding = 1e-6; // changes that only rounding keeps from contracting
 static const double most_turn = 1;   // of a vertex or body in a correction [rad]
+static const double small = 1e-3;    // changes after which the next step may have the same factors
 
 bough_equilibrium_def bough_equilibrium_def_default(void) {
     return (bough_equilibrium_def){.unit = 1, .step = 0.1, .least = 1e-9, .tolerance = 1e-10, .steps = 1000};
@@ -24,6 +25,7 @@ typedef struct search {
     int n;                                         // states
     double *scale, *rate, *first, *second, *trial; // (n)
     double gamma;
+    bool kept; // the factors are those of this γ about a state near
 } search;
 
 static void take(search *s, bough_arena *arena) {
@@ -53,12 +55,18 @@ static double move(const search *s, const double *state, const double *change, d
     return 0;
 }
 
+// Factors about a state, unless those of another are kept.
+static bool set_up(search *s, const double *state) {
+    if (s->kept) return true;
+    bough_status status = bough_whole_setup(s->whole, s->def->time, state, s->whole->input, s->gamma);
+    return bough_is_ok(&status);
+}
+
 // Two corrections of one implicit Euler step from `state`, into first and second; the ratio of the second to
 // the first, infinite where the step fails. s->rate belongs to `state`.
 static double step(search *s, const double *state, bough_equilibrium_report *report) {
     int row = 0;
-    bough_status status = bough_whole_setup(s->whole, s->def->time, state, s->whole->input, s->gamma);
-    if (!bough_is_ok(&status)) return INFINITY;
+    if (!set_up(s, state)) return INFINITY;
     for (int k = 0; k < s->n; k++) s->first[k] = s->gamma * s->rate[k];
     bough_whole_solve(s->whole, s->first);
     report->change = size_of(s, s->first, &report->row);
@@ -67,8 +75,7 @@ static double step(search *s, const double *state, bough_equilibrium_report *rep
     if (!(move(s, state, s->first, s->trial) < most_turn)) return INFINITY;
     if (!find_rate(s, s->trial)) return INFINITY;
     for (int k = 0; k < s->n; k++) s->second[k] = s->gamma * s->rate[k] - s->first[k];
-    status = bough_whole_setup(s->whole, s->def->time, s->trial, s->whole->input, s->gamma);
-    if (!bough_is_ok(&status)) return INFINITY;
+    if (!set_up(s, s->trial)) return INFINITY;
     bough_whole_solve(s->whole, s->second);
     return size_of(s, s->second, &row) / (report->change + DBL_MIN);
 }
@@ -103,10 +110,17 @@ bough_status bough_equilibrium_find(bough_arena *arena, bough_whole *whole, cons
     double newton = def->unit * BOUGH_EQUILIBRIUM_LONGEST, longest = newton;
     double most = growth, before = INFINITY, taken = INFINITY;
     double kinetic = 0;
+    s.kept = def->kept && s.gamma == newton;
     while (report->steps < def->steps && s.gamma > def->unit * def->least && find_rate(&s, state)) {
         double contraction = step(&s, state, report);
         bool last = s.gamma >= longest, near = report->change < rounding;
+        // factors of another state that contract too little are replaced
+        if (s.kept && !(contraction <= aim) && !(report->change < def->tolerance)) {
+            s.kept = false;
+            continue;
+        }
         report->steps++;
+        report->kept = s.gamma == newton;
         if (last && is_found(&s, longest, report->change, before)) return bough_ok();
         before = last && near ? report->change : (double)INFINITY;
         bool lowered = longest < newton;
@@ -119,6 +133,7 @@ bough_status bough_equilibrium_find(bough_arena *arena, bough_whole *whole, cons
         // a stiffness that vanishes with the deflection takes ever longer steps
         if (last && !refused && !lowered && report->change > contracting * taken) longest *= growth;
         s.gamma = fmin(s.gamma, longest);
+        s.kept = !refused && report->kept && s.gamma == newton && (s.kept || report->change < small);
         if (refused) continue;
         taken = report->change;
         move(&s, s.trial, s.second, state);

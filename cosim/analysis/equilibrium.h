@@ -16,6 +16,7 @@ typedef struct bough_equilibrium_def {
     double tolerance;    // of the last step, in units of the scales
     const double *scale; // (n_state) of the states; NULL: the members'
     int steps;           // most, refused ones among them
+    bool kept;           // the whole has factors of the longest γ about a state that may be near the first
     void *self;
     // moved (n_state) ← state after a finite change, as its rotations and shapes add up; returns
     // its largest rotation [rad]. NULL: state + change.
@@ -35,6 +36,7 @@ enum { BOUGH_EQUILIBRIUM_LONGEST = 120 }; // γ of the last steps, in units of t
 
 typedef struct bough_equilibrium_report {
     int steps;     // taken and refused
+    bool kept;     // the last factors are those of the longest γ
     int row;       // the state that moved most in the last step
     double change; // by how much, in units of its scale
     double rate;   // its rate of change [units per s]

@@ -148,6 +148,7 @@ bough_status bough_equilibrium_search_balance(bough_arena *arena, bough_equilibr
     if (status.code == BOUGH_FAILED) return explain(arena, s, x->assembly, &report);
     if (bough_is_ok(&status)) status = explain_rods(s, report.steps);
     def->step = BOUGH_EQUILIBRIUM_LONGEST; // near it now
+    def->kept = report.kept;
     return status;
 }
 

@@ -57,3 +57,39 @@ TEST(too_few_steps_are_reported) {
     assert_int_equal(report.steps, 2);
     assert_true(report.change > 0);
 }
+
+static int linearised; // members, since it was set to 0
+static const bough_system_ops *uncounted;
+
+static bool linearise(void *self, double t, const double *state, const double *input, void *factors) {
+    linearised++;
+    return uncounted->linearise(self, t, state, input, factors);
+}
+
+TEST(kept_factors_serve_a_state_near_and_others_are_replaced) {
+    setup s;
+    build(&s);
+    bough_assembly *a = s.m.master->assembly;
+    bough_equilibrium_def def = bough_equilibrium_def_default();
+    uncounted = a->member[0]->system.ops;
+    bough_system_ops counted = *uncounted;
+    counted.linearise = linearise;
+    for (int i = 0; i < a->n_member; i++) {
+        assert_ptr_equal(a->member[i]->system.ops, uncounted);
+        a->member[i]->system.ops = &counted;
+    }
+    assert_true(find(&s, def, BOUGH_OK).kept);
+    assert_true(linearised > 0);
+    def.step = BOUGH_EQUILIBRIUM_LONGEST;
+    def.kept = true;
+    for (int foreign = 0; foreign < 2; foreign++) {
+        linearised = 0;
+        for (int k = 0; k < N; k++) s.y[k] = .01 * (k + 1);
+        bough_whole_inputs(s.whole, 0, s.y);
+        // of a step that is much shorter
+        if (foreign) check_ok(bough_whole_setup(s.whole, 0, s.y, s.whole->input, 1e-3));
+        find(&s, def, BOUGH_OK);
+        for (int k = 0; k < N; k++) check_near(s.y[k], 0, 0, 1e-9);
+        assert_int_equal(linearised > a->n_member, foreign);
+    }
+}
