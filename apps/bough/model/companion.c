@@ -262,17 +262,15 @@ static void split_steps(bough_companion *c) {
     }
 }
 
-static const double large = 0.1; // change of the wind, of its highest speed
+static const double large = 0.1; // change of the wind, of the higher speed
 
 // Whether the row is followed by a jump of the wind, in less than a sample and alone in more.
 static bool wind_jumps(const bough_scene_wind_table *x, int k, double rate) {
-    const double *t = x->time;
-    double highest = 0;
+    const double *t = x->time, *speed = x->speed;
     if ((t[k + 1] - t[k]) * rate >= 1) return false;
     if (k > 0 && (t[k] - t[k - 1]) * rate < 1) return false;
     if (k + 2 < x->n_time && (t[k + 2] - t[k + 1]) * rate < 1) return false;
-    for (int i = 0; i < x->n_time; i++) highest = fmax(highest, x->speed[i]);
-    return fabs(x->speed[k + 1] - x->speed[k]) > large * highest;
+    return fabs(speed[k + 1] - speed[k]) > large * fmax(speed[k], speed[k + 1]);
 }
 
 // A jump is spread over the whole of its sample, and over two in the companion, whose middle is half a sample
