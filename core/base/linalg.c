@@ -1,4 +1,5 @@
 // LU by LAPACK; by hand, as Cholesky, for few unknowns, where a library call would cost more than the work.
+#define _DEFAULT_SOURCE // MAP_ANONYMOUS
 #include "core/base/linalg.h"
 
 #include "core/base/base.h"
@@ -8,6 +9,7 @@
 #include <stddef.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/mman.h>
 #include <threads.h>
 
 extern void dgetrf_(const int *m, const int *n, double *a, const int *lda, int *pivot, int *info);
@@ -115,17 +117,19 @@ static void solve_small(int n, const double *restrict factor, const int *pivot, 
 
 enum { MOST_ROOMS = 64 }; // one for each concurrent call
 
-// Whether so many work arrays of the library would find addresses: it does not say when one does not.
+// Whether so many work arrays of the library would find addresses: it does not say when one does not. Pages
+// of the system, as the library takes them: a sanitizer would mark each block of malloc, byte by byte.
 static bool has_addresses(int rooms) {
-    enum { WORK = 129 << 20, ALIGNMENT = 64 };
-    void *volatile block[MOST_ROOMS] = {0};
-    bool room = true;
-    for (int i = 0; i < rooms && room; i++) {
-        block[i] = aligned_alloc(ALIGNMENT, WORK);
-        room = block[i] != NULL;
+    const size_t size = (size_t)129 << 20;
+    void *block[MOST_ROOMS];
+    int n = 0;
+    while (n < rooms) {
+        block[n] = mmap(NULL, size, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
+        if (block[n] == MAP_FAILED) break;
+        n++;
     }
-    for (int i = 0; i < rooms; i++) free(block[i]);
-    return room;
+    for (int i = 0; i < n; i++) munmap(block[i], size);
+    return n == rooms;
 }
 
 // The library keeps work arrays once they are taken, and takes one more only when all are in use.
@@ -152,8 +156,9 @@ void bough_linalg_room(bough_arena *arena, int threads) {
     int rooms = atomic_fetch_add(&users, threads) + threads;
     bough_arena_on_destroy(arena, leave, own);
     if (rooms > MOST_ROOMS) rooms = MOST_ROOMS;
-    if (rooms <= atomic_load(&rooms_taken)) return;
-    if (!has_addresses(rooms)) bough_arena_leave(arena);
+    int taken = atomic_load(&rooms_taken);
+    if (rooms <= taken) return;
+    if (!has_addresses(rooms - taken)) bough_arena_leave(arena);
     take_rooms(rooms);
     atomic_store(&rooms_taken, rooms);
 }

@@ -10,21 +10,25 @@
 
 #include <sundials/sundials_nvector.h>
 
+#include <sys/mman.h>
+
 // -- the allocator --------------------------------------------------------------------------------
 
 static bool armed, once; // once: a single allocation is refused, the next ones succeed
 static long left;        // allocations before that
 static int spared;       // allocations to come that are not counted
 
-// The linker puts these in place of the functions by which our own code takes memory: aligned_alloc, and
-// calloc for single objects. SUNDIALS, where it is linked statically, takes its own by malloc and by calloc
-// for arrays, and does not always look whether it got any.
+// The linker puts these in place of the functions by which our own code takes memory: aligned_alloc, mmap,
+// and calloc for single objects. SUNDIALS, where it is linked statically, takes its own by malloc and by
+// calloc for arrays, and does not always look whether it got any.
 void *__real_calloc(size_t count, size_t size);
 void *__real_aligned_alloc(size_t alignment, size_t size);
 N_Vector __real_N_VCloneEmpty(N_Vector model);
 N_Vector __wrap_N_VCloneEmpty(N_Vector model);
 void *__wrap_calloc(size_t count, size_t size);
 void *__wrap_aligned_alloc(size_t alignment, size_t size);
+void *__real_mmap(void *at, size_t size, int access, int flags, int file, off_t offset);
+void *__wrap_mmap(void *at, size_t size, int access, int flags, int file, off_t offset);
 
 static bool refuse(void) {
     if (!armed || spared-- > 0) return false;
@@ -39,6 +43,10 @@ void *__wrap_calloc(size_t count, size_t size) {
 
 void *__wrap_aligned_alloc(size_t alignment, size_t size) {
     return refuse() ? NULL : __real_aligned_alloc(alignment, size);
+}
+
+void *__wrap_mmap(void *at, size_t size, int access, int flags, int file, off_t offset) {
+    return refuse() ? MAP_FAILED : __real_mmap(at, size, access, flags, file, offset);
 }
 
 // SUNDIALS clones vectors and does not look whether it got one: see bough_vector_room.
