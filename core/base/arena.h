@@ -37,7 +37,7 @@ void *bough_arena_take(bough_arena *arena, size_t size);
 // A zeroed array of `count` doubles.
 double *bough_arena_doubles(bough_arena *arena, size_t count);
 
-// Several of that length, into the pointers at the addresses that follow.
+// Several such arrays; the addresses of the pointers that receive them follow.
 #define bough_arena_each(arena, count, ...)                                                                  \
     bough_arena_arrays(arena, count, (double **const[]){__VA_ARGS__, NULL})
 void bough_arena_arrays(bough_arena *arena, size_t count, double **const *array);

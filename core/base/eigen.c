@@ -193,7 +193,7 @@ static bough_status find_in(bough_arena *own, bough_arena *arena, const bough_ei
     return bough_ok();
 }
 
-// The basis goes with the search.
+// Releases the basis after the search.
 static bough_status find(bough_arena *arena, const bough_eigen_operator *op, int wanted,
                          bough_eigen_pair *pair, int *found) {
     bough_arena *own = bough_arena_child(arena);
@@ -202,7 +202,7 @@ static bough_status find(bough_arena *arena, const bough_eigen_operator *op, int
     return status;
 }
 
-// The highest may be beyond rounding: then half as many.
+// The highest may be lost in rounding: then half as many are sought.
 bough_status bough_eigen_nearest(bough_arena *arena, const bough_eigen_operator *op, bough_eigen_pair *pair,
                                  bough_eigen_count *count) {
     bough_status status;

@@ -16,8 +16,8 @@ typedef struct bough_eigen_operator {
     int n_shape;      // entries of a vector that are its shape, the first
     double gamma;     // γ; 0: A⁻¹
     double *weight;   // of the entries in the inner product (length); 0: unused entry
-    bool balance;     // the second half is the rate of the first: scales the weights of the first
-                      // so that both count alike
+    bool balance;     // the second half of a vector is the rate of the first: scales the weights of
+                      // the first half so that both count alike
     bool decaying;    // real decaying solutions are listed too
     bool checked;     // the caller checks itself whether pairs are missing and how exact they are: neither a
                       // second search nor residuals

@@ -44,15 +44,15 @@ void bough_multiply_few(const bough_product *p, const double *a, const double *b
 
 BOUGH_DECLARE_LEVELS(bough_multiply_few);
 
-// The same for complex matrices and one right side, real and imaginary parts next to each other:
-// a (n × n × 2, column-major), b (n × 2).
+// bough_dense_factor and bough_dense_solve for complex matrices and one right side, real and imaginary parts
+// next to each other: a (n × n × 2, column-major), b (n × 2).
 bool bough_complex_factor(int n, double *a, int *pivot);
 void bough_complex_solve(int n, const double *factor, const int *pivot, double *b);
 
 // Eigenvalues of a (n × n, column-major; overwritten): value (2 × n), real parts before imaginary
 // ones, conjugate pairs in sequence. vector (n × n, column-major): the right eigenvectors of length
-// 1, of a pair its real and imaginary part in two columns. work (BOUGH_EIGEN_WORK(n)): room for the blocks
-// that pay for many rows. False when a is not finite or the iteration does not converge.
+// 1, of a pair its real and imaginary part in two columns. work (BOUGH_EIGEN_WORK(n)): of many rows LAPACK
+// works on several columns at once. False when a is not finite or the iteration does not converge.
 #define BOUGH_EIGEN_WORK(n) ((n) > 100 ? 34 * (n) + 4160 : 8 * (n))
 bool bough_dense_eigen(int n, double *a, double *value, double *vector, double *work);
 

@@ -36,16 +36,16 @@ struct bough_pool {
     // the list in progress, written before its number in `list`
     bough_task task;
     void *data;
-    int first;                                 // number of its first task
+    int first;                                 // index of its first task
     _Alignas(LINE) atomic_uint_least64_t list; // its number << 16 | how many tasks
-    uint64_t list_before;                      // the region
-    atomic_bool ended;                         // the region's work is
+    uint64_t list_before;                      // `list` when the region began
+    atomic_bool ended;                         // the work of the region has
     slot slot[MOST_TASKS];
     wait_queue idle, waiting;
     pthread_mutex_t mutex; // of both
     _Alignas(
         LINE) int n_alone; // tasks of the list in progress that the caller has done, in a line of its own
-    atomic_bool alone;     // of the last list, all of them
+    atomic_bool alone;     // the caller did all tasks of the last list
 };
 
 static uint64_t number_of(uint64_t list) { return list >> 16; }

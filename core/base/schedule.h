@@ -10,7 +10,7 @@ double bough_ramp_factor(double start, double end, double t);
 // between the first and the last time.
 int bough_table_row(int n, const double *times, int stride, double t);
 
-// Of a table (n rows, times increasing), linear between its times and held outside.
+// The value of a table (n rows, times increasing), linear between its times and held outside.
 double bough_table_value(int n, const double *times, const double *values, double t);
 
 typedef struct bough_schedule {
