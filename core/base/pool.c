@@ -39,7 +39,7 @@ struct bough_pool {
     int first;                                 // index of its first task
     _Alignas(LINE) atomic_uint_least64_t list; // its number << 16 | how many tasks
     uint64_t list_before;                      // `list` when the region began
-    atomic_bool ended;                         // the work of the region has
+    atomic_bool ended;                         // the work of the region has returned
     slot slot[MOST_TASKS];
     wait_queue idle, waiting;
     pthread_mutex_t mutex; // of both

@@ -1,9 +1,8 @@
 // A file that builds on another one. Its key `base` names that file, relative to itself; the rest is what
 // differs:
 //   - a mapping changes the keys that it has and keeps the base's others; null removes a key;
-//   - a list of mappings with names changes the items of those names and appends others; a mapping in its
-//   place
-//     has these names as keys, and null removes an item;
+//   - a list of mappings with names changes the items of those names and appends others; a mapping in place
+//     of the list has these names as keys, and null removes an item;
 //   - any other value replaces the base's.
 #ifndef BOUGH_APPS_CONFIG_BASE_H
 #define BOUGH_APPS_CONFIG_BASE_H
