@@ -219,27 +219,31 @@ enum { APART = 3 };                 // macro steps from one corner to the next, 
 enum { STRETCH = 32 };              // macro steps in which corners are counted anew
 static const double one_each = 1.5; // steps of the integrator in each of the run's
 
-// Steps of the run's integrator that takes fewest, and how often it has gone through a macro step.
-static long fewest_steps(const bough_companion *c, long *advances) {
+// Counts the last corner, unless it follows another in less than a macro step.
+static void count_corners(bough_companion *c) {
+    const bough_master *m = c->run->master;
+    double corner = m->next_event > 0 ? m->event[m->next_event - 1] : -HUGE_VAL;
+    if (corner < c->corner + 0.99 * m->macro_step) return;
+    c->corner = corner;
+    c->corners++;
+}
+
+static bough_run_counts counts_of(const bough_companion *c) {
     const bough_master *m = c->run->master;
     const bough_member *whole = bough_scheme_whole(m->coupling);
-    long fewest = LONG_MAX, sweeps = bough_scheme_reported(m->coupling).sweeps;
-    *advances = sweeps > 0 ? sweeps : m->steps;
+    long sweeps = bough_scheme_reported(m->coupling).sweeps;
+    bough_run_counts p = {m->grid_index, c->corners, sweeps > 0 ? sweeps : m->steps, LONG_MAX};
     for (int i = 0; i < (whole ? 1 : m->assembly->n_member); i++) {
         const bough_member *member = whole ? whole : m->assembly->member[i];
         long own = member->system.n_state > 0 ? bough_member_statistics(member).steps : LONG_MAX;
-        fewest = own < fewest ? own : fewest;
+        p.steps = own < p.steps ? own : p.steps;
     }
-    return fewest;
+    return p;
 }
 
-// Corners so far, those that follow another in less than a macro step left out.
-static long count_corners(bough_companion *c) {
-    const bough_master *m = c->run->master;
-    double corner = m->next_event > 0 ? m->event[m->next_event - 1] : -HUGE_VAL;
-    if (corner < c->corner + 0.99 * m->macro_step) return c->corners;
-    c->corner = corner;
-    return ++c->corners;
+static bough_run_counts counts_since(const bough_run_counts *now, const bough_run_counts *then) {
+    return (bough_run_counts){now->macro_steps - then->macro_steps, now->corners - then->corners,
+                              now->advances - then->advances, now->steps - then->steps};
 }
 
 // Corners of loads that are nearly as close as macro steps end the companion's steps, or the halves that it
@@ -247,18 +251,18 @@ static long count_corners(bough_companion *c) {
 // steps: both err alike. Where the integrators would go on, it takes each of these steps in two.
 static void split_steps(bough_companion *c) {
     const bough_scene *scene = c->run->scene;
-    const bough_master *m = c->run->master, *other = c->coarser.simulation->master;
-    long now[4] = {m->grid_index, count_corners(c), 0, 0}, n[4];
-    now[3] = fewest_steps(c, &now[2]);
-    for (int k = 0; k < 4; k++) n[k] = now[k] - c->counted[k];
+    bough_master *other = c->coarser.simulation->master;
+    count_corners(c);
+    bough_run_counts now = counts_of(c), n = counts_since(&now, &c->counted);
     // the companion of a loose tolerance has half the run's macro steps: several corners are in each of them
-    bool close = bough_coarser_is_loose(scene) ? n[2] >= APART * n[0] : n[1] >= MANY && APART * n[1] >= n[0];
-    bool same = scene->aero.node == NULL && other->macro_step == m->macro_step;
-    if ((close || same) && n[2] >= MANY && (double)n[3] <= one_each * (double)n[2]) {
-        c->coarser.simulation->master->split = true;
+    bool close = bough_coarser_is_loose(scene) ? n.advances >= APART * n.macro_steps
+                                               : n.corners >= MANY && APART * n.corners >= n.macro_steps;
+    bool same = scene->aero.node == NULL && other->macro_step == c->run->master->macro_step;
+    if ((close || same) && n.advances >= MANY && (double)n.steps <= one_each * (double)n.advances) {
+        other->split = true;
         c->share = fmax(c->share, bough_finer_time_share());
-    } else if (n[0] >= STRETCH) {
-        memcpy(c->counted, now, sizeof now);
+    } else if (n.macro_steps >= STRETCH) {
+        c->counted = now;
     }
 }
 
@@ -393,12 +397,13 @@ void bough_companion_snapshot(bough_companion *c, bough_snapshot *s) {
     double work = bough_companion_work(c), now = work - c->earlier;
     bough_snapshot_take(s, &work, sizeof work);
     c->earlier = work - now;
-    long advances, own = fewest_steps(c, &advances);
-    c->counted[3] = own - c->counted[3];
-    bough_snapshot_take(s, c->counted, sizeof c->counted);
+    // a restored integrator counts on: what is kept are its steps since then
+    long steps = counts_of(c).steps;
+    c->counted.steps = steps - c->counted.steps;
+    bough_snapshot_take(s, &c->counted, sizeof c->counted);
     bough_snapshot_take(s, &c->corners, sizeof c->corners);
     bough_snapshot_take(s, &c->corner, sizeof c->corner);
-    c->counted[3] = own - c->counted[3];
+    c->counted.steps = steps - c->counted.steps;
     bough_snapshot_take(s, &c->compared, sizeof c->compared);
     bough_snapshot_take(s, &c->share, sizeof c->share);
     bough_snapshot_take(s, &c->flutters, sizeof c->flutters);

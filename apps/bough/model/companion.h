@@ -124,6 +124,14 @@ enum { BOUGH_RECORD_TIME, BOUGH_RECORD_ERROR, BOUGH_RECORD_HELD, BOUGH_RECORD_RU
 
 enum { BOUGH_COMPANION_REASON = 320 };
 
+// What a run has done so far.
+typedef struct bough_run_counts {
+    long macro_steps;
+    long corners;  // of loads and motions; of those within a macro step the first
+    long advances; // of members through a macro step, repetitions among them
+    long steps;    // of the integrator that takes fewest
+} bough_run_counts;
+
 typedef struct bough_companion {
     bough_simulation *run;
     bough_other_run coarser;
@@ -138,8 +146,8 @@ typedef struct bough_companion {
     double rest;                         // motion of a scene at rest; 0: it moves
     bool sampled;                        // the companion's channels are of its present time
     long compared;                       // times
-    long counted[4];                     // macro steps, corners, advances, steps: earlier
-    long corners;                        // so far, a macro step apart at least
+    bough_run_counts counted;            // of the run, from where steps and corners are counted
+    long corners;                        // so far
     double corner;                       // the last of them [s]
     int wind;                            // row of the wind's table up to which it is known to jump or not
     double earlier;                      // work of both before a copy was restored
