@@ -257,7 +257,8 @@ REFERENCES = ((2, "rosenbrock", 1e-6), (4, "ida", 1e-7))
 
 
 def length_of(rod):
-    return rod.get("length") or {"blade": 61.5, "tower": 87.6}[rod["table"].split("-")[0]]
+    """None: the rod has sections of its own."""
+    return rod.get("length") or {"blade-structure.yaml": 61.5, "tower-structure.yaml": 87.6}.get(rod.get("table"))
 
 
 def one(arguments, index):
@@ -274,7 +275,7 @@ def one(arguments, index):
     places = random.Random("%d/%d/sensors" % (arguments.seed, index))
     scene["sensors"] = [{"body": body["name"], "at": sorted(
         places.choice([0, 1, places.random()]) * length_of(body["rod"]) for _ in range(2))}
-        for body in scene["bodies"] if "rod" in body and body["fidelity"] == "rod"]
+        for body in scene["bodies"] if "rod" in body and body["fidelity"] == "rod" and length_of(body["rod"])]
     folder = tempfile.mkdtemp(prefix="random-")
     try:
         for table in ("blade-structure", "tower-structure", "blade-aero", "airfoils"):
