@@ -208,6 +208,20 @@ TEST(steps_of_a_macro_step_have_an_error) {
     free(truth);
 }
 
+// Nine corners within a millisecond are one: the steps after them are as long as before.
+TEST(a_burst_of_corners_splits_no_steps) {
+    const char *const sets[] = {
+        "simulation.duration=1 s", "simulation.macro_step=20 ms",
+        "simulation.master={solver: rosenbrock, rtol: 3e-3}",
+        "loads=[{joint: bob, torque: {times: [0.1, 0.1001, 0.1002, 0.1003, 0.1004, 0.1005, "
+        "0.1006, 0.1007, 0.1008], values: [0, 1e-9, 0, 1e-9, 0, 1e-9, 0, 1e-9, 0]}}]",
+        NULL};
+    check_arena(arena);
+    bough_run r;
+    run_all(arena, "apps/mechanisms/pendulum.yaml", sets, &r);
+    assert_false(r.companion->coarser.simulation->master->split);
+}
+
 // A tolerance that leaves no room for a looser one: the companion's is tighter, and its steps are shorter.
 // That 7 times 0.05 s, where a load begins, is a number next to 0.35 does not end the comparison.
 TEST(a_loose_tolerance_has_an_error) {

@@ -81,6 +81,8 @@ TEST(kept_factors_serve_a_state_near_and_others_are_replaced) {
     assert_true(find(&s, def, BOUGH_OK).kept);
     assert_true(linearised > 0);
     def.step = BOUGH_EQUILIBRIUM_LONGEST;
+    for (int k = 0; k < N; k++) s.y[k] = .01 * (k + 1);
+    int steps = find(&s, def, BOUGH_OK).steps;
     def.kept = true;
     for (int foreign = 0; foreign < 2; foreign++) {
         linearised = 0;
@@ -88,8 +90,9 @@ TEST(kept_factors_serve_a_state_near_and_others_are_replaced) {
         bough_whole_inputs(s.whole, 0, s.y);
         // of a step that is much shorter
         if (foreign) check_ok(bough_whole_setup(s.whole, 0, s.y, s.whole->input, 1e-3));
-        find(&s, def, BOUGH_OK);
+        int taken = find(&s, def, BOUGH_OK).steps;
         for (int k = 0; k < N; k++) check_near(s.y[k], 0, 0, 1e-9);
         assert_int_equal(linearised > a->n_member, foreign);
+        assert_true(!foreign || taken == steps);
     }
 }
