@@ -80,6 +80,14 @@ typedef struct bough_wind_missed {
 // Of samples from time 0 on, a period apart [s], up to a time [s].
 bough_wind_missed bough_wind_between(const bough_wind *wind, double period, double until);
 
+// The row of a table or a hub-height file from which the wind jumps, from a row on: by more than a tenth of
+// the higher speed at the reference height, to the next row, less than a period [s] away, with no other row
+// less than a period before or after. -1: none.
+int bough_wind_jump(const bough_wind *wind, double period, int row);
+
+// Time of a row of the table or the hub-height file [s].
+double bough_wind_row_time(const bough_wind *wind, int row);
+
 // The wind at a point in global axes (z up) and a time [s].
 bough_vec3 bough_wind_at(const bough_wind *wind, bough_vec3 position, double t);
 

@@ -1,5 +1,5 @@
-// What samples of the wind at equal times miss: a table or a hub-height file can rise and fall between two of
-// them, which no sample shows.
+// Samples of the wind at equal times: a table or a hub-height file can rise and fall between two of them,
+// which no sample shows, or jump there.
 #include "aero/wind/wind.h"
 
 #include <math.h>
@@ -52,20 +52,48 @@ static double largest_range(const samples *s) {
     return range;
 }
 
+// Of the table or the hub-height file; 0 for other winds.
+static int row_count(const bough_wind *wind) {
+    if (wind->hub) return wind->hub->n;
+    return wind->box || wind->iec ? 0 : wind->def.n_time;
+}
+
+double bough_wind_row_time(const bough_wind *wind, int row) {
+    return wind->hub ? wind->hub->row[row].time : wind->def.time[row];
+}
+
 bough_wind_missed bough_wind_between(const bough_wind *wind, double period, double until) {
     const bough_wind_def *def = &wind->def;
-    bool file = wind->hub != NULL;
-    int n = file ? wind->hub->n : wind->box || wind->iec ? 0 : def->n_time;
-    double aside = file ? 0.5 * def->reference_length : 0;
+    int n = row_count(wind);
+    double aside = wind->hub ? 0.5 * def->reference_length : 0;
     samples s = {
         .wind = wind,
         .period = period,
         .point = {bough_v3(0, 0, def->reference_height), bough_v3(0, aside, def->reference_height + aside)}};
     for (int k = 0; k < POINTS; k++) s.low[k] = s.high[k] = bough_wind_at(wind, s.point[k], 0);
     for (int i = 0; i < n; i++) {
-        double t = file ? wind->hub->row[i].time : def->time[i];
+        double t = bough_wind_row_time(wind, i);
         if (t > 0 && t < until) look(&s, t);
     }
     s.missed.range = largest_range(&s);
     return s.missed;
+}
+
+static const double large = 0.1; // change of the wind, of the higher speed
+
+// Whether the wind jumps from row k to the next.
+static bool jumps(const bough_wind *wind, int k, double period) {
+    double start = bough_wind_row_time(wind, k), end = bough_wind_row_time(wind, k + 1);
+    if (end - start >= period) return false;
+    if (k > 0 && start - bough_wind_row_time(wind, k - 1) < period) return false;
+    if (k + 2 < row_count(wind) && bough_wind_row_time(wind, k + 2) - end < period) return false;
+    bough_vec3 point = bough_v3(0, 0, wind->def.reference_height);
+    bough_vec3 a = bough_wind_at(wind, point, start), b = bough_wind_at(wind, point, end);
+    return bough_norm(bough_sub(b, a)) > large * fmax(bough_norm(a), bough_norm(b));
+}
+
+int bough_wind_jump(const bough_wind *wind, double period, int row) {
+    for (int k = row; k + 1 < row_count(wind); k++)
+        if (jumps(wind, k, period)) return k;
+    return -1;
 }

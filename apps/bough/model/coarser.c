@@ -231,6 +231,37 @@ static void change_rate(const bough_scene *scene, bool finer, bough_scene *to) {
     if (finer) double_rate(scene, holds_loads(scene), to);
 }
 
+// When the loads show a jump from a time on, held constant between samples.
+static double shown_at(double time, double rate) { return (floor(time * rate + 1e-6) + 1) / rate; }
+
+static const double little_late = 0.1; // samples
+
+// How much later the companion has a jump of the air. Both solutions may show it from the same sample on and
+// err alike; then it is delayed beyond that one.
+static double delay(const bough_scene *scene, const bough_scene *to, double start, double end) {
+    double rate = scene->aero.rate, time = (start + end) / 2, shown = shown_at(time, rate);
+    bool alike = fabs(shown_at(time, to->aero.rate) - shown) * rate < 1e-6;
+    return alike && (shown - time) * rate > little_late ? (1 + 1e-6) * (shown - start) : 0;
+}
+
+static void delay_jumps(bough_arena *arena, const bough_simulation *run, bough_scene *to) {
+    const bough_scene *scene = run->scene;
+    double period = 1 / scene->aero.rate, *ramp = to->aero.ramp;
+    if (ramp[0] > 0 && ramp[1] - ramp[0] < period) {
+        double late = delay(scene, to, ramp[0], ramp[1]);
+        ramp[0] += late, ramp[1] += late;
+    }
+    bough_scene_wind_table *x = &to->aero.wind.table;
+    if (x->n_time == 0) return;
+    x->time = bough_arena_copy(arena, x->time, (size_t)x->n_time * sizeof *x->time);
+    const bough_wind *wind = bough_rotor_wind(bough_aero_link_rotor(run->aero));
+    for (int k = bough_wind_jump(wind, period, 0); k >= 0; k = bough_wind_jump(wind, period, k + 1)) {
+        double late = delay(scene, to, x->time[k], x->time[k + 1]);
+        bool room = k + 2 == x->n_time || x->time[k + 1] + late < x->time[k + 2];
+        for (int i = k; room && i < k + 2; i++) x->time[i] += late;
+    }
+}
+
 static void lengthen_macro_step(bough_scene *to) {
     double step = 2 * to->simulation.macro_step;
     if (!steps_fit(to, step)) return;
@@ -338,6 +369,7 @@ bough_scene *bough_coarser_scene(bough_arena *arena, const bough_scene *scene, i
 bough_scene *bough_coarser_scene_beside(bough_arena *arena, const bough_simulation *run, int parts) {
     bough_scene *to = bough_coarser_scene(arena, run->scene, parts);
     if (run->aero) to->aero.wind.def.box = bough_rotor_wind(bough_aero_link_rotor(run->aero))->box;
+    if (run->aero && parts & BOUGH_COARSER_AIR && holds_loads(to)) delay_jumps(arena, run, to);
     return to;
 }
 

@@ -42,6 +42,14 @@ static double share_held(const bough_scene *scene) {
     return fmax(1 - rate * scene->simulation.macro_step, 0);
 }
 
+static const bough_wind *wind_of(const bough_simulation *s) {
+    return bough_rotor_wind(bough_aero_link_rotor(s->aero));
+}
+
+static void expect_jumps(bough_companion *c) {
+    c->jump = c->run->aero ? bough_wind_jump(wind_of(c->run), 1 / c->run->scene->aero.rate, 0) : -1;
+}
+
 static bough_status build(bough_arena *arena, bough_companion *c) {
     BOUGH_TRY(bough_other_run_build(arena, c->run, BOUGH_COARSER_ALL, &c->coarser));
     BOUGH_TRY(bough_finer_build(arena, c->run, &c->finer));
@@ -49,6 +57,7 @@ static bough_status build(bough_arena *arena, bough_companion *c) {
     if (bough_coarser_is_loose(c->run->scene)) c->share = fmax(c->share, bough_finer_time_share());
     c->share_held = share_held(c->run->scene);
     take_record(c, arena);
+    expect_jumps(c);
     return bough_ok();
 }
 
@@ -266,26 +275,26 @@ static void split_steps(bough_companion *c) {
     }
 }
 
-static const double large = 0.1; // change of the wind, of the higher speed
-
-// Whether the row is followed by a jump of the wind, in less than a sample and alone in more.
-static bool wind_jumps(const bough_scene_wind_table *x, int k, double rate) {
-    const double *t = x->time, *speed = x->speed;
-    if ((t[k + 1] - t[k]) * rate >= 1) return false;
-    if (k > 0 && (t[k] - t[k - 1]) * rate < 1) return false;
-    if (k + 2 < x->n_time && (t[k + 2] - t[k + 1]) * rate < 1) return false;
-    return fabs(speed[k + 1] - speed[k]) > large * fmax(speed[k], speed[k + 1]);
+// What a jump of the air at a time errs by.
+static void take_jump(bough_companion *c, double time) {
+    double sample = time * c->run->scene->aero.rate;
+    if (time <= c->run->master->time) c->share = fmax(c->share, 2 * fabs(sample - floor(sample) - 0.5));
 }
 
-// A jump is spread over the whole of its sample, and over two in the companion, whose middle is half a sample
-// away; the run errs by the time from the jump to the middle of its own.
-static void pass_wind_jumps(bough_companion *c) {
+// A jump of the wind, or of the loads' ramp, is spread over the whole of its sample, and over two in the
+// companion, whose middle is half a sample away; the run errs by the time from the jump to the middle of its
+// own.
+static void pass_jumps(bough_companion *c) {
+    if (!c->run->aero) return;
     const bough_scene_aero *aero = &c->run->scene->aero;
-    const bough_scene_wind_table *x = &aero->wind.table;
-    for (; c->wind + 1 < x->n_time && x->time[c->wind + 1] <= c->run->master->time; c->wind++) {
-        double sample = (x->time[c->wind] + x->time[c->wind + 1]) / 2 * aero->rate;
-        if (wind_jumps(x, c->wind, aero->rate))
-            c->share = fmax(c->share, 2 * fabs(sample - floor(sample) - 0.5));
+    const double *ramp = aero->ramp;
+    if (ramp[0] > 0 && (ramp[1] - ramp[0]) * aero->rate < 1) take_jump(c, (ramp[0] + ramp[1]) / 2);
+    const bough_wind *wind = wind_of(c->run);
+    while (c->jump >= 0) {
+        double start = bough_wind_row_time(wind, c->jump), end = bough_wind_row_time(wind, c->jump + 1);
+        if (end > c->run->master->time) return;
+        take_jump(c, (start + end) / 2);
+        c->jump = bough_wind_jump(wind, 1 / aero->rate, c->jump + 1);
     }
 }
 
@@ -294,7 +303,7 @@ static void compare(bough_companion *c) {
     bool rarer = c->coarser.simulation->scene->aero.rate <= c->run->scene->aero.rate;
     bool held = rarer ? !bough_master_sampled(c->coarser.simulation->master) : c->run->master->at_event;
     bool resolved = missed_air(c->run) <= most_missed;
-    pass_wind_jumps(c);
+    pass_jumps(c);
     double share = resolved ? c->share : fmax(c->share, 1), share_held = held ? c->share_held : share;
     c->flutters = c->flutters || (resolved && missed_air(c->coarser.simulation) > fluttering);
     memcpy(c->before, c->value, (size_t)c->channels->count * sizeof(double));
@@ -417,4 +426,5 @@ void bough_companion_snapshot(bough_companion *c, bough_snapshot *s) {
     if (s->move != BOUGH_SNAPSHOT_RESTORE) return;
     c->status = bough_ok();
     c->sampled = false;
+    expect_jumps(c);
 }

@@ -149,7 +149,7 @@ typedef struct bough_companion {
     bough_run_counts counted;            // of the run, from where steps and corners are counted
     long corners;                        // so far
     double corner;                       // the last of them [s]
-    int wind;                            // row of the wind's table up to which it is known to jump or not
+    int jump;                            // row from which the wind jumps next; −1: never
     double earlier;                      // work of both before a copy was restored
     double *value;                       // (channels->count) of the run at the last of them
     double *before;                      // (channels->count) of the run at the comparison before

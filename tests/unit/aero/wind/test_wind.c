@@ -81,6 +81,28 @@ TEST(table_is_linear_between_and_constant_outside) {
     }
 }
 
+// A jump; a small change; a peak; a slow change.
+TEST(jumps_are_found) {
+    static const struct {
+        double time[5], speed[5];
+        int jump;
+    } wind[] = {{{0, 1.01, 1.05, 1.5, 9}, {8, 8, 20, 8, 8}, 1},
+                {{0, 1.01, 1.05, 1.5, 9}, {8, 8, 8.8, 8, 8}, -1},
+                {{0, 1.01, 1.05, 1.09, 9}, {8, 8, 20, 8, 8}, -1},
+                {{0, 1, 1.2, 8.95, 9}, {8, 8, 20, 20, 8}, 3}};
+    for (size_t i = 0; i < sizeof wind / sizeof *wind; i++) {
+        const bough_wind_def def = {.n_time = 5, .time = wind[i].time, .speed_at_time = wind[i].speed};
+        check_arena(arena);
+        bough_wind model;
+        check_ok(bough_wind_build(arena, &def, &model));
+        int jump = bough_wind_jump(&model, 0.1, 0);
+        assert_int_equal(jump, wind[i].jump);
+        if (jump < 0) continue;
+        check_near(bough_wind_row_time(&model, jump), wind[i].time[jump], 0, 0);
+        assert_int_equal(bough_wind_jump(&model, 0.1, jump + 1), -1);
+    }
+}
+
 // A peak between two samples, a jump, a slow gust, a peak of which the sample before it shows a half.
 TEST(what_lies_between_samples_is_found) {
     static const struct {
