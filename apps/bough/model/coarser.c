@@ -302,9 +302,11 @@ static void make_one_system(bough_scene *to) {
 // Tolerances above it leave no room for ten times as much.
 static const double loose = 5e-3;
 
-bool bough_coarser_is_loose(const bough_scene *scene) {
-    return (is_one_system(scene) ? scene->simulation.master.rtol : all_sub_solvers(scene).rtol) > loose;
+double bough_scene_loosest_rtol(const bough_scene *scene) {
+    return is_one_system(scene) ? scene->simulation.master.rtol : all_sub_solvers(scene).rtol;
 }
+
+bool bough_coarser_is_loose(const bough_scene *scene) { return bough_scene_loosest_rtol(scene) > loose; }
 
 // A tenth of a loose tolerance, and two steps at least where the run may take one.
 static void tighten_steps(bough_scene *to) {

@@ -46,6 +46,9 @@ double bough_coarser_share(const bough_scene *scene, const bough_scene *other);
 // The same for a copy that is coarser in time alone.
 double bough_coarser_time_share(const bough_scene *scene);
 
+// Relative tolerance of the whole's integrator, the loosest of the sub-solvers beside another coupling.
+double bough_scene_loosest_rtol(const bough_scene *scene);
+
 // Whether the steps' tolerance is so loose that the copy that is coarser in all has a tighter one.
 bool bough_coarser_is_loose(const bough_scene *scene);
 

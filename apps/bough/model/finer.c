@@ -17,7 +17,7 @@ static const double least_jump = 0.1;
 // would write to the companion's file.
 static bool is_wanted(const bough_scene *scene) {
     static const double tight = 1e-5;
-    return (scene->simulation.master.rtol >= tight || scene->aero.node) && !scene->control.library;
+    return (bough_scene_loosest_rtol(scene) >= tight || scene->aero.node) && !scene->control.library;
 }
 
 // What the loads of a simulation remember: those of the air and the control.

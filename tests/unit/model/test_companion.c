@@ -325,6 +325,19 @@ TEST(beside_waves_of_a_blow_the_mesh_is_finer) {
         assert_true(estimate[w] > 0.7 * error[w] && estimate[w] < 1.5 * error[w]);
 }
 
+// It stands beside sub-solvers with a loose tolerance, whatever that of the master is.
+TEST(loose_sub_solvers_have_a_finer_solution) {
+    static const char *const micro[] = {"simulation.micro={rtol: 3e-4}", "simulation.micro={rtol: 1e-6}"};
+    for (int k = 0; k < 2; k++) {
+        const char *const sets[] = {"simulation.coupling={scheme: frozen}", "simulation.master={rtol: 1e-6}",
+                                    micro[k], NULL};
+        check_arena(arena);
+        bough_run r;
+        check_ok(bough_run_create(arena, scene_read(arena, "tests/data/scenes/mid-weight.yaml", sets), &r));
+        assert_int_equal(r.companion->finer.other.simulation != NULL, k == 0);
+    }
+}
+
 // Stiff rods without damping: followed by its tolerance, the finer solution would take forty times the work
 // of the run.
 TEST(the_finer_solution_takes_little_work) {
