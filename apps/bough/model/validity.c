@@ -265,10 +265,13 @@ void bough_validity_start(bough_simulation *s) {
     check_mesh(s);
 }
 
-// The body of the name, or the first of the group of that name.
+// The body of that name, which a blank and "end" may follow: the tree calls the end of a rod so.
 static int find_body(const bough_scene *scene, const char *name) {
-    for (int i = 0; i < scene->n_body; i++)
-        if (strncmp(scene->body[i].name, name, strlen(scene->body[i].name)) == 0) return i;
+    size_t length = strcspn(name, " ");
+    for (int i = 0; i < scene->n_body; i++) {
+        const char *own = scene->body[i].name;
+        if (strlen(own) == length && strncmp(own, name, length) == 0) return i;
+    }
     return 0;
 }
 

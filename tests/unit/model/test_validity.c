@@ -65,7 +65,8 @@ TEST(a_fast_section_is_warned_of_once) {
     "bodies[beam].fidelity=modal", "gravity=[0, 0, 0]", "simulation.initial=equilibrium",                    \
         "loads=[{body: beam, at: tip, force: [" force ", 0, 0]}]"
 #define COLUMN(force)                                                                                        \
-    "bodies=[{name: column, fidelity: rod, joint: {kind: fixed, parent: ground}, rod: {length: 1, "          \
+    "bodies=[{name: col, fidelity: rigid, mass: 1, joint: {kind: fixed, parent: ground}}, "                  \
+    "{name: column, fidelity: rod, joint: {kind: fixed, parent: ground}, rod: {length: 1, "                  \
     "segments: 16, stiffness: [1e5, 1e5, 1e6, 10, 20, 10], mass: [1, 0, 0, 1e-3, 1e-3, 0]}}]",               \
         "loads=[{body: column, at: tip, force: [0, 0, " force "]}]", "gravity=[0, 0, 0]", "markers=[]",      \
         "simulation.initial=equilibrium"
