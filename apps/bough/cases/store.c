@@ -180,7 +180,7 @@ bough_status bough_store_write(const char *folder, const bough_study *s, const b
 static bool take_head(FILE *f, const case_name name, uint64_t fingerprint, bough_status *outcome) {
     uint64_t found;
     int code;
-    char word[24], message[BOUGH_MESSAGE] = "";
+    char word[24], message[BOUGH_MESSAGE + 2] = ""; // with the blank before it and the end of its line
     if (fscanf(f, "case %23s fingerprint %" SCNx64 " outcome %d", word, &found, &code) != 3) return false;
     if (!fgets(message, sizeof message, f)) return false;
     message[strcspn(message, "\n")] = '\0';

@@ -2,10 +2,7 @@
 #include "apps/bough/cases/perform.h"
 
 #include "apps/bough/cases/study.h"
-#include "tests/unit/check.h"
-
-#include <math.h>
-#include <string.h>
+#include "tests/unit/scratch.h"
 
 static const char text[] =
     "kind: load-set\n"
@@ -114,6 +111,24 @@ TEST(what_is_lacking_is_reported) {
     assert_int_equal(l.n_failed, 1);
     assert_int_equal(l.n_missing, 1);
     check_near(l.lacking, 1 - 25. / 200, 1e-12, 0);
+}
+
+// A message may fill its buffer.
+TEST_IN_FOLDER(the_longest_message_is_kept) {
+    check_arena(arena);
+    bough_case cases[CASES];
+    bough_load_group group[4];
+    bough_study set = made(cases, group);
+    bough_case_result r = sine(arena, &set, 0, 1, 5), again = r;
+    char longest[BOUGH_MESSAGE];
+    memset(longest, 'm', sizeof longest - 1);
+    longest[sizeof longest - 1] = '\0';
+    r.outcome = bough_fail(BOUGH_FAILED, "%s", longest);
+    cases[0].settings = "";
+    check_ok(bough_store_open(*context));
+    check_ok(bough_store_write(*context, &set, cases, &r));
+    check_ok(bough_store_read(*context, &set, cases, &again));
+    assert_string_equal(again.outcome.message, longest);
 }
 
 // Companions of the first two cases: an equivalent load that is larger by its error for each.
