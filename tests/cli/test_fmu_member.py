@@ -242,9 +242,12 @@ class Member(unittest.TestCase):
         self.error()
         self.refused("'damper' cannot restore its state", "simulation.coupling.scheme=iterated")
         self.unpack(library=None)
-        self.refused("scene.yaml:18:7: the FMU of 'damper' cannot be loaded")
+        self.refused("scene.yaml:18:7: fmu: the library of 'damper' cannot be loaded")
+        self.refused("error: --set: fmu: the library of 'damper'",
+                     "bodies[damper].fmu={folder: sample, motion: [none, none, v, none, none, none, none, none, none]"
+                     ", wrench: [none, none, f, none, none, none]}")
         self.unpack(library=LACKING)
-        self.refused("the FMU of 'damper' has no function fmi3DoStep")
+        self.refused("the library of 'damper' has no function fmi3DoStep")
         write(self.folder + "/sample/modelDescription.xml", "<fmiModelDescription")
         self.refused("sample/modelDescription.xml:1: unclosed token")
         self.unpack(once="true")

@@ -53,9 +53,9 @@ static void look_up(const bough_fmu_instance *x, const char *name, void *functio
 }
 
 static bough_status unusable(const bough_fmu_instance *x, const char *what, const char *detail) {
-    const bough_node *place = x->model->node;
-    return bough_fail(BOUGH_INVALID, "%.160s:%d:%d: the FMU of '%.40s' %s %.200s", place->file, place->line,
-                      place->column, x->name, what, detail);
+    return bough_scene_blame(
+        x->model->node, "fmu",
+        bough_fail(BOUGH_INVALID, "the library of '%.40s' %s %.200s", x->name, what, detail));
 }
 
 static bough_status open_library(bough_fmu_instance *x, bough_arena *arena) {
