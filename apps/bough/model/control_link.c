@@ -20,7 +20,7 @@ typedef struct event_state {
     double running;  // after a start: whether the law's own torque holds
 } event_state;
 
-enum { BLADES = BOUGH_MOST_BLADES, MOST_EVENTS = 8 };
+enum { BLADES = BOUGH_MOST_BLADES };
 
 // What the next samples depend on. Doubles only: a copy has no padding.
 typedef struct memory {
@@ -38,11 +38,11 @@ struct bough_control_link {
     bough_discon *discon;    // NULL: none
     bough_fmu_instance *fmu; // NULL: none
     int load, n_blade;
-    bool steers;                    // the blades are pitched
-    event_state event[MOST_EVENTS]; // (control->n_event)
-    int *column;                    // (n_event) channel of a threshold; −1: none
-    bough_channels channels;        // for thresholds
-    double *value;                  // (channels.count) scratch
+    bool steers;                          // the blades are pitched
+    event_state event[BOUGH_MOST_EVENTS]; // (control->n_event)
+    int *column;                          // (n_event) channel of a threshold; −1: none
+    bough_channels channels;              // for thresholds
+    double *value;                        // (channels.count) scratch
     memory now;
 };
 

@@ -410,15 +410,16 @@ typedef enum bough_scene_event_kind {
     BOUGH_SCENE_YAW_RUNAWAY,
 } bough_scene_event_kind;
 
+enum { BOUGH_MOST_EVENTS = 8 };
+
 // An event of the turbine at a time, or later when a channel passes a threshold.
 typedef struct bough_scene_event {
     const bough_node *node;
-    int kind;            // bough_scene_event_kind
-    double at;           // not before [s]
-    const char *channel; // NULL: at that time
-    double above, below; // threshold in the channel's unit, one of the two
-    bool falls;          // `threshold` is that of `below`
-    double threshold;
+    int kind;              // bough_scene_event_kind
+    double at;             // not before [s]
+    const char *channel;   // NULL: at that time
+    double threshold;      // in the channel's unit
+    bool falls;            // the event occurs below it, else above
     int blade;             // from 1, of the faults of one blade; else 0
     const char *body_name; // YAW_RUNAWAY: on the yaw joint
     int body;              // its index

@@ -63,7 +63,6 @@ static void check_event(bough_schema_reader *r, void *item) {
         bough_schema_error(r, e->node, "", "pitch-to needs its 'angle'");
     }
     e->falls = below;
-    e->threshold = below ? e->below : e->above;
 }
 
 #define FILLS bough_scene_event
@@ -85,11 +84,11 @@ static const bough_schema event_schema = {.name = "an event", .check = check_eve
      .help = "time of the event; with a channel the earliest time"},
     {KEY(TEXT, channel), .example = "GenSpeed",
      .help = "channel whose threshold triggers the event; default: the event occurs at the time"},
-    {KEY(NUMBER, above), .example = "1300",
-     .help = "the event occurs when the channel is beyond this threshold, in the channel's unit"},
-    {KEY(NUMBER, below), .example = "100",
-     .help = "the event occurs when the channel is beyond this threshold, in the channel's unit"},
-    {KEY(INTEGER, blade), .range = "[1, 3]", .required = true, WHEN("kind", FAULTS), .example = "2",
+    {NAMED("above", NUMBER), AT(threshold), .example = "1300",
+     .help = "the event occurs when the channel is above this threshold, in the channel's unit"},
+    {NAMED("below", NUMBER), AT(threshold), .example = "100",
+     .help = "the event occurs when the channel is below this threshold, in the channel's unit"},
+    {KEY(INTEGER, blade), .range = ">= 1", .required = true, WHEN("kind", FAULTS), .example = "2",
      .help = "number of the blade in turbine.blades"},
     {NAMED("body", TEXT), AT(body_name), .required = true, WHEN("kind", "yaw-runaway"),
      .example = "yaw", .help = "body on the yaw joint, which must have a motion"},

@@ -212,9 +212,10 @@ void bough_link_control(bough_schema_reader *r, bough_scene *s) {
         bough_schema_error(r, s->control.node, "", "expected a rotor of at most %d blades, got %d",
                            (int)BOUGH_MOST_BLADES, s->turbine.n_blade);
     }
-    if (s->control.n_event > 8) {
+    if (s->control.n_event > BOUGH_MOST_EVENTS) {
         bough_link_at(r, "control");
-        bough_schema_error(r, s->control.node, "events", "expected at most 8, got %d", s->control.n_event);
+        bough_schema_error(r, s->control.node, "events", "expected at most %d, got %d",
+                           (int)BOUGH_MOST_EVENTS, s->control.n_event);
     }
     for (int i = 0; i < s->control.n_event && s->turbine.blade; i++) link_event(r, s, i);
 }

@@ -196,6 +196,7 @@ TEST(senseless_events_are_refused) {
     refused("control.events=[{kind: stop, at: 1, above: 3}]", "needs its 'channel'");
     refused("control.events=[{kind: stop, channel: RotSped, above: 3}]", "did you mean 'RotSpeed'");
     refused("control.events=[{kind: pitch-stuck, at: 1 s}]", "blade");
+    refused("control.events=[{kind: pitch-stuck, at: 1 s, blade: 4}]", "the turbine has 3 blades");
     refused("control.events=[{kind: stop, at: 1 s, blade: 2}]", "only used with");
     refused("control.events=[{kind: pitch-to, at: 1 s}]", "needs its 'angle'");
     refused("control={kind: variable-speed, pitch: false, events: [{kind: stop, at: 1 s}]}",
