@@ -284,11 +284,11 @@ static bough_status quotient(bough_arena *arena, bough_scene *scene, double time
 }
 
 // theory (108), by the difference of scenes in which the parameter is greater and smaller.
-static bough_status change_of(const bough_scene *scene, double time, const mode *of, const bough_parameter *p,
-                              double complex *change) {
+static bough_status change_of(bough_arena *arena, const bough_scene *scene, double time, const mode *of,
+                              const bough_parameter *p, double complex *change) {
     double complex value[2] = {0, 0};
     for (int side = 0; side < 2; side++) {
-        bough_arena *own = bough_arena_create();
+        bough_arena *own = bough_arena_child(arena);
         bough_scene *other = bough_parameter_change(own, scene, p, (1 - 2 * side) * step);
         bough_status status = quotient(own, other, time, of, &value[side]);
         bough_arena_destroy(own);
@@ -328,7 +328,7 @@ bough_status bough_sensitivity_find(bough_arena *arena, bough_simulation *s, dou
         .list = bough_arena_take(arena, ((size_t)n_parameter + 1) * sizeof *found->list)};
     for (int k = 0; k < n_parameter; k++) {
         double complex change = 0;
-        BOUGH_TRY(change_of(s->scene, time, &x, &parameter[k], &change));
+        BOUGH_TRY(change_of(arena, s->scene, time, &x, &parameter[k], &change));
         bough_sensitivity one = sensitivity_of(x.value, change, &parameter[k]);
         if (one.eigenvalue > least) found->list[found->n++] = one;
     }
