@@ -37,7 +37,6 @@ usage() {
     refused "unknown option '--thread' (did you mean '--threads'?)" run "$bar" --thread 2
     refused "unknown option '--thread=2' (did you mean '--threads'?)" run "$bar" --thread=2
     refused "unknown option '-x'" run -x "$bar"
-    refused "option --body was removed: an FMU is a whole scene" export fmu "$bar" --body bar
     refused "unknown option '--out'" check "$bar" --out x
     refused '\-\-quiet takes no value' run "$bar" --quiet=1
     refused '\-\-set needs a value: --set KEY=VALUE' run "$bar" --set
@@ -182,8 +181,6 @@ checks() {
         expect 0 check "$bar" --set "simulation.output.$key=1000 s"
         has ../stderr "^--set: warning: simulation.output.$key: 1000 s is longer than the run, 1 s\$"
     done
-    refused "simulation.output: the key 'vertices' was removed: 'frames: 0.1 s' stores" check "$bar" \
-        --set 'simulation.output.vertices=0.1 s'
     refused "error: --set: control.library: the controller cannot be loaded: .*no.so" check \
         "$folder/apps/turbine/power.yaml" --set 'control={kind: bladed, library: no.so}'
     refused "error: --set: aero.wind.file: cannot open the wind file .*no.bts" check "$turbine" --set 'aero.wind={kind: bts, file: no.bts}'

@@ -63,9 +63,7 @@ static int count(const bough_command *command) {
 
 static bough_status unknown_long(const bough_command *command, const char *word) {
     const char *names[MOST_OPTIONS + 1] = {"help"};
-    for (int i = 0; i < count(command); i++) {
-        if (command->option[i].read) names[i + 1] = command->option[i].name;
-    }
+    for (int i = 0; i < count(command); i++) names[i + 1] = command->option[i].name;
     char name[64];
     snprintf(name, sizeof name, "%.*s", (int)strcspn(word + 2, "="), word + 2);
     const char *near = bough_nearest(name, names, count(command) + 1);
@@ -164,19 +162,16 @@ static void list_options(const bough_command *command, struct option *list) {
     }
 }
 
-static bough_status take_option(const bough_option *row, const char *text, bough_options *options) {
-    if (row->read) return row->read(row, text, (char *)options + row->offset);
-    return bough_fail(BOUGH_INVALID, "the option --%s was removed: %s", row->name, row->help);
-}
-
 static bough_status take(const bough_command *command, int code, const char *word, bough_options *options) {
     switch (code) {
     case 1: return take_operand(command, optarg, options);
     case 'h': options->help = true; return bough_ok();
     case '?': return refuse(command, word);
     case ':': return missing(command);
-    default: return take_option(&command->option[code - FIRST], optarg, options);
+    default: break;
     }
+    const bough_option *row = &command->option[code - FIRST];
+    return row->read(row, optarg, (char *)options + row->offset);
 }
 
 // The struct of the command, with room for as many values of a repeated option as there are words.
@@ -224,7 +219,6 @@ void bough_options_usage(const bough_command *command, FILE *stream) {
             : command->repeats ? "..."
                                : "");
     for (const bough_option *row = command->option; row && row->name; row++) {
-        if (!row->read) continue;
         fprintf(stream, " [--%s%s%s]%s", row->name, row->argument ? " " : "",
                 row->argument ? row->argument : "", may_repeat(row) ? "..." : "");
     }
@@ -232,7 +226,6 @@ void bough_options_usage(const bough_command *command, FILE *stream) {
 
 void bough_options_help(const bough_command *command, FILE *stream) {
     for (const bough_option *row = command->option; row && row->name; row++) {
-        if (!row->read) continue;
         char left[40];
         snprintf(left, sizeof left, "--%s %s", row->name, row->argument ? row->argument : "");
         fprintf(stream, "  %-18s %s\n", left, row->help);

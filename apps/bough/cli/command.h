@@ -37,7 +37,7 @@ typedef struct bough_options {
 typedef struct bough_option {
     const char *name, *argument; // "out", "DIR"; argument NULL: none
     const char *help;
-    // Reads the value into its field; NULL: the option was removed, `help` says what takes its place.
+    // Reads the value into its field.
     bough_status (*read)(const struct bough_option *row, const char *text, void *field);
     size_t offset; // of the field in the command's struct
     // of a quantity, as of a key

@@ -362,7 +362,6 @@ static void make_token(export *x) {
 static const bough_option rows[] = {
     BOUGH_OPTION_SET,
     BOUGH_OPTION_OUT,
-    {"body", "NAME", "an FMU is a whole scene, whose inputs are its loads and motions", .read = NULL},
     {0},
 };
 

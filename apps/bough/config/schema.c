@@ -29,11 +29,6 @@ static void unknown_key(bough_schema_reader *r, const bough_schema *schema, cons
     char shown[64];
     bough_node word = {.kind = BOUGH_SCALAR, .text = name};
     int n = 0;
-    for (const char *const *former = schema->removed; former && *former; former += 2) {
-        if (strcmp(former[0], name) != 0) continue;
-        bough_schema_error(r, at, "", "the key '%s' was removed: %s", name, former[1]);
-        return;
-    }
     for (; n < schema->n_key && n < 64; n++) names[n] = schema->key[n].name;
     if (r->errors->dropped > 0) n = 0; // a hostile file: spelling costs time
     bough_schema_error(r, at, "", "unknown key %s%s", bough_node_shown(&word, shown),

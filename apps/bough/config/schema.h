@@ -74,7 +74,6 @@ struct bough_schema {
     size_t size;      // of the struct
     int n_key;
     const bough_key *key;
-    const char *const *removed; // pairs of a former key and what to write instead, ended by NULL; or NULL
     // What one key cannot see alone; called when all keys were read without an error.
     void (*check)(bough_schema_reader *reader, void *item);
 };

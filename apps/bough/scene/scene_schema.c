@@ -47,8 +47,7 @@ _Static_assert(sizeof(bough_exchange) == sizeof(int) && sizeof(bough_acceleratio
 // names those that are not used.
 static const bough_schema coupling_schema = {.name = "the coupling", KEYS(
     {KEY(CHOICE, scheme), .fallback = BOUGH_SCHEME_DEFAULT, .choice = bough_scheme_name,
-     .help = "how sub-systems exchange their values. The default integrates all bodies as one "
-             "system"},
+     .help = "how sub-systems exchange their values. The default integrates all bodies as one system"},
     {NAMED("order", INTEGER), AT(options.order), .range = "[0, 2]", .fallback = "1", .example = "2",
      .help = "of extrapolated and of iterated end values: degree of the polynomial"},
     {NAMED("theta", NUMBER), AT(options.theta), .word = "auto", .range = "[0.5, 1]",
@@ -67,18 +66,14 @@ static const bough_schema coupling_schema = {.name = "the coupling", KEYS(
      .help = "of iterated: factor of the correction; the first one of aitken and iqn-ils"},
     {NAMED("tolerance", NUMBER), AT(options.tolerance), .word = "auto", .range = "[1e-12, 0.1]",
      .fallback = "auto", .example = "1e-5",
-     .help = "of iterated: of the interface, relative to its largest values so far; auto: 3 rtol "
-             "of micro"},
+     .help = "of iterated: of the interface, relative to its largest values so far; auto: 3 rtol of micro"},
     {NAMED("iterations", INTEGER), AT(options.iterations), .range = "[1, 1000]", .fallback = "30",
      .example = "50", .help = "of iterated: largest number in a macro step"},
 )};
 #undef FILLS
 
-static const char *const removed_outputs[] = {
-    "vertices", "'frames: 0.1 s' stores the vertices of rods and their section loads, as .vtp", NULL};
-
 #define FILLS bough_scene_output
-static const bough_schema output_schema = {.name = "the output", .removed = removed_outputs, KEYS(
+static const bough_schema output_schema = {.name = "the output", KEYS(
     {KEY(NUMBER, interval), UNIT(TIME), .range = "> 0", .example = "50 ms",
      .help = "time between recorded values, a multiple of the macro step; default the macro step"},
     {KEY(NUMBER, from), UNIT(TIME), .range = ">= 0", .fallback = "0", .example = "30 s",
@@ -87,8 +82,7 @@ static const bough_schema output_schema = {.name = "the output", .removed = remo
      .help = "time between shapes stored for ParaView, with the section loads of rods, and for "
              "`bough report`; default none"},
     {KEY(BOOLEAN, binary), .fallback = "false",
-     .help = "also writes channels.outb at the end, OpenFAST's binary format with 16 bits for each "
-             "value"},
+     .help = "also writes channels.outb at the end, OpenFAST's binary format with 16 bits for each value"},
     {KEY(TEXTS, channels), .count = 1, COUNT_AT(n_channel), .example = "[RotSpeed, 'Root*']",
      .help = "names or patterns of the channels that are recorded; default all"},
 )};
@@ -140,8 +134,7 @@ static const bough_schema simulation_schema = {.name = "the simulation", KEYS(
     {KEY(BOOLEAN, error_shares), .fallback = "false",
      .help = "also gives the separate errors of mesh, air and time, by further runs after the run"},
     {KEY(INTEGER, threads), .range = "[0, 1024]", .fallback = "0", .example = "2",
-     .help = "threads for the rods; --threads overrides; 0: OMP_NUM_THREADS, 1 where that is not "
-             "set"},
+     .help = "threads for the rods; --threads overrides; 0: OMP_NUM_THREADS, 1 where that is not set"},
     {KEY(MAPPING, output), .of = &output_schema, .help = "what is recorded"},
 )};
 #undef FILLS
@@ -163,8 +156,7 @@ static const bough_schema modes_schema = {.name = "the modes", KEYS(
      .help = "state of the whole scene about which modes are computed; in equilibrium, joints with "
              "a speed keep it"},
     {KEY(NUMBER, speed), UNIT(ANGULAR_SPEED), .fallback = "0", .example = "12.1 rpm",
-     .help = "steady rotation of the rods' roots; the whole scene rotates by the speeds of its "
-             "joints"},
+     .help = "steady rotation of the rods' roots; the whole scene rotates by the speeds of its joints"},
     {NAMED("about", TEXT), AT(about_name), .example = "hub",
      .help = "body on the revolute joint about whose axis the roots rotate; default the nearest "
              "revolute joint that carries the rod"},
