@@ -7,7 +7,6 @@
 
 #include <math.h>
 #include <stdio.h>
-#include <string.h>
 
 typedef void change_section(bough_section_station *x, double change);
 typedef void change_scene(bough_scene *scene, double change);
@@ -132,8 +131,8 @@ const bough_parameter *bough_parameters_of(bough_arena *arena, const bough_scene
 
 static void change_rod(bough_arena *arena, const kind *of, double change, bough_scene_structure *x) {
     for (int k = 0; k < 6 && of->damping; k++) x->damping[k] *= 1 + change;
-    bough_scene_station *station = bough_arena_take(arena, (size_t)x->n_station * sizeof *station);
-    memcpy(station, x->station, (size_t)x->n_station * sizeof *station);
+    bough_scene_station *station =
+        bough_arena_copy(arena, x->station, (size_t)x->n_station * sizeof *station);
     for (int k = 0; k < x->n_station; k++) {
         for (int c = 0; c < 6; c++)
             if (of->stiffness >> c & 1) scale_stiffness(&station[k].def, c, change);

@@ -101,27 +101,18 @@ static void name_state(bough_signal_name *to, const char *body, const char *what
     to->unit = unit;
 }
 
-// Coordinate or speed k of a joint, by the table of joint.h.
+// Coordinates and speeds of a joint: lengths, then angles or a quaternion, which has more coordinates than
+// speeds.
 static void name_joint(const bough_tree *tree, const bough_link *link, bough_signal_name *state) {
-    static const struct {
-        const char *coordinate[BOUGH_JOINT_COORDINATES], *speed[BOUGH_JOINT_SPEEDS];
-    } units[BOUGH_JOINT_PLANAR + 1] = {
-        [BOUGH_JOINT_REVOLUTE] = {{"rad"}, {"rad/s"}},
-        [BOUGH_JOINT_PRISMATIC] = {{"m"}, {"m/s"}},
-        [BOUGH_JOINT_SPHERICAL] = {{"-", "-", "-", "-"}, {"rad/s", "rad/s", "rad/s"}},
-        [BOUGH_JOINT_FREE] = {{"m", "m", "m", "-", "-", "-", "-"},
-                              {"m/s", "m/s", "m/s", "rad/s", "rad/s", "rad/s"}},
-        [BOUGH_JOINT_CYLINDRICAL] = {{"m", "rad"}, {"m/s", "rad/s"}},
-        [BOUGH_JOINT_UNIVERSAL] = {{"rad", "rad"}, {"rad/s", "rad/s"}},
-        [BOUGH_JOINT_PLANAR] = {{"m", "m", "rad"}, {"m/s", "m/s", "rad/s"}},
-    };
     const char *body = tree->bodies[link->body].name;
+    const char *angle = link->n_coordinates > link->n_speeds ? "-" : "rad";
+    int slides = bough_joint_n_slides(link->joint.kind);
     for (int k = 0; k < link->n_coordinates; k++)
         name_state(&state[link->first_coordinate + k], body, "coordinate", k + 1 + link->part,
-                   units[link->joint.kind].coordinate[k]);
+                   k < slides ? "m" : angle);
     for (int k = 0; k < link->n_speeds; k++)
         name_state(&state[tree->n_q + link->first_speed + k], body, "speed", k + 1 + link->part,
-                   units[link->joint.kind].speed[k]);
+                   k < slides ? "m/s" : "rad/s");
 }
 
 // Rows of rod.h: component-major over the moving vertices.

@@ -2,6 +2,7 @@
 
 #include "apps/bough/model/equilibrium_search.h"
 #include "apps/bough/model/shape.h"
+#include "core/base/linalg.h"
 
 #include <math.h>
 #include <string.h>
@@ -41,15 +42,14 @@ int bough_equilibrium_held(const bough_tree *tree, bool turning, int *row) {
 // EI/(EA L²) of a thick bar, eight times as long as thick; stiffer rods make a search no easier.
 static const double thick = 1e-3;
 
-enum { AXIAL = 11, STRAINS = 6, FIRST_BENDING = 3 };
-static const int diagonal[STRAINS] = {0, 6, 11, 15, 18, 20}; // in the upper triangle by rows
+enum { AXIAL = 2, STRAINS = 6, FIRST_BENDING = 3 };
 
 // theory (104). C ← S C S, S = diag(1, 1, 1, s₄, s₅, s₆): positive as before.
 static void stiffen_section(double length, double exponent, double *stiffness) {
-    double least = thick * stiffness[AXIAL] * length * length, factor[STRAINS];
+    double least = thick * stiffness[bough_symmetric6_index(AXIAL, AXIAL)] * length * length, factor[STRAINS];
     for (int i = 0; i < STRAINS; i++) {
-        bool soft = i >= FIRST_BENDING && stiffness[diagonal[i]] < least;
-        factor[i] = soft ? pow(least / stiffness[diagonal[i]], exponent / 2) : 1;
+        double own = stiffness[bough_symmetric6_index(i, i)];
+        factor[i] = i >= FIRST_BENDING && own < least ? pow(least / own, exponent / 2) : 1;
     }
     for (int i = 0; i < STRAINS; i++) {
         for (int j = i; j < STRAINS; j++) *stiffness++ *= factor[i] * factor[j];

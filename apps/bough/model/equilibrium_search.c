@@ -18,21 +18,17 @@ static const double still = 1e-8;
 static const double folded = 2; // between neighbouring sections: what lies beyond has no direction [rad]
 
 // What is found beyond this angle is no equilibrium of a rod.
-static bough_status explain_rod(const bough_simulation *s, const bough_beam *beam, int steps) {
-    const double *span = beam->def.span;
-    bough_sharpest bend = bough_simulation_bend(s, beam);
-    if (bend.angle >= folded)
+static bough_status explain_rods(const bough_simulation *s, int steps) {
+    for (const bough_beam *beam = s->beam; beam < s->beam + s->n_beam; beam++) {
+        if (!beam->rod) continue;
+        const double *span = beam->def.span;
+        bough_sharpest bend = bough_simulation_bend(s, beam);
+        if (!(bend.angle >= folded)) continue;
         return bough_fail(
             BOUGH_FAILED,
             "%s: no equilibrium found in %d steps: the rod folds, by %.0f deg between %.3g and %.3g m; "
             "its segments may be too long for its load",
             beam->body->name, steps, bend.angle / BOUGH_DEGREE, span[bend.segment], span[bend.segment + 1]);
-    return bough_ok();
-}
-
-static bough_status explain_rods(const bough_simulation *s, int steps) {
-    for (int k = 0; k < s->n_beam; k++) {
-        if (s->beam[k].rod) BOUGH_TRY(explain_rod(s, &s->beam[k], steps));
     }
     return bough_ok();
 }
