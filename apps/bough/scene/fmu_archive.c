@@ -21,7 +21,7 @@ enum { STORED = 0, DEFLATED = 8, ENCRYPTED = 1, MOST_RATIO = 1032 }; // deflate'
 typedef struct archive {
     const char *path;
     const unsigned char *bytes; // (size)
-    size_t size, at;            // of the next entry of the directory
+    size_t size, at;            // position of the next entry of the directory
     unsigned left;              // entries from there on
 } archive;
 
@@ -56,7 +56,7 @@ static bough_status open_archive(bough_arena *arena, const char *path, archive *
     return damaged(a, "no ZIP archive");
 }
 
-// The place of a file's bytes, which its local head precedes.
+// Finds the bytes of a file, which follow its local header.
 static bough_status find_data(const archive *a, size_t local, entry *e) {
     if (local + LOCAL_SIZE > a->size || number(a->bytes + local, 4) != LOCAL)
         return damaged(a, "the archive is damaged");
@@ -100,7 +100,7 @@ static bool inflated(const entry *e, unsigned char *out) {
     return ended && z.total_out == e->size;
 }
 
-// NULL: it is damaged.
+// The content of a file; NULL: it is damaged.
 static const unsigned char *extract(bough_arena *arena, const entry *e) {
     if (e->method == STORED) return crc32(0, e->data, e->packed) == e->sum ? e->data : NULL;
     unsigned char *out = bough_arena_take(arena, (size_t)e->size + 1);

@@ -28,15 +28,15 @@ int bough_scene_blade(const bough_scene *s, int body) {
     return k;
 }
 
-// -- bodies in a row: `repeat: n` -----------------------------------------------------------------
+// -- chains of bodies -----------------------------------------------------------------------------
 
-// Bodies in a row: a body with `repeat: n` becomes n, each hung on the one before by the same
-// joint, named with numbers from 1. The first stays where it is in the list, the others come last, so that
-// places in the text keep their index.
+// A body with `repeat: n` becomes n bodies, each carried by the previous one on the same joint, with names
+// that end with numbers from 1. The first stays where it is in the list, the others come last, so that the
+// bodies of the text keep their index.
 
 enum { MOST_BODIES = 10000, MOST_SEGMENTS = 1000000 };
 
-// Bodies after repetition; 0 after an error: a few lines must not ask for any amount of memory.
+// Number of bodies with all repetitions; 0 after an error: a few lines of text must not exhaust the memory.
 static size_t count_bodies(bough_schema_reader *r, const bough_scene *s) {
     size_t bodies = 0, segments = 0;
     for (int i = 0; i < s->n_body; i++) {
@@ -54,7 +54,6 @@ static size_t count_bodies(bough_schema_reader *r, const bough_scene *s) {
     return bodies;
 }
 
-// Makes single bodies of those in a row.
 static void scene_repeat(bough_schema_reader *r, bough_scene *s) {
     bough_arena *arena = r->arena;
     int n = s->n_body, next = n;
@@ -80,7 +79,7 @@ static void scene_repeat(bough_schema_reader *r, bough_scene *s) {
 
 static bool begins(const char *text, const char *with) { return strncmp(text, with, strlen(with)) == 0; }
 
-// Whether a replacement is of a turbine in one block, not of the names of its bodies.
+// Whether a replacement changes a turbine in one block, not the names of its bodies.
 static bool is_of_block(const char *set) {
     static const char *const names[] = {"turbine.rotor", "turbine.blades[", "turbine.blades=["};
     bool of_names = false;
@@ -88,7 +87,7 @@ static bool is_of_block(const char *set) {
     return (begins(set, "turbine.") || begins(set, "turbine=")) && !of_names;
 }
 
-// Applies every good replacement, of the block or of the rest; the others leave an error.
+// Applies the replacements in the turbine's block, or all others; each invalid one leaves an error.
 static bough_node *replace(bough_arena *arena, bough_node *root, const char *const *sets, int n_set,
                            bool of_block, bough_errors *errors) {
     for (int i = 0; i < n_set; i++) {
@@ -99,7 +98,7 @@ static bough_node *replace(bough_arena *arena, bough_node *root, const char *con
     return root;
 }
 
-// One error for a study that is read as a scene, in place of one for each of its keys.
+// A study that is read as a scene gives one error, not one for each of its keys.
 static bool is_study(const char *path, const bough_node *root, bough_errors *errors) {
     const bough_node *kind = bough_node_find(root, "kind");
     if (kind == NULL || bough_node_find(root, "bodies") != NULL) return false;
@@ -114,8 +113,7 @@ bough_status bough_scene_read(bough_arena *arena, bough_schema_shared *shared, c
     bough_scene *s = bough_arena_take(arena, sizeof *s);
     bough_schema_base *bases;
     bough_node *root = bough_base_read(arena, path, errors, &bases);
-    if (root == NULL) return bough_errors_status(errors, path, "scene");
-    if (is_study(path, root, errors)) return bough_errors_status(errors, path, "scene");
+    if (root == NULL || is_study(path, root, errors)) return bough_errors_status(errors, path, "scene");
     const char *directory = bough_directory_of(arena, path);
     bough_schema_reader reader = {
         .arena = arena, .errors = errors, .directory = directory, .bases = bases, .shared = shared};

@@ -38,7 +38,7 @@ typedef struct bough_scene_solver {
     double rtol; // [-]
     double step; // generalised-α and Rosenbrock: longest step [s]; 0: none
     double rho;  // its spectral radius at infinite frequency [-]
-    // of the runs beside a run; not in a file
+    // of companions and further runs; not in a file
     bool coarse;
     int most_steps; // in a macro step; 0: the method's own limit
 } bough_scene_solver;
@@ -46,8 +46,8 @@ typedef struct bough_scene_solver {
 typedef struct bough_scene_output {
     const bough_node *node;
     double interval;       // [s], a multiple of the macro step
-    double from;           // of the statistics: what is before does not count [s]
-    double frames;         // between stored shapes [s]; 0: none
+    double from;           // start of the statistics [s]
+    double frames;         // time between stored shapes [s]; 0: none
     bool binary;           // channels.outb beside channels.out
     int n_channel;         // 0: all
     const char **channels; // (n_channel) patterns of those that are recorded
@@ -66,7 +66,7 @@ typedef enum bough_scene_initial {
 } bough_scene_initial;
 
 typedef enum bough_scene_estimate {
-    BOUGH_SCENE_COMPANION, // by a coarser solution beside the run
+    BOUGH_SCENE_COMPANION, // by a coarser simulation beside the run
     BOUGH_SCENE_NO_ESTIMATE,
 } bough_scene_estimate;
 
@@ -74,7 +74,7 @@ typedef struct bough_scene_simulation {
     const bough_node *node;
     double duration;   // [s], a multiple of the macro step
     double macro_step; // [s]
-    bool halves;       // some macro steps are taken in halves, for a companion; not in a file
+    bool halves;       // of a companion: some macro steps are taken in two halves; not in a file
     double accuracy;   // aimed at, of each channel relative to its range
     bough_scene_step_control step_control;
     int initial; // bough_scene_initial: how the rods and joints start
@@ -82,7 +82,7 @@ typedef struct bough_scene_simulation {
     bough_scene_solver master, micro;
     double error_bound; // of a channel's error relative to its range; 0: none
     int error_estimate; // bough_scene_estimate
-    bool error_shares;  // of mesh, air and time
+    bool error_shares;  // the separate errors of mesh, air and time
     int threads;
     bough_scene_output output;
 } bough_scene_simulation;
@@ -93,10 +93,10 @@ typedef enum bough_scene_axis { BOUGH_SCENE_X, BOUGH_SCENE_Y, BOUGH_SCENE_Z } bo
 bough_vec3 bough_scene_direction(int axis);
 bough_mat3 bough_scene_rotation(int axis, double angle);
 
-// Of a revolute [rad, rad/s] or prismatic [m, m/s] joint.
+// The prescribed motion of an angle [rad, rad/s] or a displacement [m, m/s] of a joint.
 typedef struct bough_scene_motion {
     const bough_node *node; // NULL: moved by forces
-    const char *input;      // in place of the constant of `def`; NULL: none
+    const char *input;      // name of the input that replaces the constant of `def`; NULL: none
     bough_motion_def def;
 } bough_scene_motion;
 
@@ -141,16 +141,16 @@ typedef struct bough_scene_rod {
     int n_segment;
     double grading;                  // of their lengths: bough_section_graded
     bough_scene_structure structure; // of the table, or of the one section given in the scene
-    // As written in the scene; contained in `structure`:
-    double part[2]; // stretch of the table [m]
+    // As written in the scene; merged into `structure`:
+    double part[2]; // interval of the table's span [m]
     bough_scene_station uniform;
 } bough_scene_rod;
 
 // Linear reductions of a body's rod.
 typedef struct bough_scene_modal {
     const bough_node *node; // NULL: all defaults
-    int modes;              // of each piece
-    bool statics;           // static answers to accelerations among the shapes
+    int modes;              // number in each piece
+    bool statics;           // static deflections under accelerations are among the shapes
     bool stiffening;        // by axial forces
     int pieces;             // of a segmented-modal body
 } bough_scene_modal;
@@ -207,39 +207,40 @@ typedef enum bough_scene_sensed {
 
 enum { BOUGH_FMU_VALUES = BOUGH_SCENE_SENSED + BOUGH_MOST_BLADES };
 
-// Variables of an FMU for some of the quantities that a part of the scene has.
+// Variables of an FMU and the quantities of the scene that they stand for.
 typedef struct bough_fmu_values {
     int n;
-    int quantity[BOUGH_FMU_VALUES];       // (n) which one each variable is
+    int quantity[BOUGH_FMU_VALUES];       // (n) the quantity of each variable
     uint32_t reference[BOUGH_FMU_VALUES]; // (n)
 } bough_fmu_values;
 
-// Numbers by names that are not the scene's.
+// Parameters of an FMU by their names.
 typedef struct bough_scene_values {
     int n;
     const char **name;              // (n)
-    double *value;                  // (n) in the unit that the owner of the name gives it
+    double *value;                  // (n) in the unit that the FMU declares
     const struct bough_node **node; // (n)
 } bough_scene_values;
 
 // A model of another program: a co-simulation FMU of FMI 3.0.
 typedef struct bough_scene_fmu_model {
     const bough_node *node;
-    const char *folder;   // path of its archive, or of the folder where it is unpacked, once it is checked
-    const char *unpacked; // of that folder, of an archive a temporary one
+    const char *folder;   // path of its archive or of its unpacked folder
+    const char *unpacked; // path of the unpacked folder, of an archive a temporary one
     bough_scene_values parameters;
     uint32_t *reference; // (parameters.n) of the parameters
     bough_fmu_description description;
 } bough_scene_fmu_model;
 
-// One behind a body's frame. Its inputs are velocity, angular velocity and gravity of the frame in body axes,
+// An FMU at a body's frame. Its inputs are velocity, angular velocity and gravity of the frame in body axes,
 // its outputs force and moment on the frame's carrier about the frame's origin in body axes; SI.
 typedef struct bough_scene_fmu {
     bough_scene_fmu_model model;
     int n_motion, n_wrench;
-    const char **motion, **wrench;  // names of its variables, "none" where it has none; 0: the usual ones
-    int hold;                       // bough_scene_fmu_hold
-    int steps;                      // communication steps per macro step
+    const char **motion,
+        **wrench; // names of its variables, "none" where it has none; NULL: the default names
+    int hold;     // bough_scene_fmu_hold
+    int steps;    // communication steps per macro step
     bough_fmu_values input, output; // of motion and wrench
 } bough_scene_fmu;
 
@@ -252,27 +253,27 @@ typedef enum bough_scene_fmu_hold {
 typedef struct bough_scene_body {
     const bough_node *node;
     const char *name;
-    int repeat;   // so many in a row; each stands alone in the scene once it is read
+    int repeat;   // number of such bodies in a chain; when the scene is read they become bodies of their own
     int fidelity; // bough_scene_fidelity
     bough_scene_joint joint;
     double pitch;             // [rad]: last rotation of the placement, about z by −pitch
-    double mass;              // [kg]; rigid bodies without a rod, and what a frame of an FMU carries
+    double mass;              // [kg] of a rigid body without a rod; of an FMU what it adds to its carrier
     double centre_of_mass[3]; // [m] body axes
     double inertia[6];        // Ixx Iyy Izz Ixy Ixz Iyz about the centre of mass [kg m²]: entries
                               // of the inertia matrix, Ixy = −∫xy
     bough_scene_solver micro; // of this body in place of the simulation's; node NULL: none
-    bough_scene_rod rod;      // any fidelity but rigid, or rigid: integrated to a rigid body
+    bough_scene_rod rod;      // of a flexible body; mass and inertia of a rigid body follow from it
     bough_scene_modal modal;  // fidelity modal and segmented-modal
     bough_scene_fmu fmu;      // fidelity fmu
 } bough_scene_body;
 
-// Whether the body bends: it is no rigid one, and its fidelity was read without an error.
+// Whether the body is a rod, a modal body or an FMU; false after an error in its fidelity.
 static inline bool bough_scene_is_flexible(const bough_scene_body *body) {
     return body->fidelity == BOUGH_SCENE_ROD || body->fidelity == BOUGH_SCENE_MODAL ||
            body->fidelity == BOUGH_SCENE_SEGMENTED_MODAL || body->fidelity == BOUGH_SCENE_FMU;
 }
 
-// Whether it has a mesh: rod, modal.
+// Whether the body has a mesh: a rod or a modal body.
 static inline bool bough_scene_has_mesh(const bough_scene_body *body) {
     return body->rod.node != NULL && body->fidelity != BOUGH_SCENE_RIGID;
 }
@@ -280,7 +281,7 @@ static inline bool bough_scene_has_mesh(const bough_scene_body *body) {
 typedef enum bough_scene_load_frame {
     BOUGH_SCENE_LOAD_GROUND,   // ground axes
     BOUGH_SCENE_LOAD_BODY,     // axes of the body's frame
-    BOUGH_SCENE_LOAD_FOLLOWER, // section axes, with which the load turns
+    BOUGH_SCENE_LOAD_FOLLOWER, // section axes: the load rotates with the section
 } bough_scene_load_frame;
 
 // Where a load acts on a rod, in arc length.
@@ -291,44 +292,44 @@ typedef enum bough_scene_load_place {
     BOUGH_SCENE_ALONG, // distributed
 } bough_scene_load_place;
 
-// On a joint, a rod or a rigid body. Factor in time: 0 before ramp[0], 1 after ramp[1], linear
+// A load on a joint, a rod or a rigid body. Its factor over time is 0 before ramp[0], 1 after ramp[1], linear
 // between, a jump where they are equal; {0, 0}: always 1.
 typedef struct bough_scene_load {
     const bough_node *node;
-    const char *joint_name;             // NULL: the load acts on a body
-    int joint;                          // index of the body that the joint carries
-    double amount;                      // torque [N m] of a revolute joint, force [N] of a prismatic one
-    int n_time;                         // rows of a table in place of the amount, 0: none
-    double *times, *values;             // (n_time) [s], [N m] or [N], on a body factors; linear between, held
-                                        // before and after
-    const char *body_name;              // NULL: the load acts on a joint
-    int body;                           // index of a body
-    int place;                          // bough_scene_load_place
-    int vertex;                         // AT_VERTEX: 0 is the root
-    double span[2];                     // AT_SPAN: the first; ALONG: from, to [m]
-    double force[3];                    // [N]; ALONG: [N/m]
-    double moment[3];                   // [N m]; ALONG: [N m/m]
-    double end_force[3], end_moment[3]; // ALONG: at span[1], linear between; those above when not given
+    const char *joint_name; // NULL: the load acts on a body
+    int joint;              // index of the body that the joint carries
+    double amount;          // torque [N m] of a revolute joint, force [N] of a prismatic one
+    int n_time;             // rows of a table in place of the amount, 0: none
+    double *times, *values; // (n_time) [s], [N m] or [N], on a body factors; linear between, constant
+                            // before and after
+    const char *body_name;  // NULL: the load acts on a joint
+    int body;               // index of a body
+    int place;              // bough_scene_load_place
+    int vertex;             // AT_VERTEX: 0 is the root
+    double span[2];         // AT_SPAN: the first; ALONG: from, to [m]
+    double force[3];        // [N]; ALONG: [N/m]
+    double moment[3];       // [N m]; ALONG: [N m/m]
+    double end_force[3], end_moment[3]; // ALONG: at span[1], linear between; by default as above
     int frame;                          // bough_scene_load_frame
     double ramp[2];                     // [s]
-    const char *input;                  // NULL: none
+    const char *input;                  // name of its input; NULL: none
     double point[3];                    // on a rigid body: in its frame [m]
 } bough_scene_load;
 
-// What its factor follows over time; its table is the scene's.
+// The factor of a load over time; the table stays the scene's.
 static inline bough_schedule bough_scene_load_schedule(const bough_scene_load *load) {
     return (bough_schedule){load->ramp[0], load->ramp[1], load->n_time, load->times, load->values};
 }
 
-// Springs and dampers along and about the axes of one body or the ground at a point of it, against
-// another as it stands at the start.
+// Springs and dampers along and about the axes of the first of two bodies, at a point of it; either may be
+// the ground. They are free of force in the initial position.
 typedef struct bough_scene_bushing {
     const bough_node *node;
     const char *name;
     const char *body_name[2];
     int body[2];           // indices, or BOUGH_GROUND
     double point[3];       // in the first one's frame [m]
-    bough_bushing_def def; // but for the markers
+    bough_bushing_def def; // without markers
 } bough_scene_bushing;
 
 // A point of a rigid body or the ground that is recorded.
@@ -355,18 +356,19 @@ typedef struct bough_scene_spring {
     const char *body_name[2];
     int body[2];          // indices, or BOUGH_GROUND
     double point[2][3];   // in the body's frame [m]
-    bough_spring_def def; // but for the markers
+    bough_spring_def def; // without markers
 } bough_scene_spring;
 
 // A joint that closes a loop between two rigid bodies or the ground.
 typedef struct bough_scene_closure {
     const bough_node *node;
     const char *name;
-    int kind; // bough_joint_kind but free
+    int kind; // bough_joint_kind, not free
     const char *body_name[2];
     int body[2];                  // indices, or BOUGH_GROUND
     bough_transform placement[2]; // of the joint's frame in either body's
-    int axis, second_axis;        // bough_scene_axis as of a joint, universal: of `to`
+    int axis,
+        second_axis; // bough_scene_axis in the frame of `from`; the second, of universal, in that of `to`
 } bough_scene_closure;
 
 typedef struct bough_scene_turbine {
@@ -381,17 +383,17 @@ typedef struct bough_scene_turbine {
 typedef enum bough_scene_controller {
     BOUGH_SCENE_VARIABLE_SPEED,
     BOUGH_SCENE_BLADED,
-    BOUGH_SCENE_EXTERNAL, // whoever steps the scene
+    BOUGH_SCENE_EXTERNAL, // another program, by inputs
     BOUGH_SCENE_CONTROL_FMU,
 } bough_scene_controller;
 
 // Names of an FMU's variables for quantities of the turbine.
 typedef struct bough_scene_terminals {
     const bough_node *node;
-    const char *name[BOUGH_SCENE_SENSED]; // NULL: none; of outputs only the torque
+    const char *name[BOUGH_SCENE_SENSED]; // NULL: none; of the outputs only the torque is used
     int n_pitch;
-    const char **pitch;      // (n_pitch) of blade 1, 2 …; of one output: of all blades
-    bough_fmu_values values; // the same, then of the blades
+    const char **pitch;      // (n_pitch) of blade 1, 2 …; a single output is that of all blades
+    bough_fmu_values values; // of `name`, then of `pitch`
 } bough_scene_terminals;
 
 typedef struct bough_scene_control_fmu {
@@ -416,35 +418,35 @@ enum { BOUGH_MOST_EVENTS = 8 };
 typedef struct bough_scene_event {
     const bough_node *node;
     int kind;              // bough_scene_event_kind
-    double at;             // not before [s]
-    const char *channel;   // NULL: at that time
+    double at;             // earliest time [s]
+    const char *channel;   // whose threshold triggers it; NULL: it happens at that time
     double threshold;      // in the channel's unit
     bool falls;            // the event occurs below it, else above
-    int blade;             // from 1, of the faults of one blade; else 0
+    int blade;             // number of the blade with the fault, from 1; 0: of none
     const char *body_name; // YAW_RUNAWAY: on the yaw joint
     int body;              // its index
-    double angle;          // final, of pitch or yaw [rad]; stops: 0: 90 degrees ("auto")
-    double rate;           // with which it is gone to [rad/s]; 0: that of the kind ("auto")
+    double angle;          // final pitch or yaw [rad]; of stops 0: 90 degrees ("auto")
+    double rate;           // of the motion to the angle [rad/s]; 0: that of the kind ("auto")
 } bough_scene_event;
 
-// Of generator torque, and of pitch where the blades hang on joints with a motion.
+// Controls the generator's torque, and the pitch of blades on joints with a motion.
 typedef struct bough_scene_control {
     const bough_node *node;      // NULL: no controller
     int kind;                    // bough_scene_controller
     double rate;                 // samples per second [Hz]
     double gear_ratio;           // generator speed over rotor speed
     double efficiency;           // electrical over mechanical power
-    bool pitch;                  // of the blades too
+    bool pitch;                  // is controlled too
     bool individual;             // BLADED: each blade follows its own demand
     const char *library, *input; // BLADED: paths; no input: ""
-    bool copied;                 // BLADED: the library is loaded as a copy, for a second model; not in a file
+    bool copied;                 // BLADED: the library is loaded as a copy, for a companion; not in a file
     bough_scene_control_fmu fmu; // CONTROL_FMU
     int n_event;
     bough_scene_event *event; // (n_event)
     bough_controller_def law; // BLADED, CONTROL_FMU: only the pitch rate is used
 } bough_scene_control;
 
-// Whether the controller is a program of others, which keeps a memory of its own.
+// Whether the controller is a library or an FMU, whose memory cannot be copied.
 static inline bool bough_scene_control_is_foreign(const bough_scene_control *control) {
     return control->node && (control->kind == BOUGH_SCENE_BLADED || control->kind == BOUGH_SCENE_CONTROL_FMU);
 }
@@ -455,26 +457,28 @@ typedef enum bough_scene_modes_of {
     BOUGH_SCENE_MODES_SCENE,
 } bough_scene_modes_of;
 
-// Settings of `bough modes`, which a run ignores.
+// How the forces of the air follow the motion in modes.
 typedef enum bough_scene_modes_air {
     BOUGH_SCENE_AIR_FROZEN,
     BOUGH_SCENE_AIR_QUASI_STEADY,
     BOUGH_SCENE_AIR_DYNAMIC,
 } bough_scene_modes_air;
 
+// Settings of `bough modes`, which a run ignores.
+// Settings of `bough modes`, which a run ignores.
 typedef struct bough_scene_modes {
     const bough_node *node;
     int of;                 // bough_scene_modes_of
-    int at;                 // bough_scene_initial: of the whole scene, the state they are about
+    int at;                 // bough_scene_initial: state about which modes of the whole scene are computed
     int count;              // modes of each rod, or of the scene
     double speed;           // of a steady rotation [rad/s]; 0: at rest
     const char *about_name; // NULL: the nearest revolute joint that carries the rod
     int about;              // index of the body on the revolute joint, when named
-    double axis[3];         // in place of it, ground axes; {0, 0, 0}: not given
+    double axis[3];         // replaces `about`, ground axes; {0, 0, 0}: not given
     double centre[3];       // a point of that axis, in the ground [m]
     int air;                // bough_scene_modes_air; of the whole scene
-    bool shapes;            // written too
-    bool linear;            // of the whole scene: its linear state space is written too
+    bool shapes;            // are written too
+    bool linear;            // the linear state space of the whole scene is written too
 } bough_scene_modes;
 
 // An input: a value with a name, which another program sets between steps.
@@ -491,8 +495,8 @@ typedef struct bough_scene_input {
     const char *name;
     bough_scene_input_kind kind;
     int dimension;     // bough_dimension
-    const char *range; // of its values, SI: that of the key for which it stands; NULL: any
-    double initial;    // until it is set, SI
+    const char *range; // of its values, SI: that of the key that it replaces; NULL: any
+    double initial;    // value until it is set, SI
     int index;         // of the load, the body on the joint, or the blade
 } bough_scene_input;
 
@@ -535,13 +539,13 @@ typedef struct bough_scene {
 bough_status bough_scene_read(bough_arena *arena, bough_schema_shared *shared, const char *path,
                               const char *const *sets, int n_set, bough_errors *errors, bough_scene **scene);
 
-// A copy with bodies of its own, which may be changed; the rest is shared.
+// A copy whose bodies may be changed; the rest is shared.
 bough_scene *bough_scene_copy(bough_arena *arena, const bough_scene *scene);
 
 // The place of a value before a message, "file:line:column: " or "--set: ", written into `text`; "" of NULL.
 const char *bough_scene_place(const bough_node *value, char *text, size_t size);
 
-// A failure of that value, found while the scene is built: BOUGH_INVALID gets its place and key in front.
+// Puts place and key of the value before the message of a BOUGH_INVALID, found while the scene is built.
 bough_status bough_scene_blame(const bough_node *value, const char *key, bough_status status);
 
 // Writes a warning for each value that is valid but probably an error: an inertia that no mass distribution
@@ -554,19 +558,19 @@ const bough_scene_solver *bough_scene_micro(const bough_scene *scene, const boug
 // Whether `carrier` is a body or carries it, by any number of joints; false in a loop of parents.
 bool bough_scene_carries(const bough_scene *scene, int carrier, int body);
 
-// The first body whose joint hangs on `body`; −1: none.
+// The first body that hangs on `body` by its joint; −1: none.
 int bough_scene_carried_by(const bough_scene *scene, int body);
 
-// The place of a body among the turbine's blades; −1: it is none.
+// The index of a body among the turbine's blades; −1: it is no blade.
 int bough_scene_blade(const bough_scene *scene, int body);
 
 // Length of a rod's axis, straight between its stations [m].
 double bough_scene_arc_length(const bough_scene_structure *structure);
 
-// The errors that the scene's settings lead one to expect, over its accuracy.
+// The errors that the settings of a scene should cause, relative to its accuracy.
 typedef struct bough_scene_expectation {
     double error[3]; // of mesh, air and time; 0: the scene has no such part
-    bool named[3];   // the scene names the setting, which else follows from the accuracy
+    bool named[3];   // the scene names the setting; otherwise it follows from the accuracy
 } bough_scene_expectation;
 
 bough_scene_expectation bough_scene_expect_errors(const bough_scene *scene);

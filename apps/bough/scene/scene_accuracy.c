@@ -1,20 +1,21 @@
-// What follows from `simulation.accuracy` where a scene does not name it: methods, tolerances, steps, the
-// rate of the air and segments. Each law has the order of the error that it limits; the factors are measured
-// on the turbines of apps/turbine and on random scenes (docs/coupling.md).
+// Settings that follow from `simulation.accuracy` where a scene does not name them: methods, tolerances,
+// steps, the rate of the air and segments. Each law has the order of the error that it limits; the factors
+// are measured on the turbines of apps/turbine and on random scenes (docs/coupling.md).
 #include "apps/bough/scene/scene_internal.h"
 
 #include <math.h>
 
-static const double usual = 0.005; // accuracy at which the following hold
+static const double usual = 0.005; // accuracy for which the following values are given
 
 // -- tolerances -----------------------------------------------------------------------------------
 
 // Accuracy over rtol: the largest error of any channel is at most this many rtol in nine of ten random
 // scenes.
-static const double whole_error = 100; // all bodies as one system
-static const double rod_error = 50;    // each rod under its own method
-static const double tree_error = 5000; // the tree beside them: it is cheap, and starts every macro step
-static const double fine_rtol = 1e-6;  // below it BDF's high orders serve better
+static const double whole_error = 100; // of all bodies as one system
+static const double rod_error = 50;    // of a rod with a method of its own
+static const double tree_error =
+    5000; // of the tree beside the rods: it is cheap and restarts in every macro step
+static const double fine_rtol = 1e-6;  // below it the high orders of BDF take less time
 static const double usual_step = 5e-3; // longest one of a rod's own method [s]; order 2
 
 static bool is_named(const bough_node *map, const char *key) { return bough_node_find(map, key) != NULL; }
@@ -24,19 +25,20 @@ static void choose_micro(double accuracy, bough_scene_solver *micro) {
     if (!is_named(micro->node, "step")) micro->step = usual_step * sqrt(accuracy / usual);
 }
 
-// Five free bodies. With more, dense matrices take over twice the time of the usual method.
+// Five free bodies. With more, the dense matrices of Radau IIA take over twice the time of the default
+// method.
 enum { FEW_STATES = 65 };
 
-// Rigid bodies in closed loops or free ones, few enough for Radau IIA. Of its long steps hardly any ends near
-// a position from which a linkage can go on in two ways, where BDF's errors send it the other way; a free
-// body that turns keeps its momentum better by order 5.
+// Whether the scene has only rigid bodies, in closed loops or free, few enough for Radau IIA. Its steps are
+// long and hardly ever end near a singular position, from which errors of BDF can let a linkage continue the
+// other way; order 5 conserves the momentum of a rotating free body better.
 static bool suits_radau(const bough_scene *s) {
     bool suits = s->n_closure > 0;
     int states = 0;
     for (int i = 0; i < s->n_body; i++) {
         const bough_scene_body *b = &s->body[i];
         if (b->fidelity != BOUGH_SCENE_RIGID || b->joint.kind < 0)
-            return false; // a word that is no kind is reported
+            return false; // reported as an unknown kind
         suits = suits || b->joint.kind == BOUGH_JOINT_FREE;
         states += bough_joint_n_coordinates(b->joint.kind) + bough_joint_n_speeds(b->joint.kind);
     }
@@ -44,7 +46,7 @@ static bool suits_radau(const bough_scene *s) {
     return suits && states <= most;
 }
 
-// Whether the scheme integrates all bodies together; a word that is no scheme is reported.
+// Whether the scheme integrates all bodies as one system; false after an error in its name.
 static bool is_whole(const bough_scene *s) {
     const bough_scheme *scheme = bough_scheme_at(s->simulation.coupling.scheme);
     return scheme && scheme->one_system;
@@ -64,13 +66,13 @@ static void choose_master(bough_scene *scene) {
 
 // -- mesh -----------------------------------------------------------------------------------------
 
-// Lanes of eight are full at multiples of eight. The force at a rod's root has order 2.
+// Segments in lanes of eight, which multiples of eight fill. The force at a rod's root has order 2.
 static const double usual_lanes = 4;
 
-// A blade bends in shorter waves where it is slender: graded segments do with three quarters of their number.
+// A blade bends in shorter waves where it is slender: three quarters as many graded segments are as accurate.
 static const double slender = 0.1, blade_grading = 0.2, blade_lanes = 3;
 
-// Whether the bending stiffness over the outer quarter is small against that at the root.
+// Whether the bending stiffness of the outer quarter is small compared with that at the root.
 static bool is_blade(const bough_scene_rod *rod) {
     const bough_scene_structure *s = &rod->structure;
     double outer = 0, root = 0;
@@ -119,7 +121,7 @@ static double air_period(const bough_scene *s) {
 
 enum { DURATION, INTERVAL, AIR, CONTROL, PERIODS };
 
-// Of a scene that names them [s]; others are 0.
+// The periods that the scene names [s]; others are 0.
 static void take_periods(const bough_scene *s, double period[PERIODS]) {
     const bough_scene_simulation *simulation = &s->simulation;
     period[DURATION] = simulation->duration;
@@ -146,7 +148,7 @@ static double round_step(double limit) {
     return round[i] * unit;
 }
 
-// The longest macro step up to `limit` that fits: a round one, else a part of the shortest period.
+// The longest macro step up to `limit` that fits: a round number, or else a fraction of the shortest period.
 static double longest_step(const bough_scene *s, double limit) {
     for (double step = round_step(limit); step > 1e-3 * limit; step = round_step(0.9 * step)) {
         if (bough_scene_step_fits(s, step)) return step;
@@ -179,12 +181,12 @@ static void choose_times(bough_scene *s) {
 
 // -- steps ----------------------------------------------------------------------------------------
 
-// Tolerances do not see vibrations that are small against the size of a rod. Where steps are longer than a
-// part of their period, the run and its companion lose them alike.
+// Tolerances neglect vibrations that are small compared with the size of a rod. If steps are longer than a
+// part of their period, the run and its companion both damp them, and the estimate of the error misses them.
 static const double second_wave = 4.694; // wave number of a clamped rod's second bending over its length
 static const double parts_of_period = 10;
 
-// Means over the span, of the softer direction of bending.
+// Period of the second bending mode in the softer direction, by means over the span [s].
 static double second_period(const bough_scene_rod *rod) {
     const bough_scene_structure *s = &rod->structure;
     double bending = 0, mass = 0;
@@ -200,7 +202,7 @@ static double second_period(const bough_scene_rod *rod) {
     return 2 * BOUGH_PI / (wave * wave) * sqrt(mass / bending);
 }
 
-// The longest step of all bodies as one system. It is never shorter than the usual one of a rod's own method.
+// Limits the steps of all bodies as one system, to no less than the usual step of a rod's own method.
 static void limit_step(bough_scene *s) {
     bough_scene_solver *master = &s->simulation.master;
     bool reads_step = master->solver == BOUGH_ROSENBROCK || master->solver == BOUGH_AUTOMATIC;

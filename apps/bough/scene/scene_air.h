@@ -52,7 +52,7 @@ typedef enum bough_scene_wind_kind {
     BOUGH_SCENE_WIND_BTS,
     BOUGH_SCENE_WIND_IEC,
 } bough_scene_wind_kind;
-// Linear between, constant before and after.
+// Wind speed over time, linear between the rows, constant before and after.
 typedef struct bough_scene_wind_table {
     const bough_node *node; // NULL: the speed is constant
     int n_time, n_speed;    // equal
@@ -65,8 +65,8 @@ typedef struct bough_scene_wind {
     int kind;                     // bough_scene_wind_kind
     bough_scene_wind_table table; // in place of the speed
     const char *input;            // in place of the speed; NULL: none
-    // But for the kind and the table. The veer is over 100 m of height [rad]; once checked `file` is its
-    // path; of kind iec 0 is chosen ("auto"), and speed, exponent and reference height are those of the def.
+    // Without kind and table. The veer is over 100 m of height [rad]; `file` is a path once it is checked. Of
+    // kind iec, 0 means "auto", and speed, exponent and reference height stand here, not in `iec`.
     bough_wind_def def;
 } bough_scene_wind;
 
@@ -79,7 +79,7 @@ static inline bool bough_scene_wind_is_steady(const bough_scene_wind *wind) {
 
 typedef struct bough_scene_induction {
     const bough_node *node;
-    bough_induction_options options; // but for drag
+    bough_induction_options options; // without drag
     bool drag;                       // in the axial and the tangential induction
     int skew;                        // 1: corrected by Pitt and Peters
     bough_inflow_def inflow;         // time 0: from induction and wind ("auto")
@@ -88,7 +88,7 @@ typedef struct bough_scene_induction {
 // Vertical along ground z from the origin.
 typedef struct bough_scene_tower {
     const bough_node *node; // NULL: no tower influence
-    bough_tower_def def;    // its drag (def.n) once checked
+    bough_tower_def def;    // drag at each height (def.n) once it is checked
     int n_diameter, n_drag; // def.n, 1 or def.n
     const char *body_name;  // NULL: no drag on the tower
     int body;               // index of a body with a rod
@@ -100,7 +100,7 @@ typedef struct bough_scene_aero {
     double air_density;     // [kg/m³]
     bough_scene_wind wind;
     double ramp[2]; // [s] as in bough_scene_load
-    int hold;       // bough_scene_hold: how loads go between samples
+    int hold;       // bough_scene_hold: loads between samples
     bough_scene_aero_blade blade;
     bough_scene_polars polars;
     bough_scene_induction induction;

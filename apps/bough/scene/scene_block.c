@@ -1,6 +1,6 @@
-// A turbine in one block: `turbine: {blades: 3, ...}` becomes the bodies tower, nacelle, hub, blade1, blade2,
-// ... of the text, before anything is read from it. What the block says of a part changes the keys of that
-// body, and so do `bodies` of the same name.
+// A turbine in one block, `turbine: {blades: 3, ...}`, is replaced in the tree of the text by the bodies
+// tower, nacelle, hub, blade1, blade2, ... before the scene is read. The block's keys for a part are merged
+// into its body, then those of `bodies` of the same name.
 #include "apps/bough/config/base.h"
 #include "apps/bough/scene/scene_internal.h"
 
@@ -13,7 +13,7 @@ typedef struct block {
     double hub_radius, overhang, shaft_height, height; // [m]
     double tilt, cone, pitch;                          // [rad]
     double speed;                                      // [rad/s]
-    bough_node *tower, *nacelle, *hub, *blade;         // what differs from the bodies below; NULL: nothing
+    bough_node *tower, *nacelle, *hub, *blade; // keys that are merged into the bodies below; NULL: none
 } block;
 
 static void keep(bough_schema_reader *r, const bough_node *node, void *field) {
@@ -63,7 +63,7 @@ const bough_schema bough_scene_block_schema = {.name = "a turbine in one block",
 
 // -- text -----------------------------------------------------------------------------------------
 
-// A value in the text of a scene, with the fewest digits that give the same number back.
+// A value as text, with the fewest digits that give the same number when it is read.
 static const char *written(bough_arena *arena, double value, double unit, const char *name,
                            bough_dimension dimension) {
     char text[60], why[160];
@@ -141,7 +141,7 @@ static bough_node *generate(bough_schema_reader *r, const block *b) {
     return tree;
 }
 
-// The scene with the block's bodies in front of its own ones, which change those of their name.
+// The scene with the block's bodies, into which its own bodies of the same name are merged.
 static bough_node *expand(bough_schema_reader *r, const block *b, const bough_node *root) {
     bough_node *made = generate(r, b), *scene = bough_node_start(r->arena, root, root->n + 1);
     if (made == NULL) return NULL;

@@ -5,7 +5,7 @@
 
 // clang-format off
 
-// The constants of the law with those of the NREL 5 MW turbine.
+// The constants of the law; the defaults are those of the NREL 5 MW turbine.
 #define FILLS bough_controller_def
 #define LAW(member, unit, given, shown, what)                                                      \
     {KEY(NUMBER, member), UNIT(unit), .fallback = given, .example = shown, .help = what}
@@ -138,7 +138,7 @@ static const bough_schema fmu_schema = {.name = "an FMU", .check = bough_scene_c
 
 static void check_control(bough_schema_reader *r, void *item) {
     bough_scene_control *c = item;
-    if (!c->pitch) c->law.power_pitch = INFINITY; // a pitch that nobody controls says nothing of the power
+    if (!c->pitch) c->law.power_pitch = INFINITY; // the law's power region does not depend on a pitch that is not controlled
     if (c->kind != BOUGH_SCENE_BLADED) return;
     if (c->library) c->library = bough_schema_path(r, c->node, "library", c->library);
     c->input = c->input && c->input[0] ? bough_schema_path(r, c->node, "input", c->input) : "";
@@ -160,8 +160,7 @@ const bough_schema bough_scene_control_schema = {.name = "the control", .check =
      .help = "electrical power divided by mechanical power of the generator; the inverse where the generator "
              "drives the rotor"},
     {KEY(BOOLEAN, pitch), .fallback = "true",
-     .help = "controls the pitch of the blades, which need joints that can pitch; false: torque "
-             "only"},
+     .help = "controls the pitch of the blades, which need joints that can pitch; false: torque only"},
     {NAMED("individual_pitch", BOOLEAN), AT(individual), .fallback = "false",
      WHEN("kind", "bladed"), .example = "true",
      .help = "each blade follows its own demand (records 42 to 44) instead of the collective one "

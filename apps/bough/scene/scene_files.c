@@ -53,7 +53,7 @@ static void add_folder(list *l, const bough_scene_file *folder, int depth) {
     if (n >= 0) free(entry);
 }
 
-// The controller looks for what its input names in the input's own folder.
+// A controller looks for files that its input names in the folder of the input.
 static void add_words(list *l, const char *input) {
     static const char between[] = " \t\r\n\"',;=()";
     char why[BOUGH_INPUT_REASON];
@@ -72,7 +72,7 @@ static void add_words(list *l, const char *input) {
     bough_arena_destroy(own);
 }
 
-// Recorded last first.
+// The list has the last file first.
 static void add_named(list *l, const bough_schema_file *file) {
     if (!file) return;
     add_named(l, file->next);
@@ -104,18 +104,18 @@ void bough_mix(uint64_t *hash, const void *bytes, size_t n) {
 
 void bough_mix_text(uint64_t *hash, const char *text) { bough_mix(hash, text, strlen(text) + 1); }
 
-// The same eight bytes at a time, for much: the last ones are followed by zeros.
+// The same for large files, eight bytes at a time, with zeros after the last ones.
 static void mix_words(uint64_t *hash, const char *bytes, size_t n) {
     for (size_t i = 0; i < n; i += 8) {
         uint64_t word = 0;
         memcpy(&word, bytes + i, n - i < 8 ? n - i : 8);
         *hash = (*hash ^ word) * UINT64_C(1099511628211);
-        *hash ^= *hash >> 32; // what a product leaves in the upper half only
+        *hash ^= *hash >> 32; // a product changes the upper half only
     }
     bough_mix(hash, &n, sizeof n);
 }
 
-// What the file holds; nothing of one that cannot be read.
+// Adds the content of a file; nothing of one that cannot be read.
 static void mix_file(uint64_t *hash, const char *path) {
     char block[1 << 16], why[BOUGH_INPUT_REASON];
     FILE *file = bough_input_open(path, BOUGH_INPUT_DATA, why);

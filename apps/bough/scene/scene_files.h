@@ -7,9 +7,9 @@
 #include <stdint.h>
 
 typedef struct bough_scene_file {
-    const char *key;  // that names it, "control.library"; "" of the scene itself
+    const char *key;  // key that names the file, "control.library"; "" for the scene itself
     const char *path; // as it is opened
-    bool absolute;    // named by a path that begins at the root
+    bool absolute;    // the scene names it by an absolute path
 } bough_scene_file;
 
 typedef struct bough_scene_files {
@@ -29,16 +29,16 @@ bough_scene_files bough_scene_list_files(bough_arena *arena, const bough_scene *
 void bough_mix(uint64_t *hash, const void *bytes, size_t n);
 void bough_mix_text(uint64_t *hash, const char *text);
 
-// Sums of files, so that each is read once for scenes that share it.
+// Fingerprints of files, so that each is read once for all scenes that share it.
 typedef struct bough_file_sums {
     bough_arena *arena;
     struct bough_file_sum *known; // NULL at the beginning
 } bough_file_sums;
 
-// What all files of bough_scene_list_files hold.
+// Adds the content of all files of bough_scene_list_files.
 void bough_mix_scene(uint64_t *hash, bough_file_sums *sums, const bough_scene *scene);
 
-// The running program, where the system shows it.
+// Adds the running program, on systems that give access to it.
 void bough_mix_program(uint64_t *hash);
 
 #endif

@@ -1,4 +1,4 @@
-// Bodies that are FMUs: their variables are found, and what such a body cannot take part in is refused.
+// FMUs as bodies and as controllers: finds their variables and refuses what they cannot be used with.
 #include "apps/bough/scene/scene_internal.h"
 #include "cosim/master.h"
 
@@ -43,7 +43,7 @@ static const bough_fmu_variable *find(bough_schema_reader *r, const bough_scene_
     return NULL;
 }
 
-// Enters the variable of a quantity where there is one.
+// Adds the variable of a quantity; NULL: there is none.
 static void enter(bough_fmu_values *values, int quantity, const bough_fmu_variable *v) {
     if (!v) return;
     values->quantity[values->n] = quantity;
@@ -136,9 +136,9 @@ void bough_scene_check_control_fmu(bough_schema_reader *r, void *item) {
     find_terminals(r, &fmu->model, "outputs", BOUGH_FMU_OUTPUT, &fmu->outputs);
 }
 
-// -- what it takes part in ------------------------------------------------------------------------
+// -- what FMUs can be used with -------------------------------------------------------------------
 
-// The names of the schemes that take the FMU, "A, B or C".
+// The names of the schemes that can be used with the FMU, "A, B or C".
 static const char *list_schemes(const bough_scene_fmu *fmu, char text[BOUGH_SCHEME_TEXT]) {
     const char *found[BOUGH_SCHEME_TEXT / 2] = {0};
     const bough_scheme *s;
@@ -153,7 +153,7 @@ static const char *list_schemes(const bough_scene_fmu *fmu, char text[BOUGH_SCHE
     return text;
 }
 
-// A scheme that takes members whose equations are not known; one that repeats steps where the FMU restores
+// The scheme must not need the equations of all members, and must not repeat steps unless the FMU can restore
 // its state.
 static void check_scheme(bough_schema_reader *r, const bough_scene *s, const bough_scene_body *b) {
     const bough_scene_coupling *coupling = &s->simulation.coupling;
@@ -194,7 +194,7 @@ static void check_simulation(bough_schema_reader *r, const bough_scene *s, const
     }
 }
 
-// The first FMU, but one that cannot restore its state where there is one; NULL: no FMU.
+// The first FMU that cannot restore its state, or else the first FMU; NULL: there is none.
 static const bough_scene_body *hardest(const bough_scene *s) {
     const bough_scene_body *found = NULL;
     for (int i = 0; i < s->n_body; i++) {

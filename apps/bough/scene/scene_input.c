@@ -1,4 +1,4 @@
-// Inputs: what the scene leaves to whoever steps it, by name.
+// Inputs: named values that another program sets between steps.
 #include "apps/bough/scene/scene_internal.h"
 
 #include <string.h>
@@ -12,7 +12,7 @@ static bough_scene_input *add(bough_scene *s, const bough_node *node, const char
 
 // -- loads ----------------------------------------------------------------------------------------
 
-// The input's value takes the place of a table's, the same at all times.
+// Makes a table of the input's value, constant in time, which the input changes.
 static void give_table(bough_arena *arena, bough_scene_load *load, double value) {
     load->n_time = 2;
     load->times = bough_arena_doubles(arena, 2);
@@ -31,7 +31,7 @@ static void add_joint_load(bough_arena *arena, bough_scene *s, int k) {
     give_table(arena, load, load->amount);
 }
 
-// Component c of a load on a body: a load of 1 that the input multiplies.
+// A unit load along component c of a load on a body, with the input as its factor.
 static void add_component(bough_arena *arena, bough_scene *s, const bough_scene_load *from, int k, int c) {
     static const char *const ends[] = {"Fx", "Fy", "Fz", "Mx", "My", "Mz"};
     bool along = from->place == BOUGH_SCENE_ALONG, force = c < 3;
@@ -52,7 +52,7 @@ static void add_component(bough_arena *arena, bough_scene *s, const bough_scene_
     give_table(arena, to, value);
 }
 
-// The first component stays where the load is, the others come last.
+// The first component keeps the place of the load, the others come last.
 static void add_loads(bough_arena *arena, bough_scene *s) {
     int n = s->n_load, next = n;
     for (int k = 0; k < n; k++) {

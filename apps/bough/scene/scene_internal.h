@@ -37,7 +37,7 @@ typedef struct bough_scene_table {
 bool bough_scene_read_table(bough_schema_reader *r, const bough_node *node, bough_dimension unit,
                             bough_scene_table *table);
 
-// Whether the symmetric matrix xx yy zz xy xz yz is not below zero about any axis.
+// Whether the symmetric matrix xx yy zz xy xz yz is positive semidefinite.
 bool bough_scene_semidefinite(const double v[6]);
 
 // Checks within one mapping or file; `item` is the struct that was read.
@@ -62,14 +62,15 @@ void bough_scene_check_ramp(bough_schema_reader *r, const bough_node *node, cons
 void bough_scene_check_body_load(bough_schema_reader *r, const bough_scene *scene,
                                  const bough_scene_load *load);
 
-// The tree of a scene whose `turbine`, when it is one block (`blades` is a number), has become bodies; else
-// `root`. NULL after an error in the block.
+// The tree of a scene in which a turbine in one block (`blades` is a number) is replaced by its bodies;
+// `root` where there is none. NULL after an error in the block.
 bough_node *bough_scene_expand(bough_schema_reader *reader, bough_node *root);
 
-// Gives settings that are not named what follows from simulation.accuracy; scene_accuracy.c has the laws.
+// Sets what the scene does not name to what follows from simulation.accuracy, by the laws in
+// scene_accuracy.c.
 void bough_scene_apply_accuracy(bough_scene *scene);
 
-// Whether time/step is a whole number, at least one; true where either is wrong already.
+// Whether time/step is a whole number, at least one; also true after an error in either.
 bool bough_scene_is_multiple(double time, double step);
 
 // Resolves names and checks what spans several parts of the scene.
@@ -80,7 +81,7 @@ enum { BOUGH_UNRESOLVED = -2 }; // the index of a name that no body has
 // Sets the path of the next errors.
 void bough_link_at(bough_schema_reader *r, const char *format, ...) __attribute__((format(printf, 2, 3)));
 
-// The index of a body that a key of `node` names; BOUGH_UNRESOLVED after an error there.
+// The index of the body that a key of `node` names; BOUGH_UNRESOLVED after an error.
 int bough_link_body(bough_schema_reader *r, const bough_scene *s, const bough_node *node, const char *key,
                     const char *name);
 

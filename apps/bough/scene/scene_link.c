@@ -1,6 +1,6 @@
-// Names become indices, and what spans several parts of the scene is checked. Runs also after other
-// errors, so that all are shown at once: wrong values are NaN, −1 or NULL here and raise no second
-// error.
+// Resolves names to indices and checks what spans several parts of the scene. It runs also after errors in
+// single parts, so that all errors are shown at once: invalid values are NaN, −1 or NULL here and cause no
+// second error.
 #include "apps/bough/scene/scene_internal.h"
 
 #include <math.h>
@@ -44,7 +44,7 @@ static void sort_names(bough_schema_reader *r, bough_scene *s) {
     qsort(s->by_name, (size_t)s->n_body, sizeof *s->by_name, compare_names);
 }
 
-// The first of that name.
+// The first body of that name.
 static int find_body(const bough_scene *s, const char *name) {
     int low = 0, high = s->n_body;
     while (low < high) {
@@ -58,7 +58,7 @@ static int find_body(const bough_scene *s, const char *name) {
     return found ? (int)(s->by_name[low] - s->body) : BOUGH_UNRESOLVED;
 }
 
-// Among the bodies, and the ground where a parent is named.
+// The nearest name of a body; a parent may be the ground.
 static bough_suggestion suggest_body(bough_schema_reader *r, const bough_scene *s, const char *key,
                                      const char *name) {
     if (r->errors->dropped > 0) return (bough_suggestion){""}; // a hostile file: spelling costs time
@@ -77,7 +77,7 @@ int bough_link_body(bough_schema_reader *r, const bough_scene *s, const bough_no
     return BOUGH_UNRESOLVED;
 }
 
-// The same, or the ground; it too where the name is left out, which is an error elsewhere.
+// The same, or the ground, also for a missing name, which is reported elsewhere.
 static int link_frame(bough_schema_reader *r, const bough_scene *s, const bough_node *node, const char *key,
                       const char *name) {
     bool ground = name == NULL || strcmp(name, "ground") == 0;
@@ -86,7 +86,7 @@ static int link_frame(bough_schema_reader *r, const bough_scene *s, const bough_
 
 // -- bodies ---------------------------------------------------------------------------------------
 
-// Names go into channels and file names.
+// Names become parts of channels and file names.
 static void check_name(bough_schema_reader *r, const bough_scene *s, int i) {
     static const char allowed[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789_-";
     const bough_scene_body *b = &s->body[i];
@@ -117,7 +117,7 @@ static void link_parent(bough_schema_reader *r, bough_scene *s, int i) {
     }
 }
 
-// The body at which a walk towards the ground comes back to itself, from any body above a loop.
+// The first body of the loop of parents that is reached from a body.
 static int body_in_loop(const bough_scene *s, int i) {
     for (int k = 0; k < s->n_body; k++) i = s->body[i].joint.parent;
     int lowest = i;
@@ -140,7 +140,7 @@ static void report_loop(bough_schema_reader *r, const bough_scene *s, int start)
                        s->body[first].name);
 }
 
-// Parents before children. Bodies that no pass can place hang on a loop or on an unknown parent.
+// Orders parents before children. Bodies that remain hang on a loop or on an unknown parent.
 static bool order_bodies(bough_schema_reader *r, bough_scene *s) {
     s->order = bough_arena_take(r->arena, (size_t)s->n_body * sizeof *s->order);
     bool *placed = bough_arena_take(r->arena, (size_t)s->n_body * sizeof *placed);
@@ -163,7 +163,8 @@ static bool order_bodies(bough_schema_reader *r, bough_scene *s) {
         bool loop = k >= 0 && !placed[k];
         if (loop) report_loop(r, s, i);
         if (loop) break;
-        for (k = i; k >= 0 && !placed[k]; k = s->body[k].joint.parent) placed[k] = true; // looked at
+        for (k = i; k >= 0 && !placed[k]; k = s->body[k].joint.parent)
+            placed[k] = true; // reported or without a loop
     }
     return n == s->n_body;
 }
@@ -174,7 +175,7 @@ static bool has_mass(const bough_scene_body *b) {
            !(b->mass == 0 && b->inertia[0] == 0 && b->inertia[1] == 0 && b->inertia[2] == 0);
 }
 
-// Every joint that moves must carry something with mass, or no motion is defined. Needs the order.
+// Every joint that moves must carry mass, or its motion is not defined. Needs the order of the bodies.
 static void check_moving_mass(bough_schema_reader *r, const bough_scene *s) {
     bool *carries = bough_arena_take(r->arena, (size_t)s->n_body * sizeof *carries);
     for (int k = s->n_body - 1; k >= 0; k--) {
@@ -244,7 +245,7 @@ static void link_ends(bough_schema_reader *r, const bough_scene *s, const bough_
     }
 }
 
-// The kinds of a closure's table of keys, as joints of the tree.
+// The joints of the tree by the kinds of a closure.
 static const int closure_kinds[] = {BOUGH_JOINT_FIXED,     BOUGH_JOINT_REVOLUTE,    BOUGH_JOINT_PRISMATIC,
                                     BOUGH_JOINT_SPHERICAL, BOUGH_JOINT_CYLINDRICAL, BOUGH_JOINT_UNIVERSAL,
                                     BOUGH_JOINT_PLANAR};
@@ -330,7 +331,7 @@ static void link_modes(bough_schema_reader *r, bough_scene *s) {
 
 // -- times ----------------------------------------------------------------------------------------
 
-static const double most_steps = 1e9; // macro steps of a run: hours at the least
+static const double most_steps = 1e9; // macro steps of a run: hours of computation
 
 bool bough_scene_is_multiple(double time, double step) {
     if (!(time > 0) || !(step > 0)) return true;

@@ -1,4 +1,4 @@
-// Names of the turbine, its air and its control become indices; see scene_link.c.
+// Resolves the names of the turbine, its air and its control; see scene_link.c.
 #include "aero/control/discon.h"
 #include "apps/bough/scene/scene_internal.h"
 
@@ -80,7 +80,7 @@ static void link_polars(bough_schema_reader *r, bough_scene *s) {
     const bough_scene_polars *polars = &s->aero.polars;
     bough_scene_aero_blade *blade = &s->aero.blade;
     if (polars->n_polar == 0) return;
-    // the file's own stations may belong to other scenes with other polars
+    // other scenes may use the stations of the file with other polars
     blade->station =
         bough_arena_copy(r->arena, blade->station, (size_t)blade->n_station * sizeof *blade->station);
     const char **names = bough_arena_take(r->arena, (size_t)polars->n_polar * sizeof *names);
@@ -90,7 +90,7 @@ static void link_polars(bough_schema_reader *r, bough_scene *s) {
     }
 }
 
-// Blade elements end where the rods end.
+// The blade elements must end where the rods end.
 static void check_blade_lengths(bough_schema_reader *r, const bough_scene *s) {
     const bough_scene_aero_blade *blade = &s->aero.blade;
     if (blade->n_station < 2) return;
@@ -137,7 +137,7 @@ void bough_link_aero(bough_schema_reader *r, bough_scene *s) {
 
 // -- control --------------------------------------------------------------------------------------
 
-// A blade is pitched by a revolute joint about its own z with a prescribed motion.
+// A pitch joint is revolute with a prescribed motion.
 static bool has_pitch_joint(const bough_scene_body *b) {
     return b->joint.kind == BOUGH_JOINT_REVOLUTE && b->joint.motion[0].node != NULL;
 }
@@ -163,7 +163,7 @@ static void link_event(bough_schema_reader *r, bough_scene *s, int i) {
     }
 }
 
-// Steady operation needs a law, air from the start on, and a rotor that is free to turn.
+// Steady operation needs a control law, air from the start on, and a rotor without a prescribed motion.
 static void check_operation(bough_schema_reader *r, const bough_scene *s) {
     if (s->simulation.initial != BOUGH_SCENE_IN_OPERATION) return;
     bool law = s->control.node != NULL && s->control.kind == BOUGH_SCENE_VARIABLE_SPEED;
@@ -174,8 +174,7 @@ static void check_operation(bough_schema_reader *r, const bough_scene *s) {
                            "variable-speed}'; else give the rotor's speed and 'equilibrium'");
     } else if (s->aero.ramp[1] > 0) {
         bough_schema_error(r, s->node, "simulation.initial",
-                           "operation needs the air from the start on: leave out "
-                           "'aero.ramp'");
+                           "operation needs the air from the start on: leave out 'aero.ramp'");
     } else if (s->turbine.rotor >= 0 && s->body[s->turbine.rotor].joint.motion[0].node != NULL) {
         bough_schema_error(r, s->node, "simulation.initial",
                            "the motion of '%s' already prescribes its speed", s->turbine.rotor_name);
@@ -201,8 +200,7 @@ void bough_link_control(bough_schema_reader *r, bough_scene *s) {
         const bough_scene_body *b = &s->body[s->turbine.blade[k]];
         if (s->control.pitch && has_pitch_joint(b) != has_pitch_joint(first)) {
             bough_schema_error(r, b->node, "",
-                               "blades '%s' and '%s': all or none are pitched by a "
-                               "joint with 'motion'",
+                               "blades '%s' and '%s': all or none are pitched by a joint with 'motion'",
                                first->name, b->name);
         } else if (s->control.pitch && has_pitch_joint(b) && b->joint.axis != 2) {
             bough_schema_error(r, b->node, "", "the pitch joint of '%s' must turn about z", b->name);

@@ -1,7 +1,7 @@
-// The prescribed motion of a joint: its speed or itself, constant, by a ramp or by a table.
+// The prescribed motion of a joint: its speed or its position, constant, by a ramp or by a table.
 #include "apps/bough/scene/scene_internal.h"
 
-// A joint's array of them. Its tables begin with the node of the first.
+// The two motions of a joint; each table of keys begins at the first.
 typedef struct motions {
     bough_scene_motion first, second;
 } motions;
@@ -81,7 +81,7 @@ static void read_values(bough_schema_reader *r, const bough_node *node, void *fi
 
 // -- the motion -----------------------------------------------------------------------------------
 
-// At most one of two keys may be given: the speed or the place.
+// Speed or position may be given, not both.
 static void check_one(bough_schema_reader *r, const bough_node *node, const char *speed, const char *place,
                       bough_scene_motion *motion) {
     bool of_speed = bough_node_find(node, speed) != NULL;
@@ -111,7 +111,7 @@ static void check_pair(bough_schema_reader *r, void *item) {
     const bough_node *node = pair->first.node;
     check_one(r, node, "speed", "position", &pair->first);
     check_one(r, node, "angular_speed", "angle", &pair->second);
-    if (node->n == 0) bough_schema_error(r, node, "", "expected what is prescribed");
+    if (node->n == 0) bough_schema_error(r, node, "", "expected a speed or a position");
 }
 
 // clang-format off
@@ -159,7 +159,7 @@ void bough_scene_read_motion(bough_schema_reader *r, const bough_node *node, voi
     bough_schema_read(r, of_kind[joint->kind], node, joint->motion);
 }
 
-// The joint starts where and as fast as its motion says.
+// Initial position and speed follow from the motion and must not be given.
 void bough_scene_check_motion(bough_schema_reader *r, const bough_scene_joint *joint) {
     static const char why[] = "not allowed with the joint's motion, from which it follows";
     const bough_scene_motion *first = &joint->motion[0], *second = &joint->motion[1];

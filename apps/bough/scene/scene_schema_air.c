@@ -88,8 +88,7 @@ static const bough_schema wind_schema = {.name = "the wind", .check = bough_scen
              [BOUGH_SCENE_WIND_BTS] = "bts", [BOUGH_SCENE_WIND_IEC] = "iec"),
      .fallback = "uniform",
      .help = "uniform: the same speed at all heights; power, log: by a power or a logarithmic law; "
-             "wnd: uniform wind file (hub height); bts: TurbSim's box; iec: condition of IEC "
-             "61400-1"},
+             "wnd: uniform wind file (hub height); bts: TurbSim's box; iec: condition of IEC 61400-1"},
     {NAMED("condition", CHOICE), AT(def.iec.condition),
      CHOICES([BOUGH_WIND_NTM] = "ntm", [BOUGH_WIND_ETM] = "etm", [BOUGH_WIND_EWM] = "ewm",
              [BOUGH_WIND_EWM_STEADY] = "ewm-steady", [BOUGH_WIND_NWP] = "nwp",
@@ -189,13 +188,11 @@ static const bough_schema induction_schema = {.name = "the induction", KEYS(
      .help = "correction for oblique inflow"},
     {NAMED("skewed_momentum", BOOLEAN), AT(options.skewed_momentum), .fallback = "false",
      WHEN("high_thrust", "smooth"), .example = "true",
-     .help = "momentum theory of a disk at an angle to the wind, by Glauert: AeroDyn's "
-             "SkewMomCorr"},
+     .help = "momentum theory of a disk at an angle to the wind, by Glauert: AeroDyn's SkewMomCorr"},
     {NAMED("inflow", CHOICE), AT(inflow.kind),
      CHOICES([BOUGH_INFLOW_EQUILIBRIUM] = "equilibrium", [BOUGH_INFLOW_OYE] = "oye"),
      .fallback = "equilibrium",
-     .help = "reaction of the induction to a change of load: immediate, or by Oye's dynamic "
-             "inflow"},
+     .help = "reaction of the induction to a change of load: immediate, or by Oye's dynamic inflow"},
     {NAMED("inflow_time", NUMBER), AT(inflow.time), UNIT(TIME), .word = "auto", .range = "> 0",
      .fallback = "auto", WHEN("inflow", "oye"), .example = "5 s",
      .help = "slow time constant of the dynamic inflow; auto: 1.1/(1 - 1.3 a) R/U"},

@@ -165,16 +165,14 @@ static const bough_schema joint_schema = {.name = "a joint", .check = bough_scen
      .help = "displacements at which elastic stops begin; needs 'stop_stiffness'"},
     {NAMED("stop_stiffness", NUMBER), AT(spring.stop_stiffness), .range = ">= 0", .fallback = "0",
      WHEN("kind", "revolute|prismatic"), .example = "1e6",
-     .help = "in N m/rad or N/m; it grows smoothly over a hundredth of the distance between the "
-             "stops"},
+     .help = "in N m/rad or N/m; it grows smoothly over a hundredth of the distance between the stops"},
 )};
 #undef FILLS
 
 #define FILLS bough_scene_modal
 static const bough_schema modal_schema = {.name = "a modal body", KEYS(
     {KEY(INTEGER, modes), .range = "[1, 300]", .fallback = "12", .example = "20",
-     .help = "number of clamped modes of each piece, from the lowest frequency, besides its rigid "
-             "motions"},
+     .help = "number of clamped modes of each piece, from the lowest frequency, besides its rigid motions"},
     {KEY(BOOLEAN, statics), .fallback = "true",
      .help = "adds the static deflections under accelerations of the frame"},
     {KEY(BOOLEAN, stiffening), .fallback = "true",

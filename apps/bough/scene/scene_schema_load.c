@@ -1,5 +1,4 @@
-// Loads, what joins bodies beside the tree, and the turbine's names: the keys, and how loads are read and
-// checked.
+// The keys of loads, springs, bushings, closures, markers, sensors and turbine, and the checks of loads.
 #include "apps/bough/scene/scene_internal.h"
 
 #include <string.h>
@@ -82,7 +81,7 @@ static void check_joint_keys(bough_schema_reader *r, const bough_node *load) {
                        "only used with 'body'");
 }
 
-// Where an end is not given it is as the start.
+// Values at the end are by default those at the start.
 static void read_ends(bough_schema_reader *r, bough_scene_load *load) {
     if (!is_spread(load)) bough_scene_refuse(r, load->node, "end_force|end_moment", "only used with 'along'");
     if (bough_node_find(load->node, "end_force") == NULL) {
@@ -136,7 +135,7 @@ double bough_scene_arc_length(const bough_scene_structure *s) {
     return sum;
 }
 
-// The place must be on the rod, up to rounding of its length.
+// The load must act on the rod, up to rounding of its length.
 static void check_place(bough_schema_reader *r, const bough_scene_load *load, const bough_scene_rod *rod) {
     double length = bough_scene_arc_length(&rod->structure), most = length * (1 + 1e-9);
     if (load->place == BOUGH_SCENE_AT_VERTEX && (load->vertex < 0 || load->vertex > rod->n_segment)) {
@@ -156,7 +155,8 @@ static void check_place(bough_schema_reader *r, const bough_scene_load *load, co
 static void check_rigid_load(bough_schema_reader *r, const bough_scene_load *load) {
     bough_scene_refuse(r, load->node, "at|along", "'%s' is rigid: give the 'point'", load->body_name);
     if (load->frame != BOUGH_SCENE_LOAD_FOLLOWER) return;
-    bough_schema_error(r, load->node, "frame", "'%s' is rigid: 'frame: body' turns with it", load->body_name);
+    bough_schema_error(r, load->node, "frame", "'%s' is rigid: 'frame: body' rotates with it",
+                       load->body_name);
 }
 
 void bough_scene_check_body_load(bough_schema_reader *r, const bough_scene *scene,
@@ -282,8 +282,7 @@ const bough_schema bough_scene_closure_schema = {.name = "a closure", KEYS(
      .help = "name of its channels Fx to Mz: force and moment on 'to', in the joint's frame there"},
     {KEY(CHOICE, kind), .required = true,
      CHOICES("fixed", "revolute", "prismatic", "spherical", "cylindrical", "universal", "planar"),
-     .help = "kind of joint; other joints may already prevent some of the motions that it "
-             "prevents"},
+     .help = "kind of joint; other joints may already prevent some of the motions that it prevents"},
     {NAMED("from", TEXT), AT(body_name[0]), .required = true, .example = "coupler",
      .help = "name of a rigid body, or ground"},
     {NAMED("from_placement", CUSTOM), AT(placement[0]), .read = bough_scene_read_placement,

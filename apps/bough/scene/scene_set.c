@@ -1,5 +1,5 @@
-// Replacements from the command line: "bodies[2].pitch=5 deg". They change the tree of the text
-// before it is read, so that they are checked like everything else.
+// Replacements from the command line: "bodies[2].pitch=5 deg". They change the tree of the text before the
+// scene is read, so that they are checked as the text is.
 #include "apps/bough/config/base.h"
 #include "apps/bough/scene/scene_internal.h"
 
@@ -31,7 +31,7 @@ static bough_node *parse_value(replacement *s, const char *text) {
         e->line = e->column = 0;
         e->path = bough_arena_string(s->arena, s->path);
     }
-    if (value != NULL) bough_node_move(value, &(bough_node){.file = origin}); // which has no line
+    if (value != NULL) bough_node_move(value, &(bough_node){.file = origin}); // without a line
     return value;
 }
 
@@ -56,7 +56,7 @@ static void remove_value(bough_node *copy, int i) {
     }
 }
 
-// Whether the rest of the path ends here and the value is null, which removes what is there.
+// Whether the path ends here and the value is null, which removes the item.
 static bool removes(const replacement *s, const char *rest) {
     return *rest == '\0' && bough_node_is_null(s->value);
 }

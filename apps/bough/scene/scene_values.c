@@ -1,4 +1,4 @@
-// Values of a scene that are lists of their own kind, and checks within one table.
+// Readers of placements, matrices and tables, and checks within one mapping.
 #include "apps/bough/scene/scene_internal.h"
 
 #include "core/base/base.h"
@@ -19,7 +19,7 @@ bough_mat3 bough_scene_rotation(int axis, double angle) {
     return bough_rotation_matrix(bough_quaternion_exponential(turn));
 }
 
-// "move z 1.96 m" or "rotate y 5 deg"; none after an error.
+// "move z 1.96 m" or "rotate y 5 deg"; the identity after an error.
 static bough_transform read_step(bough_schema_reader *r, const bough_node *node) {
     char word[8], axis[4], shown[64], why[160] = "";
     int used = 0;
@@ -41,7 +41,7 @@ static bough_transform read_step(bough_schema_reader *r, const bough_node *node)
     return step;
 }
 
-// field: bough_transform; each step is in the frame reached so far
+// field: bough_transform; each step is in the frame that the previous ones give
 void bough_scene_read_placement(bough_schema_reader *r, const bough_node *node, void *field) {
     bough_transform *placement = field;
     *placement = bough_transform_identity();
@@ -86,7 +86,7 @@ static int row_without_pivot(const double *matrix, int n) {
     return n;
 }
 
-// Says what is wrong in a row of a matrix that is not positive definite: its diagonal, or the rest.
+// Reports the row of a matrix that is not positive definite: its diagonal, or the other entries.
 static void refuse_row(bough_schema_reader *r, const bough_node *at, const char *what, const char *row,
                        double diagonal) {
     if (diagonal > 0) {
@@ -158,8 +158,7 @@ void bough_scene_read_section_mass(bough_schema_reader *r, const bough_node *nod
     }
 }
 
-// The negative quantity of the symmetric matrix xx yy zz xy xz yz: an entry of its diagonal, or its
-// determinant in a plane or in space; NULL: none.
+// The first negative principal minor of the symmetric matrix xx yy zz xy xz yz; NULL: there is none.
 static const char *negative_part(const double v[6]) {
     static const char *const parts[] = {
         "Ixx", "Iyy", "Izz", "Ixx Iyy - Ixy^2", "Ixx Izz - Ixz^2", "Iyy Izz - Iyz^2", "the determinant"};
@@ -178,7 +177,7 @@ bool bough_scene_semidefinite(const double v[6]) { return negative_part(v) == NU
 
 static const double most_inertia = 1e18; // [kg m²]
 
-// field: the six entries; all zero is a point mass
+// field: the six entries, all 0 for a point mass
 void bough_scene_read_inertia(bough_schema_reader *r, const bough_node *node, void *field) {
     double v[6] = {0}, *inertia = field;
     const char *what = "a list [Ixx, Iyy, Izz] or with Ixy, Ixz, Iyz";
@@ -194,19 +193,21 @@ void bough_scene_read_inertia(bough_schema_reader *r, const bough_node *node, vo
 
 // -- tables ---------------------------------------------------------------------------------------
 
-// Puts "list[i]" or "list.rows[i]" at the end of the path.
+// Appends "list[i]" or "list.rows[i]" to the path.
 static size_t push_row(bough_schema_reader *r, const bough_node *owner, const char *list, int i) {
     const bough_node *node = bough_node_find(owner, list);
     bool compact = node != NULL && node->kind == BOUGH_MAPPING;
     return bough_schema_push(r, "%s%s%s[%d]", r->path[0] == '\0' ? "" : ".", list, compact ? ".rows" : "", i);
 }
 
-// The first or last value of a column, `expected` to 1e-6 of its unit; false after an error.
+// What the first or last value of a column must be.
 typedef struct column_end {
     const char *list, *key, *which, *unit_name; // "stations", "span", "first", "m"
     double expected, unit;
 } column_end;
 
+// Whether it is, to 1e-6 of its unit; false after an error.
+// Whether it is, to 1e-6 of its unit; false after an error.
 static bool check_end(bough_schema_reader *r, const column_end *c, const bough_node *owner,
                       const bough_node *row, int i, double value) {
     if (fabs(value - c->expected) <= 1e-6 * c->unit) return true;
@@ -219,7 +220,7 @@ static bool check_end(bough_schema_reader *r, const column_end *c, const bough_n
 
 static const column_end first_span = {"stations", "span", "first", "m", 0, 1};
 
-// The last span against the length; one station holds for the whole length.
+// The last span must be the length; a single station holds for the whole length.
 static void check_length(bough_schema_reader *r, bough_scene_structure *s) {
     double last = s->station[s->n_station - 1].def.position.z;
     bool given = bough_node_find(s->node, "length") != NULL;
@@ -244,7 +245,7 @@ void bough_scene_check_aero_blade(bough_schema_reader *r, void *item) {
     check_end(r, &first_span, b->node, b->station[0].node, 0, b->station[0].def.span);
 }
 
-// A turn later the coefficients are the same.
+// The coefficients must be the same at 180° and −180°.
 static void check_turn(bough_schema_reader *r, const bough_scene_polar *p) {
     const bough_scene_polar_row *a = &p->row[0], *b = &p->row[p->n_row - 1];
     const double first[3] = {a->cl, a->cd, a->cm}, last[3] = {b->cl, b->cd, b->cm};
@@ -289,13 +290,13 @@ void bough_scene_check_wind_table(bough_schema_reader *r, void *item) {
     }
 }
 
-// The wind of a file is all in it; its path becomes relative to where the program runs.
+// A file has the whole wind; its path becomes relative to where the program runs.
 static void check_wind_file(bough_schema_reader *r, bough_scene_wind *w) {
     bough_scene_refuse(r, w->node, "speed|table|vertical", "only used without a file");
     if (w->def.file != NULL) w->def.file = bough_schema_path(r, w->node, "file", w->def.file);
 }
 
-// A condition of the standard gives the speed over time, the extreme wind its mean too.
+// A condition of the standard gives the speed over time, the extreme wind also the mean speed.
 static void check_wind_condition(bough_schema_reader *r, bough_scene_wind *w) {
     bool extreme = bough_wind_iec_is_extreme_speed(w->def.iec.condition);
     if (extreme) {
@@ -345,10 +346,9 @@ void bough_scene_check_tower(bough_schema_reader *r, void *item) {
     t->def.drag = drag;
 }
 
-// -- a rod that is a stretch of its table ---------------------------------------------------------
+// -- a rod that is a part of its table ------------------------------------------------------------
 
-// A rod that is a stretch of its table: a new table that begins and ends between the old one's
-// stations, so that rods in a row are the whole and bodies may hang where two of them meet.
+// It gets a table of its own, which begins and ends between the stations of the given one.
 
 static double between(double f, double a, double b) { return (1 - f) * a + f * b; }
 
@@ -394,8 +394,8 @@ static void take_part(bough_schema_reader *r, bough_scene_rod *rod) {
     if (s->n_station < 1 || !isfinite(s->length)) return; // reported already
     if (!good) {
         bough_schema_error(r, rod->node, "part",
-                           "must be a stretch of the table, which is %g m long, got [%g m, %g m]", s->length,
-                           part[0], part[1]);
+                           "must be an interval of the table, which is %g m long, got [%g m, %g m]",
+                           s->length, part[0], part[1]);
         return;
     }
     s->length = part[1] - part[0];
@@ -406,7 +406,7 @@ static void take_part(bough_schema_reader *r, bough_scene_rod *rod) {
 
 // -- rods and ramps -------------------------------------------------------------------------------
 
-// A table, or a uniform section given here, never parts of both.
+// A rod has a table or a uniform section, never both.
 void bough_scene_check_rod(bough_schema_reader *r, void *item) {
     bough_scene_rod *rod = item;
     if (bough_node_find(rod->node, "table") != NULL) {
@@ -420,7 +420,7 @@ void bough_scene_check_rod(bough_schema_reader *r, void *item) {
     rod->structure.station = bough_arena_copy(r->arena, &rod->uniform, sizeof rod->uniform);
 }
 
-// The uniform section of a rod without a table.
+// A rod without a table needs length, stiffness and mass.
 static void check_section_given(bough_schema_reader *r, const bough_node *rod) {
     static const char *const needed[] = {"length", "stiffness", "mass"};
     char missing[48] = "";
@@ -441,14 +441,14 @@ static void check_modal(bough_schema_reader *r, const bough_scene_body *b, bool 
     if (b->fidelity == BOUGH_SCENE_MODAL && pieces) {
         bough_schema_error(r, b->node, "modal.pieces", "only used with 'fidelity: segmented-modal'");
     }
-    bool named = has_rod && b->rod.n_segment > 0; // else they follow from the accuracy
+    bool named = has_rod && b->rod.n_segment > 0; // otherwise they follow from the accuracy
     if (b->fidelity == BOUGH_SCENE_SEGMENTED_MODAL && named && b->modal.pieces > b->rod.n_segment) {
         bough_schema_error(r, b->node, "modal.pieces", "%d pieces of %d segments: give the rod more segments",
                            b->modal.pieces, b->rod.n_segment);
     }
 }
 
-// A rigid body gets its mass from keys of its own or from a rod.
+// Whether a rigid body with a rod has keys of mass, too.
 static bool has_two_masses(const bough_scene_body *b) {
     return b->fidelity == BOUGH_SCENE_RIGID &&
            (bough_node_find(b->node, "mass") != NULL || bough_node_find(b->node, "centre_of_mass") != NULL ||

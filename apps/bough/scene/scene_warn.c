@@ -21,20 +21,20 @@ static void warn(const bough_node *at, FILE *stream, const char *format, ...) {
 
 // -- bodies ---------------------------------------------------------------------------------------
 
-// An inertia matrix is ∫(|r|² 1 − r rᵀ)dm, so that half its trace less itself is ∫r rᵀdm: not below
-// zero about any axis, where no principal moment exceeds the sum of the other two. Thin bodies come
-// close to that, in published data by a part in a thousand beyond it.
+// The inertia matrix is J = ∫(|r|² 1 − r rᵀ)dm, so that tr(J)/2 1 − J = ∫r rᵀdm is positive semidefinite: no
+// principal moment exceeds the sum of the other two. Published data of thin bodies exceed it by up to a
+// thousandth.
 static bool has_distribution(const double v[6]) {
     double half = 0.505 * (v[0] + v[1] + v[2]);
     double spread[6] = {half - v[0], half - v[1], half - v[2], -v[3], -v[4], -v[5]};
     return bough_scene_semidefinite(spread);
 }
 
-// Known about one axis only, as of mechanisms in a plane and of shafts.
+// Whether the inertia is given about one axis only, as for plane mechanisms and shafts.
 static bool is_about_one_axis(const double v[6]) { return (v[0] != 0) + (v[1] != 0) + (v[2] != 0) == 1; }
 
 static void warn_inertia(const bough_scene_body *b, FILE *stream) {
-    if (b->fidelity == BOUGH_SCENE_FMU) return; // the mass that its carrier takes over is no body
+    if (b->fidelity == BOUGH_SCENE_FMU) return; // its carrier takes the mass over
     const double *v = b->inertia;
     if (has_distribution(v) || is_about_one_axis(v)) return;
     warn(
@@ -46,7 +46,7 @@ static void warn_inertia(const bough_scene_body *b, FILE *stream) {
 
 // -- air and control ------------------------------------------------------------------------------
 
-// Air along a section never drives it: columns that are swapped, or a sign.
+// A negative drag coefficient means swapped columns or a wrong sign.
 static void warn_polars(const bough_scene_polars *polars, FILE *stream) {
     for (int i = 0; i < polars->n_polar; i++) {
         const bough_scene_polar *p = &polars->polar[i];
@@ -59,7 +59,7 @@ static void warn_polars(const bough_scene_polars *polars, FILE *stream) {
     }
 }
 
-// The defaults of the built-in law belong to one turbine, which has this gear ratio.
+// Gear ratio of the turbine to which the defaults of the built-in law belong.
 static const double ratio_of_defaults = 97;
 
 static void warn_law(const bough_scene_control *control, FILE *stream) {
@@ -89,8 +89,8 @@ static const bough_node *find_path(const bough_node *node, const char *path) {
     return bough_node_below(node, path, &last);
 }
 
-// Whether a setting is given that does not suit the choice of scheme, solver or duration. Where the command
-// line replaces the choice alone, what the scene gives for its own choice is not meant.
+// Whether to warn about a setting that the chosen scheme, solver or duration does not use: not where the
+// command line replaces the choice alone, since the scene gives the setting for its own choice.
 static bool is_unused(const bough_node *given, const bough_node *choice) {
     bool replaced = choice != NULL && choice->line == 0;
     return given != NULL && !(given->line > 0 && replaced);

@@ -184,8 +184,7 @@ TEST(stops_need_a_stiffness_and_an_order) {
     refuses(HINGE("stop: [0, 1 rad]"), "s.yaml:7:55: error: bodies[0].joint.stop: 'stop' and "
                                        "'stop_stiffness' go together\n");
     refuses(HINGE("stop: [1 rad, 1 rad], stop_stiffness: 4"),
-            "s.yaml:7:55: error: bodies[0].joint.stop: the second must be greater than the "
-            "first\n");
+            "s.yaml:7:55: error: bodies[0].joint.stop: the second must be greater than the first\n");
     refuses(HINGE("stiffness: -1"),
             "s.yaml:7:60: error: bodies[0].joint.stiffness: must be >= 0, got '-1'\n");
 #undef HINGE
@@ -264,7 +263,7 @@ TEST(rods_may_be_parts_of_a_table) {
         check_near(s->station[k].def.stiffness[bough_symmetric6_index(2, 2)], axial[k], 1e-15, 0);
     }
     refuses(ROD_BODY "    rod: {table: blade.yaml, part: [1, 4]}\n",
-            "s.yaml:6:36: error: bodies[0].rod.part: must be a stretch of the table, which is 3 m "
+            "s.yaml:6:36: error: bodies[0].rod.part: must be an interval of the table, which is 3 m "
             "long, got [1 m, 4 m]\n");
 }
 
@@ -290,8 +289,7 @@ TEST(hostile_scenes_end_fast) {
     for (int i = 0; i < 10001; i++) fputs("- {}\n", stream);
     fclose(stream);
     f = read_scene("s.yaml", NULL, 0);
-    assert_string_equal(f.printed, "s.yaml:3:1: error: bodies: expected at most 10000 items, got "
-                                   "10001\n");
+    assert_string_equal(f.printed, "s.yaml:3:1: error: bodies: expected at most 10000 items, got 10001\n");
     assert_true((double)(clock() - begin) / CLOCKS_PER_SEC < 10);
 }
 

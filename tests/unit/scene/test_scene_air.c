@@ -41,8 +41,7 @@ TEST(aerodynamics_are_consistent) {
     refuses(ROTOR AERO, "s.yaml:7:7: error: aero: needs 'turbine', which names rotor and blades\n");
     refuses(ROTOR "turbine: {rotor: hub, blades: [b1]}\n"
                   "aero: {rate: 30 Hz, wind: {speed: 8}, blade: aero.yaml, polars: polars.yaml,\n"
-                  "       hub_radius: 1, ramp: [1, 0], tower: {height: [0, 20, 10], diameter: [1, "
-                  "2]}}\n",
+                  "       hub_radius: 1, ramp: [1, 0], tower: {height: [0, 20, 10], diameter: [1, 2]}}\n",
             "s.yaml:8:14: error: aero.rate: its period 0.0333333 s is not a multiple of the macro "
             "step, 0.01 s\n"
             "s.yaml:9:29: error: aero.ramp: must end after it starts, got [1 s, 0 s]\n"
@@ -50,17 +49,14 @@ TEST(aerodynamics_are_consistent) {
             "s.yaml:9:76: error: aero.tower.diameter: has 2 values, but height has 3\n");
     refuses(ROTOR "turbine: {rotor: hub, blades: [b1]}\n"
                   "aero: {rate: 50 Hz, wind: {speed: 8}, blade: aero.yaml, polars: polars.yaml,\n"
-                  "       hub_radius: 1, tower: {height: [0, 10, 20], diameter: [1, 1, 1], "
-                  "drag: [1, 2]}}\n",
-            "s.yaml:9:79: error: aero.tower.drag: has 2 values, but height has 3; give one or as "
-            "many\n");
+                  "       hub_radius: 1, tower: {height: [0, 10, 20], diameter: [1, 1, 1], drag: [1, 2]}}\n",
+            "s.yaml:9:79: error: aero.tower.drag: has 2 values, but height has 3; give one or as many\n");
     write_file("aero.yaml", "stations:\n- {span: 0, chord: 1, polar: p}\n"
                             "- {span: 6, chord: 0, polar: q}\n");
     refuses(ROTOR "turbine: {rotor: hub, blades: [b1]}\n" AERO,
             "s.yaml:8:46: error: aero.blade: the blade elements end at 6 m, but 'b1' is 5 m long\n"
             "aero.yaml:3:20: error: stations[1].chord: must be > 0 m, got '0'\n"
-            "aero.yaml:3:30: error: stations[1].polar: the polars file has no 'q' (did you mean "
-            "'p'?)\n");
+            "aero.yaml:3:30: error: stations[1].polar: the polars file has no 'q' (did you mean 'p'?)\n");
     write_file("aero.yaml", "stations:\n- {span: 0, chord: 1, polar: p}\n"
                             "- {span: 0, chord: 1, polar: p}\n");
     refuses(ROTOR AERO, "s.yaml:7:7: error: aero: needs 'turbine', which names rotor and blades\n"
@@ -84,8 +80,7 @@ TEST(wind_is_a_speed_or_a_table) {
     refuses(WIND("speed: 8, table: {times: [0, 1], speeds: [8, 9]}"),
             "s.yaml:13:17: error: aero.wind.speed: only used without a table\n");
     refuses(WIND("table: {times: [0, 1, 1], speeds: [8, 9]}"),
-            "s.yaml:13:32: error: aero.wind.table.times[2]: must be more than '1' before it, "
-            "got '1'\n"
+            "s.yaml:13:32: error: aero.wind.table.times[2]: must be more than '1' before it, got '1'\n"
             "s.yaml:13:44: error: aero.wind.table.speeds: has 2 values, but times has 3\n");
     refuses(WIND("speed: 8, kind: log, reference_height: 1, roughness: 2"),
             "s.yaml:13:49: error: aero.wind.reference_height: must be more than the roughness, "
@@ -107,11 +102,9 @@ TEST(polars_cover_the_circle) {
                               "- name: s\n  table: [{alpha: 0, cl: 0, cd: 0, cm: 0}, "
                               "{alpha: 180 deg, cl: 0, cd: 0, cm: 0}]\n");
     refuses(ROTOR "turbine: {rotor: hub, blades: [b1]}\n" AERO,
-            "polars.yaml:7:8: error: polars[0].table.rows[1].alpha: the last must be 180 deg, got "
-            "90 deg\n"
+            "polars.yaml:7:8: error: polars[0].table.rows[1].alpha: the last must be 180 deg, got 90 deg\n"
             "polars.yaml:13:19: error: polars[1].table.rows[1].cm: expected a number, got 'x'\n"
-            "polars.yaml:15:19: error: polars[2].table[0].alpha: the first must be -180 deg, got 0 "
-            "deg\n");
+            "polars.yaml:15:19: error: polars[2].table[0].alpha: the first must be -180 deg, got 0 deg\n");
     write_file("polars.yaml", POLARS "- name: p\n  table: [{alpha: -180 deg, cl: 0, cd: 0, cm: 0}, "
                                      "{alpha: 180 deg, cl: 0, cd: 0, cm: 0}]\n");
     refuses(ROTOR "turbine: {rotor: hub, blades: [b1]}\n" AERO,

@@ -97,9 +97,8 @@ TEST(a_tower_with_a_rod_carries_the_nacelle_at_its_end) {
     assert_int_equal(f.scene->body[0].fidelity, BOUGH_SCENE_ROD);
     check_near(f.scene->body[1].joint.placement.position.z, 0, 0, 0);
     f = with_block("", sets + 1, 1);
-    assert_string_equal(f.printed,
-                        "s.yaml:6:17: error: turbine.tower_height: only of a rigid tower: this one "
-                        "has a rod\n");
+    assert_string_equal(
+        f.printed, "s.yaml:6:17: error: turbine.tower_height: only of a rigid tower: this one has a rod\n");
 }
 
 // An error in what all blades share stands once, where it is written.

@@ -27,8 +27,7 @@ TEST(all_errors_are_shown_in_order) {
 TEST(missing_parts_are_named) {
     refuses("title: x\n", "s.yaml:1:1: error: required key 'simulation' is missing\n"
                           "s.yaml:1:1: error: required key 'bodies' is missing\n");
-    refuses(SIMULATION "bodies: []\n", "s.yaml:2:9: error: bodies: expected at least 1 item, got "
-                                       "0\n");
+    refuses(SIMULATION "bodies: []\n", "s.yaml:2:9: error: bodies: expected at least 1 item, got 0\n");
     refuses(SIMULATION "bodies:\n  - {}\n",
             "s.yaml:3:5: error: bodies[0]: required key 'name' is missing\n"
             "s.yaml:3:5: error: bodies[0]: required key 'fidelity' is missing\n"
@@ -40,14 +39,12 @@ TEST(joint_keys_fit_the_kind) {
                        "    joint: {kind: fixed, parent: ground, axis: x, angle: 0, speed: 1}\n",
             "s.yaml:6:42: error: bodies[0].joint.axis: only used with 'kind: "
             "revolute/prismatic/cylindrical/universal/planar'\n"
-            "s.yaml:6:51: error: bodies[0].joint.angle: only used with 'kind: "
-            "revolute/cylindrical/planar'\n"
+            "s.yaml:6:51: error: bodies[0].joint.angle: only used with 'kind: revolute/cylindrical/planar'\n"
             "s.yaml:6:61: error: bodies[0].joint.speed: only used with 'kind: "
             "revolute/prismatic/cylindrical'\n");
     refuses(SIMULATION "bodies:\n  - name: a\n    fidelity: rigid\n    mass: 1\n"
                        "    joint: {kind: prismatic, parent: ground, axis: w, position: 1 deg}\n",
-            "s.yaml:6:52: error: bodies[0].joint.axis: expected one of x, y, z, got 'w' (did you "
-            "mean 'x'?)\n"
+            "s.yaml:6:52: error: bodies[0].joint.axis: expected one of x, y, z, got 'w' (did you mean 'x'?)\n"
             "s.yaml:6:65: error: bodies[0].joint.position: expected a length (in m, or with a unit, "
             "as '61.5 m'), got '1 deg': the unit 'deg' does not fit\n");
 }
@@ -76,11 +73,9 @@ TEST(names_are_checked) {
                 BODY("a b/c", "a"),
             "s.yaml:4:12: error: bodies[1].name: body 'a' is given twice\n"
             "s.yaml:5:12: error: bodies[2].name: 'ground' cannot be the name of a body\n"
-            "s.yaml:6:12: error: bodies[3].name: a name has letters, digits, '_' and '-', got 'a "
-            "b/c'\n");
+            "s.yaml:6:12: error: bodies[3].name: a name has letters, digits, '_' and '-', got 'a b/c'\n");
     refuses(SIMULATION "bodies:\n" BODY("tower", "ground") BODY("hub", "twoer"),
-            "s.yaml:4:63: error: bodies[1].joint.parent: there is no body 'twoer' (did you mean "
-            "'tower'?)\n");
+            "s.yaml:4:63: error: bodies[1].joint.parent: there is no body 'twoer' (did you mean 'tower'?)\n");
 }
 
 TEST(loops_of_parents_are_refused) {
@@ -102,17 +97,13 @@ TEST(moving_joints_need_mass) {
 }
 
 TEST(body_keys_fit_the_fidelity) {
-    refuses(ROD_BODY, "s.yaml:3:5: error: bodies[0]: required key 'rod' is missing (with 'fidelity: "
-                      "rod')\n");
-    refuses(ONE_BODY "    pitch: 1 deg\n", "s.yaml:6:12: error: bodies[0].pitch: only used with a "
-                                           "rod\n");
+    refuses(ROD_BODY, "s.yaml:3:5: error: bodies[0]: required key 'rod' is missing (with 'fidelity: rod')\n");
+    refuses(ONE_BODY "    pitch: 1 deg\n", "s.yaml:6:12: error: bodies[0].pitch: only used with a rod\n");
     refuses(ROD_BODY "    mass: 1\n"
-                     "    rod: {length: 1, stiffness: [1, 1, 1, 1, 1, 1], mass: [1, 0, 0, 1, 1, "
-                     "0]}\n",
+                     "    rod: {length: 1, stiffness: [1, 1, 1, 1, 1, 1], mass: [1, 0, 0, 1, 1, 0]}\n",
             "s.yaml:6:5: error: bodies[0].mass: only used with 'fidelity: rigid/fmu'\n");
     refuses(ONE_BODY "    mass: 1\n    inertia: [1, 1, 1]\n"
-                     "    rod: {length: 1, stiffness: [1, 1, 1, 1, 1, 1], mass: [1, 0, 0, 1, 1, "
-                     "0]}\n",
+                     "    rod: {length: 1, stiffness: [1, 1, 1, 1, 1, 1], mass: [1, 0, 0, 1, 1, 0]}\n",
             "s.yaml:8:10: error: bodies[0].rod: a rigid body gets its mass from a rod or from 'mass', "
             "'centre_of_mass' and 'inertia', not from both\n");
     refuses(ONE_BODY
@@ -140,8 +131,7 @@ TEST(body_keys_fit_the_fidelity) {
 TEST(rods_are_complete) {
     refuses(
         ROD_BODY "    rod: {segments: 4}\n",
-        "s.yaml:6:10: error: bodies[0].rod: required keys 'length', 'stiffness', 'mass' are missing (without a "
-        "table)\n");
+        "s.yaml:6:10: error: bodies[0].rod: required keys 'length', 'stiffness', 'mass' are missing (without a table)\n");
     refuses(ROD_BODY "    rod: {length: 1, stiffness: [1, 1, 1, 1, 1, 1]}\n",
             "s.yaml:6:10: error: bodies[0].rod: required key 'mass' is missing (without a table)\n");
     refuses(ROD_BODY "    rod: {table: none.yaml, segments: 0}\n",
@@ -171,8 +161,7 @@ TEST(section_matrices_are_checked) {
                  "1]\n      mass: [1, 0, 0, 1, 1, 0]\n",
         "s.yaml:8:73: error: bodies[0].rod.stiffness[18]: the stiffness matrix must be positive definite: "
         "in the row of bend about y the entries off the diagonal are too large\n");
-    refuses(ROD_BODY "    rod: {length: 1, stiffness: [1, 1, 1, 1, 1, 0], mass: [0, 0, 0, 1, 1, "
-                     "0]}\n",
+    refuses(ROD_BODY "    rod: {length: 1, stiffness: [1, 1, 1, 1, 1, 0], mass: [0, 0, 0, 1, 1, 0]}\n",
             "s.yaml:6:49: error: bodies[0].rod.stiffness[5]: the stiffness matrix must be positive definite: "
             "the diagonal has 0 for twist\n"
             "s.yaml:6:60: error: bodies[0].rod.mass: the mass per length must be > 0 kg/m\n");
@@ -184,12 +173,10 @@ TEST(section_matrices_are_checked) {
         "s.yaml:8:79: error: bodies[0].rod.stiffness[20]: the stiffness matrix must be positive definite: "
         "in the row of twist the entries off the diagonal are too large\n");
     // About the mass centre nothing is left of Iyy = m cx².
-    refuses(ROD_BODY "    rod: {length: 1, stiffness: [1, 1, 1, 1, 1, 1], mass: [4, 0.5, 0, 1, 1, "
-                     "0]}\n",
+    refuses(ROD_BODY "    rod: {length: 1, stiffness: [1, 1, 1, 1, 1, 1], mass: [4, 0.5, 0, 1, 1, 0]}\n",
             "s.yaml:6:59: error: bodies[0].rod.mass: the inertia about the mass centre must be "
             "positive definite: the diagonal has 0 for Iyy - m cx^2\n");
-    accepts(ROD_BODY "    rod: {length: 1, stiffness: [1, 1, 1, 1, 1, 1], mass: [4, 0.5, 0, 1, 1.01, "
-                     "0]}\n");
+    accepts(ROD_BODY "    rod: {length: 1, stiffness: [1, 1, 1, 1, 1, 1], mass: [4, 0.5, 0, 1, 1.01, 0]}\n");
 }
 
 // A structure table with these spans must give these errors.
@@ -212,8 +199,7 @@ TEST(stations_run_from_zero_to_the_length) {
     refuses_spans("length: 200 cm\n", (const char *[3]){"0", "1", "2"}, "");
     refuses_spans("length: 5\n", (const char *[3]){"0"}, "");
     refuses_spans("", (const char *[3]){"0", "2", "2"},
-                  "blade.yaml:6:6: error: stations.rows[2].span: must be more than '2' before it, "
-                  "got '2'\n");
+                  "blade.yaml:6:6: error: stations.rows[2].span: must be more than '2' before it, got '2'\n");
     refuses_spans("", (const char *[3]){"0.5", "0.1", "2"},
                   "blade.yaml:4:6: error: stations.rows[0].span: the first must be 0 m, got 0.5 m\n"
                   "blade.yaml:5:6: error: stations.rows[1].span: must be more than '0.5' before it, "

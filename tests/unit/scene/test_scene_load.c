@@ -4,8 +4,7 @@
 TEST(times_fit_the_macro_step) {
     refuses("simulation: {duration: 1.005, macro_step: 10 ms, output: {interval: 25 ms}}\n"
             "bodies:\n" BODY("a", "ground"),
-            "s.yaml:1:24: error: simulation.duration: 1.005 s is not a multiple of the macro step, "
-            "0.01 s\n"
+            "s.yaml:1:24: error: simulation.duration: 1.005 s is not a multiple of the macro step, 0.01 s\n"
             "s.yaml:1:69: error: simulation.output.interval: 0.025 s is not a multiple of the macro "
             "step, 0.01 s\n");
     refuses("simulation: {duration: 1, macro_step: 0.1, output: {interval: 10 ms}}\nbodies:\n" BODY("a",
@@ -16,26 +15,25 @@ TEST(times_fit_the_macro_step) {
 }
 
 TEST(loads_fit_their_joints) {
-    refuses(SIMULATION
-            "bodies:\n" BODY("a", "ground") "  - {name: h, mass: 1, fidelity: rigid, joint: {kind: "
-                                            "revolute, parent: a, axis: x}}\n"
-                                            "loads:\n"
-                                            "  - {joint: a, torque: 1}\n"
-                                            "  - {joint: h, force: 1 N}\n"
-                                            "  - {joint: h, force: 1 N m}\n"
-                                            "  - {joint: h}\n"
-                                            "  - {joint: h, torque: 1, force: 2}\n"
-                                            "  - {joint: h, torque: 1, ramp: [2, 1]}\n",
-            "s.yaml:6:13: error: loads[0].joint: the joint of 'a' must be revolute or prismatic to "
-            "take a load\n"
-            "s.yaml:7:23: error: loads[1].force: the joint of 'h' is revolute: give a torque\n"
-            "s.yaml:8:23: error: loads[2].force: expected a force (in N, or with a unit, as '12 "
-            "kN'), got '1 N m': the unit 'N m' does not fit\n"
-            "s.yaml:8:23: error: loads[2].force: the joint of 'h' is revolute: give a torque\n"
-            "s.yaml:9:5: error: loads[3]: expected either 'torque' or 'force'\n"
-            "s.yaml:10:5: error: loads[4]: expected either 'torque' or 'force', got both\n"
-            "s.yaml:10:34: error: loads[4].force: the joint of 'h' is revolute: give a torque\n"
-            "s.yaml:11:33: error: loads[5].ramp: must end after it starts, got [2 s, 1 s]\n");
+    refuses(
+        SIMULATION "bodies:\n" BODY("a", "ground") "  - {name: h, mass: 1, fidelity: rigid, joint: {kind: "
+                                                   "revolute, parent: a, axis: x}}\n"
+                                                   "loads:\n"
+                                                   "  - {joint: a, torque: 1}\n"
+                                                   "  - {joint: h, force: 1 N}\n"
+                                                   "  - {joint: h, force: 1 N m}\n"
+                                                   "  - {joint: h}\n"
+                                                   "  - {joint: h, torque: 1, force: 2}\n"
+                                                   "  - {joint: h, torque: 1, ramp: [2, 1]}\n",
+        "s.yaml:6:13: error: loads[0].joint: the joint of 'a' must be revolute or prismatic to take a load\n"
+        "s.yaml:7:23: error: loads[1].force: the joint of 'h' is revolute: give a torque\n"
+        "s.yaml:8:23: error: loads[2].force: expected a force (in N, or with a unit, as '12 "
+        "kN'), got '1 N m': the unit 'N m' does not fit\n"
+        "s.yaml:8:23: error: loads[2].force: the joint of 'h' is revolute: give a torque\n"
+        "s.yaml:9:5: error: loads[3]: expected either 'torque' or 'force'\n"
+        "s.yaml:10:5: error: loads[4]: expected either 'torque' or 'force', got both\n"
+        "s.yaml:10:34: error: loads[4].force: the joint of 'h' is revolute: give a torque\n"
+        "s.yaml:11:33: error: loads[5].ramp: must end after it starts, got [2 s, 1 s]\n");
 }
 
 #define MODAL(fidelity)                                                                                      \
@@ -45,14 +43,12 @@ TEST(modal_bodies_are_rods_reduced) {
     accepts(MODAL("modal"));
     accepts(MODAL("segmented-modal") "    modal: {modes: 3, statics: false, pieces: 4}\n");
     refuses(MODAL("modal") "    modal: {pieces: 4}\n",
-            "s.yaml:7:21: error: bodies[0].modal.pieces: only used with 'fidelity: "
-            "segmented-modal'\n");
+            "s.yaml:7:21: error: bodies[0].modal.pieces: only used with 'fidelity: segmented-modal'\n");
     refuses(MODAL("segmented-modal"),
             "s.yaml:3:5: error: bodies[0].modal.pieces: 5 pieces of 4 segments: give the rod more "
             "segments\n");
     refuses(MODAL("rod") "    modal: {modes: 3}\n",
-            "s.yaml:7:5: error: bodies[0].modal: only used with 'fidelity: "
-            "modal/segmented-modal'\n");
+            "s.yaml:7:5: error: bodies[0].modal: only used with 'fidelity: modal/segmented-modal'\n");
     refuses(MODAL("modal") "  - {name: b, fidelity: rigid, joint: {kind: fixed, parent: a}}\n",
             "s.yaml:7:61: error: bodies[1].joint.parent: 'a' is a modal body, which cannot carry bodies; "
             "make it a rod\n");
@@ -122,7 +118,7 @@ TEST(loads_fit_their_rods) {
             "s.yaml:18:19: error: loads[11].at: 'b' has the vertices 0 to 4, got 5\n"
             "s.yaml:19:19: error: loads[12].at: 'b' is 2 m long, got 2.1 m\n"
             "s.yaml:20:22: error: loads[13].along: 'b' is 2 m long, got 3 m\n"
-            "s.yaml:22:40: error: loads[15].frame: 'a' is rigid: 'frame: body' turns with it\n"
+            "s.yaml:22:40: error: loads[15].frame: 'a' is rigid: 'frame: body' rotates with it\n"
             "s.yaml:23:49: error: loads[16].point: only used with a rigid body\n"
             "s.yaml:24:53: error: loads[17].end_force: only used with 'along'\n"
             "s.yaml:25:89: error: loads[18].ramp: only used without 'factor'\n");
