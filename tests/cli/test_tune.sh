@@ -56,7 +56,7 @@ consistent 0.05
 grep -q '^  rate: [0-9]' out/tune.yaml || fail 'the rate of the air'
 
 # What cannot be met, and what is not understood.
-says 3 'no settings meet the error 1e-07: run [0-9]* comes nearest, where ' tune bar.yaml --error 1e-7 --for '0.04 s' --out out
+says 3 'no settings meet the error 1e-07: run [0-9]* comes nearest, with an error of ' tune bar.yaml --error 1e-7 --for '0.04 s' --out out
 [ -s out/tune.yaml ] || fail 'the least error has no settings'
 says 2 "error expects a number in .1e-7, 0.5., got '2'" tune bar.yaml --error 2
 says 2 "for expects a time (in s, or with a unit, as '20 ms') > 0, got '2 m'" tune bar.yaml --for '2 m'

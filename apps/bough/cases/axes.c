@@ -1,4 +1,4 @@
-// Replaced keys of a scene, and the axes of a grid: their reading and their combinations.
+// Reads replacements of keys and the axes of a grid, and forms the combinations of a grid.
 #include "apps/bough/cases/study.h"
 
 #include <assert.h>
@@ -8,8 +8,7 @@
 
 // -- replacements ---------------------------------------------------------------------------------
 
-// A value in one line: 'text', [1, 2], {a: [1, 2]}. False when it is deeper than the stack of calls
-// should be.
+// Writes a value in one line: 'text', [1, 2], {a: [1, 2]}. False if it is nested too deeply for recursion.
 static bool put_flow(FILE *f, const bough_node *value) {
     enum { DEEPEST = 8 };
     if (value->height > DEEPEST) return false;
@@ -45,7 +44,7 @@ static const char *write_flow(bough_arena *arena, const bough_node *value) {
     return kept;
 }
 
-// A value that was quoted is quoted again in the replacement, so that it stays what it is.
+// A quoted value is quoted in the replacement, too, so that it stays a text.
 static void read_setting(bough_schema_reader *r, const char *key, const bough_node *value,
                          bough_study_setting *setting) {
     char shown[64];
@@ -73,7 +72,7 @@ void bough_study_read_settings(bough_schema_reader *r, const bough_node *node, v
 
 // -- grid -----------------------------------------------------------------------------------------
 
-// A value given twice would be run twice and count double.
+// A value that is given twice would be run twice and count twice.
 static void check_different(bough_schema_reader *r, const bough_study_axis *axis) {
     const bough_study_settings *value = &axis->value;
     for (int i = 1; i < value->n; i++) {

@@ -6,16 +6,16 @@
 #include <pthread.h>
 
 typedef struct place {
-    bough_arena *arena; // of the box; NULL: none
+    bough_arena *arena; // memory of the box; NULL: there is no box
     bough_wind_iec_def def;
     bough_wind_box box;
-    int runs; // that use it or wait for it
+    int runs; // number of runs that use the box or wait for it
     bool making;
 } place;
 
 struct bough_boxes {
     int n;
-    place *place; // (n) as many as runs at the same time, so that one is free for each
+    place *place; // (n) as many as simultaneous runs, so that there is always a free one
     pthread_mutex_t mutex;
     pthread_cond_t made;
 };
@@ -37,7 +37,7 @@ bough_boxes *bough_boxes_create(bough_arena *arena, int runs) {
     return b;
 }
 
-// The place of that box, or one that no run uses.
+// The place of this box, or else one that no run uses.
 static place *find(bough_boxes *b, const bough_wind_iec_def *def) {
     place *unused = NULL;
     for (int i = 0; i < b->n; i++) {
@@ -71,7 +71,7 @@ const bough_wind_box *bough_boxes_lend(bough_boxes *b, const bough_scene *scene)
     p->runs++;
     bool mine = !p->making && !(p->arena && bough_turbulence_equal(&p->def, &def));
     if (mine) {
-        // other runs go on meanwhile
+        // generated without the lock, so that other runs continue
         p->def = def;
         p->making = true;
         pthread_mutex_unlock(&b->mutex);

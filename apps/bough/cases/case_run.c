@@ -123,8 +123,7 @@ static bough_status changed(const char *scene, const char *why) {
         scene, why[0] ? ": " : "", why);
 }
 
-// Every scene was read when the study began, so that an error now, BOUGH_IO, is of the study and not of the
-// run.
+// Every scene was valid when the study began: an error now, BOUGH_IO, ends the study.
 static bough_status read_scene(bough_arena *arena, const case_run *r, bough_scene **scene) {
     const bough_case *c = r->chosen;
     bough_errors errors = {.arena = arena};
@@ -134,8 +133,8 @@ static bough_status read_scene(bough_arena *arena, const case_run *r, bough_scen
     return changed(c->scene, errors.n > 0 ? errors.item[0].text : "");
 }
 
-// BOUGH_IO when the files of a scene that has been built are others than when the study began: its run must
-// not be compared with earlier ones, nor what cannot be built be kept as a result.
+// BOUGH_IO if files of the scene have changed since the study began: its run must not be compared with
+// earlier ones, and a failure to build it is no result.
 static bough_status same_files(bough_arena *arena, const bough_scene *scene, uint64_t files) {
     uint64_t now = BOUGH_FINGERPRINT_START;
     if (files == 0) return bough_ok();
@@ -170,7 +169,7 @@ static bough_status build(bough_arena *arena, case_run *r) {
     return open_recorder(arena, r);
 }
 
-// Ends the series; a binary one stands in place of the text, ten times as large.
+// Ends the series. A binary file replaces the text, which is ten times as large.
 static bough_status finish_series(case_run *r) {
     const bough_scene_output *output = &r->run.simulation->scene->simulation.output;
     const bough_binary_def def = {.folder = r->drive->folder,
@@ -204,7 +203,7 @@ static bough_status run_in(bough_arena *arena, void *self) {
     double interval = r->series ? r->study->interval : run->simulation->scene->simulation.output.interval;
     if (r->series) r->series->filled = 0;
     bough_run_record_at(run, (bough_run_record){interval, .sample = sample, .self = r});
-    run->beside = r->study->is.parallel; // these have one thread each
+    run->beside = r->study->is.parallel; // each on one thread
     run->stop = r->drive->stop;
     run->progress = &r->drive->progress;
     bough_run_all(run);
@@ -224,7 +223,7 @@ static bough_status run_in(bough_arena *arena, void *self) {
     return bough_is_ok(&run->outcome) ? status : run->outcome;
 }
 
-// The times include the building.
+// With the time of building.
 static void run_timed(case_run *r) {
     double wall = bough_wall_clock(), cpu = bough_cpu_clock(true);
     r->result->outcome = bough_arena_use(run_in, r);
@@ -258,7 +257,7 @@ static void run_repeatedly(case_run *r, int repeat) {
         cpu[n] = result->cpu;
         n++;
     }
-    // The times of a failed repeat are its own: they belong to the time it reached.
+    // a failed repeat keeps its own times, which belong to the time that it reached
     if (!bough_is_ok(&result->outcome)) return;
     result->wall = bough_spread_of(wall, n).median;
     result->cpu = bough_spread_of(cpu, n).median;

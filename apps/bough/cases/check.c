@@ -1,6 +1,6 @@
-// What cannot be seen in the text of a study alone: whether every scene takes its replacements and has the
-// channels, and whether runs that are compared have common output times. Found before the first run, since
-// the last one may start hours later.
+// Checks that need the scenes: whether every scene is valid with its replacements and has the channels, and
+// whether compared runs have common output times. All are made before the first run, since the last one may
+// start hours later.
 #include "apps/bough/cases/study.h"
 
 #include "aero/wind/wind_iec.h"
@@ -16,7 +16,7 @@
 
 // -- fingerprint ----------------------------------------------------------------------------------
 
-// What the study asks of each run.
+// Adds what the study records of each run.
 static void mix_question(uint64_t *hash, const bough_study *s) {
     const double numbers[] = {s->repeat, s->is.parallel ? 0 : s->threads, s->from, s->is.weighted, s->series};
     bough_mix(hash, numbers, sizeof numbers);
@@ -31,7 +31,8 @@ static void mix_question(uint64_t *hash, const bough_study *s) {
     if (s->n_slope > 0) bough_mix(hash, s->slope, (size_t)s->n_slope * sizeof *s->slope);
 }
 
-// The settings' text distinguishes a reference from a cell with the same replacements.
+// Adds what defines the run. The text of the settings distinguishes a reference from a cell with the same
+// replacements.
 static void mix_run(uint64_t *hash, const bough_case *c) {
     bough_mix(hash, &c->files, sizeof c->files);
     for (int i = 0; i < c->n_set; i++) bough_mix_text(hash, c->set[i]);
@@ -40,8 +41,8 @@ static void mix_run(uint64_t *hash, const bough_case *c) {
 
 // -- scenes ---------------------------------------------------------------------------------------
 
-// Whether an error in a scene speaks of this replacement: its path is the key, or the key's parent
-// when the key itself is unknown and therefore named in the text.
+// Whether an error in a scene concerns this replacement: its path is that of the key, or of the key's parent
+// if the key is unknown and named in the text.
 static bool concerns(const bough_error *e, const bough_study_setting *setting) {
     if (strcmp(e->path, setting->key) == 0) return true;
     char word[96];
@@ -63,15 +64,16 @@ static bool is_reported(const bough_errors *errors, const bough_node *at, const 
     return false;
 }
 
-// Adds an error of a run's scene, once for all runs that have it: an error in a replacement at `origin`,
-// where the study gives it.
+// Adds an error of a run's scene, once for all runs that have it. An error in a replacement is placed at
+// `origin`, where the study has it.
 static void report(const bough_error *e, const char *scene, const bough_node *origin, bough_errors *errors) {
     bough_node where = {.file = e->file, .line = e->line, .column = e->column};
     if (e->line == 0 && strcmp(e->file, scene) != 0) where = *origin;
     if (!is_reported(errors, &where, e)) bough_errors_add(errors, &where, e->path, "%s", e->text);
 }
 
-// Where the study says what the error in the case's scene is about: of two replacements of a key the latter.
+// The place in the study of the replacement that an error in the case's scene concerns, the last one of a
+// key.
 static const bough_node *origin(const bough_study *s, const bough_case *c, const bough_error *e) {
     for (int i = c->n_set - 1; i >= 0; i--)
         if (c->setting[i] && concerns(e, c->setting[i])) return c->setting[i]->node;
@@ -180,7 +182,7 @@ static void check_from(const bough_study *s, const bough_scene *scene, const bou
 
 typedef struct turbulence {
     bough_wind_iec_def def;
-    bough_case *last; // with it
+    bough_case *last; // the last case with it so far
 } turbulence;
 
 typedef struct check {
@@ -192,7 +194,7 @@ typedef struct check {
     bough_errors *errors;
 } check;
 
-// The first reference gives duration and interval.
+// Duration and interval are those of the first reference.
 static void check_duration(const check *k, const bough_case *c, const bough_scene *scene) {
     bough_study *s = k->study;
     if (c == s->reference_case) {
@@ -205,8 +207,8 @@ static void check_duration(const check *k, const bough_case *c, const bough_scen
     }
 }
 
-// The title and the grid's values are not in it: a grid may grow and keeps what was run. The
-// program is, where the system shows it: results of another one are not to be mixed in.
+// Neither the title nor the other values of the grid count, so that a grid may grow and keeps its results.
+// The program counts, where the system gives access to it: results of different programs are not mixed.
 static void take_fingerprint(check *k, bough_case *c, const bough_scene *scene) {
     c->files = BOUGH_FINGERPRINT_START;
     bough_mix_scene(&c->files, &k->sums, scene);

@@ -6,7 +6,7 @@
 
 // -- levels ---------------------------------------------------------------------------------------
 
-// Bits of the first value that the finest bins resolve; all of a bin's number are fewer than the latter.
+// Bits of the first value that the finest bins resolve; bits of the largest shift of a bin's number.
 enum { FINEST = 40, MOST_SHIFT = 62 };
 
 static double bin_of(double x, int exponent) { return floor(ldexp(x, -exponent)); }
@@ -14,7 +14,7 @@ static double bin_of(double x, int exponent) { return floor(ldexp(x, -exponent))
 // Rounded down, also below zero.
 static int64_t halved(int64_t bin, int64_t unit) { return bin >= 0 ? bin / unit : -((-bin - 1) / unit) - 1; }
 
-// Wider bins; of the edges only the common ones remain.
+// Merges bins to this exponent; crossings of edges that remain are kept.
 static void coarsen(bough_levels *l, int exponent) {
     int shift = exponent - l->exponent;
     if (shift <= 0) return;
@@ -44,7 +44,7 @@ static int fitting(double least, double most, int exponent) {
     return exponent;
 }
 
-// Brings x into the bins in use; x is finite.
+// Extends the bins in use to a finite x and returns its bin.
 static int64_t reach(bough_levels *l, double x) {
     int first;
     if (!l->started) {
@@ -117,20 +117,20 @@ static double range_before(const bough_rainflow *r, int back) {
     return fabs(r->point[r->n - back] - r->point[r->n - back - 1]);
 }
 
-// Step 5: half a cycle, whose first point goes.
+// Step 5 of the standard: half a cycle; its first point is dropped.
 static void count_start(bough_rainflow *r) {
     count(r, range_before(r, 2), 0.5);
     memmove(r->point, r->point + 1, (size_t)--r->n * sizeof *r->point);
 }
 
-// Step 4: a whole cycle, whose two points go.
+// Step 4: a whole cycle; its two points are dropped.
 static void count_inside(bough_rainflow *r) {
     count(r, range_before(r, 2), 1);
     r->point[r->n - 3] = r->point[r->n - 1];
     r->n -= 2;
 }
 
-// Takes a reversal of the load, and counts the ranges that it completes.
+// Adds a reversal of the load and counts the ranges that it completes.
 static void reversal(bough_rainflow *r, double point) {
     r->point[r->n++] = point;
     while (r->n >= 3 && range_before(r, 1) >= range_before(r, 2)) {

@@ -1,5 +1,5 @@
-// What a run's loads come to, sample by sample, in memory that does not grow with time: statistics,
-// cycles, time at levels, and the extremes of every channel with all others at that moment.
+// Statistics of the loads of a run, sample by sample in memory of constant size: moments, load cycles, time
+// at levels, and the extremes of every channel with the simultaneous values of all others.
 #ifndef BOUGH_APPS_CASES_COUNTS_H
 #define BOUGH_APPS_CASES_COUNTS_H
 
@@ -11,21 +11,21 @@
 
 // -- levels ---------------------------------------------------------------------------------------
 
-// How long a quantity stays between levels and how often it crosses each upwards, and how many
-// cycles have which range: bins whose width is a power of two and whose edges are its multiples. As
-// the values spread, pairs of bins become one, so the memory is fixed, and the bins follow from the
-// least and the largest value alone: counts of parts that are added are those of the whole.
+// How long a quantity stays between levels and how often it crosses each upwards, or how many cycles have
+// which range: bins whose width is a power of two and whose edges are its multiples. As the range of the
+// values grows, pairs of bins are merged, so that the memory is constant and the bins follow from the
+// smallest and the largest value alone: added counts of parts are those of all values together.
 
 enum { BOUGH_LEVELS = 128 };
 
-// All zero: nothing is counted yet.
+// All zero: empty.
 typedef struct bough_levels {
     bool started;
     int exponent;                 // of the width, 2^exponent in the quantity's unit
     int64_t low, high;            // bins in use, at most BOUGH_LEVELS; bin k is [k, k + 1) widths
     double inside[BOUGH_LEVELS];  // counts in bin k, at k modulo BOUGH_LEVELS
     double crossed[BOUGH_LEVELS]; // upward crossings of the lower edge of bin k
-    double last;                  // the value before
+    double last;                  // the previous value
 } bough_levels;
 
 // The place of a bin in the counts.
@@ -36,7 +36,7 @@ static inline int bough_levels_slot(int64_t bin) {
 // Adds `count` in the bin of x, and no crossing.
 void bough_levels_add(bough_levels *levels, double x, double count);
 
-// Adds 1 in the bin of x, and the crossings on the way from the value before.
+// Adds 1 in the bin of x, and the crossings between the previous value and x.
 void bough_levels_follow(bough_levels *levels, double x);
 
 // Adds the counts of `part`: those in bins times `inside`, its crossings times `crossed`.
@@ -50,49 +50,49 @@ double bough_levels_crossed(const bough_levels *levels, int64_t bin);
 
 // Rainflow counting, sample by sample: ASTM E1049-85 (2017), 5.4.4, "Rules for rainflow counting".
 //
-// The memory is fixed: the standard's open ranges always decrease, and where there are more of them
-// than fit, the two points of the smallest are counted as one cycle at once.
+// The memory is constant: the open ranges of the standard always decrease, and if there are more than fit,
+// the smallest one is counted as a cycle at once.
 
 enum { BOUGH_RAINFLOW_OPEN = 200, BOUGH_MOST_SLOPES = 6 };
 
-// All zero but for the slopes: nothing is counted yet.
+// All zero except the slopes: empty.
 typedef struct bough_rainflow {
     int n_slope;
     double slope[BOUGH_MOST_SLOPES];  // exponents m of the S-N curves [-]
     double damage[BOUGH_MOST_SLOPES]; // Σ n Sᵐ over the cycles n of range S
     double cycles;                    // n in all, in halves
     bough_levels ranges;              // cycles by their range
-    double forced;                    // cycles counted early for want of memory
-    int direction;                    // of the last sample: −1, 0 before there is one, 1
-    double last;                      // the latest sample, perhaps no turning point
+    double forced;                    // cycles that were counted early to limit the memory
+    int direction;                    // of the last change: −1, 1, or 0 before the first
+    double last;                      // the last sample, not necessarily a reversal
     int n;
-    double point[BOUGH_RAINFLOW_OPEN]; // (n) turning points whose ranges are open
+    double point[BOUGH_RAINFLOW_OPEN]; // (n) reversals whose ranges are open
     bool started;
 } bough_rainflow;
 
 // Takes the next sample, a finite number.
 void bough_rainflow_add(bough_rainflow *r, double x);
 
-// Ends the count: the ranges that are still open are half cycles. Nothing may be added after it.
+// Ends the count: open ranges become half cycles. Nothing may be added afterwards.
 void bough_rainflow_finish(bough_rainflow *r);
 
-// The range that, `cycles` times repeated, does the damage `sum` = Σ n Sᵐ: (sum/cycles)^(1/m).
+// Range of a load that does the damage `sum` = Σ n Sᵐ in `cycles` cycles: (sum/cycles)^(1/m).
 double bough_equivalent_load(double sum, double slope, double cycles);
 
 // -- a run ----------------------------------------------------------------------------------------
 
-// Of one channel. The two rows hold the extremes in the channel's own place.
+// Counts of one channel. Its extremes stand in both rows at its own index.
 typedef struct bough_channel_counts {
     bough_sample_statistics statistics;
     bough_rainflow rainflow;
     bough_levels levels;        // samples at each level
-    double *at_least, *at_most; // (n_channel) all channels when it was least and largest
+    double *at_least, *at_most; // (n_channel) all channels at its minimum and its maximum
 } bough_channel_counts;
 
 typedef struct bough_counts {
     int n_channel;
     bough_channel_counts *channel; // (n_channel)
-    double broken;                 // samples left out because a value was not finite
+    double broken;                 // samples that are left out, since a value is not finite
 } bough_counts;
 
 // Counts for n channels and the slopes (n_slope ≤ BOUGH_MOST_SLOPES), empty.
@@ -102,7 +102,7 @@ void bough_counts_take(bough_arena *arena, int n_channel, int n_slope, const dou
 // Takes the values (n_channel) at t [s].
 void bough_counts_add(bough_counts *counts, double t, const double *value);
 
-// Ends the cycles that are still open.
+// Counts the ranges that are still open.
 void bough_counts_finish(bough_counts *counts);
 
 #endif

@@ -1,4 +1,4 @@
-// Makes the cases of a study from its grids, with their fractions of the load case, and the references.
+// Expands the grids of a study into cases with their fractions of the load case, and into references.
 #include "apps/bough/cases/study.h"
 #include "apps/bough/config/schema.h"
 
@@ -15,22 +15,22 @@ static double speed_of(const bough_study_axis *axis, int i) {
     return bough_quantity(axis->value.item[i].value, BOUGH_SPEED, &speed, why) ? speed : (double)NAN;
 }
 
-// Weibull's share of the hours with less wind than that.
-static double share_below(const bough_load_wind *wind, double speed) {
+// Fraction of the hours with less wind than this, by the Weibull distribution.
+static double fraction_below(const bough_load_wind *wind, double speed) {
     double scale = wind->average / tgamma(1 + 1 / wind->shape);
     return speed > 0 ? 1 - exp(-pow(speed / scale, wind->shape)) : 0;
 }
 
-// Share of the hours of the bin of value i, whose edges are half way to its neighbours.
-static double share_of_speed(const bough_load_wind *wind, const bough_study_axis *axis, int i) {
+// Fraction of the hours in the bin of value i, whose edges are halfway to its neighbours.
+static double fraction_of_speed(const bough_load_wind *wind, const bough_study_axis *axis, int i) {
     int n = axis->value.n;
     double here = speed_of(axis, i);
     double below = i > 0 ? here - speed_of(axis, i - 1) : speed_of(axis, 1) - here;
     double above = i < n - 1 ? speed_of(axis, i + 1) - here : below;
-    return share_below(wind, here + above / 2) - share_below(wind, here - below / 2);
+    return fraction_below(wind, here + above / 2) - fraction_below(wind, here - below / 2);
 }
 
-// The place of an axis of that key in the grid; −1: there is none.
+// The index of the axis with this key in the grid; −1: there is none.
 static int axis_of(const bough_load_group *g, const char *key) {
     int i = g->grid.n - 1;
     while (i >= 0 && strcmp(g->grid.axis[i].key, key) != 0) i--;
@@ -50,19 +50,19 @@ static void check_speeds(const bough_load_group *g, bough_errors *errors) {
                      "'%.80s' needs at least two rising speeds of '%s' in its grid", g->name, speed_key);
 }
 
-static double share_of(const bough_study *s, const bough_case *c, int n_group) {
+static double fraction_of(const bough_study *s, const bough_case *c, int n_group) {
     const bough_load_group *g = &s->group[c->group];
     int speeds = axis_of(g, speed_key);
     if (!(g->weibull > 0)) return 1. / n_group;
     const bough_study_axis *axis = &g->grid.axis[speeds];
-    return share_of_speed(&s->wind, axis, c->index[speeds]) * axis->value.n / n_group;
+    return fraction_of_speed(&s->wind, axis, c->index[speeds]) * axis->value.n / n_group;
 }
 
 double bough_case_weight(const bough_study *s, const bough_case *c, double counted) {
     const bough_load_group *g = &s->group[c->group];
-    if (g->events > 0) return g->events * s->lifetime * c->share;
+    if (g->events > 0) return g->events * s->lifetime * c->fraction;
     double hours = g->weibull > 0 ? 8766 * g->weibull : g->hours;
-    return hours * s->lifetime * c->share * 3600 / counted;
+    return hours * s->lifetime * c->fraction * 3600 / counted;
 }
 
 // -- cases ----------------------------------------------------------------------------------------
@@ -76,8 +76,8 @@ static void add_sets(bough_case *c, const bough_study_settings *settings) {
     for (int i = 0; i < settings->n; i++) add_set(c, &settings->item[i]);
 }
 
-// The choice depends on the case's place in the set alone, so that all processes agree. What the scene says
-// is replaced: errors of loads count here, the bound of single channels only where the set itself gives one.
+// The choice depends on the case's number alone, so that all processes agree. The scene's settings are
+// replaced: here errors of loads count, and the bound on single channels only if the set gives one.
 static void add_companion(const bough_study *s, bough_case *c) {
     bool has_one = s->companions > 0 && (c - s->cases) % s->companions == 0;
     c->set[c->n_set++] = has_one ? "simulation.error_estimate=companion" : "simulation.error_estimate=none";
@@ -92,7 +92,7 @@ static void take_sets(bough_arena *arena, const bough_study *s, int n_own, bough
     add_sets(c, &s->common);
 }
 
-// The place of the axis of scenes; −1: there is none. All cases that are compared have one scene.
+// The index of the axis of scenes; −1: there is none. All compared cases have one scene.
 static int scene_axis(const bough_study *s, const bough_load_group *g) {
     return s->is.compared ? -1 : axis_of(g, scene_key);
 }
@@ -103,7 +103,7 @@ static void make_case(bough_arena *arena, bough_study *s, int group, int number,
     int scenes = scene_axis(s, g);
     c->group = group;
     bough_grid_place(&g->grid, number, c->index);
-    c->share = share_of(s, c, n_group);
+    c->fraction = fraction_of(s, c, n_group);
     take_sets(arena, s, g->set.n + g->grid.n, c);
     add_sets(c, &g->set);
     for (int i = 0; i < g->grid.n; i++) {
@@ -125,7 +125,7 @@ static bool is_model(const bough_study *s, int axis) {
            strncmp(s->grid.axis[axis].key, "simulation.", strlen("simulation.")) != 0;
 }
 
-// The number of the reference with a cell's parameters of the model.
+// The number of the reference that has the model parameters of a cell.
 static int reference_of(const bough_study *s, const bough_case *cell) {
     int number = 0;
     for (int i = 0; i < s->grid.n; i++)
@@ -133,7 +133,7 @@ static int reference_of(const bough_study *s, const bough_case *cell) {
     return number;
 }
 
-// "reference", or with the parameters "reference: damping=1e-3"
+// "reference", or with model parameters "reference: damping=1e-3"
 static const char *name_reference(bough_arena *arena, const bough_study *s, const bough_case *cell) {
     const char *text = "reference", *between = ":";
     for (int i = 0; i < s->grid.n; i++) {
@@ -145,7 +145,6 @@ static const char *name_reference(bough_arena *arena, const bough_study *s, cons
     return text;
 }
 
-// The reference of a cell.
 static void make_reference(bough_arena *arena, const bough_study *s, const bough_case *cell, bough_case *c) {
     take_sets(arena, s, s->reference.n + s->grid.n, c);
     for (int i = 0; i < BOUGH_STUDY_AXES; i++) c->index[i] = -1;
@@ -159,7 +158,7 @@ static void make_reference(bough_arena *arena, const bough_study *s, const bough
     c->settings = name_reference(arena, s, c);
 }
 
-// In the order of the first cells that they belong to.
+// In the order of the first cell of each.
 static void make_references(bough_arena *arena, bough_study *s) {
     s->n_reference = s->cases[s->n_case - 1].reference + 1;
     s->reference_case = bough_arena_take(arena, (size_t)s->n_reference * sizeof *s->reference_case);

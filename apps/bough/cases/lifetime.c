@@ -3,7 +3,7 @@
 #include <math.h>
 #include <string.h>
 
-// Hours, or of events their number, that a case stands for.
+// Hours, or number of events, that a case represents.
 static double hours_of(const bough_study *study, int number) {
     return bough_case_weight(study, &study->cases[number], 3600);
 }
@@ -29,7 +29,7 @@ static bool is_load(const char *unit) {
     return base[0] == 'N' && (base[1] == '\0' || base[1] == '-' || base[1] == '/');
 }
 
-// sign: 1 for a largest value, -1 for a smallest.
+// sign: 1 of a maximum, −1 of a minimum.
 static double factor_of(const bough_load_group *g, const char *unit, double value, int sign) {
     if (!is_load(unit)) return 1;
     return sign * value < 0 ? g->favourable : g->factor;
@@ -95,7 +95,7 @@ void bough_lifetime_add(bough_lifetime *l, int number, const bough_case_result *
     if (!bough_held(r)) {
         l->n_missing += !r->done;
         l->n_failed += r->done;
-        l->lacking += l->total > 0 ? hours_of(study, number) / l->total : 1. / study->n_case;
+        l->missing += l->total > 0 ? hours_of(study, number) / l->total : 1. / study->n_case;
         return;
     }
     double weight = bough_case_weight(study, &study->cases[number], r->counted);
@@ -112,8 +112,8 @@ double bough_lifetime_equivalent(const bough_lifetime *l, int channel, int slope
     return bough_equivalent_load(l->channel[channel].damage[slope], l->study->slope[slope], l->study->cycles);
 }
 
-// The part `x` of `whole`, of what is also zero where the whole is.
-static double part(double x, double whole) { return x == 0 ? 0 : whole > 0 ? x / whole : (double)NAN; }
+// x/whole; 0 for 0/0.
+static double ratio(double x, double whole) { return x == 0 ? 0 : whole > 0 ? x / whole : (double)NAN; }
 
 double bough_lifetime_equivalent_error(const bough_lifetime *l, int channel, int slope) {
     const bough_lifetime_channel *c = &l->channel[channel];
@@ -121,7 +121,7 @@ double bough_lifetime_equivalent_error(const bough_lifetime *l, int channel, int
     if (l->n_compared[l->study->n_group] == 0) return (double)NAN;
     double load = bough_equivalent_load(c->compared[slope], m, l->study->cycles);
     double larger = bough_equivalent_load(c->larger[slope], m, l->study->cycles);
-    return part(larger - load, load) * bough_lifetime_equivalent(l, channel, slope);
+    return ratio(larger - load, load) * bough_lifetime_equivalent(l, channel, slope);
 }
 
 double bough_lifetime_extreme_error(const bough_lifetime *l, int channel, const bough_extreme *e) {
@@ -130,5 +130,5 @@ double bough_lifetime_extreme_error(const bough_lifetime *l, int channel, const 
     const bough_extreme_errors *sum = &l->errors[row * l->study->n_channel + channel];
     if (!e->found || l->n_compared[row] == 0) return (double)NAN;
     bool least = e == &l->channel[channel].least;
-    return sqrt(part(least ? sum->least : sum->most, sum->range)) * e->range;
+    return sqrt(ratio(least ? sum->least : sum->most, sum->range)) * e->range;
 }

@@ -1,4 +1,4 @@
-// Runs of a study, some at a time, until all are done or one of them ends the study.
+// Performs the runs of a study, several at a time, until all are done or one of them ends the study.
 #include "apps/bough/cases/perform.h"
 
 #include "apps/bough/config/schema.h"
@@ -10,17 +10,17 @@
 
 typedef struct work {
     bough_study_results results;
-    bough_status (*perform)(bough_arena *arena, struct work *w, int piece); // in memory of its own
+    bough_status (*perform)(bough_arena *arena, struct work *w, int piece); // each in its own arena
     const char *what;                                                       // the runs' name, "cases"
-    int n, to_do;                                                           // pieces, runs in them
-    int *piece;            // (n) cases; of compared runs groups: a reference with its cases
-    bool counts;           // shows on the terminal how many runs are done
+    int n, to_do; // pieces of work, and runs in them
+    int *piece;   // (n) numbers of cases; of compared runs numbers of references, each with its cases
+    bool counts;  // prints the number of finished runs on the terminal
     double simulated, cpu; // [s]
     int claims, threads;
     bough_status worst;
     bough_pool *pool;
     bough_boxes *boxes;    // of statistics
-    pthread_mutex_t mutex; // of worst and what the pieces have in common
+    pthread_mutex_t mutex; // guards `worst` and the counts
 } work;
 
 // -- pieces ---------------------------------------------------------------------------------------
@@ -67,7 +67,8 @@ static void count_run(work *w, int number, const bough_case_result *r) {
     pthread_mutex_unlock(&w->mutex);
 }
 
-// Compared runs are alone, so that they do not disturb each other's times, except those of kind stability.
+// Compared runs run one at a time, so that they do not disturb each other's times, except those of kind
+// stability.
 static int threads_of(const work *w) {
     const bough_study *s = w->results.study;
     if (!s->is.parallel || w->n < 1) return 1;
@@ -94,7 +95,7 @@ static bool is_mine(const bough_study_options *o, int piece) {
     return o->parts == 0 || piece % o->parts == o->part - 1;
 }
 
-// Tables of an earlier state must not stand beside new results.
+// Older tables must not stay beside new results.
 static bough_status remove_tables(const char *folder) {
     static const char *const names[] = {"table.txt",  "table.csv",  "plot.svg",
                                         "cases.csv",  "costs.csv",  "equivalent.csv",
@@ -115,7 +116,7 @@ static bough_status read_results(bough_study_results *x) {
     return bough_ok();
 }
 
-// Runs it again where its result is there but not its series.
+// Runs the reference, also if its result is stored, since its series is not.
 static bough_status run_reference(work *w, int group, bough_study_drive *drive, bough_study_series *series) {
     const bough_study *s = w->results.study;
     const bough_case *cell = &s->reference_case[group];
@@ -174,8 +175,9 @@ static bough_status run_group(bough_arena *arena, work *w, int group) {
     return status;
 }
 
-// The reference is needed as long as a cell is missing. Of kind stability the groups are run in parallel,
-// each run on one thread, and a reference that fails leaves its cells without errors; else it ends the study.
+// A reference is run as long as one of its cells is missing. Groups of kind stability run in parallel, each
+// run on one thread, and cells of a failed reference have no errors; otherwise a failed reference ends the
+// study.
 static bough_status run_groups(bough_arena *arena, work *w) {
     bough_study_results *x = &w->results;
     const bough_study *s = x->study;
@@ -234,7 +236,7 @@ static bough_status check_name(bough_arena *arena, const bough_study *s, const c
                       bough_suggest(only, names, s->n_group).text);
 }
 
-// Those with the same turbulence one after the other.
+// Lists the cases to run, those with the same turbulence one after the other.
 static void list_cases(bough_arena *arena, work *w) {
     const bough_study *s = w->results.study;
     const bough_study_options *o = w->results.options;
@@ -271,7 +273,7 @@ static bough_status run_cases(bough_arena *arena, work *w) {
 
 // -- kinds ----------------------------------------------------------------------------------------
 
-// By bough_study_kind; without `run` the runs are not kept.
+// By bough_study_kind. Runs of a kind without `run` are not stored.
 static const struct {
     bough_status (*run)(bough_arena *arena, work *w);
     bough_study_conclude *conclude;

@@ -1,4 +1,4 @@
-// Compared runs: their differences, tables and work-precision diagram, and what is said of kind stability.
+// Compared runs: differences, tables and work-precision diagram, and the table of kind stability.
 #include "apps/bough/cases/perform.h"
 
 #include "apps/bough/results/folder.h"
@@ -18,7 +18,7 @@ bough_study_series bough_study_series_take(bough_arena *arena, const bough_study
     return series;
 }
 
-// The larger of the two; a NaN wins and stays.
+// The larger of the two; NaN if one of them is.
 static double larger(double a, double b) { return isnan(b) || b > a ? b : a; }
 
 // Norm of a − b (n); of a where b is NULL.
@@ -32,7 +32,7 @@ static double difference(const double *a, const double *b, int n, int norm) {
     return norm == BOUGH_STUDY_EUCLID ? sqrt(sum) : largest;
 }
 
-// The largest norm of the vectors of a measure in a row.
+// The largest norm among the vectors of a measure in one row.
 static double measured(const bough_study_measure *m, const double *a, const double *b) {
     double largest = 0;
     for (int k = 0, first = 0; k < m->channels.n_vector; first = m->channels.end[k++]) {
@@ -73,7 +73,7 @@ static void case_status(const bough_case_result *result, char text[40]) {
     }
 }
 
-// Rows before those of the cells.
+// Rows of the table before the cells.
 enum { HEAD = -2, REFERENCE = -1 };
 
 static const bough_case *cell_of(const bough_study *s, int row) {
@@ -88,7 +88,7 @@ static const bough_case_result *result_of(const bough_study_results *results, in
 
 enum { COLUMNS = BOUGH_STUDY_AXES + 2 * BOUGH_STUDY_MEASURES + 12, SHORT = 100 };
 
-// Of table.txt, or of table.csv with keys, all digits and more columns.
+// A line of table.txt, or of table.csv, which has keys, all digits and more columns.
 typedef struct line {
     bool csv;
     int n;
@@ -104,7 +104,7 @@ static void put(line *l, const char *format, ...) {
     va_end(arguments);
 }
 
-// Of the text not more than a column's width.
+// The text in table.txt is cut at the column's width.
 static void put_either(line *l, const char *csv, const char *text) {
     put(l, "%.*s", l->csv ? (int)sizeof *l->field : 40, l->csv ? csv : text);
 }
@@ -188,7 +188,7 @@ static void widen(const line *l, int width[COLUMNS]) {
     }
 }
 
-// The settings and the status stand left, numbers right.
+// Settings and status are aligned left, numbers right.
 static void print_line(const line *l, const int width[COLUMNS], int n_left, FILE *stream) {
     for (int i = 0; i < l->n; i++) {
         int pad = width[i] - bough_picture_letters(l->field[i]);
@@ -210,7 +210,7 @@ static void print_diagnosis(const char *settings, const bough_case_result *r, FI
     fprintf(stream, "failed: %s: %.*s%s\n", settings, (int)length, text, cut ? "..." : "");
 }
 
-// All fields are formatted once before to find the widest of each column.
+// The first pass finds the width of each column.
 static void print_text(const void *self, FILE *stream) {
     const bough_study_results *results = self;
     const bough_study *s = results->study;
@@ -271,12 +271,12 @@ static int along(const bough_study *s) { return s->grid.axis[s->grid.n - 1].valu
 
 static double cost(const bough_case_result *r) { return r->cpu / r->time; }
 
-// A run that equals the reference has no place on a logarithmic axis.
+// A run that equals the reference has no point on a logarithmic axis.
 static bool has_point(const bough_case_result *r, int measure) {
     return bough_held(r) && r->error[measure] > 0 && cost(r) > 0;
 }
 
-// The settings that distinguish a line from the others, and the runs of it that have no point.
+// The settings that distinguish a line from the others, and its runs without a point.
 static const char *line_name(bough_arena *arena, const bough_study_results *results, int curve) {
     const bough_study *s = results->study;
     int n = along(s), first = curve * n, last = s->grid.n - 1;
@@ -321,7 +321,8 @@ bough_status bough_precision_conclude(bough_arena *arena, const bough_study_resu
     return bough_ok();
 }
 
-// -- kind stability: a cell either held, with an error, or was stopped with a diagnosis ---------------
+// -- kind stability: a cell held, with an error, or stopped with a diagnosis ----------------------
+
 // Errors of the first measure below this may be those of the sub-solvers, which are not estimated.
 static const double large = 0.05;
 
@@ -330,7 +331,7 @@ static bool is_silent(const bough_case_result *r) {
     return !(r->error[0] <= 3 * r->estimate[0]) && r->error[0] > large;
 }
 
-// "[1, 2, 3]" is shown by its first.
+// "[1, 2, 3]" is shown as "1".
 static void shorten(const char *value, char text[24]) {
     snprintf(text, 24, "%s", value + (value[0] == '['));
     text[strcspn(text, ",]")] = '\0';
@@ -347,8 +348,8 @@ static void print_row_name(const bough_study *s, const bough_case *cell, FILE *f
     fprintf(f, "\n%-40.40s", text);
 }
 
-// "1.2e-03", with ! after a warning before the run and ? where it is silent; the time reached where it
-// stopped.
+// "1.2e-03", with ! after a warning before the run and ? if it is silent; of a stopped run the time that it
+// reached.
 static void print_cell(const bough_case_result *r, FILE *f) {
     char text[24] = "held";
     if (!bough_held(r)) {
@@ -359,7 +360,7 @@ static void print_cell(const bough_case_result *r, FILE *f) {
     fprintf(f, " %8s%s", text, is_silent(r) ? "?" : " ");
 }
 
-// A row for each combination of the settings before the last, which runs along it.
+// A row for each combination of all settings but the last, which varies along the row.
 static void print_map(const bough_study_results *x, FILE *f) {
     const bough_study *s = x->study;
     const bough_study_axis *across = &s->grid.axis[s->grid.n - 1];

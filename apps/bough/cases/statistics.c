@@ -7,9 +7,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { PANELS = 6, VALUES = 3 }; // channels in plot.svg; least, largest and mean of each
+enum { PANELS = 6, VALUES = 3 }; // channels in plot.svg; minimum, maximum and mean of each
 
-// What is kept of each case for costs.csv and plot.svg; NaN in the mean where it failed.
+// Data of a case for costs.csv and plot.svg; its mean is NaN if it failed.
 typedef struct note {
     double simulated, cpu, wall; // [s]
     double shown[PANELS][VALUES];
@@ -17,7 +17,7 @@ typedef struct note {
     const char *warnings; // likewise
 } note;
 
-// The tables and what they are made of.
+// The tables and their data.
 typedef struct conclusion {
     const bough_study *study;
     const char *folder;
@@ -147,7 +147,7 @@ static bough_status write_lifetime(const bough_lifetime *l, const char *folder) 
 
 // -- table.txt -----------------------------------------------------------------------------------
 
-// An error that is not known is a dash.
+// An unknown error is printed as a dash.
 static void print_error(FILE *f, double error) {
     if (isfinite(error))
         fprintf(f, " %9.2g", error);
@@ -194,7 +194,7 @@ static void print_lifetime(const bough_lifetime *l, FILE *f) {
             l->hours, s->lifetime, s->cycles);
     if (l->n_failed + l->n_missing > 0) {
         fprintf(f, "INCOMPLETE: %d case%s failed, %d missing, %.3g %% of the weight is missing\n",
-                l->n_failed, l->n_failed == 1 ? "" : "s", l->n_missing, 100 * l->lacking);
+                l->n_failed, l->n_failed == 1 ? "" : "s", l->n_missing, 100 * l->missing);
     }
     int compared = l->n_compared[s->n_group];
     if (compared > 0)
@@ -218,7 +218,7 @@ static void print_lifetime(const bough_lifetime *l, FILE *f) {
 
 // -- plot.svg -------------------------------------------------------------------------------------
 
-// The value of the grid's first key as a number; its place in the list where it is none.
+// The value of the grid's first key as a number; its index if it is no number.
 static double across_of(const bough_study *s, int number) {
     const bough_study_axis *axis = &s->grid.axis[0];
     int i = s->cases[number].index[0];
@@ -232,7 +232,7 @@ static void add_panel(bough_chart *chart, const bough_study *s, int i, const cha
     bough_chart_add_panel(chart, heading, across, logarithmic, false);
 }
 
-// Sweeps: mean, least and largest value of channels over the first key of the grid.
+// Sweeps: mean, minimum and maximum of channels over the first key of the grid.
 static void plot_sweep(bough_chart *chart, const bough_study *s, const note *notes) {
     for (int k = 0; k < s->n_channel && k < PANELS; k++) {
         add_panel(chart, s, k, s->grid.axis[0].label, false);
@@ -248,7 +248,7 @@ static void plot_sweep(bough_chart *chart, const bough_study *s, const note *not
     }
 }
 
-// Load sets: ranges of channels over how often they are exceeded in the lifetime.
+// Load sets: ranges of channels over the number of cycles in the lifetime that reach them.
 static void plot_ranges(bough_chart *chart, const bough_lifetime *l) {
     for (int i = 0; i < l->study->n_channel && i < PANELS; i++) {
         const bough_levels *r = &l->channel[i].ranges;
@@ -265,7 +265,7 @@ static void plot_ranges(bough_chart *chart, const bough_lifetime *l) {
 
 // -- failures ---------------------------------------------------------------------------------------
 
-// A piece of text, quoted for a shell where it must be.
+// A word of a command line, quoted for the shell if necessary.
 static void quote(FILE *f, const char *text) {
     if (!strpbrk(text, " \t\"'\\$`&|;<>()[]{}*?#~!")) {
         fputs(text, f);
@@ -315,7 +315,8 @@ static void keep(bough_arena *arena, const bough_study *s, const bough_case_resu
     }
 }
 
-// Reads the results one after the other into cases.csv and the conclusion: their number costs little memory.
+// Reads one result after the other into cases.csv and the conclusion, so that many results take little
+// memory.
 static bough_status read_all(bough_arena *arena, conclusion *c) {
     const bough_study *s = c->study;
     bough_case_result result = bough_case_take(arena, s);
@@ -392,7 +393,7 @@ static bough_status judge(const bough_study_results *x, const bough_lifetime *l)
     return bough_fail(BOUGH_FAILED,
                       "%d of %d cases failed: the lifetime result is incomplete, %.3g %% of its "
                       "weight is missing",
-                      l->n_failed, x->study->n_case, 100 * l->lacking);
+                      l->n_failed, x->study->n_case, 100 * l->missing);
 }
 
 static bough_status conclude_in(bough_arena *arena, const bough_study_results *x) {
@@ -408,7 +409,7 @@ static bough_status conclude_in(bough_arena *arena, const bough_study_results *x
     return judge(x, &c.lifetime);
 }
 
-// A part, and a call that leaves cases to others, has no tables.
+// There are no tables as long as cases are missing, nor after a part.
 bough_status bough_statistics_conclude(bough_arena *arena, const bough_study_results *x) {
     int missing = bough_study_missing(x, -1), n = x->study->n_case;
     FILE *f = x->options->stream;

@@ -15,7 +15,7 @@
 
 typedef char case_name[24];
 
-// Compared runs are named by their fingerprint, since a grid may grow; other cases by their number.
+// Compared runs are named by their fingerprints, since a grid may grow; other cases by their numbers.
 static void name_of(const bough_study *s, const bough_case *c, case_name name) {
     if (s->is.compared)
         snprintf(name, sizeof(case_name), "%016" PRIx64, c->fingerprint);
@@ -37,14 +37,14 @@ bough_status bough_store_open(const char *folder) {
 
 // -- rows -----------------------------------------------------------------------------------------
 
-// A file of rows that is written, or read in the same order.
+// A file of rows, which is written, or read in the same order.
 typedef struct rows {
     FILE *file;
     bool reads;
     bool good; // all rows so far are there
 } rows;
 
-// A row of a word and a text, in one line.
+// Writes a row of a word and a text, in one line.
 static void put_text(FILE *stream, const char *word, const char *text) {
     fprintf(stream, "%s ", word);
     for (const char *c = text; *c; c++) fputc(*c == '\n' || *c == '\r' ? ' ' : *c, stream);
@@ -56,7 +56,7 @@ static bool take_word(FILE *stream, const char *word) {
     return fscanf(stream, "%31s", found) == 1 && strcmp(found, word) == 0;
 }
 
-// A row of a word and n numbers.
+// Writes or reads a row of a word and n numbers.
 static void move(rows *r, const char *word, int n, double *x) {
     if (!r->reads) {
         fputs(word, r->file);
@@ -68,7 +68,7 @@ static void move(rows *r, const char *word, int n, double *x) {
     for (int i = 0; i < n && r->good; i++) r->good = fscanf(r->file, "%lf", &x[i]) == 1;
 }
 
-// A row of a word and a text of less than `size` bytes.
+// Writes or reads a row of a word and a text of less than `size` bytes.
 static void move_text(rows *r, const char *word, char *text, int size) {
     if (!r->reads) {
         put_text(r->file, word, text);
@@ -84,7 +84,7 @@ static void move_text(rows *r, const char *word, char *text, int size) {
 
 // -- statistics -----------------------------------------------------------------------------------
 
-// A range of bins from a file that may be damaged.
+// Takes a range of bins from a file that may be damaged.
 static bool take_range(const double range[4], bough_levels *l) {
     for (int i = 0; i < 4; i++)
         if (!(fabs(range[i]) < 1e15)) return false;
@@ -136,7 +136,7 @@ static void move_error(rows *r, const bough_study *s, bough_load_error *e) {
 
 // -- a result -------------------------------------------------------------------------------------
 
-// The settings are for people.
+// The settings are written for the reader of the file only.
 static void move_settings(rows *r, const char *settings) {
     if (!r->reads) put_text(r->file, "settings", settings);
     for (int byte = 0; r->reads && byte != '\n' && byte != EOF;) byte = fgetc(r->file);
@@ -188,7 +188,7 @@ static bool take_head(FILE *f, const case_name name, uint64_t fingerprint, bough
     return strcmp(word, name) == 0 && found == fingerprint;
 }
 
-// Opens the file behind its head; *file is NULL when there is none or it is of other input.
+// Opens a result after its head; *file is NULL if there is none or it belongs to other input.
 static bough_status open_case(const char *folder, const case_name name, const bough_case *c,
                               bough_status *outcome, FILE **file) {
     char path[BOUGH_PATH_MAX], why[BOUGH_INPUT_REASON];

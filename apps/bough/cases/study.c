@@ -90,8 +90,7 @@ static const bough_schema study_schema = {.name = "a study", .check = check_stud
      .help = "work-precision: time and error of every cell of the grid against one reference; "
              "timing: cost of the cells, measured alternately; stability: table of errors and "
              "diagnoses, each cell against a reference with the same model parameters; sweep: "
-             "statistics of every cell; load-set: lifetime loads of weighted cases (both: "
-             "docs/loads.md)"},
+             "statistics of every cell; load-set: lifetime loads of weighted cases (both: docs/loads.md)"},
     {KEY(CUSTOM, reference), SETTINGS, .required = true, .help = "replaced keys of the reference run"},
     {KEY(CUSTOM, grid), GRID, .required = true, .help = "one run for each combination of the values"},
     {KEY(CUSTOM, common), SETTINGS, .help = "replaced keys of every run"},
@@ -130,7 +129,7 @@ static const bough_schema group_schema = {.name = "a load case", .check = check_
     {KEY(CUSTOM, set), SETTINGS, .help = "replaced keys of its cases"},
     {KEY(CUSTOM, grid), GRID, .help = "one case for each combination of the values; default one case"},
     {KEY(NUMBER, weibull), .range = "[0, 1]", .fallback = "0", .example = "0.95",
-     .help = "share of all hours, distributed over the values of aero.wind.speed"},
+     .help = "fraction of all hours, distributed over the values of aero.wind.speed"},
     {KEY(NUMBER, hours), .range = ">= 0", .fallback = "0", .example = "50",
      .help = "hours in a year, of all its cases together"},
     {KEY(NUMBER, events), .range = ">= 0", .fallback = "0", .example = "1000",
@@ -256,7 +255,7 @@ static bool find_scene(bough_arena *arena, bough_study *s, bough_errors *errors)
     return true;
 }
 
-// One error for a scene that is read as a study, in place of one for each of its keys.
+// A scene that is read as a study gives one error, not one for each of its keys.
 static bool is_scene(const char *path, const bough_node *root, bough_errors *errors) {
     const bough_node *bodies = bough_node_find(root, "bodies");
     if (!bodies || bough_node_find(root, "kind")) return false;
@@ -265,7 +264,7 @@ static bool is_scene(const char *path, const bough_node *root, bough_errors *err
     return true;
 }
 
-// The kinds, by bough_study_kind. One that is not known is an error of the first one's key.
+// The kinds, by bough_study_kind. An unknown kind is reported by the keys of the first.
 static const struct {
     const char *word;
     const bough_schema *schema;
@@ -285,7 +284,7 @@ static int find_kind(const bough_node *root) {
     return k;
 }
 
-// A study without load cases is one.
+// A study without load cases has one group.
 static void make_group(bough_arena *arena, bough_study *s) {
     s->group = bough_arena_take(arena, sizeof *s->group);
     s->n_group = 1;

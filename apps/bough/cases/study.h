@@ -1,7 +1,6 @@
-// A study: the runs of one scene or more and what is asked of them, checked down to the last run's settings
-// before the first run starts. Runs are compared with a reference, or have statistics of their channels;
-// those of a load set also have load cycles, load levels and extremes, weighted by the number of times that a
-// case occurs in the turbine's lifetime.
+// A study: runs of one or more scenes, all of which are checked before the first run starts. Runs are
+// compared with a reference, or statistics of their channels are computed; of a load set also load cycles,
+// load levels and extremes, weighted by the number of occurrences of each case in the turbine's lifetime.
 //
 // All memory belongs to the arena given to bough_study_read. Every struct begins with its place in
 // the text.
@@ -26,11 +25,11 @@ typedef enum bough_study_kind {
     BOUGH_STUDY_LOAD_SET,
 } bough_study_kind;
 
-// What a kind asks of its runs.
+// What distinguishes the kinds.
 typedef struct bough_study_traits {
-    bool compared; // each with a reference; else each has statistics of its channels
-    bool parallel; // several at a time, each on one thread, or in parts
-    bool weighted; // loads of a lifetime
+    bool compared; // each run is compared with a reference; otherwise it has statistics of its channels
+    bool parallel; // runs are simultaneous, each on one thread, and may be divided into parts
+    bool weighted; // loads over a lifetime
 } bough_study_traits;
 
 // A replacement in the scene.
@@ -46,7 +45,7 @@ typedef struct bough_study_settings {
     bough_study_setting *item; // (n)
 } bough_study_settings;
 
-// A key of the grid with the values it takes.
+// A key of the grid with its values.
 typedef struct bough_study_axis {
     const bough_node *node; // of the key
     const char *key;
@@ -59,64 +58,63 @@ typedef struct bough_study_grid {
     bough_study_axis *axis; // (n)
 } bough_study_grid;
 
-// Channels whose differences form vectors.
+// Channels as components of vectors.
 typedef struct bough_study_vectors {
     int n_channel, n_vector;
-    const char **channel; // (n_channel) of one vector after the other
-    int *end;             // (n_vector) behind each one's last channel
+    const char **channel; // (n_channel) vector after vector
+    int *end;             // (n_vector) index after the last channel of each
 } bough_study_vectors;
 
 typedef enum bough_study_norm { BOUGH_STUDY_EUCLID, BOUGH_STUDY_LARGEST } bough_study_norm;
 
-// Largest difference to the reference over the run: of a vector by its norm, of several vectors
-// the largest.
+// Largest difference to the reference over the run: the norm of a vector, the largest of several vectors.
 typedef struct bough_study_measure {
     const bough_node *node;
     const char *name;
-    const char *channel; // as written; contained in `channels`
+    const char *channel; // as written; copied to `channels`
     bough_study_vectors channels;
     int norm;         // bough_study_norm
     double scale;     // from the channels' unit to `unit`
-    const char *unit; // of the scaled difference; the channels' own unless given
+    const char *unit; // of the scaled difference; by default the channels' unit
 } bough_study_measure;
 
-// Cases of one kind, a design load case: a grid of settings.
+// A design load case: a grid of settings.
 typedef struct bough_load_group {
     const bough_node *node;
     const char *name;
-    const char *scene_name; // in place of the set's; NULL: that
+    const char *scene_name; // replaces that of the set; NULL: it does not
     bough_study_settings set;
     bough_study_grid grid;
-    // How often: one of these, or none for extremes alone.
-    double weibull;    // share of all hours, spread over the speeds of the grid; 0: not
-    double hours;      // a year, of all cases together; 0: not
-    double events;     // a year, of all cases together; 0: not
+    // occurrence: one of these, or none if only extremes count
+    double weibull;    // fraction of all hours, distributed over the speeds of the grid; 0: none
+    double hours;      // in a year, of all cases together; 0: none
+    double events;     // in a year, of all cases together; 0: none
     double factor;     // partial safety factor of extreme loads
-    double favourable; // of those that relieve: the largest below zero, the smallest above
-    bool extremes;     // whether they count
+    double favourable; // factor of a maximum below zero and a minimum above zero
+    bool extremes;     // its extremes count
 } bough_load_group;
 
 typedef struct bough_load_wind {
     const bough_node *node;
-    double average; // of the year at hub height [m/s]
-    double shape;   // of Weibull's distribution; 2: Rayleigh's
+    double average; // yearly mean at hub height [m/s]
+    double shape;   // of the Weibull distribution; 2: Rayleigh distribution
 } bough_load_wind;
 
 // One run of the study.
 typedef struct bough_case {
     int group;
-    int index[BOUGH_STUDY_AXES]; // of its value on each axis of the group; −1 where a reference has none
+    int index[BOUGH_STUDY_AXES]; // of its value on each axis of the group; −1: a reference has none
     const char *scene;           // path
     int n_set;
     const char **set;                    // (n_set) replacements in the scene
-    const bough_study_setting **setting; // (n_set) of the study's text that each of them is; NULL: of none
-    const char *settings; // those that distinguish it from the others, "scheme=ramp, macro_step=5 ms"
-    int reference;        // to compare with
-    double share;         // of its group's hours or events
-    int next;             // of those with the same turbulence, to be run after it; −1: none
-    bool follows;         // another one with the same turbulence
-    uint64_t files;       // fingerprint of the scene's files, which must stay as they are; 0: may change
-    uint64_t fingerprint; // of all that its result depends on
+    const bough_study_setting **setting; // (n_set) where the study has each of them; NULL: nowhere
+    const char *settings; // the settings that distinguish it from the others, "scheme=ramp, macro_step=5 ms"
+    int reference;        // number of the reference that it is compared with
+    double fraction;      // of its group's hours or events
+    int next;             // next case with the same turbulence, to be run after it; −1: none
+    bool follows;         // it is run after another case with the same turbulence
+    uint64_t files; // fingerprint of the scene's files, which must not change during the study; 0: they may
+    uint64_t fingerprint; // of everything that its result depends on
 } bough_case;
 
 typedef struct bough_study {
@@ -126,8 +124,8 @@ typedef struct bough_study {
     int kind; // bough_study_kind
     bough_study_traits is;
     bough_study_settings common;
-    bough_study_grid grid; // of a load set each group has its own
-    int threads;           // 0: as the scene says; of parallel runs as many as processors
+    bough_study_grid grid; // of a load set: see its groups
+    int threads;           // 0: those of the scene; with simultaneous runs as many as processors
 
     // of compared runs
     bough_study_settings reference;
@@ -136,36 +134,36 @@ typedef struct bough_study {
     int repeat;                   // runs of each case; times are their medians
 
     // of statistics
-    double from; // what is before it is left out [s]
-    bool series; // every case keeps its channels
+    double from; // start of the statistics [s]
+    bool series; // each case writes its channels
     int n_wanted;
-    const char **wanted; // (n_wanted) channels; none: all
+    const char **wanted; // (n_wanted) channels; 0: all
 
     // of a lifetime
     int n_slope;
     double *slope;   // (n_slope) exponents of the S-N curves
     double cycles;   // of the equivalent loads
     double lifetime; // [years]
-    int companions;  // every so many cases, from the first on, have a companion; 0: none
+    int companions;  // every n-th case, from the first on, has a companion; 0: none
     bough_load_wind wind;
     int n_group;
-    bough_load_group *group; // (n_group); one of all cases where there are no load cases
+    bough_load_group *group; // (n_group) load cases; of other studies one group of all cases
 
     // by bough_study_expand
-    int n_reference;            // 1; of kind stability one for each combination of the model's parameters
+    int n_reference;            // 1; of kind stability one for each combination of the model parameters
     bough_case *reference_case; // (n_reference)
     int n_case;
-    bough_case *cases; // (n_case) by group, in it the last axis runs fastest
+    bough_case *cases; // (n_case) group after group, the last axis varies fastest
 
     // by bough_study_check, common to all runs
-    double duration, interval; // of compared runs [s] interval: between the common output times
+    double duration, interval; // of compared runs; interval: between the common output times [s]
     int n_channel;
-    const char **channel;       // (n_channel) of all measures in their order, or those that are kept
-    const char **unit;          // (n_channel) of those that are kept
+    const char **channel;       // (n_channel) of all measures in their order, or those of the statistics
+    const char **unit;          // (n_channel) of those of the statistics
     bough_schema_shared *files; // of the scenes, each read once
 } bough_study;
 
-// Reads a study and checks it with every scene that its runs see. `threads` replaces the scene's
+// Reads a study and checks it with the scenes of all its runs. `threads` replaces the scene's number
 // unless 0. Every error found is added to `errors`; then the status is BOUGH_INVALID and *study is
 // NULL.
 bough_status bough_study_read(bough_arena *arena, const char *path, int threads, bough_errors *errors,
@@ -175,13 +173,13 @@ bough_status bough_study_read(bough_arena *arena, const char *path, int threads,
 void bough_study_help(FILE *stream);
 void bough_study_json_schema(FILE *stream);
 
-// A scene's path from that of the study which names it.
+// The path of a scene that a study names relative to itself.
 const char *bough_study_path(bough_arena *arena, const char *study, const char *scene);
 
-// The value of a grid key in a case; for the reference what its replacements say, "" if nothing.
+// The value of a grid key in a case; in a reference that of its replacements, "" if they have none.
 const char *bough_study_value(const bough_study *study, const bough_case *c, int axis);
 
-// The values of the other keys that have several: "ramp, 5 ms".
+// The values of all other keys that have several: "ramp, 5 ms".
 const char *bough_grid_others(bough_arena *arena, const bough_study *study, const bough_case *c, int axis);
 
 // Whether a case is a reference of the study.
@@ -189,15 +187,15 @@ static inline bool bough_is_reference(const bough_study *study, const bough_case
     return c >= study->reference_case && c < study->reference_case + study->n_reference;
 }
 
-// How many times the case's run occurs in the lifetime, of which `counted` seconds were counted;
-// 0: no fatigue.
+// Number of occurrences of a case's run, of which `counted` seconds are counted, in the lifetime; 0: it does
+// not count for fatigue.
 double bough_case_weight(const bough_study *study, const bough_case *c, double counted);
 
 // -- reading a study ------------------------------------------------------------------------------
 
 // What the files that read a study share among themselves.
 
-// The study and its cases as the text says, without a look at the scenes; NULL after an error.
+// The study and its cases, without its scenes; NULL after an error.
 bough_study *bough_study_parse(bough_arena *arena, const char *path, const bough_node *root,
                                bough_errors *errors);
 
@@ -205,8 +203,8 @@ bough_study *bough_study_parse(bough_arena *arena, const char *path, const bough
 void bough_study_read_settings(bough_schema_reader *r, const bough_node *node, void *field);
 void bough_study_read_grid(bough_schema_reader *r, const bough_node *node, void *field);
 
-// The number of a grid's combinations, at most BOUGH_MOST_CASES + 1; the places on the axes of the
-// combination `number`, the last axis runs fastest; and these as text, "scheme=ramp, macro_step=5 ms".
+// The number of combinations of a grid, at most BOUGH_MOST_CASES + 1; the indices on the axes of combination
+// `number`, the last axis varies fastest; and these as text, "scheme=ramp, macro_step=5 ms".
 int bough_grid_count(const bough_study_grid *grid);
 void bough_grid_place(const bough_study_grid *grid, int number, int *index);
 const char *bough_grid_settings(bough_arena *arena, const bough_study_grid *grid, const int *index);

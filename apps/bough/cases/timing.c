@@ -8,7 +8,7 @@
 #include <string.h>
 
 typedef struct cell_times {
-    double wall[BOUGH_STUDY_REPEATS], cpu[BOUGH_STUDY_REPEATS], ratio[BOUGH_STUDY_REPEATS]; // per turn
+    double wall[BOUGH_STUDY_REPEATS], cpu[BOUGH_STUDY_REPEATS], ratio[BOUGH_STUDY_REPEATS]; // in each round
     double error[BOUGH_STUDY_MEASURES]; // against the reference
 } cell_times;
 
@@ -27,21 +27,21 @@ static bough_status run(timing *t, const bough_case *cell, bough_study_drive *dr
     return result->outcome;
 }
 
-// Every run writes all channels, as `bough run` does. Errors do not depend on the turn: the bits of all turns
-// are the same.
-static bough_status take_turn(timing *t, int turn) {
+// Each run writes all channels, as `bough run` does. Errors are taken from the first round: all rounds give
+// the same bits.
+static bough_status run_round(timing *t, int round) {
     bough_study_drive drive = {.stop = t->options->stop, .folder = t->options->folder};
     for (int i = 0; i < t->study->n_case; i++) {
         bough_case_result result = {0};
         BOUGH_TRY(run(t, &t->study->cases[i], &drive, &t->series, &result));
-        t->cell[i].wall[turn] = result.wall;
-        t->cell[i].cpu[turn] = result.cpu;
-        if (turn == 0) bough_study_compare(t->study, &t->series, &t->reference, t->cell[i].error);
+        t->cell[i].wall[round] = result.wall;
+        t->cell[i].cpu[round] = result.cpu;
+        if (round == 0) bough_study_compare(t->study, &t->series, &t->reference, t->cell[i].error);
     }
-    // against the cell with the first value of the last axis and the same values of all others
+    // relative to the cell with the first value of the last axis and the same values of all others
     for (int i = 0; i < t->study->n_case; i++) {
         int first = i - t->study->cases[i].index[t->study->grid.n - 1];
-        t->cell[i].ratio[turn] = t->cell[first].wall[turn] / t->cell[i].wall[turn];
+        t->cell[i].ratio[round] = t->cell[first].wall[round] / t->cell[i].wall[round];
     }
     return bough_ok();
 }
@@ -53,7 +53,8 @@ static bough_status run_all(timing *t) {
     drive.progress.label = "reference";
     bough_status status = run(t, t->study->reference_case, &drive, &t->reference, &reference);
     bough_progress_clear(&drive.progress);
-    for (int turn = 0; turn < t->study->repeat && bough_is_ok(&status); turn++) status = take_turn(t, turn);
+    for (int round = 0; round < t->study->repeat && bough_is_ok(&status); round++)
+        status = run_round(t, round);
     return status;
 }
 
@@ -62,10 +63,10 @@ static bough_status run_all(timing *t) {
 static void print_times(const void *self, FILE *f) {
     const timing *t = self;
     const bough_study *s = t->study;
-    fprintf(f,
-            "%s\n%d turns: medians, quartiles in brackets; ratio: wall time of the first %s to the "
-            "cell's\n\n",
-            s->title ? s->title : s->file, s->repeat, s->grid.axis[s->grid.n - 1].label);
+    fprintf(
+        f,
+        "%s\n%d rounds: medians, quartiles in brackets; ratio: wall time of the first %s to the cell's\n\n",
+        s->title ? s->title : s->file, s->repeat, s->grid.axis[s->grid.n - 1].label);
     fprintf(f, "%-52s %9s %9s %17s %21s", "", "cpu [s]", "wall [s]", "x real time", "ratio");
     for (int m = 0; m < s->n_measure; m++) {
         fprintf(f, "  %s [%s]", s->measure[m].name, s->measure[m].unit);
@@ -90,7 +91,7 @@ static void print_times(const void *self, FILE *f) {
 static void write_csv(const void *self, FILE *f) {
     const timing *t = self;
     const bough_study *s = t->study;
-    fprintf(f, "settings,turn,cpu (s),wall (s),ratio\n");
+    fprintf(f, "settings,round,cpu (s),wall (s),ratio\n");
     for (int i = 0; i < s->n_case; i++) {
         for (int k = 0; k < s->repeat; k++) {
             bough_csv_text(f, s->cases[i].settings);
@@ -102,14 +103,14 @@ static void write_csv(const void *self, FILE *f) {
 
 // -- plot.svg: CPU time over the numbers of each axis -----------------------------------------------
 
-// 0: none, or one with a unit.
+// A value as a pure number; 0: it is none.
 static double number_of(const bough_study_axis *axis, int k) {
     char *end;
     double number = strtod(axis->value.item[k].value, &end);
     return *end == '\0' ? number : 0;
 }
 
-// Cells from one value of the axis to the next.
+// Number of cells between neighbouring values of the axis.
 static int stride_of(const bough_study *s, int axis) {
     int stride = 1;
     for (int k = axis + 1; k < s->grid.n; k++) stride *= s->grid.axis[k].value.n;
@@ -126,8 +127,8 @@ static double cpu_of(const timing *t, int cell) {
     return bough_spread_of(t->cell[cell].cpu, t->study->repeat).median;
 }
 
-// The line from a cell along the axis; at its end the values of the other axes, and the exponent between its
-// ends.
+// The line from a cell along the axis, labelled with the values of the other axes and the exponent of its
+// growth.
 static void add_growth(bough_arena *arena, const timing *t, int first, int axis, int colour,
                        bough_chart *chart) {
     const bough_study *s = t->study;

@@ -1,4 +1,4 @@
-// Which settings are tried, and which of them are chosen.
+// The search for the fastest settings that meet an error.
 #include "apps/bough/cases/tune.h"
 
 #include "apps/bough/cases/case_run.h"
@@ -11,7 +11,7 @@
 
 // -- the scene ------------------------------------------------------------------------------------
 
-// A load at a vertex, the pieces of a modal body: the number of segments is then the scene's.
+// Whether the rod keeps the scene's number of segments: with a load at a vertex, or with modal pieces.
 static bool is_kept(const bough_scene *scene, int body) {
     if (scene->body[body].fidelity == BOUGH_SCENE_SEGMENTED_MODAL) return true;
     for (int k = 0; k < scene->n_load; k++) {
@@ -21,14 +21,14 @@ static bool is_kept(const bough_scene *scene, int body) {
     return false;
 }
 
-// Fewer save little, and errors do not fall with the order of the mesh.
+// With fewer segments a run is hardly faster, and errors do not fall with the order of the mesh.
 enum { FEW_SEGMENTS = 10 };
 
 int bough_tune_segments(const bough_scene *scene, int body, const bough_tune_settings *settings) {
     const bough_scene_body *b = &scene->body[body];
     if (!bough_scene_has_mesh(b)) return 0;
     if (settings->own || is_kept(scene, body)) return b->rod.n_segment;
-    double n = settings->mesh * b->rod.n_segment, lanes = n > 12 ? 4 : 2; // segments are worked on in lanes
+    double n = settings->mesh * b->rod.n_segment, lanes = n > 12 ? 4 : 2; // segments are computed in lanes
     return (int)fmax(lanes * round(n / lanes), fmin(b->rod.n_segment, FEW_SEGMENTS));
 }
 
@@ -52,7 +52,7 @@ static void apply(const bough_tune_state *t, const bough_tune_settings *s, bough
             if (n > 0) scene->body[i].rod.n_segment = n;
         }
     }
-    double pair = 2 * simulation->macro_step; // the companion takes two at once
+    double pair = 2 * simulation->macro_step; // the companion's step is twice as long
     simulation->duration = pair * fmax(1, round(t->options->span / pair));
     simulation->threads = 1;
     simulation->error_bound = 0;
@@ -65,7 +65,7 @@ static void apply(const bough_tune_state *t, const bough_tune_settings *s, bough
 typedef struct measurement {
     const bough_tune_state *tune;
     bough_tune_point *point;
-    bool estimate, shares;
+    bool estimate, separate;
 } measurement;
 
 static double worst(const bough_companion *c, bool motion, const double *error, char name[32]) {
@@ -74,7 +74,8 @@ static double worst(const bough_companion *c, bool motion, const double *error, 
     return v.channel < 0 ? 0 : v.relative;
 }
 
-// Forces and moments contain vibrations that hardly move anything: four times the error of motions.
+// Forces and moments contain vibrations that hardly move anything: they may have four times the error of
+// motions.
 static double together(double motion, double force) { return fmax(motion, 0.25 * force); }
 
 static bough_status take_errors(const measurement *m, bough_arena *arena, bough_companion *c) {
@@ -84,15 +85,15 @@ static bough_status take_errors(const measurement *m, bough_arena *arena, bough_
     p->force = worst(c, false, c->error, NULL);
     p->error = together(p->motion, p->force);
     if (!isfinite(p->error)) return bough_fail(BOUGH_FAILED, "the error of %s has no bound", p->channel);
-    if (!m->shares) return bough_ok();
+    if (!m->separate) return bough_ok();
     bough_error_shares shares;
     bough_status status = bough_error_shares_find(arena, c, m->tune->options->stop, &shares);
     for (int k = 0; k < BOUGH_SHARES && bough_is_ok(&status); k++) {
         const double *error = shares.share[k].largest;
         if (!shares.share[k].unknown[0])
-            p->share[k] = together(worst(c, true, error, NULL), worst(c, false, error, NULL));
+            p->part[k] = together(worst(c, true, error, NULL), worst(c, false, error, NULL));
     }
-    p->shared = bough_is_ok(&status);
+    p->separate = bough_is_ok(&status);
     return status;
 }
 
@@ -116,13 +117,13 @@ static bough_status run_in(bough_arena *arena, void *self) {
     return bough_ok();
 }
 
-// A run that fails is an outcome of the point. BOUGH_INTERRUPTED by the options' stop.
+// A failed run is an outcome of the point. BOUGH_INTERRUPTED by the options' stop.
 static bough_status perform(measurement m) {
     m.point->outcome = bough_arena_use(run_in, &m);
     return bough_ends_study(m.point->outcome.code) ? m.point->outcome : bough_ok();
 }
 
-// Runs it again, without an estimate of the error, and takes the lesser CPU time.
+// Runs the point without an estimate of the error and keeps the shortest CPU time.
 static bough_status measure_time(const bough_tune_state *t, bough_tune_point *point) {
     return perform((measurement){t, point, false, false});
 }
@@ -141,7 +142,7 @@ static bool beats(const bough_tune_state *t, const bough_tune_point *a, const bo
     return meets ? a->cpu < b->cpu : a->error < b->error;
 }
 
-// Notes the front and the chosen point.
+// Marks the Pareto front and the chosen point.
 static void choose(bough_tune_state *t) {
     t->chosen = -1;
     for (int i = 0; i < t->n; i++) {
@@ -182,13 +183,13 @@ static void set_rate(const bough_tune_state *t, double rate, bough_tune_settings
     if (rate > 0) s->rate = 1 / period_up_to(t->scene, fmin(1 / rate, longest_period), &s->macro_step);
 }
 
-// A part of the macro step, at most `step`: steps end where it does.
+// A fraction of the macro step, at most `step`: steps end where macro steps end.
 static void set_step(double step, bough_tune_settings *s) {
     double parts = ceil(s->macro_step / step - 0.1);
     s->step = parts > 1 ? s->macro_step / parts : 0;
 }
 
-static bool near(double a, double b, double share) { return fabs(a - b) <= share * fmax(a, b); }
+static bool near(double a, double b, double relative) { return fabs(a - b) <= relative * fmax(a, b); }
 
 static bool same(const bough_tune_state *t, const bough_tune_settings *a, const bough_tune_settings *b) {
     bool equal = a->scheme == b->scheme && a->solver == b->solver &&
@@ -202,9 +203,9 @@ static bool same(const bough_tune_state *t, const bough_tune_settings *a, const 
 
 // -- trying ---------------------------------------------------------------------------------------
 
-// Runs the stretch with settings that were not run before: its errors, with `shares` their shares, and its
-// CPU time. *at: their point, −1 where there is no room.
-static bough_status try(bough_tune_state *t, const bough_tune_settings *s, bool shares, int *at) {
+// Runs new settings and finds errors, with `separate` also those of mesh, air and time, and CPU time. *at:
+// their point, −1 if there is no room.
+static bough_status try(bough_tune_state *t, const bough_tune_settings *s, bool separate, int *at) {
     *at = -1;
     for (int i = 0; i < t->n; i++) {
         if (same(t, s, &t->point[i].settings)) *at = i;
@@ -213,37 +214,37 @@ static bough_status try(bough_tune_state *t, const bough_tune_settings *s, bool 
     *at = t->n++;
     bough_tune_point *p = &t->point[*at];
     *p = (bough_tune_point){.settings = *s, .outcome = bough_ok()};
-    bough_status status = perform((measurement){t, p, true, shares});
+    bough_status status = perform((measurement){t, p, true, separate});
     if (bough_is_ok(&status) && bough_is_ok(&p->outcome)) status = measure_time(t, p);
     choose(t);
     if (bough_is_ok(&status)) bough_tune_print(t, *at, t->options->stream);
     return status;
 }
 
-// -- guided by shares -----------------------------------------------------------------------------
+// -- all settings at once -------------------------------------------------------------------------
 
 enum { MESH, AIR, TIME, PARTS, ROUNDS = 5 };
 // Order of each part's error, and how many times finer or coarser it may become in one round.
 static const double order[PARTS] = {2, 3, 1}, most[PARTS] = {1.6, 2, 20};
 static const double order_of_step = 3;
-static const double margin = 0.85;                      // of the error that is aimed at
-static const double close_to = 0.7;                     // of it: no further round is needed
-static const double hardly_less = 0.9, much_more = 1.5; // than the round before
+static const double margin = 0.85;                      // of the error bound, aimed at
+static const double close_to = 0.7;                     // of the bound: no further round is needed
+static const double hardly_less = 0.9, much_more = 1.5; // than in the previous round
 
-// Each part's factor: what brings its share to an equal part of the error. Shares belong to channels of their
-// own, and to a coarser run, so their sum is more than the error.
-static void follow_shares(const bough_tune_state *t, const bough_tune_point *p, double aimed,
-                          bough_tune_settings *s) {
-    double factor[PARTS], share[PARTS], sum = 0;
+// Refines or coarsens each part so that all contribute equally to the error aimed at. The separate errors are
+// the largest of different channels, so that their sum exceeds the error.
+static void refine_parts(const bough_tune_state *t, const bough_tune_point *p, double aimed,
+                         bough_tune_settings *s) {
+    double factor[PARTS], part[PARTS], sum = 0;
     int parts = 0;
     for (int k = 0; k < PARTS; k++) {
-        share[k] = fmin(p->share[k], p->error);
-        parts += share[k] > 0;
-        sum += share[k];
+        part[k] = fmin(p->part[k], p->error);
+        parts += part[k] > 0;
+        sum += part[k];
     }
     for (int k = 0; k < PARTS; k++) {
         double aim = aimed * t->error * fmax(sum / p->error, 1) / fmax(parts, 1);
-        double finer = share[k] > 0 ? pow(share[k] / aim, 1 / order[k]) : 1;
+        double finer = part[k] > 0 ? pow(part[k] / aim, 1 / order[k]) : 1;
         factor[k] = fmax(1 / most[k], fmin(finer, most[k]));
     }
     double step = bough_tune_step(s);
@@ -253,8 +254,8 @@ static void follow_shares(const bough_tune_state *t, const bough_tune_point *p, 
     set_step(step / pow(factor[TIME], 1 / order_of_step), s);
 }
 
-// Until the error is close below what is to be met. After a round that errs too much and hardly less than the
-// one before, less is aimed at; one that errs by much more is the last.
+// Repeats until the error is just below the bound. After a round whose error is too large and hardly smaller
+// than the previous one, a smaller error is aimed at; a round with a much larger error is the last.
 static bough_status descend(bough_tune_state *t, bough_tune_settings *s) {
     double before = HUGE_VAL, aimed = margin;
     for (int k = 0; k < ROUNDS; k++) {
@@ -263,11 +264,11 @@ static bough_status descend(bough_tune_state *t, bough_tune_settings *s) {
         if (!bough_is_ok(&status) || at < 0) return status;
         const bough_tune_point *p = &t->point[at];
         bool meets = meets_error(t, p);
-        if (!bough_tune_ended(p) || !p->shared || (k > 0 && t->n == n)) break;
+        if (!bough_tune_ended(p) || !p->separate || (k > 0 && t->n == n)) break;
         if (meets ? p->error > close_to * t->error : !(p->error < much_more * before)) break;
         if (!meets && p->error > hardly_less * before) aimed *= 0.6;
         before = p->error;
-        follow_shares(t, p, aimed, s);
+        refine_parts(t, p, aimed, s);
     }
     return bough_ok();
 }
@@ -283,7 +284,7 @@ static bool has_rods(const bough_scene *scene) {
     return false;
 }
 
-// False where the scene has no such variation.
+// False if the scene has no such variation.
 static bool vary(const bough_tune_state *t, int variation, bough_tune_settings *s) {
     bough_scene scene = *t->scene;
     scene.aero.rate = s->rate;
@@ -332,7 +333,7 @@ static bough_tune_settings settings_of(const bough_scene *scene) {
                                  .mesh = 1};
 }
 
-// All bodies as one system, as far as the scene's own settings say how.
+// All bodies as one system, with the scene's own settings as far as they apply.
 static bough_tune_settings start_of(const bough_tune_state *t) {
     bough_tune_settings s = settings_of(t->scene);
     s.own = false;
@@ -343,7 +344,7 @@ static bough_tune_settings start_of(const bough_tune_state *t) {
     return s;
 }
 
-// Times differ by more than settings do: the candidates are run again, in turns.
+// Times scatter by more than settings differ: the candidates are run again, alternately.
 static bough_status time_again(bough_tune_state *t) {
     for (int k = 0; k < 2; k++) {
         for (int i = 0; i < t->n; i++) {
@@ -367,7 +368,7 @@ static bough_status search(bough_tune_state *t) {
     return time_again(t);
 }
 
-// What the scene's own error costs.
+// Prints the fastest run that is as accurate as the scene as written.
 static void print_equal(const bough_tune_state *t) {
     const bough_tune_point *own = &t->point[0], *least = own;
     if (!bough_tune_ended(own)) return;
@@ -393,7 +394,7 @@ static bough_status conclude(const bough_tune_state *t) {
     bool moves = p->motion > t->error;
     return bough_fail(
         BOUGH_FAILED,
-        "no settings meet the error %.3g: run %d comes nearest, where %s err by %.2g instead of "
+        "no settings meet the error %.3g: run %d comes nearest, with an error of %s of %.2g instead of "
         "%.3g; try a larger --error",
         t->error, t->chosen + 1, moves ? "motions" : "forces and moments", moves ? p->motion : p->force,
         (moves ? 1 : 4) * t->error);

@@ -1,4 +1,4 @@
-// What a tuned scene's user gets: the table, the picture and the settings.
+// The results of tuning a scene: the table, the diagram and the settings.
 #include "apps/bough/cases/tune.h"
 
 #include "apps/bough/results/folder.h"
@@ -8,7 +8,7 @@
 
 // -- table ----------------------------------------------------------------------------------------
 
-// The most of any rod.
+// The largest number of segments of any rod.
 static int segments_of(const bough_tune_state *t, const bough_tune_settings *s) {
     int most = 0;
     for (int i = 0; i < t->scene->n_body; i++) {
@@ -18,9 +18,9 @@ static int segments_of(const bough_tune_state *t, const bough_tune_settings *s) 
     return most;
 }
 
-static void print_share(const bough_tune_point *p, int k, FILE *stream) {
-    if (p->shared && p->share[k] > 0) {
-        fprintf(stream, "  %7.1e", p->share[k]);
+static void print_part(const bough_tune_point *p, int k, FILE *stream) {
+    if (p->separate && p->part[k] > 0) {
+        fprintf(stream, "  %7.1e", p->part[k]);
     } else {
         fputs("        -", stream);
     }
@@ -42,7 +42,7 @@ void bough_tune_print(const bough_tune_state *t, int k, FILE *stream) {
             1e3 * bough_tune_step(s), s->rtol, s->rate);
     if (bough_tune_ended(p)) {
         fprintf(stream, "%8.3g  %8.1e  %8.1e", p->cpu, p->motion, p->force);
-        for (int i = 0; i < 3; i++) print_share(p, i, stream);
+        for (int i = 0; i < 3; i++) print_part(p, i, stream);
         fputs(s->own ? "  as written\n" : "\n", stream);
     } else {
         fprintf(stream, "failed: %s\n", p->outcome.message);
@@ -71,7 +71,7 @@ static void write_table(const void *self, FILE *file) {
 
 // -- picture --------------------------------------------------------------------------------------
 
-// The front, from its fastest run to its most accurate.
+// The Pareto front, from its fastest run to its most accurate.
 static void add_front(bough_chart *chart, const bough_tune_state *t) {
     const bough_tune_point *next = NULL;
     bough_chart_add_line(chart, (bough_chart_line){.joined = true});
@@ -86,7 +86,7 @@ static void add_front(bough_chart *chart, const bough_tune_state *t) {
     }
 }
 
-// Each run with its number, and a line at the error to be met.
+// Each run with its number, and a line at the error bound.
 static void add_runs(bough_chart *chart, const bough_tune_state *t) {
     double least = HUGE_VAL, most = 0;
     for (int k = 0; k < t->n; k++) {
@@ -130,8 +130,8 @@ static const char *name_in_text(const bough_scene *scene, int body) {
     return name && name->text ? name->text : scene->body[body].name;
 }
 
-// Whether the body is the first of those that one place of the text describes, and its rod's segments differ
-// from it.
+// Whether the body is the first that its place in the text describes, and its number of segments is a new
+// one.
 static bool has_new_mesh(const bough_tune_state *t, int body) {
     const bough_scene *s = t->scene;
     for (int i = 0; i < body; i++) {
@@ -141,7 +141,7 @@ static bool has_new_mesh(const bough_tune_state *t, int body) {
     return n > 0 && n != s->body[body].rod.n_segment;
 }
 
-// As a scene has them, or as the words of a command line.
+// As in a scene, or as words of a command line.
 static void print_chosen(const bough_tune_state *t, bool words, FILE *stream) {
     const bough_tune_settings *s = &t->point[t->chosen].settings;
     bool whole = bough_scheme_at(s->scheme)->one_system;

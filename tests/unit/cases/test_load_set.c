@@ -38,9 +38,9 @@ static bough_study made(bough_case cases[CASES], bough_load_group group[4]) {
                        .unit = unit};
     group[0] = (bough_load_group){.hours = 50, .factor = 1.5, .favourable = 0.9, .extremes = true};
     group[1] = (bough_load_group){.events = 100, .factor = 1, .favourable = 0.9, .extremes = true};
-    cases[0] = (bough_case){.group = 0, .share = 0.5};
-    cases[1] = (bough_case){.group = 0, .share = 0.5};
-    cases[2] = (bough_case){.group = 1, .share = 1};
+    cases[0] = (bough_case){.group = 0, .fraction = 0.5};
+    cases[1] = (bough_case){.group = 0, .fraction = 0.5};
+    cases[2] = (bough_case){.group = 1, .fraction = 1};
     return set;
 }
 
@@ -90,10 +90,10 @@ TEST(sums_are_those_by_hand) {
     assert_int_equal(l.channel[0].least.number, 2);
     check_near(l.channel[0].least.at, 2, 1e-14, 0);
     check_near(l.channel[0].least.row[1], 4, 1e-14, 0); // the other channel then
-    check_near(l.lacking, 0, 0, 0);
+    check_near(l.missing, 0, 0, 0);
 }
 
-TEST(what_is_lacking_is_reported) {
+TEST(what_is_missing_is_reported) {
     check_arena(arena);
     bough_case cases[CASES];
     bough_load_group group[4];
@@ -110,7 +110,7 @@ TEST(what_is_lacking_is_reported) {
     bough_lifetime_add(&l, 2, &missing);
     assert_int_equal(l.n_failed, 1);
     assert_int_equal(l.n_missing, 1);
-    check_near(l.lacking, 1 - 25. / 200, 1e-12, 0);
+    check_near(l.missing, 1 - 25. / 200, 1e-12, 0);
 }
 
 // A message may fill its buffer.

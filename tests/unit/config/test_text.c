@@ -78,8 +78,7 @@ TEST(syntax_errors_are_readable) {
             "f:2:5: error: expected 'key: value' here (check the indentation)\n");
     refuses("a: &x {b: 1}\nc:\n  <<: *x\n",
             "f:3:3: error: merge keys (<<) are not read; 'base: FILE' takes the keys of another scene\n");
-    refuses("a:\n  - 1\n  b: 2\n", "f:3:3: error: expected '- ' here (check the indentation of the "
-                                   "list)\n");
+    refuses("a:\n  - 1\n  b: 2\n", "f:3:3: error: expected '- ' here (check the indentation of the list)\n");
     refuses("a: 1\n  b\n c: 2\n", "f:3:3: error: unexpected ':' (two keys on one line, or a line "
                                   "that is indented too far)\n");
 }

@@ -112,8 +112,7 @@ static trial import_cap(const char *anchor, const char *cap) {
     snprintf(structure, sizeof structure,
              "      anchors:\n        - {name: cap-place, %s}\n"
              "        - {name: before, %s}\n        - {name: behind, %s}\n" WALL
-             "        - {name: cap, material: steel, thickness: {grid: [0, 1], values: [0.03, "
-             "0.03]}, %s}\n",
+             "        - {name: cap, material: steel, thickness: {grid: [0, 1], values: [0.03, 0.03]}, %s}\n",
              anchor,
              // ends where the cap begins, and begins where it ends
              "start_nd_arc: {fixed: TE}, end_nd_arc: {anchor: {name: cap-place, handle: start_nd_arc}}",
@@ -147,8 +146,7 @@ TEST(arcs_are_said_in_many_ways) {
              "0.4]}",
              middle, middle);
     snprintf(values[2], sizeof values[2],
-             "start_nd_arc: {grid: [0, 1], values: [%.9g, %.9g]}, width: {grid: [0, 1], values: [0.4, "
-             "0.4]}",
+             "start_nd_arc: {grid: [0, 1], values: [%.9g, %.9g]}, width: {grid: [0, 1], values: [0.4, 0.4]}",
              middle - half, middle - half);
     snprintf(
         values[3], sizeof values[3],
