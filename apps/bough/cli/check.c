@@ -21,7 +21,7 @@ static bool is_rod(const bough_scene *scene, int body) {
     return body != BOUGH_GROUND && scene->body[body].fidelity == BOUGH_SCENE_ROD;
 }
 
-// The carrier of a fixed body: the first below it with a joint that moves, a rod, or the ground.
+// What a fixed body moves with: the first of its carriers on a joint that moves, a rod, or the ground.
 static int carrier(const bough_scene *scene, int body) {
     do {
         body = scene->body[body].joint.parent;
@@ -136,7 +136,7 @@ static void print_bodies(const bough_simulation *s) {
 
 // -- coupling -------------------------------------------------------------------------------------
 
-// Steps of the run: the grid's, and one more for each corner of a load between its points.
+// Steps of the run: those of equal length, and one more for each corner of a load between their ends.
 static long count_steps(const bough_master *m) {
     double eps = 1e-9;
     long steps = (long)ceil(m->duration / m->macro_step - eps);
@@ -170,7 +170,7 @@ static void print_coupling(const bough_simulation *s) {
     printf("threads: %d\n", bough_pool_threads(m->coupling->pool));
 }
 
-// -- what acts, what is recorded ------------------------------------------------------------------
+// -- loads ----------------------------------------------------------------------------------------
 
 static void print_vector(const double v[3], const char *unit) {
     if (v[0] != 0 || v[1] != 0 || v[2] != 0) printf(", [%.6g, %.6g, %.6g] %s", v[0], v[1], v[2], unit);
@@ -224,7 +224,7 @@ static void print_cost(const bough_simulation *s, bough_arena *arena) {
 
 // -- geometry of the turbine ----------------------------------------------------------------------
 
-// The vertical from which the overhang counts: that of the tower's top, else of the ground's origin.
+// A point of the vertical from which the overhang is measured: the tower's top, or else the ground's origin.
 static bough_vec3 tower_axis(const bough_simulation *s) {
     if (s->tower_top == NULL) return bough_v3(0, 0, 0);
     const bough_rod_def *top = &s->tower_top->def;
@@ -250,7 +250,7 @@ static void print_blades(const bough_simulation *s, const bough_rotor_place *r) 
         bough_transform root = bough_tree_frame_pose(s->view, &s->tree->markers[blade->marker]);
         bough_vec3 z = bough_mat3_mul(root.rotation, bough_v3(0, 0, 1));
         bough_vec3 offset = bough_sub(root.position, r->hub);
-        double cone = -asin(fmax(-1, fmin(1, bough_dot(z, r->axis)))); // as the key: positive upwind
+        double cone = -asin(fmax(-1, fmin(1, bough_dot(z, r->axis)))); // positive upwind, as the key
         double shown = fabs(cone) < 1e-9 ? 0 : cone / BOUGH_DEGREE;
         printf("blade %s: pitch %.6g deg, cone %.6g deg, root at %.6g m\n", blade->body->name,
                bough_simulation_pitch(s, blade) / BOUGH_DEGREE, shown, bough_dot(offset, z));
@@ -269,7 +269,7 @@ static void print_box(const bough_simulation *s, const bough_wind_box *box, cons
            lasts ? "" : ", ends before the run");
 }
 
-// Mean speed of a hub-height file's rows over its time, by the trapezoidal rule.
+// Mean speed of a hub-height file over its time, by the trapezoidal rule.
 static void print_hub_file(const bough_simulation *s, const bough_wind_hub *hub) {
     double last = hub->row[hub->n - 1].time, span = last - hub->row[0].time, mean = 0;
     for (int i = 1; i < hub->n; i++) {
@@ -375,7 +375,7 @@ static const bough_option rows[] = {
     {0},
 };
 
-// A scalar as a scene in the same directory has it: files that a base names are relative to the base.
+// A scalar as it must be written beside the scene: a base names files relative to itself.
 static const char *written(void *self, const bough_node *scalar) {
     const bough_scene *scene = self;
     const char *slash = strrchr(scene->file, '/');

@@ -17,7 +17,7 @@ typedef struct head {
     uint64_t program, input; // fingerprints
     double interval;         // [s]
     uint64_t size;           // of the copy [bytes]
-    uint64_t sum;            // of the copy and of what is above
+    uint64_t sum;            // of the copy and of the members above
 } head;
 
 static const char magic[sizeof((head *)0)->magic] = "bough state 2";
@@ -29,7 +29,7 @@ static uint64_t sum_of(const head *h, const char *copy) {
     return sum;
 }
 
-// -- what is in it --------------------------------------------------------------------------------
+// -- the copy -------------------------------------------------------------------------------------
 
 static void take_state(bough_run_command *command, bough_snapshot *s) {
     bough_run *run = &command->run;
@@ -60,7 +60,7 @@ static bough_status check_samples(const bough_master *m, const char *of, double 
     return bough_ok();
 }
 
-// Between samples a load has a past that is not in the copy.
+// Between two samples a load depends on memory that is not in the copy.
 static bough_status check_interval(const bough_run_command *command, double interval) {
     const bough_master *m = command->run.simulation->master;
     BOUGH_TRY(bough_simulation_storable(command->run.simulation));
@@ -78,7 +78,7 @@ static bough_status check_interval(const bough_run_command *command, double inte
     return companion ? check_samples(companion->master, " of the companion", interval) : bough_ok();
 }
 
-// Threads and the folder change no result.
+// Threads and folder do not count: they change no result.
 static void find_fingerprints(bough_run_command *command) {
     bough_checkpoint *c = &command->checkpoint;
     c->program = c->input = BOUGH_FINGERPRINT_START;
@@ -102,7 +102,7 @@ static bough_status refuse(const char *path, const char *what) {
                       path, what);
 }
 
-// The sum is looked at first: only then the rest means what it says.
+// The sum is checked before all other members of the head are used.
 static bough_status read_copy(bough_run_command *command, const char *path, FILE *file) {
     static const char damaged[] = "damaged";
     bough_checkpoint *c = &command->checkpoint;
@@ -184,7 +184,7 @@ static bool is_due(const bough_run_command *command) {
     return off <= 1e-6 * m->macro_step && !bough_master_done(m);
 }
 
-// The rows that it counts on are on the disk before it is.
+// The rows that it refers to are on the disk before it is.
 bough_status bough_checkpoint_update(void *self) {
     bough_run_command *command = self;
     if (!(command->checkpoint.interval > 0) || !is_due(command)) return bough_ok();

@@ -18,11 +18,11 @@ static void request(int signal_number) {
     requested = 1;
 }
 
-// A limit of processor time is signalled once more for every further second until the hard limit. `nohup`
-// starts a program with SIGHUP ignored, which then stays so.
+// SIGXCPU is sent again for every further second of processor time until the hard limit. `nohup` starts a
+// program with SIGHUP ignored, which must stay so.
 static const struct {
     int number;
-    bool repeated; // a second one asks for the same, and does not end the process
+    bool repeated; // a second one does not end the process
     bool ignorable;
 } signals[] = {
     {SIGINT, false, false}, {SIGTERM, false, false}, {SIGHUP, false, true}, {SIGXCPU, true, false}};
@@ -40,7 +40,7 @@ void bough_stop_listen(void) {
         sigemptyset(&action.sa_mask);
         sigaction(signals[i].number, &action, NULL);
     }
-    signal(SIGPIPE, SIG_IGN); // who reads the messages may end before the run does
+    signal(SIGPIPE, SIG_IGN); // the reader of the output may end before the run
 }
 
 bool bough_stop_requested(void) { return requested != 0; }
@@ -194,7 +194,7 @@ bough_status bough_options_read(bough_arena *arena, int argc, char **argv, const
     opterr = 0; // messages are ours
     // "-": operands come in order, whatever POSIXLY_CORRECT says; ":": distinguishes missing from unknown.
     for (int code; bough_is_ok(&status) && (code = getopt_long(argc, argv, "-:h", list, NULL)) != -1;) {
-        bool separate = code >= FIRST && optarg == argv[optind - 1]; // the value is a word of its own
+        bool separate = code >= FIRST && optarg == argv[optind - 1]; // the value is a separate word
         const char *word = argv[optind - 1 - separate];
         // getopt_long accepts the beginning of a name, which a later option may share.
         bool shortened =

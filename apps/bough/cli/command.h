@@ -1,5 +1,5 @@
-// A command of the program: its operands, its options as rows, and what it does. Each has a file of its own;
-// main.c lists them. Also what the commands share: the way to a built scene, and signals.
+// A command of the program: its operands, its options as rows of a table, and its function. Each has a file
+// of its own; main.c lists them. The commands share the reading and building of scenes, and the signals.
 #ifndef BOUGH_APPS_CLI_COMMAND_H
 #define BOUGH_APPS_CLI_COMMAND_H
 
@@ -12,7 +12,7 @@
 #include <stddef.h>
 #include <stdio.h>
 
-// What `bough --version` and summary.json say; tests/cli/test_cli.sh compares it with the build's.
+// In `bough --version` and summary.json; tests/cli/test_cli.sh compares it with the version of the build.
 #define BOUGH_VERSION "0.1.0"
 
 // -- options --------------------------------------------------------------------------------------
@@ -23,14 +23,14 @@ typedef struct bough_texts {
     const char **text; // (n)
 } bough_texts;
 
-// What the command line says. A command with options of its own has a struct that begins with this one.
+// The command line. A command with options of its own has a struct that begins with this one.
 typedef struct bough_options {
-    const char *operand; // the first: the scene or the topic; NULL: not given
+    const char *operand; // the first operand: scene or topic; NULL: none
     int n_operand;
     const char **operands; // (n_operand)
     bough_texts set;       // replacements "key=value"
     const char *out;       // NULL: named after the operand
-    int threads;           // 0: as the scene says
+    int threads;           // 0: that of the scene
     bool quiet, help;
 } bough_options;
 
@@ -40,7 +40,7 @@ typedef struct bough_option {
     // Reads the value into its field.
     bough_status (*read)(const struct bough_option *row, const char *text, void *field);
     size_t offset; // of the field in the command's struct
-    // of a quantity, as of a key
+    // of a quantity
     bough_dimension dimension;
     const char *range;
 } bough_option;
@@ -54,7 +54,7 @@ bough_status bough_option_threads(const bough_option *row, const char *text, voi
 bough_status bough_option_kernels(const bough_option *row, const char *text,
                                   void *field); // sets the environment
 
-// Rows that several commands have.
+// Rows of several commands.
 #define BOUGH_COMMON(name, argument, help, reader, member)                                                   \
     { name, argument, help, bough_option_##reader, .offset = offsetof(bough_options, member) }
 #define BOUGH_OPTION_SET                                                                                     \
@@ -75,12 +75,12 @@ bough_status bough_option_kernels(const bough_option *row, const char *text,
 
 typedef struct bough_command {
     const char *name, *summary;
-    const char *operands;       // one or two, as the usage shows them: "SCENE", "KIND FILE"
+    const char *operands;       // one or two, as printed in the usage: "SCENE", "KIND FILE"
     bool optional;              // the operand may be left out
     bool repeats;               // or given several times
-    const bough_option *option; // ended by a row without a name; NULL: only --help, as all commands have
-    size_t size;                // of the struct that they fill
-    // Does the work. A failure without a message is already printed.
+    const bough_option *option; // ended by a row without a name; NULL: only --help, which all commands have
+    size_t size;                // of the struct of the options
+    // Performs the command. The message of a failure is empty if it is already printed.
     bough_status (*run)(bough_arena *arena, const void *options);
 } bough_command;
 
@@ -111,40 +111,40 @@ bough_status bough_options_read(bough_arena *arena, int argc, char **argv, const
 void bough_options_usage(const bough_command *command, FILE *stream);
 void bough_options_help(const bough_command *command, FILE *stream);
 
-// Writes what the program can do, and what one command can (help.c).
+// Writes the help of the program, and that of a command (help.c).
 void bough_help_overview(FILE *stream);
 void bough_help_command(const bough_command *command, FILE *stream);
 
-// The failure of an unknown word: "unknown command 'rnu' (did you mean 'run'?)" and all that are known,
-// `more` among them (NULL-terminated, or NULL).
+// The failure of an unknown word: "unknown command 'rnu' (did you mean 'run'?)", and all commands and the
+// words `more` (NULL-terminated, or NULL).
 bough_status bough_unknown_word(const char *what, const char *word, const char *const *more);
 
 // -- from the command line to a built scene (open.c) ----------------------------------------------
 
-// Where the operand is a directory: the one scene in it, the one called scene.yaml or the one that is called
-// like the directory, in its place. BOUGH_INVALID lists the candidates otherwise.
+// Replaces an operand that is a directory by its only scene, by its scene.yaml or by the scene with the name
+// of the directory. BOUGH_INVALID lists the candidates if there are others.
 bough_status bough_find_scene(bough_arena *arena, bough_options *options);
 
-// Reads the scene with the options' replacements and threads. Errors in it are written to stderr, one
-// a line, and the status then has no message.
+// Reads the scene with the options' replacements and threads. Errors in it are written to stderr, one on each
+// line; the status then has no message.
 bough_status bough_open_scene(bough_arena *arena, const bough_options *options, bough_scene **scene);
 
-// Reads the scene in the same way and builds it.
+// Reads and builds the scene.
 bough_status bough_open(bough_arena *arena, const bough_options *options, bough_simulation **simulation);
 
-// Those channels of `all`, which outlives the list, that the scene records. BOUGH_INVALID at a name or
-// pattern that none matches.
+// The channels of `all`, which must outlive the list, that the scene records. BOUGH_INVALID if no channel
+// matches a name or pattern.
 bough_status bough_open_channels(const bough_scene *scene, const bough_channels *all,
                                  bough_channels *recorded);
 
-// The folder for results: as the options say, else out/ and the operand's file name without its
+// The folder for results: that of the options, or else out/ and the file name of the operand without its
 // extension.
 const char *bough_out_folder(bough_arena *arena, const bough_options *options);
 
-// -- SIGINT, SIGTERM, SIGHUP and SIGXCPU as a wish to stop after the current step (command.c) -----
+// -- SIGINT, SIGTERM, SIGHUP and SIGXCPU stop a run after the current step (command.c) ------------
 
-// From now on the first of these signals is remembered; a second one ends the process at once, except
-// SIGXCPU. A reader of the output that ends does not end the process.
+// Starts to catch these signals: the first is remembered; a second one ends the process at once, except
+// SIGXCPU. SIGPIPE is ignored.
 void bough_stop_listen(void);
 
 bool bough_stop_requested(void);

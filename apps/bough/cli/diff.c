@@ -1,4 +1,4 @@
-// bough diff: what differs between the channels of two results, at the times that both have.
+// bough diff: differences between the channels of two results, at their common times.
 #include "apps/bough/cli/command.h"
 #include "apps/bough/results/recorder.h"
 
@@ -6,9 +6,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-// A channel of both.
+// A common channel.
 typedef struct pair {
-    int first, second;     // its columns
+    int first, second;     // its column in either
     double low, high;      // of both, in its unit
     double largest, where; // difference, and its time [s]
 } pair;
@@ -19,7 +19,7 @@ static bough_status open_rows(bough_arena *arena, const char *folder, bough_rows
     return bough_fail(BOUGH_INVALID, "'%.200s' holds no run's results: no channels.out", folder);
 }
 
-// *more is false behind the last row.
+// *more is false after the last row.
 static bough_status next_row(bough_rows *r, bool *more) {
     *more = bough_rows_line(r);
     return *more ? bough_rows_read(r) : bough_ok();
@@ -38,7 +38,7 @@ static int find_pairs(const bough_rows *a, const bough_rows *b, pair *list) {
     return n;
 }
 
-// Angles near their jump differ by a whole turn. A value that is none differs by all.
+// Angles are compared modulo 360 degrees. A NaN differs from every number by infinity.
 static double difference(const char *unit, double x, double y) {
     double off = strcmp(unit, "(deg)") == 0 ? fabs(remainder(x - y, 360)) : fabs(x - y);
     return off == off ? off : x != x && y != y ? 0 : HUGE_VAL;

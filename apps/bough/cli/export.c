@@ -19,21 +19,25 @@
 // A ZIP archive whose files are stored as they are (PKWARE's APPNOTE 6.3, without ZIP64: at most 4 GB).
 
 typedef struct zip_entry {
-    const char *name; // "resources/scene.yaml"; borrowed until the end
+    const char *name; // "resources/scene.yaml"; borrowed until zip_end
     uint32_t sum, size, at;
 } zip_entry;
 
 typedef struct zip {
     bough_arena *arena; // of copies
-    FILE *file;         // open for writing, at its start
+    FILE *file;         // open for writing, at its beginning
     int n;
-    zip_entry *entry; // (n), with room for all that come
+    zip_entry *entry; // (n), with room for all files
 } zip;
 
 enum { LOCAL = 0x04034b50, CENTRAL = 0x02014b50, END = 0x06054b50 };
-enum { DAY = 1 << 5 | 1, VERSION = 20, UTF8 = 1 << 11 }; // 1 January 1980: the same scene, the same file
+enum {
+    DAY = 1 << 5 | 1,
+    VERSION = 20,
+    UTF8 = 1 << 11
+}; // of 1 January 1980, so that equal scenes give equal files
 
-// What the head of a file and its line in the directory share.
+// The common part of a local header and of its entry in the directory.
 static void put_entry(FILE *file, const zip_entry *entry) {
     bough_put_bytes(file, VERSION, 2);
     bough_put_bytes(file, UTF8, 2);
@@ -117,10 +121,10 @@ export;
 
 // -- files ----------------------------------------------------------------------------------------
 
-// "ctrl/./../../air/polars.yaml" as "../air/polars.yaml": so many folders up, then none.
+// "ctrl/./../../air/polars.yaml" as "../air/polars.yaml": ".." only at the beginning.
 static const char *tidy(bough_arena *arena, const char *path) {
     char *text = bough_arena_take(arena, strlen(path) + 1);
-    size_t used = 0, least = 0; // what is before `least` leads up
+    size_t used = 0, least = 0; // the part before `least` is "../../…"
     for (size_t length; *path; path += length + (path[length] == '/')) {
         length = strcspn(path, "/");
         bool up = length == 2 && strncmp(path, "..", 2) == 0;
@@ -139,7 +143,7 @@ static const char *tidy(bough_arena *arena, const char *path) {
     return text;
 }
 
-// Files that lie above the scene need as many folders below resources/.
+// If files lie in folders above the scene, the scene lies as many folders below resources/.
 static bough_status place_files(export *x) {
     const char *scene = x->files.item[0].path, *slash = strrchr(scene, '/');
     size_t length = slash ? (size_t)(slash + 1 - scene) : 0;
@@ -340,7 +344,7 @@ static bough_status write_archive(export *x, const char *path) {
     if (bough_is_ok(&status)) status = add_library(&archive);
     if (bough_is_ok(&status)) status = add_text(x, "resources/scene.txt", put_settings, &archive);
     for (int k = 0; k < x->files.n && bough_is_ok(&status); k++) {
-        bool there = false; // by another spelling of its path
+        bool there = false; // under another spelling of its path
         for (int i = 0; i < k && !there; i++) there = strcmp(x->name[i], x->name[k]) == 0;
         if (!there) status = zip_copy(&archive, x->name[k], x->files.item[k].path);
     }

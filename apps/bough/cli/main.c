@@ -74,12 +74,12 @@ static bough_status end_output(bough_status status) {
                       errno ? strerror(errno) : "an earlier write failed");
 }
 
-// OpenBLAS starts threads that we never use and that spin at first, unless the environment forbids it. Where
-// the library is part of the program, this is called before it.
+// OpenBLAS starts threads, which are never used here and spin at first, unless the environment forbids it. If
+// the library is linked statically, this is called before its own initialisation.
 __attribute__((constructor(101))) static void quiet_threads(void) { setenv("OPENBLAS_NUM_THREADS", "1", 0); }
 
-// Opens /dev/null on closed standard streams: a file of results that took the number of one would receive
-// what is printed.
+// Opens /dev/null for closed standard streams: otherwise a file of results could get the number of a stream
+// and receive what is printed.
 static void open_streams(void) {
     int file = 0;
     while (file >= 0 && file <= STDERR_FILENO) file = open("/dev/null", O_RDWR);

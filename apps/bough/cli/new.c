@@ -1,4 +1,4 @@
-// bough new: a commented scene that runs, with its tables, from those that the program carries.
+// bough new: writes one of the built-in scenes, commented and complete with its tables.
 #include "apps/bough/cli/command.h"
 #include "apps/bough/config/schema.h"
 #include "apps/bough/results/folder.h"
@@ -33,7 +33,7 @@ static void put_text(const void *template, FILE *file) {
     fputs(((const bough_template *)template)->text, file);
 }
 
-// All files of the kind, or none: a directory without its tables looks like a scene.
+// All files of the kind, or none: a directory without the tables would look like a complete scene.
 static bough_status write_files(const char *folder, const char *kind) {
     bough_status status = bough_ok();
     for (const bough_template *t = bough_templates; t->name && bough_is_ok(&status); t++)

@@ -11,7 +11,7 @@
 
 enum { SHOWN = 8, LINE = 4096 };
 
-// Whether a line begins with one of these keys, as a scene's does and a table's or a study's does not.
+// Whether a line begins with one of these keys: only scenes have them, not tables and studies.
 static bool is_scene(const char *path) {
     static const char *const keys[] = {"bodies:", "turbine:", "base:"};
     char line[LINE], why[BOUGH_INPUT_REASON];
@@ -29,7 +29,7 @@ static bool ends_with(const char *name, const char *ending) {
     return length > end && strcmp(name + length - end, ending) == 0;
 }
 
-// Whether a file has the name that a directory's own scene has.
+// Whether a file is called scene.yaml or like the directory.
 static bool is_first(const char *file, const char *folder, size_t length) {
     const char *name = folder + length;
     while (name > folder && name[-1] != '/') name--;
@@ -113,7 +113,7 @@ const char *bough_out_folder(bough_arena *arena, const bough_options *options) {
     const char *name = slash ? slash + 1 : options->operand;
     const char *dot = strrchr(name, '.');
     size_t length = dot && dot > name ? (size_t)(dot - name) : strlen(name);
-    if (slash && slash > options->operand && strcmp(name, "scene.yaml") == 0) { // its directory has the name
+    if (slash && slash > options->operand && strcmp(name, "scene.yaml") == 0) { // named after its directory
         const char *end = slash;
         for (name = end; name > options->operand && name[-1] != '/'; name--) {
         }

@@ -13,7 +13,7 @@
 
 static const double long_run = 1e6;    // macro steps
 static const double much_data = 1e9;   // [bytes]
-static const double frame_head = 900;  // bytes of a frame's file beside its points
+static const double frame_head = 900;  // bytes of the file of a frame without its points
 static const double frame_point = 110; // bytes of one of its points
 enum { COLUMN = 18 };                  // bytes of a value in channels.out
 
@@ -53,8 +53,8 @@ static double least_step_time(const bough_run_command *command) {
     return 2 * sum;
 }
 
-// Prints what the command records, and for a long run (more than a million macro steps or a gigabyte)
-// steps and time, on stderr. BOUGH_INVALID where the results cannot fit on the disk of its folder.
+// Prints the size of the results and, on stderr, steps and time of a long run (more than a million macro
+// steps or a gigabyte). BOUGH_INVALID if the results do not fit on the disk of their folder.
 static bough_status run_forecast(const bough_run_command *command) {
     const bough_run *run = &command->run;
     const bough_master *m = run->simulation->master;
@@ -123,7 +123,7 @@ static const char *title(const bough_run_command *command) {
     return scene->title ? scene->title : scene->file;
 }
 
-// Removes the partial files of a run that was killed; its rows stay where it is resumed.
+// Removes partial files of a run that was killed; the rows stay if it is resumed.
 static bough_status clean(const bough_run_command *command) {
     char frames[BOUGH_PATH_MAX];
     BOUGH_TRY(bough_folder_path(command->folder, "frames", frames));
@@ -172,7 +172,7 @@ static bough_status write_binary(const bough_run_command *command) {
                                                   .interval = output->interval});
 }
 
-// An older summary must not stand beside the new channels, nor a new one beside older channels.
+// Neither an older summary may stay beside new channels nor a new one beside older channels.
 static bough_status replace_older(const bough_run_command *command) {
     static const char *const older[] = {"summary.json", "channels.outb", "report.html", "shape.svg"};
     for (size_t i = 0; i < sizeof older / sizeof *older; i++)
@@ -181,7 +181,7 @@ static bough_status replace_older(const bough_run_command *command) {
     return write_binary(command);
 }
 
-// Ends the files; their outcome is the first failure.
+// Ends the files; the first failure is the outcome.
 static bough_status close_results(bough_run_command *command) {
     bough_status *outcome = &command->run.outcome;
     bough_status status = bough_recorder_finish(command->recorder, outcome);
@@ -194,7 +194,7 @@ static bough_status close_results(bough_run_command *command) {
     return bough_is_ok(&status) ? bough_checkpoint_remove(command->folder) : status;
 }
 
-// Warns during the run where solver steps make it slow.
+// Warns during the run if short steps of the solver make it slow.
 static void warn_of_work(bough_run_command *command) {
     const bough_simulation *s = command->run.simulation;
     if (command->warned || !s->validity->limit[BOUGH_LIMIT_STEPS].passed) return;
@@ -205,14 +205,14 @@ static void warn_of_work(bough_run_command *command) {
     fprintf(stderr, "bough: warning: %s\n", text);
 }
 
-// After each step. The error is judged at the end.
+// After each step.
 static bough_status after_step(void *self) {
     bough_run_command *command = self;
     warn_of_work(command);
     return bough_checkpoint_update(command);
 }
 
-// The shares are found by further runs where the scene asks.
+// Finds the separate errors by further runs if the scene asks for them, and judges the error.
 static bough_status judge(bough_run_command *command) {
     const bough_scene_simulation *x = &command->run.simulation->scene->simulation;
     bough_companion *c = command->run.companion;

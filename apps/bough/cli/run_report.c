@@ -13,7 +13,7 @@ enum { LINE = 400, WORST = 3 };
 
 static double bound_of(const bough_run *run) { return run->simulation->scene->simulation.error_bound; }
 
-// A force or moment with an error above the bound, or "".
+// A warning about a force or moment with an error above the bound, or "".
 static void warn_of_force(const bough_run *run, char text[BOUGH_ERROR_WARNING]) {
     const bough_companion *c = run->companion;
     bough_error_verdict v = bough_error_verdict_of(c, false, c->error);
@@ -29,8 +29,8 @@ static void warn_of_force(const bough_run *run, char text[BOUGH_ERROR_WARNING]) 
 
 // -- memory ---------------------------------------------------------------------------------------
 
-// getrusage alone would not do: on Linux its figure survives exec, so that a large program that
-// starts this one passes its own memory on.
+// getrusage alone is wrong: on Linux its value survives exec, so that it contains the memory of a large
+// program that starts this one.
 static long long peak_memory(void) {
     long long kilobytes = 0;
     char line[128];
@@ -145,8 +145,7 @@ static void write_warnings(bough_summary *s, const bough_run *run) {
     bough_summary_end(s);
 }
 
-// Order and theta are null where the scheme has none. Sweeps are those of a macro step that is repeated, else
-// 0.
+// Order and theta are null if the scheme has none; sweeps are 0 if it does not repeat macro steps.
 static void write_method(bough_summary *s, const bough_run *run) {
     const bough_master *m = run->simulation->master;
     const bough_scene_simulation *sim = &run->simulation->scene->simulation;
@@ -221,7 +220,7 @@ static bool is_far_end(const bough_assembly *a, int interface) {
     return again;
 }
 
-// Per interface: energy.
+// The energy exchanged at each interface.
 static void write_interfaces(bough_summary *s, const bough_run *run) {
     const bough_master *m = run->simulation->master;
     const bough_assembly *a = m->assembly;
@@ -319,7 +318,7 @@ bough_status bough_run_summarise(const bough_run_command *command) {
 
 enum { MOST_LINES = 12, FIRST_FEW = 6, LEAST_DIGITS = 3, MOST_DIGITS = 6 };
 
-// Channels worth a line: the turbine's main ones, or else the first few. Their number.
+// The channels that are printed: main ones of a turbine, or else the first few. Returns their number.
 static int main_channels(const bough_run_command *command, int list[MOST_LINES]) {
     static const char *const main_names[] = {"RotSpeed", "GenPwr",  "RtAeroPwr", "RtAeroFxh", "BldPitch1",
                                              "OoPDefl1", "IPDefl1", "RootMyb1",  "TwrBsMyt"};
@@ -336,14 +335,14 @@ static int main_channels(const bough_run_command *command, int list[MOST_LINES])
     return n;
 }
 
-// Digits down to the first one that the error reaches.
+// Number of digits down to the first that the error changes.
 static int digits(double largest, double error) {
     if (!(error > 0) || !(largest > 0)) return MOST_DIGITS;
     double n = floor(log10(largest)) - floor(log10(error)) + 1;
     return (int)fmin(fmax(n, LEAST_DIGITS), MOST_DIGITS);
 }
 
-static void tell_channel(bough_run_command *command, int k) {
+static void print_channel(bough_run_command *command, int k) {
     bough_run *run = &command->run;
     const bough_channel *channel = &command->recorded.channel[k];
     const bough_sample_statistics *x = &command->statistics[k];
@@ -361,17 +360,17 @@ static void tell_channel(bough_run_command *command, int k) {
         printf(" %9s\n", "unknown");
 }
 
-// What came out: nothing after a failure, when the state means nothing.
-static void tell_channels(bough_run_command *command) {
+// After a failure there are no values.
+static void print_channels(bough_run_command *command) {
     const bough_scene_output *output = &command->run.simulation->scene->simulation.output;
     int list[MOST_LINES], n = main_channels(command, list);
     if (!bough_run_values(&command->run) || n == 0 || !(command->statistics[list[0]].n > 0)) return;
     if (output->from > 0) printf("from %.9g s on:\n", output->from);
     printf("%-12s %-6s %11s %11s %11s %11s %9s\n", "channel", "unit", "mean", "min", "max", "end", "error");
-    for (int i = 0; i < n; i++) tell_channel(command, list[i]);
+    for (int i = 0; i < n; i++) print_channel(command, list[i]);
 }
 
-static void tell_warnings(const bough_run *run) {
+static void print_warnings(const bough_run *run) {
     const bough_master *m = run->simulation->master;
     long unfinished = bough_scheme_reported(m->coupling).unfinished;
     if (unfinished > 0) {
@@ -382,7 +381,7 @@ static void tell_warnings(const bough_run *run) {
     bough_validity_print(run->simulation, stdout);
 }
 
-static void tell_shares(const bough_run_command *command, int channel) {
+static void print_shares(const bough_run_command *command, int channel) {
     for (int k = 0; k < BOUGH_SHARES && command->shares.found; k++) {
         const bough_error_share *share = &command->shares.share[k];
         if (share->unknown[0]) continue;
@@ -390,7 +389,7 @@ static void tell_shares(const bough_run_command *command, int channel) {
     }
 }
 
-static void tell_error(const bough_run_command *command) {
+static void print_error(const bough_run_command *command) {
     const bough_companion *c = command->run.companion;
     char warning[BOUGH_ERROR_WARNING];
     int worst[WORST], n = bough_error_worst(c, WORST, worst);
@@ -405,7 +404,7 @@ static void tell_error(const bough_run_command *command) {
         bough_error_size(c, worst[k], error);
         printf("%s %s %s", k == 0 ? "largest errors:" : "               ",
                c->channels->channel[worst[k]].name, error);
-        tell_shares(command, worst[k]);
+        print_shares(command, worst[k]);
         putchar('\n');
     }
     warn_of_force(&command->run, warning);
@@ -413,8 +412,8 @@ static void tell_error(const bough_run_command *command) {
     if (warning[0]) printf("warning: %s\n", warning);
 }
 
-// What was run, and how fast.
-static void tell_run(const bough_run_command *command) {
+// Scene and speed.
+static void print_run(const bough_run_command *command) {
     const bough_run *run = &command->run;
     double factor = real_time_factor(run);
     printf("status: %s\n", outcome_name(run));
@@ -426,7 +425,7 @@ static void tell_run(const bough_run_command *command) {
     if (!bough_is_ok(&run->outcome)) printf("recorded: %ld rows\n", bough_recorder_rows(command->recorder));
 }
 
-static void tell_next(const bough_run_command *command) {
+static void print_next(const bough_run_command *command) {
     bool resumes = command->checkpoint.interval > 0 && !bough_is_ok(&command->run.outcome);
     printf("out: %s\n", command->folder);
     if (resumes)
@@ -436,9 +435,9 @@ static void tell_next(const bough_run_command *command) {
 }
 
 void bough_run_report(bough_run_command *command) {
-    tell_run(command);
-    tell_channels(command);
-    tell_error(command);
-    tell_warnings(&command->run);
-    tell_next(command);
+    print_run(command);
+    print_channels(command);
+    print_error(command);
+    print_warnings(&command->run);
+    print_next(command);
 }

@@ -14,8 +14,8 @@
 
 typedef struct equilibrium {
     bough_simulation *simulation;
-    bool finer;                  // of the mesh that the scene's is compared with
-    bool independent;            // each rod has its own equilibrium: no channels
+    bool finer;                  // of the finer mesh with which the scene's is compared
+    bool independent;            // each rod by itself; there are no channels
     double time;                 // of the loads of the whole scene [s]
     bough_equilibrium_work work; // of the whole scene
     bough_growth growth;         // of motions from it
@@ -34,7 +34,7 @@ enum {
 };
 
 typedef struct mesh_error {
-    char unknown[BOUGH_MESSAGE + 40]; // why it is not known; "": it is
+    char unknown[BOUGH_MESSAGE + 40]; // reason why it is not known; "": it is known
     double *largest;                  // (channels.count) of each channel, in its unit
 } mesh_error;
 
@@ -50,7 +50,7 @@ static bough_status find_rods(bough_arena *arena, equilibrium *x) {
     return bough_ok();
 }
 
-// All together, with what the run's channels are there: joints, drives, closures, markers, roots, rotor.
+// The equilibrium of the whole scene and the values of the run's channels there.
 static bough_status find_whole(bough_arena *arena, equilibrium *x) {
     bough_simulation *s = x->simulation;
     x->time = bough_equilibrium_time(s);
@@ -67,7 +67,7 @@ static bough_status find_whole(bough_arena *arena, equilibrium *x) {
     return bough_ok();
 }
 
-// What grows from the equilibrium. Rods that were found alone are put into the whole.
+// Growth of motions from the equilibrium. The states of rods that were found one by one are put together.
 static bough_status find_growth(bough_arena *arena, equilibrium *x) {
     bough_simulation *s = x->simulation;
     const bough_assembly *a = s->master->assembly;
@@ -83,13 +83,13 @@ static bough_status find_growth(bough_arena *arena, equilibrium *x) {
     return bough_simulation_growth(s, a, x->time, false, &x->growth);
 }
 
-// The equilibrium of the simulation, as it is; of a mesh that is compared with a coarse one, found in the
-// same way. A rod that its own search does not find, as one that is slack, is found with the whole.
+// The equilibrium of the simulation; for comparison with a coarse one it is found in the same way. If the
+// search for a single rod fails, as for a slack one, the whole scene is searched.
 static bough_status find_equilibrium(bough_arena *arena, bough_simulation *s, const equilibrium *coarse,
                                      equilibrium *x) {
     *x = (equilibrium){.simulation = s, .finer = coarse, .channels = bough_channels_start(arena)};
     x->rod = bough_arena_take(arena, ((size_t)s->n_rod + 1) * sizeof *x->rod);
-    // a modal body only with the whole
+    // modal bodies need the whole scene
     x->independent = bough_rods_are_independent(s) && bough_steady_rods(s) == s->n_rod;
     if (coarse && !coarse->independent) x->independent = false;
     if (!x->independent) return find_whole(arena, x);
@@ -100,8 +100,8 @@ static bough_status find_equilibrium(bough_arena *arena, bough_simulation *s, co
     return find_whole(arena, x);
 }
 
-// Where rods that were found alone are unstable, the whole may come to a stable equilibrium from its initial
-// shape.
+// If rods that were found one by one are unstable, the search of the whole scene may find a stable
+// equilibrium.
 static void seek_stable(bough_arena *arena, equilibrium *x) {
     if (!x->independent || x->growth.rate == 0) return;
     equilibrium whole = {.channels = bough_channels_start(arena)};
@@ -119,7 +119,7 @@ static void find_results(bough_steady *rod, bough_vec3 result[STATIC_RESULTS]) {
                               &result[STATIC_ROTATION]);
     bough_rod_root_wrench(rod->model, &rod->work.scaled, rod->time, rod->state, rod->input,
                           &rod->work.scratch, wrench);
-    // the root vertex, which belongs to the carrier, moves steadily with it
+    // less the inertia of the root vertex, which belongs to the carrier
     const double *in = rod->input;
     bough_twist v = {{in[0], in[1], in[2]}, {in[3], in[4], in[5]}},
                 fall = {{-in[6], -in[7], -in[8]}, {0, 0, 0}};
@@ -130,7 +130,7 @@ static void find_results(bough_steady *rod, bough_vec3 result[STATIC_RESULTS]) {
 
 // -- a finer mesh ---------------------------------------------------------------------------------
 
-static const double part = 16.0 / 15; // of the difference that is the error, at order 2
+static const double fraction = 16.0 / 15; // of the difference to four times the segments, at order 2
 
 typedef struct comparison {
     equilibrium *coarse;
@@ -144,20 +144,20 @@ static void compare(const comparison *c, equilibrium *fine) {
         find_results(&c->coarse->rod[k], here);
         find_results(&fine->rod[k], there);
         for (int i = 0; i < STATIC_RESULTS; i++) {
-            c->error[STATIC_RESULTS * k + i] = part * bough_norm(bough_sub(here[i], there[i]));
+            c->error[STATIC_RESULTS * k + i] = fraction * bough_norm(bough_sub(here[i], there[i]));
         }
     }
     bool channels = !fine->independent && !c->coarse->independent;
     for (int i = 0; channels && i < fine->simulation->n_motion_channel; i++) {
-        c->mesh->largest[i] = part * fabs(c->coarse->value[i] - fine->value[i]);
+        c->mesh->largest[i] = fraction * fabs(c->coarse->value[i] - fine->value[i]);
     }
 }
 
-// Segments of the finer mesh by those of the scene: two would still miss a feature of a table, as the last
-// metre of a blade.
+// Segments of the finer mesh relative to the scene's: with a factor of two it would still miss details of a
+// table, such as the last metre of a blade.
 enum { TIMES = 4 };
 
-// False, with the reason, where a finer mesh gives no error.
+// False, with the reason, if a finer mesh gives no estimate.
 static bool refine(bough_scene *scene, mesh_error *mesh) {
     bool any = false;
     for (int i = 0; i < scene->n_body; i++) {
@@ -182,16 +182,16 @@ static bough_status find_finer(bough_arena *arena, void *self) {
     equilibrium fine;
     if (!refine(scene, c->mesh)) return bough_ok();
     BOUGH_TRY(bough_simulation_build(arena, scene, &s));
-    // from the equilibrium found: there may be several
+    // start from the equilibrium found, since there may be several
     bough_simulation_take_shape(c->coarse->simulation, s);
     BOUGH_TRY(find_equilibrium(arena, s, c->coarse, &fine));
     compare(c, &fine);
     return bough_ok();
 }
 
-// Error of the mesh: a fraction of the difference to four times the segments. Returns norms for each rod (n ×
-// STATIC_RESULTS), from the arena; mesh->largest has the channels'. Where it is not known, mesh->unknown has
-// the reason.
+// Error of the mesh, by the difference to four times the segments. Returns norms for each rod (n ×
+// STATIC_RESULTS), in the arena; mesh->largest has the errors of the channels. If they are not known,
+// mesh->unknown has the reason.
 static double *find_mesh_error(bough_arena *arena, equilibrium *x, mesh_error *mesh) {
     *mesh = (mesh_error){.largest = bough_arena_doubles(arena, (size_t)x->channels.count + 1)};
     comparison c = {x, mesh, bough_arena_doubles(arena, STATIC_RESULTS * ((size_t)x->n + 1))};
@@ -203,7 +203,7 @@ static double *find_mesh_error(bough_arena *arena, equilibrium *x, mesh_error *m
     return c.error;
 }
 
-// -- a rod's tables: what moves at its vertices, what acts in the middle of its segments -------------
+// -- tables of a rod: displacements of its vertices, loads in the middle of its segments ------------
 
 enum { VERTICES, MIDDLES, TABLES, COLUMNS = 7 };
 
@@ -243,7 +243,7 @@ static void print_table(const bough_steady *x, int table) {
     }
 }
 
-// Blanks behind the last row.
+// Empty fields after the last row.
 static void write_row(const bough_steady *x, int table, int i, FILE *file) {
     double value[COLUMNS];
     bool there = i < count_rows(x, table);
@@ -270,7 +270,7 @@ static void write_rods(const void *self, FILE *file) {
     }
 }
 
-// -- what is printed ------------------------------------------------------------------------------
+// -- output ---------------------------------------------------------------------------------------
 
 static void print_rod(bough_steady *x) {
     const bough_rod_model *m = x->model;
@@ -287,14 +287,14 @@ static void print_rod(bough_steady *x) {
            n.z);
 }
 
-// Whether a rod ends in the link, whose coordinates are those of the rod's tip.
+// Whether the link is the end of a rod, not a joint of the scene.
 static bool is_end(const bough_tree *tree, int link) {
     bool end = false;
     for (int k = 0; k < tree->n_ends; k++) end = end || tree->ends[k].link == link;
     return end;
 }
 
-// Coordinates and speeds of the scene's joints, and the speeds that are kept.
+// Coordinates of the scene's joints, and the speeds that stay as they are.
 static void print_joints(const bough_simulation *s) {
     for (int i = 0; i < s->tree->n_links; i++) {
         const bough_link *link = &s->tree->links[i];
@@ -367,26 +367,25 @@ typedef struct path_table {
 } path_table;
 
 static void write_path_head(const path_table *t) {
-    fputs("point,limit,share of the loads (-)", t->file);
+    fputs("point,limit,load factor (-)", t->file);
     for (int i = 0; i < t->channels->count; i++)
         fprintf(t->file, ",%s (%s)", t->channels->channel[i].name, t->channels->channel[i].unit);
     fputc('\n', t->file);
 }
 
-static bough_status write_path_point(void *self, double time, double share, bool limit) {
+static bough_status write_path_point(void *self, double time, double factor, bool limit) {
     path_table *t = self;
     bough_channels_sample(t->channels, time, t->value);
-    fprintf(t->file, "%d,%d,%.10g", t->point, limit, share);
+    fprintf(t->file, "%d,%d,%.10g", t->point, limit, factor);
     for (int i = 0; i < t->channels->count; i++) fprintf(t->file, ",%.10g", t->value[i]);
     fputc('\n', t->file);
-    if (limit) printf("limit point: %.7g of the loads, point %d\n", share, t->point);
+    if (limit) printf("limit point: %.7g of the loads, point %d\n", factor, t->point);
     t->point++;
     return bough_ok();
 }
 
-// Prints the limit points and writes every channel at every point to static-path.csv in the folder. What
-// has been followed is written also when the path ends before the loads are whole; the failure is
-// returned.
+// Prints the limit points and writes every channel at every point to static-path.csv in the folder, also if
+// the path ends before the full loads; the failure is returned.
 static bough_status follow_path(bough_arena *arena, bough_simulation *s, const char *folder) {
     char path[BOUGH_PATH_MAX];
     bough_path_report report;
@@ -412,7 +411,7 @@ static bough_status follow_path(bough_arena *arena, bough_simulation *s, const c
 
 // -- the command ----------------------------------------------------------------------------------
 
-// Where the tips of modal bodies are.
+// Displacements and rotations of the tips of modal bodies.
 static void print_modal(bough_simulation *s) {
     bough_simulation_update(s);
     for (int k = 0; k < s->n_beam; k++) {

@@ -1,4 +1,4 @@
-// bough study: many runs of one scene, compared.
+// bough study: many runs of scenes, compared or with statistics.
 #include "apps/bough/cases/perform.h"
 
 #include "apps/bough/cli/command.h"
@@ -43,7 +43,7 @@ static bough_status perform(bough_arena *arena, const void *given) {
     how.quiet = options->quiet;
     how.stop = bough_stop_requested;
     how.stream = stdout;
-    if (how.parts == 0 && study->is.compared) { // parts and load sets share a folder
+    if (how.parts == 0 && study->is.compared) { // parts and processes of a load set share a folder
         BOUGH_TRY(bough_folder_make(how.folder));
         BOUGH_TRY(bough_lock_folder(arena, how.folder));
         bough_folder_clean(how.folder);

@@ -7,17 +7,17 @@
 
 typedef struct tune_options {
     bough_options common;
-    bough_tune_options how; // span 0: the usual one
+    bough_tune_options how; // span 0: the default
 } tune_options;
 
-static const double usual_span = 20; // [s]
+static const double default_span = 20; // [s]
 
 static const bough_option rows[] = {
     BOUGH_OPTION_SET,
     BOUGH_OPTION_OUT,
-    {"error", "E", "to be met, over the range of each channel; default the scene's accuracy",
+    {"error", "E", "error to be met, relative to the range of each channel; default the scene's accuracy",
      bough_option_quantity, .offset = offsetof(tune_options, how.error), .range = "[1e-7, 0.5]"},
-    {"for", "TIME", "stretch of the scene that is run with each of the settings; default 20 s",
+    {"for", "TIME", "simulated time of each run, from the start of the scene; default 20 s",
      bough_option_quantity, .offset = offsetof(tune_options, how.span), .dimension = BOUGH_TIME,
      .range = "> 0"},
     {0},
@@ -32,7 +32,7 @@ static bough_status perform(bough_arena *arena, const void *given) {
     how.scene = options->operand;
     how.n_set = options->set.n;
     how.set = options->set.text;
-    how.span = fmin(how.span > 0 ? how.span : usual_span, scene->simulation.duration);
+    how.span = fmin(how.span > 0 ? how.span : default_span, scene->simulation.duration);
     how.folder = bough_out_folder(arena, options);
     how.stop = bough_stop_requested;
     how.stream = stdout;
