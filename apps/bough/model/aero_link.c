@@ -13,12 +13,12 @@ struct bough_aero_link {
     const bough_beam **beam;    // (n_blade)
     bough_aero_signal **signal; // (n_blade)
     bough_aero_motion *motion;
-    // Two evaluations: of the last sample, and of the one ahead. Both have the first one's memory.
+    // Two evaluations: of the last sample and of the next one. Both use the memory of the first.
     bough_rotor_data data[2];
-    double time[2];   // of each evaluation [s]; NAN: none yet
+    double time[2];   // of each evaluation [s]; NAN: not evaluated
     double factor[2]; // of the ramp at that time
     int shown;        // the evaluation of the last sample
-    int found;        // the evaluation just made; −1: none
+    int found;        // the latest evaluation; −1: none
     bough_vec3 hub;   // at the start, ground axes [m]
     bool started;
 };
@@ -58,7 +58,7 @@ typedef struct tables {
     bough_mat3 *rotation;
 } tables;
 
-// Of the undeformed axis from the root to the height z; z itself for a straight blade.
+// Length of the undeformed axis from the root to z, which is z itself for a straight blade.
 static double arc_length(const bough_rod_def *mesh, int n_vertex, double z) {
     int i = 0;
     while (i < n_vertex - 2 && z > mesh->position[i + 1].z) i++;
@@ -95,7 +95,7 @@ static double rotor_radius(const bough_scene_aero *aero) {
     return aero->hub_radius + aero->blade.station[aero->blade.n_station - 1].def.span;
 }
 
-// Defaults of the standard wind that the scene does not give.
+// The standard wind with defaults for what the scene does not give.
 static bough_wind_iec_def standard_wind(const bough_scene *scene) {
     const bough_wind_def *wind = &scene->aero.wind.def;
     bough_wind_iec_def def = wind->iec;
@@ -196,18 +196,19 @@ static bough_aero_fresh fresh_loads(const bough_aero_link *l, int b) {
                               .factor = l->factor[l->found]};
 }
 
-// The time that a signal is found for.
+// The time over which a signal is defined.
 typedef struct interval {
     double start, span; // [s]
 } interval;
 
-// An evaluation. With two tasks for each blade, three blades make the same work for both of two threads.
+// An evaluation of the rotor. There are two tasks for each blade, so that two threads share three blades
+// evenly.
 typedef struct evaluation {
     bough_aero_link *link;
     const bough_rotor_motion *motion;
     bough_rotor_data *data;
     void (*move)(bough_aero_motion *m, int blade);
-    const interval *next; // for which the blades' signals follow; NULL: they do not
+    const interval *next; // of the blades' signals; NULL: they are not set
 } evaluation;
 
 // The wind that each blade meets, then its inductions.
@@ -223,7 +224,7 @@ static void approach_blade(void *self, int k) {
     bough_rotor_induce(l->rotor, e->motion, k - l->n_blade, e->data);
 }
 
-// The loads on each blade, then its signal to the next sample.
+// The loads on each blade, then its signal up to the next sample.
 static void load_blade(void *self, int k) {
     const evaluation *e = self;
     const bough_aero_link *l = e->link;
@@ -237,7 +238,7 @@ static void load_blade(void *self, int k) {
                              e->next->start, e->next->span);
 }
 
-// Evaluates the rotor with the motion found for it; `move` finds that of a blade.
+// Evaluates the rotor; `move` sets the motion of a blade.
 static void evaluate_rotor(bough_aero_link *l, int to, void (*move)(bough_aero_motion *, int),
                            const interval *next) {
     bough_pool *pool = l->simulation->pool;
@@ -245,7 +246,7 @@ static void evaluate_rotor(bough_aero_link *l, int to, void (*move)(bough_aero_m
     l->time[to] = e.motion->time;
     l->factor[to] = ramp_factor(l->simulation->scene->aero.ramp, e.motion->time);
     l->found = to;
-    e.data->skips_slopes = next == NULL; // only signals that follow have them
+    e.data->skips_slopes = next == NULL; // only signals need them
     bough_pool_run(pool, 2 * l->n_blade, approach_blade, &e);
     bough_rotor_survey(l->rotor, e.motion, e.data);
     bough_pool_run(pool, next ? 2 * l->n_blade : l->n_blade, load_blade, &e);
@@ -257,7 +258,7 @@ static void evaluate_present(bough_aero_link *l, double t) {
     evaluate_rotor(l, l->shown, bough_aero_motion_blade, NULL);
 }
 
-// The sample before has looked ahead to this one; times are equal but for rounding.
+// Whether the previous sample has evaluated this one in advance; the times are equal up to rounding.
 static bool looked_ahead(const bough_aero_link *l, double t) {
     return fabs(l->time[1 - l->shown] - t) <= 1e-9 * (fabs(t) + 1e-3);
 }
@@ -274,7 +275,7 @@ static void evaluate(void *self, double t) {
     }
 }
 
-// The present loads stay from t on.
+// Keeps the present loads constant from t on.
 static void hold(bough_aero_link *l, double t) {
     if (l->time[l->shown] != t || l->found != l->shown) evaluate_present(l, t);
     for (int b = 0; b < l->n_blade; b++)
@@ -357,7 +358,7 @@ bough_vec3 bough_aero_link_hub_wind(const bough_aero_link *link, double t) {
 
 // -- saving ---------------------------------------------------------------------------------------
 
-// Stores the results of the evaluations, that of the last sample and the one ahead, but not the loads.
+// Stores the results of both evaluations, without the loads.
 static void snapshot(void *self, bough_snapshot *s) {
     bough_aero_link *link = self;
     if (s->move == BOUGH_SNAPSHOT_RESTORE) link->shown = 0, link->found = -1;

@@ -1,5 +1,5 @@
-// Connects the rotor's aerodynamics with the bodies of a simulation: it gets the motion of the blades'
-// vertices and sets the loads on them, sampled at the scene's rate.
+// Connects the rotor's aerodynamics with the bodies of a simulation: takes the motion of the blades' vertices
+// and sets the loads on them, sampled at the scene's rate.
 #ifndef BOUGH_APPS_MODEL_AERO_LINK_H
 #define BOUGH_APPS_MODEL_AERO_LINK_H
 
@@ -11,14 +11,14 @@ typedef struct bough_aero_link bough_aero_link;
 // Builds the rotor of the scene's aero block, if it has one, for the simulation's blades.
 bough_status bough_aero_link_build(bough_arena *arena, bough_simulation *simulation);
 
-// The turbulence by name of a scene's wind, with what the scene leaves to choose. False: it has none.
+// The definition of a scene's turbulence, with defaults. False: its wind is not turbulent.
 bool bough_aero_link_turbulence(const bough_scene *scene, bough_wind_iec_def *def);
 
 // Samples the blades, and the drag of tower and hub, at their present motion and keeps the loads constant
-// from t on. Dynamic inflow and stall are brought to equilibrium, for this sample and before the next.
+// from t on. Dynamic inflow and stall are set to equilibrium, for this sample and before the next.
 void bough_aero_link_hold(bough_aero_link *link, double t);
 
-// The same, but dynamic inflow and stall go on from the last sample to this one and to the next.
+// The same, but dynamic inflow and stall continue from the last sample to this one and to the next.
 void bough_aero_link_continue(bough_aero_link *link, double t);
 
 // Saves or restores dynamic inflow and stall: memory (bough_rotor_memory_size).
@@ -36,14 +36,13 @@ double bough_aero_link_missed(const bough_aero_link *link, int blade);
 // Changes the speed of a wind by a formula [m/s] from the next sample on.
 void bough_aero_link_set_wind(bough_aero_link *link, double speed);
 
-// To be called when state or wind have been changed from outside: the next sample is evaluated in any case.
+// To be called after a change of the state or the wind from outside: the next sample is evaluated anew.
 void bough_aero_link_renew(bough_aero_link *link);
 
-// Results of the last evaluation, at the last multiple of the period, with the ramp's factor at its time
-// (NULL: not wanted).
+// Results of the last sample, with the factor of the ramp at its time (NULL: not wanted).
 const bough_rotor_data *bough_aero_link_data(const bough_aero_link *link, double *factor);
 
-// The time of that evaluation [s]; NAN: none that is up to date.
+// The time of that sample [s]; NAN: there is none that is up to date.
 double bough_aero_link_evaluated(const bough_aero_link *link);
 
 // The wind at the place where the hub stood at the start, at a time [s], undisturbed, ground axes [m/s].
@@ -51,16 +50,16 @@ bough_vec3 bough_aero_link_hub_wind(const bough_aero_link *link, double t);
 
 // -- the motion of the blades (aero_motion.c) -----------------------------------------------------
 
-// How a rotor's blades move: as they do at present, and as expected at the next sample of the air.
+// The motion of a rotor's blades, at present and as predicted for the next sample of the air.
 
 typedef struct bough_aero_motion bough_aero_motion;
 
-// `beam` (n_blade) must stay.
+// `beam` (n_blade) is borrowed.
 bough_aero_motion *bough_aero_motion_build(bough_arena *arena, bough_simulation *simulation,
                                            const bough_beam *const *beam);
 
-// The motion as it is at the present time t. First the whole rotor's, then each blade's, which may be
-// given to different threads.
+// Sets the motion at the present time t, first that of the rotor, then that of each blade, which may be on
+// different threads.
 void bough_aero_motion_rotor(bough_aero_motion *m, double t);
 void bough_aero_motion_blade(bough_aero_motion *m, int blade);
 
@@ -70,20 +69,20 @@ void bough_aero_motion_blade(bough_aero_motion *m, int blade);
 void bough_aero_motion_expect_rotor(bough_aero_motion *m, double t, double ahead);
 void bough_aero_motion_expect_blade(bough_aero_motion *m, int blade);
 
-// The result of the last calls above.
+// The result of these calls.
 const bough_rotor_motion *bough_aero_motion_found(const bough_aero_motion *m);
 
-// A blade's motion, rows as in bough_blade_motion: at the call before (this, if there is none), at this one,
-// and as found.
+// Motion of a blade, rows as in bough_blade_motion: at the previous call (this one if there is none), at this
+// call, and the result.
 typedef struct bough_aero_course {
     const double *before, *now, *next;
 } bough_aero_course;
 bough_aero_course bough_aero_motion_course(const bough_aero_motion *m, int blade);
 
-// Makes the next call the first.
+// Discards all previous calls.
 void bough_aero_motion_forget(bough_aero_motion *m);
 
-// All that the next calls depend on.
+// The memory of the next calls.
 void bough_aero_motion_snapshot(bough_aero_motion *m, bough_snapshot *snapshot);
 
 // -- loads between the samples of the air (aero_signal.c) -----------------------------------------
@@ -106,34 +105,34 @@ typedef struct bough_aero_fresh {
 bough_aero_signal *bough_aero_signal_build(bough_arena *arena, bough_simulation *simulation,
                                            const bough_beam *beam);
 
-// The loads stay as they are from `start` on. `next` is the motion that they belong to.
+// Constant loads from `start` on, which belong to the motion course.next.
 void bough_aero_signal_hold(bough_aero_signal *s, bough_aero_fresh fresh, bough_aero_course course,
                             double start);
 
-// They go from what they are now to the fresh ones over the span [s]. A signal that has been held or
-// followed before is continuous.
+// Loads that change from the present ones to the new ones over the span [s], continuously after an earlier
+// call.
 void bough_aero_signal_follow(bough_aero_signal *s, bough_aero_fresh fresh, bough_aero_course course,
                               double start, double span);
 
-// The recent difference between the loads and those at the body's actual motion, relative to the loads; 0 for
-// a rod, whose loads follow its motion. About 1: the sampling rate is too low for the body's vibrations,
-// which then grow.
+// Recent difference between the loads and those at the actual motion of the body, relative to the loads; 0
+// for a rod, whose loads follow its motion. Near 1 the sampling rate is too low for the vibrations of the
+// body, which then grow.
 double bough_aero_signal_missed(const bough_aero_signal *s);
 
-// All that the signal depends on; restoring gives it to the body.
+// The memory of the signal; restoring sets it on the body.
 void bough_aero_signal_snapshot(bough_aero_signal *s, bough_snapshot *snapshot);
 
 // -- drag of tower and hub (drag_link.c) ----------------------------------------------------------
 
-// Joins the drag of tower and hub to the bodies of a simulation, sampled with the aerodynamics;
-// forces go linearly to what was sampled and arrive one sample late.
+// Drag of tower and hub, sampled with the aerodynamics; forces change linearly to the sampled values, which
+// they reach one sample late.
 
 typedef struct bough_drag_link bough_drag_link;
 
 // After the aerodynamics.
 void bough_drag_link_build(bough_arena *arena, bough_simulation *simulation);
 
-// Sets the drag of the present motion, constant, as bough_aero_link_hold does the rotor's loads.
+// Sets the drag at the present motion, constant, as bough_aero_link_hold sets the rotor's loads.
 void bough_drag_link_hold(bough_drag_link *link, double t);
 
 #endif

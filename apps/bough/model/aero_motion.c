@@ -5,7 +5,7 @@
 #include <math.h>
 #include <string.h>
 
-enum { CALLS = 3 }; // remembered: the motion is extrapolated by a parabola
+enum { CALLS = 3 }; // stored: the motion is extrapolated by a parabola
 
 // A blade's state: its rows, velocity and angular velocity of its frame, hub and shaft in the frame (of
 // the first blade only).
@@ -16,12 +16,12 @@ struct bough_aero_motion {
     const bough_beam *const *beam; // (n_blade)
     int n_blade, n_vertex, n_state;
     double *state[CALLS]; // of the blades (n_blade × n_state) at the last calls, the latest first
-    int known;            // how many of them
+    int known;            // number of stored calls
     double time;          // of the latest [s]
     double ahead;         // [s]
     bough_rotor_motion found;
-    bough_blade_motion *moving; // (n_blade), what `found` points to …
-    double *expected;           // … and its rows (n_blade × n_state)
+    bough_blade_motion *moving; // (n_blade) in `found`
+    double *expected;           // (n_blade × n_state) the rows of `moving`
 };
 
 bough_aero_motion *bough_aero_motion_build(bough_arena *arena, bough_simulation *simulation,
@@ -76,7 +76,7 @@ void bough_aero_motion_blade(bough_aero_motion *m, int b) {
 
 static bough_vec3 load(const double *from) { return bough_v3(from[0], from[1], from[2]); }
 
-// A quaternion and its negative are the same rotation: takes the one nearer to `like`.
+// A quaternion and its negative are the same rotation: chooses the one nearer to `like`.
 static void same_sign(int n, const double *like, double *p) {
     for (int i = 0; i < n; i++) {
         double dot = 0;
@@ -85,7 +85,7 @@ static void same_sign(int n, const double *like, double *p) {
     }
 }
 
-// Enters a blade's present state.
+// Stores the present state of a blade.
 static void enter(bough_aero_motion *m, int b) {
     const bough_simulation *s = m->simulation;
     size_t at = (size_t)b * (size_t)m->n_state, bytes = (size_t)m->n_state * sizeof(double);
@@ -101,7 +101,7 @@ static void enter(bough_aero_motion *m, int b) {
     bough_v3_store(bough_mat3_tmul(pose.rotation, m->found.shaft), frame + SHAFT);
 }
 
-// Weights of the last calls, by their number: of the extrapolation to the next call, and of the mean until
+// Weights of the last calls, by their number: for the extrapolation to the next call, and for the mean up to
 // it.
 static const double to_next[CALLS][3] = {{1, 0, 0}, {2, -1, 0}, {3, -3, 1}};
 static const double mean[CALLS][3] = {{1, 0, 0}, {1.5, -0.5, 0}, {23. / 12, -16. / 12, 5. / 12}};
@@ -112,7 +112,7 @@ static void expect(bough_aero_motion *m, int b) {
     const double *restrict z = m->state[2] + at, *w = to_next[m->known - 1];
     double *restrict next = m->expected + at, w0 = w[0], w1 = w[1], w2 = w[2];
     for (int k = 0; k < m->n_state; k++) next[k] = w0 * x[k] + w1 * y[k] + w2 * z[k];
-    // the frame by the mean of its velocity
+    // the frame moves by the mean of its velocity
     int frame = BOUGH_BLADE_ROWS * m->n_vertex + TWIST;
     double way[6];
     w = mean[m->known - 1];

@@ -6,13 +6,13 @@
 #include <math.h>
 #include <string.h>
 
-// How a signal continues. Its loads F at the next sample are those on the motion expected there, and
-// with them come their slopes by the vertices' motion, S. Between the samples F − S·motion runs along
-// the parabola through its last three values and the rod adds S·motion as it moves. So damping and
-// stiffness of the air act at once, and the error of the expected motion is in the loads of the same sample.
+// The signal between two samples. F are the loads at the next sample for the predicted motion, S their
+// derivatives with respect to the motion of the vertices. Between the samples F − S·motion follows the
+// parabola through its last three values, and a rod adds S·motion as it moves: damping and stiffness of the
+// air act without delay, and the error of the prediction is corrected within the same sample.
 //
-// Modal and rigid bodies have no such loads: theirs run to F, plus 3 Δ τ(1 − τ) for the error of the
-// sample before, Δ = S·(motion − expected motion): Adams' formula of third order.
+// Loads of modal and rigid bodies change to F, plus 3 Δ τ(1 − τ) for the error of the previous sample,
+// Δ = S·(motion − predicted motion): Adams' formula of third order.
 
 struct bough_aero_signal {
     bough_simulation *simulation;
@@ -21,17 +21,17 @@ struct bough_aero_signal {
     double start, span;           // [s]
     double damped;                // 1: the body adds S·motion
     double missed;                // mean square error of the loads, relative to that of the loads
-    double *sampled;              // (n) whole loads at the sample before
-    double *reached;              // (n) whole loads that the signal goes to, on the expected motion
+    double *sampled;              // (n) loads at the previous sample
+    double *reached;              // (n) loads at the end of the signal, for the predicted motion
     double *value, *rate, *curve; // (n) of the signal since `start`
     double *slope;                // S (BOUGH_SLOPES × n_vertex)
     double *angle;                // rotation of a section about its normal by its quaternion (4 × n_vertex)
     double *expected;             // S·expected motion (3 × n_vertex)
-    double *row;                  // start of the block of all that is saved, from `start` on
+    double *row;                  // start of the block of all stored arrays, from `sampled` on
     // scratch
     double *fresh;           // (n)
     double *now, *before;    // S·motion (3 × n_vertex)
-    double *whole, *last;    // (n) at the present sample and the one before
+    double *whole, *last;    // (n) at the present and the previous sample
     double *along;           // per length (12 × segments): its rate, of a modal body itself
     double *strain, *lumped; // of a modal body, D q and the loads of it (6 × the mesh's stride)
 };
@@ -70,7 +70,7 @@ bough_aero_signal *bough_aero_signal_build(bough_arena *arena, bough_simulation 
 
 // -- fresh loads ----------------------------------------------------------------------------------
 
-// The resultant of loads on a rigid blade's vertices, c of them with rows of `row`.
+// The resultant of loads on the vertices of a rigid blade; row[c]: component c (n_vertex), NULL: 0.
 static void sum_loads(const bough_aero_signal *s, const double *const row[6], double sum[6]) {
     bough_wrench total = {{0, 0, 0}, {0, 0, 0}};
     for (int i = 0; i < s->n_vertex; i++) {
@@ -82,7 +82,7 @@ static void sum_loads(const bough_aero_signal *s, const double *const row[6], do
     bough_wrench_store(total, sum);
 }
 
-// A modal body knows loads on vertices only.
+// Modal bodies have loads on vertices only.
 static void lump_line(bough_aero_signal *s) {
     const bough_rod_model *m = s->beam->mesh;
     int n = s->n_vertex, stride = m->stride;
@@ -113,7 +113,7 @@ static void take_fresh(bough_aero_signal *s, bough_aero_fresh fresh, const doubl
 
 // -- slopes ---------------------------------------------------------------------------------------
 
-// 2 p₀*∘p, the part along the section's normal, as a row times p.
+// The row that gives the rotation about the section's normal, 2 p₀*∘p, when it is multiplied by p.
 static void set_angle(int n, const double *rows, double *restrict angle) {
     const double *restrict p = rows + BOUGH_BLADE_ROTATION * n;
 #pragma omp simd
@@ -145,7 +145,7 @@ static void apply_slope(const bough_aero_signal *s, const double *rows, double *
     }
 }
 
-// Adds factor × such loads to the body's.
+// Adds factor times these loads to those of the body.
 static void add_slope(const bough_aero_signal *s, double factor, const double *from, double *to) {
     int n = s->n_vertex;
     if (s->beam->port < 0) {
@@ -178,7 +178,7 @@ static void take_slope(bough_aero_signal *s, bough_aero_fresh fresh, bough_aero_
 
 // -- the signal -----------------------------------------------------------------------------------
 
-// Hands it to the body.
+// Sets the signal on the body.
 static void put(bough_aero_signal *s) {
     const bough_beam *beam = s->beam;
     if (beam->port < 0) {
@@ -199,7 +199,7 @@ static void put(bough_aero_signal *s) {
         memcpy(rod->slope + c * stride, s->slope + c * n, n * sizeof(double));
     for (size_t c = 0; c < 4 && rod->damped; c++)
         memcpy(rod->angle + c * stride, s->angle + c * n, n * sizeof(double));
-    int first = 6 * s->n_vertex, count = s->n - first; // along the segments: on the straight line
+    int first = 6 * s->n_vertex, count = s->n - first; // along the segments: linear
     const double *restrict from = s->value + first, *restrict to = s->reached + first;
     double *restrict along = s->along, inverse = 1 / s->span;
 #pragma omp simd
@@ -225,8 +225,8 @@ void bough_aero_signal_hold(bough_aero_signal *s, bough_aero_fresh fresh, bough_
     put(s);
 }
 
-// Along the parabola through last, now and next, which begins at `from` and ends at `next`, and is higher
-// by bump·τ(1 − τ).
+// The parabola from `from` to `next` with the curvature of the one through last, now and next: a straight
+// line plus bump·τ(1 − τ).
 static void bend(bough_aero_signal *s, const double *from, const double *next, const double *now,
                  const double *last) {
     double *restrict value = s->value, *restrict rate = s->rate, *restrict curve = s->curve;
@@ -240,7 +240,7 @@ static void bend(bough_aero_signal *s, const double *from, const double *next, c
     }
 }
 
-// Error of the expected motion in the forces across the blade, mean of about ten samples.
+// Error of the prediction in the forces normal to the blade, mean over about ten samples.
 static void note_missed(bough_aero_signal *s) {
     const double *restrict now = s->now, *restrict expected = s->expected, *restrict whole = s->whole;
     double missed = 0, size = 0;
@@ -261,7 +261,7 @@ void bough_aero_signal_follow(bough_aero_signal *s, bough_aero_fresh fresh, boug
     s->span = span;
     s->damped = rod;
     take_fresh(s, fresh, course.next);
-    apply_slope(s, course.now, s->now); // by the slopes of the sample before
+    apply_slope(s, course.now, s->now); // by the slopes of the previous sample
     memcpy(whole, s->reached, bytes);
     add_slope(s, 1, s->now, whole);
     add_slope(s, -1, s->expected, whole);

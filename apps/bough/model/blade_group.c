@@ -12,7 +12,7 @@ static double azimuth_of(const bough_simulation *s, const bough_beam *blade) {
     return angle < -even ? angle + 2 * BOUGH_PI : angle;
 }
 
-// The angular velocity along the shaft of the link that carries the blades: of all joints that turn it.
+// The angular velocity of the link that carries the blades, along the shaft.
 static double spin_of(const bough_simulation *s, int hub) {
     const bough_frame frame = {.link = hub, .placement = bough_transform_identity()};
     bough_vec3 shaft = bough_simulation_joint_axis(s, s->scene->turbine.rotor);
@@ -29,7 +29,7 @@ static void insert(const bough_simulation *s, const bough_beam *blade, bough_bla
     group->blade[k] = blade;
 }
 
-// The link that carries a blade, beyond joints of given motion.
+// The link that carries a blade, below its joints of prescribed motion.
 static int hub_of(const bough_simulation *s, const bough_beam *blade) {
     const bough_tree *tree = s->tree;
     int link = tree->markers[blade->marker].link, rotor = tree->bodies[s->scene->turbine.rotor].link;
@@ -49,14 +49,15 @@ static bool turns_about_shaft(const bough_simulation *s, int link, double length
            bough_norm(off) < even * length;
 }
 
-// Whether what carries the blades turns with the rotor or, as beyond the spring of a shaft, about its axis.
+// Whether the link that carries the blades is the rotor or rotates about its axis, as at the end of an
+// elastic shaft.
 static bool is_on_shaft(const bough_simulation *s, int hub, double length) {
     int rotor = s->tree->bodies[s->scene->turbine.rotor].link;
     while (hub > rotor && turns_about_shaft(s, hub, length)) hub = s->tree->links[hub].parent;
     return hub == rotor;
 }
 
-// How far the blade's pitch is from the first one's: of x and y of its frame about the span.
+// Difference of the pitch from that of the first blade, rotated by `angle` about the shaft [rad].
 static double pitch_between(const bough_simulation *s, const bough_beam *first, const bough_beam *blade,
                             double angle) {
     bough_vec3 turn = bough_scale(angle, bough_simulation_joint_axis(s, s->scene->turbine.rotor));
@@ -133,8 +134,8 @@ static bough_vec3 mean_chord(const bough_blade_group *group, const bough_rod_mod
     return sum;
 }
 
-// Mean rotations, and positions by the mean strains: mean positions of blades bent to either side
-// would be shorter than the rod and press it.
+// Mean rotations, and positions by the mean strains: the mean of positions would be shorter than the rods and
+// compress them.
 static void average_rods(const bough_blade_group *group, const double *state, double *mean) {
     const bough_rod_model *m = group->blade[0]->mesh;
     int n = m->n;

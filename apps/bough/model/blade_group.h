@@ -7,9 +7,9 @@
 typedef struct bough_blade_group {
     int n;                    // blades; 0: unequal, not evenly spaced, fewer than three, rigid
     const bough_beam **blade; // (n) by azimuth
-    int *first;               // (n) row of each one's first state
-    int *first_input;         // (n) and of its first input
-    double azimuth;           // of the first, about the shaft from the upright [rad]
+    int *first;               // (n) row of the first state of each
+    int *first_input;         // (n) row of its first input
+    double azimuth;           // of the first, about the shaft from the vertical [rad]
     double speed;             // of the rotor [rad/s]
     int n_row, *row;          // (n × n_row) all rows of their states
 } bough_blade_group;

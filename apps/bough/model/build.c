@@ -1,4 +1,4 @@
-// The whole of a simulation, part by part: tree, rods, ports, loads, master.
+// Builds a simulation part by part: tree, rods, ports, loads, master.
 
 #include "apps/bough/model/aero_link.h"
 #include "apps/bough/model/build_internal.h"
@@ -23,7 +23,7 @@ static void add_events(bough_builder *b, double start, double end, int n, const 
     for (int i = 0; i < n; i++) add_event(b, times[i]);
 }
 
-// The corners of motions, loads and air as events; the loads on joints, which are the tree's.
+// Collects the corners of motions, loads and air as events, and the loads on joints for the tree.
 static void set_loads(bough_builder *b) {
     for (int k = 0; k < 2 * b->scene->n_body; k++) {
         const bough_motion_def *def = &b->scene->body[k / 2].joint.motion[k % 2].def;
@@ -37,14 +37,14 @@ static void set_loads(bough_builder *b) {
                                                             bough_scene_load_schedule(load)};
     }
     if (b->scene->aero.node != NULL) add_events(b, b->scene->aero.ramp[0], b->scene->aero.ramp[1], 0, NULL);
-    // the generator's is the last, 0 until the control steers it
+    // the generator's is the last, 0 until the control sets it
     if (b->scene->control.node != NULL)
         b->load[b->tree.n_loads++] = (bough_joint_load_def){.body = b->scene->turbine.rotor};
 }
 
 // -- parts ----------------------------------------------------------------------------------------
 
-// Of the tree in a macro step: one that takes more follows wrenches of rods that run away.
+// The most steps of the tree in a macro step: more are only taken if the wrenches of the rods diverge.
 enum { MOST_TREE_STEPS = 20000 };
 
 static bough_integrator_options solver_options(const bough_scene_solver *solver) {
@@ -59,8 +59,8 @@ static bough_integrator_options solver_options(const bough_scene_solver *solver)
 static bough_scheme_options scheme_options(const bough_scene *scene) {
     bough_scheme_options options = scene->simulation.coupling.options;
     options.name = bough_scheme_name(scene->simulation.coupling.scheme);
-    // A body answers with the noise of its own tolerance, below which nothing converges: measured
-    // on the turbine, residuals stall at 0.2 to 0.6 of the micro rtol.
+    // The iteration cannot converge below the error of the sub-solvers: residuals of the turbine stall at 0.2
+    // to 0.6 of the micro rtol.
     double noise = 0;
     for (int i = 0; i < scene->n_body; i++) {
         noise = fmax(noise, bough_scene_micro(scene, &scene->body[i])->rtol);
@@ -89,7 +89,7 @@ static bough_status build_tree(bough_builder *b) {
     }
     bough_integrator_options master = solver_options(&scene->simulation.master);
     master.most_steps = MOST_TREE_STEPS;
-    // under a scheme of one system the tree's own method is never used; any that suits a tree will do
+    // with all bodies as one system this method is never used
     if (bough_scheme_at(scene->simulation.coupling.scheme)->one_system) master.kind = BOUGH_ROSENBROCK;
     bough_system tree = bough_tree_system_create(b->arena, s->tree, "tree");
     return bough_member_create(b->arena, &tree, 0, &master, &s->leader);
@@ -106,7 +106,7 @@ static bough_status build_rods(bough_builder *b) {
         BOUGH_TRY(bough_build_beam(b->arena, beam, solver_options(bough_scene_micro(b->scene, beam->body)),
                                    motion + BOUGH_PORT_OUTPUTS * beam->port, &s->rod[beam->port]));
     }
-    int port = s->n_rod; // of the FMUs, after those of the rods
+    int port = s->n_rod; // of the FMUs, after the rods
     for (int i = 0; i < b->scene->n_body; i++) {
         if (b->scene->body[i].fidelity != BOUGH_SCENE_FMU) continue;
         BOUGH_TRY(bough_fmu_member_create(b->arena, &b->scene->body[i], motion + BOUGH_PORT_OUTPUTS * port,
@@ -129,7 +129,7 @@ static void connect_end(bough_builder *b, const bough_beam *beam) {
     connect_one(b, (bough_connection){rod, BOUGH_ROD_OUTPUTS, 0, wrench, BOUGH_ROD_END_OUTPUTS, false});
 }
 
-// The ground's axes from the tree to a beam under loads in these axes, the n-th such beam.
+// The ground's axes from the tree to the n-th beam with loads in these axes.
 static void connect_axes(bough_builder *b, const bough_beam *beam, int n) {
     const bough_tree *tree = b->s->tree;
     int from = BOUGH_PORT_OUTPUTS * tree->n_ports + BOUGH_END_OUTPUTS * tree->n_ends + BOUGH_GROUND_AXES * n;
@@ -194,7 +194,7 @@ static bough_status build_master(bough_builder *b) {
 
 // -- whole ----------------------------------------------------------------------------------------
 
-// Room for the most that a scene can need.
+// Takes arrays of the largest sizes that the scene can need.
 static void take_arrays(bough_builder *b) {
     const bough_scene *scene = b->scene;
     size_t bodies = (size_t)scene->n_body, loads = (size_t)scene->n_load;
@@ -250,7 +250,7 @@ bough_status bough_simulation_build_on(bough_arena *arena, const bough_scene *sc
     return bough_ok();
 }
 
-// -- what the parts of a simulation remember, in order --------------------------------------------
+// -- memory of the parts, in order ----------------------------------------------------------------
 
 void bough_simulation_snapshot(bough_simulation *s, bough_snapshot *snapshot) {
     bough_master_snapshot(s->master, snapshot);

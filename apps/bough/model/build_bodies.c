@@ -1,5 +1,4 @@
-// The bodies of a scene as bodies of the tree, their undeformed beams, and the members that flexible beams
-// are.
+// Builds the bodies of the tree, the undeformed beams, and the members of flexible beams.
 #include "apps/bough/model/build_internal.h"
 
 #include "core/base/rotation.h"
@@ -9,8 +8,8 @@
 
 // -- joints ---------------------------------------------------------------------------------------
 
-// The joint frame in the frame of the tree's body it hangs on: from where bodies hang on the parent
-// the joint's placement, then the pitch.
+// The frame of the joint in the body of the tree that carries it: from x, where bodies hang on the parent, by
+// the joint's placement and the pitch.
 static bough_transform placement(const bough_scene_body *body, bough_transform x) {
     x = bough_transform_compose(x, body->joint.placement);
     if (body->pitch != 0) {
@@ -26,8 +25,8 @@ static bough_mat3 tensor(const double j[6]) {
     return (bough_mat3){{j[0], j[3], j[4]}, {j[3], j[1], j[5]}, {j[4], j[5], j[2]}};
 }
 
-// Where bodies hang on a beam: at its end, in the axes of the beam's body, which turn with the last
-// section. So a placement means the same whether the beam bends or not.
+// The frame in which bodies hang on a beam: at its end, with the axes of the beam's body, which rotate with
+// the last section. A placement is then the same for flexible and rigid beams.
 static bough_transform beam_end(const bough_beam *beam) {
     int n = beam->def.n_segment;
     bough_mat3 section = bough_rotation_matrix(beam->def.rotation[n]);
@@ -68,7 +67,7 @@ static void set_joint(const bough_builder *b, const bough_scene_body *from, boug
     to->speeds[1] = c * joint->speeds[1] - s * joint->speeds[0];
 }
 
-// The mass of a rigid body, given or integrated from its rod's table.
+// Mass and inertia of a rigid body, given or integrated over its rod.
 static void set_mass(const bough_scene_body *from, bough_beam *beam, bough_body_def *to) {
     if (beam == NULL) {
         to->mass = from->mass;
@@ -96,7 +95,7 @@ static bool equal_structures(const bough_scene_structure *x, const bough_scene_s
     return equal;
 }
 
-// One of the first n beams of a simulation with that beam's mesh.
+// One of the first n beams of a simulation whose mesh is that of the beam; NULL: there is none.
 static const bough_beam *equal_in(const bough_simulation *s, int n, const bough_beam *beam) {
     const bough_scene_rod *rod = &beam->body->rod;
     for (const bough_beam *other = s->beam; other < s->beam + n; other++) {
@@ -107,7 +106,7 @@ static const bough_beam *equal_in(const bough_simulation *s, int n, const bough_
     return NULL;
 }
 
-// Equal beams, such as the blades of a rotor, have one mesh.
+// Equal beams, such as the blades of a rotor, share one mesh.
 static const bough_beam *equal_beam(const bough_builder *b, const bough_beam *beam) {
     const bough_beam *equal = equal_in(b->s, b->s->n_beam, beam);
     return equal || !b->beside ? equal : equal_in(b->beside, b->beside->n_beam, beam);
@@ -144,8 +143,8 @@ static bough_inertia root_inertia(const bough_rod_def *def) {
     return bough_inertia_to_parent(&x, vertex_inertia(&def->inertia[0]));
 }
 
-// The last vertex becomes a body of the tree, free against the rod's frame; what the rod carries
-// hangs on it.
+// The last vertex becomes a body of the tree on a free joint to the rod's frame; it carries what the rod
+// carries.
 static void add_end(bough_builder *b, bough_beam *beam, int index) {
     const bough_rod_def *def = &beam->def;
     int n = def->n_segment, body = b->scene->n_body + b->s->n_end;

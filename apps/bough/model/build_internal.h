@@ -15,10 +15,10 @@ void bough_load_link_build(bough_arena *arena, bough_simulation *s);
 
 // -- parts that are sampled, as far as the scene has them ------------------------------------------
 
-// They enter themselves among the simulation's sampled loads.
+// Each adds itself to the simulation's sampled loads.
 
-// Inputs, set between steps by whoever steps the scene: a value holds from the next macro step on; a joint
-// with a prescribed motion gets there within it (input_link.c). Before all other loads.
+// Inputs, which another program sets between steps (input_link.c): a value holds from the next macro step on;
+// a joint with a prescribed motion reaches it at the end of that step. Before all other loads.
 void bough_input_link_build(bough_arena *arena, bough_simulation *s);
 
 // Loads that jump at a time: ramps without length. The step that ends at the jump is integrated without the
@@ -28,38 +28,38 @@ void bough_jump_link_build(bough_arena *arena, bough_simulation *s);
 
 // -- an FMU as a member (fmu_member.c) ------------------------------------------------------------
 
-// An FMU as a member: it advances by its own steps from communication point to communication point, under
-// the motion of a body's frame, and answers with the wrench on the carrier. Its equations are not known, so
-// the system has outputs only: those of the last communication point.
+// An FMU as a member: it advances by its own steps between communication points under the motion of a body's
+// frame and returns the wrench on the carrier. Its equations are not known, so that the system has outputs
+// only: those of the last communication point.
 
 // Loads the FMU's library and makes an instance, which the arena releases, at time 0 under `motion`
 // (BOUGH_SCENE_MOTION); `duration` [s] is that of the run. BOUGH_INVALID: the library is missing or lacks a
 // function of the standard. BOUGH_FAILED: the FMU reports an error; the message is its own. The member must
-// stay where it is.
+// not be moved.
 bough_status bough_fmu_member_create(bough_arena *arena, const bough_scene_body *body, const double *motion,
                                      double duration, bough_member *member);
 
 // -- the steady operation of a turbine as the start of a run (trim.c) -----------------------------
 
-// The steady operation of a turbine in the wind at time 0 as the start of a run: the rotor turns at the
-// speed, and the blades are pitched to the angle, at which the air's torque is the generator's under the
-// control law. Below rated power the pitch is the law's least and the speed is sought; else the speed is the
-// pitch controller's and the pitch is sought. The bodies are in equilibrium there (equilibrium.h).
+// Starts a run in the steady operation of a turbine in the wind at time 0, where the torque of the air equals
+// that of the generator under the control law. Below rated power the pitch is the smallest of the law and the
+// speed is found; otherwise the speed is that of the pitch controller and the pitch is found. The bodies are
+// in equilibrium there (equilibrium.h).
 
-// Needs a control law. BOUGH_FAILED where there is no steady operation.
+// Needs a control law. BOUGH_FAILED if there is no steady operation.
 bough_status bough_simulation_trim(bough_arena *arena, bough_simulation *s, const bough_assembly *assembly);
 
 // -- the builder ----------------------------------------------------------------------------------
 
-// What is gathered while building; the pieces point into the arena.
+// Data of a simulation while it is built; arrays are in the arena.
 typedef struct bough_builder {
     bough_arena *arena;
     const bough_scene *scene;
     bough_simulation *s;
-    const bough_simulation *beside; // NULL, or one whose meshes serve where rods are equal
+    const bough_simulation *beside; // whose meshes are used for equal rods; NULL: none
     bough_tree_def tree;            // its arrays are `body` to `load`
-    bough_body_def *body;           // (n_body + n_end): the tree's body i is the scene's body i; after
-                                    // them what each carrying rod ends in
+    bough_body_def *body;           // (n_body + n_end): those of the scene, then the ends of rods
+                                    // that carry bodies
     bough_end_def *end;             // (n_end)
     bough_marker_def *marker;       // (tree.n_markers), those of the beams first, then of the FMUs
     bough_port_def *port;           // (n_rod + n_fmu)
@@ -84,16 +84,16 @@ int bough_build_marker(bough_builder *b, const char *name, int body, bough_trans
 
 // -- springs, bushings, closures, applied wrenches and recorded points (load_link.c) --------------
 
-// All of the scene, after the markers of beams and FMUs. The last marker is that of the hub's drag, if it has
-// any.
+// Adds all of the scene, after the markers of beams and FMUs. The last marker is that of the hub's drag, if
+// there is one.
 void bough_build_forces(bough_builder *b);
 
-// Rotates the second markers of the bushings so that the bushings exert nothing in the simulation's view.
+// Places the second markers of the bushings so that the bushings are free of force in the simulation's view.
 void bough_build_rest(const bough_simulation *s);
 
 // -- channels that observe.c takes from observe_loads.c -------------------------------------------
 
-// Puts a vector in this unit; what follows it.
+// Writes a vector in this unit and returns the place after it.
 static inline double *bough_observe_vector(bough_vec3 x, double unit, double *value) {
     value[0] = x.x / unit, value[1] = x.y / unit, value[2] = x.z / unit;
     return value + 3;

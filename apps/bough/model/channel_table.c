@@ -164,7 +164,7 @@ const bough_channel_family bough_channel_families[BOUGH_CHANNEL_PARTS] = {
 };
 // clang-format on
 
-// text = the template with its parts put in, cut off where it does not fit: no channel has such a long name.
+// Replaces {a} and {b} in a template. The text is cut at `size`: no channel has such a long name.
 static void fill(const char *form, const char *a, const char *b, char *text, size_t size) {
     size_t used = 0;
     for (const char *c = form; *c;) {

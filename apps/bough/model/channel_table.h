@@ -1,5 +1,5 @@
-// The one list of all channels: name, unit, meaning, OpenFAST's name beside it. What a run records
-// is registered from it, and the documentation printed.
+// The table of all channels: name, unit, meaning, and OpenFAST's name. The channels of a run and the
+// documentation follow from it.
 #ifndef BOUGH_APPS_MODEL_CHANNEL_TABLE_H
 #define BOUGH_APPS_MODEL_CHANNEL_TABLE_H
 
@@ -8,17 +8,17 @@
 #include <stdio.h>
 
 typedef struct bough_channel_row {
-    const char *name; // with "{a}" and "{b}" where the first and the second part are put in
+    const char *name; // "{a}" and "{b}" are replaced by the first and the second part
     const char *unit;
     const char *meaning;  // axes and sign
     const char *openfast; // its name there, NULL: it has none
-    int component;        // 1, 2, 3 of a vector whose components follow each other; 0: none
+    int component;        // 1, 2 or 3 of a vector whose components are adjacent; 0: a scalar
 } bough_channel_row;
 
-// What one part of a scene gives.
+// The channels of a part of a scene.
 typedef struct bough_channel_family {
-    const char *title; // of which part
-    const char *parts; // what {a} and {b} are; NULL: none
+    const char *title; // the part
+    const char *parts; // meaning of {a} and {b}; NULL: there are none
     int n;
     const bough_channel_row *row; // (n), in the order of the values
     bough_sampling sampled;       // of all its values
@@ -64,7 +64,7 @@ extern const bough_channel_family bough_channel_families[BOUGH_CHANNEL_PARTS];
 // Adds the channels of a part to the list's last group.
 void bough_channel_family_add(bough_channels *list, bough_channel_part part, const char *a, const char *b);
 
-// A group of the list whose channels are those of a part that has no names.
+// Adds a group with the channels of a part without names.
 void bough_channel_group_add(bough_channels *list, bough_channel_sample *sample, void *self,
                              bough_channel_part part);
 

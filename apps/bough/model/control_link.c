@@ -10,25 +10,25 @@
 #include <math.h>
 #include <string.h>
 
-// What an event has found when it happened. Doubles only: a copy has no padding.
+// State of an event. Doubles only: a copy has no padding.
 typedef struct event_state {
     double happened; // 0: not yet
     double since;    // [s]
     double torque;   // of the generator then [N m]
     double speed;    // of the generator then [rad/s]
     double angle;    // of the blade's pitch or the yaw joint then [rad]
-    double running;  // after a start: whether the law's own torque holds
+    double running;  // after a start: 1 once the torque is that of the law
 } event_state;
 
 enum { BLADES = BOUGH_MOST_BLADES };
 
-// What the next samples depend on. Doubles only: a copy has no padding.
+// Memory of the samples. Doubles only: a copy has no padding.
 typedef struct memory {
     bough_controller_state law;
     double torque;                          // of the generator, reached at the next sample [N m]
     double speed;                           // of the generator at the last sample [rad/s]
     bough_motion_point pitch_joint[BLADES]; // reached at the next sample
-    double nacelle[4];                      // its motion at the last sample: see nacelle_motion
+    double nacelle[4];                      // motion of the nacelle at the last sample: see nacelle_motion
     double started;
 } memory;
 
@@ -38,7 +38,7 @@ struct bough_control_link {
     bough_discon *discon;    // NULL: none
     bough_fmu_instance *fmu; // NULL: none
     int load, n_blade;
-    bool steers;                          // the blades are pitched
+    bool steers;                          // it pitches the blades
     event_state event[BOUGH_MOST_EVENTS]; // (control->n_event)
     int *column;                          // (n_event) channel of a threshold; −1: none
     bough_channels channels;              // for thresholds
@@ -48,8 +48,8 @@ struct bough_control_link {
 
 // -- events ---------------------------------------------------------------------------------------
 
-// Events in the turbine's operation: start, stop, loss of the grid, faults of pitch and yaw, at given
-// times or when a channel passes a threshold. They change what the controller demands.
+// Events in the operation of the turbine: start, stop, loss of the grid, faults of pitch and yaw, at given
+// times or when a channel passes a threshold. They change the demands of the controller.
 
 static bough_status find_channel(bough_arena *arena, bough_control_link *l, int i) {
     const char *name = l->control->event[i].channel;
@@ -93,7 +93,7 @@ static bool happens(bough_control_link *l, int i, double t) {
     return event->falls ? value < event->threshold : value > event->threshold;
 }
 
-// Marks the events that have happened up to the time of `sensed`.
+// Marks the events up to the time of `sensed`.
 static void look_for_events(bough_control_link *l, const bough_discon_sensed *sensed) {
     event_state *state = l->event;
     for (int i = 0; i < l->control->n_event; i++) {
@@ -107,14 +107,14 @@ static void look_for_events(bough_control_link *l, const bough_discon_sensed *se
     }
 }
 
-// Whether the turbine idles because its start is yet to come.
+// Whether the turbine idles before its start.
 static bool idles(const bough_control_link *l) {
     for (int i = 0; i < l->control->n_event; i++)
         if (l->control->event[i].kind == BOUGH_SCENE_START && l->event[i].happened == 0) return true;
     return false;
 }
 
-// -- what events do -------------------------------------------------------------------------------
+// -- effects of events ----------------------------------------------------------------------------
 
 static double towards(double from, double to, double reach) {
     return bough_clamp(to, from - reach, from + reach);
@@ -138,8 +138,8 @@ static void feather(const bough_control_link *l, const bough_scene_event *event,
     pitch_to(l, event, event->angle > 0 ? event->angle : BOUGH_PI / 2, sensed, demand);
 }
 
-// Pitched, the law demands rated power at any speed, which would stop a rotor that starts: until it is at
-// rated speed or no longer pitched, it has the torque of an unpitched one.
+// At a large pitch the law demands rated power at any speed, which would stop a rotor that starts: until it
+// reaches rated speed or a small pitch, its torque is that at zero pitch.
 static void run_up(const bough_control_link *l, const bough_discon_sensed *sensed, event_state *state,
                    bough_discon_demand *demand) {
     const bough_controller_def *law = &l->control->law;
@@ -149,15 +149,15 @@ static void run_up(const bough_control_link *l, const bough_discon_sensed *sense
     demand->torque = fmin(demand->torque, bough_controller_torque(law, sensed->generator_speed, 0));
 }
 
-// Falls to zero within ten seconds, and below half the speed at the start of the stop also with the speed: a
-// constant torque would turn a rotor backwards that has stopped.
+// Falls to zero within ten seconds and, below half of the initial speed, with the speed: a constant torque
+// would accelerate a rotor backwards that has stopped.
 static double stopping_torque(const event_state *state, double gone, double speed) {
     const double ramp = 10; // [s]
     double left = fmax(0, 1 - gone / ramp), turning = state->speed > 0 ? 2 * speed / state->speed : 0;
     return state->torque * left * bough_clamp(turning, 0, 1);
 }
 
-// The joint goes at its rate; its speed jumps where that begins and ends.
+// The joint moves at a constant rate; its speed jumps at the start and the end.
 static void turn_yaw(const bough_control_link *l, const bough_scene_event *event,
                      const bough_discon_sensed *sensed, const event_state *state) {
     double rate = rate_of(l, event), gone = sensed->time - state->since;
@@ -168,7 +168,8 @@ static void turn_yaw(const bough_control_link *l, const bough_scene_event *event
                      (bough_motion_point){now, speed, 0}, (bough_motion_point){then, speed, 0});
 }
 
-// Later orders prevail: a stop over a change of pitch, the fault of one blade over what all blades shall do.
+// Later orders take precedence: a stop over a change of pitch, the fault of one blade over demands for all
+// blades.
 enum { ORDERS = 3 };
 
 static int order_of(const bough_scene_event *event) {
@@ -203,7 +204,7 @@ static void change(bough_control_link *l, int i, const bough_discon_sensed *sens
     }
 }
 
-// Changes the controller's demand for the next step by the events that have happened.
+// Changes the demand for the next step by the events so far.
 static void change_demand(bough_control_link *l, const bough_discon_sensed *sensed,
                           bough_discon_demand *demand) {
     if (idles(l)) {
@@ -218,7 +219,7 @@ static void change_demand(bough_control_link *l, const bough_discon_sensed *sens
     }
 }
 
-// -- set from outside -----------------------------------------------------------------------------
+// -- steady operation -----------------------------------------------------------------------------
 
 static int blade_body(const bough_control_link *l, int b) { return l->simulation->scene->turbine.blade[b]; }
 
@@ -245,7 +246,7 @@ void bough_control_link_put(bough_control_link *link, double torque, double pitc
 
 // -- sample ---------------------------------------------------------------------------------------
 
-// Moments of a blade on its root out of the plane of rotation and in it.
+// Moments of a blade at its root, for bending out of the plane of rotation and in it.
 static void root_moments(const bough_control_link *l, int b, double t, double *out, double *in) {
     const bough_beam *beam = bough_simulation_beam(l->simulation, blade_body(l, b));
     double root[BOUGH_ROD_MOST_OUTPUTS], pitch = bough_simulation_pitch(l->simulation, beam);
@@ -258,8 +259,8 @@ static double hub_wind(const bough_simulation *s) {
     return s->aero ? bough_norm(bough_aero_link_data(s->aero, NULL)->disk_wind) : 0;
 }
 
-// How the body that carries the rotor moves: velocity of its origin in ground axes, and its angular
-// velocity about its own y.
+// Motion of the body that carries the rotor: velocity of its origin in ground axes, angular velocity about
+// its y.
 static void nacelle_motion(const bough_simulation *s, double motion[4]) {
     int body = s->scene->body[s->scene->turbine.rotor].joint.parent;
     memset(motion, 0, 4 * sizeof *motion);
@@ -270,7 +271,7 @@ static void nacelle_motion(const bough_simulation *s, double motion[4]) {
     motion[3] = bough_tree_frame_twist(s->view, frame).angular.y;
 }
 
-// Where nacelle and wind look, and the nacelle's accelerations, as differences over the last sample.
+// Directions of nacelle and wind, and accelerations of the nacelle by differences over the last sample.
 static void sense_nacelle(bough_control_link *l, double t, bough_discon_sensed *x) {
     const bough_simulation *s = l->simulation;
     bough_vec3 axis = bough_simulation_rotor(s).axis;
@@ -292,7 +293,7 @@ static void sense_nacelle(bough_control_link *l, double t, bough_discon_sensed *
     memcpy(last, motion, sizeof motion);
 }
 
-// The generator's losses lower what it gives and add to what it takes [W].
+// Losses reduce the power that the generator gives and add to the power that it takes [W].
 static double electrical_power(const bough_scene_control *c, double speed, double torque) {
     bool takes = torque < 0 && c->efficiency > 0;
     return takes ? speed * torque / c->efficiency : speed * torque * c->efficiency;
@@ -331,7 +332,7 @@ static void take_inputs(const bough_simulation *s, bough_discon_demand *demand) 
     }
 }
 
-// A communication step over the sample, whose end the demands are for.
+// A communication step over the sample; the demands are for its end.
 static bough_status step_fmu(bough_control_link *l, const bough_discon_sensed *x,
                              bough_discon_demand *demand) {
     const bough_scene_control_fmu *fmu = &l->control->fmu;
@@ -351,10 +352,10 @@ static bough_status step_fmu(bough_control_link *l, const bough_discon_sensed *x
             bough_fmu_initialise(l->fmu, x->time, l->simulation->master->duration, &fmu->inputs.values, all));
     }
     BOUGH_TRY(bough_fmu_step(l->fmu, x->time, x->step));
-    all[BOUGH_SENSED_TORQUE] = 0; // unless it is an output
+    all[BOUGH_SENSED_TORQUE] = 0; // if it is no output
     BOUGH_TRY(bough_fmu_get(l->fmu, x->time + x->step, &fmu->outputs.values, all));
     demand->torque = all[BOUGH_SENSED_TORQUE];
-    // one output of a pitch is for all blades; without one they keep theirs
+    // a single pitch is for all blades; without one they keep theirs
     int n = fmu->outputs.n_pitch;
     for (int b = 0; b < x->n_blade; b++)
         demand->pitch[b] = n == 0 ? x->pitch[b] : all[BOUGH_SCENE_SENSED + (n == 1 ? 0 : b)];
@@ -376,7 +377,7 @@ static bough_status decide(bough_control_link *l, const bough_discon_sensed *x, 
     return bough_ok();
 }
 
-// To the demanded pitch, as fast as it may turn.
+// Moves a blade towards the demanded pitch, at most at the largest rate.
 static void steer(bough_control_link *l, int b, double t, double step, double pitch) {
     bough_simulation *s = l->simulation;
     int body = blade_body(l, b);
@@ -418,7 +419,7 @@ bough_generator bough_control_link_generator(const bough_control_link *l) {
     return (bough_generator){speed, torque, electrical_power(l->control, speed, torque)};
 }
 
-// A foreign controller's own memory is not in it.
+// Without the memory of a foreign controller.
 static void snapshot(void *self, bough_snapshot *s) {
     bough_control_link *link = self;
     bough_snapshot_take(s, &link->now, sizeof link->now);

@@ -1,6 +1,6 @@
-// Joins a controller to the turbine of a simulation: rotor speed and pitch in, generator torque and
-// pitch out, sampled at the scene's rate. Between samples torque goes linearly to what was demanded,
-// and the blades' pitch joints by cubics without a jump in speed: both arrive one sample late.
+// Connects a controller with the turbine of a simulation: it measures rotor speed and pitch and sets
+// generator torque and pitch, sampled at the scene's rate. Between samples the torque changes linearly to the
+// demand and the pitch joints by cubics without a jump in speed: both reach the demand one sample late.
 #ifndef BOUGH_APPS_MODEL_CONTROL_LINK_H
 #define BOUGH_APPS_MODEL_CONTROL_LINK_H
 
@@ -12,17 +12,17 @@ typedef struct bough_control_link bough_control_link;
 // generator's.
 bough_status bough_control_link_build(bough_arena *arena, bough_simulation *simulation);
 
-// Takes the scene's events into account; called when all else is built.
+// Prepares the scene's events; called after all other parts are built.
 bough_status bough_control_link_watch(bough_arena *arena, bough_control_link *link);
 
-// Whether it turns the blades on their pitch joints.
+// Whether it pitches the blades.
 bool bough_control_link_pitches(const bough_control_link *link);
 
-// Pitch joints and the generator's torque as in steady operation at a speed of the rotor [rad/s] and a
-// pitch [rad]; the law starts from there.
+// Sets pitch joints and generator torque to steady operation at a rotor speed [rad/s] and a pitch [rad], from
+// which the law starts.
 void bough_control_link_stand(bough_control_link *link, double speed, double pitch);
 
-// The generator's torque on the fast shaft [N m], and blades that are turned at a pitch [rad], from now on.
+// Sets the generator's torque on the fast shaft [N m] and, if it pitches the blades, their pitch [rad].
 void bough_control_link_put(bough_control_link *link, double torque, double pitch);
 
 // The generator at the last sample.

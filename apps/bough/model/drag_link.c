@@ -17,8 +17,8 @@ struct bough_drag_link {
 
 // -- sample ---------------------------------------------------------------------------------------
 
-// The part of the tower that a vertex stands for [m].
-static double share_of(const bough_beam *tower, int i) {
+// The length of the tower that belongs to a vertex [m].
+static double length_of(const bough_beam *tower, int i) {
     const double *s = tower->def.span;
     int low = i > 0 ? i - 1 : 0, high = i < tower->def.n_segment ? i + 1 : i;
     return (s[high] - s[low]) / 2;
@@ -34,7 +34,7 @@ static void sample_tower(bough_drag_link *l, double t, double factor) {
     for (int i = 0; i < n; i++) {
         const bough_vertex_motion *v = &l->vertex[i];
         bough_vec3 f = bough_rotor_tower_drag(l->rotor, v->position, v->rotation.c3, v->velocity, t);
-        f = bough_mat3_tmul(pose.rotation, bough_scale(factor * share_of(l->tower, i), f));
+        f = bough_mat3_tmul(pose.rotation, bough_scale(factor * length_of(l->tower, i), f));
         if (l->tower->port >= 0) {
             l->fresh[i] = f.x, l->fresh[n + i] = f.y, l->fresh[2 * n + i] = f.z;
             continue;
@@ -55,7 +55,7 @@ static void sample_hub(bough_drag_link *l, double t, double factor) {
     bough_wrench_store((bough_wrench){f, {0, 0, 0}}, l->fresh + l->n_tower);
 }
 
-// Hands the signals to the bodies.
+// Sets the signals on the bodies.
 static void put(bough_drag_link *l) {
     const double *value = l->memory, *rate = value + l->n;
     double start = l->memory[2 * l->n];
@@ -101,7 +101,7 @@ void bough_drag_link_hold(bough_drag_link *link, double t) {
     bool jumped;
     double *started = link->memory + 2 * link->n + 1;
     *started = 0;
-    sample(link, t, t + 1, &jumped); // constant: there is none before it
+    sample(link, t, t + 1, &jumped); // constant, as there is no previous sample
     *started = 0;
 }
 

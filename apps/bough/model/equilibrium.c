@@ -39,7 +39,7 @@ int bough_equilibrium_held(const bough_tree *tree, bool turning, int *row) {
 
 // -- continuation in the stiffness of rods --------------------------------------------------------
 
-// EI/(EA L²) of a thick bar, eight times as long as thick; stiffer rods make a search no easier.
+// EI/(EA L²) of a bar that is eight times as long as thick; the search is no easier with stiffer rods.
 static const double thick = 1e-3;
 
 enum { AXIAL = 2, STRAINS = 6, FIRST_BENDING = 3 };
@@ -63,7 +63,8 @@ static void stiffen(bough_arena *arena, double exponent, bough_scene_structure *
     structure->station = station;
 }
 
-// The scene, undeformed, with rods of the stiffness at this exponent: 1, of thick bars, to 0, their own.
+// The undeformed scene with rods of the stiffness at this exponent: from 1, that of thick bars, to 0, their
+// own.
 static bough_status build_stiffened(bough_arena *arena, const bough_scene *given, double exponent,
                                     bough_simulation **simulation) {
     bough_scene *scene = bough_scene_copy(arena, given);
@@ -75,12 +76,12 @@ static bough_status build_stiffened(bough_arena *arena, const bough_scene *given
     return bough_simulation_build(arena, scene, simulation);
 }
 
-// A search that takes more steps, or shorter ones, may follow a slack rod into folds: stiff rods come first.
+// A search with more or shorter steps may follow a slack rod into folds: rods are then stiffened.
 static const double least_step = 5e-3; // in units of the scene's time
 enum { PATIENCE = 60, RIGID_STEPS = 200 };
 
-// From an equilibrium of stiffer rods on, Newton's method: its steps, its shortest γ, and the tolerance while
-// the rods are not the scene's.
+// Newton's method from an equilibrium of stiffer rods: its steps, its smallest γ, and the tolerance for
+// stiffened rods.
 enum { NEAR_STEPS = 30 };
 static const double near_least = 0.03, near_tolerance = 1e-2;
 
@@ -138,8 +139,8 @@ static bough_status soften(continuation *c) {
     return status;
 }
 
-// From `start` on by stiffer rods, which gives a stable equilibrium or an unstable one; after an unstable
-// one, or none, downhill. Where that ends in no stable one, an unstable one stays if `how` accepts it.
+// Searches from `start`: first with stiffened rods, then, if that finds no stable equilibrium, downhill. If
+// both find none that is stable, an unstable one is kept if `how` accepts it.
 static bough_status find_slack(continuation *c, const double *start) {
     bough_simulation *s = c->simulation;
     const bough_assembly *a = c->assembly;
@@ -151,7 +152,7 @@ static bough_status find_slack(continuation *c, const double *start) {
     bough_equilibrium_work work = *c->work;
     if (bough_is_ok(&softened)) bough_simulation_growth(s, a, c->time, false, &growth);
     if (bough_is_ok(&softened) && growth.rate == 0) return softened;
-    // downhill, however long it takes
+    // downhill, with any number of steps
     bough_equilibrium_set_state(s, a, start);
     *c->work = (bough_equilibrium_work){0};
     bough_status status = bough_equilibrium_search_within(whole, s, a, c->time, c->work);
@@ -163,7 +164,7 @@ static bough_status find_slack(continuation *c, const double *start) {
     return softened;
 }
 
-// The searches on the scene's own mesh; one search in operation, where trim.c tries speeds and pitches.
+// The searches on the scene's own mesh; a single one in operation, where trim.c varies speed and pitch.
 static bough_status find_on_mesh(bough_arena *arena, continuation *c) {
     const bough_simulation *s = c->simulation;
     bool once = s->scene->simulation.initial == BOUGH_SCENE_IN_OPERATION;
@@ -179,18 +180,18 @@ static bough_status find_on_mesh(bough_arena *arena, continuation *c) {
     return status.code == BOUGH_FAILED && !once ? find_slack(c, start) : status;
 }
 
-// -- whether a finer mesh has one -----------------------------------------------------------------
+// -- equilibrium on a finer mesh ------------------------------------------------------------------
 
-// Segments of the finer meshes over those of the scene, and the most that all rods may have together.
+// Segments of the finer meshes relative to the scene's, and the most of all rods together.
 static const int finer[] = {4, 16};
 enum { FINER = 2, MOST_SEGMENTS = 2000 };
 
-// A rod whose sections turn by this from one vertex to the next may need shorter segments [rad].
+// A rod whose sections rotate by this angle over a segment may need shorter segments [rad].
 static const double sharp = 0.7;
 
 typedef struct finer_mesh {
     const continuation *given;
-    int times; // its segments by the scene's
+    int times; // segments relative to the scene's
 } finer_mesh;
 
 static int count_segments(const bough_scene *scene) {
@@ -201,7 +202,7 @@ static int count_segments(const bough_scene *scene) {
     return n;
 }
 
-// The rod that is bent most from one vertex to the next; NULL: none is bent sharply.
+// The rod with the largest rotation over a segment; NULL: none is sharply bent.
 static const bough_beam *sharpest_rod(const bough_simulation *s) {
     const bough_beam *found = NULL;
     double largest = sharp;
@@ -229,7 +230,7 @@ static bough_status find_on_finer(bough_arena *arena, void *data) {
     return find_on_mesh(arena, &fine);
 }
 
-// The failure on the scene's mesh, and whether finer ones have an equilibrium.
+// Completes the failure on the scene's mesh by whether a finer mesh has an equilibrium.
 static bough_status explain_by_finer(const continuation *c, bough_status failure) {
     const bough_beam *beam = sharpest_rod(c->simulation);
     int times = 0;
@@ -256,7 +257,7 @@ static bough_status find_from_anywhere(bough_arena *arena, continuation *c) {
     return status.code == BOUGH_FAILED && explains ? explain_by_finer(c, status) : status;
 }
 
-// From the present state by long steps where that is near, else as from anywhere.
+// From the present state by long steps if it is near the equilibrium, otherwise by all searches.
 static bough_status find_equilibrium(bough_arena *arena, void *data) {
     continuation *c = data;
     if (!(c->how & BOUGH_EQUILIBRIUM_NEAR)) return find_from_anywhere(arena, c);
@@ -264,7 +265,7 @@ static bough_status find_equilibrium(bough_arena *arena, void *data) {
     bough_assembly_states(c->assembly, start);
     c->started = true;
     bough_status status = find_stiffened(arena, c);
-    if (bough_is_ok(&status)) return status; // else `start` is as it was
+    if (bough_is_ok(&status)) return status; // otherwise `start` is unchanged
     bough_equilibrium_set_state(c->simulation, c->assembly, start);
     c->started = false;
     *c->work = (bough_equilibrium_work){0};
@@ -282,16 +283,16 @@ bough_status bough_simulation_equilibrium(bough_simulation *s, const bough_assem
 
 // -- paths of equilibria while the loads grow -------------------------------------------------------
 
-static bough_status report_point(void *self, double share, const double *state, bool limit) {
+static bough_status report_point(void *self, double factor, const double *state, bool limit) {
     const bough_equilibrium_search *x = self;
-    double time = fmin(fmax(share, 0), 1) * bough_equilibrium_time(x->simulation);
+    double time = fmin(fmax(factor, 0), 1) * bough_equilibrium_time(x->simulation);
     for (int i = 0; i < x->assembly->n_member; i++)
         bough_member_set(x->assembly->member[i], time, state + x->assembly->state_offset[i]);
     bough_simulation_update(x->simulation);
     bough_whole_inputs(x->whole, time, state);
     size_t size = (size_t)x->assembly->n_input * sizeof(double);
     memcpy(x->simulation->master->coupling->input, x->whole->input, size);
-    return x->listener.point(x->listener.self, time, share, limit);
+    return x->listener.point(x->listener.self, time, factor, limit);
 }
 
 static bough_status refuse_path(const bough_simulation *s) {
@@ -350,7 +351,7 @@ static bough_quaternion turn_of(const bough_rod_model *m, int i, bough_quaternio
     return bough_quaternion_product(rotation, bough_quaternion_conjugate(m->rotation0[i]));
 }
 
-// Of vertex i of a rod, 0 at its root, which does not move.
+// Place of vertex i of a rod; the root, 0, does not move.
 static place place_of(const bough_simulation *s, const bough_beam *beam, int i) {
     const bough_rod_model *m = beam->mesh;
     if (i == 0) return (place){m->position0[0], {1, 0, 0, 0}};
@@ -364,7 +365,7 @@ static place place_of(const bough_simulation *s, const bough_beam *beam, int i) 
     return (place){bough_v3(y[0], y[n], y[2 * n]), turn_of(m, i, bough_quaternion_normalised(p))};
 }
 
-// Of the rod at a distance from the root, linear between vertices.
+// Place at a distance from the root, linear between vertices.
 static place place_at(const bough_simulation *s, const bough_beam *beam, double span) {
     const bough_rod_model *m = beam->mesh;
     int k = 0;

@@ -1,9 +1,9 @@
 // Static equilibrium of the whole scene: tree, rods and springs together, under gravity, the loads
 // at one time and the air's forces, which are sampled anew where the bodies come to rest.
 //
-// A joint of prescribed motion is where it is then; one with an initial speed keeps coordinate and
-// speed. The bodies on them turn steadily at their present azimuth, and gravity keeps its direction in
-// the rotating frame (frozen azimuth). All other joints come to rest.
+// A joint of prescribed motion has its position at that time; one with an initial speed keeps coordinate and
+// speed. The bodies on them rotate steadily at their present azimuth, and gravity keeps its direction in the
+// rotating frame (frozen azimuth). All other joints come to rest.
 #ifndef BOUGH_APPS_MODEL_EQUILIBRIUM_H
 #define BOUGH_APPS_MODEL_EQUILIBRIUM_H
 
@@ -26,7 +26,7 @@ bool bough_rods_are_independent(const bough_simulation *s);
 // The time after which no load grows any more [s].
 double bough_equilibrium_time(const bough_simulation *s);
 
-// How an equilibrium is looked for. A set of these.
+// How an equilibrium is searched for: a set of these.
 enum {
     BOUGH_EQUILIBRIUM_NEAR = 1,     // the present state is near it: long steps from there are tried first
     BOUGH_EQUILIBRIUM_UNSTABLE = 2, // an unstable one is accepted where no stable one is found
@@ -40,15 +40,15 @@ enum {
 bough_status bough_simulation_equilibrium(bough_simulation *s, const bough_assembly *assembly, double time,
                                           int how, bough_equilibrium_work *work);
 
-// What grows from an equilibrium by the tangents, the air's forces constant. Where something turns, the
-// tangents of one azimuth say nothing about oscillations: none is given.
+// Growth of motions from an equilibrium by the tangents, with constant forces of the air. If something
+// rotates, the tangents of one azimuth do not determine oscillations: their growth is not given.
 typedef struct bough_growth {
     double rate;        // the largest of a motion that does not oscillate [1/s]; 0: none grows
     double oscillation; // the largest of an oscillation, such as flutter [1/s]; 0: none grows
     double frequency;   // of that one [Hz]
-    int row;            // the state that moves most in what grows fastest, by its scale
-    // Not among these: twist of a bent rod's sections that grows in segments too long for its torsional
-    // stiffness. NULL: none does; else the rod and how many segments would end it.
+    int row; // the state with the largest amplitude in the fastest growing motion, relative to its scale
+    // Excluded: twist of a bent rod that grows because its segments are too long for its torsional stiffness.
+    // The rod, NULL: none, and the number of segments with which it would not grow.
     const char *twisting;
     int segments;
 } bough_growth;
@@ -58,12 +58,12 @@ typedef struct bough_growth {
 bough_status bough_simulation_growth(bough_simulation *s, const bough_assembly *assembly, double time,
                                      bool slow, bough_growth *growth);
 
-// Called at each point of a path, where the members, their inputs and the simulation's view then are; `time`:
-// when the loads are those of the point [s]. `limit`: they have a local maximum or minimum there. A failure
-// ends the path.
+// Called at each point of a path, with members, inputs and the simulation's view there. `time`: when the
+// loads are those of the point [s]; `factor`: of the full loads; `limit`: it has a local maximum or minimum
+// there. A failure ends the path.
 typedef struct bough_path_listener {
     void *self;
-    bough_status (*point)(void *self, double time, double share, bool limit);
+    bough_status (*point)(void *self, double time, double factor, bool limit);
 } bough_path_listener;
 
 // Follows the equilibria of the assembly as the loads grow from those at time 0 to those at

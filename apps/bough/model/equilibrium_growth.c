@@ -1,4 +1,4 @@
-// What grows from an equilibrium, by eigenvalues of the tangents.
+// Growth of motions from an equilibrium, by eigenvalues of the tangents.
 #include "apps/bough/model/equilibrium_search.h"
 #include "cosim/analysis/modes.h"
 #include "flexbody/rod/rod_system.h"
@@ -6,17 +6,17 @@
 #include <math.h>
 #include <string.h>
 
-// Points of the real axis near which growing eigenvalues of the Jacobian are looked for, in units of 1 over
-// the scene's time. Values below this part of a point are rounding, as are those as far beyond it.
+// Points of the real axis near which growing eigenvalues of the Jacobian are searched for, in units of 1 over
+// the scene's time. Values below this fraction of a point, or above its inverse, are rounding.
 static const double point[] = {1, 10, 100, 1000}, rounded = 1e-3;
 enum { POINTS = 4, NEAREST = 12 }; // values nearest to the first point; 4 of each other one
 
-// Growth of an oscillation below this part of its value is rounding. What grows must be found again from a
-// second point, `again` times as far, with the same growth to within `equal`.
+// Growth of an oscillation below this fraction of its eigenvalue is rounding. A growing motion must be found
+// again from a second point, `again` times as far, with the same growth to within `equal`.
 static const double rounded_oscillation = 1e-5, again = 2.7, equal = 0.01;
 static const double beside = 1.3; // the second point of a motion that does not oscillate, over its rate
 
-// Pairs with a larger residual are made by the rounding of long steps, as (72) is: nothing grows with them.
+// Pairs with a larger residual come from rounding in long steps, as (72), and are discarded.
 static const double trusted = 1e-4;
 
 static bool oscillates(const bough_eigen_pair *pair) {
@@ -44,7 +44,7 @@ static const bough_eigen_pair *growing_oscillation(const bough_eigen_pair *pair,
     return most;
 }
 
-// The state that moves most in it, by its scale.
+// The state with the largest amplitude relative to its scale.
 static int largest_row(const bough_equilibrium_search *x, const bough_eigen_pair *pair) {
     const bough_assembly *a = x->assembly;
     int row = 0;
@@ -100,7 +100,7 @@ static double twist_reserve(bough_arena *arena, const bough_equilibrium_search *
     return bough_rod_twist_reserve(beam->mesh, &scratch);
 }
 
-// Whether what grows is the twist of a rod that its mesh makes, theory (111); notes the rod if so.
+// Whether the growing motion is a twist that the mesh of a rod causes, theory (111); stores the rod if so.
 static bool is_twist_of_mesh(bough_arena *arena, bough_equilibrium_search *x, const bough_eigen_pair *pair) {
     static const double most = 0.5; // of the motion's kinetic energy
     const bough_simulation *s = x->simulation;
@@ -118,7 +118,7 @@ static bool is_twist_of_mesh(bough_arena *arena, bough_equilibrium_search *x, co
     return false;
 }
 
-// Whether the same growth is found from another point: growth by rounding is not. Where nothing converges
+// Whether the same growth is found from another point, as growth by rounding is not. If nothing converges
 // there, the value is accepted.
 static bool is_confirmed(bough_arena *arena, const bough_equilibrium_search *x, double at, int wanted,
                          const bough_eigen_pair *found) {
@@ -141,7 +141,7 @@ static bough_status find_growth(bough_arena *arena, void *self) {
         bough_eigen_pair pair[NEAREST];
         bough_eigen_count count = {.wanted = i == 0 ? NEAREST : 4};
         bough_status status = find_near(arena, x, point[i], pair, &count);
-        if (!bough_is_ok(&status) && i > 0) continue; // none is distinctly nearest: no growth near this point
+        if (!bough_is_ok(&status) && i > 0) continue; // no distinct eigenvalue near this point
         BOUGH_TRY(status);
         for (int k = 0; k < count.found; k++) {
             double part = pair[k].real * x->unit.period / point[i];

@@ -10,12 +10,12 @@
 
 enum { SAMPLES = 60 }; // of the air, most
 
-// Changes between samples of the air below it are none, in units of the states' scales.
+// Smaller changes between samples of the air end the search, in units of the states' scales.
 static const double still = 1e-8;
 
-// -- why there is none ----------------------------------------------------------------------------
+// -- why there is no equilibrium ------------------------------------------------------------------
 
-static const double folded = 2; // between neighbouring sections: what lies beyond has no direction [rad]
+static const double folded = 2; // between neighbouring sections, whose rotation has no direction beyond [rad]
 
 // What is found beyond this angle is no equilibrium of a rod.
 static bough_status explain_rods(const bough_simulation *s, int steps) {
@@ -33,7 +33,7 @@ static bough_status explain_rods(const bough_simulation *s, int steps) {
     return bough_ok();
 }
 
-// Whether a spring, bushing or closure between two bodies is one of a joint, too: only one of its ends moves.
+// Whether a spring, bushing or closure acts across a joint: the joint carries only one of its ends.
 static bool is_across(const bough_scene *scene, int joint, const int body[2]) {
     bool moves[2];
     for (int end = 0; end < 2; end++)
@@ -77,7 +77,7 @@ static void tie(int *group, const int body[2]) {
     group[a > b ? a : b] = a > b ? b : a;
 }
 
-// The first body of those that nothing ties to the ground, not even through others; NULL: there is none.
+// The first body that is not connected with the ground, not even through other bodies; NULL: there is none.
 static const char *floating_body(bough_arena *arena, const bough_scene *scene) {
     int *group = bough_arena_take(arena, ((size_t)scene->n_body + 1) * sizeof *group); // the ground first
     for (int i = 0; i <= scene->n_body; i++) group[i] = i;
@@ -167,7 +167,7 @@ static bough_status balance_in_air(bough_arena *arena, bough_equilibrium_search 
                       change, x->work->samples);
 }
 
-// Rods turn without stretching, and what hangs on their ends goes with them.
+// Rods rotate without stretching, and bodies on their ends move with them.
 double bough_equilibrium_search_move(void *self, const double *state, const double *change, double *moved) {
     const bough_equilibrium_search *x = self;
     const bough_simulation *s = x->simulation;
@@ -193,9 +193,9 @@ double bough_equilibrium_search_move(void *self, const double *state, const doub
     return turn;
 }
 
-// All joints but the held ones are at rest, and the rods move with them. Each step then starts at rest: it
-// goes downhill and makes no vibration. A closed loop is not brought to rest unless something turns: it may
-// have to close, which takes velocities.
+// Sets all joints to rest except the held ones, and the rods to move with them. Each step then starts from
+// rest: it goes downhill and excites no vibration. A closed loop is not set to rest unless something rotates:
+// velocities may be needed to close it.
 void bough_equilibrium_search_rest(void *self, double *state) {
     const bough_equilibrium_search *x = self;
     const bough_simulation *s = x->simulation;
@@ -216,7 +216,7 @@ void bough_equilibrium_search_rest(void *self, double *state) {
     }
 }
 
-// Of rigid bodies and rods.
+// Twice the kinetic energy of rigid bodies and rods.
 double bough_equilibrium_search_kinetic(void *self, const double *state) {
     const bough_equilibrium_search *x = self;
     const bough_simulation *s = x->simulation;
@@ -269,7 +269,7 @@ bough_equilibrium_def bough_equilibrium_search_def(bough_equilibrium_search *x) 
     def.self = x;
     def.move = bough_equilibrium_search_move;
     if (x->rests || def.kinetic) def.rest = bough_equilibrium_search_rest;
-    // a steady rotation keeps its kinetic energy: no criterion
+    // the kinetic energy of a steady rotation is constant and no criterion
     if (bough_equilibrium_search_turns(x)) def.kinetic = NULL;
     return def;
 }

@@ -1,14 +1,13 @@
-// What the searches for an equilibrium and for what grows from it, and the paths of equilibria have in
-// common: the system of all members at rest at a time, how its states move by a finite change, and one
-// search.
+// The common part of searches for an equilibrium, for growth from it and of paths of equilibria: the system
+// of all members at rest at a time, finite changes of its states, and one search.
 #ifndef BOUGH_APPS_MODEL_EQUILIBRIUM_SEARCH_H
 #define BOUGH_APPS_MODEL_EQUILIBRIUM_SEARCH_H
 
 #include "apps/bough/model/equilibrium.h"
 #include "cosim/analysis/equilibrium.h"
 
-// The size of a scene and how slow it is, by those for which the constants of a search are chosen: 1 without
-// a length or without forces.
+// Length and time of a scene, relative to those for which the constants of the search are chosen; 1 without a
+// length or without forces.
 typedef struct bough_equilibrium_units {
     double length; // of its longest rod, link or spring [500 m]
     double time;   // in which gravity, loads, springs and rotation move it by its length [8 s]
@@ -23,7 +22,7 @@ typedef struct bough_equilibrium_search {
     bough_equilibrium_def limits; // step, least, tolerance and steps of an equilibrium
     bough_equilibrium_work *work; // of an equilibrium
     bough_growth *growth;         // of a state
-    int points;                   // near which it is looked for
+    int points;                   // number of points near which growth is searched for
     bough_path_listener listener; // of a path
     bough_path_report *report;
 
@@ -32,7 +31,7 @@ typedef struct bough_equilibrium_search {
     double *state; // (n_state) at rest
     double *scale; // (n_state) of the members' scales, in units of the scene
     bough_equilibrium_units unit;
-    bool rests;     // whether states are brought to rest in between
+    bool rests;     // states are set to rest between steps
     double *change; // of one rod's vertices, see rod_static.h
 } bough_equilibrium_search;
 
@@ -43,10 +42,10 @@ bough_equilibrium_units bough_equilibrium_find_units(bough_simulation *s, const 
 // The system and its states at rest at the time.
 void bough_equilibrium_search_set_up(bough_arena *arena, bough_equilibrium_search *x);
 
-// Whether a joint that is held turns or slides.
+// Whether a held joint moves.
 bool bough_equilibrium_search_turns(const bough_equilibrium_search *x);
 
-// The limits, with how states move and come to rest. After set_up.
+// The limits with the functions that move states and set them to rest. After set_up.
 bough_equilibrium_def bough_equilibrium_search_def(bough_equilibrium_search *x);
 
 // The functions `move`, `rest` and `kinetic` of bough_equilibrium_def; self: a bough_equilibrium_search.
@@ -54,11 +53,11 @@ double bough_equilibrium_search_move(void *self, const double *state, const doub
 void bough_equilibrium_search_rest(void *self, double *state);
 double bough_equilibrium_search_kinetic(void *self, const double *state);
 
-// The states in equilibrium under the air's forces as sampled last. After set_up.
+// Finds the states in equilibrium under the last sample of the air's forces. After set_up.
 bough_status bough_equilibrium_search_balance(bough_arena *arena, bough_equilibrium_search *x,
                                               bough_equilibrium_def *def);
 
-// One search from the members' states on, with samples of the air.
+// One search from the members' states, with samples of the air.
 bough_status bough_equilibrium_search_within(bough_equilibrium_def limits, bough_simulation *s,
                                              const bough_assembly *assembly, double time,
                                              bough_equilibrium_work *work);

@@ -1,12 +1,12 @@
-// How large and how slow a scene is, so that a search takes the same steps for a beam of a millimetre and for
-// one of a kilometre.
+// Length and time of a scene, so that a search takes the same steps for a beam of a millimetre and of a
+// kilometre.
 #include "apps/bough/model/equilibrium_search.h"
 
 #include "core/tree/dynamics.h"
 
 #include <math.h>
 
-// The scales of the members' states and the constants of the search suit this length and time [m], [s].
+// Length and time for which the scales of the states and the constants of the search are chosen [m], [s].
 static const double usual_length = 500, usual_time = 8;
 
 // -- length ---------------------------------------------------------------------------------------
@@ -18,7 +18,7 @@ static double spring_extent(const bough_simulation *s, const bough_spring_def *s
     return bough_norm(bough_sub(b, a));
 }
 
-// The longest rod, link, spring or arm of a mass centre [m]; 0: there is none.
+// The longest rod, link, spring or distance to a mass centre [m]; 0: there is none.
 static double find_length(const bough_simulation *s) {
     double length = 0;
     for (int k = 0; k < s->n_beam; k++) {
@@ -71,7 +71,7 @@ static double load_of(const bough_simulation *s, const bough_scene_load *load, d
     return factor * (size + end) / 2 * (load->span[1] - load->span[0]);
 }
 
-// Of a spring as it is at the start [N].
+// Force of a joint's spring at the start [N].
 static double joint_force(const bough_tree *tree, const bough_link *link, double length) {
     double q = link->n_coordinates > 0 ? tree->initial[link->first_coordinate] : 0;
     double force = link->spring.stiffness * fabs(q - link->spring.rest);
@@ -90,7 +90,7 @@ static double find_spin(const bough_tree *tree) {
     return spin;
 }
 
-// Of gravity, of rotation, and of the whole mass under all loads and springs together [m/s²].
+// Sum of gravity, centripetal acceleration, and that of the whole mass by all loads and springs [m/s²].
 static double find_acceleration(const bough_simulation *s, double length) {
     const bough_tree *tree = s->tree;
     double force = 0, mass = find_mass(s), spin = find_spin(tree);

@@ -1,6 +1,5 @@
 // The functions of the Functional Mock-up Interface 3.0, declared from its text
-// (https://fmi-standard.org): those of co-simulation, and those of other kinds that a library must
-// show too.
+// (https://fmi-standard.org): those of co-simulation.
 #ifndef BOUGH_APPS_MODEL_FMI3_H
 #define BOUGH_APPS_MODEL_FMI3_H
 

@@ -24,9 +24,9 @@ static void hear(fmi3_environment environment, fmi3_status status, fmi3_string c
 
 bool bough_fmu_is_good(fmi3_status status) { return status == FMI3_OK || status == FMI3_WARNING; }
 
-// What a function of the FMU answered at t [s]. After an error the instance takes no further call: the
-// standard allows it to be released only, after a fatal one not even that.
-static bough_status answer(bough_fmu_instance *x, const char *function, double t, fmi3_status status) {
+// The status of a call at t [s]. After an error the standard allows only to release the instance, after a
+// fatal error not even that.
+static bough_status check_call(bough_fmu_instance *x, const char *function, double t, fmi3_status status) {
     if (bough_fmu_is_good(status)) return bough_ok();
     static const char *const names[] = {"OK", "warning", "discard", "error", "fatal error"};
     const char *name = status <= FMI3_FATAL ? names[status] : "unknown status";
@@ -38,18 +38,18 @@ static bough_status answer(bough_fmu_instance *x, const char *function, double t
 
 // -- the library ----------------------------------------------------------------------------------
 
-static void let_go(void *self) {
+static void release(void *self) {
     bough_fmu_instance *x = self;
     if (x->instance && x->started) x->terminate(x->instance);
     if (x->instance) x->release(x->instance);
     dlclose(x->library);
 }
 
-// Sets a pointer to the function of that name; the first that is missing remains in `missing`.
+// Sets a pointer to the function of that name; `missing` keeps the first missing name.
 static void look_up(const bough_fmu_instance *x, const char *name, void *function, const char **missing) {
     void *symbol = dlsym(x->library, name);
     if (!symbol && !*missing) *missing = name;
-    memcpy(function, &symbol, sizeof symbol); // of an object pointer: as POSIX has it
+    memcpy(function, &symbol, sizeof symbol); // from an object pointer, which POSIX allows
 }
 
 static bough_status unusable(const bough_fmu_instance *x, const char *what, const char *detail) {
@@ -67,7 +67,7 @@ static bough_status open_library(bough_fmu_instance *x, bough_arena *arena) {
              d->identifier);
     x->library = dlopen(path, RTLD_NOW | RTLD_LOCAL);
     if (!x->library) return unusable(x, "cannot be loaded:", dlerror());
-    bough_arena_on_destroy(arena, let_go, x);
+    bough_arena_on_destroy(arena, release, x);
     look_up(x, "fmi3InstantiateCoSimulation", &x->instantiate, &missing);
     look_up(x, "fmi3FreeInstance", &x->release, &missing);
     look_up(x, "fmi3EnterInitializationMode", &x->enter, &missing);
@@ -94,10 +94,10 @@ static bough_status instantiate(bough_fmu_instance *x) {
     snprintf(resources, sizeof resources, "%s%s%s/resources/", here, absolute ? "" : "/", fmu->unpacked);
     x->instance = x->instantiate(x->name, fmu->description.token, resources, false, true, false, false, NULL,
                                  0, x, hear, NULL);
-    if (!x->instance) return answer(x, "fmi3InstantiateCoSimulation", 0, FMI3_ERROR);
+    if (!x->instance) return check_call(x, "fmi3InstantiateCoSimulation", 0, FMI3_ERROR);
     size_t n = (size_t)fmu->parameters.n;
     fmi3_status set = n > 0 ? x->set(x->instance, fmu->reference, n, fmu->parameters.value, n) : FMI3_OK;
-    return answer(x, "fmi3SetFloat64", 0, set);
+    return check_call(x, "fmi3SetFloat64", 0, set);
 }
 
 // -- values and steps -----------------------------------------------------------------------------
@@ -111,9 +111,9 @@ bough_status bough_fmu_open(bough_arena *arena, const bough_scene_fmu_model *mod
 
 bough_status bough_fmu_initialise(bough_fmu_instance *x, double t, double end, const bough_fmu_values *inputs,
                                   const double *all) {
-    BOUGH_TRY(answer(x, "fmi3EnterInitializationMode", t, x->enter(x->instance, false, 0, t, true, end)));
+    BOUGH_TRY(check_call(x, "fmi3EnterInitializationMode", t, x->enter(x->instance, false, 0, t, true, end)));
     BOUGH_TRY(bough_fmu_set(x, t, inputs, all));
-    BOUGH_TRY(answer(x, "fmi3ExitInitializationMode", t, x->leave(x->instance)));
+    BOUGH_TRY(check_call(x, "fmi3ExitInitializationMode", t, x->leave(x->instance)));
     x->started = true;
     return bough_ok();
 }
@@ -123,7 +123,7 @@ bough_status bough_fmu_set(bough_fmu_instance *x, double t, const bough_fmu_valu
     if (n == 0) return bough_ok();
     double value[BOUGH_FMU_VALUES];
     for (size_t k = 0; k < n; k++) value[k] = all[v->quantity[k]];
-    return answer(x, "fmi3SetFloat64", t, x->set(x->instance, v->reference, n, value, n));
+    return check_call(x, "fmi3SetFloat64", t, x->set(x->instance, v->reference, n, value, n));
 }
 
 static const char *name_of(const bough_fmu_description *d, fmi3_reference reference) {
@@ -136,7 +136,7 @@ bough_status bough_fmu_get(bough_fmu_instance *x, double t, const bough_fmu_valu
     size_t n = (size_t)v->n;
     if (n == 0) return bough_ok();
     double value[BOUGH_FMU_VALUES];
-    BOUGH_TRY(answer(x, "fmi3GetFloat64", t, x->get(x->instance, v->reference, n, value, n)));
+    BOUGH_TRY(check_call(x, "fmi3GetFloat64", t, x->get(x->instance, v->reference, n, value, n)));
     for (size_t k = 0; k < n; k++) {
         all[v->quantity[k]] = value[k];
         if (isfinite(value[k])) continue;
@@ -151,7 +151,7 @@ bough_status bough_fmu_step(bough_fmu_instance *x, double t, double h) {
     double reached = t + h;
     fmi3_status status =
         x->step(x->instance, t, h, !x->model->description.restores, &event, &terminate, &early, &reached);
-    BOUGH_TRY(answer(x, "fmi3DoStep", t, status));
+    BOUGH_TRY(check_call(x, "fmi3DoStep", t, status));
     if (!terminate && !early) return bough_ok();
     return bough_fail(BOUGH_FAILED, "%s: the FMU ended its step at %.6g s, before %.6g s%s", x->name, reached,
                       t + h, terminate ? ": it asks to terminate" : "");

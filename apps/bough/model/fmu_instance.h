@@ -26,23 +26,23 @@ typedef struct bough_fmu_instance {
     fmi3_set_state *set_state;
 } bough_fmu_instance;
 
-// Loads the library, makes an instance, which the arena releases, and sets the scene's parameters. `x` stays
-// where it is. BOUGH_INVALID, with the place in the scene: no such library, or it lacks a function of the
+// Loads the library, makes an instance, which the arena releases, and sets the scene's parameters. `x` must
+// not be moved. BOUGH_INVALID, with the place in the scene: no such library, or it lacks a function of the
 // standard. Here and below BOUGH_FAILED: the FMU reports an error; the message is its own.
 bough_status bough_fmu_open(bough_arena *arena, const bough_scene_fmu_model *model, const char *name,
                             bough_fmu_instance *x);
 
-// Begins at t [s] with these inputs of all quantities; `end` of the run [s].
+// Initialises the FMU at t [s] with its inputs out of `all` quantities; `end` of the run [s].
 bough_status bough_fmu_initialise(bough_fmu_instance *x, double t, double end, const bough_fmu_values *inputs,
                                   const double *all);
 
 bough_status bough_fmu_set(bough_fmu_instance *x, double t, const bough_fmu_values *inputs,
                            const double *all);
 
-// Writes those of `all` that the FMU has. BOUGH_FAILED also where a value is not finite.
+// Writes the FMU's outputs into `all` quantities. BOUGH_FAILED also if a value is not finite.
 bough_status bough_fmu_get(bough_fmu_instance *x, double t, const bough_fmu_values *outputs, double *all);
 
-// A communication step from t to t + h [s]. BOUGH_FAILED also where the FMU ends it before.
+// A communication step from t to t + h [s]. BOUGH_FAILED also if the FMU ends it early.
 bough_status bough_fmu_step(bough_fmu_instance *x, double t, double h);
 
 bool bough_fmu_is_good(fmi3_status status);

@@ -13,7 +13,7 @@ typedef struct fmu_member {
     double motion[BOUGH_SCENE_MOTION], wrench[BOUGH_SCENE_WRENCH];
 
     int n_state;
-    fmi3_state state[MOST_STATES]; // that copies of this member refer to
+    fmi3_state state[MOST_STATES]; // to which copies of this member refer
     bool lost;                     // a copy of the state could not be made or restored
     long steps;
 } fmu_member;
@@ -26,7 +26,7 @@ static bough_status advance(void *self, double *t, double t1, bool restart, doub
     const bough_signal *signal = x->member->signal;
     int n = x->body->fmu.steps;
     double t0 = *t, h = (t1 - t0) / n;
-    double share = x->body->fmu.hold == BOUGH_SCENE_FMU_HELD ? 0.5 : 1;
+    double fraction = x->body->fmu.hold == BOUGH_SCENE_FMU_HELD ? 0.5 : 1;
     if (x->lost) {
         return bough_fail(BOUGH_FAILED, "%s: the FMU could not store or restore its state at %.6g s%s%s",
                           x->body->name, t0, x->fmu.message[0] ? ": " : "", x->fmu.message);
@@ -34,7 +34,7 @@ static bough_status advance(void *self, double *t, double t1, bool restart, doub
     for (int k = 0; k < n; k++) {
         double from = t0 + k * h;
         x->steps++;
-        bough_signal_value(signal, from + share * h, x->motion);
+        bough_signal_value(signal, from + fraction * h, x->motion);
         BOUGH_TRY(bough_fmu_set(&x->fmu, from, &x->body->fmu.input, x->motion));
         BOUGH_TRY(bough_fmu_step(&x->fmu, from, k < n - 1 ? h : t1 - from));
     }
@@ -50,7 +50,7 @@ static void statistics(const void *self, bough_statistics *sum) {
     sum->steps += x->steps;
 }
 
-// A copy holds the number of one of the FMU's states, from 1, which later copies to that place replace.
+// A copy holds the number of a state of the FMU, from 1; saving to the same copy replaces that state.
 static void transfer(void *self, bough_snapshot *s) {
     fmu_member *x = self;
     int *number = bough_snapshot_room(s, sizeof *number);
@@ -83,7 +83,7 @@ static void output(void *self, double t, const double *state, const double *inpu
     memcpy(out, x->wrench, sizeof x->wrench);
 }
 
-// There are no states, and the outputs do not follow the inputs of the same time.
+// There are no states, and the outputs do not depend on the inputs at the same time.
 static bool derivative(void *self, double t, const double *state, const double *input, double *rate) {
     (void)self, (void)t, (void)state, (void)input, (void)rate;
     return true;
@@ -99,7 +99,7 @@ static void output_tangent(void *self, double t, const double *state, const doub
 static const bough_system_ops operations = {
     .derivative = derivative, .output = output, .output_tangent = output_tangent};
 
-// -- the beginning --------------------------------------------------------------------------------
+// -- building -------------------------------------------------------------------------------------
 
 static void free_states(void *self) {
     fmu_member *x = self;

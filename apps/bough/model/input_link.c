@@ -3,11 +3,11 @@
 
 typedef struct inputs {
     bough_simulation *simulation;
-    double *handed;            // (n_input) values handed on
-    bough_motion_point *point; // (n_input) that a motion has reached
+    double *applied;           // (n_input) values in effect
+    bough_motion_point *point; // (n_input) reached by motions
 } inputs;
 
-// Tree and rods read the table of the scene.
+// Tree and rods read the tables of the scene's loads.
 void bough_simulation_put(const bough_simulation *s, int k, double value) {
     if (s->scene->input[k].kind != BOUGH_INPUT_LOAD) return;
     double *table = s->scene->load[s->scene->input[k].index].values;
@@ -28,8 +28,8 @@ static bough_status sample(void *self, double t, double t_next, bool *jumped) {
     *jumped = false;
     for (int k = 0; k < s->scene->n_input; k++) {
         bough_scene_input_kind kind = s->scene->input[k].kind;
-        bool changed = s->input[k] != l->handed[k];
-        l->handed[k] = s->input[k];
+        bool changed = s->input[k] != l->applied[k];
+        l->applied[k] = s->input[k];
         bough_simulation_put(s, k, s->input[k]);
         if (kind == BOUGH_INPUT_MOTION) move_joint(l, k, t, t_next);
         if (kind == BOUGH_INPUT_WIND && changed) bough_aero_link_set_wind(s->aero, s->input[k]);
@@ -44,11 +44,11 @@ static void snapshot(void *self, bough_snapshot *copy) {
     const bough_simulation *s = l->simulation;
     int n = s->scene->n_input;
     bough_snapshot_doubles(copy, s->input, n);
-    bough_snapshot_doubles(copy, l->handed, n);
+    bough_snapshot_doubles(copy, l->applied, n);
     bough_snapshot_take(copy, l->point, (size_t)n * sizeof *l->point);
     for (int k = 0; k < n && copy->move == BOUGH_SNAPSHOT_RESTORE; k++) {
-        bough_simulation_put(s, k, l->handed[k]);
-        if (s->scene->input[k].kind == BOUGH_INPUT_WIND) bough_aero_link_set_wind(s->aero, l->handed[k]);
+        bough_simulation_put(s, k, l->applied[k]);
+        if (s->scene->input[k].kind == BOUGH_INPUT_WIND) bough_aero_link_set_wind(s->aero, l->applied[k]);
     }
 }
 
@@ -58,10 +58,10 @@ void bough_input_link_build(bough_arena *arena, bough_simulation *s) {
     inputs *l = bough_arena_take(arena, sizeof *l);
     l->simulation = s;
     l->point = bough_arena_take(arena, n * sizeof *l->point);
-    bough_arena_each(arena, n, &s->input, &l->handed);
+    bough_arena_each(arena, n, &s->input, &l->applied);
     for (size_t k = 0; k < n; k++) {
         const bough_scene_input *input = &s->scene->input[k];
-        s->input[k] = l->handed[k] = input->initial;
+        s->input[k] = l->applied[k] = input->initial;
         bough_simulation_put(s, (int)k, input->initial);
         if (input->kind == BOUGH_INPUT_MOTION) l->point[k] = bough_simulation_joint_point(s, input->index);
     }

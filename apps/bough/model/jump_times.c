@@ -1,4 +1,4 @@
-// When loads and given motions of joints jump, in tables and ramps of the scene.
+// Times at which loads and prescribed motions of joints jump, by tables and ramps of the scene.
 #include "apps/bough/model/companion.h"
 
 #include <math.h>
@@ -10,9 +10,9 @@ typedef struct table {
     const double *times, *values; // (n)
 } table;
 
-// When something jumps, and what counts as a jump.
+// The times of jumps, and the least change that is a jump.
 typedef struct jumps {
-    double step, part; // [s]; of the range
+    double step, part; // duration [s]; fraction of the range
     double *time;      // [s]; NULL: not wanted
     int n;
 } jumps;
@@ -40,7 +40,7 @@ static double change_to(const table *x, int k, int first, double step) {
     return change;
 }
 
-// At the start everything begins anew.
+// The first row after the start, at which jumps do not count.
 static int first_row(const table *x) {
     int first = 0;
     while (first < x->n && x->times[first] <= 0) first++;

@@ -17,7 +17,7 @@ static bough_rod_reach reach_of(const bough_scene_load *load, const bough_rod_mo
     return (bough_rod_reach){m->span[m->n_segment], m->span[m->n_segment]};
 }
 
-// Force and moment in the axes in which the rod takes them.
+// Force and moment in the axes in which the rod needs them.
 static void resolve(const bough_simulation *s, const bough_beam *beam, const bough_scene_load *load,
                     const double *f, const double *l, double wrench[6]) {
     bough_vec3 force = {f[0], f[1], f[2]}, moment = {l[0], l[1], l[2]};
@@ -73,7 +73,7 @@ void bough_load_link_build(bough_arena *arena, bough_simulation *s) {
 
 // -- loads that jump ------------------------------------------------------------------------------
 
-// A ramp of the model whose two times are 0 once the load acts, and beyond all times before.
+// A ramp of the model, whose times are set to 0 when the load acts, and to infinity before.
 typedef struct jump {
     double at; // [s]
     bough_schedule *ramp;

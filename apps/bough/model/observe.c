@@ -1,5 +1,4 @@
-// The channels of a simulation: what each part of the scene gives to be recorded. OpenFAST's names
-// where the quantity is the same.
+// The channels of a simulation, part by part of the scene, with OpenFAST's names for equal quantities.
 #include "apps/bough/model/aero_link.h"
 #include "apps/bough/model/build_internal.h"
 #include "apps/bough/model/channel_table.h"
@@ -12,9 +11,9 @@
 #include <stdio.h>
 #include <string.h>
 
-// Adds the channels of a part of which the scene has n. Each is called by its name, where name() gives one
-// (NULL: it has no channels), or by its number. They form a group with a sampling function; without one
-// (NULL) they join the last group.
+// Adds the channels of the n parts of a kind. A part has the name that name() returns (NULL: it has no
+// channels) or, without name(), its number. They form a group with the function `sample`; NULL: they belong
+// to the last group.
 static void add_each(bough_simulation *s, bough_channels *list, bough_channel_sample *sample,
                      bough_channel_part part, int n, const char *(*name)(const bough_simulation *s, int k)) {
     if (sample) bough_channels_group(list, sample, s);
@@ -46,7 +45,7 @@ static int n_recorded(const bough_scene *scene, int body) {
     return rotor ? 0 : joint_channels[scene->body[body].joint.kind].n;
 }
 
-// q̇ of a joint with axes: its speeds, except those of the planar joint.
+// q̇ of a joint with axes, which are its speeds except for a planar joint.
 static void joint_rates(const bough_simulation *s, int body, const double *q, double *rate) {
     int coordinate, speed;
     bough_tree_joint_rows(s->tree, body, &coordinate, &speed);
@@ -223,7 +222,7 @@ static void sample_blades(void *self, double t, double *value) {
     }
 }
 
-// The rod nearest to the rotor that carries it, and the last of the rods that carry that one.
+// Finds the chain of rods that carry the rotor: tower_top, the nearest to it, to tower_foot.
 static void find_tower(bough_simulation *s) {
     const bough_scene *scene = s->scene;
     if (scene->turbine.node == NULL) return;
@@ -392,7 +391,7 @@ static void sample_control(void *self, double t, double *value) {
     }
 }
 
-// What a control law outside the program measures.
+// The measurements of a control law outside the program.
 static void sample_law(void *self, double t, double *value) {
     (void)t;
     const bough_simulation *s = self;

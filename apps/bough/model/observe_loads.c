@@ -26,7 +26,7 @@ typedef struct sensor {
 
 enum { PLACE_CHANNELS = 12 };
 
-// A vertex as gathered in scratch->vertex: place and rotation in the body's frame.
+// Position of a vertex in the body's frame, from scratch->vertex.
 static bough_vec3 vertex_position(const sensor *x, int i) {
     const double *v = x->scratch.vertex + i;
     int n = x->beam->mesh->stride;
@@ -101,8 +101,8 @@ static bough_vec3 force_at(const sensor *x, const end_loads *ends, place at) {
     return bough_axpy(offset, slope, middle_force(x, at.segment));
 }
 
-// The moment is that of the segment; from its middle to the root, and to an end that carries bodies, it goes
-// linearly to that of the rod's end.
+// The moment of the segment; from the middle of the first and the last segment it changes linearly to that of
+// the root and of an end that carries bodies.
 static bough_vec3 moment_at(const sensor *x, const end_loads *ends, place at) {
     const bough_beam *beam = x->beam;
     bough_vec3 middle = bough_section_in_segment(beam, &x->scratch, at.segment, 0.5).moment;
@@ -113,7 +113,7 @@ static bough_vec3 moment_at(const sensor *x, const end_loads *ends, place at) {
     return bough_section_in_segment(beam, &x->scratch, at.segment, at.fraction).moment;
 }
 
-// Displacement and slope of the axis by rotation, (R - R0) e3, at a vertex in the body's axes.
+// Displacement of a vertex, and slope of the axis there by rotation, (R − R₀) e₃, in the body's axes.
 static bough_vec3 vertex_shift(const sensor *x, int i) {
     return bough_sub(vertex_position(x, i), x->beam->def.position[i]);
 }
@@ -167,7 +167,7 @@ static place find_place(const bough_rod_def *def, double span) {
     return (place){i, (span - def->span[i]) / (def->span[i + 1] - def->span[i])};
 }
 
-// Marks the vertices on which concentrated loads act: of a load within a segment both.
+// Marks vertices with concentrated loads; of a load within a segment both vertices of the segment.
 static void mark_kinks(const bough_scene *scene, const bough_beam *beam, bool *kink) {
     int n = beam->def.n_segment;
     for (int k = 0; k < scene->n_load; k++) {
@@ -180,7 +180,7 @@ static void mark_kinks(const bough_scene *scene, const bough_beam *beam, bool *k
         kink[at.segment] |= at.fraction < 1;
         kink[at.segment + 1] |= at.fraction > 0;
     }
-    kink[n] &= beam->end < 0; // what bodies at the end do to it is known
+    kink[n] &= beam->end < 0; // the wrench of bodies on the end is known
 }
 
 // Blades and a tower of one rod have OpenFAST's names.
@@ -219,8 +219,8 @@ void bough_observe_sections(bough_simulation *s, bough_channels *list) {
 
 // -- yaw bearing ----------------------------------------------------------------------------------
 
-// The opposite of what the tower's end does to the bodies that it carries, from the body's and the
-// section's axes into those of the body that turn with the section.
+// The opposite of the wrench of the tower's end on the bodies that it carries, in the axes of the tower's
+// body that rotate with the section.
 static void sample_yaw_bearing(void *self, double t, double *value) {
     const bough_simulation *s = self;
     const bough_beam *top = s->tower_top;
@@ -241,7 +241,7 @@ void bough_observe_yaw_bearing(bough_simulation *s, bough_channels *list) {
     bough_channel_group_add(list, sample_yaw_bearing, s, BOUGH_CHANNELS_YAW_BEARING);
 }
 
-// -- the shaft: how the hub turns, and the torque between hub and drive train ------------------------
+// -- the shaft: rotation of the hub, torque between hub and drive train -----------------------------
 
 typedef struct shaft {
     const bough_simulation *simulation;
@@ -312,7 +312,7 @@ static void sample_turn(void *self, double t, double *value) {
     value[1] = turn < 0 ? turn + 360 : turn;
 }
 
-// Torque of the joint nearest to the hub on the hub's side: spring, loads, prescribed motion.
+// Torque of the joint nearest to the hub on the hub: of spring, loads and prescribed motion.
 static double joint_torque(const bough_simulation *s, int body, double t) {
     const bough_tree *tree = s->tree;
     int q, v;
@@ -342,7 +342,7 @@ static bool has_inertia(const bough_inertia *i) {
     return i->mass != 0 || i->rotational.c1.x != 0 || i->rotational.c2.y != 0 || i->rotational.c3.z != 0;
 }
 
-// The hub accelerates what the joint carries besides it, against what the joint does.
+// The torque of the hub accelerates the other bodies on the joint, against the torque of the joint.
 static void sample_torque(void *self, double t, double *value) {
     const shaft *x = self;
     const bough_simulation *s = x->simulation;

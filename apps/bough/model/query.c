@@ -93,7 +93,7 @@ bool bough_simulation_accelerate(const bough_simulation *s, double t) {
     return good;
 }
 
-// A - g in the axes of a frame, which may stand on the ground.
+// A − g in the axes of a frame, which may be fixed to the ground.
 static bough_twist less_gravity(const bough_simulation *s, const bough_frame *frame) {
     bool moves = frame->link >= 0;
     bough_twist a = moves ? s->view->acceleration[frame->link] : (bough_twist){0};
@@ -107,8 +107,8 @@ static bough_wrench inertial_wrench(const bough_simulation *s, const bough_frame
     return bough_inertia_wrench(inertia, less_gravity(s, frame), bough_tree_frame_twist(s->view, frame));
 }
 
-// Adds what the vertex does, unless the rod is not strained yet, as at the start: then nothing of its motion
-// has passed on to the vertex.
+// Adds the inertial wrench of the vertex, unless the rod is not yet strained, as at the start, when its
+// motion has not reached the vertex.
 static void add_vertex(bough_wrench inertial, double *wrench) {
     double force = bough_norm(inertial.force), strain = bough_norm(bough_v3(wrench[0], wrench[1], wrench[2]));
     double values[6];
@@ -119,7 +119,7 @@ static void add_vertex(bough_wrench inertial, double *wrench) {
 
 static bool names(const int body[2], int other) { return body[0] == other || body[1] == other; }
 
-// Whether nothing but its carrier, its weight and the air act on a body.
+// Whether only its carrier, its weight and the air act on a body.
 static bool stands_alone(const bough_scene *scene, int body) {
     bool alone = bough_scene_carried_by(scene, body) < 0;
     for (int k = 0; k < scene->n_spring; k++) alone = alone && !names(scene->spring[k].body, body);
@@ -156,7 +156,7 @@ void bough_simulation_root(const bough_simulation *s, const bough_beam *beam, do
     add_vertex(w, root + 6);
 }
 
-// In the body's frame: of a rod from its state, else undeformed and carried along.
+// Motion of a vertex in the body's frame: of a rod by its state, otherwise undeformed and rigid.
 typedef bough_vertex_motion vertex;
 
 static vertex rigid_vertex(const bough_beam *beam, int i, bough_twist twist) {

@@ -10,7 +10,8 @@
 
 // -- building -------------------------------------------------------------------------------------
 
-// Of two threads each has a simulation. More have work only where flexible bodies share them.
+// Whether run and companion each have one thread: of two threads, or if too few flexible bodies could use
+// more.
 static bool fits_side_by_side(const bough_scene *scene, int threads) {
     int n = 0;
     for (int i = 0; i < scene->n_body; i++) n += bough_scene_has_mesh(&scene->body[i]);
@@ -31,7 +32,7 @@ bough_status bough_run_create(bough_arena *arena, const bough_scene *scene, boug
     size_t n = (size_t)run->simulation->master->assembly->n_member;
     run->value = bough_arena_doubles(arena, (size_t)run->channels.count + 1);
     run->earlier = bough_arena_take(arena, (n + 1) * sizeof *run->earlier);
-    // the run may be copied by its caller: the companion keeps a list of its own
+    // the caller may copy the run: the companion has a list of its own
     bough_channels *channels = bough_arena_take(arena, sizeof *channels);
     *channels = run->channels;
     run->companion = bough_arena_take(arena, sizeof *run->companion);
@@ -40,7 +41,7 @@ bough_status bough_run_create(bough_arena *arena, const bough_scene *scene, boug
 
 // -- recording ------------------------------------------------------------------------------------
 
-// Times closer than this are one [s].
+// Times closer than this are equal [s].
 static double resolution(const bough_run *run) { return 1e-6 * run->simulation->master->macro_step; }
 
 void bough_run_record_at(bough_run *run, bough_run_record record) {
@@ -72,7 +73,7 @@ static bough_status record_due(bough_run *run) {
 
 bough_status bough_run_start(bough_run *run) { return record_due(run); }
 
-// After a numerical failure the state means nothing: only a run that could go on gets a last record.
+// After a numerical failure the state is invalid: only a run that could continue has a last record.
 static bough_status record_end(bough_run *run, bough_status status) {
     if (!bough_is_ok(&status) && status.code != BOUGH_INTERRUPTED) return status;
     for (int i = 0; i < run->n_record; i++) {
@@ -112,7 +113,7 @@ static void finish_step(bough_run *run) {
     bough_channels_know(&run->channels, NULL);
 }
 
-// Up to `until`, at least one; the last is not finished, since the companion's results come first.
+// Steps up to `until`, at least one. The last is finished later, after the step of the companion.
 static void step_own(bough_run *run) {
     const bough_master *m = run->simulation->master;
     run->outcome = bough_step(run->simulation->master);
@@ -122,7 +123,7 @@ static void step_own(bough_run *run) {
     }
 }
 
-// 0: of the run, 1: of the companion; neither touches the other.
+// 0: step of the run, 1: of the companion; they are independent.
 static void step_one(void *self, int which) {
     bough_run *run = self;
     if (which == 0) step_own(run);
@@ -156,7 +157,7 @@ static bough_status step(bough_run *run) {
     if (run->stop && run->stop()) {
         return bough_fail(BOUGH_INTERRUPTED, "interrupted at %.9g s of %.9g s", m->time, m->duration);
     }
-    // a thread that waits for half of the steps sleeps
+    // several steps of the run beside one of the companion, so that no thread waits in between
     bool together = run->side_by_side && run->steps_together && bough_companion_due(run->companion);
     run->until = together ? bough_master_next(run->companion->coarser.simulation->master) : 0;
     bough_status status = bough_run_step(run);
@@ -195,7 +196,7 @@ bough_statistics bough_run_statistics(const bough_run *run, int member) {
     return done;
 }
 
-// Work is counted by the solvers of this process; `earlier` adds that of the ones before it.
+// The solvers count the work of this process; `earlier` has that of the processes that it continues.
 static void take_statistics(bough_run *run, bough_snapshot *s) {
     const bough_assembly *a = run->simulation->master->assembly;
     for (int i = 0; i <= a->n_member; i++) {

@@ -8,8 +8,7 @@
 
 enum { BOUGH_RUN_RECORDS = 4 };
 
-// What is taken of the run at the multiples of an interval: at the first synchronisation point at or
-// after each.
+// A record of the run at the multiples of an interval: at the first synchronisation point at or after each.
 typedef struct bough_run_record {
     double interval;                              // [s]
     bool at_end;                                  // also where the run ends
@@ -26,21 +25,21 @@ typedef struct bough_run {
     bough_channels channels;
     double *value;              // (channels.count) see bough_run_values
     bool sampled;               // `value` belongs to the present time
-    bough_companion *companion; // what the channels err by
+    bough_companion *companion; // estimates the errors of the channels
     int n_record;
     bough_run_record record[BOUGH_RUN_RECORDS];
     bough_statistics *earlier;  // (n_member + 1) work of the processes that this one continues, last
-                                // that of the integrator of all members together
-    double wall_from, cpu_from; // of the clocks, counted below so far [s]
+                                // that of the integrator of all members as one system
+    double wall_from, cpu_from; // clocks up to which the times below are counted [s]
     double wall_s, cpu_s;       // of the stepping: wall time, CPU time of all threads [s]
-    double until;               // [s] where the present steps end; 0: after one
+    double until;               // time at which the present steps end [s]; 0: after one step
     bough_status outcome;       // how the last step ended
 
     // by the caller, before the first step
-    bool beside;                       // others run at the same time: CPU time of the calling thread
-    bool (*stop)(void);                // asked before each step; NULL: nobody stops the run
+    bool beside;                       // other runs are simultaneous: CPU time of the calling thread only
+    bool (*stop)(void);                // asked before each step; NULL: the run is never stopped
     bool steps_together;               // `stop` and `after` may wait for a step of the companion
-    bough_status (*after)(void *self); // called after each step; NULL: nobody is
+    bough_status (*after)(void *self); // called after each step; NULL: nothing is
     void *self;                        // for `after`
     bough_progress *progress;          // the terminal's line; NULL: none
 } bough_run;
@@ -48,30 +47,30 @@ typedef struct bough_run {
 // Builds the scene's model and its channels in the arena; the run is then at time 0.
 bough_status bough_run_create(bough_arena *arena, const bough_scene *scene, bough_run *run);
 
-// From now on `sample` is called at the multiples of the interval that are not past.
+// Adds a record: `sample` is called at the present and all later multiples of the interval.
 void bough_run_record_at(bough_run *run, bough_run_record record);
 
 // Records the results of the present time, the start.
 bough_status bough_run_start(bough_run *run);
 
-// One macro step, of the companion beside it where one is due, then the comparison and results. After a
-// failure the state is not valid, and the run can continue only from a copy.
+// One macro step, with that of the companion if one is due, the comparison and the records. After a failure
+// the state is invalid, and the run can continue only from a copy.
 bough_status bough_run_step(bough_run *run);
 
 // Whether the duration is reached.
 bool bough_run_done(const bough_run *run);
 
-// Start, all steps, the last record, in one parallel region: sets `outcome`. BOUGH_INTERRUPTED when
-// stopped: then the run may go on.
+// Start, all steps and the last record, in one parallel region: sets `outcome`. BOUGH_INTERRUPTED when
+// stopped: the run can continue.
 void bough_run_all(bough_run *run);
 
 // The channels at the present time (channels.count), computed once; NULL after a failure.
 const double *bough_run_values(bough_run *run);
 
-// Brings wall_s and cpu_s to the present, within bough_run_all.
+// Updates wall_s and cpu_s, within bough_run_all.
 void bough_run_update_clock(bough_run *run);
 
-// Work of a member over the whole run; of member n_member, that of the integrator of all together.
+// Work of a member over the whole run; member n_member: of the integrator of all members as one system.
 bough_statistics bough_run_statistics(const bough_run *run, int member);
 
 // The memory of the run at a time when its loads are sampled: simulation, error estimates, times of the next

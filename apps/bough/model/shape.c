@@ -30,8 +30,7 @@ static bough_mat3 vertex_axes(const bough_rod_model *m, const bough_rod_scratch 
     return bough_rotation_matrix(bough_section_vertex_rotation(m, scratch, i));
 }
 
-// The moment goes linearly from what the segment does to the left vertex to the opposite of what it
-// does to the right one.
+// The moment is linear between that on the left vertex and the opposite of that on the right vertex.
 bough_section_load bough_section_in_segment(const bough_beam *beam, const bough_rod_scratch *scratch,
                                             int segment, double fraction) {
     const bough_rod_model *m = beam->mesh;
@@ -42,8 +41,8 @@ bough_section_load bough_section_in_segment(const bough_beam *beam, const bough_
                                 .moment = bough_between(first, bough_scale(-1, last), fraction)};
 }
 
-// Load at a vertex, from 0 to n_segment: the mean of both segments, whose loads differ by the load that
-// acts on the vertex; at the ends that of the only segment.
+// Load at a vertex, from 0 to n_segment: the mean of both segments, whose loads differ by the load on the
+// vertex; at the ends that of the only segment.
 static bough_section_load section_at_vertex(const bough_beam *beam, const bough_rod_scratch *scratch,
                                             int vertex) {
     int n = beam->mesh->n_segment;

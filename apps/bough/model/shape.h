@@ -12,7 +12,7 @@ typedef struct bough_shape {
     int n_line;
     bough_polyline *line;        // (n_line) one for each body of the scene, in its order
     bough_vertex_motion *vertex; // scratch of the longest beam
-    bough_rod_scratch *scratch;  // (n_line) of each body with a rod of its own
+    bough_rod_scratch *scratch;  // (n_line) of each flexible rod
 } bough_shape;
 
 void bough_shape_create(bough_arena *arena, bough_simulation *s, bough_shape *shape);
@@ -37,8 +37,8 @@ typedef struct bough_section_load {
     bough_vec3 force, moment; // [N], [N m] in the axes of the rod's body
 } bough_section_load;
 
-// Evaluates the rod of a beam at the current synchronisation point, time t, into the scratch of its
-// mesh: vertices and segments. False when the forces are not finite.
+// Evaluates vertices and segments of a beam's rod at the current synchronisation point, time t, into scratch.
+// False when the forces are not finite.
 bool bough_section_evaluate(const bough_simulation *s, const bough_beam *beam, double t,
                             bough_rod_scratch *scratch);
 

@@ -1,5 +1,4 @@
-// A running simulation of a scene, and queries to it: the tree, the rods, the aerodynamics and the
-// coupling together.
+// A simulation of a scene, with tree, rods, aerodynamics and coupling, and queries to it.
 #ifndef BOUGH_APPS_MODEL_SIMULATION_H
 #define BOUGH_APPS_MODEL_SIMULATION_H
 
@@ -16,19 +15,18 @@ struct bough_control_link;
 struct bough_drag_link;
 struct bough_validity;
 
-// A flexible blade, cable or tower, or the same body as a rigid one: its place and, if it is flexible, its
-// sub-solver.
+// A body with a rod, such as a blade, cable or tower, flexible or rigid.
 typedef struct bough_beam {
     const bough_scene_body *body;
-    bough_rod_def def;       // the undeformed mesh in the body's frame
-    int marker;              // of the tree, the body's frame
-    int port;                // of the tree; −1 when rigid
-    bool in_ground;          // it moves under loads in ground axes
-    int end;                 // of the tree, where bodies hang on the rod; −1 when it carries none
-    bough_inertia vertex[2]; // of the vertices that belong to the tree: the root's in the body's frame, of a
-                             // rigid body the whole's, that of the end in its section's
-    bough_rod_body *rod;     // NULL unless a rod
-    bough_modal_body *modal; // NULL unless modal
+    bough_rod_def def;           // the undeformed mesh in the body's frame
+    int marker;                  // of the tree, the body's frame
+    int port;                    // of the tree; −1 when rigid
+    bool in_ground;              // it moves and has loads in ground axes
+    int end;                     // of the tree, the end that carries bodies; −1 when it carries none
+    bough_inertia vertex[2];     // of the root vertex in the body's frame, or of the whole rigid body, and of
+                                 // the end in its section's frame; both belong to the tree
+    bough_rod_body *rod;         // NULL unless a rod
+    bough_modal_body *modal;     // NULL unless modal
     const bough_rod_model *mesh; // of either, NULL when rigid
     bough_rod_loads *loads;      // on it
     bough_ground_body *ground;   // around either, NULL unless in_ground
@@ -46,38 +44,38 @@ typedef struct bough_simulation {
     bough_beam *beam;  // (n_beam) bodies that have a rod, in the scene's order
     bough_member *rod; // (n_rod + n_fmu) in port order, the FMUs last
     int n_rod, n_end, n_fmu;
-    double *input;                      // (scene->n_input) values now, SI; to be written between steps
+    double *input;                      // (scene->n_input) present values, SI; may be set between steps
     struct bough_aero_link *aero;       // NULL without an aero block
     struct bough_drag_link *drag;       // NULL without drag of tower and hub
     struct bough_control_link *control; // NULL without a control block
     struct bough_validity *validity;    // limits of the models that the run has passed
     int n_sampled;                      // of these parts, in this order:
     bough_sampled_load sampled[5];      // inputs, air, drag, control, loads that jump
-    bool jumps;                         // there are loads that jump
+    bool jumps;                         // some loads jump
     bough_master *master;
     bough_pool *pool; // NULL: one thread
-    // the rods in a row that carry the rotor, NULL without; undeformed top in the frame of the foot
+    // first and last of the rods that carry the rotor, NULL: none; undeformed top in the frame of the foot
     const bough_beam *tower_foot, *tower_top;
     bough_transform tower_rest;
-    int n_motion_channel; // the first channels: they follow from the states
+    int n_motion_channel; // number of the first channels, which follow from the states
 } bough_simulation;
 
-// Registers the channels that the scene's parts give.
+// Adds the channels of all parts of the scene.
 bough_status bough_simulation_channels(bough_simulation *s, bough_channels *channels);
 
 // Brings `view` to the current synchronisation point; queries and channels read it.
 void bough_simulation_update(bough_simulation *s);
 
-// The memory that later steps depend on, at a time when all loads are sampled: see bough_master_snapshot.
+// The memory of later steps, at a time when all loads are sampled: see bough_master_snapshot.
 void bough_simulation_snapshot(bough_simulation *s, bough_snapshot *snapshot);
 
-// BOUGH_INVALID where the scene has a part that cannot be stored.
+// BOUGH_INVALID if a part of the scene cannot be stored.
 bough_status bough_simulation_storable(const bough_simulation *s);
 
-// BOUGH_INVALID where the equations of a part are not known: an FMU's. `what` cannot be done then.
+// BOUGH_INVALID if the equations of a part, an FMU, are not known; `what` is the reason in the message.
 bough_status bough_simulation_known(const bough_simulation *s, const char *what);
 
-// Puts input k at a value at once if it is a load; else does nothing.
+// Sets input k to a value at once if it is a load; otherwise does nothing.
 void bough_simulation_put(const bough_simulation *s, int k, double value);
 
 // Number of bodies on joints that move.
@@ -101,16 +99,15 @@ bough_vec3 bough_simulation_beam_tip(const bough_simulation *s, const bough_beam
 void bough_simulation_tip_shift(const bough_simulation *s, const bough_beam *beam, bough_vec3 *shift,
                                 bough_vec3 *turn);
 
-// Of a flexible beam the state of its vertices from `first` on at `view` as rod.h lays it out, valid until
-// the next call for the same beam.
+// States of the vertices of a flexible beam from `first` on, as in rod.h, at `view`; valid until the next
+// call for the same beam.
 const double *bough_beam_state(const bough_simulation *s, const bough_beam *beam, int first);
 
-// Sets the velocities of a flexible beam's own state to rest relative to its frame, whose twist is
-// in `input`.
+// Sets the velocities of a flexible beam's state to rest relative to its frame, whose twist is in `input`.
 void bough_beam_move_rigidly(const bough_beam *beam, const double *input, double *state);
 
-// The axis of a body's joint in `view`, a unit vector in ground axes; the joint's own angle leaves it where
-// it is.
+// The axis of a body's joint in `view`, a unit vector in ground axes, which the joint's own angle does not
+// change.
 bough_vec3 bough_simulation_joint_axis(const bough_simulation *s, int body);
 
 // The turbine's rotor in `view`: hub and axis of its joint in ground axes, and the largest distance of the
@@ -135,16 +132,16 @@ const char *bough_simulation_body_of(const bough_simulation *s, const bough_asse
 // The pitch of a blade: its body's, and what its pitch joint adds, positive by −z [rad].
 double bough_simulation_pitch(const bough_simulation *s, const bough_beam *beam);
 
-// An angle [rad], and the segment that has it.
+// The largest rotation over a segment [rad], and the segment.
 typedef struct bough_sharpest {
     double angle;
     int segment;
 } bough_sharpest;
 
-// Of a rod the largest rotation of the ends of a segment against each other, beyond that at rest.
+// The largest rotation between the ends of a segment of a rod, less that of the undeformed rod.
 bough_sharpest bough_simulation_bend(const bough_simulation *s, const bough_beam *beam);
 
-// Accelerations of the tree's links under the rods' present forces, into s->view, where they stay until
+// Computes the accelerations of the tree's links under the rods' present forces into s->view, valid until
 // bough_simulation_update; false as bough_tree_forward_dynamics.
 bool bough_simulation_accelerate(const bough_simulation *s, double t);
 
@@ -156,7 +153,7 @@ bool bough_simulation_accelerate(const bough_simulation *s, double t);
 void bough_simulation_root(const bough_simulation *s, const bough_beam *beam, double t,
                            double root[BOUGH_ROD_MOST_OUTPUTS]);
 
-// How a vertex of a beam moves; `rotation` are its section's axes.
+// Motion of a vertex of a beam; `rotation` has the axes of its section.
 typedef struct bough_vertex_motion {
     bough_vec3 position, velocity, angular;
     bough_mat3 rotation;
@@ -174,17 +171,15 @@ void bough_simulation_beam_rows(const bough_simulation *s, const bough_beam *bea
 
 // -- building (build.c) ---------------------------------------------------------------------------
 
-// The composition root: makes a running simulation of a scene.
-
-// Number of threads that the scene asks for, or the environment.
+// Number of threads of the scene, or else of the environment.
 int bough_simulation_threads(const bough_scene *scene);
 
-// Builds everything the scene names, and nothing else, in the arena.
+// Builds the parts that the scene names, and no others, in the arena.
 bough_status bough_simulation_build(bough_arena *arena, const bough_scene *scene,
                                     bough_simulation **simulation);
 
-// The same with the threads of a pool (NULL: one thread), which several simulations may share, and with the
-// meshes of rods of `beside` where they are equal; NULL, or one that outlives it.
+// The same on the threads of a pool (NULL: one thread), which several simulations may share, and with the
+// meshes of `beside` for equal rods; NULL, or a simulation that outlives it.
 bough_status bough_simulation_build_on(bough_arena *arena, const bough_scene *scene, bough_pool *pool,
                                        const bough_simulation *beside, bough_simulation **simulation);
 

@@ -8,10 +8,10 @@
 
 enum { MOST_TRIES = 60 };
 
-static const double tolerance = 1e-5;            // of the torque's balance, relative to the rated torque
+static const double tolerance = 1e-5;            // of the balance of torques, relative to the rated torque
 static const double slower = 0.85, faster = 1.1; // factors by which the speed is bracketed
 static const double steeper = 4 * BOUGH_DEGREE;  // steps by which the pitch is bracketed [rad]
-static const double standing = 0.1;              // of its reference speed: a slower rotor stands still
+static const double standing = 0.1;              // of the reference speed: a slower rotor stands still
 
 typedef struct search {
     bough_simulation *simulation;
@@ -19,12 +19,12 @@ typedef struct search {
     const bough_controller_def *law;
     double *state; // (n_state)
     double gear;
-    int tries; // speeds and pitches whose equilibrium was sought
+    int tries; // number of equilibria so far
     bough_status status;
 } search;
 
-// The air's torque less the generator's at a rotor speed and a pitch, of the rated torque; NAN where no
-// equilibrium is found.
+// The torque of the air less that of the generator at a rotor speed and a pitch, relative to the rated
+// torque; NAN if no equilibrium is found.
 static double surplus(search *x, double speed, double pitch) {
     bough_simulation *s = x->simulation;
     int q, v;
@@ -42,8 +42,8 @@ static double surplus(search *x, double speed, double pitch) {
     return (factor * torque - generator) / (x->gear * x->law->rated_power / x->law->rated_speed);
 }
 
-// Between a, where there is a surplus, and b, where there is none, of the speed or of the pitch: regula
-// falsi with the end that stays halved (Illinois).
+// Finds the zero between a, where the surplus is positive, and b, where it is not, of the speed or of the
+// pitch, by regula falsi in the Illinois variant.
 static void close_in(search *x, double a, double fa, double b, double fb, bool of_speed, double other) {
     int side = 0;
     while (bough_is_ok(&x->status)) {
@@ -79,7 +79,7 @@ static void seek_pitch(search *x, double speed, double f) {
                            low / BOUGH_DEGREE, speed / BOUGH_RPM);
 }
 
-// From a speed with a surplus (f > 0) upwards, or without one downwards.
+// Searches upwards from a speed with a surplus (f > 0), or downwards from one without.
 static void seek_speed(search *x, double speed, double f, double pitch) {
     double factor = f > 0 ? faster : slower, reference = speed;
     for (;;) {

@@ -15,16 +15,15 @@ static const double most_over_rated = 2;
 // Largest error of the air's loads relative to them: it is up to 0.1 at a sufficient rate, near 1 where the
 // loads' delay feeds vibrations.
 static const double most_missed = 0.3;
-// By this part of its range the wind may exceed both of the samples around it.
+// The wind may exceed both neighbouring samples by this fraction of its range.
 static const double most_between = 0.05;
-// Largest rotation of the rotor between two samples: what changes three times in a rotation is then sampled
-// twice in its period.
+// Largest rotation of the rotor between two samples: a third harmonic is then sampled twice in its period.
 static const double most_rotation = BOUGH_PI / 3;
-// Largest angle between the ends of a segment: it has one strain, a coarse approximation beyond, and none
+// Largest angle between the ends of a segment: its constant strain is a coarse approximation beyond, and none
 // beyond 120°.
 static const double most_turn = 0.25 * BOUGH_PI;
-// By this part of its length the shapes of a modal piece may move a vertex: the tip of a cantilever that
-// deflects so far approaches the root by 0.06 of the deflection, which linear shapes leave out.
+// Largest displacement of a vertex by the shapes of a modal piece, relative to its length: the tip of such a
+// cantilever approaches the root by 0.06 of the deflection, which linear shapes neglect.
 static const double most_linear = 0.1;
 // Least bough_loops_margin, absolute and relative to the largest so far: on random linkages it stays above
 // 0.02 or above 0.03 of the largest, and falls to 1e-5 to 3e-3 where the links come to lie on one line.
@@ -33,13 +32,13 @@ static const double most_open = 0.01;           // of the size of a closed loop
 static const double most_uneven = BOUGH_DEGREE; // of the gap between two blades
 // Cosine of the angle between axis and wind, 60°: beyond every yaw error of operation.
 static const double least_along = 0.5;
-// Macro steps of so many solver steps are counted, and reported once their work, steps times states (a
-// hundred at least), takes some seconds.
+// Macro steps with more solver steps are counted, and reported when their work, steps times states (at least
+// a hundred), takes some seconds.
 static const double many_steps = 100, most_work = 3e6;
 static const int least_states = 100;
 static const double small_turn = 0.98; // cosine of a quarter of most_turn
 
-// Each sentence ends with the value in its unit.
+// Each sentence contains the value in its unit.
 static const struct {
     const char *name, *text;
 } limits[BOUGH_LIMITS] = {
@@ -88,7 +87,7 @@ static const struct {
 
 const char *bough_limit_name(bough_limit limit) { return limits[limit].name; }
 
-// Notes that a limit is passed, if it is the first time.
+// Records that a limit is passed, the first time.
 static void pass(bough_validity *v, bough_limit limit, int body, double time, double value) {
     if (v->limit[limit].passed) return;
     v->limit[limit] = (bough_passing){true, body, time, value};
@@ -117,7 +116,7 @@ static double rotor_speed(const bough_simulation *s) {
     return bough_simulation_joint_point(s, s->scene->turbine.rotor).v;
 }
 
-// Beyond this rotation run and companion may both sample a blade at the same places of each rotation.
+// Beyond this rotation run and companion may both sample a blade at the same azimuths in each rotation.
 static void check_rotation(bough_simulation *s) {
     double turned = fabs(rotor_speed(s)) / s->scene->aero.rate;
     if (turned <= most_rotation) return;
@@ -138,8 +137,8 @@ static double dot(bough_quaternion p, bough_quaternion q) {
     return p.w * q.w + p.x * q.x + p.y * q.y + p.z * q.z;
 }
 
-// Whether no segment turns its ends by more than a quarter of most_turn, now or at rest; p are the rows of
-// the sections but the root's.
+// Whether no segment rotates by more than a quarter of most_turn, now or undeformed; p: rows of all sections
+// but the root's.
 static bool turn_little(const bough_rod_model *m, const double *restrict p) {
     const bough_quaternion *restrict rest = m->rotation0, first = {p[0], p[m->n], p[2 * m->n], p[3 * m->n]};
     double least = fmin(fabs(dot(rest[0], first)), fabs(dot(rest[0], rest[1])));
@@ -248,7 +247,7 @@ static void check_wind(bough_simulation *s) {
     pass(s->validity, BOUGH_LIMIT_WIND, s->scene->turbine.rotor, missed.time, missed.speed);
 }
 
-// Rods in a row are one rod: only a single one is coarse.
+// Connected rods form one rod: only a single one is too coarse.
 static void check_mesh(bough_simulation *s) {
     for (int i = 0; i < s->n_beam; i++) {
         const bough_beam *beam = &s->beam[i];
@@ -338,7 +337,7 @@ static bough_status find_fastest(bough_arena *arena, void *self) {
 
 void bough_validity_check_work(bough_simulation *s, double steps) {
     bough_validity *v = s->validity;
-    double taken = steps < v->steps ? steps : steps - v->steps; // a resumed run counts anew
+    double taken = steps < v->steps ? steps : steps - v->steps; // a resumed run counts from 0
     v->steps = steps;
     if (taken < many_steps || v->limit[BOUGH_LIMIT_STEPS].passed) return;
     int states = s->master->assembly->n_state;

@@ -15,15 +15,15 @@ typedef enum bough_limit {
     BOUGH_LIMIT_SPACING,     // the blades are not evenly spaced about the rotor's axis
     BOUGH_LIMIT_ACROSS,      // the rotor's axis is across the wind, or faces away from it
     BOUGH_LIMIT_MESH,        // a rod has one segment
-    BOUGH_LIMIT_SINGULAR,    // a closed loop is near a position in which its bodies can go on in two ways
-    BOUGH_LIMIT_WIND,        // the wind rises and falls between two samples of the air
+    BOUGH_LIMIT_SINGULAR,    // a closed loop is near a singular position
+    BOUGH_LIMIT_WIND,        // the wind changes and returns between two samples of the air
     BOUGH_LIMIT_ROTATION,    // the rotor turns by a sixth of a rotation between two samples of the air
     BOUGH_LIMIT_START,       // the equilibrium from which the run starts is unstable
-    BOUGH_LIMIT_STEPS,       // macro steps of very many steps of a solver have become costly
+    BOUGH_LIMIT_STEPS,       // short steps of a solver take most of the time
     BOUGH_LIMITS,
 } bough_limit;
 
-// Plain data: a part of the simulation's snapshot.
+// Plain data, a part of the simulation's snapshot.
 typedef struct bough_passing {
     bool passed;
     int body;     // of the scene
@@ -51,7 +51,7 @@ void bough_validity_check(bough_simulation *s);
 // BOUGH_FAILED where a closed loop is open.
 bough_status bough_validity_check_closed(bough_simulation *s);
 
-// Notes macro steps of very many steps; `steps` of all solvers since the process began.
+// Counts macro steps with very many steps of solvers; `steps` of all solvers since the start of the process.
 void bough_validity_check_work(bough_simulation *s, double steps);
 
 // The name of a limit in summary.json, and the sentence about its passing, at most `size` bytes.
