@@ -8,14 +8,14 @@
 #include <stdlib.h>
 #include <string.h>
 
-static const double same = 1e-6;        // relative distance of an eigenvalue on both sides
-static const double least_motion = 0.2; // participation of the bodies; modes with less are the air's
+static const double same = 1e-6;        // relative distance of equal right and left eigenvalues
+static const double least_motion = 0.2; // participation of the bodies; modes with less are modes of the air
 
-enum { MODES_BEYOND = 8 }; // those wanted, of the basis for the air's memory, and an eighth
+enum { MODES_BEYOND = 8 }; // the wanted modes in the basis of the reduced system, besides an eighth
 
 typedef struct work {
     const bough_aeroelastic *system;
-    bough_arena *kept; // of what is returned
+    bough_arena *kept; // of the results
     int n, m;          // states of the members, those of the air that change
     int *air, *place;  // (m) rows of the air's tangents; (n_air) places of these rows in m, −1: none
     double *rate;      // S (n_part × n_part), row-major
@@ -28,7 +28,7 @@ static void take(bough_arena *arena, work *w) {
     if (w->system->def->spin != 0) bough_modes_rate(w->system->def, w->rate);
 }
 
-// The states of the air that change: a model that is not in use leaves its own at rest.
+// The states of the air that change: those of a model that is not in use are at rest.
 static void find_air(bough_arena *arena, work *w) {
     const bough_air_tangent *air = w->system->air;
     size_t n_air = (size_t)air->n_air;
@@ -53,8 +53,8 @@ static void apply_transposed(void *self, int n, const double *z, double *image) 
     bough_air_inverse_apply(((const work *)self)->inverse, true, n, z, image);
 }
 
-// Weights of scalar products: states of the members count in units of their scales (power −2, of left vectors
-// 2), those of the air as they are.
+// Weights of scalar products: states of the members are measured in their scales (power −2, of left vectors
+// 2), those of the air have weight 1.
 static double *product_weights(bough_arena *arena, const work *w, double power) {
     double *weight = bough_arena_doubles(arena, (size_t)(w->n + w->m));
     bough_assembly_scales(w->system->whole->assembly, weight);
@@ -62,8 +62,8 @@ static double *product_weights(bough_arena *arena, const work *w, double power) 
     return weight;
 }
 
-// Pairs nearest to the point, right or left, without the memory of the air; `checked`: the other side shows
-// whether some are missing.
+// Right or left pairs nearest to the point, without the memory of the air; `checked`: the search of the other
+// side shows whether some are missing.
 static bough_status find_pairs(bough_arena *arena, work *w, bool left, bool decaying, bool checked,
                                bough_eigen_pair *pair, bough_eigen_count *count) {
     const bough_eigen_operator op = {.name = "whole scene in the air",
@@ -87,7 +87,7 @@ static int slower(const void *a, const void *b) {
 
 // -- the memory of the air ------------------------------------------------------------------------
 
-// The members in the subspace of their modes, and all states of the air: theory (100).
+// The reduced system: the members in the subspace of their modes, and all states of the air, theory (100).
 typedef struct reduced {
     int r, all;           // modes as real columns; with the states of the air
     double *right, *left; // U (n × r), L (r × n), L U = E
@@ -108,7 +108,7 @@ static const bough_eigen_pair *partner(const bough_eigen_pair *of, int n, const 
     return least < same * hypot(of->real, of->imaginary) + same ? nearest : NULL;
 }
 
-// Real and imaginary parts of the modes that are found on both sides, as columns.
+// Real and imaginary parts of the modes with right and left vectors, as columns.
 static void collect(const work *w, int n_right, const bough_eigen_pair *right, int n_left,
                     const bough_eigen_pair *left, double *of_left, reduced *x) {
     size_t n = (size_t)w->n, bytes = n * sizeof(double);
@@ -156,7 +156,7 @@ static bool set_motion(bough_arena *arena, work *w, reduced *x) {
     return true;
 }
 
-// rest ← γ T⁻¹ P (E − U L) rest, the static response of the modes left out to forces R = rest (n × columns);
+// rest ← γ T⁻¹ P (E − U L) rest, the static response of the neglected modes to forces R = rest (n × columns);
 // force: L R.
 static void follow(bough_arena *arena, work *w, const reduced *x, int columns, const double *force,
                    double *rest) {
@@ -167,14 +167,14 @@ static void follow(bough_arena *arena, work *w, const reduced *x, int columns, c
     apply(w, columns, left, rest);
 }
 
-// Blocks of the air: L R, G U, H − S, and G by the modes left out, which follow R at once.
+// Blocks of the air: L R, G U, H − S, and G by the neglected modes, which follow R without delay.
 static void set_air(bough_arena *arena, work *w, reduced *x) {
     const bough_air_tangent *air = w->system->air;
     int a = air->n_air;
     size_t n = (size_t)w->n, r = (size_t)x->r, m = (size_t)w->m, all = (size_t)x->all, n_air = (size_t)a;
     double *lift = x->rest = bough_arena_doubles(arena, n * m), *force = bough_arena_doubles(arena, r * m);
     double *drive = bough_arena_doubles(arena, n_air * (r + m));
-    // forces of the air's states, on the modes and on what is left out
+    // forces of the air's states, on the modes and on the neglected ones
     for (size_t j = 0; j < m; j++) memcpy(lift + j * n, air->lift + (size_t)w->air[j] * n, n * sizeof *lift);
     bough_dense_product((bough_product){x->r, w->m, w->n, false, 1, 0}, x->left, lift, force);
     follow(arena, w, x, w->m, force, lift);
@@ -191,7 +191,7 @@ static void set_air(bough_arena *arena, work *w, reduced *x) {
     }
 }
 
-// The air's own rates turn with the blades.
+// The rates of the air include the rotation with the blades.
 static void turn_air(bough_arena *arena, const work *w, reduced *x) {
     int parts = w->system->def->n_part, per_blade = w->system->air->n_per_blade;
     int *row = bough_arena_take(arena, (size_t)(parts * per_blade) * sizeof *row);
@@ -319,7 +319,7 @@ static void add_drive(bough_arena *arena, const work *w, vectors *v) {
 static vectors apply_whole(bough_arena *arena, work *w, const reduced *x, const vectors *z) {
     vectors image = take_vectors(arena, w, x, z->columns);
     size_t size = (size_t)w->n * (size_t)z->columns;
-    // what is outside the subspace, by itself
+    // the part outside the subspace
     double *other = bough_arena_doubles(arena, size + 1);
     memcpy(other, z->members, size * sizeof *other);
     bough_dense_product((bough_product){x->r, z->columns, w->n, false, 1, 0}, x->left, z->members,
@@ -336,7 +336,7 @@ static vectors apply_whole(bough_arena *arena, work *w, const reduced *x, const 
     return image;
 }
 
-// Where a mode is among the vectors of the reduced system.
+// A mode and its column among the vectors of the reduced system.
 typedef struct listed {
     bough_eigen_pair pair; // without shape
     size_t column;
@@ -371,7 +371,7 @@ static double *spread(const work *w, const double *from) {
     return to;
 }
 
-// Modes as those of the whole, after one step of inverse iteration, with their residuals.
+// Modes of the whole system, after one step of inverse iteration, with their residuals.
 static void expand(bough_arena *arena, work *w, const reduced *x, int count, const listed *mode,
                    bough_eigen_pair *pair, bough_mode_vectors *vector) {
     size_t n = (size_t)w->n, length = n + (size_t)w->m, all = (size_t)x->all, column = 0;
@@ -472,7 +472,7 @@ static void list_modes(bough_arena *arena, work *w, const reduced *x, bough_eige
     if (vector) find_left(arena, w, x, count->found, mode, vector);
 }
 
-// Eigenvectors of one side without a partner on the other.
+// Number of right or left eigenvectors without a partner.
 static int count_unpaired(int n_right, const bough_eigen_pair *right, int n_left,
                           const bough_eigen_pair *left) {
     int unpaired = n_left > n_right ? n_left - n_right : 0;
@@ -480,8 +480,8 @@ static int count_unpaired(int n_right, const bough_eigen_pair *right, int n_left
     return unpaired;
 }
 
-// Right and left eigenvectors, a basis of each. Searches that begin with other vectors confirm each other;
-// where they do not, both look for more.
+// A basis of right and of left eigenvectors. Both searches start with different vectors and confirm each
+// other; if they do not, both search for more.
 static bough_status find_both(bough_arena *arena, work *w, bough_eigen_pair *right,
                               bough_eigen_count *n_right, bough_eigen_pair *left, bough_eigen_count *n_left,
                               int *unpaired) {

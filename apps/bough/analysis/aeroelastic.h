@@ -8,7 +8,7 @@
 #include "apps/bough/model/blade_group.h"
 #include "cosim/analysis/modes.h"
 
-// What the modes are of; all borrowed, all about one state.
+// The system and the state of the modes; all borrowed.
 typedef struct bough_aeroelastic {
     const bough_simulation *simulation;
     bough_whole *whole;             // its factors are replaced
@@ -27,7 +27,7 @@ typedef struct bough_mode_vectors {
 //   count     how many there are; with memory of the air `converged` is that of the subspace's basis, which
 //             has half as many again
 //   vectors   (count->wanted) of each pair; NULL: not wanted
-//   unpaired  eigenvectors that the subspace leaves out: on the other side, left or right, none converged
+//   unpaired  eigenvectors that are not in the subspace, since their left or right partner did not converge
 // The cost is that of factoring a dense matrix of n_state rows (of equal blades a tenth of it), and with
 // memory of the air that of all eigenvalues of one of its states and of three for each mode. BOUGH_FAILED
 // where the eigenvalues do not converge or the system is singular about the point.

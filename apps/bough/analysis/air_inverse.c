@@ -1,5 +1,5 @@
-// theory (77, 109). Of equal blades what couples them is in blade_inverse.h and all other states border it;
-// else all are others.
+// theory (77, 109). Equal blades are in blade_inverse.h, and all other states border them; without equal
+// blades all states are others.
 #include "apps/bough/analysis/air_inverse.h"
 
 #include "apps/bough/analysis/blade_inverse.h"
@@ -8,19 +8,19 @@
 #include <math.h>
 #include <string.h>
 
-// A joint that nothing holds moves on at its speed: the eigenvalue 0 twice, with one vector. Joints'
-// coordinates that go back this slowly, against the point, have two.
+// A joint without stiffness has a double eigenvalue 0 with one vector. Coordinates of joints return at this
+// rate, relative to the point, which gives two vectors.
 static const double going_back = 1e-6;
 
-// The blades' own parts of P differ with their loads, and so does the system with the azimuth. Where a test
-// vector misses the equations by no more, relative, their mean stands for them. Its transpose is exact.
+// The blades' blocks of P differ with their loads, and the system with the azimuth. Their mean is used if a
+// test vector satisfies the equations to this relative accuracy. Its transpose is exact.
 static const double alike = 1e-4, exact = 1e-9;
 
 enum { MOST = 64 }; // vectors at once
 
 static size_t square(int n) { return (size_t)n * (size_t)n; }
 
-// All but the states of the blades and those that are held. False where a blade's is held.
+// The states that neither belong to the blades nor are held. False if a state of a blade is held.
 static bool find_others(bough_arena *arena, bough_air_inverse *x) {
     const bough_modes_def *def = x->system->def;
     const bough_whole *whole = x->system->whole;
@@ -166,7 +166,7 @@ static bool set(bough_arena *arena, const bough_air_inverse *x) {
 
 // -- test -----------------------------------------------------------------------------------------
 
-// z − γ (S − A) y − going_back y, y by the inverse: the forces of which y is the solution.
+// z − γ (S − A) y − going_back y: the right-hand side of which the image y of z must be the solution.
 static void find_force(bough_arena *arena, const bough_air_inverse *x, const double *y, double *z) {
     const bough_modes_def *def = x->system->def;
     double *rate = bough_arena_doubles(arena, square(def->n_part));
@@ -180,7 +180,7 @@ static void find_force(bough_arena *arena, const bough_air_inverse *x, const dou
     for (int i = 0; i < x->system->simulation->tree->n_q; i++) z[i] -= going_back * y[i];
 }
 
-// Whether one vector's image solves the equations of the whole, and the transpose is one.
+// Whether the image of a test vector solves the equations of the whole, and the transpose is consistent.
 static bool is_exact(bough_arena *arena, bough_air_inverse *x) {
     const bough_whole *whole = x->system->whole;
     double *scale, *z, *y, *left, *image, error = 0, size = 0, product = 0, both = 0;

@@ -59,8 +59,8 @@ static double *entry(const bough_air_tangent *t, size_t row, size_t column) {
     return row < n ? &t->lift[(column - n) * n + row] : &t->lag[(column - n) * m + row - n];
 }
 
-// A column that belongs to no blade: the rates of the blades are taken as an observer at rest sees them, by
-// Cᵀ.
+// A column that belongs to no blade: Cᵀ transforms the rates of the blades to those that an observer at rest
+// sees.
 static void add_other(const bough_air_mean *m, size_t at, const double *slope, bough_air_tangent *t) {
     for (size_t i = 0; i < (size_t)(t->n + t->n_air); i++)
         if (m->place[i] == 0) *entry(t, i, at) += m->share * slope[i];
@@ -123,7 +123,7 @@ static void repeat(const bough_air_mean *m, bough_air_tangent *t) {
 void bough_air_tangent_close(bough_arena *arena, const bough_air_azimuth *x, bough_air_tangent *t) {
     if (x->group->n == 0) return;
     repeat(bough_air_mean_create(arena, x, t), t);
-    if (fabs(x->group->speed) > 0) { // over a revolution the mean of a slope in azimuth is none
+    if (fabs(x->group->speed) > 0) { // the mean over a revolution of a derivative by azimuth is 0
         int azimuth, speed;
         bough_tree_joint_rows(x->simulation->tree, x->simulation->scene->turbine.rotor, &azimuth, &speed);
         memset(t->motion + (size_t)azimuth * (size_t)t->n, 0, (size_t)t->n * sizeof(double));

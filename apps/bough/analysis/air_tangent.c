@@ -6,9 +6,9 @@
 #include <math.h>
 #include <string.h>
 
-static const double difference = 1e-5;     // of a state of the bodies, in units of its scale
+static const double difference = 1e-5;     // of a state of the members, in units of its scale
 static const double air_difference = 1e-6; // of a state of the air
-static const double rate_time = 1e-5;      // over which the rate of a state of the air is taken [s]
+static const double rate_time = 1e-5;      // over which the rate of a state of the air is measured [s]
 static const double rest_time = 1e4;       // of one of the steps in which the air comes to rest [s]
 
 enum { REST_STEPS = 4 };
@@ -61,7 +61,7 @@ static bough_status find_rates(work *w, const double *state, double *rate, doubl
     return bough_whole_rate(w->whole, w->time, state, rate);
 }
 
-// Brings the air to rest about `state`; what it remembers then, to w->memory.
+// Sets the air to equilibrium about `state` and stores its memory in w->memory.
 static void settle(work *w, const double *state) {
     bough_simulation *s = w->simulation;
     bough_equilibrium_set_state(s, w->whole->assembly, state);
@@ -75,7 +75,7 @@ static void settle(work *w, const double *state) {
     }
 }
 
-// Both sides of a difference are in the work: their slopes, of the bodies' rates and of the air's.
+// Slopes of the rates of members and air, by the difference of both sides in the work.
 static void set_column(const work *w, double between, double *column, double *air_column) {
     int n = w->whole->assembly->n_state;
     for (int k = 0; k < n; k++) column[k] = (w->rate[1][k] - w->rate[0][k]) / between;
@@ -84,7 +84,7 @@ static void set_column(const work *w, double between, double *column, double *ai
     }
 }
 
-// The state and the air at rest about it, to be changed.
+// Sets the state and the air at rest about it, before a change.
 static void begin_change(work *w, const double *state) {
     memcpy(w->state, state, (size_t)w->whole->assembly->n_state * sizeof *state);
     memcpy(w->before, w->memory, (size_t)w->n_memory * sizeof *w->before);
@@ -98,7 +98,7 @@ static bool meets_air(const bough_simulation *s, int member) {
     return false;
 }
 
-// The slopes in the work as the column of a state, of the bodies or of the air.
+// Stores the slopes in the work as the column of a state of the members or of the air.
 static void put_column(const work *w, bool of_air, int at, bough_air_tangent *t) {
     size_t n = (size_t)t->n, n_air = (size_t)t->n_air, column = (size_t)at;
     if (w->mean) {
@@ -122,8 +122,8 @@ static bough_status follow_state(work *w, const double *state, bool of_air, int 
     return bough_ok();
 }
 
-// To one side: there are thousands of states, and the curvature of the loads within the difference is 1e-5 of
-// their slope.
+// One-sided differences: there are thousands of states, and the curvature of the loads within a difference is
+// 1e-5 of their slope.
 static bough_status follow_member(work *w, const double *state, int member, bough_air_tangent *t) {
     const bough_assembly *a = w->whole->assembly;
     const bough_system *system = &a->member[member]->system;
@@ -135,8 +135,8 @@ static bough_status follow_member(work *w, const double *state, int member, boug
 
 // -- equal blades ---------------------------------------------------------------------------------
 
-// Loads of a section follow the vertices and the air beside it: states of all blades, and of places far
-// enough apart, are changed at once.
+// Loads of a section depend on neighbouring vertices and on the air there: states of all blades, and of
+// places far enough apart, are changed together.
 
 // States of one blade, then those of its air; places along it count aerodynamic stations.
 typedef struct blades {
@@ -193,7 +193,7 @@ static void keep_loads(const blades *b, int side) {
                               b->load[side] + (size_t)k * b->n_load);
 }
 
-// Takes the present loads as those of the state itself.
+// The present loads are those of the undisturbed state.
 static blades take_blades(bough_arena *arena, work *w, const bough_blade_group *group) {
     const bough_simulation *s = w->simulation;
     int n_air = w->n_air / s->scene->turbine.n_blade, n_row = group->n_row;
@@ -263,8 +263,8 @@ static void set_nearest(blades *b, int n, const int *some) {
     }
 }
 
-// Change of the rates of what carries the blades, relative to that of theirs, in units of the scales: below
-// it, it comes of means over the disk.
+// Changes of the rates of bodies that carry the blades, relative to those of the blades, in units of the
+// scales: smaller ones come from means over the disk.
 static const double carried = 1e-8;
 
 static bool moves_blades_only(const blades *b) {
@@ -278,7 +278,8 @@ static bool moves_blades_only(const blades *b) {
     return other <= carried * blade;
 }
 
-// Rates under the changed loads of one blade alone; what these move beside the blade is by its state j.
+// Rates under the changed loads of one blade alone, whose effect on other bodies belongs to state j of the
+// blade.
 static bough_status follow_loads(const blades *b, const double *state, int blade, int j,
                                  bough_air_tangent *t) {
     work *w = b->w;
@@ -294,8 +295,8 @@ static bough_status follow_loads(const blades *b, const double *state, int blade
     return bough_ok();
 }
 
-// n states of all blades at once, from the root outwards. Loads at the root move what carries the blades, and
-// with it the other blades: their rates are found blade by blade.
+// Changes n states of all blades together, from the root outwards. If loads at the root move the bodies that
+// carry the blades, and so other blades, their rates are found blade by blade.
 static bough_status follow_some(blades *b, const double *state, int n, const int *some,
                                 bough_air_tangent *t) {
     work *w = b->w;
@@ -316,8 +317,8 @@ static bough_status follow_some(blades *b, const double *state, int n, const int
     return bough_ok();
 }
 
-// States of one kind along the blade, n of them from `first` on, `stride` apart: those that share no loads
-// are changed at once.
+// n states of one kind along the blade, from `first` on, `stride` apart: those without common loads are
+// changed together.
 static bough_status follow_along(bough_arena *arena, blades *b, const double *state, int first, int stride,
                                  int n, bough_air_tangent *t) {
     bool *done = bough_arena_take(arena, (size_t)n * sizeof *done);
@@ -346,8 +347,8 @@ static bough_status follow_blades(bough_arena *arena, blades *b, const double *s
     return bough_ok();
 }
 
-// A miss of the blades' tangent, relative, that comes of means over the disk, on which all of a blade has
-// some influence.
+// Relative error of the blades' tangent that means over the disk may cause, on which every state of a blade
+// has an influence.
 static const double disk = 1e-3;
 
 // Whether the tangent gives the rates that a change of all states of the blades and their air causes.
@@ -370,7 +371,7 @@ static bough_status check(const blades *b, const double *state, bool *good) {
     return bough_ok();
 }
 
-// Whether the blades' columns may be found so.
+// Whether columns of the blades may be found together.
 static bool may_be_at_once(const work *w, const bough_blade_group *group) {
     return group && group->n > 0 && group->blade[0]->rod && w->simulation->drag == NULL;
 }
@@ -390,7 +391,7 @@ static bool is_of_group(const bough_assembly *a, const bough_blade_group *group,
     return false;
 }
 
-// All but the columns of a group and its air; `found` NULL: all.
+// All columns except those of a group and its air; `found` NULL: all.
 static bough_status follow_others(work *w, const double *state, const bough_blade_group *found,
                                   bough_air_tangent *t) {
     const bough_assembly *a = w->whole->assembly;
@@ -448,7 +449,7 @@ static bough_status begin_differences(work *w, const double *state) {
     return find_rates(w, state, w->rate[0], w->air_rate[0]);
 }
 
-// Takes a group's columns out of the mean, as they were added.
+// Subtracts the columns of a group from the mean.
 static bough_status take_back(bough_arena *arena, work *w, const double *state,
                               const bough_blade_group *group, bough_air_tangent *t) {
     bool good;
@@ -458,7 +459,7 @@ static bough_status take_back(bough_arena *arena, work *w, const double *state,
     return bough_ok();
 }
 
-// All columns, those of a group at once where that is good.
+// All columns, those of a group together if that is accurate.
 static bough_status follow_all(bough_arena *arena, work *w, const double *state,
                                const bough_blade_group *group, bough_air_tangent *t) {
     bool good = false;

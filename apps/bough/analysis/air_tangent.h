@@ -1,14 +1,15 @@
-// How the air's loads follow the motion, about a steady state of the whole scene, by differences:
+// The tangent of the air's loads with respect to the motion, about a steady state of the whole scene, by
+// differences:
 //     ẏ = … + A y + R m ,   ṁ = G y + H m + K u ,
 // y the states of all members, m those of the air: delayed inductions, shed wakes, lags of pressure and
-// separation (rotor.h). Of quasi-steady air there is no m: inductions and lift follow at once.
+// separation (rotor.h). Quasi-steady air has no m: inductions and lift follow without delay.
 #ifndef BOUGH_APPS_ANALYSIS_AIR_TANGENT_H
 #define BOUGH_APPS_ANALYSIS_AIR_TANGENT_H
 
 #include "apps/bough/model/blade_group.h"
 #include "cosim/whole.h"
 
-// Whether modes and linear models of the scene contain how the air's forces follow the motion.
+// Whether the forces of the air follow the motion in modes and linear models of the scene.
 static inline bool bough_air_follows(const bough_scene *scene) {
     return scene->aero.node != NULL && scene->modes.air != BOUGH_SCENE_AIR_FROZEN;
 }
@@ -24,22 +25,22 @@ typedef struct bough_air_tangent {
     double *input_drive; // K (n_air × n_input)
 } bough_air_tangent;
 
-// What acts on the scene from outside.
+// Inputs of the scene.
 typedef struct bough_air_inputs {
     int n;
     const double *size; // (n) of a difference
     void *self;
-    void (*set)(void *self, int k, double change, double *state); // `state`: where a motion given is put
+    void (*set)(void *self, int k, double change, double *state); // `state`: receives a prescribed motion
 } bough_air_inputs;
 
-// What a tangent is about: a state, as of one of the azimuths of a mean, theory (113); all borrowed.
+// The state of a tangent, which may be that of an azimuth of a mean, theory (113); all borrowed.
 typedef struct bough_air_azimuth {
     bough_simulation *simulation;
     bough_whole *whole;
     double time;
     const double *state;            // (n)
     const bough_blade_group *group; // its equal blades; NULL or none: each state is by itself
-    // of a mean alone; without one 0
+    // of a mean; otherwise 0
     const bough_simulation *first;  // of the first azimuth
     const bough_blade_group *parts; // the same blades there, in whose order they are the mean's parts
     const double *blend;            // C (group->n × group->n)

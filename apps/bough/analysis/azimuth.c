@@ -53,7 +53,7 @@ static double *blend_of(bough_arena *arena, int n, double turn) {
     return c;
 }
 
-// A copy of the scene whose rotor begins further on.
+// A copy of the scene whose rotor starts at a greater angle.
 static bough_scene *turned_scene(bough_arena *arena, const bough_simulation *s, double turn) {
     bough_scene *to = bough_coarser_scene_beside(arena, s, 0);
     bough_scene_joint *joint = &to->body[to->turbine.rotor].joint;
@@ -68,8 +68,8 @@ static bough_scene *turned_scene(bough_arena *arena, const bough_simulation *s, 
     return to;
 }
 
-// Begins in the state of the scene's azimuth, with the blades bent as an observer at rest sees those there,
-// so that its equilibrium is near.
+// Starts from the state at the scene's azimuth, with the deflections of the blades that an observer at rest
+// sees there, which is near the equilibrium.
 static void begin(const bough_azimuths *a, bough_azimuth *x, double time, double *state) {
     const bough_simulation *s = a->at[0].simulation;
     const bough_assembly *assembly = s->master->assembly;
@@ -102,7 +102,7 @@ static bough_status turn_on(bough_arena *arena, const bough_azimuths *a, double 
     return bough_vibration_point_find(arena, x->simulation, time, &x->point);
 }
 
-// The mean of the blades' shapes, in which the members' own loads differ little.
+// Sets the blades to their mean shape, in which their loads differ little.
 static void set_mean(const bough_azimuths *a, double *state) {
     const bough_blade_group *g = a->group;
     for (int j = 0; j < g->n * g->n_row; j++) {
@@ -212,7 +212,7 @@ bough_status bough_azimuth_product_follow(bough_azimuth_product *p, double size,
     return bough_ok();
 }
 
-// -- what an azimuth changes ----------------------------------------------------------------------
+// -- changes with the azimuth ---------------------------------------------------------------------
 
 // yᵀ A x/(yᵀ x) of an eigenvector; scale (n + n_air), image: work.
 static bough_status quotient(bough_azimuth_product *p, const bough_mode_vectors *v, const double *scale,

@@ -15,8 +15,8 @@ typedef struct bough_azimuth {
     double turn; // from the scene's azimuth [rad]
     bough_simulation *simulation;
     bough_vibration_point point;
-    double *blend; // C (n_part × n_part), row-major: a blade's states here by those of all there, as an
-                   // observer at rest sees no change
+    double *blend; // C (n_part × n_part), row-major: the states of each blade here from those of all blades
+                   // there, for an observer at rest who sees no change
 } bough_azimuth;
 
 typedef struct bough_azimuths {
@@ -43,8 +43,8 @@ bough_azimuth_product *bough_azimuth_product_create(bough_arena *arena, const bo
 bough_status bough_azimuth_product_follow(bough_azimuth_product *product, double size, bool to_one_side,
                                           const double *y, double *image);
 
-// How far the air of each azimuth moves the eigenvalues of n modes from those of the mean, by first order:
-// change (azimuths × n) [1/s]; NaN without a left vector.
+// First-order change of the eigenvalues of n modes from those of the mean by the air of each azimuth: change
+// (azimuths × n) [1/s]; NaN without a left vector.
 bough_status bough_azimuths_change(bough_arena *arena, const bough_azimuths *azimuths, bool dynamic, int n,
                                    const bough_mode_vectors *vector, double complex *change);
 

@@ -1,4 +1,4 @@
-// The equal blades of a rotor by themselves in the air that they share: D = (K_b + N)⁻¹ with K_b = I − γJ of
+// The equal blades of a rotor, coupled by the air alone: D = (K_b + N)⁻¹ with K_b = I − γJ of
 // one blade and N = γ(S − A) between all. Over harmonics of the blades it falls into blocks of one blade or
 // two, of which the kinematic rows are eliminated vertex by vertex: theory (116).
 #ifndef BOUGH_APPS_ANALYSIS_BLADE_INVERSE_H

@@ -1,4 +1,4 @@
-// An eigenvector of the whole scene as motion of its bodies, and what it is called by.
+// An eigenvector of the whole scene as motion of its bodies, and its name.
 #include "apps/bough/analysis/vibration.h"
 
 #include "core/tree/dynamics.h"
@@ -63,7 +63,7 @@ static void expand(const mode_shape *x, const bough_beam *beam, int part, double
            (size_t)BOUGH_ROD_STATES * beam->mesh->n * sizeof *to);
 }
 
-// Central differences with steps that change no state by more than a millionth.
+// Central differences, with steps that change no state by more than 1e-6.
 static void set_modal(const mode_shape *x, const bough_beam *beam, beam_shape *b) {
     size_t n = (size_t)BOUGH_ROD_STATES * beam->mesh->n;
     for (int part = 0; part < 2; part++) {
@@ -109,8 +109,8 @@ static int count_rows(const bough_simulation *s) {
     return n;
 }
 
-// Sets the view so that twists of frames are their displacements along a part of the shape: the
-// joints' speeds are the changes of their coordinates.
+// Sets the view so that twists of frames are their displacements along a part of the shape: the speeds of
+// joints are set to the changes of their coordinates.
 static void set_displacements(const mode_shape *x, int part) {
     const bough_tree *tree = x->simulation->tree;
     memcpy(x->moved, x->state, (size_t)tree->n_q * sizeof *x->moved);
@@ -200,7 +200,7 @@ static void set_rows(const mode_shape *x, bough_shape_row *row) {
 
 // -- energy ---------------------------------------------------------------------------------------
 
-// The scene's body that moves with a link: the one on its joint, or of a rod's end the first that
+// The body of the scene that moves with a link: the one on its joint, or for the end of a rod the first that
 // is fixed to it, or else the rod.
 static int body_on(const bough_simulation *s, int link) {
     int n = s->scene->n_body, body = s->tree->links[link].body;
@@ -319,7 +319,7 @@ static void set_direction(const mode_shape *x, bough_scene_mode *mode) {
 const char *const bough_pattern_names[BOUGH_PATTERNS] = {"",       "collective", "forward",     "backward",
                                                          "cosine", "sine",       "reactionless"};
 
-// Squares of a pattern over the blades, by what they look like.
+// Mean squares of a pattern over the blades, by its components.
 typedef struct pattern {
     double whole, collective, plus, minus, cosine, sine;
 } pattern;

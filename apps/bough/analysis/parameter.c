@@ -11,7 +11,7 @@
 typedef void change_section(bough_section_station *x, double change);
 typedef void change_scene(bough_scene *scene, double change);
 
-// What one kind of parameter changes: each station of some bodies' rods, their damping, or the scene.
+// A kind of parameter changes each station of the rods of some bodies, their damping, or the scene.
 typedef struct kind {
     const char *name, *by;
     double change;
@@ -23,7 +23,7 @@ typedef struct kind {
 
 // -- sections -------------------------------------------------------------------------------------
 
-// A stiffness and its couplings, so that the matrix stays positive definite.
+// Scales a stiffness and its couplings, so that the matrix stays positive definite.
 static void scale_stiffness(bough_section_station *x, int component, double change) {
     for (int j = 0; j < 6; j++)
         x->stiffness[bough_symmetric6_index(component, j)] *= j == component ? 1 + change : sqrt(1 + change);

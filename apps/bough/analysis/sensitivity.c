@@ -55,7 +55,7 @@ static bough_status prepare(bough_arena *arena, bough_simulation *s, double time
     return bough_ok();
 }
 
-// Row j of part k, of the members' states and then of the air's.
+// Row j of blade k among all states, first its own, then those of its air.
 static int row_of(const linear *x, int k, int j) {
     const bough_modes_def *def = &x->point.def;
     return j < def->n_row ? def->row[k * def->n_row + j] : x->n + x->air_row[k * x->n_row + j - def->n_row];
@@ -70,7 +70,7 @@ static void subtract_spin(const linear *x, const double *y, double *image) {
                 image[row_of(x, k, j)] -= x->rate[k * def->n_part + l] * y[row_of(x, l, j)];
 }
 
-// Whether anything but blades and their air moves.
+// Whether y has entries outside the blades and their air.
 static bool moves_others(const linear *x, const double *y) {
     int moved = 0;
     for (int i = 0; i < x->n + x->m; i++) moved += y[i] != 0;
@@ -95,7 +95,7 @@ static void add_blades(const linear *x, int shift, double factor, const double *
             image[row_of(x, (k + shift) % n, j)] += factor * from[row_of(x, k, j)];
 }
 
-// The share of one azimuth's air in A y; between blades it is the mean over the blades.
+// Adds the part of one azimuth's air to A y; coupling between blades is its mean over the blades.
 static bough_status add_azimuth(linear *x, bough_azimuth_product *air, double size, const double *y,
                                 double *image) {
     double share = 1. / x->azimuths.n;
@@ -222,7 +222,7 @@ static void start(int n, int seed, double complex *vector) {
     for (int i = 0; i < n; i++) vector[i] = 1.1 + sin(seed + 7 * i) + imaginary * cos(seed + 5 * i);
 }
 
-// The same eigenvalue with another vector.
+// Whether another vector has the same eigenvalue.
 static bool has_twin(int n, const double complex *a, const double complex *b) {
     double complex sum = 0;
     for (int i = 0; i < n; i++) sum += conj(a[i]) * b[i];

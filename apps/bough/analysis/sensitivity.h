@@ -1,5 +1,5 @@
-// How a mode of the whole scene changes with its parameters, theory (108), from its left and right
-// eigenvectors: a parameter costs two equilibria and four products, no search for eigenvalues. The
+// Sensitivity of a mode of the whole scene to its parameters, theory (108), by its left and right
+// eigenvectors: a parameter takes two equilibria and four products, and no search for eigenvalues. The
 // equilibrium changes with the parameter.
 #ifndef BOUGH_APPS_ANALYSIS_SENSITIVITY_H
 #define BOUGH_APPS_ANALYSIS_SENSITIVITY_H
@@ -34,7 +34,7 @@ typedef struct bough_parameter {
     int n_body, *body; // whose rods change
 } bough_parameter;
 
-// Those that the scene has, in the arena: (*n).
+// The parameters of the scene (*n), in the arena.
 const bough_parameter *bough_parameters_of(bough_arena *arena, const bough_scene *scene, int *n);
 
 // The scene with a parameter changed by `times` its change.

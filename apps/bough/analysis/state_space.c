@@ -11,7 +11,7 @@
 #include <stdio.h>
 #include <string.h>
 
-// Differences: of a state in units of its scale; of an input in units of what it is about, or of 1.
+// Differences: of a state in units of its scale, of an input relative to its value or to 1.
 static const double difference = 1e-5;
 
 typedef enum input_kind { SCENE_LOAD, GENERATOR_TORQUE, COLLECTIVE_PITCH, WIND_SPEED } input_kind;
@@ -37,7 +37,7 @@ typedef struct work {
 
 // -- inputs ---------------------------------------------------------------------------------------
 
-// A change of pitch is a given motion: the leader's state is brought onto it.
+// A change of pitch is a prescribed motion, to which the leader's state is set.
 static void set_input(void *self, int k, double change, double *state) {
     const work *w = self;
     bough_simulation *s = w->s;
@@ -181,7 +181,7 @@ static void put_rates(const work *w, double size, double *column) {
         column[k] = (w->rate[1][k] - w->rate[0][k]) / (2 * size);
 }
 
-// An angle that begins anew after a turn has no jump here.
+// The jump of a periodic angle is removed.
 static void put_outputs(const work *w, int n_output, double size, double *column) {
     for (int k = 0; k < n_output; k++) {
         double change = w->value[1][k] - w->value[0][k];

@@ -11,7 +11,7 @@
 typedef struct bough_signal_name {
     char name[80];
     const char *unit;
-    double value; // where the system is linear about, in that unit
+    double value; // operating point, in that unit
 } bough_signal_name;
 
 typedef struct bough_state_space {

@@ -46,7 +46,7 @@ bough_status bough_steady_turning(const bough_simulation *s, const bough_beam *b
     return bough_ok();
 }
 
-// The forces of bodies that a rod carries are not known here.
+// The forces of bodies on a rod are not known here.
 static bough_status check_carries_none(const bough_simulation *s, const bough_beam *beam) {
     int carried = bough_scene_carried_by(s->scene, (int)(beam->body - s->scene->body));
     if (carried < 0) return bough_ok();

@@ -1,5 +1,5 @@
-// A scene's rods in equilibrium: one by one, root held, at rest or turning steadily, for statics and
-// eigenvalues; or as the scene stands in equilibrium (equilibrium.h).
+// Rods in equilibrium: one by one with a clamped root, at rest or in steady rotation, for statics and
+// eigenvalues; or in the equilibrium of the whole scene (equilibrium.h).
 #ifndef BOUGH_APPS_ANALYSIS_STEADY_H
 #define BOUGH_APPS_ANALYSIS_STEADY_H
 
@@ -27,11 +27,11 @@ typedef struct bough_turning {
 // BOUGH_INVALID when it names no axis for this rod.
 bough_status bough_steady_turning(const bough_simulation *s, const bough_beam *beam, bough_turning *turning);
 
-// How many bodies are rods.
+// Number of bodies that are rods.
 int bough_steady_rods(const bough_simulation *s);
 
-// Equilibrium of the rod in the simulation's initial pose under gravity and its loads, each grown to
-// the whole. In rotation gravity is taken in its mean over a revolution, along the axis.
+// Equilibrium of the rod in the simulation's initial pose under gravity and its full loads. In rotation
+// gravity is its mean over a revolution, along the axis.
 bough_status bough_steady_find(bough_arena *arena, const bough_simulation *s, const bough_beam *beam,
                                const bough_turning *turning, bough_steady *steady);
 

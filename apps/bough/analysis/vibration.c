@@ -13,14 +13,15 @@
 // Eigenvalues are sought about this point of the real axis, and several times the spin [1/s].
 static const double least_point = 1, spins = 4;
 
-// |λ| below this share of the point is a free motion: its double zero comes out as the square root
-// of the rounding.
+// |λ| below this fraction of the point is a free motion: the numerical value of a double zero is the square
+// root of the rounding.
 static const double free_motion = 1e-3;
 
 enum { FREE_MOTIONS = 8 }; // that may be found before the modes
 
-// Rounding in the solutions grows with the fourth power of |λ| over the point. Where an eigenvector has a
-// residual above this, the point moves to the lowest of them, which must be some times as far.
+// Rounding in the solutions grows with the fourth power of |λ| over the point. If the residual of an
+// eigenvector exceeds `exact`, the point moves to the lowest eigenvalue, if that is at least `nearer` times
+// as far.
 static const double exact = 1e-9, nearer = 1.5;
 enum { MOVES = 6 }; // of the point, most: the first values may be of rounding alone
 
@@ -41,7 +42,7 @@ static void set_value(const bough_eigen_pair *pair, const double change[2], boug
 
 static const double at_rest = 1e-9; // [rad/s]
 
-// Whether anything but a rotor whose blades allow the transform rotates: the system is then that of one
+// Whether something rotates that is no rotor with a multi-blade transform: the system is then that of one
 // azimuth.
 static bool is_frozen(const bough_simulation *s, const bough_blade_group *group) {
     bough_vec3 spin = {0, 0, 0};
@@ -60,7 +61,7 @@ static bool is_frozen(const bough_simulation *s, const bough_blade_group *group)
 
 // -- periodic systems -----------------------------------------------------------------------------
 
-// A change of the solutions of the linear system above it, relative, is none of rounding.
+// A larger relative change of the solutions of the linear system is no rounding.
 static const double constant = 1e-5;
 
 static bough_status prepare(bough_arena *arena, bough_simulation *s, bough_vibration_point *x) {
@@ -74,8 +75,8 @@ static bough_status prepare(bough_arena *arena, bough_simulation *s, bough_vibra
     return bough_blade_group_find(arena, s, a, &x->group);
 }
 
-// Inputs of the equilibrium as it is, so that the rotor's whole weight and thrust are on the tree;
-// the blades bend in their mean.
+// Inputs of the true equilibrium, so that weight and thrust of the whole rotor are on the tree; the blades
+// have their mean deflection.
 static void define(double time, bough_vibration_point *x) {
     const bough_blade_group *g = &x->group;
     bough_whole_inputs(x->whole, time, x->state);
@@ -92,7 +93,7 @@ static void define(double time, bough_vibration_point *x) {
     x->def.point = fmax(least_point, spins * ((g->n - 1) / 2) * fabs(g->speed));
 }
 
-// Moves all joints on at their own speeds, the fastest by `angle`.
+// Advances all joints at their speeds, the fastest by `angle`.
 static void move_on(const bough_tree *tree, double fastest, double angle, double *rate, double *state) {
     enum { STEPS = 200 };
     for (int step = 0; step < STEPS; step++) {
@@ -103,8 +104,8 @@ static void move_on(const bough_tree *tree, double fastest, double angle, double
     }
 }
 
-// The tree's part of a change of the state: its coordinates from, or to, the speeds that belong to them,
-// which turn with the bodies. In place, by `work` (n_q).
+// Converts the coordinates of the tree in a change of the state to or from speeds, which rotate with the
+// bodies. In place; work: (n_q).
 static void convert(const bough_tree *tree, const double *state, bool to_speeds, double *work, double *x) {
     memset(work, 0, (size_t)tree->n_q * sizeof *work);
     for (int i = 0; i < tree->n_links; i++) {
@@ -141,8 +142,8 @@ static bough_status refuse(const bough_simulation *s, double change) {
         s->scene->file, change);
 }
 
-// Compares the tangent of the present state with those after all rotations have gone on by an angle: they
-// differ where a rotor of two blades, or one out of balance, is on a support that can move.
+// Compares the tangent of the present state with those after rotation by two angles: they differ if a rotor
+// of two blades, or an unbalanced one, is on a flexible support.
 static bough_status check_constant(bough_arena *arena, const bough_simulation *s,
                                    const bough_vibration_point *x) {
     static const double angles[] = {1, 2.3};
@@ -172,11 +173,10 @@ static bough_status check_constant(bough_arena *arena, const bough_simulation *s
     return bough_ok();
 }
 
-// A change of the inertia of a hub as it turns, relative, whose effect is small beside that of the azimuth at
-// which tilt, shear and tower are taken.
+// Relative change of the inertia of a rotating hub, whose effect is small beside that of the azimuth.
 static const double even = 1e-3;
 
-// Of all that joints connect to the rotor, about its centre, in the ground's axes.
+// Inertia of all bodies on the rotor, about its centre, in ground axes.
 static bough_inertia turning_inertia(const bough_simulation *s, int rotor, bough_vec3 centre) {
     bough_inertia sum = {0};
     for (int i = rotor; i < s->tree->n_links; i++) {
@@ -209,7 +209,7 @@ static double imbalance(const bough_simulation *s) {
     return size > 0 ? fmax(change / size, off / sqrt(here.mass * size)) : 0;
 }
 
-// The present azimuth, each blade as it bends there.
+// Uses the present azimuth, with the deflection of each blade there.
 static void leave_transform(const bough_simulation *s, bough_vibration_point *x) {
     x->group.n = x->group.n_row = x->def.n_part = x->def.n_row = 0;
     x->def.spin = 0;
@@ -228,7 +228,7 @@ bough_status bough_vibration_point_find(bough_arena *arena, bough_simulation *s,
 
 // -- solution -------------------------------------------------------------------------------------
 
-// Violations of closures decay at the rate of their stabilisation: no motion of the scene.
+// Violations of closures decay at the rate of their stabilisation and are no motion of the scene.
 static bool is_closure(const bough_tree *tree, const bough_eigen_pair *pair) {
     double rate = 1 / tree->closure_time;
     return tree->n_closures > 0 && hypot(pair->real + rate, pair->imaginary) < 1e-3 * rate;
@@ -238,7 +238,7 @@ static bool is_mode(const bough_tree *tree, double point, const bough_eigen_pair
     return hypot(pair->real, pair->imaginary) > free_motion * point && !is_closure(tree, pair);
 }
 
-// Pairs up to that of the last mode wanted.
+// Number of pairs up to that of the last wanted mode.
 static int count_pairs(const bough_tree *tree, double point, int count, const bough_vibration *v) {
     int n = 0;
     for (int kept = 0; n < v->count.found && kept < count; n++) kept += is_mode(tree, point, &v->pair[n]);
@@ -263,10 +263,10 @@ static bough_status solve_bodies(bough_arena *arena, const bough_simulation *s,
     return bough_modes_find(arena, x->whole, &x->def, v->pair, &v->count);
 }
 
-// The air about the state, in the mean over the azimuths.
+// The air about the state, as a mean over the azimuths.
 typedef struct air_about {
     bool follows, dynamic; // its forces follow the motion; they have memory
-    bool changes;          // what an azimuth changes is wanted
+    bool changes;          // changes with the azimuth are wanted
     bough_azimuths azimuths;
     bough_air_tangent tangent;
 } air_about;
@@ -342,7 +342,7 @@ bool bough_vibration_wanted(const bough_simulation *s) {
     return (!bough_rods_are_independent(s) || reduced) && modes->speed == 0 && !axis;
 }
 
-// Finds the state, the air about it and the eigenvalues. `changes`: with what an azimuth changes.
+// Finds the state, the air about it and the eigenvalues; `changes`: also their changes with the azimuth.
 static bough_status find(bough_arena *arena, bough_simulation *s, int count, bool changes,
                          bough_vibration *v) {
     bool balanced = s->scene->modes.at == BOUGH_SCENE_IN_EQUILIBRIUM;

@@ -14,17 +14,17 @@
 #include "cosim/analysis/modes.h"
 #include "flexbody/rod/rod_modes.h"
 
-// -- a mode: whose energy, in which direction, in which pattern over the blades ------------------
+// -- a mode: bodies, direction, pattern over the blades -------------------------------------------
 
-// The motion of the whole, displacement [m] and rotation [rad] in ground axes: a row for each body
-// of the scene at its frame, of a flexible one for each vertex.
+// Motion of the scene, displacement [m] and rotation [rad] in ground axes: a row for the frame of each body,
+// of a flexible one for each vertex.
 typedef struct bough_shape_row {
     int body;
     double span;         // [m]; 0 of a rigid body
     double motion[2][6]; // real and imaginary part
 } bough_shape_row;
 
-// How the blades move against each other.
+// Pattern of the motion over the blades.
 typedef enum bough_pattern {
     BOUGH_PATTERN_NONE,         // there are no blades to compare
     BOUGH_PATTERN_COLLECTIVE,   // all alike
@@ -47,7 +47,7 @@ typedef struct bough_scene_mode {
     double damping_change; // the same of the damping ratio
     double moved;  // |λ − λ'|/|λ| to the mode on another mesh; NaN: not compared, or no such mode
     double *share; // of the kinetic energy for each body of the scene, sum 1
-    bool blades;   // all blades together have more of it than any other body
+    bool blades;   // all blades together have more kinetic energy than any other body
     int body;      // the body with the largest share; with `blades` the first blade
     int direction; // in which these move most: bough_rod_direction; of a rigid body 0..2 along the
                    // ground's axes, 3 rotation
@@ -72,12 +72,12 @@ typedef struct bough_vibration {
     int found;
     bough_scene_mode *mode; // (found) by the distance of λ from a point near 0
     bough_eigen_pair *pair; // (found)
-    int n_azimuth;          // over which the system is the mean; 1: that of the scene's azimuth
+    int n_azimuth;          // over which the system is averaged; 1: the scene's azimuth alone
     double (*change)[2];    // (found) of each mode over them, as frequency_change and damping_change
 } bough_vibration;
 
-// What modes are about: the simulation's present state, the blades in their mean where they turn (not on a
-// hub out of balance, for modes.linear).
+// The state of the modes: the simulation's present state, with the mean deflection of rotating blades (not on
+// an unbalanced hub with modes.linear).
 typedef struct bough_vibration_point {
     bough_whole *whole;
     bough_blade_group group;
