@@ -28,13 +28,13 @@ typedef struct bough_tune_point {
     bough_tune_settings settings;
     bough_status outcome; // of the run
     double cpu;           // of the interval [s]
-    double motion,
-        force; // largest error of a channel of motion, and of forces and moments, relative to its range
-    char channel[32]; // with the largest error of motion
-    bool separate;    // `part` is known
-    double part[3];   // of mesh, air and time in `error`
-    double error;     // the larger of `motion` and a quarter of `force`
-    bool best;        // on the Pareto front: no other is both faster and more accurate
+    double motion;        // largest error of a channel of motion relative to its range
+    double force;         // the same for forces and moments
+    char channel[32];     // with the largest error of motion
+    bool separate;        // `part` is known
+    double part[3];       // of mesh, air and time in `error`
+    double error;         // the larger of `motion` and a quarter of `force`
+    bool best;            // on the Pareto front: no other is both faster and more accurate
 } bough_tune_point;
 
 typedef struct bough_tune_options {

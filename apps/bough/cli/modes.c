@@ -6,8 +6,8 @@
 #include "apps/bough/results/folder.h"
 #include "apps/bough/results/summary.h"
 
-static const double unstable = 1e-6; // growth relative to |λ| above it is no rounding
-static const double fine = 0.01;     // residuals and changes by another mesh up to it need no warning
+static const double unstable = 1e-6; // relative to |λ|: smaller growth is rounding
+static const double fine = 0.01;     // residuals and changes by another mesh that need no warning
 
 static const char *const blade_shapes[BOUGH_ROD_DIRECTIONS] = {
     [BOUGH_ROD_FLAP] = "flap",
@@ -140,7 +140,7 @@ static bough_status solve_rods(bough_arena *arena, const bough_simulation *s, ro
 
 // -- the whole scene ------------------------------------------------------------------------------
 
-// Rods that are no blades bend along their axes, rigid bodies move along the ground's.
+// Directions are those of the body's axes for rods, of the ground's axes for rigid bodies.
 const char *bough_modes_shape(const bough_simulation *s, const bough_scene_mode *mode) {
     static const char *const rod[] = {"x", "y", "z", "torsion"};
     static const char *const rigid[] = {"x", "y", "z", "turn"};
@@ -161,8 +161,8 @@ bool bough_modes_rotor_is_free(const bough_simulation *s) {
     return joint->spring.stiffness == 0 && joint->motion[0].node == NULL;
 }
 
-// All blades swing alike in their plane, or what they hang on turns: against each other where the
-// rotor is free, else against what holds it.
+// Whether all blades move alike in their plane, or the hub rotates: against each other if the rotor is free,
+// otherwise against its support.
 static bool turns_rotor(const bough_scene_mode *mode) {
     enum { TURN = 3 };
     if (mode->pattern != BOUGH_PATTERN_COLLECTIVE) return false;
@@ -194,13 +194,13 @@ static double largest_residual(const bough_vibration *v) {
     return largest;
 }
 
-// Numbers of modes: whether one is among them.
+// Chooses modes to be listed.
 typedef bool mode_choice(const bough_scene_mode *mode);
 static bool is_inexact(const bough_scene_mode *mode) { return mode->residual > fine; }
 static bool is_moved(const bough_scene_mode *mode) { return mode->moved > fine; }
 
-// Whether one azimuth differs from their mean by all its damping; of a left vector that is missing nobody
-// knows.
+// Whether the damping at one azimuth differs from the mean by its own value, or is unknown without a left
+// vector.
 static bool is_of_azimuth(const bough_scene_mode *mode) {
     return isnan(mode->damping_change) || mode->damping_change >= fabs(mode->damping);
 }
@@ -213,7 +213,7 @@ static bool print_numbers(const char *head, const bough_vibration *v, mode_choic
     return n > 0;
 }
 
-// What of the modes asked for is missing, and why; and how exact those found are.
+// Prints how many of the wanted modes are missing and why, and the accuracy of the others.
 static void print_search(const bough_vibration *v) {
     bool converged = v->count.converged >= v->count.wanted;
     if (v->found < v->asked && converged)
@@ -233,7 +233,7 @@ static void print_search(const bough_vibration *v) {
     print_numbers("warning: not exact, with a residual above 1 %: mode", v, is_inexact);
 }
 
-// Beside the column of the damping ratio's change.
+// Prints the largest changes over the azimuths.
 static void print_azimuths(const bough_vibration *v) {
     double most = 0;
     if (v->n_azimuth == 1) return;

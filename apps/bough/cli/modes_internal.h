@@ -12,9 +12,9 @@
 bough_status bough_modes_sweep(bough_arena *arena, const bough_options *options, const bough_texts *sweeps,
                                bool until_unstable);
 
-// What a mode depends on.
+// Sensitivities of a mode.
 typedef struct bough_modes_dependence {
-    int mode; // its place among those found; −1: of none
+    int mode; // index among the modes found; −1: none
     bough_sensitivities of;
 } bough_modes_dependence;
 
@@ -26,7 +26,7 @@ bough_status bough_modes_sensitivity(bough_arena *arena, bough_simulation *s, co
 // Whether nothing but inertia holds the rotor's joint.
 bool bough_modes_rotor_is_free(const bough_simulation *s);
 
-// What moves most in a mode, and how.
+// The body with the largest motion in a mode, and the kind of motion.
 const char *bough_modes_body(const bough_simulation *s, const bough_scene_mode *mode);
 const char *bough_modes_shape(const bough_simulation *s, const bough_scene_mode *mode);
 

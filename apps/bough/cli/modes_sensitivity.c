@@ -1,4 +1,4 @@
-// bough modes --sensitivity: what the frequency and the damping of a mode depend on most.
+// bough modes --sensitivity: the parameters to which frequency and damping of a mode are most sensitive.
 #include "apps/bough/cli/modes_internal.h"
 #include "apps/bough/results/folder.h"
 
@@ -35,7 +35,7 @@ static bool has_words(const bough_simulation *s, const bough_scene_mode *mode, c
     }
 }
 
-// Its place, from 0; below 0: there is none.
+// The index of the mode; below 0: there is none.
 static int find_mode(const bough_simulation *s, const bough_vibration *v, const char *text) {
     char *end;
     long number = strtol(text, &end, 10);

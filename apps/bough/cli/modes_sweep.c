@@ -13,14 +13,14 @@
 
 enum { MOST_POINTS = 500 };
 
-// Shapes less alike than this (0 to 1) are not the same mode.
+// Least similarity of shapes (0 to 1) of the same mode.
 static const double least_alike = 0.3;
 
-static const double rounding = 1e-6; // damping ratios below it are none
+static const double rounding = 1e-6; // smaller damping ratios are rounding
 
 // A mode at an operating point.
 typedef struct sweep_mode {
-    int point, line; // a line joins what is the same mode of neighbouring points
+    int point, line; // a line connects equal modes of neighbouring points
     double frequency, damped, damping;
     double damping_change; // over the azimuths
     const char *body, *shape, *pattern;
@@ -38,10 +38,10 @@ typedef struct sweep {
                         // of the rotor [rpm]
     int n_mode, n_line;
     sweep_mode *mode;         // (n_mode) point after point
-    const sweep_mode **named; // (n_line) a mode called what most of the line's are
+    const sweep_mode **named; // (n_line) a mode with the most frequent name of the line
 } sweep;
 
-// The modes of the point before, for finding them again.
+// The modes of the previous point, to be found again.
 typedef struct tracks {
     int n, n_state;
     int *line;      // (n)
@@ -124,8 +124,8 @@ static const double *shape_of(const tracks *t, int k) {
     return t->shape + (size_t)k * 2 * (size_t)t->n_state;
 }
 
-// How much of each mode of `now` is each mode of `before`, theory (103): alike (before × now), 0 to 1. Where
-// shapes are far from orthogonal, as near flutter, each is like several by their product alone.
+// Similarity of each mode of `now` to each mode of `before`, theory (103): alike (before × now), 0 to 1.
+// Products alone do not distinguish shapes that are far from orthogonal, as near flutter.
 static void compare(bough_arena *arena, const tracks *before, const tracks *now, double *alike) {
     size_t n = (size_t)before->n;
     double *matrix = bough_arena_doubles(arena, 2 * n * n + 1), *part = bough_arena_doubles(arena, 2 * n + 1);
@@ -150,8 +150,7 @@ static void compare(bough_arena *arena, const tracks *before, const tracks *now,
     }
 }
 
-// The modes go on the lines of those that they are most like, the most alike first; the others begin new
-// lines.
+// Continues the lines of the most similar modes, the most similar first; other modes begin new lines.
 static void find_lines(bough_arena *arena, const tracks *before, tracks *now, sweep *s) {
     size_t n = (size_t)before->n;
     double *alike = bough_arena_doubles(arena, n * (size_t)now->n + 1);
@@ -279,8 +278,8 @@ static bool has_name(const sweep_mode *a, const sweep_mode *b) {
     return a->line == b->line && strcmp(a->name, b->name) == 0;
 }
 
-// Names each line after most of its modes: where modes come near each other, they exchange what they are
-// called by.
+// Names each line by the most frequent name of its modes: modes with nearly equal frequencies exchange their
+// names.
 static void name_lines(bough_arena *arena, sweep *s) {
     s->named = bough_arena_take(arena, ((size_t)s->n_line + 1) * sizeof *s->named);
     int *most = bough_arena_take(arena, ((size_t)s->n_line + 1) * sizeof *most);
@@ -386,8 +385,8 @@ static double growth_of(const sweep_mode *m) {
     return fabs(m->damping) > rounding ? -2 * BOUGH_PI * m->frequency * m->damping : 0;
 }
 
-// Whether growth of the mode ends the sweep: an oscillation, or a divergence, of which a free rotor, whose
-// speed may run away under a torque that is held, says nothing.
+// Whether growth of the mode ends the sweep: oscillations do, and divergences unless the rotor is free, whose
+// speed may grow under constant torque.
 static bool counts(bool free, double damped) { return damped > 0 || !free; }
 
 static const sweep_mode *most_growing(const sweep *s, int point) {
@@ -429,7 +428,7 @@ static const char *between(bough_arena *arena, const char *a, const char *b, dou
 
 // The growth at a place.
 typedef struct growth_at {
-    double rate;      // of what grows most [1/s]; 0: it grows by no more than rounding
+    double rate;      // of the fastest growing motion [1/s]; 0: rounding
     double frequency; // of that, damped [Hz]; 0: a divergence
     const char *name; // what moves in it
     double share;     // with the other mesh: the error of the scene's mesh over the difference of the two
@@ -505,8 +504,8 @@ static bough_status find_boundary(bough_arena *arena, const bough_options *optio
     return bough_ok();
 }
 
-// By how much the mesh moves the boundary, as a part of the way: by the growth of the other mesh there and
-// the slope, or, where growth begins at once, by its own boundary.
+// Change of the boundary by the mesh, as a fraction of the interval: by the growth with the other mesh there
+// and the slope, or, if growth starts with a jump, by its own boundary.
 static bough_status find_error(bough_arena *arena, const bough_options *options, const sweep *s, int point,
                                double low, double high, const boundary *at, double *error) {
     growth_at other;
@@ -519,7 +518,7 @@ static bough_status find_error(bough_arena *arena, const bough_options *options,
     return bough_ok();
 }
 
-// Says from where on something grows, and by how much the mesh moves that place.
+// Prints the boundary of stability and its change by the mesh.
 static bough_status print_boundary(bough_arena *arena, const bough_options *options, const sweep *s,
                                    int last) {
     const sweep_mode *m = most_growing(s, last), *before = last > 0 ? most_growing(s, last - 1) : NULL;

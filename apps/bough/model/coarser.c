@@ -16,7 +16,7 @@ static int least_segments(const bough_scene *scene, int body) {
     return bough_scene_carried_by(scene, body) >= 0 ? 2 : 1;
 }
 
-// Loads on vertices stay where they are. Values of tables, which inputs change, are the copy's own.
+// Loads on vertices keep their places. The copy has its own values of tables, which inputs change.
 static void copy_loads(bough_arena *arena, const bough_scene *scene, bough_scene *to) {
     to->load = bough_arena_copy(arena, scene->load, (size_t)scene->n_load * sizeof *to->load);
     for (int k = 0; k < scene->n_load; k++) {
@@ -33,20 +33,20 @@ static void copy_loads(bough_arena *arena, const bough_scene *scene, bough_scene
 
 enum { FEW_SEGMENTS = 9 };   // fewer: errors of half of them do not fall with their order
 enum { LEAST_SEGMENTS = 8 }; // of a finer rod: one or two cost as much time
-// A blade of eight segments in air at half the rate can be unstable. Of fewer segments than SOME there is no
-// fewer number that differs by enough.
+// A blade of eight segments in air at half the rate can be unstable. Below SOME_SEGMENTS no smaller number
+// differs by enough.
 enum { LEAST_IN_AIR = 10, SOME_SEGMENTS = 14 };
 
 static int finer_number(int n) { return 2 * n > LEAST_SEGMENTS ? 2 * n : LEAST_SEGMENTS; }
 
-// About half of n segments. A rod of few segments, or that cannot have much fewer, gets at least twice
-// as many: the difference measures the error as well.
+// About half of n segments. A rod of few segments, or one that cannot have many fewer, gets at least twice as
+// many: the difference measures the error as well.
 static int other_number(int n, int least) {
     int half = (n + 1) / 2, fewer = half > least ? half : least;
     return n >= FEW_SEGMENTS && 4 * fewer <= 3 * n ? fewer : finer_number(n);
 }
 
-// All blades keep one number of segments, which the air needs.
+// All blades must have the same number of segments, for the air.
 static int least_of_blades(const bough_scene *scene) {
     int most = 1;
     for (int k = 0; scene->turbine.node && k < scene->turbine.n_blade; k++) {
@@ -56,7 +56,8 @@ static int least_of_blades(const bough_scene *scene) {
     return most;
 }
 
-// The states of a modal body are its modes, so that its mesh costs nothing; few segments have too few modes.
+// The states of a modal body are its modes, so that a finer mesh adds no states; few segments have too few
+// modes.
 static bool is_modal(const bough_scene *scene, int body) {
     return scene->body[body].fidelity != BOUGH_SCENE_ROD;
 }
@@ -97,7 +98,7 @@ static bool has_pulse(const bough_scene_load *load, double time) {
     return false;
 }
 
-// A pulse that is shorter than that excites waves of which half as many segments know nothing.
+// A shorter pulse excites waves that half as many segments do not resolve.
 static bool has_short_pulses(const bough_scene *scene) {
     double time = resolved_time(scene);
     bool found = false;
@@ -187,9 +188,9 @@ typedef struct looser {
 
 static const double loosest = 0.02; // tolerance
 
-// Where the whole difference counts, that of the steps is to be small: once or twice the run's own error
-// beside an explicit coupling; a few times beside a finer mesh, whose companion would else cost as much as
-// the run. Else it is a multiple, of which the run errs by a quarter.
+// If the error is the whole difference, the part of the steps must be small: once or twice the run's own
+// error beside an explicit coupling; a few times beside a finer mesh, whose companion would otherwise take as
+// long as the run. Otherwise it is a multiple, of which the run's error is a quarter.
 static looser looser_of(const bough_scene *scene) {
     return some_finer(scene) ? (looser){6, 2} : usual_share(scene) == 1 ? (looser){3, 1.5} : (looser){10, 2};
 }
@@ -207,7 +208,7 @@ static bool samples_fit(double rate, double macro_step) {
     return bough_master_multiple(1 / rate, macro_step) > 0;
 }
 
-// Inputs are set for one macro step of the run, and the rate of a controller is its own.
+// Inputs are set for one macro step of the run, and the rate of a controller is not changed.
 static bool steps_fit(const bough_scene *scene, double step) {
     bool air = !scene->aero.node || samples_fit(scene->aero.rate, step);
     bool control = !scene->control.node || samples_fit(scene->control.rate, step);
@@ -299,7 +300,7 @@ static void make_one_system(bough_scene *to) {
     x->coupling.scheme = bough_scheme_index(BOUGH_SCHEME_DEFAULT);
 }
 
-// Tolerances above it leave no room for ten times as much.
+// Larger tolerances cannot be multiplied by ten.
 static const double loose = 5e-3;
 
 double bough_scene_loosest_rtol(const bough_scene *scene) {
@@ -330,9 +331,9 @@ static void lengthen_steps(const bough_scene *scene, bough_scene *to) {
     lengthen_macro_step(to);
 }
 
-static const double largest_rtol = 1e-4; // of the run by whose steps a run's own are judged
+static const double largest_rtol = 1e-4; // of the finer solution
 
-enum { MOST_STEPS = 1000 }; // of the finer solution in a macro step: more than it is worth
+enum { MOST_STEPS = 1000 }; // of the finer solution in a macro step
 
 // The finer solution follows vibrations by the Rosenbrock method alone: IDA takes up to twenty times as long.
 static void follow_vibrations(bough_scene *to) {

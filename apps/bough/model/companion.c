@@ -23,7 +23,7 @@ static void take(bough_companion *c, bough_arena *arena) {
     }
 }
 
-// Inputs are not known any more when the run ends, so that none can be repeated.
+// Inputs are not stored, so that a run with inputs cannot be repeated.
 static void take_record(bough_companion *c, bough_arena *arena) {
     const bough_scene_simulation *s = &c->run->scene->simulation;
     if (c->run->input || !(s->error_bound > 0 || s->error_shares)) return;
@@ -77,7 +77,7 @@ static void sample(bough_companion *c) {
     widen(c->channels->count, c->coarser.value, c->other_low, c->other_high);
 }
 
-// What is before simulation.output.from counts no more than in the statistics.
+// Times before simulation.output.from do not count, as in the statistics.
 static bool counts_now(const bough_companion *c, const bough_simulation *of) {
     const bough_scene_simulation *s = &c->run->scene->simulation;
     return of->master->time >= s->output.from - 1e-6 * s->macro_step;
@@ -118,10 +118,10 @@ static double difference(const bough_channel *channel, double a, double b) {
 // A force answers accelerations, whose errors are of a lower order.
 static const double least_share_of_force = 0.4;
 
-// Of the loads of the air, that may be missed between two samples. What misses more vibrates about as fast as
-// the samples follow each other; with half of these a solution errs by no multiple of what the run errs by.
+// Largest error of the air's loads between two samples. With a larger one the period of vibrations is near
+// that of the samples, and at half the sampling rate the error is no multiple of the run's.
 static const double most_missed = 0.1;
-static const double fluttering = 0.3; // what misses more feeds the vibrations
+static const double fluttering = 0.3; // with a larger error the air feeds the vibrations
 
 static double missed_air(const bough_simulation *s) {
     double missed = 0;
@@ -130,8 +130,8 @@ static double missed_air(const bough_simulation *s) {
     return missed;
 }
 
-// Of the difference, that the run errs by in a channel. A sampled one that the companion holds, one sample of
-// the run longer than the run does, differs by what happens in that time.
+// Error of the run in a channel relative to the difference. A sampled channel that the companion holds one
+// sample longer differs by the change in that time.
 static double share_now(const bough_channel *channel, double share, double share_held) {
     if (channel->sampled) return share_held;
     return channel->kind == BOUGH_KIND_FORCE ? fmax(share, least_share_of_force) : share;
@@ -146,8 +146,8 @@ static double length_of(const bough_companion *c, int i, const double *value) {
     return sqrt(square);
 }
 
-// Since the last comparison. In axes that turn, the components of a vector change without a new sample; they
-// count as far as the vector's length changes.
+// Change of a channel since the last comparison. In rotating axes the components of a vector change without a
+// new sample; they count at most by the change of the vector's length.
 static double change_of(const bough_companion *c, int i) {
     const bough_channel *list = c->channels->channel;
     double change = fabs(difference(&list[i], c->value[i], c->before[i]));
@@ -155,17 +155,16 @@ static double change_of(const bough_companion *c, int i) {
     return component ? fmin(change, fabs(length_of(c, i, c->value) - length_of(c, i, c->before))) : change;
 }
 
-// What a sampled channel errs by just before the next sample: both solutions may hold through the same
-// change. Where both agree to the bit the value follows from the time alone and is not held.
+// Error of a sampled channel just before the next sample: both solutions may hold it during the same change.
+// If both have the same bits, the value depends on time alone and is not held.
 static double stale(const bough_companion *c, int i) {
     const bough_channel *channel = &c->channels->channel[i];
     bool held = channel->sampled == BOUGH_BY_AIR && c->compared > 1 && c->value[i] != c->coarser.value[i];
     return held ? c->share_held * change_of(c, i) : 0;
 }
 
-// Vibrations that are faster than the steps decay in run and companion alike and leave no difference, and
-// those that are faster than the samples of the air have their own value at each of these. The finer solution
-// follows them for long enough.
+// Vibrations that are faster than the steps decay in run and companion and leave no difference, and those
+// that are faster than the samples of the air are aliased. The finer solution resolves them.
 static void compare_finer(bough_companion *c) {
     if (!bough_finer_advance(&c->finer, c->run, bough_companion_work(c))) return;
     bool held = !bough_master_sampled(c->run->master);
@@ -178,7 +177,7 @@ static void compare_finer(bough_companion *c) {
     }
 }
 
-// Halves the rows: of two neighbours the one with the larger error stays.
+// Halves the number of rows: of two neighbours the one with the larger error is kept.
 static void halve(bough_record *r) {
     size_t width = (size_t)r->width;
     r->n = BOUGH_RECORD_MOST / 2;
@@ -255,9 +254,9 @@ static bough_run_counts counts_since(const bough_run_counts *now, const bough_ru
                               now->advances - then->advances, now->steps - then->steps};
 }
 
-// Corners of loads that are nearly as close as macro steps end the companion's steps, or the halves that it
-// takes after them, where they end the run's, and inputs or a controller without air leave it the run's macro
-// steps: both err alike. Where the integrators would go on, it takes each of these steps in two.
+// If corners of loads are nearly as close as macro steps, they end the steps of the companion where they end
+// those of the run; with inputs or a controller without air both have the same macro steps. Their errors are
+// then equal, and the companion takes two steps for each unless the integrators take short steps anyway.
 static void split_steps(bough_companion *c) {
     const bough_scene *scene = c->run->scene;
     bough_master *other = c->coarser.simulation->master;
@@ -275,15 +274,15 @@ static void split_steps(bough_companion *c) {
     }
 }
 
-// What a jump of the air at a time errs by.
+// Includes the error of a jump of the air at a time.
 static void take_jump(bough_companion *c, double time) {
     double sample = time * c->run->scene->aero.rate;
     if (time <= c->run->master->time) c->share = fmax(c->share, 2 * fabs(sample - floor(sample) - 0.5));
 }
 
-// A jump of the wind, or of the loads' ramp, is spread over the whole of its sample, and over two in the
-// companion, whose middle is half a sample away; the run errs by the time from the jump to the middle of its
-// own.
+// The run spreads a jump of the wind, or of the loads' ramp, over its sample, the companion over two samples,
+// whose middle is half a sample away; the error of the run is the time from the jump to the middle of its
+// sample.
 static void pass_jumps(bough_companion *c) {
     if (!c->run->aero) return;
     const bough_scene_aero *aero = &c->run->scene->aero;

@@ -1,7 +1,7 @@
-// The companion of a run: a second simulation of the same scene that is coarser in everything. The difference
-// of the two at equal times measures the error of the run: mesh, air, time and coupling at once, for every
-// channel. Beside the first macro steps, and those after a jump of a load or a given motion, a third one that
-// is finer in time and air finds what decays in both.
+// The companion of a run: a second simulation of the same scene, coarser in mesh, air and time. The
+// difference of the two at equal times measures the error of the run by mesh, air, time and coupling
+// together, for every channel. During the first macro steps, and after a jump of a load or a prescribed
+// motion, a third simulation, finer in time and air, resolves vibrations that decay in both.
 //
 // If the error falls with order p, a solution with twice the step errs by 2ᵖ times as much, and the run by
 // 1/(2ᵖ − 1) of the difference: a third for order 2 (docs/theory.md).
@@ -14,12 +14,12 @@
 
 // A copy of a scene that is coarser by about a factor of two: for the companion of a run (companion.h).
 
-// What the copy is coarser in. A set of these.
+// In what the copy is coarser or finer: a set of these.
 enum {
     BOUGH_COARSER_MESH = 1, // half the segments of each rod, or more where it has few
     BOUGH_COARSER_AIR = 2,  // half the aerodynamic sampling rate
     // Twice the macro step and the longest step, ten times the tolerance (six beside a finer mesh; 1.5 and
-    // 3 times beside an explicit coupling); all bodies as one system, whose steps know no error of a
+    // 3 times beside an explicit coupling); all bodies as one system, without the error of a
     // coupling.
     BOUGH_COARSER_TIME = 4,
     BOUGH_COARSER_ALL = 7,
@@ -31,16 +31,15 @@ enum {
     BOUGH_FINER_AIR = 32,
 };
 
-// In the arena; it shares what no run changes with the scene. It estimates no error itself.
+// In the arena; it shares with the scene what no run changes. It has no companion of its own.
 bough_scene *bough_coarser_scene(bough_arena *arena, const bough_scene *scene, int parts);
 
-// The same of the scene of a simulation, whose turbulence it shares: neither is generated or read twice.
+// The same for the scene of a simulation, whose turbulence it shares.
 bough_scene *bough_coarser_scene_beside(bough_arena *arena, const bough_simulation *run, int parts);
 
-// The part of the difference between solutions of the scene and of such a copy that the scene's solution errs
-// by: a quarter, between an order of 2 and of 3; half with a coupling, whose error the copy does not share;
-// more where meshes differ by less than a factor of two; the whole one where the mesh is finer or the
-// coupling is explicit.
+// The error of the scene's solution relative to its difference to that of such a copy: a quarter, between an
+// order of 2 and of 3; half with a coupling, whose error the copy does not have; more if meshes differ by
+// less than a factor of two; 1 if the mesh is finer or the coupling explicit.
 double bough_coarser_share(const bough_scene *scene, const bough_scene *other);
 
 // The same for a copy that is coarser in time alone.
@@ -49,14 +48,14 @@ double bough_coarser_time_share(const bough_scene *scene);
 // Relative tolerance of the whole's integrator, the loosest of the sub-solvers beside another coupling.
 double bough_scene_loosest_rtol(const bough_scene *scene);
 
-// Whether the steps' tolerance is so loose that the copy that is coarser in all has a tighter one.
+// Whether the tolerance is so loose that the coarser copy has a tighter one.
 bool bough_coarser_is_loose(const bough_scene *scene);
 
 // The same for a copy that is finer in time, and in air.
 double bough_finer_time_share(void);
 double bough_finer_air_share(const bough_scene *scene);
 
-// A further simulation of a run's scene, with the run's channels.
+// Another simulation of a run's scene, with the run's channels.
 typedef struct bough_other_run {
     bough_simulation *simulation; // NULL: there is none
     bough_channels channels;
@@ -78,43 +77,43 @@ bough_status bough_other_run_step(bough_other_run *other, const bough_simulation
 
 // -- loads and motions that jump (jump_times.c) ----------------------------------------------------
 
-// How often loads and given motions of joints change by more than a part of their range in less than a macro
-// step, not at the start. Writes when they have, in order: time (as many) [s]; NULL: not wanted.
+// Number of changes of loads and prescribed motions by more than a fraction `part` of their range within less
+// than a macro step, except at the start. time: when they have changed, ascending [s]; NULL: not wanted.
 int bough_jump_times(const bough_scene *scene, double part, double *time);
 
 // -- the finer solution (finer.c) -----------------------------------------------------------------
 
-// It is finer in time and air. It stands beside the first macro steps, and beside those after a jump, until
-// what these excite has decayed in the run.
+// A solution that is finer in time and air. It runs beside the first macro steps, and beside those after a
+// jump, until the excited vibrations have decayed in the run.
 typedef struct bough_finer {
     bough_other_run other; // its simulation is NULL where the scene has none
-    bool follows;          // it is beside the run
-    double until;          // the end of that [s]
+    bool follows;          // it runs beside the run
+    double until;          // up to this time [s]
     double work;           // so far (bough_simulation_work)
     int n_jump;
     double *jump; // (n_jump) of the jumps, in order [s]
-    char *loads;  // memory of the run's loads on their way
+    char *loads;  // memory of the run's loads while they are copied
 } bough_finer;
 
 bough_status bough_finer_build(bough_arena *arena, bough_simulation *run, bough_finer *f);
 
-// Goes on to the time of the run, and samples there. False: it is not beside the run, or cannot go on.
-// `work` is that of run and companion so far, beside which it may not take too much.
+// Advances to the time of the run and samples there. False: it does not follow the run, or cannot continue.
+// `work`: of run and companion so far, which limits its own.
 bool bough_finer_advance(bough_finer *f, const bough_simulation *run, double work);
 
-// Puts it where the run is if there is a jump before `reach` [s] are over.
+// Sets it to the state of the run if there is a jump within `reach` [s].
 void bough_finer_begin(bough_finer *f, bough_simulation *run, double reach, double work);
 
 void bough_finer_snapshot(bough_finer *f, bough_snapshot *snapshot);
 
 // -- the record -----------------------------------------------------------------------------------
 
-// Run and companion at times at which they were compared, for further runs that look for the cause of an
-// error. Where times are more than its rows, neighbours share one, that of the largest error.
+// Run and companion at the times of their comparisons, for further runs that find the cause of an error. If
+// there are more times than rows, neighbouring times share a row, that of the largest error.
 typedef struct bough_record {
     int n;              // rows so far
     int width;          // of a row
-    long shared, taken; // times of each row; of the last one so far
+    long shared, taken; // times in each row; in the last one so far
     double *row; // (BOUGH_RECORD_MOST × width) time [s], largest error of a motion over its range, whether
                  // the companion's samples are held [1], channels of the run, of the companion; NULL:
                  // none is kept
@@ -127,11 +126,11 @@ enum { BOUGH_RECORD_TIME, BOUGH_RECORD_ERROR, BOUGH_RECORD_HELD, BOUGH_RECORD_RU
 
 enum { BOUGH_COMPANION_REASON = 320 };
 
-// What a run has done so far.
+// Counts of a run.
 typedef struct bough_run_counts {
     long macro_steps;
-    long corners;  // of loads and motions; of those within a macro step the first
-    long advances; // of members through a macro step, repetitions among them
+    long corners;  // of loads and motions; only the first within a macro step
+    long advances; // of members through a macro step, with repetitions
     long steps;    // of the integrator that takes fewest
 } bough_run_counts;
 
@@ -141,10 +140,10 @@ typedef struct bough_companion {
     bough_finer finer;
     bough_record record;
     const bough_channels *channels;      // of the run
-    double share;                        // of the difference, that the run errs by
-    double share_held;                   // the same of a channel whose last sample the companion holds
-    char reason[BOUGH_COMPANION_REASON]; // why errors are not known, or not any more; "": they are
-    double from;                         // when they ceased to be [s]
+    double share;                        // error of the run relative to the difference
+    double share_held;                   // the same for a channel whose last sample the companion holds
+    char reason[BOUGH_COMPANION_REASON]; // why errors are not or no longer known; "": they are known
+    double from;                         // time from which they are not known [s]
     double motion;                       // largest range of all motion, or value up to 1, in SI units
     double rest;                         // motion of a scene at rest; 0: it moves
     bool sampled;                        // the companion's channels are of its present time
@@ -161,22 +160,23 @@ typedef struct bough_companion {
     double *low, *high;                  // (channels->count) range of the run
     double *other_low, *other_high;      // (channels->count) of the companion
     double *noticed;                     // (channels->count) when the error first passed the accuracy [s]
-    bool flutters;                       // its blades have, those of the run have not
+    bool flutters;                       // its blades flutter, those of the run do not
     bough_status status;                 // of its last step
 } bough_companion;
 
-// Builds the companion that the scene of the run asks for, with the run's pool, at time 0. Where it cannot be
-// built, `reason` is set.
+// Builds the companion of the run's scene, with the run's pool, at time 0. Sets `reason` if it cannot be
+// built.
 bough_status bough_companion_create(bough_arena *arena, bough_simulation *run, const bough_channels *channels,
                                     bough_companion *companion);
 
-// Of run and companion since time 0 (bough_simulation_work).
+// Work of run and companion since time 0 (bough_simulation_work).
 double bough_companion_work(const bough_companion *c);
 
 // Whether it is at the time of the run and can go on, so that its next step is due.
 bool bough_companion_due(const bough_companion *c);
 
-// A macro step of its own, of two of the run's, or two in one of the run's. It touches nothing of the run.
+// A macro step of its own, as long as two of the run's, or two steps in one of the run's. It does not change
+// the run.
 void bough_companion_step(bough_companion *c);
 
 // After a step of the run: compares the two if they are at one time; the run's channels are then known

@@ -20,7 +20,7 @@ static void unknown(bough_error_share *share, const char *why) {
 // -- further runs ---------------------------------------------------------------------------------
 
 static const double most_times = 5; // the work of the run and its companion, by all further runs together
-static const double little = 3e6;   // work that takes a few milliseconds
+static const double little = 3e6;   // work of a few milliseconds
 
 typedef struct finding {
     bough_companion *companion;
@@ -32,19 +32,20 @@ typedef struct finding {
 
 // A difference between two solutions.
 typedef struct between {
-    double part, held; // of it, that the run errs by; of channels whose last sample is held for longer
-    double *largest;   // (n_channel) that part of the largest ones; NULL: not wanted
+    double part;     // error of the run relative to it
+    double held;     // the same for channels whose last sample is held longer
+    double *largest; // (n_channel) the largest errors; NULL: not wanted
 } between;
 
-// A run that is coarser or finer in these parts, beside what is recorded of run and companion.
+// A run that is coarser or finer in these parts, compared with the record of run and companion.
 typedef struct further {
     finding *of;
     int parts;
     between to_companion, to_run;
 } further;
 
-// A macro step of a further run, whose work is taken off what is left. Runs that need much more than the run
-// and its companion follow another solution and may never end.
+// A macro step of a further run. Its work is limited: runs that need much more than the run and its companion
+// follow another solution and may never end.
 static bough_status step(finding *x, const bough_simulation *s) {
     double before = bough_simulation_work(s);
     if (x->stop && x->stop())
@@ -57,7 +58,8 @@ static bough_status step(finding *x, const bough_simulation *s) {
                       most_times);
 }
 
-// Takes the difference of two samples into the largest one. What the companion does not know is NaN.
+// Updates the largest differences by two samples. Samples after the end of the companion are NaN and do not
+// count.
 static void compare(const bough_channels *channels, const double *a, const double *b, bool held,
                     const between *x) {
     for (int i = 0; x->largest && i < channels->count; i++) {
@@ -88,7 +90,7 @@ static bough_status run_beside(bough_arena *arena, void *self) {
     return bough_ok();
 }
 
-// -- what mesh, air and time add ------------------------------------------------------------------
+// -- errors of mesh, air and time -----------------------------------------------------------------
 
 static bool has_part(const bough_scene *scene, int kind) {
     if (kind == BOUGH_SHARE_TIME) return true;
@@ -107,12 +109,12 @@ static between between_companion_and(const bough_companion *c, int kind, double 
                   : kind == BOUGH_SHARE_AIR ? bough_coarser_share(run, run)
                   : c->coarser.simulation->master->split ? bough_finer_time_share()
                                                          : bough_coarser_time_share(run);
-    // what is held longer than in the run is so in two of the further runs as well
+    // channels that the companion holds longer are held longer in two of the further runs, too
     return (between){part, kind == BOUGH_SHARE_AIR ? c->share_held : part, largest};
 }
 
-// A run that is as fine as the run itself in one part differs from the companion by that part, from the run
-// by the others. One that fails leaves the share unknown. BOUGH_INTERRUPTED by stop().
+// A run that is as fine as the run itself in one part differs from the companion by that part and from the
+// run by the others. If it fails, that error is unknown. BOUGH_INTERRUPTED by stop().
 static bough_status find_share(finding *x, int kind) {
     const bough_companion *c = x->companion;
     bough_error_share *share = &x->shares->share[kind];
@@ -129,7 +131,7 @@ static bough_status find_share(finding *x, int kind) {
     return bough_ok();
 }
 
-// Of a motion, over its range.
+// The largest error of a motion relative to its range.
 static double largest_of(const bough_companion *c, const double *error) {
     bough_error_verdict v = bough_error_verdict_of(c, true, error);
     return v.channel < 0 ? 0 : v.relative;
@@ -137,8 +139,8 @@ static double largest_of(const bough_companion *c, const double *error) {
 
 static const double hardly = 0.25; // of the mesh's error
 
-// Whether the mesh causes the error and nothing else is to be known. The rest is to be much less: a run
-// beside a coupled one is monolithic, and what both err by may cancel.
+// Whether the mesh causes the error and no other part is needed. The rest must be much smaller: the companion
+// of a coupled run is monolithic, and errors may cancel.
 static bool is_by_mesh(const finding *x) {
     const bough_companion *c = x->companion;
     const bough_scene_simulation *s = &c->run->scene->simulation;
@@ -163,7 +165,7 @@ static bough_status find(finding *x) {
     bool alone = is_by_mesh(x);
     if (air && !alone) BOUGH_TRY(find_share(x, BOUGH_SHARE_AIR));
     if (!alone) BOUGH_TRY(find_share(x, BOUGH_SHARE_TIME));
-    // of two parts each is what the other leaves
+    // with two parts each is the remainder of the other
     bool other_fails = !air && !c->reason[0] && time->unknown[0] && !mesh->unknown[0];
     if (alone || other_fails) {
         memcpy(time->largest, mesh->others, size);
@@ -176,10 +178,10 @@ static bough_status find(finding *x) {
 
 // -- a companion that has lost the solution -------------------------------------------------------
 
-static const double lost = 0.25;     // of the range, which a companion errs by that has lost the solution
-static const double much_less = 0.5; // of what the companion shows
+static const double lost = 0.25;     // of the range, errors of a companion that may have lost the solution
+static const double much_less = 0.5; // of the companion's error
 
-// The two runs that differ least from the run itself; false: fewer are known.
+// The two further runs that differ least from the run; false: fewer are known.
 static bool find_nearest(const bough_companion *c, const bough_error_shares *shares, int nearest[2],
                          double *relative) {
     double own[2] = {HUGE_VAL, HUGE_VAL};
@@ -195,7 +197,7 @@ static bool find_nearest(const bough_companion *c, const bough_error_shares *sha
     return isfinite(*relative);
 }
 
-// Of the two runs that show least of a channel's error, the sum; HUGE_VAL: fewer are known.
+// The sum of the two smallest errors of a channel in the further runs; HUGE_VAL: fewer are known.
 static double least_sum(const bough_error_shares *shares, int channel) {
     double sum = 0, most = 0;
     int known = 0;
@@ -210,13 +212,13 @@ static double least_sum(const bough_error_shares *shares, int channel) {
 
 static void lower(bough_companion *c, bough_error_shares *shares, int i, double sum) {
     sum = fmax(sum, c->least[i]);
-    // a companion that ended has no part in later errors, the two other runs have
+    // after the end of the companion only the further runs measure errors
     c->error[i] = c->reason[0] ? sum : fmin(c->error[i], sum);
     for (int k = 0; k < BOUGH_SHARES; k++)
         shares->share[k].largest[i] = fmin(shares->share[k].largest[i], sum);
 }
 
-// Blades that flutter in the companion show in some channels alone.
+// Blades that flutter in the companion affect only some channels.
 static void lower_some(bough_companion *c, bough_error_shares *shares) {
     for (int i = 0; i < c->channels->count; i++) {
         double sum = least_sum(shares, i);
@@ -238,9 +240,9 @@ static void lower_errors(bough_companion *c, bough_error_shares *shares) {
 
 // -- steps and samples that a companion finds too long --------------------------------------------
 
-// A companion's longer steps and rarer samples can err by far more than the share of the difference that is
-// the run's. Before the run fails by its own, a run that is finer in that kind alone is to show that they
-// err. BOUGH_INTERRUPTED by stop().
+// The error of a companion by longer steps and a lower sampling rate can be far more than the assumed
+// multiple of the run's. Before a run fails, a run that is finer in that part alone must confirm its error.
+// BOUGH_INTERRUPTED by stop().
 static bough_status prove_kind(bough_arena *arena, finding *x, bough_error_share_kind kind) {
     bough_companion *c = x->companion;
     size_t n = (size_t)c->channels->count;
@@ -262,13 +264,13 @@ static bough_status prove_kind(bough_arena *arena, finding *x, bough_error_share
 
 // -- causes ---------------------------------------------------------------------------------------
 
-// Whether the error of a motion is above the bound.
+// Whether the error of a motion exceeds the bound.
 static bool exceeds(const bough_companion *c, double bound) {
     bough_error_verdict v = bough_error_verdict_of(c, true, c->error);
     return bound > 0 && v.channel >= 0 && v.relative > bound;
 }
 
-// The largest share; the mesh only if time and air alone stay below the bound. Negative: not known.
+// The part with the largest error; the mesh only if time and air stay below the bound. Negative: not known.
 static int cause_of(const bough_companion *c, const bough_error_shares *shares, double bound,
                     double *relative) {
     int cause = -1;
@@ -286,8 +288,8 @@ static int cause_of(const bough_companion *c, const bough_error_shares *shares, 
     return cause == BOUGH_SHARE_MESH && time_unknown ? -1 : cause;
 }
 
-// An error of a part of the range, above the bound, or blades that flutter in it alone: the companion may
-// have lost the solution.
+// Whether the companion may have lost the solution: its error is a large fraction of the range and above the
+// bound, or blades flutter in it alone.
 static bool has_lost(const bough_companion *c) {
     double bound = c->run->scene->simulation.error_bound;
     return bound > 0 && exceeds(c, c->flutters ? bound : fmax(bound, lost));
@@ -300,7 +302,7 @@ static int fails_by(const bough_companion *c, const bough_error_shares *shares) 
     return cause == BOUGH_SHARE_MESH ? -1 : cause;
 }
 
-// Whichever of time and air the run fails by, and the other where it fails by that then.
+// Confirms time or air, by which the run fails, then the other if the run still fails.
 static bough_status prove_causes(bough_arena *arena, finding *x) {
     bool proved[BOUGH_SHARES] = {false};
     for (;;) {
@@ -344,7 +346,8 @@ enum { FEW = 9, MOST_TIMES = 10 };     // beyond this multiple of the segments t
 static const double most_halvings = 6; // of the macro step that are worth trying
 static const double margin = 1.1;      // of the settings that are proposed
 
-// The segments that divide the mesh's error by a factor: their number where all rods have the same.
+// The number of segments that divides the mesh's error by a factor, if all rods have the same; otherwise the
+// multiple.
 static void advise_mesh(const bough_scene *scene, double factor, char text[ADVICE]) {
     int n = 0, least = FEW;
     bool equal = true;
@@ -419,7 +422,7 @@ static bough_status judge_excess(const bough_companion *c, const bough_error_sha
     double relative;
     int cause = cause_of(c, shares, bound, &relative);
     describe(c, v, what, sizeof what);
-    // what is not known to be right ends the run: the steps
+    // without a known cause the run fails by its steps
     advise(scene, cause < 0 ? BOUGH_SHARE_TIME : cause, fmax(fmax(relative, v->relative) / bound, 1), remedy);
     if (cause < 0) {
         return bough_fail(BOUGH_FAILED,
@@ -433,8 +436,8 @@ static bough_status judge_excess(const bough_companion *c, const bough_error_sha
     return failed;
 }
 
-// What each part may add to the error, over the accuracy: what the settings lead one to expect, at most the
-// whole. Where that is less than the error, all parts are larger in proportion.
+// Errors of the parts relative to the accuracy: those expected from the settings, at most the whole error,
+// and scaled up if the largest is smaller than the error.
 static void find_parts(const bough_scene_expectation *expected, double factor, double part[BOUGH_SHARES]) {
     double largest = 0;
     for (int k = 0; k < BOUGH_SHARES; k++) largest = fmax(largest, expected->error[k]);
@@ -442,8 +445,7 @@ static void find_parts(const bough_scene_expectation *expected, double factor, d
         part[k] = fmin(factor, expected->error[k] * fmax(1, factor / largest));
 }
 
-// The settings that bring each part to half the accuracy: keys that the scene names, and the accuracy for
-// others.
+// The settings that reduce each part to half the accuracy: keys that the scene names, or else the accuracy.
 static void advise_for_accuracy(const bough_scene *scene, double factor, char *text, size_t size) {
     double part[BOUGH_SHARES], accuracy = 1;
     int n = 0;

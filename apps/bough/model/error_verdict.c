@@ -7,7 +7,7 @@
 static const double rounding = 1e-6;    // of the largest range of all motion or value up to 1, in SI units
 static const double least_share = 1e-3; // of the largest range of that kind
 static const double least_turn = 1e-3,
-                    least_move = 1e-2; // least range of a velocity, as a share of its value
+                    least_move = 1e-2; // least range of a velocity, relative to its value
 
 static bool is_force(const bough_channel *channel) {
     return channel->kind == BOUGH_KIND_FORCE || channel->kind == BOUGH_KIND_MOMENT;
@@ -24,7 +24,7 @@ bool bough_error_is_motion(const bough_channel *channel) {
 
 // -- ranges ---------------------------------------------------------------------------------------
 
-// The same of the channel alone: no more than that.
+// Range of the channel alone: the smaller of run and companion.
 static double own_range(const bough_companion *c, int i) {
     return fmax(fmin(c->high[i] - c->low[i], c->other_high[i] - c->other_low[i]), 0);
 }
@@ -34,7 +34,8 @@ static double largest_value(const bough_companion *c, int i) {
     return fmin(run, fmax(fabs(c->other_high[i]), fabs(c->other_low[i])));
 }
 
-// Neither of the two simulations moves the vector that the channel is a component of by more than rounding.
+// Whether the vector of which the channel is a component moves by no more than rounding, in run and
+// companion.
 static bool at_rest(const bough_companion *c, int channel) {
     const bough_channel *list = c->channels->channel;
     double range = 0;
@@ -43,8 +44,8 @@ static bool at_rest(const bough_companion *c, int channel) {
     return list[channel].si * range <= rounding * c->motion;
 }
 
-// What stays where it is while other parts move, the deflection of a blade in steady operation, has no range:
-// its value counts, up to 1 in SI units.
+// A constant channel beside moving ones, such as the deflection of a blade in steady operation, has no range:
+// its value is used, up to 1 in SI units.
 double bough_error_range(const bough_companion *c, int channel) {
     const bough_channel *list = c->channels->channel;
     double range = 0, value = 0, si = list[channel].si;
@@ -67,7 +68,7 @@ double bough_error_relative(const bough_companion *c, int channel, double error)
 
 // -- what counts ----------------------------------------------------------------------------------
 
-static const double least_motion = 1e-12; // [m], [rad], [m/s], [rad/s]: less is rounding wherever it is
+static const double least_motion = 1e-12; // [m], [rad], [m/s], [rad/s]: less is always rounding
 
 static double kind_range(const bough_companion *c, bough_quantity_kind kind) {
     double largest = 0;
@@ -79,7 +80,7 @@ static double kind_range(const bough_companion *c, bough_quantity_kind kind) {
     return largest;
 }
 
-// Of all motion, whatever its kind: where nothing moves, the ranges are those of rounding.
+// The largest range or value of all motion, of any kind.
 static double largest_motion(const bough_companion *c) {
     double largest = 0;
     for (int i = 0; i < c->channels->count; i++) {
@@ -91,7 +92,7 @@ static double largest_motion(const bough_companion *c) {
     return largest;
 }
 
-// Of a scene in which nothing moves by more than rounding, so that errors have no range: its values.
+// Size of a scene at rest, whose channels have no range: the largest value; 0: the scene moves.
 static double size_at_rest(const bough_companion *c) {
     double size = c->motion;
     for (int i = 0; i < c->channels->count; i++) {
@@ -156,10 +157,10 @@ void bough_error_size(const bough_companion *c, int channel, char text[BOUGH_ERR
         snprintf(text + n, (size_t)(BOUGH_ERROR_SIZE - n), "%.2g of its range", relative);
 }
 
-// Most channels are within the share of their own range already, which is no more than the whole one.
-static bool is_within(const bough_companion *c, int i, double share) {
+// Whether the error is within a fraction of the range. The channel's own range, no larger, is checked first.
+static bool is_within(const bough_companion *c, int i, double fraction) {
     double error = c->error[i];
-    return error <= share * own_range(c, i) || error <= share * bough_error_range(c, i);
+    return error <= fraction * own_range(c, i) || error <= fraction * bough_error_range(c, i);
 }
 
 void bough_error_notice(bough_companion *c, double t) {

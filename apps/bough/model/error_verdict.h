@@ -1,5 +1,5 @@
-// The verdict on the errors that a companion measures: which of them count, relative to the motions of the
-// scene.
+// The verdict on the errors that a companion measures: ranges of channels, errors that count, the largest of
+// them.
 #ifndef BOUGH_APPS_MODEL_ERROR_VERDICT_H
 #define BOUGH_APPS_MODEL_ERROR_VERDICT_H
 
@@ -13,21 +13,21 @@ typedef struct bough_error_verdict {
     double time;     // when it became noticeable [s]; −1: it is not
 } bough_error_verdict;
 
-// Whether the channel is a displacement, an angle or a velocity of a body. Forces and moments answer errors
-// of the highest frequencies; the motion shows what they mean.
+// Whether the channel is a displacement, an angle or a velocity of a body. Forces and moments contain errors
+// of the highest frequencies, which hardly affect the motion.
 bool bough_error_is_motion(const bough_channel *channel);
 
-// Range of the channel in its unit: of the run or of the companion, whichever is less, so that one that runs
-// away has a size. Components of a vector have one range, the largest of theirs; a velocity that hardly
-// changes has a hundredth of its value, an angular one, which adds up to turns, a thousandth, and where the
-// whole scene is at rest a motion has the scene's size.
+// Range of the channel in its unit: of the run or of the companion, whichever is less, so that a divergent
+// one has a finite range. Components of a vector have one range, the largest of theirs; a velocity that
+// hardly changes has a hundredth of its value, an angular one, which adds up to turns, a thousandth, and
+// where the whole scene is at rest a motion has the scene's size.
 double bough_error_range(const bough_companion *c, int channel);
 
 // An error of the channel, in its unit, relative to its range; NaN for one that keeps its value.
 double bough_error_relative(const bough_companion *c, int channel, double error);
 
-// Whether a channel counts: channels that move, or err, by less than a thousandth of other channels of their
-// kind, and those whose motion is rounding do not.
+// Whether a channel counts: not if its motion and its error are below a thousandth of other channels of its
+// kind, or rounding.
 bool bough_error_counts(const bough_companion *c, int channel);
 
 // The channel with the largest relative error: of motion, or of forces and moments. `error`
@@ -41,16 +41,16 @@ int bough_error_worst(const bough_companion *c, int most, int *channel);
 // an error beyond ten ranges is said to be so.
 void bough_error_size(const bough_companion *c, int channel, char text[BOUGH_ERROR_SIZE]);
 
-// Notes which errors are noticeable now, at t [s].
+// Records which errors are first noticeable at t [s].
 void bough_error_notice(bough_companion *c, double t);
 
 // -- shares of mesh, air and time (error_shares.c) ------------------------------------------------
 
-// Shares of mesh, air and time in the error of a run, and what to do about the largest. Up to three further
-// runs have one of the three as fine as in the run and the others as in the companion: what lies between is
-// that part's share of what the companion errs by, and part of it the run's. Coarser in all parts at once, a
-// companion can lose the solution that it keeps with any one of them as in the run. Then two of these runs,
-// which together are coarser in every part, give the error: the sum of what the run differs by from either.
+// Separate errors of mesh, air and time in a run, and how to reduce the largest. Up to three further runs
+// have one of the three as fine as the run and the others as coarse as the companion: the difference to the
+// companion is caused by that part. A companion that is coarser in all parts can lose the solution although
+// it keeps it with any one of them as fine as in the run. Then two of these runs, which together are coarser
+// in every part, give the error: the sum of their differences to the run.
 
 typedef enum bough_error_share_kind {
     BOUGH_SHARE_MESH,
@@ -60,7 +60,7 @@ typedef enum bough_error_share_kind {
 } bough_error_share_kind;
 
 typedef struct bough_error_share {
-    char unknown[160]; // why it is not known; "": it is
+    char unknown[160]; // why it is not known; "": it is known
     double *largest;   // (n_channel) largest error of each channel in the run, in its unit
     double *others;    // (n_channel) the same of all other parts
 } bough_error_share;

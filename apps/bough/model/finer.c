@@ -5,22 +5,23 @@
 
 enum { FOLLOWED = 8 }; // macro steps from the start, or from a jump on
 
-// Its work: of that of run and companion, foreseen from what they have taken so far, and a few milliseconds
+// Its largest work, relative to that of run and companion, extrapolated to the end; and a few milliseconds
 // more.
 static const double most_work = 0.1;
 static const double little = 3e6;
 
-// Changes of a load or of a given motion that may excite more than the steps follow, of its range.
+// Least jump of a load or a prescribed motion, relative to its range, that may excite vibrations faster than
+// the steps.
 static const double least_jump = 0.1;
 
-// A tight tolerance follows every vibration by itself, unless air is sampled; a further copy of a library
-// would write to the companion's file.
+// Whether it is needed: a tight tolerance resolves all vibrations, unless air is sampled. A third copy of a
+// library would write to the companion's file.
 static bool is_wanted(const bough_scene *scene) {
     static const double tight = 1e-5;
     return (bough_scene_loosest_rtol(scene) >= tight || scene->aero.node) && !scene->control.library;
 }
 
-// What the loads of a simulation remember: those of the air and the control.
+// Stores the memory of the sampled loads of a simulation.
 static void snapshot_loads(const bough_simulation *s, bough_snapshot *to) {
     for (int k = 0; k < s->n_sampled; k++)
         if (s->sampled[k].snapshot) s->sampled[k].snapshot(s->sampled[k].self, to);
@@ -42,7 +43,7 @@ bough_status bough_finer_build(bough_arena *arena, bough_simulation *run, bough_
     return bough_ok();
 }
 
-// Puts the finer solution where the run is.
+// Sets the finer solution to the state of the run.
 static void join(bough_finer *f, bough_simulation *run) {
     bough_master_join(f->other.simulation->master, run->master);
     snapshot_loads(run, &(bough_snapshot){BOUGH_SNAPSHOT_SAVE, f->loads, 0});

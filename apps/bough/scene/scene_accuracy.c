@@ -13,8 +13,7 @@ static const double usual = 0.005; // accuracy for which the following values ar
 // scenes.
 static const double whole_error = 100; // of all bodies as one system
 static const double rod_error = 50;    // of a rod with a method of its own
-static const double tree_error =
-    5000; // of the tree beside the rods: it is cheap and restarts in every macro step
+static const double tree_error = 5000; // of the tree beside the rods, cheap and restarted in every macro step
 static const double fine_rtol = 1e-6;  // below it the high orders of BDF take less time
 static const double usual_step = 5e-3; // longest one of a rod's own method [s]; order 2
 
