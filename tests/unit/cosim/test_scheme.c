@@ -46,25 +46,19 @@ TEST(oscillators_fulfil_the_contract) {
     }
 }
 
-TEST(parallel_errors_and_orders) {
-    static const double expected[3][3] = {
+// Of parallel and of sequential exchange; frozen values are those of parallel exchange at order 0.
+TEST(errors_and_orders_of_polynomials) {
+    static const double parallel[3][3] = {
         {5.00e-2, 2.47e-2, 1.23e-2}, {8.21e-3, 2.05e-3, 5.10e-4}, {1.89e-3, 2.37e-4, 2.95e-5}};
-    bough_master_def def = definition("polynomial-at-once", 0);
-    for (int order = 0; order < 3; order++) {
-        def.scheme.order = order;
-        check_errors(def, expected[order], .01);
-    }
-    check_errors(definition("frozen", 0), expected[0], .01);
-}
-
-TEST(sequential_errors_and_orders) {
-    static const double expected[3][3] = {
+    static const double sequential[3][3] = {
         {5.98e-2, 2.51e-2, 1.23e-2}, {6.31e-3, 1.57e-3, 3.91e-4}, {1.80e-3, 2.22e-4, 2.76e-5}};
-    bough_master_def def = definition("polynomial", 0);
     for (int order = 0; order < 3; order++) {
-        def.scheme.order = order;
-        check_errors(def, expected[order], .01);
+        bough_master_def at_once = definition("polynomial-at-once", 0), def = definition("polynomial", 0);
+        at_once.scheme.order = def.scheme.order = order;
+        check_errors(at_once, parallel[order], .01);
+        check_errors(def, sequential[order], .01);
     }
+    check_errors(definition("frozen", 0), parallel[0], .01);
 }
 
 // Whether 3000 s stay within twice the start.

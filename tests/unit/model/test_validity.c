@@ -61,6 +61,8 @@ TEST(a_fast_section_is_warned_of_once) {
     IN_PIECES("blade1"), IN_PIECES("blade2"), IN_PIECES("blade3"), "aero.ramp=[0, 0]",                       \
         "simulation.coupling.scheme=monolithic", "bodies[hub].joint.speed=1.2 rad/s"
 #define SPEED(value) "bodies[hub].joint.speed=null", "bodies[hub].joint.motion={speed: " value " rad/s}"
+#define SEGMENTS(n) "bodies[0].rod.segments=" n, "simulation.initial=equilibrium"
+#define ON_TOWER "bodies[2].joint.placement=[move z 1.2 m]"
 #define MODAL(force)                                                                                         \
     "bodies[beam].fidelity=modal", "gravity=[0, 0, 0]", "simulation.initial=equilibrium",                    \
         "loads=[{body: beam, at: tip, force: [" force ", 0, 0]}]"
@@ -84,33 +86,13 @@ static const struct {
     {turbine, {SPEED("5"), "aero.rate=5"}, 4, BOUGH_LIMIT_ROTATION, false, true, 0, 0, NULL},
     {turbine, {SPEED("6"), "aero.rate=5"}, 4, BOUGH_LIMIT_ROTATION, true, true, 68.7, 68.8, "hub"},
     // a tip moment rolls a cantilever up to a circle: 30 deg in each of twelve segments, 60 of six
-    {roll_up,
-     {"bodies[0].rod.segments=12", "simulation.initial=equilibrium"},
-     0,
-     BOUGH_LIMIT_TURN,
-     .others = true},
-    {roll_up,
-     {"bodies[0].rod.segments=6", "simulation.initial=equilibrium"},
-     0,
-     BOUGH_LIMIT_TURN,
-     true,
-     true,
-     59,
-     61,
-     NULL},
+    {roll_up, {SEGMENTS("12")}, 0, BOUGH_LIMIT_TURN, .others = true},
+    {roll_up, {SEGMENTS("6")}, 0, BOUGH_LIMIT_TURN, true, true, 59, 61, NULL},
     // the tip of a uniform cantilever goes aside by F L³/(3 E I), a tenth of its length at 52.5 N
     {beam, {MODAL("50 N")}, 0, BOUGH_LIMIT_SHAPES, .others = false},
     {beam, {MODAL("55 N")}, 0, BOUGH_LIMIT_SHAPES, true, false, 0.1046, 0.1049, "beam"},
     // the hub on the tower's axis, without tilt: the hanging blade stands in the tower
-    {turbine,
-     {"bodies[2].joint.placement=[move z 1.2 m]"},
-     4,
-     BOUGH_LIMIT_TOWER,
-     true,
-     false,
-     0,
-     1,
-     "blade2"},
+    {turbine, {ON_TOWER}, 4, BOUGH_LIMIT_TOWER, true, false, 0, 1, "blade2"},
     // vibrations of the pieces grow under air at 10 Hz, and not at 50 Hz
     {runup, {PIECES, "aero.rate=10"}, 30, BOUGH_LIMIT_SAMPLES, true, true, 0.3, 1, NULL},
     {runup, {PIECES, "aero.rate=50"}, 30, BOUGH_LIMIT_SAMPLES, false, true, 0, 0, NULL},
