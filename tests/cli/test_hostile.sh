@@ -90,6 +90,7 @@ for input in pipe zero folder; do
     refused 'cannot open the wind file\|cannot be read' check example-turbine.yaml --set "aero.wind={kind: bts, file: $input}"
     refused 'cannot open the wind file\|cannot be read' check example-turbine.yaml --set "aero.wind={kind: wnd, file: $input, reference_height: 90, reference_length: 126}"
     refused 'cannot read' import openfast $input --out imported
+    refused 'cannot open the wind file' import openfast "$source/tests/data/decks/main.fst" --wind $input --out imported
     refused 'cannot be loaded' check "$source/apps/turbine/power.yaml" --set "control={kind: bladed, library: $PWD/$input}"
 done
 # A directory whose scenes are none, one of them a pipe that nobody writes to.

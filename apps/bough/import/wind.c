@@ -237,16 +237,15 @@ static double mean_at(const bough_hawc_def *d, double height) {
 }
 
 // The velocities (nx × ny × nz, z fastest), y from its positive end.
-static bough_status read_component(bough_arena *arena, const char *path, size_t n, double **value) {
+static bough_status read_component(const char *path, size_t n, double *value) {
     FILE *file;
     bough_status status = open_data(path, &file);
     if (!bough_is_ok(&status)) return status;
-    *value = bough_arena_doubles(arena, n);
     word read = {0};
     for (size_t i = 0; i < n && bough_is_ok(&status); i++) {
         if (!read_words(file, &read, 1)) status = bad(path, "it ends before its last velocity");
-        (*value)[i] = bough_bytes_float(read);
-        if (!isfinite((*value)[i])) status = bad(path, "a velocity is not a number");
+        value[i] = bough_bytes_float(read);
+        if (!isfinite(value[i])) status = bad(path, "a velocity is not a number");
     }
     fclose(file);
     return status;
@@ -323,27 +322,26 @@ bough_status bough_wind_hawc_read(bough_arena *arena, const bough_hawc_def *def,
     finish(box, def->height, true);
     size_t n = (size_t)def->nx * (size_t)(def->ny * def->nz);
     int16_t *value = take_values(arena, box);
-    bough_status status = bough_ok();
-    for (int c = 0; c < 3 && bough_is_ok(&status); c++) {
-        double *from;
-        BOUGH_TRY(read_component(arena, def->file[c], n, &from));
+    double *from = bough_arena_doubles(arena, n);
+    for (int c = 0; c < 3; c++) {
+        BOUGH_TRY(read_component(def->file[c], n, from));
         shape(def, c, box->bottom, from);
         store(box, c, from, n, &box->scale[c], &box->offset[c], value);
     }
-    return status;
+    return bough_ok();
 }
 
 // -- in the scene ---------------------------------------------------------------------------------
 
 bough_wind_form bough_wind_form_of(const char *path) {
-    unsigned char b[2] = {0};
-    FILE *file = fopen(path, "rb");
-    if (!file) return BOUGH_WIND_UNIFORM_FILE; // whose reader says why
-    size_t n = fread(b, 1, 2, file);
+    FILE *file;
+    int first = 0;
+    bough_status status = open_data(path, &file);
+    if (!bough_is_ok(&status)) return BOUGH_WIND_UNIFORM_FILE; // whose reader says why
+    bool read = read_int16(file, &first);
     fclose(file);
-    int first = b[0] | b[1] << 8;
-    if (n == 2 && (first == 7 || first == 8)) return BOUGH_WIND_TURBSIM;
-    return n == 2 && first >= 0xFF00 ? BOUGH_WIND_BLADED : BOUGH_WIND_UNIFORM_FILE;
+    if (read && (first == 7 || first == 8)) return BOUGH_WIND_TURBSIM;
+    return read && first < 0 && first >= -256 ? BOUGH_WIND_BLADED : BOUGH_WIND_UNIFORM_FILE;
 }
 
 void bough_wind_made(bough_draft *d, const bough_wind_box *box, const char *path) {
