@@ -2,8 +2,8 @@
 
 #include "apps/bough/config/schema.h"
 #include "core/base/base.h"
+#include "core/base/schedule.h"
 
-#include <math.h>
 #include <stdarg.h>
 #include <stdlib.h>
 #include <string.h>
@@ -25,11 +25,10 @@ const bough_node *bough_entry_read(bough_draft *d, const char *path) {
     bough_errors errors = {.arena = d->arena};
     const bough_node *root = bough_text_read(d->arena, path, &errors);
     if (root) return root;
-    const bough_error *e = errors.n > 0 ? errors.item : NULL;
-    if (e && e->line == 0) *d->status = bough_fail(BOUGH_INVALID, "%.200s: %s", e->file, e->text);
-    if (e && e->line > 0) {
-        *d->status = bough_fail(BOUGH_INVALID, "%.200s:%d:%d: %s", e->file, e->line, e->column, e->text);
-    }
+    const bough_error *e = errors.item;
+    char at[32] = "";
+    if (e->line > 0) snprintf(at, sizeof at, ":%d:%d", e->line, e->column);
+    *d->status = bough_fail(BOUGH_INVALID, "%.200s%s: %s", e->file, at, e->text);
     return NULL;
 }
 
@@ -118,12 +117,9 @@ const char *bough_entry_text(bough_draft *d, const bough_node *from, const char 
 
 static bool is_list(bough_draft *d, const bough_node *node, const char *path, int wanted) {
     bool good = node->kind == BOUGH_SEQUENCE && node->n > 0 && node->n <= MOST;
-    const char *colon = path[0] ? ": " : "";
     if (good && (wanted == 0 || node->n == wanted)) return true;
-    if (wanted > 0) {
-        bough_entry_fail(d, node, "%s%sexpected a list of %d numbers", path, colon, wanted);
-    }
-    bough_entry_fail(d, node, "%s%sexpected a list of 1 to %d numbers", path, colon, (int)MOST);
+    bough_entry_fail(d, node, "%s%sexpected a list of %s%d numbers", path, path[0] ? ": " : "",
+                     wanted > 0 ? "" : "1 to ", wanted > 0 ? wanted : (int)MOST);
     return false;
 }
 
@@ -158,13 +154,7 @@ bough_curve bough_entry_curve(bough_draft *d, const bough_node *from, const char
 }
 
 double bough_curve_at(const bough_curve *c, double x) {
-    if (c->n == 0) return 0;
-    int i = 1;
-    while (i < c->n - 1 && c->x[i] < x) i++;
-    if (c->n == 1 || x <= c->x[0]) return c->y[0];
-    double width = c->x[i] - c->x[i - 1];
-    double s = width > 0 ? fmin((x - c->x[i - 1]) / width, 1) : 1;
-    return c->y[i - 1] + s * (c->y[i] - c->y[i - 1]);
+    return c->n > 0 ? bough_table_value(c->n, c->x, c->y, x) : 0;
 }
 
 int bough_curve_places(bough_draft *d, const bough_curve *const *curve, int n_curve, double least,

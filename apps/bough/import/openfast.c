@@ -15,10 +15,11 @@ bough_deck *bough_openfast_open(bough_openfast *o, const bough_deck *from, const
 void bough_openfast_leave(bough_openfast *o, const bough_deck *deck, const bough_openfast_rest *rest,
                           size_t n, int list) {
     for (size_t i = 0; i < n; i++) {
-        double value = bough_deck_switch_or(deck, rest[i].name, rest[i].neutral);
-        if (value == rest[i].neutral) continue;
-        bough_draft_note(o->draft, list, "%s%s%s", rest[i].name, rest[i].text ? ": " : "",
-                         rest[i].text ? rest[i].text : "");
+        for (const char *const *name = rest[i].names; *name; name++) {
+            if (bough_deck_switch_or(deck, *name, rest[i].neutral) == rest[i].neutral) continue;
+            const char *text = rest[i].text;
+            bough_draft_note(o->draft, list, "%s%s%s", *name, text ? ": " : "", text ? text : "");
+        }
     }
 }
 

@@ -122,11 +122,11 @@ bough_deck *bough_openfast_open(bough_openfast *o, const bough_deck *from, const
 // Fails at the line of a number that no turbine has; a deck of NULL has none.
 void bough_openfast_check(const bough_deck *deck);
 
-// Values of a deck for which the scene has no place, and what the list says of them.
+// Values of a deck that a scene cannot represent, and the note on them.
 typedef struct bough_openfast_rest {
-    const char *name;
-    const char *text; // NULL: the name says it
-    double neutral;   // the value that needs no word; False is 0
+    const char *text;      // NULL: the name alone
+    double neutral;        // value without a note; False is 0
+    const char *names[12]; // ends with NULL
 } bough_openfast_rest;
 void bough_openfast_leave(bough_openfast *o, const bough_deck *deck, const bough_openfast_rest *rest,
                           size_t n, int list);

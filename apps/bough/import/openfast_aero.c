@@ -132,12 +132,10 @@ static void put_elements(bough_openfast *o, const bough_deck *deck, char (*name)
     fputs("stations:\n  columns: [span, ac_x, ac_y, twist deg, chord, polar]\n  rows:\n",
           o->draft->file[BOUGH_IMPORT_AERO]);
     double angle = 0, last = -1;
+    int line = bough_deck_line(deck, "NumBlNds");
     for (int i = 0; row && i < n; i++) {
         const double *r = row + N_COLUMN * i;
-        int id = r[AIRFOIL] >= 1 && r[AIRFOIL] <= n_name ? (int)r[AIRFOIL] : 0, line = -1;
-        if (id != r[AIRFOIL] || !(r[SPAN] > last) || !(r[CHORD] > 0)) {
-            line = bough_deck_line(deck, "NumBlNds");
-        }
+        int id = r[AIRFOIL] >= 1 && r[AIRFOIL] <= n_name ? (int)r[AIRFOIL] : 0;
         if (id != r[AIRFOIL]) {
             bough_deck_fail(deck, line, "BlAFID: row %d: expected an airfoil from 1 to %d, got %g", i + 1,
                             n_name, r[AIRFOIL]);
@@ -295,8 +293,7 @@ void bough_openfast_aero(bough_openfast *o) {
     put_induction(o);
     put_stall(o);
     put_tower(o);
-    static const bough_openfast_rest rest[] = {{"CavitCheck", NULL, 0},  {"Buoyancy", NULL, 0},
-                                               {"CompAA", NULL, 0},      {"TFinAero", NULL, 0},
-                                               {"NacelleDrag", NULL, 0}, {"SectAvg", NULL, 0}};
-    bough_openfast_leave(o, a, rest, sizeof rest / sizeof *rest, BOUGH_LEFT_OUT);
+    static const bough_openfast_rest rest[] = {
+        {NULL, 0, {"CavitCheck", "Buoyancy", "CompAA", "TFinAero", "NacelleDrag", "SectAvg"}}};
+    bough_openfast_leave(o, a, rest, 1, BOUGH_LEFT_OUT);
 }

@@ -54,22 +54,17 @@ static const line_point *read_line(bough_openfast *o, const bough_deck *deck, in
     return p;
 }
 
-static void put_station(bough_openfast *o, const bough_deck *deck, const line_point *p, const double *s,
-                        int line) {
+// Writes the section `s` at a fraction of the line, and adds it to the beam and to the blade's mass.
+static void add_station(bough_openfast *o, const bough_deck *deck, const line_point *p, int n_point,
+                        double share, const double *s, int line, beam *b) {
     const double *k = s + 1, *m = s + 1 + MATRIX;
+    line_point at = at_share(p, n_point, share);
+    int i = b->n++;
     if (!bough_section_possible(k, m)) {
         bough_deck_fail(deck, line,
                         "the station: expected stiffness and inertia of a real section, positive definite");
     }
-    bough_section_matrix_put(o->draft->file[BOUGH_IMPORT_BLADE], p, k, m);
-}
-
-// Puts the section `s` at a share of the line.
-static void add_station(bough_openfast *o, const bough_deck *deck, const line_point *p, int n_point,
-                        double share, const double *s, int line, beam *b) {
-    line_point at = at_share(p, n_point, share);
-    int i = b->n++;
-    put_station(o, deck, &at, s, line);
+    bough_section_matrix_put(o->draft->file[BOUGH_IMPORT_BLADE], &at, k, m);
     b->span[i] = at.z;
     b->flap[i] = s[1 + 4 * 7];
     b->edge[i] = s[1 + 3 * 7];
@@ -147,7 +142,7 @@ void bough_openfast_beamdyn(bough_openfast *o) {
     if (!bough_is_ok(o->draft->status)) return;
     int n;
     const line_point *p = read_line(o, deck, &n);
-    static const bough_openfast_rest rest[] = {{"UsePitchAct", "the pitch actuator", 0}};
+    static const bough_openfast_rest rest[] = {{"the pitch actuator", 0, {"UsePitchAct"}}};
     bough_openfast_leave(o, deck, rest, 1, BOUGH_LEFT_OUT);
     bough_deck *blade = bough_openfast_open(o, deck, "BldFile");
     if (!bough_is_ok(o->draft->status)) return;

@@ -8,66 +8,39 @@
 
 // -- limits ---------------------------------------------------------------------------------------
 
-// What a number of any of the decks may be, in its line's unit: no two decks have one name for two things.
-// A value beyond would be refused later, in the scene, where nobody has written it.
+// Limits of the numbers of all decks, each in the unit of its line: no two decks use one name for two
+// quantities. A value beyond its limits would only be refused in the scene, which the user has not written.
 static const struct {
-    const char *names;
     double low, high;
+    const char *names[8]; // ends with NULL
 } limits[] = {
-    {"RotSpeed", -1e4, 1e4},
-    {"NacYaw", -360, 360},
-    {"TipRad", 0.01, 1e3},
-    {"HubRad", 1e-3, 1e3},
-    {"HubCM", -1e3, 1e3},
-    {"UndSling", -1e3, 1e3},
-    {"OverHang", -1e3, 1e3},
-    {"ShftTilt", -360, 360},
-    {"NacCMxn", -1e3, 1e3},
-    {"NacCMyn", -1e3, 1e3},
-    {"NacCMzn", -1e3, 1e3},
-    {"Twr2Shft", -1e3, 1e3},
-    {"TowerHt", -1e3, 1e4},
-    {"TowerBsHt", -1e3, 1e4},
-    {"TipMass(1)|TipMass1", 0, 1e9},
-    {"TipMass(2)|TipMass2", 0, 1e9},
-    {"TipMass(3)|TipMass3", 0, 1e9},
-    {"HubMass", 0, 1e9},
-    {"HubIner", 0, 1e15},
-    {"GenIner", 0, 1e9},
-    {"NacMass", 0, 1e9},
-    {"NacYIner", 0, 1e15},
-    {"YawBrMass", 0, 1e9},
-    {"TeetDmp", 0, 1e20},
-    {"TeetHSSp", 0, 1e20},
-    {"GBRatio", 1e-3, 1e4},
-    {"DTTorSpr", 0, 1e20},
-    {"DTTorDmp", 0, 1e20},
-    {"GenEff", 0, 100},
-    {"YawSpr", 0, 1e20},
-    {"YawDamp", 0, 1e20},
-    {"VFlowAng", -80, 80},
-    {"HWindSpeed", 0, 200},
-    {"BldFlDmp(1)|BldFlDmp1", 0, 100},
-    {"BldEdDmp(1)|BldEdDmp1", 0, 100},
-    {"AdjBlMs", 1e-6, 1e6},
-    {"AdjFlSt", 1e-6, 1e6},
-    {"AdjEdSt", 1e-6, 1e6},
-    {"TwrFADmp(1)|TwrFADmp1", 0, 100},
-    {"TwrSSDmp(1)|TwrSSDmp1", 0, 100},
-    {"AdjTwMa", 1e-6, 1e6},
-    {"AdjFASt", 1e-6, 1e6},
-    {"AdjSSSt", 1e-6, 1e6},
-    {"FlStTunr(1)|FlStTunr1", 1e-6, 1e6},
-    {"FAStTunr(1)|FAStTunr1", 1e-6, 1e6},
-    {"SSStTunr(1)|SSStTunr1", 1e-6, 1e6},
+    {-1e4, 1e4, {"RotSpeed"}},
+    {-360, 360, {"NacYaw", "ShftTilt"}},
+    {-80, 80, {"VFlowAng"}},
+    {0.01, 1e3, {"TipRad"}},
+    {1e-3, 1e3, {"HubRad"}},
+    {1e-3, 1e4, {"GBRatio"}},
+    {-1e3, 1e3, {"HubCM", "UndSling", "OverHang", "NacCMxn", "NacCMyn", "NacCMzn", "Twr2Shft"}},
+    {-1e3, 1e4, {"TowerHt", "TowerBsHt"}},
+    {0, 1e9, {"HubMass", "GenIner", "NacMass", "YawBrMass"}},
+    {0, 1e9, {"TipMass(1)|TipMass1", "TipMass(2)|TipMass2", "TipMass(3)|TipMass3"}},
+    {0, 1e15, {"HubIner", "NacYIner"}},
+    {0, 1e20, {"TeetDmp", "TeetHSSp", "DTTorSpr", "DTTorDmp", "YawSpr", "YawDamp"}},
+    {0, 200, {"HWindSpeed"}},
+    {0, 100, {"GenEff", "BldFlDmp(1)|BldFlDmp1", "BldEdDmp(1)|BldEdDmp1"}},
+    {0, 100, {"TwrFADmp(1)|TwrFADmp1", "TwrSSDmp(1)|TwrSSDmp1"}},
+    {1e-6, 1e6, {"AdjBlMs", "AdjFlSt", "AdjEdSt", "AdjTwMa", "AdjFASt", "AdjSSSt"}},
+    {1e-6, 1e6, {"FlStTunr(1)|FlStTunr1", "FAStTunr(1)|FAStTunr1", "SSStTunr(1)|SSStTunr1"}},
 };
 
 void bough_openfast_check(const bough_deck *deck) {
     for (size_t k = 0; k < sizeof limits / sizeof *limits && deck; k++) {
         double low = limits[k].low, high = limits[k].high;
-        double value = bough_deck_number_or(deck, limits[k].names, low);
-        if (value >= low && value <= high) continue;
-        bough_deck_refuse(deck, limits[k].names, "expected %g to %g, got %g", low, high, value);
+        for (const char *const *names = limits[k].names; *names; names++) {
+            double value = bough_deck_number_or(deck, *names, low);
+            if (value >= low && value <= high) continue;
+            bough_deck_refuse(deck, *names, "expected %g to %g, got %g", low, high, value);
+        }
     }
 }
 
@@ -77,12 +50,9 @@ enum { NONE, SIMPLE, LIBRARY = 5, THEVENIN = 2 };
 
 static const double least_speed = 1e-3; // of a generator with torque [rad/s]
 
-static int torque_mode(const bough_openfast *o) {
-    return o->servo ? bough_deck_whole_or(o->servo, "VSContrl", NONE) : NONE;
-}
-
-static int pitch_mode(const bough_openfast *o) {
-    return o->servo ? bough_deck_whole_or(o->servo, "PCMode", NONE) : NONE;
+// How torque (VSContrl) or pitch (PCMode) are controlled.
+static int mode_of(const bough_openfast *o, const char *name) {
+    return o->servo ? bough_deck_whole_or(o->servo, name, NONE) : NONE;
 }
 
 // -- speeds ---------------------------------------------------------------------------------------
@@ -102,9 +72,9 @@ double bough_openfast_rotor_speed(const bough_openfast *o) {
     double ratio = bough_deck_number_or(o->elasto, "GBRatio", 1);
     bool free = bough_deck_flag_or(o->elasto, "GenDOF", true);
     if (!free || !o->servo) return speed;
-    if (torque_mode(o) == SIMPLE) fast = bough_deck_number(o->servo, "VS_RtGnSp") * BOUGH_RPM;
+    if (mode_of(o, "VSContrl") == SIMPLE) fast = bough_deck_number(o->servo, "VS_RtGnSp") * BOUGH_RPM;
     int model = bough_deck_whole_or(o->servo, "GenModel", SIMPLE);
-    if (torque_mode(o) == NONE && (model == SIMPLE || model == THEVENIN)) fast = synchronous_speed(o);
+    if (mode_of(o, "VSContrl") == NONE && (model == SIMPLE || model == THEVENIN)) fast = synchronous_speed(o);
     speed = fmax(speed, ratio > 0 && isfinite(fast) ? fabs(fast) / ratio : 0);
     return speed > 0 ? speed : usual_tip / bough_deck_number(o->elasto, "TipRad");
 }
@@ -129,7 +99,7 @@ static bool take_library(bough_openfast *o, const char *path, char why[200]) {
     o->library = path;
     o->generator = BOUGH_GENERATOR_LIBRARY;
     bough_taken(o, "controller: %s, by its path", path);
-    if (torque_mode(o) != pitch_mode(o)) {
+    if (mode_of(o, "VSContrl") != mode_of(o, "PCMode")) {
         bough_approximated(o, "the library controls both torque and pitch");
     }
     return true;
@@ -145,7 +115,7 @@ static void find_library(bough_openfast *o) {
     if (given) return;
     const char *path = bough_deck_path(o->servo, "DLL_FileName");
     if (!bough_is_ok(o->draft->status) || take_library(o, path, why)) return;
-    if (torque_mode(o) == LIBRARY) {
+    if (mode_of(o, "VSContrl") == LIBRARY) {
         lack(o, bough_arena_print(o->draft->arena,
                                   "a controller, to be given to the import by --controller FILE (%s)", why));
     } else {
@@ -177,9 +147,10 @@ void bough_openfast_generator(bough_openfast *o) {
         }
         return;
     }
-    int torque = torque_mode(o);
+    int torque = mode_of(o, "VSContrl");
     if (torque == SIMPLE && !stays_off(o)) o->generator = BOUGH_GENERATOR_LAW;
-    if (o->draft->options->controller || torque == LIBRARY || pitch_mode(o) == LIBRARY) find_library(o);
+    if (o->draft->options->controller || torque == LIBRARY || mode_of(o, "PCMode") == LIBRARY)
+        find_library(o);
     if (o->generator != BOUGH_GENERATOR_FREE || !o->servo) return;
     if ((torque == NONE || torque == SIMPLE) && stays_off(o)) return;
     if (torque == NONE) {
@@ -252,7 +223,7 @@ static torque_line read_thevenin(const bough_openfast *o) {
 }
 
 static torque_line read_line(bough_openfast *o) {
-    if (torque_mode(o) == SIMPLE) {
+    if (mode_of(o, "VSContrl") == SIMPLE) {
         bough_taken(o, "the generator's torque over its speed");
         return read_variable_speed(o);
     }
@@ -299,11 +270,11 @@ static void put_law(bough_openfast *o) {
         l.slip = least;
     }
     if (!(l.slip <= 1) || !(full > 2 * (1 + l.slip) * least_speed)) {
-        bough_deck_fail(o->servo,
-                        bough_deck_line(o->servo, torque_mode(o) == SIMPLE ? "VS_RtGnSp" : "GenModel"),
-                        "the torque reaches its maximum of %g N m at %.3g rpm of the generator, too suddenly "
-                        "for samples every %g s",
-                        l.most, full / BOUGH_RPM, o->draft->macro_step);
+        bough_deck_fail(
+            o->servo, bough_deck_line(o->servo, mode_of(o, "VSContrl") == SIMPLE ? "VS_RtGnSp" : "GenModel"),
+            "the torque reaches its maximum of %g N m at %.3g rpm of the generator, too suddenly "
+            "for samples every %g s",
+            l.most, full / BOUGH_RPM, o->draft->macro_step);
     }
     bough_put(o,
               "control:\n  kind: variable-speed\n  rate: %.10g Hz\n  gear_ratio: %.10g\n"
@@ -314,7 +285,7 @@ static void put_law(bough_openfast *o) {
               1 / o->draft->macro_step, bough_deck_number(o->elasto, "GBRatio"),
               bough_deck_number_or(o->servo, "GenEff", 100) / 100, 2 / o->draft->macro_step, least_speed,
               l.gain, full, l.most * full, l.slip, l.most);
-    if (torque_mode(o) == NONE) bough_put(o, "    motoring: true\n");
+    if (mode_of(o, "VSContrl") == NONE) bough_put(o, "    motoring: true\n");
 }
 
 // When the generator goes on line, and off for good.
@@ -325,7 +296,7 @@ static void put_switches(bough_openfast *o) {
     double on = bough_deck_number_or(s, timed ? "TimGenOn" : "SpdGenOn", 0);
     double end = bough_deck_number(o->main, "TMax"), off = bough_deck_number_or(s, "TimGenOf", end);
     bool starts = law && on > 0, by_time = stops && off < end,
-         by_power = !stops && law && torque_mode(o) == NONE;
+         by_power = !stops && law && mode_of(o, "VSContrl") == NONE;
     if (on > 0 && !law) {
         bough_other_case(o, "%s: the library controls the torque from the start",
                          timed ? "TimGenOn" : "SpdGenOn");
@@ -378,10 +349,9 @@ static void note_manoeuvres(bough_openfast *o) {
 
 // Tuned masses and dampers are flags before OpenFAST 2.5.
 static const bough_openfast_rest rest[] = {
-    {"YCMode", "yaw control", 0},          {"NumBStC", "structural control", 0},
-    {"NumNStC", "structural control", 0},  {"NumTStC", "structural control", 0},
-    {"NumSStC", "structural control", 0},  {"CompNTMD", "structural control", 0},
-    {"CompTTMD", "structural control", 0}, {"AfCmode", "flaps and other airfoil control", 0},
+    {"yaw control", 0, {"YCMode"}},
+    {"structural control", 0, {"NumBStC", "NumNStC", "NumTStC", "NumSStC", "CompNTMD", "CompTTMD"}},
+    {"flaps and other airfoil control", 0, {"AfCmode"}},
 };
 
 void bough_openfast_control(bough_openfast *o) {
@@ -390,7 +360,7 @@ void bough_openfast_control(bough_openfast *o) {
     if (o->generator == BOUGH_GENERATOR_LAW) put_law(o);
     if (!o->servo) return;
     if (o->generator == BOUGH_GENERATOR_LIBRARY || o->generator == BOUGH_GENERATOR_LAW) put_switches(o);
-    int pitch = pitch_mode(o);
+    int pitch = mode_of(o, "PCMode");
     if (o->generator == BOUGH_GENERATOR_FREE) {
         bough_taken(o, "TimGenOn: no torque acts on the generator");
     }

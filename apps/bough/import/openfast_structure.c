@@ -2,6 +2,7 @@
 // from which the frequencies come that turn damping ratios into times.
 #include "apps/bough/import/openfast.h"
 #include "apps/bough/import/section.h"
+#include "core/base/schedule.h"
 
 #include <math.h>
 #include <string.h>
@@ -24,8 +25,7 @@ typedef struct slender {
 
 static double at(const slender *b, int column, double x) {
     const double *r = b->row;
-    int w = b->width, i = 0;
-    while (i < b->n - 2 && r[(i + 1) * w] < x) i++;
+    int w = b->width, i = bough_table_row(b->n, r, w, x);
     double s = (x - r[i * w]) / (r[(i + 1) * w] - r[i * w]);
     return r[i * w + column] + s * (r[(i + 1) * w + column] - r[i * w + column]);
 }

@@ -148,13 +148,6 @@ static void put_generator(bough_openfast *o, bool twists) {
     bough_taken(o, "drive train: %s between hub and generator", twists ? "spring and damper" : "rigid");
 }
 
-static void put_spring(bough_openfast *o) {
-    bough_put(o,
-              "    joint: {kind: revolute, axis: x, parent: generator, stiffness: %.10g, "
-              "damping: %.10g}\n",
-              bough_deck_number(o->elasto, "DTTorSpr"), bough_deck_number(o->elasto, "DTTorDmp"));
-}
-
 static bool teeters(const bough_openfast *o) {
     return o->n_blade == 2 && bough_deck_flag_or(o->elasto, "TeetDOF", false);
 }
@@ -192,7 +185,10 @@ static bool has_generator(const bough_openfast *o) { return bough_openfast_gener
 // What turns in the nacelle, or against the generator.
 static void put_shaft_joint(bough_openfast *o, bool twists) {
     if (twists) {
-        put_spring(o);
+        bough_put(o,
+                  "    joint: {kind: revolute, axis: x, parent: generator, stiffness: %.10g, "
+                  "damping: %.10g}\n",
+                  bough_deck_number(o->elasto, "DTTorSpr"), bough_deck_number(o->elasto, "DTTorDmp"));
     } else if (has_generator(o)) {
         bough_put(o, "    joint: {kind: fixed, parent: generator}\n");
     } else {
@@ -297,26 +293,14 @@ static void put_rotor(bough_openfast *o) {
     bough_draft_turbine(o->draft, has_generator(o) ? "generator" : teeters(o) ? "shaft" : "hub", o->n_blade);
 }
 
-#define START "the run starts undeformed, without initial displacement"
 static const bough_openfast_rest rest[] = {
-    {"PtfmSgDOF", NULL, 0},
-    {"PtfmSwDOF", NULL, 0},
-    {"PtfmHvDOF", NULL, 0},
-    {"PtfmRDOF", NULL, 0},
-    {"PtfmPDOF", NULL, 0},
-    {"PtfmYDOF", NULL, 0},
-    {"OoPDefl", START, 0},
-    {"IPDefl", START, 0},
-    {"TTDspFA", START, 0},
-    {"TTDspSS", START, 0},
-    {"PtfmSurge", START, 0},
-    {"PtfmSway", START, 0},
-    {"PtfmHeave", START, 0},
-    {"PtfmRoll", START, 0},
-    {"PtfmPitch", START, 0},
-    {"PtfmYaw", START, 0},
-    {"PitchDOF", "the pitch bearings are rigid", 0},
-    {"GBoxEff", "the gearbox has no losses", 100},
+    {NULL, 0, {"PtfmSgDOF", "PtfmSwDOF", "PtfmHvDOF", "PtfmRDOF", "PtfmPDOF", "PtfmYDOF"}},
+    {"the run starts undeformed, without initial displacement",
+     0,
+     {"OoPDefl", "IPDefl", "TTDspFA", "TTDspSS", "PtfmSurge", "PtfmSway", "PtfmHeave", "PtfmRoll",
+      "PtfmPitch", "PtfmYaw"}},
+    {"the pitch bearings are rigid", 0, {"PitchDOF"}},
+    {"the gearbox has no losses", 100, {"GBoxEff"}},
 };
 
 void bough_openfast_bodies(bough_openfast *o) {

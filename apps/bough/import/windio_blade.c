@@ -205,14 +205,6 @@ static void put_stations(bough_windio *w, const bough_node *from, const matrices
     bough_section_note(w->draft, strange);
 }
 
-// From what the blade is made of.
-static void read_layup(bough_windio *w, matrices *stiffness, matrices *inertia) {
-    bough_windio_layup(w, stiffness, inertia);
-    if (!bough_is_ok(w->draft->status)) return;
-    bough_approximated(w, "blade: stiffness and inertia of thin walls, from layers and webs: plane sections, "
-                          "shear flow in the cells, no coupling by fibre angles");
-}
-
 // The matrices that the file gives; NULL: none.
 static const bough_node *find_matrices(const bough_windio *w) {
     static const char *const path[] = {"elastic_properties_mb.six_x_six", "structure.elastic_properties",
@@ -258,7 +250,9 @@ void bough_windio_blade(bough_windio *w) {
             bough_left_out(w, "blade: the matrices of stiffness and inertia, which no section can have: they "
                               "are not positive definite");
         }
-        read_layup(w, &stiffness, &inertia);
+        bough_windio_layup(w, &stiffness, &inertia);
+        bough_approximated(w, "blade: stiffness and inertia of thin walls, from layers and webs: plane "
+                              "sections, shear flow in the cells, no coupling by fibre angles");
     }
     if (bough_is_ok(w->draft->status)) {
         bough_curve_of(w->draft, stiffness.node, stiffness.grid, stiffness.entry, stiffness.n);

@@ -360,10 +360,9 @@ static void read_layer(parts *p, const bough_node *node, layer *l) {
         l->angle = bough_entry_curve(d, node, "fiber_orientation");
     const bough_node *web = bough_entry(node, "web");
     if (!web || web->kind != BOUGH_SCALAR) return;
-    for (int i = 0; p->webs && i < p->webs->n; i++) {
-        const bough_node *own = bough_entry(p->webs->value[i], "name");
-        if (own && own->kind == BOUGH_SCALAR && strcmp(own->text, web->text) == 0) l->web = i;
-    }
+    const bough_node *own = bough_entry_named(p->webs, web->text);
+    for (int i = 0; own && i < p->webs->n; i++)
+        if (p->webs->value[i] == own) l->web = i;
     if (l->web < 0) bough_entry_fail(d, web, "web: no web is named '%.60s'", web->text);
 }
 

@@ -41,14 +41,6 @@ static void read_inertia(bough_windio *w, const bough_node *from, const char *pa
     for (int i = 0; i < 6; i++) to[i] = row && i < n ? row[i] : 0;
 }
 
-static bool possible_inertia(const double i[6]) {
-    double largest = fmax(fmax(fabs(i[0]), fabs(i[1])), fabs(i[2])), slack = 1e-9 * largest * largest;
-    double xy = i[0] * i[1] - i[3] * i[3], xz = i[0] * i[2] - i[4] * i[4], yz = i[1] * i[2] - i[5] * i[5];
-    double all = i[0] * yz - i[3] * (i[3] * i[2] - i[5] * i[4]) + i[4] * (i[3] * i[5] - i[1] * i[4]);
-    bool minors = xy >= -slack && xz >= -slack && yz >= -slack && all >= -slack * largest;
-    return i[0] >= 0 && i[1] >= 0 && i[2] >= 0 && minors;
-}
-
 // Version 1: elastic_properties_mb {system_mass, system_inertia, system_center_mass}; version 2:
 // elastic_properties {mass, inertia, location}. False: there are none.
 static bool read_lump(bough_windio *w, const bough_node *part, lump *l) {
@@ -62,7 +54,7 @@ static bool read_lump(bough_windio *w, const bough_node *part, lump *l) {
     if (at) memcpy(l->centre, at, sizeof l->centre);
     read_inertia(w, from, "system_inertia|inertia", l->inertia);
     if (l->mass < 0) bough_entry_fail(d, from, "mass: expected a value that is not negative");
-    if (!possible_inertia(l->inertia)) {
+    if (!bough_scene_semidefinite(l->inertia)) {
         bough_entry_fail(
             d, bough_entry(from, "system_inertia|inertia"),
             "inertia: expected xx, yy, zz, xy, xz, yz of a matrix that is not negative about any axis");

@@ -581,6 +581,9 @@ bool bough_scene_step_fits(const bough_scene *scene, double macro_step);
 // Whether a body's frame moves: on its joint, or with a body or a rod that carries it.
 bool bough_scene_moves(const bough_scene *scene, int body);
 
+// Whether the inertia matrix with the entries xx, yy, zz, xy, xz, yz is positive semidefinite.
+bool bough_scene_semidefinite(const double entry[6]);
+
 // Writes every key of a scene and of its data files with unit, range, default and meaning.
 void bough_scene_help(FILE *stream);
 

@@ -37,9 +37,6 @@ typedef struct bough_scene_table {
 bool bough_scene_read_table(bough_schema_reader *r, const bough_node *node, bough_dimension unit,
                             bough_scene_table *table);
 
-// Whether the symmetric matrix xx yy zz xy xz yz is positive semidefinite.
-bool bough_scene_semidefinite(const double v[6]);
-
 // Checks within one mapping or file; `item` is the struct that was read.
 void bough_scene_check_structure(bough_schema_reader *r, void *item);
 void bough_scene_check_rod(bough_schema_reader *r, void *item);
