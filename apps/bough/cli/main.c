@@ -88,6 +88,7 @@ static void open_streams(void) {
 
 int main(int argc, char **argv) {
     open_streams();
+    bough_c_locale(); // a controller's library may set the user's
     bough_linalg_choose_kernels();
     signal(SIGXFSZ, SIG_IGN); // a file at its limit is then a write that fails, which is reported
     if (argc < 2) {

@@ -7,6 +7,8 @@
 
 #include "apps/bough/config/text.h"
 
+#include <locale.h>
+
 typedef enum bough_dimension {
     BOUGH_PURE_NUMBER,
     BOUGH_TIME,
@@ -153,6 +155,10 @@ double bough_schema_number(bough_schema_reader *reader, const bough_node *node, 
 // what the list should be.
 int bough_schema_numbers(bough_schema_reader *reader, const bough_node *node, int few, int many,
                          double *values, const char *expected);
+
+// Makes the C locale that of the calling thread, so that numbers have a decimal point whatever locale its
+// program or a library has set; returns the one that uselocale() restores.
+locale_t bough_c_locale(void);
 
 // The value in SI of a number followed by a unit of that dimension, or by none. False when it is
 // not one; `why` then receives the reason.

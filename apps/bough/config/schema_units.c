@@ -1,11 +1,10 @@
 // Numbers and units. A number is decimal in the strict form of JSON (no hexadecimal, no leading
-// zero, no inf or nan), read the same in every locale. A unit is a product of named units with SI
+// zero, no inf or nan), read in the C locale. A unit is a product of named units with SI
 // prefixes and whole exponents: "MN m", "kg/m^3", "rad/s".
 #include "apps/bough/config/schema.h"
 
 #include "core/base/base.h"
 
-#include <locale.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -193,22 +192,7 @@ static size_t number_length(const char *text) {
     return (size_t)(c - text);
 }
 
-// strtod with the decimal point of the current locale, whatever a library has set it to.
-static bool convert(const char *text, size_t length, double *value) {
-    char buffer[96];
-    const char *point = localeconv()->decimal_point;
-    size_t used = 0, wide = strlen(point);
-    for (size_t i = 0; i < length; i++) {
-        if (used + wide + 1 > sizeof buffer) return false;
-        const char *piece = text[i] == '.' ? point : text + i;
-        size_t size = text[i] == '.' ? wide : 1;
-        memcpy(buffer + used, piece, size);
-        used += size;
-    }
-    buffer[used] = '\0';
-    *value = strtod(buffer, NULL);
-    return isfinite(*value);
-}
+locale_t bough_c_locale(void) { return uselocale(newlocale(LC_ALL_MASK, "C", (locale_t)0)); }
 
 // Angles without a unit: radians to one reader, degrees to the next. 0 is the same to both.
 static bool is_ambiguous(const char *number, bough_dimension dimension, double value, char why[160]) {
@@ -224,7 +208,8 @@ bool bough_quantity(const char *text, bough_dimension dimension, double *value, 
     size_t length = number_length(text);
     why[0] = '\0';
     if (length == 0) return false;
-    if (!convert(text, length, value)) {
+    *value = strtod(text, NULL);
+    if (!isfinite(*value)) {
         snprintf(why, 160, "out of the range of numbers");
         return false;
     }

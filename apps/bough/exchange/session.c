@@ -186,7 +186,9 @@ bough_session *bough_session_open(const char *scene, const char *const *set, int
         return NULL;
     }
     opening o = {s, scene, set, count};
+    locale_t callers = bough_c_locale();
     s->opening = conclude(s, bough_arena_guard(s->arena, build, &o));
+    uselocale(callers);
     return s;
 }
 
@@ -386,7 +388,10 @@ int bough_session_set_text(bough_session *s, int input, const char *text) {
     double value = (double)NAN;
     char why[160] = "";
     if (!text) text = "";
-    if (is_input(s, input) && !bough_quantity(text, input_dimension(s, input), &value, why)) {
+    locale_t callers = bough_c_locale();
+    bool good = !is_input(s, input) || bough_quantity(text, input_dimension(s, input), &value, why);
+    uselocale(callers);
+    if (!good) {
         return conclude(s, bough_fail(BOUGH_INVALID, "input %s: expected a value in %s, got '%.80s'%s%s",
                                       bough_session_input_name(s, input), bough_session_input_unit(s, input),
                                       text, why[0] ? ": " : "", why));

@@ -4,7 +4,6 @@
 #include "tests/unit/check.h"
 #include "tests/unit/printed.h"
 
-#include <locale.h>
 #include <stdlib.h>
 #include <string.h>
 #include <time.h>
@@ -353,16 +352,6 @@ TEST(numbers_are_strict) {
     double value;
     char why[160];
     assert_false(bough_quantity("1e300 Gm", BOUGH_LENGTH, &value, why));
-}
-
-// A library may have set the user's locale, whose decimal point is a comma.
-TEST(numbers_do_not_depend_on_the_locale) {
-    const char *const names[] = {"de_DE.UTF-8", "de_DE.utf8", "fr_FR.UTF-8", "de_DE"};
-    bool set = false;
-    for (int i = 0; i < 4 && !set; i++) set = setlocale(LC_NUMERIC, names[i]) != NULL;
-    if (!set) skip();
-    quantity_is("1.5 m", BOUGH_LENGTH, 1.5);
-    setlocale(LC_NUMERIC, "C");
 }
 
 TEST(nearest_words_are_found) {

@@ -3,9 +3,13 @@
 
 #include "apps/bough/exchange/bough.h"
 
+#include "tests/unit/scratch_name.h"
+
+#include <locale.h>
 #include <pthread.h>
 #include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
 static const char pendulum[] = BOUGH_SOURCE_DIR "/apps/mechanisms/pendulum.yaml";
 
@@ -45,6 +49,33 @@ TEST(errors_are_reported) {
     s = bough_session_open("/nowhere/scene.yaml", NULL, 0);
     assert_int_not_equal(bough_session_code(s), BOUGH_SESSION_OK);
     assert_non_null(strstr(bough_session_error(s), "/nowhere/scene.yaml"));
+    bough_session_close(s);
+}
+
+// Whether numbers of this program now have a comma: a locale of the system, or one that is made here.
+static bool use_comma(void) {
+    char folder[SCRATCH_NAME], command[2 * SCRATCH_PATH];
+    if (setlocale(LC_ALL, "de_DE.UTF-8")) return true;
+    assert_non_null(mkdtemp(scratch_name(folder)));
+    snprintf(command, sizeof command, "localedef -i de_DE -f UTF-8 %s/de_DE.UTF-8 >%s/log 2>&1", folder,
+             folder);
+    bool made = system(command) == 0 && setenv("LOCPATH", folder, 1) == 0 && setlocale(LC_ALL, "de_DE.UTF-8");
+    snprintf(command, sizeof command, "rm -rf %s", folder);
+    return system(command) == 0 && made;
+}
+
+// Values, and the ranges of keys, are read with a point; the locale stays the caller's.
+TEST(numbers_do_not_depend_on_the_locale) {
+    if (!use_comma()) skip();
+    const char *const set[] = {"simulation.duration=0.5 s", "simulation.master.rtol=0.01",
+                               "loads=[{joint: bob, torque: 0, input: push}]"};
+    bough_session *s = bough_session_open(pendulum, set, 3);
+    assert_string_equal(bough_session_error(s), "");
+    check_near(bough_session_duration(s), 0.5, 1e-12, 0);
+    assert_int_equal(bough_session_set_text(s, 0, "1.5 N m"), BOUGH_SESSION_OK);
+    check_near(bough_session_input_value(s, 0), 1.5, 1e-12, 0);
+    assert_string_equal(localeconv()->decimal_point, ",");
+    setlocale(LC_ALL, "C");
     bough_session_close(s);
 }
 
