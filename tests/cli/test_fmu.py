@@ -17,7 +17,8 @@ import bough
 
 PROGRAM, SOURCE, CONTROLLER = sys.argv[1:4]
 TURBINE = SOURCE + "/apps/turbine/runup.yaml"
-SETTINGS = ["bodies[3-5].rod.segments=8", "aero.wind.input=wind",
+SETTINGS = ["title=many settings"] * 70 + [
+            "bodies[3-5].rod.segments=8", "aero.wind.input=wind",
             "loads=[{joint: hub, torque: -2 MN m, input: brake}]", "simulation.threads=1"]
 
 TYPES = "Float32 Float64 Int8 UInt8 Int16 UInt16 Int32 UInt32 Int64 UInt64 Boolean String Binary Clock"

@@ -3,6 +3,7 @@
 //
 // resources/ holds scene.txt: the token, the path of the scene in resources/, its settings, a line each; and
 // the scene with its files. Steps are whole numbers of macro steps.
+#include "apps/bough/config/schema.h"
 #include "apps/bough/exchange/bough.h"
 #include "apps/bough/model/fmi3.h"
 
@@ -15,7 +16,7 @@
 
 // NOLINTBEGIN(readability-function-size): FMI fixes the parameters
 
-enum { MOST_SETTINGS = 64, MORE_SETTINGS = 2, LINE = 4096 };
+enum { MORE_SETTINGS = 2 };
 
 typedef enum mode { INSTANTIATED, INITIALIZATION, STEP, TERMINATED } mode;
 
@@ -25,7 +26,7 @@ typedef struct instance {
     double end;   // of the session's time, by the importer's stop time or the scene's duration [s]
     mode mode;
     char *scene;
-    char *set[MOST_SETTINGS + MORE_SETTINGS]; // with room for those of a longer run
+    char **set; // (n_set), with room for MORE_SETTINGS of a longer run
     int n_set;
     bool logging;
     fmi3_log *log;
@@ -79,29 +80,38 @@ static double now(const instance *x) { return x->start + bough_session_time(x->s
 // -- life -----------------------------------------------------------------------------------------
 
 static char *join(const char *a, const char *b) {
-    char text[2 * LINE];
-    snprintf(text, sizeof text, "%s/%s", a, b);
-    return strdup(text);
+    size_t size = strlen(a) + strlen(b) + 2;
+    char *text = malloc(size);
+    if (text) snprintf(text, size, "%s/%s", a, b);
+    return text;
+}
+
+static bool add_setting(instance *x, const char *text) {
+    char **set = realloc(x->set, ((size_t)x->n_set + 1 + MORE_SETTINGS) * sizeof *set);
+    if (!set) return false;
+    x->set = set;
+    set[x->n_set] = strdup(text);
+    return set[x->n_set++] != NULL;
 }
 
 // Reads resources/scene.txt; false when it is not there or of another FMU.
 static bool read_resources(instance *x, const char *resources, const char *token) {
-    char line[LINE];
-    int number = 0;
+    char *line = NULL;
+    size_t room = 0;
     char *path = join(resources, "scene.txt");
     FILE *file = path ? fopen(path, "r") : NULL;
     free(path);
     if (!file) return false;
     bool good = true;
-    while (good && fgets(line, sizeof line, file)) {
+    for (int number = 0; good && getline(&line, &room, file) >= 0; number++) {
         line[strcspn(line, "\r\n")] = '\0';
         if (number == 0) good = strcmp(line, token) == 0;
-        if (number == 1) x->scene = join(resources, line);
-        if (number > 1 && x->n_set < MOST_SETTINGS) x->set[x->n_set++] = strdup(line);
-        number++;
+        if (number == 1) good = (x->scene = join(resources, line)) != NULL;
+        if (number > 1) good = add_setting(x, line);
     }
+    free(line);
     fclose(file);
-    return good && x->scene != NULL;
+    return good && x->n_set > 0;
 }
 
 static bool open_session(instance *x) {
@@ -141,6 +151,7 @@ void fmi3FreeInstance(fmi3_instance self) {
     if (!x) return;
     bough_session_close(x->session);
     for (int k = 0; k < x->n_set; k++) free(x->set[k]);
+    free(x->set);
     free(x->scene);
     free(x);
 }
@@ -168,8 +179,10 @@ static fmi3_status prolong(instance *x, double duration) {
     double *value = malloc(((size_t)n + 1) * sizeof *value);
     if (!value) return FMI3_ERROR;
     for (int k = 0; k < n; k++) value[k] = bough_session_input_value(x->session, k);
+    locale_t importers = bough_c_locale();
     snprintf(longer, sizeof longer, "simulation.duration=%.17g", duration);
     snprintf(same_step, sizeof same_step, "simulation.macro_step=%.17g", step);
+    uselocale(importers);
     bool good = reopen(x, (const char *[]){longer, same_step}, MORE_SETTINGS);
     for (int k = 0; good && k < n; k++) bough_session_set(x->session, k, value[k]);
     free(value);
