@@ -20,8 +20,6 @@ static const double circle = 2 * BOUGH_PI;
 // Closer to zero lift than this the ratio of lifts is taken here [rad].
 static const double near_zero = 1e-4;
 
-static double lift_at(const bough_polar *polar, double alpha) { return bough_polar_at(polar, alpha).lift; }
-
 // With r = Cl/(slope·(α − α₀)) Kirchhoff's f = (2√r − 1)² leaves the separated lift
 // slope·(α − α₀)(3√r − 1)/(4√r), which is all of it at f = 0 and half of it at f = 1.
 static void split(const bough_polar *polar, double alpha, double lift, double *f, double *separated) {
@@ -32,7 +30,7 @@ static void split(const bough_polar *polar, double alpha, double lift, double *f
     double linear = polar->slope * d, at = lift;
     if (fabs(d) < near_zero) {
         d = copysign(near_zero, d);
-        at = lift_at(polar, polar->zero_lift + d);
+        at = bough_polar_at(polar, polar->zero_lift + d).lift;
     }
     double q = sqrt(fmin(fmax(at / (polar->slope * d), 0), 1));
     if (q <= 0.5) return;
@@ -41,7 +39,7 @@ static void split(const bough_polar *polar, double alpha, double lift, double *f
 }
 
 void bough_stall_split(const bough_polar *polar, double alpha, double *f, double *separated) {
-    split(polar, alpha, lift_at(polar, alpha), f, separated);
+    split(polar, alpha, bough_polar_at(polar, alpha).lift, f, separated);
 }
 
 // -- states ---------------------------------------------------------------------------------------

@@ -1,6 +1,7 @@
 #include "aero/rotor/tower.h"
 
 #include "core/base/base.h"
+#include "core/base/schedule.h"
 
 #include <assert.h>
 
@@ -21,14 +22,6 @@ void bough_tower_build(bough_arena *arena, const bough_tower_def *def, bough_tow
     if (def->drag) tower->drag = bough_arena_copy(arena, def->drag, size);
 }
 
-// A table's value at a height above the base; above the top that of the top.
-static double value_at(const bough_tower *tower, const double *value, double height) {
-    int i = 0;
-    while (i < tower->n - 2 && height > tower->height[i + 1]) i++;
-    double w = (height - tower->height[i]) / (tower->height[i + 1] - tower->height[i]);
-    return value[i] + fmin(w, 1) * (value[i + 1] - value[i]);
-}
-
 // The radius at a height above the base, 0 where there is no tower. Above the top it fades over
 // one radius, as in the reference code.
 static double radius_at(const bough_tower *tower, double height) {
@@ -37,11 +30,11 @@ static double radius_at(const bough_tower *tower, double height) {
     double top = tower->diameter[n - 1] / 2, above = height - tower->height[n - 1];
     if (above >= top) return 0;
     if (above > 0) return top * cos(BOUGH_PI / 2 * above / top);
-    return value_at(tower, tower->diameter, height) / 2;
+    return bough_table_value(n, tower->height, tower->diameter, height) / 2;
 }
 
 static double drag_at(const bough_tower *tower, double height) {
-    return tower->drag ? value_at(tower, tower->drag, height) : 1;
+    return tower->drag ? bough_table_value(tower->n, tower->height, tower->drag, height) : 1;
 }
 
 // A horizontal wind relative to the undisturbed one, along and across it.

@@ -297,16 +297,6 @@ static void read_fallback(bough_schema_reader *r, const bough_key *key, void *it
     if (node != NULL) read_value(r, key, node, item);
 }
 
-// Whether `word` is one of "a|b|c".
-static bool is_among(const char *word, const char *list) {
-    size_t length = strlen(word);
-    for (const char *c = list; c != NULL; c = strchr(c, '|')) {
-        if (*c == '|') c++;
-        if (strncmp(c, word, length) == 0 && (c[length] == '|' || c[length] == '\0')) return true;
-    }
-    return false;
-}
-
 typedef enum relevance { APPLIES, APPLIES_NOT, UNKNOWN } relevance;
 
 // Whether the key applies under the choices read before it.
@@ -315,7 +305,7 @@ static relevance applies(const bough_schema *schema, const bough_key *key, void 
     const bough_key *by = bough_schema_find(schema, key->when_key);
     int choice = *(int *)bough_field_at(item, by->offset);
     if (choice < 0) return UNKNOWN;
-    return is_among(bough_key_choice(by, choice), key->when) ? APPLIES : APPLIES_NOT;
+    return bough_word_is_among(bough_key_choice(by, choice), key->when, '|') ? APPLIES : APPLIES_NOT;
 }
 
 // Says where a key that is given would apply, unless another key of that name applies here.

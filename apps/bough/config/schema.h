@@ -223,6 +223,9 @@ void *bough_schema_items(bough_schema_reader *r, const bough_key *key, const bou
 void bough_schema_not_more(bough_schema_reader *r, const char *key, const bough_node *before,
                            const bough_node *node);
 
+// Whether the word is one of a list, of "a|b|c" with the separator '|'.
+bool bough_word_is_among(const char *word, const char *list, char separator);
+
 // The first key of that name; NULL: there is none.
 const bough_key *bough_schema_find(const bough_schema *schema, const char *name);
 

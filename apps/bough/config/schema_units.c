@@ -68,17 +68,14 @@ static const struct {
 const char *bough_dimension_unit(bough_dimension dimension) { return dimensions[dimension].si; }
 
 void bough_dimension_expected(bough_dimension dimension, char text[96]) {
+    const char *name = dimensions[dimension].name, *si = dimensions[dimension].si;
+    const char *example = dimensions[dimension].example;
     if (dimension == BOUGH_PURE_NUMBER) {
-        strcpy(text, "a number");
-        return;
-    }
-    bool angular = dimension == BOUGH_ANGLE || dimension == BOUGH_ANGULAR_SPEED;
-    if (angular) {
-        snprintf(text, 96, "%s with its unit, as '%s'", dimensions[dimension].name,
-                 dimensions[dimension].example);
+        snprintf(text, 96, "%s", name);
+    } else if (dimension == BOUGH_ANGLE || dimension == BOUGH_ANGULAR_SPEED) {
+        snprintf(text, 96, "%s with its unit, as '%s'", name, example);
     } else {
-        snprintf(text, 96, "%s (in %s, or with a unit, as '%s')", dimensions[dimension].name,
-                 dimensions[dimension].si, dimensions[dimension].example);
+        snprintf(text, 96, "%s (in %s, or with a unit, as '%s')", name, si, example);
     }
 }
 

@@ -304,12 +304,11 @@ static int edit_distance(const char *a, const char *b) {
     return d[n][m];
 }
 
-// Whether the word is one of those that hyphens join in the candidate: cvode of cvode-bdf.
-static bool is_part(const char *word, const char *candidate) {
+bool bough_word_is_among(const char *word, const char *list, char separator) {
     size_t length = strlen(word);
-    for (const char *c = candidate; length > 0 && c != NULL; c = strchr(c, '-')) {
-        if (*c == '-') c++;
-        if (strncmp(c, word, length) == 0 && (c[length] == '-' || c[length] == '\0')) return true;
+    for (const char *c = list; length > 0 && c != NULL; c = strchr(c, separator)) {
+        if (*c == separator) c++;
+        if (strncmp(c, word, length) == 0 && (c[length] == separator || c[length] == '\0')) return true;
     }
     return false;
 }
@@ -328,7 +327,7 @@ const char *bough_nearest(const char *word, const char *const *candidates, int n
     const char *nearest = NULL;
     for (int i = 0; i < n; i++) {
         if (candidates[i] == NULL || strlen(candidates[i]) >= WORD) continue;
-        int distance = is_part(word, candidates[i]) ? 1 : edit_distance(word, candidates[i]);
+        int distance = bough_word_is_among(word, candidates[i], '-') ? 1 : edit_distance(word, candidates[i]);
         bool alike = nearest != NULL && distance == best &&
                      same_beginning(word, candidates[i]) > same_beginning(word, nearest);
         if (distance < best || alike) {

@@ -165,16 +165,6 @@ static void *take(reader *r, size_t size) {
     return p;
 }
 
-// Room for so many more nodes on the stack.
-static void make_room(reader *r, int more) {
-    if (r->n_stack + more <= r->stack_capacity) return;
-    int capacity = r->n_stack + more > 64 ? 2 * (r->n_stack + more) : 64;
-    bough_node **stack = bough_arena_take(r->work, (size_t)capacity * sizeof *stack);
-    if (r->n_stack > 0) memcpy(stack, r->stack, (size_t)r->n_stack * sizeof *stack);
-    r->stack = stack;
-    r->stack_capacity = capacity;
-}
-
 // -- refusals -------------------------------------------------------------------------------------
 
 static bool refuse(reader *r, yaml_mark_t at, const char *text) {
@@ -262,7 +252,7 @@ static bool attach(reader *r, bough_node *node, yaml_mark_t at) {
         r->root = node;
         return true;
     }
-    make_room(r, 1);
+    r->stack = bough_arena_grow(r->work, r->stack, r->n_stack, &r->stack_capacity, sizeof *r->stack);
     r->stack[r->n_stack++] = node;
     return true;
 }
@@ -342,10 +332,10 @@ static int compare_keys(const void *a, const void *b) {
     return x->line != y->line ? x->line - y->line : x->column - y->column;
 }
 
-// Adds an error for every key given before. Sorted: a hostile file may hold half a million keys.
+// Adds an error for every key given before. Sorted, as a hostile file may hold half a million keys, where the
+// mapping's children have just left the stack.
 static void check_duplicates(reader *r, const bough_node *mapping) {
     if (mapping->n < 2) return;
-    make_room(r, mapping->n);
     bough_node **sorted = r->stack + r->n_stack;
     memcpy(sorted, mapping->key, (size_t)mapping->n * sizeof *sorted);
     qsort(sorted, (size_t)mapping->n, sizeof *sorted, compare_keys);

@@ -324,11 +324,6 @@ static bool is_input(const bough_session *s, int input) {
     return input >= 0 && input < bough_session_inputs(s);
 }
 
-static double *input_value(const bough_session *s, int input) {
-    if (!is_input(s, input)) return NULL;
-    return s->run.simulation->input + input;
-}
-
 static bough_dimension input_dimension(const bough_session *s, int input) {
     return (bough_dimension)input_at(s, input)->dimension;
 }
@@ -358,15 +353,13 @@ int bough_session_input(bough_session *s, const char *name) {
 }
 
 double bough_session_input_value(const bough_session *s, int input) {
-    const double *value = input_value(s, input);
-    return value ? *value : (double)NAN;
+    return is_input(s, input) ? s->run.simulation->input[input] : (double)NAN;
 }
 
 int bough_session_set(bough_session *s, int input, double value) {
     if (!is_open(s)) return conclude_closed(s, "set");
     if (failed(s)) return conclude_failed(s, "set");
-    double *to = input_value(s, input);
-    if (!to) {
+    if (!is_input(s, input)) {
         return conclude(s, bough_fail(BOUGH_INVALID, "the scene has no input of index %d: it has %d", input,
                                       bough_session_inputs(s)));
     }
@@ -380,7 +373,7 @@ int bough_session_set(bough_session *s, int input, double value) {
                                       bough_session_input_name(s, input), range[0] == '[' ? "in " : "", range,
                                       bough_session_input_unit(s, input), value));
     }
-    *to = value;
+    s->run.simulation->input[input] = value;
     return conclude(s, bough_ok());
 }
 

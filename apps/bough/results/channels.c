@@ -1,5 +1,7 @@
 #include "apps/bough/results/channels.h"
 
+#include "core/base/base.h"
+
 #include <assert.h>
 #include <fnmatch.h>
 #include <stdarg.h>
@@ -47,13 +49,13 @@ static const struct {
     double si, turn;
 } units[] = {
     {"m", BOUGH_KIND_LENGTH, 1, 0},
-    {"deg", BOUGH_KIND_ANGLE, 0.017453292519943295, 360},
-    {"rad", BOUGH_KIND_ANGLE, 1, 6.283185307179586},
+    {"deg", BOUGH_KIND_ANGLE, BOUGH_DEGREE, 360},
+    {"rad", BOUGH_KIND_ANGLE, 1, 2 * BOUGH_PI},
     {"-", BOUGH_KIND_ANGLE, 1, 0},
     {"m/s", BOUGH_KIND_VELOCITY, 1, 0},
-    {"deg/s", BOUGH_KIND_ANGULAR_VELOCITY, 0.017453292519943295, 0},
+    {"deg/s", BOUGH_KIND_ANGULAR_VELOCITY, BOUGH_DEGREE, 0},
     {"rad/s", BOUGH_KIND_ANGULAR_VELOCITY, 1, 0},
-    {"rpm", BOUGH_KIND_ANGULAR_VELOCITY, 0.10471975511965977, 0},
+    {"rpm", BOUGH_KIND_ANGULAR_VELOCITY, BOUGH_RPM, 0},
     {"N", BOUGH_KIND_FORCE, 1, 0},
     {"kN", BOUGH_KIND_FORCE, 1e3, 0},
     {"N-m", BOUGH_KIND_MOMENT, 1, 0},
